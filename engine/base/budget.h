@@ -1,0 +1,92 @@
+// The budget of a search: a deadline and a cancellation, asked in inner loops.
+
+#ifndef TRAVERSE_ENGINE_BASE_BUDGET_H_
+#define TRAVERSE_ENGINE_BASE_BUDGET_H_
+
+#include <atomic>
+#include <chrono>
+#include <optional>
+
+namespace traverse {
+
+// A wish to stop, shared by everything that works on one job. Thread-safe.
+class CancelToken {
+ public:
+  void Cancel() { cancelled_.store(true, std::memory_order_relaxed); }
+  bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<bool> cancelled_{false};
+};
+
+// How long a search may go on. One object for each search: not thread-safe, but the token that it
+// watches is. The engine sees no clock but this one.
+//
+//   Budget budget(&token, deadline);
+//   while (!budget.Exhausted()) { ... one small step, well under 10 ms ... }
+class Budget {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  // Without a limit.
+  Budget() = default;
+
+  // Ends when `cancel` (may be null; not owned, outlives the budget) is cancelled, or at
+  // `deadline`.
+  explicit Budget(const CancelToken* cancel,
+                  std::optional<Clock::time_point> deadline = std::nullopt)
+      : cancel_(cancel), deadline_(deadline) {}
+
+  // True once the search has to return what it has; stays true then. Cheap: the cancellation is
+  // looked at every time, the clock only every kCallsPerClockReading calls.
+  bool Exhausted() {
+    if (exhausted_) return true;
+    if (cancel_ != nullptr && cancel_->cancelled()) return exhausted_ = true;
+    if (!deadline_ || --calls_to_clock_ > 0) return false;
+    calls_to_clock_ = kCallsPerClockReading;
+    return exhausted_ = Clock::now() >= *deadline_;
+  }
+
+  // Same, but always looks at the clock. For steps that are slow themselves.
+  bool ExhaustedNow() {
+    calls_to_clock_ = 1;
+    return Exhausted();
+  }
+
+  // True if the end was, or would now be, for the cancellation and not for the clock.
+  bool cancelled() const { return cancel_ != nullptr && cancel_->cancelled(); }
+
+  // The cancellation watched, or null; for budgets derived from this one.
+  const CancelToken* cancel() const { return cancel_; }
+
+  std::optional<Clock::time_point> deadline() const { return deadline_; }
+
+  // A budget that ends with this one, or after `limit` from now if that is earlier.
+  Budget Within(Clock::duration limit) const {
+    const Clock::time_point end = Clock::now() + limit;
+    return Budget(cancel_, deadline_ && *deadline_ < end ? *deadline_ : end);
+  }
+
+ private:
+  static constexpr int kCallsPerClockReading = 16;
+
+  const CancelToken* cancel_ = nullptr;
+  std::optional<Clock::time_point> deadline_;
+  int calls_to_clock_ = 1;
+  bool exhausted_ = false;
+};
+
+// Measures how long something took. Kept here, as the engine's other use of the clock.
+class Stopwatch {
+ public:
+  double Seconds() const {
+    return std::chrono::duration<double>(Budget::Clock::now() - begin_).count();
+  }
+
+ private:
+  Budget::Clock::time_point begin_ = Budget::Clock::now();
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_BASE_BUDGET_H_

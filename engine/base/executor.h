@@ -1,0 +1,22 @@
+// Where the engine's work is run. The engine owns no threads: its caller brings them.
+
+#ifndef TRAVERSE_ENGINE_BASE_EXECUTOR_H_
+#define TRAVERSE_ENGINE_BASE_EXECUTOR_H_
+
+#include <functional>
+
+namespace traverse {
+
+// Runs tasks, at any later time, on any threads, in any order. Thread-safe. A task never waits for
+// another one, so one thread is enough for progress.
+class Executor {
+ public:
+  virtual ~Executor() = default;
+
+  // Runs `task` once. Must not run it before returning.
+  virtual void Submit(std::function<void()> task) = 0;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_BASE_EXECUTOR_H_

@@ -1,0 +1,46 @@
+// Every entry of every path of a plan, in flat arrays for inner loops.
+
+#ifndef TRAVERSE_ENGINE_COST_ENTRY_TABLE_H_
+#define TRAVERSE_ENGINE_COST_ENTRY_TABLE_H_
+
+#include <vector>
+
+#include "engine/model/plan.h"
+#include "engine/model/route.h"
+
+namespace traverse {
+
+// Entries are numbered from 0 over all paths; those of path p are [first(p), first(p + 1)), in the
+// order of Path::allowed (or of the vertices) for a contour, forward then reversed for an open
+// path. Contours have enter(e) == exit(e). Memory: 40 bytes an entry.
+class EntryTable {
+ public:
+  explicit EntryTable(const Plan& plan);
+
+  int path_count() const { return static_cast<int>(first_.size()) - 1; }
+  int entry_count() const { return first_.back(); }
+
+  int first(int path) const { return first_[static_cast<size_t>(path)]; }
+  int count(int path) const { return first(path + 1) - first(path); }
+
+  Point enter(int entry) const { return enter_[static_cast<size_t>(entry)]; }
+  Point exit(int entry) const { return exit_[static_cast<size_t>(entry)]; }
+  int path_of(int entry) const { return path_of_[static_cast<size_t>(entry)]; }
+
+  // The visit that `entry` stands for, and back. REQUIRES for EntryOf: visit.entry is allowed.
+  Visit VisitOf(int entry) const {
+    return Visit{path_of(entry), visit_entry_[static_cast<size_t>(entry)]};
+  }
+  int EntryOf(const Visit& visit) const;
+
+ private:
+  std::vector<int> first_;        // [path], path_count() + 1 of them
+  std::vector<Point> enter_;      // [entry]
+  std::vector<Point> exit_;       // [entry]
+  std::vector<int> path_of_;      // [entry]
+  std::vector<int> visit_entry_;  // [entry] Visit::entry
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_COST_ENTRY_TABLE_H_

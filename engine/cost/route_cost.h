@@ -1,0 +1,20 @@
+// The cost of a whole route.
+
+#ifndef TRAVERSE_ENGINE_COST_ROUTE_COST_H_
+#define TRAVERSE_ENGINE_COST_ROUTE_COST_H_
+
+#include "engine/model/layer_problem.h"
+#include "engine/model/route.h"
+
+namespace traverse {
+
+// Sum of the costs of all moves of `route`, in the unit of problem.cost, the move to `finish`
+// included. REQUIRES: `route` is a route of the problem's plan.
+double RouteCost(const LayerProblem& problem, const Route& route);
+
+// Where the head is after `route`: the last exit, or `start` for an empty route.
+Point RouteEnd(const Plan& plan, const Route& route, Point start);
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_COST_ROUTE_COST_H_

@@ -1,0 +1,32 @@
+// What a strategy is asked: one layer, its start and what moves cost.
+
+#ifndef TRAVERSE_ENGINE_MODEL_LAYER_PROBLEM_H_
+#define TRAVERSE_ENGINE_MODEL_LAYER_PROBLEM_H_
+
+#include <cstdint>
+#include <optional>
+
+#include "engine/model/cost_spec.h"
+#include "engine/model/plan.h"
+#include "engine/model/point.h"
+
+namespace traverse {
+
+// Travel of a route is the sum of the moves start -> first entry, exit -> next entry, and, if
+// `finish` is set, last exit -> finish. `plan` passes CheckPlan and outlives the problem.
+struct LayerProblem {
+  const Plan* plan = nullptr;
+  Point start;
+
+  // Where the head goes after the layer and at what it counts in the cost: the cleaning point.
+  std::optional<Point> finish;
+
+  CostSpec cost;
+
+  // Of this layer's own random generator.
+  uint64_t seed = 1;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_MODEL_LAYER_PROBLEM_H_

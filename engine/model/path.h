@@ -1,0 +1,42 @@
+// A path: what is deposited in one go.
+
+#ifndef TRAVERSE_ENGINE_MODEL_PATH_H_
+#define TRAVERSE_ENGINE_MODEL_PATH_H_
+
+#include <vector>
+
+#include "engine/model/point.h"
+
+namespace traverse {
+
+// A contour (closed: entered and left at one vertex) or an open path (entered at one end, left at
+// the other). SPEC section 1.
+struct Path {
+  enum class Kind { kContour, kOpen };
+
+  Kind kind = Kind::kContour;
+
+  // Contour: its vertices, at least one. Open path: its two ends, first and last.
+  std::vector<Point> points;
+
+  // Contour: the vertices at which it may be entered, distinct; empty for all of them.
+  std::vector<int> allowed;
+
+  // Open path: always from points[0] to points[1].
+  bool one_way = false;
+
+  // Where the path came from, for whoever made the plan; the engine does not look at it.
+  int tag = 0;
+};
+
+inline Path MakeContour(std::vector<Point> vertices, std::vector<int> allowed = {}) {
+  return Path{Path::Kind::kContour, std::move(vertices), std::move(allowed), false, 0};
+}
+
+inline Path MakeOpenPath(Point first, Point last, bool one_way = false) {
+  return Path{Path::Kind::kOpen, {first, last}, {}, one_way, 0};
+}
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_MODEL_PATH_H_

@@ -1,0 +1,236 @@
+#include "engine/model/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "engine/base/tolerances.h"
+
+namespace traverse {
+namespace {
+
+absl::Status Fault(const std::string& place, const std::string& what) {
+  return absl::InvalidArgumentError(absl::StrCat(place, ": ", what));
+}
+
+absl::Status CheckAllowed(const Path& path, const std::string& place) {
+  std::vector<bool> seen(path.points.size());
+  for (size_t i = 0; i < path.allowed.size(); ++i) {
+    const int vertex = path.allowed[i];
+    if (vertex < 0 || vertex >= static_cast<int>(path.points.size())) {
+      return Fault(absl::StrCat(place, ".entries[", i, "]"),
+                   absl::StrCat(vertex, " is not a vertex of a contour of ", path.points.size()));
+    }
+    if (seen[static_cast<size_t>(vertex)]) {
+      return Fault(absl::StrCat(place, ".entries[", i, "]"), absl::StrCat(vertex, " is repeated"));
+    }
+    seen[static_cast<size_t>(vertex)] = true;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status CheckPath(const Path& path, size_t index) {
+  const std::string place = absl::StrCat("paths[", index, "]");
+  if (path.kind == Path::Kind::kContour && path.points.empty()) {
+    return Fault(absl::StrCat(place, ".points"), "a contour needs at least one point");
+  }
+  if (path.kind == Path::Kind::kOpen && path.points.size() != 2) {
+    return Fault(absl::StrCat(place, ".points"), "an open path has two ends");
+  }
+  for (size_t i = 0; i < path.points.size(); ++i) {
+    if (const char* fault = CoordinateFault(path.points[i].x)) {
+      return Fault(absl::StrCat(place, ".points[", i, "].x"), fault);
+    }
+    if (const char* fault = CoordinateFault(path.points[i].y)) {
+      return Fault(absl::StrCat(place, ".points[", i, "].y"), fault);
+    }
+  }
+  return CheckAllowed(path, place);
+}
+
+// Kahn's algorithm over the pairs of one node.
+bool HasCycle(const PlanNode& node) {
+  const size_t n = node.children.size();
+  std::vector<std::vector<int>> later(n);
+  std::vector<int> waiting_for(n);
+  for (const auto& [first, second] : node.before) {
+    later[static_cast<size_t>(first)].push_back(second);
+    ++waiting_for[static_cast<size_t>(second)];
+  }
+  std::vector<int> ready;
+  for (size_t i = 0; i < n; ++i) {
+    if (waiting_for[i] == 0) ready.push_back(static_cast<int>(i));
+  }
+  for (size_t next = 0; next < ready.size(); ++next) {
+    for (const int second : later[static_cast<size_t>(ready[next])]) {
+      if (--waiting_for[static_cast<size_t>(second)] == 0) ready.push_back(second);
+    }
+  }
+  return ready.size() < n;
+}
+
+absl::Status CheckBefore(const PlanNode& node, const std::string& place) {
+  const int n = static_cast<int>(node.children.size());
+  for (size_t i = 0; i < node.before.size(); ++i) {
+    const auto [first, second] = node.before[i];
+    const std::string pair = absl::StrCat(place, ".before[", i, "]");
+    if (first < 0 || first >= n) {
+      return Fault(pair + ".first", absl::StrCat(first, " is not the position of a child"));
+    }
+    if (second < 0 || second >= n) {
+      return Fault(pair + ".second", absl::StrCat(second, " is not the position of a child"));
+    }
+  }
+  if (HasCycle(node)) return Fault(place + ".before", "the pairs form a cycle");
+  return absl::OkStatus();
+}
+
+// Collects what the nodes say of each other, one node after the other.
+class TreeCheck {
+ public:
+  explicit TreeCheck(const Plan& plan)
+      : plan_(plan), depth_(plan.nodes.size()), leaf_of_(plan.paths.size(), -1) {}
+
+  absl::Status Run() {
+    if (plan_.nodes.empty() && !plan_.paths.empty()) {
+      return Fault("nodes", "empty, although there are paths");
+    }
+    if (!plan_.nodes.empty()) depth_[0] = 1;
+    for (size_t i = 0; i < plan_.nodes.size(); ++i) {
+      if (depth_[i] == 0) return Fault(absl::StrCat("nodes[", i, "]"), "is no node's child");
+      if (absl::Status status = CheckNode(static_cast<int>(i)); !status.ok()) return status;
+    }
+    for (size_t p = 0; p < leaf_of_.size(); ++p) {
+      if (leaf_of_[p] < 0) return Fault(absl::StrCat("paths[", p, "]"), "is no node's path");
+    }
+    return absl::OkStatus();
+  }
+
+ private:
+  absl::Status CheckNode(int index) {
+    const PlanNode& node = plan_.nodes[static_cast<size_t>(index)];
+    const std::string place = absl::StrCat("nodes[", index, "]");
+    if (node.kind == PlanNode::Kind::kPath) return CheckLeaf(node, index, place);
+    const std::string kind = node.kind == PlanNode::Kind::kInOrder ? ".in_order" : ".any_order";
+    if (absl::Status status = CheckChildren(node, index, place + kind); !status.ok()) return status;
+    return CheckBefore(node, place + kind);
+  }
+
+  absl::Status CheckLeaf(const PlanNode& node, int index, const std::string& place) {
+    if (node.path < 0 || node.path >= static_cast<int>(plan_.paths.size())) {
+      return Fault(place + ".path", absl::StrCat(node.path, " is not the index of a path"));
+    }
+    int& leaf = leaf_of_[static_cast<size_t>(node.path)];
+    if (leaf >= 0) {
+      return Fault(place + ".path",
+                   absl::StrCat("path ", node.path, " is already that of nodes[", leaf, "]"));
+    }
+    leaf = index;
+    return absl::OkStatus();
+  }
+
+  absl::Status CheckChildren(const PlanNode& node, int index, const std::string& place) {
+    for (size_t c = 0; c < node.children.size(); ++c) {
+      const int child = node.children[c];
+      const std::string at = absl::StrCat(place, ".children[", c, "]");
+      if (child <= index || child >= static_cast<int>(plan_.nodes.size())) {
+        return Fault(at, absl::StrCat(child, " is not the index of a later node"));
+      }
+      int& depth = depth_[static_cast<size_t>(child)];
+      if (depth != 0) return Fault(at, absl::StrCat("nodes[", child, "] already has a parent"));
+      depth = depth_[static_cast<size_t>(index)] + 1;
+      if (depth > kMaxPlanDepth) {
+        return Fault(at, absl::StrCat("nested deeper than ", kMaxPlanDepth, " levels"));
+      }
+    }
+    return absl::OkStatus();
+  }
+
+  const Plan& plan_;
+  std::vector<int> depth_;    // [node] level from 1; 0: not yet a child
+  std::vector<int> leaf_of_;  // [path] its node; -1: none yet
+};
+
+// Appends nodes of a plan under construction.
+class PlanBuilder {
+ public:
+  int AddNode(PlanNode::Kind kind, int parent) {
+    const int index = static_cast<int>(plan_.nodes.size());
+    plan_.nodes.push_back(PlanNode{kind, 0, {}, {}});
+    if (parent >= 0) plan_.nodes[static_cast<size_t>(parent)].children.push_back(index);
+    return index;
+  }
+
+  void AddLeaf(int path, int parent) {
+    plan_.nodes[static_cast<size_t>(AddNode(PlanNode::Kind::kPath, parent))].path = path;
+  }
+
+  // Returns the index of the path.
+  int AddPath(Path path) {
+    plan_.paths.push_back(std::move(path));
+    return static_cast<int>(plan_.paths.size()) - 1;
+  }
+
+  Plan Build() { return std::move(plan_); }
+
+ private:
+  Plan plan_;
+};
+
+bool NoPaths(const std::vector<IslandPaths>& islands) {
+  return std::all_of(islands.begin(), islands.end(), [](const IslandPaths& island) {
+    return island.contours.empty() && island.rasters.empty();
+  });
+}
+
+}  // namespace
+
+const char* CoordinateFault(double coordinate) {
+  if (!std::isfinite(coordinate)) return "not finite";
+  static_assert(kMaxCoordinateMm == 1e6);
+  if (std::abs(coordinate) > kMaxCoordinateMm) return "beyond +-1e6 mm";
+  return nullptr;
+}
+
+absl::Status CheckPlan(const Plan& plan) {
+  for (size_t p = 0; p < plan.paths.size(); ++p) {
+    if (absl::Status status = CheckPath(plan.paths[p], p); !status.ok()) return status;
+  }
+  return TreeCheck(plan).Run();
+}
+
+Plan SequentialPlan(std::vector<IslandPaths> islands) {
+  if (NoPaths(islands)) return Plan{};
+  PlanBuilder builder;
+  const int root = builder.AddNode(PlanNode::Kind::kInOrder, -1);
+  const int contours = builder.AddNode(PlanNode::Kind::kAnyOrder, root);
+  const int rasters = builder.AddNode(PlanNode::Kind::kAnyOrder, root);
+  for (IslandPaths& island : islands) {
+    for (Path& path : island.contours) builder.AddLeaf(builder.AddPath(std::move(path)), contours);
+    for (Path& path : island.rasters) builder.AddLeaf(builder.AddPath(std::move(path)), rasters);
+  }
+  return builder.Build();
+}
+
+Plan InterleavedPlan(std::vector<IslandPaths> islands) {
+  if (NoPaths(islands)) return Plan{};
+  PlanBuilder builder;
+  const int root = builder.AddNode(PlanNode::Kind::kAnyOrder, -1);
+  for (IslandPaths& island : islands) {
+    if (island.contours.empty() && island.rasters.empty()) continue;
+    const int node = builder.AddNode(PlanNode::Kind::kInOrder, root);
+    int inner = -1;
+    for (size_t c = 0; c < island.contours.size(); ++c) {
+      if (c == 1) inner = builder.AddNode(PlanNode::Kind::kAnyOrder, node);
+      builder.AddLeaf(builder.AddPath(std::move(island.contours[c])), c == 0 ? node : inner);
+    }
+    if (island.rasters.empty()) continue;
+    const int rasters = builder.AddNode(PlanNode::Kind::kAnyOrder, node);
+    for (Path& path : island.rasters) builder.AddLeaf(builder.AddPath(std::move(path)), rasters);
+  }
+  return builder.Build();
+}
+
+}  // namespace traverse

@@ -1,0 +1,28 @@
+// A point of a layer's plane.
+
+#ifndef TRAVERSE_ENGINE_MODEL_POINT_H_
+#define TRAVERSE_ENGINE_MODEL_POINT_H_
+
+#include <cmath>
+
+namespace traverse {
+
+// In mm.
+struct Point {
+  double x = 0;
+  double y = 0;
+
+  friend bool operator==(const Point&, const Point&) = default;
+};
+
+// Euclidean distance in mm. Coordinates are bounded (kMaxCoordinateMm), so the overflow-proof and
+// slower std::hypot is not needed.
+inline double Distance(Point a, Point b) {
+  const double dx = a.x - b.x;
+  const double dy = a.y - b.y;
+  return std::sqrt(dx * dx + dy * dy);
+}
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_MODEL_POINT_H_

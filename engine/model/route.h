@@ -1,0 +1,52 @@
+// A route: what a strategy returns for a layer.
+
+#ifndef TRAVERSE_ENGINE_MODEL_ROUTE_H_
+#define TRAVERSE_ENGINE_MODEL_ROUTE_H_
+
+#include <vector>
+
+#include "engine/model/path.h"
+#include "engine/model/plan.h"
+#include "engine/model/point.h"
+
+namespace traverse {
+
+// One path of a route with its entry.
+struct Visit {
+  // Index into Plan::paths.
+  int path = 0;
+
+  // Contour: the vertex (index into Path::points) at which it is begun and ended.
+  // Open path: 0 from points[0] to points[1], 1 the other way.
+  int entry = 0;
+
+  friend bool operator==(const Visit&, const Visit&) = default;
+};
+
+// Every path of a plan once, in the order to do them.
+using Route = std::vector<Visit>;
+
+// Why a search ended.
+enum class StopReason { kOptimal, kLocalOptimum, kIterationLimit, kTimeLimit, kCancelled };
+
+// Where `path` is begun and where it is left when it is entered at `entry`.
+inline Point EnterPoint(const Path& path, int entry) {
+  return path.points[static_cast<size_t>(entry)];
+}
+inline Point ExitPoint(const Path& path, int entry) {
+  return path.points[static_cast<size_t>(path.kind == Path::Kind::kContour ? entry : 1 - entry)];
+}
+
+// The entry that the order given uses: a contour's first allowed vertex, an open path's first end.
+inline int GivenEntry(const Path& path) {
+  return path.kind == Path::Kind::kContour && !path.allowed.empty() ? path.allowed[0] : 0;
+}
+
+// The order given: the tree's leaves from left to right, each at its given entry. `before` pairs
+// may contradict the order of children; the leaves then come in the first order (smallest child
+// positions first) that keeps them.
+Route GivenRoute(const Plan& plan);
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_MODEL_ROUTE_H_

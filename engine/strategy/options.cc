@@ -1,0 +1,80 @@
+#include "engine/strategy/options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+
+namespace traverse {
+namespace {
+
+absl::Status Fault(const OptionSpec& spec, const std::string& text, const std::string& wanted) {
+  return absl::InvalidArgumentError(
+      absl::StrCat("options[\"", spec.name, "\"]: \"", text, "\" is not ", wanted));
+}
+
+std::string Range(const OptionSpec& spec) {
+  return absl::StrCat(" from ", spec.minimum, " to ", spec.maximum);
+}
+
+bool InRange(const OptionSpec& spec, double value) {
+  return value >= spec.minimum && value <= spec.maximum;
+}
+
+}  // namespace
+
+absl::StatusOr<StrategyOptions::Value> StrategyOptions::ParseValue(const OptionSpec& spec,
+                                                                   const std::string& text) {
+  Value value;
+  switch (spec.type) {
+    case OptionSpec::Type::kBool:
+      if (!absl::SimpleAtob(text, &value.boolean)) return Fault(spec, text, "true or false");
+      break;
+    case OptionSpec::Type::kInt:
+      if (!absl::SimpleAtoi(text, &value.integer) ||
+          !InRange(spec, static_cast<double>(value.integer))) {
+        return Fault(spec, text, absl::StrCat("a whole number", Range(spec)));
+      }
+      break;
+    case OptionSpec::Type::kDouble:
+      if (!absl::SimpleAtod(text, &value.real) || !std::isfinite(value.real) ||
+          !InRange(spec, value.real)) {
+        return Fault(spec, text, absl::StrCat("a number", Range(spec)));
+      }
+      break;
+    case OptionSpec::Type::kChoice:
+      if (std::find(spec.values.begin(), spec.values.end(), text) == spec.values.end()) {
+        return Fault(spec, text, absl::StrCat("one of ", absl::StrJoin(spec.values, ", ")));
+      }
+      value.text = text;
+      break;
+  }
+  return value;
+}
+
+absl::StatusOr<StrategyOptions> StrategyOptions::Parse(
+    const std::vector<OptionSpec>& specs, const std::map<std::string, std::string>& texts) {
+  StrategyOptions options;
+  for (const OptionSpec& spec : specs) {
+    const auto text = texts.find(spec.name);
+    absl::StatusOr<Value> value =
+        ParseValue(spec, text == texts.end() ? spec.default_value : text->second);
+    if (!value.ok()) return value.status();
+    options.values_.emplace(spec.name, *std::move(value));
+  }
+  for (const auto& [name, text] : texts) {
+    if (options.values_.count(name) > 0) continue;
+    const std::string known = absl::StrJoin(
+        specs, ", ", [](std::string* out, const OptionSpec& spec) { out->append(spec.name); });
+    return absl::InvalidArgumentError(absl::StrCat(
+        "options[\"", name, "\"]: no such option; there ",
+        specs.empty() ? "are none" : absl::StrCat(specs.size() == 1 ? "is " : "are ", known)));
+  }
+  return options;
+}
+
+}  // namespace traverse

@@ -1,0 +1,59 @@
+// Options of strategies: what there is, and the values of one job.
+
+#ifndef TRAVERSE_ENGINE_STRATEGY_OPTIONS_H_
+#define TRAVERSE_ENGINE_STRATEGY_OPTIONS_H_
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+
+namespace traverse {
+
+// One option of a strategy: a row of the strategy's table of options.
+struct OptionSpec {
+  enum class Type { kBool, kInt, kDouble, kChoice };
+
+  std::string name;  // lower_case_with_underscores
+  Type type = Type::kBool;
+  std::string default_value;        // as text: "true", "250", "2.5", "sp"
+  double minimum = 0;               // of numbers, inclusive
+  double maximum = 0;               // of numbers, inclusive
+  std::vector<std::string> values;  // of a choice
+  std::string description;          // what it does, with its unit
+};
+
+// The values of a strategy's options, all of them set. Immutable.
+class StrategyOptions {
+ public:
+  // The defaults of `specs`, overridden by `texts`. InvalidArgument `options["tenure"]: ...` for a
+  // name that is not in `specs`, or a text that is no value of its type or out of range.
+  static absl::StatusOr<StrategyOptions> Parse(const std::vector<OptionSpec>& specs,
+                                               const std::map<std::string, std::string>& texts);
+
+  StrategyOptions() = default;
+
+  // REQUIRES: the strategy's specs have `name`, with this type.
+  bool Bool(const std::string& name) const { return values_.at(name).boolean; }
+  int64_t Int(const std::string& name) const { return values_.at(name).integer; }
+  double Double(const std::string& name) const { return values_.at(name).real; }
+  const std::string& Choice(const std::string& name) const { return values_.at(name).text; }
+
+ private:
+  struct Value {
+    bool boolean = false;
+    int64_t integer = 0;
+    double real = 0;
+    std::string text;
+  };
+
+  static absl::StatusOr<Value> ParseValue(const OptionSpec& spec, const std::string& text);
+
+  std::map<std::string, Value> values_;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_STRATEGY_OPTIONS_H_

@@ -1,0 +1,48 @@
+#include "engine/strategy/registry.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "engine/strategy/none.h"
+
+namespace traverse {
+namespace {
+
+// Names that callers may rely on in some version; those without an entry are not built in here.
+constexpr std::array<const char*, 6> kKnownNames = {"none", "greedy", "ni2opt",
+                                                    "tabu", "exact",  "auto"};
+
+}  // namespace
+
+const std::vector<StrategyEntry>& Strategies() {
+  static const auto& entries = *new std::vector<StrategyEntry>{NoneEntry()};
+  return entries;
+}
+
+const std::string& DefaultStrategyName() { return Strategies().back().name; }
+
+absl::StatusOr<std::unique_ptr<Strategy>> MakeStrategy(
+    const std::string& name, const std::map<std::string, std::string>& options) {
+  const auto& entries = Strategies();
+  const auto entry = std::find_if(entries.begin(), entries.end(),
+                                  [&](const StrategyEntry& e) { return e.name == name; });
+  if (entry == entries.end()) {
+    if (std::find(kKnownNames.begin(), kKnownNames.end(), name) != kKnownNames.end()) {
+      return absl::UnimplementedError(
+          absl::StrCat("name: strategy \"", name, "\" is not part of this server"));
+    }
+    return absl::InvalidArgumentError(absl::StrCat(
+        "name: no strategy \"", name, "\"; there are ",
+        absl::StrJoin(entries, ", ",
+                      [](std::string* out, const StrategyEntry& e) { out->append(e.name); })));
+  }
+  absl::StatusOr<StrategyOptions> parsed = StrategyOptions::Parse(entry->options, options);
+  if (!parsed.ok()) return parsed.status();
+  return entry->make(*parsed);
+}
+
+}  // namespace traverse

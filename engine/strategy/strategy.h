@@ -1,0 +1,60 @@
+// A strategy: a method that finds a route for one layer.
+
+#ifndef TRAVERSE_ENGINE_STRATEGY_STRATEGY_H_
+#define TRAVERSE_ENGINE_STRATEGY_STRATEGY_H_
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/budget.h"
+#include "engine/model/layer_problem.h"
+#include "engine/model/route.h"
+#include "engine/strategy/options.h"
+
+namespace traverse {
+
+// What a strategy found.
+struct Solution {
+  Route route;
+  StopReason stop = StopReason::kLocalOptimum;
+
+  // No route of the problem costs less, in the unit of its cost, `finish` included. Unset: unknown.
+  std::optional<double> lower_bound;
+};
+
+// One method with the options of one job. Immutable after construction, so that layers may be
+// solved by several threads at once.
+class Strategy {
+ public:
+  virtual ~Strategy() = default;
+
+  // A valid route, always: when the budget runs out, the best so far, at worst the given order,
+  // with stop kTimeLimit or kCancelled. The same problem gives the same solution unless the budget
+  // ended it.
+  virtual Solution Solve(const LayerProblem& problem, Budget& budget) const = 0;
+
+  // Improves `start`, a valid route of `problem`; never returns a worse one. The chain of layers
+  // calls it when a layer that was solved from a predicted start turns out to begin elsewhere, so
+  // it has to be much quicker than Solve, and its quality is that of Solve. The default solves
+  // again.
+  virtual Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const;
+
+  // True if Solve takes no longer than a prediction of the start would: such layers are then simply
+  // solved one after another, from their true starts.
+  virtual bool trivial() const { return false; }
+};
+
+// A row of the registry: what there is to know about a strategy without running it.
+struct StrategyEntry {
+  std::string name;
+  std::string summary;       // what it does and promises, in a sentence
+  bool lower_bound = false;  // whether solutions may carry one
+  std::vector<OptionSpec> options;
+  std::unique_ptr<Strategy> (*make)(const StrategyOptions& options);
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_STRATEGY_STRATEGY_H_
