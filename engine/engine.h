@@ -17,6 +17,7 @@
 #include "absl/time/time.h"
 #include "engine/base/budget.h"
 #include "engine/base/executor.h"
+#include "engine/cost/travel_split.h"
 #include "engine/model/cost_spec.h"
 #include "engine/model/plan.h"
 #include "engine/model/route.h"
@@ -52,21 +53,6 @@ struct JobLayer {
   std::optional<CostSpec> cost;  // unset: the job's
 };
 
-// Travel in mm by the kind of move.
-struct TravelSplit {
-  double contours_mm = 0;  // from the start or a contour to a contour
-  double rasters_mm = 0;   // from an open path to an open path
-  double links_mm = 0;     // the others
-  double total_mm() const { return contours_mm + rasters_mm + links_mm; }
-
-  TravelSplit& operator+=(const TravelSplit& other) {
-    contours_mm += other.contours_mm;
-    rasters_mm += other.rasters_mm;
-    links_mm += other.links_mm;
-    return *this;
-  }
-};
-
 // The answer for one layer.
 struct LayerOutcome {
   uint64_t index = 0;  // position in the job, from 0
@@ -78,8 +64,11 @@ struct LayerOutcome {
   TravelSplit travel;
   double cost_given = 0;  // in the unit of the layer's cost; moves to the cleaning point apart
   double cost = 0;
-  std::optional<double> lower_bound;  // of `cost`
-  double cleaning_given_mm = 0;       // move to the cleaning point after this layer
+
+  // No route from this start costs less, where a move to the cleaning point follows: none costs
+  // less together with that move than this bound and this route's move.
+  std::optional<double> lower_bound;
+  double cleaning_given_mm = 0;  // move to the cleaning point after this layer
   double cleaning_mm = 0;
   StopReason stop = StopReason::kLocalOptimum;
   double solve_seconds = 0;

@@ -1,0 +1,235 @@
+#include "engine/schedule/layer_chain.h"
+
+#include <utility>
+
+#include "absl/time/time.h"
+#include "engine/base/rng.h"
+#include "engine/cost/route_cost.h"
+#include "engine/cost/travel_cost.h"
+#include "engine/strategy/none.h"
+
+namespace traverse {
+namespace {
+
+// Of a layer's time limit, what solve may use; the rest is for anchor, which runs once the true
+// start is known.
+constexpr double kSolveShare = 0.85;
+
+double MoveMm(Point from, const std::optional<Point>& to) { return to ? Distance(from, *to) : 0; }
+
+}  // namespace
+
+std::shared_ptr<Job> Job::Start(const JobSpec& spec, std::unique_ptr<Strategy> strategy,
+                                Executor& executor, JobSink& sink) {
+  return std::make_shared<LayerChain>(spec, std::move(strategy), executor, sink);
+}
+
+LayerChain::LayerChain(const JobSpec& spec, std::unique_ptr<Strategy> strategy, Executor& executor,
+                       JobSink& sink)
+    : spec_(spec),
+      strategy_(std::move(strategy)),
+      predictor_(NoneEntry().make(StrategyOptions())),
+      executor_(executor),
+      outbox_(sink),
+      given_at_(spec.start),
+      predicted_at_(spec.start) {}
+
+void LayerChain::Add(JobLayer layer) {
+  auto slot = std::make_shared<Slot>();
+  slot->cost = layer.cost.value_or(spec_.cost);
+  slot->layer = std::move(layer);
+  std::lock_guard<std::mutex> lock(mutex_);
+  slot->index = added_++;
+  slots_.push_back(std::move(slot));
+  ++pending_;
+  MaybePrepare();
+}
+
+void LayerChain::Close() {
+  std::lock_guard<std::mutex> lock(mutex_);
+  closed_ = true;
+  MaybePrepare();
+  MaybeFinish();
+}
+
+void LayerChain::Cancel() {
+  cancel_.Cancel();
+  std::lock_guard<std::mutex> lock(mutex_);
+  MaybeFinish();
+}
+
+int64_t LayerChain::pending() const {
+  std::lock_guard<std::mutex> lock(mutex_);
+  return pending_;
+}
+
+bool LayerChain::CleaningDueAfter(uint64_t index) const {
+  if (!spec_.cleaning) return false;
+  const uint64_t done = static_cast<uint64_t>(spec_.cleaning->layers_since_cleaning) + index + 1;
+  return done % static_cast<uint64_t>(spec_.cleaning->every_layers) == 0;
+}
+
+Budget LayerChain::LayerBudget(double share) const {
+  const Budget whole(&cancel_, spec_.deadline);
+  if (spec_.layer_time_limit == absl::InfiniteDuration()) return whole;
+  return whole.Within(std::chrono::duration_cast<Budget::Clock::duration>(
+      absl::ToChronoNanoseconds(spec_.layer_time_limit * share)));
+}
+
+LayerProblem LayerChain::Problem(const Slot& slot, Point start) const {
+  return LayerProblem{&slot.layer.plan, start, slot.finish, slot.cost,
+                      StreamSeed(spec_.seed, slot.index)};
+}
+
+void LayerChain::Prepare(Slot& slot) {
+  const Plan& plan = slot.layer.plan;
+  if (slot.layer.start) given_at_ = predicted_at_ = *slot.layer.start;
+  slot.given_start = given_at_;
+  slot.predicted_start = predicted_at_;
+
+  slot.given_route = GivenRoute(plan);
+  slot.outcome.index = slot.index;
+  slot.outcome.given = SplitTravel(plan, slot.given_route, given_at_);
+  LayerProblem problem = Problem(slot, given_at_);
+  problem.finish.reset();
+  slot.outcome.cost_given = RouteCost(problem, slot.given_route);
+  given_at_ = RouteEnd(plan, slot.given_route, given_at_);
+  slot.outcome.cleaning_given_mm = MoveMm(given_at_, slot.finish);
+
+  if (slot.finish) {
+    given_at_ = predicted_at_ = *slot.finish;
+  } else if (!strategy_->trivial()) {
+    Budget budget = LayerBudget(1 - kSolveShare);
+    predicted_at_ = RouteEnd(plan, predictor_->Solve(Problem(slot, predicted_at_), budget).route,
+                             predicted_at_);
+  }
+}
+
+void LayerChain::Solve(Slot& slot) const {
+  const Stopwatch watch;
+  Budget budget = LayerBudget(kSolveShare);
+  slot.solution = strategy_->Solve(Problem(slot, slot.predicted_start), budget);
+  slot.outcome.solve_seconds = watch.Seconds();
+}
+
+// The strategy's solution from the true start, which only now is known.
+Solution LayerChain::BestFrom(const LayerProblem& problem, const Slot& slot) const {
+  if (strategy_->trivial()) {
+    Budget budget = LayerBudget(1);
+    return strategy_->Solve(problem, budget);
+  }
+  if (problem.start == slot.predicted_start) return slot.solution;
+  Budget budget = LayerBudget(1 - kSolveShare);
+  Solution solution = strategy_->Resume(problem, slot.solution.route, budget);
+  // A search that the clock cut short stays so, whatever the polishing from the true start came to.
+  if (slot.solution.stop == StopReason::kTimeLimit) solution.stop = StopReason::kTimeLimit;
+  return solution;
+}
+
+LayerOutcome LayerChain::Anchor(Slot& slot, Point start) const {
+  const Stopwatch watch;
+  const LayerProblem problem = Problem(slot, start);
+  Solution solution = BestFrom(problem, slot);
+  LayerOutcome outcome = std::move(slot.outcome);
+  if (RouteCost(problem, slot.given_route) < RouteCost(problem, solution.route)) {
+    solution.route = slot.given_route;
+  }
+  outcome.start = start;
+  outcome.end = RouteEnd(slot.layer.plan, solution.route, start);
+  outcome.travel = SplitTravel(slot.layer.plan, solution.route, start);
+  outcome.cleaning_mm = MoveMm(outcome.end, slot.finish);
+  const double finish_cost = slot.finish ? TravelCost(slot.cost)(outcome.end, *slot.finish) : 0;
+  outcome.cost = RouteCost(problem, solution.route) - finish_cost;
+  if (solution.lower_bound) outcome.lower_bound = *solution.lower_bound - finish_cost;
+  outcome.stop = solution.stop;
+  outcome.route = std::move(solution.route);
+  outcome.plan = std::move(slot.layer.plan);
+  outcome.solve_seconds += watch.Seconds();
+  return outcome;
+}
+
+void LayerChain::RunPrepare(const SlotPtr& slot) {
+  Prepare(*slot);
+  std::lock_guard<std::mutex> lock(mutex_);
+  preparing_ = false;
+  ++next_to_prepare_;
+  if (strategy_->trivial()) {
+    slot->solved = true;
+    MaybeAnchor(slot->index);
+  } else {
+    Submit([this, slot] { RunSolve(slot); });
+  }
+  MaybePrepare();
+}
+
+void LayerChain::RunSolve(const SlotPtr& slot) {
+  Solve(*slot);
+  std::lock_guard<std::mutex> lock(mutex_);
+  slot->solved = true;
+  MaybeAnchor(slot->index);
+}
+
+void LayerChain::RunAnchor(const SlotPtr& slot, Point start) {
+  LayerOutcome outcome = Anchor(*slot, start);
+  const Point end = slot->finish.value_or(outcome.end);
+  if (!cancel_.cancelled()) outbox_.Deliver(std::move(outcome));
+  std::lock_guard<std::mutex> lock(mutex_);
+  slot->end = end;
+  --pending_;
+  DropAnchored();
+  MaybeAnchor(slot->index + 1);
+}
+
+// The next layer's stage one, unless it is under way or the layer's finish is not known yet.
+void LayerChain::MaybePrepare() {
+  if (preparing_ || next_to_prepare_ == added_) return;
+  const bool is_last_known = next_to_prepare_ + 1 == added_;
+  const bool cleaning_due = CleaningDueAfter(next_to_prepare_);
+  if (cleaning_due && is_last_known && !closed_) return;
+  SlotPtr slot = SlotAt(next_to_prepare_);
+  if (cleaning_due && !is_last_known) slot->finish = spec_.cleaning->point;
+  preparing_ = true;
+  Submit([this, slot] { RunPrepare(slot); });
+}
+
+// The stage three of layer `index`, if there is one that is solved and whose start is known.
+void LayerChain::MaybeAnchor(uint64_t index) {
+  if (index < first_index_ || index >= added_) return;
+  const SlotPtr slot = SlotAt(index);
+  if (!slot->solved || slot->anchoring) return;
+  std::optional<Point> start = slot->layer.start;
+  if (!start && index == 0) start = spec_.start;
+  if (!start && CleaningDueAfter(index - 1)) start = spec_.cleaning->point;
+  if (!start) start = SlotAt(index - 1)->end;
+  if (!start) return;
+  slot->anchoring = true;
+  Submit([this, slot, at = *start] { RunAnchor(slot, at); });
+}
+
+// Layers from the front that are done, but for the last of them: its end is the next one's start.
+void LayerChain::DropAnchored() {
+  while (slots_.size() > 1 && slots_[0]->end && slots_[1]->anchoring) {
+    slots_.pop_front();
+    ++first_index_;
+  }
+}
+
+void LayerChain::MaybeFinish() {
+  const bool all_done = closed_ && pending_ == 0;
+  if (finished_ || tasks_ > 0 || !(all_done || cancel_.cancelled())) return;
+  finished_ = true;
+  executor_.Submit([self = shared_from_this()] { self->outbox_.Done(); });
+}
+
+void LayerChain::Submit(std::function<void()> stage) {
+  if (cancel_.cancelled()) return;
+  ++tasks_;
+  executor_.Submit([self = shared_from_this(), stage = std::move(stage)] {
+    if (!self->cancel_.cancelled()) stage();
+    std::lock_guard<std::mutex> lock(self->mutex_);
+    --self->tasks_;
+    self->MaybeFinish();
+  });
+}
+
+}  // namespace traverse

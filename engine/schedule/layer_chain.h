@@ -1,0 +1,115 @@
+// The chain of a job's layers, solved in parallel.
+//
+// Each layer starts where the one before ended (SPEC section 2), which seems to leave no room for
+// parallel work. So every layer passes three stages:
+//
+//   prepare   in build order, cheap: the travel of the given order, and a prediction of the layer's
+//             start from the greedy route of the layer before
+//   solve     on any thread: the strategy, from the predicted start
+//   anchor    in build order, cheap: the true start is known now; the strategy resumes its route
+//   from
+//             there, and the route is validated and delivered
+//
+// What a stage does depends on the job and the seed alone, never on timing, so the routes are the
+// same on any number of threads. Every stage of a layer is a task of its own: the executor can
+// share its threads fairly between jobs, and no task waits for another.
+
+#ifndef TRAVERSE_ENGINE_SCHEDULE_LAYER_CHAIN_H_
+#define TRAVERSE_ENGINE_SCHEDULE_LAYER_CHAIN_H_
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "engine/engine.h"
+#include "engine/schedule/outbox.h"
+
+namespace traverse {
+
+class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
+ public:
+  // See Job::Start.
+  LayerChain(const JobSpec& spec, std::unique_ptr<Strategy> strategy, Executor& executor,
+             JobSink& sink);
+
+  void Add(JobLayer layer) override;
+  void Close() override;
+  void Cancel() override;
+  int64_t pending() const override;
+
+ private:
+  // One layer on its way. A stage owns its layer and works without the lock; hand-over is under it.
+  struct Slot {
+    uint64_t index = 0;
+    JobLayer layer;
+    CostSpec cost;
+
+    // Set by prepare.
+    Point predicted_start;
+    std::optional<Point> finish;
+    Point given_start;
+    Route given_route;
+    LayerOutcome outcome;  // what concerns the given order
+
+    // Set by solve.
+    Solution solution;
+
+    // Guarded by the lock.
+    bool solved = false;       // the layer itself is ready to be anchored
+    bool anchoring = false;    // anchor is submitted
+    std::optional<Point> end;  // anchored: where the head is then, a cleaning included
+  };
+  using SlotPtr = std::shared_ptr<Slot>;
+
+  bool CleaningDueAfter(uint64_t index) const;
+  Budget LayerBudget(double share) const;
+  LayerProblem Problem(const Slot& slot, Point start) const;
+
+  // The stages.
+  void Prepare(Slot& slot);
+  void Solve(Slot& slot) const;
+  LayerOutcome Anchor(Slot& slot, Point start) const;
+  Solution BestFrom(const LayerProblem& problem, const Slot& slot) const;
+
+  // Run a stage and hand the layer over to the next one.
+  void RunPrepare(const SlotPtr& slot);
+  void RunSolve(const SlotPtr& slot);
+  void RunAnchor(const SlotPtr& slot, Point start);
+
+  // Submit what is due. Called with the lock held.
+  void MaybePrepare();
+  void MaybeAnchor(uint64_t index);
+  void MaybeFinish();
+  void Submit(std::function<void()> stage);
+  void DropAnchored();
+  const SlotPtr& SlotAt(uint64_t index) const { return slots_[index - first_index_]; }
+
+  const JobSpec spec_;
+  const std::unique_ptr<Strategy> strategy_;
+  const std::unique_ptr<Strategy> predictor_;
+  Executor& executor_;
+  CancelToken cancel_;
+  Outbox outbox_;
+
+  // Where the head is after the layers prepared so far; only prepare touches these.
+  Point given_at_;
+  Point predicted_at_;
+
+  mutable std::mutex mutex_;
+  std::deque<SlotPtr> slots_;  // [index - first_index_]
+  uint64_t first_index_ = 0;
+  uint64_t added_ = 0;
+  uint64_t next_to_prepare_ = 0;
+  int64_t pending_ = 0;
+  int64_t tasks_ = 0;  // submitted and not yet ended
+  bool preparing_ = false;
+  bool closed_ = false;
+  bool finished_ = false;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_SCHEDULE_LAYER_CHAIN_H_

@@ -1,0 +1,228 @@
+#include "engine/schedule/layer_chain.h"
+
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "engine/cost/route_cost.h"
+#include "engine/strategy/registry.h"
+#include "tests/support/test_executor.h"
+
+namespace traverse {
+namespace {
+
+// Keeps what it is told, and checks that it is told one thing at a time.
+class RecordingSink : public JobSink {
+ public:
+  void OnLayer(LayerOutcome outcome) override {
+    std::lock_guard<std::mutex> lock(mutex_);
+    EXPECT_FALSE(done_);
+    outcomes.push_back(std::move(outcome));
+  }
+
+  void OnDone() override {
+    std::lock_guard<std::mutex> lock(mutex_);
+    EXPECT_FALSE(done_);
+    done_ = true;
+    wake_.notify_all();
+  }
+
+  void Wait() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    wake_.wait(lock, [this] { return done_; });
+  }
+
+  std::map<uint64_t, LayerOutcome> ByIndex() {
+    std::map<uint64_t, LayerOutcome> result;
+    for (const LayerOutcome& outcome : outcomes) result[outcome.index] = outcome;
+    return result;
+  }
+
+  std::vector<LayerOutcome> outcomes;
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool done_ = false;
+};
+
+// `count` contours of four vertices each on a ring, and a raster; every layer is turned a bit.
+Plan RingLayer(int count, double turn) {
+  IslandPaths island;
+  for (int i = 0; i < count; ++i) {
+    const double angle = turn + 2.4 * i;
+    const Point c{50 + 30 * std::cos(angle), 50 + (20 + i) * std::sin(angle)};
+    island.contours.push_back(
+        MakeContour({{c.x, c.y}, {c.x + 3, c.y}, {c.x + 3, c.y + 3}, {c.x, c.y + 3}}));
+    island.rasters.push_back(MakeOpenPath({c.x + 1, c.y + 1}, {c.x + 2, c.y + 2}));
+  }
+  return SequentialPlan({std::move(island)});
+}
+
+struct RunOptions {
+  JobSpec spec;
+  std::string strategy = "none";
+  int layers = 12;
+  int threads = 4;
+  TestExecutor::Order order = TestExecutor::Order::kOldestFirst;
+  std::map<int, Point> starts;
+};
+
+std::map<uint64_t, LayerOutcome> RunJob(const RunOptions& options) {
+  RecordingSink sink;
+  TestExecutor executor(options.threads, options.order);
+  auto strategy = MakeStrategy(options.strategy, {});
+  EXPECT_TRUE(strategy.ok()) << strategy.status();
+  auto job = Job::Start(options.spec, *std::move(strategy), executor, sink);
+  for (int i = 0; i < options.layers; ++i) {
+    JobLayer layer;
+    layer.plan = RingLayer(3 + i % 4, 0.3 * i);
+    const auto start = options.starts.find(i);
+    if (start != options.starts.end()) layer.start = start->second;
+    job->Add(std::move(layer));
+  }
+  job->Close();
+  sink.Wait();
+  EXPECT_EQ(job->pending(), 0);
+  return sink.ByIndex();
+}
+
+TEST(LayerChain, EachLayerStartsWhereTheOneBeforeEnded) {
+  RunOptions options;
+  options.spec.start = {7, 7};
+
+  const auto outcomes = RunJob(options);
+
+  ASSERT_EQ(outcomes.size(), 12u);
+  Point at{7, 7};
+  for (const auto& [index, outcome] : outcomes) {
+    EXPECT_EQ(outcome.start, at) << "layer " << index;
+    at = RouteEnd(outcome.plan, outcome.route, outcome.start);
+    EXPECT_EQ(outcome.end, at);
+    EXPECT_TRUE(outcome.invalid_route.empty());
+    EXPECT_LE(outcome.cost, outcome.cost_given + 100);
+  }
+}
+
+TEST(LayerChain, RoutesDoNotDependOnThreadsOrTheOrderOfTasks) {
+  RunOptions options;
+  options.threads = 1;
+  const auto one = RunJob(options);
+  options.threads = 8;
+  const auto eight = RunJob(options);
+  options.order = TestExecutor::Order::kNewestFirst;
+  const auto newest_first = RunJob(options);
+
+  ASSERT_EQ(one.size(), eight.size());
+  for (const auto& [index, outcome] : one) {
+    EXPECT_EQ(outcome.route, eight.at(index).route) << "layer " << index;
+    EXPECT_EQ(outcome.route, newest_first.at(index).route) << "layer " << index;
+  }
+}
+
+TEST(LayerChain, NoneReturnsTheGivenOrderAndItsTravel) {
+  RunOptions options;
+  options.strategy = "none";
+
+  for (const auto& [index, outcome] : RunJob(options)) {
+    EXPECT_EQ(outcome.route, GivenRoute(outcome.plan)) << "layer " << index;
+    EXPECT_DOUBLE_EQ(outcome.travel.total_mm(), outcome.given.total_mm());
+    EXPECT_DOUBLE_EQ(outcome.cost, outcome.cost_given);
+  }
+}
+
+TEST(LayerChain, CleansAfterEveryNLayersButNotAfterTheLast) {
+  RunOptions options;
+  options.layers = 6;
+  options.spec.cleaning = CleaningSpec{{100, 0}, 2, 0};
+
+  const auto outcomes = RunJob(options);
+
+  for (const auto& [index, outcome] : outcomes) {
+    const bool cleaned = index == 1 || index == 3;
+    EXPECT_EQ(outcome.cleaning_mm > 0, cleaned) << "layer " << index;
+    if (cleaned) {
+      EXPECT_DOUBLE_EQ(outcome.cleaning_mm, Distance(outcome.end, {100, 0}));
+      EXPECT_EQ(outcomes.at(index + 1).start, (Point{100, 0}));
+    }
+  }
+}
+
+TEST(LayerChain, CountsLayersSinceTheLastCleaning) {
+  RunOptions options;
+  options.layers = 4;
+  options.spec.cleaning = CleaningSpec{{100, 0}, 3, 2};
+
+  const auto outcomes = RunJob(options);
+
+  EXPECT_EQ(outcomes.at(1).start, (Point{100, 0}));
+  EXPECT_NE(outcomes.at(2).start, (Point{100, 0}));
+}
+
+TEST(LayerChain, AGivenStartWins) {
+  RunOptions options;
+  options.starts = {{0, {1, 2}}, {5, {3, 4}}};
+
+  const auto outcomes = RunJob(options);
+
+  EXPECT_EQ(outcomes.at(0).start, (Point{1, 2}));
+  EXPECT_EQ(outcomes.at(5).start, (Point{3, 4}));
+  EXPECT_EQ(outcomes.at(6).start, outcomes.at(5).end);
+}
+
+TEST(LayerChain, AJobWithoutLayersIsDone) {
+  RunOptions options;
+  options.layers = 0;
+
+  EXPECT_TRUE(RunJob(options).empty());
+}
+
+// A strategy that works until it is cancelled.
+class Endless : public Strategy {
+ public:
+  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+    while (!budget.ExhaustedNow()) std::this_thread::yield();
+    return Solution{GivenRoute(*problem.plan), StopReason::kCancelled, std::nullopt};
+  }
+};
+
+TEST(LayerChain, CancelEndsTheJobWithin50Milliseconds) {
+  RecordingSink sink;
+  TestExecutor executor(2);
+  auto job = Job::Start(JobSpec(), std::make_unique<Endless>(), executor, sink);
+  for (int i = 0; i < 100; ++i) job->Add({RingLayer(3, i), std::nullopt, std::nullopt});
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+
+  const Stopwatch watch;
+  job->Cancel();
+  job->Cancel();
+  sink.Wait();
+
+  EXPECT_LT(watch.Seconds(), 0.05);
+  EXPECT_TRUE(sink.outcomes.empty());
+}
+
+TEST(LayerChain, ALayerBeforeACleaningWaitsForTheNextOneOrTheEnd) {
+  RecordingSink sink;
+  TestExecutor executor(1);
+  JobSpec spec;
+  spec.cleaning = CleaningSpec{{0, 0}, 1, 0};
+  auto job = Job::Start(spec, *MakeStrategy("none", {}), executor, sink);
+
+  job->Add({RingLayer(1, 0), std::nullopt, std::nullopt});
+  std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(job->pending(), 1);
+  job->Close();
+  sink.Wait();
+
+  EXPECT_EQ(sink.outcomes.size(), 1u);
+  EXPECT_EQ(sink.outcomes[0].cleaning_mm, 0);
+}
+
+}  // namespace
+}  // namespace traverse
