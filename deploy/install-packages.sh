@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 packages that are missing, and nothing if none is.
+#
+#   deploy/install-packages.sh build      what the build needs
+#   deploy/install-packages.sh test       that, and what the tests need
+#   deploy/install-packages.sh sanitize   that, and clang for the sanitizer and fuzz builds
+set -euo pipefail
+
+build=(
+  g++ cmake ninja-build ccache pkg-config
+  libgrpc++-dev protobuf-compiler-grpc libprotobuf-dev protobuf-compiler
+  libabsl-dev prometheus-cpp-dev libspdlog-dev nlohmann-json3-dev
+  zlib1g-dev liblzma-dev coinor-libcbc-dev coinor-libclp-dev
+)
+test=(libgtest-dev libgmock-dev libbenchmark-dev python3 xz-utils openssl)
+sanitize=(clang libclang-rt-14-dev llvm)
+
+case "${1:-}" in
+  build) wanted=("${build[@]}") ;;
+  test) wanted=("${build[@]}" "${test[@]}") ;;
+  sanitize) wanted=("${build[@]}" "${test[@]}" "${sanitize[@]}") ;;
+  *)
+    echo "usage: $0 build|test|sanitize" >&2
+    exit 2
+    ;;
+esac
+
+missing=()
+for package in "${wanted[@]}"; do
+  state=$(dpkg-query -W -f '${Status}' "$package" 2>/dev/null || true)
+  [ "$state" = "install ok installed" ] || missing+=("$package")
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command -v sudo >/dev/null; then
+    echo "$0: missing packages, and neither root nor sudo to install them: ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+echo "Installing ${#missing[@]} packages: ${missing[*]}"
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+  apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null

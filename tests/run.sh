@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Builds Traverse and passes its tests; installs the packages that this needs first.
+#
+#   tests/run.sh            the whole suite
+#   tests/run.sh --quick    without the tests labelled slow
+#   tests/run.sh --asan     the suite under AddressSanitizer and UndefinedBehaviorSanitizer
+#   tests/run.sh --tsan     the suite's thread-safe parts under ThreadSanitizer
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+preset=release
+packages="test"
+select=()
+for argument in "$@"; do
+  case "$argument" in
+    --quick) select=(-LE slow) ;;
+    --asan) preset=asan packages="sanitize" select=(-LE 'slow|no_sanitizer') ;;
+    --tsan) preset=tsan packages="sanitize" select=(-L tsan) ;;
+    *)
+      sed -n '4,7s/^# *//p' "$0" >&2
+      exit 2
+      ;;
+  esac
+done
+
+deploy/install-packages.sh "$packages"
+cmake --preset "$preset" -DTRAVERSE_TESTS=ON
+cmake --build --preset "$preset"
+ctest --test-dir "build/$preset" -j "$(nproc)" --output-on-failure "${select[@]}"
