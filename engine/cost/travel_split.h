@@ -5,24 +5,9 @@
 
 #include "engine/model/plan.h"
 #include "engine/model/route.h"
+#include "engine/model/travel_split.h"
 
 namespace traverse {
-
-// Lengths in mm, whatever the cost model is. The sum is the route's travel.
-struct TravelSplit {
-  double contours_mm = 0;  // from the start or a contour to a contour
-  double rasters_mm = 0;   // from an open path to an open path
-  double links_mm = 0;     // the others
-
-  double total_mm() const { return contours_mm + rasters_mm + links_mm; }
-
-  TravelSplit& operator+=(const TravelSplit& other) {
-    contours_mm += other.contours_mm;
-    rasters_mm += other.rasters_mm;
-    links_mm += other.links_mm;
-    return *this;
-  }
-};
 
 // The moves of `route` from `start` to its last path. REQUIRES: `route` is a route of `plan`.
 TravelSplit SplitTravel(const Plan& plan, const Route& route, Point start);
