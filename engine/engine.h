@@ -17,10 +17,10 @@
 #include "absl/time/time.h"
 #include "engine/base/budget.h"
 #include "engine/base/executor.h"
-#include "engine/cost/travel_split.h"
 #include "engine/model/cost_spec.h"
 #include "engine/model/plan.h"
 #include "engine/model/route.h"
+#include "engine/model/travel_split.h"
 #include "engine/strategy/strategy.h"
 
 namespace traverse {

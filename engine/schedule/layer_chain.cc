@@ -2,11 +2,13 @@
 
 #include <utility>
 
+#include "absl/status/status.h"
 #include "absl/time/time.h"
 #include "engine/base/rng.h"
 #include "engine/cost/route_cost.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/strategy/none.h"
+#include "engine/validator.h"
 
 namespace traverse {
 namespace {
@@ -89,7 +91,7 @@ void LayerChain::Prepare(Slot& slot) {
 
   slot.given_route = GivenRoute(plan);
   slot.outcome.index = slot.index;
-  slot.outcome.given = SplitTravel(plan, slot.given_route, given_at_);
+  slot.outcome.given = MeasureTravel(plan, given_at_, slot.given_route);
   LayerProblem problem = Problem(slot, given_at_);
   problem.finish.reset();
   slot.outcome.cost_given = RouteCost(problem, slot.given_route);
@@ -131,12 +133,15 @@ LayerOutcome LayerChain::Anchor(Slot& slot, Point start) const {
   const LayerProblem problem = Problem(slot, start);
   Solution solution = BestFrom(problem, slot);
   LayerOutcome outcome = std::move(slot.outcome);
-  if (RouteCost(problem, slot.given_route) < RouteCost(problem, solution.route)) {
+  if (absl::Status status = ValidateRoute(slot.layer.plan, solution.route); !status.ok()) {
+    outcome.invalid_route = std::string(status.message());
+    solution = Solution{slot.given_route, StopReason::kLocalOptimum, std::nullopt};
+  } else if (RouteCost(problem, slot.given_route) < RouteCost(problem, solution.route)) {
     solution.route = slot.given_route;
   }
   outcome.start = start;
   outcome.end = RouteEnd(slot.layer.plan, solution.route, start);
-  outcome.travel = SplitTravel(slot.layer.plan, solution.route, start);
+  outcome.travel = MeasureTravel(slot.layer.plan, start, solution.route);
   outcome.cleaning_mm = MoveMm(outcome.end, slot.finish);
   const double finish_cost = slot.finish ? TravelCost(slot.cost)(outcome.end, *slot.finish) : 0;
   outcome.cost = RouteCost(problem, solution.route) - finish_cost;

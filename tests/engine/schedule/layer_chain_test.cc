@@ -175,11 +175,49 @@ TEST(LayerChain, AGivenStartWins) {
   EXPECT_EQ(outcomes.at(6).start, outcomes.at(5).end);
 }
 
+TEST(LayerChain, APastDeadlineStillAnswersEveryLayer) {
+  RunOptions options;
+  options.spec.deadline = Budget::Clock::now() - std::chrono::seconds(1);
+
+  const auto outcomes = RunJob(options);
+
+  ASSERT_EQ(outcomes.size(), 12u);
+  for (const auto& [index, outcome] : outcomes) {
+    EXPECT_EQ(outcome.route.size(), outcome.plan.paths.size());
+  }
+}
+
 TEST(LayerChain, AJobWithoutLayersIsDone) {
   RunOptions options;
   options.layers = 0;
 
   EXPECT_TRUE(RunJob(options).empty());
+}
+
+// A strategy that is wrong: it leaves the last path out.
+class Forgetful : public Strategy {
+ public:
+  Solution Solve(const LayerProblem& problem, Budget&) const override {
+    Solution solution{GivenRoute(*problem.plan), StopReason::kLocalOptimum, std::nullopt};
+    solution.route.pop_back();
+    return solution;
+  }
+  Solution Resume(const LayerProblem& problem, const Route&, Budget& budget) const override {
+    return Solve(problem, budget);
+  }
+};
+
+TEST(LayerChain, ReplacesAnInvalidRouteByTheGivenOrder) {
+  RecordingSink sink;
+  TestExecutor executor(2);
+  auto job = Job::Start(JobSpec(), std::make_unique<Forgetful>(), executor, sink);
+  job->Add({RingLayer(3, 0), std::nullopt, std::nullopt});
+  job->Close();
+  sink.Wait();
+
+  ASSERT_EQ(sink.outcomes.size(), 1u);
+  EXPECT_FALSE(sink.outcomes[0].invalid_route.empty());
+  EXPECT_EQ(sink.outcomes[0].route, GivenRoute(sink.outcomes[0].plan));
 }
 
 // A strategy that works until it is cancelled.
