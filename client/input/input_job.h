@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,6 +47,9 @@ struct InputJob {
   // service's own formats, all the rest. Fields that the file is silent on are unset. Flags of the
   // command line override it.
   v1::JobOptions options;
+
+  // Of DAMAT alone: the far corner of the build envelope, whose near corner is (0, 0).
+  std::optional<v1::Point> envelope;
 
   // The layers in build order.
   std::vector<v1::Layer> layers;

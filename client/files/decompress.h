@@ -1,0 +1,27 @@
+// Decompression of whole files: gzip (RFC 1952, with members one after another) and xz.
+
+#ifndef TRAVERSE_CLIENT_FILES_DECOMPRESS_H_
+#define TRAVERSE_CLIENT_FILES_DECOMPRESS_H_
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "absl/status/statusor.h"
+
+namespace traverse {
+
+enum class Compression { kNone, kGzip, kXz };
+
+// The compression of `bytes`, by their first bytes.
+Compression DetectCompression(std::string_view bytes);
+
+// The decompressed `bytes`; with kNone a copy. InvalidArgument if they are truncated or damaged,
+// ResourceExhausted if the result would be longer than `max_bytes`: a small file can expand a
+// thousandfold and more.
+absl::StatusOr<std::string> Decompress(std::string_view bytes, Compression compression,
+                                       size_t max_bytes);
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_CLIENT_FILES_DECOMPRESS_H_

@@ -1,0 +1,108 @@
+#include "client/formats/api_format.h"
+
+#include <google/protobuf/util/json_util.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_format.h"
+#include "client/files/read_file.h"
+#include "traverse/v1/route_optimizer_service.pb.h"
+
+namespace traverse {
+namespace {
+
+constexpr size_t kMaxMessageBytes = std::numeric_limits<int>::max();
+
+InputJob FromRequest(v1::OptimizeBatchRequest request, InputFormat format,
+                     const std::string& name) {
+  InputJob job;
+  job.name = name;
+  job.format = format;
+  job.options = std::move(*request.mutable_options());
+  job.layers.assign(std::make_move_iterator(request.mutable_layers()->begin()),
+                    std::make_move_iterator(request.mutable_layers()->end()));
+  return job;
+}
+
+absl::StatusOr<v1::OptimizeBatchRequest> ToRequest(const InputJob& job) {
+  v1::OptimizeBatchRequest request;
+  *request.mutable_options() = job.options;
+  size_t bytes = request.ByteSizeLong();
+  for (const v1::Layer& layer : job.layers) {
+    constexpr size_t kTagAndLength = 6;
+    bytes += layer.ByteSizeLong() + kTagAndLength;
+    if (bytes > kMaxMessageBytes) {
+      return absl::InvalidArgumentError("more than 2 GiB: too much for one message");
+    }
+    *request.add_layers() = layer;
+  }
+  return request;
+}
+
+// protobuf's text of a JSON error has the fault, a line of the input and a caret below it.
+std::string OneLine(std::string_view message) {
+  std::string out;
+  for (const char c : message) {
+    const bool blank = c == ' ' || c == '\n' || c == '\t';
+    if (!blank) out += c >= ' ' && c <= '~' ? c : '?';
+    if (blank && !out.empty() && out.back() != ' ') out += ' ';
+  }
+  constexpr size_t kMaxShown = 200;
+  if (out.ends_with(" ^")) out.resize(out.size() - 2);
+  if (out.size() > kMaxShown) out = out.substr(0, kMaxShown) + "...";
+  return out;
+}
+
+}  // namespace
+
+absl::StatusOr<InputJob> ReadApiJson(std::string_view bytes, const std::string& name) {
+  if (bytes.size() > kMaxMessageBytes) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s: more than 2 GiB of JSON", DisplayName(name)));
+  }
+  v1::OptimizeBatchRequest request;
+  const google::protobuf::util::Status status = google::protobuf::util::JsonStringToMessage(
+      google::protobuf::StringPiece(bytes.data(), bytes.size()), &request);
+  if (!status.ok()) {
+    const std::string message(status.message().data(), status.message().size());
+    return absl::InvalidArgumentError(absl::StrFormat("%s: not an OptimizeBatchRequest: %s",
+                                                      DisplayName(name), OneLine(message)));
+  }
+  return FromRequest(std::move(request), InputFormat::kJson, name);
+}
+
+absl::StatusOr<InputJob> ReadApiProto(std::string_view bytes, const std::string& name) {
+  v1::OptimizeBatchRequest request;
+  if (bytes.size() > kMaxMessageBytes ||
+      !request.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "%s: not a whole OptimizeBatchRequest: damaged or cut short", DisplayName(name)));
+  }
+  return FromRequest(std::move(request), InputFormat::kProto, name);
+}
+
+absl::StatusOr<std::string> WriteApiJson(const InputJob& job) {
+  const absl::StatusOr<v1::OptimizeBatchRequest> request = ToRequest(job);
+  if (!request.ok()) return request.status();
+  google::protobuf::util::JsonPrintOptions options;
+  options.add_whitespace = true;
+  options.preserve_proto_field_names = true;
+  std::string out;
+  const google::protobuf::util::Status status =
+      google::protobuf::util::MessageToJsonString(*request, &out, options);
+  if (!status.ok()) return absl::InternalError(std::string(status.message()));
+  return out;
+}
+
+absl::StatusOr<std::string> WriteApiProto(const InputJob& job) {
+  const absl::StatusOr<v1::OptimizeBatchRequest> request = ToRequest(job);
+  if (!request.ok()) return request.status();
+  std::string out;
+  if (!request->SerializeToString(&out)) return absl::InternalError("the job does not serialize");
+  return out;
+}
+
+}  // namespace traverse

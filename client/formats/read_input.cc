@@ -1,0 +1,56 @@
+#include "client/formats/read_input.h"
+
+#include <optional>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_format.h"
+#include "client/damat/reader.h"
+#include "client/files/read_file.h"
+#include "client/formats/api_format.h"
+#include "client/formats/detect.h"
+
+namespace traverse {
+namespace {
+
+absl::StatusOr<InputJob> ReadAs(InputFormat format, std::string_view bytes,
+                                const std::string& name) {
+  switch (format) {
+    case InputFormat::kDamat:
+      return ReadDamat(bytes, name);
+    case InputFormat::kJson:
+      return ReadApiJson(bytes, name);
+    case InputFormat::kProto:
+      return ReadApiProto(bytes, name);
+    case InputFormat::kGcode:
+      break;
+  }
+  return absl::UnimplementedError(
+      absl::StrFormat("%s: G-code is not read by this version", DisplayName(name)));
+}
+
+}  // namespace
+
+absl::StatusOr<InputJob> ParseInput(std::string_view bytes, const std::string& name) {
+  if (bytes.find_first_not_of(" \t\r\n") == std::string_view::npos) {
+    return absl::InvalidArgumentError(absl::StrFormat("%s: the file is empty", DisplayName(name)));
+  }
+  const std::optional<InputFormat> by_content = DetectByContent(bytes);
+  const std::optional<InputFormat> by_extension = DetectByExtension(name);
+  // Of binary data only the first byte speaks: against an extension that is not enough.
+  const bool weak = by_content == InputFormat::kProto && by_extension;
+  const std::optional<InputFormat> format = weak || !by_content ? by_extension : by_content;
+  if (!format) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s: neither its content nor its name is DAMAT, G-code, JSON or protobuf",
+                        DisplayName(name)));
+  }
+  return ReadAs(*format, bytes, name);
+}
+
+absl::StatusOr<InputJob> ReadInput(const std::string& name) {
+  const absl::StatusOr<std::string> bytes = ReadWholeFile(name);
+  if (!bytes.ok()) return bytes.status();
+  return ParseInput(*bytes, name);
+}
+
+}  // namespace traverse
