@@ -27,14 +27,22 @@ struct Path {
 
   // Where the path came from, for whoever made the plan; the engine does not look at it.
   int tag = 0;
+
+  // The island that the path belongs to: its position among the islands that the plan was built
+  // from; -1 if the plan knows of none (engine/framework/island_layout.h says what follows). Set by
+  // the plan builders. It restricts no route; methods that reason about islands use it.
+  int island = -1;
+
+  // The contour that encloses its island. Set by the plan builders.
+  bool outer = false;
 };
 
 inline Path MakeContour(std::vector<Point> vertices, std::vector<int> allowed = {}) {
-  return Path{Path::Kind::kContour, std::move(vertices), std::move(allowed), false, 0};
+  return Path{Path::Kind::kContour, std::move(vertices), std::move(allowed)};
 }
 
 inline Path MakeOpenPath(Point first, Point last, bool one_way = false) {
-  return Path{Path::Kind::kOpen, {first, last}, {}, one_way, 0};
+  return Path{Path::Kind::kOpen, {first, last}, {}, one_way};
 }
 
 }  // namespace traverse

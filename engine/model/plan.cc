@@ -185,6 +185,15 @@ bool NoPaths(const std::vector<IslandPaths>& islands) {
   });
 }
 
+// Writes into every path which island it belongs to.
+void MarkIslands(std::vector<IslandPaths>& islands) {
+  for (size_t i = 0; i < islands.size(); ++i) {
+    for (Path& path : islands[i].contours) path.island = static_cast<int>(i);
+    for (Path& path : islands[i].rasters) path.island = static_cast<int>(i);
+    if (!islands[i].contours.empty()) islands[i].contours.front().outer = true;
+  }
+}
+
 }  // namespace
 
 const char* CoordinateFault(double coordinate) {
@@ -203,6 +212,7 @@ absl::Status CheckPlan(const Plan& plan) {
 
 Plan SequentialPlan(std::vector<IslandPaths> islands) {
   if (NoPaths(islands)) return Plan{};
+  MarkIslands(islands);
   PlanBuilder builder;
   const int root = builder.AddNode(PlanNode::Kind::kInOrder, -1);
   const int contours = builder.AddNode(PlanNode::Kind::kAnyOrder, root);
@@ -216,6 +226,7 @@ Plan SequentialPlan(std::vector<IslandPaths> islands) {
 
 Plan InterleavedPlan(std::vector<IslandPaths> islands) {
   if (NoPaths(islands)) return Plan{};
+  MarkIslands(islands);
   PlanBuilder builder;
   const int root = builder.AddNode(PlanNode::Kind::kAnyOrder, -1);
   for (IslandPaths& island : islands) {

@@ -54,7 +54,7 @@ absl::Status CheckPlan(const Plan& plan);
 const char* CoordinateFault(double coordinate);
 
 // The contours and rasters of one island, for the plan builders below. The first contour is the
-// outer one. Either may be empty.
+// outer one. Either may be empty. The builders set Path::island and Path::outer.
 struct IslandPaths {
   std::vector<Path> contours;
   std::vector<Path> rasters;

@@ -121,5 +121,22 @@ TEST(Plans, SequentialAndInterleavedHoldAllPathsIslandByIsland) {
   EXPECT_EQ(GivenRoute(interleaved), (Route{{0, 0}, {1, 0}, {2, 0}, {3, 0}}));
 }
 
+TEST(Plans, BuildersSayWhichIslandAPathBelongsTo) {
+  const std::vector<IslandPaths> islands = {
+      {{}, {MakeOpenPath({2, 2}, {3, 3})}},
+      {{MakeContour({{0, 0}}), MakeContour({{1, 1}})}, {MakeOpenPath({2, 2}, {3, 3})}}};
+
+  for (const Plan& plan : {SequentialPlan(islands), InterleavedPlan(islands)}) {
+    ASSERT_EQ(plan.paths.size(), 4u);
+    EXPECT_EQ(plan.paths[0].island, 0);
+    EXPECT_FALSE(plan.paths[0].outer);
+    for (size_t p = 1; p < 4; ++p) {
+      EXPECT_EQ(plan.paths[p].island, 1);
+      EXPECT_EQ(plan.paths[p].outer, p == 1);
+    }
+  }
+  EXPECT_EQ(MakeContour({{0, 0}}).island, -1);
+}
+
 }  // namespace
 }  // namespace traverse
