@@ -1,0 +1,94 @@
+// Step 2 of the framework, first part: which contours may follow each other.
+//
+//      . - .         A circle around the center of each contour's bounding box grows until it
+//    '  B    '       meets two other contours. A is then a neighbor of both, and they of A.
+//   .   ( A )  C     Groups that stay unconnected are linked where they are nearest.
+//    '   D   '
+//      ' - '
+//
+// Source: thesis 3.2, step 2 (p. 63-65), figure 3.7, after Arya et al. (1998); clusters after
+// Saxena et al. (2017); SPEC 3.5.
+
+#ifndef TRAVERSE_ENGINE_FRAMEWORK_NEIGHBORHOOD_H_
+#define TRAVERSE_ENGINE_FRAMEWORK_NEIGHBORHOOD_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/base/budget.h"
+#include "engine/framework/island_layout.h"
+#include "engine/model/plan.h"
+#include "engine/model/point.h"
+
+namespace traverse {
+
+// A symmetric relation between nodes 0 ... node_count() - 1. Memory: n^2 / 8 bytes.
+class Neighborhood {
+ public:
+  Neighborhood() = default;
+  explicit Neighborhood(int nodes);
+
+  // Makes both neighbors of each other. A node is no neighbor of itself.
+  void Link(int a, int b);
+
+  bool Linked(int a, int b) const {
+    const size_t bit = Bit(a, b);
+    return (bits_[bit / 64] >> (bit % 64) & 1u) != 0;
+  }
+
+  // The neighbors of `node`, in the order in which they were linked.
+  const std::vector<int>& of(int node) const { return neighbors_[static_cast<size_t>(node)]; }
+  int node_count() const { return static_cast<int>(neighbors_.size()); }
+
+  // The connected component of each node, numbered from 0 in the order of their first nodes.
+  std::vector<int> Components() const;
+
+ private:
+  size_t Bit(int a, int b) const {
+    return static_cast<size_t>(a) * neighbors_.size() + static_cast<size_t>(b);
+  }
+
+  std::vector<std::vector<int>> neighbors_;
+  std::vector<uint64_t> bits_;  // [a * node_count() + b]
+};
+
+// What the circles are drawn around and what they meet.
+struct CircledContour {
+  std::vector<Point> points;  // spaced points (SP) of the contour; the origin alone for the origin
+  Point center;               // of its bounding box (BBCP)
+  double shorter_side_mm = 0;
+};
+
+struct NeighborhoodOptions {
+  int neighbors = 2;           // that a circle has to meet before it stops growing
+  double first_radius_mm = 0;  // 0: the shorter side of the contour's own bounding box
+  double step_mm = 5;          // by which it grows, > 0
+};
+
+// A contour as the circles see it. `spacing_mm` is that of SP.
+CircledContour CircleOf(const Path& contour, double spacing_mm);
+
+// The circles' neighbors: node i is contours[i], the last node is `origin`. A circle meets a
+// contour if a spaced point lies in it; it meets the origin never, but the origin has a circle of
+// its own. It stops at the first radius, in steps, at which it meets enough contours (all that it
+// then meets are neighbors), or when it reaches the farthest corner of the box around everything:
+// the engine knows no build envelope. Reciprocal. Components are not linked yet. Unfinished if the
+// budget ends. About O(contours^2 + contours x points of the near ones).
+Neighborhood GrowCircles(const std::vector<CircledContour>& contours, Point origin,
+                         const NeighborhoodOptions& options, Budget& budget);
+
+// Links the components: again and again the two nearest spaced points of different components make
+// their contours neighbors (single linkage), until there is one component. Unfinished if the budget
+// ends. `contours` and `origin` as in GrowCircles.
+void LinkClusters(const std::vector<CircledContour>& contours, Point origin,
+                  Neighborhood& neighborhood, Budget& budget);
+
+// Step 4, p. 67: the neighborhood of step 2 between islands. Node i is island i of `layout`; two
+// are neighbors if any contours of theirs are. `contours[i]` is the path of node i of
+// `neighborhood`.
+Neighborhood IslandNeighborhood(const IslandLayout& layout, const std::vector<int>& contours,
+                                const Neighborhood& neighborhood);
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_FRAMEWORK_NEIGHBORHOOD_H_

@@ -1,0 +1,62 @@
+// The smallest rectangle, parallel to the axes, that holds some points.
+
+#ifndef TRAVERSE_ENGINE_GEOMETRY_BOUNDING_BOX_H_
+#define TRAVERSE_ENGINE_GEOMETRY_BOUNDING_BOX_H_
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "absl/types/span.h"
+#include "engine/model/point.h"
+
+namespace traverse {
+
+// In mm. Empty until the first point was added.
+class BoundingBox {
+ public:
+  BoundingBox() = default;
+  explicit BoundingBox(absl::Span<const Point> points) {
+    for (const Point& point : points) Add(point);
+  }
+
+  void Add(Point point) {
+    low_ = {std::min(low_.x, point.x), std::min(low_.y, point.y)};
+    high_ = {std::max(high_.x, point.x), std::max(high_.y, point.y)};
+  }
+
+  bool empty() const { return low_.x > high_.x; }
+  Point low() const { return low_; }
+  Point high() const { return high_; }
+
+  // REQUIRES for all below: not empty.
+  double width() const { return high_.x - low_.x; }
+  double height() const { return high_.y - low_.y; }
+  double shorter_side() const { return std::min(width(), height()); }
+  Point center() const { return {(low_.x + high_.x) / 2, (low_.y + high_.y) / 2}; }
+
+  // From the point or box to the nearest point of this box; 0 if they meet.
+  double DistanceTo(Point point) const { return DistanceTo(BoundingBox(point, point)); }
+  double DistanceTo(const BoundingBox& other) const {
+    const double dx = std::max({low_.x - other.high_.x, other.low_.x - high_.x, 0.0});
+    const double dy = std::max({low_.y - other.high_.y, other.low_.y - high_.y, 0.0});
+    return std::sqrt(dx * dx + dy * dy);
+  }
+
+  // From `point` to the corner that is farthest from it.
+  double FarthestCornerDistance(Point point) const {
+    return Distance(
+        point, {point.x > center().x ? low_.x : high_.x, point.y > center().y ? low_.y : high_.y});
+  }
+
+ private:
+  BoundingBox(Point low, Point high) : low_(low), high_(high) {}
+
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+  Point low_{kFar, kFar};
+  Point high_{-kFar, -kFar};
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_GEOMETRY_BOUNDING_BOX_H_

@@ -1,0 +1,60 @@
+#include "engine/geometry/visibility_polygon.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <optional>
+
+#include "engine/geometry/convex_hull.h"
+
+namespace traverse {
+namespace {
+
+// Rounding of an area, in mm^2: coordinates are of the order of 100 mm.
+constexpr double kAreaTolerance = 1e-9;
+
+// The line between the points where the tangents touch one contour; the other contour is to its
+// left.
+struct Chord {
+  Point tail;
+  Point head;
+  bool HasOnItsLeft(Point point) const { return Cross(tail, head, point) >= -kAreaTolerance; }
+};
+
+bool AllOnLeft(absl::Span<const Point> points, const Chord& chord) {
+  return std::all_of(points.begin(), points.end(),
+                     [&](Point point) { return chord.HasOnItsLeft(point); });
+}
+
+// Indices of the points on the chord or to its left. The tangents bound the rest: every point lies
+// between them already.
+std::vector<int> OnLeft(absl::Span<const Point> points, const Chord& chord) {
+  std::vector<int> kept;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (chord.HasOnItsLeft(points[i])) kept.push_back(static_cast<int>(i));
+  }
+  return kept;
+}
+
+std::vector<int> AllOf(absl::Span<const Point> points) {
+  std::vector<int> all(points.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+}  // namespace
+
+VisiblePoints FindVisiblePoints(absl::Span<const Point> a, absl::Span<const Point> b) {
+  const std::optional<OuterTangents> tangents = FindOuterTangents(a, b);
+  if (!tangents) return {AllOf(a), AllOf(b)};
+  const auto at = [](absl::Span<const Point> points, int i) {
+    return points[static_cast<size_t>(i)];
+  };
+  const Chord a_chord{at(a, tangents->a_left), at(a, tangents->a_right)};
+  const Chord b_chord{at(b, tangents->b_right), at(b, tangents->b_left)};
+  // A contour reaches behind the other one's chord only where their hulls overlap.
+  if (!AllOnLeft(a, b_chord) || !AllOnLeft(b, a_chord)) return {AllOf(a), AllOf(b)};
+  return {OnLeft(a, a_chord), OnLeft(b, b_chord)};
+}
+
+}  // namespace traverse

@@ -1,0 +1,34 @@
+// The visibility polygon of two contours: what lies between their outer tangents.
+//
+//        a1 o------------------o b1       the tangents touch a in a1 and a2, b in b1 and b2;
+//         / .\                /. \        the polygon is a1, a2, b2, b1
+//        | a  |    polygon   |  b |
+//         \ ./                \. /
+//        a2 o------------------o b2
+//
+// Source: thesis 3.2, step 3 (p. 66-67) and figure 3.8, after Joe and Simpson (1987).
+
+#ifndef TRAVERSE_ENGINE_GEOMETRY_VISIBILITY_POLYGON_H_
+#define TRAVERSE_ENGINE_GEOMETRY_VISIBILITY_POLYGON_H_
+
+#include <vector>
+
+#include "absl/types/span.h"
+#include "engine/model/point.h"
+
+namespace traverse {
+
+// The points of two contours that lie in their visibility polygon, its border included: indices in
+// rising order, for each contour at least one.
+struct VisiblePoints {
+  std::vector<int> a;
+  std::vector<int> b;
+};
+
+// One point is a contour too: the origin. If there is no polygon between them, as the convex hulls
+// of the contours overlap, every point is visible. REQUIRES: neither is empty. O(n log n).
+VisiblePoints FindVisiblePoints(absl::Span<const Point> a, absl::Span<const Point> b);
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_GEOMETRY_VISIBILITY_POLYGON_H_
