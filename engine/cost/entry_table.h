@@ -3,8 +3,10 @@
 #ifndef TRAVERSE_ENGINE_COST_ENTRY_TABLE_H_
 #define TRAVERSE_ENGINE_COST_ENTRY_TABLE_H_
 
+#include <cstddef>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "engine/model/plan.h"
 #include "engine/model/route.h"
 
@@ -25,6 +27,11 @@ class EntryTable {
 
   Point enter(int entry) const { return enter_[static_cast<size_t>(entry)]; }
   Point exit(int entry) const { return exit_[static_cast<size_t>(entry)]; }
+
+  // The points of all entries of a path at once: enters(p)[i] == enter(first(p) + i).
+  absl::Span<const Point> enters(int path) const { return Slice(enter_, path); }
+  absl::Span<const Point> exits(int path) const { return Slice(exit_, path); }
+
   int path_of(int entry) const { return path_of_[static_cast<size_t>(entry)]; }
 
   // The visit that `entry` stands for, and back. REQUIRES for EntryOf: visit.entry is allowed.
@@ -34,6 +41,10 @@ class EntryTable {
   int EntryOf(const Visit& visit) const;
 
  private:
+  absl::Span<const Point> Slice(const std::vector<Point>& points, int path) const {
+    return absl::MakeConstSpan(points.data() + first(path), static_cast<size_t>(count(path)));
+  }
+
   std::vector<int> first_;        // [path], path_count() + 1 of them
   std::vector<Point> enter_;      // [entry]
   std::vector<Point> exit_;       // [entry]

@@ -25,6 +25,11 @@ class BoundingBox {
     high_ = {std::max(high_.x, point.x), std::max(high_.y, point.y)};
   }
 
+  void Add(const BoundingBox& other) {
+    low_ = {std::min(low_.x, other.low_.x), std::min(low_.y, other.low_.y)};
+    high_ = {std::max(high_.x, other.high_.x), std::max(high_.y, other.high_.y)};
+  }
+
   bool empty() const { return low_.x > high_.x; }
   Point low() const { return low_; }
   Point high() const { return high_; }
@@ -35,8 +40,16 @@ class BoundingBox {
   double shorter_side() const { return std::min(width(), height()); }
   Point center() const { return {(low_.x + high_.x) / 2, (low_.y + high_.y) / 2}; }
 
+  // Square of the distance from `point` to the nearest point of the box. No point of the box is
+  // nearer, rounding included, as each step rounds both the same way.
+  double SquaredDistanceTo(Point point) const {
+    const double dx = std::max({low_.x - point.x, point.x - high_.x, 0.0});
+    const double dy = std::max({low_.y - point.y, point.y - high_.y, 0.0});
+    return dx * dx + dy * dy;
+  }
+
   // From the point or box to the nearest point of this box; 0 if they meet.
-  double DistanceTo(Point point) const { return DistanceTo(BoundingBox(point, point)); }
+  double DistanceTo(Point point) const { return std::sqrt(SquaredDistanceTo(point)); }
   double DistanceTo(const BoundingBox& other) const {
     const double dx = std::max({low_.x - other.high_.x, other.low_.x - high_.x, 0.0});
     const double dy = std::max({low_.y - other.high_.y, other.low_.y - high_.y, 0.0});
