@@ -53,6 +53,10 @@ class Budget {
     return Exhausted();
   }
 
+  // True if Exhausted() has said so: the search was cut short. Does not look again, so a search
+  // that ended by itself is not taken for one that its deadline ended.
+  bool was_exhausted() const { return exhausted_; }
+
   // True if the end was, or would now be, for the cancellation and not for the clock.
   bool cancelled() const { return cancel_ != nullptr && cancel_->cancelled(); }
 

@@ -7,6 +7,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "engine/strategy/greedy.h"
 #include "engine/strategy/none.h"
 
 namespace traverse {
@@ -19,7 +20,7 @@ constexpr std::array<const char*, 6> kKnownNames = {"none", "greedy", "ni2opt",
 }  // namespace
 
 const std::vector<StrategyEntry>& Strategies() {
-  static const auto& entries = *new std::vector<StrategyEntry>{NoneEntry()};
+  static const auto& entries = *new std::vector<StrategyEntry>{NoneEntry(), GreedyEntry()};
   return entries;
 }
 

