@@ -1,0 +1,204 @@
+#include "server/job_run.h"
+
+namespace traverse {
+namespace {
+
+// So many layers are let into the window whatever their size: a layer after which a cleaning is due
+// is not solved before the engine knows whether another one follows.
+constexpr int64_t kLeastLayers = 2;
+
+}  // namespace
+
+void JobRun::Start(const Options& options, const JobSpec& spec, std::unique_ptr<Strategy> strategy,
+                   Executor& executor) {
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    if (abort_) return;
+    options_ = options;
+    engine_done_ = false;
+  }
+  std::shared_ptr<Job> job = Job::Start(spec, std::move(strategy), executor, *this);
+  bool cancel = false;
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    job_ = job;
+    cancel = abort_.has_value();
+  }
+  if (cancel) job->Cancel();
+}
+
+void JobRun::Add(LabelledLayer layer) {
+  std::lock_guard<std::mutex> lock(mutex_);
+  if (!abort_) backlog_.push_back(std::move(layer));
+}
+
+void JobRun::Push() { Pump(/*feed=*/true); }
+
+void JobRun::Close() {
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    closed_ = true;
+  }
+  Pump(/*feed=*/true);
+}
+
+bool JobRun::AskForRoom() {
+  std::lock_guard<std::mutex> lock(mutex_);
+  room_wanted_ = !HasRoom() || (window_layers_ >= kLeastLayers && !port_.MayBringMore());
+  return !room_wanted_;
+}
+
+void JobRun::OnWriteDone(bool ok) {
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    window_layers_ -= writing_->layers;
+    window_points_ -= writing_->points;
+    writing_.reset();
+  }
+  if (ok) {
+    Pump(/*feed=*/true);
+  } else {
+    Abort(absl::CancelledError("the caller went away"));
+    Pump(/*feed=*/false);
+  }
+}
+
+void JobRun::Abort(const absl::Status& status) {
+  std::shared_ptr<Job> job;
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    if (abort_ || finished_) return;
+    abort_ = status;
+    backlog_.clear();
+    early_.clear();
+    out_.clear();
+    job = job_;
+  }
+  if (job != nullptr) job->Cancel();
+  Pump(/*feed=*/false);
+}
+
+void JobRun::Hold() {
+  std::lock_guard<std::mutex> lock(mutex_);
+  ++holds_;
+}
+
+void JobRun::Release() {
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    --holds_;
+  }
+  Pump(/*feed=*/false);
+}
+
+bool JobRun::aborted() const {
+  std::lock_guard<std::mutex> lock(mutex_);
+  return abort_.has_value();
+}
+
+void JobRun::OnLayer(LayerOutcome outcome) {
+  Label label;
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    if (abort_) return;
+    const auto found = labels_.find(outcome.index);
+    label = found->second;
+    labels_.erase(found);
+  }
+  std::string message = port_.EncodeLayer(outcome, label.id, label.points);
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    if (abort_) return;
+    Queue(outcome.index, {std::move(message), 1, label.points});
+  }
+  // No feeding: the engine is in the middle of this call.
+  Pump(/*feed=*/false);
+}
+
+void JobRun::OnDone() {
+  bool summary = false;
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    summary = !abort_;
+  }
+  std::string message;
+  if (summary) message = port_.EncodeSummary();
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    engine_done_ = true;
+    if (!abort_) out_.push_back({std::move(message), 0, 0});
+  }
+  Pump(/*feed=*/false);
+}
+
+void JobRun::Queue(uint64_t index, Outgoing outgoing) {
+  if (!options_.build_order) {
+    out_.push_back(std::move(outgoing));
+    return;
+  }
+  early_.emplace(index, std::move(outgoing));
+  for (auto next = early_.find(next_out_); next != early_.end(); next = early_.find(next_out_)) {
+    out_.push_back(std::move(next->second));
+    early_.erase(next);
+    ++next_out_;
+  }
+}
+
+bool JobRun::FitsWindow(int64_t points) const {
+  return window_layers_ < kLeastLayers || (window_layers_ < options_.window.layers &&
+                                           window_points_ + points <= options_.window.points);
+}
+
+bool JobRun::HasRoom() const { return backlog_.empty() && FitsWindow(1); }
+
+void JobRun::Feed(std::unique_lock<std::mutex>& lock) {
+  if (feeding_ || job_ == nullptr) return;
+  feeding_ = true;
+  while (!abort_ && !backlog_.empty() && FitsWindow(backlog_.front().points)) {
+    LabelledLayer next = std::move(backlog_.front());
+    backlog_.pop_front();
+    labels_[next_index_++] = {next.id, next.points};
+    ++window_layers_;
+    window_points_ += next.points;
+    lock.unlock();
+    job_->Add(std::move(next.layer));
+    lock.lock();
+  }
+  feeding_ = false;
+  if (closed_ && backlog_.empty() && !engine_closed_ && !abort_) {
+    engine_closed_ = true;
+    lock.unlock();
+    job_->Close();
+    lock.lock();
+  }
+}
+
+void JobRun::Pump(bool feed) {
+  // Finish, here or in another thread, may give up the last other reference.
+  const std::shared_ptr<JobRun> self = shared_from_this();
+  std::unique_lock<std::mutex> lock(mutex_);
+  if (feed) Feed(lock);
+  bool write = false;
+  bool more_follows = false;
+  std::string message;
+  if (!writing_ && !out_.empty()) {
+    write = true;
+    writing_ = std::move(out_.front());
+    out_.pop_front();
+    message = std::move(writing_->message);
+    more_follows = !out_.empty() || engine_done_;
+  }
+  const bool ended = engine_done_ && (abort_ || closed_);
+  const bool finish = !finished_ && !writing_ && ended && holds_ == 0;
+  if (finish) finished_ = true;
+  const bool room = !finished_ && !abort_ && room_wanted_ && HasRoom();
+  if (room) room_wanted_ = false;
+  const absl::Status status = abort_.value_or(absl::OkStatus());
+  lock.unlock();
+  // In this order: once a write is under way, its completion may finish the job in another thread.
+  if (room) port_.OnRoom();
+  if (write) port_.StartWrite(std::move(message), more_follows);
+  if (finish) port_.Finish(status);
+}
+
+}  // namespace traverse

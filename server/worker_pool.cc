@@ -1,0 +1,109 @@
+#include "server/worker_pool.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace traverse {
+
+// All members but the constants are guarded by the pool's mutex.
+class WorkerPool::QueueImpl : public Queue, public std::enable_shared_from_this<QueueImpl> {
+ public:
+  QueueImpl(WorkerPool& pool, std::string caller) : pool(pool), caller(std::move(caller)) {}
+
+  void Submit(std::function<void()> task) override {
+    pool.Submit(shared_from_this(), std::move(task));
+  }
+
+  QueueWait wait() const override {
+    std::lock_guard<std::mutex> lock(pool.mutex_);
+    return waited;
+  }
+
+  WorkerPool& pool;
+  const std::string caller;
+  std::deque<Task> tasks;
+  QueueWait waited;
+};
+
+WorkerPool::WorkerPool(int threads) {
+  for (int i = 0; i < std::max(1, threads); ++i) {
+    threads_.emplace_back([this] { RunTasks(); });
+  }
+}
+
+WorkerPool::~WorkerPool() {
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    stopping_ = true;
+  }
+  work_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+std::shared_ptr<WorkerPool::Queue> WorkerPool::NewQueue(const std::string& caller) {
+  return std::make_shared<QueueImpl>(*this, caller);
+}
+
+int WorkerPool::busy() const {
+  std::lock_guard<std::mutex> lock(mutex_);
+  return busy_;
+}
+
+int64_t WorkerPool::waiting() const {
+  std::lock_guard<std::mutex> lock(mutex_);
+  return waiting_;
+}
+
+void WorkerPool::Submit(const std::shared_ptr<QueueImpl>& queue, std::function<void()> run) {
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    queue->tasks.push_back({std::move(run), Clock::now()});
+    ++waiting_;
+    if (queue->tasks.size() == 1) {
+      auto caller = caller_by_name_.find(queue->caller);
+      if (caller == caller_by_name_.end()) {
+        callers_.push_back({queue->caller, {}});
+        caller = caller_by_name_.emplace(queue->caller, std::prev(callers_.end())).first;
+      }
+      caller->second->turns.push_back(queue);
+    }
+  }
+  work_.notify_one();
+}
+
+WorkerPool::Task WorkerPool::TakeNext() {
+  const auto caller = callers_.begin();
+  const std::shared_ptr<QueueImpl> queue = std::move(caller->turns.front());
+  caller->turns.pop_front();
+  Task task = std::move(queue->tasks.front());
+  queue->tasks.pop_front();
+  --waiting_;
+  if (!queue->tasks.empty()) caller->turns.push_back(queue);
+  if (caller->turns.empty()) {
+    caller_by_name_.erase(caller->name);
+    callers_.erase(caller);
+  } else {
+    callers_.splice(callers_.end(), callers_, caller);
+  }
+  const double waited = std::chrono::duration<double>(Clock::now() - task.submitted).count();
+  if (queue->waited.tasks++ == 0) queue->waited.first_seconds = waited;
+  queue->waited.longest_seconds = std::max(queue->waited.longest_seconds, waited);
+  return task;
+}
+
+void WorkerPool::RunTasks() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (true) {
+    work_.wait(lock, [this] { return waiting_ > 0 || stopping_; });
+    if (waiting_ == 0) return;
+    Task task = TakeNext();
+    ++busy_;
+    lock.unlock();
+    task.run();
+    task.run = nullptr;  // what it holds is freed before the thread counts as idle
+    lock.lock();
+    --busy_;
+  }
+}
+
+}  // namespace traverse

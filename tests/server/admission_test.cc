@@ -1,0 +1,117 @@
+#include "server/admission.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/support/status_matchers.h"
+
+namespace traverse {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::StatusIs;
+
+constexpr char kRetryInfo[] = "type.googleapis.com/google.rpc.RetryInfo";
+
+class AdmissionTest : public ::testing::Test {
+ protected:
+  std::function<void(Refusal)> Count() {
+    return [this](Refusal refusal) { refusals_.push_back(RefusalName(refusal)); };
+  }
+
+  std::vector<std::string> refusals_;
+};
+
+TEST_F(AdmissionTest, FullQueueRefusesWithADelay) {
+  Admission admission({.max_queued_points = 100}, Count());
+  auto first = admission.Admit("a", 60);
+  ASSERT_OK(first);
+
+  const auto refused = admission.Admit("b", 60);
+  EXPECT_THAT(refused, StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("60 of 100")));
+  EXPECT_TRUE(refused.status().GetPayload(kRetryInfo).has_value());
+  EXPECT_THAT(refusals_, ElementsAre("queue"));
+  EXPECT_EQ(admission.queued_points(), 60);
+
+  (*first)->Remove(30);
+  EXPECT_OK(admission.Admit("b", 60));
+}
+
+TEST_F(AdmissionTest, EmptyQueueTakesAJobOfAnySize) {
+  Admission admission({.max_queued_points = 100}, Count());
+
+  EXPECT_OK(admission.Admit("a", 1000));
+}
+
+TEST_F(AdmissionTest, PlacesAreLimitedAndFreedWithTheTicket) {
+  Admission admission({.max_jobs = 2, .max_jobs_per_caller = 2}, Count());
+  auto first = admission.Admit("a", 1);
+  auto second = admission.Admit("b", 1);
+
+  EXPECT_THAT(admission.Admit("c", 1),
+              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("all 2 places")));
+  second->reset();
+  EXPECT_OK(admission.Admit("c", 1));
+  EXPECT_THAT(refusals_, ElementsAre("jobs"));
+}
+
+TEST_F(AdmissionTest, CallersHaveLimitsOfTheirOwn) {
+  Admission admission({.max_jobs = 10, .max_jobs_per_caller = 1}, Count());
+  auto first = admission.Admit("a", 1);
+
+  EXPECT_THAT(admission.Admit("a", 1),
+              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("this caller")));
+  EXPECT_OK(admission.Admit("b", 1));
+  EXPECT_THAT(refusals_, ElementsAre("caller_jobs"));
+}
+
+TEST_F(AdmissionTest, DrainingRefusesAsUnavailable) {
+  Admission admission({}, Count());
+  auto first = admission.Admit("a", 1);
+  admission.StartDraining();
+
+  EXPECT_THAT(admission.Admit("a", 1),
+              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("shutting down")));
+  EXPECT_EQ(admission.jobs(), 1);
+  EXPECT_THAT(refusals_, ElementsAre("draining"));
+}
+
+TEST_F(AdmissionTest, StreamsAreHeldBackWhileTheQueueIsFull) {
+  Admission admission({.max_queued_points = 100}, Count());
+  auto batch = admission.Admit("a", 90);
+  auto stream = admission.Admit("b", 0);
+  EXPECT_TRUE((*stream)->MayBringMore());
+
+  (*stream)->Add(20);
+  EXPECT_FALSE((*stream)->MayBringMore());
+  (*batch)->Remove(50);
+  EXPECT_TRUE((*stream)->MayBringMore());
+}
+
+TEST_F(AdmissionTest, NothingIsLeftBehindByManyThreads) {
+  Admission admission({.max_jobs = 3, .max_queued_points = 100}, [](Refusal) {});
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&admission, t] {
+      for (int i = 0; i < 300; ++i) {
+        auto ticket = admission.Admit(std::to_string(t % 2), 40);
+        if (!ticket.ok()) continue;
+        (*ticket)->Add(5);
+        (*ticket)->Remove(20);
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+
+  EXPECT_EQ(admission.jobs(), 0);
+  EXPECT_EQ(admission.queued_points(), 0);
+}
+
+}  // namespace
+}  // namespace traverse

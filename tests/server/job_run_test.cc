@@ -1,0 +1,324 @@
+#include "server/job_run.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "engine/model/route.h"
+#include "engine/strategy/strategy.h"
+#include "server/worker_pool.h"
+#include "tests/support/instances.h"
+
+namespace traverse {
+namespace {
+
+using testing::FlatPlan;
+
+constexpr auto kPatience = std::chrono::seconds(10);
+
+// Takes its time, and notices a cancellation.
+class SlowStrategy : public Strategy {
+ public:
+  explicit SlowStrategy(std::chrono::milliseconds time) : time_(time) {}
+
+  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+    const auto end = Budget::Clock::now() + time_;
+    while (Budget::Clock::now() < end && !budget.Exhausted()) std::this_thread::yield();
+    return {GivenRoute(*problem.plan), StopReason::kLocalOptimum, std::nullopt};
+  }
+  Solution Resume(const LayerProblem& /*problem*/, const Route& start,
+                  Budget& /*budget*/) const override {
+    return {start, StopReason::kLocalOptimum, std::nullopt};
+  }
+
+ private:
+  const std::chrono::milliseconds time_;
+};
+
+// A stream whose reader takes what it gets as fast as the test says. Writes are completed by a
+// thread of its own, as gRPC's are.
+class FakePort : public JobPort {
+ public:
+  FakePort() : run_(JobRun::Make(*this)), writer_([this] { CompleteWrites(); }) {}
+
+  ~FakePort() override {
+    {
+      std::lock_guard<std::mutex> lock(mutex_);
+      stop_ = true;
+      changed_.notify_all();
+    }
+    writer_.join();
+  }
+
+  JobRun& run() { return *run_; }
+
+  // While stalled, no write completes.
+  void Stall(bool stalled) {
+    std::lock_guard<std::mutex> lock(mutex_);
+    stalled_ = stalled;
+    changed_.notify_all();
+  }
+
+  bool WaitForFinish() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    return changed_.wait_for(lock, kPatience, [this] { return finishes_ > 0; });
+  }
+
+  std::vector<std::string> messages() {
+    std::lock_guard<std::mutex> lock(mutex_);
+    return messages_;
+  }
+  absl::Status status() {
+    std::lock_guard<std::mutex> lock(mutex_);
+    return status_;
+  }
+  int finishes() {
+    std::lock_guard<std::mutex> lock(mutex_);
+    return finishes_;
+  }
+  int encoded() {
+    std::lock_guard<std::mutex> lock(mutex_);
+    return encoded_;
+  }
+  int rooms() const { return rooms_; }
+
+  // JobPort.
+  std::string EncodeLayer(const LayerOutcome& outcome, uint64_t id, int64_t /*points*/) override {
+    std::lock_guard<std::mutex> lock(mutex_);
+    ++encoded_;
+    return std::to_string(outcome.index) + ":" + std::to_string(id);
+  }
+  std::string EncodeSummary() override { return "summary"; }
+  void StartWrite(std::string message, bool /*more_follows*/) override {
+    std::lock_guard<std::mutex> lock(mutex_);
+    EXPECT_FALSE(writing_) << "a write during a write";
+    EXPECT_EQ(finishes_, 0) << "a write after the end";
+    messages_.push_back(std::move(message));
+    writing_ = true;
+    changed_.notify_all();
+  }
+  void OnRoom() override { ++rooms_; }
+  void Finish(const absl::Status& status) override {
+    std::lock_guard<std::mutex> lock(mutex_);
+    EXPECT_FALSE(writing_) << "the end during a write";
+    status_ = status;
+    ++finishes_;
+    changed_.notify_all();
+  }
+
+ private:
+  void CompleteWrites() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (true) {
+      changed_.wait(lock, [this] { return stop_ || (writing_ && !stalled_); });
+      if (stop_) return;
+      writing_ = false;
+      lock.unlock();
+      run_->OnWriteDone(true);
+      lock.lock();
+    }
+  }
+
+  const std::shared_ptr<JobRun> run_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::string> messages_;
+  absl::Status status_;
+  int finishes_ = 0;
+  int encoded_ = 0;
+  std::atomic<int> rooms_{0};
+  bool writing_ = false;
+  bool stalled_ = false;
+  bool stop_ = false;
+  std::thread writer_;
+};
+
+LabelledLayer Layer(uint64_t id) { return {JobLayer{FlatPlan(2), {}, {}}, id, 2}; }
+
+std::unique_ptr<Strategy> Slow(int milliseconds) {
+  return std::make_unique<SlowStrategy>(std::chrono::milliseconds(milliseconds));
+}
+
+class JobRunTest : public ::testing::Test {
+ protected:
+  // In this order: the pool's threads end first, as they use the port.
+  FakePort port_;
+  WorkerPool pool_{2};
+  std::shared_ptr<WorkerPool::Queue> queue_ = pool_.NewQueue("test");
+};
+
+TEST_F(JobRunTest, DeliversAllLayersThenTheSummaryThenEnds) {
+  port_.run().Start({}, {}, Slow(0), *queue_);
+  for (uint64_t i = 0; i < 100; ++i) port_.run().Add(Layer(1000 + i));
+  port_.run().Push();
+  port_.run().Close();
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  const std::vector<std::string> messages = port_.messages();
+  ASSERT_EQ(messages.size(), 101u);
+  for (size_t i = 0; i < 100; ++i) {
+    EXPECT_EQ(messages[i], std::to_string(i) + ":" + std::to_string(1000 + i));
+  }
+  EXPECT_EQ(messages.back(), "summary");
+  EXPECT_TRUE(port_.status().ok());
+  EXPECT_EQ(port_.finishes(), 1);
+}
+
+TEST_F(JobRunTest, BuildOrderSortsLayersThatDoNotWaitForEachOther) {
+  port_.run().Start({.window = {}, .build_order = true}, {}, Slow(0), *queue_);
+  for (uint64_t i = 0; i < 200; ++i) {
+    LabelledLayer layer = Layer(i);
+    layer.layer.start = Point{1, 1};
+    port_.run().Add(std::move(layer));
+  }
+  port_.run().Push();
+  port_.run().Close();
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  const std::vector<std::string> messages = port_.messages();
+  ASSERT_EQ(messages.size(), 201u);
+  for (size_t i = 0; i < 200; ++i) {
+    EXPECT_EQ(messages[i], std::to_string(i) + ":" + std::to_string(i));
+  }
+}
+
+TEST_F(JobRunTest, StalledReaderHoldsUpItsJobInABoundedWindow) {
+  port_.Stall(true);
+  port_.run().Start({.window = {.layers = 8, .points = 1000}, .build_order = false}, {}, Slow(0),
+                    *queue_);
+  for (uint64_t i = 0; i < 100; ++i) port_.run().Add(Layer(i));
+  port_.run().Push();
+  port_.run().Close();
+  EXPECT_FALSE(port_.run().AskForRoom());
+
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(port_.encoded(), 8);
+  EXPECT_EQ(port_.messages().size(), 1u);
+  EXPECT_EQ(pool_.waiting(), 0);
+
+  port_.Stall(false);
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.messages().size(), 101u);
+  EXPECT_GE(port_.rooms(), 1);
+}
+
+TEST_F(JobRunTest, WindowCountsPoints) {
+  port_.Stall(true);
+  port_.run().Start({.window = {.layers = 100, .points = 10}, .build_order = false}, {}, Slow(0),
+                    *queue_);
+  for (uint64_t i = 0; i < 20; ++i) port_.run().Add(Layer(i));
+  port_.run().Push();
+
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(port_.encoded(), 5);
+
+  port_.Stall(false);
+  port_.run().Close();
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.encoded(), 20);
+}
+
+TEST_F(JobRunTest, AbortStopsTheWorkWithin50Milliseconds) {
+  port_.run().Start({}, {}, Slow(60'000), *queue_);
+  for (uint64_t i = 0; i < 10; ++i) port_.run().Add(Layer(i));
+  port_.run().Push();
+  port_.run().Close();
+  while (pool_.busy() < 2) std::this_thread::yield();
+
+  const auto begin = std::chrono::steady_clock::now();
+  port_.run().Abort(absl::CancelledError("enough"));
+  ASSERT_TRUE(port_.WaitForFinish());
+  while (pool_.busy() > 0) std::this_thread::yield();
+
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(50));
+  EXPECT_EQ(port_.status().code(), absl::StatusCode::kCancelled);
+  EXPECT_TRUE(port_.messages().empty());
+  EXPECT_EQ(port_.finishes(), 1);
+}
+
+TEST_F(JobRunTest, AbortWaitsForTheWriteUnderWay) {
+  port_.Stall(true);
+  port_.run().Start({}, {}, Slow(0), *queue_);
+  for (uint64_t i = 0; i < 3; ++i) port_.run().Add(Layer(i));
+  port_.run().Push();
+  while (port_.messages().empty()) std::this_thread::yield();
+
+  port_.run().Abort(absl::UnavailableError("going"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(port_.finishes(), 0);
+
+  port_.Stall(false);
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.messages().size(), 1u);
+  EXPECT_EQ(port_.status().code(), absl::StatusCode::kUnavailable);
+}
+
+TEST_F(JobRunTest, FirstAbortWins) {
+  port_.run().Start({}, {}, Slow(1000), *queue_);
+  port_.run().Add(Layer(1));
+  port_.run().Push();
+
+  port_.run().Abort(absl::InvalidArgumentError("first"));
+  port_.run().Abort(absl::CancelledError("second"));
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.status().message(), "first");
+  EXPECT_EQ(port_.finishes(), 1);
+}
+
+TEST_F(JobRunTest, EndsOfAJobThatNeverStarted) {
+  port_.run().Abort(absl::InvalidArgumentError("options: bad"));
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  port_.run().Start({}, {}, Slow(0), *queue_);
+  port_.run().Add(Layer(1));
+  port_.run().Push();
+  port_.run().Close();
+  EXPECT_EQ(port_.finishes(), 1);
+  EXPECT_TRUE(port_.messages().empty());
+}
+
+TEST_F(JobRunTest, HoldPostponesTheEnd) {
+  port_.run().Hold();
+  port_.run().Abort(absl::CancelledError("now"));
+  EXPECT_EQ(port_.finishes(), 0);
+
+  port_.run().Release();
+  EXPECT_EQ(port_.finishes(), 1);
+}
+
+// Aborts at every moment of a job's life; ThreadSanitizer looks on.
+TEST(JobRunRaces, AbortAtAnyTimeEndsOnce) {
+  for (int round = 0; round < 100; ++round) {
+    FakePort port;
+    WorkerPool pool(2);
+    const auto queue = pool.NewQueue("test");
+    std::thread aborter([&port, round] {
+      std::this_thread::sleep_for(std::chrono::microseconds(round * 20));
+      port.run().Abort(absl::CancelledError("now"));
+    });
+    port.run().Hold();
+    port.run().Start({.window = {.layers = 4, .points = 100}, .build_order = round % 2 == 0}, {},
+                     Slow(0), *queue);
+    for (uint64_t i = 0; i < 50; ++i) {
+      port.run().Add(Layer(i));
+      port.run().Push();
+    }
+    port.run().Close();
+    port.run().Release();
+    aborter.join();
+    ASSERT_TRUE(port.WaitForFinish()) << "round " << round;
+    EXPECT_EQ(port.finishes(), 1);
+  }
+}
+
+}  // namespace
+}  // namespace traverse

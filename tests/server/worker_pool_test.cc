@@ -1,0 +1,164 @@
+#include "server/worker_pool.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace traverse {
+namespace {
+
+// Lets tasks wait until the test says so.
+class Gate {
+ public:
+  void Open() {
+    std::lock_guard<std::mutex> lock(mutex_);
+    open_ = true;
+    changed_.notify_all();
+  }
+  void Wait() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [this] { return open_; });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool open_ = false;
+};
+
+// Lets the only thread of `pool` wait at `gate`, and returns when it does.
+void Block(WorkerPool& pool, Gate& gate) {
+  pool.NewQueue("blocker")->Submit([&gate] { gate.Wait(); });
+  while (pool.busy() == 0) std::this_thread::yield();
+}
+
+// Names in the order in which tasks were run by a pool of one thread.
+class Order {
+ public:
+  std::function<void()> Task(const std::string& name) {
+    return [this, name] {
+      std::lock_guard<std::mutex> lock(mutex_);
+      names_ += name;
+    };
+  }
+  std::string names() {
+    std::lock_guard<std::mutex> lock(mutex_);
+    return names_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::string names_;
+};
+
+TEST(WorkerPool, RunsEveryTaskOnce) {
+  std::atomic<int> runs{0};
+  {
+    WorkerPool pool(4);
+    std::vector<std::thread> submitters;
+    for (int s = 0; s < 4; ++s) {
+      submitters.emplace_back([&pool, &runs, s] {
+        const auto queue = pool.NewQueue("caller " + std::to_string(s % 2));
+        for (int i = 0; i < 500; ++i) queue->Submit([&runs] { ++runs; });
+      });
+    }
+    for (std::thread& submitter : submitters) submitter.join();
+  }
+  EXPECT_EQ(runs, 2000);
+}
+
+TEST(WorkerPool, TasksMaySubmitTasks) {
+  std::atomic<int> runs{0};
+  {
+    WorkerPool pool(2);
+    const auto queue = pool.NewQueue("a");
+    std::function<void(int)> chain = [&](int left) {
+      ++runs;
+      if (left > 0) queue->Submit([&chain, left] { chain(left - 1); });
+    };
+    queue->Submit([&chain] { chain(99); });
+    while (runs < 100) std::this_thread::yield();
+  }
+  EXPECT_EQ(runs, 100);
+}
+
+TEST(WorkerPool, JobsOfOneCallerTakeTurns) {
+  Gate gate;
+  Order order;
+  {
+    WorkerPool pool(1);
+    const auto large = pool.NewQueue("a");
+    const auto small = pool.NewQueue("a");
+    Block(pool, gate);
+    for (int i = 0; i < 5; ++i) large->Submit(order.Task("L"));
+    small->Submit(order.Task("s"));
+    small->Submit(order.Task("s"));
+    gate.Open();
+  }
+  EXPECT_EQ(order.names(), "LsLsLLL");
+}
+
+TEST(WorkerPool, CallersTakeTurnsHoweverManyJobsTheyHave) {
+  Gate gate;
+  Order order;
+  {
+    WorkerPool pool(1);
+    std::vector<std::shared_ptr<WorkerPool::Queue>> many;
+    for (int q = 0; q < 4; ++q) many.push_back(pool.NewQueue("many"));
+    const auto one = pool.NewQueue("one");
+    Block(pool, gate);
+    for (const auto& queue : many) {
+      queue->Submit(order.Task("m"));
+      queue->Submit(order.Task("m"));
+    }
+    for (int i = 0; i < 3; ++i) one->Submit(order.Task("1"));
+    gate.Open();
+  }
+  EXPECT_EQ(order.names(), "m1m1m1mmmmm");
+}
+
+TEST(WorkerPool, CountsWhatIsBusyAndWhatWaits) {
+  Gate gate;
+  WorkerPool pool(2);
+  const auto queue = pool.NewQueue("a");
+  for (int i = 0; i < 5; ++i) queue->Submit([&gate] { gate.Wait(); });
+  while (pool.busy() < 2) std::this_thread::yield();
+
+  EXPECT_EQ(pool.threads(), 2);
+  EXPECT_EQ(pool.busy(), 2);
+  EXPECT_EQ(pool.waiting(), 3);
+
+  gate.Open();
+  while (pool.busy() > 0 || pool.waiting() > 0) std::this_thread::yield();
+  EXPECT_EQ(queue->wait().tasks, 5);
+}
+
+TEST(WorkerPool, QueuesMayGoBeforeTheirTasks) {
+  std::atomic<int> runs{0};
+  Gate gate;
+  {
+    WorkerPool pool(1);
+    Block(pool, gate);
+    pool.NewQueue("b")->Submit([&runs] { ++runs; });
+    gate.Open();
+  }
+  EXPECT_EQ(runs, 1);
+}
+
+TEST(WorkerPool, FewerThanOneThreadIsOne) {
+  std::atomic<int> runs{0};
+  {
+    WorkerPool pool(0);
+    pool.NewQueue("a")->Submit([&runs] { ++runs; });
+  }
+  EXPECT_EQ(runs, 1);
+}
+
+}  // namespace
+}  // namespace traverse
