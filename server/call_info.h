@@ -1,0 +1,36 @@
+// What a call brings beside its messages: who, from where, until when, as part of what.
+
+#ifndef TRAVERSE_SERVER_CALL_INFO_H_
+#define TRAVERSE_SERVER_CALL_INFO_H_
+
+#include <grpcpp/server_context.h>
+
+#include <optional>
+#include <string>
+
+#include "engine/base/budget.h"
+
+namespace traverse {
+
+struct CallInfo {
+  std::string method;    // without the service's name
+  std::string peer;      // address with port, as gRPC writes it
+  std::string caller;    // who it is counted for: the peer without its port
+  std::string trace_id;  // 32 hexadecimal digits of a valid traceparent, or empty
+  Budget::Clock::time_point start;
+  std::optional<Budget::Clock::time_point> deadline;
+};
+
+// Reads the call's context. The deadline is counted from now on the steady clock, so that setting
+// the machine's clock moves no deadline.
+CallInfo ReadCallInfo(const grpc::CallbackServerContext& context, const std::string& method);
+
+// `peer` without its port: "ipv4:10.0.0.7:41234" -> "ipv4:10.0.0.7".
+std::string PeerHost(const std::string& peer);
+
+// The trace id of a W3C `traceparent` header, or empty if it is not valid.
+std::string TraceId(const std::string& traceparent);
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_SERVER_CALL_INFO_H_

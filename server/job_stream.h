@@ -1,0 +1,96 @@
+// What the two calls that bring jobs have in common: from translated options to the end of the
+// call. The reactors add how messages are read and written.
+
+#ifndef TRAVERSE_SERVER_JOB_STREAM_H_
+#define TRAVERSE_SERVER_JOB_STREAM_H_
+
+#include <google/protobuf/repeated_field.h>
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/status.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "server/call_info.h"
+#include "server/job_run.h"
+#include "server/service_core.h"
+#include "server/translate.h"
+#include "server/translate_result.h"
+
+namespace traverse {
+
+// Producer's methods (Begin to AddLayers, not Admit) are called one at a time, and between Hold and
+// Release of the run: the job then does not end meanwhile.
+class JobStream : public JobPort {
+ public:
+  ~JobStream() override = default;
+
+ protected:
+  JobStream(ServiceCore& core, CallInfo call);
+
+  // Lets the job in, with an estimate of its points, or returns why not. On success run() is there.
+  absl::Status Admit(int64_t points);
+
+  // Reads the job's options.
+  absl::Status Begin(const v1::JobOptions& options);
+
+  // Translates layers, which follow those added so far. Changes nothing.
+  absl::StatusOr<std::vector<LabelledLayer>> Translate(
+      const google::protobuf::RepeatedPtrField<v1::Layer>& layers) const;
+
+  // Starts the engine; once, after Begin. What is known to come widens the margin between the last
+  // results and the deadline.
+  void StartEngine(int64_t expected_layers, int64_t expected_points);
+
+  // Hands layers to the engine. `admitted_points` of them were already counted by Admit.
+  void AddLayers(std::vector<LabelledLayer> layers, int64_t admitted_points);
+
+  // Stops the job because the call was cancelled or its deadline has passed.
+  void OnCallCancelled();
+
+  // Ends a call whose run has ended, or that was not let in: counts, logs, frees its place.
+  void End(const absl::Status& status);
+
+  const std::shared_ptr<JobRun>& run() const { return run_; }
+  ServiceCore& core() { return core_; }
+  const JobSetup& setup() const { return setup_; }
+  WorkerPool::Queue& queue() { return *queue_; }
+
+ private:
+  // What the reactors add: the end of the call, and messages of their types.
+  virtual void FinishCall(const grpc::Status& status) = 0;
+  virtual std::string Encode(const LayerOutcome& outcome, uint64_t id) const = 0;
+  virtual std::string Encode(const v1::JobSummary& summary) const = 0;
+
+  // JobPort.
+  std::string EncodeLayer(const LayerOutcome& outcome, uint64_t id, int64_t points) final;
+  std::string EncodeSummary() final;
+  bool MayBringMore() const final { return ticket_->MayBringMore(); }
+  void Finish(const absl::Status& status) final { End(status); }
+
+  absl::Status CheckSize(const v1::Layer& layer, uint64_t index, int64_t points) const;
+  JobRecord Record(const absl::Status& status) const;
+  double WallSeconds() const;
+
+  ServiceCore& core_;
+  const CallInfo call_;
+  std::shared_ptr<JobRun> run_;
+  std::unique_ptr<Admission::Ticket> ticket_;
+  std::shared_ptr<WorkerPool::Queue> queue_;
+
+  // Set by the producer, then read by the engine's calls and by End.
+  JobSetup setup_;
+  const LayerMetrics* layer_metrics_ = nullptr;
+  uint64_t layers_received_ = 0;
+  int64_t points_received_ = 0;
+
+  // Of the engine's calls, which do not overlap; then of End.
+  JobTotals totals_;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_SERVER_JOB_STREAM_H_

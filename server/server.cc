@@ -1,0 +1,147 @@
+#include "server/server.h"
+
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/impl/server_builder_option.h>
+#include <grpcpp/impl/server_builder_plugin.h>
+#include <grpcpp/security/server_credentials.h>
+#include <grpcpp/server_builder.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <climits>
+#include <exception>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+
+namespace traverse {
+namespace {
+
+constexpr char kServiceName[] = "traverse.v1.RouteOptimizerService";
+
+// Once a process: gRPC keeps both as globals, read when a server is built.
+void InitGrpcPlugins() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    grpc::EnableDefaultHealthCheckService(true);
+    grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+  });
+}
+
+// Takes reflection out of the server being built, as the plugin is there for all servers.
+class NoReflection : public grpc::ServerBuilderOption {
+ public:
+  void UpdateArguments(grpc::ChannelArguments* /*arguments*/) override {}
+  void UpdatePlugins(std::vector<std::unique_ptr<grpc::ServerBuilderPlugin>>* plugins) override {
+    plugins->erase(std::remove_if(plugins->begin(), plugins->end(),
+                                  [](const auto& plugin) {
+                                    return plugin->name() == "proto_server_reflection";
+                                  }),
+                   plugins->end());
+  }
+};
+
+}  // namespace
+
+int UsableCores() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (sched_getaffinity(0, sizeof(set), &set) != 0) return 1;
+  return std::max(1, CPU_COUNT(&set));
+}
+
+ServerOptions ServerOptions::Embedded(int threads) {
+  ServerOptions options;
+  options.reflection = false;
+  options.service.threads = threads > 0 ? threads : UsableCores();
+  options.service.log = false;
+  options.service.limits.max_message_bytes = INT_MAX;
+  options.service.limits.max_layers_per_message = INT_MAX;
+  options.service.limits.max_points_per_layer = INT_MAX;
+  options.service.admission.max_jobs = INT_MAX;
+  options.service.admission.max_jobs_per_caller = INT_MAX;
+  options.service.admission.max_queued_points = INT64_MAX / 2;
+  return options;
+}
+
+Server::Server(const ServerOptions& options) : core_(options.service), service_(core_) {}
+
+absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& options) {
+  std::unique_ptr<Server> server;
+  try {
+    server.reset(new Server(options));
+  } catch (const std::exception& error) {
+    return absl::UnavailableError(error.what());
+  }
+  if (absl::Status status = server->Build(options); !status.ok()) return status;
+  return server;
+}
+
+absl::Status Server::Build(const ServerOptions& options) {
+  InitGrpcPlugins();
+  grpc::ServerBuilder builder;
+  builder.SetMaxReceiveMessageSize(
+      static_cast<int>(std::min<int64_t>(options.service.limits.max_message_bytes, INT_MAX)));
+  // Else a second server on the same port would take half of the connections, instead of failing.
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  if (!options.reflection) builder.SetOption(std::make_unique<NoReflection>());
+  int port = 0;
+  if (!options.listen.empty()) {
+    builder.AddListeningPort(options.listen, grpc::InsecureServerCredentials(), &port);
+  }
+  builder.RegisterService(&service_);
+  server_ = builder.BuildAndStart();
+  if (server_ == nullptr || (!options.listen.empty() && port == 0)) {
+    return absl::UnavailableError(absl::StrCat("cannot listen on ", options.listen));
+  }
+  port_ = port;
+  server_->GetHealthCheckService()->SetServingStatus(kServiceName, true);
+  if (options.metrics_listen.empty()) return absl::OkStatus();
+  absl::StatusOr<std::unique_ptr<MetricsHttp>> metrics = MetricsHttp::Start(
+      options.metrics_listen, {.metrics = [this] { return core_.MetricsText(); },
+                               .ready = [this] { return !core_.admission.draining(); }});
+  if (!metrics.ok()) return metrics.status();
+  metrics_ = *std::move(metrics);
+  return absl::OkStatus();
+}
+
+Server::~Server() {
+  core_.admission.StartDraining();
+  core_.AbortAll(absl::UnavailableError("the server has ended; ask another one"));
+  Shutdown();
+}
+
+std::shared_ptr<grpc::Channel> Server::InProcessChannel(const grpc::ChannelArguments& arguments) {
+  return server_->InProcessChannel(arguments);
+}
+
+bool Server::Drain(absl::Duration timeout) {
+  constexpr absl::Duration kPoll = absl::Milliseconds(10);
+  constexpr absl::Duration kGrace = absl::Seconds(2);  // for the last statuses to go out
+  core_.admission.StartDraining();
+  server_->GetHealthCheckService()->SetServingStatus(false);
+  const absl::Time end = absl::Now() + timeout;
+  while (core_.admission.jobs() > 0 && absl::Now() < end) absl::SleepFor(kPoll);
+  const bool all_done = core_.admission.jobs() == 0;
+  if (!all_done) {
+    core_.AbortAll(absl::UnavailableError(
+        "the server is shutting down; ask another one for the layers that are missing"));
+    const absl::Time grace_end = absl::Now() + kGrace;
+    while (core_.admission.jobs() > 0 && absl::Now() < grace_end) absl::SleepFor(kPoll);
+  }
+  Shutdown();
+  return all_done;
+}
+
+void Server::Shutdown() {
+  if (server_ == nullptr) return;
+  // Calls whose callers do not read their last messages are cut off here.
+  server_->Shutdown(std::chrono::system_clock::now() + std::chrono::milliseconds(500));
+  server_->Wait();
+}
+
+}  // namespace traverse

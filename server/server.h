@@ -1,0 +1,77 @@
+// The server: builds, starts, drains. Also the way to embed the service in another process:
+//
+//   ASSIGN_OR_RETURN(auto server, Server::Start(ServerOptions::Embedded(/*threads=*/2)));
+//   auto stub = v1::RouteOptimizerService::NewStub(server->InProcessChannel({}));
+
+#ifndef TRAVERSE_SERVER_SERVER_H_
+#define TRAVERSE_SERVER_SERVER_H_
+
+#include <grpcpp/channel.h>
+#include <grpcpp/server.h>
+#include <grpcpp/support/channel_arguments.h>
+
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "server/metrics_http.h"
+#include "server/route_optimizer_service.h"
+#include "server/service_core.h"
+
+namespace traverse {
+
+struct ServerOptions {
+  std::string listen;          // HOST:PORT; port 0 takes a free one; empty: in-process only
+  std::string metrics_listen;  // the same; empty: none
+  bool reflection = true;
+  ServiceOptions service;
+
+  // No ports, no log, no limits but those that keep memory bounded. `threads` 0: one for each core.
+  static ServerOptions Embedded(int threads);
+};
+
+// The number of cores this process may use, at least 1.
+int UsableCores();
+
+// Thread-safe.
+class Server {
+ public:
+  // Errors: Unavailable with one line that says what could not be had: a port, a log file.
+  static absl::StatusOr<std::unique_ptr<Server>> Start(const ServerOptions& options);
+
+  // Ends at once what is under way.
+  ~Server();
+
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  // The ports that were chosen; 0 if there is none.
+  int port() const { return port_; }
+  int metrics_port() const { return metrics_ == nullptr ? 0 : metrics_->port(); }
+
+  // A channel to the service without any port. The server outlives its calls.
+  std::shared_ptr<grpc::Channel> InProcessChannel(const grpc::ChannelArguments& arguments);
+
+  // Turns NOT_SERVING, refuses new jobs, and waits for those under way for at most `timeout`; those
+  // that are left then end with UNAVAILABLE. Afterwards the ports are closed. True if none was
+  // left.
+  bool Drain(absl::Duration timeout);
+
+  ServiceCore& core() { return core_; }
+
+ private:
+  explicit Server(const ServerOptions& options);
+  absl::Status Build(const ServerOptions& options);
+  void Shutdown();
+
+  ServiceCore core_;
+  RouteOptimizerService service_;
+  std::unique_ptr<MetricsHttp> metrics_;
+  std::unique_ptr<grpc::Server> server_;
+  int port_ = 0;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_SERVER_SERVER_H_

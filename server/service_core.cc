@@ -1,0 +1,42 @@
+#include "server/service_core.h"
+
+#include <vector>
+
+namespace traverse {
+
+ServiceCore::ServiceCore(const ServiceOptions& options)
+    : limits(options.limits),
+      log(options.log ? std::make_unique<JobLog>(options.log_path) : std::make_unique<JobLog>()),
+      admission(options.admission, [this](Refusal refusal) { metrics.CountRefusal(refusal); }),
+      pool(options.threads) {}
+
+void ServiceCore::Register(const std::shared_ptr<JobRun>& run) {
+  std::lock_guard<std::mutex> lock(mutex_);
+  runs_.insert(run);
+}
+
+void ServiceCore::Unregister(const std::shared_ptr<JobRun>& run) {
+  std::lock_guard<std::mutex> lock(mutex_);
+  runs_.erase(run);
+}
+
+void ServiceCore::AbortAll(const absl::Status& status) {
+  std::vector<std::shared_ptr<JobRun>> runs;
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    runs.assign(runs_.begin(), runs_.end());
+  }
+  for (const auto& run : runs) run->Abort(status);
+}
+
+std::string ServiceCore::MetricsText() {
+  Metrics::Gauges gauges;
+  gauges.queue_layers = static_cast<double>(queue_layers.load());
+  gauges.queue_points = static_cast<double>(admission.queued_points());
+  gauges.jobs_in_flight = admission.jobs();
+  gauges.workers_busy = pool.busy();
+  gauges.workers = pool.threads();
+  return metrics.Text(gauges);
+}
+
+}  // namespace traverse

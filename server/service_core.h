@@ -1,0 +1,71 @@
+// What all calls of the service share: pool, admission, metrics, log, limits, the jobs under way.
+
+#ifndef TRAVERSE_SERVER_SERVICE_CORE_H_
+#define TRAVERSE_SERVER_SERVICE_CORE_H_
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <set>
+
+#include "absl/status/status.h"
+#include "server/admission.h"
+#include "server/job_log.h"
+#include "server/job_run.h"
+#include "server/metrics.h"
+#include "server/worker_pool.h"
+
+namespace traverse {
+
+// Limits on what one message or job may hold. They protect memory; admission.h has those on jobs.
+struct JobLimits {
+  int64_t max_message_bytes = int64_t{64} << 20;
+  int64_t max_layers_per_message = 100'000;
+  int64_t max_layers_per_job = 0;  // 0: no limit
+  int64_t max_points_per_job = 0;  // 0: no limit
+  int64_t max_points_per_layer = 1'000'000;
+  JobWindow window;
+};
+
+struct ServiceOptions {
+  int threads = 1;
+  JobLimits limits;
+  AdmissionLimits admission;
+  std::string log_path;  // empty: stderr
+  bool log = true;
+};
+
+// Thread-safe.
+class ServiceCore {
+ public:
+  // Throws what JobLog throws.
+  explicit ServiceCore(const ServiceOptions& options);
+
+  // The jobs under way, for AbortAll.
+  void Register(const std::shared_ptr<JobRun>& run);
+  void Unregister(const std::shared_ptr<JobRun>& run);
+
+  // Ends all jobs under way with `status`.
+  void AbortAll(const absl::Status& status);
+
+  // The text of /metrics.
+  std::string MetricsText();
+
+  const JobLimits limits;
+  Metrics metrics;
+  std::unique_ptr<JobLog> log;
+  Admission admission;
+  std::atomic<int64_t> queue_layers{0};  // accepted and not yet solved
+
+ private:
+  std::mutex mutex_;
+  std::set<std::shared_ptr<JobRun>> runs_;
+
+ public:
+  WorkerPool pool;  // last: its threads end before anything that tasks use is gone
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_SERVER_SERVICE_CORE_H_

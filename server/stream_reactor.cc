@@ -1,0 +1,88 @@
+#include "server/stream_reactor.h"
+
+#include <google/protobuf/arena.h>
+
+#include <utility>
+
+#include "server/wire.h"
+
+namespace traverse {
+
+StreamReactor* StreamReactor::Start(ServiceCore& core, CallInfo call) {
+  auto* reactor = new StreamReactor(core, std::move(call));
+  if (absl::Status status = reactor->Admit(/*points=*/0); !status.ok()) {
+    reactor->End(status);
+  } else {
+    reactor->StartRead(&reactor->read_);
+  }
+  return reactor;
+}
+
+void StreamReactor::ReadNext() {
+  if (run()->AskForRoom()) StartRead(&read_);
+}
+
+void StreamReactor::OnReadDone(bool ok) {
+  const std::shared_ptr<JobRun> run = this->run();
+  run->Hold();
+  if (!run->aborted()) {
+    if (absl::Status status = ok ? OnMessage() : OnEnd(); !status.ok()) {
+      run->Abort(status);
+    } else if (ok) {
+      ReadNext();
+    }
+  }
+  run->Release();  // may end the call
+}
+
+absl::Status StreamReactor::OnMessage() {
+  google::protobuf::Arena arena;
+  auto* request = google::protobuf::Arena::CreateMessage<v1::OptimizeRequest>(&arena);
+  if (absl::Status status = ParseMessage(read_, *request); !status.ok()) return status;
+  read_.Clear();
+  if (begun_ && request->has_options()) {
+    return absl::InvalidArgumentError("options: set in a message that is not the first one");
+  }
+  if (!begun_) {
+    if (absl::Status status = Begin(request->options()); !status.ok()) return status;
+  }
+  absl::StatusOr<std::vector<LabelledLayer>> layers = Translate(request->layers());
+  if (!layers.ok()) return layers.status();
+  if (!begun_) {
+    begun_ = true;
+    StartEngine(static_cast<int64_t>(layers->size()), 0);
+  }
+  AddLayers(*std::move(layers), 0);
+  return absl::OkStatus();
+}
+
+// A stream without any message is a job of no layers.
+absl::Status StreamReactor::OnEnd() {
+  if (!begun_) {
+    begun_ = true;
+    if (absl::Status status = Begin(v1::JobOptions()); !status.ok()) return status;
+    StartEngine(0, 0);
+  }
+  run()->Close();
+  return absl::OkStatus();
+}
+
+void StreamReactor::StartWrite(std::string message, bool more_follows) {
+  write_ = ToByteBuffer(message);
+  grpc::WriteOptions options;
+  if (more_follows) options.set_buffer_hint();
+  Bidi::StartWrite(&write_, options);
+}
+
+std::string StreamReactor::Encode(const LayerOutcome& outcome, uint64_t id) const {
+  return Serialize<v1::OptimizeResponse>([&](v1::OptimizeResponse& response) {
+    ToProto(outcome, id, setup().strategy_name, *response.mutable_layer());
+  });
+}
+
+std::string StreamReactor::Encode(const v1::JobSummary& summary) const {
+  return Serialize<v1::OptimizeResponse>(
+      [&](v1::OptimizeResponse& response) { *response.mutable_summary() = summary; });
+}
+
+}  // namespace traverse
