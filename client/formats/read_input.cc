@@ -12,8 +12,8 @@
 namespace traverse {
 namespace {
 
-absl::StatusOr<InputJob> ReadAs(InputFormat format, std::string_view bytes,
-                                const std::string& name) {
+absl::StatusOr<InputJob> ReadAs(InputFormat format, std::string_view bytes, const std::string& name,
+                                const GcodeOptions& gcode) {
   switch (format) {
     case InputFormat::kDamat:
       return ReadDamat(bytes, name);
@@ -24,13 +24,13 @@ absl::StatusOr<InputJob> ReadAs(InputFormat format, std::string_view bytes,
     case InputFormat::kGcode:
       break;
   }
-  return absl::UnimplementedError(
-      absl::StrFormat("%s: G-code is not read by this version", DisplayName(name)));
+  return ReadGcodeJob(std::string(bytes), name, gcode);
 }
 
 }  // namespace
 
-absl::StatusOr<InputJob> ParseInput(std::string_view bytes, const std::string& name) {
+absl::StatusOr<InputJob> ParseInput(std::string_view bytes, const std::string& name,
+                                    const GcodeOptions& gcode) {
   if (bytes.find_first_not_of(" \t\r\n") == std::string_view::npos) {
     return absl::InvalidArgumentError(absl::StrFormat("%s: the file is empty", DisplayName(name)));
   }
@@ -44,13 +44,13 @@ absl::StatusOr<InputJob> ParseInput(std::string_view bytes, const std::string& n
         absl::StrFormat("%s: neither its content nor its name is DAMAT, G-code, JSON or protobuf",
                         DisplayName(name)));
   }
-  return ReadAs(*format, bytes, name);
+  return ReadAs(*format, bytes, name, gcode);
 }
 
-absl::StatusOr<InputJob> ReadInput(const std::string& name) {
+absl::StatusOr<InputJob> ReadInput(const std::string& name, const GcodeOptions& gcode) {
   const absl::StatusOr<std::string> bytes = ReadWholeFile(name);
   if (!bytes.ok()) return bytes.status();
-  return ParseInput(*bytes, name);
+  return ParseInput(*bytes, name, gcode);
 }
 
 }  // namespace traverse

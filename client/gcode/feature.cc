@@ -1,0 +1,116 @@
+#include "client/gcode/feature.h"
+
+#include <cstddef>
+#include <string>
+
+#include "client/gcode/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+struct TypeName {
+  std::string_view name;
+  Feature feature;
+};
+
+constexpr TypeName kTypeNames[] = {
+    // PrusaSlicer, SuperSlicer
+    {"Perimeter", Feature::kInnerWall},
+    {"Internal perimeter", Feature::kInnerWall},
+    {"External perimeter", Feature::kOuterWall},
+    {"Overhang perimeter", Feature::kOverhangWall},
+    {"Thin wall", Feature::kOuterWall},
+    {"Internal infill", Feature::kSparseInfill},
+    {"Solid infill", Feature::kSolidInfill},
+    {"Top solid infill", Feature::kTopInfill},
+    {"Bridge infill", Feature::kBridge},
+    {"Internal bridge infill", Feature::kBridge},
+    {"Gap fill", Feature::kGapFill},
+    {"Ironing", Feature::kIroning},
+    {"Skirt/Brim", Feature::kSkirt},
+    {"Skirt", Feature::kSkirt},
+    {"Brim", Feature::kSkirt},
+    {"Support material", Feature::kSupport},
+    {"Support material interface", Feature::kSupportInterface},
+    {"Wipe tower", Feature::kTower},
+    {"Custom", Feature::kCustom},
+    // OrcaSlicer
+    {"Inner wall", Feature::kInnerWall},
+    {"Outer wall", Feature::kOuterWall},
+    {"Overhang wall", Feature::kOverhangWall},
+    {"Sparse infill", Feature::kSparseInfill},
+    {"Internal solid infill", Feature::kSolidInfill},
+    {"Bottom surface", Feature::kSolidInfill},
+    {"Top surface", Feature::kTopInfill},
+    {"Bridge", Feature::kBridge},
+    {"Internal Bridge", Feature::kBridge},
+    {"Gap infill", Feature::kGapFill},
+    {"Support", Feature::kSupport},
+    {"Support interface", Feature::kSupportInterface},
+    {"Support transition", Feature::kSupportInterface},
+    {"Prime tower", Feature::kTower},
+    // CuraEngine
+    {"WALL-OUTER", Feature::kOuterWall},
+    {"WALL-INNER", Feature::kInnerWall},
+    {"SKIN", Feature::kSolidInfill},
+    {"FILL", Feature::kSparseInfill},
+    {"SKIRT", Feature::kSkirt},
+    {"SUPPORT", Feature::kSupport},
+    {"SUPPORT-INTERFACE", Feature::kSupportInterface},
+    {"PRIME-TOWER", Feature::kTower},
+};
+
+// Slic3r, on each move with verbose G-code.
+constexpr TypeName kCommentNames[] = {
+    {"perimeter", Feature::kLoop},
+    {"infill", Feature::kLine},
+    {"skirt", Feature::kSkirt},
+    {"brim", Feature::kSkirt},
+    {"support material", Feature::kSupport},
+    {"support material interface", Feature::kSupportInterface},
+};
+
+template <size_t n>
+Feature Find(const TypeName (&names)[n], std::string_view name) {
+  for (const TypeName& known : names) {
+    if (known.name == name) return known.feature;
+  }
+  return Feature::kCount;
+}
+
+Feature FeatureOfComment(const GcodeFile& file, const Block& block) {
+  const Line line = LineAt(file.text, block.begin);
+  const std::string_view text = line.Text(file.text);
+  const size_t semicolon = text.find(';');
+  if (semicolon == std::string_view::npos) return Feature::kCount;
+  return Find(kCommentNames, TrimBlanks(text.substr(semicolon + 1)));
+}
+
+}  // namespace
+
+std::string_view FeatureName(Feature feature) {
+  static constexpr std::string_view kNames[] = {
+      "loop",        "line",           "outer wall",   "inner wall",        "overhang wall",
+      "gap fill",    "sparse infill",  "solid infill", "top infill",        "bridge",
+      "ironing",     "skirt and brim", "support",      "support interface", "tower",
+      "start script"};
+  static_assert(sizeof(kNames) / sizeof(kNames[0]) == static_cast<size_t>(Feature::kCount));
+  return kNames[static_cast<size_t>(feature)];
+}
+
+Feature FeatureOfType(std::string_view type) { return Find(kTypeNames, TrimBlanks(type)); }
+
+Feature FeatureOf(const GcodeFile& file, const Block& block, bool closed) {
+  const uint32_t setter = file.states[block.state_in][kSlotType];
+  if (setter != 0) {
+    const std::string_view line = file.setters.Line(setter);
+    const Feature feature = FeatureOfType(line.substr(line.find(':') + 1));
+    if (feature != Feature::kCount) return feature;
+  }
+  const Feature commented = FeatureOfComment(file, block);
+  if (commented == Feature::kLoop && !closed) return Feature::kOverhangWall;
+  if (commented != Feature::kCount) return commented;
+  return closed ? Feature::kLoop : Feature::kLine;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,113 @@
+#include "client/gcode/gcode_job.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "absl/strings/str_format.h"
+#include "client/gcode/reader.h"
+#include "client/gcode/travel_model.h"
+
+namespace traverse {
+namespace gcode {
+namespace {
+
+constexpr double kInchMm = 25.4;
+
+// Paths and extruded way by feature, and what may move.
+struct Census {
+  std::array<int64_t, static_cast<size_t>(Feature::kCount)> paths{};
+  std::array<double, static_cast<size_t>(Feature::kCount)> way_mm{};
+  int64_t movable = 0;
+};
+
+void SetCost(const TravelModel& model, v1::CostModel& cost) {
+  v1::TimeCost& time = *cost.mutable_time();
+  // The service has limits; a file may state anything.
+  time.set_speed_mm_s(std::clamp(model.speed_mm_s, 0.001, 1e5));
+  time.set_accel_mm_s2(std::min(model.accel_mm_s2, 1e7));
+  time.set_retraction_seconds(std::min(model.retraction_seconds, 1e4));
+  time.set_retraction_threshold_mm(model.retraction_threshold_mm);
+}
+
+void AddLayer(const GcodeFile& file, size_t index, const TravelModel& model, Policy policy,
+              InputJob& job, Census& census) {
+  const Layer& layer = file.layers[index];
+  LayerPlan planned = MakeLayerPlan(file, layer, policy);
+  v1::Layer& added = job.layers.emplace_back();
+  added.set_id(index + 1);
+  added.set_z_mm(ToDouble(layer.z) *
+                 (file.modes[file.blocks[layer.first_block].mode].inches ? kInchMm : 1));
+  *added.mutable_plan() = std::move(planned.plan);
+  SetCost(model, *added.mutable_cost());
+  PathNotes& notes = job.notes.emplace_back();
+  for (size_t path = 0; path < planned.outlines.size(); ++path) {
+    const auto feature = static_cast<size_t>(planned.outlines[path].feature);
+    notes.feature.push_back(static_cast<uint16_t>(feature));
+    notes.island.push_back(planned.island[path] + 1);
+    ++census.paths[feature];
+    census.way_mm[feature] += static_cast<double>(file.blocks[layer.first_block + path].length_mm);
+  }
+  census.movable += planned.movable;
+}
+
+std::string Duration(double seconds) {
+  const auto whole = static_cast<int64_t>(seconds + 0.5);
+  if (whole < 3600) return absl::StrFormat("%d min %02d s", whole / 60, whole % 60);
+  return absl::StrFormat("%d h %02d min", whole / 3600, whole % 3600 / 60);
+}
+
+void AddFacts(const GcodeFile& file, const Census& census, Policy policy, InputJob& job) {
+  const auto add = [&job](std::string key, std::string value) {
+    job.facts.emplace_back(std::move(key), std::move(value));
+  };
+  add("slicer", file.slicer.empty() ? "unknown" : file.slicer);
+  for (size_t i = 0; i < census.paths.size(); ++i) {
+    if (census.paths[i] == 0) continue;
+    add(std::string(FeatureName(static_cast<Feature>(i))),
+        absl::StrFormat("%d paths, %.2f m", census.paths[i], census.way_mm[i] / 1000));
+  }
+  const PrintTotals& totals = file.totals;
+  add("extruded", absl::StrFormat("%.2f m", totals.extruded_mm / 1000));
+  add("travel", absl::StrFormat("%.2f m", totals.travel_mm / 1000));
+  add("retractions", absl::StrFormat("%d", totals.retractions));
+  add("estimated print time",
+      Duration(totals.seconds) + " (trapezoidal speeds with look-ahead, heating not counted)");
+  add("movable under " + std::string(PolicyName(policy)),
+      absl::StrFormat("%d of %d paths", census.movable, file.blocks.size()));
+}
+
+}  // namespace
+}  // namespace gcode
+
+InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions& options) {
+  InputJob job;
+  job.name = file->name;
+  job.format = InputFormat::kGcode;
+  for (size_t i = 0; i < static_cast<size_t>(gcode::Feature::kCount); ++i) {
+    job.features.emplace_back(gcode::FeatureName(static_cast<gcode::Feature>(i)));
+  }
+  const std::vector<gcode::TravelModel> models = gcode::LearnTravel(*file);
+  gcode::Census census;
+  for (size_t i = 0; i < file->layers.size(); ++i) {
+    gcode::AddLayer(*file, i, models[i], options.policy, job, census);
+  }
+  // The first path is pinned; how the start script comes to it is not ours.
+  const gcode::Outline first = gcode::OutlineOf(*file, file->blocks.front());
+  job.options.mutable_start()->set_x_mm(first.points.front().x);
+  job.options.mutable_start()->set_y_mm(first.points.front().y);
+  gcode::SetCost(models.back(), *job.options.mutable_cost());
+  job.options.set_idle_speed_mm_s(std::clamp(models.back().speed_mm_s, 0.001, 1e5));
+  gcode::AddFacts(*file, census, options.policy, job);
+  job.gcode = std::move(file);
+  return job;
+}
+
+absl::StatusOr<InputJob> ReadGcodeJob(std::string text, const std::string& name,
+                                      const GcodeOptions& options) {
+  absl::StatusOr<std::shared_ptr<GcodeFile>> file = ReadGcode(std::move(text), name);
+  if (!file.ok()) return file.status();
+  return MakeGcodeJob(*std::move(file), options);
+}
+
+}  // namespace traverse

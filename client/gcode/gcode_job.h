@@ -1,0 +1,31 @@
+// From a sliced file to a job for the service.
+
+#ifndef TRAVERSE_CLIENT_GCODE_GCODE_JOB_H_
+#define TRAVERSE_CLIENT_GCODE_GCODE_JOB_H_
+
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "client/gcode/gcode_file.h"
+#include "client/gcode/policy.h"
+#include "client/input/input_job.h"
+
+namespace traverse {
+
+struct GcodeOptions {
+  gcode::Policy policy = gcode::Policy::kSafe;
+};
+
+// The job in `file`: a plan for each of its layers, the cost of travel as its own moves show it
+// (time), and what `inspect` prints. Path i of layer l is block layers[l].first_block + i of the
+// file; labels count the paths of a layer from 1.
+InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions& options);
+
+// ReadGcode and MakeGcodeJob.
+absl::StatusOr<InputJob> ReadGcodeJob(std::string text, const std::string& name,
+                                      const GcodeOptions& options = {});
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_CLIENT_GCODE_GCODE_JOB_H_

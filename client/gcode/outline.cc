@@ -1,0 +1,79 @@
+#include "client/gcode/outline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "client/gcode/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kInchMm = 25.4;
+constexpr double kDefaultHeightMm = 0.2;
+
+std::optional<double> SlotNumber(const GcodeFile& file, const Block& block, Slot slot) {
+  const uint32_t setter = file.states[block.state_in][slot];
+  if (setter == 0) return std::nullopt;
+  const std::string_view line = file.setters.Line(setter);
+  const std::string_view number = TrimBlanks(line.substr(line.find(':') + 1));
+  const char* p = number.data();
+  const std::optional<Decimal> value = ParseDecimal(&p, number.data() + number.size());
+  if (!value || *value <= 0) return std::nullopt;
+  return ToDouble(*value);
+}
+
+// The cross-section that is deposited is a rectangle with half circles at its sides.
+double WidthOfFlow(const GcodeFile& file, const Block& block, double unit) {
+  const double diameter = file.profile.filament_diameter;
+  const double filament = ToDouble(block.e_out - block.e_in) * unit;
+  if (!(filament > 0) || !(block.length_mm > 0)) return 0;
+  const double area =
+      filament * diameter * diameter * std::numbers::pi / 4 / static_cast<double>(block.length_mm);
+  const double height = SlotNumber(file, block, kSlotHeight).value_or(kDefaultHeightMm);
+  return area / height + height * (1 - std::numbers::pi / 4);
+}
+
+double WidthOf(const GcodeFile& file, const Block& block, double unit) {
+  const double width = SlotNumber(file, block, kSlotWidth).value_or(WidthOfFlow(file, block, unit));
+  return std::clamp(width, 0.2, 1.2);
+}
+
+}  // namespace
+
+MachineState StateAt(const GcodeFile& file, const Block& block) {
+  MachineState state = file.modes[block.mode];
+  state.at = block.first;
+  state.e = block.e_in;
+  state.feed = block.feed_in;
+  state.retracted = 0;
+  state.firmware_retracted = false;
+  return state;
+}
+
+Outline OutlineOf(const GcodeFile& file, const Block& block) {
+  const double unit = file.modes[block.mode].inches ? kInchMm : 1;
+  const auto vertex = [unit](const Position& at) {
+    return Vertex{ToDouble(at.x) * unit, ToDouble(at.y) * unit};
+  };
+  Outline outline;
+  outline.points.reserve(block.segments + size_t{1});
+  outline.points.push_back(vertex(block.first));
+  Interpreter interpreter(std::string_view(file.text).substr(0, block.end), block.begin,
+                          StateAt(file, block));
+  for (Step step; interpreter.Next(step);) {
+    if (step.kind == StepKind::kExtrude || step.kind == StepKind::kZeroExtrude) {
+      outline.points.push_back(vertex(interpreter.state().at));
+    }
+  }
+  outline.exactly_closed = outline.points.front() == outline.points.back();
+  outline.closed = outline.points.size() > 3 &&
+                   Distance(outline.points.front(), outline.points.back()) <= kMaxLoopGapMm &&
+                   static_cast<double>(block.length_mm) > 8 * kMaxLoopGapMm;
+  outline.feature = FeatureOf(file, block, outline.closed);
+  outline.width_mm = WidthOf(file, block, unit);
+  return outline;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,45 @@
+// What of a layer may change places: DESIGN section 8.
+//
+//   in_order                          groups: nothing crosses a fence, a label, a skirt's end, or
+//    |                                (but under `free`) a change of the fan
+//    +- any_order(paths, before)      the paths of a group; `before` keeps the sliced order of
+//    +- path                          paths that touch; pinned paths stand alone
+//    +- any_order(islands of any_order(paths, before))      under `balanced`
+
+#ifndef TRAVERSE_CLIENT_GCODE_POLICY_H_
+#define TRAVERSE_CLIENT_GCODE_POLICY_H_
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "client/gcode/outline.h"
+#include "traverse/v1/plan.pb.h"
+
+namespace traverse::gcode {
+
+enum class Policy : uint8_t {
+  kSafe,      // nothing that a slicer chose for quality changes
+  kBalanced,  // also walls begin at sharp corners of their own, and islands are done one by one
+  kFree,      // any start and direction; only what touches keeps the order of its features
+};
+
+// "safe", "balanced" or "free"; nothing for other text.
+std::optional<Policy> PolicyOfName(std::string_view name);
+std::string_view PolicyName(Policy policy);
+
+// A layer as a plan. Plan.paths[i] is the block `first_block + i`; vertex k of a contour is point k
+// of its outline.
+struct LayerPlan {
+  v1::Plan plan;
+  std::vector<Outline> outlines;  // [path]
+  std::vector<uint32_t> island;   // [path] which connected region of the layer it lies in
+  int64_t movable = 0;            // paths that may change places with another one
+};
+
+LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy);
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_POLICY_H_

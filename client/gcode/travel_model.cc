@@ -1,0 +1,156 @@
+#include "client/gcode/travel_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "client/gcode/motion_planner.h"
+#include "client/gcode/print_meter.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kInchMm = 25.4;
+
+// What the links of one layer add up to.
+struct LayerTravel {
+  std::map<std::pair<double, double>, double> way_mm;  // by speed and acceleration
+  double retraction_seconds = 0;
+  int64_t retractions = 0;
+};
+
+class TravelLearner {
+ public:
+  explicit TravelLearner(const GcodeFile& file) : file_(file), start_(file.profile) {
+    shortest_retracted_mm_ = file.profile.retract_before_travel.value_or(1e9);
+  }
+
+  LayerTravel LearnLayer(const Layer& layer) {
+    LayerTravel learnt;
+    for (uint32_t b = std::max(layer.first_block, 1u); b < layer.end_block; ++b) {
+      LearnLink(b, learnt);
+    }
+    return learnt;
+  }
+
+  double threshold_mm() const { return shortest_retracted_mm_ < 1e9 ? shortest_retracted_mm_ : 0; }
+
+ private:
+  const Dynamics& DynamicsOf(uint32_t state) {
+    const auto found = dynamics_.find(state);
+    if (found != dynamics_.end()) return found->second;
+    Dynamics dynamics = start_;
+    for (size_t slot = 0; slot < kSlotCount; ++slot) {
+      const uint32_t setter = file_.states[state][slot];
+      if (((kDynamicsSlots >> slot) & 1u) != 0 && setter != 0) {
+        dynamics.Follow(file_.setters.Line(setter));
+      }
+    }
+    return dynamics_.emplace(state, dynamics).first->second;
+  }
+
+  void LearnLink(uint32_t b, LayerTravel& learnt) {
+    const Block& before = file_.blocks[b - 1];
+    const Block& block = file_.blocks[b];
+    if ((block.link & kLinkFixed) != 0) return;
+    const bool retracts = (block.link & kLinkRetracts) != 0;
+    Dynamics dynamics = DynamicsOf(before.state_out);
+    MachineState state = file_.modes[before.mode];
+    state.at = before.last;
+    state.e = before.e_out;
+    state.feed = before.feed_out;
+    Interpreter interpreter(std::string_view(file_.text).substr(0, block.begin), before.end, state);
+    double still_seconds = 0;
+    for (Step step; interpreter.Next(step);) {
+      still_seconds += LearnStep(step, interpreter, dynamics, learnt);
+    }
+    if (!retracts) return;
+    learnt.retraction_seconds += still_seconds;
+    ++learnt.retractions;
+    LearnThreshold(before, block);
+  }
+
+  // Returns the time of what is not travel proper.
+  double LearnStep(const Step& step, const Interpreter& interpreter, Dynamics& dynamics,
+                   LayerTravel& learnt) {
+    const MachineProfile& profile = file_.profile;
+    const MachineState& state = interpreter.state();
+    const double unit = state.inches ? kInchMm : 1;
+    const double speed = ToDouble(state.feed) / 60;
+    switch (step.kind) {
+      case StepKind::kSlot:
+        if ((step.slots & kDynamicsSlots) != 0) {
+          dynamics.Follow(step.line.Text(interpreter.text()));
+        }
+        return 0;
+      case StepKind::kTravel:
+      case StepKind::kWipe: {
+        const double way =
+            std::hypot(ToDouble(state.at.x - step.from.x), ToDouble(state.at.y - step.from.y)) *
+            unit;
+        if (step.kind == StepKind::kWipe) return speed > 0 ? way / (speed * unit) : 0;
+        learnt.way_mm[{speed * unit, dynamics.travel_accel()}] += way;
+        return 0;
+      }
+      case StepKind::kFilament:
+        return speed > 0
+                   ? StopToStopSeconds(std::abs(ToDouble(step.filament)),
+                                       std::min(speed, profile.max_e_speed), profile.retract_accel)
+                   : 0;
+      case StepKind::kLift:
+        return speed > 0
+                   ? StopToStopSeconds(std::abs(ToDouble(state.at.z - step.from.z)) * unit,
+                                       std::min(speed * unit, profile.max_z_speed), profile.z_accel)
+                   : 0;
+      case StepKind::kFirmwareRetract:
+      case StepKind::kFirmwareUnretract:
+        return StopToStopSeconds(profile.firmware_retract_length, profile.firmware_retract_speed,
+                                 profile.retract_accel);
+      default:
+        return 0;
+    }
+  }
+
+  void LearnThreshold(const Block& before, const Block& block) {
+    if (file_.profile.retract_before_travel || (block.link & kLinkSplits) != 0) return;
+    const double unit = file_.modes[block.mode].inches ? kInchMm : 1;
+    const double way = std::hypot(ToDouble(block.first.x - before.last.x),
+                                  ToDouble(block.first.y - before.last.y)) *
+                       unit;
+    shortest_retracted_mm_ = std::min(shortest_retracted_mm_, way);
+  }
+
+  const GcodeFile& file_;
+  const Dynamics start_;
+  std::map<uint32_t, Dynamics> dynamics_;  // by state
+  double shortest_retracted_mm_;
+};
+
+}  // namespace
+
+std::vector<TravelModel> LearnTravel(const GcodeFile& file) {
+  TravelLearner learner(file);
+  std::vector<TravelModel> models;
+  TravelModel model;
+  model.accel_mm_s2 = file.profile.travel_accel;
+  for (const Layer& layer : file.layers) {
+    const LayerTravel learnt = learner.LearnLayer(layer);
+    double longest_mm = 0;
+    for (const auto& [how, way_mm] : learnt.way_mm) {
+      if (way_mm <= longest_mm || !(how.first > 0)) continue;
+      longest_mm = way_mm;
+      model.speed_mm_s = how.first;
+      model.accel_mm_s2 = how.second;
+    }
+    if (learnt.retractions > 0) {
+      model.retraction_seconds =
+          learnt.retraction_seconds / static_cast<double>(learnt.retractions);
+    }
+    models.push_back(model);
+  }
+  for (TravelModel& each : models) each.retraction_threshold_mm = learner.threshold_mm();
+  return models;
+}
+
+}  // namespace traverse::gcode
