@@ -81,7 +81,9 @@ Metrics::Metrics()
           Family(BuildGauge(), "traverse_jobs_in_flight", "Jobs accepted and not ended.").Add({})),
       workers_busy_(
           Family(BuildGauge(), "traverse_workers_busy", "Workers that run a task.").Add({})),
-      workers_(Family(BuildGauge(), "traverse_workers", "Workers there are.").Add({})) {
+      workers_(Family(BuildGauge(), "traverse_workers", "Workers there are.").Add({})),
+      ready_(Family(BuildGauge(), "traverse_ready", "1 if the server takes jobs, 0 if it drains.")
+                 .Add({})) {
   Family(BuildGauge(), "traverse_build_info", "1, labelled with the version.")
       .Add({{"version", kVersion}})
       .Set(1);
@@ -137,6 +139,7 @@ std::string Metrics::Text(const Gauges& gauges) {
   jobs_in_flight_.Set(gauges.jobs_in_flight);
   workers_busy_.Set(gauges.workers_busy);
   workers_.Set(gauges.workers);
+  ready_.Set(gauges.ready);
   std::vector<prometheus::MetricFamily> families = registry_.Collect();
   for (prometheus::MetricFamily& family : ProcessMetrics()) families.push_back(std::move(family));
   return prometheus::TextSerializer().Serialize(families);

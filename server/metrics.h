@@ -52,6 +52,7 @@ class Metrics {
     double jobs_in_flight = 0;
     double workers_busy = 0;
     double workers = 0;
+    double ready = 0;  // 1: takes jobs
   };
 
   // The text of /metrics, with the metrics of the process.
@@ -78,6 +79,7 @@ class Metrics {
   prometheus::Gauge& jobs_in_flight_;
   prometheus::Gauge& workers_busy_;
   prometheus::Gauge& workers_;
+  prometheus::Gauge& ready_;
 
   std::mutex mutex_;
   std::map<std::string, LayerMetrics> by_strategy_;  // never erased from

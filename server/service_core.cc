@@ -36,6 +36,7 @@ std::string ServiceCore::MetricsText() {
   gauges.jobs_in_flight = admission.jobs();
   gauges.workers_busy = pool.busy();
   gauges.workers = pool.threads();
+  gauges.ready = admission.draining() ? 0 : 1;
   return metrics.Text(gauges);
 }
 

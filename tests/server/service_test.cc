@@ -231,5 +231,14 @@ TEST(Service, MetricsCountWhatWasDone) {
   EXPECT_THAT(text, HasSubstr("process_cpu_seconds_total "));
 }
 
+TEST(Service, MetricsTellWhetherTheServerTakesJobs) {
+  TestService service;
+  EXPECT_THAT(service.server().core().MetricsText(), HasSubstr("traverse_ready 1"));
+
+  service.server().core().admission.StartDraining();
+
+  EXPECT_THAT(service.server().core().MetricsText(), HasSubstr("traverse_ready 0"));
+}
+
 }  // namespace
 }  // namespace traverse::testing
