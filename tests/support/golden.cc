@@ -4,6 +4,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/support/source_dir.h"
+
 namespace traverse::testing {
 
 std::string DataPath(const std::string& name) {
