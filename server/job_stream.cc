@@ -43,6 +43,10 @@ absl::Status OverLimit(const std::string& place, int64_t found, const char* what
 
 JobStream::JobStream(ServiceCore& core, CallInfo call) : core_(core), call_(std::move(call)) {}
 
+JobStream::~JobStream() {
+  if (run_ != nullptr) core_.Unregister(run_);
+}
+
 absl::Status JobStream::Admit(int64_t points) {
   absl::StatusOr<std::unique_ptr<Admission::Ticket>> ticket =
       core_.admission.Admit(call_.caller, points);
@@ -202,7 +206,6 @@ void JobStream::End(const absl::Status& status) {
   core_.metrics.CountJob(record.strategy, status.code(), record.wall_seconds);
   core_.metrics.CountRpc(call_.method, status.code());
   core_.log->Job(record);
-  if (run_ != nullptr) core_.Unregister(run_);
   // Before the caller hears of the end: his next job may need the place.
   ticket_.reset();
   FinishCall(ToGrpcStatus(status));

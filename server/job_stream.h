@@ -26,7 +26,7 @@ namespace traverse {
 // Release of the run: the job then does not end meanwhile.
 class JobStream : public JobPort {
  public:
-  ~JobStream() override = default;
+  ~JobStream() override;
 
  protected:
   JobStream(ServiceCore& core, CallInfo call);

@@ -1,4 +1,7 @@
 // The port for operators: /metrics, /healthz (the process lives), /readyz (it takes jobs).
+//
+// Plain HTTP/1.1 for GET and HEAD, one request a connection: what Prometheus, kubelet and curl
+// need. One thread serves a bounded number of connections; a slow one holds up no other.
 
 #ifndef TRAVERSE_SERVER_METRICS_HTTP_H_
 #define TRAVERSE_SERVER_METRICS_HTTP_H_
@@ -6,16 +9,12 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <thread>
 
 #include "absl/status/statusor.h"
 
-struct mg_connection;
-struct mg_context;
-
 namespace traverse {
 
-// Serves until it is destroyed. Plain HTTP and no more than a few callers at a time: a port for the
-// inner network.
 class MetricsHttp {
  public:
   struct Sources {
@@ -23,7 +22,8 @@ class MetricsHttp {
     std::function<bool()> ready;
   };
 
-  // Listens on `address`, HOST:PORT; port 0 takes a free one. Errors: Unavailable if it cannot.
+  // Serves on `address`, HOST:PORT or [HOST]:PORT, until it is destroyed; port 0 takes a free one.
+  // The sources are called from a thread of its own. Errors: Unavailable if it cannot listen.
   static absl::StatusOr<std::unique_ptr<MetricsHttp>> Start(const std::string& address,
                                                             Sources sources);
   ~MetricsHttp();
@@ -31,17 +31,21 @@ class MetricsHttp {
   MetricsHttp(const MetricsHttp&) = delete;
   MetricsHttp& operator=(const MetricsHttp&) = delete;
 
-  int port() const;
+  int port() const { return port_; }
 
  private:
   explicit MetricsHttp(Sources sources) : sources_(std::move(sources)) {}
 
-  static int OnMetrics(mg_connection* connection, void* self);
-  static int OnHealth(mg_connection* connection, void* self);
-  static int OnReady(mg_connection* connection, void* self);
+  void Serve();
+
+  // The whole answer to a request's head.
+  std::string Answer(const std::string& head) const;
 
   const Sources sources_;
-  mg_context* context_ = nullptr;
+  int listener_ = -1;
+  int stop_ = -1;  // an eventfd
+  int port_ = 0;
+  std::thread thread_;
 };
 
 }  // namespace traverse

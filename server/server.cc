@@ -9,14 +9,16 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <chrono>
 #include <climits>
 #include <exception>
+#include <functional>
 #include <mutex>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/time/clock.h"
 
 namespace traverse {
 namespace {
@@ -44,6 +46,23 @@ class NoReflection : public grpc::ServerBuilderOption {
                    plugins->end());
   }
 };
+
+// Longer than any drain, and short enough to be added to a time.
+constexpr absl::Duration kForever = absl::Hours(24 * 365);
+
+// For calls that have ended to be done with, at the end of the server.
+constexpr absl::Duration kGrace = absl::Seconds(2);
+
+// Waits until `condition` holds, for `timeout` at most. Returns whether it does.
+bool WaitFor(absl::Duration timeout, const std::function<bool()>& condition) {
+  const auto end =
+      std::chrono::steady_clock::now() + absl::ToChronoNanoseconds(std::min(timeout, kForever));
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() >= end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -112,6 +131,7 @@ absl::Status Server::Build(const ServerOptions& options) {
 Server::~Server() {
   core_.admission.StartDraining();
   core_.AbortAll(absl::UnavailableError("the server has ended; ask another one"));
+  if (server_ != nullptr) WaitFor(kGrace, [this] { return core_.calls() == 0; });
   Shutdown();
 }
 
@@ -120,27 +140,23 @@ std::shared_ptr<grpc::Channel> Server::InProcessChannel(const grpc::ChannelArgum
 }
 
 bool Server::Drain(absl::Duration timeout) {
-  constexpr absl::Duration kPoll = absl::Milliseconds(10);
-  constexpr absl::Duration kGrace = absl::Seconds(2);  // for the last statuses to go out
   core_.admission.StartDraining();
   server_->GetHealthCheckService()->SetServingStatus(false);
-  const absl::Time end = absl::Now() + timeout;
-  while (core_.admission.jobs() > 0 && absl::Now() < end) absl::SleepFor(kPoll);
-  const bool all_done = core_.admission.jobs() == 0;
+  const bool all_done = WaitFor(timeout, [this] { return core_.admission.jobs() == 0; });
   if (!all_done) {
     core_.AbortAll(absl::UnavailableError(
         "the server is shutting down; ask another one for the layers that are missing"));
-    const absl::Time grace_end = absl::Now() + kGrace;
-    while (core_.admission.jobs() > 0 && absl::Now() < grace_end) absl::SleepFor(kPoll);
   }
+  // The last messages and statuses are on their way out; a caller who does not read them loses
+  // them.
+  WaitFor(kGrace, [this] { return core_.calls() == 0; });
   Shutdown();
   return all_done;
 }
 
 void Server::Shutdown() {
   if (server_ == nullptr) return;
-  // Calls whose callers do not read their last messages are cut off here.
-  server_->Shutdown(std::chrono::system_clock::now() + std::chrono::milliseconds(500));
+  server_->Shutdown(std::chrono::system_clock::now());
   server_->Wait();
 }
 

@@ -20,6 +20,11 @@ void ServiceCore::Unregister(const std::shared_ptr<JobRun>& run) {
   runs_.erase(run);
 }
 
+size_t ServiceCore::calls() const {
+  std::lock_guard<std::mutex> lock(mutex_);
+  return runs_.size();
+}
+
 void ServiceCore::AbortAll(const absl::Status& status) {
   std::vector<std::shared_ptr<JobRun>> runs;
   {

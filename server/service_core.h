@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <set>
+#include <string>
 
 #include "absl/status/status.h"
 #include "server/admission.h"
@@ -42,9 +43,10 @@ class ServiceCore {
   // Throws what JobLog throws.
   explicit ServiceCore(const ServiceOptions& options);
 
-  // The jobs under way, for AbortAll.
+  // The calls whose jobs were let in, until gRPC is done with them.
   void Register(const std::shared_ptr<JobRun>& run);
   void Unregister(const std::shared_ptr<JobRun>& run);
+  size_t calls() const;
 
   // Ends all jobs under way with `status`.
   void AbortAll(const absl::Status& status);
@@ -59,7 +61,7 @@ class ServiceCore {
   std::atomic<int64_t> queue_layers{0};  // accepted and not yet solved
 
  private:
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::set<std::shared_ptr<JobRun>> runs_;
 
  public:

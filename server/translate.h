@@ -38,8 +38,7 @@ struct JobSetup {
 // Places in errors begin with `options.`.
 absl::StatusOr<JobSetup> JobFromProto(const v1::JobOptions& options);
 
-// The layer at position `index` of its job. Paths of layers of islands are tagged with the position
-// of their island, those of plans with -1.
+// The layer at position `index` of its job.
 absl::StatusOr<LabelledLayer> LayerFromProto(const v1::Layer& layer, uint64_t index,
                                              bool interleaved);
 

@@ -95,14 +95,12 @@ absl::StatusOr<Path> FromProto(const v1::OpenPath& open, const Place& place) {
 // Translates a list of contours or open paths and appends them to `paths`.
 template <typename Message>
 absl::Status AppendPaths(const google::protobuf::RepeatedPtrField<Message>& messages,
-                         const char* field, const Place& parent, int tag,
-                         std::vector<Path>& paths) {
+                         const char* field, const Place& parent, std::vector<Path>& paths) {
   paths.reserve(static_cast<size_t>(messages.size()));
   for (int i = 0; i < messages.size(); ++i) {
     absl::StatusOr<Path> path =
         FromProto(messages[i], Place(&parent, field, static_cast<uint64_t>(i)));
     if (!path.ok()) return path.status();
-    path->tag = tag;
     paths.push_back(*std::move(path));
   }
   return absl::OkStatus();
@@ -115,8 +113,8 @@ absl::StatusOr<Plan> FromIslands(const v1::Layer& layer, const Place& place, boo
     const Place at(&place, "islands", static_cast<uint64_t>(i));
     IslandPaths& paths = islands[static_cast<size_t>(i)];
     TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(island, at));
-    TRAVERSE_RETURN_IF_ERROR(AppendPaths(island.contours(), "contours", at, i, paths.contours));
-    TRAVERSE_RETURN_IF_ERROR(AppendPaths(island.rasters(), "rasters", at, i, paths.rasters));
+    TRAVERSE_RETURN_IF_ERROR(AppendPaths(island.contours(), "contours", at, paths.contours));
+    TRAVERSE_RETURN_IF_ERROR(AppendPaths(island.rasters(), "rasters", at, paths.rasters));
   }
   return interleaved ? InterleavedPlan(std::move(islands)) : SequentialPlan(std::move(islands));
 }
@@ -208,7 +206,6 @@ absl::StatusOr<Plan> FromProto(const v1::Plan& message, const std::string& place
     absl::StatusOr<Path> path =
         FromProto(message.paths(p), Place(nullptr, paths_field.c_str(), static_cast<uint64_t>(p)));
     if (!path.ok()) return path.status();
-    path->tag = -1;
     plan.paths.push_back(*std::move(path));
   }
   plan.nodes.reserve(static_cast<size_t>(message.nodes_size()));

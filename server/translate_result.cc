@@ -25,7 +25,7 @@ void SetTravel(const TravelSplit& travel, v1::Travel& message) {
 std::vector<uint32_t> PositionsInIslands(const Plan& plan) {
   std::vector<uint32_t> positions(plan.paths.size());
   for (size_t p = 0; p < plan.paths.size(); ++p) {
-    const bool continues = p > 0 && plan.paths[p].tag == plan.paths[p - 1].tag &&
+    const bool continues = p > 0 && plan.paths[p].island == plan.paths[p - 1].island &&
                            plan.paths[p].kind == plan.paths[p - 1].kind;
     positions[p] = continues ? positions[p - 1] + 1 : 0;
   }
@@ -34,7 +34,7 @@ std::vector<uint32_t> PositionsInIslands(const Plan& plan) {
 
 void SetVisits(const LayerOutcome& outcome, v1::LayerResult& result) {
   const Plan& plan = outcome.plan;
-  const bool islands = !plan.paths.empty() && plan.paths[0].tag >= 0;
+  const bool islands = !plan.paths.empty() && plan.paths[0].island >= 0;
   std::vector<uint32_t> positions;
   if (islands) positions = PositionsInIslands(plan);
   result.mutable_visits()->Reserve(static_cast<int>(outcome.route.size()));
@@ -46,7 +46,7 @@ void SetVisits(const LayerOutcome& outcome, v1::LayerResult& result) {
     if (!islands) {
       message.set_plan_path(static_cast<uint32_t>(p));
     } else {
-      message.set_island(static_cast<uint32_t>(path.tag));
+      message.set_island(static_cast<uint32_t>(path.island));
       if (contour) {
         message.set_contour(positions[p]);
       } else {

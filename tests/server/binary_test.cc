@@ -1,0 +1,203 @@
+// The binary over real sockets: ports, metrics, health, reflection, signals, exit codes.
+
+#include <gmock/gmock.h>
+#include <grpcpp/grpcpp.h>
+#include <grpcpp/impl/client_unary_call.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "tests/server/server_process.h"
+#include "tests/server/service_fixture.h"
+#include "traverse/v1/route_optimizer_service.grpc.pb.h"
+
+namespace traverse::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::unique_ptr<v1::RouteOptimizerService::Stub> Connect(const ServerProcess& server) {
+  return v1::RouteOptimizerService::NewStub(
+      grpc::CreateChannel(server.address(), grpc::InsecureChannelCredentials()));
+}
+
+// Runs a job to its end; the number of layers that came back, or -1.
+int RunJob(v1::RouteOptimizerService::Stub& stub, const v1::OptimizeBatchRequest& request) {
+  grpc::ClientContext context;
+  const auto reader = stub.OptimizeBatch(&context, request);
+  int layers = 0;
+  v1::OptimizeBatchResponse response;
+  while (reader->Read(&response)) layers += response.has_layer() ? 1 : 0;
+  return reader->Finish().ok() ? layers : -1;
+}
+
+// Messages of the health service, by hand: {1: service} and {1: status}; SERVING is 1.
+int HealthStatus(const std::string& address, const std::string& service) {
+  const auto channel = grpc::CreateChannel(address, grpc::InsecureChannelCredentials());
+  const std::string request =
+      service.empty() ? "" : std::string("\x0a") + static_cast<char>(service.size()) + service;
+  const grpc::Slice slice(request);
+  const grpc::ByteBuffer message(&slice, 1);
+  grpc::ByteBuffer response;
+  grpc::ClientContext context;
+  const grpc::internal::RpcMethod method("/grpc.health.v1.Health/Check",
+                                         grpc::internal::RpcMethod::NORMAL_RPC);
+  const grpc::Status status =
+      grpc::internal::BlockingUnaryCall(channel.get(), method, &context, message, &response);
+  if (!status.ok()) return -static_cast<int>(status.error_code());
+  grpc::Slice bytes;
+  if (!response.DumpToSingleSlice(&bytes).ok() || bytes.size() != 2) return 0;
+  return bytes.begin()[1];
+}
+
+TEST(Binary, AnswersJobsAndCountsThem) {
+  ServerProcess server;
+  const auto stub = Connect(server);
+
+  EXPECT_EQ(RunJob(*stub, MakeBatch(10)), 10);
+
+  EXPECT_EQ(server.Metric("traverse_layers_total{stop=\"LOCAL_OPTIMUM\",strategy=\"none\"}"), 10);
+  EXPECT_GT(server.Metric("process_resident_memory_bytes"), 1e6);
+  int status = 0;
+  EXPECT_EQ(server.Get("/healthz", &status), "ok\n");
+  EXPECT_EQ(status, 200);
+  EXPECT_EQ(server.Get("/readyz", &status), "ready\n");
+  EXPECT_EQ(status, 200);
+  server.Get("/etc/passwd", &status);
+  EXPECT_EQ(status, 404);
+}
+
+TEST(Binary, HealthKnowsTheServiceByName) {
+  ServerProcess server;
+
+  EXPECT_EQ(HealthStatus(server.address(), ""), 1);
+  EXPECT_EQ(HealthStatus(server.address(), "traverse.v1.RouteOptimizerService"), 1);
+  EXPECT_EQ(HealthStatus(server.address(), "no.such.Service"), -grpc::StatusCode::NOT_FOUND);
+}
+
+TEST(Binary, LogsOneLineOfJsonForEachJob) {
+  ServerProcess server;
+  const auto stub = Connect(server);
+  v1::OptimizeBatchRequest request = MakeBatch(3);
+  request.mutable_options()->set_job_id("a \"quoted\"\nid");
+  grpc::ClientContext context;
+  context.AddMetadata("traceparent", "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01");
+  const auto reader = stub->OptimizeBatch(&context, request);
+  v1::OptimizeBatchResponse response;
+  while (reader->Read(&response)) {
+  }
+  ASSERT_TRUE(reader->Finish().ok());
+  server.process().Signal(SIGTERM);
+  ASSERT_EQ(server.process().Wait(), 0);
+
+  std::istringstream lines(server.process().Errors());
+  int jobs = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const auto json = nlohmann::json::parse(line);
+    if (json["event"] != "job") continue;
+    ++jobs;
+    EXPECT_EQ(json["job_id"], "a \"quoted\"\nid");
+    EXPECT_EQ(json["layers"], 3);
+    EXPECT_EQ(json["points"], 3 * 12);
+    EXPECT_EQ(json["code"], "OK");
+    EXPECT_EQ(json["strategy"], "none");
+    EXPECT_EQ(json["trace_id"], "4bf92f3577b34da6a3ce929d0e0e4736");
+    EXPECT_EQ(json["caller"], "ipv4:127.0.0.1");
+  }
+  EXPECT_EQ(jobs, 1);
+}
+
+TEST(Binary, SigtermLetsTheJobUnderWayFinish) {
+  ServerProcess server;
+  const auto stub = Connect(server);
+  grpc::ClientContext context;
+  const auto stream = stub->Optimize(&context);
+  v1::OptimizeRequest message;
+  message.mutable_options()->mutable_strategy()->set_name("none");
+  *message.add_layers() = MakeLayer(1);
+  ASSERT_TRUE(stream->Write(message));
+  v1::OptimizeResponse response;
+  ASSERT_TRUE(stream->Read(&response));
+
+  server.process().Signal(SIGTERM);
+  int ready = 200;
+  ASSERT_TRUE(TestService::Eventually([&] {
+    server.Get("/readyz", &ready);
+    return ready == 503;
+  }));
+  EXPECT_EQ(HealthStatus(server.address(), "traverse.v1.RouteOptimizerService"), 2);
+  EXPECT_EQ(RunJob(*stub, MakeBatch(1)), -1);
+  message.clear_options();
+  ASSERT_TRUE(stream->Write(message));
+  stream->WritesDone();
+  int messages = 1;
+  while (stream->Read(&response)) ++messages;
+
+  EXPECT_TRUE(stream->Finish().ok());
+  EXPECT_EQ(messages, 3);  // two layers and the summary
+  EXPECT_EQ(server.process().Wait(), 0);
+}
+
+TEST(Binary, SecondSigtermEndsAtOnce) {
+  ServerProcess server({"--drain_timeout=1h"});
+  const auto stub = Connect(server);
+  grpc::ClientContext context;
+  const auto stream = stub->Optimize(&context);
+  v1::OptimizeRequest message;
+  *message.add_layers() = MakeLayer(1);
+  stream->Write(message);
+  v1::OptimizeResponse response;
+  ASSERT_TRUE(stream->Read(&response));
+
+  server.process().Signal(SIGTERM);
+  int ready = 200;
+  ASSERT_TRUE(TestService::Eventually([&] {
+    server.Get("/readyz", &ready);
+    return ready == 503;
+  }));
+  server.process().Signal(SIGTERM);
+
+  EXPECT_EQ(server.process().Wait(), 128 + SIGTERM);
+  EXPECT_FALSE(stream->Read(&response));
+  EXPECT_EQ(stream->Finish().error_code(), grpc::StatusCode::UNAVAILABLE);
+}
+
+TEST(Binary, StartFailsWithOneLine) {
+  ServerProcess first;
+  const std::string taken = "--listen=" + first.address();
+  ChildProcess second({TRAVERSE_SERVER_BINARY, taken, "--metrics_listen="});
+
+  EXPECT_EQ(second.Wait(), 1);
+  EXPECT_EQ(second.Errors(), "traverse-server: cannot listen on " + first.address() + "\n");
+
+  ChildProcess no_log({TRAVERSE_SERVER_BINARY, "--listen=127.0.0.1:0",
+                       "--metrics_listen=", "--log_file=/proc/no_such_folder/log"});
+  EXPECT_EQ(no_log.Wait(), 1);
+  EXPECT_THAT(no_log.Errors(), HasSubstr("/proc/no_such_folder"));
+}
+
+TEST(Binary, UsageErrorsExitWith2) {
+  ChildProcess flag({TRAVERSE_SERVER_BINARY, "--no_such_flag"});
+  EXPECT_NE(flag.Wait(), 0);
+  EXPECT_THAT(flag.Errors(), HasSubstr("no_such_flag"));
+
+  ChildProcess argument({TRAVERSE_SERVER_BINARY, "file.gcode"});
+  EXPECT_EQ(argument.Wait(), 2);
+  EXPECT_THAT(argument.Errors(), HasSubstr("file.gcode"));
+}
+
+TEST(Binary, PrintsItsVersion) {
+  ChildProcess version({TRAVERSE_SERVER_BINARY, "--version"});
+
+  EXPECT_THAT(version.ReadLine(), HasSubstr("traverse-server 0."));
+  EXPECT_EQ(version.Wait(), 0);
+}
+
+}  // namespace
+}  // namespace traverse::testing

@@ -1,0 +1,328 @@
+// Bad input, limits, cancellation, deadlines, slow readers, drain: what goes wrong, and how.
+
+#include <gmock/gmock.h>
+#include <google/protobuf/text_format.h>
+#include <grpcpp/grpcpp.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "tests/server/service_fixture.h"
+
+namespace traverse::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+TEST(BadInput, NamesTheLayerInTheWholeJob) {
+  TestService service;
+  v1::OptimizeBatchRequest request = MakeBatch(4);
+  request.mutable_layers(3)->mutable_islands(0)->mutable_contours(0)->set_points(
+      4, std::numeric_limits<double>::quiet_NaN());
+
+  for (const Answer& answer : {service.Batch(request), service.Stream(request, 1),
+                               service.Stream(request, 3), service.Stream(request, 10)}) {
+    EXPECT_EQ(answer.status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+    EXPECT_EQ(answer.status.error_message(),
+              "layers[3].islands[0].contours[0].points[2].x: not finite");
+    EXPECT_FALSE(answer.summary.has_value());
+  }
+}
+
+TEST(BadInput, BatchIsRefusedBeforeAnyWork) {
+  TestService service;
+  v1::OptimizeBatchRequest request = MakeBatch(100);
+  request.mutable_layers(99)->set_z_mm(std::numeric_limits<double>::infinity());
+
+  const Answer answer = service.Batch(request);
+
+  EXPECT_EQ(answer.status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_TRUE(answer.layers.empty());
+}
+
+TEST(BadInput, HugeCoordinatesAndOptions) {
+  TestService service;
+  v1::OptimizeBatchRequest request = MakeBatch(1);
+  request.mutable_layers(0)->mutable_islands(1)->mutable_rasters(0)->set_points(3, 1e300);
+  EXPECT_THAT(service.Batch(request).status.error_message(),
+              StartsWith("layers[0].islands[1].rasters[0].points[1].y: beyond"));
+
+  request = MakeBatch(1, "no such strategy");
+  const Answer unknown = service.Batch(request);
+  EXPECT_EQ(unknown.status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_THAT(unknown.status.error_message(), StartsWith("options.strategy.name: "));
+}
+
+TEST(BadInput, OptionsComeFirst) {
+  TestService service;
+  grpc::ClientContext context;
+  const auto stream = service.stub().Optimize(&context);
+  v1::OptimizeRequest message;
+  message.mutable_options()->mutable_strategy()->set_name("none");
+  stream->Write(message);
+  stream->Write(message);
+  stream->WritesDone();
+  v1::OptimizeResponse response;
+  while (stream->Read(&response)) {
+  }
+
+  const grpc::Status status = stream->Finish();
+
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_THAT(status.error_message(), StartsWith("options: "));
+}
+
+TEST(BadInput, BytesThatAreNoMessageAreTheCallersFault) {
+  TestService service;
+  for (const char* method : {"OptimizeBatch", "Optimize", "ListStrategies"}) {
+    for (const std::string& bytes :
+         {std::string("garbage"), std::string(100, '\xff'), std::string("\x0a\x05zz", 4)}) {
+      const grpc::Status status = service.Raw(method, bytes);
+      EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT)
+          << method << ": " << status.error_message();
+      EXPECT_THAT(status.error_message(), HasSubstr("not a valid traverse.v1."));
+    }
+  }
+}
+
+TEST(BadInput, DeepPlanIsAnError) {
+  TestService service;
+  v1::OptimizeBatchRequest request = MakeBatch(0);
+  v1::Plan& plan = *request.add_layers()->mutable_plan();
+  for (uint32_t i = 0; i < 10'000; ++i) plan.add_nodes()->mutable_any_order()->add_children(i + 1);
+  plan.add_nodes()->mutable_in_order();
+
+  const Answer answer = service.Batch(request);
+
+  EXPECT_EQ(answer.status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_THAT(answer.status.error_message(),
+              StartsWith("layers[0].plan.nodes[99].any_order.children[0]: "));
+}
+
+TEST(BadInput, VeryLongMessagesOfOursAreCut) {
+  TestService service;
+  const Answer answer = service.Batch(MakeBatch(1, std::string(100'000, '"')));
+
+  EXPECT_EQ(answer.status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_THAT(answer.status.error_message(), StartsWith("options.strategy.name: no strategy"));
+}
+
+TEST(Limits, JobsOverTheLimitsAreRefusedWithoutAdviceToRetry) {
+  TestService service([](ServerOptions& options) {
+    options.service.limits.max_points_per_layer = 100;
+    options.service.limits.max_layers_per_message = 50;
+    options.service.limits.max_layers_per_job = 60;
+    options.service.limits.max_points_per_job = 1000;
+  });
+  v1::OptimizeBatchRequest large_layer = MakeBatch(1);
+  *large_layer.add_layers() = MakeLayer(2, 20);
+
+  const Answer layer = service.Batch(large_layer);
+  const Answer message = service.Batch(MakeBatch(51));
+  const Answer layers = service.Stream(MakeBatch(61));
+  v1::OptimizeBatchRequest many_points = MakeBatch(0);
+  for (uint64_t i = 0; i < 20; ++i) *many_points.add_layers() = MakeLayer(i, 10);
+  const Answer points = service.Batch(many_points);
+
+  EXPECT_THAT(layer.status.error_message(), StartsWith("layers[1]: 120 points, more than"));
+  EXPECT_THAT(message.status.error_message(), StartsWith("layers: 51 layers in a message"));
+  EXPECT_THAT(layers.status.error_message(), StartsWith("layers: 61 layers, more than"));
+  EXPECT_THAT(points.status.error_message(), StartsWith("layers[16]: 1020 points up to here"));
+  for (const Answer& answer : {layer, message, layers, points}) {
+    EXPECT_EQ(answer.status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+    EXPECT_FALSE(RetryDelay(answer.status).has_value());
+  }
+}
+
+TEST(Limits, EmptyPartsAreLimitedToo) {
+  TestService service(
+      [](ServerOptions& options) { options.service.limits.max_points_per_layer = 100; });
+  v1::OptimizeBatchRequest request = MakeBatch(1);
+  for (int i = 0; i < 1000; ++i) request.mutable_layers(0)->add_islands();
+
+  EXPECT_EQ(service.Batch(request).status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+}
+
+// Several jobs at once, each of which the test ends when it wants.
+class OpenStream {
+ public:
+  explicit OpenStream(TestService& service) : stream_(service.stub().Optimize(&context_)) {
+    v1::OptimizeRequest message;
+    message.mutable_options()->mutable_strategy()->set_name("none");
+    *message.add_layers() = MakeLayer(1);
+    stream_->Write(message);
+  }
+
+  // The first message that comes back; false if the call ended instead.
+  bool ReadLayer() {
+    v1::OptimizeResponse response;
+    return stream_->Read(&response) && response.has_layer();
+  }
+
+  // Ends the job.
+  grpc::Status Finish() {
+    stream_->WritesDone();
+    return WaitForEnd();
+  }
+
+  // Waits until the server ends it.
+  grpc::Status WaitForEnd() {
+    v1::OptimizeResponse response;
+    while (stream_->Read(&response)) {
+    }
+    return stream_->Finish();
+  }
+
+  grpc::ClientContext& context() { return context_; }
+
+ private:
+  grpc::ClientContext context_;
+  std::unique_ptr<grpc::ClientReaderWriter<v1::OptimizeRequest, v1::OptimizeResponse>> stream_;
+};
+
+TEST(Overload, JobsBeyondTheLimitAreRefusedWithAdviceWhenToRetry) {
+  TestService service([](ServerOptions& options) { options.service.admission.max_jobs = 2; });
+  OpenStream first(service);
+  OpenStream second(service);
+  ASSERT_TRUE(first.ReadLayer());
+  ASSERT_TRUE(second.ReadLayer());
+
+  const Answer refused = service.Batch(MakeBatch(1));
+
+  EXPECT_EQ(refused.status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  ASSERT_TRUE(RetryDelay(refused.status).has_value());
+  EXPECT_GT(*RetryDelay(refused.status), absl::ZeroDuration());
+  EXPECT_THAT(service.server().core().MetricsText(),
+              HasSubstr("traverse_rejected_total{reason=\"jobs\"} 1"));
+  EXPECT_TRUE(first.Finish().ok());
+  EXPECT_TRUE(service.Batch(MakeBatch(1)).status.ok());
+  EXPECT_TRUE(second.Finish().ok());
+}
+
+TEST(Cancellation, FreesTheJobsPlace) {
+  TestService service;
+  OpenStream stream(service);
+  ASSERT_TRUE(stream.ReadLayer());
+  EXPECT_EQ(service.server().core().admission.jobs(), 1);
+
+  stream.context().TryCancel();
+
+  EXPECT_EQ(stream.Finish().error_code(), grpc::StatusCode::CANCELLED);
+  EXPECT_TRUE(service.Eventually([&] { return service.server().core().admission.jobs() == 0; }));
+  EXPECT_EQ(service.server().core().queue_layers, 0);
+}
+
+TEST(Deadline, AllLayersComeBackBeforeIt) {
+  TestService service;
+  const v1::OptimizeBatchRequest request = MakeBatch(500);
+
+  const Answer answer = service.Batch(request, absl::Milliseconds(400));
+
+  ASSERT_TRUE(answer.status.ok()) << answer.status.error_message();
+  EXPECT_EQ(answer.layers.size(), 500u);
+  EXPECT_TRUE(answer.summary.has_value());
+}
+
+TEST(SlowReader, HoldsUpNobodyElse) {
+  TestService service([](ServerOptions& options) {
+    options.service.limits.window = {.layers = 16, .points = 100'000};
+  });
+  grpc::ClientContext context;
+  const auto reader = service.stub().OptimizeBatch(&context, MakeBatch(1000));
+  ServiceCore& core = service.server().core();
+  // 1,000 layers less the window and what the transport holds.
+  ASSERT_TRUE(
+      service.Eventually([&] { return core.queue_layers < 1000 && core.pool.busy() == 0; }));
+  absl::SleepFor(absl::Milliseconds(50));
+  EXPECT_GT(core.queue_layers, 900);
+  EXPECT_EQ(core.pool.waiting(), 0);
+
+  EXPECT_TRUE(service.Batch(MakeBatch(100)).status.ok());
+
+  int layers = 0;
+  v1::OptimizeBatchResponse response;
+  while (reader->Read(&response)) layers += response.has_layer() ? 1 : 0;
+  EXPECT_TRUE(reader->Finish().ok());
+  EXPECT_EQ(layers, 1000);
+}
+
+TEST(SlowReader, HoldsBackHisOwnStream) {
+  TestService service([](ServerOptions& options) {
+    options.service.limits.window = {.layers = 16, .points = 100'000};
+  });
+  grpc::ClientContext context;
+  const auto stream = service.stub().Optimize(&context);
+  v1::OptimizeRequest message;
+  message.mutable_options()->mutable_strategy()->set_name("none");
+  std::atomic<int> written{0};
+  std::thread writer([&] {
+    for (uint64_t i = 0; i < 5000; ++i) {
+      *message.add_layers() = MakeLayer(i);
+      if (!stream->Write(message)) break;
+      ++written;
+      message.Clear();
+    }
+    stream->WritesDone();
+  });
+  absl::SleepFor(absl::Milliseconds(200));
+  EXPECT_LT(written, 1000);
+
+  int layers = 0;
+  v1::OptimizeResponse response;
+  while (stream->Read(&response)) layers += response.has_layer() ? 1 : 0;
+  writer.join();
+  EXPECT_TRUE(stream->Finish().ok());
+  EXPECT_EQ(layers, 5000);
+}
+
+TEST(Drain, RunningJobsFinishAndNewOnesAreRefused) {
+  TestService service;
+  OpenStream stream(service);
+  ASSERT_TRUE(stream.ReadLayer());
+  bool drained = false;
+  std::thread drain([&] { drained = service.server().Drain(absl::Seconds(10)); });
+  ASSERT_TRUE(service.Eventually([&] { return service.server().core().admission.draining(); }));
+
+  const Answer refused = service.Batch(MakeBatch(1));
+  EXPECT_EQ(refused.status.error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_TRUE(stream.Finish().ok());
+  drain.join();
+  EXPECT_TRUE(drained);
+}
+
+TEST(Drain, JobsThatTakeTooLongEndWithUnavailable) {
+  TestService service;
+  OpenStream stream(service);
+  ASSERT_TRUE(stream.ReadLayer());
+
+  grpc::Status status;
+  std::thread reader([&] { status = stream.WaitForEnd(); });
+  EXPECT_FALSE(service.server().Drain(absl::Milliseconds(50)));
+
+  reader.join();
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_THAT(status.error_message(), HasSubstr("layers that are missing"));
+}
+
+TEST(Drain, ServerMayGoWhileJobsRun) {
+  auto service = std::make_unique<TestService>();
+  OpenStream stream(*service);
+  ASSERT_TRUE(stream.ReadLayer());
+
+  grpc::Status status;
+  std::thread reader([&] { status = stream.WaitForEnd(); });
+  service.reset();
+  reader.join();
+
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE) << status.error_message();
+}
+
+}  // namespace
+}  // namespace traverse::testing
