@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/construct/first_entries.h"
 #include "engine/cost/route_cost.h"
 #include "engine/geometry/nearest_point_index.h"
 
@@ -95,7 +96,10 @@ class Greedy {
     const absl::Span<const int> children = layer_.tree.children(node);
     const int slots = static_cast<int>(children.size());
     std::vector<std::pair<int, int>> entries;
-    for (int s = 0; s < slots; ++s) CollectFirst(children[static_cast<size_t>(s)], s, entries);
+    for (int s = 0; s < slots; ++s) {
+      ForEachFirstEntry(layer_, children[static_cast<size_t>(s)],
+                        [&](int entry) { entries.emplace_back(entry, s); });
+    }
     Frontier frontier(layer_, std::move(entries), slots);
 
     std::vector<bool> waits(children.size(), true);
@@ -115,22 +119,6 @@ class Greedy {
         Complete(child);
       }
       ready.Finish(slot, [&](int s) { frontier.Add(s); });
-    }
-  }
-
-  // Appends the entries at which `node` may be begun, each with `slot`.
-  void CollectFirst(int node, int slot, std::vector<std::pair<int, int>>& entries) const {
-    const absl::Span<const int> children = layer_.tree.children(node);
-    if (layer_.tree.is_leaf(node)) {
-      const int path = layer_.tree.node(node).path;
-      for (int e = layer_.table.first(path); e < layer_.table.first(path + 1); ++e) {
-        entries.emplace_back(e, slot);
-      }
-    } else if (layer_.tree.node(node).kind == PlanNode::Kind::kInOrder) {
-      CollectFirst(children[0], slot, entries);
-    } else {
-      ReadySlots(layer_.tree.precedence(node), static_cast<int>(children.size()),
-                 [&](int s) { CollectFirst(children[static_cast<size_t>(s)], slot, entries); });
     }
   }
 

@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_ENGINE_COST_TRAVEL_COST_H_
 #define TRAVERSE_ENGINE_COST_TRAVEL_COST_H_
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/model/cost_spec.h"
@@ -16,8 +17,9 @@ class TravelCost {
  public:
   explicit TravelCost(const CostSpec& spec)
       : spec_(spec),
-        full_speed_mm_(spec.accel_mm_s2 > 0 ? spec.speed_mm_s * spec.speed_mm_s / spec.accel_mm_s2
-                                            : 0) {}
+        ramp_seconds_(spec.accel_mm_s2 > 0 ? spec.speed_mm_s / spec.accel_mm_s2 : 0),
+        full_speed_mm_(spec.speed_mm_s * ramp_seconds_),
+        threshold_seconds_(Motion(spec.retraction_threshold_mm)) {}
 
   // In mm or s, as the spec says.
   double operator()(Point from, Point to) const { return OfLength(Distance(from, to)); }
@@ -27,25 +29,38 @@ class TravelCost {
     return spec_.kind == CostSpec::Kind::kLength ? length_mm : Seconds(length_mm);
   }
 
+  // The length in mm of the longest moves that cost no more than `cost` >= 0, but for rounding. For
+  // quick rejections: what is farther away costs more.
+  double LongestWithin(double cost) const {
+    if (is_length()) return cost;
+    // Just above the threshold, moves cost a whole retraction more.
+    const bool may_retract = cost > threshold_seconds_ + spec_.retraction_seconds;
+    const double seconds =
+        may_retract ? cost - spec_.retraction_seconds : std::min(cost, threshold_seconds_);
+    if (seconds >= 2 * ramp_seconds_) return (seconds - ramp_seconds_) * spec_.speed_mm_s;
+    return spec_.accel_mm_s2 * seconds * seconds / 4;
+  }
+
   const CostSpec& spec() const { return spec_; }
   bool is_length() const { return spec_.kind == CostSpec::Kind::kLength; }
 
  private:
   // From standstill to standstill. With a = acceleration and v = speed, the speed is reached only
   // by moves longer than v^2 / a; these take l / v + v / a, shorter ones 2 sqrt(l / a).
+  double Motion(double length_mm) const {
+    if (length_mm >= full_speed_mm_) return length_mm / spec_.speed_mm_s + ramp_seconds_;
+    return 2 * std::sqrt(length_mm / spec_.accel_mm_s2);
+  }
+
   double Seconds(double length_mm) const {
-    double seconds;
-    if (length_mm >= full_speed_mm_) {
-      seconds = length_mm / spec_.speed_mm_s;
-      if (spec_.accel_mm_s2 > 0) seconds += spec_.speed_mm_s / spec_.accel_mm_s2;
-    } else {
-      seconds = 2 * std::sqrt(length_mm / spec_.accel_mm_s2);
-    }
+    const double seconds = Motion(length_mm);
     return length_mm > spec_.retraction_threshold_mm ? seconds + spec_.retraction_seconds : seconds;
   }
 
   CostSpec spec_;
-  double full_speed_mm_;
+  double ramp_seconds_;       // v / a
+  double full_speed_mm_;      // v^2 / a
+  double threshold_seconds_;  // motion of a move as long as the retraction threshold
 };
 
 }  // namespace traverse

@@ -57,9 +57,13 @@ PlanTree::PlanTree(const Plan& plan)
 void PlanTree::CountPaths() {
   parent_.assign(plan_->nodes.size(), -1);
   path_count_.assign(plan_->nodes.size(), 0);
+  leaf_.assign(plan_->paths.size(), -1);
   for (int index = node_count(); index-- > 0;) {
     int& count = path_count_[static_cast<size_t>(index)];
-    if (is_leaf(index)) count = 1;
+    if (is_leaf(index)) {
+      count = 1;
+      leaf_[static_cast<size_t>(node(index).path)] = index;
+    }
     for (const int child : node(index).children) {
       parent_[static_cast<size_t>(child)] = index;
       count += path_count(child);

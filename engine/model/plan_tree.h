@@ -116,6 +116,9 @@ class PlanTree {
   // -1 for the root.
   int parent(int index) const { return parent_[static_cast<size_t>(index)]; }
 
+  // The leaf of a path.
+  int leaf(int path) const { return leaf_[static_cast<size_t>(path)]; }
+
   // The number of paths below a node, itself included.
   int path_count(int index) const { return path_count_[static_cast<size_t>(index)]; }
 
@@ -125,6 +128,10 @@ class PlanTree {
     const size_t end = static_cast<size_t>(first_child_[static_cast<size_t>(index) + 1]);
     return absl::MakeConstSpan(children_).subspan(begin, end - begin);
   }
+
+  // Where children(index) begins in a list of the children of all nodes, for arrays laid out like
+  // it; first_child(node_count()) is the length of the list.
+  int first_child(int index) const { return first_child_[static_cast<size_t>(index)]; }
 
   // The pairs of an any_order node; empty for every other node.
   const Precedence& precedence(int index) const {
@@ -143,6 +150,7 @@ class PlanTree {
 
   const Plan* plan_;
   std::vector<int> parent_;       // [node]
+  std::vector<int> leaf_;         // [path]
   std::vector<int> path_count_;   // [node]
   std::vector<int> first_child_;  // [node] where its children begin in children_; one more
   std::vector<int> children_;

@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "engine/strategy/greedy.h"
+#include "engine/strategy/ni2opt.h"
 #include "engine/strategy/none.h"
 
 namespace traverse {
@@ -20,7 +21,8 @@ constexpr std::array<const char*, 6> kKnownNames = {"none", "greedy", "ni2opt",
 }  // namespace
 
 const std::vector<StrategyEntry>& Strategies() {
-  static const auto& entries = *new std::vector<StrategyEntry>{NoneEntry(), GreedyEntry()};
+  static const auto& entries =
+      *new std::vector<StrategyEntry>{NoneEntry(), GreedyEntry(), Ni2optEntry()};
   return entries;
 }
 

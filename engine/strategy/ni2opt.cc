@@ -1,0 +1,72 @@
+#include "engine/strategy/ni2opt.h"
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "engine/construct/greedy.h"
+#include "engine/construct/nearest_insertion.h"
+#include "engine/cost/route_cost.h"
+#include "engine/improve/descent.h"
+#include "engine/strategy/stop.h"
+
+namespace traverse {
+namespace {
+
+class Ni2opt : public Strategy {
+ public:
+  explicit Ni2opt(bool point_release) : descent_{point_release} {}
+
+  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+    const LayerView layer(problem);
+    Route baseline = BaselineRoute(layer, budget);
+    return Best(layer, std::move(baseline), NearestInsertionRoute(layer, budget), budget);
+  }
+
+  // Without construction: the order that was found for another start is a good one still.
+  Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
+    const LayerView layer(problem);
+    Route baseline = BaselineRoute(layer, budget);
+    return Best(layer, std::move(baseline), start, budget);
+  }
+
+ private:
+  // Descends from `start`, and where that ends behind the baseline, from there. Never behind
+  // either.
+  Solution Best(const LayerView& layer, Route baseline, const Route& start, Budget& budget) const {
+    Route route = Improve(layer, start, descent_, budget);
+    if (RouteCost(layer.problem, baseline) < RouteCost(layer.problem, route)) {
+      route = descent_.point_release ? Improve(layer, baseline, descent_, budget) : baseline;
+      // An improvement that rounding made a loss.
+      route = Cheaper(layer, std::move(route), std::move(baseline));
+    }
+    route = Cheaper(layer, std::move(route), start);
+    return Solution{std::move(route), StopOr(budget, StopReason::kLocalOptimum), std::nullopt};
+  }
+
+  static Route Cheaper(const LayerView& layer, Route first, Route second) {
+    return RouteCost(layer.problem, second) < RouteCost(layer.problem, first) ? second : first;
+  }
+
+  DescentOptions descent_;
+};
+
+}  // namespace
+
+StrategyEntry Ni2optEntry() {
+  OptionSpec point_release;
+  point_release.name = "point_release";
+  point_release.type = OptionSpec::Type::kBool;
+  point_release.default_value = "true";
+  point_release.description = "Choose the entries again after 2-opt, in turn with it.";
+  return StrategyEntry{
+      "ni2opt",
+      "Nearest insertion, then 2-opt and point release until neither finds a gain.",
+      false,
+      {point_release},
+      [](const StrategyOptions& options) -> std::unique_ptr<Strategy> {
+        return std::make_unique<Ni2opt>(options.Bool("point_release"));
+      }};
+}
+
+}  // namespace traverse
