@@ -7,7 +7,7 @@
 #include "engine/base/rng.h"
 #include "engine/cost/route_cost.h"
 #include "engine/cost/travel_cost.h"
-#include "engine/strategy/none.h"
+#include "engine/strategy/greedy.h"
 #include "engine/validator.h"
 
 namespace traverse {
@@ -30,7 +30,7 @@ LayerChain::LayerChain(const JobSpec& spec, std::unique_ptr<Strategy> strategy, 
                        JobSink& sink)
     : spec_(spec),
       strategy_(std::move(strategy)),
-      predictor_(NoneEntry().make(StrategyOptions())),
+      predictor_(GreedyEntry().make(StrategyOptions())),
       executor_(executor),
       outbox_(sink),
       given_at_(spec.start),
@@ -123,6 +123,11 @@ Solution LayerChain::BestFrom(const LayerProblem& problem, const Slot& slot) con
   if (problem.start == slot.predicted_start) return slot.solution;
   Budget budget = LayerBudget(1 - kSolveShare);
   Solution solution = strategy_->Resume(problem, slot.solution.route, budget);
+  // What was no worse than greedy from the predicted start could be so from the true one.
+  Route greedy = predictor_->Solve(problem, budget).route;
+  if (RouteCost(problem, greedy) < RouteCost(problem, solution.route)) {
+    solution.route = std::move(greedy);
+  }
   // A search that the clock cut short stays so, whatever the polishing from the true start came to.
   if (slot.solution.stop == StopReason::kTimeLimit) solution.stop = StopReason::kTimeLimit;
   return solution;

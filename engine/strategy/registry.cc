@@ -7,6 +7,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "engine/strategy/exact.h"
 #include "engine/strategy/greedy.h"
 #include "engine/strategy/ni2opt.h"
 #include "engine/strategy/none.h"
@@ -21,12 +22,18 @@ constexpr std::array<const char*, 6> kKnownNames = {"none", "greedy", "ni2opt",
 }  // namespace
 
 const std::vector<StrategyEntry>& Strategies() {
-  static const auto& entries =
-      *new std::vector<StrategyEntry>{NoneEntry(), GreedyEntry(), Ni2optEntry()};
+  static const auto& entries = *new std::vector<StrategyEntry>{NoneEntry(), GreedyEntry(),
+                                                               Ni2optEntry(), ExactEntry()};
   return entries;
 }
 
-const std::string& DefaultStrategyName() { return Strategies().back().name; }
+// The one of most effort whose effort is bounded: a proof may take for ever.
+const std::string& DefaultStrategyName() {
+  const auto& entries = Strategies();
+  return std::find_if(entries.rbegin(), entries.rend(),
+                      [](const StrategyEntry& e) { return e.name != "exact"; })
+      ->name;
+}
 
 absl::StatusOr<std::unique_ptr<Strategy>> MakeStrategy(
     const std::string& name, const std::map<std::string, std::string>& options) {

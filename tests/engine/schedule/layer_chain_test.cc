@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <condition_variable>
 #include <map>
 #include <memory>
@@ -66,7 +68,7 @@ Plan RingLayer(int count, double turn) {
 
 struct RunOptions {
   JobSpec spec;
-  std::string strategy = "none";
+  std::string strategy = "greedy";
   int layers = 12;
   int threads = 4;
   TestExecutor::Order order = TestExecutor::Order::kOldestFirst;
@@ -218,6 +220,37 @@ TEST(LayerChain, ReplacesAnInvalidRouteByTheGivenOrder) {
   ASSERT_EQ(sink.outcomes.size(), 1u);
   EXPECT_FALSE(sink.outcomes[0].invalid_route.empty());
   EXPECT_EQ(sink.outcomes[0].route, GivenRoute(sink.outcomes[0].plan));
+}
+
+// A strategy whose routes suit the predicted start alone: from another one it has nothing to add.
+class Stubborn : public Strategy {
+ public:
+  Solution Solve(const LayerProblem& problem, Budget&) const override {
+    Route route = GivenRoute(*problem.plan);
+    std::reverse(route.begin(), route.end());
+    return Solution{route, StopReason::kLocalOptimum, std::nullopt};
+  }
+  Solution Resume(const LayerProblem&, const Route& start, Budget&) const override {
+    return Solution{start, StopReason::kLocalOptimum, std::nullopt};
+  }
+};
+
+TEST(LayerChain, IsNeverWorseThanGreedyFromTheTrueStart) {
+  IslandPaths row;
+  for (int i = 0; i < 6; ++i) row.contours.push_back(MakeContour({{10.0 * i, 5}}));
+  RecordingSink sink;
+  TestExecutor executor(1);
+  auto job = Job::Start(JobSpec(), std::make_unique<Stubborn>(), executor, sink);
+  for (int i = 0; i < 3; ++i) job->Add({SequentialPlan({row}), std::nullopt, std::nullopt});
+  job->Close();
+  sink.Wait();
+
+  Budget budget;
+  for (const LayerOutcome& outcome : sink.outcomes) {
+    const LayerProblem problem{&outcome.plan, outcome.start, std::nullopt, CostSpec(), 1};
+    const Route greedy = (*MakeStrategy("greedy", {}))->Solve(problem, budget).route;
+    EXPECT_LE(outcome.cost, RouteCost(problem, greedy) + 1e-9) << "layer " << outcome.index;
+  }
 }
 
 // A strategy that works until it is cancelled.

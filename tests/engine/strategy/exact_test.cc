@@ -1,0 +1,100 @@
+#include "engine/strategy/exact.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "absl/strings/str_cat.h"
+#include "engine/cost/route_cost.h"
+#include "engine/strategy/registry.h"
+#include "engine/validator.h"
+#include "tests/support/brute_force.h"
+#include "tests/support/instances.h"
+#include "tests/support/random_plan.h"
+#include "tests/support/status_matchers.h"
+
+namespace traverse {
+namespace {
+
+using testing::OwnedProblem;
+using testing::RandomProblem;
+
+std::unique_ptr<Strategy> MakeExact() { return *MakeStrategy("exact", {}); }
+
+TEST(Exact, IsOptimalWhereItSaysSo) {
+  const std::unique_ptr<Strategy> exact = MakeExact();
+  int proven = 0;
+  for (uint64_t seed = 1; seed <= 300; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const OwnedProblem owned = RandomProblem(seed);
+    const double best = testing::BruteForce(owned.problem).cost;
+    Budget budget;
+
+    const Solution solution = exact->Solve(owned.problem, budget);
+
+    ASSERT_OK(ValidateRoute(owned.plan(), solution.route));
+    const double cost = RouteCost(owned.problem, solution.route);
+    if (solution.stop == StopReason::kOptimal) {
+      ++proven;
+      EXPECT_NEAR(cost, best, 1e-6 * (1 + best));
+      ASSERT_TRUE(solution.lower_bound.has_value());
+      EXPECT_NEAR(*solution.lower_bound, cost, 1e-6 * (1 + best));
+    }
+    EXPECT_LE(solution.lower_bound.value_or(0), best + 1e-6 * (1 + best));
+  }
+  EXPECT_GE(proven, 180);
+}
+
+TEST(Exact, GivesABoundWhenTimeRunsOut) {
+  const OwnedProblem owned(SequentialPlan(testing::SquareGrid(12, 12)));
+  Budget budget(nullptr, Budget::Clock::now() + std::chrono::milliseconds(200));
+
+  const Stopwatch watch;
+  const Solution solution = MakeExact()->Solve(owned.problem, budget);
+
+  EXPECT_LT(watch.Seconds(), 2.0);
+  ASSERT_OK(ValidateRoute(owned.plan(), solution.route));
+  EXPECT_EQ(solution.stop, StopReason::kTimeLimit);
+  ASSERT_TRUE(solution.lower_bound.has_value());
+  EXPECT_LE(*solution.lower_bound, RouteCost(owned.problem, solution.route));
+}
+
+TEST(Exact, IsCancelledSoon) {
+  const OwnedProblem owned(SequentialPlan(testing::SquareGrid(14, 14)));
+  CancelToken cancel;
+  Budget budget(&cancel);
+  std::optional<Stopwatch> since_cancel;
+  std::thread canceller([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    since_cancel.emplace();
+    cancel.Cancel();
+  });
+
+  const Solution solution = MakeExact()->Solve(owned.problem, budget);
+  canceller.join();
+
+  EXPECT_LT(since_cancel->Seconds(), 0.5);
+  EXPECT_EQ(solution.stop, StopReason::kCancelled);
+  EXPECT_OK(ValidateRoute(owned.plan(), solution.route));
+}
+
+TEST(Exact, ResumesFromARouteItIsGiven) {
+  for (uint64_t seed = 1; seed <= 50; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const OwnedProblem owned = RandomProblem(seed);
+    const Route best = testing::BruteForce(owned.problem).route;
+    CancelToken cancel;
+    cancel.Cancel();
+    Budget budget(&cancel);
+
+    const Solution solution = MakeExact()->Resume(owned.problem, best, budget);
+
+    EXPECT_LE(RouteCost(owned.problem, solution.route), RouteCost(owned.problem, best) + 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace traverse
