@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <numeric>
+#include <optional>
 
+#include "engine/cost/entry_choice.h"
+#include "engine/cost/entry_table.h"
 #include "engine/framework/point_reduction.h"
 #include "engine/geometry/visibility_polygon.h"
 
@@ -19,9 +23,28 @@ double DetourCost(const std::vector<Point>& points, Point from, Point to, const 
   return least - cost(from, to);
 }
 
-// Adds those of `vertices` that `visible` lists.
-void Mark(const std::vector<int>& visible, std::vector<bool>& marked) {
-  for (const int index : visible) marked[static_cast<size_t>(index)] = true;
+// The spaced points of the contours of a sequence. The start is the first of them.
+struct SpacedSequence {
+  std::vector<std::vector<int>> vertices;
+  std::vector<std::vector<Point>> points;
+};
+
+// Of each contour, which spaced points were seen to be visible.
+using Marks = std::vector<std::vector<bool>>;
+
+// Marks what contour k sees of contour `other`, the next or the next but one, and the other way
+// round. False if there is no polygon between them.
+bool MarkVisible(const SpacedSequence& sequence, size_t k, size_t other, bool mark_k,
+                 bool mark_other, Marks& marks) {
+  const auto visible = FindVisiblePoints(sequence.points[k], sequence.points[other]);
+  if (!visible) return false;
+  if (mark_k) {
+    for (const int i : visible->a) marks[k][static_cast<size_t>(i)] = true;
+  }
+  if (mark_other) {
+    for (const int i : visible->b) marks[other][static_cast<size_t>(i)] = true;
+  }
+  return true;
 }
 
 }  // namespace
@@ -62,58 +85,51 @@ std::vector<int> ReinsertOuterContours(const Plan& plan, const IslandLayout& lay
 
 std::vector<std::vector<int>> VisiblePointsAlong(const Plan& plan, const std::vector<int>& order,
                                                  Point start, double spacing_mm) {
+  SpacedSequence sequence{{{0}}, {{start}}};
+  for (const int path : order) {
+    sequence.vertices.push_back(SpacedPoints(PathOf(plan, path), spacing_mm));
+    sequence.points.push_back(PointsAt(PathOf(plan, path), sequence.vertices.back()));
+  }
+  const size_t count = sequence.points.size();
+  Marks marks;
+  for (const auto& points : sequence.points) marks.emplace_back(points.size());
+  std::vector<bool> sees_next(count);
+  for (size_t k = 0; k + 1 < count; ++k) {
+    sees_next[k] = MarkVisible(sequence, k, k + 1, true, true, marks);
+  }
+  for (size_t k = 0; k + 2 < count; ++k) {
+    if (sees_next[k] && sees_next[k + 1]) continue;
+    MarkVisible(sequence, k, k + 2, !sees_next[k], !sees_next[k + 1], marks);
+  }
+
   std::vector<std::vector<int>> visible(order.size());
-  std::vector<int> vertices;         // spaced points of order[k]
-  std::vector<Point> before{start};  // the points that the polygon before order[k] starts from
-  std::vector<bool> marked{false};   // [index into the spaced points of order[k]]
-  for (size_t k = 0; k < order.size(); ++k) {
-    const Path& path = PathOf(plan, order[k]);
-    std::vector<int> next_vertices = SpacedPoints(path, spacing_mm);
-    std::vector<Point> next = PointsAt(path, next_vertices);
-    const VisiblePoints pair = FindVisiblePoints(before, next);
-    Mark(pair.a, marked);
-    for (size_t i = 0; i < vertices.size(); ++i) {
-      if (marked[i]) visible[k - 1].push_back(vertices[i]);
+  for (size_t k = 1; k < count; ++k) {
+    const std::vector<bool>& marked = marks[k];
+    const bool any = std::find(marked.begin(), marked.end(), true) != marked.end();
+    for (size_t i = 0; i < marked.size(); ++i) {
+      if (marked[i] || !any) visible[k - 1].push_back(sequence.vertices[k][i]);
     }
-    marked.assign(next.size(), false);
-    Mark(pair.b, marked);
-    vertices = std::move(next_vertices);
-    before = std::move(next);
+    std::sort(visible[k - 1].begin(), visible[k - 1].end());
   }
-  for (size_t i = 0; i < vertices.size(); ++i) {
-    if (marked[i]) visible.back().push_back(vertices[i]);
-  }
-  for (std::vector<int>& set : visible) std::sort(set.begin(), set.end());
   return visible;
 }
 
 Route ChooseContourPoints(const Plan& plan, const std::vector<int>& order,
                           const std::vector<std::vector<int>>& vertices, Point start,
                           const TravelCost& cost) {
-  // come_from[k][i]: index into vertices[k - 1] of the best way to vertices[k][i].
-  std::vector<std::vector<int>> come_from(order.size());
-  std::vector<Point> layer{start};
-  std::vector<double> reach{0};  // [i] least cost to layer[i]
+  Plan reduced;  // path k is order[k] with its vertices[k] alone
   for (size_t k = 0; k < order.size(); ++k) {
-    const std::vector<Point> next = PointsAt(PathOf(plan, order[k]), vertices[k]);
-    std::vector<double> next_reach(next.size(), std::numeric_limits<double>::infinity());
-    come_from[k].resize(next.size());
-    for (size_t i = 0; i < next.size(); ++i) {
-      for (size_t j = 0; j < layer.size(); ++j) {
-        const double by_j = reach[j] + cost(layer[j], next[i]);
-        if (by_j >= next_reach[i]) continue;
-        next_reach[i] = by_j;
-        come_from[k][i] = static_cast<int>(j);
-      }
-    }
-    layer = next;
-    reach = std::move(next_reach);
+    reduced.paths.push_back(MakeContour(PointsAt(PathOf(plan, order[k]), vertices[k])));
   }
-  Route route(order.size());
-  size_t i = static_cast<size_t>(std::min_element(reach.begin(), reach.end()) - reach.begin());
-  for (size_t k = order.size(); k-- > 0;) {
-    route[k] = Visit{order[k], vertices[k][i]};
-    i = static_cast<size_t>(come_from[k][i]);
+  const EntryTable table(reduced);
+  std::vector<int> paths(order.size());
+  std::iota(paths.begin(), paths.end(), 0);
+  std::vector<int> entries(order.size());
+  EntryChoice(table, cost).Choose(start, paths, std::nullopt, absl::MakeSpan(entries));
+  Route route;
+  for (size_t k = 0; k < order.size(); ++k) {
+    const int chosen = table.VisitOf(entries[k]).entry;
+    route.push_back(Visit{order[k], vertices[k][static_cast<size_t>(chosen)]});
   }
   return route;
 }

@@ -34,8 +34,13 @@ std::vector<int> ReinsertOuterContours(const Plan& plan, const IslandLayout& lay
                                        const TravelCost& cost, double spacing_mm);
 
 // For each contour of `order` (indices into Plan::paths) the spaced points that lie in a visibility
-// polygon with the contour before (for the first one: with `start`) or after it. Indices of
-// vertices, rising, at least one each. O(m log m) for m points.
+// polygon with the contour before (for the first one: with `start`) or after it. With a contour
+// that it encloses, or is enclosed by, there is no polygon, and the next but one takes its place:
+//
+//   a -> outer -> inner -> b      outer: with a and b; inner: with a and b
+//
+// If that has none either, all spaced points count. Indices of vertices, rising, at least one each.
+// O(m log m) for m points.
 std::vector<std::vector<int>> VisiblePointsAlong(const Plan& plan, const std::vector<int>& order,
                                                  Point start, double spacing_mm);
 

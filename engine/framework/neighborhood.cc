@@ -113,39 +113,6 @@ std::vector<ShortestLink> ShortestLinks(const std::vector<CircledContour>& nodes
 
 }  // namespace
 
-Neighborhood::Neighborhood(int nodes)
-    : neighbors_(static_cast<size_t>(nodes)),
-      bits_((static_cast<size_t>(nodes) * static_cast<size_t>(nodes) + 63) / 64) {}
-
-void Neighborhood::Link(int a, int b) {
-  if (a == b || Linked(a, b)) return;
-  for (const size_t bit : {Bit(a, b), Bit(b, a)}) bits_[bit / 64] |= uint64_t{1} << (bit % 64);
-  neighbors_[static_cast<size_t>(a)].push_back(b);
-  neighbors_[static_cast<size_t>(b)].push_back(a);
-}
-
-std::vector<int> Neighborhood::Components() const {
-  std::vector<int> component(neighbors_.size(), -1);
-  std::vector<int> open;
-  int count = 0;
-  for (int seed = 0; seed < node_count(); ++seed) {
-    if (component[static_cast<size_t>(seed)] >= 0) continue;
-    component[static_cast<size_t>(seed)] = count;
-    open.push_back(seed);
-    while (!open.empty()) {
-      const int node = open.back();
-      open.pop_back();
-      for (const int next : of(node)) {
-        if (component[static_cast<size_t>(next)] >= 0) continue;
-        component[static_cast<size_t>(next)] = count;
-        open.push_back(next);
-      }
-    }
-    ++count;
-  }
-  return component;
-}
-
 CircledContour CircleOf(const Path& contour, double spacing_mm) {
   const BoundingBox box(PointsAt(contour, EntryVertices(contour)));
   return {PointsAt(contour, SpacedPoints(contour, spacing_mm)), box.center(), box.shorter_side()};

@@ -12,45 +12,18 @@
 #ifndef TRAVERSE_ENGINE_FRAMEWORK_NEIGHBORHOOD_H_
 #define TRAVERSE_ENGINE_FRAMEWORK_NEIGHBORHOOD_H_
 
-#include <cstdint>
 #include <vector>
 
 #include "engine/base/budget.h"
+#include "engine/base/symmetric_relation.h"
 #include "engine/framework/island_layout.h"
 #include "engine/model/plan.h"
 #include "engine/model/point.h"
 
 namespace traverse {
 
-// A symmetric relation between nodes 0 ... node_count() - 1. Memory: n^2 / 8 bytes.
-class Neighborhood {
- public:
-  Neighborhood() = default;
-  explicit Neighborhood(int nodes);
-
-  // Makes both neighbors of each other. A node is no neighbor of itself.
-  void Link(int a, int b);
-
-  bool Linked(int a, int b) const {
-    const size_t bit = Bit(a, b);
-    return (bits_[bit / 64] >> (bit % 64) & 1u) != 0;
-  }
-
-  // The neighbors of `node`, in the order in which they were linked.
-  const std::vector<int>& of(int node) const { return neighbors_[static_cast<size_t>(node)]; }
-  int node_count() const { return static_cast<int>(neighbors_.size()); }
-
-  // The connected component of each node, numbered from 0 in the order of their first nodes.
-  std::vector<int> Components() const;
-
- private:
-  size_t Bit(int a, int b) const {
-    return static_cast<size_t>(a) * neighbors_.size() + static_cast<size_t>(b);
-  }
-
-  std::vector<std::vector<int>> neighbors_;
-  std::vector<uint64_t> bits_;  // [a * node_count() + b]
-};
+// Node i is a contour (the header of each function says which), the last node the origin.
+using Neighborhood = SymmetricRelation;
 
 // What the circles are drawn around and what they meet.
 struct CircledContour {

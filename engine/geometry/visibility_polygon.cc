@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <numeric>
 #include <optional>
 
 #include "engine/geometry/convex_hull.h"
@@ -36,25 +35,20 @@ std::vector<int> OnLeft(absl::Span<const Point> points, const Chord& chord) {
   return kept;
 }
 
-std::vector<int> AllOf(absl::Span<const Point> points) {
-  std::vector<int> all(points.size());
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
-
 }  // namespace
 
-VisiblePoints FindVisiblePoints(absl::Span<const Point> a, absl::Span<const Point> b) {
+std::optional<VisiblePoints> FindVisiblePoints(absl::Span<const Point> a,
+                                               absl::Span<const Point> b) {
   const std::optional<OuterTangents> tangents = FindOuterTangents(a, b);
-  if (!tangents) return {AllOf(a), AllOf(b)};
+  if (!tangents) return std::nullopt;
   const auto at = [](absl::Span<const Point> points, int i) {
     return points[static_cast<size_t>(i)];
   };
   const Chord a_chord{at(a, tangents->a_left), at(a, tangents->a_right)};
   const Chord b_chord{at(b, tangents->b_right), at(b, tangents->b_left)};
   // A contour reaches behind the other one's chord only where their hulls overlap.
-  if (!AllOnLeft(a, b_chord) || !AllOnLeft(b, a_chord)) return {AllOf(a), AllOf(b)};
-  return {OnLeft(a, a_chord), OnLeft(b, b_chord)};
+  if (!AllOnLeft(a, b_chord) || !AllOnLeft(b, a_chord)) return std::nullopt;
+  return VisiblePoints{OnLeft(a, a_chord), OnLeft(b, b_chord)};
 }
 
 }  // namespace traverse

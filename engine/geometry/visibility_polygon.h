@@ -11,6 +11,7 @@
 #ifndef TRAVERSE_ENGINE_GEOMETRY_VISIBILITY_POLYGON_H_
 #define TRAVERSE_ENGINE_GEOMETRY_VISIBILITY_POLYGON_H_
 
+#include <optional>
 #include <vector>
 
 #include "absl/types/span.h"
@@ -25,9 +26,11 @@ struct VisiblePoints {
   std::vector<int> b;
 };
 
-// One point is a contour too: the origin. If there is no polygon between them, as the convex hulls
-// of the contours overlap, every point is visible. REQUIRES: neither is empty. O(n log n).
-VisiblePoints FindVisiblePoints(absl::Span<const Point> a, absl::Span<const Point> b);
+// One point is a contour too: the origin. Unset if there is no polygon between them, as the convex
+// hulls of the contours overlap: one encloses the other one, or they interlock. REQUIRES: neither
+// is empty. O(n log n).
+std::optional<VisiblePoints> FindVisiblePoints(absl::Span<const Point> a,
+                                               absl::Span<const Point> b);
 
 }  // namespace traverse
 

@@ -122,6 +122,21 @@ TEST(VisiblePointsAlong, KeepsWhatEitherNeighborSees) {
   EXPECT_THAT(visible[1], ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
 }
 
+// From the origin into a plate with a hole and on to a square on the right: both contours are seen
+// from the left and from the right.
+TEST(VisiblePointsAlong, LooksPastAnEnclosedContour) {
+  const Plan plan =
+      testing::AnyOrderPlan({SquareWithMiddles({10, -10}, 20), SquareWithMiddles({16, -4}, 8),
+                             SquareWithMiddles({90, -2}, 4)});
+
+  const auto visible = VisiblePointsAlong(plan, {0, 1, 2}, {0, 0}, 2);
+
+  ASSERT_EQ(visible.size(), 3u);
+  EXPECT_THAT(visible[0], ElementsAre(0, 2, 3, 4, 6, 7));
+  EXPECT_THAT(visible[1], ElementsAre(0, 2, 3, 4, 6, 7));
+  EXPECT_EQ(visible[2].size(), 8u);
+}
+
 TEST(VisiblePointsAlong, LeavesSubsetsOfTheSpacedPoints) {
   for (uint64_t seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
