@@ -1,0 +1,62 @@
+// The thesis's framework with tabu search: a layer in sequential deposition, in four steps.
+//
+// Source: thesis 3.2 (p. 58-67) and 4.2 (p. 82-84); SPEC 3.5.
+
+#ifndef TRAVERSE_ENGINE_STRATEGY_FRAMEWORK_SEARCH_H_
+#define TRAVERSE_ENGINE_STRATEGY_FRAMEWORK_SEARCH_H_
+
+#include <vector>
+
+#include "engine/base/budget.h"
+#include "engine/framework/island_layout.h"
+#include "engine/framework/neighborhood.h"
+#include "engine/framework/point_reduction.h"
+#include "engine/improve/tabu_search.h"
+#include "engine/model/layer_problem.h"
+#include "engine/model/route.h"
+
+namespace traverse {
+
+struct FrameworkOptions {
+  Representation representation = Representation::kBoxCenter;
+  double spacing_mm = 2.5;  // Dp
+  NeighborhoodOptions neighborhood;
+  double neighbor_penalty_mm = 100;
+  TabuOptions tabu;
+  int relinked = 5;  // sequences of a relinked path that step 3 takes up
+};
+
+// How many contour points each reduction leaves: thesis tables 5.1 and 5.4.
+struct ReductionCounts {
+  int entries = 0;          // of all contours
+  int island_analysis = 0;  // of the contours that step 2 arranges
+  int spaced = 0;           // SP of all contours
+  int near_raster = 0;      // NRP of the contours that step 2 arranges
+  int box_center = 0;       // BBCP of the same
+  int visible = 0;          // in visibility polygons of the route
+};
+
+struct FrameworkResult {
+  Route route;  // every path of the layer, contours first
+  ReductionCounts points;
+  int penalized_contour_links = 0;  // of the preliminary sequence, against the neighborhood
+  int penalized_raster_links = 0;   // of the raster route
+};
+
+// Steps 1 to 4 on `layer`, which is AsClassicalLayer of the problem's plan. The search for the
+// contours starts from the order in `start`, so does that for the rasters. Always a valid route;
+// deterministic by problem.seed unless the budget ends it.
+FrameworkResult SearchFramework(const LayerProblem& problem, const ClassicalLayer& layer,
+                                const Route& start, const FrameworkOptions& options,
+                                Budget& budget);
+
+// For plans of any other form: tabu search over all its any_order nodes at once, contours
+// represented as `representation` says but for the near raster points of contours without known
+// islands (see NearRasterPoints), without steps that need islands (no suppressed contours, no
+// neighborhoods), and then the best entries for the order found. Valid if `start` is.
+Route SearchAnyPlan(const LayerProblem& problem, const Route& start,
+                    const FrameworkOptions& options, Budget& budget);
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_STRATEGY_FRAMEWORK_SEARCH_H_
