@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_CLIENT_INPUT_INPUT_JOB_H_
 #define TRAVERSE_CLIENT_INPUT_INPUT_JOB_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -51,8 +52,11 @@ struct InputJob {
   // Of DAMAT alone: the far corner of the build envelope, whose near corner is (0, 0).
   std::optional<v1::Point> envelope;
 
-  // The layers in build order.
+  // The layers in build order: those of the file, or the stretch of them that was asked for.
   std::vector<v1::Layer> layers;
+
+  // Position in the file of layers[0].
+  size_t first_layer = 0;
 
   // Names of features, such as "External perimeter"; PathNotes refer to them by index.
   std::vector<std::string> features;

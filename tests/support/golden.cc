@@ -12,9 +12,11 @@ std::string DataPath(const std::string& name) {
   return std::string(TRAVERSE_SOURCE_DIR) + "/tests/data/" + name;
 }
 
+bool RenewsGoldens() { return std::getenv("TRAVERSE_RENEW_GOLDEN") != nullptr; }
+
 ::testing::AssertionResult MatchesGolden(const std::string& name, const std::string& actual) {
   const std::string path = DataPath(name);
-  if (std::getenv("TRAVERSE_RENEW_GOLDEN") != nullptr) {
+  if (RenewsGoldens()) {
     std::ofstream(path, std::ios::binary) << actual;
     return ::testing::AssertionSuccess();
   }

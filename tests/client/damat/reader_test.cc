@@ -46,6 +46,7 @@ TEST(DamatReader, GoodFileMatchesItsGolden) {
 }
 
 TEST(DamatReader, GoldenComparisonCanFail) {
+  if (testing::RenewsGoldens()) GTEST_SKIP() << "goldens are being renewed";
   EXPECT_FALSE(testing::MatchesGolden("damat/two_islands.damat", "// something else\n"));
 }
 

@@ -1,0 +1,101 @@
+#include "client/api/channel.h"
+
+#include <arpa/inet.h>
+#include <grpcpp/create_channel.h>
+#include <grpcpp/security/credentials.h>
+#include <grpcpp/support/channel_arguments.h>
+#include <netdb.h>
+#include <netinet/in.h>
+
+#include <cstdlib>
+#include <string_view>
+
+#include "absl/status/status.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+
+namespace traverse {
+namespace {
+
+// One attempt to connect may take this long; gRPC's default of 20 s is long for a person who waits.
+constexpr int kConnectTimeoutMs = 5000;
+
+constexpr char kServiceConfig[] = R"({"loadBalancingConfig": [{"round_robin": {}}]})";
+
+struct HostAndPort {
+  std::string host;  // without brackets
+  std::string port;
+};
+
+// Splits `address`; the port is empty if it has not the form HOST:PORT.
+HostAndPort Split(const std::string& address) {
+  const size_t colon = address.rfind(':');
+  if (colon == std::string::npos || colon == 0) return {};
+  std::string host = address.substr(0, colon);
+  if (host.front() == '[' && host.back() == ']') {
+    host = host.substr(1, host.size() - 2);
+  } else if (host.find_first_of(":[]/ ") != std::string::npos) {
+    return {};
+  }
+  int port = 0;
+  const std::string digits = address.substr(colon + 1);
+  if (!absl::SimpleAtoi(digits, &port) || port < 1 || port > 65535) return {};
+  return {std::move(host), digits};
+}
+
+// Adds the numeric addresses of `address` as gRPC's ipv6 scheme has them; IPv4 ones are mapped, for
+// one target has one scheme. False if the name is unknown.
+bool LookUp(const std::string& address, std::vector<std::string>& out) {
+  const HostAndPort place = Split(address);
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  hints.ai_family = AF_INET6;
+  hints.ai_flags = AI_V4MAPPED | AI_ALL;
+  addrinfo* found = nullptr;
+  if (getaddrinfo(place.host.c_str(), place.port.c_str(), &hints, &found) != 0) return false;
+  for (const addrinfo* entry = found; entry != nullptr; entry = entry->ai_next) {
+    char text[INET6_ADDRSTRLEN];
+    const auto* socket = reinterpret_cast<const sockaddr_in6*>(entry->ai_addr);
+    if (inet_ntop(AF_INET6, &socket->sin6_addr, text, sizeof(text)) == nullptr) continue;
+    out.push_back(absl::StrFormat("[%s]:%s", text, place.port));
+  }
+  freeaddrinfo(found);
+  return true;
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<std::string>> ParseAddresses(const std::string& text) {
+  const std::vector<std::string> addresses = absl::StrSplit(text, ',');
+  for (const std::string& address : addresses) {
+    if (Split(address).port.empty()) {
+      return absl::InvalidArgumentError(absl::StrFormat("\"%s\" is not HOST:PORT", address));
+    }
+  }
+  return addresses;
+}
+
+absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectTo(
+    const std::vector<std::string>& addresses) {
+  std::string target;
+  if (addresses.size() == 1) {
+    target = absl::StrFormat("dns:///%s", addresses.front());
+  } else {
+    std::vector<std::string> known;
+    for (const std::string& address : addresses) LookUp(address, known);
+    if (known.empty()) {
+      return absl::UnavailableError(
+          absl::StrFormat("no address is known for %s", absl::StrJoin(addresses, ",")));
+    }
+    target = absl::StrFormat("ipv6:%s", absl::StrJoin(known, ","));
+  }
+  grpc::ChannelArguments arguments;
+  arguments.SetServiceConfigJSON(kServiceConfig);
+  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, kConnectTimeoutMs);
+  arguments.SetMaxReceiveMessageSize(-1);  // an answer is as large as the layer that was sent
+  return grpc::CreateCustomChannel(target, grpc::InsecureChannelCredentials(), arguments);
+}
+
+}  // namespace traverse

@@ -1,0 +1,40 @@
+// The commands of traverse.
+
+#ifndef TRAVERSE_CLIENT_CLI_COMMAND_H_
+#define TRAVERSE_CLIENT_CLI_COMMAND_H_
+
+#include <string>
+#include <vector>
+
+#include "client/cli/flags.h"
+#include "client/cli/outcome.h"
+
+namespace traverse::cli {
+
+// One command: a row of the table. The number of operands is that of the words in `operands`.
+struct Command {
+  std::string name;                   // "optimize"
+  std::vector<std::string> operands;  // {"INPUT"}
+  std::string summary;                // one line
+  std::vector<Flag> flags;
+  std::vector<std::string> examples;  // whole command lines
+  Outcome (*run)(const Flags& flags);
+};
+
+// All commands, in the order of help.
+const std::vector<Command>& Commands();
+
+// Each command's row; its file has the rest.
+Command OptimizeCommand();
+Command CompareCommand();
+Command InspectCommand();
+Command ConvertCommand();
+Command StrategiesCommand();
+
+// Runs the command that `arguments` (without the program's name) ask for; prints the outcome's
+// message to standard error. Returns the exit code.
+int Main(const std::vector<std::string>& arguments);
+
+}  // namespace traverse::cli
+
+#endif  // TRAVERSE_CLIENT_CLI_COMMAND_H_

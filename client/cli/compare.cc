@@ -1,0 +1,129 @@
+#include "client/report/compare.h"
+
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_format.h"
+#include "client/cli/command.h"
+#include "client/cli/job_flags.h"
+#include "client/cli/service.h"
+#include "client/cli/strategy_spec.h"
+#include "client/cli/terminal.h"
+#include "client/files/read_file.h"
+#include "client/files/write_file.h"
+#include "client/formats/read_input.h"
+#include "client/report/json.h"
+
+namespace traverse::cli {
+namespace {
+
+constexpr uint64_t kMaxRepeats = 1000;
+
+struct Request {
+  JobFlags job;
+  std::vector<StrategySpec> strategies;  // empty: all that the service has
+  uint64_t repeats = 1;
+  std::string json;
+  bool quiet = false;
+};
+
+absl::StatusOr<Request> ParseRequest(const Flags& flags) {
+  Request request;
+  auto job = ParseJobFlags(flags);
+  if (!job.ok()) return job.status();
+  request.job = *std::move(job);
+  if (flags.Has("strategies")) {
+    auto specs = ParseStrategySpecs(flags.Text("strategies"));
+    if (!specs.ok()) return specs.status();
+    request.strategies = *std::move(specs);
+  }
+  const auto repeats = flags.Integer("repeat", 1, kMaxRepeats);
+  if (!repeats.ok()) return repeats.status();
+  request.repeats = repeats->value_or(1);
+  request.json = flags.Text("json");
+  request.quiet = flags.Switch("quiet");
+  return request;
+}
+
+// Fills in what the service has if the user named no strategies.
+Outcome ListAll(Service& service, std::vector<StrategySpec>& specs) {
+  if (!specs.empty()) return Done();
+  Expected<v1::ListStrategiesResponse> listed = service.ListStrategies();
+  if (Outcome* outcome = std::get_if<Outcome>(&listed)) return *outcome;
+  for (const v1::StrategyInfo& info : std::get<v1::ListStrategiesResponse>(listed).strategies()) {
+    StrategySpec& spec = specs.emplace_back();
+    spec.label = info.name();
+    spec.strategy.set_name(info.name());
+  }
+  return Done();
+}
+
+// Runs each strategy with each seed.
+Outcome RunAll(Service& service, const Request& request, InputJob& job,
+               std::vector<report::ComparedStrategy>& out) {
+  const uint64_t first_seed = job.options.has_seed() ? job.options.seed() : 1;
+  for (const StrategySpec& spec : request.strategies) {
+    report::ComparedStrategy& compared = out.emplace_back();
+    compared.label = spec.label;
+    for (uint64_t i = 0; i < request.repeats; ++i) {
+      job.options.set_seed(first_seed + i);
+      Expected<report::JobRun> ran = service.Optimize(job, &spec, request.job, request.quiet);
+      if (Outcome* outcome = std::get_if<Outcome>(&ran)) return *outcome;
+      compared.runs.push_back(std::get<report::JobRun>(std::move(ran)));
+    }
+  }
+  return Done();
+}
+
+Outcome RunCompare(const Flags& flags) {
+  absl::StatusOr<Request> request = ParseRequest(flags);
+  if (!request.ok()) return UsageFault(request.status());
+  Expected<Service> opened = Service::Open(flags);
+  if (Outcome* outcome = std::get_if<Outcome>(&opened)) return *outcome;
+  Service& service = std::get<Service>(opened);
+
+  absl::StatusOr<InputJob> job = ReadInput(flags.operands()[0], ParseGcodeOptions(flags));
+  if (!job.ok()) return InputFault(job.status());
+  if (absl::Status status = ApplyJobFlags(request->job, *job); !status.ok()) {
+    return UsageFault(status);
+  }
+  Outcome outcome = ListAll(service, request->strategies);
+  if (outcome.code == kDone) outcome = service.Resolve(request->job, *job, request->strategies);
+  std::vector<report::ComparedStrategy> compared;
+  if (outcome.code == kDone) outcome = RunAll(service, *request, *job, compared);
+  if (outcome.code != kDone) return outcome;
+
+  if (!request->json.empty()) {
+    const absl::Status status = WriteWholeFile(request->json, report::CompareJson(*job, compared));
+    if (!status.ok()) return InputFault(status);
+  }
+  Print(request->json == "-" ? stderr : stdout,
+        absl::StrFormat("%s: %d layers\n%s", DisplayName(job->name), job->layers.size(),
+                        report::CompareTable(compared)));
+  return Done();
+}
+
+}  // namespace
+
+Command CompareCommand() {
+  Command command;
+  command.name = "compare";
+  command.operands = {"INPUT"};
+  command.summary = "Sets strategies side by side on one job.";
+  command.flags = {
+      {"strategies", "NAME[:OPTION=VALUE],...", "the rows (default: all the service has)"},
+      {"repeat", "N", "runs of each, with seeds one after another; means are shown"},
+      {"json", "FILE", "writes the routes of all runs; - is standard output"},
+      {"quiet", "", "no progress"},
+  };
+  for (auto table : {JobFlagTable(), ServiceFlagTable()}) {
+    command.flags.insert(command.flags.end(), table.begin(), table.end());
+  }
+  command.examples = {
+      "traverse compare part.damat --strategies=greedy,ni2opt:point_release=false,ni2opt"};
+  command.run = RunCompare;
+  return command;
+}
+
+}  // namespace traverse::cli

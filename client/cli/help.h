@@ -1,0 +1,23 @@
+// Help texts, made from the tables of commands and flags.
+
+#ifndef TRAVERSE_CLIENT_CLI_HELP_H_
+#define TRAVERSE_CLIENT_CLI_HELP_H_
+
+#include <string>
+
+#include "client/cli/command.h"
+
+namespace traverse::cli {
+
+// What `traverse --help` prints.
+std::string GeneralHelp();
+
+// What `traverse COMMAND --help` prints: usage, flags, an example.
+std::string CommandHelp(const Command& command);
+
+// "traverse 0.1.0".
+std::string VersionLine();
+
+}  // namespace traverse::cli
+
+#endif  // TRAVERSE_CLIENT_CLI_HELP_H_

@@ -1,0 +1,51 @@
+// How far a job has come, on standard error: a bar on a terminal, now and then a line off it.
+
+#ifndef TRAVERSE_CLIENT_CLI_PROGRESS_H_
+#define TRAVERSE_CLIENT_CLI_PROGRESS_H_
+
+#include <cstdint>
+#include <string>
+
+#include "absl/time/time.h"
+#include "traverse/v1/route_optimizer_service.pb.h"
+
+namespace traverse::cli {
+
+class Progress {
+ public:
+  enum class Style { kNone, kBar, kLines };
+
+  // The style that suits standard error.
+  static Style StyleFor(bool quiet);
+
+  // A job of `layers` layers begins now; `label` comes before what is shown.
+  Progress(Style style, std::string label, uint64_t layers);
+
+  // Takes the bar away.
+  ~Progress();
+
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  // One more layer is done. Shows it at most ten times a second, as lines every few seconds.
+  void Take(const v1::LayerResult& layer);
+
+  // The text shown when `elapsed` has passed: `ni2opt  [####----] 50/100 layers, travel 31.2 %
+  // shorter, 5 s left`; the bar only with kBar, fitted to `width` columns.
+  std::string Text(absl::Duration elapsed, int width) const;
+
+ private:
+  const Style style_;
+  const std::string label_;
+  const uint64_t layers_;
+  const absl::Time began_;
+  absl::Time shown_;
+  uint64_t done_ = 0;
+  double given_mm_ = 0;
+  double travel_mm_ = 0;
+  bool bar_drawn_ = false;
+};
+
+}  // namespace traverse::cli
+
+#endif  // TRAVERSE_CLIENT_CLI_PROGRESS_H_

@@ -1,0 +1,118 @@
+#include "client/cli/service.h"
+
+#include <algorithm>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "absl/time/clock.h"
+#include "client/api/channel.h"
+#include "client/cli/progress.h"
+#include "client/files/read_file.h"
+
+namespace traverse::cli {
+namespace {
+
+constexpr uint64_t kMaxThreads = 1024;
+
+// The server's text without line breaks, and of a connection that failed the part that says why:
+// gRPC packs it into "connections to all backends failing; last error: UNKNOWN: ipv4:...".
+std::string OneLine(std::string text) {
+  for (char& c : text) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  for (const char* packing : {"last error: ", "UNKNOWN: "}) {
+    const size_t at = text.rfind(packing);
+    if (at != std::string::npos) text.erase(0, at + std::string_view(packing).size());
+  }
+  return text;
+}
+
+// Which part of the command line an INVALID_ARGUMENT is about: options come from flags, layers from
+// the file.
+bool IsAboutOptions(const std::string& message) { return message.starts_with("options"); }
+
+}  // namespace
+
+Service::Service(std::unique_ptr<EmbeddedService> embedded, std::shared_ptr<grpc::Channel> channel,
+                 std::string name)
+    : embedded_(std::move(embedded)),
+      client_(std::make_unique<OptimizerClient>(std::move(channel))),
+      name_(std::move(name)) {}
+
+Expected<Service> Service::Open(const Flags& flags) {
+  const auto threads = flags.Integer("threads", 1, kMaxThreads);
+  if (!threads.ok()) return UsageFault(threads.status());
+  if (!flags.Has("server")) {
+    const unsigned available = std::max(1u, std::thread::hardware_concurrency());
+    auto embedded = EmbeddedService::Start(static_cast<int>(threads->value_or(available)));
+    if (!embedded.ok()) return Outcome{kServerFault, std::string(embedded.status().message())};
+    std::shared_ptr<grpc::Channel> channel = (*embedded)->channel();
+    return Service(*std::move(embedded), std::move(channel), "");
+  }
+  if (*threads) return UsageFault("--threads is for the embedded service, not for --server");
+  const auto addresses = ParseAddresses(flags.Text("server"));
+  if (!addresses.ok()) {
+    return UsageFault(absl::StrFormat("--server: %s", std::string(addresses.status().message())));
+  }
+  auto channel = ConnectTo(*addresses);
+  if (!channel.ok()) return Outcome{kServerFault, std::string(channel.status().message())};
+  return Service(nullptr, *std::move(channel), absl::StrJoin(*addresses, ","));
+}
+
+Expected<v1::ListStrategiesResponse> Service::ListStrategies() {
+  constexpr absl::Duration kPatience = absl::Seconds(30);
+  absl::StatusOr<v1::ListStrategiesResponse> strategies = client_->ListStrategies(kPatience);
+  if (!strategies.ok()) return Failure(strategies.status(), "");
+  return *std::move(strategies);
+}
+
+Outcome Service::Resolve(const JobFlags& flags, const InputJob& job,
+                         std::vector<StrategySpec>& specs) {
+  if (specs.empty() && flags.strategy_options.empty()) return Done();
+  Expected<v1::ListStrategiesResponse> listed = ListStrategies();
+  if (Outcome* outcome = std::get_if<Outcome>(&listed)) return *outcome;
+  const v1::ListStrategiesResponse& known = std::get<v1::ListStrategiesResponse>(listed);
+  if (specs.empty()) {
+    StrategySpec spec{"optimize", job.options.strategy()};
+    if (spec.strategy.name().empty()) spec.strategy.set_name(known.default_strategy());
+    specs.push_back(std::move(spec));
+  }
+  const absl::Status status = ResolveStrategies(known, flags.strategy_options, specs);
+  return status.ok() ? Done() : UsageFault(status);
+}
+
+Expected<report::JobRun> Service::Optimize(const InputJob& job, const StrategySpec* strategy,
+                                           const JobFlags& flags, bool quiet) {
+  v1::JobOptions options = job.options;
+  if (strategy != nullptr) *options.mutable_strategy() = strategy->strategy;
+  Progress progress(Progress::StyleFor(quiet), strategy != nullptr ? strategy->label : "optimize",
+                    job.layers.size());
+  const absl::Time began = absl::Now();
+  CallOptions call;
+  call.deadline = flags.deadline;
+  call.on_layer = [&](const v1::LayerResult& layer) { progress.Take(layer); };
+  absl::StatusOr<JobResult> result = client_->Optimize(options, job.layers, call);
+  if (!result.ok()) return Failure(result.status(), job.name);
+  return report::JobRun{*std::move(result), options.has_seed() ? options.seed() : 1,
+                        absl::ToDoubleSeconds(absl::Now() - began)};
+}
+
+Outcome Service::Failure(const absl::Status& status, const std::string& input) const {
+  const std::string message = OneLine(std::string(status.message()));
+  if (absl::IsInvalidArgument(status)) {
+    if (IsAboutOptions(message)) return UsageFault(message);
+    return {kInputFault, absl::StrFormat("%s: %s", DisplayName(input), message)};
+  }
+  if (absl::IsDeadlineExceeded(status)) {
+    return {kServerFault,
+            absl::StrFormat("no answer in time%s%s", name_.empty() ? "" : " from ", name_)};
+  }
+  return {kServerFault,
+          absl::StrFormat("%s: %s: %s", name_.empty() ? "embedded service" : "server " + name_,
+                          absl::StatusCodeToString(status.code()), message)};
+}
+
+}  // namespace traverse::cli

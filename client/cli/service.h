@@ -1,0 +1,57 @@
+// The service as commands use it: embedded or remote, a job with its progress, exit codes.
+
+#ifndef TRAVERSE_CLIENT_CLI_SERVICE_H_
+#define TRAVERSE_CLIENT_CLI_SERVICE_H_
+
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "client/api/embedded.h"
+#include "client/api/optimizer_client.h"
+#include "client/cli/flags.h"
+#include "client/cli/job_flags.h"
+#include "client/cli/outcome.h"
+#include "client/cli/strategy_spec.h"
+#include "client/input/input_job.h"
+#include "client/report/run.h"
+
+namespace traverse::cli {
+
+// A value, or how the command ends.
+template <typename T>
+using Expected = std::variant<T, Outcome>;
+
+class Service {
+ public:
+  // As --server and --threads say. UsageFault for bad values; kServerFault for names that nobody
+  // knows. A server is asked for the first time by the calls below.
+  static Expected<Service> Open(const Flags& flags);
+
+  // The strategies that the service has.
+  Expected<v1::ListStrategiesResponse> ListStrategies();
+
+  // Checks `specs` against the service's strategies and gives them the options of --option. Without
+  // specs those options go to the job's own strategy or the service's default, which joins `specs`.
+  Outcome Resolve(const JobFlags& flags, const InputJob& job, std::vector<StrategySpec>& specs);
+
+  // Runs the job with `strategy` (unset: the service's default) and shows its progress.
+  Expected<report::JobRun> Optimize(const InputJob& job, const StrategySpec* strategy,
+                                    const JobFlags& flags, bool quiet);
+
+ private:
+  Service(std::unique_ptr<EmbeddedService> embedded, std::shared_ptr<grpc::Channel> channel,
+          std::string name);
+
+  // How a command ends that the service answered with `status`.
+  Outcome Failure(const absl::Status& status, const std::string& input) const;
+
+  std::unique_ptr<EmbeddedService> embedded_;  // null: remote
+  std::unique_ptr<OptimizerClient> client_;
+  std::string name_;  // addresses; empty: embedded
+};
+
+}  // namespace traverse::cli
+
+#endif  // TRAVERSE_CLIENT_CLI_SERVICE_H_

@@ -1,0 +1,26 @@
+// What the user's terminal can do.
+
+#ifndef TRAVERSE_CLIENT_CLI_TERMINAL_H_
+#define TRAVERSE_CLIENT_CLI_TERMINAL_H_
+
+#include <cstdio>
+#include <string>
+
+namespace traverse::cli {
+
+// True if `file` is a terminal that understands cursor movement.
+bool IsTerminal(std::FILE* file);
+
+// True if text on `file` may be colored: a terminal, and the user has not set NO_COLOR
+// (https://no-color.org).
+bool MayColor(std::FILE* file);
+
+// Columns of the terminal behind `file`; 80 if that is not known.
+int TerminalWidth(std::FILE* file);
+
+// Writes all of `text`.
+void Print(std::FILE* file, const std::string& text);
+
+}  // namespace traverse::cli
+
+#endif  // TRAVERSE_CLIENT_CLI_TERMINAL_H_

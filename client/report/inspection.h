@@ -1,0 +1,20 @@
+// What is in a file.
+
+#ifndef TRAVERSE_CLIENT_REPORT_INSPECTION_H_
+#define TRAVERSE_CLIENT_REPORT_INSPECTION_H_
+
+#include <string>
+
+#include "client/api/job_result.h"
+#include "client/input/input_job.h"
+
+namespace traverse::report {
+
+// Format, layers, islands, paths by kind or feature, points, and the travel of the order given, as
+// `given` (a run of the strategy none) has it; then one row a layer, if there are at most
+// `max_rows`.
+std::string InspectionText(const InputJob& job, const JobResult& given, size_t max_rows);
+
+}  // namespace traverse::report
+
+#endif  // TRAVERSE_CLIENT_REPORT_INSPECTION_H_

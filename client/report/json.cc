@@ -1,0 +1,131 @@
+#include "client/report/json.h"
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "absl/strings/str_format.h"
+
+namespace traverse::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The path's label and entry: what all kinds of layers share.
+Json EntryJson(const v1::Contour& contour, const v1::Visit& visit) {
+  return {{"id", contour.id()}, {"entry", visit.vertex()}};
+}
+Json EntryJson(const v1::OpenPath& path, const v1::Visit& visit) {
+  return {{"id", path.id()}, {"reversed", visit.reversed()}};
+}
+
+Json IslandVisitJson(const v1::Layer& layer, const v1::Visit& visit) {
+  const v1::Island& island = layer.islands(static_cast<int>(visit.island()));
+  const bool contour = visit.path_case() == v1::Visit::kContour;
+  Json out = {{"kind", contour ? "contour" : "raster"}, {"island", island.id()}};
+  out.update(contour ? EntryJson(island.contours(static_cast<int>(visit.contour())), visit)
+                     : EntryJson(island.rasters(static_cast<int>(visit.raster())), visit));
+  return out;
+}
+
+Json PlanVisitJson(const v1::Layer& layer, const PathNotes* notes, const v1::Visit& visit) {
+  const v1::PlanPath& path = layer.plan().paths(static_cast<int>(visit.plan_path()));
+  Json out = {{"kind", path.has_contour() ? "contour" : "raster"}};
+  if (notes != nullptr && visit.plan_path() < notes->island.size()) {
+    out["island"] = notes->island[visit.plan_path()];
+  }
+  out.update(path.has_contour() ? EntryJson(path.contour(), visit)
+                                : EntryJson(path.open_path(), visit));
+  out["path"] = visit.plan_path();
+  return out;
+}
+
+// The bound of a layer in mm, if it is known and the cost is length.
+Json BoundJson(const InputJob& job, const v1::Layer& layer, const v1::LayerResult& result) {
+  const v1::CostModel& cost = layer.has_cost() ? layer.cost() : job.options.cost();
+  if (cost.has_time() || !result.has_lower_bound()) return nullptr;
+  return result.lower_bound();
+}
+
+Json LayerJson(const InputJob& job, size_t i, const v1::LayerResult& result) {
+  const v1::Layer& layer = job.layers[i];
+  const PathNotes* notes = i < job.notes.size() ? &job.notes[i] : nullptr;
+  Json route = Json::array();
+  for (const v1::Visit& visit : result.visits()) {
+    route.push_back(layer.has_plan() ? PlanVisitJson(layer, notes, visit)
+                                     : IslandVisitJson(layer, visit));
+  }
+  return {{"id", layer.id()},
+          {"start", {result.start().x_mm(), result.start().y_mm()}},
+          {"travel_given_mm", result.given().total_mm()},
+          {"travel_mm", result.travel().total_mm()},
+          {"lower_bound_mm", BoundJson(job, layer, result)},
+          {"stop", StopName(result.stop_reason())},
+          {"solve_seconds", result.solve_seconds()},
+          {"route", std::move(route)}};
+}
+
+// The sum of the layers' bounds; null if one is null.
+Json TotalBoundJson(const InputJob& job, const JobResult& result) {
+  double sum = 0;
+  for (size_t i = 0; i < job.layers.size(); ++i) {
+    const Json bound = BoundJson(job, job.layers[i], result.layers[i]);
+    if (bound.is_null()) return nullptr;
+    sum += bound.get<double>();
+  }
+  return sum;
+}
+
+Json TotalJson(const InputJob& job, const JobResult& result, double wall_seconds) {
+  const v1::JobSummary& summary = result.summary;
+  return {{"travel_given_mm", summary.given().total_mm() + summary.cleaning_given_mm()},
+          {"travel_mm", summary.travel().total_mm() + summary.cleaning_mm()},
+          {"cleaning_mm", summary.cleaning_mm()},
+          {"lower_bound_mm", TotalBoundJson(job, result)},
+          {"solve_seconds", summary.compute_seconds()},
+          {"wall_seconds", wall_seconds},
+          {"idle_seconds_given", summary.idle_seconds_given()},
+          {"idle_seconds", summary.idle_seconds()}};
+}
+
+// Names of files may be any bytes; JSON is UTF-8.
+std::string Dump(const Json& json) {
+  return json.dump(-1, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string StopName(v1::StopReason reason) {
+  const std::string prefix = "STOP_REASON_";
+  const std::string name = v1::StopReason_Name(reason);
+  return name.starts_with(prefix) ? name.substr(prefix.size()) : name;
+}
+
+std::string RoutesJson(const InputJob& job, const JobRun& run) {
+  std::string out = absl::StrFormat("{\"input\": %s, \"strategy\": %s, \"seed\": %d,\n",
+                                    Dump(job.name), Dump(run.result.summary.strategy()), run.seed);
+  absl::StrAppendFormat(&out, " \"total\": %s,\n \"layers\": [",
+                        Dump(TotalJson(job, run.result, run.wall_seconds)));
+  // Layer by layer: as one tree of values a large job would need many times its text's memory.
+  for (size_t i = 0; i < job.layers.size(); ++i) {
+    out += i == 0 ? "\n  " : ",\n  ";
+    out += Dump(LayerJson(job, i, run.result.layers[i]));
+  }
+  out += "\n]}\n";
+  return out;
+}
+
+std::string CompareJson(const InputJob& job, const std::vector<ComparedStrategy>& strategies) {
+  std::string out = absl::StrFormat("{\"input\": %s, \"runs\": [", Dump(job.name));
+  const char* divider = "\n";
+  for (const ComparedStrategy& strategy : strategies) {
+    for (const JobRun& run : strategy.runs) {
+      absl::StrAppendFormat(&out, "%s{\"label\": %s, \"seed\": %d, \"routes\": %s}", divider,
+                            Dump(strategy.label), run.seed, RoutesJson(job, run));
+      divider = ",\n";
+    }
+  }
+  return out + "\n]}\n";
+}
+
+}  // namespace traverse::report

@@ -1,0 +1,54 @@
+#include "client/report/summary.h"
+
+#include <vector>
+
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "client/files/read_file.h"
+#include "client/report/json.h"
+#include "client/report/numbers.h"
+
+namespace traverse::report {
+namespace {
+
+// "LOCAL_OPTIMUM 398, TIME_LIMIT 2".
+std::string Stops(const v1::JobSummary& summary) {
+  std::vector<std::string> parts;
+  for (const v1::StopCount& stop : summary.stops()) {
+    parts.push_back(absl::StrFormat("%s %d", StopName(stop.stop_reason()), stop.layers()));
+  }
+  return absl::StrJoin(parts, ", ");
+}
+
+}  // namespace
+
+std::string GapText(const v1::JobSummary& summary) {
+  if (!summary.has_lower_bound()) return "";
+  if (summary.cost() <= 0) return "0.0 %";
+  return absl::StrFormat("%.1f %%",
+                         100 * (summary.cost() - summary.lower_bound()) / summary.cost());
+}
+
+std::string OptimizeSummary(const InputJob& job, const JobRun& run) {
+  const v1::JobSummary& summary = run.result.summary;
+  const double given = summary.given().total_mm() + summary.cleaning_given_mm();
+  const double travel = summary.travel().total_mm() + summary.cleaning_mm();
+  std::string out =
+      absl::StrFormat("%s: %d layers, %s, %s\n", DisplayName(job.name), job.layers.size(),
+                      summary.strategy(), Duration(run.wall_seconds));
+  absl::StrAppendFormat(&out, "travel   %s -> %s  (%s)\n", Length(given), Length(travel),
+                        Change(given, travel));
+  absl::StrAppendFormat(&out, "idle     %s -> %s\n", Duration(summary.idle_seconds_given()),
+                        Duration(summary.idle_seconds()));
+  if (job.options.cost().has_time()) {
+    absl::StrAppendFormat(&out, "cost     %s -> %s  (%s)\n", Duration(summary.cost_given()),
+                          Duration(summary.cost()), Change(summary.cost_given(), summary.cost()));
+  }
+  if (summary.has_lower_bound()) {
+    absl::StrAppendFormat(&out, "gap      %s to a proven bound\n", GapText(summary));
+  }
+  if (summary.stops_size() > 0) absl::StrAppendFormat(&out, "ended    %s\n", Stops(summary));
+  return out;
+}
+
+}  // namespace traverse::report

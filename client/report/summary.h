@@ -1,0 +1,21 @@
+// What a job came to, in words.
+
+#ifndef TRAVERSE_CLIENT_REPORT_SUMMARY_H_
+#define TRAVERSE_CLIENT_REPORT_SUMMARY_H_
+
+#include <string>
+
+#include "client/input/input_job.h"
+#include "client/report/run.h"
+
+namespace traverse::report {
+
+// A few lines: travel before and after, idle time saved, gap if known, why the search ended.
+std::string OptimizeSummary(const InputJob& job, const JobRun& run);
+
+// Gap of the whole job in percent, as "0.8 %", or "" if no bound is known.
+std::string GapText(const v1::JobSummary& summary);
+
+}  // namespace traverse::report
+
+#endif  // TRAVERSE_CLIENT_REPORT_SUMMARY_H_
