@@ -13,6 +13,10 @@
 namespace traverse {
 namespace {
 
+// Of so many points of a child that begins with an any_order node its distance is taken. All of
+// them would take memory again at each level of nested nodes.
+constexpr size_t kFirstPoints = 64;
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The entries of the paths below one node, in the order in which they are visited.
@@ -43,20 +47,22 @@ class NodeRoute {
         nearest_(children_.size(), kInfinity),
         boxes_(children_.size()),
         built_(children_.size()),
+        position_(children_.size()),
         move_{Move(from, to)},
-        last_before_(children_.size(), -1) {
+        awaited_(static_cast<size_t>(precedence_.item_count()), -1) {
     ListWays();
   }
 
+  // Incomplete if the budget ran out.
   Entries Run() {
     const auto open = [&](int slot) { open_.push_back(slot); };
     ReadySlots ready(precedence_, static_cast<int>(children_.size()), open);
     Approach(from_);
     if (to_) Approach(*to_);
-    while (!open_.empty()) {
-      const int slot = TakeNext();
-      Insert(slot);
-      ready.Finish(slot, open);
+    while (!open_.empty() && !budget_.Exhausted()) {
+      const int slot = TakeNearest();
+      if (!Insert(slot)) break;
+      ready.Finish(slot, open, [&](int first, int second) { Await(first, second); });
     }
     Entries entries;
     for (const int slot : order_) {
@@ -78,7 +84,7 @@ class NodeRoute {
     for (size_t s = 0; s < children_.size(); ++s) {
       first_way_.push_back(static_cast<int>(ways_.size()));
       const bool is_leaf = layer_.tree.is_leaf(children_[s]);
-      ForEachFirstEntry(layer_, children_[s], [&](int e) {
+      ForEachFirstEntry(layer_, children_[s], kFirstPoints, [&](int e) {
         const Point enter = layer_.table.enter(e);
         ways_.push_back(Way{enter, is_leaf ? layer_.table.exit(e) : enter, e});
         boxes_[s].Add(ways_.back().enter);
@@ -107,15 +113,13 @@ class NodeRoute {
 
   bool in_route(size_t slot) const { return !built_[slot].empty(); }
 
-  // Takes out of open_ the slot nearest to the route, the lowest of several; any one without time.
-  int TakeNext() {
+  // Takes out of open_ the slot nearest to the route, the lowest of several.
+  int TakeNearest() {
     size_t next = 0;
-    if (!budget_.Exhausted()) {
-      for (size_t i = 1; i < open_.size(); ++i) {
-        const double distance = nearest_[static_cast<size_t>(open_[i])];
-        const double least = nearest_[static_cast<size_t>(open_[next])];
-        if (distance < least || (distance == least && open_[i] < open_[next])) next = i;
-      }
+    for (size_t i = 1; i < open_.size(); ++i) {
+      const double distance = nearest_[static_cast<size_t>(open_[i])];
+      const double least = nearest_[static_cast<size_t>(open_[next])];
+      if (distance < least || (distance == least && open_[i] < open_[next])) next = i;
     }
     std::swap(open_[next], open_.back());
     const int slot = open_.back();
@@ -123,7 +127,8 @@ class NodeRoute {
     return slot;
   }
 
-  void Insert(int slot) {
+  // False if the budget ran out.
+  bool Insert(int slot) {
     const Place place = BestPlace(slot);
     const Point from = ExitBefore(place.index);
     const std::optional<Point> to = EnterAt(place.index);
@@ -133,6 +138,7 @@ class NodeRoute {
       entries = {ways_[static_cast<size_t>(place.way)].entry};
     } else {
       entries = Build(layer_, child, from, to, budget_);
+      if (budget_.was_exhausted()) return false;
     }
     const auto at = static_cast<std::ptrdiff_t>(place.index);
     const Point enter = layer_.table.enter(entries.front());
@@ -140,11 +146,14 @@ class NodeRoute {
     order_.insert(order_.begin() + at, slot);
     enter_.insert(enter_.begin() + at, enter);
     exit_.insert(exit_.begin() + at, exit);
+    for (size_t k = place.index; k < order_.size(); ++k) {
+      position_[static_cast<size_t>(order_[k])] = k;
+    }
     move_[place.index] = Move(exit, to);
     move_.insert(move_.begin() + at, layer_.cost(from, enter));
-    if (budget_.was_exhausted()) return;
     Approach(enter);
     if (!(exit == enter)) Approach(exit);
+    return true;
   }
 
   Point ExitBefore(size_t index) const { return index > 0 ? exit_[index - 1] : from_; }
@@ -152,22 +161,25 @@ class NodeRoute {
     return index < order_.size() ? enter_[index] : to_;
   }
 
-  Place BestPlace(int slot) {
+  Place BestPlace(int slot) const {
     Place best;
-    const size_t first = budget_.was_exhausted() ? order_.size() : FirstPlace(slot);
-    for (size_t index = first; index <= order_.size(); ++index) Try(slot, index, best);
+    size_t index = precedence_.empty() ? 0 : BehindSlot(awaited_[static_cast<size_t>(slot)]);
+    for (; index <= order_.size(); ++index) Try(slot, index, best);
     return best;
   }
 
-  // Behind the last block that has to come before `slot`.
-  size_t FirstPlace(int slot) {
-    if (precedence_.empty()) return 0;
-    std::vector<int> position(children_.size(), -1);
-    for (size_t k = 0; k < order_.size(); ++k) {
-      position[static_cast<size_t>(order_[k])] = static_cast<int>(k);
-    }
-    precedence_.LastBefore(position, last_before_);
-    return static_cast<size_t>(last_before_[static_cast<size_t>(slot)] + 1);
+  // The first place behind a block of the route; the very first for -1.
+  size_t BehindSlot(int slot) const {
+    return slot < 0 ? 0 : position_[static_cast<size_t>(slot)] + 1;
+  }
+
+  // The item `second` has to come behind `first`, or behind what `first` waited for if that has no
+  // paths. The order of two blocks in the route never changes, so the later one may stand for both.
+  void Await(int first, int second) {
+    const bool has_paths = first < static_cast<int>(children_.size());
+    const int slot = has_paths ? first : awaited_[static_cast<size_t>(first)];
+    int& latest = awaited_[static_cast<size_t>(second)];
+    if (BehindSlot(slot) > BehindSlot(latest)) latest = slot;
   }
 
   // Replaces `best` if some way of `slot` costs less at the place `index`.
@@ -213,11 +225,13 @@ class NodeRoute {
 
   // The route: slots, and where each is entered and left.
   std::vector<int> order_;
+  std::vector<size_t> position_;  // [slot] its index in order_, if it is in the route
   std::vector<Point> enter_;
   std::vector<Point> exit_;
   std::vector<double> move_;  // cost of the move to each; one more, of the move to to_
 
-  std::vector<int> last_before_;  // scratch
+  // [item of the precedence] the last slot in the route that has to come before it; -1 if none
+  std::vector<int> awaited_;
 };
 
 Entries BuildLeaf(const LayerView& layer, int path, Point from, const std::optional<Point>& to) {
@@ -233,7 +247,7 @@ Entries BuildLeaf(const LayerView& layer, int path, Point from, const std::optio
   return {best};
 }
 
-// REQUIRES: there are paths below `node`.
+// Incomplete if the budget ran out. REQUIRES: there are paths below `node`.
 Entries Build(const LayerView& layer, int node, Point from, const std::optional<Point>& to,
               Budget& budget) {
   if (layer.tree.is_leaf(node)) return BuildLeaf(layer, layer.tree.node(node).path, from, to);
@@ -245,6 +259,7 @@ Entries Build(const LayerView& layer, int node, Point from, const std::optional<
   for (const int child : children) {
     const bool is_last = child == children.back();
     const Entries part = Build(layer, child, from, is_last ? to : std::nullopt, budget);
+    if (budget.was_exhausted()) break;
     entries.insert(entries.end(), part.begin(), part.end());
     from = layer.table.exit(entries.back());
   }
@@ -253,12 +268,14 @@ Entries Build(const LayerView& layer, int node, Point from, const std::optional<
 
 }  // namespace
 
-Route NearestInsertionRoute(const LayerView& layer, Budget& budget) {
+std::optional<Route> NearestInsertionRoute(const LayerView& layer, Budget& budget) {
   Route route;
   if (layer.plan().paths.empty()) return route;
-  for (const int entry : Build(layer, 0, layer.problem.start, layer.problem.finish, budget)) {
-    route.push_back(layer.table.VisitOf(entry));
-  }
+  if (budget.Exhausted()) return std::nullopt;
+  const Entries entries = Build(layer, 0, layer.problem.start, layer.problem.finish, budget);
+  if (budget.was_exhausted()) return std::nullopt;
+  route.reserve(entries.size());
+  for (const int entry : entries) route.push_back(layer.table.VisitOf(entry));
   return route;
 }
 

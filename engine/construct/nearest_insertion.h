@@ -3,13 +3,15 @@
 //
 // Source: SPEC 3.3, [T] 2.6.2, [S]; Rosenkrantz, Stearns and Lewis (1977). On any plan: each
 // any_order node has a route of its own between the visits before and after it; a child with paths
-// of its own is inserted like a contour that has the points where it may be begun, and is built
-// inside once its place is known. Paths that wait for others are inserted after these, behind them.
-// O(n^2) for n children, with bounding boxes that spare most vertices: 0.2 s for 5000 contours
-// of 40.
+// of its own is inserted like a contour that has the points where it may be begun (some of these,
+// if they are many), and is built inside once its place is known. Paths that wait for others are
+// inserted after these, behind them. O(n^2) for n children, with bounding boxes that spare most
+// vertices: 0.2 s for 5000 contours of 40.
 
 #ifndef TRAVERSE_ENGINE_CONSTRUCT_NEAREST_INSERTION_H_
 #define TRAVERSE_ENGINE_CONSTRUCT_NEAREST_INSERTION_H_
+
+#include <optional>
 
 #include "engine/base/budget.h"
 #include "engine/cost/layer_view.h"
@@ -17,9 +19,8 @@
 
 namespace traverse {
 
-// A valid route. When the budget runs out, the paths left follow in some order that the plan
-// allows.
-Route NearestInsertionRoute(const LayerView& layer, Budget& budget);
+// A valid route; none if the budget runs out, as a part of one would be worth nothing.
+std::optional<Route> NearestInsertionRoute(const LayerView& layer, Budget& budget);
 
 }  // namespace traverse
 

@@ -38,12 +38,6 @@ std::vector<int> MortonOrder(const std::vector<Point>& points) {
   return ids;
 }
 
-double SquaredDistance(Point a, Point b) {
-  const double dx = a.x - b.x;
-  const double dy = a.y - b.y;
-  return dx * dx + dy * dy;
-}
-
 }  // namespace
 
 NearestPointIndex::NearestPointIndex(std::vector<Point> points)
@@ -108,7 +102,7 @@ void NearestPointIndex::ScanLeaf(size_t leaf, Point p, double& least, int& neare
   const size_t end = std::min(begin + kLeafSize, points_.size());
   for (size_t place = begin; place < end; ++place) {
     if (!in_set_[place]) continue;
-    const double distance = SquaredDistance(points_[place], p);
+    const double distance = SquaredDistance(ids_[place], p);
     if (distance < least || (distance == least && ids_[place] < nearest)) {
       least = distance;
       nearest = ids_[place];

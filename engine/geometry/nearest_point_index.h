@@ -33,6 +33,12 @@ class NearestPointIndex {
   // The id of the point nearest to `p`, the smallest of several; -1 if the set is empty.
   int Nearest(Point p) const;
 
+  // Square of the distance in mm from `p` to a point, in the set or not.
+  double SquaredDistance(int id, Point p) const {
+    const Point point = points_[static_cast<size_t>(place_[static_cast<size_t>(id)])];
+    return (point.x - p.x) * (point.x - p.x) + (point.y - p.y) * (point.y - p.y);
+  }
+
   // Some id of the set, the same for the same history; -1 if it is empty. O(log n).
   int Any() const;
 

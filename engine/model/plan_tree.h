@@ -24,6 +24,9 @@ class Precedence {
 
   bool empty() const { return pairs_.empty(); }
 
+  // Slots, and above them the children without paths. 0 if empty.
+  int item_count() const { return static_cast<int>(topological_.size()); }
+
   // Writes to last[s] the greatest position of a slot that has to come before slot s, -1 if none.
   // An order of the slots is legal if last[s] < position[s] for all s. `position` and `last` are
   // indexed by slot. O(items + pairs). REQUIRES: not empty.
@@ -65,8 +68,15 @@ class ReadySlots {
   // Notes that `slot` is done; calls `ready(slot)` for each that may be done from now on.
   template <typename F>
   void Finish(int slot, F&& ready) {
+    Finish(slot, ready, [](int, int) {});
+  }
+
+  // Same; before that calls `pair(first, second)` for each pair of items that is fulfilled now. All
+  // pairs to an item come before those from it.
+  template <typename F, typename G>
+  void Finish(int slot, F&& ready, G&& pair) {
     if (precedence_->empty()) return;
-    Release(slot, ready);
+    Release(slot, ready, pair);
   }
 
  private:
@@ -76,18 +86,19 @@ class ReadySlots {
     if (item < precedence_->slots_) {
       ready(item);
     } else {
-      Release(item, ready);
+      Release(item, ready, [](int, int) {});
     }
   }
 
   // A chain of items without paths is followed by a list, as it may be long.
-  template <typename F>
-  void Release(int item, F&& ready) {
+  template <typename F, typename G>
+  void Release(int item, F&& ready, G&& pair) {
     std::vector<int> done = {item};
     while (!done.empty()) {
       const int before = done.back();
       done.pop_back();
       for (const int after : precedence_->After(before)) {
+        pair(before, after);
         if (--waiting_for_[static_cast<size_t>(after)] > 0) continue;
         if (after < precedence_->slots_) {
           ready(after);

@@ -20,7 +20,9 @@ class Ni2opt : public Strategy {
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
     const LayerView layer(problem);
     Route baseline = BaselineRoute(layer, budget);
-    return Best(layer, std::move(baseline), NearestInsertionRoute(layer, budget), budget);
+    const std::optional<Route> inserted = NearestInsertionRoute(layer, budget);
+    if (!inserted) return Solution{std::move(baseline), StopOr(budget, StopReason::kLocalOptimum), std::nullopt};
+    return Best(layer, std::move(baseline), *inserted, budget);
   }
 
   // Without construction: the order that was found for another start is a good one still.

@@ -47,6 +47,26 @@ TEST(Greedy, CompletesANodeBeforeItLeavesIt) {
   EXPECT_EQ(Greedy(owned.problem), (Route{{0, 0}, {1, 0}, {2, 0}, {3, 0}}));
 }
 
+// any_order nodes in each other, a contour beside each: the outermost ones offer what is innermost.
+TEST(Greedy, LooksIntoNestedNodes) {
+  Plan plan;
+  for (int depth = 0; depth < 50; ++depth) {
+    const int node = 2 * depth;
+    plan.nodes.push_back(PlanNode{PlanNode::Kind::kAnyOrder, 0, {node + 1, node + 2}, {}});
+    plan.nodes.push_back(PlanNode{PlanNode::Kind::kPath, depth, {}, {}});
+    plan.paths.push_back(MakeContour({{-1.0 - depth, 0}}));
+  }
+  plan.nodes.push_back(PlanNode{PlanNode::Kind::kPath, 50, {}, {}});
+  plan.paths.push_back(MakeContour({{0.5, 0}}));
+  const OwnedProblem owned(std::move(plan));
+  ASSERT_OK(CheckPlan(owned.plan()));
+
+  const Route route = Greedy(owned.problem);
+
+  // Once inside, the way out goes from the innermost contour to the outermost.
+  for (int i = 0; i <= 50; ++i) EXPECT_EQ(route[static_cast<size_t>(i)].path, 50 - i);
+}
+
 TEST(Greedy, WaitsForWhatComesBefore) {
   OwnedProblem owned([] {
     Plan plan = FlatPlan(4);
