@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
+#include "absl/time/time.h"
 #include "client/cli/command.h"
 #include "client/cli/job_flags.h"
 #include "client/cli/service.h"
@@ -20,6 +21,9 @@ namespace {
 
 constexpr uint64_t kMaxRepeats = 1000;
 
+// A table of all strategies should not wait two hours for the proof that one of them looks for.
+constexpr absl::Duration kDefaultDeadline = absl::Seconds(5);
+
 struct Request {
   JobFlags job;
   std::vector<StrategySpec> strategies;  // empty: all that the service has
@@ -33,6 +37,7 @@ absl::StatusOr<Request> ParseRequest(const Flags& flags) {
   auto job = ParseJobFlags(flags);
   if (!job.ok()) return job.status();
   request.job = *std::move(job);
+  if (!flags.Has("deadline") && !flags.Has("strategies")) request.job.deadline = kDefaultDeadline;
   if (flags.Has("strategies")) {
     auto specs = ParseStrategySpecs(flags.Text("strategies"));
     if (!specs.ok()) return specs.status();
@@ -112,7 +117,7 @@ Command CompareCommand() {
   command.operands = {"INPUT"};
   command.summary = "Sets strategies side by side on one job.";
   command.flags = {
-      {"strategies", "NAME[:OPTION=VALUE],...", "the rows (default: all the service has)"},
+      {"strategies", "NAME[:OPTION=VALUE],...", "the rows (default: all, 5s each)"},
       {"repeat", "N", "runs of each, with seeds one after another; means are shown"},
       {"json", "FILE", "writes the routes of all runs; - is standard output"},
       {"quiet", "", "no progress"},

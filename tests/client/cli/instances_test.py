@@ -40,6 +40,12 @@ class Instances(unittest.TestCase):
                              stderr=subprocess.DEVNULL, check=True, timeout=300)
         return {run["label"]: run["routes"] for run in json.loads(ran.stdout)["runs"]}
 
+    def test_a_table_of_all_strategies_ends_soon(self):
+        # Of the hundreds of contours here no strategy proves a route optimal for hours.
+        ran = subprocess.run([TRAVERSE, "compare", instance("st200"), "--quiet"], stdout=subprocess.PIPE,
+                             check=True, timeout=120, text=True)
+        self.assertIn("ni2opt", ran.stdout)
+
     def travel(self, name, strategy):
         return self.documents[name][LABELS[strategy]]["total"]["travel_mm"]
 
@@ -54,7 +60,7 @@ class Instances(unittest.TestCase):
 
     def test_lengths_are_those_of_the_reference(self):
         # How ties are broken moves greedy a little; how ni2opt inserts, a few percent.
-        tolerances = {"none": 1e-9, "greedy": 0.005, "ni2opt_without_release": 0.04}
+        tolerances = {"none": 1e-9, "greedy": 0.005, "ni2opt_without_release": 0.03}
         for name, values in self.reference.items():
             for strategy, tolerance in tolerances.items():
                 with self.subTest(name=name, strategy=strategy):
