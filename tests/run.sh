@@ -10,12 +10,13 @@ cd "$(dirname "$0")/.."
 
 preset=release
 packages="test"
+target=(all)
 select=()
 for argument in "$@"; do
   case "$argument" in
     --quick) select=(-LE slow) ;;
     --asan) preset=asan packages="sanitize" select=(-LE 'slow|no_sanitizer') ;;
-    --tsan) preset=tsan packages="sanitize" select=(-L tsan) ;;
+    --tsan) preset=tsan packages="sanitize" target=(tsan_tests) select=(-L tsan) ;;
     *)
       sed -n '4,7s/^# *//p' "$0" >&2
       exit 2
@@ -25,5 +26,5 @@ done
 
 deploy/install-packages.sh "$packages"
 cmake --preset "$preset" -DTRAVERSE_TESTS=ON
-cmake --build --preset "$preset"
+cmake --build --preset "$preset" --target "${target[@]}"
 ctest --test-dir "build/$preset" -j "$(nproc)" --output-on-failure "${select[@]}"
