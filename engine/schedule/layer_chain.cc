@@ -89,6 +89,8 @@ void LayerChain::Prepare(Slot& slot) {
   slot.given_start = given_at_;
   slot.predicted_start = predicted_at_;
 
+  if (!strategy_->trivial()) slot.fingerprint = PlanFingerprint(plan);
+
   slot.given_route = GivenRoute(plan);
   slot.outcome.index = slot.index;
   slot.outcome.given = MeasureTravel(plan, given_at_, slot.given_route);
@@ -98,51 +100,89 @@ void LayerChain::Prepare(Slot& slot) {
   given_at_ = RouteEnd(plan, slot.given_route, given_at_);
   slot.outcome.cleaning_given_mm = MoveMm(given_at_, slot.finish);
 
-  if (slot.finish) {
-    given_at_ = predicted_at_ = *slot.finish;
-  } else if (!strategy_->trivial()) {
-    Budget budget = LayerBudget(1 - kSolveShare);
-    predicted_at_ = RouteEnd(plan, predictor_->Solve(Problem(slot, predicted_at_), budget).route,
-                             predicted_at_);
-  }
+  if (slot.finish) given_at_ = *slot.finish;
+  if (!strategy_->trivial()) predicted_at_ = PredictEnd(slot);
 }
 
-void LayerChain::Solve(Slot& slot) const {
+Point LayerChain::PredictEnd(const Slot& slot) {
+  if (slot.finish) return *slot.finish;
+  if (const std::optional<Point> end = history_.EndOf(slot.fingerprint)) return *end;
+  Budget budget = LayerBudget(1 - kSolveShare);
+  return RouteEnd(slot.layer.plan,
+                  predictor_->Solve(Problem(slot, slot.predicted_start), budget).route,
+                  slot.predicted_start);
+}
+
+void LayerChain::SolveFirst(Slot& slot) const {
   const Stopwatch watch;
   Budget budget = LayerBudget(kSolveShare);
-  slot.solution = strategy_->Solve(Problem(slot, slot.predicted_start), budget);
+  slot.first = strategy_->Solve(Problem(slot, slot.predicted_start), budget);
   slot.outcome.solve_seconds = watch.Seconds();
 }
 
-// The strategy's solution from the true start, which only now is known.
-Solution LayerChain::BestFrom(const LayerProblem& problem, const Slot& slot) const {
+void LayerChain::SolveSecond(Slot& slot) const {
+  const Stopwatch watch;
+  Budget budget = LayerBudget(kSolveShare);
+  slot.second = strategy_->Solve(Problem(slot, *slot.second_start), budget);
+  slot.outcome.solve_seconds += watch.Seconds();
+}
+
+// The start, where it does not depend on the layer before.
+std::optional<Point> LayerChain::FixedStart(const Slot& slot) const {
+  if (slot.layer.start) return slot.layer.start;
+  if (slot.index == 0) return spec_.start;
+  if (CleaningDueAfter(slot.index - 1)) return spec_.cleaning->point;
+  return std::nullopt;
+}
+
+Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot& slot) const {
   if (strategy_->trivial()) {
     Budget budget = LayerBudget(1);
     return strategy_->Solve(problem, budget);
   }
-  if (problem.start == slot.predicted_start) return slot.solution;
+  if (slot.second_start && problem.start == *slot.second_start) return slot.second;
+  if (problem.start == slot.predicted_start) return slot.first;
   Budget budget = LayerBudget(1 - kSolveShare);
-  Solution solution = strategy_->Resume(problem, slot.solution.route, budget);
-  // What was no worse than greedy from the predicted start could be so from the true one.
-  Route greedy = predictor_->Solve(problem, budget).route;
-  if (RouteCost(problem, greedy) < RouteCost(problem, solution.route)) {
-    solution.route = std::move(greedy);
-  }
-  // A search that the clock cut short stays so, whatever the polishing from the true start came to.
-  if (slot.solution.stop == StopReason::kTimeLimit) solution.stop = StopReason::kTimeLimit;
+  Solution solution = strategy_->quick() ? strategy_->Solve(problem, budget)
+                                         : strategy_->Resume(problem, slot.first.route, budget);
+  // A search that the clock cut short stays so, whatever the polishing came to.
+  if (slot.first.stop == StopReason::kTimeLimit) solution.stop = StopReason::kTimeLimit;
   return solution;
+}
+
+// Other routes may be better from the true start: those found for another start, where the clock
+// cut the last search short; greedy's, which a resumed route need not beat; the order given.
+void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
+                               Solution& solution) const {
+  double best = RouteCost(problem, solution.route);
+  const auto offer = [&](const Route& route) {
+    if (route.size() != solution.route.size()) return;  // there was no such search
+    const double cost = RouteCost(problem, route);
+    if (cost >= best) return;
+    best = cost;
+    solution.route = route;
+  };
+  if (!strategy_->trivial() && !strategy_->quick() && problem.start != slot.predicted_start) {
+    Budget budget = LayerBudget(1 - kSolveShare);
+    offer(predictor_->Solve(problem, budget).route);
+  }
+  if (solution.stop == StopReason::kTimeLimit) {
+    offer(slot.first.route);
+    offer(slot.second.route);
+  }
+  offer(slot.given_route);
 }
 
 LayerOutcome LayerChain::Anchor(Slot& slot, Point start) const {
   const Stopwatch watch;
   const LayerProblem problem = Problem(slot, start);
-  Solution solution = BestFrom(problem, slot);
+  Solution solution = SolveFromTrueStart(problem, slot);
   LayerOutcome outcome = std::move(slot.outcome);
   if (absl::Status status = ValidateRoute(slot.layer.plan, solution.route); !status.ok()) {
     outcome.invalid_route = std::string(status.message());
     solution = Solution{slot.given_route, StopReason::kLocalOptimum, std::nullopt};
-  } else if (RouteCost(problem, slot.given_route) < RouteCost(problem, solution.route)) {
-    solution.route = slot.given_route;
+  } else {
+    KeepBestRoute(problem, slot, solution);
   }
   outcome.start = start;
   outcome.end = RouteEnd(slot.layer.plan, solution.route, start);
@@ -167,13 +207,23 @@ void LayerChain::RunPrepare(const SlotPtr& slot) {
     slot->solved = true;
     MaybeAnchor(slot->index);
   } else {
-    Submit([this, slot] { RunSolve(slot); });
+    Submit([this, slot] { RunSolveFirst(slot); });
   }
   MaybePrepare();
 }
 
-void LayerChain::RunSolve(const SlotPtr& slot) {
-  Solve(*slot);
+void LayerChain::RunSolveFirst(const SlotPtr& slot) {
+  SolveFirst(*slot);
+  const Point end =
+      slot->finish.value_or(RouteEnd(slot->layer.plan, slot->first.route, slot->predicted_start));
+  std::lock_guard<std::mutex> lock(mutex_);
+  slot->first_end = end;
+  MaybeSolveSecond(slot->index);
+  MaybeSolveSecond(slot->index + 1);
+}
+
+void LayerChain::RunSolveSecond(const SlotPtr& slot) {
+  SolveSecond(*slot);
   std::lock_guard<std::mutex> lock(mutex_);
   slot->solved = true;
   MaybeAnchor(slot->index);
@@ -185,31 +235,56 @@ void LayerChain::RunAnchor(const SlotPtr& slot, Point start) {
   if (!cancel_.cancelled()) outbox_.Deliver(std::move(outcome));
   std::lock_guard<std::mutex> lock(mutex_);
   slot->end = end;
+  ends_to_learn_[slot->index] = {slot->fingerprint, end};
   --pending_;
   DropAnchored();
   MaybeAnchor(slot->index + 1);
+  MaybePrepare();
 }
 
-// The next layer's stage one, unless it is under way or the layer's finish is not known yet.
+// The next layer's first stage, unless it is under way, or the layer's finish is not known yet, or
+// what is to be learned before it.
 void LayerChain::MaybePrepare() {
   if (preparing_ || next_to_prepare_ == added_) return;
+  const bool learns = next_to_prepare_ >= kLearnDelay;
+  if (learns && ends_to_learn_.count(next_to_prepare_ - kLearnDelay) == 0) return;
   const bool is_last_known = next_to_prepare_ + 1 == added_;
   const bool cleaning_due = CleaningDueAfter(next_to_prepare_);
   if (cleaning_due && is_last_known && !closed_) return;
   SlotPtr slot = SlotAt(next_to_prepare_);
   if (cleaning_due && !is_last_known) slot->finish = spec_.cleaning->point;
+  if (learns) {
+    const auto learned = ends_to_learn_.extract(next_to_prepare_ - kLearnDelay).mapped();
+    history_.Learn(learned.first, learned.second);
+  }
   preparing_ = true;
   Submit([this, slot] { RunPrepare(slot); });
 }
 
-// The stage three of layer `index`, if there is one that is solved and whose start is known.
+// What follows the first solution of layer `index`: a second one, or anchor.
+void LayerChain::MaybeSolveSecond(uint64_t index) {
+  if (index < first_index_ || index >= added_) return;
+  const SlotPtr slot = SlotAt(index);
+  if (!slot->first_end || slot->solved || slot->second_start) return;
+  if (strategy_->quick() && !FixedStart(*slot)) {
+    const std::optional<Point> start = SlotAt(index - 1)->first_end;
+    if (!start) return;
+    if (*start != slot->predicted_start) {
+      slot->second_start = start;
+      Submit([this, slot] { RunSolveSecond(slot); });
+      return;
+    }
+  }
+  slot->solved = true;
+  MaybeAnchor(index);
+}
+
+// The last stage of layer `index`, if it is solved and its start is known.
 void LayerChain::MaybeAnchor(uint64_t index) {
   if (index < first_index_ || index >= added_) return;
   const SlotPtr slot = SlotAt(index);
   if (!slot->solved || slot->anchoring) return;
-  std::optional<Point> start = slot->layer.start;
-  if (!start && index == 0) start = spec_.start;
-  if (!start && CleaningDueAfter(index - 1)) start = spec_.cleaning->point;
+  std::optional<Point> start = FixedStart(*slot);
   if (!start) start = SlotAt(index - 1)->end;
   if (!start) return;
   slot->anchoring = true;

@@ -1,14 +1,15 @@
 // The chain of a job's layers, solved in parallel.
 //
 // Each layer starts where the one before ended (SPEC section 2), which seems to leave no room for
-// parallel work. So every layer passes three stages:
+// parallel work. So every layer passes these stages:
 //
-//   prepare   in build order, cheap: the travel of the given order, and a prediction of the layer's
-//             start from the greedy route of the layer before
+//   prepare   in build order, cheap: the travel of the given order, and a prediction of where the
+//             layer will end: where an equal layer ended before, else where its greedy route ends
 //   solve     on any thread: the strategy, from the predicted start
-//   anchor    in build order, cheap: the true start is known now; the strategy resumes its route
-//   from
-//             there, and the route is validated and delivered
+//   second    quick strategies alone, on any thread: solve from where the first solution of the
+//             layer before ends, if that is elsewhere; mostly this is the true start
+//   anchor    in build order, cheap: the true start is known now; if it is yet another one, the
+//             strategy resumes its route from there; the route is validated and delivered
 //
 // What a stage does depends on the job and the seed alone, never on timing, so the routes are the
 // same on any number of threads. Every stage of a layer is a task of its own: the executor can
@@ -20,11 +21,14 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "engine/engine.h"
+#include "engine/schedule/end_history.h"
 #include "engine/schedule/outbox.h"
 
 namespace traverse {
@@ -49,38 +53,51 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
 
     // Set by prepare.
     Point predicted_start;
+    uint64_t fingerprint = 0;
     std::optional<Point> finish;
     Point given_start;
     Route given_route;
     LayerOutcome outcome;  // what concerns the given order
 
-    // Set by solve.
-    Solution solution;
+    // Set by solve and second.
+    Solution first;
+    std::optional<Point> second_start;
+    Solution second;
 
     // Guarded by the lock.
-    bool solved = false;       // the layer itself is ready to be anchored
-    bool anchoring = false;    // anchor is submitted
-    std::optional<Point> end;  // anchored: where the head is then, a cleaning included
+    std::optional<Point> first_end;  // solved: where the head is then, a cleaning included
+    bool solved = false;             // the layer itself is ready to be anchored
+    bool anchoring = false;          // anchor is submitted
+    std::optional<Point> end;        // anchored: where the head is then, a cleaning included
   };
   using SlotPtr = std::shared_ptr<Slot>;
 
+  // Prepare is at most so many layers ahead of anchor; even, as many parts alternate two layers.
+  static constexpr uint64_t kLearnDelay = 32;
+
   bool CleaningDueAfter(uint64_t index) const;
+  std::optional<Point> FixedStart(const Slot& slot) const;
   Budget LayerBudget(double share) const;
   LayerProblem Problem(const Slot& slot, Point start) const;
 
   // The stages.
   void Prepare(Slot& slot);
-  void Solve(Slot& slot) const;
+  Point PredictEnd(const Slot& slot);
+  void SolveFirst(Slot& slot) const;
+  void SolveSecond(Slot& slot) const;
   LayerOutcome Anchor(Slot& slot, Point start) const;
-  Solution BestFrom(const LayerProblem& problem, const Slot& slot) const;
+  Solution SolveFromTrueStart(const LayerProblem& problem, const Slot& slot) const;
+  void KeepBestRoute(const LayerProblem& problem, const Slot& slot, Solution& solution) const;
 
   // Run a stage and hand the layer over to the next one.
   void RunPrepare(const SlotPtr& slot);
-  void RunSolve(const SlotPtr& slot);
+  void RunSolveFirst(const SlotPtr& slot);
+  void RunSolveSecond(const SlotPtr& slot);
   void RunAnchor(const SlotPtr& slot, Point start);
 
   // Submit what is due. Called with the lock held.
   void MaybePrepare();
+  void MaybeSolveSecond(uint64_t index);
   void MaybeAnchor(uint64_t index);
   void MaybeFinish();
   void Submit(std::function<void()> stage);
@@ -97,12 +114,18 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   // Where the head is after the layers prepared so far; only prepare touches these.
   Point given_at_;
   Point predicted_at_;
+  EndHistory history_;
 
   mutable std::mutex mutex_;
   std::deque<SlotPtr> slots_;  // [index - first_index_]
   uint64_t first_index_ = 0;
   uint64_t added_ = 0;
   uint64_t next_to_prepare_ = 0;
+
+  // Ends of anchored layers that prepare has not learned yet, by index: fingerprint and end. It
+  // learns the end of layer i - kLearnDelay right before it prepares layer i: what it knows must
+  // not depend on timing.
+  std::map<uint64_t, std::pair<uint64_t, Point>> ends_to_learn_;
   int64_t pending_ = 0;
   int64_t tasks_ = 0;  // submitted and not yet ended
   bool preparing_ = false;

@@ -25,6 +25,8 @@ class Ni2opt : public Strategy {
     return Best(layer, std::move(baseline), *inserted, budget);
   }
 
+  bool quick() const override { return true; }
+
   // Without construction: the order that was found for another start is a good one still.
   Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
     const LayerView layer(problem);

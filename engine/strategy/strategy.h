@@ -44,6 +44,10 @@ class Strategy {
   // True if Solve takes no longer than a prediction of the start would: such layers are then simply
   // solved one after another, from their true starts.
   virtual bool trivial() const { return false; }
+
+  // True if Solve is so quick that the chain may solve a layer again where its start was predicted
+  // wrongly, instead of resuming: the routes are then those of solving one layer after another.
+  virtual bool quick() const { return false; }
 };
 
 // A row of the registry: what there is to know about a strategy without running it.

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "engine/base/rng.h"
 #include "engine/cost/route_cost.h"
 #include "engine/strategy/registry.h"
 #include "tests/support/test_executor.h"
@@ -68,7 +69,7 @@ Plan RingLayer(int count, double turn) {
 
 struct RunOptions {
   JobSpec spec;
-  std::string strategy = "greedy";
+  std::string strategy = "ni2opt";
   int layers = 12;
   int threads = 4;
   TestExecutor::Order order = TestExecutor::Order::kOldestFirst;
@@ -125,6 +126,29 @@ TEST(LayerChain, RoutesDoNotDependOnThreadsOrTheOrderOfTasks) {
     EXPECT_EQ(outcome.route, eight.at(index).route) << "layer " << index;
     EXPECT_EQ(outcome.route, newest_first.at(index).route) << "layer " << index;
   }
+}
+
+TEST(LayerChain, AQuickStrategySolvesEveryLayerFromItsTrueStart) {
+  RunOptions options;
+  options.layers = 80;
+  const auto strategy = *MakeStrategy("ni2opt", {});
+
+  for (const auto& [index, outcome] : RunJob(options)) {
+    const LayerProblem problem{&outcome.plan, outcome.start, std::nullopt, CostSpec(),
+                               StreamSeed(options.spec.seed, index)};
+    Budget budget;
+    EXPECT_EQ(outcome.route, strategy->Solve(problem, budget).route) << "layer " << index;
+  }
+}
+
+TEST(EndHistory, GivesTheLastEndOfAnEqualLayer) {
+  EndHistory history;
+  history.Learn(PlanFingerprint(RingLayer(3, 0.1)), {1, 1});
+  history.Learn(PlanFingerprint(RingLayer(3, 0.2)), {2, 2});
+  history.Learn(PlanFingerprint(RingLayer(3, 0.1)), {3, 3});
+
+  EXPECT_EQ(history.EndOf(PlanFingerprint(RingLayer(3, 0.1))), (Point{3, 3}));
+  EXPECT_EQ(history.EndOf(PlanFingerprint(RingLayer(4, 0.1))), std::nullopt);
 }
 
 TEST(LayerChain, NoneReturnsTheGivenOrderAndItsTravel) {
@@ -185,6 +209,7 @@ TEST(LayerChain, APastDeadlineStillAnswersEveryLayer) {
 
   ASSERT_EQ(outcomes.size(), 12u);
   for (const auto& [index, outcome] : outcomes) {
+    EXPECT_EQ(outcome.stop, StopReason::kTimeLimit) << "layer " << index;
     EXPECT_EQ(outcome.route.size(), outcome.plan.paths.size());
   }
 }
