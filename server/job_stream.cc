@@ -15,12 +15,13 @@ namespace {
 using Clock = Budget::Clock;
 
 // The way back of the last results takes part of the deadline: a share of the time, within bounds,
-// and something for each layer and point that is known to come, but never more than half.
-constexpr double kMarginShare = 0.05;
-constexpr auto kMinMargin = std::chrono::milliseconds(5);
-constexpr auto kMaxMargin = std::chrono::milliseconds(250);
-constexpr auto kMarginPerLayer = std::chrono::microseconds(50);
-constexpr auto kMarginPerPoint = std::chrono::nanoseconds(100);
+// and something for each layer and point that is known to come, as even a layer whose time has run
+// out is given a greedy route, validated and written. But never more than half.
+constexpr double kMarginShare = 0.1;
+constexpr auto kMinMargin = std::chrono::milliseconds(10);
+constexpr auto kMaxMargin = std::chrono::milliseconds(500);
+constexpr auto kMarginPerLayer = std::chrono::microseconds(100);
+constexpr auto kMarginPerPoint = std::chrono::nanoseconds(500);
 
 Clock::duration Margin(Clock::duration left, int64_t layers, int64_t points) {
   const auto share = std::chrono::duration_cast<Clock::duration>(left * kMarginShare);

@@ -21,6 +21,19 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
+// Sanitizers slow everything down several times.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+#else
+constexpr bool kSanitized = false;
+#endif
+
 TEST(BadInput, NamesTheLayerInTheWholeJob) {
   TestService service;
   v1::OptimizeBatchRequest request = MakeBatch(4);
@@ -217,6 +230,76 @@ TEST(Cancellation, FreesTheJobsPlace) {
   EXPECT_EQ(stream.Finish().error_code(), grpc::StatusCode::CANCELLED);
   EXPECT_TRUE(service.Eventually([&] { return service.server().core().admission.jobs() == 0; }));
   EXPECT_EQ(service.server().core().queue_layers, 0);
+}
+
+// Layers that keep `exact` busy for longer than any test, each with a start of its own.
+v1::OptimizeBatchRequest HardBatch(int layers) {
+  v1::OptimizeBatchRequest request = MakeBatch(0, "exact");
+  for (int i = 0; i < layers; ++i) {
+    *request.add_layers() = MakeLayer(static_cast<uint64_t>(i), 150);
+    request.mutable_layers(i)->mutable_start();
+  }
+  return request;
+}
+
+TEST(Cancellation, FreesTheWorkersWithin50Milliseconds) {
+  TestService service;
+  ServiceCore& core = service.server().core();
+  grpc::ClientContext context;
+  const auto reader = service.stub().OptimizeBatch(&context, HardBatch(20));
+  ASSERT_TRUE(service.Eventually([&] { return core.pool.busy() == 2; }));
+  absl::SleepFor(absl::Milliseconds(100));
+  ASSERT_EQ(core.pool.busy(), 2) << "the layers are too easy";
+
+  const absl::Time begin = absl::Now();
+  context.TryCancel();
+  ASSERT_TRUE(service.Eventually([&] { return core.pool.busy() == 0; }));
+
+  EXPECT_LT(absl::Now() - begin, kSanitized ? absl::Seconds(2) : absl::Milliseconds(50));
+  EXPECT_EQ(reader->Finish().error_code(), grpc::StatusCode::CANCELLED);
+  EXPECT_TRUE(service.Eventually([&] { return core.queue_layers == 0; }));
+}
+
+TEST(Deadline, HardLayersComeBackBeforeIt) {
+  TestService service;
+  const v1::OptimizeBatchRequest request = HardBatch(20);
+  const absl::Duration deadline = absl::Milliseconds(500);
+
+  const absl::Time begin = absl::Now();
+  const Answer answer = service.Batch(request, deadline);
+
+  ASSERT_TRUE(answer.status.ok()) << answer.status.error_message();
+  EXPECT_GT(absl::Now() - begin, deadline / 2) << "the layers are too easy";
+  ASSERT_EQ(answer.layers.size(), 20u);
+  ASSERT_TRUE(answer.summary.has_value());
+  EXPECT_EQ(answer.layers.back().stop_reason(), v1::STOP_REASON_TIME_LIMIT);
+}
+
+TEST(Deadline, TimeLimitOfTheJobCountsToo) {
+  TestService service;
+  v1::OptimizeBatchRequest request = HardBatch(5);
+  request.mutable_options()->mutable_time_limit()->set_nanos(100'000'000);
+
+  const absl::Time begin = absl::Now();
+  const Answer answer = service.Batch(request);
+
+  ASSERT_TRUE(answer.status.ok()) << answer.status.error_message();
+  EXPECT_LT(absl::Now() - begin, absl::Seconds(kSanitized ? 5 : 1));
+  EXPECT_EQ(answer.layers.size(), 5u);
+}
+
+TEST(Deadline, LayerTimeLimitLetsEveryLayerHaveItsShare) {
+  TestService service;
+  v1::OptimizeBatchRequest request = HardBatch(4);
+  request.mutable_options()->mutable_layer_time_limit()->set_nanos(50'000'000);
+
+  const Answer answer = service.Batch(request);
+
+  ASSERT_EQ(answer.layers.size(), 4u);
+  for (const v1::LayerResult& layer : answer.layers) {
+    EXPECT_LT(layer.solve_seconds(), kSanitized ? 5 : 0.5);
+    EXPECT_LT(layer.cost(), layer.cost_given());
+  }
 }
 
 TEST(Deadline, AllLayersComeBackBeforeIt) {
