@@ -18,16 +18,17 @@ constexpr size_t kBytesPerPoint = 16;
 
 }  // namespace
 
-BatchReactor* BatchReactor::Start(ServiceCore& core, CallInfo call, grpc::ByteBuffer& request) {
+BatchReactor* BatchReactor::Start(ServiceCore& core, CallInfo call, const absl::Status& authorized,
+                                  grpc::ByteBuffer& request) {
   auto* reactor = new BatchReactor(core, std::move(call), request);
-  reactor->Run();
+  reactor->Run(authorized);
   return reactor;
 }
 
-void BatchReactor::Run() {
+void BatchReactor::Run(const absl::Status& authorized) {
   const size_t bytes = request_.Length();
   const auto points = static_cast<int64_t>(bytes / kBytesPerPoint + 1);
-  if (absl::Status status = Admit(points); !status.ok()) return End(status);
+  if (absl::Status status = Admit(authorized, points); !status.ok()) return End(status);
   const std::shared_ptr<JobRun> run = this->run();
   run->Hold();
   const auto read = [this, run] {

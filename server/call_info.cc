@@ -1,9 +1,11 @@
 #include "server/call_info.h"
 
 #include <grpc/support/time.h>
+#include <grpcpp/security/auth_context.h>
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace traverse {
 namespace {
@@ -46,6 +48,27 @@ std::string TraceId(const std::string& traceparent) {
     return "";
   }
   return traceparent.substr(kTrace, kParent - 1 - kTrace);
+}
+
+absl::Status Authorize(const grpc::CallbackServerContext& context, Authenticator& authenticator,
+                       CallInfo& info) {
+  CallCredentials credentials;
+  credentials.host = info.caller;
+  const auto& metadata = context.client_metadata();
+  const auto authorization = metadata.find("authorization");
+  if (authorization != metadata.end()) {
+    credentials.authorization.assign(authorization->second.data(), authorization->second.size());
+  }
+  const auto peer = context.auth_context();
+  if (peer != nullptr && peer->IsPeerAuthenticated()) {
+    for (const grpc::string_ref& identity : peer->GetPeerIdentity()) {
+      credentials.identities.emplace_back(identity.data(), identity.size());
+    }
+  }
+  absl::StatusOr<std::string> caller = authenticator.Identify(credentials);
+  if (!caller.ok()) return caller.status();
+  info.caller = *std::move(caller);
+  return absl::OkStatus();
 }
 
 CallInfo ReadCallInfo(const grpc::CallbackServerContext& context, const std::string& method) {

@@ -8,14 +8,16 @@
 #include <optional>
 #include <string>
 
+#include "absl/status/status.h"
 #include "engine/base/budget.h"
+#include "server/auth.h"
 
 namespace traverse {
 
 struct CallInfo {
   std::string method;    // without the service's name
   std::string peer;      // address with port, as gRPC writes it
-  std::string caller;    // who it is counted for: the peer without its port
+  std::string caller;    // who it is counted for; the peer without its port until Authorize
   std::string trace_id;  // 32 hexadecimal digits of a valid traceparent, or empty
   Budget::Clock::time_point start;
   std::optional<Budget::Clock::time_point> deadline;
@@ -24,6 +26,10 @@ struct CallInfo {
 // Reads the call's context. The deadline is counted from now on the steady clock, so that setting
 // the machine's clock moves no deadline.
 CallInfo ReadCallInfo(const grpc::CallbackServerContext& context, const std::string& method);
+
+// Sets `info.caller` to who `authenticator` says it is. Errors: Unauthenticated, PermissionDenied.
+absl::Status Authorize(const grpc::CallbackServerContext& context, Authenticator& authenticator,
+                       CallInfo& info);
 
 // `peer` without its port: "ipv4:10.0.0.7:41234" -> "ipv4:10.0.0.7".
 std::string PeerHost(const std::string& peer);

@@ -48,7 +48,12 @@ JobStream::~JobStream() {
   if (run_ != nullptr) core_.Unregister(run_);
 }
 
-absl::Status JobStream::Admit(int64_t points) {
+absl::Status JobStream::Admit(const absl::Status& authorized, int64_t points) {
+  if (!authorized.ok()) {
+    core_.admission.CountRefusal(absl::IsUnauthenticated(authorized) ? Refusal::kUnauthenticated
+                                                                     : Refusal::kPermission);
+    return authorized;
+  }
   absl::StatusOr<std::unique_ptr<Admission::Ticket>> ticket =
       core_.admission.Admit(call_.caller, points);
   if (!ticket.ok()) return ticket.status();

@@ -31,8 +31,9 @@ class JobStream : public JobPort {
  protected:
   JobStream(ServiceCore& core, CallInfo call);
 
-  // Lets the job in, with an estimate of its points, or returns why not. On success run() is there.
-  absl::Status Admit(int64_t points);
+  // Lets the job in, with an estimate of its points, or returns why not: `authorized`, what
+  // Authorize said of the call, or a limit. On success run() is there.
+  absl::Status Admit(const absl::Status& authorized, int64_t points);
 
   // Reads the job's options.
   absl::Status Begin(const v1::JobOptions& options);

@@ -50,6 +50,22 @@ class NoReflection : public grpc::ServerBuilderOption {
 // Longer than any drain, and short enough to be added to a time.
 constexpr absl::Duration kForever = absl::Hours(24 * 365);
 
+int Milliseconds(absl::Duration duration) {
+  return static_cast<int>(std::clamp<int64_t>(absl::ToInt64Milliseconds(duration), 0, INT_MAX));
+}
+
+void SetConnectionLimits(const ConnectionLimits& limits, grpc::ServerBuilder& builder) {
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, limits.max_streams);
+  builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, limits.max_header_bytes);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, Milliseconds(limits.keepalive_time));
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, Milliseconds(limits.keepalive_timeout));
+  // A caller may wait for long for a layer; without this the pings stop after two.
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
+  if (limits.max_age != absl::InfiniteDuration()) {
+    builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_MS, Milliseconds(limits.max_age));
+  }
+}
+
 // For calls that have ended to be done with, at the end of the server.
 constexpr absl::Duration kGrace = absl::Seconds(2);
 
@@ -96,6 +112,9 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   } catch (const std::exception& error) {
     return absl::UnavailableError(error.what());
   }
+  if (absl::Status status = server->core_.StartAuth(options.service.auth); !status.ok()) {
+    return status;
+  }
   if (absl::Status status = server->Build(options); !status.ok()) return status;
   return server;
 }
@@ -108,9 +127,13 @@ absl::Status Server::Build(const ServerOptions& options) {
   // Else a second server on the same port would take half of the connections, instead of failing.
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   if (!options.reflection) builder.SetOption(std::make_unique<NoReflection>());
+  SetConnectionLimits(options.connections, builder);
   int port = 0;
   if (!options.listen.empty()) {
-    builder.AddListeningPort(options.listen, grpc::InsecureServerCredentials(), &port);
+    absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> credentials =
+        MakeServerCredentials(options.tls, options.listen, options.insecure);
+    if (!credentials.ok()) return credentials.status();
+    builder.AddListeningPort(options.listen, *credentials, &port);
   }
   builder.RegisterService(&service_);
   server_ = builder.BuildAndStart();

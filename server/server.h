@@ -15,16 +15,29 @@
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
+#include "server/credentials.h"
 #include "server/metrics_http.h"
 #include "server/route_optimizer_service.h"
 #include "server/service_core.h"
 
 namespace traverse {
 
+// What one connection may do.
+struct ConnectionLimits {
+  int max_streams = 100;  // calls at a time
+  int max_header_bytes = 16384;
+  absl::Duration keepalive_time = absl::Seconds(30);     // idle, then the peer is asked
+  absl::Duration keepalive_timeout = absl::Seconds(10);  // for the answer
+  absl::Duration max_age = absl::InfiniteDuration();     // then clients connect anew
+};
+
 struct ServerOptions {
   std::string listen;          // HOST:PORT; port 0 takes a free one; empty: in-process only
   std::string metrics_listen;  // the same; empty: none
   bool reflection = true;
+  bool insecure = false;  // plaintext on addresses that other machines can reach
+  TlsOptions tls;
+  ConnectionLimits connections;
   ServiceOptions service;
 
   // No ports, no log, no limits but those that keep memory bounded. `threads` 0: one for each core.
@@ -37,7 +50,8 @@ int UsableCores();
 // Thread-safe.
 class Server {
  public:
-  // Errors: Unavailable with one line that says what could not be had: a port, a log file.
+  // Errors, with one line: InvalidArgument for plaintext that was not asked for; Unavailable for
+  // what could not be had: a port, a log file, a certificate.
   static absl::StatusOr<std::unique_ptr<Server>> Start(const ServerOptions& options);
 
   // Ends at once what is under way.

@@ -10,6 +10,17 @@ ServiceCore::ServiceCore(const ServiceOptions& options)
       admission(options.admission, [this](Refusal refusal) { metrics.CountRefusal(refusal); }),
       pool(options.threads) {}
 
+absl::Status ServiceCore::StartAuth(const AuthOptions& options) {
+  absl::StatusOr<std::unique_ptr<Authenticator>> made =
+      Authenticator::Make(options, [this](const absl::Status& status) {
+        log->Event(status.ok() ? JobLog::Level::kInfo : JobLog::Level::kError, "tokens_reloaded",
+                   {{"result", status.ok() ? "ok" : std::string(status.message())}});
+      });
+  if (!made.ok()) return made.status();
+  auth = *std::move(made);
+  return absl::OkStatus();
+}
+
 void ServiceCore::Register(const std::shared_ptr<JobRun>& run) {
   std::lock_guard<std::mutex> lock(mutex_);
   runs_.insert(run);

@@ -12,6 +12,7 @@
 
 #include "absl/status/status.h"
 #include "server/admission.h"
+#include "server/auth.h"
 #include "server/job_log.h"
 #include "server/job_run.h"
 #include "server/metrics.h"
@@ -33,6 +34,7 @@ struct ServiceOptions {
   int threads = 1;
   JobLimits limits;
   AdmissionLimits admission;
+  AuthOptions auth;
   std::string log_path;  // empty: stderr
   bool log = true;
 };
@@ -42,6 +44,9 @@ class ServiceCore {
  public:
   // Throws what JobLog throws.
   explicit ServiceCore(const ServiceOptions& options);
+
+  // Sets up `auth`; before the first call. Errors as of Authenticator::Make.
+  absl::Status StartAuth(const AuthOptions& options);
 
   // The calls whose jobs were let in, until gRPC is done with them.
   void Register(const std::shared_ptr<JobRun>& run);
@@ -58,6 +63,7 @@ class ServiceCore {
   Metrics metrics;
   std::unique_ptr<JobLog> log;
   Admission admission;
+  std::unique_ptr<Authenticator> auth;
   std::atomic<int64_t> queue_layers{0};  // accepted and not yet solved
 
  private:

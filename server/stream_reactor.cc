@@ -8,9 +8,10 @@
 
 namespace traverse {
 
-StreamReactor* StreamReactor::Start(ServiceCore& core, CallInfo call) {
+StreamReactor* StreamReactor::Start(ServiceCore& core, CallInfo call,
+                                    const absl::Status& authorized) {
   auto* reactor = new StreamReactor(core, std::move(call));
-  if (absl::Status status = reactor->Admit(/*points=*/0); !status.ok()) {
+  if (absl::Status status = reactor->Admit(authorized, /*points=*/0); !status.ok()) {
     reactor->End(status);
   } else {
     reactor->StartRead(&reactor->read_);

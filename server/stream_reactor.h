@@ -16,7 +16,7 @@ namespace traverse {
 class StreamReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
                       private JobStream {
  public:
-  static StreamReactor* Start(ServiceCore& core, CallInfo call);
+  static StreamReactor* Start(ServiceCore& core, CallInfo call, const absl::Status& authorized);
 
  private:
   using Bidi = grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>;

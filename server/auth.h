@@ -1,0 +1,94 @@
+// Who a call is from, and whether they may call.
+//
+//   bearer token   from a file of hashes; the caller is "token:NAME"
+//   certificate    of a client, verified by TLS; the caller is "cert:IDENTITY"
+//   neither        the caller is the address without its port
+//
+// Knows nothing of gRPC. Nothing here puts a token into a status or a log.
+
+#ifndef TRAVERSE_SERVER_AUTH_H_
+#define TRAVERSE_SERVER_AUTH_H_
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+
+namespace traverse {
+
+using Sha256 = std::array<unsigned char, 32>;
+
+Sha256 HashOf(const std::string& text);
+
+// One line of a token file.
+struct TokenEntry {
+  std::string name;
+  Sha256 hash;
+};
+
+// Reads "NAME HASH" lines: a name of letters, digits, '.', '_' and '-', and the SHA-256 of the
+// token in hexadecimal. '#' begins a comment. A name may stand on several lines, for tokens old and
+// new. InvalidArgument `line 3: ...`.
+absl::StatusOr<std::vector<TokenEntry>> ParseTokens(const std::string& text);
+
+// What a call shows of itself.
+struct CallCredentials {
+  std::string authorization;            // the metadata of that name; empty if there is none
+  std::vector<std::string> identities;  // of the verified client certificate; empty without one
+  std::string host;                     // the address without its port
+};
+
+struct AuthOptions {
+  std::string token_file;                  // empty: no token is asked for
+  std::vector<std::string> allowed_names;  // identities that may call; empty: all verified ones
+};
+
+// Thread-safe.
+class Authenticator {
+ public:
+  // `on_reload` is told of each reload of the token file that happened (OK) or failed; the tokens
+  // known before then stay. Errors: Unavailable if the token file cannot be used.
+  static absl::StatusOr<std::unique_ptr<Authenticator>> Make(
+      const AuthOptions& options, std::function<void(const absl::Status&)> on_reload);
+
+  // The name of the caller, by which he is counted. Errors: Unauthenticated, PermissionDenied.
+  absl::StatusOr<std::string> Identify(const CallCredentials& credentials);
+
+ private:
+  // Tells whether a file has changed.
+  struct FileState {
+    int64_t modified_ns = 0;
+    int64_t size = -1;
+    uint64_t inode = 0;
+    friend bool operator==(const FileState&, const FileState&) = default;
+  };
+  using Tokens = std::shared_ptr<const std::vector<TokenEntry>>;
+
+  Authenticator(const AuthOptions& options, std::function<void(const absl::Status&)> on_reload)
+      : options_(options), on_reload_(std::move(on_reload)) {}
+
+  // The tokens of the file as it is now; looks at it once a second at most.
+  Tokens CurrentTokens();
+
+  absl::Status Load();  // REQUIRES: mutex_ is held
+
+  static FileState StateOf(const std::string& path);
+
+  const AuthOptions options_;
+  const std::function<void(const absl::Status&)> on_reload_;
+  std::mutex mutex_;
+  Tokens tokens_;
+  FileState state_;
+  std::chrono::steady_clock::time_point looked_{};
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_SERVER_AUTH_H_
