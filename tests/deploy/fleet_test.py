@@ -1,0 +1,84 @@
+#!/usr/bin/python3
+"""Three servers behind the load balancer: jobs are shared evenly, and a rollout fails none."""
+
+import sys
+import threading
+import time
+import unittest
+
+import support
+import example_cases
+import fleet
+import jobs
+
+
+class FleetCases(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls):
+        example_cases.generate()
+        sys.path.insert(0, str(support.DEPLOY / "examples/python"))
+        from google.protobuf import json_format
+        from traverse.v1 import route_optimizer_service_pb2 as api
+        cls.job = json_format.ParseDict(
+            jobs.plate(layers=30, islands=25, vertices=24, options={"strategy": {"name": "greedy"}}),
+            api.OptimizeBatchRequest())
+
+    def client(self, address):
+        from traverse_client import TraverseClient
+        client = TraverseClient([address])
+        self.addCleanup(client.close)
+        return client
+
+    def submit(self, client, deadline=30):
+        indices = [result.index for result in client.optimize(self.job, deadline)]
+        self.assertEqual(list(range(len(self.job.layers))), indices)
+
+    def test_jobs_are_balanced_within_ten_percent(self):
+        with fleet.Fleet() as servers:
+            clients = [self.client(servers.address) for _ in range(2)]
+            for client in clients:
+                for _ in range(60):
+                    self.submit(client)
+            counts = [server.sum_of("traverse_jobs_total", code="OK") for server in servers.servers]
+
+        print(f"jobs by server: {counts}")
+        self.assertEqual(120, sum(counts))
+        for count in counts:
+            self.assertAlmostEqual(40, count, delta=4)
+
+    def test_a_rolling_restart_under_load_fails_no_job(self):
+        with fleet.Fleet("--drain_timeout=20s") as servers:
+            local = threading.local()
+
+            def submit():
+                if not hasattr(local, "client"):
+                    local.client = self.client(servers.address)
+                self.submit(local.client)
+
+            with fleet.Load(submit, threads=4) as load:
+                time.sleep(1)
+                codes = [servers.restart(index) for index in range(3)]
+                time.sleep(1)
+
+        print(f"{load.done} jobs during the rollout, {len(load.failures)} failed, "
+              f"longest {max(load.seconds):.2f} s; exit codes {codes}")
+        self.assertEqual([], load.failures)
+        self.assertEqual([0, 0, 0], codes)
+        self.assertGreater(load.done, 20)
+
+    def test_a_killed_server_fails_no_job(self):
+        with fleet.Fleet() as servers:
+            client = self.client(servers.address)
+            with fleet.Load(lambda: self.submit(client), threads=4) as load:
+                time.sleep(1)
+                servers.servers[1].popen.kill()
+                time.sleep(3)
+
+        print(f"{load.done} jobs, {len(load.failures)} failed, longest {max(load.seconds):.2f} s")
+        self.assertEqual([], load.failures)
+        self.assertGreater(load.done, 20)
+
+
+if __name__ == "__main__":
+    support.main("haproxy", "protoc", "grpc_python_plugin")

@@ -1,0 +1,153 @@
+#!/usr/bin/python3
+"""A real Prometheus scrapes loaded servers: every panel and every recorded series has data.
+
+With TRAVERSE_PICTURE=FILE.svg in the environment it also draws the dashboard, after TRAVERSE_PICTURE_SECONDS.
+"""
+
+import json
+import os
+import pathlib
+import re
+import shutil
+import sys
+import tempfile
+import time
+import unittest
+import urllib.parse
+
+import support
+import example_cases
+import fleet
+import jobs
+import picture
+
+yaml = support.module("yaml", "python3-yaml")
+
+MONITORING = support.DEPLOY / "monitoring"
+
+
+class Prometheus(support.Process):
+    """The configuration of compose.yaml with the fleet's addresses, scraping each second."""
+
+    def __init__(self, folder, servers, stats):
+        config = yaml.safe_load((support.DEPLOY / "compose/prometheus.yml").read_text())
+        config["global"] = {"scrape_interval": "1s", "evaluation_interval": "1s"}
+        targets = {"traverse": [f"127.0.0.1:{server.metrics_port}" for server in servers], "balancer": [stats]}
+        for scrape in config["scrape_configs"]:
+            scrape["static_configs"][0]["targets"] = targets[scrape["job_name"]]
+        (folder / "rules").mkdir()
+        for path in (MONITORING / "rules").glob("*.yml"):
+            (folder / "rules" / path.name).write_text(re.sub(r"interval: \w+", "interval: 1s", path.read_text()))
+        (folder / "prometheus.yml").write_text(yaml.safe_dump(config))
+        support.run("promtool", "check", "config", folder / "prometheus.yml")
+        self.url = f"http://127.0.0.1:{support.free_port()}"
+        super().__init__("prometheus", f"--config.file={folder}/prometheus.yml", f"--storage.tsdb.path={folder}/data",
+                         f"--web.listen-address={self.url.removeprefix('http://')}")
+
+    def ask(self, kind, **parameters):
+        status, text = support.http(f"{self.url}/api/v1/{kind}?{urllib.parse.urlencode(parameters)}", timeout=20)
+        if status != 200:
+            raise AssertionError(f"{parameters}: {status} {text}")
+        return json.loads(text)["data"]
+
+    def samples(self, expression):
+        """The numbers that an expression gives now, without NaN."""
+        result = self.ask("query", query=expression)["result"]
+        return [float(one["value"][1]) for one in result if one["value"][1] != "NaN"]
+
+
+def concrete(expression):
+    for name, value in (("$__rate_interval", "15s"), ("$__range", "5m"), ("$job", ".+"), ("$instance", ".+")):
+        expression = expression.replace(name, value)
+    return expression
+
+
+class Observability(unittest.TestCase):
+
+    def setUp(self):
+        example_cases.generate()
+        sys.path.insert(0, str(support.DEPLOY / "examples/python"))
+        from traverse_client import JobFailed, TraverseClient
+        self.failed = JobFailed
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="traverse-prometheus-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.make_client = TraverseClient
+
+    def request(self, **options):
+        from google.protobuf import json_format
+        from traverse.v1 import route_optimizer_service_pb2 as api
+        return json_format.ParseDict(jobs.plate(layers=8, islands=20, options=options), api.OptimizeBatchRequest())
+
+    def strategies(self, address):
+        import grpc
+        from traverse.v1 import route_optimizer_service_pb2 as api, route_optimizer_service_pb2_grpc as service
+        with grpc.insecure_channel(address) as channel:
+            return service.RouteOptimizerServiceStub(channel).ListStrategies(api.ListStrategiesRequest()).strategies
+
+    def load(self, address):
+        """Jobs of every strategy, some with little time, some that are wrong."""
+        infos = [info for info in self.strategies(address)]
+        requests = [self.request(strategy={"name": info.name}, layer_time_limit="0.02s") for info in infos]
+        requests.append(self.request(strategy={"name": "nonsense"}))
+        client = self.make_client([address])
+        self.addCleanup(client.close)
+        turn = iter(range(10 ** 9))
+
+        def submit():
+            try:
+                for _ in client.optimize(requests[next(turn) % len(requests)], 30):
+                    pass
+            except self.failed:
+                pass
+            time.sleep(0.02)
+        return submit, any(info.lower_bound for info in infos)
+
+    def test_every_panel_and_every_recorded_series_has_data(self):
+        dashboard = json.loads((MONITORING / "dashboard/traverse.json").read_text())
+        recorded = re.findall(r"record: (\S+)", (MONITORING / "rules/recording.yml").read_text())
+        panels = [(panel["title"], concrete(target["expr"])) for panel in dashboard["panels"] if panel["type"] != "row"
+                  for target in panel["targets"]]
+        with fleet.Fleet() as servers, Prometheus(self.folder, servers.servers, servers.stats) as prometheus:
+            submit, bounds = self.load(servers.address)
+            with fleet.Load(submit, threads=2):
+                missing = list(recorded) + panels
+                end = time.monotonic() + 40
+                while missing and time.monotonic() < end:
+                    time.sleep(2)
+                    missing = [one for one in missing if not self.has_data(prometheus, one, bounds)]
+                self.assertEqual([], missing)
+                self.draw_if_asked(prometheus, dashboard)
+                firing = prometheus.ask("query", query='ALERTS{alertstate="firing", severity="page"}')["result"]
+                active = {one["labels"]["instance"]: one["health"] for one in prometheus.ask("targets")["activeTargets"]}
+
+        self.assertEqual([], firing)
+        self.assertEqual({"up"}, set(active.values()))
+        self.assertEqual(4, len(active))
+        print(f"{len(panels)} queries of the dashboard and {len(recorded)} recorded series have data")
+
+    def has_data(self, prometheus, one, bounds):
+        title, expression = (one, one) if isinstance(one, str) else one
+        if title == "Gap to the optimum" and not bounds:
+            return True  # no strategy of this server gives bounds
+        return bool(prometheus.samples(expression))
+
+    def draw_if_asked(self, prometheus, dashboard):
+        path = os.environ.get("TRAVERSE_PICTURE")
+        if not path:
+            return
+        time.sleep(float(os.environ.get("TRAVERSE_PICTURE_SECONDS", "60")))
+        now = time.time()
+
+        def ask_range(expression):
+            return prometheus.ask("query_range", query=concrete(expression), start=now - 60, end=now, step=2)["result"]
+        picture.draw(dashboard, ask_range, pathlib.Path(path))
+
+    def test_the_servers_metrics_follow_prometheus_rules(self):
+        with support.Server() as server:
+            text = support.http(f"{server.metrics}/metrics")[1]
+        done = support.run("promtool", "check", "metrics", input=text, ok=False)
+        self.assertEqual((0, ""), (done.returncode, done.stdout + done.stderr))
+
+
+if __name__ == "__main__":
+    support.main("prometheus", "promtool", "haproxy", "protoc", "grpc_python_plugin")
