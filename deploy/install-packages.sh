@@ -12,7 +12,10 @@ build=(
   libabsl-dev prometheus-cpp-dev libspdlog-dev nlohmann-json3-dev
   zlib1g-dev liblzma-dev coinor-libcbc-dev coinor-libclp-dev
 )
-test=(libgtest-dev libgmock-dev libbenchmark-dev python3 xz-utils openssl)
+test=(
+  libgtest-dev libgmock-dev libbenchmark-dev xz-utils openssl
+  python3 python3-grpcio python3-protobuf python3-yaml
+)
 sanitize=(clang libclang-rt-14-dev llvm)
 
 case "${1:-}" in
