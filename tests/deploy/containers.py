@@ -4,6 +4,7 @@ Works where there is neither systemd nor a Docker engine: runc, cgroupfs, and fi
 Where no registry can be reached the base images are made of Debian's packages, under the same names.
 """
 
+import json
 import os
 import pathlib
 import shutil
@@ -51,26 +52,36 @@ class Store:
     def has(self, image):
         return self.podman("image", "exists", image, ok=False).returncode == 0
 
-    def provide(self, image, packages=(), changes=()):
-        """Sees that an image is there: from its registry, else made of Debian's packages."""
-        if self.has(image) or self.podman("pull", "-q", image, ok=False).returncode == 0:
+    def provide_base(self):
+        """Sees that the base image is there: from its registry, else made of Debian's packages."""
+        if self.has(BASE) or self.podman("pull", "-q", BASE, ok=False).returncode == 0:
             return
         if not shutil.which("mmdebstrap"):
-            raise unittest.SkipTest(f"{image} can be neither pulled nor made (no mmdebstrap)")
+            raise unittest.SkipTest(f"{BASE} can be neither pulled nor made (no mmdebstrap)")
         archive = self.folder / "base.tar"
         done = support.run(
-            "mmdebstrap", "--variant=minbase", f"--include={','.join(('ca-certificates', *packages))}",
+            "mmdebstrap", "--variant=minbase", "--include=ca-certificates",
             "--dpkgopt=path-exclude=/usr/share/man/*", "--dpkgopt=path-exclude=/usr/share/doc/*",
             "--dpkgopt=path-include=/usr/share/doc/*/copyright",
             '--customize-hook=rm -rf "$1"/var/lib/apt/lists/*', "bookworm", archive, ok=False)
         if done.returncode != 0:
-            raise unittest.SkipTest(f"{image} can be neither pulled nor made: {done.stderr[-500:]}")
-        self.podman("import", *(word for change in changes for word in ("--change", change)), archive, image)
+            raise unittest.SkipTest(f"{BASE} can be neither pulled nor made: {done.stderr[-500:]}")
+        self.podman("import", archive, BASE)
         archive.unlink()
+
+    def provide(self, image, package, entrypoint):
+        """Sees that an image is there: from its registry, else Debian's package on the base image."""
+        if self.has(image) or self.podman("pull", "-q", image, ok=False).returncode == 0:
+            return
+        self.provide_base()
+        recipe = self.folder / "Dockerfile"
+        recipe.write_text(f"FROM {BASE}\nRUN apt-get update -qq && apt-get install -y -qq --no-install-recommends {package}\n"
+                          f"ENTRYPOINT {json.dumps(entrypoint)}\n")
+        self.buildah("bud", "--isolation", "chroot", "--pull-never", "-f", recipe, "-t", image, self.folder / "run")
 
     def build_server(self, tag):
         """Builds deploy/Dockerfile; returns what Buildah said."""
-        self.provide(BASE)
+        self.provide_base()
         return self.buildah("bud", "--isolation", "chroot", "--pull-never", "--layers", "--format", "docker",
                             "--ignorefile", support.DEPLOY / "Dockerfile.dockerignore",
                             "-f", support.DEPLOY / "Dockerfile", "-t", tag, support.SOURCE).stdout
