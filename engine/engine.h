@@ -11,8 +11,10 @@
 #define TRAVERSE_ENGINE_ENGINE_H_
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "absl/time/time.h"
 #include "engine/base/budget.h"
@@ -72,6 +74,7 @@ struct LayerOutcome {
   double cleaning_mm = 0;
   StopReason stop = StopReason::kLocalOptimum;
   double solve_seconds = 0;
+  std::map<std::string, double> statistics = {};  // Solution::statistics
 
   // Not empty: the strategy's route was invalid, for this reason, and the given order took its
   // place.

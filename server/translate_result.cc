@@ -145,6 +145,7 @@ void ToProto(const LayerOutcome& outcome, uint64_t id, const std::string& strate
   result.set_solve_seconds(outcome.solve_seconds);
   result.set_cleaning_mm(outcome.cleaning_mm);
   result.set_cleaning_given_mm(outcome.cleaning_given_mm);
+  result.mutable_statistics()->insert(outcome.statistics.begin(), outcome.statistics.end());
 }
 
 void JobTotals::Add(const LayerOutcome& outcome) {

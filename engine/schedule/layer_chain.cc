@@ -145,6 +145,8 @@ Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot&
   Budget budget = LayerBudget(1 - kSolveShare);
   Solution solution = strategy_->quick() ? strategy_->Solve(problem, budget)
                                          : strategy_->Resume(problem, slot.first.route, budget);
+  // What resuming does not tell of itself is as it was.
+  solution.statistics.insert(slot.first.statistics.begin(), slot.first.statistics.end());
   // A search that the clock cut short stays so, whatever the polishing came to.
   if (slot.first.stop == StopReason::kTimeLimit) solution.stop = StopReason::kTimeLimit;
   return solution;
@@ -192,6 +194,7 @@ LayerOutcome LayerChain::Anchor(Slot& slot, Point start) const {
   outcome.cost = RouteCost(problem, solution.route) - finish_cost;
   if (solution.lower_bound) outcome.lower_bound = *solution.lower_bound - finish_cost;
   outcome.stop = solution.stop;
+  outcome.statistics = std::move(solution.statistics);
   outcome.route = std::move(solution.route);
   outcome.plan = std::move(slot.layer.plan);
   outcome.solve_seconds += watch.Seconds();

@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_ENGINE_STRATEGY_STRATEGY_H_
 #define TRAVERSE_ENGINE_STRATEGY_STRATEGY_H_
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,6 +23,9 @@ struct Solution {
 
   // No route of the problem costs less, in the unit of its cost, `finish` included. Unset: unknown.
   std::optional<double> lower_bound;
+
+  // What the search can tell of itself, by name; what there is depends on the strategy.
+  std::map<std::string, double> statistics = {};
 };
 
 // One method with the options of one job. Immutable after construction, so that layers may be
