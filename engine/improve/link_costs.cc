@@ -13,10 +13,13 @@ LinkCosts::LinkCosts(const LayerProblem& problem, const EntryTable& table, const
   if (table.entry_count() > kMatrixEntries) return;
   stride_ = static_cast<size_t>(table.entry_count()) + 2;
   std::vector<double> matrix(stride_ * stride_);
+  transposed_.resize(stride_ * stride_);
   for (int from = 0; from <= start(); ++from) {
     for (int to = 0; to <= finish(); ++to) {
       if (to == start()) continue;
-      matrix[static_cast<size_t>(from) * stride_ + static_cast<size_t>(to)] = Compute(from, to);
+      const double cost = Compute(from, to);
+      matrix[static_cast<size_t>(from) * stride_ + static_cast<size_t>(to)] = cost;
+      transposed_[static_cast<size_t>(to) * stride_ + static_cast<size_t>(from)] = cost;
     }
   }
   matrix_ = std::move(matrix);

@@ -25,11 +25,11 @@ struct LinkRules {
 };
 
 // Entries are those of `table`, and two more: the problem's start, and its finish (which costs
-// nothing to reach if the problem has none). Immutable. Memory: 8 (entries + 2)^2 bytes for up to
+// nothing to reach if the problem has none). Immutable. Memory: 16 (entries + 2)^2 bytes for up to
 // kMatrixEntries entries, else nothing, and costs are computed when they are asked for.
 class LinkCosts {
  public:
-  static constexpr int kMatrixEntries = 1200;
+  static constexpr int kMatrixEntries = 1000;
 
   // All arguments outlive this.
   LinkCosts(const LayerProblem& problem, const EntryTable& table, const LinkRules& rules);
@@ -41,6 +41,15 @@ class LinkCosts {
   double operator()(int from, int to) const {
     return matrix_.empty() ? Compute(from, to)
                            : matrix_[static_cast<size_t>(from) * stride_ + static_cast<size_t>(to)];
+  }
+
+  // The costs of the moves from one entry to every other, and of those to one entry from every
+  // other, [entry]. Null if there is no matrix.
+  const double* From(int entry) const {
+    return matrix_.empty() ? nullptr : &matrix_[static_cast<size_t>(entry) * stride_];
+  }
+  const double* To(int entry) const {
+    return matrix_.empty() ? nullptr : &transposed_[static_cast<size_t>(entry) * stride_];
   }
 
   // Whether the move is one against the rules.
@@ -59,7 +68,8 @@ class LinkCosts {
   TravelCost travel_;
   double penalty_;
   size_t stride_ = 0;
-  std::vector<double> matrix_;  // [from * stride_ + to]
+  std::vector<double> matrix_;      // [from * stride_ + to]
+  std::vector<double> transposed_;  // [to * stride_ + from]
 };
 
 }  // namespace traverse

@@ -100,6 +100,54 @@ SwapSequence::Placed SwapSequence::BestBetween(int before, int node, int after) 
   return best;
 }
 
+void SwapSequence::FillPlacedCosts(absl::Span<const int> nodes, int before, int after,
+                                   absl::Span<double> placed) const {
+  const double* from = links_.From(before);
+  const double* to = links_.To(after);
+  for (size_t k = 0; k < nodes.size(); ++k) {
+    const int path = tree_.path_of(nodes[k]);
+    if (from == nullptr || path < 0 || table_.count(path) > kTryAllEntries) {
+      placed[k] = PlacedCost(nodes[k], before, after);
+      continue;
+    }
+    const int first = table_.first(path);
+    placed[k] = from[first] + to[first];
+    for (int entry = first + 1; entry < table_.first(path + 1); ++entry) {
+      placed[k] = std::min(placed[k], from[entry] + to[entry]);
+    }
+  }
+}
+
+// The cost of the moves before -> y -> x -> after with the best entries, for two paths with few of
+// them; unset for others.
+std::optional<double> SwapSequence::NeighborCost(int x, int y, int before, int after) const {
+  const double* to_y = links_.From(before);
+  const double* from_x = links_.To(after);
+  const int x_path = tree_.path_of(x);
+  const int y_path = tree_.path_of(y);
+  if (to_y == nullptr || x_path < 0 || y_path < 0 || table_.count(x_path) > kTryAllEntries ||
+      table_.count(y_path) > kTryAllEntries) {
+    return std::nullopt;
+  }
+  double best = std::numeric_limits<double>::infinity();
+  for (int y_entry = table_.first(y_path); y_entry < table_.first(y_path + 1); ++y_entry) {
+    const double* from_y = links_.From(y_entry);
+    for (int x_entry = table_.first(x_path); x_entry < table_.first(x_path + 1); ++x_entry) {
+      best = std::min(best, to_y[y_entry] + from_y[x_entry] + from_x[x_entry]);
+    }
+  }
+  return best;
+}
+
+double SwapSequence::NeighborDelta(int node, int i) const {
+  const int x = tree_.child_at(node, i);
+  const int y = tree_.child_at(node, i + 1);
+  const auto cost = NeighborCost(x, y, entry_before(x), entry_after(y));
+  if (!cost) return Evaluate(node, i, i + 1).delta;
+  return *cost - links_(entry_before(x), first_entry(x)) - links_(last_entry(x), first_entry(y)) -
+         links_(last_entry(y), entry_after(y));
+}
+
 // x is followed by y at once.
 void SwapSequence::EvaluateNeighbors(int x, int y, SwapMove& move) const {
   const int before = entry_before(x);

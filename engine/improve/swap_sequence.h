@@ -15,6 +15,7 @@
 #include <optional>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "engine/base/rng.h"
 #include "engine/cost/entry_choice.h"
 #include "engine/cost/entry_table.h"
@@ -74,6 +75,13 @@ class SwapSequence {
     return BestBetween(before, node, after).cost;
   }
 
+  // placed[k] = PlacedCost(nodes[k], before, after), but faster.
+  void FillPlacedCosts(absl::Span<const int> nodes, int before, int after,
+                       absl::Span<double> placed) const;
+
+  // Evaluate(node, i, i + 1).delta, but faster.
+  double NeighborDelta(int node, int i) const;
+
   // REQUIRES: 0 <= i < j < tree().child_count(node).
   SwapMove Evaluate(int node, int i, int j) const;
   void Apply(const SwapMove& move);
@@ -101,6 +109,7 @@ class SwapSequence {
   void ForEnds(int node, int before, int after, const Function& function) const;
   int NearestEntry(int path, std::optional<Point> to) const;
   Placed BestBetween(int before, int node, int after) const;
+  std::optional<double> NeighborCost(int x, int y, int before, int after) const;
   void EvaluateNeighbors(int x, int y, SwapMove& move) const;
   void EvaluateApart(int x, int y, SwapMove& move) const;
   void ComputeCost();

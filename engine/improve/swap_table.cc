@@ -56,9 +56,7 @@ void SwapTable::Update() {
     child_at_[k] = local_[Index(child - children_.front())];
     double* row = &placed_[k * count_];
     if (around_changed) {
-      for (size_t c = 0; c < count_; ++c) {
-        row[c] = sequence_.PlacedCost(children_[c], now.before, now.after);
-      }
+      sequence_.FillPlacedCosts(children_, now.before, now.after, absl::MakeSpan(row, count_));
     } else {
       for (const int c : moved_) {
         row[c] = sequence_.PlacedCost(children_[Index(c)], now.before, now.after);
@@ -75,7 +73,7 @@ void SwapTable::UpdateNeighbors(int i) {
   Neighbors& neighbors = neighbors_[Index(i)];
   if (std::equal(entries, entries + 6, neighbors.entries)) return;
   std::copy(entries, entries + 6, neighbors.entries);
-  neighbors.delta = sequence_.Evaluate(node_, i, i + 1).delta;
+  neighbors.delta = sequence_.NeighborDelta(node_, i);
 }
 
 }  // namespace traverse

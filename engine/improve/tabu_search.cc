@@ -25,6 +25,13 @@ int ChildrenOf(const SequenceTree& tree) {
   return children;
 }
 
+// How many orders there are, `before` pairs apart.
+double Orders(const SequenceTree& tree) {
+  double orders = 1;
+  for (const int node : tree.movable_nodes()) orders *= std::tgamma(tree.child_count(node) + 1.0);
+  return orders;
+}
+
 // How long a move stays tabu. Constant unless reactive.
 class Tenure {
  public:
@@ -86,12 +93,12 @@ class Search {
   TabuResult Run(const Route& start) {
     sequence_.Load(start);
     sequence_.ChooseEntries();
-    for (int d = 0; d < options_.diversifications && !budget_.ExhaustedNow(); ++d) {
+    const double limit = std::min<double>(options_.diversifications, Orders(sequence_.tree()));
+    for (int d = 0; d < limit && !budget_.ExhaustedNow(); ++d) {
       if (d > 0) Diversify();
       ++changes_;
       Intensify();
       ++result_.diversifications;
-      if (children_ < 3 && d > 0) break;  // both orders were seen
     }
     if (result_.elite.empty()) Keep();
     return std::move(result_);
