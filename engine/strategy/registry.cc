@@ -11,6 +11,7 @@
 #include "engine/strategy/greedy.h"
 #include "engine/strategy/ni2opt.h"
 #include "engine/strategy/none.h"
+#include "engine/strategy/tabu.h"
 
 namespace traverse {
 namespace {
@@ -22,17 +23,20 @@ constexpr std::array<const char*, 6> kKnownNames = {"none", "greedy", "ni2opt",
 }  // namespace
 
 const std::vector<StrategyEntry>& Strategies() {
-  static const auto& entries = *new std::vector<StrategyEntry>{NoneEntry(), GreedyEntry(),
-                                                               Ni2optEntry(), ExactEntry()};
+  static const auto& entries = *new std::vector<StrategyEntry>{
+      NoneEntry(), GreedyEntry(), Ni2optEntry(), TabuEntry(), ExactEntry()};
   return entries;
 }
 
-// The one of most effort whose effort is bounded: a proof may take for ever.
+// `auto` where there is one; before it, what is quick and good.
 const std::string& DefaultStrategyName() {
   const auto& entries = Strategies();
-  return std::find_if(entries.rbegin(), entries.rend(),
-                      [](const StrategyEntry& e) { return e.name != "exact"; })
-      ->name;
+  const auto named = [&](const char* name) {
+    return std::find_if(entries.begin(), entries.end(),
+                        [&](const StrategyEntry& e) { return e.name == name; });
+  };
+  const auto best = named("auto");
+  return (best != entries.end() ? best : named("ni2opt"))->name;
 }
 
 absl::StatusOr<std::unique_ptr<Strategy>> MakeStrategy(

@@ -49,6 +49,19 @@ TEST(Service, BatchAnswersEachLayerThenTheSummary) {
   EXPECT_NEAR(answer.summary->idle_seconds(), travel_mm / 20.32, 1e-9);
 }
 
+TEST(Service, PassesOnWhatTheSearchTellsOfItself) {
+  TestService service;
+  v1::OptimizeBatchRequest request = MakeBatch(2, "tabu");
+  (*request.mutable_options()->mutable_strategy()->mutable_options())["diversifications"] = "2";
+
+  const Answer answer = service.Batch(request);
+
+  ASSERT_TRUE(answer.status.ok()) << answer.status.error_message();
+  for (const v1::LayerResult& layer : answer.layers) {
+    EXPECT_EQ(layer.statistics().at("points_bbcp"), 2);
+  }
+}
+
 TEST(Service, VisitsNameIslandsContoursAndRasters) {
   TestService service;
   v1::OptimizeBatchRequest request;

@@ -1,0 +1,198 @@
+#include "engine/strategy/tabu.h"
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "engine/cost/layer_view.h"
+#include "engine/cost/route_cost.h"
+#include "engine/framework/island_layout.h"
+#include "engine/improve/descent.h"
+#include "engine/strategy/framework_search.h"
+#include "engine/strategy/greedy.h"
+#include "engine/strategy/ni2opt.h"
+#include "engine/strategy/stop.h"
+
+namespace traverse {
+namespace {
+
+// Of the time that is left once there is a first route, what the framework may use if it is to be
+// polished.
+constexpr double kFrameworkShare = 0.3;
+
+struct Candidate {
+  Route route;
+  double cost = 0;
+};
+
+class Tabu : public Strategy {
+ public:
+  Tabu(const FrameworkOptions& options, bool polish)
+      : options_(options), polish_(polish), first_(MakeFirst(polish)) {}
+
+  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+    const LayerView layer(problem);
+    Solution solution = first_->Solve(problem, budget);
+    Candidate best{std::move(solution.route), 0};
+    best.cost = RouteCost(problem, best.route);
+    Budget share = FrameworkBudget(budget);
+    Route found = Search(layer, best.route, share, solution.statistics);
+    if (polish_) found = Improve(layer, found, DescentOptions(), budget);
+    Take(layer, std::move(found), best);
+    solution.route = std::move(best.route);
+    budget.ExhaustedNow();
+    solution.stop = StopOr(budget, StopOr(share, StopReason::kIterationLimit));
+    return solution;
+  }
+
+  // The order that was found for another start is a good one still.
+  Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
+    return polish_ ? first_->Resume(problem, start, budget)
+                   : Strategy::Resume(problem, start, budget);
+  }
+
+  // As the thesis has it, every layer starts where the one before ended: without polish nothing
+  // repairs a route that was found for another start.
+  bool trivial() const override { return !polish_; }
+
+ private:
+  // What gives a route at once, which no result is worse than.
+  static std::unique_ptr<Strategy> MakeFirst(bool polish) {
+    const StrategyEntry entry = polish ? Ni2optEntry() : GreedyEntry();
+    return entry.make(*StrategyOptions::Parse(entry.options, {}));
+  }
+
+  static void Take(const LayerView& layer, Route route, Candidate& best) {
+    const double cost = RouteCost(layer.problem, route);
+    if (cost < best.cost) best = {std::move(route), cost};
+  }
+
+  Budget FrameworkBudget(const Budget& budget) const {
+    if (!polish_ || !budget.deadline()) return budget;
+    const auto left = *budget.deadline() - Budget::Clock::now();
+    return budget.Within(
+        std::chrono::duration_cast<Budget::Clock::duration>(left * kFrameworkShare));
+  }
+
+  Route Search(const LayerView& layer, const Route& start, Budget& budget,
+               std::map<std::string, double>& statistics) const {
+    const std::optional<ClassicalLayer> classical = AsClassicalLayer(layer.plan());
+    if (!classical) return SearchAnyPlan(layer.problem, start, options_, budget);
+    FrameworkResult result = SearchFramework(layer.problem, *classical, start, options_, budget);
+    statistics["framework_cost"] = RouteCost(layer.problem, result.route);
+    statistics["points_entries"] = result.points.entries;
+    statistics["points_island_analysis"] = result.points.island_analysis;
+    statistics["points_sp"] = result.points.spaced;
+    statistics["points_bbcp"] = result.points.box_center;
+    statistics["points_vp"] = result.points.visible;
+    if (options_.representation == Representation::kNearRasterPoints) {
+      statistics["points_nrp"] = result.points.near_raster;
+    }
+    return std::move(result.route);
+  }
+
+  FrameworkOptions options_;
+  bool polish_;
+  std::unique_ptr<const Strategy> first_;
+};
+
+OptionSpec Number(const char* name, OptionSpec::Type type, const char* default_value,
+                  double minimum, double maximum, const char* description) {
+  return OptionSpec{name, type, default_value, minimum, maximum, {}, description};
+}
+
+OptionSpec Switch(const char* name, const char* default_value, const char* description) {
+  return OptionSpec{name, OptionSpec::Type::kBool, default_value, 0, 0, {}, description};
+}
+
+std::vector<OptionSpec> Options() {
+  using Type = OptionSpec::Type;
+  return {
+      OptionSpec{
+          "representation",
+          Type::kChoice,
+          "bbcp",
+          0,
+          0,
+          {"sp", "nrp", "bbcp"},
+          "What stands for a contour in the preliminary sequence: spaced points, points near "
+          "the ends of the island's rasters, or the center of its bounding box."},
+      Number("spacing_mm", Type::kDouble, "2.5", 0, 1000,
+             "Least distance of the spaced points of a contour (Dp), in mm."),
+      Number("neighbors", Type::kInt, "2", 1, 100,
+             "Contours that the growing circle around one has to meet."),
+      Number("first_radius_mm", Type::kDouble, "0", 0, 1000,
+             "Radius of the circle at first, in mm; 0: the shorter side of the bounding box."),
+      Number("radius_step_mm", Type::kDouble, "5", 0.001, 1000,
+             "How much the circle grows at a time, in mm."),
+      Number("neighbor_penalty", Type::kDouble, "100", 0, 1e6,
+             "A link outside the neighborhoods counts as if it were so much longer, in mm."),
+      Number("order_penalty", Type::kDouble, "1000", 0, 1e6,
+             "The same for an order that the plan rules out, in mm; no result has one."),
+      Number("diversifications", Type::kInt, "2500", 1, 1000000,
+             "How often the search starts anew, in each of the steps for contours and rasters."),
+      OptionSpec{"diversification",
+                 Type::kChoice,
+                 "random",
+                 0,
+                 0,
+                 {"random", "swaps"},
+                 "From what: a random sequence, or the best one after random swaps."},
+      Number("swaps", Type::kDouble, "0.3", 0, 10,
+             "How many random swaps for each contour or raster, three at least."),
+      Number("list_size", Type::kDouble, "1.5", 0, 100,
+             "Moves in the tabu list for each contour or raster."),
+      Number("tenure", Type::kDouble, "0.1", 0, 100,
+             "Iterations that a move is tabu, for each diversification."),
+      Number("patience", Type::kInt, "5", 0, 10000,
+             "Moves without gain after which the search starts anew."),
+      Switch("reactive", "false",
+             "Sequences that come again make the tenure longer, or start the search anew."),
+      Number("elite", Type::kInt, "5", 1, 100,
+             "Preliminary sequences that the next step makes feasible and relinks."),
+      Number("relinked", Type::kInt, "5", 0, 100,
+             "Sequences on the way from each of these to the best one that it tries as well."),
+      Switch("polish", "true",
+             "Improve the route over all vertices of the contours: 2-opt and point release.")};
+}
+
+std::unique_ptr<Strategy> MakeTabu(const StrategyOptions& values) {
+  FrameworkOptions options;
+  const std::string& representation = values.Choice("representation");
+  options.representation = representation == "sp"    ? Representation::kSpacedPoints
+                           : representation == "nrp" ? Representation::kNearRasterPoints
+                                                     : Representation::kBoxCenter;
+  options.spacing_mm = values.Double("spacing_mm");
+  options.neighborhood.neighbors = static_cast<int>(values.Int("neighbors"));
+  options.neighborhood.first_radius_mm = values.Double("first_radius_mm");
+  options.neighborhood.step_mm = values.Double("radius_step_mm");
+  options.neighbor_penalty_mm = values.Double("neighbor_penalty");
+  options.relinked = static_cast<int>(values.Int("relinked"));
+  TabuOptions& tabu = options.tabu;
+  tabu.order_penalty_mm = values.Double("order_penalty");
+  tabu.diversifications = static_cast<int>(values.Int("diversifications"));
+  tabu.diversification = values.Choice("diversification") == "swaps"
+                             ? TabuOptions::Diversification::kSwaps
+                             : TabuOptions::Diversification::kRandom;
+  tabu.swaps = values.Double("swaps");
+  tabu.list_size = values.Double("list_size");
+  tabu.tenure = values.Double("tenure");
+  tabu.patience = static_cast<int>(values.Int("patience"));
+  tabu.reactive = values.Bool("reactive");
+  tabu.elite = static_cast<int>(values.Int("elite"));
+  return std::make_unique<Tabu>(options, values.Bool("polish"));
+}
+
+}  // namespace
+
+StrategyEntry TabuEntry() {
+  return StrategyEntry{
+      "tabu",
+      "The framework of four steps with tabu search, polished; never behind ni2opt "
+      "unless polish is off.",
+      false, Options(), MakeTabu};
+}
+
+}  // namespace traverse
