@@ -30,5 +30,28 @@ TEST(BoundingBox, DistancesAreToTheNearestAndTheFarthestPlace) {
   EXPECT_DOUBLE_EQ(box.FarthestCornerDistance({1, 2}), std::sqrt(13.0));
 }
 
+TEST(BoundingBox, GrowsByBoxesAndNotByEmptyOnes) {
+  BoundingBox box;
+  box.Add(Point{1, 1});
+  box.Add(BoundingBox());
+  EXPECT_EQ(box.high(), (Point{1, 1}));
+
+  BoundingBox other;
+  other.Add(Point{3, 0});
+  box.Add(other);
+  EXPECT_EQ(box.low(), (Point{1, 0}));
+  EXPECT_EQ(box.high(), (Point{3, 1}));
+}
+
+TEST(BoundingBox, SquaredDistanceIsThatToTheNearestPoint) {
+  BoundingBox box;
+  box.Add(Point{0, 0});
+  box.Add(Point{2, 2});
+
+  EXPECT_EQ(box.SquaredDistanceTo({1, 1}), 0);
+  EXPECT_EQ(box.SquaredDistanceTo({5, 6}), 9 + 16);
+  EXPECT_EQ(box.SquaredDistanceTo({1, -3}), 9);
+}
+
 }  // namespace
 }  // namespace traverse
