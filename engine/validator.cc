@@ -147,9 +147,9 @@ absl::Status CheckTree(const Plan& plan, const std::vector<int>& position) {
     if (!range.empty() && range.last - range.first + 1 != range.count) {
       return Fault(absl::StrCat("nodes[", index, "]: its paths are not done in one go"));
     }
-    const absl::Status status = node.kind == PlanNode::Kind::kInOrder
-                                    ? CheckInOrder(node, index, ranges)
-                                    : BeforeCheck(node, ranges).Run(index);
+    absl::Status status = node.kind == PlanNode::Kind::kInOrder
+                              ? CheckInOrder(node, index, ranges)
+                              : BeforeCheck(node, ranges).Run(index);
     if (!status.ok()) return status;
   }
   return absl::OkStatus();

@@ -35,8 +35,8 @@ void ForEachFirstEntry(const LayerView& layer, int node, size_t limit, F&& f, bo
   }
   const absl::Span<const int> children = layer.tree.children(node);
   std::vector<int> ready;
-  ReadySlots(layer.tree.precedence(node), static_cast<int>(children.size()),
-             [&](int slot) { ready.push_back(children[static_cast<size_t>(slot)]); });
+  const ReadySlots slots(layer.tree.precedence(node), static_cast<int>(children.size()),
+                         [&](int slot) { ready.push_back(children[static_cast<size_t>(slot)]); });
   const size_t step = (ready.size() + limit - 1) / limit;
   const size_t each = std::max<size_t>(1, limit * step / ready.size());
   for (size_t i = 0; i < ready.size(); i += step) {

@@ -64,7 +64,7 @@ NearestPointIndex::NearestPointIndex(std::vector<Point> points)
 
 void NearestPointIndex::Change(int id, int by) {
   const size_t place = static_cast<size_t>(place_[static_cast<size_t>(id)]);
-  in_set_[place] = by > 0;
+  in_set_[place] = by > 0 ? 1 : 0;
   for (size_t node = leaves_ + place / kLeafSize; node > 0; node /= 2) count_[node] += by;
 }
 

@@ -25,7 +25,7 @@ void BlockLine::Load(Point from, const std::optional<Point>& to, const std::vect
     back_enter_.push_back(block.reversible ? block.exit : block.enter);
     back_exit_.push_back(block.reversible ? block.enter : block.exit);
     slots_.push_back(block.slot);
-    reversible_.push_back(block.reversible);
+    reversible_.push_back(block.reversible ? 1 : 0);
     symmetric_ = symmetric_ && block.reversible;
   }
   reversed_.assign(blocks.size(), 0);

@@ -86,6 +86,7 @@ void PlanTree::AddPrecedence(int index) {
   const std::vector<int>& all = node(index).children;
   const int slots = static_cast<int>(children(index).size());
   std::vector<int> item_of;
+  item_of.reserve(all.size());
   int slot = 0;
   int other = slots;
   for (const int child : all) item_of.push_back(path_count(child) > 0 ? slot++ : other++);

@@ -21,7 +21,9 @@ class Ni2opt : public Strategy {
     const LayerView layer(problem);
     Route baseline = BaselineRoute(layer, budget);
     const std::optional<Route> inserted = NearestInsertionRoute(layer, budget);
-    if (!inserted) return Solution{std::move(baseline), StopOr(budget, StopReason::kLocalOptimum), std::nullopt};
+    if (!inserted) {
+      return Solution{std::move(baseline), StopOr(budget, StopReason::kLocalOptimum), std::nullopt};
+    }
     return Best(layer, std::move(baseline), *inserted, budget);
   }
 
@@ -49,7 +51,8 @@ class Ni2opt : public Strategy {
   }
 
   static Route Cheaper(const LayerView& layer, Route first, Route second) {
-    return RouteCost(layer.problem, second) < RouteCost(layer.problem, first) ? second : first;
+    return RouteCost(layer.problem, second) < RouteCost(layer.problem, first) ? std::move(second)
+                                                                              : std::move(first);
   }
 
   DescentOptions descent_;

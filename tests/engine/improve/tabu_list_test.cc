@@ -17,7 +17,7 @@ TEST(TabuList, ForbidsUntilTheTenureEnds) {
 
 TEST(TabuList, DropsTheOldestWhenFull) {
   TabuList list(2);
-  for (const uint64_t key : {1, 2, 3}) list.Add(key, 100);
+  for (const uint64_t key : {1u, 2u, 3u}) list.Add(key, 100);
 
   EXPECT_FALSE(list.Forbids(1, 0));
   EXPECT_TRUE(list.Forbids(2, 0));
