@@ -1,15 +1,18 @@
 #include "engine/strategy/tabu.h"
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "engine/base/rng.h"
 #include "engine/cost/layer_view.h"
 #include "engine/cost/route_cost.h"
 #include "engine/framework/island_layout.h"
 #include "engine/improve/descent.h"
+#include "engine/improve/swap_sequence.h"
 #include "engine/strategy/framework_search.h"
 #include "engine/strategy/greedy.h"
 #include "engine/strategy/ni2opt.h"
@@ -22,6 +25,10 @@ namespace {
 // polished.
 constexpr double kFrameworkShare = 0.3;
 
+// Swaps that a round of polishing begins with, and how far apart they are at most.
+constexpr int kPolishSwaps = 3;
+constexpr int kPolishReach = 8;
+
 struct Candidate {
   Route route;
   double cost = 0;
@@ -29,8 +36,11 @@ struct Candidate {
 
 class Tabu : public Strategy {
  public:
-  Tabu(const FrameworkOptions& options, bool polish)
-      : options_(options), polish_(polish), first_(MakeFirst(polish)) {}
+  Tabu(const FrameworkOptions& options, bool polish, int polish_rounds)
+      : options_(options),
+        polish_(polish),
+        polish_rounds_(polish_rounds),
+        first_(MakeFirst(polish)) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
     const LayerView layer(problem);
@@ -41,6 +51,7 @@ class Tabu : public Strategy {
     Route found = Search(layer, best.route, share, solution.statistics);
     if (polish_) found = Improve(layer, found, DescentOptions(), budget);
     Take(layer, std::move(found), best);
+    if (polish_) Polish(layer, best, budget);
     solution.route = std::move(best.route);
     budget.ExhaustedNow();
     solution.stop = StopOr(budget, StopOr(share, StopReason::kIterationLimit));
@@ -69,6 +80,29 @@ class Tabu : public Strategy {
     if (cost < best.cost) best = {std::move(route), cost};
   }
 
+  // Again and again: a few random swaps near each other, then 2-opt and point release over all
+  // vertices; what is better stays.
+  void Polish(const LayerView& layer, Candidate& best, Budget& budget) const {
+    const LinkRules no_rules{std::vector<int>(layer.plan().paths.size(), 0)};
+    SwapSequence sequence(layer.problem, no_rules);
+    const auto& nodes = sequence.tree().movable_nodes();
+    if (nodes.empty()) return;
+    Rng rng(StreamSeed(layer.problem.seed, 5));
+    for (int round = 0; round < polish_rounds_ && !budget.ExhaustedNow(); ++round) {
+      sequence.Load(best.route);
+      const int node = nodes[rng.Below(static_cast<uint32_t>(nodes.size()))];
+      const int last = sequence.tree().child_count(node) - 1;
+      const int middle = rng.Between(0, last);
+      for (int swaps = 0; swaps < kPolishSwaps; ++swaps) {
+        const int i = std::clamp(middle + rng.Between(-kPolishReach, kPolishReach), 0, last - 1);
+        const int j = rng.Between(i + 1, std::min(last, i + kPolishReach));
+        const SwapMove move = sequence.Evaluate(node, i, j);
+        if (move.violations == 0) sequence.Apply(move);
+      }
+      Take(layer, Improve(layer, sequence.Unload(), DescentOptions(), budget), best);
+    }
+  }
+
   Budget FrameworkBudget(const Budget& budget) const {
     if (!polish_ || !budget.deadline()) return budget;
     const auto left = *budget.deadline() - Budget::Clock::now();
@@ -95,6 +129,7 @@ class Tabu : public Strategy {
 
   FrameworkOptions options_;
   bool polish_;
+  int polish_rounds_;
   std::unique_ptr<const Strategy> first_;
 };
 
@@ -155,7 +190,9 @@ std::vector<OptionSpec> Options() {
       Number("relinked", Type::kInt, "5", 0, 100,
              "Sequences on the way from each of these to the best one that it tries as well."),
       Switch("polish", "true",
-             "Improve the route over all vertices of the contours: 2-opt and point release.")};
+             "Improve the route over all vertices of the contours: 2-opt and point release."),
+      Number("polish_rounds", Type::kInt, "200", 0, 1000000,
+             "How often that is done again after a few random swaps.")};
 }
 
 std::unique_ptr<Strategy> MakeTabu(const StrategyOptions& values) {
@@ -182,7 +219,8 @@ std::unique_ptr<Strategy> MakeTabu(const StrategyOptions& values) {
   tabu.patience = static_cast<int>(values.Int("patience"));
   tabu.reactive = values.Bool("reactive");
   tabu.elite = static_cast<int>(values.Int("elite"));
-  return std::make_unique<Tabu>(options, values.Bool("polish"));
+  return std::make_unique<Tabu>(options, values.Bool("polish"),
+                                static_cast<int>(values.Int("polish_rounds")));
 }
 
 }  // namespace
