@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "client/gcode/print_meter.h"
+
 namespace traverse::gcode {
 namespace {
 
@@ -66,21 +68,19 @@ void BlockBuilder::Take(const Step& step, const MachineState& before,
                         const Interpreter& interpreter) {
   const bool prints =
       step.kind == StepKind::kExtrude || (step.kind == StepKind::kZeroExtrude && !step.retracted);
-  if (prints) return TakePrinting(step, before, interpreter);
+  const MachineState& after = interpreter.state();
+  if (prints) return TakePrinting(step, before, after);
   if (step.kind == StepKind::kSlot) TakeSlot(step);
   if (step.kind == StepKind::kLabel) TakeLabel(step);
   if (step.kind == StepKind::kProgress) file_.progress.push_back(step.line.begin);
-  if (where_ == Where::kBody && !IsQuiet(step.kind)) CountBody();
-  meter_.Follow(step, interpreter);
-  TakeOther(step, before, interpreter.state());
+  TakeOther(step, before, after);
 }
 
 void BlockBuilder::TakePrinting(const Step& step, const MachineState& before,
-                                const Interpreter& interpreter) {
-  if (where_ != Where::kBody) BeginBlock(step, before, interpreter.state());
+                                const MachineState& after) {
+  if (where_ != Where::kBody) BeginBlock(step, before, after);
   where_ = Where::kBody;
-  meter_.Follow(step, interpreter);
-  ExtendBlock(step, before, interpreter.state());
+  ExtendBlock(step, before, after);
 }
 
 void BlockBuilder::TakeOther(const Step& step, const MachineState& before,
@@ -109,13 +109,6 @@ void BlockBuilder::NoteInLink(const Step& step, const MachineState& before,
     if (link_.xy_moves++ == 0 && step.kind == StepKind::kTravel) link_.first_move_mm = mm;
     if (after.at.z != before.at.z) link_.flags |= kLinkLifts;
   }
-  if (step.kind == StepKind::kLift || step.kind == StepKind::kLayerMark) NoteStandstill();
-}
-
-void BlockBuilder::NoteStandstill() {
-  if (link_.end_seconds >= 0) return;
-  meter_.Stop();
-  link_.end_seconds = meter_.seconds();
 }
 
 void BlockBuilder::TakeSlot(const Step& step) {
@@ -196,24 +189,12 @@ void BlockBuilder::CloseLink(const Block& block) {
     link_.flags |= kLinkNewLayer | kLinkSplits;
     BeginLayer(block);
   }
-  // The way to the first path belongs to no layer.
-  const PrintTotals totals = meter_.Take();
-  if (!first) file_.layer_totals.back() += totals;
 }
-
-void BlockBuilder::CountBody() { file_.layer_totals.back() += meter_.Take(); }
 
 void BlockBuilder::BeginLayer(const Block& block) {
-  NoteStandstill();
-  if (!file_.layers.empty()) EndLayer();
-  layer_begin_seconds_ = link_.end_seconds;
-  file_.layers.push_back(Layer{static_cast<uint32_t>(file_.blocks.size()), 0, block.first.z});
-  file_.layer_totals.emplace_back();
-}
-
-void BlockBuilder::EndLayer() {
-  file_.layers.back().end_block = static_cast<uint32_t>(file_.blocks.size());
-  file_.layer_totals.back().seconds = link_.end_seconds - layer_begin_seconds_;
+  const auto begin = static_cast<uint32_t>(file_.blocks.size());
+  if (!file_.layers.empty()) file_.layers.back().end_block = begin;
+  file_.layers.push_back(Layer{begin, begin, block.first.z});
 }
 
 void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
@@ -264,16 +245,12 @@ void BlockBuilder::TakeTail(const Step& step, const MachineState& before,
 void BlockBuilder::UndoTail() {
   Last() = before_tail_;
   tail_.flags |= link_.flags;
-  tail_.end_seconds = link_.end_seconds;
   link_ = tail_;
 }
 
 void BlockBuilder::Finish() {
   if (file_.blocks.empty()) return;
-  if (where_ == Where::kBody) CountBody();
-  NoteStandstill();
-  EndLayer();
-  for (const PrintTotals& totals : file_.layer_totals) file_.totals += totals;
+  file_.layers.back().end_block = static_cast<uint32_t>(file_.blocks.size());
 }
 
 }  // namespace traverse::gcode

@@ -4,14 +4,13 @@
 #define TRAVERSE_CLIENT_GCODE_BLOCK_BUILDER_H_
 
 #include "client/gcode/gcode_file.h"
-#include "client/gcode/print_meter.h"
 
 namespace traverse::gcode {
 
 class BlockBuilder {
  public:
-  // Fills `file`, whose text and profile are set. `file` outlives the builder.
-  explicit BlockBuilder(GcodeFile& file) : file_(file), meter_(file.profile) {}
+  // Fills `file`, whose text is set. `file` outlives the builder.
+  explicit BlockBuilder(GcodeFile& file) : file_(file) {}
 
   // Takes the step that `interpreter` has just made; `before` is the machine before it.
   void Take(const Step& step, const MachineState& before, const Interpreter& interpreter);
@@ -28,15 +27,13 @@ class BlockBuilder {
     int xy_moves = 0;
     double first_move_mm = 0;
     double travel_mm = 0;
-    double end_seconds = -1;  // when the machine first stood still; -1: not yet
   };
 
-  void TakePrinting(const Step& step, const MachineState& before, const Interpreter& interpreter);
+  void TakePrinting(const Step& step, const MachineState& before, const MachineState& after);
   void TakeOther(const Step& step, const MachineState& before, const MachineState& after);
   void TakeSlot(const Step& step);
   void TakeLabel(const Step& step);
   void NoteInLink(const Step& step, const MachineState& before, const MachineState& after);
-  void NoteStandstill();
   bool IsTail(const Step& step, const MachineState& before, const MachineState& after) const;
   void TakeTail(const Step& step, const MachineState& before, const MachineState& after);
   void UndoTail();
@@ -44,15 +41,12 @@ class BlockBuilder {
   void ExtendBlock(const Step& step, const MachineState& before, const MachineState& after);
   void CloseLink(const Block& block);
   void BeginLayer(const Block& block);
-  void EndLayer();
-  void CountBody();
   uint32_t CurrentState();
   uint16_t ModeOf(const MachineState& state);
   Block& Last() { return file_.blocks.back(); }
   const Block& Last() const { return file_.blocks.back(); }
 
   GcodeFile& file_;
-  PrintMeter meter_;
   PrintState state_{};
   bool state_dirty_ = true;
   uint32_t state_id_ = 0;
@@ -66,8 +60,6 @@ class BlockBuilder {
   bool has_tail_ = false;
   Block before_tail_;
   OpenLink tail_;
-
-  double layer_begin_seconds_ = 0;
 };
 
 }  // namespace traverse::gcode

@@ -21,7 +21,6 @@
 #include "client/gcode/interpreter.h"
 #include "client/gcode/machine_profile.h"
 #include "client/gcode/print_state.h"
-#include "client/gcode/print_totals.h"
 
 namespace traverse {
 namespace gcode {
@@ -103,9 +102,6 @@ struct GcodeFile {
   gcode::NumberStyle xy_style;
   gcode::NumberStyle e_style;
   bool feed_on_own_line = false;  // a path's F stands on a line before it
-
-  gcode::PrintTotals totals;
-  std::vector<gcode::PrintTotals> layer_totals;  // [layer], the link into the layer included
 
   // Link i: what stands between the blocks i - 1 and i; i = blocks.size() is the foot.
   std::string_view LinkText(size_t i) const {

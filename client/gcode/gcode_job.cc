@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/layer_meter.h"
+#include "client/gcode/parallel.h"
 #include "client/gcode/reader.h"
 #include "client/gcode/travel_model.h"
 
@@ -67,7 +69,7 @@ void AddFacts(const GcodeFile& file, const Census& census, Policy policy, InputJ
     add(std::string(FeatureName(static_cast<Feature>(i))),
         absl::StrFormat("%d paths, %.2f m", census.paths[i], census.way_mm[i] / 1000));
   }
-  const PrintTotals& totals = file.totals;
+  const PrintTotals totals = Sum(MeasureLayers(file, DefaultThreads()));
   add("extruded", absl::StrFormat("%.2f m", totals.extruded_mm / 1000));
   add("travel", absl::StrFormat("%.2f m", totals.travel_mm / 1000));
   add("retractions", absl::StrFormat("%d", totals.retractions));

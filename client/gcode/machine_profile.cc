@@ -124,4 +124,14 @@ void Dynamics::FollowKlipper(std::string_view line) {
   SetPositive(corner_speed_, Parameter(line, " SQUARE_CORNER_VELOCITY="));
 }
 
+Dynamics DynamicsOf(const MachineProfile& profile, const PrintState& state,
+                    const SetterTable& setters) {
+  Dynamics dynamics(profile);
+  for (size_t slot = 0; slot < kSlotCount; ++slot) {
+    if (((kDynamicsSlots >> slot) & 1u) == 0 || state[slot] == 0) continue;
+    dynamics.Follow(setters.Line(state[slot]));
+  }
+  return dynamics;
+}
+
 }  // namespace traverse::gcode

@@ -61,6 +61,10 @@ class Dynamics {
   double corner_speed_;
 };
 
+// Those in force in `state`.
+Dynamics DynamicsOf(const MachineProfile& profile, const PrintState& state,
+                    const SetterTable& setters);
+
 }  // namespace traverse::gcode
 
 #endif  // TRAVERSE_CLIENT_GCODE_MACHINE_PROFILE_H_

@@ -114,10 +114,10 @@ void PrintMeter::FollowXy(const Step& step, const MachineState& state) {
   (extrudes ? totals_.extruded_mm : totals_.travel_mm) += length;
 }
 
-PrintTotals PrintMeter::Take() {
-  const PrintTotals taken = totals_;
-  totals_ = PrintTotals{};
-  return taken;
+PrintTotals PrintMeter::Finish() {
+  planner_.Stop();
+  totals_.seconds = planner_.seconds();
+  return totals_;
 }
 
 }  // namespace traverse::gcode

@@ -14,21 +14,15 @@ namespace traverse::gcode {
 
 class PrintMeter {
  public:
-  // `profile` outlives the meter.
-  explicit PrintMeter(const MachineProfile& profile) : profile_(profile), dynamics_(profile) {}
+  // `profile` outlives the meter; `dynamics` are those in force at the beginning.
+  PrintMeter(const MachineProfile& profile, const Dynamics& dynamics)
+      : profile_(profile), dynamics_(dynamics) {}
 
   // Follows one step of `interpreter`, which has just made it.
   void Follow(const Step& step, const Interpreter& interpreter);
 
-  // What was measured since the last call, but for the time.
-  PrintTotals Take();
-
-  // Seconds since the beginning, up to the last standstill: a print comes to one whenever filament
-  // or Z alone moves.
-  double seconds() const { return planner_.seconds(); }
-
-  // Brings the machine to a standstill.
-  void Stop() { planner_.Stop(); }
+  // What was followed so far; the machine comes to a standstill.
+  PrintTotals Finish();
 
  private:
   void FollowXy(const Step& step, const MachineState& state);

@@ -22,7 +22,7 @@ struct LayerTravel {
 
 class TravelLearner {
  public:
-  explicit TravelLearner(const GcodeFile& file) : file_(file), start_(file.profile) {
+  explicit TravelLearner(const GcodeFile& file) : file_(file) {
     shortest_retracted_mm_ = file.profile.retract_before_travel.value_or(1e9);
   }
 
@@ -37,17 +37,11 @@ class TravelLearner {
   double threshold_mm() const { return shortest_retracted_mm_ < 1e9 ? shortest_retracted_mm_ : 0; }
 
  private:
-  const Dynamics& DynamicsOf(uint32_t state) {
+  const Dynamics& DynamicsAt(uint32_t state) {
     const auto found = dynamics_.find(state);
     if (found != dynamics_.end()) return found->second;
-    Dynamics dynamics = start_;
-    for (size_t slot = 0; slot < kSlotCount; ++slot) {
-      const uint32_t setter = file_.states[state][slot];
-      if (((kDynamicsSlots >> slot) & 1u) != 0 && setter != 0) {
-        dynamics.Follow(file_.setters.Line(setter));
-      }
-    }
-    return dynamics_.emplace(state, dynamics).first->second;
+    return dynamics_.emplace(state, DynamicsOf(file_.profile, file_.states[state], file_.setters))
+        .first->second;
   }
 
   void LearnLink(uint32_t b, LayerTravel& learnt) {
@@ -55,7 +49,7 @@ class TravelLearner {
     const Block& block = file_.blocks[b];
     if ((block.link & kLinkFixed) != 0) return;
     const bool retracts = (block.link & kLinkRetracts) != 0;
-    Dynamics dynamics = DynamicsOf(before.state_out);
+    Dynamics dynamics = DynamicsAt(before.state_out);
     MachineState state = file_.modes[before.mode];
     state.at = before.last;
     state.e = before.e_out;
@@ -122,7 +116,6 @@ class TravelLearner {
   }
 
   const GcodeFile& file_;
-  const Dynamics start_;
   std::map<uint32_t, Dynamics> dynamics_;  // by state
   double shortest_retracted_mm_;
 };

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "client/gcode/feature.h"
+#include "client/gcode/layer_meter.h"
 #include "client/gcode/outline.h"
 #include "tests/client/gcode/samples.h"
 
@@ -85,15 +86,16 @@ TEST(ReadGcode, FindsThePathsOfCuraEngineWithTheirTails) {
   EXPECT_EQ(FeatureOf(*file, file->blocks[3], false), Feature::kSparseInfill);
 }
 
-TEST(ReadGcode, MeasuresTravelFromTheFirstToTheLastExtrusion) {
+TEST(MeasureLayers, CountsTravelFromTheFirstToTheLastExtrusion) {
   const auto file = Read(testing::kPrusaSample);
 
   // The wipe, the way to the infill, the way between its lines.
   const double wipe = std::hypot(5, 0.06);
-  EXPECT_NEAR(file->totals.travel_mm, wipe + std::hypot(15, 20) + 1, 1e-6);
-  EXPECT_NEAR(file->totals.extruded_mm, 39.94 + 20, 1e-6);
-  EXPECT_EQ(file->totals.retractions, 1);
-  EXPECT_GT(file->totals.seconds, 0);
+  const PrintTotals totals = Sum(MeasureLayers(*file));
+  EXPECT_NEAR(totals.travel_mm, wipe + std::hypot(15, 20) + 1, 1e-6);
+  EXPECT_NEAR(totals.extruded_mm, 39.94 + 20, 1e-6);
+  EXPECT_EQ(totals.retractions, 1);
+  EXPECT_GT(totals.seconds, 0);
 }
 
 TEST(ReadGcode, ALayerIsARunAtOneHeight) {
@@ -160,7 +162,7 @@ TEST(ReadGcode, LineEndsDoNotMatter) {
   const auto dos_file = Read(testing::WithCrLf(testing::kCuraSample));
 
   ASSERT_EQ(dos_file->blocks.size(), unix_file->blocks.size());
-  EXPECT_EQ(dos_file->totals.travel_mm, unix_file->totals.travel_mm);
+  EXPECT_EQ(Sum(MeasureLayers(*dos_file)).travel_mm, Sum(MeasureLayers(*unix_file, 2)).travel_mm);
   EXPECT_EQ(dos_file->slicer, unix_file->slicer);
 }
 

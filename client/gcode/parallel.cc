@@ -1,0 +1,24 @@
+#include "client/gcode/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+#include <vector>
+
+namespace traverse::gcode {
+
+void ParallelFor(size_t n, int threads, const std::function<void(size_t)>& body) {
+  std::atomic<size_t> next{0};
+  const auto work = [&next, n, &body] {
+    for (size_t i = next++; i < n; i = next++) body(i);
+  };
+  const size_t helpers = std::min(n, static_cast<size_t>(std::max(threads, 1)));
+  std::vector<std::thread> pool;
+  for (size_t t = 1; t < helpers; ++t) pool.emplace_back(work);
+  work();
+  for (std::thread& thread : pool) thread.join();
+}
+
+int DefaultThreads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+
+}  // namespace traverse::gcode

@@ -1,0 +1,19 @@
+// A loop whose rounds are independent, on several threads.
+
+#ifndef TRAVERSE_CLIENT_GCODE_PARALLEL_H_
+#define TRAVERSE_CLIENT_GCODE_PARALLEL_H_
+
+#include <cstddef>
+#include <functional>
+
+namespace traverse::gcode {
+
+// Calls body(0) to body(n - 1), on `threads` threads at most; returns when all have returned.
+void ParallelFor(size_t n, int threads, const std::function<void(size_t)>& body);
+
+// As many threads as the machine has processors.
+int DefaultThreads();
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_PARALLEL_H_
