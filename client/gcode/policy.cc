@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "client/gcode/loops.h"
 #include "client/gcode/precedence.h"
 #include "client/gcode/text.h"
 
@@ -295,9 +296,7 @@ void LayerPlanner::AddGroupByIslands(uint32_t group, size_t begin, size_t end) {
 }
 
 LayerPlan LayerPlanner::Make() {
-  for (uint32_t b = layer_.first_block; b < layer_.end_block; ++b) {
-    result_.outlines.push_back(OutlineOf(file_, file_.blocks[b]));
-  }
+  result_.outlines = OutlinesOf(file_, layer_);
   position_.resize(size());
   rules_.reserve(size());
   for (size_t path = 0; path < size(); ++path) rules_.push_back(RuleOf(path));

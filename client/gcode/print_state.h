@@ -75,6 +75,12 @@ class SetterTable {
   // The number of the setter `line`, which sets `slots`.
   uint32_t Intern(std::string_view line, SlotMask slots);
 
+  // The number of a setter that is known; 0 for others.
+  uint32_t Find(std::string_view line) const {
+    const auto found = index_.find(line);
+    return found == index_.end() ? 0 : found->second;
+  }
+
   const std::string& Line(uint32_t setter) const { return setters_[setter].line; }
   SlotMask Slots(uint32_t setter) const { return setters_[setter].slots; }
 

@@ -1,0 +1,168 @@
+#include "client/gcode/gcode_out.h"
+
+namespace traverse::gcode {
+
+GcodeOut::GcodeOut(const GcodeFile& file, const PartStart& start, std::string& text)
+    : at(start), file_(file), text_(text) {
+  const size_t first = file.text.find('\n');
+  const bool crlf = first != std::string::npos && first > 0 && file.text[first - 1] == '\r';
+  line_end_ = crlf ? "\r\n" : "\n";
+}
+
+void GcodeOut::Copy(Offset begin, Offset end, const PartStart& before, const PartStart& behind,
+                    bool without_progress) {
+  const Decimal e = at.machine.e;
+  at = behind;
+  const bool relative = before.machine.RelativeE();
+  const Decimal shift = relative ? 0 : e - before.machine.e;
+  if (shift == 0 && !without_progress) {
+    text_.append(file_.text, begin, end - begin);
+  } else {
+    CopyShifted(begin, end, shift, without_progress);
+  }
+}
+
+void GcodeOut::CopyShifted(Offset begin, Offset end, Decimal shift, bool without_progress) {
+  const std::string_view text(file_.text);
+  Command command;
+  for (Offset next = begin; next < end;) {
+    const Line line = LineAt(text.substr(0, end), next);
+    next = line.next;
+    const std::string_view raw = line.Raw(text);
+    LexLine(line.Text(text), command);
+    if (without_progress && command.Is('M', 73)) continue;
+    const bool moves = command.kind == LineKind::kCommand && command.letter == 'G' &&
+                       command.number <= 3 && command.Has('E');
+    if (command.Is('G', 92) && command.Has('E')) shift = 0;
+    if (moves && shift != 0) {
+      const WordChange e{'E', command.Value('E') + shift, file_.e_style};
+      AppendEdited(raw, {&e, 1}, text_);
+    } else {
+      text_.append(raw);
+    }
+  }
+  at.machine.e += shift;
+}
+
+void GcodeOut::Set(const PrintState& state, SlotMask mask) {
+  for (const uint32_t setter : SettersBetween(at.state, state, mask, file_.setters)) {
+    text_.append(file_.setters.Line(setter));
+    EndLine();
+  }
+}
+
+void GcodeOut::LinkLine(const LinkStep& step) {
+  if (step.kind == StepKind::kSetE) {
+    at.machine.e = step.filament;
+    return Raw(step.line.Raw(file_.text));
+  }
+  EditedLine(step, at.machine.at);
+}
+
+void GcodeOut::LiftLine(const LinkStep& step, Decimal z) {
+  if (z == at.machine.at.z) return;
+  Position to = at.machine.at;
+  to.z = z;
+  EditedLine(step, to);
+}
+
+void GcodeOut::MoveLine(const LinkStep& step) {
+  Position to = step.to;
+  to.z = at.machine.at.z;
+  EditedLine(step, to);
+}
+
+// The line of `step` as a move to `to`: the words that it has and that are not right are changed.
+void GcodeOut::EditedLine(const LinkStep& step, const Position& to) {
+  at.machine.feed = step.feed;
+  at.machine.e += step.kind == StepKind::kSetE ? 0 : step.filament;
+  WordChange changes[4];
+  size_t count = 0;
+  const auto change = [&](char letter, Decimal value, Decimal in_file, NumberStyle style) {
+    if ((step.words & Command::Bit(letter)) == 0 || value == in_file) return;
+    changes[count++] = {letter, value, style};
+  };
+  change('X', to.x, step.to.x, file_.xy_style);
+  change('Y', to.y, step.to.y, file_.xy_style);
+  change('Z', to.z, step.to.z, file_.xy_style);
+  const bool absolute_e = !at.machine.RelativeE() && (step.words & Command::Bit('E')) != 0;
+  if (absolute_e) changes[count++] = {'E', at.machine.e, file_.e_style};
+  const std::string_view raw = step.line.Raw(file_.text);
+  if (count == 0) {
+    Raw(raw);
+  } else {
+    AppendEdited(raw, {changes, count}, text_);
+  }
+  at.machine.at = to;
+}
+
+void GcodeOut::Travel(std::string_view line, const Position& to, Decimal feed) {
+  Command command;
+  LexLine(line.substr(0, line.find_last_not_of("\r\n") + 1), command);
+  WordChange changes[4] = {{'X', to.x, file_.xy_style}, {'Y', to.y, file_.xy_style}, {}, {}};
+  size_t count = 2;
+  if (command.Has('Z') || to.z != at.machine.at.z) changes[count++] = {'Z', to.z, file_.xy_style};
+  if (feed != at.machine.feed || command.Has('F')) changes[count++] = {'F', feed, NumberStyle{}};
+  // A feed rate that is there and right stays as it is written.
+  if (command.Has('F') && command.Value('F') == feed) --count;
+  AppendEdited(line, {changes, count}, text_);
+  at.machine.at = to;
+  at.machine.feed = feed;
+}
+
+void GcodeOut::AppendWord(char letter, Decimal value, NumberStyle style) {
+  text_.push_back(' ');
+  text_.push_back(letter);
+  AppendDecimal(value, style, text_);
+}
+
+void GcodeOut::AppendE(Decimal filament) {
+  at.machine.e += filament;
+  AppendWord('E', at.machine.RelativeE() ? filament : at.machine.e, file_.e_style);
+}
+
+void GcodeOut::Feed(Decimal feed) {
+  text_.append("G1");
+  AppendWord('F', feed, NumberStyle{});
+  EndLine();
+  at.machine.feed = feed;
+}
+
+void GcodeOut::Lift(Decimal z, Decimal feed) {
+  text_.append("G1");
+  AppendWord('Z', z, file_.xy_style);
+  if (feed != at.machine.feed) AppendWord('F', feed, NumberStyle{});
+  EndLine();
+  at.machine.at.z = z;
+  at.machine.feed = feed;
+}
+
+void GcodeOut::Pull(Decimal filament, Decimal feed) {
+  text_.append("G1");
+  AppendE(-filament);
+  if (feed != at.machine.feed) AppendWord('F', feed, NumberStyle{});
+  EndLine();
+  at.machine.feed = feed;
+}
+
+void GcodeOut::Segment(std::string_view command, const Position& to, bool extrudes,
+                       Decimal filament, Decimal feed, std::string_view words,
+                       std::string_view comment) {
+  if (feed != at.machine.feed && file_.feed_on_own_line) Feed(feed);
+  text_.append(command);
+  if (feed != at.machine.feed) AppendWord('F', feed, NumberStyle{});
+  AppendWord('X', to.x, file_.xy_style);
+  AppendWord('Y', to.y, file_.xy_style);
+  text_.append(words);
+  if (extrudes) AppendE(filament);
+  if (!comment.empty()) {
+    text_.push_back(' ');
+    text_.append(comment);
+  }
+  EndLine();
+  at.machine.at.x = to.x;
+  at.machine.at.y = to.y;
+  at.machine.feed = feed;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,67 @@
+// A print cut into sections, each as digests that do not depend on the order within it.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_SECTIONS_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_SECTIONS_H_
+
+#include <cstdint>
+#include <set>
+#include <string_view>
+#include <vector>
+
+#include "client/gcode/verify/verify_machine.h"
+
+namespace traverse::gcode {
+
+// A multiset of digests: equal multisets have equal sums, and others have not, but for accidents of
+// probability 2^-64.
+struct DigestSet {
+  uint64_t count = 0;
+  uint64_t sum = 0;
+  uint64_t mixed = 0;
+
+  void Add(uint64_t digest) {
+    ++count;
+    sum += digest;
+    mixed += Mix(0x7261767472617665u, digest);
+  }
+  friend bool operator==(const DigestSet&, const DigestSet&) = default;
+};
+
+struct Section {
+  size_t first_line = 0;
+  size_t last_line = 0;  // the one that ends it
+  DigestSet deposits;
+  DigestSet notes;  // comments and M73
+  Micro lowest = INT64_MAX;  // height of all moves in XY
+
+  // How it ends: with a line, or with a change of height (digest 0), or with the text.
+  uint64_t fence = 0;
+  bool fixed = false;
+  Micro x = 0;  // of the head there, if the line is fixed
+  Micro y = 0;
+  Micro z = 0;
+  bool retracted = false;
+  uint64_t fan = 0;
+};
+
+struct Sections {
+  std::vector<Section> sections;
+  std::set<Micro> surpluses;  // of all primes, rounded to the verifier's slack
+};
+
+// Cuts a text; comments that begin with `ignored` are left out.
+Sections CutIntoSections(std::string_view text, std::string_view ignored);
+
+// The lines of one section, for a message: calls visit(line) for each of them.
+template <typename Visit>
+void ForEachLineOf(std::string_view text, const Section& section, Visit visit) {
+  VerifyMachine machine(text);
+  for (VerifyLine line; machine.Next(line);) {
+    if (line.number > section.last_line) return;
+    if (line.number >= section.first_line) visit(line);
+  }
+}
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_SECTIONS_H_

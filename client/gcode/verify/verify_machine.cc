@@ -1,0 +1,357 @@
+#include "client/gcode/verify/verify_machine.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace traverse::gcode {
+namespace {
+
+// State of the machine and of the slicer's comments, as places in VerifyMachine::state_.
+enum StatePlace : size_t {
+  kType,
+  kWidth,
+  kHeight,
+  kFans,  // and the three behind it
+  kAccelPrint = kFans + 4,
+  kJerkX,
+  kJerkY,
+  kMaxAccelX,
+  kMaxAccelY,
+  kMaxTravelX,
+  kMaxTravelY,
+  kKlipperAccel,
+  kKlipperDecel,
+  kKlipperCorner,
+  kKlipperSpeed,
+  kPressure,
+  kFlow,
+};
+
+// Numbers beyond this are not followed.
+constexpr double kMaxNumber = 1e9;
+
+bool Begins(std::string_view text, std::string_view with) {
+  return text.size() >= with.size() && text.compare(0, with.size(), with) == 0;
+}
+
+std::string_view Trim(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) {
+    text.remove_suffix(1);
+  }
+  return text;
+}
+
+char Upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; }
+
+std::optional<Micro> Number(std::string_view text, size_t& used) {
+  size_t at = 0;
+  if (!text.empty() && text[0] == '+') at = 1;
+  double value = 0;
+  const auto result =
+      std::from_chars(text.data() + at, text.data() + text.size(), value, std::chars_format::fixed);
+  if (result.ec != std::errc{} || !(std::abs(value) <= kMaxNumber)) return std::nullopt;
+  used = static_cast<size_t>(result.ptr - text.data());
+  return std::llround(value * 1e6);
+}
+
+// What lies behind the last comma, colon or blank sign of a state comment.
+uint64_t ValueOf(std::string_view comment) {
+  const size_t colon = comment.find(':');
+  return DigestOf(Trim(comment.substr(colon + 1)));
+}
+
+}  // namespace
+
+uint64_t Mix(uint64_t digest, uint64_t value) {
+  uint64_t z = (digest ^ value) + 0x9e3779b97f4a7c15u + (digest << 6) + (digest >> 2);
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+uint64_t DigestOf(std::string_view text) {
+  uint64_t digest = 0xcbf29ce484222325u;
+  for (const char c : text) digest = (digest ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return Mix(digest, text.size());
+}
+
+// The words of one command; a letter that is there twice, or whose number is none, makes it
+// unreadable.
+struct VerifyMachine::Words {
+  explicit Words(std::string_view text) {
+    for (text = Trim(text); !text.empty(); text = Trim(text)) {
+      const char letter = Upper(text[0]);
+      if (letter < 'A' || letter > 'Z' || Has(letter)) {
+        readable = false;
+        return;
+      }
+      text = Trim(text.substr(1));
+      Micro value = 0;
+      size_t used = 0;
+      if (!text.empty() && !(Upper(text[0]) >= 'A' && Upper(text[0]) <= 'Z')) {
+        const std::optional<Micro> number = Number(text, used);
+        if (!number) {
+          readable = false;
+          return;
+        }
+        value = *number;
+      }
+      set |= 1u << (letter - 'A');
+      values[static_cast<size_t>(letter - 'A')] = value;
+      text.remove_prefix(used);
+    }
+  }
+
+  bool Has(char letter) const { return (set >> (letter - 'A')) & 1u; }
+  bool OnlyFrom(std::string_view letters) const {
+    uint32_t known = 0;
+    for (const char c : letters) known |= 1u << (c - 'A');
+    return readable && (set & ~known) == 0;
+  }
+  Micro operator[](char letter) const { return values[static_cast<size_t>(letter - 'A')]; }
+
+  bool readable = true;
+  uint32_t set = 0;
+  std::array<Micro, 26> values;  // those in `set`
+};
+
+bool VerifyMachine::Next(VerifyLine& line) {
+  if (rest_.empty()) return false;
+  const size_t end = std::min(rest_.find('\n'), rest_.size());
+  line = VerifyLine{};
+  line.number = ++number_;
+  line.text = Trim(rest_.substr(0, end));
+  rest_.remove_prefix(std::min(end + 1, rest_.size()));
+  if (!line.text.empty()) Do(line);
+  return true;
+}
+
+void VerifyMachine::Fence(VerifyLine& line, LineRole role) {
+  line.role = role;
+  line.digest = DigestOf(line.text);
+}
+
+void VerifyMachine::Do(VerifyLine& line) {
+  const std::string_view text = line.text;
+  if (text[0] == ';') return DoComment(line);
+  const char letter = Upper(text[0]);
+  int number = 0;
+  const auto read = std::from_chars(text.data() + 1, text.data() + text.size(), number);
+  const bool numbered =
+      read.ec == std::errc{} && text[1] != '-' &&
+      (read.ptr == text.data() + text.size() || (*read.ptr != '.' && *read.ptr != '_'));
+  if (letter == 'G' && numbered) return DoG(number, line);
+  if (letter == 'M' && numbered) return DoM(number, line);
+  DoKlipper(line);
+}
+
+void VerifyMachine::DoComment(VerifyLine& line) {
+  const std::string_view text = line.text;
+  if (Begins(text, ";TYPE:") || Begins(text, "; FEATURE:")) return SetState(kType, ValueOf(text));
+  if (Begins(text, ";WIDTH:") || Begins(text, "; LINE_WIDTH:")) {
+    return SetState(kWidth, ValueOf(text));
+  }
+  if (Begins(text, ";HEIGHT:") || Begins(text, "; LAYER_HEIGHT:")) {
+    return SetState(kHeight, ValueOf(text));
+  }
+  for (const std::string_view wipe : {";WIPE_START", ";WIPE_END", "; WIPE_START", "; WIPE_END"}) {
+    if (Begins(text, wipe)) return;
+  }
+  for (const std::string_view mark :
+       {";LAYER_CHANGE", ";LAYER:", ";LAYER ", "; CHANGE_LAYER", ";MESH:", "; printing object",
+        "; stop printing object", "; start printing object", "; OBJECT_ID:"}) {
+    if (Begins(text, mark)) return Fence(line, LineRole::kFence);
+  }
+  Fence(line, LineRole::kComment);
+}
+
+void VerifyMachine::Mode(bool& mode, bool value, VerifyLine& line) {
+  Fence(line, mode == value ? LineRole::kFence : LineRole::kFixed);
+  mode = value;
+}
+
+void VerifyMachine::DoG(int number, VerifyLine& line) {
+  const std::string_view code = line.text.substr(0, line.text.find(';'));
+  const size_t digits = code.find_first_not_of("0123456789", 1);
+  const Words words(digits == std::string_view::npos ? std::string_view{} : code.substr(digits));
+  switch (number) {
+    case 0:
+    case 1:
+    case 2:
+    case 3:
+      if (!words.OnlyFrom("XYZEFIJRP") || (number >= 2 && !plane_xy_)) {
+        return Fence(line, LineRole::kFixed);
+      }
+      return Move(number, words, line);
+    case 10:
+    case 11:
+      if (words.set != 0 || !words.readable) return Fence(line, LineRole::kFixed);
+      firmware_retracted_ = number == 10;
+      return;
+    case 17:
+    case 18:
+    case 19:
+      return Mode(plane_xy_, number == 17, line);
+    case 20:
+    case 21:
+      return Mode(inches_, number == 20, line);
+    case 90:
+    case 91:
+      return Mode(relative_, number == 91, line);
+    case 92:
+      if (words.readable && words.set == 1u << ('E' - 'A')) {
+        e_ = words['E'];
+        return;
+      }
+      for (size_t axis = 0; axis < 3 && words.readable; ++axis) {
+        const char letter = static_cast<char>('X' + axis);
+        if (words.Has(letter)) at_[axis] = words[letter];
+      }
+      if (words.readable && words.Has('E')) e_ = words['E'];
+      return Fence(line, LineRole::kFixed);
+    default:
+      return Fence(line, LineRole::kFixed);
+  }
+}
+
+void VerifyMachine::Move(int number, const Words& words, VerifyLine& line) {
+  if (words.Has('F')) feed_ = words['F'];
+  const std::array<Micro, 3> from = at_;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const char letter = static_cast<char>('X' + axis);
+    if (words.Has(letter)) at_[axis] = relative_ ? at_[axis] + words[letter] : words[letter];
+  }
+  Micro filament = 0;
+  if (words.Has('E')) {
+    filament = relative_ || relative_e_ ? words['E'] : words['E'] - e_;
+    e_ += filament;
+  }
+  const bool moves = at_[0] != from[0] || at_[1] != from[1];
+  if ((moves || number >= 2) && filament > 0) {
+    Deposit(number, words, from, filament, line);
+  } else {
+    line.travels = moves;
+    if (filament > 0) {
+      line.primes = true;
+      line.surplus = std::max<Micro>(filament - pulled_, 0);
+    }
+    // Arcs that deposit nothing, and moves relative to each other, are kept as they are.
+    const bool spiral = number >= 2 && !moves && at_[2] != from[2];
+    if (relative_ || (number >= 2 && !spiral)) Fence(line, LineRole::kFixed);
+  }
+  pulled_ = std::max<Micro>(pulled_ - filament, 0);
+}
+
+void VerifyMachine::Deposit(int number, const Words& words, const std::array<Micro, 3>& from,
+                            Micro filament, VerifyLine& line) {
+  std::array<Micro, 3> begin = from;
+  std::array<Micro, 3> end = at_;
+  // An arc by its center, or its radius, and the way round when gone from its smaller end.
+  bool clockwise = number == 2;
+  if (begin > end) {
+    std::swap(begin, end);
+    clockwise = number == 3;
+  }
+  uint64_t digest = Mix(0, number >= 2 ? (clockwise ? 2 : 3) : 1);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    digest = Mix(digest, static_cast<uint64_t>(begin[axis]));
+    digest = Mix(digest, static_cast<uint64_t>(end[axis]));
+  }
+  if (number >= 2 && (words.Has('I') || words.Has('J'))) {
+    digest = Mix(digest, static_cast<uint64_t>(from[0] + (words.Has('I') ? words['I'] : 0)));
+    digest = Mix(digest, static_cast<uint64_t>(from[1] + (words.Has('J') ? words['J'] : 0)));
+  } else if (number >= 2) {
+    digest = Mix(digest, static_cast<uint64_t>(words.Has('R') ? words['R'] : 0));
+  }
+  digest = Mix(digest, static_cast<uint64_t>(filament));
+  digest = Mix(digest, static_cast<uint64_t>(feed_));
+  digest = Mix(digest, tool_);
+  digest = Mix(digest, (retracted() ? 1u : 0u) + (inches_ ? 2u : 0u));
+  for (const uint64_t state : state_) digest = Mix(digest, state);
+  line.role = LineRole::kDeposit;
+  line.digest = digest;
+  line.z = at_[2];
+}
+
+void VerifyMachine::DoM(int number, VerifyLine& line) {
+  const std::string_view code = line.text.substr(0, line.text.find(';'));
+  const size_t digits = code.find_first_not_of("0123456789", 1);
+  const std::string_view rest =
+      digits == std::string_view::npos ? std::string_view{} : code.substr(digits);
+  if (number == 73) return Fence(line, LineRole::kProgress);
+  if (number == 82 || number == 83) return Mode(relative_e_, number == 83, line);
+  for (const int known : {104, 105, 117, 118, 140, 155, 486, 624, 625}) {
+    if (number == known) return Fence(line, LineRole::kFence);
+  }
+  const Words words(rest);
+  const auto set = [&words, this](char letter, size_t place) {
+    if (words.Has(letter)) SetState(place, static_cast<uint64_t>(words[letter]) + 1);
+  };
+  if (number == 106 || number == 107) {
+    const Micro index = words.Has('P') ? words['P'] / 1'000'000 : 0;
+    if (words.OnlyFrom("SP") && index >= 0 && index < 4) {
+      const Micro speed = number == 107 ? 0 : words.Has('S') ? words['S'] : 255'000'000;
+      SetState(kFans + static_cast<size_t>(index), static_cast<uint64_t>(speed) + 1);
+      fan_ = Mix(Mix(state_[kFans], state_[kFans + 1]), Mix(state_[kFans + 2], state_[kFans + 3]));
+      return;
+    }
+  } else if (number == 204 && words.OnlyFrom("SPTR") && words.set != 0) {
+    set('S', kAccelPrint);
+    return set('P', kAccelPrint);
+  } else if (number == 205 && words.OnlyFrom("XY") && words.set != 0) {
+    set('X', kJerkX);
+    return set('Y', kJerkY);
+  } else if (number == 201 && words.OnlyFrom("XY") && words.set != 0) {
+    set('X', kMaxAccelX);
+    return set('Y', kMaxAccelY);
+  } else if (number == 202 && words.OnlyFrom("XY") && words.set != 0) {
+    set('X', kMaxTravelX);
+    return set('Y', kMaxTravelY);
+  } else if (number == 221 && words.OnlyFrom("S") && words.set != 0) {
+    return set('S', kFlow);
+  } else if (number == 900 && words.OnlyFrom("K") && words.set != 0) {
+    return set('K', kPressure);
+  } else if (number == 572 && words.OnlyFrom("SD") && words.Has('S')) {
+    return set('S', kPressure);
+  }
+  Fence(line, LineRole::kFixed);
+}
+
+void VerifyMachine::DoKlipper(VerifyLine& line) {
+  const std::string_view text = line.text;
+  if (Begins(text, "SET_PRESSURE_ADVANCE ")) return SetState(kPressure, DigestOf(text));
+  if (Begins(text, "EXCLUDE_OBJECT_START") || Begins(text, "EXCLUDE_OBJECT_END")) {
+    return Fence(line, LineRole::kFence);
+  }
+  constexpr std::string_view kLimit = "SET_VELOCITY_LIMIT ";
+  if (!Begins(text, kLimit)) {
+    if (Upper(text[0]) == 'T') tool_ = DigestOf(text);
+    return Fence(line, LineRole::kFixed);
+  }
+  std::array<uint64_t, kStates> state = state_;
+  std::string_view rest = Trim(text.substr(kLimit.size(), text.find(';') - kLimit.size()));
+  while (!rest.empty()) {
+    const std::string_view word = rest.substr(0, rest.find_first_of(" \t"));
+    rest = Trim(rest.substr(word.size()));
+    const size_t equals = std::min(word.find('='), word.size());
+    const std::string_view name = word.substr(0, equals);
+    const uint64_t value = DigestOf(word.substr(equals));
+    if (name == "ACCEL") {
+      state[kKlipperAccel] = value;
+    } else if (name == "ACCEL_TO_DECEL") {
+      state[kKlipperDecel] = value;
+    } else if (name == "SQUARE_CORNER_VELOCITY") {
+      state[kKlipperCorner] = value;
+    } else if (name == "VELOCITY") {
+      state[kKlipperSpeed] = value;
+    } else {
+      return Fence(line, LineRole::kFixed);
+    }
+  }
+  state_ = state;
+}
+
+}  // namespace traverse::gcode
