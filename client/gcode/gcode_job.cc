@@ -9,6 +9,7 @@
 #include "client/gcode/parallel.h"
 #include "client/gcode/reader.h"
 #include "client/gcode/travel_model.h"
+#include "client/gcode/travel_rules.h"
 
 namespace traverse {
 namespace gcode {
@@ -89,7 +90,8 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   for (size_t i = 0; i < static_cast<size_t>(gcode::Feature::kCount); ++i) {
     job.features.emplace_back(gcode::FeatureName(static_cast<gcode::Feature>(i)));
   }
-  const std::vector<gcode::TravelModel> models = gcode::LearnTravel(*file);
+  const std::vector<gcode::TravelModel> models =
+      gcode::LearnTravel(*file, gcode::LearnRetraction(*file).threshold_mm);
   gcode::Census census;
   for (size_t i = 0; i < file->layers.size(); ++i) {
     gcode::AddLayer(*file, i, models[i], options.policy, job, census);

@@ -29,7 +29,7 @@ class LayerDraft {
       : file_(file),
         layer_(layer),
         outlines_(OutlinesOf(file, layer)),
-        rules_(habit, outlines_),
+        rules_(file, layer, habit, outlines_),
         out_(file, start, written.text),
         links_(file, donors, out_) {}
 

@@ -49,7 +49,9 @@ Link ReadLink(const GcodeFile& file, size_t index) {
     if (added.kind == StepKind::kSlot) {
       ApplySetter(state, file.setters.Find(step.line.Text(file.text)), step.slots);
     }
-    if (added.kind == StepKind::kTravel) {
+    // Where CuraEngine primes before the last stretch of the way, the way proper ends there.
+    const bool behind_prime = link.retracts() && !step.retracted;
+    if (added.kind == StepKind::kTravel && (link.arrival < 0 || !behind_prime)) {
       link.arrival = static_cast<int>(link.steps.size());
       link.travel_state = state;
     }

@@ -24,7 +24,8 @@ struct LinkStep {
 struct Link {
   std::vector<LinkStep> steps;
 
-  // Index of the travel move that arrives at the next path: the last one in XY. -1: none.
+  // Index of the travel move that arrives at the next path: the last one in XY, or the last one
+  // with filament pulled back if there are such. -1: none.
   int arrival = -1;
 
   // Filament pulled back before the arrival; 0 if none.

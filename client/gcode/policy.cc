@@ -142,7 +142,8 @@ PathRule LayerPlanner::RuleOf(size_t path) const {
   return rule;
 }
 
-// What a path is to the order of others under Policy::kFree.
+// What a path is to the order of others. That lines of different infills lie side by side is no
+// reason for an order; that they lie against a wall is.
 enum class Kind { kWall, kFill, kIroning, kSupport, kOther };
 
 Kind KindOf(Feature feature) {
@@ -172,11 +173,11 @@ Kind KindOf(Feature feature) {
 bool LayerPlanner::KeepsOrder(uint32_t i, uint32_t j) const {
   const Feature a = FeatureOf(i);
   const Feature b = FeatureOf(j);
-  if (policy_ == Policy::kFree) return KindOf(a) != KindOf(b);
-  if (a != b) return true;
-  if (IsWall(a) || OrderIsQuality(a)) return true;
-  // A file that does not name features still prints them at speeds of their own.
-  return a == Feature::kLine && BlockOf(i).feed_in != BlockOf(j).feed_in;
+  const Kind kind = KindOf(a);
+  if (kind != KindOf(b)) return true;
+  if (policy_ == Policy::kFree) return false;
+  if (kind == Kind::kWall || OrderIsQuality(a) || OrderIsQuality(b)) return true;
+  return kind != Kind::kFill && a != b;
 }
 
 bool LayerPlanner::BeginsGroup(size_t path) const {

@@ -22,9 +22,7 @@ struct LayerTravel {
 
 class TravelLearner {
  public:
-  explicit TravelLearner(const GcodeFile& file) : file_(file) {
-    shortest_retracted_mm_ = file.profile.retract_before_travel.value_or(1e9);
-  }
+  explicit TravelLearner(const GcodeFile& file) : file_(file) {}
 
   LayerTravel LearnLayer(const Layer& layer) {
     LayerTravel learnt;
@@ -34,7 +32,17 @@ class TravelLearner {
     return learnt;
   }
 
-  double threshold_mm() const { return shortest_retracted_mm_ < 1e9 ? shortest_retracted_mm_ : 0; }
+  // How many of the ways longer than this are retracted.
+  double ShareRetracted(double threshold_mm) const {
+    int64_t retracted = 0;
+    int64_t longer = 0;
+    for (const auto& [way, retracts] : ways_) {
+      if (way <= threshold_mm) continue;
+      ++longer;
+      retracted += retracts ? 1 : 0;
+    }
+    return longer == 0 ? 0 : static_cast<double>(retracted) / static_cast<double>(longer);
+  }
 
  private:
   const Dynamics& DynamicsAt(uint32_t state) {
@@ -59,10 +67,10 @@ class TravelLearner {
     for (Step step; interpreter.Next(step);) {
       still_seconds += LearnStep(step, interpreter, dynamics, learnt);
     }
+    LearnThreshold(before, block, retracts);
     if (!retracts) return;
     learnt.retraction_seconds += still_seconds;
     ++learnt.retractions;
-    LearnThreshold(before, block);
   }
 
   // Returns the time of what is not travel proper.
@@ -106,23 +114,23 @@ class TravelLearner {
     }
   }
 
-  void LearnThreshold(const Block& before, const Block& block) {
-    if (file_.profile.retract_before_travel || (block.link & kLinkSplits) != 0) return;
+  void LearnThreshold(const Block& before, const Block& block, bool retracts) {
+    if ((block.link & kLinkSplits) != 0) return;
     const double unit = file_.modes[block.mode].inches ? kInchMm : 1;
     const double way = std::hypot(ToDouble(block.first.x - before.last.x),
                                   ToDouble(block.first.y - before.last.y)) *
                        unit;
-    shortest_retracted_mm_ = std::min(shortest_retracted_mm_, way);
+    ways_.emplace_back(way, retracts);
   }
 
   const GcodeFile& file_;
-  std::map<uint32_t, Dynamics> dynamics_;  // by state
-  double shortest_retracted_mm_;
+  std::map<uint32_t, Dynamics> dynamics_;      // by state
+  std::vector<std::pair<double, bool>> ways_;  // straight length in mm, retracted
 };
 
 }  // namespace
 
-std::vector<TravelModel> LearnTravel(const GcodeFile& file) {
+std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm) {
   TravelLearner learner(file);
   std::vector<TravelModel> models;
   TravelModel model;
@@ -142,7 +150,11 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file) {
     }
     models.push_back(model);
   }
-  for (TravelModel& each : models) each.retraction_threshold_mm = learner.threshold_mm();
+  const double share = learner.ShareRetracted(threshold_mm);
+  for (TravelModel& each : models) {
+    each.retraction_threshold_mm = threshold_mm;
+    each.retraction_seconds *= share;
+  }
   return models;
 }
 

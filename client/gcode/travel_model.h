@@ -19,9 +19,10 @@ struct TravelModel {
 
 // [layer]. Speed and acceleration are those at which most of the layer's travel is done, the time
 // is the mean over its retractions; a layer without such moves has what the one before has. The
-// threshold is the slicer's setting if the file holds it, else the shortest straight way for which
-// it retracted in the file. O(length of all links).
-std::vector<TravelModel> LearnTravel(const GcodeFile& file);
+// threshold is the length that best tells the ways that the file retracts from those that it does
+// not: a slicer that looks at walls crossed, and not at lengths, is met on the average. (To let the
+// route's cost know of islands was tried: it made no better routes.) O(length of all links).
+std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm);
 
 }  // namespace traverse::gcode
 

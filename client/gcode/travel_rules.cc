@@ -22,20 +22,69 @@ bool IsVisibleWall(Feature feature) {
          feature == Feature::kOverhangWall;
 }
 
-void LearnLayer(const GcodeFile& file, const Layer& layer, RetractionHabit& habit) {
-  const std::vector<Outline> outlines = OutlinesOf(file, layer);
-  const VisibleWalls walls(outlines);
+double UnitOf(const GcodeFile& file, const Block& block) {
+  return file.modes[block.mode].inches ? 25.4 : 1;
+}
+
+bool IsSoft(const Block& block) { return (block.link & (kLinkFixed | kLinkSplits)) == 0; }
+
+// Calls visit(block, from, to) for the links inside a layer that have no marks in them.
+template <typename Visit>
+void ForEachWay(const GcodeFile& file, const Layer& layer, Visit visit) {
   for (uint32_t b = layer.first_block + 1; b < layer.end_block; ++b) {
     const Block& block = file.blocks[b];
-    if ((block.link & (kLinkFixed | kLinkSplits)) != 0) continue;
-    const Outline& outline = outlines[b - layer.first_block];
-    const double unit = file.modes[block.mode].inches ? 25.4 : 1;
-    const Vertex from = Behind(file.blocks[b - 1], unit);
-    const Vertex to = outline.points.front();
-    if (Distance(from, to) < habit.threshold_mm || walls.Crossed(from, to)) continue;
-    RetractionCount& count = habit.inside[static_cast<size_t>(outline.feature)];
-    ++((block.link & kLinkRetracts) != 0 ? count.retracted : count.not_retracted);
+    if (!IsSoft(block)) continue;
+    const double unit = UnitOf(file, block);
+    visit(block, Behind(file.blocks[b - 1], unit),
+          Vertex{ToDouble(block.first.x) * unit, ToDouble(block.first.y) * unit}, b);
   }
+}
+
+void Count(const GcodeFile& file, const Layer& layer, const std::vector<Outline>& outlines,
+           const VisibleWalls& walls, double threshold_mm, RetractionCounts& counts) {
+  ForEachWay(file, layer, [&](const Block& block, Vertex from, Vertex to, uint32_t b) {
+    if (Distance(from, to) < threshold_mm || walls.Crossed(from, to)) return;
+    const Feature feature = outlines[b - layer.first_block].feature;
+    RetractionCount& count = counts[static_cast<size_t>(feature)];
+    ++((block.link & kLinkRetracts) != 0 ? count.retracted : count.not_retracted);
+  });
+}
+
+// The usual setting of slicers.
+constexpr double kUsualThresholdMm = 1.5;
+
+// Straight ways across walls that were not retracted, for the shortest that was to be no accident.
+constexpr int64_t kEnough = 3;
+
+double LearnThreshold(const GcodeFile& file, const std::vector<size_t>& sample) {
+  if (file.profile.retract_before_travel) return *file.profile.retract_before_travel;
+  double shortest = 1e9;
+  for (const Layer& layer : file.layers) {
+    ForEachWay(file, layer, [&](const Block& block, Vertex from, Vertex to, uint32_t) {
+      if ((block.link & kLinkRetracts) != 0) shortest = std::min(shortest, Distance(from, to));
+    });
+  }
+  if (shortest <= kUsualThresholdMm || shortest >= 1e9) return std::min(shortest, 1e6);
+  int64_t crossing = 0;
+  for (const size_t i : sample) {
+    const VisibleWalls walls(OutlinesOf(file, file.layers[i]));
+    ForEachWay(file, file.layers[i], [&](const Block& block, Vertex from, Vertex to, uint32_t) {
+      const double length = Distance(from, to);
+      const bool straight = static_cast<double>(block.travel_mm) < length * 1.01 + 0.01;
+      if ((block.link & kLinkRetracts) == 0 && straight && length > kUsualThresholdMm &&
+          length < shortest && walls.Crossed(from, to)) {
+        ++crossing;
+      }
+    });
+  }
+  return crossing >= kEnough ? shortest : kUsualThresholdMm;
+}
+
+std::vector<size_t> SampledLayers(const GcodeFile& file) {
+  std::vector<size_t> sample;
+  const size_t step = std::max<size_t>(1, file.layers.size() / kSampledLayers);
+  for (size_t i = 0; i < file.layers.size(); i += step) sample.push_back(i);
+  return sample;
 }
 
 }  // namespace
@@ -73,30 +122,41 @@ bool VisibleWalls::Crossed(Vertex a, Vertex b) const {
   return crossed;
 }
 
-RetractionHabit LearnRetraction(const GcodeFile& file, double threshold_mm) {
+RetractionHabit LearnRetraction(const GcodeFile& file) {
   RetractionHabit habit;
-  habit.threshold_mm = threshold_mm;
   for (const Block& block : file.blocks) {
-    habit.retracts = habit.retracts || (block.link & kLinkRetracts) != 0;
+    habit.retracts = habit.retracts || (IsSoft(block) && (block.link & kLinkRetracts) != 0);
   }
-  const size_t step = std::max<size_t>(1, file.layers.size() / kSampledLayers);
-  for (size_t i = 0; habit.retracts && i < file.layers.size(); i += step) {
-    LearnLayer(file, file.layers[i], habit);
+  if (!habit.retracts) return habit;
+  const std::vector<size_t> sample = SampledLayers(file);
+  habit.threshold_mm = LearnThreshold(file, sample);
+  for (const size_t i : sample) {
+    const std::vector<Outline> outlines = OutlinesOf(file, file.layers[i]);
+    Count(file, file.layers[i], outlines, VisibleWalls(outlines), habit.threshold_mm, habit.inside);
   }
+  RetractionCount all;
   for (const RetractionCount& count : habit.inside) {
-    habit.crossing_matters = habit.crossing_matters || !count.Mostly();
+    all.retracted += count.retracted;
+    all.not_retracted += count.not_retracted;
   }
+  habit.crossing_matters = all.not_retracted * 10 >= all.total() && all.not_retracted > 0;
   return habit;
 }
 
-TravelRules::TravelRules(const RetractionHabit& habit, const std::vector<Outline>& outlines)
+TravelRules::TravelRules(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
+                         const std::vector<Outline>& outlines)
     : habit_(habit) {
-  if (habit.crossing_matters) walls_ = std::make_unique<const VisibleWalls>(outlines);
+  if (!habit.crossing_matters) return;
+  walls_ = std::make_unique<const VisibleWalls>(outlines);
+  Count(file, layer, outlines, *walls_, habit.threshold_mm, inside_);
 }
 
 bool TravelRules::Retracts(Vertex a, Vertex b, Feature feature) const {
   if (!habit_.retracts || Distance(a, b) < habit_.threshold_mm) return false;
-  if (walls_ == nullptr || habit_.inside[static_cast<size_t>(feature)].Mostly()) return true;
+  if (walls_ == nullptr) return true;
+  const RetractionCount& here = inside_[static_cast<size_t>(feature)];
+  const RetractionCount& everywhere = habit_.inside[static_cast<size_t>(feature)];
+  if ((here.total() >= kEnough ? here : everywhere).Mostly()) return true;
   return walls_->Crossed(a, b);
 }
 

@@ -13,23 +13,26 @@
 
 namespace traverse::gcode {
 
-// How often ways were retracted that were long enough for it.
+// How often ways were retracted that were long enough for it and crossed no visible wall.
 struct RetractionCount {
   int64_t retracted = 0;
   int64_t not_retracted = 0;
 
-  // Retracting where the slicer would not costs time, not retracting where it would costs quality.
-  bool Mostly() const { return retracted * 4 >= not_retracted; }
+  int64_t total() const { return retracted + not_retracted; }
+
+  // To retract where the slicer would not costs time; not to where it would costs quality.
+  bool Mostly() const { return retracted * 2 >= not_retracted; }
 };
+
+// [feature of the path that is gone to]
+using RetractionCounts = std::array<RetractionCount, static_cast<size_t>(Feature::kCount)>;
 
 // What holds in a whole file.
 struct RetractionHabit {
   bool retracts = false;          // the file has retractions at all
   double threshold_mm = 0;        // shorter ways are not retracted
   bool crossing_matters = false;  // ways that cross no visible wall are often not retracted
-
-  // [feature of the path that is gone to] ways beyond the threshold that cross no visible wall.
-  std::array<RetractionCount, static_cast<size_t>(Feature::kCount)> inside;
+  RetractionCounts inside;
 };
 
 // The visible walls of one layer.
@@ -44,13 +47,17 @@ class VisibleWalls {
   SegmentGrid grid_;
 };
 
-// `threshold_mm` as in TravelModel. Looks at some two dozen layers spread over the file.
-RetractionHabit LearnRetraction(const GcodeFile& file, double threshold_mm);
+// Looks at some two dozen layers spread over the file. The threshold is the slicer's setting if the
+// file holds it; else the shortest way that was retracted, but no more than the usual 1.5 mm if
+// straight ways across visible walls were retracted whenever they were longer than that.
+RetractionHabit LearnRetraction(const GcodeFile& file);
 
-// The same for one layer.
+// The same for one layer: top and bottom layers are often retracted where others are not.
 class TravelRules {
  public:
-  TravelRules(const RetractionHabit& habit, const std::vector<Outline>& outlines);
+  // `outlines` are those of `layer`.
+  TravelRules(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
+              const std::vector<Outline>& outlines);
 
   // Whether to pull back for the straight way from `a` to `b`, where a path of `feature` begins.
   bool Retracts(Vertex a, Vertex b, Feature feature) const;
@@ -58,6 +65,7 @@ class TravelRules {
  private:
   const RetractionHabit& habit_;
   std::unique_ptr<const VisibleWalls> walls_;  // null if they do not matter
+  RetractionCounts inside_;
 };
 
 }  // namespace traverse::gcode
