@@ -27,6 +27,7 @@ const std::vector<Command>& Commands();
 // Each command's row; its file has the rest.
 Command OptimizeCommand();
 Command CompareCommand();
+Command VerifyCommand();
 Command InspectCommand();
 Command ConvertCommand();
 Command StrategiesCommand();

@@ -4,10 +4,12 @@
 
 #include "absl/strings/str_format.h"
 #include "client/cli/command.h"
+#include "client/cli/gcode_output.h"
 #include "client/cli/job_flags.h"
 #include "client/cli/service.h"
 #include "client/cli/strategy_spec.h"
 #include "client/cli/terminal.h"
+#include "client/files/read_file.h"
 #include "client/files/write_file.h"
 #include "client/formats/detect.h"
 #include "client/formats/read_input.h"
@@ -41,16 +43,27 @@ absl::StatusOr<Request> ParseRequest(const Flags& flags) {
   return request;
 }
 
-// What this format cannot have; before any work.
-absl::Status CheckOutputs(const Flags& flags, const InputJob& job) {
-  if (job.format == InputFormat::kGcode && (flags.Has("o") || !flags.Has("json"))) {
-    return absl::InvalidArgumentError("G-code is not written by this version: use --json=FILE");
-  }
+// Where the G-code goes; empty for none. A fault for outputs that the format cannot have.
+absl::StatusOr<std::string> TargetOf(const Flags& flags, const InputJob& job) {
+  if (job.format == InputFormat::kGcode) return GcodeTarget(flags, job.name);
   if (flags.Has("o")) {
     return absl::InvalidArgumentError(absl::StrFormat(
         "-o is for G-code; the routes of %s go to --json=FILE", FormatName(job.format)));
   }
-  return absl::OkStatus();
+  return std::string();
+}
+
+// Writes the G-code; adds what it came to.
+absl::Status RewriteTo(const std::string& target, const InputJob& job, const report::JobRun& run,
+                       const GcodeOptions& options, std::string& summary) {
+  const absl::StatusOr<GcodeRewrite> rewrite = RewriteByRun(job, run, options);
+  if (!rewrite.ok()) {
+    return absl::FailedPreconditionError(
+        absl::StrFormat("%s: left as it is, for the new file would not print the same: %s",
+                        DisplayName(job.name), std::string(rewrite.status().message())));
+  }
+  summary += GcodeSummary(*rewrite);
+  return WriteGcode(*rewrite, job, target);
 }
 
 Outcome RunOptimize(const Flags& flags) {
@@ -62,7 +75,8 @@ Outcome RunOptimize(const Flags& flags) {
 
   absl::StatusOr<InputJob> job = ReadInput(flags.operands()[0], ParseGcodeOptions(flags));
   if (!job.ok()) return InputFault(job.status());
-  if (absl::Status status = CheckOutputs(flags, *job); !status.ok()) return UsageFault(status);
+  const absl::StatusOr<std::string> target = TargetOf(flags, *job);
+  if (!target.ok()) return UsageFault(target.status());
   if (absl::Status status = ApplyJobFlags(request->job, *job); !status.ok()) {
     return UsageFault(status);
   }
@@ -79,9 +93,14 @@ Outcome RunOptimize(const Flags& flags) {
     const absl::Status status = WriteWholeFile(request->json, report::RoutesJson(*job, run));
     if (!status.ok()) return InputFault(status);
   }
+  std::string summary = report::OptimizeSummary(*job, run);
+  if (!target->empty()) {
+    const absl::Status status = RewriteTo(*target, *job, run, ParseGcodeOptions(flags), summary);
+    if (!status.ok()) return InputFault(status);
+  }
   if (!request->quiet) {
-    // Standard output is the document's where it was asked for there.
-    Print(request->json == "-" ? stderr : stdout, report::OptimizeSummary(*job, run));
+    // Standard output is the document's or the G-code's where that was asked for there.
+    Print(request->json == "-" || *target == "-" ? stderr : stdout, summary);
   }
   return Done();
 }
@@ -94,7 +113,7 @@ Command OptimizeCommand() {
   command.operands = {"INPUT"};
   command.summary = "Shortens the travel of a job.";
   command.flags = {
-      {"o", "OUTPUT", "the G-code to write (default: INPUT itself)"},
+      {"o", "OUTPUT", "the G-code to write (default: INPUT itself, unless --json is given)"},
       {"strategy", "NAME[:OPTION=VALUE]",
        "see `traverse strategies` (default: the service's best)"},
       {"json", "FILE", "writes the routes; - is standard output"},
@@ -103,7 +122,9 @@ Command OptimizeCommand() {
   for (auto table : {JobFlagTable(), ServiceFlagTable()}) {
     command.flags.insert(command.flags.end(), table.begin(), table.end());
   }
-  command.examples = {"traverse optimize part.damat --layers=1-5 --json=routes.json"};
+  command.examples = {"traverse optimize part.gcode",
+                      "traverse optimize part.gcode -o shorter.gcode --policy=balanced",
+                      "traverse optimize part.damat --layers=1-5 --json=routes.json"};
   command.run = RunOptimize;
   return command;
 }

@@ -107,6 +107,17 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   return job;
 }
 
+gcode::LayerOrder OrderOf(const GcodeFile& file, size_t layer, const v1::LayerResult& answer) {
+  gcode::LayerOrder order;
+  order.reserve(static_cast<size_t>(answer.visits_size()));
+  for (const v1::Visit& visit : answer.visits()) {
+    const bool closed = visit.has_vertex();
+    const uint32_t entry = closed ? visit.vertex() : visit.reversed() ? 1 : 0;
+    order.push_back({file.layers[layer].first_block + visit.plan_path(), entry, closed});
+  }
+  return order;
+}
+
 absl::StatusOr<InputJob> ReadGcodeJob(std::string text, const std::string& name,
                                       const GcodeOptions& options) {
   absl::StatusOr<std::shared_ptr<GcodeFile>> file = ReadGcode(std::move(text), name);

@@ -8,8 +8,10 @@
 
 #include "absl/status/statusor.h"
 #include "client/gcode/gcode_file.h"
+#include "client/gcode/layer_writer.h"
 #include "client/gcode/policy.h"
 #include "client/input/input_job.h"
+#include "traverse/v1/route_optimizer_service.pb.h"
 
 namespace traverse {
 
@@ -21,6 +23,10 @@ struct GcodeOptions {
 // (time), and what `inspect` prints. Path i of layer l is block layers[l].first_block + i of the
 // file; labels count the paths of a layer from 1.
 InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions& options);
+
+// The order that an answer of the service gives layer `layer` of `file`.
+// REQUIRES: the answer was checked against the layer of the job.
+gcode::LayerOrder OrderOf(const GcodeFile& file, size_t layer, const v1::LayerResult& answer);
 
 // ReadGcode and MakeGcodeJob.
 absl::StatusOr<InputJob> ReadGcodeJob(std::string text, const std::string& name,

@@ -30,6 +30,7 @@ class LayerDraft {
         layer_(layer),
         outlines_(OutlinesOf(file, layer)),
         rules_(file, layer, habit, outlines_),
+        written_(written),
         out_(file, start, written.text),
         links_(file, donors, out_) {}
 
@@ -42,6 +43,7 @@ class LayerDraft {
       PlacedPath to(file_, order[i]);
       const auto place = static_cast<uint32_t>(layer_.first_block + i);
       if (from) WriteLink(*from, to, place);
+      if (i == 0) written_.first_path = written_.text.size();
       to.Write(true, out_);
       WriteProgress(file_.blocks[place].end);
       from.emplace(std::move(to));
@@ -88,6 +90,7 @@ class LayerDraft {
   const Layer& layer_;
   const std::vector<Outline> outlines_;
   const TravelRules rules_;
+  WrittenLayer& written_;
   GcodeOut out_;
   LinkWriter links_;
   std::vector<Offset>::const_iterator progress_;

@@ -22,6 +22,7 @@ LayerOrder GivenOrder(const GcodeFile& file, const Layer& layer);
 struct WrittenLayer {
   std::string text;  // from behind the last path of the layer before to behind its own last path
   PartStart behind;  // the machine then
+  size_t first_path = 0;  // where in the text its first path begins
   bool as_given = false;  // byte by byte what the file has
 };
 

@@ -31,7 +31,7 @@ struct Section {
   size_t first_line = 0;
   size_t last_line = 0;  // the one that ends it
   DigestSet deposits;
-  DigestSet notes;  // comments and M73
+  DigestSet notes;           // comments and M73
   Micro lowest = INT64_MAX;  // height of all moves in XY
 
   // How it ends: with a line, or with a change of height (digest 0), or with the text.

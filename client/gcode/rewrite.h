@@ -1,0 +1,48 @@
+// From a sliced file and an order of paths for each layer to equivalent G-code with less travel.
+
+#ifndef TRAVERSE_CLIENT_GCODE_REWRITE_H_
+#define TRAVERSE_CLIENT_GCODE_REWRITE_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "client/gcode/gcode_file.h"
+#include "client/gcode/layer_writer.h"
+#include "client/gcode/policy.h"
+#include "client/gcode/print_totals.h"
+
+namespace traverse {
+
+struct GcodeRewrite {
+  std::string text;  // of the new file; that of the old one if nothing was gained
+  gcode::PrintTotals before;
+  gcode::PrintTotals after;
+  int64_t layers = 0;
+  int64_t layers_changed = 0;
+};
+
+struct RewriteOptions {
+  gcode::Policy policy = gcode::Policy::kSafe;
+  std::string version;  // of this program, for the line that is added behind the head
+  int threads = 1;
+};
+
+// Writes `file` with the paths of layer l in the order `orders[l]`; an empty order is that of the
+// file. A layer keeps the file's order where the new one is not quicker by the estimate, or, under
+// Policy::kSafe, where its travel would be longer: within the layer, or with the way to it. The
+// text is verified before it is returned (verify/verifier.h).
+//
+// FailedPrecondition with the first difference if it does not print the same: a fault of ours.
+// REQUIRES: each order has each path of its layer once, and is one that a plan of `policy` allows.
+absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
+                                          const std::vector<gcode::LayerOrder>& orders,
+                                          const RewriteOptions& options);
+
+// "travel 15.27 -> 12.41 m (-18.7 %), retractions 1187 -> 1059, estimated print time ..."
+std::string DescribeRewrite(const GcodeRewrite& rewrite);
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_CLIENT_GCODE_REWRITE_H_
