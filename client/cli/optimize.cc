@@ -113,7 +113,7 @@ Command OptimizeCommand() {
   command.operands = {"INPUT"};
   command.summary = "Shortens the travel of a job.";
   command.flags = {
-      {"o", "OUTPUT", "the G-code to write (default: INPUT itself, unless --json is given)"},
+      {"o", "OUTPUT", "the G-code to write (default: INPUT itself; with --json none)"},
       {"strategy", "NAME[:OPTION=VALUE]",
        "see `traverse strategies` (default: the service's best)"},
       {"json", "FILE", "writes the routes; - is standard output"},
