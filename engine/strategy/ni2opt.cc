@@ -37,8 +37,9 @@ class Ni2opt : public Strategy {
   }
 
  private:
-  // Descends from `start`, and where that ends behind the baseline, from there. Never behind
-  // either.
+  // Descends from `start`. Where that ends behind the baseline, the baseline takes its place:
+  // improved too, but without point release as it is, as this is then the NI2OPT of the sources.
+  // Never behind either.
   Solution Best(const LayerView& layer, Route baseline, const Route& start, Budget& budget) const {
     Route route = Improve(layer, start, descent_, budget);
     if (RouteCost(layer.problem, baseline) < RouteCost(layer.problem, route)) {
