@@ -22,7 +22,9 @@ namespace {
 // One attempt to connect may take this long; gRPC's default of 20 s is long for a person who waits.
 constexpr int kConnectTimeoutMs = 5000;
 
-constexpr char kServiceConfig[] = R"({"loadBalancingConfig": [{"round_robin": {}}]})";
+// Servers whose health says that they take no jobs, as those that drain, are left out.
+constexpr char kServiceConfig[] = R"({"loadBalancingConfig": [{"round_robin": {}}],
+    "healthCheckConfig": {"serviceName": "traverse.v1.RouteOptimizerService"}})";
 
 struct HostAndPort {
   std::string host;  // without brackets

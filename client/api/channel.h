@@ -18,8 +18,9 @@ namespace traverse {
 absl::StatusOr<std::vector<std::string>> ParseAddresses(const std::string& text);
 
 // A channel that spreads its calls over `addresses` and all that their names stand for, those that
-// cannot be reached left out (gRPC's round_robin). Names of several addresses are looked up here,
-// once: Unavailable if none of them is known. Connects when first used. Without encryption.
+// cannot be reached or say that they take no jobs left out (gRPC's round_robin, its health
+// checking). Names of several addresses are looked up here, once: Unavailable if none of them is
+// known. Connects when first used. Without encryption.
 absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectTo(const std::vector<std::string>& addresses);
 
 }  // namespace traverse

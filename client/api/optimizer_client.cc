@@ -3,6 +3,9 @@
 #include <grpcpp/client_context.h>
 #include <grpcpp/support/sync_stream.h>
 
+#include <algorithm>
+#include <optional>
+#include <random>
 #include <string>
 #include <thread>
 #include <utility>
@@ -10,6 +13,9 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_format.h"
 #include "absl/time/clock.h"
+#include "client/api/resume.h"
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
 
 namespace traverse {
 namespace {
@@ -52,9 +58,10 @@ v1::Layer Stripped(const v1::Layer& layer) {
   return out;
 }
 
-// Sends the whole job, then closes this half of the stream. A write fails when the call is over;
-// Finish says why.
-void Send(const v1::JobOptions& options, absl::Span<const v1::Layer> layers, Stream& stream) {
+// Sends the job, with `empty_layer` after its layers, then closes this half of the stream. A write
+// fails when the call is over; Finish says why.
+void Send(const v1::JobOptions& options, absl::Span<const v1::Layer> layers, bool empty_layer,
+          Stream& stream) {
   v1::OptimizeRequest request;
   *request.mutable_options() = options;
   size_t bytes = 0;
@@ -67,10 +74,40 @@ void Send(const v1::JobOptions& options, absl::Span<const v1::Layer> layers, Str
     request.Clear();
     bytes = 0;
   }
+  if (empty_layer) request.add_layers();
   if (request.has_options() || request.layers_size() > 0) {
     if (!stream.Write(request)) return;
   }
   stream.WritesDone();
+}
+
+// The server's advice when to try again, if it gave one.
+std::optional<absl::Duration> RetryDelay(const grpc::Status& status) {
+  google::rpc::Status details;
+  if (!details.ParseFromString(status.error_details())) return std::nullopt;
+  for (const google::protobuf::Any& any : details.details()) {
+    google::rpc::RetryInfo info;
+    if (any.UnpackTo(&info)) {
+      return absl::Seconds(info.retry_delay().seconds()) +
+             absl::Nanoseconds(info.retry_delay().nanos());
+    }
+  }
+  return std::nullopt;
+}
+
+// When to try again after `attempts` attempts in vain, or nothing if that makes no sense.
+std::optional<absl::Duration> DelayAfter(const grpc::Status& status, const RetryPolicy& policy,
+                                         int attempts) {
+  if (attempts >= policy.max_attempts) return std::nullopt;
+  const std::optional<absl::Duration> advice = RetryDelay(status);
+  const bool full = status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED && advice;
+  if (!full && status.error_code() != grpc::StatusCode::UNAVAILABLE) return std::nullopt;
+  absl::Duration delay = policy.first_delay;
+  for (int i = 1; i < attempts; ++i) delay = std::min(delay * 2, policy.max_delay);
+  delay = std::max(delay, advice.value_or(absl::ZeroDuration()));
+  // Callers that were refused together do not come back together.
+  thread_local std::minstd_rand random(std::random_device{}());
+  return delay * std::uniform_real_distribution<double>(1.0, 1.25)(random);
 }
 
 // Collects the answers of one job.
@@ -82,18 +119,23 @@ class Collector {
     answered_.resize(layers.size());
   }
 
-  absl::Status Take(v1::OptimizeResponse response) {
+  // Takes an answer of a call for the layers of `run`.
+  absl::Status Take(v1::OptimizeResponse response, const MissingRun& run) {
     if (response.has_summary()) {
       result_.summary = std::move(*response.mutable_summary());
-      finished_ = true;
+      summary_ = true;
       return absl::OkStatus();
     }
-    const uint64_t index = response.layer().index();
+    const uint64_t index = response.layer().index() + run.begin;
+    if (response.has_layer() && index == run.end && index < layers_.size()) {
+      return absl::OkStatus();  // the empty layer at the end of a run
+    }
     if (!response.has_layer() || index >= layers_.size() || answered_[index]) {
       return absl::InternalError("the server answered what was not asked");
     }
     v1::LayerResult& layer = result_.layers[index];
     layer = std::move(*response.mutable_layer());
+    layer.set_index(index);
     if (const absl::Status status = CheckVisits(layers_[index], layer); !status.ok()) {
       return absl::InternalError(
           absl::StrFormat("the server's answer to layers[%d] is no route: %s", index,
@@ -105,13 +147,17 @@ class Collector {
     return absl::OkStatus();
   }
 
-  absl::StatusOr<JobResult> Done() && {
-    if (!finished_ || answers_ != layers_.size()) {
-      return absl::InternalError(
-          absl::StrFormat("the server answered %d of %d layers", answers_, layers_.size()));
-    }
-    return std::move(result_);
+  // Whether a call for `run` that ended well has answered all of it.
+  bool Complete(const MissingRun& run) const {
+    return summary_ && std::find(answered_.begin() + static_cast<std::ptrdiff_t>(run.begin),
+                                 answered_.begin() + static_cast<std::ptrdiff_t>(run.end),
+                                 false) == answered_.begin() + static_cast<std::ptrdiff_t>(run.end);
   }
+
+  const std::vector<bool>& answered() const { return answered_; }
+  size_t answers() const { return answers_; }
+  bool has_summary() const { return summary_; }
+  JobResult& result() { return result_; }
 
  private:
   const absl::Span<const v1::Layer> layers_;
@@ -119,8 +165,34 @@ class Collector {
   JobResult result_;
   std::vector<bool> answered_;
   size_t answers_ = 0;
-  bool finished_ = false;
+  bool summary_ = false;
 };
+
+// One call for the layers of `run`. `fault` is set if an answer is no answer.
+grpc::Status CallOnce(v1::RouteOptimizerService::Stub& stub, const v1::JobOptions& options,
+                      absl::Span<const v1::Layer> layers, const MissingRun& run,
+                      absl::Time deadline, Collector& collector, absl::Status& fault) {
+  grpc::ClientContext context;
+  if (deadline != absl::InfiniteFuture()) context.set_deadline(absl::ToChronoTime(deadline));
+  const std::unique_ptr<Stream> stream = stub.Optimize(&context);
+  // A cleaning after the last layer happens only if another layer follows.
+  const bool empty_layer =
+      run.end < layers.size() && CleaningDueAfter(options, run.end - run.begin - 1);
+  std::thread sender(
+      [&] { Send(options, layers.subspan(run.begin, run.end - run.begin), empty_layer, *stream); });
+  v1::OptimizeResponse response;
+  while (stream->Read(&response)) {
+    fault = collector.Take(std::move(response), run);
+    if (!fault.ok()) {
+      context.TryCancel();
+      break;
+    }
+    response.Clear();
+  }
+  // When the server has ended the call, a write that waits for room returns.
+  sender.join();
+  return stream->Finish();
+}
 
 }  // namespace
 
@@ -130,28 +202,44 @@ OptimizerClient::OptimizerClient(std::shared_ptr<grpc::Channel> channel)
 absl::StatusOr<JobResult> OptimizerClient::Optimize(const v1::JobOptions& options,
                                                     absl::Span<const v1::Layer> layers,
                                                     const CallOptions& call) {
-  grpc::ClientContext context;
-  SetDeadline(context, call.deadline);
-  const std::unique_ptr<Stream> stream = stub_->Optimize(&context);
-  std::thread sender([&] { Send(options, layers, *stream); });
-
+  const absl::Time began = absl::Now();
+  const absl::Time deadline = began + call.deadline;
   Collector collector(layers, call);
-  absl::Status taken;
-  v1::OptimizeResponse response;
-  while (stream->Read(&response)) {
-    taken = collector.Take(std::move(response));
-    if (!taken.ok()) {
-      context.TryCancel();
-      break;
+  int in_vain = 0;
+  int calls = 0;
+  do {
+    const MissingRun run = FirstMissing(collector.answered());
+    const v1::LayerResult* before =
+        run.begin > 0 ? &collector.result().layers[run.begin - 1] : nullptr;
+    const size_t had = collector.answers();
+    absl::Status fault;
+    const grpc::Status status =
+        CallOnce(*stub_, ResumedOptions(options, run.begin, before, absl::Now() - began), layers,
+                 run, deadline, collector, fault);
+    ++calls;
+    if (!fault.ok()) return fault;
+    in_vain = collector.answers() > had ? 1 : in_vain + 1;
+    if (status.ok()) {
+      if (!collector.Complete(run)) {
+        return absl::InternalError(absl::StrFormat("the server answered %d of %d layers",
+                                                   collector.answers(), layers.size()));
+      }
+      continue;
     }
-    response.Clear();
+    if (collector.answers() == layers.size() && !layers.empty()) break;  // only the summary is lost
+    const std::optional<absl::Duration> delay = DelayAfter(status, call.retry, in_vain);
+    if (!delay || absl::Now() + *delay >= deadline) {
+      absl::Status failure = FromGrpc(status);
+      return absl::Status(failure.code(), ShiftPlace(std::string(failure.message()), run.begin));
+    }
+    absl::SleepFor(*delay);
+  } while (collector.answers() < layers.size());
+  if (calls > 1 || !collector.has_summary()) {
+    JobResult& result = collector.result();
+    result.summary = SummaryOf(options, result.layers, result.summary,
+                               absl::ToDoubleSeconds(absl::Now() - began));
   }
-  // When the server has ended the call, a write that waits for room returns.
-  sender.join();
-  const grpc::Status status = stream->Finish();
-  if (!taken.ok()) return taken;
-  if (!status.ok()) return FromGrpc(status);
-  return std::move(collector).Done();
+  return std::move(collector.result());
 }
 
 absl::StatusOr<v1::ListStrategiesResponse> OptimizerClient::ListStrategies(

@@ -26,10 +26,20 @@
 
 namespace traverse {
 
-// How one call is made.
+// How often and when a job whose call broke off is taken up again: after UNAVAILABLE, and after
+// RESOURCE_EXHAUSTED with the server's advice when to come back.
+struct RetryPolicy {
+  int max_attempts = 4;  // in a row that brought no layer; 1: never again
+  absl::Duration first_delay = absl::Milliseconds(100);  // doubles with each attempt
+  absl::Duration max_delay = absl::Seconds(10);          // the server's advice may be longer
+};
+
+// How one job is done.
 struct CallOptions {
   // The answer is due within this time; the service sends the best routes it has before it.
   absl::Duration deadline = absl::InfiniteDuration();
+
+  RetryPolicy retry;
 
   // Called with each layer's answer as it comes, on the calling thread. May be empty.
   std::function<void(const v1::LayerResult&)> on_layer;
@@ -43,6 +53,10 @@ class OptimizerClient {
   // Sends `layers` in build order on one stream while answers come back: neither side holds more
   // than its flow control window of what the other has not read. Of open paths the ends alone are
   // sent, for no other point matters to a route. Every answer was checked by CheckVisits.
+  //
+  // A call that breaks off is taken up again as `call.retry` says, on another address if there is
+  // one, for the layers that have not come back. The given order of the first of these is then
+  // measured from where the route left off.
   absl::StatusOr<JobResult> Optimize(const v1::JobOptions& options,
                                      absl::Span<const v1::Layer> layers,
                                      const CallOptions& call = {});

@@ -1,0 +1,130 @@
+#include "client/api/resume.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "client/api/optimizer_client.h"
+#include "tests/client/api/fake_service.h"
+
+namespace traverse {
+namespace {
+
+using ::testing::Each;
+using testing::FakeService;
+using testing::KeepOrder;
+using ::testing::Pair;
+using ::testing::SizeIs;
+
+std::vector<v1::Layer> Layers(int count) {
+  std::vector<v1::Layer> layers;
+  for (int i = 0; i < count; ++i) {
+    v1::Layer& layer = layers.emplace_back();
+    layer.set_id(static_cast<uint64_t>(100 + i));
+    v1::Contour& contour = *layer.add_islands()->add_contours();
+    for (const double c : {1.0 * i, 2.0}) contour.add_points(c);
+  }
+  return layers;
+}
+
+CallOptions Quick(int attempts) {
+  CallOptions call;
+  call.retry = {.max_attempts = attempts,
+                .first_delay = absl::Milliseconds(1),
+                .max_delay = absl::Milliseconds(5)};
+  return call;
+}
+
+TEST(Resume, LayersThatCameBackAreNotAskedForAgain) {
+  FakeService service;
+  service.status = grpc::Status(grpc::StatusCode::UNAVAILABLE, "draining");
+  service.layers_before_status = 2;
+  std::map<uint64_t, int> answers;
+  service.answer = [&](const v1::Layer& layer, uint64_t index) {
+    ++answers[layer.id()];
+    v1::LayerResult result = KeepOrder(layer, index);
+    result.mutable_end()->set_x_mm(static_cast<double>(layer.id()));
+    return result;
+  };
+  OptimizerClient client(service.InProcessChannel());
+
+  const absl::StatusOr<JobResult> result = client.Optimize({}, Layers(6), Quick(2));
+
+  ASSERT_TRUE(result.ok()) << result.status();
+  ASSERT_THAT(result->layers, SizeIs(6));
+  for (size_t i = 0; i < 6; ++i) EXPECT_EQ(result->layers[i].index(), i);
+  EXPECT_THAT(answers, SizeIs(6));
+  EXPECT_THAT(answers, Each(Pair(::testing::_, 1)));
+  EXPECT_EQ(service.options.start().x_mm(), 103);  // the end of the fourth layer
+  EXPECT_EQ(result->summary.layers(), 6u);
+}
+
+TEST(Resume, GivesUpAfterAttemptsThatBroughtNothing) {
+  FakeService service;
+  service.status = grpc::Status(grpc::StatusCode::UNAVAILABLE, "draining");
+  OptimizerClient client(service.InProcessChannel());
+
+  const absl::StatusOr<JobResult> result = client.Optimize({}, Layers(3), Quick(3));
+
+  EXPECT_EQ(result.status().code(), absl::StatusCode::kUnavailable);
+}
+
+TEST(Resume, FaultsOfTheJobAreNotTriedAgain) {
+  for (const auto code :
+       {grpc::StatusCode::INVALID_ARGUMENT, grpc::StatusCode::RESOURCE_EXHAUSTED}) {
+    FakeService service;
+    service.status = grpc::Status(code, "layers[1]: too much");
+    service.layers_before_status = 1;
+    int answers = 0;
+    service.answer = [&](const v1::Layer& layer, uint64_t index) {
+      ++answers;
+      return KeepOrder(layer, index);
+    };
+    OptimizerClient client(service.InProcessChannel());
+
+    const absl::StatusOr<JobResult> result = client.Optimize({}, Layers(3), Quick(5));
+
+    EXPECT_EQ(result.status().message(), "layers[1]: too much");
+    EXPECT_EQ(answers, 1);
+  }
+}
+
+TEST(ResumedOptions, GoOnWhereTheJobBrokeOff) {
+  v1::JobOptions options;
+  options.mutable_cleaning()->mutable_point()->set_x_mm(-5);
+  options.mutable_cleaning()->set_every_layers(4);
+  options.mutable_cleaning()->set_layers_since_cleaning(1);
+  options.mutable_time_limit()->set_seconds(10);
+  v1::LayerResult before;
+  before.mutable_end()->set_x_mm(7);
+
+  const v1::JobOptions third = ResumedOptions(options, 2, &before, absl::Milliseconds(2500));
+  const v1::JobOptions fourth = ResumedOptions(options, 3, &before, absl::Seconds(60));
+
+  EXPECT_EQ(third.start().x_mm(), 7);
+  EXPECT_EQ(third.cleaning().layers_since_cleaning(), 3u);
+  EXPECT_EQ(third.time_limit().seconds(), 7);
+  EXPECT_EQ(third.time_limit().nanos(), 500'000'000);
+  EXPECT_EQ(fourth.start().x_mm(), -5);  // the head was cleaned after the third layer
+  EXPECT_EQ(fourth.cleaning().layers_since_cleaning(), 0u);
+  EXPECT_EQ(fourth.time_limit().nanos(), 1'000'000);
+}
+
+TEST(ShiftPlace, CountsFromTheWholeJob) {
+  EXPECT_EQ(ShiftPlace("layers[3].z_mm: not finite", 10), "layers[13].z_mm: not finite");
+  EXPECT_EQ(ShiftPlace("options.seed: x", 10), "options.seed: x");
+  EXPECT_EQ(ShiftPlace("layers[3]: x", 0), "layers[3]: x");
+}
+
+TEST(FirstMissing, IsOneRun) {
+  const MissingRun run = FirstMissing({true, false, false, true, false});
+  EXPECT_EQ(run.begin, 1u);
+  EXPECT_EQ(run.end, 3u);
+  EXPECT_EQ(FirstMissing({true, true}).begin, 2u);
+}
+
+}  // namespace
+}  // namespace traverse
