@@ -174,6 +174,13 @@ class ExampleCases:
         # The rest starts where what was answered ended.
         self.assertEqual([0, 5, 5, 8], [request.options.start.x_mm for request in server.requests])
 
+    def test_a_stream_that_a_proxy_resets_is_asked_for_again(self):
+        with ScriptedServer((4, grpc.StatusCode.CANCELLED, None), (99, None, None)) as server:
+            done = self.submit(server.address)
+
+        self.assert_done(done)
+        self.assertEqual([12, 8], [len(request.layers) for request in server.requests])
+
     def test_after_a_break_the_rhythm_of_cleaning_goes_on(self):
         gone = grpc.StatusCode.UNAVAILABLE
         options = {"cleaning": {"point": {"x_mm": -7, "y_mm": 0}, "every_layers": 3, "layers_since_cleaning": 1}}

@@ -9,10 +9,10 @@
 import { closeSync, openSync, readFileSync, writeSync } from "node:fs";
 import { parseArgs } from "node:util";
 import grpc from "@grpc/grpc-js";
-import { decodeJob, JobFailed, TraverseClient } from "./traverse_client.mjs";
+import { decodeJob, JobFailed, RETRIED, TraverseClient } from "./traverse_client.mjs";
 
 const USAGE = "usage: submit_job.mjs JOB.pb [--server=HOST:PORT,...] [--deadline=SECONDS] [--strategy=NAME] [--ca=FILE] [--routes=FILE]";
-const OURS = [grpc.status.UNAVAILABLE, grpc.status.RESOURCE_EXHAUSTED, grpc.status.DEADLINE_EXCEEDED];
+const OURS = [...RETRIED, grpc.status.DEADLINE_EXCEEDED];
 
 function readArguments() {
   try {

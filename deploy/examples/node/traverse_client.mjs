@@ -31,8 +31,9 @@ types.resolvePath = (_, target) => target.startsWith("google/protobuf/") ? targe
   : PROTO_FOLDERS.map((folder) => `${folder}/${target}`).find((path) => protobuf.util.fs.existsSync(path)) ?? target;
 types.loadSync(FILES, { keepCase: true });
 
-// Worth another try: the first says "ask another server", the second "not now".
-const RETRIED = [grpc.status.UNAVAILABLE, grpc.status.RESOURCE_EXHAUSTED];
+// Worth another try: the first says "ask another server", the second "not now". The third is not ours, for this client
+// cancels no call that it waits for: a proxy resets a stream so when the server behind it closes its connection.
+export const RETRIED = [grpc.status.UNAVAILABLE, grpc.status.RESOURCE_EXHAUSTED, grpc.status.CANCELLED];
 
 const SERVICE_CONFIG = JSON.stringify({ loadBalancingConfig: [{ round_robin: {} }] });
 

@@ -18,9 +18,9 @@ import grpc
 from google.protobuf import json_format, message
 
 from traverse.v1 import route_optimizer_service_pb2 as api
-from traverse_client import JobFailed, TraverseClient
+from traverse_client import RETRIED, JobFailed, TraverseClient
 
-OURS = (grpc.StatusCode.UNAVAILABLE, grpc.StatusCode.RESOURCE_EXHAUSTED, grpc.StatusCode.DEADLINE_EXCEEDED)
+OURS = (*RETRIED, grpc.StatusCode.DEADLINE_EXCEEDED)
 
 
 def arguments():
