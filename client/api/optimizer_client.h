@@ -29,7 +29,7 @@ namespace traverse {
 // How often and when a job whose call broke off is taken up again: after UNAVAILABLE, and after
 // RESOURCE_EXHAUSTED with the server's advice when to come back.
 struct RetryPolicy {
-  int max_attempts = 4;  // in a row that brought no layer; 1: never again
+  int max_attempts = 5;  // in a row that brought no layer; 1: never again
   absl::Duration first_delay = absl::Milliseconds(100);  // doubles with each attempt
   absl::Duration max_delay = absl::Seconds(10);          // the server's advice may be longer
 };
