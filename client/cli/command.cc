@@ -83,8 +83,8 @@ Outcome Run(const std::vector<std::string>& arguments) {
 
 const std::vector<Command>& Commands() {
   static const std::vector<Command> commands = {
-      OptimizeCommand(), CompareCommand(), VerifyCommand(),
-      InspectCommand(),  ConvertCommand(), StrategiesCommand(),
+      OptimizeCommand(), CompareCommand(),    VerifyCommand(),     InspectCommand(),
+      ConvertCommand(),  StrategiesCommand(), CompletionCommand(), ManualCommand(),
   };
   return commands;
 }

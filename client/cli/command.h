@@ -17,7 +17,7 @@ struct Command {
   std::vector<std::string> operands;  // {"INPUT"}
   std::string summary;                // one line
   std::vector<Flag> flags;
-  std::vector<std::string> examples;  // whole command lines
+  std::string example;  // a whole command line
   Outcome (*run)(const Flags& flags);
 };
 
@@ -31,6 +31,8 @@ Command VerifyCommand();
 Command InspectCommand();
 Command ConvertCommand();
 Command StrategiesCommand();
+Command CompletionCommand();
+Command ManualCommand();
 
 // Runs the command that `arguments` (without the program's name) ask for; prints the outcome's
 // message to standard error. Returns the exit code.

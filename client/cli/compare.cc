@@ -103,9 +103,10 @@ Outcome RunCompare(const Flags& flags) {
     const absl::Status status = WriteWholeFile(request->json, report::CompareJson(*job, compared));
     if (!status.ok()) return InputFault(status);
   }
-  Print(request->json == "-" ? stderr : stdout,
-        absl::StrFormat("%s: %d layers\n%s", DisplayName(job->name), job->layers.size(),
-                        report::CompareTable(compared)));
+  std::FILE* out = request->json == "-" ? stderr : stdout;
+  Print(out, absl::StrFormat("%s: %d layers; %% are travel saved against that row\n%s",
+                             DisplayName(job->name), job->layers.size(),
+                             report::CompareTable(compared, StyleFor(out))));
   return Done();
 }
 
@@ -117,16 +118,15 @@ Command CompareCommand() {
   command.operands = {"INPUT"};
   command.summary = "Sets strategies side by side on one job.";
   command.flags = {
-      {"strategies", "NAME[:OPTION=VALUE],...", "the rows (default: all, 5s each)"},
-      {"repeat", "N", "runs of each, with seeds one after another; means are shown"},
-      {"json", "FILE", "writes the routes of all runs; - is standard output"},
+      {"strategies", "NAME,...", "or NAME:OPTION=VALUE (default: all, 5s each)"},
+      {"repeat", "N", "runs of each, seed after seed; means are shown"},
+      {"json", "FILE", "writes all routes; - is standard output"},
       {"quiet", "", "no progress"},
   };
   for (auto table : {JobFlagTable(), ServiceFlagTable()}) {
     command.flags.insert(command.flags.end(), table.begin(), table.end());
   }
-  command.examples = {
-      "traverse compare part.damat --strategies=greedy,ni2opt:point_release=false,ni2opt"};
+  command.example = "traverse compare part.damat --layers=1-5 --strategies=greedy,auto";
   command.run = RunCompare;
   return command;
 }

@@ -59,14 +59,11 @@ Command ConvertCommand() {
   command.summary = "Writes a job in another format.";
   command.flags = {
       {"o", "OUTPUT", "a .damat, .json or .pb file; - is standard output"},
-      {"to",
-       "FORMAT",
-       "damat, json or pb (default: by the name of OUTPUT)",
-       {"damat", "json", "pb"}},
+      {"to", "FORMAT", "damat, json or pb (default: by OUTPUT)", {"damat", "json", "pb"}},
       {"layers", "A-B", "only these, counted from 1"},
       PolicyFlag(),
   };
-  command.examples = {"traverse convert part.damat -o part.json --layers=1-5"};
+  command.example = "traverse convert part.damat -o part.json --layers=1-5";
   command.run = RunConvert;
   return command;
 }

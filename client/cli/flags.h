@@ -30,6 +30,9 @@ struct Flag {
   std::string help;                       // one line
   std::vector<std::string> choices = {};  // the values allowed; empty: any
   bool repeatable = false;
+
+  // Not empty: help has this flag and the next one on one line, with this text for both.
+  std::string joint_help = "";
 };
 
 // The flags given to a command, all of them in its table, and its operands.

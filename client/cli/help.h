@@ -15,6 +15,12 @@ std::string GeneralHelp();
 // What `traverse COMMAND --help` prints: usage, flags, an example.
 std::string CommandHelp(const Command& command);
 
+// "--seed=N", "-o OUTPUT", "--quiet".
+std::string FlagUsage(const Flag& flag);
+
+// " ORIGINAL OPTIMISED": a command's operands, a blank before each.
+std::string Operands(const Command& command);
+
 // "traverse 0.1.0".
 std::string VersionLine();
 

@@ -46,10 +46,10 @@ Command InspectCommand() {
   command.summary = "Says what is in a file.";
   command.flags = {
       {"layers", "A-B", "only these, counted from 1, one by one"},
-      {"travel_speed", "MM_S", "speed for the idle time (default: the file's, else 20.32)"},
+      {"travel_speed", "MM_S", "for the idle time (default: the file's, or 20.32)"},
       PolicyFlag(),
   };
-  command.examples = {"traverse inspect part.damat --layers=1-5"};
+  command.example = "traverse inspect part.damat --layers=1-5";
   command.run = RunInspect;
   return command;
 }

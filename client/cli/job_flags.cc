@@ -108,21 +108,26 @@ void ApplyIdleSpeed(const CostFlags& flags, v1::JobOptions& options) {
 }  // namespace
 
 std::vector<Flag> JobFlagTable() {
+  const std::vector<std::string> any;
   return {
-      {"option", "NAME=VALUE", "an option of the strategy; repeatable", {}, true},
+      {"option", "NAME=VALUE", "an option of the strategy; repeatable", any, /*repeatable=*/true},
       {"layers", "A-B", "only these, counted from 1"},
       {"deposition", "ORDER", "sequential (default) or interleaved", {"sequential", "interleaved"}},
       {"start", "X,Y", "where the head is at first, mm (default 0,0)"},
-      {"cleaning_every", "N", "layers between two nozzle cleanings"},
+      {"cleaning_every", "N", "layers between two nozzle cleanings", any, false,
+       "nozzle cleaning, mm"},
       {"cleaning_point", "X,Y", "where the nozzle is cleaned, mm"},
-      {"cost", "COST", "length or time (default: G-code time, others length)", {"length", "time"}},
-      {"travel_speed", "MM_S", "travel speed; of time 130, of idle time 20.32 if unset"},
-      {"travel_accel", "MM_S2", "travel acceleration (default 1250)"},
-      {"retraction_seconds", "S", "time of one retraction (default 0.1)"},
-      {"retraction_threshold", "MM", "longer moves retract (default 2)"},
+      {"cost", "COST", "length, or time (default of G-code)", {"length", "time"}},
+      {"travel_speed", "MM_S", "travel speed (default: the file's; for time 130, idle time 20.32)",
+       any, false, "(default: the file's, or 130, 1250)"},
+      {"travel_accel", "MM_S2", "travel acceleration (default: the file's, or 1250)"},
+      {"retraction_seconds", "S", "time of one retraction (default: the file's, or 0.1)", any,
+       false, "(the file's, or 0.1, 2)"},
+      {"retraction_threshold", "MM", "longer moves retract (default: the file's, or 2)"},
       PolicyFlag(),
       {"seed", "N", "of all random choices (default 1)"},
-      {"deadline", "TIME", "the answer is due within it: 500ms, 30s, 5m"},
+      {"deadline", "TIME", "the answer is due within it, such as 500ms, 30s or 5m", any, false,
+       "such as 500ms, 30s, 5m"},
       {"layer_time_limit", "TIME", "most time for one layer"},
   };
 }
@@ -130,15 +135,13 @@ std::vector<Flag> JobFlagTable() {
 std::vector<Flag> ServiceFlagTable() {
   return {
       {"server", "HOST:PORT,...", "the servers to ask (default: embedded)"},
-      {"threads", "N", "threads of the embedded service (default: all)"},
+      {"threads", "N", "of the embedded service (default: all cores)"},
   };
 }
 
 Flag PolicyFlag() {
-  return {"policy",
-          "POLICY",
-          "what may move in G-code: safe (default), balanced, free",
-          {"safe", "balanced", "free"}};
+  return {
+      "policy", "POLICY", "G-code: safe (default), balanced or free", {"safe", "balanced", "free"}};
 }
 
 GcodeOptions ParseGcodeOptions(const Flags& flags) {

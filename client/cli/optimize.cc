@@ -113,18 +113,15 @@ Command OptimizeCommand() {
   command.operands = {"INPUT"};
   command.summary = "Shortens the travel of a job.";
   command.flags = {
-      {"o", "OUTPUT", "the G-code to write (default: INPUT itself; with --json none)"},
-      {"strategy", "NAME[:OPTION=VALUE]",
-       "see `traverse strategies` (default: the service's best)"},
+      {"o", "OUTPUT", "G-code (default: INPUT; with --json none)"},
+      {"strategy", "NAME", "see `traverse strategies`; or NAME:OPTION=VALUE"},
       {"json", "FILE", "writes the routes; - is standard output"},
       {"quiet", "", "no progress, no summary"},
   };
   for (auto table : {JobFlagTable(), ServiceFlagTable()}) {
     command.flags.insert(command.flags.end(), table.begin(), table.end());
   }
-  command.examples = {"traverse optimize part.gcode",
-                      "traverse optimize part.gcode -o shorter.gcode --policy=balanced",
-                      "traverse optimize part.damat --layers=1-5 --json=routes.json"};
+  command.example = "traverse optimize part.gcode -o shorter.gcode --policy=balanced";
   command.run = RunOptimize;
   return command;
 }

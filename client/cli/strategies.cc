@@ -49,9 +49,9 @@ Outcome RunStrategies(const Flags& flags) {
 Command StrategiesCommand() {
   Command command;
   command.name = "strategies";
-  command.summary = "Lists the strategies of a service, with their options and defaults.";
+  command.summary = "Lists the strategies, with their options and defaults.";
   command.flags = {ServiceFlagTable().front()};
-  command.examples = {"traverse strategies --server=farm-1:50051"};
+  command.example = "traverse strategies --server=farm-1:50051";
   command.run = RunStrategies;
   return command;
 }

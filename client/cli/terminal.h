@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <string>
 
+#include "client/report/table.h"
+
 namespace traverse::cli {
 
 // True if `file` is a terminal that understands cursor movement.
@@ -17,6 +19,9 @@ bool MayColor(std::FILE* file);
 
 // Columns of the terminal behind `file`; 80 if that is not known.
 int TerminalWidth(std::FILE* file);
+
+// How tables look on `file`: as wide as the terminal or, off it, a page.
+report::TextStyle StyleFor(std::FILE* file);
 
 // Writes all of `text`.
 void Print(std::FILE* file, const std::string& text);

@@ -37,7 +37,7 @@ Command VerifyCommand() {
   command.operands = {"ORIGINAL", "OPTIMISED"};
   command.summary = "Does the second G-code print exactly what the first prints?";
   command.flags = {{"quiet", "", "nothing if it does"}};
-  command.examples = {"traverse verify part.gcode part.optimised.gcode"};
+  command.example = "traverse verify part.gcode part.optimised.gcode";
   command.run = RunVerify;
   return command;
 }

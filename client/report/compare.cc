@@ -1,14 +1,20 @@
 #include "client/report/compare.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "absl/strings/str_format.h"
 #include "client/report/numbers.h"
-#include "client/report/table.h"
 
 namespace traverse::report {
 namespace {
+
+constexpr int kLeastBar = 10;
+constexpr int kMostBar = 30;
+
+using Value = std::function<double(const JobRun&)>;
 
 double TravelMm(const JobRun& run) {
   return run.result.summary.travel().total_mm() + run.result.summary.cleaning_mm();
@@ -18,7 +24,7 @@ double GivenMm(const JobRun& run) {
   return run.result.summary.given().total_mm() + run.result.summary.cleaning_given_mm();
 }
 
-double Mean(const ComparedStrategy& strategy, const std::function<double(const JobRun&)>& value) {
+double Mean(const ComparedStrategy& strategy, const Value& value) {
   double sum = 0;
   for (const JobRun& run : strategy.runs) sum += value(run);
   return sum / static_cast<double>(strategy.runs.size());
@@ -33,14 +39,7 @@ double TravelDeviation(const ComparedStrategy& strategy) {
   return n > 1 ? std::sqrt(sum / static_cast<double>(n - 1)) : 0;
 }
 
-const ComparedStrategy* Find(const std::vector<ComparedStrategy>& strategies, const char* label) {
-  for (const ComparedStrategy& strategy : strategies) {
-    if (strategy.label == label) return &strategy;
-  }
-  return nullptr;
-}
-
-// "0.8 %" if every run has a bound.
+// Percent, if every run has a bound.
 std::string Gap(const ComparedStrategy& strategy) {
   double sum = 0;
   for (const JobRun& run : strategy.runs) {
@@ -51,57 +50,137 @@ std::string Gap(const ComparedStrategy& strategy) {
   return absl::StrFormat("%.1f", sum / static_cast<double>(strategy.runs.size()));
 }
 
-std::string Percent(double before, double after) {
-  return absl::StrFormat("%.1f", GainPercent(before, after));
-}
+// One column. Those with the highest `rank` go first where there is no room.
+struct Column {
+  std::string title;
+  int rank = 0;
+  std::function<Cell(const ComparedStrategy&)> cell;
+};
+
+// The columns for `strategies`; the bar is not among them.
+class Columns {
+ public:
+  explicit Columns(const std::vector<ComparedStrategy>& strategies) : strategies_(strategies) {
+    columns_.push_back({"strategy", 0, [](const auto& s) { return Cell{s.label}; }});
+    AddTravel();
+    AddSplit();
+    AddMean("idle s", 3, 1, [](const v1::JobSummary& s) { return s.idle_seconds(); });
+    AddGain("none %", GivenMm);
+    AddGainOver("greedy");
+    AddGainOver("ni2opt");
+    if (Any([](const auto& s) { return !Gap(s).empty(); })) {
+      columns_.push_back({"gap %", 0, [](const auto& s) { return Cell{Gap(s)}; }});
+    }
+    columns_.push_back({"seconds", 0, [](const auto& s) {
+                          return Cell{absl::StrFormat(
+                              "%.3f", Mean(s, [](const JobRun& run) { return run.wall_seconds; }))};
+                        }});
+  }
+
+  // Leaves out columns, the highest ranks first, until all take at most `width`.
+  void Fit(int width) {
+    for (int rank = 3; rank > 0 && Width() > width; --rank) {
+      std::erase_if(columns_, [&](const Column& column) { return column.rank == rank; });
+    }
+  }
+
+  // Columns of text that the table takes without a bar.
+  int Width() const {
+    size_t width = 0;
+    for (const Column& column : columns_) {
+      size_t widest = TextWidth(column.title);
+      for (const auto& strategy : strategies_) {
+        widest = std::max(widest, TextWidth(column.cell(strategy).text));
+      }
+      width += widest + 2;
+    }
+    return static_cast<int>(width);
+  }
+
+  const std::vector<Column>& list() const { return columns_; }
+
+ private:
+  template <typename Condition>
+  bool Any(Condition condition) const {
+    return std::any_of(strategies_.begin(), strategies_.end(), condition);
+  }
+
+  void AddTravel() {
+    double shortest = Mean(strategies_.front(), TravelMm);
+    for (const auto& strategy : strategies_)
+      shortest = std::min(shortest, Mean(strategy, TravelMm));
+    columns_.push_back({"travel mm", 0, [shortest](const ComparedStrategy& s) {
+                          const double travel = Mean(s, TravelMm);
+                          return Cell{absl::StrFormat("%.2f", travel),
+                                      travel <= shortest ? Color::kGood : Color::kNone};
+                        }});
+    if (Any([](const auto& s) { return s.runs.size() > 1; })) {
+      columns_.push_back({"+- mm", 0, [](const auto& s) {
+                            return Cell{absl::StrFormat("%.2f", TravelDeviation(s))};
+                          }});
+    }
+  }
+
+  void AddSplit() {
+    AddMean("contours", 2, 2, [](const v1::JobSummary& s) { return s.travel().contours_mm(); });
+    AddMean("rasters", 2, 2, [](const v1::JobSummary& s) { return s.travel().rasters_mm(); });
+    AddMean("links", 2, 2, [](const v1::JobSummary& s) { return s.travel().links_mm(); });
+    if (Any([](const auto& s) { return s.runs[0].result.summary.cleaning_mm() > 0; })) {
+      AddMean("cleaning", 2, 2, [](const v1::JobSummary& s) { return s.cleaning_mm(); });
+    }
+  }
+
+  void AddMean(std::string title, int rank, int digits,
+               std::function<double(const v1::JobSummary&)> value) {
+    columns_.push_back(
+        {std::move(title), rank, [digits, value = std::move(value)](const ComparedStrategy& s) {
+           const auto of_run = [&](const JobRun& run) { return value(run.result.summary); };
+           return Cell{absl::StrFormat("%.*f", digits, Mean(s, of_run))};
+         }});
+  }
+
+  // The gain over a length that each row has its own of, or over the mean of another row.
+  void AddGain(std::string title, const Value& before) {
+    columns_.push_back(
+        {std::move(title), 0, [before](const ComparedStrategy& s) {
+           const double gain = GainPercent(Mean(s, before), Mean(s, TravelMm));
+           return Cell{absl::StrFormat("%.1f", gain), gain < 0 ? Color::kBad : Color::kNone};
+         }});
+  }
+  void AddGainOver(const std::string& label) {
+    for (const ComparedStrategy& strategy : strategies_) {
+      if (strategy.label != label) continue;
+      const double before = Mean(strategy, TravelMm);
+      AddGain(label + " %", [before](const JobRun&) { return before; });
+      return;
+    }
+  }
+
+  const std::vector<ComparedStrategy>& strategies_;
+  std::vector<Column> columns_;
+};
 
 }  // namespace
 
-std::string CompareTable(const std::vector<ComparedStrategy>& strategies) {
-  const ComparedStrategy* greedy = Find(strategies, "greedy");
-  const ComparedStrategy* ni2opt = Find(strategies, "ni2opt");
-  bool repeated = false;
-  bool cleaned = false;
-  bool bounded = false;
-  for (const ComparedStrategy& strategy : strategies) {
-    repeated |= strategy.runs.size() > 1;
-    cleaned |= strategy.runs[0].result.summary.cleaning_mm() > 0;
-    bounded |= !Gap(strategy).empty();
-  }
+std::string CompareTable(const std::vector<ComparedStrategy>& strategies, const TextStyle& style) {
+  Columns columns(strategies);
+  columns.Fit(style.width - kLeastBar);
+  const int bar = std::min(style.width - columns.Width(), kMostBar);
+  const bool with_bar = bar >= kLeastBar;
 
-  std::vector<std::string> header = {"strategy", "travel mm"};
-  if (repeated) header.push_back("+- mm");
-  header.insert(header.end(), {"contours", "rasters", "links"});
-  if (cleaned) header.push_back("cleaning");
-  header.insert(header.end(), {"idle s", "none %"});
-  if (greedy != nullptr) header.push_back("greedy %");
-  if (ni2opt != nullptr) header.push_back("ni2opt %");
-  if (bounded) header.push_back("gap %");
-  header.push_back("seconds");
-
-  Table table(header);
+  std::vector<std::string> header;
+  for (const Column& column : columns.list()) header.push_back(column.title);
+  if (with_bar) header.push_back("gain");
+  Table table(std::move(header));
+  if (with_bar) table.SetLastLeft();
   for (const ComparedStrategy& strategy : strategies) {
-    const auto mean = [&](auto value) {
-      return Mean(strategy, [&](const JobRun& run) { return value(run.result.summary); });
-    };
-    const auto mm = [](double value) { return absl::StrFormat("%.2f", value); };
-    const double travel = Mean(strategy, TravelMm);
-    std::vector<std::string> row = {strategy.label, mm(travel)};
-    if (repeated) row.push_back(mm(TravelDeviation(strategy)));
-    row.push_back(mm(mean([](const auto& s) { return s.travel().contours_mm(); })));
-    row.push_back(mm(mean([](const auto& s) { return s.travel().rasters_mm(); })));
-    row.push_back(mm(mean([](const auto& s) { return s.travel().links_mm(); })));
-    if (cleaned) row.push_back(mm(mean([](const auto& s) { return s.cleaning_mm(); })));
-    row.push_back(absl::StrFormat("%.1f", mean([](const auto& s) { return s.idle_seconds(); })));
-    row.push_back(Percent(Mean(strategy, GivenMm), travel));
-    if (greedy != nullptr) row.push_back(Percent(Mean(*greedy, TravelMm), travel));
-    if (ni2opt != nullptr) row.push_back(Percent(Mean(*ni2opt, TravelMm), travel));
-    if (bounded) row.push_back(Gap(strategy));
-    row.push_back(absl::StrFormat(
-        "%.3f", Mean(strategy, [](const JobRun& run) { return run.wall_seconds; })));
+    std::vector<Cell> row;
+    for (const Column& column : columns.list()) row.push_back(column.cell(strategy));
+    const double gain = GainPercent(Mean(strategy, GivenMm), Mean(strategy, TravelMm)) / 100;
+    if (with_bar) row.push_back({Bar(gain, bar, style), Color::kBar});
     table.Add(std::move(row));
   }
-  return table.Text();
+  return table.Text(style);
 }
 
 }  // namespace traverse::report

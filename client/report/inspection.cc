@@ -54,12 +54,14 @@ std::string LayerTable(const InputJob& job, const std::vector<Counts>& counts,
                        const JobResult& given) {
   Table table({"layer", "id", "z mm", "islands", "contours", "rasters", "points", "travel mm"});
   for (size_t i = 0; i < counts.size(); ++i) {
-    table.Add({absl::StrFormat("%d", job.first_layer + i + 1),
-               absl::StrFormat("%d", job.layers[i].id()),
-               absl::StrFormat("%g", job.layers[i].z_mm()),
-               absl::StrFormat("%d", counts[i].islands), absl::StrFormat("%d", counts[i].contours),
-               absl::StrFormat("%d", counts[i].open_paths), absl::StrFormat("%d", counts[i].points),
-               absl::StrFormat("%.2f", given.layers[i].given().total_mm())});
+    table.Add({{absl::StrFormat("%d", job.first_layer + i + 1)},
+               {absl::StrFormat("%d", job.layers[i].id())},
+               {absl::StrFormat("%g", job.layers[i].z_mm())},
+               {absl::StrFormat("%d", counts[i].islands)},
+               {absl::StrFormat("%d", counts[i].contours)},
+               {absl::StrFormat("%d", counts[i].open_paths)},
+               {absl::StrFormat("%d", counts[i].points)},
+               {absl::StrFormat("%.2f", given.layers[i].given().total_mm())}});
   }
   return table.Text();
 }

@@ -5,6 +5,7 @@ The environment names it: TRAVERSE, and TRAVERSE_SERVER for the tests with a rem
 import json
 import os
 import re
+import shutil
 import stat
 import subprocess
 import sys
@@ -119,17 +120,58 @@ class Usage(CommandLine):
 
     def test_help_names_every_flag_and_has_an_example(self):
         general = self.succeed("--help")
-        for command in ("optimize", "compare", "inspect", "convert", "strategies"):
+        self.assertLessEqual(max(map(len, general.splitlines())), 80)
+        for command in ("optimize", "compare", "inspect", "convert", "strategies", "completion", "manual"):
             self.assertIn(f"  {command} ", general)
             text = self.succeed(command, "--help")
             self.assertIn(f"usage: traverse {command}", text)
-            self.assertIn("example: traverse", text)
+            self.assertIn("\nexample: ", text)
             self.assertEqual(text, self.succeed("help", command))
             self.assertEqual(text, self.succeed(command, "x", "--no_such_flag", "-h"))
-            self.assertLessEqual(max(map(len, text.splitlines())), 100)
+            self.assertLessEqual(max(map(len, text.splitlines())), 80)
+            self.assertLessEqual(len(text.splitlines()), 24)
         for flag in ("-o", "--strategy", "--server", "--deadline", "--layers", "--deposition", "--cleaning_every",
                      "--cleaning_point", "--cost", "--policy", "--seed", "--threads", "--json", "--quiet"):
-            self.assertIn(f"  {flag}", self.succeed("optimize", "--help"))
+            self.assertIn(f" {flag}", self.succeed("optimize", "--help"))
+
+    def test_bash_completes_commands_flags_and_choices(self):
+        def complete(*words):
+            line = "(" + " ".join(f"'{word}'" for word in words) + ")"
+            script = (f'eval "$("$TRAVERSE" completion bash)"; COMP_WORDS={line}; '
+                      "COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); compopt() { :; }; _traverse; "
+                      'printf "%s\\n" "${COMPREPLY[@]}"')
+            return subprocess.run(["bash", "-uc", script], cwd=self.folder, capture_output=True, check=True,
+                                  text=True).stdout.split()
+
+        self.put("part.damat", "")
+        self.assertEqual(complete("traverse", "opt"), ["optimize"])
+        self.assertEqual(complete("traverse", "optimize", "--se"), ["--seed=", "--server="])
+        self.assertEqual(complete("traverse", "optimize", "--cost", "=", "t"), ["time"])
+        self.assertEqual(complete("traverse", "optimize", "--cost", "="), ["length", "time"])
+        self.assertEqual(complete("traverse", "optimize", "pa"), ["part.damat"])
+        self.assertEqual(complete("traverse", "optimize", "--json", "=", "pa"), ["part.damat"])
+
+    @unittest.skipUnless(shutil.which("zsh"), "zsh is not installed")
+    def test_zsh_accepts_the_completion_script(self):
+        script = "autoload -Uz compinit && compinit -u -D && source <($TRAVERSE completion zsh) && echo ${_comps[traverse]}"
+        ran = subprocess.run(["zsh", "-fc", script], capture_output=True, check=True, text=True)
+        self.assertEqual((ran.stdout, ran.stderr), ("_traverse\n", ""))
+
+    def test_completion_knows_two_shells(self):
+        self.assertEqual(self.fail_with(USAGE, "completion", "fish"),
+                         'traverse completion: "fish" is neither bash nor zsh')
+
+    def test_manual_has_every_command_and_flag(self):
+        page = self.succeed("manual")
+        self.assertTrue(page.startswith(".TH TRAVERSE 1"))
+        for word in (".SS traverse optimize INPUT", ".B \\-\\-cleaning_point=X,Y", ".B \\-o OUTPUT", ".SH EXIT STATUS"):
+            self.assertIn(word + "\n", page)
+
+    @unittest.skipUnless(shutil.which("groff"), "groff is not installed")
+    def test_the_formatter_of_man_pages_has_no_complaint(self):
+        ran = subprocess.run(["groff", "-man", "-Tutf8", "-ww"], input=self.succeed("manual"), capture_output=True,
+                             check=True, text=True)
+        self.assertEqual(ran.stderr, "")
 
     def test_version(self):
         self.assertRegex(self.succeed("--version"), r"^traverse \d+\.\d+\.\d+\n$")

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/str_split.h"
 #include "client/formats/read_input.h"
 #include "client/report/compare.h"
 #include "client/report/inspection.h"
@@ -18,6 +19,7 @@
 namespace traverse::report {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -117,13 +119,21 @@ TEST(CompareJson, HoldsEachRunsDocument) {
   EXPECT_THAT(json, HasSubstr("{\"label\": \"b\""));
 }
 
-TEST(CompareTable, ShowsGainsOverTheBaselines) {
-  JobRun greedy = SmallRun();
+std::vector<ComparedStrategy> TwoStrategies() {
   JobRun better = SmallRun();
   better.result.summary.mutable_travel()->set_total_mm(140);
   better.result.summary.clear_lower_bound();
+  return {{"greedy", {SmallRun()}}, {"tabu:polish=false", {better}}};
+}
 
-  const std::string table = CompareTable({{"greedy", {greedy}}, {"tabu:polish=false", {better}}});
+TextStyle Page(int width) {
+  TextStyle style;
+  style.width = width;
+  return style;
+}
+
+TEST(CompareTable, ShowsGainsOverTheBaselines) {
+  const std::string table = CompareTable(TwoStrategies(), Page(kPageWidth));
 
   EXPECT_TRUE(testing::MatchesGolden("report/compare.txt", table)) << table;
 }
@@ -133,9 +143,50 @@ TEST(CompareTable, ShowsMeanAndDeviationOfRepeatedRuns) {
   JobRun two = SmallRun();
   two.result.summary.mutable_travel()->set_total_mm(152);
 
-  const std::string table = CompareTable({{"tabu", {one, two}}});
+  const std::string table = CompareTable({{"tabu", {one, two}}}, Page(kPageWidth));
 
   EXPECT_TRUE(testing::MatchesGolden("report/compare_repeated.txt", table)) << table;
+}
+
+TEST(CompareTable, LeavesOutColumnsWhereThereIsNoRoom) {
+  const auto lines_fit = [](const std::string& table, size_t width) {
+    for (const std::string& line : std::vector<std::string>(absl::StrSplit(table, '\n'))) {
+      if (TextWidth(line) > width) return false;
+    }
+    return true;
+  };
+  const std::string full = CompareTable(TwoStrategies(), Page(kPageWidth));
+  const std::string narrow = CompareTable(TwoStrategies(), Page(110));
+  const std::string narrower = CompareTable(TwoStrategies(), Page(80));
+
+  EXPECT_THAT(full, AllOf(HasSubstr("idle s"), HasSubstr("contours"), HasSubstr("gain")));
+  EXPECT_THAT(narrow, AllOf(Not(HasSubstr("idle s")), HasSubstr("contours"), HasSubstr("gain")));
+  EXPECT_THAT(narrower, AllOf(Not(HasSubstr("contours")), HasSubstr("gain")));
+  EXPECT_TRUE(lines_fit(full, kPageWidth) && lines_fit(narrow, 110) && lines_fit(narrower, 80));
+}
+
+TEST(CompareTable, MarksTheBestAndTheWorseInColorAlone) {
+  TextStyle style = Page(kPageWidth);
+  style.color = true;
+  std::vector<ComparedStrategy> strategies = TwoStrategies();
+  strategies[0].runs[0].result.summary.mutable_travel()->set_total_mm(500);
+
+  const std::string table = CompareTable(strategies, style);
+
+  EXPECT_THAT(table, HasSubstr("\x1b[1;32m150.00\x1b[0m"));
+  EXPECT_THAT(table, HasSubstr("\x1b[31m-131.8\x1b[0m"));
+  EXPECT_THAT(CompareTable(strategies, Page(kPageWidth)), Not(HasSubstr("\x1b")));
+}
+
+TEST(Bar, HasEighthsOfAColumn) {
+  TextStyle plain;
+  plain.blocks = false;
+
+  EXPECT_EQ(Bar(0.5, 10, {}), "\u2588\u2588\u2588\u2588\u2588");
+  EXPECT_EQ(Bar(0.0125, 10, {}), "\u258f");
+  EXPECT_EQ(Bar(0.5, 10, plain), "#####");
+  EXPECT_EQ(Bar(-1, 10, plain), "");
+  EXPECT_EQ(Bar(2, 10, plain), "##########");
 }
 
 TEST(OptimizeSummary, SaysWhatWasGained) {
@@ -159,8 +210,8 @@ TEST(InspectionText, CountsPathsByKindAndStatesTheFilesFacts) {
 
 TEST(Table, SetsTheFirstColumnLeftAndTheOthersRight) {
   Table table({"name", "µm"});
-  table.Add({"a", "1"});
-  table.Add({"bcdefg", "1000"});
+  table.Add({{"a"}, {"1"}});
+  table.Add({{"bcdefg"}, {"1000"}});
 
   EXPECT_EQ(table.Text(), "name      µm\n------  ----\na          1\nbcdefg  1000\n");
 }
