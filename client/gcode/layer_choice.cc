@@ -29,7 +29,12 @@ class Chooser {
         ++layer;
         continue;
       }
-      // The layer before ends elsewhere than in the file, or this one would be as it is there.
+      if (layer == 0 || refused_[layer - 1] || !steps_[layer - 1].changed) {
+        // Nothing to undo: only the extruder's register differs from what it is in the file.
+        Try(layer, GivenOrder(file_, file_.layers[layer]), /*must_meet=*/false);
+        ++layer;
+        continue;
+      }
       --layer;
       refused_[layer] = true;
       text_.resize(layer == 0 ? 0 : steps_[layer - 1].end);
@@ -60,13 +65,13 @@ class Chooser {
 
   bool TryGiven(size_t layer) { return Try(layer, GivenOrder(file_, file_.layers[layer])); }
 
-  bool Try(size_t layer, const LayerOrder& order) {
+  bool Try(size_t layer, const LayerOrder& order, bool must_meet = true) {
     const PartStart start = StartOf(layer);
     const Placement* before = layer == 0 ? nullptr : &steps_[layer - 1].last;
     WrittenLayer written = writer_.Write(file_.layers[layer], order, before, start);
     Step& step = steps_[layer];
     step.totals = written.as_given ? given_[layer] : Measure(file_, written.text, start);
-    if (!written.as_given && !Meets(layer, written, start)) return false;
+    if (must_meet && !written.as_given && !Meets(layer, written, start)) return false;
     text_.append(written.text);
     step.end = text_.size();
     step.behind = written.behind;
