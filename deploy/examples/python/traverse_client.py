@@ -26,8 +26,10 @@ from traverse.v1 import options_pb2, route_optimizer_service_pb2 as api
 from traverse.v1 import route_optimizer_service_pb2_grpc as service
 
 # Worth another try: the first says "ask another server", the second "not now". The third is not ours, for this client
-# cancels no call that it waits for: a proxy resets a stream so when the server behind it closes its connection.
-RETRIED = (grpc.StatusCode.UNAVAILABLE, grpc.StatusCode.RESOURCE_EXHAUSTED, grpc.StatusCode.CANCELLED)
+# cancels no call that it waits for: a proxy resets a stream so when the server behind it closes its connection. Nor is
+# the fourth: gRPC itself says "Stream removed" when a connection goes at the wrong moment; our servers never send it.
+RETRIED = (grpc.StatusCode.UNAVAILABLE, grpc.StatusCode.RESOURCE_EXHAUSTED, grpc.StatusCode.CANCELLED,
+           grpc.StatusCode.UNKNOWN)
 
 # Round-robin over all addresses whose health service says SERVING.
 SERVICE_CONFIG = json.dumps({
