@@ -23,6 +23,7 @@ constexpr uint64_t kMaxRepeats = 1000;
 
 // A table of all strategies should not wait two hours for the proof that one of them looks for.
 constexpr absl::Duration kDefaultDeadline = absl::Seconds(5);
+constexpr absl::Duration kDefaultLayerLimit = absl::Milliseconds(500);
 
 struct Request {
   JobFlags job;
@@ -37,7 +38,11 @@ absl::StatusOr<Request> ParseRequest(const Flags& flags) {
   auto job = ParseJobFlags(flags);
   if (!job.ok()) return job.status();
   request.job = *std::move(job);
-  if (!flags.Has("deadline") && !flags.Has("strategies")) request.job.deadline = kDefaultDeadline;
+  if (!flags.Has("deadline") && !flags.Has("strategies")) {
+    request.job.deadline = kDefaultDeadline;
+    // Or the first layers would use it up, and the others come back in the order given.
+    if (!request.job.layer_time_limit) request.job.layer_time_limit = kDefaultLayerLimit;
+  }
   if (flags.Has("strategies")) {
     auto specs = ParseStrategySpecs(flags.Text("strategies"));
     if (!specs.ok()) return specs.status();
