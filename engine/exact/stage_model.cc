@@ -43,6 +43,9 @@ std::optional<StageModel> StageModel::Build(const LayerProblem& problem, size_t 
       for (int e = table.first(path); e < table.first(path + 1); ++e) {
         visits.push_back(table.VisitOf(e));
       }
+      const Path& given = problem.plan->paths[static_cast<size_t>(path)];
+      model.is_item_.push_back(given.kind == Path::Kind::kOpen ? !given.one_way
+                                                               : visits.size() == 1);
     }
     model.before_.resize(model.visits_.size());
     model.after_.resize(model.visits_.size());
@@ -128,13 +131,17 @@ std::vector<ClusterState> StageModel::WalkOf(const Route& route) const {
 
 double StageModel::CostOf(const std::vector<ClusterState>& walk) const {
   if (walk.empty()) return 0;
+  return CostBefore(walk) + Finish(walk.back().cluster)[walk.back().state];
+}
+
+double StageModel::CostBefore(const std::vector<ClusterState>& walk) const {
   double sum = Start(walk.front().cluster)[walk.front().state];
   for (size_t k = 1; k < walk.size(); ++k) {
     const ClusterState from = walk[k - 1];
     const ClusterState to = walk[k];
     sum += Move(from.cluster, to.cluster)[from.state * states(to.cluster) + to.state];
   }
-  return sum + Finish(walk.back().cluster)[walk.back().state];
+  return sum;
 }
 
 }  // namespace traverse

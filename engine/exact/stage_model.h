@@ -48,6 +48,10 @@ class StageModel {
     return static_cast<int>(visits_[static_cast<size_t>(cluster)].size());
   }
 
+  // Whether `cluster` is an open path that may be done both ways, or has one point only: then
+  // states are its ends, and it is left at the other one.
+  bool IsItem(int cluster) const { return is_item_[static_cast<size_t>(cluster)] != 0; }
+
   // Cost of moves from `a` to `b`, [state of a * states(b) + state of b].
   // REQUIRES: a != b, and b is of the stage of a or of the next one.
   const double* Move(int a, int b) const { return &costs_[offset(a, b)]; }
@@ -74,8 +78,10 @@ class StageModel {
   Route RouteOf(const std::vector<ClusterState>& walk) const;
   std::vector<ClusterState> WalkOf(const Route& route) const;
 
-  // Sum of the costs of the moves of `walk`, whether or not it is a route.
+  // Sum of the costs of the moves of `walk`, whether or not it is a route: with the move to the
+  // finish, and before it. `walk` may end in any stage for the latter.
   double CostOf(const std::vector<ClusterState>& walk) const;
+  double CostBefore(const std::vector<ClusterState>& walk) const;
 
  private:
   StageModel() = default;
@@ -89,6 +95,7 @@ class StageModel {
   std::vector<int> first_;                   // [stage], stage_count() + 1 of them
   std::vector<int> stage_of_;                // [cluster]
   std::vector<std::vector<Visit>> visits_;   // [cluster][state]
+  std::vector<char> is_item_;                // [cluster]
   std::vector<size_t> offsets_;              // [a * cluster_count() + b]
   std::vector<double> costs_;                // [offset + ...]
   std::vector<double> transposed_;           // [offset + ...]

@@ -14,16 +14,21 @@ constexpr int kMostRowsForDominance = 96;
 }  // namespace
 
 template <int kWords>
-WalkDp<kWords>::WalkDp(const StageModel& model)
-    : model_(model), multipliers_(static_cast<size_t>(model.cluster_count())) {
-  for (int c = 0; c < model.cluster_count(); ++c) {
+WalkDp<kWords>::WalkDp(const StageModel& model, int stages)
+    : model_(model), multipliers_(static_cast<size_t>(model.first(stages))) {
+  for (int c = 0; c < model.first(stages); ++c) {
     remembered_.push_back(Bit(c));
     Memory& before = before_.emplace_back();
     for (const int other : model.Before(c)) before.Add(other - model.first(model.stage_of(c)));
     Memory& after = after_.emplace_back();
     for (const int other : model.After(c)) after.Add(other - model.first(model.stage_of(c)));
   }
-  for (int s = 0; s < model.stage_count(); ++s) {
+  for (int c = model.first(stages - 1); c < model.first(stages); ++c) {
+    const auto states = static_cast<size_t>(model.states(c));
+    std::vector<double>& finish = finish_.emplace_back(states);
+    if (stages == model.stage_count()) finish.assign(model.Finish(c), model.Finish(c) + states);
+  }
+  for (int s = 0; s < stages; ++s) {
     for (int i = 0; i < model.size(s); ++i) {
       stage_at_.push_back(s);
       auto& alive = alive_.emplace_back(static_cast<size_t>(model.size(s)));
@@ -40,8 +45,14 @@ WalkDp<kWords>::WalkDp(const StageModel& model)
 }
 
 template <int kWords>
+const double* WalkDp<kWords>::Finish(int cluster) const {
+  return finish_[static_cast<size_t>(cluster - FirstAt(positions() - 1))].data();
+}
+
+template <int kWords>
 void WalkDp<kWords>::SetMultipliers(const std::vector<double>& multipliers) {
   multipliers_ = multipliers;
+  multiplier_sum_ = std::accumulate(multipliers.begin(), multipliers.end(), 0.0);
 }
 
 template <int kWords>
@@ -57,11 +68,6 @@ bool WalkDp<kWords>::Remember(int cluster, int other) {
 }
 
 template <int kWords>
-double WalkDp<kWords>::MultiplierSum() const {
-  return std::accumulate(multipliers_.begin(), multipliers_.end(), 0.0);
-}
-
-template <int kWords>
 typename WalkDp<kWords>::Outcome WalkDp<kWords>::Run(Direction direction, bool prune,
                                                      double most_cost, double most_operations,
                                                      Budget& budget) {
@@ -71,7 +77,7 @@ typename WalkDp<kWords>::Outcome WalkDp<kWords>::Run(Direction direction, bool p
   filled.assign(static_cast<size_t>(positions()), {});
   operations_ = 0;
   rows_ = 0;
-  const double most_sum = most_cost + MultiplierSum();
+  const double most_sum = most_cost + multiplier_sum_;
   for (int step = 0; step < positions(); ++step) {
     const int position = is_forward ? step : positions() - 1 - step;
     const int previous = is_forward ? position - 1 : position + 1;
@@ -109,7 +115,7 @@ template <int kWords>
 void WalkDp<kWords>::FillFirst(Direction direction, int cluster) {
   double* costs = target_.CostsOf(Bit(cluster));
   const bool is_forward = direction == Direction::kForward;
-  const double* given = is_forward ? model_.Start(cluster) : model_.Finish(cluster);
+  const double* given = is_forward ? model_.Start(cluster) : Finish(cluster);
   const double offset = is_forward ? multipliers_[static_cast<size_t>(cluster)] : 0;
   for (int state = 0; state < model_.states(cluster); ++state) costs[state] = given[state] + offset;
 }
@@ -200,17 +206,16 @@ void WalkDp<kWords>::DropDominated() {
 template <int kWords>
 double WalkDp<kWords>::LowestCost() const {
   double lowest = kUnreached;
-  const int last = positions() - 1;
   for (size_t i = 0; i < forward_.back().size(); ++i) {
     const Rows& rows = forward_.back()[i];
-    const double* finish = model_.Finish(FirstAt(last) + static_cast<int>(i));
+    const double* finish = finish_[i].data();
     for (int row = 0; row < rows.size(); ++row) {
       for (int state = 0; state < rows.states(); ++state) {
         lowest = std::min(lowest, rows.costs(row)[state] + finish[state]);
       }
     }
   }
-  return lowest - MultiplierSum();
+  return lowest - multiplier_sum_;
 }
 
 template <int kWords>
@@ -221,7 +226,7 @@ std::vector<ClusterState> WalkDp<kWords>::LowestWalk() const {
   for (size_t i = 0; i < forward_.back().size(); ++i) {
     const Rows& rows = forward_.back()[i];
     const int cluster = FirstAt(last) + static_cast<int>(i);
-    const double* finish = model_.Finish(cluster);
+    const double* finish = finish_[i].data();
     for (int row = 0; row < rows.size(); ++row) {
       for (int state = 0; state < rows.states(); ++state) {
         const double cost = rows.costs(row)[state] + finish[state];
@@ -283,8 +288,22 @@ typename WalkDp<kWords>::Origin WalkDp<kWords>::FindOrigin(int position, int clu
 }
 
 template <int kWords>
+std::vector<std::vector<double>> WalkDp<kWords>::LowestByEnd() const {
+  std::vector<std::vector<double>> lowest;
+  for (size_t i = 0; i < forward_.back().size(); ++i) {
+    const Rows& rows = forward_.back()[i];
+    std::vector<double>& ends = lowest.emplace_back(finish_[i].size(), kUnreached);
+    for (int row = 0; row < rows.size(); ++row) {
+      ElementwiseMin(rows.costs(row), ends.data(), rows.states());
+    }
+    for (double& end : ends) end -= multiplier_sum_;
+  }
+  return lowest;
+}
+
+template <int kWords>
 void WalkDp<kWords>::Eliminate(double most_cost) {
-  const double most_sum = most_cost + MultiplierSum();
+  const double most_sum = most_cost + multiplier_sum_;
   for (int position = 0; position < positions(); ++position) {
     const auto p = static_cast<size_t>(position);
     for (size_t i = 0; i < alive_[p].size(); ++i) {

@@ -23,6 +23,7 @@
 #define TRAVERSE_ENGINE_EXACT_WALK_DP_H_
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "engine/base/budget.h"
@@ -43,14 +44,17 @@ class WalkDp {
     kTooBig,   // more than the operations allowed
   };
 
-  // `model` outlives this. REQUIRES: no stage has more than Memory::kCapacity clusters.
-  explicit WalkDp(const StageModel& model);
+  // For stages [0, stages) of `model`, which outlives this. What follows costs nothing, unless
+  // these are all its stages. REQUIRES: no stage has more than Memory::kCapacity clusters.
+  WalkDp(const StageModel& model, int stages);
 
   int positions() const { return static_cast<int>(stage_at_.size()); }
 
-  // Tables made before a change of multipliers are no longer for pruning.
+  // Tables made before a change of multipliers or finish are no longer for pruning.
   void SetMultipliers(const std::vector<double>& multipliers);  // [cluster]
-  const std::vector<double>& multipliers() const { return multipliers_; }
+
+  // Costs after the last stage, [cluster - first of that stage][state].
+  void SetFinish(std::vector<std::vector<double>> finish) { finish_ = std::move(finish); }
 
   // Makes `cluster` remember `other`. True if that is new. REQUIRES: they are of one stage.
   bool Remember(int cluster, int other);
@@ -58,13 +62,17 @@ class WalkDp {
 
   // Computes the table of `direction`. With `prune`, drops cells that cannot be completed at a cost
   // of at most `most_cost` according to the other direction's table, which was made with the same
-  // multipliers and with the same or smaller memory.
+  // multipliers and finish and with the same or smaller memory.
   Outcome Run(Direction direction, bool prune, double most_cost, double most_operations,
               Budget& budget);
 
   // Least cost of a walk in the forward table, and such a walk; kUnreached and none if it is empty.
   double LowestCost() const;
   std::vector<ClusterState> LowestWalk() const;
+
+  // Least cost, without the finish, of a walk that ends in each state of each cluster of the last
+  // stage: [cluster - first of that stage][state].
+  std::vector<std::vector<double>> LowestByEnd() const;
 
   // Drops for good what both tables show to cost more than `most_cost`. REQUIRES: both tables are
   // complete and made with the current multipliers.
@@ -95,20 +103,22 @@ class WalkDp {
     return Memory::Of(cluster - model_.first(model_.stage_of(cluster)));
   }
 
+  const double* Finish(int cluster) const;
   void FillFirst(Direction direction, int cluster);
   void Extend(Direction direction, const Rows& source, int from, int to, bool new_stage);
   void Prune(const Rows& completions, int cluster, double most_cost);
   void DropDead(int position, int cluster);
   void DropDominated();
   Origin FindOrigin(int position, int cluster, int row, int state) const;
-  double MultiplierSum() const;
 
   const StageModel& model_;
   std::vector<int> stage_at_;        // [position]
   std::vector<double> multipliers_;  // [cluster]
-  std::vector<Memory> remembered_;   // [cluster]
-  std::vector<Memory> before_;       // [cluster]
-  std::vector<Memory> after_;        // [cluster]
+  double multiplier_sum_ = 0;
+  std::vector<std::vector<double>> finish_;  // [cluster - first of the last stage][state]
+  std::vector<Memory> remembered_;           // [cluster]
+  std::vector<Memory> before_;               // [cluster]
+  std::vector<Memory> after_;                // [cluster]
 
   // [position][cluster - first of its stage]: whether each state is alive; empty if none is.
   std::vector<std::vector<std::vector<char>>> alive_;

@@ -7,11 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "engine/construct/greedy.h"
-#include "engine/cost/layer_view.h"
 #include "engine/cost/route_cost.h"
 #include "engine/exact/stage_model.h"
-#include "engine/exact/walk_bound.h"
+#include "engine/exact/stage_proof.h"
+#include "engine/strategy/ni2opt.h"
 #include "engine/strategy/stop.h"
 
 namespace traverse {
@@ -20,16 +19,22 @@ namespace {
 // Numbers in a model's matrices: 16 bytes each.
 constexpr size_t kMostModelEntries = size_t{16} << 20;
 
+std::unique_ptr<Strategy> MakeDefault(const StrategyEntry& entry) {
+  return entry.make(*StrategyOptions::Parse(entry.options, {}));
+}
+
 class Exact : public Strategy {
  public:
-  explicit Exact(double time_limit_seconds) : time_limit_seconds_(time_limit_seconds) {}
+  explicit Exact(double time_limit_seconds)
+      : time_limit_seconds_(time_limit_seconds),
+        heuristic_(MakeDefault(Ni2optEntry())) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
-    return Prove(problem, BaselineRoute(LayerView(problem), budget), budget);
+    return Prove(problem, heuristic_->Solve(problem, budget).route, budget);
   }
 
   Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
-    Route route = BaselineRoute(LayerView(problem), budget);
+    Route route = heuristic_->Solve(problem, budget).route;
     if (RouteCost(problem, start) < RouteCost(problem, route)) route = start;
     return Prove(problem, std::move(route), budget);
   }
@@ -51,9 +56,9 @@ class Exact : public Strategy {
       return solution;
     }
     const std::optional<StageModel> model = StageModel::Build(problem, kMostModelEntries);
-    if (!model) return solution;
-    WalkBoundResult result =
-        BoundByWalks(*model, model->WalkOf(solution.route), WalkBoundOptions(), limited);
+    if (!model || !CanProveByStages(*model)) return solution;
+    const StageProof result =
+        ProveByStages(*model, model->WalkOf(solution.route), StageProofOptions(), limited);
     Route route = model->RouteOf(result.walk);
     if (RouteCost(problem, route) <= RouteCost(problem, solution.route)) {
       solution.route = std::move(route);
@@ -64,6 +69,7 @@ class Exact : public Strategy {
   }
 
   const double time_limit_seconds_;
+  const std::unique_ptr<Strategy> heuristic_;  // of the first route
 };
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST(WalkDp, WithAllMemoryTheLowestWalkIsTheBestRoute) {
     const Case random(seed);
     const double best = BruteForce(random.owned.problem).cost;
     Rng rng(seed);
-    Dp dp(random.model);
+    Dp dp(random.model, random.model.stage_count());
     Remember(rng, 1, random.model, dp);
     dp.SetMultipliers(RandomMultipliers(rng, random.model));
     Budget budget;
@@ -77,7 +77,7 @@ TEST(WalkDp, LessMemoryIsALowerBoundWithAWalkOfThatCost) {
     const Case random(seed);
     const double best = BruteForce(random.owned.problem).cost;
     Rng rng(seed);
-    Dp dp(random.model);
+    Dp dp(random.model, random.model.stage_count());
     Remember(rng, 2, random.model, dp);
     const std::vector<double> multipliers = RandomMultipliers(rng, random.model);
     dp.SetMultipliers(multipliers);
@@ -102,7 +102,7 @@ TEST(WalkDp, EliminationKeepsTheBestRoute) {
     const double best = BruteForce(random.owned.problem).cost;
     const double most = best * (1 + 1e-9) + 1e-9;
     Rng rng(seed);
-    Dp dp(random.model);
+    Dp dp(random.model, random.model.stage_count());
     Budget budget;
 
     for (int round = 0; round < 4; ++round) {
@@ -128,7 +128,7 @@ TEST(WalkDp, EliminationBelowTheBestRouteLeavesNothing) {
     const double best = BruteForce(random.owned.problem).cost;
     const double less = best * (1 - 1e-9) - 1e-9;
     Rng rng(seed);
-    Dp dp(random.model);
+    Dp dp(random.model, random.model.stage_count());
     Remember(rng, 1, random.model, dp);
     Budget budget;
 
@@ -144,7 +144,7 @@ TEST(WalkDp, StopsForTheBudgetAndForTheLimitOfOperations) {
   const OwnedProblem owned =
       RandomProblem(1, {.shape = PlanShape::kFlatContours, .min_paths = 4, .max_paths = 4});
   const StageModel model = *StageModel::Build(owned.problem, 1 << 20);
-  Dp dp(model);
+  Dp dp(model, model.stage_count());
   CancelToken cancel;
   cancel.Cancel();
   Budget cancelled(&cancel);
