@@ -95,7 +95,8 @@ class Proof {
     last.Sample(kSamples, Limit(), budget_);
     std::vector<ClusterState> head = result_.walk;
     head.resize(static_cast<size_t>(model_.first(model_.stage_count() - 1)));
-    bool goes_on = Continue(last, head);
+    Continue(last, head);
+    bool goes_on = true;
     while (goes_on && !result_.proven) {
       prover->SetFinish(last.Finish());
       const Outcome outcome = prover->Run(WalkLimit(), kPassesPerRound, budget_);
@@ -127,7 +128,7 @@ class Proof {
     Budget share = Share();
     const ItemStage::Best best = last.Solve(last.StartAfter(ends), Limit(), result_.walk, share);
     Raise(best.lower_bound);
-    return GoesOn(best, share);
+    return !budget_.ExhaustedNow();
   }
 
   // Where there is a deadline, half of what is left: the other stages need some too.
@@ -136,7 +137,7 @@ class Proof {
     return budget_.Within((*budget_.deadline() - Budget::Clock::now()) / 2);
   }
 
-  // Something else than time may have ended a search: then it would end again.
+  // Something else than time may have ended a search: after the same route it would end again.
   bool GoesOn(const ItemStage::Best& best, const Budget& share) {
     return !budget_.ExhaustedNow() && (best.complete || share.was_exhausted());
   }

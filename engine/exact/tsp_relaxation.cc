@@ -135,19 +135,21 @@ void TspRelaxation::AllowAll() {
   for (int j = 0; j < move_count(); ++j) lp_.SetColumnBounds(j, 0, 1);
 }
 
-void TspRelaxation::Restrict(double gap) {
+bool TspRelaxation::Restrict(double gap, int most_new) {
   std::vector<char> cheap(has_.size());
   std::vector<Move> added;
   ForEachCheapMove(gap, [&](const Move& move, double) {
     cheap[Key(move)] = 1;
     if (!Has(move)) added.push_back(move);
   });
+  if (static_cast<int>(added.size()) > most_new) return false;
   // The reduced cost of a move of some blossom's F is higher than what was computed above, so it
   // may stay in for nothing; none is out that should not be.
   for (int j = 0; j < move_count(); ++j) {
     if (cheap[Key(move(j))] == 0) lp_.SetColumnBounds(j, 0, 0);
   }
   for (const Move& move : added) AddMove(move);
+  return true;
 }
 
 SupportGraph TspRelaxation::ItemGraph() const {

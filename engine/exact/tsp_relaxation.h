@@ -40,9 +40,10 @@ class TspRelaxation {
   int Price(int most, double& missing);
 
   // All moves allowed again; then all those out whose reduced cost is above `gap`, and those in
-  // that were not yet and are not. After Restrict no move has to be priced.
+  // that were not yet and are not. After Restrict no move has to be priced. False, with nothing
+  // changed, if more than `most_new` would have to come in: the gap is too wide for branching.
   void AllowAll();
-  void Restrict(double gap);
+  bool Restrict(double gap, int most_new);
 
   // Adds cuts that the last solution violates, at most `most`; returns how many.
   int Separate(double violation, int most);

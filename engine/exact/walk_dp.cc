@@ -100,7 +100,7 @@ typename WalkDp<kWords>::Outcome WalkDp<kWords>::Run(Direction direction, bool p
         }
       }
       DropDead(position, cluster);
-      if (prune) Prune(other[p][i], cluster, most_sum);
+      if (prune && !Prune(other[p][i], cluster, most_sum, budget)) return Outcome::kStopped;
       target_.rows().DropUnreached();
       DropDominated();
       filled[p][i] = target_.rows();
@@ -162,14 +162,15 @@ void WalkDp<kWords>::DropDead(int position, int cluster) {
   }
 }
 
-// A route remembers no cluster on both sides but the one it is at.
+// A route remembers no cluster on both sides but the one it is at. False if the budget ran out.
 template <int kWords>
-void WalkDp<kWords>::Prune(const Rows& completions, int cluster, double most_sum) {
+bool WalkDp<kWords>::Prune(const Rows& completions, int cluster, double most_sum, Budget& budget) {
   Rows& rows = target_.rows();
   const int states = rows.states();
   const Memory bit = Bit(cluster);
   completion_.resize(static_cast<size_t>(states));
   for (int row = 0; row < rows.size(); ++row) {
+    if (budget.Exhausted()) return false;
     double* costs = rows.costs(row);
     std::fill(completion_.begin(), completion_.end(), kUnreached);
     for (int other = 0; other < completions.size(); ++other) {
@@ -183,6 +184,7 @@ void WalkDp<kWords>::Prune(const Rows& completions, int cluster, double most_sum
       }
     }
   }
+  return true;
 }
 
 // A walk that remembers more and costs no less can do nothing that the other cannot.
@@ -302,7 +304,7 @@ std::vector<std::vector<double>> WalkDp<kWords>::LowestByEnd() const {
 }
 
 template <int kWords>
-void WalkDp<kWords>::Eliminate(double most_cost) {
+void WalkDp<kWords>::Eliminate(double most_cost, Budget& budget) {
   const double most_sum = most_cost + multiplier_sum_;
   for (int position = 0; position < positions(); ++position) {
     const auto p = static_cast<size_t>(position);
@@ -315,6 +317,7 @@ void WalkDp<kWords>::Eliminate(double most_cost) {
       const int cluster = FirstAt(position) + static_cast<int>(i);
       const Rows& behind = forward_[p][i];
       for (int row = 0; row < behind.size(); ++row) {
+        if (budget.Exhausted()) return;
         for (int other = 0; other < ahead.size(); ++other) {
           if (!((behind.memory(row) & ahead.memory(other)) == Bit(cluster))) continue;
           for (size_t state = 0; state < alive.size(); ++state) {

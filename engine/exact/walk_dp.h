@@ -76,7 +76,8 @@ class WalkDp {
 
   // Drops for good what both tables show to cost more than `most_cost`. REQUIRES: both tables are
   // complete and made with the current multipliers.
-  void Eliminate(double most_cost);
+  // Ends early, with less dropped, when the budget runs out.
+  void Eliminate(double most_cost, Budget& budget);
 
   // Multiply-adds of the last pass, rows in its table, and (position, cluster, state) still alive.
   double operations() const { return operations_; }
@@ -106,7 +107,7 @@ class WalkDp {
   const double* Finish(int cluster) const;
   void FillFirst(Direction direction, int cluster);
   void Extend(Direction direction, const Rows& source, int from, int to, bool new_stage);
-  void Prune(const Rows& completions, int cluster, double most_cost);
+  bool Prune(const Rows& completions, int cluster, double most_sum, Budget& budget);
   void DropDead(int position, int cluster);
   void DropDominated();
   Origin FindOrigin(int position, int cluster, int row, int state) const;

@@ -101,7 +101,7 @@ class Prover : public WalkProver {
     if (!search_.Take(multipliers_, value)) return;
     if (limit_ - value > kEliminationShrink * elimination_gap_) return;
     elimination_gap_ = limit_ - value;
-    if (Fill(Direction::kBackward, true)) dp_.Eliminate(limit_);
+    if (Fill(Direction::kBackward, true)) dp_.Eliminate(limit_, *budget_);
   }
 
   void Step(double value) {

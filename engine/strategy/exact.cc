@@ -26,8 +26,7 @@ std::unique_ptr<Strategy> MakeDefault(const StrategyEntry& entry) {
 class Exact : public Strategy {
  public:
   explicit Exact(double time_limit_seconds)
-      : time_limit_seconds_(time_limit_seconds),
-        heuristic_(MakeDefault(Ni2optEntry())) {}
+      : time_limit_seconds_(time_limit_seconds), heuristic_(MakeDefault(Ni2optEntry())) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
     return Prove(problem, heuristic_->Solve(problem, budget).route, budget);

@@ -110,7 +110,7 @@ TEST(WalkDp, EliminationKeepsTheBestRoute) {
       dp.SetMultipliers(RandomMultipliers(rng, random.model));
       ASSERT_EQ(dp.Run(Dp::Direction::kForward, false, 0, kNoLimit, budget), Dp::Outcome::kDone);
       ASSERT_EQ(dp.Run(Dp::Direction::kBackward, true, most, kNoLimit, budget), Dp::Outcome::kDone);
-      dp.Eliminate(most);
+      dp.Eliminate(most, budget);
       ASSERT_EQ(dp.Run(Dp::Direction::kForward, true, most, kNoLimit, budget), Dp::Outcome::kDone);
       EXPECT_LE(dp.LowestCost(), best + 1e-9 * (1 + best));
     }
@@ -134,7 +134,7 @@ TEST(WalkDp, EliminationBelowTheBestRouteLeavesNothing) {
 
     ASSERT_EQ(dp.Run(Dp::Direction::kForward, false, 0, kNoLimit, budget), Dp::Outcome::kDone);
     ASSERT_EQ(dp.Run(Dp::Direction::kBackward, true, less, kNoLimit, budget), Dp::Outcome::kDone);
-    dp.Eliminate(less);
+    dp.Eliminate(less, budget);
 
     EXPECT_EQ(dp.alive_states(), 0);
   }

@@ -62,6 +62,20 @@ TEST(Exact, GivesABoundWhenTimeRunsOut) {
   EXPECT_LE(*solution.lower_bound, RouteCost(owned.problem, solution.route));
 }
 
+// A first route far from the best leaves too many moves to branch on: that must not take longer
+// than the deadline, and walks bound the layer all the same.
+TEST(Exact, KeepsADeadlineFarFromAProof) {
+  const OwnedProblem owned = RandomProblem(
+      1, {.shape = testing::PlanShape::kSequential, .min_paths = 300, .max_paths = 300});
+  Budget budget(nullptr, Budget::Clock::now() + std::chrono::seconds(1));
+
+  const Stopwatch watch;
+  const Solution solution = MakeExact()->Solve(owned.problem, budget);
+
+  EXPECT_LT(watch.Seconds(), 4.0);
+  EXPECT_OK(ValidateRoute(owned.plan(), solution.route));
+}
+
 TEST(Exact, IsCancelledSoon) {
   const OwnedProblem owned(SequentialPlan(testing::SquareGrid(14, 14)));
   CancelToken cancel;
