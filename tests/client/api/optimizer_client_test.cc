@@ -113,7 +113,7 @@ TEST(OptimizerClient, ReadsWhileItSends) {
 TEST(OptimizerClient, ErrorsAreTheServersOwn) {
   FakeService service;
   OptimizerClient client(service.InProcessChannel());
-  for (const uint64_t before : {0, 3}) {
+  for (const uint64_t before : {uint64_t{0}, uint64_t{3}}) {
     service.status = grpc::Status(grpc::StatusCode::INVALID_ARGUMENT, "layers[3].islands: bad");
     service.layers_before_status = before;
 
