@@ -86,7 +86,6 @@ LayerProblem LayerChain::Problem(const Slot& slot, Point start) const {
 void LayerChain::Prepare(Slot& slot) {
   const Plan& plan = slot.layer.plan;
   if (slot.layer.start) given_at_ = predicted_at_ = *slot.layer.start;
-  slot.given_start = given_at_;
   slot.predicted_start = predicted_at_;
 
   if (!strategy_->trivial()) slot.fingerprint = PlanFingerprint(plan);

@@ -55,7 +55,6 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
     Point predicted_start;
     uint64_t fingerprint = 0;
     std::optional<Point> finish;
-    Point given_start;
     Route given_route;
     LayerOutcome outcome;  // what concerns the given order
 
