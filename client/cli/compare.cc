@@ -131,7 +131,7 @@ Command CompareCommand() {
   for (auto table : {JobFlagTable(), ServiceFlagTable()}) {
     command.flags.insert(command.flags.end(), table.begin(), table.end());
   }
-  command.example = "traverse compare part.damat --layers=1-5 --strategies=greedy,auto";
+  command.example = "traverse compare part.damat --layers=1-5 --strategies=greedy,ni2opt";
   command.run = RunCompare;
   return command;
 }
