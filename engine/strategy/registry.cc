@@ -7,6 +7,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "engine/strategy/auto.h"
 #include "engine/strategy/exact.h"
 #include "engine/strategy/greedy.h"
 #include "engine/strategy/ni2opt.h"
@@ -24,19 +25,15 @@ constexpr std::array<const char*, 6> kKnownNames = {"none", "greedy", "ni2opt",
 
 const std::vector<StrategyEntry>& Strategies() {
   static const auto& entries = *new std::vector<StrategyEntry>{
-      NoneEntry(), GreedyEntry(), Ni2optEntry(), TabuEntry(), ExactEntry()};
+      NoneEntry(), GreedyEntry(), Ni2optEntry(), AutoEntry(), TabuEntry(), ExactEntry()};
   return entries;
 }
 
-// `auto` where there is one; before it, what is quick and good.
 const std::string& DefaultStrategyName() {
   const auto& entries = Strategies();
-  const auto named = [&](const char* name) {
-    return std::find_if(entries.begin(), entries.end(),
-                        [&](const StrategyEntry& e) { return e.name == name; });
-  };
-  const auto best = named("auto");
-  return (best != entries.end() ? best : named("ni2opt"))->name;
+  return std::find_if(entries.begin(), entries.end(),
+                      [](const StrategyEntry& e) { return e.name == "auto"; })
+      ->name;
 }
 
 absl::StatusOr<std::unique_ptr<Strategy>> MakeStrategy(

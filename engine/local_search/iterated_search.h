@@ -1,0 +1,60 @@
+// Iterated local search: kicks and repairs, until nothing more is gained.
+//
+//   kick     ... A | B | C | D ...   ->   ... A | D | C | B ...     double bridge, inside one node
+//   repair   local search from the visits at the cuts
+//   keep     the result if it costs no more, else undo everything
+//
+// A double bridge is the change that local search by sequential moves does not find, and does not
+// just undo (Martin, Otto and Felten 1991). All work of an iteration is near the cuts: undoing goes
+// through a log, nothing is copied.
+
+#ifndef TRAVERSE_ENGINE_LOCAL_SEARCH_ITERATED_SEARCH_H_
+#define TRAVERSE_ENGINE_LOCAL_SEARCH_ITERATED_SEARCH_H_
+
+#include <cstdint>
+
+#include "engine/base/budget.h"
+#include "engine/base/rng.h"
+#include "engine/local_search/local_search.h"
+#include "engine/local_search/search_state.h"
+
+namespace traverse {
+
+struct IteratedSearchOptions {
+  LocalSearchOptions local_search;
+
+  // Ends after this many iterations without a gain.
+  int64_t patience = 1000;
+
+  // Most leaves between the first and the last cut of a kick.
+  int kick_span = 400;
+};
+
+class IteratedSearch {
+ public:
+  // The arguments outlive the search.
+  IteratedSearch(SearchState& state, const NeighborLists& neighbors,
+                 const IteratedSearchOptions& options);
+
+  // Local search alone, from the route as it is.
+  void Descend(Budget& budget);
+
+  // Kicks and repairs the route, which never gets worse.
+  void Run(Rng& rng, Budget& budget);
+
+  int64_t iterations() const { return iterations_; }
+
+ private:
+  bool Kick(Rng& rng, double& delta);
+  int ChooseNode(Rng& rng, int leaf) const;
+  bool ChooseCuts(Rng& rng, int node, int (&cuts)[4]) const;
+
+  SearchState& state_;
+  const IteratedSearchOptions options_;
+  LocalSearch local_search_;
+  int64_t iterations_ = 0;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_LOCAL_SEARCH_ITERATED_SEARCH_H_

@@ -1,0 +1,87 @@
+#include "engine/local_search/move_evaluator.h"
+
+#include <cassert>
+
+namespace traverse {
+namespace {
+
+// Segments up to this size belong to one stretch as a whole.
+constexpr int kShortSegment = 3;
+
+}  // namespace
+
+double MoveEvaluator::Evaluate(const SegmentMove& move) {
+  count_ = stretch_begin_ = 0;
+  new_cost_ = 0;
+  old_cost_ = state_.StepCost(move.first - 1) + state_.StepCost(move.last);
+  if (move.segment_count() == 2) old_cost_ += state_.StepCost(move.middle - 1);
+
+  if (move.first >= 2) {
+    old_cost_ += state_.StepCost(move.first - 2);
+    AddPlace(move.first - 2, false, false);
+  }
+  AddPlace(move.first - 1, false, true);
+  const std::array<Segment, 2> order = move.NewOrder();
+  for (int s = 0; s < move.segment_count(); ++s) AddSegment(order[static_cast<size_t>(s)]);
+  AddPlace(move.last + 1, false, true);
+  if (move.last + 2 <= state_.last_position()) {
+    old_cost_ += state_.StepCost(move.last + 1);
+    AddPlace(move.last + 2, false, false);
+  }
+  EndStretch();
+  return new_cost_ - old_cost_;
+}
+
+// The segment's ends are free. A long segment divides the stretch: what is inside stays.
+void MoveEvaluator::AddSegment(const Segment& segment) {
+  const int size = segment.size();
+  for (int i = 0; i < size; ++i) {
+    if (size > kShortSegment && i == 2) {
+      EndStretch();
+      i = size - 2;
+    }
+    AddPlace(segment.At(i), segment.reversed, i == 0 || i == size - 1);
+    const bool continues = i > 0 && count_ - stretch_begin_ > 1;
+    if (!continues) continue;
+    const int position = segment.reversed ? segment.At(i) : segment.At(i - 1);
+    old_cost_ += state_.StepCost(position);
+  }
+}
+
+void MoveEvaluator::AddPlace(int position, bool reversed, bool free) {
+  assert(count_ < places_.size());
+  const int leaf = state_.leaf_at(position);
+  const Point in = state_.in(leaf);
+  const Point out = state_.out(leaf);
+  const bool has_choice = state_.entries().count(leaf) > 1;
+  places_[count_++] = Place{leaf, reversed ? out : in, reversed ? in : out, free && has_choice, -1};
+}
+
+// Chooses the entries of the stretch, from its second visit to its last but one, and adds the cost
+// of its moves.
+void MoveEvaluator::EndStretch() {
+  const LeafEntries& entries = state_.entries();
+  const bool open_end = !state_.has_finish();
+  for (size_t i = stretch_begin_ + 1; i < count_; ++i) {
+    Place& place = places_[i];
+    if (place.free) {
+      const Place& next = places_[i + 1];
+      const bool is_last = open_end && next.leaf == state_.tree().finish();
+      place.entry =
+          entries.Best(place.leaf, places_[i - 1].out, is_last ? nullptr : &next.in, state_.cost());
+      place.in = entries.enter(place.entry);
+      place.out = entries.exit(place.entry);
+    }
+    new_cost_ += state_.MoveCost(places_[i - 1].out, place.leaf, place.in);
+  }
+  stretch_begin_ = count_;
+}
+
+void MoveEvaluator::Apply(const SegmentMove& move) {
+  state_.Apply(move);
+  for (size_t i = 0; i < count_; ++i) {
+    if (places_[i].entry >= 0) state_.SetEntry(places_[i].leaf, places_[i].entry);
+  }
+}
+
+}  // namespace traverse

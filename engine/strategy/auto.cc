@@ -1,0 +1,129 @@
+#include "engine/strategy/auto.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "engine/base/rng.h"
+#include "engine/base/tolerances.h"
+#include "engine/construct/greedy.h"
+#include "engine/cost/entry_choice.h"
+#include "engine/cost/layer_view.h"
+#include "engine/cost/route_cost.h"
+#include "engine/local_search/end_groups.h"
+#include "engine/local_search/iterated_search.h"
+#include "engine/local_search/leaf_entries.h"
+#include "engine/local_search/order_tree.h"
+#include "engine/local_search/search_state.h"
+#include "engine/strategy/stop.h"
+
+namespace traverse {
+namespace {
+
+// Iterations without a gain after which the search ends: so many a path.
+constexpr double kPatience = 1;
+
+// Of a search that starts from a route that was good from another start.
+constexpr double kResumeShare = 0.25;
+
+// Visits whose entries are chosen at a time: a step between two looks at the clock.
+constexpr size_t kWindow = 256;
+
+// Chooses the entries of the route again, exactly within windows that overlap by half.
+void ChooseEntries(const LayerView& layer, Route& route, Budget& budget) {
+  EntryChoice choice(layer.table, layer.cost);
+  std::vector<int> paths;
+  std::vector<int> entries;
+  for (size_t begin = 0; begin < route.size(); begin += kWindow / 2) {
+    if (budget.ExhaustedNow()) return;
+    const size_t end = std::min(route.size(), begin + kWindow);
+    const auto point = [&](const Visit& visit, bool exit) {
+      const int entry = layer.table.EntryOf(visit);
+      return exit ? layer.table.exit(entry) : layer.table.enter(entry);
+    };
+    const Point from = begin > 0 ? point(route[begin - 1], true) : layer.problem.start;
+    const std::optional<Point> to =
+        end < route.size() ? point(route[end], false) : layer.problem.finish;
+    paths.clear();
+    for (size_t k = begin; k < end; ++k) paths.push_back(route[k].path);
+    entries.resize(paths.size());
+    choice.Choose(from, paths, to, absl::MakeSpan(entries));
+    for (size_t k = begin; k < end; ++k) route[k] = layer.table.VisitOf(entries[k - begin]);
+    if (end == route.size()) return;
+  }
+}
+
+class Auto : public Strategy {
+ public:
+  explicit Auto(double effort) : effort_(effort) {}
+
+  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+    const LayerView layer(problem);
+    return Search(layer, BaselineRoute(layer, budget), effort_, budget);
+  }
+
+  Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
+    return Search(LayerView(problem), start, effort_ * kResumeShare, budget);
+  }
+
+ private:
+  Solution Search(const LayerView& layer, Route route, double effort, Budget& budget) const {
+    const OrderTree tree(layer.plan());
+    ChooseEntries(layer, route, budget);
+    if (!tree.has_choice()) {
+      const double cost = RouteCost(layer.problem, route);
+      if (budget.was_exhausted()) return Finish(std::move(route), 0, budget);
+      // The order is fixed, and a route of up to one window has the best entries.
+      if (route.size() <= kWindow) return Solution{std::move(route), StopReason::kOptimal, cost};
+      return Finish(std::move(route), 0, budget);
+    }
+    const LeafEntries entries(layer.problem);
+    SearchState state(layer.problem, tree, entries);
+    state.Load(route);
+    const EndGroups groups(entries);
+    IteratedSearchOptions options;
+    options.patience = static_cast<int64_t>(kPatience * effort * tree.path_count());
+    const NeighborLists neighbors =
+        FindNeighbors(tree, groups, options.local_search.three_opt.first_breadth, budget);
+    IteratedSearch search(state, neighbors, options);
+    search.Descend(budget);
+    Rng rng(layer.problem.seed);
+    search.Run(rng, budget);
+    Route improved = state.Unload();
+    ChooseEntries(layer, improved, budget);
+    return Finish(std::move(improved), search.iterations(), budget);
+  }
+
+  static Solution Finish(Route route, int64_t iterations, const Budget& budget) {
+    return Solution{std::move(route),
+                    StopOr(budget, StopReason::kLocalOptimum),
+                    std::nullopt,
+                    {{"iterations", static_cast<double>(iterations)}}};
+  }
+
+  const double effort_;
+};
+
+}  // namespace
+
+StrategyEntry AutoEntry() {
+  return StrategyEntry{
+      "auto",
+      "The best route for the time given: greedy, improved until nothing more is gained.",
+      false,
+      {OptionSpec{"effort",
+                  OptionSpec::Type::kDouble,
+                  "1",
+                  0,
+                  1e6,
+                  {},
+                  "How long to go on without a gain, as a multiple of the default."}},
+      [](const StrategyOptions& options) -> std::unique_ptr<Strategy> {
+        return std::make_unique<Auto>(options.Double("effort"));
+      }};
+}
+
+}  // namespace traverse

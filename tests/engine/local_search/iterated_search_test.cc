@@ -1,0 +1,63 @@
+#include "engine/local_search/iterated_search.h"
+
+#include <gtest/gtest.h>
+
+#include "absl/strings/str_cat.h"
+#include "engine/base/tolerances.h"
+#include "engine/validator.h"
+#include "tests/engine/local_search/searched.h"
+#include "tests/support/brute_force.h"
+#include "tests/support/status_matchers.h"
+
+namespace traverse {
+namespace {
+
+using namespace traverse::testing;  // NOLINT
+
+TEST(IteratedSearch, NeverMakesARouteWorse) {
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    Searched s(seed, {.min_paths = 1, .max_paths = 40, .max_vertices = 12});
+    IteratedSearch search(s.state, s.neighbors, {.local_search = {}, .patience = 20});
+    Rng rng(seed);
+    double cost = s.state.TotalCost();
+    for (int i = 0; i < 5; ++i) {
+      search.Run(rng, s.budget);
+
+      EXPECT_LE(s.state.TotalCost(), cost + kCostTolerance);
+      EXPECT_OK(ValidateRoute(s.owned.plan(), s.state.Unload()));
+      cost = s.state.TotalCost();
+    }
+  }
+}
+
+TEST(IteratedSearch, FindsTheOptimumOfSmallProblems) {
+  int optimal = 0;
+  for (uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    Searched s(seed, {.min_paths = 4, .max_paths = 7});
+    IteratedSearch search(s.state, s.neighbors, {.local_search = {}, .patience = 60});
+    Rng rng(seed);
+
+    search.Descend(s.budget);
+    search.Run(rng, s.budget);
+
+    optimal += s.state.TotalCost() <= BruteForce(s.owned.problem).cost + kCostTolerance;
+  }
+  EXPECT_GE(optimal, 180);
+}
+
+TEST(IteratedSearch, StopsWhenPatienceIsOut) {
+  Searched s(1, {.shape = PlanShape::kFlatContours, .min_paths = 6, .max_paths = 6});
+  IteratedSearch search(s.state, s.neighbors, {.local_search = {}, .patience = 7});
+  Rng rng(1);
+  search.Run(rng, s.budget);
+  const int64_t before = search.iterations();
+
+  search.Run(rng, s.budget);
+
+  EXPECT_EQ(search.iterations() - before, 7);
+}
+
+}  // namespace
+}  // namespace traverse

@@ -1,0 +1,63 @@
+#include "engine/local_search/leaf_entries.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "absl/strings/str_cat.h"
+#include "tests/support/random_plan.h"
+
+namespace traverse {
+namespace {
+
+using namespace traverse::testing;  // NOLINT
+
+TEST(LeafEntries, AreTheVisitsThatThePathsAllow) {
+  const OwnedProblem owned(Plan{{MakeContour({{0, 0}, {1, 0}, {1, 1}}, {2, 0}),
+                                 MakeOpenPath({5, 5}, {6, 6}), MakeOpenPath({7, 7}, {8, 8}, true)},
+                                {}});
+
+  const LeafEntries entries(owned.problem);
+
+  EXPECT_EQ(entries.leaf_count(), 5);
+  EXPECT_EQ(entries.count(0), 2);
+  EXPECT_EQ(entries.VisitOf(0, entries.first(0)), (Visit{0, 2}));
+  EXPECT_EQ(entries.EntryOf(Visit{0, 0}), entries.first(0) + 1);
+  EXPECT_EQ(entries.exit(entries.EntryOf(Visit{1, 1})), (Point{5, 5}));
+  EXPECT_EQ(entries.Reversed(1, entries.EntryOf(Visit{1, 1})), entries.EntryOf(Visit{1, 0}));
+  EXPECT_EQ(entries.count(2), 1);
+  EXPECT_EQ(entries.enter(entries.first(3)), owned.problem.start);
+}
+
+TEST(LeafEntries, BestCostsNoMoreThanAnyOtherEntry) {
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const OwnedProblem owned = RandomProblem(seed, {.min_paths = 3, .max_vertices = 150});
+    const LeafEntries entries(owned.problem);
+    const TravelCost cost(owned.problem.cost);
+    Rng rng(seed);
+    for (int leaf = 0; leaf < entries.leaf_count(); ++leaf) {
+      const Point from{rng.Unit() * 100, rng.Unit() * 100};
+      const Point next{rng.Unit() * 100, rng.Unit() * 100};
+      for (const Point* to : {&next, static_cast<const Point*>(nullptr)}) {
+        const auto total = [&](int e) {
+          return cost(from, entries.enter(e)) + (to != nullptr ? cost(entries.exit(e), *to) : 0);
+        };
+        double least = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < entries.count(leaf); ++i) {
+          least = std::min(least, total(entries.first(leaf) + i));
+        }
+
+        const int best = entries.Best(leaf, from, to, cost);
+
+        EXPECT_GE(best, entries.first(leaf));
+        EXPECT_LT(best, entries.first(leaf) + entries.count(leaf));
+        EXPECT_NEAR(total(best), least, 1e-4 * (1 + least));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace traverse

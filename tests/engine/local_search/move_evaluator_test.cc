@@ -1,0 +1,55 @@
+#include "engine/local_search/move_evaluator.h"
+
+#include <gtest/gtest.h>
+
+#include "absl/strings/str_cat.h"
+#include "engine/base/tolerances.h"
+#include "engine/validator.h"
+#include "tests/engine/local_search/searched.h"
+#include "tests/support/instances.h"
+#include "tests/support/status_matchers.h"
+
+namespace traverse {
+namespace {
+
+using namespace traverse::testing;  // NOLINT
+
+TEST(MoveEvaluator, DeltaEqualsRecomputedCost) {
+  for (uint64_t seed = 1; seed <= 300; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    Searched s(seed, {.min_paths = 3, .max_paths = 20});
+    MoveEvaluator evaluator(s.state);
+    Rng rng(seed);
+    for (int i = 0; i < 30; ++i) {
+      const SegmentMove move = RandomMove(rng, s.tree.path_count());
+      if (!s.state.Allows(move)) continue;
+      const double before = s.state.TotalCost();
+
+      const double delta = evaluator.Evaluate(move);
+      evaluator.Apply(move);
+
+      ASSERT_NEAR(s.state.TotalCost(), before + delta, kCostTolerance);
+      ASSERT_OK(ValidateRoute(s.owned.plan(), s.state.Unload()));
+    }
+  }
+}
+
+// Two contours change places: with the entries that suited the old neighbors, which face away from
+// the new ones, the move would seem to cost 16 mm.
+TEST(MoveEvaluator, ChoosesEntriesForTheNewNeighbors) {
+  const auto contour = [](double x) { return MakeContour({{x - 2, 0}, {x + 2, 0}}); };
+  const OwnedProblem owned(AnyOrderPlan({contour(20), contour(10), contour(30)}));
+  const OrderTree tree(owned.plan());
+  const LeafEntries entries(owned.problem);
+  SearchState state(owned.problem, tree, entries);
+  state.Load({{0, 0}, {1, 1}, {2, 0}});
+  MoveEvaluator evaluator(state);
+
+  const double delta = evaluator.Evaluate({SegmentMove::Kind::kReverse, 1, 1, 2});
+
+  EXPECT_NEAR(state.TotalCost(), 18 + 6 + 16, 1e-9);
+  EXPECT_NEAR(delta, 28 - 40, 1e-9);
+}
+
+}  // namespace
+}  // namespace traverse

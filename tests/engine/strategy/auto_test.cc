@@ -1,0 +1,88 @@
+#include "engine/strategy/auto.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "absl/strings/str_cat.h"
+#include "engine/base/tolerances.h"
+#include "engine/cost/route_cost.h"
+#include "engine/strategy/registry.h"
+#include "engine/validator.h"
+#include "tests/support/brute_force.h"
+#include "tests/support/instances.h"
+#include "tests/support/random_plan.h"
+#include "tests/support/status_matchers.h"
+
+namespace traverse {
+namespace {
+
+using namespace traverse::testing;  // NOLINT
+
+Solution Solve(const LayerProblem& problem) {
+  Budget budget;
+  return (*MakeStrategy("auto", {}))->Solve(problem, budget);
+}
+
+TEST(Auto, IsTheDefault) { EXPECT_EQ(DefaultStrategyName(), "auto"); }
+
+TEST(Auto, FindsTheOptimumOfNearlyAllSmallPlans) {
+  int optimal = 0;
+  for (uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const OwnedProblem owned = RandomProblem(seed, {.max_paths = 7});
+
+    const Solution solution = Solve(owned.problem);
+
+    optimal +=
+        RouteCost(owned.problem, solution.route) <= BruteForce(owned.problem).cost + kCostTolerance;
+  }
+  EXPECT_GE(optimal, 195);
+}
+
+TEST(Auto, ProvesTheOptimumWhereTheOrderIsFixed) {
+  Plan plan = FlatPlan(5);
+  plan.nodes[0].kind = PlanNode::Kind::kInOrder;
+  const OwnedProblem owned(plan);
+
+  const Solution solution = Solve(owned.problem);
+
+  EXPECT_EQ(solution.stop, StopReason::kOptimal);
+  EXPECT_EQ(solution.lower_bound, RouteCost(owned.problem, solution.route));
+}
+
+TEST(Auto, IsFarBetterThanGreedyOnAGrid) {
+  const OwnedProblem owned(SequentialPlan(SquareGrid(12, 12)));
+  Budget budget;
+  const Route greedy = (*MakeStrategy("greedy", {}))->Solve(owned.problem, budget).route;
+
+  const Solution solution = Solve(owned.problem);
+
+  EXPECT_LT(RouteCost(owned.problem, solution.route), 0.95 * RouteCost(owned.problem, greedy));
+  EXPECT_GT(solution.statistics.at("iterations"), 0);
+}
+
+TEST(Auto, DoesMoreWithMoreEffort) {
+  const OwnedProblem owned(SequentialPlan(SquareGrid(6, 6)));
+  Budget budget;
+  const auto iterations = [&](const char* effort) {
+    const auto strategy = *MakeStrategy("auto", {{"effort", effort}});
+    return strategy->Solve(owned.problem, budget).statistics.at("iterations");
+  };
+
+  EXPECT_LT(iterations("0.5"), iterations("4"));
+  EXPECT_EQ(iterations("0"), 0);
+}
+
+TEST(Auto, StopsAtTheDeadline) {
+  const OwnedProblem owned(SequentialPlan(SquareGrid(30, 30)));
+  Budget budget = Budget().Within(std::chrono::milliseconds(30));
+
+  const Solution solution = (*MakeStrategy("auto", {}))->Solve(owned.problem, budget);
+
+  EXPECT_EQ(solution.stop, StopReason::kTimeLimit);
+  EXPECT_OK(ValidateRoute(owned.plan(), solution.route));
+}
+
+}  // namespace
+}  // namespace traverse
