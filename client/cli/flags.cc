@@ -35,12 +35,17 @@ const Flag* Find(absl::Span<const Flag> table, const std::string& name) {
   return flag == table.end() ? nullptr : &*flag;
 }
 
-absl::Status Unknown(absl::Span<const Flag> table, const std::string& name) {
+// `typed` has the dashes that were given, which may be all that is wrong.
+absl::Status Unknown(absl::Span<const Flag> table, const std::string& typed,
+                     const std::string& name) {
+  if (Find(table, name) != nullptr) {
+    return Fault(absl::StrFormat("unknown flag %s; did you mean %s?", typed, Dashed(name)));
+  }
   std::vector<std::string> names;
   for (const Flag& flag : table) {
     if (flag.name.size() > 1) names.push_back(flag.name);
   }
-  return Fault(absl::StrFormat("unknown flag %s%s", Dashed(name), DidYouMean(name, names, "--")));
+  return Fault(absl::StrFormat("unknown flag %s%s", typed, DidYouMean(name, names, "--")));
 }
 
 absl::Status CheckValue(const Flag& flag, const std::string& value) {
@@ -77,13 +82,16 @@ absl::StatusOr<Flags> Flags::Parse(absl::Span<const Flag> table,
     std::string name = argument.substr(begin, equals - begin);
     std::replace(name.begin(), name.end(), '-', '_');
     const Flag* flag = Find(table, name);
-    if (flag == nullptr || (begin == 1) != (name.size() == 1)) return Unknown(table, name);
+    if (flag == nullptr || (begin == 1) != (name.size() == 1)) {
+      return Unknown(table, argument.substr(0, equals), name);
+    }
 
     std::string value = "true";
     if (equals != std::string::npos) {
       value = argument.substr(equals + 1);
     } else if (!flag->value.empty()) {
-      if (++i == arguments.size()) {
+      // A flag in its place is no value: else --json --quiet writes a file named --quiet.
+      if (++i == arguments.size() || arguments[i].starts_with("--")) {
         return Fault(absl::StrFormat("%s needs a value: %s", Dashed(name), flag->value));
       }
       value = arguments[i];

@@ -86,9 +86,10 @@ TEST(Flags, ErrorsSayWhatWasMeant) {
   EXPECT_EQ(ErrorOf({"--strat=x"}), "unknown flag --strat; did you mean --strategy?");
   EXPECT_EQ(ErrorOf({"--zzz"}), "unknown flag --zzz");
   EXPECT_EQ(ErrorOf({"-x"}), "unknown flag -x");
-  EXPECT_EQ(ErrorOf({"-seed=1"}), "unknown flag --seed; did you mean --seed?");
-  EXPECT_EQ(ErrorOf({"--o=x"}), "unknown flag -o");
+  EXPECT_EQ(ErrorOf({"-seed=1"}), "unknown flag -seed; did you mean --seed?");
+  EXPECT_EQ(ErrorOf({"--o=x"}), "unknown flag --o; did you mean -o?");
   EXPECT_EQ(ErrorOf({"--seed"}), "--seed needs a value: N");
+  EXPECT_EQ(ErrorOf({"--seed", "--quiet"}), "--seed needs a value: N");
   EXPECT_EQ(ErrorOf({"--quiet=yes"}), "--quiet=yes: takes no value");
   EXPECT_EQ(ErrorOf({"--cost=tim"}), "--cost=tim: not one of length, time; did you mean time?");
 }
