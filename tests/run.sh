@@ -5,6 +5,7 @@
 #   tests/run.sh --quick    without the tests labelled slow
 #   tests/run.sh --asan     the suite under AddressSanitizer and UndefinedBehaviorSanitizer
 #   tests/run.sh --tsan     the suite's thread-safe parts under ThreadSanitizer
+#   tests/run.sh --fuzz[=SECONDS]   the fuzz targets, 60 seconds each
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -12,13 +13,16 @@ preset=release
 packages="test"
 target=(all)
 select=()
+fuzz_seconds=
 for argument in "$@"; do
   case "$argument" in
     --quick) select=(-LE slow) ;;
     --asan) preset=asan packages="sanitize" select=(-LE 'slow|no_sanitizer') ;;
     --tsan) preset=tsan packages="sanitize" target=(tsan_tests) select=(-L tsan) ;;
+    --fuzz) preset=fuzz packages="sanitize" target=(fuzz_targets) fuzz_seconds=60 ;;
+    --fuzz=*) preset=fuzz packages="sanitize" target=(fuzz_targets) fuzz_seconds=${argument#*=} ;;
     *)
-      sed -n '4,7s/^# *//p' "$0" >&2
+      sed -n '4,8s/^# *//p' "$0" >&2
       exit 2
       ;;
   esac
@@ -27,4 +31,7 @@ done
 deploy/install-packages.sh "$packages"
 cmake --preset "$preset" -DTRAVERSE_TESTS=ON
 cmake --build --preset "$preset" --target "${target[@]}"
+if [ -n "$fuzz_seconds" ]; then
+  exec tests/fuzz/run.sh "$fuzz_seconds"
+fi
 ctest --test-dir "build/$preset" -j "$(nproc)" --output-on-failure "${select[@]}"
