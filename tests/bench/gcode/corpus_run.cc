@@ -1,0 +1,110 @@
+#include "tests/bench/gcode/corpus_run.h"
+
+#include <ctime>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "client/formats/read_input.h"
+#include "client/gcode/gcode_job.h"
+#include "client/gcode/layer_meter.h"
+#include "client/gcode/outline.h"
+#include "client/gcode/parallel.h"
+#include "client/gcode/reader.h"
+#include "client/gcode/rewrite.h"
+#include "client/gcode/verify/verifier.h"
+
+namespace traverse::bench {
+namespace {
+
+// Rounding of sums of lengths.
+constexpr double kSlackMm = 1e-3;
+
+double CpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+double LinkSeconds(const GcodeFile& file, double total_seconds) {
+  double along_paths = 0;
+  for (const gcode::Block& block : file.blocks) {
+    const gcode::PartStart start{gcode::StateAt(file, block), file.states[block.state_in]};
+    const std::string_view text(file.text);
+    along_paths +=
+        gcode::Measure(file, text.substr(block.begin, block.end - block.begin), start).seconds;
+  }
+  return total_seconds - along_paths;
+}
+
+int64_t LongerLayers(const std::vector<gcode::PrintTotals>& before,
+                     const std::vector<gcode::PrintTotals>& after) {
+  int64_t longer = 0;
+  for (size_t i = 0; i < before.size() && i < after.size(); ++i) {
+    longer += after[i].travel_mm > before[i].travel_mm + kSlackMm ? 1 : 0;
+  }
+  return longer;
+}
+
+std::string NameOf(const std::string& path) {
+  const std::string name = std::filesystem::path(path).filename().string();
+  return name.substr(0, name.find('.'));
+}
+
+// What the text written amounts to by its own account, not the writer's.
+void MeasureResult(const GcodeFile& file, const std::string& text, CorpusRun& run) {
+  const auto verified = VerifyGcode(file.text, "before", text, "after");
+  if (!verified.ok()) run.fault = std::string(verified.message());
+  const auto again = ReadGcode(text, "after");
+  if (!again.ok()) {
+    run.fault = std::string(again.status().message());
+    return;
+  }
+  const int threads = gcode::DefaultThreads();
+  const std::vector<gcode::PrintTotals> before = gcode::MeasureLayers(file, threads);
+  const std::vector<gcode::PrintTotals> after = gcode::MeasureLayers(**again, threads);
+  run.before = gcode::Sum(before);
+  run.after = gcode::Sum(after);
+  run.layers_longer = LongerLayers(before, after);
+  if (before.size() != after.size()) run.fault = "another number of layers";
+  run.link_seconds = LinkSeconds(file, run.before.seconds);
+}
+
+}  // namespace
+
+double Saved(double before, double after) {
+  return before > 0 ? 100 * (before - after) / before : 0;
+}
+
+absl::StatusOr<CorpusRun> RunFile(const std::string& path, gcode::Policy policy,
+                                  const std::string& strategy, OptimizerClient& client) {
+  CorpusRun run;
+  run.file = NameOf(path);
+  run.policy = policy;
+  const double began = CpuSeconds();
+  GcodeOptions options;
+  options.policy = policy;
+  absl::StatusOr<InputJob> job = ReadInput(path, options);
+  if (!job.ok()) return job.status();
+  job->options.mutable_strategy()->set_name(strategy);
+  const absl::StatusOr<JobResult> result = client.Optimize(job->options, job->layers);
+  if (!result.ok()) return result.status();
+  const GcodeFile& file = *job->gcode;
+  run.slicer =
+      file.slicer.empty() ? "unknown" : file.slicer.substr(0, file.slicer.find_first_of(" _"));
+  std::vector<gcode::LayerOrder> orders;
+  for (size_t i = 0; i < result->layers.size(); ++i) {
+    orders.push_back(OrderOf(file, i, result->layers[i]));
+  }
+  RewriteOptions rewriting;
+  rewriting.policy = policy;
+  rewriting.threads = gcode::DefaultThreads();
+  const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(file, orders, rewriting);
+  run.cpu_seconds = CpuSeconds() - began;
+  if (!rewrite.ok()) {
+    run.fault = std::string(rewrite.status().message());
+    return run;
+  }
+  run.layers = rewrite->layers;
+  run.layers_changed = rewrite->layers_changed;
+  MeasureResult(file, rewrite->text, run);
+  return run;
+}
+
+}  // namespace traverse::bench
