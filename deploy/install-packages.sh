@@ -10,7 +10,7 @@ build=(
   g++ cmake ninja-build ccache pkg-config
   libgrpc++-dev libssl-dev openssl protobuf-compiler-grpc libprotobuf-dev protobuf-compiler
   libabsl-dev prometheus-cpp-dev libspdlog-dev nlohmann-json3-dev
-  zlib1g-dev liblzma-dev coinor-libcbc-dev coinor-libclp-dev
+  zlib1g-dev liblzma-dev libcairo2-dev coinor-libcbc-dev coinor-libclp-dev
 )
 test=(
   libgtest-dev libgmock-dev libbenchmark-dev xz-utils openssl

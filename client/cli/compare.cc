@@ -11,10 +11,12 @@
 #include "client/cli/service.h"
 #include "client/cli/strategy_spec.h"
 #include "client/cli/terminal.h"
+#include "client/cli/view_flags.h"
 #include "client/files/read_file.h"
 #include "client/files/write_file.h"
 #include "client/formats/read_input.h"
 #include "client/report/json.h"
+#include "client/view/job_scene.h"
 
 namespace traverse::cli {
 namespace {
@@ -30,6 +32,7 @@ struct Request {
   std::vector<StrategySpec> strategies;  // empty: all that the service has
   uint64_t repeats = 1;
   std::string json;
+  ViewFlags views;
   bool quiet = false;
 };
 
@@ -52,6 +55,9 @@ absl::StatusOr<Request> ParseRequest(const Flags& flags) {
   if (!repeats.ok()) return repeats.status();
   request.repeats = repeats->value_or(1);
   request.json = flags.Text("json");
+  auto views = ParseViewFlags(flags);
+  if (!views.ok()) return views.status();
+  request.views = *std::move(views);
   request.quiet = flags.Switch("quiet");
   return request;
 }
@@ -86,6 +92,25 @@ Outcome RunAll(Service& service, const Request& request, InputJob& job,
   return Done();
 }
 
+// Draws and describes the strategies' first runs, foremost the one with the shortest travel.
+Outcome ShowViews(Service& service, const Request& request, const InputJob& job,
+                  const std::vector<report::ComparedStrategy>& compared) {
+  const Expected<report::JobRun> given = RunAsGiven(service, request.job, job);
+  if (const Outcome* outcome = std::get_if<Outcome>(&given)) return *outcome;
+  std::vector<view::NamedRun> runs;
+  for (const report::ComparedStrategy& strategy : compared) {
+    runs.push_back({strategy.label, &strategy.runs.front()});
+  }
+  view::Scene scene = view::JobScene(job, std::get<report::JobRun>(given), runs);
+  for (size_t i = 1; i < scene.routes.size(); ++i) {
+    if (scene.routes[i].total.travel_mm < scene.routes[scene.shown].total.travel_mm) {
+      scene.shown = i;
+    }
+  }
+  const absl::Status status = WriteViews(request.views, scene);
+  return status.ok() ? Done() : InputFault(status);
+}
+
 Outcome RunCompare(const Flags& flags) {
   absl::StatusOr<Request> request = ParseRequest(flags);
   if (!request.ok()) return UsageFault(request.status());
@@ -98,6 +123,9 @@ Outcome RunCompare(const Flags& flags) {
   if (absl::Status status = ApplyJobFlags(request->job, *job); !status.ok()) {
     return UsageFault(status);
   }
+  if (absl::Status status = CheckViewLayer(request->views, *job); !status.ok()) {
+    return UsageFault(status);
+  }
   Outcome outcome = ListAll(service, request->strategies);
   if (outcome.code == kDone) outcome = service.Resolve(request->job, *job, request->strategies);
   std::vector<report::ComparedStrategy> compared;
@@ -107,6 +135,10 @@ Outcome RunCompare(const Flags& flags) {
   if (!request->json.empty()) {
     const absl::Status status = WriteWholeFile(request->json, report::CompareJson(*job, compared));
     if (!status.ok()) return InputFault(status);
+  }
+  if (request->views.any()) {
+    outcome = ShowViews(service, *request, *job, compared);
+    if (outcome.code != kDone) return outcome;
   }
   std::FILE* out = request->json == "-" ? stderr : stdout;
   Print(out, absl::StrFormat("%s: %d layers; %% are travel saved against that row\n%s",
@@ -128,7 +160,7 @@ Command CompareCommand() {
       {"json", "FILE", "writes all routes; - is standard output"},
       {"quiet", "", "no progress"},
   };
-  for (auto table : {JobFlagTable(), ServiceFlagTable()}) {
+  for (auto table : {ViewFlagTable(), JobFlagTable(), ServiceFlagTable()}) {
     command.flags.insert(command.flags.end(), table.begin(), table.end());
   }
   command.example = "traverse compare part.damat --layers=1-5 --strategies=greedy,ni2opt";

@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -9,12 +10,14 @@
 #include "client/cli/service.h"
 #include "client/cli/strategy_spec.h"
 #include "client/cli/terminal.h"
+#include "client/cli/view_flags.h"
 #include "client/files/read_file.h"
 #include "client/files/write_file.h"
 #include "client/formats/detect.h"
 #include "client/formats/read_input.h"
 #include "client/report/json.h"
 #include "client/report/summary.h"
+#include "client/view/job_scene.h"
 
 namespace traverse::cli {
 namespace {
@@ -24,6 +27,7 @@ struct Request {
   JobFlags job;
   std::vector<StrategySpec> strategy;  // one or, for the service's default, none
   std::string json;                    // empty: none
+  ViewFlags views;
   bool quiet = false;
 };
 
@@ -39,6 +43,9 @@ absl::StatusOr<Request> ParseRequest(const Flags& flags) {
     request.strategy = *std::move(specs);
   }
   request.json = flags.Text("json");
+  auto views = ParseViewFlags(flags);
+  if (!views.ok()) return views.status();
+  request.views = *std::move(views);
   request.quiet = flags.Switch("quiet");
   return request;
 }
@@ -53,17 +60,31 @@ absl::StatusOr<std::string> TargetOf(const Flags& flags, const InputJob& job) {
   return std::string();
 }
 
-// Writes the G-code; adds what it came to.
-absl::Status RewriteTo(const std::string& target, const InputJob& job, const report::JobRun& run,
-                       const GcodeOptions& options, std::string& summary) {
-  const absl::StatusOr<GcodeRewrite> rewrite = RewriteByRun(job, run, options);
-  if (!rewrite.ok()) {
-    return absl::FailedPreconditionError(
-        absl::StrFormat("%s: left as it is, for the new file would not print the same: %s",
-                        DisplayName(job.name), std::string(rewrite.status().message())));
+// The G-code of `run`. FailedPrecondition if it would not print the same.
+absl::StatusOr<GcodeRewrite> Rewritten(const InputJob& job, const report::JobRun& run,
+                                       const GcodeOptions& options) {
+  absl::StatusOr<GcodeRewrite> rewrite = RewriteByRun(job, run, options);
+  if (rewrite.ok()) return rewrite;
+  return absl::FailedPreconditionError(
+      absl::StrFormat("%s: left as it is, for the new file would not print the same: %s",
+                      DisplayName(job.name), std::string(rewrite.status().message())));
+}
+
+// Draws and describes what became of the job. `rewrite` is null if it is no G-code.
+Outcome ShowViews(Service& service, const Request& request, const InputJob& job,
+                  const report::JobRun& run, const GcodeRewrite* rewrite) {
+  const view::NamedRun named = {run.result.summary.strategy(), &run};
+  if (rewrite != nullptr) {
+    const absl::StatusOr<view::Scene> scene = view::GcodeScene(job, named, *rewrite);
+    if (!scene.ok()) return InputFault(scene.status());
+    const absl::Status status = WriteViews(request.views, *scene);
+    return status.ok() ? Done() : InputFault(status);
   }
-  summary += GcodeSummary(*rewrite);
-  return WriteGcode(*rewrite, job, target);
+  const Expected<report::JobRun> given = RunAsGiven(service, request.job, job);
+  if (const Outcome* outcome = std::get_if<Outcome>(&given)) return *outcome;
+  const absl::Status status =
+      WriteViews(request.views, view::JobScene(job, std::get<report::JobRun>(given), {named}));
+  return status.ok() ? Done() : InputFault(status);
 }
 
 Outcome RunOptimize(const Flags& flags) {
@@ -80,6 +101,9 @@ Outcome RunOptimize(const Flags& flags) {
   if (absl::Status status = ApplyJobFlags(request->job, *job); !status.ok()) {
     return UsageFault(status);
   }
+  if (absl::Status status = CheckViewLayer(request->views, *job); !status.ok()) {
+    return UsageFault(status);
+  }
   if (Outcome outcome = service.Resolve(request->job, *job, request->strategy);
       outcome.code != kDone) {
     return outcome;
@@ -89,13 +113,24 @@ Outcome RunOptimize(const Flags& flags) {
   if (Outcome* outcome = std::get_if<Outcome>(&ran)) return *outcome;
   const report::JobRun& run = std::get<report::JobRun>(ran);
 
+  std::optional<GcodeRewrite> rewrite;
+  if (job->gcode != nullptr && (!target->empty() || request->views.any())) {
+    absl::StatusOr<GcodeRewrite> made = Rewritten(*job, run, ParseGcodeOptions(flags));
+    if (!made.ok()) return InputFault(made.status());
+    rewrite = *std::move(made);
+  }
   if (!request->json.empty()) {
     const absl::Status status = WriteWholeFile(request->json, report::RoutesJson(*job, run));
     if (!status.ok()) return InputFault(status);
   }
+  if (request->views.any()) {
+    const Outcome outcome = ShowViews(service, *request, *job, run, rewrite ? &*rewrite : nullptr);
+    if (outcome.code != kDone) return outcome;
+  }
   std::string summary = report::OptimizeSummary(*job, run);
   if (!target->empty()) {
-    const absl::Status status = RewriteTo(*target, *job, run, ParseGcodeOptions(flags), summary);
+    summary += GcodeSummary(*rewrite);
+    const absl::Status status = WriteGcode(*rewrite, *job, *target);
     if (!status.ok()) return InputFault(status);
   }
   if (!request->quiet) {
@@ -118,7 +153,7 @@ Command OptimizeCommand() {
       {"json", "FILE", "writes the routes; - is standard output"},
       {"quiet", "", "no progress, no summary"},
   };
-  for (auto table : {JobFlagTable(), ServiceFlagTable()}) {
+  for (auto table : {ViewFlagTable(), JobFlagTable(), ServiceFlagTable()}) {
     command.flags.insert(command.flags.end(), table.begin(), table.end());
   }
   command.example = "traverse optimize part.gcode -o shorter.gcode --policy=balanced";

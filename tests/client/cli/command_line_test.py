@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TESTS = os.path.dirname(os.path.dirname(HERE))
@@ -106,6 +107,15 @@ class Usage(CommandLine):
              "traverse optimize: --threads is for the embedded service, not for --server"),
             (["optimize", SMALL, "-o", "x.damat"],
              "traverse optimize: -o is for G-code; the routes of DAMAT go to --json=FILE"),
+            (["optimize", SMALL, "--picture=x.gif"],
+             "traverse optimize: --picture=x.gif: ends neither in .svg nor in .png"),
+            (["compare", SMALL, "--picture=no/such/x.svg"],
+             "traverse compare: --picture=no/such/x.svg: there is no folder no/such"),
+            (["optimize", SMALL, "--picture=x.svg", "--layer=4"],
+             "traverse optimize: --layer=4: not one of the layers 1 to 3"),
+            (["compare", SMALL, "--picture=x.svg", "--layers=2-3", "--layer=1"],
+             "traverse compare: --layer=1: not one of the layers 2 to 3"),
+            (["optimize", SMALL, "--layer=1"], "traverse optimize: --layer is for --picture"),
             (["compare", SMALL, "--strategies=none,,greedy"],
              'traverse compare: "none,,greedy" names no strategy'),
             (["compare", SMALL, "--repeat=0"], "traverse compare: --repeat=0: not a whole number from 1 to 1000"),
@@ -175,6 +185,39 @@ class Usage(CommandLine):
 
     def test_version(self):
         self.assertRegex(self.succeed("--version"), r"^traverse \d+\.\d+\.\d+\n$")
+
+
+class Views(CommandLine):
+    def test_pictures_of_any_input_by_optimize_and_compare(self):
+        gcode = os.path.join(TESTS, os.pardir, "deploy", "samples", "clusters13.gcode")
+        for name, arguments in {
+            "damat.svg": ["optimize", SMALL],
+            "gcode.svg": ["optimize", gcode, "-o", self.path("out.gcode")],
+            "compare.svg": ["compare", gcode, "--strategies=greedy", "--layers=3-4"],
+        }.items():
+            self.run_traverse(*arguments, "--quiet", f"--picture={self.path(name)}")
+            picture = xml.etree.ElementTree.parse(self.path(name)).getroot()
+            self.assertTrue(picture.tag.endswith("}svg"))
+            captions = [text.text for text in picture.iter("{http://www.w3.org/2000/svg}text")]
+            self.assertRegex(captions[0], r"^(two_islands.damat|clusters13.gcode), layer \d of \d")
+            self.assertRegex(captions[1], "^before: travel ")
+            self.assertRegex(captions[2], "^after: travel ")
+        with open(gcode, encoding="utf-8") as file:
+            self.assertNotEqual(file.read(), read(self.path("out.gcode")))
+
+    def test_the_layer_is_counted_in_the_file(self):
+        picture = self.path("layer.svg")
+        self.succeed("optimize", SMALL, "--quiet", "--layers=2-3", "--layer=3", f"--picture={picture}")
+        self.assertIn(">two_islands.damat, layer 3 of 3", read(picture))
+
+    def test_a_picture_that_cannot_be_written_leaves_all_as_it_was(self):
+        folder = self.path("folder.png")
+        os.mkdir(folder)
+        sliced = self.put("part.gcode", read(os.path.join(TESTS, os.pardir, "deploy", "samples", "clusters13.gcode")))
+        before = read(sliced)
+        self.assertIn("folder.png: Is a directory", self.fail_with(INPUT, "optimize", sliced, "--quiet", f"--picture={folder}"))
+        self.assertEqual(read(sliced), before)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["folder.png", "part.gcode"])
 
 
 class BadInput(CommandLine):
