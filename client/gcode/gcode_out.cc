@@ -74,10 +74,16 @@ void GcodeOut::MoveLine(const LinkStep& step) {
 
 // The line of `step` as a move to `to`: the words that it has and that are not right are changed.
 void GcodeOut::EditedLine(const LinkStep& step, const Position& to) {
-  at.machine.feed = step.feed;
   at.machine.e += step.kind == StepKind::kSetE ? 0 : step.filament;
-  WordChange changes[4];
+  WordChange changes[5];
   size_t count = 0;
+  // Where the file sets the feed rate on a line before this one, that line may be left out here.
+  const bool moves =
+      step.kind == StepKind::kFilament || step.kind == StepKind::kLift || IsXyMotion(step.kind);
+  if (moves && (step.words & Command::Bit('F')) == 0 && step.feed != at.machine.feed) {
+    changes[count++] = {'F', step.feed, NumberStyle{}};
+  }
+  at.machine.feed = step.feed;
   const auto change = [&](char letter, Decimal value, Decimal in_file, NumberStyle style) {
     if ((step.words & Command::Bit(letter)) == 0 || value == in_file) return;
     changes[count++] = {letter, value, style};

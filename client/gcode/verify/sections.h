@@ -24,6 +24,12 @@ struct DigestSet {
     sum += digest;
     mixed += Mix(0x7261767472617665u, digest);
   }
+  DigestSet& operator+=(const DigestSet& other) {
+    count += other.count;
+    sum += other.sum;
+    mixed += other.mixed;
+    return *this;
+  }
   friend bool operator==(const DigestSet&, const DigestSet&) = default;
 };
 
@@ -31,7 +37,9 @@ struct Section {
   size_t first_line = 0;
   size_t last_line = 0;  // the one that ends it
   DigestSet deposits;
-  DigestSet notes;           // comments and M73
+  DigestSet notes;        // comments and M73, in lines of their own range:
+  size_t first_note = 0;  // behind a change of height they are counted from the last deposit on
+  size_t last_note = 0;
   Micro lowest = INT64_MAX;  // height of all moves in XY
 
   // How it ends: with a line, or with a change of height (digest 0), or with the text.
@@ -52,13 +60,13 @@ struct Sections {
 // Cuts a text; comments that begin with `ignored` are left out.
 Sections CutIntoSections(std::string_view text, std::string_view ignored);
 
-// The lines of one section, for a message: calls visit(line) for each of them.
+// The lines `first` to `last`, for a message: calls visit(line) for each of them.
 template <typename Visit>
-void ForEachLineOf(std::string_view text, const Section& section, Visit visit) {
+void ForEachLine(std::string_view text, size_t first, size_t last, Visit visit) {
   VerifyMachine machine(text);
   for (VerifyLine line; machine.Next(line);) {
-    if (line.number > section.last_line) return;
-    if (line.number >= section.first_line) visit(line);
+    if (line.number > last) return;
+    if (line.number >= first) visit(line);
   }
 }
 

@@ -33,12 +33,17 @@ std::optional<Odd> FirstOdd(const Side& a, const Side& b, size_t index, bool dep
     const bool note = line.role == LineRole::kComment || line.role == LineRole::kProgress;
     return deposits ? line.role == LineRole::kDeposit : note;
   };
+  const auto for_each_line = [index, deposits](const Side& side, const auto& visit) {
+    const Section& section = side.cut.sections[index];
+    ForEachLine(side.text, deposits ? section.first_line : section.first_note,
+                deposits ? section.last_line : section.last_note, visit);
+  };
   std::map<uint64_t, int64_t> known;
-  ForEachLineOf(b.text, b.cut.sections[index], [&](const VerifyLine& line) {
+  for_each_line(b, [&](const VerifyLine& line) {
     if (wanted(line)) ++known[line.digest];
   });
   std::optional<Odd> odd;
-  ForEachLineOf(a.text, a.cut.sections[index], [&](const VerifyLine& line) {
+  for_each_line(a, [&](const VerifyLine& line) {
     if (!wanted(line) || odd || --known[line.digest] >= 0) return;
     if (!deposits && line.text.substr(0, kOptimisedMark.size()) == kOptimisedMark) return;
     odd = Odd{line.number, std::string(line.text)};
@@ -48,20 +53,21 @@ std::optional<Odd> FirstOdd(const Side& a, const Side& b, size_t index, bool dep
 
 absl::Status MultisetDifference(const Side& original, const Side& optimised, size_t index,
                                 bool deposits) {
-  const Section& was = original.cut.sections[index];
-  const Section& is = optimised.cut.sections[index];
   const char* what = deposits ? "prints" : "has";
   const char* under = deposits ? " under the same conditions" : "";
+  const auto differ = [&](const Side& a, const Side& b, const Odd& odd) {
+    const Section& section = b.cut.sections[index];
+    return Difference(
+        absl::StrFormat("%s:%d: `%s` %s what lines %d to %d of %s do not%s", a.name, odd.number,
+                        odd.text, what, deposits ? section.first_line : section.first_note,
+                        deposits ? section.last_line : section.last_note, b.name, under));
+  };
   if (const std::optional<Odd> odd = FirstOdd(optimised, original, index, deposits)) {
-    return Difference(absl::StrFormat("%s:%d: `%s` %s what lines %d to %d of %s do not%s",
-                                      optimised.name, odd->number, odd->text, what, was.first_line,
-                                      was.last_line, original.name, under));
+    return differ(optimised, original, *odd);
   }
   const std::optional<Odd> odd = FirstOdd(original, optimised, index, deposits);
-  return Difference(absl::StrFormat("%s:%d: `%s` %s what lines %d to %d of %s do not%s",
-                                    original.name, odd ? odd->number : was.first_line,
-                                    odd ? odd->text : "", what, is.first_line, is.last_line,
-                                    optimised.name, under));
+  return differ(original, optimised,
+                odd.value_or(Odd{original.cut.sections[index].first_line, ""}));
 }
 
 absl::Status CompareEnds(const Side& original, const Side& optimised, size_t index) {

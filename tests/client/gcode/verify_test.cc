@@ -111,6 +111,18 @@ TEST(VerifyGcode, FencesKeepTheirOrderAndCommentsTheirSection) {
               HasSubstr("`; note`"));
 }
 
+// The first path of a layer may bring its comment along, whichever it was in the original.
+TEST(VerifyGcode, CommentsAtAChangeOfHeightBelongToWhatComesAfterIt) {
+  const std::string down = "M83\nG1 F600 X1 E1\nG0 X2\nG1 X3 E1\n";
+  const std::string a = down + "G1 Z1\nG0 X5\nG1 X6 E1\n; note\nG0 X8\nG1 X9 E1\n";
+  const std::string b = down + "G1 Z1\n; note\nG0 X9\nG1 X8 E1\nG0 X6\nG1 X5 E1\n";
+
+  EXPECT_EQ(Difference(a, b), "");
+  EXPECT_EQ(Difference(b, a), "");
+  EXPECT_THAT(Difference(b, With(With(b, "; note\n", ""), "G0 X2\n", "; note\nG0 X2\n")),
+              HasSubstr("b:3: `; note` has what lines 2 to 4 of a do not"));
+}
+
 TEST(VerifyGcode, NothingIsPrintedWhileRetracted) {
   const std::string a = "M83\nG1 F600 X1 E1\nG1 E-1\nG0 X5\nG1 E1\nG1 X6 E1\n";
 
