@@ -82,8 +82,8 @@ absl::StatusOr<std::vector<std::string>> ParseAddresses(const std::string& text)
   return addresses;
 }
 
-absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectTo(
-    const std::vector<std::string>& addresses) {
+absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectTo(const std::vector<std::string>& addresses,
+                                                         const ConnectOptions& options) {
   std::string target;
   if (addresses.size() == 1) {
     target = absl::StrFormat("dns:///%s", addresses.front());
@@ -100,6 +100,7 @@ absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectTo(
   arguments.SetServiceConfigJSON(kServiceConfig);
   arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, kConnectTimeoutMs);
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, kFirstReconnectMs);
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, options.own_connection ? 1 : 0);
   arguments.SetMaxReceiveMessageSize(-1);  // an answer is as large as the layer that was sent
   return grpc::CreateCustomChannel(target, grpc::InsecureChannelCredentials(), arguments);
 }

@@ -34,18 +34,23 @@ std::string GeneralHelp() {
   return out;
 }
 
-std::string CommandHelp(const Command& command) {
-  std::string out = absl::StrFormat("%s\n\nusage: traverse %s%s%s\n", command.summary, command.name,
-                                    Operands(command), command.flags.empty() ? "" : " [flags]\n");
+std::string FlagHelp(absl::Span<const Flag> flags) {
   constexpr int kWidth = 27;
-  for (size_t i = 0; i < command.flags.size(); ++i) {
-    const Flag& flag = command.flags[i];
+  std::string out;
+  for (size_t i = 0; i < flags.size(); ++i) {
+    const Flag& flag = flags[i];
     std::string usage = FlagUsage(flag);
-    if (!flag.joint_help.empty()) usage += " " + FlagUsage(command.flags[++i]);
+    if (!flag.joint_help.empty()) usage += " " + FlagUsage(flags[++i]);
     absl::StrAppendFormat(&out, "  %-*s  %s\n", kWidth, usage,
                           flag.joint_help.empty() ? flag.help : flag.joint_help);
   }
-  return out + absl::StrFormat("\nexample: %s\n", command.example);
+  return out;
+}
+
+std::string CommandHelp(const Command& command) {
+  return absl::StrFormat("%s\n\nusage: traverse %s%s%s\n%s\nexample: %s\n", command.summary,
+                         command.name, Operands(command), command.flags.empty() ? "" : " [flags]\n",
+                         FlagHelp(command.flags), command.example);
 }
 
 }  // namespace traverse::cli

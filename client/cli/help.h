@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "absl/types/span.h"
 #include "client/cli/command.h"
 
 namespace traverse::cli {
@@ -14,6 +15,9 @@ std::string GeneralHelp();
 
 // What `traverse COMMAND --help` prints: usage, flags, an example.
 std::string CommandHelp(const Command& command);
+
+// A line for each flag, or for two that share their help.
+std::string FlagHelp(absl::Span<const Flag> flags);
 
 // "--seed=N", "-o OUTPUT", "--quiet".
 std::string FlagUsage(const Flag& flag);
