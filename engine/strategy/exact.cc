@@ -2,14 +2,19 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/cost/route_cost.h"
 #include "engine/exact/stage_model.h"
 #include "engine/exact/stage_proof.h"
+#include "engine/framework/island_layout.h"
+#include "engine/strategy/framework_milp.h"
+#include "engine/strategy/greedy.h"
 #include "engine/strategy/ni2opt.h"
 #include "engine/strategy/stop.h"
 
@@ -71,23 +76,113 @@ class Exact : public Strategy {
   const std::unique_ptr<Strategy> heuristic_;  // of the first route
 };
 
+// The thesis's framework with its mixed integer programmes.
+class ExactFramework : public Strategy {
+ public:
+  ExactFramework(const FrameworkOptions& options, const MilpOptions& milp,
+                 double time_limit_seconds)
+      : options_(options),
+        milp_(milp),
+        time_limit_seconds_(time_limit_seconds),
+        greedy_(MakeDefault(GreedyEntry())),
+        heuristic_(MakeDefault(Ni2optEntry())) {}
+
+  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+    const std::optional<ClassicalLayer> layer = AsClassicalLayer(*problem.plan);
+    if (!layer) return heuristic_->Solve(problem, budget);
+    Solution solution = greedy_->Solve(problem, budget);
+    if (budget.ExhaustedNow()) return solution;
+    MilpMethod method(milp_, time_limit_seconds_);
+    FrameworkResult found =
+        SearchFramework(problem, *layer, solution.route, options_, method, budget);
+    const double cost = RouteCost(problem, found.route);
+    if (cost < RouteCost(problem, solution.route)) solution.route = std::move(found.route);
+    solution.statistics["framework_cost"] = cost;
+    Describe("contours", method.contours(), solution.statistics);
+    Describe("rasters", method.rasters(), solution.statistics);
+    budget.ExhaustedNow();
+    solution.stop =
+        StopOr(budget, method.timed_out() ? StopReason::kTimeLimit : StopReason::kLocalOptimum);
+    return solution;
+  }
+
+  // As the thesis has it, every layer starts where the one before ended.
+  bool trivial() const override { return true; }
+
+ private:
+  static void Describe(const std::string& step, const MilpRoute& programme,
+                       std::map<std::string, double>& statistics) {
+    if (programme.columns == 0) return;
+    statistics[step + "_columns"] = programme.columns;
+    statistics[step + "_rows"] = programme.rows;
+    statistics[step + "_nodes"] = programme.nodes;
+    statistics[step + "_value"] = programme.value;
+    if (programme.bound) statistics[step + "_bound"] = *programme.bound;
+  }
+
+  const FrameworkOptions options_;
+  const MilpOptions milp_;
+  const double time_limit_seconds_;
+  const std::unique_ptr<Strategy> greedy_;     // which no result is worse than
+  const std::unique_ptr<Strategy> heuristic_;  // for plans that the framework does not know
+};
+
+std::vector<OptionSpec> Options() {
+  using Type = OptionSpec::Type;
+  return {
+      OptionSpec{"model",
+                 Type::kChoice,
+                 "integrated",
+                 0,
+                 0,
+                 {"integrated", "framework"},
+                 "The whole layer at once, proven; or the four steps of the thesis with its mixed "
+                 "integer programmes (in sequential deposition; ni2opt else)."},
+      OptionSpec{"time_limit",
+                 Type::kDouble,
+                 "7200",
+                 0,
+                 1e6,
+                 {},
+                 "Longest time in s: for one layer, or for each programme of the framework."},
+      OptionSpec{"representation",
+                 Type::kChoice,
+                 "bbcp",
+                 0,
+                 0,
+                 {"sp", "nrp", "bbcp"},
+                 "Framework: what stands for a contour in the preliminary sequence."},
+      OptionSpec{"gap",
+                 Type::kDouble,
+                 "0.15",
+                 0,
+                 1,
+                 {},
+                 "Framework: relative gap at which a programme counts as solved."},
+      OptionSpec{"strengthened",
+                 Type::kBool,
+                 "false",
+                 0,
+                 0,
+                 {},
+                 "Framework: one redundant row more for each position of a contour."}};
+}
+
+std::unique_ptr<Strategy> MakeExact(const StrategyOptions& values) {
+  const double time_limit = values.Double("time_limit");
+  if (values.Choice("model") == "integrated") return std::make_unique<Exact>(time_limit);
+  FrameworkOptions options;
+  options.representation = RepresentationNamed(values.Choice("representation"));
+  return std::make_unique<ExactFramework>(
+      options, MilpOptions{values.Double("gap"), values.Bool("strengthened")}, time_limit);
+}
+
 }  // namespace
 
 StrategyEntry ExactEntry() {
   return StrategyEntry{
-      "exact",
-      "Routes proven optimal; at the time limit the best one found and a lower bound.",
-      true,
-      {OptionSpec{"time_limit",
-                  OptionSpec::Type::kDouble,
-                  "7200",
-                  0,
-                  1e6,
-                  {},
-                  "Longest time for one layer, in s."}},
-      [](const StrategyOptions& options) -> std::unique_ptr<Strategy> {
-        return std::make_unique<Exact>(options.Double("time_limit"));
-      }};
+      "exact", "Routes proven optimal; at the time limit the best one found and a lower bound.",
+      true, Options(), MakeExact};
 }
 
 }  // namespace traverse

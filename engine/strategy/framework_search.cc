@@ -46,14 +46,32 @@ LayerProblem SubProblem(const LayerProblem& problem, const Plan& plan, uint64_t 
   return sub;
 }
 
+class TabuMethod : public SequenceMethod {
+ public:
+  explicit TabuMethod(const TabuOptions& options) : options_(options) {}
+
+  std::vector<TabuElite> ArrangeContours(const LayerProblem& problem, const LinkRules& rules,
+                                         const Route& start, Budget& budget) override {
+    return TabuSearch(problem, rules, start, options_, budget).elite;
+  }
+  std::vector<TabuElite> ArrangeRasters(const LayerProblem& problem, const LinkRules& rules,
+                                        const Route& start, Budget& budget) override {
+    return TabuSearch(problem, rules, start, options_, budget).elite;
+  }
+
+ private:
+  const TabuOptions& options_;
+};
+
 // What the steps share.
 class FrameworkSearch {
  public:
   FrameworkSearch(const LayerProblem& problem, const ClassicalLayer& layer,
-                  const FrameworkOptions& options, Budget& budget)
+                  const FrameworkOptions& options, SequenceMethod& method, Budget& budget)
       : problem_(problem),
         plan_(*problem.plan),
         options_(options),
+        method_(method),
         budget_(budget),
         layout_(IslandsOf(plan_)),
         analysis_(AnalyzeIslands(layout_, layer.contours)) {
@@ -107,9 +125,10 @@ class FrameworkSearch {
     rules.linked = &neighborhood_;
     rules.penalty_mm = options_.neighbor_penalty_mm;
     const LayerProblem sub = SubProblem(problem_, reduced, 2);
-    const TabuResult found = TabuSearch(sub, rules, GivenRoute(reduced), options_.tabu, budget_);
-    result_.penalized_contour_links = found.elite.front().penalized;
-    MakeFeasible(sub, rules, found.elite);
+    const std::vector<TabuElite> found =
+        method_.ArrangeContours(sub, rules, GivenRoute(reduced), budget_);
+    result_.penalized_contour_links = found.front().penalized;
+    MakeFeasible(sub, rules, found);
   }
 
   // Step 3 for the elite of step 2 and for sequences on the way from the others to the best one,
@@ -173,9 +192,10 @@ class FrameworkSearch {
     LayerProblem sub = SubProblem(problem_, grouped, 4);
     sub.start = RouteEnd(plan_, result_.route, problem_.start);
     sub.finish = problem_.finish;
-    const TabuResult found = TabuSearch(sub, rules, GivenRoute(grouped), options_.tabu, budget_);
-    result_.penalized_raster_links = found.elite.front().penalized;
-    for (const Visit& visit : found.elite.front().route) {
+    const std::vector<TabuElite> found =
+        method_.ArrangeRasters(sub, rules, GivenRoute(grouped), budget_);
+    result_.penalized_raster_links = found.front().penalized;
+    for (const Visit& visit : found.front().route) {
       result_.route.push_back(Visit{path_of[static_cast<size_t>(visit.path)], visit.entry});
     }
   }
@@ -201,6 +221,7 @@ class FrameworkSearch {
   const LayerProblem& problem_;
   const Plan& plan_;
   const FrameworkOptions& options_;
+  SequenceMethod& method_;
   Budget& budget_;
   IslandLayout layout_;
   IslandAnalysis analysis_;
@@ -210,10 +231,22 @@ class FrameworkSearch {
 
 }  // namespace
 
+Representation RepresentationNamed(const std::string& name) {
+  if (name == "sp") return Representation::kSpacedPoints;
+  return name == "nrp" ? Representation::kNearRasterPoints : Representation::kBoxCenter;
+}
+
+FrameworkResult SearchFramework(const LayerProblem& problem, const ClassicalLayer& layer,
+                                const Route& start, const FrameworkOptions& options,
+                                SequenceMethod& method, Budget& budget) {
+  return FrameworkSearch(problem, layer, options, method, budget).Run(layer, start);
+}
+
 FrameworkResult SearchFramework(const LayerProblem& problem, const ClassicalLayer& layer,
                                 const Route& start, const FrameworkOptions& options,
                                 Budget& budget) {
-  return FrameworkSearch(problem, layer, options, budget).Run(layer, start);
+  TabuMethod method(options.tabu);
+  return SearchFramework(problem, layer, start, options, method, budget);
 }
 
 Route SearchAnyPlan(const LayerProblem& problem, const Route& start,

@@ -1,10 +1,11 @@
-// The thesis's framework with tabu search: a layer in sequential deposition, in four steps.
+// The thesis's framework: a layer in sequential deposition, in four steps.
 //
-// Source: thesis 3.2 (p. 58-67) and 4.2 (p. 82-84); SPEC 3.5.
+// Source: thesis 3.2 (p. 58-67), 4.1 and 4.2 (p. 72-84); SPEC 3.5.
 
 #ifndef TRAVERSE_ENGINE_STRATEGY_FRAMEWORK_SEARCH_H_
 #define TRAVERSE_ENGINE_STRATEGY_FRAMEWORK_SEARCH_H_
 
+#include <string>
 #include <vector>
 
 #include "engine/base/budget.h"
@@ -16,6 +17,9 @@
 #include "engine/model/route.h"
 
 namespace traverse {
+
+// "sp", "nrp" or "bbcp", as options name them.
+Representation RepresentationNamed(const std::string& name);
 
 struct FrameworkOptions {
   Representation representation = Representation::kBoxCenter;
@@ -43,9 +47,29 @@ struct FrameworkResult {
   int penalized_raster_links = 0;   // of the raster route
 };
 
+// How steps 2 and 4 find a sequence: tabu search, or mixed integer programmes.
+class SequenceMethod {
+ public:
+  virtual ~SequenceMethod() = default;
+
+  // The best sequences found, best first, at least one: routes of `problem`, whose moves should
+  // keep to `rules`. Contours: any_order over contours of the points that stand for them. Rasters:
+  // any_order over islands of any_order over their rasters. The search starts from `start`.
+  virtual std::vector<TabuElite> ArrangeContours(const LayerProblem& problem,
+                                                 const LinkRules& rules, const Route& start,
+                                                 Budget& budget) = 0;
+  virtual std::vector<TabuElite> ArrangeRasters(const LayerProblem& problem, const LinkRules& rules,
+                                                const Route& start, Budget& budget) = 0;
+};
+
 // Steps 1 to 4 on `layer`, which is AsClassicalLayer of the problem's plan. The search for the
 // contours starts from the order in `start`, so does that for the rasters. Always a valid route;
-// deterministic by problem.seed unless the budget ends it.
+// deterministic by problem.seed unless the budget ends it. `options.tabu` is not looked at.
+FrameworkResult SearchFramework(const LayerProblem& problem, const ClassicalLayer& layer,
+                                const Route& start, const FrameworkOptions& options,
+                                SequenceMethod& method, Budget& budget);
+
+// The same with tabu search.
 FrameworkResult SearchFramework(const LayerProblem& problem, const ClassicalLayer& layer,
                                 const Route& start, const FrameworkOptions& options,
                                 Budget& budget);

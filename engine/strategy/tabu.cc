@@ -197,10 +197,7 @@ std::vector<OptionSpec> Options() {
 
 std::unique_ptr<Strategy> MakeTabu(const StrategyOptions& values) {
   FrameworkOptions options;
-  const std::string& representation = values.Choice("representation");
-  options.representation = representation == "sp"    ? Representation::kSpacedPoints
-                           : representation == "nrp" ? Representation::kNearRasterPoints
-                                                     : Representation::kBoxCenter;
+  options.representation = RepresentationNamed(values.Choice("representation"));
   options.spacing_mm = values.Double("spacing_mm");
   options.neighborhood.neighbors = static_cast<int>(values.Int("neighbors"));
   options.neighborhood.first_radius_mm = values.Double("first_radius_mm");

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <thread>
 
 #include "absl/strings/str_cat.h"
@@ -23,6 +25,11 @@ using testing::OwnedProblem;
 using testing::RandomProblem;
 
 std::unique_ptr<Strategy> MakeExact() { return *MakeStrategy("exact", {}); }
+
+std::unique_ptr<Strategy> MakeFramework(std::map<std::string, std::string> options) {
+  options["model"] = "framework";
+  return *MakeStrategy("exact", options);
+}
 
 TEST(Exact, IsOptimalWhereItSaysSo) {
   const std::unique_ptr<Strategy> exact = MakeExact();
@@ -108,6 +115,75 @@ TEST(Exact, ResumesFromARouteItIsGiven) {
 
     EXPECT_LE(RouteCost(owned.problem, solution.route), RouteCost(owned.problem, best) + 1e-9);
   }
+}
+
+TEST(ExactFramework, FindsValidRoutesNeverWorseThanGreedy) {
+  const std::unique_ptr<Strategy> greedy = *MakeStrategy("greedy", {});
+  for (const char* representation : {"sp", "nrp", "bbcp"}) {
+    const std::unique_ptr<Strategy> framework = MakeFramework({{"representation", representation}});
+    for (uint64_t seed = 1; seed <= 8; ++seed) {
+      SCOPED_TRACE(absl::StrCat(representation, ", seed ", seed));
+      const OwnedProblem owned =
+          RandomProblem(seed, {.max_paths = 7, .max_vertices = 4, .special = seed % 2 == 0});
+      Budget budget;
+
+      const Solution solution = framework->Solve(owned.problem, budget);
+
+      ASSERT_OK(ValidateRoute(owned.plan(), solution.route));
+      EXPECT_FALSE(solution.lower_bound.has_value());  // it would be one of the reduced points
+      EXPECT_LE(RouteCost(owned.problem, solution.route),
+                RouteCost(owned.problem, greedy->Solve(owned.problem, budget).route) + 1e-9);
+    }
+  }
+}
+
+// The gaps that the programmes are left with are told.
+TEST(ExactFramework, TellsOfItsProgrammes) {
+  const OwnedProblem owned(SequentialPlan(testing::SquareGrid(3, 2)));
+  Budget budget;
+
+  const Solution solution = MakeFramework({{"gap", "0.15"}})->Solve(owned.problem, budget);
+
+  EXPECT_EQ(solution.stop, StopReason::kLocalOptimum);
+  for (const std::string step : {"contours", "rasters"}) {
+    SCOPED_TRACE(step);
+    const double value = solution.statistics.at(step + "_value");
+    const double bound = solution.statistics.at(step + "_bound");
+    EXPECT_LE(bound, value + 1e-6);
+    EXPECT_GE(bound, 0.85 * value - 1e-6);
+    EXPECT_GT(solution.statistics.at(step + "_columns"), 0);
+  }
+}
+
+TEST(ExactFramework, KeepsItsTimeLimit) {
+  const OwnedProblem owned(SequentialPlan(testing::SquareGrid(5, 5)));
+  Budget budget;
+
+  const Stopwatch watch;
+  const Solution solution = MakeFramework({{"time_limit", "0.3"}})->Solve(owned.problem, budget);
+
+  EXPECT_LT(watch.Seconds(), 5.0);
+  EXPECT_EQ(solution.stop, StopReason::kTimeLimit);
+  EXPECT_OK(ValidateRoute(owned.plan(), solution.route));
+}
+
+TEST(ExactFramework, IsCancelledSoon) {
+  const OwnedProblem owned(SequentialPlan(testing::SquareGrid(5, 5)));
+  CancelToken cancel;
+  Budget budget(&cancel);
+  std::optional<Stopwatch> since_cancel;
+  std::thread canceller([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    since_cancel.emplace();
+    cancel.Cancel();
+  });
+
+  const Solution solution = MakeFramework({})->Solve(owned.problem, budget);
+  canceller.join();
+
+  EXPECT_LT(since_cancel->Seconds(), 1.0);
+  EXPECT_EQ(solution.stop, StopReason::kCancelled);
+  EXPECT_OK(ValidateRoute(owned.plan(), solution.route));
 }
 
 }  // namespace
