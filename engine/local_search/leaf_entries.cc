@@ -1,85 +1,12 @@
 #include "engine/local_search/leaf_entries.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <limits>
 
 #include "engine/geometry/bounding_box.h"
 
 namespace traverse {
-namespace {
-
-// Cost of a length in single precision, without branches. Same formulas as TravelCost.
-struct FloatLength {
-  float operator()(float length_mm) const { return length_mm; }
-};
-
-struct FloatTime {
-  explicit FloatTime(const CostSpec& spec)
-      : per_mm(static_cast<float>(1 / spec.speed_mm_s)),
-        per_accel(static_cast<float>(spec.accel_mm_s2 > 0 ? 1 / spec.accel_mm_s2 : 0)),
-        full_speed_mm(static_cast<float>(
-            spec.accel_mm_s2 > 0 ? spec.speed_mm_s * spec.speed_mm_s / spec.accel_mm_s2 : 0)),
-        retraction(static_cast<float>(spec.retraction_seconds)),
-        threshold_mm(static_cast<float>(spec.retraction_threshold_mm)) {}
-
-  // Speeding up and slowing down as far as the speed is reached, and the rest at full speed.
-  float operator()(float length_mm) const {
-    const float ramps_mm = length_mm < full_speed_mm ? length_mm : full_speed_mm;
-    const float retracted = length_mm > threshold_mm ? retraction : 0.0f;
-    return 2 * std::sqrt(ramps_mm * per_accel) + (length_mm - ramps_mm) * per_mm + retracted;
-  }
-
-  float per_mm, per_accel, full_speed_mm, retraction, threshold_mm;
-};
-
-struct FloatPoint {
-  float x, y;
-};
-
-// Entries are told apart in the low bits of their costs, so that the least one is found without a
-// branch: the bits of floats that are not negative are ordered as the floats.
-constexpr int kBlock = 64;
-
-// The key of the cheapest of entries 0 to n - 1: its cost, with its index in the low bits. Written
-// for the compiler to use vector instructions: four times the speed. REQUIRES: n <= kBlock.
-template <bool kHasNext, typename Cost>
-int32_t LeastKey(const float* x, const float* y, int n, FloatPoint from, FloatPoint to, Cost cost) {
-  int32_t least = std::numeric_limits<int32_t>::max();
-  for (int i = 0; i < n; ++i) {
-    const float ax = x[i] - from.x;
-    const float ay = y[i] - from.y;
-    float value = cost(std::sqrt(ax * ax + ay * ay));
-    if constexpr (kHasNext) {
-      const float bx = x[i] - to.x;
-      const float by = y[i] - to.y;
-      value += cost(std::sqrt(bx * bx + by * by));
-    }
-    const int32_t key = (std::bit_cast<int32_t>(value) & ~(kBlock - 1)) | i;
-    least = key < least ? key : least;
-  }
-  return least;
-}
-
-template <bool kHasNext, typename Cost>
-int BestOf(const float* x, const float* y, int n, FloatPoint from, FloatPoint to, Cost cost) {
-  int best = 0;
-  int32_t least = std::numeric_limits<int32_t>::max();
-  for (int begin = 0; begin < n; begin += kBlock) {
-    const int32_t key =
-        LeastKey<kHasNext>(x + begin, y + begin, std::min(n - begin, kBlock), from, to, cost);
-    if ((key | (kBlock - 1)) >= (least | (kBlock - 1))) continue;
-    least = key;
-    best = begin + (key & (kBlock - 1));
-  }
-  return best;
-}
-
-}  // namespace
-
 LeafEntries::LeafEntries(const LayerProblem& problem) {
+  if (problem.cost.kind == CostSpec::Kind::kTime) time_.emplace(problem.cost);
   BoundingBox box;
   box.Add(problem.start);
   for (const Path& path : problem.plan->paths) box.Add(BoundingBox(path.points));
@@ -142,33 +69,26 @@ int LeafEntries::Best(int leaf, Point from, const Point* to, const TravelCost& c
   const int n = count(leaf);
   const int e = first(leaf);
   if (n == 1) return e;
-  if (!open(leaf)) return BestOfContour(leaf, from, to, cost);
-  const auto total = [&](int entry) {
-    return cost(from, enter(entry)) + (to != nullptr ? cost(exit(entry), *to) : 0);
-  };
-  return total(e + 1) < total(e) ? e + 1 : e;
+  if (open(leaf)) {
+    const auto total = [&](int entry) {
+      return cost(from, enter(entry)) + (to != nullptr ? cost(exit(entry), *to) : 0);
+    };
+    return total(e + 1) < total(e) ? e + 1 : e;
+  }
+  const FloatEntries floats = Floats(leaf);
+  const int best = to != nullptr ? BestBetween(floats, Relative(from), Relative(*to), time())
+                                 : BestFrom(floats, Relative(from), time());
+  return e + std::min(best, n - 1);
 }
 
-int LeafEntries::BestOfContour(int leaf, Point from, const Point* to,
-                               const TravelCost& cost) const {
-  const int e = first(leaf);
-  const int n = (count(leaf) + kLanes - 1) / kLanes * kLanes;
-  const float* x = x_.data() + e;
-  const float* y = y_.data() + e;
-  const auto relative = [this](Point p) {
-    return FloatPoint{static_cast<float>(p.x - origin_.x), static_cast<float>(p.y - origin_.y)};
-  };
-  const FloatPoint a = relative(from);
-  const FloatPoint b = to != nullptr ? relative(*to) : a;
-  int best;
-  if (cost.is_length()) {
-    best = to != nullptr ? BestOf<true>(x, y, n, a, b, FloatLength())
-                         : BestOf<false>(x, y, n, a, b, FloatLength());
-  } else {
-    const FloatTime time(cost.spec());
-    best = to != nullptr ? BestOf<true>(x, y, n, a, b, time) : BestOf<false>(x, y, n, a, b, time);
-  }
-  return e + std::min(best, count(leaf) - 1);
+void LeafEntries::FillTails(int leaf, const Point* to, std::vector<float>& tails) const {
+  tails.assign(Index(PaddedCount(leaf)), 0);
+  if (to != nullptr) FillTail(Floats(leaf), Relative(*to), time(), tails.data());
+}
+
+int LeafEntries::BestWithTails(int leaf, Point from, const std::vector<float>& tails) const {
+  const int best = BestWithTail(Floats(leaf), Relative(from), tails.data(), time());
+  return first(leaf) + std::min(best, count(leaf) - 1);
 }
 
 }  // namespace traverse

@@ -4,9 +4,11 @@
 #define TRAVERSE_ENGINE_LOCAL_SEARCH_LEAF_ENTRIES_H_
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "engine/cost/travel_cost.h"
+#include "engine/local_search/entry_kernels.h"
 #include "engine/model/layer_problem.h"
 #include "engine/model/route.h"
 
@@ -45,13 +47,27 @@ class LeafEntries {
   // `to`; null: nothing comes after it. Of entries that cost the same up to 1e-5, any.
   int Best(int leaf, Point from, const Point* to, const TravelCost& cost) const;
 
+  // The same in two steps, for many `from` and one `to`, of a contour: tails[i] is set to the cost
+  // from entry i on.
+  void FillTails(int leaf, const Point* to, std::vector<float>& tails) const;
+  int BestWithTails(int leaf, Point from, const std::vector<float>& tails) const;
+
+  // Entries of a contour with those that fill up the last vector.
+  int PaddedCount(int leaf) const { return (count(leaf) + kLanes - 1) / kLanes * kLanes; }
+
  private:
   static size_t Index(int i) { return static_cast<size_t>(i); }
 
   void AddPath(const Path& path);
   void AddEntry(Point enter, Point exit, int visit_entry);
   void CloseLeaf(int count, bool open);
-  int BestOfContour(int leaf, Point from, const Point* to, const TravelCost& cost) const;
+  FloatEntries Floats(int leaf) const {
+    return {x_.data() + first(leaf), y_.data() + first(leaf), PaddedCount(leaf)};
+  }
+  FloatPoint Relative(Point p) const {
+    return {static_cast<float>(p.x - origin_.x), static_cast<float>(p.y - origin_.y)};
+  }
+  const FloatTime* time() const { return time_ ? &*time_ : nullptr; }
 
   std::vector<int> first_;        // [leaf]
   std::vector<int> count_;        // [leaf]
@@ -60,6 +76,8 @@ class LeafEntries {
   std::vector<Point> enter_;      // [entry]
   std::vector<Point> exit_;       // [entry]
   std::vector<int> visit_entry_;  // [entry] Visit::entry
+
+  std::optional<FloatTime> time_;  // unset: the cost is a length
 
   // [entry] enter_ less origin_, in single precision: enough to tell which entry is best.
   Point origin_;

@@ -9,7 +9,7 @@ namespace traverse {
 namespace {
 
 // More pairs of entries than this are not tried one by one.
-constexpr int kMostPairs = 1024;
+constexpr int kMostPairs = 1 << 15;
 
 }  // namespace
 
@@ -164,23 +164,30 @@ double LocalSearch::ChoosePair(int position) {
   const TravelCost& cost = state_.cost();
   const int after = state_.leaf_at(position + 2);
   const Point from = state_.out(state_.leaf_at(position - 1));
+  const Point to = state_.in(after);
+  const bool open_end = after == state_.tree().finish() && !state_.has_finish();
+  // Over a contour there is no shorter way than the straight one. Over an open path, whose own
+  // length is free, there is, and by several moves without a retraction a quicker one.
+  const bool detours_cost = !entries.open(b) && cost.is_length() && !open_end;
+  if (!entries.open(b)) entries.FillTails(b, open_end ? nullptr : &to, tails_);
   const double old_cost =
       state_.StepCost(position - 1) + state_.StepCost(position) + state_.StepCost(position + 1);
   double least = old_cost - kImprovementTolerance;
   int best_a = -1;
   int best_b = -1;
   for (int i = entries.first(a); i < entries.first(a) + entries.count(a); ++i) {
+    const Point out = entries.exit(i);
     const double reached = cost(from, entries.enter(i));
-    if (reached >= least) continue;
-    for (int j = entries.first(b); j < entries.first(b) + entries.count(b); ++j) {
-      const double between = reached + cost(entries.exit(i), entries.enter(j));
-      if (between >= least) continue;
-      const double total = between + state_.MoveCost(entries.exit(j), after, state_.in(after));
-      if (total >= least) continue;
-      least = total;
-      best_a = i;
-      best_b = j;
-    }
+    const double straight = detours_cost ? Distance(out, to) : 0;
+    if (reached + straight >= least) continue;
+    const int j = entries.open(b) ? entries.Best(b, out, open_end ? nullptr : &to, cost)
+                                  : entries.BestWithTails(b, out, tails_);
+    const double total =
+        reached + cost(out, entries.enter(j)) + state_.MoveCost(entries.exit(j), after, to);
+    if (total >= least) continue;
+    least = total;
+    best_a = i;
+    best_b = j;
   }
   if (best_a < 0) return 0;
   state_.SetEntry(a, best_a);

@@ -63,8 +63,8 @@ class LocalSearch {
   size_t head_ = 0;
   size_t size_ = 0;
 
-  std::vector<int> touched_;     // by the moves on trial
-  std::vector<double> reached_;  // scratch of ChoosePair
+  std::vector<int> touched_;  // by the moves on trial
+  std::vector<float> tails_;  // scratch of ChoosePair
 };
 
 }  // namespace traverse

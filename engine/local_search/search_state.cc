@@ -1,6 +1,7 @@
 #include "engine/local_search/search_state.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace traverse {
 
@@ -13,6 +14,7 @@ SearchState::SearchState(const LayerProblem& problem, const OrderTree& tree,
       cost_(problem.cost),
       has_finish_(problem.finish.has_value()),
       order_(Index(tree.leaf_count())),
+      steps_(order_.size()),
       position_(Index(tree.item_count())),
       entry_(order_.size()),
       in_(order_.size()),
@@ -23,12 +25,13 @@ void SearchState::Load(const Route& route) {
   const auto append = [&](int leaf, int entry) {
     order_[k] = leaf;
     position_[Index(leaf)] = static_cast<int>(k++);
-    DoSetEntry(leaf, entry);
+    Enter(leaf, entry);
   };
   append(tree_.start(), entries_.first(tree_.start()));
   for (const Visit& visit : route) append(visit.path, entries_.EntryOf(visit));
   append(tree_.finish(), entries_.first(tree_.finish()));
   PlaceInnerNodes(0, last_position());
+  for (int i = 0; i < last_position(); ++i) MeasureStep(i);
   log_.clear();
 }
 
@@ -168,21 +171,42 @@ void SearchState::Reverse(int first, int last) {
 
 void SearchState::DoReverse(int first, int last) {
   std::reverse(order_.begin() + first, order_.begin() + last + 1);
+  std::reverse(steps_.begin() + first, steps_.begin() + last);
   for (int i = first; i <= last; ++i) {
     const int leaf = leaf_at(i);
     position_[Index(leaf)] = i;
-    if (entries_.open(leaf)) DoSetEntry(leaf, entries_.Reversed(leaf, entry(leaf)));
+    if (!entries_.open(leaf)) continue;
+    entry_[Index(leaf)] = entries_.Reversed(leaf, entry(leaf));
+    std::swap(in_[Index(leaf)], out_[Index(leaf)]);
   }
+  MeasureStep(first - 1);
+  MeasureStep(last);
   if (tree_.nested()) PlaceInnerNodes(first, last);
 }
 
 void SearchState::DoExchange(int first, int middle, int last) {
   std::rotate(order_.begin() + first, order_.begin() + middle, order_.begin() + last + 1);
+  std::rotate(steps_.begin() + first, steps_.begin() + middle, steps_.begin() + last + 1);
   for (int i = first; i <= last; ++i) position_[Index(leaf_at(i))] = i;
+  MeasureStep(first - 1);
+  MeasureStep(first + last - middle);
+  MeasureStep(last);
   if (tree_.nested()) PlaceInnerNodes(first, last);
 }
 
 void SearchState::DoSetEntry(int leaf, int entry) {
+  Enter(leaf, entry);
+  const int at = position(leaf);
+  MeasureStep(at - 1);
+  MeasureStep(at);
+}
+
+void SearchState::MeasureStep(int position) {
+  const int next = leaf_at(position + 1);
+  steps_[Index(position)] = MoveCost(out(leaf_at(position)), next, in(next));
+}
+
+void SearchState::Enter(int leaf, int entry) {
   entry_[Index(leaf)] = entry;
   in_[Index(leaf)] = entries_.enter(entry);
   out_[Index(leaf)] = entries_.exit(entry);

@@ -74,13 +74,16 @@ ThreeOpt::End ThreeOpt::OtherEnd(const Cut& cut, const End& end) const {
   return EndAt(state_.leaf_at(end.right ? cut.position : cut.position + 1), !end.right);
 }
 
+// The side of a cut at which the end of an open path that `group` is can be.
+bool ThreeOpt::RightOf(int group, int leaf) const {
+  const bool backwards = state_.entry(leaf) != state_.entries().first(leaf);
+  return (group % 2 == 1) == backwards;
+}
+
 // Whether `group` is what its leaf shows at this side of the cut: any vertex of a contour, but only
 // one end of an open path.
 bool ThreeOpt::IsEnd(int group, const End& end) const {
-  const LeafEntries& entries = state_.entries();
-  if (!entries.open(end.leaf)) return true;
-  const bool backwards = state_.entry(end.leaf) != entries.first(end.leaf);
-  return group % 2 == (end.right == backwards ? 1 : 0);
+  return !state_.entries().open(end.leaf) || RightOf(group, end.leaf) == end.right;
 }
 
 absl::Span<const Neighbor> ThreeOpt::NeighborsOf(const End& end, int breadth) const {
@@ -90,95 +93,126 @@ absl::Span<const Neighbor> ThreeOpt::NeighborsOf(const End& end, int breadth) co
   return list.subspan(0, std::min(list.size(), static_cast<size_t>(breadth)));
 }
 
-double ThreeOpt::Cost(const End& a, const End& b) const {
-  const int finish = state_.tree().finish();
-  if ((a.leaf == finish || b.leaf == finish) && !state_.has_finish()) return 0;
-  return state_.cost()(a.point, b.point);
+template <typename Cost>
+double ThreeOpt::Join(const End& a, const End& b, const Cost& cost) const {
+  return IsFree(a.leaf) || IsFree(b.leaf) ? 0 : cost(a.point, b.point);
+}
+
+// Neighbors from here on cost `limit` or more; negative if all do.
+double ThreeOpt::LimitMm(double limit) const {
+  return limit <= 0 ? -1 : state_.cost().LongestWithin(limit);
 }
 
 void ThreeOpt::Search(int t1, bool forward, double debt) {
+  if (state_.cost().is_length()) {
+    SearchFirst(t1, forward, debt, [](Point a, Point b) { return Distance(a, b); });
+  } else {
+    SearchFirst(t1, forward, debt, state_.cost());
+  }
+}
+
+template <typename Cost>
+void ThreeOpt::SearchFirst(int t1, bool forward, double debt, const Cost& cost) {
   found_.clear();
   open_ = Open();
   t1_ = EndAt(t1, !forward);
   cut1_ = CutAt(t1_);
   t2_ = OtherEnd(cut1_, t1_);
   gain0_ = cut1_.cost - debt;
+  const double limit_mm = LimitMm(gain0_ + options_.first_slack * Radius(t2_.leaf));
   for (const Neighbor& neighbor : NeighborsOf(t2_, options_.first_breadth)) {
-    const double nearest = state_.cost().OfLength(neighbor.distance_mm);
-    if (nearest >= gain0_ + options_.first_slack * Radius(t2_.leaf)) break;
+    if (neighbor.distance_mm >= limit_mm) break;
     const int leaf = EndGroups::LeafOf(neighbor.group);
     for (const bool right : {false, true}) {
       const End t3 = EndAt(leaf, right);
-      if (IsEnd(neighbor.group, t3)) SearchSecond(t3);
+      if (IsEnd(neighbor.group, t3)) SearchSecond(t3, cost);
     }
   }
   if (t2_.leaf >= state_.tree().path_count()) return;
-  SearchSecond(EndAt(state_.tree().start(), false));
-  SearchSecond(EndAt(state_.tree().finish(), true));
+  SearchSecond(EndAt(state_.tree().start(), false), cost);
+  SearchSecond(EndAt(state_.tree().finish(), true), cost);
 }
 
 // t2 is joined with t3.
-void ThreeOpt::SearchSecond(const End& t3) {
+template <typename Cost>
+void ThreeOpt::SearchSecond(const End& t3, const Cost& cost) {
   cut2_ = CutAt(t3);
   if (cut2_.position == cut1_.position) return;
-  const double gain = gain0_ - Cost(t2_, t3);
+  const double gain = gain0_ - Join(t2_, t3, cost);
   if (gain + options_.first_slack * (Radius(t2_.leaf) + Radius(t3.leaf)) <= 0) return;
   t3_ = t3;
   t4_ = OtherEnd(cut2_, t3);
   gain1_ = gain + cut2_.cost;
-  if (t2_.right == t3_.right) {
-    const auto [left, right] = std::minmax(cut1_.position, cut2_.position);
-    if (right > left + 1) {
-      Offer({Kind::kReverse, left + 1, left + 1, right}, Cost(t4_, t1_) - gain1_, gain1_, t4_);
-    }
+  radii_ = Radius(t1_.leaf) + Radius(t2_.leaf) + Radius(t3_.leaf) + Radius(t4_.leaf);
+  const auto [left, right] = std::minmax(cut1_.position, cut2_.position);
+  if (t2_.right == t3_.right && right > left + 1) {
+    const double delta = Join(t4_, t1_, cost) - gain1_;
+    Offer({Kind::kReverse, left + 1, left + 1, right}, delta, gain1_, t4_.leaf);
   }
+  SetKinds(left, right);
+  const double limit_mm = LimitMm(gain1_ + options_.second_slack * Radius(t4_.leaf));
   for (const Neighbor& neighbor : NeighborsOf(t4_, options_.second_breadth)) {
-    const double nearest = state_.cost().OfLength(neighbor.distance_mm);
-    if (nearest >= gain1_ + options_.second_slack * Radius(t4_.leaf)) break;
+    if (neighbor.distance_mm >= limit_mm) break;
     const int leaf = EndGroups::LeafOf(neighbor.group);
-    for (const bool right : {false, true}) {
-      const End t5 = EndAt(leaf, right);
-      if (IsEnd(neighbor.group, t5)) SearchThird(t5);
+    if (state_.entries().open(leaf)) {
+      const bool is_right = RightOf(neighbor.group, leaf);
+      SearchThird(leaf, is_right, gain1_ - cost(t4_.point, EndAt(leaf, is_right).point), cost);
+    } else {
+      const double gain2 = gain1_ - cost(t4_.point, state_.in(leaf));
+      SearchThird(leaf, false, gain2, cost);
+      SearchThird(leaf, true, gain2, cost);
     }
   }
   if (t4_.leaf >= state_.tree().path_count()) return;
   for (const End& t5 : {EndAt(state_.tree().start(), false), EndAt(state_.tree().finish(), true)}) {
-    if (gain1_ - Cost(t4_, t5) > 0) SearchThird(t5);
+    const double gain2 = gain1_ - Join(t4_, t5, cost);
+    if (gain2 > 0) SearchThird(t5.leaf, t5.right, gain2, cost);
   }
 }
 
-// t4 is joined with t5.
-void ThreeOpt::SearchThird(const End& t5) {
-  const int at1 = cut1_.position;
-  const int at2 = cut2_.position;
-  const int at3 = state_.position(t5.leaf) - (t5.right ? 1 : 0);
-  if (at3 == at1 || at3 == at2) return;
-  const size_t rank1 = static_cast<size_t>((at1 > at2) + (at1 > at3));
-  const size_t rank2 = static_cast<size_t>((at2 > at1) + (at2 > at3));
-  const size_t right = static_cast<size_t>(t1_.right + 2 * t3_.right + 4 * t5.right);
-  const int kind = kMoveTable[rank1][rank2][right];
-  if (kind == kNoMove) return;
-  const Cut cut3{at3, state_.StepCost(at3)};
-  const End t6 = OtherEnd(cut3, t5);
-  const double gain = gain1_ - Cost(t4_, t5) + cut3.cost;
-  const int first = std::min({at1, at2, at3});
-  const int last = std::max({at1, at2, at3});
-  const int middle = at1 + at2 + at3 - first - last;
-  Offer({static_cast<Kind>(kind), first + 1, middle + 1, last}, Cost(t6, t1_) - gain, gain, t6);
+// Notes what a third cut makes of the first two, which are at `left` and `right`.
+void ThreeOpt::SetKinds(int left, int right) {
+  left_ = left;
+  right_ = right;
+  for (size_t place = 0; place < 3; ++place) {  // of the third cut among the three
+    const bool first_is_left = cut1_.position == left;
+    const size_t rank1 = (first_is_left ? 0 : 1) + (place <= (first_is_left ? 0 : 1));
+    const size_t rank2 = 3 - rank1 - place;
+    const size_t sides = static_cast<size_t>(t1_.right + 2 * t3_.right);
+    kinds_[0][place] = kMoveTable[rank1][rank2][sides];
+    kinds_[1][place] = kMoveTable[rank1][rank2][sides + 4];
+  }
 }
 
-void ThreeOpt::Offer(const SegmentMove& move, double delta, double gain, const End& last_end) {
+// t4 is joined with t5, an end of `leaf`; `gain2` is what is left of the gain then.
+template <typename Cost>
+void ThreeOpt::SearchThird(int leaf, bool is_right, double gain2, const Cost& cost) {
+  const int at = state_.position(leaf) - is_right;
+  if (at == left_ || at == right_) return;
+  const size_t place = static_cast<size_t>((at > left_) + (at > right_));
+  const int kind = kinds_[is_right][place];
+  if (kind == kNoMove) return;
+  const double gain = gain2 + state_.StepCost(at);
+  // Joining t6 with t1 costs at least nothing.
+  if (gain <= open_.gain && -gain >= worst_kept()) return;
+  const int t6 = state_.leaf_at(is_right ? at : at + 1);
+  const Point t6_point = is_right ? state_.out(t6) : state_.in(t6);
+  const double delta = IsFree(t6) || IsFree(t1_.leaf) ? -gain : cost(t6_point, t1_.point) - gain;
+  const int first = place == 0 ? at : left_;
+  const int middle = place == 0 ? left_ : place == 1 ? at : right_;
+  const int last = place == 2 ? at : right_;
+  Offer({static_cast<Kind>(kind), first + 1, middle + 1, last}, delta, gain, t6);
+}
+
+void ThreeOpt::Offer(const SegmentMove& move, double delta, double gain, int last_leaf) {
   const bool continues = gain > open_.gain;
-  bool keeps = found_.size() < options_.keep || delta < found_.back().delta;
+  bool keeps = delta < worst_kept();
   if (keeps && delta > -kImprovementTolerance) {
-    double radii = Radius(t1_.leaf) + Radius(t2_.leaf) + Radius(t3_.leaf) + Radius(t4_.leaf);
-    if (move.segment_count() == 2) {
-      radii += Radius(last_end.leaf);
-    }
+    const double radii = move.segment_count() == 2 ? radii_ + Radius(last_leaf) : radii_;
     keeps = delta < options_.slack * radii;
   }
   if ((!continues && !keeps) || !state_.Allows(move)) return;
-  if (continues) open_ = Open{move, delta, gain, last_end.leaf};
+  if (continues) open_ = Open{move, delta, gain, last_leaf};
   if (!keeps) return;
   if (found_.size() == options_.keep) found_.pop_back();
   const auto place = std::upper_bound(found_.begin(), found_.end(), delta,

@@ -12,6 +12,7 @@
 #define TRAVERSE_ENGINE_LOCAL_SEARCH_THREE_OPT_H_
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "absl/types/span.h"
@@ -23,9 +24,9 @@
 namespace traverse {
 
 struct ThreeOptOptions {
-  int first_breadth = 12;  // neighbors looked at for t3
-  int second_breadth = 8;  // and for t5
-  size_t keep = 8;         // most moves found by one search
+  int first_breadth = 8;   // neighbors looked at for t3
+  int second_breadth = 5;  // and for t5
+  size_t keep = 4;         // most moves found by one search
 
   // Shares of the radii of the contours at the cuts by which a move may seem to fall short.
   double slack = 0.6;         // as a whole
@@ -76,14 +77,32 @@ class ThreeOpt {
   End EndAt(int leaf, bool right) const;
   End OtherEnd(const Cut& cut, const End& end) const;
   Cut CutAt(const End& end) const;
+  bool RightOf(int group, int leaf) const;
   bool IsEnd(int group, const End& end) const;
   absl::Span<const NeighborLists::Neighbor> NeighborsOf(const End& end, int breadth) const;
-  double Cost(const End& a, const End& b) const;
+  double LimitMm(double limit) const;
   double Radius(int leaf) const { return state_.entries().radius(leaf); }
 
-  void SearchSecond(const End& t3);
-  void SearchThird(const End& t5);
-  void Offer(const SegmentMove& move, double delta, double gain, const End& last_end);
+  // Whether the move to `leaf` costs nothing: a finish that may be anywhere.
+  bool IsFree(int leaf) const { return leaf == state_.tree().finish() && !state_.has_finish(); }
+
+  // Deltas from here on are not kept.
+  double worst_kept() const {
+    return found_.size() < options_.keep ? std::numeric_limits<double>::infinity()
+                                         : found_.back().delta;
+  }
+
+  // Cost: callable with two points, for the inner loops to have a length without a branch.
+  template <typename Cost>
+  double Join(const End& a, const End& b, const Cost& cost) const;
+  template <typename Cost>
+  void SearchFirst(int t1, bool forward, double debt, const Cost& cost);
+  template <typename Cost>
+  void SearchSecond(const End& t3, const Cost& cost);
+  template <typename Cost>
+  void SearchThird(int leaf, bool is_right, double gain2, const Cost& cost);
+  void SetKinds(int left, int right);
+  void Offer(const SegmentMove& move, double delta, double gain, int last_leaf);
 
   const SearchState& state_;
   const NeighborLists& neighbors_;
@@ -94,6 +113,10 @@ class ThreeOpt {
   Cut cut1_{}, cut2_{};
   double gain0_ = 0;  // edges cut less edges added so far
   double gain1_ = 0;
+  double radii_ = 0;  // of the contours at the first two cuts
+  int left_ = 0;      // the first two cuts, in the order of the route
+  int right_ = 0;
+  int kinds_[2][3] = {};  // the move by the third cut's place and the side of t5; see SetKinds
 
   std::vector<Found> found_;
   Open open_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "tests/support/random_plan.h"
@@ -37,6 +38,7 @@ TEST(LeafEntries, BestCostsNoMoreThanAnyOtherEntry) {
     const LeafEntries entries(owned.problem);
     const TravelCost cost(owned.problem.cost);
     Rng rng(seed);
+    std::vector<float> tails;
     for (int leaf = 0; leaf < entries.leaf_count(); ++leaf) {
       const Point from{rng.Unit() * 100, rng.Unit() * 100};
       const Point next{rng.Unit() * 100, rng.Unit() * 100};
@@ -54,6 +56,13 @@ TEST(LeafEntries, BestCostsNoMoreThanAnyOtherEntry) {
         EXPECT_GE(best, entries.first(leaf));
         EXPECT_LT(best, entries.first(leaf) + entries.count(leaf));
         EXPECT_NEAR(total(best), least, 1e-4 * (1 + least));
+        if (entries.open(leaf)) continue;
+
+        entries.FillTails(leaf, to, tails);
+        const int with_tails = entries.BestWithTails(leaf, from, tails);
+
+        EXPECT_LT(with_tails, entries.first(leaf) + entries.count(leaf));
+        EXPECT_NEAR(total(with_tails), least, 1e-4 * (1 + least));
       }
     }
   }

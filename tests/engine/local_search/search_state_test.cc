@@ -92,6 +92,7 @@ TEST(SearchState, UndoRestoresEverything) {
       s.state.UndoTo(marks[i]);
 
       ASSERT_EQ(s.state.Unload(), routes[i]);
+      ASSERT_NEAR(s.state.TotalCost(), RouteCost(s.owned.problem, routes[i]), 1e-9);
       for (int p = 1; p < s.state.last_position(); ++p) {
         ASSERT_EQ(s.state.position(s.state.leaf_at(p)), p);
       }
