@@ -186,7 +186,9 @@ void JobRun::Pump(bool feed) {
     writing_ = std::move(out_.front());
     out_.pop_front();
     message = std::move(writing_->message);
-    more_follows = !out_.empty() || engine_done_;
+    // gRPC holds a first message back, with the headers, as long as it is told that more follows.
+    more_follows = begun_writing_ && (!out_.empty() || engine_done_);
+    begun_writing_ = true;
   }
   const bool ended = engine_done_ && (abort_ || closed_);
   const bool finish = !finished_ && !writing_ && ended && holds_ == 0;

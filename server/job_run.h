@@ -155,6 +155,7 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
   uint64_t next_out_ = 0;               // build order: whose turn it is
   std::deque<Outgoing> out_;
   std::optional<Outgoing> writing_;  // its message was moved out
+  bool begun_writing_ = false;
   bool room_wanted_ = false;
 
   int holds_ = 0;

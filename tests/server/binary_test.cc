@@ -144,6 +144,23 @@ TEST(Binary, SigtermLetsTheJobUnderWayFinish) {
   EXPECT_EQ(server.process().Wait(), 0);
 }
 
+TEST(Binary, StreamWithoutLayersIsAnsweredAtOnce) {
+  ServerProcess server;
+  const auto stub = Connect(server);
+  grpc::ClientContext context;
+  // Far below --keepalive_time, whose pings push out what the transport holds back.
+  context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(10));
+
+  const auto stream = stub->Optimize(&context);
+  stream->WritesDone();
+  v1::OptimizeResponse response;
+
+  EXPECT_TRUE(stream->Read(&response));
+  EXPECT_TRUE(response.has_summary());
+  EXPECT_FALSE(stream->Read(&response));
+  EXPECT_TRUE(stream->Finish().ok());
+}
+
 TEST(Binary, SecondSigtermEndsAtOnce) {
   ServerProcess server({"--drain_timeout=1h"});
   const auto stub = Connect(server);
