@@ -5,6 +5,7 @@ server that refuses and breaks off as a script says.
 """
 
 import concurrent.futures
+import contextlib
 import json
 import os
 import pathlib
@@ -14,6 +15,7 @@ import tempfile
 import threading
 import unittest
 
+import certificates
 import jobs
 import support
 
@@ -191,3 +193,41 @@ class ExampleCases:
         self.assert_done(done)
         self.assertEqual([1, 0, 1], [request.options.cleaning.layers_since_cleaning for request in server.requests])
         self.assertEqual([0, -7, 3], [request.options.start.x_mm for request in server.requests])
+
+    def locked_servers(self, stack):
+        """Two servers that want a certificate and a token; the flags that open them."""
+        files = certificates.Certificates(self.folder.name)
+        flags = [f"--tls_certificate={files.path('tls.crt')}", f"--tls_key={files.path('tls.key')}",
+                 f"--tls_client_ca={files.path('ca.crt')}", f"--token_file={files.path('tokens')}"]
+        servers = [stack.enter_context(support.Server(*flags)) for _ in range(2)]
+        return servers, {"ca": files.path("ca.crt"), "certificate": files.path("farm.crt"), "key": files.path("farm.key"),
+                         "token_file": files.path("token"), "server_name": "traverse"}
+
+    @staticmethod
+    def words(keys):
+        return [f"--{name}={path}" for name, path in keys.items()]
+
+    def test_a_certificate_and_a_token_open_every_server(self):
+        with contextlib.ExitStack() as stack:
+            servers, keys = self.locked_servers(stack)
+            for first, second in (servers, servers[::-1]):
+                self.assert_done(self.submit(first.address, second.address, flags=self.words(keys)))
+
+    def test_who_is_not_let_in_is_told_so(self):
+        with contextlib.ExitStack() as stack:
+            servers, keys = self.locked_servers(stack)
+            wrong = pathlib.Path(self.folder.name) / "wrong"
+            wrong.write_text("another token")
+            bad_token = self.submit(servers[0].address, flags=self.words({**keys, "token_file": wrong}))
+            del keys["certificate"], keys["key"]
+            no_certificate = self.submit(servers[0].address, deadline=1, flags=self.words(keys))
+            plaintext = self.submit(servers[0].address, deadline=1)
+
+        self.assertEqual([3, 3, 3], [bad_token.returncode, no_certificate.returncode, plaintext.returncode])
+        self.assertIn("UNAUTHENTICATED", bad_token.stderr)
+
+    def test_keys_that_are_missing_or_would_be_shown_to_anybody_are_exit_code_2(self):
+        for flags in (["--ca=/nowhere/ca.crt"], ["--token_file=/nowhere/token"], ["--ca=x", "--key=y"],
+                      ["--server=a:1,b:1", f"--ca={self.job}"]):
+            with self.subTest(flags):
+                self.assertEqual(2, self.submit("127.0.0.1:1", flags=flags).returncode)

@@ -13,7 +13,8 @@ class Fleet:
 
     SIZE = 3
 
-    def __init__(self, *flags):
+    def __init__(self, *flags, bind="proto h2"):
+        self.bind = bind
         self.flags = ("--threads=1", "--max_jobs_per_caller=256", *flags)
         self.servers = []
         self._stack = contextlib.ExitStack()
@@ -23,7 +24,8 @@ class Fleet:
             self.servers = [stack.enter_context(support.Server(*self.flags)) for _ in range(self.SIZE)]
             port, stats = support.free_port(), support.free_port()
             self.address, self.stats = f"127.0.0.1:{port}", f"127.0.0.1:{stats}"
-            environment = {**os.environ, "TRAVERSE_LISTEN": self.address, "TRAVERSE_STATS": self.stats}
+            environment = {**os.environ, "TRAVERSE_LISTEN": self.address, "TRAVERSE_STATS": self.stats,
+                           "TRAVERSE_BIND": self.bind}
             for index, server in enumerate(self.servers, start=1):
                 environment[f"TRAVERSE_SERVER_{index}"] = server.address
                 environment[f"TRAVERSE_METRICS_{index}"] = str(server.metrics_port)

@@ -2,14 +2,18 @@
 """Three servers behind the load balancer: jobs are shared evenly, and a rollout fails none."""
 
 import sys
+import tempfile
 import threading
 import time
 import unittest
 
+import certificates
 import support
 import example_cases
 import fleet
 import jobs
+
+yaml = support.module("yaml", "python3-yaml")
 
 
 class FleetCases(unittest.TestCase):
@@ -46,6 +50,29 @@ class FleetCases(unittest.TestCase):
         self.assertEqual(120, sum(counts))
         for count in counts:
             self.assertAlmostEqual(40, count, delta=4)
+
+    def test_the_balancer_lets_in_over_tls_who_has_a_certificate(self):
+        import grpc
+        from traverse_client import JobFailed, TraverseClient
+        with tempfile.TemporaryDirectory() as folder:
+            files = certificates.Certificates(folder)
+            bind = yaml.safe_load((support.DEPLOY / "compose.tls.yaml").read_text())["services"]["balancer"]["environment"]["TRAVERSE_BIND"]
+            bind = bind.replace("/etc/traverse/tls/server.pem", str(files.path("server.pem")))
+            bind = bind.replace("/etc/traverse/tls/clients.pem", str(files.path("ca.crt")))
+            authority, key, certificate = (files.path(name).read_bytes() for name in ("ca.crt", "farm.key", "farm.crt"))
+            with fleet.Fleet(bind=bind) as servers:
+                known = TraverseClient([servers.address], grpc.ssl_channel_credentials(authority, key, certificate))
+                self.addCleanup(known.close)
+                for _ in range(6):
+                    self.submit(known)
+                counts = [server.sum_of("traverse_jobs_total", code="OK") for server in servers.servers]
+                for credentials in (None, grpc.ssl_channel_credentials(authority)):
+                    unknown = TraverseClient([servers.address], credentials)
+                    self.addCleanup(unknown.close)
+                    with self.assertRaises(JobFailed):
+                        self.submit(unknown, deadline=2)
+
+        self.assertEqual([2, 2, 2], counts)
 
     def test_a_rolling_restart_under_load_fails_no_job(self):
         with fleet.Fleet("--drain_timeout=20s") as servers:

@@ -77,6 +77,36 @@ class Objects(unittest.TestCase):
 
         self.assertEqual(groups, rule, "run deploy/monitoring/prometheus-rule.sh")
 
+    def test_the_encrypted_overlay_mounts_what_its_flags_and_probes_name(self):
+        found = objects("encrypted")
+        pod = found["Deployment", "traverse"]["spec"]["template"]["spec"]
+        container = pod["containers"][0]
+        folders = {mount["mountPath"]: mount["name"] for mount in container["volumeMounts"]}
+        secrets = {volume["name"]: volume["secret"]["secretName"] for volume in pod["volumes"] if "secret" in volume}
+        named = re.findall(r"=(/etc/traverse/\w+)/", " ".join(container["args"] + container["readinessProbe"]["exec"]["command"]))
+
+        self.assertEqual({"/etc/traverse/flags", "/etc/traverse/tls", "/etc/traverse/tokens"}, set(named))
+        self.assertLessEqual(set(named), set(folders))
+        self.assertEqual({"tls": "traverse-tls", "tokens": "traverse-tokens"}, secrets)
+        self.assertGreater(container["args"].index("--insecure=false"), container["args"].index("--flagfile=/etc/traverse/flags/server.flags"))
+        certificate = found["Certificate", "traverse"]["spec"]
+        asked = next(word for word in container["readinessProbe"]["exec"]["command"] if "server_name" in word).split("=")[1]
+        self.assertEqual(secrets["tls"], certificate["secretName"])
+        self.assertIn(asked, certificate["dnsNames"])
+        self.assertIn("client auth", certificate["usages"])
+        for service in ("traverse", "traverse-headless"):
+            self.assertIn(f"{service}.{found['Deployment', 'traverse']['metadata']['namespace']}.svc", certificate["dnsNames"])
+
+    def test_plaintext_stays_behind_the_network_policy(self):
+        for overlay in OVERLAYS:
+            found = objects(overlay)
+            policy = found["NetworkPolicy", "traverse"]["spec"]
+            self.assertEqual({"Ingress", "Egress"}, set(policy["policyTypes"]))
+            self.assertEqual([], policy.get("egress") or [])
+            jobs = [rule for rule in policy["ingress"] if {"protocol": "TCP", "port": "grpc"} in rule["ports"]]
+            self.assertEqual(1, len(jobs))
+            self.assertTrue(all(peer["podSelector"]["matchLabels"] for peer in jobs[0]["from"]))
+
     def test_the_image_is_of_this_version(self):
         version = re.search(r"project\(traverse VERSION (\S+)", (support.SOURCE / "CMakeLists.txt").read_text())[1]
         for overlay in OVERLAYS:
@@ -97,8 +127,11 @@ class Schemas(unittest.TestCase):
 
             for overlay in OVERLAYS:
                 support.run("node", work / "validate.mjs", input=render(overlay), cwd=work)
-            for wrong in (("minReplicas", "minReplica"), ("containerPort", "containrPort"), ("cpu: ", "cpu: 1, x: ")):
-                text = render("production").replace(*wrong)
+            for overlay, *wrong in (("production", "minReplicas", "minReplica"), ("production", "containerPort", "containrPort"),
+                                    ("production", "cpu: ", "cpu: 1, x: "), ("encrypted", "renewBefore", "renewBeforehand"),
+                                    ("encrypted", "secretName: traverse-tls\n    ", "secretNam: traverse-tls\n    ")):
+                text = render(overlay).replace(*wrong)
+                self.assertNotEqual(render(overlay), text)
                 done = support.run("node", work / "validate.mjs", ok=False, input=text, cwd=work)
                 self.assertNotEqual(0, done.returncode, wrong)
 

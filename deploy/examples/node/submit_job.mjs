@@ -5,14 +5,16 @@
 //   traverse convert part.damat -o job.pb          (or .gcode)
 //   node submit_job.mjs job.pb --server=10.0.0.1:50051,10.0.0.2:50051 --deadline=30 --routes=routes.jsonl
 //
-// Exit codes: 0 done; 1 the job is at fault; 2 usage; 3 no server did it in time.
+// Exit codes: 0 done; 1 the job is at fault; 2 usage; 3 no server did it in time, or none lets us in.
 import { closeSync, openSync, readFileSync, writeSync } from "node:fs";
 import { parseArgs } from "node:util";
 import grpc from "@grpc/grpc-js";
 import { decodeJob, JobFailed, RETRIED, TraverseClient } from "./traverse_client.mjs";
 
-const USAGE = "usage: submit_job.mjs JOB.pb [--server=HOST:PORT,...] [--deadline=SECONDS] [--strategy=NAME] [--ca=FILE] [--routes=FILE]";
-const OURS = [...RETRIED, grpc.status.DEADLINE_EXCEEDED];
+const USAGE = `usage: submit_job.mjs JOB.pb [--server=HOST:PORT,...] [--deadline=SECONDS] [--strategy=NAME] [--routes=FILE]
+  [--ca=FILE: use TLS; servers are of this authority] [--server_name=NAME in their certificate, if not the address]
+  [--certificate=FILE --key=FILE: shown to servers that want it] [--token_file=FILE: the bearer token alone]`;
+const OURS = [...RETRIED, grpc.status.DEADLINE_EXCEEDED, grpc.status.UNAUTHENTICATED, grpc.status.PERMISSION_DENIED];
 
 function readArguments() {
   try {
@@ -23,16 +25,35 @@ function readArguments() {
         deadline: { type: "string", default: "30" },
         strategy: { type: "string" },
         ca: { type: "string" },
+        server_name: { type: "string" },
+        certificate: { type: "string" },
+        key: { type: "string" },
+        token_file: { type: "string" },
         routes: { type: "string" },
       },
     });
     const deadline = Number(values.deadline);
     if (positionals.length !== 1 || !(deadline > 0)) throw new Error("one job, and a deadline in seconds");
+    if (!values.certificate !== !values.key) throw new Error("--certificate and --key go together");
+    if (!values.ca && (values.certificate || values.token_file)) throw new Error("certificates and tokens need TLS: give --ca");
+    if (values.ca && values.server.includes(",") && !values.server_name) throw new Error("several addresses have one certificate: give --server_name");
     return { ...values, deadline, file: positionals[0] };
   } catch (error) {
     console.error(`${error.message}\n${USAGE}`);
     process.exit(2);
   }
+}
+
+// What the flags say; undefined for plaintext.
+function credentialsOf({ ca, key, certificate, token_file: tokenFile }) {
+  if (!ca) return undefined;
+  const read = (path) => (path ? readFileSync(path) : null);
+  const encrypted = grpc.credentials.createSsl(read(ca), read(key), read(certificate));
+  if (!tokenFile) return encrypted;
+  const metadata = new grpc.Metadata();
+  metadata.set("authorization", `Bearer ${readFileSync(tokenFile, "utf8").trim()}`);
+  const token = grpc.credentials.createFromMetadataGenerator((_, callback) => callback(null, metadata));
+  return grpc.credentials.combineChannelCredentials(encrypted, token);
 }
 
 function showProgress(done, layers, given, travel) {
@@ -51,8 +72,13 @@ async function main() {
     return 1;
   }
   if (options.strategy) job.options = { ...job.options, strategy: { name: options.strategy } };
-  const credentials = options.ca ? grpc.credentials.createSsl(readFileSync(options.ca)) : undefined;
-  const client = new TraverseClient(options.server.split(","), credentials);
+  let client;
+  try {
+    client = new TraverseClient(options.server.split(","), credentialsOf(options), options.server_name);
+  } catch (error) {
+    console.error(`submit_job.mjs: ${error.message}`);
+    return 2;
+  }
   const routes = options.routes ? openSync(options.routes, "w") : null;
   let given = 0;
   let travel = 0;

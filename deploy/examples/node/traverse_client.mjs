@@ -55,10 +55,12 @@ export class TraverseClient {
   #stub;
 
   // One address may be a name with many servers behind it: dns:///traverse-headless:50051.
-  constructor(addresses, credentials = grpc.credentials.createInsecure()) {
+  // `serverName`: what the servers' certificates say, if it is not the address; with several addresses it never is.
+  constructor(addresses, credentials = grpc.credentials.createInsecure(), serverName = undefined) {
     const target = addresses.length === 1 ? addresses[0] : `ipv4:${addresses.join(",")}`;
     this.#stub = new RouteOptimizerService(target, credentials, {
-      "grpc.service_config": SERVICE_CONFIG, "grpc.keepalive_time_ms": 60_000, "grpc.max_reconnect_backoff_ms": 2_000 });
+      "grpc.service_config": SERVICE_CONFIG, "grpc.keepalive_time_ms": 60_000, "grpc.max_reconnect_backoff_ms": 2_000,
+      ...(serverName && { "grpc.ssl_target_name_override": serverName }) });
   }
 
   close() { this.#stub.close(); }

@@ -49,12 +49,16 @@ class JobFailed(Exception):
 class TraverseClient:
     """Connections to a fleet. Thread-safe; make one and keep it."""
 
-    def __init__(self, addresses: Sequence[str], credentials: Optional[grpc.ChannelCredentials] = None):
+    def __init__(self, addresses: Sequence[str], credentials: Optional[grpc.ChannelCredentials] = None,
+                 server_name: Optional[str] = None):
+        """`server_name`: what the servers' certificates say, if it is not the address; with several addresses it never is."""
         # One address may be a name with many servers behind it: dns:///traverse-headless:50051.
         target = addresses[0] if len(addresses) == 1 else "ipv4:" + ",".join(addresses)
         options = [("grpc.service_config", SERVICE_CONFIG),
                    ("grpc.keepalive_time_ms", 60_000),
                    ("grpc.max_reconnect_backoff_ms", 2_000)]
+        if server_name:
+            options.append(("grpc.ssl_target_name_override", server_name))
         self._channel = (grpc.secure_channel(target, credentials, options) if credentials
                          else grpc.insecure_channel(target, options))
         self._stub = service.RouteOptimizerServiceStub(self._channel)

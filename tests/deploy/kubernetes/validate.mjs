@@ -11,10 +11,12 @@ import { loadAll } from "js-yaml";
 
 const require = createRequire(import.meta.url);
 
+// Packages by the group of the objects that they describe; Kubernetes' own groups are in one.
+const PACKAGES = { "monitoring.coreos.com": "@kubernetes-models/prometheus-operator", "cert-manager.io": "@kubernetes-models/cert-manager" };
+
 function moduleOf(document) {
-  return document.apiVersion.includes("monitoring.coreos.com")
-    ? `@kubernetes-models/prometheus-operator/${document.apiVersion}/${document.kind}`
-    : `kubernetes-models/${document.apiVersion}/${document.kind}`;
+  const [group] = document.apiVersion.split("/");
+  return `${PACKAGES[group] ?? "kubernetes-models"}/${document.apiVersion}/${document.kind}`;
 }
 
 function schemaFaults(document) {
