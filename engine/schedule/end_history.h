@@ -12,11 +12,17 @@
 
 namespace traverse {
 
-// A number that equal plans share and different plans hardly ever do. O(points).
+// A number that equal plans share, wherever they are, and different plans hardly ever do. Points
+// are taken from the first one on, to 1e-4 mm. O(points).
 uint64_t PlanFingerprint(const Plan& plan);
 
+// The first point of the first path, from which the places of a plan are told; 0, 0 if there is
+// none.
+Point PlanOrigin(const Plan& plan);
+
 // Extruded parts repeat their layers, often every second one, and a layer that was seen before will
-// most likely end where it ended then. A guess: nothing goes wrong if it is not so.
+// most likely end where it ended then. A guess: nothing goes wrong if it is not so. Ends are told
+// from the plan's origin, for layers that were moved.
 class EndHistory {
  public:
   // The layer with this fingerprint ended here, later than those learned before.

@@ -88,7 +88,12 @@ void LayerChain::Prepare(Slot& slot) {
   if (slot.layer.start) given_at_ = predicted_at_ = *slot.layer.start;
   slot.predicted_start = predicted_at_;
 
+  slot.origin = PlanOrigin(plan);
   if (!strategy_->trivial()) slot.fingerprint = PlanFingerprint(plan);
+  if (strategy_->reuses_routes()) {
+    slot.result = std::make_shared<RouteToCome>();
+    slot.model = routes_.Enter(slot.fingerprint, slot.result);
+  }
 
   slot.given_route = GivenRoute(plan);
   slot.outcome.index = slot.index;
@@ -105,7 +110,9 @@ void LayerChain::Prepare(Slot& slot) {
 
 Point LayerChain::PredictEnd(const Slot& slot) {
   if (slot.finish) return *slot.finish;
-  if (const std::optional<Point> end = history_.EndOf(slot.fingerprint)) return *end;
+  if (const std::optional<Point> end = history_.EndOf(slot.fingerprint)) {
+    return {slot.origin.x + end->x, slot.origin.y + end->y};
+  }
   Budget budget = LayerBudget(1 - kSolveShare);
   return RouteEnd(slot.layer.plan,
                   predictor_->Solve(Problem(slot, slot.predicted_start), budget).route,
@@ -115,7 +122,11 @@ Point LayerChain::PredictEnd(const Slot& slot) {
 void LayerChain::SolveFirst(Slot& slot) const {
   const Stopwatch watch;
   Budget budget = LayerBudget(kSolveShare);
-  slot.first = strategy_->Solve(Problem(slot, slot.predicted_start), budget);
+  const LayerProblem problem = Problem(slot, slot.predicted_start);
+  // Different layers that share a fingerprint are unheard of, not impossible.
+  const bool resumes = slot.model && ValidateRoute(slot.layer.plan, slot.model->route).ok();
+  slot.first = resumes ? strategy_->Resume(problem, slot.model->route, budget)
+                       : strategy_->Solve(problem, budget);
   slot.outcome.solve_seconds = watch.Seconds();
 }
 
@@ -163,7 +174,8 @@ void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
     best = cost;
     solution.route = route;
   };
-  if (!strategy_->trivial() && !strategy_->quick() && problem.start != slot.predicted_start) {
+  if (!strategy_->trivial() && !strategy_->quick() &&
+      (slot.model || problem.start != slot.predicted_start)) {
     Budget budget = LayerBudget(1 - kSolveShare);
     offer(predictor_->Solve(problem, budget).route);
   }
@@ -209,7 +221,7 @@ void LayerChain::RunPrepare(const SlotPtr& slot) {
     slot->solved = true;
     MaybeAnchor(slot->index);
   } else {
-    Submit([this, slot] { RunSolveFirst(slot); });
+    MaybeSolveFirst(slot);
   }
   MaybePrepare();
 }
@@ -220,6 +232,7 @@ void LayerChain::RunSolveFirst(const SlotPtr& slot) {
       slot->finish.value_or(RouteEnd(slot->layer.plan, slot->first.route, slot->predicted_start));
   std::lock_guard<std::mutex> lock(mutex_);
   slot->first_end = end;
+  HandOn(*slot);
   MaybeSolveSecond(slot->index);
   MaybeSolveSecond(slot->index + 1);
 }
@@ -233,11 +246,13 @@ void LayerChain::RunSolveSecond(const SlotPtr& slot) {
 
 void LayerChain::RunAnchor(const SlotPtr& slot, Point start) {
   LayerOutcome outcome = Anchor(*slot, start);
-  const Point end = slot->finish.value_or(outcome.end);
+  const Point route_end = outcome.end;
+  const Point end = slot->finish.value_or(route_end);
   if (!cancel_.cancelled()) outbox_.Deliver(std::move(outcome));
   std::lock_guard<std::mutex> lock(mutex_);
   slot->end = end;
-  ends_to_learn_[slot->index] = {slot->fingerprint, end};
+  ends_to_learn_[slot->index] = {slot->fingerprint,
+                                 {route_end.x - slot->origin.x, route_end.y - slot->origin.y}};
   --pending_;
   DropAnchored();
   MaybeAnchor(slot->index + 1);
@@ -261,6 +276,25 @@ void LayerChain::MaybePrepare() {
   }
   preparing_ = true;
   Submit([this, slot] { RunPrepare(slot); });
+}
+
+// The first solution of a layer, once there is what it starts from.
+void LayerChain::MaybeSolveFirst(const SlotPtr& slot) {
+  if (slot->model && !slot->model->ready) {
+    slot->model->waiting.push_back(slot->index);
+    return;
+  }
+  Submit([this, slot] { RunSolveFirst(slot); });
+}
+
+// Gives the first solution to the layers that start from it.
+void LayerChain::HandOn(const Slot& slot) {
+  if (!slot.result) return;
+  slot.result->route = slot.first.route;
+  slot.result->ready = true;
+  for (const uint64_t index : std::exchange(slot.result->waiting, {})) {
+    MaybeSolveFirst(SlotAt(index));
+  }
 }
 
 // What follows the first solution of layer `index`: a second one, or anchor.

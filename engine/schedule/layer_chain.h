@@ -5,7 +5,8 @@
 //
 //   prepare   in build order, cheap: the travel of the given order, and a prediction of where the
 //             layer will end: where an equal layer ended before, else where its greedy route ends
-//   solve     on any thread: the strategy, from the predicted start
+//   solve     on any thread: the strategy, from the predicted start; where an equal layer came
+//             before, it may go on from that one's route (route_history.h)
 //   second    quick strategies alone, on any thread: solve from where the first solution of the
 //             layer before ends, if that is elsewhere; mostly this is the true start
 //   anchor    in build order, cheap: the true start is known now; if it is yet another one, the
@@ -30,6 +31,7 @@
 #include "engine/engine.h"
 #include "engine/schedule/end_history.h"
 #include "engine/schedule/outbox.h"
+#include "engine/schedule/route_history.h"
 
 namespace traverse {
 
@@ -54,9 +56,15 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
     // Set by prepare.
     Point predicted_start;
     uint64_t fingerprint = 0;
+    Point origin;
     std::optional<Point> finish;
     Route given_route;
     LayerOutcome outcome;  // what concerns the given order
+
+    // Set by prepare, where routes are used again: the route to start from, null if there is
+    // none, and this layer's own, for others. What they hold is guarded by the lock.
+    RouteHistory::Entry model;
+    RouteHistory::Entry result;
 
     // Set by solve and second.
     Solution first;
@@ -96,6 +104,8 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
 
   // Submit what is due. Called with the lock held.
   void MaybePrepare();
+  void MaybeSolveFirst(const SlotPtr& slot);
+  void HandOn(const Slot& slot);
   void MaybeSolveSecond(uint64_t index);
   void MaybeAnchor(uint64_t index);
   void MaybeFinish();
@@ -114,6 +124,7 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   Point given_at_;
   Point predicted_at_;
   EndHistory history_;
+  RouteHistory routes_;
 
   mutable std::mutex mutex_;
   std::deque<SlotPtr> slots_;  // [index - first_index_]

@@ -27,7 +27,7 @@ namespace {
 constexpr double kPatience = 1;
 
 // Of a search that starts from a route that was good from another start.
-constexpr double kResumeShare = 0.25;
+constexpr double kResumeShare = 0.5;
 
 // Visits whose entries are chosen at a time: a step between two looks at the clock.
 constexpr size_t kWindow = 256;
@@ -68,6 +68,8 @@ class Auto : public Strategy {
   Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
     return Search(LayerView(problem), start, effort_ * kResumeShare, budget);
   }
+
+  bool reuses_routes() const override { return true; }
 
  private:
   Solution Search(const LayerView& layer, Route route, double effort, Budget& budget) const {

@@ -52,6 +52,9 @@ class Strategy {
   // True if Solve is so quick that the chain may solve a layer again where its start was predicted
   // wrongly, instead of resuming: the routes are then those of solving one layer after another.
   virtual bool quick() const { return false; }
+
+  // True if Resume may take the place of Solve where a route of an equal layer is known.
+  virtual bool reuses_routes() const { return false; }
 };
 
 // A row of the registry: what there is to know about a strategy without running it.

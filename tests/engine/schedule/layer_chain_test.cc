@@ -74,7 +74,15 @@ struct RunOptions {
   int threads = 4;
   TestExecutor::Order order = TestExecutor::Order::kOldestFirst;
   std::map<int, Point> starts;
+  bool extruded = false;  // two layers in turn, each a bit to the right of the last one
 };
+
+Plan Moved(Plan plan, double dx_mm) {
+  for (Path& path : plan.paths) {
+    for (Point& point : path.points) point.x += dx_mm;
+  }
+  return plan;
+}
 
 std::map<uint64_t, LayerOutcome> RunJob(const RunOptions& options) {
   RecordingSink sink;
@@ -84,7 +92,8 @@ std::map<uint64_t, LayerOutcome> RunJob(const RunOptions& options) {
   auto job = Job::Start(options.spec, *std::move(strategy), executor, sink);
   for (int i = 0; i < options.layers; ++i) {
     JobLayer layer;
-    layer.plan = RingLayer(3 + i % 4, 0.3 * i);
+    layer.plan =
+        options.extruded ? Moved(RingLayer(12, i % 2), 0.01 * i) : RingLayer(3 + i % 4, 0.3 * i);
     const auto start = options.starts.find(i);
     if (start != options.starts.end()) layer.start = start->second;
     job->Add(std::move(layer));
@@ -128,6 +137,66 @@ TEST(LayerChain, RoutesDoNotDependOnThreadsOrTheOrderOfTasks) {
   }
 }
 
+TEST(LayerChain, RoutesUsedAgainDoNotDependOnThreadsEither) {
+  RunOptions options;
+  options.strategy = "auto";
+  options.extruded = true;
+  options.layers = 60;
+  options.threads = 1;
+  const auto one = RunJob(options);
+  options.threads = 8;
+  const auto eight = RunJob(options);
+  options.order = TestExecutor::Order::kNewestFirst;
+  const auto newest_first = RunJob(options);
+
+  ASSERT_EQ(one.size(), 60u);
+  for (const auto& [index, outcome] : one) {
+    EXPECT_EQ(outcome.route, eight.at(index).route) << "layer " << index;
+    EXPECT_EQ(outcome.route, newest_first.at(index).route) << "layer " << index;
+  }
+}
+
+// What strategies that use routes again are told.
+struct Calls {
+  std::mutex mutex;
+  int solved = 0;
+  int resumed = 0;
+};
+
+// Solves nothing, and notes what it is asked for.
+class Counting : public Strategy {
+ public:
+  explicit Counting(Calls& calls) : calls_(calls) {}
+  Solution Solve(const LayerProblem& problem, Budget&) const override {
+    std::lock_guard<std::mutex> lock(calls_.mutex);
+    ++calls_.solved;
+    return Solution{GivenRoute(*problem.plan), StopReason::kLocalOptimum, std::nullopt};
+  }
+  Solution Resume(const LayerProblem&, const Route& start, Budget&) const override {
+    std::lock_guard<std::mutex> lock(calls_.mutex);
+    ++calls_.resumed;
+    return Solution{start, StopReason::kLocalOptimum, std::nullopt};
+  }
+  bool reuses_routes() const override { return true; }
+
+ private:
+  Calls& calls_;
+};
+
+TEST(LayerChain, EqualAndMovedLayersStartFromARouteFoundBefore) {
+  Calls calls;
+  RecordingSink sink;
+  TestExecutor executor(4);
+  auto job = Job::Start(JobSpec(), std::make_unique<Counting>(calls), executor, sink);
+  for (int i = 0; i < 50; ++i) job->Add({Moved(RingLayer(5, i % 2), 0.01 * i), {}, {}});
+  job->Close();
+  sink.Wait();
+
+  EXPECT_EQ(sink.outcomes.size(), 50u);
+  EXPECT_EQ(calls.solved, 2);
+  EXPECT_GE(calls.resumed, 48);
+}
+
 TEST(LayerChain, AQuickStrategySolvesEveryLayerFromItsTrueStart) {
   RunOptions options;
   options.layers = 80;
@@ -149,6 +218,7 @@ TEST(EndHistory, GivesTheLastEndOfAnEqualLayer) {
 
   EXPECT_EQ(history.EndOf(PlanFingerprint(RingLayer(3, 0.1))), (Point{3, 3}));
   EXPECT_EQ(history.EndOf(PlanFingerprint(RingLayer(4, 0.1))), std::nullopt);
+  EXPECT_EQ(history.EndOf(PlanFingerprint(Moved(RingLayer(3, 0.2), 5))), (Point{2, 2}));
 }
 
 TEST(LayerChain, NoneReturnsTheGivenOrderAndItsTravel) {

@@ -1,0 +1,55 @@
+// Routes found earlier in the job, for layers of the same make to start from.
+
+#ifndef TRAVERSE_ENGINE_SCHEDULE_ROUTE_HISTORY_H_
+#define TRAVERSE_ENGINE_SCHEDULE_ROUTE_HISTORY_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "engine/model/route.h"
+
+namespace traverse {
+
+// The route that a layer will have been given. Guarded by whoever shares it between threads.
+struct RouteToCome {
+  bool ready = false;
+  Route route;                    // if ready; empty if there is none to start from
+  std::vector<uint64_t> waiting;  // layers that start from it
+};
+
+// Extruded parts repeat their layers, as they are or moved along. A layer then starts from the
+// route of the one kLag repetitions before it, so that what is gained adds up along the job, while
+// kLag layers of each make can still be solved at the same time. Which route that is depends on the
+// order of layers alone, never on timing.
+class RouteHistory {
+ public:
+  using Entry = std::shared_ptr<RouteToCome>;
+
+  // Enters a layer of the make `fingerprint`, later than those entered before. Returns the route to
+  // start from; null for the first of its make.
+  Entry Enter(uint64_t fingerprint, Entry mine) {
+    // A job that never repeats a layer must not grow without bound.
+    if (makes_.size() >= kMostMakes && makes_.count(fingerprint) == 0) makes_.clear();
+    std::deque<Entry>& make = makes_[fingerprint];
+    Entry model = make.empty() ? nullptr : make.front();
+    make.push_back(std::move(mine));
+    if (make.size() > kLag) make.pop_front();
+    return model;
+  }
+
+  static constexpr size_t kLag = 4;
+
+ private:
+  static constexpr size_t kMostMakes = 128;
+
+  std::unordered_map<uint64_t, std::deque<Entry>> makes_;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_SCHEDULE_ROUTE_HISTORY_H_
