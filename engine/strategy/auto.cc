@@ -5,14 +5,13 @@
 #include <memory>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "engine/base/rng.h"
 #include "engine/base/tolerances.h"
 #include "engine/construct/greedy.h"
-#include "engine/cost/entry_choice.h"
 #include "engine/cost/layer_view.h"
 #include "engine/cost/route_cost.h"
+#include "engine/cost/route_entries.h"
 #include "engine/local_search/end_groups.h"
 #include "engine/local_search/iterated_search.h"
 #include "engine/local_search/leaf_entries.h"
@@ -28,33 +27,6 @@ constexpr double kPatience = 1;
 
 // Of a search that starts from a route that was good from another start.
 constexpr double kResumeShare = 0.5;
-
-// Visits whose entries are chosen at a time: a step between two looks at the clock.
-constexpr size_t kWindow = 256;
-
-// Chooses the entries of the route again, exactly within windows that overlap by half.
-void ChooseEntries(const LayerView& layer, Route& route, Budget& budget) {
-  EntryChoice choice(layer.table, layer.cost);
-  std::vector<int> paths;
-  std::vector<int> entries;
-  for (size_t begin = 0; begin < route.size(); begin += kWindow / 2) {
-    if (budget.ExhaustedNow()) return;
-    const size_t end = std::min(route.size(), begin + kWindow);
-    const auto point = [&](const Visit& visit, bool exit) {
-      const int entry = layer.table.EntryOf(visit);
-      return exit ? layer.table.exit(entry) : layer.table.enter(entry);
-    };
-    const Point from = begin > 0 ? point(route[begin - 1], true) : layer.problem.start;
-    const std::optional<Point> to =
-        end < route.size() ? point(route[end], false) : layer.problem.finish;
-    paths.clear();
-    for (size_t k = begin; k < end; ++k) paths.push_back(route[k].path);
-    entries.resize(paths.size());
-    choice.Choose(from, paths, to, absl::MakeSpan(entries));
-    for (size_t k = begin; k < end; ++k) route[k] = layer.table.VisitOf(entries[k - begin]);
-    if (end == route.size()) return;
-  }
-}
 
 class Auto : public Strategy {
  public:
@@ -79,7 +51,8 @@ class Auto : public Strategy {
       const double cost = RouteCost(layer.problem, route);
       if (budget.was_exhausted()) return Finish(std::move(route), 0, budget);
       // The order is fixed, and a route of up to one window has the best entries.
-      if (route.size() <= kWindow) return Solution{std::move(route), StopReason::kOptimal, cost};
+      if (route.size() <= static_cast<size_t>(kEntryWindow))
+        return Solution{std::move(route), StopReason::kOptimal, cost};
       return Finish(std::move(route), 0, budget);
     }
     const LeafEntries entries(layer.problem);
