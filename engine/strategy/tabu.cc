@@ -8,14 +8,13 @@
 #include <utility>
 
 #include "engine/base/rng.h"
+#include "engine/construct/greedy.h"
 #include "engine/cost/layer_view.h"
 #include "engine/cost/route_cost.h"
 #include "engine/framework/island_layout.h"
-#include "engine/improve/descent.h"
-#include "engine/improve/swap_sequence.h"
 #include "engine/strategy/framework_search.h"
-#include "engine/strategy/greedy.h"
 #include "engine/strategy/ni2opt.h"
+#include "engine/strategy/polisher.h"
 #include "engine/strategy/stop.h"
 
 namespace traverse {
@@ -25,9 +24,13 @@ namespace {
 // polished.
 constexpr double kFrameworkShare = 0.3;
 
-// Swaps that a round of polishing begins with, and how far apart they are at most.
-constexpr int kPolishSwaps = 3;
-constexpr int kPolishReach = 8;
+// Numbers of polishing's random stream: the framework's are those of its steps.
+constexpr uint64_t kPolishStream = 5;
+
+std::unique_ptr<const Strategy> DefaultNi2opt() {
+  const StrategyEntry entry = Ni2optEntry();
+  return entry.make(*StrategyOptions::Parse(entry.options, {}));
+}
 
 struct Candidate {
   Route route;
@@ -36,32 +39,30 @@ struct Candidate {
 
 class Tabu : public Strategy {
  public:
-  Tabu(const FrameworkOptions& options, bool polish, int polish_rounds)
+  Tabu(const FrameworkOptions& options, bool polish, double polish_rounds)
       : options_(options),
         polish_(polish),
         polish_rounds_(polish_rounds),
-        first_(MakeFirst(polish)) {}
+        ni2opt_(DefaultNi2opt()) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
     const LayerView layer(problem);
-    Solution solution = first_->Solve(problem, budget);
-    Candidate best{std::move(solution.route), 0};
-    best.cost = RouteCost(problem, best.route);
-    Budget share = FrameworkBudget(budget);
-    Route found = Search(layer, best.route, share, solution.statistics);
-    if (polish_) found = Improve(layer, found, DescentOptions(), budget);
-    Take(layer, std::move(found), best);
-    if (polish_) Polish(layer, best, budget);
-    solution.route = std::move(best.route);
-    budget.ExhaustedNow();
-    solution.stop = StopOr(budget, StopOr(share, StopReason::kIterationLimit));
-    return solution;
+    return polish_ ? SolvePolished(layer, budget) : SolvePlain(layer, budget);
   }
 
-  // The order that was found for another start is a good one still.
+  // The order that was found for another start is a good one still, and tabu search would not find
+  // it again any sooner.
   Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
-    return polish_ ? first_->Resume(problem, start, budget)
-                   : Strategy::Resume(problem, start, budget);
+    if (!polish_) return Strategy::Resume(problem, start, budget);
+    const LayerView layer(problem);
+    Candidate best = Baseline(layer, budget);
+    Polisher polisher(layer, budget);
+    Rng rng(StreamSeed(problem.seed, kPolishStream));
+    Take(layer, start, best);
+    Take(layer, polisher.Iterate(start, Patience(layer), rng, budget), best);
+    budget.ExhaustedNow();
+    return Solution{std::move(best.route), StopOr(budget, StopReason::kIterationLimit),
+                    std::nullopt};
   }
 
   // As the thesis has it, every layer starts where the one before ended: without polish nothing
@@ -69,42 +70,55 @@ class Tabu : public Strategy {
   bool trivial() const override { return !polish_; }
 
  private:
-  // What gives a route at once, which no result is worse than.
-  static std::unique_ptr<Strategy> MakeFirst(bool polish) {
-    const StrategyEntry entry = polish ? Ni2optEntry() : GreedyEntry();
-    return entry.make(*StrategyOptions::Parse(entry.options, {}));
-  }
-
   static void Take(const LayerView& layer, Route route, Candidate& best) {
     const double cost = RouteCost(layer.problem, route);
     if (cost < best.cost) best = {std::move(route), cost};
   }
 
-  // Again and again: a few random swaps near each other, then 2-opt and point release over all
-  // vertices; what is better stays.
-  void Polish(const LayerView& layer, Candidate& best, Budget& budget) const {
-    const LinkRules no_rules{std::vector<int>(layer.plan().paths.size(), 0)};
-    SwapSequence sequence(layer.problem, no_rules);
-    const auto& nodes = sequence.tree().movable_nodes();
-    if (nodes.empty()) return;
-    Rng rng(StreamSeed(layer.problem.seed, 5));
-    for (int round = 0; round < polish_rounds_ && !budget.ExhaustedNow(); ++round) {
-      sequence.Load(best.route);
-      const int node = nodes[rng.Below(static_cast<uint32_t>(nodes.size()))];
-      const int last = sequence.tree().child_count(node) - 1;
-      const int middle = rng.Between(0, last);
-      for (int swaps = 0; swaps < kPolishSwaps; ++swaps) {
-        const int i = std::clamp(middle + rng.Between(-kPolishReach, kPolishReach), 0, last - 1);
-        const int j = rng.Between(i + 1, std::min(last, i + kPolishReach));
-        const SwapMove move = sequence.Evaluate(node, i, j);
-        if (move.violations == 0) sequence.Apply(move);
-      }
-      Take(layer, Improve(layer, sequence.Unload(), DescentOptions(), budget), best);
-    }
+  // What there is at once, and no result is worse than.
+  static Candidate Baseline(const LayerView& layer, Budget& budget) {
+    Route route = BaselineRoute(layer, budget);
+    const double cost = RouteCost(layer.problem, route);
+    return {std::move(route), cost};
+  }
+
+  Solution SolvePlain(const LayerView& layer, Budget& budget) const {
+    Candidate best = Baseline(layer, budget);
+    Solution solution;
+    Take(layer, Search(layer, best.route, budget, solution.statistics), best);
+    budget.ExhaustedNow();
+    solution.stop = StopOr(budget, StopReason::kIterationLimit);
+    solution.route = std::move(best.route);
+    return solution;
+  }
+
+  // First what takes little time, so that there is a good route if time is short: greedy's,
+  // polished, and that of ni2opt. Then tabu search, and what it found is polished at length.
+  Solution SolvePolished(const LayerView& layer, Budget& budget) const {
+    Candidate best = Baseline(layer, budget);
+    const Route start = best.route;
+    Polisher polisher(layer, budget);
+    Take(layer, polisher.Descend(best.route, budget), best);
+    Take(layer, ni2opt_->Solve(layer.problem, budget).route, best);
+
+    Solution solution;
+    Budget share = FrameworkBudget(budget);
+    Route found = Search(layer, start, share, solution.statistics);
+    Rng rng(StreamSeed(layer.problem.seed, kPolishStream));
+    Take(layer, polisher.Iterate(best.route, Patience(layer), rng, budget), best);
+    Take(layer, polisher.Iterate(std::move(found), Patience(layer), rng, budget), best);
+    budget.ExhaustedNow();
+    solution.stop = StopOr(budget, StopOr(share, StopReason::kIterationLimit));
+    solution.route = std::move(best.route);
+    return solution;
+  }
+
+  int64_t Patience(const LayerView& layer) const {
+    return static_cast<int64_t>(polish_rounds_ * static_cast<double>(layer.plan().paths.size()));
   }
 
   Budget FrameworkBudget(const Budget& budget) const {
-    if (!polish_ || !budget.deadline()) return budget;
+    if (!budget.deadline()) return budget;
     const auto left = *budget.deadline() - Budget::Clock::now();
     return budget.Within(
         std::chrono::duration_cast<Budget::Clock::duration>(left * kFrameworkShare));
@@ -129,8 +143,8 @@ class Tabu : public Strategy {
 
   FrameworkOptions options_;
   bool polish_;
-  int polish_rounds_;
-  std::unique_ptr<const Strategy> first_;
+  double polish_rounds_;
+  std::unique_ptr<const Strategy> ni2opt_;
 };
 
 OptionSpec Number(const char* name, OptionSpec::Type type, const char* default_value,
@@ -191,8 +205,8 @@ std::vector<OptionSpec> Options() {
              "Sequences on the way from each of these to the best one that it tries as well."),
       Switch("polish", "true",
              "Improve the route over all vertices of the contours: 2-opt and point release."),
-      Number("polish_rounds", Type::kInt, "200", 0, 1000000,
-             "How often that is done again after a few random swaps.")};
+      Number("polish_rounds", Type::kDouble, "2", 0, 1000000,
+             "Kicks in a row without gain that end the polishing, for each path.")};
 }
 
 std::unique_ptr<Strategy> MakeTabu(const StrategyOptions& values) {
@@ -216,8 +230,7 @@ std::unique_ptr<Strategy> MakeTabu(const StrategyOptions& values) {
   tabu.patience = static_cast<int>(values.Int("patience"));
   tabu.reactive = values.Bool("reactive");
   tabu.elite = static_cast<int>(values.Int("elite"));
-  return std::make_unique<Tabu>(options, values.Bool("polish"),
-                                static_cast<int>(values.Int("polish_rounds")));
+  return std::make_unique<Tabu>(options, values.Bool("polish"), values.Double("polish_rounds"));
 }
 
 }  // namespace

@@ -54,6 +54,24 @@ TEST(Tabu, IsNotBehindNi2optWhenTimeIsShort) {
   EXPECT_LE(RouteCost(owned.problem, tabu.route), ni2opt + 1e-9);
 }
 
+// Its polishing goes on where the layer turns out to begin elsewhere.
+TEST(Tabu, ResumesAsWellAsItSolves) {
+  double solved = 0;
+  double resumed = 0;
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    OwnedProblem owned = testing::RandomProblem(
+        seed, {.shape = testing::PlanShape::kSequential, .min_paths = 20, .max_paths = 40});
+    const auto tabu = *MakeStrategy("tabu", {{"diversifications", "20"}});
+    Budget budget;
+    const Route first = tabu->Solve(owned.problem, budget).route;
+    owned.problem.start = {100 - owned.problem.start.x, 100 - owned.problem.start.y};
+
+    resumed += RouteCost(owned.problem, tabu->Resume(owned.problem, first, budget).route);
+    solved += RouteCost(owned.problem, tabu->Solve(owned.problem, budget).route);
+  }
+  EXPECT_LT(resumed, 1.01 * solved);
+}
+
 TEST(Tabu, WithoutPolishIsTheFrameworkOrGreedy) {
   for (uint64_t seed = 1; seed <= 30; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
