@@ -4,6 +4,7 @@
 #   deploy/install-packages.sh build      what the build needs
 #   deploy/install-packages.sh test       that, and what the tests need
 #   deploy/install-packages.sh sanitize   that, and clang for the sanitizer and fuzz builds
+#   deploy/install-packages.sh deploy     the tests', and the daemons and tools of the tests of deploy/, but kubectl
 set -euo pipefail
 
 build=(
@@ -17,13 +18,19 @@ test=(
   python3 python3-grpcio python3-protobuf python3-yaml
 )
 sanitize=(clang libclang-rt-14-dev llvm)
+deploy=(
+  prometheus haproxy systemd mmdebstrap buildah podman podman-compose runc catatonit
+  containernetworking-plugins golang-github-containernetworking-plugin-dnsname iptables
+)
+command -v npm >/dev/null || deploy+=(nodejs npm)  # another Node may be there already
 
 case "${1:-}" in
   build) wanted=("${build[@]}") ;;
   test) wanted=("${build[@]}" "${test[@]}") ;;
   sanitize) wanted=("${build[@]}" "${test[@]}" "${sanitize[@]}") ;;
+  deploy) wanted=("${build[@]}" "${test[@]}" "${deploy[@]}") ;;
   *)
-    echo "usage: $0 build|test|sanitize" >&2
+    echo "usage: $0 build|test|sanitize|deploy" >&2
     exit 2
     ;;
 esac

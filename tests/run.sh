@@ -5,6 +5,7 @@
 #   tests/run.sh --quick    without the tests labelled slow
 #   tests/run.sh --asan     the suite under AddressSanitizer and UndefinedBehaviorSanitizer
 #   tests/run.sh --tsan     the suite's thread-safe parts under ThreadSanitizer
+#   tests/run.sh --deploy   what deploy/ ships, with its images, its fleet and a clean root; as root, some minutes
 #   tests/run.sh --fuzz[=SECONDS]   the fuzz targets, 60 seconds each
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -18,6 +19,10 @@ for argument in "$@"; do
   case "$argument" in
     --quick) select=(-LE slow) ;;
     --asan) preset=asan packages="sanitize" select=(-LE 'slow|no_sanitizer') ;;
+    --deploy)
+      packages="deploy" select=(-R '^deploy[.]')
+      export TRAVERSE_TEST_IMAGES=1
+      ;;
     --tsan) preset=tsan packages="sanitize" target=(tsan_tests) select=(-L tsan) ;;
     --fuzz) preset=fuzz packages="sanitize" target=(fuzz_targets) fuzz_seconds=60 ;;
     --fuzz=*) preset=fuzz packages="sanitize" target=(fuzz_targets) fuzz_seconds=${argument#*=} ;;
