@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """A real Prometheus scrapes loaded servers: every panel and every recorded series has data.
 
-With TRAVERSE_PICTURE=FILE.svg in the environment it also draws the dashboard, after TRAVERSE_PICTURE_SECONDS.
+With TRAVERSE_PICTURE=FILE.svg in the environment the picture of the dashboard is kept there, of TRAVERSE_PICTURE_SECONDS of load.
 """
 
 import json
@@ -14,12 +14,12 @@ import tempfile
 import time
 import unittest
 import urllib.parse
+import xml.etree.ElementTree
 
 import support
 import example_cases
 import fleet
 import jobs
-import picture
 
 yaml = support.module("yaml", "python3-yaml")
 
@@ -73,10 +73,10 @@ class Observability(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
         self.make_client = TraverseClient
 
-    def request(self, **options):
+    def request(self, islands=20, **options):
         from google.protobuf import json_format
         from traverse.v1 import route_optimizer_service_pb2 as api
-        return json_format.ParseDict(jobs.plate(layers=8, islands=20, options=options), api.OptimizeBatchRequest())
+        return json_format.ParseDict(jobs.plate(layers=8, islands=islands, options=options), api.OptimizeBatchRequest())
 
     def strategies(self, address):
         import grpc
@@ -88,6 +88,8 @@ class Observability(unittest.TestCase):
         """Jobs of every strategy, some with little time, some that are wrong."""
         infos = [info for info in self.strategies(address)]
         requests = [self.request(strategy={"name": info.name}, layer_time_limit="0.02s") for info in infos]
+        # Small enough for bounds that are worth something.
+        requests += [self.request(islands=4, strategy={"name": info.name}, layer_time_limit="2s") for info in infos if info.lower_bound]
         requests.append(self.request(strategy={"name": "nonsense"}))
         client = self.make_client([address])
         self.addCleanup(client.close)
@@ -116,7 +118,7 @@ class Observability(unittest.TestCase):
                     time.sleep(2)
                     missing = [one for one in missing if not self.has_data(prometheus, one, bounds)]
                 self.assertEqual([], missing)
-                self.draw_if_asked(prometheus, dashboard)
+                self.draw(prometheus, dashboard)
                 firing = prometheus.ask("query", query='ALERTS{alertstate="firing", severity="page"}')["result"]
                 active = {one["labels"]["instance"]: one["health"] for one in prometheus.ask("targets")["activeTargets"]}
 
@@ -131,16 +133,26 @@ class Observability(unittest.TestCase):
             return True  # no strategy of this server gives bounds
         return bool(prometheus.samples(expression))
 
-    def draw_if_asked(self, prometheus, dashboard):
-        path = os.environ.get("TRAVERSE_PICTURE")
-        if not path:
-            return
-        time.sleep(float(os.environ.get("TRAVERSE_PICTURE_SECONDS", "60")))
-        now = time.time()
+    def draw(self, prometheus, dashboard):
+        """render_dashboard.py draws each panel with its data."""
+        kept = os.environ.get("TRAVERSE_PICTURE")
+        seconds = float(os.environ.get("TRAVERSE_PICTURE_SECONDS", "120" if kept else "20"))
+        if kept:
+            time.sleep(seconds)
+        path = pathlib.Path(kept or self.folder / "dashboard.svg")
+        words = ("/usr/bin/python3", MONITORING / "render_dashboard.py", "-o", path, f"--minutes={seconds / 60}",
+                 "--rate_interval=15s")
+        support.run(*words, f"--prometheus={prometheus.url}")
+        picture = path.read_text()
+        xml.etree.ElementTree.fromstring(picture)
+        for panel in dashboard["panels"]:
+            self.assertIn(f">{panel['title']}<", picture)
+        self.assertNotIn(">no data<", picture)
+        self.assertGreater(picture.count("<polyline"), 20)
+        self.assertGreater(picture.count("<rect"), len(dashboard["panels"]) + 10)  # cells of the heat maps
 
-        def ask_range(expression):
-            return prometheus.ask("query_range", query=concrete(expression), start=now - 60, end=now, step=2)["result"]
-        picture.draw(dashboard, ask_range, pathlib.Path(path))
+        nobody = support.run(*words, f"--prometheus=http://127.0.0.1:{support.free_port()}", ok=False)
+        self.assertEqual((1, 1), (nobody.returncode, len(nobody.stderr.splitlines())))
 
     def test_the_servers_metrics_follow_prometheus_rules(self):
         with support.Server() as server:
