@@ -92,13 +92,15 @@ Outcome RunAll(Service& service, const Request& request, InputJob& job,
   return Done();
 }
 
-// Draws and describes the strategies' first runs, foremost the one with the shortest travel.
+// Draws and describes the strategies' first runs, foremost the one with the shortest travel. A run
+// of none among others is what they are set against, and no row of its own.
 Outcome ShowViews(Service& service, const Request& request, const InputJob& job,
                   const std::vector<report::ComparedStrategy>& compared) {
   const Expected<report::JobRun> given = RunAsGiven(service, request.job, job);
   if (const Outcome* outcome = std::get_if<Outcome>(&given)) return *outcome;
   std::vector<view::NamedRun> runs;
   for (const report::ComparedStrategy& strategy : compared) {
+    if (strategy.label == "none" && compared.size() > 1) continue;
     runs.push_back({strategy.label, &strategy.runs.front()});
   }
   view::Scene scene = view::JobScene(job, std::get<report::JobRun>(given), runs);
@@ -157,7 +159,13 @@ Command CompareCommand() {
   command.flags = {
       {"strategies", "NAME,...", "or NAME:OPTION=VALUE (default: all, 5s each)"},
       {"repeat", "N", "runs of each, seed after seed; means are shown"},
-      {"json", "FILE", "writes all routes; - is standard output"},
+      {"json",
+       "FILE",
+       "writes all routes; - is standard output",
+       {},
+       false,
+       "routes; a page to look at"},
+      {"report", "FILE.html", "writes a page to look at, all strategies"},
       {"quiet", "", "no progress"},
   };
   for (auto table : {ViewFlagTable(), JobFlagTable(), ServiceFlagTable()}) {

@@ -150,7 +150,13 @@ Command OptimizeCommand() {
   command.flags = {
       {"o", "OUTPUT", "G-code (default: INPUT; with --json none)"},
       {"strategy", "NAME", "see `traverse strategies`; or NAME:OPTION=VALUE"},
-      {"json", "FILE", "writes the routes; - is standard output"},
+      {"json",
+       "FILE",
+       "writes the routes; - is standard output",
+       {},
+       false,
+       "routes; a page to look at"},
+      {"report", "FILE.html", "writes a page to look at, before and after"},
       {"quiet", "", "no progress, no summary"},
   };
   for (auto table : {ViewFlagTable(), JobFlagTable(), ServiceFlagTable()}) {

@@ -4,9 +4,13 @@
 #include <limits>
 #include <system_error>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_format.h"
+#include "client/cli/help.h"
 #include "client/files/write_file.h"
+#include "client/gcode/parallel.h"
 #include "client/view/picture.h"
+#include "client/view/report_page.h"
 
 namespace traverse::cli {
 namespace {
@@ -46,6 +50,15 @@ absl::StatusOr<ViewFlags> ParseViewFlags(const Flags& flags) {
   } else if (flags.Has("layer")) {
     return Fault("--layer is for --picture");
   }
+  out.report = flags.Text("report");
+  if (flags.Has("report")) {
+    // Another name may well be that of the input.
+    const std::string lower = absl::AsciiStrToLower(out.report);
+    if (!lower.ends_with(".html") && !lower.ends_with(".htm")) {
+      return Fault(absl::StrFormat("--report=%s: does not end in .html", out.report));
+    }
+    if (absl::Status status = CheckFolder("report", out.report); !status.ok()) return status;
+  }
   const auto layer = flags.Integer("layer", 1, std::numeric_limits<uint32_t>::max());
   if (!layer.ok()) return layer.status();
   out.layer = *layer;
@@ -60,7 +73,9 @@ absl::Status CheckViewLayer(const ViewFlags& flags, const InputJob& job) {
     return Fault(
         absl::StrFormat("--layer=%d: not one of the layers %d to %d", *flags.layer, first, last));
   }
-  if (job.layers.empty()) return Fault("--picture: the file has no layers");
+  if (job.layers.empty())
+    return Fault(absl::StrFormat("--%s: the file has no layers",
+                                 flags.picture.empty() ? "report" : "picture"));
   return absl::OkStatus();
 }
 
@@ -72,11 +87,16 @@ Expected<report::JobRun> RunAsGiven(Service& service, const JobFlags& flags, con
 }
 
 absl::Status WriteViews(const ViewFlags& flags, const view::Scene& scene) {
-  if (flags.picture.empty()) return absl::OkStatus();
-  const size_t layer =
-      flags.layer ? *flags.layer - 1 - scene.first_layer : view::LayerWithMostSaved(scene);
-  return WriteWholeFile(flags.picture,
-                        view::Picture(scene, layer, *view::PictureFormatOf(flags.picture)));
+  if (!flags.picture.empty()) {
+    const size_t layer =
+        flags.layer ? *flags.layer - 1 - scene.first_layer : view::LayerWithMostSaved(scene);
+    const absl::Status status = WriteWholeFile(
+        flags.picture, view::Picture(scene, layer, *view::PictureFormatOf(flags.picture)));
+    if (!status.ok()) return status;
+  }
+  if (flags.report.empty()) return absl::OkStatus();
+  return WriteWholeFile(
+      flags.report, view::ReportPage(scene, "Made by " + VersionLine(), gcode::DefaultThreads()));
 }
 
 }  // namespace traverse::cli

@@ -21,9 +21,10 @@ namespace traverse::cli {
 
 struct ViewFlags {
   std::string picture;            // a file; empty: none
+  std::string report;             // a file; empty: none
   std::optional<uint64_t> layer;  // of the picture: position in the file, from 1
 
-  bool any() const { return !picture.empty(); }
+  bool any() const { return !picture.empty() || !report.empty(); }
 };
 
 // The rows of these flags.

@@ -76,6 +76,7 @@ Scene EmptyScene(const InputJob& job) {
   Scene scene;
   scene.title = job.name == "-" ? DisplayName(job.name) : BaseName(job.name);
   scene.seconds_name = "idle time";
+  scene.moves_note = "Moves are straight, as the service counts them.";
   scene.features = FeatureNames(job);
   scene.first_layer = job.first_layer;
   for (const v1::Layer& layer : job.layers) {
@@ -112,6 +113,7 @@ absl::StatusOr<Scene> GcodeScene(const InputJob& job, const NamedRun& run,
                                  const GcodeRewrite& rewrite) {
   Scene scene = EmptyScene(job);
   scene.seconds_name = "print time";
+  scene.moves_note = "Moves are those of the two files, wipes included.";
   std::shared_ptr<const GcodeFile> printed = job.gcode;
   if (rewrite.layers_changed > 0) {
     absl::StatusOr<std::shared_ptr<GcodeFile>> read = ReadGcode(rewrite.text, job.name);

@@ -122,8 +122,7 @@ class Painter {
 
   void Title() {
     std::string title =
-        absl::StrFormat("%s, layer %d of %d", scene_.title, scene_.first_layer + index_ + 1,
-                        scene_.first_layer + scene_.layers());
+        absl::StrFormat("%s, layer %d", scene_.title, scene_.first_layer + index_ + 1);
     if (scene_.layer_z_mm[index_] != 0) {
       absl::StrAppendFormat(&title, ", z = %.2f mm", scene_.layer_z_mm[index_]);
     }

@@ -68,6 +68,7 @@ struct RouteNotes {
 struct Scene {
   std::string title;                  // the name of the file, for people
   std::string seconds_name;           // what Figures::seconds are: "idle time"
+  std::string moves_note;             // what the moves are, a sentence
   std::vector<std::string> features;  // names, each with a color of the palette
   std::vector<RouteNotes> routes;     // at least two
   size_t shown = 1;                   // index of the one that is set against the order given

@@ -115,6 +115,10 @@ class Usage(CommandLine):
              "traverse optimize: --layer=4: not one of the layers 1 to 3"),
             (["compare", SMALL, "--picture=x.svg", "--layers=2-3", "--layer=1"],
              "traverse compare: --layer=1: not one of the layers 2 to 3"),
+            (["optimize", SMALL, "--report=part.gcode"],
+             "traverse optimize: --report=part.gcode: does not end in .html"),
+            (["compare", SMALL, "--report=no/such/x.html"],
+             "traverse compare: --report=no/such/x.html: there is no folder no/such"),
             (["optimize", SMALL, "--layer=1"], "traverse optimize: --layer is for --picture"),
             (["compare", SMALL, "--strategies=none,,greedy"],
              'traverse compare: "none,,greedy" names no strategy'),
@@ -199,16 +203,48 @@ class Views(CommandLine):
             picture = xml.etree.ElementTree.parse(self.path(name)).getroot()
             self.assertTrue(picture.tag.endswith("}svg"))
             captions = [text.text for text in picture.iter("{http://www.w3.org/2000/svg}text")]
-            self.assertRegex(captions[0], r"^(two_islands.damat|clusters13.gcode), layer \d of \d")
+            self.assertRegex(captions[0], r"^(two_islands.damat|clusters13.gcode), layer \d")
             self.assertRegex(captions[1], "^before: travel ")
             self.assertRegex(captions[2], "^after: travel ")
         with open(gcode, encoding="utf-8") as file:
             self.assertNotEqual(file.read(), read(self.path("out.gcode")))
 
+    def test_reports_hold_their_figures(self):
+        os.mkdir(self.path("<"))
+        name = self.put("</script><b>.damat", read(SMALL))
+        page, routes = self.path("page.html"), self.path("routes.json")
+        self.succeed("optimize", name, "--quiet", f"--report={page}", f"--json={routes}")
+        scene = self.scene(page)
+        total = json.loads(read(routes))["total"]
+        self.assertEqual(scene["title"], "script><b>.damat")  # what is behind the slash
+        self.assertEqual([route["label"] for route in scene["routes"]], ["as given", "auto"])
+        self.assertAlmostEqual(scene["routes"][0]["travel"], total["travel_given_mm"], places=2)
+        self.assertAlmostEqual(scene["routes"][1]["travel"], total["travel_mm"], places=2)
+
+    def test_reports_of_compare_have_every_strategy_and_show_the_best(self):
+        page = self.path("page.html")
+        self.run_traverse("compare", PART1, "--quiet", "--strategies=none,greedy,ni2opt", f"--report={page}")
+        scene = self.scene(page)
+        self.assertEqual([route["label"] for route in scene["routes"]], ["as given", "greedy", "ni2opt"])
+        self.assertEqual(scene["shown"], 2)
+        self.run_traverse("compare", PART1, "--quiet", "--strategies=none", f"--report={page}")
+        self.assertEqual([route["label"] for route in self.scene(page)["routes"]], ["as given", "none"])
+
+    def scene(self, page):
+        return json.loads(re.search(r'<script id="scene" type="application/json">(.*?)</script>', read(page))[1])
+
+    def test_reports_of_gcode_state_what_the_files_amount_to(self):
+        gcode = os.path.join(TESTS, os.pardir, "deploy", "samples", "clusters13.gcode")
+        page = self.path("page.html")
+        out = self.succeed("optimize", gcode, "-o", self.path("out.gcode"), f"--report={page}")
+        before, after = self.scene(page)["routes"]
+        self.assertIn(f"travel {before['travel'] / 1000:.2f} -> {after['travel'] / 1000:.2f} m", out)
+        self.assertIn(f"retractions {before['retractions']} -> {after['retractions']},", out)
+
     def test_the_layer_is_counted_in_the_file(self):
         picture = self.path("layer.svg")
         self.succeed("optimize", SMALL, "--quiet", "--layers=2-3", "--layer=3", f"--picture={picture}")
-        self.assertIn(">two_islands.damat, layer 3 of 3", read(picture))
+        self.assertIn(">two_islands.damat, layer 3<", read(picture))
 
     def test_a_picture_that_cannot_be_written_leaves_all_as_it_was(self):
         folder = self.path("folder.png")

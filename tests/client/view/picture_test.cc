@@ -47,7 +47,7 @@ TEST(Picture, MatchesItsGolden) {
 TEST(Picture, TextsCannotBreakOutOfTheMarkup) {
   const std::string svg = Picture(SmallScene(), 0, PictureFormat::kSvg);
 
-  EXPECT_THAT(svg, HasSubstr("&lt;odd&gt; &amp; &quot;title&quot;.gcode, layer 5 of 5, z = 0.25"));
+  EXPECT_THAT(svg, HasSubstr("&lt;odd&gt; &amp; &quot;title&quot;.gcode, layer 5, z = 0.25"));
   EXPECT_THAT(svg, Not(HasSubstr("<odd>")));
 }
 
@@ -69,12 +69,11 @@ TEST(Picture, LayersWithoutPathsAndOfOnePointHaveOneToo) {
     layer.routes.resize(2);
     return layer;
   };
-  for (const PictureFormat format : {PictureFormat::kSvg, PictureFormat::kPng}) {
-    const std::string empty = Picture(scene, 0, format);
-    EXPECT_GT(empty.size(), 500u);
-    EXPECT_THAT(empty, Not(HasSubstr("nan")));
-    EXPECT_THAT(empty, Not(HasSubstr("inf\"")));
-  }
+  const std::string svg = Picture(scene, 0, PictureFormat::kSvg);
+  EXPECT_THAT(svg, HasSubstr("start</text>"));
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_THAT(svg, Not(HasSubstr("inf")));
+  EXPECT_GT(Picture(scene, 0, PictureFormat::kPng).size(), 500u);
 }
 
 TEST(PictureFormatOf, IsTheEndOfTheName) {

@@ -1,0 +1,120 @@
+#include "client/view/report_page.h"
+
+#include <atomic>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "absl/strings/str_format.h"
+#include "client/gcode/parallel.h"
+#include "client/view/layer_code.h"
+#include "client/view/markup.h"
+#include "client/view/page_template.h"
+#include "client/view/palette.h"
+
+namespace traverse::view {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <typename T>
+Json OrNull(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+// Three digits are as many as files state.
+double Rounded(double value) { return std::round(value * 1000) / 1000; }
+
+Json RouteJson(const RouteNotes& route) {
+  Json travel = Json::array();
+  Json retractions = Json::array();
+  bool retracts = true;
+  for (const Figures& layer : route.layers) {
+    travel.push_back(Rounded(layer.travel_mm));
+    retractions.push_back(layer.retractions.value_or(0));
+    retracts = retracts && layer.retractions.has_value();
+  }
+  return {{"label", ValidUtf8(route.label)},
+          {"travel", Rounded(route.total.travel_mm)},
+          {"seconds", Rounded(route.total.seconds)},
+          {"retractions", OrNull(route.total.retractions)},
+          {"gap", OrNull(route.gap)},
+          {"compute", Rounded(route.compute_seconds)},
+          {"layers",
+           {{"travel", std::move(travel)},
+            {"retractions", retracts ? std::move(retractions) : Json(nullptr)}}}};
+}
+
+Json SceneJson(const Scene& scene, const std::string& made, size_t paths) {
+  Json features = Json::array();
+  for (const std::string& name : scene.features) {
+    const FeatureColor color = ColorOf(name);
+    features.push_back({{"name", ValidUtf8(name)}, {"light", color.light}, {"dark", color.dark}});
+  }
+  Json routes = Json::array();
+  for (const RouteNotes& route : scene.routes) routes.push_back(RouteJson(route));
+  Json heights = Json::array();
+  for (const double z : scene.layer_z_mm) heights.push_back(Rounded(z));
+  return {{"title", ValidUtf8(scene.title)},
+          {"made", ValidUtf8(made)},
+          {"moves", scene.moves_note},
+          {"seconds", scene.seconds_name},
+          {"grid", kGridMm},
+          {"first", scene.first_layer},
+          {"open", LayerWithMostSaved(scene)},
+          {"shown", scene.shown},
+          {"paths", paths},
+          {"features", std::move(features)},
+          {"routes", std::move(routes)},
+          {"layers", {{"id", scene.layer_ids}, {"z", std::move(heights)}}}};
+}
+
+// JSON that ends no script element and begins no comment in one, whatever its texts are.
+std::string ScriptSafe(const Json& json) {
+  std::string out;
+  for (const char c : json.dump()) {
+    if (c == '<') {
+      out += "\\u003c";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string ReportPage(const Scene& scene, const std::string& made, int threads) {
+  std::vector<std::string> layers(scene.layers());
+  std::atomic<size_t> paths = 0;
+  gcode::ParallelFor(layers.size(), threads, [&](size_t i) {
+    const DrawnLayer layer = scene.layer(i);
+    paths += layer.paths.size();
+    layers[i] = DeflatedBase64(LayerCode(layer));
+  });
+
+  const std::string_view page = PageTemplate();
+  constexpr std::string_view kScene = "@SCENE@";
+  constexpr std::string_view kLayers = "@LAYERS@";
+  const size_t scene_at = page.find(kScene);
+  const size_t layers_at = page.find(kLayers, scene_at);
+  std::string out(page.substr(0, scene_at));
+  out += ScriptSafe(SceneJson(scene, made, paths));
+  out += page.substr(scene_at + kScene.size(), layers_at - scene_at - kScene.size());
+  const auto append = [&](size_t i) {
+    absl::StrAppendFormat(&out, "<script id=\"layer-%d\" type=\"text/plain\">%s</script>\n", i,
+                          layers[i]);
+    layers[i] = {};
+  };
+  const size_t open = LayerWithMostSaved(scene);
+  append(open);
+  for (size_t i = 0; i < layers.size(); ++i) {
+    if (i != open) append(i);
+  }
+  out += page.substr(layers_at + kLayers.size());
+  return out;
+}
+
+}  // namespace traverse::view
