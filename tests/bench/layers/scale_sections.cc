@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "tests/bench/layers/bench_run.h"
+#include "tests/bench/layers/sections.h"
+
+namespace traverse::bench {
+namespace {
+
+// `count` layers: the second and the third of the part in turn.
+std::vector<Plan> Extruded(const BenchPart& part, int count) {
+  std::vector<Plan> layers;
+  for (int i = 0; i < count; ++i) layers.push_back(part.layers[1 + static_cast<size_t>(i % 2)]);
+  return layers;
+}
+
+bool PrintThreadsOf(const char* name, const std::vector<Plan>& layers,
+                    const BenchOptions& options) {
+  bool good = true;
+  double one_thread = 0;
+  for (int threads = 1; threads <= options.threads; threads *= 2) {
+    BenchJob job;
+    job.threads = threads;
+    const BenchResult result = Run(layers, job);
+    if (threads == 1) one_thread = result.wall_seconds;
+    const double speed_up = one_thread / result.wall_seconds;
+    std::printf("| %s | %d | %.3f | %.0f | %.2f | %.2f | %.1f |\n", name, threads,
+                result.wall_seconds, result.layers / result.wall_seconds, speed_up,
+                speed_up / threads, result.travel_mm);
+    std::fflush(stdout);
+    good = good && result.invalid == 0;
+  }
+  return good;
+}
+
+// The first time limit, each 1.4 times the one before, that brings travel to within 2 % of `best`.
+double SecondsToReach(const std::vector<Plan>& layers, double best_mm) {
+  BenchJob job;
+  job.options["effort"] = "1000000";
+  for (double seconds = 0.01;; seconds *= 1.4) {
+    job.layer_time_limit = absl::Seconds(seconds);
+    if (Run(layers, job).travel_mm <= 1.02 * best_mm || seconds > 60) return seconds;
+  }
+}
+
+}  // namespace
+
+bool PrintThreads(const std::vector<BenchPart>& parts, const BenchOptions& options) {
+  std::printf(
+      "## Threads, `auto` by default\n\n"
+      "| layers | threads | wall s | layers/s | speed-up | efficiency | mm |\n"
+      "|---|---:|---:|---:|---:|---:|---:|\n");
+  bool good = true;
+  for (const BenchPart& part : parts) {
+    if (part.name != "part2") continue;
+    const auto layers = Extruded(part, options.quick ? 20 : 400);
+    good = PrintThreadsOf("part2, two makes in turn", layers, options) && good;
+  }
+  std::vector<Plan> different;
+  for (int i = 0; i < (options.quick ? 4 : 64); ++i) {
+    different.push_back(RandomRings(60, 40, static_cast<uint64_t>(i)));
+  }
+  good = PrintThreadsOf("60 rings, all different", different, options) && good;
+  std::printf("\n");
+  return good;
+}
+
+bool PrintGrowth(const BenchOptions& options) {
+  std::printf(
+      "## Growth: one layer of rings of 40 vertices and as many rasters, one thread\n\n"
+      "| contours | default: s | mm | within 2 %% of a minute: s | growth | peak MB |\n"
+      "|---:|---:|---:|---:|---:|---:|\n");
+  bool good = true;
+  double last_seconds = 0;
+  int last_contours = 0;
+  std::vector<int> sizes = {200, 500, 1000, 2000, 5000};
+  if (options.quick) sizes = {200};
+  for (const int contours : sizes) {
+    const std::vector<Plan> layers = {RandomRings(contours, 40, 1)};
+    const BenchResult usual = Run(layers, {});
+    good = good && usual.invalid == 0;
+    std::printf("| %d | %.2f | %.1f |", contours, usual.cpu_seconds, usual.travel_mm);
+    std::fflush(stdout);
+    if (!options.quick) {
+      BenchJob job;
+      job.options["effort"] = "1000000";
+      job.layer_time_limit = absl::Seconds(60);
+      const double seconds = SecondsToReach(layers, Run(layers, job).travel_mm);
+      std::printf(" %.2f |", seconds);
+      if (last_contours > 0) {
+        std::printf(" n^%.2f |", std::log(seconds / last_seconds) /
+                                     std::log(static_cast<double>(contours) / last_contours));
+      } else {
+        std::printf(" |");
+      }
+      last_seconds = seconds;
+      last_contours = contours;
+    } else {
+      std::printf(" | |");
+    }
+    std::printf(" %.0f |\n", PeakMemoryMb());
+    std::fflush(stdout);
+  }
+  std::printf("\n");
+  return good;
+}
+
+}  // namespace traverse::bench

@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# Measures the optimiser and prints all tables, as Markdown.
+#
+#   tests/bench/run.sh                     everything, on the machine as it is: about half an hour
+#   tests/bench/run.sh --quick             a minute: a few parts, short times
+#   tests/bench/run.sh --corpus=FOLDER     sliced files of your own instead of tests/data/gcode
+#   tests/bench/run.sh --build=FOLDER      a build other than build/release
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+build=build/release
+corpus=tests/data/gcode
+quick=()
+micro=()
+for argument in "$@"; do
+  case "$argument" in
+    --quick) quick=(--quick) micro=(--benchmark_min_time=0.05) ;;
+    --corpus=*) corpus=${argument#*=} ;;
+    --build=*) build=${argument#*=} ;;
+    *)
+      sed -n '4,7s/^# *//p' "$0" >&2
+      exit 2
+      ;;
+  esac
+done
+
+targets=(layers_bench gcode_corpus_bench)
+if cmake --build "$build" --target help | grep -q '^engine_micro'; then targets+=(engine_micro); fi
+cmake --build "$build" --target "${targets[@]}" >&2
+
+printf '# Benchmarks\n\n%s, %s threads, %s\n\n' \
+  "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1)" "$(nproc)" "$(git rev-parse --short HEAD)"
+status=0
+"$build"/tests/bench/layers/layers_bench "${quick[@]}" || status=1
+printf '## Sliced files\n\n'
+"$build"/tests/bench/gcode/gcode_corpus_bench --threads="$(nproc)" "$corpus" || status=1
+if [ -x "$build"/tests/bench/micro/engine_micro ]; then
+  printf '\n## Kernels\n\n```\n'
+  "$build"/tests/bench/micro/engine_micro "${micro[@]}" 2>/dev/null
+  printf '```\n'
+fi
+exit "$status"
