@@ -125,8 +125,10 @@ void LayerChain::SolveFirst(Slot& slot) const {
   const LayerProblem problem = Problem(slot, slot.predicted_start);
   // Different layers that share a fingerprint are unheard of, not impossible.
   const bool resumes = slot.model && ValidateRoute(slot.layer.plan, slot.model->route).ok();
+  if (resumes) slot.bound_multipliers = slot.model->bound_multipliers;
   slot.first = resumes ? strategy_->Resume(problem, slot.model->route, budget)
                        : strategy_->Solve(problem, budget);
+  if (!slot.first.lower_bound) Bound(problem, slot, slot.first);
   slot.outcome.solve_seconds = watch.Seconds();
 }
 
@@ -186,6 +188,17 @@ void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
   offer(slot.given_route);
 }
 
+// Looks for a lower bound of a solution, if the strategy wants one. The search for it is done with
+// the first solution, in parallel, or was done for an equal layer; from another start its result is
+// used again.
+void LayerChain::Bound(const LayerProblem& problem, Slot& slot, Solution& solution) const {
+  if (!strategy_->wants_bound() || cancel_.cancelled()) return;
+  Budget budget = LayerBudget(1 - kSolveShare);
+  const double cost = RouteCost(problem, solution.route);
+  solution.lower_bound = LowerBound(problem, cost, &slot.bound_multipliers, budget);
+  if (solution.lower_bound == cost) solution.stop = StopReason::kOptimal;
+}
+
 LayerOutcome LayerChain::Anchor(Slot& slot, Point start) const {
   const Stopwatch watch;
   const LayerProblem problem = Problem(slot, start);
@@ -197,6 +210,7 @@ LayerOutcome LayerChain::Anchor(Slot& slot, Point start) const {
   } else {
     KeepBestRoute(problem, slot, solution);
   }
+  if (!solution.lower_bound) Bound(problem, slot, solution);
   outcome.start = start;
   outcome.end = RouteEnd(slot.layer.plan, solution.route, start);
   outcome.travel = MeasureTravel(slot.layer.plan, start, solution.route);
@@ -291,6 +305,7 @@ void LayerChain::MaybeSolveFirst(const SlotPtr& slot) {
 void LayerChain::HandOn(const Slot& slot) {
   if (!slot.result) return;
   slot.result->route = slot.first.route;
+  slot.result->bound_multipliers = slot.bound_multipliers;
   slot.result->ready = true;
   for (const uint64_t index : std::exchange(slot.result->waiting, {})) {
     MaybeSolveFirst(SlotAt(index));

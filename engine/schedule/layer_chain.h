@@ -29,6 +29,7 @@
 #include <utility>
 
 #include "engine/engine.h"
+#include "engine/exact/lower_bound.h"
 #include "engine/schedule/end_history.h"
 #include "engine/schedule/outbox.h"
 #include "engine/schedule/route_history.h"
@@ -68,6 +69,7 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
 
     // Set by solve and second.
     Solution first;
+    BoundMultipliers bound_multipliers;
     std::optional<Point> second_start;
     Solution second;
 
@@ -95,6 +97,7 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   LayerOutcome Anchor(Slot& slot, Point start) const;
   Solution SolveFromTrueStart(const LayerProblem& problem, const Slot& slot) const;
   void KeepBestRoute(const LayerProblem& problem, const Slot& slot, Solution& solution) const;
+  void Bound(const LayerProblem& problem, Slot& slot, Solution& solution) const;
 
   // Run a stage and hand the layer over to the next one.
   void RunPrepare(const SlotPtr& slot);

@@ -18,7 +18,9 @@ namespace traverse {
 // The route that a layer will have been given. Guarded by whoever shares it between threads.
 struct RouteToCome {
   bool ready = false;
-  Route route;                    // if ready; empty if there is none to start from
+  Route route;  // if ready; empty if there is none to start from
+  std::vector<double>
+      bound_multipliers;          // of the search for its lower bound, as LowerBound has them
   std::vector<uint64_t> waiting;  // layers that start from it
 };
 

@@ -30,7 +30,7 @@ constexpr double kResumeShare = 0.5;
 
 class Auto : public Strategy {
  public:
-  explicit Auto(double effort) : effort_(effort) {}
+  Auto(double effort, bool bound) : effort_(effort), bound_(bound) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
     const LayerView layer(problem);
@@ -42,6 +42,8 @@ class Auto : public Strategy {
   }
 
   bool reuses_routes() const override { return true; }
+
+  bool wants_bound() const override { return bound_; }
 
  private:
   Solution Search(const LayerView& layer, Route route, double effort, Budget& budget) const {
@@ -80,6 +82,7 @@ class Auto : public Strategy {
   }
 
   const double effort_;
+  const bool bound_;
 };
 
 }  // namespace
@@ -88,16 +91,17 @@ StrategyEntry AutoEntry() {
   return StrategyEntry{
       "auto",
       "The best route for the time given: greedy, improved until nothing more is gained.",
-      false,
+      true,
       {OptionSpec{"effort",
                   OptionSpec::Type::kDouble,
                   "1",
                   0,
                   1e6,
                   {},
-                  "How long to go on without a gain, as a multiple of the default."}},
+                  "How long to go on without a gain, as a multiple of the default."},
+       BoundOption(true)},
       [](const StrategyOptions& options) -> std::unique_ptr<Strategy> {
-        return std::make_unique<Auto>(options.Double("effort"));
+        return std::make_unique<Auto>(options.Double("effort"), options.Bool("bound"));
       }};
 }
 

@@ -10,9 +10,11 @@
 #include <vector>
 
 #include "engine/cost/route_cost.h"
+#include "engine/exact/lower_bound.h"
 #include "engine/exact/stage_model.h"
 #include "engine/exact/stage_proof.h"
 #include "engine/framework/island_layout.h"
+#include "engine/strategy/auto.h"
 #include "engine/strategy/framework_milp.h"
 #include "engine/strategy/greedy.h"
 #include "engine/strategy/ni2opt.h"
@@ -28,48 +30,72 @@ std::unique_ptr<Strategy> MakeDefault(const StrategyEntry& entry) {
   return entry.make(*StrategyOptions::Parse(entry.options, {}));
 }
 
+// Of the time left, what the first route may use, and then the first bound: a proof needs the rest,
+// but route and bound are what there is when it is not found.
+constexpr double kRouteShare = 0.4;
+constexpr double kBoundShare = 0.5;
+
+Budget Share(const Budget& budget, double share) {
+  if (!budget.deadline()) return budget;
+  const auto left = *budget.deadline() - Budget::Clock::now();
+  return budget.Within(std::chrono::duration_cast<Budget::Clock::duration>(left * share));
+}
+
 class Exact : public Strategy {
  public:
   explicit Exact(double time_limit_seconds)
-      : time_limit_seconds_(time_limit_seconds), heuristic_(MakeDefault(Ni2optEntry())) {}
+      : time_limit_seconds_(time_limit_seconds), heuristic_(MakeDefault(AutoEntry())) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
-    return Prove(problem, heuristic_->Solve(problem, budget).route, budget);
+    Budget share = Share(budget, kRouteShare);
+    return Prove(problem, heuristic_->Solve(problem, share), budget);
   }
 
   Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
-    Route route = heuristic_->Solve(problem, budget).route;
-    if (RouteCost(problem, start) < RouteCost(problem, route)) route = start;
-    return Prove(problem, std::move(route), budget);
+    Budget share = Share(budget, kRouteShare);
+    Solution found = heuristic_->Solve(problem, share);
+    if (RouteCost(problem, start) < RouteCost(problem, found.route)) found.route = start;
+    return Prove(problem, std::move(found), budget);
   }
 
   // A proof holds for one start only: predicted ones would be work for nothing.
   bool trivial() const override { return true; }
 
  private:
-  Solution Prove(const LayerProblem& problem, Route incumbent, Budget& budget) const {
-    if (incumbent.empty()) {
-      const double cost = RouteCost(problem, incumbent);
-      return Solution{std::move(incumbent), StopReason::kOptimal, cost};
+  Solution Prove(const LayerProblem& problem, Solution solution, Budget& budget) const {
+    const double cost = RouteCost(problem, solution.route);
+    if (solution.route.empty()) {
+      return Solution{std::move(solution.route), StopReason::kOptimal, cost};
     }
-    Solution solution{std::move(incumbent), StopReason::kIterationLimit, std::nullopt};
+    if (solution.stop == StopReason::kOptimal) return solution;
     Budget limited = budget.Within(std::chrono::duration_cast<Budget::Clock::duration>(
         std::chrono::duration<double>(time_limit_seconds_)));
-    if (limited.ExhaustedNow()) {
-      solution.stop = StopOr(limited, solution.stop);
-      return solution;
+    Budget share = Share(limited, kBoundShare);
+    solution.lower_bound = LowerBound(problem, cost, nullptr, share);
+    if (solution.lower_bound == cost) {
+      solution.stop = StopReason::kOptimal;
+    } else if (limited.ExhaustedNow() || !ProveByStages(problem, solution, limited)) {
+      solution.stop = StopOr(budget, StopOr(limited, StopReason::kLocalOptimum));
     }
+    return solution;
+  }
+
+  // False if the plan has another shape, or is too large, or a limit ended it.
+  static bool ProveByStages(const LayerProblem& problem, Solution& solution, Budget& budget) {
     const std::optional<StageModel> model = StageModel::Build(problem, kMostModelEntries);
-    if (!model || !CanProveByStages(*model)) return solution;
-    const StageProof result =
-        ProveByStages(*model, model->WalkOf(solution.route), StageProofOptions(), limited);
-    Route route = model->RouteOf(result.walk);
+    if (!model || !CanProveByStages(*model)) return false;
+    const StageProof proof =
+        traverse::ProveByStages(*model, model->WalkOf(solution.route), StageProofOptions(), budget);
+    Route route = model->RouteOf(proof.walk);
     if (RouteCost(problem, route) <= RouteCost(problem, solution.route)) {
       solution.route = std::move(route);
     }
-    solution.lower_bound = result.lower_bound;
-    solution.stop = result.proven ? StopReason::kOptimal : StopOr(limited, solution.stop);
-    return solution;
+    solution.lower_bound = std::max(solution.lower_bound.value_or(0), proof.lower_bound);
+    if (proof.proven) solution.stop = StopReason::kOptimal;
+    solution.statistics["passes"] = proof.passes;
+    solution.statistics["nodes"] = proof.nodes;
+    solution.statistics["cuts"] = proof.cuts;
+    return proof.proven;
   }
 
   const double time_limit_seconds_;
@@ -80,10 +106,11 @@ class Exact : public Strategy {
 class ExactFramework : public Strategy {
  public:
   ExactFramework(const FrameworkOptions& options, const MilpOptions& milp,
-                 double time_limit_seconds)
+                 double time_limit_seconds, bool bound)
       : options_(options),
         milp_(milp),
         time_limit_seconds_(time_limit_seconds),
+        bound_(bound),
         greedy_(MakeDefault(GreedyEntry())),
         heuristic_(MakeDefault(Ni2optEntry())) {}
 
@@ -109,6 +136,8 @@ class ExactFramework : public Strategy {
   // As the thesis has it, every layer starts where the one before ended.
   bool trivial() const override { return true; }
 
+  bool wants_bound() const override { return bound_; }
+
  private:
   static void Describe(const std::string& step, const MilpRoute& programme,
                        std::map<std::string, double>& statistics) {
@@ -123,6 +152,7 @@ class ExactFramework : public Strategy {
   const FrameworkOptions options_;
   const MilpOptions milp_;
   const double time_limit_seconds_;
+  const bool bound_;
   const std::unique_ptr<Strategy> greedy_;     // which no result is worse than
   const std::unique_ptr<Strategy> heuristic_;  // for plans that the framework does not know
 };
@@ -165,7 +195,8 @@ std::vector<OptionSpec> Options() {
                  0,
                  0,
                  {},
-                 "Framework: one redundant row more for each position of a contour."}};
+                 "Framework: one redundant row more for each position of a contour."},
+      BoundOption(true)};
 }
 
 std::unique_ptr<Strategy> MakeExact(const StrategyOptions& values) {
@@ -174,7 +205,8 @@ std::unique_ptr<Strategy> MakeExact(const StrategyOptions& values) {
   FrameworkOptions options;
   options.representation = RepresentationNamed(values.Choice("representation"));
   return std::make_unique<ExactFramework>(
-      options, MilpOptions{values.Double("gap"), values.Bool("strengthened")}, time_limit);
+      options, MilpOptions{values.Double("gap"), values.Bool("strengthened")}, time_limit,
+      values.Bool("bound"));
 }
 
 }  // namespace

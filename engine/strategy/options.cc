@@ -27,6 +27,16 @@ bool InRange(const OptionSpec& spec, double value) {
 
 }  // namespace
 
+OptionSpec BoundOption(bool default_value) {
+  return OptionSpec{"bound",
+                    OptionSpec::Type::kBool,
+                    default_value ? "true" : "false",
+                    0,
+                    0,
+                    {},
+                    "Look for a lower bound too: how much better any route can be at most."};
+}
+
 absl::StatusOr<StrategyOptions::Value> StrategyOptions::ParseValue(const OptionSpec& spec,
                                                                    const std::string& text) {
   Value value;

@@ -25,6 +25,9 @@ struct OptionSpec {
   std::string description;          // what it does, with its unit
 };
 
+// The option `bound` that several strategies have: see Strategy::wants_bound.
+OptionSpec BoundOption(bool default_value);
+
 // The values of a strategy's options, all of them set. Immutable.
 class StrategyOptions {
  public:

@@ -49,6 +49,9 @@ class Strategy {
   // solved one after another, from their true starts.
   virtual bool trivial() const { return false; }
 
+  // True if callers want a lower bound of solutions that have none: the chain looks for one then.
+  virtual bool wants_bound() const { return false; }
+
   // True if Solve is so quick that the chain may solve a layer again where its start was predicted
   // wrongly, instead of resuming: the routes are then those of solving one layer after another.
   virtual bool quick() const { return false; }

@@ -39,10 +39,11 @@ struct Candidate {
 
 class Tabu : public Strategy {
  public:
-  Tabu(const FrameworkOptions& options, bool polish, double polish_rounds)
+  Tabu(const FrameworkOptions& options, bool polish, double polish_rounds, bool bound)
       : options_(options),
         polish_(polish),
         polish_rounds_(polish_rounds),
+        bound_(bound),
         ni2opt_(DefaultNi2opt()) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
@@ -68,6 +69,8 @@ class Tabu : public Strategy {
   // As the thesis has it, every layer starts where the one before ended: without polish nothing
   // repairs a route that was found for another start.
   bool trivial() const override { return !polish_; }
+
+  bool wants_bound() const override { return bound_; }
 
  private:
   static void Take(const LayerView& layer, Route route, Candidate& best) {
@@ -144,6 +147,7 @@ class Tabu : public Strategy {
   FrameworkOptions options_;
   bool polish_;
   double polish_rounds_;
+  bool bound_;
   std::unique_ptr<const Strategy> ni2opt_;
 };
 
@@ -206,7 +210,8 @@ std::vector<OptionSpec> Options() {
       Switch("polish", "true",
              "Improve the route over all vertices of the contours: 2-opt and point release."),
       Number("polish_rounds", Type::kDouble, "2", 0, 1000000,
-             "Kicks in a row without gain that end the polishing, for each path.")};
+             "Kicks in a row without gain that end the polishing, for each path."),
+      BoundOption(false)};
 }
 
 std::unique_ptr<Strategy> MakeTabu(const StrategyOptions& values) {
@@ -230,7 +235,8 @@ std::unique_ptr<Strategy> MakeTabu(const StrategyOptions& values) {
   tabu.patience = static_cast<int>(values.Int("patience"));
   tabu.reactive = values.Bool("reactive");
   tabu.elite = static_cast<int>(values.Int("elite"));
-  return std::make_unique<Tabu>(options, values.Bool("polish"), values.Double("polish_rounds"));
+  return std::make_unique<Tabu>(options, values.Bool("polish"), values.Double("polish_rounds"),
+                                values.Bool("bound"));
 }
 
 }  // namespace
@@ -240,7 +246,7 @@ StrategyEntry TabuEntry() {
       "tabu",
       "The framework of four steps with tabu search, polished; never behind ni2opt "
       "unless polish is off.",
-      false, Options(), MakeTabu};
+      true, Options(), MakeTabu};
 }
 
 }  // namespace traverse

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "engine/base/rng.h"
 #include "engine/cost/route_cost.h"
 #include "engine/strategy/registry.h"
@@ -118,6 +119,30 @@ TEST(LayerChain, EachLayerStartsWhereTheOneBeforeEnded) {
     EXPECT_EQ(outcome.end, at);
     EXPECT_TRUE(outcome.invalid_route.empty());
     EXPECT_LE(outcome.cost, outcome.cost_given + 100);
+  }
+}
+
+// From the start that a layer had in the end: a bound for a predicted one would not be one.
+TEST(LayerChain, BoundsLayersForStrategiesThatWantIt) {
+  RunOptions options;
+  options.strategy = "auto";
+  options.spec.cleaning = CleaningSpec{{90, 90}, 3, 0};
+  const auto strategy = *MakeStrategy("exact", {});
+
+  for (const auto& [index, outcome] : RunJob(options)) {
+    SCOPED_TRACE(absl::StrCat("layer ", index));
+    LayerProblem problem;
+    problem.plan = &outcome.plan;
+    problem.start = outcome.start;
+    Budget budget;
+    const Solution proven = strategy->Solve(problem, budget);
+    ASSERT_EQ(proven.stop, StopReason::kOptimal);
+    ASSERT_TRUE(outcome.lower_bound.has_value());
+    EXPECT_GT(*outcome.lower_bound, 0.5 * outcome.cost);
+    EXPECT_LE(*outcome.lower_bound, outcome.cost + 1e-9);
+    if (outcome.cleaning_mm == 0) {
+      EXPECT_LE(*outcome.lower_bound, RouteCost(problem, proven.route) + 1e-6);
+    }
   }
 }
 

@@ -83,6 +83,33 @@ TEST(Exact, KeepsADeadlineFarFromAProof) {
   EXPECT_OK(ValidateRoute(owned.plan(), solution.route));
 }
 
+// Where there is no proof, for the plan's shape or its size, there is a bound all the same.
+TEST(Exact, BoundsWhatItCannotProve) {
+  const OwnedProblem islands(InterleavedPlan(testing::SquareGrid(12, 12)));
+  Budget budget;
+
+  const Solution solution = MakeExact()->Solve(islands.problem, budget);
+
+  ASSERT_TRUE(solution.lower_bound.has_value());
+  EXPECT_GT(*solution.lower_bound, 0.5 * RouteCost(islands.problem, solution.route));
+  EXPECT_LE(*solution.lower_bound, RouteCost(islands.problem, solution.route));
+}
+
+// 500 islands in 100 ms of a core, or some more of a busy one.
+TEST(Exact, HasRouteAndBoundOfALargeLayerInNoTime) {
+  const OwnedProblem owned(SequentialPlan(testing::SquareGrid(25, 20)));
+  Budget unlimited;
+  const Route greedy = (*MakeStrategy("greedy", {}))->Solve(owned.problem, unlimited).route;
+  Budget budget(nullptr, Budget::Clock::now() + std::chrono::milliseconds(400));
+
+  const Solution solution = MakeExact()->Solve(owned.problem, budget);
+
+  ASSERT_OK(ValidateRoute(owned.plan(), solution.route));
+  EXPECT_LE(RouteCost(owned.problem, solution.route), RouteCost(owned.problem, greedy));
+  ASSERT_TRUE(solution.lower_bound.has_value());
+  EXPECT_GT(*solution.lower_bound, 0);
+}
+
 TEST(Exact, IsCancelledSoon) {
   const OwnedProblem owned(SequentialPlan(testing::SquareGrid(14, 14)));
   CancelToken cancel;

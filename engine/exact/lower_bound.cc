@@ -1,0 +1,42 @@
+#include "engine/exact/lower_bound.h"
+
+#include <algorithm>
+
+#include "engine/cost/route_cost.h"
+#include "engine/exact/tree_bound.h"
+
+namespace traverse {
+namespace {
+
+// Each round searches with the near pairs known so far, and makes more of them known.
+constexpr int kRounds = 3;
+constexpr int kStepsPerRound = 40;
+
+// Of the time that is left, what a search may use: the evaluation after it is what counts.
+constexpr double kSearchShare = 0.4;
+
+Budget SearchBudget(const Budget& budget) {
+  if (!budget.deadline()) return budget;
+  const auto left = *budget.deadline() - Budget::Clock::now();
+  return budget.Within(std::chrono::duration_cast<Budget::Clock::duration>(left * kSearchShare));
+}
+
+}  // namespace
+
+std::optional<double> LowerBound(const LayerProblem& problem, double target,
+                                 BoundMultipliers* multipliers, Budget& budget) {
+  if (problem.plan->paths.empty()) return RouteCost(problem, {});
+  TreeBound tree(problem, budget);
+  const bool known = multipliers != nullptr && multipliers->size() == tree.multipliers().size();
+  if (known) tree.SetMultipliers(*multipliers);
+  if (!tree.Evaluate(budget)) return std::nullopt;
+  for (int round = 0; round < kRounds && !known && tree.lower_bound() < target; ++round) {
+    Budget search = SearchBudget(budget);
+    tree.Ascend(target, kStepsPerRound, search);
+    if (!tree.Evaluate(budget)) break;
+  }
+  if (multipliers != nullptr) *multipliers = tree.multipliers();
+  return std::min(tree.lower_bound(), target);
+}
+
+}  // namespace traverse
