@@ -116,6 +116,8 @@ void JobRun::OnLayer(LayerOutcome outcome) {
 }
 
 void JobRun::OnDone() {
+  // Once engine_done_ is seen by another thread, that one may end the job and give up the run.
+  const std::shared_ptr<JobRun> self = shared_from_this();
   bool summary = false;
   {
     std::lock_guard<std::mutex> lock(mutex_);

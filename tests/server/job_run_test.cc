@@ -321,5 +321,61 @@ TEST(JobRunRaces, AbortAtAnyTimeEndsOnce) {
   }
 }
 
+// A port that is gone, and its run with it, as soon as the job has ended: as a reactor is.
+class VanishingPort : public JobPort {
+ public:
+  VanishingPort(WorkerPool& pool, std::atomic<int>& ended)
+      : run_(JobRun::Make(*this)), writes_(pool.NewQueue("writer")), ended_(ended) {}
+
+  void Start(Executor& executor) {
+    const std::shared_ptr<JobRun> run = run_;
+    run->Hold();
+    run->Start({}, {}, Slow(0), executor);
+    run->Add(Layer(1));
+    run->Close();
+    run->Release();
+  }
+
+  std::string EncodeLayer(const LayerOutcome& /*outcome*/, uint64_t /*id*/,
+                          int64_t /*points*/) override {
+    return "layer";
+  }
+  std::string EncodeSummary() override { return "summary"; }
+  void StartWrite(std::string /*message*/, bool /*more_follows*/) override {
+    writes_->Submit([this] { run_->OnWriteDone(true); });
+  }
+  void OnRoom() override {}
+  void Finish(const absl::Status& /*status*/) override {
+    // After the reaction that is under way, in another thread.
+    writes_->Submit([this] {
+      ++ended_;
+      delete this;
+    });
+  }
+
+ private:
+  const std::shared_ptr<JobRun> run_;
+  const std::shared_ptr<WorkerPool::Queue> writes_;
+  std::atomic<int>& ended_;
+};
+
+// The summary may be written, and the job end, before the engine's last call returns.
+TEST(JobRunRaces, TheRunOutlivesTheEnginesLastCall) {
+  constexpr int kJobs = 10'000;
+  WorkerPool workers(3);
+  std::atomic<int> ended{0};
+  {
+    WorkerPool writers(1);
+    const auto queue = workers.NewQueue("jobs");
+    for (int i = 0; i < kJobs; ++i) {
+      (new VanishingPort(writers, ended))->Start(*queue);
+    }
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (ended < kJobs && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+  }
+
+  EXPECT_EQ(ended, kJobs);
+}
+
 }  // namespace
 }  // namespace traverse
