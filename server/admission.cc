@@ -1,6 +1,7 @@
 #include "server/admission.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "server/retry_delay.h"
@@ -16,9 +17,8 @@ constexpr absl::Duration kMaxRetryDelay = absl::Seconds(30);
 // Advice where the limit is on jobs, whose durations are not known.
 constexpr absl::Duration kJobsRetryDelay = absl::Seconds(1);
 
-// The rate is averaged over periods of this length, each new one counting kNewShare.
-constexpr double kRatePeriodSeconds = 0.5;
-constexpr double kNewShare = 0.3;
+// With each layer solved the earlier ones count by so much less.
+constexpr double kFading = 0.998;
 
 }  // namespace
 
@@ -32,6 +32,10 @@ const char* RefusalName(Refusal refusal) {
       return "caller_jobs";
     case Refusal::kQueue:
       return "queue";
+    case Refusal::kCallerQueue:
+      return "caller_queue";
+    case Refusal::kWait:
+      return "wait";
     case Refusal::kMessage:
       return "message";
     case Refusal::kJobLayers:
@@ -53,53 +57,96 @@ Admission::Admission(const AdmissionLimits& limits, std::function<void(Refusal)>
 
 absl::StatusOr<std::unique_ptr<Admission::Ticket>> Admission::Admit(const std::string& caller,
                                                                     int64_t points) {
-  std::unique_lock<std::mutex> lock(mutex_);
+  std::optional<No> no;
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    no = Check(caller, points);
+    if (!no) {
+      std::unique_ptr<Ticket> ticket(new Ticket(*this));
+      ticket->caller_ = callers_.try_emplace(caller).first;
+      ticket->caller_->second.jobs.insert(ticket.get());
+      ticket->Count(points);
+      ++jobs_;
+      return ticket;
+    }
+  }
+  on_refusal_(no->refusal);
+  return no->status;
+}
+
+std::optional<Admission::No> Admission::Check(const std::string& caller, int64_t points) const {
   if (draining_) {
-    lock.unlock();
-    return Refuse(Refusal::kDraining,
-                  absl::UnavailableError("the server is shutting down; ask another one"));
+    return No{Refusal::kDraining,
+              absl::UnavailableError("the server is shutting down; ask another one")};
   }
   if (jobs_ >= limits_.max_jobs) {
-    lock.unlock();
-    return Refuse(
+    return No{
         Refusal::kJobs,
         WithRetryDelay(absl::ResourceExhaustedError(absl::StrCat(
                            "all ", limits_.max_jobs, " places for jobs are taken; try again")),
-                       kJobsRetryDelay));
+                       kJobsRetryDelay)};
   }
-  const auto of_caller = jobs_of_caller_.find(caller);
-  if (of_caller != jobs_of_caller_.end() && of_caller->second >= limits_.max_jobs_per_caller) {
-    lock.unlock();
-    return Refuse(Refusal::kCallerJobs,
-                  WithRetryDelay(absl::ResourceExhaustedError(absl::StrCat(
-                                     "this caller has all of its ", limits_.max_jobs_per_caller,
-                                     " jobs in flight; try again when one has ended")),
-                                 kJobsRetryDelay));
+  const auto of_caller = callers_.find(caller);
+  if (of_caller != callers_.end() &&
+      static_cast<int>(of_caller->second.jobs.size()) >= limits_.max_jobs_per_caller) {
+    return No{Refusal::kCallerJobs,
+              WithRetryDelay(absl::ResourceExhaustedError(absl::StrCat(
+                                 "this caller has all of its ", limits_.max_jobs_per_caller,
+                                 " jobs in flight; try again when one has ended")),
+                             kJobsRetryDelay)};
   }
-  const int64_t excess = queued_points_ + points - limits_.max_queued_points;
-  if (excess > 0 && queued_points_ > 0) {
-    const absl::Duration delay = TimeToDrain(std::min(excess, queued_points_));
-    const int64_t queued = queued_points_;
-    lock.unlock();
-    return Refuse(
-        Refusal::kQueue,
-        WithRetryDelay(absl::ResourceExhaustedError(absl::StrCat(
-                           "the queue is full: ", queued, " of ", limits_.max_queued_points,
-                           " points, and this job has about ", points, "; try again")),
-                       delay));
-  }
-  ++jobs_;
-  ++jobs_of_caller_[caller];
-  if (queued_points_ == 0) rate_since_ = Clock::now(), solved_points_ = 0;
-  queued_points_ += points;
-  std::unique_ptr<Ticket> ticket(new Ticket(*this, caller));
-  ticket->points_ = points;
-  return ticket;
+  if (std::optional<No> no = CheckQueues(caller, points); no) return no;
+  return CheckWait(caller, points);
 }
 
-absl::Status Admission::Refuse(Refusal refusal, absl::Status status) {
-  on_refusal_(refusal);
-  return status;
+std::optional<Admission::No> Admission::CheckQueues(const std::string& caller,
+                                                    int64_t points) const {
+  const auto of_caller = callers_.find(caller);
+  const int64_t own = of_caller == callers_.end() ? 0 : of_caller->second.queued_points;
+  const auto full = [&](Refusal refusal, const char* what, int64_t queued,
+                        int64_t limit) -> std::optional<No> {
+    const int64_t excess = queued + points - limit;
+    if (excess <= 0 || queued == 0) return std::nullopt;
+    const absl::Duration delay = TimeFor(std::min(excess, queued));
+    return No{refusal,
+              WithRetryDelay(absl::ResourceExhaustedError(absl::StrCat(
+                                 what, " is full: ", queued, " of ", limit,
+                                 " points, and this job has about ", points, "; try again")),
+                             std::clamp(delay, kMinRetryDelay, kMaxRetryDelay))};
+  };
+  if (auto no = full(Refusal::kQueue, "the queue", queued_points_, limits_.max_queued_points); no) {
+    return no;
+  }
+  return full(Refusal::kCallerQueue, "this caller's part of the queue", own,
+              limits_.max_queued_points_per_caller);
+}
+
+std::optional<Admission::No> Admission::CheckWait(const std::string& caller, int64_t points) const {
+  const absl::Duration expected = TimeFor(PointsUntilDone(caller, points));
+  const absl::Duration bearable =
+      std::max(limits_.max_wait, TimeFor(points) * limits_.max_slowdown);
+  if (expected <= bearable) return std::nullopt;
+  return No{Refusal::kWait,
+            WithRetryDelay(
+                absl::ResourceExhaustedError(absl::StrCat(
+                    "the server is busy: this job would take about ",
+                    absl::FormatDuration(absl::Trunc(expected, absl::Milliseconds(1))), ", alone ",
+                    absl::FormatDuration(absl::Trunc(TimeFor(points), absl::Milliseconds(1))),
+                    "; try again")),
+                std::clamp(expected - bearable, kMinRetryDelay, kMaxRetryDelay))};
+}
+
+int64_t Admission::PointsUntilDone(const std::string& caller, int64_t points) const {
+  int64_t own = points;
+  const auto of_caller = callers_.find(caller);
+  if (of_caller != callers_.end()) {
+    for (const Ticket* job : of_caller->second.jobs) own += std::min(job->points_, points);
+  }
+  int64_t all = own;
+  for (auto other = callers_.begin(); other != callers_.end(); ++other) {
+    if (other != of_caller) all += std::min(other->second.queued_points, own);
+  }
+  return all;
 }
 
 void Admission::StartDraining() {
@@ -122,48 +169,43 @@ int64_t Admission::queued_points() const {
   return queued_points_;
 }
 
-absl::Duration Admission::TimeToDrain(int64_t points) const {
-  if (points_per_second_ <= 0) return kJobsRetryDelay;
-  return std::clamp(absl::Seconds(static_cast<double>(points) / points_per_second_), kMinRetryDelay,
-                    kMaxRetryDelay);
-}
-
-void Admission::MeasureRate(int64_t points) {
-  solved_points_ += points;
-  const Clock::time_point now = Clock::now();
-  const double seconds = std::chrono::duration<double>(now - rate_since_).count();
-  if (seconds < kRatePeriodSeconds) return;
-  const double rate = static_cast<double>(solved_points_) / seconds;
-  points_per_second_ =
-      points_per_second_ <= 0 ? rate : (1 - kNewShare) * points_per_second_ + kNewShare * rate;
-  solved_points_ = 0;
-  rate_since_ = now;
+absl::Duration Admission::TimeFor(int64_t points) const {
+  if (solved_points_ <= 0) return absl::ZeroDuration();
+  return absl::Seconds(static_cast<double>(points) * solved_seconds_ / solved_points_ /
+                       limits_.workers);
 }
 
 Admission::Ticket::~Ticket() {
   std::lock_guard<std::mutex> lock(admission_.mutex_);
-  admission_.queued_points_ -= points_;
+  Count(-points_);
   --admission_.jobs_;
-  const auto of_caller = admission_.jobs_of_caller_.find(caller_);
-  if (--of_caller->second == 0) admission_.jobs_of_caller_.erase(of_caller);
+  caller_->second.jobs.erase(this);
+  if (caller_->second.jobs.empty()) admission_.callers_.erase(caller_);
+}
+
+void Admission::Ticket::Count(int64_t points) {
+  points_ += points;
+  caller_->second.queued_points += points;
+  admission_.queued_points_ += points;
 }
 
 void Admission::Ticket::Add(int64_t points) {
   std::lock_guard<std::mutex> lock(admission_.mutex_);
-  points_ += points;
-  admission_.queued_points_ += points;
+  Count(points);
 }
 
-void Admission::Ticket::Remove(int64_t points) {
+void Admission::Ticket::Remove(int64_t points, double seconds) {
   std::lock_guard<std::mutex> lock(admission_.mutex_);
-  points_ -= points;
-  admission_.queued_points_ -= points;
-  admission_.MeasureRate(points);
+  Count(-points);
+  admission_.solved_points_ = admission_.solved_points_ * kFading + static_cast<double>(points);
+  admission_.solved_seconds_ = admission_.solved_seconds_ * kFading + seconds;
 }
 
 bool Admission::Ticket::MayBringMore() const {
   std::lock_guard<std::mutex> lock(admission_.mutex_);
-  return points_ == 0 || admission_.queued_points_ < admission_.limits_.max_queued_points;
+  const AdmissionLimits& limits = admission_.limits_;
+  return points_ == 0 || (admission_.queued_points_ < limits.max_queued_points &&
+                          caller_->second.queued_points < limits.max_queued_points_per_caller);
 }
 
 }  // namespace traverse

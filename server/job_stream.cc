@@ -166,7 +166,7 @@ void JobStream::OnCallCancelled() {
 std::string JobStream::EncodeLayer(const LayerOutcome& outcome, uint64_t id, int64_t points) {
   totals_.Add(outcome);
   core_.metrics.CountLayer(*layer_metrics_, outcome, setup_.idle_speed_mm_s);
-  ticket_->Remove(points);
+  ticket_->Remove(points, outcome.solve_seconds);
   --core_.queue_layers;
   return Encode(outcome, id);
 }

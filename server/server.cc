@@ -100,6 +100,8 @@ ServerOptions ServerOptions::Embedded(int threads) {
   options.service.admission.max_jobs = INT_MAX;
   options.service.admission.max_jobs_per_caller = INT_MAX;
   options.service.admission.max_queued_points = INT64_MAX / 2;
+  options.service.admission.max_queued_points_per_caller = INT64_MAX / 2;
+  options.service.admission.max_wait = absl::InfiniteDuration();
   return options;
 }
 

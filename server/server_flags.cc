@@ -33,6 +33,10 @@ ABSL_FLAG(int64_t, max_points_per_job, 0, "Most points in a job; 0: no limit");
 ABSL_FLAG(int64_t, max_points_per_layer, 1'000'000, "Most points in a layer");
 ABSL_FLAG(int64_t, max_queued_points, 8'000'000,
           "Most points of all jobs together that wait to be solved");
+ABSL_FLAG(int64_t, max_queued_points_per_caller, 4'000'000, "The same of one caller's jobs");
+ABSL_FLAG(absl::Duration, max_wait, absl::Milliseconds(250),
+          "A job is refused that would take longer than this and than --max_slowdown allows");
+ABSL_FLAG(double, max_slowdown, 10, "How many times as long as alone a job may take");
 ABSL_FLAG(int32_t, max_jobs, 256, "Most jobs in flight");
 ABSL_FLAG(int32_t, max_jobs_per_caller, 64, "Most jobs in flight of one caller");
 ABSL_FLAG(int64_t, window_layers, 256, "Most layers of a job between solver and reader");
@@ -79,6 +83,7 @@ absl::Status CheckRanges() {
       {"max_points_per_job", absl::GetFlag(FLAGS_max_points_per_job), 0},
       {"max_points_per_layer", absl::GetFlag(FLAGS_max_points_per_layer), 1},
       {"max_queued_points", absl::GetFlag(FLAGS_max_queued_points), 1},
+      {"max_queued_points_per_caller", absl::GetFlag(FLAGS_max_queued_points_per_caller), 1},
       {"max_jobs", absl::GetFlag(FLAGS_max_jobs), 1},
       {"max_jobs_per_caller", absl::GetFlag(FLAGS_max_jobs_per_caller), 1},
       {"window_layers", absl::GetFlag(FLAGS_window_layers), 2},
@@ -96,6 +101,9 @@ absl::Status CheckRanges() {
   if (absl::GetFlag(FLAGS_drain_timeout) < absl::ZeroDuration()) {
     return BadFlag("drain_timeout", "below 0");
   }
+  if (absl::GetFlag(FLAGS_max_wait) <= absl::ZeroDuration())
+    return BadFlag("max_wait", "not above 0");
+  if (!(absl::GetFlag(FLAGS_max_slowdown) >= 1)) return BadFlag("max_slowdown", "below 1");
   if (!absl::GetFlag(FLAGS_allowed_clients).empty() && absl::GetFlag(FLAGS_tls_client_ca).empty()) {
     return BadFlag("allowed_clients", "needs --tls_client_ca");
   }
@@ -197,6 +205,10 @@ ServerOptions OptionsFromFlags() {
   service.limits.window.layers = absl::GetFlag(FLAGS_window_layers);
   service.limits.window.points = absl::GetFlag(FLAGS_window_points);
   service.admission.max_queued_points = absl::GetFlag(FLAGS_max_queued_points);
+  service.admission.max_queued_points_per_caller =
+      absl::GetFlag(FLAGS_max_queued_points_per_caller);
+  service.admission.max_wait = absl::GetFlag(FLAGS_max_wait);
+  service.admission.max_slowdown = absl::GetFlag(FLAGS_max_slowdown);
   service.admission.max_jobs = absl::GetFlag(FLAGS_max_jobs);
   service.admission.max_jobs_per_caller = absl::GetFlag(FLAGS_max_jobs_per_caller);
   service.auth.token_file = absl::GetFlag(FLAGS_token_file);

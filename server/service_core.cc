@@ -1,13 +1,24 @@
 #include "server/service_core.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace traverse {
 
+namespace {
+
+AdmissionLimits WithWorkers(AdmissionLimits limits, int workers) {
+  limits.workers = workers;
+  return limits;
+}
+
+}  // namespace
+
 ServiceCore::ServiceCore(const ServiceOptions& options)
     : limits(options.limits),
       log(options.log ? std::make_unique<JobLog>(options.log_path) : std::make_unique<JobLog>()),
-      admission(options.admission, [this](Refusal refusal) { metrics.CountRefusal(refusal); }),
+      admission(WithWorkers(options.admission, std::max(1, options.threads)),
+                [this](Refusal refusal) { metrics.CountRefusal(refusal); }),
       pool(options.threads) {}
 
 absl::Status ServiceCore::StartAuth(const AuthOptions& options) {

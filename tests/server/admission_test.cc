@@ -39,7 +39,7 @@ TEST_F(AdmissionTest, FullQueueRefusesWithADelay) {
   EXPECT_THAT(refusals_, ElementsAre("queue"));
   EXPECT_EQ(admission.queued_points(), 60);
 
-  (*first)->Remove(30);
+  (*first)->Remove(30, 0.001);
   EXPECT_OK(admission.Admit("b", 60));
 }
 
@@ -90,8 +90,83 @@ TEST_F(AdmissionTest, StreamsAreHeldBackWhileTheQueueIsFull) {
 
   (*stream)->Add(20);
   EXPECT_FALSE((*stream)->MayBringMore());
-  (*batch)->Remove(50);
+  (*batch)->Remove(50, 0.001);
   EXPECT_TRUE((*stream)->MayBringMore());
+}
+
+TEST_F(AdmissionTest, NoCallerFillsTheWholeQueue) {
+  Admission admission({.max_queued_points = 1000, .max_queued_points_per_caller = 100}, Count());
+  auto first = admission.Admit("a", 60);
+
+  EXPECT_THAT(admission.Admit("a", 60),
+              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("this caller's part")));
+  EXPECT_OK(admission.Admit("b", 60));
+  EXPECT_THAT(refusals_, ElementsAre("caller_queue"));
+
+  (*first)->Add(40);
+  EXPECT_FALSE((*first)->MayBringMore());
+}
+
+// Solves a point in a millisecond of a worker.
+void SolveSome(Admission& admission) {
+  auto ticket = admission.Admit("before", 1000);
+  (*ticket)->Remove(1000, 1.0);
+}
+
+TEST_F(AdmissionTest, WhoWouldTakeFarLongerThanAloneIsRefusedWithADelay) {
+  Admission admission({.max_wait = absl::Milliseconds(250), .max_slowdown = 10, .workers = 2},
+                      Count());
+  SolveSome(admission);
+  std::vector<std::unique_ptr<Admission::Ticket>> tickets;
+  // Each is 0.5 s alone, on two workers; the tenth one takes 5 s.
+  for (int i = 0; i < 10; ++i) {
+    auto ticket = admission.Admit("a", 1000);
+    ASSERT_OK(ticket) << i;
+    tickets.push_back(*std::move(ticket));
+  }
+
+  const auto refused = admission.Admit("a", 1000);
+  EXPECT_THAT(refused, StatusIs(absl::StatusCode::kResourceExhausted,
+                                HasSubstr("would take about 5.5s, alone 500ms")));
+  EXPECT_TRUE(refused.status().GetPayload(kRetryInfo).has_value());
+  EXPECT_THAT(refusals_, ElementsAre("wait"));
+
+  tickets.pop_back();
+  EXPECT_OK(admission.Admit("a", 1000));
+}
+
+TEST_F(AdmissionTest, SmallJobsAreLetInBesideLargeOnes) {
+  Admission admission({}, Count());
+  SolveSome(admission);
+  std::vector<std::unique_ptr<Admission::Ticket>> tickets;
+  for (int i = 0; i < 4; ++i) tickets.push_back(*admission.Admit("a", 500'000));
+
+  // Turn by turn it is done when the others have had as much: 5 times its own time.
+  EXPECT_OK(admission.Admit("a", 100));
+  EXPECT_OK(admission.Admit("b", 100));
+}
+
+TEST_F(AdmissionTest, ManyJobsOfOneCallerCountAsOneForAnother) {
+  Admission admission({}, Count());
+  SolveSome(admission);
+  std::vector<std::unique_ptr<Admission::Ticket>> tickets;
+  for (int i = 0; i < 10; ++i) tickets.push_back(*admission.Admit("a", 10'000));
+
+  EXPECT_FALSE(admission.Admit("a", 10'000).ok());
+  EXPECT_OK(admission.Admit("b", 10'000));
+}
+
+TEST_F(AdmissionTest, WhatTakesLittleTimeIsLetInHoweverManyTimesAsLongItTakes) {
+  Admission admission({.max_wait = absl::Milliseconds(250), .max_slowdown = 10}, Count());
+  SolveSome(admission);
+  std::vector<std::unique_ptr<Admission::Ticket>> tickets;
+  for (int i = 0; i < 50; ++i) {
+    auto ticket = admission.Admit("a", 5);
+    ASSERT_OK(ticket) << i;
+    tickets.push_back(*std::move(ticket));
+  }
+
+  EXPECT_FALSE(admission.Admit("a", 5).ok());
 }
 
 TEST_F(AdmissionTest, NothingIsLeftBehindByManyThreads) {
@@ -103,7 +178,7 @@ TEST_F(AdmissionTest, NothingIsLeftBehindByManyThreads) {
         auto ticket = admission.Admit(std::to_string(t % 2), 40);
         if (!ticket.ok()) continue;
         (*ticket)->Add(5);
-        (*ticket)->Remove(20);
+        (*ticket)->Remove(20, 0.001);
       }
     });
   }
