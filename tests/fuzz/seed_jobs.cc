@@ -70,8 +70,8 @@ size_t MutateJob(uint8_t* data, size_t size, size_t max_size, unsigned int seed)
   if (size == 0 || size > kMaxJobBytes || !job.ParseFromArray(data, static_cast<int>(size))) {
     job = SeedJob(random);
   }
-  const unsigned changes = 1 + random() % 4;
-  for (unsigned i = 0; i < changes; ++i) MutateMessage(job, SeedJob(random), random);
+  const auto changes = 1 + random() % 4;
+  for (uint64_t i = 0; i < changes; ++i) MutateMessage(job, SeedJob(random), random);
   std::string bytes = job.SerializePartialAsString();
   // One in some is damaged below the level of messages.
   if (!bytes.empty() && random() % 16 == 0) {
