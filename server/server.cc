@@ -69,6 +69,10 @@ void SetConnectionLimits(const ConnectionLimits& limits, grpc::ServerBuilder& bu
 // For calls that have ended to be done with, at the end of the server.
 constexpr absl::Duration kGrace = absl::Seconds(2);
 
+// For calls that were on their way when the port closed: they are refused as draining refuses them,
+// rather than cut off.
+constexpr absl::Duration kLastCalls = absl::Milliseconds(200);
+
 // Waits until `condition` holds, for `timeout` at most. Returns whether it does.
 bool WaitFor(absl::Duration timeout, const std::function<bool()>& condition) {
   const auto end =
@@ -157,7 +161,7 @@ Server::~Server() {
   core_.admission.StartDraining();
   core_.AbortAll(absl::UnavailableError("the server has ended; ask another one"));
   if (server_ != nullptr) WaitFor(kGrace, [this] { return core_.calls() == 0; });
-  Shutdown();
+  Shutdown(absl::ZeroDuration());
 }
 
 std::shared_ptr<grpc::Channel> Server::InProcessChannel(const grpc::ChannelArguments& arguments) {
@@ -175,13 +179,13 @@ bool Server::Drain(absl::Duration timeout) {
   // The last messages and statuses are on their way out; a caller who does not read them loses
   // them.
   WaitFor(kGrace, [this] { return core_.calls() == 0; });
-  Shutdown();
+  Shutdown(kLastCalls);
   return all_done;
 }
 
-void Server::Shutdown() {
+void Server::Shutdown(absl::Duration grace) {
   if (server_ == nullptr) return;
-  server_->Shutdown(std::chrono::system_clock::now());
+  server_->Shutdown(std::chrono::system_clock::now() + absl::ToChronoMicroseconds(grace));
   server_->Wait();
 }
 

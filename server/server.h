@@ -77,7 +77,9 @@ class Server {
  private:
   explicit Server(const ServerOptions& options);
   absl::Status Build(const ServerOptions& options);
-  void Shutdown();
+
+  // Takes no more connections; calls are cancelled that are there after `grace`.
+  void Shutdown(absl::Duration grace);
 
   ServiceCore core_;
   RouteOptimizerService service_;

@@ -7,7 +7,10 @@
 #include <netdb.h>
 #include <netinet/in.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <string_view>
 
 #include "absl/status/status.h"
@@ -70,7 +73,68 @@ bool LookUp(const std::string& address, std::vector<std::string>& out) {
   return true;
 }
 
+// The bytes of a PEM file; nothing for an empty path.
+absl::StatusOr<std::string> ReadPem(const char* option, const std::string& path) {
+  if (path.empty()) return std::string();
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (!file) return absl::NotFoundError(absl::StrFormat("%s: cannot read %s", option, path));
+  if (bytes.find("-----BEGIN ") == std::string::npos) {
+    return absl::InvalidArgumentError(absl::StrFormat("%s: %s has nothing in PEM", option, path));
+  }
+  return bytes;
+}
+
+// The host that all addresses have; empty if there are several.
+std::string CommonHost(const std::vector<std::string>& addresses) {
+  const std::string host = Split(addresses.front()).host;
+  const bool all = std::all_of(addresses.begin(), addresses.end(), [&](const std::string& address) {
+    return Split(address).host == host;
+  });
+  return all ? host : "";
+}
+
+// Sets up encryption; adds what it needs to `arguments`.
+absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> MakeCredentials(
+    const std::vector<std::string>& addresses, const std::optional<ChannelTls>& tls,
+    grpc::ChannelArguments& arguments) {
+  if (!tls) return grpc::InsecureChannelCredentials();
+  if (tls->certificate.empty() != tls->key.empty()) {
+    return absl::InvalidArgumentError("tls_certificate and tls_key go together");
+  }
+  grpc::SslCredentialsOptions options;
+  const struct {
+    const char* name;
+    const std::string& path;
+    std::string& bytes;
+  } files[] = {{"tls_ca", tls->ca, options.pem_root_certs},
+               {"tls_certificate", tls->certificate, options.pem_cert_chain},
+               {"tls_key", tls->key, options.pem_private_key}};
+  for (const auto& file : files) {
+    absl::StatusOr<std::string> bytes = ReadPem(file.name, file.path);
+    if (!bytes.ok()) return bytes.status();
+    file.bytes = *std::move(bytes);
+  }
+  const std::string name = tls->name.empty() ? CommonHost(addresses) : tls->name;
+  if (name.empty()) {
+    return absl::InvalidArgumentError(
+        "tls_name: several servers need the name that their certificates have in common");
+  }
+  // gRPC would compare the certificate with the numeric address, where it was given one.
+  arguments.SetSslTargetNameOverride(name);
+  return grpc::SslCredentials(options);
+}
+
 }  // namespace
+
+bool IsLocal(const std::string& address) {
+  const std::string host = Split(address).host;
+  in_addr ipv4{};
+  if (inet_pton(AF_INET, host.c_str(), &ipv4) == 1) return (ntohl(ipv4.s_addr) >> 24) == 127;
+  in6_addr ipv6{};
+  if (inet_pton(AF_INET6, host.c_str(), &ipv6) == 1) return IN6_IS_ADDR_LOOPBACK(&ipv6) != 0;
+  return host == "localhost";
+}
 
 absl::StatusOr<std::vector<std::string>> ParseAddresses(const std::string& text) {
   const std::vector<std::string> addresses = absl::StrSplit(text, ',');
@@ -84,6 +148,9 @@ absl::StatusOr<std::vector<std::string>> ParseAddresses(const std::string& text)
 
 absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectTo(const std::vector<std::string>& addresses,
                                                          const ConnectOptions& options) {
+  grpc::ChannelArguments arguments;
+  auto credentials = MakeCredentials(addresses, options.tls, arguments);
+  if (!credentials.ok()) return credentials.status();
   std::string target;
   if (addresses.size() == 1) {
     target = absl::StrFormat("dns:///%s", addresses.front());
@@ -96,13 +163,12 @@ absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectTo(const std::vector<std::
     }
     target = absl::StrFormat("ipv6:%s", absl::StrJoin(known, ","));
   }
-  grpc::ChannelArguments arguments;
   arguments.SetServiceConfigJSON(kServiceConfig);
   arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, kConnectTimeoutMs);
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, kFirstReconnectMs);
   arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, options.own_connection ? 1 : 0);
   arguments.SetMaxReceiveMessageSize(-1);  // an answer is as large as the layer that was sent
-  return grpc::CreateCustomChannel(target, grpc::InsecureChannelCredentials(), arguments);
+  return grpc::CreateCustomChannel(target, *credentials, arguments);
 }
 
 }  // namespace traverse

@@ -95,13 +95,32 @@ std::optional<absl::Duration> RetryDelay(const grpc::Status& status) {
   return std::nullopt;
 }
 
+// Whether the call was lost on the way. Most such losses are UNAVAILABLE, but a connection that
+// goes at the wrong moment is also told as CANCELLED (which we never do while we wait for an
+// answer), as UNKNOWN by gRPC itself, or as INTERNAL by what lies between. The service sends none
+// of these.
+bool WasLost(const grpc::Status& status) {
+  const auto begins = [&](const char* text) { return status.error_message().rfind(text, 0) == 0; };
+  switch (status.error_code()) {
+    case grpc::StatusCode::UNAVAILABLE:
+    case grpc::StatusCode::CANCELLED:
+      return true;
+    case grpc::StatusCode::UNKNOWN:
+      return begins("Stream removed");
+    case grpc::StatusCode::INTERNAL:
+      return begins("Received RST_STREAM") || begins("RST_STREAM");
+    default:
+      return false;
+  }
+}
+
 // When to try again after `attempts` attempts in vain, or nothing if that makes no sense.
 std::optional<absl::Duration> DelayAfter(const grpc::Status& status, const RetryPolicy& policy,
                                          int attempts) {
-  if (attempts >= policy.max_attempts) return std::nullopt;
   const std::optional<absl::Duration> advice = RetryDelay(status);
   const bool full = status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED && advice;
-  if (!full && status.error_code() != grpc::StatusCode::UNAVAILABLE) return std::nullopt;
+  if (!full && !WasLost(status)) return std::nullopt;
+  if (attempts >= (full ? policy.max_refusals : policy.max_attempts)) return std::nullopt;
   absl::Duration delay = policy.first_delay;
   for (int i = 1; i < attempts; ++i) delay = std::min(delay * 2, policy.max_delay);
   delay = std::max(delay, advice.value_or(absl::ZeroDuration()));
@@ -169,11 +188,9 @@ class Collector {
 };
 
 // One call for the layers of `run`. `fault` is set if an answer is no answer.
-grpc::Status CallOnce(v1::RouteOptimizerService::Stub& stub, const v1::JobOptions& options,
-                      absl::Span<const v1::Layer> layers, const MissingRun& run,
-                      absl::Time deadline, Collector& collector, absl::Status& fault) {
-  grpc::ClientContext context;
-  if (deadline != absl::InfiniteFuture()) context.set_deadline(absl::ToChronoTime(deadline));
+grpc::Status CallOnce(v1::RouteOptimizerService::Stub& stub, grpc::ClientContext& context,
+                      const v1::JobOptions& options, absl::Span<const v1::Layer> layers,
+                      const MissingRun& run, Collector& collector, absl::Status& fault) {
   const std::unique_ptr<Stream> stream = stub.Optimize(&context);
   // A cleaning after the last layer happens only if another layer follows.
   const bool empty_layer =
@@ -196,8 +213,12 @@ grpc::Status CallOnce(v1::RouteOptimizerService::Stub& stub, const v1::JobOption
 
 }  // namespace
 
-OptimizerClient::OptimizerClient(std::shared_ptr<grpc::Channel> channel)
-    : stub_(v1::RouteOptimizerService::NewStub(std::move(channel))) {}
+OptimizerClient::OptimizerClient(std::shared_ptr<grpc::Channel> channel, std::string token)
+    : stub_(v1::RouteOptimizerService::NewStub(std::move(channel))), token_(std::move(token)) {}
+
+void OptimizerClient::Authorize(grpc::ClientContext& context) const {
+  if (!token_.empty()) context.AddMetadata("authorization", "Bearer " + token_);
+}
 
 absl::StatusOr<JobResult> OptimizerClient::Optimize(const v1::JobOptions& options,
                                                     absl::Span<const v1::Layer> layers,
@@ -213,9 +234,12 @@ absl::StatusOr<JobResult> OptimizerClient::Optimize(const v1::JobOptions& option
         run.begin > 0 ? &collector.result().layers[run.begin - 1] : nullptr;
     const size_t had = collector.answers();
     absl::Status fault;
+    grpc::ClientContext context;
+    Authorize(context);
+    if (deadline != absl::InfiniteFuture()) context.set_deadline(absl::ToChronoTime(deadline));
     const grpc::Status status =
-        CallOnce(*stub_, ResumedOptions(options, run.begin, before, absl::Now() - began), layers,
-                 run, deadline, collector, fault);
+        CallOnce(*stub_, context, ResumedOptions(options, run.begin, before, absl::Now() - began),
+                 layers, run, collector, fault);
     ++calls;
     if (!fault.ok()) return fault;
     in_vain = collector.answers() > had ? 1 : in_vain + 1;
@@ -245,6 +269,7 @@ absl::StatusOr<JobResult> OptimizerClient::Optimize(const v1::JobOptions& option
 absl::StatusOr<v1::ListStrategiesResponse> OptimizerClient::ListStrategies(
     absl::Duration deadline) {
   grpc::ClientContext context;
+  Authorize(context);
   SetDeadline(context, deadline);
   v1::ListStrategiesResponse response;
   const grpc::Status status = stub_->ListStrategies(&context, {}, &response);

@@ -13,9 +13,11 @@
 #define TRAVERSE_CLIENT_API_OPTIMIZER_CLIENT_H_
 
 #include <grpcpp/channel.h>
+#include <grpcpp/client_context.h>
 
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
@@ -26,10 +28,13 @@
 
 namespace traverse {
 
-// How often and when a job whose call broke off is taken up again: after UNAVAILABLE, and after
-// RESOURCE_EXHAUSTED with the server's advice when to come back.
+// How often and when a job whose call broke off is taken up again: after UNAVAILABLE and the other
+// signs of a lost connection, and after RESOURCE_EXHAUSTED with the server's advice when to come
+// back.
 struct RetryPolicy {
   int max_attempts = 5;  // in a row that brought no layer; 1: never again
+  int max_refusals =
+      20;  // the same where the last of them was refused: a busy server is worth waiting for
   absl::Duration first_delay = absl::Milliseconds(100);  // doubles with each attempt
   absl::Duration max_delay = absl::Seconds(10);          // the server's advice may be longer
 };
@@ -48,7 +53,9 @@ struct CallOptions {
 // Thread-safe: calls may overlap.
 class OptimizerClient {
  public:
-  explicit OptimizerClient(std::shared_ptr<grpc::Channel> channel);
+  // `token`, if not empty, goes with each call as a bearer token. It can be read on the way unless
+  // the channel is encrypted.
+  explicit OptimizerClient(std::shared_ptr<grpc::Channel> channel, std::string token = "");
 
   // Sends `layers` in build order on one stream while answers come back: neither side holds more
   // than its flow control window of what the other has not read. Of open paths the ends alone are
@@ -66,7 +73,10 @@ class OptimizerClient {
       absl::Duration deadline = absl::InfiniteDuration());
 
  private:
+  void Authorize(grpc::ClientContext& context) const;
+
   std::unique_ptr<v1::RouteOptimizerService::Stub> stub_;
+  const std::string token_;
 };
 
 }  // namespace traverse

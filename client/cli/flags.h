@@ -33,6 +33,10 @@ struct Flag {
 
   // Not empty: help has this flag and the next one on one line, with this text for both.
   std::string joint_help = "";
+
+  // True: help lists this flag by its name alone, beside the others like it; the man page has it
+  // all.
+  bool brief = false;
 };
 
 // The flags given to a command, all of them in its table, and its operands.

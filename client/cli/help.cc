@@ -37,14 +37,19 @@ std::string GeneralHelp() {
 std::string FlagHelp(absl::Span<const Flag> flags) {
   constexpr int kWidth = 27;
   std::string out;
+  std::string brief;
   for (size_t i = 0; i < flags.size(); ++i) {
     const Flag& flag = flags[i];
+    if (flag.brief) {
+      absl::StrAppendFormat(&brief, "%s--%s", brief.empty() ? "  " : " ", flag.name);
+      continue;
+    }
     std::string usage = FlagUsage(flag);
     if (!flag.joint_help.empty()) usage += " " + FlagUsage(flags[++i]);
     absl::StrAppendFormat(&out, "  %-*s  %s\n", kWidth, usage,
                           flag.joint_help.empty() ? flag.help : flag.joint_help);
   }
-  return out;
+  return brief.empty() ? out : out + brief + "\n";
 }
 
 std::string CommandHelp(const Command& command) {

@@ -6,6 +6,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
+#include "client/cli/connection_flags.h"
 #include "client/cli/strategy_spec.h"
 
 namespace traverse::cli {
@@ -133,10 +134,17 @@ std::vector<Flag> JobFlagTable() {
 }
 
 std::vector<Flag> ServiceFlagTable() {
-  return {
-      {"server", "HOST:PORT,...", "the servers to ask (default: embedded)"},
+  std::vector<Flag> table = {
+      {"server",
+       "HOST:PORT,...",
+       "the servers to ask (default: embedded)",
+       {},
+       false,
+       "(default: embedded, all cores)"},
       {"threads", "N", "of the embedded service (default: all cores)"},
   };
+  for (Flag& flag : ConnectionFlagTable()) table.push_back(std::move(flag));
+  return table;
 }
 
 Flag PolicyFlag() {

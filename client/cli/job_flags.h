@@ -43,7 +43,8 @@ struct JobFlags {
 // The rows of these flags.
 std::vector<Flag> JobFlagTable();
 
-// The rows of the flags that say where the service runs: --server and --threads.
+// The rows of the flags that say where the service runs and how it is reached: --server,
+// --threads and those of connection_flags.h.
 std::vector<Flag> ServiceFlagTable();
 
 // The row of --policy, and what it says to the reader of G-code.

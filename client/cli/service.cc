@@ -9,6 +9,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
 #include "client/api/channel.h"
+#include "client/cli/connection_flags.h"
 #include "client/cli/progress.h"
 #include "client/files/read_file.h"
 
@@ -37,29 +38,34 @@ bool IsAboutOptions(const std::string& message) { return message.starts_with("op
 }  // namespace
 
 Service::Service(std::unique_ptr<EmbeddedService> embedded, std::shared_ptr<grpc::Channel> channel,
-                 std::string name)
+                 std::string name, std::string token)
     : embedded_(std::move(embedded)),
-      client_(std::make_unique<OptimizerClient>(std::move(channel))),
+      client_(std::make_unique<OptimizerClient>(std::move(channel), std::move(token))),
       name_(std::move(name)) {}
 
 Expected<Service> Service::Open(const Flags& flags) {
   const auto threads = flags.Integer("threads", 1, kMaxThreads);
   if (!threads.ok()) return UsageFault(threads.status());
   if (!flags.Has("server")) {
+    if (absl::Status unused = CheckNoConnectionFlags(flags); !unused.ok())
+      return UsageFault(unused);
     const unsigned available = std::max(1u, std::thread::hardware_concurrency());
     auto embedded = EmbeddedService::Start(static_cast<int>(threads->value_or(available)));
     if (!embedded.ok()) return Outcome{kServerFault, std::string(embedded.status().message())};
     std::shared_ptr<grpc::Channel> channel = (*embedded)->channel();
-    return Service(*std::move(embedded), std::move(channel), "");
+    return Service(*std::move(embedded), std::move(channel), "", "");
   }
   if (*threads) return UsageFault("--threads is for the embedded service, not for --server");
   const auto addresses = ParseAddresses(flags.Text("server"));
   if (!addresses.ok()) {
     return UsageFault(absl::StrFormat("--server: %s", std::string(addresses.status().message())));
   }
-  auto channel = ConnectTo(*addresses);
-  if (!channel.ok()) return Outcome{kServerFault, std::string(channel.status().message())};
-  return Service(nullptr, *std::move(channel), absl::StrJoin(*addresses, ","));
+  absl::StatusOr<Connection> connection = ParseConnectionFlags(flags, *addresses);
+  if (!connection.ok()) return UsageFault(connection.status());
+  auto channel = ConnectTo(*addresses, connection->options);
+  if (!channel.ok()) return ConnectFault(channel.status());
+  return Service(nullptr, *std::move(channel), absl::StrJoin(*addresses, ","),
+                 std::move(connection->token));
 }
 
 Expected<v1::ListStrategiesResponse> Service::ListStrategies() {

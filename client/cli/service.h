@@ -42,7 +42,7 @@ class Service {
 
  private:
   Service(std::unique_ptr<EmbeddedService> embedded, std::shared_ptr<grpc::Channel> channel,
-          std::string name);
+          std::string name, std::string token);
 
   // How a command ends that the service answered with `status`.
   Outcome Failure(const absl::Status& status, const std::string& input) const;

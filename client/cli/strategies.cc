@@ -50,7 +50,7 @@ Command StrategiesCommand() {
   Command command;
   command.name = "strategies";
   command.summary = "Lists the strategies, with their options and defaults.";
-  command.flags = {ServiceFlagTable().front()};
+  command.flags = ServiceFlagTable();
   command.example = "traverse strategies --server=farm-1:50051";
   command.run = RunStrategies;
   return command;

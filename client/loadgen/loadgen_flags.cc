@@ -1,10 +1,12 @@
 #include "client/loadgen/loadgen_flags.h"
 
 #include <optional>
+#include <utility>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_format.h"
 #include "client/api/channel.h"
+#include "client/cli/connection_flags.h"
 #include "client/cli/help.h"
 #include "client/cli/strategy_spec.h"
 
@@ -73,23 +75,27 @@ absl::Status ReadJob(const cli::Flags& flags, LoadgenFlags& out) {
 }  // namespace
 
 const std::vector<cli::Flag>& LoadgenFlagTable() {
-  static const std::vector<cli::Flag> table = {
-      {"target", "HOST:PORT,...", "the servers to load"},
-      {"rate", "N", "jobs a second, sent at times fixed in advance"},
-      {"in_flight", "N", "instead: so many jobs at all times (closed loop)"},
-      {"duration", "TIME", "how long jobs are sent and counted (default 10s)"},
-      {"warm_up", "TIME", "before that: sent, not counted (default 1s)"},
-      {"mix", "LAYERS:WEIGHT,...", "sizes of jobs (default 1), as 1:70,10:25,400:5"},
-      {"strategy", "NAME", "default ni2opt; or NAME:OPTION=VALUE:..."},
-      {"input", "FILE", "has the layers that jobs have (default: made up)"},
-      {"islands", "N", "of a layer made up, 6 paths each (default 10)"},
-      {"arrivals", "HOW", "even (default) or poisson", {"even", "poisson"}},
-      {"deadline", "TIME", "of each job (default 30s)"},
-      {"connections", "N", "jobs take turns on them (default 4)"},
-      {"max_in_flight", "N", "jobs beyond are not sent (default 10000)"},
-      {"seed", "N", "of sizes and arrivals (default 1)"},
-      {"json", "FILE", "writes the figures; - is standard output"},
-  };
+  static const std::vector<cli::Flag> table = [] {
+    std::vector<cli::Flag> rows = {
+        {"target", "HOST:PORT,...", "the servers to load"},
+        {"rate", "N", "jobs a second, sent at times fixed in advance"},
+        {"in_flight", "N", "instead: so many jobs at all times (closed loop)"},
+        {"duration", "TIME", "how long jobs are sent and counted (default 10s)"},
+        {"warm_up", "TIME", "before that: sent, not counted (default 1s)"},
+        {"mix", "LAYERS:WEIGHT,...", "sizes of jobs (default 1), as 1:70,10:25,400:5"},
+        {"strategy", "NAME", "default ni2opt; or NAME:OPTION=VALUE:..."},
+        {"input", "FILE", "has the layers that jobs have (default: made up)"},
+        {"islands", "N", "of a layer made up, 6 paths each (default 10)"},
+        {"arrivals", "HOW", "even (default) or poisson", {"even", "poisson"}},
+        {"deadline", "TIME", "of each job (default 30s)"},
+        {"connections", "N", "jobs take turns on them (default 4)"},
+        {"max_in_flight", "N", "jobs beyond are not sent (default 10000)"},
+        {"seed", "N", "of sizes and arrivals (default 1)"},
+        {"json", "FILE", "writes the figures; - is standard output"},
+    };
+    for (cli::Flag& flag : cli::ConnectionFlagTable()) rows.push_back(std::move(flag));
+    return rows;
+  }();
   return table;
 }
 
@@ -121,6 +127,11 @@ absl::StatusOr<LoadgenFlags> ParseLoadgenFlags(const std::vector<std::string>& a
   if (status.ok()) status = ReadJob(*flags, out);
   if (status.ok()) status = ReadInteger(*flags, "connections", 1, kMaxConnections, out.connections);
   if (!status.ok()) return status;
+  absl::StatusOr<cli::Connection> connection = cli::ParseConnectionFlags(*flags, out.target);
+  if (!connection.ok()) return connection.status();
+  out.connect = connection->options;
+  out.connect.own_connection = true;
+  out.load.token = std::move(connection->token);
   return out;
 }
 

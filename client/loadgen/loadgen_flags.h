@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "client/api/channel.h"
 #include "client/cli/flags.h"
 #include "client/loadgen/load_plan.h"
 #include "client/loadgen/load_run.h"
@@ -17,6 +18,7 @@ namespace traverse::loadgen {
 // What the flags say, checked.
 struct LoadgenFlags {
   std::vector<std::string> target;  // addresses, HOST:PORT
+  ConnectOptions connect;
   LoadOptions load;
   std::vector<SizeShare> mix;
   v1::JobOptions job;

@@ -10,6 +10,7 @@
 
 #include "absl/strings/str_join.h"
 #include "client/api/channel.h"
+#include "client/cli/connection_flags.h"
 #include "client/cli/help.h"
 #include "client/cli/outcome.h"
 #include "client/cli/terminal.h"
@@ -59,8 +60,8 @@ Outcome Run(const std::vector<std::string>& arguments) {
   if (!kinds.ok()) return cli::InputFault(kinds.status());
   std::vector<std::shared_ptr<grpc::Channel>> channels;
   for (int i = 0; i < flags->connections; ++i) {
-    auto channel = ConnectTo(flags->target, {.own_connection = true});
-    if (!channel.ok()) return {cli::kServerFault, std::string(channel.status().message())};
+    auto channel = ConnectTo(flags->target, flags->connect);
+    if (!channel.ok()) return cli::ConnectFault(channel.status());
     channels.push_back(*std::move(channel));
   }
   const LoadResult result = RunLoad(flags->load, *kinds, channels);

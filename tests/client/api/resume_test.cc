@@ -72,6 +72,33 @@ TEST(Resume, GivesUpAfterAttemptsThatBroughtNothing) {
   EXPECT_EQ(result.status().code(), absl::StatusCode::kUnavailable);
 }
 
+TEST(Resume, EverySignOfALostConnectionCounts) {
+  for (const grpc::Status& lost :
+       {grpc::Status(grpc::StatusCode::CANCELLED, "CANCELLED"),
+        grpc::Status(grpc::StatusCode::UNKNOWN, "Stream removed"),
+        grpc::Status(grpc::StatusCode::INTERNAL, "Received RST_STREAM with error code 2")}) {
+    FakeService service;
+    service.status = lost;
+    service.layers_before_status = 2;
+    OptimizerClient client(service.InProcessChannel());
+
+    const absl::StatusOr<JobResult> result = client.Optimize({}, Layers(6), Quick(2));
+
+    ASSERT_TRUE(result.ok()) << result.status();
+    EXPECT_THAT(result->layers, SizeIs(6));
+  }
+}
+
+TEST(Resume, OtherFaultsOfTheServerAreNot) {
+  for (const auto code : {grpc::StatusCode::INTERNAL, grpc::StatusCode::UNKNOWN}) {
+    FakeService service;
+    service.status = grpc::Status(code, "a bug");
+    OptimizerClient client(service.InProcessChannel());
+
+    EXPECT_EQ(client.Optimize({}, Layers(3), Quick(5)).status().message(), "a bug");
+  }
+}
+
 TEST(Resume, FaultsOfTheJobAreNotTriedAgain) {
   for (const auto code :
        {grpc::StatusCode::INVALID_ARGUMENT, grpc::StatusCode::RESOURCE_EXHAUSTED}) {
