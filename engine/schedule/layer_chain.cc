@@ -89,7 +89,7 @@ void LayerChain::Prepare(Slot& slot) {
   slot.predicted_start = predicted_at_;
 
   slot.origin = PlanOrigin(plan);
-  if (!strategy_->trivial()) slot.fingerprint = PlanFingerprint(plan);
+  if (!strategy_->serial()) slot.fingerprint = PlanFingerprint(plan);
   if (strategy_->reuses_routes()) {
     slot.result = std::make_shared<RouteToCome>();
     slot.model = routes_.Enter(slot.fingerprint, slot.result);
@@ -105,7 +105,7 @@ void LayerChain::Prepare(Slot& slot) {
   slot.outcome.cleaning_given_mm = MoveMm(given_at_, slot.finish);
 
   if (slot.finish) given_at_ = *slot.finish;
-  if (!strategy_->trivial()) predicted_at_ = PredictEnd(slot);
+  if (!strategy_->serial()) predicted_at_ = PredictEnd(slot);
 }
 
 Point LayerChain::PredictEnd(const Slot& slot) {
@@ -148,7 +148,7 @@ std::optional<Point> LayerChain::FixedStart(const Slot& slot) const {
 }
 
 Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot& slot) const {
-  if (strategy_->trivial()) {
+  if (strategy_->serial()) {
     Budget budget = LayerBudget(1);
     return strategy_->Solve(problem, budget);
   }
@@ -176,7 +176,7 @@ void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
     best = cost;
     solution.route = route;
   };
-  if (!strategy_->trivial() && !strategy_->quick() &&
+  if (!strategy_->serial() && !strategy_->quick() &&
       (slot.model || problem.start != slot.predicted_start)) {
     Budget budget = LayerBudget(1 - kSolveShare);
     offer(predictor_->Solve(problem, budget).route);
@@ -231,7 +231,7 @@ void LayerChain::RunPrepare(const SlotPtr& slot) {
   std::lock_guard<std::mutex> lock(mutex_);
   preparing_ = false;
   ++next_to_prepare_;
-  if (strategy_->trivial()) {
+  if (strategy_->serial()) {
     slot->solved = true;
     MaybeAnchor(slot->index);
   } else {

@@ -12,6 +12,7 @@
 #include "engine/cost/layer_view.h"
 #include "engine/cost/route_cost.h"
 #include "engine/cost/route_entries.h"
+#include "engine/exact/small_parts.h"
 #include "engine/local_search/end_groups.h"
 #include "engine/local_search/iterated_search.h"
 #include "engine/local_search/leaf_entries.h"
@@ -71,7 +72,13 @@ class Auto : public Strategy {
     search.Run(rng, budget);
     Route improved = state.Unload();
     ChooseEntries(layer, improved, budget);
-    return Finish(std::move(improved), search.iterations(), budget);
+    const bool optimal = SolveSmallParts(layer, SmallPartOptions(), improved, budget);
+    Solution solution = Finish(std::move(improved), search.iterations(), budget);
+    if (optimal) {
+      solution.stop = StopReason::kOptimal;
+      solution.lower_bound = RouteCost(layer.problem, solution.route);
+    }
+    return solution;
   }
 
   static Solution Finish(Route route, int64_t iterations, const Budget& budget) {

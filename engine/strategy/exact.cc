@@ -59,7 +59,7 @@ class Exact : public Strategy {
   }
 
   // A proof holds for one start only: predicted ones would be work for nothing.
-  bool trivial() const override { return true; }
+  bool serial() const override { return true; }
 
  private:
   Solution Prove(const LayerProblem& problem, Solution solution, Budget& budget) const {
@@ -75,7 +75,7 @@ class Exact : public Strategy {
     if (solution.lower_bound == cost) {
       solution.stop = StopReason::kOptimal;
     } else if (limited.ExhaustedNow() || !ProveByStages(problem, solution, limited)) {
-      solution.stop = StopOr(budget, StopOr(limited, StopReason::kLocalOptimum));
+      solution.stop = StopOr(budget, StopOr(limited, solution.stop));
     }
     return solution;
   }
@@ -134,7 +134,7 @@ class ExactFramework : public Strategy {
   }
 
   // As the thesis has it, every layer starts where the one before ended.
-  bool trivial() const override { return true; }
+  bool serial() const override { return true; }
 
   bool wants_bound() const override { return bound_; }
 

@@ -16,7 +16,7 @@ class Greedy : public Strategy {
     Route route = BaselineRoute(LayerView(problem), budget);
     return Solution{std::move(route), StopOr(budget, StopReason::kLocalOptimum), std::nullopt};
   }
-  bool trivial() const override { return true; }
+  bool serial() const override { return true; }
 };
 
 }  // namespace

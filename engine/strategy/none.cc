@@ -10,7 +10,7 @@ class None : public Strategy {
   Solution Solve(const LayerProblem& problem, Budget&) const override {
     return Solution{GivenRoute(*problem.plan), StopReason::kLocalOptimum, std::nullopt};
   }
-  bool trivial() const override { return true; }
+  bool serial() const override { return true; }
 };
 
 }  // namespace

@@ -45,9 +45,10 @@ class Strategy {
   // again.
   virtual Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const;
 
-  // True if Solve takes no longer than a prediction of the start would: such layers are then simply
-  // solved one after another, from their true starts.
-  virtual bool trivial() const { return false; }
+  // True if layers are to be solved one after another, each from its true start alone: where Solve
+  // takes no longer than a prediction of the start would, or where what is found for a predicted
+  // start is worth nothing at another one.
+  virtual bool serial() const { return false; }
 
   // True if callers want a lower bound of solutions that have none: the chain looks for one then.
   virtual bool wants_bound() const { return false; }

@@ -11,6 +11,7 @@
 #include "engine/construct/greedy.h"
 #include "engine/cost/layer_view.h"
 #include "engine/cost/route_cost.h"
+#include "engine/exact/small_parts.h"
 #include "engine/framework/island_layout.h"
 #include "engine/strategy/framework_search.h"
 #include "engine/strategy/ni2opt.h"
@@ -62,13 +63,15 @@ class Tabu : public Strategy {
     Take(layer, start, best);
     Take(layer, polisher.Iterate(start, Patience(layer), rng, budget), best);
     budget.ExhaustedNow();
-    return Solution{std::move(best.route), StopOr(budget, StopReason::kIterationLimit),
-                    std::nullopt};
+    Solution solution{std::move(best.route), StopOr(budget, StopReason::kIterationLimit),
+                      std::nullopt};
+    FinishSmallParts(layer, solution, budget);
+    return solution;
   }
 
   // As the thesis has it, every layer starts where the one before ended: without polish nothing
   // repairs a route that was found for another start.
-  bool trivial() const override { return !polish_; }
+  bool serial() const override { return !polish_; }
 
   bool wants_bound() const override { return bound_; }
 
@@ -76,6 +79,13 @@ class Tabu : public Strategy {
   static void Take(const LayerView& layer, Route route, Candidate& best) {
     const double cost = RouteCost(layer.problem, route);
     if (cost < best.cost) best = {std::move(route), cost};
+  }
+
+  // What is small enough for it is solved to optimality.
+  static void FinishSmallParts(const LayerView& layer, Solution& solution, Budget& budget) {
+    if (!SolveSmallParts(layer, SmallPartOptions(), solution.route, budget)) return;
+    solution.stop = StopReason::kOptimal;
+    solution.lower_bound = RouteCost(layer.problem, solution.route);
   }
 
   // What there is at once, and no result is worse than.
@@ -113,6 +123,7 @@ class Tabu : public Strategy {
     budget.ExhaustedNow();
     solution.stop = StopOr(budget, StopOr(share, StopReason::kIterationLimit));
     solution.route = std::move(best.route);
+    FinishSmallParts(layer, solution, budget);
     return solution;
   }
 

@@ -157,5 +157,24 @@ std::vector<std::string> Names() {
 INSTANTIATE_TEST_SUITE_P(All, EveryStrategy, ::testing::ValuesIn(Names()),
                          [](const auto& info) { return info.param; });
 
+// Whatever the search came to.
+TEST(Strategies, SolveSmallPlansToOptimality) {
+  for (const char* name : {"auto", "tabu", "exact"}) {
+    const auto strategy = *MakeStrategy(name, {});
+    for (uint64_t seed = 1; seed <= 60; ++seed) {
+      SCOPED_TRACE(absl::StrCat(name, ", seed ", seed));
+      const OwnedProblem owned = testing::RandomProblem(seed, {.max_paths = 7});
+      Budget budget;
+
+      const Solution solution = strategy->Solve(owned.problem, budget);
+
+      const double best = testing::BruteForce(owned.problem).cost;
+      EXPECT_EQ(solution.stop, StopReason::kOptimal);
+      EXPECT_NEAR(RouteCost(owned.problem, solution.route), best, 1e-6 * (1 + best));
+      EXPECT_EQ(solution.lower_bound, RouteCost(owned.problem, solution.route));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace traverse
