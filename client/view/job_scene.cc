@@ -66,6 +66,15 @@ std::vector<Figures> LayerFigures(const GcodeFile& file, size_t first, size_t co
   return figures;
 }
 
+// [path] What the paths of a layer extrude.
+std::vector<double> LengthsOf(const GcodeFile& file, size_t layer) {
+  std::vector<double> lengths;
+  for (uint32_t i = file.layers[layer].first_block; i < file.layers[layer].end_block; ++i) {
+    lengths.push_back(static_cast<double>(file.blocks[i].length_mm));
+  }
+  return lengths;
+}
+
 // The name without its folders: what is shown may be passed on.
 std::string BaseName(const std::string& name) {
   return std::filesystem::path(name).filename().string();
@@ -136,8 +145,9 @@ absl::StatusOr<Scene> GcodeScene(const InputJob& job, const NamedRun& run,
     const std::vector<DrawnVisit> sliced = InOrder(layer.paths.size());
     const std::vector<DrawnVisit> found =
         RouteOf(VisitReader(job.layers[i]), result->layers[i]).visits;
-    layer.routes.push_back(PrintedRoute(*job.gcode, in_file, layer.paths, {sliced}));
-    layer.routes.push_back(PrintedRoute(*printed, in_file, layer.paths, {found, sliced}));
+    const SlicedPaths paths = {layer.paths, LengthsOf(*job.gcode, in_file)};
+    layer.routes.push_back(PrintedRoute(*job.gcode, in_file, paths, {sliced}));
+    layer.routes.push_back(PrintedRoute(*printed, in_file, paths, {found, sliced}));
     return layer;
   };
   return scene;

@@ -1,6 +1,8 @@
 #include "client/view/printed_route.h"
 
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "client/gcode/link.h"
 
@@ -9,43 +11,81 @@ namespace {
 
 constexpr double kInchMm = 25.4;
 constexpr double kSameMm = 1e-3;
+constexpr double kSameLengthMm = 5e-3;  // blocks keep their lengths as float
 
 bool Same(const Place& a, const Place& b) {
   return std::abs(a.x - b.x) < kSameMm && std::abs(a.y - b.y) < kSameMm;
 }
 
-// Places of one layer in mm.
-class Places {
+// The blocks of one layer of a file, one after the other.
+class BlockWalk {
  public:
-  Places(const GcodeFile& file, const gcode::Layer& layer)
-      : unit_(file.modes[file.blocks[layer.first_block].mode].inches ? kInchMm : 1) {}
+  BlockWalk(const GcodeFile& file, size_t layer)
+      : file_(file),
+        next_(file.layers[layer].first_block),
+        end_(file.layers[layer].end_block),
+        unit_(file.modes[file.blocks[next_].mode].inches ? kInchMm : 1) {}
 
-  Place operator()(const gcode::Position& at) const {
+  bool AtEnd() const { return next_ == end_; }
+  Place First() const { return PlaceOf(file_.blocks[next_].first); }
+
+  // Where the head is before the layer. How the start script comes to the first path of all is not
+  // drawn.
+  Place Start() const { return next_ > 0 ? PlaceOf(file_.blocks[next_ - 1].last) : First(); }
+
+  // Where the head comes by from the block before to this one, the ends of both included.
+  std::vector<Place> Corners() const {
+    if (next_ == 0) return {};
+    std::vector<Place> corners = {PlaceOf(file_.blocks[next_ - 1].last)};
+    for (const gcode::LinkStep& step : gcode::ReadLink(file_, next_).steps) {
+      if (gcode::IsXyMotion(step.kind)) corners.push_back(PlaceOf(step.to));
+    }
+    return corners;
+  }
+
+  // What the block extrudes; goes on to the next one.
+  double Take() { return static_cast<double>(file_.blocks[next_++].length_mm); }
+
+ private:
+  Place PlaceOf(const gcode::Position& at) const {
     return {gcode::ToDouble(at.x) * unit_, gcode::ToDouble(at.y) * unit_};
   }
 
- private:
+  const GcodeFile& file_;
+  size_t next_;
+  size_t end_;
   double unit_;
 };
 
-bool Fits(const GcodeFile& printed, const gcode::Layer& layer, const std::vector<DrawnPath>& paths,
-          const std::vector<DrawnVisit>& order) {
-  if (layer.end_block - layer.first_block != order.size()) return false;
-  const Places place(printed, layer);
-  for (size_t i = 0; i < order.size(); ++i) {
-    const gcode::Block& block = printed.blocks[layer.first_block + i];
-    if (!Same(place(block.first), EntryOf(paths[order[i].path], order[i]))) return false;
-  }
-  return true;
+// `corners` without those that are the ends of the move itself.
+std::vector<Place> Between(std::vector<Place> corners, const Place& from, const Place& to) {
+  if (!corners.empty() && Same(corners.back(), to)) corners.pop_back();
+  if (!corners.empty() && Same(corners.front(), from)) corners.erase(corners.begin());
+  return corners;
 }
 
-// Where the head comes by on its way to block `index`.
-std::vector<Place> Corners(const GcodeFile& file, size_t index, const Places& place) {
-  std::vector<Place> corners = {place(file.blocks[index - 1].last)};
-  for (const gcode::LinkStep& step : gcode::ReadLink(file, index).steps) {
-    if (gcode::IsXyMotion(step.kind)) corners.push_back(place(step.to));
+// `order` with the corners of `printed`; nothing if that is not the order of its blocks.
+std::optional<std::vector<DrawnVisit>> WithCorners(const GcodeFile& printed, size_t layer,
+                                                   const SlicedPaths& sliced,
+                                                   std::vector<DrawnVisit> order) {
+  BlockWalk walk(printed, layer);
+  Place at = walk.Start();
+  double ahead = 0;  // what the blocks taken extrude beyond the paths taken
+  for (DrawnVisit& visit : order) {
+    const DrawnPath& path = sliced.paths[visit.path];
+    const Place entry = EntryOf(path, visit);
+    if (ahead < kSameLengthMm) {
+      if (walk.AtEnd() || !Same(walk.First(), entry)) return std::nullopt;
+      visit.via = Between(walk.Corners(), at, entry);
+      ahead = walk.Take();
+    }
+    ahead -= sliced.lengths_mm[visit.path];
+    while (ahead < -kSameLengthMm && !walk.AtEnd()) ahead += walk.Take();
+    if (ahead < -kSameLengthMm) return std::nullopt;
+    at = ExitOf(path, visit);
   }
-  return corners;
+  if (!walk.AtEnd() || ahead > kSameLengthMm) return std::nullopt;
+  return order;
 }
 
 }  // namespace
@@ -56,28 +96,16 @@ std::vector<DrawnVisit> InOrder(size_t paths) {
   return visits;
 }
 
-DrawnRoute PrintedRoute(const GcodeFile& printed, size_t layer, const std::vector<DrawnPath>& paths,
+DrawnRoute PrintedRoute(const GcodeFile& printed, size_t layer, const SlicedPaths& sliced,
                         const std::vector<std::vector<DrawnVisit>>& orders) {
-  const gcode::Layer& blocks = printed.layers[layer];
-  const Places place(printed, blocks);
   DrawnRoute route;
+  route.start = BlockWalk(printed, layer).Start();
   route.visits = orders.front();
-  const size_t first = blocks.first_block;
-  route.start = place(first > 0 ? printed.blocks[first - 1].last : printed.blocks[first].first);
   for (const std::vector<DrawnVisit>& order : orders) {
-    if (!Fits(printed, blocks, paths, order)) continue;
-    route.visits = order;
-    for (size_t i = 0; i < order.size(); ++i) {
-      if (first + i == 0) continue;  // how the start script comes to it is not drawn
-      std::vector<Place> corners = Corners(printed, first + i, place);
-      const Place entry = EntryOf(paths[order[i].path], order[i]);
-      if (!corners.empty() && Same(corners.back(), entry)) corners.pop_back();
-      // The layer's start is where the path before ended, so the first corner says it again.
-      const Place from = i == 0 ? route.start : ExitOf(paths[order[i - 1].path], order[i - 1]);
-      if (!corners.empty() && Same(corners.front(), from)) corners.erase(corners.begin());
-      route.visits[i].via = std::move(corners);
+    if (auto found = WithCorners(printed, layer, sliced, order)) {
+      route.visits = *std::move(found);
+      break;
     }
-    return route;
   }
   return route;
 }

@@ -4,10 +4,11 @@
 
 #include <cmath>
 
+#include "client/api/embedded.h"
+#include "client/api/optimizer_client.h"
 #include "client/gcode/gcode_job.h"
 #include "client/gcode/rewrite.h"
 #include "client/view/job_scene.h"
-#include "engine/base/rng.h"
 #include "tests/client/gcode/corpus.h"
 
 namespace traverse::view {
@@ -23,22 +24,14 @@ double LengthOf(const std::vector<DrawnMove>& moves) {
   return sum;
 }
 
-// A run whose routes turn every movable line of infill round, as far as the plan lets it.
-report::JobRun RunOf(const InputJob& job, bool backwards) {
+// A run of the strategy ni2opt by the service.
+report::JobRun RunOf(const InputJob& job) {
+  v1::JobOptions options = job.options;
+  options.mutable_strategy()->set_name("ni2opt");
+  const auto service = EmbeddedService::Start(2);
+  EXPECT_TRUE(service.ok());
   report::JobRun run;
-  for (const v1::Layer& layer : job.layers) {
-    v1::LayerResult& result = run.result.layers.emplace_back();
-    for (int i = 0; i < layer.plan().paths_size(); ++i) {
-      v1::Visit& visit = *result.add_visits();
-      visit.set_plan_path(static_cast<uint32_t>(i));
-      const v1::PlanPath& path = layer.plan().paths(i);
-      if (path.has_contour()) {
-        visit.set_vertex(path.contour().entries_size() > 0 ? path.contour().entries(0) : 0);
-      } else {
-        visit.set_reversed(backwards && !path.open_path().one_way());
-      }
-    }
-  }
+  run.result = *OptimizerClient((*service)->channel()).Optimize(options, job.layers);
   return run;
 }
 
@@ -46,18 +39,21 @@ class DrawnGcode : public ::testing::TestWithParam<std::string> {};
 
 // The meter that the figures come from shares no code with what draws the moves.
 TEST_P(DrawnGcode, TravelsAsFarAsTheFileIsMeasuredTo) {
+  GcodeOptions options;
+  options.policy = gcode::Policy::kFree;
   const absl::StatusOr<InputJob> job =
-      ReadGcodeJob(gcode::testing::TextOf(GetParam()), "part.gcode");
+      ReadGcodeJob(gcode::testing::TextOf(GetParam()), "part.gcode", options);
   ASSERT_TRUE(job.ok()) << job.status();
-  const report::JobRun run = RunOf(*job, /*backwards=*/true);
+  const report::JobRun run = RunOf(*job);
   std::vector<gcode::LayerOrder> orders;
   for (size_t i = 0; i < job->layers.size(); ++i) {
     orders.push_back(OrderOf(*job->gcode, i, run.result.layers[i]));
   }
-  const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(*job->gcode, orders, {});
+  const absl::StatusOr<GcodeRewrite> rewrite =
+      RewriteGcode(*job->gcode, orders, {options.policy, "1.0", 2});
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
 
-  const absl::StatusOr<Scene> scene = GcodeScene(*job, {"turned", &run}, *rewrite);
+  const absl::StatusOr<Scene> scene = GcodeScene(*job, {"ni2opt", &run}, *rewrite);
   ASSERT_TRUE(scene.ok()) << scene.status();
 
   ASSERT_EQ(scene->layers(), job->layers.size());

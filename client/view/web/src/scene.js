@@ -1,5 +1,7 @@
 // The data of the page, as client/view/report_page.h and layer_code.h describe it.
 
+import { unzlibSync } from "fflate";
+
 export function readScene() {
   const scene = JSON.parse(document.getElementById("scene").textContent);
   scene.last = scene.layers.id.length - 1;
@@ -17,12 +19,11 @@ async function codedLayer(i) {
   }
 }
 
-async function inflate(base64) {
+function inflate(base64) {
   const text = atob(base64);
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
+  return unzlibSync(bytes);
 }
 
 // Whole numbers in groups of seven bits, the lowest first; signed ones fold their sign into the lowest bit.
@@ -96,7 +97,7 @@ function readRoute(numbers, paths) {
 
 // Layer `i` with its paths and routes, all places in steps of scene.grid mm.
 export async function readLayer(scene, i) {
-  const numbers = new Numbers(await inflate(await codedLayer(i)));
+  const numbers = new Numbers(inflate(await codedLayer(i)));
   const paths = readPaths(numbers);
   return { paths, routes: scene.routes.map(() => readRoute(numbers, paths)) };
 }
