@@ -1,6 +1,7 @@
 #include "client/report/json.h"
 
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -55,14 +56,20 @@ Json LayerJson(const InputJob& job, size_t i, const v1::LayerResult& result) {
     route.push_back(layer.has_plan() ? PlanVisitJson(layer, notes, visit)
                                      : IslandVisitJson(layer, visit));
   }
-  return {{"id", layer.id()},
-          {"start", {result.start().x_mm(), result.start().y_mm()}},
-          {"travel_given_mm", result.given().total_mm()},
-          {"travel_mm", result.travel().total_mm()},
-          {"lower_bound_mm", BoundJson(job, layer, result)},
-          {"stop", StopName(result.stop_reason())},
-          {"solve_seconds", result.solve_seconds()},
-          {"route", std::move(route)}};
+  Json out = {{"id", layer.id()},
+              {"start", {result.start().x_mm(), result.start().y_mm()}},
+              {"travel_given_mm", result.given().total_mm()},
+              {"travel_mm", result.travel().total_mm()},
+              {"lower_bound_mm", BoundJson(job, layer, result)},
+              {"stop", StopName(result.stop_reason())},
+              {"solve_seconds", result.solve_seconds()}};
+  // What the search tells of itself, if it does; sorted, as a proto map has no order.
+  for (const auto& [name, value] :
+       std::map<std::string, double>(result.statistics().begin(), result.statistics().end())) {
+    out["statistics"][name] = value;
+  }
+  out["route"] = std::move(route);
+  return out;
 }
 
 // The sum of the layers' bounds; null if one is null.

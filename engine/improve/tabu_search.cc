@@ -94,7 +94,7 @@ class Search {
     sequence_.Load(start);
     sequence_.ChooseEntries();
     const double limit = std::min<double>(options_.diversifications, Orders(sequence_.tree()));
-    for (int d = 0; d < limit && !budget_.ExhaustedNow(); ++d) {
+    for (int d = 0; d < limit && !budget_.ExhaustedNow() && !Ended(); ++d) {
       if (d > 0) Diversify();
       ++changes_;
       Intensify();
@@ -105,6 +105,11 @@ class Search {
   }
 
  private:
+  bool Ended() {
+    return budget_.Exhausted() ||
+           (options_.evaluations > 0 && result_.evaluations >= options_.evaluations);
+  }
+
   double Penalized(double cost, int violations) const { return cost + violations * order_penalty_; }
 
   double BestCost() const { return result_.elite.empty() ? kNone : Cost(result_.elite.front()); }
@@ -149,7 +154,7 @@ class Search {
         break;
       }
       const SwapMove move = BestMove();
-      if (move.node < 0 || budget_.Exhausted()) break;
+      if (move.node < 0 || Ended()) break;
       if (at_best && (move.delta > -kImprovementTolerance || move.violations > 0)) {
         saved_ = sequence_.Unload();
         at_best = false;
@@ -169,7 +174,7 @@ class Search {
     size_t settled = 0;  // nodes in a row without a gain
     for (size_t n = 0; settled < nodes.size(); n = (n + 1) % nodes.size()) {
       settled = DescendNode(n) ? 0 : settled + 1;
-      if (budget_.Exhausted()) return;
+      if (Ended()) return;
     }
   }
 
@@ -178,7 +183,7 @@ class Search {
     const int count = sequence_.tree().child_count(node);
     bool gained = false;
     int settled = 0;  // positions in a row without a gain
-    for (int i = 0; settled < count && !budget_.Exhausted(); i = (i + 1) % count) {
+    for (int i = 0; settled < count && !Ended(); i = (i + 1) % count) {
       SwapMove best;
       double best_delta = -kImprovementTolerance;
       ConsiderRow(n, i, best, best_delta);
@@ -210,7 +215,9 @@ class Search {
     const SequenceTree& tree = sequence_.tree();
     const int node = tree.movable_nodes()[n];
     const bool has_before = tree.has_before(node);
+    int considered = 0;
     const auto consider = [&](int j, double cost_delta) {
+      ++considered;
       const int first = std::min(i, j);
       const int second = std::max(i, j);
       double delta = cost_delta;
@@ -226,11 +233,12 @@ class Search {
     if (SwapTable* table = tables_[n].get()) {
       table->Update(changes_);
       table->ForRow(i, consider);
-      return;
+    } else {
+      candidates_.ForRow(tree, node, i, [&](int j) {
+        consider(j, sequence_.Evaluate(node, std::min(i, j), std::max(i, j)).delta);
+      });
     }
-    candidates_.ForRow(tree, node, i, [&](int j) {
-      consider(j, sequence_.Evaluate(node, std::min(i, j), std::max(i, j)).delta);
-    });
+    result_.evaluations += considered;
   }
 
   // Aspiration: a tabu move is taken if it leads to a sequence better than any before.

@@ -54,6 +54,10 @@ struct TabuOptions {
   // time ends the intensification; long without repetition it grows shorter again.
   bool reactive = false;
 
+  // Ends the search once so many swaps were evaluated: on large plans, 2500 diversifications would
+  // take minutes. 0: no limit.
+  int64_t evaluations = 0;
+
   int elite = 5;  // how many of the best sequences to return
 
   std::function<void(const TabuStep&)> on_move = nullptr;
@@ -71,6 +75,7 @@ struct TabuResult {
   // Empty only if no sequence without violated pairs was met.
   std::vector<TabuElite> elite;
   int diversifications = 0;  // done
+  int64_t evaluations = 0;   // of swaps
   int64_t moves = 0;         // made
   int64_t aspirations = 0;   // of these, although they were tabu
 };

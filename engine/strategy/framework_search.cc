@@ -52,15 +52,30 @@ class TabuMethod : public SequenceMethod {
 
   std::vector<TabuElite> ArrangeContours(const LayerProblem& problem, const LinkRules& rules,
                                          const Route& start, Budget& budget) override {
-    return TabuSearch(problem, rules, start, options_, budget).elite;
+    return Search(problem, rules, start, budget);
   }
   std::vector<TabuElite> ArrangeRasters(const LayerProblem& problem, const LinkRules& rules,
                                         const Route& start, Budget& budget) override {
-    return TabuSearch(problem, rules, start, options_, budget).elite;
+    return Search(problem, rules, start, budget);
   }
 
+  // Of the searches so far: the evaluations of all, the diversifications of the shortest.
+  int64_t evaluations() const { return evaluations_; }
+  int diversifications() const { return diversifications_.value_or(0); }
+
  private:
+  std::vector<TabuElite> Search(const LayerProblem& problem, const LinkRules& rules,
+                                const Route& start, Budget& budget) {
+    TabuResult found = TabuSearch(problem, rules, start, options_, budget);
+    evaluations_ += found.evaluations;
+    diversifications_ =
+        std::min(diversifications_.value_or(found.diversifications), found.diversifications);
+    return std::move(found.elite);
+  }
+
   const TabuOptions& options_;
+  int64_t evaluations_ = 0;
+  std::optional<int> diversifications_;
 };
 
 // What the steps share.
@@ -246,7 +261,10 @@ FrameworkResult SearchFramework(const LayerProblem& problem, const ClassicalLaye
                                 const Route& start, const FrameworkOptions& options,
                                 Budget& budget) {
   TabuMethod method(options.tabu);
-  return SearchFramework(problem, layer, start, options, method, budget);
+  FrameworkResult result = SearchFramework(problem, layer, start, options, method, budget);
+  result.diversifications = method.diversifications();
+  result.evaluations = method.evaluations();
+  return result;
 }
 
 Route SearchAnyPlan(const LayerProblem& problem, const Route& start,

@@ -5,6 +5,7 @@
 #ifndef TRAVERSE_ENGINE_STRATEGY_FRAMEWORK_SEARCH_H_
 #define TRAVERSE_ENGINE_STRATEGY_FRAMEWORK_SEARCH_H_
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,10 @@ struct FrameworkResult {
   ReductionCounts points;
   int penalized_contour_links = 0;  // of the preliminary sequence, against the neighborhood
   int penalized_raster_links = 0;   // of the raster route
+
+  // Of tabu search alone.
+  int diversifications = 0;  // done in the step that did fewer of them
+  int64_t evaluations = 0;   // of swaps, in both steps
 };
 
 // How steps 2 and 4 find a sequence: tabu search, or mixed integer programmes.

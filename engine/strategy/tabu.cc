@@ -28,6 +28,9 @@ constexpr double kFrameworkShare = 0.3;
 // Numbers of polishing's random stream: the framework's are those of its steps.
 constexpr uint64_t kPolishStream = 5;
 
+// Layers of up to so many paths are polished as long as it helps; larger ones would take seconds.
+constexpr double kFewPaths = 100;
+
 std::unique_ptr<const Strategy> DefaultNi2opt() {
   const StrategyEntry entry = Ni2optEntry();
   return entry.make(*StrategyOptions::Parse(entry.options, {}));
@@ -127,8 +130,11 @@ class Tabu : public Strategy {
     return solution;
   }
 
+  // Kicks without gain: of each path, beyond kFewPaths of each tenth one.
   int64_t Patience(const LayerView& layer) const {
-    return static_cast<int64_t>(polish_rounds_ * static_cast<double>(layer.plan().paths.size()));
+    const double paths = static_cast<double>(layer.plan().paths.size());
+    return static_cast<int64_t>(
+        polish_rounds_ * (paths < kFewPaths ? paths : kFewPaths + 0.1 * (paths - kFewPaths)));
   }
 
   Budget FrameworkBudget(const Budget& budget) const {
@@ -144,6 +150,8 @@ class Tabu : public Strategy {
     if (!classical) return SearchAnyPlan(layer.problem, start, options_, budget);
     FrameworkResult result = SearchFramework(layer.problem, *classical, start, options_, budget);
     statistics["framework_cost"] = RouteCost(layer.problem, result.route);
+    statistics["diversifications"] = result.diversifications;
+    statistics["evaluations"] = static_cast<double>(result.evaluations);
     statistics["points_entries"] = result.points.entries;
     statistics["points_island_analysis"] = result.points.island_analysis;
     statistics["points_sp"] = result.points.spaced;
@@ -212,6 +220,9 @@ std::vector<OptionSpec> Options() {
              "Iterations that a move is tabu, for each diversification."),
       Number("patience", Type::kInt, "5", 0, 10000,
              "Moves without gain after which the search starts anew."),
+      Number("evaluations", Type::kInt, "20000000", 0, 1e12,
+             "Swaps evaluated that end the search of each step, whatever number of "
+             "diversifications is left; 0: no limit."),
       Switch("reactive", "false",
              "Sequences that come again make the tenure longer, or start the search anew."),
       Number("elite", Type::kInt, "5", 1, 100,
@@ -220,8 +231,9 @@ std::vector<OptionSpec> Options() {
              "Sequences on the way from each of these to the best one that it tries as well."),
       Switch("polish", "true",
              "Improve the route over all vertices of the contours: 2-opt and point release."),
-      Number("polish_rounds", Type::kDouble, "2", 0, 1000000,
-             "Kicks in a row without gain that end the polishing, for each path."),
+      Number("polish_rounds", Type::kDouble, "1", 0, 1000000,
+             "Kicks in a row without gain that end the polishing, for each path; beyond 100 "
+             "paths, for each ten."),
       BoundOption(false)};
 }
 
@@ -244,6 +256,7 @@ std::unique_ptr<Strategy> MakeTabu(const StrategyOptions& values) {
   tabu.list_size = values.Double("list_size");
   tabu.tenure = values.Double("tenure");
   tabu.patience = static_cast<int>(values.Int("patience"));
+  tabu.evaluations = values.Int("evaluations");
   tabu.reactive = values.Bool("reactive");
   tabu.elite = static_cast<int>(values.Int("elite"));
   return std::make_unique<Tabu>(options, values.Bool("polish"), values.Double("polish_rounds"),

@@ -112,6 +112,17 @@ TEST(RoutesJson, BoundsAreStatedOnlyForLengthAndOnlyIfAllAreKnown) {
   EXPECT_THAT(RoutesJson(job, run), Not(HasSubstr("\"lower_bound_mm\":0.25")));
 }
 
+TEST(RoutesJson, HasWhatTheSearchTellsOfItself) {
+  JobRun run = SmallRun();
+  (*run.result.layers[1].mutable_statistics())["points_sp"] = 17;
+  (*run.result.layers[1].mutable_statistics())["evaluations"] = 2.5;
+
+  const std::string json = RoutesJson(SmallJob(), run);
+
+  EXPECT_THAT(json, HasSubstr("\"statistics\":{\"evaluations\":2.5,\"points_sp\":17.0},\"route\""));
+  EXPECT_THAT(RoutesJson(SmallJob(), SmallRun()), Not(HasSubstr("statistics")));
+}
+
 TEST(CompareJson, HoldsEachRunsDocument) {
   const std::string json = CompareJson(SmallJob(), {{"a", {SmallRun()}}, {"b", {SmallRun()}}});
 

@@ -166,6 +166,19 @@ TEST(TabuSearch, StopsWithTheBudgetButHasARoute) {
   EXPECT_EQ(result.diversifications, 0);
 }
 
+TEST(TabuSearch, EndsAfterSoManyEvaluations) {
+  const OwnedProblem owned(SequentialPlan(testing::SquareGrid(5, 5)));
+
+  const TabuResult limited = Search(owned, {.diversifications = 1000, .evaluations = 20000});
+  const TabuResult unlimited = Search(owned, {.diversifications = 20});
+
+  ASSERT_OK(ValidateRoute(owned.plan(), limited.elite.at(0).route));
+  EXPECT_GE(limited.evaluations, 20000);
+  EXPECT_LT(limited.evaluations, 20000 + 2 * 25 * 25);  // rows are begun, not cut short
+  EXPECT_LT(limited.diversifications, 1000);
+  EXPECT_EQ(unlimited.diversifications, 20);
+}
+
 TEST(TabuSearch, NodesWithManyChildrenTryNearSwaps) {
   std::vector<Path> paths;
   for (int i = 0; i < 60; ++i) paths.push_back(MakeContour({{double(i * 37 % 60), 0}}));
