@@ -14,6 +14,8 @@ class WorkerPool::QueueImpl : public Queue, public std::enable_shared_from_this<
     pool.Submit(shared_from_this(), std::move(task));
   }
 
+  int threads() const override { return pool.threads(); }
+
   QueueWait wait() const override {
     std::lock_guard<std::mutex> lock(pool.mutex_);
     return waited;

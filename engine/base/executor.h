@@ -15,6 +15,9 @@ class Executor {
 
   // Runs `task` once. Must not run it before returning.
   virtual void Submit(std::function<void()> task) = 0;
+
+  // About how many tasks it runs at once. Nothing but the split of a job's time depends on it.
+  virtual int threads() const { return 1; }
 };
 
 }  // namespace traverse

@@ -1,25 +1,12 @@
 #include "engine/schedule/layer_chain.h"
 
+#include <algorithm>
 #include <utility>
 
-#include "absl/status/status.h"
-#include "absl/time/time.h"
-#include "engine/base/rng.h"
 #include "engine/cost/route_cost.h"
-#include "engine/cost/travel_cost.h"
 #include "engine/strategy/greedy.h"
-#include "engine/validator.h"
 
 namespace traverse {
-namespace {
-
-// Of a layer's time limit, what solve may use; the rest is for anchor, which runs once the true
-// start is known.
-constexpr double kSolveShare = 0.85;
-
-double MoveMm(Point from, const std::optional<Point>& to) { return to ? Distance(from, *to) : 0; }
-
-}  // namespace
 
 std::shared_ptr<Job> Job::Start(const JobSpec& spec, std::unique_ptr<Strategy> strategy,
                                 Executor& executor, JobSink& sink) {
@@ -34,7 +21,8 @@ LayerChain::LayerChain(const JobSpec& spec, std::unique_ptr<Strategy> strategy, 
       executor_(executor),
       outbox_(sink),
       given_at_(spec.start),
-      predicted_at_(spec.start) {}
+      predicted_at_(spec.start),
+      split_(spec.deadline, strategy_->serial() ? 1 : std::max(1, executor.threads())) {}
 
 void LayerChain::Add(JobLayer layer) {
   auto slot = std::make_shared<Slot>();
@@ -42,6 +30,8 @@ void LayerChain::Add(JobLayer layer) {
   slot->layer = std::move(layer);
   std::lock_guard<std::mutex> lock(mutex_);
   slot->index = added_++;
+  slot->weight = BudgetSplit::Weight(slot->layer.plan.paths.size(), false);
+  split_.Add(slot->weight);
   slots_.push_back(std::move(slot));
   ++pending_;
   MaybePrepare();
@@ -71,166 +61,16 @@ bool LayerChain::CleaningDueAfter(uint64_t index) const {
   return done % static_cast<uint64_t>(spec_.cleaning->every_layers) == 0;
 }
 
-Budget LayerChain::LayerBudget(double share) const {
-  const Budget whole(&cancel_, spec_.deadline);
-  if (spec_.layer_time_limit == absl::InfiniteDuration()) return whole;
-  return whole.Within(std::chrono::duration_cast<Budget::Clock::duration>(
-      absl::ToChronoNanoseconds(spec_.layer_time_limit * share)));
-}
-
-LayerProblem LayerChain::Problem(const Slot& slot, Point start) const {
-  return LayerProblem{&slot.layer.plan, start, slot.finish, slot.cost,
-                      StreamSeed(spec_.seed, slot.index)};
-}
-
-void LayerChain::Prepare(Slot& slot) {
-  const Plan& plan = slot.layer.plan;
-  if (slot.layer.start) given_at_ = predicted_at_ = *slot.layer.start;
-  slot.predicted_start = predicted_at_;
-
-  slot.origin = PlanOrigin(plan);
-  if (!strategy_->serial()) slot.fingerprint = PlanFingerprint(plan);
-  if (strategy_->reuses_routes()) {
-    slot.result = std::make_shared<RouteToCome>();
-    slot.model = routes_.Enter(slot.fingerprint, slot.result);
-  }
-
-  slot.given_route = GivenRoute(plan);
-  slot.outcome.index = slot.index;
-  slot.outcome.given = MeasureTravel(plan, given_at_, slot.given_route);
-  LayerProblem problem = Problem(slot, given_at_);
-  problem.finish.reset();
-  slot.outcome.cost_given = RouteCost(problem, slot.given_route);
-  given_at_ = RouteEnd(plan, slot.given_route, given_at_);
-  slot.outcome.cleaning_given_mm = MoveMm(given_at_, slot.finish);
-
-  if (slot.finish) given_at_ = *slot.finish;
-  if (!strategy_->serial()) predicted_at_ = PredictEnd(slot);
-}
-
-Point LayerChain::PredictEnd(const Slot& slot) {
-  if (slot.finish) return *slot.finish;
-  if (const std::optional<Point> end = history_.EndOf(slot.fingerprint)) {
-    return {slot.origin.x + end->x, slot.origin.y + end->y};
-  }
-  Budget budget = LayerBudget(1 - kSolveShare);
-  return RouteEnd(slot.layer.plan,
-                  predictor_->Solve(Problem(slot, slot.predicted_start), budget).route,
-                  slot.predicted_start);
-}
-
-void LayerChain::SolveFirst(Slot& slot) const {
-  const Stopwatch watch;
-  Budget budget = LayerBudget(kSolveShare);
-  const LayerProblem problem = Problem(slot, slot.predicted_start);
-  // Different layers that share a fingerprint are unheard of, not impossible.
-  const bool resumes = slot.model && ValidateRoute(slot.layer.plan, slot.model->route).ok();
-  if (resumes) slot.bound_multipliers = slot.model->bound_multipliers;
-  slot.first = resumes ? strategy_->Resume(problem, slot.model->route, budget)
-                       : strategy_->Solve(problem, budget);
-  if (!slot.first.lower_bound) Bound(problem, slot, slot.first);
-  slot.outcome.solve_seconds = watch.Seconds();
-}
-
-void LayerChain::SolveSecond(Slot& slot) const {
-  const Stopwatch watch;
-  Budget budget = LayerBudget(kSolveShare);
-  slot.second = strategy_->Solve(Problem(slot, *slot.second_start), budget);
-  slot.outcome.solve_seconds += watch.Seconds();
-}
-
-// The start, where it does not depend on the layer before.
-std::optional<Point> LayerChain::FixedStart(const Slot& slot) const {
-  if (slot.layer.start) return slot.layer.start;
-  if (slot.index == 0) return spec_.start;
-  if (CleaningDueAfter(slot.index - 1)) return spec_.cleaning->point;
-  return std::nullopt;
-}
-
-Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot& slot) const {
-  if (strategy_->serial()) {
-    Budget budget = LayerBudget(1);
-    return strategy_->Solve(problem, budget);
-  }
-  if (slot.second_start && problem.start == *slot.second_start) return slot.second;
-  if (problem.start == slot.predicted_start) return slot.first;
-  Budget budget = LayerBudget(1 - kSolveShare);
-  Solution solution = strategy_->quick() ? strategy_->Solve(problem, budget)
-                                         : strategy_->Resume(problem, slot.first.route, budget);
-  // What resuming does not tell of itself is as it was.
-  solution.statistics.insert(slot.first.statistics.begin(), slot.first.statistics.end());
-  // A search that the clock cut short stays so, whatever the polishing came to.
-  if (slot.first.stop == StopReason::kTimeLimit) solution.stop = StopReason::kTimeLimit;
-  return solution;
-}
-
-// Other routes may be better from the true start: those found for another start, where the clock
-// cut the last search short; greedy's, which a resumed route need not beat; the order given.
-void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
-                               Solution& solution) const {
-  double best = RouteCost(problem, solution.route);
-  const auto offer = [&](const Route& route) {
-    if (route.size() != solution.route.size()) return;  // there was no such search
-    const double cost = RouteCost(problem, route);
-    if (cost >= best) return;
-    best = cost;
-    solution.route = route;
-  };
-  if (!strategy_->serial() && !strategy_->quick() &&
-      (slot.model || problem.start != slot.predicted_start)) {
-    Budget budget = LayerBudget(1 - kSolveShare);
-    offer(predictor_->Solve(problem, budget).route);
-  }
-  if (solution.stop == StopReason::kTimeLimit) {
-    offer(slot.first.route);
-    offer(slot.second.route);
-  }
-  offer(slot.given_route);
-}
-
-// Looks for a lower bound of a solution, if the strategy wants one. The search for it is done with
-// the first solution, in parallel, or was done for an equal layer; from another start its result is
-// used again.
-void LayerChain::Bound(const LayerProblem& problem, Slot& slot, Solution& solution) const {
-  if (!strategy_->wants_bound() || cancel_.cancelled()) return;
-  Budget budget = LayerBudget(1 - kSolveShare);
-  const double cost = RouteCost(problem, solution.route);
-  solution.lower_bound = LowerBound(problem, cost, &slot.bound_multipliers, budget);
-  if (solution.lower_bound == cost) solution.stop = StopReason::kOptimal;
-}
-
-LayerOutcome LayerChain::Anchor(Slot& slot, Point start) const {
-  const Stopwatch watch;
-  const LayerProblem problem = Problem(slot, start);
-  Solution solution = SolveFromTrueStart(problem, slot);
-  LayerOutcome outcome = std::move(slot.outcome);
-  if (absl::Status status = ValidateRoute(slot.layer.plan, solution.route); !status.ok()) {
-    outcome.invalid_route = std::string(status.message());
-    solution = Solution{slot.given_route, StopReason::kLocalOptimum, std::nullopt};
-  } else {
-    KeepBestRoute(problem, slot, solution);
-  }
-  if (!solution.lower_bound) Bound(problem, slot, solution);
-  outcome.start = start;
-  outcome.end = RouteEnd(slot.layer.plan, solution.route, start);
-  outcome.travel = MeasureTravel(slot.layer.plan, start, solution.route);
-  outcome.cleaning_mm = MoveMm(outcome.end, slot.finish);
-  const double finish_cost = slot.finish ? TravelCost(slot.cost)(outcome.end, *slot.finish) : 0;
-  outcome.cost = RouteCost(problem, solution.route) - finish_cost;
-  if (solution.lower_bound) outcome.lower_bound = *solution.lower_bound - finish_cost;
-  outcome.stop = solution.stop;
-  outcome.statistics = std::move(solution.statistics);
-  outcome.route = std::move(solution.route);
-  outcome.plan = std::move(slot.layer.plan);
-  outcome.solve_seconds += watch.Seconds();
-  return outcome;
-}
-
 void LayerChain::RunPrepare(const SlotPtr& slot) {
   Prepare(*slot);
   std::lock_guard<std::mutex> lock(mutex_);
   preparing_ = false;
   ++next_to_prepare_;
+  if (slot->model) {
+    const double weight = BudgetSplit::Weight(slot->layer.plan.paths.size(), true);
+    split_.Add(weight - slot->weight);
+    slot->weight = weight;
+  }
   if (strategy_->serial()) {
     slot->solved = true;
     MaybeAnchor(slot->index);
@@ -240,7 +80,13 @@ void LayerChain::RunPrepare(const SlotPtr& slot) {
   MaybePrepare();
 }
 
+void LayerChain::Allot(Slot& slot) {
+  std::lock_guard<std::mutex> lock(mutex_);
+  slot.allotted = split_.Begin(slot.weight, Budget::Clock::now());
+}
+
 void LayerChain::RunSolveFirst(const SlotPtr& slot) {
+  Allot(*slot);
   SolveFirst(*slot);
   const Point end =
       slot->finish.value_or(RouteEnd(slot->layer.plan, slot->first.route, slot->predicted_start));
@@ -259,6 +105,7 @@ void LayerChain::RunSolveSecond(const SlotPtr& slot) {
 }
 
 void LayerChain::RunAnchor(const SlotPtr& slot, Point start) {
+  if (strategy_->serial()) Allot(*slot);
   LayerOutcome outcome = Anchor(*slot, start);
   const Point route_end = outcome.end;
   const Point end = slot->finish.value_or(route_end);

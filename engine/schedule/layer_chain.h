@@ -30,6 +30,7 @@
 
 #include "engine/engine.h"
 #include "engine/exact/lower_bound.h"
+#include "engine/schedule/budget_split.h"
 #include "engine/schedule/end_history.h"
 #include "engine/schedule/outbox.h"
 #include "engine/schedule/route_history.h"
@@ -67,6 +68,10 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
     RouteHistory::Entry model;
     RouteHistory::Entry result;
 
+    // What the layer may use of the job's time, once it has begun to be solved.
+    double weight = 0;
+    Budget::Clock::duration allotted = Budget::Clock::duration::max();
+
     // Set by solve and second.
     Solution first;
     BoundMultipliers bound_multipliers;
@@ -86,7 +91,8 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
 
   bool CleaningDueAfter(uint64_t index) const;
   std::optional<Point> FixedStart(const Slot& slot) const;
-  Budget LayerBudget(double share) const;
+  Budget LayerBudget(const Slot& slot, double share) const;
+  bool Expired() const;
   LayerProblem Problem(const Slot& slot, Point start) const;
 
   // The stages.
@@ -98,6 +104,9 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   Solution SolveFromTrueStart(const LayerProblem& problem, const Slot& slot) const;
   void KeepBestRoute(const LayerProblem& problem, const Slot& slot, Solution& solution) const;
   void Bound(const LayerProblem& problem, Slot& slot, Solution& solution) const;
+
+  // Fixes what the layer may use of the job's time. As its main stage begins.
+  void Allot(Slot& slot);
 
   // Run a stage and hand the layer over to the next one.
   void RunPrepare(const SlotPtr& slot);
@@ -128,6 +137,8 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   Point predicted_at_;
   EndHistory history_;
   RouteHistory routes_;
+
+  BudgetSplit split_;  // guarded by the lock
 
   mutable std::mutex mutex_;
   std::deque<SlotPtr> slots_;  // [index - first_index_]

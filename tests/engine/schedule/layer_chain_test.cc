@@ -309,6 +309,37 @@ TEST(LayerChain, APastDeadlineStillAnswersEveryLayer) {
   }
 }
 
+// Uses all the time it is given, and notes how much that is.
+class Greedier : public Strategy {
+ public:
+  explicit Greedier(Calls& calls) : calls_(calls) {}
+  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+    const bool has_time = budget.deadline() > Budget::Clock::now();
+    while (!budget.ExhaustedNow()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::lock_guard<std::mutex> lock(calls_.mutex);
+    calls_.solved += has_time;
+    return Solution{GivenRoute(*problem.plan), StopReason::kTimeLimit, std::nullopt};
+  }
+
+ private:
+  Calls& calls_;
+};
+
+TEST(LayerChain, NoLayerTakesTheTimeOfThoseAfterIt) {
+  Calls calls;
+  RecordingSink sink;
+  TestExecutor executor(2);
+  JobSpec spec;
+  spec.deadline = Budget::Clock::now() + std::chrono::milliseconds(500);
+  auto job = Job::Start(spec, std::make_unique<Greedier>(calls), executor, sink);
+  for (int i = 0; i < 10; ++i) job->Add({RingLayer(5, i), Point{}, {}});
+  job->Close();
+  sink.Wait();
+
+  EXPECT_EQ(sink.outcomes.size(), 10u);
+  EXPECT_EQ(calls.solved, 10);
+}
+
 TEST(LayerChain, AJobWithoutLayersIsDone) {
   RunOptions options;
   options.layers = 0;
