@@ -29,6 +29,8 @@ install(FILES systemd/traverse-server.service DESTINATION /lib/systemd/system CO
 install(FILES systemd/server.flags DESTINATION /etc/traverse COMPONENT server)
 install(FILES monitoring/rules/recording.yml monitoring/rules/alerts.yml monitoring/dashboard/traverse.json
         DESTINATION ${CMAKE_INSTALL_DATADIR}/traverse-server/monitoring COMPONENT server)
+install(PROGRAMS monitoring/render_dashboard.py
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/traverse-server/monitoring COMPONENT server)
 
 # Documentation where Debian expects it.
 set(CHANGELOG ${CMAKE_CURRENT_BINARY_DIR}/changelog.gz)

@@ -20,7 +20,9 @@ import urllib.parse
 import urllib.request
 from html import escape
 
-DASHBOARD = pathlib.Path(__file__).resolve().parent / "dashboard/traverse.json"
+HERE = pathlib.Path(__file__).resolve().parent
+# In the source, and as installed.
+DASHBOARD = next(path for path in (HERE / "dashboard/traverse.json", HERE / "traverse.json") if path.exists())
 UNIT_X, UNIT_Y, PAD = 60, 30, 8
 COLORS = ["#3274d9", "#e0752d", "#299c46", "#ba43a9", "#d44a3a", "#65c5db", "#967302", "#806eb7", "#5f6b7a"]
 LEGENDS = 6

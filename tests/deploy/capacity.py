@@ -4,7 +4,8 @@
     TRAVERSE_SERVER=build/release/server/traverse-server tests/deploy/capacity.py [STRATEGY...]
 
 By CPU time of the server process, so that other load on the machine does not matter much. `islands` round
-islands of 24 vertices with one raster each stand for a layer; 40 layers a job, medians of five jobs.
+islands of 24 vertices with one raster each stand for a layer. Medians of five jobs of 40 layers, fewer for strategies that
+search; each search goes on until it ends by itself.
 """
 
 import statistics
@@ -18,14 +19,13 @@ import jobs
 
 SIZES = (10, 30, 100, 300)
 LAYERS = 40
+RUNS = 5
 
 
-def request(layers, islands, strategy, seconds=None):
+def request(layers, islands, strategy):
     from google.protobuf import json_format
     from traverse.v1 import route_optimizer_service_pb2 as api
     options = {"strategy": {"name": strategy}}
-    if seconds:
-        options["layer_time_limit"] = f"{seconds}s"
     return json_format.ParseDict(jobs.plate(layers=layers, islands=islands, vertices=24, options=options),
                                  api.OptimizeBatchRequest())
 
@@ -47,25 +47,31 @@ def peak_mib(server):
         return next(int(line.split()[1]) / 1024 for line in file if line.startswith("VmHWM"))
 
 
+def layers_of(strategy, size):
+    """Layers of a job that is long enough to measure and short enough to wait for."""
+    return LAYERS if strategy in ("none", "greedy", "ni2opt") else max(2, 160 // size)
+
+
+def cpu_per_layer(client, server, job):
+    """CPU seconds. Short jobs are repeated until the clock of the process, of 10 ms, can tell."""
+    begin = cpu_seconds(server)
+    done = 0
+    while done == 0 or (cpu_seconds(server) - begin < 0.3 and done < 200 * len(job.layers)):
+        done += run(client, job)
+    return (cpu_seconds(server) - begin) / done
+
+
 def speed(strategies, connect):
     print(f"\n| layers/s per core | {' | '.join(f'{size} islands' for size in SIZES)} |\n|---|{'---|' * len(SIZES)}")
     for strategy in strategies:
         cells = []
         for size in SIZES:
-            layers = LAYERS if strategy in ("none", "greedy", "ni2opt") else 8
-            job = request(layers, size, strategy, None if strategy in ("none", "greedy", "ni2opt") else 0.2)
+            job = request(layers_of(strategy, size), size, strategy)
             with support.Server("--threads=1") as server:
                 client = connect([server.address])
-                used = []
-                for _ in range(5 if layers == LAYERS else 1):
-                    begin = cpu_seconds(server)
-                    # Short jobs are repeated until the clock of the process, of 10 ms, can tell.
-                    done = 0
-                    while done == 0 or (cpu_seconds(server) - begin < 0.3 and done < 200 * layers):
-                        done += run(client, job)
-                    used.append((cpu_seconds(server) - begin) / done)
+                rate = 1 / statistics.median(cpu_per_layer(client, server, job) for _ in range(RUNS))
                 client.close()
-            cells.append(f"{1 / statistics.median(used):,.0f}")
+            cells.append(f"{rate:,.0f}" if rate >= 10 else f"{rate:.2g}")
         print(f"| `{strategy}` | {' | '.join(cells)} |", flush=True)
 
 
@@ -107,7 +113,7 @@ def main():
     example_cases.generate()
     sys.path.insert(0, str(support.DEPLOY / "examples/python"))
     from traverse_client import TraverseClient
-    strategies = sys.argv[1:] or ["none", "greedy", "ni2opt"]
+    strategies = sys.argv[1:] or ["none", "greedy", "ni2opt", "auto", "tabu"]
     speed(strategies, TraverseClient)
     memory(TraverseClient)
     behind_balancer(TraverseClient)
