@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "engine/base/rng.h"
 #include "engine/cost/route_cost.h"
+#include "engine/strategy/registry.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/instances.h"
 #include "tests/support/random_plan.h"
@@ -29,6 +31,28 @@ TEST(LowerBound, IsNeverAboveTheOptimum) {
 
     ASSERT_TRUE(bound.has_value());
     EXPECT_LE(*bound, best + 1e-9 * (1 + best));
+  }
+}
+
+// Layers too large for brute force: what is proven by other means.
+TEST(LowerBound, IsNeverAboveAProvenOptimum) {
+  const std::unique_ptr<Strategy> exact = *MakeStrategy("exact", {});
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const OwnedProblem owned =
+        testing::RandomProblem(seed, {.shape = testing::PlanShape::kSequential,
+                                      .min_paths = 16,
+                                      .max_paths = 30,
+                                      .max_vertices = 8});
+    Budget budget;
+    const Solution proven = exact->Solve(owned.problem, budget);
+    ASSERT_EQ(proven.stop, StopReason::kOptimal);
+    const double best = RouteCost(owned.problem, proven.route);
+
+    const double bound = *LowerBound(owned.problem, 2 * best, nullptr, budget);
+
+    EXPECT_LE(bound, best * (1 + 1e-9));
+    EXPECT_GT(bound, 0.3 * best);
   }
 }
 
