@@ -33,18 +33,22 @@ absl::StatusOr<std::string> GcodeTarget(const Flags& flags, const std::string& i
   return input;
 }
 
-absl::StatusOr<GcodeRewrite> RewriteByRun(const InputJob& job, const report::JobRun& run,
-                                          const GcodeOptions& options) {
-  std::vector<gcode::LayerOrder> orders(job.gcode->layers.size());
-  for (size_t i = 0; i < run.result.layers.size(); ++i) {
-    const size_t layer = job.first_layer + i;
-    orders[layer] = OrderOf(*job.gcode, layer, run.result.layers[i]);
+absl::StatusOr<GcodeRewrite> RewriteByRuns(const InputJob& job,
+                                           absl::Span<const report::JobRun* const> runs,
+                                           const GcodeOptions& options) {
+  std::vector<gcode::FileOrder> tries;
+  for (const report::JobRun* run : runs) {
+    gcode::FileOrder& orders = tries.emplace_back(job.gcode->layers.size());
+    for (size_t i = 0; i < run->result.layers.size(); ++i) {
+      const size_t layer = job.first_layer + i;
+      orders[layer] = OrderOf(*job.gcode, layer, run->result.layers[i]);
+    }
   }
   RewriteOptions rewrite;
   rewrite.policy = options.policy;
   rewrite.version = TRAVERSE_VERSION;
   rewrite.threads = gcode::DefaultThreads();
-  return RewriteGcode(*job.gcode, orders, rewrite);
+  return RewriteGcode(*job.gcode, tries, rewrite);
 }
 
 absl::Status WriteGcode(const GcodeRewrite& rewrite, const InputJob& job,

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "absl/types/span.h"
 #include "client/cli/flags.h"
 #include "client/cli/job_flags.h"
 #include "client/gcode/rewrite.h"
@@ -20,10 +21,11 @@ namespace traverse::cli {
 // be replaced, for what is written is not.
 absl::StatusOr<std::string> GcodeTarget(const Flags& flags, const std::string& input);
 
-// Rewrites the file of `job` by the routes of `run`, which answers the layers that --layers left in
-// `job`; the others stay as they are.
-absl::StatusOr<GcodeRewrite> RewriteByRun(const InputJob& job, const report::JobRun& run,
-                                          const GcodeOptions& options);
+// Rewrites the file of `job` by the best of what `runs` have for each layer. They answer the layers
+// that --layers left in `job`; the others stay as they are.
+absl::StatusOr<GcodeRewrite> RewriteByRuns(const InputJob& job,
+                                           absl::Span<const report::JobRun* const> runs,
+                                           const GcodeOptions& options);
 
 // Writes `rewrite`. A file that would replace itself by the same bytes is not touched.
 absl::Status WriteGcode(const GcodeRewrite& rewrite, const InputJob& job,

@@ -60,14 +60,32 @@ absl::StatusOr<std::string> TargetOf(const Flags& flags, const InputJob& job) {
   return std::string();
 }
 
-// The G-code of `run`. FailedPrecondition if it would not print the same.
-absl::StatusOr<GcodeRewrite> Rewritten(const InputJob& job, const report::JobRun& run,
-                                       const GcodeOptions& options) {
-  absl::StatusOr<GcodeRewrite> rewrite = RewriteByRun(job, run, options);
-  if (rewrite.ok()) return rewrite;
-  return absl::FailedPreconditionError(
+// `auto` looks at a file of G-code twice, the second time with less latitude.
+bool IsAskedTwice(const InputJob& job, const StrategySpec* strategy, const JobFlags& flags) {
+  const v1::Strategy& named = strategy != nullptr ? strategy->strategy : job.options.strategy();
+  return named.name() == "auto" && flags.deadline == absl::InfiniteDuration();
+}
+
+// The G-code of `run`, and of a second one if that is worth while.
+Expected<GcodeRewrite> Rewritten(Service& service, const Request& request, const InputJob& job,
+                                 const report::JobRun& run, const GcodeOptions& options) {
+  const StrategySpec* strategy = request.strategy.empty() ? nullptr : &request.strategy[0];
+  std::vector<const report::JobRun*> runs = {&run};
+  Expected<report::JobRun> second = report::JobRun{};
+  if (IsAskedTwice(job, strategy, request.job)) {
+    InputJob narrow;
+    narrow.name = job.name;
+    narrow.options = job.options;
+    narrow.layers = NarrowLayers(job, options);
+    second = service.Optimize(narrow, strategy, request.job, request.quiet);
+    if (Outcome* outcome = std::get_if<Outcome>(&second)) return *outcome;
+    runs.push_back(&std::get<report::JobRun>(second));
+  }
+  absl::StatusOr<GcodeRewrite> rewrite = RewriteByRuns(job, runs, options);
+  if (rewrite.ok()) return *std::move(rewrite);
+  return InputFault(absl::FailedPreconditionError(
       absl::StrFormat("%s: left as it is, for the new file would not print the same: %s",
-                      DisplayName(job.name), std::string(rewrite.status().message())));
+                      DisplayName(job.name), std::string(rewrite.status().message()))));
 }
 
 // Draws and describes what became of the job. `rewrite` is null if it is no G-code.
@@ -115,9 +133,9 @@ Outcome RunOptimize(const Flags& flags) {
 
   std::optional<GcodeRewrite> rewrite;
   if (job->gcode != nullptr && (!target->empty() || request->views.any())) {
-    absl::StatusOr<GcodeRewrite> made = Rewritten(*job, run, ParseGcodeOptions(flags));
-    if (!made.ok()) return InputFault(made.status());
-    rewrite = *std::move(made);
+    Expected<GcodeRewrite> made = Rewritten(service, *request, *job, run, ParseGcodeOptions(flags));
+    if (Outcome* outcome = std::get_if<Outcome>(&made)) return *outcome;
+    rewrite = std::get<GcodeRewrite>(std::move(made));
   }
   if (!request->json.empty()) {
     const absl::Status status = WriteWholeFile(request->json, report::RoutesJson(*job, run));

@@ -84,6 +84,9 @@ Outcome Service::Resolve(const JobFlags& flags, const InputJob& job,
   if (specs.empty()) {
     StrategySpec spec{"optimize", job.options.strategy()};
     if (spec.strategy.name().empty()) spec.strategy.set_name(known.default_strategy());
+    for (const auto& option : flags.strategy_options) {
+      spec.strategy.mutable_options()->erase(option.first);
+    }
     specs.push_back(std::move(spec));
   }
   const absl::Status status = ResolveStrategies(known, flags.strategy_options, specs);

@@ -54,6 +54,17 @@ void AddLayer(const GcodeFile& file, size_t index, const TravelModel& model, Pol
   census.movable += planned.movable;
 }
 
+// The search of `auto` ends after so many rounds without a gain for each path. A print takes much
+// longer than any search, but nobody waits a minute for a file to be written: short files are
+// searched as long as it pays, long ones as others are.
+void SetStrategy(size_t paths, v1::Strategy& strategy) {
+  constexpr double kRounds = 20000;
+  constexpr double kMaxEffort = 10;
+  const double effort = std::clamp(kRounds / static_cast<double>(paths), 1.0, kMaxEffort);
+  strategy.set_name("auto");
+  (*strategy.mutable_options())["effort"] = absl::StrFormat("%.3g", effort);
+}
+
 std::string Duration(double seconds) {
   const auto whole = static_cast<int64_t>(seconds + 0.5);
   if (whole < 3600) return absl::StrFormat("%d min %02d s", whole / 60, whole % 60);
@@ -101,10 +112,24 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   job.options.mutable_start()->set_x_mm(first.points.front().x);
   job.options.mutable_start()->set_y_mm(first.points.front().y);
   gcode::SetCost(models.back(), *job.options.mutable_cost());
+  gcode::SetStrategy(file->blocks.size(), *job.options.mutable_strategy());
   job.options.set_idle_speed_mm_s(std::clamp(models.back().speed_mm_s, 0.001, 1e5));
   gcode::AddFacts(*file, census, options.policy, job);
   job.gcode = std::move(file);
   return job;
+}
+
+std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& options) {
+  std::vector<v1::Layer> layers(job.layers.size());
+  gcode::ParallelFor(layers.size(), gcode::DefaultThreads(), [&](size_t i) {
+    const v1::Layer& layer = job.layers[i];
+    layers[i].set_id(layer.id());
+    if (layer.has_cost()) *layers[i].mutable_cost() = layer.cost();
+    const gcode::Layer& of_file = job.gcode->layers[job.first_layer + i];
+    *layers[i].mutable_plan() = std::move(
+        gcode::MakeLayerPlan(*job.gcode, of_file, options.policy, gcode::Latitude::kNarrow).plan);
+  });
+  return layers;
 }
 
 gcode::LayerOrder OrderOf(const GcodeFile& file, size_t layer, const v1::LayerResult& answer) {

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "client/gcode/gcode_file.h"
@@ -20,9 +21,14 @@ struct GcodeOptions {
 };
 
 // The job in `file`: a plan for each of its layers, the cost of travel as its own moves show it
-// (time), and what `inspect` prints. Path i of layer l is block layers[l].first_block + i of the
+// (time), a strategy that searches short files for longer than long ones, and what `inspect`
+// prints. Path i of layer l is block layers[l].first_block + i of the
 // file; labels count the paths of a layer from 1.
 InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions& options);
+
+// The layers of `job`, which is one of G-code, with plans of less latitude: a second way to look
+// for an order (policy.h).
+std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& options);
 
 // The order that an answer of the service gives layer `layer` of `file`.
 // REQUIRES: the answer was checked against the layer of the job.

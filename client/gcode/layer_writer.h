@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "client/gcode/gcode_out.h"
 #include "client/gcode/layer_meter.h"
 #include "client/gcode/link_donors.h"
 #include "client/gcode/placed_path.h"
@@ -16,31 +17,41 @@ namespace traverse::gcode {
 // The paths of a layer in the order to print them.
 using LayerOrder = std::vector<Placement>;
 
-// The order of the file.
-LayerOrder GivenOrder(const GcodeFile& file, const Layer& layer);
+// Where the paths of an order begin, with everything set as its first path needs it. The extruder's
+// register is as it is there in the file.
+PartStart StartOfPaths(const GcodeFile& file, const Placement& first);
 
-struct WrittenLayer {
-  std::string text;  // from behind the last path of the layer before to behind its own last path
-  PartStart behind;  // the machine then
-  size_t first_path = 0;  // where in the text its first path begins
-  bool as_given = false;  // byte by byte what the file has
-};
+// Behind `last`; the same holds for the extruder's register.
+PartStart StartBehindPath(const GcodeFile& file, const Placement& last);
 
+// One layer. What writes appends to `text` and returns the machine behind that. Thread-safe.
 class LayerWriter {
  public:
-  // `file` and `habit` outlive the writer.
-  LayerWriter(const GcodeFile& file, const RetractionHabit& habit)
-      : file_(file), habit_(habit), donors_(file) {}
+  // `file`, `habit` and `donors` outlive the writer.
+  LayerWriter(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
+              const LinkDonors& donors);
 
-  // Writes `layer` in `order`. `before` is the last path before it and `start` the machine behind
-  // that path; for the first layer null and the machine where its first path begins. Thread-safe.
-  WrittenLayer Write(const Layer& layer, const LayerOrder& order, const Placement* before,
-                     const PartStart& start) const;
+  // The order of the file.
+  LayerOrder GivenOrder() const;
+
+  // The way to the path `first` from `before`, the last path of the layer before, with the marks of
+  // the new layer. `start` is the machine behind `before`.
+  PartStart WriteWay(const Placement& before, const Placement& first, const PartStart& start,
+                     std::string& text) const;
+
+  // The paths in `order` and the ways between them. `start` is the machine where the first begins.
+  PartStart WritePaths(const LayerOrder& order, const PartStart& start, std::string& text) const;
 
  private:
+  bool IsGiven(const LayerOrder& order, const PartStart& start) const;
+  void WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place, GcodeOut& out) const;
+  bool Retracts(const PlacedPath& from, const PlacedPath& to) const;
+
   const GcodeFile& file_;
-  const RetractionHabit& habit_;
-  const LinkDonors donors_;
+  const Layer& layer_;
+  const LinkDonors& donors_;
+  const std::vector<Outline> outlines_;
+  const TravelRules rules_;
 };
 
 }  // namespace traverse::gcode

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -28,8 +29,8 @@ struct PathRule {
 
 class LayerPlanner {
  public:
-  LayerPlanner(const GcodeFile& file, const Layer& layer, Policy policy)
-      : file_(file), layer_(layer), policy_(policy) {}
+  LayerPlanner(const GcodeFile& file, const Layer& layer, Policy policy, Latitude latitude)
+      : file_(file), layer_(layer), policy_(policy), latitude_(latitude) {}
 
   LayerPlan Make();
 
@@ -48,6 +49,8 @@ class LayerPlanner {
 
   void AddPath(size_t path);
   uint32_t AddNode(uint32_t parent_any_or_root);
+  bool GoesWithBefore(size_t path) const;
+  void AddLeaf(uint32_t parent, size_t path);
   void AddGroup(size_t begin, size_t end);
   void AddGroupByIslands(uint32_t any, size_t begin, size_t end);
   using Pairs = std::vector<std::pair<uint32_t, uint32_t>>;
@@ -56,6 +59,7 @@ class LayerPlanner {
   const GcodeFile& file_;
   const Layer& layer_;
   const Policy policy_;
+  const Latitude latitude_;
   std::vector<PathRule> rules_;
   Contacts contacts_;
   std::vector<uint32_t> position_;  // [path] among the children of its any_order
@@ -66,6 +70,7 @@ bool LayerPlanner::IsPinned(size_t path) const {
   const size_t block = layer_.first_block + path;
   const bool last = block + 1 == file_.blocks.size();
   const Feature feature = FeatureOf(path);
+  if (latitude_ == Latitude::kNarrow && (path == 0 || path + 1 == size())) return true;
   return (BlockOf(path).flags & kBlockPinned) != 0 || (BlockOf(path).link & kLinkFixed) != 0 ||
          last || (file_.blocks[block + 1].link & kLinkFixed) != 0 || feature == Feature::kTower ||
          feature == Feature::kCustom;
@@ -217,7 +222,7 @@ void LayerPlanner::AddPath(size_t path) {
   }
 }
 
-// Adds a node and makes it a child of the root.
+// Adds a node and makes it a child of `parent_any_or_root`.
 uint32_t LayerPlanner::AddNode(uint32_t parent_any_or_root) {
   const auto index = static_cast<uint32_t>(result_.plan.nodes_size());
   result_.plan.add_nodes();
@@ -239,6 +244,25 @@ LayerPlanner::PairsFrom(size_t begin, size_t end) const {
   return {from(begin), from(end)};
 }
 
+// True if `path` and the one before it are walls side by side, one done right after the other.
+bool LayerPlanner::GoesWithBefore(size_t path) const {
+  return latitude_ == Latitude::kNarrow && IsWall(FeatureOf(path)) && IsWall(FeatureOf(path - 1)) &&
+         std::binary_search(
+             contacts_.ordered.begin(), contacts_.ordered.end(),
+             std::pair(static_cast<uint32_t>(path - 1), static_cast<uint32_t>(path)));
+}
+
+void LayerPlanner::AddLeaf(uint32_t parent, size_t path) {
+  const auto index = static_cast<uint32_t>(result_.plan.nodes_size());
+  result_.plan.add_nodes()->set_path(static_cast<uint32_t>(path));
+  v1::PlanNode& node = *result_.plan.mutable_nodes(static_cast<int>(parent));
+  if (node.has_in_order()) {
+    node.mutable_in_order()->add_children(index);
+  } else {
+    node.mutable_any_order()->add_children(index);
+  }
+}
+
 void LayerPlanner::AddGroup(size_t begin, size_t end) {
   const uint32_t group = AddNode(0);
   if (end - begin == 1) {
@@ -248,18 +272,31 @@ void LayerPlanner::AddGroup(size_t begin, size_t end) {
   result_.movable += static_cast<int64_t>(end - begin);
   result_.plan.mutable_nodes(static_cast<int>(group))->mutable_any_order();
   if (policy_ == Policy::kBalanced) return AddGroupByIslands(group, begin, end);
-  for (size_t path = begin; path < end; ++path) {
-    position_[path] = static_cast<uint32_t>(path - begin);
-    const uint32_t leaf = AddNode(group);
-    result_.plan.mutable_nodes(static_cast<int>(leaf))->set_path(static_cast<uint32_t>(path));
+  uint32_t units = 0;
+  for (size_t path = begin; path < end;) {
+    size_t behind = path + 1;
+    while (behind < end && GoesWithBefore(behind)) ++behind;
+    uint32_t parent = group;
+    if (behind - path > 1) {
+      parent = AddNode(group);
+      result_.plan.mutable_nodes(static_cast<int>(parent))->mutable_in_order();
+    }
+    for (; path < behind; ++path) {
+      position_[path] = units;
+      AddLeaf(parent, path);
+    }
+    ++units;
   }
   v1::AnyOrder& any = *result_.plan.mutable_nodes(static_cast<int>(group))->mutable_any_order();
   const auto [first, last] = PairsFrom(begin, end);
+  std::set<std::pair<uint32_t, uint32_t>> known;
   for (auto pair = first; pair != last; ++pair) {
     if (pair->second >= end) continue;
+    const std::pair<uint32_t, uint32_t> units_of(position_[pair->first], position_[pair->second]);
+    if (units_of.first == units_of.second || !known.insert(units_of).second) continue;
     v1::Precedence& before = *any.add_before();
-    before.set_first(position_[pair->first]);
-    before.set_second(position_[pair->second]);
+    before.set_first(units_of.first);
+    before.set_second(units_of.second);
   }
 }
 
@@ -336,8 +373,9 @@ std::string_view PolicyName(Policy policy) {
   return "";
 }
 
-LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy) {
-  return LayerPlanner(file, layer, policy).Make();
+LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy,
+                        Latitude latitude) {
+  return LayerPlanner(file, layer, policy, latitude).Make();
 }
 
 }  // namespace traverse::gcode

@@ -38,7 +38,17 @@ struct LayerPlan {
   int64_t movable = 0;            // paths that may change places with another one
 };
 
-LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy);
+// Ways to look for an order among those that a policy allows. The narrower the choice, the further
+// a search comes in it.
+enum class Latitude : uint8_t {
+  kFull,
+  // The layer begins and ends with the path that it does in the file, so that nothing changes for
+  // the layers around it; walls that touch and follow one another in the file stay together.
+  kNarrow,
+};
+
+LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy,
+                        Latitude latitude = Latitude::kFull);
 
 }  // namespace traverse::gcode
 

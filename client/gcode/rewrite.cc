@@ -84,13 +84,13 @@ std::string DescribeRewrite(const GcodeRewrite& rewrite) {
 }
 
 absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
-                                          const std::vector<gcode::LayerOrder>& orders,
+                                          const std::vector<gcode::FileOrder>& tries,
                                           const RewriteOptions& options) {
-  const std::vector<gcode::PrintTotals> given = gcode::MeasureLayers(file, options.threads);
   GcodeRewrite rewrite;
   rewrite.layers = static_cast<int64_t>(file.layers.size());
-  rewrite.before = gcode::Sum(given);
-  gcode::ChosenLayers chosen = gcode::ChooseLayers(file, orders, given, options.policy);
+  rewrite.before = gcode::Sum(gcode::MeasureLayers(file, options.threads));
+  const gcode::ChosenLayers chosen =
+      gcode::ChooseLayers(file, tries, options.policy, options.threads);
   rewrite.after = gcode::Sum(chosen.totals);
   rewrite.layers_changed = chosen.changed;
   if (chosen.changed == 0 || rewrite.after.seconds > rewrite.before.seconds) {

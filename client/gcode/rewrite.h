@@ -9,7 +9,7 @@
 
 #include "absl/status/statusor.h"
 #include "client/gcode/gcode_file.h"
-#include "client/gcode/layer_writer.h"
+#include "client/gcode/layer_choice.h"
 #include "client/gcode/policy.h"
 #include "client/gcode/print_totals.h"
 
@@ -29,15 +29,15 @@ struct RewriteOptions {
   int threads = 1;
 };
 
-// Writes `file` with the paths of layer l in the order `orders[l]`; an empty order is that of the
-// file. A layer keeps the file's order where the new one is not quicker by the estimate, or, under
-// Policy::kSafe, where its travel would be longer: within the layer, or with the way to it. The
-// text is verified before it is returned (verify/verifier.h).
+// Writes `file` with each layer in one of the orders that `tries` have for it, or in its own,
+// whichever makes the quickest print by the estimate; under Policy::kSafe no layer's travel grows,
+// neither within the layer nor with the way to it (layer_choice.h). The text is verified before it
+// is returned (verify/verifier.h).
 //
 // FailedPrecondition with the first difference if it does not print the same: a fault of ours.
-// REQUIRES: each order has each path of its layer once, and is one that a plan of `policy` allows.
+// REQUIRES: each order is empty, or has each path of its layer once as a plan of `policy` allows.
 absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
-                                          const std::vector<gcode::LayerOrder>& orders,
+                                          const std::vector<gcode::FileOrder>& tries,
                                           const RewriteOptions& options);
 
 // "travel 15.27 -> 12.41 m (-18.7 %), retractions 1187 -> 1059, estimated print time ..."

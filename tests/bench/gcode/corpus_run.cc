@@ -82,20 +82,28 @@ absl::StatusOr<CorpusRun> RunFile(const std::string& path, gcode::Policy policy,
   options.policy = policy;
   absl::StatusOr<InputJob> job = ReadInput(path, options);
   if (!job.ok()) return job.status();
-  job->options.mutable_strategy()->set_name(strategy);
-  const absl::StatusOr<JobResult> result = client.Optimize(job->options, job->layers);
-  if (!result.ok()) return result.status();
+  if (strategy != "auto") {
+    job->options.mutable_strategy()->Clear();
+    job->options.mutable_strategy()->set_name(strategy);
+  }
   const GcodeFile& file = *job->gcode;
   run.slicer =
       file.slicer.empty() ? "unknown" : file.slicer.substr(0, file.slicer.find_first_of(" _"));
-  std::vector<gcode::LayerOrder> orders;
-  for (size_t i = 0; i < result->layers.size(); ++i) {
-    orders.push_back(OrderOf(file, i, result->layers[i]));
+  std::vector<gcode::FileOrder> tries;
+  std::vector<std::vector<v1::Layer>> ways_to_ask = {job->layers};
+  if (strategy == "auto") ways_to_ask.push_back(NarrowLayers(*job, options));
+  for (const std::vector<v1::Layer>& layers : ways_to_ask) {
+    const absl::StatusOr<JobResult> result = client.Optimize(job->options, layers);
+    if (!result.ok()) return result.status();
+    gcode::FileOrder& orders = tries.emplace_back();
+    for (size_t i = 0; i < result->layers.size(); ++i) {
+      orders.push_back(OrderOf(file, i, result->layers[i]));
+    }
   }
   RewriteOptions rewriting;
   rewriting.policy = policy;
   rewriting.threads = gcode::DefaultThreads();
-  const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(file, orders, rewriting);
+  const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(file, tries, rewriting);
   run.cpu_seconds = CpuSeconds() - began;
   if (!rewrite.ok()) {
     run.fault = std::string(rewrite.status().message());

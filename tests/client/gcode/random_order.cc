@@ -83,20 +83,19 @@ LayerOrder RandomOrder(const Layer& layer, const v1::Plan& plan, Rng& rng) {
 std::string Shuffled(const GcodeFile& file, Policy policy, uint64_t seed) {
   Rng rng(seed);
   const RetractionHabit habit = LearnRetraction(file);
-  const LayerWriter writer(file, habit);
+  const LinkDonors donors(file);
   const Block& first = file.blocks.front();
-  PartStart start{StateAt(file, first), file.states[first.state_in]};
+  PartStart at{StateAt(file, first), file.states[first.state_in]};
   std::string out = file.text.substr(0, first.begin);
   Placement before;
   for (const Layer& layer : file.layers) {
+    const LayerWriter writer(file, layer, habit, donors);
     const LayerOrder order = RandomOrder(layer, MakeLayerPlan(file, layer, policy).plan, rng);
-    const WrittenLayer written =
-        writer.Write(layer, order, layer.first_block == 0 ? nullptr : &before, start);
-    out += written.text;
-    start = written.behind;
+    if (layer.first_block > 0) at = writer.WriteWay(before, order.front(), at, out);
+    at = writer.WritePaths(order, at, out);
     before = order.back();
   }
-  GcodeOut foot(file, start, out);
+  GcodeOut foot(file, at, out);
   const Block& last = file.blocks.back();
   const PartStart behind = StartBehind(file, last);
   foot.Copy(last.end, static_cast<Offset>(file.text.size()), behind, behind, false);

@@ -57,7 +57,7 @@ TEST(LayerWriter, AFeedRateThatIsSetOnALineBeforeIsNotLost) {
   const LayerOrder better = {
       {0, 0, false}, {2, 1, false}, {3, 0, false}, {1, 1, false}, {4, 0, false}};
 
-  const auto rewrite = RewriteGcode(*file, {better}, RewriteOptions{});
+  const auto rewrite = RewriteGcode(*file, {{better}}, RewriteOptions{});
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_EQ(rewrite->layers_changed, 1);

@@ -27,6 +27,7 @@ double LengthOf(const std::vector<DrawnMove>& moves) {
 // A run of the strategy ni2opt by the service.
 report::JobRun RunOf(const InputJob& job) {
   v1::JobOptions options = job.options;
+  options.clear_strategy();
   options.mutable_strategy()->set_name("ni2opt");
   const auto service = EmbeddedService::Start(2);
   EXPECT_TRUE(service.ok());
@@ -50,7 +51,7 @@ TEST_P(DrawnGcode, TravelsAsFarAsTheFileIsMeasuredTo) {
     orders.push_back(OrderOf(*job->gcode, i, run.result.layers[i]));
   }
   const absl::StatusOr<GcodeRewrite> rewrite =
-      RewriteGcode(*job->gcode, orders, {options.policy, "1.0", 2});
+      RewriteGcode(*job->gcode, {orders}, {options.policy, "1.0", 2});
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
 
   const absl::StatusOr<Scene> scene = GcodeScene(*job, {"ni2opt", &run}, *rewrite);
