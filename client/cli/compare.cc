@@ -16,6 +16,7 @@
 #include "client/files/write_file.h"
 #include "client/formats/read_input.h"
 #include "client/report/json.h"
+#include "client/report/reductions.h"
 #include "client/view/job_scene.h"
 
 namespace traverse::cli {
@@ -145,7 +146,8 @@ Outcome RunCompare(const Flags& flags) {
   std::FILE* out = request->json == "-" ? stderr : stdout;
   Print(out, absl::StrFormat("%s: %d layers; %% are travel saved against that row\n%s",
                              DisplayName(job->name), job->layers.size(),
-                             report::CompareTable(compared, StyleFor(out))));
+                             report::CompareTable(compared, StyleFor(out))) +
+                 report::ReductionTable(compared, StyleFor(out)));
   return Done();
 }
 

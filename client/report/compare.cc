@@ -164,7 +164,7 @@ class Columns {
 
 std::string CompareTable(const std::vector<ComparedStrategy>& strategies, const TextStyle& style) {
   Columns columns(strategies);
-  columns.Fit(style.width - kLeastBar);
+  columns.Fit(style.width);
   const int bar = std::min(style.width - columns.Width(), kMostBar);
   const bool with_bar = bar >= kLeastBar;
 

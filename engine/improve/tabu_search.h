@@ -45,7 +45,7 @@ struct TabuOptions {
   int diversifications = 2500;  // >= 1; the first one is the sequence given
   double list_size = 1.5;       // moves in the tabu list, per child of an any_order node
   double tenure = 0.1;          // iterations that a move is tabu, per diversification
-  int patience = 5;             // moves without gain that end an intensification
+  int patience = 3;             // moves without gain that end an intensification
   Diversification diversification = Diversification::kRandom;
   double swaps = 0.3;              // of kSwaps: swaps per child, at least 3
   double order_penalty_mm = 1000;  // for each violated pair, as much as a move of that length

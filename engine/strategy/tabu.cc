@@ -218,7 +218,7 @@ std::vector<OptionSpec> Options() {
              "Moves in the tabu list for each contour or raster."),
       Number("tenure", Type::kDouble, "0.1", 0, 100,
              "Iterations that a move is tabu, for each diversification."),
-      Number("patience", Type::kInt, "5", 0, 10000,
+      Number("patience", Type::kInt, "3", 0, 10000,
              "Moves without gain after which the search starts anew."),
       Number("evaluations", Type::kInt, "20000000", 0, 1e12,
              "Swaps evaluated that end the search of each step, whatever number of "

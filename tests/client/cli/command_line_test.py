@@ -445,6 +445,11 @@ class OtherCommands(CommandLine):
         rows = [line.split()[0] for line in out.splitlines()[1:] if not line.startswith("-")]
         self.assertEqual(rows, ["strategy", "none", "greedy"])
 
+    def test_compare_prints_what_the_frameworks_reductions_leave(self):
+        out = self.succeed("compare", PART1, "--strategies=greedy,tabu:diversifications=5", "--layers=1-2", "--quiet")
+        self.assertIn("contour points of a layer", out)
+        self.assertIn("309 (-35.2 %)", out)  # as in the thesis's table 5.1
+
     def test_compare_writes_every_runs_routes(self):
         routes = self.path("routes.json")
         self.succeed("compare", PART1, "--strategies=none,greedy", "--repeat=2", "--seed=5", f"--json={routes}")
