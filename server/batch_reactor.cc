@@ -18,9 +18,10 @@ constexpr size_t kBytesPerPoint = 16;
 
 }  // namespace
 
-BatchReactor* BatchReactor::Start(ServiceCore& core, CallInfo call, const absl::Status& authorized,
+BatchReactor* BatchReactor::Start(ServiceCore& core, grpc::CallbackServerContext& context,
+                                  CallInfo call, const absl::Status& authorized,
                                   grpc::ByteBuffer& request) {
-  auto* reactor = new BatchReactor(core, std::move(call), request);
+  auto* reactor = new BatchReactor(core, context, std::move(call), request);
   reactor->Run(authorized);
   return reactor;
 }
@@ -32,7 +33,8 @@ void BatchReactor::Run(const absl::Status& authorized) {
   const std::shared_ptr<JobRun> run = this->run();
   run->Hold();
   const auto read = [this, run] {
-    if (absl::Status status = ReadJob(); !status.ok()) run->Abort(status);
+    const absl::Status status = Guarded([this] { return ReadJob(); });
+    if (!status.ok()) run->Abort(status);
     run->Release();  // may end the call
   };
   if (bytes <= kReadHereBytes) {

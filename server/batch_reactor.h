@@ -15,12 +15,13 @@ namespace traverse {
 class BatchReactor : public grpc::ServerWriteReactor<grpc::ByteBuffer>, private JobStream {
  public:
   // Reads `request`, which is emptied as soon as it is parsed. Returns the reactor of the call.
-  static BatchReactor* Start(ServiceCore& core, CallInfo call, const absl::Status& authorized,
-                             grpc::ByteBuffer& request);
+  static BatchReactor* Start(ServiceCore& core, grpc::CallbackServerContext& context, CallInfo call,
+                             const absl::Status& authorized, grpc::ByteBuffer& request);
 
  private:
-  BatchReactor(ServiceCore& core, CallInfo call, grpc::ByteBuffer& request)
-      : JobStream(core, std::move(call)), request_(request) {}
+  BatchReactor(ServiceCore& core, grpc::CallbackServerContext& context, CallInfo call,
+               grpc::ByteBuffer& request)
+      : JobStream(core, context, std::move(call)), request_(request) {}
 
   void Run(const absl::Status& authorized);
   absl::Status ReadJob();

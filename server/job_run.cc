@@ -1,5 +1,7 @@
 #include "server/job_run.h"
 
+#include <new>
+
 namespace traverse {
 namespace {
 
@@ -8,6 +10,10 @@ namespace {
 constexpr int64_t kLeastLayers = 2;
 
 }  // namespace
+
+absl::Status NoMemory() {
+  return absl::ResourceExhaustedError("the server has not enough memory for this job");
+}
 
 void JobRun::Start(const Options& options, const JobSpec& spec, std::unique_ptr<Strategy> strategy,
                    Executor& executor) {
@@ -29,6 +35,7 @@ void JobRun::Start(const Options& options, const JobSpec& spec, std::unique_ptr<
 
 void JobRun::Add(LabelledLayer layer) {
   std::lock_guard<std::mutex> lock(mutex_);
+  NoteProgress();
   if (!abort_) backlog_.push_back(std::move(layer));
 }
 
@@ -51,6 +58,7 @@ bool JobRun::AskForRoom() {
 void JobRun::OnWriteDone(bool ok) {
   {
     std::lock_guard<std::mutex> lock(mutex_);
+    NoteProgress();
     window_layers_ -= writing_->layers;
     window_points_ -= writing_->points;
     writing_.reset();
@@ -78,6 +86,24 @@ void JobRun::Abort(const absl::Status& status) {
   Pump(/*feed=*/false);
 }
 
+void JobRun::AbortIfStalled(std::chrono::steady_clock::duration time, const absl::Status& status) {
+  bool unread = false;
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    const bool callers_turn = writing_.has_value() || !closed_;
+    if (finished_ || !callers_turn || port_.IsWorkedOn() ||
+        std::chrono::steady_clock::now() - progress_ < time) {
+      return;
+    }
+    unread = writing_.has_value();
+    if (abort_ && !unread) return;
+    ++holds_;
+  }
+  Abort(status);
+  if (unread) port_.CancelCall();
+  Release();
+}
+
 void JobRun::Hold() {
   std::lock_guard<std::mutex> lock(mutex_);
   ++holds_;
@@ -97,6 +123,14 @@ bool JobRun::aborted() const {
 }
 
 void JobRun::OnLayer(LayerOutcome outcome) {
+  try {
+    TakeLayer(std::move(outcome));
+  } catch (const std::bad_alloc&) {
+    Abort(NoMemory());
+  }
+}
+
+void JobRun::TakeLayer(LayerOutcome outcome) {
   Label label;
   {
     std::lock_guard<std::mutex> lock(mutex_);
@@ -109,6 +143,7 @@ void JobRun::OnLayer(LayerOutcome outcome) {
   {
     std::lock_guard<std::mutex> lock(mutex_);
     if (abort_) return;
+    NoteProgress();
     Queue(outcome.index, {std::move(message), 1, label.points});
   }
   // No feeding: the engine is in the middle of this call.
@@ -124,7 +159,11 @@ void JobRun::OnDone() {
     summary = !abort_;
   }
   std::string message;
-  if (summary) message = port_.EncodeSummary();
+  try {
+    if (summary) message = port_.EncodeSummary();
+  } catch (const std::bad_alloc&) {
+    Abort(NoMemory());
+  }
   {
     std::lock_guard<std::mutex> lock(mutex_);
     engine_done_ = true;

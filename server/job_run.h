@@ -12,6 +12,7 @@
 #ifndef TRAVERSE_SERVER_JOB_RUN_H_
 #define TRAVERSE_SERVER_JOB_RUN_H_
 
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -26,6 +27,9 @@
 #include "engine/engine.h"
 
 namespace traverse {
+
+// How a job ends that wants more memory than there is.
+absl::Status NoMemory();
 
 // A layer with what has to be said about it in its result.
 struct LabelledLayer {
@@ -50,6 +54,14 @@ class JobPort {
   // Whether the server as a whole would have more of this job now; asked when some of the job's
   // layers are under way. Called with a lock held: calls nothing of the run.
   virtual bool MayBringMore() const { return true; }
+
+  // Whether workers have something to do for the job. Called with a lock held: calls nothing of the
+  // run.
+  virtual bool IsWorkedOn() const { return false; }
+
+  // Ends the call without waiting for its reader; OnWriteDone(false) follows if a write is under
+  // way.
+  virtual void CancelCall() {}
 
   // It is worth asking JobRun::AskForRoom again.
   virtual void OnRoom() = 0;
@@ -100,6 +112,10 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
   // After the first call, or the end, it does nothing.
   void Abort(const absl::Status& status);
 
+  // Abort with `status` if the caller has neither sent nor read anything for `time` and it is his
+  // turn: no worker has anything to do for the job. A write that he does not read is given up.
+  void AbortIfStalled(std::chrono::steady_clock::duration time, const absl::Status& status);
+
   // While at least one hold is taken, Finish is not called: for work outside the stream's own
   // callbacks that uses the port.
   void Hold();
@@ -131,6 +147,11 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
   // Gives layers to the engine while the window has room. Unlocks for the engine's calls.
   void Feed(std::unique_lock<std::mutex>& lock);
 
+  void TakeLayer(LayerOutcome outcome);
+
+  // Something has moved. REQUIRES: mutex_ is held.
+  void NoteProgress() { progress_ = std::chrono::steady_clock::now(); }
+
   bool FitsWindow(int64_t points) const;
   bool HasRoom() const;
   void Queue(uint64_t index, Outgoing outgoing);
@@ -158,6 +179,7 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
   bool begun_writing_ = false;
   bool room_wanted_ = false;
 
+  std::chrono::steady_clock::time_point progress_ = std::chrono::steady_clock::now();
   int holds_ = 0;
   std::optional<absl::Status> abort_;
   bool finished_ = false;

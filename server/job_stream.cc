@@ -16,16 +16,19 @@ using Clock = Budget::Clock;
 
 // The way back of the last results takes part of the deadline: a share of the time, within bounds,
 // and something for each layer and point that is known to come, as even a layer whose time has run
-// out is given a greedy route, validated and written. But never more than half.
+// out is given a greedy route, validated and written; at least what it took of late (return_lag.h).
+// But never more than half.
 constexpr double kMarginShare = 0.1;
 constexpr auto kMinMargin = std::chrono::milliseconds(10);
 constexpr auto kMaxMargin = std::chrono::milliseconds(500);
 constexpr auto kMarginPerLayer = std::chrono::microseconds(100);
 constexpr auto kMarginPerPoint = std::chrono::nanoseconds(500);
 
-Clock::duration Margin(Clock::duration left, int64_t layers, int64_t points) {
+Clock::duration Margin(Clock::duration left, int64_t layers, int64_t points,
+                       Clock::duration measured) {
   const auto share = std::chrono::duration_cast<Clock::duration>(left * kMarginShare);
-  const Clock::duration base = std::clamp<Clock::duration>(share, kMinMargin, kMaxMargin);
+  const Clock::duration base =
+      std::max(std::clamp<Clock::duration>(share, kMinMargin, kMaxMargin), measured);
   return std::min<Clock::duration>(left / 2,
                                    base + layers * kMarginPerLayer + points * kMarginPerPoint);
 }
@@ -42,7 +45,8 @@ absl::Status OverLimit(const std::string& place, int64_t found, const char* what
 
 }  // namespace
 
-JobStream::JobStream(ServiceCore& core, CallInfo call) : core_(core), call_(std::move(call)) {}
+JobStream::JobStream(ServiceCore& core, grpc::CallbackServerContext& context, CallInfo call)
+    : core_(core), context_(context), call_(std::move(call)) {}
 
 JobStream::~JobStream() {
   if (run_ != nullptr) core_.Unregister(run_);
@@ -58,8 +62,8 @@ absl::Status JobStream::Admit(const absl::Status& authorized, int64_t points) {
       core_.admission.Admit(call_.caller, points);
   if (!ticket.ok()) return ticket.status();
   ticket_ = *std::move(ticket);
-  queue_ = core_.pool.NewQueue(call_.caller);
   run_ = JobRun::Make(*this);
+  queue_ = core_.pool.NewQueue(call_.caller, [run = run_] { run->Abort(NoMemory()); });
   core_.Register(run_);
   return absl::OkStatus();
 }
@@ -132,7 +136,9 @@ void JobStream::StartEngine(int64_t expected_layers, int64_t expected_points) {
   std::optional<Clock::time_point> end;
   if (call_.deadline) {
     const Clock::time_point now = Clock::now();
-    end = *call_.deadline - Margin(*call_.deadline - now, expected_layers, expected_points);
+    end = *call_.deadline - Margin(*call_.deadline - now, expected_layers, expected_points,
+                                   core_.return_lag.Margin());
+    search_end_ = end;
   }
   if (setup_.time_limit != absl::InfiniteDuration()) {
     const Clock::time_point limit =
@@ -212,6 +218,9 @@ void JobStream::End(const absl::Status& status) {
   core_.metrics.CountJob(record.strategy, status.code(), record.wall_seconds);
   core_.metrics.CountRpc(call_.method, status.code());
   core_.log->Job(record);
+  if (const Clock::time_point now = Clock::now(); search_end_ && now > *search_end_) {
+    core_.return_lag.Record(now - *search_end_);
+  }
   // Before the caller hears of the end: his next job may need the place.
   ticket_.reset();
   FinishCall(ToGrpcStatus(status));

@@ -5,11 +5,14 @@
 #define TRAVERSE_SERVER_JOB_STREAM_H_
 
 #include <google/protobuf/repeated_field.h>
+#include <grpcpp/server_context.h>
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/status.h>
 
 #include <cstdint>
 #include <memory>
+#include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,11 +32,22 @@ class JobStream : public JobPort {
   ~JobStream() override;
 
  protected:
-  JobStream(ServiceCore& core, CallInfo call);
+  // `context` is that of the call, and lives as long.
+  JobStream(ServiceCore& core, grpc::CallbackServerContext& context, CallInfo call);
 
   // Lets the job in, with an estimate of its points, or returns why not: `authorized`, what
   // Authorize said of the call, or a limit. On success run() is there.
   absl::Status Admit(const absl::Status& authorized, int64_t points);
+
+  // What `read` returns, or NoMemory if it runs out of memory.
+  template <typename Read>
+  static absl::Status Guarded(const Read& read) {
+    try {
+      return read();
+    } catch (const std::bad_alloc&) {
+      return NoMemory();
+    }
+  }
 
   // Reads the job's options.
   absl::Status Begin(const v1::JobOptions& options);
@@ -70,6 +84,8 @@ class JobStream : public JobPort {
   std::string EncodeLayer(const LayerOutcome& outcome, uint64_t id, int64_t points) final;
   std::string EncodeSummary() final;
   bool MayBringMore() const final { return ticket_->MayBringMore(); }
+  bool IsWorkedOn() const final { return !queue_->idle(); }
+  void CancelCall() final { context_.TryCancel(); }
   void Finish(const absl::Status& status) final { End(status); }
 
   absl::Status CheckSize(const v1::Layer& layer, uint64_t index, int64_t points) const;
@@ -77,6 +93,7 @@ class JobStream : public JobPort {
   double WallSeconds() const;
 
   ServiceCore& core_;
+  grpc::CallbackServerContext& context_;
   const CallInfo call_;
   std::shared_ptr<JobRun> run_;
   std::unique_ptr<Admission::Ticket> ticket_;
@@ -87,6 +104,9 @@ class JobStream : public JobPort {
   const LayerMetrics* layer_metrics_ = nullptr;
   uint64_t layers_received_ = 0;
   int64_t points_received_ = 0;
+
+  // When the search has to end because of the call's deadline; unset without one.
+  std::optional<Budget::Clock::time_point> search_end_;
 
   // Of the engine's calls, which do not overlap; then of End.
   JobTotals totals_;

@@ -17,7 +17,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* RouteOptimizerService::OptimizeBatch
   // it frees what is by far the largest part of a job.
   CallInfo call = ReadCallInfo(*context, "OptimizeBatch");
   const absl::Status authorized = Authorize(*context, *core_.auth, call);
-  return BatchReactor::Start(core_, std::move(call), authorized,
+  return BatchReactor::Start(core_, *context, std::move(call), authorized,
                              const_cast<grpc::ByteBuffer&>(*request));
 }
 
@@ -25,7 +25,7 @@ grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* RouteOptimizerServi
     grpc::CallbackServerContext* context) {
   CallInfo call = ReadCallInfo(*context, "Optimize");
   const absl::Status authorized = Authorize(*context, *core_.auth, call);
-  return StreamReactor::Start(core_, std::move(call), authorized);
+  return StreamReactor::Start(core_, *context, std::move(call), authorized);
 }
 
 grpc::ServerUnaryReactor* RouteOptimizerService::ListStrategies(

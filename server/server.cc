@@ -101,6 +101,7 @@ ServerOptions ServerOptions::Embedded(int threads) {
   options.service.limits.max_message_bytes = INT_MAX;
   options.service.limits.max_layers_per_message = INT_MAX;
   options.service.limits.max_points_per_layer = INT_MAX;
+  options.service.limits.idle_timeout = absl::InfiniteDuration();
   options.service.admission.max_jobs = INT_MAX;
   options.service.admission.max_jobs_per_caller = INT_MAX;
   options.service.admission.max_queued_points = INT64_MAX / 2;

@@ -59,6 +59,8 @@ ABSL_FLAG(absl::Duration, keepalive_time, absl::Seconds(30),
           "Idle time of a connection after which the peer is asked whether it lives");
 ABSL_FLAG(absl::Duration, keepalive_timeout, absl::Seconds(10),
           "Time for that answer, then the connection and its jobs end");
+ABSL_FLAG(absl::Duration, idle_timeout, absl::Minutes(5),
+          "A job is given up whose caller neither sends nor reads anything for so long");
 ABSL_FLAG(absl::Duration, max_connection_age, absl::InfiniteDuration(),
           "Age at which clients are asked to connect anew, to spread them over new servers");
 
@@ -91,6 +93,7 @@ absl::Status CheckRanges() {
       {"max_streams_per_connection", absl::GetFlag(FLAGS_max_streams_per_connection), 1},
       {"max_header_bytes", absl::GetFlag(FLAGS_max_header_bytes), 1024},
       {"keepalive_time", absl::ToInt64Milliseconds(absl::GetFlag(FLAGS_keepalive_time)), 1000},
+      {"idle_timeout", absl::ToInt64Milliseconds(absl::GetFlag(FLAGS_idle_timeout)), 100},
       {"keepalive_timeout", absl::ToInt64Milliseconds(absl::GetFlag(FLAGS_keepalive_timeout)), 100},
   };
   for (const auto& number : numbers) {
@@ -202,6 +205,7 @@ ServerOptions OptionsFromFlags() {
   service.limits.max_layers_per_job = absl::GetFlag(FLAGS_max_layers_per_job);
   service.limits.max_points_per_job = absl::GetFlag(FLAGS_max_points_per_job);
   service.limits.max_points_per_layer = absl::GetFlag(FLAGS_max_points_per_layer);
+  service.limits.idle_timeout = absl::GetFlag(FLAGS_idle_timeout);
   service.limits.window.layers = absl::GetFlag(FLAGS_window_layers);
   service.limits.window.points = absl::GetFlag(FLAGS_window_points);
   service.admission.max_queued_points = absl::GetFlag(FLAGS_max_queued_points);

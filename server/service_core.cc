@@ -3,9 +3,15 @@
 #include <algorithm>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
+
 namespace traverse {
 
 namespace {
+
+// How often stalled jobs are looked for.
+constexpr absl::Duration kLeastWatch = absl::Milliseconds(10);
+constexpr absl::Duration kMostWatch = absl::Seconds(1);
 
 AdmissionLimits WithWorkers(AdmissionLimits limits, int workers) {
   limits.workers = workers;
@@ -19,7 +25,25 @@ ServiceCore::ServiceCore(const ServiceOptions& options)
       log(options.log ? std::make_unique<JobLog>(options.log_path) : std::make_unique<JobLog>()),
       admission(WithWorkers(options.admission, std::max(1, options.threads)),
                 [this](Refusal refusal) { metrics.CountRefusal(refusal); }),
-      pool(options.threads) {}
+      pool(options.threads) {
+  if (limits.idle_timeout == absl::InfiniteDuration()) return;
+  watch_.emplace(
+      absl::ToChronoNanoseconds(std::clamp(limits.idle_timeout / 4, kLeastWatch, kMostWatch)),
+      [this] { AbortStalled(); });
+}
+
+void ServiceCore::AbortStalled() {
+  const absl::Status status = absl::DeadlineExceededError(
+      absl::StrCat("nothing was sent or read for ", absl::FormatDuration(limits.idle_timeout)));
+  for (const auto& run : Runs()) {
+    run->AbortIfStalled(absl::ToChronoNanoseconds(limits.idle_timeout), status);
+  }
+}
+
+std::vector<std::shared_ptr<JobRun>> ServiceCore::Runs() const {
+  std::lock_guard<std::mutex> lock(mutex_);
+  return {runs_.begin(), runs_.end()};
+}
 
 absl::Status ServiceCore::StartAuth(const AuthOptions& options) {
   absl::StatusOr<std::unique_ptr<Authenticator>> made =
@@ -48,12 +72,7 @@ size_t ServiceCore::calls() const {
 }
 
 void ServiceCore::AbortAll(const absl::Status& status) {
-  std::vector<std::shared_ptr<JobRun>> runs;
-  {
-    std::lock_guard<std::mutex> lock(mutex_);
-    runs.assign(runs_.begin(), runs_.end());
-  }
-  for (const auto& run : runs) run->Abort(status);
+  for (const auto& run : Runs()) run->Abort(status);
 }
 
 std::string ServiceCore::MetricsText() {

@@ -7,15 +7,20 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
+#include "absl/time/time.h"
 #include "server/admission.h"
 #include "server/auth.h"
 #include "server/job_log.h"
 #include "server/job_run.h"
 #include "server/metrics.h"
+#include "server/periodic.h"
+#include "server/return_lag.h"
 #include "server/worker_pool.h"
 
 namespace traverse {
@@ -28,6 +33,9 @@ struct JobLimits {
   int64_t max_points_per_job = 0;  // 0: no limit
   int64_t max_points_per_layer = 1'000'000;
   JobWindow window;
+
+  // A job is given up whose caller neither sends nor reads anything for so long.
+  absl::Duration idle_timeout = absl::Minutes(5);
 };
 
 struct ServiceOptions {
@@ -56,6 +64,9 @@ class ServiceCore {
   // Ends all jobs under way with `status`.
   void AbortAll(const absl::Status& status);
 
+  // Ends the jobs under way whose callers do nothing.
+  void AbortStalled();
+
   // The text of /metrics.
   std::string MetricsText();
 
@@ -65,13 +76,19 @@ class ServiceCore {
   Admission admission;
   std::unique_ptr<Authenticator> auth;
   std::atomic<int64_t> queue_layers{0};  // accepted and not yet solved
+  ReturnLag return_lag;
 
  private:
+  std::vector<std::shared_ptr<JobRun>> Runs() const;
+
   mutable std::mutex mutex_;
   std::set<std::shared_ptr<JobRun>> runs_;
 
  public:
-  WorkerPool pool;  // last: its threads end before anything that tasks use is gone
+  WorkerPool pool;  // its threads end before anything that tasks use is gone
+
+ private:
+  std::optional<Periodic> watch_;  // last: calls AbortStalled
 };
 
 }  // namespace traverse

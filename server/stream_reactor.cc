@@ -8,9 +8,9 @@
 
 namespace traverse {
 
-StreamReactor* StreamReactor::Start(ServiceCore& core, CallInfo call,
-                                    const absl::Status& authorized) {
-  auto* reactor = new StreamReactor(core, std::move(call));
+StreamReactor* StreamReactor::Start(ServiceCore& core, grpc::CallbackServerContext& context,
+                                    CallInfo call, const absl::Status& authorized) {
+  auto* reactor = new StreamReactor(core, context, std::move(call));
   if (absl::Status status = reactor->Admit(authorized, /*points=*/0); !status.ok()) {
     reactor->End(status);
   } else {
@@ -27,7 +27,8 @@ void StreamReactor::OnReadDone(bool ok) {
   const std::shared_ptr<JobRun> run = this->run();
   run->Hold();
   if (!run->aborted()) {
-    if (absl::Status status = ok ? OnMessage() : OnEnd(); !status.ok()) {
+    const absl::Status status = Guarded([this, ok] { return ok ? OnMessage() : OnEnd(); });
+    if (!status.ok()) {
       run->Abort(status);
     } else if (ok) {
       ReadNext();

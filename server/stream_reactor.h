@@ -16,7 +16,8 @@ namespace traverse {
 class StreamReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
                       private JobStream {
  public:
-  static StreamReactor* Start(ServiceCore& core, CallInfo call, const absl::Status& authorized);
+  static StreamReactor* Start(ServiceCore& core, grpc::CallbackServerContext& context,
+                              CallInfo call, const absl::Status& authorized);
 
  private:
   using Bidi = grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>;

@@ -1,6 +1,7 @@
 #include "server/worker_pool.h"
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 namespace traverse {
@@ -8,7 +9,8 @@ namespace traverse {
 // All members but the constants are guarded by the pool's mutex.
 class WorkerPool::QueueImpl : public Queue, public std::enable_shared_from_this<QueueImpl> {
  public:
-  QueueImpl(WorkerPool& pool, std::string caller) : pool(pool), caller(std::move(caller)) {}
+  QueueImpl(WorkerPool& pool, std::string caller, std::function<void()> on_no_memory)
+      : pool(pool), caller(std::move(caller)), on_no_memory(std::move(on_no_memory)) {}
 
   void Submit(std::function<void()> task) override {
     pool.Submit(shared_from_this(), std::move(task));
@@ -21,9 +23,16 @@ class WorkerPool::QueueImpl : public Queue, public std::enable_shared_from_this<
     return waited;
   }
 
+  bool idle() const override {
+    std::lock_guard<std::mutex> lock(pool.mutex_);
+    return tasks.empty() && running == 0;
+  }
+
   WorkerPool& pool;
   const std::string caller;
+  const std::function<void()> on_no_memory;
   std::deque<Task> tasks;
+  int running = 0;
   QueueWait waited;
 };
 
@@ -42,8 +51,9 @@ WorkerPool::~WorkerPool() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-std::shared_ptr<WorkerPool::Queue> WorkerPool::NewQueue(const std::string& caller) {
-  return std::make_shared<QueueImpl>(*this, caller);
+std::shared_ptr<WorkerPool::Queue> WorkerPool::NewQueue(const std::string& caller,
+                                                        std::function<void()> on_no_memory) {
+  return std::make_shared<QueueImpl>(*this, caller, std::move(on_no_memory));
 }
 
 int WorkerPool::busy() const {
@@ -90,6 +100,8 @@ WorkerPool::Task WorkerPool::TakeNext() {
   const double waited = std::chrono::duration<double>(Clock::now() - task.submitted).count();
   if (queue->waited.tasks++ == 0) queue->waited.first_seconds = waited;
   queue->waited.longest_seconds = std::max(queue->waited.longest_seconds, waited);
+  ++queue->running;
+  task.queue = queue;
   return task;
 }
 
@@ -101,10 +113,19 @@ void WorkerPool::RunTasks() {
     Task task = TakeNext();
     ++busy_;
     lock.unlock();
-    task.run();
+    try {
+      task.run();
+    } catch (const std::bad_alloc&) {
+      task.run = nullptr;  // frees what it holds
+      if (task.queue->on_no_memory) task.queue->on_no_memory();
+    }
     task.run = nullptr;  // what it holds is freed before the thread counts as idle
     lock.lock();
     --busy_;
+    --task.queue->running;
+    lock.unlock();
+    task.queue = nullptr;  // may be the last to hold it
+    lock.lock();
   }
 }
 

@@ -45,6 +45,9 @@ class WorkerPool {
   class Queue : public Executor {
    public:
     virtual QueueWait wait() const = 0;
+
+    // Whether no task of this queue waits or runs.
+    virtual bool idle() const = 0;
   };
 
   // Starts `threads` threads, at least one.
@@ -57,8 +60,11 @@ class WorkerPool {
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
-  // A queue for one job of `caller`. May outlive its last task, not the pool.
-  std::shared_ptr<Queue> NewQueue(const std::string& caller);
+  // A queue for one job of `caller`. May outlive its last task, not the pool. `on_no_memory` is
+  // called when a task has ended with std::bad_alloc: one job that wants too much ends, not the
+  // process.
+  std::shared_ptr<Queue> NewQueue(const std::string& caller,
+                                  std::function<void()> on_no_memory = {});
 
   int threads() const { return static_cast<int>(threads_.size()); }
 
@@ -71,12 +77,13 @@ class WorkerPool {
  private:
   using Clock = std::chrono::steady_clock;
 
+  class QueueImpl;
+
   struct Task {
     std::function<void()> run;
     Clock::time_point submitted;
+    std::shared_ptr<QueueImpl> queue = nullptr;  // from TakeNext on
   };
-
-  class QueueImpl;
 
   // The queues of one caller that have tasks, in the order of their turns.
   struct Caller {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "absl/cleanup/cleanup.h"
 #include "engine/cost/route_cost.h"
 #include "engine/strategy/greedy.h"
 
@@ -208,10 +209,13 @@ void LayerChain::Submit(std::function<void()> stage) {
   if (cancel_.cancelled()) return;
   ++tasks_;
   executor_.Submit([self = shared_from_this(), stage = std::move(stage)] {
+    // Also if the stage runs out of memory: whoever ran it can then cancel the job, which ends.
+    const absl::Cleanup end = [&self] {
+      std::lock_guard<std::mutex> lock(self->mutex_);
+      --self->tasks_;
+      self->MaybeFinish();
+    };
     if (!self->cancel_.cancelled()) stage();
-    std::lock_guard<std::mutex> lock(self->mutex_);
-    --self->tasks_;
-    self->MaybeFinish();
   });
 }
 

@@ -335,8 +335,9 @@ TEST(SlowReader, HoldsUpNobodyElse) {
   const auto reader = service.stub().OptimizeBatch(&context, MakeBatch(1000));
   ServiceCore& core = service.server().core();
   // 1,000 layers less the window and what the transport holds.
-  ASSERT_TRUE(
-      service.Eventually([&] { return core.queue_layers < 1000 && core.pool.busy() == 0; }));
+  ASSERT_TRUE(service.Eventually([&] {
+    return core.queue_layers > 0 && core.queue_layers < 1000 && core.pool.busy() == 0;
+  }));
   absl::SleepFor(absl::Milliseconds(50));
   EXPECT_GT(core.queue_layers, 900);
   EXPECT_EQ(core.pool.waiting(), 0);
@@ -377,6 +378,45 @@ TEST(SlowReader, HoldsBackHisOwnStream) {
   writer.join();
   EXPECT_TRUE(stream->Finish().ok());
   EXPECT_EQ(layers, 5000);
+}
+
+TEST(IdleTimeout, ACallThatIsOpenedAndNeverEndsIsGivenUp) {
+  TestService service([](ServerOptions& options) {
+    options.service.limits.idle_timeout = absl::Milliseconds(200);
+  });
+  OpenStream stream(service);
+  ASSERT_TRUE(stream.ReadLayer());
+
+  const grpc::Status status = stream.WaitForEnd();
+
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED);
+  EXPECT_THAT(status.error_message(), HasSubstr("nothing was sent or read for 200ms"));
+  EXPECT_TRUE(service.Eventually([&] { return service.server().core().admission.jobs() == 0; }));
+}
+
+TEST(IdleTimeout, AReaderWhoNeverReadsIsGivenUp) {
+  TestService service([](ServerOptions& options) {
+    options.service.limits.idle_timeout = absl::Milliseconds(200);
+  });
+  ServiceCore& core = service.server().core();
+  grpc::ClientContext context;
+  const auto reader = service.stub().OptimizeBatch(&context, MakeBatch(2000));
+  ASSERT_TRUE(service.Eventually([&] { return core.admission.jobs() == 1; }));
+
+  EXPECT_TRUE(service.Eventually([&] { return core.admission.jobs() == 0; }));
+  EXPECT_TRUE(service.Eventually([&] { return core.queue_layers == 0; }));
+  context.TryCancel();
+  reader->Finish();
+}
+
+TEST(IdleTimeout, WorkThatTakesLongerIsNoIdleness) {
+  TestService service([](ServerOptions& options) {
+    options.service.limits.idle_timeout = absl::Milliseconds(100);
+  });
+  v1::OptimizeBatchRequest request = HardBatch(1);
+  request.mutable_options()->mutable_time_limit()->set_nanos(500'000'000);
+
+  EXPECT_TRUE(service.Stream(request).status.ok());
 }
 
 TEST(Drain, RunningJobsFinishAndNewOnesAreRefused) {

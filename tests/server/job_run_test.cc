@@ -90,6 +90,8 @@ class FakePort : public JobPort {
   }
   int rooms() const { return rooms_; }
 
+  std::atomic<bool> worked_on{false};
+
   // JobPort.
   std::string EncodeLayer(const LayerOutcome& outcome, uint64_t id, int64_t /*points*/) override {
     std::lock_guard<std::mutex> lock(mutex_);
@@ -106,6 +108,10 @@ class FakePort : public JobPort {
     changed_.notify_all();
   }
   void OnRoom() override { ++rooms_; }
+  bool IsWorkedOn() const override { return worked_on; }
+
+  // The transport gives up the write under way.
+  void CancelCall() override { Stall(false); }
   void Finish(const absl::Status& status) override {
     std::lock_guard<std::mutex> lock(mutex_);
     EXPECT_FALSE(writing_) << "the end during a write";
@@ -285,6 +291,76 @@ TEST_F(JobRunTest, EndsOfAJobThatNeverStarted) {
   port_.run().Close();
   EXPECT_EQ(port_.finishes(), 1);
   EXPECT_TRUE(port_.messages().empty());
+}
+
+// Wants more memory than there is, in every layer but the first.
+class HungryStrategy : public SlowStrategy {
+ public:
+  HungryStrategy() : SlowStrategy(std::chrono::milliseconds(0)) {}
+
+  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+    if (problem.plan->paths.size() > 2) throw std::bad_alloc();
+    return SlowStrategy::Solve(problem, budget);
+  }
+};
+
+TEST_F(JobRunTest, AJobThatRunsOutOfMemoryEndsAlone) {
+  const auto queue = pool_.NewQueue("hungry", [this] { port_.run().Abort(NoMemory()); });
+  port_.run().Start({}, {}, std::make_unique<HungryStrategy>(), *queue);
+  port_.run().Add(Layer(1));
+  for (uint64_t i = 2; i < 20; ++i) port_.run().Add({JobLayer{FlatPlan(3), {}, {}}, i, 3});
+  port_.run().Close();
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.status().code(), absl::StatusCode::kResourceExhausted);
+
+  FakePort other;
+  const auto next = pool_.NewQueue("next");
+  other.run().Start({}, {}, Slow(0), *next);
+  other.run().Add(Layer(1));
+  other.run().Close();
+  ASSERT_TRUE(other.WaitForFinish());
+  EXPECT_TRUE(other.status().ok());
+}
+
+TEST_F(JobRunTest, ACallerWhoDoesNothingIsGivenUp) {
+  const absl::Status idle = absl::DeadlineExceededError("idle");
+  port_.run().Start({}, {}, Slow(0), *queue_);
+  port_.run().Add(Layer(1));
+  port_.run().Push();
+  port_.run().AbortIfStalled(std::chrono::hours(1), idle);
+  EXPECT_FALSE(port_.run().aborted());
+
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  port_.run().AbortIfStalled(std::chrono::milliseconds(1), idle);
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.status(), idle);
+}
+
+TEST_F(JobRunTest, AReaderWhoReadsNothingIsGivenUp) {
+  port_.Stall(true);
+  port_.run().Start({}, {}, Slow(0), *queue_);
+  for (uint64_t i = 0; i < 5; ++i) port_.run().Add(Layer(i));
+  port_.run().Close();
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+
+  port_.run().AbortIfStalled(std::chrono::milliseconds(1), absl::DeadlineExceededError("idle"));
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.status().code(), absl::StatusCode::kDeadlineExceeded);
+}
+
+TEST_F(JobRunTest, AJobThatIsWorkedOnIsNotGivenUp) {
+  port_.worked_on = true;
+  port_.run().Start({}, {}, Slow(0), *queue_);
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+
+  port_.run().AbortIfStalled(std::chrono::milliseconds(1), absl::DeadlineExceededError("idle"));
+
+  EXPECT_FALSE(port_.run().aborted());
+  port_.run().Close();
+  ASSERT_TRUE(port_.WaitForFinish());
 }
 
 TEST_F(JobRunTest, HoldPostponesTheEnd) {
