@@ -1,6 +1,7 @@
 #include "engine/local_search/iterated_search.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/base/tolerances.h"
 
@@ -23,7 +24,15 @@ void IteratedSearch::Descend(Budget& budget) {
 }
 
 void IteratedSearch::Run(Rng& rng, Budget& budget) {
-  for (int64_t idle = 0; idle < options_.patience && !budget.Exhausted(); ++idle) {
+  double cost = state_.TotalCost();
+  double cost_before = cost;  // the last `patience` iterations
+  int64_t since = 0;
+  for (int64_t idle = 0; idle < options_.patience && !budget.Exhausted(); ++idle, ++since) {
+    if (since == options_.patience) {
+      if (cost_before - cost <= options_.least_gain * cost) return;
+      cost_before = cost;
+      since = 0;
+    }
     ++iterations_;
     double delta = 0;
     if (!Kick(rng, delta)) continue;
@@ -33,6 +42,7 @@ void IteratedSearch::Run(Rng& rng, Budget& budget) {
       continue;
     }
     state_.Commit();
+    cost += delta;
     if (delta < -kImprovementTolerance) idle = 0;
   }
 }
@@ -83,10 +93,15 @@ int IteratedSearch::ChooseNode(Rng& rng, int leaf) const {
   return chosen;
 }
 
+int IteratedSearch::ChooseSpan(Rng& rng) const {
+  const double ratio = static_cast<double>(options_.most_span) / options_.least_span;
+  return static_cast<int>(options_.least_span * std::pow(ratio, rng.Unit()));
+}
+
 bool IteratedSearch::ChooseCuts(Rng& rng, int node, int (&cuts)[4]) const {
   const OrderTree& tree = state_.tree();
   const int size = tree.size(node);
-  const int span = std::min(size, options_.kick_span);
+  const int span = std::min(size, ChooseSpan(rng));
   const int begin = state_.position(node) + rng.Between(0, size - span);
   for (int& cut : cuts) {
     cut = begin + rng.Between(0, span);

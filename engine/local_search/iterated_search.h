@@ -23,11 +23,15 @@ namespace traverse {
 struct IteratedSearchOptions {
   LocalSearchOptions local_search;
 
-  // Ends after this many iterations without a gain.
+  // Ends after this many iterations without a gain, or with less than least_gain of the cost.
   int64_t patience = 1000;
+  double least_gain = 0;
 
-  // Most leaves between the first and the last cut of a kick.
-  int kick_span = 400;
+  // Leaves between the first and the last cut of a kick: from the least to the most, as many kicks
+  // of one order of magnitude as of another. On small layers wide kicks find more, on large ones
+  // their repair costs too much.
+  int least_span = 30;
+  int most_span = 400;
 };
 
 class IteratedSearch {
@@ -48,6 +52,7 @@ class IteratedSearch {
   bool Kick(Rng& rng, double& delta);
   int ChooseNode(Rng& rng, int leaf) const;
   bool ChooseCuts(Rng& rng, int node, int (&cuts)[4]) const;
+  int ChooseSpan(Rng& rng) const;
 
   SearchState& state_;
   const IteratedSearchOptions options_;

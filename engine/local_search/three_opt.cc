@@ -205,7 +205,7 @@ void ThreeOpt::SearchThird(int leaf, bool is_right, double gain2, const Cost& co
 }
 
 void ThreeOpt::Offer(const SegmentMove& move, double delta, double gain, int last_leaf) {
-  const bool continues = gain > open_.gain;
+  const bool continues = gain > open_.gain && move.last - move.first < options_.longest_trial;
   bool keeps = delta < worst_kept();
   if (keeps && delta > -kImprovementTolerance) {
     const double radii = move.segment_count() == 2 ? radii_ + Radius(last_leaf) : radii_;

@@ -28,6 +28,9 @@ struct ThreeOptOptions {
   int second_breadth = 5;  // and for t5
   size_t keep = 4;         // most moves found by one search
 
+  // Visits between the cuts of a move done on trial: doing it, and undoing it, takes so long.
+  int longest_trial = 1000;
+
   // Shares of the radii of the contours at the cuts by which a move may seem to fall short.
   double slack = 0.6;         // as a whole
   double first_slack = 0.5;   // after t3

@@ -23,11 +23,22 @@
 namespace traverse {
 namespace {
 
-// Iterations without a gain after which the search ends: so many a path.
+// Iterations without a gain worth mentioning after which the search ends: so many, and so many
+// more a path.
+constexpr double kLeastPatience = 100;
 constexpr double kPatience = 1;
+constexpr double kLeastGain = 2e-4;
+
+// Paths times leaves between the cuts of the widest kicks.
+constexpr int kWidestKicks = 200'000;
+constexpr int kMostSpan = 400;
+constexpr int kLeastMostSpan = 50;
+
+// Operations of dynamic programmes on small parts, by the way of 2 ns each.
+constexpr double kSmallPartOperations = 3e6;
 
 // Of a search that starts from a route that was good from another start.
-constexpr double kResumeShare = 0.5;
+constexpr double kResumeShare = 0.2;
 
 class Auto : public Strategy {
  public:
@@ -63,7 +74,10 @@ class Auto : public Strategy {
     state.Load(route);
     const EndGroups groups(entries);
     IteratedSearchOptions options;
-    options.patience = static_cast<int64_t>(kPatience * effort * tree.path_count());
+    const int paths = tree.path_count();
+    options.patience = static_cast<int64_t>(effort * (kLeastPatience + kPatience * paths));
+    options.least_gain = kLeastGain;
+    options.most_span = std::clamp(kWidestKicks / paths, kLeastMostSpan, kMostSpan);
     const NeighborLists neighbors =
         FindNeighbors(tree, groups, options.local_search.three_opt.first_breadth, budget);
     IteratedSearch search(state, neighbors, options);
@@ -72,7 +86,9 @@ class Auto : public Strategy {
     search.Run(rng, budget);
     Route improved = state.Unload();
     ChooseEntries(layer, improved, budget);
-    const bool optimal = SolveSmallParts(layer, SmallPartOptions(), improved, budget);
+    SmallPartOptions small;
+    small.most_operations = kSmallPartOperations * std::min(effort, 4.0);
+    const bool optimal = SolveSmallParts(layer, small, improved, budget);
     Solution solution = Finish(std::move(improved), search.iterations(), budget);
     if (optimal) {
       solution.stop = StopReason::kOptimal;
