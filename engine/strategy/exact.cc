@@ -9,10 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include "engine/cost/entry_table.h"
 #include "engine/cost/route_cost.h"
 #include "engine/exact/lower_bound.h"
+#include "engine/exact/plan_stages.h"
 #include "engine/exact/stage_model.h"
 #include "engine/exact/stage_proof.h"
+#include "engine/exact/walk_prover.h"
 #include "engine/framework/island_layout.h"
 #include "engine/strategy/auto.h"
 #include "engine/strategy/framework_milp.h"
@@ -31,9 +34,27 @@ std::unique_ptr<Strategy> MakeDefault(const StrategyEntry& entry) {
 }
 
 // Of the time left, what the first route may use, and then the first bound: a proof needs the rest,
-// but route and bound are what there is when it is not found.
+// but route and bound are what there is when it is not found, or cannot be.
 constexpr double kRouteShare = 0.4;
+constexpr double kRouteShareWithoutProof = 0.7;
 constexpr double kBoundShare = 0.5;
+constexpr double kBoundShareWithoutProof = 0.8;
+
+// Whether the plan has the shape that proofs need, and not too many moves.
+bool IsProvable(const Plan& plan) {
+  const auto stages = StagesOf(plan, WalkProver::kMostClusters);
+  if (!stages) return false;
+  const EntryTable table(plan);
+  size_t moves = 0;
+  size_t states_before = 0;
+  for (const PlanStage& stage : *stages) {
+    size_t states = 0;
+    for (const int path : stage.paths) states += static_cast<size_t>(table.count(path));
+    moves += states * (states_before + states);
+    states_before = states;
+  }
+  return moves <= kMostModelEntries;
+}
 
 Budget Share(const Budget& budget, double share) {
   if (!budget.deadline()) return budget;
@@ -47,13 +68,11 @@ class Exact : public Strategy {
       : time_limit_seconds_(time_limit_seconds), heuristic_(MakeDefault(AutoEntry())) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
-    Budget share = Share(budget, kRouteShare);
-    return Prove(problem, heuristic_->Solve(problem, share), budget);
+    return Prove(problem, FirstRoute(problem, budget), budget);
   }
 
   Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
-    Budget share = Share(budget, kRouteShare);
-    Solution found = heuristic_->Solve(problem, share);
+    Solution found = FirstRoute(problem, budget);
     if (RouteCost(problem, start) < RouteCost(problem, found.route)) found.route = start;
     return Prove(problem, std::move(found), budget);
   }
@@ -62,6 +81,14 @@ class Exact : public Strategy {
   bool serial() const override { return true; }
 
  private:
+  Solution FirstRoute(const LayerProblem& problem, const Budget& budget) const {
+    const bool provable = IsProvable(*problem.plan);
+    Budget share = Share(budget, provable ? kRouteShare : kRouteShareWithoutProof);
+    Solution solution = heuristic_->Solve(problem, share);
+    solution.statistics["provable"] = provable ? 1 : 0;
+    return solution;
+  }
+
   Solution Prove(const LayerProblem& problem, Solution solution, Budget& budget) const {
     const double cost = RouteCost(problem, solution.route);
     if (solution.route.empty()) {
@@ -70,17 +97,18 @@ class Exact : public Strategy {
     if (solution.stop == StopReason::kOptimal) return solution;
     Budget limited = budget.Within(std::chrono::duration_cast<Budget::Clock::duration>(
         std::chrono::duration<double>(time_limit_seconds_)));
-    Budget share = Share(limited, kBoundShare);
+    const bool provable = solution.statistics["provable"] > 0;
+    Budget share = Share(limited, provable ? kBoundShare : kBoundShareWithoutProof);
     solution.lower_bound = LowerBound(problem, cost, nullptr, share);
     if (solution.lower_bound == cost) {
       solution.stop = StopReason::kOptimal;
-    } else if (limited.ExhaustedNow() || !ProveByStages(problem, solution, limited)) {
+    } else if (!provable || limited.ExhaustedNow() || !ProveByStages(problem, solution, limited)) {
       solution.stop = StopOr(budget, StopOr(limited, solution.stop));
     }
     return solution;
   }
 
-  // False if the plan has another shape, or is too large, or a limit ended it.
+  // False if a limit ended it.
   static bool ProveByStages(const LayerProblem& problem, Solution& solution, Budget& budget) {
     const std::optional<StageModel> model = StageModel::Build(problem, kMostModelEntries);
     if (!model || !CanProveByStages(*model)) return false;

@@ -93,6 +93,8 @@ TEST(Exact, BoundsWhatItCannotProve) {
   ASSERT_TRUE(solution.lower_bound.has_value());
   EXPECT_GT(*solution.lower_bound, 0.5 * RouteCost(islands.problem, solution.route));
   EXPECT_LE(*solution.lower_bound, RouteCost(islands.problem, solution.route));
+  EXPECT_EQ(solution.statistics.at("provable"), 0);
+  EXPECT_EQ(solution.stop, StopReason::kLocalOptimum);
 }
 
 // 500 islands in 100 ms of a core, or some more of a busy one.
