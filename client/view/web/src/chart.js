@@ -45,14 +45,13 @@ export class Chart {
         })),
       ],
       cursor: { drag: { x: false, y: false } },
-      hooks: { draw: [(plot) => this.drawMark(plot)] },
+      hooks: { draw: [(plot) => this.drawMark(plot)], ready: [(plot) => plot.setLegend({ idx: this.layer })] },
     };
     this.plot = new uPlot(options, [layers, ...scene.routes.map((route) => route.layers.travel)], this.target);
     this.plot.over.addEventListener("click", () => {
       if (this.plot.cursor.idx !== null) this.onPick(this.plot.cursor.idx);
     });
     this.plot.over.addEventListener("mouseleave", () => this.plot.setLegend({ idx: this.layer }));
-    this.plot.setLegend({ idx: this.layer });
   }
 
   range() {

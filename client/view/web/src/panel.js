@@ -6,7 +6,7 @@ const INK = {
   light: { travel: "#111827", start: "#15803d", end: "#be123c", ground: "#ffffff", head: "#1d4ed8" },
   dark: { travel: "#f3f4f6", start: "#4ade80", end: "#fb7185", ground: "#0f141b", head: "#7ab0ff" },
 };
-const FADED = 0.17;
+const FADED = { light: 0.17, dark: 0.32 };
 const UNDONE = 0.22;
 export const inkOf = (theme) => INK[theme];
 
@@ -91,7 +91,7 @@ export class Panel {
       for (const [feature, path] of this.features) stroke(path, look.colors[feature], 1, done ? UNDONE : 1);
     }
     if (!done) {
-      if (look.gone) stroke(this.gone, ink.travel, 1.8, FADED);
+      if (look.gone) stroke(this.gone, ink.travel, 1.8, FADED[look.theme]);
       stroke(this.moves, ink.travel, 1.8, 1);
       this.mark(view, this.route.end, ink.end, ink.ground, true);
     } else {
