@@ -4,6 +4,7 @@
 #   deploy/install-packages.sh build      what the build needs
 #   deploy/install-packages.sh test       that, and what the tests need
 #   deploy/install-packages.sh sanitize   that, and clang for the sanitizer and fuzz builds
+#   deploy/install-packages.sh browser    the browser for the tests of the report, which skip without it
 #   deploy/install-packages.sh deploy     the tests', and the daemons and tools of the tests of deploy/, but kubectl
 set -euo pipefail
 
@@ -15,8 +16,9 @@ build=(
 )
 test=(
   libgtest-dev libgmock-dev libbenchmark-dev xz-utils openssl
-  python3 python3-grpcio python3-protobuf python3-yaml
+  python3 python3-grpcio python3-protobuf python3-yaml codespell zsh
 )
+browser=(chromium fonts-dejavu-core)
 sanitize=(clang libclang-rt-14-dev llvm)
 deploy=(
   prometheus haproxy systemd mmdebstrap buildah podman podman-compose runc catatonit
@@ -28,6 +30,7 @@ case "${1:-}" in
   build) wanted=("${build[@]}") ;;
   test) wanted=("${build[@]}" "${test[@]}") ;;
   sanitize) wanted=("${build[@]}" "${test[@]}" "${sanitize[@]}") ;;
+  browser) wanted=("${browser[@]}") ;;
   deploy) wanted=("${build[@]}" "${test[@]}" "${deploy[@]}") ;;
   *)
     echo "usage: $0 build|test|sanitize|deploy" >&2
