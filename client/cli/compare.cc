@@ -24,8 +24,9 @@ namespace {
 
 constexpr uint64_t kMaxRepeats = 1000;
 
-// A table of all strategies should not wait two hours for the proof that one of them looks for.
-constexpr absl::Duration kDefaultDeadline = absl::Seconds(5);
+// A table of all strategies should not wait two hours for the proof that one of them looks for. No
+// deadline: on a busy machine a late answer is better than none.
+constexpr absl::Duration kDefaultTimeLimit = absl::Seconds(5);
 constexpr absl::Duration kDefaultLayerLimit = absl::Milliseconds(500);
 
 struct Request {
@@ -43,7 +44,7 @@ absl::StatusOr<Request> ParseRequest(const Flags& flags) {
   if (!job.ok()) return job.status();
   request.job = *std::move(job);
   if (!flags.Has("deadline") && !flags.Has("strategies")) {
-    request.job.deadline = kDefaultDeadline;
+    request.job.time_limit = kDefaultTimeLimit;
     // Or the first layers would use it up, and the others come back in the order given.
     if (!request.job.layer_time_limit) request.job.layer_time_limit = kDefaultLayerLimit;
   }

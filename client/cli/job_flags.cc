@@ -213,6 +213,18 @@ absl::Status SelectLayers(const JobFlags& flags, InputJob& job) {
   return absl::OkStatus();
 }
 
+namespace {
+
+google::protobuf::Duration ToProto(absl::Duration duration) {
+  const int64_t nanos = absl::ToInt64Nanoseconds(duration);
+  google::protobuf::Duration out;
+  out.set_seconds(nanos / 1'000'000'000);
+  out.set_nanos(static_cast<int32_t>(nanos % 1'000'000'000));
+  return out;
+}
+
+}  // namespace
+
 absl::Status ApplyJobFlags(const JobFlags& flags, InputJob& job) {
   if (absl::Status status = SelectLayers(flags, job); !status.ok()) return status;
   v1::JobOptions& options = job.options;
@@ -220,10 +232,9 @@ absl::Status ApplyJobFlags(const JobFlags& flags, InputJob& job) {
   if (flags.cleaning) *options.mutable_cleaning() = *flags.cleaning;
   if (flags.start) *options.mutable_start() = *flags.start;
   if (flags.seed) options.set_seed(*flags.seed);
+  if (flags.time_limit) *options.mutable_time_limit() = ToProto(*flags.time_limit);
   if (flags.layer_time_limit) {
-    const int64_t nanos = absl::ToInt64Nanoseconds(*flags.layer_time_limit);
-    options.mutable_layer_time_limit()->set_seconds(nanos / 1'000'000'000);
-    options.mutable_layer_time_limit()->set_nanos(static_cast<int32_t>(nanos % 1'000'000'000));
+    *options.mutable_layer_time_limit() = ToProto(*flags.layer_time_limit);
   }
   ApplyCost(flags.cost, *options.mutable_cost());
   ApplyIdleSpeed(flags.cost, options);

@@ -36,6 +36,7 @@ struct JobFlags {
   std::optional<v1::Point> start;
   CostFlags cost;
   std::optional<uint64_t> seed;
+  std::optional<absl::Duration> time_limit;  // no flag sets it
   std::optional<absl::Duration> layer_time_limit;
   absl::Duration deadline = absl::InfiniteDuration();
 };

@@ -8,8 +8,10 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 import support
@@ -81,6 +83,16 @@ class Readme(unittest.TestCase):
         self.assertTrue(any(path.read_bytes() == sample.read_bytes() for path in kept))
         self.assertNotEqual(sample.read_bytes(), (self.folder / "part.gcode").read_bytes())
         support.run(self.folder / "build/release/client/traverse", "verify", sample, self.folder / "part.gcode")
+
+    def test_quickstart_compares_on_a_machine_that_is_busy(self):
+        # Stopped for longer than the comparison grants to a strategy, as if others had the processor.
+        program = self.folder / "build/release/client/traverse"
+        with support.Process(program, "compare", support.DEPLOY / "samples/part2.damat") as compare:
+            time.sleep(0.5)
+            compare.popen.send_signal(signal.SIGSTOP)
+            time.sleep(6)
+            compare.popen.send_signal(signal.SIGCONT)
+            self.assertEqual(0, compare.popen.wait(200), compare.output())
 
     def test_install(self):
         root = self.folder / "root"
