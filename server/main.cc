@@ -2,10 +2,12 @@
 
 #include <grpc/support/log.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 #include <thread>
 
@@ -21,11 +23,28 @@ namespace {
 constexpr int kExitStart = 1;
 constexpr int kExitUsage = 2;
 
+// What the process sends itself when its port is lost.
+constexpr int kPortLost = SIGUSR1;
+
 // gRPC prints its own view of every error; ours are on one line. Its variables bring it back.
-void QuietGrpc() {
-  if (std::getenv("GRPC_VERBOSITY") == nullptr && std::getenv("GRPC_TRACE") == nullptr) {
-    gpr_set_log_function([](gpr_log_func_args*) {});
-  }
+//
+// One of its errors matters: where a connection cannot be accepted, for want of file descriptors,
+// gRPC 1.51 gives up the port for good and goes on. Its log is the only place that says so.
+void WatchGrpcLog() {
+  static const bool print =
+      std::getenv("GRPC_VERBOSITY") != nullptr || std::getenv("GRPC_TRACE") != nullptr;
+  gpr_set_log_function([](gpr_log_func_args* line) {
+    if (print) std::fprintf(stderr, "%s:%d %s\n", line->file, line->line, line->message);
+    if (std::strncmp(line->message, "Failed accept4", 14) == 0) kill(getpid(), kPortLost);
+  });
+}
+
+// As many as the system allows this process, for each connection takes one.
+void RaiseFileLimit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &limit);
 }
 
 // Waits for the signals that end the server. Blocked in all threads, they are only seen here.
@@ -34,6 +53,7 @@ sigset_t BlockSignals() {
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
+  sigaddset(&signals, kPortLost);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   signal(SIGPIPE, SIG_IGN);
   return signals;
@@ -46,7 +66,8 @@ int Fail(const absl::Status& status, int exit_code) {
 
 int Run() {
   const sigset_t signals = BlockSignals();
-  QuietGrpc();
+  WatchGrpcLog();
+  RaiseFileLimit();
   absl::StatusOr<std::unique_ptr<Server>> server = Server::Start(OptionsFromFlags());
   if (!server.ok()) {
     return Fail(server.status(),
@@ -62,16 +83,21 @@ int Run() {
 
   int signal = 0;
   sigwait(&signals, &signal);
+  const bool port_lost = signal == kPortLost;
+  if (port_lost) {
+    log.Event(JobLog::Level::kError, "port_lost",
+              {{"message", "no file descriptor for a new connection; ends, to be started again"}});
+  }
   log.Event(JobLog::Level::kInfo, "draining", {{"signal", strsignal(signal)}});
   std::thread([signals] {
-    int second = 0;
-    sigwait(&signals, &second);
+    int second = kPortLost;
+    while (second == kPortLost) sigwait(&signals, &second);
     std::_Exit(128 + second);
   }).detach();
   const bool all_done = (*server)->Drain(DrainTimeout());
   log.Event(all_done ? JobLog::Level::kInfo : JobLog::Level::kWarning, "stopped",
             {{"jobs_cut_off", all_done ? "no" : "yes"}});
-  return 0;
+  return port_lost ? kExitStart : 0;
 }
 
 }  // namespace

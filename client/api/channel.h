@@ -31,7 +31,7 @@ struct ChannelTls {
 };
 
 struct ConnectOptions {
-  std::optional<ChannelTls> tls;  // unset: without encryption
+  std::optional<ChannelTls> tls = std::nullopt;  // unset: without encryption
 
   // True: a connection that no other channel of this process shares.
   bool own_connection = false;

@@ -44,10 +44,10 @@ struct CallOptions {
   // The answer is due within this time; the service sends the best routes it has before it.
   absl::Duration deadline = absl::InfiniteDuration();
 
-  RetryPolicy retry;
+  RetryPolicy retry = {};
 
   // Called with each layer's answer as it comes, on the calling thread. May be empty.
-  std::function<void(const v1::LayerResult&)> on_layer;
+  std::function<void(const v1::LayerResult&)> on_layer = {};
 };
 
 // Thread-safe: calls may overlap.

@@ -189,7 +189,7 @@ extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size, size_t max
   std::mt19937 random(seed);
   std::vector<Frame> frames = Read(std::string(reinterpret_cast<const char*>(data), size));
   if (frames.empty() || size > 8192 || random() % 8 == 0) frames = GoodCall(random);
-  const auto changes = 1 + random() % 3;
+  const uint64_t changes = 1 + random() % 3;
   for (uint64_t i = 0; i < changes && !frames.empty(); ++i) ChangeFrames(frames, random);
   std::string bytes = Write(frames);
   if (!bytes.empty() && random() % 8 == 0)

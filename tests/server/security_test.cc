@@ -149,6 +149,26 @@ TEST(Security, CertificatesAreRotatedWithoutARestart) {
   EXPECT_EQ(Call(server, files.Path("ca.pem")), grpc::StatusCode::UNAVAILABLE);
 }
 
+TEST(Security, AuthoritiesOfClientsAreRotatedWithoutARestart) {
+  const Certificates files;
+  const std::string trusted = files.Path("trusted.pem");
+  std::filesystem::copy_file(files.Path("ca.pem"), trusted);
+  ServerProcess server({"--tls_certificate=" + files.Path("server.pem"),
+                        "--tls_key=" + files.Path("server.key"), "--tls_client_ca=" + trusted});
+  files.MakeAuthority("next_ca");
+  files.MakeLeaf("next", "next_ca");
+  ASSERT_EQ(Call(server, files.Path("ca.pem"), files.Path("client")), grpc::StatusCode::OK);
+  ASSERT_NE(Call(server, files.Path("ca.pem"), files.Path("next")), grpc::StatusCode::OK);
+
+  std::filesystem::copy_file(files.Path("next_ca.pem"), trusted + ".new");
+  std::filesystem::rename(trusted + ".new", trusted);
+
+  EXPECT_TRUE(TestService::Eventually([&] {
+    return Call(server, files.Path("ca.pem"), files.Path("next")) == grpc::StatusCode::OK;
+  }));
+  EXPECT_NE(Call(server, files.Path("ca.pem"), files.Path("client")), grpc::StatusCode::OK);
+}
+
 TEST(Security, BadCertificatesAreFoundAtTheStart) {
   const Certificates files;
   ChildProcess wrong_key({TRAVERSE_SERVER_BINARY, "--listen=127.0.0.1:0",

@@ -1,0 +1,155 @@
+// What the machine runs out of, and a clock that is set.
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <grpcpp/grpcpp.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "absl/time/clock.h"
+#include "client/api/channel.h"
+#include "client/api/optimizer_client.h"
+#include "tests/server/server_process.h"
+#include "tests/server/service_fixture.h"
+
+namespace traverse::testing {
+namespace {
+
+std::vector<v1::Layer> Layers(int count, int islands = 5) {
+  std::vector<v1::Layer> layers;
+  for (int i = 0; i < count; ++i) layers.push_back(MakeLayer(static_cast<uint64_t>(i), islands, 8));
+  return layers;
+}
+
+absl::Status RunJob(OptimizerClient& client, absl::Duration deadline = absl::Seconds(20)) {
+  v1::JobOptions options;
+  options.mutable_strategy()->set_name("ni2opt");
+  return client.Optimize(options, Layers(10), {.deadline = deadline}).status();
+}
+
+int ConnectRaw(const std::string& address) {
+  const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in place{};
+  place.sin_family = AF_INET;
+  place.sin_port =
+      htons(static_cast<uint16_t>(std::atoi(address.c_str() + address.rfind(':') + 1)));
+  place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  connect(fd, reinterpret_cast<sockaddr*>(&place), sizeof(place));
+  return fd;
+}
+
+// gRPC gives up the port then; a server that lives on without would be worse than one that is
+// started again.
+TEST(FileDescriptors, WhenTheyRunOutTheServerDrainsAndEnds) {
+  ServerProcess server;
+  OptimizerClient connected(*ConnectTo({server.address()}));
+  ASSERT_TRUE(RunJob(connected).ok());
+  // A job that is under way all the time.
+  grpc::ClientContext context;
+  const auto stub = v1::RouteOptimizerService::NewStub(*ConnectTo({server.address()}));
+  const auto stream = stub->Optimize(&context);
+  v1::OptimizeRequest request;
+  request.mutable_options()->mutable_strategy()->set_name("greedy");
+  *request.add_layers() = MakeLayer(1);
+  ASSERT_TRUE(stream->Write(request));
+  v1::OptimizeResponse response;
+  ASSERT_TRUE(stream->Read(&response));
+  namespace fs = std::filesystem;
+  const auto open = std::distance(
+      fs::directory_iterator("/proc/" + std::to_string(server.process().pid()) + "/fd"),
+      fs::directory_iterator());
+  const rlimit few{static_cast<rlim_t>(open) + 8, static_cast<rlim_t>(open) + 8};
+  ASSERT_EQ(prlimit(server.process().pid(), RLIMIT_NOFILE, &few, nullptr), 0);
+
+  std::vector<int> connections;
+  for (int i = 0; i < 40; ++i) connections.push_back(ConnectRaw(server.address()));
+  absl::SleepFor(absl::Milliseconds(300));
+  stream->WritesDone();
+  while (stream->Read(&response)) {
+  }
+  EXPECT_TRUE(stream->Finish().ok()) << "what is under way is finished";
+  for (const int fd : connections) close(fd);
+
+  EXPECT_EQ(server.process().Wait(), 1);
+  EXPECT_NE(server.process().Errors().find("\"event\":\"port_lost\""), std::string::npos);
+}
+
+TEST(FullDisk, CostsTheLogAndNoJob) {
+  ServerProcess server({"--log_file=/dev/full"});
+  OptimizerClient client(*ConnectTo({server.address()}));
+
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(RunJob(client).ok());
+
+  server.process().Signal(SIGTERM);
+  EXPECT_EQ(server.process().Wait(), 0);
+}
+
+// A server whose clock can be set.
+class ShiftedServer {
+ public:
+  ShiftedServer() {
+    char path[] = "/tmp/traverse_clock_XXXXXX";
+    const int fd = mkstemp(path);
+    path_ = path;
+    close(fd);
+    SetClockBy(0);
+    setenv("LD_PRELOAD", TRAVERSE_CLOCK_SHIM, 1);
+    setenv("CLOCK_SHIM_FILE", path, 1);
+    server_ = std::make_unique<ServerProcess>(
+        std::vector<std::string>{"--log_file=/dev/null", "--idle_timeout=5s"});
+    unsetenv("LD_PRELOAD");
+    unsetenv("CLOCK_SHIM_FILE");
+  }
+  ~ShiftedServer() { unlink(path_.c_str()); }
+
+  void SetClockBy(int64_t seconds) {
+    const int fd = open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+    EXPECT_EQ(pwrite(fd, &seconds, sizeof(seconds), 0), static_cast<ssize_t>(sizeof(seconds)));
+    close(fd);
+  }
+
+  ServerProcess& server() { return *server_; }
+
+ private:
+  std::string path_;
+  std::unique_ptr<ServerProcess> server_;
+};
+
+TEST(ClockJump, NeitherCutsJobsShortNorKeepsThemForever) {
+  ShiftedServer shifted;
+  OptimizerClient client(*ConnectTo({shifted.server().address()}));
+  ASSERT_TRUE(RunJob(client).ok());
+
+  for (const int64_t jump : {int64_t{24 * 3600}, int64_t{-24 * 3600}}) {
+    // A job that takes all the time it is given.
+    v1::JobOptions options;
+    options.mutable_strategy()->set_name("exact");
+    std::vector<v1::Layer> hard = Layers(2, 150);
+    for (v1::Layer& layer : hard) layer.mutable_start();
+    absl::StatusOr<JobResult> result = absl::UnknownError("");
+    const absl::Time begin = absl::Now();
+    std::thread caller(
+        [&] { result = client.Optimize(options, hard, {.deadline = absl::Milliseconds(1500)}); });
+    absl::SleepFor(absl::Milliseconds(400));
+    shifted.SetClockBy(jump);
+    caller.join();
+    const absl::Duration took = absl::Now() - begin;
+
+    EXPECT_TRUE(result.ok()) << result.status();
+    EXPECT_GT(took, absl::Milliseconds(700)) << "jump by " << jump;
+    EXPECT_LT(took, absl::Milliseconds(3000)) << "jump by " << jump;
+    EXPECT_TRUE(RunJob(client).ok());
+  }
+}
+
+}  // namespace
+}  // namespace traverse::testing
