@@ -17,9 +17,15 @@ double SquaredDistance(Point a, Point b) {
 }
 
 Point NearestOf(absl::Span<const Point> points, Point p) {
-  return *std::min_element(points.begin(), points.end(), [p](Point a, Point b) {
-    return SquaredDistance(a, p) < SquaredDistance(b, p);
-  });
+  Point nearest = points[0];
+  double least = SquaredDistance(nearest, p);
+  for (const Point point : points) {
+    const double squared = SquaredDistance(point, p);
+    if (squared >= least) continue;
+    least = squared;
+    nearest = point;
+  }
+  return nearest;
 }
 
 struct Sample {

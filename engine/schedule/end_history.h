@@ -19,6 +19,7 @@ uint64_t PlanFingerprint(const Plan& plan);
 // The first point of the first path, from which the places of a plan are told; 0, 0 if there is
 // none.
 Point PlanOrigin(const Plan& plan);
+inline Point RelativeTo(Point origin, Point p) { return {p.x - origin.x, p.y - origin.y}; }
 
 // Extruded parts repeat their layers, often every second one, and a layer that was seen before will
 // most likely end where it ended then. A guess: nothing goes wrong if it is not so. Ends are told

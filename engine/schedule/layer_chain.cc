@@ -113,8 +113,7 @@ void LayerChain::RunAnchor(const SlotPtr& slot, Point start) {
   if (!cancel_.cancelled()) outbox_.Deliver(std::move(outcome));
   std::lock_guard<std::mutex> lock(mutex_);
   slot->end = end;
-  ends_to_learn_[slot->index] = {slot->fingerprint,
-                                 {route_end.x - slot->origin.x, route_end.y - slot->origin.y}};
+  ends_to_learn_[slot->index] = {slot->fingerprint, RelativeTo(slot->origin, route_end)};
   --pending_;
   DropAnchored();
   MaybeAnchor(slot->index + 1);
@@ -153,6 +152,10 @@ void LayerChain::MaybeSolveFirst(const SlotPtr& slot) {
 void LayerChain::HandOn(const Slot& slot) {
   if (!slot.result) return;
   slot.result->route = slot.first.route;
+  slot.result->start = RelativeTo(slot.origin, slot.predicted_start);
+  slot.result->idle_repetitions = slot.idle_repetitions;
+  slot.result->origin = slot.origin;
+  slot.result->lower_bound = slot.first.lower_bound;
   slot.result->bound_multipliers = slot.bound_multipliers;
   slot.result->ready = true;
   for (const uint64_t index : std::exchange(slot.result->waiting, {})) {

@@ -74,6 +74,7 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
 
     // Set by solve and second.
     Solution first;
+    int idle_repetitions = 0;  // RouteToCome
     BoundMultipliers bound_multipliers;
     std::optional<Point> second_start;
     Solution second;
@@ -99,6 +100,7 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   void Prepare(Slot& slot);
   Point PredictEnd(const Slot& slot);
   void SolveFirst(Slot& slot) const;
+  void ResumeModel(const LayerProblem& problem, Slot& slot, Budget& budget) const;
   void SolveSecond(Slot& slot) const;
   LayerOutcome Anchor(Slot& slot, Point start) const;
   Solution SolveFromTrueStart(const LayerProblem& problem, const Slot& slot) const;

@@ -6,6 +6,7 @@
 #include "absl/status/status.h"
 #include "absl/time/time.h"
 #include "engine/base/rng.h"
+#include "engine/base/tolerances.h"
 #include "engine/cost/route_cost.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/schedule/layer_chain.h"
@@ -17,6 +18,9 @@ namespace {
 // Of a layer's time limit, what solve may use; the rest is for anchor, which runs once the true
 // start is known.
 constexpr double kSolveShare = 0.85;
+
+// Layers that were moved begin at the same place up to rounding.
+constexpr double kSamePlaceMm = 1e-6;
 
 double MoveMm(Point from, const std::optional<Point>& to) { return to ? Distance(from, *to) : 0; }
 
@@ -92,10 +96,33 @@ void LayerChain::SolveFirst(Slot& slot) const {
   // Different layers that share a fingerprint are unheard of, not impossible.
   const bool resumes = slot.model && ValidateRoute(slot.layer.plan, slot.model->route).ok();
   if (resumes) slot.bound_multipliers = slot.model->bound_multipliers;
-  slot.first = resumes ? strategy_->Resume(problem, slot.model->route, budget)
-                       : strategy_->Solve(problem, budget);
+  if (resumes) {
+    ResumeModel(problem, slot, budget);
+  } else {
+    slot.first = strategy_->Solve(problem, budget);
+  }
   if (!slot.first.lower_bound) Bound(problem, slot, slot.first);
   slot.outcome.solve_seconds = watch.Seconds();
+}
+
+// Goes on from the route of an equal layer, unless searching it has long been in vain.
+void LayerChain::ResumeModel(const LayerProblem& problem, Slot& slot, Budget& budget) const {
+  const RouteToCome& model = *slot.model;
+  const Point start = RelativeTo(slot.origin, slot.predicted_start);
+  const bool same = Distance(start, model.start) < kSamePlaceMm && !slot.finish;
+  if (same && model.idle_repetitions >= RouteHistory::kMostIdle) {
+    slot.first = Solution{model.route, StopReason::kLocalOptimum, std::nullopt};
+    slot.idle_repetitions = model.idle_repetitions;
+    if (start == model.start && slot.origin == model.origin) {
+      slot.first.lower_bound = model.lower_bound;
+    }
+    return;
+  }
+  slot.first = strategy_->Resume(problem, model.route, budget);
+  const bool gained =
+      RouteCost(problem, slot.first.route) < RouteCost(problem, model.route) - kCostTolerance;
+  const bool searched = same && !gained && slot.first.stop != StopReason::kTimeLimit;
+  slot.idle_repetitions = searched ? model.idle_repetitions + 1 : 0;
 }
 
 void LayerChain::SolveSecond(Slot& slot) const {

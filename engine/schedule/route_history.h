@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "engine/model/point.h"
 #include "engine/model/route.h"
 
 namespace traverse {
@@ -20,7 +22,16 @@ struct RouteToCome {
   bool ready = false;
   Route route;  // if ready; empty if there is none to start from
   std::vector<double>
-      bound_multipliers;          // of the search for its lower bound, as LowerBound has them
+      bound_multipliers;  // of the search for its lower bound, as LowerBound has them
+  // Where the head was before it, from the plan's origin, and how often in a row such a layer was
+  // searched from there without a gain.
+  Point start;
+  int idle_repetitions = 0;
+
+  // Valid where both the layer and the start are at the very same place.
+  Point origin;
+  std::optional<double> lower_bound;
+
   std::vector<uint64_t> waiting;  // layers that start from it
 };
 
@@ -45,6 +56,9 @@ class RouteHistory {
   }
 
   static constexpr size_t kLag = 4;
+
+  // After so many repetitions without a gain, a layer is not searched again from the same start.
+  static constexpr int kMostIdle = 3;
 
  private:
   static constexpr size_t kMostMakes = 128;

@@ -222,6 +222,20 @@ TEST(LayerChain, EqualAndMovedLayersStartFromARouteFoundBefore) {
   EXPECT_GE(calls.resumed, 48);
 }
 
+TEST(LayerChain, WhatWasSearchedInVainFromTheSameStartIsNotSearchedAgain) {
+  Calls calls;
+  RecordingSink sink;
+  TestExecutor executor(4);
+  auto job = Job::Start(JobSpec(), std::make_unique<Counting>(calls), executor, sink);
+  for (int i = 0; i < 100; ++i) job->Add({RingLayer(5, i % 2), {}, {}});
+  job->Close();
+  sink.Wait();
+
+  EXPECT_EQ(sink.outcomes.size(), 100u);
+  EXPECT_EQ(calls.solved, 2);
+  EXPECT_LT(calls.resumed, 80);
+}
+
 TEST(LayerChain, AQuickStrategySolvesEveryLayerFromItsTrueStart) {
   RunOptions options;
   options.layers = 80;
