@@ -23,8 +23,8 @@
 namespace traverse {
 namespace {
 
-// Iterations without a gain worth mentioning after which the search ends: so many, and so many
-// more a path.
+// Iterations without a gain worth mentioning after which the search ends: so many, which more
+// effort does not raise, and so many more a path.
 constexpr double kLeastPatience = 100;
 constexpr double kPatience = 1;
 constexpr double kLeastGain = 2e-4;
@@ -75,7 +75,8 @@ class Auto : public Strategy {
     const EndGroups groups(entries);
     IteratedSearchOptions options;
     const int paths = tree.path_count();
-    options.patience = static_cast<int64_t>(effort * (kLeastPatience + kPatience * paths));
+    options.patience =
+        static_cast<int64_t>(std::min(effort, 1.0) * kLeastPatience + effort * kPatience * paths);
     options.least_gain = kLeastGain;
     options.most_span = std::clamp(kWidestKicks / paths, kLeastMostSpan, kMostSpan);
     const NeighborLists neighbors =
