@@ -171,6 +171,33 @@ class Usage(CommandLine):
         ran = subprocess.run(["zsh", "-fc", script], capture_output=True, check=True, text=True)
         self.assertEqual((ran.stdout, ran.stderr), ("_traverse\n", ""))
 
+    @unittest.skipUnless(shutil.which("zsh"), "zsh is not installed")
+    def test_zsh_completes_commands_flags_and_values(self):
+        """Types into a shell on a terminal of its own and presses Tab."""
+        script = (
+            "zmodload zsh/zpty\n"
+            "complete() {\n"
+            "  zpty shell zsh -f -i\n"
+            "  zpty -w shell 'PS1=; unsetopt zle_bracketed_paste; stty columns 200; autoload -Uz compinit; compinit -u -D; "
+            "source <($TRAVERSE completion zsh); zstyle \":completion:*\" list-prompt \"\"; LISTMAX=1000; echo re\"\"ady'\n"
+            "  zpty -r -m shell out '*ready*'\n"
+            "  zpty -w -n shell \"$1\"$'\\t'\n"
+            "  sleep 1\n"
+            "  zpty -w -n shell $'\\C-e\\C-uecho do\"\"ne\\n'\n"
+            "  zpty -r -m shell out '*done*'\n"
+            "  print -r -- \"$out\"; zpty -d shell\n"
+            "}\n"
+            "complete \"$1\"\n")
+
+        def shown(line):
+            ran = subprocess.run(["zsh", "-f", "-c", script, "zsh", line], capture_output=True, text=True, timeout=60,
+                                 env={**os.environ, "TERM": "dumb"}, cwd=self.folder)
+            return ran.stdout
+
+        self.assertIn("balanced", shown("traverse optimize --policy=bal"))
+        self.put("part.damat", "")
+        self.assertIn("part.damat", shown("traverse compare pa"))
+
     def test_completion_knows_two_shells(self):
         self.assertEqual(self.fail_with(USAGE, "completion", "fish"),
                          'traverse completion: "fish" is neither bash nor zsh')
