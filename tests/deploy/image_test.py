@@ -37,7 +37,7 @@ class Image(unittest.TestCase):
 
     def test_is_small_labelled_and_without_rights(self):
         config = self.about["Config"]
-        self.assertLess(self.about["Size"], 40e6)
+        self.assertLess(self.about["Size"], 50e6)  # a third of it the solver that exact uses
         self.assertEqual("65532:65532", config["User"])
         self.assertEqual(VERSION, config["Labels"]["org.opencontainers.image.version"])
         self.assertEqual("traverse-server", config["Labels"]["org.opencontainers.image.title"])
