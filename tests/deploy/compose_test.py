@@ -7,10 +7,12 @@ reached, HAProxy and Prometheus are Debian's, under the names of the images.
 
 import json
 import pathlib
+import shutil
 import tempfile
 import unittest
 
 import support
+import certificates
 import containers
 import image_test
 
@@ -54,11 +56,7 @@ class Compose(unittest.TestCase):
         return path
 
     def test_comes_up_balances_and_is_watched(self):
-        path = self.changed_file()
-        compose = ("podman-compose", "--podman-path", self.podman, "-f", path)
-        environment = self.store.environment
-        self.addCleanup(support.run, *compose, "down", "-v", "-t", "5", ok=False, env=environment)
-        support.run(*compose, "up", "-d", env=environment)
+        self.up_with(self.changed_file())
         prometheus = f"http://127.0.0.1:{self.ports[9090]}/api/v1/query?query="
 
         support.wait_for(lambda: self.probe() == 0, "the balancer passes health questions on", 60)
@@ -66,8 +64,29 @@ class Compose(unittest.TestCase):
         rules = json.loads(support.http(f"http://127.0.0.1:{self.ports[9090]}/api/v1/rules")[1])["data"]["groups"]
         self.assertEqual(5, len(rules))
 
-    def probe(self):
-        return support.run(support.binary("TRAVERSE_PROBE"), f"--address=127.0.0.1:{self.ports[50051]}", ok=False).returncode
+    def test_comes_up_with_tls_for_those_with_a_certificate(self):
+        files = certificates.Certificates(self.folder)
+        shutil.copy(files.path("ca.crt"), self.folder / "clients.pem")
+        port = support.free_port()
+        self.up_with(self.changed_file(), support.DEPLOY / "compose.tls.yaml", TRAVERSE_CERTIFICATES=str(self.folder),
+                     TRAVERSE_ADDRESS="127.0.0.1", TRAVERSE_PORT=str(port))
+        known = [f"--tls_ca={files.path('ca.crt')}", f"--tls_cert={files.path('farm.crt')}", f"--tls_key={files.path('farm.key')}",
+                 "--tls_server_name=traverse"]
+
+        support.wait_for(lambda: self.probe(*known, port=port) == 0, "the balancer answers over TLS", 60)
+        self.assertNotEqual(0, self.probe(known[0], known[3], port=port))
+        self.assertNotEqual(0, self.probe(port=port))
+
+    def up_with(self, *paths, **variables):
+        """Brings the services up, and down with the test."""
+        compose = ["podman-compose", "--podman-path", self.podman, *(word for path in paths for word in ("-f", path))]
+        environment = {**self.store.environment, **variables}
+        self.addCleanup(support.run, *compose, "down", "-v", "-t", "5", ok=False, env=environment)
+        support.run(*compose, "up", "-d", env=environment)
+
+    def probe(self, *flags, port=None):
+        address = f"--address=127.0.0.1:{port or self.ports[50051]}"
+        return support.run(support.binary("TRAVERSE_PROBE"), address, *flags, ok=False).returncode
 
     @staticmethod
     def up(prometheus):
