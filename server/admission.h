@@ -38,7 +38,7 @@ struct AdmissionLimits {
   // A job is refused that is expected to take longer than `max_wait` and longer than `max_slowdown`
   // times what it would take alone.
   absl::Duration max_wait = absl::Milliseconds(250);
-  double max_slowdown = 10;
+  double max_slowdown = 3;
 
   int workers = 1;
 };

@@ -172,7 +172,9 @@ void JobStream::OnCallCancelled() {
 std::string JobStream::EncodeLayer(const LayerOutcome& outcome, uint64_t id, int64_t points) {
   totals_.Add(outcome);
   core_.metrics.CountLayer(*layer_metrics_, outcome, setup_.idle_speed_mm_s);
-  ticket_->Remove(points, outcome.solve_seconds);
+  const double busy_seconds = queue_->busy_seconds();
+  ticket_->Remove(points, busy_seconds - counted_seconds_);
+  counted_seconds_ = busy_seconds;
   --core_.queue_layers;
   return Encode(outcome, id);
 }

@@ -110,6 +110,7 @@ class JobStream : public JobPort {
 
   // Of the engine's calls, which do not overlap; then of End.
   JobTotals totals_;
+  double counted_seconds_ = 0;  // of queue_'s busy ones, as told to ticket_
 };
 
 }  // namespace traverse

@@ -36,7 +36,7 @@ ABSL_FLAG(int64_t, max_queued_points, 8'000'000,
 ABSL_FLAG(int64_t, max_queued_points_per_caller, 4'000'000, "The same of one caller's jobs");
 ABSL_FLAG(absl::Duration, max_wait, absl::Milliseconds(250),
           "A job is refused that would take longer than this and than --max_slowdown allows");
-ABSL_FLAG(double, max_slowdown, 10, "How many times as long as alone a job may take");
+ABSL_FLAG(double, max_slowdown, 3, "How many times as long as alone a job may take");
 ABSL_FLAG(int32_t, max_jobs, 256, "Most jobs in flight");
 ABSL_FLAG(int32_t, max_jobs_per_caller, 64, "Most jobs in flight of one caller");
 ABSL_FLAG(int64_t, window_layers, 256, "Most layers of a job between solver and reader");

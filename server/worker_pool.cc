@@ -23,6 +23,11 @@ class WorkerPool::QueueImpl : public Queue, public std::enable_shared_from_this<
     return waited;
   }
 
+  double busy_seconds() const override {
+    std::lock_guard<std::mutex> lock(pool.mutex_);
+    return busy;
+  }
+
   bool idle() const override {
     std::lock_guard<std::mutex> lock(pool.mutex_);
     return tasks.empty() && running == 0;
@@ -33,6 +38,7 @@ class WorkerPool::QueueImpl : public Queue, public std::enable_shared_from_this<
   const std::function<void()> on_no_memory;
   std::deque<Task> tasks;
   int running = 0;
+  double busy = 0;  // seconds
   QueueWait waited;
 };
 
@@ -113,6 +119,7 @@ void WorkerPool::RunTasks() {
     Task task = TakeNext();
     ++busy_;
     lock.unlock();
+    const Clock::time_point began = Clock::now();
     try {
       task.run();
     } catch (const std::bad_alloc&) {
@@ -120,9 +127,11 @@ void WorkerPool::RunTasks() {
       if (task.queue->on_no_memory) task.queue->on_no_memory();
     }
     task.run = nullptr;  // what it holds is freed before the thread counts as idle
+    const double seconds = std::chrono::duration<double>(Clock::now() - began).count();
     lock.lock();
     --busy_;
     --task.queue->running;
+    task.queue->busy += seconds;
     lock.unlock();
     task.queue = nullptr;  // may be the last to hold it
     lock.lock();

@@ -46,6 +46,9 @@ class WorkerPool {
    public:
     virtual QueueWait wait() const = 0;
 
+    // Time that threads spent on tasks of this queue that have ended.
+    virtual double busy_seconds() const = 0;
+
     // Whether no task of this queue waits or runs.
     virtual bool idle() const = 0;
   };

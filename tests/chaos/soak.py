@@ -46,9 +46,10 @@ def main():
     loadgen = [arguments.build + "/client/loadgen/traverse-loadgen", f"--target=127.0.0.1:{port}"]
     seconds = arguments.minutes * 60
     samples = []
-    with tempfile.NamedTemporaryFile(suffix=".json") as figures:
+    with tempfile.TemporaryDirectory() as folder:
+        figures = os.path.join(folder, "load.json")
         load = subprocess.Popen(loadgen + [f"--rate={arguments.rate}", f"--duration={seconds:.0f}s", "--arrivals=poisson",
-                                           "--mix=1:70,10:25,400:5", f"--json={figures.name}"],
+                                           "--mix=1:70,10:25,400:5", f"--json={figures}"],
                                 stdout=subprocess.DEVNULL)
         try:
             began = time.monotonic()
@@ -62,7 +63,8 @@ def main():
                 samples.append((time.monotonic() - began, resident_mb(server.pid)))
                 if len(samples) % 6 == 1:
                     print(f"{samples[-1][0]:6.0f} s  {samples[-1][1]:6.1f} MB", flush=True)
-            document = json.load(figures)
+            with open(figures, encoding="utf-8") as file:
+                document = json.load(file)
             left = metric(metrics, "traverse_jobs_in_flight"), metric(metrics, "traverse_queue_points")
         finally:
             load.kill()

@@ -136,7 +136,7 @@ TEST_F(AdmissionTest, WhoWouldTakeFarLongerThanAloneIsRefusedWithADelay) {
 }
 
 TEST_F(AdmissionTest, SmallJobsAreLetInBesideLargeOnes) {
-  Admission admission({}, Count());
+  Admission admission({.max_slowdown = 10}, Count());
   SolveSome(admission);
   std::vector<std::unique_ptr<Admission::Ticket>> tickets;
   for (int i = 0; i < 4; ++i) tickets.push_back(*admission.Admit("a", 500'000));
@@ -147,7 +147,7 @@ TEST_F(AdmissionTest, SmallJobsAreLetInBesideLargeOnes) {
 }
 
 TEST_F(AdmissionTest, ManyJobsOfOneCallerCountAsOneForAnother) {
-  Admission admission({}, Count());
+  Admission admission({.max_slowdown = 10}, Count());
   SolveSome(admission);
   std::vector<std::unique_ptr<Admission::Ticket>> tickets;
   for (int i = 0; i < 10; ++i) tickets.push_back(*admission.Admit("a", 10'000));
