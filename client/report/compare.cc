@@ -14,6 +14,10 @@ namespace {
 constexpr int kLeastBar = 10;
 constexpr int kMostBar = 30;
 
+// Columns of a label where there is room, and where there is not.
+constexpr size_t kWholeLabel = 1000;
+constexpr size_t kFoldedLabel = 20;
+
 using Value = std::function<double(const JobRun&)>;
 
 double TravelMm(const JobRun& run) {
@@ -61,7 +65,9 @@ struct Column {
 class Columns {
  public:
   explicit Columns(const std::vector<ComparedStrategy>& strategies) : strategies_(strategies) {
-    columns_.push_back({"strategy", 0, [](const auto& s) { return Cell{s.label}; }});
+    columns_.push_back({"strategy", 0, [this](const auto& s) {
+                          return Cell{FoldAtColons(s.label, label_width_)[0]};
+                        }});
     AddTravel();
     AddSplit();
     AddMean("idle s", 3, 1, [](const v1::JobSummary& s) { return s.idle_seconds(); });
@@ -77,8 +83,11 @@ class Columns {
                         }});
   }
 
-  // Leaves out columns, the highest ranks first, until all take at most `width`.
+  Columns(const Columns&) = delete;
+
+  // Folds labels and leaves out columns, the highest ranks first, until all take at most `width`.
   void Fit(int width) {
+    if (Width() > width) label_width_ = kFoldedLabel;
     for (int rank = 3; rank > 0 && Width() > width; --rank) {
       std::erase_if(columns_, [&](const Column& column) { return column.rank == rank; });
     }
@@ -98,6 +107,7 @@ class Columns {
   }
 
   const std::vector<Column>& list() const { return columns_; }
+  size_t label_width() const { return label_width_; }
 
  private:
   template <typename Condition>
@@ -157,6 +167,7 @@ class Columns {
   }
 
   const std::vector<ComparedStrategy>& strategies_;
+  size_t label_width_ = kWholeLabel;
   std::vector<Column> columns_;
 };
 
@@ -178,7 +189,8 @@ std::string CompareTable(const std::vector<ComparedStrategy>& strategies, const 
     for (const Column& column : columns.list()) row.push_back(column.cell(strategy));
     const double gain = GainPercent(Mean(strategy, GivenMm), Mean(strategy, TravelMm)) / 100;
     if (with_bar) row.push_back({Bar(gain, bar, style), Color::kBar});
-    table.Add(std::move(row));
+    row[0].text = strategy.label;
+    table.AddFolded(std::move(row), columns.label_width());
   }
   return table.Text(style);
 }

@@ -19,8 +19,8 @@ inline constexpr int kPageWidth = 132;
 // where they are among the rows; gap to the proven bound; seconds as the caller waited; a bar for
 // the gain over the order given, of which a full one would be no travel at all. Means over the
 // runs, with the standard deviation of the travel if there are several. The shortest travel is
-// marked in color. Where style.width is short the bar is left out first, then the idle time, then
-// the split. REQUIRES: each strategy has a run.
+// marked in color. Where style.width is short the bar is left out first, labels are folded, then
+// the idle time is left out, then the split. REQUIRES: each strategy has a run.
 std::string CompareTable(const std::vector<ComparedStrategy>& strategies, const TextStyle& style);
 
 }  // namespace traverse::report

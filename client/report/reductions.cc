@@ -9,6 +9,8 @@
 namespace traverse::report {
 namespace {
 
+constexpr size_t kLabelWidth = 20;
+
 constexpr char kAllPoints[] = "points_entries";
 
 // A column: what layers call it in their statistics, and what it reduces.
@@ -62,7 +64,7 @@ std::string ReductionTable(const std::vector<ComparedStrategy>& strategies,
     for (const Reduction& reduction : kReductions) {
       row.push_back(ReductionCell(strategy, reduction));
     }
-    table.Add(std::move(row));
+    table.AddFolded(std::move(row), kLabelWidth);
   }
   if (empty) return "";
   return "\ncontour points of a layer, and what each reduction leaves of them (VP: of SP)\n" +

@@ -35,9 +35,30 @@ std::string Bar(double fraction, int cells, const TextStyle& style) {
   return out + kEighths[static_cast<size_t>(eighths % 8)];
 }
 
+std::vector<std::string> FoldAtColons(const std::string& text, size_t width) {
+  std::vector<std::string> lines = {""};
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find(':', begin + 1), text.size());
+    const std::string piece = text.substr(begin, end - begin);
+    if (begin > 0 && TextWidth(lines.back() + piece) > width) lines.push_back("  ");
+    lines.back() += piece;
+    begin = end;
+  }
+  return lines;
+}
+
 Table::Table(std::vector<std::string> header) {
   std::vector<Cell>& row = rows_.emplace_back();
   for (std::string& title : header) row.push_back({std::move(title)});
+}
+
+void Table::AddFolded(std::vector<Cell> cells, size_t width) {
+  std::vector<std::string> lines = FoldAtColons(cells[0].text, width);
+  for (size_t i = 0; i < lines.size(); ++i) {
+    std::vector<Cell> row = i == 0 ? std::move(cells) : std::vector<Cell>(rows_.front().size());
+    row[0].text = std::move(lines[i]);
+    Add(std::move(row));
+  }
 }
 
 std::string Table::Text(const TextStyle& style) const {

@@ -32,6 +32,10 @@ class Table {
   // REQUIRES: as many cells as the header has.
   void Add(std::vector<Cell> cells) { rows_.push_back(std::move(cells)); }
 
+  // The same for a row whose first cell may be `width` columns wide: a longer text goes on in rows
+  // of its own below, broken before its colons.
+  void AddFolded(std::vector<Cell> cells, size_t width);
+
   // Sets the last column to the left too: bars and texts.
   void SetLastLeft() { last_left_ = true; }
 
@@ -45,6 +49,10 @@ class Table {
 
 // Columns that `text` takes: its letters, of UTF-8, each one column wide.
 size_t TextWidth(const std::string& text);
+
+// `text` in lines of up to `width` columns, broken before colons alone, all but the first one
+// indented by two blanks. A piece that is wider stays whole.
+std::vector<std::string> FoldAtColons(const std::string& text, size_t width);
 
 // A bar of at most `cells` columns for `fraction` in [0, 1] of them, to an eighth of a column with
 // blocks.

@@ -22,6 +22,7 @@ namespace traverse::report {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -179,6 +180,25 @@ TEST(CompareTable, LeavesOutColumnsWhereThereIsNoRoom) {
   EXPECT_THAT(narrowest, Not(HasSubstr("contours")));
   EXPECT_TRUE(lines_fit(full, kPageWidth) && lines_fit(narrow, 115) && lines_fit(narrower, 100) &&
               lines_fit(narrowest, 80));
+}
+
+TEST(CompareTable, FoldsLongLabelsBeforeItLeavesOutNumbers) {
+  std::vector<ComparedStrategy> strategies = TwoStrategies();
+  strategies[1].label = "tabu:polish=false:representation=nrp:diversifications=5000";
+
+  const std::string table = CompareTable(strategies, Page(115));
+
+  EXPECT_THAT(table, HasSubstr("idle s"));
+  EXPECT_THAT(table, AllOf(HasSubstr("\ntabu:polish=false  "), HasSubstr("\n  :representation=nrp"),
+                           HasSubstr("\n  :diversifications=5000")));
+  EXPECT_THAT(CompareTable(strategies, Page(200)), HasSubstr("\n" + strategies[1].label + " "));
+}
+
+TEST(FoldAtColons, KeepsPiecesWhole) {
+  EXPECT_THAT(FoldAtColons("tabu", 2), ElementsAre("tabu"));
+  EXPECT_THAT(FoldAtColons("a:b:cc", 100), ElementsAre("a:b:cc"));
+  EXPECT_THAT(FoldAtColons("a:b:cc:dddddd", 5), ElementsAre("a:b", "  :cc", "  :dddddd"));
+  EXPECT_THAT(FoldAtColons("", 5), ElementsAre(""));
 }
 
 // The rows of thesis tables 5.1 and 5.4.
