@@ -1,6 +1,7 @@
 #include "client/formats/read_input.h"
 
 #include <optional>
+#include <utility>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_format.h"
@@ -12,7 +13,7 @@
 namespace traverse {
 namespace {
 
-absl::StatusOr<InputJob> ReadAs(InputFormat format, std::string_view bytes, const std::string& name,
+absl::StatusOr<InputJob> ReadAs(InputFormat format, std::string bytes, const std::string& name,
                                 const GcodeOptions& gcode) {
   switch (format) {
     case InputFormat::kDamat:
@@ -24,12 +25,12 @@ absl::StatusOr<InputJob> ReadAs(InputFormat format, std::string_view bytes, cons
     case InputFormat::kGcode:
       break;
   }
-  return ReadGcodeJob(std::string(bytes), name, gcode);
+  return ReadGcodeJob(std::move(bytes), name, gcode);
 }
 
 }  // namespace
 
-absl::StatusOr<InputJob> ParseInput(std::string_view bytes, const std::string& name,
+absl::StatusOr<InputJob> ParseInput(std::string bytes, const std::string& name,
                                     const GcodeOptions& gcode) {
   if (bytes.find_first_not_of(" \t\r\n") == std::string_view::npos) {
     return absl::InvalidArgumentError(absl::StrFormat("%s: the file is empty", DisplayName(name)));
@@ -44,13 +45,13 @@ absl::StatusOr<InputJob> ParseInput(std::string_view bytes, const std::string& n
         absl::StrFormat("%s: neither its content nor its name is DAMAT, G-code, JSON or protobuf",
                         DisplayName(name)));
   }
-  return ReadAs(*format, bytes, name, gcode);
+  return ReadAs(*format, std::move(bytes), name, gcode);
 }
 
 absl::StatusOr<InputJob> ReadInput(const std::string& name, const GcodeOptions& gcode) {
-  const absl::StatusOr<std::string> bytes = ReadWholeFile(name);
+  absl::StatusOr<std::string> bytes = ReadWholeFile(name);
   if (!bytes.ok()) return bytes.status();
-  return ParseInput(*bytes, name, gcode);
+  return ParseInput(*std::move(bytes), name, gcode);
 }
 
 }  // namespace traverse

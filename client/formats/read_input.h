@@ -4,7 +4,6 @@
 #define TRAVERSE_CLIENT_FORMATS_READ_INPUT_H_
 
 #include <string>
-#include <string_view>
 
 #include "absl/status/statusor.h"
 #include "client/gcode/gcode_job.h"
@@ -18,7 +17,7 @@ namespace traverse {
 absl::StatusOr<InputJob> ReadInput(const std::string& name, const GcodeOptions& gcode = {});
 
 // The same from the file's bytes.
-absl::StatusOr<InputJob> ParseInput(std::string_view bytes, const std::string& name,
+absl::StatusOr<InputJob> ParseInput(std::string bytes, const std::string& name,
                                     const GcodeOptions& gcode = {});
 
 }  // namespace traverse

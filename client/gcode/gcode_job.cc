@@ -33,17 +33,18 @@ void SetCost(const TravelModel& model, v1::CostModel& cost) {
   time.set_retraction_threshold_mm(model.retraction_threshold_mm);
 }
 
-void AddLayer(const GcodeFile& file, size_t index, const TravelModel& model, Policy policy,
-              InputJob& job, Census& census) {
+// Fills layer `index` of `job`, for which there is room.
+void FillLayer(const GcodeFile& file, size_t index, const TravelModel& model, Policy policy,
+               InputJob& job, Census& census) {
   const Layer& layer = file.layers[index];
   LayerPlan planned = MakeLayerPlan(file, layer, policy);
-  v1::Layer& added = job.layers.emplace_back();
-  added.set_id(index + 1);
-  added.set_z_mm(ToDouble(layer.z) *
-                 (file.modes[file.blocks[layer.first_block].mode].inches ? kInchMm : 1));
-  *added.mutable_plan() = std::move(planned.plan);
-  SetCost(model, *added.mutable_cost());
-  PathNotes& notes = job.notes.emplace_back();
+  v1::Layer& filled = job.layers[index];
+  filled.set_id(index + 1);
+  filled.set_z_mm(ToDouble(layer.z) *
+                  (file.modes[file.blocks[layer.first_block].mode].inches ? kInchMm : 1));
+  *filled.mutable_plan() = std::move(planned.plan);
+  SetCost(model, *filled.mutable_cost());
+  PathNotes& notes = job.notes[index];
   for (size_t path = 0; path < planned.outlines.size(); ++path) {
     const auto feature = static_cast<size_t>(planned.outlines[path].feature);
     notes.feature.push_back(static_cast<uint16_t>(feature));
@@ -51,7 +52,26 @@ void AddLayer(const GcodeFile& file, size_t index, const TravelModel& model, Pol
     ++census.paths[feature];
     census.way_mm[feature] += static_cast<double>(file.blocks[layer.first_block + path].length_mm);
   }
-  census.movable += planned.movable;
+  census.movable = planned.movable;
+}
+
+// All layers of `job`, and what they add up to.
+Census FillLayers(const GcodeFile& file, Policy policy, const std::vector<TravelModel>& models,
+                  InputJob& job) {
+  std::vector<Census> parts(file.layers.size());
+  job.layers.resize(file.layers.size());
+  job.notes.resize(file.layers.size());
+  ParallelFor(parts.size(), DefaultThreads(),
+              [&](size_t i) { FillLayer(file, i, models[i], policy, job, parts[i]); });
+  Census all;
+  for (const Census& part : parts) {
+    for (size_t i = 0; i < all.paths.size(); ++i) {
+      all.paths[i] += part.paths[i];
+      all.way_mm[i] += part.way_mm[i];
+    }
+    all.movable += part.movable;
+  }
+  return all;
 }
 
 // The search of `auto` ends after so many rounds without a gain for each path. A print takes much
@@ -103,10 +123,7 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   }
   const std::vector<gcode::TravelModel> models =
       gcode::LearnTravel(*file, gcode::LearnRetraction(*file).threshold_mm);
-  gcode::Census census;
-  for (size_t i = 0; i < file->layers.size(); ++i) {
-    gcode::AddLayer(*file, i, models[i], options.policy, job, census);
-  }
+  const gcode::Census census = gcode::FillLayers(*file, options.policy, models, job);
   // The first path is pinned; how the start script comes to it is not ours.
   const gcode::Outline first = gcode::OutlineOf(*file, file->blocks.front());
   job.options.mutable_start()->set_x_mm(first.points.front().x);

@@ -270,10 +270,19 @@ void VerifyMachine::Deposit(int number, const Words& words, const std::array<Mic
   digest = Mix(digest, static_cast<uint64_t>(feed_));
   digest = Mix(digest, tool_);
   digest = Mix(digest, (retracted() ? 1u : 0u) + (inches_ ? 2u : 0u));
-  for (const uint64_t state : state_) digest = Mix(digest, state);
+  digest = Mix(digest, StateDigest());
   line.role = LineRole::kDeposit;
   line.digest = digest;
   line.z = at_[2];
+}
+
+uint64_t VerifyMachine::StateDigest() {
+  if (state_changed_) {
+    state_digest_ = 0;
+    for (const uint64_t state : state_) state_digest_ = Mix(state_digest_, state);
+    state_changed_ = false;
+  }
+  return state_digest_;
 }
 
 void VerifyMachine::DoM(int number, VerifyLine& line) {
@@ -352,6 +361,7 @@ void VerifyMachine::DoKlipper(VerifyLine& line) {
     }
   }
   state_ = state;
+  state_changed_ = true;
 }
 
 }  // namespace traverse::gcode

@@ -64,7 +64,11 @@ class VerifyMachine {
   void Move(int number, const Words& words, VerifyLine& line);
   void Deposit(int number, const Words& words, const std::array<Micro, 3>& from, Micro filament,
                VerifyLine& line);
-  void SetState(size_t slot, uint64_t value) { state_[slot] = value; }
+  void SetState(size_t slot, uint64_t value) {
+    state_[slot] = value;
+    state_changed_ = true;
+  }
+  uint64_t StateDigest();
   void Mode(bool& mode, bool value, VerifyLine& line);
   void Fence(VerifyLine& line, LineRole role);
 
@@ -84,6 +88,8 @@ class VerifyMachine {
   uint64_t tool_ = 0;
   uint64_t fan_ = 0;
   std::array<uint64_t, kStates> state_{};
+  uint64_t state_digest_ = 0;  // of state_, unless state_changed_
+  bool state_changed_ = true;
 };
 
 // Mixes `value` into `digest`.

@@ -1,0 +1,77 @@
+// Bytes as G-code, read, written with its paths in random orders, and verified.
+//
+// Rules: what is returned as rewritten is verified, is read again, and extrudes as far as before;
+// what cannot be rewritten is refused with the first difference.
+
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "client/gcode/layer_meter.h"
+#include "client/gcode/reader.h"
+#include "client/gcode/rewrite.h"
+#include "client/gcode/verify/verifier.h"
+#include "engine/base/rng.h"
+#include "tests/client/gcode/random_order.h"
+#include "tests/fuzz/check.h"
+#include "tests/fuzz/gcode_mutator.h"
+
+namespace traverse::fuzz {
+namespace {
+
+void CheckSamePrint(const GcodeFile& file, const std::string& text) {
+  const absl::Status same = VerifyGcode(file.text, "original", text, "rewritten");
+  Check(same.ok(), absl::StrCat("what was rewritten is verified: ", same.ToString()));
+  const auto again = ReadGcode(text, "rewritten");
+  Check(again.ok(), absl::StrCat("what was rewritten can be read: ", again.status().ToString()));
+  const double before = gcode::Sum(gcode::MeasureLayers(file)).extruded_mm;
+  const double after = gcode::Sum(gcode::MeasureLayers(**again)).extruded_mm;
+  Check(std::abs(before - after) <= 1e-6 * (1 + before),
+        absl::StrCat("extrudes as far as before: ", before, " mm, ", after, " mm"));
+}
+
+std::vector<gcode::FileOrder> RandomTries(const GcodeFile& file, gcode::Policy policy,
+                                          uint64_t seed) {
+  Rng rng(seed);
+  std::vector<gcode::FileOrder> tries(2);
+  for (gcode::FileOrder& order : tries) {
+    for (const gcode::Layer& layer : file.layers) {
+      order.push_back(
+          gcode::testing::RandomOrder(layer, gcode::MakeLayerPlan(file, layer, policy).plan, rng));
+    }
+  }
+  return tries;
+}
+
+}  // namespace
+}  // namespace traverse::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace traverse;
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  const auto file = ReadGcode(std::string(bytes), "in.gcode");
+  if (!file.ok()) return 0;
+  const uint64_t seed = std::hash<std::string_view>{}(bytes);
+  RewriteOptions options;
+  options.policy = static_cast<gcode::Policy>(seed % 3);
+  const auto tries = fuzz::RandomTries(**file, options.policy, seed);
+  const auto rewrite = RewriteGcode(**file, tries, options);
+  if (rewrite.ok()) {
+    fuzz::CheckSamePrint(**file, rewrite->text);
+    fuzz::Check(rewrite->after.seconds <= rewrite->before.seconds, "no print gets slower");
+  } else {
+    fuzz::Check(absl::IsFailedPrecondition(rewrite.status()), rewrite.status().ToString());
+  }
+  // No layer keeps its order for being better.
+  const std::string shuffled = gcode::testing::Shuffled(**file, options.policy, seed);
+  if (VerifyGcode((*file)->text, "original", shuffled, "shuffled").ok()) {
+    fuzz::CheckSamePrint(**file, shuffled);
+  }
+  return 0;
+}
+
+extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size, size_t max_size,
+                                          unsigned int seed) {
+  return traverse::fuzz::MutateGcode(data, size, max_size, seed);
+}
