@@ -38,6 +38,21 @@ double StepMm(const Step& step, const MachineState& after) {
   return std::hypot(ToDouble(after.at.x - step.from.x), ToDouble(after.at.y - step.from.y)) * unit;
 }
 
+// An arc that ends beside its circle is no arc: what a machine makes of it depends on where it
+// begins. Rounding is less than this.
+constexpr double kMaxOffCircleMm = 0.02;
+
+bool EndsOnItsCircle(const Step& step, const MachineState& after) {
+  const Command& c = step.command;
+  if (!c.Has('I') && !c.Has('J')) return true;
+  const double i = c.Has('I') ? ToDouble(c.Value('I')) : 0;
+  const double j = c.Has('J') ? ToDouble(c.Value('J')) : 0;
+  const double x = ToDouble(after.at.x - step.from.x) - i;
+  const double y = ToDouble(after.at.y - step.from.y) - j;
+  const double unit = after.inches ? kInchMm : 1;
+  return std::abs(std::hypot(i, j) - std::hypot(x, y)) * unit <= kMaxOffCircleMm;
+}
+
 // What a line that moves nothing does to the link that it stands in.
 uint16_t LinkFlagsOf(StepKind kind) {
   switch (kind) {
@@ -209,6 +224,7 @@ void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
   pending_ = 0;
   link_ = OpenLink{};
   if (step.retracted || before.at.z != after.at.z) block.flags |= kBlockPinned;
+  if (step.arc && !EndsOnItsCircle(step, after)) block.flags |= kBlockPinned;
   if (step.kind == StepKind::kZeroExtrude) block.flags |= kBlockZero;
   block.length_mm += static_cast<float>(StepMm(step, after));
   if (block.segments < std::numeric_limits<uint16_t>::max()) ++block.segments;

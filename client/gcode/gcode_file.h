@@ -46,7 +46,7 @@ enum BlockFlag : uint16_t {
   kBlockType = 1 << 3,      // the feature changes inside it
   kBlockComments = 1 << 4,  // has comments inside that mean nothing here
   kBlockProgress = 1 << 5,  // has M73 inside
-  kBlockPinned = 1 << 6,    // printed while retracted, or Z moves in it: stays as it is
+  kBlockPinned = 1 << 6,    // printed while retracted, rising, or no true arc: stays as it is
   kBlockState = 1 << 7,     // some slot changes inside it
   kBlockZero = 1 << 8,      // has a segment whose extrusion rounds to nothing
 };

@@ -245,13 +245,24 @@ void VerifyMachine::Move(int number, const Words& words, VerifyLine& line) {
   pulled_ = std::max<Micro>(pulled_ - filament, 0);
 }
 
+// Gone the other way, an arc that ends beside its circle would lie elsewhere.
+bool VerifyMachine::IsCircular(const Words& words, const std::array<Micro, 3>& from) const {
+  constexpr double kSlackMicro = 20'000;
+  if (!words.Has('I') && !words.Has('J')) return true;
+  const auto i = static_cast<double>(words.Has('I') ? words['I'] : 0);
+  const auto j = static_cast<double>(words.Has('J') ? words['J'] : 0);
+  const double end_radius = std::hypot(static_cast<double>(at_[0] - from[0]) - i,
+                                       static_cast<double>(at_[1] - from[1]) - j);
+  return std::abs(std::hypot(i, j) - end_radius) * (inches_ ? 25.4 : 1) <= kSlackMicro;
+}
+
 void VerifyMachine::Deposit(int number, const Words& words, const std::array<Micro, 3>& from,
                             Micro filament, VerifyLine& line) {
   std::array<Micro, 3> begin = from;
   std::array<Micro, 3> end = at_;
   // An arc by its center, or its radius, and the way round when gone from its smaller end.
   bool clockwise = number == 2;
-  if (begin > end) {
+  if (begin > end && (number < 2 || IsCircular(words, from))) {
     std::swap(begin, end);
     clockwise = number == 3;
   }

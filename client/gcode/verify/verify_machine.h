@@ -64,6 +64,7 @@ class VerifyMachine {
   void Move(int number, const Words& words, VerifyLine& line);
   void Deposit(int number, const Words& words, const std::array<Micro, 3>& from, Micro filament,
                VerifyLine& line);
+  bool IsCircular(const Words& words, const std::array<Micro, 3>& from) const;
   void SetState(size_t slot, uint64_t value) {
     state_[slot] = value;
     state_changed_ = true;

@@ -86,6 +86,17 @@ TEST(VerifyGcode, ArcsMayTurnRound) {
   EXPECT_THAT(Difference(a, other_side), HasSubstr("b:4"));
 }
 
+// Found by fuzzing: from its other end such an arc has another radius, and lies elsewhere.
+TEST(VerifyGcode, ArcsThatEndBesideTheirCircleMayNotTurnRound) {
+  const std::string a = "M83\nG1 F600\nG0 X30\nG2 X0 Y0 I-3 J0 E1\n";
+  const std::string b = "M83\nG1 F600\nG3 X30 Y0 I27 J0 E1\n";
+
+  EXPECT_THAT(Difference(a, b), HasSubstr("b:3"));
+  const auto file = ReadGcode(a + "G0 X5\nG1 X6 E1\n", "a");
+  ASSERT_TRUE(file.ok());
+  EXPECT_NE((*file)->blocks[0].flags & kBlockPinned, 0);
+}
+
 TEST(VerifyGcode, NothingCrossesALineThatIsNotKnown) {
   const std::string a = "M83\nG1 F600 X1 E1\nM600\nG1 X5\nG1 X6 E1\n";
   const std::string b = "M83\nG1 F600\nG0 X5\nG1 X6 E1\nM600\nG0 X0\nG1 X1 E1\n";
