@@ -1,6 +1,8 @@
 #include "tests/server/service_fixture.h"
 
+#include <grpcpp/create_channel.h>
 #include <grpcpp/generic/generic_stub.h>
+#include <grpcpp/security/credentials.h>
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/slice.h>
 
@@ -68,7 +70,10 @@ TestService::TestService(const std::function<void(ServerOptions&)>& change) {
   server_ = *std::move(server);
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
-  channel_ = server_->InProcessChannel(arguments);
+  channel_ = options.listen.empty()
+                 ? server_->InProcessChannel(arguments)
+                 : grpc::CreateCustomChannel(absl::StrCat("127.0.0.1:", server_->port()),
+                                             grpc::InsecureChannelCredentials(), arguments);
   stub_ = v1::RouteOptimizerService::NewStub(channel_);
 }
 

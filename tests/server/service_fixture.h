@@ -39,6 +39,7 @@ v1::OptimizeBatchRequest MakeBatch(int layers, const std::string& strategy = "no
 // Runs jobs against one server.
 class TestService {
  public:
+  // Called in the same process; or through a socket, if `change` lets the server listen.
   explicit TestService(const std::function<void(ServerOptions&)>& change = {});
 
   Server& server() { return *server_; }
