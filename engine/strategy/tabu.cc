@@ -230,7 +230,7 @@ std::vector<OptionSpec> Options() {
       Number("relinked", Type::kInt, "5", 0, 100,
              "Sequences on the way from each of these to the best one that it tries as well."),
       Switch("polish", "true",
-             "Improve the route over all vertices of the contours: 2-opt and point release."),
+             "Improve the route over all vertices of the contours, by iterated local search."),
       Number("polish_rounds", Type::kDouble, "1", 0, 1000000,
              "Kicks in a row without gain that end the polishing, for each path; beyond 100 "
              "paths, for each ten."),
