@@ -134,6 +134,8 @@ absl::StatusOr<Scene> GcodeScene(const InputJob& job, const NamedRun& run,
   given.total = FiguresOf(rewrite.before);
   given.layers = LayerFigures(*job.gcode, job.first_layer, job.layers.size());
   RouteNotes after = NotesWithoutFigures(run);
+  // It is that of the routes found; layers may have kept their order, and links are not straight.
+  after.gap.reset();
   after.total = FiguresOf(rewrite.after);
   after.layers = LayerFigures(*printed, job.first_layer, job.layers.size());
   scene.routes = {std::move(given), std::move(after)};

@@ -58,6 +58,7 @@ TEST_P(DrawnGcode, TravelsAsFarAsTheFileIsMeasuredTo) {
   ASSERT_TRUE(scene.ok()) << scene.status();
 
   ASSERT_EQ(scene->layers(), job->layers.size());
+  EXPECT_FALSE(scene->routes[1].gap) << "a bound on routes is none on files";
   for (size_t i = 0; i < scene->layers(); ++i) {
     const DrawnLayer layer = scene->layer(i);
     for (size_t route = 0; route < 2; ++route) {
