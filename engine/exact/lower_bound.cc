@@ -1,6 +1,7 @@
 #include "engine/exact/lower_bound.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "engine/cost/route_cost.h"
 #include "engine/exact/tree_bound.h"
@@ -12,6 +13,10 @@ namespace {
 constexpr int kRounds = 3;
 constexpr int kStepsPerRound = 40;
 
+// Evaluations at the end, as long as they gain so much.
+constexpr int kMostEvaluations = 6;
+constexpr double kLeastGain = 1e-3;
+
 // Of the time that is left, what a search may use: the evaluation after it is what counts.
 constexpr double kSearchShare = 0.4;
 
@@ -21,12 +26,23 @@ Budget SearchBudget(const Budget& budget) {
   return budget.Within(std::chrono::duration_cast<Budget::Clock::duration>(left * kSearchShare));
 }
 
+// Each evaluation makes the true costs of its trees' moves known where boxes stood for contours.
+void EvaluateAgain(TreeBound& tree, Budget& budget) {
+  for (int times = 0; times < kMostEvaluations; ++times) {
+    const double before = tree.lower_bound();
+    tree.SetMultipliers(tree.multipliers());
+    if (!tree.Evaluate(budget) || tree.lower_bound() < before * (1 + kLeastGain)) return;
+  }
+}
+
 }  // namespace
 
 std::optional<double> LowerBound(const LayerProblem& problem, double target,
                                  BoundMultipliers* multipliers, Budget& budget) {
   if (problem.plan->paths.empty()) return RouteCost(problem, {});
+  if (budget.ExhaustedNow()) return std::nullopt;
   TreeBound tree(problem, budget);
+  if (budget.ExhaustedNow()) return std::nullopt;
   const bool known = multipliers != nullptr && multipliers->size() == tree.multipliers().size();
   if (known) tree.SetMultipliers(*multipliers);
   if (!tree.Evaluate(budget)) return std::nullopt;
@@ -35,6 +51,7 @@ std::optional<double> LowerBound(const LayerProblem& problem, double target,
     tree.Ascend(target, kStepsPerRound, search);
     if (!tree.Evaluate(budget)) break;
   }
+  EvaluateAgain(tree, budget);
   if (multipliers != nullptr) *multipliers = tree.multipliers();
   return std::min(tree.lower_bound(), target);
 }

@@ -29,7 +29,8 @@ void FillMatrix(const Plan& plan, const TravelCost& cost, const std::vector<Visi
 
 }  // namespace
 
-std::optional<StageModel> StageModel::Build(const LayerProblem& problem, size_t max_entries) {
+std::optional<StageModel> StageModel::Build(const LayerProblem& problem, size_t max_entries,
+                                            Budget* budget) {
   const std::optional<std::vector<PlanStage>> stages = StagesOf(*problem.plan, kMostChildren);
   if (!stages) return std::nullopt;
   const EntryTable table(*problem.plan);
@@ -56,7 +57,7 @@ std::optional<StageModel> StageModel::Build(const LayerProblem& problem, size_t 
     model.first_.push_back(static_cast<int>(model.visits_.size()));
   }
   if (!model.AllocateMatrices(max_entries)) return std::nullopt;
-  model.FillMatrices(problem);
+  if (!model.FillMatrices(problem, budget)) return std::nullopt;
   return model;
 }
 
@@ -73,23 +74,27 @@ bool StageModel::AllocateMatrices(size_t max_entries) {
       if (total > max_entries) return false;
     }
   }
-  costs_.resize(total);
-  transposed_.resize(total);
+  costs_.reserve(total);
+  transposed_.reserve(total);
   return true;
 }
 
-void StageModel::FillMatrices(const LayerProblem& problem) {
+bool StageModel::FillMatrices(const LayerProblem& problem, Budget* budget) {
   const Plan& plan = *problem.plan;
   const TravelCost cost(problem.cost);
   for (int a = 0; a < cluster_count(); ++a) {
+    if (budget != nullptr && budget->ExhaustedNow()) return false;
     for (int b = 0; b < cluster_count(); ++b) {
       const int step = stage_of(b) - stage_of(a);
       if (a == b || step < 0 || step > 1) continue;
+      const size_t count = static_cast<size_t>(states(a)) * static_cast<size_t>(states(b));
+      costs_.resize(offset(a, b) + count);
+      transposed_.resize(offset(a, b) + count);
       FillMatrix(plan, cost, visits_[static_cast<size_t>(a)], visits_[static_cast<size_t>(b)],
                  &costs_[offset(a, b)], &transposed_[offset(a, b)]);
     }
   }
-  if (stage_count() == 0) return;
+  if (stage_count() == 0) return true;
   for (int c = 0; c < size(0); ++c) {
     std::vector<double>& row = start_.emplace_back();
     for (const Visit& visit : visits_[static_cast<size_t>(c)]) {
@@ -104,6 +109,7 @@ void StageModel::FillMatrices(const LayerProblem& problem) {
       row.push_back(problem.finish ? cost(exit, *problem.finish) : 0);
     }
   }
+  return true;
 }
 
 Route StageModel::RouteOf(const std::vector<ClusterState>& walk) const {

@@ -96,6 +96,7 @@ TreeBound::TreeBound(const LayerProblem& problem, Budget& budget)
     : graph_(PlanTree(*problem.plan)),
       cost_(problem.cost),
       multipliers_(graph_.ends.size()),
+      best_multipliers_(graph_.ends.size()),
       near_(graph_.ends.size()),
       member_of_(graph_.ends.size(), -1) {
   for (const int end : graph_.first) start_costs_.push_back(CostTo(problem.start, end));
@@ -289,7 +290,11 @@ bool TreeBound::Evaluate(Budget& budget) {
     scale += std::abs(tree);
   }
   for (const double multiplier : multipliers_) scale += 2 * std::abs(multiplier);
-  lower_bound_ = std::max(lower_bound_, sum - kRounding * scale);
+  const double bound = sum - kRounding * scale;
+  if (bound > lower_bound_) {
+    lower_bound_ = bound;
+    best_multipliers_ = multipliers_;
+  }
   return true;
 }
 

@@ -40,8 +40,8 @@ class TreeBound {
   // No route costs less. 0 before the first evaluation.
   double lower_bound() const { return lower_bound_; }
 
-  // [end], in an order that is the same for equal plans.
-  const std::vector<double>& multipliers() const { return multipliers_; }
+  // Those of the bound, [end], in an order that is the same for equal plans.
+  const std::vector<double>& multipliers() const { return best_multipliers_; }
   void SetMultipliers(const std::vector<double>& multipliers) { multipliers_ = multipliers; }
 
  private:
@@ -73,7 +73,8 @@ class TreeBound {
   std::vector<double> finish_costs_;  // [graph_.last] to the finish, 0 if there is none
   std::vector<int> first_side_;       // [junction] where its sides begin among all; one more
 
-  std::vector<double> multipliers_;  // [end]
+  std::vector<double> multipliers_;       // [end]
+  std::vector<double> best_multipliers_;  // [end] of the bound
   double lower_bound_ = 0;
 
   std::vector<Pair> pairs_;                                // the near ones

@@ -29,9 +29,15 @@ namespace {
 // Numbers in a model's matrices: 16 bytes each.
 constexpr size_t kMostModelEntries = size_t{16} << 20;
 
-std::unique_ptr<Strategy> MakeDefault(const StrategyEntry& entry) {
-  return entry.make(*StrategyOptions::Parse(entry.options, {}));
+// The better the first route, the more is left out of the search for a proof: it is worth a while.
+constexpr char kEffort[] = "20";
+
+std::unique_ptr<Strategy> MakeWith(const StrategyEntry& entry,
+                                   const std::map<std::string, std::string>& options) {
+  return entry.make(*StrategyOptions::Parse(entry.options, options));
 }
+
+std::unique_ptr<Strategy> MakeDefault(const StrategyEntry& entry) { return MakeWith(entry, {}); }
 
 // Of the time left, what the first route may use, and then the first bound: a proof needs the rest,
 // but route and bound are what there is when it is not found, or cannot be.
@@ -65,7 +71,9 @@ Budget Share(const Budget& budget, double share) {
 class Exact : public Strategy {
  public:
   explicit Exact(double time_limit_seconds)
-      : time_limit_seconds_(time_limit_seconds), heuristic_(MakeDefault(AutoEntry())) {}
+      : time_limit_seconds_(time_limit_seconds),
+        heuristic_(MakeDefault(AutoEntry())),
+        long_heuristic_(MakeWith(AutoEntry(), {{"effort", kEffort}})) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
     return Prove(problem, FirstRoute(problem, budget), budget);
@@ -84,7 +92,7 @@ class Exact : public Strategy {
   Solution FirstRoute(const LayerProblem& problem, const Budget& budget) const {
     const bool provable = IsProvable(*problem.plan);
     Budget share = Share(budget, provable ? kRouteShare : kRouteShareWithoutProof);
-    Solution solution = heuristic_->Solve(problem, share);
+    Solution solution = (provable ? long_heuristic_ : heuristic_)->Solve(problem, share);
     solution.statistics["provable"] = provable ? 1 : 0;
     return solution;
   }
@@ -110,7 +118,7 @@ class Exact : public Strategy {
 
   // False if a limit ended it.
   static bool ProveByStages(const LayerProblem& problem, Solution& solution, Budget& budget) {
-    const std::optional<StageModel> model = StageModel::Build(problem, kMostModelEntries);
+    const std::optional<StageModel> model = StageModel::Build(problem, kMostModelEntries, &budget);
     if (!model || !CanProveByStages(*model)) return false;
     const StageProof proof =
         traverse::ProveByStages(*model, model->WalkOf(solution.route), StageProofOptions(), budget);
@@ -127,7 +135,8 @@ class Exact : public Strategy {
   }
 
   const double time_limit_seconds_;
-  const std::unique_ptr<Strategy> heuristic_;  // of the first route
+  const std::unique_ptr<Strategy> heuristic_;       // of the first route
+  const std::unique_ptr<Strategy> long_heuristic_;  // of one that is to be proven
 };
 
 // The thesis's framework with its mixed integer programmes.
