@@ -99,11 +99,11 @@ class UploadHook(unittest.TestCase):
         uploads = old.parent
         command = [sys.executable, "-B", HOOK, f"--watch={uploads}", f"--originals={self.originals}",
                    f"--program={self.program}", "--interval=0.1"]
-        with support.Process(*command):
-            time.sleep(0.5)
+        with support.Process(*command) as watcher:
+            support.wait_for(lambda: "watching" in watcher.output(), "the folder is watched", 60)
             new = self.upload(";good", "new.gcode")
             other = self.upload(";good", "notes.txt")
-            support.wait_for(lambda: new.read_text().startswith(";optimised"), "the new file is optimised")
+            support.wait_for(lambda: new.read_text().startswith(";optimised"), "the new file is optimised", 60)
             time.sleep(0.5)
         self.assertTrue(old.read_text().startswith(";good"))
         self.assertTrue(other.read_text().startswith(";good"))

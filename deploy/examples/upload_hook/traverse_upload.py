@@ -109,6 +109,7 @@ def watch(folder, originals, options, timeout, program, interval=2.0):
     settled, seen = {}, {}
     for path in candidates(folder):
         seen[path] = stamp(path)  # what was there before is left alone
+    LOG.info("watching %s", folder)
     while True:
         for path in candidates(folder):
             now = stamp(path)
