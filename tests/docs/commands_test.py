@@ -45,6 +45,9 @@ class Commands(unittest.TestCase):
         """Runs it, and ends what it left in the background."""
         for port in ("50051", "9464"):
             block = block.replace(port, free_port())
+        # A reader types more slowly than a busy machine starts a server; a script does not.
+        wait = r"\g<0>\ntimeout 60 bash -c 'until (: </dev/tcp/127.0.0.1/\1) 2>/dev/null; do sleep 0.05; done'"
+        block = re.sub(r"(?m)^.*--listen=127\.0\.0\.1:(\d+).*&$", wait, block)
         # Only the block's own jobs, by their numbers.
         script = "trap 'code=$?; kill $(jobs -p) 2>/dev/null || true; wait; exit $code' EXIT\n" + block
         path = f"{BUILD / 'client'}:{BUILD / 'server'}:{os.environ['PATH']}"
