@@ -66,22 +66,23 @@ bool IsAskedTwice(const InputJob& job, const StrategySpec* strategy, const JobFl
   return named.name() == "auto" && flags.deadline == absl::InfiniteDuration();
 }
 
-// The G-code of `run`, and of a second one if that is worth while.
+// The G-code of `runs`, which begins with one run; a second joins it if that is worth while.
 Expected<GcodeRewrite> Rewritten(Service& service, const Request& request, const InputJob& job,
-                                 const report::JobRun& run, const GcodeOptions& options) {
+                                 std::vector<report::JobRun>& runs, const GcodeOptions& options) {
   const StrategySpec* strategy = request.strategy.empty() ? nullptr : &request.strategy[0];
-  std::vector<const report::JobRun*> runs = {&run};
-  Expected<report::JobRun> second = report::JobRun{};
   if (IsAskedTwice(job, strategy, request.job)) {
     InputJob narrow;
     narrow.name = job.name;
     narrow.options = job.options;
     narrow.layers = NarrowLayers(job, options);
-    second = service.Optimize(narrow, strategy, request.job, request.quiet);
+    Expected<report::JobRun> second =
+        service.Optimize(narrow, strategy, request.job, request.quiet);
     if (Outcome* outcome = std::get_if<Outcome>(&second)) return *outcome;
-    runs.push_back(&std::get<report::JobRun>(second));
+    runs.push_back(std::get<report::JobRun>(std::move(second)));
   }
-  absl::StatusOr<GcodeRewrite> rewrite = RewriteByRuns(job, runs, options);
+  std::vector<const report::JobRun*> tries;
+  for (const report::JobRun& run : runs) tries.push_back(&run);
+  absl::StatusOr<GcodeRewrite> rewrite = RewriteByRuns(job, tries, options);
   if (rewrite.ok()) return *std::move(rewrite);
   return InputFault(absl::FailedPreconditionError(
       absl::StrFormat("%s: left as it is, for the new file would not print the same: %s",
@@ -90,10 +91,10 @@ Expected<GcodeRewrite> Rewritten(Service& service, const Request& request, const
 
 // Draws and describes what became of the job. `rewrite` is null if it is no G-code.
 Outcome ShowViews(Service& service, const Request& request, const InputJob& job,
-                  const report::JobRun& run, const GcodeRewrite* rewrite) {
-  const view::NamedRun named = {run.result.summary.strategy(), &run};
+                  const std::vector<report::JobRun>& runs, const GcodeRewrite* rewrite) {
+  const view::NamedRun named = {runs[0].result.summary.strategy(), &runs[0]};
   if (rewrite != nullptr) {
-    const absl::StatusOr<view::Scene> scene = view::GcodeScene(job, named, *rewrite);
+    const absl::StatusOr<view::Scene> scene = view::GcodeScene(job, named.label, runs, *rewrite);
     if (!scene.ok()) return InputFault(scene.status());
     const absl::Status status = WriteViews(request.views, *scene);
     return status.ok() ? Done() : InputFault(status);
@@ -129,23 +130,25 @@ Outcome RunOptimize(const Flags& flags) {
   const StrategySpec* strategy = request->strategy.empty() ? nullptr : &request->strategy[0];
   Expected<report::JobRun> ran = service.Optimize(*job, strategy, request->job, request->quiet);
   if (Outcome* outcome = std::get_if<Outcome>(&ran)) return *outcome;
-  const report::JobRun& run = std::get<report::JobRun>(ran);
+  std::vector<report::JobRun> runs;
+  runs.push_back(std::get<report::JobRun>(std::move(ran)));
 
   std::optional<GcodeRewrite> rewrite;
   if (job->gcode != nullptr && (!target->empty() || request->views.any())) {
-    Expected<GcodeRewrite> made = Rewritten(service, *request, *job, run, ParseGcodeOptions(flags));
+    Expected<GcodeRewrite> made =
+        Rewritten(service, *request, *job, runs, ParseGcodeOptions(flags));
     if (Outcome* outcome = std::get_if<Outcome>(&made)) return *outcome;
     rewrite = std::get<GcodeRewrite>(std::move(made));
   }
   if (!request->json.empty()) {
-    const absl::Status status = WriteWholeFile(request->json, report::RoutesJson(*job, run));
+    const absl::Status status = WriteWholeFile(request->json, report::RoutesJson(*job, runs[0]));
     if (!status.ok()) return InputFault(status);
   }
   if (request->views.any()) {
-    const Outcome outcome = ShowViews(service, *request, *job, run, rewrite ? &*rewrite : nullptr);
+    const Outcome outcome = ShowViews(service, *request, *job, runs, rewrite ? &*rewrite : nullptr);
     if (outcome.code != kDone) return outcome;
   }
-  std::string summary = report::OptimizeSummary(*job, run);
+  std::string summary = report::OptimizeSummary(*job, runs[0]);
   if (!target->empty()) {
     summary += GcodeSummary(*rewrite);
     const absl::Status status = WriteGcode(*rewrite, *job, *target);

@@ -118,7 +118,8 @@ Scene JobScene(const InputJob& job, const report::JobRun& given,
   return scene;
 }
 
-absl::StatusOr<Scene> GcodeScene(const InputJob& job, const NamedRun& run,
+absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
+                                 const std::vector<report::JobRun>& runs,
                                  const GcodeRewrite& rewrite) {
   Scene scene = EmptyScene(job);
   scene.seconds_name = "print time";
@@ -133,23 +134,27 @@ absl::StatusOr<Scene> GcodeScene(const InputJob& job, const NamedRun& run,
   given.label = "as given";
   given.total = FiguresOf(rewrite.before);
   given.layers = LayerFigures(*job.gcode, job.first_layer, job.layers.size());
-  RouteNotes after = NotesWithoutFigures(run);
+  RouteNotes after = NotesWithoutFigures({label, &runs[0]});
   // It is that of the routes found; layers may have kept their order, and links are not straight.
   after.gap.reset();
   after.total = FiguresOf(rewrite.after);
   after.layers = LayerFigures(*printed, job.first_layer, job.layers.size());
   scene.routes = {std::move(given), std::move(after)};
 
-  scene.layer = [&job, result = &run.run->result, printed = std::move(printed)](size_t i) {
+  scene.layer = [&job, &runs, printed = std::move(printed)](size_t i) {
     DrawnLayer layer;
     layer.paths = PathsOf(job, i);
     const size_t in_file = job.first_layer + i;
     const std::vector<DrawnVisit> sliced = InOrder(layer.paths.size());
-    const std::vector<DrawnVisit> found =
-        RouteOf(VisitReader(job.layers[i]), result->layers[i]).visits;
+    // Each layer of the new file is in one of these orders.
+    std::vector<std::vector<DrawnVisit>> orders;
+    for (const report::JobRun& run : runs) {
+      orders.push_back(RouteOf(VisitReader(job.layers[i]), run.result.layers[i]).visits);
+    }
+    orders.push_back(sliced);
     const SlicedPaths paths = {layer.paths, LengthsOf(*job.gcode, in_file)};
     layer.routes.push_back(PrintedRoute(*job.gcode, in_file, paths, {sliced}));
-    layer.routes.push_back(PrintedRoute(*printed, in_file, paths, {found, sliced}));
+    layer.routes.push_back(PrintedRoute(*printed, in_file, paths, orders));
     return layer;
   };
   return scene;

@@ -24,11 +24,11 @@ double LengthOf(const std::vector<DrawnMove>& moves) {
   return sum;
 }
 
-// A run of the strategy ni2opt by the service.
-report::JobRun RunOf(const InputJob& job) {
+// A run by the service.
+report::JobRun RunOf(const InputJob& job, const std::string& strategy) {
   v1::JobOptions options = job.options;
   options.clear_strategy();
-  options.mutable_strategy()->set_name("ni2opt");
+  options.mutable_strategy()->set_name(strategy);
   const auto service = EmbeddedService::Start(2);
   EXPECT_TRUE(service.ok());
   report::JobRun run;
@@ -45,16 +45,20 @@ TEST_P(DrawnGcode, TravelsAsFarAsTheFileIsMeasuredTo) {
   const absl::StatusOr<InputJob> job =
       ReadGcodeJob(gcode::testing::TextOf(GetParam()), "part.gcode", options);
   ASSERT_TRUE(job.ok()) << job.status();
-  const report::JobRun run = RunOf(*job);
-  std::vector<gcode::LayerOrder> orders;
-  for (size_t i = 0; i < job->layers.size(); ++i) {
-    orders.push_back(OrderOf(*job->gcode, i, run.result.layers[i]));
+  // The writer takes some layers from the one and some from the other.
+  const std::vector<report::JobRun> runs = {RunOf(*job, "greedy"), RunOf(*job, "ni2opt")};
+  std::vector<gcode::FileOrder> tries;
+  for (const report::JobRun& run : runs) {
+    gcode::FileOrder& orders = tries.emplace_back();
+    for (size_t i = 0; i < job->layers.size(); ++i) {
+      orders.push_back(OrderOf(*job->gcode, i, run.result.layers[i]));
+    }
   }
   const absl::StatusOr<GcodeRewrite> rewrite =
-      RewriteGcode(*job->gcode, {orders}, {options.policy, "1.0", 2});
+      RewriteGcode(*job->gcode, tries, {options.policy, "1.0", 2});
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
 
-  const absl::StatusOr<Scene> scene = GcodeScene(*job, {"ni2opt", &run}, *rewrite);
+  const absl::StatusOr<Scene> scene = GcodeScene(*job, "ni2opt", runs, *rewrite);
   ASSERT_TRUE(scene.ok()) << scene.status();
 
   ASSERT_EQ(scene->layers(), job->layers.size());
