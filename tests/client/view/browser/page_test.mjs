@@ -21,6 +21,7 @@ after(async () => { await browser.close(); });
 async function on(name, options, body) {
   const context = await browser.newContext({ colorScheme: "light", ...options });
   const page = await context.newPage();
+  page.setDefaultTimeout(90000); // of a busy machine
   const complaints = [];
   const url = pathToFileURL(join(REPORTS, name)).href;
   page.on("console", (message) => complaints.push(message.text()));
@@ -170,7 +171,7 @@ test("the head runs along the route, pauses, and ends where it began to be watch
     assert.equal(await pixels(page, "after"), paused);
     await page.locator("#speed").selectOption("4");
     await page.locator("#play").click();
-    await page.waitForSelector("html:not([data-playing])", { timeout: 20000 });
+    await page.waitForSelector("html:not([data-playing])", { timeout: 60000 });
     await settled(page);
     assert.equal(await pixels(page, "after"), rest);
   }));
@@ -256,6 +257,7 @@ test("from a web server it asks for nothing but itself", async () => {
   const context = await browser.newContext(DESK);
   try {
     const page = await context.newPage();
+    page.setDefaultTimeout(90000); // of a busy machine
     await page.goto(`http://127.0.0.1:${server.address().port}/report`);
     await page.waitForSelector("html[data-layer]", { state: "attached" });
     await page.waitForTimeout(300);
@@ -299,6 +301,7 @@ test("1,000 layers of 1,000 paths are on view in 2 s and take less than 30 MB", 
   for (let i = 0; i < 5; ++i) {
     const context = await browser.newContext(DESK);
     const page = await context.newPage();
+    page.setDefaultTimeout(90000); // of a busy machine
     const began = performance.now();
     await page.goto(pathToFileURL(file).href, { waitUntil: "commit" });
     await page.waitForSelector("html[data-layer]", { state: "attached" });
