@@ -111,9 +111,16 @@ class Job : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
   }
 
   void OnDone(const grpc::Status& status) override {
-    run_.End(position_, absl::FromChrono(Clock::now() - meant_), status, answers_left_ == 0,
-             counted_);
+    Run& run = run_;
+    const size_t position = position_;
+    const absl::Duration latency = absl::FromChrono(Clock::now() - meant_);
+    const bool complete = answers_left_ == 0;
+    const bool counted = counted_;
+    // Before the job is counted: the context holds the channel, and once the last job is counted
+    // the caller may let its channel go. The last owner would then be this thread, one of the
+    // channel's own, and gRPC aborts when it closes its queue from there.
     delete this;
+    run.End(position, latency, status, complete, counted);
   }
 
  private:

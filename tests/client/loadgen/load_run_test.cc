@@ -155,6 +155,15 @@ TEST_F(LoadRun, ClosedLoopKeepsSoManyJobsInFlight) {
   EXPECT_EQ(result.ok[0].jobs, result.sent[0]);
 }
 
+// The caller's channel is then the last one: no job may still hold it on one of gRPC's threads.
+TEST_F(LoadRun, TheChannelMayGoAsSoonAsTheRunEnds) {
+  LoadOptions options = At(0);
+  options.in_flight = 4;
+  options.duration = absl::Milliseconds(1);
+
+  for (int i = 0; i < 500; ++i) EXPECT_GT(Run(options).ok[0].jobs, 0u);
+}
+
 TEST_F(LoadRun, TheTokenGoesWithEachJob) {
   LoadOptions options = At(20);
   options.token = "secret";
