@@ -20,6 +20,7 @@
 #include "client/api/optimizer_client.h"
 #include "tests/server/server_process.h"
 #include "tests/server/service_fixture.h"
+#include "tests/support/scratch_folder.h"
 
 namespace traverse::testing {
 namespace {
@@ -97,22 +98,17 @@ TEST(FullDisk, CostsTheLogAndNoJob) {
 class ShiftedServer {
  public:
   ShiftedServer() {
-    char path[] = "/tmp/traverse_clock_XXXXXX";
-    const int fd = mkstemp(path);
-    path_ = path;
-    close(fd);
     SetClockBy(0);
     setenv("LD_PRELOAD", TRAVERSE_CLOCK_SHIM, 1);
-    setenv("CLOCK_SHIM_FILE", path, 1);
+    setenv("CLOCK_SHIM_FILE", path_.c_str(), 1);
     server_ = std::make_unique<ServerProcess>(
         std::vector<std::string>{"--log_file=/dev/null", "--idle_timeout=5s"});
     unsetenv("LD_PRELOAD");
     unsetenv("CLOCK_SHIM_FILE");
   }
-  ~ShiftedServer() { unlink(path_.c_str()); }
 
   void SetClockBy(int64_t seconds) {
-    const int fd = open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+    const int fd = open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
     EXPECT_EQ(pwrite(fd, &seconds, sizeof(seconds), 0), static_cast<ssize_t>(sizeof(seconds)));
     close(fd);
   }
@@ -120,7 +116,8 @@ class ShiftedServer {
   ServerProcess& server() { return *server_; }
 
  private:
-  std::string path_;
+  const ScratchFolder folder_;
+  const std::string path_ = folder_.Path("clock");
   std::unique_ptr<ServerProcess> server_;
 };
 

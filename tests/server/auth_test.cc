@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
@@ -14,6 +13,7 @@
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
+#include "tests/support/scratch_folder.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {
@@ -32,11 +32,7 @@ std::string Line(const std::string& name, const std::string& token) {
 // A file of the test's own, removed with it.
 class TokenFile {
  public:
-  explicit TokenFile(const std::string& text)
-      : path_(absl::StrCat("/tmp/traverse_tokens_", getpid())) {
-    Write(text);
-  }
-  ~TokenFile() { std::remove(path_.c_str()); }
+  explicit TokenFile(const std::string& text) { Write(text); }
 
   // Replaces it at once, as a careful operator does.
   void Write(const std::string& text) const {
@@ -46,7 +42,8 @@ class TokenFile {
   const std::string& path() const { return path_; }
 
  private:
-  const std::string path_;
+  const testing::ScratchFolder folder_;
+  const std::string path_ = folder_.Path("tokens");
 };
 
 CallCredentials Bearer(const std::string& token) {

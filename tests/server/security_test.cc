@@ -4,7 +4,6 @@
 #include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -18,6 +17,7 @@
 #include "server/credentials.h"
 #include "tests/server/server_process.h"
 #include "tests/server/service_fixture.h"
+#include "tests/support/scratch_folder.h"
 
 namespace traverse::testing {
 namespace {
@@ -34,13 +34,10 @@ std::string ReadAll(const std::string& path) {
 class Certificates {
  public:
   Certificates() {
-    char path[] = "/tmp/traverse_tls_XXXXXX";
-    folder_ = mkdtemp(path);
     MakeAuthority("ca");
     MakeLeaf("server", "ca");
     MakeLeaf("client", "ca");
   }
-  ~Certificates() { std::filesystem::remove_all(folder_); }
 
   void MakeAuthority(const std::string& name) const {
     Run(absl::StrCat("openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2",
@@ -55,14 +52,14 @@ class Certificates {
                      Path(name + ".csr"), " -CA ", Path(authority + ".pem"), " -CAkey ",
                      Path(authority + ".key"), " -out ", Path(name + ".pem")));
   }
-  std::string Path(const std::string& name) const { return folder_ + "/" + name; }
+  std::string Path(const std::string& name) const { return folder_.Path(name); }
 
  private:
   static void Run(const std::string& command) {
     if (std::system((command + " >/dev/null 2>&1").c_str()) != 0) std::abort();
   }
 
-  std::string folder_;
+  ScratchFolder folder_;
 };
 
 // The code of ListStrategies over a new connection. Empty `ca`: plaintext.
@@ -184,7 +181,8 @@ TEST(Security, BadCertificatesAreFoundAtTheStart) {
 }
 
 TEST(Security, TokensAreAskedForAndNeverLogged) {
-  const std::string path = absl::StrCat("/tmp/traverse_tokens_binary_", getpid());
+  const ScratchFolder folder;
+  const std::string path = folder.Path("tokens");
   // The SHA-256 of "open sesame".
   std::ofstream(path) << "farm 41ef4bb0b23661e66301aac36066912dac037827b4ae63a7b1165a5aa93ed4eb\n";
   ServerProcess server({"--token_file=" + path});
@@ -205,7 +203,6 @@ TEST(Security, TokensAreAskedForAndNeverLogged) {
   }
   server.process().Signal(SIGTERM);
   EXPECT_EQ(server.process().Wait(), 0);
-  std::remove(path.c_str());
 
   EXPECT_THAT(server.process().Errors(), HasSubstr("\"caller\":\"token:farm\""));
   EXPECT_THAT(server.process().Errors(), Not(HasSubstr("sesame")));
@@ -213,7 +210,8 @@ TEST(Security, TokensAreAskedForAndNeverLogged) {
 }
 
 TEST(Configuration, FileSetsFlagsAndTheCommandLineWins) {
-  const std::string path = absl::StrCat("/tmp/traverse_config_", getpid());
+  const ScratchFolder folder;
+  const std::string path = folder.Path("config");
   std::ofstream(path) << "# of the farm\nthreads = 3\nmax_jobs=7\n\n";
   {
     ServerProcess server({"--config=" + path, "--threads=1"});
@@ -227,7 +225,6 @@ TEST(Configuration, FileSetsFlagsAndTheCommandLineWins) {
   ChildProcess bad({TRAVERSE_SERVER_BINARY, "--config", path});
   EXPECT_EQ(bad.Wait(), 2);
   EXPECT_EQ(bad.Errors(), "traverse-server: " + path + ":2: no flag \"thread\"\n");
-  std::remove(path.c_str());
 }
 
 TEST(Configuration, ValuesOutOfRangeAreNamed) {

@@ -14,9 +14,7 @@
 namespace traverse::testing {
 
 ChildProcess::ChildProcess(const std::vector<std::string>& arguments) {
-  char path[] = "/tmp/traverse_test_stderr_XXXXXX";
-  const int errors = mkstemp(path);
-  stderr_path_ = path;
+  const int errors = open(stderr_path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
   int pipe_ends[2];
   if (errors < 0 || pipe2(pipe_ends, O_CLOEXEC) != 0) std::abort();
   stdout_ = pipe_ends[0];
@@ -43,7 +41,6 @@ ChildProcess::~ChildProcess() {
     Wait();
   }
   close(stdout_);
-  unlink(stderr_path_.c_str());
 }
 
 std::string ChildProcess::ReadLine() {

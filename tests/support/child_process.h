@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/scratch_folder.h"
+
 namespace traverse::testing {
 
 // Runs from construction to its end; killed by the destructor if it still runs. Its stdout is read
@@ -41,7 +43,8 @@ class ChildProcess {
  private:
   pid_t pid_ = -1;
   int stdout_ = -1;
-  std::string stderr_path_;
+  const ScratchFolder scratch_;
+  const std::string stderr_path_ = scratch_.Path("stderr");
 };
 
 }  // namespace traverse::testing

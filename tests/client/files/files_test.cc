@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <lzma.h>
 #include <sys/stat.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include "client/files/decompress.h"
 #include "client/files/read_file.h"
 #include "client/files/write_file.h"
+#include "tests/support/scratch_folder.h"
 
 namespace traverse {
 namespace {
@@ -51,10 +51,7 @@ std::string Xzipped(const std::string& text) {
 
 class Files : public ::testing::Test {
  protected:
-  Files() { fs::create_directories(folder_); }
-  ~Files() override { fs::remove_all(folder_); }
-
-  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string Path(const std::string& name) const { return scratch_.Path(name); }
   void Put(const std::string& name, const std::string& bytes) const {
     std::ofstream(Path(name), std::ios::binary) << bytes;
   }
@@ -63,8 +60,8 @@ class Files : public ::testing::Test {
     return std::string(std::istreambuf_iterator<char>(file), {});
   }
 
-  const fs::path folder_ =
-      fs::temp_directory_path() / ("traverse_files_test." + std::to_string(getpid()));
+  const testing::ScratchFolder scratch_;
+  const fs::path folder_ = scratch_.path();
 };
 
 class Compressed : public ::testing::TestWithParam<std::string (*)(const std::string&)> {};
