@@ -7,11 +7,10 @@
 #include "absl/strings/str_format.h"
 #include "absl/time/time.h"
 #include "client/cli/command.h"
-#include "client/cli/job_flags.h"
+#include "client/cli/run_flags.h"
 #include "client/cli/service.h"
 #include "client/cli/strategy_spec.h"
 #include "client/cli/terminal.h"
-#include "client/cli/view_flags.h"
 #include "client/files/read_file.h"
 #include "client/files/write_file.h"
 #include "client/formats/read_input.h"
@@ -29,20 +28,16 @@ constexpr uint64_t kMaxRepeats = 1000;
 constexpr absl::Duration kDefaultTimeLimit = absl::Seconds(5);
 constexpr absl::Duration kDefaultLayerLimit = absl::Milliseconds(500);
 
-struct Request {
-  JobFlags job;
+struct Request : RunFlags {
   std::vector<StrategySpec> strategies;  // empty: all that the service has
   uint64_t repeats = 1;
-  std::string json;
-  ViewFlags views;
-  bool quiet = false;
 };
 
 absl::StatusOr<Request> ParseRequest(const Flags& flags) {
+  auto run = ParseRunFlags(flags);
+  if (!run.ok()) return run.status();
   Request request;
-  auto job = ParseJobFlags(flags);
-  if (!job.ok()) return job.status();
-  request.job = *std::move(job);
+  static_cast<RunFlags&>(request) = *std::move(run);
   if (!flags.Has("deadline") && !flags.Has("strategies")) {
     request.job.time_limit = kDefaultTimeLimit;
     // Or the first layers would use it up, and the others come back in the order given.
@@ -56,11 +51,6 @@ absl::StatusOr<Request> ParseRequest(const Flags& flags) {
   const auto repeats = flags.Integer("repeat", 1, kMaxRepeats);
   if (!repeats.ok()) return repeats.status();
   request.repeats = repeats->value_or(1);
-  request.json = flags.Text("json");
-  auto views = ParseViewFlags(flags);
-  if (!views.ok()) return views.status();
-  request.views = *std::move(views);
-  request.quiet = flags.Switch("quiet");
   return request;
 }
 
@@ -159,21 +149,11 @@ Command CompareCommand() {
   command.name = "compare";
   command.operands = {"INPUT"};
   command.summary = "Sets strategies side by side on one job.";
-  command.flags = {
+  command.flags = WithRunFlagTable({
       {"strategies", "NAME,...", "or NAME:OPTION=VALUE (default: all, 5s each)"},
       {"repeat", "N", "runs of each, seed after seed; means are shown"},
-      {"json",
-       "FILE",
-       "writes all routes; - is standard output",
-       {},
-       false,
-       "routes; a page to look at"},
-      {"report", "FILE.html", "writes a page to look at, all strategies"},
       {"quiet", "", "no progress"},
-  };
-  for (auto table : {ViewFlagTable(), JobFlagTable(), ServiceFlagTable()}) {
-    command.flags.insert(command.flags.end(), table.begin(), table.end());
-  }
+  });
   command.example = "traverse compare part.damat --layers=1-5 --strategies=greedy,ni2opt";
   command.run = RunCompare;
   return command;

@@ -6,11 +6,10 @@
 #include "absl/strings/str_format.h"
 #include "client/cli/command.h"
 #include "client/cli/gcode_output.h"
-#include "client/cli/job_flags.h"
+#include "client/cli/run_flags.h"
 #include "client/cli/service.h"
 #include "client/cli/strategy_spec.h"
 #include "client/cli/terminal.h"
-#include "client/cli/view_flags.h"
 #include "client/files/read_file.h"
 #include "client/files/write_file.h"
 #include "client/formats/detect.h"
@@ -23,30 +22,21 @@ namespace traverse::cli {
 namespace {
 
 // What the command line asks for; checked before the file is read.
-struct Request {
-  JobFlags job;
+struct Request : RunFlags {
   std::vector<StrategySpec> strategy;  // one or, for the service's default, none
-  std::string json;                    // empty: none
-  ViewFlags views;
-  bool quiet = false;
 };
 
 absl::StatusOr<Request> ParseRequest(const Flags& flags) {
+  auto run = ParseRunFlags(flags);
+  if (!run.ok()) return run.status();
   Request request;
-  auto job = ParseJobFlags(flags);
-  if (!job.ok()) return job.status();
-  request.job = *std::move(job);
+  static_cast<RunFlags&>(request) = *std::move(run);
   if (flags.Has("strategy")) {
     auto specs = ParseStrategySpecs(flags.Text("strategy"));
     if (!specs.ok()) return specs.status();
     if (specs->size() > 1) return absl::InvalidArgumentError("--strategy takes one strategy");
     request.strategy = *std::move(specs);
   }
-  request.json = flags.Text("json");
-  auto views = ParseViewFlags(flags);
-  if (!views.ok()) return views.status();
-  request.views = *std::move(views);
-  request.quiet = flags.Switch("quiet");
   return request;
 }
 
@@ -168,21 +158,11 @@ Command OptimizeCommand() {
   command.name = "optimize";
   command.operands = {"INPUT"};
   command.summary = "Shortens the travel of a job.";
-  command.flags = {
+  command.flags = WithRunFlagTable({
       {"o", "OUTPUT", "G-code (default: INPUT; with --json none)"},
       {"strategy", "NAME", "see `traverse strategies`; or NAME:OPTION=VALUE"},
-      {"json",
-       "FILE",
-       "writes the routes; - is standard output",
-       {},
-       false,
-       "routes; a page to look at"},
-      {"report", "FILE.html", "writes a page to look at, before and after"},
       {"quiet", "", "no progress, no summary"},
-  };
-  for (auto table : {ViewFlagTable(), JobFlagTable(), ServiceFlagTable()}) {
-    command.flags.insert(command.flags.end(), table.begin(), table.end());
-  }
+  });
   command.example = "traverse optimize part.gcode -o shorter.gcode --policy=balanced";
   command.run = RunOptimize;
   return command;

@@ -7,6 +7,7 @@
 
 #include "client/formats/read_input.h"
 #include "client/view/job_scene.h"
+#include "tests/client/api/fake_service.h"
 #include "tests/support/golden.h"
 
 namespace traverse::view {
@@ -74,22 +75,8 @@ TEST(JobScene, NamesTheFeaturesOfIslandsAndReadsVisits) {
   InputJob job = *ReadInput(testing::DataPath("damat/two_islands.damat"));
   job.layers.resize(1);
   report::JobRun run;
-  v1::LayerResult& result = run.result.layers.emplace_back();
-  const v1::Layer& layer = job.layers[0];
-  for (int i = 0; i < layer.islands_size(); ++i) {
-    for (int c = 0; c < layer.islands(i).contours_size(); ++c) {
-      v1::Visit& visit = *result.add_visits();
-      visit.set_island(static_cast<uint32_t>(i));
-      visit.set_contour(static_cast<uint32_t>(c));
-      visit.set_vertex(0);
-    }
-    for (int r = 0; r < layer.islands(i).rasters_size(); ++r) {
-      v1::Visit& visit = *result.add_visits();
-      visit.set_island(static_cast<uint32_t>(i));
-      visit.set_raster(static_cast<uint32_t>(r));
-      visit.set_reversed(r == 1);
-    }
-  }
+  v1::LayerResult& result = run.result.layers.emplace_back(testing::KeepOrder(job.layers[0], 0));
+  result.mutable_visits(3)->set_reversed(true);
   result.mutable_travel()->set_total_mm(12);
   run.result.summary.mutable_travel()->set_total_mm(12);
   run.result.summary.set_idle_seconds(6);
