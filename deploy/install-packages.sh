@@ -2,9 +2,8 @@
 # Installs the Debian 12 packages that are missing, and nothing if none is.
 #
 #   deploy/install-packages.sh build      what the build needs
-#   deploy/install-packages.sh test       that, and what the tests need
-#   deploy/install-packages.sh sanitize   that, and clang for the sanitizer and fuzz builds
-#   deploy/install-packages.sh browser    the browser for the tests of the report, which skip without it
+#   deploy/install-packages.sh test       that, and what the tests need, a browser and Node among it
+#   deploy/install-packages.sh sanitize   the build's, clang and what the tests in C++ need
 #   deploy/install-packages.sh deploy     the tests', and the daemons and tools of the tests of deploy/, but kubectl
 set -euo pipefail
 
@@ -14,23 +13,23 @@ build=(
   libabsl-dev prometheus-cpp-dev libspdlog-dev nlohmann-json3-dev
   zlib1g-dev liblzma-dev libcairo2-dev coinor-libcbc-dev coinor-libclp-dev
 )
+unit=(libgtest-dev libgmock-dev libbenchmark-dev xz-utils python3)
 test=(
-  libgtest-dev libgmock-dev libbenchmark-dev xz-utils openssl
-  python3 python3-grpcio python3-protobuf python3-yaml codespell zsh
+  "${unit[@]}"
+  python3-grpcio python3-protobuf python3-yaml codespell zsh curl iproute2
+  chromium fonts-dejavu-core
 )
-browser=(chromium fonts-dejavu-core)
 sanitize=(clang libclang-rt-14-dev llvm)
 deploy=(
   prometheus haproxy systemd mmdebstrap buildah podman podman-compose runc catatonit
   containernetworking-plugins golang-github-containernetworking-plugin-dnsname iptables
 )
-command -v npm >/dev/null || deploy+=(nodejs npm)  # another Node may be there already
+command -v npm >/dev/null || test+=(nodejs npm)  # another Node may be there already
 
 case "${1:-}" in
   build) wanted=("${build[@]}") ;;
   test) wanted=("${build[@]}" "${test[@]}") ;;
-  sanitize) wanted=("${build[@]}" "${test[@]}" "${sanitize[@]}") ;;
-  browser) wanted=("${browser[@]}") ;;
+  sanitize) wanted=("${build[@]}" "${unit[@]}" "${sanitize[@]}") ;;
   deploy) wanted=("${build[@]}" "${test[@]}" "${deploy[@]}") ;;
   *)
     echo "usage: $0 build|test|sanitize|deploy" >&2
