@@ -26,35 +26,59 @@ class Fingerprint {
 
 constexpr double kUnitsPerMm = 1e4;
 
+double Rounded(double length_mm) { return std::floor(length_mm * kUnitsPerMm + 0.5); }
+
 }  // namespace
 
 Point PlanOrigin(const Plan& plan) {
   return plan.paths.empty() || plan.paths[0].points.empty() ? Point{} : plan.paths[0].points[0];
 }
 
-uint64_t PlanFingerprint(const Plan& plan) {
-  Fingerprint print;
+PlanPrint PrintOf(const Plan& plan, const CostSpec& cost) {
+  Fingerprint make;
+  make.Add(static_cast<int>(cost.kind));
+  for (const double part :
+       {cost.speed_mm_s, cost.accel_mm_s2, cost.retraction_seconds, cost.retraction_threshold_mm}) {
+    make.Add(part);
+  }
+  Fingerprint place;
   const Point origin = PlanOrigin(plan);
   for (const Path& path : plan.paths) {
-    print.Add(static_cast<int>(path.kind) * 2 + (path.one_way ? 1 : 0));
-    print.Add(path.points.size());
+    make.Add(static_cast<int>(path.kind) * 2 + (path.one_way ? 1 : 0));
+    make.Add(path.points.size());
     for (const Point& point : path.points) {
-      print.Add(std::floor((point.x - origin.x) * kUnitsPerMm + 0.5));
-      print.Add(std::floor((point.y - origin.y) * kUnitsPerMm + 0.5));
+      make.Add(Rounded(point.x - origin.x));
+      make.Add(Rounded(point.y - origin.y));
+      place.Add(point.x);
+      place.Add(point.y);
     }
-    for (const int vertex : path.allowed) print.Add(vertex);
+    for (const int vertex : path.allowed) make.Add(vertex);
   }
   for (const PlanNode& node : plan.nodes) {
-    print.Add(static_cast<int>(node.kind));
-    print.Add(node.path);
-    print.Add(node.children.size());
-    for (const int child : node.children) print.Add(child);
+    make.Add(static_cast<int>(node.kind));
+    make.Add(node.path);
+    make.Add(node.children.size());
+    for (const int child : node.children) make.Add(child);
     for (const auto& [first, second] : node.before) {
-      print.Add(first);
-      print.Add(second);
+      make.Add(first);
+      make.Add(second);
     }
   }
-  return print.value();
+  place.Add(make.value());
+  return {make.value(), place.value()};
+}
+
+uint64_t KindOf(uint64_t make, Point origin, Point start, const std::optional<Point>& finish) {
+  Fingerprint kind;
+  kind.Add(make);
+  kind.Add(Rounded(start.x - origin.x));
+  kind.Add(Rounded(start.y - origin.y));
+  kind.Add(finish ? 1 : 0);
+  if (finish) {
+    kind.Add(Rounded(finish->x - origin.x));
+    kind.Add(Rounded(finish->y - origin.y));
+  }
+  return kind.value();
 }
 
 }  // namespace traverse

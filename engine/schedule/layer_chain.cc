@@ -67,6 +67,10 @@ void LayerChain::RunPrepare(const SlotPtr& slot) {
   std::lock_guard<std::mutex> lock(mutex_);
   preparing_ = false;
   ++next_to_prepare_;
+  if (strategy_->reuses_routes()) {
+    slot->result = std::make_shared<RouteToCome>();
+    slot->model = routes_.Enter(slot->print.make, slot->kind, slot->result);
+  }
   if (slot->model) {
     const double weight = BudgetSplit::Weight(slot->layer.plan.paths.size(), true);
     split_.Add(weight - slot->weight);
@@ -113,7 +117,11 @@ void LayerChain::RunAnchor(const SlotPtr& slot, Point start) {
   if (!cancel_.cancelled()) outbox_.Deliver(std::move(outcome));
   std::lock_guard<std::mutex> lock(mutex_);
   slot->end = end;
-  ends_to_learn_[slot->index] = {slot->fingerprint, RelativeTo(slot->origin, route_end)};
+  Lesson& lesson = lessons_[slot->index];
+  lesson.make = slot->print.make;
+  lesson.kind = KindOf(lesson.make, slot->origin, start, slot->finish);
+  lesson.end = RelativeTo(slot->origin, route_end);
+  if (slot->anchored) lesson.known = slot->anchored->at(lesson.kind);
   --pending_;
   DropAnchored();
   MaybeAnchor(slot->index + 1);
@@ -125,15 +133,16 @@ void LayerChain::RunAnchor(const SlotPtr& slot, Point start) {
 void LayerChain::MaybePrepare() {
   if (preparing_ || next_to_prepare_ == added_) return;
   const bool learns = next_to_prepare_ >= kLearnDelay;
-  if (learns && ends_to_learn_.count(next_to_prepare_ - kLearnDelay) == 0) return;
+  if (learns && lessons_.count(next_to_prepare_ - kLearnDelay) == 0) return;
   const bool is_last_known = next_to_prepare_ + 1 == added_;
   const bool cleaning_due = CleaningDueAfter(next_to_prepare_);
   if (cleaning_due && is_last_known && !closed_) return;
   SlotPtr slot = SlotAt(next_to_prepare_);
   if (cleaning_due && !is_last_known) slot->finish = spec_.cleaning->point;
   if (learns) {
-    const auto learned = ends_to_learn_.extract(next_to_prepare_ - kLearnDelay).mapped();
-    history_.Learn(learned.first, learned.second);
+    const Lesson lesson = lessons_.extract(next_to_prepare_ - kLearnDelay).mapped();
+    history_.Learn(lesson.make, lesson.kind, lesson.end);
+    if (lesson.known) routes_.Learn(lesson.make, lesson.kind, lesson.known);
   }
   preparing_ = true;
   Submit([this, slot] { RunPrepare(slot); });
@@ -151,14 +160,9 @@ void LayerChain::MaybeSolveFirst(const SlotPtr& slot) {
 // Gives the first solution to the layers that start from it.
 void LayerChain::HandOn(const Slot& slot) {
   if (!slot.result) return;
-  slot.result->route = slot.first.route;
-  slot.result->start = RelativeTo(slot.origin, slot.predicted_start);
-  slot.result->idle_repetitions = slot.idle_repetitions;
-  slot.result->origin = slot.origin;
-  slot.result->lower_bound = slot.first.lower_bound;
-  slot.result->bound_multipliers = slot.bound_multipliers;
-  slot.result->ready = true;
-  for (const uint64_t index : std::exchange(slot.result->waiting, {})) {
+  const LayerProblem problem = Problem(slot, slot.predicted_start);
+  for (const uint64_t index : RouteHistory::Complete(slot.result, Known(problem, slot, slot.first),
+                                                     slot.searched_in_vain)) {
     MaybeSolveFirst(SlotAt(index));
   }
 }

@@ -6,11 +6,12 @@
 //   prepare   in build order, cheap: the travel of the given order, and a prediction of where the
 //             layer will end: where an equal layer ended before, else where its greedy route ends
 //   solve     on any thread: the strategy, from the predicted start; where an equal layer came
-//             before, it may go on from that one's route (route_history.h)
+//             before, it may go on from that one's route, or take it over (route_history.h)
 //   second    quick strategies alone, on any thread: solve from where the first solution of the
 //             layer before ends, if that is elsewhere; mostly this is the true start
 //   anchor    in build order, cheap: the true start is known now; if it is yet another one, the
-//             strategy resumes its route from there; the route is validated and delivered
+//             route of an equal layer that began there is taken over, or the strategy resumes its
+//             route from there; the route is validated and delivered
 //
 // What a stage does depends on the job and the seed alone, never on timing, so the routes are the
 // same on any number of threads. Every stage of a layer is a task of its own: the executor can
@@ -26,6 +27,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 
 #include "engine/engine.h"
@@ -49,6 +51,9 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   int64_t pending() const override;
 
  private:
+  // The best routes of layers that were anchored, by kind.
+  using Anchored = std::unordered_map<uint64_t, KnownRoutePtr>;
+
   // One layer on its way. A stage owns its layer and works without the lock; hand-over is under it.
   struct Slot {
     uint64_t index = 0;
@@ -57,16 +62,22 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
 
     // Set by prepare.
     Point predicted_start;
-    uint64_t fingerprint = 0;
+    PlanPrint print;
     Point origin;
+    uint64_t kind = 0;  // with the predicted start
     std::optional<Point> finish;
     Route given_route;
     LayerOutcome outcome;  // what concerns the given order
 
     // Set by prepare, where routes are used again: the route to start from, null if there is
-    // none, and this layer's own, for others. What they hold is guarded by the lock.
+    // none, and this layer's own, for others. What they hold is guarded by the lock; it does not
+    // change once it is ready.
     RouteHistory::Entry model;
     RouteHistory::Entry result;
+
+    // Set by prepare: what is known of the layers before this one back to the last whose start was
+    // certain. Only anchor touches what it holds.
+    std::shared_ptr<Anchored> anchored;
 
     // What the layer may use of the job's time, once it has begun to be solved.
     double weight = 0;
@@ -74,7 +85,7 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
 
     // Set by solve and second.
     Solution first;
-    int idle_repetitions = 0;  // RouteToCome
+    bool searched_in_vain = false;  // RouteToCome
     BoundMultipliers bound_multipliers;
     std::optional<Point> second_start;
     Solution second;
@@ -101,10 +112,17 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   Point PredictEnd(const Slot& slot);
   void SolveFirst(Slot& slot) const;
   void ResumeModel(const LayerProblem& problem, Slot& slot, Budget& budget) const;
+  bool TakeOver(const KnownRoute& known, const LayerProblem& problem, const Slot& slot,
+                Solution& solution) const;
   void SolveSecond(Slot& slot) const;
   LayerOutcome Anchor(Slot& slot, Point start) const;
-  Solution SolveFromTrueStart(const LayerProblem& problem, const Slot& slot) const;
-  void KeepBestRoute(const LayerProblem& problem, const Slot& slot, Solution& solution) const;
+  Solution SolveFromTrueStart(const LayerProblem& problem, const Slot& slot,
+                              const KnownRoute* known) const;
+  void KeepBestRoute(const LayerProblem& problem, const Slot& slot, const KnownRoute* known,
+                     Solution& solution) const;
+  KnownRoutePtr Known(const LayerProblem& problem, const Slot& slot,
+                      const Solution& solution) const;
+  static const KnownRoute* FindAnchored(const Slot& slot, uint64_t kind);
   void Bound(const LayerProblem& problem, Slot& slot, Solution& solution) const;
 
   // Fixes what the layer may use of the job's time. As its main stage begins.
@@ -137,21 +155,26 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   // Where the head is after the layers prepared so far; only prepare touches these.
   Point given_at_;
   Point predicted_at_;
+  std::shared_ptr<Anchored> anchored_;
   EndHistory history_;
+
+  mutable std::mutex mutex_;  // guards what follows
+  BudgetSplit split_;
   RouteHistory routes_;
-
-  BudgetSplit split_;  // guarded by the lock
-
-  mutable std::mutex mutex_;
   std::deque<SlotPtr> slots_;  // [index - first_index_]
   uint64_t first_index_ = 0;
   uint64_t added_ = 0;
   uint64_t next_to_prepare_ = 0;
 
-  // Ends of anchored layers that prepare has not learned yet, by index: fingerprint and end. It
-  // learns the end of layer i - kLearnDelay right before it prepares layer i: what it knows must
-  // not depend on timing.
-  std::map<uint64_t, std::pair<uint64_t, Point>> ends_to_learn_;
+  // What prepare has not learned yet of anchored layers, by index. It learns of layer i -
+  // kLearnDelay right before it prepares layer i: what it knows must not depend on timing.
+  struct Lesson {
+    uint64_t make = 0;
+    uint64_t kind = 0;
+    Point end;            // from the plan's origin
+    KnownRoutePtr known;  // null where routes are not used again
+  };
+  std::map<uint64_t, Lesson> lessons_;
   int64_t pending_ = 0;
   int64_t tasks_ = 0;  // submitted and not yet ended
   bool preparing_ = false;

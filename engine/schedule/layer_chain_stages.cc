@@ -19,8 +19,9 @@ namespace {
 // start is known.
 constexpr double kSolveShare = 0.85;
 
-// Layers that were moved begin at the same place up to rounding.
-constexpr double kSamePlaceMm = 1e-6;
+// Layers of one kind may differ by so much in the length of a move: its ends are the same to 1e-4
+// mm in either direction, relative to origins that are the same to as much.
+constexpr double kSameMoveMm = 6e-4;
 
 double MoveMm(Point from, const std::optional<Point>& to) { return to ? Distance(from, *to) : 0; }
 
@@ -53,10 +54,13 @@ void LayerChain::Prepare(Slot& slot) {
   slot.predicted_start = predicted_at_;
 
   slot.origin = PlanOrigin(plan);
-  if (!strategy_->serial()) slot.fingerprint = PlanFingerprint(plan);
+  if (!strategy_->serial()) {
+    slot.print = PrintOf(plan, slot.cost);
+    slot.kind = KindOf(slot.print.make, slot.origin, slot.predicted_start, slot.finish);
+  }
   if (strategy_->reuses_routes()) {
-    slot.result = std::make_shared<RouteToCome>();
-    slot.model = routes_.Enter(slot.fingerprint, slot.result);
+    if (!anchored_ || FixedStart(slot)) anchored_ = std::make_shared<Anchored>();
+    slot.anchored = anchored_;
   }
 
   slot.given_route = GivenRoute(plan);
@@ -74,7 +78,7 @@ void LayerChain::Prepare(Slot& slot) {
 
 Point LayerChain::PredictEnd(const Slot& slot) {
   if (slot.finish) return *slot.finish;
-  if (const std::optional<Point> end = history_.EndOf(slot.fingerprint)) {
+  if (const std::optional<Point> end = history_.EndOf(slot.print.make, slot.kind)) {
     return {slot.origin.x + end->x, slot.origin.y + end->y};
   }
   if (Expired()) return slot.predicted_start;
@@ -94,8 +98,8 @@ void LayerChain::SolveFirst(Slot& slot) const {
   Budget budget = LayerBudget(slot, FixedStart(slot) ? 1 : kSolveShare);
   const LayerProblem problem = Problem(slot, slot.predicted_start);
   // Different layers that share a fingerprint are unheard of, not impossible.
-  const bool resumes = slot.model && ValidateRoute(slot.layer.plan, slot.model->route).ok();
-  if (resumes) slot.bound_multipliers = slot.model->bound_multipliers;
+  const bool resumes =
+      slot.model && ValidateRoute(slot.layer.plan, slot.model->best->solution.route).ok();
   if (resumes) {
     ResumeModel(problem, slot, budget);
   } else {
@@ -108,21 +112,56 @@ void LayerChain::SolveFirst(Slot& slot) const {
 // Goes on from the route of an equal layer, unless searching it has long been in vain.
 void LayerChain::ResumeModel(const LayerProblem& problem, Slot& slot, Budget& budget) const {
   const RouteToCome& model = *slot.model;
-  const Point start = RelativeTo(slot.origin, slot.predicted_start);
-  const bool same = Distance(start, model.start) < kSamePlaceMm && !slot.finish;
-  if (same && model.idle_repetitions >= RouteHistory::kMostIdle) {
-    slot.first = Solution{model.route, StopReason::kLocalOptimum, std::nullopt};
-    slot.idle_repetitions = model.idle_repetitions;
-    if (start == model.start && slot.origin == model.origin) {
-      slot.first.lower_bound = model.lower_bound;
-    }
+  slot.bound_multipliers = model.best->multipliers;
+  const bool same = model.kind == slot.kind;
+  if (same && model.idle >= RouteHistory::kMostIdle &&
+      TakeOver(*model.best, problem, slot, slot.first)) {
     return;
   }
-  slot.first = strategy_->Resume(problem, model.route, budget);
+  const Route& route = model.best->solution.route;
+  slot.first = strategy_->Resume(problem, route, budget);
   const bool gained =
-      RouteCost(problem, slot.first.route) < RouteCost(problem, model.route) - kCostTolerance;
-  const bool searched = same && !gained && slot.first.stop != StopReason::kTimeLimit;
-  slot.idle_repetitions = searched ? model.idle_repetitions + 1 : 0;
+      RouteCost(problem, slot.first.route) < RouteCost(problem, route) - kCostTolerance;
+  slot.searched_in_vain = same && !gained && slot.first.stop != StopReason::kTimeLimit;
+}
+
+// Answers with the route of a layer of the same kind, as long as what was said of it holds here.
+bool LayerChain::TakeOver(const KnownRoute& known, const LayerProblem& problem, const Slot& slot,
+                          Solution& solution) const {
+  const bool very_same = known.place == slot.print.place && known.start == problem.start &&
+                         known.finish == problem.finish;
+  if (!very_same && known.solution.stop != StopReason::kLocalOptimum) return false;
+  if (known.solution.stop == StopReason::kTimeLimit) return false;
+  solution.route = known.solution.route;
+  solution.stop = known.solution.stop;
+  solution.lower_bound = known.solution.lower_bound;
+  if (!solution.lower_bound || very_same) return true;
+  if (slot.cost.kind == CostSpec::Kind::kLength) {
+    *solution.lower_bound -= kSameMoveMm * static_cast<double>(solution.route.size() + 1);
+  } else {
+    solution.lower_bound.reset();
+  }
+  return true;
+}
+
+KnownRoutePtr LayerChain::Known(const LayerProblem& problem, const Slot& slot,
+                                const Solution& solution) const {
+  auto known = std::make_shared<KnownRoute>();
+  known->solution = solution;
+  known->cost = RouteCost(problem, solution.route);
+  known->place = slot.print.place;
+  known->start = problem.start;
+  known->finish = problem.finish;
+  known->multipliers = slot.bound_multipliers;
+  return known;
+}
+
+const KnownRoute* LayerChain::FindAnchored(const Slot& slot, uint64_t kind) {
+  if (!slot.anchored) return nullptr;
+  const auto found = slot.anchored->find(kind);
+  if (found == slot.anchored->end()) return nullptr;
+  return ValidateRoute(slot.layer.plan, found->second->solution.route).ok() ? found->second.get()
+                                                                            : nullptr;
 }
 
 void LayerChain::SolveSecond(Slot& slot) const {
@@ -145,22 +184,25 @@ std::optional<Point> LayerChain::FixedStart(const Slot& slot) const {
   return std::nullopt;
 }
 
-Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot& slot) const {
+Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot& slot,
+                                        const KnownRoute* known) const {
   if (strategy_->serial()) {
     Budget budget = LayerBudget(slot, 1);
     return strategy_->Solve(problem, budget);
   }
   if (slot.second_start && problem.start == *slot.second_start) return slot.second;
   if (problem.start == slot.predicted_start) return slot.first;
+  Solution solution;
+  if (known != nullptr && TakeOver(*known, problem, slot, solution)) return solution;
   if (Expired()) {
-    Solution solution = slot.first;
+    solution = slot.first;
     solution.stop = StopReason::kTimeLimit;
     solution.lower_bound.reset();  // it was for another start
     return solution;
   }
   Budget budget = LayerBudget(slot, 1 - kSolveShare);
-  Solution solution = strategy_->quick() ? strategy_->Solve(problem, budget)
-                                         : strategy_->Resume(problem, slot.first.route, budget);
+  solution = strategy_->quick() ? strategy_->Solve(problem, budget)
+                                : strategy_->Resume(problem, slot.first.route, budget);
   // What resuming does not tell of itself is as it was.
   solution.statistics.insert(slot.first.statistics.begin(), slot.first.statistics.end());
   // A search that the clock cut short stays so, whatever the polishing came to.
@@ -168,10 +210,11 @@ Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot&
   return solution;
 }
 
-// Other routes may be better from the true start: those found for another start, where the clock
-// cut the last search short; greedy's, which a resumed route need not beat; the order given.
+// Other routes may be better from the true start: an equal layer's from the same start; those found
+// for another start, where the clock cut the last search short; greedy's, which a resumed route
+// need not beat; the order given.
 void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
-                               Solution& solution) const {
+                               const KnownRoute* known, Solution& solution) const {
   double best = RouteCost(problem, solution.route);
   const auto offer = [&](const Route& route) {
     if (route.size() != solution.route.size()) return;  // there was no such search
@@ -180,7 +223,10 @@ void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
     best = cost;
     solution.route = route;
   };
-  if (!strategy_->serial() && !strategy_->quick() &&
+  if (known != nullptr) offer(known->solution.route);
+  const bool was_compared =
+      known != nullptr && known->place == slot.print.place && known->start == problem.start;
+  if (!strategy_->serial() && !strategy_->quick() && !was_compared &&
       (slot.model || problem.start != slot.predicted_start) && !Expired()) {
     Budget budget = LayerBudget(slot, 1 - kSolveShare);
     offer(predictor_->Solve(problem, budget).route);
@@ -206,15 +252,18 @@ void LayerChain::Bound(const LayerProblem& problem, Slot& slot, Solution& soluti
 LayerOutcome LayerChain::Anchor(Slot& slot, Point start) const {
   const Stopwatch watch;
   const LayerProblem problem = Problem(slot, start);
-  Solution solution = SolveFromTrueStart(problem, slot);
+  const uint64_t kind = KindOf(slot.print.make, slot.origin, start, slot.finish);
+  const KnownRoute* known = FindAnchored(slot, kind);
+  Solution solution = SolveFromTrueStart(problem, slot, known);
   LayerOutcome outcome = std::move(slot.outcome);
   if (absl::Status status = ValidateRoute(slot.layer.plan, solution.route); !status.ok()) {
     outcome.invalid_route = std::string(status.message());
     solution = Solution{slot.given_route, StopReason::kLocalOptimum, std::nullopt};
   } else {
-    KeepBestRoute(problem, slot, solution);
+    KeepBestRoute(problem, slot, known, solution);
   }
   if (!solution.lower_bound) Bound(problem, slot, solution);
+  if (slot.anchored) (*slot.anchored)[kind] = Known(problem, slot, solution);
   outcome.start = start;
   outcome.end = RouteEnd(slot.layer.plan, solution.route, start);
   outcome.travel = MeasureTravel(slot.layer.plan, start, solution.route);

@@ -219,7 +219,7 @@ TEST(LayerChain, EqualAndMovedLayersStartFromARouteFoundBefore) {
 
   EXPECT_EQ(sink.outcomes.size(), 50u);
   EXPECT_EQ(calls.solved, 2);
-  EXPECT_GE(calls.resumed, 48);
+  EXPECT_GT(calls.resumed, 0);
 }
 
 TEST(LayerChain, WhatWasSearchedInVainFromTheSameStartIsNotSearchedAgain) {
@@ -233,7 +233,57 @@ TEST(LayerChain, WhatWasSearchedInVainFromTheSameStartIsNotSearchedAgain) {
 
   EXPECT_EQ(sink.outcomes.size(), 100u);
   EXPECT_EQ(calls.solved, 2);
-  EXPECT_LT(calls.resumed, 80);
+  EXPECT_LT(calls.resumed, 40);
+}
+
+TEST(LayerChain, LayersOfAnotherCostHaveRoutesOfTheirOwn) {
+  Calls calls;
+  RecordingSink sink;
+  TestExecutor executor(4);
+  auto job = Job::Start(JobSpec(), std::make_unique<Counting>(calls), executor, sink);
+  CostSpec time;
+  time.kind = CostSpec::Kind::kTime;
+  for (int i = 0; i < 20; ++i) {
+    job->Add({RingLayer(5, 0), {}, i % 2 == 0 ? CostSpec() : time});
+  }
+  job->Close();
+  sink.Wait();
+
+  EXPECT_EQ(calls.solved, 2);
+}
+
+// Says that the given order is optimal, for every layer.
+class Proving : public Strategy {
+ public:
+  Solution Solve(const LayerProblem& problem, Budget&) const override {
+    const Route route = GivenRoute(*problem.plan);
+    return Solution{route, StopReason::kLocalOptimum, RouteCost(problem, route)};
+  }
+  bool reuses_routes() const override { return true; }
+};
+
+// Equal layers may differ by what is rounded away when they are compared.
+TEST(LayerChain, ABoundTakenOverHoldsForLayersThatDifferALittle) {
+  RecordingSink sink;
+  TestExecutor executor(1);
+  auto job = Job::Start(JobSpec(), std::make_unique<Proving>(), executor, sink);
+  for (int i = 0; i < 100; ++i) {
+    IslandPaths row;
+    for (int k = 0; k < 6; ++k) {
+      const double shrink_mm = k % 2 == 1 && i >= 50 ? 4e-5 : 0;
+      row.contours.push_back(MakeContour({{10.0 * k - shrink_mm, 0}}));
+    }
+    job->Add({SequentialPlan({row}), Point{0, 0}, std::nullopt});
+  }
+  job->Close();
+  sink.Wait();
+
+  ASSERT_EQ(sink.outcomes.size(), 100u);
+  for (const LayerOutcome& outcome : sink.outcomes) {
+    ASSERT_TRUE(outcome.lower_bound.has_value());
+    EXPECT_LE(*outcome.lower_bound, outcome.cost + 1e-9) << "layer " << outcome.index;
+    EXPECT_GT(*outcome.lower_bound, 0.99 * outcome.cost);
+  }
 }
 
 TEST(LayerChain, AQuickStrategySolvesEveryLayerFromItsTrueStart) {
@@ -249,15 +299,34 @@ TEST(LayerChain, AQuickStrategySolvesEveryLayerFromItsTrueStart) {
   }
 }
 
-TEST(EndHistory, GivesTheLastEndOfAnEqualLayer) {
+TEST(EndHistory, GivesTheLastEndOfAnEqualLayerAboveAllFromTheSameStart) {
+  const auto make = [](const Plan& plan) { return PrintOf(plan, {}).make; };
+  const uint64_t ring = make(RingLayer(3, 0.1));
+  const uint64_t other = make(RingLayer(3, 0.2));
   EndHistory history;
-  history.Learn(PlanFingerprint(RingLayer(3, 0.1)), {1, 1});
-  history.Learn(PlanFingerprint(RingLayer(3, 0.2)), {2, 2});
-  history.Learn(PlanFingerprint(RingLayer(3, 0.1)), {3, 3});
+  history.Learn(ring, 11, {1, 1});
+  history.Learn(other, 12, {2, 2});
+  history.Learn(ring, 13, {3, 3});
 
-  EXPECT_EQ(history.EndOf(PlanFingerprint(RingLayer(3, 0.1))), (Point{3, 3}));
-  EXPECT_EQ(history.EndOf(PlanFingerprint(RingLayer(4, 0.1))), std::nullopt);
-  EXPECT_EQ(history.EndOf(PlanFingerprint(Moved(RingLayer(3, 0.2), 5))), (Point{2, 2}));
+  EXPECT_EQ(history.EndOf(ring, 11), (Point{1, 1}));
+  EXPECT_EQ(history.EndOf(ring, 14), (Point{3, 3}));
+  EXPECT_EQ(history.EndOf(make(RingLayer(4, 0.1)), 14), std::nullopt);
+  EXPECT_EQ(history.EndOf(make(Moved(RingLayer(3, 0.2), 5)), 14), (Point{2, 2}));
+}
+
+TEST(PlanPrint, TellsLayersThatWereMovedFromOthers) {
+  const PlanPrint ring = PrintOf(RingLayer(3, 0.1), {});
+  const PlanPrint moved = PrintOf(Moved(RingLayer(3, 0.1), 5), {});
+
+  EXPECT_EQ(PrintOf(RingLayer(3, 0.1), {}).place, ring.place);
+  EXPECT_EQ(moved.make, ring.make);
+  CostSpec time;
+  time.kind = CostSpec::Kind::kTime;
+  EXPECT_NE(PrintOf(RingLayer(3, 0.1), time).make, ring.make);
+  EXPECT_NE(moved.place, ring.place);
+  EXPECT_EQ(KindOf(7, {0, 0}, {1, 2}, std::nullopt), KindOf(7, {5, 5}, {6, 7}, std::nullopt));
+  EXPECT_NE(KindOf(7, {0, 0}, {1, 2}, std::nullopt), KindOf(7, {0, 0}, {1, 2.1}, std::nullopt));
+  EXPECT_NE(KindOf(7, {0, 0}, {1, 2}, Point{0, 0}), KindOf(7, {0, 0}, {1, 2}, std::nullopt));
 }
 
 TEST(LayerChain, NoneReturnsTheGivenOrderAndItsTravel) {
