@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "client/gcode/print_meter.h"
+#include "client/gcode/arc.h"
 
 namespace traverse::gcode {
 namespace {

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "client/gcode/arc.h"
 
 namespace traverse::gcode {
 namespace {
@@ -15,43 +16,7 @@ double LengthXy(const Position& from, const Position& to) {
   return std::hypot(ToDouble(to.x - from.x), ToDouble(to.y - from.y));
 }
 
-// The center of the arc relative to its start, in the unit of the words.
-void CenterOffset(const Command& command, double dx, double dy, double& i, double& j) {
-  i = command.Has('I') ? ToDouble(command.Value('I')) : 0;
-  j = command.Has('J') ? ToDouble(command.Value('J')) : 0;
-  if (command.Has('I') || command.Has('J') || !command.Has('R')) return;
-  // R: the center lies on the chord's bisector, on the right of a G2's chord; negative R: the long
-  // way round.
-  const double radius = ToDouble(command.Value('R'));
-  const double chord = std::hypot(dx, dy);
-  if (!(chord > 0)) return;
-  const double height = std::sqrt(std::max(radius * radius - chord * chord / 4, 0.0));
-  const double side = (command.number == 2) == (radius > 0) ? 1 : -1;
-  i = dx / 2 + side * height * dy / chord;
-  j = dy / 2 - side * height * dx / chord;
-}
-
 }  // namespace
-
-double ArcLength(const Command& command, const Position& from, const Position& to, double unit_mm,
-                 double directions[4]) {
-  const double dx = ToDouble(to.x - from.x);
-  const double dy = ToDouble(to.y - from.y);
-  double i;
-  double j;
-  CenterOffset(command, dx, dy, i, j);
-  const double radius = std::hypot(i, j);
-  const double turn = command.number == 2 ? -1 : 1;
-  double angle = std::atan2(dy - j, dx - i) - std::atan2(-j, -i);
-  if (turn * angle <= 1e-9) angle += turn * 2 * std::numbers::pi;
-  if (directions != nullptr && radius > 0) {
-    directions[0] = turn * j / radius;
-    directions[1] = -turn * i / radius;
-    directions[2] = -turn * (dy - j) / radius;
-    directions[3] = turn * (dx - i) / radius;
-  }
-  return std::abs(angle) * radius * unit_mm;
-}
 
 void PrintMeter::Follow(const Step& step, const Interpreter& interpreter) {
   const MachineState& state = interpreter.state();

@@ -33,11 +33,6 @@ class PrintMeter {
   PrintTotals totals_;
 };
 
-// The length in mm of the arc that `command` (G2 or G3) makes between two positions, and optionally
-// the directions in which it begins and ends (bx, by, ex, ey). `unit_mm` is the length of one unit.
-double ArcLength(const Command& command, const Position& from, const Position& to, double unit_mm,
-                 double directions[4] = nullptr);
-
 }  // namespace traverse::gcode
 
 #endif  // TRAVERSE_CLIENT_GCODE_PRINT_METER_H_

@@ -8,6 +8,7 @@
 #include "client/gcode/layer_meter.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/reader.h"
+#include "client/view/drawn_arcs.h"
 #include "client/view/layer_paths.h"
 #include "client/view/printed_route.h"
 
@@ -155,6 +156,7 @@ absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
     const SlicedPaths paths = {layer.paths, LengthsOf(*job.gcode, in_file)};
     layer.routes.push_back(PrintedRoute(*job.gcode, in_file, paths, {sliced}));
     layer.routes.push_back(PrintedRoute(*printed, in_file, paths, orders));
+    DrawArcs(*job.gcode, in_file, layer);
     return layer;
   };
   return scene;
