@@ -19,11 +19,9 @@ class Api(unittest.TestCase):
     def setUpClass(cls):
         cls.scratch = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.scratch.name)
-        for path in (support.SOURCE / "tests/deploy/buf").iterdir():
-            shutil.copy(path, cls.folder)
-        support.install_node_packages(cls.folder)
-        # The package of this machine's processor.
-        cls.program = next(cls.folder.glob("node_modules/@bufbuild/buf-linux-*/bin/buf"))
+        cls.program, missing = support.node_packages.install_buf(cls.folder)
+        if missing:
+            raise unittest.SkipTest(missing)
 
     @classmethod
     def tearDownClass(cls):

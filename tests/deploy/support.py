@@ -18,6 +18,9 @@ import urllib.error
 import urllib.request
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.append(str(SOURCE))
+from tests.support import node_packages
+
 DEPLOY = SOURCE / "deploy"
 SKIPPED = 77
 
@@ -150,10 +153,9 @@ class Server(Process):
 
 def install_node_packages(folder):
     """`npm ci` in a copy of a folder with a lock file; skips if the packages cannot be had here."""
-    done = run("npm", "ci", "--silent", "--no-audit", "--no-fund", ok=False, cwd=folder)
-    if done.returncode != 0:
-        print(done.stdout + done.stderr)
-        raise unittest.SkipTest("npm could not install the locked packages")
+    missing = node_packages.install(folder)
+    if missing:
+        raise unittest.SkipTest(missing)
 
 
 def module(name, package):

@@ -6,13 +6,15 @@ import json
 import os
 import pathlib
 import re
-import shutil
 import socket
 import subprocess
 import sys
 import tempfile
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.append(str(SOURCE))
+from tests.support import node_packages
+
 BUILD = pathlib.Path(os.environ["TRAVERSE_BUILD"])
 SKIPPED = 77
 MARK = "== end of an example =="
@@ -21,19 +23,6 @@ MARK = "== end of an example =="
 def skip(reason):
     print("SKIPPED:", reason)
     sys.exit(SKIPPED)
-
-
-def install_buf(folder):
-    """The path of buf."""
-    for name in ("package.json", "package-lock.json"):
-        shutil.copy(SOURCE / "tests/deploy/buf" / name, folder)
-    if not shutil.which("npm"):
-        skip("no npm")
-    done = subprocess.run(["npm", "ci", "--silent", "--no-audit", "--no-fund"], cwd=folder, capture_output=True, text=True,
-                          check=False)
-    if done.returncode != 0:
-        skip("npm could not install the locked packages: " + done.stdout + done.stderr)
-    return next(folder.glob("node_modules/@bufbuild/buf-linux-*/bin/buf")).parent
 
 
 def squeezed(text):
@@ -57,7 +46,9 @@ def examples():
 def main():
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(scratch)
-        buf = install_buf(folder)
+        program, missing = node_packages.install_buf(folder)
+        if missing:
+            skip(missing)
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             port = str(probe.getsockname()[1])
@@ -67,7 +58,7 @@ def main():
         wait = f"until (echo > /dev/tcp/127.0.0.1/{port}) 2>/dev/null; do sleep 0.1; done\n"
         script = "trap 'code=$?; kill $(jobs -p) 2>/dev/null || true; wait; exit $code' EXIT\n" + wait.join(
             [found[0][0], "".join(f"{commands}\necho '{MARK}'\n" for commands, _ in found[1:])]).replace("50051", port)
-        environment = {**os.environ, "PATH": f"{buf}:{BUILD / 'server'}:{os.environ['PATH']}", "BUF_CACHE_DIR": scratch}
+        environment = {**os.environ, "PATH": f"{program.parent}:{BUILD / 'server'}:{os.environ['PATH']}", "BUF_CACHE_DIR": scratch}
         done = subprocess.run(["bash", "-euo", "pipefail", "-c", script], cwd=folder, capture_output=False, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False, timeout=120, env=environment)
         answers = done.stdout.split(MARK)

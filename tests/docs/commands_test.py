@@ -1,4 +1,4 @@
-"""The commands of README.md and client/README.md do what the guides say, word for word but for the ports.
+"""The commands of README.md, client/README.md and server/README.md do what the guides say, word for word but for the ports.
 
 Runs every block marked `sh` in a folder of its own, where `build/release` is the build under test. TRAVERSE_BUILD names it.
 """
@@ -74,11 +74,18 @@ class Commands(unittest.TestCase):
         for made in ("routes.json", "shorter.gcode", "part.json"):
             self.assertTrue((self.folder / made).exists(), made)
 
+    def test_of_the_servers_guide(self):
+        run = blocks("server/README.md")
+        self.assertEqual(len(run), 2)
+        for block in run:
+            with self.subTest(block):
+                self.assertIn("listening on port", self.run_block(block))
+
     def test_no_command_is_left_out(self):
-        for guide in ("README.md", "client/README.md"):
+        for guide in ("README.md", "client/README.md", "server/README.md"):
             text = (SOURCE / guide).read_text(encoding="utf-8")
             for block in re.findall(r"(?ms)^```\n(.*?)^```", text):
-                self.assertIsNone(re.search(r"(?m)^(build/release/|traverse )", block), block)
+                self.assertIsNone(re.search(r"(?m)^(build/release/|traverse |traverse-)", block), block)
 
     def test_of_the_pictures(self):
         subprocess.run([SOURCE / "client/pictures/draw.sh", self.folder], check=True, timeout=300,

@@ -5,7 +5,11 @@ import subprocess
 import sys
 import tempfile
 
-WEB = os.path.join(os.path.dirname(os.path.abspath(__file__)), *[os.pardir] * 3, "client", "view", "web")
+SOURCE = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), *[os.pardir] * 3))
+sys.path.append(SOURCE)
+from tests.support import node_packages
+
+WEB = os.path.join(SOURCE, "client", "view", "web")
 SKIPPED = 77
 
 
@@ -15,15 +19,12 @@ def skip(reason):
 
 
 def main():
-    if not shutil.which("node") or not shutil.which("npm"):
-        skip("no node and npm")
     with tempfile.TemporaryDirectory() as folder:
         work = os.path.join(folder, "web")
         shutil.copytree(WEB, work, ignore=shutil.ignore_patterns("node_modules", "bundle"))
-        installed = subprocess.run(["npm", "ci", "--silent", "--no-audit", "--no-fund"], cwd=work, capture_output=True,
-                                   text=True)
-        if installed.returncode != 0:
-            skip("npm could not install the locked packages: " + installed.stdout + installed.stderr)
+        missing = node_packages.install(work)
+        if missing:
+            skip(missing)
         made = os.path.join(folder, "page.html")
         subprocess.run(["node", "build.mjs", made], cwd=work, check=True)
         with open(made, "rb") as new, open(os.path.join(WEB, "bundle", "page.html"), "rb") as committed:

@@ -12,6 +12,9 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.normpath(os.path.join(HERE, *[os.pardir] * 4))
+sys.path.append(SOURCE)
+from tests.support import node_packages
+
 SAMPLES = os.path.join(SOURCE, "deploy", "samples")
 TRAVERSE = os.environ["TRAVERSE"]
 SKIPPED = 77
@@ -51,17 +54,14 @@ def write_large_part(path):
 
 
 def main():
-    if not shutil.which("node") or not shutil.which("npm"):
-        skip("no node and npm")
     chromium = browser()
     with tempfile.TemporaryDirectory() as folder:
         for name in ("package.json", "package-lock.json", "page_test.mjs"):
             shutil.copy(os.path.join(HERE, name), folder)
         shutil.copytree(os.path.join(SOURCE, "client", "view", "web", "src"), os.path.join(folder, "src"))
-        installed = subprocess.run(["npm", "ci", "--silent", "--no-audit", "--no-fund"], cwd=folder, capture_output=True,
-                                   text=True)
-        if installed.returncode != 0:
-            skip("npm could not install the locked packages: " + installed.stdout + installed.stderr)
+        missing = node_packages.install(folder)
+        if missing:
+            skip(missing)
 
         def report(command, part, page, *flags):
             subprocess.run([TRAVERSE, command, part, "--quiet", f"--report={os.path.join(folder, page)}", *flags],
