@@ -1,5 +1,7 @@
 #include "server/worker_pool.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <new>
 #include <utility>
@@ -7,13 +9,19 @@
 namespace traverse {
 
 // All members but the constants are guarded by the pool's mutex.
-class WorkerPool::QueueImpl : public Queue, public std::enable_shared_from_this<QueueImpl> {
+class WorkerPool::QueueImpl : public Queue,
+                              public FairOrder::Member,
+                              public std::enable_shared_from_this<QueueImpl> {
  public:
   QueueImpl(WorkerPool& pool, std::string caller, std::function<void()> on_no_memory)
       : pool(pool), caller(std::move(caller)), on_no_memory(std::move(on_no_memory)) {}
 
   void Submit(std::function<void()> task) override {
-    pool.Submit(shared_from_this(), std::move(task));
+    {
+      std::lock_guard<std::mutex> lock(pool.mutex_);
+      pool.Submit(shared_from_this(), std::move(task));
+    }
+    pool.work_.notify_one();
   }
 
   int threads() const override { return pool.threads(); }
@@ -30,11 +38,14 @@ class WorkerPool::QueueImpl : public Queue, public std::enable_shared_from_this<
 
   bool idle() const override {
     std::lock_guard<std::mutex> lock(pool.mutex_);
-    return tasks.empty() && running == 0;
+    return Idle();
   }
+
+  bool Idle() const { return tasks.empty() && running == 0; }
 
   WorkerPool& pool;
   const std::string caller;
+  Caller* entry = nullptr;  // of the caller; null while the queue is idle
   const std::function<void()> on_no_memory;
   std::deque<Task> tasks;
   int running = 0;
@@ -42,7 +53,13 @@ class WorkerPool::QueueImpl : public Queue, public std::enable_shared_from_this<
   QueueWait waited;
 };
 
-WorkerPool::WorkerPool(int threads) {
+double WorkerPool::ThreadCpuSeconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+WorkerPool::WorkerPool(int threads, WorkClock clock) : clock_(std::move(clock)) {
   for (int i = 0; i < std::max(1, threads); ++i) {
     threads_.emplace_back([this] { RunTasks(); });
   }
@@ -73,42 +90,54 @@ int64_t WorkerPool::waiting() const {
 }
 
 void WorkerPool::Submit(const std::shared_ptr<QueueImpl>& queue, std::function<void()> run) {
-  {
-    std::lock_guard<std::mutex> lock(mutex_);
-    queue->tasks.push_back({std::move(run), Clock::now()});
-    ++waiting_;
-    if (queue->tasks.size() == 1) {
-      auto caller = caller_by_name_.find(queue->caller);
-      if (caller == caller_by_name_.end()) {
-        callers_.push_back({queue->caller, {}});
-        caller = caller_by_name_.emplace(queue->caller, std::prev(callers_.end())).first;
-      }
-      caller->second->turns.push_back(queue);
-    }
-  }
-  work_.notify_one();
+  if (queue->Idle()) Enter(*queue);
+  queue->tasks.push_back({std::move(run), Clock::now(), queue});
+  ++waiting_;
+  if (queue->tasks.size() > 1) return;
+  Caller& caller = *queue->entry;
+  if (caller.turns.empty()) turns_.Wait(caller);
+  caller.turns.Wait(*queue);
+}
+
+void WorkerPool::Enter(QueueImpl& queue) {
+  const auto [caller, is_new] = callers_.try_emplace(queue.caller);
+  if (is_new) turns_.Enter(caller->second);
+  ++caller->second.queues;
+  queue.entry = &caller->second;
+  caller->second.turns.Enter(queue);
+}
+
+void WorkerPool::LeaveIfIdle(QueueImpl& queue) {
+  if (!queue.Idle()) return;
+  Caller& caller = *std::exchange(queue.entry, nullptr);
+  caller.turns.Leave(queue);
+  if (--caller.queues > 0) return;
+  turns_.Leave(caller);
+  callers_.erase(queue.caller);
 }
 
 WorkerPool::Task WorkerPool::TakeNext() {
-  const auto caller = callers_.begin();
-  const std::shared_ptr<QueueImpl> queue = std::move(caller->turns.front());
-  caller->turns.pop_front();
+  auto& caller = static_cast<Caller&>(turns_.TakeNext());
+  auto* const queue = static_cast<QueueImpl*>(&caller.turns.TakeNext());
   Task task = std::move(queue->tasks.front());
   queue->tasks.pop_front();
   --waiting_;
-  if (!queue->tasks.empty()) caller->turns.push_back(queue);
-  if (caller->turns.empty()) {
-    caller_by_name_.erase(caller->name);
-    callers_.erase(caller);
-  } else {
-    callers_.splice(callers_.end(), callers_, caller);
-  }
+  if (!queue->tasks.empty()) caller.turns.Wait(*queue);
+  if (!caller.turns.empty()) turns_.Wait(caller);
   const double waited = std::chrono::duration<double>(Clock::now() - task.submitted).count();
   if (queue->waited.tasks++ == 0) queue->waited.first_seconds = waited;
   queue->waited.longest_seconds = std::max(queue->waited.longest_seconds, waited);
   ++queue->running;
-  task.queue = queue;
   return task;
+}
+
+void WorkerPool::EndTask(const Task& task, double wall_seconds, double work_seconds) {
+  QueueImpl& queue = *task.queue;
+  --queue.running;
+  queue.busy += wall_seconds;
+  queue.entry->turns.Charge(queue, work_seconds);
+  turns_.Charge(*queue.entry, work_seconds);
+  LeaveIfIdle(queue);
 }
 
 void WorkerPool::RunTasks() {
@@ -120,6 +149,7 @@ void WorkerPool::RunTasks() {
     ++busy_;
     lock.unlock();
     const Clock::time_point began = Clock::now();
+    const double worked = clock_();
     try {
       task.run();
     } catch (const std::bad_alloc&) {
@@ -127,11 +157,11 @@ void WorkerPool::RunTasks() {
       if (task.queue->on_no_memory) task.queue->on_no_memory();
     }
     task.run = nullptr;  // what it holds is freed before the thread counts as idle
-    const double seconds = std::chrono::duration<double>(Clock::now() - began).count();
+    const double work_seconds = clock_() - worked;
+    const double wall_seconds = std::chrono::duration<double>(Clock::now() - began).count();
     lock.lock();
     --busy_;
-    --task.queue->running;
-    task.queue->busy += seconds;
+    EndTask(task, wall_seconds, work_seconds);
     lock.unlock();
     task.queue = nullptr;  // may be the last to hold it
     lock.lock();

@@ -1,8 +1,9 @@
 // The threads that do the work of all jobs: a fixed number, shared fairly.
 //
-// Fair means turn by turn on two levels: the callers that have work take turns, and so do the jobs
-// of one caller. A job of one layer therefore waits for the tasks under way and for one task of
-// every other caller at most, however long the queues of the others are.
+// Fair means by time of the threads, on two levels: the caller who had least is next, and of his
+// jobs the one that had least (fair_order.h). What comes new has a head start: a job of one layer
+// waits for a task under way to end and is then done at one go, however long the queues of the
+// others are.
 //
 //   WorkerPool pool(2);
 //   auto queue = pool.NewQueue("10.0.0.7");      // one for each job
@@ -18,7 +19,6 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "engine/base/executor.h"
+#include "server/fair_order.h"
 
 namespace traverse {
 
@@ -53,8 +54,12 @@ class WorkerPool {
     virtual bool idle() const = 0;
   };
 
-  // Starts `threads` threads, at least one.
-  explicit WorkerPool(int threads);
+  // The time in seconds that the calling thread has worked.
+  using WorkClock = std::function<double()>;
+  static double ThreadCpuSeconds();
+
+  // Starts `threads` threads, at least one. `clock` says what tasks are charged.
+  explicit WorkerPool(int threads, WorkClock clock = ThreadCpuSeconds);
 
   // Runs what is queued, then ends the threads. REQUIRES: no queue is used any more, except by
   // tasks of the pool.
@@ -88,20 +93,25 @@ class WorkerPool {
     std::shared_ptr<QueueImpl> queue = nullptr;  // from TakeNext on
   };
 
-  // The queues of one caller that have tasks, in the order of their turns.
-  struct Caller {
-    std::string name;
-    std::deque<std::shared_ptr<QueueImpl>> turns;
+  // A caller with queues whose tasks wait or run.
+  struct Caller : FairOrder::Member {
+    FairOrder turns;
+    int queues = 0;
   };
 
+  // REQUIRES, of all but RunTasks: mutex_ is held.
   void Submit(const std::shared_ptr<QueueImpl>& queue, std::function<void()> run);
-  Task TakeNext();  // REQUIRES: mutex_ is held and a task waits
+  void Enter(QueueImpl& queue);
+  void LeaveIfIdle(QueueImpl& queue);
+  Task TakeNext();  // REQUIRES: a task waits
+  void EndTask(const Task& task, double wall_seconds, double work_seconds);
   void RunTasks();
 
+  const WorkClock clock_;
   mutable std::mutex mutex_;
   std::condition_variable work_;
-  std::list<Caller> callers_;  // those that have tasks, in the order of their turns
-  std::map<std::string, std::list<Caller>::iterator> caller_by_name_;
+  std::map<std::string, Caller> callers_;  // those with tasks
+  FairOrder turns_;                        // of callers
   int64_t waiting_ = 0;
   int busy_ = 0;
   bool stopping_ = false;

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -57,6 +58,18 @@ class Order {
   std::string names_;
 };
 
+// The clock of a pool whose tasks take no time, or the time that they say.
+class WorkClock {
+ public:
+  WorkerPool::WorkClock clock() {
+    return [this] { return seconds_.load(); };
+  }
+  void Work(double seconds) { seconds_ = seconds_ + seconds; }
+
+ private:
+  std::atomic<double> seconds_{0};
+};
+
 TEST(WorkerPool, RunsEveryTaskOnce) {
   std::atomic<int> runs{0};
   {
@@ -91,8 +104,9 @@ TEST(WorkerPool, TasksMaySubmitTasks) {
 TEST(WorkerPool, JobsOfOneCallerTakeTurns) {
   Gate gate;
   Order order;
+  WorkClock clock;
   {
-    WorkerPool pool(1);
+    WorkerPool pool(1, clock.clock());
     const auto large = pool.NewQueue("a");
     const auto small = pool.NewQueue("a");
     Block(pool, gate);
@@ -107,8 +121,9 @@ TEST(WorkerPool, JobsOfOneCallerTakeTurns) {
 TEST(WorkerPool, CallersTakeTurnsHoweverManyJobsTheyHave) {
   Gate gate;
   Order order;
+  WorkClock clock;
   {
-    WorkerPool pool(1);
+    WorkerPool pool(1, clock.clock());
     std::vector<std::shared_ptr<WorkerPool::Queue>> many;
     for (int q = 0; q < 4; ++q) many.push_back(pool.NewQueue("many"));
     const auto one = pool.NewQueue("one");
@@ -121,6 +136,57 @@ TEST(WorkerPool, CallersTakeTurnsHoweverManyJobsTheyHave) {
     gate.Open();
   }
   EXPECT_EQ(order.names(), "m1m1m1mmmmm");
+}
+
+TEST(WorkerPool, CallersHaveEqualTimeHoweverLongTheirTasksTake) {
+  Gate gate;
+  Order order;
+  WorkClock clock;
+  {
+    WorkerPool pool(1, clock.clock());
+    const auto long_tasks = pool.NewQueue("a");
+    const auto short_tasks = pool.NewQueue("b");
+    Block(pool, gate);
+    for (int i = 0; i < 3; ++i) {
+      long_tasks->Submit([&, task = order.Task("L")] { task(), clock.Work(3); });
+    }
+    for (int i = 0; i < 6; ++i) {
+      short_tasks->Submit([&, task = order.Task("s")] { task(), clock.Work(1); });
+    }
+    gate.Open();
+  }
+  EXPECT_EQ(order.names(), "LsssLsssL");
+}
+
+TEST(WorkerPool, ASmallJobIsDoneAtOneGoBesideLargeOnes) {
+  Gate gate;
+  Order order;
+  WorkClock clock;
+  {
+    WorkerPool pool(1, clock.clock());
+    std::vector<std::shared_ptr<WorkerPool::Queue>> large;
+    for (int q = 0; q < 4; ++q) large.push_back(pool.NewQueue("a"));
+    const auto small = pool.NewQueue("a");
+    Block(pool, gate);
+    // While the large ones are at work a small job comes, each of whose tasks brings the next.
+    std::function<void(int)> stage = [&](int left) {
+      order.Task("s")();
+      clock.Work(0.001);
+      if (left > 0) small->Submit([&stage, left] { stage(left - 1); });
+    };
+    for (const auto& queue : large) {
+      for (int i = 0; i < 10; ++i) {
+        const bool small_comes = i == 5 && queue == large[0];
+        queue->Submit([&, small_comes, task = order.Task("L")] {
+          if (small_comes) small->Submit([&stage] { stage(3); });
+          task(), clock.Work(1);
+        });
+      }
+    }
+    gate.Open();
+    while (pool.waiting() > 0 || pool.busy() > 0) std::this_thread::yield();
+  }
+  EXPECT_NE(order.names().find("LssssL"), std::string::npos) << order.names();
 }
 
 TEST(WorkerPool, CountsWhatIsBusyAndWhatWaits) {
