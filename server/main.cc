@@ -10,6 +10,7 @@
 #include <cstring>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "server/server.h"
@@ -104,8 +105,10 @@ int Run() {
 }  // namespace traverse
 
 int main(int argc, char** argv) {
-  if (const absl::Status status = traverse::ReadFlags(argc, argv); !status.ok()) {
-    return traverse::Fail(status, traverse::kExitUsage);
-  }
-  return traverse::Run();
+  const absl::StatusOr<std::string> text =
+      traverse::ReadFlags(std::vector<std::string>(argv + 1, argv + argc));
+  if (!text.ok()) return traverse::Fail(text.status(), traverse::kExitUsage);
+  if (text->empty()) return traverse::Run();
+  std::fputs(text->c_str(), stdout);
+  return 0;
 }

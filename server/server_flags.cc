@@ -1,16 +1,14 @@
 #include "server/server_flags.h"
 
 #include <absl/flags/flag.h>
-#include <absl/flags/parse.h>
 #include <absl/flags/reflection.h>
-#include <absl/flags/usage.h>
-#include <absl/flags/usage_config.h>
 
 #include <climits>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/ascii.h"
@@ -44,6 +42,7 @@ ABSL_FLAG(int64_t, window_points, 500'000, "Most points of a job between solver 
 
 ABSL_FLAG(std::string, config, "",
           "File of lines name=value that set flags; the command line wins");
+ABSL_FLAG(std::string, flagfile, "", "The same, but read at its place on the command line");
 ABSL_FLAG(bool, insecure, false, "Allow plaintext on addresses that other machines can reach");
 ABSL_FLAG(std::string, tls_certificate, "", "Certificate chain in PEM; reloaded when it changes");
 ABSL_FLAG(std::string, tls_key, "", "Private key of --tls_certificate in PEM");
@@ -113,36 +112,55 @@ absl::Status CheckRanges() {
   return absl::OkStatus();
 }
 
-void DescribeFlags() {
-  absl::SetProgramUsageMessage(
-      "Finds short routes through the paths of a 3D print's layers; see server/README.md.\n"
-      "Usage: traverse-server [--listen=HOST:PORT] [--metrics_listen=HOST:PORT] [--threads=N] ...");
-  absl::FlagsUsageConfig config;
-  config.version_string = [] { return absl::StrCat("traverse-server ", kVersion, "\n"); };
-  config.contains_helpshort_flags = [](absl::string_view file) {
-    return absl::StrContains(file, "server/server_flags.cc");
-  };
-  config.contains_help_flags = config.contains_helpshort_flags;
-  absl::SetFlagsUsageConfig(config);
+// The flag of this name, or null. Only those above: libraries bring some too.
+absl::CommandLineFlag* FindFlag(const std::string& name) {
+  absl::CommandLineFlag* flag = absl::FindCommandLineFlag(name);
+  return flag != nullptr && absl::EndsWith(flag->Filename(), "server/server_flags.cc") ? flag
+                                                                                       : nullptr;
 }
 
-// The file of the last --config on the command line, or empty.
-std::string ConfigPath(int argc, char** argv) {
-  std::string path;
-  for (int i = 1; i < argc; ++i) {
-    std::string argument = argv[i];
-    if (absl::StartsWith(argument, "--")) argument.erase(0, 1);
-    if (absl::StartsWith(argument, "-config=")) path = argument.substr(std::strlen("-config="));
-    if (argument == "-config" && i + 1 < argc) path = argv[i + 1];
+// A flag with its value as written, and the line if it stands in a file.
+struct GivenFlag {
+  absl::CommandLineFlag* flag;
+  std::string value;
+  std::string place = {};
+};
+
+bool IsFile(const GivenFlag& flag) {
+  return flag.flag->Name() == "config" || flag.flag->Name() == "flagfile";
+}
+
+// The flag that `argument` states: `--name=value`, `--name value` with `next`, if that is not null;
+// for a bool `--name` and `--noname` too. Takes `next` by setting it to null.
+absl::StatusOr<GivenFlag> ReadFlag(const std::string& argument, const std::string*& next) {
+  const size_t begin = argument.find_first_not_of('-');
+  if (begin == 0 || begin > 2) {
+    return absl::InvalidArgumentError(absl::StrCat("unexpected argument \"", argument, "\""));
   }
-  return path;
+  const size_t equals = argument.find('=');
+  const std::string name = argument.substr(begin, equals - begin);
+  absl::CommandLineFlag* flag = FindFlag(name);
+  if (flag != nullptr && equals != std::string::npos) {
+    return GivenFlag{flag, argument.substr(equals + 1)};
+  }
+  if (flag != nullptr && flag->IsOfType<bool>()) return GivenFlag{flag, "true"};
+  if (flag != nullptr) {
+    if (next == nullptr) return BadFlag(name, "the value is missing");
+    return GivenFlag{flag, *std::exchange(next, nullptr)};
+  }
+  if (absl::StartsWith(name, "no") && equals == std::string::npos) {
+    flag = FindFlag(name.substr(2));
+    if (flag != nullptr && flag->IsOfType<bool>()) return GivenFlag{flag, "false"};
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("unknown flag --", name, "; --help lists those there are"));
 }
 
-}  // namespace
-
-absl::Status ReadConfigFile(const std::string& path) {
+// The flags in the lines `name=value` or `--name=value` of a file; `#` begins a comment line.
+absl::StatusOr<std::vector<GivenFlag>> FlagsOfFile(const std::string& path) {
   std::ifstream file(path);
   if (!file) return absl::InvalidArgumentError(absl::StrCat(path, ": cannot be read"));
+  std::vector<GivenFlag> given;
   int number = 0;
   for (std::string line; std::getline(file, line);) {
     ++number;
@@ -150,35 +168,87 @@ absl::Status ReadConfigFile(const std::string& path) {
     if (text.empty() || text[0] == '#') continue;
     const std::string place = absl::StrCat(path, ":", number, ": ");
     const size_t equals = text.find('=');
-    if (equals == std::string::npos) {
+    std::string argument = text;
+    if (equals != std::string::npos) {
+      const std::string name = text.substr(0, equals), value = text.substr(equals + 1);
+      argument = absl::StrCat(text[0] == '-' ? "" : "--", absl::StripTrailingAsciiWhitespace(name),
+                              "=", absl::StripLeadingAsciiWhitespace(value));
+    } else if (text[0] != '-') {
       return absl::InvalidArgumentError(place + "not of the form name=value");
     }
-    std::string name(absl::StripAsciiWhitespace(text.substr(0, equals)));
-    name.erase(0, name.find_first_not_of('-'));
-    const std::string value(absl::StripAsciiWhitespace(text.substr(equals + 1)));
-    absl::CommandLineFlag* flag = absl::FindCommandLineFlag(name);
-    if (flag == nullptr || name == "config") {
-      return absl::InvalidArgumentError(absl::StrCat(place, "no flag \"", name, "\""));
+    const std::string* none = nullptr;
+    absl::StatusOr<GivenFlag> flag = ReadFlag(argument, none);
+    if (!flag.ok()) {
+      return absl::InvalidArgumentError(absl::StrCat(place, flag.status().message()));
     }
-    std::string error;
-    if (!flag->ParseFrom(value, &error)) {
-      return absl::InvalidArgumentError(absl::StrCat(place, name, ": ", value, " is no value of it",
-                                                     error.empty() ? "" : ": ", error));
+    if (IsFile(*flag)) {
+      return absl::InvalidArgumentError(absl::StrCat(place, "a file within a file"));
     }
+    flag->place = place;
+    given.push_back(*std::move(flag));
   }
-  return absl::OkStatus();
+  return given;
 }
 
-absl::Status ReadFlags(int argc, char** argv) {
-  DescribeFlags();
-  if (const std::string path = ConfigPath(argc, argv); !path.empty()) {
-    if (absl::Status status = ReadConfigFile(path); !status.ok()) return status;
+// All that the command line and the files on it state, in the order in which it counts.
+absl::StatusOr<std::vector<GivenFlag>> GivenFlags(const std::vector<std::string>& arguments) {
+  std::vector<GivenFlag> config, given;
+  for (size_t i = 0; i < arguments.size(); ++i) {
+    const std::string* next = i + 1 < arguments.size() ? &arguments[i + 1] : nullptr;
+    const bool has_next = next != nullptr;
+    absl::StatusOr<GivenFlag> flag = ReadFlag(arguments[i], next);
+    if (!flag.ok()) return flag.status();
+    if (has_next && next == nullptr) ++i;
+    if (IsFile(*flag) && !flag->value.empty()) {
+      absl::StatusOr<std::vector<GivenFlag>> in_file = FlagsOfFile(flag->value);
+      if (!in_file.ok()) return in_file.status();
+      if (flag->flag->Name() == "config") {
+        config = *std::move(in_file);
+      } else {
+        given.insert(given.end(), in_file->begin(), in_file->end());
+      }
+    }
+    given.push_back(*std::move(flag));
   }
-  const std::vector<char*> arguments = absl::ParseCommandLine(argc, argv);
-  if (arguments.size() > 1) {
-    return absl::InvalidArgumentError(absl::StrCat("unexpected argument ", arguments[1]));
+  config.insert(config.end(), given.begin(), given.end());
+  return config;
+}
+
+std::string Help() {
+  std::string text =
+      "Finds short routes through the paths of a 3D print's layers; see server/README.md.\n"
+      "\nusage: traverse-server [--listen=HOST:PORT] [--metrics_listen=HOST:PORT] [--name=value "
+      "...]\n"
+      "       traverse-server --config=FILE\n"
+      "       traverse-server --version | --help\n\n";
+  std::map<std::string, const absl::CommandLineFlag*> flags;
+  for (const auto& [name, flag] : absl::GetAllFlags()) {
+    const std::string key(name.data(), name.size());
+    if (FindFlag(key) != nullptr) flags.emplace(key, flag);
   }
-  return CheckRanges();
+  for (const auto& [name, flag] : flags) {
+    absl::StrAppend(&text, "  --", name, "=", flag->DefaultValue(), "\n      ", flag->Help(), "\n");
+  }
+  return text;
+}
+
+}  // namespace
+
+absl::StatusOr<std::string> ReadFlags(const std::vector<std::string>& arguments) {
+  for (const std::string& argument : arguments) {
+    if (argument == "--help" || argument == "-h") return Help();
+    if (argument == "--version") return absl::StrCat("traverse-server ", kVersion, "\n");
+  }
+  const absl::StatusOr<std::vector<GivenFlag>> given = GivenFlags(arguments);
+  if (!given.ok()) return given.status();
+  for (const GivenFlag& one : *given) {
+    std::string error;  // says no more than that
+    if (one.flag->ParseFrom(one.value, &error)) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(one.place, "\"", one.value, "\" is no value of --", one.flag->Name()));
+  }
+  if (absl::Status status = CheckRanges(); !status.ok()) return status;
+  return std::string();
 }
 
 absl::Duration DrainTimeout() { return absl::GetFlag(FLAGS_drain_timeout); }

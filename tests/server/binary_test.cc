@@ -5,13 +5,16 @@
 #include <grpcpp/impl/client_unary_call.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <chrono>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "tests/server/server_process.h"
 #include "tests/server/service_fixture.h"
@@ -199,14 +202,59 @@ TEST(Binary, StartFailsWithOneLine) {
   EXPECT_THAT(no_log.Errors(), HasSubstr("/proc/no_such_folder"));
 }
 
-TEST(Binary, UsageErrorsExitWith2) {
-  ChildProcess flag({TRAVERSE_SERVER_BINARY, "--no_such_flag"});
-  EXPECT_NE(flag.Wait(), 0);
-  EXPECT_THAT(flag.Errors(), HasSubstr("no_such_flag"));
+TEST(Binary, UsageErrorsExitWith2AndOneLine) {
+  const std::string config = ::testing::TempDir() + "server_usage_" + std::to_string(getpid());
+  std::ofstream(config) << "# a farm\nthreads = 2\nthread = 2\n";
+  const struct {
+    std::vector<std::string> arguments;
+    std::string line;
+  } cases[] = {
+      {{"--no_such_flag"}, "unknown flag --no_such_flag; --help lists those there are"},
+      {{"--no_such_flag=1"}, "unknown flag --no_such_flag; --help lists those there are"},
+      {{"--nothreads"}, "unknown flag --nothreads; --help lists those there are"},
+      {{"--flagfile=/no/such/file"}, "/no/such/file: cannot be read"},
+      {{"file.gcode"}, "unexpected argument \"file.gcode\""},
+      {{"--", "--insecure"}, "unexpected argument \"--\""},
+      {{"--threads=x"}, "\"x\" is no value of --threads"},
+      {{"--threads", "2x"}, "\"2x\" is no value of --threads"},
+      {{"--max_wait=5"}, "\"5\" is no value of --max_wait"},
+      {{"--insecure=perhaps"}, "\"perhaps\" is no value of --insecure"},
+      {{"--threads=-1"}, "--threads: -1 is below 0"},
+      {{"--max_jobs"}, "--max_jobs: the value is missing"},
+      {{"--config"}, "--config: the value is missing"},
+      {{"--config=/no/such/file"}, "/no/such/file: cannot be read"},
+      {{"--config=" + config}, config + ":3: unknown flag --thread; --help lists those there are"},
+  };
+  for (const auto& bad : cases) {
+    std::vector<std::string> line = {TRAVERSE_SERVER_BINARY};
+    line.insert(line.end(), bad.arguments.begin(), bad.arguments.end());
+    ChildProcess process(line);
+    EXPECT_EQ(process.Wait(), 2) << bad.line;
+    EXPECT_EQ(process.Errors(), "traverse-server: " + bad.line + "\n");
+  }
+}
 
-  ChildProcess argument({TRAVERSE_SERVER_BINARY, "file.gcode"});
-  EXPECT_EQ(argument.Wait(), 2);
-  EXPECT_THAT(argument.Errors(), HasSubstr("file.gcode"));
+TEST(Binary, FlagsAreReadInAllTheirForms) {
+  const std::string config = ::testing::TempDir() + "server_forms_" + std::to_string(getpid());
+  std::ofstream(config) << "threads = 3\n--reflection=false\n--insecure\n";
+  ServerProcess server({"--flagfile=" + config, "--config", config, "--noreflection", "-threads=5",
+                        "--insecure", "--max_jobs", "7", "--log_file="});
+
+  EXPECT_EQ(server.Metric("traverse_workers"), 5);
+}
+
+TEST(Binary, HelpListsTheFlags) {
+  ChildProcess help({TRAVERSE_SERVER_BINARY, "--threads=x", "--help"});
+
+  EXPECT_THAT(help.ReadLine(), HasSubstr("Finds short routes"));
+  std::string all;
+  for (std::string line = help.ReadLine(); all.find("--window_points") == std::string::npos;
+       line = help.ReadLine()) {
+    ASSERT_LT(all.size(), 100'000u);
+    all += line + "\n";
+  }
+  EXPECT_THAT(all, HasSubstr("--max_jobs=256"));
+  EXPECT_EQ(help.Wait(), 0);
 }
 
 TEST(Binary, PrintsItsVersion) {
