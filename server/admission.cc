@@ -95,6 +95,11 @@ std::optional<Admission::No> Admission::Check(const std::string& caller, int64_t
                                  " jobs in flight; try again when one has ended")),
                              kJobsRetryDelay)};
   }
+  return CheckPoints(caller, points);
+}
+
+std::optional<Admission::No> Admission::CheckPoints(const std::string& caller,
+                                                    int64_t points) const {
   if (std::optional<No> no = CheckQueues(caller, points); no) return no;
   return CheckWait(caller, points);
 }
@@ -187,6 +192,20 @@ void Admission::Ticket::Count(int64_t points) {
   points_ += points;
   caller_->second.queued_points += points;
   admission_.queued_points_ += points;
+}
+
+absl::Status Admission::Ticket::Resize(int64_t points) {
+  std::optional<No> no;
+  {
+    std::lock_guard<std::mutex> lock(admission_.mutex_);
+    const int64_t before = points_;
+    Count(-before);
+    if (points > before) no = admission_.CheckPoints(caller_->first, points);
+    if (!no) Count(points);
+  }
+  if (!no) return absl::OkStatus();
+  admission_.on_refusal_(no->refusal);
+  return no->status;
 }
 
 void Admission::Ticket::Add(int64_t points) {

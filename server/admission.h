@@ -80,6 +80,10 @@ class Admission {
     Ticket(const Ticket&) = delete;
     Ticket& operator=(const Ticket&) = delete;
 
+    // The job turned out to have `points`, none of which it brought yet. Errors: as of Admit, if
+    // they are more than was said then; the job is to end.
+    absl::Status Resize(int64_t points);
+
     // Counts `points` more as queued, whether there is room or not.
     void Add(int64_t points);
 
@@ -128,6 +132,7 @@ class Admission {
     absl::Status status;
   };
   std::optional<No> Check(const std::string& caller, int64_t points) const;
+  std::optional<No> CheckPoints(const std::string& caller, int64_t points) const;
   std::optional<No> CheckQueues(const std::string& caller, int64_t points) const;
   std::optional<No> CheckWait(const std::string& caller, int64_t points) const;
 

@@ -11,36 +11,40 @@
 
 namespace traverse {
 
-// Deletes itself when the call is done.
-class BatchReactor : public grpc::ServerWriteReactor<grpc::ByteBuffer>, private JobStream {
+// A reactor of both directions, as it is called when the headers are there: a job that can be
+// refused for them is refused before its message has come. Deletes itself when the call is done.
+class BatchReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
+                     private JobStream {
  public:
-  // Reads `request`, which is emptied as soon as it is parsed. Returns the reactor of the call.
   static BatchReactor* Start(ServiceCore& core, grpc::CallbackServerContext& context, CallInfo call,
-                             const absl::Status& authorized, grpc::ByteBuffer& request);
+                             const absl::Status& authorized);
 
  private:
-  BatchReactor(ServiceCore& core, grpc::CallbackServerContext& context, CallInfo call,
-               grpc::ByteBuffer& request)
-      : JobStream(core, context, std::move(call)), request_(request) {}
+  using Bidi = grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>;
 
-  void Run(const absl::Status& authorized);
-  absl::Status ReadJob();
+  BatchReactor(ServiceCore& core, grpc::CallbackServerContext& context, CallInfo call)
+      : JobStream(core, context, std::move(call)), context_(context) {}
 
-  // grpc::ServerWriteReactor.
+  absl::Status OnRequest(bool ok);
+
+  // grpc::ServerBidiReactor.
+  void OnReadDone(bool ok) override;
   void OnWriteDone(bool ok) override { run()->OnWriteDone(ok); }
   void OnCancel() override { OnCallCancelled(); }
   void OnDone() override { delete this; }
 
   // JobStream.
+  const char* RequestType() const override { return "traverse.v1.OptimizeBatchRequest"; }
+  absl::Status OnOptions(const RequestReader& message) override { return Begin(message.options()); }
+  void OnMessageRead() override;
   void StartWrite(std::string message, bool more_follows) override;
   void OnRoom() override {}
-  void FinishCall(const grpc::Status& status) override {
-    grpc::ServerWriteReactor<grpc::ByteBuffer>::Finish(status);
-  }
+  void FinishCall(const grpc::Status& status) override { Bidi::Finish(status); }
   std::string Encode(const LayerOutcome& outcome, uint64_t id) const override;
   std::string Encode(const v1::JobSummary& summary) const override;
 
-  grpc::ByteBuffer& request_;
+  grpc::CallbackServerContext& context_;
+  grpc::ByteBuffer request_;
   grpc::ByteBuffer write_;
 };
 

@@ -73,17 +73,20 @@ void JobRun::OnWriteDone(bool ok) {
 
 void JobRun::Abort(const absl::Status& status) {
   std::shared_ptr<Job> job;
+  std::deque<LabelledLayer> backlog;
   {
     std::lock_guard<std::mutex> lock(mutex_);
     if (abort_ || finished_) return;
     abort_ = status;
-    backlog_.clear();
+    backlog.swap(backlog_);
     early_.clear();
     out_.clear();
     job = job_;
+    ++holds_;  // the port is used
   }
   if (job != nullptr) job->Cancel();
-  Pump(/*feed=*/false);
+  if (!backlog.empty()) port_.Discard(std::move(backlog));
+  Release();
 }
 
 void JobRun::AbortIfStalled(std::chrono::steady_clock::duration time, const absl::Status& status) {

@@ -59,6 +59,10 @@ class JobPort {
   // run.
   virtual bool IsWorkedOn() const { return false; }
 
+  // Frees layers that are not needed any more; many, so that it is best done aside. May be called
+  // from any thread, and at the end.
+  virtual void Discard(std::deque<LabelledLayer> layers) { layers.clear(); }
+
   // Ends the call without waiting for its reader; OnWriteDone(false) follows if a write is under
   // way.
   virtual void CancelCall() {}

@@ -33,6 +33,16 @@ Clock::duration Margin(Clock::duration left, int64_t layers, int64_t points,
                                    base + layers * kMarginPerLayer + points * kMarginPerPoint);
 }
 
+// Messages up to this size are read in the thread of gRPC that brought them; a reaction has to be
+// quick.
+constexpr size_t kReadHereBytes = 32 << 10;
+
+// What is read at one go of a larger one: about a millisecond's work.
+constexpr int64_t kPieceBytes = 64 << 10;
+
+// Layers freed at one go, when a job ends early.
+constexpr size_t kDiscardedAtOnce = 64;
+
 std::string NewJobId() {
   std::random_device random;
   return absl::StrFormat("%08x%08x", random(), random());
@@ -41,6 +51,12 @@ std::string NewJobId() {
 absl::Status OverLimit(const std::string& place, int64_t found, const char* what, int64_t limit) {
   return absl::ResourceExhaustedError(
       absl::StrCat(place, ": ", found, " ", what, ", more than this server's limit of ", limit));
+}
+
+void DiscardSome(const std::shared_ptr<std::deque<LabelledLayer>>& layers,
+                 const std::shared_ptr<WorkerPool::Queue>& queue) {
+  layers->resize(layers->size() - std::min(layers->size(), kDiscardedAtOnce));
+  if (!layers->empty()) queue->Submit([layers, queue] { DiscardSome(layers, queue); });
 }
 
 }  // namespace
@@ -62,6 +78,7 @@ absl::Status JobStream::Admit(const absl::Status& authorized, int64_t points) {
       core_.admission.Admit(call_.caller, points);
   if (!ticket.ok()) return ticket.status();
   ticket_ = *std::move(ticket);
+  admitted_points_ = points;
   run_ = JobRun::Make(*this);
   queue_ = core_.pool.NewQueue(call_.caller, [run = run_] { run->Abort(NoMemory()); });
   core_.Register(run_);
@@ -99,37 +116,89 @@ absl::Status JobStream::CheckSize(const v1::Layer& layer, uint64_t index, int64_
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::vector<LabelledLayer>> JobStream::Translate(
-    const google::protobuf::RepeatedPtrField<v1::Layer>& layers) const {
+absl::Status JobStream::CheckLayerCount(int64_t more) const {
   const JobLimits& limits = core_.limits;
-  if (layers.size() > limits.max_layers_per_message) {
+  const int64_t total = layers_received() + more;
+  if (more > limits.max_layers_per_message) {
     core_.admission.CountRefusal(Refusal::kJobLayers);
-    return OverLimit("layers", layers.size(), "layers in a message", limits.max_layers_per_message);
+    return OverLimit("layers", more, "layers in a message", limits.max_layers_per_message);
   }
-  const uint64_t total = layers_received_ + static_cast<uint64_t>(layers.size());
-  if (limits.max_layers_per_job > 0 && total > static_cast<uint64_t>(limits.max_layers_per_job)) {
+  if (limits.max_layers_per_job > 0 && total > limits.max_layers_per_job) {
     core_.admission.CountRefusal(Refusal::kJobLayers);
-    return OverLimit("layers", static_cast<int64_t>(total), "layers", limits.max_layers_per_job);
+    return OverLimit("layers", total, "layers", limits.max_layers_per_job);
   }
-  std::vector<LabelledLayer> translated;
-  translated.reserve(static_cast<size_t>(layers.size()));
+  return absl::OkStatus();
+}
+
+absl::StatusOr<LabelledLayer> JobStream::Translate(const v1::Layer& layer, uint64_t index) const {
+  const int64_t points = CountPoints(layer);
+  if (absl::Status status = CheckSize(layer, index, points); !status.ok()) return status;
+  absl::StatusOr<LabelledLayer> value = LayerFromProto(layer, index, setup_.interleaved);
+  if (value.ok()) value->points = std::max<int64_t>(1, points);
+  return value;
+}
+
+absl::Status JobStream::Resize(int64_t points) {
+  admitted_points_ = points;
+  return ticket_->Resize(points);
+}
+
+void JobStream::ReadMessage(grpc::ByteBuffer& message) {
+  const std::shared_ptr<JobRun> run = run_;
+  run->Hold();
+  opened_ = false;
+  if (message.Length() > kReadHereBytes) return ReadPiecesInTurns(message);
+  while (ReadPiece(message)) {
+  }
+  run->Release();  // may end the call
+}
+
+void JobStream::ReadPiecesInTurns(grpc::ByteBuffer& message) {
+  queue_->Submit([this, &message, run = run_] {
+    if (ReadPiece(message)) return ReadPiecesInTurns(message);
+    run->Release();  // may end the call
+  });
+}
+
+bool JobStream::ReadPiece(grpc::ByteBuffer& message) {
+  if (run_->aborted()) return false;
+  const absl::Status status =
+      Guarded([&] { return opened_ ? ReadLayers() : OpenMessage(message); });
+  if (!status.ok()) {
+    run_->Abort(status);
+    return false;
+  }
+  if (reader_.left() > 0) return true;
+  OnMessageRead();
+  return false;
+}
+
+absl::Status JobStream::OpenMessage(grpc::ByteBuffer& message) {
+  if (absl::Status status = reader_.Open(RequestType(), message); !status.ok()) return status;
+  opened_ = true;
+  if (absl::Status status = OnOptions(reader_); !status.ok()) return status;
+  return CheckLayerCount(reader_.layers());
+}
+
+absl::Status JobStream::ReadLayers() {
+  std::vector<LabelledLayer> layers;
   int64_t points = points_received_;
-  for (const v1::Layer& layer : layers) {
-    const uint64_t index = layers_received_ + translated.size();
-    const int64_t layer_points = CountPoints(layer);
-    if (absl::Status status = CheckSize(layer, index, layer_points); !status.ok()) return status;
-    absl::StatusOr<LabelledLayer> value = LayerFromProto(layer, index, setup_.interleaved);
-    if (!value.ok()) return value.status();
-    value->points = std::max<int64_t>(1, layer_points);
-    points += value->points;
-    if (limits.max_points_per_job > 0 && points > limits.max_points_per_job) {
+  const auto take = [&](const v1::Layer& message) -> absl::Status {
+    const uint64_t index = layers_received_ + layers.size();
+    absl::StatusOr<LabelledLayer> layer = Translate(message, index);
+    if (!layer.ok()) return layer.status();
+    points += layer->points;
+    if (core_.limits.max_points_per_job > 0 && points > core_.limits.max_points_per_job) {
       core_.admission.CountRefusal(Refusal::kJobPoints);
       return OverLimit(absl::StrCat("layers[", index, "]"), points, "points up to here",
-                       limits.max_points_per_job);
+                       core_.limits.max_points_per_job);
     }
-    translated.push_back(*std::move(value));
-  }
-  return translated;
+    layers.push_back(*std::move(layer));
+    return absl::OkStatus();
+  };
+  if (absl::Status status = reader_.Read(kPieceBytes, take); !status.ok()) return status;
+  AddLayers(std::move(layers));
+  return absl::OkStatus();
 }
 
 void JobStream::StartEngine(int64_t expected_layers, int64_t expected_points) {
@@ -151,15 +220,24 @@ void JobStream::StartEngine(int64_t expected_layers, int64_t expected_points) {
               *queue_);
 }
 
-void JobStream::AddLayers(std::vector<LabelledLayer> layers, int64_t admitted_points) {
+void JobStream::AddLayers(std::vector<LabelledLayer> layers) {
   int64_t points = 0;
   for (const LabelledLayer& layer : layers) points += layer.points;
-  ticket_->Add(points - admitted_points);
+  // At the end of a message whatever was admitted too much is given back.
+  const bool last = reader_.left() == 0;
+  const int64_t admitted = last ? admitted_points_ : std::min(points, admitted_points_);
+  admitted_points_ -= admitted;
+  ticket_->Add(points - admitted);
   layers_received_ += layers.size();
   points_received_ += points;
   core_.queue_layers += static_cast<int64_t>(layers.size());
   for (LabelledLayer& layer : layers) run_->Add(std::move(layer));
-  run_->Push();
+}
+
+void JobStream::Discard(std::deque<LabelledLayer> layers) {
+  // A function may be copied, and layers are not to be.
+  const auto left = std::make_shared<std::deque<LabelledLayer>>(std::move(layers));
+  queue_->Submit([left, queue = queue_] { DiscardSome(left, queue); });
 }
 
 void JobStream::OnCallCancelled() {

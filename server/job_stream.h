@@ -4,12 +4,12 @@
 #ifndef TRAVERSE_SERVER_JOB_STREAM_H_
 #define TRAVERSE_SERVER_JOB_STREAM_H_
 
-#include <google/protobuf/repeated_field.h>
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/status.h>
 
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <new>
 #include <optional>
@@ -19,14 +19,15 @@
 #include "absl/status/status.h"
 #include "server/call_info.h"
 #include "server/job_run.h"
+#include "server/request_reader.h"
 #include "server/service_core.h"
 #include "server/translate.h"
 #include "server/translate_result.h"
 
 namespace traverse {
 
-// Producer's methods (Begin to AddLayers, not Admit) are called one at a time, and between Hold and
-// Release of the run: the job then does not end meanwhile.
+// A reactor admits its call, then brings messages, one at a time; of each it is told when the
+// options are known and when the layers were added.
 class JobStream : public JobPort {
  public:
   ~JobStream() override;
@@ -39,29 +40,24 @@ class JobStream : public JobPort {
   // Authorize said of the call, or a limit. On success run() is there.
   absl::Status Admit(const absl::Status& authorized, int64_t points);
 
-  // What `read` returns, or NoMemory if it runs out of memory.
-  template <typename Read>
-  static absl::Status Guarded(const Read& read) {
-    try {
-      return read();
-    } catch (const std::bad_alloc&) {
-      return NoMemory();
-    }
-  }
+  // What a message of so many bytes has at most: a point is two doubles, and little else is of any
+  // size.
+  static int64_t EstimatePoints(size_t bytes) { return static_cast<int64_t>(bytes / 16 + 1); }
+
+  // Admit for a job all of which is in a message that has arrived. REQUIRES: it was let in.
+  absl::Status Resize(int64_t points);
+
+  // Reads `message`, which lives until OnMessageRead and is emptied at once: checks and translates
+  // its layers, which follow those added so far. A large one is read by the workers, in pieces
+  // between which other jobs have their turns. Ends the job if there is a fault.
+  void ReadMessage(grpc::ByteBuffer& message);
 
   // Reads the job's options.
   absl::Status Begin(const v1::JobOptions& options);
 
-  // Translates layers, which follow those added so far. Changes nothing.
-  absl::StatusOr<std::vector<LabelledLayer>> Translate(
-      const google::protobuf::RepeatedPtrField<v1::Layer>& layers) const;
-
   // Starts the engine; once, after Begin. What is known to come widens the margin between the last
   // results and the deadline.
   void StartEngine(int64_t expected_layers, int64_t expected_points);
-
-  // Hands layers to the engine. `admitted_points` of them were already counted by Admit.
-  void AddLayers(std::vector<LabelledLayer> layers, int64_t admitted_points);
 
   // Stops the job because the call was cancelled or its deadline has passed.
   void OnCallCancelled();
@@ -72,10 +68,17 @@ class JobStream : public JobPort {
   const std::shared_ptr<JobRun>& run() const { return run_; }
   ServiceCore& core() { return core_; }
   const JobSetup& setup() const { return setup_; }
-  WorkerPool::Queue& queue() { return *queue_; }
+
+  // Added so far.
+  int64_t layers_received() const { return static_cast<int64_t>(layers_received_); }
+  int64_t points_received() const { return points_received_; }
 
  private:
-  // What the reactors add: the end of the call, and messages of their types.
+  // What the reactors add: what to do with a message, the end of the call, and messages of their
+  // types.
+  virtual const char* RequestType() const = 0;
+  virtual absl::Status OnOptions(const RequestReader& message) = 0;
+  virtual void OnMessageRead() = 0;
   virtual void FinishCall(const grpc::Status& status) = 0;
   virtual std::string Encode(const LayerOutcome& outcome, uint64_t id) const = 0;
   virtual std::string Encode(const v1::JobSummary& summary) const = 0;
@@ -85,9 +88,29 @@ class JobStream : public JobPort {
   std::string EncodeSummary() final;
   bool MayBringMore() const final { return ticket_->MayBringMore(); }
   bool IsWorkedOn() const final { return !queue_->idle(); }
+  void Discard(std::deque<LabelledLayer> layers) final;
   void CancelCall() final { context_.TryCancel(); }
   void Finish(const absl::Status& status) final { End(status); }
 
+  // What `read` returns, or NoMemory if it runs out of memory.
+  template <typename Read>
+  static absl::Status Guarded(const Read& read) {
+    try {
+      return read();
+    } catch (const std::bad_alloc&) {
+      return NoMemory();
+    }
+  }
+
+  // The steps of ReadMessage.
+  void ReadPiecesInTurns(grpc::ByteBuffer& message);
+  bool ReadPiece(grpc::ByteBuffer& message);  // whether another one is to be read
+  absl::Status OpenMessage(grpc::ByteBuffer& message);
+  absl::Status ReadLayers();
+  absl::StatusOr<LabelledLayer> Translate(const v1::Layer& layer, uint64_t index) const;
+  void AddLayers(std::vector<LabelledLayer> layers);
+
+  absl::Status CheckLayerCount(int64_t more) const;
   absl::Status CheckSize(const v1::Layer& layer, uint64_t index, int64_t points) const;
   JobRecord Record(const absl::Status& status) const;
   double WallSeconds() const;
@@ -99,7 +122,12 @@ class JobStream : public JobPort {
   std::unique_ptr<Admission::Ticket> ticket_;
   std::shared_ptr<WorkerPool::Queue> queue_;
 
-  // Set by the producer, then read by the engine's calls and by End.
+  // Of the message being read.
+  RequestReader reader_;
+  bool opened_ = false;
+  int64_t admitted_points_ = 0;  // counted by Admit, and not yet brought
+
+  // Set while messages are read, then read by the engine's calls and by End.
   JobSetup setup_;
   const LayerMetrics* layer_metrics_ = nullptr;
   uint64_t layers_received_ = 0;

@@ -1,5 +1,7 @@
 #include "server/route_optimizer_service.h"
 
+#include <grpcpp/impl/codegen/server_callback_handlers.h>
+
 #include <utility>
 
 #include "server/batch_reactor.h"
@@ -11,17 +13,38 @@
 
 namespace traverse {
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* RouteOptimizerService::OptimizeBatch(
-    grpc::CallbackServerContext* context, const grpc::ByteBuffer* request) {
-  // gRPC keeps the request until the call ends. The object is its own and not const, and emptying
-  // it frees what is by far the largest part of a job.
-  CallInfo call = ReadCallInfo(*context, "OptimizeBatch");
-  const absl::Status authorized = Authorize(*context, *core_.auth, call);
-  return BatchReactor::Start(core_, *context, std::move(call), authorized,
-                             const_cast<grpc::ByteBuffer&>(*request));
+RouteOptimizerService::RouteOptimizerService(ServiceCore& core) : core_(core) {
+  AddStream("/traverse.v1.RouteOptimizerService/OptimizeBatch",
+            [this](grpc::CallbackServerContext* context) { return OptimizeBatch(context); });
+  AddStream("/traverse.v1.RouteOptimizerService/Optimize",
+            [this](grpc::CallbackServerContext* context) { return Optimize(context); });
+  Add("/traverse.v1.RouteOptimizerService/ListStrategies", grpc::internal::RpcMethod::NORMAL_RPC,
+      new grpc::internal::CallbackUnaryHandler<grpc::ByteBuffer, grpc::ByteBuffer>(
+          [this](grpc::CallbackServerContext* context, const grpc::ByteBuffer* request,
+                 grpc::ByteBuffer* response) {
+            return ListStrategies(context, request, response);
+          }));
 }
 
-grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* RouteOptimizerService::Optimize(
+void RouteOptimizerService::AddStream(const char* name, const MakeReactor& make_reactor) {
+  Add(name, grpc::internal::RpcMethod::BIDI_STREAMING,
+      new grpc::internal::CallbackBidiHandler<grpc::ByteBuffer, grpc::ByteBuffer>(make_reactor));
+}
+
+void RouteOptimizerService::Add(const char* name, grpc::internal::RpcMethod::RpcType type,
+                                grpc::internal::MethodHandler* handler) {
+  AddMethod(new grpc::internal::RpcServiceMethod(name, type, nullptr));
+  MarkMethodRawCallback(methods_++, handler);
+}
+
+RouteOptimizerService::Reactor* RouteOptimizerService::OptimizeBatch(
+    grpc::CallbackServerContext* context) {
+  CallInfo call = ReadCallInfo(*context, "OptimizeBatch");
+  const absl::Status authorized = Authorize(*context, *core_.auth, call);
+  return BatchReactor::Start(core_, *context, std::move(call), authorized);
+}
+
+RouteOptimizerService::Reactor* RouteOptimizerService::Optimize(
     grpc::CallbackServerContext* context) {
   CallInfo call = ReadCallInfo(*context, "Optimize");
   const absl::Status authorized = Authorize(*context, *core_.auth, call);

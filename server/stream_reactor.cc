@@ -1,7 +1,5 @@
 #include "server/stream_reactor.h"
 
-#include <google/protobuf/arena.h>
-
 #include <utility>
 
 #include "server/wire.h"
@@ -24,38 +22,29 @@ void StreamReactor::ReadNext() {
 }
 
 void StreamReactor::OnReadDone(bool ok) {
+  if (ok) return ReadMessage(read_);
   const std::shared_ptr<JobRun> run = this->run();
   run->Hold();
   if (!run->aborted()) {
-    const absl::Status status = Guarded([this, ok] { return ok ? OnMessage() : OnEnd(); });
-    if (!status.ok()) {
-      run->Abort(status);
-    } else if (ok) {
-      ReadNext();
-    }
+    if (const absl::Status status = OnEnd(); !status.ok()) run->Abort(status);
   }
   run->Release();  // may end the call
 }
 
-absl::Status StreamReactor::OnMessage() {
-  google::protobuf::Arena arena;
-  auto* request = google::protobuf::Arena::CreateMessage<v1::OptimizeRequest>(&arena);
-  if (absl::Status status = ParseMessage(read_, *request); !status.ok()) return status;
-  read_.Clear();
-  if (begun_ && request->has_options()) {
+absl::Status StreamReactor::OnOptions(const RequestReader& message) {
+  if (begun_ && message.has_options()) {
     return absl::InvalidArgumentError("options: set in a message that is not the first one");
   }
-  if (!begun_) {
-    if (absl::Status status = Begin(request->options()); !status.ok()) return status;
-  }
-  absl::StatusOr<std::vector<LabelledLayer>> layers = Translate(request->layers());
-  if (!layers.ok()) return layers.status();
-  if (!begun_) {
-    begun_ = true;
-    StartEngine(static_cast<int64_t>(layers->size()), 0);
-  }
-  AddLayers(*std::move(layers), 0);
+  if (begun_) return absl::OkStatus();
+  if (absl::Status status = Begin(message.options()); !status.ok()) return status;
+  begun_ = true;
+  StartEngine(message.layers(), 0);
   return absl::OkStatus();
+}
+
+void StreamReactor::OnMessageRead() {
+  run()->Push();
+  ReadNext();
 }
 
 // A stream without any message is a job of no layers.

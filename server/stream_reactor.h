@@ -25,7 +25,6 @@ class StreamReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
   using JobStream::JobStream;
 
   void ReadNext();
-  absl::Status OnMessage();
   absl::Status OnEnd();
 
   // grpc::ServerBidiReactor.
@@ -35,6 +34,9 @@ class StreamReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
   void OnDone() override { delete this; }
 
   // JobStream.
+  const char* RequestType() const override { return "traverse.v1.OptimizeRequest"; }
+  absl::Status OnOptions(const RequestReader& message) override;
+  void OnMessageRead() override;
   void StartWrite(std::string message, bool more_follows) override;
   void OnRoom() override { ReadNext(); }
   void FinishCall(const grpc::Status& status) override { Bidi::Finish(status); }

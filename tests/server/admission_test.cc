@@ -169,6 +169,20 @@ TEST_F(AdmissionTest, WhatTakesLittleTimeIsLetInHoweverManyTimesAsLongItTakes) {
   EXPECT_FALSE(admission.Admit("a", 5).ok());
 }
 
+TEST_F(AdmissionTest, AJobIsCheckedAgainWhenItsSizeIsKnown) {
+  Admission admission({.max_queued_points = 100}, Count());
+  auto first = *admission.Admit("a", 1);
+  auto second = *admission.Admit("b", 1);
+
+  EXPECT_OK(first->Resize(90));
+  EXPECT_THAT(second->Resize(20),
+              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("the queue is full: 90")));
+  EXPECT_THAT(refusals_, ElementsAre("queue"));
+  EXPECT_OK(first->Resize(10));
+  EXPECT_OK(second->Resize(20));
+  EXPECT_EQ(admission.queued_points(), 30);
+}
+
 TEST_F(AdmissionTest, NothingIsLeftBehindByManyThreads) {
   Admission admission({.max_jobs = 3, .max_queued_points = 100}, [](Refusal) {});
   std::vector<std::thread> threads;

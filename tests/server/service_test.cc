@@ -5,6 +5,7 @@
 
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tests/server/service_fixture.h"
@@ -251,6 +252,32 @@ TEST(Service, MetricsTellWhetherTheServerTakesJobs) {
   service.server().core().admission.StartDraining();
 
   EXPECT_THAT(service.server().core().MetricsText(), HasSubstr("traverse_ready 0"));
+}
+
+// A large message is read in pieces between which others have their turns; read at one go, it keeps
+// the only worker from a job of one layer until all of its layers are there.
+TEST(Fairness, ASmallJobIsDoneWhileALargeOneIsStillBeingRead) {
+  constexpr int kLayers = 60'000;
+  TestService service([](ServerOptions& options) { options.service.threads = 1; });
+  ServiceCore& core = service.server().core();
+  const v1::OptimizeBatchRequest large = MakeBatch(kLayers);
+  const v1::OptimizeBatchRequest small = MakeBatch(1);
+  bool done_meanwhile = false;
+  // The thread of this test may be kept from running while the large one is read.
+  for (int attempt = 0; attempt < 10 && !done_meanwhile; ++attempt) {
+    grpc::ClientContext context;
+    const auto reader = service.stub().OptimizeBatch(&context, large);
+    while (core.queue_layers == 0) std::this_thread::yield();
+    EXPECT_TRUE(service.Batch(small).status.ok());
+    done_meanwhile = core.queue_layers < kLayers;
+    context.TryCancel();
+    v1::OptimizeBatchResponse response;
+    while (reader->Read(&response)) {
+    }
+    reader->Finish();
+    ASSERT_TRUE(service.Eventually([&core] { return core.queue_layers == 0; }));
+  }
+  EXPECT_TRUE(done_meanwhile);
 }
 
 }  // namespace
