@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -201,6 +202,34 @@ OwnedProblem RandomProblem(uint64_t seed, const RandomPlanOptions& options) {
   owned.problem.cost = RandomCost(rng);
   owned.problem.seed = seed;
   return owned;
+}
+
+OwnedProblem Degenerate(const OwnedProblem& owned, Degeneracy degeneracy) {
+  const auto moved = [degeneracy](Point point) -> Point {
+    if (degeneracy == Degeneracy::kCoincident) return {7.3, -2.1};
+    if (degeneracy == Degeneracy::kCollinear) return {point.x, 0.1 * point.x};
+    if (degeneracy == Degeneracy::kCoarseGrid) {
+      return {50 * std::round(point.x / 50), 50 * std::round(point.y / 50)};
+    }
+    return point;
+  };
+  Plan plan = owned.plan();
+  std::optional<size_t> first_of_kind[2];
+  for (size_t p = 0; p < plan.paths.size(); ++p) {
+    Path& path = plan.paths[p];
+    for (Point& point : path.points) point = moved(point);
+    const bool open = path.kind == Path::Kind::kOpen;
+    if (degeneracy == Degeneracy::kZeroLength && open) path.points[1] = path.points[0];
+    std::optional<size_t>& first = first_of_kind[open ? 1 : 0];
+    if (!first) first = p;
+    if (degeneracy == Degeneracy::kDuplicates) path = plan.paths[*first];
+  }
+  OwnedProblem result(std::move(plan), moved(owned.problem.start));
+  result.problem.finish = owned.problem.finish;
+  if (result.problem.finish) result.problem.finish = moved(*owned.problem.finish);
+  result.problem.cost = owned.problem.cost;
+  result.problem.seed = owned.problem.seed;
+  return result;
 }
 
 }  // namespace traverse::testing

@@ -51,6 +51,21 @@ CostSpec RandomCost(Rng& rng);
 // A random plan with a random start and cost, every third time with a finish.
 OwnedProblem RandomProblem(uint64_t seed, const RandomPlanOptions& options = {});
 
+// What makes many routes cost the same, or moves cost nothing.
+enum class Degeneracy {
+  kCoincident,  // all points are one
+  kCollinear,   // all points are on a line
+  kCoarseGrid,  // all points are on a grid of nine
+  kDuplicates,  // contours are copies of one, and so are open paths
+  kZeroLength,  // open paths end where they begin
+};
+inline constexpr Degeneracy kDegeneracies[] = {Degeneracy::kCoincident, Degeneracy::kCollinear,
+                                               Degeneracy::kCoarseGrid, Degeneracy::kDuplicates,
+                                               Degeneracy::kZeroLength};
+
+// The same problem with other points.
+OwnedProblem Degenerate(const OwnedProblem& owned, Degeneracy degeneracy);
+
 }  // namespace traverse::testing
 
 #endif  // TRAVERSE_TESTS_SUPPORT_RANDOM_PLAN_H_

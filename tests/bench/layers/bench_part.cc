@@ -27,7 +27,8 @@ absl::StatusOr<BenchPart> LoadPart(const std::string& name, const nlohmann::json
   if (!std::filesystem::exists(file)) file += ".xz";
   absl::StatusOr<InputJob> job = ReadInput(file);
   if (!job.ok()) return job.status();
-  BenchPart part{name, {}, {}};
+  BenchPart part;
+  part.name = name;
   const size_t count = std::min(job->layers.size(), LastLayer(reference["layers"]));
   for (size_t i = 0; i < count; ++i) {
     absl::StatusOr<LabelledLayer> layer = LayerFromProto(job->layers[i], i, false);
@@ -36,6 +37,9 @@ absl::StatusOr<BenchPart> LoadPart(const std::string& name, const nlohmann::json
   }
   for (const auto& [key, value] : reference.items()) {
     if (value.is_number()) part.reference[key] = value.get<double>();
+  }
+  if (const auto proven = reference.find("proven_by_layer"); proven != reference.end()) {
+    part.proven_mm = proven->get<std::vector<double>>();
   }
   return part;
 }

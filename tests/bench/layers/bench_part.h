@@ -20,6 +20,9 @@ struct BenchPart {
   // Travel in mm over these layers, by the keys of tests/bench/reference.json; empty if the part is
   // not in it.
   std::map<std::string, double> reference;
+
+  // The proven optimum of each layer, for the starts of the reference's chain; empty if not known.
+  std::vector<double> proven_mm;
 };
 
 // Every part of tests/bench/instances that reference.json knows, with the layers that it measures,

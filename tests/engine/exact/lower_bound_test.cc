@@ -34,6 +34,23 @@ TEST(LowerBound, IsNeverAboveTheOptimum) {
   }
 }
 
+TEST(LowerBound, IsNeverAboveTheOptimumOfDegenerateGeometry) {
+  for (const testing::Degeneracy degeneracy : testing::kDegeneracies) {
+    for (uint64_t seed = 1; seed <= 100; ++seed) {
+      SCOPED_TRACE(absl::StrCat("degeneracy ", static_cast<int>(degeneracy), ", seed ", seed));
+      const OwnedProblem owned =
+          testing::Degenerate(testing::RandomProblem(seed, {.max_paths = 6}), degeneracy);
+      const double best = testing::BruteForce(owned.problem).cost;
+      Budget budget;
+
+      const std::optional<double> bound = LowerBound(owned.problem, 2 * best + 1, nullptr, budget);
+
+      ASSERT_TRUE(bound.has_value());
+      EXPECT_LE(*bound, best + 1e-9 * (1 + best));
+    }
+  }
+}
+
 // Layers too large for brute force: what is proven by other means.
 TEST(LowerBound, IsNeverAboveAProvenOptimum) {
   const std::unique_ptr<Strategy> exact = *MakeStrategy("exact", {});
