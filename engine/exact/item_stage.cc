@@ -20,6 +20,7 @@ double MoveBetweenEnds(const StageModel& model, int a, int end_of_a, int b, int 
 }  // namespace
 
 bool IsItemStage(const StageModel& model, int stage) {
+  if (!model.IsFree(stage)) return false;
   for (int c = model.first(stage); c < model.first(stage + 1); ++c) {
     if (!model.IsItem(c) || !model.Before(c).empty() || !model.After(c).empty()) return false;
   }

@@ -29,6 +29,7 @@ void LastStage::ForEachMove(const Visit& visit) const {
   for (int a = model_.first(stage_); a < model_.first(stage_ + 1); ++a) {
     const auto cluster = static_cast<size_t>(a - model_.first(stage_));
     for (int b = model_.first(stage_ + 1); b < model_.cluster_count(); ++b) {
+      if (!model_.CanFollow(a, b)) continue;
       const double* moves = model_.Move(a, b);
       for (int u = 0; u < model_.states(a); ++u) {
         for (int v = 0; v < model_.states(b); ++v) {
@@ -76,6 +77,7 @@ ItemStage::Best LastStage::Solve(const std::vector<double>& start, double limit,
 void LastStage::Sample(int samples, double limit, Budget& budget) {
   std::vector<std::vector<double>> starts;
   for (int a = model_.first(stage_); a < model_.first(stage_ + 1); ++a) {
+    if (!model_.CanFollow(a, model_.first(stage_ + 1))) continue;
     for (int u = 0; u < model_.states(a); ++u) starts.push_back(StartAfter({a, u}, 0));
   }
   // What is known after one end is off by at most the largest difference of start costs after

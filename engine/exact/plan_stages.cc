@@ -1,111 +1,184 @@
 #include "engine/exact/plan_stages.h"
 
+#include <algorithm>
 #include <cstddef>
+
+#include "engine/model/plan_tree.h"
 
 namespace traverse {
 namespace {
 
-class StageCollector {
+// The items of a node, and which of them may come first and last.
+struct Block {
+  int first = 0;  // its items are [first, last)
+  int last = 0;
+  std::vector<int> begins;
+  std::vector<int> ends;
+};
+
+// All pairs of blocks that follow from `before`, those through children without paths included:
+// [i][j]. `block_of[c]`: the block of child c, -1 if it has no paths.
+std::vector<std::vector<char>> Closure(const PlanNode& node, const std::vector<int>& block_of,
+                                       size_t blocks) {
+  std::vector<std::vector<char>> closure(blocks, std::vector<char>(blocks));
+  if (node.before.empty()) return closure;
+  std::vector<std::vector<int>> after(node.children.size());
+  for (const auto& [first, second] : node.before) {
+    after[static_cast<size_t>(first)].push_back(second);
+  }
+  for (size_t c = 0; c < block_of.size(); ++c) {
+    if (block_of[c] < 0) continue;
+    std::vector<char>& reached = closure[static_cast<size_t>(block_of[c])];
+    std::vector<char> seen(node.children.size());
+    std::vector<int> open = after[c];
+    while (!open.empty()) {
+      const auto next = static_cast<size_t>(open.back());
+      open.pop_back();
+      if (seen[next] != 0) continue;
+      seen[next] = 1;
+      if (block_of[next] >= 0) reached[static_cast<size_t>(block_of[next])] = 1;
+      open.insert(open.end(), after[next].begin(), after[next].end());
+    }
+  }
+  return closure;
+}
+
+// One stage of everything below one node.
+class StageBuilder {
  public:
-  StageCollector(const Plan& plan, size_t most_children)
-      : plan_(plan), most_children_(most_children), paths_below_(plan.nodes.size()) {
-    // Children have greater indices than their parents.
-    for (size_t i = plan.nodes.size(); i-- > 0;) {
-      const PlanNode& node = plan.nodes[i];
-      paths_below_[i] = node.kind == PlanNode::Kind::kPath ? 1 : 0;
-      for (const int child : node.children) paths_below_[i] += below(child);
-    }
-  }
+  explicit StageBuilder(const PlanTree& tree) : tree_(tree) {}
 
-  bool Collect(int index) {
-    const PlanNode& node = plan_.nodes[static_cast<size_t>(index)];
-    if (below(index) == 0) return true;
-    if (node.kind == PlanNode::Kind::kPath) {
-      stages_.push_back({{node.path}, {}});
-      return true;
+  PlanStage Build(int root) {
+    const Block whole = Add(root);
+    const size_t n = stage_.paths.size();
+    stage_.follows.assign(n * n, 0);
+    for (const auto& [i, j] : follows_) {
+      stage_.follows[static_cast<size_t>(i) * n + static_cast<size_t>(j)] = 1;
     }
-    int filled = 0;
-    int last_filled = 0;
-    for (const int child : node.children) {
-      if (below(child) == 0) continue;
-      ++filled;
-      last_filled = child;
-      if (node.kind == PlanNode::Kind::kInOrder && !Collect(child)) return false;
-    }
-    if (node.kind == PlanNode::Kind::kInOrder) return true;
-    return filled == 1 ? Collect(last_filled) : CollectAnyOrder(node);
+    stage_.begins.assign(n, 0);
+    stage_.ends.assign(n, 0);
+    for (const int item : whole.begins) stage_.begins[static_cast<size_t>(item)] = 1;
+    for (const int item : whole.ends) stage_.ends[static_cast<size_t>(item)] = 1;
+    return std::move(stage_);
   }
-
-  std::vector<PlanStage> TakeStages() { return std::move(stages_); }
 
  private:
-  int below(int node) const { return paths_below_[static_cast<size_t>(node)]; }
-
-  int OnlyPathBelow(int index) const {
-    while (plan_.nodes[static_cast<size_t>(index)].kind != PlanNode::Kind::kPath) {
-      for (const int child : plan_.nodes[static_cast<size_t>(index)].children) {
-        if (below(child) > 0) index = child;
-      }
-    }
-    return plan_.nodes[static_cast<size_t>(index)].path;
+  int NewItem(int path) {
+    stage_.paths.push_back(path);
+    return stage_.size() - 1;
   }
 
-  bool CollectAnyOrder(const PlanNode& node) {
-    if (node.children.size() > most_children_) return false;
-    PlanStage stage;
-    std::vector<int> position(node.children.size(), -1);  // in the stage
-    for (size_t c = 0; c < node.children.size(); ++c) {
-      const int child = node.children[c];
-      if (below(child) == 0) continue;
-      if (below(child) > 1) return false;
-      position[c] = static_cast<int>(stage.paths.size());
-      stage.paths.push_back(OnlyPathBelow(child));
+  // The items of a node that has paths.
+  Block Add(int index) {
+    if (tree_.is_leaf(index)) {
+      const int item = NewItem(tree_.node(index).path);
+      return Block{item, item + 1, {item}, {item}};
     }
-    for (const auto& [first, second] : Closure(node)) {
-      const int i = position[static_cast<size_t>(first)];
-      const int j = position[static_cast<size_t>(second)];
-      if (i >= 0 && j >= 0) stage.before.emplace_back(i, j);
+    const absl::Span<const int> children = tree_.children(index);
+    if (children.size() == 1) return Add(children.front());
+    const bool in_order = tree_.node(index).kind == PlanNode::Kind::kInOrder;
+    return in_order ? AddInOrder(children) : AddAnyOrder(tree_.node(index));
+  }
+
+  Block AddInOrder(absl::Span<const int> children) {
+    Block whole = Add(children.front());
+    for (const int child : children.subspan(1)) {
+      Block block = Add(child);
+      Join(whole, block);
+      Precede(whole, block);
+      whole.last = block.last;
+      whole.ends = std::move(block.ends);
     }
-    stages_.push_back(std::move(stage));
+    return whole;
+  }
+
+  Block AddAnyOrder(const PlanNode& node) {
+    std::vector<int> block_of;
+    std::vector<Block> blocks;
+    for (const int child : node.children) {
+      const bool empty = tree_.path_count(child) == 0;
+      block_of.push_back(empty ? -1 : static_cast<int>(blocks.size()));
+      if (!empty) blocks.push_back(WithGate(Add(child)));
+    }
+    const std::vector<std::vector<char>> before = Closure(node, block_of, blocks.size());
+    Block whole{blocks.front().first, blocks.back().last, {}, {}};
+    for (size_t a = 0; a < blocks.size(); ++a) {
+      bool begins = true;
+      bool ends = true;
+      for (size_t b = 0; b < blocks.size(); ++b) {
+        begins = begins && before[b][a] == 0;
+        ends = ends && before[a][b] == 0;
+        if (before[a][b] != 0) Precede(blocks[a], blocks[b]);
+        if (MayFollow(before, a, b)) Join(blocks[a], blocks[b]);
+      }
+      if (begins) Append(blocks[a].begins, whole.begins);
+      if (ends) Append(blocks[a].ends, whole.ends);
+    }
+    return whole;
+  }
+
+  // Whether block b may come right after block a.
+  static bool MayFollow(const std::vector<std::vector<char>>& before, size_t a, size_t b) {
+    if (a == b || before[b][a] != 0) return false;
+    if (before[a][b] == 0) return true;
+    for (size_t between = 0; between < before.size(); ++between) {
+      if (before[a][between] != 0 && before[between][b] != 0) return false;
+    }
     return true;
   }
 
-  // All pairs that follow from `before`, those through children without paths included (Warshall).
-  static std::vector<std::pair<int, int>> Closure(const PlanNode& node) {
-    std::vector<std::pair<int, int>> pairs;
-    if (node.before.empty()) return pairs;
-    const size_t n = node.children.size();
-    std::vector<std::vector<bool>> reaches(n, std::vector<bool>(n));
-    for (const auto& [first, second] : node.before) {
-      reaches[static_cast<size_t>(first)][static_cast<size_t>(second)] = true;
-    }
-    for (size_t via = 0; via < n; ++via) {
-      for (size_t i = 0; i < n; ++i) {
-        if (!reaches[i][via]) continue;
-        for (size_t j = 0; j < n; ++j) reaches[i][j] = reaches[i][j] || reaches[via][j];
-      }
-    }
-    for (size_t i = 0; i < n; ++i) {
-      for (size_t j = 0; j < n; ++j) {
-        if (reaches[i][j]) pairs.emplace_back(static_cast<int>(i), static_cast<int>(j));
-      }
-    }
-    return pairs;
+  // A block that could be entered more than once, and left more than once, gets a gate.
+  Block WithGate(Block block) {
+    if (block.begins.size() == 1 || block.ends.size() == 1) return block;
+    const int gate = NewItem(PlanStage::kGate);
+    stage_.gates.push_back({gate, block.first, block.last});
+    const Block front{gate, gate + 1, {gate}, {gate}};
+    Join(front, block);
+    Precede(front, block);
+    return Block{block.first, gate + 1, {gate}, std::move(block.ends)};
   }
 
-  const Plan& plan_;
-  const size_t most_children_;
-  std::vector<int> paths_below_;  // [node]
-  std::vector<PlanStage> stages_;
+  void Join(const Block& a, const Block& b) {
+    for (const int i : a.ends) {
+      for (const int j : b.begins) follows_.emplace_back(i, j);
+    }
+  }
+
+  void Precede(const Block& a, const Block& b) {
+    for (int i = a.first; i < a.last; ++i) {
+      for (int j = b.first; j < b.last; ++j) stage_.before.emplace_back(i, j);
+    }
+  }
+
+  static void Append(const std::vector<int>& items, std::vector<int>& to) {
+    to.insert(to.end(), items.begin(), items.end());
+  }
+
+  const PlanTree& tree_;
+  PlanStage stage_;
+  std::vector<std::pair<int, int>> follows_;
 };
+
+// Appends the stages below `index`, which has paths. False if one is too large.
+bool Collect(const PlanTree& tree, int index, size_t most_items, std::vector<PlanStage>& stages) {
+  const absl::Span<const int> children = tree.children(index);
+  if (children.size() == 1) return Collect(tree, children.front(), most_items, stages);
+  if (!tree.is_leaf(index) && tree.node(index).kind == PlanNode::Kind::kInOrder) {
+    return std::all_of(children.begin(), children.end(),
+                       [&](int child) { return Collect(tree, child, most_items, stages); });
+  }
+  if (static_cast<size_t>(tree.path_count(index)) > most_items) return false;
+  stages.push_back(StageBuilder(tree).Build(index));
+  return stages.back().paths.size() <= most_items;
+}
 
 }  // namespace
 
-std::optional<std::vector<PlanStage>> StagesOf(const Plan& plan, size_t most_children) {
-  if (plan.nodes.empty()) return std::vector<PlanStage>();
-  StageCollector collector(plan, most_children);
-  if (!collector.Collect(0)) return std::nullopt;
-  return collector.TakeStages();
+std::optional<std::vector<PlanStage>> StagesOf(const Plan& plan, size_t most_items) {
+  std::vector<PlanStage> stages;
+  if (plan.paths.empty()) return stages;
+  if (!Collect(PlanTree(plan), 0, most_items, stages)) return std::nullopt;
+  return stages;
 }
 
 }  // namespace traverse

@@ -11,8 +11,8 @@
 namespace traverse {
 namespace {
 
-// Relative. Only routes cheaper than the best one less this are looked for: far above what rounding
-// can add up to, far below what optimality is claimed at (kCostTolerance).
+// Relative to max(1, cost). Only routes cheaper than the best one less this are looked for: far
+// above what rounding can add up to, far below what optimality is claimed at (kCostTolerance).
 constexpr double kProofTolerance = 1e-9;
 
 // Passes of walks between two updates of what the last stage is known to cost.
@@ -47,10 +47,12 @@ class Proof {
  private:
   using Outcome = WalkProver::Outcome;
 
-  double Limit() const { return result_.cost * (1 - kProofTolerance); }
+  double Limit() const { return result_.cost - kProofTolerance * std::max(1.0, result_.cost); }
 
   // A little less, so that what branch and cut has shown to be at the limit is beyond it for walks.
-  double WalkLimit() const { return result_.cost * (1 - 2 * kProofTolerance); }
+  double WalkLimit() const {
+    return result_.cost - 2 * kProofTolerance * std::max(1.0, result_.cost);
+  }
 
   void Raise(double bound) {
     result_.lower_bound = std::max(result_.lower_bound, std::min(bound, result_.cost));
@@ -154,13 +156,6 @@ class Proof {
 };
 
 }  // namespace
-
-bool CanProveByStages(const StageModel& model) {
-  for (int s = 0; s < model.stage_count(); ++s) {
-    if (model.size(s) > WalkProver::kMostClusters) return false;
-  }
-  return true;
-}
 
 StageProof ProveByStages(const StageModel& model, const std::vector<ClusterState>& walk,
                          const StageProofOptions& options, Budget& budget) {

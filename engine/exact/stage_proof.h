@@ -42,11 +42,8 @@ struct StageProof {
   int cuts = 0;
 };
 
-// Whether the sizes of `model` are within what ProveByStages can do.
-bool CanProveByStages(const StageModel& model);
-
-// Starts from `walk`, a route. REQUIRES: the model has a cluster, and CanProveByStages(model).
-// Deterministic unless the budget ends it.
+// Starts from `walk`, a route. REQUIRES: the model has a cluster. Deterministic unless the budget
+// ends it.
 StageProof ProveByStages(const StageModel& model, const std::vector<ClusterState>& walk,
                          const StageProofOptions& options, Budget& budget);
 

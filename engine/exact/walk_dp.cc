@@ -96,7 +96,7 @@ typename WalkDp<kWords>::Outcome WalkDp<kWords>::Run(Direction direction, bool p
         const std::vector<Rows>& sources = filled[static_cast<size_t>(previous)];
         for (size_t j = 0; j < sources.size(); ++j) {
           const int from = FirstAt(previous) + static_cast<int>(j);
-          if (from != cluster) Extend(direction, sources[j], from, cluster, new_stage);
+          Extend(direction, sources[j], from, cluster, new_stage);
         }
       }
       DropDead(position, cluster);
@@ -125,8 +125,10 @@ void WalkDp<kWords>::FillFirst(Direction direction, int cluster) {
 template <int kWords>
 void WalkDp<kWords>::Extend(Direction direction, const Rows& source, int from, int to,
                             bool new_stage) {
-  if (source.empty()) return;
   const bool is_forward = direction == Direction::kForward;
+  if (source.empty() || !(is_forward ? model_.CanFollow(from, to) : model_.CanFollow(to, from))) {
+    return;
+  }
   const auto t = static_cast<size_t>(to);
   const Memory bit = Bit(to);
   const Memory& excluded = is_forward ? after_[t] : before_[t];
@@ -267,7 +269,7 @@ typename WalkDp<kWords>::Origin WalkDp<kWords>::FindOrigin(int position, int clu
   for (size_t i = 0; i < forward_[p - 1].size(); ++i) {
     const Rows& sources = forward_[p - 1][i];
     const int from = FirstAt(position - 1) + static_cast<int>(i);
-    if (from == cluster) continue;
+    if (!model_.CanFollow(from, cluster)) continue;
     const double* moves = model_.Move(from, cluster);
     for (int r = 0; r < sources.size(); ++r) {
       const Memory& remembered = sources.memory(r);

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "engine/exact/min_plus.h"
 #include "engine/exact/multiplier_search.h"
 #include "engine/exact/walk_conflicts.h"
 #include "engine/exact/walk_dp.h"
@@ -136,11 +137,10 @@ class Prover : public WalkProver {
     conflicts_.clear();
   }
 
-  double Nearest(int a, int b) const {
-    const int moves = model_.states(a) * model_.states(b);
-    const double* there = model_.Move(a, b);
-    const double* back = model_.Move(b, a);
-    return std::min(*std::min_element(there, there + moves), *std::min_element(back, back + moves));
+  double Shortest(int a, int b) const {
+    if (!model_.CanFollow(a, b)) return kUnreached;
+    const double* moves = model_.Move(a, b);
+    return *std::min_element(moves, moves + model_.states(a) * model_.states(b));
   }
 
   void RememberNearest() {
@@ -148,7 +148,9 @@ class Prover : public WalkProver {
       const int stage = model_.stage_of(c);
       std::vector<std::pair<double, int>> near;
       for (int other = model_.first(stage); other < model_.first(stage + 1); ++other) {
-        if (other != c) near.emplace_back(Nearest(c, other), other);
+        if (other == c) continue;
+        const double nearest = std::min(Shortest(c, other), Shortest(other, c));
+        if (nearest < kUnreached) near.emplace_back(nearest, other);
       }
       std::sort(near.begin(), near.end());
       for (int i = 0; i < static_cast<int>(near.size()) && i + 1 < options_.first_memory; ++i) {

@@ -32,9 +32,7 @@ class WalkProver {
     kStopped,  // the budget ran out, or a pass became too big
   };
 
-  // For stages [0, stages) of `model`, which outlives this. REQUIRES: stages >= 1, and no stage has
-  // more than kMostClusters.
-  static constexpr int kMostClusters = 512;
+  // For stages [0, stages) of `model`, which outlives this. REQUIRES: stages >= 1.
   static std::unique_ptr<WalkProver> Make(const StageModel& model, int stages,
                                           const Options& options);
 

@@ -9,13 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "engine/cost/entry_table.h"
 #include "engine/cost/route_cost.h"
 #include "engine/exact/lower_bound.h"
-#include "engine/exact/plan_stages.h"
 #include "engine/exact/stage_model.h"
 #include "engine/exact/stage_proof.h"
-#include "engine/exact/walk_prover.h"
 #include "engine/framework/island_layout.h"
 #include "engine/strategy/auto.h"
 #include "engine/strategy/framework_milp.h"
@@ -46,22 +43,6 @@ constexpr double kRouteShareWithoutProof = 0.7;
 constexpr double kBoundShare = 0.5;
 constexpr double kBoundShareWithoutProof = 0.8;
 
-// Whether the plan has the shape that proofs need, and not too many moves.
-bool IsProvable(const Plan& plan) {
-  const auto stages = StagesOf(plan, WalkProver::kMostClusters);
-  if (!stages) return false;
-  const EntryTable table(plan);
-  size_t moves = 0;
-  size_t states_before = 0;
-  for (const PlanStage& stage : *stages) {
-    size_t states = 0;
-    for (const int path : stage.paths) states += static_cast<size_t>(table.count(path));
-    moves += states * (states_before + states);
-    states_before = states;
-  }
-  return moves <= kMostModelEntries;
-}
-
 Budget Share(const Budget& budget, double share) {
   if (!budget.deadline()) return budget;
   const auto left = *budget.deadline() - Budget::Clock::now();
@@ -90,7 +71,7 @@ class Exact : public Strategy {
 
  private:
   Solution FirstRoute(const LayerProblem& problem, const Budget& budget) const {
-    const bool provable = IsProvable(*problem.plan);
+    const bool provable = StageModel::Fits(*problem.plan, kMostModelEntries);
     Budget share = Share(budget, provable ? kRouteShare : kRouteShareWithoutProof);
     Solution solution = (provable ? long_heuristic_ : heuristic_)->Solve(problem, share);
     solution.statistics["provable"] = provable ? 1 : 0;
@@ -119,7 +100,7 @@ class Exact : public Strategy {
   // False if a limit ended it.
   static bool ProveByStages(const LayerProblem& problem, Solution& solution, Budget& budget) {
     const std::optional<StageModel> model = StageModel::Build(problem, kMostModelEntries, &budget);
-    if (!model || !CanProveByStages(*model)) return false;
+    if (!model) return false;
     const StageProof proof =
         traverse::ProveByStages(*model, model->WalkOf(solution.route), StageProofOptions(), budget);
     Route route = model->RouteOf(proof.walk);

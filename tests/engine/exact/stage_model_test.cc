@@ -16,18 +16,14 @@ namespace traverse {
 namespace {
 
 using testing::OwnedProblem;
-using testing::PlanShape;
 using testing::RandomProblem;
 
 constexpr size_t kNoLimit = 1 << 20;
 
 TEST(StageModel, WalksCostWhatTheirRoutesCost) {
-  constexpr PlanShape kShapes[] = {PlanShape::kFlatContours, PlanShape::kSequential,
-                                   PlanShape::kFlatBefore};
-  for (uint64_t seed = 1; seed <= 100; ++seed) {
+  for (uint64_t seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
-    const OwnedProblem owned =
-        RandomProblem(seed, {.shape = kShapes[seed % 3], .min_paths = 1, .max_paths = 6});
+    const OwnedProblem owned = RandomProblem(seed, {.min_paths = 1, .max_paths = 6});
     const Route route = testing::BruteForce(owned.problem).route;
 
     const std::optional<StageModel> model = StageModel::Build(owned.problem, kNoLimit);
@@ -57,6 +53,8 @@ TEST(StageModel, IsNotBuiltBeyondTheLimit) {
 
   EXPECT_TRUE(StageModel::Build(owned.problem, kNoLimit).has_value());
   EXPECT_FALSE(StageModel::Build(owned.problem, 100).has_value());
+  EXPECT_TRUE(StageModel::Fits(owned.plan(), kNoLimit));
+  EXPECT_FALSE(StageModel::Fits(owned.plan(), 100));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ using testing::PlanShape;
 using testing::RandomProblem;
 
 constexpr PlanShape kShapes[] = {PlanShape::kFlatContours, PlanShape::kSequential,
-                                 PlanShape::kFlatBefore};
+                                 PlanShape::kFlatBefore, PlanShape::kInterleaved, PlanShape::kTree};
 constexpr int kNever = 1000;
 
 StageModel ModelOf(const OwnedProblem& owned) { return *StageModel::Build(owned.problem, 1 << 20); }
@@ -44,10 +44,10 @@ void ExpectProves(const OwnedProblem& owned, const StageProofOptions& options) {
 }
 
 TEST(ProveByStages, WalksProveWhatBruteForceFinds) {
-  for (uint64_t seed = 1; seed <= 240; ++seed) {
+  for (uint64_t seed = 1; seed <= 400; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     // Little memory at first, so that all parts of the method have something to do.
-    ExpectProves(RandomProblem(seed, {.shape = kShapes[seed % 3], .min_paths = 1, .max_paths = 7}),
+    ExpectProves(RandomProblem(seed, {.shape = kShapes[seed % 5], .min_paths = 1, .max_paths = 7}),
                  {.walks = {.first_memory = static_cast<int>(1 + seed % 3)},
                   .least_items_to_branch = kNever});
   }
@@ -73,11 +73,24 @@ TEST(ProveByStages, BranchAndCutProvesWhatBruteForceFinds) {
   }
 }
 
+// Ties, moves of no length, paths on top of each other.
+TEST(ProveByStages, DegenerateGeometryIsProvenToo) {
+  for (const testing::Degeneracy degeneracy : testing::kDegeneracies) {
+    for (uint64_t seed = 1; seed <= 60; ++seed) {
+      SCOPED_TRACE(absl::StrCat("degeneracy ", static_cast<int>(degeneracy), ", seed ", seed));
+      const OwnedProblem owned =
+          RandomProblem(seed, {.shape = kShapes[seed % 5], .min_paths = 3, .max_paths = 6});
+      ExpectProves(testing::Degenerate(owned, degeneracy),
+                   {.walks = {.first_memory = 2}, .least_items_to_branch = 2});
+    }
+  }
+}
+
 TEST(ProveByStages, BoundsWithoutAProofAreValid) {
-  for (uint64_t seed = 1; seed <= 60; ++seed) {
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     const OwnedProblem owned =
-        RandomProblem(seed, {.shape = PlanShape::kSequential, .min_paths = 4, .max_paths = 7});
+        RandomProblem(seed, {.shape = kShapes[seed % 5], .min_paths = 4, .max_paths = 7});
     const double best = BruteForce(owned.problem).cost;
     const StageModel model = ModelOf(owned);
     const auto prover = WalkProver::Make(model, model.stage_count(), {.first_memory = 1});
