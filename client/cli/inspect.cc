@@ -6,6 +6,7 @@
 #include "client/cli/service.h"
 #include "client/cli/terminal.h"
 #include "client/formats/read_input.h"
+#include "client/gcode/gcode_job.h"
 #include "client/report/inspection.h"
 
 namespace traverse::cli {
@@ -25,6 +26,7 @@ Outcome RunInspect(const Flags& flags) {
   if (absl::Status status = ApplyJobFlags(*job_flags, *job); !status.ok()) {
     return UsageFault(status);
   }
+  if (job->gcode != nullptr) AddMeasuredFacts(*job);
   // The travel of the order given comes from the service too, so that there is one way to count it.
   StrategySpec none{"none", {}};
   none.strategy.set_name("none");

@@ -101,12 +101,6 @@ void AddFacts(const GcodeFile& file, const Census& census, Policy policy, InputJ
     add(std::string(FeatureName(static_cast<Feature>(i))),
         absl::StrFormat("%d paths, %.2f m", census.paths[i], census.way_mm[i] / 1000));
   }
-  const PrintTotals totals = Sum(MeasureLayers(file, DefaultThreads()));
-  add("extruded", absl::StrFormat("%.2f m", totals.extruded_mm / 1000));
-  add("travel", absl::StrFormat("%.2f m", totals.travel_mm / 1000));
-  add("retractions", absl::StrFormat("%d", totals.retractions));
-  add("estimated print time",
-      Duration(totals.seconds) + " (trapezoidal speeds with look-ahead, heating not counted)");
   add("movable under " + std::string(PolicyName(policy)),
       absl::StrFormat("%d of %d paths", census.movable, file.blocks.size()));
 }
@@ -136,15 +130,33 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   return job;
 }
 
+void AddMeasuredFacts(InputJob& job) {
+  const auto add = [&job](std::string key, std::string value) {
+    job.facts.emplace_back(std::move(key), std::move(value));
+  };
+  const gcode::PrintTotals totals =
+      gcode::Sum(gcode::MeasureLayers(*job.gcode, gcode::DefaultThreads()));
+  add("extruded", absl::StrFormat("%.2f m", totals.extruded_mm / 1000));
+  add("travel", absl::StrFormat("%.2f m", totals.travel_mm / 1000));
+  add("retractions", absl::StrFormat("%d", totals.retractions));
+  add("visible walls crossed", absl::StrFormat("%d times, %d of them with filament not pulled back",
+                                               totals.crossings, totals.open_crossings));
+  add("estimated print time", gcode::Duration(totals.seconds) +
+                                  " (trapezoidal speeds with look-ahead, heating not counted)");
+}
+
 std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& options) {
   std::vector<v1::Layer> layers(job.layers.size());
+  const gcode::Latitude latitude = gcode::LearnRetraction(*job.gcode).avoids_walls
+                                       ? gcode::Latitude::kIslands
+                                       : gcode::Latitude::kNarrow;
   gcode::ParallelFor(layers.size(), gcode::DefaultThreads(), [&](size_t i) {
     const v1::Layer& layer = job.layers[i];
     layers[i].set_id(layer.id());
     if (layer.has_cost()) *layers[i].mutable_cost() = layer.cost();
     const gcode::Layer& of_file = job.gcode->layers[job.first_layer + i];
-    *layers[i].mutable_plan() = std::move(
-        gcode::MakeLayerPlan(*job.gcode, of_file, options.policy, gcode::Latitude::kNarrow).plan);
+    *layers[i].mutable_plan() =
+        std::move(gcode::MakeLayerPlan(*job.gcode, of_file, options.policy, latitude).plan);
   });
   return layers;
 }

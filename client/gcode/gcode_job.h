@@ -21,10 +21,14 @@ struct GcodeOptions {
 };
 
 // The job in `file`: a plan for each of its layers, the cost of travel as its own moves show it
-// (time), a strategy that searches short files for longer than long ones, and what `inspect`
-// prints. Path i of layer l is block layers[l].first_block + i of the
-// file; labels count the paths of a layer from 1.
+// (time), a strategy that searches short files for longer than long ones, and most of what
+// `inspect` prints. Path i of layer l is block layers[l].first_block + i of the file; labels count
+// the paths of a layer from 1.
 InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions& options);
+
+// Adds to the facts of a job from G-code what has to be measured for them: way, retractions,
+// visible walls crossed, print time.
+void AddMeasuredFacts(InputJob& job);
 
 // The layers of `job`, which is one of G-code, with plans of less latitude: a second way to look
 // for an order (policy.h).

@@ -1,9 +1,11 @@
 #include "client/gcode/layer_choice.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include "client/gcode/parallel.h"
@@ -24,11 +26,24 @@ double Score(const PrintTotals& totals) {
   return totals.seconds + kSecondsPerMm * totals.travel_mm;
 }
 
+// The lines of a layer's paths in the file.
+std::string_view GivenPaths(const GcodeFile& file, size_t layer) {
+  const Offset begin = file.blocks[file.layers[layer].first_block].begin;
+  const Offset end = file.blocks[file.layers[layer].end_block - 1].end;
+  return std::string_view(file.text).substr(begin, end - begin);
+}
+
+// As slicers write it: a sign that the extruder's register does not count through.
+bool Resets(std::string_view text) { return text.find("G92") != std::string_view::npos; }
+
 // One order of a layer.
 struct Choice {
   LayerOrder order;
   PrintTotals inside;  // its paths and the ways between them
+  PartStart start;     // how it begins and ends in `text`
   PartStart behind;
+  bool resets_e = false;  // the register is set on the way, and does not count through
+  std::string text;       // empty for the order of the file
 };
 
 // A layer and what it may be. choices[0] is the order of the file.
@@ -48,7 +63,7 @@ class Chooser {
         tries_(tries),
         policy_(policy),
         threads_(threads),
-        habit_(LearnRetraction(file)),
+        habit_(HabitOf(file, policy)),
         donors_(file),
         columns_(file.layers.size()) {}
 
@@ -61,23 +76,38 @@ class Chooser {
   }
 
  private:
-  void AddChoice(LayerOrder order, Column& column) const {
+  static RetractionHabit HabitOf(const GcodeFile& file, Policy policy) {
+    RetractionHabit habit = LearnRetraction(file);
+    habit.spares_walls = policy == Policy::kSafe || habit.avoids_walls;
+    return habit;
+  }
+
+  void AddGiven(size_t layer, Column& column) const {
+    Choice& choice = column.choices.emplace_back();
+    choice.order = column.writer->GivenOrder();
+    choice.start = StartOfPaths(file_, choice.order.front());
+    choice.behind = StartBehind(file_, file_.blocks[file_.layers[layer].end_block - 1]);
+    choice.resets_e = Resets(GivenPaths(file_, layer));
+    choice.inside = MeasurePaths(file_, file_.layers[layer], column.writer->walls());
+  }
+
+  void AddChoice(const LayerOrder& order, Column& column) const {
     for (const Choice& known : column.choices) {
       if (known.order == order) return;
     }
     Choice& choice = column.choices.emplace_back();
-    choice.order = std::move(order);
-    std::string text;
-    const PartStart start = StartOfPaths(file_, choice.order.front());
-    choice.behind = column.writer->WritePaths(choice.order, start, text);
-    choice.inside = Measure(file_, text, start);
+    choice.order = order;
+    choice.start = StartOfPaths(file_, order.front());
+    choice.behind = column.writer->WritePaths(order, choice.start, choice.text);
+    choice.resets_e = Resets(choice.text);
+    choice.inside = Measure(file_, choice.text, choice.start, &column.writer->walls());
   }
 
   void FillColumn(size_t layer) {
     Column& column = columns_[layer];
     column.writer =
         std::make_unique<const LayerWriter>(file_, file_.layers[layer], habit_, donors_);
-    AddChoice(column.writer->GivenOrder(), column);
+    AddGiven(layer, column);
     for (const FileOrder& order : tries_) {
       if (!order[layer].empty()) AddChoice(order[layer], column);
     }
@@ -89,7 +119,7 @@ class Chooser {
       for (const Choice& choice : column.choices) {
         std::string text;
         column.writer->WriteWay(before.order.back(), choice.order.front(), before.behind, text);
-        column.ways.push_back(Measure(file_, text, before.behind));
+        column.ways.push_back(Measure(file_, text, before.behind, &column.writer->walls()));
       }
     }
   }
@@ -118,11 +148,21 @@ class Chooser {
   }
 
   bool MayBe(const Column& column, const PrintTotals& way, const PrintTotals& inside) const {
+    const PrintTotals& given = column.choices[0].inside;
+    PrintTotals given_whole = given;
+    if (!column.ways.empty()) given_whole += column.ways[0];
+    PrintTotals whole = inside;
+    whole += way;
+    return MayBe(given, inside) && MayBe(given_whole, whole);
+  }
+
+  bool MayBe(const PrintTotals& given, const PrintTotals& chosen) const {
+    if (policy_ != Policy::kFree && habit_.avoids_walls && chosen.crossings > given.crossings) {
+      return false;
+    }
     if (policy_ != Policy::kSafe) return true;
-    const double given = column.choices[0].inside.travel_mm;
-    const double given_way = column.ways.empty() ? 0 : column.ways[0].travel_mm;
-    return inside.travel_mm <= given + kSlackMm &&
-           inside.travel_mm + way.travel_mm <= given + given_way + kSlackMm;
+    return chosen.travel_mm <= given.travel_mm + kSlackMm &&
+           chosen.open_crossings <= given.open_crossings;
   }
 
   void Trace() {
@@ -134,34 +174,87 @@ class Chooser {
     }
   }
 
-  ChosenLayers Write() const {
+  // The ways are written one after the other, for each needs to know where the extruder's register
+  // is; the paths have been written already, and only where the register counts on from elsewhere
+  // they are written again, side by side.
+  ChosenLayers Write() {
     ChosenLayers chosen;
-    const Block& first = file_.blocks.front();
-    PartStart at{StateAt(file_, first), file_.states[first.state_in]};
-    std::vector<PartStart> starts;  // [layer]
-    std::vector<size_t> ends;       // [layer] of its text
+    chosen.texts.resize(columns_.size());
+    for (size_t layer = 0; layer < columns_.size(); ++layer) NoteTotals(layer, chosen);
+    std::vector<size_t> again;
+    std::vector<PartStart> starts;  // [layer] of its paths, the register as it ought to be
     for (size_t layer = 0; layer < columns_.size(); ++layer) {
-      const Column& column = columns_[layer];
-      const LayerOrder& order = column.choices[column.chosen].order;
-      starts.push_back(at);
-      if (layer > 0) {
-        const Column& before = columns_[layer - 1];
-        const Placement& last = before.choices[before.chosen].order.back();
-        at = column.writer->WriteWay(last, order.front(), at, chosen.text);
+      LayerText& text = chosen.texts[layer];
+      starts.push_back(WriteWayTo(layer, chosen.behind, text.way));
+      chosen.behind = Chosen(layer).behind;
+      if (Fits(layer, starts[layer])) {
+        text.paths = std::move(Chosen(layer).text);
+      } else if (Chosen(layer).resets_e) {
+        chosen.behind = WritePathsOf(layer, starts[layer], text.paths);
+      } else {
+        again.push_back(layer);
+        chosen.behind.machine.e += starts[layer].machine.e - Chosen(layer).start.machine.e;
       }
-      at = column.writer->WritePaths(order, at, chosen.text);
-      ends.push_back(chosen.text.size());
-      chosen.changed += column.chosen != 0 ? 1 : 0;
     }
-    chosen.behind = at;
-    chosen.totals.resize(columns_.size());
-    ParallelFor(columns_.size(), threads_, [&](size_t layer) {
-      const size_t begin = layer == 0 ? 0 : ends[layer - 1];
-      const std::string_view text =
-          std::string_view(chosen.text).substr(begin, ends[layer] - begin);
-      chosen.totals[layer] = Measure(file_, text, starts[layer]);
+    starts.push_back(chosen.behind);
+    std::atomic<bool> as_foreseen = true;
+    ParallelFor(again.size(), threads_, [&](size_t i) {
+      const size_t layer = again[i];
+      const PartStart behind = WritePathsOf(layer, starts[layer], chosen.texts[layer].paths);
+      const Decimal foreseen =
+          Chosen(layer).behind.machine.e + starts[layer].machine.e - Chosen(layer).start.machine.e;
+      if (behind.machine.e != foreseen) as_foreseen = false;
     });
+    if (!as_foreseen) WriteOneByOne(chosen);
     return chosen;
+  }
+
+  // Where the register is set in some unusual spelling.
+  void WriteOneByOne(ChosenLayers& chosen) const {
+    for (size_t layer = 0; layer < columns_.size(); ++layer) {
+      LayerText& text = chosen.texts[layer];
+      text = LayerText{};
+      const PartStart start = WriteWayTo(layer, chosen.behind, text.way);
+      chosen.behind = WritePathsOf(layer, start, text.paths);
+    }
+  }
+
+  Choice& Chosen(size_t layer) { return columns_[layer].choices[columns_[layer].chosen]; }
+  const Choice& Chosen(size_t layer) const {
+    return columns_[layer].choices[columns_[layer].chosen];
+  }
+
+  // The paths written for the choice may stand behind `start`.
+  bool Fits(size_t layer, const PartStart& start) const {
+    return start.machine.RelativeE() || start.machine.e == Chosen(layer).start.machine.e;
+  }
+
+  // `at` is the machine behind the layer before; of no meaning for the first one.
+  PartStart WriteWayTo(size_t layer, const PartStart& at, std::string& text) const {
+    if (layer == 0) {
+      const Block& first = file_.blocks.front();
+      return {StateAt(file_, first), file_.states[first.state_in]};
+    }
+    return columns_[layer].writer->WriteWay(Chosen(layer - 1).order.back(),
+                                            Chosen(layer).order.front(), at, text);
+  }
+
+  PartStart WritePathsOf(size_t layer, const PartStart& start, std::string& text) const {
+    return columns_[layer].writer->WritePaths(Chosen(layer).order, start, text);
+  }
+
+  void NoteTotals(size_t layer, ChosenLayers& chosen) const {
+    const Column& column = columns_[layer];
+    PrintTotals given = column.choices[0].inside;
+    PrintTotals totals = column.choices[column.chosen].inside;
+    if (layer > 0) {
+      const size_t before = columns_[layer - 1].chosen;
+      given += column.ways[0];
+      totals += column.ways[before * column.choices.size() + column.chosen];
+    }
+    chosen.given.push_back(given);
+    chosen.totals.push_back(totals);
+    chosen.changed += column.chosen != 0 ? 1 : 0;
   }
 
   const GcodeFile& file_;
@@ -174,6 +267,13 @@ class Chooser {
 };
 
 }  // namespace
+
+void ChosenLayers::AppendTo(const GcodeFile& file, std::string& text) const {
+  for (size_t i = 0; i < texts.size(); ++i) {
+    text += texts[i].way;
+    text += texts[i].paths.empty() ? GivenPaths(file, i) : std::string_view(texts[i].paths);
+  }
+}
 
 ChosenLayers ChooseLayers(const GcodeFile& file, const std::vector<FileOrder>& tries, Policy policy,
                           int threads) {

@@ -22,17 +22,29 @@ namespace traverse::gcode {
 // One order for each layer of a file; empty for that of the file.
 using FileOrder = std::vector<LayerOrder>;
 
-// The layers of a file, written one behind the other.
+// A layer as it was written. `paths` is empty if they are as in the file.
+struct LayerText {
+  std::string way;
+  std::string paths;
+};
+
+// The layers of a file, each in the order chosen for it.
 struct ChosenLayers {
-  std::string text;  // from the first path to the end of the last one
-  PartStart behind;
-  std::vector<PrintTotals> totals;  // [layer], with the way to it
+  std::vector<LayerText> texts;     // [layer]
+  PartStart behind;                 // the machine behind the last one
+  std::vector<PrintTotals> given;   // [layer], with the way to it, in the file's order
+  std::vector<PrintTotals> totals;  // [layer], as chosen
   int64_t changed = 0;              // layers in another order than the file's
+
+  // Appends all layers, from the first path to the end of the last one.
+  void AppendTo(const GcodeFile& file, std::string& text) const;
 };
 
 // Chooses among the order of the file and those of `tries` for the least estimated time. Under
-// Policy::kSafe no layer has more travel than in the file, neither within nor together with the way
-// to it. The result does not depend on `threads`.
+// Policy::kSafe no layer has more travel than in the file, nor more ways across visible walls with
+// an open nozzle, neither within nor together with the way to it. But under Policy::kFree, no layer
+// of a file whose travel goes around walls has more ways across them. The result does not depend on
+// `threads`.
 ChosenLayers ChooseLayers(const GcodeFile& file, const std::vector<FileOrder>& tries, Policy policy,
                           int threads);
 

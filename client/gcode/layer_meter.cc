@@ -1,13 +1,15 @@
 #include "client/gcode/layer_meter.h"
 
+#include "client/gcode/loops.h"
 #include "client/gcode/outline.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/print_meter.h"
 
 namespace traverse::gcode {
 
-PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStart& start) {
-  PrintMeter meter(file.profile, DynamicsOf(file.profile, start.state, file.setters));
+PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStart& start,
+                    const VisibleWalls* walls) {
+  PrintMeter meter(file.profile, DynamicsOf(file.profile, start.state, file.setters), walls);
   Interpreter interpreter(text, 0, start.machine);
   for (Step step; interpreter.Next(step);) meter.Follow(step, interpreter);
   return meter.Finish();
@@ -21,18 +23,26 @@ PartStart StartBehind(const GcodeFile& file, const Block& block) {
   return start;
 }
 
+PrintTotals MeasurePaths(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls) {
+  const Block& first = file.blocks[layer.first_block];
+  const Offset end = file.blocks[layer.end_block - 1].end;
+  const PartStart start{StateAt(file, first), file.states[first.state_in]};
+  return Measure(file, std::string_view(file.text).substr(first.begin, end - first.begin), start,
+                 &walls);
+}
+
+PrintTotals MeasureWay(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls) {
+  if (layer.first_block == 0) return {};
+  const PartStart start = StartBehind(file, file.blocks[layer.first_block - 1]);
+  return Measure(file, file.LinkText(layer.first_block), start, &walls);
+}
+
 std::vector<PrintTotals> MeasureLayers(const GcodeFile& file, int threads) {
   std::vector<PrintTotals> totals(file.layers.size());
   ParallelFor(totals.size(), threads, [&file, &totals](size_t i) {
-    const Layer& layer = file.layers[i];
-    const Block& first = file.blocks[layer.first_block];
-    const Offset end = file.blocks[layer.end_block - 1].end;
-    const bool whole_file_begins = layer.first_block == 0;
-    const PartStart start = whole_file_begins
-                                ? PartStart{StateAt(file, first), file.states[first.state_in]}
-                                : StartBehind(file, file.blocks[layer.first_block - 1]);
-    const Offset begin = whole_file_begins ? first.begin : file.blocks[layer.first_block - 1].end;
-    totals[i] = Measure(file, std::string_view(file.text).substr(begin, end - begin), start);
+    const VisibleWalls walls(OutlinesOf(file, file.layers[i]));
+    totals[i] = MeasureWay(file, file.layers[i], walls);
+    totals[i] += MeasurePaths(file, file.layers[i], walls);
   });
   return totals;
 }

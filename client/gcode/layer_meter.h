@@ -8,6 +8,7 @@
 
 #include "client/gcode/gcode_file.h"
 #include "client/gcode/print_totals.h"
+#include "client/gcode/visible_walls.h"
 
 namespace traverse::gcode {
 
@@ -17,14 +18,22 @@ struct PartStart {
   PrintState state;
 };
 
-// What the lines `text` amount to, from standstill to standstill.
-PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStart& start);
+// What the lines `text` amount to, from standstill to standstill. Ways across `walls` are counted
+// unless those are null.
+PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStart& start,
+                    const VisibleWalls* walls = nullptr);
 
 // How the machine is behind block `block`.
 PartStart StartBehind(const GcodeFile& file, const Block& block);
 
-// [layer]: from the end of the layer before to the end of its last path. The first layer begins
-// with its first path. Uses `threads` threads; the result does not depend on them.
+// The paths of a layer as they are in the file, and the ways between them.
+PrintTotals MeasurePaths(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls);
+
+// The way to the first path of `layer`, from the end of the layer before; nothing for the first.
+PrintTotals MeasureWay(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls);
+
+// [layer]: its paths and the way to it, with a standstill between the two. Uses `threads` threads;
+// the result does not depend on them.
 std::vector<PrintTotals> MeasureLayers(const GcodeFile& file, int threads = 1);
 
 PrintTotals Sum(const std::vector<PrintTotals>& totals);

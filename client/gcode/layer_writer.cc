@@ -53,7 +53,8 @@ LayerWriter::LayerWriter(const GcodeFile& file, const Layer& layer, const Retrac
       layer_(layer),
       donors_(donors),
       outlines_(OutlinesOf(file, layer)),
-      rules_(file, layer, habit, outlines_) {}
+      walls_(outlines_),
+      rules_(file, layer, habit, outlines_, walls_) {}
 
 LayerOrder LayerWriter::GivenOrder() const {
   LayerOrder order;
@@ -113,6 +114,7 @@ void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32
   if (boundary) request.boundary = place;
   request.without_progress = !boundary;
   request.retract = Retracts(from, to);
+  request.detours = rules_.detours();
   LinkWriter(file_, donors_, out).Write(request);
 }
 

@@ -31,6 +31,8 @@ class LayerWriter {
   LayerWriter(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
               const LinkDonors& donors);
 
+  const VisibleWalls& walls() const { return walls_; }
+
   // The order of the file.
   LayerOrder GivenOrder() const;
 
@@ -51,6 +53,7 @@ class LayerWriter {
   const Layer& layer_;
   const LinkDonors& donors_;
   const std::vector<Outline> outlines_;
+  const VisibleWalls walls_;
   const TravelRules rules_;
 };
 

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "client/gcode/detour.h"
 #include "client/gcode/gcode_out.h"
 #include "client/gcode/link.h"
 #include "client/gcode/link_donors.h"
@@ -34,6 +35,9 @@ struct LinkRequest {
   // The link with the marks of a boundary (a new layer, an object) that is due here; all its lines
   // are written. It stands before block `boundary` in the file.
   std::optional<uint32_t> boundary;
+
+  // Travel is led around visible walls, where there is such a way; null: it is straight.
+  const Detours* detours = nullptr;
 
   // M73 lines are left out of what is copied as it is.
   bool without_progress = false;
@@ -59,6 +63,7 @@ class LinkWriter {
   void WriteArrival(const LinkRequest& request, const Link& form);
   void WriteWipe(const PlacedPath& path, const Link& form);
   void WriteMotion(const LinkStep& step, Decimal z_form, Decimal z_here);
+  void WriteDetour(const LinkRequest& request, const LinkStep& step);
   void WriteTravel(const LinkRequest& request, const Link& form);
   void WriteComments(uint32_t block);
   void Settle(const LinkRequest& request, const Link& form);

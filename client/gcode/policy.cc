@@ -271,7 +271,9 @@ void LayerPlanner::AddGroup(size_t begin, size_t end) {
   }
   result_.movable += static_cast<int64_t>(end - begin);
   result_.plan.mutable_nodes(static_cast<int>(group))->mutable_any_order();
-  if (policy_ == Policy::kBalanced) return AddGroupByIslands(group, begin, end);
+  if (policy_ == Policy::kBalanced || latitude_ == Latitude::kIslands) {
+    return AddGroupByIslands(group, begin, end);
+  }
   uint32_t units = 0;
   for (size_t path = begin; path < end;) {
     size_t behind = path + 1;

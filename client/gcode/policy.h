@@ -45,6 +45,8 @@ enum class Latitude : uint8_t {
   // The layer begins and ends with the path that it does in the file, so that nothing changes for
   // the layers around it; walls that touch and follow one another in the file stay together.
   kNarrow,
+  // Islands are done one by one under any policy: so walls are crossed no more often than need be.
+  kIslands,
 };
 
 LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy,

@@ -77,6 +77,19 @@ void PrintMeter::FollowXy(const Step& step, const MachineState& state) {
                   dynamics_.corner_speed());
   }
   (extrudes ? totals_.extruded_mm : totals_.travel_mm) += length;
+  if (extrudes) crosses_ = false;
+  if (step.kind == StepKind::kTravel && walls_ != nullptr && !crosses_) NoteCrossing(step, state);
+}
+
+void PrintMeter::NoteCrossing(const Step& step, const MachineState& state) {
+  const double unit = Unit(state);
+  const auto vertex = [unit](const Position& at) {
+    return Vertex{ToDouble(at.x) * unit, ToDouble(at.y) * unit};
+  };
+  crosses_ = walls_->Crossed(vertex(step.from), vertex(state.at));
+  if (!crosses_) return;
+  ++totals_.crossings;
+  if (!step.retracted) ++totals_.open_crossings;
 }
 
 PrintTotals PrintMeter::Finish() {

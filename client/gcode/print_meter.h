@@ -9,14 +9,16 @@
 #include "client/gcode/machine_profile.h"
 #include "client/gcode/motion_planner.h"
 #include "client/gcode/print_totals.h"
+#include "client/gcode/visible_walls.h"
 
 namespace traverse::gcode {
 
 class PrintMeter {
  public:
-  // `profile` outlives the meter; `dynamics` are those in force at the beginning.
-  PrintMeter(const MachineProfile& profile, const Dynamics& dynamics)
-      : profile_(profile), dynamics_(dynamics) {}
+  // `profile` and `walls` outlive the meter; `dynamics` are those in force at the beginning.
+  // Crossings are counted where there are `walls`: null for none.
+  PrintMeter(const MachineProfile& profile, const Dynamics& dynamics, const VisibleWalls* walls)
+      : profile_(profile), dynamics_(dynamics), walls_(walls) {}
 
   // Follows one step of `interpreter`, which has just made it.
   void Follow(const Step& step, const Interpreter& interpreter);
@@ -26,9 +28,12 @@ class PrintMeter {
 
  private:
   void FollowXy(const Step& step, const MachineState& state);
+  void NoteCrossing(const Step& step, const MachineState& state);
 
   const MachineProfile& profile_;
   Dynamics dynamics_;
+  const VisibleWalls* walls_;
+  bool crosses_ = false;  // the way since the last extrusion
   MotionPlanner planner_;
   PrintTotals totals_;
 };

@@ -8,15 +8,19 @@
 namespace traverse::gcode {
 
 struct PrintTotals {
-  double extruded_mm = 0;   // way in XY while depositing
-  double travel_mm = 0;     // way in XY without depositing, wipes included
-  int64_t retractions = 0;  // times filament is pulled back, wipes with it counted once
-  double seconds = 0;       // see motion_planner.h for the model
+  double extruded_mm = 0;      // way in XY while depositing
+  double travel_mm = 0;        // way in XY without depositing, wipes included
+  int64_t retractions = 0;     // times filament is pulled back, wipes with it counted once
+  int64_t crossings = 0;       // ways from path to path that lead across a visible wall
+  int64_t open_crossings = 0;  // of them, those with filament not pulled back
+  double seconds = 0;          // see motion_planner.h for the model
 
   PrintTotals& operator+=(const PrintTotals& other) {
     extruded_mm += other.extruded_mm;
     travel_mm += other.travel_mm;
     retractions += other.retractions;
+    crossings += other.crossings;
+    open_crossings += other.open_crossings;
     seconds += other.seconds;
     return *this;
   }

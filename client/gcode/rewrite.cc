@@ -68,6 +68,14 @@ std::string AddedLine(const GcodeRewrite& rewrite, const RewriteOptions& options
                          PolicyName(options.policy), DescribeRewrite(rewrite));
 }
 
+std::string NewText(const GcodeFile& file, const ChosenLayers& chosen, const std::string& added) {
+  std::string text = HeadWithLine(file, added);
+  text.reserve(file.text.size() + file.text.size() / 16);
+  chosen.AppendTo(file, text);
+  text += Foot(file, chosen);
+  return text;
+}
+
 }  // namespace
 }  // namespace gcode
 
@@ -75,12 +83,12 @@ std::string DescribeRewrite(const GcodeRewrite& rewrite) {
   const gcode::PrintTotals& before = rewrite.before;
   const gcode::PrintTotals& after = rewrite.after;
   return absl::StrFormat(
-      "travel %.2f -> %.2f m (%+.1f %%), retractions %d -> %d, estimated print time %s -> %s "
-      "(%+.2f %%)",
+      "travel %.2f -> %.2f m (%+.1f %%), retractions %d -> %d, visible walls crossed %d -> %d, "
+      "estimated print time %s -> %s (%+.2f %%)",
       before.travel_mm / 1000, after.travel_mm / 1000,
       gcode::Percent(before.travel_mm, after.travel_mm), before.retractions, after.retractions,
-      gcode::Minutes(before.seconds), gcode::Minutes(after.seconds),
-      gcode::Percent(before.seconds, after.seconds));
+      before.crossings, after.crossings, gcode::Minutes(before.seconds),
+      gcode::Minutes(after.seconds), gcode::Percent(before.seconds, after.seconds));
 }
 
 absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
@@ -88,9 +96,8 @@ absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
                                           const RewriteOptions& options) {
   GcodeRewrite rewrite;
   rewrite.layers = static_cast<int64_t>(file.layers.size());
-  rewrite.before = gcode::Sum(gcode::MeasureLayers(file, options.threads));
-  const gcode::ChosenLayers chosen =
-      gcode::ChooseLayers(file, tries, options.policy, options.threads);
+  gcode::ChosenLayers chosen = gcode::ChooseLayers(file, tries, options.policy, options.threads);
+  rewrite.before = gcode::Sum(chosen.given);
   rewrite.after = gcode::Sum(chosen.totals);
   rewrite.layers_changed = chosen.changed;
   if (chosen.changed == 0 || rewrite.after.seconds > rewrite.before.seconds) {
@@ -99,9 +106,8 @@ absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
     rewrite.text = file.text;
     return rewrite;
   }
-  rewrite.text = gcode::HeadWithLine(file, gcode::AddedLine(rewrite, options));
-  rewrite.text += chosen.text;
-  rewrite.text += gcode::Foot(file, chosen);
+  rewrite.text = gcode::NewText(file, chosen, gcode::AddedLine(rewrite, options));
+  chosen = {};  // its texts are in there
   const absl::Status same =
       VerifyGcode(file.text, file.name, rewrite.text, file.name + " as optimised");
   if (!same.ok()) return same;

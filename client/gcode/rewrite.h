@@ -31,8 +31,8 @@ struct RewriteOptions {
 
 // Writes `file` with each layer in one of the orders that `tries` have for it, or in its own,
 // whichever makes the quickest print by the estimate; under Policy::kSafe no layer's travel grows,
-// neither within the layer nor with the way to it (layer_choice.h). The text is verified before it
-// is returned (verify/verifier.h).
+// neither within the layer nor with the way to it, and walls are spared (layer_choice.h). The text
+// is verified before it is returned (verify/verifier.h).
 //
 // FailedPrecondition with the first difference if it does not print the same: a fault of ours.
 // REQUIRES: each order is empty, or has each path of its layer once as a plan of `policy` allows.

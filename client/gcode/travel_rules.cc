@@ -7,19 +7,11 @@
 namespace traverse::gcode {
 namespace {
 
-// Ways begin and end at the middle of a line, which may be a wall itself or lie against one.
-constexpr double kEndSlackMm = 0.25;
-
 // Layers from which habits are learnt.
 constexpr size_t kSampledLayers = 24;
 
 Vertex Behind(const Block& block, double unit) {
   return {ToDouble(block.last.x) * unit, ToDouble(block.last.y) * unit};
-}
-
-bool IsVisibleWall(Feature feature) {
-  return feature == Feature::kOuterWall || feature == Feature::kLoop ||
-         feature == Feature::kOverhangWall;
 }
 
 double UnitOf(const GcodeFile& file, const Block& block) {
@@ -87,43 +79,29 @@ std::vector<size_t> SampledLayers(const GcodeFile& file) {
   return sample;
 }
 
-}  // namespace
-
-VisibleWalls::VisibleWalls(const std::vector<Outline>& outlines)
-    : grid_([&outlines] {
-        std::vector<Segment> segments;
-        for (size_t path = 0; path < outlines.size(); ++path) {
-          const Outline& outline = outlines[path];
-          if (!IsVisibleWall(outline.feature)) continue;
-          const size_t n = outline.points.size();
-          for (size_t k = 0; k + 1 < n; ++k) {
-            segments.push_back(
-                {outline.points[k], outline.points[k + 1], static_cast<uint32_t>(path)});
-          }
-          if (outline.closed && !outline.exactly_closed) {
-            segments.push_back(
-                {outline.points[n - 1], outline.points[0], static_cast<uint32_t>(path)});
-          }
-        }
-        return segments;
-      }()) {}
-
-bool VisibleWalls::Crossed(Vertex a, Vertex b) const {
-  const double length = Distance(a, b);
-  const double cut = std::min(kEndSlackMm, length * 0.2) / std::max(length, 1e-9);
-  const Vertex from{a.x + (b.x - a.x) * cut, a.y + (b.y - a.y) * cut};
-  const Vertex to{b.x - (b.x - a.x) * cut, b.y - (b.y - a.y) * cut};
-  bool crossed = false;
-  grid_.ForEachOnWay(from, to, [&](uint32_t s) {
-    const Segment& wall = grid_.segments()[s];
-    crossed = Cross(from, to, wall.a, wall.b);
-    return !crossed;
-  });
-  return crossed;
+// By the slicer's setting if the file holds it; else if a good part of the ways that would cross a
+// visible wall have bends. Wipes and moves inwards look like bends, but CuraEngine makes neither.
+bool AvoidsWalls(const GcodeFile& file) {
+  if (file.profile.avoid_crossing) return *file.profile.avoid_crossing;
+  if (file.dialect != Dialect::kCura) return false;
+  int64_t crossing = 0;
+  int64_t bent = 0;
+  for (const size_t i : SampledLayers(file)) {
+    const VisibleWalls walls(OutlinesOf(file, file.layers[i]));
+    ForEachWay(file, file.layers[i], [&](const Block& block, Vertex from, Vertex to, uint32_t) {
+      if (!walls.Crossed(from, to)) return;
+      ++crossing;
+      bent += static_cast<double>(block.travel_mm) > Distance(from, to) * 1.01 + 0.01 ? 1 : 0;
+    });
+  }
+  return bent >= kEnough && bent * 4 >= crossing;
 }
+
+}  // namespace
 
 RetractionHabit LearnRetraction(const GcodeFile& file) {
   RetractionHabit habit;
+  habit.avoids_walls = AvoidsWalls(file);
   for (const Block& block : file.blocks) {
     habit.retracts = habit.retracts || (IsSoft(block) && (block.link & kLinkRetracts) != 0);
   }
@@ -144,20 +122,25 @@ RetractionHabit LearnRetraction(const GcodeFile& file) {
 }
 
 TravelRules::TravelRules(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
-                         const std::vector<Outline>& outlines)
-    : habit_(habit) {
-  if (!habit.crossing_matters) return;
-  walls_ = std::make_unique<const VisibleWalls>(outlines);
-  Count(file, layer, outlines, *walls_, habit.threshold_mm, inside_);
+                         const std::vector<Outline>& outlines, const VisibleWalls& walls)
+    : habit_(habit), walls_(walls), detours_(walls) {
+  if (habit.crossing_matters) {
+    Count(file, layer, outlines, walls, habit.threshold_mm, inside_);
+  }
 }
 
 bool TravelRules::Retracts(Vertex a, Vertex b, Feature feature) const {
-  if (!habit_.retracts || Distance(a, b) < habit_.threshold_mm) return false;
-  if (walls_ == nullptr) return true;
+  if (!habit_.retracts) return false;
+  if (Distance(a, b) < habit_.threshold_mm) return habit_.spares_walls && Crosses(a, b);
+  if (!habit_.crossing_matters) return true;
   const RetractionCount& here = inside_[static_cast<size_t>(feature)];
   const RetractionCount& everywhere = habit_.inside[static_cast<size_t>(feature)];
   if ((here.total() >= kEnough ? here : everywhere).Mostly()) return true;
-  return walls_->Crossed(a, b);
+  return Crosses(a, b);
+}
+
+bool TravelRules::Crosses(Vertex a, Vertex b) const {
+  return walls_.Crossed(a, b) && (!habit_.avoids_walls || detours_.Around(a, b).empty());
 }
 
 }  // namespace traverse::gcode

@@ -5,11 +5,11 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
+#include "client/gcode/detour.h"
 #include "client/gcode/outline.h"
-#include "client/gcode/segment_grid.h"
+#include "client/gcode/visible_walls.h"
 
 namespace traverse::gcode {
 
@@ -33,18 +33,13 @@ struct RetractionHabit {
   double threshold_mm = 0;        // shorter ways are not retracted
   bool crossing_matters = false;  // ways that cross no visible wall are often not retracted
   RetractionCounts inside;
-};
 
-// The visible walls of one layer.
-class VisibleWalls {
- public:
-  explicit VisibleWalls(const std::vector<Outline>& outlines);
+  // Travel is led around visible walls.
+  bool avoids_walls = false;
 
-  // True if the straight way from `a` to `b` crosses one. Ends that lie on a wall do not.
-  bool Crossed(Vertex a, Vertex b) const;
-
- private:
-  SegmentGrid grid_;
+  // Not learnt but asked for: for a new way across a visible wall filament is pulled back however
+  // short the way is, so that no layer has more such ways with an open nozzle than the file.
+  bool spares_walls = false;
 };
 
 // Looks at some two dozen layers spread over the file. The threshold is the slicer's setting if the
@@ -55,16 +50,23 @@ RetractionHabit LearnRetraction(const GcodeFile& file);
 // The same for one layer: top and bottom layers are often retracted where others are not.
 class TravelRules {
  public:
-  // `outlines` are those of `layer`.
+  // `outlines` and `walls` are those of `layer`; `habit` and `walls` outlive the rules.
   TravelRules(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
-              const std::vector<Outline>& outlines);
+              const std::vector<Outline>& outlines, const VisibleWalls& walls);
 
-  // Whether to pull back for the straight way from `a` to `b`, where a path of `feature` begins.
+  // Whether to pull back for the way from `a` to `b`, where a path of `feature` begins.
   bool Retracts(Vertex a, Vertex b, Feature feature) const;
+
+  // Where new ways are led around visible walls; null if the file's are not.
+  const Detours* detours() const { return habit_.avoids_walls ? &detours_ : nullptr; }
 
  private:
   const RetractionHabit& habit_;
-  std::unique_ptr<const VisibleWalls> walls_;  // null if they do not matter
+  // And there is no way around.
+  bool Crosses(Vertex a, Vertex b) const;
+
+  const VisibleWalls& walls_;
+  const Detours detours_;
   RetractionCounts inside_;
 };
 

@@ -35,19 +35,22 @@ double LinkTimeSaved(const CorpusRun& run) {
 
 std::string Row(const CorpusRun& run) {
   return absl::StrFormat(
-      "| %s | %.2f | %.2f | %.1f %% | %d | %d | %.0f | %.0f | %.2f %% | %.1f %% | %d of %d | %d | "
+      "| %s | %.2f | %.2f | %.1f %% | %d | %d | %d (%d) | %d (%d) | %.0f | %.0f | %.2f %% | %.1f "
+      "%% | %d of %d | %d | "
       "%s "
       "|\n",
       run.file, run.before.travel_mm / 1000, run.after.travel_mm / 1000, TravelSaved(run),
-      run.before.retractions, run.after.retractions, run.before.seconds, run.after.seconds,
-      TimeSaved(run), LinkShare(run), run.layers_changed, run.layers, run.layers_longer,
-      run.fault.empty() ? "yes" : run.fault);
+      run.before.retractions, run.after.retractions, run.before.crossings,
+      run.before.open_crossings, run.after.crossings, run.after.open_crossings, run.before.seconds,
+      run.after.seconds, TimeSaved(run), LinkShare(run), run.layers_changed, run.layers,
+      run.layers_longer, run.fault.empty() ? "yes" : run.fault);
 }
 
 constexpr char kHead[] =
-    "| file | travel m | after | less | retractions | after | time s | after | less | links' share "
+    "| file | travel m | after | less | retractions | after | crossings (open) | after | time s | "
+    "after | less | links' share "
     "of time | layers rewritten | longer | verified |\n"
-    "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n";
+    "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n";
 
 using Groups = std::map<std::pair<gcode::Policy, std::string>, std::vector<const CorpusRun*>>;
 
@@ -98,10 +101,10 @@ std::string CorpusTable(const std::vector<CorpusRun>& runs) {
 std::string CorpusJson(const std::vector<CorpusRun>& runs) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   const auto totals = [](const gcode::PrintTotals& t) {
-    return nlohmann::ordered_json{{"travel_mm", t.travel_mm},
-                                  {"extruded_mm", t.extruded_mm},
-                                  {"retractions", t.retractions},
-                                  {"seconds", t.seconds}};
+    return nlohmann::ordered_json{
+        {"travel_mm", t.travel_mm},           {"extruded_mm", t.extruded_mm},
+        {"retractions", t.retractions},       {"crossings", t.crossings},
+        {"open_crossings", t.open_crossings}, {"seconds", t.seconds}};
   };
   for (const CorpusRun& run : runs) {
     all.push_back({{"file", run.file},

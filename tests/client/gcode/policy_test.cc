@@ -165,6 +165,16 @@ TEST(Policy, BalancedDoesIslandsOneByOne) {
   EXPECT_EQ(first.any_order().children_size(), 2);
 }
 
+TEST(Policy, SoDoesLessLatitudeWhereWallsAreNotToBeCrossed) {
+  Sheet sheet;
+  sheet.Line(kInfill, 0, 0, 9, 0).Line(kInfill, 30, 0, 39, 0).Line(kInfill, 0, .4, 9, .4);
+
+  const v1::Plan plan = sheet.Plan(Policy::kSafe, Latitude::kIslands).plan;
+
+  const v1::PlanNode& group = plan.nodes(static_cast<int>(plan.nodes(0).in_order().children(1)));
+  ASSERT_EQ(group.any_order().children_size(), 2);
+}
+
 TEST(Policy, DirectionIsFreeForInfillAndUnderFreeForOpenWalls) {
   Sheet sheet;
   sheet.Line(kInfill, 0, 0, 9, 0).Line(kInner, 0, 5, 9, 5);
