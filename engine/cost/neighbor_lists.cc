@@ -156,6 +156,7 @@ class SampleTree {
     for (size_t i = node.begin; i < node.end; ++i) {
       const Sample& there = samples_[i];
       if (there.member.owner == own.member.owner) continue;
+      if (own.box.SquaredDistanceTo(there.point) >= nearest.bound()) continue;
       double least = std::numeric_limits<double>::infinity();
       for (const Point here : own.points) {
         const double squared = SquaredDistance(here, there.point);

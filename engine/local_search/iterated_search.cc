@@ -18,8 +18,10 @@ IteratedSearch::IteratedSearch(SearchState& state, const NeighborLists& neighbor
     : state_(state), options_(options), local_search_(state, neighbors, options.local_search) {}
 
 void IteratedSearch::Descend(Budget& budget) {
+  local_search_.set_depth(options_.descent_depth);
   local_search_.PushAll();
   local_search_.Run(budget);
+  local_search_.set_depth(options_.local_search.depth);
   state_.Commit();
 }
 

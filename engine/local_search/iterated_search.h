@@ -22,6 +22,7 @@ namespace traverse {
 
 struct IteratedSearchOptions {
   LocalSearchOptions local_search;
+  int descent_depth = 2;  // LocalSearchOptions::depth of Descend
 
   // Ends after this many iterations without a gain, or with less than least_gain of the cost.
   int64_t patience = 1000;

@@ -30,6 +30,9 @@ class LocalSearch {
   LocalSearch(SearchState& state, const NeighborLists& neighbors,
               const LocalSearchOptions& options);
 
+  // Changes LocalSearchOptions::depth.
+  void set_depth(int depth) { options_.depth = depth; }
+
   // Notes that the surroundings of `leaf`, or of all, changed.
   void Push(int leaf);
   void PushAll();
@@ -53,7 +56,7 @@ class LocalSearch {
   int Pop();
 
   SearchState& state_;
-  const LocalSearchOptions options_;
+  LocalSearchOptions options_;
   ThreeOpt three_opt_;
   MoveEvaluator evaluator_;
 

@@ -83,6 +83,8 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
     double weight = 0;
     Budget::Clock::duration allotted = Budget::Clock::duration::max();
 
+    std::unique_ptr<PlanMemory> memory;  // of the stage that is under way, for the next one
+
     // Set by solve and second.
     Solution first;
     bool searched_in_vain = false;  // RouteToCome
@@ -106,6 +108,8 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   Budget LayerBudget(const Slot& slot, double share) const;
   bool Expired() const;
   LayerProblem Problem(const Slot& slot, Point start) const;
+  double AnchorShare() const;
+  double SolveShare(const Slot& slot) const;
 
   // The stages.
   void Prepare(Slot& slot);

@@ -15,9 +15,14 @@
 namespace traverse {
 namespace {
 
-// Of a layer's time limit, what solve may use; the rest is for anchor, which runs once the true
-// start is known.
-constexpr double kSolveShare = 0.85;
+// Of a layer's time limit, what anchor may use at most and at least. It knows the true start; but
+// it is done one layer after another, so on many threads they would wait for it.
+constexpr double kMostAnchorShare = 0.5;
+constexpr double kLeastAnchorShare = 0.1;
+constexpr double kThreadsWorthOfAnchor = 0.8;
+
+// What predicting an end, or comparing with greedy, may use, and a search for a bound.
+constexpr double kSideShare = 0.15;
 
 // Layers of one kind may differ by so much in the length of a move: its ends are the same to 1e-4
 // mm in either direction, relative to origins that are the same to as much.
@@ -38,6 +43,16 @@ Budget LayerChain::LayerBudget(const Slot& slot, double share) const {
   }
   if (limit == Duration::max()) return whole;
   return whole.Within(std::chrono::duration_cast<Duration>(share * limit));
+}
+
+double LayerChain::AnchorShare() const {
+  return std::clamp(kThreadsWorthOfAnchor / std::max(1, executor_.threads()), kLeastAnchorShare,
+                    kMostAnchorShare);
+}
+
+// Nothing is left for anchor to do where the start is certain.
+double LayerChain::SolveShare(const Slot& slot) const {
+  return FixedStart(slot) ? 1 : 1 - AnchorShare();
 }
 
 // Whether there is no time but to answer with what there is.
@@ -82,7 +97,7 @@ Point LayerChain::PredictEnd(const Slot& slot) {
     return {slot.origin.x + end->x, slot.origin.y + end->y};
   }
   if (Expired()) return slot.predicted_start;
-  Budget budget = LayerBudget(slot, 1 - kSolveShare);
+  Budget budget = LayerBudget(slot, kSideShare);
   return RouteEnd(slot.layer.plan,
                   predictor_->Solve(Problem(slot, slot.predicted_start), budget).route,
                   slot.predicted_start);
@@ -94,9 +109,9 @@ void LayerChain::SolveFirst(Slot& slot) const {
     slot.first = Solution{slot.given_route, StopReason::kTimeLimit, std::nullopt};
     return;
   }
-  // Nothing is left for anchor to do where the start is certain.
-  Budget budget = LayerBudget(slot, FixedStart(slot) ? 1 : kSolveShare);
-  const LayerProblem problem = Problem(slot, slot.predicted_start);
+  Budget budget = LayerBudget(slot, SolveShare(slot));
+  LayerProblem problem = Problem(slot, slot.predicted_start);
+  problem.memory = &slot.memory;
   // Different layers that share a fingerprint are unheard of, not impossible.
   const bool resumes =
       slot.model && ValidateRoute(slot.layer.plan, slot.model->best->solution.route).ok();
@@ -171,7 +186,7 @@ void LayerChain::SolveSecond(Slot& slot) const {
     slot.second.stop = StopReason::kTimeLimit;
     return;
   }
-  Budget budget = LayerBudget(slot, kSolveShare);
+  Budget budget = LayerBudget(slot, SolveShare(slot));
   slot.second = strategy_->Solve(Problem(slot, *slot.second_start), budget);
   slot.outcome.solve_seconds += watch.Seconds();
 }
@@ -200,9 +215,13 @@ Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot&
     solution.lower_bound.reset();  // it was for another start
     return solution;
   }
-  Budget budget = LayerBudget(slot, 1 - kSolveShare);
+  Budget budget = LayerBudget(slot, AnchorShare());
+  // An equal layer's from the same start may be the better one to go on from.
+  const bool known_is_better =
+      known != nullptr && known->cost < RouteCost(problem, slot.first.route);
+  const Route& from = known_is_better ? known->solution.route : slot.first.route;
   solution = strategy_->quick() ? strategy_->Solve(problem, budget)
-                                : strategy_->Resume(problem, slot.first.route, budget);
+                                : strategy_->Resume(problem, from, budget);
   // What resuming does not tell of itself is as it was.
   solution.statistics.insert(slot.first.statistics.begin(), slot.first.statistics.end());
   // A search that the clock cut short stays so, whatever the polishing came to.
@@ -228,7 +247,7 @@ void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
       known != nullptr && known->place == slot.print.place && known->start == problem.start;
   if (!strategy_->serial() && !strategy_->quick() && !was_compared &&
       (slot.model || problem.start != slot.predicted_start) && !Expired()) {
-    Budget budget = LayerBudget(slot, 1 - kSolveShare);
+    Budget budget = LayerBudget(slot, kSideShare);
     offer(predictor_->Solve(problem, budget).route);
   }
   if (solution.stop == StopReason::kTimeLimit) {
@@ -243,7 +262,7 @@ void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
 // used again.
 void LayerChain::Bound(const LayerProblem& problem, Slot& slot, Solution& solution) const {
   if (!strategy_->wants_bound() || cancel_.cancelled()) return;
-  Budget budget = LayerBudget(slot, 1 - kSolveShare);
+  Budget budget = LayerBudget(slot, kSideShare);
   const double cost = RouteCost(problem, solution.route);
   solution.lower_bound = LowerBound(problem, cost, &slot.bound_multipliers, budget);
   if (solution.lower_bound == cost) solution.stop = StopReason::kOptimal;
@@ -251,7 +270,8 @@ void LayerChain::Bound(const LayerProblem& problem, Slot& slot, Solution& soluti
 
 LayerOutcome LayerChain::Anchor(Slot& slot, Point start) const {
   const Stopwatch watch;
-  const LayerProblem problem = Problem(slot, start);
+  LayerProblem problem = Problem(slot, start);
+  problem.memory = &slot.memory;
   const uint64_t kind = KindOf(slot.print.make, slot.origin, start, slot.finish);
   const KnownRoute* known = FindAnchored(slot, kind);
   Solution solution = SolveFromTrueStart(problem, slot, known);
@@ -275,6 +295,7 @@ LayerOutcome LayerChain::Anchor(Slot& slot, Point start) const {
   outcome.statistics = std::move(solution.statistics);
   outcome.route = std::move(solution.route);
   outcome.plan = std::move(slot.layer.plan);
+  slot.memory.reset();
   outcome.solve_seconds += watch.Seconds();
   return outcome;
 }

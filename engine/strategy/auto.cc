@@ -25,8 +25,9 @@ namespace {
 
 // Iterations without a gain worth mentioning after which the search ends: so many, which more
 // effort does not raise, and so many more a path.
-constexpr double kLeastPatience = 100;
+constexpr double kLeastPatience = 150;
 constexpr double kPatience = 1;
+constexpr double kPatienceOfFew = 1.5;
 constexpr double kLeastGain = 2e-4;
 
 // Paths times leaves between the cuts of the widest kicks.
@@ -38,7 +39,31 @@ constexpr int kLeastMostSpan = 50;
 constexpr double kSmallPartOperations = 3e6;
 
 // Of a search that starts from a route that was good from another start.
-constexpr double kResumeShare = 0.2;
+constexpr double kResumeShare = 0.4;
+
+// Layers of more paths are searched wider and deeper: each kick costs more, and gains more.
+constexpr int kFewPaths = 150;
+
+LocalSearchOptions SearchOptions(int paths) {
+  LocalSearchOptions options;
+  if (paths > kFewPaths) return options;
+  options.depth = 1;
+  options.three_opt.first_breadth = 6;
+  options.three_opt.second_breadth = 4;
+  return options;
+}
+
+// What depends on the plan alone: most of what is done before a search begins.
+struct SearchMemory : PlanMemory {
+  SearchMemory(const Plan& plan, const LeafEntries& entries)
+      : tree(plan), groups(entries), options(SearchOptions(tree.path_count())) {}
+
+  const OrderTree tree;
+  const EndGroups groups;
+  const LocalSearchOptions options;
+  std::optional<NeighborLists> neighbors;
+  bool complete = false;  // the neighbors
+};
 
 class Auto : public Strategy {
  public:
@@ -59,8 +84,11 @@ class Auto : public Strategy {
 
  private:
   Solution Search(const LayerView& layer, Route route, double effort, Budget& budget) const {
-    const OrderTree tree(layer.plan());
     ChooseEntries(layer, route, budget);
+    const LeafEntries entries(layer.problem);
+    std::unique_ptr<PlanMemory> own;
+    SearchMemory& memory = Recall(layer.problem, entries, own);
+    const OrderTree& tree = memory.tree;
     if (!tree.has_choice()) {
       const double cost = RouteCost(layer.problem, route);
       if (budget.was_exhausted()) return Finish(std::move(route), 0, budget);
@@ -69,19 +97,19 @@ class Auto : public Strategy {
         return Solution{std::move(route), StopReason::kOptimal, cost};
       return Finish(std::move(route), 0, budget);
     }
-    const LeafEntries entries(layer.problem);
     SearchState state(layer.problem, tree, entries);
     state.Load(route);
-    const EndGroups groups(entries);
     IteratedSearchOptions options;
+    options.local_search = memory.options;
+    options.descent_depth = 1;  // kicks find sooner what trials would
     const int paths = tree.path_count();
+    const double patience = paths > kFewPaths ? kPatience : kPatienceOfFew;
     options.patience =
-        static_cast<int64_t>(std::min(effort, 1.0) * kLeastPatience + effort * kPatience * paths);
+        static_cast<int64_t>(std::min(effort, 1.0) * kLeastPatience + effort * patience * paths);
     options.least_gain = kLeastGain;
     options.most_span = std::clamp(kWidestKicks / paths, kLeastMostSpan, kMostSpan);
-    const NeighborLists neighbors =
-        FindNeighbors(tree, groups, options.local_search.three_opt.first_breadth, budget);
-    IteratedSearch search(state, neighbors, options);
+    FindNeighborsOnce(memory, budget);
+    IteratedSearch search(state, *memory.neighbors, options);
     search.Descend(budget);
     Rng rng(layer.problem.seed);
     search.Run(rng, budget);
@@ -96,6 +124,27 @@ class Auto : public Strategy {
       solution.lower_bound = RouteCost(layer.problem, solution.route);
     }
     return solution;
+  }
+
+  // What was derived of the plan before, or else is derived now; it is kept in `own` if it cannot
+  // be kept with the problem.
+  static SearchMemory& Recall(const LayerProblem& problem, const LeafEntries& entries,
+                              std::unique_ptr<PlanMemory>& own) {
+    std::unique_ptr<PlanMemory>& place = problem.memory != nullptr ? *problem.memory : own;
+    auto* known = dynamic_cast<SearchMemory*>(place.get());
+    if (known != nullptr) return *known;
+    auto memory = std::make_unique<SearchMemory>(*problem.plan, entries);
+    known = memory.get();
+    place = std::move(memory);
+    return *known;
+  }
+
+  // Lists that the budget cut short are looked for again.
+  static void FindNeighborsOnce(SearchMemory& memory, Budget& budget) {
+    if (memory.complete) return;
+    memory.neighbors.emplace(
+        FindNeighbors(memory.tree, memory.groups, memory.options.three_opt.first_breadth, budget));
+    memory.complete = !budget.was_exhausted();
   }
 
   static Solution Finish(Route route, int64_t iterations, const Budget& budget) {

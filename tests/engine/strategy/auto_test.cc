@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <memory>
 
 #include "absl/strings/str_cat.h"
 #include "engine/base/tolerances.h"
@@ -72,6 +73,23 @@ TEST(Auto, DoesMoreWithMoreEffort) {
 
   EXPECT_LT(iterations("0.5"), iterations("4"));
   EXPECT_EQ(iterations("0"), 0);
+}
+
+TEST(Auto, ResumesTheSameWithAndWithoutWhatItKeptOfThePlan) {
+  const OwnedProblem owned(SequentialPlan(SquareGrid(8, 8)));
+  std::unique_ptr<PlanMemory> memory;
+  LayerProblem problem = owned.problem;
+  problem.memory = &memory;
+  const auto strategy = *MakeStrategy("auto", {});
+  Budget budget;
+  const Route route = strategy->Solve(problem, budget).route;
+  problem.start = {40, 70};
+  LayerProblem without = problem;
+  without.memory = nullptr;
+
+  ASSERT_NE(memory, nullptr);
+  EXPECT_EQ(strategy->Resume(problem, route, budget).route,
+            strategy->Resume(without, route, budget).route);
 }
 
 TEST(Auto, StopsAtTheDeadline) {
