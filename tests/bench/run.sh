@@ -5,6 +5,7 @@
 #   tests/bench/run.sh --quick             a minute: a few parts, short times
 #   tests/bench/run.sh --corpus=FOLDER     sliced files of your own instead of tests/data/gcode
 #   tests/bench/run.sh --build=FOLDER      a build other than build/release
+#   tests/bench/run.sh --as_built          builds nothing
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -12,21 +13,25 @@ build=build/release
 corpus=tests/data/gcode
 quick=()
 micro=()
+builds=1
 for argument in "$@"; do
   case "$argument" in
     --quick) quick=(--quick) micro=(--benchmark_min_time=0.05) ;;
     --corpus=*) corpus=${argument#*=} ;;
     --build=*) build=${argument#*=} ;;
+    --as_built) builds=0 ;;
     *)
-      sed -n '4,7s/^# *//p' "$0" >&2
+      sed -n '4,8s/^# *//p' "$0" >&2
       exit 2
       ;;
   esac
 done
 
-targets=(layers_bench gcode_corpus_bench)
-if cmake --build "$build" --target help | grep -q '^engine_micro'; then targets+=(engine_micro); fi
-cmake --build "$build" --target "${targets[@]}" >&2
+if [ "$builds" = 1 ]; then
+  targets=(layers_bench gcode_corpus_bench)
+  if cmake --build "$build" --target help | grep -q '^engine_micro'; then targets+=(engine_micro); fi
+  cmake --build "$build" --target "${targets[@]}" >&2
+fi
 
 printf '# Benchmarks\n\n%s, %s threads, %s\n\n' \
   "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1)" "$(nproc)" "$(git rev-parse --short HEAD)"

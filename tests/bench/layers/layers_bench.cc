@@ -1,7 +1,8 @@
 // What the strategies find, how fast, and how that grows: the tables of tests/bench/run.sh.
 //
-//   build/release/tests/bench/layers/layers_bench [--quick] [--parts=part2,st200] [--seeds=3]
-//       [--threads=N] [--sections=routes,time,threads,growth,deadlines] [--deadlines=1000]
+//   build/release/tests/bench/layers/layers_bench [--quick] [--parts=part2,st200] [--seeds=5]
+//       [--threads=N] [--sections=routes,time,tenth,threads,growth,memory,deadlines]
+//       [--deadlines=1000]
 //
 // Prints Markdown. Exit code 1 if a route was invalid, `auto` was longer than greedy, or, on a
 // machine with nothing else to do, an answer was late.
@@ -62,8 +63,10 @@ int Main(int argc, char** argv) {
   for (const std::string& section : options.sections) {
     if (section == "routes") good = PrintRoutes(*parts, options) && good;
     if (section == "time") good = PrintTime(*parts, options) && good;
+    if (section == "tenth") good = PrintFirstTenth(*parts, options) && good;
     if (section == "threads") good = PrintThreads(*parts, options) && good;
     if (section == "growth") good = PrintGrowth(options) && good;
+    if (section == "memory") good = PrintMemory(options) && good;
     if (section == "deadlines") good = PrintDeadlines(*parts, options) && good;
   }
   return good ? 0 : 1;

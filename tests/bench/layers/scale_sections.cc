@@ -44,6 +44,23 @@ double SecondsToReach(const std::vector<Plan>& layers, double best_mm) {
   }
 }
 
+// The exponent of `seconds` as a power of `contours`, by least squares of their logarithms.
+double GrowthExponent(const std::vector<double>& contours, const std::vector<double>& seconds) {
+  const double n = static_cast<double>(contours.size());
+  double sum_x = 0, sum_y = 0, sum_xx = 0, sum_xy = 0;
+  for (size_t i = 0; i < contours.size(); ++i) {
+    const double x = std::log(contours[i]);
+    const double y = std::log(seconds[i]);
+    sum_x += x;
+    sum_y += y;
+    sum_xx += x * x;
+    sum_xy += x * y;
+  }
+  return (n * sum_xy - sum_x * sum_y) / (n * sum_xx - sum_x * sum_x);
+}
+
+constexpr double kMostMemoryMb = 1024;
+
 }  // namespace
 
 bool PrintThreads(const std::vector<BenchPart>& parts, const BenchOptions& options) {
@@ -72,38 +89,51 @@ bool PrintGrowth(const BenchOptions& options) {
       "| contours | default: s | mm | within 2 %% of a minute: s | growth | peak MB |\n"
       "|---:|---:|---:|---:|---:|---:|\n");
   bool good = true;
-  double last_seconds = 0;
-  int last_contours = 0;
-  std::vector<int> sizes = {200, 500, 1000, 2000, 5000};
+  std::vector<double> sizes = {200, 500, 1000, 2000, 5000};
   if (options.quick) sizes = {200};
-  for (const int contours : sizes) {
-    const std::vector<Plan> layers = {RandomRings(contours, 40, 1)};
+  std::vector<double> reached;  // seconds, by size
+  for (const double size : sizes) {
+    const std::vector<Plan> layers = {RandomRings(static_cast<int>(size), 40, 1)};
     const BenchResult usual = Run(layers, {});
     good = good && usual.invalid == 0;
-    std::printf("| %d | %.2f | %.1f |", contours, usual.cpu_seconds, usual.travel_mm);
+    std::printf("| %.0f | %.2f | %.1f |", size, usual.cpu_seconds, usual.travel_mm);
     std::fflush(stdout);
-    if (!options.quick) {
+    if (options.quick) {
+      std::printf(" | |");
+    } else {
       BenchJob job;
       job.options["effort"] = "1000000";
       job.layer_time_limit = absl::Seconds(60);
-      const double seconds = SecondsToReach(layers, Run(layers, job).travel_mm);
-      std::printf(" %.2f |", seconds);
-      if (last_contours > 0) {
-        std::printf(" n^%.2f |", std::log(seconds / last_seconds) /
-                                     std::log(static_cast<double>(contours) / last_contours));
-      } else {
-        std::printf(" |");
+      reached.push_back(SecondsToReach(layers, Run(layers, job).travel_mm));
+      std::printf(" %.2f |", reached.back());
+      const size_t last = reached.size() - 1;
+      if (last > 0) {
+        std::printf(" n^%.2f",
+                    GrowthExponent({sizes[last - 1], size}, {reached[last - 1], reached[last]}));
       }
-      last_seconds = seconds;
-      last_contours = contours;
-    } else {
-      std::printf(" | |");
+      std::printf(" |");
     }
     std::printf(" %.0f |\n", PeakMemoryMb());
     std::fflush(stdout);
   }
+  if (reached.size() > 1) {
+    std::printf("\nOver all sizes: n^%.2f\n", GrowthExponent(sizes, reached));
+  }
   std::printf("\n");
   return good;
+}
+
+bool PrintMemory(const BenchOptions& options) {
+  const int contours = options.quick ? 500 : 5000;
+  BenchJob job;
+  job.layer_time_limit = absl::Seconds(options.quick ? 0.2 : 10);
+  const double before = PeakMemoryMb();
+  const BenchResult result = Run({RandomRings(contours, 40, 1)}, job);
+  std::printf(
+      "## Memory: one layer of %d vertices, on contours of 40\n\n"
+      "| MB before | MB at most |\n|---:|---:|\n| %.0f | %.0f |\n\n",
+      40 * contours, before, PeakMemoryMb());
+  return result.invalid == 0 && result.layers == 1 && PeakMemoryMb() < kMostMemoryMb;
 }
 
 }  // namespace traverse::bench
