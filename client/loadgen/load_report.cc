@@ -130,7 +130,9 @@ std::string LoadJson(const LoadHeading& heading, const LoadResult& result) {
   }
   out["codes"] = Json::object();
   for (const auto& [code, tally] : result.code) {
-    out["codes"][code] = {{"jobs", tally.jobs}, {"latency_ms", LatencyJson(tally.latency)}};
+    out["codes"][code] = {{"jobs", tally.jobs},
+                          {"latency_ms", LatencyJson(tally.latency)},
+                          {"from_sent_ms", LatencyJson(tally.from_sent)}};
   }
   return out.dump(1) + "\n";
 }

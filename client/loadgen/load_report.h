@@ -28,7 +28,7 @@ std::string LoadTable(const LoadHeading& heading, const LoadResult& result);
 //    "seconds": , "seed": , "connections": , "sent": , "ok": , "ok_per_second": , "not_sent": ,
 //    "send_lag_ms": LATENCY,
 //    "sizes": [{"layers": , "sent": , "ok": , "latency_ms": LATENCY}],
-//    "codes": {"OK": {"jobs": , "latency_ms": LATENCY}, ...}}
+//    "codes": {"OK": {"jobs": , "latency_ms": LATENCY, "from_sent_ms": LATENCY}, ...}}
 // LATENCY is {"mean": , "p50": , "p90": , "p99": , "p99_9": , "max": }, null without jobs.
 std::string LoadJson(const LoadHeading& heading, const LoadResult& result);
 

@@ -8,6 +8,7 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -48,22 +49,22 @@ class Run {
     return true;
   }
 
-  void End(size_t kind, absl::Duration latency, const grpc::Status& status, bool complete,
-           bool counted) {
+  void End(size_t kind, absl::Duration latency, absl::Duration from_sent,
+           const grpc::Status& status, bool complete, bool counted) {
     const std::lock_guard<std::mutex> lock(mutex_);
     --in_flight_;
     // Within the lock: the run may be gone as soon as the last job is counted.
     changed_.notify_all();
     if (!counted) return;
     if (status.ok() && complete) {
-      result_.ok[kind].Add(latency);
-      result_.code["OK"].Add(latency);
+      result_.ok[kind].Add(latency, from_sent);
+      result_.code["OK"].Add(latency, from_sent);
       return;
     }
     const std::string code =
         status.ok() ? "INCOMPLETE"
                     : absl::StatusCodeToString(static_cast<absl::StatusCode>(status.error_code()));
-    result_.code[code].Add(latency);
+    result_.code[code].Add(latency, from_sent);
     result_.example.emplace(code, status.error_message());
   }
 
@@ -98,6 +99,8 @@ class Job : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
     context_.set_deadline(std::chrono::system_clock::now() +
                           absl::ToChronoNanoseconds(options.deadline));
     if (!options.token.empty()) context_.AddMetadata("authorization", "Bearer " + options.token);
+    context_.AddMetadata("traverse-message-bytes", std::to_string(request_.Length()));
+    sent_ = Clock::now();
     stub.PrepareBidiStreamingCall(&context_, kMethod, {}, this);
     StartWriteLast(&request_, grpc::WriteOptions());
     StartRead(&answer_);
@@ -113,14 +116,16 @@ class Job : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
   void OnDone(const grpc::Status& status) override {
     Run& run = run_;
     const size_t position = position_;
-    const absl::Duration latency = absl::FromChrono(Clock::now() - meant_);
+    const Clock::time_point now = Clock::now();
+    const absl::Duration latency = absl::FromChrono(now - meant_);
+    const absl::Duration from_sent = absl::FromChrono(now - sent_);
     const bool complete = answers_left_ == 0;
     const bool counted = counted_;
     // Before the job is counted: the context holds the channel, and once the last job is counted
     // the caller may let its channel go. The last owner would then be this thread, one of the
     // channel's own, and gRPC aborts when it closes its queue from there.
     delete this;
-    run.End(position, latency, status, complete, counted);
+    run.End(position, latency, from_sent, status, complete, counted);
   }
 
  private:
@@ -129,6 +134,7 @@ class Job : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
   const size_t position_;
   int answers_left_;
   const Clock::time_point meant_;
+  Clock::time_point sent_;
   const bool counted_;
   grpc::ClientContext context_;
   grpc::ByteBuffer answer_;

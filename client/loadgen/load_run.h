@@ -39,11 +39,13 @@ struct LoadOptions {
 // Jobs of one outcome.
 struct Tally {
   uint64_t jobs = 0;
-  LatencyHistogram latency;  // from the time the job was meant to be sent to its status
+  LatencyHistogram latency;    // from the time the job was meant to be sent to its status
+  LatencyHistogram from_sent;  // from when it was sent: without the delays of the generator
 
-  void Add(absl::Duration value) {
+  void Add(absl::Duration latency_of_job, absl::Duration from_sent_of_job) {
     ++jobs;
-    latency.Record(value);
+    latency.Record(latency_of_job);
+    from_sent.Record(from_sent_of_job);
   }
 };
 

@@ -107,6 +107,7 @@ TEST_F(LoadRun, OutcomesAreCountedByCode) {
 
   EXPECT_EQ(result.code.at("RESOURCE_EXHAUSTED").jobs, 25u);
   EXPECT_EQ(result.code.at("RESOURCE_EXHAUSTED").latency.count(), 25u);
+  EXPECT_EQ(result.code.at("RESOURCE_EXHAUSTED").from_sent.count(), 25u);
   EXPECT_EQ(result.code.at("OK").jobs, 75u);
   EXPECT_EQ(result.example.at("RESOURCE_EXHAUSTED"), "full");
 }

@@ -77,6 +77,7 @@ class Loadgen(unittest.TestCase):
         self.assertLessEqual(0, latency["p50"])
         self.assertLessEqual(latency["p50"], latency["p99"])
         self.assertLessEqual(latency["p99_9"], latency["max"])
+        self.assertLessEqual(document["codes"]["OK"]["from_sent_ms"]["mean"], latency["mean"])
 
     def test_layers_of_a_file_and_a_document_on_stdout(self):
         code, out, err = run(self.target, "--in_flight=2", "--duration=200ms", "--input=" + PART, "--json=-")
