@@ -4,8 +4,8 @@
     tests/chaos/soak.py [--minutes=30] [--build=build/release] [--rate=20]
 
 Jobs of 1, 10 and 400 layers at a low rate; beside them, again and again, a caller that is killed in the middle of its
-jobs. Prints the server's memory every minute. Fails if a job fails, or if the memory at the end is more than a tenth
-above that after a third of the time.
+jobs. Prints the server's memory every minute: all of it, what of it is allocated, and what the allocator keeps. Fails if
+a job fails, or if the memory at the end is more than a tenth above that after a third of the time.
 """
 import argparse
 import json
@@ -62,7 +62,8 @@ def main():
                 time.sleep(8)
                 samples.append((time.monotonic() - began, resident_mb(server.pid)))
                 if len(samples) % 6 == 1:
-                    print(f"{samples[-1][0]:6.0f} s  {samples[-1][1]:6.1f} MB", flush=True)
+                    heap = [metric(metrics, f"process_heap_{part}_bytes") / 2**20 for part in ("used", "free")]
+                    print(f"{samples[-1][0]:6.0f} s  {samples[-1][1]:6.1f} MB, heap {heap[0]:.1f} and {heap[1]:.1f} free", flush=True)
             with open(figures, encoding="utf-8") as file:
                 document = json.load(file)
             left = metric(metrics, "traverse_jobs_in_flight"), metric(metrics, "traverse_queue_points")

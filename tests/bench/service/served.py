@@ -32,7 +32,8 @@ class Server:
 
     def __exit__(self, *_):
         self.process.terminate()
-        self.process.wait()
+        if self.process.wait() != 0:
+            sys.exit(f"the server ended with {self.process.returncode}")
 
     def resident_mb(self):
         with open(f"/proc/{self.process.pid}/status", encoding="utf-8") as file:
