@@ -8,8 +8,9 @@ namespace traverse {
 
 BatchReactor* BatchReactor::Start(ServiceCore& core, grpc::CallbackServerContext& context,
                                   CallInfo call, const absl::Status& authorized) {
+  const int64_t points = EstimatePoints(call.message_bytes);
   auto* reactor = new BatchReactor(core, context, std::move(call));
-  if (absl::Status status = reactor->Admit(authorized, /*points=*/1); !status.ok()) {
+  if (absl::Status status = reactor->Admit(authorized, points); !status.ok()) {
     reactor->End(status);
   } else {
     reactor->StartRead(&reactor->request_);

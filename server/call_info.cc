@@ -4,7 +4,9 @@
 #include <grpcpp/security/auth_context.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
+#include <climits>
 #include <utility>
 
 namespace traverse {
@@ -28,6 +30,13 @@ std::optional<Budget::Clock::time_point> Deadline(const grpc::CallbackServerCont
   constexpr int64_t kMaxSeconds = int64_t{100} * 365 * 24 * 3600;  // keeps sums within the clock
   if (left.tv_sec > kMaxSeconds) return std::nullopt;
   return now + std::chrono::seconds(left.tv_sec) + std::chrono::nanoseconds(left.tv_nsec);
+}
+
+// What a caller states; 0 if it is no number, or larger than any message.
+uint64_t MessageBytes(const grpc::string_ref& text) {
+  uint64_t bytes = 0;
+  const auto [end, error] = std::from_chars(text.begin(), text.end(), bytes);
+  return error == std::errc() && end == text.end() && bytes <= INT_MAX ? bytes : 0;
 }
 
 }  // namespace
@@ -83,6 +92,8 @@ CallInfo ReadCallInfo(const grpc::CallbackServerContext& context, const std::str
   if (trace != metadata.end()) {
     info.trace_id = TraceId(std::string(trace->second.data(), trace->second.size()));
   }
+  const auto bytes = metadata.find(kMessageBytes);
+  if (bytes != metadata.end()) info.message_bytes = MessageBytes(bytes->second);
   return info;
 }
 

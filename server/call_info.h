@@ -5,6 +5,7 @@
 
 #include <grpcpp/server_context.h>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -14,11 +15,16 @@
 
 namespace traverse {
 
+// The metadata in which a caller may state how large the message is that he is about to send, so
+// that a job that is too large now is refused before it is sent.
+constexpr char kMessageBytes[] = "traverse-message-bytes";
+
 struct CallInfo {
-  std::string method;    // without the service's name
-  std::string peer;      // address with port, as gRPC writes it
-  std::string caller;    // who it is counted for; the peer without its port until Authorize
-  std::string trace_id;  // 32 hexadecimal digits of a valid traceparent, or empty
+  std::string method;          // without the service's name
+  std::string peer;            // address with port, as gRPC writes it
+  std::string caller;          // who it is counted for; the peer without its port until Authorize
+  std::string trace_id;        // 32 hexadecimal digits of a valid traceparent, or empty
+  uint64_t message_bytes = 0;  // of the first message, as stated in kMessageBytes; 0: not stated
   Budget::Clock::time_point start;
   std::optional<Budget::Clock::time_point> deadline;
 };

@@ -1,5 +1,6 @@
 #include "server/process_metrics.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -80,6 +81,13 @@ std::vector<prometheus::MetricFamily> ProcessMetrics() {
     families.push_back(Single("process_start_time_seconds", "Start, in seconds since 1970.",
                               MetricType::Gauge, BootTime() + field(kStartTicks) / ticks));
   }
+  // Apart: memory that grows with use, and memory that the allocator keeps between jobs.
+  const struct mallinfo2 heap = mallinfo2();
+  families.push_back(Single("process_heap_used_bytes", "Memory allocated and not freed.",
+                            MetricType::Gauge, static_cast<double>(heap.uordblks + heap.hblkhd)));
+  families.push_back(Single("process_heap_free_bytes",
+                            "Memory freed that the allocator has not given back.",
+                            MetricType::Gauge, static_cast<double>(heap.fordblks)));
   families.push_back(
       Single("process_open_fds", "Open file descriptors.", MetricType::Gauge, OpenFiles()));
   rlimit files{};

@@ -20,6 +20,8 @@ ABSL_FLAG(std::string, listen, "127.0.0.1:50051", "HOST:PORT of the service; por
 ABSL_FLAG(std::string, metrics_listen, "127.0.0.1:9464",
           "HOST:PORT of /metrics, /healthz and /readyz; port 0: a free one; empty: none");
 ABSL_FLAG(int32_t, threads, 0, "Worker threads; 0: one for each core");
+ABSL_FLAG(int32_t, worker_nice, 5,
+          "How much nicer the workers are than the threads that take calls in and send answers");
 ABSL_FLAG(bool, reflection, true, "Whether clients may ask for the service's description");
 ABSL_FLAG(absl::Duration, drain_timeout, absl::Seconds(30),
           "How long jobs under way may go on after SIGTERM");
@@ -78,6 +80,7 @@ absl::Status CheckRanges() {
     int64_t least;
   } numbers[] = {
       {"threads", absl::GetFlag(FLAGS_threads), 0},
+      {"worker_nice", absl::GetFlag(FLAGS_worker_nice), 0},
       {"max_message_bytes", absl::GetFlag(FLAGS_max_message_bytes), 1024},
       {"max_layers_per_message", absl::GetFlag(FLAGS_max_layers_per_message), 1},
       {"max_layers_per_job", absl::GetFlag(FLAGS_max_layers_per_job), 0},
@@ -269,6 +272,7 @@ ServerOptions OptionsFromFlags() {
   ServiceOptions& service = options.service;
   const int threads = absl::GetFlag(FLAGS_threads);
   service.threads = threads > 0 ? threads : UsableCores();
+  service.worker_nice = absl::GetFlag(FLAGS_worker_nice);
   service.log_path = absl::GetFlag(FLAGS_log_file);
   service.limits.max_message_bytes = absl::GetFlag(FLAGS_max_message_bytes);
   service.limits.max_layers_per_message = absl::GetFlag(FLAGS_max_layers_per_message);

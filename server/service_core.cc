@@ -1,5 +1,7 @@
 #include "server/service_core.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <vector>
 
@@ -13,6 +15,10 @@ namespace {
 constexpr absl::Duration kLeastWatch = absl::Milliseconds(10);
 constexpr absl::Duration kMostWatch = absl::Seconds(1);
 
+// After jobs of 100 MB the allocator keeps most of it, in case that such jobs come again. To give
+// it back takes some milliseconds, in which others who allocate wait.
+constexpr auto kIdleBeforeTrim = std::chrono::seconds(5);
+
 AdmissionLimits WithWorkers(AdmissionLimits limits, int workers) {
   limits.workers = workers;
   return limits;
@@ -25,11 +31,14 @@ ServiceCore::ServiceCore(const ServiceOptions& options)
       log(options.log ? std::make_unique<JobLog>(options.log_path) : std::make_unique<JobLog>()),
       admission(WithWorkers(options.admission, std::max(1, options.threads)),
                 [this](Refusal refusal) { metrics.CountRefusal(refusal); }),
-      pool(options.threads) {
+      pool(options.threads, WorkerPool::ThreadCpuSeconds, options.worker_nice) {
   if (limits.idle_timeout == absl::InfiniteDuration()) return;
   watch_.emplace(
       absl::ToChronoNanoseconds(std::clamp(limits.idle_timeout / 4, kLeastWatch, kMostWatch)),
-      [this] { AbortStalled(); });
+      [this] {
+        AbortStalled();
+        TrimIfIdle(std::chrono::steady_clock::now());
+      });
 }
 
 void ServiceCore::AbortStalled() {
@@ -38,6 +47,22 @@ void ServiceCore::AbortStalled() {
   for (const auto& run : Runs()) {
     run->AbortIfStalled(absl::ToChronoNanoseconds(limits.idle_timeout), status);
   }
+}
+
+bool ServiceCore::TrimIfIdle(std::chrono::steady_clock::time_point now) {
+  bool idle = false;
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    idle = runs_.empty() && seen_registered_ == registered_;
+    seen_registered_ = registered_;
+  }
+  if (!idle) {
+    trimmed_ = false;
+    idle_since_ = now;
+  }
+  if (trimmed_ || now - idle_since_ < kIdleBeforeTrim) return false;
+  malloc_trim(0);
+  return trimmed_ = true;
 }
 
 std::vector<std::shared_ptr<JobRun>> ServiceCore::Runs() const {
@@ -59,6 +84,7 @@ absl::Status ServiceCore::StartAuth(const AuthOptions& options) {
 void ServiceCore::Register(const std::shared_ptr<JobRun>& run) {
   std::lock_guard<std::mutex> lock(mutex_);
   runs_.insert(run);
+  ++registered_;
 }
 
 void ServiceCore::Unregister(const std::shared_ptr<JobRun>& run) {

@@ -4,6 +4,7 @@
 #define TRAVERSE_SERVER_SERVICE_CORE_H_
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -40,6 +41,7 @@ struct JobLimits {
 
 struct ServiceOptions {
   int threads = 1;
+  int worker_nice = 0;  // how much nicer the workers are than the threads of the calls
   JobLimits limits;
   AdmissionLimits admission;
   AuthOptions auth;
@@ -67,6 +69,10 @@ class ServiceCore {
   // Ends the jobs under way whose callers do nothing.
   void AbortStalled();
 
+  // Gives memory that the allocator keeps back to the system, once no job was under way for some
+  // seconds. To be called again and again, by one thread. Returns whether it did so now.
+  bool TrimIfIdle(std::chrono::steady_clock::time_point now);
+
   // The text of /metrics.
   std::string MetricsText();
 
@@ -83,12 +89,18 @@ class ServiceCore {
 
   mutable std::mutex mutex_;
   std::set<std::shared_ptr<JobRun>> runs_;
+  uint64_t registered_ = 0;  // so far
+
+  // Of TrimIfIdle: what it saw.
+  uint64_t seen_registered_ = 0;
+  bool trimmed_ = true;
+  std::chrono::steady_clock::time_point idle_since_{};
 
  public:
   WorkerPool pool;  // its threads end before anything that tasks use is gone
 
  private:
-  std::optional<Periodic> watch_;  // last: calls AbortStalled
+  std::optional<Periodic> watch_;  // last: calls AbortStalled and TrimIfIdle
 };
 
 }  // namespace traverse

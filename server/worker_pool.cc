@@ -1,5 +1,6 @@
 #include "server/worker_pool.h"
 
+#include <sys/resource.h>
 #include <time.h>
 
 #include <algorithm>
@@ -59,9 +60,13 @@ double WorkerPool::ThreadCpuSeconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-WorkerPool::WorkerPool(int threads, WorkClock clock) : clock_(std::move(clock)) {
+WorkerPool::WorkerPool(int threads, WorkClock clock, int nice) : clock_(std::move(clock)) {
   for (int i = 0; i < std::max(1, threads); ++i) {
-    threads_.emplace_back([this] { RunTasks(); });
+    threads_.emplace_back([this, nice] {
+      // On Linux a thread has a nice value of its own.
+      if (nice > 0) setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + nice);
+      RunTasks();
+    });
   }
 }
 

@@ -58,8 +58,9 @@ class WorkerPool {
   using WorkClock = std::function<double()>;
   static double ThreadCpuSeconds();
 
-  // Starts `threads` threads, at least one. `clock` says what tasks are charged.
-  explicit WorkerPool(int threads, WorkClock clock = ThreadCpuSeconds);
+  // Starts `threads` threads, at least one. `clock` says what tasks are charged. The threads are
+  // nicer by `nice` than the one that calls.
+  explicit WorkerPool(int threads, WorkClock clock = ThreadCpuSeconds, int nice = 0);
 
   // Runs what is queued, then ends the threads. REQUIRES: no queue is used any more, except by
   // tasks of the pool.

@@ -67,6 +67,8 @@ TEST(Binary, AnswersJobsAndCountsThem) {
 
   EXPECT_EQ(server.Metric("traverse_layers_total{stop=\"LOCAL_OPTIMUM\",strategy=\"none\"}"), 10);
   EXPECT_GT(server.Metric("process_resident_memory_bytes"), 1e6);
+  EXPECT_GE(server.Metric("process_heap_used_bytes"), 0);
+  EXPECT_GE(server.Metric("process_heap_free_bytes"), 0);
   int status = 0;
   EXPECT_EQ(server.Get("/healthz", &status), "ok\n");
   EXPECT_EQ(status, 200);

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <google/protobuf/text_format.h>
+#include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
 
@@ -218,6 +219,67 @@ TEST(Overload, JobsBeyondTheLimitAreRefusedWithAdviceWhenToRetry) {
   EXPECT_TRUE(first.Finish().ok());
   EXPECT_TRUE(service.Batch(MakeBatch(1)).status.ok());
   EXPECT_TRUE(second.Finish().ok());
+}
+
+// What becomes of a batch of which only the headers are sent.
+grpc::Status HeadersOnly(TestService& service, const std::string& message_bytes) {
+  grpc::GenericStub stub(service.shared_channel());
+  grpc::CompletionQueue queue;
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + std::chrono::milliseconds(300));
+  if (!message_bytes.empty()) context.AddMetadata("traverse-message-bytes", message_bytes);
+  const auto call =
+      stub.PrepareCall(&context, "/traverse.v1.RouteOptimizerService/OptimizeBatch", &queue);
+  void* tag = nullptr;
+  bool ok = false;
+  call->StartCall(nullptr);
+  queue.Next(&tag, &ok);
+  grpc::Status status;
+  call->Finish(&status, nullptr);
+  queue.Next(&tag, &ok);
+  return status;
+}
+
+TEST(Overload, ABatchIsRefusedBeforeItsMessageIsSent) {
+  TestService service([](ServerOptions& options) {
+    options.service.admission.max_queued_points = 1500;
+    options.service.admission.max_jobs = 3;
+  });
+  Admission& admission = service.server().core().admission;
+  const auto queued = admission.Admit("another", 1000);
+  const auto full = grpc::StatusCode::RESOURCE_EXHAUSTED;
+  const auto waits_for_the_message = grpc::StatusCode::DEADLINE_EXCEEDED;
+
+  EXPECT_EQ(HeadersOnly(service, "16000").error_code(), full);
+  // What is no number states nothing.
+  for (const char* bytes : {"1600", "16000 bytes", ""}) {
+    EXPECT_EQ(HeadersOnly(service, bytes).error_code(), waits_for_the_message) << bytes;
+    ASSERT_TRUE(service.Eventually([&admission] { return admission.jobs() == 1; }));
+  }
+  const auto second = admission.Admit("another", 1);
+  const auto third = admission.Admit("another", 1);
+  EXPECT_EQ(HeadersOnly(service, "").error_code(), full);
+}
+
+TEST(BadInput, ABatchWithoutAMessageIsTheCallersFault) {
+  TestService service;
+  grpc::GenericStub stub(service.shared_channel());
+  grpc::CompletionQueue queue;
+  grpc::ClientContext context;
+  const auto call =
+      stub.PrepareCall(&context, "/traverse.v1.RouteOptimizerService/OptimizeBatch", &queue);
+  void* tag = nullptr;
+  bool ok = false;
+  call->StartCall(nullptr);
+  queue.Next(&tag, &ok);
+  call->WritesDone(nullptr);
+  queue.Next(&tag, &ok);
+  grpc::Status status;
+  call->Finish(&status, nullptr);
+  queue.Next(&tag, &ok);
+
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(status.error_message(), "the call ended without a message");
 }
 
 TEST(Cancellation, FreesTheJobsPlace) {

@@ -45,6 +45,7 @@ class TestService {
   Server& server() { return *server_; }
   v1::RouteOptimizerService::Stub& stub() { return *stub_; }
   grpc::Channel& channel() { return *channel_; }
+  const std::shared_ptr<grpc::Channel>& shared_channel() { return channel_; }
 
   // Sends a whole job and reads all answers.
   Answer Batch(const v1::OptimizeBatchRequest& request,

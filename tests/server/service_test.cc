@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <set>
 #include <string>
 #include <thread>
@@ -252,6 +253,23 @@ TEST(Service, MetricsTellWhetherTheServerTakesJobs) {
   service.server().core().admission.StartDraining();
 
   EXPECT_THAT(service.server().core().MetricsText(), HasSubstr("traverse_ready 0"));
+}
+
+TEST(Service, GivesMemoryBackOnceItIsIdleForSomeSeconds) {
+  TestService service;  // embedded: it does not do so by itself
+  ServiceCore& core = service.server().core();
+  const auto at = [begin = std::chrono::steady_clock::now()](int seconds) {
+    return begin + std::chrono::seconds(seconds);
+  };
+  EXPECT_FALSE(core.TrimIfIdle(at(100)));  // nothing was used
+
+  ASSERT_TRUE(service.Batch(MakeBatch(3)).status.ok());
+  ASSERT_TRUE(service.Eventually([&core] { return core.calls() == 0; }));
+
+  EXPECT_FALSE(core.TrimIfIdle(at(101)));
+  EXPECT_FALSE(core.TrimIfIdle(at(104)));
+  EXPECT_TRUE(core.TrimIfIdle(at(107)));
+  EXPECT_FALSE(core.TrimIfIdle(at(120)));
 }
 
 // A large message is read in pieces between which others have their turns; read at one go, it keeps

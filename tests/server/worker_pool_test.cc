@@ -1,7 +1,9 @@
 #include "server/worker_pool.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <functional>
@@ -215,6 +217,17 @@ TEST(WorkerPool, QueuesMayGoBeforeTheirTasks) {
     gate.Open();
   }
   EXPECT_EQ(runs, 1);
+}
+
+TEST(WorkerPool, ThreadsMayBeNicerThanTheOthers) {
+  const int mine = getpriority(PRIO_PROCESS, 0);
+  int of_worker = -1;
+  {
+    WorkerPool pool(1, WorkerPool::ThreadCpuSeconds, /*nice=*/3);
+    pool.NewQueue("a")->Submit([&of_worker] { of_worker = getpriority(PRIO_PROCESS, 0); });
+  }
+  EXPECT_EQ(of_worker, std::min(mine + 3, 19));
+  EXPECT_EQ(getpriority(PRIO_PROCESS, 0), mine);
 }
 
 TEST(WorkerPool, FewerThanOneThreadIsOne) {
