@@ -52,8 +52,8 @@ class MixedProgram {
   bool IsSolution(const std::vector<double>& values) const;
 
   // `known`, if not empty, is a solution to begin with: the result is no worse. Deterministic
-  // unless the budget ends it. Cbc looks at the budget between two nodes and two rounds of cuts,
-  // Clp after every iteration within them.
+  // unless the budget ends it. Cbc looks at the budget between two nodes and two cut generators,
+  // Clp after every iteration within them; a factorization or one generator ends when it ends.
   Result Solve(const Options& options, const std::vector<double>& known, Budget& budget) const;
 
  private:
