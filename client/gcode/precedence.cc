@@ -34,6 +34,14 @@ std::vector<Segment> AllSegments(const std::vector<Outline>& outlines) {
   return segments;
 }
 
+// Between the boxes of two segments, along x or y: no more than their distance.
+double Gap(const Segment& s, const Segment& t) {
+  const auto gap = [](double a, double b, double c, double d) {
+    return std::max(std::min(a, b) - std::max(c, d), std::min(c, d) - std::max(a, b));
+  };
+  return std::max(gap(s.a.x, s.b.x, t.a.x, t.b.x), gap(s.a.y, s.b.y, t.a.y, t.b.y));
+}
+
 std::vector<uint32_t> Numbered(UnionFind& regions, size_t n) {
   std::vector<uint32_t> number(n, UINT32_MAX);
   std::vector<uint32_t> island(n);
@@ -57,12 +65,14 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
   grid.ForEachNearPair([&](uint32_t s, uint32_t t) {
     const Segment& one = grid.segments()[s];
     const Segment& other = grid.segments()[t];
+    const double reach = kTouch * (outlines[one.path].width_mm + outlines[other.path].width_mm) / 2;
+    // Most pairs are told apart here: what is near is in the next cell, and a cell is wide.
+    if (Gap(one, other) > reach) return;
     const uint32_t i = std::min(one.path, other.path);
     const uint32_t j = std::max(one.path, other.path);
     const bool joined = regions.Find(i) == regions.Find(j);
     const bool ordered = keeps_order(i, j);
     if (joined && (!ordered || known.contains({i, j}))) return;
-    const double reach = kTouch * (outlines[i].width_mm + outlines[j].width_mm) / 2;
     if (SquaredDistance(one, other) > reach * reach) return;
     regions.Join(i, j);
     if (ordered && known.insert({i, j}).second) contacts.ordered.push_back({i, j});
