@@ -49,7 +49,8 @@ SegmentGrid::SegmentGrid(std::vector<Segment> segments) : segments_(std::move(se
   }
   const double width = max_x - min_x_;
   const double height = max_y - min_y_;
-  while ((width / cell_ + 1) * (height / cell_ + 1) > kMaxCells) cell_ *= 2;
+  const size_t most = std::min(kMaxCells, kCellsPerSegment * (segments_.size() + 16));
+  while ((width / cell_ + 1) * (height / cell_ + 1) > static_cast<double>(most)) cell_ *= 2;
   columns_ = static_cast<int>(width / cell_) + 1;
   rows_ = static_cast<int>(height / cell_) + 1;
   Fill();

@@ -26,9 +26,11 @@ bool Cross(Vertex a, Vertex b, Vertex c, Vertex d);
 // Built once; O(total length of the segments / cell size) in time and memory.
 class SegmentGrid {
  public:
-  // Cells of kCellMm; a layer of huge extent gets larger ones, so that there are at most kMaxCells.
+  // Cells of kCellMm; a layer of huge extent gets larger ones, so that there are at most kMaxCells,
+  // and no more than pay for so few segments.
   static constexpr double kCellMm = 1;
-  static constexpr int kMaxCells = 1 << 22;
+  static constexpr size_t kMaxCells = size_t{1} << 22;
+  static constexpr size_t kCellsPerSegment = 256;
 
   explicit SegmentGrid(std::vector<Segment> segments);
 
