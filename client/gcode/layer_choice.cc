@@ -39,6 +39,7 @@ bool Resets(std::string_view text) { return text.find("G92") != std::string_view
 // One order of a layer.
 struct Choice {
   LayerOrder order;
+  const LayerWriter* writer = nullptr;
   PrintTotals inside;  // its paths and the ways between them
   PartStart start;     // how it begins and ends in `text`
   PartStart behind;
@@ -49,6 +50,7 @@ struct Choice {
 // A layer and what it may be. choices[0] is the order of the file.
 struct Column {
   std::unique_ptr<const LayerWriter> writer;
+  std::unique_ptr<const LayerWriter> plain;  // which spares no walls; null if not needed
   std::vector<Choice> choices;
   std::vector<PrintTotals> ways;  // [before * choices.size() + choice] from the layer before
   std::vector<double> score;      // [choice] of the best row up to here
@@ -64,6 +66,7 @@ class Chooser {
         policy_(policy),
         threads_(threads),
         habit_(HabitOf(file, policy)),
+        plain_habit_(Plain(habit_)),
         donors_(file),
         columns_(file.layers.size()) {}
 
@@ -82,23 +85,46 @@ class Chooser {
     return habit;
   }
 
+  static RetractionHabit Plain(RetractionHabit habit) {
+    habit.spares_walls = false;
+    return habit;
+  }
+
   void AddGiven(size_t layer, Column& column) const {
     Choice& choice = column.choices.emplace_back();
     choice.order = column.writer->GivenOrder();
+    choice.writer = column.writer.get();
     choice.start = StartOfPaths(file_, choice.order.front());
     choice.behind = StartBehind(file_, file_.blocks[file_.layers[layer].end_block - 1]);
     choice.resets_e = Resets(GivenPaths(file_, layer));
     choice.inside = MeasurePaths(file_, file_.layers[layer], column.writer->walls());
   }
 
-  void AddChoice(const LayerOrder& order, Column& column) const {
+  // Writes `order` with walls spared. Where that leaves fewer ways across them with an open nozzle
+  // than the file has, there may be time to win: so it is written as the file would have it as
+  // well.
+  void AddChoices(const LayerOrder& order, size_t layer, Column& column) const {
     for (const Choice& known : column.choices) {
       if (known.order == order) return;
     }
+    AddChoice(order, *column.writer, column);
+    if (!habit_.spares_walls || habit_.avoids_walls) return;
+    if (column.choices.back().inside.open_crossings >= column.choices[0].inside.open_crossings) {
+      return;
+    }
+    if (column.plain == nullptr) {
+      column.plain =
+          std::make_unique<const LayerWriter>(file_, file_.layers[layer], plain_habit_, donors_);
+    }
+    AddChoice(order, *column.plain, column);
+  }
+
+  void AddChoice(const LayerOrder& order, const LayerWriter& writer, Column& column) const {
     Choice& choice = column.choices.emplace_back();
     choice.order = order;
+    choice.writer = &writer;
     choice.start = StartOfPaths(file_, order.front());
-    choice.behind = column.writer->WritePaths(order, choice.start, choice.text);
+    choice.behind = writer.WritePaths(order, choice.start, choice.text);
     choice.resets_e = Resets(choice.text);
     choice.inside = Measure(file_, choice.text, choice.start, &column.writer->walls());
   }
@@ -109,7 +135,7 @@ class Chooser {
         std::make_unique<const LayerWriter>(file_, file_.layers[layer], habit_, donors_);
     AddGiven(layer, column);
     for (const FileOrder& order : tries_) {
-      if (!order[layer].empty()) AddChoice(order[layer], column);
+      if (!order[layer].empty()) AddChoices(order[layer], layer, column);
     }
   }
 
@@ -240,7 +266,7 @@ class Chooser {
   }
 
   PartStart WritePathsOf(size_t layer, const PartStart& start, std::string& text) const {
-    return columns_[layer].writer->WritePaths(Chosen(layer).order, start, text);
+    return Chosen(layer).writer->WritePaths(Chosen(layer).order, start, text);
   }
 
   void NoteTotals(size_t layer, ChosenLayers& chosen) const {
@@ -262,6 +288,7 @@ class Chooser {
   const Policy policy_;
   const int threads_;
   const RetractionHabit habit_;
+  const RetractionHabit plain_habit_;
   const LinkDonors donors_;
   std::vector<Column> columns_;  // [layer]
 };
