@@ -2,7 +2,7 @@
 # Measures the optimiser and prints all tables, as Markdown.
 #
 #   tests/bench/run.sh                     everything, on the machine as it is: about half an hour
-#   tests/bench/run.sh --quick             a minute: a few parts, short times
+#   tests/bench/run.sh --quick             a minute: a few parts, one sliced file, short times
 #   tests/bench/run.sh --corpus=FOLDER     sliced files of your own instead of tests/data/gcode
 #   tests/bench/run.sh --build=FOLDER      a build other than build/release
 #   tests/bench/run.sh --as_built          builds nothing
@@ -10,7 +10,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 build=build/release
-corpus=tests/data/gcode
+corpus=
 quick=()
 micro=()
 builds=1
@@ -26,6 +26,11 @@ for argument in "$@"; do
       ;;
   esac
 done
+
+if [ -z "$corpus" ]; then
+  corpus=tests/data/gcode
+  [ ${#quick[@]} -eq 0 ] || corpus+=/ps_hooks_support_bridge.gcode.xz
+fi
 
 if [ "$builds" = 1 ]; then
   targets=(layers_bench gcode_corpus_bench)
