@@ -17,8 +17,8 @@ namespace traverse {
 // Leaves are the paths of the plan and behind them two more, the start and the finish, which have
 // one entry each (the finish a meaningless one if the problem has none). The entries of leaf l are
 // [first(l), first(l) + count(l)), in the order of EntryTable: of an open path, forward and then
-// backward. Behind the entries of a contour the last one is repeated up to a multiple of kLanes,
-// for vector instructions. Memory: 44 bytes an entry.
+// backward. Behind the entries of a contour with several the last one is repeated up to a
+// multiple of kLanes, for vector instructions. Memory: 44 bytes an entry.
 class LeafEntries {
  public:
   static constexpr int kLanes = 8;
@@ -52,8 +52,11 @@ class LeafEntries {
   void FillTails(int leaf, const Point* to, std::vector<float>& tails) const;
   int BestWithTails(int leaf, Point from, const std::vector<float>& tails) const;
 
-  // Entries of a contour with those that fill up the last vector.
-  int PaddedCount(int leaf) const { return (count(leaf) + kLanes - 1) / kLanes * kLanes; }
+  // Entries of a contour with those that fill up the last vector; there are none behind a single
+  // one, which needs no choice.
+  int PaddedCount(int leaf) const {
+    return count(leaf) == 1 ? 1 : (count(leaf) + kLanes - 1) / kLanes * kLanes;
+  }
 
  private:
   static size_t Index(int i) { return static_cast<size_t>(i); }
