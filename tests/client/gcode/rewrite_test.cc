@@ -173,7 +173,7 @@ TEST(RewriteGcode, RegistersCountOnFromLayerToLayerOnAnyNumberOfThreads) {
       // Downwards in every other layer, beginning with another path than the file does.
       const bool down = first % 2 != 0;
       LayerOrder order;
-      for (const uint32_t line : {0, 2, 4, 1, 3}) order.push_back({first + line, 0, false});
+      for (const uint32_t line : {0u, 2u, 4u, 1u, 3u}) order.push_back({first + line, 0, false});
       if (down) std::reverse(order.begin(), order.end());
       orders.push_back(order);
     }

@@ -105,7 +105,7 @@ TEST(TravelRules, RetractWhereTheFileDoesAndNotByLength) {
 TEST(TravelRules, ReorderingInsideAnIslandAddsNoRetraction) {
   const auto file = TwoIslands(false).Read();
   LayerOrder order;
-  for (const uint32_t block : {0, 3, 2, 1, 6, 5, 4, 7, 8, 9, 10, 11, 12, 13}) {
+  for (const uint32_t block : {0u, 3u, 2u, 1u, 6u, 5u, 4u, 7u, 8u, 9u, 10u, 11u, 12u, 13u}) {
     order.push_back({block, 0, block % 7 == 0});
   }
   const LinkDonors donors(*file);
