@@ -18,11 +18,13 @@ class WorkerPool::QueueImpl : public Queue,
       : pool(pool), caller(std::move(caller)), on_no_memory(std::move(on_no_memory)) {}
 
   void Submit(std::function<void()> task) override {
+    // The task may have run and have destroyed this queue by the time that a thread is notified.
+    WorkerPool& owner = pool;
     {
-      std::lock_guard<std::mutex> lock(pool.mutex_);
-      pool.Submit(shared_from_this(), std::move(task));
+      std::lock_guard<std::mutex> lock(owner.mutex_);
+      owner.Submit(shared_from_this(), std::move(task));
     }
-    pool.work_.notify_one();
+    owner.work_.notify_one();
   }
 
   int threads() const override { return pool.threads(); }
