@@ -15,8 +15,6 @@ constexpr double kMaxTailMm = 2;
 // Slicers move in by about a line width before they leave a loop.
 constexpr double kMaxDepartureMm = 1;
 
-constexpr double kInchMm = 25.4;
-
 // Lines that may stand inside a path.
 bool IsQuiet(StepKind kind) {
   switch (kind) {
@@ -33,7 +31,7 @@ bool IsQuiet(StepKind kind) {
 }
 
 double StepMm(const Step& step, const MachineState& after) {
-  const double unit = after.inches ? kInchMm : 1;
+  const double unit = after.UnitMm();
   if (step.arc) return ArcLength(step.command, step.from, after.at, unit);
   return std::hypot(ToDouble(after.at.x - step.from.x), ToDouble(after.at.y - step.from.y)) * unit;
 }
@@ -49,7 +47,7 @@ bool EndsOnItsCircle(const Step& step, const MachineState& after) {
   const double j = c.Has('J') ? ToDouble(c.Value('J')) : 0;
   const double x = ToDouble(after.at.x - step.from.x) - i;
   const double y = ToDouble(after.at.y - step.from.y) - j;
-  const double unit = after.inches ? kInchMm : 1;
+  const double unit = after.UnitMm();
   return std::abs(std::hypot(i, j) - std::hypot(x, y)) * unit <= kMaxOffCircleMm;
 }
 

@@ -111,6 +111,12 @@ struct GcodeFile {
     return std::string_view(text).substr(begin, end - begin);
   }
 
+  // The lines of a layer's paths and of the links between them.
+  std::string_view PathsText(const gcode::Layer& layer) const {
+    const gcode::Offset begin = blocks[layer.first_block].begin;
+    return std::string_view(text).substr(begin, blocks[layer.end_block - 1].end - begin);
+  }
+
   // Number of the line, from 1, that holds the byte at `offset`.
   size_t LineNumber(gcode::Offset offset) const;
 };

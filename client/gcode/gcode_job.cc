@@ -15,8 +15,6 @@ namespace traverse {
 namespace gcode {
 namespace {
 
-constexpr double kInchMm = 25.4;
-
 // Paths and extruded way by feature, and what may move.
 struct Census {
   std::array<int64_t, static_cast<size_t>(Feature::kCount)> paths{};
@@ -40,8 +38,7 @@ void FillLayer(const GcodeFile& file, size_t index, const TravelModel& model, Po
   LayerPlan planned = MakeLayerPlan(file, layer, policy);
   v1::Layer& filled = job.layers[index];
   filled.set_id(index + 1);
-  filled.set_z_mm(ToDouble(layer.z) *
-                  (file.modes[file.blocks[layer.first_block].mode].inches ? kInchMm : 1));
+  filled.set_z_mm(ToDouble(layer.z) * file.modes[file.blocks[layer.first_block].mode].UnitMm());
   *filled.mutable_plan() = std::move(planned.plan);
   SetCost(model, *filled.mutable_cost());
   PathNotes& notes = job.notes[index];

@@ -44,6 +44,9 @@ struct MachineState {
   bool Retracted() const { return firmware_retracted || retracted > kRetractionSlack; }
   bool RelativeE() const { return relative_e || relative_xyz; }
 
+  // The length in mm of one unit of the words.
+  double UnitMm() const { return inches ? 25.4 : 1; }
+
   // The modes that a part of a file must share so that its lines can change places.
   bool SameModes(const MachineState& other) const {
     return relative_xyz == other.relative_xyz && relative_e == other.relative_e &&

@@ -26,13 +26,6 @@ double Score(const PrintTotals& totals) {
   return totals.seconds + kSecondsPerMm * totals.travel_mm;
 }
 
-// The lines of a layer's paths in the file.
-std::string_view GivenPaths(const GcodeFile& file, size_t layer) {
-  const Offset begin = file.blocks[file.layers[layer].first_block].begin;
-  const Offset end = file.blocks[file.layers[layer].end_block - 1].end;
-  return std::string_view(file.text).substr(begin, end - begin);
-}
-
 // As slicers write it: a sign that the extruder's register does not count through.
 bool Resets(std::string_view text) { return text.find("G92") != std::string_view::npos; }
 
@@ -96,7 +89,7 @@ class Chooser {
     choice.writer = column.writer.get();
     choice.start = StartOfPaths(file_, choice.order.front());
     choice.behind = StartBehind(file_, file_.blocks[file_.layers[layer].end_block - 1]);
-    choice.resets_e = Resets(GivenPaths(file_, layer));
+    choice.resets_e = Resets(file_.PathsText(file_.layers[layer]));
     choice.inside = MeasurePaths(file_, file_.layers[layer], column.writer->walls());
   }
 
@@ -298,7 +291,8 @@ class Chooser {
 void ChosenLayers::AppendTo(const GcodeFile& file, std::string& text) const {
   for (size_t i = 0; i < texts.size(); ++i) {
     text += texts[i].way;
-    text += texts[i].paths.empty() ? GivenPaths(file, i) : std::string_view(texts[i].paths);
+    text +=
+        texts[i].paths.empty() ? file.PathsText(file.layers[i]) : std::string_view(texts[i].paths);
   }
 }
 

@@ -25,10 +25,8 @@ PartStart StartBehind(const GcodeFile& file, const Block& block) {
 
 PrintTotals MeasurePaths(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls) {
   const Block& first = file.blocks[layer.first_block];
-  const Offset end = file.blocks[layer.end_block - 1].end;
   const PartStart start{StateAt(file, first), file.states[first.state_in]};
-  return Measure(file, std::string_view(file.text).substr(first.begin, end - first.begin), start,
-                 &walls);
+  return Measure(file, file.PathsText(layer), start, &walls);
 }
 
 PrintTotals MeasureWay(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls) {

@@ -10,7 +10,6 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr double kInchMm = 25.4;
 constexpr double kDefaultHeightMm = 0.2;
 
 std::optional<double> SlotNumber(const GcodeFile& file, const Block& block, Slot slot) {
@@ -53,7 +52,7 @@ MachineState StateAt(const GcodeFile& file, const Block& block) {
 }
 
 Outline OutlineOf(const GcodeFile& file, const Block& block) {
-  const double unit = file.modes[block.mode].inches ? kInchMm : 1;
+  const double unit = file.modes[block.mode].UnitMm();
   const auto vertex = [unit](const Position& at) {
     return Vertex{ToDouble(at.x) * unit, ToDouble(at.y) * unit};
   };

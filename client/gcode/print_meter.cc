@@ -8,10 +8,6 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr double kInchMm = 25.4;
-
-double Unit(const MachineState& state) { return state.inches ? kInchMm : 1; }
-
 double LengthXy(const Position& from, const Position& to) {
   return std::hypot(ToDouble(to.x - from.x), ToDouble(to.y - from.y));
 }
@@ -37,9 +33,10 @@ void PrintMeter::Follow(const Step& step, const Interpreter& interpreter) {
       return;
     }
     case StepKind::kLift: {
-      const double speed = std::min(ToDouble(state.feed) / 60 * Unit(state), profile_.max_z_speed);
+      const double speed =
+          std::min(ToDouble(state.feed) / 60 * state.UnitMm(), profile_.max_z_speed);
       if (speed > 0) {
-        const double length = std::abs(ToDouble(state.at.z - step.from.z)) * Unit(state);
+        const double length = std::abs(ToDouble(state.at.z - step.from.z)) * state.UnitMm();
         planner_.Stop(StopToStopSeconds(length, speed, profile_.z_accel));
       }
       return;
@@ -61,7 +58,7 @@ void PrintMeter::Follow(const Step& step, const Interpreter& interpreter) {
 }
 
 void PrintMeter::FollowXy(const Step& step, const MachineState& state) {
-  const double unit = Unit(state);
+  const double unit = state.UnitMm();
   const double speed = ToDouble(state.feed) / 60 * unit;
   const bool extrudes = step.kind == StepKind::kExtrude;
   const double accel = extrudes ? dynamics_.print_accel() : dynamics_.travel_accel();
@@ -82,7 +79,7 @@ void PrintMeter::FollowXy(const Step& step, const MachineState& state) {
 }
 
 void PrintMeter::NoteCrossing(const Step& step, const MachineState& state) {
-  const double unit = Unit(state);
+  const double unit = state.UnitMm();
   const auto vertex = [unit](const Position& at) {
     return Vertex{ToDouble(at.x) * unit, ToDouble(at.y) * unit};
   };

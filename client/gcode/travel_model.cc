@@ -11,8 +11,6 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr double kInchMm = 25.4;
-
 // What the links of one layer add up to.
 struct LayerTravel {
   std::map<std::pair<double, double>, double> way_mm;  // by speed and acceleration
@@ -78,7 +76,7 @@ class TravelLearner {
                    LayerTravel& learnt) {
     const MachineProfile& profile = file_.profile;
     const MachineState& state = interpreter.state();
-    const double unit = state.inches ? kInchMm : 1;
+    const double unit = state.UnitMm();
     const double speed = ToDouble(state.feed) / 60;
     switch (step.kind) {
       case StepKind::kSlot:
@@ -116,7 +114,7 @@ class TravelLearner {
 
   void LearnThreshold(const Block& before, const Block& block, bool retracts) {
     if ((block.link & kLinkSplits) != 0) return;
-    const double unit = file_.modes[block.mode].inches ? kInchMm : 1;
+    const double unit = file_.modes[block.mode].UnitMm();
     const double way = std::hypot(ToDouble(block.first.x - before.last.x),
                                   ToDouble(block.first.y - before.last.y)) *
                        unit;

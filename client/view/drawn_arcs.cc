@@ -10,15 +10,13 @@
 namespace traverse::view {
 namespace {
 
-constexpr double kInchMm = 25.4;
-
 // As fine as the report's grid.
 constexpr double kToleranceMm = 0.02;
 
 // [segment of the block] the points between its ends; empty if no segment has any.
 std::vector<std::vector<gcode::Vertex>> PointsOnArcs(const GcodeFile& file,
                                                      const gcode::Block& block) {
-  const double unit = file.modes[block.mode].inches ? kInchMm : 1;
+  const double unit = file.modes[block.mode].UnitMm();
   std::vector<std::vector<gcode::Vertex>> on_arcs;
   bool any = false;
   gcode::Interpreter interpreter(std::string_view(file.text).substr(0, block.end), block.begin,

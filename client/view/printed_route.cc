@@ -9,7 +9,6 @@
 namespace traverse::view {
 namespace {
 
-constexpr double kInchMm = 25.4;
 constexpr double kSameMm = 1e-3;
 constexpr double kSameLengthMm = 5e-3;  // blocks keep their lengths as float
 
@@ -24,7 +23,7 @@ class BlockWalk {
       : file_(file),
         next_(file.layers[layer].first_block),
         end_(file.layers[layer].end_block),
-        unit_(file.modes[file.blocks[next_].mode].inches ? kInchMm : 1) {}
+        unit_(file.modes[file.blocks[next_].mode].UnitMm()) {}
 
   bool AtEnd() const { return next_ == end_; }
   Place First() const { return PlaceOf(file_.blocks[next_].first); }
