@@ -9,6 +9,9 @@
 namespace traverse::gcode {
 namespace {
 
+// Segments this many cells apart are found by the grid.
+constexpr double kNearInCells = 0.75;
+
 class UnionFind {
  public:
   explicit UnionFind(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -34,12 +37,10 @@ std::vector<Segment> AllSegments(const std::vector<Outline>& outlines) {
   return segments;
 }
 
-// Between the boxes of two segments, along x or y: no more than their distance.
-double Gap(const Segment& s, const Segment& t) {
-  const auto gap = [](double a, double b, double c, double d) {
-    return std::max(std::min(a, b) - std::max(c, d), std::min(c, d) - std::max(a, b));
-  };
-  return std::max(gap(s.a.x, s.b.x, t.a.x, t.b.x), gap(s.a.y, s.b.y, t.a.y, t.b.y));
+double WidestOf(const std::vector<Outline>& outlines) {
+  double widest = 0.1;
+  for (const Outline& outline : outlines) widest = std::max(widest, outline.width_mm);
+  return widest;
 }
 
 std::vector<uint32_t> Numbered(UnionFind& regions, size_t n) {
@@ -61,21 +62,32 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
   Contacts contacts;
   UnionFind regions(outlines.size());
   absl::flat_hash_set<std::pair<uint32_t, uint32_t>> known;
-  const SegmentGrid grid(AllSegments(outlines));
-  grid.ForEachNearPair([&](uint32_t s, uint32_t t) {
+  const auto ascending = [](uint32_t i, uint32_t j) {
+    return std::pair<uint32_t, uint32_t>(std::min(i, j), std::max(i, j));
+  };
+  const SegmentGrid grid(AllSegments(outlines), kTouch * WidestOf(outlines) / kNearInCells);
+  const auto reach = [&](uint32_t one, uint32_t other) {
+    return kTouch * (outlines[one].width_mm + outlines[other].width_mm) / 2;
+  };
+  // Of most paths that touch nothing more is to be learnt: they do in many places.
+  const auto reach_if_wanted = [&](uint32_t one, uint32_t other) {
+    if (regions.Find(one) == regions.Find(other)) {
+      const std::pair<uint32_t, uint32_t> pair = ascending(one, other);
+      if (!keeps_order(pair.first, pair.second) || known.contains(pair)) return -1.0;
+    }
+    return reach(one, other);
+  };
+  grid.ForEachNearPair(reach_if_wanted, [&](uint32_t s, uint32_t t) {
     const Segment& one = grid.segments()[s];
     const Segment& other = grid.segments()[t];
-    const double reach = kTouch * (outlines[one.path].width_mm + outlines[other.path].width_mm) / 2;
-    // Most pairs are told apart here: what is near is in the next cell, and a cell is wide.
-    if (Gap(one, other) > reach) return;
-    const uint32_t i = std::min(one.path, other.path);
-    const uint32_t j = std::max(one.path, other.path);
-    const bool joined = regions.Find(i) == regions.Find(j);
-    const bool ordered = keeps_order(i, j);
-    if (joined && (!ordered || known.contains({i, j}))) return;
-    if (SquaredDistance(one, other) > reach * reach) return;
-    regions.Join(i, j);
-    if (ordered && known.insert({i, j}).second) contacts.ordered.push_back({i, j});
+    const double near = reach(one.path, other.path);
+    if (SquaredDistance(one, other) > near * near) return true;
+    regions.Join(one.path, other.path);
+    const std::pair<uint32_t, uint32_t> pair = ascending(one.path, other.path);
+    if (keeps_order(pair.first, pair.second) && known.insert(pair).second) {
+      contacts.ordered.push_back(pair);
+    }
+    return false;
   });
   std::sort(contacts.ordered.begin(), contacts.ordered.end());
   contacts.island = Numbered(regions, outlines.size());
