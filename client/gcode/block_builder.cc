@@ -33,7 +33,9 @@ bool IsQuiet(StepKind kind) {
 double StepMm(const Step& step, const MachineState& after) {
   const double unit = after.UnitMm();
   if (step.arc) return ArcLength(step.command, step.from, after.at, unit);
-  return std::hypot(ToDouble(after.at.x - step.from.x), ToDouble(after.at.y - step.from.y)) * unit;
+  const double dx = ToDouble(after.at.x - step.from.x);
+  const double dy = ToDouble(after.at.y - step.from.y);
+  return std::sqrt(dx * dx + dy * dy) * unit;
 }
 
 // An arc that ends beside its circle is no arc: what a machine makes of it depends on where it
@@ -175,6 +177,7 @@ void BlockBuilder::BeginBlock(const Step& step, const MachineState& before,
   block.first = step.from;
   block.e_in = before.e;
   block.object = object_;
+  block.first_end = static_cast<uint32_t>(file_.ends.size());
   block.mode = ModeOf(after);
   CloseLink(block);
   block.link = link_.flags;
@@ -225,6 +228,9 @@ void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
   if (step.arc && !EndsOnItsCircle(step, after)) block.flags |= kBlockPinned;
   if (step.kind == StepKind::kZeroExtrude) block.flags |= kBlockZero;
   block.length_mm += static_cast<float>(StepMm(step, after));
+  const double unit = after.UnitMm();
+  file_.ends.push_back({ToDouble(after.at.x) * unit, ToDouble(after.at.y) * unit});
+  ++block.end_count;
   if (block.segments < std::numeric_limits<uint16_t>::max()) ++block.segments;
 }
 

@@ -7,8 +7,8 @@
 // retraction, travel, and the lines that set the state for what follows. Nothing is copied; the
 // text stays as it was read.
 //
-// Memory: about 150 bytes a path beside the text. Sliced files have 190 bytes of text a path at
-// the least, and mostly many times that.
+// Memory: about 160 bytes a path and 16 bytes a segment beside the text. Sliced files have 190
+// bytes of text a path at the least, and mostly many times that; and 25 bytes a segment.
 
 #ifndef TRAVERSE_CLIENT_GCODE_GCODE_FILE_H_
 #define TRAVERSE_CLIENT_GCODE_GCODE_FILE_H_
@@ -21,6 +21,7 @@
 #include "client/gcode/interpreter.h"
 #include "client/gcode/machine_profile.h"
 #include "client/gcode/print_state.h"
+#include "client/gcode/vertex.h"
 
 namespace traverse {
 namespace gcode {
@@ -62,9 +63,11 @@ struct Block {
   Position last;           // where the head is behind its end, tail included
   Decimal e_in = 0;        // the extruder's register before and behind
   Decimal e_out = 0;
-  float length_mm = 0;    // of its extruding segments
-  float travel_mm = 0;    // of the link before it, as it is
-  uint32_t object = 0;    // SetterTable: the label in force; 0: none
+  float length_mm = 0;     // of its extruding segments
+  float travel_mm = 0;     // of the link before it, as it is
+  uint32_t object = 0;     // SetterTable: the label in force; 0: none
+  uint32_t first_end = 0;  // of its segments' ends in GcodeFile::ends
+  uint32_t end_count = 0;
   uint16_t flags = 0;     // BlockFlag
   uint16_t link = 0;      // LinkFlag, of the link before it
   uint16_t segments = 0;  // extruding segments, 65535 for more
@@ -88,6 +91,9 @@ struct GcodeFile {
 
   std::vector<gcode::Block> blocks;
   std::vector<gcode::Layer> layers;
+
+  // Where the segments of all blocks end, in mm; an arc is one segment.
+  std::vector<gcode::Vertex> ends;
 
   // Modes in force in blocks: units, relative or absolute, tool.
   std::vector<gcode::MachineState> modes;

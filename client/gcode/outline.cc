@@ -53,19 +53,11 @@ MachineState StateAt(const GcodeFile& file, const Block& block) {
 
 Outline OutlineOf(const GcodeFile& file, const Block& block) {
   const double unit = file.modes[block.mode].UnitMm();
-  const auto vertex = [unit](const Position& at) {
-    return Vertex{ToDouble(at.x) * unit, ToDouble(at.y) * unit};
-  };
   Outline outline;
-  outline.points.reserve(block.segments + size_t{1});
-  outline.points.push_back(vertex(block.first));
-  Interpreter interpreter(std::string_view(file.text).substr(0, block.end), block.begin,
-                          StateAt(file, block));
-  for (Step step; interpreter.Next(step);) {
-    if (step.kind == StepKind::kExtrude || step.kind == StepKind::kZeroExtrude) {
-      outline.points.push_back(vertex(interpreter.state().at));
-    }
-  }
+  const auto ends = file.ends.begin() + block.first_end;
+  outline.points.reserve(block.end_count + size_t{1});
+  outline.points.push_back({ToDouble(block.first.x) * unit, ToDouble(block.first.y) * unit});
+  outline.points.insert(outline.points.end(), ends, ends + block.end_count);
   outline.exactly_closed = outline.points.front() == outline.points.back();
   outline.closed = outline.points.size() > 3 &&
                    Distance(outline.points.front(), outline.points.back()) <= kMaxLoopGapMm &&

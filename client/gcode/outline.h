@@ -3,27 +3,13 @@
 #ifndef TRAVERSE_CLIENT_GCODE_OUTLINE_H_
 #define TRAVERSE_CLIENT_GCODE_OUTLINE_H_
 
-#include <cmath>
 #include <vector>
 
 #include "client/gcode/feature.h"
 #include "client/gcode/gcode_file.h"
+#include "client/gcode/vertex.h"
 
 namespace traverse::gcode {
-
-// In mm.
-struct Vertex {
-  double x = 0;
-  double y = 0;
-
-  friend bool operator==(const Vertex&, const Vertex&) = default;
-};
-
-inline double Distance(Vertex a, Vertex b) {
-  const double dx = a.x - b.x;
-  const double dy = a.y - b.y;
-  return std::sqrt(dx * dx + dy * dy);
-}
 
 struct Outline {
   // The ends of its extruding segments, in the order of the file: n + 1 for n segments. An arc is
@@ -44,7 +30,6 @@ struct Outline {
 // coasting leaves 0.09 mm.
 inline constexpr double kMaxLoopGapMm = 0.13;
 
-// Reads `block` again for its shape.
 Outline OutlineOf(const GcodeFile& file, const Block& block);
 
 // The machine as it is when `block` begins.

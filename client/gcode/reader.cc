@@ -84,7 +84,11 @@ absl::Status Fault(const GcodeFile& file, Offset at, std::string_view what) {
       absl::StrCat(file.name, ":", file.LineNumber(at), ": ", std::string(what)));
 }
 
+// The fewest bytes of most lines that extrude.
+constexpr size_t kBytesPerSegment = 25;
+
 absl::Status ReadBlocks(GcodeFile& file) {
+  file.ends.reserve(file.text.size() / kBytesPerSegment);
   BlockBuilder builder(file);
   StyleScan style;
   Interpreter interpreter(file.text);
