@@ -11,12 +11,9 @@ constexpr Decimal kPowers[kDecimalDigits + 1] = {
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
-}  // namespace
-
-std::optional<Decimal> ParseDecimal(const char** text, const char* end) {
+// A number of any length from its first digit or point on; see ParseDecimal.
+std::optional<Decimal> ParseLong(const char** text, const char* end) {
   const char* p = *text;
-  bool negative = false;
-  if (p < end && (*p == '-' || *p == '+')) negative = *p++ == '-';
   const char* const first = p;
   Decimal whole = 0;
   for (; p < end && IsDigit(*p); ++p) {
@@ -41,8 +38,46 @@ std::optional<Decimal> ParseDecimal(const char** text, const char* end) {
   }
   if (digits == 0) return std::nullopt;
   *text = p;
-  const Decimal value = whole * kDecimalOne + fraction;
-  return negative ? -value : value;
+  return whole * kDecimalOne + fraction;
+}
+
+}  // namespace
+
+std::optional<Decimal> ParseDecimal(const char** text, const char* end) {
+  const char* p = *text;
+  bool negative = false;
+  if (p < end && (*p == '-' || *p == '+')) negative = *p++ == '-';
+  const char* const first = p;
+  // Numbers of at most nine digits on either side of the point fit as they come.
+  constexpr int kMostDigits = 9;
+  uint64_t value = 0;
+  for (; p < end && IsDigit(*p) && p - first <= kMostDigits; ++p) {
+    value = value * 10 + static_cast<uint64_t>(*p - '0');
+  }
+  int digits = static_cast<int>(p - first);
+  bool is_long = digits > kMostDigits;
+  int decimals = 0;
+  if (p < end && *p == '.') {
+    const char* const behind_point = ++p;
+    for (; p < end && IsDigit(*p) && p - behind_point <= kMostDigits; ++p) {
+      value = value * 10 + static_cast<uint64_t>(*p - '0');
+    }
+    decimals = static_cast<int>(p - behind_point);
+    is_long = is_long || decimals > kMostDigits;
+    digits += decimals;
+  }
+  if (digits == 0) return std::nullopt;
+  Decimal read = 0;
+  if (is_long) {
+    p = first;
+    const std::optional<Decimal> long_number = ParseLong(&p, end);
+    if (!long_number) return std::nullopt;
+    read = *long_number;
+  } else {
+    read = static_cast<Decimal>(value) * kPowers[kDecimalDigits - decimals];
+  }
+  *text = p;
+  return negative ? -read : read;
 }
 
 void AppendDecimal(Decimal value, NumberStyle style, std::string& out) {

@@ -9,7 +9,9 @@ namespace traverse::gcode {
 namespace {
 
 double LengthXy(const Position& from, const Position& to) {
-  return std::hypot(ToDouble(to.x - from.x), ToDouble(to.y - from.y));
+  const double dx = ToDouble(to.x - from.x);
+  const double dy = ToDouble(to.y - from.y);
+  return std::sqrt(dx * dx + dy * dy);
 }
 
 }  // namespace

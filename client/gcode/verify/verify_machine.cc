@@ -46,7 +46,34 @@ std::string_view Trim(std::string_view text) {
 
 char Upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; }
 
+// The numbers that slicers write: up to nine digits, and six decimals.
+std::optional<Micro> PlainNumber(std::string_view text, size_t& used) {
+  constexpr Micro kScale[] = {1'000'000, 100'000, 10'000, 1'000, 100, 10, 1};
+  const bool negative = !text.empty() && text[0] == '-';
+  size_t at = negative ? 1 : 0;
+  Micro value = 0;
+  size_t digits = 0;
+  const auto take = [&] {
+    const size_t begin = at;
+    for (; at < text.size() && text[at] >= '0' && text[at] <= '9'; ++at) {
+      value = value * 10 + (text[at] - '0');
+      if (++digits > 15) break;
+    }
+    return at - begin;
+  };
+  const size_t whole = take();
+  size_t decimals = 0;
+  if (at < text.size() && text[at] == '.') {
+    ++at;
+    decimals = take();
+  }
+  if (digits == 0 || whole > 9 || decimals > 6) return std::nullopt;
+  used = at;
+  return (negative ? -value : value) * kScale[decimals];
+}
+
 std::optional<Micro> Number(std::string_view text, size_t& used) {
+  if (const std::optional<Micro> plain = PlainNumber(text, used)) return plain;
   size_t at = 0;
   if (!text.empty() && text[0] == '+') at = 1;
   double value = 0;
@@ -64,13 +91,6 @@ uint64_t ValueOf(std::string_view comment) {
 }
 
 }  // namespace
-
-uint64_t Mix(uint64_t digest, uint64_t value) {
-  uint64_t z = (digest ^ value) + 0x9e3779b97f4a7c15u + (digest << 6) + (digest >> 2);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
 
 uint64_t DigestOf(std::string_view text) {
   uint64_t digest = 0xcbf29ce484222325u;
@@ -266,24 +286,28 @@ void VerifyMachine::Deposit(int number, const Words& words, const std::array<Mic
     std::swap(begin, end);
     clockwise = number == 3;
   }
-  uint64_t digest = Mix(0, number >= 2 ? (clockwise ? 2 : 3) : 1);
+  // Each value is mixed with its place, and the sum taken: no value waits for the one before it.
+  uint64_t sum = 0;
+  uint64_t place = 0;
+  const auto add = [&sum, &place](uint64_t value) { sum += Mix(++place, value); };
+  add(number >= 2 ? (clockwise ? 2 : 3) : 1);
   for (size_t axis = 0; axis < 3; ++axis) {
-    digest = Mix(digest, static_cast<uint64_t>(begin[axis]));
-    digest = Mix(digest, static_cast<uint64_t>(end[axis]));
+    add(static_cast<uint64_t>(begin[axis]));
+    add(static_cast<uint64_t>(end[axis]));
   }
+  add(static_cast<uint64_t>(filament));
+  add(static_cast<uint64_t>(feed_));
+  add(tool_);
+  add((retracted() ? 1u : 0u) + (inches_ ? 2u : 0u));
+  add(StateDigest());
   if (number >= 2 && (words.Has('I') || words.Has('J'))) {
-    digest = Mix(digest, static_cast<uint64_t>(from[0] + (words.Has('I') ? words['I'] : 0)));
-    digest = Mix(digest, static_cast<uint64_t>(from[1] + (words.Has('J') ? words['J'] : 0)));
+    add(static_cast<uint64_t>(from[0] + (words.Has('I') ? words['I'] : 0)));
+    add(static_cast<uint64_t>(from[1] + (words.Has('J') ? words['J'] : 0)));
   } else if (number >= 2) {
-    digest = Mix(digest, static_cast<uint64_t>(words.Has('R') ? words['R'] : 0));
+    add(static_cast<uint64_t>(words.Has('R') ? words['R'] : 0));
   }
-  digest = Mix(digest, static_cast<uint64_t>(filament));
-  digest = Mix(digest, static_cast<uint64_t>(feed_));
-  digest = Mix(digest, tool_);
-  digest = Mix(digest, (retracted() ? 1u : 0u) + (inches_ ? 2u : 0u));
-  digest = Mix(digest, StateDigest());
   line.role = LineRole::kDeposit;
-  line.digest = digest;
+  line.digest = Mix(0, sum);
   line.z = at_[2];
 }
 

@@ -94,7 +94,13 @@ class VerifyMachine {
 };
 
 // Mixes `value` into `digest`.
-uint64_t Mix(uint64_t digest, uint64_t value);
+inline uint64_t Mix(uint64_t digest, uint64_t value) {
+  uint64_t z = (digest ^ value) + 0x9e3779b97f4a7c15u + (digest << 6) + (digest >> 2);
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
 uint64_t DigestOf(std::string_view text);
 
 }  // namespace traverse::gcode

@@ -25,6 +25,9 @@ TEST(Decimal, ReadsNumbersAsSlicersWriteThem) {
   EXPECT_EQ(Parse("0.00001"), 10'000);
   EXPECT_EQ(Parse("5."), 5 * kDecimalOne);
   EXPECT_EQ(Parse("1.1234567890000"), 1'123'456'789);
+  EXPECT_EQ(Parse("999999999.999999999"), kDecimalMax - 1);
+  EXPECT_EQ(Parse("-1000000000"), -kDecimalMax);
+  EXPECT_EQ(Parse("0000000000001.5"), 1'500'000'000);
 }
 
 TEST(Decimal, RefusesWhatItCannotKeepExactly) {
