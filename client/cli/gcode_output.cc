@@ -47,7 +47,7 @@ absl::StatusOr<GcodeRewrite> RewriteByRuns(const InputJob& job,
   RewriteOptions rewrite;
   rewrite.policy = options.policy;
   rewrite.version = TRAVERSE_VERSION;
-  rewrite.threads = gcode::DefaultThreads();
+  rewrite.threads = gcode::ThreadsFor(job.gcode->text.size());
   return RewriteGcode(*job.gcode, tries, rewrite);
 }
 

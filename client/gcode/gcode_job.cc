@@ -58,7 +58,7 @@ Census FillLayers(const GcodeFile& file, Policy policy, const std::vector<Travel
   std::vector<Census> parts(file.layers.size());
   job.layers.resize(file.layers.size());
   job.notes.resize(file.layers.size());
-  ParallelFor(parts.size(), DefaultThreads(),
+  ParallelFor(parts.size(), ThreadsFor(file.text.size()),
               [&](size_t i) { FillLayer(file, i, models[i], policy, job, parts[i]); });
   Census all;
   for (const Census& part : parts) {
@@ -132,7 +132,7 @@ void AddMeasuredFacts(InputJob& job) {
     job.facts.emplace_back(std::move(key), std::move(value));
   };
   const gcode::PrintTotals totals =
-      gcode::Sum(gcode::MeasureLayers(*job.gcode, gcode::DefaultThreads()));
+      gcode::Sum(gcode::MeasureLayers(*job.gcode, gcode::ThreadsFor(job.gcode->text.size())));
   add("extruded", absl::StrFormat("%.2f m", totals.extruded_mm / 1000));
   add("travel", absl::StrFormat("%.2f m", totals.travel_mm / 1000));
   add("retractions", absl::StrFormat("%d", totals.retractions));
@@ -147,7 +147,8 @@ std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& opt
   const gcode::Latitude latitude = gcode::LearnRetraction(*job.gcode).avoids_walls
                                        ? gcode::Latitude::kIslands
                                        : gcode::Latitude::kNarrow;
-  gcode::ParallelFor(layers.size(), gcode::DefaultThreads(), [&](size_t i) {
+  const int threads = gcode::ThreadsFor(job.gcode->text.size());
+  gcode::ParallelFor(layers.size(), threads, [&](size_t i) {
     const v1::Layer& layer = job.layers[i];
     layers[i].set_id(layer.id());
     if (layer.has_cost()) *layers[i].mutable_cost() = layer.cost();

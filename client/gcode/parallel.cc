@@ -21,4 +21,9 @@ void ParallelFor(size_t n, int threads, const std::function<void(size_t)>& body)
 
 int DefaultThreads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
 
+int ThreadsFor(size_t bytes) {
+  constexpr size_t kShortBytes = size_t{32} << 10;
+  return bytes < kShortBytes ? 1 : DefaultThreads();
+}
+
 }  // namespace traverse::gcode

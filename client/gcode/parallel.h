@@ -14,6 +14,10 @@ void ParallelFor(size_t n, int threads, const std::function<void(size_t)>& body)
 // As many threads as the machine has processors.
 int DefaultThreads();
 
+// The same for work on a text of so many bytes; one for a text so short that it is done before
+// another thread has begun.
+int ThreadsFor(size_t bytes);
+
 }  // namespace traverse::gcode
 
 #endif  // TRAVERSE_CLIENT_GCODE_PARALLEL_H_
