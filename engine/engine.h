@@ -53,6 +53,11 @@ struct JobLayer {
   Plan plan;                     // passes CheckPlan
   std::optional<Point> start;    // unset: where the layer before ended
   std::optional<CostSpec> cost;  // unset: the job's
+
+  // Add or Close is called again without waiting for this layer's answer: where the strategy looks
+  // ahead, the answer waits for that, and the layer's end is chosen with the next layer in view.
+  // False, as for a caller who sends on after an answer: it is not waited for.
+  bool more_follows = false;
 };
 
 // The answer for one layer.

@@ -265,6 +265,12 @@ class SmallPartSolver {
 
 }  // namespace
 
+bool IsSmall(const LayerView& layer, const SmallPartOptions& options) {
+  if (layer.plan().paths.empty()) return true;
+  const Effort whole = EffortsOf(layer, options.most_children)[0];
+  return whole.per_state + whole.once <= options.most_operations;
+}
+
 bool SolveSmallParts(const LayerView& layer, const SmallPartOptions& options, Route& route,
                      Budget& budget) {
   return SmallPartSolver(layer, options, route, budget).Run();

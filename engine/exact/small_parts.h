@@ -24,6 +24,9 @@ struct SmallPartOptions {
   double most_operations = 1e7;  // of all parts, shared out by their paths: about 20 ms
 };
 
+// Whether the whole plan is small: SolveSmallParts then solves all of it. O(nodes).
+bool IsSmall(const LayerView& layer, const SmallPartOptions& options);
+
 // Replaces, in the part of `route` below each node that is small enough and below none that is,
 // orders and entries by the best ones between the visits before and after it. Never makes the route
 // longer. True if the whole plan is small, and `route` therefore optimal; false too if the budget

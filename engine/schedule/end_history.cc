@@ -81,4 +81,12 @@ uint64_t KindOf(uint64_t make, Point origin, Point start, const std::optional<Po
   return kind.value();
 }
 
+uint64_t KindBefore(uint64_t kind, Point origin, uint64_t next_make, Point next_origin,
+                    const std::optional<Point>& next_finish) {
+  Fingerprint both;
+  both.Add(kind);
+  both.Add(KindOf(next_make, origin, next_origin, next_finish));
+  return both.value();
+}
+
 }  // namespace traverse

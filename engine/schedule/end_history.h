@@ -26,6 +26,11 @@ PlanPrint PrintOf(const Plan& plan, const CostSpec& cost);
 // their origins are of one kind.
 uint64_t KindOf(uint64_t make, Point origin, Point start, const std::optional<Point>& finish);
 
+// Layers of one kind before layers of one make that lie, and end if they have to, at the same place
+// as told from them.
+uint64_t KindBefore(uint64_t kind, Point origin, uint64_t next_make, Point next_origin,
+                    const std::optional<Point>& next_finish);
+
 // The first point of the first path, from which the places of a plan are told; 0, 0 if there is
 // none.
 Point PlanOrigin(const Plan& plan);

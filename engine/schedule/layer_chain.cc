@@ -36,12 +36,15 @@ void LayerChain::Add(JobLayer layer) {
   slots_.push_back(std::move(slot));
   ++pending_;
   MaybePrepare();
+  // It may be one that the layer before need not look at.
+  if (added_ > 1) MaybeAnchor(added_ - 2);
 }
 
 void LayerChain::Close() {
   std::lock_guard<std::mutex> lock(mutex_);
   closed_ = true;
   MaybePrepare();
+  if (added_ > 0) MaybeAnchor(added_ - 1);
   MaybeFinish();
 }
 
@@ -100,6 +103,7 @@ void LayerChain::RunSolveFirst(const SlotPtr& slot) {
   HandOn(*slot);
   MaybeSolveSecond(slot->index);
   MaybeSolveSecond(slot->index + 1);
+  if (slot->index > 0) MaybeAnchor(slot->index - 1);
 }
 
 void LayerChain::RunSolveSecond(const SlotPtr& slot) {
@@ -109,9 +113,9 @@ void LayerChain::RunSolveSecond(const SlotPtr& slot) {
   MaybeAnchor(slot->index);
 }
 
-void LayerChain::RunAnchor(const SlotPtr& slot, Point start) {
+void LayerChain::RunAnchor(const SlotPtr& slot, const Place& place) {
   if (strategy_->serial()) Allot(*slot);
-  LayerOutcome outcome = Anchor(*slot, start);
+  LayerOutcome outcome = Anchor(*slot, place);
   const Point route_end = outcome.end;
   const Point end = slot->finish.value_or(route_end);
   if (!cancel_.cancelled()) outbox_.Deliver(std::move(outcome));
@@ -119,9 +123,9 @@ void LayerChain::RunAnchor(const SlotPtr& slot, Point start) {
   slot->end = end;
   Lesson& lesson = lessons_[slot->index];
   lesson.make = slot->print.make;
-  lesson.kind = KindOf(lesson.make, slot->origin, start, slot->finish);
+  lesson.kind = KindOf(lesson.make, slot->origin, place.start, slot->finish);
   lesson.end = RelativeTo(slot->origin, route_end);
-  if (slot->anchored) lesson.known = slot->anchored->at(lesson.kind);
+  lesson.known = slot->known;
   --pending_;
   DropAnchored();
   MaybeAnchor(slot->index + 1);
@@ -185,7 +189,22 @@ void LayerChain::MaybeSolveSecond(uint64_t index) {
   MaybeAnchor(index);
 }
 
-// The last stage of layer `index`, if it is solved and its start is known.
+// Whether the layer's end is worth a look at the next layer, if there will be one.
+bool LayerChain::MayLookAhead(const Slot& slot) const {
+  const size_t paths = slot.layer.plan.paths.size();
+  return slot.layer.more_follows && !CleaningDueAfter(slot.index) && paths > 0 &&
+         strategy_->looks_ahead(paths + 1);
+}
+
+// Whether it is worth a look at `next`.
+bool LayerChain::LooksAheadAt(const Slot& slot, const Slot& next) const {
+  if (FixedStart(next) || next.cost != slot.cost) return false;
+  const size_t paths = next.layer.plan.paths.size();
+  return paths > 0 && strategy_->looks_ahead(slot.layer.plan.paths.size() + paths);
+}
+
+// The last stage of layer `index`, if it is solved, its start is known, and so is whatever it is to
+// look at of the next one.
 void LayerChain::MaybeAnchor(uint64_t index) {
   if (index < first_index_ || index >= added_) return;
   const SlotPtr slot = SlotAt(index);
@@ -193,8 +212,15 @@ void LayerChain::MaybeAnchor(uint64_t index) {
   std::optional<Point> start = FixedStart(*slot);
   if (!start) start = SlotAt(index - 1)->end;
   if (!start) return;
+  Place place{*start, nullptr};
+  if (MayLookAhead(*slot)) {
+    const bool is_last_known = index + 1 == added_;
+    if (is_last_known && !closed_) return;
+    if (!is_last_known && LooksAheadAt(*slot, *SlotAt(index + 1))) place.next = SlotAt(index + 1);
+    if (place.next && !place.next->first_end) return;
+  }
   slot->anchoring = true;
-  Submit([this, slot, at = *start] { RunAnchor(slot, at); });
+  Submit([this, slot, place] { RunAnchor(slot, place); });
 }
 
 // Layers from the front that are done, but for the last of them: its end is the next one's start.

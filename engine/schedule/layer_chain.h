@@ -13,6 +13,13 @@
 //             route of an equal layer that began there is taken over, or the strategy resumes its
 //             route from there; the route is validated and delivered
 //
+// Strategies that look ahead anchor a layer together with the next one, from the first solutions of
+// both, so that it ends where the next one is cheap to begin. The next one's part of what is found
+// is what it is anchored from in turn: nothing of that work is lost. Whether there is a next layer
+// to look at is said by whoever adds the layer (JobLayer::more_follows): it is then waited for, and
+// else not looked at even if it is there. There is no use in it where the next layer begins at a
+// given place or at the cleaning point; the move to that counts in any case.
+//
 // What a stage does depends on the job and the seed alone, never on timing, so the routes are the
 // same on any number of threads. Every stage of a layer is a task of its own: the executor can
 // share its threads fairly between jobs, and no task waits for another.
@@ -92,6 +99,12 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
     std::optional<Point> second_start;
     Solution second;
 
+    // Set by the anchor of the layer before, where that looked ahead: a route from its end.
+    Route foreseen;
+
+    // Set by anchor, where routes are used again.
+    KnownRoutePtr known;
+
     // Guarded by the lock.
     std::optional<Point> first_end;  // solved: where the head is then, a cleaning included
     bool solved = false;             // the layer itself is ready to be anchored
@@ -103,6 +116,12 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   // Prepare is at most so many layers ahead of anchor; even, as many parts alternate two layers.
   static constexpr uint64_t kLearnDelay = 32;
 
+  // A layer's true start, and the next layer, if the end is chosen with a view to that.
+  struct Place {
+    Point start;
+    SlotPtr next;
+  };
+
   bool CleaningDueAfter(uint64_t index) const;
   std::optional<Point> FixedStart(const Slot& slot) const;
   Budget LayerBudget(const Slot& slot, double share) const;
@@ -110,6 +129,8 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   LayerProblem Problem(const Slot& slot, Point start) const;
   double AnchorShare() const;
   double SolveShare(const Slot& slot) const;
+  bool MayLookAhead(const Slot& slot) const;
+  bool LooksAheadAt(const Slot& slot, const Slot& next) const;
 
   // The stages.
   void Prepare(Slot& slot);
@@ -119,11 +140,15 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   bool TakeOver(const KnownRoute& known, const LayerProblem& problem, const Slot& slot,
                 Solution& solution) const;
   void SolveSecond(Slot& slot) const;
-  LayerOutcome Anchor(Slot& slot, Point start) const;
+  LayerOutcome Anchor(Slot& slot, const Place& place) const;
+  uint64_t KindAt(const Slot& slot, const Place& place) const;
+  double CostInView(const LayerProblem& problem, const Route& route, const Slot* next) const;
+  const Route& BestToGoOnFrom(const LayerProblem& problem, const Slot& slot,
+                              const KnownRoute* known, const Slot* next) const;
   Solution SolveFromTrueStart(const LayerProblem& problem, const Slot& slot,
-                              const KnownRoute* known) const;
+                              const KnownRoute* known, Slot* next) const;
   void KeepBestRoute(const LayerProblem& problem, const Slot& slot, const KnownRoute* known,
-                     Solution& solution) const;
+                     const Slot* next, Solution& solution) const;
   KnownRoutePtr Known(const LayerProblem& problem, const Slot& slot,
                       const Solution& solution) const;
   static const KnownRoute* FindAnchored(const Slot& slot, uint64_t kind);
@@ -136,7 +161,7 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   void RunPrepare(const SlotPtr& slot);
   void RunSolveFirst(const SlotPtr& slot);
   void RunSolveSecond(const SlotPtr& slot);
-  void RunAnchor(const SlotPtr& slot, Point start);
+  void RunAnchor(const SlotPtr& slot, const Place& place);
 
   // Submit what is due. Called with the lock held.
   void MaybePrepare();

@@ -50,9 +50,9 @@ double LayerChain::AnchorShare() const {
                     kMostAnchorShare);
 }
 
-// Nothing is left for anchor to do where the start is certain.
+// Nothing is left for anchor to do where the start is certain and the next layer is not looked at.
 double LayerChain::SolveShare(const Slot& slot) const {
-  return FixedStart(slot) ? 1 : 1 - AnchorShare();
+  return FixedStart(slot) && !MayLookAhead(slot) ? 1 : 1 - AnchorShare();
 }
 
 // Whether there is no time but to answer with what there is.
@@ -199,29 +199,64 @@ std::optional<Point> LayerChain::FixedStart(const Slot& slot) const {
   return std::nullopt;
 }
 
+// In view of the next layer, if there is one: with what its best known route would cost from the
+// end of this one.
+double LayerChain::CostInView(const LayerProblem& problem, const Route& route,
+                              const Slot* next) const {
+  const double cost = RouteCost(problem, route);
+  if (next == nullptr) return cost;
+  const Point end = RouteEnd(*problem.plan, route, problem.start);
+  const Route& known = next->foreseen.empty() ? next->first.route : next->foreseen;
+  return cost + RouteCost(Problem(*next, end), known);
+}
+
+// An equal layer's from the same start may be better than that found from a predicted one, and so
+// may what the layer before saw ahead.
+const Route& LayerChain::BestToGoOnFrom(const LayerProblem& problem, const Slot& slot,
+                                        const KnownRoute* known, const Slot* next) const {
+  const Route* best = &slot.first.route;
+  double least = CostInView(problem, *best, next);
+  const auto offer = [&](const Route& route) {
+    const double cost = CostInView(problem, route, next);
+    if (cost >= least) return;
+    least = cost;
+    best = &route;
+  };
+  if (known != nullptr) offer(known->solution.route);
+  if (!slot.foreseen.empty()) offer(slot.foreseen);
+  return *best;
+}
+
 Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot& slot,
-                                        const KnownRoute* known) const {
+                                        const KnownRoute* known, Slot* next) const {
   if (strategy_->serial()) {
     Budget budget = LayerBudget(slot, 1);
     return strategy_->Solve(problem, budget);
   }
+  const bool as_predicted = problem.start == slot.predicted_start;
   if (slot.second_start && problem.start == *slot.second_start) return slot.second;
-  if (problem.start == slot.predicted_start) return slot.first;
+  // What the layer was to use for a look ahead is not left unused where there is nothing to see.
+  const bool has_time_left = slot.first.stop == StopReason::kTimeLimit && MayLookAhead(slot);
+  if (as_predicted && next == nullptr && !has_time_left) return slot.first;
   Solution solution;
   if (known != nullptr && TakeOver(*known, problem, slot, solution)) return solution;
   if (Expired()) {
     solution = slot.first;
     solution.stop = StopReason::kTimeLimit;
-    solution.lower_bound.reset();  // it was for another start
+    if (!as_predicted) solution.lower_bound.reset();  // it was for another start
     return solution;
   }
   Budget budget = LayerBudget(slot, AnchorShare());
-  // An equal layer's from the same start may be the better one to go on from.
-  const bool known_is_better =
-      known != nullptr && known->cost < RouteCost(problem, slot.first.route);
-  const Route& from = known_is_better ? known->solution.route : slot.first.route;
-  solution = strategy_->quick() ? strategy_->Solve(problem, budget)
-                                : strategy_->Resume(problem, from, budget);
+  const Route& from = BestToGoOnFrom(problem, slot, known, next);
+  if (next != nullptr) {
+    Route foreseen = next->first.route;
+    solution = strategy_->ResumeWithNext(problem, from, Problem(*next, Point()), foreseen, budget);
+    next->foreseen = std::move(foreseen);
+  } else {
+    solution = strategy_->quick() ? strategy_->Solve(problem, budget)
+                                  : strategy_->Resume(problem, from, budget);
+  }
+  if (as_predicted && !solution.lower_bound) solution.lower_bound = slot.first.lower_bound;
   // What resuming does not tell of itself is as it was.
   solution.statistics.insert(slot.first.statistics.begin(), slot.first.statistics.end());
   // A search that the clock cut short stays so, whatever the polishing came to.
@@ -229,20 +264,25 @@ Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot&
   return solution;
 }
 
-// Other routes may be better from the true start: an equal layer's from the same start; those found
-// for another start, where the clock cut the last search short; greedy's, which a resumed route
-// need not beat; the order given.
+// Other routes may be better from the true start: an equal layer's from the same start; what the
+// layer before saw ahead; those found for another start, where the clock cut the last search short;
+// greedy's, which a resumed route need not beat; the order given. All in view of the next layer:
+// greedy's would be cheaper for this one alone only if it made both dearer.
 void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
-                               const KnownRoute* known, Solution& solution) const {
-  double best = RouteCost(problem, solution.route);
+                               const KnownRoute* known, const Slot* next,
+                               Solution& solution) const {
+  double best = CostInView(problem, solution.route, next);
+  bool was_replaced = false;
   const auto offer = [&](const Route& route) {
     if (route.size() != solution.route.size()) return;  // there was no such search
-    const double cost = RouteCost(problem, route);
+    const double cost = CostInView(problem, route, next);
     if (cost >= best) return;
     best = cost;
     solution.route = route;
+    was_replaced = true;
   };
   if (known != nullptr) offer(known->solution.route);
+  offer(slot.foreseen);
   const bool was_compared =
       known != nullptr && known->place == slot.print.place && known->start == problem.start;
   if (!strategy_->serial() && !strategy_->quick() && !was_compared &&
@@ -255,6 +295,12 @@ void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
     offer(slot.second.route);
   }
   offer(slot.given_route);
+  // An optimal route was replaced for the sake of the next layer, or by one that is the same but
+  // for rounding.
+  if (was_replaced && solution.stop == StopReason::kOptimal &&
+      RouteCost(problem, solution.route) > solution.lower_bound.value_or(0) + kCostTolerance) {
+    solution.stop = StopReason::kLocalOptimum;
+  }
 }
 
 // Looks for a lower bound of a solution, if the strategy wants one. The search for it is done with
@@ -268,22 +314,33 @@ void LayerChain::Bound(const LayerProblem& problem, Slot& slot, Solution& soluti
   if (solution.lower_bound == cost) solution.stop = StopReason::kOptimal;
 }
 
-LayerOutcome LayerChain::Anchor(Slot& slot, Point start) const {
+// What the layer's route depends on, for equal layers to share it.
+uint64_t LayerChain::KindAt(const Slot& slot, const Place& place) const {
+  const uint64_t kind = KindOf(slot.print.make, slot.origin, place.start, slot.finish);
+  if (!place.next) return kind;
+  const Slot& next = *place.next;
+  return KindBefore(kind, slot.origin, next.print.make, next.origin, next.finish);
+}
+
+LayerOutcome LayerChain::Anchor(Slot& slot, const Place& place) const {
   const Stopwatch watch;
+  const Point start = place.start;
+  Slot* const next = place.next.get();
   LayerProblem problem = Problem(slot, start);
   problem.memory = &slot.memory;
-  const uint64_t kind = KindOf(slot.print.make, slot.origin, start, slot.finish);
+  const uint64_t kind = KindAt(slot, place);
   const KnownRoute* known = FindAnchored(slot, kind);
-  Solution solution = SolveFromTrueStart(problem, slot, known);
+  if (!ValidateRoute(slot.layer.plan, slot.foreseen).ok()) slot.foreseen.clear();
+  Solution solution = SolveFromTrueStart(problem, slot, known, next);
   LayerOutcome outcome = std::move(slot.outcome);
   if (absl::Status status = ValidateRoute(slot.layer.plan, solution.route); !status.ok()) {
     outcome.invalid_route = std::string(status.message());
     solution = Solution{slot.given_route, StopReason::kLocalOptimum, std::nullopt};
   } else {
-    KeepBestRoute(problem, slot, known, solution);
+    KeepBestRoute(problem, slot, known, next, solution);
   }
   if (!solution.lower_bound) Bound(problem, slot, solution);
-  if (slot.anchored) (*slot.anchored)[kind] = Known(problem, slot, solution);
+  if (slot.anchored) (*slot.anchored)[kind] = slot.known = Known(problem, slot, solution);
   outcome.start = start;
   outcome.end = RouteEnd(slot.layer.plan, solution.route, start);
   outcome.travel = MeasureTravel(slot.layer.plan, start, solution.route);

@@ -18,6 +18,7 @@
 #include "engine/local_search/leaf_entries.h"
 #include "engine/local_search/order_tree.h"
 #include "engine/local_search/search_state.h"
+#include "engine/model/two_layers.h"
 #include "engine/strategy/stop.h"
 
 namespace traverse {
@@ -40,6 +41,9 @@ constexpr double kSmallPartOperations = 3e6;
 
 // Of a search that starts from a route that was good from another start.
 constexpr double kResumeShare = 0.4;
+
+// Of more paths, two layers are harder to search than one by more than a good end is worth.
+constexpr size_t kLookAheadPaths = 64;
 
 // Layers of more paths are searched wider and deeper: each kick costs more, and gains more.
 constexpr int kFewPaths = 150;
@@ -71,19 +75,45 @@ class Auto : public Strategy {
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
     const LayerView layer(problem);
-    return Search(layer, BaselineRoute(layer, budget), effort_, budget);
+    return Search(layer, BaselineRoute(layer, budget), {effort_, effort_}, budget);
   }
 
   Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
-    return Search(LayerView(problem), start, effort_ * kResumeShare, budget);
+    const double effort = effort_ * kResumeShare;
+    return Search(LayerView(problem), start, {effort, effort}, budget);
   }
+
+  Solution ResumeWithNext(const LayerProblem& problem, const Route& start, const LayerProblem& next,
+                          Route& next_start, Budget& budget) const override {
+    const int paths = static_cast<int>(problem.plan->paths.size());
+    const Plan plan = PlanOfBoth(*problem.plan, *next.plan);
+    LayerProblem both = problem;
+    both.plan = &plan;
+    both.finish = next.finish;
+    both.memory = nullptr;
+    const double effort = effort_ * kResumeShare;
+    Solution solution = Search(LayerView(both), RouteOfBoth(start, next_start, paths),
+                               {effort, 2 * effort}, budget);
+    next_start = RouteOfSecond(solution.route, paths);
+    solution.route = RouteOfFirst(solution.route, paths);
+    ProveIfSmall(problem, solution, budget);
+    return solution;
+  }
+
+  bool looks_ahead(size_t paths) const override { return paths <= kLookAheadPaths; }
 
   bool reuses_routes() const override { return true; }
 
   bool wants_bound() const override { return bound_; }
 
  private:
-  Solution Search(const LayerView& layer, Route route, double effort, Budget& budget) const {
+  struct Effort {
+    double kicks;
+    double small_parts;
+  };
+
+  static Solution Search(const LayerView& layer, Route route, const Effort& effort,
+                         Budget& budget) {
     ChooseEntries(layer, route, budget);
     const LeafEntries entries(layer.problem);
     std::unique_ptr<PlanMemory> own;
@@ -104,8 +134,8 @@ class Auto : public Strategy {
     options.descent_depth = 1;  // kicks find sooner what trials would
     const int paths = tree.path_count();
     const double patience = paths > kFewPaths ? kPatience : kPatienceOfFew;
-    options.patience =
-        static_cast<int64_t>(std::min(effort, 1.0) * kLeastPatience + effort * patience * paths);
+    options.patience = static_cast<int64_t>(std::min(effort.kicks, 1.0) * kLeastPatience +
+                                            effort.kicks * patience * paths);
     options.least_gain = kLeastGain;
     options.most_span = std::clamp(kWidestKicks / paths, kLeastMostSpan, kMostSpan);
     FindNeighborsOnce(memory, budget);
@@ -115,15 +145,32 @@ class Auto : public Strategy {
     search.Run(rng, budget);
     Route improved = state.Unload();
     ChooseEntries(layer, improved, budget);
-    SmallPartOptions small;
-    small.most_operations = kSmallPartOperations * std::min(effort, 4.0);
-    const bool optimal = SolveSmallParts(layer, small, improved, budget);
+    const bool optimal = SolveSmallParts(layer, SmallParts(effort.small_parts), improved, budget);
     Solution solution = Finish(std::move(improved), search.iterations(), budget);
     if (optimal) {
       solution.stop = StopReason::kOptimal;
       solution.lower_bound = RouteCost(layer.problem, solution.route);
     }
     return solution;
+  }
+
+  static SmallPartOptions SmallParts(double effort) {
+    SmallPartOptions options;
+    options.most_operations = kSmallPartOperations * std::min(effort, 4.0);
+    return options;
+  }
+
+  // Says of the solution, which was found with regard to the next layer, what is proven of it
+  // alone.
+  void ProveIfSmall(const LayerProblem& problem, Solution& solution, Budget& budget) const {
+    if (solution.stop == StopReason::kOptimal) solution.stop = StopReason::kLocalOptimum;
+    solution.lower_bound.reset();
+    const LayerView layer(problem);
+    const SmallPartOptions options = SmallParts(effort_ * kResumeShare);
+    Route optimal = solution.route;
+    if (!IsSmall(layer, options) || !SolveSmallParts(layer, options, optimal, budget)) return;
+    solution.lower_bound = RouteCost(problem, optimal);
+    if (optimal == solution.route) solution.stop = StopReason::kOptimal;
   }
 
   // What was derived of the plan before, or else is derived now; it is kept in `own` if it cannot

@@ -12,4 +12,10 @@ Solution Strategy::Resume(const LayerProblem& problem, const Route& start, Budge
   return solution;
 }
 
+Solution Strategy::ResumeWithNext(const LayerProblem& problem, const Route& start,
+                                  const LayerProblem& /*next*/, Route& /*next_start*/,
+                                  Budget& budget) const {
+  return Resume(problem, start, budget);
+}
+
 }  // namespace traverse

@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_ENGINE_STRATEGY_STRATEGY_H_
 #define TRAVERSE_ENGINE_STRATEGY_STRATEGY_H_
 
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <optional>
@@ -44,6 +45,19 @@ class Strategy {
   // it has to be much quicker than Solve, and its quality is that of Solve. The default solves
   // again.
   virtual Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const;
+
+  // Improves `start` together with `next_start`, a route of `next`, the layer done after this one.
+  // That begins where this one ends; its own start is not looked at. The two never get worse
+  // together. The solution is that of `problem` alone, and so is its bound: a route that ends
+  // elsewhere for the sake of the next layer is not optimal. The default leaves `next_start` as it
+  // is and resumes. REQUIRES: both have the same cost; problem.finish is unset.
+  virtual Solution ResumeWithNext(const LayerProblem& problem, const Route& start,
+                                  const LayerProblem& next, Route& next_start,
+                                  Budget& budget) const;
+
+  // Whether ResumeWithNext does more than Resume for two layers of so many paths together, and all
+  // smaller ones: the chain then calls it where the next layer is known.
+  virtual bool looks_ahead(size_t /*paths*/) const { return false; }
 
   // True if layers are to be solved one after another, each from its true start alone: where Solve
   // takes no longer than a prediction of the start would, or where what is found for a predicted

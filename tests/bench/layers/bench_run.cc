@@ -63,7 +63,7 @@ BenchResult Run(const std::vector<Plan>& layers, const BenchJob& job) {
   if (!strategy.ok()) return result;
   WorkerPool pool(job.threads);
   std::vector<JobLayer> work;
-  for (const Plan& plan : layers) work.push_back({plan, {}, {}});
+  for (const Plan& plan : layers) work.push_back({plan, {}, {}, /*more_follows=*/true});
 
   const Stopwatch watch;
   const double cpu_before = CpuSeconds();

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <condition_variable>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -15,45 +14,11 @@
 #include "engine/base/rng.h"
 #include "engine/cost/route_cost.h"
 #include "engine/strategy/registry.h"
+#include "tests/support/recording_sink.h"
 #include "tests/support/test_executor.h"
 
 namespace traverse {
 namespace {
-
-// Keeps what it is told, and checks that it is told one thing at a time.
-class RecordingSink : public JobSink {
- public:
-  void OnLayer(LayerOutcome outcome) override {
-    std::lock_guard<std::mutex> lock(mutex_);
-    EXPECT_FALSE(done_);
-    outcomes.push_back(std::move(outcome));
-  }
-
-  void OnDone() override {
-    std::lock_guard<std::mutex> lock(mutex_);
-    EXPECT_FALSE(done_);
-    done_ = true;
-    wake_.notify_all();
-  }
-
-  void Wait() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    wake_.wait(lock, [this] { return done_; });
-  }
-
-  std::map<uint64_t, LayerOutcome> ByIndex() {
-    std::map<uint64_t, LayerOutcome> result;
-    for (const LayerOutcome& outcome : outcomes) result[outcome.index] = outcome;
-    return result;
-  }
-
-  std::vector<LayerOutcome> outcomes;
-
- private:
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  bool done_ = false;
-};
 
 // `count` contours of four vertices each on a ring, and a raster; every layer is turned a bit.
 Plan RingLayer(int count, double turn) {

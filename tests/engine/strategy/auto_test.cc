@@ -102,5 +102,37 @@ TEST(Auto, StopsAtTheDeadline) {
   EXPECT_OK(ValidateRoute(owned.plan(), solution.route));
 }
 
+TEST(Auto, TwoLayersNeverGetWorseTogetherAndWhatIsProvenHoldsForTheFirst) {
+  const auto strategy = *MakeStrategy("auto", {});
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    OwnedProblem first = RandomProblem(seed, {.max_paths = 6});
+    OwnedProblem second = RandomProblem(seed + 1000, {.max_paths = 6});
+    first.problem.finish.reset();
+    second.problem.cost = first.problem.cost;
+    const Route start = GivenRoute(*first.problem.plan);
+    const auto total = [&](const Route& route, const Route& next) {
+      LayerProblem after = second.problem;
+      after.start = RouteEnd(*first.problem.plan, route, first.problem.start);
+      return RouteCost(first.problem, route) + RouteCost(after, next);
+    };
+    Route next = GivenRoute(*second.problem.plan);
+    const double before = total(start, next);
+    Budget budget;
+
+    const Solution solution =
+        strategy->ResumeWithNext(first.problem, start, second.problem, next, budget);
+
+    ASSERT_TRUE(ValidateRoute(*first.problem.plan, solution.route).ok());
+    ASSERT_TRUE(ValidateRoute(*second.problem.plan, next).ok());
+    EXPECT_LE(total(solution.route, next), before + kCostTolerance);
+    const double least = BruteForce(first.problem).cost;
+    EXPECT_LE(solution.lower_bound.value_or(0), least + kCostTolerance);
+    if (solution.stop == StopReason::kOptimal) {
+      EXPECT_LE(RouteCost(first.problem, solution.route), least + kCostTolerance);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace traverse
