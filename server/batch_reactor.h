@@ -37,6 +37,7 @@ class BatchReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byte
   const char* RequestType() const override { return "traverse.v1.OptimizeBatchRequest"; }
   absl::Status OnOptions(const RequestReader& message) override { return Begin(message.options()); }
   void OnMessageRead() override;
+  bool MoreFollowsMessage() const override { return true; }
   void StartWrite(std::string message, bool more_follows) override;
   void OnRoom() override {}
   void FinishCall(const grpc::Status& status) override { Bidi::Finish(status); }

@@ -5,9 +5,10 @@
 namespace traverse {
 namespace {
 
-// So many layers are let into the window whatever their size: a layer after which a cleaning is due
-// is not solved before the engine knows whether another one follows.
-constexpr int64_t kLeastLayers = 2;
+// So many layers are let into the window whatever their size: a layer may be answered only when the
+// next one was solved, and if a cleaning is due after that, it is not solved before the engine
+// knows whether another one follows.
+constexpr int64_t kLeastLayers = 3;
 
 }  // namespace
 

@@ -77,7 +77,7 @@ class JobPort {
 // How much of a job may be under way: fed to the engine and not yet written.
 struct JobWindow {
   int64_t layers = 256;
-  int64_t points = 500'000;  // two layers may exceed it
+  int64_t points = 500'000;  // three layers may exceed it
 };
 
 // Thread-safe, but for what is said below.

@@ -197,6 +197,10 @@ absl::Status JobStream::ReadLayers() {
     return absl::OkStatus();
   };
   if (absl::Status status = reader_.Read(kPieceBytes, take); !status.ok()) return status;
+  // By what was sent alone: neither the pieces nor what has arrived by now may change a route.
+  for (LabelledLayer& layer : layers) layer.layer.more_follows = true;
+  if (reader_.left() == 0 && !layers.empty())
+    layers.back().layer.more_follows = MoreFollowsMessage();
   AddLayers(std::move(layers));
   return absl::OkStatus();
 }

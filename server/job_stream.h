@@ -79,6 +79,7 @@ class JobStream : public JobPort {
   virtual const char* RequestType() const = 0;
   virtual absl::Status OnOptions(const RequestReader& message) = 0;
   virtual void OnMessageRead() = 0;
+  virtual bool MoreFollowsMessage() const = 0;  // JobLayer::more_follows of its last layer
   virtual void FinishCall(const grpc::Status& status) = 0;
   virtual std::string Encode(const LayerOutcome& outcome, uint64_t id) const = 0;
   virtual std::string Encode(const v1::JobSummary& summary) const = 0;

@@ -37,6 +37,7 @@ class StreamReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
   const char* RequestType() const override { return "traverse.v1.OptimizeRequest"; }
   absl::Status OnOptions(const RequestReader& message) override;
   void OnMessageRead() override;
+  bool MoreFollowsMessage() const override { return setup().look_ahead; }
   void StartWrite(std::string message, bool more_follows) override;
   void OnRoom() override { ReadNext(); }
   void FinishCall(const grpc::Status& status) override { Bidi::Finish(status); }

@@ -31,6 +31,7 @@ struct JobSetup {
   JobSpec spec;  // without the deadline
   bool interleaved = false;
   bool build_order = false;
+  bool look_ahead = false;
   double idle_speed_mm_s = 20.32;
   absl::Duration time_limit = absl::InfiniteDuration();
 };

@@ -134,6 +134,7 @@ absl::StatusOr<JobSetup> JobFromProto(const v1::JobOptions& options) {
   TRAVERSE_RETURN_IF_ERROR(SetEnums(options, setup));
   TRAVERSE_RETURN_IF_ERROR(SetLimits(options, setup));
   TRAVERSE_RETURN_IF_ERROR(SetGeometry(options, setup));
+  setup.look_ahead = options.look_ahead();
   setup.spec.seed = options.has_seed() ? options.seed() : 1;
   return setup;
 }

@@ -64,6 +64,7 @@ void Send(const v1::JobOptions& options, absl::Span<const v1::Layer> layers, boo
           Stream& stream) {
   v1::OptimizeRequest request;
   *request.mutable_options() = options;
+  request.mutable_options()->set_look_ahead(true);  // answers are read while this sends on
   size_t bytes = 0;
   for (const v1::Layer& layer : layers) {
     v1::Layer& sent = *request.add_layers();

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <set>
 #include <string>
 #include <thread>
@@ -122,6 +123,78 @@ TEST(Service, StreamEqualsBatchHoweverItIsCut) {
     EXPECT_EQ(Routes(stream), Routes(batch));
     EXPECT_EQ(stream.summary->layers(), 50u);
   }
+}
+
+// Rings that lie elsewhere in each layer.
+v1::Layer ScatteredLayer(uint64_t id) {
+  v1::Layer layer;
+  layer.set_id(id);
+  for (uint64_t i = 0; i < 5; ++i) {
+    v1::Contour& ring = *layer.add_islands()->add_contours();
+    const double x = static_cast<double>((37 * i + 11 * id) % 97);
+    const double y = static_cast<double>((53 * i + 29 * id) % 89);
+    for (int v = 0; v < 300; ++v) {
+      ring.add_points(x + 3 * std::cos(0.02 * v));
+      ring.add_points(y + 3 * std::sin(0.02 * v));
+    }
+  }
+  return layer;
+}
+
+// Large messages are read in pieces, small ones come one by one: neither may change a route.
+TEST(Service, LookingAheadDependsOnWhatWasSentAlone) {
+  TestService service;
+  v1::OptimizeBatchRequest request = MakeBatch(0, "auto");
+  for (uint64_t id = 1; id <= 40; ++id) *request.add_layers() = ScatteredLayer(id);
+  const Answer batch = service.Batch(request);
+  ASSERT_TRUE(batch.status.ok()) << batch.status.error_message();
+  const Answer blind = service.Stream(request);
+
+  EXPECT_EQ(Routes(service.Stream(request, 1000)), Routes(batch));
+  request.mutable_options()->set_look_ahead(true);
+  EXPECT_EQ(Routes(service.Stream(request)), Routes(batch));
+  EXPECT_EQ(Routes(service.Stream(request, 3)), Routes(batch));
+  EXPECT_LT(batch.summary->travel().total_mm(), blind.summary->travel().total_mm());
+}
+
+TEST(Service, NobodyHasToSendALayerToHaveTheOneBeforeAnswered) {
+  TestService service;
+  grpc::ClientContext context;
+  const auto stream = service.stub().Optimize(&context);
+  v1::OptimizeRequest message;
+  message.mutable_options()->mutable_strategy()->set_name("auto");
+
+  for (uint64_t id = 1; id <= 6; id += 2) {
+    *message.add_layers() = MakeLayer(id);
+    *message.add_layers() = MakeLayer(id + 1);
+    ASSERT_TRUE(stream->Write(message));
+    message.Clear();
+    v1::OptimizeResponse response;
+    for (const uint64_t expected : {id, id + 1}) {
+      ASSERT_TRUE(stream->Read(&response));
+      EXPECT_EQ(response.layer().id(), expected);
+    }
+  }
+  stream->WritesDone();
+  v1::OptimizeResponse summary;
+  ASSERT_TRUE(stream->Read(&summary));
+  EXPECT_EQ(summary.summary().layers(), 6u);
+  EXPECT_TRUE(stream->Finish().ok());
+}
+
+TEST(Service, AWindowOfOneLayerStillLooksAheadAndCleans) {
+  TestService service([](ServerOptions& options) {
+    options.service.limits.window = {.layers = 1, .points = 1};
+    options.service.admission.max_queued_points = 1;
+  });
+  v1::OptimizeBatchRequest request = MakeBatch(30, "auto");
+  request.mutable_options()->set_look_ahead(true);
+  v1::Cleaning& cleaning = *request.mutable_options()->mutable_cleaning();
+  cleaning.mutable_point();
+  cleaning.set_every_layers(2);
+
+  EXPECT_EQ(service.Batch(request).layers.size(), 30u);
+  EXPECT_EQ(service.Stream(request).layers.size(), 30u);
 }
 
 TEST(Service, JobsWithoutLayersHaveASummary) {
