@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "engine/base/tolerances.h"
+#include "engine/local_search/end_groups.h"
+#include "engine/local_search/turn_run.h"
 
 namespace traverse {
 namespace {
@@ -15,7 +17,15 @@ constexpr int kTries = 20;
 
 IteratedSearch::IteratedSearch(SearchState& state, const NeighborLists& neighbors,
                                const IteratedSearchOptions& options)
-    : state_(state), options_(options), local_search_(state, neighbors, options.local_search) {}
+    : state_(state),
+      neighbors_(neighbors),
+      options_(options),
+      local_search_(state, neighbors, options.local_search) {
+  const OrderTree& tree = state.tree();
+  for (int node = tree.root(); node < tree.item_count(); ++node) {
+    turns_ = turns_ || TurnsOnly(tree, node);
+  }
+}
 
 void IteratedSearch::Descend(Budget& budget) {
   local_search_.set_depth(options_.descent_depth);
@@ -50,6 +60,11 @@ void IteratedSearch::Run(Rng& rng, Budget& budget) {
 }
 
 bool IteratedSearch::Kick(Rng& rng, double& delta) {
+  if (turns_ && rng.Unit() < options_.turn_share) return TurnKick(rng, delta);
+  return BridgeKick(rng, delta);
+}
+
+bool IteratedSearch::BridgeKick(Rng& rng, double& delta) {
   const int paths = state_.tree().path_count();
   for (int i = 0; i < kTries; ++i) {
     const int node = ChooseNode(rng, static_cast<int>(rng.Below(static_cast<uint32_t>(paths))));
@@ -81,6 +96,56 @@ bool IteratedSearch::Kick(Rng& rng, double& delta) {
     return true;
   }
   return false;
+}
+
+bool IteratedSearch::TurnKick(Rng& rng, double& delta) {
+  const OrderTree& tree = state_.tree();
+  for (int i = 0; i < kTries; ++i) {
+    const int leaf = static_cast<int>(rng.Below(static_cast<uint32_t>(tree.path_count())));
+    const int node = ChooseNode(rng, leaf);
+    if (node < 0 || !TurnsOnly(tree, node)) continue;
+    const int first = state_.position(tree.ChildHolding(node, leaf));
+    const int last = ChooseRunEnd(rng, node, first);
+    if (last < 0) continue;
+    const auto cost = [&] {
+      double sum = 0;
+      for (int at = first - 1; at <= last; ++at) sum += state_.StepCost(at);
+      return sum;
+    };
+    delta -= cost();
+    TurnRun(state_, node, first, last);
+    delta += cost();
+    for (int at = first - 1; at <= last + 1; ++at) local_search_.Push(state_.leaf_at(at));
+    return true;
+  }
+  return false;
+}
+
+// The last position of a run of children of `node` that begins at `first`: with a block near to
+// what comes before the run, or some blocks on. -1 if that is no run.
+int IteratedSearch::ChooseRunEnd(Rng& rng, int node, int first) const {
+  const OrderTree& tree = state_.tree();
+  const int node_end = state_.position(node) + tree.size(node);
+  const auto past_child = [&](int leaf) {
+    const int child = tree.ChildHolding(node, leaf);
+    return state_.position(child) + tree.size(child);
+  };
+  const int second = past_child(state_.leaf_at(first));
+  if (rng.Unit() >= options_.near_share) {
+    const double blocks = std::pow(static_cast<double>(options_.most_turned), rng.Unit());
+    int past = second;
+    for (int i = 1; i <= blocks && past < node_end; ++i) past = past_child(state_.leaf_at(past));
+    return past > second ? past - 1 : -1;
+  }
+  const int before = state_.leaf_at(first - 1);
+  if (before >= tree.path_count()) return -1;
+  auto near = neighbors_.of(EndGroups::GroupOf(before, static_cast<int>(rng.Below(2))));
+  if (near.empty()) near = neighbors_.of(EndGroups::GroupOf(before, 0));
+  if (near.empty()) return -1;
+  const size_t chosen = rng.Below(static_cast<uint32_t>(near.size()));
+  const int leaf = EndGroups::LeafOf(near[chosen].group);
+  const int at = state_.position(leaf);
+  return at >= second && at < node_end ? past_child(leaf) - 1 : -1;
 }
 
 // One of the nodes of free order around a leaf; -1 if there is none.

@@ -1,6 +1,8 @@
 // Iterated local search: kicks and repairs, until nothing more is gained.
 //
-//   kick     ... A | B | C | D ...   ->   ... A | D | C | B ...     double bridge, inside one node
+//   kick     ... A | B | C | D ...   ->   ... A | D | C | B ...     double bridge, inside one node,
+//            or a run of blocks turned (turn_run.h) where the plan has blocks that cannot be
+//            reversed
 //   repair   local search from the visits at the cuts
 //   keep     the result if it costs no more, else undo everything
 //
@@ -33,6 +35,12 @@ struct IteratedSearchOptions {
   // their repair costs too much.
   int least_span = 30;
   int most_span = 400;
+
+  // Of the kicks that turn a run, where there are such: their share, the most blocks in a run, and
+  // the share of the runs that end near to where they begin.
+  double turn_share = 0.5;
+  int most_turned = 30;
+  double near_share = 0.5;
 };
 
 class IteratedSearch {
@@ -51,13 +59,18 @@ class IteratedSearch {
 
  private:
   bool Kick(Rng& rng, double& delta);
+  bool BridgeKick(Rng& rng, double& delta);
+  bool TurnKick(Rng& rng, double& delta);
+  int ChooseRunEnd(Rng& rng, int node, int first) const;
   int ChooseNode(Rng& rng, int leaf) const;
   bool ChooseCuts(Rng& rng, int node, int (&cuts)[4]) const;
   int ChooseSpan(Rng& rng) const;
 
   SearchState& state_;
+  const NeighborLists& neighbors_;
   const IteratedSearchOptions options_;
   LocalSearch local_search_;
+  bool turns_ = false;  // whether there are runs to turn
   int64_t iterations_ = 0;
 };
 

@@ -142,7 +142,8 @@ TEST(ClockJump, NeitherCutsJobsShortNorKeepsThemForever) {
     const absl::Duration took = absl::Now() - begin;
 
     // Just too late is no fault of the clock's: other tests keep the machine busy.
-    EXPECT_TRUE(result.ok() || (absl::IsDeadlineExceeded(result.status()) && took > absl::Milliseconds(1490)))
+    EXPECT_TRUE(result.ok() ||
+                (absl::IsDeadlineExceeded(result.status()) && took > absl::Milliseconds(1490)))
         << result.status();
     EXPECT_GT(took, absl::Milliseconds(700)) << "jump by " << jump;
     EXPECT_LT(took, absl::Milliseconds(3000)) << "jump by " << jump;
