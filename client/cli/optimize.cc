@@ -131,7 +131,8 @@ Outcome RunOptimize(const Flags& flags) {
     rewrite = std::get<GcodeRewrite>(std::move(made));
   }
   if (!request->json.empty()) {
-    const absl::Status status = WriteWholeFile(request->json, report::RoutesJson(*job, runs[0]));
+    const absl::Status status = WriteWholeFile(
+        request->json, report::RoutesJson(*job, runs[0], rewrite ? &*rewrite : nullptr));
     if (!status.ok()) return InputFault(status);
   }
   if (request->views.any()) {

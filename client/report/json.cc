@@ -95,6 +95,18 @@ Json TotalJson(const InputJob& job, const JobResult& result, double wall_seconds
           {"idle_seconds", summary.idle_seconds()}};
 }
 
+Json GcodeTotalsJson(const gcode::PrintTotals& totals) {
+  return {{"travel_mm", totals.travel_mm},           {"extruded_mm", totals.extruded_mm},
+          {"retractions", totals.retractions},       {"crossings", totals.crossings},
+          {"open_crossings", totals.open_crossings}, {"print_seconds", totals.seconds}};
+}
+
+Json RewriteJson(const GcodeRewrite& rewrite) {
+  return {{"layers_changed", rewrite.layers_changed},
+          {"given", GcodeTotalsJson(rewrite.before)},
+          {"written", GcodeTotalsJson(rewrite.after)}};
+}
+
 // Names of files may be any bytes; JSON is UTF-8.
 std::string Dump(const Json& json) {
   return json.dump(-1, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace);
@@ -108,11 +120,15 @@ std::string StopName(v1::StopReason reason) {
   return name.starts_with(prefix) ? name.substr(prefix.size()) : name;
 }
 
-std::string RoutesJson(const InputJob& job, const JobRun& run) {
+std::string RoutesJson(const InputJob& job, const JobRun& run, const GcodeRewrite* rewrite) {
   std::string out = absl::StrFormat("{\"input\": %s, \"strategy\": %s, \"seed\": %d,\n",
                                     Dump(job.name), Dump(run.result.summary.strategy()), run.seed);
-  absl::StrAppendFormat(&out, " \"total\": %s,\n \"layers\": [",
+  absl::StrAppendFormat(&out, " \"total\": %s,\n",
                         Dump(TotalJson(job, run.result, run.wall_seconds)));
+  if (rewrite != nullptr) {
+    absl::StrAppendFormat(&out, " \"gcode\": %s,\n", Dump(RewriteJson(*rewrite)));
+  }
+  out += " \"layers\": [";
   // Layer by layer: as one tree of values a large job would need many times its text's memory.
   for (size_t i = 0; i < job.layers.size(); ++i) {
     out += i == 0 ? "\n  " : ",\n  ";

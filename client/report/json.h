@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "client/gcode/rewrite.h"
 #include "client/input/input_job.h"
 #include "client/report/run.h"
 
@@ -25,7 +26,15 @@ namespace traverse::report {
 // plan each visit also has "path", the position of its path in the plan, and "island" only if it is
 // known. The same job and routes give the same bytes, but for the seconds. One layer is one line.
 // REQUIRES: the result passed CheckVisits.
-std::string RoutesJson(const InputJob& job, const JobRun& run);
+//
+// With `rewrite`, what became of the G-code stands behind "total", measured in the two files:
+//   "gcode": {"layers_changed": 12,
+//             "given": {"travel_mm": , "extruded_mm": , "retractions": , "crossings": ,
+//                       "open_crossings": , "print_seconds": },
+//             "written": {...}}
+// Crossings are ways across visible walls, open ones those with filament not pulled back.
+std::string RoutesJson(const InputJob& job, const JobRun& run,
+                       const GcodeRewrite* rewrite = nullptr);
 
 // Several strategies' routes of one job, each document as above:
 //   {"input": "...", "runs": [{"label": "ni2opt:point_release=false", "seed": 1, "routes": {...}}]}

@@ -46,16 +46,16 @@ RouteNotes NotesOf(const NamedRun& named) {
   const JobResult& result = named.run->result;
   const v1::JobSummary& summary = result.summary;
   RouteNotes notes = NotesWithoutFigures(named);
-  notes.total = {summary.travel().total_mm() + summary.cleaning_mm(), summary.idle_seconds(), {}};
+  notes.total = {summary.travel().total_mm() + summary.cleaning_mm(), summary.idle_seconds()};
   for (const v1::LayerResult& layer : result.layers) {
     const double travel = layer.travel().total_mm();
-    notes.layers.push_back({travel, IdleSeconds(summary, travel), {}});
+    notes.layers.push_back({travel, IdleSeconds(summary, travel)});
   }
   return notes;
 }
 
 Figures FiguresOf(const gcode::PrintTotals& totals) {
-  return {totals.travel_mm, totals.seconds, totals.retractions};
+  return {totals.travel_mm, totals.seconds, totals.retractions, totals.crossings};
 }
 
 // What the layers of `file` from `first` on come to.

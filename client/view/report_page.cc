@@ -27,24 +27,30 @@ Json OrNull(const std::optional<T>& value) {
 // Three digits are as many as files state.
 double Rounded(double value) { return std::round(value * 1000) / 1000; }
 
+// [layer] of a figure that a file tells; null unless it tells it of all layers.
+Json LayersJson(const RouteNotes& route, std::optional<int64_t> Figures::*figure) {
+  Json values = Json::array();
+  for (const Figures& layer : route.layers) {
+    if (!(layer.*figure)) return nullptr;
+    values.push_back(*(layer.*figure));
+  }
+  return values;
+}
+
 Json RouteJson(const RouteNotes& route) {
   Json travel = Json::array();
-  Json retractions = Json::array();
-  bool retracts = true;
-  for (const Figures& layer : route.layers) {
-    travel.push_back(Rounded(layer.travel_mm));
-    retractions.push_back(layer.retractions.value_or(0));
-    retracts = retracts && layer.retractions.has_value();
-  }
+  for (const Figures& layer : route.layers) travel.push_back(Rounded(layer.travel_mm));
   return {{"label", ValidUtf8(route.label)},
           {"travel", Rounded(route.total.travel_mm)},
           {"seconds", Rounded(route.total.seconds)},
           {"retractions", OrNull(route.total.retractions)},
+          {"crossings", OrNull(route.total.crossings)},
           {"gap", OrNull(route.gap)},
           {"compute", Rounded(route.compute_seconds)},
           {"layers",
            {{"travel", std::move(travel)},
-            {"retractions", retracts ? std::move(retractions) : Json(nullptr)}}}};
+            {"retractions", LayersJson(route, &Figures::retractions)},
+            {"crossings", LayersJson(route, &Figures::crossings)}}}};
 }
 
 Json SceneJson(const Scene& scene, const std::string& made, size_t paths) {

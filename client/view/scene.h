@@ -52,7 +52,8 @@ struct DrawnLayer {
 struct Figures {
   double travel_mm = 0;
   double seconds = 0;
-  std::optional<int64_t> retractions;  // where the file tells
+  std::optional<int64_t> retractions = {};  // where the file tells
+  std::optional<int64_t> crossings = {};    // of visible walls; the same
 };
 
 // One way of doing the job: as given, or by a strategy.

@@ -265,10 +265,18 @@ class Views(CommandLine):
     def test_reports_of_gcode_state_what_the_files_amount_to(self):
         gcode = os.path.join(TESTS, os.pardir, "deploy", "samples", "clusters13.gcode")
         page = self.path("page.html")
-        out = self.succeed("optimize", gcode, "-o", self.path("out.gcode"), f"--report={page}")
+        routes = self.path("routes.json")
+        out = self.succeed("optimize", gcode, "-o", self.path("out.gcode"), f"--report={page}", f"--json={routes}")
         before, after = self.scene(page)["routes"]
         self.assertIn(f"travel {before['travel'] / 1000:.2f} -> {after['travel'] / 1000:.2f} m", out)
         self.assertIn(f"retractions {before['retractions']} -> {after['retractions']},", out)
+        self.assertIn(f"visible walls crossed {before['crossings']} -> {after['crossings']},", out)
+        written = json.loads(read(routes))["gcode"]
+        for route, totals in (before, written["given"]), (after, written["written"]):
+            self.assertEqual(sum(route["layers"]["crossings"]), totals["crossings"])
+            self.assertLessEqual(totals["open_crossings"], totals["crossings"])
+            self.assertEqual(route["retractions"], totals["retractions"])
+            self.assertAlmostEqual(route["seconds"], totals["print_seconds"], delta=0.001)
 
     def test_the_layer_is_counted_in_the_file(self):
         picture = self.path("layer.svg")

@@ -200,8 +200,21 @@ TEST(ReportPage, HoldsItsFiguresAsJsonAndTheLayerOnViewFirst) {
   EXPECT_EQ(scene["paths"], 3);
   EXPECT_EQ(scene["routes"][1]["layers"]["travel"], (std::vector<double>{10, 10, 30}));
   EXPECT_TRUE(scene["routes"][1]["layers"]["retractions"].is_null());
+  EXPECT_TRUE(scene["routes"][1]["crossings"].is_null());
   EXPECT_LT(page.find("id=\"layer-1\""), page.find("id=\"layer-0\""));
   EXPECT_LT(page.find("id=\"layer-0\""), page.find("id=\"layer-2\""));
+}
+
+TEST(ReportPage, HoldsWhatFilesTell) {
+  Scene told = SmallScene("part");
+  for (RouteNotes& route : told.routes) {
+    route.total.crossings = 6;
+    for (size_t i = 0; i < route.layers.size(); ++i) {
+      route.layers[i].crossings = static_cast<int64_t>(i) + 1;
+    }
+  }
+  EXPECT_THAT(ReportPage(told, "", 1), HasSubstr("\"crossings\":6,"));
+  EXPECT_THAT(ReportPage(told, "", 1), HasSubstr("\"crossings\":[1,2,3]"));
 }
 
 TEST(ReportPage, IsTheSameOnAnyNumberOfThreads) {

@@ -32,4 +32,5 @@ export function change(before, after) {
 }
 
 export const percent = (share) => `${(100 * share).toFixed(1)} %`;
+export const crossings = (n) => `${n} ${n === 1 ? "wall" : "walls"} crossed`;
 export const retractions = (n) => `${n} ${n === 1 ? "retraction" : "retractions"}`;

@@ -34,6 +34,9 @@ export function headline(scene, shown) {
   if (before.retractions !== null && after.retractions !== null) {
     cards.push(changeCard("Retractions", before.retractions, after.retractions, String));
   }
+  if (before.crossings !== null && after.crossings !== null) {
+    cards.push(changeCard("Visible walls crossed", before.crossings, after.crossings, String));
+  }
   if (after.gap !== null) {
     const proven = after.gap < 0.0005;
     cards.push(card("Gap to the optimum", proven ? "0 %" : `≤ ${format.percent(after.gap)}`,
@@ -47,15 +50,18 @@ export function caption(name, route, layer, before) {
   let text = `${name}: ${format.length(travel)}`;
   if (before) text += ` (${format.change(before.layers.travel[layer], travel)})`;
   if (route.layers.retractions) text += `, ${format.retractions(route.layers.retractions[layer])}`;
+  if (route.layers.crossings) text += `, ${format.crossings(route.layers.crossings[layer])}`;
   return text;
 }
 
 // One row a route; a click on one shows it.
 export function strategyTable(scene, shown, onPick) {
   const retractions = scene.routes.every((route) => route.retractions !== null);
+  const crossings = scene.routes.every((route) => route.crossings !== null);
   const gaps = scene.routes.some((route) => route.gap !== null);
   const head = ["route", "travel", "saved", scene.seconds];
   if (retractions) head.push("retractions");
+  if (crossings) head.push("walls crossed");
   if (gaps) head.push("gap");
   head.push("computed in");
   const header = element("tr");
@@ -72,6 +78,7 @@ export function strategyTable(scene, shown, onPick) {
     row.append(element("td", route.label), element("td", format.length(route.travel)), gain,
       element("td", format.duration(route.seconds)));
     if (retractions) row.append(element("td", String(route.retractions)));
+    if (crossings) row.append(element("td", String(route.crossings)));
     if (gaps) row.append(element("td", route.gap === null ? "" : format.percent(route.gap)));
     row.append(element("td", i === 0 ? "" : `${route.compute.toFixed(2)} s`));
     if (i > 0) {

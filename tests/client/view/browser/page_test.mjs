@@ -78,12 +78,13 @@ test("opens with its headline, both pictures, and the layer with the most saved"
   on("gcode.html", DESK, async (page) => {
     assert.equal(await page.title(), "clusters13.gcode · Traverse");
     const cards = await page.locator("#headline .card").allInnerTexts();
-    assert.equal(cards.length, 3);
+    assert.equal(cards.length, 4);
     assert.match(cards[0], /^Travel\n−\d+\.\d %\n[\d.]+ mm → [\d.]+ mm$/);
     assert.match(cards[1], /^Print time\n/);
+    assert.match(cards[3], /^Visible walls crossed\n.* %\n\d+ → \d+$/);
     assert.match(cards[2], /^Retractions\n−\d+\.\d %\n\d+ → \d+$/);
-    assert.match(await text(page, "#before-name"), /^Before: \d+\.\d mm, \d+ retractions$/);
-    assert.match(await text(page, "#after-name"), /^After, auto: \d+\.\d mm \(−\d+\.\d %\), \d+ retractions$/);
+    assert.match(await text(page, "#before-name"), /^Before: \d+\.\d mm, \d+ retractions, \d+ walls? crossed$/);
+    assert.match(await text(page, "#after-name"), /^After, auto: \d+\.\d mm \(−\d+\.\d %\), \d+ retractions, \d+ walls? crossed$/);
     for (const id of ["before", "after"]) {
       for (const color of [START, END, TRAVEL]) assert.ok(await count(page, id, color) > 30, `${id} ${color}`);
     }
