@@ -67,4 +67,17 @@ Outline OutlineOf(const GcodeFile& file, const Block& block) {
   return outline;
 }
 
+bool LiesWithin(const Outline& inner, const Outline& outer) {
+  if (!outer.closed) return false;
+  const Vertex p = inner.points.front();
+  bool within = false;
+  for (size_t k = 0; k + 1 < outer.points.size(); ++k) {
+    const Vertex a = outer.points[k];
+    const Vertex b = outer.points[k + 1];
+    if ((a.y > p.y) == (b.y > p.y)) continue;
+    if (p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)) within = !within;
+  }
+  return within;
+}
+
 }  // namespace traverse::gcode

@@ -32,6 +32,9 @@ inline constexpr double kMaxLoopGapMm = 0.13;
 
 Outline OutlineOf(const GcodeFile& file, const Block& block);
 
+// True if `inner` lies within the loop `outer`. REQUIRES: the two do not cross.
+bool LiesWithin(const Outline& inner, const Outline& outer);
+
 // The machine as it is when `block` begins.
 MachineState StateAt(const GcodeFile& file, const Block& block);
 

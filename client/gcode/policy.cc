@@ -181,7 +181,13 @@ bool LayerPlanner::KeepsOrder(uint32_t i, uint32_t j) const {
   const Kind kind = KindOf(a);
   if (kind != KindOf(b)) return true;
   if (policy_ == Policy::kFree) return false;
-  if (kind == Kind::kWall || OrderIsQuality(a) || OrderIsQuality(b)) return true;
+  if (OrderIsQuality(a) || OrderIsQuality(b)) return true;
+  if (kind == Kind::kWall) {
+    // Walls of one feature that lie side by side are of different holes or parts.
+    const Outline& one = result_.outlines[i];
+    const Outline& other = result_.outlines[j];
+    return a != b || LiesWithin(one, other) || LiesWithin(other, one);
+  }
   return kind != Kind::kFill && a != b;
 }
 

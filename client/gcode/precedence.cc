@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "absl/container/flat_hash_set.h"
+#include "absl/container/flat_hash_map.h"
 #include "client/gcode/segment_grid.h"
 
 namespace traverse::gcode {
@@ -11,6 +11,9 @@ namespace {
 
 // Segments this many cells apart are found by the grid.
 constexpr double kNearInCells = 0.75;
+
+// What is known of the order of two paths.
+enum class Order : uint8_t { kNone, kIfTheyTouch, kKnown };
 
 class UnionFind {
  public:
@@ -61,7 +64,7 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
                       const std::function<bool(uint32_t, uint32_t)>& keeps_order) {
   Contacts contacts;
   UnionFind regions(outlines.size());
-  absl::flat_hash_set<std::pair<uint32_t, uint32_t>> known;
+  absl::flat_hash_map<std::pair<uint32_t, uint32_t>, Order> orders;
   const auto ascending = [](uint32_t i, uint32_t j) {
     return std::pair<uint32_t, uint32_t>(std::min(i, j), std::max(i, j));
   };
@@ -69,13 +72,16 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
   const auto reach = [&](uint32_t one, uint32_t other) {
     return kTouch * (outlines[one].width_mm + outlines[other].width_mm) / 2;
   };
+  const auto order_of = [&](uint32_t one, uint32_t other) -> Order& {
+    const std::pair<uint32_t, uint32_t> pair = ascending(one, other);
+    const auto [found, added] = orders.try_emplace(pair, Order::kNone);
+    if (added && keeps_order(pair.first, pair.second)) found->second = Order::kIfTheyTouch;
+    return found->second;
+  };
   // Of most paths that touch nothing more is to be learnt: they do in many places.
   const auto reach_if_wanted = [&](uint32_t one, uint32_t other) {
-    if (regions.Find(one) == regions.Find(other)) {
-      const std::pair<uint32_t, uint32_t> pair = ascending(one, other);
-      if (!keeps_order(pair.first, pair.second) || known.contains(pair)) return -1.0;
-    }
-    return reach(one, other);
+    const bool joined = regions.Find(one) == regions.Find(other);
+    return joined && order_of(one, other) != Order::kIfTheyTouch ? -1.0 : reach(one, other);
   };
   grid.ForEachNearPair(reach_if_wanted, [&](uint32_t s, uint32_t t) {
     const Segment& one = grid.segments()[s];
@@ -83,9 +89,9 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
     const double near = reach(one.path, other.path);
     if (SquaredDistance(one, other) > near * near) return true;
     regions.Join(one.path, other.path);
-    const std::pair<uint32_t, uint32_t> pair = ascending(one.path, other.path);
-    if (keeps_order(pair.first, pair.second) && known.insert(pair).second) {
-      contacts.ordered.push_back(pair);
+    if (Order& order = order_of(one.path, other.path); order == Order::kIfTheyTouch) {
+      order = Order::kKnown;
+      contacts.ordered.push_back(ascending(one.path, other.path));
     }
     return false;
   });

@@ -25,7 +25,7 @@ struct Contacts {
 // about 0.9 of a width apart, and what is one line further 1.8.
 inline constexpr double kTouch = 1.3;
 
-// `keeps_order(i, j)` is asked for i < j.
+// `keeps_order(i, j)` is asked for i < j, once at most.
 Contacts FindContacts(const std::vector<Outline>& outlines,
                       const std::function<bool(uint32_t, uint32_t)>& keeps_order);
 

@@ -123,6 +123,18 @@ TEST(Policy, NestedWallsKeepTheirOrderUnlessFree) {
   EXPECT_THAT(Pairs(same.Plan(Policy::kFree).plan), IsEmpty());
 }
 
+TEST(Policy, WallsOfOneFeatureSideBySideMayChangePlaces) {
+  Sheet sheet;
+  sheet.Square(kInner, 0, 0, 10).Square(kInner, 10.4, 0, 10);   // of two holes
+  sheet.Square(kOuter, 30, 0, 10).Square(kInner, 40.4, 0, 10);  // not of one feature
+  sheet.Square(kInner, 60, 0, 10).Square(kInner, 60.4, 0.4, 9.2);
+  sheet.Square(kOuter, 80.4, 0.4, 9.2).Square(kOuter, 80, 0, 10);
+  sheet.Square(kOuter, 100, 0, 10).Line(kOuter, 100.4, 1, 100.4, 9);
+
+  EXPECT_THAT(Pairs(sheet.Plan().plan),
+              UnorderedElementsAre(Pair(3, 4), Pair(5, 6), Pair(7, 8), Pair(9, 10)));
+}
+
 TEST(Policy, WallsBeforeInfillStayUnderFreeWhereTheyTouch) {
   Sheet sheet;
   sheet.Square(kInner, 0, 0, 10).Line(kInfill, 0.3, 5, 9.7, 5).Line(kInfill, 30, 5, 40, 5);
