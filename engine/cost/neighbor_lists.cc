@@ -1,86 +1,84 @@
 #include "engine/cost/neighbor_lists.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
 #include "engine/geometry/bounding_box.h"
+#include "engine/geometry/float_points.h"
 
 namespace traverse {
 namespace {
 
 using Member = NeighborLists::Member;
 
-double SquaredDistance(Point a, Point b) {
-  return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y);
-}
+constexpr size_t kPieceSize = 4;
 
-Point NearestOf(absl::Span<const Point> points, Point p) {
-  Point nearest = points[0];
-  double least = SquaredDistance(nearest, p);
-  for (const Point point : points) {
-    const double squared = SquaredDistance(point, p);
-    if (squared >= least) continue;
-    least = squared;
-    nearest = point;
+float Most(float a, float b) { return a > b ? a : b; }
+float Least(float a, float b) { return a < b ? a : b; }
+
+// In the floats of a search.
+struct Box {
+  float low_x = std::numeric_limits<float>::infinity();
+  float low_y = std::numeric_limits<float>::infinity();
+  float high_x = -std::numeric_limits<float>::infinity();
+  float high_y = -std::numeric_limits<float>::infinity();
+
+  void Add(FloatPoint point) { Add(Box{point.x, point.y, point.x, point.y}); }
+  void Add(const Box& other) {
+    low_x = Least(low_x, other.low_x);
+    low_y = Least(low_y, other.low_y);
+    high_x = Most(high_x, other.high_x);
+    high_y = Most(high_y, other.high_y);
   }
-  return nearest;
-}
 
-struct Sample {
-  Point point;
-  Member member;
+  // Square of the distance to another box.
+  float SquaredDistanceTo(const Box& other) const {
+    const float dx = Most(Most(low_x - other.high_x, other.low_x - high_x), 0);
+    const float dy = Most(Most(low_y - other.high_y, other.low_y - high_y), 0);
+    return dx * dx + dy * dy;
+  }
+  Box center() const {
+    const float x = (low_x + high_x) / 2;
+    const float y = (low_y + high_y) / 2;
+    return {x, y, x, y};
+  }
 };
 
-// About kSamples points spread evenly over a group, of which neighbors are looked for.
-struct Owned {
-  Owned(absl::Span<const Point> group, Member group_member) : member(group_member) {
-    const size_t n = group.size();
-    const size_t count = std::min(n, NeighborLists::kSamples);
-    points.reserve(count);
-    for (size_t i = 0; i < count; ++i) points.push_back(group[i * n / count]);
-    box = BoundingBox(points);
-  }
-
-  Member member;
-  std::vector<Point> points;
-  BoundingBox box;
+// Samples of a group that follow each other.
+struct Piece {
+  Box box;
+  int slot;  // of a member
 };
 
 // The nearest members found so far, nearest first.
 class Nearest {
  public:
-  explicit Nearest(int count) : limit_(static_cast<size_t>(count)) { list_.reserve(limit_ + 1); }
+  explicit Nearest(int count) : limit_(static_cast<size_t>(count)) { list_.reserve(limit_); }
 
   void Clear() { list_.clear(); }
 
   // Squared distances from here on are of no interest.
-  double bound() const {
-    return list_.size() < limit_ ? std::numeric_limits<double>::infinity() : list_.back().squared;
+  float bound() const {
+    return list_.size() < limit_ ? std::numeric_limits<float>::infinity() : list_.back().squared;
   }
 
-  // `place`: of the group's point that is so far away.
-  void Offer(int group, double squared, Point place) {
+  // `there`: the number of the sample of the member that is so far away. REQUIRES: no member twice.
+  void Offer(int slot, float squared, size_t there) {
     if (squared >= bound()) return;
-    const auto known = std::find_if(list_.begin(), list_.end(),
-                                    [group](const Item& item) { return item.group == group; });
-    if (known != list_.end()) {
-      if (squared >= known->squared) return;
-      list_.erase(known);
-    } else if (list_.size() == limit_) {
-      list_.pop_back();
+    if (list_.size() < limit_) list_.emplace_back();
+    size_t place = list_.size() - 1;
+    for (; place > 0 && squared < list_[place - 1].squared; --place) {
+      list_[place] = list_[place - 1];
     }
-    const auto after = std::find_if(list_.begin(), list_.end(), [&](const Item& item) {
-      return squared < item.squared || (squared == item.squared && group < item.group);
-    });
-    list_.insert(after, Item{squared, group, place});
+    list_[place] = Item{squared, slot, there};
   }
 
   struct Item {
-    double squared;  // of the distance in mm
-    int group;
-    Point place;
+    float squared = 0;  // of the distance in mm
+    int slot = 0;
+    size_t there = 0;
   };
   const std::vector<Item>& list() const { return list_; }
 
@@ -89,23 +87,25 @@ class Nearest {
   std::vector<Item> list_;
 };
 
-// A tree of bounding boxes over samples.
-class SampleTree {
+// A tree of bounding boxes over pieces.
+class PieceTree {
  public:
-  explicit SampleTree(std::vector<Sample> samples) : samples_(std::move(samples)) {
-    if (!samples_.empty()) Build(0, samples_.size());
+  explicit PieceTree(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
+    nodes_.reserve(pieces_.size() / 2 + 1);
+    if (!pieces_.empty()) Build(0, pieces_.size());
   }
 
-  // Offers every sample of another owner that may be among the nearest.
-  void Query(const Owned& own, Nearest& nearest) const {
-    if (!nodes_.empty()) Visit(0, own, nearest);
+  // Calls `offer` with the slot of every piece that is not farther from `own` than bound() says.
+  template <typename Bound, typename Offer>
+  void Query(const Box& own, const Bound& bound, const Offer& offer) const {
+    if (!nodes_.empty()) Visit(0, own, bound, offer);
   }
 
  private:
-  static constexpr size_t kLeafSize = 8;
+  static constexpr size_t kLeafSize = 4;
 
   struct Node {
-    BoundingBox box;
+    Box box;
     size_t begin = 0;
     size_t end = 0;
     size_t right = 0;  // the second child; the first one follows the node; 0: a leaf
@@ -114,15 +114,16 @@ class SampleTree {
   size_t Build(size_t begin, size_t end) {
     const size_t index = nodes_.size();
     nodes_.push_back(Node{{}, begin, end, 0});
-    BoundingBox box;
-    for (size_t i = begin; i < end; ++i) box.Add(samples_[i].point);
+    Box box;
+    for (size_t i = begin; i < end; ++i) box.Add(pieces_[i].box);
     nodes_[index].box = box;
     if (end - begin <= kLeafSize) return index;
     const size_t middle = begin + (end - begin) / 2;
-    const bool by_x = box.width() > box.height();
-    const auto at = [this](size_t i) { return samples_.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(at(begin), at(middle), at(end), [by_x](const Sample& a, const Sample& b) {
-      return by_x ? a.point.x < b.point.x : a.point.y < b.point.y;
+    const bool by_x = box.high_x - box.low_x > box.high_y - box.low_y;
+    const auto at = [this](size_t i) { return pieces_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(begin), at(middle), at(end), [by_x](const Piece& a, const Piece& b) {
+      return by_x ? a.box.low_x + a.box.high_x < b.box.low_x + b.box.high_x
+                  : a.box.low_y + a.box.high_y < b.box.low_y + b.box.high_y;
     });
     Build(begin, middle);
     const size_t right = Build(middle, end);
@@ -130,44 +131,118 @@ class SampleTree {
     return index;
   }
 
-  void Visit(size_t index, const Owned& own, Nearest& nearest) const {
+  template <typename Bound, typename Offer>
+  void Visit(size_t index, const Box& own, const Bound& bound, const Offer& offer) const {
     const Node& node = nodes_[index];
     if (node.right == 0) {
-      VisitLeaf(node, own, nearest);
+      for (size_t i = node.begin; i < node.end; ++i) {
+        if (own.SquaredDistanceTo(pieces_[i].box) < bound()) offer(pieces_[i].slot);
+      }
       return;
     }
     size_t near = index + 1;
     size_t far = node.right;
-    double near_mm = nodes_[near].box.DistanceTo(own.box);
-    double far_mm = nodes_[far].box.DistanceTo(own.box);
+    float near_squared = nodes_[near].box.SquaredDistanceTo(own);
+    float far_squared = nodes_[far].box.SquaredDistanceTo(own);
     // Where both boxes meet the group's, its middle tells which is nearer.
     const auto to_middle = [&](size_t child) {
-      return nodes_[child].box.SquaredDistanceTo(own.box.center());
+      return nodes_[child].box.SquaredDistanceTo(own.center());
     };
-    if (far_mm < near_mm || (far_mm == near_mm && to_middle(far) < to_middle(near))) {
+    if (far_squared < near_squared ||
+        (far_squared == near_squared && to_middle(far) < to_middle(near))) {
       std::swap(near, far);
-      std::swap(near_mm, far_mm);
+      std::swap(near_squared, far_squared);
     }
-    if (near_mm * near_mm < nearest.bound()) Visit(near, own, nearest);
-    if (far_mm * far_mm < nearest.bound()) Visit(far, own, nearest);
+    if (near_squared < bound()) Visit(near, own, bound, offer);
+    if (far_squared < bound()) Visit(far, own, bound, offer);
   }
 
-  void VisitLeaf(const Node& node, const Owned& own, Nearest& nearest) const {
-    for (size_t i = node.begin; i < node.end; ++i) {
-      const Sample& there = samples_[i];
-      if (there.member.owner == own.member.owner) continue;
-      if (own.box.SquaredDistanceTo(there.point) >= nearest.bound()) continue;
-      double least = std::numeric_limits<double>::infinity();
-      for (const Point here : own.points) {
-        const double squared = SquaredDistance(here, there.point);
-        least = squared < least ? squared : least;
-      }
-      nearest.Offer(there.member.group, least, there.point);
-    }
-  }
-
-  std::vector<Sample> samples_;
+  std::vector<Piece> pieces_;
   std::vector<Node> nodes_;
+};
+
+// The members of one search, in single precision.
+class Search {
+ public:
+  Search(const PointGroups& groups, absl::Span<const Member> members) : groups_(groups) {
+    BoundingBox box;
+    for (const Member& member : members) box.Add(BoundingBox(groups.of(member.group)));
+    if (!box.empty()) origin_ = box.center();
+    for (const Member& member : members) {
+      if (!groups.of(member.group).empty()) Add(member);
+    }
+    stamps_.resize(members_.size(), -1);
+  }
+
+  int size() const { return static_cast<int>(members_.size()); }
+  const Member& member(int slot) const { return members_[Index(slot)]; }
+  PieceTree Tree() { return PieceTree(std::move(pieces_)); }
+
+  // Offers to `nearest` every member of another owner that may be among them.
+  void Find(const PieceTree& tree, int slot, Nearest& nearest) {
+    const int owner = member(slot).owner;
+    const FloatGroups::Group own = samples_.of(Index(slot));
+    tree.Query(
+        boxes_[Index(slot)], [&] { return nearest.bound(); },
+        [&](int other) {
+          if (stamps_[Index(other)] == slot || member(other).owner == owner) return;
+          stamps_[Index(other)] = slot;
+          const NearestPair pair = NearestBetween(own, samples_.of(Index(other)));
+          nearest.Offer(other, pair.squared, pair.there);
+        });
+  }
+
+  // From the sample found to the nearest point of the whole group, and back: as samples are near
+  // the nearest points, this is nearly always exact.
+  double Refine(int from, const Nearest::Item& item) const {
+    const FloatGroups::Group sampled = samples_.of(Index(item.slot));
+    const FloatPoint place{sampled.x[item.there], sampled.y[item.there]};
+    const FloatGroups::Group here = points_.of(Index(from));
+    const size_t near = NearestOf(here, place);
+    const size_t there = NearestOf(points_.of(Index(item.slot)), {here.x[near], here.y[near]});
+    return Distance(PointOf(from, near), PointOf(item.slot, there));
+  }
+
+ private:
+  static size_t Index(int i) { return static_cast<size_t>(i); }
+
+  FloatPoint Relative(Point p) const {
+    return {static_cast<float>(p.x - origin_.x), static_cast<float>(p.y - origin_.y)};
+  }
+
+  // All points of the member, and about kSamples of them spread evenly.
+  void Add(const Member& member) {
+    const absl::Span<const Point> group = groups_.of(member.group);
+    for (const Point point : group) points_.Add(Relative(point));
+    points_.Close();
+    Box box;
+    const size_t count = std::min(group.size(), NeighborLists::kSamples);
+    for (size_t i = 0; i < count; ++i) {
+      const FloatPoint point = Relative(group[i * group.size() / count]);
+      samples_.Add(point);
+      if (i % kPieceSize == 0) pieces_.push_back({{}, size()});
+      pieces_.back().box.Add(point);
+      box.Add(point);
+    }
+    samples_.Close();
+    boxes_.push_back(box);
+    members_.push_back(member);
+  }
+
+  // Behind the last one there are only its copies.
+  Point PointOf(int slot, size_t number) const {
+    const absl::Span<const Point> group = groups_.of(member(slot).group);
+    return group[std::min(number, group.size() - 1)];
+  }
+
+  const PointGroups& groups_;
+  Point origin_;
+  std::vector<Member> members_;  // [slot] those that have points
+  std::vector<Box> boxes_;       // [slot] of the samples
+  FloatGroups samples_;          // [slot]
+  FloatGroups points_;           // [slot]
+  std::vector<int> stamps_;      // [slot] the one that looked at it last
+  std::vector<Piece> pieces_;
 };
 
 }  // namespace
@@ -175,51 +250,37 @@ class SampleTree {
 NeighborLists::NeighborLists(const PointGroups& groups) : groups_(groups) {}
 
 void NeighborLists::FindAmong(absl::Span<const Member> members, int count, Budget& budget) {
-  std::vector<Owned> owned;
-  std::vector<Sample> samples;
-  for (const Member& member : members) {
-    if (groups_.of(member.group).empty()) continue;
-    owned.emplace_back(groups_.of(member.group), member);
-    for (const Point point : owned.back().points) samples.push_back({point, member});
-  }
-  const SampleTree tree(std::move(samples));
+  Search search(groups_, members);
+  const PieceTree tree = search.Tree();
   Nearest nearest(count);
-  for (const Owned& own : owned) {
+  for (int slot = 0; slot < search.size(); ++slot) {
     if (budget.Exhausted()) return;
     nearest.Clear();
-    tree.Query(own, nearest);
-    const int from = own.member.group;
+    search.Find(tree, slot, nearest);
     for (const Nearest::Item& item : nearest.list()) {
-      const double squared = Refine(from, item.group, item.place, item.squared);
-      found_.push_back({from, {item.group, static_cast<float>(std::sqrt(squared))}});
+      const double distance_mm = search.Refine(slot, item);
+      found_.push_back({search.member(slot).group, {search.member(item.slot).group, distance_mm}});
     }
   }
-}
-
-// From the point found to the nearest one of the whole group, and back: as the points of a sample
-// are near the nearest ones, this is nearly always exact.
-double NeighborLists::Refine(int from, int to, Point place, double squared) const {
-  const absl::Span<const Point> here = groups_.of(from);
-  const absl::Span<const Point> there = groups_.of(to);
-  if (here.size() <= kSamples && there.size() <= kSamples) return squared;
-  const Point near = NearestOf(here, place);
-  return std::min(squared, SquaredDistance(near, NearestOf(there, near)));
 }
 
 void NeighborLists::Seal() {
-  std::sort(found_.begin(), found_.end(), [](const Found& a, const Found& b) {
-    if (a.from != b.from) return a.from < b.from;
-    if (a.neighbor.distance_mm != b.neighbor.distance_mm) {
-      return a.neighbor.distance_mm < b.neighbor.distance_mm;
-    }
-    return a.neighbor.group < b.neighbor.group;
-  });
-  first_.assign(static_cast<size_t>(groups_.size()) + 1, 0);
-  for (const Found& found : found_) ++first_[static_cast<size_t>(found.from) + 1];
-  for (size_t g = 1; g < first_.size(); ++g) first_[g] += first_[g - 1];
-  neighbors_.reserve(found_.size());
-  for (const Found& found : found_) neighbors_.push_back(found.neighbor);
+  first_.assign(static_cast<size_t>(groups_.size()) + 2, 0);
+  for (const Found& found : found_) ++first_[static_cast<size_t>(found.from) + 2];
+  for (size_t g = 2; g < first_.size(); ++g) first_[g] += first_[g - 1];
+  neighbors_.resize(found_.size());
+  for (const Found& found : found_) {
+    neighbors_[static_cast<size_t>(first_[static_cast<size_t>(found.from) + 1]++)] = found.neighbor;
+  }
+  first_.pop_back();
   found_ = {};
+  for (size_t g = 0; g + 1 < first_.size(); ++g) {
+    std::sort(neighbors_.begin() + first_[g], neighbors_.begin() + first_[g + 1],
+              [](const Neighbor& a, const Neighbor& b) {
+                return a.distance_mm != b.distance_mm ? a.distance_mm < b.distance_mm
+                                                      : a.group < b.group;
+              });
+  }
 }
 
 }  // namespace traverse

@@ -96,6 +96,29 @@ template <typename Cost>
   for (int i = 0; i < entries.n; ++i) tail[i] = rest(entries.x[i], entries.y[i], i);
 }
 
+// The distance from a point to a box.
+[[gnu::always_inline]] inline float DistanceTo(const FloatBox& box, float x, float y) {
+  const float left = box.low.x - x;
+  const float right = x - box.high.x;
+  const float below = box.low.y - y;
+  const float above = y - box.high.y;
+  float dx = left > right ? left : right;
+  float dy = below > above ? below : above;
+  dx = dx > 0 ? dx : 0;
+  dy = dy > 0 ? dy : 0;
+  return std::sqrt(dx * dx + dy * dy);
+}
+
+template <typename Cost>
+[[gnu::always_inline]] inline void FillLeast(const FloatEntries& entries, const Move<Cost>& reach,
+                                             const FloatBox& box, float least_tail, float* bound) {
+  for (int i = 0; i < entries.n; ++i) {
+    const float x = entries.x[i];
+    const float y = entries.y[i];
+    bound[i] = reach(x, y, i) + reach.cost(DistanceTo(box, x, y)) + least_tail;
+  }
+}
+
 }  // namespace
 
 FloatTime::FloatTime(const CostSpec& spec)
@@ -132,6 +155,26 @@ void FillTail(const FloatEntries& entries, FloatPoint to, const FloatTime* time,
     Fill(entries, Move<Length>{to, {}}, tail);
   } else {
     Fill(entries, Move<Time>{to, {*time}}, tail);
+  }
+}
+
+TRAVERSE_VECTOR_VERSIONS
+void FillBounds(const FloatEntries& entries, FloatPoint from, const FloatBox& box, float least_tail,
+                const FloatPoint* to, const FloatTime* time, float* bound) {
+  if (time != nullptr) {
+    FillLeast(entries, Move<Time>{from, {*time}}, box, least_tail, bound);
+    return;
+  }
+  const Move<Length> reach{from, {}};
+  FillLeast(entries, reach, box, least_tail, bound);
+  if (to == nullptr) return;
+  // Over a contour there is no shorter way than the straight one. By several moves without a
+  // retraction there may be a quicker one.
+  const Move<Length> rest{*to, {}};
+  for (int i = 0; i < entries.n; ++i) {
+    const float straight =
+        reach(entries.x[i], entries.y[i], i) + rest(entries.x[i], entries.y[i], i);
+    bound[i] = straight > bound[i] ? straight : bound[i];
   }
 }
 

@@ -6,12 +6,13 @@
 #ifndef TRAVERSE_ENGINE_LOCAL_SEARCH_ENTRY_KERNELS_H_
 #define TRAVERSE_ENGINE_LOCAL_SEARCH_ENTRY_KERNELS_H_
 
+#include "engine/geometry/float_points.h"
 #include "engine/model/cost_spec.h"
 
 namespace traverse {
 
-struct FloatPoint {
-  float x, y;
+struct FloatBox {
+  FloatPoint low{0, 0}, high{0, 0};
 };
 
 // The entries i = 0 .. n - 1 are at (x[i], y[i]).
@@ -38,6 +39,11 @@ int BestFrom(const FloatEntries& entries, FloatPoint from, const FloatTime* time
 
 // tail[i] = cost from entry i to `to`.
 void FillTail(const FloatEntries& entries, FloatPoint to, const FloatTime* time, float* tail);
+
+// bound[i] = what it costs at least to go from `from` to entry i, on to a point of `box`, and from
+// there either what `least_tail` says or, by length, to `to`. `to`: null if that is anywhere.
+void FillBounds(const FloatEntries& entries, FloatPoint from, const FloatBox& box, float least_tail,
+                const FloatPoint* to, const FloatTime* time, float* bound);
 
 }  // namespace traverse
 

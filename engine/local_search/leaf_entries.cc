@@ -49,11 +49,17 @@ void LeafEntries::CloseLeaf(int count, bool open) {
   first_.push_back(first);
   count_.push_back(count);
   open_.push_back(open);
-  if (open || count == 1) {
+  if (open) {
     radius_.push_back(0);
+    boxes_.emplace_back();
     return;
   }
   const BoundingBox box(absl::MakeConstSpan(enter_).subspan(Index(first)));
+  boxes_.push_back({Relative(box.low()), Relative(box.high())});
+  if (count == 1) {
+    radius_.push_back(0);
+    return;
+  }
   radius_.push_back(std::max(box.width(), box.height()) / 2);
   for (int i = count; i % kLanes != 0; ++i)
     AddEntry(enter_.back(), exit_.back(), visit_entry_.back());
@@ -89,6 +95,19 @@ void LeafEntries::FillTails(int leaf, const Point* to, std::vector<float>& tails
 int LeafEntries::BestWithTails(int leaf, Point from, const std::vector<float>& tails) const {
   const int best = BestWithTail(Floats(leaf), Relative(from), tails.data(), time());
   return first(leaf) + std::min(best, count(leaf) - 1);
+}
+
+void LeafEntries::FillPairBounds(int a, int b, Point from, const Point* to,
+                                 const std::vector<float>& tails,
+                                 std::vector<float>& bounds) const {
+  bounds.resize(Index(PaddedCount(a)));
+  const float least_tail = *std::min_element(tails.begin(), tails.end());
+  if (to != nullptr) {
+    const FloatPoint end = Relative(*to);
+    FillBounds(Floats(a), Relative(from), BoxOf(b), least_tail, &end, time(), bounds.data());
+  } else {
+    FillBounds(Floats(a), Relative(from), BoxOf(b), least_tail, nullptr, time(), bounds.data());
+  }
 }
 
 }  // namespace traverse

@@ -52,6 +52,11 @@ class LeafEntries {
   void FillTails(int leaf, const Point* to, std::vector<float>& tails) const;
   int BestWithTails(int leaf, Point from, const std::vector<float>& tails) const;
 
+  // For choosing the entries of two contours, a and then b, between `from` and `to`: sets bounds[i]
+  // to what entry i of a costs at least with any entry of b, up to 1e-5. `tails`: of b, to `to`.
+  void FillPairBounds(int a, int b, Point from, const Point* to, const std::vector<float>& tails,
+                      std::vector<float>& bounds) const;
+
   // Entries of a contour with those that fill up the last vector; there are none behind a single
   // one, which needs no choice.
   int PaddedCount(int leaf) const {
@@ -70,12 +75,14 @@ class LeafEntries {
   FloatPoint Relative(Point p) const {
     return {static_cast<float>(p.x - origin_.x), static_cast<float>(p.y - origin_.y)};
   }
+  FloatBox BoxOf(int leaf) const { return boxes_[Index(leaf)]; }
   const FloatTime* time() const { return time_ ? &*time_ : nullptr; }
 
   std::vector<int> first_;        // [leaf]
   std::vector<int> count_;        // [leaf]
   std::vector<char> open_;        // [leaf]
   std::vector<double> radius_;    // [leaf]
+  std::vector<FloatBox> boxes_;   // [leaf] around the entries of a contour, relative to origin_
   std::vector<Point> enter_;      // [entry]
   std::vector<Point> exit_;       // [entry]
   std::vector<int> visit_entry_;  // [entry] Visit::entry

@@ -75,7 +75,7 @@ double LocalSearch::ImproveEdge(int t1, bool forward) {
   double debt = 0;
   touched_.clear();
   for (int step = 0; step < options_.depth; ++step) {
-    three_opt_.Search(t1, forward, debt);
+    three_opt_.Search(t1, forward, debt, step + 1 < options_.depth);
     if (const double delta = TryFound(debt); delta < 0) {
       for (const int leaf : touched_) Push(leaf);
       return delta;
@@ -94,9 +94,9 @@ double LocalSearch::ImproveEdge(int t1, bool forward) {
 // Does the first move found that makes the route cheaper than it was without the `debt`.
 double LocalSearch::TryFound(double debt) {
   for (const ThreeOpt::Found& found : three_opt_.found()) {
-    const double delta = debt + evaluator_.Evaluate(found.move);
-    if (delta >= -kImprovementTolerance) continue;
-    return delta + Do(found.move);
+    const double most = -debt - kImprovementTolerance;
+    const double delta = evaluator_.Evaluate(found.move, most);
+    if (delta < most) return debt + delta + Do(found.move);
   }
   return 0;
 }
@@ -161,40 +161,64 @@ double LocalSearch::ChoosePair(int position) {
     const double delta = ChooseEntry(position) + ChooseEntry(position + 1);
     return delta + ChooseEntry(position);
   }
-  const TravelCost& cost = state_.cost();
-  const int after = state_.leaf_at(position + 2);
-  const Point from = state_.out(state_.leaf_at(position - 1));
-  const Point to = state_.in(after);
-  const bool open_end = after == state_.tree().finish() && !state_.has_finish();
-  // Over a contour there is no shorter way than the straight one. Over an open path, whose own
-  // length is free, there is, and by several moves without a retraction a quicker one.
-  const bool detours_cost = !entries.open(b) && cost.is_length() && !open_end;
-  if (!entries.open(b)) entries.FillTails(b, open_end ? nullptr : &to, tails_);
   const double old_cost =
       state_.StepCost(position - 1) + state_.StepCost(position) + state_.StepCost(position + 1);
-  double least = old_cost - kImprovementTolerance;
-  int best_a = -1;
-  int best_b = -1;
-  for (int i = entries.first(a); i < entries.first(a) + entries.count(a); ++i) {
-    const Point out = entries.exit(i);
-    const double reached = cost(from, entries.enter(i));
-    const double straight = detours_cost ? Distance(out, to) : 0;
-    if (reached + straight >= least) continue;
-    const int j = entries.open(b) ? entries.Best(b, out, open_end ? nullptr : &to, cost)
-                                  : entries.BestWithTails(b, out, tails_);
-    const double total =
-        reached + cost(out, entries.enter(j)) + state_.MoveCost(entries.exit(j), after, to);
-    if (total >= least) continue;
-    least = total;
-    best_a = i;
-    best_b = j;
+  Pair best{-1, -1, old_cost - kImprovementTolerance};
+  if (entries.open(a)) {
+    for (int i = entries.first(a); i < entries.first(a) + entries.count(a); ++i) {
+      TryPair(position, i, BestAfter(position, entries.exit(i)), best);
+    }
+  } else if (entries.open(b)) {
+    const Point from = state_.out(state_.leaf_at(position - 1));
+    for (int j = entries.first(b); j < entries.first(b) + entries.count(b); ++j) {
+      const Point enter = entries.enter(j);
+      TryPair(position, entries.Best(a, from, &enter, state_.cost()), j, best);
+    }
+  } else {
+    ChooseContours(position, best);
   }
-  if (best_a < 0) return 0;
-  state_.SetEntry(a, best_a);
-  state_.SetEntry(b, best_b);
+  if (best.a < 0) return 0;
+  state_.SetEntry(a, best.a);
+  state_.SetEntry(b, best.b);
   Push(state_.leaf_at(position - 1));
-  Push(after);
-  return least - old_cost;
+  Push(state_.leaf_at(position + 2));
+  return best.cost - old_cost;
+}
+
+// The entry that costs least for the visit behind `position`, reached from `from`.
+int LocalSearch::BestAfter(int position, Point from) const {
+  const int after = state_.leaf_at(position + 2);
+  const Point to = state_.in(after);
+  const bool open_end = after == state_.tree().finish() && !state_.has_finish();
+  return state_.entries().Best(state_.leaf_at(position + 1), from, open_end ? nullptr : &to,
+                               state_.cost());
+}
+
+void LocalSearch::TryPair(int position, int a, int b, Pair& best) const {
+  const LeafEntries& entries = state_.entries();
+  const int after = state_.leaf_at(position + 2);
+  const double total = state_.cost()(state_.out(state_.leaf_at(position - 1)), entries.enter(a)) +
+                       state_.cost()(entries.exit(a), entries.enter(b)) +
+                       state_.MoveCost(entries.exit(b), after, state_.in(after));
+  if (total < best.cost) best = Pair{a, b, total};
+}
+
+// All entries of the first contour that bounds do not rule out, each with the best of the second.
+void LocalSearch::ChooseContours(int position, Pair& best) {
+  const LeafEntries& entries = state_.entries();
+  const int a = state_.leaf_at(position);
+  const int b = state_.leaf_at(position + 1);
+  const int after = state_.leaf_at(position + 2);
+  const Point to = state_.in(after);
+  const bool open_end = after == state_.tree().finish() && !state_.has_finish();
+  entries.FillTails(b, open_end ? nullptr : &to, tails_);
+  entries.FillPairBounds(a, b, state_.out(state_.leaf_at(position - 1)), open_end ? nullptr : &to,
+                         tails_, bounds_);
+  for (int i = 0; i < entries.count(a); ++i) {
+    if (static_cast<double>(bounds_[static_cast<size_t>(i)]) >= best.cost) continue;
+    const int entry = entries.first(a) + i;
+    TryPair(position, entry, entries.BestWithTails(b, entries.exit(entry), tails_), best);
+  }
 }
 
 }  // namespace traverse

@@ -46,12 +46,22 @@ class LocalSearch {
   double ChooseEntries(int first, int last);
 
  private:
+  // Entries of two visits, and what the three moves around them cost.
+  struct Pair {
+    int a;
+    int b;
+    double cost;
+  };
+
   double Improve(int leaf);
   double ImproveEdge(int t1, bool forward);
   double TryFound(double debt);
   double Do(const SegmentMove& move);
   double ChooseEntry(int position);
   double ChoosePair(int position);
+  int BestAfter(int position, Point from) const;
+  void ChooseContours(int position, Pair& best);
+  void TryPair(int position, int a, int b, Pair& best) const;
   void ApplyTrial(const SegmentMove& move);
   int Pop();
 
@@ -67,7 +77,8 @@ class LocalSearch {
   size_t size_ = 0;
 
   std::vector<int> touched_;  // by the moves on trial
-  std::vector<float> tails_;  // scratch of ChoosePair
+  std::vector<float> tails_;  // scratch of ChooseContours
+  std::vector<float> bounds_;
 };
 
 }  // namespace traverse

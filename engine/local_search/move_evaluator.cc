@@ -10,9 +10,9 @@ constexpr int kShortSegment = 3;
 
 }  // namespace
 
-double MoveEvaluator::Evaluate(const SegmentMove& move) {
-  count_ = stretch_begin_ = 0;
-  new_cost_ = 0;
+double MoveEvaluator::Evaluate(const SegmentMove& move, double most) {
+  count_ = 0;
+  begins_ = true;
   old_cost_ = state_.StepCost(move.first - 1) + state_.StepCost(move.last);
   if (move.segment_count() == 2) old_cost_ += state_.StepCost(move.middle - 1);
 
@@ -28,8 +28,16 @@ double MoveEvaluator::Evaluate(const SegmentMove& move) {
     old_cost_ += state_.StepCost(move.last + 1);
     AddPlace(move.last + 2, false, false);
   }
-  EndStretch();
-  return new_cost_ - old_cost_;
+
+  const double limit = old_cost_ + most;
+  double new_cost = 0;
+  for (size_t i = 1; i < count_ && new_cost < limit; ++i) {
+    const Place& place = places_[i];
+    if (place.begins) continue;
+    if (place.free) Choose(i);
+    new_cost += state_.MoveCost(places_[i - 1].out, place.leaf, place.in);
+  }
+  return new_cost - old_cost_;
 }
 
 // The segment's ends are free. A long segment divides the stretch: what is inside stays.
@@ -37,11 +45,11 @@ void MoveEvaluator::AddSegment(const Segment& segment) {
   const int size = segment.size();
   for (int i = 0; i < size; ++i) {
     if (size > kShortSegment && i == 2) {
-      EndStretch();
+      begins_ = true;
       i = size - 2;
     }
+    const bool continues = i > 0 && !begins_;
     AddPlace(segment.At(i), segment.reversed, i == 0 || i == size - 1);
-    const bool continues = i > 0 && count_ - stretch_begin_ > 1;
     if (!continues) continue;
     const int position = segment.reversed ? segment.At(i) : segment.At(i - 1);
     old_cost_ += state_.StepCost(position);
@@ -54,27 +62,21 @@ void MoveEvaluator::AddPlace(int position, bool reversed, bool free) {
   const Point in = state_.in(leaf);
   const Point out = state_.out(leaf);
   const bool has_choice = state_.entries().count(leaf) > 1;
-  places_[count_++] = Place{leaf, reversed ? out : in, reversed ? in : out, free && has_choice, -1};
+  places_[count_++] =
+      Place{leaf, reversed ? out : in, reversed ? in : out, free && has_choice, begins_, -1};
+  begins_ = false;
 }
 
-// Chooses the entries of the stretch, from its second visit to its last but one, and adds the cost
-// of its moves.
-void MoveEvaluator::EndStretch() {
+// Chooses the entry of a free place, which has others of its stretch on both sides.
+void MoveEvaluator::Choose(size_t i) {
   const LeafEntries& entries = state_.entries();
-  const bool open_end = !state_.has_finish();
-  for (size_t i = stretch_begin_ + 1; i < count_; ++i) {
-    Place& place = places_[i];
-    if (place.free) {
-      const Place& next = places_[i + 1];
-      const bool is_last = open_end && next.leaf == state_.tree().finish();
-      place.entry =
-          entries.Best(place.leaf, places_[i - 1].out, is_last ? nullptr : &next.in, state_.cost());
-      place.in = entries.enter(place.entry);
-      place.out = entries.exit(place.entry);
-    }
-    new_cost_ += state_.MoveCost(places_[i - 1].out, place.leaf, place.in);
-  }
-  stretch_begin_ = count_;
+  Place& place = places_[i];
+  const Place& next = places_[i + 1];
+  const bool is_last = next.leaf == state_.tree().finish() && !state_.has_finish();
+  place.entry =
+      entries.Best(place.leaf, places_[i - 1].out, is_last ? nullptr : &next.in, state_.cost());
+  place.in = entries.enter(place.entry);
+  place.out = entries.exit(place.entry);
 }
 
 void MoveEvaluator::Apply(const SegmentMove& move) {

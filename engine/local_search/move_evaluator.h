@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include "engine/local_search/search_state.h"
 #include "engine/local_search/segment_move.h"
@@ -26,11 +27,11 @@ class MoveEvaluator {
   explicit MoveEvaluator(SearchState& state) : state_(state) {}
 
   // The change of cost by `move` with new entries; negative is better. Equals a full recomputation
-  // after Apply. Leaves the route as it is. REQUIRES: the plan allows the move, or it is not
-  // applied.
-  double Evaluate(const SegmentMove& move);
+  // after Apply. From `most` on, the work ends early, with some value that is not less than `most`.
+  // Leaves the route as it is. REQUIRES: the plan allows the move, or it is not applied.
+  double Evaluate(const SegmentMove& move, double most = std::numeric_limits<double>::infinity());
 
-  // Does the move evaluated last, with its entries.
+  // Does the move evaluated last, with its entries. REQUIRES: that was not ended early.
   void Apply(const SegmentMove& move);
 
  private:
@@ -40,19 +41,19 @@ class MoveEvaluator {
     Point in;
     Point out;
     bool free;
-    int entry;  // chosen; -1: as it is
+    bool begins;  // a stretch: the move to it is not counted
+    int entry;    // chosen; -1: as it is
   };
 
   void AddPlace(int position, bool reversed, bool free);
   void AddSegment(const Segment& segment);
-  void EndStretch();
+  void Choose(size_t i);
 
   SearchState& state_;
   std::array<Place, 16> places_;
   size_t count_ = 0;
-  size_t stretch_begin_ = 0;
+  bool begins_ = true;  // the place added next
   double old_cost_ = 0;
-  double new_cost_ = 0;
 };
 
 }  // namespace traverse

@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <utility>
-
-#include "engine/base/tolerances.h"
 
 namespace traverse {
 namespace {
@@ -59,6 +56,25 @@ constexpr MoveTable MakeMoveTable() {
 
 constexpr MoveTable kMoveTable = MakeMoveTable();
 
+// Whether a move costs less than `most`: for most moves this can be said without a square root.
+struct LengthCost {
+  double OfLength(double length_mm) const { return length_mm; }
+  double operator()(Point a, Point b) const { return Distance(a, b); }
+  bool Within(Point a, Point b, double most) const {
+    const double dx = a.x - b.x;
+    const double dy = a.y - b.y;
+    return most > 0 && dx * dx + dy * dy < most * most;
+  }
+};
+
+struct AnyCost {
+  double OfLength(double length_mm) const { return cost.OfLength(length_mm); }
+  double operator()(Point a, Point b) const { return cost(a, b); }
+  bool Within(Point a, Point b, double most) const { return most > 0 && cost(a, b) < most; }
+
+  const TravelCost& cost;
+};
+
 }  // namespace
 
 ThreeOpt::End ThreeOpt::EndAt(int leaf, bool right) const {
@@ -103,11 +119,12 @@ double ThreeOpt::LimitMm(double limit) const {
   return limit <= 0 ? -1 : state_.cost().LongestWithin(limit);
 }
 
-void ThreeOpt::Search(int t1, bool forward, double debt) {
+void ThreeOpt::Search(int t1, bool forward, double debt, bool wants_open) {
+  wants_open_ = wants_open;
   if (state_.cost().is_length()) {
-    SearchFirst(t1, forward, debt, [](Point a, Point b) { return Distance(a, b); });
+    SearchFirst(t1, forward, debt, LengthCost());
   } else {
-    SearchFirst(t1, forward, debt, state_.cost());
+    SearchFirst(t1, forward, debt, AnyCost{state_.cost()});
   }
 }
 
@@ -123,22 +140,35 @@ void ThreeOpt::SearchFirst(int t1, bool forward, double debt, const Cost& cost) 
   for (const Neighbor& neighbor : NeighborsOf(t2_, options_.first_breadth)) {
     if (neighbor.distance_mm >= limit_mm) break;
     const int leaf = EndGroups::LeafOf(neighbor.group);
-    for (const bool right : {false, true}) {
-      const End t3 = EndAt(leaf, right);
-      if (IsEnd(neighbor.group, t3)) SearchSecond(t3, cost);
+    if (state_.entries().open(leaf)) {
+      const End t3 = EndAt(leaf, RightOf(neighbor.group, leaf));
+      SearchSecond(t3, CostTo(t2_, t3, neighbor, cost), cost);
+    } else {
+      const double joined = cost(t2_.point, state_.in(leaf));
+      SearchSecond(EndAt(leaf, false), joined, cost);
+      SearchSecond(EndAt(leaf, true), joined, cost);
     }
   }
   if (t2_.leaf >= state_.tree().path_count()) return;
-  SearchSecond(EndAt(state_.tree().start(), false), cost);
-  SearchSecond(EndAt(state_.tree().finish(), true), cost);
+  for (const End& t3 : {EndAt(state_.tree().start(), false), EndAt(state_.tree().finish(), true)}) {
+    SearchSecond(t3, Join(t2_, t3, cost), cost);
+  }
 }
 
-// t2 is joined with t3.
+// Between two ends of open paths, the cost of the move is that of the neighbors' distance.
 template <typename Cost>
-void ThreeOpt::SearchSecond(const End& t3, const Cost& cost) {
+double ThreeOpt::CostTo(const End& from, const End& to, const Neighbor& neighbor,
+                        const Cost& cost) const {
+  return state_.entries().open(from.leaf) ? cost.OfLength(neighbor.distance_mm)
+                                          : cost(from.point, to.point);
+}
+
+// t2 is joined with t3, for so much.
+template <typename Cost>
+void ThreeOpt::SearchSecond(const End& t3, double joined, const Cost& cost) {
   cut2_ = CutAt(t3);
   if (cut2_.position == cut1_.position) return;
-  const double gain = gain0_ - Join(t2_, t3, cost);
+  const double gain = gain0_ - joined;
   if (gain + options_.first_slack * (Radius(t2_.leaf) + Radius(t3.leaf)) <= 0) return;
   t3_ = t3;
   t4_ = OtherEnd(cut2_, t3);
@@ -147,7 +177,7 @@ void ThreeOpt::SearchSecond(const End& t3, const Cost& cost) {
   const auto [left, right] = std::minmax(cut1_.position, cut2_.position);
   if (t2_.right == t3_.right && right > left + 1) {
     const double delta = Join(t4_, t1_, cost) - gain1_;
-    Offer({Kind::kReverse, left + 1, left + 1, right}, delta, gain1_, t4_.leaf);
+    Offer({Kind::kReverse, left + 1, left + 1, right}, delta, gain1_, t4_.leaf, radii_);
   }
   SetKinds(left, right);
   const double limit_mm = LimitMm(gain1_ + options_.second_slack * Radius(t4_.leaf));
@@ -156,7 +186,8 @@ void ThreeOpt::SearchSecond(const End& t3, const Cost& cost) {
     const int leaf = EndGroups::LeafOf(neighbor.group);
     if (state_.entries().open(leaf)) {
       const bool is_right = RightOf(neighbor.group, leaf);
-      SearchThird(leaf, is_right, gain1_ - cost(t4_.point, EndAt(leaf, is_right).point), cost);
+      const double gain2 = gain1_ - CostTo(t4_, EndAt(leaf, is_right), neighbor, cost);
+      SearchThird(leaf, is_right, gain2, cost);
     } else {
       const double gain2 = gain1_ - cost(t4_.point, state_.in(leaf));
       SearchThird(leaf, false, gain2, cost);
@@ -193,24 +224,26 @@ void ThreeOpt::SearchThird(int leaf, bool is_right, double gain2, const Cost& co
   const int kind = kinds_[is_right][place];
   if (kind == kNoMove) return;
   const double gain = gain2 + state_.StepCost(at);
-  // Joining t6 with t1 costs at least nothing.
-  if (gain <= open_.gain && -gain >= worst_kept()) return;
   const int t6 = state_.leaf_at(is_right ? at : at + 1);
+  const double radii = radii_ + Radius(t6);
+  const double most = LeastRejected(radii) + gain;
+  const bool continues = wants_open_ && gain > open_.gain;
+  const bool is_free = IsFree(t6) || IsFree(t1_.leaf);
   const Point t6_point = is_right ? state_.out(t6) : state_.in(t6);
-  const double delta = IsFree(t6) || IsFree(t1_.leaf) ? -gain : cost(t6_point, t1_.point) - gain;
+  if (!continues && (is_free ? most <= 0 : !cost.Within(t6_point, t1_.point, most))) return;
+  const double delta = is_free ? -gain : cost(t6_point, t1_.point) - gain;
   const int first = place == 0 ? at : left_;
   const int middle = place == 0 ? left_ : place == 1 ? at : right_;
   const int last = place == 2 ? at : right_;
-  Offer({static_cast<Kind>(kind), first + 1, middle + 1, last}, delta, gain, t6);
+  Offer({static_cast<Kind>(kind), first + 1, middle + 1, last}, delta, gain, t6, radii);
 }
 
-void ThreeOpt::Offer(const SegmentMove& move, double delta, double gain, int last_leaf) {
-  const bool continues = gain > open_.gain && move.last - move.first < options_.longest_trial;
-  bool keeps = delta < worst_kept();
-  if (keeps && delta > -kImprovementTolerance) {
-    const double radii = move.segment_count() == 2 ? radii_ + Radius(last_leaf) : radii_;
-    keeps = delta < options_.slack * radii;
-  }
+// `radii`: of the contours at the cuts.
+void ThreeOpt::Offer(const SegmentMove& move, double delta, double gain, int last_leaf,
+                     double radii) {
+  const bool continues =
+      wants_open_ && gain > open_.gain && move.last - move.first < options_.longest_trial;
+  const bool keeps = delta < LeastRejected(radii);
   if ((!continues && !keeps) || !state_.Allows(move)) return;
   if (continues) open_ = Open{move, delta, gain, last_leaf};
   if (!keeps) return;

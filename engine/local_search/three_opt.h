@@ -11,8 +11,8 @@
 #ifndef TRAVERSE_ENGINE_LOCAL_SEARCH_THREE_OPT_H_
 #define TRAVERSE_ENGINE_LOCAL_SEARCH_THREE_OPT_H_
 
+#include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include "absl/types/span.h"
@@ -58,8 +58,10 @@ class ThreeOpt {
       : state_(state), neighbors_(neighbors), options_(options) {}
 
   // Looks for moves that the plan allows and that cut the edge after the leaf t1 (`forward`) or
-  // before it. `debt`: what the route already costs more than the one to be improved.
-  void Search(int t1, bool forward, double debt);
+  // before it. `debt`: what the route already costs more than the one to be improved. Without
+  // `wants_open`, open() is of no interest and stays empty: most moves are then seen to be too bad
+  // without their last edge.
+  void Search(int t1, bool forward, double debt, bool wants_open = true);
 
   // What the last search found: deltas from `debt` on, least first.
   absl::Span<const Found> found() const { return found_; }
@@ -89,10 +91,10 @@ class ThreeOpt {
   // Whether the move to `leaf` costs nothing: a finish that may be anywhere.
   bool IsFree(int leaf) const { return leaf == state_.tree().finish() && !state_.has_finish(); }
 
-  // Deltas from here on are not kept.
-  double worst_kept() const {
-    return found_.size() < options_.keep ? std::numeric_limits<double>::infinity()
-                                         : found_.back().delta;
+  // Deltas from here on are not kept, if contours with these radii are at the cuts.
+  double LeastRejected(double radii) const {
+    const double slack = options_.slack * radii;
+    return found_.size() < options_.keep ? slack : std::min(slack, found_.back().delta);
   }
 
   // Cost: callable with two points, for the inner loops to have a length without a branch.
@@ -101,17 +103,21 @@ class ThreeOpt {
   template <typename Cost>
   void SearchFirst(int t1, bool forward, double debt, const Cost& cost);
   template <typename Cost>
-  void SearchSecond(const End& t3, const Cost& cost);
+  double CostTo(const End& from, const End& to, const NeighborLists::Neighbor& neighbor,
+                const Cost& cost) const;
+  template <typename Cost>
+  void SearchSecond(const End& t3, double joined, const Cost& cost);
   template <typename Cost>
   void SearchThird(int leaf, bool is_right, double gain2, const Cost& cost);
   void SetKinds(int left, int right);
-  void Offer(const SegmentMove& move, double delta, double gain, int last_leaf);
+  void Offer(const SegmentMove& move, double delta, double gain, int last_leaf, double radii);
 
   const SearchState& state_;
   const NeighborLists& neighbors_;
   const ThreeOptOptions options_;
 
   // The search under way.
+  bool wants_open_ = true;
   End t1_{}, t2_{}, t3_{}, t4_{};
   Cut cut1_{}, cut2_{};
   double gain0_ = 0;  // edges cut less edges added so far

@@ -68,5 +68,41 @@ TEST(LeafEntries, BestCostsNoMoreThanAnyOtherEntry) {
   }
 }
 
+TEST(LeafEntries, BoundsOfPairsAreNoMoreThanTheBestPairCosts) {
+  int tight = 0;
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const OwnedProblem owned = RandomProblem(
+        seed,
+        {.shape = PlanShape::kFlatContours, .min_paths = 2, .max_paths = 2, .max_vertices = 60});
+    const LeafEntries entries(owned.problem);
+    if (entries.count(0) == 1 || entries.count(1) == 1) continue;
+    const TravelCost cost(owned.problem.cost);
+    Rng rng(seed);
+    const Point from{rng.Unit() * 100, rng.Unit() * 100};
+    const Point next{rng.Unit() * 100, rng.Unit() * 100};
+    std::vector<float> tails;
+    std::vector<float> bounds;
+    for (const Point* to : {&next, static_cast<const Point*>(nullptr)}) {
+      entries.FillTails(1, to, tails);
+
+      entries.FillPairBounds(0, 1, from, to, tails, bounds);
+
+      for (int i = 0; i < entries.count(0); ++i) {
+        const Point a = entries.enter(entries.first(0) + i);
+        double least = std::numeric_limits<double>::infinity();
+        for (int j = 0; j < entries.count(1); ++j) {
+          const Point b = entries.enter(entries.first(1) + j);
+          least = std::min(least, cost(from, a) + cost(a, b) + (to != nullptr ? cost(b, *to) : 0));
+        }
+        const auto bound = static_cast<double>(bounds[static_cast<size_t>(i)]);
+        ASSERT_LE(bound, least + 1e-4 * (1 + least));
+        tight += bound > 0.7 * least;
+      }
+    }
+  }
+  EXPECT_GT(tight, 1000);
+}
+
 }  // namespace
 }  // namespace traverse

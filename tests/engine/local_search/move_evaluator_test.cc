@@ -34,6 +34,32 @@ TEST(MoveEvaluator, DeltaEqualsRecomputedCost) {
   }
 }
 
+TEST(MoveEvaluator, EndsEarlyForMovesThatCostTooMuchAlone) {
+  int ended = 0;
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    Searched s(seed, {.min_paths = 3, .max_paths = 20});
+    MoveEvaluator evaluator(s.state);
+    Rng rng(seed);
+    for (int i = 0; i < 30; ++i) {
+      const SegmentMove move = RandomMove(rng, s.tree.path_count());
+      if (!s.state.Allows(move)) continue;
+      const double delta = evaluator.Evaluate(move);
+      const double most = 100 * (rng.Unit() - 0.5);
+
+      const double limited = evaluator.Evaluate(move, most);
+
+      if (delta < most) {
+        ASSERT_EQ(limited, delta);
+      } else {
+        ASSERT_GE(limited, most);
+        ended += limited < delta;
+      }
+    }
+  }
+  EXPECT_GT(ended, 100);
+}
+
 // Two contours change places: with the entries that suited the old neighbors, which face away from
 // the new ones, the move would seem to cost 16 mm.
 TEST(MoveEvaluator, ChoosesEntriesForTheNewNeighbors) {

@@ -15,6 +15,10 @@ namespace {
 
 using namespace traverse::testing;  // NOLINT
 
+// Deltas add up to decide whether several moves are a gain: what is off by more than
+// kImprovementTolerance makes gains of nothing, for ever.
+constexpr double kExact = kImprovementTolerance / 100;
+
 ThreeOptOptions Wide() {
   ThreeOptOptions options;
   options.second_breadth = 12;
@@ -37,16 +41,38 @@ TEST(ThreeOpt, DeltasAreThoseOfTheMovesWithTheEntriesAsTheyAre) {
           ++moves;
           ASSERT_TRUE(s.state.Allows(found.move));
           s.state.Apply(found.move);
-          ASSERT_NEAR(s.state.TotalCost(), before + found.delta, kCostTolerance);
+          ASSERT_NEAR(s.state.TotalCost(), before + found.delta, kExact * (1 + before));
           s.state.UndoTo(0);
         }
         if (search.open().t2 < 0) continue;
         ASSERT_TRUE(s.state.Allows(search.open().move));
         s.state.Apply(search.open().move);
-        ASSERT_NEAR(s.state.TotalCost(), before + search.open().delta, kCostTolerance);
+        ASSERT_NEAR(s.state.TotalCost(), before + search.open().delta, kExact * (1 + before));
         const int apart = s.state.position(leaf) - s.state.position(search.open().t2);
         ASSERT_EQ(std::abs(apart), 1);
         s.state.UndoTo(0);
+      }
+    }
+  }
+  EXPECT_GT(moves, 1000);
+}
+
+TEST(ThreeOpt, FindsTheSameWithoutAnOpenMove) {
+  int moves = 0;
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    Searched s(seed, {.min_paths = 12, .max_paths = 30});
+    ThreeOpt with(s.state, s.neighbors, {});
+    ThreeOpt without(s.state, s.neighbors, {});
+    for (int leaf = 0; leaf < s.tree.path_count(); ++leaf) {
+      with.Search(leaf, true, 0);
+
+      without.Search(leaf, true, 0, false);
+
+      EXPECT_EQ(without.open().t2, -1);
+      ASSERT_EQ(without.found().size(), with.found().size());
+      for (size_t k = 0; k < with.found().size(); ++k, ++moves) {
+        ASSERT_EQ(without.found()[k].delta, with.found()[k].delta);
       }
     }
   }
