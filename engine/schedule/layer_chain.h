@@ -146,7 +146,10 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   const Route& BestToGoOnFrom(const LayerProblem& problem, const Slot& slot,
                               const KnownRoute* known, const Slot* next) const;
   Solution SolveFromTrueStart(const LayerProblem& problem, const Slot& slot,
-                              const KnownRoute* known, Slot* next) const;
+                              const KnownRoute* known, Slot*& next) const;
+  double GreedyCost(const LayerProblem& problem, const Slot& slot) const;
+  bool GreedyMayBeBetter(const LayerProblem& problem, const Slot& slot, const KnownRoute* known,
+                         const Slot* next, const Solution& solution) const;
   void KeepBestRoute(const LayerProblem& problem, const Slot& slot, const KnownRoute* known,
                      const Slot* next, Solution& solution) const;
   KnownRoutePtr Known(const LayerProblem& problem, const Slot& slot,

@@ -1,6 +1,7 @@
 // What is done with one layer at a time; layer_chain.cc says when.
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "absl/status/status.h"
@@ -227,8 +228,9 @@ const Route& LayerChain::BestToGoOnFrom(const LayerProblem& problem, const Slot&
   return *best;
 }
 
+// `next` is null afterwards if the layer was better not ended with a view to it.
 Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot& slot,
-                                        const KnownRoute* known, Slot* next) const {
+                                        const KnownRoute* known, Slot*& next) const {
   if (strategy_->serial()) {
     Budget budget = LayerBudget(slot, 1);
     return strategy_->Solve(problem, budget);
@@ -251,7 +253,14 @@ Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot&
   if (next != nullptr) {
     Route foreseen = next->first.route;
     solution = strategy_->ResumeWithNext(problem, from, Problem(*next, Point()), foreseen, budget);
-    next->foreseen = std::move(foreseen);
+    if (RouteCost(problem, solution.route) <= GreedyCost(problem, slot)) {
+      next->foreseen = std::move(foreseen);
+    } else {
+      next = nullptr;
+      if (as_predicted) return slot.first;
+      const Route& own = BestToGoOnFrom(problem, slot, known, nullptr);
+      solution = strategy_->Resume(problem, own, budget);
+    }
   } else {
     solution = strategy_->quick() ? strategy_->Solve(problem, budget)
                                   : strategy_->Resume(problem, from, budget);
@@ -264,33 +273,42 @@ Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot&
   return solution;
 }
 
+// What a layer's own travel may cost at most for the sake of the next one.
+double LayerChain::GreedyCost(const LayerProblem& problem, const Slot& slot) const {
+  Budget budget = LayerBudget(slot, kSideShare);
+  return RouteCost(problem, predictor_->Solve(problem, budget).route) + kCostTolerance;
+}
+
 // Other routes may be better from the true start: an equal layer's from the same start; what the
 // layer before saw ahead; those found for another start, where the clock cut the last search short;
-// greedy's, which a resumed route need not beat; the order given. All in view of the next layer:
-// greedy's would be cheaper for this one alone only if it made both dearer.
+// greedy's, which a resumed route need not beat; the order given. All in view of the next layer,
+// for whose sake a layer's own travel may grow up to greedy's, and no further.
 void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
                                const KnownRoute* known, const Slot* next,
                                Solution& solution) const {
-  double best = CostInView(problem, solution.route, next);
+  Route greedy;
+  if (GreedyMayBeBetter(problem, slot, known, next, solution)) {
+    Budget budget = LayerBudget(slot, kSideShare);
+    greedy = predictor_->Solve(problem, budget).route;
+  }
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  const bool has_limit = next != nullptr && greedy.size() == solution.route.size();
+  const double limit = has_limit ? RouteCost(problem, greedy) + kCostTolerance : kAny;
+  double best =
+      RouteCost(problem, solution.route) > limit ? kAny : CostInView(problem, solution.route, next);
   bool was_replaced = false;
   const auto offer = [&](const Route& route) {
     if (route.size() != solution.route.size()) return;  // there was no such search
     const double cost = CostInView(problem, route, next);
-    if (cost >= best) return;
+    if (cost >= best || RouteCost(problem, route) > limit) return;
     best = cost;
     solution.route = route;
     was_replaced = true;
   };
   if (known != nullptr) offer(known->solution.route);
   offer(slot.foreseen);
-  const bool was_compared =
-      known != nullptr && known->place == slot.print.place && known->start == problem.start;
-  if (!strategy_->serial() && !strategy_->quick() && !was_compared &&
-      (slot.model || problem.start != slot.predicted_start) && !Expired()) {
-    Budget budget = LayerBudget(slot, kSideShare);
-    offer(predictor_->Solve(problem, budget).route);
-  }
-  if (solution.stop == StopReason::kTimeLimit) {
+  offer(greedy);
+  if (solution.stop == StopReason::kTimeLimit || has_limit) {
     offer(slot.first.route);
     offer(slot.second.route);
   }
@@ -301,6 +319,18 @@ void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
       RouteCost(problem, solution.route) > solution.lower_bound.value_or(0) + kCostTolerance) {
     solution.stop = StopReason::kLocalOptimum;
   }
+}
+
+// Whether greedy's route was not beaten yet: not if the strategy began at this very start, or if an
+// equal layer's route was taken over; again if the next layer was looked at.
+bool LayerChain::GreedyMayBeBetter(const LayerProblem& problem, const Slot& slot,
+                                   const KnownRoute* known, const Slot* next,
+                                   const Solution& solution) const {
+  if (strategy_->serial() || strategy_->quick() || Expired()) return false;
+  const bool is_compared =
+      known != nullptr && known->place == slot.print.place && known->start == problem.start;
+  if (next != nullptr) return !is_compared || solution.route != known->solution.route;
+  return !is_compared && (slot.model || problem.start != slot.predicted_start);
 }
 
 // Looks for a lower bound of a solution, if the strategy wants one. The search for it is done with
@@ -325,7 +355,7 @@ uint64_t LayerChain::KindAt(const Slot& slot, const Place& place) const {
 LayerOutcome LayerChain::Anchor(Slot& slot, const Place& place) const {
   const Stopwatch watch;
   const Point start = place.start;
-  Slot* const next = place.next.get();
+  Slot* next = place.next.get();
   LayerProblem problem = Problem(slot, start);
   problem.memory = &slot.memory;
   const uint64_t kind = KindAt(slot, place);

@@ -24,6 +24,7 @@ namespace {
 
 using testing::BruteForce;
 using testing::RandomPlan;
+using testing::RandomPlanOptions;
 
 Plan PointsOnALine(const std::vector<double>& places) {
   IslandPaths island;
@@ -31,8 +32,9 @@ Plan PointsOnALine(const std::vector<double>& places) {
   return SequentialPlan({std::move(island)});
 }
 
-// From 0 it is shorter to end at -10.5, by 0.5; the next layer begins at 12.
-Plan BothSides() { return PointsOnALine({10, -10.5}); }
+// From 0 it is shorter to end at -10.5, by 0.5, which greedy does not see; the next layer begins at
+// 12.
+Plan BothSides() { return PointsOnALine({-1, 10, -10.5}); }
 Plan RightSide() { return PointsOnALine({12, 20, 30}); }
 
 struct Options {
@@ -59,13 +61,14 @@ std::map<uint64_t, LayerOutcome> RunJob(const std::vector<JobLayer>& layers,
   return sink.ByIndex();
 }
 
-std::vector<JobLayer> RandomLayers(uint64_t seed, int count) {
+std::vector<JobLayer> RandomLayers(uint64_t seed, int count,
+                                   const RandomPlanOptions& options = {.max_paths = 9}) {
   std::vector<JobLayer> layers;
   for (int i = 0; i < count; ++i) {
     // Every third is one of two that repeat.
     const uint64_t plan =
         i % 3 == 2 ? static_cast<uint64_t>(i) : 1000 + static_cast<uint64_t>(i % 2);
-    layers.push_back({RandomPlan(100 * seed + plan, {.max_paths = 9}), {}, {}});
+    layers.push_back({RandomPlan(100 * seed + plan, options), {}, {}});
   }
   return layers;
 }
@@ -119,11 +122,27 @@ TEST(LookAhead, BoundsAndProofsHoldForEachLayerAlone) {
   }
 }
 
+TEST(LookAhead, MakesNoLayerDearerThanGreedyDoes) {
+  int dearer_than_need_be = 0;
+  for (uint64_t seed = 1; seed <= 30; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    for (const auto& [index, outcome] : RunJob(RandomLayers(seed, 12), {})) {
+      const LayerProblem problem{&outcome.plan, outcome.start, std::nullopt, CostSpec(), 1};
+      Budget budget;
+      const Solution greedy = (*MakeStrategy("greedy", {}))->Solve(problem, budget);
+      EXPECT_LE(outcome.cost, RouteCost(problem, greedy.route) + 1e-6) << "layer " << index;
+      dearer_than_need_be += outcome.lower_bound.value_or(outcome.cost) < outcome.cost - 1e-3;
+    }
+  }
+  EXPECT_GT(dearer_than_need_be, 10);
+}
+
 TEST(LookAhead, SavesTravelOverManyJobs) {
   double blind = 0;
   double seeing = 0;
   for (uint64_t seed = 1; seed <= 20; ++seed) {
-    const std::vector<JobLayer> layers = RandomLayers(seed, 12);
+    const std::vector<JobLayer> layers = RandomLayers(
+        seed, 12, {.shape = testing::PlanShape::kSequential, .min_paths = 4, .max_paths = 12});
     blind += Total(RunJob(layers, {.more_follows = false}));
     seeing += Total(RunJob(layers, {.more_follows = true}));
   }
