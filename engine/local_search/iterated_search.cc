@@ -106,7 +106,7 @@ bool IteratedSearch::TurnKick(Rng& rng, double& delta) {
     if (node < 0 || !TurnsOnly(tree, node)) continue;
     const int first = state_.position(tree.ChildHolding(node, leaf));
     const int last = ChooseRunEnd(rng, node, first);
-    if (last < 0) continue;
+    if (last < 0 || last - first >= options_.most_span) continue;
     const auto cost = [&] {
       double sum = 0;
       for (int at = first - 1; at <= last; ++at) sum += state_.StepCost(at);

@@ -32,7 +32,7 @@ struct IteratedSearchOptions {
 
   // Leaves between the first and the last cut of a kick: from the least to the most, as many kicks
   // of one order of magnitude as of another. On small layers wide kicks find more, on large ones
-  // their repair costs too much.
+  // their repair costs too much. A run that is turned has the most of them, or fewer.
   int least_span = 30;
   int most_span = 400;
 
