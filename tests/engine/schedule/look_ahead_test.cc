@@ -228,7 +228,7 @@ TEST(LookAhead, DoesNotWaitWhereTheNextLayerDoesNotMatter) {
 
 TEST(LookAhead, TakesThePlaceOfNoTimeWhereThereIsNoNextLayer) {
   Options options;
-  options.spec.layer_time_limit = absl::Milliseconds(5);
+  options.spec.layer_time_limit = absl::Milliseconds(100);
 
   const auto outcomes = RunJob({{BothSides(), {}, {}}}, options);
 
