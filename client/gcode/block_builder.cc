@@ -228,8 +228,7 @@ void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
   if (step.arc && !EndsOnItsCircle(step, after)) block.flags |= kBlockPinned;
   if (step.kind == StepKind::kZeroExtrude) block.flags |= kBlockZero;
   block.length_mm += static_cast<float>(StepMm(step, after));
-  const double unit = after.UnitMm();
-  file_.ends.push_back({ToDouble(after.at.x) * unit, ToDouble(after.at.y) * unit});
+  file_.ends.push_back(after.InMm(after.at));
   ++block.end_count;
   if (block.segments < std::numeric_limits<uint16_t>::max()) ++block.segments;
 }

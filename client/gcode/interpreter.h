@@ -12,6 +12,7 @@
 
 #include "client/gcode/lexer.h"
 #include "client/gcode/print_state.h"
+#include "client/gcode/vertex.h"
 
 namespace traverse::gcode {
 
@@ -46,6 +47,11 @@ struct MachineState {
 
   // The length in mm of one unit of the words.
   double UnitMm() const { return inches ? 25.4 : 1; }
+
+  // A position in these units as a point in mm.
+  Vertex InMm(const Position& place) const {
+    return {ToDouble(place.x) * UnitMm(), ToDouble(place.y) * UnitMm()};
+  }
 
   // The modes that a part of a file must share so that its lines can change places.
   bool SameModes(const MachineState& other) const {

@@ -119,12 +119,9 @@ void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32
 }
 
 bool LayerWriter::Retracts(const PlacedPath& from, const PlacedPath& to) const {
-  const double unit = file_.modes[to.block().mode].inches ? 25.4 : 1;
-  const auto vertex = [unit](const Position& at) {
-    return Vertex{ToDouble(at.x) * unit, ToDouble(at.y) * unit};
-  };
+  const MachineState& mode = file_.modes[to.block().mode];
   const Outline& outline = outlines_[to.placement().block - layer_.first_block];
-  return rules_.Retracts(vertex(from.last()), vertex(to.first()), outline.feature);
+  return rules_.Retracts(mode.InMm(from.last()), mode.InMm(to.first()), outline.feature);
 }
 
 }  // namespace traverse::gcode

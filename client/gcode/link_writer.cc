@@ -182,17 +182,14 @@ void LinkWriter::WriteTravel(const LinkRequest& request, const Link& form) {
 
 // The bends of the way to `request.to`, at the height where the head is.
 void LinkWriter::WriteDetour(const LinkRequest& request, const LinkStep& step) {
-  const double unit = out_.at.machine.inches ? 25.4 : 1;
-  const auto vertex = [unit](const Position& at) {
-    return Vertex{ToDouble(at.x) * unit, ToDouble(at.y) * unit};
-  };
+  const MachineState& machine = out_.at.machine;
   // As slicers write coordinates: to micrometres.
-  const auto word = [unit](double mm) {
+  const auto word = [unit = machine.UnitMm()](double mm) {
     return static_cast<Decimal>(std::llround(mm / unit * 1000)) * (kDecimalOne / 1000);
   };
   for (const Vertex bend :
-       request.detours->Around(vertex(out_.at.machine.at), vertex(request.to->first()))) {
-    const Position via{word(bend.x), word(bend.y), out_.at.machine.at.z};
+       request.detours->Around(machine.InMm(machine.at), machine.InMm(request.to->first()))) {
+    const Position via{word(bend.x), word(bend.y), machine.at.z};
     out_.Travel(step.line.Raw(file_.text), via, step.feed);
   }
 }

@@ -52,11 +52,10 @@ MachineState StateAt(const GcodeFile& file, const Block& block) {
 }
 
 Outline OutlineOf(const GcodeFile& file, const Block& block) {
-  const double unit = file.modes[block.mode].UnitMm();
   Outline outline;
   const auto ends = file.ends.begin() + block.first_end;
   outline.points.reserve(block.end_count + size_t{1});
-  outline.points.push_back({ToDouble(block.first.x) * unit, ToDouble(block.first.y) * unit});
+  outline.points.push_back(file.modes[block.mode].InMm(block.first));
   outline.points.insert(outline.points.end(), ends, ends + block.end_count);
   outline.exactly_closed = outline.points.front() == outline.points.back();
   outline.closed = outline.points.size() > 3 &&

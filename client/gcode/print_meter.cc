@@ -81,11 +81,7 @@ void PrintMeter::FollowXy(const Step& step, const MachineState& state) {
 }
 
 void PrintMeter::NoteCrossing(const Step& step, const MachineState& state) {
-  const double unit = state.UnitMm();
-  const auto vertex = [unit](const Position& at) {
-    return Vertex{ToDouble(at.x) * unit, ToDouble(at.y) * unit};
-  };
-  crosses_ = walls_->Crossed(vertex(step.from), vertex(state.at));
+  crosses_ = walls_->Crossed(state.InMm(step.from), state.InMm(state.at));
   if (!crosses_) return;
   ++totals_.crossings;
   if (!step.retracted) ++totals_.open_crossings;

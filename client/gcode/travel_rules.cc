@@ -10,14 +10,6 @@ namespace {
 // Layers from which habits are learnt.
 constexpr size_t kSampledLayers = 24;
 
-Vertex Behind(const Block& block, double unit) {
-  return {ToDouble(block.last.x) * unit, ToDouble(block.last.y) * unit};
-}
-
-double UnitOf(const GcodeFile& file, const Block& block) {
-  return file.modes[block.mode].inches ? 25.4 : 1;
-}
-
 bool IsSoft(const Block& block) { return (block.link & (kLinkFixed | kLinkSplits)) == 0; }
 
 // Calls visit(block, from, to) for the links inside a layer that have no marks in them.
@@ -26,9 +18,8 @@ void ForEachWay(const GcodeFile& file, const Layer& layer, Visit visit) {
   for (uint32_t b = layer.first_block + 1; b < layer.end_block; ++b) {
     const Block& block = file.blocks[b];
     if (!IsSoft(block)) continue;
-    const double unit = UnitOf(file, block);
-    visit(block, Behind(file.blocks[b - 1], unit),
-          Vertex{ToDouble(block.first.x) * unit, ToDouble(block.first.y) * unit}, b);
+    const MachineState& mode = file.modes[block.mode];
+    visit(block, mode.InMm(file.blocks[b - 1].last), mode.InMm(block.first), b);
   }
 }
 
