@@ -1,14 +1,13 @@
 #include "client/gcode/verify/verifier.h"
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <optional>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/parallel.h"
 #include "client/gcode/verify/sections.h"
 
 namespace traverse {
@@ -133,16 +132,10 @@ absl::Status VerifyGcode(std::string_view original, const std::string& original_
                          std::string_view optimised, const std::string& optimised_name) {
   gcode::Side was{original, original_name, {}};
   gcode::Side is{optimised, optimised_name, {}};
-  const auto cut = [](gcode::Side& side) {
+  gcode::ParallelFor(2, gcode::ThreadsFor(original.size()), [&](size_t i) {
+    gcode::Side& side = i == 0 ? was : is;
     side.cut = gcode::CutIntoSections(side.text, kOptimisedMark);
-  };
-  // Short texts are done before a second thread has begun.
-  constexpr size_t kShortBytes = size_t{32} << 10;
-  std::thread other;
-  if (original.size() >= kShortBytes) other = std::thread(cut, std::ref(was));
-  if (!other.joinable()) cut(was);
-  cut(is);
-  if (other.joinable()) other.join();
+  });
   if (absl::Status status = gcode::Compare(was, is); !status.ok()) return status;
   return gcode::ComparePrimes(was, is);
 }
