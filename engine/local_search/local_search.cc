@@ -132,7 +132,7 @@ double LocalSearch::ChooseEntry(int position) {
   if (entries.count(leaf) == 1) return 0;
   const int before = state_.leaf_at(position - 1);
   const int after = state_.leaf_at(position + 1);
-  const bool open_end = after == state_.tree().finish() && !state_.has_finish();
+  const bool open_end = state_.IsFree(after);
   const Point to = state_.in(after);
   const int best = entries.Best(leaf, state_.out(before), open_end ? nullptr : &to, state_.cost());
   if (best == state_.entry(leaf)) return 0;
@@ -189,7 +189,7 @@ double LocalSearch::ChoosePair(int position) {
 int LocalSearch::BestAfter(int position, Point from) const {
   const int after = state_.leaf_at(position + 2);
   const Point to = state_.in(after);
-  const bool open_end = after == state_.tree().finish() && !state_.has_finish();
+  const bool open_end = state_.IsFree(after);
   return state_.entries().Best(state_.leaf_at(position + 1), from, open_end ? nullptr : &to,
                                state_.cost());
 }
@@ -210,7 +210,7 @@ void LocalSearch::ChooseContours(int position, Pair& best) {
   const int b = state_.leaf_at(position + 1);
   const int after = state_.leaf_at(position + 2);
   const Point to = state_.in(after);
-  const bool open_end = after == state_.tree().finish() && !state_.has_finish();
+  const bool open_end = state_.IsFree(after);
   entries.FillTails(b, open_end ? nullptr : &to, tails_);
   entries.FillPairBounds(a, b, state_.out(state_.leaf_at(position - 1)), open_end ? nullptr : &to,
                          tails_, bounds_);

@@ -72,9 +72,8 @@ void MoveEvaluator::Choose(size_t i) {
   const LeafEntries& entries = state_.entries();
   Place& place = places_[i];
   const Place& next = places_[i + 1];
-  const bool is_last = next.leaf == state_.tree().finish() && !state_.has_finish();
-  place.entry =
-      entries.Best(place.leaf, places_[i - 1].out, is_last ? nullptr : &next.in, state_.cost());
+  place.entry = entries.Best(place.leaf, places_[i - 1].out,
+                             state_.IsFree(next.leaf) ? nullptr : &next.in, state_.cost());
   place.in = entries.enter(place.entry);
   place.out = entries.exit(place.entry);
 }

@@ -31,8 +31,8 @@ class SearchState {
   const LeafEntries& entries() const { return entries_; }
   const TravelCost& cost() const { return cost_; }
 
-  // Whether the move to the finish counts.
-  bool has_finish() const { return has_finish_; }
+  // Whether the move to `leaf` costs nothing: a finish that may be anywhere.
+  bool IsFree(int leaf) const { return leaf == tree_.finish() && !has_finish_; }
 
   int last_position() const { return tree_.leaf_count() - 1; }
   int leaf_at(int position) const { return order_[Index(position)]; }
@@ -46,7 +46,7 @@ class SearchState {
 
   // Cost of the move from `from`, the exit of a visit, to `to`, where `leaf` is entered.
   double MoveCost(Point from, int leaf, Point to) const {
-    return leaf == tree_.finish() && !has_finish_ ? 0 : cost_(from, to);
+    return IsFree(leaf) ? 0 : cost_(from, to);
   }
   // Cost of the move from position `position` to the next one.
   double StepCost(int position) const { return steps_[Index(position)]; }

@@ -111,7 +111,7 @@ absl::Span<const Neighbor> ThreeOpt::NeighborsOf(const End& end, int breadth) co
 
 template <typename Cost>
 double ThreeOpt::Join(const End& a, const End& b, const Cost& cost) const {
-  return IsFree(a.leaf) || IsFree(b.leaf) ? 0 : cost(a.point, b.point);
+  return state_.IsFree(a.leaf) || state_.IsFree(b.leaf) ? 0 : cost(a.point, b.point);
 }
 
 // Neighbors from here on cost `limit` or more; negative if all do.
@@ -228,7 +228,7 @@ void ThreeOpt::SearchThird(int leaf, bool is_right, double gain2, const Cost& co
   const double radii = radii_ + Radius(t6);
   const double most = LeastRejected(radii) + gain;
   const bool continues = wants_open_ && gain > open_.gain;
-  const bool is_free = IsFree(t6) || IsFree(t1_.leaf);
+  const bool is_free = state_.IsFree(t6) || state_.IsFree(t1_.leaf);
   const Point t6_point = is_right ? state_.out(t6) : state_.in(t6);
   if (!continues && (is_free ? most <= 0 : !cost.Within(t6_point, t1_.point, most))) return;
   const double delta = is_free ? -gain : cost(t6_point, t1_.point) - gain;

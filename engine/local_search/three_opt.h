@@ -88,9 +88,6 @@ class ThreeOpt {
   double LimitMm(double limit) const;
   double Radius(int leaf) const { return state_.entries().radius(leaf); }
 
-  // Whether the move to `leaf` costs nothing: a finish that may be anywhere.
-  bool IsFree(int leaf) const { return leaf == state_.tree().finish() && !state_.has_finish(); }
-
   // Deltas from here on are not kept, if contours with these radii are at the cuts.
   double LeastRejected(double radii) const {
     const double slack = options_.slack * radii;
