@@ -24,9 +24,9 @@ std::optional<double> SlotNumber(const GcodeFile& file, const Block& block, Slot
 }
 
 // The cross-section that is deposited is a rectangle with half circles at its sides.
-double WidthOfFlow(const GcodeFile& file, const Block& block, double unit) {
+double WidthOfFlow(const GcodeFile& file, const Block& block) {
   const double diameter = file.profile.filament_diameter;
-  const double filament = ToDouble(block.e_out - block.e_in) * unit;
+  const double filament = ToDouble(block.e_out - block.e_in) * file.modes[block.mode].UnitMm();
   if (!(filament > 0) || !(block.length_mm > 0)) return 0;
   const double area =
       filament * diameter * diameter * std::numbers::pi / 4 / static_cast<double>(block.length_mm);
@@ -34,8 +34,8 @@ double WidthOfFlow(const GcodeFile& file, const Block& block, double unit) {
   return area / height + height * (1 - std::numbers::pi / 4);
 }
 
-double WidthOf(const GcodeFile& file, const Block& block, double unit) {
-  const double width = SlotNumber(file, block, kSlotWidth).value_or(WidthOfFlow(file, block, unit));
+double WidthOf(const GcodeFile& file, const Block& block) {
+  const double width = SlotNumber(file, block, kSlotWidth).value_or(WidthOfFlow(file, block));
   return std::clamp(width, 0.2, 1.2);
 }
 
@@ -62,7 +62,7 @@ Outline OutlineOf(const GcodeFile& file, const Block& block) {
                    Distance(outline.points.front(), outline.points.back()) <= kMaxLoopGapMm &&
                    static_cast<double>(block.length_mm) > 8 * kMaxLoopGapMm;
   outline.feature = FeatureOf(file, block, outline.closed);
-  outline.width_mm = WidthOf(file, block, unit);
+  outline.width_mm = WidthOf(file, block);
   return outline;
 }
 
