@@ -146,12 +146,12 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   const Route& BestToGoOnFrom(const LayerProblem& problem, const Slot& slot,
                               const KnownRoute* known, const Slot* next) const;
   Solution SolveFromTrueStart(const LayerProblem& problem, const Slot& slot,
-                              const KnownRoute* known, Slot*& next) const;
-  double GreedyCost(const LayerProblem& problem, const Slot& slot) const;
+                              const KnownRoute* known, Slot*& next, Route& greedy) const;
+  Route GreedyRoute(const LayerProblem& problem, const Slot& slot) const;
   bool GreedyMayBeBetter(const LayerProblem& problem, const Slot& slot, const KnownRoute* known,
-                         const Slot* next, const Solution& solution) const;
+                         const Slot* next) const;
   void KeepBestRoute(const LayerProblem& problem, const Slot& slot, const KnownRoute* known,
-                     const Slot* next, Solution& solution) const;
+                     const Slot* next, Route greedy, Solution& solution) const;
   KnownRoutePtr Known(const LayerProblem& problem, const Slot& slot,
                       const Solution& solution) const;
   static const KnownRoute* FindAnchored(const Slot& slot, uint64_t kind);

@@ -228,9 +228,10 @@ const Route& LayerChain::BestToGoOnFrom(const LayerProblem& problem, const Slot&
   return *best;
 }
 
-// `next` is null afterwards if the layer was better not ended with a view to it.
+// `next` is null afterwards if the layer was better not ended with a view to it; `greedy` is set if
+// that was to be compared with.
 Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot& slot,
-                                        const KnownRoute* known, Slot*& next) const {
+                                        const KnownRoute* known, Slot*& next, Route& greedy) const {
   if (strategy_->serial()) {
     Budget budget = LayerBudget(slot, 1);
     return strategy_->Solve(problem, budget);
@@ -253,7 +254,8 @@ Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot&
   if (next != nullptr) {
     Route foreseen = next->first.route;
     solution = strategy_->ResumeWithNext(problem, from, Problem(*next, Point()), foreseen, budget);
-    if (RouteCost(problem, solution.route) <= GreedyCost(problem, slot)) {
+    greedy = GreedyRoute(problem, slot);
+    if (RouteCost(problem, solution.route) <= RouteCost(problem, greedy) + kCostTolerance) {
       next->foreseen = std::move(foreseen);
     } else {
       next = nullptr;
@@ -273,23 +275,21 @@ Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot&
   return solution;
 }
 
-// What a layer's own travel may cost at most for the sake of the next one.
-double LayerChain::GreedyCost(const LayerProblem& problem, const Slot& slot) const {
+Route LayerChain::GreedyRoute(const LayerProblem& problem, const Slot& slot) const {
   Budget budget = LayerBudget(slot, kSideShare);
-  return RouteCost(problem, predictor_->Solve(problem, budget).route) + kCostTolerance;
+  return predictor_->Solve(problem, budget).route;
 }
 
 // Other routes may be better from the true start: an equal layer's from the same start; what the
 // layer before saw ahead; those found for another start, where the clock cut the last search short;
 // greedy's, which a resumed route need not beat; the order given. All in view of the next layer,
-// for whose sake a layer's own travel may grow up to greedy's, and no further.
+// for whose sake a layer's own travel may grow up to greedy's, and no further. `greedy`: its route,
+// or none if nobody asked for it yet.
 void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
-                               const KnownRoute* known, const Slot* next,
+                               const KnownRoute* known, const Slot* next, Route greedy,
                                Solution& solution) const {
-  Route greedy;
-  if (GreedyMayBeBetter(problem, slot, known, next, solution)) {
-    Budget budget = LayerBudget(slot, kSideShare);
-    greedy = predictor_->Solve(problem, budget).route;
+  if (greedy.empty() && GreedyMayBeBetter(problem, slot, known, next)) {
+    greedy = GreedyRoute(problem, slot);
   }
   constexpr double kAny = std::numeric_limits<double>::infinity();
   const bool has_limit = next != nullptr && greedy.size() == solution.route.size();
@@ -322,15 +322,13 @@ void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
 }
 
 // Whether greedy's route was not beaten yet: not if the strategy began at this very start, or if an
-// equal layer's route was taken over; again if the next layer was looked at.
+// equal layer's route was taken over.
 bool LayerChain::GreedyMayBeBetter(const LayerProblem& problem, const Slot& slot,
-                                   const KnownRoute* known, const Slot* next,
-                                   const Solution& solution) const {
+                                   const KnownRoute* known, const Slot* next) const {
   if (strategy_->serial() || strategy_->quick() || Expired()) return false;
   const bool is_compared =
       known != nullptr && known->place == slot.print.place && known->start == problem.start;
-  if (next != nullptr) return !is_compared || solution.route != known->solution.route;
-  return !is_compared && (slot.model || problem.start != slot.predicted_start);
+  return !is_compared && (next != nullptr || slot.model || problem.start != slot.predicted_start);
 }
 
 // Looks for a lower bound of a solution, if the strategy wants one. The search for it is done with
@@ -361,13 +359,14 @@ LayerOutcome LayerChain::Anchor(Slot& slot, const Place& place) const {
   const uint64_t kind = KindAt(slot, place);
   const KnownRoute* known = FindAnchored(slot, kind);
   if (!ValidateRoute(slot.layer.plan, slot.foreseen).ok()) slot.foreseen.clear();
-  Solution solution = SolveFromTrueStart(problem, slot, known, next);
+  Route greedy;
+  Solution solution = SolveFromTrueStart(problem, slot, known, next, greedy);
   LayerOutcome outcome = std::move(slot.outcome);
   if (absl::Status status = ValidateRoute(slot.layer.plan, solution.route); !status.ok()) {
     outcome.invalid_route = std::string(status.message());
     solution = Solution{slot.given_route, StopReason::kLocalOptimum, std::nullopt};
   } else {
-    KeepBestRoute(problem, slot, known, next, solution);
+    KeepBestRoute(problem, slot, known, next, std::move(greedy), solution);
   }
   if (!solution.lower_bound) Bound(problem, slot, solution);
   if (slot.anchored) (*slot.anchored)[kind] = slot.known = Known(problem, slot, solution);
