@@ -37,26 +37,36 @@ void IteratedSearch::Descend(Budget& budget) {
 
 void IteratedSearch::Run(Rng& rng, Budget& budget) {
   double cost = state_.TotalCost();
-  double cost_before = cost;  // the last `patience` iterations
+  KeepBest(cost);
+  double best_before = cost;  // the last `patience` iterations
   int64_t since = 0;
+  const double temperature = options_.temperature * cost / state_.last_position();
   for (int64_t idle = 0; idle < options_.patience && !budget.Exhausted(); ++idle, ++since) {
     if (since == options_.patience) {
-      if (cost_before - cost <= options_.least_gain * cost) return;
-      cost_before = cost;
+      if (best_before - best_cost_ <= options_.least_gain * best_cost_) break;
+      best_before = best_cost_;
       since = 0;
     }
     ++iterations_;
     double delta = 0;
     if (!Kick(rng, delta)) continue;
     delta += local_search_.Run(budget);
-    if (delta > kImprovementTolerance) {
+    if (delta > kImprovementTolerance && rng.Unit() >= std::exp(-delta / temperature)) {
       state_.UndoTo(0);
       continue;
     }
     state_.Commit();
     cost += delta;
-    if (delta < -kImprovementTolerance) idle = 0;
+    if (cost >= best_cost_ - kImprovementTolerance) continue;
+    KeepBest(cost);
+    idle = 0;
   }
+  if (cost > best_cost_ + kImprovementTolerance) state_.Load(best_);
+}
+
+void IteratedSearch::KeepBest(double cost) {
+  best_cost_ = cost;
+  state_.Unload(best_);
 }
 
 bool IteratedSearch::Kick(Rng& rng, double& delta) {

@@ -4,11 +4,13 @@
 //            or a run of blocks turned (turn_run.h) where the plan has blocks that cannot be
 //            reversed
 //   repair   local search from the visits at the cuts
-//   keep     the result if it costs no more, else undo everything
+//   keep     the result if it costs no more, and by chance if it costs little more, else undo
+//            everything; the best route of all is what remains at the end
 //
 // A double bridge is the change that local search by sequential moves does not find, and does not
-// just undo (Martin, Otto and Felten 1991). All work of an iteration is near the cuts: undoing goes
-// through a log, nothing is copied.
+// just undo; a walk among routes that are a little worse leads out of what no single kick leads out
+// of (both: Martin, Otto and Felten 1991, large-step Markov chains). All work of an iteration is
+// near the cuts: undoing goes through a log, and only a route better than all before is copied.
 
 #ifndef TRAVERSE_ENGINE_LOCAL_SEARCH_ITERATED_SEARCH_H_
 #define TRAVERSE_ENGINE_LOCAL_SEARCH_ITERATED_SEARCH_H_
@@ -29,6 +31,9 @@ struct IteratedSearchOptions {
   // Ends after this many iterations without a gain, or with less than least_gain of the cost.
   int64_t patience = 1000;
   double least_gain = 0;
+
+  // How much worse a route is kept with a chance of 1/e, in mean moves of the route searched.
+  double temperature = 0.2;
 
   // Leaves between the first and the last cut of a kick: from the least to the most, as many kicks
   // of one order of magnitude as of another. On small layers wide kicks find more, on large ones
@@ -52,7 +57,7 @@ class IteratedSearch {
   // Local search alone, from the route as it is.
   void Descend(Budget& budget);
 
-  // Kicks and repairs the route, which never gets worse.
+  // Kicks and repairs the route, which is the best one found afterwards: never worse than before.
   void Run(Rng& rng, Budget& budget);
 
   int64_t iterations() const { return iterations_; }
@@ -65,6 +70,7 @@ class IteratedSearch {
   int ChooseNode(Rng& rng, int leaf) const;
   bool ChooseCuts(Rng& rng, int node, int (&cuts)[4]) const;
   int ChooseSpan(Rng& rng) const;
+  void KeepBest(double cost);
 
   SearchState& state_;
   const NeighborLists& neighbors_;
@@ -72,6 +78,8 @@ class IteratedSearch {
   LocalSearch local_search_;
   bool turns_ = false;  // whether there are runs to turn
   int64_t iterations_ = 0;
+  double best_cost_ = 0;
+  Route best_;
 };
 
 }  // namespace traverse

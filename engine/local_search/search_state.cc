@@ -37,11 +37,16 @@ void SearchState::Load(const Route& route) {
 
 Route SearchState::Unload() const {
   Route route;
+  Unload(route);
+  return route;
+}
+
+void SearchState::Unload(Route& route) const {
+  route.clear();
   route.reserve(order_.size() - 2);
   for (int i = 1; i < last_position(); ++i) {
     route.push_back(entries_.VisitOf(leaf_at(i), entry(leaf_at(i))));
   }
-  return route;
 }
 
 double SearchState::TotalCost() const {

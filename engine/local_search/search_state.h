@@ -26,6 +26,7 @@ class SearchState {
   // From a valid route of the problem, and to one. Loading forgets the log.
   void Load(const Route& route);
   Route Unload() const;
+  void Unload(Route& route) const;  // the same; allocates nothing if the route has room
 
   const OrderTree& tree() const { return tree_; }
   const LeafEntries& entries() const { return entries_; }

@@ -31,6 +31,23 @@ TEST(IteratedSearch, NeverMakesARouteWorse) {
   }
 }
 
+TEST(IteratedSearch, EndsWithTheBestRouteHoweverFarItWalksFromIt) {
+  for (uint64_t seed = 1; seed <= 30; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    Searched s(seed, {.min_paths = 20, .max_paths = 40});
+    IteratedSearch search(s.state, s.neighbors,
+                          {.local_search = {}, .patience = 50, .temperature = 1000});
+    Rng rng(seed);
+    search.Descend(s.budget);
+    const double cost = s.state.TotalCost();
+
+    search.Run(rng, s.budget);
+
+    EXPECT_LE(s.state.TotalCost(), cost + kCostTolerance);
+    EXPECT_OK(ValidateRoute(s.owned.plan(), s.state.Unload()));
+  }
+}
+
 TEST(IteratedSearch, FindsTheOptimumOfSmallProblems) {
   int optimal = 0;
   for (uint64_t seed = 1; seed <= 200; ++seed) {
@@ -47,11 +64,8 @@ TEST(IteratedSearch, FindsTheOptimumOfSmallProblems) {
   EXPECT_GE(optimal, 180);
 }
 
-double SearchedCost(uint64_t seed, double turn_share) {
-  Searched s(seed, {.shape = PlanShape::kInterleaved, .min_paths = 60, .max_paths = 60});
-  IteratedSearchOptions options;
-  options.patience = 150;
-  options.turn_share = turn_share;
+double SearchedCost(uint64_t seed, PlanShape shape, const IteratedSearchOptions& options) {
+  Searched s(seed, {.shape = shape, .min_paths = 60, .max_paths = 60});
   IteratedSearch search(s.state, s.neighbors, options);
   Rng rng(seed);
   search.Descend(s.budget);
@@ -59,15 +73,29 @@ double SearchedCost(uint64_t seed, double turn_share) {
   return s.state.TotalCost();
 }
 
+// Of the routes found with some options to those found with others.
+double CostRatio(PlanShape shape, const IteratedSearchOptions& options,
+                 const IteratedSearchOptions& others) {
+  double cost = 0;
+  double others_cost = 0;
+  for (uint64_t seed = 1; seed <= 12; ++seed) {
+    cost += SearchedCost(seed, shape, options);
+    others_cost += SearchedCost(seed, shape, others);
+  }
+  return cost / others_cost;
+}
+
 // Contours come first on each island: runs of islands cannot be reversed.
 TEST(IteratedSearch, FindsShorterRoutesByTurningRunsOfBlocks) {
-  double with_turns = 0;
-  double without = 0;
-  for (uint64_t seed = 1; seed <= 12; ++seed) {
-    with_turns += SearchedCost(seed, 0.5);
-    without += SearchedCost(seed, 0);
-  }
-  EXPECT_LT(with_turns, 0.985 * without);
+  const IteratedSearchOptions turning{.local_search = {}, .patience = 150, .turn_share = 0.5};
+  const IteratedSearchOptions not_turning{.local_search = {}, .patience = 150, .turn_share = 0};
+  EXPECT_LT(CostRatio(PlanShape::kInterleaved, turning, not_turning), 0.985);
+}
+
+TEST(IteratedSearch, FindsShorterRoutesByWalkingAmongWorseOnes) {
+  const IteratedSearchOptions walking{.local_search = {}, .patience = 500};
+  const IteratedSearchOptions not_walking{.local_search = {}, .patience = 500, .temperature = 0};
+  EXPECT_LT(CostRatio(PlanShape::kSequential, walking, not_walking), 0.999);
 }
 
 TEST(IteratedSearch, StopsWhenPatienceIsOut) {
