@@ -14,8 +14,10 @@ namespace {
 
 using namespace traverse::testing;  // NOLINT
 
-TEST(MoveEvaluator, DeltaEqualsRecomputedCost) {
-  for (uint64_t seed = 1; seed <= 300; ++seed) {
+// Calls `check` with random moves that random plans allow: search, evaluator, move, random numbers.
+template <typename Check>
+void ForRandomMoves(uint64_t seeds, const Check& check) {
+  for (uint64_t seed = 1; seed <= seeds; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     Searched s(seed, {.min_paths = 3, .max_paths = 20});
     MoveEvaluator evaluator(s.state);
@@ -23,40 +25,38 @@ TEST(MoveEvaluator, DeltaEqualsRecomputedCost) {
     for (int i = 0; i < 30; ++i) {
       const SegmentMove move = RandomMove(rng, s.tree.path_count());
       if (!s.state.Allows(move)) continue;
-      const double before = s.state.TotalCost();
-
-      const double delta = evaluator.Evaluate(move);
-      evaluator.Apply(move);
-
-      ASSERT_NEAR(s.state.TotalCost(), before + delta, kCostTolerance);
-      ASSERT_OK(ValidateRoute(s.owned.plan(), s.state.Unload()));
+      ASSERT_NO_FATAL_FAILURE(check(s, evaluator, move, rng));
     }
   }
 }
 
+TEST(MoveEvaluator, DeltaEqualsRecomputedCost) {
+  ForRandomMoves(300, [](Searched& s, MoveEvaluator& evaluator, const SegmentMove& move, Rng&) {
+    const double before = s.state.TotalCost();
+
+    const double delta = evaluator.Evaluate(move);
+    evaluator.Apply(move);
+
+    ASSERT_NEAR(s.state.TotalCost(), before + delta, kCostTolerance);
+    ASSERT_OK(ValidateRoute(s.owned.plan(), s.state.Unload()));
+  });
+}
+
 TEST(MoveEvaluator, EndsEarlyForMovesThatCostTooMuchAlone) {
   int ended = 0;
-  for (uint64_t seed = 1; seed <= 100; ++seed) {
-    SCOPED_TRACE(absl::StrCat("seed ", seed));
-    Searched s(seed, {.min_paths = 3, .max_paths = 20});
-    MoveEvaluator evaluator(s.state);
-    Rng rng(seed);
-    for (int i = 0; i < 30; ++i) {
-      const SegmentMove move = RandomMove(rng, s.tree.path_count());
-      if (!s.state.Allows(move)) continue;
-      const double delta = evaluator.Evaluate(move);
-      const double most = 100 * (rng.Unit() - 0.5);
+  ForRandomMoves(100, [&](Searched&, MoveEvaluator& evaluator, const SegmentMove& move, Rng& rng) {
+    const double delta = evaluator.Evaluate(move);
+    const double most = 100 * (rng.Unit() - 0.5);
 
-      const double limited = evaluator.Evaluate(move, most);
+    const double limited = evaluator.Evaluate(move, most);
 
-      if (delta < most) {
-        ASSERT_EQ(limited, delta);
-      } else {
-        ASSERT_GE(limited, most);
-        ended += limited < delta;
-      }
+    if (delta < most) {
+      ASSERT_EQ(limited, delta);
+    } else {
+      ASSERT_GE(limited, most);
+      ended += limited < delta;
     }
-  }
+  });
   EXPECT_GT(ended, 100);
 }
 
