@@ -80,7 +80,7 @@ class Auto : public Strategy {
 
   Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
     const double effort = effort_ * kResumeShare;
-    return Search(LayerView(problem), start, {effort, effort}, budget);
+    return Search(LayerView(problem), start, {effort, effort, effort >= 1}, budget);
   }
 
   Solution ResumeWithNext(const LayerProblem& problem, const Route& start, const LayerProblem& next,
@@ -110,6 +110,7 @@ class Auto : public Strategy {
   struct Effort {
     double kicks;
     double small_parts;
+    bool detours = true;  // whether worse routes are walked through: too far for a short search
   };
 
   static Solution Search(const LayerView& layer, Route route, const Effort& effort,
@@ -138,6 +139,7 @@ class Auto : public Strategy {
                                             effort.kicks * patience * paths);
     options.least_gain = kLeastGain;
     options.most_span = std::clamp(kWidestKicks / paths, kLeastMostSpan, kMostSpan);
+    if (!effort.detours) options.temperature = 0;
     FindNeighborsOnce(memory, budget);
     IteratedSearch search(state, *memory.neighbors, options);
     search.Descend(budget);
