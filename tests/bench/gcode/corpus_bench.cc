@@ -33,16 +33,21 @@ struct Arguments {
   std::vector<std::string> files;
 };
 
-void AddFiles(const std::string& path, std::vector<std::string>& files) {
+// False if `path` is a folder without sliced files.
+bool AddFiles(const std::string& path, std::vector<std::string>& files) {
   if (!std::filesystem::is_directory(path)) {
     files.push_back(path);
-    return;
+    return true;
   }
+  const size_t before = files.size();
   for (const auto& entry : std::filesystem::directory_iterator(path)) {
     if (entry.path().filename().string().find(".gcode") != std::string::npos) {
       files.push_back(entry.path().string());
     }
   }
+  if (files.size() > before) return true;
+  std::fprintf(stderr, "%s: no sliced files in this folder\n", path.c_str());
+  return false;
 }
 
 bool Parse(int argc, char** argv, Arguments& arguments) {
@@ -67,11 +72,12 @@ bool Parse(int argc, char** argv, Arguments& arguments) {
       arguments.threads = std::max(1, std::atoi(value.c_str()));
     } else if (name.starts_with("-")) {
       return false;
-    } else {
-      AddFiles(argument, arguments.files);
+    } else if (!AddFiles(argument, arguments.files)) {
+      return false;
     }
   }
-  if (arguments.files.empty()) AddFiles(TRAVERSE_SOURCE_DIR "/tests/data/gcode", arguments.files);
+  const char* usual = TRAVERSE_SOURCE_DIR "/tests/data/gcode";
+  if (arguments.files.empty() && !AddFiles(usual, arguments.files)) return false;
   std::sort(arguments.files.begin(), arguments.files.end());
   return true;
 }
@@ -88,7 +94,10 @@ int Main(int argc, char** argv) {
     return 2;
   }
   auto service = EmbeddedService::Start(arguments.threads);
-  if (!service.ok()) return 1;
+  if (!service.ok()) {
+    std::fprintf(stderr, "%s\n", service.status().ToString().c_str());
+    return 1;
+  }
   OptimizerClient client((*service)->channel());
   std::vector<CorpusRun> runs;
   bool good = true;
