@@ -98,10 +98,8 @@ Point LayerChain::PredictEnd(const Slot& slot) {
     return {slot.origin.x + end->x, slot.origin.y + end->y};
   }
   if (Expired()) return slot.predicted_start;
-  Budget budget = LayerBudget(slot, kSideShare);
-  return RouteEnd(slot.layer.plan,
-                  predictor_->Solve(Problem(slot, slot.predicted_start), budget).route,
-                  slot.predicted_start);
+  const Route greedy = GreedyRoute(Problem(slot, slot.predicted_start), slot);
+  return RouteEnd(slot.layer.plan, greedy, slot.predicted_start);
 }
 
 void LayerChain::SolveFirst(Slot& slot) const {
