@@ -1,18 +1,23 @@
 #!/usr/bin/env bash
-# Collects the file system of the container image: the server, the health probe, the libraries that they
+# Collects the file system of a container image: the program, the health probe, the libraries that they
 # load, a user, and what there is of it.
 #
-#   deploy/image-root.sh BUILD OUT
+#   deploy/image-root.sh BUILD OUT [traverse-server|traverse-gateway]
 #
 # OUT/usr/share/doc/traverse-server/packages.txt lists the Debian packages of the libraries with their
 # versions, sorted: the same list is the same image but for our own programs. Their licences lie beside it.
 set -euo pipefail
 build=$(realpath "$1")
 out=$2
+case "${3:-traverse-server}" in
+  traverse-server) main=$build/server/traverse-server ;;
+  traverse-gateway) main=$build/client/gateway/traverse-gateway ;;
+  *) echo "$0: no image of $3" >&2; exit 2 ;;
+esac
 doc=$out/usr/share/doc
 mkdir -p "$out"/{usr/bin,etc,tmp} "$doc/traverse-server"
 
-programs=("$build/server/traverse-server" "$build/deploy/traverse-health-probe")
+programs=("$main" "$build/deploy/traverse-health-probe")
 for program in "${programs[@]}"; do
   install -m 755 -s "$program" "$out/usr/bin/"
 done

@@ -10,8 +10,9 @@ set -euo pipefail
 build=(
   g++ cmake ninja-build ccache pkg-config
   libgrpc++-dev libssl-dev openssl protobuf-compiler-grpc libprotobuf-dev protobuf-compiler
-  libabsl-dev prometheus-cpp-dev libspdlog-dev nlohmann-json3-dev
+  libabsl-dev prometheus-cpp-dev libspdlog-dev nlohmann-json3-dev libmicrohttpd-dev
   zlib1g-dev liblzma-dev libcairo2-dev coinor-libcbc-dev coinor-libclp-dev
+  libboost-dev libcurl4-openssl-dev
 )
 unit=(libgtest-dev libgmock-dev libbenchmark-dev xz-utils python3)
 test=(

@@ -13,7 +13,7 @@ function(install_programs component)
   endforeach()
 endfunction()
 install_programs(client traverse traverse-loadgen)
-install_programs(server traverse-server traverse-health-probe)
+install_programs(server traverse-server traverse-gateway traverse-health-probe)
 
 # The API and the examples, for authors of schedulers.
 set(PROTO ${CMAKE_INSTALL_DATADIR}/traverse/proto)
@@ -25,8 +25,8 @@ install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/traverse COM
         PATTERN node_modules EXCLUDE PATTERN generated EXCLUDE PATTERN __pycache__ EXCLUDE)
 
 # For operators. The unit names /usr/bin and /etc, so it goes where those are.
-install(FILES systemd/traverse-server.service DESTINATION /lib/systemd/system COMPONENT server)
-install(FILES systemd/server.flags DESTINATION /etc/traverse COMPONENT server)
+install(FILES systemd/traverse-server.service systemd/traverse-gateway.service DESTINATION /lib/systemd/system COMPONENT server)
+install(FILES systemd/server.flags systemd/gateway.flags DESTINATION /etc/traverse COMPONENT server)
 install(FILES monitoring/rules/recording.yml monitoring/rules/alerts.yml monitoring/dashboard/traverse.json
         DESTINATION ${CMAKE_INSTALL_DATADIR}/traverse-server/monitoring COMPONENT server)
 install(PROGRAMS monitoring/render_dashboard.py
@@ -75,7 +75,9 @@ set(CPACK_DEBIAN_SERVER_PACKAGE_NAME traverse-server)
 set(CPACK_COMPONENT_SERVER_DESCRIPTION "route optimiser for 3D print farms
 A gRPC service that takes the layers of a print and streams back shorter
 routes through their paths, with deadlines, fair scheduling and metrics.
-Listens on the loopback interface until told otherwise.")
+Listens on the loopback interface until told otherwise. With it comes
+traverse-gateway, which takes sliced files over HTTP and gRPC; systemctl
+enable --now traverse-gateway starts it.")
 set(CPACK_DEBIAN_SERVER_PACKAGE_DEPENDS "adduser, init-system-helpers (>= 1.54~)")
 set(CPACK_DEBIAN_SERVER_PACKAGE_SECTION net)
 set(CPACK_DEBIAN_SERVER_PACKAGE_CONTROL_EXTRA

@@ -15,14 +15,17 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/time/time.h"
 #include "engine/base/budget.h"
 #include "engine/base/executor.h"
 #include "engine/model/cost_spec.h"
+#include "engine/model/moves.h"
 #include "engine/model/plan.h"
 #include "engine/model/route.h"
 #include "engine/model/travel_split.h"
+#include "engine/model/walls.h"
 #include "engine/strategy/strategy.h"
 
 namespace traverse {
@@ -58,6 +61,9 @@ struct JobLayer {
   // ahead, the answer waits for that, and the layer's end is chosen with the next layer in view.
   // False, as for a caller who sends on after an answer: it is not waited for.
   bool more_follows = false;
+
+  // What moves by time should not cross; passes CheckWalls.
+  LayerWalls walls = {};
 };
 
 // The answer for one layer.
@@ -71,6 +77,9 @@ struct LayerOutcome {
   TravelSplit travel;
   double cost_given = 0;  // in the unit of the layer's cost; moves to the cleaning point apart
   double cost = 0;
+  MoveCounts moves_given = {};
+  MoveCounts moves = {};
+  std::vector<Detour> detours = {};
 
   // No route from this start costs less, where a move to the cleaning point follows: none costs
   // less together with that move than this bound and this route's move.

@@ -1,6 +1,7 @@
 #include "engine/validator.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -166,6 +167,7 @@ absl::Status ValidateRoute(const Plan& plan, const Route& route) {
 }
 
 TravelSplit MeasureTravel(const Plan& plan, Point start, const Route& route) {
+  assert(ValidateRoute(plan, route).ok());
   TravelSplit split;
   Point at = start;
   Path::Kind from = Path::Kind::kContour;

@@ -4,11 +4,16 @@
 #ifndef TRAVERSE_ENGINE_VALIDATOR_H_
 #define TRAVERSE_ENGINE_VALIDATOR_H_
 
+#include <vector>
+
 #include "absl/status/status.h"
+#include "engine/model/cost_spec.h"
+#include "engine/model/moves.h"
 #include "engine/model/plan.h"
 #include "engine/model/point.h"
 #include "engine/model/route.h"
 #include "engine/model/travel_split.h"
+#include "engine/model/walls.h"
 
 namespace traverse {
 
@@ -21,6 +26,21 @@ absl::Status ValidateRoute(const Plan& plan, const Route& route);
 // Travel in mm of `route` from `start` to the last exit; a move from the start counts as one from a
 // contour. REQUIRES: `route` is valid.
 TravelSplit MeasureTravel(const Plan& plan, Point start, const Route& route);
+
+// What is said of the moves of a route in a layer with walls.
+struct MoveClaims {
+  double cost = 0;
+  MoveCounts counts;
+  std::vector<Detour> detours;  // in the order of their visits
+};
+
+// OK if the moves of `route` from `start` on cost what is claimed, and are so many;
+// FailedPrecondition with what they cost, or with the first detour that crosses a wall. Moves that
+// touch a wall within rounding may count either way. REQUIRES: `route` is valid, `walls` passes
+// CheckWalls and the cost is a time. O(n log n + m k) for n points of walls and m moves that pass k
+// segments in y.
+absl::Status ValidateMoves(const Plan& plan, const LayerWalls& walls, const CostSpec& spec,
+                           Point start, const Route& route, const MoveClaims& claims);
 
 }  // namespace traverse
 

@@ -48,12 +48,14 @@ void RaiseFileLimit() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-// Waits for the signals that end the server. Blocked in all threads, they are only seen here.
+// The signals that mean something. Blocked in all threads, they are only seen where they are waited
+// for.
 sigset_t BlockSignals() {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGHUP);
   sigaddset(&signals, kPortLost);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   signal(SIGPIPE, SIG_IGN);
@@ -63,6 +65,17 @@ sigset_t BlockSignals() {
 int Fail(const absl::Status& status, int exit_code) {
   std::fprintf(stderr, "traverse-server: %s\n", std::string(status.message()).c_str());
   return exit_code;
+}
+
+// Waits for a signal that ends the server, and returns it.
+int WaitForEnd(const sigset_t& signals, Server& server) {
+  int signal = SIGHUP;
+  while (true) {
+    sigwait(&signals, &signal);
+    if (signal != SIGHUP) return signal;
+    server.Reload();
+    server.core().log->Event(JobLog::Level::kInfo, "reloaded", {{"signal", strsignal(signal)}});
+  }
 }
 
 int Run() {
@@ -82,8 +95,7 @@ int Run() {
   log.Event(JobLog::Level::kInfo, "started",
             {{"version", kVersion}, {"port", absl::StrCat((*server)->port())}});
 
-  int signal = 0;
-  sigwait(&signals, &signal);
+  const int signal = WaitForEnd(signals, **server);
   const bool port_lost = signal == kPortLost;
   if (port_lost) {
     log.Event(JobLog::Level::kError, "port_lost",
@@ -92,7 +104,7 @@ int Run() {
   log.Event(JobLog::Level::kInfo, "draining", {{"signal", strsignal(signal)}});
   std::thread([signals] {
     int second = kPortLost;
-    while (second == kPortLost) sigwait(&signals, &second);
+    while (second == kPortLost || second == SIGHUP) sigwait(&signals, &second);
     std::_Exit(128 + second);
   }).detach();
   const bool all_done = (*server)->Drain(DrainTimeout());

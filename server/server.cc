@@ -4,6 +4,7 @@
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/impl/server_builder_option.h>
 #include <grpcpp/impl/server_builder_plugin.h>
+#include <grpcpp/resource_quota.h>
 #include <grpcpp/security/server_credentials.h>
 #include <grpcpp/server_builder.h>
 #include <sched.h>
@@ -18,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 
 namespace traverse {
@@ -50,12 +52,18 @@ class NoReflection : public grpc::ServerBuilderOption {
 // Longer than any drain, and short enough to be added to a time.
 constexpr absl::Duration kForever = absl::Hours(24 * 365);
 
+// From the first byte to the settings of HTTP/2, TLS included.
+constexpr int kHandshakeMilliseconds = 20'000;
+
 int Milliseconds(absl::Duration duration) {
   return static_cast<int>(std::clamp<int64_t>(absl::ToInt64Milliseconds(duration), 0, INT_MAX));
 }
 
 void SetConnectionLimits(const ConnectionLimits& limits, grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, limits.max_streams);
+  builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeMilliseconds);
+  // Pings and resets that are of no use end the connection.
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PING_STRIKES, 2);
   builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, limits.max_header_bytes);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, Milliseconds(limits.keepalive_time));
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, Milliseconds(limits.keepalive_timeout));
@@ -65,6 +73,9 @@ void SetConnectionLimits(const ConnectionLimits& limits, grpc::ServerBuilder& bu
     builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_MS, Milliseconds(limits.max_age));
   }
 }
+
+// How often files are looked at that operators may change.
+constexpr auto kLookEvery = std::chrono::seconds(1);
 
 // For calls that have ended to be done with, at the end of the server.
 constexpr absl::Duration kGrace = absl::Seconds(2);
@@ -122,39 +133,84 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   if (absl::Status status = server->core_.StartAuth(options.service.auth); !status.ok()) {
     return status;
   }
+  if (options.tls.enabled()) {
+    if (absl::Status status = server->core_.StartTls(options.tls); !status.ok()) return status;
+  } else if (!options.listen.empty()) {
+    if (absl::Status status = CheckPlaintext(options.listen, options.insecure); !status.ok()) {
+      return status;
+    }
+  }
   if (absl::Status status = server->Build(options); !status.ok()) return status;
+  if (!options.tls.enabled() && options.service.auth.token_file.empty()) return server;
+  server->look_.emplace(kLookEvery, [core = &server->core_] { core->Reload(/*anyway=*/false); });
   return server;
 }
 
 absl::Status Server::Build(const ServerOptions& options) {
   InitGrpcPlugins();
   grpc::ServerBuilder builder;
-  builder.SetMaxReceiveMessageSize(
-      static_cast<int>(std::min<int64_t>(options.service.limits.max_message_bytes, INT_MAX)));
-  // Else a second server on the same port would take half of the connections, instead of failing.
-  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  // gRPC looks at the size when it has all of the message. What may come is watched by Connections,
+  // and what has come is looked at by those who know what to say of it.
+  builder.SetMaxReceiveMessageSize(INT_MAX);
+  // A few bytes may unpack to any number, which nobody has counted.
+  for (const auto algorithm : {GRPC_COMPRESS_DEFLATE, GRPC_COMPRESS_GZIP}) {
+    builder.SetCompressionAlgorithmSupportStatus(algorithm, false);
+  }
   if (!options.reflection) builder.SetOption(std::make_unique<NoReflection>());
   SetConnectionLimits(options.connections, builder);
-  int port = 0;
-  if (!options.listen.empty()) {
-    absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> credentials =
-        MakeServerCredentials(options.tls, options.listen, options.insecure);
-    if (!credentials.ok()) return credentials.status();
-    builder.AddListeningPort(options.listen, *credentials, &port);
+  grpc::ResourceQuota quota("traverse");
+  if (options.max_memory != INT64_MAX) {
+    quota.Resize(static_cast<size_t>(options.max_memory));
+    builder.SetResourceQuota(quota);
   }
+  if (!options.listen.empty()) {
+    if (absl::Status status = AddPort(options, builder); !status.ok()) return status;
+  }
+  core_.Watch(connections_.get(), options.max_memory);
   builder.RegisterService(&service_);
   server_ = builder.BuildAndStart();
-  if (server_ == nullptr || (!options.listen.empty() && port == 0)) {
+  if (server_ == nullptr || (!options.listen.empty() && port_ == 0)) {
     return absl::UnavailableError(absl::StrCat("cannot listen on ", options.listen));
   }
-  port_ = port;
+  if (connections_ != nullptr) connections_->Start();
   server_->GetHealthCheckService()->SetServingStatus(kServiceName, true);
   if (options.metrics_listen.empty()) return absl::OkStatus();
   absl::StatusOr<std::unique_ptr<MetricsHttp>> metrics = MetricsHttp::Start(
       options.metrics_listen, {.metrics = [this] { return core_.MetricsText(); },
-                               .ready = [this] { return !core_.admission.draining(); }});
+                               .ready = [this] { return !core_.admission.draining(); },
+                               .healthy = [this] { return core_.healthy(); }});
   if (!metrics.ok()) return metrics.status();
   metrics_ = *std::move(metrics);
+  return absl::OkStatus();
+}
+
+absl::Status Server::AddPort(const ServerOptions& options, grpc::ServerBuilder& builder) {
+  const std::shared_ptr<grpc::ServerCredentials> credentials =
+      core_.certificates == nullptr ? grpc::InsecureServerCredentials()
+                                    : MakeTlsCredentials(core_.certificates);
+  if (absl::StartsWith(options.listen, "unix")) {
+    builder.AddListeningPort(options.listen, credentials, &port_);
+    return absl::OkStatus();
+  }
+  acceptor_ = builder.experimental().AddExternalConnectionAcceptor(
+      grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD, credentials);
+  ConnectionRules rules;
+  rules.max_connections = options.connections.max_connections;
+  // Twice as much as a message may have: one that has more is told so, where it comes to an end.
+  rules.job_bytes = 2 * options.service.limits.max_message_bytes;
+  rules.peer_timeout = absl::ToChronoMilliseconds(options.connections.keepalive_timeout);
+  absl::StatusOr<std::unique_ptr<Connections>> connections = Connections::Listen(
+      options.listen, rules,
+      {.hand_over =
+           [this](int socket) {
+             grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters parameters;
+             parameters.fd = socket;
+             acceptor_->HandleNewConnection(&parameters);
+           },
+       .end_job = [this](const std::string& peer) { return core_.EndOversizeJob(peer); }});
+  if (!connections.ok()) return connections.status();
+  connections_ = *std::move(connections);
+  port_ = connections_->port();
   return absl::OkStatus();
 }
 
@@ -185,6 +241,7 @@ bool Server::Drain(absl::Duration timeout) {
 }
 
 void Server::Shutdown(absl::Duration grace) {
+  if (connections_ != nullptr) connections_->StopListening();
   if (server_ == nullptr) return;
   server_->Shutdown(std::chrono::system_clock::now() + absl::ToChronoMicroseconds(grace));
   server_->Wait();

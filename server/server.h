@@ -8,22 +8,25 @@
 
 #include <grpcpp/channel.h>
 #include <grpcpp/server.h>
+#include <grpcpp/server_builder.h>
 #include <grpcpp/support/channel_arguments.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
-#include "server/credentials.h"
-#include "server/metrics_http.h"
-#include "server/route_optimizer_service.h"
+#include "server/ops/metrics_http.h"
+#include "server/rpc/credentials.h"
+#include "server/rpc/route_optimizer_service.h"
 #include "server/service_core.h"
 
 namespace traverse {
 
 // What one connection may do.
 struct ConnectionLimits {
+  int max_connections = 1024;
   int max_streams = 100;  // calls at a time
   int max_header_bytes = 16384;
   absl::Duration keepalive_time = absl::Seconds(30);     // idle, then the peer is asked
@@ -35,7 +38,8 @@ struct ServerOptions {
   std::string listen;          // HOST:PORT; port 0 takes a free one; empty: in-process only
   std::string metrics_listen;  // the same; empty: none
   bool reflection = true;
-  bool insecure = false;  // plaintext on addresses that other machines can reach
+  int64_t max_memory = INT64_MAX;  // of the process, in bytes; jobs get a part of it
+  bool insecure = false;           // plaintext on addresses that other machines can reach
   TlsOptions tls;
   ConnectionLimits connections;
   ServiceOptions service;
@@ -50,8 +54,9 @@ int UsableCores();
 // Thread-safe.
 class Server {
  public:
-  // Errors, with one line: InvalidArgument for plaintext that was not asked for; Unavailable for
-  // what could not be had: a port, a log file, a certificate.
+  // Errors, with one line: InvalidArgument for plaintext that was not asked for and for files of
+  // tokens or certificates that cannot be used; Unavailable for what could not be had: a port, a
+  // log file.
   static absl::StatusOr<std::unique_ptr<Server>> Start(const ServerOptions& options);
 
   // Ends at once what is under way.
@@ -74,18 +79,26 @@ class Server {
 
   ServiceCore& core() { return core_; }
 
+  // Opens the log anew and reads tokens and certificates, as somebody may have changed them.
+  void Reload() { core_.Reload(/*anyway=*/true); }
+
  private:
   explicit Server(const ServerOptions& options);
   absl::Status Build(const ServerOptions& options);
+  absl::Status AddPort(const ServerOptions& options, grpc::ServerBuilder& builder);
 
   // Takes no more connections; calls are cancelled that are there after `grace`.
   void Shutdown(absl::Duration grace);
 
+  // Hands connections to acceptor_, if the port is one of TCP. Before core_, which uses it.
+  std::unique_ptr<Connections> connections_;
   ServiceCore core_;
   RouteOptimizerService service_;
   std::unique_ptr<MetricsHttp> metrics_;
+  std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor_;
   std::unique_ptr<grpc::Server> server_;
   int port_ = 0;
+  std::optional<Periodic> look_;  // for files that have changed; last, as it uses the others
 };
 
 }  // namespace traverse

@@ -6,6 +6,10 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/time/clock.h"
+#include "server/net/socket_info.h"
+#include "server/ops/memory.h"
 
 namespace traverse {
 
@@ -19,6 +23,13 @@ constexpr absl::Duration kMostWatch = absl::Seconds(1);
 // it back takes some milliseconds, in which others who allocate wait.
 constexpr auto kIdleBeforeTrim = std::chrono::seconds(5);
 
+// How often memory is looked at, and from which share of what there may be no job is let in, and
+// connections are cut.
+constexpr auto kMemoryWatch = std::chrono::milliseconds(10);
+constexpr double kShortShare = 0.7;
+constexpr double kCutShare = 0.78;
+constexpr auto kTrimEvery = std::chrono::seconds(1);
+
 AdmissionLimits WithWorkers(AdmissionLimits limits, int workers) {
   limits.workers = workers;
   return limits;
@@ -31,7 +42,16 @@ ServiceCore::ServiceCore(const ServiceOptions& options)
       log(options.log ? std::make_unique<JobLog>(options.log_path) : std::make_unique<JobLog>()),
       admission(WithWorkers(options.admission, std::max(1, options.threads)),
                 [this](Refusal refusal) { metrics.CountRefusal(refusal); }),
-      pool(options.threads, WorkerPool::ThreadCpuSeconds, options.worker_nice) {
+      pool(options.threads, WorkerPool::ThreadCpuSeconds, options.worker_nice),
+      wakes_(WakeLateness::kPeriod, [this] { wake_lateness.Tick(Budget::Clock::now()); }) {
+  if (options.watchdog != absl::InfiniteDuration()) {
+    watchdog_.emplace(pool, options.watchdog, [this](const SilentTask& task) {
+      log->Event(JobLog::Level::kError, "worker_silent",
+                 {{"job_id", task.job},
+                  {"caller", task.caller},
+                  {"seconds", absl::StrFormat("%.1f", task.seconds)}});
+    });
+  }
   if (limits.idle_timeout == absl::InfiniteDuration()) return;
   watch_.emplace(
       absl::ToChronoNanoseconds(std::clamp(limits.idle_timeout / 4, kLeastWatch, kMostWatch)),
@@ -52,7 +72,7 @@ void ServiceCore::AbortStalled() {
 bool ServiceCore::TrimIfIdle(std::chrono::steady_clock::time_point now) {
   bool idle = false;
   {
-    std::lock_guard<std::mutex> lock(mutex_);
+    MutexLock lock(mutex_);
     idle = runs_.empty() && seen_registered_ == registered_;
     seen_registered_ = registered_;
   }
@@ -66,35 +86,107 @@ bool ServiceCore::TrimIfIdle(std::chrono::steady_clock::time_point now) {
 }
 
 std::vector<std::shared_ptr<JobRun>> ServiceCore::Runs() const {
-  std::lock_guard<std::mutex> lock(mutex_);
-  return {runs_.begin(), runs_.end()};
+  MutexLock lock(mutex_);
+  std::vector<std::shared_ptr<JobRun>> runs;
+  for (const auto& [key, call] : runs_) runs.push_back(call.run);
+  return runs;
+}
+
+void ServiceCore::OnReload(const std::string& what, const absl::Status& status) {
+  if (!status.ok()) metrics.CountReloadFailure(what);
+  log->Event(status.ok() ? JobLog::Level::kInfo : JobLog::Level::kError, what + "_reloaded",
+             {{"result", status.ok() ? "ok" : std::string(status.message())}});
 }
 
 absl::Status ServiceCore::StartAuth(const AuthOptions& options) {
-  absl::StatusOr<std::unique_ptr<Authenticator>> made =
-      Authenticator::Make(options, [this](const absl::Status& status) {
-        log->Event(status.ok() ? JobLog::Level::kInfo : JobLog::Level::kError, "tokens_reloaded",
-                   {{"result", status.ok() ? "ok" : std::string(status.message())}});
-      });
+  absl::StatusOr<std::unique_ptr<Authenticator>> made = Authenticator::Make(
+      options, [this](const absl::Status& status) { OnReload("tokens", status); });
   if (!made.ok()) return made.status();
   auth = *std::move(made);
   return absl::OkStatus();
 }
 
-void ServiceCore::Register(const std::shared_ptr<JobRun>& run) {
-  std::lock_guard<std::mutex> lock(mutex_);
-  runs_.insert(run);
+absl::Status ServiceCore::StartTls(const TlsOptions& options) {
+  absl::StatusOr<std::shared_ptr<CertificateStore>> made = CertificateStore::Make(
+      options, [this](const absl::Status& status) { OnReload("certificate", status); });
+  if (!made.ok()) return made.status();
+  certificates = *std::move(made);
+  return absl::OkStatus();
+}
+
+void ServiceCore::Reload(bool anyway) {
+  if (anyway && !log->Reopen()) {
+    metrics.CountReloadFailure("log");
+    log->Event(JobLog::Level::kError, "log_reopened",
+               {{"result", "the file cannot be opened; the one that was open stays"}});
+  }
+  auth->Look(anyway);
+  if (certificates != nullptr) certificates->Look(anyway);
+}
+
+void ServiceCore::Register(const std::shared_ptr<JobRun>& run, const std::string& peer) {
+  if (connections_ != nullptr) connections_->OnJob(peer, 1);
+  MutexLock lock(mutex_);
+  runs_[run.get()] = {run, PeerKey(peer)};
   ++registered_;
 }
 
-void ServiceCore::Unregister(const std::shared_ptr<JobRun>& run) {
-  std::lock_guard<std::mutex> lock(mutex_);
-  runs_.erase(run);
+void ServiceCore::Unregister(const std::shared_ptr<JobRun>& run, const std::string& peer) {
+  if (connections_ != nullptr) connections_->OnJob(peer, -1);
+  MutexLock lock(mutex_);
+  runs_.erase(run.get());
 }
 
 size_t ServiceCore::calls() const {
-  std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   return runs_.size();
+}
+
+void ServiceCore::OnCall(const std::string& peer) {
+  if (connections_ != nullptr) connections_->OnCall(peer);
+}
+
+void ServiceCore::OnMessage(const std::string& peer, int64_t bytes) {
+  if (connections_ != nullptr) connections_->OnMessage(peer, bytes);
+}
+
+bool ServiceCore::EndOversizeJob(const std::string& peer) {
+  std::shared_ptr<JobRun> oldest;
+  {
+    MutexLock lock(mutex_);
+    for (const auto& [key, call] : runs_) {
+      if (call.peer != peer || !call.run->waits_for_message()) continue;
+      if (oldest == nullptr || call.run->progress() < oldest->progress()) oldest = call.run;
+    }
+  }
+  if (oldest == nullptr) return false;
+  admission.CountRefusal(Refusal::kMessage);
+  oldest->Abort(absl::ResourceExhaustedError(absl::StrCat(
+      "the message has more bytes than this server's limit of ", limits.max_message_bytes)));
+  return true;
+}
+
+void ServiceCore::Watch(Connections* connections, int64_t max_memory) {
+  connections_ = connections;
+  max_memory_ = max_memory;
+  if (max_memory == INT64_MAX) return;
+  watch_memory_.emplace(kMemoryWatch, [this] { WatchMemory(); });
+}
+
+void ServiceCore::WatchMemory() {
+  const int64_t bytes = ResidentBytes();
+  const auto share = static_cast<double>(bytes) / static_cast<double>(max_memory_);
+  admission.SetMemoryShort(share > kShortShare);
+  if (share <= kShortShare) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now - trimmed_for_memory_ > kTrimEvery) {
+    trimmed_for_memory_ = now;
+    malloc_trim(0);
+  }
+  if (share <= kCutShare) return;
+  if (connections_ != nullptr && connections_->CutLargest()) {
+    log->Event(JobLog::Level::kWarning, "connection_cut", {{"message", "memory is short"}});
+  }
 }
 
 void ServiceCore::AbortAll(const absl::Status& status) {
@@ -108,7 +200,24 @@ std::string ServiceCore::MetricsText() {
   gauges.jobs_in_flight = admission.jobs();
   gauges.workers_busy = pool.busy();
   gauges.workers = pool.threads();
+  gauges.workers_silent = watchdog_ ? watchdog_->silent() : 0;
   gauges.ready = admission.draining() ? 0 : 1;
+  gauges.jobs_bytes = static_cast<double>(admission.held_bytes());
+  gauges.max_memory_bytes = static_cast<double>(max_memory_);
+  if (connections_ != nullptr) {
+    gauges.receiving_bytes = static_cast<double>(connections_->pending_bytes());
+    gauges.connections = connections_->open();
+    gauges.connections_cut = static_cast<double>(connections_->cut());
+  }
+  gauges.log_lines_lost = static_cast<double>(log->lost_lines());
+  if (certificates != nullptr) {
+    const std::shared_ptr<const CertificateSet> set = certificates->current();
+    const absl::Time now = absl::Now();
+    gauges.certificate_expiry_seconds = absl::ToDoubleSeconds(set->expiry - now);
+    if (!set->client_ca.empty()) {
+      gauges.client_ca_expiry_seconds = absl::ToDoubleSeconds(set->ca_expiry - now);
+    }
+  }
   return metrics.Text(gauges);
 }
 

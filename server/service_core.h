@@ -6,29 +6,33 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/time/time.h"
-#include "server/admission.h"
-#include "server/auth.h"
-#include "server/job_log.h"
-#include "server/job_run.h"
-#include "server/metrics.h"
-#include "server/periodic.h"
-#include "server/return_lag.h"
-#include "server/worker_pool.h"
+#include "engine/base/mutex.h"
+#include "server/jobs/admission.h"
+#include "server/jobs/auth.h"
+#include "server/jobs/job_run.h"
+#include "server/jobs/return_lag.h"
+#include "server/jobs/worker_pool.h"
+#include "server/net/connections.h"
+#include "server/ops/job_log.h"
+#include "server/ops/metrics.h"
+#include "server/ops/periodic.h"
+#include "server/ops/watchdog.h"
+#include "server/rpc/certificates.h"
 
 namespace traverse {
 
 // Limits on what one message or job may hold. They protect memory; admission.h has those on jobs.
 struct JobLimits {
   int64_t max_message_bytes = int64_t{64} << 20;
+  int64_t max_bytes_per_message = INT64_MAX;  // that its layers come to once they are read
   int64_t max_layers_per_message = 100'000;
   int64_t max_layers_per_job = 0;  // 0: no limit
   int64_t max_points_per_job = 0;  // 0: no limit
@@ -41,6 +45,7 @@ struct JobLimits {
 
 struct ServiceOptions {
   int threads = 1;
+  absl::Duration watchdog = absl::InfiniteDuration();  // silence of a worker that is a fault
   int worker_nice = 0;  // how much nicer the workers are than the threads of the calls
   JobLimits limits;
   AdmissionLimits admission;
@@ -55,12 +60,30 @@ class ServiceCore {
   // Throws what JobLog throws.
   explicit ServiceCore(const ServiceOptions& options);
 
-  // Sets up `auth`; before the first call. Errors as of Authenticator::Make.
+  // Sets up `auth` and `certificates`; before the first call. Errors as of Authenticator::Make and
+  // CertificateStore::Make.
   absl::Status StartAuth(const AuthOptions& options);
+  absl::Status StartTls(const TlsOptions& options);
+
+  // Reads anew what operators give in files, tokens and certificates, if it has changed; with
+  // `anyway` in any case, and the file of the log is opened anew.
+  void Reload(bool anyway);
 
   // The calls whose jobs were let in, until gRPC is done with them.
-  void Register(const std::shared_ptr<JobRun>& run);
-  void Unregister(const std::shared_ptr<JobRun>& run);
+  void Register(const std::shared_ptr<JobRun>& run, const std::string& peer);
+  void Unregister(const std::shared_ptr<JobRun>& run, const std::string& peer);
+
+  // Begins to look after memory and after the connections, if there are any: they outlive their
+  // calls. `max_memory` is what the process may have, in bytes.
+  void Watch(Connections* connections, int64_t max_memory);
+
+  // For Connections: `peer` has called and may; a message of it has come.
+  void OnCall(const std::string& peer);
+  void OnMessage(const std::string& peer, int64_t bytes);
+
+  // Ends the oldest job of `peer`, as of PeerKey, whose message has not come to its end yet: it is
+  // larger than any may be. False if there is none.
+  bool EndOversizeJob(const std::string& peer);
   size_t calls() const;
 
   // Ends all jobs under way with `status`.
@@ -73,6 +96,9 @@ class ServiceCore {
   // seconds. To be called again and again, by one thread. Returns whether it did so now.
   bool TrimIfIdle(std::chrono::steady_clock::time_point now);
 
+  // Whether all workers answer.
+  bool healthy() const { return !watchdog_ || watchdog_->silent() == 0; }
+
   // The text of /metrics.
   std::string MetricsText();
 
@@ -81,15 +107,32 @@ class ServiceCore {
   std::unique_ptr<JobLog> log;
   Admission admission;
   std::unique_ptr<Authenticator> auth;
-  std::atomic<int64_t> queue_layers{0};  // accepted and not yet solved
+  std::shared_ptr<CertificateStore> certificates;  // null without TLS
+  std::atomic<int64_t> queue_layers{0};            // accepted and not yet solved
   ReturnLag return_lag;
+  WakeLateness wake_lateness;
 
  private:
   std::vector<std::shared_ptr<JobRun>> Runs() const;
 
-  mutable std::mutex mutex_;
-  std::set<std::shared_ptr<JobRun>> runs_;
-  uint64_t registered_ = 0;  // so far
+  // Tells of the reload of tokens or of the certificate.
+  void OnReload(const std::string& what, const absl::Status& status);
+
+  // Refuses, then cuts and ends, where the process has more memory than it should.
+  void WatchMemory();
+
+  // A call, and from where.
+  struct Call {
+    std::shared_ptr<JobRun> run;
+    std::string peer;  // as of PeerKey
+  };
+
+  mutable Mutex mutex_;
+  std::map<const JobRun*, Call> runs_ TRAVERSE_GUARDED_BY(mutex_);
+  Connections* connections_ = nullptr;
+  int64_t max_memory_ = INT64_MAX;
+  std::chrono::steady_clock::time_point trimmed_for_memory_{};
+  uint64_t registered_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // so far
 
   // Of TrimIfIdle: what it saw.
   uint64_t seen_registered_ = 0;
@@ -100,7 +143,10 @@ class ServiceCore {
   WorkerPool pool;  // its threads end before anything that tasks use is gone
 
  private:
+  Periodic wakes_;  // measures wake_lateness
+  std::optional<Watchdog> watchdog_;
   std::optional<Periodic> watch_;  // last: calls AbortStalled and TrimIfIdle
+  std::optional<Periodic> watch_memory_;
 };
 
 }  // namespace traverse

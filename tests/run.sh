@@ -3,6 +3,7 @@
 #
 #   tests/run.sh            the whole suite
 #   tests/run.sh --quick    without the tests labelled slow
+#   tests/run.sh --debug    the suite with assertions on
 #   tests/run.sh --asan     the suite under AddressSanitizer and UndefinedBehaviorSanitizer
 #   tests/run.sh --tsan     the suite's thread-safe parts under ThreadSanitizer
 #   tests/run.sh --deploy   what deploy/ ships, with its images, its fleet and a clean root; as root, some minutes
@@ -18,6 +19,7 @@ fuzz_seconds=
 for argument in "$@"; do
   case "$argument" in
     --quick) select=(-LE slow) ;;
+    --debug) preset=debug ;;
     --asan)
       # The sanitizer has memory and files of its own, and comes before a library that sets the clock.
       preset=asan packages="sanitize"
@@ -32,7 +34,7 @@ for argument in "$@"; do
     --fuzz) preset=fuzz packages="sanitize" target=(fuzz_targets) fuzz_seconds=60 ;;
     --fuzz=*) preset=fuzz packages="sanitize" target=(fuzz_targets) fuzz_seconds=${argument#*=} ;;
     *)
-      sed -n '4,8s/^# *//p' "$0" >&2
+      sed -n '4,10s/^# *//p' "$0" >&2
       exit 2
       ;;
   esac

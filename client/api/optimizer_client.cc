@@ -4,6 +4,8 @@
 #include <grpcpp/support/sync_stream.h>
 
 #include <algorithm>
+#include <condition_variable>
+#include <mutex>
 #include <optional>
 #include <random>
 #include <string>
@@ -190,9 +192,11 @@ class Collector {
 
 // One call for the layers of `run`. `fault` is set if an answer is no answer.
 grpc::Status CallOnce(v1::RouteOptimizerService::Stub& stub, grpc::ClientContext& context,
-                      const v1::JobOptions& options, absl::Span<const v1::Layer> layers,
-                      const MissingRun& run, Collector& collector, absl::Status& fault) {
+                      const std::stop_token& cancel, const v1::JobOptions& options,
+                      absl::Span<const v1::Layer> layers, const MissingRun& run,
+                      Collector& collector, absl::Status& fault) {
   const std::unique_ptr<Stream> stream = stub.Optimize(&context);
+  const std::stop_callback on_cancel(cancel, [&] { context.TryCancel(); });
   // A cleaning after the last layer happens only if another layer follows.
   const bool empty_layer =
       run.end < layers.size() && CleaningDueAfter(options, run.end - run.begin - 1);
@@ -210,6 +214,15 @@ grpc::Status CallOnce(v1::RouteOptimizerService::Stub& stub, grpc::ClientContext
   // When the server has ended the call, a write that waits for room returns.
   sender.join();
   return stream->Finish();
+}
+
+// False if `cancel` came first.
+bool SleepUnlessCancelled(absl::Duration delay, const std::stop_token& cancel) {
+  std::mutex mutex;
+  std::condition_variable_any cancelled;
+  std::unique_lock<std::mutex> lock(mutex);
+  return !cancelled.wait_for(lock, cancel, absl::ToChronoNanoseconds(delay),
+                             [&] { return cancel.stop_requested(); });
 }
 
 }  // namespace
@@ -239,10 +252,12 @@ absl::StatusOr<JobResult> OptimizerClient::Optimize(const v1::JobOptions& option
     Authorize(context);
     if (deadline != absl::InfiniteFuture()) context.set_deadline(absl::ToChronoTime(deadline));
     const grpc::Status status =
-        CallOnce(*stub_, context, ResumedOptions(options, run.begin, before, absl::Now() - began),
-                 layers, run, collector, fault);
+        CallOnce(*stub_, context, call.cancel,
+                 ResumedOptions(options, run.begin, before, absl::Now() - began), layers, run,
+                 collector, fault);
     ++calls;
     if (!fault.ok()) return fault;
+    if (call.cancel.stop_requested()) return absl::CancelledError("cancelled");
     in_vain = collector.answers() > had ? 1 : in_vain + 1;
     if (status.ok()) {
       if (!collector.Complete(run)) {
@@ -257,7 +272,7 @@ absl::StatusOr<JobResult> OptimizerClient::Optimize(const v1::JobOptions& option
       absl::Status failure = FromGrpc(status);
       return absl::Status(failure.code(), ShiftPlace(std::string(failure.message()), run.begin));
     }
-    absl::SleepFor(*delay);
+    if (!SleepUnlessCancelled(*delay, call.cancel)) return absl::CancelledError("cancelled");
   } while (collector.answers() < layers.size());
   if (calls > 1 || !collector.has_summary()) {
     JobResult& result = collector.result();

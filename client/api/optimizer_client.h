@@ -17,6 +17,7 @@
 
 #include <functional>
 #include <memory>
+#include <stop_token>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -45,6 +46,9 @@ struct CallOptions {
   absl::Duration deadline = absl::InfiniteDuration();
 
   RetryPolicy retry = {};
+
+  // Asked to stop, the call ends within milliseconds with Cancelled.
+  std::stop_token cancel = {};
 
   // Called with each layer's answer as it comes, on the calling thread. May be empty.
   std::function<void(const v1::LayerResult&)> on_layer = {};

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
+#include "client/cli/flags/nearest.h"
 #include "client/cli/help.h"
-#include "client/cli/nearest.h"
 #include "client/cli/terminal.h"
 
 namespace traverse::cli {
@@ -84,7 +84,7 @@ Outcome Run(const std::vector<std::string>& arguments) {
 const std::vector<Command>& Commands() {
   static const std::vector<Command> commands = {
       OptimizeCommand(), CompareCommand(),    VerifyCommand(),     InspectCommand(),
-      ConvertCommand(),  StrategiesCommand(), CompletionCommand(), ManualCommand(),
+      ConvertCommand(),  StrategiesCommand(), ReproduceCommand(), CompletionCommand(), ManualCommand(),
   };
   return commands;
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "client/cli/flags.h"
+#include "client/cli/flags/flags.h"
 #include "client/cli/outcome.h"
 
 namespace traverse::cli {
@@ -31,6 +31,7 @@ Command VerifyCommand();
 Command InspectCommand();
 Command ConvertCommand();
 Command StrategiesCommand();
+Command ReproduceCommand();
 Command CompletionCommand();
 Command ManualCommand();
 

@@ -1,13 +1,14 @@
 #include "client/cli/gcode_output.h"
 
 #include <fstream>
-#include <vector>
+#include <limits>
+#include <optional>
+#include <utility>
 
 #include "absl/strings/str_format.h"
 #include "client/files/decompress.h"
+#include "client/files/read_file.h"
 #include "client/files/write_file.h"
-#include "client/gcode/gcode_file.h"
-#include "client/gcode/parallel.h"
 
 namespace traverse::cli {
 namespace {
@@ -20,50 +21,103 @@ bool IsCompressed(const std::string& name) {
   return DetectCompression(first) != Compression::kNone;
 }
 
+// The kind of file that is asked for; nothing if that is left to the input.
+std::optional<ContainerKind> AskedKind(const Flags& flags) {
+  if (flags.Has("container")) {
+    return flags.Text("container") == "text" ? ContainerKind::kText : ContainerKind::kBgcode;
+  }
+  if (!flags.Has("o")) return std::nullopt;
+  return ContainerByExtension(flags.Text("o"));
+}
+
+// A fault if no file of `kind` can be made of `input`.
+absl::Status CheckKind(const InputFile& input, ContainerKind kind) {
+  if (kind == input.kind()) return absl::OkStatus();
+  if (kind == ContainerKind::kGcode3mf || kind == ContainerKind::kUfp) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("no %s is made of %s", ContainerName(kind), ContainerName(input.kind())));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
-absl::StatusOr<std::string> GcodeTarget(const Flags& flags, const std::string& input) {
-  if (flags.Has("o")) return flags.Text("o");
-  if (flags.Has("json")) return std::string();
-  if (input == "-") return input;
-  if (IsCompressed(input)) {
+std::vector<Flag> ContainerFlagTable() {
+  std::vector<Flag> table = PlateFlagTable();
+  table.insert(table.begin(), {"container",
+                               "KIND",
+                               "of the output: text or bgcode (default: by OUTPUT, or as INPUT)",
+                               {"text", "bgcode"},
+                               false,
+                               "text or bgcode; one of several"});
+  return table;
+}
+
+std::vector<Flag> PlateFlagTable() {
+  return {
+      {"plate", "N", "of a .gcode.3mf, this one (default: all)"},
+      {"ignore_md5", "", "takes plates whose MD5 is wrong"},
+  };
+}
+
+absl::StatusOr<PlateOptions> ParsePlateOptions(const Flags& flags) {
+  PlateOptions options;
+  const auto plate = flags.Integer("plate", 1, std::numeric_limits<uint32_t>::max());
+  if (!plate.ok()) return plate.status();
+  if (*plate) options.plate = static_cast<uint32_t>(**plate);
+  options.container.ignore_md5 = flags.Switch("ignore_md5");
+  return options;
+}
+
+absl::StatusOr<GcodeTarget> FindGcodeTarget(const Flags& flags, const InputFile& input) {
+  const ContainerKind kind = AskedKind(flags).value_or(input.kind());
+  if (absl::Status status = CheckKind(input, kind); !status.ok()) return status;
+  if (flags.Has("o")) return GcodeTarget{flags.Text("o"), kind};
+  if (flags.Has("json")) return GcodeTarget{"", kind};
+  if (input.name == "-") return GcodeTarget{input.name, kind};
+  if (IsCompressed(input.name)) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("%s is compressed and the output is not: use -o OUTPUT", input));
+        absl::StrFormat("%s is compressed and the output is not: use -o OUTPUT", input.name));
   }
-  return input;
+  if (kind != input.kind()) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s is %s and the output is %s: use -o OUTPUT", input.name,
+                        ContainerName(input.kind()), ContainerName(kind)));
+  }
+  return GcodeTarget{input.name, kind};
 }
 
-absl::StatusOr<GcodeRewrite> RewriteByRuns(const InputJob& job,
-                                           absl::Span<const report::JobRun* const> runs,
-                                           const GcodeOptions& options) {
-  std::vector<gcode::FileOrder> tries;
-  for (const report::JobRun* run : runs) {
-    gcode::FileOrder& orders = tries.emplace_back(job.gcode->layers.size());
-    for (size_t i = 0; i < run->result.layers.size(); ++i) {
-      const size_t layer = job.first_layer + i;
-      orders[layer] = OrderOf(*job.gcode, layer, run->result.layers[i]);
+absl::Status WriteGcode(const InputFile& input, const std::map<size_t, NewPart>& parts,
+                        bool changed, const GcodeTarget& target) {
+  if (!changed && target.name == input.name && target.name != "-") return absl::OkStatus();
+  if (target.kind != input.kind()) {
+    // Of one part: CheckOnePlate.
+    const absl::StatusOr<std::string> packed = PackText(parts.begin()->second.text, target.kind);
+    if (!packed.ok()) {
+      return absl::Status(packed.status().code(),
+                          absl::StrFormat("%s: %s", DisplayName(input.name),
+                                          std::string(packed.status().message())));
     }
+    return WriteWholeFile(target.name, *packed);
   }
-  RewriteOptions rewrite;
-  rewrite.policy = options.policy;
-  rewrite.version = TRAVERSE_VERSION;
-  rewrite.threads = gcode::ThreadsFor(job.gcode->text.size());
-  return RewriteGcode(*job.gcode, tries, rewrite);
-}
-
-absl::Status WriteGcode(const GcodeRewrite& rewrite, const InputJob& job,
-                        const std::string& target) {
-  if (rewrite.layers_changed == 0 && target == job.name && target != "-") return absl::OkStatus();
-  return WriteWholeFile(target, rewrite.text);
+  if (!input.container) return WriteWholeFile(target.name, parts.begin()->second.text);
+  const absl::StatusOr<std::string> written = input.container->WithParts(parts);
+  return written.ok() ? WriteWholeFile(target.name, *written) : written.status();
 }
 
 std::string GcodeSummary(const GcodeRewrite& rewrite) {
-  if (rewrite.layers_changed == 0) {
-    return absl::StrFormat("nothing to gain, the G-code stays as it is: %s\n",
-                           DescribeRewrite(rewrite));
+  std::string summary =
+      rewrite.layers_changed == 0
+          ? absl::StrFormat("nothing to gain, the G-code stays as it is: %s\n",
+                            DescribeRewrite(rewrite))
+          : absl::StrFormat("%d of %d layers rewritten: %s\n", rewrite.layers_changed,
+                            rewrite.layers, DescribeRewrite(rewrite));
+  if (rewrite.layers_unproven > 0) {
+    summary +=
+        absl::StrFormat("%d layers left as they are, for they would not print the same: %s\n",
+                        rewrite.layers_unproven, rewrite.unproven);
   }
-  return absl::StrFormat("%d of %d layers rewritten: %s\n", rewrite.layers_changed, rewrite.layers,
-                         DescribeRewrite(rewrite));
+  return summary;
 }
 
 }  // namespace traverse::cli

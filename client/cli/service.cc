@@ -1,15 +1,15 @@
 #include "client/cli/service.h"
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
 #include <thread>
 #include <utility>
 
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "absl/time/clock.h"
 #include "client/api/channel.h"
-#include "client/cli/connection_flags.h"
+#include "client/cli/flags/connection_flags.h"
 #include "client/cli/progress.h"
 #include "client/files/read_file.h"
 
@@ -34,6 +34,21 @@ std::string OneLine(std::string text) {
 // Which part of the command line an INVALID_ARGUMENT is about: options come from flags, layers from
 // the file.
 bool IsAboutOptions(const std::string& message) { return message.starts_with("options"); }
+
+// As the command line has it. Progress is in `shown` while a search is under way.
+SearchOptions SearchOptionsFor(const StrategySpec* strategy, const JobFlags& flags, bool quiet,
+                               std::optional<Progress>& shown) {
+  SearchOptions options;
+  if (strategy != nullptr) options.strategy = strategy->strategy;
+  options.deadline = flags.deadline;
+  const std::string label = strategy != nullptr ? strategy->label : "optimize";
+  options.progress.on_search = [&shown, label, quiet](size_t layers) {
+    shown.reset();
+    shown.emplace(Progress::StyleFor(quiet), label, layers);
+  };
+  options.progress.on_layer = [&shown](const v1::LayerResult& layer) { shown->Take(layer); };
+  return options;
+}
 
 }  // namespace
 
@@ -95,18 +110,29 @@ Outcome Service::Resolve(const JobFlags& flags, const InputJob& job,
 
 Expected<report::JobRun> Service::Optimize(const InputJob& job, const StrategySpec* strategy,
                                            const JobFlags& flags, bool quiet) {
-  v1::JobOptions options = job.options;
-  if (strategy != nullptr) *options.mutable_strategy() = strategy->strategy;
-  Progress progress(Progress::StyleFor(quiet), strategy != nullptr ? strategy->label : "optimize",
-                    job.layers.size());
-  const absl::Time began = absl::Now();
-  CallOptions call;
-  call.deadline = flags.deadline;
-  call.on_layer = [&](const v1::LayerResult& layer) { progress.Take(layer); };
-  absl::StatusOr<JobResult> result = client_->Optimize(options, job.layers, call);
-  if (!result.ok()) return Failure(result.status(), job.name);
-  return report::JobRun{*std::move(result), options.has_seed() ? options.seed() : 1,
-                        absl::ToDoubleSeconds(absl::Now() - began)};
+  std::optional<Progress> shown;
+  absl::StatusOr<report::JobRun> run =
+      Search(*client_, job, SearchOptionsFor(strategy, flags, quiet, shown));
+  shown.reset();
+  if (!run.ok()) return Failure(run.status(), job.name);
+  return *std::move(run);
+}
+
+Expected<OptimizedFile> Service::Rewrite(const InputJob& job, const StrategySpec* strategy,
+                                         const JobFlags& flags, const RewriteFlags& rewrite,
+                                         bool quiet) {
+  std::optional<Progress> shown;
+  OptimizeFileOptions options;
+  static_cast<SearchOptions&>(options) = SearchOptionsFor(strategy, flags, quiet, shown);
+  options.gcode = rewrite.gcode;
+  options.restate_times = rewrite.restate_times;
+  FileResult<OptimizedFile> made = OptimizeFile(*client_, job, options);
+  shown.reset();
+  if (const FileFault* fault = std::get_if<FileFault>(&made)) {
+    if (fault->stage == FileStage::kWrite) return InputFault(fault->status);
+    return Failure(fault->status, job.name);
+  }
+  return std::get<OptimizedFile>(std::move(made));
 }
 
 Outcome Service::Failure(const absl::Status& status, const std::string& input) const {

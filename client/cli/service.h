@@ -10,11 +10,12 @@
 
 #include "client/api/embedded.h"
 #include "client/api/optimizer_client.h"
-#include "client/cli/flags.h"
-#include "client/cli/job_flags.h"
+#include "client/cli/flags/flags.h"
+#include "client/cli/flags/job_flags.h"
+#include "client/cli/flags/strategy_spec.h"
 #include "client/cli/outcome.h"
-#include "client/cli/strategy_spec.h"
 #include "client/input/input_job.h"
+#include "client/optimize_file/optimize_file.h"
 #include "client/report/run.h"
 
 namespace traverse::cli {
@@ -22,6 +23,12 @@ namespace traverse::cli {
 // A value, or how the command ends.
 template <typename T>
 using Expected = std::variant<T, Outcome>;
+
+// How G-code is rewritten.
+struct RewriteFlags {
+  GcodeOptions gcode;
+  bool restate_times = false;
+};
 
 class Service {
  public:
@@ -39,6 +46,10 @@ class Service {
   // Runs the job with `strategy` (unset: the service's default) and shows its progress.
   Expected<report::JobRun> Optimize(const InputJob& job, const StrategySpec* strategy,
                                     const JobFlags& flags, bool quiet);
+
+  // The same, and rewrites the file of the job, which is one of G-code read with `rewrite.gcode`.
+  Expected<OptimizedFile> Rewrite(const InputJob& job, const StrategySpec* strategy,
+                                  const JobFlags& flags, const RewriteFlags& rewrite, bool quiet);
 
  private:
   Service(std::unique_ptr<EmbeddedService> embedded, std::shared_ptr<grpc::Channel> channel,

@@ -1,22 +1,26 @@
 #include "client/damat/reader.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <system_error>
+#include <vector>
 
 #include "absl/container/flat_hash_set.h"
 #include "absl/status/status.h"
 #include "absl/strings/str_format.h"
 #include "client/damat/fields.h"
 #include "client/damat/format.h"
+#include "client/damat/outer_contour.h"
 #include "client/files/read_file.h"
 
 namespace traverse {
 namespace {
 
 using damat::Fields;
+using Points = google::protobuf::RepeatedField<double>;
 
 // A record that announces how many others follow: nF, F or I.
 struct Announcement {
@@ -34,11 +38,18 @@ class Reader {
  private:
   absl::Status ReadRecord(std::string_view record);
   absl::Status ReadEnvelope(Fields fields);
+  absl::Status ReadThickness(Fields fields);
+  absl::Status TakeThickness(std::string_view field);
   absl::Status ReadLayerCount(Fields fields);
   absl::Status BeginLayer(uint64_t id, Fields fields);
   absl::Status BeginIsland(uint64_t id, Fields fields);
   absl::Status ReadContour(uint64_t id, Fields fields);
   absl::Status ReadRaster(uint64_t id, Fields fields);
+
+  // The contour that the last record was part of is complete.
+  void EndContour();
+  absl::Status NoteSpelling(bool goes_on, bool is_long);
+  absl::Status PlaceOuterContour();
 
   // Reads the fields `X<x>,Y<y>` of one point after another to the end of the record, packed.
   absl::Status ReadPoints(Fields& fields, google::protobuf::RepeatedField<double>& points) const;
@@ -64,6 +75,15 @@ class Reader {
   v1::Island* island_ = nullptr;
   Announcement contours_;
   Announcement rasters_;
+  std::optional<double> thickness_mm_;
+
+  // The contour of the last record, if that was one, and the line that each of the island's begins
+  // on; the first lines on which a contour goes on, and on which one has several vertices.
+  v1::Contour* contour_ = nullptr;
+  std::vector<int> contour_lines_;
+  bool goes_on_ = false;
+  int first_going_on_ = 0;
+  int first_long_ = 0;
   absl::flat_hash_set<uint64_t> layer_ids_, island_ids_, contour_ids_, raster_ids_;
 };
 
@@ -90,6 +110,7 @@ absl::Status Reader::ReadRecord(std::string_view record) {
   Fields fields(record);
   const std::string_view word = fields.Next();
   if (word == damat::kEnvelope) return ReadEnvelope(fields);
+  if (word == damat::kThickness) return ReadThickness(fields);
   if (word == damat::kLayerCount) return ReadLayerCount(fields);
 
   const char kind = word.empty() ? '\0' : word.front();
@@ -121,10 +142,28 @@ absl::Status Reader::ReadEnvelope(Fields fields) {
   return absl::OkStatus();
 }
 
+absl::Status Reader::ReadThickness(Fields fields) {
+  if (layers_) return Fault("E comes after nF");
+  if (absl::Status status = TakeThickness(fields.Next()); !status.ok()) return status;
+  return fields.done() ? absl::OkStatus() : Fault("E has one number, the thickness of a layer");
+}
+
+absl::Status Reader::TakeThickness(std::string_view field) {
+  if (thickness_mm_) return Fault("second thickness of a layer");
+  thickness_mm_ = damat::ParseCoordinate(field);
+  if (thickness_mm_ && *thickness_mm_ > 0) return absl::OkStatus();
+  return Fault(absl::StrFormat("%s is no thickness of a layer in mm, above 0 and up to 1e6",
+                               damat::Quoted(field)));
+}
+
 absl::Status Reader::ReadLayerCount(Fields fields) {
   if (layers_) return Fault("second nF");
   const std::optional<uint64_t> count = damat::ParseCount(fields.Next());
-  if (!count || !fields.done()) return Fault("nF needs the number of layers");
+  if (!count) return Fault("nF needs the number of layers");
+  if (!fields.done()) {
+    if (absl::Status status = TakeThickness(fields.Next()); !status.ok()) return status;
+  }
+  if (!fields.done()) return Fault("nF has two numbers at most: layers, and their thickness");
   layers_ = Announcement{line_, *count, 0};
   return absl::OkStatus();
 }
@@ -140,6 +179,7 @@ absl::Status Reader::BeginLayer(uint64_t id, Fields fields) {
   ++layers_->found;
   layer_ = &job_.layers.emplace_back();
   layer_->set_id(id);
+  if (thickness_mm_) layer_->set_z_mm(*thickness_mm_ * static_cast<double>(layers_->found));
   islands_ = {line_, *count, 0};
   island_ids_.clear();
   return absl::OkStatus();
@@ -163,27 +203,89 @@ absl::Status Reader::BeginIsland(uint64_t id, Fields fields) {
   rasters_ = {line_, *rasters, 0};
   contour_ids_.clear();
   raster_ids_.clear();
+  contour_lines_.clear();
   return absl::OkStatus();
 }
 
 absl::Status Reader::ReadContour(uint64_t id, Fields fields) {
   if (island_ == nullptr) return Fault("a contour outside an island");
+  Points points;
+  if (absl::Status status = ReadPoints(fields, points); !status.ok()) return status;
+  if (points.empty()) return Fault("a contour without points");
+  const bool is_long = points.size() > 2;
+  const bool goes_on = contour_ != nullptr && contour_->id() == id &&
+                       (!is_long || contour_->points_size() == 2 || goes_on_);
+  if (absl::Status status = NoteSpelling(goes_on, is_long); !status.ok()) return status;
+  if (goes_on) {
+    contour_->mutable_points()->MergeFrom(points);
+    goes_on_ = true;
+    return absl::OkStatus();
+  }
+  EndContour();
   if (!contour_ids_.insert(id).second) {
     return Fault(absl::StrFormat("second contour with id %d in island %d", id, island_->id()));
   }
   ++contours_.found;
-  v1::Contour& contour = *island_->add_contours();
-  contour.set_id(id);
-  auto& points = *contour.mutable_points();
-  if (absl::Status status = ReadPoints(fields, points); !status.ok()) return status;
-  if (points.empty()) return Fault("a contour without points");
+  contour_lines_.push_back(line_);
+  contour_ = island_->add_contours();
+  contour_->set_id(id);
+  contour_->mutable_points()->Swap(&points);
+  return absl::OkStatus();
+}
+
+// A file whose contours go on over several lines has none on one line, and the other way round.
+absl::Status Reader::NoteSpelling(bool goes_on, bool is_long) {
+  if (goes_on && first_going_on_ == 0) first_going_on_ = line_;
+  if (is_long && first_long_ == 0) first_long_ = line_;
+  if (first_going_on_ == 0 || first_long_ == 0) return absl::OkStatus();
+  return Fault(absl::StrFormat(
+      "two spellings in one file: line %d goes on with a contour, a vertex a line, line %d has all "
+      "vertices of one",
+      first_going_on_, first_long_));
+}
+
+// Drops the repeated closing vertex.
+void Reader::EndContour() {
+  if (contour_ == nullptr) return;
+  Points& points = *contour_->mutable_points();
   const int n = points.size();
   if (n > 2 && points[0] == points[n - 2] && points[1] == points[n - 1]) points.Truncate(n - 2);
+  contour_ = nullptr;
+  goes_on_ = false;
+}
+
+// Brings the outer contour to the front, as the API has it.
+absl::Status Reader::PlaceOuterContour() {
+  if (island_->contours_size() < 2) return absl::OkStatus();
+  const damat::OuterContour outer = damat::FindOuterContour(*island_);
+  const auto name = [&](int index) {
+    return absl::StrFormat("C%d", island_->contours(index).id());
+  };
+  const auto line = [&](int index) { return contour_lines_[static_cast<size_t>(index)]; };
+  if (!outer.outside.empty()) {
+    const int bad = outer.outside.front();
+    const bool all = static_cast<int>(outer.outside.size()) + 1 == island_->contours_size();
+    const int later = std::max(bad, outer.index);
+    const int earlier = std::min(bad, outer.index);
+    if (all) {
+      return FaultAt(line(later),
+                     absl::StrFormat("%s and %s (line %d) are two outer contours of I%d: neither "
+                                     "lies within the other",
+                                     name(later), name(earlier), line(earlier), island_->id()));
+    }
+    return FaultAt(line(bad),
+                   absl::StrFormat("%s lies outside %s (line %d), the outer contour of "
+                                   "I%d",
+                                   name(bad), name(outer.index), line(outer.index), island_->id()));
+  }
+  auto& contours = *island_->mutable_contours();
+  for (int i = outer.index; i > 0; --i) contours.SwapElements(i, i - 1);
   return absl::OkStatus();
 }
 
 absl::Status Reader::ReadRaster(uint64_t id, Fields fields) {
   if (island_ == nullptr) return Fault("a raster outside an island");
+  EndContour();
   if (!raster_ids_.insert(id).second) {
     return Fault(absl::StrFormat("second raster with id %d in island %d", id, island_->id()));
   }
@@ -220,10 +322,12 @@ absl::Status Reader::ReadPoints(Fields& fields,
 
 absl::Status Reader::EndIsland() {
   if (island_ == nullptr) return absl::OkStatus();
+  EndContour();
   const std::string who = absl::StrFormat("I%d", island_->id());
-  island_ = nullptr;
   absl::Status status = CheckCount(contours_, who, "contours");
   if (status.ok()) status = CheckCount(rasters_, who, "rasters");
+  if (status.ok()) status = PlaceOuterContour();
+  island_ = nullptr;
   return status;
 }
 

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "absl/container/flat_hash_set.h"
 #include "absl/status/status.h"
 #include "absl/strings/str_format.h"
 #include "client/damat/format.h"
+#include "client/damat/outer_contour.h"
 
 namespace traverse {
 namespace {
@@ -67,9 +69,20 @@ absl::Status AppendRaster(const v1::OpenPath& raster, const std::string& where, 
   return absl::OkStatus();
 }
 
+// An outer contour at the front, where the API has it, and the others within: else reading would
+// change it, or refuse it.
+absl::Status CheckOuter(const v1::Island& island, const std::string& where) {
+  if (island.contours_size() < 2) return absl::OkStatus();
+  const damat::OuterContour outer = damat::FindOuterContour(island);
+  if (outer.index != 0) return Refusal(where, "an outer contour that is not the largest");
+  return outer.outside.empty() ? absl::OkStatus()
+                               : Refusal(where, "a contour outside the outer one");
+}
+
 absl::Status AppendIsland(const v1::Island& island, const std::string& where, std::string& out) {
   absl::StrAppendFormat(&out, "%c%d,%d,%d\n", damat::kIsland, island.id(), island.contours_size(),
                         island.rasters_size());
+  if (absl::Status status = CheckOuter(island, where); !status.ok()) return status;
   absl::flat_hash_set<uint64_t> contour_ids, raster_ids;
   for (int i = 0; i < island.contours_size(); ++i) {
     const std::string at = absl::StrFormat("%s.contours[%d]", where, i);
@@ -121,6 +134,17 @@ v1::Point Envelope(const InputJob& job) {
   return corner;
 }
 
+// The thickness of all layers, if they are as thick as each other and the first one lies on the
+// bed.
+std::optional<double> ThicknessOf(const InputJob& job) {
+  const double first = job.layers.empty() ? 0 : job.layers.front().z_mm();
+  if (!(first > 0)) return std::nullopt;
+  for (size_t i = 0; i < job.layers.size(); ++i) {
+    if (job.layers[i].z_mm() != first * static_cast<double>(i + 1)) return std::nullopt;
+  }
+  return first;
+}
+
 }  // namespace
 
 absl::StatusOr<std::string> WriteDamat(const InputJob& job) {
@@ -132,7 +156,13 @@ absl::StatusOr<std::string> WriteDamat(const InputJob& job) {
   AppendNumber(envelope.x_mm(), out);
   out += ',';
   AppendNumber(envelope.y_mm(), out);
-  absl::StrAppendFormat(&out, "\n%s,%d\n", damat::kLayerCount, job.layers.size());
+  out += '\n';
+  if (const std::optional<double> thickness = ThicknessOf(job)) {
+    absl::StrAppendFormat(&out, "%s,", damat::kThickness);
+    AppendNumber(*thickness, out);
+    out += '\n';
+  }
+  absl::StrAppendFormat(&out, "%s,%d\n", damat::kLayerCount, job.layers.size());
   absl::flat_hash_set<uint64_t> ids;
   for (size_t i = 0; i < job.layers.size(); ++i) {
     const std::string at = absl::StrFormat("layers[%d]", i);

@@ -4,6 +4,8 @@
 #include <cctype>
 #include <filesystem>
 
+#include "client/containers/container.h"
+
 namespace traverse {
 namespace {
 
@@ -61,6 +63,7 @@ std::optional<InputFormat> DetectText(std::string_view text) {
 }  // namespace
 
 std::optional<InputFormat> DetectByContent(std::string_view bytes) {
+  if (DetectContainer(bytes) != ContainerKind::kText) return InputFormat::kGcode;
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
   const std::string_view head = bytes.substr(0, kBytesAsked);
   if (IsBinary(head)) {
@@ -84,6 +87,9 @@ std::optional<InputFormat> DetectByExtension(const std::string& name) {
   const std::string extension = path.extension().string();
   if (extension == ".damat" || extension == ".txt") return InputFormat::kDamat;
   if (extension == ".gcode" || extension == ".gco" || extension == ".g") return InputFormat::kGcode;
+  if (ContainerByExtension(path.string()).value_or(ContainerKind::kText) != ContainerKind::kText) {
+    return InputFormat::kGcode;
+  }
   if (extension == ".json") return InputFormat::kJson;
   if (extension == ".pb") return InputFormat::kProto;
   return std::nullopt;

@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
-#include "client/gcode/layer_meter.h"
+#include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/parallel.h"
-#include "client/gcode/reader.h"
-#include "client/gcode/travel_model.h"
-#include "client/gcode/travel_rules.h"
+#include "client/gcode/plan/travel_model.h"
+#include "client/gcode/plan/travel_rules.h"
+#include "client/gcode/read/reader.h"
 
 namespace traverse {
 namespace gcode {
@@ -26,21 +26,74 @@ void SetCost(const TravelModel& model, v1::CostModel& cost) {
   v1::TimeCost& time = *cost.mutable_time();
   // The service has limits; a file may state anything.
   time.set_speed_mm_s(std::clamp(model.speed_mm_s, 0.001, 1e5));
-  time.set_accel_mm_s2(std::min(model.accel_mm_s2, 1e7));
-  time.set_retraction_seconds(std::min(model.retraction_seconds, 1e4));
-  time.set_retraction_threshold_mm(model.retraction_threshold_mm);
+  if (model.accel_mm_s2 > 0) time.set_accel_mm_s2(std::clamp(model.accel_mm_s2, 0.001, 1e7));
+  time.set_retraction_seconds(std::clamp(model.retraction_seconds, 0.0, 1e4));
+  time.set_retraction_threshold_mm(std::clamp(model.retraction_threshold_mm, 0.0, 1e7));
 }
 
+// Longer than any way.
+constexpr double kNeverMm = 1e7;
+
+double CrossingSeconds(Crossings crossings) {
+  switch (crossings) {
+    case Crossings::kKeep:
+      return kKeepCrossingSeconds;
+    case Crossings::kFewer:
+      return kFewerCrossingSeconds;
+    case Crossings::kAny:
+      break;
+  }
+  return 0;
+}
+
+// The rules by which ways are written (travel_rules.h), for the search to know what each costs.
+void SetWallCost(const RetractionHabit& habit, Crossings crossings, v1::TimeCost& time) {
+  time.set_crossing_seconds(CrossingSeconds(crossings));
+  time.set_wall_slack_mm(VisibleWalls::kEndSlackMm);
+  if (habit.avoids_walls) time.set_wall_clearance_mm(Detours::kBesideMm);
+  time.set_exposed_retraction_threshold_mm(std::min(habit.threshold_mm, kNeverMm));
+  time.set_wall_retraction_threshold_mm(
+      habit.spares_walls ? 0 : std::min(habit.threshold_mm, kNeverMm));
+  if (habit.crossing_matters) time.set_retraction_threshold_mm(kNeverMm);
+}
+
+void SetWalls(const TravelRules& rules, const RetractionHabit& habit,
+              const std::vector<Outline>& outlines, v1::Layer& layer) {
+  for (size_t path = 0; path < outlines.size() && habit.crossing_matters; ++path) {
+    if (!rules.AlwaysRetracts(outlines[path].feature)) continue;
+    layer.add_exposed_paths(static_cast<uint32_t>(path));
+  }
+  for (const Wall& visible : VisibleWallsOf(outlines)) {
+    v1::Wall& wall = *layer.add_walls();
+    wall.set_path(static_cast<uint32_t>(visible.path));
+    wall.set_closed(visible.closed);
+    for (const Point& point : visible.points) {
+      wall.add_points(point.x);
+      wall.add_points(point.y);
+    }
+  }
+}
+
+// What holds for all layers of a file.
+struct FileHabits {
+  RetractionHabit retraction;
+  std::vector<TravelModel> travel;  // [layer]
+};
+
 // Fills layer `index` of `job`, for which there is room.
-void FillLayer(const GcodeFile& file, size_t index, const TravelModel& model, Policy policy,
-               InputJob& job, Census& census) {
+void FillLayer(const GcodeFile& file, size_t index, const FileHabits& habits,
+               const GcodeOptions& options, InputJob& job, Census& census) {
   const Layer& layer = file.layers[index];
-  LayerPlan planned = MakeLayerPlan(file, layer, policy);
+  LayerPlan planned = MakeLayerPlan(file, layer, options.policy);
   v1::Layer& filled = job.layers[index];
   filled.set_id(index + 1);
   filled.set_z_mm(ToDouble(layer.z) * file.modes[file.blocks[layer.first_block].mode].UnitMm());
   *filled.mutable_plan() = std::move(planned.plan);
-  SetCost(model, *filled.mutable_cost());
+  SetCost(habits.travel[index], *filled.mutable_cost());
+  SetWallCost(habits.retraction, options.crossings, *filled.mutable_cost()->mutable_time());
+  const VisibleWalls walls(planned.outlines);
+  SetWalls(TravelRules(file, layer, habits.retraction, planned.outlines, walls), habits.retraction,
+           planned.outlines, filled);
   PathNotes& notes = job.notes[index];
   for (size_t path = 0; path < planned.outlines.size(); ++path) {
     const auto feature = static_cast<size_t>(planned.outlines[path].feature);
@@ -53,13 +106,13 @@ void FillLayer(const GcodeFile& file, size_t index, const TravelModel& model, Po
 }
 
 // All layers of `job`, and what they add up to.
-Census FillLayers(const GcodeFile& file, Policy policy, const std::vector<TravelModel>& models,
+Census FillLayers(const GcodeFile& file, const GcodeOptions& options, const FileHabits& habits,
                   InputJob& job) {
   std::vector<Census> parts(file.layers.size());
   job.layers.resize(file.layers.size());
   job.notes.resize(file.layers.size());
   ParallelFor(parts.size(), ThreadsFor(file.text.size()),
-              [&](size_t i) { FillLayer(file, i, models[i], policy, job, parts[i]); });
+              [&](size_t i) { FillLayer(file, i, habits, options, job, parts[i]); });
   Census all;
   for (const Census& part : parts) {
     for (size_t i = 0; i < all.paths.size(); ++i) {
@@ -71,15 +124,17 @@ Census FillLayers(const GcodeFile& file, Policy policy, const std::vector<Travel
   return all;
 }
 
-// The search of `auto` ends after so many rounds without a gain for each path. A print takes much
-// longer than any search, but nobody waits a minute for a file to be written: short files are
-// searched as long as it pays, long ones as others are.
+// The search of `auto` ends after so many rounds without a gain for each path: short files are
+// searched as long as it pays, long ones as others are. And it ends where a second of computing
+// saves less than two seconds of printing, as the search is half of the work.
 void SetStrategy(size_t paths, v1::Strategy& strategy) {
   constexpr double kRounds = 20000;
   constexpr double kMaxEffort = 10;
   const double effort = std::clamp(kRounds / static_cast<double>(paths), 1.0, kMaxEffort);
   strategy.set_name("auto");
   (*strategy.mutable_options())["effort"] = absl::StrFormat("%.3g", effort);
+  constexpr double kSecondsPerRound = 20e-6;
+  (*strategy.mutable_options())["least_gain_each"] = absl::StrFormat("%.3g", 2 * kSecondsPerRound);
 }
 
 std::string Duration(double seconds) {
@@ -112,9 +167,11 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   for (size_t i = 0; i < static_cast<size_t>(gcode::Feature::kCount); ++i) {
     job.features.emplace_back(gcode::FeatureName(static_cast<gcode::Feature>(i)));
   }
-  const std::vector<gcode::TravelModel> models =
-      gcode::LearnTravel(*file, gcode::LearnRetraction(*file).threshold_mm);
-  const gcode::Census census = gcode::FillLayers(*file, options.policy, models, job);
+  gcode::FileHabits habits;
+  habits.retraction = gcode::HabitOfNewWays(*file);
+  habits.travel = gcode::LearnTravel(*file, habits.retraction.threshold_mm);
+  const std::vector<gcode::TravelModel>& models = habits.travel;
+  const gcode::Census census = gcode::FillLayers(*file, options, habits, job);
   // The first path is pinned; how the start script comes to it is not ours.
   const gcode::Outline first = gcode::OutlineOf(*file, file->blocks.front());
   job.options.mutable_start()->set_x_mm(first.points.front().x);
@@ -152,6 +209,8 @@ std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& opt
     const v1::Layer& layer = job.layers[i];
     layers[i].set_id(layer.id());
     if (layer.has_cost()) *layers[i].mutable_cost() = layer.cost();
+    *layers[i].mutable_walls() = layer.walls();
+    *layers[i].mutable_exposed_paths() = layer.exposed_paths();
     const gcode::Layer& of_file = job.gcode->layers[job.first_layer + i];
     *layers[i].mutable_plan() =
         std::move(gcode::MakeLayerPlan(*job.gcode, of_file, options.policy, latitude).plan);

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "client/gcode/gcode_file.h"
-#include "client/gcode/layer_writer.h"
-#include "client/gcode/policy.h"
+#include "client/gcode/model/gcode_file.h"
+#include "client/gcode/plan/policy.h"
+#include "client/gcode/write/layer_writer.h"
 #include "client/input/input_job.h"
 #include "traverse/v1/route_optimizer_service.pb.h"
 
@@ -18,6 +18,7 @@ namespace traverse {
 
 struct GcodeOptions {
   gcode::Policy policy = gcode::Policy::kSafe;
+  gcode::Crossings crossings = gcode::Crossings::kKeep;
 };
 
 // The job in `file`: a plan for each of its layers, the cost of travel as its own moves show it

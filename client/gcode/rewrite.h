@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "client/gcode/gcode_file.h"
-#include "client/gcode/layer_choice.h"
-#include "client/gcode/policy.h"
-#include "client/gcode/print_totals.h"
+#include "client/gcode/measure/print_totals.h"
+#include "client/gcode/model/gcode_file.h"
+#include "client/gcode/plan/policy.h"
+#include "client/gcode/write/layer_choice.h"
 
 namespace traverse {
 
@@ -19,12 +19,19 @@ struct GcodeRewrite {
   std::string text;  // of the new file; that of the old one if nothing was gained
   gcode::PrintTotals before;
   gcode::PrintTotals after;
+  gcode::PrintTotals first_before;  // of the first layer alone
+  gcode::PrintTotals first_after;
   int64_t layers = 0;
   int64_t layers_changed = 0;
+
+  // Layers that were left as they are because their new order could not be proven, and why not.
+  int64_t layers_unproven = 0;
+  std::string unproven;
 };
 
 struct RewriteOptions {
   gcode::Policy policy = gcode::Policy::kSafe;
+  gcode::Crossings crossings = gcode::Crossings::kKeep;
   std::string version;  // of this program, for the line that is added behind the head
   int threads = 1;
 };
@@ -32,9 +39,10 @@ struct RewriteOptions {
 // Writes `file` with each layer in one of the orders that `tries` have for it, or in its own,
 // whichever makes the quickest print by the estimate; under Policy::kSafe no layer's travel grows,
 // neither within the layer nor with the way to it, and walls are spared (layer_choice.h). The text
-// is verified before it is returned (verify/verifier.h).
+// is verified before it is returned (verify/verifier.h), and `after` is measured on it. Layers
+// whose new order cannot be proven are left as they are.
 //
-// FailedPrecondition with the first difference if it does not print the same: a fault of ours.
+// FailedPrecondition with the first difference if nothing can be proven: a fault of ours.
 // REQUIRES: each order is empty, or has each path of its layer once as a plan of `policy` allows.
 absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
                                           const std::vector<gcode::FileOrder>& tries,

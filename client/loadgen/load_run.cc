@@ -5,14 +5,13 @@
 #include <grpcpp/support/client_callback.h>
 
 #include <chrono>
-#include <condition_variable>
 #include <deque>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <utility>
 
 #include "absl/status/status.h"
+#include "engine/base/mutex.h"
 
 namespace traverse::loadgen {
 namespace {
@@ -38,7 +37,7 @@ class Run {
 
   // False if too many jobs are in flight; the job is then not sent.
   bool Begin(size_t kind, Clock::time_point meant, bool counted) {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    MutexLock lock(mutex_);
     if (counted) ++result_.sent[kind];
     if (in_flight_ >= options_.max_in_flight) {
       if (counted) ++result_.not_sent;
@@ -51,10 +50,10 @@ class Run {
 
   void End(size_t kind, absl::Duration latency, absl::Duration from_sent,
            const grpc::Status& status, bool complete, bool counted) {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    MutexLock lock(mutex_);
     --in_flight_;
     // Within the lock: the run may be gone as soon as the last job is counted.
-    changed_.notify_all();
+    changed_.NotifyAll();
     if (!counted) return;
     if (status.ok() && complete) {
       result_.ok[kind].Add(latency, from_sent);
@@ -69,17 +68,17 @@ class Run {
   }
 
   void WaitUntilFewerThan(int jobs) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait(lock, [&] { return in_flight_ < jobs; });
+    MutexLock lock(mutex_);
+    while (in_flight_ >= jobs) changed_.Wait(mutex_);
   }
 
   LoadResult& result() { return result_; }
 
  private:
   const LoadOptions& options_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  int in_flight_ = 0;
+  Mutex mutex_;
+  ConditionVariable changed_;
+  int in_flight_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   LoadResult result_;
 };
 

@@ -6,9 +6,9 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_format.h"
 #include "client/api/channel.h"
-#include "client/cli/connection_flags.h"
+#include "client/cli/flags/connection_flags.h"
+#include "client/cli/flags/strategy_spec.h"
 #include "client/cli/help.h"
-#include "client/cli/strategy_spec.h"
 
 namespace traverse::loadgen {
 namespace {

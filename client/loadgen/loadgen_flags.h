@@ -8,7 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "client/api/channel.h"
-#include "client/cli/flags.h"
+#include "client/cli/flags/flags.h"
 #include "client/loadgen/load_plan.h"
 #include "client/loadgen/load_run.h"
 #include "traverse/v1/options.pb.h"

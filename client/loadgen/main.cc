@@ -10,7 +10,7 @@
 
 #include "absl/strings/str_join.h"
 #include "client/api/channel.h"
-#include "client/cli/connection_flags.h"
+#include "client/cli/flags/connection_flags.h"
 #include "client/cli/help.h"
 #include "client/cli/outcome.h"
 #include "client/cli/terminal.h"

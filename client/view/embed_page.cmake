@@ -1,11 +1,13 @@
-# Writes a C++ source that holds a file's bytes: cmake -DINPUT=page.html -DOUTPUT=page_template.cc -P embed_page.cmake
+# Writes a C++ source that holds a file's bytes, as what a function of a header returns:
+# cmake -DINPUT=page.html -DOUTPUT=page.cc -DHEADER=client/a/page.h -DNAMESPACE=traverse::a -DFUNCTION=Page
+#       -P embed_page.cmake
 file(READ ${INPUT} bytes HEX)
 string(REGEX REPLACE "(................................)" "\\1\n" bytes "${bytes}")
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")
 file(WRITE ${OUTPUT}
-"#include \"client/view/page_template.h\"
+"#include \"${HEADER}\"
 
-namespace traverse::view {
+namespace ${NAMESPACE} {
 namespace {
 
 constexpr unsigned char kPage[] = {
@@ -13,9 +15,9 @@ ${bytes}};
 
 }  // namespace
 
-std::string_view PageTemplate() {
+std::string_view ${FUNCTION}() {
   return {reinterpret_cast<const char*>(kPage), sizeof(kPage)};
 }
 
-}  // namespace traverse::view
+}  // namespace ${NAMESPACE}
 ")

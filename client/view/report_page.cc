@@ -9,10 +9,10 @@
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/parallel.h"
-#include "client/view/layer_code.h"
-#include "client/view/markup.h"
+#include "client/view/drawing/markup.h"
+#include "client/view/drawing/palette.h"
 #include "client/view/page_template.h"
-#include "client/view/palette.h"
+#include "client/view/scene/layer_code.h"
 
 namespace traverse::view {
 namespace {

@@ -13,7 +13,7 @@
 
 #include <string>
 
-#include "client/view/scene.h"
+#include "client/view/scene/scene.h"
 
 namespace traverse::view {
 

@@ -3,21 +3,12 @@
 #ifndef TRAVERSE_ENGINE_BASE_BUDGET_H_
 #define TRAVERSE_ENGINE_BASE_BUDGET_H_
 
-#include <atomic>
 #include <chrono>
 #include <optional>
 
+#include "engine/base/turn.h"
+
 namespace traverse {
-
-// A wish to stop, shared by everything that works on one job. Thread-safe.
-class CancelToken {
- public:
-  void Cancel() { cancelled_.store(true, std::memory_order_relaxed); }
-  bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
-
- private:
-  std::atomic<bool> cancelled_{false};
-};
 
 // How long a search may go on. One object for each search: not thread-safe, but the token that it
 // watches is. The engine sees no clock but this one.
@@ -31,16 +22,19 @@ class Budget {
   // Without a limit.
   Budget() = default;
 
-  // Ends when `cancel` (may be null; not owned, outlives the budget) is cancelled, or at
-  // `deadline`.
+  // Ends when `cancel` is cancelled, or at `deadline`. Whoever asks it gives way when `turn` is
+  // wanted. Both may be null; not owned, they outlive the budget.
   explicit Budget(const CancelToken* cancel,
-                  std::optional<Clock::time_point> deadline = std::nullopt)
-      : cancel_(cancel), deadline_(deadline) {}
+                  std::optional<Clock::time_point> deadline = std::nullopt, Turn* turn = nullptr)
+      : cancel_(cancel), turn_(turn), deadline_(deadline) {}
 
-  // True once the search has to return what it has; stays true then. Cheap: the cancellation is
-  // looked at every time, the clock only every kCallsPerClockReading calls.
+  // True once the search has to return what it has; stays true then. Cheap: the cancellation and
+  // the turn are looked at every time, the clock only every kCallsPerClockReading calls.
   bool Exhausted() {
     if (exhausted_) return true;
+    if (turn_ != nullptr && turn_->wanted() && turn_->GiveWay(cancel_, deadline_)) {
+      calls_to_clock_ = 1;
+    }
     if (cancel_ != nullptr && cancel_->cancelled()) return exhausted_ = true;
     if (!deadline_ || --calls_to_clock_ > 0) return false;
     calls_to_clock_ = kCallsPerClockReading;
@@ -68,13 +62,14 @@ class Budget {
   // A budget that ends with this one, or after `limit` from now if that is earlier.
   Budget Within(Clock::duration limit) const {
     const Clock::time_point end = Clock::now() + limit;
-    return Budget(cancel_, deadline_ && *deadline_ < end ? *deadline_ : end);
+    return Budget(cancel_, deadline_ && *deadline_ < end ? *deadline_ : end, turn_);
   }
 
  private:
-  static constexpr int kCallsPerClockReading = 16;
+  static constexpr int kCallsPerClockReading = 4;
 
   const CancelToken* cancel_ = nullptr;
+  Turn* turn_ = nullptr;
   std::optional<Clock::time_point> deadline_;
   int calls_to_clock_ = 1;
   bool exhausted_ = false;

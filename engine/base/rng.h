@@ -7,6 +7,7 @@
 #ifndef TRAVERSE_ENGINE_BASE_RNG_H_
 #define TRAVERSE_ENGINE_BASE_RNG_H_
 
+#include <cassert>
 #include <cstdint>
 
 namespace traverse {
@@ -49,6 +50,7 @@ class Rng {
 
   // Uniform in [0, bound). REQUIRES: 0 < bound.
   uint32_t Below(uint32_t bound) {
+    assert(bound > 0);
     uint64_t product = (Next() >> 32) * bound;
     const uint32_t threshold = (0u - bound) % bound;
     while (static_cast<uint32_t>(product) < threshold) product = (Next() >> 32) * bound;
@@ -57,6 +59,7 @@ class Rng {
 
   // Uniform in [first, last]. REQUIRES: first <= last.
   int Between(int first, int last) {
+    assert(first <= last);
     return first + static_cast<int>(Below(static_cast<uint32_t>(last - first) + 1u));
   }
 

@@ -1,6 +1,7 @@
 #include "engine/cost/entry_choice.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -34,6 +35,7 @@ void FillTotals(const TravelCost& cost, absl::Span<const Point> exits, Point to,
 
 double EntryChoice::Choose(Point from, absl::Span<const int> paths, const std::optional<Point>& to,
                            absl::Span<int> entries) {
+  assert(entries.size() == paths.size());
   if (paths.empty()) return to ? cost_(from, *to) : 0;
   parent_begin_.assign(paths.size() + 1, 0);
   for (size_t k = 1; k < paths.size(); ++k) {
@@ -71,6 +73,11 @@ void EntryChoice::EnterFirst(Point from, int path) {
 
 void EntryChoice::Advance(int from_path, int to_path, int* parent) {
   next_.resize(static_cast<size_t>(table_->count(to_path)));
+  if (cost_.has_walls()) {
+    AdvanceByBounds(from_path, to_path, parent);
+    std::swap(best_, next_);
+    return;
+  }
   const size_t limit = cost_.is_length() ? kPairsForTreeOfLengths : kPairsForTreeOfTimes;
   if (best_.size() * next_.size() < limit) {
     AdvanceByScan(from_path, to_path, parent);
@@ -92,6 +99,26 @@ void EntryChoice::AdvanceByScan(int from_path, int to_path, int* parent) {
     }
     next_[j] = totals_[least];
     parent[j] = static_cast<int>(least);
+  }
+}
+
+// What walls add is dear to compute: only for moves that might be the best without them.
+// Neighboring entries tend to have the same parent, so each search begins with that.
+void EntryChoice::AdvanceByBounds(int from_path, int to_path, int* parent) {
+  const absl::Span<const Point> exits = table_->exits(from_path);
+  const absl::Span<const Point> enters = table_->enters(to_path);
+  size_t guess = 0;
+  for (size_t j = 0; j < enters.size(); ++j) {
+    double least = best_[guess] + cost_(exits[guess], enters[j]);
+    for (size_t i = 0; i < exits.size(); ++i) {
+      if (best_[i] >= least || best_[i] + cost_.Base(exits[i], enters[j]) >= least) continue;
+      const double total = best_[i] + cost_(exits[i], enters[j]);
+      if (total >= least) continue;
+      least = total;
+      guess = i;
+    }
+    next_[j] = least;
+    parent[j] = static_cast<int>(guess);
   }
 }
 

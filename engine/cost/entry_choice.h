@@ -50,6 +50,7 @@ class EntryChoice {
   void EnterFirst(Point from, int path);
   void Advance(int from_path, int to_path, int* parent);
   void AdvanceByScan(int from_path, int to_path, int* parent);
+  void AdvanceByBounds(int from_path, int to_path, int* parent);
   void AdvanceByTree(int from_path, int to_path, int* parent);
   int BuildTree(int path, int first, int end);
 

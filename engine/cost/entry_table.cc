@@ -1,6 +1,7 @@
 #include "engine/cost/entry_table.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 
 namespace traverse {
@@ -45,7 +46,9 @@ int EntryTable::EntryOf(const Visit& visit) const {
     return begin + visit.entry;
   }
   const auto from = visit_entry_.begin() + begin;
-  return begin + static_cast<int>(std::find(from, visit_entry_.begin() + end, visit.entry) - from);
+  const auto found = std::find(from, visit_entry_.begin() + end, visit.entry);
+  assert(found != visit_entry_.begin() + end);
+  return begin + static_cast<int>(found - from);
 }
 
 }  // namespace traverse

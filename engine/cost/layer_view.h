@@ -14,7 +14,7 @@ namespace traverse {
 struct LayerView {
   // `problem` and its plan outlive the view.
   explicit LayerView(const LayerProblem& layer_problem)
-      : problem(layer_problem), tree(*problem.plan), table(*problem.plan), cost(problem.cost) {}
+      : problem(layer_problem), tree(*problem.plan), table(*problem.plan), cost(problem) {}
 
   const Plan& plan() const { return *problem.plan; }
 

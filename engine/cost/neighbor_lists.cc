@@ -1,6 +1,7 @@
 #include "engine/cost/neighbor_lists.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -250,6 +251,7 @@ class Search {
 NeighborLists::NeighborLists(const PointGroups& groups) : groups_(groups) {}
 
 void NeighborLists::FindAmong(absl::Span<const Member> members, int count, Budget& budget) {
+  assert(first_.empty());  // not sealed
   Search search(groups_, members);
   const PieceTree tree = search.Tree();
   Nearest nearest(count);

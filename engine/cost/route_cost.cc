@@ -1,5 +1,6 @@
 #include "engine/cost/route_cost.h"
 
+#include <cassert>
 #include <cstddef>
 
 #include "engine/cost/travel_cost.h"
@@ -7,10 +8,11 @@
 namespace traverse {
 
 double RouteCost(const LayerProblem& problem, const Route& route) {
-  const TravelCost cost(problem.cost);
+  const TravelCost cost(problem);
   double sum = 0;
   Point at = problem.start;
   for (const Visit& visit : route) {
+    assert(visit.path >= 0 && static_cast<size_t>(visit.path) < problem.plan->paths.size());
     const Path& path = problem.plan->paths[static_cast<size_t>(visit.path)];
     sum += cost(at, EnterPoint(path, visit.entry));
     at = ExitPoint(path, visit.entry);

@@ -9,7 +9,8 @@
 namespace traverse {
 
 // Sum of the costs of all moves of `route`, in the unit of problem.cost, the move to `finish`
-// included. REQUIRES: `route` is a route of the problem's plan.
+// included. REQUIRES: the visits are of paths of the problem's plan; they need not be all of
+// them.
 double RouteCost(const LayerProblem& problem, const Route& route);
 
 // Where the head is after `route`: the last exit, or `start` for an empty route.

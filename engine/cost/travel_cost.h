@@ -5,26 +5,42 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 
 #include "engine/model/cost_spec.h"
+#include "engine/model/layer_problem.h"
 #include "engine/model/point.h"
 
 namespace traverse {
 
 // A small value to pass by const reference into inner loops. The cost never falls as the length
-// grows, so the nearest point is also the cheapest one to reach.
+// grows, so without walls the nearest point is also the cheapest one to reach; walls only add to
+// what a length costs, which bounds the cost from below.
 class TravelCost {
  public:
-  explicit TravelCost(const CostSpec& spec)
+  // `walls` outlive the cost, and are multiplied by `walls_unit`; null: there are none.
+  explicit TravelCost(const CostSpec& spec, const WallCost* walls = nullptr, double walls_unit = 1)
       : spec_(spec),
+        walls_(walls),
+        walls_unit_(walls_unit),
         ramp_seconds_(spec.accel_mm_s2 > 0 ? spec.speed_mm_s / spec.accel_mm_s2 : 0),
         full_speed_mm_(spec.speed_mm_s * ramp_seconds_),
         threshold_seconds_(Motion(spec.retraction_threshold_mm)) {}
 
-  // In mm or s, as the spec says.
-  double operator()(Point from, Point to) const { return OfLength(Distance(from, to)); }
+  // Not for what {} may stand for as well.
+  template <std::same_as<LayerProblem> Problem>
+  explicit TravelCost(const Problem& problem)
+      : TravelCost(problem.cost, problem.walls, problem.walls_unit) {}
 
-  // Cost of a move of `length_mm` >= 0.
+  // In mm or s, as the spec says; the same there and back.
+  double operator()(Point from, Point to) const {
+    return walls_ == nullptr ? Base(from, to) : WithWalls(from, to);
+  }
+
+  // What the move costs at least: its cost if there were no walls.
+  double Base(Point from, Point to) const { return OfLength(Distance(from, to)); }
+
+  // Cost of a move of `length_mm` >= 0 that no wall has to do with.
   double OfLength(double length_mm) const {
     return spec_.kind == CostSpec::Kind::kLength ? length_mm : Seconds(length_mm);
   }
@@ -43,6 +59,7 @@ class TravelCost {
 
   const CostSpec& spec() const { return spec_; }
   bool is_length() const { return spec_.kind == CostSpec::Kind::kLength; }
+  bool has_walls() const { return walls_ != nullptr; }
 
  private:
   // From standstill to standstill. With a = acceleration and v = speed, the speed is reached only
@@ -57,7 +74,11 @@ class TravelCost {
     return length_mm > spec_.retraction_threshold_mm ? seconds + spec_.retraction_seconds : seconds;
   }
 
+  double WithWalls(Point from, Point to) const;
+
   CostSpec spec_;
+  const WallCost* walls_;
+  double walls_unit_;
   double ramp_seconds_;       // v / a
   double full_speed_mm_;      // v^2 / a
   double threshold_seconds_;  // motion of a move as long as the retraction threshold

@@ -4,6 +4,7 @@
 #define TRAVERSE_ENGINE_GEOMETRY_BOUNDING_BOX_H_
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -34,14 +35,23 @@ class BoundingBox {
   Point low() const { return low_; }
   Point high() const { return high_; }
 
-  // REQUIRES for all below: not empty.
-  double width() const { return high_.x - low_.x; }
-  double height() const { return high_.y - low_.y; }
+  // REQUIRES of these: not empty.
+  double width() const {
+    assert(!empty());
+    return high_.x - low_.x;
+  }
+  double height() const {
+    assert(!empty());
+    return high_.y - low_.y;
+  }
   double shorter_side() const { return std::min(width(), height()); }
-  Point center() const { return {(low_.x + high_.x) / 2, (low_.y + high_.y) / 2}; }
+  Point center() const {
+    assert(!empty());
+    return {(low_.x + high_.x) / 2, (low_.y + high_.y) / 2};
+  }
 
   // Square of the distance from `point` to the nearest point of the box. No point of the box is
-  // nearer, rounding included, as each step rounds both the same way.
+  // nearer, rounding included, as each step rounds both the same way. Infinite for an empty box.
   double SquaredDistanceTo(Point point) const {
     const double dx = std::max({low_.x - point.x, point.x - high_.x, 0.0});
     const double dy = std::max({low_.y - point.y, point.y - high_.y, 0.0});

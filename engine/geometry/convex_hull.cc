@@ -1,6 +1,7 @@
 #include "engine/geometry/convex_hull.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <numeric>
 
@@ -46,6 +47,7 @@ std::vector<int> ConvexHull(absl::Span<const Point> points) {
 
 std::optional<OuterTangents> FindOuterTangents(absl::Span<const Point> a,
                                                absl::Span<const Point> b) {
+  assert(!a.empty() && !b.empty());
   std::vector<Point> both(a.begin(), a.end());
   both.insert(both.end(), b.begin(), b.end());
   const int a_size = static_cast<int>(a.size());

@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_ENGINE_GEOMETRY_FLOAT_POINTS_H_
 #define TRAVERSE_ENGINE_GEOMETRY_FLOAT_POINTS_H_
 
+#include <cassert>
 #include <cstddef>
 #include <vector>
 
@@ -40,6 +41,7 @@ class FloatGroups {
     y_.push_back(point.y);
   }
   void Close() {
+    assert(x_.size() > first_.back());
     while (x_.size() % kLanes != 0) Add({x_.back(), y_.back()});
     first_.push_back(x_.size());
   }

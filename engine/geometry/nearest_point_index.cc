@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -64,6 +65,7 @@ NearestPointIndex::NearestPointIndex(std::vector<Point> points)
 
 void NearestPointIndex::Change(int id, int by) {
   const size_t place = static_cast<size_t>(place_[static_cast<size_t>(id)]);
+  assert(in_set_[place] == (by > 0 ? 0 : 1));
   in_set_[place] = by > 0 ? 1 : 0;
   for (size_t node = leaves_ + place / kLeafSize; node > 0; node /= 2) count_[node] += by;
 }

@@ -1,6 +1,7 @@
 #include "engine/geometry/visibility_polygon.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <optional>
 
@@ -9,15 +10,21 @@
 namespace traverse {
 namespace {
 
-// Rounding of an area, in mm^2: coordinates are of the order of 100 mm.
+// Rounding of an area, in mm^2, for coordinates of the order of 100 mm; else relative to the square
+// of a length.
 constexpr double kAreaTolerance = 1e-9;
+constexpr double kAreaRounding = 1e-15;
 
 // The line between the points where the tangents touch one contour; the other contour is to its
 // left.
 struct Chord {
   Point tail;
   Point head;
-  bool HasOnItsLeft(Point point) const { return Cross(tail, head, point) >= -kAreaTolerance; }
+  bool HasOnItsLeft(Point point) const {
+    const double area = Cross(tail, head, point);
+    if (area >= -kAreaTolerance) return true;
+    return area >= -kAreaRounding * Distance(tail, head) * Distance(tail, point);
+  }
 };
 
 bool AllOnLeft(absl::Span<const Point> points, const Chord& chord) {
@@ -39,6 +46,7 @@ std::vector<int> OnLeft(absl::Span<const Point> points, const Chord& chord) {
 
 std::optional<VisiblePoints> FindVisiblePoints(absl::Span<const Point> a,
                                                absl::Span<const Point> b) {
+  assert(!a.empty() && !b.empty());
   const std::optional<OuterTangents> tangents = FindOuterTangents(a, b);
   if (!tangents) return std::nullopt;
   const auto at = [](absl::Span<const Point> points, int i) {

@@ -13,6 +13,8 @@
 
 namespace traverse {
 
+class WallCost;  // engine/cost/wall_cost.h
+
 // What a strategy derived of a plan and may use again when it solves that plan from another start.
 struct PlanMemory {
   virtual ~PlanMemory() = default;
@@ -35,6 +37,12 @@ struct LayerProblem {
   // Where a strategy may keep what it derives of `plan` from one call to the next; null: nowhere.
   // What is there was put there for the same plan, by one call at a time.
   std::unique_ptr<PlanMemory>* memory = nullptr;
+
+  // What the layer's walls add to the cost; null: there are none. Used by one call at a time.
+  const WallCost* walls = nullptr;
+
+  // What the costs of `walls` are multiplied by to be in the unit of `cost` (cost/cost_unit.h).
+  double walls_unit = 1;
 };
 
 }  // namespace traverse

@@ -25,12 +25,9 @@ struct Path {
   // Open path: always from points[0] to points[1].
   bool one_way = false;
 
-  // Where the path came from, for whoever made the plan; the engine does not look at it.
-  int tag = 0;
-
   // The island that the path belongs to: its position among the islands that the plan was built
-  // from; -1 if the plan knows of none (engine/framework/island_layout.h says what follows). Set by
-  // the plan builders. It restricts no route; methods that reason about islands use it.
+  // from; -1 if the plan knows of none (engine/weller/steps/island_layout.h says what follows). Set
+  // by the plan builders. It restricts no route; methods that reason about islands use it.
   int island = -1;
 
   // The contour that encloses its island. Set by the plan builders.

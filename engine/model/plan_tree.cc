@@ -1,6 +1,7 @@
 #include "engine/model/plan_tree.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <utility>
 
@@ -31,6 +32,7 @@ Precedence::Precedence(const PlanNode& node, int slots, const std::vector<int>& 
 }
 
 void Precedence::LastBefore(absl::Span<const int> position, std::vector<int>& last) const {
+  assert(!empty());
   last.assign(topological_.size(), -1);
   for (const int item : topological_) {
     const size_t index = static_cast<size_t>(item);

@@ -4,6 +4,7 @@
 #define TRAVERSE_ENGINE_SCHEDULE_BUDGET_SPLIT_H_
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -23,7 +24,9 @@ class BudgetSplit {
 
   // REQUIRES: threads > 0.
   BudgetSplit(std::optional<Clock::time_point> deadline, int threads)
-      : deadline_(deadline), threads_(threads) {}
+      : deadline_(deadline), threads_(threads) {
+    assert(threads > 0);
+  }
 
   // What a layer of so many paths can gain, in no unit: the time to a good route grows a little
   // faster than the number of paths. A layer that starts from a good route gains less.
@@ -40,6 +43,7 @@ class BudgetSplit {
   // What a layer of this weight may use from `now` on; the largest duration if there is no end.
   // REQUIRES: `weight` was added and has not begun.
   Clock::duration Begin(double weight, Clock::time_point now) {
+    assert(weight <= waiting_ * (1 + kRounding) + kRounding);
     const double share = std::min(1.0, threads_ * weight / std::max(waiting_, weight));
     waiting_ = std::max(0.0, waiting_ - weight);
     if (!deadline_) return Clock::duration::max();
@@ -48,6 +52,8 @@ class BudgetSplit {
   }
 
  private:
+  static constexpr double kRounding = 1e-6;  // of sums of weights
+
   const std::optional<Clock::time_point> deadline_;
   const int threads_;
   double waiting_ = 0;  // weight that has not begun

@@ -34,11 +34,13 @@ Point PlanOrigin(const Plan& plan) {
   return plan.paths.empty() || plan.paths[0].points.empty() ? Point{} : plan.paths[0].points[0];
 }
 
-PlanPrint PrintOf(const Plan& plan, const CostSpec& cost) {
+PlanPrint PrintOf(const Plan& plan, const CostSpec& cost, const LayerWalls& walls) {
   Fingerprint make;
   make.Add(static_cast<int>(cost.kind));
   for (const double part :
-       {cost.speed_mm_s, cost.accel_mm_s2, cost.retraction_seconds, cost.retraction_threshold_mm}) {
+       {cost.speed_mm_s, cost.accel_mm_s2, cost.retraction_seconds, cost.retraction_threshold_mm,
+        cost.wall_retraction_threshold_mm, cost.exposed_retraction_threshold_mm, cost.lift_seconds,
+        cost.crossing_seconds, cost.wall_slack_mm, cost.wall_clearance_mm}) {
     make.Add(part);
   }
   Fingerprint place;
@@ -54,6 +56,17 @@ PlanPrint PrintOf(const Plan& plan, const CostSpec& cost) {
     }
     for (const int vertex : path.allowed) make.Add(vertex);
   }
+  for (const Wall& wall : walls.walls) {
+    make.Add(wall.points.size());
+    make.Add(wall.closed ? 1 : 0);
+    for (const Point& point : wall.points) {
+      make.Add(Rounded(point.x - origin.x));
+      make.Add(Rounded(point.y - origin.y));
+      place.Add(point.x);
+      place.Add(point.y);
+    }
+  }
+  for (const int path : walls.exposed) make.Add(path);
   for (const PlanNode& node : plan.nodes) {
     make.Add(static_cast<int>(node.kind));
     make.Add(node.path);

@@ -10,17 +10,19 @@
 #include "engine/model/cost_spec.h"
 #include "engine/model/plan.h"
 #include "engine/model/point.h"
+#include "engine/model/walls.h"
 
 namespace traverse {
 
-// Numbers that equal plans of one cost share, and different ones hardly ever do.
+// Numbers that equal plans with equal walls and of one cost share, and different ones hardly ever
+// do.
 struct PlanPrint {
   uint64_t make = 0;  // equal wherever they are; points are taken from the first one on, to 1e-4 mm
   uint64_t place = 0;  // equal and at the very same place
 };
 
 // O(points).
-PlanPrint PrintOf(const Plan& plan, const CostSpec& cost);
+PlanPrint PrintOf(const Plan& plan, const CostSpec& cost, const LayerWalls& walls = {});
 
 // Layers of a make that begin, and end if they have to, at the same place of 1e-4 mm as told from
 // their origins are of one kind.

@@ -1,6 +1,7 @@
 #include "engine/schedule/layer_chain.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "absl/cleanup/cleanup.h"
@@ -18,7 +19,7 @@ LayerChain::LayerChain(const JobSpec& spec, std::unique_ptr<Strategy> strategy, 
                        JobSink& sink)
     : spec_(spec),
       strategy_(std::move(strategy)),
-      predictor_(GreedyEntry().make(StrategyOptions())),
+      predictor_(GreedyEntry().make(*StrategyOptions::Parse(GreedyEntry().options, {}))),
       executor_(executor),
       outbox_(sink),
       given_at_(spec.start),
@@ -28,8 +29,11 @@ LayerChain::LayerChain(const JobSpec& spec, std::unique_ptr<Strategy> strategy, 
 void LayerChain::Add(JobLayer layer) {
   auto slot = std::make_shared<Slot>();
   slot->cost = layer.cost.value_or(spec_.cost);
+  for (const Path& path : layer.plan.paths)
+    slot->points += static_cast<int64_t>(path.points.size());
   slot->layer = std::move(layer);
-  std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
+  assert(!closed_);
   slot->index = added_++;
   slot->weight = BudgetSplit::Weight(slot->layer.plan.paths.size(), false);
   split_.Add(slot->weight);
@@ -41,7 +45,7 @@ void LayerChain::Add(JobLayer layer) {
 }
 
 void LayerChain::Close() {
-  std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   closed_ = true;
   MaybePrepare();
   if (added_ > 0) MaybeAnchor(added_ - 1);
@@ -50,12 +54,12 @@ void LayerChain::Close() {
 
 void LayerChain::Cancel() {
   cancel_.Cancel();
-  std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   MaybeFinish();
 }
 
 int64_t LayerChain::pending() const {
-  std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   return pending_;
 }
 
@@ -67,7 +71,7 @@ bool LayerChain::CleaningDueAfter(uint64_t index) const {
 
 void LayerChain::RunPrepare(const SlotPtr& slot) {
   Prepare(*slot);
-  std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   preparing_ = false;
   ++next_to_prepare_;
   if (strategy_->reuses_routes()) {
@@ -89,7 +93,7 @@ void LayerChain::RunPrepare(const SlotPtr& slot) {
 }
 
 void LayerChain::Allot(Slot& slot) {
-  std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   slot.allotted = split_.Begin(slot.weight, Budget::Clock::now());
 }
 
@@ -98,7 +102,7 @@ void LayerChain::RunSolveFirst(const SlotPtr& slot) {
   SolveFirst(*slot);
   const Point end =
       slot->finish.value_or(RouteEnd(slot->layer.plan, slot->first.route, slot->predicted_start));
-  std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   slot->first_end = end;
   HandOn(*slot);
   MaybeSolveSecond(slot->index);
@@ -108,7 +112,7 @@ void LayerChain::RunSolveFirst(const SlotPtr& slot) {
 
 void LayerChain::RunSolveSecond(const SlotPtr& slot) {
   SolveSecond(*slot);
-  std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   slot->solved = true;
   MaybeAnchor(slot->index);
 }
@@ -119,7 +123,7 @@ void LayerChain::RunAnchor(const SlotPtr& slot, const Place& place) {
   const Point route_end = outcome.end;
   const Point end = slot->finish.value_or(route_end);
   if (!cancel_.cancelled()) outbox_.Deliver(std::move(outcome));
-  std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   slot->end = end;
   Lesson& lesson = lessons_[slot->index];
   lesson.make = slot->print.make;
@@ -149,7 +153,7 @@ void LayerChain::MaybePrepare() {
     if (lesson.known) routes_.Learn(lesson.make, lesson.kind, lesson.known);
   }
   preparing_ = true;
-  Submit([this, slot] { RunPrepare(slot); });
+  Submit([this, slot] { RunPrepare(slot); }, slot->points);
 }
 
 // The first solution of a layer, once there is what it starts from.
@@ -158,7 +162,7 @@ void LayerChain::MaybeSolveFirst(const SlotPtr& slot) {
     slot->model->waiting.push_back(slot->index);
     return;
   }
-  Submit([this, slot] { RunSolveFirst(slot); });
+  Submit([this, slot] { RunSolveFirst(slot); }, slot->points);
 }
 
 // Gives the first solution to the layers that start from it.
@@ -181,7 +185,7 @@ void LayerChain::MaybeSolveSecond(uint64_t index) {
     if (!start) return;
     if (*start != slot->predicted_start) {
       slot->second_start = start;
-      Submit([this, slot] { RunSolveSecond(slot); });
+      Submit([this, slot] { RunSolveSecond(slot); }, slot->points);
       return;
     }
   }
@@ -220,7 +224,7 @@ void LayerChain::MaybeAnchor(uint64_t index) {
     if (place.next && !place.next->first_end) return;
   }
   slot->anchoring = true;
-  Submit([this, slot, place] { RunAnchor(slot, place); });
+  Submit([this, slot, place] { RunAnchor(slot, place); }, slot->points);
 }
 
 // Layers from the front that are done, but for the last of them: its end is the next one's start.
@@ -238,18 +242,19 @@ void LayerChain::MaybeFinish() {
   executor_.Submit([self = shared_from_this()] { self->outbox_.Done(); });
 }
 
-void LayerChain::Submit(std::function<void()> stage) {
+void LayerChain::Submit(std::function<void()> stage, int64_t points) {
   if (cancel_.cancelled()) return;
   ++tasks_;
-  executor_.Submit([self = shared_from_this(), stage = std::move(stage)] {
+  auto run = [self = shared_from_this(), stage = std::move(stage)] {
     // Also if the stage runs out of memory: whoever ran it can then cancel the job, which ends.
     const absl::Cleanup end = [&self] {
-      std::lock_guard<std::mutex> lock(self->mutex_);
+      MutexLock lock(self->mutex_);
       --self->tasks_;
       self->MaybeFinish();
     };
     if (!self->cancel_.cancelled()) stage();
-  });
+  };
+  executor_.SubmitLarge(std::move(run), points);
 }
 
 }  // namespace traverse

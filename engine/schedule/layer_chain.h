@@ -32,13 +32,14 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <unordered_map>
 #include <utility>
 
+#include "engine/base/mutex.h"
+#include "engine/cost/wall_cost.h"
 #include "engine/engine.h"
-#include "engine/exact/lower_bound.h"
+#include "engine/proof/bounds/lower_bound.h"
 #include "engine/schedule/budget_split.h"
 #include "engine/schedule/end_history.h"
 #include "engine/schedule/outbox.h"
@@ -66,12 +67,14 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
     uint64_t index = 0;
     JobLayer layer;
     CostSpec cost;
+    int64_t points = 0;
 
     // Set by prepare.
     Point predicted_start;
     PlanPrint print;
     Point origin;
     uint64_t kind = 0;  // with the predicted start
+    std::unique_ptr<const WallCost> walls;
     std::optional<Point> finish;
     Route given_route;
     LayerOutcome outcome;  // what concerns the given order
@@ -166,16 +169,18 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   void RunSolveSecond(const SlotPtr& slot);
   void RunAnchor(const SlotPtr& slot, const Place& place);
 
-  // Submit what is due. Called with the lock held.
-  void MaybePrepare();
-  void MaybeSolveFirst(const SlotPtr& slot);
-  void HandOn(const Slot& slot);
-  void MaybeSolveSecond(uint64_t index);
-  void MaybeAnchor(uint64_t index);
-  void MaybeFinish();
-  void Submit(std::function<void()> stage);
-  void DropAnchored();
-  const SlotPtr& SlotAt(uint64_t index) const { return slots_[index - first_index_]; }
+  // Submit what is due.
+  void MaybePrepare() TRAVERSE_REQUIRES(mutex_);
+  void MaybeSolveFirst(const SlotPtr& slot) TRAVERSE_REQUIRES(mutex_);
+  void HandOn(const Slot& slot) TRAVERSE_REQUIRES(mutex_);
+  void MaybeSolveSecond(uint64_t index) TRAVERSE_REQUIRES(mutex_);
+  void MaybeAnchor(uint64_t index) TRAVERSE_REQUIRES(mutex_);
+  void MaybeFinish() TRAVERSE_REQUIRES(mutex_);
+  void Submit(std::function<void()> stage, int64_t points) TRAVERSE_REQUIRES(mutex_);
+  void DropAnchored() TRAVERSE_REQUIRES(mutex_);
+  const SlotPtr& SlotAt(uint64_t index) const TRAVERSE_REQUIRES(mutex_) {
+    return slots_[index - first_index_];
+  }
 
   const JobSpec spec_;
   const std::unique_ptr<Strategy> strategy_;
@@ -190,13 +195,13 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   std::shared_ptr<Anchored> anchored_;
   EndHistory history_;
 
-  mutable std::mutex mutex_;  // guards what follows
-  BudgetSplit split_;
-  RouteHistory routes_;
-  std::deque<SlotPtr> slots_;  // [index - first_index_]
-  uint64_t first_index_ = 0;
-  uint64_t added_ = 0;
-  uint64_t next_to_prepare_ = 0;
+  mutable Mutex mutex_;
+  BudgetSplit split_ TRAVERSE_GUARDED_BY(mutex_);
+  RouteHistory routes_ TRAVERSE_GUARDED_BY(mutex_);
+  std::deque<SlotPtr> slots_ TRAVERSE_GUARDED_BY(mutex_);  // [index - first_index_]
+  uint64_t first_index_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  uint64_t added_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  uint64_t next_to_prepare_ TRAVERSE_GUARDED_BY(mutex_) = 0;
 
   // What prepare has not learned yet of anchored layers, by index. It learns of layer i -
   // kLearnDelay right before it prepares layer i: what it knows must not depend on timing.
@@ -206,12 +211,12 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
     Point end;            // from the plan's origin
     KnownRoutePtr known;  // null where routes are not used again
   };
-  std::map<uint64_t, Lesson> lessons_;
-  int64_t pending_ = 0;
-  int64_t tasks_ = 0;  // submitted and not yet ended
-  bool preparing_ = false;
-  bool closed_ = false;
-  bool finished_ = false;
+  std::map<uint64_t, Lesson> lessons_ TRAVERSE_GUARDED_BY(mutex_);
+  int64_t pending_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  int64_t tasks_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // submitted and not yet ended
+  bool preparing_ TRAVERSE_GUARDED_BY(mutex_) = false;
+  bool closed_ TRAVERSE_GUARDED_BY(mutex_) = false;
+  bool finished_ TRAVERSE_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace traverse

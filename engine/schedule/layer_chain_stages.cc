@@ -29,6 +29,33 @@ constexpr double kSideShare = 0.15;
 // mm in either direction, relative to origins that are the same to as much.
 constexpr double kSameMoveMm = 6e-4;
 
+// What the moves of `route` come to, the one to the cleaning point apart.
+struct Moves {
+  MoveCounts counts;
+  std::vector<Detour> detours;
+};
+
+Moves MovesOf(const LayerProblem& problem, const Route& route) {
+  Moves moves;
+  if (problem.cost.kind == CostSpec::Kind::kLength) return moves;
+  Point at = problem.start;
+  for (size_t i = 0; i < route.size(); ++i) {
+    const Path& path = problem.plan->paths[static_cast<size_t>(route[i].path)];
+    const Point to = EnterPoint(path, route[i].entry);
+    WallMove move;
+    if (problem.walls != nullptr) {
+      move = problem.walls->MoveOf(at, to);
+    } else {
+      move.retracts = Distance(at, to) > problem.cost.retraction_threshold_mm;
+    }
+    moves.counts.crossings += move.crosses ? 1 : 0;
+    moves.counts.retractions += move.retracts && problem.cost.retraction_seconds > 0 ? 1 : 0;
+    if (!move.via.empty()) moves.detours.push_back({i, std::move(move.via)});
+    at = ExitPoint(path, route[i].entry);
+  }
+  return moves;
+}
+
 double MoveMm(Point from, const std::optional<Point>& to) { return to ? Distance(from, *to) : 0; }
 
 }  // namespace
@@ -36,7 +63,7 @@ double MoveMm(Point from, const std::optional<Point>& to) { return to ? Distance
 // `share` of the layer's time, which is limited by itself and by its part of the job's.
 Budget LayerChain::LayerBudget(const Slot& slot, double share) const {
   using Duration = Budget::Clock::duration;
-  const Budget whole(&cancel_, spec_.deadline);
+  const Budget whole(&cancel_, spec_.deadline, executor_.turn());
   Duration limit = slot.allotted;
   if (spec_.layer_time_limit != absl::InfiniteDuration()) {
     limit = std::min(limit, std::chrono::duration_cast<Duration>(
@@ -60,8 +87,10 @@ double LayerChain::SolveShare(const Slot& slot) const {
 bool LayerChain::Expired() const { return Budget(&cancel_, spec_.deadline).ExhaustedNow(); }
 
 LayerProblem LayerChain::Problem(const Slot& slot, Point start) const {
-  return LayerProblem{&slot.layer.plan, start, slot.finish, slot.cost,
-                      StreamSeed(spec_.seed, slot.index)};
+  LayerProblem problem{&slot.layer.plan, start, slot.finish, slot.cost,
+                       StreamSeed(spec_.seed, slot.index)};
+  problem.walls = slot.walls.get();
+  return problem;
 }
 
 void LayerChain::Prepare(Slot& slot) {
@@ -69,9 +98,12 @@ void LayerChain::Prepare(Slot& slot) {
   if (slot.layer.start) given_at_ = predicted_at_ = *slot.layer.start;
   slot.predicted_start = predicted_at_;
 
+  if (slot.cost.kind == CostSpec::Kind::kTime && !slot.layer.walls.empty()) {
+    slot.walls = std::make_unique<const WallCost>(slot.layer.walls, plan, slot.cost);
+  }
   slot.origin = PlanOrigin(plan);
   if (!strategy_->serial()) {
-    slot.print = PrintOf(plan, slot.cost);
+    slot.print = PrintOf(plan, slot.cost, slot.layer.walls);
     slot.kind = KindOf(slot.print.make, slot.origin, slot.predicted_start, slot.finish);
   }
   if (strategy_->reuses_routes()) {
@@ -85,6 +117,7 @@ void LayerChain::Prepare(Slot& slot) {
   LayerProblem problem = Problem(slot, given_at_);
   problem.finish.reset();
   slot.outcome.cost_given = RouteCost(problem, slot.given_route);
+  slot.outcome.moves_given = MovesOf(problem, slot.given_route).counts;
   given_at_ = RouteEnd(plan, slot.given_route, given_at_);
   slot.outcome.cleaning_given_mm = MoveMm(given_at_, slot.finish);
 
@@ -135,7 +168,7 @@ void LayerChain::ResumeModel(const LayerProblem& problem, Slot& slot, Budget& bu
   const Route& route = model.best->solution.route;
   slot.first = strategy_->Resume(problem, route, budget);
   const bool gained =
-      RouteCost(problem, slot.first.route) < RouteCost(problem, route) - kCostTolerance;
+      RouteCost(problem, slot.first.route) < RouteCost(problem, route) * (1 - kSameCost);
   slot.searched_in_vain = same && !gained && slot.first.stop != StopReason::kTimeLimit;
 }
 
@@ -253,7 +286,7 @@ Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot&
     Route foreseen = next->first.route;
     solution = strategy_->ResumeWithNext(problem, from, Problem(*next, Point()), foreseen, budget);
     greedy = GreedyRoute(problem, slot);
-    if (RouteCost(problem, solution.route) <= RouteCost(problem, greedy) + kCostTolerance) {
+    if (RouteCost(problem, solution.route) <= RouteCost(problem, greedy) * (1 + kSameCost)) {
       next->foreseen = std::move(foreseen);
     } else {
       next = nullptr;
@@ -291,7 +324,7 @@ void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
   }
   constexpr double kAny = std::numeric_limits<double>::infinity();
   const bool has_limit = next != nullptr && greedy.size() == solution.route.size();
-  const double limit = has_limit ? RouteCost(problem, greedy) + kCostTolerance : kAny;
+  const double limit = has_limit ? RouteCost(problem, greedy) * (1 + kSameCost) : kAny;
   double best =
       RouteCost(problem, solution.route) > limit ? kAny : CostInView(problem, solution.route, next);
   bool was_replaced = false;
@@ -314,7 +347,7 @@ void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
   // An optimal route was replaced for the sake of the next layer, or by one that is the same but
   // for rounding.
   if (was_replaced && solution.stop == StopReason::kOptimal &&
-      RouteCost(problem, solution.route) > solution.lower_bound.value_or(0) + kCostTolerance) {
+      RouteCost(problem, solution.route) > solution.lower_bound.value_or(0) * (1 + kSameCost)) {
     solution.stop = StopReason::kLocalOptimum;
   }
 }
@@ -363,7 +396,7 @@ LayerOutcome LayerChain::Anchor(Slot& slot, const Place& place) const {
   if (absl::Status status = ValidateRoute(slot.layer.plan, solution.route); !status.ok()) {
     outcome.invalid_route = std::string(status.message());
     solution = Solution{slot.given_route, StopReason::kLocalOptimum, std::nullopt};
-  } else {
+  } else if (!strategy_->pure()) {
     KeepBestRoute(problem, slot, known, next, std::move(greedy), solution);
   }
   if (!solution.lower_bound) Bound(problem, slot, solution);
@@ -372,14 +405,24 @@ LayerOutcome LayerChain::Anchor(Slot& slot, const Place& place) const {
   outcome.end = RouteEnd(slot.layer.plan, solution.route, start);
   outcome.travel = MeasureTravel(slot.layer.plan, start, solution.route);
   outcome.cleaning_mm = MoveMm(outcome.end, slot.finish);
-  const double finish_cost = slot.finish ? TravelCost(slot.cost)(outcome.end, *slot.finish) : 0;
+  const double finish_cost = slot.finish ? TravelCost(problem)(outcome.end, *slot.finish) : 0;
   outcome.cost = RouteCost(problem, solution.route) - finish_cost;
+  Moves moves = MovesOf(problem, solution.route);
+  outcome.moves = moves.counts;
+  outcome.detours = std::move(moves.detours);
   if (solution.lower_bound) outcome.lower_bound = *solution.lower_bound - finish_cost;
+  if (problem.walls != nullptr && outcome.invalid_route.empty()) {
+    const absl::Status same =
+        ValidateMoves(slot.layer.plan, slot.layer.walls, slot.cost, start, solution.route,
+                      {outcome.cost, outcome.moves, outcome.detours});
+    if (!same.ok()) outcome.invalid_route = std::string(same.message());
+  }
   outcome.stop = solution.stop;
   outcome.statistics = std::move(solution.statistics);
   outcome.route = std::move(solution.route);
   outcome.plan = std::move(slot.layer.plan);
   slot.memory.reset();
+  slot.walls.reset();
   outcome.solve_seconds += watch.Seconds();
   return outcome;
 }

@@ -4,9 +4,9 @@
 #define TRAVERSE_ENGINE_SCHEDULE_OUTBOX_H_
 
 #include <deque>
-#include <mutex>
 #include <utility>
 
+#include "engine/base/mutex.h"
 #include "engine/engine.h"
 
 namespace traverse {
@@ -19,7 +19,7 @@ class Outbox {
 
   void Deliver(LayerOutcome outcome) {
     {
-      std::lock_guard<std::mutex> lock(mutex_);
+      MutexLock lock(mutex_);
       waiting_.push_back(std::move(outcome));
     }
     Drain();
@@ -28,7 +28,7 @@ class Outbox {
   // The last call; what is delivered after it is dropped.
   void Done() {
     {
-      std::lock_guard<std::mutex> lock(mutex_);
+      MutexLock lock(mutex_);
       done_ = true;
     }
     Drain();
@@ -36,28 +36,28 @@ class Outbox {
 
  private:
   void Drain() {
-    std::unique_lock<std::mutex> lock(mutex_);
+    MutexLock lock(mutex_);
     if (draining_) return;
     draining_ = true;
     while (!waiting_.empty()) {
       LayerOutcome outcome = std::move(waiting_.front());
       waiting_.pop_front();
-      lock.unlock();
+      lock.Unlock();
       sink_.OnLayer(std::move(outcome));
-      lock.lock();
+      lock.Lock();
     }
     // After the last call nobody drains again; the sink may be gone.
     draining_ = done_;
     if (!done_) return;
-    lock.unlock();
+    lock.Unlock();
     sink_.OnDone();
   }
 
   JobSink& sink_;
-  std::mutex mutex_;
-  std::deque<LayerOutcome> waiting_;
-  bool draining_ = false;
-  bool done_ = false;
+  Mutex mutex_;
+  std::deque<LayerOutcome> waiting_ TRAVERSE_GUARDED_BY(mutex_);
+  bool draining_ TRAVERSE_GUARDED_BY(mutex_) = false;
+  bool done_ TRAVERSE_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace traverse

@@ -52,7 +52,7 @@ std::vector<uint64_t> RouteHistory::Complete(Entry entry, KnownRoutePtr own, boo
   while (entry && entry->own && (!entry->previous || entry->previous->ready)) {
     const Entry previous = std::exchange(entry->previous, nullptr);
     if (previous) previous->next.reset();
-    if (previous && previous->best->cost <= entry->own->cost + kCostTolerance) {
+    if (previous && previous->best->cost <= entry->own->cost * (1 + kSameCost)) {
       entry->best = previous->best;
       entry->idle = previous->idle + (entry->in_vain ? 1 : 0);
     } else {

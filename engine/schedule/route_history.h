@@ -11,9 +11,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "engine/exact/lower_bound.h"
 #include "engine/model/point.h"
 #include "engine/model/route.h"
+#include "engine/proof/bounds/lower_bound.h"
 #include "engine/strategy/strategy.h"
 
 namespace traverse {

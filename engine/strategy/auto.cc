@@ -1,24 +1,27 @@
 #include "engine/strategy/auto.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "engine/base/rng.h"
 #include "engine/base/tolerances.h"
-#include "engine/construct/greedy.h"
 #include "engine/cost/layer_view.h"
 #include "engine/cost/route_cost.h"
 #include "engine/cost/route_entries.h"
-#include "engine/exact/small_parts.h"
-#include "engine/local_search/end_groups.h"
-#include "engine/local_search/iterated_search.h"
-#include "engine/local_search/leaf_entries.h"
-#include "engine/local_search/order_tree.h"
-#include "engine/local_search/search_state.h"
+#include "engine/cost/wall_cost.h"
 #include "engine/model/two_layers.h"
+#include "engine/proof/small_parts/small_parts.h"
+#include "engine/search/end_groups.h"
+#include "engine/search/entries/leaf_entries.h"
+#include "engine/search/greedy/greedy.h"
+#include "engine/search/iterated_search.h"
+#include "engine/search/order_tree.h"
+#include "engine/search/search_state.h"
 #include "engine/strategy/stop.h"
 
 namespace traverse {
@@ -69,9 +72,25 @@ struct SearchMemory : PlanMemory {
   bool complete = false;  // the neighbors
 };
 
+using PointPairs = std::vector<std::pair<Point, Point>>;
+
+// The plan with all points moved by the least that there is, so that they are no points of another
+// layer, and each new point with the one it stands for.
+Plan SetApart(Plan plan, PointPairs& points) {
+  for (Path& path : plan.paths) {
+    for (Point& point : path.points) {
+      const Point meant = point;
+      point.x = std::nextafter(point.x, kMaxCoordinateMm * 2);
+      points.emplace_back(point, meant);
+    }
+  }
+  return plan;
+}
+
 class Auto : public Strategy {
  public:
-  Auto(double effort, bool bound) : effort_(effort), bound_(bound) {}
+  Auto(double effort, double least_gain_each, bool bound)
+      : effort_(effort), least_gain_each_(least_gain_each), bound_(bound) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
     const LayerView layer(problem);
@@ -86,9 +105,15 @@ class Auto : public Strategy {
   Solution ResumeWithNext(const LayerProblem& problem, const Route& start, const LayerProblem& next,
                           Route& next_start, Budget& budget) const override {
     const int paths = static_cast<int>(problem.plan->paths.size());
-    const Plan plan = PlanOfBoth(*problem.plan, *next.plan);
+    const bool has_walls = problem.walls != nullptr || next.walls != nullptr;
+    if (has_walls && problem.walls_unit != 1) return Resume(problem, start, budget);
+    PointPairs second_points;
+    const Plan plan =
+        PlanOfBoth(*problem.plan, has_walls ? SetApart(*next.plan, second_points) : *next.plan);
+    const WallCost walls(problem.walls, next.walls, second_points, problem.cost);
     LayerProblem both = problem;
     both.plan = &plan;
+    both.walls = has_walls ? &walls : nullptr;
     both.finish = next.finish;
     both.memory = nullptr;
     const double effort = effort_ * kResumeShare;
@@ -113,8 +138,7 @@ class Auto : public Strategy {
     bool detours = true;  // whether worse routes are walked through: too far for a short search
   };
 
-  static Solution Search(const LayerView& layer, Route route, const Effort& effort,
-                         Budget& budget) {
+  Solution Search(const LayerView& layer, Route route, const Effort& effort, Budget& budget) const {
     ChooseEntries(layer, route, budget);
     const LeafEntries entries(layer.problem);
     std::unique_ptr<PlanMemory> own;
@@ -138,6 +162,7 @@ class Auto : public Strategy {
     options.patience = static_cast<int64_t>(std::min(effort.kicks, 1.0) * kLeastPatience +
                                             effort.kicks * patience * paths);
     options.least_gain = kLeastGain;
+    options.least_gain_each = least_gain_each_;
     options.most_span = std::clamp(kWidestKicks / paths, kLeastMostSpan, kMostSpan);
     if (!effort.detours) options.temperature = 0;
     FindNeighborsOnce(memory, budget);
@@ -204,6 +229,7 @@ class Auto : public Strategy {
   }
 
   const double effort_;
+  const double least_gain_each_;
   const bool bound_;
 };
 
@@ -221,9 +247,18 @@ StrategyEntry AutoEntry() {
                   1e6,
                   {},
                   "How long to go on without a gain, as a multiple of the default."},
+       OptionSpec{"least_gain_each",
+                  OptionSpec::Type::kDouble,
+                  "0",
+                  0,
+                  1e6,
+                  {},
+                  "Cost in mm or s that an iteration must gain on the average for the search to go "
+                  "on; one takes some 20 microseconds."},
        BoundOption(true)},
       [](const StrategyOptions& options) -> std::unique_ptr<Strategy> {
-        return std::make_unique<Auto>(options.Double("effort"), options.Bool("bound"));
+        return std::make_unique<Auto>(options.Double("effort"), options.Double("least_gain_each"),
+                                      options.Bool("bound"));
       }};
 }
 

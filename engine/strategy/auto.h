@@ -1,7 +1,7 @@
 // Strategy `auto`: the best route for the time given. The default.
 //
 // Greedy, then local search over order, entries and directions together, then kicks and repairs
-// until they no longer pay (engine/local_search/). Any plan, any cost.
+// until they no longer pay (engine/search/). Any plan, any cost.
 
 #ifndef TRAVERSE_ENGINE_STRATEGY_AUTO_H_
 #define TRAVERSE_ENGINE_STRATEGY_AUTO_H_

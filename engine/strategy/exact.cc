@@ -9,16 +9,19 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_format.h"
 #include "engine/cost/route_cost.h"
-#include "engine/exact/lower_bound.h"
-#include "engine/exact/stage_model.h"
-#include "engine/exact/stage_proof.h"
-#include "engine/framework/island_layout.h"
+#include "engine/proof/bounds/lower_bound.h"
+#include "engine/proof/walks/stage_model.h"
+#include "engine/proof/walks/stage_proof.h"
 #include "engine/strategy/auto.h"
-#include "engine/strategy/framework_milp.h"
+#include "engine/strategy/framework_options.h"
 #include "engine/strategy/greedy.h"
 #include "engine/strategy/ni2opt.h"
 #include "engine/strategy/stop.h"
+#include "engine/weller/interleaved_search.h"
+#include "engine/weller/milp/milp_method.h"
+#include "engine/weller/steps/island_layout.h"
 
 namespace traverse {
 namespace {
@@ -123,61 +126,118 @@ class Exact : public Strategy {
 // The thesis's framework with its mixed integer programmes.
 class ExactFramework : public Strategy {
  public:
+  // `cold`: as the thesis has it, from no start and without greedy's route instead of a longer one.
   ExactFramework(const FrameworkOptions& options, const MilpOptions& milp,
-                 double time_limit_seconds, bool bound)
+                 double time_limit_seconds, bool cold, bool bound)
       : options_(options),
         milp_(milp),
         time_limit_seconds_(time_limit_seconds),
+        cold_(cold),
         bound_(bound),
         greedy_(MakeDefault(GreedyEntry())),
         heuristic_(MakeDefault(Ni2optEntry())) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
-    const std::optional<ClassicalLayer> layer = AsClassicalLayer(*problem.plan);
-    if (!layer) return heuristic_->Solve(problem, budget);
-    Solution solution = greedy_->Solve(problem, budget);
-    if (budget.ExhaustedNow()) return solution;
-    MilpMethod method(milp_, time_limit_seconds_);
+    const std::optional<ClassicalLayer> classical = AsClassicalLayer(*problem.plan);
+    const std::optional<InterleavedLayer> interleaved = AsInterleavedLayer(*problem.plan);
+    if (!classical && !interleaved) {
+      Solution solution = heuristic_->Solve(problem, budget);
+      solution.statistics["framework"] = 0;  // this is ni2opt's route
+      return solution;
+    }
+    Solution solution;
+    if (cold_) solution.route = GivenRoute(*problem.plan);
+    if (!cold_) solution = greedy_->Solve(problem, budget);
+    if (budget.ExhaustedNow()) return Stopped(std::move(solution), false, budget);
+    MilpMethod method(milp_, time_limit_seconds_, First());
     FrameworkResult found =
-        SearchFramework(problem, *layer, solution.route, options_, method, budget);
+        classical ? SearchFramework(problem, *classical, solution.route, options_, method, budget)
+                  : SearchInterleaved(problem, *interleaved, options_, method, budget);
     const double cost = RouteCost(problem, found.route);
-    if (cost < RouteCost(problem, solution.route)) solution.route = std::move(found.route);
+    DescribeFramework(found, options_, solution.statistics);
+    if (cold_ || cost < RouteCost(problem, solution.route)) {
+      solution.route = std::move(found.route);
+    }
+    solution.statistics["framework"] = 1;
     solution.statistics["framework_cost"] = cost;
     Describe("contours", method.contours(), solution.statistics);
     Describe("rasters", method.rasters(), solution.statistics);
     budget.ExhaustedNow();
-    solution.stop =
-        StopOr(budget, method.timed_out() ? StopReason::kTimeLimit : StopReason::kLocalOptimum);
-    return solution;
+    return Stopped(std::move(solution), method.timed_out(), budget);
   }
 
   // As the thesis has it, every layer starts where the one before ended.
   bool serial() const override { return true; }
 
+  bool pure() const override { return cold_; }
+
   bool wants_bound() const override { return bound_; }
 
  private:
-  static void Describe(const std::string& step, const MilpRoute& programme,
+  MilpMethod::FirstRoute First() const {
+    if (cold_) return nullptr;
+    return [this](const LayerProblem& problem, Budget& budget) {
+      return heuristic_->Solve(problem, budget).route;
+    };
+  }
+
+  static Solution Stopped(Solution solution, bool timed_out, const Budget& budget) {
+    solution.stop = StopOr(budget, timed_out ? StopReason::kTimeLimit : StopReason::kLocalOptimum);
+    return solution;
+  }
+
+  // Sums over the programmes of a step: one, or one for each island. What they began with and what
+  // they came to are of those alone that found a route.
+  static void Describe(const std::string& step, const std::vector<MilpRoute>& programmes,
                        std::map<std::string, double>& statistics) {
-    if (programme.columns == 0) return;
-    statistics[step + "_columns"] = programme.columns;
-    statistics[step + "_rows"] = programme.rows;
-    statistics[step + "_nodes"] = programme.nodes;
-    statistics[step + "_value"] = programme.value;
-    if (programme.bound) statistics[step + "_bound"] = *programme.bound;
+    if (programmes.empty()) return;
+    const auto add = [&](const char* name, double value) { statistics[step + name] += value; };
+    bool bounded = true;
+    for (const MilpRoute& programme : programmes) {
+      add("_programmes", 1);
+      add("_found", programme.route.empty() ? 0 : 1);
+      add("_complete", programme.complete ? 1 : 0);
+      add("_columns", programme.columns);
+      add("_rows", programme.rows);
+      add("_nodes", programme.nodes);
+      add("_seconds", programme.seconds);
+      bounded = bounded && programme.bound;
+      if (programme.route.empty()) continue;
+      add("_value", programme.value);
+      if (!programme.start) continue;
+      add("_start", *programme.start);
+      add("_gained", *programme.start - programme.value);
+    }
+    for (const MilpRoute& programme : programmes) {
+      if (bounded) add("_bound", *programme.bound);
+    }
+    if (programmes.size() == 1) DescribeIncumbents(step, programmes.front(), statistics);
+  }
+
+  // When the programme came to what: thesis figures 5.15 to 5.17.
+  static void DescribeIncumbents(const std::string& step, const MilpRoute& programme,
+                                 std::map<std::string, double>& statistics) {
+    constexpr size_t kMost = 30;
+    const size_t count = programme.incumbents.size();
+    for (size_t i = count > kMost ? count - kMost : 0; i < count; ++i) {
+      const std::string name = absl::StrFormat("%s_incumbent_%02d", step, i + 1);
+      statistics[name + "_seconds"] = programme.incumbents[i].seconds;
+      statistics[name + "_value"] = programme.incumbents[i].value;
+    }
   }
 
   const FrameworkOptions options_;
   const MilpOptions milp_;
   const double time_limit_seconds_;
+  const bool cold_;
   const bool bound_;
-  const std::unique_ptr<Strategy> greedy_;     // which no result is worse than
+  const std::unique_ptr<Strategy> greedy_;     // which no result is worse than, unless cold
   const std::unique_ptr<Strategy> heuristic_;  // for plans that the framework does not know
 };
 
 std::vector<OptionSpec> Options() {
   using Type = OptionSpec::Type;
-  return {
+  std::vector<OptionSpec> specs = {
       OptionSpec{"model",
                  Type::kChoice,
                  "integrated",
@@ -185,7 +245,7 @@ std::vector<OptionSpec> Options() {
                  0,
                  {"integrated", "framework"},
                  "The whole layer at once, proven; or the four steps of the thesis with its mixed "
-                 "integer programmes (in sequential deposition; ni2opt else)."},
+                 "integer programmes (ni2opt where a plan has no islands, statistic framework 0)."},
       OptionSpec{"time_limit",
                  Type::kDouble,
                  "7200",
@@ -193,13 +253,6 @@ std::vector<OptionSpec> Options() {
                  1e6,
                  {},
                  "Longest time in s: for one layer, or for each programme of the framework."},
-      OptionSpec{"representation",
-                 Type::kChoice,
-                 "bbcp",
-                 0,
-                 0,
-                 {"sp", "nrp", "bbcp"},
-                 "Framework: what stands for a contour in the preliminary sequence."},
       OptionSpec{"gap",
                  Type::kDouble,
                  "0.15",
@@ -214,16 +267,28 @@ std::vector<OptionSpec> Options() {
                  0,
                  {},
                  "Framework: one redundant row more for each position of a contour."},
+      OptionSpec{"start",
+                 Type::kChoice,
+                 "ni2opt",
+                 0,
+                 0,
+                 {"ni2opt", "none"},
+                 "Framework: what each programme begins with; none: cold, as the thesis's did, and "
+                 "no other route instead of a longer one."},
       BoundOption(true)};
+  const std::vector<OptionSpec> shared = FrameworkOptionSpecs("Framework: ");
+  specs.insert(specs.end(), shared.begin(), shared.end());
+  return specs;
 }
 
 std::unique_ptr<Strategy> MakeExact(const StrategyOptions& values) {
   const double time_limit = values.Double("time_limit");
   if (values.Choice("model") == "integrated") return std::make_unique<Exact>(time_limit);
-  FrameworkOptions options;
-  options.representation = RepresentationNamed(values.Choice("representation"));
+  FrameworkOptions options = FrameworkOptionsFrom(values);
+  const bool cold = values.Choice("start") == "none";
+  if (cold) options.visible_in = VisibleIn::kBothPolygons;
   return std::make_unique<ExactFramework>(
-      options, MilpOptions{values.Double("gap"), values.Bool("strengthened")}, time_limit,
+      options, MilpOptions{values.Double("gap"), values.Bool("strengthened")}, time_limit, cold,
       values.Bool("bound"));
 }
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "engine/construct/greedy.h"
+#include "engine/search/greedy/greedy.h"
 #include "engine/strategy/stop.h"
 
 namespace traverse {
@@ -12,24 +12,32 @@ namespace {
 
 class Greedy : public Strategy {
  public:
+  explicit Greedy(bool pure) : pure_(pure) {}
+
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
-    Route route = BaselineRoute(LayerView(problem), budget);
+    const LayerView layer(problem);
+    Route route = pure_ ? GreedyRoute(layer, budget) : BaselineRoute(layer, budget);
     return Solution{std::move(route), StopOr(budget, StopReason::kLocalOptimum), std::nullopt};
   }
   bool serial() const override { return true; }
+  bool pure() const override { return pure_; }
+
+ private:
+  const bool pure_;
 };
 
 }  // namespace
 
 StrategyEntry GreedyEntry() {
-  return StrategyEntry{"greedy",
-                       "Always the nearest point at which a path may be begun; the order given "
-                       "where that is no longer.",
-                       false,
-                       {},
-                       [](const StrategyOptions&) -> std::unique_ptr<Strategy> {
-                         return std::make_unique<Greedy>();
-                       }};
+  return StrategyEntry{
+      "greedy",
+      "Always the nearest point at which a path may be begun; the order given where that is no "
+      "longer.",
+      false,
+      {PureOption("Metodo 1 as published: no other route takes the place of a longer one.")},
+      [](const StrategyOptions& options) -> std::unique_ptr<Strategy> {
+        return std::make_unique<Greedy>(options.Bool("pure"));
+      }};
 }
 
 }  // namespace traverse

@@ -4,10 +4,11 @@
 #include <optional>
 #include <utility>
 
-#include "engine/construct/greedy.h"
-#include "engine/construct/nearest_insertion.h"
 #include "engine/cost/route_cost.h"
-#include "engine/improve/descent.h"
+#include "engine/search/greedy/greedy.h"
+#include "engine/souza/descent.h"
+#include "engine/souza/nearest_insertion.h"
+#include "engine/souza/published.h"
 #include "engine/strategy/stop.h"
 
 namespace traverse {
@@ -59,6 +60,23 @@ class Ni2opt : public Strategy {
   DescentOptions descent_;
 };
 
+// Metodo 2, or with point release Metodo 3, as published.
+class PublishedNi2opt : public Strategy {
+ public:
+  explicit PublishedNi2opt(bool point_release) : point_release_(point_release) {}
+
+  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+    Route route = PublishedRoute(LayerView(problem), point_release_, budget);
+    return Solution{std::move(route), StopOr(budget, StopReason::kLocalOptimum), std::nullopt};
+  }
+
+  bool serial() const override { return true; }
+  bool pure() const override { return true; }
+
+ private:
+  const bool point_release_;
+};
+
 }  // namespace
 
 StrategyEntry Ni2optEntry() {
@@ -71,9 +89,14 @@ StrategyEntry Ni2optEntry() {
       "ni2opt",
       "Nearest insertion, then 2-opt and point release until neither finds a gain.",
       false,
-      {point_release},
+      {point_release,
+       PureOption("Metodo 3 as published, without point release Metodo 2: rasters after the "
+                  "contours' 2-opt, release once at the end, no other route instead of a longer "
+                  "one.")},
       [](const StrategyOptions& options) -> std::unique_ptr<Strategy> {
-        return std::make_unique<Ni2opt>(options.Bool("point_release"));
+        const bool release = options.Bool("point_release");
+        if (options.Bool("pure")) return std::make_unique<PublishedNi2opt>(release);
+        return std::make_unique<Ni2opt>(release);
       }};
 }
 

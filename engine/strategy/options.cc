@@ -37,6 +37,10 @@ OptionSpec BoundOption(bool default_value) {
                     "Look for a lower bound too: how much better any route can be at most."};
 }
 
+OptionSpec PureOption(const char* description) {
+  return OptionSpec{"pure", OptionSpec::Type::kBool, "false", 0, 0, {}, description};
+}
+
 absl::StatusOr<StrategyOptions::Value> StrategyOptions::ParseValue(const OptionSpec& spec,
                                                                    const std::string& text) {
   Value value;

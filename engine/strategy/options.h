@@ -28,6 +28,10 @@ struct OptionSpec {
 // The option `bound` that several strategies have: see Strategy::wants_bound.
 OptionSpec BoundOption(bool default_value);
 
+// The option `pure` of the sources' methods, off by default: as published, and the only promise
+// that stays is a valid route.
+OptionSpec PureOption(const char* description);
+
 // The values of a strategy's options, all of them set. Immutable.
 class StrategyOptions {
  public:

@@ -10,6 +10,7 @@
 #include "engine/strategy/auto.h"
 #include "engine/strategy/exact.h"
 #include "engine/strategy/greedy.h"
+#include "engine/strategy/in_ordinary_unit.h"
 #include "engine/strategy/ni2opt.h"
 #include "engine/strategy/none.h"
 #include "engine/strategy/tabu.h"
@@ -53,7 +54,7 @@ absl::StatusOr<std::unique_ptr<Strategy>> MakeStrategy(
   }
   absl::StatusOr<StrategyOptions> parsed = StrategyOptions::Parse(entry->options, options);
   if (!parsed.ok()) return parsed.status();
-  return entry->make(*parsed);
+  return InOrdinaryUnit(entry->make(*parsed));
 }
 
 }  // namespace traverse

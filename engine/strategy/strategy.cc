@@ -1,5 +1,6 @@
 #include "engine/strategy/strategy.h"
 
+#include <cassert>
 #include <utility>
 
 #include "engine/cost/route_cost.h"
@@ -13,8 +14,9 @@ Solution Strategy::Resume(const LayerProblem& problem, const Route& start, Budge
 }
 
 Solution Strategy::ResumeWithNext(const LayerProblem& problem, const Route& start,
-                                  const LayerProblem& /*next*/, Route& /*next_start*/,
+                                  [[maybe_unused]] const LayerProblem& next, Route& /*next_start*/,
                                   Budget& budget) const {
+  assert(problem.cost == next.cost && !problem.finish);
   return Resume(problem, start, budget);
 }
 

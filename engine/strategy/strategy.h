@@ -25,7 +25,8 @@ struct Solution {
   // No route of the problem costs less, in the unit of its cost, `finish` included. Unset: unknown.
   std::optional<double> lower_bound;
 
-  // What the search can tell of itself, by name; what there is depends on the strategy.
+  // What the search can tell of itself, by name; what there is depends on the strategy. Names that
+  // end in _cost, _value or _bound are in the unit of the problem's cost.
   std::map<std::string, double> statistics = {};
 };
 
@@ -63,6 +64,10 @@ class Strategy {
   // takes no longer than a prediction of the start would, or where what is found for a predicted
   // start is worth nothing at another one.
   virtual bool serial() const { return false; }
+
+  // True if callers want the route of this method alone, however long: no other one, such as
+  // greedy's or the order given, takes its place.
+  virtual bool pure() const { return false; }
 
   // True if callers want a lower bound of solutions that have none: the chain looks for one then.
   virtual bool wants_bound() const { return false; }

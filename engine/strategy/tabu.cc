@@ -8,15 +8,17 @@
 #include <utility>
 
 #include "engine/base/rng.h"
-#include "engine/construct/greedy.h"
 #include "engine/cost/layer_view.h"
 #include "engine/cost/route_cost.h"
-#include "engine/exact/small_parts.h"
-#include "engine/framework/island_layout.h"
-#include "engine/strategy/framework_search.h"
+#include "engine/proof/small_parts/small_parts.h"
+#include "engine/search/greedy/greedy.h"
+#include "engine/search/polisher.h"
+#include "engine/strategy/framework_options.h"
 #include "engine/strategy/ni2opt.h"
-#include "engine/strategy/polisher.h"
 #include "engine/strategy/stop.h"
+#include "engine/weller/framework_search.h"
+#include "engine/weller/interleaved_search.h"
+#include "engine/weller/steps/island_layout.h"
 
 namespace traverse {
 namespace {
@@ -39,6 +41,43 @@ std::unique_ptr<const Strategy> DefaultNi2opt() {
 struct Candidate {
   Route route;
   double cost = 0;
+};
+
+// The framework on `layer`, or tabu search over its whole plan where that knows of no islands.
+Route Search(const LayerView& layer, const Route& start, const FrameworkOptions& options,
+             Budget& budget, std::map<std::string, double>& statistics) {
+  const std::optional<ClassicalLayer> classical = AsClassicalLayer(layer.plan());
+  const std::optional<InterleavedLayer> interleaved = AsInterleavedLayer(layer.plan());
+  if (!classical && !interleaved) return SearchAnyPlan(layer.problem, start, options, budget);
+  FrameworkResult result = classical
+                               ? SearchFramework(layer.problem, *classical, start, options, budget)
+                               : SearchInterleaved(layer.problem, *interleaved, options, budget);
+  statistics["framework_cost"] = RouteCost(layer.problem, result.route);
+  statistics["diversifications"] = result.diversifications;
+  statistics["evaluations"] = static_cast<double>(result.evaluations);
+  DescribeFramework(result, options, statistics);
+  return std::move(result.route);
+}
+
+// Metaheuristic of the thesis, step by step as it is written.
+class ThesisTabu : public Strategy {
+ public:
+  explicit ThesisTabu(const FrameworkOptions& options) : options_(options) {}
+
+  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+    const LayerView layer(problem);
+    Solution solution;
+    solution.route = Search(layer, GivenRoute(layer.plan()), options_, budget, solution.statistics);
+    budget.ExhaustedNow();
+    solution.stop = StopOr(budget, StopReason::kIterationLimit);
+    return solution;
+  }
+
+  bool serial() const override { return true; }
+  bool pure() const override { return true; }
+
+ private:
+  const FrameworkOptions options_;
 };
 
 class Tabu : public Strategy {
@@ -101,7 +140,7 @@ class Tabu : public Strategy {
   Solution SolvePlain(const LayerView& layer, Budget& budget) const {
     Candidate best = Baseline(layer, budget);
     Solution solution;
-    Take(layer, Search(layer, best.route, budget, solution.statistics), best);
+    Take(layer, Search(layer, best.route, options_, budget, solution.statistics), best);
     budget.ExhaustedNow();
     solution.stop = StopOr(budget, StopReason::kIterationLimit);
     solution.route = std::move(best.route);
@@ -119,7 +158,7 @@ class Tabu : public Strategy {
 
     Solution solution;
     Budget share = FrameworkBudget(budget);
-    Route found = Search(layer, start, share, solution.statistics);
+    Route found = Search(layer, start, options_, share, solution.statistics);
     Rng rng(StreamSeed(layer.problem.seed, kPolishStream));
     Take(layer, polisher.Iterate(best.route, Patience(layer), rng, budget), best);
     Take(layer, polisher.Iterate(std::move(found), Patience(layer), rng, budget), best);
@@ -144,25 +183,6 @@ class Tabu : public Strategy {
         std::chrono::duration_cast<Budget::Clock::duration>(left * kFrameworkShare));
   }
 
-  Route Search(const LayerView& layer, const Route& start, Budget& budget,
-               std::map<std::string, double>& statistics) const {
-    const std::optional<ClassicalLayer> classical = AsClassicalLayer(layer.plan());
-    if (!classical) return SearchAnyPlan(layer.problem, start, options_, budget);
-    FrameworkResult result = SearchFramework(layer.problem, *classical, start, options_, budget);
-    statistics["framework_cost"] = RouteCost(layer.problem, result.route);
-    statistics["diversifications"] = result.diversifications;
-    statistics["evaluations"] = static_cast<double>(result.evaluations);
-    statistics["points_entries"] = result.points.entries;
-    statistics["points_island_analysis"] = result.points.island_analysis;
-    statistics["points_sp"] = result.points.spaced;
-    statistics["points_bbcp"] = result.points.box_center;
-    statistics["points_vp"] = result.points.visible;
-    if (options_.representation == Representation::kNearRasterPoints) {
-      statistics["points_nrp"] = result.points.near_raster;
-    }
-    return std::move(result.route);
-  }
-
   FrameworkOptions options_;
   bool polish_;
   double polish_rounds_;
@@ -170,41 +190,32 @@ class Tabu : public Strategy {
   std::unique_ptr<const Strategy> ni2opt_;
 };
 
-OptionSpec Number(const char* name, OptionSpec::Type type, const char* default_value,
-                  double minimum, double maximum, const char* description) {
-  return OptionSpec{name, type, default_value, minimum, maximum, {}, description};
-}
-
-OptionSpec Switch(const char* name, const char* default_value, const char* description) {
-  return OptionSpec{name, OptionSpec::Type::kBool, default_value, 0, 0, {}, description};
+// The thesis as written, which leaves open when an intensification ends: here after as many moves
+// without gain as a move is tabu, as its times grow by 3 to 4.5 where the diversifications, of
+// which the tenure is a tenth, are twice as many (tables 5.7 and 5.8, step 2).
+FrameworkOptions AsWritten(FrameworkOptions options) {
+  TabuOptions& tabu = options.tabu;
+  tabu.published = true;
+  tabu.patience = static_cast<int>(std::max(1.0, tabu.tenure * tabu.diversifications));
+  tabu.evaluations = 0;
+  tabu.elite = 1;
+  options.relinked = 0;
+  options.visible_in = VisibleIn::kBothPolygons;
+  options.point_relinkings = tabu.diversifications;
+  return options;
 }
 
 std::vector<OptionSpec> Options() {
   using Type = OptionSpec::Type;
-  return {
-      OptionSpec{
-          "representation",
-          Type::kChoice,
-          "bbcp",
-          0,
-          0,
-          {"sp", "nrp", "bbcp"},
-          "What stands for a contour in the preliminary sequence: spaced points, points near "
-          "the ends of the island's rasters, or the center of its bounding box."},
-      Number("spacing_mm", Type::kDouble, "2.5", 0, 1000,
-             "Least distance of the spaced points of a contour (Dp), in mm."),
-      Number("neighbors", Type::kInt, "2", 1, 100,
-             "Contours that the growing circle around one has to meet."),
-      Number("first_radius_mm", Type::kDouble, "0", 0, 1000,
-             "Radius of the circle at first, in mm; 0: the shorter side of the bounding box."),
-      Number("radius_step_mm", Type::kDouble, "5", 0.001, 1000,
-             "How much the circle grows at a time, in mm."),
-      Number("neighbor_penalty", Type::kDouble, "100", 0, 1e6,
-             "A link outside the neighborhoods counts as if it were so much longer, in mm."),
-      Number("order_penalty", Type::kDouble, "1000", 0, 1e6,
-             "The same for an order that the plan rules out, in mm; no result has one."),
-      Number("diversifications", Type::kInt, "2500", 1, 1000000,
-             "How often the search starts anew, in each of the steps for contours and rasters."),
+  std::vector<OptionSpec> specs = FrameworkOptionSpecs("");
+  const std::vector<OptionSpec> own = {
+      NumberOption("neighbor_penalty", Type::kDouble, "100", 0, 1e6,
+                   "A link outside the neighborhoods counts as if it were so much longer, in mm."),
+      NumberOption("order_penalty", Type::kDouble, "1000", 0, 1e6,
+                   "The same for an order that the plan rules out, in mm; no result has one."),
+      NumberOption(
+          "diversifications", Type::kInt, "2500", 1, 1000000,
+          "How often the search starts anew, in each of the steps for contours and rasters."),
       OptionSpec{"diversification",
                  Type::kChoice,
                  "random",
@@ -212,38 +223,41 @@ std::vector<OptionSpec> Options() {
                  0,
                  {"random", "swaps"},
                  "From what: a random sequence, or the best one after random swaps."},
-      Number("swaps", Type::kDouble, "0.3", 0, 10,
-             "How many random swaps for each contour or raster, three at least."),
-      Number("list_size", Type::kDouble, "1.5", 0, 100,
-             "Moves in the tabu list for each contour or raster."),
-      Number("tenure", Type::kDouble, "0.1", 0, 100,
-             "Iterations that a move is tabu, for each diversification."),
-      Number("patience", Type::kInt, "3", 0, 10000,
-             "Moves without gain after which the search starts anew."),
-      Number("evaluations", Type::kInt, "20000000", 0, 1e12,
-             "Swaps evaluated that end the search of each step, whatever number of "
-             "diversifications is left; 0: no limit."),
-      Switch("reactive", "false",
-             "Sequences that come again make the tenure longer, or start the search anew."),
-      Number("elite", Type::kInt, "5", 1, 100,
-             "Preliminary sequences that the next step makes feasible and relinks."),
-      Number("relinked", Type::kInt, "5", 0, 100,
-             "Sequences on the way from each of these to the best one that it tries as well."),
-      Switch("polish", "true",
-             "Improve the route over all vertices of the contours, by iterated local search."),
-      Number("polish_rounds", Type::kDouble, "1", 0, 1000000,
-             "Kicks in a row without gain that end the polishing, for each path; beyond 100 "
-             "paths, for each ten."),
+      NumberOption("swaps", Type::kDouble, "0.3", 0, 10,
+                   "How many random swaps for each contour or raster, three at least."),
+      NumberOption("list_size", Type::kDouble, "1.5", 0, 100,
+                   "Moves in the tabu list for each contour or raster."),
+      NumberOption("tenure", Type::kDouble, "0.1", 0, 100,
+                   "Iterations that a move is tabu, for each diversification."),
+      NumberOption("patience", Type::kInt, "3", 0, 10000,
+                   "Moves without gain after which the search starts anew."),
+      NumberOption("evaluations", Type::kInt, "20000000", 0, 1e12,
+                   "Swaps evaluated that end the search of each step, whatever number of "
+                   "diversifications is left; 0: no limit."),
+      SwitchOption("reactive", "false",
+                   "Sequences that come again make the tenure longer, or start the search anew."),
+      NumberOption("elite", Type::kInt, "5", 1, 100,
+                   "Preliminary sequences that the next step makes feasible and relinks."),
+      NumberOption(
+          "relinked", Type::kInt, "5", 0, 100,
+          "Sequences on the way from each of these to the best one that it tries as well."),
+      SwitchOption(
+          "polish", "true",
+          "Improve the route over all vertices of the contours, by iterated local search."),
+      NumberOption("polish_rounds", Type::kDouble, "2", 0, 1000000,
+                   "Kicks in a row without gain that end the polishing, for each path; beyond 100 "
+                   "paths, for each ten."),
+      SwitchOption("thesis", "false",
+                   "The thesis's search as written, and nothing else: random first sequence, the "
+                   "list carried over, as many moves without gain as one is tabu, points by path "
+                   "relinking; no polish, no patience, elite, relinked, evaluations of ours."),
       BoundOption(false)};
+  specs.insert(specs.end(), own.begin(), own.end());
+  return specs;
 }
 
 std::unique_ptr<Strategy> MakeTabu(const StrategyOptions& values) {
-  FrameworkOptions options;
-  options.representation = RepresentationNamed(values.Choice("representation"));
-  options.spacing_mm = values.Double("spacing_mm");
-  options.neighborhood.neighbors = static_cast<int>(values.Int("neighbors"));
-  options.neighborhood.first_radius_mm = values.Double("first_radius_mm");
-  options.neighborhood.step_mm = values.Double("radius_step_mm");
+  FrameworkOptions options = FrameworkOptionsFrom(values);
   options.neighbor_penalty_mm = values.Double("neighbor_penalty");
   options.relinked = static_cast<int>(values.Int("relinked"));
   TabuOptions& tabu = options.tabu;
@@ -259,6 +273,7 @@ std::unique_ptr<Strategy> MakeTabu(const StrategyOptions& values) {
   tabu.evaluations = values.Int("evaluations");
   tabu.reactive = values.Bool("reactive");
   tabu.elite = static_cast<int>(values.Int("elite"));
+  if (values.Bool("thesis")) return std::make_unique<ThesisTabu>(AsWritten(options));
   return std::make_unique<Tabu>(options, values.Bool("polish"), values.Double("polish_rounds"),
                                 values.Bool("bound"));
 }

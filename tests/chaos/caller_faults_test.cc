@@ -13,8 +13,8 @@
 #include "absl/time/clock.h"
 #include "client/api/channel.h"
 #include "client/api/optimizer_client.h"
-#include "tests/server/server_process.h"
-#include "tests/server/service_fixture.h"
+#include "tests/server/support/server_process.h"
+#include "tests/server/support/service_fixture.h"
 
 namespace traverse::testing {
 namespace {

@@ -59,6 +59,30 @@ class Objects(unittest.TestCase):
             target = found["HorizontalPodAutoscaler", "traverse"]["spec"]["scaleTargetRef"]
             self.assertIn((target["kind"], target["name"]), found)
 
+    def test_gateways_join_by_their_component(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            shutil.copytree(KUBERNETES, root / "kubernetes")
+            trial = root / "kubernetes/overlays/trial/kustomization.yaml"
+            trial.write_text(trial.read_text() + "\ncomponents: [../../components/gateway]\n")
+            text = support.run("kubectl", "kustomize", trial.parent).stdout
+        found = {(item["kind"], item["metadata"]["name"]): item for item in yaml.safe_load_all(text)}
+        pod = found["Deployment", "traverse-gateway"]["spec"]["template"]
+        labels = pod["metadata"]["labels"].items()
+        for kind in ("Service", "PodDisruptionBudget", "NetworkPolicy", "Deployment"):
+            spec = found[kind, "traverse-gateway"]["spec"]
+            selector = spec.get("selector") or spec["podSelector"]
+            self.assertLessEqual(selector.get("matchLabels", selector).items(), labels)
+        # The servers let it in, and its flags name a service that there is.
+        allowed = found["NetworkPolicy", "traverse"]["spec"]["ingress"][0]["from"][0]["podSelector"]["matchLabels"]
+        self.assertLessEqual(allowed.items(), labels)
+        arguments = " ".join(pod["spec"]["containers"][0]["args"])
+        self.assertIn(("Service", re.search(r"--server=([\w-]+):", arguments)[1]), found)
+        drain = seconds(re.search(r"--drain_timeout=(\S+)", arguments)[1])
+        self.assertGreaterEqual(pod["spec"]["terminationGracePeriodSeconds"], drain + 10)
+        self.assertIn("traverse_gateway_requests_in_flight",
+                      str(found["HorizontalPodAutoscaler", "traverse-gateway"]["spec"]["metrics"]))
+
     def test_production_scales_on_the_queue_and_is_watched(self):
         found = objects("production")
         metrics = str(found["HorizontalPodAutoscaler", "traverse"]["spec"]["metrics"])

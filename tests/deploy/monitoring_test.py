@@ -15,7 +15,10 @@ DASHBOARD = MONITORING / "dashboard" / "traverse.json"
 # The names that the server promises, and those that it adds to them.
 METRICS = """jobs_total layers_total layer_solve_seconds job_seconds queue_layers jobs_in_flight workers_busy
 workers ready travel_given_mm_total travel_mm_total idle_seconds_saved_total optimality_gap_ratio rejected_total
-invalid_routes_total build_info""".split()
+invalid_routes_total build_info workers_silent memory_bytes memory_max_bytes connections connections_cut_total
+certificate_expiry_seconds reload_failures_total log_lines_lost_total
+gateway_uploads_total gateway_requests_total gateway_request_seconds gateway_files_total
+gateway_requests_in_flight gateway_requests_waiting gateway_spool_bytes gateway_print_seconds_saved_total""".split()
 
 
 def panels():

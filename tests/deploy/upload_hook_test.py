@@ -109,6 +109,18 @@ class UploadHook(unittest.TestCase):
         self.assertTrue(other.read_text().startswith(";good"))
         self.assertEqual(["new.gcode", "new.gcode.json"], self.kept())
 
+    def test_containers_of_gcode_are_served_and_projects_are_not(self):
+        specification = importlib.util.spec_from_file_location("traverse_upload", HOOK)
+        hook = importlib.util.module_from_spec(specification)
+        specification.loader.exec_module(hook)
+        for name in ("part.bgcode", "plates.gcode.3mf", "part.ufp", "PART.GCODE"):
+            self.assertEqual([self.upload(";good", name)], hook.candidates(self.folder / "uploads"))
+            self.assertTrue(hook.process(self.upload(";good", name), self.originals, program=str(self.program)))
+            self.assertTrue((self.folder / "uploads" / name).read_text().startswith(";optimised"), name)
+            (self.folder / "uploads" / name).unlink()
+        self.upload(";good", "project.3mf")
+        self.assertEqual([], hook.candidates(self.folder / "uploads"))
+
     def test_originals_below_the_watched_folder_are_refused(self):
         done = self.run_hook(f"--watch={self.folder}")
         self.assertEqual(2, done.returncode)

@@ -1,4 +1,4 @@
-"""The commands of README.md, client/README.md and server/README.md do what the guides say, word for word but for the ports.
+"""The commands of README.md and of the guides of client, gateway and server do what the guides say, word for word but for the ports.
 
 Runs every block marked `sh` in a folder of its own, where `build/release` is the build under test. TRAVERSE_BUILD names it.
 """
@@ -10,6 +10,7 @@ import socket
 import subprocess
 import tempfile
 import unittest
+import zipfile
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ["TRAVERSE_BUILD"])
@@ -40,10 +41,14 @@ class Commands(unittest.TestCase):
         (self.folder / "deploy").symlink_to(SOURCE / "deploy")
         shutil.copy(SAMPLES / "part2.damat", self.folder / "part.damat")
         shutil.copy(SAMPLES / "clusters13.gcode", self.folder / "part.gcode")
+        with zipfile.ZipFile(self.folder / "plates.gcode.3mf", "w", zipfile.ZIP_DEFLATED) as archive:
+            archive.writestr("[Content_Types].xml", "<Types/>")
+            for plate in (1, 2):
+                archive.write(SAMPLES / "clusters13.gcode", f"Metadata/plate_{plate}.gcode")
 
     def run_block(self, block):
         """Runs it, and ends what it left in the background."""
-        for port in ("50051", "9464"):
+        for port in ("50051", "9464", "8080"):
             block = block.replace(port, free_port())
         # A reader types more slowly than a busy machine starts a server; a script does not.
         wait = r"\g<0>\ntimeout 60 bash -c 'until (: </dev/tcp/127.0.0.1/\1) 2>/dev/null; do sleep 0.05; done'"
@@ -81,8 +86,13 @@ class Commands(unittest.TestCase):
             with self.subTest(block):
                 self.assertIn("listening on port", self.run_block(block))
 
+    def test_of_the_gateways_guide(self):
+        for block in blocks("client/gateway/README.md"):
+            self.run_block(block)
+        self.assertGreater((self.folder / "shorter.gcode").stat().st_size, 1000)
+
     def test_no_command_is_left_out(self):
-        for guide in ("README.md", "client/README.md", "server/README.md"):
+        for guide in ("README.md", "client/README.md", "client/gateway/README.md", "server/README.md"):
             text = (SOURCE / guide).read_text(encoding="utf-8")
             for block in re.findall(r"(?ms)^```\n(.*?)^```", text):
                 self.assertIsNone(re.search(r"(?m)^(build/release/|traverse |traverse-)", block), block)

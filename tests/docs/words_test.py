@@ -57,7 +57,7 @@ class Words(unittest.TestCase):
                  *sorted((SOURCE / "client").rglob("*.h")), *sorted((SOURCE / "engine").rglob("*.h")),
                  *sorted((SOURCE / "server").rglob("*.h")), *sorted((SOURCE / "client/view/web/src").iterdir())]
         # Names of people and of variables, and words of other languages.
-        known = "mmu,sequencial,stoer,theis"
+        known = "limite,mmu,sectionis,sequencial,stoer,tese,theis"
         done = subprocess.run(["codespell", "--ignore-words-list", known, *texts], capture_output=True, text=True, check=False)
         self.assertEqual(done.stdout, "", done.stdout + done.stderr)
 

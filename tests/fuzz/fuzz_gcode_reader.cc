@@ -9,7 +9,7 @@
 
 #include "absl/strings/match.h"
 #include "client/gcode/gcode_job.h"
-#include "client/gcode/reader.h"
+#include "client/gcode/read/reader.h"
 #include "tests/fuzz/check.h"
 #include "tests/fuzz/gcode_mutator.h"
 

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "client/gcode/layer_meter.h"
-#include "client/gcode/reader.h"
+#include "client/gcode/measure/layer_meter.h"
+#include "client/gcode/read/reader.h"
 #include "client/gcode/rewrite.h"
 #include "client/gcode/verify/verifier.h"
 #include "engine/base/rng.h"
-#include "tests/client/gcode/random_order.h"
+#include "tests/client/gcode/support/random_order.h"
 #include "tests/fuzz/check.h"
 #include "tests/fuzz/gcode_mutator.h"
 
@@ -21,7 +21,7 @@ namespace traverse::fuzz {
 namespace {
 
 void CheckSamePrint(const GcodeFile& file, const std::string& text) {
-  const absl::Status same = VerifyGcode(file.text, "original", text, "rewritten");
+  const absl::Status same = VerifyGcode(file.text, "original", text, "rewritten", OnlySamePrint());
   Check(same.ok(), absl::StrCat("what was rewritten is verified: ", same.ToString()));
   const auto again = ReadGcode(text, "rewritten");
   Check(again.ok(), absl::StrCat("what was rewritten can be read: ", again.status().ToString()));
@@ -67,7 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   }
   // No layer keeps its order for being better.
   const std::string shuffled = gcode::testing::Shuffled(**file, options.policy, seed);
-  if (VerifyGcode((*file)->text, "original", shuffled, "shuffled").ok()) {
+  if (VerifyGcode((*file)->text, "original", shuffled, "shuffled", OnlySamePrint()).ok()) {
     fuzz::CheckSamePrint(**file, shuffled);
   }
   return 0;

@@ -7,7 +7,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "engine/model/plan.h"
-#include "server/translate.h"
+#include "server/translate/translate.h"
 #include "tests/fuzz/check.h"
 #include "tests/fuzz/seed_jobs.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/client/gcode/samples.h"
+#include "tests/client/gcode/support/samples.h"
 
 namespace traverse::fuzz {
 namespace {

@@ -16,8 +16,8 @@
 #include <thread>
 #include <vector>
 
-#include "tests/server/server_process.h"
-#include "tests/server/service_fixture.h"
+#include "tests/server/support/server_process.h"
+#include "tests/server/support/service_fixture.h"
 #include "traverse/v1/route_optimizer_service.grpc.pb.h"
 
 namespace traverse::testing {
@@ -196,7 +196,8 @@ TEST(Binary, StartFailsWithOneLine) {
   ChildProcess second({TRAVERSE_SERVER_BINARY, taken, "--metrics_listen="});
 
   EXPECT_EQ(second.Wait(), 1);
-  EXPECT_EQ(second.Errors(), "traverse-server: cannot listen on " + first.address() + "\n");
+  EXPECT_EQ(second.Errors(),
+            "traverse-server: cannot listen on " + first.address() + ": Address already in use\n");
 
   ChildProcess no_log({TRAVERSE_SERVER_BINARY, "--listen=127.0.0.1:0",
                        "--metrics_listen=", "--log_file=/proc/no_such_folder/log"});

@@ -15,7 +15,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
-#include "tests/server/service_fixture.h"
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+#include "tests/server/support/service_fixture.h"
 
 namespace traverse::testing {
 namespace {
@@ -67,7 +69,7 @@ TEST(BadInput, HugeCoordinatesAndOptions) {
   v1::OptimizeBatchRequest request = MakeBatch(1);
   request.mutable_layers(0)->mutable_islands(1)->mutable_rasters(0)->set_points(3, 1e300);
   EXPECT_THAT(service.Batch(request).status.error_message(),
-              StartsWith("layers[0].islands[1].rasters[0].points[1].y: beyond"));
+              StartsWith("layers[0].islands[1].rasters[0].points[1].y: "));
 
   request = MakeBatch(1, "no such strategy");
   const Answer unknown = service.Batch(request);
@@ -121,12 +123,88 @@ TEST(BadInput, DeepPlanIsAnError) {
               StartsWith("layers[0].plan.nodes[99].any_order.children[0]: "));
 }
 
+// The fields that a status says are at fault.
+std::vector<std::string> FaultyFields(const grpc::Status& status) {
+  google::rpc::Status details;
+  std::vector<std::string> fields;
+  if (!details.ParseFromString(status.error_details())) return fields;
+  for (const google::protobuf::Any& any : details.details()) {
+    google::rpc::BadRequest faults;
+    if (!any.UnpackTo(&faults)) continue;
+    for (const auto& fault : faults.field_violations()) fields.push_back(fault.field());
+  }
+  return fields;
+}
+
+TEST(BadInput, AllFaultsOfARequestAreToldAtOnce) {
+  TestService service;
+  v1::OptimizeBatchRequest request = MakeBatch(3);
+  request.mutable_options()->mutable_strategy()->set_name("none such");
+  request.mutable_options()->set_idle_speed_mm_s(0);
+  request.mutable_layers(0)->mutable_islands(0)->mutable_contours(0)->add_points(1);
+  request.mutable_layers(0)->mutable_islands(1)->mutable_rasters(0)->clear_points();
+  request.mutable_layers(2)->set_z_mm(std::numeric_limits<double>::infinity());
+
+  const Answer answer = service.Batch(request);
+
+  EXPECT_EQ(answer.status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_THAT(FaultyFields(answer.status),
+              ::testing::ElementsAre("options.strategy.name", "options.idle_speed_mm_s",
+                                     "layers[0].islands[0].contours[0].points",
+                                     "layers[0].islands[1].rasters[0].points", "layers[2].z_mm"));
+}
+
+TEST(BadInput, TwentyFaultsAreEnough) {
+  TestService service;
+  v1::OptimizeBatchRequest request = MakeBatch(50);
+  for (v1::Layer& layer : *request.mutable_layers()) {
+    layer.mutable_islands(0)->mutable_contours(0)->add_points(1);
+  }
+  EXPECT_EQ(FaultyFields(service.Batch(request).status).size(), 20u);
+}
+
+TEST(ValidateOnly, ChecksAndDoesNothing) {
+  TestService service;
+  v1::OptimizeBatchRequest request = MakeBatch(100);
+  request.mutable_options()->set_validate_only(true);
+
+  for (const Answer& answer : {service.Batch(request), service.Stream(request)}) {
+    EXPECT_TRUE(answer.status.ok()) << answer.status.error_message();
+    EXPECT_TRUE(answer.layers.empty());
+    EXPECT_FALSE(answer.summary.has_value());
+  }
+  request.mutable_layers(7)->mutable_islands(0)->mutable_contours(0)->clear_points();
+  EXPECT_THAT(service.Batch(request).status.error_message(), StartsWith("layers[7]"));
+  EXPECT_EQ(service.server().core().queue_layers, 0);
+  EXPECT_EQ(service.server().core().admission.held_bytes(), 0);
+}
+
+TEST(JobId, IsInTheInitialMetadata) {
+  TestService service;
+  for (const std::string id : {"plate 7", "", "\xc3\xa9"}) {
+    grpc::ClientContext context;
+    v1::OptimizeBatchRequest request = MakeBatch(1);
+    request.mutable_options()->set_job_id(id);
+    const auto reader = service.stub().OptimizeBatch(&context, request);
+    v1::OptimizeBatchResponse response;
+    while (reader->Read(&response)) {
+    }
+    ASSERT_TRUE(reader->Finish().ok());
+    const auto& metadata = context.GetServerInitialMetadata();
+    const auto found = metadata.find("job_id");
+    ASSERT_NE(found, metadata.end());
+    const std::string told(found->second.data(), found->second.size());
+    const std::string summary = response.summary().job_id();
+    EXPECT_EQ(told, id.empty() ? summary : id == "plate 7" ? "plate%207" : "%C3%A9");
+  }
+}
+
 TEST(BadInput, VeryLongMessagesOfOursAreCut) {
   TestService service;
   const Answer answer = service.Batch(MakeBatch(1, std::string(100'000, '"')));
 
   EXPECT_EQ(answer.status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
-  EXPECT_THAT(answer.status.error_message(), StartsWith("options.strategy.name: no strategy"));
+  EXPECT_THAT(answer.status.error_message(), StartsWith("options.strategy.name: \"\"\""));
 }
 
 TEST(Limits, JobsOverTheLimitsAreRefusedWithoutAdviceToRetry) {

@@ -14,9 +14,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
-#include "server/credentials.h"
-#include "tests/server/server_process.h"
-#include "tests/server/service_fixture.h"
+#include "server/rpc/credentials.h"
+#include "tests/server/support/server_process.h"
+#include "tests/server/support/service_fixture.h"
 #include "tests/support/scratch_folder.h"
 
 namespace traverse::testing {
@@ -44,12 +44,12 @@ class Certificates {
                      " -subj /CN=", name, " -keyout ", Path(name + ".key"), " -out ",
                      Path(name + ".pem")));
   }
-  void MakeLeaf(const std::string& name, const std::string& authority) const {
+  void MakeLeaf(const std::string& name, const std::string& authority, int days = 2) const {
     Run(absl::StrCat("openssl req -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -subj /CN=",
                      name, " -keyout ", Path(name + ".key"), " -out ", Path(name + ".csr")));
     std::ofstream(Path("ext")) << "subjectAltName=DNS:localhost\n";
-    Run(absl::StrCat("openssl x509 -req -days 2 -CAcreateserial -extfile ", Path("ext"), " -in ",
-                     Path(name + ".csr"), " -CA ", Path(authority + ".pem"), " -CAkey ",
+    Run(absl::StrCat("openssl x509 -req -days ", days, " -CAcreateserial -extfile ", Path("ext"),
+                     " -in ", Path(name + ".csr"), " -CA ", Path(authority + ".pem"), " -CAkey ",
                      Path(authority + ".key"), " -out ", Path(name + ".pem")));
   }
   std::string Path(const std::string& name) const { return folder_.Path(name); }
@@ -171,13 +171,69 @@ TEST(Security, BadCertificatesAreFoundAtTheStart) {
   ChildProcess wrong_key({TRAVERSE_SERVER_BINARY, "--listen=127.0.0.1:0",
                           "--metrics_listen=", "--tls_certificate=" + files.Path("server.pem"),
                           "--tls_key=" + files.Path("client.key")});
-  EXPECT_EQ(wrong_key.Wait(), 1);
-  EXPECT_THAT(wrong_key.Errors(), HasSubstr("it is not that of the certificate"));
+  EXPECT_EQ(wrong_key.Wait(), 2);
+  EXPECT_EQ(wrong_key.Errors(),
+            "traverse-server: cannot use the private key " + files.Path("client.key") +
+                ": it is not that of the certificate " + files.Path("server.pem") + "\n");
 
   ChildProcess missing({TRAVERSE_SERVER_BINARY, "--listen=127.0.0.1:0", "--metrics_listen=",
                         "--tls_certificate=/proc/none", "--tls_key=" + files.Path("server.key")});
-  EXPECT_EQ(missing.Wait(), 1);
+  EXPECT_EQ(missing.Wait(), 2);
   EXPECT_THAT(missing.Errors(), HasSubstr("/proc/none"));
+
+  files.MakeLeaf("old", "ca", /*days=*/-1);
+  ChildProcess expired({TRAVERSE_SERVER_BINARY, "--listen=127.0.0.1:0",
+                        "--metrics_listen=", "--tls_certificate=" + files.Path("old.pem"),
+                        "--tls_key=" + files.Path("old.key")});
+  EXPECT_EQ(expired.Wait(), 2);
+  EXPECT_THAT(expired.Errors(), HasSubstr(files.Path("old.pem") + ": it expired on 2"));
+}
+
+TEST(Security, ABadNewCertificateLeavesTheOldOneInUse) {
+  const Certificates files;
+  ServerProcess server(
+      {"--tls_certificate=" + files.Path("server.pem"), "--tls_key=" + files.Path("server.key")});
+  const std::string failures = "traverse_reload_failures_total{what=\"certificate\"}";
+  ASSERT_EQ(server.Metric(failures), 0);
+  const std::string expiry = "traverse_certificate_expiry_seconds{file=\"certificate\"}";
+  EXPECT_NEAR(server.Metric(expiry), 2 * 24 * 3600, 600);
+
+  std::filesystem::copy_file(files.Path("client.key"), files.Path("server.key.new"));
+  std::filesystem::rename(files.Path("server.key.new"), files.Path("server.key"));
+
+  EXPECT_TRUE(TestService::Eventually([&] { return server.Metric(failures) == 1; }));
+  EXPECT_EQ(Call(server, files.Path("ca.pem")), grpc::StatusCode::OK);
+
+  files.MakeLeaf("old", "ca", /*days=*/-1);
+  std::filesystem::rename(files.Path("old.key"), files.Path("server.key"));
+  std::filesystem::rename(files.Path("old.pem"), files.Path("server.pem"));
+  EXPECT_TRUE(TestService::Eventually([&] { return server.Metric(failures) >= 2; }));
+  EXPECT_EQ(Call(server, files.Path("ca.pem")), grpc::StatusCode::OK);
+  EXPECT_GT(server.Metric(expiry), 0);
+  server.process().Signal(SIGTERM);
+  EXPECT_EQ(server.process().Wait(), 0);
+  EXPECT_THAT(server.process().Errors(), HasSubstr("\"event\":\"certificate_reloaded\""));
+}
+
+TEST(Security, ADirectoryIsNoTokenFile) {
+  const ScratchFolder folder;
+  ChildProcess refused({TRAVERSE_SERVER_BINARY, "--listen=127.0.0.1:0",
+                        "--metrics_listen=", "--token_file=" + folder.Path("")});
+  EXPECT_EQ(refused.Wait(), 2);
+  EXPECT_EQ(refused.Errors(),
+            "traverse-server: token file " + folder.Path("") + ": it is a directory\n");
+
+  // One that becomes a directory leaves the tokens that were known.
+  const std::string path = folder.Path("tokens");
+  std::ofstream(path) << "farm 41ef4bb0b23661e66301aac36066912dac037827b4ae63a7b1165a5aa93ed4eb\n";
+  ServerProcess server({"--token_file=" + path});
+  std::filesystem::remove(path);
+  std::filesystem::create_directory(path);
+
+  EXPECT_TRUE(TestService::Eventually(
+      [&] { return server.Metric("traverse_reload_failures_total{what=\"tokens\"}") == 1; }));
+  EXPECT_EQ(Call(server), grpc::StatusCode::UNAUTHENTICATED);
+  EXPECT_EQ(Call(server, "", "", "open sesame"), grpc::StatusCode::OK);
 }
 
 TEST(Security, TokensAreAskedForAndNeverLogged) {

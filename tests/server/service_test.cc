@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "tests/server/service_fixture.h"
+#include "tests/server/support/service_fixture.h"
 
 namespace traverse::testing {
 namespace {

@@ -95,7 +95,11 @@ std::vector<std::vector<int>> LegalOrders(const Plan& plan) {
   return plan.nodes.empty() ? Orders{{}} : OrdersOf(plan, 0);
 }
 
-BruteForceResult BestEntries(const LayerProblem& problem, const std::vector<int>& order) {
+BruteForceResult BestEntries(const LayerProblem& problem, const std::vector<int>& order,
+                             const MoveFunction& cost) {
+  const auto move_cost = [&](Point from, Point to) {
+    return cost ? cost(from, to) : MoveCost(problem.cost, from, to);
+  };
   std::vector<Partial> partials = {{0, problem.start, {}}};
   for (const int index : order) {
     const Path& path = problem.plan->paths[static_cast<size_t>(index)];
@@ -103,7 +107,7 @@ BruteForceResult BestEntries(const LayerProblem& problem, const std::vector<int>
     for (const int entry : EntriesOf(path)) {
       std::vector<Partial> ways = partials;
       for (Partial& way : ways) {
-        way.cost += MoveCost(problem.cost, way.end, EnterPoint(path, entry));
+        way.cost += move_cost(way.end, EnterPoint(path, entry));
         way.end = ExitPoint(path, entry);
       }
       longer.push_back(Cheapest(ways));
@@ -112,16 +116,16 @@ BruteForceResult BestEntries(const LayerProblem& problem, const std::vector<int>
     partials = std::move(longer);
   }
   if (problem.finish) {
-    for (Partial& way : partials) way.cost += MoveCost(problem.cost, way.end, *problem.finish);
+    for (Partial& way : partials) way.cost += move_cost(way.end, *problem.finish);
   }
   const Partial& best = Cheapest(partials);
   return {best.cost, best.route};
 }
 
-BruteForceResult BruteForce(const LayerProblem& problem) {
+BruteForceResult BruteForce(const LayerProblem& problem, const MoveFunction& cost) {
   BruteForceResult best{std::numeric_limits<double>::infinity(), {}};
   for (const std::vector<int>& order : LegalOrders(*problem.plan)) {
-    BruteForceResult result = BestEntries(problem, order);
+    BruteForceResult result = BestEntries(problem, order, cost);
     if (result.cost < best.cost) best = std::move(result);
   }
   return best;

@@ -4,6 +4,7 @@
 #ifndef TRAVERSE_TESTS_SUPPORT_BRUTE_FORCE_H_
 #define TRAVERSE_TESTS_SUPPORT_BRUTE_FORCE_H_
 
+#include <functional>
 #include <vector>
 
 #include "engine/model/layer_problem.h"
@@ -20,11 +21,15 @@ struct BruteForceResult {
 // free against each other: 8! orders.
 std::vector<std::vector<int>> LegalOrders(const Plan& plan);
 
+// The cost of a travel move, where the one below is not meant.
+using MoveFunction = std::function<double(Point from, Point to)>;
+
 // The best entries for one order of the paths.
-BruteForceResult BestEntries(const LayerProblem& problem, const std::vector<int>& order);
+BruteForceResult BestEntries(const LayerProblem& problem, const std::vector<int>& order,
+                             const MoveFunction& cost = nullptr);
 
 // The best route over all legal orders and all entries.
-BruteForceResult BruteForce(const LayerProblem& problem);
+BruteForceResult BruteForce(const LayerProblem& problem, const MoveFunction& cost = nullptr);
 
 // The cost of one travel move, computed as SPEC and CostSpec state it.
 double MoveCost(const CostSpec& spec, Point from, Point to);

@@ -4,7 +4,6 @@
 #define TRAVERSE_CLIENT_GCODE_VERIFY_SECTIONS_H_
 
 #include <cstdint>
-#include <set>
 #include <string_view>
 #include <vector>
 
@@ -54,11 +53,41 @@ struct Section {
 
 struct Sections {
   std::vector<Section> sections;
-  std::set<Micro> surpluses;  // of all primes, rounded to the verifier's slack
 };
 
-// Cuts a text; comments that begin with `ignored` are left out.
-Sections CutIntoSections(std::string_view text, std::string_view ignored);
+// Cuts a text, line by line; comments that begin with `ignored` are left out.
+class SectionCutter {
+ public:
+  // Which sections ended with a line.
+  struct Cut {
+    bool before = false;  // one ended in front of it, with a change of height
+    bool behind = false;  // one ends with it
+  };
+
+  explicit SectionCutter(std::string_view ignored);
+
+  Cut Take(const VerifyLine& line, const VerifyMachine& machine);
+  void Finish(const VerifyMachine& machine);
+
+  // Index of the section that the next line belongs to.
+  uint32_t open_section() const { return static_cast<uint32_t>(cut_.sections.size()); }
+
+  // Those that have ended.
+  const Sections& cut() const { return cut_; }
+
+ private:
+  void CutAtHeight(const VerifyMachine& machine);
+  void Close(const VerifyMachine& machine, size_t last_line, uint64_t fence, bool fixed);
+
+  const std::string_view ignored_;
+  Sections cut_;
+  Section section_;
+  DigestSet loose_notes_;  // since the last deposit
+  size_t last_line_ = 0;
+  size_t last_deposit_ = 0;
+  Micro height_ = 0;
+  bool has_height_ = false;
+};
 
 // The lines `first` to `last`, for a message: calls visit(line) for each of them.
 template <typename Visit>

@@ -1,143 +1,211 @@
 #include "client/gcode/verify/verifier.h"
 
 #include <algorithm>
-#include <map>
-#include <optional>
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/parallel.h"
-#include "client/gcode/verify/sections.h"
+#include "client/gcode/verify/rules/rules.h"
+#include "client/gcode/verify/same_print.h"
+#include "client/gcode/verify/trace/side_reader.h"
 
 namespace traverse {
 namespace gcode {
 namespace {
 
-struct Side {
-  std::string_view text;
-  const std::string& name;
-  Sections cut;
+// So much of the original is looked at in one go.
+constexpr size_t kChunkBytes = 4 << 20;
+
+class Verifier {
+ public:
+  Verifier(std::string_view original, const std::string& original_name, std::string_view optimised,
+           const std::string& optimised_name, const VerifyOptions& options)
+      : original_(original),
+        original_name_(original_name),
+        optimised_(optimised),
+        optimised_name_(optimised_name),
+        rules_(options.rules),
+        threads_(ThreadsFor(original.size())),
+        was_(original, kOptimisedMark, HasLayerMarks(original)),
+        is_(optimised, kOptimisedMark, HasLayerMarks(original)) {
+    context_.permissions =
+        options.permissions.value_or(PermissionsInHead(optimised).value_or(VerifyPermissions{}));
+    context_.settings = ReadSettings(original);
+    report_.permissions = context_.permissions;
+  }
+
+  VerifyReport Verify();
+
+ private:
+  void ReadNext();
+  bool SamePrint();
+  void CheckChunk();
+  void CheckLayer(const LayerPair& layer, LayerFindings& findings) const;
+  void Finish();
+  void Compare(std::vector<Finding>& breaks) const;
+  void Add(Finding finding);
+  int64_t LayerOf(uint32_t optimised_line) const;
+
+  const std::string_view original_;
+  const std::string& original_name_;
+  const std::string_view optimised_;
+  const std::string& optimised_name_;
+  const uint32_t rules_;
+  const int threads_;
+  RuleContext context_;
+  SideReader was_;
+  SideReader is_;
+  TraceChunk next_was_;  // the one after chunk_was_
+  TraceChunk chunk_was_;
+  TraceChunk chunk_is_;
+  bool more_ = true;       // next_was_ is not empty
+  uint32_t sections_ = 0;  // that were compared
+  Observations seen_was_;
+  Observations seen_is_;
+  std::vector<Progress> progress_was_;
+  std::vector<Progress> progress_is_;
+  std::vector<Finding> findings_;
+  std::vector<uint32_t> layer_lines_;  // where the layers of the optimised file begin
+  VerifyReport report_;
 };
 
-absl::Status Difference(const std::string& text) { return absl::FailedPreconditionError(text); }
-
-// A line of one side that the other side's section lacks, or has fewer times.
-struct Odd {
-  size_t number = 0;
-  std::string text;
-};
-
-std::optional<Odd> FirstOdd(const Side& a, const Side& b, size_t index, bool deposits) {
-  const auto wanted = [deposits](const VerifyLine& line) {
-    const bool note = line.role == LineRole::kComment || line.role == LineRole::kProgress;
-    return deposits ? line.role == LineRole::kDeposit : note;
-  };
-  const auto for_each_line = [index, deposits](const Side& side, const auto& visit) {
-    const Section& section = side.cut.sections[index];
-    ForEachLine(side.text, deposits ? section.first_line : section.first_note,
-                deposits ? section.last_line : section.last_note, visit);
-  };
-  std::map<uint64_t, int64_t> known;
-  for_each_line(b, [&](const VerifyLine& line) {
-    if (wanted(line)) ++known[line.digest];
-  });
-  std::optional<Odd> odd;
-  for_each_line(a, [&](const VerifyLine& line) {
-    if (!wanted(line) || odd || --known[line.digest] >= 0) return;
-    if (!deposits && line.text.substr(0, kOptimisedMark.size()) == kOptimisedMark) return;
-    odd = Odd{line.number, std::string(line.text)};
-  });
-  return odd;
-}
-
-absl::Status MultisetDifference(const Side& original, const Side& optimised, size_t index,
-                                bool deposits) {
-  const char* what = deposits ? "prints" : "has";
-  const char* under = deposits ? " under the same conditions" : "";
-  const auto differ = [&](const Side& a, const Side& b, const Odd& odd) {
-    const Section& section = b.cut.sections[index];
-    return Difference(
-        absl::StrFormat("%s:%d: `%s` %s what lines %d to %d of %s do not%s", a.name, odd.number,
-                        odd.text, what, deposits ? section.first_line : section.first_note,
-                        deposits ? section.last_line : section.last_note, b.name, under));
-  };
-  if (const std::optional<Odd> odd = FirstOdd(optimised, original, index, deposits)) {
-    return differ(optimised, original, *odd);
-  }
-  const std::optional<Odd> odd = FirstOdd(original, optimised, index, deposits);
-  return differ(original, optimised,
-                odd.value_or(Odd{original.cut.sections[index].first_line, ""}));
-}
-
-absl::Status CompareEnds(const Side& original, const Side& optimised, size_t index) {
-  const Section& was = original.cut.sections[index];
-  const Section& is = optimised.cut.sections[index];
-  const auto differ = [&](const char* what) {
-    return Difference(absl::StrFormat("%s:%d: %s at %s:%d", optimised.name, is.last_line, what,
-                                      original.name, was.last_line));
-  };
-  if (was.fence != is.fence || was.fixed != is.fixed) return differ("not the line that stands");
-  if (was.fan != is.fan) return differ("the fan is not as");
-  if (was.x != is.x || was.y != is.y || was.z != is.z) return differ("the head is not where it is");
-  if (was.retracted != is.retracted) return differ("filament is not pulled back as");
-  return absl::OkStatus();
-}
-
-absl::Status Compare(const Side& original, const Side& optimised) {
-  const size_t common = std::min(original.cut.sections.size(), optimised.cut.sections.size());
-  for (size_t i = 0; i < common; ++i) {
-    const Section& was = original.cut.sections[i];
-    const Section& is = optimised.cut.sections[i];
-    if (was.deposits != is.deposits) return MultisetDifference(original, optimised, i, true);
-    if (absl::Status ends = CompareEnds(original, optimised, i); !ends.ok()) return ends;
-    if (was.notes != is.notes) return MultisetDifference(original, optimised, i, false);
-    if (is.lowest < was.lowest) {
-      return Difference(absl::StrFormat("%s:%d: travels lower than lines %d to %d of %s",
-                                        optimised.name, is.first_line, was.first_line,
-                                        was.last_line, original.name));
+// The next layers of the one file, and those of the other file that were the next ones before.
+void Verifier::ReadNext() {
+  chunk_was_ = std::exchange(next_was_, TraceChunk{});
+  const bool last = was_.done();
+  ParallelFor(2, threads_, [&](size_t i) {
+    if (i == 1) {
+      chunk_is_ = is_.NextSections(last ? UINT32_MAX : chunk_was_.end_section);
+    } else if (!last) {
+      next_was_ = was_.NextBytes(kChunkBytes);
     }
-  }
-  if (original.cut.sections.size() != optimised.cut.sections.size()) {
-    const Side& longer =
-        original.cut.sections.size() > optimised.cut.sections.size() ? original : optimised;
-    const Side& shorter = &longer == &original ? optimised : original;
-    return Difference(absl::StrFormat("%s:%d: goes on where %s ends", longer.name,
-                                      longer.cut.sections[common].first_line, shorter.name));
-  }
-  return absl::OkStatus();
+  });
+  more_ = !last;
 }
 
-absl::Status ComparePrimes(const Side& original, const Side& optimised) {
-  const std::set<Micro>& known = original.cut.surpluses;
-  for (const Micro surplus : optimised.cut.surpluses) {
-    if (known.contains(surplus)) continue;
-    VerifyMachine machine(optimised.text);
-    const Micro slack = VerifyMachine::kSlack;
-    for (VerifyLine line; machine.Next(line);) {
-      if (!line.primes || (line.surplus + slack / 2) / slack * slack != surplus) continue;
-      return Difference(absl::StrFormat(
-          "%s:%d: `%s` pushes %.4f mm more than was pulled back; no line of %s does",
-          optimised.name, line.number, std::string(line.text), static_cast<double>(surplus) * 1e-6,
-          original.name));
-    }
+bool Verifier::SamePrint() {
+  const Side was{original_, original_name_, was_.cut()};
+  const Side is{optimised_, optimised_name_, is_.cut()};
+  std::optional<VerifyBreak> difference =
+      FirstDifference(was, is, sections_, chunk_was_.end_section, !more_);
+  sections_ = chunk_was_.end_section;
+  if (!difference && chunk_is_.end_section != chunk_was_.end_section) {
+    // Some line ends a section in one of the two alone; the next ones tell which.
+    difference = FirstDifference(was, is, 0, UINT32_MAX, true);
   }
-  return absl::OkStatus();
+  if (!difference) return true;
+  ++report_.counts[static_cast<size_t>(VerifyRule::kSamePrint)];
+  report_.breaks.push_back(*std::move(difference));
+  return false;
+}
+
+void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const {
+  CheckWholePaths(layer, findings);
+  CheckOrder(layer, context_, findings);
+  CheckDirection(layer, context_, findings);
+  CheckSeam(layer, context_, findings);
+  CheckOpenWays(layer, findings);
+  ObserveLifts(layer, findings);
+  ObserveRetractions(layer, findings);
+  ObserveSpeeds(layer, findings);
+  CheckWipes(layer, findings);
+  CheckCommands(layer, findings);
+  CheckPathEnds(layer, findings);
+}
+
+void Verifier::CheckChunk() {
+  const size_t layers = std::min(chunk_was_.layers.size(), chunk_is_.layers.size());
+  std::vector<LayerFindings> found(layers);
+  ParallelFor(layers, threads_,
+              [&](size_t i) { CheckLayer(LayerPair(chunk_was_, chunk_is_, i), found[i]); });
+  for (size_t i = 0; i < layers; ++i) {
+    const TraceSection& section = chunk_is_.sections[chunk_is_.layers[i].first_section];
+    layer_lines_.push_back(chunk_is_.LineOf(chunk_is_.paths[section.first_path]));
+    seen_was_.Append(found[i].was);
+    seen_is_.Append(found[i].is);
+    findings_.insert(findings_.end(), found[i].breaks.begin(), found[i].breaks.end());
+  }
+  CheckStandstill(chunk_was_, chunk_is_, findings_);
+  CheckSetBacks(chunk_was_, chunk_is_, findings_);
+  const auto append = [](const std::vector<Progress>& from, std::vector<Progress>& to) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  append(chunk_was_.progress, progress_was_);
+  append(chunk_is_.progress, progress_is_);
+  // What follows the last path is a script.
+  if (!more_) {
+    ObserveScript(chunk_was_, static_cast<uint32_t>(chunk_was_.links.size()) - 1, seen_was_);
+  }
+}
+
+void Verifier::Compare(std::vector<Finding>& breaks) const {
+  CompareProgress(progress_was_, progress_is_, breaks);
+  CompareLifts(seen_was_, seen_is_, breaks);
+  CompareRetractions(seen_was_, seen_is_, breaks);
+  CompareSpeeds(seen_was_, seen_is_, breaks);
+  CompareWipes(seen_was_, seen_is_, breaks);
+  CompareScripts(seen_was_, seen_is_, breaks);
+}
+
+int64_t Verifier::LayerOf(uint32_t optimised_line) const {
+  const auto behind = std::upper_bound(layer_lines_.begin(), layer_lines_.end(), optimised_line);
+  return behind - layer_lines_.begin() - 1;
+}
+
+void Verifier::Add(Finding finding) {
+  const auto rule = static_cast<size_t>(finding.rule);
+  if (((rules_ >> rule) & 1u) == 0) return;
+  if (report_.counts[rule]++ >= static_cast<int64_t>(VerifyReport::kMostBreaks)) return;
+  if (finding.layer < 0 && finding.optimised_line > 0) {
+    finding.layer = LayerOf(finding.optimised_line);
+  }
+  const auto place = [](const std::string& name, uint32_t line) {
+    return line == 0 ? name : absl::StrCat(name, ":", line);
+  };
+  report_.breaks.push_back(
+      {finding.rule, finding.original_line, finding.optimised_line, finding.layer,
+       absl::StrFormat("%s: %s (%s; %s)", place(optimised_name_, finding.optimised_line),
+                       finding.what, std::string(VerifyRuleName(finding.rule)),
+                       place(original_name_, finding.original_line))});
+}
+
+void Verifier::Finish() {
+  Compare(findings_);
+  std::stable_sort(findings_.begin(), findings_.end(), [](const Finding& a, const Finding& b) {
+    return std::pair(a.rule, a.optimised_line) < std::pair(b.rule, b.optimised_line);
+  });
+  for (Finding& finding : findings_) Add(std::move(finding));
+}
+
+VerifyReport Verifier::Verify() {
+  next_was_ = was_.NextBytes(kChunkBytes);
+  while (more_) {
+    ReadNext();
+    if (!SamePrint()) return std::move(report_);
+    CheckChunk();
+  }
+  Finish();
+  return std::move(report_);
 }
 
 }  // namespace
 }  // namespace gcode
 
+VerifyReport CheckGcode(std::string_view original, const std::string& original_name,
+                        std::string_view optimised, const std::string& optimised_name,
+                        const VerifyOptions& options) {
+  return gcode::Verifier(original, original_name, optimised, optimised_name, options).Verify();
+}
+
 absl::Status VerifyGcode(std::string_view original, const std::string& original_name,
-                         std::string_view optimised, const std::string& optimised_name) {
-  gcode::Side was{original, original_name, {}};
-  gcode::Side is{optimised, optimised_name, {}};
-  gcode::ParallelFor(2, gcode::ThreadsFor(original.size()), [&](size_t i) {
-    gcode::Side& side = i == 0 ? was : is;
-    side.cut = gcode::CutIntoSections(side.text, kOptimisedMark);
-  });
-  if (absl::Status status = gcode::Compare(was, is); !status.ok()) return status;
-  return gcode::ComparePrimes(was, is);
+                         std::string_view optimised, const std::string& optimised_name,
+                         const VerifyOptions& options) {
+  const VerifyReport report =
+      CheckGcode(original, original_name, optimised, optimised_name, options);
+  if (report.ok()) return absl::OkStatus();
+  return absl::FailedPreconditionError(report.breaks.front().message);
 }
 
 }  // namespace traverse

@@ -4,6 +4,10 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <utility>
+#include <vector>
+
+#include "client/gcode/verify/trace/path_class.h"
 
 namespace traverse::gcode {
 namespace {
@@ -27,6 +31,9 @@ enum StatePlace : size_t {
   kKlipperSpeed,
   kPressure,
   kFlow,
+  kAccelTravel,  // from here on what no deposit depends on
+  kAccelRetract,
+  kStateCount,
 };
 
 // Numbers beyond this are not followed.
@@ -84,6 +91,36 @@ std::optional<Micro> Number(std::string_view text, size_t& used) {
   return std::llround(value * 1e6);
 }
 
+// True if the E words of the first moves in the plane hardly add up to a register, and no line says
+// how they count: then they count from the move before.
+bool FallsAsOftenAsItRises(std::string_view text) {
+  for (const std::string_view mode : {"M82", "M83"}) {
+    for (size_t at = text.find(mode); at != std::string_view::npos; at = text.find(mode, at + 1)) {
+      if (at == 0 || text[at - 1] == '\n') return false;
+    }
+  }
+  double last = 0;
+  int rises = 0;
+  int falls = 0;
+  while (!text.empty() && rises + falls < 200) {
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    line = line.substr(0, line.find(';'));
+    const size_t e = line.find('E');
+    if (e == std::string_view::npos || line[0] != 'G') continue;
+    double value = 0;
+    std::from_chars(line.data() + e + 1, line.data() + line.size(), value);
+    const bool sets = Begins(line, "G92");
+    if (!sets && line.find('X') == std::string_view::npos &&
+        line.find('Y') == std::string_view::npos) {
+      continue;
+    }
+    if (!sets) ++(value <= last ? falls : rises);
+    last = value;
+  }
+  return falls * 4 > rises;
+}
+
 // What lies behind the last comma, colon or blank sign of a state comment.
 uint64_t ValueOf(std::string_view comment) {
   const size_t colon = comment.find(':');
@@ -138,7 +175,32 @@ struct VerifyMachine::Words {
   std::array<Micro, 26> values;  // those in `set`
 };
 
+void VerifyMachine::SetState(size_t slot, uint64_t value) {
+  if (slot > kHeight) {
+    Held& held = held_[slot];
+    if (held.behind != motions_) held = {motions_, 0, {}};
+    if (held.count < held.values.size()) held.values[held.count++] = state_[slot];
+    const auto end = held.values.begin() + held.count;
+    if (value != state_[slot] && std::find(held.values.begin(), end, value) != end) {
+      sets_back_ = true;
+    }
+  }
+  state_[slot] = value;
+  state_changed_ = true;
+}
+
+void VerifyMachine::NoteMotion(int number, uint32_t words, const std::array<Micro, 3>& from,
+                               Micro filament) {
+  motion_ = Motion{from, at_, filament, pulled_, feed_, number, words, retracted(), false, 0, 0};
+  ++motions_;
+}
+
+VerifyMachine::VerifyMachine(std::string_view text) : rest_(text) {
+  relative_e_ = FallsAsOftenAsItRises(text);
+}
+
 bool VerifyMachine::Next(VerifyLine& line) {
+  static_assert(kStateCount <= kStates);
   if (rest_.empty()) return false;
   const size_t end = std::min(rest_.find('\n'), rest_.size());
   line = VerifyLine{};
@@ -160,12 +222,22 @@ void VerifyMachine::Do(VerifyLine& line) {
   const char letter = Upper(text[0]);
   int number = 0;
   const auto read = std::from_chars(text.data() + 1, text.data() + text.size(), number);
+  sets_back_ = false;
   const bool numbered =
       read.ec == std::errc{} && text[1] != '-' &&
       (read.ptr == text.data() + text.size() || (*read.ptr != '.' && *read.ptr != '_'));
-  if (letter == 'G' && numbered) return DoG(number, line);
-  if (letter == 'M' && numbered) return DoM(number, line);
-  DoKlipper(line);
+  if (letter == 'G' && numbered) {
+    DoG(number, line);
+    const bool moving = number <= 3 || number == 10 || number == 11 || number == 92;
+    if (!moving) line.command = Mix('G', static_cast<uint64_t>(number));
+  } else if (letter == 'M' && numbered) {
+    DoM(number, line);
+    line.command = Mix('M', static_cast<uint64_t>(number));
+  } else {
+    DoKlipper(line);
+    line.command = DigestOf(text.substr(0, text.find_first_of(" \t=")));
+  }
+  line.sets_back = sets_back_;
 }
 
 void VerifyMachine::DoComment(VerifyLine& line) {
@@ -177,14 +249,27 @@ void VerifyMachine::DoComment(VerifyLine& line) {
   if (Begins(text, ";HEIGHT:") || Begins(text, "; LAYER_HEIGHT:")) {
     return SetState(kHeight, ValueOf(text));
   }
+  // Names of features in the words of slicers without such marks.
+  const bool other_quote = Begins(text, "; '") && text.find(" Path',") == std::string_view::npos;
+  if (!other_quote && ClassOfComment(text)) return SetState(kType, DigestOf(text));
+  if (Begins(text, "; tool H")) {
+    SetState(kWidth, DigestOf(text));
+    return SetState(kHeight, DigestOf(text));
+  }
   for (const std::string_view wipe : {";WIPE_START", ";WIPE_END", "; WIPE_START", "; WIPE_END"}) {
     if (Begins(text, wipe)) return;
   }
   for (const std::string_view mark :
        {";LAYER_CHANGE", ";LAYER:", ";LAYER ", "; CHANGE_LAYER", ";MESH:", "; printing object",
-        "; stop printing object", "; start printing object", "; OBJECT_ID:"}) {
+        "; stop printing object", "; start printing object",
+        "; OBJECT_ID:", ";layer:", "; BEGIN_LAYER_OBJECT", "; END_LAYER_OBJECT", "; <layer>",
+        "; </layer>", ";; --- layer ", ";PRINTING:", ";PRINTING_ID:"}) {
     if (Begins(text, mark)) return Fence(line, LineRole::kFence);
   }
+  constexpr std::string_view kNumbered = "; layer ";
+  const bool numbered = text.size() > kNumbered.size() && text[kNumbered.size()] >= '0' &&
+                        text[kNumbered.size()] <= '9';
+  if (numbered && Begins(text, kNumbered)) return Fence(line, LineRole::kFence);
   Fence(line, LineRole::kComment);
 }
 
@@ -209,9 +294,14 @@ void VerifyMachine::DoG(int number, VerifyLine& line) {
     case 10:
     case 11:
       if (words.set != 0 || !words.readable) return Fence(line, LineRole::kFixed);
+      NoteMotion(number, 0, at_, 0);
+      line.moves = true;
       firmware_retracted_ = number == 10;
       return;
     case 17:
+      // Slicers write it before each spiral lift.
+      if (plane_xy_) return;
+      [[fallthrough]];
     case 18:
     case 19:
       return Mode(plane_xy_, number == 17, line);
@@ -250,6 +340,13 @@ void VerifyMachine::Move(int number, const Words& words, VerifyLine& line) {
     e_ += filament;
   }
   const bool moves = at_[0] != from[0] || at_[1] != from[1];
+  line.moves = moves || at_[2] != from[2] || filament != 0 || number >= 2;
+  if (line.moves) {
+    NoteMotion(number, words.set, from, filament);
+    motion_.has_center = number >= 2 && (words.Has('I') || words.Has('J'));
+    motion_.center_x = from[0] + (words.Has('I') ? words['I'] : 0);
+    motion_.center_y = from[1] + (words.Has('J') ? words['J'] : 0);
+  }
   if ((moves || number >= 2) && filament > 0) {
     Deposit(number, words, from, filament, line);
   } else {
@@ -258,11 +355,20 @@ void VerifyMachine::Move(int number, const Words& words, VerifyLine& line) {
       line.primes = true;
       line.surplus = std::max<Micro>(filament - pulled_, 0);
     }
-    // Arcs that deposit nothing, and moves relative to each other, are kept as they are.
-    const bool spiral = number >= 2 && !moves && at_[2] != from[2];
-    if (relative_ || (number >= 2 && !spiral)) Fence(line, LineRole::kFixed);
+    // Moves relative to each other are kept as they are, and circles that deposit nothing.
+    const bool circle = number >= 2 && !moves && at_[2] == from[2];
+    if (relative_ || circle) Fence(line, LineRole::kFixed);
   }
+  FollowFilament(filament, moves);
+}
+
+// Where slicers coast before a retraction they push a little less than they pulled back.
+void VerifyMachine::FollowFilament(Micro filament, bool moves) {
+  constexpr Micro kPrimeShare = 30;
+  if (filament < 0) deepest_ = std::max(deepest_, pulled_ - filament);
   pulled_ = std::max<Micro>(pulled_ - filament, 0);
+  if (!moves && filament > 0 && pulled_ * kPrimeShare <= deepest_) pulled_ = 0;
+  if (pulled_ == 0) deepest_ = 0;
 }
 
 // Gone the other way, an arc that ends beside its circle would lie elsewhere.
@@ -314,10 +420,20 @@ void VerifyMachine::Deposit(int number, const Words& words, const std::array<Mic
 uint64_t VerifyMachine::StateDigest() {
   if (state_changed_) {
     state_digest_ = 0;
-    for (const uint64_t state : state_) state_digest_ = Mix(state_digest_, state);
+    for (size_t i = 0; i < kAccelTravel; ++i) state_digest_ = Mix(state_digest_, state_[i]);
+    acceleration_digest_ = 0;
+    for (size_t i = kAccelPrint; i < kPressure; ++i) {
+      acceleration_digest_ = Mix(acceleration_digest_, state_[i]);
+    }
+    acceleration_digest_ = Mix(acceleration_digest_, state_[kAccelTravel]);
     state_changed_ = false;
   }
   return state_digest_;
+}
+
+uint64_t VerifyMachine::AccelerationDigest() {
+  StateDigest();
+  return acceleration_digest_;
 }
 
 void VerifyMachine::DoM(int number, VerifyLine& line) {
@@ -327,7 +443,7 @@ void VerifyMachine::DoM(int number, VerifyLine& line) {
       digits == std::string_view::npos ? std::string_view{} : code.substr(digits);
   if (number == 73) return Fence(line, LineRole::kProgress);
   if (number == 82 || number == 83) return Mode(relative_e_, number == 83, line);
-  for (const int known : {104, 105, 117, 118, 140, 155, 486, 624, 625}) {
+  for (const int known : {74, 104, 105, 117, 118, 140, 142, 155, 486, 591, 624, 625}) {
     if (number == known) return Fence(line, LineRole::kFence);
   }
   const Words words(rest);
@@ -344,7 +460,10 @@ void VerifyMachine::DoM(int number, VerifyLine& line) {
     }
   } else if (number == 204 && words.OnlyFrom("SPTR") && words.set != 0) {
     set('S', kAccelPrint);
-    return set('P', kAccelPrint);
+    set('P', kAccelPrint);
+    set('S', kAccelTravel);
+    set('T', kAccelTravel);
+    return set('R', kAccelRetract);
   } else if (number == 205 && words.OnlyFrom("XY") && words.set != 0) {
     set('X', kJerkX);
     return set('Y', kJerkY);
@@ -372,10 +491,13 @@ void VerifyMachine::DoKlipper(VerifyLine& line) {
   }
   constexpr std::string_view kLimit = "SET_VELOCITY_LIMIT ";
   if (!Begins(text, kLimit)) {
-    if (Upper(text[0]) == 'T') tool_ = DigestOf(text);
+    // What the next tool, or filament, has in its nozzle is not known.
+    if (Upper(text[0]) == 'T' && std::exchange(tool_, DigestOf(text)) != tool_) {
+      pulled_ = deepest_ = 0;
+    }
     return Fence(line, LineRole::kFixed);
   }
-  std::array<uint64_t, kStates> state = state_;
+  std::vector<std::pair<size_t, uint64_t>> settings;
   std::string_view rest = Trim(text.substr(kLimit.size(), text.find(';') - kLimit.size()));
   while (!rest.empty()) {
     const std::string_view word = rest.substr(0, rest.find_first_of(" \t"));
@@ -384,19 +506,18 @@ void VerifyMachine::DoKlipper(VerifyLine& line) {
     const std::string_view name = word.substr(0, equals);
     const uint64_t value = DigestOf(word.substr(equals));
     if (name == "ACCEL") {
-      state[kKlipperAccel] = value;
+      settings.emplace_back(kKlipperAccel, value);
     } else if (name == "ACCEL_TO_DECEL") {
-      state[kKlipperDecel] = value;
+      settings.emplace_back(kKlipperDecel, value);
     } else if (name == "SQUARE_CORNER_VELOCITY") {
-      state[kKlipperCorner] = value;
+      settings.emplace_back(kKlipperCorner, value);
     } else if (name == "VELOCITY") {
-      state[kKlipperSpeed] = value;
+      settings.emplace_back(kKlipperSpeed, value);
     } else {
       return Fence(line, LineRole::kFixed);
     }
   }
-  state_ = state;
-  state_changed_ = true;
+  for (const auto& [slot, value] : settings) SetState(slot, value);
 }
 
 }  // namespace traverse::gcode

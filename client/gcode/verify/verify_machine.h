@@ -36,11 +36,29 @@ struct VerifyLine {
   Micro surplus = 0;     // filament pushed beyond what had been pulled back, by a move of its alone
   bool primes = false;   // such a move ended here
   bool travels = false;  // moves in XY without depositing
+  bool moves = false;    // the head or the filament moved: VerifyMachine::motion
+  uint64_t command = 0;  // what is set or done, without its values; 0: moves, comments, G92 E
+  bool sets_back = false;  // gives a setting a value that it had, and lost, since the last move
+};
+
+// How the head and the filament moved.
+struct Motion {
+  std::array<Micro, 3> from{};
+  std::array<Micro, 3> to{};
+  Micro filament = 0;  // pushed; pulled back if negative
+  Micro pulled = 0;    // still pulled back before it
+  Micro feed = 0;      // in force
+  int number = 0;      // G0 to G3, G10 and G11
+  uint32_t words = 0;  // bit (letter - 'A')
+  bool was_retracted = false;
+  bool has_center = false;  // of an arc
+  Micro center_x = 0;
+  Micro center_y = 0;
 };
 
 class VerifyMachine {
  public:
-  explicit VerifyMachine(std::string_view text) : rest_(text) {}
+  explicit VerifyMachine(std::string_view text);
 
   // The next line; false at the end.
   bool Next(VerifyLine& line);
@@ -49,6 +67,15 @@ class VerifyMachine {
   Micro y() const { return at_[1]; }
   Micro z() const { return at_[2]; }
   bool retracted() const { return firmware_retracted_ || pulled_ > kSlack; }
+  bool inches() const { return inches_; }
+  uint64_t tool() const { return tool_; }
+
+  // REQUIRES: the last line moves.
+  const Motion& motion() const { return motion_; }
+
+  // Of the accelerations, jerks and limits in force, those of travel included.
+  uint64_t AccelerationDigest();
+
   uint64_t fan() const { return fan_; }
 
   static constexpr Micro kSlack = 100;  // of filament that rounding may lose
@@ -64,16 +91,22 @@ class VerifyMachine {
   void Move(int number, const Words& words, VerifyLine& line);
   void Deposit(int number, const Words& words, const std::array<Micro, 3>& from, Micro filament,
                VerifyLine& line);
+  void FollowFilament(Micro filament, bool moves);
   bool IsCircular(const Words& words, const std::array<Micro, 3>& from) const;
-  void SetState(size_t slot, uint64_t value) {
-    state_[slot] = value;
-    state_changed_ = true;
-  }
+  void NoteMotion(int number, uint32_t words, const std::array<Micro, 3>& from, Micro filament);
+  void SetState(size_t slot, uint64_t value);
   uint64_t StateDigest();
   void Mode(bool& mode, bool value, VerifyLine& line);
   void Fence(VerifyLine& line, LineRole role);
 
-  static constexpr size_t kStates = 24;
+  static constexpr size_t kStates = 26;
+
+  // The values that a setting had since a move; four are enough to find out that one came back.
+  struct Held {
+    uint64_t behind = 0;  // how many moves
+    size_t count = 0;
+    std::array<uint64_t, 4> values{};
+  };
 
   std::string_view rest_;
   size_t number_ = 0;
@@ -81,6 +114,7 @@ class VerifyMachine {
   Micro e_ = 0;
   Micro feed_ = 0;
   Micro pulled_ = 0;
+  Micro deepest_ = 0;  // the most that pulled_ was since it last was 0
   bool firmware_retracted_ = false;
   bool relative_ = false;
   bool relative_e_ = false;
@@ -89,8 +123,13 @@ class VerifyMachine {
   uint64_t tool_ = 0;
   uint64_t fan_ = 0;
   std::array<uint64_t, kStates> state_{};
-  uint64_t state_digest_ = 0;  // of state_, unless state_changed_
+  uint64_t state_digest_ = 0;         // of state_, unless state_changed_
+  uint64_t acceleration_digest_ = 0;  // the same
   bool state_changed_ = true;
+  Motion motion_;
+  uint64_t motions_ = 1;
+  std::array<Held, kStates> held_{};  // [slot]
+  bool sets_back_ = false;
 };
 
 // Mixes `value` into `digest`.

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sends uploaded G-code through `traverse optimize` and keeps the original.
+"""Sends uploaded G-code (.gcode, .bgcode, .gcode.3mf, .ufp) through `traverse optimize` and keeps the original.
 
 Three ways to use it:
 
@@ -34,7 +34,11 @@ import tempfile
 import time
 
 LOG = logging.getLogger("traverse")
-SUFFIXES = {".gcode", ".gco", ".g"}
+ENDINGS = (".gcode", ".gco", ".g", ".bgcode", ".gcode.3mf", ".ufp")  # not .3mf: projects have that name as well
+
+
+def is_gcode(path):
+    return pathlib.Path(path).name.lower().endswith(ENDINGS)
 
 
 def digest(path):
@@ -125,7 +129,7 @@ def watch(folder, originals, options, timeout, program, interval=2.0):
 
 def candidates(folder):
     return [path for path in pathlib.Path(folder).rglob("*")
-            if path.suffix.lower() in SUFFIXES and not path.name.startswith(".")]
+            if is_gcode(path) and not path.name.startswith(".")]
 
 
 def stamp(path):
@@ -146,7 +150,7 @@ __plugin_pythoncompat__ = ">=3.7,<4"
 def preprocess(path, file_object, links=None, printer_profile=None, allow_overwrite=True, *args, **kwargs):
     """The hook octoprint.filemanager.preprocessor: gets each file before it is stored."""
     name = pathlib.Path(file_object.filename)
-    if name.suffix.lower() not in SUFFIXES:
+    if not is_gcode(name):
         return file_object
     import octoprint.filemanager.util
     originals = pathlib.Path(os.environ.get("TRAVERSE_ORIGINALS", "~/.traverse/originals")).expanduser()

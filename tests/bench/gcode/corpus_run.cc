@@ -7,10 +7,10 @@
 
 #include "client/formats/read_input.h"
 #include "client/gcode/gcode_job.h"
-#include "client/gcode/layer_meter.h"
-#include "client/gcode/outline.h"
+#include "client/gcode/measure/layer_meter.h"
+#include "client/gcode/model/outline.h"
 #include "client/gcode/parallel.h"
-#include "client/gcode/reader.h"
+#include "client/gcode/read/reader.h"
 #include "client/gcode/rewrite.h"
 #include "client/gcode/verify/verifier.h"
 
@@ -49,7 +49,7 @@ std::string NameOf(const std::string& path) {
 
 // What the text written amounts to by its own account, not the writer's.
 void MeasureResult(const GcodeFile& file, const std::string& text, CorpusRun& run) {
-  const auto verified = VerifyGcode(file.text, "before", text, "after");
+  const auto verified = VerifyGcode(file.text, "before", text, "after", OnlySamePrint());
   if (!verified.ok()) run.fault = std::string(verified.message());
   const auto again = ReadGcode(text, "after");
   if (!again.ok()) {
@@ -64,6 +64,17 @@ void MeasureResult(const GcodeFile& file, const std::string& text, CorpusRun& ru
   run.layers_longer = LongerLayers(before, after);
   if (before.size() != after.size()) run.fault = "another number of layers";
   run.link_seconds = LinkSeconds(file, run.before.seconds);
+}
+
+double FoundSeconds(const InputJob& job, const std::vector<v1::LayerResult>& found) {
+  double seconds = 0;
+  for (size_t i = 0; i < found.size(); ++i) {
+    const double price = job.layers[i].cost().time().crossing_seconds();
+    seconds += found[i].cost_given() - found[i].cost() -
+               price * (static_cast<double>(found[i].crossings_given()) -
+                        static_cast<double>(found[i].crossings()));
+  }
+  return seconds;
 }
 
 }  // namespace
@@ -95,6 +106,7 @@ absl::StatusOr<CorpusRun> RunFile(const std::string& path, gcode::Policy policy,
   for (const std::vector<v1::Layer>& layers : ways_to_ask) {
     const absl::StatusOr<JobResult> result = client.Optimize(job->options, layers);
     if (!result.ok()) return result.status();
+    if (tries.empty()) run.found_seconds = FoundSeconds(*job, result->layers);
     gcode::FileOrder& orders = tries.emplace_back();
     for (size_t i = 0; i < result->layers.size(); ++i) {
       orders.push_back(OrderOf(file, i, result->layers[i]));
@@ -102,6 +114,7 @@ absl::StatusOr<CorpusRun> RunFile(const std::string& path, gcode::Policy policy,
   }
   RewriteOptions rewriting;
   rewriting.policy = policy;
+  rewriting.crossings = options.crossings;
   rewriting.threads = gcode::DefaultThreads();
   const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(file, tries, rewriting);
   run.cpu_seconds = CpuSeconds() - began;

@@ -46,6 +46,22 @@ std::string Row(const CorpusRun& run) {
       run.layers_longer, run.fault.empty() ? "yes" : run.fault);
 }
 
+std::string FoundAndWritten(const std::vector<CorpusRun>& runs) {
+  std::string text =
+      "\nFound and written\n\n| policy | file | found s | written s | of it | retractions | after "
+      "| "
+      "crossings | after | computing s |\n|---|---|---:|---:|---:|---:|---:|---:|---:|---:|\n";
+  for (const CorpusRun& run : runs) {
+    const double written = run.before.seconds - run.after.seconds;
+    text += absl::StrFormat("| %s | %s | %.1f | %.1f | %.0f %% | %d | %d | %d | %d | %.1f |\n",
+                            std::string(PolicyName(run.policy)), run.file, run.found_seconds,
+                            written, run.found_seconds > 0 ? 100 * written / run.found_seconds : 0,
+                            run.before.retractions, run.after.retractions, run.before.crossings,
+                            run.after.crossings, run.cpu_seconds);
+  }
+  return text;
+}
+
 constexpr char kHead[] =
     "| file | travel m | after | less | retractions | after | crossings (open) | after | time s | "
     "after | less | links' share "
@@ -95,7 +111,7 @@ std::string CorpusTable(const std::vector<CorpusRun>& runs) {
     for (const CorpusRun* run : group) text += Row(*run);
     last = &key;
   }
-  return text + Medians(groups);
+  return text + Medians(groups) + FoundAndWritten(runs);
 }
 
 std::string CorpusJson(const std::vector<CorpusRun>& runs) {
@@ -115,6 +131,7 @@ std::string CorpusJson(const std::vector<CorpusRun>& runs) {
                    {"before", totals(run.before)},
                    {"after", totals(run.after)},
                    {"link_seconds", run.link_seconds},
+                   {"found_seconds", run.found_seconds},
                    {"layers", run.layers},
                    {"layers_changed", run.layers_changed},
                    {"layers_longer", run.layers_longer},

@@ -11,7 +11,7 @@
 #include "client/formats/read_input.h"
 #include "engine/base/rng.h"
 #include "nlohmann/json.hpp"
-#include "server/translate.h"
+#include "server/translate/translate.h"
 #include "tests/support/source_dir.h"
 
 namespace traverse::bench {

@@ -11,7 +11,7 @@
 
 #include "engine/engine.h"
 #include "engine/strategy/registry.h"
-#include "server/worker_pool.h"
+#include "server/jobs/worker_pool.h"
 
 namespace traverse::bench {
 namespace {

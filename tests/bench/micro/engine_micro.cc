@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "engine/base/rng.h"
-#include "engine/construct/greedy.h"
 #include "engine/cost/entry_choice.h"
-#include "engine/local_search/end_groups.h"
-#include "engine/local_search/iterated_search.h"
+#include "engine/search/end_groups.h"
+#include "engine/search/greedy/greedy.h"
+#include "engine/search/iterated_search.h"
 #include "tests/bench/layers/bench_part.h"
 
 namespace traverse::bench {

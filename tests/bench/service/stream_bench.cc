@@ -22,8 +22,8 @@
 #include <thread>
 #include <vector>
 
-#include "tests/server/server_process.h"
-#include "tests/server/service_fixture.h"
+#include "tests/server/support/server_process.h"
+#include "tests/server/support/service_fixture.h"
 #include "traverse/v1/route_optimizer_service.grpc.pb.h"
 
 namespace traverse::testing {

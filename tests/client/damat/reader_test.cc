@@ -87,6 +87,40 @@ TEST(DamatReader, AcceptsDegenerateGeometry) {
   EXPECT_THAT(job.layers[1].islands(1).rasters(0).points(), ElementsAre(4, 4, 4, 4));
 }
 
+// Figure 3.3 as it is printed: C1,X96.5621,Y98.1351, the next vertex on the next line.
+TEST(DamatReader, ReadsAVertexALine) {
+  const InputJob one = Read(
+      "nF,1\nF1,2\nI1,2,1\nC1,X0,Y0\nC1,X9,Y0\nC1,X9,Y9\nC1,X0,Y9\nC1,X0,Y0\nC2,X1,Y1\nC2,X2,Y1\n"
+      "C2,X2,Y2\nR1,X3,Y3,X4,Y4\nI2,2,0\nC1,X20,Y20\nC2,X20,Y20\n");
+  const InputJob same = Read(
+      "nF,1\nF1,2\nI1,2,1\nC1,X0,Y0,X9,Y0,X9,Y9,X0,Y9,X0,Y0\nC2,X1,Y1,X2,Y1,X2,Y2\n"
+      "R1,X3,Y3,X4,Y4\nI2,2,0\nC1,X20,Y20\nC2,X20,Y20\n");
+
+  ASSERT_THAT(one.layers, SizeIs(1));
+  EXPECT_EQ(one.layers[0].DebugString(), same.layers.at(0).DebugString());
+}
+
+TEST(DamatReader, ThicknessSaysWhereLayersAre) {
+  for (const char* head : {"E,0.25\nnF,2\n", "nF,2,0.25\n"}) {
+    const InputJob job = Read(absl::StrCat(head, "F1,0\nF2,0\n"));
+    ASSERT_THAT(job.layers, SizeIs(2));
+    EXPECT_EQ(job.layers[0].z_mm(), 0.25);
+    EXPECT_EQ(job.layers[1].z_mm(), 0.5);
+  }
+  EXPECT_EQ(Read("nF,1\nF1,0\n").layers.at(0).z_mm(), 0);
+}
+
+// The outer contour is known by where it lies, not by where it stands.
+TEST(DamatReader, FindsTheOuterContourWhereverItStands) {
+  const char* outer = "C7,X0,Y0,X9,Y0,X9,Y9,X0,Y9\n";
+  const char* a = "C1,X1,Y1,X2,Y1,X2,Y2\n";
+  const char* b = "C2,X5,Y5,X6,Y5,X6,Y9\n";  // touches it
+  const std::string first = Read(Island(3, 0, absl::StrCat(outer, a, b))).layers[0].DebugString();
+
+  EXPECT_EQ(Read(Island(3, 0, absl::StrCat(a, outer, b))).layers.at(0).DebugString(), first);
+  EXPECT_EQ(Read(Island(3, 0, absl::StrCat(a, b, outer))).layers.at(0).DebugString(), first);
+}
+
 TEST(DamatReader, IdsAreLabelsPerScope) {
   const InputJob job =
       Read("nF,2\nF7,2\nI4,1,1\nC2,X1,Y1\nR2,X1,Y1,X2,Y2\nI2,1,0\nC2,X1,Y1\nF3,1\nI4,0,0\n");
@@ -149,8 +183,59 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"LayerTwice", "nF,2\nF1,0\nF1,0\n", "part.damat:3: second layer with id 1"},
         BadFile{"IslandTwice", "nF,1\nF3,2\nI1,0,0\nI1,0,0\n",
                 "part.damat:4: second island with id 1 in layer 3"},
-        BadFile{"ContourTwice", Island(2, 0, "C1,X1,Y1\nC1,X2,Y2\n"),
+        BadFile{"ContourTwice", Island(2, 0, "C1,X1,Y1,X2,Y2\nC1,X2,Y2,X1,Y1\n"),
                 "part.damat:5: second contour with id 1 in island 1"},
+        BadFile{"ContourComesAgain", Island(3, 0, "C1,X1,Y1\nC2,X1,Y1\nC1,X2,Y2\n"),
+                "part.damat:6: second contour with id 1 in island 1"},
+        BadFile{
+            "LongAfterVertexALine", Island(2, 0, "C1,X1,Y1\nC1,X2,Y2\nC2,X1,Y1,X2,Y2\n"),
+            "part.damat:6: two spellings in one file: line 5 goes on with a contour, a vertex a "
+            "line, line 6 has all vertices of one"},
+        BadFile{
+            "VertexALineAfterLong", Island(2, 0, "C1,X1,Y1,X2,Y2\nC2,X1,Y1\nC2,X2,Y2\n"),
+            "part.damat:6: two spellings in one file: line 6 goes on with a contour, a vertex a "
+            "line, line 4 has all vertices of one"},
+        BadFile{
+            "LongGoesOn", Island(1, 0, "C1,X1,Y1\nC1,X2,Y2,X3,Y3\n"),
+            "part.damat:5: two spellings in one file: line 5 goes on with a contour, a vertex a "
+            "line, line 5 has all vertices of one"},
+        BadFile{"VertexALineCounted", Island(2, 0, "C1,X1,Y1\nC1,X2,Y2\n"),
+                "part.damat:3: I1 announces 2 contours, the file has 1"},
+        BadFile{"ThicknessMissing", "E\nnF,0\n",
+                "part.damat:1: \"\" is no thickness of a layer in mm, above 0 and up to 1e6"},
+        BadFile{"ThicknessWord", "M,1,1\nE,thin\nnF,0\n",
+                "part.damat:2: \"thin\" is no thickness of a layer in mm, above 0 and up to 1e6"},
+        BadFile{"ThicknessZero", "E,0\nnF,0\n",
+                "part.damat:1: \"0\" is no thickness of a layer in mm, above 0 and up to 1e6"},
+        BadFile{"ThicknessNan", "nF,1,nan\nF1,0\n",
+                "part.damat:1: \"nan\" is no thickness of a layer in mm, above 0 and up to 1e6"},
+        BadFile{"ThicknessTwice", "E,0.25\nnF,1,0.25\nF1,0\n",
+                "part.damat:2: second thickness of a layer"},
+        BadFile{"ThicknessLate", "nF,1\nE,0.25\nF1,0\n", "part.damat:2: E comes after nF"},
+        BadFile{"ThicknessAndMore", "E,0.25,1\nnF,0\n",
+                "part.damat:1: E has one number, the thickness of a layer"},
+        BadFile{"LayerCountAndMore", "nF,0,0.25,1\n",
+                "part.damat:1: nF has two numbers at most: layers, and their thickness"},
+        BadFile{
+            "TwoOuterContours",
+            Island(2, 0, "C1,X0,Y0,X9,Y0,X9,Y9,X0,Y9\nC2,X10,Y0,X19,Y0,X19,Y8,X10,Y8\n"),
+            "part.damat:5: C2 and C1 (line 4) are two outer contours of I1: neither lies within "
+            "the other"},
+        BadFile{
+            "TwoOuterContoursTheLargerLast",
+            Island(2, 0, "C1,X10,Y0,X19,Y0,X19,Y8,X10,Y8\nC2,X0,Y0,X9,Y0,X9,Y9,X0,Y9\n"),
+            "part.damat:5: C2 and C1 (line 4) are two outer contours of I1: neither lies within "
+            "the other"},
+        BadFile{"InnerOutside",
+                Island(3, 0,
+                       "C4,X0,Y0,X9,Y0,X9,Y9,X0,Y9\nC5,X1,Y1,X2,Y1,X2,Y2\n"
+                       "C6,X11,Y1,X12,Y1,X12,Y2\n"),
+                "part.damat:6: C6 lies outside C4 (line 4), the outer contour of I1"},
+        BadFile{"InnerInTheNotch",
+                Island(3, 0,
+                       "C4,X0,Y0,X9,Y0,X9,Y9,X5,Y9,X5,Y1,X4,Y1,X4,Y9,X0,Y9\n"
+                       "C5,X1,Y1,X2,Y1,X2,Y2\nC6,X4.2,Y5,X4.8,Y5,X4.8,Y6\n"),
+                "part.damat:6: C6 lies outside C4 (line 4), the outer contour of I1"},
         BadFile{"RasterTwice", Island(0, 2, "R1,X1,Y1,X2,Y2\nR1,X1,Y1,X2,Y2\n"),
                 "part.damat:5: second raster with id 1 in island 1"},
         BadFile{"IslandOutside", "nF,1\nI1,0,0\n",

@@ -23,9 +23,14 @@ InputJob RandomJob(uint64_t seed) {
     for (int i = few(random); i > 0; --i) {
       v1::Island& island = *layer.add_islands();
       island.set_id(static_cast<uint64_t>(i));
-      for (int c = few(random); c > 0; --c) {
+      const int contours = few(random);
+      for (int c = contours; c > 0; --c) {
         v1::Contour& contour = *island.add_contours();
         contour.set_id(static_cast<uint64_t>(c));
+        if (c == contours) {  // around all others
+          for (const double v : {-1e6, -1e6, 1e6, -1e6, 1e6, 1e6, -1e6, 1e6}) contour.add_points(v);
+          continue;
+        }
         for (int p = few(random); p >= 0; --p) {
           contour.add_points(coordinate(random));
           contour.add_points(coordinate(random));
@@ -70,6 +75,28 @@ TEST(DamatWriter, KeepsEnvelopeOrStatesTheBoundingBox) {
   EXPECT_EQ(*WriteDamat(given), "// INICIO DO ARQUIVO\nM,50,60\nnF,1\nF1,1\nI1,1,0\nC1,X7,Y8.5\n");
   EXPECT_EQ(*WriteDamat(computed),
             "// INICIO DO ARQUIVO\nM,7,8.5\nnF,1\nF1,1\nI1,1,0\nC1,X7,Y8.5\n");
+}
+
+TEST(DamatWriter, KeepsTheThicknessOfEqualLayers) {
+  const std::string text = "// INICIO DO ARQUIVO\nM,0,0\nE,0.1\nnF,3\nF1,0\nF2,0\nF3,0\n";
+  InputJob job = *ReadDamat(text, "a");
+
+  EXPECT_EQ(*WriteDamat(job), text);
+  job.layers.erase(job.layers.begin());
+  EXPECT_EQ(*WriteDamat(job), "// INICIO DO ARQUIVO\nM,0,0\nnF,2\nF2,0\nF3,0\n");
+}
+
+TEST(DamatWriter, RefusesContoursThatAnIslandCannotHave) {
+  InputJob job =
+      *ReadDamat("nF,1\nF1,1\nI1,2,0\nC1,X0,Y0,X9,Y0,X9,Y9\nC2,X7,Y1,X8,Y1,X8,Y2\n", "a");
+  v1::Island& island = *job.layers[0].mutable_islands(0);
+  island.mutable_contours()->SwapElements(0, 1);
+  EXPECT_EQ(WriteDamat(job).status().message(),
+            "layers[0].islands[0]: DAMAT cannot hold an outer contour that is not the largest");
+  island.mutable_contours()->SwapElements(0, 1);
+  for (double& v : *island.mutable_contours(1)->mutable_points()) v += 100;
+  EXPECT_EQ(WriteDamat(job).status().message(),
+            "layers[0].islands[0]: DAMAT cannot hold a contour outside the outer one");
 }
 
 TEST(DamatWriter, WritesTheEndsOfLongerPaths) {

@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <lzma.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <zlib.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -187,6 +189,34 @@ TEST_F(Files, WriteErrorsNameTheFileAndLeaveNothing) {
               EndsWith(": Is a directory"));
   EXPECT_THAT(std::string(WriteWholeFile(Path("loop"), "x").message()), HasSubstr("loop: "));
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(Files, WriteThatFailsHalfwayLeavesTheOldFileAndNothingElse) {
+  Put("file", "old");
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{1000, before.rlim_max};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &small);
+
+  const absl::Status status = WriteWholeFile(Path("file"), std::string(5000, 'x'));
+
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_THAT(std::string(status.message()), EndsWith("file: File too large"));
+  EXPECT_EQ(Get("file"), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(Files, WritePutsANewFileInThePlaceOfTheOldOne) {
+  Put("file", "old");
+  std::ifstream reader(Path("file"));
+
+  ASSERT_TRUE(WriteWholeFile(Path("file"), "new").ok());
+
+  // Who has the old file open still reads all of it: it was not written into.
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(reader), {}), "old");
+  EXPECT_EQ(Get("file"), "new");
 }
 
 TEST_F(Files, WriteGoesThroughDevices) {

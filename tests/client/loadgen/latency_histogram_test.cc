@@ -27,6 +27,17 @@ TEST(LatencyHistogram, SmallValuesAreExact) {
   EXPECT_EQ(histogram.Percentile(1), absl::Nanoseconds(255));
 }
 
+TEST(LatencyHistogram, PercentilesAreTheNearestRanks) {
+  LatencyHistogram histogram;
+  for (int ns = 1; ns <= 100; ++ns) histogram.Record(absl::Nanoseconds(ns));
+
+  EXPECT_EQ(histogram.Percentile(0.5), absl::Nanoseconds(50));
+  EXPECT_EQ(histogram.Percentile(0.501), absl::Nanoseconds(51));
+  EXPECT_EQ(histogram.Percentile(0.9), absl::Nanoseconds(90));
+  EXPECT_EQ(histogram.Percentile(0.99), absl::Nanoseconds(99));
+  EXPECT_EQ(histogram.Percentile(0.999), absl::Nanoseconds(100));
+}
+
 TEST(LatencyHistogram, OneValueIsEveryPercentile) {
   LatencyHistogram histogram;
   histogram.Record(absl::Microseconds(1234));

@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "absl/strings/escaping.h"
-#include "client/view/layer_code.h"
 #include "client/view/page_template.h"
+#include "client/view/scene/layer_code.h"
 #include "engine/base/rng.h"
 
 namespace traverse::view {

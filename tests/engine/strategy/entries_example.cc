@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "engine/construct/greedy.h"
 #include "engine/cost/route_entries.h"
+#include "engine/search/greedy/greedy.h"
 #include "engine/strategy/stop.h"
 
 namespace traverse {

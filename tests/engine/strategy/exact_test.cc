@@ -250,5 +250,54 @@ TEST(ExactFramework, IsCancelledSoon) {
   EXPECT_OK(ValidateRoute(owned.plan(), solution.route));
 }
 
+// What the programme did is told apart from what it was given.
+TEST(ExactFramework, TellsWhatItGainedOverItsStart) {
+  const OwnedProblem owned(SequentialPlan(testing::SquareGrid(3, 2)));
+  Budget budget;
+
+  const Solution warm = MakeFramework({})->Solve(owned.problem, budget);
+  const Solution cold = MakeFramework({{"start", "none"}})->Solve(owned.problem, budget);
+
+  for (const std::string step : {"contours", "rasters"}) {
+    SCOPED_TRACE(step);
+    EXPECT_NEAR(warm.statistics.at(step + "_start") - warm.statistics.at(step + "_value"),
+                warm.statistics.at(step + "_gained"), 1e-9);
+    EXPECT_GE(warm.statistics.at(step + "_gained"), -1e-9);
+    EXPECT_EQ(cold.statistics.count(step + "_start"), 0u);
+    EXPECT_EQ(cold.statistics.at(step + "_found"), 1);
+    EXPECT_GE(cold.statistics.at(step + "_seconds"), 0);
+    EXPECT_NEAR(cold.statistics.at(step + "_incumbent_01_value"),
+                std::max(cold.statistics.at(step + "_incumbent_01_value"),
+                         cold.statistics.at(step + "_value")),
+                1e-6);
+  }
+}
+
+// Without time a cold programme has nothing, and says so: the thesis's "NA".
+TEST(ExactFramework, ColdHasNothingOfItsOwnWithoutTime) {
+  const OwnedProblem owned(SequentialPlan(testing::SquareGrid(4, 4)));
+  Budget budget;
+
+  const Solution cold =
+      MakeFramework({{"start", "none"}, {"time_limit", "0"}})->Solve(owned.problem, budget);
+
+  EXPECT_OK(ValidateRoute(owned.plan(), cold.route));
+  EXPECT_EQ(cold.statistics.at("contours_found"), 0);
+  EXPECT_EQ(cold.statistics.count("contours_value"), 0u);
+  EXPECT_EQ(cold.stop, StopReason::kTimeLimit);
+  EXPECT_TRUE(MakeFramework({{"start", "none"}})->pure());
+}
+
+TEST(ExactFramework, HasTheOptionsOfTheReductions) {
+  const OwnedProblem owned(SequentialPlan(testing::PlateWithHoles()));
+  Budget budget;
+  const auto points = [&](const char* spacing) {
+    return MakeFramework({{"spacing_mm", spacing}, {"neighbors", "3"}, {"radius_step_mm", "2"}})
+        ->Solve(owned.problem, budget)
+        .statistics.at("points_sp");
+  };
+  EXPECT_GT(points("0"), points("100"));
+}
+
 }  // namespace
 }  // namespace traverse

@@ -44,5 +44,20 @@ TEST(GreedyStrategy, SaysWhyItStopped) {
   EXPECT_OK(ValidateRoute(owned.plan(), second.route));
 }
 
+// The sources' method 1 has nothing behind it: on a zigzag given in its order it loses.
+TEST(Greedy, PureMayBeLongerThanTheOrderGiven) {
+  OwnedProblem owned(testing::AnyOrderPlan(
+      {MakeContour({{-2, 0}}), MakeContour({{1, 0}}), MakeContour({{9, 0}})}));
+  Budget budget;
+
+  const Solution usual = (*MakeStrategy("greedy", {}))->Solve(owned.problem, budget);
+  const Solution pure = (*MakeStrategy("greedy", {{"pure", "true"}}))->Solve(owned.problem, budget);
+
+  // To 1, to -2 (3 away), to 9: 1 + 3 + 11. Given: 2 + 3 + 8.
+  EXPECT_NEAR(RouteCost(owned.problem, pure.route), 15, 1e-9);
+  EXPECT_NEAR(RouteCost(owned.problem, usual.route), 13, 1e-9);
+  EXPECT_TRUE((*MakeStrategy("greedy", {{"pure", "true"}}))->pure());
+}
+
 }  // namespace
 }  // namespace traverse

@@ -123,5 +123,50 @@ TEST(Tabu, SeedsLeadToOtherSearches) {
   EXPECT_EQ(Solve("tabu", options, owned).route, Solve("tabu", options, owned).route);
 }
 
+// The list of tables 5.3 to 5.8: seeds differ, times are told, nothing else takes its place.
+TEST(Tabu, OfTheThesisIsItsOwn) {
+  int longer = 0;
+  for (uint64_t seed = 1; seed <= 30; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const OwnedProblem owned = testing::RandomProblem(seed, {.max_paths = 25});
+    const std::map<std::string, std::string> options = {{"thesis", "true"},
+                                                        {"diversifications", "20"}};
+
+    const Solution found = Solve("tabu", options, owned);
+
+    ASSERT_OK(ValidateRoute(owned.plan(), found.route));
+    EXPECT_EQ(found.route, Solve("tabu", options, owned).route);
+    longer += RouteCost(owned.problem, found.route) >
+              RouteCost(owned.problem, Solve("greedy", {}, owned).route) + 1e-6;
+  }
+  EXPECT_GT(longer, 0);
+  EXPECT_TRUE((*MakeStrategy("tabu", {{"thesis", "true"}}))->pure());
+  EXPECT_TRUE((*MakeStrategy("tabu", {{"thesis", "true"}}))->serial());
+}
+
+TEST(Tabu, OfTheThesisKeepsFewerVisiblePoints) {
+  const OwnedProblem owned(SequentialPlan(testing::SquareGrid(6, 3)));
+  const Solution ours = Solve("tabu", {{"polish", "false"}, {"spacing_mm", "0.5"}}, owned);
+  const Solution thesis =
+      Solve("tabu", {{"thesis", "true"}, {"spacing_mm", "0.5"}, {"diversifications", "20"}}, owned);
+
+  EXPECT_LT(thesis.statistics.at("points_vp"), ours.statistics.at("points_vp"));
+  for (const char* step : {"step2_seconds", "step3_seconds", "step4_seconds"}) {
+    EXPECT_GE(thesis.statistics.at(step), 0);
+  }
+}
+
+TEST(Tabu, TracesTheFramework) {
+  const OwnedProblem owned(SequentialPlan(testing::SquareGrid(2, 1)));
+  const auto told = Solve("tabu", {{"trace", "true"}}, owned).statistics;
+
+  // Paths: contour, raster, contour, raster; 4 is the origin.
+  EXPECT_EQ(told.at("trace_neighbors_0_2"), 1);
+  EXPECT_EQ(told.at("trace_neighbors_0_4"), 1);
+  EXPECT_EQ(told.at("trace_sequence_000"), 0);
+  EXPECT_EQ(told.at("trace_sequence_001"), 2);
+  EXPECT_EQ(Solve("tabu", {}, owned).statistics.count("trace_sequence_000"), 0u);
+}
+
 }  // namespace
 }  // namespace traverse

@@ -1,5 +1,5 @@
-// Sends a job of one layer to the server at argv[1], with the token in argv[2] if there is one, and prints
-// the number of visits of its route.
+// Sends a job of one layer to the server at argv[1], with the token in argv[2] if there is one, and
+// prints the number of visits of its route.
 
 #include <cstdio>
 #include <string>

@@ -1,0 +1,170 @@
+#include "client/report/compare.h"
+
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_format.h"
+#include "absl/time/time.h"
+#include "client/cli/command.h"
+#include "client/cli/flags/run_flags.h"
+#include "client/cli/flags/strategy_spec.h"
+#include "client/cli/gcode_output.h"
+#include "client/cli/service.h"
+#include "client/cli/terminal.h"
+#include "client/files/read_file.h"
+#include "client/files/write_file.h"
+#include "client/formats/read_input.h"
+#include "client/report/json.h"
+#include "client/report/reductions.h"
+#include "client/view/scene/job_scene.h"
+
+namespace traverse::cli {
+namespace {
+
+constexpr uint64_t kMaxRepeats = 1000;
+
+// A table of all strategies should not wait two hours for the proof that one of them looks for. No
+// deadline: on a busy machine a late answer is better than none.
+constexpr absl::Duration kDefaultTimeLimit = absl::Seconds(5);
+constexpr absl::Duration kDefaultLayerLimit = absl::Milliseconds(500);
+
+struct Request : RunFlags {
+  std::vector<StrategySpec> strategies;  // empty: all that the service has
+  uint64_t repeats = 1;
+  PlateOptions plates;
+};
+
+absl::StatusOr<Request> ParseRequest(const Flags& flags) {
+  auto run = ParseRunFlags(flags);
+  if (!run.ok()) return run.status();
+  Request request;
+  static_cast<RunFlags&>(request) = *std::move(run);
+  if (!flags.Has("deadline") && !flags.Has("strategies")) {
+    request.job.time_limit = kDefaultTimeLimit;
+    // Or the first layers would use it up, and the others come back in the order given.
+    if (!request.job.layer_time_limit) request.job.layer_time_limit = kDefaultLayerLimit;
+  }
+  if (flags.Has("strategies")) {
+    auto specs = ParseStrategySpecs(flags.Text("strategies"));
+    if (!specs.ok()) return specs.status();
+    request.strategies = *std::move(specs);
+  }
+  const auto repeats = flags.Integer("repeat", 1, kMaxRepeats);
+  if (!repeats.ok()) return repeats.status();
+  request.repeats = repeats->value_or(1);
+  const auto plates = ParsePlateOptions(flags);
+  if (!plates.ok()) return plates.status();
+  request.plates = *plates;
+  return request;
+}
+
+// Fills in what the service has if the user named no strategies.
+Outcome ListAll(Service& service, std::vector<StrategySpec>& specs) {
+  if (!specs.empty()) return Done();
+  Expected<v1::ListStrategiesResponse> listed = service.ListStrategies();
+  if (Outcome* outcome = std::get_if<Outcome>(&listed)) return *outcome;
+  for (const v1::StrategyInfo& info : std::get<v1::ListStrategiesResponse>(listed).strategies()) {
+    StrategySpec& spec = specs.emplace_back();
+    spec.label = info.name();
+    spec.strategy.set_name(info.name());
+  }
+  return Done();
+}
+
+// Runs each strategy with each seed.
+Outcome RunAll(Service& service, const Request& request, InputJob& job,
+               std::vector<report::ComparedStrategy>& out) {
+  const uint64_t first_seed = job.options.has_seed() ? job.options.seed() : 1;
+  for (const StrategySpec& spec : request.strategies) {
+    report::ComparedStrategy& compared = out.emplace_back();
+    compared.label = spec.label;
+    for (uint64_t i = 0; i < request.repeats; ++i) {
+      job.options.set_seed(first_seed + i);
+      Expected<report::JobRun> ran = service.Optimize(job, &spec, request.job, request.quiet);
+      if (Outcome* outcome = std::get_if<Outcome>(&ran)) return *outcome;
+      compared.runs.push_back(std::get<report::JobRun>(std::move(ran)));
+    }
+  }
+  return Done();
+}
+
+// Draws and describes the strategies' first runs, foremost the one with the shortest travel. A run
+// of none among others is what they are set against, and no row of its own.
+Outcome ShowViews(Service& service, const Request& request, const InputJob& job,
+                  const std::vector<report::ComparedStrategy>& compared) {
+  const Expected<report::JobRun> given = RunAsGiven(service, request.job, job);
+  if (const Outcome* outcome = std::get_if<Outcome>(&given)) return *outcome;
+  std::vector<view::NamedRun> runs;
+  for (const report::ComparedStrategy& strategy : compared) {
+    if (strategy.label == "none" && compared.size() > 1) continue;
+    runs.push_back({strategy.label, &strategy.runs.front()});
+  }
+  view::Scene scene = view::JobScene(job, std::get<report::JobRun>(given), runs);
+  for (size_t i = 1; i < scene.routes.size(); ++i) {
+    if (scene.routes[i].total.travel_mm < scene.routes[scene.shown].total.travel_mm) {
+      scene.shown = i;
+    }
+  }
+  const absl::Status status = WriteViews(request.views, scene);
+  return status.ok() ? Done() : InputFault(status);
+}
+
+Outcome RunCompare(const Flags& flags) {
+  absl::StatusOr<Request> request = ParseRequest(flags);
+  if (!request.ok()) return UsageFault(request.status());
+  Expected<Service> opened = Service::Open(flags);
+  if (Outcome* outcome = std::get_if<Outcome>(&opened)) return *outcome;
+  Service& service = std::get<Service>(opened);
+
+  absl::StatusOr<InputJob> job =
+      ReadInput(flags.operands()[0], ParseGcodeOptions(flags), request->plates);
+  if (!job.ok()) return InputFault(job.status());
+  if (absl::Status status = ApplyJobFlags(request->job, *job); !status.ok()) {
+    return UsageFault(status);
+  }
+  if (absl::Status status = CheckViewLayer(request->views, *job); !status.ok()) {
+    return UsageFault(status);
+  }
+  Outcome outcome = ListAll(service, request->strategies);
+  if (outcome.code == kDone) outcome = service.Resolve(request->job, *job, request->strategies);
+  std::vector<report::ComparedStrategy> compared;
+  if (outcome.code == kDone) outcome = RunAll(service, *request, *job, compared);
+  if (outcome.code != kDone) return outcome;
+
+  if (!request->json.empty()) {
+    const absl::Status status = WriteWholeFile(request->json, report::CompareJson(*job, compared));
+    if (!status.ok()) return InputFault(status);
+  }
+  if (request->views.any()) {
+    outcome = ShowViews(service, *request, *job, compared);
+    if (outcome.code != kDone) return outcome;
+  }
+  std::FILE* out = request->json == "-" ? stderr : stdout;
+  Print(out, absl::StrFormat("%s: %d layers; %% are travel saved against that row\n%s",
+                             DisplayName(job->name), job->layers.size(),
+                             report::CompareTable(compared, StyleFor(out))) +
+                 report::ReductionTable(compared, StyleFor(out)));
+  return Done();
+}
+
+}  // namespace
+
+Command CompareCommand() {
+  Command command;
+  command.name = "compare";
+  command.operands = {"INPUT"};
+  command.summary = "Sets strategies side by side on one job.";
+  std::vector<Flag> own = {
+      {"strategies", "NAME,...", "or NAME:OPTION=VALUE (default: all, 5s each)"},
+      {"repeat", "N", "runs of each, seed after seed; means are shown"},
+      {"quiet", "", "no progress"},
+  };
+  for (Flag& flag : PlateFlagTable()) own.push_back(std::move(flag));
+  command.flags = WithRunFlagTable(std::move(own));
+  command.example = "traverse compare part.damat --layers=1-5 --strategies=greedy,ni2opt";
+  command.run = RunCompare;
+  return command;
+}
+
+}  // namespace traverse::cli

@@ -1,0 +1,108 @@
+#include <algorithm>
+#include <cstdio>
+
+#include "absl/strings/str_format.h"
+#include "client/cli/command.h"
+#include "client/cli/flags/job_flags.h"
+#include "client/cli/gcode_output.h"
+#include "client/cli/terminal.h"
+#include "client/containers/verify_files.h"
+#include "client/files/read_file.h"
+#include "client/files/write_file.h"
+#include "client/gcode/verify/verifier.h"
+#include "client/report/verify_json.h"
+
+namespace traverse::cli {
+namespace {
+
+// How many breaks are told; --json has the first of each rule.
+constexpr size_t kMostTold = 10;
+
+// --policy and --allow, in place of what the optimised file says of itself.
+absl::StatusOr<VerifyOptions> ParseOptions(const Flags& flags, std::string_view optimised) {
+  VerifyOptions options;
+  if (!flags.Has("policy") && !flags.Has("allow")) return options;
+  const VerifyPermissions stated = PermissionsInHead(optimised).value_or(VerifyPermissions{});
+  const absl::StatusOr<VerifyPermissions> given =
+      ParsePermissions(flags.Text("policy", "safe"), flags.Text("allow"));
+  if (!given.ok()) return given.status();
+  options.permissions = *given;
+  if (!flags.Has("policy")) options.permissions->policy = stated.policy;
+  return options;
+}
+
+// All breaks in one text: the first ones, and how many there are by rule.
+absl::Status FaultOf(const VerifyReport& report) {
+  std::string text;
+  const size_t told = std::min(kMostTold, report.breaks.size());
+  for (size_t i = 0; i < told; ++i) {
+    text += (i > 0 ? "\n" : "") + report.breaks[i].message;
+  }
+  if (report.breaks.size() > 1) {
+    text += "\nbreaks:";
+    for (size_t rule = 0; rule < report.counts.size(); ++rule) {
+      if (report.counts[rule] == 0) continue;
+      text += absl::StrFormat(" %s %d", std::string(VerifyRuleName(static_cast<VerifyRule>(rule))),
+                              report.counts[rule]);
+    }
+  }
+  return absl::FailedPreconditionError(text);
+}
+
+Outcome RunVerify(const Flags& flags) {
+  const std::string& original_name = flags.operands()[0];
+  const std::string& optimised_name = flags.operands()[1];
+  if (original_name == "-" && optimised_name == "-") {
+    return UsageFault("only one of the two can be standard input");
+  }
+  const absl::StatusOr<PlateOptions> plates = ParsePlateOptions(flags);
+  if (!plates.ok()) return UsageFault(plates.status());
+  if (const auto rules = ParseOptions(flags, ""); !rules.ok()) return UsageFault(rules.status());
+  absl::StatusOr<std::string> original = ReadWholeFile(original_name);
+  if (!original.ok()) return InputFault(original.status());
+  absl::StatusOr<std::string> optimised = ReadWholeFile(optimised_name);
+  if (!optimised.ok()) return InputFault(optimised.status());
+  const auto report =
+      VerifyFiles(*std::move(original), original_name, *std::move(optimised), optimised_name,
+                  {plates->container, plates->plate,
+                   [&](std::string_view text) { return ParseOptions(flags, text); }});
+  if (!report.ok()) return InputFault(report.status());
+  const std::string shown_original = DisplayName(original_name);
+  const std::string shown_optimised = DisplayName(optimised_name);
+  const std::string json = flags.Text("json");
+  if (!json.empty()) {
+    const absl::Status written =
+        WriteWholeFile(json, report::VerifyJson(shown_original, shown_optimised, *report));
+    if (!written.ok()) return InputFault(written);
+  }
+  if (!report->ok()) return InputFault(FaultOf(*report));
+  if (!flags.Switch("quiet")) {
+    Print(json == "-" ? stderr : stdout,
+          absl::StrFormat("%s prints what %s prints (policy %s)\n", shown_optimised, shown_original,
+                          DescribePermissions(report->permissions)));
+  }
+  return Done();
+}
+
+}  // namespace
+
+Command VerifyCommand() {
+  Command command;
+  command.name = "verify";
+  command.operands = {"ORIGINAL", "OPTIMISED"};
+  command.summary = "Does the second G-code print exactly what the first prints?";
+  command.flags = {
+      {"policy",
+       "POLICY",
+       "safe, balanced or free (default: as stated)",
+       {"safe", "balanced", "free"}},
+      {"allow", "NAME,...", "what else: infill_order, wall_order, fan_order"},
+      {"json", "FILE", "what was found, rule by rule"},
+      {"quiet", "", "nothing if it does"}};
+  for (Flag& flag : PlateFlagTable()) command.flags.push_back(std::move(flag));
+  command.example = "traverse verify part.gcode part.optimised.gcode";
+  command.run = RunVerify;
+  return command;
+}
+
+}  // namespace traverse::cli

@@ -1,0 +1,89 @@
+#include "client/cli/flags/connection_flags.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+
+#include "absl/status/status.h"
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_format.h"
+
+namespace traverse::cli {
+namespace {
+
+absl::Status Fault(std::string message) { return absl::InvalidArgumentError(std::move(message)); }
+
+// A header takes printable ASCII alone.
+bool IsToken(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), absl::ascii_isgraph);
+}
+
+absl::StatusOr<std::string> ReadToken(const Flags& flags) {
+  if (!flags.Has("token_file")) {
+    const char* variable = std::getenv("TRAVERSE_TOKEN");
+    const std::string token = variable == nullptr ? "" : variable;
+    if (token.empty() || IsToken(token)) return token;
+    return Fault("TRAVERSE_TOKEN: not a token: characters that are not printable");
+  }
+  const std::string path = flags.Text("token_file");
+  std::ifstream file(path);
+  std::string line;
+  if (!std::getline(file, line)) {
+    return Fault(absl::StrFormat("--token_file=%s: cannot be read, or is empty", path));
+  }
+  absl::StripAsciiWhitespace(&line);
+  if (!IsToken(line)) return Fault(absl::StrFormat("--token_file=%s: has no token", path));
+  return line;
+}
+
+}  // namespace
+
+std::vector<Flag> ConnectionFlagTable() {
+  std::vector<Flag> table = {
+      {"tls", "", "encrypt; implied by the other flags of TLS"},
+      {"tls_ca", "FILE", "authorities of the servers' certificates (default: the system's)"},
+      {"tls_certificate", "FILE", "of this client, for mutual TLS"},
+      {"tls_key", "FILE", "of --tls_certificate"},
+      {"tls_name", "NAME", "the servers' certificates are for this name (default: the host)"},
+      {"token_file", "FILE", "bearer token (default: TRAVERSE_TOKEN of the environment)"},
+      {"insecure", "", "send the token unencrypted to other machines"},
+  };
+  for (Flag& flag : table) flag.brief = true;
+  return table;
+}
+
+absl::StatusOr<Connection> ParseConnectionFlags(const Flags& flags,
+                                                const std::vector<std::string>& addresses) {
+  Connection connection;
+  const ChannelTls tls = {flags.Text("tls_ca"), flags.Text("tls_certificate"),
+                          flags.Text("tls_key"), flags.Text("tls_name")};
+  const bool any = flags.Has("tls_ca") || flags.Has("tls_certificate") || flags.Has("tls_key") ||
+                   flags.Has("tls_name");
+  if (any && flags.Has("tls") && !flags.Switch("tls")) {
+    return Fault("--tls=false with other flags of TLS");
+  }
+  if (any || flags.Switch("tls")) connection.options.tls = tls;
+  absl::StatusOr<std::string> token = ReadToken(flags);
+  if (!token.ok()) return token.status();
+  connection.token = *std::move(token);
+  const bool local = std::all_of(addresses.begin(), addresses.end(), IsLocal);
+  if (!connection.token.empty() && !connection.options.tls && !local && !flags.Switch("insecure")) {
+    return Fault("a token would go to another machine unencrypted: use --tls, or --insecure");
+  }
+  return connection;
+}
+
+absl::Status CheckNoConnectionFlags(const Flags& flags) {
+  for (const Flag& flag : ConnectionFlagTable()) {
+    if (flags.Has(flag.name)) return Fault(absl::StrFormat("--%s is for --server", flag.name));
+  }
+  return absl::OkStatus();
+}
+
+Outcome ConnectFault(const absl::Status& status) {
+  const std::string message(status.message());
+  if (absl::IsUnavailable(status)) return {kServerFault, message};
+  return UsageFault("--" + message);
+}
+
+}  // namespace traverse::cli

@@ -1,0 +1,206 @@
+#include "client/cli/flags/job_flags.h"
+
+#include <limits>
+
+#include "absl/status/status.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
+#include "client/cli/flags/connection_flags.h"
+#include "client/cli/flags/strategy_spec.h"
+
+namespace traverse::cli {
+namespace {
+
+absl::Status Fault(std::string message) { return absl::InvalidArgumentError(std::move(message)); }
+
+v1::Point ToPoint(const std::pair<double, double>& pair) {
+  v1::Point point;
+  point.set_x_mm(pair.first);
+  point.set_y_mm(pair.second);
+  return point;
+}
+
+absl::StatusOr<std::optional<std::pair<uint64_t, uint64_t>>> ParseLayers(const Flags& flags) {
+  if (!flags.Has("layers")) return std::nullopt;
+  const std::string text = flags.Text("layers");
+  const std::vector<std::string> ends = absl::StrSplit(text, '-');
+  uint64_t first = 0;
+  uint64_t last = 0;
+  const bool digits = text.find_first_not_of("0123456789-") == std::string::npos;
+  if (!digits || ends.size() > 2 || !absl::SimpleAtoi(ends.front(), &first) ||
+      !absl::SimpleAtoi(ends.back(), &last) || first < 1 || last < first) {
+    return Fault(absl::StrFormat("--layers=%s: not A-B, two positions from 1", text));
+  }
+  return std::make_pair(first, last);
+}
+
+absl::StatusOr<std::optional<v1::Cleaning>> ParseCleaning(const Flags& flags) {
+  if (flags.Has("cleaning_every") != flags.Has("cleaning_point")) {
+    return Fault("--cleaning_every and --cleaning_point go together");
+  }
+  const auto every = flags.Integer("cleaning_every", 1, std::numeric_limits<int32_t>::max());
+  if (!every.ok()) return every.status();
+  const auto point = flags.Pair("cleaning_point");
+  if (!point.ok()) return point.status();
+  if (!*every) return std::nullopt;
+  v1::Cleaning cleaning;
+  cleaning.set_every_layers(static_cast<uint32_t>(**every));
+  *cleaning.mutable_point() = ToPoint(**point);
+  return cleaning;
+}
+
+// Least acceleration that the service takes; 0 stands for none.
+constexpr double kLeastAccelMmS2 = 1e-3;
+
+absl::StatusOr<CostSettings> ParseCost(const Flags& flags) {
+  CostSettings cost;
+  if (flags.Has("cost")) cost.by_time = flags.Text("cost") == "time";
+  const auto read = [&](const char* name, double least, double most,
+                        std::optional<double>& value) -> absl::Status {
+    const auto number = flags.Number(name, least, most);
+    if (number.ok()) value = *number;
+    return number.status();
+  };
+  absl::Status status = read("travel_speed", 1e-3, 1e5, cost.speed_mm_s);
+  if (status.ok()) status = read("travel_accel", 0, 1e7, cost.accel_mm_s2);
+  if (status.ok()) status = read("retraction_seconds", 0, 1e4, cost.retraction_seconds);
+  if (status.ok()) status = read("retraction_threshold", 0, 1e7, cost.retraction_threshold_mm);
+  if (!status.ok()) return status;
+  if (cost.accel_mm_s2 && *cost.accel_mm_s2 > 0 && *cost.accel_mm_s2 < kLeastAccelMmS2) {
+    return Fault(absl::StrFormat("--travel_accel=%s: not 0 or a number from %g to 1e+07",
+                                 flags.Text("travel_accel"), kLeastAccelMmS2));
+  }
+  return cost;
+}
+
+// `fault` begins with a setting's name, which is the flag's.
+absl::Status AsFlagFault(const absl::Status& fault) {
+  return fault.ok() ? fault : Fault(absl::StrCat("--", fault.message()));
+}
+
+}  // namespace
+
+namespace {
+
+// `flag` and the one behind it on one line of the help.
+Flag Joint(Flag flag, const std::string& help) {
+  flag.joint_help = help;
+  return flag;
+}
+
+}  // namespace
+
+std::vector<Flag> JobFlagTable() {
+  const std::vector<std::string> any;
+  return {
+      {"option", "NAME=VALUE", "an option of the strategy; repeatable", any, /*repeatable=*/true},
+      {"layers", "A-B", "only these, counted from 1"},
+      {"deposition",
+       "ORDER",
+       "sequential (default) or interleaved",
+       {"sequential", "interleaved"},
+       false,
+       "sequential or interleaved; length or time"},
+      {"cost", "COST", "length, or time (default of G-code)", {"length", "time"}},
+      {"start", "X,Y", "where the head is at first, mm (default 0,0)", any, false,
+       "of the head, mm (0,0); of random choices (1)"},
+      {"seed", "N", "of all random choices (default 1)"},
+      {"cleaning_every", "N", "layers between two nozzle cleanings", any, false,
+       "nozzle cleaning, mm"},
+      {"cleaning_point", "X,Y", "where the nozzle is cleaned, mm"},
+      {"travel_speed", "MM_S", "travel speed (default: the file's; for time 130, idle time 20.32)",
+       any, false, "(default: the file's, or 130, 1250)"},
+      {"travel_accel", "MM_S2", "travel acceleration (default: the file's, or 1250)"},
+      {"retraction_seconds", "S", "time of one retraction (default: the file's, or 0.1)", any,
+       false, "(the file's, or 0.1, 2)"},
+      {"retraction_threshold", "MM", "longer moves retract (default: the file's, or 2)"},
+      Joint(PolicyFlag(), "safe, balanced, free; keep, fewer, any"),
+      CrossingsFlag(),
+      {"deadline", "TIME", "the answer is due within it, such as 500ms, 30s or 5m", any, false,
+       "such as 500ms, 30s, 5m"},
+      {"layer_time_limit", "TIME", "most time for one layer"},
+  };
+}
+
+std::vector<Flag> ServiceFlagTable() {
+  std::vector<Flag> table = {
+      {"server",
+       "HOST:PORT,...",
+       "the servers to ask (default: embedded)",
+       {},
+       false,
+       "(default: embedded, all cores)"},
+      {"threads", "N", "of the embedded service (default: all cores)"},
+  };
+  for (Flag& flag : ConnectionFlagTable()) table.push_back(std::move(flag));
+  return table;
+}
+
+Flag PolicyFlag() {
+  return {
+      "policy", "POLICY", "G-code: safe (default), balanced or free", {"safe", "balanced", "free"}};
+}
+
+Flag CrossingsFlag() {
+  return {"crossings",
+          "CROSSINGS",
+          "G-code: keep (default), fewer or any crossings",
+          {"keep", "fewer", "any"}};
+}
+
+GcodeOptions ParseGcodeOptions(const Flags& flags) {
+  GcodeOptions options;
+  // The flag's own choices leave no other text.
+  options.policy = gcode::PolicyOfName(flags.Text("policy", "safe")).value_or(options.policy);
+  options.crossings =
+      gcode::CrossingsOfName(flags.Text("crossings", "keep")).value_or(options.crossings);
+  return options;
+}
+
+absl::StatusOr<JobFlags> ParseJobFlags(const Flags& flags) {
+  JobFlags out;
+  for (const std::string& text : flags.All("option")) {
+    const auto option = ParseOption(text);
+    if (!option.ok()) return option.status();
+    out.strategy_options.push_back(*option);
+  }
+  if (flags.Has("deposition")) {
+    out.deposition = flags.Text("deposition") == "interleaved" ? v1::DEPOSITION_INTERLEAVED
+                                                               : v1::DEPOSITION_SEQUENTIAL;
+  }
+  const auto layers = ParseLayers(flags);
+  if (!layers.ok()) return layers.status();
+  const auto cleaning = ParseCleaning(flags);
+  if (!cleaning.ok()) return cleaning.status();
+  const auto start = flags.Pair("start");
+  if (!start.ok()) return start.status();
+  const auto cost = ParseCost(flags);
+  if (!cost.ok()) return cost.status();
+  const auto seed = flags.Integer("seed", 0, std::numeric_limits<uint64_t>::max());
+  if (!seed.ok()) return seed.status();
+  const auto deadline = flags.Duration("deadline");
+  if (!deadline.ok()) return deadline.status();
+  const auto layer_time_limit = flags.Duration("layer_time_limit");
+  if (!layer_time_limit.ok()) return layer_time_limit.status();
+
+  out.layers = *layers;
+  out.cleaning = *cleaning;
+  if (*start) out.start = ToPoint(**start);
+  out.cost = *cost;
+  out.seed = *seed;
+  out.deadline = deadline->value_or(absl::InfiniteDuration());
+  out.layer_time_limit = *layer_time_limit;
+  return out;
+}
+
+absl::Status ApplyJobFlags(const JobFlags& flags, InputJob& job) {
+  return AsFlagFault(ApplySettings(flags, job));
+}
+
+absl::Status SelectJobLayers(const JobFlags& flags, InputJob& job) {
+  return AsFlagFault(SelectLayers(flags, job));
+}
+
+}  // namespace traverse::cli

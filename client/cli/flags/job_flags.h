@@ -1,0 +1,47 @@
+// The flags of all commands that run jobs, and what they make of a job's options.
+
+#ifndef TRAVERSE_CLIENT_CLI_FLAGS_JOB_FLAGS_H_
+#define TRAVERSE_CLIENT_CLI_FLAGS_JOB_FLAGS_H_
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "client/cli/flags/flags.h"
+#include "client/gcode/gcode_job.h"
+#include "client/input/input_job.h"
+#include "client/optimize_file/job_settings.h"
+
+namespace traverse::cli {
+
+// The values of the flags, checked; nothing: not given.
+struct JobFlags : JobSettings {
+  std::vector<std::pair<std::string, std::string>> strategy_options;  // --option
+  absl::Duration deadline = absl::InfiniteDuration();
+};
+
+// The rows of these flags.
+std::vector<Flag> JobFlagTable();
+
+// The rows of the flags that say where the service runs and how it is reached: --server,
+// --threads and those of connection_flags.h.
+std::vector<Flag> ServiceFlagTable();
+
+// The rows of --policy and --crossings, and what they say to the reader of G-code.
+Flag PolicyFlag();
+Flag CrossingsFlag();
+GcodeOptions ParseGcodeOptions(const Flags& flags);
+
+absl::StatusOr<JobFlags> ParseJobFlags(const Flags& flags);
+
+// Leaves the layers that --layers selects. InvalidArgument if the job has no such layers.
+absl::Status SelectJobLayers(const JobFlags& flags, InputJob& job);
+
+// SelectJobLayers, then changes the job's and its layers' options to what the flags say.
+absl::Status ApplyJobFlags(const JobFlags& flags, InputJob& job);
+
+}  // namespace traverse::cli
+
+#endif  // TRAVERSE_CLIENT_CLI_FLAGS_JOB_FLAGS_H_

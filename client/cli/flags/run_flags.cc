@@ -1,0 +1,34 @@
+#include "client/cli/flags/run_flags.h"
+
+#include <utility>
+
+namespace traverse::cli {
+
+std::vector<Flag> WithRunFlagTable(std::vector<Flag> own) {
+  own.push_back({"json",
+                 "FILE",
+                 "writes the routes; - is standard output",
+                 {},
+                 false,
+                 "routes; a page to look at"});
+  own.push_back({"report", "FILE.html", "writes a page to look at"});
+  for (auto table : {ViewFlagTable(), JobFlagTable(), ServiceFlagTable()}) {
+    own.insert(own.end(), table.begin(), table.end());
+  }
+  return own;
+}
+
+absl::StatusOr<RunFlags> ParseRunFlags(const Flags& flags) {
+  RunFlags out;
+  auto job = ParseJobFlags(flags);
+  if (!job.ok()) return job.status();
+  out.job = *std::move(job);
+  auto views = ParseViewFlags(flags);
+  if (!views.ok()) return views.status();
+  out.views = *std::move(views);
+  out.json = flags.Text("json");
+  out.quiet = flags.Switch("quiet");
+  return out;
+}
+
+}  // namespace traverse::cli

@@ -1,0 +1,49 @@
+// What there is to look at: --picture with --layer, and --report.
+
+#ifndef TRAVERSE_CLIENT_CLI_FLAGS_VIEW_FLAGS_H_
+#define TRAVERSE_CLIENT_CLI_FLAGS_VIEW_FLAGS_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "client/cli/flags/flags.h"
+#include "client/cli/flags/job_flags.h"
+#include "client/cli/service.h"
+#include "client/input/input_job.h"
+#include "client/report/run.h"
+#include "client/view/scene/scene.h"
+
+namespace traverse::cli {
+
+struct ViewFlags {
+  std::string picture;            // a file; empty: none
+  std::string report;             // a file; empty: none
+  std::optional<uint64_t> layer;  // of the picture: position in the file, from 1
+
+  bool any() const { return !picture.empty() || !report.empty(); }
+};
+
+// The rows of these flags.
+std::vector<Flag> ViewFlagTable();
+
+// InvalidArgument naming the flag for a name that does not tell its format, and for a folder that
+// is not there: before the work, not after it.
+absl::StatusOr<ViewFlags> ParseViewFlags(const Flags& flags);
+
+// InvalidArgument if --layer is none of the job's layers. To be asked once --layers has chosen
+// them.
+absl::Status CheckViewLayer(const ViewFlags& flags, const InputJob& job);
+
+// A run of the job in the order given.
+Expected<report::JobRun> RunAsGiven(Service& service, const JobFlags& flags, const InputJob& job);
+
+// Writes what is asked for, each file whole or not at all.
+absl::Status WriteViews(const ViewFlags& flags, const view::Scene& scene);
+
+}  // namespace traverse::cli
+
+#endif  // TRAVERSE_CLIENT_CLI_FLAGS_VIEW_FLAGS_H_

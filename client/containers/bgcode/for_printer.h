@@ -1,0 +1,21 @@
+// G-code as a printer reads it, so that text and binary can be compared.
+
+#ifndef TRAVERSE_CLIENT_CONTAINERS_BGCODE_FOR_PRINTER_H_
+#define TRAVERSE_CLIENT_CONTAINERS_BGCODE_FOR_PRINTER_H_
+
+#include <string>
+#include <string_view>
+
+#include "client/containers/container.h"
+
+namespace traverse::containers {
+
+// `text` with spaces in moves as MeatPack gives them back, and without the comments that binary
+// G-code does not keep: those before the first command, behind the last one, and entries
+// (`; key = value`) anywhere, which are metadata; with kLines also those behind commands and empty ones, with kNone all of them. The line
+// that Traverse adds stays. Lines keep their numbers.
+std::string ForPrinter(std::string_view text, CommentsKept kept);
+
+}  // namespace traverse::containers
+
+#endif  // TRAVERSE_CLIENT_CONTAINERS_BGCODE_FOR_PRINTER_H_

@@ -1,0 +1,156 @@
+#include "client/containers/bgcode/payload.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_format.h"
+#include "client/containers/bgcode/heatshrink.h"
+#include "client/containers/bgcode/meatpack.h"
+#include "client/containers/deflate.h"
+#include "client/gcode/parallel.h"
+
+namespace traverse::containers {
+namespace {
+
+// Blocks that are decoded or encoded at the same time: what they take is small beside the text.
+constexpr size_t kBatch = 64;
+
+constexpr int kDeflateLevel = 6;
+
+HeatshrinkWindow WindowOf(BlockCompression compression) {
+  return {compression == BlockCompression::kHeatshrink11 ? 11 : 12, 4};
+}
+
+absl::Status AppendBlockText(const Block& block, size_t max_bytes, std::string& out) {
+  const auto encoding = static_cast<GcodeEncoding>(block.parameters[0]);
+  if (encoding > GcodeEncoding::kMeatPackComments) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("encoding %d of G-code is not known", block.parameters[0]));
+  }
+  absl::StatusOr<std::string> bytes = DecompressBlock(block);
+  if (!bytes.ok()) return bytes.status();
+  if (encoding != GcodeEncoding::kNone) return MeatUnpack(*bytes, max_bytes, out);
+  out += *bytes;
+  return absl::OkStatus();
+}
+
+// The next lines that make a block, cut off `text`.
+std::string_view TakeBlockText(std::string_view& text) {
+  size_t end = std::min(text.size(), kMaxBlockText);
+  if (end < text.size()) {
+    const size_t last = text.rfind('\n', end - 1);
+    const size_t next = last == std::string_view::npos ? text.find('\n', end) : last;
+    end = next == std::string_view::npos ? text.size() : next + 1;
+  }
+  const std::string_view block = text.substr(0, end);
+  text.remove_prefix(end);
+  return block;
+}
+
+// MeatPack makes some lines longer: then each half makes a block.
+absl::Status AppendBlockOf(std::string_view text, const GcodeForm& form, std::string& out) {
+  const bool packs = form.encoding != GcodeEncoding::kNone && CanMeatPack(text);
+  std::string packed;
+  if (packs) MeatPack(text, packed);
+  const size_t middle = text.rfind('\n', text.size() / 2);
+  if (packed.size() > kMaxBlockText && middle != std::string_view::npos) {
+    const absl::Status status = AppendBlockOf(text.substr(0, middle + 1), form, out);
+    return status.ok() ? AppendBlockOf(text.substr(middle + 1), form, out) : status;
+  }
+  const std::string_view bytes = packs ? std::string_view(packed) : text;
+  if (bytes.size() >= UINT32_MAX) return absl::ResourceExhaustedError("a line of 4 GiB");
+  const auto size = static_cast<uint32_t>(bytes.size());
+  const auto encoding = static_cast<uint16_t>(packs ? form.encoding : GcodeEncoding::kNone);
+  const absl::StatusOr<std::string> data = CompressBytes(bytes, form.compression);
+  if (!data.ok()) return data.status();
+  AppendBlock(BlockKind::kGcode, form.compression, {encoding}, size, *data, form.checksum, out);
+  return absl::OkStatus();
+}
+
+// Makes pieces 0 to n - 1, a batch at a time, and appends them in their order.
+template <typename Make>
+absl::Status AppendInBatches(size_t n, int threads, std::string& out, Make make) {
+  for (size_t first = 0; first < n; first += kBatch) {
+    const size_t count = std::min(kBatch, n - first);
+    std::vector<std::string> pieces(count);
+    std::vector<absl::Status> faults(count);
+    gcode::ParallelFor(count, threads, [&](size_t i) { faults[i] = make(first + i, pieces[i]); });
+    for (size_t i = 0; i < count; ++i) {
+      if (!faults[i].ok()) return faults[i];
+      out += pieces[i];
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<std::string> DecompressBlock(const Block& block) {
+  switch (block.compression) {
+    case BlockCompression::kNone:
+      return std::string(block.data);
+    case BlockCompression::kDeflate:
+      return Inflate(block.data, DeflateForm::kZlib, block.size);
+    case BlockCompression::kHeatshrink11:
+    case BlockCompression::kHeatshrink12:
+      return HeatshrinkDecompress(block.data, WindowOf(block.compression), block.size);
+  }
+  return absl::InvalidArgumentError(CompressionName(block.compression) + " is not known");
+}
+
+absl::StatusOr<std::string> CompressBytes(std::string_view bytes, BlockCompression compression) {
+  switch (compression) {
+    case BlockCompression::kNone:
+      return std::string(bytes);
+    case BlockCompression::kDeflate:
+      return Deflate(bytes, DeflateForm::kZlib, kDeflateLevel, 1);
+    case BlockCompression::kHeatshrink11:
+    case BlockCompression::kHeatshrink12:
+      return HeatshrinkCompress(bytes, WindowOf(compression));
+  }
+  return absl::InvalidArgumentError(CompressionName(compression) + " is not known");
+}
+
+absl::StatusOr<std::string> GcodeText(const BgcodeBlocks& file, size_t max_bytes, int threads) {
+  std::vector<size_t> indices;
+  size_t announced = 0;
+  for (size_t i = 0; i < file.blocks.size(); ++i) {
+    if (!file.blocks[i].is_gcode()) continue;
+    indices.push_back(i);
+    announced += file.blocks[i].size;
+    if (announced > max_bytes) {
+      return absl::ResourceExhaustedError(
+          absl::StrFormat("%s: the G-code up to here would be %d MiB, and %d are allowed",
+                          BlockPlace(file, i), announced >> 20, max_bytes >> 20));
+    }
+  }
+  std::string out;
+  constexpr size_t kUnpacked = 2;  // MeatPack halves a text
+  out.reserve(std::min(max_bytes, kUnpacked * announced));
+  const absl::Status status =
+      AppendInBatches(indices.size(), threads, out, [&](size_t i, std::string& piece) {
+        const Block& block = file.blocks[indices[i]];
+        const absl::Status made = AppendBlockText(block, max_bytes, piece);
+        if (made.ok()) return made;
+        return absl::Status(made.code(), absl::StrFormat("%s: %s", BlockPlace(file, indices[i]),
+                                                         std::string(made.message())));
+      });
+  if (!status.ok()) return status;
+  if (out.size() > max_bytes) {
+    return absl::ResourceExhaustedError(
+        absl::StrFormat("more than %d MiB of G-code", max_bytes >> 20));
+  }
+  return out;
+}
+
+absl::Status AppendGcodeBlocks(std::string_view text, const GcodeForm& form, int threads,
+                               std::string& out) {
+  std::vector<std::string_view> texts;
+  while (!text.empty()) texts.push_back(TakeBlockText(text));
+  return AppendInBatches(texts.size(), threads, out, [&](size_t i, std::string& piece) {
+    return AppendBlockOf(texts[i], form, piece);
+  });
+}
+
+}  // namespace traverse::containers

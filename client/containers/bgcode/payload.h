@@ -1,0 +1,43 @@
+// What blocks hold: compressing, decompressing, and the texts of G-code blocks.
+
+#ifndef TRAVERSE_CLIENT_CONTAINERS_BGCODE_PAYLOAD_H_
+#define TRAVERSE_CLIENT_CONTAINERS_BGCODE_PAYLOAD_H_
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "client/containers/bgcode/block.h"
+
+namespace traverse::containers {
+
+// How G-code blocks are written.
+struct GcodeForm {
+  BlockCompression compression = BlockCompression::kHeatshrink12;
+  GcodeEncoding encoding = GcodeEncoding::kMeatPackComments;
+  BgcodeChecksum checksum = BgcodeChecksum::kCrc32;
+};
+
+// Most text of one G-code block, before and after MeatPack; a longer line is a block by itself.
+inline constexpr size_t kMaxBlockText = 65536;
+
+// The data of `block`, decompressed. InvalidArgument if they are damaged or the compression is not
+// known. Takes no memory for a size that cannot be true.
+absl::StatusOr<std::string> DecompressBlock(const Block& block);
+
+absl::StatusOr<std::string> CompressBytes(std::string_view bytes, BlockCompression compression);
+
+// The text of all G-code blocks of `file`, on up to `threads` threads. Errors name the block;
+// ResourceExhausted if the text is longer than `max_bytes`.
+absl::StatusOr<std::string> GcodeText(const BgcodeBlocks& file, size_t max_bytes, int threads);
+
+// Appends `text` as G-code blocks of whole lines, made on up to `threads` threads. A block with a
+// byte that MeatPack lacks is not encoded.
+absl::Status AppendGcodeBlocks(std::string_view text, const GcodeForm& form, int threads,
+                               std::string& out);
+
+}  // namespace traverse::containers
+
+#endif  // TRAVERSE_CLIENT_CONTAINERS_BGCODE_PAYLOAD_H_

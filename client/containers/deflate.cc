@@ -1,0 +1,116 @@
+#include "client/containers/deflate.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_format.h"
+#include "client/gcode/parallel.h"
+
+namespace traverse::containers {
+namespace {
+
+constexpr size_t kPieceBytes = size_t{1} << 20;
+constexpr size_t kWindowBytes = size_t{32} << 10;
+constexpr int kMemoryLevel = 8;
+
+// zlib's interface predates const; it does not write to its input.
+Bytef* Input(std::string_view bytes) {
+  return reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+}
+
+// Deflates the piece that begins at `begin`, as if all before it had been deflated by the same
+// stream, up to a byte's end; the last piece ends the stream. Empty if there is no memory for it.
+std::string DeflatePiece(std::string_view bytes, size_t begin, int level) {
+  const std::string_view piece = bytes.substr(begin, kPieceBytes);
+  z_stream stream{};
+  if (deflateInit2(&stream, level, Z_DEFLATED, -MAX_WBITS, kMemoryLevel, Z_DEFAULT_STRATEGY) !=
+      Z_OK) {
+    return {};
+  }
+  const size_t known = std::min(begin, kWindowBytes);
+  if (known > 0) {
+    deflateSetDictionary(&stream, Input(bytes.substr(begin - known)), static_cast<uInt>(known));
+  }
+  // A flush adds a few bytes to the bound of the piece itself.
+  constexpr size_t kFlushBytes = 16;
+  std::string out(deflateBound(&stream, static_cast<uLong>(piece.size())) + kFlushBytes, '\0');
+  stream.next_in = Input(piece);
+  stream.avail_in = static_cast<uInt>(piece.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  deflate(&stream, begin + piece.size() == bytes.size() ? Z_FINISH : Z_SYNC_FLUSH);
+  out.resize(stream.total_out);
+  deflateEnd(&stream);
+  return out;
+}
+
+uint32_t Adler32(std::string_view bytes) {
+  return static_cast<uint32_t>(adler32_z(adler32_z(0, nullptr, 0), Input(bytes), bytes.size()));
+}
+
+}  // namespace
+
+absl::StatusOr<std::string> Inflate(std::string_view bytes, DeflateForm form, size_t size) {
+  if (size > bytes.size() * kMaxDeflateRatio || bytes.size() > std::numeric_limits<uInt>::max() ||
+      size >= std::numeric_limits<uInt>::max()) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%d deflated bytes cannot be %d bytes", bytes.size(), size));
+  }
+  z_stream stream{};
+  if (inflateInit2(&stream, form == DeflateForm::kRaw ? -MAX_WBITS : MAX_WBITS) != Z_OK) {
+    return absl::ResourceExhaustedError("no memory to inflate");
+  }
+  // One byte more than is due: what goes on is seen.
+  std::string out(size + 1, '\0');
+  stream.next_in = Input(bytes);
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  const int code = inflate(&stream, Z_FINISH);
+  const size_t made = stream.total_out;
+  const size_t unused = stream.avail_in;
+  inflateEnd(&stream);
+  if (made > size) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("deflated data are more than the %d bytes announced", size));
+  }
+  if (code == Z_BUF_ERROR) return absl::InvalidArgumentError("deflated data end too early");
+  if (code != Z_STREAM_END) return absl::InvalidArgumentError("deflated data are damaged");
+  if (made < size) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("deflated data are %d bytes, and %d are announced", made, size));
+  }
+  if (unused > 0) return absl::InvalidArgumentError("deflated data go on behind their end");
+  out.resize(size);
+  return out;
+}
+
+absl::StatusOr<std::string> Deflate(std::string_view bytes, DeflateForm form, int level,
+                                    int threads) {
+  const size_t count = std::max<size_t>(1, (bytes.size() + kPieceBytes - 1) / kPieceBytes);
+  std::vector<std::string> pieces(count);
+  gcode::ParallelFor(count, threads,
+                     [&](size_t i) { pieces[i] = DeflatePiece(bytes, i * kPieceBytes, level); });
+  std::string out;
+  if (form == DeflateForm::kZlib) out = "\x78\x9c";
+  for (std::string& piece : pieces) {
+    if (piece.empty()) return absl::ResourceExhaustedError("no memory to deflate");
+    out += piece;
+    piece = {};
+  }
+  if (form == DeflateForm::kZlib) {
+    const uint32_t check = Adler32(bytes);
+    for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<char>(check >> shift));
+  }
+  return out;
+}
+
+uint32_t Crc32(std::string_view bytes) {
+  return static_cast<uint32_t>(crc32_z(crc32_z(0, nullptr, 0), Input(bytes), bytes.size()));
+}
+
+}  // namespace traverse::containers

@@ -1,0 +1,19 @@
+// Counts requests of HTTP by route and status, whoever answers them and when.
+
+#ifndef TRAVERSE_CLIENT_GATEWAY_API_COUNTING_H_
+#define TRAVERSE_CLIENT_GATEWAY_API_COUNTING_H_
+
+#include <string>
+
+#include "client/gateway/gateway_metrics.h"
+#include "client/gateway/http/message.h"
+
+namespace traverse::gateway {
+
+// `decision` with what comes of it counted once under `route`, uploads that break off (as 400) and
+// clients that go (as 499) too. `metrics` outlives it.
+HttpDecision Counted(HttpDecision decision, const std::string& route, GatewayMetrics& metrics);
+
+}  // namespace traverse::gateway
+
+#endif  // TRAVERSE_CLIENT_GATEWAY_API_COUNTING_H_

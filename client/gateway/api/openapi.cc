@@ -1,0 +1,187 @@
+#include "client/gateway/api/openapi.h"
+
+#include <nlohmann/json.hpp>
+
+#include "client/cli/flags/flags.h"
+#include "client/gateway/api/parameters.h"
+#include "client/gateway/http/problem.h"
+#include "server/version.h"
+
+namespace traverse::gateway {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json Reference(const char* name) { return {{"$ref", std::string("#/components/schemas/") + name}}; }
+
+Json ParameterJson(const cli::Flag& flag) {
+  Json schema = {{"type", flag.value.empty() ? "boolean" : "string"}};
+  if (!flag.choices.empty()) schema["enum"] = flag.choices;
+  Json out = {{"name", flag.name}, {"in", "query"}, {"description", flag.help}};
+  if (flag.repeatable) {
+    schema = {{"type", "array"}, {"items", {{"type", "string"}}}};
+    out["explode"] = true;
+  }
+  out["schema"] = std::move(schema);
+  return out;
+}
+
+Json ParametersJson() {
+  Json out = Json::array();
+  for (const cli::Flag& flag : ParameterTable()) out.push_back(ParameterJson(flag));
+  return out;
+}
+
+Json FileContent() {
+  const Json binary = {{"type", "string"}, {"contentMediaType", "application/octet-stream"}};
+  return {{"application/octet-stream", {{"schema", binary}}},
+          {"text/x.gcode", {{"schema", binary}}},
+          {"multipart/form-data",
+           {{"schema",
+             {{"type", "object"}, {"required", {"file"}}, {"properties", {{"file", binary}}}}}}}};
+}
+
+Json ProblemResponse(int status) {
+  return {{"description", ReasonOf(status)},
+          {"content", {{"application/problem+json", {{"schema", Reference("Problem")}}}}}};
+}
+
+void AddProblems(Json& responses, std::initializer_list<int> statuses) {
+  for (const int status : statuses) responses[std::to_string(status)] = ProblemResponse(status);
+}
+
+Json JsonAnswer(const char* description, const char* schema) {
+  return {{"description", description},
+          {"content", {{"application/json", {{"schema", Reference(schema)}}}}}};
+}
+
+Json RewritePath() {
+  Json ok = {
+      {"description",
+       "The rewritten file; by Accept its summary alone, or events: progress, file and report "
+       "(base64, in pieces), summary; or problem. With report=true and no events: the page."}};
+  ok["headers"] = {
+      {"Traverse-Summary", {{"description", "One line"}, {"schema", {{"type", "string"}}}}},
+      {"Traverse-Travel-Mm",
+       {{"description", "Travel of the new file, mm"}, {"schema", {{"type", "number"}}}}}};
+  ok["content"] = {{"text/x.gcode", {{"schema", {{"type", "string"}}}}},
+                   {"application/octet-stream", {{"schema", {{"type", "string"}}}}},
+                   {"application/json", {{"schema", Reference("RewriteSummary")}}},
+                   {"text/event-stream", {{"schema", {{"type", "string"}}}}},
+                   {"text/html", {{"schema", {{"type", "string"}}}}}};
+  Json responses = {{"200", ok}};
+  AddProblems(responses, {400, 401, 403, 408, 413, 415, 422, 429, 503, 504, 507});
+  return {{"post",
+           {{"operationId", "rewrite"},
+            {"summary", "The same print with less travel."},
+            {"parameters", ParametersJson()},
+            {"requestBody", {{"required", true}, {"content", FileContent()}}},
+            {"responses", responses}}}};
+}
+
+Json InspectPath() {
+  Json responses = {{"200", JsonAnswer("What is in the file.", "InspectResponse")}};
+  AddProblems(responses, {400, 401, 403, 408, 413, 415, 429, 503, 507});
+  return {{"post",
+           {{"operationId", "inspect"},
+            {"summary", "What is in a file."},
+            {"requestBody", {{"required", true}, {"content", FileContent()}}},
+            {"responses", responses}}}};
+}
+
+Json VerifyPath() {
+  const Json binary = {{"type", "string"}, {"contentMediaType", "application/octet-stream"}};
+  Json responses = {{"200", JsonAnswer("Whether they print the same.", "VerifyResponse")}};
+  AddProblems(responses, {400, 401, 403, 408, 413, 429, 503, 507});
+  return {{"post",
+           {{"operationId", "verify"},
+            {"summary", "Does the second file print exactly what the first one prints?"},
+            {"requestBody",
+             {{"required", true},
+              {"content",
+               {{"multipart/form-data",
+                 {{"schema",
+                   {{"type", "object"},
+                    {"required", {"original", "optimised"}},
+                    {"properties", {{"original", binary}, {"optimised", binary}}}}}}}}}}},
+            {"responses", responses}}}};
+}
+
+Json TextPath(const char* id, const char* summary, const char* type, bool open) {
+  Json get = {
+      {"operationId", id},
+      {"summary", summary},
+      {"responses", {{"200", {{"description", "OK"}, {"content", {{type, Json::object()}}}}}}}};
+  if (open) get["security"] = Json::array();
+  AddProblems(get["responses"], {open ? 405 : 401});
+  return {{"get", get}};
+}
+
+Json Numbers(std::initializer_list<const char*> names, const char* type) {
+  Json out = Json::object();
+  for (const char* name : names) out[name] = {{"type", type}};
+  return out;
+}
+
+Json Schemas() {
+  Json totals = Numbers({"extruded_mm", "travel_mm", "print_seconds"}, "number");
+  totals.update(Numbers({"retractions", "crossings", "open_crossings"}, "integer"));
+  Json summary = Numbers({"policy", "strategy", "seed", "text", "bytes"}, "string");
+  summary.update(Numbers({"layers", "layers_changed"}, "integer"));
+  summary["given"] = summary["written"] = Reference("PrintTotals");
+  summary["verified"] = {{"type", "boolean"}};
+  summary["left"] = {{"type", "array"}, {"items", {{"type", "string"}}}};
+  summary["wall_seconds"] = {{"type", "number"}};
+  const Json fact = {{"type", "object"}, {"properties", Numbers({"name", "value"}, "string")}};
+  return {
+      {"Problem",
+       {{"type", "object"},
+        {"description", "RFC 9457"},
+        {"properties",
+         {{"type", {{"type", "string"}}},
+          {"title", {{"type", "string"}}},
+          {"status", {{"type", "integer"}}},
+          {"detail", {{"type", "string"}}}}}}},
+      {"PrintTotals", {{"type", "object"}, {"properties", totals}}},
+      {"RewriteSummary", {{"type", "object"}, {"properties", summary}}},
+      {"InspectResponse",
+       {{"type", "object"},
+        {"properties",
+         {{"format", {{"type", "string"}}},
+          {"layers", {{"type", "integer"}}},
+          {"facts", {{"type", "array"}, {"items", fact}}},
+          {"totals", Reference("PrintTotals")}}}}},
+      {"VerifyResponse",
+       {{"type", "object"},
+        {"properties", {{"same", {{"type", "boolean"}}}, {"difference", {{"type", "string"}}}}}}}};
+}
+
+}  // namespace
+
+std::string OpenApiJson() {
+  Json paths = {{"/v1/gcode", RewritePath()},
+                {"/v1/inspect", InspectPath()},
+                {"/v1/verify", VerifyPath()},
+                {"/healthz", TextPath("healthz", "The process lives.", "text/plain", true)},
+                {"/readyz", TextPath("readyz", "Files are taken.", "text/plain", true)},
+                {"/openapi.json", TextPath("openapi", "This document.", "application/json", true)},
+                {"/metrics", TextPath("metrics", "Metrics for Prometheus.", "text/plain", false)}};
+  const Json document = {
+      {"openapi", "3.1.0"},
+      {"info",
+       {{"title", "traverse-gateway"},
+        {"version", kVersion},
+        {"summary", "Sliced files, printed the same with less travel."},
+        {"license", {{"name", "Apache-2.0"}, {"identifier", "Apache-2.0"}}}}},
+      {"servers", {{{"url", "/"}}}},
+      {"security", {{{"bearer", Json::array()}}, {{"key", Json::array()}}, Json::object()}},
+      {"paths", paths},
+      {"components",
+       {{"schemas", Schemas()},
+        {"securitySchemes",
+         {{"bearer", {{"type", "http"}, {"scheme", "bearer"}}},
+          {"key", {{"type", "apiKey"}, {"in", "header"}, {"name", "X-Api-Key"}}}}}}}};
+  return document.dump(1) + "\n";
+}
+
+}  // namespace traverse::gateway

@@ -1,0 +1,161 @@
+#include "client/gateway/api/parameters.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string_view>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_replace.h"
+#include "client/cli/flags/job_flags.h"
+#include "client/cli/flags/strategy_spec.h"
+#include "client/cli/gcode_output.h"
+#include "client/gateway/http/target.h"
+
+namespace traverse::gateway {
+namespace {
+
+// By name: a flag that names a file would name one of the gateway's machine.
+constexpr std::array kAllowed = {
+    "option",
+    "layers",
+    "cost",
+    "travel_speed",
+    "travel_accel",
+    "policy",
+    "retraction_seconds",
+    "retraction_threshold",
+    "seed",
+    "deadline",
+    "layer_time_limit",
+    "allow",
+    "crossings",
+    "min_revisit",
+    "container",
+    "plate",
+    "ignore_md5",
+};
+
+bool IsAllowed(const std::string& name) {
+  return std::find(kAllowed.begin(), kAllowed.end(), name) != kAllowed.end();
+}
+
+bool IsName(const std::string& name) {
+  return !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == name.npos;
+}
+
+absl::Status Fault(std::string message) { return absl::InvalidArgumentError(std::move(message)); }
+
+// Messages of the command line, in the words of a request.
+absl::Status InTheseWords(const absl::Status& status) {
+  return Fault(
+      absl::StrReplaceAll(std::string(status.message()), {{"flag --", "parameter "}, {"--", ""}}));
+}
+
+absl::Status SetStrategy(const cli::Flags& flags, FileRequest& request) {
+  if (!flags.Has("strategy")) return absl::OkStatus();
+  auto specs = cli::ParseStrategySpecs(flags.Text("strategy"));
+  if (!specs.ok()) return InTheseWords(specs.status());
+  if (specs->size() != 1) return Fault("strategy takes one strategy");
+  request.strategy = specs->front().strategy;
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+std::vector<cli::Flag> ParameterTable() {
+  std::vector<cli::Flag> table = {
+      {"name", "FILE", "the file's name, for messages (default: that of the upload)"},
+      {"report", "", "with the page that shows each layer before and after"},
+      {"restate_times", "", "sets print times in M73, headers and metadata anew"},
+      {"strategy", "NAME", "NAME or NAME:OPTION=VALUE (default: what suits the file)"},
+  };
+  for (const auto& rows : {cli::JobFlagTable(), cli::ContainerFlagTable()}) {
+    for (const cli::Flag& flag : rows) {
+      if (IsAllowed(flag.name)) table.push_back(flag);
+    }
+  }
+  return table;
+}
+
+absl::StatusOr<FileRequest> ParseParameters(const Parameters& parameters) {
+  std::vector<std::string> arguments;
+  std::set<std::string> seen;
+  for (const auto& [name, value] : parameters) {
+    if (!IsName(name)) return Fault(absl::StrCat("unknown parameter \"", name, "\""));
+    if (name != "option" && !seen.insert(name).second) {
+      return Fault(absl::StrCat("parameter ", name, " is given twice"));
+    }
+    arguments.push_back(absl::StrCat("--", name, "=", value));
+  }
+  const absl::StatusOr<cli::Flags> flags = cli::Flags::Parse(ParameterTable(), arguments);
+  if (!flags.ok()) return InTheseWords(flags.status());
+  absl::StatusOr<cli::JobFlags> job = cli::ParseJobFlags(*flags);
+  if (!job.ok()) return InTheseWords(job.status());
+
+  FileRequest request;
+  request.settings = *job;
+  request.strategy_options = job->strategy_options;
+  request.deadline = job->deadline;
+  request.gcode = cli::ParseGcodeOptions(*flags);
+  request.report = flags->Switch("report");
+  request.restate_times = flags->Switch("restate_times");
+  absl::StatusOr<PlateOptions> plates = cli::ParsePlateOptions(*flags);
+  if (!plates.ok()) return InTheseWords(plates.status());
+  request.plates = *plates;
+  if (flags->Has("container")) {
+    request.container =
+        flags->Text("container") == "text" ? ContainerKind::kText : ContainerKind::kBgcode;
+  }
+  if (absl::Status status = SetStrategy(*flags, request); !status.ok()) return status;
+  if (flags->Has("name")) {
+    request.name = flags->Text("name");
+    if (absl::Status status = CheckFileName(request.name); !status.ok()) return status;
+  }
+  return request;
+}
+
+absl::StatusOr<FileRequest> RequestOf(const v1::RewriteOptions& options) {
+  FileRequest request;
+  if (!options.name().empty()) {
+    if (absl::Status status = CheckFileName(options.name()); !status.ok()) {
+      return Fault(absl::StrCat("options.name: ", status.message()));
+    }
+    request.name = options.name();
+  }
+  switch (options.policy()) {
+    case v1::POLICY_UNSPECIFIED:
+    case v1::POLICY_SAFE:
+      break;
+    case v1::POLICY_BALANCED:
+      request.gcode.policy = gcode::Policy::kBalanced;
+      break;
+    case v1::POLICY_FREE:
+      request.gcode.policy = gcode::Policy::kFree;
+      break;
+    default:
+      return Fault(absl::StrCat("options.policy: ", options.policy(), " is none that is known"));
+  }
+  if (options.has_strategy()) request.strategy = options.strategy();
+  if (options.has_seed()) request.settings.seed = options.seed();
+  const uint32_t first = std::max(1u, options.first_layer());
+  if (options.last_layer() != 0 || first > 1) {
+    if (options.last_layer() < first) {
+      return Fault(options.last_layer() == 0
+                       ? "options.last_layer: required where first_layer is set"
+                       : "options.last_layer: below first_layer");
+    }
+    request.settings.layers = {first, options.last_layer()};
+  }
+  if (options.has_layer_time_limit()) {
+    const absl::Duration limit = absl::Seconds(options.layer_time_limit().seconds()) +
+                                 absl::Nanoseconds(options.layer_time_limit().nanos());
+    if (limit <= absl::ZeroDuration()) return Fault("options.layer_time_limit: not above 0");
+    request.settings.layer_time_limit = limit;
+  }
+  request.report = options.report();
+  return request;
+}
+
+}  // namespace traverse::gateway

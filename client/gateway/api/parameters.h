@@ -1,0 +1,32 @@
+// Parameters of a request, in the query or as fields of a form: the flags of `traverse optimize`
+// without their dashes.
+
+#ifndef TRAVERSE_CLIENT_GATEWAY_API_PARAMETERS_H_
+#define TRAVERSE_CLIENT_GATEWAY_API_PARAMETERS_H_
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "client/cli/flags/flags.h"
+#include "client/gateway/work/file_worker.h"
+
+namespace traverse::gateway {
+
+using Parameters = std::vector<std::pair<std::string, std::string>>;
+
+// Those that there are: rows of the tables of the command line that name no file of this machine,
+// and `name` and `report`.
+std::vector<cli::Flag> ParameterTable();
+
+// InvalidArgument, in one line, for a parameter that is unknown (with the nearest known one), given
+// twice, or whose value is wrong. finish_by is left open.
+absl::StatusOr<FileRequest> ParseParameters(const Parameters& parameters);
+
+// The same of the API's message.
+absl::StatusOr<FileRequest> RequestOf(const v1::RewriteOptions& options);
+
+}  // namespace traverse::gateway
+
+#endif  // TRAVERSE_CLIENT_GATEWAY_API_PARAMETERS_H_

@@ -1,0 +1,44 @@
+// Files that come with a request: as its body, or in a form.
+
+#ifndef TRAVERSE_CLIENT_GATEWAY_API_UPLOAD_H_
+#define TRAVERSE_CLIENT_GATEWAY_API_UPLOAD_H_
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/gateway/http/message.h"
+#include "client/gateway/spool/spool.h"
+
+namespace traverse::gateway {
+
+// All that came.
+struct Upload {
+  struct File {
+    std::string field;  // of the form; empty: it is the body itself
+    std::string name;   // as sent, not checked; may be empty
+    std::shared_ptr<SpoolFile> file;
+  };
+  std::vector<File> files;
+  std::vector<std::pair<std::string, std::string>> fields;  // of the form, without files
+};
+
+struct UploadLimits {
+  uint64_t max_file_bytes = uint64_t{256} << 20;
+  size_t max_files = 1;
+};
+
+using UploadDone = std::function<void(Upload upload, std::shared_ptr<HttpReply> reply)>;
+
+// Takes the body of `request` into `spool`; `done` gets it when it is complete. A refusal at once
+// for what the head already tells: too long, an encoding or a type that is not known. `spool`
+// outlives what is returned.
+HttpDecision TakeUpload(const HttpRequest& request, Spool& spool, const UploadLimits& limits,
+                        UploadDone done);
+
+}  // namespace traverse::gateway
+
+#endif  // TRAVERSE_CLIENT_GATEWAY_API_UPLOAD_H_

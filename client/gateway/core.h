@@ -1,0 +1,69 @@
+// What all ways into the gateway share: who may call, the spool, the queue, the service behind it,
+// metrics and log.
+
+#ifndef TRAVERSE_CLIENT_GATEWAY_CORE_H_
+#define TRAVERSE_CLIENT_GATEWAY_CORE_H_
+
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "client/api/embedded.h"
+#include "client/api/optimizer_client.h"
+#include "client/gateway/gateway_metrics.h"
+#include "client/gateway/spool/spool.h"
+#include "client/gateway/work/file_worker.h"
+#include "client/gateway/work/work_queue.h"
+#include "server/jobs/auth.h"
+#include "server/ops/job_log.h"
+#include "server/rpc/certificates.h"
+
+namespace traverse::gateway {
+
+struct CoreOptions {
+  std::string spool_folder = "/tmp";
+  uint64_t max_spool_bytes = uint64_t{4} << 30;
+  uint64_t max_file_bytes = uint64_t{256} << 20;
+  absl::Duration max_time = absl::Minutes(10);  // for one file, from the end of its upload
+  WorkLimits work;
+  AuthOptions auth;
+  std::string log_path;  // empty: stderr
+  bool log = true;
+};
+
+// A value that lives as long as the gateway; all of it is thread-safe.
+struct Core {
+  // `channel` leads to the service; `token` goes with calls there. Errors: InvalidArgument for a
+  // token file that cannot be used, Unavailable for a spool. Throws what JobLog throws.
+  static absl::StatusOr<std::unique_ptr<Core>> Make(const CoreOptions& options,
+                                                    std::shared_ptr<grpc::Channel> channel,
+                                                    std::string token);
+
+  // Sets up `certificates`; before the first connection. Errors as of CertificateStore::Make.
+  absl::Status StartTls(const TlsOptions& tls);
+
+  // Reads anew what operators give in files, tokens and certificates, if it has changed; with
+  // `anyway` in any case, and the file of the log is opened anew.
+  void Reload(bool anyway);
+
+  // The text of /metrics.
+  std::string MetricsText();
+
+  // Tells of the reload of tokens or of the certificate.
+  void OnReload(const std::string& what, const absl::Status& status);
+
+  CoreOptions options;
+  std::unique_ptr<JobLog> log;
+  GatewayMetrics metrics;
+  std::unique_ptr<Authenticator> auth;
+  std::shared_ptr<CertificateStore> certificates;  // null without TLS
+  std::unique_ptr<Spool> spool;
+  std::unique_ptr<OptimizerClient> client;
+  std::unique_ptr<FileWorker> worker;
+  std::unique_ptr<WorkQueue> queue;  // last: its tasks use the rest
+};
+
+}  // namespace traverse::gateway
+
+#endif  // TRAVERSE_CLIENT_GATEWAY_CORE_H_

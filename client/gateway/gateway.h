@@ -1,0 +1,95 @@
+// The gateway: builds, starts, drains.
+
+#ifndef TRAVERSE_CLIENT_GATEWAY_GATEWAY_H_
+#define TRAVERSE_CLIENT_GATEWAY_GATEWAY_H_
+
+#include <grpcpp/server.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "client/api/channel.h"
+#include "client/api/embedded.h"
+#include "client/gateway/api/router.h"
+#include "client/gateway/core.h"
+#include "client/gateway/grpc/gcode_grpc_service.h"
+#include "client/gateway/http/http_server.h"
+#include "client/gateway/octoprint/printer_api.h"
+#include "server/ops/metrics_http.h"
+#include "server/ops/periodic.h"
+#include "server/rpc/credentials.h"
+
+namespace traverse::gateway {
+
+struct GatewayOptions {
+  std::string listen_http;     // HOST:PORT; port 0 takes a free one
+  std::string listen;          // the same, of gRPC; empty: none
+  std::string metrics_listen;  // the same; empty: none beside listen_http
+  bool insecure = false;       // plaintext on addresses that other machines can reach
+  TlsOptions tls;
+  HttpLimits http;
+  CoreOptions core;
+
+  // The service: these servers, or an embedded one of so many threads.
+  std::vector<std::string> servers;
+  ConnectOptions connect;
+  std::string token;  // goes with calls to the servers
+  int threads = 1;
+
+  std::string printers_file;  // empty: no printers
+  absl::Duration upload_deadline = absl::Seconds(60);
+  UpstreamLimits upstream;
+};
+
+// Thread-safe.
+class Gateway {
+ public:
+  // Errors, with one line: InvalidArgument for options that do not fit and for files that cannot be
+  // used; Unavailable for what could not be had.
+  static absl::StatusOr<std::unique_ptr<Gateway>> Start(const GatewayOptions& options);
+
+  // Ends at once what is under way.
+  ~Gateway();
+
+  // The ports that were chosen; 0 if there is none.
+  int http_port() const { return http_->port(); }
+  int grpc_port() const { return grpc_port_; }
+  int metrics_port() const { return metrics_ == nullptr ? 0 : metrics_->port(); }
+
+  // Takes no more files, and waits for those under way for at most `timeout`. True if none was
+  // left.
+  bool Drain(absl::Duration timeout);
+
+  // Opens the log anew and reads tokens and certificates, as somebody may have changed them.
+  void Reload() { core_->Reload(/*anyway=*/true); }
+
+  Core& core() { return *core_; }
+
+ private:
+  Gateway() = default;
+
+  absl::Status OpenService(const GatewayOptions& options);
+  absl::Status OpenPrinters(const GatewayOptions& options);
+  absl::Status StartGrpc(const GatewayOptions& options);
+  absl::Status StartHttp(const GatewayOptions& options);
+
+  // In the order in which they are made; each uses those before it.
+  std::unique_ptr<EmbeddedService> embedded_;
+  std::unique_ptr<Core> core_;
+  std::unique_ptr<PrinterApi> printers_;
+  std::unique_ptr<Router> router_;
+  std::unique_ptr<GcodeGrpcService> grpc_service_;
+  std::unique_ptr<grpc::Server> grpc_;
+  int grpc_port_ = 0;
+  std::unique_ptr<HttpServer> http_;
+  std::unique_ptr<MetricsHttp> metrics_;
+  std::optional<Periodic> look_;  // for files that have changed
+};
+
+}  // namespace traverse::gateway
+
+#endif  // TRAVERSE_CLIENT_GATEWAY_GATEWAY_H_

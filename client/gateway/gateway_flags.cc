@@ -1,0 +1,217 @@
+#include "client/gateway/gateway_flags.h"
+
+#include <absl/flags/flag.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "client/files/read_file.h"
+#include "server/ops/flag_reader.h"
+#include "server/server.h"
+
+ABSL_FLAG(std::string, listen_http, "127.0.0.1:8080", "HOST:PORT of HTTP; port 0: a free one");
+ABSL_FLAG(std::string, listen, "127.0.0.1:50061",
+          "HOST:PORT of gRPC; port 0: a free one; empty: none");
+ABSL_FLAG(
+    std::string, metrics_listen, "127.0.0.1:9465",
+    "HOST:PORT of /metrics, /healthz and /readyz for operators; port 0: a free one; empty: none");
+ABSL_FLAG(std::string, server, "",
+          "HOST:PORT,... of the servers that search; empty: in this process");
+ABSL_FLAG(std::string, server_token_file, "", "File whose first line is the token for --server");
+ABSL_FLAG(bool, server_tls, false, "Whether calls to --server are encrypted");
+ABSL_FLAG(std::string, server_tls_ca, "",
+          "Authorities of the certificates of --server, in PEM; implies --server_tls");
+ABSL_FLAG(std::string, server_tls_name, "",
+          "Name that the certificates of --server are for; implies --server_tls");
+ABSL_FLAG(std::string, server_tls_certificate, "", "Certificate shown to --server, in PEM");
+ABSL_FLAG(std::string, server_tls_key, "", "Its private key, in PEM");
+ABSL_FLAG(int32_t, threads, 0, "Threads of the search in this process; 0: one for each core");
+ABSL_FLAG(int32_t, workers, 0, "Files worked on at a time; 0: one for each core, two at least");
+ABSL_FLAG(int32_t, max_requests, 256, "Files under way at a time, those that wait included");
+ABSL_FLAG(int32_t, max_requests_per_caller, 64, "The same of one caller");
+ABSL_FLAG(int64_t, max_file_bytes, int64_t{256} << 20, "Longest file, unpacked");
+ABSL_FLAG(
+    int64_t, max_memory, int64_t{1} << 30,
+    "Bytes of memory for the files that are worked on; a file takes about twelve times its length");
+ABSL_FLAG(std::string, spool_dir, "",
+          "Folder for uploads and answers; empty: that of temporary files. No file there outlives "
+          "the process");
+ABSL_FLAG(int64_t, max_spool_bytes, int64_t{4} << 30, "Bytes of all files there together");
+ABSL_FLAG(absl::Duration, max_time, absl::Minutes(10), "Most time for one file");
+ABSL_FLAG(std::string, printers, "",
+          "File of JSON that names the printers uploads are passed on to; empty: none");
+ABSL_FLAG(absl::Duration, upload_deadline, absl::Seconds(60),
+          "Time for the work on a file for a printer; then the original goes on");
+ABSL_FLAG(absl::Duration, upstream_idle_timeout, absl::Seconds(60),
+          "A printer's server is given up that neither takes nor sends anything for so long");
+ABSL_FLAG(int32_t, max_connections, 512, "Connections of HTTP at a time");
+ABSL_FLAG(int32_t, max_header_bytes, 16384, "Longest head of a request");
+ABSL_FLAG(absl::Duration, header_timeout, absl::Seconds(20),
+          "Time for the head of a request, the wait for it included");
+ABSL_FLAG(absl::Duration, idle_timeout, absl::Seconds(30),
+          "A request is given up whose client neither sends nor reads anything for so long");
+ABSL_FLAG(int64_t, min_upload_rate, 4096,
+          "Bytes a second that an upload has to bring on the whole, beyond --idle_timeout");
+ABSL_FLAG(absl::Duration, drain_timeout, absl::Seconds(30),
+          "How long requests under way may go on after SIGTERM");
+ABSL_FLAG(std::string, log_file, "", "File to append the log to; empty: stderr");
+ABSL_FLAG(
+    std::string, token_file, "",
+    "File of \"NAME SHA256\" lines; callers show the token as bearer or X-Api-Key; empty: none "
+    "is asked for");
+ABSL_FLAG(std::vector<std::string>, allowed_clients, {},
+          "Names in client certificates that may call; empty: all that are verified");
+ABSL_FLAG(std::string, tls_certificate, "", "Certificate chain in PEM; empty: no TLS");
+ABSL_FLAG(std::string, tls_key, "", "Its private key in PEM");
+ABSL_FLAG(
+    std::string, tls_client_ca, "",
+    "Authorities in PEM; clients have to show a certificate of theirs; empty: none is asked for");
+ABSL_FLAG(bool, insecure, false, "Whether plaintext is allowed on other addresses than loopback");
+ABSL_FLAG(std::string, config, "", "File with a flag a line, name=value; the command line wins");
+ABSL_FLAG(std::string, flagfile, "", "The same as --config, at its place on the command line");
+
+namespace traverse::gateway {
+namespace {
+
+FlagProgram Program() {
+  return {"traverse-gateway", "client/gateway/gateway_flags.cc",
+          "Takes sliced files over HTTP and gRPC and gives them back with less travel; see "
+          "client/gateway/README.md.\n"
+          "\nusage: traverse-gateway [--listen_http=HOST:PORT] [--server=HOST:PORT,...] "
+          "[--name=value ...]\n"
+          "       traverse-gateway --config=FILE\n"
+          "       traverse-gateway --version | --help\n\n"};
+}
+
+absl::Status CheckRanges() {
+  const struct {
+    const char* name;
+    int64_t value;
+    int64_t least;
+  } numbers[] = {
+      {"threads", absl::GetFlag(FLAGS_threads), 0},
+      {"workers", absl::GetFlag(FLAGS_workers), 0},
+      {"max_requests", absl::GetFlag(FLAGS_max_requests), 1},
+      {"max_requests_per_caller", absl::GetFlag(FLAGS_max_requests_per_caller), 1},
+      {"max_file_bytes", absl::GetFlag(FLAGS_max_file_bytes), 1},
+      {"max_memory", absl::GetFlag(FLAGS_max_memory), int64_t{1} << 20},
+      {"max_spool_bytes", absl::GetFlag(FLAGS_max_spool_bytes), 1},
+      {"max_connections", absl::GetFlag(FLAGS_max_connections), 1},
+      {"max_header_bytes", absl::GetFlag(FLAGS_max_header_bytes), 1024},
+      {"min_upload_rate", absl::GetFlag(FLAGS_min_upload_rate), 1},
+  };
+  for (const auto& number : numbers) {
+    if (number.value < number.least) {
+      return BadFlag(number.name, absl::StrCat(number.value, " is below ", number.least));
+    }
+  }
+  const struct {
+    const char* name;
+    absl::Duration value;
+  } times[] = {
+      {"max_time", absl::GetFlag(FLAGS_max_time)},
+      {"upload_deadline", absl::GetFlag(FLAGS_upload_deadline)},
+      {"upstream_idle_timeout", absl::GetFlag(FLAGS_upstream_idle_timeout)},
+      {"header_timeout", absl::GetFlag(FLAGS_header_timeout)},
+      {"idle_timeout", absl::GetFlag(FLAGS_idle_timeout)},
+  };
+  for (const auto& time : times) {
+    if (time.value <= absl::ZeroDuration()) return BadFlag(time.name, "not above 0");
+  }
+  if (absl::GetFlag(FLAGS_drain_timeout) < absl::ZeroDuration()) {
+    return BadFlag("drain_timeout", "below 0");
+  }
+  if (!absl::GetFlag(FLAGS_allowed_clients).empty() && absl::GetFlag(FLAGS_tls_client_ca).empty()) {
+    return BadFlag("allowed_clients", "needs --tls_client_ca");
+  }
+  return absl::OkStatus();
+}
+
+absl::Status SetServers(GatewayOptions& options) {
+  const ChannelTls tls = {
+      absl::GetFlag(FLAGS_server_tls_ca), absl::GetFlag(FLAGS_server_tls_certificate),
+      absl::GetFlag(FLAGS_server_tls_key), absl::GetFlag(FLAGS_server_tls_name)};
+  const bool any = !tls.ca.empty() || !tls.certificate.empty() || !tls.key.empty() ||
+                   !tls.name.empty() || absl::GetFlag(FLAGS_server_tls);
+  const std::string token_file = absl::GetFlag(FLAGS_server_token_file);
+  if (absl::GetFlag(FLAGS_server).empty()) {
+    if (any || !token_file.empty()) return BadFlag("server", "missing, with flags that are for it");
+    return absl::OkStatus();
+  }
+  absl::StatusOr<std::vector<std::string>> servers = ParseAddresses(absl::GetFlag(FLAGS_server));
+  if (!servers.ok()) return BadFlag("server", std::string(servers.status().message()));
+  options.servers = *std::move(servers);
+  if (any) options.connect.tls = tls;
+  if (token_file.empty()) return absl::OkStatus();
+  absl::StatusOr<std::string> text = ReadWholeFile(token_file, size_t{1} << 16);
+  if (!text.ok()) return BadFlag("server_token_file", std::string(text.status().message()));
+  options.token = std::string(absl::StripAsciiWhitespace(text->substr(0, text->find('\n'))));
+  if (options.token.empty()) return BadFlag("server_token_file", "has no token");
+  const bool local = std::all_of(options.servers.begin(), options.servers.end(), IsLocal);
+  if (!any && !local && !absl::GetFlag(FLAGS_insecure)) {
+    return BadFlag("server_token_file",
+                   "the token would go to another machine unencrypted: use --server_tls, or "
+                   "--insecure");
+  }
+  return absl::OkStatus();
+}
+
+std::string SpoolFolder() {
+  const std::string given = absl::GetFlag(FLAGS_spool_dir);
+  if (!given.empty()) return given;
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  return error ? "/tmp" : folder.string();
+}
+
+}  // namespace
+
+absl::StatusOr<std::string> ReadFlags(const std::vector<std::string>& arguments) {
+  absl::StatusOr<std::string> text = ReadProgramFlags(Program(), arguments);
+  if (!text.ok() || !text->empty()) return text;
+  if (absl::Status status = CheckRanges(); !status.ok()) return status;
+  return text;
+}
+
+absl::Duration DrainTimeout() { return absl::GetFlag(FLAGS_drain_timeout); }
+
+absl::StatusOr<GatewayOptions> OptionsFromFlags() {
+  GatewayOptions options;
+  options.listen_http = absl::GetFlag(FLAGS_listen_http);
+  options.listen = absl::GetFlag(FLAGS_listen);
+  options.metrics_listen = absl::GetFlag(FLAGS_metrics_listen);
+  options.insecure = absl::GetFlag(FLAGS_insecure);
+  options.tls = {absl::GetFlag(FLAGS_tls_certificate), absl::GetFlag(FLAGS_tls_key),
+                 absl::GetFlag(FLAGS_tls_client_ca)};
+  options.http = {.max_connections = absl::GetFlag(FLAGS_max_connections),
+                  .max_head_bytes = static_cast<uint32_t>(absl::GetFlag(FLAGS_max_header_bytes)),
+                  .head_time = absl::GetFlag(FLAGS_header_timeout),
+                  .idle_time = absl::GetFlag(FLAGS_idle_timeout),
+                  .min_bytes_per_second = absl::GetFlag(FLAGS_min_upload_rate)};
+  CoreOptions& core = options.core;
+  core.spool_folder = SpoolFolder();
+  core.max_spool_bytes = static_cast<uint64_t>(absl::GetFlag(FLAGS_max_spool_bytes));
+  core.max_file_bytes = static_cast<uint64_t>(absl::GetFlag(FLAGS_max_file_bytes));
+  core.max_time = absl::GetFlag(FLAGS_max_time);
+  const int workers = absl::GetFlag(FLAGS_workers);
+  core.work = {.workers = workers > 0 ? workers : std::max(2, UsableCores()),
+               .max_requests = absl::GetFlag(FLAGS_max_requests),
+               .max_requests_per_caller = absl::GetFlag(FLAGS_max_requests_per_caller),
+               .max_memory_bytes = absl::GetFlag(FLAGS_max_memory)};
+  core.auth.token_file = absl::GetFlag(FLAGS_token_file);
+  core.auth.allowed_names = absl::GetFlag(FLAGS_allowed_clients);
+  core.log_path = absl::GetFlag(FLAGS_log_file);
+  const int threads = absl::GetFlag(FLAGS_threads);
+  options.threads = threads > 0 ? threads : UsableCores();
+  options.printers_file = absl::GetFlag(FLAGS_printers);
+  options.upload_deadline = absl::GetFlag(FLAGS_upload_deadline);
+  options.upstream.idle_time = absl::GetFlag(FLAGS_upstream_idle_timeout);
+  if (absl::Status status = SetServers(options); !status.ok()) return status;
+  return options;
+}
+
+}  // namespace traverse::gateway

@@ -1,0 +1,93 @@
+// A call that takes files in pieces and answers with one message.
+
+#ifndef TRAVERSE_CLIENT_GATEWAY_GRPC_COLLECT_REACTOR_H_
+#define TRAVERSE_CLIENT_GATEWAY_GRPC_COLLECT_REACTOR_H_
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "client/gateway/core.h"
+#include "client/gateway/grpc/file_call.h"
+#include "client/gateway/grpc/live_calls.h"
+
+namespace traverse::gateway {
+
+// What came.
+struct Collected {
+  std::string name;
+  std::shared_ptr<SpoolFile> first;   // the file, or the original
+  std::shared_ptr<SpoolFile> second;  // the optimised one
+};
+
+// Deletes itself.
+template <typename Request>
+class CollectReactor : public grpc::ServerReadReactor<Request> {
+ public:
+  // Puts a message where it belongs. Errors for the client.
+  using Take = std::function<absl::Status(const Request&, const FileCall&, Collected&)>;
+  // Whether all has come, and what it may take.
+  using Check = std::function<absl::StatusOr<int64_t>(const Collected&)>;
+  // Makes the answer.
+  using Work = std::function<absl::Status(const Collected&)>;
+
+  CollectReactor(Core& core, LiveCalls& live, grpc::CallbackServerContext& context,
+                 const std::string& method, Take take, Check check, Work work)
+      : core_(core),
+        live_(live),
+        context_(context),
+        call_(core, context, method),
+        take_(std::move(take)),
+        check_(std::move(check)),
+        work_(std::move(work)) {
+    if (!call_.status().ok()) {
+      End(call_.status());
+      return;
+    }
+    live_.Waits(&context_);
+    this->StartRead(&request_);
+  }
+
+  void OnReadDone(bool ok) override {
+    if (context_.IsCancelled()) return End(absl::CancelledError("cancelled"));
+    if (!ok) return Submit();
+    if (absl::Status status = take_(request_, call_, collected_); !status.ok()) return End(status);
+    live_.Waits(&context_);
+    this->StartRead(&request_);
+  }
+
+  void OnDone() override {
+    live_.Rests(&context_);
+    delete this;
+  }
+
+ private:
+  void Submit() {
+    live_.Rests(&context_);
+    const absl::StatusOr<int64_t> memory = check_(collected_);
+    if (!memory.ok()) return End(memory.status());
+    core_.queue->Submit(call_.place(), *memory, [this] {
+      if (context_.IsCancelled()) return End(absl::CancelledError("cancelled"));
+      End(work_(collected_));
+    });
+  }
+
+  void End(const absl::Status& status) {
+    live_.Rests(&context_);
+    this->Finish(call_.End(status));
+  }
+
+  Core& core_;
+  LiveCalls& live_;
+  grpc::CallbackServerContext& context_;
+  FileCall call_;
+  const Take take_;
+  const Check check_;
+  const Work work_;
+  Request request_;
+  Collected collected_;
+};
+
+}  // namespace traverse::gateway
+
+#endif  // TRAVERSE_CLIENT_GATEWAY_GRPC_COLLECT_REACTOR_H_

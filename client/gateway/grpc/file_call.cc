@@ -1,0 +1,75 @@
+#include "client/gateway/grpc/file_call.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/time/clock.h"
+#include "server/jobs/retry_delay.h"
+#include "server/rpc/grpc_status.h"
+
+namespace traverse::gateway {
+namespace {
+
+constexpr absl::Duration kRetryDelay = absl::Seconds(5);
+
+// For the status, or the first pieces of the file, to be on their way before the deadline.
+constexpr absl::Duration kMargin = absl::Milliseconds(300);
+
+// In the words of gcode_service.proto.
+absl::Status ForClient(const absl::Status& status) {
+  switch (status.code()) {
+    case absl::StatusCode::kDeadlineExceeded:
+      return absl::FailedPreconditionError(
+          absl::StrCat("nothing was found before the deadline: ", std::string(status.message())));
+    case absl::StatusCode::kUnimplemented:
+      return absl::InvalidArgumentError(status.message());
+    case absl::StatusCode::kResourceExhausted:
+      return WithRetryDelay(status, kRetryDelay);
+    default:
+      return status;
+  }
+}
+
+}  // namespace
+
+FileCall::FileCall(Core& core, grpc::CallbackServerContext& context, const std::string& method)
+    : core_(core), info_(ReadCallInfo(context, method)), began_(absl::Now()) {
+  if (info_.deadline) {
+    deadline_ = began_ + absl::FromChrono(*info_.deadline - Budget::Clock::now());
+  }
+  status_ = Authorize(context, *core_.auth, info_);
+  if (!status_.ok()) return;
+  absl::StatusOr<std::shared_ptr<WorkQueue::Place>> place = core_.queue->Enter(info_.caller);
+  status_ = place.status();
+  if (place.ok()) place_ = *std::move(place);
+}
+
+absl::Time FileCall::FinishBy() const {
+  return std::min(deadline_ - kMargin, absl::Now() + core_.options.max_time);
+}
+
+absl::Status FileCall::Append(const std::string& bytes, std::shared_ptr<SpoolFile>& file) const {
+  if (file == nullptr) {
+    absl::StatusOr<std::shared_ptr<SpoolFile>> made = core_.spool->NewFile();
+    if (!made.ok()) return made.status();
+    file = *std::move(made);
+  }
+  const uint64_t most = core_.options.max_file_bytes;
+  if (file->size() + bytes.size() > most) {
+    return absl::OutOfRangeError(absl::StrFormat("the file is longer than %d bytes", most));
+  }
+  return file->Append(bytes);
+}
+
+grpc::Status FileCall::End(const absl::Status& status) {
+  const absl::Status told = ForClient(status);
+  core_.metrics.CountRequest(absl::StrCat("grpc/", info_.method),
+                             absl::StatusCodeToString(told.code()),
+                             absl::ToDoubleSeconds(absl::Now() - began_));
+  place_ = nullptr;
+  return ToGrpcStatus(told);
+}
+
+}  // namespace traverse::gateway

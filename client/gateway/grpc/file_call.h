@@ -1,0 +1,53 @@
+// What the calls of GcodeService share: who calls, a place in the queue, files in the spool, one
+// Finish.
+
+#ifndef TRAVERSE_CLIENT_GATEWAY_GRPC_FILE_CALL_H_
+#define TRAVERSE_CLIENT_GATEWAY_GRPC_FILE_CALL_H_
+
+#include <grpcpp/server_context.h>
+#include <grpcpp/support/status.h>
+
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "client/gateway/core.h"
+#include "server/rpc/call_info.h"
+
+namespace traverse::gateway {
+
+// One call's beginnings. Not thread-safe.
+class FileCall {
+ public:
+  // `method` without the service's name.
+  FileCall(Core& core, grpc::CallbackServerContext& context, const std::string& method);
+
+  // Whether it may go on: the caller is known and there is a place. Errors for the client.
+  const absl::Status& status() const { return status_; }
+
+  const std::string& caller() const { return info_.caller; }
+  const std::string& peer() const { return info_.peer; }
+  std::shared_ptr<WorkQueue::Place> place() const { return place_; }
+
+  // When the file has to be ready, so that it can be sent before the call's deadline.
+  absl::Time FinishBy() const;
+
+  // Appends to `file`, which is made if it is null. ResourceExhausted, OutOfRange.
+  absl::Status Append(const std::string& bytes, std::shared_ptr<SpoolFile>& file) const;
+
+  // What the client is told, and counts the call.
+  grpc::Status End(const absl::Status& status);
+
+ private:
+  Core& core_;
+  CallInfo info_;
+  const absl::Time began_;
+  absl::Time deadline_ = absl::InfiniteFuture();
+  absl::Status status_;
+  std::shared_ptr<WorkQueue::Place> place_;
+};
+
+}  // namespace traverse::gateway
+
+#endif  // TRAVERSE_CLIENT_GATEWAY_GRPC_FILE_CALL_H_

@@ -1,0 +1,74 @@
+#include "client/gateway/grpc/gcode_grpc_service.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "client/gateway/grpc/collect_reactor.h"
+#include "client/gateway/grpc/rewrite_reactor.h"
+#include "client/gateway/http/target.h"
+
+namespace traverse::gateway {
+namespace {
+
+absl::Status TakeInspect(const v1::InspectRequest& request, const FileCall& call,
+                         Collected& collected) {
+  if (request.has_data()) return call.Append(request.data(), collected.first);
+  if (!request.has_name()) return absl::InvalidArgumentError("a message without data");
+  if (!collected.name.empty() || collected.first != nullptr) {
+    return absl::InvalidArgumentError("name: in the first message alone");
+  }
+  collected.name = request.name();
+  const absl::Status status = CheckFileName(collected.name);
+  return status.ok() ? status
+                     : absl::InvalidArgumentError(absl::StrCat("name: ", status.message()));
+}
+
+absl::Status TakeVerify(const v1::VerifyRequest& request, const FileCall& call,
+                        Collected& collected) {
+  if (request.has_original()) return call.Append(request.original(), collected.first);
+  if (request.has_optimised()) return call.Append(request.optimised(), collected.second);
+  return absl::InvalidArgumentError("a message without data");
+}
+
+}  // namespace
+
+grpc::ServerBidiReactor<v1::RewriteRequest, v1::RewriteResponse>* GcodeGrpcService::Rewrite(
+    grpc::CallbackServerContext* context) {
+  return new RewriteReactor(core_, live_, *context);
+}
+
+grpc::ServerReadReactor<v1::InspectRequest>* GcodeGrpcService::Inspect(
+    grpc::CallbackServerContext* context, v1::InspectResponse* response) {
+  const auto check = [this](const Collected& collected) -> absl::StatusOr<int64_t> {
+    if (collected.first == nullptr) return absl::InvalidArgumentError("data: there is no file");
+    return core_.worker->MemoryFor(*collected.first);
+  };
+  const auto work = [this, response](const Collected& collected) {
+    FileRequest request;
+    if (!collected.name.empty()) request.name = collected.name;
+    absl::StatusOr<v1::InspectResponse> found = core_.worker->Inspect(*collected.first, request);
+    if (found.ok()) *response = *std::move(found);
+    return found.status();
+  };
+  return new CollectReactor<v1::InspectRequest>(core_, live_, *context, "Inspect", TakeInspect,
+                                                check, work);
+}
+
+grpc::ServerReadReactor<v1::VerifyRequest>* GcodeGrpcService::Verify(
+    grpc::CallbackServerContext* context, v1::VerifyResponse* response) {
+  const auto check = [this](const Collected& collected) -> absl::StatusOr<int64_t> {
+    if (collected.first == nullptr) return absl::InvalidArgumentError("original: missing");
+    if (collected.second == nullptr) return absl::InvalidArgumentError("optimised: missing");
+    return core_.worker->MemoryFor(*collected.first) + core_.worker->MemoryFor(*collected.second);
+  };
+  const auto work = [this, response](const Collected& collected) {
+    absl::StatusOr<v1::VerifyResponse> found =
+        core_.worker->Verify(*collected.first, *collected.second);
+    if (found.ok()) *response = *std::move(found);
+    return found.status();
+  };
+  return new CollectReactor<v1::VerifyRequest>(core_, live_, *context, "Verify", TakeVerify, check,
+                                               work);
+}
+
+}  // namespace traverse::gateway

@@ -1,0 +1,34 @@
+// traverse.v1.GcodeService: files over gRPC.
+
+#ifndef TRAVERSE_CLIENT_GATEWAY_GRPC_GCODE_GRPC_SERVICE_H_
+#define TRAVERSE_CLIENT_GATEWAY_GRPC_GCODE_GRPC_SERVICE_H_
+
+#include "absl/status/status.h"
+#include "absl/time/time.h"
+#include "client/gateway/core.h"
+#include "client/gateway/grpc/live_calls.h"
+#include "traverse/v1/gcode_service.grpc.pb.h"
+
+namespace traverse::gateway {
+
+// Thread-safe.
+class GcodeGrpcService : public v1::GcodeService::CallbackService {
+ public:
+  // Calls whose client neither sends nor reads for `idle_time` are ended. `core` outlives it.
+  GcodeGrpcService(Core& core, absl::Duration idle_time) : core_(core), live_(idle_time) {}
+
+  grpc::ServerBidiReactor<v1::RewriteRequest, v1::RewriteResponse>* Rewrite(
+      grpc::CallbackServerContext* context) override;
+  grpc::ServerReadReactor<v1::InspectRequest>* Inspect(grpc::CallbackServerContext* context,
+                                                       v1::InspectResponse* response) override;
+  grpc::ServerReadReactor<v1::VerifyRequest>* Verify(grpc::CallbackServerContext* context,
+                                                     v1::VerifyResponse* response) override;
+
+ private:
+  Core& core_;
+  LiveCalls live_;
+};
+
+}  // namespace traverse::gateway
+
+#endif  // TRAVERSE_CLIENT_GATEWAY_GRPC_GCODE_GRPC_SERVICE_H_

@@ -1,0 +1,170 @@
+#include "client/gateway/grpc/rewrite_reactor.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/time/clock.h"
+#include "client/gateway/api/file_routes.h"
+#include "client/gateway/api/parameters.h"
+
+namespace traverse::gateway {
+namespace {
+
+constexpr uint64_t kPiece = 262144;
+
+// The next piece of `file` from `sent` on, which moves; false at its end, or where it cannot be
+// read (`fault`).
+bool ReadPiece(const SpoolFile* file, uint64_t& sent, std::string& out, absl::Status& fault) {
+  if (file == nullptr || sent >= file->size()) return false;
+  out.resize(std::min(kPiece, file->size() - sent));
+  const absl::StatusOr<size_t> got = file->ReadAt(sent, out.data(), out.size());
+  fault = got.status();
+  if (!got.ok()) return false;
+  sent += out.size();
+  return true;
+}
+
+}  // namespace
+
+RewriteReactor::RewriteReactor(Core& core, LiveCalls& live, grpc::CallbackServerContext& context)
+    : core_(core), live_(live), context_(context), call_(core, context, "Rewrite") {
+  if (!call_.status().ok()) {
+    MutexLock lock(mutex_);
+    End(call_.status());
+    return;
+  }
+  live_.Waits(&context_);
+  StartRead(&request_);
+}
+
+void RewriteReactor::OnReadDone(bool ok) {
+  if (context_.IsCancelled()) {
+    MutexLock lock(mutex_);
+    return End(absl::CancelledError("cancelled"));
+  }
+  if (!ok) return Submit();
+  if (absl::Status status = TakeRequest(); !status.ok()) {
+    MutexLock lock(mutex_);
+    return End(status);
+  }
+  live_.Waits(&context_);
+  StartRead(&request_);
+}
+
+absl::Status RewriteReactor::TakeRequest() {
+  if (request_.has_options()) {
+    if (wanted_) return absl::InvalidArgumentError("options: in the first message alone");
+    absl::StatusOr<FileRequest> wanted = RequestOf(request_.options());
+    if (!wanted.ok()) return wanted.status();
+    wanted_ = *std::move(wanted);
+    return absl::OkStatus();
+  }
+  if (!wanted_) return absl::InvalidArgumentError("options: missing, the first message has none");
+  if (!request_.has_data()) return absl::InvalidArgumentError("a message without data");
+  return call_.Append(request_.data(), upload_);
+}
+
+void RewriteReactor::Submit() {
+  live_.Rests(&context_);
+  if (upload_ == nullptr) {
+    MutexLock lock(mutex_);
+    return End(absl::InvalidArgumentError(
+        wanted_ ? "data: there is no file" : "options: missing, the first message has none"));
+  }
+  wanted_->finish_by = call_.FinishBy();
+  // From here on the task ends the call, so that it finds it alive.
+  core_.queue->Submit(call_.place(), core_.worker->MemoryFor(*upload_), [this] { Work(); });
+}
+
+void RewriteReactor::Work() {
+  const absl::Time began = absl::Now();
+  const auto progress = [this](const v1::RewriteProgress& now) {
+    MutexLock lock(mutex_);
+    progress_ = now;
+    Next();
+  };
+  absl::StatusOr<RewrittenFile> made =
+      stop_.stop_requested()
+          ? absl::CancelledError("cancelled")
+          : core_.worker->Rewrite(*upload_, *wanted_, progress, stop_.get_token());
+  const FileRecord record = {"grpc/Rewrite",  call_.caller(),
+                             call_.peer(),    wanted_->name,
+                             upload_->size(), absl::ToDoubleSeconds(absl::Now() - began)};
+  RecordFile(core_, record, made.status(), made.ok() ? &made->summary : nullptr);
+  MutexLock lock(mutex_);
+  upload_ = nullptr;
+  if (!made.ok()) return End(made.status());
+  made_ = *std::move(made);
+  progress_.reset();
+  Next();
+}
+
+void RewriteReactor::End(const absl::Status& status) {
+  if (!end_) end_ = status;
+  Next();
+}
+
+// Sets response_ to the next thing to be sent; false if there is none now.
+bool RewriteReactor::NextPiece() {
+  response_.Clear();
+  if (progress_) {
+    *response_.mutable_progress() = *std::exchange(progress_, std::nullopt);
+    return true;
+  }
+  if (!made_ || summary_sent_) return false;
+  absl::Status fault;
+  std::string piece;
+  if (ReadPiece(made_->file.get(), file_sent_, piece, fault)) {
+    response_.set_data(std::move(piece));
+  } else if (fault.ok() && ReadPiece(made_->report.get(), report_sent_, piece, fault)) {
+    response_.set_report(std::move(piece));
+  } else if (fault.ok()) {
+    *response_.mutable_summary() = made_->summary;
+    summary_sent_ = true;
+  } else {
+    end_ = fault;
+    return false;
+  }
+  return true;
+}
+
+void RewriteReactor::Next() {
+  if (writing_ || finished_) return;
+  if (!end_ && NextPiece()) {
+    writing_ = true;
+    live_.Waits(&context_);
+    StartWrite(&response_);
+    return;
+  }
+  if (!end_ && summary_sent_) end_ = absl::OkStatus();
+  if (!end_) return;
+  finished_ = true;
+  live_.Rests(&context_);
+  made_.reset();
+  Finish(call_.End(*end_));
+}
+
+void RewriteReactor::OnWriteDone(bool ok) {
+  live_.Rests(&context_);
+  MutexLock lock(mutex_);
+  writing_ = false;
+  if (ok) return Next();
+  stop_.request_stop();
+  // A task that is under way ends the call itself.
+  if (made_) End(absl::CancelledError("the client does not read"));
+}
+
+void RewriteReactor::OnCancel() {
+  stop_.request_stop();
+  MutexLock lock(mutex_);
+  if (made_) End(absl::CancelledError("cancelled"));
+}
+
+void RewriteReactor::OnDone() {
+  live_.Rests(&context_);
+  // Whoever called Finish may still hold it.
+  { MutexLock lock(mutex_); }
+  delete this;
+}
+
+}  // namespace traverse::gateway

@@ -1,0 +1,189 @@
+#include "client/gateway/http/http_server.h"
+
+#include <atomic>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "client/gateway/http/session.h"
+
+namespace traverse::gateway {
+namespace {
+
+using net::ip::tcp;
+
+// HOST:PORT, or [HOST]:PORT, as a host for the resolver and a port.
+absl::StatusOr<std::pair<std::string, std::string>> SplitAddress(const std::string& address) {
+  const size_t colon = address.rfind(':');
+  if (colon == std::string::npos || colon + 1 == address.size()) {
+    return absl::InvalidArgumentError(absl::StrCat(address, ": not HOST:PORT"));
+  }
+  std::string host = address.substr(0, colon);
+  if (host.size() >= 2 && host.front() == '[' && host.back() == ']') {
+    host = host.substr(1, host.size() - 2);
+  }
+  return std::make_pair(host.empty() ? std::string("0.0.0.0") : host, address.substr(colon + 1));
+}
+
+// As gRPC writes a peer, without its port.
+std::string PeerHostOf(const tcp::endpoint& peer) {
+  return absl::StrCat(peer.address().is_v4() ? "ipv4:" : "ipv6:", peer.address().to_string());
+}
+
+class BeastServer : public HttpServer {
+ public:
+  BeastServer(const HttpServerOptions& options, HttpHandler handler)
+      : options_(options),
+        handler_(std::move(handler)),
+        loop_(std::make_shared<net::io_context>(1)),
+        acceptor_(*loop_) {}
+
+  ~BeastServer() override {
+    loop_->stop();
+    if (thread_.joinable()) thread_.join();
+  }
+
+  absl::Status Start() {
+    if (options_.certificates != nullptr) {
+      absl::StatusOr<std::unique_ptr<TlsContext>> tls = TlsContext::Make(options_.certificates);
+      if (!tls.ok()) return tls.status();
+      tls_ = *std::move(tls);
+    }
+    if (absl::Status status = Listen(); !status.ok()) return status;
+    net::co_spawn(*loop_, Accept(), net::detached);
+    thread_ = std::thread([this] { loop_->run(); });
+    return absl::OkStatus();
+  }
+
+  int port() const override { return port_; }
+  int connections() const override { return connections_; }
+
+  void Drain(absl::Duration timeout) override {
+    net::post(*loop_, [this] {
+      boost::system::error_code error;
+      acceptor_.close(error);
+      for (AnySession* session : sessions_) session->Drain();
+    });
+    const absl::Time end = absl::Now() + timeout;
+    constexpr absl::Duration kLook = absl::Milliseconds(5);
+    absl::SleepFor(kLook);
+    while (connections_ > 0 && absl::Now() < end) absl::SleepFor(kLook);
+  }
+
+ private:
+  absl::Status Listen() {
+    const auto address = SplitAddress(options_.listen);
+    if (!address.ok()) return address.status();
+    boost::system::error_code error;
+    tcp::resolver resolver(*loop_);
+    const auto found =
+        resolver.resolve(address->first, address->second, tcp::resolver::passive, error);
+    if (!error && !found.empty()) {
+      const tcp::endpoint endpoint = found.begin()->endpoint();
+      acceptor_.open(endpoint.protocol(), error);
+      if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
+      if (!error) acceptor_.bind(endpoint, error);
+      if (!error) acceptor_.listen(net::socket_base::max_listen_connections, error);
+    }
+    if (error) {
+      return absl::UnavailableError(
+          absl::StrCat("cannot listen on ", options_.listen, ": ", error.message()));
+    }
+    port_ = acceptor_.local_endpoint().port();
+    return absl::OkStatus();
+  }
+
+  net::awaitable<void> Accept() {
+    net::steady_timer pause(*loop_);
+    while (acceptor_.is_open()) {
+      boost::system::error_code error;
+      tcp::socket socket =
+          co_await acceptor_.async_accept(net::redirect_error(net::use_awaitable, error));
+      if (error == net::error::operation_aborted) co_return;
+      if (error) {  // no file descriptor is left, or the client has gone: others may come
+        pause.expires_after(std::chrono::milliseconds(50));
+        co_await pause.async_wait(net::redirect_error(net::use_awaitable, error));
+        continue;
+      }
+      Open(std::move(socket));
+    }
+  }
+
+  void Open(tcp::socket socket) {
+    boost::system::error_code error;
+    const tcp::endpoint peer = socket.remote_endpoint(error);
+    if (error) return;
+    if (connections_ >= options_.limits.max_connections) {
+      Refuse(std::move(socket));
+      return;
+    }
+    socket.set_option(tcp::no_delay(true), error);
+    beast::tcp_stream stream(std::move(socket));
+    if (tls_ == nullptr) {
+      Serve(std::make_shared<Session<beast::tcp_stream>>(
+          loop_, std::move(stream), nullptr, options_.limits, handler_, PeerHostOf(peer)));
+      return;
+    }
+    const std::shared_ptr<TlsContext::Context> context = tls_->Current();
+    Serve(std::make_shared<Session<TlsStream>>(loop_, TlsStream(std::move(stream), *context),
+                                               context, options_.limits, handler_,
+                                               PeerHostOf(peer)));
+  }
+
+  // Says so where that does not need to wait.
+  void Refuse(tcp::socket socket) {
+    if (tls_ != nullptr) return;
+    static const std::string full = [] {
+      const std::string body = ProblemJson(503, "too many connections");
+      return absl::StrCat("HTTP/1.1 503 Service Unavailable\r\nContent-Type: ",
+                          "application/problem+json\r\nRetry-After: 5\r\nConnection: close\r\n",
+                          "Content-Length: ", body.size(), "\r\n\r\n", body);
+    }();
+    boost::system::error_code error;
+    socket.non_blocking(true, error);
+    socket.write_some(net::buffer(full), error);
+  }
+
+  template <typename T>
+  void Serve(std::shared_ptr<T> session) {
+    ++connections_;
+    sessions_.insert(session.get());
+    net::co_spawn(*loop_, session->Run(), [this, session](const std::exception_ptr&) {
+      sessions_.erase(session.get());
+      --connections_;
+    });
+  }
+
+  const HttpServerOptions options_;
+  const HttpHandler handler_;
+  std::unique_ptr<TlsContext> tls_;
+  const std::shared_ptr<net::io_context> loop_;
+  tcp::acceptor acceptor_;
+  std::set<AnySession*> sessions_;  // of the loop's thread
+  std::atomic<int> connections_ = 0;
+  int port_ = 0;
+  std::thread thread_;
+};
+
+}  // namespace
+
+std::string HttpRequest::Header(std::string_view name) const {
+  for (const auto& [key, value] : headers) {
+    if (key == name) return value;
+  }
+  return "";
+}
+
+absl::StatusOr<std::unique_ptr<HttpServer>> HttpServer::Start(const HttpServerOptions& options,
+                                                              HttpHandler handler) {
+  auto server = std::make_unique<BeastServer>(options, std::move(handler));
+  if (absl::Status status = server->Start(); !status.ok()) return status;
+  return server;
+}
+
+}  // namespace traverse::gateway

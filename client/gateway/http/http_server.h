@@ -1,0 +1,59 @@
+// HTTP/1.1, with and without TLS.
+//
+// Boost.Beast reads and writes; one thread serves all connections and never waits for a handler.
+// What a connection may cost is bounded: its head in bytes and seconds, its body by a least rate,
+// the connections in their number; bodies go by in pieces, both ways.
+
+#ifndef TRAVERSE_CLIENT_GATEWAY_HTTP_HTTP_SERVER_H_
+#define TRAVERSE_CLIENT_GATEWAY_HTTP_HTTP_SERVER_H_
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "client/gateway/http/message.h"
+#include "server/rpc/certificates.h"
+
+namespace traverse::gateway {
+
+struct HttpLimits {
+  int max_connections = 512;
+  uint32_t max_head_bytes = 16384;
+  absl::Duration head_time = absl::Seconds(20);  // for a head, the wait for it included
+  absl::Duration idle_time = absl::Seconds(30);  // without a byte of the body, either way
+
+  // A body may take `idle_time`, and beyond it a second for each so many bytes.
+  int64_t min_bytes_per_second = 4096;
+};
+
+struct HttpServerOptions {
+  std::string listen;  // HOST:PORT, [HOST]:PORT; port 0 takes a free one
+  std::shared_ptr<CertificateStore> certificates = nullptr;  // null: plaintext
+  HttpLimits limits;
+};
+
+class HttpServer {
+ public:
+  // Errors, with one line: InvalidArgument for an address that is none, Unavailable for a port or
+  // certificates that cannot be had. `handler` is called by the server's thread.
+  static absl::StatusOr<std::unique_ptr<HttpServer>> Start(const HttpServerOptions& options,
+                                                           HttpHandler handler);
+
+  // Closes all connections.
+  virtual ~HttpServer() = default;
+
+  virtual int port() const = 0;
+
+  // Takes no more connections and closes those that are idle; others end with their request.
+  // Returns when none is left, or after `timeout`.
+  virtual void Drain(absl::Duration timeout) = 0;
+
+  // Connections that are open.
+  virtual int connections() const = 0;
+};
+
+}  // namespace traverse::gateway
+
+#endif  // TRAVERSE_CLIENT_GATEWAY_HTTP_HTTP_SERVER_H_

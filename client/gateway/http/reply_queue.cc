@@ -1,0 +1,96 @@
+#include "client/gateway/http/reply_queue.h"
+
+namespace traverse::gateway {
+namespace {
+
+size_t TextBytes(const HttpBody& body) {
+  const std::string* text = std::get_if<std::string>(&body);
+  return text == nullptr ? 0 : text->size();
+}
+
+}  // namespace
+
+void ReplyQueue::Put(const std::function<void()>& change) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (gone_ || ended_) return;
+    change();
+  }
+  wake_();
+}
+
+void ReplyQueue::Send(HttpResponse response) {
+  Put([&] {
+    head_ = std::move(response);
+    ended_ = true;
+  });
+}
+
+void ReplyQueue::Begin(HttpResponse head) {
+  Put([&] {
+    head_ = std::move(head);
+    streaming_ = true;
+  });
+}
+
+void ReplyQueue::Write(HttpBody piece, bool optional) {
+  Put([&] {
+    const size_t bytes = TextBytes(piece);
+    if (optional && text_bytes_ + bytes > kMaxOptionalBytes) return;
+    text_bytes_ += bytes;
+    pieces_.push_back(std::move(piece));
+  });
+}
+
+void ReplyQueue::End() {
+  Put([&] { ended_ = true; });
+}
+
+void ReplyQueue::OnGone(std::function<void()> on_gone) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!gone_) {
+      on_gone_ = std::move(on_gone);
+      return;
+    }
+  }
+  on_gone();
+}
+
+std::optional<HttpResponse> ReplyQueue::TakeHead() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::exchange(head_, std::nullopt);
+}
+
+bool ReplyQueue::streaming() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return streaming_;
+}
+
+std::optional<HttpBody> ReplyQueue::TakePiece() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (pieces_.empty()) return std::nullopt;
+  HttpBody piece = std::move(pieces_.front());
+  pieces_.pop_front();
+  text_bytes_ -= TextBytes(piece);
+  return piece;
+}
+
+bool ReplyQueue::ended() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return ended_ && pieces_.empty();
+}
+
+void ReplyQueue::Gone() {
+  std::function<void()> on_gone;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (gone_) return;
+    gone_ = true;
+    pieces_.clear();
+    on_gone = std::exchange(on_gone_, nullptr);
+  }
+  if (on_gone) on_gone();
+}
+
+}  // namespace traverse::gateway

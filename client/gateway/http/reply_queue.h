@@ -1,0 +1,58 @@
+// What is on its way from a handler to a connection.
+
+#ifndef TRAVERSE_CLIENT_GATEWAY_HTTP_REPLY_QUEUE_H_
+#define TRAVERSE_CLIENT_GATEWAY_HTTP_REPLY_QUEUE_H_
+
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "client/gateway/http/message.h"
+
+namespace traverse::gateway {
+
+// Handlers put things in, from any thread; the connection takes them out. Thread-safe.
+class ReplyQueue : public HttpReply {
+ public:
+  // Text that waits for the connection, at most; optional pieces beyond it are dropped.
+  static constexpr size_t kMaxOptionalBytes = 65536;
+
+  // `wake` is called, from any thread, when something was put in.
+  explicit ReplyQueue(std::function<void()> wake) : wake_(std::move(wake)) {}
+
+  void Send(HttpResponse response) override;
+  void Begin(HttpResponse head) override;
+  void Write(HttpBody piece, bool optional) override;
+  void End() override;
+  void OnGone(std::function<void()> on_gone) override;
+
+  // The head, once it is there; its body is the whole one unless streaming().
+  std::optional<HttpResponse> TakeHead();
+  bool streaming() const;
+
+  // The next piece of a stream.
+  std::optional<HttpBody> TakePiece();
+  bool ended() const;
+
+  // The client has gone.
+  void Gone();
+
+ private:
+  void Put(const std::function<void()>& change);
+
+  const std::function<void()> wake_;
+  mutable std::mutex mutex_;
+  std::optional<HttpResponse> head_;
+  bool streaming_ = false;
+  std::deque<HttpBody> pieces_;
+  size_t text_bytes_ = 0;  // of pieces_
+  bool ended_ = false;
+  bool gone_ = false;
+  std::function<void()> on_gone_;
+};
+
+}  // namespace traverse::gateway
+
+#endif  // TRAVERSE_CLIENT_GATEWAY_HTTP_REPLY_QUEUE_H_

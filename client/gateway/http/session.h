@@ -1,0 +1,402 @@
+// One connection: requests one after another, each read, handled and answered.
+
+#ifndef TRAVERSE_CLIENT_GATEWAY_HTTP_SESSION_H_
+#define TRAVERSE_CLIENT_GATEWAY_HTTP_SESSION_H_
+
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/ssl/stream.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http.hpp>
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "client/gateway/http/http_server.h"
+#include "client/gateway/http/message.h"
+#include "client/gateway/http/problem.h"
+#include "client/gateway/http/reply_queue.h"
+#include "client/gateway/http/target.h"
+#include "client/gateway/http/tls_context.h"
+
+namespace traverse::gateway {
+
+namespace net = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+
+using TlsStream = net::ssl::stream<beast::tcp_stream>;
+
+// What the server knows of a connection.
+class AnySession {
+ public:
+  virtual ~AnySession() = default;
+
+  // Ends it if it waits for a request; else it ends after the one under way.
+  virtual void Drain() = 0;
+};
+
+// REQUIRES: all of it runs in the one thread of `loop`.
+template <typename Stream>
+class Session : public AnySession, public std::enable_shared_from_this<Session<Stream>> {
+ public:
+  // `context` is that of `stream`, or null.
+  Session(std::shared_ptr<net::io_context> loop, Stream stream,
+          std::shared_ptr<TlsContext::Context> context, const HttpLimits& limits,
+          const HttpHandler& handler, std::string peer_host)
+      : loop_(loop),
+        context_(std::move(context)),
+        stream_(std::move(stream)),
+        limits_(limits),
+        handler_(handler),
+        peer_host_(std::move(peer_host)),
+        timer_(*loop),
+        wake_(*loop) {}
+
+  // Until the connection ends.
+  net::awaitable<void> Run() {
+    const auto self = this->shared_from_this();
+    if (!co_await Handshake()) co_return;
+    bool again = true;
+    while (again && !draining_) {
+      again = co_await ServeOne();
+      if (reply_ != nullptr) std::exchange(reply_, nullptr)->Gone();
+    }
+    boost::system::error_code error;
+    if (unread_) co_await Linger();
+    beast::get_lowest_layer(stream_).socket().shutdown(net::ip::tcp::socket::shutdown_both, error);
+    timer_.cancel();
+  }
+
+  void Drain() override {
+    draining_ = true;
+    if (idle_) Lowest().cancel();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Parser = http::request_parser<http::buffer_body>;
+  static constexpr size_t kPiece = 65536;
+
+  beast::tcp_stream& Lowest() { return beast::get_lowest_layer(stream_); }
+
+  // From now on operations that take longer than `time` fail; the connection stays.
+  void SetTimer(absl::Duration time) {
+    const uint64_t set = ++timer_set_;
+    timer_.expires_after(absl::ToChronoMilliseconds(time));
+    timer_.async_wait([self = this->weak_from_this(), set](boost::system::error_code error) {
+      const auto session = self.lock();
+      if (error || session == nullptr || session->timer_set_ != set) return;
+      session->timed_out_ = true;
+      session->Lowest().cancel();
+    });
+    timed_out_ = false;
+  }
+
+  net::awaitable<bool> Handshake() {
+    if constexpr (std::is_same_v<Stream, TlsStream>) {
+      SetTimer(limits_.head_time);
+      boost::system::error_code error;
+      co_await stream_.async_handshake(net::ssl::stream_base::server,
+                                       net::redirect_error(net::use_awaitable, error));
+      if (error) co_return false;
+      identities_ = PeerIdentities(stream_.native_handle());
+    }
+    co_return true;
+  }
+
+  // Returns whether another request may come.
+  net::awaitable<bool> ServeOne() {
+    Parser parser;
+    parser.header_limit(limits_.max_head_bytes);
+    parser.body_limit(std::numeric_limits<uint64_t>::max());  // the handler knows
+    SetTimer(limits_.head_time);
+    idle_ = true;
+    boost::system::error_code error;
+    co_await http::async_read_header(stream_, buffer_, parser,
+                                     net::redirect_error(net::use_awaitable, error));
+    idle_ = false;
+    if (error) {
+      unread_ = true;
+      std::optional<HttpResponse> refusal = HeadFault(error);
+      if (refusal) co_await Respond(*refusal, false, 11, false);
+      co_return false;
+    }
+    const unsigned version = parser.get().version();
+    const bool head_only = parser.get().method() == http::verb::head;
+    bool keep = parser.keep_alive();
+    HttpDecision decision = Decide(parser);
+    if (auto* sink = std::get_if<std::unique_ptr<BodySink>>(&decision)) {
+      std::optional<HttpResponse> refusal = co_await ReadBody(parser, **sink);
+      if (!refusal) {
+        reply_ = std::make_shared<ReplyQueue>(Waker());
+        (*sink)->Done(reply_);
+        sink->reset();
+        co_return co_await Answer(version, head_only, keep && !draining_);
+      }
+      decision = *std::move(refusal);
+    }
+    unread_ = !parser.is_done();
+    keep = keep && !unread_ && !draining_;
+    co_return co_await Respond(std::get<HttpResponse>(decision), head_only, version, keep);
+  }
+
+  // What a head that cannot be read is answered; nothing if nobody waits for an answer.
+  std::optional<HttpResponse> HeadFault(boost::system::error_code error) const {
+    if (error == http::error::header_limit || error == http::error::buffer_overflow) {
+      return Problem(431, "the head of the request is too long");
+    }
+    if (timed_out_ && buffer_.size() > 0) {
+      return Problem(408, "the head of the request did not come in time");
+    }
+    if (error == http::error::end_of_stream || error.category() != HttpCategory()) {
+      return std::nullopt;
+    }
+    return Problem(400, "the request is no HTTP/1.1: " + error.message());
+  }
+
+  static const boost::system::error_category& HttpCategory() {
+    static const boost::system::error_category& category =
+        http::make_error_code(http::error::bad_method).category();
+    return category;
+  }
+
+  HttpDecision Decide(Parser& parser) {
+    HttpRequest request;
+    const auto& head = parser.get();
+    const auto text = [](beast::string_view view) { return std::string(view.data(), view.size()); };
+    absl::StatusOr<Target> target = ParseTarget(text(head.target()));
+    if (!target.ok()) return Problem(400, std::string(target.status().message()));
+    request.method = text(head.method_string());
+    request.path = std::move(target->path);
+    request.query = std::move(target->query);
+    for (const auto& field : head) {
+      std::string name = text(field.name_string());
+      std::transform(name.begin(), name.end(), name.begin(),
+                     [](unsigned char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
+      request.headers.emplace_back(std::move(name), text(field.value()));
+    }
+    if (const auto length = parser.content_length()) request.content_length = *length;
+    request.peer_host = peer_host_;
+    request.identities = identities_;
+    return handler_(request);
+  }
+
+  // Hands the body to `sink`. A response if it came to no good end.
+  net::awaitable<std::optional<HttpResponse>> ReadBody(Parser& parser, BodySink& sink) {
+    boost::system::error_code error;
+    const bool wait = parser.get()[http::field::expect] == "100-continue";
+    if (wait && !parser.is_done() && buffer_.size() == 0) {
+      static const std::string go_on = "HTTP/1.1 100 Continue\r\n\r\n";
+      co_await net::async_write(stream_, net::buffer(go_on),
+                                net::redirect_error(net::use_awaitable, error));
+    }
+    std::vector<char> piece(parser.is_done() ? 0 : kPiece);
+    const Clock::time_point began = Clock::now();
+    int64_t received = 0;
+    while (!error && !parser.is_done()) {
+      auto& body = parser.get().body();
+      body.data = piece.data();
+      body.size = piece.size();
+      SetTimer(TimeForBody(Clock::now() - began, received));
+      co_await http::async_read_some(stream_, buffer_, parser,
+                                     net::redirect_error(net::use_awaitable, error));
+      if (error == http::error::need_buffer) error = {};
+      const size_t got = piece.size() - body.size;
+      received += static_cast<int64_t>(got);
+      if (got == 0) continue;
+      std::optional<HttpResponse> refusal = sink.Take({piece.data(), got});
+      if (refusal) co_return refusal;
+    }
+    if (!error) co_return std::nullopt;
+    if (timed_out_) {
+      co_return Problem(
+          408, "the body came too slowly: " + std::to_string(received) + " bytes until now");
+    }
+    co_return Problem(400, "the body was cut short after " + std::to_string(received) + " bytes");
+  }
+
+  // How long the next piece of a body may take.
+  absl::Duration TimeForBody(Clock::duration elapsed, int64_t received) const {
+    const absl::Duration allowed =
+        limits_.idle_time +
+        absl::Seconds(static_cast<double>(received) /
+                      static_cast<double>(std::max<int64_t>(1, limits_.min_bytes_per_second)));
+    return std::max(absl::ZeroDuration(),
+                    std::min(limits_.idle_time, allowed - absl::FromChrono(elapsed)));
+  }
+
+  std::function<void()> Waker() {
+    return [loop = std::weak_ptr<net::io_context>(loop_), self = this->weak_from_this()] {
+      const auto alive = loop.lock();
+      if (alive == nullptr) return;
+      net::post(*alive, [self] {
+        if (const auto session = self.lock()) session->wake_.cancel();
+      });
+    };
+  }
+
+  // Waits until the handler has put something in. False if the client has gone.
+  net::awaitable<bool> WaitForReply() {
+    constexpr auto kLook = std::chrono::milliseconds(250);
+    ++timer_set_;  // a handler may take its time
+    wake_.expires_after(kLook);
+    boost::system::error_code error;
+    co_await wake_.async_wait(net::redirect_error(net::use_awaitable, error));
+    pollfd peer = {Lowest().socket().native_handle(), POLLRDHUP, 0};
+    const bool gone =
+        poll(&peer, 1, 0) > 0 && (peer.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0;
+    co_return !gone;
+  }
+
+  // The answer of the handler. Returns whether another request may come.
+  net::awaitable<bool> Answer(unsigned version, bool head_only, bool keep) {
+    const std::shared_ptr<ReplyQueue> reply = reply_;
+    std::optional<HttpResponse> head = reply->TakeHead();
+    while (!head) {
+      if (!co_await WaitForReply()) co_return false;
+      head = reply->TakeHead();
+    }
+    if (!reply->streaming()) co_return co_await Respond(*head, head_only, version, keep);
+    const bool chunked = version >= 11;
+    if (!co_await WriteHead(*head, version, keep && chunked, std::nullopt)) co_return false;
+    while (!reply->ended()) {
+      std::optional<HttpBody> piece = reply->TakePiece();
+      if (!piece) {
+        if (!co_await WaitForReply()) co_return false;
+        continue;
+      }
+      if (!co_await WriteBody(*piece, chunked)) co_return false;
+    }
+    static const std::string last = "0\r\n\r\n";
+    if (chunked && !co_await WriteText(last)) co_return false;
+    co_return keep&& chunked;
+  }
+
+  // Writes a whole response.
+  net::awaitable<bool> Respond(const HttpResponse& response, bool head_only, unsigned version,
+                               bool keep) {
+    const std::string* text = std::get_if<std::string>(&response.body);
+    const uint64_t size = text != nullptr
+                              ? text->size()
+                              : std::get<std::shared_ptr<const SpoolFile>>(response.body)->size();
+    if (!co_await WriteHead(response, version, keep, size)) co_return false;
+    if (!head_only && !co_await WriteBody(response.body, false)) co_return false;
+    co_return keep;
+  }
+
+  // `size` of the body; without it it comes in chunks, or until the connection ends.
+  net::awaitable<bool> WriteHead(const HttpResponse& response, unsigned version, bool keep,
+                                 std::optional<uint64_t> size) {
+    http::response<http::empty_body> head;
+    head.version(version);
+    head.result(static_cast<unsigned>(response.status));
+    head.reason(ReasonOf(response.status));
+    if (!response.content_type.empty()) {
+      head.set(http::field::content_type, response.content_type);
+    }
+    for (const auto& [name, value] : response.headers) head.set(name, value);
+    head.set("X-Content-Type-Options", "nosniff");
+    head.keep_alive(keep);
+    if (size) {
+      if (response.status != 204) head.content_length(*size);
+    } else {
+      head.chunked(version >= 11);
+    }
+    http::response_serializer<http::empty_body> serializer(head);
+    SetTimer(limits_.idle_time);
+    boost::system::error_code error;
+    co_await http::async_write_header(stream_, serializer,
+                                      net::redirect_error(net::use_awaitable, error));
+    co_return !error;
+  }
+
+  net::awaitable<bool> WriteBody(const HttpBody& body, bool chunked) {
+    if (const std::string* text = std::get_if<std::string>(&body)) {
+      for (size_t at = 0; at < text->size(); at += kPiece) {
+        const size_t size = std::min(kPiece, text->size() - at);
+        if (!co_await WritePiece(text->data() + at, size, chunked)) co_return false;
+      }
+      co_return true;
+    }
+    const auto& file = std::get<std::shared_ptr<const SpoolFile>>(body);
+    std::vector<char> piece(std::min<uint64_t>(kPiece, file->size()));
+    for (uint64_t at = 0; at < file->size();) {
+      const absl::StatusOr<size_t> got = file->ReadAt(at, piece.data(), piece.size());
+      if (!got.ok() || *got == 0) co_return false;
+      if (!co_await WritePiece(piece.data(), *got, chunked)) co_return false;
+      at += *got;
+    }
+    co_return true;
+  }
+
+  net::awaitable<bool> WritePiece(const char* data, size_t size, bool chunked) {
+    SetTimer(limits_.idle_time);
+    boost::system::error_code error;
+    if (chunked) {
+      co_await net::async_write(stream_, http::make_chunk(net::const_buffer(data, size)),
+                                net::redirect_error(net::use_awaitable, error));
+    } else {
+      co_await net::async_write(stream_, net::const_buffer(data, size),
+                                net::redirect_error(net::use_awaitable, error));
+    }
+    co_return !error;
+  }
+
+  net::awaitable<bool> WriteText(const std::string& text) {
+    SetTimer(limits_.idle_time);
+    boost::system::error_code error;
+    co_await net::async_write(stream_, net::buffer(text),
+                              net::redirect_error(net::use_awaitable, error));
+    co_return !error;
+  }
+
+  // A client that is still sending would lose the answer with the connection: reads on for a while.
+  net::awaitable<void> Linger() {
+    constexpr absl::Duration kPatience = absl::Seconds(3);
+    boost::system::error_code error;
+    if constexpr (!std::is_same_v<Stream, TlsStream>) {
+      Lowest().socket().shutdown(net::ip::tcp::socket::shutdown_send, error);
+    }
+    std::vector<char> scrap(kPiece);
+    SetTimer(kPatience);
+    while (!error) {
+      co_await Lowest().socket().async_read_some(net::buffer(scrap),
+                                                 net::redirect_error(net::use_awaitable, error));
+    }
+  }
+
+  const std::shared_ptr<net::io_context> loop_;
+  const std::shared_ptr<TlsContext::Context> context_;
+  Stream stream_;
+  const HttpLimits& limits_;
+  const HttpHandler& handler_;
+  const std::string peer_host_;
+  std::vector<std::string> identities_;
+  beast::flat_buffer buffer_{size_t{2} * kPiece};
+  net::steady_timer timer_;
+  uint64_t timer_set_ = 0;  // which setting of the timer counts
+  bool timed_out_ = false;
+  net::steady_timer wake_;
+  std::shared_ptr<ReplyQueue> reply_;  // of the request under way
+  bool idle_ = false;                  // waits for a request
+  bool unread_ = false;                // a part of a body is left
+  bool draining_ = false;
+};
+
+}  // namespace traverse::gateway
+
+#endif  // TRAVERSE_CLIENT_GATEWAY_HTTP_SESSION_H_

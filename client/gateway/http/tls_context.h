@@ -1,0 +1,43 @@
+// TLS for connections of HTTP: what the store of certificates has.
+
+#ifndef TRAVERSE_CLIENT_GATEWAY_HTTP_TLS_CONTEXT_H_
+#define TRAVERSE_CLIENT_GATEWAY_HTTP_TLS_CONTEXT_H_
+
+#include <openssl/ssl.h>
+
+#include <boost/asio/ssl/context.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "server/rpc/certificates.h"
+
+namespace traverse::gateway {
+
+// Not thread-safe.
+class TlsContext {
+ public:
+  using Context = boost::asio::ssl::context;
+
+  // Unavailable if OpenSSL does not take what `store` has.
+  static absl::StatusOr<std::unique_ptr<TlsContext>> Make(std::shared_ptr<CertificateStore> store);
+
+  // For the next connection: of what the store has then, if OpenSSL takes it.
+  std::shared_ptr<Context> Current();
+
+ private:
+  explicit TlsContext(std::shared_ptr<CertificateStore> store) : store_(std::move(store)) {}
+
+  const std::shared_ptr<CertificateStore> store_;
+  std::shared_ptr<const CertificateSet> set_;  // that context_ is made of
+  std::shared_ptr<Context> context_;
+};
+
+// The names in the verified certificate of a peer, as gRPC tells them: the alternative names, or
+// without any the common name. Empty without a certificate.
+std::vector<std::string> PeerIdentities(SSL* ssl);
+
+}  // namespace traverse::gateway
+
+#endif  // TRAVERSE_CLIENT_GATEWAY_HTTP_TLS_CONTEXT_H_

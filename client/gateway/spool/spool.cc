@@ -1,0 +1,113 @@
+#include "client/gateway/spool/spool.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_format.h"
+
+namespace traverse::gateway {
+namespace {
+
+absl::Status WriteFault(int error) {
+  if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
+    return absl::ResourceExhaustedError("the disk of the spool is full");
+  }
+  return absl::UnavailableError(
+      absl::StrFormat("the spool cannot be written: %s", std::strerror(error)));
+}
+
+}  // namespace
+
+SpoolFile::~SpoolFile() {
+  close(fd_);
+  spool_.used_ -= size_;
+}
+
+absl::Status SpoolFile::Append(std::string_view bytes) {
+  if (!spool_.Take(bytes.size())) {
+    return absl::ResourceExhaustedError(
+        absl::StrFormat("the spool is full: it holds %d MiB at most", spool_.max_bytes_ >> 20));
+  }
+  size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t put = write(fd_, bytes.data() + done, bytes.size() - done);
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) {
+      const int error = errno;
+      spool_.used_ -= bytes.size() - done;
+      size_ += done;
+      return WriteFault(error);
+    }
+    done += static_cast<size_t>(put);
+  }
+  size_ += done;
+  return absl::OkStatus();
+}
+
+absl::StatusOr<size_t> SpoolFile::ReadAt(uint64_t offset, char* out, size_t size) const {
+  size_t done = 0;
+  while (done < size) {
+    const ssize_t got = pread(fd_, out + done, size - done, static_cast<off_t>(offset + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) {
+      return absl::UnavailableError(
+          absl::StrFormat("the spool cannot be read: %s", std::strerror(errno)));
+    }
+    if (got == 0) break;
+    done += static_cast<size_t>(got);
+  }
+  return done;
+}
+
+absl::StatusOr<std::string> SpoolFile::ReadAll() const {
+  std::string bytes(size_, '\0');
+  absl::StatusOr<size_t> got = ReadAt(0, bytes.data(), bytes.size());
+  if (!got.ok()) return got.status();
+  if (*got != bytes.size()) return absl::DataLossError("the spool has lost a part of a file");
+  return bytes;
+}
+
+absl::StatusOr<std::unique_ptr<Spool>> Spool::Open(const std::string& folder, uint64_t max_bytes) {
+  std::unique_ptr<Spool> spool(new Spool(folder, max_bytes));
+  absl::StatusOr<int> file = spool->OpenNameless();
+  if (!file.ok()) return file.status();
+  close(*file);
+  return spool;
+}
+
+absl::StatusOr<std::shared_ptr<SpoolFile>> Spool::NewFile() {
+  absl::StatusOr<int> file = OpenNameless();
+  if (!file.ok()) return file.status();
+  return std::shared_ptr<SpoolFile>(new SpoolFile(*this, *file));
+}
+
+absl::StatusOr<int> Spool::OpenNameless() const {
+  int file = open(folder_.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (file >= 0) return file;
+  if (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL) {  // not on this file system
+    std::string name = folder_ + "/traverse-spool-XXXXXX";
+    file = mkostemp(name.data(), O_CLOEXEC);
+    if (file >= 0) {
+      unlink(name.c_str());
+      return file;
+    }
+  }
+  return absl::UnavailableError(absl::StrFormat("no file can be made in the spool folder %s: %s",
+                                                folder_, std::strerror(errno)));
+}
+
+bool Spool::Take(uint64_t bytes) {
+  uint64_t used = used_;
+  do {
+    if (bytes > max_bytes_ || used > max_bytes_ - bytes) return false;
+  } while (!used_.compare_exchange_weak(used, used + bytes));
+  return true;
+}
+
+}  // namespace traverse::gateway

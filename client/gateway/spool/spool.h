@@ -1,0 +1,79 @@
+// Uploads and answers on disk, so that memory does not grow with who is slow.
+//
+// A spooled file has no name (O_TMPFILE, or unlinked as soon as it is there): when it is closed, or
+// the process is killed, the system takes it back. All files of a spool together are bounded.
+
+#ifndef TRAVERSE_CLIENT_GATEWAY_SPOOL_SPOOL_H_
+#define TRAVERSE_CLIENT_GATEWAY_SPOOL_SPOOL_H_
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "absl/status/statusor.h"
+
+namespace traverse::gateway {
+
+class Spool;
+
+// One file. Not thread-safe for writing; once written it may be read by several threads.
+class SpoolFile {
+ public:
+  ~SpoolFile();
+  SpoolFile(const SpoolFile&) = delete;
+  SpoolFile& operator=(const SpoolFile&) = delete;
+
+  // Appends `bytes`. ResourceExhausted if the spool, or the disk below it, is full.
+  absl::Status Append(std::string_view bytes);
+
+  uint64_t size() const { return size_; }
+
+  // Reads up to `size` bytes from `offset` on; fewer at the end alone.
+  absl::StatusOr<size_t> ReadAt(uint64_t offset, char* out, size_t size) const;
+
+  // All of it.
+  absl::StatusOr<std::string> ReadAll() const;
+
+ private:
+  friend class Spool;
+  SpoolFile(Spool& spool, int fd) : spool_(spool), fd_(fd) {}
+
+  Spool& spool_;
+  const int fd_;
+  uint64_t size_ = 0;
+};
+
+// Thread-safe.
+class Spool {
+ public:
+  // Files in `folder`, `max_bytes` of them all together. Unavailable, with the folder's name, if
+  // files cannot be made there.
+  static absl::StatusOr<std::unique_ptr<Spool>> Open(const std::string& folder, uint64_t max_bytes);
+
+  // A new, empty file. The spool outlives it.
+  absl::StatusOr<std::shared_ptr<SpoolFile>> NewFile();
+
+  // Bytes in its files now.
+  uint64_t used_bytes() const { return used_; }
+  uint64_t max_bytes() const { return max_bytes_; }
+
+ private:
+  friend class SpoolFile;
+  Spool(std::string folder, uint64_t max_bytes)
+      : folder_(std::move(folder)), max_bytes_(max_bytes) {}
+
+  absl::StatusOr<int> OpenNameless() const;
+
+  // False if so many bytes more would be too many.
+  bool Take(uint64_t bytes);
+
+  const std::string folder_;
+  const uint64_t max_bytes_;
+  std::atomic<uint64_t> used_ = 0;
+};
+
+}  // namespace traverse::gateway
+
+#endif  // TRAVERSE_CLIENT_GATEWAY_SPOOL_SPOOL_H_

@@ -1,0 +1,130 @@
+#include "client/gateway/work/work_queue.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_format.h"
+
+namespace traverse::gateway {
+
+WorkQueue::Place::~Place() {
+  const std::lock_guard<std::mutex> lock(queue_.mutex_);
+  --queue_.requests_;
+  const auto of_caller = queue_.places_.find(caller_);
+  if (--of_caller->second == 0) queue_.places_.erase(of_caller);
+}
+
+WorkQueue::WorkQueue(const WorkLimits& limits) : limits_(limits) {
+  for (int i = 0; i < limits_.workers; ++i) workers_.emplace_back([this] { Work(); });
+}
+
+WorkQueue::~WorkQueue() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  for (std::thread& worker : workers_) worker.join();
+  // Places lock the mutex when they go.
+  std::map<std::string, std::deque<Task>> dropped;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    dropped = std::exchange(waiting_, {});
+  }
+}
+
+absl::StatusOr<std::shared_ptr<WorkQueue::Place>> WorkQueue::Enter(const std::string& caller) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (draining_) return absl::UnavailableError("the gateway is shutting down; ask another one");
+  if (requests_ >= limits_.max_requests) {
+    return absl::ResourceExhaustedError(
+        absl::StrFormat("%d requests are under way; come again later", requests_));
+  }
+  const auto of_caller = places_.find(caller);
+  if (of_caller != places_.end() && of_caller->second >= limits_.max_requests_per_caller) {
+    return absl::ResourceExhaustedError(
+        absl::StrFormat("%d requests of this caller are under way", of_caller->second));
+  }
+  ++requests_;
+  ++places_[caller];
+  return std::shared_ptr<Place>(new Place(*this, caller));
+}
+
+void WorkQueue::Submit(std::shared_ptr<Place> place, int64_t memory_bytes,
+                       std::function<void()> task) {
+  const std::string caller = place->caller();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++waiting_count_;
+    waiting_[caller].push_back({std::move(place), memory_bytes, std::move(task)});
+  }
+  changed_.notify_one();
+}
+
+void WorkQueue::StartDraining() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  draining_ = true;
+}
+
+bool WorkQueue::draining() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return draining_;
+}
+
+int WorkQueue::requests() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return requests_;
+}
+
+int WorkQueue::waiting() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return waiting_count_;
+}
+
+int WorkQueue::running() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return running_;
+}
+
+int64_t WorkQueue::memory_bytes() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return memory_bytes_;
+}
+
+// Strictly by turns, also where a small task would fit and the large one whose turn it is does not:
+// else it would never come.
+bool WorkQueue::TakeNext(Task& task) {
+  if (waiting_.empty()) return false;
+  auto next = waiting_.upper_bound(last_caller_);
+  if (next == waiting_.end()) next = waiting_.begin();
+  const int64_t bytes = next->second.front().memory_bytes;
+  if (running_ > 0 && memory_bytes_ + bytes > limits_.max_memory_bytes) return false;
+  task = std::move(next->second.front());
+  next->second.pop_front();
+  last_caller_ = next->first;
+  if (next->second.empty()) waiting_.erase(next);
+  --waiting_count_;
+  ++running_;
+  memory_bytes_ += bytes;
+  return true;
+}
+
+void WorkQueue::Work() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (true) {
+    Task task;
+    changed_.wait(lock, [&] { return stopping_ || TakeNext(task); });
+    if (task.run == nullptr) return;
+    lock.unlock();
+    task.run();
+    const int64_t bytes = task.memory_bytes;
+    task = {};
+    lock.lock();
+    --running_;
+    memory_bytes_ -= bytes;
+    changed_.notify_all();
+  }
+}
+
+}  // namespace traverse::gateway

@@ -1,0 +1,99 @@
+// Who is served when: a bounded number of requests, fair between callers, each with its memory.
+
+#ifndef TRAVERSE_CLIENT_GATEWAY_WORK_WORK_QUEUE_H_
+#define TRAVERSE_CLIENT_GATEWAY_WORK_WORK_QUEUE_H_
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "absl/status/statusor.h"
+
+namespace traverse::gateway {
+
+struct WorkLimits {
+  int workers = 2;                              // requests that are worked on at a time
+  int max_requests = 256;                       // from their heads on
+  int max_requests_per_caller = 64;             // the same of one caller
+  int64_t max_memory_bytes = int64_t{1} << 30;  // of those that are worked on
+};
+
+// Thread-safe.
+class WorkQueue {
+ public:
+  // A request's place: it counts from Enter on, until it is destroyed.
+  class Place {
+   public:
+    ~Place();
+    Place(const Place&) = delete;
+    Place& operator=(const Place&) = delete;
+
+    const std::string& caller() const { return caller_; }
+
+   private:
+    friend class WorkQueue;
+    Place(WorkQueue& queue, std::string caller) : queue_(queue), caller_(std::move(caller)) {}
+
+    WorkQueue& queue_;
+    const std::string caller_;
+  };
+
+  explicit WorkQueue(const WorkLimits& limits);
+
+  // Waits for tasks that run; those that wait are dropped.
+  ~WorkQueue();
+
+  // A place for a request of `caller`. ResourceExhausted if there is none; Unavailable when
+  // draining. The queue outlives it.
+  absl::StatusOr<std::shared_ptr<Place>> Enter(const std::string& caller);
+
+  // Runs `task` as soon as a worker is free and `memory_bytes` are, callers taking turns. A task
+  // that needs more than there is runs alone.
+  void Submit(std::shared_ptr<Place> place, int64_t memory_bytes, std::function<void()> task);
+
+  // No more places from now on.
+  void StartDraining();
+  bool draining() const;
+
+  int requests() const;          // places taken
+  int waiting() const;           // tasks that wait
+  int running() const;           // tasks under way
+  int64_t memory_bytes() const;  // of tasks under way
+
+ private:
+  struct Task {
+    std::shared_ptr<Place> place;
+    int64_t memory_bytes;
+    std::function<void()> run;
+  };
+
+  void Work();
+
+  // The next task that may run now: of the caller whose turn it is. False if there is none.
+  bool TakeNext(Task& task);  // REQUIRES: mutex_ is held
+
+  const WorkLimits limits_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::map<std::string, int> places_;  // by caller
+  int requests_ = 0;
+  std::map<std::string, std::deque<Task>> waiting_;  // by caller; none is empty
+  std::string last_caller_;                          // whose turn it was
+  int waiting_count_ = 0;
+  int running_ = 0;
+  int64_t memory_bytes_ = 0;
+  bool draining_ = false;
+  bool stopping_ = false;
+  std::vector<std::thread> workers_;
+};
+
+}  // namespace traverse::gateway
+
+#endif  // TRAVERSE_CLIENT_GATEWAY_WORK_WORK_QUEUE_H_

@@ -1,0 +1,313 @@
+#include "client/gcode/machine/interpreter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "client/gcode/text/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+bool IsWipeMark(std::string_view comment) {
+  return StartsWith(comment, ";WIPE_START") || StartsWith(comment, ";WIPE_END") ||
+         StartsWith(comment, "; WIPE_START") || StartsWith(comment, "; WIPE_END");
+}
+
+bool IsLayerMark(std::string_view comment) {
+  // Simplify3D: `; layer 3, Z = 0.990`
+  constexpr std::string_view kNumbered = "; layer ";
+  if (StartsWith(comment, kNumbered)) {
+    const std::string_view number = comment.substr(kNumbered.size());
+    return !number.empty() && number[0] >= '0' && number[0] <= '9';
+  }
+  static constexpr std::string_view kMarks[] = {"; CHANGE_LAYER", ";layer:", "; BEGIN_LAYER_OBJECT",
+                                                "; <layer>", ";; --- layer "};
+  for (const std::string_view mark : kMarks) {
+    if (StartsWith(comment, mark)) return true;
+  }
+  constexpr std::string_view kLayer = ";LAYER";
+  if (!StartsWith(comment, kLayer)) return false;
+  const std::string_view rest = comment.substr(kLayer.size());
+  return StartsWith(rest, "_CHANGE") || StartsWith(rest, ":") || StartsWith(rest, " ");
+}
+
+bool IsLabelComment(std::string_view comment) {
+  static constexpr std::string_view kPrefixes[] = {
+      ";MESH:",      ";PRINTING:",        ";PRINTING_ID:",          "; END_LAYER_OBJECT",
+      "; </layer>",  "; printing object", "; stop printing object", "; start printing object",
+      "; OBJECT_ID:"};
+  for (const std::string_view prefix : kPrefixes) {
+    if (StartsWith(comment, prefix)) return true;
+  }
+  return false;
+}
+
+StepKind KindOfComment(std::string_view comment, SlotMask& slots) {
+  slots = CommentSlots(comment);
+  if (slots != 0) return StepKind::kSlot;
+  if (IsWipeMark(comment)) return StepKind::kWipeMark;
+  if (IsLayerMark(comment)) return StepKind::kLayerMark;
+  return IsLabelComment(comment) ? StepKind::kLabel : StepKind::kComment;
+}
+
+StepKind KindOfText(std::string_view line, SlotMask& slots) {
+  slots = TextSlots(line);
+  if (slots != 0) return StepKind::kSlot;
+  if (StartsWith(line, "EXCLUDE_OBJECT_START") || StartsWith(line, "EXCLUDE_OBJECT_END")) {
+    return StepKind::kLabel;
+  }
+  return StepKind::kUnknown;
+}
+
+// 30 m, or half a mile of inches: no printer, and beyond what the service takes.
+bool Beyond(Decimal coordinate) {
+  constexpr Decimal kMax = 30'000 * kDecimalOne;
+  return coordinate > kMax || coordinate < -kMax;
+}
+
+// A kilometre at once; sums stay far from where they would overflow.
+bool BeyondFilament(Decimal filament) {
+  constexpr Decimal kMax = 1'000'000 * kDecimalOne;
+  return filament > kMax || filament < -kMax;
+}
+
+// A push that leaves less than one part in so many of what was pulled back has primed the nozzle.
+constexpr Decimal kPrimeShare = 30;
+
+// Longer moves with an E word that pushes nothing are travel (KISSlicer, Bambu Studio); shorter
+// ones are printed, and their filament was rounded away.
+constexpr double kMaxRoundedMm = 0.05;
+
+bool IsRounded(const Position& from, const Position& to, double unit_mm) {
+  return std::hypot(ToDouble(to.x - from.x), ToDouble(to.y - from.y)) * unit_mm <= kMaxRoundedMm;
+}
+
+}  // namespace
+
+bool Interpreter::Next(Step& step) {
+  if (next_ >= text_.size()) return false;
+  step.line = LineAt(text_, next_);
+  next_ = step.line.next;
+  step.from = state_.at;
+  step.retracted = state_.Retracted();
+  step.pulled = state_.retracted;
+  step.filament = 0;
+  step.slots = 0;
+  step.arc = false;
+  step.fault = nullptr;
+  const std::string_view line = step.line.Text(text_);
+  LexLine(line, step.command);
+  switch (step.command.kind) {
+    case LineKind::kBlank:
+      step.kind = StepKind::kBlank;
+      break;
+    case LineKind::kComment:
+      step.kind = KindOfComment(step.command.comment, step.slots);
+      break;
+    case LineKind::kText:
+      step.kind = KindOfText(TrimBlanks(line), step.slots);
+      break;
+    case LineKind::kCommand:
+      FollowCommand(step);
+      break;
+  }
+  return true;
+}
+
+void Interpreter::FollowCommand(Step& step) {
+  if (step.command.letter == 'G') {
+    FollowG(step);
+  } else if (step.command.letter == 'M') {
+    FollowM(step);
+  } else {
+    // What the next tool, or filament, has in its nozzle is not known.
+    if (state_.tool != step.command.number) state_.retracted = state_.deepest = 0;
+    state_.tool = step.command.number;
+    step.kind = StepKind::kModeChange;
+  }
+}
+
+void Interpreter::FollowG(Step& step) {
+  switch (step.command.number) {
+    case 0:
+    case 1:
+      return Move(step);
+    case 2:
+    case 3:
+      return Arc(step);
+    case 10:
+    case 11: {
+      // With words G10 is something else: temperatures in RepRapFirmware, offsets elsewhere.
+      const bool bare = TrimBlanks(step.command.rest).empty();
+      const bool retract = step.command.number == 10;
+      if (bare) state_.firmware_retracted = retract;
+      step.kind = !bare     ? StepKind::kUnknown
+                  : retract ? StepKind::kFirmwareRetract
+                            : StepKind::kFirmwareUnretract;
+      return;
+    }
+    case 17:
+    case 18:
+    case 19:
+      // Slicers write G17 before each spiral lift; where it changes nothing it is part of that.
+      step.kind = SwitchMode(state_.plane_xy, step.command.number == 17);
+      if (step.kind == StepKind::kStay) step.kind = StepKind::kPlane;
+      return;
+    case 20:
+    case 21:
+      step.kind = SwitchMode(state_.inches, step.command.number == 20);
+      return;
+    case 90:
+    case 91:
+      step.kind = SwitchMode(state_.relative_xyz, step.command.number == 91);
+      return;
+    case 92:
+      return SetPosition(step);
+    default:
+      step.kind = StepKind::kUnknown;
+  }
+}
+
+StepKind Interpreter::SwitchMode(bool& mode, bool value) {
+  const bool changed = mode != value;
+  mode = value;
+  return changed ? StepKind::kModeChange : StepKind::kStay;
+}
+
+void Interpreter::FollowM(Step& step) {
+  switch (step.command.number) {
+    case 73:
+      step.kind = StepKind::kProgress;
+      return;
+    case 82:
+    case 83:
+      step.kind = SwitchMode(state_.relative_e, step.command.number == 83);
+      return;
+    case 74:  // mass of what is printed so far
+    case 104:
+    case 105:
+    case 117:
+    case 118:
+    case 140:
+    case 142:  // temperature of the heat break
+    case 155:
+    case 591:  // watch over the filament
+      step.kind = StepKind::kStay;
+      return;
+    case 486:
+    case 624:
+    case 625:
+      step.kind = StepKind::kLabel;
+      return;
+    default:
+      step.slots = CommandSlots(step.command);
+      step.kind = step.slots != 0 ? StepKind::kSlot : StepKind::kUnknown;
+  }
+}
+
+void Interpreter::FollowFilament(Decimal filament, bool still) {
+  if (filament < 0) state_.deepest = std::max(state_.deepest, state_.retracted - filament);
+  state_.retracted -= filament;
+  // Simplify3D and others push a little less than they pulled back where they coast before.
+  if (still && filament > 0 && state_.retracted * kPrimeShare <= state_.deepest) {
+    state_.retracted = 0;
+  }
+  if (state_.retracted <= 0) state_.deepest = 0;
+  // A prime may push more than was pulled back (restart extra); printing pushes always.
+  // Whatever was pulled back beyond reason only stays "retracted".
+  state_.retracted = std::clamp(state_.retracted, Decimal{0}, kDecimalMax);
+}
+
+void Interpreter::Move(Step& step) {
+  const Command& c = step.command;
+  constexpr uint32_t kKnown = Command::Bit('X') | Command::Bit('Y') | Command::Bit('Z') |
+                              Command::Bit('E') | Command::Bit('F') | Command::Bit('I') |
+                              Command::Bit('J') | Command::Bit('R') | Command::Bit('P');
+  if ((c.words & ~kKnown) != 0) {
+    step.kind = StepKind::kUnknown;
+    return;
+  }
+  if (c.Has('F')) state_.feed = c.Value('F');
+  Position to = state_.at;
+  const auto follow = [&c, this](char letter, Decimal& axis) {
+    if (c.Has(letter)) axis = state_.relative_xyz ? axis + c.Value(letter) : c.Value(letter);
+  };
+  follow('X', to.x);
+  follow('Y', to.y);
+  follow('Z', to.z);
+  if (Beyond(to.x) || Beyond(to.y) || Beyond(to.z)) {
+    step.kind = StepKind::kUnknown;
+    return;
+  }
+  if (c.Has('E')) {
+    const Decimal filament = state_.RelativeE() ? c.Value('E') : c.Value('E') - state_.e;
+    if (BeyondFilament(filament) || BeyondFilament((state_.e + filament) / 1000)) {
+      step.kind = StepKind::kUnknown;
+      return;
+    }
+    step.filament = filament;
+    state_.e += filament;
+  }
+  const bool xy = !to.SameXy(step.from);
+  const bool z = to.z != step.from.z;
+  if (xy || step.arc) {
+    step.kind = !c.Has('E')                                              ? StepKind::kTravel
+                : step.filament > 0                                      ? StepKind::kExtrude
+                : step.filament < 0                                      ? StepKind::kWipe
+                : !step.arc && IsRounded(step.from, to, state_.UnitMm()) ? StepKind::kZeroExtrude
+                                                                         : StepKind::kTravel;
+  } else if (z) {
+    step.kind = step.filament == 0 ? StepKind::kLift : StepKind::kUnknown;
+  } else {
+    step.kind = step.filament != 0 ? StepKind::kFilament : StepKind::kFeed;
+  }
+  FollowFilament(step.filament, !xy);
+  state_.at = to;
+  if (state_.relative_xyz) step.kind = StepKind::kUnknown;  // only slicers' own macros do this
+}
+
+void Interpreter::Arc(Step& step) {
+  const Command& c = step.command;
+  if (!state_.plane_xy) {
+    Move(step);
+    step.kind = StepKind::kUnknown;
+    return;
+  }
+  if (!c.Has('I') && !c.Has('J') && !c.Has('R')) {
+    step.fault = step.command.number == 2 ? "G2 without I, J or R" : "G3 without I, J or R";
+    step.kind = StepKind::kUnknown;
+    return;
+  }
+  step.arc = true;
+  Move(step);
+  if (step.kind == StepKind::kUnknown) return;
+  const bool full_circle = state_.at.SameXy(step.from);
+  if (full_circle && step.filament == 0) {
+    step.kind = state_.at.z != step.from.z ? StepKind::kLift : StepKind::kUnknown;
+  }
+}
+
+void Interpreter::SetPosition(Step& step) {
+  const Command& c = step.command;
+  if (c.words == Command::Bit('E')) {
+    state_.e = c.Value('E');
+    step.kind = StepKind::kSetE;
+    return;
+  }
+  if (c.Has('X')) state_.at.x = c.Value('X');
+  if (c.Has('Y')) state_.at.y = c.Value('Y');
+  if (c.Has('Z')) state_.at.z = c.Value('Z');
+  if (c.Has('E')) state_.e = c.Value('E');
+  step.kind = StepKind::kModeChange;
+}
+
+std::string_view LabelledObject(std::string_view line) {
+  line = TrimBlanks(line);
+  if (StartsWith(line, "; END_LAYER_OBJECT") || StartsWith(line, "; </layer>")) return {};
+  if (StartsWith(line, ";PRINTING_ID: -1") || StartsWith(line, ";PRINTING: NON-OBJECT")) return {};
+  if (StartsWith(line, "; stop") || StartsWith(line, "EXCLUDE_OBJECT_END")) return {};
+  if (StartsWith(line, "M486 S-1") || StartsWith(line, "M625")) return {};
+  return line;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,139 @@
+#include "client/gcode/machine/machine_profile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "client/gcode/text/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+// Configurations are some 20 KiB; OrcaSlicer's with its embedded scripts 100 KiB.
+constexpr size_t kScanBytes = size_t{256} << 10;
+
+using Setting = std::function<void(std::string_view key, std::string_view value)>;
+
+void ForEachSetting(std::string_view part, const Setting& setting) {
+  for (size_t begin = 0; begin < part.size();) {
+    const size_t end = std::min(part.find('\n', begin), part.size());
+    const std::string_view line = part.substr(begin, end - begin);
+    begin = end + 1;
+    if (line.size() < 2 || line[0] != ';') continue;
+    const size_t equals = line.find(" = ");
+    if (equals == std::string_view::npos) continue;
+    setting(TrimBlanks(line.substr(1, equals - 1)), TrimBlanks(line.substr(equals + 3)));
+  }
+}
+
+// The first of the numbers in `9000,1000` or `1.5;2`; nothing if it is none, or not finite.
+std::optional<double> FirstNumber(std::string_view value) {
+  const char* p = value.data();
+  const std::optional<Decimal> number = ParseDecimal(&p, value.data() + value.size());
+  if (!number) return std::nullopt;
+  return ToDouble(*number);
+}
+
+void SetPositive(double& field, std::optional<double> value) {
+  if (value && *value > 0) field = *value;
+}
+
+void Apply(std::string_view key, std::string_view value, MachineProfile& profile) {
+  const std::optional<double> number = FirstNumber(value);
+  if (key == "machine_max_acceleration_extruding") {
+    SetPositive(profile.print_accel, number);
+  } else if (key == "machine_max_acceleration_travel") {
+    SetPositive(profile.travel_accel, number);
+  } else if (key == "machine_max_acceleration_retracting") {
+    SetPositive(profile.retract_accel, number);
+  } else if (key == "machine_max_acceleration_z") {
+    SetPositive(profile.z_accel, number);
+  } else if (key == "machine_max_feedrate_z" || key == "machine_max_speed_z") {
+    SetPositive(profile.max_z_speed, number);
+  } else if (key == "machine_max_feedrate_e" || key == "machine_max_speed_e") {
+    SetPositive(profile.max_e_speed, number);
+  } else if (key == "retract_length" || key == "retraction_length") {
+    SetPositive(profile.firmware_retract_length, number);
+  } else if (key == "retract_speed" || key == "retraction_speed") {
+    SetPositive(profile.firmware_retract_speed, number);
+  } else if (key == "retract_before_travel" || key == "retraction_minimum_travel") {
+    profile.retract_before_travel = number;
+  } else if (key == "only_retract_when_crossing_perimeters" || key == "reduce_infill_retraction") {
+    profile.only_retract_when_crossing = value == "1";
+  } else if (key == "avoid_crossing_perimeters" || key == "reduce_crossing_wall") {
+    profile.avoid_crossing = value == "1";
+  } else if (key == "top_fill_pattern" || key == "top_surface_pattern") {
+    profile.top_fill_pattern = std::string(value);
+  } else if (key == "bottom_fill_pattern" || key == "bottom_surface_pattern") {
+    profile.monotonic_bottom = StartsWith(value, "monotonic");
+  } else if (key == "nozzle_diameter") {
+    profile.nozzle_diameter = number;
+  } else if (key == "filament_diameter") {
+    SetPositive(profile.filament_diameter, number);
+  }
+}
+
+// The number behind `name` in a Klipper command.
+std::optional<double> Parameter(std::string_view line, std::string_view name) {
+  const size_t at = line.find(name);
+  if (at == std::string_view::npos) return std::nullopt;
+  return FirstNumber(line.substr(at + name.size()));
+}
+
+}  // namespace
+
+MachineProfile ReadProfile(std::string_view text) {
+  MachineProfile profile;
+  const Setting apply = [&profile](std::string_view key, std::string_view value) {
+    Apply(key, value, profile);
+  };
+  ForEachSetting(text.substr(0, kScanBytes), apply);
+  if (text.size() > kScanBytes) {
+    ForEachSetting(text.substr(std::max(kScanBytes, text.size() - kScanBytes)), apply);
+  }
+  return profile;
+}
+
+Dynamics::Dynamics(const MachineProfile& profile)
+    : print_accel_(profile.print_accel),
+      travel_accel_(profile.travel_accel),
+      corner_speed_(profile.corner_speed) {}
+
+void Dynamics::Follow(std::string_view line) {
+  Command command;
+  LexLine(line, command);
+  if (command.kind == LineKind::kText) return FollowKlipper(line);
+  if (command.kind != LineKind::kCommand || command.letter != 'M' || !ReadWords(command)) return;
+  const auto value = [&command](char letter) -> std::optional<double> {
+    if (!command.Has(letter)) return std::nullopt;
+    return ToDouble(command.Value(letter));
+  };
+  if (command.number == 204) {
+    SetPositive(print_accel_, value('S'));
+    SetPositive(travel_accel_, value('S'));
+    SetPositive(print_accel_, value('P'));
+    SetPositive(travel_accel_, value('T'));
+  } else if (command.number == 201) {
+    SetPositive(max_accel_, value('X'));
+  } else if (command.number == 205) {
+    SetPositive(corner_speed_, value('X'));
+  }
+}
+
+void Dynamics::FollowKlipper(std::string_view line) {
+  SetPositive(print_accel_, Parameter(line, " ACCEL="));
+  SetPositive(travel_accel_, Parameter(line, " ACCEL="));
+  SetPositive(corner_speed_, Parameter(line, " SQUARE_CORNER_VELOCITY="));
+}
+
+Dynamics DynamicsOf(const MachineProfile& profile, const PrintState& state,
+                    const SetterTable& setters) {
+  Dynamics dynamics(profile);
+  for (size_t slot = 0; slot < kSlotCount; ++slot) {
+    if (((kDynamicsSlots >> slot) & 1u) == 0 || state[slot] == 0) continue;
+    dynamics.Follow(setters.Line(state[slot]));
+  }
+  return dynamics;
+}
+
+}  // namespace traverse::gcode

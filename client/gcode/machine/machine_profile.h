@@ -1,0 +1,71 @@
+// What a file says of the machine and of the slicer's settings, beside what its moves show.
+
+#ifndef TRAVERSE_CLIENT_GCODE_MACHINE_MACHINE_PROFILE_H_
+#define TRAVERSE_CLIENT_GCODE_MACHINE_MACHINE_PROFILE_H_
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "client/gcode/machine/interpreter.h"
+
+namespace traverse::gcode {
+
+// Lengths in mm, speeds in mm/s, accelerations in mm/s^2.
+struct MachineProfile {
+  // Limits and defaults where the file is silent.
+  double print_accel = 1250;
+  double travel_accel = 1250;
+  double retract_accel = 1250;
+  double z_accel = 1250;
+  double max_z_speed = 1e9;
+  double max_e_speed = 1e9;
+  double corner_speed = 5;
+
+  // G10 and G11 do not say how far and how fast.
+  double firmware_retract_length = 1;
+  double firmware_retract_speed = 40;
+
+  // The slicer's own rules, where its configuration is in the file.
+  std::optional<double> retract_before_travel;
+  std::optional<bool> only_retract_when_crossing;
+  std::optional<bool> avoid_crossing;
+  std::optional<std::string> top_fill_pattern;
+  bool monotonic_bottom = false;  // lines of bottom surfaces are printed in their order
+  std::optional<double> nozzle_diameter;
+  double filament_diameter = 1.75;
+};
+
+// Reads the lines `; key = value` at the head and at the end of a sliced file (PrusaSlicer,
+// SuperSlicer, OrcaSlicer and Slic3r write their whole configuration there).
+MachineProfile ReadProfile(std::string_view text);
+
+// Accelerations and corner speed in force, as setters change them.
+class Dynamics {
+ public:
+  explicit Dynamics(const MachineProfile& profile);
+
+  // Follows the setter `line`.
+  void Follow(std::string_view line);
+
+  double print_accel() const { return Limited(print_accel_); }
+  double travel_accel() const { return Limited(travel_accel_); }
+  double corner_speed() const { return corner_speed_; }
+
+ private:
+  double Limited(double accel) const { return accel < max_accel_ ? accel : max_accel_; }
+  void FollowKlipper(std::string_view line);
+
+  double print_accel_;
+  double travel_accel_;
+  double max_accel_ = 1e9;
+  double corner_speed_;
+};
+
+// Those in force in `state`.
+Dynamics DynamicsOf(const MachineProfile& profile, const PrintState& state,
+                    const SetterTable& setters);
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_MACHINE_MACHINE_PROFILE_H_

@@ -1,0 +1,182 @@
+#include "client/gcode/machine/print_state.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "client/gcode/text/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+// The words of `command` must all be among `allowed`; then the slots of those that are there.
+struct WordSlots {
+  char letter;
+  SlotMask slots;
+};
+
+template <size_t n>
+SlotMask SlotsOfWords(Command& command, const WordSlots (&known)[n]) {
+  if (!ReadWords(command)) return 0;
+  uint32_t left = command.words;
+  SlotMask slots = 0;
+  for (const WordSlots& word : known) {
+    if (!command.Has(word.letter)) continue;
+    slots |= word.slots;
+    left &= ~Command::Bit(word.letter);
+  }
+  return left == 0 ? slots : 0;
+}
+
+SlotMask FanSlots(Command& command) {
+  if (!ReadWords(command)) return 0;
+  const uint32_t others = command.words & ~(Command::Bit('S') | Command::Bit('P'));
+  if (others != 0) return 0;
+  const Decimal fan = command.Has('P') ? command.Value('P') / kDecimalOne : 0;
+  if (fan < 0 || fan > 3) return 0;
+  return SlotBit(static_cast<Slot>(kSlotFan + fan));
+}
+
+SlotMask OnlyWord(Command& command, char letter, Slot slot) {
+  if (!ReadWords(command) || command.words != Command::Bit(letter)) return 0;
+  return SlotBit(slot);
+}
+
+// Simplify3D and FlashPrint name features in comments of their own.
+bool IsBareType(std::string_view comment) {
+  static constexpr std::string_view kNames[] = {"outer perimeter",
+                                                "inner perimeter",
+                                                "single extrusion",
+                                                "gap fill",
+                                                "infill",
+                                                "solid layer",
+                                                "support",
+                                                "dense support",
+                                                "raft",
+                                                "skirt",
+                                                "bridge",
+                                                "prime pillar",
+                                                "ooze shield",
+                                                "outer shell",
+                                                "inner shell",
+                                                "internal shell",
+                                                "shell"};
+  constexpr std::string_view kFeatureMark = "feature ";
+  const std::string_view name = TrimBlanks(comment.substr(1));
+  if (StartsWith(name, kFeatureMark)) return true;
+  return std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
+}
+
+// KISSlicer: `; 'Loop Path', 0.2 [feed mm/s], 5.2 [head mm/s]`; ways between paths have such lines
+// as well.
+bool IsQuotedType(std::string_view comment) {
+  if (!StartsWith(comment, "; '") || comment.find(" Path',") == std::string_view::npos)
+    return false;
+  return !StartsWith(comment, "; 'Travel") && !StartsWith(comment, "; 'Destring") &&
+         !StartsWith(comment, "; 'Wipe");
+}
+
+}  // namespace
+
+SlotMask CommentSlots(std::string_view comment) {
+  struct Prefix {
+    std::string_view text;
+    Slot slot;
+  };
+  static constexpr Prefix kPrefixes[] = {
+      {";TYPE:", kSlotType},     {";WIDTH:", kSlotWidth},       {";HEIGHT:", kSlotHeight},
+      {"; FEATURE:", kSlotType}, {"; LINE_WIDTH:", kSlotWidth}, {"; LAYER_HEIGHT:", kSlotHeight},
+  };
+  for (const Prefix& prefix : kPrefixes) {
+    if (StartsWith(comment, prefix.text)) return SlotBit(prefix.slot);
+  }
+  if (IsBareType(comment) || IsQuotedType(comment)) return SlotBit(kSlotType);
+  // Simplify3D: `; tool H0.300 W0.480`
+  if (StartsWith(comment, "; tool H")) return SlotBit(kSlotWidth) | SlotBit(kSlotHeight);
+  return 0;
+}
+
+SlotMask CommandSlots(Command& command) {
+  if (command.letter != 'M') return 0;
+  switch (command.number) {
+    case 106:
+    case 107:
+      return FanSlots(command);
+    case 201:
+      return SlotsOfWords(command,
+                          {{'X', SlotBit(kSlotMaxAccelX)}, {'Y', SlotBit(kSlotMaxAccelY)}});
+    case 202:
+      return SlotsOfWords(command,
+                          {{'X', SlotBit(kSlotMaxTravelX)}, {'Y', SlotBit(kSlotMaxTravelY)}});
+    case 204:
+      return SlotsOfWords(command, {{'S', SlotBit(kSlotPrintAccel) | SlotBit(kSlotTravelAccel)},
+                                    {'P', SlotBit(kSlotPrintAccel)},
+                                    {'T', SlotBit(kSlotTravelAccel)},
+                                    {'R', SlotBit(kSlotRetractAccel)}});
+    case 205:
+      return SlotsOfWords(command, {{'X', SlotBit(kSlotJerkX)}, {'Y', SlotBit(kSlotJerkY)}});
+    case 221:
+      return OnlyWord(command, 'S', kSlotFlow);
+    case 572:
+      return SlotsOfWords(command, {{'S', SlotBit(kSlotPressure)}, {'D', 0}});
+    case 900:
+      return OnlyWord(command, 'K', kSlotPressure);
+    default:
+      return 0;
+  }
+}
+
+SlotMask TextSlots(std::string_view line) {
+  if (StartsWith(line, "SET_PRESSURE_ADVANCE ")) return SlotBit(kSlotPressure);
+  constexpr std::string_view kLimit = "SET_VELOCITY_LIMIT ";
+  if (!StartsWith(line, kLimit)) return 0;
+  SlotMask slots = 0;
+  std::string_view rest = line.substr(kLimit.size());
+  while (!(rest = TrimBlanks(rest)).empty() && rest[0] != ';') {
+    const size_t blank = rest.find_first_of(" \t");
+    const std::string_view parameter = rest.substr(0, blank);
+    rest = blank == std::string_view::npos ? std::string_view{} : rest.substr(blank);
+    if (StartsWith(parameter, "ACCEL=")) {
+      slots |= SlotBit(kSlotKlipperAccel);
+    } else if (StartsWith(parameter, "ACCEL_TO_DECEL=")) {
+      slots |= SlotBit(kSlotKlipperDecel);
+    } else if (StartsWith(parameter, "SQUARE_CORNER_VELOCITY=")) {
+      slots |= SlotBit(kSlotKlipperCorner);
+    } else if (StartsWith(parameter, "VELOCITY=")) {
+      slots |= SlotBit(kSlotKlipperSpeed);
+    } else {
+      return 0;
+    }
+  }
+  return slots;
+}
+
+uint32_t SetterTable::Intern(std::string_view line, SlotMask slots) {
+  const auto found = index_.find(line);
+  if (found != index_.end()) return found->second;
+  const auto id = static_cast<uint32_t>(setters_.size());
+  setters_.push_back(Setter{std::string(line), slots});
+  index_.emplace(setters_.back().line, id);
+  return id;
+}
+
+uint32_t StateTable::Intern(const PrintState& state) {
+  const auto [found, inserted] = index_.try_emplace(state, static_cast<uint32_t>(states_.size()));
+  if (inserted) states_.push_back(state);
+  return found->second;
+}
+
+std::vector<uint32_t> SettersBetween(PrintState& from, const PrintState& to, SlotMask mask,
+                                     const SetterTable& setters) {
+  std::vector<uint32_t> lines;
+  // A setter of several slots may undo what another one did; the second pass puts that right.
+  for (int pass = 0; pass < 2; ++pass) {
+    for (size_t slot = 0; slot < kSlotCount; ++slot) {
+      if (((mask >> slot) & 1u) == 0 || from[slot] == to[slot] || to[slot] == 0) continue;
+      lines.push_back(to[slot]);
+      ApplySetter(from, to[slot], setters.Slots(to[slot]));
+    }
+  }
+  return lines;
+}
+
+}  // namespace traverse::gcode

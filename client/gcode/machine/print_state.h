@@ -1,0 +1,124 @@
+// What holds while something is printed, beside where and how fast: feature, width, fan,
+// acceleration.
+//
+// A slicer sets these by lines such as `;TYPE:Perimeter`, `;WIDTH:0.45`, `M106 S204`, `M204 P800`.
+// Each such line is a setter: it gives one or several slots a value. The value of a slot is the
+// setter itself, so that a writer can restore it by writing that line again, without knowing what
+// it means.
+
+#ifndef TRAVERSE_CLIENT_GCODE_MACHINE_PRINT_STATE_H_
+#define TRAVERSE_CLIENT_GCODE_MACHINE_PRINT_STATE_H_
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/container/flat_hash_map.h"
+#include "client/gcode/text/lexer.h"
+
+namespace traverse::gcode {
+
+enum Slot : uint8_t {
+  kSlotType,    // ;TYPE:, ; FEATURE:
+  kSlotWidth,   // ;WIDTH:, ; LINE_WIDTH:
+  kSlotHeight,  // ;HEIGHT:, ; LAYER_HEIGHT:
+  kSlotFan,     // M106, M107 of the part cooling fan
+  kSlotFan1,    // M106 P1, and so on
+  kSlotFan2,
+  kSlotFan3,
+  kSlotPrintAccel,     // M204 P, S
+  kSlotTravelAccel,    // M204 T, S
+  kSlotRetractAccel,   // M204 R
+  kSlotJerkX,          // M205 X
+  kSlotJerkY,          // M205 Y
+  kSlotMaxAccelX,      // M201 X
+  kSlotMaxAccelY,      // M201 Y
+  kSlotMaxTravelX,     // M202 X, of Repetier
+  kSlotMaxTravelY,     // M202 Y
+  kSlotKlipperAccel,   // SET_VELOCITY_LIMIT ACCEL
+  kSlotKlipperDecel,   // SET_VELOCITY_LIMIT ACCEL_TO_DECEL
+  kSlotKlipperCorner,  // SET_VELOCITY_LIMIT SQUARE_CORNER_VELOCITY
+  kSlotKlipperSpeed,   // SET_VELOCITY_LIMIT VELOCITY
+  kSlotPressure,       // M900, M572, SET_PRESSURE_ADVANCE
+  kSlotFlow,           // M221
+  kSlotCount,
+};
+
+using SlotMask = uint32_t;
+
+constexpr SlotMask SlotBit(Slot slot) { return SlotMask{1} << slot; }
+
+// The slots of how the machine moves, as against what it deposits: they may differ between the
+// travel to a path and the path.
+inline constexpr SlotMask kDynamicsSlots =
+    SlotBit(kSlotPrintAccel) | SlotBit(kSlotTravelAccel) | SlotBit(kSlotRetractAccel) |
+    SlotBit(kSlotJerkX) | SlotBit(kSlotJerkY) | SlotBit(kSlotMaxAccelX) | SlotBit(kSlotMaxAccelY) |
+    SlotBit(kSlotMaxTravelX) | SlotBit(kSlotMaxTravelY) | SlotBit(kSlotKlipperAccel) |
+    SlotBit(kSlotKlipperDecel) | SlotBit(kSlotKlipperCorner) | SlotBit(kSlotKlipperSpeed);
+
+inline constexpr SlotMask kFanSlots =
+    SlotBit(kSlotFan) | SlotBit(kSlotFan1) | SlotBit(kSlotFan2) | SlotBit(kSlotFan3);
+
+// The slots that a line sets; 0 if it is no setter. Reads the words of commands that may be one.
+SlotMask CommentSlots(std::string_view comment);
+SlotMask CommandSlots(Command& command);
+SlotMask TextSlots(std::string_view line);
+
+// Setters, numbered. 0 stands for "never set".
+class SetterTable {
+ public:
+  SetterTable() { setters_.push_back({}); }
+
+  // The number of the setter `line`, which sets `slots`.
+  uint32_t Intern(std::string_view line, SlotMask slots);
+
+  // The number of a setter that is known; 0 for others.
+  uint32_t Find(std::string_view line) const {
+    const auto found = index_.find(line);
+    return found == index_.end() ? 0 : found->second;
+  }
+
+  const std::string& Line(uint32_t setter) const { return setters_[setter].line; }
+  SlotMask Slots(uint32_t setter) const { return setters_[setter].slots; }
+
+ private:
+  struct Setter {
+    std::string line;
+    SlotMask slots = 0;
+  };
+  std::deque<Setter> setters_;  // a deque: the keys below point into it
+  absl::flat_hash_map<std::string_view, uint32_t> index_;
+};
+
+// [slot] the setter that holds.
+using PrintState = std::array<uint32_t, kSlotCount>;
+
+inline void ApplySetter(PrintState& state, uint32_t setter, SlotMask slots) {
+  for (int slot = 0; slot < kSlotCount; ++slot) {
+    if ((slots >> slot) & 1u) state[static_cast<size_t>(slot)] = setter;
+  }
+}
+
+// Print states, numbered from 0.
+class StateTable {
+ public:
+  uint32_t Intern(const PrintState& state);
+  const PrintState& operator[](uint32_t id) const { return states_[id]; }
+  size_t size() const { return states_.size(); }
+
+ private:
+  std::deque<PrintState> states_;
+  absl::flat_hash_map<PrintState, uint32_t> index_;
+};
+
+// The setters to write, in this order, so that the slots in `mask` go from `from` to `to`. `from`
+// is brought up to date.
+std::vector<uint32_t> SettersBetween(PrintState& from, const PrintState& to, SlotMask mask,
+                                     const SetterTable& setters);
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_MACHINE_PRINT_STATE_H_

@@ -1,0 +1,54 @@
+#include "client/gcode/measure/layer_meter.h"
+
+#include "client/gcode/measure/print_meter.h"
+#include "client/gcode/model/loops.h"
+#include "client/gcode/model/outline.h"
+#include "client/gcode/parallel.h"
+
+namespace traverse::gcode {
+
+PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStart& start,
+                    const VisibleWalls* walls) {
+  PrintMeter meter(file.profile, DynamicsOf(file.profile, start.state, file.setters), walls);
+  Interpreter interpreter(text, 0, start.machine);
+  for (Step step; interpreter.Next(step);) meter.Follow(step, interpreter);
+  return meter.Finish();
+}
+
+PartStart StartBehind(const GcodeFile& file, const Block& block) {
+  PartStart start{StateAt(file, block), file.states[block.state_out]};
+  start.machine.at = block.last;
+  start.machine.e = block.e_out;
+  start.machine.feed = block.feed_out;
+  return start;
+}
+
+PrintTotals MeasurePaths(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls) {
+  const Block& first = file.blocks[layer.first_block];
+  const PartStart start{StateAt(file, first), file.states[first.state_in]};
+  return Measure(file, file.PathsText(layer), start, &walls);
+}
+
+PrintTotals MeasureWay(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls) {
+  if (layer.first_block == 0) return {};
+  const PartStart start = StartBehind(file, file.blocks[layer.first_block - 1]);
+  return Measure(file, file.LinkText(layer.first_block), start, &walls);
+}
+
+std::vector<PrintTotals> MeasureLayers(const GcodeFile& file, int threads) {
+  std::vector<PrintTotals> totals(file.layers.size());
+  ParallelFor(totals.size(), threads, [&file, &totals](size_t i) {
+    const VisibleWalls walls(OutlinesOf(file, file.layers[i]));
+    totals[i] = MeasureWay(file, file.layers[i], walls);
+    totals[i] += MeasurePaths(file, file.layers[i], walls);
+  });
+  return totals;
+}
+
+PrintTotals Sum(const std::vector<PrintTotals>& totals) {
+  PrintTotals sum;
+  for (const PrintTotals& each : totals) sum += each;
+  return sum;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,43 @@
+// Measures a print while an interpreter follows it: way, retractions, time.
+
+#ifndef TRAVERSE_CLIENT_GCODE_MEASURE_PRINT_METER_H_
+#define TRAVERSE_CLIENT_GCODE_MEASURE_PRINT_METER_H_
+
+#include <string_view>
+
+#include "client/gcode/machine/interpreter.h"
+#include "client/gcode/machine/machine_profile.h"
+#include "client/gcode/machine/motion_planner.h"
+#include "client/gcode/measure/print_totals.h"
+#include "client/gcode/model/visible_walls.h"
+
+namespace traverse::gcode {
+
+class PrintMeter {
+ public:
+  // `profile` and `walls` outlive the meter; `dynamics` are those in force at the beginning.
+  // Crossings are counted where there are `walls`: null for none.
+  PrintMeter(const MachineProfile& profile, const Dynamics& dynamics, const VisibleWalls* walls)
+      : profile_(profile), dynamics_(dynamics), walls_(walls) {}
+
+  // Follows one step of `interpreter`, which has just made it.
+  void Follow(const Step& step, const Interpreter& interpreter);
+
+  // What was followed so far; the machine comes to a standstill.
+  PrintTotals Finish();
+
+ private:
+  void FollowXy(const Step& step, const MachineState& state);
+  void NoteCrossing(const Step& step, const MachineState& state);
+
+  const MachineProfile& profile_;
+  Dynamics dynamics_;
+  const VisibleWalls* walls_;
+  bool crosses_ = false;  // the way since the last extrusion
+  MotionPlanner planner_;
+  PrintTotals totals_;
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_MEASURE_PRINT_METER_H_

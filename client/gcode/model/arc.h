@@ -1,0 +1,25 @@
+// The circular moves, G2 (clockwise) and G3.
+
+#ifndef TRAVERSE_CLIENT_GCODE_MODEL_ARC_H_
+#define TRAVERSE_CLIENT_GCODE_MODEL_ARC_H_
+
+#include <vector>
+
+#include "client/gcode/machine/interpreter.h"
+#include "client/gcode/model/outline.h"
+
+namespace traverse::gcode {
+
+// The length in mm of the arc that `command` (G2 or G3) makes between two positions, and optionally
+// the directions in which it begins and ends (bx, by, ex, ey). `unit_mm` is the length of one unit.
+double ArcLength(const Command& command, const Position& from, const Position& to, double unit_mm,
+                 double directions[4] = nullptr);
+
+// Points on that arc between its ends, in mm and in order, so that the lines from one to the next
+// stay within `tolerance_mm` of it; none for an arc that is flatter than that. At most 719.
+std::vector<Vertex> ArcPoints(const Command& command, const Position& from, const Position& to,
+                              double unit_mm, double tolerance_mm);
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_MODEL_ARC_H_

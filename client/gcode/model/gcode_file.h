@@ -1,0 +1,146 @@
+// A sliced file, taken apart: its text, and where in it lie the paths and what is between them.
+//
+//   head | link 0 | block 0 | link 1 | block 1 | ... | foot
+//
+// A block is the text of one path: from its first extruding line to its last, with the moves
+// without extrusion that belong to its end. Link i is the text between blocks i - 1 and i:
+// retraction, travel, and the lines that set the state for what follows. Nothing is copied; the
+// text stays as it was read.
+//
+// Memory: about 160 bytes a path and 16 bytes a segment beside the text. Sliced files have 190
+// bytes of text a path at the least, and mostly many times that; and 25 bytes a segment.
+
+#ifndef TRAVERSE_CLIENT_GCODE_MODEL_GCODE_FILE_H_
+#define TRAVERSE_CLIENT_GCODE_MODEL_GCODE_FILE_H_
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "client/gcode/machine/interpreter.h"
+#include "client/gcode/machine/machine_profile.h"
+#include "client/gcode/machine/print_state.h"
+#include "client/gcode/machine/vertex.h"
+
+namespace traverse {
+namespace gcode {
+
+enum class Dialect : uint8_t { kOther, kPrusa, kSlic3r, kCura };
+
+// What a link is made of.
+enum LinkFlag : uint16_t {
+  kLinkRetracts = 1 << 0,
+  kLinkLifts = 1 << 1,
+  kLinkWipes = 1 << 2,     // pulls filament back while moving
+  kLinkDeparts = 1 << 3,   // begins with a short move inwards, before the travel proper
+  kLinkComments = 1 << 4,  // has comments that mean nothing here
+  kLinkSplits = 1 << 5,    // nothing crosses it, but its travel may be written anew
+  kLinkFixed = 1 << 6,     // stays byte by byte, and so do the paths on either side of it
+  kLinkNewLayer = 1 << 7,
+  // Begins with lines that stay byte by byte, and so does the path before it; what follows them is
+  // as in a link that splits.
+  kLinkFixedFrom = 1 << 8,
+};
+
+enum BlockFlag : uint16_t {
+  kBlockTail = 1 << 0,      // ends with a short move at print speed that extrudes nothing
+  kBlockCoast = 1 << 1,     // that move completes the path with the pressure left in the nozzle
+  kBlockFan = 1 << 2,       // the fan changes inside it
+  kBlockType = 1 << 3,      // the feature changes inside it
+  kBlockComments = 1 << 4,  // has comments inside that mean nothing here
+  kBlockProgress = 1 << 5,  // has M73 inside
+  kBlockPinned = 1 << 6,    // printed while retracted, rising, or no true arc: stays as it is
+  kBlockState = 1 << 7,     // some slot changes inside it
+  kBlockZero = 1 << 8,      // has a segment whose extrusion rounds to nothing
+  kBlockScript = 1 << 9,    // before the first mark of a layer: a start script's
+  kBlockCommand = 1 << 10,  // a command inside it sets a slot
+  kBlockGoesOn = 1 << 11,   // closed; a move without filament goes on along it behind its end
+};
+
+struct Block {
+  Offset begin = 0;
+  Offset end = 0;
+  uint32_t state_in = 0;   // StateTable: what holds for its first segment
+  uint32_t state_out = 0;  // and behind its end
+  Decimal feed_in = 0;     // F of its first segment
+  Decimal feed_out = 0;    // F behind its end
+  Position first;          // where its first segment begins
+  Position last;           // where the head is behind its end, tail included
+  Decimal e_in = 0;        // the extruder's register before and behind
+  Decimal e_out = 0;
+  float length_mm = 0;     // of its extruding segments
+  float travel_mm = 0;     // of the link before it, as it is
+  Decimal lift = 0;        // of the link before it: how far it goes above both its ends
+  uint32_t object = 0;     // SetterTable: the label in force; 0: none
+  uint32_t first_end = 0;  // of its segments' ends in GcodeFile::ends
+  uint32_t end_count = 0;
+  uint16_t flags = 0;     // BlockFlag
+  uint16_t link = 0;      // LinkFlag, of the link before it
+  uint16_t segments = 0;  // extruding segments, 65535 for more
+  uint16_t mode = 0;      // index into GcodeFile::modes
+};
+
+// A run of blocks at one height; a mark of the slicer's begins a new one in any case.
+struct Layer {
+  uint32_t first_block = 0;
+  uint32_t end_block = 0;
+  Decimal z = 0;
+};
+
+}  // namespace gcode
+
+struct GcodeFile {
+  std::string name;  // for messages
+  std::string text;
+  gcode::Dialect dialect = gcode::Dialect::kOther;
+  std::string slicer;  // as the file names it, "PrusaSlicer 2.5.0"; empty if it does not
+
+  std::vector<gcode::Block> blocks;
+  std::vector<gcode::Layer> layers;
+
+  // Where the segments of all blocks end, in mm; an arc is one segment.
+  std::vector<gcode::Vertex> ends;
+
+  // Modes in force in blocks: units, relative or absolute, tool.
+  std::vector<gcode::MachineState> modes;
+
+  gcode::SetterTable setters;  // also holds labels of objects
+  gcode::StateTable states;
+
+  // Begins of the M73 lines, ascending.
+  std::vector<gcode::Offset> progress;
+
+  gcode::MachineProfile profile;
+  gcode::NumberStyle xy_style;
+  gcode::NumberStyle e_style;
+  bool feed_on_own_line = false;  // a path's F stands on a line before it
+
+  // Link i: what stands between the blocks i - 1 and i; i = blocks.size() is the foot.
+  std::string_view LinkText(size_t i) const {
+    const gcode::Offset begin = i == 0 ? 0 : blocks[i - 1].end;
+    const gcode::Offset end =
+        i == blocks.size() ? static_cast<gcode::Offset>(text.size()) : blocks[i].begin;
+    return std::string_view(text).substr(begin, end - begin);
+  }
+
+  // Filament is pulled back along block `i`, behind its end.
+  bool WipedBehind(size_t i) const {
+    constexpr int kFixed = gcode::kLinkFixed | gcode::kLinkFixedFrom;
+    return i + 1 < blocks.size() && (blocks[i + 1].link & gcode::kLinkWipes) != 0 &&
+           (blocks[i + 1].link & kFixed) == 0;
+  }
+
+  // The lines of a layer's paths and of the links between them.
+  std::string_view PathsText(const gcode::Layer& layer) const {
+    const gcode::Offset begin = blocks[layer.first_block].begin;
+    return std::string_view(text).substr(begin, blocks[layer.end_block - 1].end - begin);
+  }
+
+  // Number of the line, from 1, that holds the byte at `offset`.
+  size_t LineNumber(gcode::Offset offset) const;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_CLIENT_GCODE_MODEL_GCODE_FILE_H_

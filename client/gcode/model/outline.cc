@@ -1,0 +1,86 @@
+#include "client/gcode/model/outline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "client/gcode/text/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kDefaultHeightMm = 0.2;
+
+std::optional<double> SlotNumber(const GcodeFile& file, const Block& block, Slot slot) {
+  const uint32_t setter = file.states[block.state_in][slot];
+  if (setter == 0) return std::nullopt;
+  const std::string_view line = file.setters.Line(setter);
+  std::string_view number = TrimBlanks(line.substr(line.find(':') + 1));
+  if (StartsWith(line, "; tool H")) {  // `; tool H0.300 W0.480`
+    const size_t at = line.find(slot == kSlotWidth ? 'W' : 'H');
+    number = at == std::string_view::npos ? std::string_view{} : line.substr(at + 1);
+  }
+  const char* p = number.data();
+  const std::optional<Decimal> value = ParseDecimal(&p, number.data() + number.size());
+  if (!value || *value <= 0) return std::nullopt;
+  return ToDouble(*value);
+}
+
+// The cross-section that is deposited is a rectangle with half circles at its sides.
+double WidthOfFlow(const GcodeFile& file, const Block& block) {
+  const double diameter = file.profile.filament_diameter;
+  const double filament = ToDouble(block.e_out - block.e_in) * file.modes[block.mode].UnitMm();
+  if (!(filament > 0) || !(block.length_mm > 0)) return 0;
+  const double area =
+      filament * diameter * diameter * std::numbers::pi / 4 / static_cast<double>(block.length_mm);
+  const double height = SlotNumber(file, block, kSlotHeight).value_or(kDefaultHeightMm);
+  return area / height + height * (1 - std::numbers::pi / 4);
+}
+
+double WidthOf(const GcodeFile& file, const Block& block) {
+  const double width = SlotNumber(file, block, kSlotWidth).value_or(WidthOfFlow(file, block));
+  return std::clamp(width, 0.2, 1.2);
+}
+
+}  // namespace
+
+MachineState StateAt(const GcodeFile& file, const Block& block) {
+  MachineState state = file.modes[block.mode];
+  state.at = block.first;
+  state.e = block.e_in;
+  state.feed = block.feed_in;
+  state.retracted = 0;
+  state.firmware_retracted = false;
+  return state;
+}
+
+Outline OutlineOf(const GcodeFile& file, const Block& block) {
+  Outline outline;
+  const auto ends = file.ends.begin() + block.first_end;
+  outline.points.reserve(block.end_count + size_t{1});
+  outline.points.push_back(file.modes[block.mode].InMm(block.first));
+  outline.points.insert(outline.points.end(), ends, ends + block.end_count);
+  outline.exactly_closed = outline.points.front() == outline.points.back();
+  outline.closed = outline.points.size() > 3 &&
+                   Distance(outline.points.front(), outline.points.back()) <= kMaxLoopGapMm &&
+                   static_cast<double>(block.length_mm) > 8 * kMaxLoopGapMm;
+  outline.feature = FeatureOf(file, block, outline.closed);
+  outline.width_mm = WidthOf(file, block);
+  return outline;
+}
+
+bool LiesWithin(const Outline& inner, const Outline& outer) {
+  if (!outer.closed) return false;
+  const Vertex p = inner.points.front();
+  bool within = false;
+  for (size_t k = 0; k + 1 < outer.points.size(); ++k) {
+    const Vertex a = outer.points[k];
+    const Vertex b = outer.points[k + 1];
+    if ((a.y > p.y) == (b.y > p.y)) continue;
+    if (p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)) within = !within;
+  }
+  return within;
+}
+
+}  // namespace traverse::gcode

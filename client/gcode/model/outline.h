@@ -1,0 +1,43 @@
+// The shape of a block's path.
+
+#ifndef TRAVERSE_CLIENT_GCODE_MODEL_OUTLINE_H_
+#define TRAVERSE_CLIENT_GCODE_MODEL_OUTLINE_H_
+
+#include <vector>
+
+#include "client/gcode/machine/vertex.h"
+#include "client/gcode/model/feature.h"
+#include "client/gcode/model/gcode_file.h"
+
+namespace traverse::gcode {
+
+struct Outline {
+  // The ends of its extruding segments, in the order of the file: n + 1 for n segments. An arc is
+  // one segment.
+  std::vector<Vertex> points;
+
+  // It ends where it began, or less than kMaxLoopGapMm short of it.
+  bool closed = false;
+
+  // points.front() == points.back().
+  bool exactly_closed = false;
+
+  Feature feature = Feature::kLine;
+  double width_mm = 0.45;  // of what is deposited, as the file says or as its E words imply
+};
+
+// PrusaSlicer and Slic3r end loops 0.15 nozzle diameters short of their start; CuraEngine's
+// coasting leaves 0.09 mm.
+inline constexpr double kMaxLoopGapMm = 0.13;
+
+Outline OutlineOf(const GcodeFile& file, const Block& block);
+
+// True if `inner` lies within the loop `outer`. REQUIRES: the two do not cross.
+bool LiesWithin(const Outline& inner, const Outline& outer);
+
+// The machine as it is when `block` begins.
+MachineState StateAt(const GcodeFile& file, const Block& block);
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_MODEL_OUTLINE_H_

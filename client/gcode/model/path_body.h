@@ -1,0 +1,46 @@
+// The segments of one path, read again to be written in another order.
+
+#ifndef TRAVERSE_CLIENT_GCODE_MODEL_PATH_BODY_H_
+#define TRAVERSE_CLIENT_GCODE_MODEL_PATH_BODY_H_
+
+#include <string_view>
+#include <vector>
+
+#include "client/gcode/model/gcode_file.h"
+
+namespace traverse::gcode {
+
+struct BodySegment {
+  Position from;
+  Position to;
+  Decimal filament = 0;
+  Decimal feed = 0;
+  uint32_t state = 0;    // index into PathBody::states
+  uint8_t command = 1;   // 0 and 1: straight; 2, 3: an arc
+  Decimal center_i = 0;  // of arcs with I or J: the center relative to `from`
+  Decimal center_j = 0;
+  Decimal radius = 0;  // of arcs with R
+  bool by_radius = false;
+  std::string_view comment;
+};
+
+struct PathBody {
+  std::vector<BodySegment> segments;
+  std::vector<PrintState> states;
+
+  // The moves behind the last segment that extrude nothing, as one: where it leads.
+  bool has_tail = false;
+  Position tail_end;
+};
+
+PathBody ReadBody(const GcodeFile& file, const Block& block);
+
+// The words of `segment`, which is an arc.
+Command ArcCommand(const BodySegment& segment);
+
+// The same segment from its end to its start.
+BodySegment Reversed(const BodySegment& segment);
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_MODEL_PATH_BODY_H_

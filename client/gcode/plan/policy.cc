@@ -1,0 +1,409 @@
+#include "client/gcode/plan/policy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "client/gcode/model/loops.h"
+#include "client/gcode/plan/precedence.h"
+#include "client/gcode/text/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+// A wall may begin at corners at least this sharp, and nearly as sharp as its sharpest.
+constexpr double kMinCornerRadians = 0.5;
+constexpr double kCornerShare = 0.8;
+
+constexpr SlotMask kOrderedSlots = kFanSlots | SlotBit(kSlotPressure) | SlotBit(kSlotFlow);
+
+// How one path may be done.
+struct PathRule {
+  bool pinned = false;   // stays where and as it is
+  bool contour = false;  // closed; else an open path
+  bool one_way = false;
+  std::vector<uint32_t> entries;  // contour: where it may begin; empty for anywhere
+};
+
+class LayerPlanner {
+ public:
+  LayerPlanner(const GcodeFile& file, const Layer& layer, Policy policy, Latitude latitude)
+      : file_(file), layer_(layer), policy_(policy), latitude_(latitude) {}
+
+  LayerPlan Make();
+
+ private:
+  const Block& BlockOf(size_t path) const { return file_.blocks[layer_.first_block + path]; }
+  Feature FeatureOf(size_t path) const { return result_.outlines[path].feature; }
+  size_t size() const { return result_.outlines.size(); }
+
+  bool IsPinned(size_t path) const;
+  PathRule RuleOf(size_t path) const;
+  bool MayBeginAnywhere(size_t path) const;
+  bool MayTurnRound(size_t path) const;
+  bool OrderIsQuality(Feature feature) const;
+  bool KeepsOrder(uint32_t i, uint32_t j) const;
+  bool BeginsGroup(size_t path) const;
+
+  void AddPath(size_t path);
+  uint32_t AddNode(uint32_t parent_any_or_root);
+  bool GoesWithBefore(size_t path) const;
+  void AddLeaf(uint32_t parent, size_t path);
+  void AddGroup(size_t begin, size_t end);
+  void AddGroupByIslands(uint32_t any, size_t begin, size_t end);
+  using Pairs = std::vector<std::pair<uint32_t, uint32_t>>;
+  std::pair<Pairs::const_iterator, Pairs::const_iterator> PairsFrom(size_t begin, size_t end) const;
+
+  const GcodeFile& file_;
+  const Layer& layer_;
+  const Policy policy_;
+  const Latitude latitude_;
+  std::vector<PathRule> rules_;
+  Contacts contacts_;
+  std::vector<uint32_t> position_;  // [path] among the children of its any_order
+  LayerPlan result_;
+};
+
+bool LayerPlanner::IsPinned(size_t path) const {
+  const size_t block = layer_.first_block + path;
+  const bool last = block + 1 == file_.blocks.size();
+  const Feature feature = FeatureOf(path);
+  if (latitude_ != Latitude::kFull && (path == 0 || path + 1 == size())) return true;
+  return (BlockOf(path).flags & kBlockPinned) != 0 || (BlockOf(path).link & kLinkFixed) != 0 ||
+         last || (file_.blocks[block + 1].link & (kLinkFixed | kLinkFixedFrom)) != 0 ||
+         feature == Feature::kTower || feature == Feature::kCustom;
+}
+
+// Monotonic surfaces and ironing look the way they do because of the order of their lines.
+bool LayerPlanner::OrderIsQuality(Feature feature) const {
+  if (policy_ == Policy::kFree) return false;
+  if (feature == Feature::kIroning) return true;
+  if (feature == Feature::kBottomInfill) return file_.profile.monotonic_bottom;
+  if (feature != Feature::kTopInfill) return false;
+  const std::optional<std::string>& pattern = file_.profile.top_fill_pattern;
+  return !pattern || StartsWith(*pattern, "monotonic");
+}
+
+bool LayerPlanner::MayBeginAnywhere(size_t path) const {
+  constexpr uint16_t kFixing =
+      kBlockTail | kBlockCoast | kBlockCommand | kBlockType | kBlockComments | kBlockPinned;
+  if ((BlockOf(path).flags & kFixing) != 0) return false;
+  if (policy_ != Policy::kSafe) return true;
+  const Feature feature = FeatureOf(path);
+  return feature != Feature::kOuterWall && feature != Feature::kLoop &&
+         feature != Feature::kOverhangWall;
+}
+
+bool LayerPlanner::MayTurnRound(size_t path) const {
+  constexpr uint16_t kFixing =
+      kBlockCoast | kBlockCommand | kBlockType | kBlockComments | kBlockPinned;
+  const Feature feature = FeatureOf(path);
+  if ((BlockOf(path).flags & kFixing) != 0 || OrderIsQuality(feature)) return false;
+  return policy_ == Policy::kFree || !IsWall(feature);
+}
+
+// The vertices at corners about as sharp as the sharpest, and the given start.
+std::vector<uint32_t> SharpCorners(const std::vector<Vertex>& points) {
+  const size_t n = points.size();
+  std::vector<double> turn(n);
+  double sharpest = 0;
+  for (size_t k = 0; k < n; ++k) {
+    const Vertex a = points[(k + n - 1) % n];
+    const Vertex b = points[k];
+    const Vertex c = points[(k + 1) % n];
+    const double cross = (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x);
+    const double dot = (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y);
+    turn[k] = std::abs(std::atan2(cross, dot));
+    sharpest = std::max(sharpest, turn[k]);
+  }
+  std::vector<uint32_t> corners = {0};
+  for (size_t k = 1; k < n; ++k) {
+    if (turn[k] >= std::max(kMinCornerRadians, kCornerShare * sharpest)) {
+      corners.push_back(static_cast<uint32_t>(k));
+    }
+  }
+  return corners;
+}
+
+// The vertices of a closed outline. The last point is the first again, or lies so near to it that
+// to begin there would only cross the gap first.
+std::vector<Vertex> ContourVertices(const Outline& outline) {
+  return {outline.points.begin(), outline.points.end() - 1};
+}
+
+PathRule LayerPlanner::RuleOf(size_t path) const {
+  PathRule rule;
+  const Outline& outline = result_.outlines[path];
+  rule.pinned = IsPinned(path);
+  rule.contour = outline.closed;
+  if (!rule.contour) {
+    rule.one_way = rule.pinned || !MayTurnRound(path);
+  } else if (rule.pinned || !MayBeginAnywhere(path)) {
+    rule.entries = {0};
+  } else if (policy_ == Policy::kBalanced && outline.feature != Feature::kInnerWall &&
+             IsWall(outline.feature)) {
+    rule.entries = SharpCorners(ContourVertices(outline));
+  }
+  return rule;
+}
+
+// What a path is to the order of others. That lines of different infills lie side by side is no
+// reason for an order; that they lie against a wall is.
+enum class Kind { kWall, kFill, kBridge, kIroning, kSupport, kOther };
+
+Kind KindOf(Feature feature) {
+  switch (feature) {
+    case Feature::kLoop:
+    case Feature::kOuterWall:
+    case Feature::kInnerWall:
+    case Feature::kOverhangWall:
+      return Kind::kWall;
+    case Feature::kLine:
+    case Feature::kGapFill:
+    case Feature::kSparseInfill:
+    case Feature::kSolidInfill:
+    case Feature::kBottomInfill:
+    case Feature::kTopInfill:
+      return Kind::kFill;
+    case Feature::kBridge:
+      return Kind::kBridge;
+    case Feature::kIroning:
+      return Kind::kIroning;
+    case Feature::kSupport:
+    case Feature::kSupportInterface:
+      return Kind::kSupport;
+    default:
+      return Kind::kOther;
+  }
+}
+
+bool LayerPlanner::KeepsOrder(uint32_t i, uint32_t j) const {
+  const Feature a = FeatureOf(i);
+  const Feature b = FeatureOf(j);
+  const Kind kind = KindOf(a);
+  if (kind != KindOf(b) || kind == Kind::kIroning) return true;
+  if (kind == Kind::kSupport) return a != b || a == Feature::kSupportInterface;
+  if (policy_ == Policy::kFree) return false;
+  if (kind == Kind::kWall) return true;
+  return OrderIsQuality(a) && a == b;
+}
+
+bool LayerPlanner::BeginsGroup(size_t path) const {
+  if (path == 0 || rules_[path].pinned || rules_[path - 1].pinned) return true;
+  if ((BlockOf(path).link & (kLinkSplits | kLinkFixed)) != 0) return true;
+  if ((FeatureOf(path) == Feature::kSkirt) != (FeatureOf(path - 1) == Feature::kSkirt)) return true;
+  if (policy_ == Policy::kFree) return false;
+  const PrintState& state = file_.states[BlockOf(path).state_in];
+  const PrintState& before = file_.states[BlockOf(path - 1).state_in];
+  for (size_t slot = 0; slot < kSlotCount; ++slot) {
+    if (((kOrderedSlots >> slot) & 1u) != 0 && state[slot] != before[slot]) return true;
+  }
+  return false;
+}
+
+void LayerPlanner::AddPath(size_t path) {
+  const Outline& outline = result_.outlines[path];
+  const PathRule& rule = rules_[path];
+  v1::PlanPath& added = *result_.plan.add_paths();
+  const auto add_points = [&outline](size_t count, auto& message) {
+    message.mutable_points()->Reserve(static_cast<int>(2 * count));
+    for (size_t k = 0; k < count; ++k) {
+      message.add_points(outline.points[k].x);
+      message.add_points(outline.points[k].y);
+    }
+  };
+  if (rule.contour) {
+    v1::Contour& contour = *added.mutable_contour();
+    contour.set_id(path + 1);
+    add_points(outline.points.size() - 1, contour);
+    contour.mutable_entries()->Add(rule.entries.begin(), rule.entries.end());
+  } else {
+    v1::OpenPath& open = *added.mutable_open_path();
+    open.set_id(path + 1);
+    add_points(outline.points.size(), open);
+    open.set_one_way(rule.one_way);
+  }
+}
+
+// Adds a node and makes it a child of `parent_any_or_root`.
+uint32_t LayerPlanner::AddNode(uint32_t parent_any_or_root) {
+  const auto index = static_cast<uint32_t>(result_.plan.nodes_size());
+  result_.plan.add_nodes();
+  v1::PlanNode& parent = *result_.plan.mutable_nodes(static_cast<int>(parent_any_or_root));
+  if (parent_any_or_root == 0) {
+    parent.mutable_in_order()->add_children(index);
+  } else {
+    parent.mutable_any_order()->add_children(index);
+  }
+  return index;
+}
+
+std::pair<LayerPlanner::Pairs::const_iterator, LayerPlanner::Pairs::const_iterator>
+LayerPlanner::PairsFrom(size_t begin, size_t end) const {
+  const auto from = [this](size_t path) {
+    return std::lower_bound(contacts_.ordered.begin(), contacts_.ordered.end(),
+                            std::pair<uint32_t, uint32_t>(static_cast<uint32_t>(path), 0u));
+  };
+  return {from(begin), from(end)};
+}
+
+// True if `path` and the one before it are walls side by side, one done right after the other, or
+// are lines of ironing.
+bool LayerPlanner::GoesWithBefore(size_t path) const {
+  if (FeatureOf(path) == Feature::kIroning && FeatureOf(path - 1) == Feature::kIroning) return true;
+  return latitude_ == Latitude::kNarrow && IsWall(FeatureOf(path)) && IsWall(FeatureOf(path - 1)) &&
+         std::binary_search(
+             contacts_.ordered.begin(), contacts_.ordered.end(),
+             std::pair(static_cast<uint32_t>(path - 1), static_cast<uint32_t>(path)));
+}
+
+void LayerPlanner::AddLeaf(uint32_t parent, size_t path) {
+  const auto index = static_cast<uint32_t>(result_.plan.nodes_size());
+  result_.plan.add_nodes()->set_path(static_cast<uint32_t>(path));
+  v1::PlanNode& node = *result_.plan.mutable_nodes(static_cast<int>(parent));
+  if (node.has_in_order()) {
+    node.mutable_in_order()->add_children(index);
+  } else {
+    node.mutable_any_order()->add_children(index);
+  }
+}
+
+void LayerPlanner::AddGroup(size_t begin, size_t end) {
+  const uint32_t group = AddNode(0);
+  if (end - begin == 1) {
+    result_.plan.mutable_nodes(static_cast<int>(group))->set_path(static_cast<uint32_t>(begin));
+    return;
+  }
+  result_.movable += static_cast<int64_t>(end - begin);
+  result_.plan.mutable_nodes(static_cast<int>(group))->mutable_any_order();
+  if (policy_ == Policy::kBalanced || latitude_ == Latitude::kIslands) {
+    return AddGroupByIslands(group, begin, end);
+  }
+  uint32_t units = 0;
+  for (size_t path = begin; path < end;) {
+    size_t behind = path + 1;
+    while (behind < end && GoesWithBefore(behind)) ++behind;
+    uint32_t parent = group;
+    if (behind - path > 1) {
+      parent = AddNode(group);
+      result_.plan.mutable_nodes(static_cast<int>(parent))->mutable_in_order();
+    }
+    for (; path < behind; ++path) {
+      position_[path] = units;
+      AddLeaf(parent, path);
+    }
+    ++units;
+  }
+  v1::AnyOrder& any = *result_.plan.mutable_nodes(static_cast<int>(group))->mutable_any_order();
+  const auto [first, last] = PairsFrom(begin, end);
+  std::set<std::pair<uint32_t, uint32_t>> known;
+  for (auto pair = first; pair != last; ++pair) {
+    if (pair->second >= end) continue;
+    const std::pair<uint32_t, uint32_t> units_of(position_[pair->first], position_[pair->second]);
+    if (units_of.first == units_of.second || !known.insert(units_of).second) continue;
+    v1::Precedence& before = *any.add_before();
+    before.set_first(units_of.first);
+    before.set_second(units_of.second);
+  }
+}
+
+void LayerPlanner::AddGroupByIslands(uint32_t group, size_t begin, size_t end) {
+  // Islands in the order in which the slicer comes to them first.
+  std::vector<std::pair<uint32_t, uint32_t>> node_of;  // island, node
+  std::vector<uint32_t> count;
+  for (size_t path = begin; path < end; ++path) {
+    const uint32_t island = contacts_.island[path];
+    auto found = std::find_if(node_of.begin(), node_of.end(),
+                              [island](const auto& known) { return known.first == island; });
+    if (found == node_of.end()) {
+      const uint32_t node = AddNode(group);
+      result_.plan.mutable_nodes(static_cast<int>(node))->mutable_any_order();
+      found = node_of.insert(node_of.end(), {island, node});
+      count.push_back(0);
+    }
+    uint32_t& children = count[static_cast<size_t>(found - node_of.begin())];
+    position_[path] = children++;
+    const uint32_t leaf = AddNode(found->second);
+    result_.plan.mutable_nodes(static_cast<int>(leaf))->set_path(static_cast<uint32_t>(path));
+  }
+  const auto [first, last] = PairsFrom(begin, end);
+  for (auto pair = first; pair != last; ++pair) {
+    if (pair->second >= end) continue;
+    const uint32_t island = contacts_.island[pair->first];
+    const auto node = std::find_if(node_of.begin(), node_of.end(),
+                                   [island](const auto& known) { return known.first == island; });
+    v1::Precedence& before = *result_.plan.mutable_nodes(static_cast<int>(node->second))
+                                  ->mutable_any_order()
+                                  ->add_before();
+    before.set_first(position_[pair->first]);
+    before.set_second(position_[pair->second]);
+  }
+}
+
+LayerPlan LayerPlanner::Make() {
+  result_.outlines = OutlinesOf(file_, layer_);
+  position_.resize(size());
+  rules_.reserve(size());
+  for (size_t path = 0; path < size(); ++path) rules_.push_back(RuleOf(path));
+  contacts_ =
+      FindContacts(result_.outlines, [this](uint32_t i, uint32_t j) { return KeepsOrder(i, j); });
+  result_.island = contacts_.island;
+  result_.plan.add_nodes()->mutable_in_order();
+  for (size_t path = 0; path < size(); ++path) AddPath(path);
+  for (size_t begin = 0; begin < size();) {
+    size_t end = begin + 1;
+    while (end < size() && !BeginsGroup(end)) ++end;
+    AddGroup(begin, end);
+    begin = end;
+  }
+  return std::move(result_);
+}
+
+}  // namespace
+
+std::optional<Policy> PolicyOfName(std::string_view name) {
+  for (const Policy policy : {Policy::kSafe, Policy::kBalanced, Policy::kFree}) {
+    if (PolicyName(policy) == name) return policy;
+  }
+  return std::nullopt;
+}
+
+std::string_view PolicyName(Policy policy) {
+  switch (policy) {
+    case Policy::kSafe:
+      return "safe";
+    case Policy::kBalanced:
+      return "balanced";
+    case Policy::kFree:
+      return "free";
+  }
+  return "";
+}
+
+std::optional<Crossings> CrossingsOfName(std::string_view name) {
+  for (const Crossings crossings : {Crossings::kKeep, Crossings::kFewer, Crossings::kAny}) {
+    if (CrossingsName(crossings) == name) return crossings;
+  }
+  return std::nullopt;
+}
+
+std::string_view CrossingsName(Crossings crossings) {
+  switch (crossings) {
+    case Crossings::kKeep:
+      return "keep";
+    case Crossings::kFewer:
+      return "fewer";
+    case Crossings::kAny:
+      return "any";
+  }
+  return "";
+}
+
+LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy,
+                        Latitude latitude) {
+  return LayerPlanner(file, layer, policy, latitude).Make();
+}
+
+}  // namespace traverse::gcode

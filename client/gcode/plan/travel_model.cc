@@ -1,0 +1,132 @@
+#include "client/gcode/plan/travel_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "client/gcode/machine/motion_planner.h"
+#include "client/gcode/measure/print_meter.h"
+
+namespace traverse::gcode {
+namespace {
+
+// What the links of one layer add up to.
+struct LayerTravel {
+  std::map<std::pair<double, double>, double> way_mm;  // by speed and acceleration
+  double retraction_seconds = 0;
+  int64_t retractions = 0;
+};
+
+class TravelLearner {
+ public:
+  explicit TravelLearner(const GcodeFile& file) : file_(file) {}
+
+  LayerTravel LearnLayer(const Layer& layer) {
+    LayerTravel learnt;
+    for (uint32_t b = std::max(layer.first_block, 1u); b < layer.end_block; ++b) {
+      LearnLink(b, learnt);
+    }
+    return learnt;
+  }
+
+ private:
+  const Dynamics& DynamicsAt(uint32_t state) {
+    const auto found = dynamics_.find(state);
+    if (found != dynamics_.end()) return found->second;
+    return dynamics_.emplace(state, DynamicsOf(file_.profile, file_.states[state], file_.setters))
+        .first->second;
+  }
+
+  void LearnLink(uint32_t b, LayerTravel& learnt) {
+    const Block& before = file_.blocks[b - 1];
+    const Block& block = file_.blocks[b];
+    if ((block.link & kLinkFixed) != 0) return;
+    const bool retracts = (block.link & kLinkRetracts) != 0;
+    Dynamics dynamics = DynamicsAt(before.state_out);
+    MachineState state = file_.modes[before.mode];
+    state.at = before.last;
+    state.e = before.e_out;
+    state.feed = before.feed_out;
+    Interpreter interpreter(std::string_view(file_.text).substr(0, block.begin), before.end, state);
+    double still_seconds = 0;
+    for (Step step; interpreter.Next(step);) {
+      still_seconds += LearnStep(step, interpreter, dynamics, learnt);
+    }
+    if (!retracts) return;
+    learnt.retraction_seconds += still_seconds;
+    ++learnt.retractions;
+  }
+
+  // Returns the time of what is not travel proper.
+  double LearnStep(const Step& step, const Interpreter& interpreter, Dynamics& dynamics,
+                   LayerTravel& learnt) {
+    const MachineProfile& profile = file_.profile;
+    const MachineState& state = interpreter.state();
+    const double unit = state.UnitMm();
+    const double speed = ToDouble(state.feed) / 60;
+    switch (step.kind) {
+      case StepKind::kSlot:
+        if ((step.slots & kDynamicsSlots) != 0) {
+          dynamics.Follow(step.line.Text(interpreter.text()));
+        }
+        return 0;
+      case StepKind::kTravel:
+      case StepKind::kWipe: {
+        const double way =
+            std::hypot(ToDouble(state.at.x - step.from.x), ToDouble(state.at.y - step.from.y)) *
+            unit;
+        if (step.kind == StepKind::kWipe) return speed > 0 ? way / (speed * unit) : 0;
+        learnt.way_mm[{speed * unit, dynamics.travel_accel()}] += way;
+        return 0;
+      }
+      case StepKind::kFilament:
+        return speed > 0
+                   ? StopToStopSeconds(std::abs(ToDouble(step.filament)),
+                                       std::min(speed, profile.max_e_speed), profile.retract_accel)
+                   : 0;
+      case StepKind::kLift:
+        return speed > 0
+                   ? StopToStopSeconds(std::abs(ToDouble(state.at.z - step.from.z)) * unit,
+                                       std::min(speed * unit, profile.max_z_speed), profile.z_accel)
+                   : 0;
+      case StepKind::kFirmwareRetract:
+      case StepKind::kFirmwareUnretract:
+        return StopToStopSeconds(profile.firmware_retract_length, profile.firmware_retract_speed,
+                                 profile.retract_accel);
+      default:
+        return 0;
+    }
+  }
+
+  const GcodeFile& file_;
+  std::map<uint32_t, Dynamics> dynamics_;  // by state
+};
+
+}  // namespace
+
+std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm) {
+  TravelLearner learner(file);
+  std::vector<TravelModel> models;
+  TravelModel model;
+  model.accel_mm_s2 = file.profile.travel_accel;
+  for (const Layer& layer : file.layers) {
+    const LayerTravel learnt = learner.LearnLayer(layer);
+    double longest_mm = 0;
+    for (const auto& [how, way_mm] : learnt.way_mm) {
+      if (way_mm <= longest_mm || !(how.first > 0)) continue;
+      longest_mm = way_mm;
+      model.speed_mm_s = how.first;
+      model.accel_mm_s2 = how.second;
+    }
+    if (learnt.retractions > 0) {
+      model.retraction_seconds =
+          learnt.retraction_seconds / static_cast<double>(learnt.retractions);
+    }
+    models.push_back(model);
+  }
+  for (TravelModel& each : models) each.retraction_threshold_mm = threshold_mm;
+  return models;
+}
+
+}  // namespace traverse::gcode

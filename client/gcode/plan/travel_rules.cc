@@ -1,0 +1,152 @@
+#include "client/gcode/plan/travel_rules.h"
+
+#include <algorithm>
+
+#include "client/gcode/model/loops.h"
+
+namespace traverse::gcode {
+namespace {
+
+// Layers from which habits are learnt.
+constexpr size_t kSampledLayers = 24;
+
+bool IsSoft(const Block& block) { return (block.link & (kLinkFixed | kLinkSplits)) == 0; }
+
+// Calls visit(block, from, to) for the links inside a layer that have no marks in them.
+template <typename Visit>
+void ForEachWay(const GcodeFile& file, const Layer& layer, Visit visit) {
+  for (uint32_t b = layer.first_block + 1; b < layer.end_block; ++b) {
+    const Block& block = file.blocks[b];
+    if (!IsSoft(block)) continue;
+    const MachineState& mode = file.modes[block.mode];
+    visit(block, mode.InMm(file.blocks[b - 1].last), mode.InMm(block.first), b);
+  }
+}
+
+void Count(const GcodeFile& file, const Layer& layer, const std::vector<Outline>& outlines,
+           const VisibleWalls& walls, double threshold_mm, RetractionCounts& counts) {
+  ForEachWay(file, layer, [&](const Block& block, Vertex from, Vertex to, uint32_t b) {
+    if (Distance(from, to) < threshold_mm || walls.Crossed(from, to)) return;
+    const Feature feature = outlines[b - layer.first_block].feature;
+    RetractionCount& count = counts[static_cast<size_t>(feature)];
+    ++((block.link & kLinkRetracts) != 0 ? count.retracted : count.not_retracted);
+  });
+}
+
+// The usual setting of slicers.
+constexpr double kUsualThresholdMm = 1.5;
+
+// Straight ways across walls that were not retracted, for the shortest that was to be no accident.
+constexpr int64_t kEnough = 3;
+
+double LearnThreshold(const GcodeFile& file, const std::vector<size_t>& sample) {
+  if (file.profile.retract_before_travel) return *file.profile.retract_before_travel;
+  double shortest = 1e9;
+  for (const Layer& layer : file.layers) {
+    ForEachWay(file, layer, [&](const Block& block, Vertex from, Vertex to, uint32_t) {
+      if ((block.link & kLinkRetracts) != 0) shortest = std::min(shortest, Distance(from, to));
+    });
+  }
+  if (shortest <= kUsualThresholdMm || shortest >= 1e9) return std::min(shortest, 1e6);
+  int64_t crossing = 0;
+  for (const size_t i : sample) {
+    const VisibleWalls walls(OutlinesOf(file, file.layers[i]));
+    ForEachWay(file, file.layers[i], [&](const Block& block, Vertex from, Vertex to, uint32_t) {
+      const double length = Distance(from, to);
+      const bool straight = static_cast<double>(block.travel_mm) < length * 1.01 + 0.01;
+      if ((block.link & kLinkRetracts) == 0 && straight && length > kUsualThresholdMm &&
+          length < shortest && walls.Crossed(from, to)) {
+        ++crossing;
+      }
+    });
+  }
+  return crossing >= kEnough ? shortest : kUsualThresholdMm;
+}
+
+std::vector<size_t> SampledLayers(const GcodeFile& file) {
+  std::vector<size_t> sample;
+  const size_t step = std::max<size_t>(1, file.layers.size() / kSampledLayers);
+  for (size_t i = 0; i < file.layers.size(); i += step) sample.push_back(i);
+  return sample;
+}
+
+// By the slicer's setting if the file holds it; else if a good part of the ways that would cross a
+// visible wall have bends. Wipes and moves inwards look like bends, but CuraEngine makes neither.
+bool AvoidsWalls(const GcodeFile& file) {
+  if (file.profile.avoid_crossing) return *file.profile.avoid_crossing;
+  if (file.dialect != Dialect::kCura) return false;
+  int64_t crossing = 0;
+  int64_t bent = 0;
+  for (const size_t i : SampledLayers(file)) {
+    const VisibleWalls walls(OutlinesOf(file, file.layers[i]));
+    ForEachWay(file, file.layers[i], [&](const Block& block, Vertex from, Vertex to, uint32_t) {
+      if (!walls.Crossed(from, to)) return;
+      ++crossing;
+      bent += static_cast<double>(block.travel_mm) > Distance(from, to) * 1.01 + 0.01 ? 1 : 0;
+    });
+  }
+  return bent >= kEnough && bent * 4 >= crossing;
+}
+
+}  // namespace
+
+RetractionHabit LearnRetraction(const GcodeFile& file) {
+  RetractionHabit habit;
+  habit.avoids_walls = AvoidsWalls(file);
+  for (const Block& block : file.blocks) {
+    habit.retracts = habit.retracts || (IsSoft(block) && (block.link & kLinkRetracts) != 0);
+  }
+  if (!habit.retracts) return habit;
+  const std::vector<size_t> sample = SampledLayers(file);
+  habit.threshold_mm = LearnThreshold(file, sample);
+  for (const size_t i : sample) {
+    const std::vector<Outline> outlines = OutlinesOf(file, file.layers[i]);
+    Count(file, file.layers[i], outlines, VisibleWalls(outlines), habit.threshold_mm, habit.inside);
+  }
+  RetractionCount all;
+  for (const RetractionCount& count : habit.inside) {
+    all.retracted += count.retracted;
+    all.not_retracted += count.not_retracted;
+  }
+  habit.crossing_matters = all.not_retracted * 10 >= all.total() && all.not_retracted > 0;
+  return habit;
+}
+
+RetractionHabit HabitOfNewWays(const GcodeFile& file) {
+  RetractionHabit habit = LearnRetraction(file);
+  habit.spares_walls = true;
+  return habit;
+}
+
+TravelRules::TravelRules(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
+                         const std::vector<Outline>& outlines, const VisibleWalls& walls)
+    : habit_(habit), walls_(walls), detours_(walls) {
+  if (habit.crossing_matters) {
+    Count(file, layer, outlines, walls, habit.threshold_mm, inside_);
+  }
+}
+
+const RetractionCount& TravelRules::CountOf(Feature feature) const {
+  const RetractionCount& here = inside_[static_cast<size_t>(feature)];
+  const RetractionCount& everywhere = habit_.inside[static_cast<size_t>(feature)];
+  return here.total() >= kEnough ? here : everywhere;
+}
+
+bool TravelRules::AlwaysRetracts(Feature feature) const {
+  if (!habit_.retracts || !habit_.crossing_matters) return habit_.retracts;
+  const RetractionCount& count = CountOf(feature);
+  return count.total() > 0 && count.Mostly();
+}
+
+bool TravelRules::Retracts(Vertex a, Vertex b, Feature feature) const {
+  if (!habit_.retracts) return false;
+  if (Distance(a, b) < habit_.threshold_mm) return habit_.spares_walls && Crosses(a, b);
+  if (!habit_.crossing_matters || CountOf(feature).Mostly()) return true;
+  return Crosses(a, b);
+}
+
+bool TravelRules::Crosses(Vertex a, Vertex b) const {
+  return walls_.Crossed(a, b) && (!habit_.avoids_walls || detours_.Around(a, b).empty());
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,367 @@
+#include "client/gcode/read/block_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "client/gcode/model/arc.h"
+#include "client/gcode/text/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+// A tail wipes a line's end or coasts to it; what is longer is travel.
+constexpr double kMaxTailMm = 2;
+
+// Slicers move in by about a line width before they leave a loop.
+constexpr double kMaxDepartureMm = 1;
+
+// Lines that may stand inside a path.
+bool IsQuiet(StepKind kind) {
+  switch (kind) {
+    case StepKind::kBlank:
+    case StepKind::kComment:
+    case StepKind::kSlot:
+    case StepKind::kWipeMark:
+    case StepKind::kProgress:
+    case StepKind::kFeed:
+      return true;
+    default:
+      return false;
+  }
+}
+
+// A move whose words could not be read, or one like G28, that leads who knows where.
+bool IsLostMove(const Step& step, const MachineState& after, std::string_view text) {
+  if (step.kind != StepKind::kUnknown) return false;
+  if (step.command.kind == LineKind::kCommand) {
+    const int number = step.command.number;
+    if (step.command.letter != 'G' || number == 4) return false;
+    return number > 3 || !after.relative_xyz;
+  }
+  const std::string_view line = TrimBlanks(step.line.Text(text));
+  return StartsWith(line, "G") || StartsWith(line, "g") || StartsWith(line, "N");
+}
+
+double StepMm(const Step& step, const MachineState& after) {
+  const double unit = after.UnitMm();
+  if (step.arc) return ArcLength(step.command, step.from, after.at, unit);
+  const double dx = ToDouble(after.at.x - step.from.x);
+  const double dy = ToDouble(after.at.y - step.from.y);
+  return std::sqrt(dx * dx + dy * dy) * unit;
+}
+
+// An arc that ends beside its circle is no arc: what a machine makes of it depends on where it
+// begins. Rounding is less than this.
+constexpr double kMaxOffCircleMm = 0.02;
+
+bool EndsOnItsCircle(const Step& step, const MachineState& after) {
+  const Command& c = step.command;
+  if (!c.Has('I') && !c.Has('J')) return true;
+  const double i = c.Has('I') ? ToDouble(c.Value('I')) : 0;
+  const double j = c.Has('J') ? ToDouble(c.Value('J')) : 0;
+  const double x = ToDouble(after.at.x - step.from.x) - i;
+  const double y = ToDouble(after.at.y - step.from.y) - j;
+  const double unit = after.UnitMm();
+  return std::abs(std::hypot(i, j) - std::hypot(x, y)) * unit <= kMaxOffCircleMm;
+}
+
+// What a line that moves nothing does to the link that it stands in.
+uint16_t LinkFlagsOf(StepKind kind) {
+  switch (kind) {
+    case StepKind::kUnknown:
+    case StepKind::kModeChange:
+      return kLinkFixed;
+    case StepKind::kStay:
+    case StepKind::kLabel:
+      return kLinkSplits;
+    case StepKind::kLayerMark:
+      return kLinkSplits | kLinkNewLayer;
+    case StepKind::kComment:
+      return kLinkComments;
+    case StepKind::kLift:
+      return kLinkLifts;
+    case StepKind::kFirmwareRetract:
+      return kLinkRetracts;
+    case StepKind::kWipe:
+      return kLinkRetracts | kLinkWipes;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+void BlockBuilder::Take(const Step& step, const MachineState& before,
+                        const Interpreter& interpreter) {
+  const bool prints =
+      step.kind == StepKind::kExtrude || (step.kind == StepKind::kZeroExtrude && !step.retracted);
+  const MachineState& after = interpreter.state();
+  if (prints) return TakePrinting(step, before, after);
+  if (step.kind == StepKind::kSlot) TakeSlot(step);
+  if (step.kind == StepKind::kLabel) TakeLabel(step);
+  NoteScript(step);
+  if (step.kind == StepKind::kProgress) file_.progress.push_back(step.line.begin);
+  TakeOther(step, before, after);
+}
+
+void BlockBuilder::TakePrinting(const Step& step, const MachineState& before,
+                                const MachineState& after) {
+  if (where_ != Where::kBody) BeginBlock(step, before, after);
+  where_ = Where::kBody;
+  ExtendBlock(step, before, after);
+}
+
+void BlockBuilder::TakeOther(const Step& step, const MachineState& before,
+                             const MachineState& after) {
+  if ((where_ == Where::kBody || where_ == Where::kTail) && IsTail(step, before, after)) {
+    TakeTail(step, before, after);
+    where_ = Where::kTail;
+    return;
+  }
+  if (where_ == Where::kBody && IsQuiet(step.kind)) {
+    if (step.kind == StepKind::kComment) pending_ |= kBlockComments;
+    if (step.kind == StepKind::kProgress) pending_ |= kBlockProgress;
+  } else if (where_ != Where::kHead) {
+    where_ = Where::kLink;
+  }
+  NoteInLink(step, before, after);
+}
+
+void BlockBuilder::NoteInLink(const Step& step, const MachineState& before,
+                              const MachineState& after) {
+  link_.flags |= LinkFlagsOf(step.kind);
+  if ((LinkFlagsOf(step.kind) & kLinkFixed) != 0) link_.travels_behind_fixed = 0;
+  link_.lost = link_.lost || IsLostMove(step, after, file_.text);
+  if (step.kind == StepKind::kTravel) ++link_.travels_behind_fixed;
+  if (step.kind == StepKind::kFilament && step.filament < 0) link_.flags |= kLinkRetracts;
+  if (IsXyMotion(step.kind)) {
+    const double mm = StepMm(step, after);
+    link_.travel_mm += mm;
+    if (link_.xy_moves++ == 0 && step.kind == StepKind::kTravel) {
+      link_.first_move_mm = mm;
+      link_.first_move_to = after.at;
+      link_.open_first_move = !step.retracted && !step.arc && after.at.z == before.at.z;
+    }
+    if (after.at.z != before.at.z) link_.flags |= kLinkLifts;
+    if (step.kind == StepKind::kTravel) link_.top = std::max(link_.top, after.at.z);
+  }
+}
+
+void BlockBuilder::TakeSlot(const Step& step) {
+  const std::string_view line = step.line.Text(file_.text);
+  const uint32_t setter = file_.setters.Intern(line, step.slots);
+  for (size_t slot = 0; slot < kSlotCount; ++slot) {
+    if (((step.slots >> slot) & 1u) == 0 || state_[slot] == setter) continue;
+    // Nothing written could bring back that a slot was never set.
+    const bool first = state_[slot] == 0;
+    if (first) link_.flags |= kLinkSplits;
+    state_[slot] = setter;
+    state_dirty_ = true;
+    if (where_ == Where::kBody) {
+      pending_ |= first ? kBlockState | kBlockPinned : kBlockState;
+      if ((SlotBit(static_cast<Slot>(slot)) & kFanSlots) != 0) pending_ |= kBlockFan;
+      if (slot == kSlotType) pending_ |= kBlockType;
+      if (line[0] != ';') pending_ |= kBlockCommand;
+    }
+  }
+}
+
+void BlockBuilder::TakeLabel(const Step& step) {
+  const std::string_view object = LabelledObject(step.line.Text(file_.text));
+  object_ = object.empty() ? 0 : file_.setters.Intern(object, 0);
+}
+
+// The start script ends at the first mark of a layer; in files without such marks at the last line
+// near the beginning that switches modes or waits for heat.
+void BlockBuilder::NoteScript(const Step& step) {
+  constexpr size_t kMostPurges = 12;
+  if (layers_marked_) return;
+  const Command& c = step.command;
+  const bool starts = step.kind == StepKind::kModeChange || c.Is('G', 21) || c.Is('G', 90) ||
+                      c.Is('M', 82) || c.Is('M', 83) || c.Is('M', 109) || c.Is('M', 190);
+  if (step.kind == StepKind::kLayerMark) {
+    layers_marked_ = true;
+    scripted_ = file_.blocks.size();
+  } else if (starts && file_.blocks.size() <= kMostPurges) {
+    scripted_ = file_.blocks.size();
+  }
+}
+
+uint32_t BlockBuilder::CurrentState() {
+  if (state_dirty_) {
+    state_id_ = file_.states.Intern(state_);
+    state_dirty_ = false;
+  }
+  return state_id_;
+}
+
+uint16_t BlockBuilder::ModeOf(const MachineState& state) {
+  for (size_t i = file_.modes.size(); i-- > 0;) {
+    if (file_.modes[i].SameModes(state)) return static_cast<uint16_t>(i);
+  }
+  // Beyond 65535 different modes (tool numbers) the blocks are pinned anyway, by their T lines.
+  if (file_.modes.size() < std::numeric_limits<uint16_t>::max()) file_.modes.push_back(state);
+  return static_cast<uint16_t>(file_.modes.size() - 1);
+}
+
+void BlockBuilder::BeginBlock(const Step& step, const MachineState& before,
+                              const MachineState& after) {
+  const bool to_tail = has_tail_ && link_.xy_moves == 0;
+  if (to_tail && !TailIsOwn()) UndoTail();
+  // A tail is all the way that such a path needs.
+  meets_tail_ = to_tail && link_.xy_moves == 0;
+  has_tail_ = false;
+  Block block;
+  block.begin = step.line.begin;
+  block.state_in = CurrentState();
+  block.feed_in = after.feed;
+  block.first = step.from;
+  block.e_in = before.e;
+  block.object = object_;
+  block.first_end = static_cast<uint32_t>(file_.ends.size());
+  block.mode = ModeOf(after);
+  CloseLink(block);
+  block.link = link_.flags;
+  block.travel_mm = static_cast<float>(link_.travel_mm);
+  if (link_.xy_moves > 0 && !file_.blocks.empty()) {
+    block.lift = std::max<Decimal>(0, link_.top - std::max(Last().last.z, block.first.z));
+  }
+  file_.blocks.push_back(block);
+  pending_ = 0;
+}
+
+// The first move of the link leads along the beginning of the path before it, a closed one, and
+// not to the next path.
+bool BlockBuilder::GoesOn() const {
+  constexpr double kBesideMm = 0.05;
+  const Block& block = Last();
+  if (!link_.open_first_move || link_.xy_moves < 2 || block.end_count < 3 ||
+      link_.first_move_mm > kMaxTailMm || !(link_.first_move_mm > 2 * kBesideMm)) {
+    return false;
+  }
+  const MachineState& mode = file_.modes[block.mode];
+  Vertex at = mode.InMm(block.first);
+  if (Distance(at, mode.InMm(block.last)) > kBesideMm) return false;
+  double left = link_.first_move_mm;
+  for (uint32_t i = 0; i < block.end_count && left > 0; ++i) {
+    const Vertex to = file_.ends[block.first_end + i];
+    const double length = Distance(at, to);
+    const double share = length > left ? left / length : 1;
+    at = {at.x + (to.x - at.x) * share, at.y + (to.y - at.y) * share};
+    left -= length;
+  }
+  return Distance(at, mode.InMm(link_.first_move_to)) <= kBesideMm;
+}
+
+void BlockBuilder::CloseLink(const Block& block) {
+  const bool first = file_.blocks.empty();
+  const bool new_layer =
+      first || Last().first.z != block.first.z || (link_.flags & kLinkNewLayer) != 0;
+  if (first) {
+    link_.flags |= kLinkFixed;
+  } else {
+    if (GoesOn()) Last().flags |= kBlockGoesOn;
+    const Block& last = Last();
+    if (last.mode != block.mode) link_.flags |= kLinkFixed;
+    if (last.object != block.object) link_.flags |= kLinkSplits;
+    if ((link_.flags & kLinkFixed) != 0 && !link_.lost && link_.travels_behind_fixed > 0) {
+      link_.flags = (link_.flags & ~kLinkFixed) | kLinkFixedFrom | kLinkSplits;
+    }
+    if (link_.xy_moves == 0 && !meets_tail_) link_.flags |= kLinkFixed;
+  }
+  const bool departs =
+      link_.xy_moves > 1 && link_.first_move_mm > 0 && link_.first_move_mm <= kMaxDepartureMm;
+  if (departs) link_.flags |= kLinkDeparts;
+  if (new_layer) {
+    link_.flags |= kLinkNewLayer | kLinkSplits;
+    BeginLayer(block);
+  }
+}
+
+void BlockBuilder::BeginLayer(const Block& block) {
+  const auto begin = static_cast<uint32_t>(file_.blocks.size());
+  if (!file_.layers.empty()) file_.layers.back().end_block = begin;
+  file_.layers.push_back(Layer{begin, begin, block.first.z});
+}
+
+void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
+                               const MachineState& after) {
+  Block& block = Last();
+  block.end = step.line.next;
+  block.last = after.at;
+  block.e_out = after.e;
+  block.feed_out = after.feed;
+  block.state_out = CurrentState();
+  block.flags |= pending_;
+  pending_ = 0;
+  link_ = OpenLink{};
+  if (step.retracted || before.at.z != after.at.z) block.flags |= kBlockPinned;
+  if (step.arc && !EndsOnItsCircle(step, after)) block.flags |= kBlockPinned;
+  if (step.kind == StepKind::kZeroExtrude) block.flags |= kBlockZero;
+  block.length_mm += static_cast<float>(StepMm(step, after));
+  file_.ends.push_back(after.InMm(after.at));
+  ++block.end_count;
+  if (block.segments < std::numeric_limits<uint16_t>::max()) ++block.segments;
+}
+
+// CuraEngine ends lines with a short move at print speed, and coasts at a little less. A travel
+// move is faster, or follows something else than the path.
+bool BlockBuilder::IsTail(const Step& step, const MachineState& before,
+                          const MachineState& after) const {
+  return step.kind == StepKind::kTravel && !step.arc && before.at.z == after.at.z &&
+         after.feed <= Last().feed_out && StepMm(step, after) <= kMaxTailMm;
+}
+
+void BlockBuilder::TakeTail(const Step& step, const MachineState& before,
+                            const MachineState& after) {
+  if (!has_tail_) {
+    before_tail_ = Last();
+    has_tail_ = true;
+  }
+  NoteInLink(step, before, after);
+  tail_ = link_;
+  Block& block = Last();
+  block.end = step.line.next;
+  block.last = after.at;
+  block.feed_out = after.feed;
+  block.state_out = CurrentState();
+  block.flags |= kBlockTail | pending_;
+  if (after.feed < before_tail_.feed_out) block.flags |= kBlockCoast;
+  pending_ = 0;
+  link_ = OpenLink{};
+}
+
+// The tail leads straight on from the path, or back to where that began.
+bool BlockBuilder::TailIsOwn() const {
+  constexpr double kBesideMm = 0.05;
+  const Block& path = before_tail_;
+  const MachineState& mode = file_.modes[path.mode];
+  const Vertex tail = mode.InMm(Last().last);
+  if (Distance(tail, mode.InMm(path.first)) <= kBesideMm) return true;
+  const Vertex end = mode.InMm(path.last);
+  const Vertex before =
+      path.end_count > 1 ? file_.ends[path.first_end + path.end_count - 2] : mode.InMm(path.first);
+  const double length = Distance(before, end);
+  if (!(length > 0)) return false;
+  const double reach = Distance(end, tail) / length;
+  const Vertex on{end.x + (end.x - before.x) * reach, end.y + (end.y - before.y) * reach};
+  return Distance(on, tail) <= kBesideMm;
+}
+
+// The next path begins where the tail ended: it was the way there.
+void BlockBuilder::UndoTail() {
+  Last() = before_tail_;
+  tail_.flags |= link_.flags;
+  link_ = tail_;
+}
+
+void BlockBuilder::Finish() {
+  if (file_.blocks.empty()) return;
+  file_.layers.back().end_block = static_cast<uint32_t>(file_.blocks.size());
+  // A first mark that most of the print stands before is none.
+  if (scripted_ * 2 > file_.blocks.size()) return;
+  for (size_t i = 0; i < scripted_; ++i) file_.blocks[i].flags |= kBlockScript;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,79 @@
+// Collects the lines of a file into blocks and links while an interpreter follows them.
+
+#ifndef TRAVERSE_CLIENT_GCODE_READ_BLOCK_BUILDER_H_
+#define TRAVERSE_CLIENT_GCODE_READ_BLOCK_BUILDER_H_
+
+#include "client/gcode/model/gcode_file.h"
+
+namespace traverse::gcode {
+
+class BlockBuilder {
+ public:
+  // Fills `file`, whose text is set. `file` outlives the builder.
+  explicit BlockBuilder(GcodeFile& file) : file_(file) {}
+
+  // Takes the step that `interpreter` has just made; `before` is the machine before it.
+  void Take(const Step& step, const MachineState& before, const Interpreter& interpreter);
+
+  // The text is at its end.
+  void Finish();
+
+ private:
+  enum class Where { kHead, kBody, kTail, kLink };
+
+  // What is known of the link that is being read.
+  struct OpenLink {
+    uint16_t flags = 0;
+    int xy_moves = 0;
+    double first_move_mm = 0;
+    Position first_move_to;  // of a travel move without filament pulled back
+    bool open_first_move = false;
+    bool lost = false;             // a move that is not understood: where it led is not known
+    int travels_behind_fixed = 0;  // moves in XY behind the last line that has to stay
+    double travel_mm = 0;
+    Decimal top = -kDecimalMax;  // the highest Z of its moves in XY
+  };
+
+  void TakePrinting(const Step& step, const MachineState& before, const MachineState& after);
+  void TakeOther(const Step& step, const MachineState& before, const MachineState& after);
+  void TakeSlot(const Step& step);
+  void TakeLabel(const Step& step);
+  void NoteScript(const Step& step);
+  void NoteInLink(const Step& step, const MachineState& before, const MachineState& after);
+  bool IsTail(const Step& step, const MachineState& before, const MachineState& after) const;
+  void TakeTail(const Step& step, const MachineState& before, const MachineState& after);
+  bool TailIsOwn() const;
+  void UndoTail();
+  void BeginBlock(const Step& step, const MachineState& before, const MachineState& after);
+  void ExtendBlock(const Step& step, const MachineState& before, const MachineState& after);
+  bool GoesOn() const;
+  void CloseLink(const Block& block);
+  void BeginLayer(const Block& block);
+  uint32_t CurrentState();
+  uint16_t ModeOf(const MachineState& state);
+  Block& Last() { return file_.blocks.back(); }
+  const Block& Last() const { return file_.blocks.back(); }
+
+  GcodeFile& file_;
+  PrintState state_{};
+  bool state_dirty_ = true;
+  uint32_t state_id_ = 0;
+  uint32_t object_ = 0;
+
+  size_t scripted_ = 0;  // blocks of the start script, as far as is known
+  bool layers_marked_ = false;
+
+  Where where_ = Where::kHead;
+  uint16_t pending_ = 0;  // BlockFlags of lines behind the last extruding one
+  OpenLink link_;
+
+  // Set while the last block ends with a tail: what it was before, and the tail as part of a link.
+  bool has_tail_ = false;
+  bool meets_tail_ = false;  // the block that begins does so where the tail ended
+  Block before_tail_;
+  OpenLink tail_;
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_READ_BLOCK_BUILDER_H_

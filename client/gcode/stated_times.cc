@@ -1,0 +1,245 @@
+#include "client/gcode/stated_times.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_format.h"
+#include "client/gcode/verify/verifier.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr std::string_view kRestated = "times restated x";
+
+bool IsDigit(char c) { return c >= '0' && c <= '9'; }
+
+absl::string_view AsAbsl(std::string_view text) { return {text.data(), text.size()}; }
+
+std::string_view Trim(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r";
+  const size_t begin = text.find_first_not_of(kBlank);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
+}
+
+// Seconds of a "1d 2h 3m 4s", of which any part may be missing.
+std::optional<int64_t> ParseDuration(std::string_view text) {
+  constexpr std::string_view kUnits = "dhms";
+  constexpr std::array<int64_t, 4> kSeconds = {86400, 3600, 60, 1};
+  constexpr int64_t kMost = int64_t{1} << 40;
+  int64_t seconds = 0;
+  size_t unit = 0;
+  bool any = false;
+  while (!(text = Trim(text)).empty()) {
+    int64_t number = 0;
+    size_t digits = 0;
+    while (digits < text.size() && IsDigit(text[digits]) && number < kMost) {
+      number = 10 * number + (text[digits++] - '0');
+    }
+    if (digits == 0 || digits == text.size() || number >= kMost) return std::nullopt;
+    unit = kUnits.find(text[digits], unit);
+    if (unit == std::string_view::npos) return std::nullopt;
+    seconds += number * kSeconds[unit++];
+    text.remove_prefix(digits + 1);
+    any = true;
+  }
+  return any ? std::optional(seconds) : std::nullopt;
+}
+
+// As slicers write it: from the first part that is not 0 on.
+std::string FormatDuration(int64_t seconds) {
+  if (seconds >= 86400) {
+    return absl::StrFormat("%dd %dh %dm %ds", seconds / 86400, seconds / 3600 % 24,
+                           seconds / 60 % 60, seconds % 60);
+  }
+  if (seconds >= 3600) {
+    return absl::StrFormat("%dh %dm %ds", seconds / 3600, seconds / 60 % 60, seconds % 60);
+  }
+  if (seconds >= 60) return absl::StrFormat("%dm %ds", seconds / 60, seconds % 60);
+  return absl::StrFormat("%ds", seconds);
+}
+
+// A number with as many decimals as it had.
+std::optional<std::string> ScaleNumber(std::string_view value, double factor) {
+  const size_t point = value.find('.');
+  double number = 0;
+  const bool plain = !value.empty() && value.find_first_not_of("0123456789.") == value.npos;
+  if (!plain || !absl::SimpleAtod(AsAbsl(value), &number)) return std::nullopt;
+  constexpr size_t kMost = 9;
+  const size_t decimals =
+      point == std::string_view::npos ? 0 : std::min(value.size() - point - 1, kMost);
+  return absl::StrFormat("%.*f", static_cast<int>(decimals), number * factor);
+}
+
+// `line` with `value`, which lies in it, scaled; the line itself if the value is no time.
+std::string WithScaled(std::string_view line, std::string_view value, double factor) {
+  const std::optional<std::string> scaled = ScaleDuration(value, factor);
+  if (!scaled) return std::string(line);
+  const auto begin = static_cast<size_t>(value.data() - line.data());
+  std::string out(line.substr(0, begin));
+  out += *scaled;
+  out += line.substr(begin + value.size());
+  return out;
+}
+
+// `; model printing time: 1m 6s; total estimated time: 9m 3s`: the rest of the second, heating and
+// so on, stays as it is.
+std::string RestateModelTime(std::string_view line, double factor) {
+  constexpr std::string_view kModel = "model printing time:";
+  constexpr std::string_view kTotal = "total estimated time:";
+  const size_t model_begin = line.find(kModel) + kModel.size();
+  const size_t model_end = line.find(';', model_begin);
+  const std::string_view model = Trim(line.substr(model_begin, model_end - model_begin));
+  const std::optional<int64_t> model_seconds = ParseDuration(model);
+  if (!model_seconds) return std::string(line);
+  const auto scaled =
+      static_cast<int64_t>(std::llround(static_cast<double>(*model_seconds) * factor));
+  std::string out = WithScaled(line, model, factor);
+  const size_t total_begin = out.find(kTotal);
+  if (total_begin == std::string::npos) return out;
+  const std::string_view total = Trim(std::string_view(out).substr(total_begin + kTotal.size()));
+  const std::optional<int64_t> total_seconds = ParseDuration(total);
+  if (!total_seconds) return out;
+  const auto at = static_cast<size_t>(total.data() - out.data());
+  return out.replace(
+      at, total.size(),
+      FormatDuration(std::max<int64_t>(0, *total_seconds - *model_seconds + scaled)));
+}
+
+// Comments that state a time behind a word.
+struct Stated {
+  std::string_view begin;  // of the comment, behind ';' and blanks
+  char mark;               // the value is behind it
+  bool first_layer;
+};
+constexpr std::array<Stated, 8> kStated = {{
+    {"estimated printing time", '=', false},
+    {"estimated first layer printing time", '=', true},
+    {"TIME:", ':', false},
+    {"TIME_ELAPSED:", ':', false},
+    {"PRINTING_TIME:", ':', false},
+    {"REMAINING_TIME:", ':', false},
+    {"Print Time:", ':', false},
+    {"Print time:", ':', false},
+}};
+
+std::string RestateComment(std::string_view line, const TimeScale& scale) {
+  const std::string_view comment = Trim(line.substr(1));
+  if (comment.starts_with("model printing time:")) return RestateModelTime(line, scale.total);
+  for (const Stated& stated : kStated) {
+    if (!comment.starts_with(stated.begin)) continue;
+    const size_t mark = comment.find(stated.mark);
+    if (mark == std::string_view::npos) break;
+    return WithScaled(line, Trim(comment.substr(mark + 1)),
+                      stated.first_layer ? scale.first_layer : scale.total);
+  }
+  return std::string(line);
+}
+
+// Minutes left are whole ones, rounded down.
+std::string RestateProgress(std::string_view line, double factor) {
+  std::string out;
+  const std::string_view words = line.substr(0, line.find(';'));
+  for (size_t at = 0; at < words.size();) {
+    const bool minutes = at > 0 && words[at - 1] == ' ' &&
+                         std::string_view("RSCD").find(words[at]) != std::string_view::npos;
+    out += words[at++];
+    if (!minutes) continue;
+    size_t end = at;
+    while (end < words.size() && IsDigit(words[end])) ++end;
+    int64_t number = 0;
+    if (end == at || !absl::SimpleAtoi(AsAbsl(words.substr(at, end - at)), &number)) continue;
+    constexpr double kMiddle = 0.5;  // of the minute that the number stands for
+    out += absl::StrFormat("%d",
+                           static_cast<int64_t>((static_cast<double>(number) + kMiddle) * factor));
+    at = end;
+  }
+  out += line.substr(words.size());
+  return out;
+}
+
+}  // namespace
+
+size_t FindMark(std::string_view text) {
+  if (text.starts_with(kOptimisedMark)) return 0;
+  const size_t before = text.find("\n" + std::string(kOptimisedMark));
+  return before == std::string_view::npos ? before : before + 1;
+}
+
+std::string DescribeScale(const TimeScale& scale) {
+  return absl::StrFormat("%s%.6f, first layer x%.6f", AsAbsl(kRestated), scale.total,
+                         scale.first_layer);
+}
+
+TimeScale RoundScale(const TimeScale& scale) {
+  return StatedScale(std::string(kOptimisedMark) + " " + DescribeScale(scale)).value_or(scale);
+}
+
+std::optional<TimeScale> StatedScale(std::string_view text) {
+  const size_t mark = FindMark(text);
+  if (mark == std::string_view::npos) return std::nullopt;
+  const std::string_view line = text.substr(mark, text.find('\n', mark) - mark);
+  size_t at = line.find(kRestated);
+  if (at == std::string_view::npos) return std::nullopt;
+  const auto number = [&](size_t begin) {
+    double value = 0;
+    const size_t end = std::min(line.find_first_not_of("0123456789.", begin), line.size());
+    const bool good = absl::SimpleAtod(AsAbsl(line.substr(begin, end - begin)), &value);
+    return good && value > 0 && std::isfinite(value) ? value : 1;
+  };
+  constexpr std::string_view kFirst = "first layer x";
+  TimeScale scale;
+  scale.total = number(at + kRestated.size());
+  at = line.find(kFirst, at);
+  if (at != std::string_view::npos) scale.first_layer = number(at + kFirst.size());
+  return scale;
+}
+
+std::optional<std::string> ScaleDuration(std::string_view value, double factor) {
+  if (const std::optional<int64_t> seconds = ParseDuration(value)) {
+    return FormatDuration(std::llround(static_cast<double>(*seconds) * factor));
+  }
+  return ScaleNumber(value, factor);
+}
+
+std::string RestateTimes(std::string_view text, const TimeScale& scale) {
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    const size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    if (line.starts_with(';')) {
+      out += RestateComment(line, scale);
+    } else if (line.starts_with("M73 ")) {
+      out += RestateProgress(line, scale.total);
+    } else {
+      out += line;
+    }
+    if (end < text.size()) out += '\n';
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return out;
+}
+
+std::string RestateOptimised(std::string_view text, const TimeScale& scale) {
+  std::string out = RestateTimes(text, scale);
+  const size_t mark = FindMark(out);
+  if (mark == std::string::npos) return out;
+  size_t end = std::min(out.find('\n', mark), out.size());
+  if (end > 0 && out[end - 1] == '\r') --end;
+  return out.insert(end, ", " + DescribeScale(scale));
+}
+
+std::optional<std::string> RestateEntry(std::string_view key, std::string_view value,
+                                        const TimeScale& scale) {
+  if (key.starts_with("estimated printing time")) return ScaleDuration(Trim(value), scale.total);
+  if (key.starts_with("estimated first layer printing time")) {
+    return ScaleDuration(Trim(value), scale.first_layer);
+  }
+  return std::nullopt;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,62 @@
+// Numbers of G-code, kept exactly.
+//
+// A file is text: an extrusion of 0.00001 mm that a rewriter's rounding loses is a segment lost. So
+// numbers are integers in units of 1e-9 (of mm, inch, mm/min, whatever the word means), and
+// arithmetic on them is exact.
+
+#ifndef TRAVERSE_CLIENT_GCODE_TEXT_DECIMAL_H_
+#define TRAVERSE_CLIENT_GCODE_TEXT_DECIMAL_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace traverse::gcode {
+
+// A number in units of 1e-9.
+using Decimal = int64_t;
+
+inline constexpr int kDecimalDigits = 9;
+inline constexpr Decimal kDecimalOne = 1'000'000'000;
+
+// Numbers beyond this are refused, so that sums and differences of a few cannot overflow.
+inline constexpr Decimal kDecimalMax = 1'000'000'000 * kDecimalOne;
+
+inline double ToDouble(Decimal value) { return static_cast<double>(value) * 1e-9; }
+
+// Reads a number as G-code writes it (`-.8`, `12`, `9000.000`, `+1.5`) at `*text` and moves `*text`
+// past it. Nothing if there is none, if it is beyond kDecimalMax, or if it has more than nine
+// decimals that are not zero: then it could not be kept exactly.
+std::optional<Decimal> ParseDecimal(const char** text, const char* end);
+
+// How a file writes its numbers.
+struct NumberStyle {
+  // Decimals always written, as in `E1.00000`; -1: trailing zeros are left out.
+  int fixed_decimals = -1;
+
+  // `0.8` and not `.8`.
+  bool leading_zero = true;
+};
+
+// Appends `value`, never rounded: decimals beyond `fixed_decimals` are written if they are not
+// zero.
+void AppendDecimal(Decimal value, NumberStyle style, std::string& out);
+
+// Learns a style from the numbers it is shown.
+class NumberStyleLearner {
+ public:
+  // `token` is a number as read by ParseDecimal.
+  void Show(std::string_view token);
+  NumberStyle Learned() const;
+
+ private:
+  int seen_ = 0;
+  int padded_ = 0;           // tokens whose decimals end in a zero
+  int decimals_ = 0;         // most decimals of a padded token
+  bool bare_point_ = false;  // a token begins with its point
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_TEXT_DECIMAL_H_

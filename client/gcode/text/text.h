@@ -1,0 +1,22 @@
+// Small helpers on std::string_view, which Debian 12's absl/strings does not take.
+
+#ifndef TRAVERSE_CLIENT_GCODE_TEXT_TEXT_H_
+#define TRAVERSE_CLIENT_GCODE_TEXT_TEXT_H_
+
+#include <string_view>
+
+namespace traverse::gcode {
+
+inline bool StartsWith(std::string_view text, std::string_view prefix) {
+  return text.substr(0, prefix.size()) == prefix;
+}
+
+inline std::string_view TrimBlanks(std::string_view text) {
+  const size_t first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_TEXT_TEXT_H_

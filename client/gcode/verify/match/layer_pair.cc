@@ -1,0 +1,290 @@
+#include "client/gcode/verify/match/layer_pair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kCellMm = 1.0;
+constexpr double kEndSlackMm = 0.25;  // of a way, where it may touch the walls that it joins
+constexpr double kOnPathMm = 0.05;    // a tail lies this near to its path
+constexpr double kLongestStraightMm = 1.0;
+constexpr double kStraightCosine = 0.996;  // of 5 degrees
+constexpr double kThinFlow = 0.4;          // of what is usual: ironing
+constexpr double kOverMm = 0.3;            // ironing lies this near to what it irons
+constexpr double kWallsApartMm = 0.9;      // walls of one outline lie no farther apart
+
+bool Begins(std::string_view text, std::string_view with) {
+  return text.substr(0, with.size()) == with;
+}
+
+// The value of `; NAME = VALUE` in `text`.
+std::string_view Setting(std::string_view text, std::string_view name) {
+  for (size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1)) {
+    if (at < 2 || text[at - 1] != ' ' || text[at - 2] != ';') continue;
+    std::string_view rest = text.substr(at + name.size(), 64);
+    if (!Begins(rest, " = ")) continue;
+    rest.remove_prefix(3);
+    return rest.substr(0, rest.find_first_of("\r\n"));
+  }
+  return {};
+}
+
+double FlowOf(const TracePath& path) {
+  return path.length_mm > 0 ? path.filament_mm / path.length_mm : 0;
+}
+
+// The flow that half of the filament of skins is laid with, or less.
+double UsualFlow(const TraceChunk& chunk, const std::vector<uint32_t>& skins) {
+  std::vector<std::pair<double, double>> flows;  // flow, filament
+  double filament = 0;
+  for (const uint32_t path : skins) {
+    flows.emplace_back(FlowOf(chunk.paths[path]), chunk.paths[path].filament_mm);
+    filament += chunk.paths[path].filament_mm;
+  }
+  std::sort(flows.begin(), flows.end());
+  double seen = 0;
+  for (const auto& [flow, amount] : flows) {
+    seen += amount;
+    if (seen * 2 >= filament) return flow;
+  }
+  return 0;
+}
+
+bool GoesStraightOn(const TraceMove& move, const Piece& last) {
+  const double length = move.length_mm();
+  const double before = DistanceOf(last.a, last.b);
+  if (length > kLongestStraightMm || length <= 0 || before <= 0) return false;
+  const double dot = (move.to.x - move.from.x) * (last.b.x - last.a.x) +
+                     (move.to.y - move.from.y) * (last.b.y - last.a.y);
+  return dot >= kStraightCosine * length * before;
+}
+
+bool LiesOn(Point p, absl::Span<const Piece> pieces) {
+  return std::any_of(pieces.begin(), pieces.end(), [p](const Piece& piece) {
+    return DistanceToPiece(p, piece.a, piece.b) <= kOnPathMm;
+  });
+}
+
+}  // namespace
+
+SlicerSettings ReadSettings(std::string_view text) {
+  constexpr size_t kEnd = 1 << 18;
+  const std::string_view head = text.substr(0, kEnd);
+  const std::string_view tail = text.substr(text.size() - std::min(kEnd, text.size()));
+  const auto first_of = [&](std::string_view one, std::string_view other) {
+    for (const std::string_view part : {tail, head}) {
+      for (const std::string_view name : {one, other}) {
+        if (const std::string_view value = Setting(part, name); !value.empty()) return value;
+      }
+    }
+    return std::string_view{};
+  };
+  SlicerSettings settings;
+  const std::string_view top = first_of("top_fill_pattern", "top_surface_pattern");
+  const std::string_view bottom = first_of("bottom_fill_pattern", "bottom_surface_pattern");
+  settings.monotonic_top = top.empty() || Begins(top, "monotonic");
+  settings.monotonic_bottom = Begins(bottom, "monotonic");
+  return settings;
+}
+
+LayerPair::LayerPair(const TraceChunk& was, const TraceChunk& is, size_t layer)
+    : was_(was), is_(is), layer_(layer), outer_walls_({}, kCellMm) {
+  const TraceLayer& of_was = was.layers[layer];
+  const TraceLayer& of_is = is.layers[layer];
+  first_path_ = was.sections[of_was.first_section].first_path;
+  end_was_ = was.sections[of_was.end_section - 1].end_path;
+  first_is_ = is.sections[of_is.first_section].first_path;
+  end_is_ = is.sections[of_is.end_section - 1].end_path;
+  LearnFacts();
+  LearnShapes();
+  LearnIroning();
+  std::vector<Piece> outer;
+  for (const Piece& piece : pieces_) {
+    if (Outer(piece.path)) outer.push_back(piece);
+  }
+  outer_walls_ = PieceGrid(std::move(outer), kCellMm);
+  Match();
+}
+
+void LayerPair::LearnFacts() {
+  facts_.resize(end_was_ - first_path_);
+  for (uint32_t path = first_path_; path < end_was_; ++path) {
+    const TracePath& traced = was_.paths[path];
+    Facts& facts = FactsOf(path);
+    facts.first_piece = static_cast<uint32_t>(pieces_.size());
+    AppendPieces(was_, path, pieces_);
+    facts.piece_count = static_cast<uint32_t>(pieces_.size()) - facts.first_piece;
+    facts.closed = IsClosed(was_, path);
+    facts.path_class = traced.path_class;
+    facts.outer = traced.path_class == PathClass::kOuterWall ||
+                  traced.path_class == PathClass::kOverhang ||
+                  (IsWallClass(traced.path_class) && (traced.outer || traced.overhangs));
+  }
+}
+
+// A line out and back ends where it began, too.
+bool LayerPair::IsLoopToName(uint32_t path) const {
+  const Facts& facts = facts_[path - first_path_];
+  const bool unsure =
+      facts.path_class == PathClass::kUnnamed || facts.path_class == PathClass::kWall;
+  return unsure && facts.closed && facts.piece_count > 2;
+}
+
+// Loops of files that do not name what they are of: a wall that has no other one on its outer side
+// is an outer one. Slicers print outlines counter-clockwise and holes clockwise, so that the
+// outside is on the right.
+void LayerPair::LearnShapes() {
+  std::vector<Piece> loops;
+  for (const Piece& piece : pieces_) {
+    if (IsLoopToName(piece.path)) loops.push_back(piece);
+  }
+  if (loops.empty()) return;
+  const PieceGrid grid(std::move(loops), kCellMm);
+  for (uint32_t path = first_path_; path < end_was_; ++path) {
+    Facts& facts = FactsOf(path);
+    if (!IsLoopToName(path)) continue;
+    const bool inside = IsInside(path, grid);
+    facts.path_class = inside ? PathClass::kInnerWall : PathClass::kOuterWall;
+    facts.outer = !inside;
+  }
+}
+
+// True if at most places of the loop another one lies beside it, on its right.
+bool LayerPair::IsInside(uint32_t path, const PieceGrid& loops) const {
+  constexpr size_t kPlaces = 24;
+  const absl::Span<const Piece> pieces = PiecesOf(path);
+  const size_t step = std::max<size_t>(1, pieces.size() / kPlaces);
+  double along = 0;
+  double beside = 0;
+  for (size_t i = 0; i < pieces.size(); i += step) {
+    const Piece& piece = pieces[i];
+    const double length = DistanceOf(piece.a, piece.b);
+    if (length <= 0) continue;
+    const Point middle{(piece.a.x + piece.b.x) / 2, (piece.a.y + piece.b.y) / 2};
+    const Point right{(piece.b.y - piece.a.y) / length, (piece.a.x - piece.b.x) / length};
+    const Point from{middle.x + 0.02 * right.x, middle.y + 0.02 * right.y};
+    const Point to{middle.x + kWallsApartMm * right.x, middle.y + kWallsApartMm * right.y};
+    bool found = false;
+    loops.ForEachAlong(from, to, [&](uint32_t other) {
+      const Piece& p = loops.pieces()[other];
+      found = p.path != path && PiecesCross(from, to, p.a, p.b);
+      return !found;
+    });
+    along += length;
+    if (found) beside += length;
+  }
+  return beside * 2 > along;
+}
+
+void LayerPair::LearnIroning() {
+  std::vector<uint32_t> skins;
+  for (uint32_t path = first_path_; path < end_was_; ++path) {
+    const PathClass path_class = ClassOf(path);
+    if (path_class == PathClass::kSkin || path_class == PathClass::kTop) skins.push_back(path);
+  }
+  const double thin = kThinFlow * UsualFlow(was_, skins);
+  const auto is_thin = [&](uint32_t path) { return FlowOf(was_.paths[path]) < thin; };
+  if (std::none_of(skins.begin(), skins.end(), is_thin)) return;
+  std::vector<Piece> thick;
+  for (const uint32_t path : skins) {
+    if (is_thin(path)) continue;
+    const absl::Span<const Piece> pieces = PiecesOf(path);
+    thick.insert(thick.end(), pieces.begin(), pieces.end());
+  }
+  const PieceGrid grid(std::move(thick), kCellMm);
+  for (const uint32_t path : skins) {
+    if (!is_thin(path)) continue;
+    const absl::Span<const Piece> pieces = PiecesOf(path);
+    const auto longest = std::max_element(
+        pieces.begin(), pieces.end(),
+        [](const Piece& p, const Piece& q) { return DistanceOf(p.a, p.b) < DistanceOf(q.a, q.b); });
+    int over = 0;
+    for (const double t : {0.25, 0.5, 0.75}) {
+      const Point p{longest->a.x + t * (longest->b.x - longest->a.x),
+                    longest->a.y + t * (longest->b.y - longest->a.y)};
+      bool found = false;
+      grid.ForEachNear(p, p, kOverMm, [&](uint32_t i) {
+        found = DistanceToPiece(p, grid.pieces()[i].a, grid.pieces()[i].b) <= kOverMm;
+        return !found;
+      });
+      over += found ? 1 : 0;
+    }
+    if (over >= 2) FactsOf(path).path_class = PathClass::kIroning;
+  }
+}
+
+void LayerPair::Match() {
+  section_begin_.push_back(0);
+  const size_t sections = was_.layers[layer_].end_section - was_.layers[layer_].first_section;
+  for (size_t k = 0; k < sections; ++k) {
+    const std::vector<Visit> visits = FindVisits(was_, SectionWas(k), is_, SectionIs(k));
+    visits_.insert(visits_.end(), visits.begin(), visits.end());
+    section_begin_.push_back(visits_.size());
+  }
+  for (uint32_t link = first_path_; link <= end_was_; ++link) {
+    for (uint32_t m = was_.links[link].first_move; m < was_.links[link].end_move; ++m) {
+      known_.insert(was_.moves[m].identity);
+    }
+  }
+}
+
+uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
+                              absl::Span<const Piece> pieces) {
+  const TraceLink& link = chunk.links[path + 1];
+  const TracePath& traced = chunk.paths[path];
+  const Point before = chunk.StartOf(traced, traced.end_segment - 1);
+  const Piece last{before, chunk.EndOf(traced), path};
+  uint32_t m = link.first_move;
+  for (; m < link.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (move.kind != MoveKind::kTravel || !move.open || move.feed > traced.feed) break;
+    if (move.z_to_mm != move.z_from_mm) break;
+    const bool straight = m == link.first_move && GoesStraightOn(move, last);
+    const bool along =
+        LiesOn(move.to, pieces) &&
+        LiesOn({(move.from.x + move.to.x) / 2, (move.from.y + move.to.y) / 2}, pieces);
+    if (!straight && !along) break;
+  }
+  return m - link.first_move;
+}
+
+double LayerPair::CrossingLength(const TraceChunk& chunk, uint32_t link, bool open) const {
+  const TraceLink& traced = chunk.links[link];
+  std::vector<const TraceMove*> way;
+  double length = 0;
+  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (move.kind != MoveKind::kTravel || move.open != open) continue;
+    way.push_back(&move);
+    length += move.length_mm();
+  }
+  if (outer_walls_.empty() || length <= 0) return 0;
+  const double cut = std::min(kEndSlackMm, 0.2 * length);
+  double at = 0;
+  for (const TraceMove* move : way) {
+    const double own = move->length_mm();
+    const double from = std::clamp(cut - at, 0.0, own);
+    const double to = std::clamp(length - cut - at, 0.0, own);
+    at += own;
+    if (to <= from) continue;
+    const auto point = [move, own](double t) {
+      return Point{move->from.x + (move->to.x - move->from.x) * t / own,
+                   move->from.y + (move->to.y - move->from.y) * t / own};
+    };
+    const Point a = point(from);
+    const Point b = point(to);
+    bool crossed = false;
+    outer_walls_.ForEachAlong(a, b, [&](uint32_t i) {
+      const Piece& wall = outer_walls_.pieces()[i];
+      crossed = PiecesCross(a, b, wall.a, wall.b);
+      return !crossed;
+    });
+    if (crossed) return length;
+  }
+  return 0;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,111 @@
+// One layer of both files, with what the rules ask again and again.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_LAYER_PAIR_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_LAYER_PAIR_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "absl/container/flat_hash_set.h"
+#include "absl/types/span.h"
+#include "client/gcode/verify/match/plane.h"
+#include "client/gcode/verify/match/visits.h"
+#include "client/gcode/verify/trace/trace.h"
+
+namespace traverse::gcode {
+
+// What the slicer's settings at the end of the file say.
+struct SlicerSettings {
+  bool monotonic_top = true;
+  bool monotonic_bottom = false;
+};
+
+SlicerSettings ReadSettings(std::string_view text);
+
+class LayerPair {
+ public:
+  // Layer `layer` of both chunks. REQUIRES: their sections hold the same deposits.
+  LayerPair(const TraceChunk& was, const TraceChunk& is, size_t layer);
+
+  const TraceChunk& was() const { return was_; }
+  const TraceChunk& is() const { return is_; }
+  int64_t index() const { return was_.layers[layer_].index; }
+
+  uint32_t first_path_was() const { return first_path_; }
+  uint32_t end_path_was() const { return end_was_; }
+  uint32_t first_path_is() const { return first_is_; }
+  uint32_t end_path_is() const { return end_is_; }
+
+  const std::vector<Visit>& visits() const { return visits_; }
+  absl::Span<const Visit> SectionVisits(size_t section) const {
+    return absl::MakeSpan(visits_).subspan(section_begin_[section],
+                                           section_begin_[section + 1] - section_begin_[section]);
+  }
+  size_t section_count() const { return section_begin_.size() - 1; }
+  const TraceSection& SectionWas(size_t section) const {
+    return was_.sections[was_.layers[layer_].first_section + section];
+  }
+  const TraceSection& SectionIs(size_t section) const {
+    return is_.sections[is_.layers[layer_].first_section + section];
+  }
+
+  // Of a path of the original: what it is; of an unnamed one by its shape, and ironing by its flow.
+  PathClass ClassOf(uint32_t path) const { return facts_[path - first_path_].path_class; }
+  bool IsWall(uint32_t path) const { return IsWallClass(ClassOf(path)); }
+  bool Closed(uint32_t path) const { return facts_[path - first_path_].closed; }
+  bool Outer(uint32_t path) const { return facts_[path - first_path_].outer; }
+  absl::Span<const Piece> PiecesOf(uint32_t path) const {
+    const Facts& facts = facts_[path - first_path_];
+    return absl::MakeSpan(pieces_).subspan(facts.first_piece, facts.piece_count);
+  }
+  const std::vector<Piece>& pieces() const { return pieces_; }
+
+  // The outer walls of the layer, and overhanging ones.
+  const PieceGrid& outer_walls() const { return outer_walls_; }
+
+  // True if the original has the same move, from the same point to the same point, in this layer.
+  bool IsKnown(const TraceMove& move) const { return known_.contains(move.identity); }
+
+  // The moves at the beginning of link `path` + 1 that go on along the path, without filament and
+  // no faster than it was printed; `pieces` are those of the path.
+  static uint32_t TailMoves(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces);
+
+  // The length of the ways of `link` across outer walls that are open (or retracted); 0 if there is
+  // none. The ends of a way, which may lie on walls, do not count.
+  double CrossingLength(const TraceChunk& chunk, uint32_t link, bool open) const;
+
+ private:
+  struct Facts {
+    PathClass path_class = PathClass::kUnnamed;
+    bool closed = false;
+    bool outer = false;
+    uint32_t first_piece = 0;
+    uint32_t piece_count = 0;
+  };
+
+  Facts& FactsOf(uint32_t path) { return facts_[path - first_path_]; }
+  void LearnFacts();
+  bool IsLoopToName(uint32_t path) const;
+  void LearnShapes();
+  bool IsInside(uint32_t path, const PieceGrid& loops) const;
+  void LearnIroning();
+  void Match();
+
+  const TraceChunk& was_;
+  const TraceChunk& is_;
+  const size_t layer_;
+  uint32_t first_path_ = 0;
+  uint32_t end_was_ = 0;
+  uint32_t first_is_ = 0;
+  uint32_t end_is_ = 0;
+  std::vector<Facts> facts_;  // [path - first_path_]
+  std::vector<Piece> pieces_;
+  PieceGrid outer_walls_;
+  std::vector<Visit> visits_;
+  std::vector<size_t> section_begin_;  // in visits_
+  absl::flat_hash_set<uint64_t> known_;
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_LAYER_PAIR_H_

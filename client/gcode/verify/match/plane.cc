@@ -1,0 +1,105 @@
+#include "client/gcode/verify/match/plane.h"
+
+#include <utility>
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kChordMm = 0.01;  // an arc may lie this far from its chord
+constexpr int kMostChords = 360;
+
+double Side(Point a, Point b, Point p) {
+  return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+}
+
+void AppendArc(Point from, Point to, const TraceArc& arc, uint32_t path,
+               std::vector<Piece>& pieces) {
+  const double radius = DistanceOf(from, arc.center);
+  const double begin = std::atan2(from.y - arc.center.y, from.x - arc.center.x);
+  const double end = std::atan2(to.y - arc.center.y, to.x - arc.center.x);
+  double sweep = arc.clockwise ? begin - end : end - begin;
+  while (sweep <= 1e-9) sweep += 2 * M_PI;
+  const double step = radius > kChordMm ? 2 * std::acos(1 - kChordMm / radius) : M_PI;
+  const int n = std::clamp(static_cast<int>(std::ceil(sweep / step)), 1, kMostChords);
+  Point at = from;
+  for (int k = 1; k <= n; ++k) {
+    const double angle = begin + (arc.clockwise ? -sweep : sweep) * k / n;
+    const Point next = k == n ? to
+                              : Point{arc.center.x + radius * std::cos(angle),
+                                      arc.center.y + radius * std::sin(angle)};
+    pieces.push_back({at, next, path});
+    at = next;
+  }
+}
+
+}  // namespace
+
+double DistanceToPiece(Point p, Point a, Point b) {
+  const double dx = b.x - a.x;
+  const double dy = b.y - a.y;
+  const double squared = dx * dx + dy * dy;
+  if (squared <= 0) return DistanceOf(p, a);
+  const double t = std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / squared, 0.0, 1.0);
+  return DistanceOf(p, {a.x + t * dx, a.y + t * dy});
+}
+
+bool PiecesCross(Point a, Point b, Point c, Point d) {
+  const double c_side = Side(a, b, c);
+  const double d_side = Side(a, b, d);
+  if ((c_side > 0 && d_side > 0) || (c_side < 0 && d_side < 0)) return false;
+  const double a_side = Side(c, d, a);
+  const double b_side = Side(c, d, b);
+  return ((a_side > 0) != (b_side > 0)) && a_side != 0 && b_side != 0 && (c_side != d_side);
+}
+
+double DistanceOfPieces(Point a, Point b, Point c, Point d) {
+  if (PiecesCross(a, b, c, d)) return 0;
+  return std::min({DistanceToPiece(a, c, d), DistanceToPiece(b, c, d), DistanceToPiece(c, a, b),
+                   DistanceToPiece(d, a, b)});
+}
+
+void AppendPieces(const TraceChunk& chunk, uint32_t path, std::vector<Piece>& pieces) {
+  const TracePath& traced = chunk.paths[path];
+  Point at = traced.start;
+  for (uint32_t s = traced.first_segment; s < traced.end_segment; ++s) {
+    const TraceSegment& segment = chunk.segments[s];
+    if (segment.arc >= 0) {
+      AppendArc(at, segment.end, chunk.arcs[static_cast<size_t>(segment.arc)], path, pieces);
+    } else {
+      pieces.push_back({at, segment.end, path});
+    }
+    at = segment.end;
+  }
+}
+
+PieceGrid::PieceGrid(std::vector<Piece> pieces, double cell_mm)
+    : pieces_(std::move(pieces)), cell_mm_(cell_mm) {
+  if (pieces_.empty()) return;
+  low_ = pieces_[0].a;
+  Point high = low_;
+  for (const Piece& piece : pieces_) {
+    for (const Point p : {piece.a, piece.b}) {
+      low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+  }
+  // No more cells than a few for each piece, however far apart they lie.
+  const double most = 4.0 * static_cast<double>(pieces_.size()) + 1024;
+  const double area = (high.x - low_.x + cell_mm_) * (high.y - low_.y + cell_mm_);
+  cell_mm_ = std::max(cell_mm_, std::sqrt(area / most));
+  cell_mm_ = std::max(cell_mm_, std::max(high.x - low_.x, high.y - low_.y) / most);
+  columns_ = static_cast<int>((high.x - low_.x) / cell_mm_) + 1;
+  rows_ = static_cast<int>((high.y - low_.y) / cell_mm_) + 1;
+  begin_.assign(static_cast<size_t>(columns_) * static_cast<size_t>(rows_) + 1, 0);
+  for (const Piece& piece : pieces_) {
+    ForEachCell(piece.a, piece.b, [this](size_t cell) { ++begin_[cell + 1]; });
+  }
+  for (size_t cell = 1; cell < begin_.size(); ++cell) begin_[cell] += begin_[cell - 1];
+  entries_.resize(begin_.back());
+  std::vector<uint32_t> next(begin_.begin(), begin_.end() - 1);
+  for (uint32_t i = 0; i < pieces_.size(); ++i) {
+    ForEachCell(pieces_[i].a, pieces_[i].b, [&](size_t cell) { entries_[next[cell]++] = i; });
+  }
+}
+
+}  // namespace traverse::gcode

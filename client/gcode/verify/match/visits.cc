@@ -1,0 +1,224 @@
+#include "client/gcode/verify/match/visits.h"
+
+#include <algorithm>
+
+#include "client/gcode/verify/match/plane.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr uint32_t kNone = UINT32_MAX;
+constexpr double kSamePlaceMm = 1e-5;
+
+// So many segments that are alike are looked at, of more not all.
+constexpr uint32_t kMostAlike = 16;
+
+// Segments of a section by their digests; the same digest may be there several times.
+class SegmentTable {
+ public:
+  SegmentTable(const TraceChunk& chunk, uint32_t first, uint32_t end) : chunk_(chunk) {
+    size_t size = 16;
+    while (size < 2 * static_cast<size_t>(end - first)) size *= 2;
+    slots_.assign(size, kNone);
+    for (uint32_t s = first; s < end; ++s) {
+      size_t slot = SlotOf(chunk.segments[s].digest);
+      while (slots_[slot] != kNone) slot = (slot + 1) & (size - 1);
+      slots_[slot] = s;
+    }
+  }
+
+  template <typename Visit>
+  void ForEach(uint64_t digest, Visit visit) const {
+    for (size_t slot = SlotOf(digest); slots_[slot] != kNone;
+         slot = (slot + 1) & (slots_.size() - 1)) {
+      if (chunk_.segments[slots_[slot]].digest == digest && !visit(slots_[slot])) return;
+    }
+  }
+
+ private:
+  size_t SlotOf(uint64_t digest) const { return digest & (slots_.size() - 1); }
+
+  const TraceChunk& chunk_;
+  std::vector<uint32_t> slots_;
+};
+
+class Matcher {
+ public:
+  Matcher(const TraceChunk& original, const TraceSection& was, const TraceChunk& optimised,
+          const TraceSection& is)
+      : original_(original),
+        optimised_(optimised),
+        is_(is),
+        first_path_(was.first_path),
+        first_(original.paths[was.first_path].first_segment),
+        end_(original.paths[was.end_path - 1].end_segment),
+        table_(original, first_, end_),
+        used_(end_ - first_, false) {
+    path_of_.reserve(end_ - first_);
+    for (uint32_t p = was.first_path; p < was.end_path; ++p) {
+      path_of_.insert(path_of_.end(), original.paths[p].size(), p);
+      closed_.push_back(IsClosed(original, p));
+    }
+  }
+
+  std::vector<Visit> Match() {
+    for (uint32_t p = is_.first_path; p < is_.end_path; ++p) MatchPath(p);
+    return std::move(visits_);
+  }
+
+ private:
+  bool Closed(uint32_t path) const { return closed_[path - first_path_]; }
+  bool Unused(uint32_t s) const { return !used_[s - first_]; }
+
+  // The segment behind `s` of its path, or before it; kNone: none.
+  uint32_t Next(uint32_t s, bool forward) const {
+    const uint32_t p = path_of_[s - first_];
+    const TracePath& path = original_.paths[p];
+    if (forward) {
+      if (s + 1 < path.end_segment) return s + 1;
+      return Closed(p) ? path.first_segment : kNone;
+    }
+    if (s > path.first_segment) return s - 1;
+    return Closed(p) ? path.end_segment - 1 : kNone;
+  }
+
+  bool IsForward(uint32_t s, Point start) const {
+    const TracePath& path = original_.paths[path_of_[s - first_]];
+    const double to_start = DistanceOf(original_.StartOf(path, s), start);
+    return to_start <= kSamePlaceMm || to_start <= DistanceOf(original_.segments[s].end, start);
+  }
+
+  // How many segments of the original follow one another from `s` on as those of `path` do from
+  // `at` on.
+  uint32_t RunFrom(uint32_t s, const TracePath& path, uint32_t at) const {
+    const bool forward = IsForward(s, optimised_.StartOf(path, at));
+    const uint32_t most = original_.paths[path_of_[s - first_]].size();
+    uint32_t run = 1;
+    for (; run < most && at + run < path.end_segment; ++run) {
+      s = Next(s, forward);
+      if (s == kNone || !Unused(s) ||
+          original_.segments[s].digest != optimised_.segments[at + run].digest) {
+        break;
+      }
+    }
+    return run;
+  }
+
+  // The segment of the original that segment `at` is: of several the one that goes on as it does
+  // for longest.
+  uint32_t Find(const TracePath& path, uint32_t at) const {
+    const uint64_t digest = optimised_.segments[at].digest;
+    uint32_t found = kNone;
+    uint32_t others = 0;
+    table_.ForEach(digest, [&](uint32_t s) {
+      if (!Unused(s)) return true;
+      if (found == kNone || s == guess_) found = s;
+      return ++others < kMostAlike;
+    });
+    if (others <= 1) return found;
+    uint32_t longest = RunFrom(found, path, at);
+    table_.ForEach(digest, [&](uint32_t s) {
+      if (!Unused(s) || s == found) return true;
+      const uint32_t run = RunFrom(s, path, at);
+      if (run > longest) {
+        found = s;
+        longest = run;
+      }
+      return --others > 0;
+    });
+    return found;
+  }
+
+  void MatchPath(uint32_t p) {
+    const TracePath& path = optimised_.paths[p];
+    for (uint32_t at = path.first_segment; at < path.end_segment;) {
+      uint32_t s = Find(path, at);
+      if (s == kNone) return;  // not the same deposits
+      Visit visit;
+      visit.path = path_of_[s - first_];
+      visit.entry = s - original_.paths[visit.path].first_segment;
+      visit.forward = IsForward(s, optimised_.StartOf(path, at));
+      visit.first_path = visit.last_path = p;
+      visit.first_segment = at;
+      for (;;) {
+        used_[s - first_] = true;
+        ++visit.segments;
+        visit.last_segment = at++;
+        guess_ = s + 1;
+        const uint32_t next = Next(s, visit.forward);
+        if (at >= path.end_segment || next == kNone || !Unused(next) ||
+            original_.segments[next].digest != optimised_.segments[at].digest) {
+          break;
+        }
+        s = next;
+      }
+      Add(visit);
+    }
+  }
+
+  // Joins a visit with the one before it if they are the two parts of a loop, from its middle to
+  // its end and from its start to its middle.
+  void Add(const Visit& visit) {
+    if (!visits_.empty()) {
+      Visit& before = visits_.back();
+      const uint32_t n = original_.paths[visit.path].size();
+      const uint32_t joint = visit.forward ? 0 : n - 1;
+      const uint32_t reached =
+          before.forward ? before.entry + before.segments : before.entry + 1 - before.segments;
+      const bool at_end = before.forward ? reached == n : reached == 0;
+      if (before.path == visit.path && before.forward == visit.forward && Closed(visit.path) &&
+          at_end && visit.entry == joint && before.segments + visit.segments <= n &&
+          OnlyGap(before.last_path, visit.first_path)) {
+        before.segments += visit.segments;
+        before.last_path = visit.last_path;
+        before.last_segment = visit.last_segment;
+        return;
+      }
+    }
+    visits_.push_back(visit);
+  }
+
+  // True if nothing is between the two but the gap of a loop.
+  bool OnlyGap(uint32_t path, uint32_t next) const {
+    if (path == next) return true;
+    if (path + 1 != next) return false;
+    const TraceLink& link = optimised_.links[next];
+    double gap = 0;
+    for (uint32_t m = link.first_move; m < link.end_move; ++m) {
+      const TraceMove& move = optimised_.moves[m];
+      if (move.kind != MoveKind::kTravel || !move.open || move.z_from_mm != move.z_to_mm) {
+        return false;
+      }
+      gap += move.length_mm();
+    }
+    return gap <= kLoopGapMm;
+  }
+
+  const TraceChunk& original_;
+  const TraceChunk& optimised_;
+  const TraceSection& is_;
+  const uint32_t first_path_;
+  const uint32_t first_;
+  const uint32_t end_;
+  const SegmentTable table_;
+  std::vector<bool> used_;
+  std::vector<uint32_t> path_of_;
+  std::vector<bool> closed_;
+  uint32_t guess_ = kNone;  // the segment that comes next in the original
+  std::vector<Visit> visits_;
+};
+
+}  // namespace
+
+bool IsClosed(const TraceChunk& chunk, uint32_t path) {
+  const TracePath& traced = chunk.paths[path];
+  return traced.size() >= 2 && !traced.joined && traced.length_mm > 4 * kLoopGapMm &&
+         DistanceOf(traced.start, chunk.EndOf(traced)) <= kLoopGapMm;
+}
+
+std::vector<Visit> FindVisits(const TraceChunk& original, const TraceSection& was,
+                              const TraceChunk& optimised, const TraceSection& is) {
+  return Matcher(original, was, optimised, is).Match();
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,92 @@
+#include "client/gcode/verify/permissions.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+
+namespace traverse {
+namespace {
+
+using Policy = VerifyPermissions::Policy;
+
+constexpr std::string_view kPolicyNames[] = {"safe", "balanced", "free"};
+
+struct Permission {
+  std::string_view name;
+  bool VerifyPermissions::*flag;
+};
+
+constexpr Permission kPermissions[] = {
+    {"infill_order", &VerifyPermissions::infill_order},
+    {"wall_order", &VerifyPermissions::wall_order},
+    {"fan_order", &VerifyPermissions::fan_order},
+};
+
+// Takes what stands before the first of `ends` off `text`, and that character too.
+std::string_view TakeWord(std::string_view& text, std::string_view ends) {
+  const size_t end = std::min(text.find_first_of(ends), text.size());
+  const std::string_view word = text.substr(0, end);
+  text.remove_prefix(std::min(end + 1, text.size()));
+  return word;
+}
+
+bool Begins(std::string_view text, std::string_view with) {
+  return text.substr(0, with.size()) == with;
+}
+
+}  // namespace
+
+absl::StatusOr<VerifyPermissions> ParsePermissions(std::string_view policy,
+                                                   std::string_view allow) {
+  VerifyPermissions permissions;
+  const auto* name = std::find(std::begin(kPolicyNames), std::end(kPolicyNames), policy);
+  if (name == std::end(kPolicyNames)) {
+    return absl::InvalidArgumentError(absl::StrCat("no such policy: ", std::string(policy),
+                                                   "; there are safe, balanced and free"));
+  }
+  permissions.policy = static_cast<Policy>(name - std::begin(kPolicyNames));
+  while (!allow.empty()) {
+    const std::string_view word = TakeWord(allow, ",+");
+    const auto* known = std::find_if(std::begin(kPermissions), std::end(kPermissions),
+                                     [word](const Permission& p) { return p.name == word; });
+    if (known == std::end(kPermissions)) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("nothing to allow by the name `", std::string(word),
+                       "`; there are infill_order, wall_order and fan_order"));
+    }
+    permissions.*known->flag = true;
+  }
+  return permissions;
+}
+
+std::optional<VerifyPermissions> PermissionsInHead(std::string_view text) {
+  constexpr std::string_view kPolicy = ", policy ";
+  constexpr std::string_view kAllow = " allow ";
+  while (!text.empty()) {
+    std::string_view line = TakeWord(text, "\n");
+    line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size()));
+    if (line.empty()) continue;
+    if (line[0] != ';') return std::nullopt;
+    if (!Begins(line, kOptimisedMark)) continue;
+    const size_t at = line.find(kPolicy);
+    if (at == std::string_view::npos) return std::nullopt;
+    std::string_view rest = line.substr(at + kPolicy.size());
+    std::string_view clause = TakeWord(rest, ":");
+    const std::string_view policy = TakeWord(clause, ",");
+    const std::string_view allow = Begins(clause, kAllow) ? clause.substr(kAllow.size()) : "";
+    const absl::StatusOr<VerifyPermissions> read = ParsePermissions(policy, allow);
+    if (!read.ok()) return std::nullopt;
+    return *read;
+  }
+  return std::nullopt;
+}
+
+std::string DescribePermissions(const VerifyPermissions& permissions) {
+  std::string text(kPolicyNames[static_cast<size_t>(permissions.policy)]);
+  for (const Permission& permission : kPermissions) {
+    if (permissions.*permission.flag) absl::StrAppend(&text, ", ", std::string(permission.name));
+  }
+  return text;
+}
+
+}  // namespace traverse

@@ -1,0 +1,44 @@
+// What a rewriter was allowed to change.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_PERMISSIONS_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_PERMISSIONS_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "absl/status/statusor.h"
+
+namespace traverse {
+
+// A comment that begins with this may be added to, or be missing from, either text.
+inline constexpr std::string_view kOptimisedMark = "; optimised by Traverse";
+
+struct VerifyPermissions {
+  // Ordered: what one policy allows, those behind it allow too.
+  enum class Policy : uint8_t { kSafe, kBalanced, kFree };
+
+  Policy policy = Policy::kSafe;
+  bool infill_order = false;  // walls and infill that touch may change places
+  bool wall_order = false;    // walls that touch may
+  bool fan_order = false;     // paths may change places across a change of the fan
+};
+
+// From the words of the command line: "safe", "balanced" or "free"; and a list such as
+// "infill_order,wall_order", which may be empty. InvalidArgument for other words.
+absl::StatusOr<VerifyPermissions> ParsePermissions(std::string_view policy, std::string_view allow);
+
+// What the line of the writer at the head of `text` says:
+//
+//   ; optimised by Traverse 1.2.0, policy balanced, allow wall_order+fan_order: travel ...
+//
+// Nothing if there is no such line before the first command, or it names no policy.
+std::optional<VerifyPermissions> PermissionsInHead(std::string_view text);
+
+// "balanced, wall_order, fan_order".
+std::string DescribePermissions(const VerifyPermissions& permissions);
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_PERMISSIONS_H_

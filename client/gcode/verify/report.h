@@ -1,0 +1,68 @@
+// What a verification finds.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_REPORT_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_REPORT_H_
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/types/span.h"
+#include "client/gcode/verify/permissions.h"
+
+namespace traverse {
+
+// What has to hold. kSamePrint is what the others stand on: a print that is another one is not
+// looked at any further.
+enum class VerifyRule : uint8_t {
+  kSamePrint,    // the same deposits under the same conditions, and the same lines beside them
+  kWholePaths,   // what adjoins in a path stays adjoined; a loop may be cut once
+  kOrder,        // paths that lie side by side keep the order that the slicer has reasons for
+  kDirection,    // of open walls, overhanging and outer loops
+  kSeam,         // where outer walls begin
+  kOpenWays,     // across outer walls
+  kLifts,        // no way lies lower than such ways do
+  kRetractions,  // how far filament is pulled back, and what undoes it
+  kStandstill,   // filament pushed where the head stands still
+  kSpeeds,       // feed rate and acceleration of what is no deposit
+  kWipes,        // along the path that they follow, and after those that had them
+  kCommands,     // none within a path, none in vain
+  kProgress,     // M73
+  kScripts,      // nothing of them between paths
+  kPathEnds,     // moves that go on along a path
+  kCount,
+};
+
+constexpr uint32_t RuleBit(VerifyRule rule) { return 1u << static_cast<uint32_t>(rule); }
+
+// "whole_paths".
+std::string_view VerifyRuleName(VerifyRule rule);
+
+// "what adjoins in a path stays adjoined".
+std::string_view VerifyRuleText(VerifyRule rule);
+
+struct VerifyBreak {
+  VerifyRule rule = VerifyRule::kSamePrint;
+  size_t original_line = 0;   // 0: none
+  size_t optimised_line = 0;  // 0: none
+  int64_t layer = -1;         // from 0, as the verifier counts them; -1: of no layer
+  std::string message;        // with both files and lines
+};
+
+struct VerifyReport {
+  VerifyPermissions permissions;
+  std::array<int64_t, static_cast<size_t>(VerifyRule::kCount)> counts{};
+
+  // By rule, and then by line; of each rule the first kMostBreaks.
+  std::vector<VerifyBreak> breaks;
+
+  static constexpr size_t kMostBreaks = 10'000;
+
+  bool ok() const { return breaks.empty(); }
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_REPORT_H_

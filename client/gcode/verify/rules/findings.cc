@@ -1,0 +1,41 @@
+#include "client/gcode/verify/rules/findings.h"
+
+namespace traverse::gcode {
+namespace {
+
+template <typename Map>
+void AppendSeen(const Map& other, Map& map) {
+  for (const auto& [key, seen] : other) {
+    const auto [known, added] = map.try_emplace(key, seen);
+    if (!added) known->second.count += seen.count;
+  }
+}
+
+}  // namespace
+
+void LiftLog::Append(const LiftLog& other) {
+  const auto shift = static_cast<uint32_t>(pieces.size());
+  pieces.insert(pieces.end(), other.pieces.begin(), other.pieces.end());
+  for (size_t kind = 0; kind < kWayKinds; ++kind) {
+    for (WayProfile way : other.ways[kind]) {
+      way.first += shift;
+      way.end += shift;
+      ways[kind].push_back(way);
+    }
+  }
+}
+
+void Observations::Append(const Observations& other) {
+  for (size_t kind = 0; kind < feeds.size(); ++kind) {
+    AppendSeen(other.feeds[kind], feeds[kind]);
+    AppendSeen(other.accelerations[kind], accelerations[kind]);
+  }
+  AppendSeen(other.signatures, signatures);
+  AppendSeen(other.heights, heights);
+  script_signatures.insert(other.script_signatures.begin(), other.script_signatures.end());
+  lifts.Append(other.lifts);
+  cycles.insert(cycles.end(), other.cycles.begin(), other.cycles.end());
+  wipes.insert(wipes.end(), other.wipes.begin(), other.wipes.end());
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,104 @@
+// What the rules find in one layer: breaks, and what has to be compared with the whole print.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_RULES_FINDINGS_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_RULES_FINDINGS_H_
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/container/flat_hash_map.h"
+#include "absl/container/flat_hash_set.h"
+#include "client/gcode/verify/report.h"
+#include "client/gcode/verify/trace/trace.h"
+
+namespace traverse::gcode {
+
+// A break as a rule states it; names of files and rule are added to it.
+struct Finding {
+  VerifyRule rule = VerifyRule::kSamePrint;
+  uint32_t original_line = 0;
+  uint32_t optimised_line = 0;
+  int64_t layer = -1;
+  std::string what;
+};
+
+// Where something was seen.
+struct Seen {
+  uint32_t line = 0;
+  int64_t layer = -1;
+  int64_t count = 0;
+};
+
+// Something at one speed, or under one acceleration.
+using SpeedKey = uint64_t;
+
+// A way from path to path, as far as its height goes.
+struct WayProfile {
+  // Pieces of the way, [from, to] above the layer.
+  struct Piece {
+    float from_mm = 0;
+    float to_mm = 0;
+    float length_mm = 0;
+  };
+  uint32_t line = 0;
+  int64_t layer = -1;
+  uint32_t first = 0;  // in LiftLog::pieces
+  uint32_t end = 0;
+};
+
+// The kinds of ways: with filament pulled back or not, between layers or within one, across outer
+// walls or not.
+inline constexpr size_t kWayKinds = 8;
+
+struct LiftLog {
+  std::array<std::vector<WayProfile>, kWayKinds> ways;
+  std::vector<WayProfile::Piece> pieces;
+
+  void Append(const LiftLog& other);
+};
+
+// Filament pulled back, and what undoes it.
+struct RetractionCycle {
+  uint64_t tool = 0;
+  Micro pulled = 0;
+  Micro pushed = 0;
+  bool firmware = false;
+  bool early = false;  // pushed before the way is done
+  bool known = false;  // all its moves are moves of the original
+  uint32_t line = 0;
+  int64_t layer = -1;
+};
+
+struct WipeDeviation {
+  float off_mm = 0;
+  uint32_t line = 0;
+  uint32_t original_line = 0;
+  int64_t layer = -1;
+};
+
+// What one file shows in some of its layers.
+struct Observations {
+  std::array<absl::flat_hash_map<uint64_t, Seen>, static_cast<size_t>(MoveKind::kCount) + 1> feeds;
+  std::array<absl::flat_hash_map<uint64_t, Seen>, static_cast<size_t>(MoveKind::kCount) + 1>
+      accelerations;
+  absl::flat_hash_map<uint64_t, Seen> signatures;
+  absl::flat_hash_set<uint64_t> script_signatures;
+  absl::flat_hash_map<int64_t, Seen> heights;  // um above the layer, of moves that state Z
+  LiftLog lifts;
+  std::vector<RetractionCycle> cycles;
+  std::vector<WipeDeviation> wipes;
+
+  void Append(const Observations& other);
+};
+
+struct LayerFindings {
+  std::vector<Finding> breaks;
+  Observations was;  // all that the original does
+  Observations is;   // what the other file does otherwise
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_RULES_FINDINGS_H_

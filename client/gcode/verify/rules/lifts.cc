@@ -1,0 +1,204 @@
+// Lifts, by kind of way: where at least 99 % of the original's are lifted, every sideways move
+// outside wipes ends at the least such lift, and only a little of the way lies lower. Heights that
+// moves state are heights above the layer that the original knows.
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/str_format.h"
+#include "client/gcode/verify/rules/rules.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr float kLiftedMm = 0.03f;  // a way that comes so high is lifted
+constexpr float kHeightSlackMm = 0.003f;
+constexpr double kShareLifted = 0.99;
+constexpr float kLowMm = 0.5f;
+constexpr float kLowShare = 0.1f;
+constexpr double kUsualShare = 0.99;  // of the original's ways, for how low they may lie
+constexpr double kShortestMm = 0.05;
+
+struct Height {
+  float apex_mm = 0;
+  float length_mm = 0;
+};
+
+Height HeightOf(const LiftLog& log, const WayProfile& way) {
+  Height height;
+  for (uint32_t i = way.first; i < way.end; ++i) {
+    height.apex_mm = std::max(height.apex_mm, log.pieces[i].to_mm);
+    height.length_mm += log.pieces[i].length_mm;
+  }
+  return height;
+}
+
+// The length of the way that lies lower than `lift`.
+float LowLength(const LiftLog& log, const WayProfile& way, float lift) {
+  float low = 0;
+  for (uint32_t i = way.first; i < way.end; ++i) {
+    const WayProfile::Piece& piece = log.pieces[i];
+    const float from = piece.from_mm - lift + kHeightSlackMm;
+    const float to = piece.to_mm - lift + kHeightSlackMm;
+    if (from >= 0 && to >= 0) continue;
+    low += from < 0 && to < 0
+               ? piece.length_mm
+               : piece.length_mm * std::min(from, to) / (std::min(from, to) - std::max(from, to));
+  }
+  return low;
+}
+
+bool EndsLow(const LiftLog& log, const WayProfile& way, float lift) {
+  return std::any_of(log.pieces.begin() + way.first, log.pieces.begin() + way.end,
+                     [lift](const WayProfile::Piece& piece) {
+                       return piece.to_mm < lift - kHeightSlackMm && piece.length_mm > kLowMm;
+                     });
+}
+
+// The value that kUsualShare of them do not exceed.
+float Usual(std::vector<float> values) {
+  if (values.empty()) return 0;
+  const auto at = static_cast<size_t>(kUsualShare * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
+  return values[at];
+}
+
+// What the ways of one kind do.
+struct Habit {
+  bool lifts = false;
+  float least_mm = 0;
+  uint32_t least_line = 0;
+  float low_mm = kLowMm;
+  float low_share = kLowShare;
+  bool may_end_low = false;
+};
+
+Habit HabitOf(const LiftLog& log, const std::vector<WayProfile>& ways) {
+  Habit habit;
+  size_t lifted = 0;
+  for (const WayProfile& way : ways) {
+    const float apex = HeightOf(log, way).apex_mm;
+    if (apex < kLiftedMm) continue;
+    if (++lifted == 1 || apex < habit.least_mm) {
+      habit.least_mm = apex;
+      habit.least_line = way.line;
+    }
+  }
+  habit.lifts =
+      lifted > 0 && static_cast<double>(lifted) >= kShareLifted * static_cast<double>(ways.size());
+  if (!habit.lifts) return habit;
+  std::vector<float> low_mm;
+  std::vector<float> low_share;
+  size_t end_low = 0;
+  for (const WayProfile& way : ways) {
+    const Height height = HeightOf(log, way);
+    if (height.apex_mm < kLiftedMm) continue;
+    low_mm.push_back(LowLength(log, way, habit.least_mm));
+    low_share.push_back(low_mm.back() / height.length_mm);
+    if (EndsLow(log, way, habit.least_mm)) ++end_low;
+  }
+  habit.may_end_low =
+      static_cast<double>(end_low) > (1 - kShareLifted) * static_cast<double>(lifted);
+  habit.low_mm = std::max(kLowMm, Usual(std::move(low_mm)) * 1.01f);
+  habit.low_share = std::max(kLowShare, Usual(std::move(low_share)) * 1.01f);
+  return habit;
+}
+
+// Appends the profile of the way in `link`, and the heights that it states. The kind of the way;
+// nothing if it goes nowhere.
+void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool only_new,
+             Observations& seen) {
+  const TraceLink& traced = chunk.links[link];
+  const TracePath& to = chunk.paths[link];
+  bool retracted = false;
+  bool known = true;
+  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (move.kind != MoveKind::kTravel || !move.in_print) continue;
+    retracted |= !move.open;
+    known &= layer.IsKnown(move);
+  }
+  if ((only_new && known) || traced.scripted) return;
+  WayProfile way;
+  way.layer = layer.index();
+  way.first = static_cast<uint32_t>(seen.lifts.pieces.size());
+  double length = 0;
+  double z_before = to.z_mm;
+  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (m == traced.first_move) z_before = move.z_from_mm;
+    if (move.kind != MoveKind::kTravel || !move.in_print || move.open == retracted) continue;
+    const double base = std::max(to.z_mm, z_before);
+    way.line = way.line == 0 ? move.line : way.line;
+    length += move.length_mm();
+    seen.lifts.pieces.push_back({static_cast<float>(move.z_from_mm - base),
+                                 static_cast<float>(move.z_to_mm - base),
+                                 static_cast<float>(move.length_mm())});
+    if (!move.states_z || (only_new && layer.IsKnown(move))) continue;
+    const int64_t um = std::llround((move.z_to_mm - to.z_mm) * 1000);
+    seen.heights.try_emplace(um, Seen{move.line, layer.index(), 0}).first->second.count++;
+  }
+  if (length < kShortestMm) {
+    seen.lifts.pieces.resize(way.first);
+    return;
+  }
+  way.end = static_cast<uint32_t>(seen.lifts.pieces.size());
+  const bool between = traced.new_layer || std::abs(z_before - to.z_mm) > 1e-4;
+  const bool crossing = layer.CrossingLength(chunk, link, !retracted) > 0;
+  seen.lifts.ways[(retracted ? 4u : 0u) + (between ? 2u : 0u) + (crossing ? 1u : 0u)].push_back(
+      way);
+}
+
+std::string KindText(size_t kind) {
+  return absl::StrFormat("%s ways %s%s", (kind & 4) != 0 ? "retracted" : "open",
+                         (kind & 2) != 0 ? "between layers" : "within a layer",
+                         (kind & 1) != 0 ? " across outer walls" : "");
+}
+
+void CompareKind(const Observations& was, const Observations& is, size_t kind,
+                 std::vector<Finding>& breaks) {
+  // Of a kind that the original has none of, the nearest one tells.
+  const std::vector<WayProfile>& ways =
+      was.lifts.ways[kind].empty() ? was.lifts.ways[kind ^ 1] : was.lifts.ways[kind];
+  const Habit habit = HabitOf(was.lifts, ways);
+  if (!habit.lifts) return;
+  for (const WayProfile& way : is.lifts.ways[kind]) {
+    const Height height = HeightOf(is.lifts, way);
+    const float low = LowLength(is.lifts, way, habit.least_mm);
+    const bool ends_low = !habit.may_end_low && EndsLow(is.lifts, way, habit.least_mm);
+    const bool lies_low =
+        low > kLowMm && (low > habit.low_mm || low / height.length_mm > habit.low_share);
+    const bool never = height.apex_mm < habit.least_mm - kHeightSlackMm;
+    if (!ends_low && !lies_low && !never) continue;
+    breaks.push_back(
+        {VerifyRule::kLifts, habit.least_line, way.line, way.layer,
+         absl::StrFormat("%.2f of %.2f mm of this way lie lower than %.2f mm above the "
+                         "layer, the least lift of %s",
+                         low, height.length_mm, habit.least_mm, KindText(kind))});
+  }
+}
+
+}  // namespace
+
+void ObserveLifts(const LayerPair& layer, LayerFindings& findings) {
+  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
+    Observe(layer, layer.was(), link, false, findings.was);
+  }
+  for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
+    Observe(layer, layer.is(), link, true, findings.is);
+  }
+}
+
+void CompareLifts(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
+  for (size_t kind = 0; kind < kWayKinds; ++kind) CompareKind(was, is, kind, breaks);
+  for (const auto& [um, seen] : is.heights) {
+    bool known = false;
+    for (int64_t near = um - 2; near <= um + 2; ++near) known |= was.heights.contains(near);
+    if (known) continue;
+    breaks.push_back({VerifyRule::kLifts, 0, seen.line, seen.layer,
+                      absl::StrFormat("a way goes %.3f mm above the layer, as none of the original",
+                                      static_cast<double>(um) / 1000)});
+  }
+}
+
+}  // namespace traverse::gcode

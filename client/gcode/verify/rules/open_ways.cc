@@ -1,0 +1,72 @@
+// A layer has no more ways with an open nozzle across outer walls than before, and none longer than
+// the longest before. The way to a layer is one of its ways.
+
+#include <algorithm>
+
+#include "absl/strings/str_format.h"
+#include "client/gcode/verify/rules/rules.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kSlackMm = 0.01;
+
+struct OpenWay {
+  double length_mm = 0;
+  uint32_t line = 0;
+  bool known = true;
+};
+
+std::vector<OpenWay> OpenWays(const LayerPair& layer, const TraceChunk& chunk, uint32_t first,
+                              uint32_t end) {
+  std::vector<OpenWay> ways;
+  for (uint32_t link = first; link < end; ++link) {
+    const TraceLink& traced = chunk.links[link];
+    if (traced.first_move == traced.end_move) continue;
+    const double length = layer.CrossingLength(chunk, link, true);
+    if (length <= 0) continue;
+    OpenWay way{length, chunk.moves[traced.first_move].line, true};
+    for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
+      const TraceMove& move = chunk.moves[m];
+      if (move.kind != MoveKind::kTravel || !move.open || layer.IsKnown(move)) continue;
+      if (way.known) way.line = move.line;
+      way.known = false;
+    }
+    ways.push_back(way);
+  }
+  return ways;
+}
+
+}  // namespace
+
+void CheckOpenWays(const LayerPair& layer, LayerFindings& findings) {
+  if (layer.outer_walls().empty()) return;
+  const std::vector<OpenWay> is =
+      OpenWays(layer, layer.is(), layer.first_path_is(), layer.end_path_is());
+  if (std::all_of(is.begin(), is.end(), [](const OpenWay& way) { return way.known; })) return;
+  const std::vector<OpenWay> was =
+      OpenWays(layer, layer.was(), layer.first_path_was(), layer.end_path_was());
+  const auto longest = std::max_element(
+      was.begin(), was.end(),
+      [](const OpenWay& a, const OpenWay& b) { return a.length_mm < b.length_mm; });
+  const uint32_t of_layer = layer.was().LineOf(layer.was().paths[layer.first_path_was()]);
+  size_t more = is.size() > was.size() ? is.size() - was.size() : 0;
+  for (const OpenWay& way : is) {
+    if (way.known) continue;
+    if (longest != was.end() && way.length_mm > longest->length_mm + kSlackMm) {
+      findings.breaks.push_back(
+          {VerifyRule::kOpenWays, longest->line, way.line, layer.index(),
+           absl::StrFormat("an open way of %.2f mm crosses an outer wall; the longest such one of "
+                           "the layer has %.2f mm",
+                           way.length_mm, longest->length_mm)});
+    } else if (more > 0) {
+      --more;
+      findings.breaks.push_back(
+          {VerifyRule::kOpenWays, of_layer, way.line, layer.index(),
+           absl::StrFormat("an open way crosses an outer wall, one of %d in a layer that has %d",
+                           is.size(), was.size())});
+    }
+  }
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,174 @@
+// Two paths within 0.5 mm keep their order if one is a wall and the other is not, or one is
+// ironing, a bridge, support or skirt; under `safe` and `balanced` walls among each other and the
+// lines of a monotonic surface or of ironing do so as well.
+
+#include <algorithm>
+
+#include "absl/strings/str_format.h"
+#include "client/gcode/verify/rules/rules.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kNearMm = 0.5;
+constexpr double kCellMm = 1.0;
+
+enum class Group : uint8_t {
+  kWall,
+  kInfill,
+  kMonotonic,
+  kIroning,
+  kBridge,
+  kSupport,
+  kInterface,
+  kSkirt,
+  kOther
+};
+
+Group GroupOf(PathClass path_class, const SlicerSettings& settings) {
+  switch (path_class) {
+    case PathClass::kOuterWall:
+    case PathClass::kInnerWall:
+    case PathClass::kOverhang:
+    case PathClass::kWall:
+      return Group::kWall;
+    case PathClass::kTop:
+      return settings.monotonic_top ? Group::kMonotonic : Group::kInfill;
+    case PathClass::kBottom:
+      return settings.monotonic_bottom ? Group::kMonotonic : Group::kInfill;
+    case PathClass::kIroning:
+      return Group::kIroning;
+    case PathClass::kBridge:
+      return Group::kBridge;
+    case PathClass::kSupport:
+      return Group::kSupport;
+    case PathClass::kInterface:
+      return Group::kInterface;
+    case PathClass::kSkirt:
+      return Group::kSkirt;
+    case PathClass::kTower:
+    case PathClass::kScript:
+      return Group::kOther;
+    default:
+      return Group::kInfill;
+  }
+}
+
+class OrderKeeper {
+ public:
+  OrderKeeper(const LayerPair& layer, const RuleContext& context)
+      : layer_(layer), permissions_(context.permissions) {
+    for (uint32_t path = layer.first_path_was(); path < layer.end_path_was(); ++path) {
+      groups_.push_back(GroupOf(layer.ClassOf(path), context.settings));
+    }
+  }
+
+  void Check(size_t section, LayerFindings& findings) {
+    const absl::Span<const Visit> visits = layer_.SectionVisits(section);
+    const TraceSection& was = layer_.SectionWas(section);
+    place_.assign(was.end_path - was.first_path, UINT32_MAX);
+    bool as_sliced = true;
+    for (uint32_t i = 0; i < visits.size(); ++i) {
+      uint32_t& place = place_[visits[i].path - was.first_path];
+      if (place == UINT32_MAX) place = i;
+      as_sliced &= i == 0 || visits[i].path >= visits[i - 1].path;
+    }
+    if (as_sliced) return;
+    first_ = was.first_path;
+    CheckSkirts(was, visits, findings);
+    CheckNear(was, visits, findings);
+  }
+
+ private:
+  Group GroupAt(uint32_t path) const { return groups_[path - layer_.first_path_was()]; }
+  uint32_t PlaceOf(uint32_t path) const { return place_[path - first_]; }
+
+  bool Matters(Group a, Group b) const {
+    const bool careful = permissions_.policy != VerifyPermissions::Policy::kFree;
+    if (a == Group::kOther || b == Group::kOther) return false;
+    if (a == b) {
+      if (a == Group::kWall) return careful && !permissions_.wall_order;
+      return careful && (a == Group::kMonotonic || a == Group::kIroning);
+    }
+    const auto is = [a, b](Group group) { return a == group || b == group; };
+    if (is(Group::kIroning) || is(Group::kBridge) || is(Group::kSupport) || is(Group::kInterface) ||
+        is(Group::kSkirt)) {
+      return true;
+    }
+    return is(Group::kWall) && !permissions_.infill_order;
+  }
+
+  // A skirt is seldom near to anything, but it is there to be printed first.
+  void CheckSkirts(const TraceSection& was, absl::Span<const Visit> visits,
+                   LayerFindings& findings) {
+    uint32_t latest = 0;  // of those printed so far, the one that is the last in the original
+    bool any = false;
+    for (const Visit& visit : visits) {
+      if (GroupAt(visit.path) == Group::kOther) continue;
+      if (GroupAt(visit.path) != Group::kSkirt) {
+        if (!any || visit.path > latest) latest = visit.path;
+        any = true;
+      } else if (any && latest > visit.path) {
+        Report(visit.path, latest, visits, findings);
+        return;
+      }
+    }
+    (void)was;
+  }
+
+  void CheckNear(const TraceSection& was, absl::Span<const Visit> visits, LayerFindings& findings) {
+    std::vector<Piece> pieces;
+    for (uint32_t path = was.first_path; path < was.end_path; ++path) {
+      const absl::Span<const Piece> own = layer_.PiecesOf(path);
+      pieces.insert(pieces.end(), own.begin(), own.end());
+    }
+    const PieceGrid grid(std::move(pieces), kCellMm);
+    std::vector<uint32_t> reported;
+    for (const Piece& piece : grid.pieces()) {
+      const uint32_t path = piece.path;
+      const Group group = GroupAt(path);
+      grid.ForEachNear(piece.a, piece.b, kNearMm, [&](uint32_t i) {
+        const Piece& other = grid.pieces()[i];
+        // Each pair from its later one, which is printed too early.
+        if (other.path >= path || PlaceOf(other.path) <= PlaceOf(path)) return true;
+        if (!Matters(group, GroupAt(other.path))) return true;
+        if (DistanceOfPieces(piece.a, piece.b, other.a, other.b) > kNearMm) return true;
+        if (std::find(reported.begin(), reported.end(), path) != reported.end()) return false;
+        reported.push_back(path);
+        Report(other.path, path, visits, findings);
+        return false;
+      });
+    }
+  }
+
+  // `later` comes before `earlier`.
+  void Report(uint32_t earlier, uint32_t later, absl::Span<const Visit> visits,
+              LayerFindings& findings) {
+    const TraceChunk& was = layer_.was();
+    const TraceChunk& is = layer_.is();
+    const Visit& visit = visits[PlaceOf(later)];
+    findings.breaks.push_back(
+        {VerifyRule::kOrder, was.LineOf(was.paths[later]), is.segments[visit.first_segment].line,
+         layer_.index(),
+         absl::StrFormat("this %s is printed before the %s of line %d in the original, which it "
+                         "comes after there",
+                         std::string(PathClassName(layer_.ClassOf(later))),
+                         std::string(PathClassName(layer_.ClassOf(earlier))),
+                         was.LineOf(was.paths[earlier]))});
+  }
+
+  const LayerPair& layer_;
+  const VerifyPermissions permissions_;
+  std::vector<Group> groups_;    // [path - first path of the layer]
+  std::vector<uint32_t> place_;  // [path - first path of the section] in the section's visits
+  uint32_t first_ = 0;
+};
+
+}  // namespace
+
+void CheckOrder(const LayerPair& layer, const RuleContext& context, LayerFindings& findings) {
+  OrderKeeper keeper(layer, context);
+  for (size_t k = 0; k < layer.section_count(); ++k) keeper.Check(k, findings);
+}
+
+}  // namespace traverse::gcode

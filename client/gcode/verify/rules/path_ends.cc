@@ -1,0 +1,78 @@
+// A move that goes on along a path's end without filament (the wipe of an outer wall, coasting)
+// stays with that end; where the seam moves or the path turns, there is one of the same length at
+// the new end.
+
+#include <cmath>
+
+#include "absl/strings/str_format.h"
+#include "client/gcode/verify/rules/rules.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kShortestMm = 0.015;
+constexpr double kSlackMm = 0.02;
+
+struct Tail {
+  double length_mm = 0;
+  Point end;
+  uint32_t line = 0;
+  Micro feed = 0;
+  bool known = true;
+};
+
+Tail TailOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
+            absl::Span<const Piece> pieces) {
+  Tail tail;
+  const uint32_t first = chunk.links[path + 1].first_move;
+  const uint32_t n = LayerPair::TailMoves(chunk, path, pieces);
+  for (uint32_t m = first; m < first + n; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    tail.length_mm += move.length_mm();
+    tail.end = move.to;
+    tail.feed = move.feed;
+    tail.known &= layer.IsKnown(move);
+    if (tail.line == 0) tail.line = move.line;
+  }
+  return tail;
+}
+
+}  // namespace
+
+void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
+  const TraceChunk& was = layer.was();
+  const TraceChunk& is = layer.is();
+  for (const Visit& visit : layer.visits()) {
+    const TracePath& path = was.paths[visit.path];
+    if (visit.segments != path.size()) continue;
+    const absl::Span<const Piece> pieces = layer.PiecesOf(visit.path);
+    const Tail had = TailOf(layer, was, visit.path, pieces);
+    const Tail has = TailOf(layer, is, visit.last_path, pieces);
+    const uint32_t end_line = is.segments[visit.last_segment].line;
+    const auto report = [&](uint32_t original, uint32_t optimised, std::string what) {
+      findings.breaks.push_back(
+          {VerifyRule::kPathEnds, original, optimised, layer.index(), std::move(what)});
+    };
+    if (had.length_mm < kShortestMm) {
+      const bool new_tail = has.length_mm >= kShortestMm && !has.known &&
+                            has.length_mm > kLoopGapMm && has.feed == path.feed;
+      if (new_tail) {
+        report(was.segments[path.end_segment - 1].line, has.line,
+               absl::StrFormat("goes on along the path for %.2f mm, as it does not there",
+                               has.length_mm));
+      }
+      continue;
+    }
+    const bool same_end = visit.forward && visit.entry == 0;
+    const double slack = std::max(kSlackMm, 0.02 * had.length_mm);
+    if (std::abs(has.length_mm - had.length_mm) > slack) {
+      report(had.line, has.line != 0 ? has.line : end_line,
+             absl::StrFormat("goes on along the path for %.2f mm where it does for %.2f mm there",
+                             has.length_mm, had.length_mm));
+    } else if (same_end && DistanceOf(has.end, had.end) > kSlackMm) {
+      report(had.line, has.line, "goes on from the path to another point than there");
+    }
+  }
+}
+
+}  // namespace traverse::gcode

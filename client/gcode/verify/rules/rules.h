@@ -1,0 +1,52 @@
+// The rules, one a file. Each says what it finds in one layer; some only look, and compare what
+// they saw with the whole of the original when both files are done.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_RULES_RULES_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_RULES_RULES_H_
+
+#include <vector>
+
+#include "client/gcode/verify/match/layer_pair.h"
+#include "client/gcode/verify/permissions.h"
+#include "client/gcode/verify/rules/findings.h"
+
+namespace traverse::gcode {
+
+struct RuleContext {
+  VerifyPermissions permissions;
+  SlicerSettings settings;
+};
+
+// Layer by layer.
+void CheckWholePaths(const LayerPair& layer, LayerFindings& findings);
+void CheckOrder(const LayerPair& layer, const RuleContext& context, LayerFindings& findings);
+void CheckDirection(const LayerPair& layer, const RuleContext& context, LayerFindings& findings);
+void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings& findings);
+void CheckOpenWays(const LayerPair& layer, LayerFindings& findings);
+void ObserveLifts(const LayerPair& layer, LayerFindings& findings);
+void ObserveRetractions(const LayerPair& layer, LayerFindings& findings);
+void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings);
+void CheckWipes(const LayerPair& layer, LayerFindings& findings);
+void CheckCommands(const LayerPair& layer, LayerFindings& findings);
+void CheckPathEnds(const LayerPair& layer, LayerFindings& findings);
+
+// The moves of the start and end scripts in link `link` of the original.
+void ObserveScript(const TraceChunk& was, uint32_t link, Observations& seen);
+
+// Chunk by chunk: what belongs to sections.
+void CheckStandstill(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks);
+void CheckSetBacks(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks);
+
+// At the end.
+void CompareProgress(const std::vector<Progress>& was, const std::vector<Progress>& is,
+                     std::vector<Finding>& breaks);
+void CompareLifts(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
+void CompareRetractions(const Observations& was, const Observations& is,
+                        std::vector<Finding>& breaks);
+void CompareSpeeds(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
+void CompareWipes(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
+void CompareScripts(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_RULES_RULES_H_

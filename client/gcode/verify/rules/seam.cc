@@ -1,0 +1,53 @@
+// The seam of an outer wall: under `safe` the same point, under `balanced` that or a sharp corner.
+
+#include <cmath>
+
+#include "absl/strings/str_format.h"
+#include "client/gcode/verify/rules/rules.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kSamePointMm = 0.05;
+constexpr double kSharpRadians = 0.49;
+
+Point PointOf(const TraceChunk& chunk, const TracePath& path, uint32_t index) {
+  return chunk.StartOf(path, path.first_segment + index % path.size());
+}
+
+// By how much the loop turns where segment `index` begins.
+double TurnAt(const TraceChunk& chunk, const TracePath& path, uint32_t index) {
+  const uint32_t n = path.size();
+  const Point here = PointOf(chunk, path, index);
+  // Over the gap of a loop, which lies between its last point and its first one.
+  const Point before = PointOf(chunk, path, index + n - 1);
+  const Point behind = PointOf(chunk, path, index + 1);
+  const double in = std::atan2(here.y - before.y, here.x - before.x);
+  const double out = std::atan2(behind.y - here.y, behind.x - here.x);
+  return std::abs(std::remainder(out - in, 2 * M_PI));
+}
+
+}  // namespace
+
+void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings& findings) {
+  if (context.permissions.policy == VerifyPermissions::Policy::kFree) return;
+  const TraceChunk& was = layer.was();
+  for (const Visit& visit : layer.visits()) {
+    if (!layer.Closed(visit.path) || !layer.Outer(visit.path)) continue;
+    const TracePath& path = was.paths[visit.path];
+    const uint32_t begin = visit.forward ? visit.entry : (visit.entry + 1) % path.size();
+    const Point seam = PointOf(was, path, begin);
+    if (DistanceOf(seam, path.start) <= kSamePointMm) continue;
+    const bool balanced = context.permissions.policy == VerifyPermissions::Policy::kBalanced;
+    if (balanced && TurnAt(was, path, begin) >= kSharpRadians) continue;
+    findings.breaks.push_back(
+        {VerifyRule::kSeam, was.LineOf(path), layer.is().segments[visit.first_segment].line,
+         layer.index(),
+         absl::StrFormat("the seam of this %s is %.2f mm from where it was%s",
+                         std::string(PathClassName(layer.ClassOf(visit.path))),
+                         DistanceOf(seam, path.start),
+                         balanced ? ", and at no sharp corner" : "")});
+  }
+}
+
+}  // namespace traverse::gcode

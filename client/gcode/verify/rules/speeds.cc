@@ -1,0 +1,150 @@
+// Feed rate and acceleration of each travel, wipe, lift and retraction are those of the same kind
+// of move within the print.
+
+#include "absl/strings/str_format.h"
+#include "client/gcode/verify/rules/rules.h"
+
+namespace traverse::gcode {
+namespace {
+
+// Travel with an open nozzle is a kind of its own, behind those of MoveKind.
+constexpr auto kOpenTravel = static_cast<size_t>(MoveKind::kCount);
+
+size_t KindOf(const TraceMove& move) {
+  return move.kind == MoveKind::kTravel && move.open ? kOpenTravel : static_cast<size_t>(move.kind);
+}
+
+std::string KindName(size_t kind) {
+  return std::string(kind == kOpenTravel ? "open travel"
+                                         : MoveKindName(static_cast<MoveKind>(kind)));
+}
+
+void Note(absl::flat_hash_map<uint64_t, Seen>& map, uint64_t key, const TraceMove& move,
+          int64_t layer) {
+  ++map.try_emplace(key, Seen{move.line, layer, 0}).first->second.count;
+}
+
+// True if what moves along the end of a path, which is no travel, is to be left out.
+class Tails {
+ public:
+  Tails(const LayerPair& layer, bool original) : layer_(layer) {
+    const TraceChunk& chunk = original ? layer.was() : layer.is();
+    const uint32_t first = original ? layer.first_path_was() : layer.first_path_is();
+    const uint32_t end = original ? layer.end_path_was() : layer.end_path_is();
+    first_link_ = first + 1;
+    moves_.assign(end - first, 0);
+    if (original) {
+      for (uint32_t path = first; path < end; ++path) {
+        moves_[path - first] = LayerPair::TailMoves(chunk, path, layer.PiecesOf(path));
+      }
+    } else {
+      for (const Visit& visit : layer.visits()) {
+        moves_[visit.last_path - first] =
+            LayerPair::TailMoves(chunk, visit.last_path, layer.PiecesOf(visit.path));
+      }
+    }
+  }
+
+  // How many moves at the beginning of the link are not travel.
+  uint32_t At(uint32_t link) const {
+    if (link < first_link_ || link - first_link_ >= moves_.size()) return 0;
+    return moves_[link - first_link_];
+  }
+
+ private:
+  const LayerPair& layer_;
+  uint32_t first_link_ = 0;
+  std::vector<uint32_t> moves_;
+};
+
+void ObserveWas(const LayerPair& layer, const Tails& tails, Observations& seen) {
+  const TraceChunk& chunk = layer.was();
+  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
+    const TraceLink& traced = chunk.links[link];
+    if (traced.scripted) {
+      ObserveScript(chunk, link, seen);
+      continue;
+    }
+    for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
+      const TraceMove& move = chunk.moves[m];
+      if (!move.in_print) {
+        seen.script_signatures.insert(move.signature);
+        continue;
+      }
+      Note(seen.feeds[KindOf(move)], static_cast<uint64_t>(move.feed), move, layer.index());
+      Note(seen.accelerations[KindOf(move)], move.acceleration, move, layer.index());
+      Note(seen.signatures, move.signature, move, layer.index());
+    }
+  }
+}
+
+void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
+  const TraceChunk& chunk = layer.is();
+  for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
+    const TraceLink& traced = chunk.links[link];
+    for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
+      const TraceMove& move = chunk.moves[m];
+      if (!move.in_print || layer.IsKnown(move)) continue;
+      // The gap of a loop that is begun elsewhere belongs to the loop.
+      if (move.kind == MoveKind::kTravel && move.open && move.length_mm() <= kLoopGapMm) continue;
+      if (!move.firmware) {
+        Note(seen.feeds[KindOf(move)], static_cast<uint64_t>(move.feed), move, layer.index());
+        Note(seen.accelerations[KindOf(move)], move.acceleration, move, layer.index());
+      }
+      if (move.filament != 0 && move.kind != MoveKind::kWipe)
+        Note(seen.signatures, move.signature, move, layer.index());
+    }
+  }
+}
+
+uint32_t AnyLine(const absl::flat_hash_map<uint64_t, Seen>& map) {
+  uint32_t line = 0;
+  for (const auto& [key, seen] : map) {
+    if (line == 0 || seen.line < line) line = seen.line;
+  }
+  return line;
+}
+
+}  // namespace
+
+void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings) {
+  ObserveWas(layer, Tails(layer, true), findings.was);
+  ObserveIs(layer, Tails(layer, false), findings.is);
+}
+
+void CompareSpeeds(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
+  for (size_t kind = 0; kind < was.feeds.size(); ++kind) {
+    // Ways that are open and ways that are not are the same to a slicer: of a kind that the
+    // original has none of, the other one tells.
+    size_t like = kind;
+    constexpr auto kTravel = static_cast<size_t>(MoveKind::kTravel);
+    if (was.feeds[kind].empty() && kind == kOpenTravel) like = kTravel;
+    if (was.feeds[kind].empty() && kind == kTravel) like = kOpenTravel;
+    for (const auto& [feed, seen] : is.feeds[kind]) {
+      if (was.feeds[like].contains(feed)) continue;
+      breaks.push_back({VerifyRule::kSpeeds, AnyLine(was.feeds[like]), seen.line, seen.layer,
+                        absl::StrFormat("%s at F%g, as none of the original", KindName(kind),
+                                        static_cast<double>(static_cast<Micro>(feed)) * 1e-6)});
+    }
+    const bool travels = kind == kTravel || kind == kOpenTravel;
+    for (const auto& [acceleration, seen] : is.accelerations[kind]) {
+      bool known = was.accelerations[like].contains(acceleration);
+      if (!known && travels) {
+        known = was.accelerations[kTravel + kOpenTravel - kind].contains(acceleration);
+      }
+      // What else is done between paths goes with the path before it or with the travel.
+      if (!travels || known) continue;
+      breaks.push_back(
+          {VerifyRule::kSpeeds, AnyLine(was.accelerations[like]), seen.line, seen.layer,
+           absl::StrFormat("%s under an acceleration as none of the original", KindName(kind))});
+    }
+  }
+}
+
+void ObserveScript(const TraceChunk& was, uint32_t link, Observations& seen) {
+  for (uint32_t m = was.links[link].first_move; m < was.links[link].end_move; ++m) {
+    seen.script_signatures.insert(was.moves[m].signature);
+  }
+}
+
+}  // namespace traverse::gcode

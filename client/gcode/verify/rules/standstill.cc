@@ -1,0 +1,51 @@
+// Filament pushed at a standstill is the same multiset of section and amount; where nothing had
+// been pulled back, at the same X and Y.
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "absl/strings/str_format.h"
+#include "client/gcode/verify/rules/rules.h"
+
+namespace traverse::gcode {
+namespace {
+
+// Section, amount and, if nothing had been pulled back, where.
+using Key = std::tuple<uint32_t, Micro, bool, int64_t, int64_t>;
+
+Key KeyOf(const Standstill& event) {
+  constexpr Micro kSlack = VerifyMachine::kSlack;
+  const auto um = [](double mm) { return static_cast<int64_t>(mm * 1000 + (mm < 0 ? -0.5 : 0.5)); };
+  return {event.section, (event.amount + kSlack / 2) / kSlack, event.fresh,
+          event.fresh ? um(event.at.x) : 0, event.fresh ? um(event.at.y) : 0};
+}
+
+}  // namespace
+
+void CheckStandstill(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks) {
+  std::map<Key, std::vector<uint32_t>> lines;
+  for (const Standstill& event : was.standstills) lines[KeyOf(event)].push_back(event.line);
+  for (const Standstill& event : is.standstills) {
+    const auto known = lines.find(KeyOf(event));
+    if (known != lines.end() && !known->second.empty()) {
+      known->second.pop_back();
+      continue;
+    }
+    breaks.push_back(
+        {VerifyRule::kStandstill, 0, event.line, -1,
+         absl::StrFormat("pushes %.4f mm more than was pulled back, which the original does not %s",
+                         static_cast<double>(event.amount) * 1e-6,
+                         event.fresh ? "in this place" : "so often in this part of the print")});
+  }
+  for (const auto& [key, left] : lines) {
+    for (const uint32_t line : left) {
+      breaks.push_back(
+          {VerifyRule::kStandstill, line, 0, -1,
+           absl::StrFormat("pushes %.4f mm more than was pulled back, which is missing",
+                           static_cast<double>(std::get<1>(key) * VerifyMachine::kSlack) * 1e-6)});
+    }
+  }
+}
+
+}  // namespace traverse::gcode

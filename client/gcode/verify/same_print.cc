@@ -1,0 +1,106 @@
+#include "client/gcode/verify/same_print.h"
+
+#include <algorithm>
+#include <map>
+
+#include "absl/strings/str_format.h"
+
+namespace traverse::gcode {
+namespace {
+
+// A line of one side that the other side's section lacks, or has fewer times.
+struct Odd {
+  size_t number = 0;
+  std::string text;
+};
+
+std::optional<Odd> FirstOdd(const Side& a, const Side& b, size_t index, bool deposits) {
+  const auto wanted = [deposits](const VerifyLine& line) {
+    const bool note = line.role == LineRole::kComment || line.role == LineRole::kProgress;
+    return deposits ? line.role == LineRole::kDeposit : note;
+  };
+  const auto for_each_line = [index, deposits](const Side& side, const auto& visit) {
+    const Section& section = side.cut.sections[index];
+    ForEachLine(side.text, deposits ? section.first_line : section.first_note,
+                deposits ? section.last_line : section.last_note, visit);
+  };
+  std::map<uint64_t, int64_t> known;
+  for_each_line(b, [&](const VerifyLine& line) {
+    if (wanted(line)) ++known[line.digest];
+  });
+  std::optional<Odd> odd;
+  for_each_line(a, [&](const VerifyLine& line) {
+    if (!wanted(line) || odd || --known[line.digest] >= 0) return;
+    if (!deposits && line.text.substr(0, kOptimisedMark.size()) == kOptimisedMark) return;
+    odd = Odd{line.number, std::string(line.text)};
+  });
+  return odd;
+}
+
+VerifyBreak MultisetDifference(const Side& original, const Side& optimised, size_t index,
+                               bool deposits) {
+  const char* what = deposits ? "prints" : "has";
+  const char* under = deposits ? " under the same conditions" : "";
+  const auto differ = [&](const Side& a, const Side& b, const Odd& odd) {
+    const Section& section = b.cut.sections[index];
+    const size_t first = deposits ? section.first_line : section.first_note;
+    const bool is = &a == &optimised;
+    return VerifyBreak{
+        VerifyRule::kSamePrint, is ? first : odd.number, is ? odd.number : first, -1,
+        absl::StrFormat("%s:%d: `%s` %s what lines %d to %d of %s do not%s", a.name, odd.number,
+                        odd.text, what, first, deposits ? section.last_line : section.last_note,
+                        b.name, under)};
+  };
+  if (const std::optional<Odd> odd = FirstOdd(optimised, original, index, deposits)) {
+    return differ(optimised, original, *odd);
+  }
+  const std::optional<Odd> odd = FirstOdd(original, optimised, index, deposits);
+  return differ(original, optimised,
+                odd.value_or(Odd{original.cut.sections[index].first_line, ""}));
+}
+
+std::optional<VerifyBreak> CompareEnds(const Side& original, const Side& optimised, size_t index) {
+  const Section& was = original.cut.sections[index];
+  const Section& is = optimised.cut.sections[index];
+  const auto differ = [&](const char* what) {
+    return VerifyBreak{VerifyRule::kSamePrint, was.last_line, is.last_line, -1,
+                       absl::StrFormat("%s:%d: %s at %s:%d", optimised.name, is.last_line, what,
+                                       original.name, was.last_line)};
+  };
+  if (was.fence != is.fence || was.fixed != is.fixed) return differ("not the line that stands");
+  if (was.fan != is.fan) return differ("the fan is not as");
+  if (was.x != is.x || was.y != is.y || was.z != is.z) return differ("the head is not where it is");
+  if (was.retracted != is.retracted) return differ("filament is not pulled back as");
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<VerifyBreak> FirstDifference(const Side& original, const Side& optimised,
+                                           size_t first, size_t end, bool whole) {
+  const std::vector<Section>& sections_was = original.cut.sections;
+  const std::vector<Section>& sections_is = optimised.cut.sections;
+  const size_t common = std::min({sections_was.size(), sections_is.size(), end});
+  for (size_t i = first; i < common; ++i) {
+    const Section& was = sections_was[i];
+    const Section& is = sections_is[i];
+    if (was.deposits != is.deposits) return MultisetDifference(original, optimised, i, true);
+    if (auto ends = CompareEnds(original, optimised, i)) return ends;
+    if (was.notes != is.notes) return MultisetDifference(original, optimised, i, false);
+    if (is.lowest < was.lowest) {
+      return VerifyBreak{
+          VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
+          absl::StrFormat("%s:%d: travels lower than lines %d to %d of %s", optimised.name,
+                          is.first_line, was.first_line, was.last_line, original.name)};
+    }
+  }
+  if (!whole || sections_was.size() == sections_is.size()) return std::nullopt;
+  const Side& longer = sections_was.size() > sections_is.size() ? original : optimised;
+  const Side& shorter = &longer == &original ? optimised : original;
+  const size_t line = longer.cut.sections[common].first_line;
+  return VerifyBreak{
+      VerifyRule::kSamePrint, &longer == &original ? line : 0, &longer == &optimised ? line : 0, -1,
+      absl::StrFormat("%s:%d: goes on where %s ends", longer.name, line, shorter.name)};
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,29 @@
+// The first of the rules: the same deposits under the same conditions, and the lines beside them.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_SAME_PRINT_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_SAME_PRINT_H_
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "client/gcode/verify/report.h"
+#include "client/gcode/verify/sections.h"
+
+namespace traverse::gcode {
+
+// One of the two files, as far as it has been cut.
+struct Side {
+  std::string_view text;
+  const std::string& name;
+  const Sections& cut;
+};
+
+// The first difference of the sections `first` to `end` - 1; nothing if there is none. `whole`: the
+// files end with section `end` - 1, and have as many.
+std::optional<VerifyBreak> FirstDifference(const Side& original, const Side& optimised,
+                                           size_t first, size_t end, bool whole);
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_SAME_PRINT_H_

@@ -1,0 +1,50 @@
+// What a path is part of, as the comments of many slicers name it.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_PATH_CLASS_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_PATH_CLASS_H_
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace traverse::gcode {
+
+enum class PathClass : uint8_t {
+  kUnnamed,
+  kOuterWall,
+  kInnerWall,
+  kOverhang,  // a wall, outer or inner
+  kWall,      // a wall of which no more is known
+  kInfill,
+  kSkin,  // solid infill
+  kTop,   // the surface that is seen from above
+  kBottom,
+  kBridge,
+  kIroning,
+  kSkirt,  // or brim
+  kSupport,
+  kInterface,  // of supports
+  kTower,
+  kScript,
+  kCount,
+};
+
+// For people: "outer wall".
+std::string_view PathClassName(PathClass path_class);
+
+inline bool IsWallClass(PathClass path_class) {
+  return path_class == PathClass::kOuterWall || path_class == PathClass::kInnerWall ||
+         path_class == PathClass::kOverhang || path_class == PathClass::kWall;
+}
+
+// The class that a comment line sets for what follows: `;TYPE:External perimeter`,
+// `; FEATURE: Outer wall`, `; feature outer perimeter`, `; outer perimeter`, `; 'Perimeter Path',`,
+// `;shell`. Nothing for other comments; kUnnamed for a feature of a name that is not known.
+std::optional<PathClass> ClassOfComment(std::string_view comment);
+
+// The same of a comment on a move, as Slic3r writes it: `; perimeter`.
+std::optional<PathClass> ClassOfMoveComment(std::string_view comment);
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_PATH_CLASS_H_

@@ -1,0 +1,51 @@
+// Reads one of the two files of a verification, some layers at a time.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_SIDE_READER_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_SIDE_READER_H_
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "client/gcode/verify/sections.h"
+#include "client/gcode/verify/trace/trace.h"
+#include "client/gcode/verify/trace/tracer.h"
+
+namespace traverse::gcode {
+
+// True if `text` has marks of layers that slicers write.
+bool HasLayerMarks(std::string_view text);
+
+class SideReader {
+ public:
+  // `ignored` begins comments that are left out.
+  SideReader(std::string_view text, std::string_view ignored, bool marked);
+
+  // The next layers, of `bytes` of text or a little more.
+  TraceChunk NextBytes(size_t bytes);
+
+  // The next layers, as far as section `end_section`.
+  TraceChunk NextSections(uint32_t end_section);
+
+  bool done() const { return done_; }
+
+  // Of what has been read.
+  const Sections& cut() const { return cutter_.cut(); }
+
+ private:
+  template <typename Enough>
+  TraceChunk ReadUntil(Enough enough);
+  void TakeHeld();
+
+  VerifyMachine machine_;
+  SectionCutter cutter_;
+  Tracer tracer_;
+  VerifyLine line_;
+  bool held_ = false;  // line_ begins the next chunk
+  bool done_ = false;
+  size_t bytes_ = 0;
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_SIDE_READER_H_

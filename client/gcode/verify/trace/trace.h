@@ -1,0 +1,162 @@
+// A print as the rules look at it: paths, what stands between them, sections and layers.
+//
+//   layer    | section            | section | ...
+//   path     link path link path    link path
+//   segment       |||||     ||||         ||||
+//
+// A path is a run of deposits with no other move between them. Link i holds the moves and commands
+// before path i; the last link of a chunk stands behind its last path, and is the first one of the
+// chunk that follows. A section ends at a line whose place matters (sections.h). A layer is a run
+// of sections at one height, and of one mark of the slicer's.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_TRACE_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_TRACE_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "client/gcode/verify/trace/path_class.h"
+#include "client/gcode/verify/verify_machine.h"
+
+namespace traverse::gcode {
+
+// In mm.
+struct Point {
+  double x = 0;
+  double y = 0;
+};
+
+struct TraceSegment {
+  uint64_t digest = 0;  // of a deposit: VerifyLine
+  Point end;
+  uint32_t line = 0;
+  int32_t arc = -1;  // index in TraceChunk::arcs
+};
+
+struct TraceArc {
+  Point center;
+  bool clockwise = false;
+};
+
+struct TracePath {
+  uint32_t first_segment = 0;
+  uint32_t end_segment = 0;
+  Point start;
+  double z_mm = 0;
+  float length_mm = 0;
+  float filament_mm = 0;
+  Micro feed = 0;  // of its last segment
+  PathClass path_class = PathClass::kUnnamed;
+  bool overhangs = false;  // some of it is of class kOverhang
+  bool outer = false;      // some of it is of class kOuterWall
+  bool joined = false;     // begins where the path before it ends, without a move between
+  uint32_t size() const { return end_segment - first_segment; }
+};
+
+enum class MoveKind : uint8_t {
+  kTravel,  // sideways, no filament
+  kWipe,    // sideways, filament pulled back
+  kUp,
+  kDown,
+  kRetraction,  // filament pulled back at a standstill
+  kPriming,     // filament pushed at a standstill
+  kCount,
+};
+
+std::string_view MoveKindName(MoveKind kind);
+
+struct TraceMove {
+  uint64_t identity = 0;      // from, to, filament, speed, acceleration
+  uint64_t signature = 0;     // of the line but for its coordinates
+  uint64_t acceleration = 0;  // VerifyMachine::AccelerationDigest
+  uint64_t tool = 0;
+  Point from;
+  Point to;
+  double z_from_mm = 0;
+  double z_to_mm = 0;
+  Micro filament = 0;
+  Micro feed = 0;
+  uint32_t line = 0;
+  uint32_t section = 0;
+  MoveKind kind = MoveKind::kTravel;
+  bool open = true;       // the nozzle, when it begins
+  bool firmware = false;  // G10, G11
+  bool states_z = false;  // has a Z word
+  bool arc = false;
+  bool in_print = false;  // not in the start script
+  bool rounding = false;  // a segment whose extrusion was rounded to nothing
+
+  bool sideways() const { return kind == MoveKind::kTravel || kind == MoveKind::kWipe; }
+  double length_mm() const;
+};
+
+struct TraceLink {
+  uint32_t first_move = 0;
+  uint32_t end_move = 0;
+  bool new_layer = false;  // a mark of a layer or a change of height lies in it
+  bool scripted = false;   // lines that are not known lie in it
+};
+
+// A command within a path, before segment `segment`.
+struct TraceCommand {
+  uint64_t name = 0;
+  uint32_t segment = 0;
+  uint32_t line = 0;
+};
+
+// Filament pushed beyond what had been pulled back, by moves of its alone.
+struct Standstill {
+  uint32_t section = 0;
+  uint32_t line = 0;
+  Micro amount = 0;
+  bool fresh = false;  // nothing had been pulled back
+  Point at;
+};
+
+// A setting that got the value back that it had at the last move.
+struct SetBack {
+  uint32_t section = 0;
+  uint32_t line = 0;
+};
+
+struct TraceSection {
+  uint32_t index = 0;  // from the beginning of the file
+  uint32_t first_path = 0;
+  uint32_t end_path = 0;
+};
+
+struct TraceLayer {
+  uint32_t index = 0;  // from the beginning of the file
+  uint32_t first_section = 0;
+  uint32_t end_section = 0;  // in TraceChunk::sections, those with paths
+};
+
+struct Progress {
+  uint64_t digest = 0;
+  uint32_t line = 0;
+};
+
+struct TraceChunk {
+  std::vector<TraceSegment> segments;
+  std::vector<TraceArc> arcs;
+  std::vector<TracePath> paths;
+  std::vector<TraceLink> links;  // one more than paths
+  std::vector<TraceMove> moves;
+  std::vector<TraceCommand> commands;   // by segment
+  std::vector<Standstill> standstills;  // by line
+  std::vector<SetBack> set_backs;       // by line
+  std::vector<Progress> progress;       // M73
+  std::vector<TraceSection> sections;
+  std::vector<TraceLayer> layers;
+  uint32_t end_section = 0;  // index of the section behind the last one that is whole
+
+  Point StartOf(const TracePath& path, uint32_t segment) const {
+    return segment == path.first_segment ? path.start : segments[segment - 1].end;
+  }
+  Point EndOf(const TracePath& path) const { return segments[path.end_segment - 1].end; }
+  uint32_t LineOf(const TracePath& path) const { return segments[path.first_segment].line; }
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_TRACE_H_

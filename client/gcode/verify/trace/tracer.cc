@@ -1,0 +1,249 @@
+#include "client/gcode/verify/trace/tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kMicro = 1e-6;
+constexpr double kInch = 25.4;
+
+// Moves this short whose extrusion is written as 0 are segments that rounding left nothing of.
+constexpr double kRoundedMm = 0.05;
+
+constexpr uint32_t Bit(char letter) { return 1u << (letter - 'A'); }
+
+bool Begins(std::string_view text, std::string_view with) {
+  return text.substr(0, with.size()) == with;
+}
+
+double LengthOf(const Motion& motion) {
+  const auto dx = static_cast<double>(motion.to[0] - motion.from[0]);
+  const auto dy = static_cast<double>(motion.to[1] - motion.from[1]);
+  return std::sqrt(dx * dx + dy * dy) * kMicro;
+}
+
+MoveKind KindOf(const Motion& motion) {
+  const bool sideways = motion.from[0] != motion.to[0] || motion.from[1] != motion.to[1];
+  if (motion.number == 10) return MoveKind::kRetraction;
+  if (motion.number == 11) return MoveKind::kPriming;
+  if (sideways) return motion.filament < 0 ? MoveKind::kWipe : MoveKind::kTravel;
+  if (motion.filament < 0) return MoveKind::kRetraction;
+  if (motion.filament > 0) return MoveKind::kPriming;
+  return motion.to[2] < motion.from[2] ? MoveKind::kDown : MoveKind::kUp;
+}
+
+uint64_t IdentityOf(const Motion& motion, uint64_t acceleration, bool wiping) {
+  uint64_t digest = Mix(acceleration, motion.was_retracted ? 1 : 0);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    digest = Mix(digest, static_cast<uint64_t>(motion.from[axis]));
+    digest = Mix(digest, static_cast<uint64_t>(motion.to[axis]));
+  }
+  digest = Mix(digest, static_cast<uint64_t>(motion.filament));
+  digest = Mix(digest, static_cast<uint64_t>(motion.feed));
+  return Mix(digest, static_cast<uint64_t>(motion.number) * 2 + (wiping ? 1 : 0));
+}
+
+uint64_t SignatureOf(const Motion& motion) {
+  uint64_t digest = Mix(static_cast<uint64_t>(motion.number), motion.words);
+  digest = Mix(digest, static_cast<uint64_t>(motion.filament));
+  return Mix(digest, (motion.words & Bit('F')) != 0 ? static_cast<uint64_t>(motion.feed) : 0);
+}
+
+// Moves what lies in section `end` and behind it from `from` to `to`.
+template <typename Event>
+void MoveLater(uint32_t end, std::vector<Event>& from, std::vector<Event>& to) {
+  const auto later = std::find_if(from.begin(), from.end(),
+                                  [end](const Event& event) { return event.section >= end; });
+  to.assign(later, from.end());
+  from.erase(later, from.end());
+}
+
+}  // namespace
+
+std::string_view MoveKindName(MoveKind kind) {
+  constexpr std::string_view kNames[] = {"travel",    "wipe",       "move up",
+                                         "move down", "retraction", "priming"};
+  static_assert(std::size(kNames) == static_cast<size_t>(MoveKind::kCount));
+  return kNames[static_cast<size_t>(kind)];
+}
+
+double TraceMove::length_mm() const { return std::hypot(to.x - from.x, to.y - from.y); }
+
+void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t section) {
+  if (line.text.empty()) return;
+  if (line.text[0] == ';') {
+    TakeComment(line);
+  } else if (line.role == LineRole::kDeposit) {
+    TakeDeposit(line, machine, section);
+  } else if (line.moves) {
+    TakeMove(line, machine, section);
+  }
+  const auto number = static_cast<uint32_t>(line.number);
+  if (line.role == LineRole::kProgress) chunk_.progress.push_back({line.digest, number});
+  if (line.sets_back) chunk_.set_backs.push_back({section, number});
+  if (line.command != 0) pending_commands_.push_back({line.command, 0, number});
+  if (line.role == LineRole::kFixed) link_.scripted = true;
+}
+
+void Tracer::TakeComment(const VerifyLine& line) {
+  if (line.role == LineRole::kFence) return;
+  const std::string_view text = line.text;
+  if (Begins(text, ";WIPE_START") || Begins(text, "; WIPE_START")) {
+    wiping_ = true;
+  } else if (Begins(text, ";WIPE_END") || Begins(text, "; WIPE_END")) {
+    wiping_ = false;
+  } else if (const std::optional<PathClass> path_class = ClassOfComment(text)) {
+    named_ = path_class;
+  }
+}
+
+// The segment may be all that its path is of; what the path is of is what most of it is of.
+PathClass Tracer::ClassNow(const VerifyLine& line) const {
+  if (named_) return *named_;
+  const size_t comment = line.text.find(';');
+  if (comment == std::string_view::npos) return PathClass::kUnnamed;
+  return ClassOfMoveComment(line.text.substr(comment)).value_or(PathClass::kUnnamed);
+}
+
+// True if all that happened since the last deposit were segments rounded to nothing.
+bool Tracer::OnlyRounding() const {
+  return std::all_of(pending_.begin(), pending_.end(),
+                     [](const TraceMove& move) { return move.rounding; });
+}
+
+void Tracer::BeginPath(const Motion& motion, uint32_t section, double unit) {
+  TracePath path;
+  path.first_segment = static_cast<uint32_t>(chunk_.segments.size());
+  path.start = {static_cast<double>(motion.from[0]) * unit,
+                static_cast<double>(motion.from[1]) * unit};
+  path.z_mm = static_cast<double>(motion.to[2]) * unit;
+  path.joined = in_path_ && pending_.empty();
+  link_.first_move = static_cast<uint32_t>(chunk_.moves.size());
+  chunk_.moves.insert(chunk_.moves.end(), pending_.begin(), pending_.end());
+  pending_.clear();
+  pending_commands_.clear();
+  link_.end_move = static_cast<uint32_t>(chunk_.moves.size());
+  chunk_.links.push_back(link_);
+  link_ = TraceLink{};
+  const auto index = static_cast<uint32_t>(chunk_.paths.size());
+  if (layer_due_) {
+    const auto first = static_cast<uint32_t>(chunk_.sections.size());
+    chunk_.layers.push_back({layers_++, first, first});
+  }
+  if (section_due_) {
+    chunk_.sections.push_back({section, index, index});
+    ++chunk_.layers.back().end_section;
+  }
+  layer_due_ = section_due_ = false;
+  chunk_.paths.push_back(path);
+  chunk_.sections.back().end_path = index + 1;
+  length_of_.fill(0);
+}
+
+void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_t section) {
+  const Motion& motion = machine.motion();
+  const double unit = machine.inches() ? kInch * kMicro : kMicro;
+  const bool goes_on = in_path_ && !section_due_ && OnlyRounding();
+  if (goes_on) {
+    for (TraceCommand command : pending_commands_) {
+      command.segment = static_cast<uint32_t>(chunk_.segments.size());
+      chunk_.commands.push_back(command);
+    }
+    pending_commands_.clear();
+    pending_.clear();
+    link_ = TraceLink{};
+  } else {
+    BeginPath(motion, section, unit);
+  }
+  in_path_ = true;
+  TraceSegment segment;
+  segment.digest = line.digest;
+  segment.end = {static_cast<double>(motion.to[0]) * unit,
+                 static_cast<double>(motion.to[1]) * unit};
+  segment.line = static_cast<uint32_t>(line.number);
+  if (motion.has_center) {
+    segment.arc = static_cast<int32_t>(chunk_.arcs.size());
+    chunk_.arcs.push_back(
+        {{static_cast<double>(motion.center_x) * unit, static_cast<double>(motion.center_y) * unit},
+         motion.number == 2});
+  }
+  chunk_.segments.push_back(segment);
+  TracePath& path = chunk_.paths.back();
+  path.end_segment = static_cast<uint32_t>(chunk_.segments.size());
+  const auto length = static_cast<float>(LengthOf(motion) * unit / kMicro);
+  path.length_mm += length;
+  path.filament_mm += static_cast<float>(static_cast<double>(motion.filament) * unit);
+  path.feed = motion.feed;
+  const PathClass path_class = ClassNow(line);
+  path.overhangs |= path_class == PathClass::kOverhang;
+  path.outer |= path_class == PathClass::kOuterWall;
+  float& of_class = length_of_[static_cast<size_t>(path_class)];
+  of_class += length + 1e-6f;
+  if (of_class > length_of_[static_cast<size_t>(path.path_class)]) path.path_class = path_class;
+}
+
+void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t section) {
+  const Motion& motion = machine.motion();
+  const double unit = machine.inches() ? kInch * kMicro : kMicro;
+  TraceMove move;
+  move.kind = KindOf(motion);
+  if (wiping_ && move.kind == MoveKind::kTravel) move.kind = MoveKind::kWipe;
+  move.acceleration = machine.AccelerationDigest();
+  move.identity = IdentityOf(motion, move.acceleration, wiping_);
+  move.signature = SignatureOf(motion);
+  move.tool = machine.tool();
+  move.from = {static_cast<double>(motion.from[0]) * unit,
+               static_cast<double>(motion.from[1]) * unit};
+  move.to = {static_cast<double>(motion.to[0]) * unit, static_cast<double>(motion.to[1]) * unit};
+  move.z_from_mm = static_cast<double>(motion.from[2]) * unit;
+  move.z_to_mm = static_cast<double>(motion.to[2]) * unit;
+  move.filament = motion.filament;
+  move.feed = motion.feed;
+  move.line = static_cast<uint32_t>(line.number);
+  move.section = section;
+  move.open = !motion.was_retracted;
+  move.firmware = motion.number == 10 || motion.number == 11;
+  move.states_z = (motion.words & Bit('Z')) != 0;
+  move.arc = motion.number == 2 || motion.number == 3;
+  move.in_print = in_print_;
+  move.rounding = move.kind == MoveKind::kTravel && (motion.words & Bit('E')) != 0 &&
+                  motion.filament == 0 && move.length_mm() <= kRoundedMm && !chunk_.paths.empty() &&
+                  motion.feed == chunk_.paths.back().feed;
+  // What was pulled back may be returned with what rounding makes of it.
+  const bool fresh = motion.pulled <= VerifyMachine::kSlack && !motion.was_retracted;
+  if (line.primes && line.surplus > (motion.pulled == 0 ? 0 : VerifyMachine::kSlack)) {
+    chunk_.standstills.push_back({section, move.line, line.surplus, fresh, move.to});
+  }
+  pending_.push_back(move);
+}
+
+void Tracer::EndSection(bool layer, bool mark) {
+  section_due_ = true;
+  layer_due_ |= layer;
+  link_.new_layer |= layer;
+  if (mark) Mark();
+}
+
+void Tracer::Mark() {
+  // Lines of the start script say nothing of the way to the first path.
+  if (!in_print_) link_.scripted = false;
+  in_print_ = true;
+}
+
+TraceChunk Tracer::TakeChunk(uint32_t end_section) {
+  TraceLink last = link_;
+  last.first_move = static_cast<uint32_t>(chunk_.moves.size());
+  chunk_.moves.insert(chunk_.moves.end(), pending_.begin(), pending_.end());
+  last.end_move = static_cast<uint32_t>(chunk_.moves.size());
+  chunk_.links.push_back(last);
+  chunk_.end_section = end_section;
+  TraceChunk taken = std::exchange(chunk_, TraceChunk{});
+  MoveLater(end_section, taken.standstills, chunk_.standstills);
+  MoveLater(end_section, taken.set_backs, chunk_.set_backs);
+  return taken;
+}
+
+}  // namespace traverse::gcode

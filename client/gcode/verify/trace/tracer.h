@@ -1,0 +1,60 @@
+// Follows a machine through a file and writes down what the rules look at.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_TRACER_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_TRACER_H_
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "client/gcode/verify/trace/trace.h"
+
+namespace traverse::gcode {
+
+class Tracer {
+ public:
+  // `marked`: the file has marks of layers, so that what stands before the first one is a script.
+  explicit Tracer(bool marked) : in_print_(!marked) {}
+
+  // A line that `machine` has just done, in section `section`.
+  void Take(const VerifyLine& line, VerifyMachine& machine, uint32_t section);
+
+  // A section ends: `layer`, with a layer.
+  void EndSection(bool layer, bool mark);
+
+  // What follows is no start script.
+  void Mark();
+
+  // The next deposit begins a path of a new layer, so that a chunk may end.
+  bool AtLayer() const { return layer_due_; }
+
+  // What has been written down since the last time; the link that follows goes into the next chunk
+  // as well.
+  TraceChunk TakeChunk(uint32_t end_section);
+
+ private:
+  void TakeComment(const VerifyLine& line);
+  void TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_t section);
+  void TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t section);
+  void BeginPath(const Motion& motion, uint32_t section, double unit);
+  bool OnlyRounding() const;
+  PathClass ClassNow(const VerifyLine& line) const;
+
+  TraceChunk chunk_;
+  std::vector<TraceMove> pending_;
+  std::vector<TraceCommand> pending_commands_;
+  TraceLink link_;
+  std::array<float, static_cast<size_t>(PathClass::kCount)> length_of_{};
+  std::optional<PathClass> named_;
+  bool in_path_ = false;
+  bool section_due_ = true;
+  bool layer_due_ = true;
+  bool wiping_ = false;  // between the marks of a wipe
+  bool in_print_;
+  uint32_t layers_ = 0;
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_TRACER_H_

@@ -1,0 +1,228 @@
+#include "client/gcode/write/gcode_out.h"
+
+#include <utility>
+
+namespace traverse::gcode {
+namespace {
+
+// End scripts switch to relative moves and back.
+void FollowModes(const Command& command, MachineState& modes) {
+  if (command.kind != LineKind::kCommand) return;
+  const int number = command.number;
+  if (command.letter == 'G' && (number == 90 || number == 91)) modes.relative_xyz = number == 91;
+  if (command.letter == 'M' && (number == 82 || number == 83)) modes.relative_e = number == 83;
+}
+
+}  // namespace
+
+GcodeOut::GcodeOut(const GcodeFile& file, const PartStart& start, std::string& text)
+    : at(start), file_(file), text_(text), wanted_{} {
+  const size_t first = file.text.find('\n');
+  const bool crlf = first != std::string::npos && first > 0 && file.text[first - 1] == '\r';
+  line_end_ = crlf ? "\r\n" : "\n";
+}
+
+void GcodeOut::Copy(Offset begin, Offset end, const PartStart& before, const PartStart& behind,
+                    bool without_progress) {
+  Flush();
+  const Decimal e = at.machine.e;
+  at = behind;
+  const Decimal shift = before.machine.RelativeE() ? 0 : e - before.machine.e;
+  if (shift == 0 && !without_progress) {
+    text_.append(file_.text, begin, end - begin);
+  } else {
+    CopyShifted(begin, end, shift, before.machine, without_progress);
+  }
+}
+
+void GcodeOut::CopyShifted(Offset begin, Offset end, Decimal shift, MachineState modes,
+                           bool without_progress) {
+  const std::string_view text(file_.text);
+  Command command;
+  for (Offset next = begin; next < end;) {
+    const Line line = LineAt(text.substr(0, end), next);
+    next = line.next;
+    const std::string_view raw = line.Raw(text);
+    LexLine(line.Text(text), command);
+    if (without_progress && command.Is('M', 73)) continue;
+    const bool moves = command.kind == LineKind::kCommand && command.letter == 'G' &&
+                       command.number <= 3 && command.Has('E');
+    FollowModes(command, modes);
+    if (command.Is('G', 92) && command.Has('E')) shift = 0;
+    if (moves && shift != 0 && !modes.RelativeE()) {
+      const WordChange e{'E', command.Value('E') + shift, file_.e_style};
+      AppendEdited(raw, {&e, 1}, text_);
+    } else {
+      text_.append(raw);
+    }
+  }
+  at.machine.e += shift;
+}
+
+void GcodeOut::Set(const PrintState& state, SlotMask mask) {
+  for (size_t slot = 0; slot < kSlotCount; ++slot) {
+    if (((mask >> slot) & 1u) != 0) wanted_[slot] = state[slot];
+  }
+  wanted_slots_ |= mask;
+}
+
+void GcodeOut::SetBy(std::string_view line, SlotMask slots) {
+  Flush();
+  text_.append(line);
+  ApplySetter(at.state, file_.setters.Find(line.substr(0, line.find_last_not_of("\r\n") + 1)),
+              slots);
+}
+
+void GcodeOut::Flush() {
+  if (wanted_slots_ == 0) return;
+  const SlotMask slots = std::exchange(wanted_slots_, 0);
+  for (const uint32_t setter : SettersBetween(at.state, wanted_, slots, file_.setters)) {
+    text_.append(file_.setters.Line(setter));
+    EndLine();
+  }
+}
+
+void GcodeOut::LinkLine(const LinkStep& step) {
+  if (step.kind == StepKind::kSetE) {
+    at.machine.e = step.filament;
+    return Raw(step.line.Raw(file_.text));
+  }
+  EditedLine(step, at.machine.at);
+}
+
+void GcodeOut::LiftLine(const LinkStep& step, Decimal z) {
+  if (z == at.machine.at.z) return;
+  Position to = at.machine.at;
+  to.z = z;
+  EditedLine(step, to);
+}
+
+void GcodeOut::MoveLine(const LinkStep& step) {
+  Position to = step.to;
+  to.z = at.machine.at.z;
+  EditedLine(step, to);
+}
+
+// The line of `step` as a move to `to`: the words that it has and that are not right are changed.
+void GcodeOut::EditedLine(const LinkStep& step, const Position& to) {
+  Flush();
+  at.machine.e += step.kind == StepKind::kSetE ? 0 : step.filament;
+  WordChange changes[5];
+  size_t count = 0;
+  // Where the file sets the feed rate on a line before this one, that line may be left out here.
+  const bool moves =
+      step.kind == StepKind::kFilament || step.kind == StepKind::kLift || IsXyMotion(step.kind);
+  if (moves && (step.words & Command::Bit('F')) == 0 && step.feed != at.machine.feed) {
+    changes[count++] = {'F', step.feed, NumberStyle{}};
+  }
+  if (moves || (step.words & Command::Bit('F')) != 0) at.machine.feed = step.feed;
+  const auto change = [&](char letter, Decimal value, Decimal in_file, NumberStyle style) {
+    if ((step.words & Command::Bit(letter)) == 0 || value == in_file) return;
+    changes[count++] = {letter, value, style};
+  };
+  change('X', to.x, step.to.x, file_.xy_style);
+  change('Y', to.y, step.to.y, file_.xy_style);
+  change('Z', to.z, step.to.z, file_.xy_style);
+  const bool absolute_e = !at.machine.RelativeE() && (step.words & Command::Bit('E')) != 0;
+  if (absolute_e) changes[count++] = {'E', at.machine.e, file_.e_style};
+  const std::string_view raw = step.line.Raw(file_.text);
+  if (count == 0) {
+    Raw(raw);
+  } else {
+    AppendEdited(raw, {changes, count}, text_);
+  }
+  at.machine.at = to;
+}
+
+void GcodeOut::Travel(std::string_view line, const Position& to, Decimal feed) {
+  Flush();
+  Command command;
+  LexLine(line.substr(0, line.find_last_not_of("\r\n") + 1), command);
+  if (command.number > 1) return StraightTravel(to, feed);
+  WordChange changes[5] = {{'X', to.x, file_.xy_style}, {'Y', to.y, file_.xy_style}};
+  size_t count = 2;
+  if (command.Has('Z') || to.z != at.machine.at.z) changes[count++] = {'Z', to.z, file_.xy_style};
+  // An E word that pushes nothing: where the register is.
+  if (command.Has('E') && !at.machine.RelativeE()) {
+    changes[count++] = {'E', at.machine.e, file_.e_style};
+  }
+  // A feed rate that is there and right stays as it is written.
+  const bool right = command.Has('F') ? command.Value('F') == feed : feed == at.machine.feed;
+  if (!right) changes[count++] = {'F', feed, NumberStyle{}};
+  AppendEdited(line, {changes, count}, text_);
+  at.machine.at = to;
+  at.machine.feed = feed;
+}
+
+// Where the file travels along an arc.
+void GcodeOut::StraightTravel(const Position& to, Decimal feed) {
+  text_.append("G1");
+  AppendWord('X', to.x, file_.xy_style);
+  AppendWord('Y', to.y, file_.xy_style);
+  if (to.z != at.machine.at.z) AppendWord('Z', to.z, file_.xy_style);
+  if (feed != at.machine.feed) AppendWord('F', feed, NumberStyle{});
+  EndLine();
+  at.machine.at = to;
+  at.machine.feed = feed;
+}
+
+void GcodeOut::AppendWord(char letter, Decimal value, NumberStyle style) {
+  text_.push_back(' ');
+  text_.push_back(letter);
+  AppendDecimal(value, style, text_);
+}
+
+void GcodeOut::AppendE(Decimal filament) {
+  at.machine.e += filament;
+  AppendWord('E', at.machine.RelativeE() ? filament : at.machine.e, file_.e_style);
+}
+
+void GcodeOut::Feed(Decimal feed) {
+  Flush();
+  text_.append("G1");
+  AppendWord('F', feed, NumberStyle{});
+  EndLine();
+  at.machine.feed = feed;
+}
+
+void GcodeOut::Lift(Decimal z, Decimal feed) {
+  Flush();
+  text_.append("G1");
+  AppendWord('Z', z, file_.xy_style);
+  if (feed != at.machine.feed) AppendWord('F', feed, NumberStyle{});
+  EndLine();
+  at.machine.at.z = z;
+  at.machine.feed = feed;
+}
+
+void GcodeOut::Pull(Decimal filament, Decimal feed) {
+  Flush();
+  text_.append("G1");
+  AppendE(-filament);
+  if (feed != at.machine.feed) AppendWord('F', feed, NumberStyle{});
+  EndLine();
+  at.machine.feed = feed;
+}
+
+void GcodeOut::Segment(std::string_view command, const Position& to, bool extrudes,
+                       Decimal filament, Decimal feed, std::string_view words,
+                       std::string_view comment) {
+  Flush();
+  if (feed != at.machine.feed && file_.feed_on_own_line) Feed(feed);
+  text_.append(command);
+  if (feed != at.machine.feed) AppendWord('F', feed, NumberStyle{});
+  AppendWord('X', to.x, file_.xy_style);
+  AppendWord('Y', to.y, file_.xy_style);
+  text_.append(words);
+  if (extrudes) AppendE(filament);
+  if (!comment.empty()) {
+    text_.push_back(' ');
+    text_.append(comment);
+  }
+  EndLine();
+  at.machine.at.x = to.x;
+  at.machine.at.y = to.y;
+  at.machine.feed = feed;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,131 @@
+#include "client/gcode/write/layer_writer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "client/gcode/model/loops.h"
+#include "client/gcode/model/outline.h"
+#include "client/gcode/write/link_writer.h"
+
+namespace traverse::gcode {
+namespace {
+
+// The M73 lines of a layer: each is written where as many paths are done as the file has before it.
+class ProgressLines {
+ public:
+  ProgressLines(const GcodeFile& file, Offset begin)
+      : file_(file), next_(std::lower_bound(file.progress.begin(), file.progress.end(), begin)) {}
+
+  void WriteUpTo(Offset offset, GcodeOut& out) {
+    for (; next_ != file_.progress.end() && *next_ < offset; ++next_) {
+      out.Raw(LineAt(file_.text, *next_).Raw(file_.text));
+    }
+  }
+
+  // What a boundary has of them stays in it.
+  void SkipTo(Offset offset) {
+    while (next_ != file_.progress.end() && *next_ < offset) ++next_;
+  }
+
+ private:
+  const GcodeFile& file_;
+  std::vector<Offset>::const_iterator next_;
+};
+
+}  // namespace
+
+PartStart StartOfPaths(const GcodeFile& file, const Placement& first) {
+  const PlacedPath path(file, first);
+  PartStart start{StateAt(file, path.block()), path.state()};
+  start.machine.at = path.first();
+  // Unknown where the path states it itself.
+  start.machine.feed = path.states_feed() ? -1 : path.feed();
+  return start;
+}
+
+PartStart StartBehindPath(const GcodeFile& file, const Placement& last) {
+  return PlacedPath(file, last).Behind();
+}
+
+LayerWriter::LayerWriter(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
+                         const LinkDonors& donors)
+    : file_(file),
+      layer_(layer),
+      donors_(donors),
+      outlines_(OutlinesOf(file, layer)),
+      walls_(outlines_),
+      rules_(file, layer, habit, outlines_, walls_) {}
+
+LayerOrder LayerWriter::GivenOrder() const {
+  LayerOrder order;
+  order.reserve(outlines_.size());
+  for (size_t i = 0; i < outlines_.size(); ++i) {
+    order.push_back({static_cast<uint32_t>(layer_.first_block + i), 0, outlines_[i].closed});
+  }
+  return order;
+}
+
+PartStart LayerWriter::WriteWay(const Placement& before, const Placement& first,
+                                const PartStart& start, std::string& text) const {
+  GcodeOut out(file_, start, text);
+  WriteLink(PlacedPath(file_, before), PlacedPath(file_, first), layer_.first_block, out);
+  out.Flush();
+  return out.at;
+}
+
+PartStart LayerWriter::WritePaths(const LayerOrder& order, const PartStart& start,
+                                  std::string& text) const {
+  if (IsGiven(order, start)) {
+    const Block& last = file_.blocks[layer_.end_block - 1];
+    const Offset begin = file_.blocks[layer_.first_block].begin;
+    text.append(file_.text, begin, last.end - begin);
+    return StartBehind(file_, last);
+  }
+  GcodeOut out(file_, start, text);
+  ProgressLines progress(file_, file_.blocks[layer_.first_block].begin);
+  PlacedPath from(file_, order.front());
+  for (size_t i = 0; i < order.size(); ++i) {
+    const Block& place = file_.blocks[layer_.first_block + i];
+    if (i > 0) {
+      PlacedPath to(file_, order[i]);
+      WriteLink(from, to, static_cast<uint32_t>(layer_.first_block + i), out);
+      if ((place.link & (kLinkSplits | kLinkFixed)) != 0) progress.SkipTo(place.begin);
+      from = std::move(to);
+    }
+    from.Write(true, out);
+    progress.WriteUpTo(place.end, out);
+  }
+  out.Flush();
+  return out.at;
+}
+
+bool LayerWriter::IsGiven(const LayerOrder& order, const PartStart& start) const {
+  for (size_t i = 0; i < order.size(); ++i) {
+    if (order[i].block != layer_.first_block + i || !order[i].as_given()) return false;
+  }
+  return start.machine.RelativeE() || start.machine.e == file_.blocks[layer_.first_block].e_in;
+}
+
+// `place` is the block that stands here in the file.
+void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place,
+                            GcodeOut& out) const {
+  const bool boundary = (file_.blocks[place].link & (kLinkSplits | kLinkFixed)) != 0;
+  LinkRequest request;
+  request.from = &from;
+  request.to = &to;
+  if (boundary) request.boundary = place;
+  request.without_progress = !boundary;
+  // Paths that the slicer wipes stay wiped, so that all ways from them are retracted.
+  request.wipe = file_.WipedBehind(from.placement().block);
+  request.retract = request.wipe || Retracts(from, to);
+  request.detours = rules_.detours();
+  LinkWriter(file_, donors_, out).Write(request);
+}
+
+bool LayerWriter::Retracts(const PlacedPath& from, const PlacedPath& to) const {
+  const MachineState& mode = file_.modes[to.block().mode];
+  const Outline& outline = outlines_[to.placement().block - layer_.first_block];
+  return rules_.Retracts(mode.InMm(from.last()), mode.InMm(to.first()), outline.feature);
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,62 @@
+// Writes one layer with its paths in a new order.
+
+#ifndef TRAVERSE_CLIENT_GCODE_WRITE_LAYER_WRITER_H_
+#define TRAVERSE_CLIENT_GCODE_WRITE_LAYER_WRITER_H_
+
+#include <string>
+#include <vector>
+
+#include "client/gcode/measure/layer_meter.h"
+#include "client/gcode/plan/travel_rules.h"
+#include "client/gcode/write/gcode_out.h"
+#include "client/gcode/write/link_donors.h"
+#include "client/gcode/write/placed_path.h"
+
+namespace traverse::gcode {
+
+// The paths of a layer in the order to print them.
+using LayerOrder = std::vector<Placement>;
+
+// Where the paths of an order begin, with everything set as its first path needs it. The extruder's
+// register is as it is there in the file.
+PartStart StartOfPaths(const GcodeFile& file, const Placement& first);
+
+// Behind `last`; the same holds for the extruder's register.
+PartStart StartBehindPath(const GcodeFile& file, const Placement& last);
+
+// One layer. What writes appends to `text` and returns the machine behind that. Thread-safe.
+class LayerWriter {
+ public:
+  // `file`, `habit` and `donors` outlive the writer.
+  LayerWriter(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
+              const LinkDonors& donors);
+
+  const VisibleWalls& walls() const { return walls_; }
+
+  // The order of the file.
+  LayerOrder GivenOrder() const;
+
+  // The way to the path `first` from `before`, the last path of the layer before, with the marks of
+  // the new layer. `start` is the machine behind `before`.
+  PartStart WriteWay(const Placement& before, const Placement& first, const PartStart& start,
+                     std::string& text) const;
+
+  // The paths in `order` and the ways between them. `start` is the machine where the first begins.
+  PartStart WritePaths(const LayerOrder& order, const PartStart& start, std::string& text) const;
+
+ private:
+  bool IsGiven(const LayerOrder& order, const PartStart& start) const;
+  void WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place, GcodeOut& out) const;
+  bool Retracts(const PlacedPath& from, const PlacedPath& to) const;
+
+  const GcodeFile& file_;
+  const Layer& layer_;
+  const LinkDonors& donors_;
+  const std::vector<Outline> outlines_;
+  const VisibleWalls walls_;
+  const TravelRules rules_;
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_WRITE_LAYER_WRITER_H_

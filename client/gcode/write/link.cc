@@ -1,0 +1,103 @@
+#include "client/gcode/write/link.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "client/gcode/model/arc.h"
+
+namespace traverse::gcode {
+namespace {
+
+// Slicers' moves inwards; combing moves of CuraEngine look the same but lead somewhere.
+bool MayDepart(const GcodeFile& file, size_t index) {
+  if ((file.blocks[index - 1].flags & kBlockGoesOn) != 0) return true;
+  return file.dialect != Dialect::kCura && (file.blocks[index].link & kLinkDeparts) != 0;
+}
+
+void NoteRetraction(const LinkStep& step, Decimal& retracted, Link& link) {
+  if (step.kind == StepKind::kFirmwareRetract) link.firmware = true;
+  retracted = std::max<Decimal>(retracted - step.filament, 0);
+  link.pulled = std::max(link.pulled, retracted);
+}
+
+LinkStep StepOf(const Step& step, const MachineState& after) {
+  LinkStep taken;
+  taken.kind = step.kind;
+  taken.line = step.line;
+  taken.from = step.from;
+  taken.to = after.at;
+  taken.filament = step.kind == StepKind::kSetE ? step.command.Value('E') : step.filament;
+  taken.feed = after.feed;
+  taken.slots = step.slots;
+  taken.arc = step.arc;
+  if (step.command.kind == LineKind::kCommand) taken.words = step.command.words;
+  if (IsXyMotion(step.kind)) {
+    taken.way_mm = step.arc ? ArcLength(step.command, step.from, after.at, 1)
+                            : std::hypot(ToDouble(after.at.x - step.from.x),
+                                         ToDouble(after.at.y - step.from.y));
+  }
+  // A wipe's pull may round to nothing.
+  if (taken.kind == StepKind::kZeroExtrude) taken.kind = StepKind::kWipe;
+  return taken;
+}
+
+// How the way proper comes to its height.
+void NoteLift(Link& link) {
+  for (const LinkStep& step : link.steps) {
+    if (step.kind == StepKind::kLift && step.feed > 0) link.lift_feed = step.feed;
+  }
+  if (link.arrival < 0) return;
+  const LinkStep& arrival = link.steps[static_cast<size_t>(link.arrival)];
+  const Decimal top = std::max(arrival.from.z, arrival.to.z);
+  link.lift = std::max<Decimal>(0, top - std::max(link.z_before, link.z_behind));
+  for (size_t i = link.fixed; i <= static_cast<size_t>(link.arrival); ++i) {
+    const LinkStep& step = link.steps[i];
+    if (step.kind == StepKind::kTravel && step.to.z > step.from.z) link.ramp_mm += step.way_mm;
+  }
+  link.ramp_ends = link.ramp_mm > 0 && arrival.to.z == arrival.from.z;
+}
+
+}  // namespace
+
+Link ReadLink(const GcodeFile& file, size_t index) {
+  const Block& before = file.blocks[index - 1];
+  const Block& behind = file.blocks[index];
+  Link link;
+  link.z_before = before.last.z;
+  link.z_behind = behind.first.z;
+  link.departs = MayDepart(file, index);
+  PartStart start = StartBehind(file, before);
+  Interpreter interpreter(std::string_view(file.text).substr(0, behind.begin), before.end,
+                          start.machine);
+  Decimal retracted = 0;
+  PrintState state = start.state;
+  for (Step step; interpreter.Next(step);) {
+    const LinkStep added = StepOf(step, interpreter.state());
+    if (added.kind != StepKind::kSetE) NoteRetraction(added, retracted, link);
+    link.wipes = link.wipes || added.kind == StepKind::kWipe;
+    if (added.kind == StepKind::kSlot) {
+      ApplySetter(state, file.setters.Find(step.line.Text(file.text)), step.slots);
+    }
+    // Where CuraEngine primes before the last stretch of the way, the way proper ends there.
+    const bool behind_prime = link.retracts() && !step.retracted;
+    if (added.kind == StepKind::kTravel && (link.arrival < 0 || !behind_prime)) {
+      link.arrival = static_cast<int>(link.steps.size());
+      link.arrives_retracted = step.retracted;
+      link.travel_state = state;
+    }
+    link.steps.push_back(added);
+    if (added.kind == StepKind::kUnknown || added.kind == StepKind::kModeChange) {
+      link.fixed = link.steps.size();
+      link.behind_fixed = {interpreter.state(), state};
+      link.arrival = -1;
+    }
+  }
+  NoteLift(link);
+  const PrintState& path = file.states[behind.state_in];
+  for (size_t slot = 0; slot < kSlotCount; ++slot) {
+    if (link.travel_state[slot] != path[slot]) link.travel_slots |= SlotMask{1} << slot;
+  }
+  return link;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,82 @@
+#include "client/gcode/write/link_donors.h"
+
+#include <algorithm>
+
+#include "client/gcode/model/feature.h"
+#include "client/gcode/write/link.h"
+
+namespace traverse::gcode {
+namespace {
+
+// What is printed for the part, and not by a script or on a tower.
+bool IsOfPart(const GcodeFile& file, const Block& block) {
+  if ((block.flags & kBlockScript) != 0) return false;
+  const Feature feature = NamedFeature(file, block);
+  return feature != Feature::kTower && feature != Feature::kCustom;
+}
+
+}  // namespace
+
+LinkDonors::LinkDonors(const GcodeFile& file) : file_(file), layer_of_(file.blocks.size()) {
+  for (uint32_t layer = 0; layer < file.layers.size(); ++layer) {
+    const Layer& of = file.layers[layer];
+    std::fill(layer_of_.begin() + of.first_block, layer_of_.begin() + of.end_block, layer);
+  }
+  for (uint32_t i = 1; i < file.blocks.size(); ++i) {
+    if (!MayFollow(i)) continue;
+    const Kind kind{file.blocks[i].mode, (file.blocks[i].link & kLinkRetracts) != 0};
+    donors_[kind].push_back(i);
+    if (file.blocks[i].lift > 0) lifted_[kind].push_back(i);
+    if ((file.blocks[i].link & kLinkWipes) != 0) wiping_[kind].push_back(i);
+    CountLifts(i);
+  }
+}
+
+void LinkDonors::CountLifts(uint32_t link) {
+  const Block& block = file_.blocks[link];
+  const Kind kind{block.mode, (block.link & kLinkRetracts) != 0};
+  lifts_[{kind, layer_of_[link]}] += block.lift > 0 ? 1 : -1;
+  highest_lift_ = std::max(highest_lift_, block.lift);
+}
+
+bool LinkDonors::MayFollow(uint32_t block) const {
+  const Block& to = file_.blocks[block];
+  return block > 0 && (to.link & (kLinkSplits | kLinkFixed)) == 0 && IsOfPart(file_, to) &&
+         IsOfPart(file_, file_.blocks[block - 1]);
+}
+
+bool LinkDonors::LacksLift(uint32_t block) const {
+  const Block& to = file_.blocks[block];
+  if (to.lift > 0) return false;
+  const auto found = lifts_.find({{to.mode, (to.link & kLinkRetracts) != 0}, layer_of_[block]});
+  return found != lifts_.end() && found->second > 0;
+}
+
+std::optional<uint32_t> LinkDonors::Find(uint32_t block, bool retracts, bool wipes) const {
+  const Kind kind{file_.blocks[block].mode, retracts};
+  if (wipes) {
+    const auto wiping = wiping_.find(kind);
+    if (wiping != wiping_.end()) return FindAmong(wiping->second, block);
+  }
+  const auto all = donors_.find(kind);
+  if (all == donors_.end()) return std::nullopt;
+  const std::optional<uint32_t> nearest = FindAmong(all->second, block);
+  if (!nearest || !LacksLift(*nearest)) return nearest;
+  const auto lifted = lifted_.find(kind);
+  return lifted == lifted_.end() ? nearest : FindAmong(lifted->second, block);
+}
+
+std::optional<uint32_t> LinkDonors::FindAmong(const std::vector<uint32_t>& links,
+                                              uint32_t block) const {
+  if (links.empty()) return std::nullopt;
+  const auto behind = std::upper_bound(links.begin(), links.end(), block);
+  if (behind == links.begin()) return *behind;
+  const uint32_t before = *(behind - 1);
+  const uint32_t layer = layer_of_[block];
+  if (layer_of_[before] != layer && behind != links.end() && layer_of_[*behind] == layer) {
+    return *behind;
+  }
+  return before;
+}
+
+}  // namespace traverse::gcode

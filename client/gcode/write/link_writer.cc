@@ -1,0 +1,349 @@
+#include "client/gcode/write/link_writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "client/gcode/write/going_on.h"
+#include "client/gcode/write/positions.h"
+
+namespace traverse::gcode {
+namespace {
+
+// What is left of a way behind a slope is at least this long.
+constexpr double kMinSlopeRestMm = 0.5;
+
+constexpr SlotMask kAllSlots = (SlotMask{1} << kSlotCount) - 1;
+
+bool IsSoft(const Block& block) { return (block.link & (kLinkSplits | kLinkFixed)) == 0; }
+
+// What a wipe of the file does.
+struct WipeForm {
+  double way_mm = 0;
+  Decimal pulled = 0;
+  Decimal feed = 0;
+};
+
+WipeForm FormOf(const Link& link) {
+  WipeForm form;
+  for (const LinkStep& step : link.steps) {
+    if (step.kind != StepKind::kWipe) continue;
+    form.way_mm += step.way_mm;
+    form.pulled -= step.filament;
+    form.feed = step.feed;
+  }
+  return form;
+}
+
+// What `rise` does for a way of `length`: a slope that ends with its way rises on, up to `highest`.
+Link Stretched(Link rise, double length, Decimal highest) {
+  if (rise.ramp_ends || !(rise.ramp_mm > 0) || length <= rise.ramp_mm) return rise;
+  const double steepness = static_cast<double>(rise.lift) / rise.ramp_mm;
+  const auto reached = static_cast<double>(std::max(highest, rise.lift));
+  rise.ramp_ends = steepness * length > reached;
+  rise.ramp_mm = rise.ramp_ends ? reached / steepness : length;
+  // As slicers write heights: to micrometres.
+  rise.lift = RoundedWord(steepness * rise.ramp_mm * 1e-9);
+  return rise;
+}
+
+// Puts the end of the slope of `rise` on the first stretch of `way` from `from`, if that is longer;
+// else it rises over all of that stretch.
+void Slope(const Position& from, const Link& rise, std::vector<Position>& way) {
+  if (!rise.ramp_ends) return;
+  if (LengthXy(from, way.front()) < rise.ramp_mm + kMinSlopeRestMm) return;
+  Position end = Along(from, way.front(), rise.ramp_mm);
+  end.z = way.front().z;
+  way.insert(way.begin(), end);
+}
+
+// The step of the short move with which the link begins.
+bool IsDeparture(const Link& link, size_t i) {
+  if (!link.departs || link.steps[i].kind != StepKind::kTravel) return false;
+  for (size_t before = 0; before < i; ++before) {
+    if (IsXyMotion(link.steps[before].kind)) return false;
+  }
+  return link.Leaves(i);
+}
+
+}  // namespace
+
+void LinkWriter::Write(const LinkRequest& request) {
+  const uint32_t to = request.to->placement().block;
+  const bool follows =
+      request.from->placement().block + 1 == to && (!request.boundary || *request.boundary == to);
+  if (follows && request.from->as_given() && request.to->as_given()) return WriteGiven(request);
+  if (request.boundary) return WriteBoundary(request);
+  WritePlain(request);
+}
+
+void LinkWriter::WriteGiven(const LinkRequest& request) {
+  const Block& from = request.from->block();
+  const Block& to = request.to->block();
+  PartStart behind = StartBehind(file_, to);
+  behind.state = file_.states[to.state_in];
+  behind.machine.at = to.first;
+  behind.machine.e = to.e_in;
+  // The F word of the path's own first line is not part of the link; that its feed rate is taken
+  // for set already changes nothing.
+  behind.machine.feed = to.feed_in;
+  out_.Copy(from.end, to.begin, StartBehind(file_, from), behind, request.without_progress);
+}
+
+Link LinkWriter::TemplateFor(const LinkRequest& request) const {
+  const uint32_t to = request.to->placement().block;
+  if (donors_.MayFollow(to) && !donors_.LacksLift(to)) {
+    Link own = ReadLink(file_, to);
+    const bool fits = own.retracts() == request.retract && (own.wipes || !request.wipe);
+    if (fits && own.arrival >= 0) return own;
+  }
+  for (const bool retracts : {request.retract, !request.retract}) {
+    const std::optional<uint32_t> donor = donors_.Find(to, retracts, request.wipe);
+    if (!donor) continue;
+    Link link = ReadLink(file_, *donor);
+    if (link.arrival >= 0) return link;
+  }
+  return ReadLink(file_, to);
+}
+
+void LinkWriter::WritePlain(const LinkRequest& request) {
+  const Link form = TemplateFor(request);
+  SetTravelState(*request.to, form);
+  const Link left = WriteDeparture(request, form);
+  const Link rise =
+      Stretched(left.lift > form.lift ? left : form,
+                LengthXy(out_.at.machine.at, request.to->first()), donors_.highest_lift());
+  WriteTravel(request, form, request.to->first().z + rise.lift, rise);
+  WriteArrival(request, form);
+  if (IsSoft(request.to->block())) WriteComments(request.to->placement().block);
+  Settle(request, form);
+}
+
+// The way is gone as `form` goes: with what holds for the path, but for what `form` sets for the
+// way alone. A slot that was never set here stays so, for nothing could undo it.
+void LinkWriter::SetTravelState(const PlacedPath& to, const Link& form) {
+  PrintState state = to.state();
+  for (size_t slot = 0; slot < kSlotCount; ++slot) {
+    const bool own = ((form.travel_slots >> slot) & 1u) != 0;
+    if (own && state[slot] != 0) state[slot] = form.travel_state[slot];
+  }
+  out_.Set(state, kDynamicsSlots);
+}
+
+// The link that leads away from the path in the file, if what it does there fits here.
+std::optional<Link> LinkWriter::OwnDeparture(const LinkRequest& request, const Link& form) const {
+  const uint32_t next = request.from->placement().block + 1;
+  if (next >= file_.blocks.size() || !donors_.MayFollow(next)) return std::nullopt;
+  Link own = ReadLink(file_, next);
+  if (own.arrival < 0 || !own.SameRetraction(form)) return std::nullopt;
+  return own;
+}
+
+// Writes what leads away from the path; returns the link that it follows.
+Link LinkWriter::WriteDeparture(const LinkRequest& request, const Link& form) {
+  const std::optional<Link> own = OwnDeparture(request, form);
+  const bool exact = own && request.from->as_given();
+  const Link& link = own ? *own : form;
+  const Decimal z = out_.at.machine.at.z;
+  if (!exact || !link.departs) WriteGoingOn(request);
+  bool wiped = false;
+  for (size_t i = 0; link.Leaves(i); ++i) {
+    const LinkStep& step = link.steps[i];
+    if (IsXyMotion(step.kind)) {
+      if (exact && (step.kind == StepKind::kWipe || IsDeparture(link, i))) {
+        out_.MoveLine(step);
+      } else if (step.kind == StepKind::kWipe && !wiped) {
+        wiped = true;
+        WriteWipe(*request.from, link);
+      }
+    } else if (step.kind == StepKind::kWipeMark ||
+               (exact && link.wipes && step.kind == StepKind::kFeed)) {
+      out_.LinkLine(step);
+    } else if (step.kind != StepKind::kLift || step.to.z >= step.from.z) {
+      WriteMotion(step, link.z_before, z);
+    }
+  }
+  return link;
+}
+
+// A path that the file goes on along without filament is gone on along as far wherever it ends.
+void LinkWriter::WriteGoingOn(const LinkRequest& request) {
+  const PlacedPath& from = *request.from;
+  const std::optional<LinkStep> step = ReadGoingOn(file_, from.placement().block);
+  if (!step) return;
+  for (const Position& at : from.WayBack(step->way_mm)) {
+    out_.Travel(step->line.Raw(file_.text), {at.x, at.y, out_.at.machine.at.z}, step->feed);
+  }
+}
+
+void LinkWriter::WriteArrival(const LinkRequest& request, const Link& form) {
+  for (size_t i = static_cast<size_t>(form.arrival + 1); i < form.steps.size(); ++i) {
+    WriteMotion(form.steps[i], form.z_behind, request.to->first().z);
+  }
+}
+
+// Pulls back as much as the wipe of `form` does, over what was just printed. A path that is
+// shorter than that wipe has less of it pulled while moving; the rest follows at its end.
+void LinkWriter::WriteWipe(const PlacedPath& path, const Link& form) {
+  const WipeForm wipe = FormOf(form);
+  const std::vector<Position> way = path.WayBack(wipe.way_mm);
+  double length = 0;
+  for (size_t i = 0; i < way.size(); ++i) {
+    length += LengthXy(i == 0 ? path.last() : way[i - 1], way[i]);
+  }
+  Decimal left = wipe.pulled;
+  for (size_t i = 0; i < way.size(); ++i) {
+    const double share = LengthXy(i == 0 ? path.last() : way[i - 1], way[i]) / length;
+    const bool last = i + 1 == way.size();
+    // Rounded as slicers write E: to hundredths of a micrometre.
+    constexpr Decimal kStep = kDecimalOne / 100'000;
+    const Decimal pull =
+        last ? left
+             : static_cast<Decimal>(static_cast<double>(wipe.pulled) * share) / kStep * kStep;
+    left -= pull;
+    out_.Segment("G1", way[i], true, -pull, wipe.feed, {}, {});
+  }
+  if (left > 0) out_.Pull(left, wipe.feed);
+}
+
+// Writes a step that moves filament or Z alone; Z relative to the height of what is printed.
+void LinkWriter::WriteMotion(const LinkStep& step, Decimal z_form, Decimal z_here) {
+  switch (step.kind) {
+    case StepKind::kFilament:
+    case StepKind::kSetE:
+    case StepKind::kFirmwareRetract:
+    case StepKind::kFirmwareUnretract:
+    case StepKind::kPlane:
+      return out_.LinkLine(step);
+    case StepKind::kLift:
+      return out_.LiftLine(step, z_here + (step.to.z - z_form));
+    default:
+      return;
+  }
+}
+
+// The bends of the way to `request.to`, and its end.
+std::vector<Position> LinkWriter::WayTo(const LinkRequest& request) const {
+  const MachineState& machine = out_.at.machine;
+  // As slicers write coordinates: to micrometres.
+  const auto word = [unit = machine.UnitMm()](double mm) {
+    return static_cast<Decimal>(std::llround(mm / unit * 1000)) * (kDecimalOne / 1000);
+  };
+  std::vector<Position> way;
+  if (request.detours != nullptr) {
+    for (const Vertex bend :
+         request.detours->Around(machine.InMm(machine.at), machine.InMm(request.to->first()))) {
+      way.push_back({word(bend.x), word(bend.y), 0});
+    }
+  }
+  way.push_back(request.to->first());
+  return way;
+}
+
+// Goes to `request.to` at the height `top`, or as high as the head is; where `rise` slopes up, up
+// to there as `rise` does.
+void LinkWriter::WriteTravel(const LinkRequest& request, const Link& form, Decimal top,
+                             const Link& rise) {
+  const Position& to = request.to->first();
+  const Decimal z = out_.at.machine.at.z;
+  if (form.arrival < 0) {
+    if (!to.SameXy(out_.at.machine.at)) {
+      out_.Segment("G1", to, false, 0, out_.at.machine.feed, {}, {});
+    }
+    return;
+  }
+  const LinkStep& step = form.steps[static_cast<size_t>(form.arrival)];
+  if (to.SameXy(out_.at.machine.at) && z == to.z) return;
+  top = std::max(top, z);
+  std::vector<Position> way = WayTo(request);
+  for (Position& at : way) at.z = top;
+  if (top > z && !(rise.ramp_mm > 0)) {
+    out_.Lift(top, form.lift_feed > 0 ? form.lift_feed : step.feed);
+  } else if (top > z) {
+    Slope(out_.at.machine.at, rise, way);
+  }
+  for (const Position& at : way) out_.Travel(step.line.Raw(file_.text), at, step.feed);
+}
+
+void LinkWriter::WriteComments(uint32_t block) {
+  if ((file_.blocks[block].link & kLinkComments) == 0) return;
+  for (const LinkStep& step : ReadLink(file_, block).steps) {
+    if (step.kind == StepKind::kComment) out_.Raw(step.line.Raw(file_.text));
+  }
+}
+
+void LinkWriter::Settle(const LinkRequest& request, const Link& form) {
+  const PlacedPath& to = *request.to;
+  if (out_.at.machine.at.z != to.first().z) {
+    const Decimal feed = form.lift_feed > 0  ? form.lift_feed
+                         : form.arrival >= 0 ? form.steps[static_cast<size_t>(form.arrival)].feed
+                                             : out_.at.machine.feed;
+    out_.Lift(to.first().z, feed);
+  }
+  out_.Set(to.state(), kAllSlots);
+  if (!to.states_feed() && out_.at.machine.feed != to.feed()) out_.Feed(to.feed());
+}
+
+void LinkWriter::WriteBoundary(const LinkRequest& request) {
+  const Link link = ReadLink(file_, *request.boundary);
+  const Block& before = file_.blocks[*request.boundary - 1];
+  if (link.fixed > 0) {
+    out_.Copy(before.end, link.steps[link.fixed - 1].line.next, StartBehind(file_, before),
+              link.behind_fixed, false);
+  } else {
+    // Whatever was printed last: at its marks the fan is as in the file.
+    out_.Set(file_.states[before.state_out], kFanSlots);
+  }
+  out_.Set(link.travel_state, kDynamicsSlots);
+  const bool given_from =
+      request.from->as_given() && request.from->placement().block + 1 == *request.boundary;
+  // Pulled back at once, so that it is at the height of what was printed.
+  std::optional<Link> form;
+  if (request.retract && !link.arrives_retracted && link.arrival >= 0) form = TemplateFor(request);
+  if (form) {
+    WriteDeparture(request, *form);
+  } else if (link.fixed == 0 && !(given_from && link.departs)) {
+    WriteGoingOn(request);
+  }
+  for (size_t i = link.fixed; i < link.steps.size(); ++i) {
+    if (static_cast<int>(i) != link.arrival) {
+      WriteBoundaryStep(request, link, i);
+    } else if (form) {
+      WriteTravel(request, link, std::max(link.Top(), request.to->first().z + form->lift), *form);
+      WriteArrival(request, *form);
+    } else {
+      WriteTravel(request, link, link.Top(), link);
+    }
+  }
+  const uint32_t to = request.to->placement().block;
+  if (to != *request.boundary && IsSoft(file_.blocks[to])) WriteComments(to);
+  Settle(request, link);
+}
+
+void LinkWriter::WriteBoundaryStep(const LinkRequest& request, const Link& link, size_t i) {
+  const LinkStep& step = link.steps[i];
+  const std::string_view raw = step.line.Raw(file_.text);
+  const bool given_from =
+      request.from->as_given() && request.from->placement().block + 1 == *request.boundary;
+  switch (step.kind) {
+    case StepKind::kTravel:
+      if (given_from && IsDeparture(link, i)) out_.MoveLine(step);
+      return;
+    case StepKind::kWipe: {
+      if (given_from) return out_.MoveLine(step);
+      for (size_t before = 0; before < i; ++before) {
+        if (link.steps[before].kind == StepKind::kWipe) return;
+      }
+      return WriteWipe(*request.from, link);
+    }
+    case StepKind::kLift:
+      return out_.LiftLine(step, step.to.z);
+    case StepKind::kSlot:
+      if (link.Leaves(i) && (step.slots & kDynamicsSlots) != 0) return;
+      return out_.SetBy(raw, step.slots);
+    default:
+      out_.LinkLine(step);
+  }
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,160 @@
+#include "client/gcode/write/placed_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include "client/gcode/model/arc.h"
+#include "client/gcode/model/outline.h"
+#include "client/gcode/write/positions.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr SlotMask kAllSlots = (SlotMask{1} << kSlotCount) - 1;
+
+// I and J, or R, of an arc.
+std::string ArcWords(const BodySegment& segment, NumberStyle style) {
+  std::string words;
+  const auto add = [&words, style](char letter, Decimal value) {
+    words.push_back(' ');
+    words.push_back(letter);
+    AppendDecimal(value, style, words);
+  };
+  if (segment.command < 2) return words;
+  if (segment.by_radius) {
+    add('R', segment.radius);
+  } else {
+    add('I', segment.center_i);
+    add('J', segment.center_j);
+  }
+  return words;
+}
+
+// Points on an arc, so near to each other that the lines between them are as good.
+std::vector<Position> BendsOf(const BodySegment& segment) {
+  constexpr double kTolerance = 0.01;
+  std::vector<Position> bends;
+  if (segment.command < 2) return bends;
+  for (const Vertex& point :
+       ArcPoints(ArcCommand(segment), segment.from, segment.to, 1, kTolerance)) {
+    bends.push_back({RoundedWord(point.x), RoundedWord(point.y), segment.from.z});
+  }
+  return bends;
+}
+
+void WriteSegment(const BodySegment& segment, const PathBody& body, GcodeOut& out) {
+  static constexpr std::string_view kCommands[] = {"G1", "G1", "G2", "G3"};
+  out.Set(body.states[segment.state], kAllSlots);
+  out.Segment(kCommands[segment.command], segment.to, true, segment.filament, segment.feed,
+              ArcWords(segment, out.file().xy_style), segment.comment);
+}
+
+}  // namespace
+
+PlacedPath::PlacedPath(const GcodeFile& file, const Placement& placement)
+    : file_(&file), placement_(placement) {
+  if (as_given()) {
+    PlaceGiven();
+    return;
+  }
+  body_ = ReadBody(file, block());
+  if (placement_.closed) {
+    PlaceRotated();
+  } else {
+    PlaceReversed();
+  }
+  const BodySegment& first = body_.segments.front();
+  state_ = &body_.states[first.state];
+  feed_ = first.feed;
+  // Segments written anew state their feed rate where it changes.
+  states_feed_ = true;
+}
+
+void PlacedPath::PlaceGiven() {
+  first_ = block().first;
+  last_ = block().last;
+  state_ = &file_->states[block().state_in];
+  feed_ = block().feed_in;
+  const Line line = LineAt(file_->text, block().begin);
+  Command command;
+  LexLine(line.Text(file_->text), command);
+  states_feed_ = command.Has('F');
+}
+
+void PlacedPath::PlaceReversed() {
+  std::vector<BodySegment>& segments = body_.segments;
+  const double tail = body_.has_tail ? LengthXy(segments.back().to, body_.tail_end) : 0;
+  std::reverse(segments.begin(), segments.end());
+  for (BodySegment& segment : segments) segment = Reversed(segment);
+  first_ = segments.front().from;
+  last_ = segments.back().to;
+  if (!body_.has_tail) return;
+  // As long a tail as the path's own, straight on beyond its new end.
+  const BodySegment& end = segments.back();
+  body_.tail_end = Along(end.from, end.to, LengthXy(end.from, end.to) + tail);
+  last_.x = body_.tail_end.x;
+  last_.y = body_.tail_end.y;
+}
+
+void PlacedPath::PlaceRotated() {
+  std::vector<BodySegment>& segments = body_.segments;
+  std::rotate(segments.begin(), segments.begin() + placement_.entry, segments.end());
+  first_ = last_ = segments.front().from;
+}
+
+PartStart PlacedPath::Behind() const {
+  if (as_given()) return StartBehind(*file_, block());
+  PartStart behind{StateAt(*file_, block()), body_.states[body_.segments.back().state]};
+  behind.machine.at = last_;
+  behind.machine.feed = body_.segments.back().feed;
+  behind.machine.e = block().e_out;
+  return behind;
+}
+
+void PlacedPath::Write(bool without_progress, GcodeOut& out) const {
+  if (as_given()) {
+    const PartStart start{StateAt(*file_, block()), file_->states[block().state_in]};
+    out.Copy(block().begin, block().end, start, StartBehind(*file_, block()),
+             without_progress && (block().flags & kBlockProgress) != 0);
+    return;
+  }
+  const Position* at = &first_;
+  for (const BodySegment& segment : body_.segments) {
+    // The gap of a loop that ends short of its start.
+    if (!segment.from.SameXy(*at)) {
+      out.Segment("G1", segment.from, false, 0, out.at.machine.feed, {}, {});
+    }
+    WriteSegment(segment, body_, out);
+    at = &segment.to;
+  }
+  if (!last_.SameXy(*at)) {
+    out.Segment("G1", last_, false, 0, out.at.machine.feed, {}, {});
+  }
+}
+
+std::vector<Position> PlacedPath::WayBack(double length_mm) const {
+  PathBody given;
+  if (as_given()) given = ReadBody(*file_, block());
+  const std::vector<BodySegment>& segments = as_given() ? given.segments : body_.segments;
+  std::vector<Position> way;
+  Position at = last_;
+  const auto go_to = [&](const Position& to) {
+    const double step = LengthXy(at, to);
+    at = step <= length_mm ? to : Along(at, to, length_mm);
+    length_mm -= step;
+    if (step > 0) way.push_back(at);
+  };
+  const size_t n = segments.size();
+  for (size_t i = 0; i < n && length_mm > 0; ++i) {
+    const BodySegment next = placement_.closed ? segments[i] : Reversed(segments[n - 1 - i]);
+    for (const Position& bend : BendsOf(next)) {
+      if (length_mm > 0) go_to(bend);
+    }
+    if (length_mm > 0) go_to(next.to);
+  }
+  return way;
+}
+
+}  // namespace traverse::gcode

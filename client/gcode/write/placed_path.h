@@ -1,0 +1,79 @@
+// One path as it is to be done: as given, the other way round, or from another start.
+
+#ifndef TRAVERSE_CLIENT_GCODE_WRITE_PLACED_PATH_H_
+#define TRAVERSE_CLIENT_GCODE_WRITE_PLACED_PATH_H_
+
+#include <cstdint>
+
+#include "client/gcode/model/gcode_file.h"
+#include "client/gcode/model/path_body.h"
+#include "client/gcode/write/gcode_out.h"
+
+namespace traverse::gcode {
+
+// A block with its entry: the vertex at which a closed path is begun; of an open path 0, or 1 for
+// the other way round. 0 is always as the file has it.
+struct Placement {
+  uint32_t block = 0;
+  uint32_t entry = 0;
+  bool closed = false;
+
+  bool as_given() const { return entry == 0; }
+  friend bool operator==(const Placement&, const Placement&) = default;
+};
+
+// The other way round: the same segments from the last to the first, each with its own extrusion,
+// feed rate and state; arcs turn the other way; a wiping tail is made at the new end. From another
+// start: segments k to the last, the gap between end and start without extrusion if there is one,
+// and segments 0 to k - 1.
+class PlacedPath {
+ public:
+  PlacedPath(const GcodeFile& file, const Placement& placement);
+
+  PlacedPath(PlacedPath&&) = default;
+  PlacedPath& operator=(PlacedPath&&) = default;
+
+  const Placement& placement() const { return placement_; }
+  bool as_given() const { return placement_.as_given(); }
+  const Block& block() const { return file_->blocks[placement_.block]; }
+
+  // Where the head has to be to begin, and where it is at the end, tail included.
+  const Position& first() const { return first_; }
+  const Position& last() const { return last_; }
+
+  // What holds for the first segment, and its feed rate.
+  const PrintState& state() const { return *state_; }
+  Decimal feed() const { return feed_; }
+
+  // Its first line sets the feed rate itself.
+  bool states_feed() const { return states_feed_; }
+
+  // What holds, and how fast, behind it.
+  PartStart Behind() const;
+
+  // Appends the path; `out` is where it begins, with its state and feed rate set. M73 lines are
+  // left out if `without_progress`, and always where the path is not as given.
+  void Write(bool without_progress, GcodeOut& out) const;
+
+  // The way back over what was just printed, for a wipe: on from the start of a closed path, back
+  // along an open one. At most `length` mm, at least one point if the path has any length.
+  std::vector<Position> WayBack(double length_mm) const;
+
+ private:
+  void PlaceGiven();
+  void PlaceReversed();
+  void PlaceRotated();
+
+  const GcodeFile* file_;
+  Placement placement_;
+  Position first_;
+  Position last_;
+  const PrintState* state_ = nullptr;
+  Decimal feed_ = 0;
+  bool states_feed_ = false;
+  PathBody body_;  // not as given: its segments in the order and direction to print them
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_WRITE_PLACED_PATH_H_

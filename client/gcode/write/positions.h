@@ -1,0 +1,34 @@
+// Arithmetic on positions in the plane, in the unit of the file's words.
+
+#ifndef TRAVERSE_CLIENT_GCODE_POSITIONS_H_
+#define TRAVERSE_CLIENT_GCODE_POSITIONS_H_
+
+#include <cmath>
+
+#include "client/gcode/machine/interpreter.h"
+
+namespace traverse::gcode {
+
+// Positions of our own making are written in thousandths.
+inline Decimal RoundedWord(double value) {
+  return static_cast<Decimal>(std::llround(value * 1000)) * (kDecimalOne / 1000);
+}
+
+inline double LengthXy(const Position& from, const Position& to) {
+  return std::hypot(ToDouble(to.x - from.x), ToDouble(to.y - from.y));
+}
+
+// The point `way` beyond `from` in the direction of `to`, at the height of `from`; not rounded up
+// to `to` itself.
+inline Position Along(const Position& from, const Position& to, double way) {
+  const double length = LengthXy(from, to);
+  Position at = from;
+  if (!(length > 0)) return at;
+  at.x = RoundedWord(ToDouble(from.x) + ToDouble(to.x - from.x) / length * way);
+  at.y = RoundedWord(ToDouble(from.y) + ToDouble(to.y - from.y) / length * way);
+  return at;
+}
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_POSITIONS_H_

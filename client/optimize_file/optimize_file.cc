@@ -1,0 +1,120 @@
+#include "client/optimize_file/optimize_file.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "absl/strings/str_format.h"
+#include "absl/time/clock.h"
+#include "client/files/read_file.h"
+#include "client/gcode/parallel.h"
+
+namespace traverse {
+namespace {
+
+// `auto` looks at a file of G-code twice, the second time with less latitude.
+bool IsAskedTwice(const InputJob& job, const SearchOptions& options) {
+  const v1::Strategy& named = options.strategy ? *options.strategy : job.options.strategy();
+  return named.name() == "auto" && options.deadline == absl::InfiniteDuration();
+}
+
+// The layers of `job` once more, with plans of less latitude.
+InputJob NarrowJob(const InputJob& job, const GcodeOptions& options) {
+  InputJob narrow;
+  narrow.name = job.name;
+  narrow.options = job.options;
+  narrow.layers = NarrowLayers(job, options);
+  return narrow;
+}
+
+// The file of `job` rewritten by the best of what `runs` have for each layer. They answer the
+// layers that were selected in `job`; the others stay as they are.
+absl::StatusOr<GcodeRewrite> RewriteByRuns(const InputJob& job,
+                                           const std::vector<report::JobRun>& runs,
+                                           const GcodeOptions& options) {
+  std::vector<gcode::FileOrder> tries;
+  for (const report::JobRun& run : runs) {
+    gcode::FileOrder& orders = tries.emplace_back(job.gcode->layers.size());
+    for (size_t i = 0; i < run.result.layers.size(); ++i) {
+      const size_t layer = job.first_layer + i;
+      orders[layer] = OrderOf(*job.gcode, layer, run.result.layers[i]);
+    }
+  }
+  RewriteOptions rewrite;
+  rewrite.policy = options.policy;
+  rewrite.crossings = options.crossings;
+  rewrite.version = TRAVERSE_VERSION;
+  rewrite.threads = gcode::ThreadsFor(job.gcode->text.size());
+  return RewriteGcode(*job.gcode, tries, rewrite);
+}
+
+// How the estimate changed, as far as the line in the file can say it.
+gcode::TimeScale ScaleOf(const GcodeRewrite& rewrite) {
+  const auto ratio = [](double before, double after) { return before > 0 ? after / before : 1; };
+  return gcode::RoundScale({ratio(rewrite.before.seconds, rewrite.after.seconds),
+                            ratio(rewrite.first_before.seconds, rewrite.first_after.seconds)});
+}
+
+FileFault SearchFault(absl::Status status) { return {FileStage::kSearch, std::move(status)}; }
+
+}  // namespace
+
+absl::StatusOr<report::JobRun> Search(OptimizerClient& client, const InputJob& job,
+                                      const SearchOptions& options) {
+  v1::JobOptions asked = job.options;
+  if (options.strategy) *asked.mutable_strategy() = *options.strategy;
+  if (options.progress.on_search) options.progress.on_search(job.layers.size());
+  const absl::Time began = absl::Now();
+  CallOptions call;
+  call.deadline = std::min(options.deadline, options.finish_by - began);
+  call.cancel = options.cancel;
+  call.on_layer = options.progress.on_layer;
+  absl::StatusOr<JobResult> result = client.Optimize(asked, job.layers, call);
+  if (!result.ok()) return result.status();
+  return report::JobRun{*std::move(result), asked.has_seed() ? asked.seed() : 1,
+                        absl::ToDoubleSeconds(absl::Now() - began)};
+}
+
+FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& job,
+                                       const OptimizeFileOptions& options) {
+  assert(job.gcode != nullptr);
+  SearchOptions search = options;
+  search.finish_by -= WritingTime(job.gcode->text.size());
+  if (absl::Now() >= search.finish_by) {
+    return SearchFault(absl::DeadlineExceededError("no time is left for a search"));
+  }
+  OptimizedFile made;
+  absl::StatusOr<report::JobRun> first = Search(client, job, search);
+  if (!first.ok()) return SearchFault(first.status());
+  made.runs.push_back(*std::move(first));
+  if (IsAskedTwice(job, options) && absl::Now() < search.finish_by) {
+    absl::StatusOr<report::JobRun> second = Search(client, NarrowJob(job, options.gcode), search);
+    // What the first one found is good enough when the time is over.
+    const bool late =
+        absl::IsDeadlineExceeded(second.status()) && options.finish_by != absl::InfiniteFuture();
+    if (!second.ok() && !late) return SearchFault(second.status());
+    if (second.ok()) made.runs.push_back(*std::move(second));
+  }
+  absl::StatusOr<GcodeRewrite> rewrite = RewriteByRuns(job, made.runs, options.gcode);
+  if (!rewrite.ok()) {
+    return FileFault{FileStage::kWrite,
+                     absl::FailedPreconditionError(absl::StrFormat(
+                         "%s: left as it is, for the new file would not print the same: %s",
+                         DisplayName(job.name), std::string(rewrite.status().message())))};
+  }
+  if (options.cancel.stop_requested()) return SearchFault(absl::CancelledError("cancelled"));
+  made.rewrite = *std::move(rewrite);
+  if (options.restate_times && made.rewrite.layers_changed > 0) {
+    made.times = ScaleOf(made.rewrite);
+    made.rewrite.text = gcode::RestateOptimised(made.rewrite.text, *made.times);
+  }
+  return made;
+}
+
+absl::Duration WritingTime(size_t bytes) {
+  constexpr absl::Duration kLeast = absl::Milliseconds(100);
+  constexpr double kSecondsPerByte = 0.25e-6;
+  return kLeast + absl::Seconds(kSecondsPerByte * static_cast<double>(bytes));
+}
+
+}  // namespace traverse

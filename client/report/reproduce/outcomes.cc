@@ -1,0 +1,148 @@
+#include "client/report/reproduce/outcomes.h"
+
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
+#include "client/files/read_file.h"
+
+namespace traverse::report {
+namespace {
+
+using Json = nlohmann::json;
+
+struct Corner {
+  double x = 0, y = 0;
+};
+
+Corner CornerAt(const google::protobuf::RepeatedField<double>& points, int index) {
+  return {points[2 * index], points[2 * index + 1]};
+}
+
+// The moves of a layer of islands.
+std::vector<DrawnMove> MovesOf(const v1::Layer& layer, const v1::LayerResult& result) {
+  std::vector<DrawnMove> moves;
+  Corner at{result.start().x_mm(), result.start().y_mm()};
+  for (const v1::Visit& visit : result.visits()) {
+    const v1::Island& island = layer.islands(static_cast<int>(visit.island()));
+    const bool is_contour = visit.path_case() == v1::Visit::kContour;
+    Corner enter, exit;
+    if (is_contour) {
+      const auto& points = island.contours(static_cast<int>(visit.contour())).points();
+      enter = exit = CornerAt(points, static_cast<int>(visit.vertex()));
+    } else {
+      const auto& points = island.rasters(static_cast<int>(visit.raster())).points();
+      enter = CornerAt(points, 0);
+      exit = CornerAt(points, points.size() / 2 - 1);
+      if (visit.reversed()) std::swap(enter, exit);
+    }
+    moves.push_back({at.x, at.y, enter.x, enter.y, is_contour});
+    at = exit;
+  }
+  return moves;
+}
+
+void AddLayer(const v1::LayerResult& layer, bool is_first, RunOutcome& outcome) {
+  auto& values = outcome.values;
+  const v1::Travel& travel = layer.travel();
+  const double crs = travel.rasters_mm() + travel.links_mm();
+  values["layers"] += 1;
+  values["c_mm"] += travel.contours_mm();
+  values["crs_mm"] += crs;
+  values["solve_seconds"] += layer.solve_seconds();
+  for (const auto& [name, value] : layer.statistics()) {
+    const bool is_list =
+        name.find("_incumbent_") != std::string::npos || name.starts_with("trace_");
+    if (!is_list) values[name] += value;
+    if (is_first) values["first." + name] = value;
+  }
+  if (!is_first) return;
+  values["c1_mm"] = travel.contours_mm();
+  values["crs1_mm"] = crs;
+}
+
+Json ToJson(const std::string& key, const RunOutcome& outcome) {
+  Json moves = Json::array();
+  for (const DrawnMove& m : outcome.first_layer) {
+    moves.push_back({m.x1, m.y1, m.x2, m.y2, m.to_contour ? 1 : 0});
+  }
+  return {{"run", key}, {"values", outcome.values}, {"moves", std::move(moves)}};
+}
+
+RunOutcome FromJson(const Json& json) {
+  RunOutcome outcome;
+  outcome.values = json.at("values").get<std::map<std::string, double>>();
+  for (const Json& m : json.at("moves")) {
+    outcome.first_layer.push_back({m.at(0), m.at(1), m.at(2), m.at(3), m.at(4).get<double>() != 0});
+  }
+  return outcome;
+}
+
+}  // namespace
+
+double RunOutcome::Get(const std::string& name, double unset) const {
+  const auto found = values.find(name);
+  return found == values.end() ? unset : found->second;
+}
+
+bool RunOutcome::HasRoute() const {
+  for (const char* step : {"contours", "rasters"}) {
+    if (Get(absl::StrCat(step, "_found")) < Get(absl::StrCat(step, "_programmes"))) return false;
+  }
+  return true;
+}
+
+RunOutcome OutcomeOf(const InputJob& job, const JobRun& run) {
+  RunOutcome outcome;
+  for (size_t i = 0; i < run.result.layers.size(); ++i) {
+    AddLayer(run.result.layers[i], i == 0, outcome);
+  }
+  outcome.values["cleaning_mm"] = run.result.summary.cleaning_mm();
+  outcome.values["wall_seconds"] = run.wall_seconds;
+  if (!run.result.layers.empty()) {
+    outcome.first_layer = MovesOf(job.layers.front(), run.result.layers.front());
+  }
+  return outcome;
+}
+
+absl::StatusOr<OutcomeFile> OutcomeFile::Open(const std::string& name) {
+  OutcomeFile file;
+  file.name_ = name;
+  if (name.empty() || !std::ifstream(name)) return file;
+  const absl::StatusOr<std::string> text = ReadWholeFile(name);
+  if (!text.ok()) return text.status();
+  std::vector<std::string> lines = absl::StrSplit(*text, '\n');
+  for (size_t i = 0; i < lines.size(); ++i) {
+    if (lines[i].empty()) continue;
+    const Json json = Json::parse(lines[i], nullptr, /*allow_exceptions=*/false);
+    const bool fits = json.is_object() && json.contains("run") && json["run"].is_string() &&
+                      json.contains("values") && json["values"].is_object() &&
+                      json.contains("moves") && json["moves"].is_array();
+    if (!fits) {
+      if (i + 1 == lines.size()) break;  // cut short as it was written
+      return absl::InvalidArgumentError(absl::StrFormat("%s:%d: no outcome of a run", name, i + 1));
+    }
+    file.outcomes_[json["run"].get<std::string>()] = FromJson(json);
+  }
+  return file;
+}
+
+const RunOutcome* OutcomeFile::Find(const std::string& key) const {
+  const auto found = outcomes_.find(key);
+  return found == outcomes_.end() ? nullptr : &found->second;
+}
+
+absl::Status OutcomeFile::Add(const std::string& key, const RunOutcome& outcome) {
+  outcomes_[key] = outcome;
+  if (name_.empty()) return absl::OkStatus();
+  std::ofstream out(name_, std::ios::app);
+  out << ToJson(key, outcome).dump() << '\n' << std::flush;
+  return out ? absl::OkStatus()
+             : absl::UnavailableError(absl::StrCat(name_, ": cannot be written"));
+}
+
+}  // namespace traverse::report

@@ -1,0 +1,53 @@
+// What pictures are drawn on: an SVG text, or the pixels of a PNG.
+
+#ifndef TRAVERSE_CLIENT_VIEW_DRAWING_CANVAS_H_
+#define TRAVERSE_CLIENT_VIEW_DRAWING_CANVAS_H_
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "client/view/scene/scene.h"
+
+namespace traverse::view {
+
+// A line of a picture; places and widths in its units, from the upper left corner.
+struct Pen {
+  std::string color;  // "#rrggbb"
+  double width = 1;
+  double opacity = 1;
+  bool closed = false;
+};
+
+enum class Anchor { kStart, kMiddle, kEnd };
+
+struct Lettering {
+  double size = 12;
+  std::string color;
+  bool bold = false;
+  Anchor anchor = Anchor::kStart;
+};
+
+class Canvas {
+ public:
+  virtual ~Canvas() = default;
+
+  // Lines with round ends and corners. Lines that share a pen are drawn in one go.
+  virtual void Lines(const std::vector<std::vector<Place>>& lines, const Pen& pen) = 0;
+  virtual void Disc(Place center, double radius, const std::string& color) = 0;
+  virtual void Rectangle(Place corner, double width, double height, const std::string& color) = 0;
+  virtual void Text(Place at, const std::string& text, const Lettering& lettering) = 0;
+
+  // The file. To be called once, at the end.
+  virtual std::string Finish() = 0;
+};
+
+// A picture of `width` x `height` units on white.
+std::unique_ptr<Canvas> MakeSvgCanvas(double width, double height);
+
+// The same, two pixels a unit.
+std::unique_ptr<Canvas> MakePngCanvas(double width, double height);
+
+}  // namespace traverse::view
+
+#endif  // TRAVERSE_CLIENT_VIEW_DRAWING_CANVAS_H_

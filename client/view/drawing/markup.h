@@ -1,0 +1,20 @@
+// Text inside HTML and SVG.
+
+#ifndef TRAVERSE_CLIENT_VIEW_DRAWING_MARKUP_H_
+#define TRAVERSE_CLIENT_VIEW_DRAWING_MARKUP_H_
+
+#include <string>
+#include <string_view>
+
+namespace traverse::view {
+
+// `text` as content or between quotes: &, <, >, " and ' are written as references. What is no valid
+// UTF-8 and control characters become U+FFFD, for names of files may be any bytes.
+std::string EscapeMarkup(std::string_view text);
+
+// `text` as valid UTF-8, what is not replaced by U+FFFD.
+std::string ValidUtf8(std::string_view text);
+
+}  // namespace traverse::view
+
+#endif  // TRAVERSE_CLIENT_VIEW_DRAWING_MARKUP_H_

@@ -1,0 +1,27 @@
+// Colors of features, for pictures and the report alike.
+
+#ifndef TRAVERSE_CLIENT_VIEW_DRAWING_PALETTE_H_
+#define TRAVERSE_CLIENT_VIEW_DRAWING_PALETTE_H_
+
+#include <string>
+
+namespace traverse::view {
+
+// "#rrggbb" for a light ground and for a dark one.
+struct FeatureColor {
+  std::string light;
+  std::string dark;
+};
+
+// The color of the feature of that name (gcode::FeatureName, or FeatureNames of the view); gray for
+// others. What lies together differs in lightness too, for those who see few colors.
+FeatureColor ColorOf(const std::string& feature);
+
+// Of travel, and of its ends, on a light ground.
+inline constexpr char kTravelColor[] = "#111827";
+inline constexpr char kStartColor[] = "#15803d";
+inline constexpr char kEndColor[] = "#be123c";
+
+}  // namespace traverse::view
+
+#endif  // TRAVERSE_CLIENT_VIEW_DRAWING_PALETTE_H_

@@ -1,0 +1,26 @@
+// One layer before and after, side by side on one scale: the picture of --picture.
+
+#ifndef TRAVERSE_CLIENT_VIEW_DRAWING_PICTURE_H_
+#define TRAVERSE_CLIENT_VIEW_DRAWING_PICTURE_H_
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "client/view/scene/scene.h"
+
+namespace traverse::view {
+
+enum class PictureFormat { kSvg, kPng };
+
+// By the end of the name, .svg or .png in any case; nothing for others.
+std::optional<PictureFormat> PictureFormatOf(const std::string& name);
+
+// Layer `layer` of the scene in the order given and in that of the route shown: what is deposited
+// thin and in the color of its feature, travel bold, start and end marked, and on the right faded
+// the moves that are no more. The figures of both stand above.
+std::string Picture(const Scene& scene, size_t layer, PictureFormat format);
+
+}  // namespace traverse::view
+
+#endif  // TRAVERSE_CLIENT_VIEW_DRAWING_PICTURE_H_

@@ -1,0 +1,165 @@
+#include "client/view/scene/job_scene.h"
+
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "client/files/read_file.h"
+#include "client/gcode/measure/layer_meter.h"
+#include "client/gcode/parallel.h"
+#include "client/gcode/read/reader.h"
+#include "client/view/scene/drawn_arcs.h"
+#include "client/view/scene/layer_paths.h"
+#include "client/view/scene/printed_route.h"
+
+namespace traverse::view {
+namespace {
+
+DrawnRoute RouteOf(const VisitReader& reader, const v1::LayerResult& result) {
+  DrawnRoute route;
+  route.start = {result.start().x_mm(), result.start().y_mm()};
+  route.visits.reserve(static_cast<size_t>(result.visits_size()));
+  for (const v1::Visit& visit : result.visits()) route.visits.push_back(reader.Read(visit));
+  return route;
+}
+
+// Seconds of `travel_mm` at the speed that the summary counts idle time with.
+double IdleSeconds(const v1::JobSummary& summary, double travel_mm) {
+  const double all = summary.travel().total_mm() + summary.cleaning_mm();
+  return all > 0 ? summary.idle_seconds() * travel_mm / all : 0;
+}
+
+// All but the figures.
+RouteNotes NotesWithoutFigures(const NamedRun& named) {
+  const v1::JobSummary& summary = named.run->result.summary;
+  RouteNotes notes;
+  notes.label = named.label;
+  if (summary.has_lower_bound()) {
+    notes.gap =
+        summary.cost() > 0 ? (summary.cost() - summary.lower_bound()) / summary.cost() : 0.0;
+  }
+  notes.compute_seconds = named.run->wall_seconds;
+  return notes;
+}
+
+RouteNotes NotesOf(const NamedRun& named) {
+  const JobResult& result = named.run->result;
+  const v1::JobSummary& summary = result.summary;
+  RouteNotes notes = NotesWithoutFigures(named);
+  notes.total = {summary.travel().total_mm() + summary.cleaning_mm(), summary.idle_seconds()};
+  for (const v1::LayerResult& layer : result.layers) {
+    const double travel = layer.travel().total_mm();
+    notes.layers.push_back({travel, IdleSeconds(summary, travel)});
+  }
+  return notes;
+}
+
+Figures FiguresOf(const gcode::PrintTotals& totals) {
+  return {totals.travel_mm, totals.seconds, totals.retractions, totals.crossings};
+}
+
+// What the layers of `file` from `first` on come to.
+std::vector<Figures> LayerFigures(const GcodeFile& file, size_t first, size_t count) {
+  const std::vector<gcode::PrintTotals> totals =
+      gcode::MeasureLayers(file, gcode::DefaultThreads());
+  std::vector<Figures> figures;
+  for (size_t i = 0; i < count; ++i) figures.push_back(FiguresOf(totals[first + i]));
+  return figures;
+}
+
+// [path] What the paths of a layer extrude.
+std::vector<double> LengthsOf(const GcodeFile& file, size_t layer) {
+  std::vector<double> lengths;
+  for (uint32_t i = file.layers[layer].first_block; i < file.layers[layer].end_block; ++i) {
+    lengths.push_back(static_cast<double>(file.blocks[i].length_mm));
+  }
+  return lengths;
+}
+
+// The name without its folders: what is shown may be passed on.
+std::string BaseName(const std::string& name) {
+  return std::filesystem::path(name).filename().string();
+}
+
+// What all scenes of a job have.
+Scene EmptyScene(const InputJob& job) {
+  Scene scene;
+  scene.title = job.name == "-" ? DisplayName(job.name) : BaseName(job.name);
+  scene.seconds_name = "idle time";
+  scene.moves_note = "Moves are straight, as the service counts them.";
+  scene.features = FeatureNames(job);
+  scene.first_layer = job.first_layer;
+  for (const v1::Layer& layer : job.layers) {
+    scene.layer_ids.push_back(layer.id());
+    scene.layer_z_mm.push_back(layer.z_mm());
+  }
+  return scene;
+}
+
+}  // namespace
+
+Scene JobScene(const InputJob& job, const report::JobRun& given,
+               const std::vector<NamedRun>& runs) {
+  Scene scene = EmptyScene(job);
+  std::vector<const report::JobRun*> results = {&given};
+  scene.routes.push_back(NotesOf({"as given", &given}));
+  for (const NamedRun& named : runs) {
+    results.push_back(named.run);
+    scene.routes.push_back(NotesOf(named));
+  }
+  scene.layer = [&job, results = std::move(results)](size_t i) {
+    DrawnLayer layer;
+    layer.paths = PathsOf(job, i);
+    const VisitReader reader(job.layers[i]);
+    for (const report::JobRun* run : results) {
+      layer.routes.push_back(RouteOf(reader, run->result.layers[i]));
+    }
+    return layer;
+  };
+  return scene;
+}
+
+absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
+                                 const std::vector<report::JobRun>& runs,
+                                 const GcodeRewrite& rewrite) {
+  Scene scene = EmptyScene(job);
+  scene.seconds_name = "print time";
+  scene.moves_note = "Moves are those of the two files, wipes included.";
+  std::shared_ptr<const GcodeFile> printed = job.gcode;
+  if (rewrite.layers_changed > 0) {
+    absl::StatusOr<std::shared_ptr<GcodeFile>> read = ReadGcode(rewrite.text, job.name);
+    if (!read.ok()) return read.status();
+    printed = *std::move(read);
+  }
+  RouteNotes given;
+  given.label = "as given";
+  given.total = FiguresOf(rewrite.before);
+  given.layers = LayerFigures(*job.gcode, job.first_layer, job.layers.size());
+  RouteNotes after = NotesWithoutFigures({label, &runs[0]});
+  // It is that of the routes found; layers may have kept their order, and links are not straight.
+  after.gap.reset();
+  after.total = FiguresOf(rewrite.after);
+  after.layers = LayerFigures(*printed, job.first_layer, job.layers.size());
+  scene.routes = {std::move(given), std::move(after)};
+
+  scene.layer = [&job, &runs, printed = std::move(printed)](size_t i) {
+    DrawnLayer layer;
+    layer.paths = PathsOf(job, i);
+    const size_t in_file = job.first_layer + i;
+    const std::vector<DrawnVisit> sliced = InOrder(layer.paths.size());
+    // Each layer of the new file is in one of these orders.
+    std::vector<std::vector<DrawnVisit>> orders;
+    for (const report::JobRun& run : runs) {
+      orders.push_back(RouteOf(VisitReader(job.layers[i]), run.result.layers[i]).visits);
+    }
+    orders.push_back(sliced);
+    const SlicedPaths paths = {layer.paths, LengthsOf(*job.gcode, in_file)};
+    layer.routes.push_back(PrintedRoute(*job.gcode, in_file, paths, {sliced}));
+    layer.routes.push_back(PrintedRoute(*printed, in_file, paths, orders));
+    DrawArcs(*job.gcode, in_file, layer);
+    return layer;
+  };
+  return scene;
+}
+
+}  // namespace traverse::view

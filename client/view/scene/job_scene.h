@@ -1,0 +1,37 @@
+// Scenes of jobs and the routes that the service found for them.
+
+#ifndef TRAVERSE_CLIENT_VIEW_SCENE_JOB_SCENE_H_
+#define TRAVERSE_CLIENT_VIEW_SCENE_JOB_SCENE_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "client/gcode/rewrite.h"
+#include "client/input/input_job.h"
+#include "client/report/run.h"
+#include "client/view/scene/scene.h"
+
+namespace traverse::view {
+
+// A run of the job, and what it is called.
+struct NamedRun {
+  std::string label;
+  const report::JobRun* run = nullptr;
+};
+
+// The job with the routes of `runs`, all moves straight, as the service counts them. `given` is a
+// run of the strategy none. Job and runs outlive the scene.
+// REQUIRES: every run passed CheckVisits.
+Scene JobScene(const InputJob& job, const report::JobRun& given, const std::vector<NamedRun>& runs);
+
+// G-code before and after: travel, retractions and time of both files, with the ways that the head
+// takes in each. `rewrite` is what RewriteGcode made of the job with the orders of `runs`, at least
+// one; job and runs outlive the scene. Errors are those of reading the new text.
+absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
+                                 const std::vector<report::JobRun>& runs,
+                                 const GcodeRewrite& rewrite);
+
+}  // namespace traverse::view
+
+#endif  // TRAVERSE_CLIENT_VIEW_SCENE_JOB_SCENE_H_

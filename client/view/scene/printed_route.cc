@@ -1,0 +1,112 @@
+#include "client/view/scene/printed_route.h"
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "client/gcode/write/link.h"
+
+namespace traverse::view {
+namespace {
+
+constexpr double kSameMm = 1e-3;
+constexpr double kSameLengthMm = 5e-3;  // blocks keep their lengths as float
+
+bool Same(const Place& a, const Place& b) {
+  return std::abs(a.x - b.x) < kSameMm && std::abs(a.y - b.y) < kSameMm;
+}
+
+// The blocks of one layer of a file, one after the other.
+class BlockWalk {
+ public:
+  BlockWalk(const GcodeFile& file, size_t layer)
+      : file_(file),
+        next_(file.layers[layer].first_block),
+        end_(file.layers[layer].end_block),
+        unit_(file.modes[file.blocks[next_].mode].UnitMm()) {}
+
+  bool AtEnd() const { return next_ == end_; }
+  Place First() const { return PlaceOf(file_.blocks[next_].first); }
+
+  // Where the head is before the layer. How the start script comes to the first path of all is not
+  // drawn.
+  Place Start() const { return next_ > 0 ? PlaceOf(file_.blocks[next_ - 1].last) : First(); }
+
+  // Where the head comes by from the block before to this one, the ends of both included.
+  std::vector<Place> Corners() const {
+    if (next_ == 0) return {};
+    std::vector<Place> corners = {PlaceOf(file_.blocks[next_ - 1].last)};
+    for (const gcode::LinkStep& step : gcode::ReadLink(file_, next_).steps) {
+      if (gcode::IsXyMotion(step.kind)) corners.push_back(PlaceOf(step.to));
+    }
+    return corners;
+  }
+
+  // What the block extrudes; goes on to the next one.
+  double Take() { return static_cast<double>(file_.blocks[next_++].length_mm); }
+
+ private:
+  Place PlaceOf(const gcode::Position& at) const {
+    return {gcode::ToDouble(at.x) * unit_, gcode::ToDouble(at.y) * unit_};
+  }
+
+  const GcodeFile& file_;
+  size_t next_;
+  size_t end_;
+  double unit_;
+};
+
+// `corners` without those that are the ends of the move itself.
+std::vector<Place> Between(std::vector<Place> corners, const Place& from, const Place& to) {
+  if (!corners.empty() && Same(corners.back(), to)) corners.pop_back();
+  if (!corners.empty() && Same(corners.front(), from)) corners.erase(corners.begin());
+  return corners;
+}
+
+// `order` with the corners of `printed`; nothing if that is not the order of its blocks.
+std::optional<std::vector<DrawnVisit>> WithCorners(const GcodeFile& printed, size_t layer,
+                                                   const SlicedPaths& sliced,
+                                                   std::vector<DrawnVisit> order) {
+  BlockWalk walk(printed, layer);
+  Place at = walk.Start();
+  double ahead = 0;  // what the blocks taken extrude beyond the paths taken
+  for (DrawnVisit& visit : order) {
+    const DrawnPath& path = sliced.paths[visit.path];
+    const Place entry = EntryOf(path, visit);
+    if (ahead < kSameLengthMm) {
+      if (walk.AtEnd() || !Same(walk.First(), entry)) return std::nullopt;
+      visit.via = Between(walk.Corners(), at, entry);
+      ahead = walk.Take();
+    }
+    ahead -= sliced.lengths_mm[visit.path];
+    while (ahead < -kSameLengthMm && !walk.AtEnd()) ahead += walk.Take();
+    if (ahead < -kSameLengthMm) return std::nullopt;
+    at = ExitOf(path, visit);
+  }
+  if (!walk.AtEnd() || ahead > kSameLengthMm) return std::nullopt;
+  return order;
+}
+
+}  // namespace
+
+std::vector<DrawnVisit> InOrder(size_t paths) {
+  std::vector<DrawnVisit> visits(paths);
+  for (size_t i = 0; i < paths; ++i) visits[i].path = i;
+  return visits;
+}
+
+DrawnRoute PrintedRoute(const GcodeFile& printed, size_t layer, const SlicedPaths& sliced,
+                        const std::vector<std::vector<DrawnVisit>>& orders) {
+  DrawnRoute route;
+  route.start = BlockWalk(printed, layer).Start();
+  route.visits = orders.front();
+  for (const std::vector<DrawnVisit>& order : orders) {
+    if (auto found = WithCorners(printed, layer, sliced, order)) {
+      route.visits = *std::move(found);
+      break;
+    }
+  }
+  return route;
+}
+
+}  // namespace traverse::view

@@ -1,0 +1,62 @@
+#include "engine/cost/cost_unit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/cost/travel_cost.h"
+#include "engine/geometry/bounding_box.h"
+
+namespace traverse {
+namespace {
+
+// Longest moves that cost so much are ordinary: 13 cm or 0.13 s at least. Sums of the greatest
+// are rounded by less than a hundredth of kImprovementTolerance.
+constexpr double kLeastOrdinary = 0.125;
+constexpr double kMostOrdinary = 16384;
+
+// What others are brought to.
+constexpr double kUsual = 128;
+
+// Keeps speeds and accelerations far from the ends of a double's range. Points that are nearer to
+// each other than a millionth of an atom are one point.
+constexpr int kMostDoublings = 60;
+
+}  // namespace
+
+double CostUnit(const CostSpec& spec, std::initializer_list<const LayerProblem*> problems) {
+  BoundingBox box;
+  for (const LayerProblem* problem : problems) {
+    box.Add(problem->start);
+    if (problem->finish) box.Add(*problem->finish);
+    for (const Path& path : problem->plan->paths) box.Add(BoundingBox(path.points));
+  }
+  double longest = TravelCost(spec).OfLength(Distance(box.low(), box.high()));
+  for (const LayerProblem* problem : problems) {
+    if (problem->walls == nullptr) continue;
+    longest += spec.retraction_seconds + spec.lift_seconds + spec.crossing_seconds;
+    break;
+  }
+  if (longest == 0 || (longest >= kLeastOrdinary && longest <= kMostOrdinary)) return 1;
+  const int doublings = static_cast<int>(std::floor(std::log2(kUsual / longest)));
+  return std::ldexp(1, std::clamp(doublings, -kMostDoublings, kMostDoublings));
+}
+
+CostSpec InUnit(const CostSpec& spec, double unit) {
+  if (unit == 1) return spec;
+  CostSpec scaled;
+  scaled.kind = CostSpec::Kind::kTime;
+  if (spec.kind == CostSpec::Kind::kLength) {
+    // A length is the time at a speed of 1 mm in each of a unit.
+    scaled.speed_mm_s = 1 / unit;
+    return scaled;
+  }
+  scaled = spec;  // lengths stay
+  scaled.speed_mm_s /= unit;
+  scaled.accel_mm_s2 /= unit * unit;
+  scaled.retraction_seconds *= unit;
+  scaled.lift_seconds *= unit;
+  scaled.crossing_seconds *= unit;
+  return scaled;
+}
+
+}  // namespace traverse

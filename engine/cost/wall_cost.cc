@@ -1,0 +1,138 @@
+#include "engine/cost/wall_cost.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace traverse {
+namespace {
+
+// Moves remembered for each path, and at most.
+constexpr size_t kMovesPerPath = 64;
+constexpr size_t kMostMoves = size_t{1} << 15;
+
+// A point so many slacks away from the middle of a wall still lies on it.
+constexpr double kOnWall = 1.2;
+
+bool Less(Point a, Point b) { return std::pair(a.x, a.y) < std::pair(b.x, b.y); }
+
+uint64_t Mix(uint64_t state, double value) {
+  return (std::rotl(state, 23) ^ std::bit_cast<uint64_t>(value)) * 0x9e3779b97f4a7c15u;
+}
+
+size_t PlacesFor(size_t paths) {
+  return std::bit_ceil(std::clamp<size_t>(paths * kMovesPerPath, 1024, kMostMoves));
+}
+
+}  // namespace
+
+double TravelCost::WithWalls(Point from, Point to) const {
+  return walls_unit_ * (*walls_)(from, to);
+}
+
+WallCost::WallCost(const LayerWalls& walls, const Plan& plan, const CostSpec& spec)
+    : spec_(spec),
+      base_(spec),
+      grid_(walls.walls, spec.wall_slack_mm),
+      detours_(spec.wall_clearance_mm > 0
+                   ? std::optional<WallDetours>(std::in_place, grid_, spec.wall_clearance_mm,
+                                                kOnWall * spec.wall_slack_mm)
+                   : std::nullopt),
+      places_(PlacesFor(plan.paths.size())) {
+  for (const int path : walls.exposed) {
+    const std::vector<Point>& points = plan.paths[static_cast<size_t>(path)].points;
+    exposed_.insert(exposed_.end(), points.begin(), points.end());
+  }
+  std::sort(exposed_.begin(), exposed_.end(), Less);
+}
+
+WallCost::WallCost(const WallCost* first, const WallCost* second,
+                   const std::vector<std::pair<Point, Point>>& second_points, const CostSpec& spec)
+    : spec_(spec),
+      base_(spec),
+      grid_({}, 0),
+      two_layers_(true),
+      first_(first),
+      second_(second),
+      places_(0) {
+  for (const auto& [asked, meant] : second_points) {
+    second_points_.emplace(std::pair(asked.x, asked.y), meant);
+  }
+}
+
+double WallCost::OfTwoLayers(Point a, Point b) const {
+  const auto at_a = second_points_.find({a.x, a.y});
+  const auto at_b = second_points_.find({b.x, b.y});
+  const bool in_second = at_a != second_points_.end() || at_b != second_points_.end();
+  const WallCost* cost = in_second ? second_ : first_;
+  if (at_a != second_points_.end()) a = at_a->second;
+  if (at_b != second_points_.end()) b = at_b->second;
+  return cost != nullptr ? (*cost)(a, b) : base_(a, b);
+}
+
+bool WallCost::IsExposed(Point a, Point b) const {
+  if (exposed_.empty()) return false;
+  return std::binary_search(exposed_.begin(), exposed_.end(), a, Less) ||
+         std::binary_search(exposed_.begin(), exposed_.end(), b, Less);
+}
+
+WallMove WallCost::Straight(Point a, Point b, bool crosses) const {
+  WallMove move;
+  move.crosses = crosses;
+  move.length_mm = Distance(a, b);
+  move.cost = base_.OfLength(move.length_mm);
+  move.retracts = move.length_mm > spec_.retraction_threshold_mm;
+  if (!move.retracts &&
+      ((crosses && move.length_mm > spec_.wall_retraction_threshold_mm) ||
+       (move.length_mm > spec_.exposed_retraction_threshold_mm && IsExposed(a, b)))) {
+    move.retracts = true;
+    move.cost += spec_.retraction_seconds;
+  }
+  if (crosses) move.cost += spec_.crossing_seconds + (move.retracts ? spec_.lift_seconds : 0);
+  return move;
+}
+
+WallMove WallCost::MoveOf(Point a, Point b) const {
+  WallMove straight = Straight(a, b, grid_.Crosses(a, b));
+  if (!straight.crosses || !detours_) return straight;
+  const bool swapped = Less(b, a);
+  if (swapped) std::swap(a, b);
+  std::vector<Point> via = detours_->Around(a, b);
+  if (via.empty()) return straight;
+  double length_mm = 0;
+  Point at = a;
+  for (const Point& bend : via) {
+    length_mm += Distance(at, bend);
+    at = bend;
+  }
+  length_mm += Distance(at, b);
+  WallMove around;
+  around.length_mm = length_mm;
+  around.cost = base_.OfLength(length_mm);
+  around.retracts = length_mm > spec_.retraction_threshold_mm;
+  if (!around.retracts && length_mm > spec_.exposed_retraction_threshold_mm && IsExposed(a, b)) {
+    around.retracts = true;
+    around.cost += spec_.retraction_seconds;
+  }
+  if (around.cost >= straight.cost) return straight;
+  if (swapped) std::reverse(via.begin(), via.end());
+  around.via = std::move(via);
+  return around;
+}
+
+double WallCost::Compute(Point a, Point b) const {
+  if (detours_) return MoveOf(a, b).cost;
+  return Straight(a, b, grid_.Crosses(a, b)).cost;
+}
+
+double WallCost::operator()(Point a, Point b) const {
+  if (two_layers_) return OfTwoLayers(a, b);
+  if (known_.empty()) known_.resize(places_);
+  if (Less(b, a)) std::swap(a, b);
+  const uint64_t hash = Mix(Mix(Mix(Mix(1, a.x), a.y), b.x), b.y);
+  Known& known = known_[(hash >> 40) & (places_ - 1)];
+  if (known.cost < 0 || !(known.a == a) || !(known.b == b)) known = {a, b, Compute(a, b)};
+  return known.cost;
+}
+
+}  // namespace traverse

@@ -1,0 +1,111 @@
+#include "engine/geometry/wall_grid.h"
+
+namespace traverse {
+namespace {
+
+// Of a way that is shorter than its slack, so much at each end is not looked at.
+constexpr double kMostEnd = 0.2;
+
+// Cells for each segment, at most; and cells of any grid.
+constexpr double kCellsPerSegment = 4;
+constexpr double kLeastCells = 64;
+
+double Turn(Point a, Point b, Point c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+}  // namespace
+
+bool SegmentsCross(Point a, Point b, Point c, Point d) {
+  // What is so near to the line lies on it: a way along a wall does not cross it.
+  constexpr double kTouchMm = 1e-7;
+  const double touch = kTouchMm * (std::abs(b.x - a.x) + std::abs(b.y - a.y));
+  if ((Turn(a, b, c) < -touch) == (Turn(a, b, d) < -touch)) return false;
+  const double of_a = Turn(c, d, a);
+  const double of_b = Turn(c, d, b);
+  return (of_a < 0 && of_b > 0) || (of_a > 0 && of_b < 0);
+}
+
+WallGrid::WallGrid(absl::Span<const Wall> walls, double slack_mm) : slack_mm_(slack_mm) {
+  size_t points = 0;
+  for (const Wall& wall : walls) points += wall.points.size() + 1;
+  segments_.reserve(points);
+  first_of_wall_.reserve(walls.size() + 1);
+  for (size_t w = 0; w < walls.size(); ++w) {
+    first_of_wall_.push_back(static_cast<uint32_t>(segments_.size()));
+    const std::vector<Point>& line = walls[w].points;
+    const auto add = [&](Point a, Point b) {
+      if (a == b) return;
+      segments_.push_back({a, b, static_cast<uint32_t>(w)});
+      box_.Add(a);
+      box_.Add(b);
+    };
+    for (size_t i = 0; i + 1 < line.size(); ++i) add(line[i], line[i + 1]);
+    if (walls[w].closed) add(line.back(), line.front());
+  }
+  first_of_wall_.push_back(static_cast<uint32_t>(segments_.size()));
+  if (segments_.empty()) return;
+  SizeCells();
+  Fill();
+}
+
+// A segment as long as a cell is in three of them at most, and longer ones are few.
+void WallGrid::SizeCells() {
+  const double n = static_cast<double>(segments_.size());
+  double length_mm = 0;
+  for (const WallSegment& segment : segments_) length_mm += Distance(segment.a, segment.b);
+  const double most = kCellsPerSegment * n + kLeastCells;
+  const double width = box_.width();
+  const double height = box_.height();
+  double cell_mm = std::max({length_mm / n, std::sqrt(width * height / most), 1e-3});
+  while ((std::floor(width / cell_mm) + 1) * (std::floor(height / cell_mm) + 1) > most) {
+    cell_mm *= 1.5;
+  }
+  low_ = box_.low();
+  per_mm_ = 1 / cell_mm;
+  columns_ = static_cast<int>(width * per_mm_) + 1;
+  rows_ = static_cast<int>(height * per_mm_) + 1;
+}
+
+// Counting sort: how many entries a cell has, then where they begin, then the entries.
+void WallGrid::Fill() {
+  const auto for_each_cell = [this](const WallSegment& segment, const auto& visit) {
+    ForEachRow(segment.a, segment.b, [&](int row, int first, int last) {
+      const size_t cell = static_cast<size_t>(row) * static_cast<size_t>(columns_);
+      for (int column = first; column <= last; ++column) {
+        visit(cell + static_cast<size_t>(column));
+      }
+    });
+  };
+  first_.assign(static_cast<size_t>(columns_) * static_cast<size_t>(rows_) + 2, 0);
+  for (const WallSegment& segment : segments_) {
+    for_each_cell(segment, [this](size_t cell) { ++first_[cell + 2]; });
+  }
+  for (size_t cell = 2; cell < first_.size(); ++cell) first_[cell] += first_[cell - 1];
+  entries_.resize(first_.back());
+  for (uint32_t s = 0; s < segments_.size(); ++s) {
+    for_each_cell(segments_[s], [&](size_t cell) { entries_[first_[cell + 1]++] = s; });
+  }
+  first_.pop_back();
+}
+
+std::pair<Point, Point> WallGrid::WithoutEnds(Point a, Point b) const {
+  const double length = Distance(a, b);
+  if (!(length > 0)) return {a, b};
+  const double cut = std::min(slack_mm_ / length, kMostEnd);
+  return {{a.x + (b.x - a.x) * cut, a.y + (b.y - a.y) * cut},
+          {b.x - (b.x - a.x) * cut, b.y - (b.y - a.y) * cut}};
+}
+
+bool WallGrid::Crosses(Point a, Point b) const {
+  if (std::pair(b.x, b.y) < std::pair(a.x, a.y)) std::swap(a, b);
+  const auto [from, to] = WithoutEnds(a, b);
+  bool crosses = false;
+  ForEachOnLine(from, to, [&, from = from, to = to](uint32_t s) {
+    crosses = SegmentsCross(from, to, segments_[s].a, segments_[s].b);
+    return !crosses;
+  });
+  return crosses;
+}
+
+}  // namespace traverse

@@ -1,0 +1,127 @@
+// The walls of a layer in a grid of cells: which of them does a straight way cross?
+//
+// The cells are as large as the segments are long on average, so that n segments take O(n) memory
+// and a way looks at the few segments of the cells that it leads through. A layer without walls
+// near a way costs it next to nothing.
+
+#ifndef TRAVERSE_ENGINE_GEOMETRY_WALL_GRID_H_
+#define TRAVERSE_ENGINE_GEOMETRY_WALL_GRID_H_
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "absl/types/span.h"
+#include "engine/geometry/bounding_box.h"
+#include "engine/model/point.h"
+#include "engine/model/walls.h"
+
+namespace traverse {
+
+// The straight line between two neighboring points of a wall.
+struct WallSegment {
+  Point a;
+  Point b;
+  uint32_t wall = 0;  // index in the walls given
+};
+
+// True if the segments ab and cd cross at one point inside ab. A line from a to b through a point
+// at which two others meet that lie on either side of it crosses one of these.
+bool SegmentsCross(Point a, Point b, Point c, Point d);
+
+// Immutable. Segments of a wall follow one another; those without length are left out.
+class WallGrid {
+ public:
+  // Of a way, `slack_mm` at each end are not looked at, but no more than a fifth of it: ways begin
+  // and end on lines that may be walls themselves, or lie against them. O(n) for n points.
+  WallGrid(absl::Span<const Wall> walls, double slack_mm);
+
+  const std::vector<WallSegment>& segments() const { return segments_; }
+
+  // The segments of one of the walls given: [first, second).
+  std::pair<uint32_t, uint32_t> SegmentsOf(uint32_t wall) const {
+    return {first_of_wall_[wall], first_of_wall_[wall + size_t{1}]};
+  }
+
+  // Whether a way, less its ends, crosses a wall; the same there and back.
+  bool Crosses(Point a, Point b) const;
+
+  // The part of a way that is looked at.
+  std::pair<Point, Point> WithoutEnds(Point a, Point b) const;
+
+  // Calls visit(index of a segment) for all segments that may meet the straight line from `a` to
+  // `b`, some of them more than once, until it returns false.
+  template <typename Visit>
+  void ForEachOnLine(Point a, Point b, Visit visit) const;
+
+ private:
+  int Column(double x) const {
+    return static_cast<int>(std::clamp((x - low_.x) * per_mm_, 0.0, columns_ - 1.0));
+  }
+  int Row(double y) const {
+    return static_cast<int>(std::clamp((y - low_.y) * per_mm_, 0.0, rows_ - 1.0));
+  }
+
+  // Calls visit(row, first column, last column) for rows of cells that hold the line.
+  template <typename Visit>
+  void ForEachRow(Point a, Point b, Visit visit) const;
+  void SizeCells();
+  void Fill();
+
+  const double slack_mm_;
+  std::vector<WallSegment> segments_;
+  std::vector<uint32_t> first_of_wall_;  // [wall]; one more
+  BoundingBox box_;
+  Point low_;
+  double per_mm_ = 1;
+  int columns_ = 0;
+  int rows_ = 0;
+  std::vector<uint32_t> first_;    // [row * columns_ + column] in entries_; one more
+  std::vector<uint32_t> entries_;  // segments, by cell
+};
+
+template <typename Visit>
+void WallGrid::ForEachRow(Point a, Point b, Visit visit) const {
+  // More than rounding can move a point of the line.
+  constexpr double kSlack = 1e-6;
+  if (a.y > b.y) std::swap(a, b);
+  const int first = Row(a.y - kSlack);
+  const int last = Row(b.y + kSlack);
+  const double slope = b.y > a.y ? (b.x - a.x) / (b.y - a.y) : 0;
+  for (int row = first; row <= last; ++row) {
+    double x0 = a.x;
+    double x1 = b.x;
+    if (first != last && b.y - a.y > kSlack) {
+      const double top = low_.y + (row + 1) / per_mm_ + kSlack;
+      const double bottom = low_.y + row / per_mm_ - kSlack;
+      if (row > first) x0 = a.x + slope * std::clamp(bottom - a.y, 0.0, b.y - a.y);
+      if (row < last) x1 = a.x + slope * std::clamp(top - a.y, 0.0, b.y - a.y);
+    }
+    const double slack = kSlack * (1 + std::abs(slope) * 1e-6);
+    visit(row, Column(std::min(x0, x1) - slack), Column(std::max(x0, x1) + slack));
+  }
+}
+
+template <typename Visit>
+void WallGrid::ForEachOnLine(Point a, Point b, Visit visit) const {
+  if (segments_.empty()) return;
+  if (std::max(a.x, b.x) < box_.low().x || std::min(a.x, b.x) > box_.high().x ||
+      std::max(a.y, b.y) < box_.low().y || std::min(a.y, b.y) > box_.high().y) {
+    return;
+  }
+  bool going_on = true;
+  ForEachRow(a, b, [&](int row, int first, int last) {
+    if (!going_on) return;
+    const size_t cell = static_cast<size_t>(row) * static_cast<size_t>(columns_);
+    const uint32_t begin = first_[cell + static_cast<size_t>(first)];
+    const uint32_t end = first_[cell + static_cast<size_t>(last) + 1];
+    for (uint32_t i = begin; going_on && i < end; ++i) going_on = visit(entries_[i]);
+  });
+}
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_GEOMETRY_WALL_GRID_H_

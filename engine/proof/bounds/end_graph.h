@@ -1,0 +1,57 @@
+// The ends of a plan's paths and which of them a move may join: every route is a tree of these.
+//
+// A path has one end (a contour, which is left where it is entered) or two (an open path). The
+// moves within a node of the plan join its children to a tree: for each any_order node and each
+// pair of neighboring children of an in_order node there is a junction, of which a route uses one
+// move less than it has sides.
+//
+//   any_order(a, b, c)       one junction of three sides: two moves
+//   in_order(A, B)           a junction of two sides: one move, from an end that may be the last
+//                            of A to one that may be the first of B
+
+#ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_END_GRAPH_H_
+#define TRAVERSE_ENGINE_PROOF_BOUNDS_END_GRAPH_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "absl/types/span.h"
+#include "engine/geometry/bounding_box.h"
+#include "engine/model/plan_tree.h"
+#include "engine/model/point.h"
+
+namespace traverse {
+
+struct PathEnd {
+  static constexpr uint8_t kEnter = 1;
+  static constexpr uint8_t kLeave = 2;
+
+  std::vector<Point> points;  // at which the head may be here
+  BoundingBox box;            // around them
+  uint8_t roles = 0;          // whether the path may be entered here, and left
+  int moves = 1;              // of a route here: 2 for a contour
+};
+
+struct Junction {
+  struct Member {
+    int end = 0;
+    int side = 0;
+    uint8_t roles = 0;  // whether this side may be entered here, and left
+  };
+  std::vector<Member> members;  // by sides
+  int sides = 0;
+};
+
+// Immutable. Memory: proportional to the points and to the sum over nodes of the ends below.
+struct EndGraph {
+  explicit EndGraph(const PlanTree& tree);
+
+  std::vector<PathEnd> ends;
+  std::vector<Junction> junctions;
+  std::vector<int> first;  // ends that a route may begin with
+  std::vector<int> last;   // ends that it may end with
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_PROOF_BOUNDS_END_GRAPH_H_

@@ -1,0 +1,59 @@
+#include "engine/proof/bounds/lower_bound.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "engine/cost/route_cost.h"
+#include "engine/proof/bounds/tree_bound.h"
+
+namespace traverse {
+namespace {
+
+// Each round searches with the near pairs known so far, and makes more of them known.
+constexpr int kRounds = 3;
+constexpr int kStepsPerRound = 40;
+
+// Evaluations at the end, as long as they gain so much.
+constexpr int kMostEvaluations = 6;
+constexpr double kLeastGain = 1e-3;
+
+// Of the time that is left, what a search may use: the evaluation after it is what counts.
+constexpr double kSearchShare = 0.4;
+
+Budget SearchBudget(const Budget& budget) {
+  if (!budget.deadline()) return budget;
+  const auto left = *budget.deadline() - Budget::Clock::now();
+  return budget.Within(std::chrono::duration_cast<Budget::Clock::duration>(left * kSearchShare));
+}
+
+// Each evaluation makes the true costs of its trees' moves known where boxes stood for contours.
+void EvaluateAgain(TreeBound& tree, Budget& budget) {
+  for (int times = 0; times < kMostEvaluations; ++times) {
+    const double before = tree.lower_bound();
+    tree.SetMultipliers(tree.multipliers());
+    if (!tree.Evaluate(budget) || tree.lower_bound() < before * (1 + kLeastGain)) return;
+  }
+}
+
+}  // namespace
+
+std::optional<double> LowerBound(const LayerProblem& problem, double target,
+                                 BoundMultipliers* multipliers, Budget& budget) {
+  if (problem.plan->paths.empty()) return RouteCost(problem, {});
+  if (budget.ExhaustedNow()) return std::nullopt;
+  TreeBound tree(problem, budget);
+  if (budget.ExhaustedNow()) return std::nullopt;
+  const bool known = multipliers != nullptr && multipliers->size() == tree.multipliers().size();
+  if (known) tree.SetMultipliers(*multipliers);
+  if (!tree.Evaluate(budget)) return std::nullopt;
+  for (int round = 0; round < kRounds && !known && tree.lower_bound() < target; ++round) {
+    Budget search = SearchBudget(budget);
+    tree.Ascend(target, kStepsPerRound, search);
+    if (!tree.Evaluate(budget)) break;
+  }
+  EvaluateAgain(tree, budget);
+  if (multipliers != nullptr) *multipliers = tree.multipliers();
+  return std::min(tree.lower_bound(), target);
+}
+
+}  // namespace traverse

@@ -1,0 +1,92 @@
+// A lower bound from trees, for every plan and both costs.
+//
+// Every route joins the sides of each junction (end_graph.h) to a tree, begins at the start and
+// ends at the finish, and has one move at each end of an open path, two at a contour. Without the
+// latter the least such trees are minimum spanning trees; a multiplier for each end, paid for each
+// move there and paid back as often as a route has moves there, makes trees more like routes and
+// changes no route's cost (Held and Karp 1970). Between two contours the distance of their nearest
+// points counts, whatever vertices the other moves have: where large contours are many the bound is
+// weak.
+//
+// Two evaluations: over all pairs of ends (Prim; linear memory, pairs of far contours bounded by
+// their boxes), which is what bounds, and over a few near ones (Kruskal), which finds multipliers.
+
+#ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_TREE_BOUND_H_
+#define TRAVERSE_ENGINE_PROOF_BOUNDS_TREE_BOUND_H_
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "engine/base/budget.h"
+#include "engine/cost/travel_cost.h"
+#include "engine/model/layer_problem.h"
+#include "engine/proof/bounds/end_graph.h"
+
+namespace traverse {
+
+class TreeBound {
+ public:
+  // `problem` has a path; its plan outlives this. When the budget ends, ascents become blind.
+  TreeBound(const LayerProblem& problem, Budget& budget);
+
+  // Evaluates all pairs at the current multipliers and remembers the highest bound so far.
+  // False if the budget ended it. O(ends^2) time.
+  bool Evaluate(Budget& budget);
+
+  // Searches for better multipliers, at most so many steps, towards `target`, the cost of a route.
+  void Ascend(double target, int most_steps, Budget& budget);
+
+  // No route costs less. 0 before the first evaluation.
+  double lower_bound() const { return lower_bound_; }
+
+  // Those of the bound, [end], in an order that is the same for equal plans.
+  const std::vector<double>& multipliers() const { return best_multipliers_; }
+  void SetMultipliers(const std::vector<double>& multipliers) { multipliers_ = multipliers; }
+
+ private:
+  // A pair of ends in `junction`, members of `sides`, and the cost of the move between them.
+  struct Pair {
+    int junction = 0;
+    int ends[2] = {};
+    int sides[2] = {};
+    double cost = 0;
+  };
+
+  // What remains to be joined in one junction, in arrays for the inner loop.
+  struct Pool;
+
+  double Cost(int a, int b) const;
+  double CostTo(Point point, int end) const;
+  void FindNearPairs(Budget& budget);
+  void AddPair(int junction, const Junction::Member& a, const Junction::Member& b);
+  double JoinAll(int junction, Budget& budget);
+  void Reach(const Junction::Member& from, Pool& pool) const;
+  void ReachByBoxes(const Junction::Member& from, Pool& pool) const;
+  double AddFirstAndLast();
+  double EvaluateNear();
+  std::vector<double> Subgradient() const;
+
+  const EndGraph graph_;
+  const TravelCost cost_;
+  std::vector<double> start_costs_;   // [graph_.first] from the start
+  std::vector<double> finish_costs_;  // [graph_.last] to the finish, 0 if there is none
+  std::vector<int> first_side_;       // [junction] where its sides begin among all; one more
+
+  std::vector<double> multipliers_;       // [end]
+  std::vector<double> best_multipliers_;  // [end] of the bound
+  double lower_bound_ = 0;
+
+  std::vector<Pair> pairs_;                                // the near ones
+  std::vector<std::vector<std::pair<int, double>>> near_;  // [end] other ends and costs of pairs_
+
+  // Scratch.
+  std::vector<int> moves_;                      // [end] of the last tree
+  std::vector<std::pair<double, int>> sorted_;  // costs less multipliers, pairs
+  std::vector<int> parent_;                     // of all sides
+  std::vector<int> member_of_;                  // [end] in the junction at hand, else -1
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_PROOF_BOUNDS_TREE_BOUND_H_

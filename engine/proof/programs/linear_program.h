@@ -1,0 +1,87 @@
+// A linear programme that grows and is solved again and again: what the branch and cut needs of
+// Clp, and nothing of Clp in a header.
+
+#ifndef TRAVERSE_ENGINE_PROOF_PROGRAMS_LINEAR_PROGRAM_H_
+#define TRAVERSE_ENGINE_PROOF_PROGRAMS_LINEAR_PROGRAM_H_
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "engine/base/budget.h"
+
+namespace traverse {
+
+// min cost x, lower <= row x <= upper, x within the bounds of its columns. Not thread-safe, but
+// different programmes share nothing.
+class LinearProgram {
+ public:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  static constexpr int kNoLimit = std::numeric_limits<int>::max();
+
+  enum class Status {
+    kOptimal,
+    kInfeasible,
+    kStopped,  // the budget or the iterations ran out, or the numbers went wrong
+  };
+
+  // Coefficients of one row or column.
+  struct Entries {
+    std::vector<int> indices;
+    std::vector<double> values;
+    void Add(int index, double value) {
+      indices.push_back(index);
+      values.push_back(value);
+    }
+  };
+
+  LinearProgram();
+  ~LinearProgram();
+  LinearProgram(const LinearProgram&) = delete;
+  LinearProgram& operator=(const LinearProgram&) = delete;
+
+  int row_count() const;
+  int column_count() const;
+
+  // Return the new one's index.
+  int AddRow(double lower, double upper, const Entries& columns);
+  int AddColumn(double cost, double lower, double upper, const Entries& rows);
+
+  void SetColumnBounds(int column, double lower, double upper);
+  void SetCost(int column, double cost);
+
+  // Rows after a deleted one move up. `rows` ascends.
+  void DeleteRows(const std::vector<int>& rows);
+
+  // Starts from the last basis. Dual simplex is quick after changes of rows and bounds, primal
+  // simplex after new columns and costs.
+  Status SolveDual(Budget& budget, int most_iterations = kNoLimit);
+  Status SolvePrimal(Budget& budget);
+
+  // Of the last solution.
+  double value() const;
+  double Primal(int column) const;
+  double Dual(int row) const;
+  bool RowIsBasic(int row) const;
+
+  // A lower bound of the value from the last duals alone, whether or not these are optimal: with
+  // multipliers y, sum of y x (the row bound that y pushes against) + sum over columns of the least
+  // that (cost - y A) x can be. What is summed up is of the problem's size, so a double holds it to
+  // a relative 1e-12. REQUIRES: all columns are bounded.
+  double SafeBound() const;
+
+  // Whether the last solution's ray shows, in the same way, that there is no feasible point.
+  bool IsSurelyInfeasible() const;
+
+  // The basis, good for the same rows and columns.
+  std::vector<unsigned char> Basis() const;
+  void SetBasis(const std::vector<unsigned char>& basis);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_PROOF_PROGRAMS_LINEAR_PROGRAM_H_

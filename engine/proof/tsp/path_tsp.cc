@@ -1,0 +1,269 @@
+#include "engine/proof/tsp/path_tsp.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "engine/proof/min_plus.h"
+#include "engine/proof/tsp/tsp_relaxation.h"
+
+namespace traverse {
+namespace {
+
+constexpr int kFirstNeighbors = 8;  // moves of a port that the first programme has
+constexpr int kMovesPerPricing = 500;
+constexpr int kMostNewMoves = 2500;  // at the root; each copies the matrix, about 0.1 ms
+constexpr int kCutsPerRound = 100;
+constexpr double kViolation = 0.01;
+constexpr int kRoundsWithoutGain = 3;
+constexpr double kGain = 0.01;  // of the gap
+constexpr int kStrongCandidates = 12;
+constexpr int kStrongIterations = 40;
+constexpr double kFractional = 1e-6;
+
+}  // namespace
+
+class PathTspSolver::Search {
+ public:
+  explicit Search(PathTsp problem) : problem_(std::move(problem)), relaxation_(problem_) {
+    for (int p = 0; p < problem_.ports; ++p) {
+      std::vector<std::pair<double, int>> near;
+      for (int q = 0; q < problem_.ports; ++q) near.emplace_back(problem_.Cost(p, q), q);
+      std::sort(near.begin(), near.end());
+      int added = 0;
+      for (const auto& [cost, q] : near) {
+        if (q == p || q == problem_.mate[static_cast<size_t>(p)]) continue;
+        if (added++ == kFirstNeighbors) break;
+        relaxation_.AddMove({std::min(p, q), std::max(p, q)});
+      }
+      relaxation_.AddMove({p, relaxation_.start_node()});
+      relaxation_.AddMove({p, relaxation_.finish_node()});
+    }
+  }
+
+  int port_count() const { return problem_.ports; }
+
+  Result Solve(const std::vector<double>& start, double cutoff, const std::vector<int>& known,
+               Budget& budget) {
+    Begin(start, cutoff, budget);
+    for (size_t i = 0; i + 1 < known.size(); ++i) {
+      const int from = problem_.mate[static_cast<size_t>(known[i])];
+      const int to = known[i + 1];
+      relaxation_.AddMove({std::min(from, to), std::max(from, to)});
+    }
+    const double root = Root();
+    if (!stopped_ && root < best_) {
+      if (relaxation_.Restrict(best_ - root + kViolation * 1e-6, kMostNewMoves)) {
+        open_.push_back(Node{{}, root});
+        Explore();
+      } else {
+        stopped_ = true;
+      }
+    }
+    double bound = std::min(best_, least_integral_);
+    if (stopped_) {
+      if (open_.empty()) bound = std::min(bound, root);
+      for (const Node& node : open_) bound = std::min(bound, node.bound);
+    }
+    open_.clear();
+    result_.lower_bound = bound;
+    result_.complete = !stopped_;
+    return result_;
+  }
+
+  double RootBound(const std::vector<double>& start, double cutoff, Budget& budget) {
+    Begin(start, cutoff, budget);
+    return std::min(cutoff, Root());
+  }
+
+  int nodes() const { return nodes_; }
+  int cuts() const { return relaxation_.total_cuts(); }
+
+ private:
+  using Status = LinearProgram::Status;
+  struct Node {
+    std::vector<std::pair<int, bool>> fixed;  // (move, in or out)
+    double bound = 0;
+  };
+
+  LinearProgram& lp() { return relaxation_.lp(); }
+
+  void Begin(const std::vector<double>& start, double cutoff, Budget& budget) {
+    budget_ = &budget;
+    result_ = Result();
+    best_ = cutoff;
+    least_integral_ = kUnreached;
+    stopped_ = false;
+    // Far more than any path below the cutoff can pay.
+    relaxation_.SetStart(start, 2 * std::abs(cutoff) + 1);
+    relaxation_.AllowAll();
+    ReleaseAll();
+  }
+
+  // The bound of the relaxation without branching.
+  double Root() {
+    double bound = 0;
+    double last = 0;
+    int without_gain = 0;
+    while (true) {
+      double missing = 0;
+      Status status = lp().SolveDual(*budget_);
+      while (status == Status::kOptimal && relaxation_.Price(kMovesPerPricing, missing) > 0) {
+        status = lp().SolvePrimal(*budget_);
+      }
+      if (status != Status::kOptimal) {
+        stopped_ = true;
+        return bound;
+      }
+      bound = std::max(bound, lp().SafeBound() + missing);
+      if (bound >= best_) return bound;
+      TakeIntegral();  // cuts may be missing: goes on
+      without_gain = bound > last + kGain * (best_ - bound) ? 0 : without_gain + 1;
+      last = bound;
+      if (without_gain > 2 * kRoundsWithoutGain) return bound;
+      if (relaxation_.Separate(kViolation, kCutsPerRound) == 0) return bound;
+      relaxation_.DropIdleCuts();
+    }
+  }
+
+  // True if the last solution is a path: the best one there is within its node.
+  bool TakeIntegral() {
+    const std::vector<int> path = relaxation_.IntegralPath();
+    if (path.empty()) return false;
+    double cost =
+        problem_.finish[static_cast<size_t>(problem_.mate[static_cast<size_t>(path.back())])];
+    cost += relaxation_.MoveCost({path.front(), relaxation_.start_node()});
+    for (size_t i = 0; i + 1 < path.size(); ++i) {
+      cost += problem_.Cost(problem_.mate[static_cast<size_t>(path[i])], path[i + 1]);
+    }
+    if (cost >= best_) return true;
+    best_ = cost;
+    result_.path = path;
+    result_.cost = cost;
+    return true;
+  }
+
+  void Explore() {
+    while (!open_.empty()) {
+      Node node = open_.back();
+      if (node.bound >= best_) {
+        open_.pop_back();
+        continue;
+      }
+      Apply(node);
+      ++nodes_;
+      const bool pruned = Process(node);
+      if (stopped_) return;
+      open_.pop_back();
+      if (!pruned) Branch(node);
+    }
+  }
+
+  void ReleaseAll() {
+    for (const auto& [move, in] : applied_) lp().SetColumnBounds(move, 0, 1);
+    applied_.clear();
+  }
+
+  void Apply(const Node& node) {
+    ReleaseAll();
+    applied_ = node.fixed;
+    for (const auto& [move, in] : applied_) lp().SetColumnBounds(move, in ? 1 : 0, in ? 1 : 0);
+  }
+
+  // Solves and cuts; true if nothing better than best_ can be left in the node.
+  bool Process(Node& node) {
+    int without_gain = 0;
+    while (true) {
+      const Status status = lp().SolveDual(*budget_);
+      if (status == Status::kInfeasible && lp().IsSurelyInfeasible()) return true;
+      if (status != Status::kOptimal) {
+        stopped_ = true;
+        return false;
+      }
+      const double bound = lp().SafeBound();
+      without_gain = bound > node.bound + kGain * (best_ - bound) ? 0 : without_gain + 1;
+      node.bound = std::max(node.bound, bound);
+      if (node.bound >= best_) return true;
+      if (without_gain > kRoundsWithoutGain) break;
+      if (relaxation_.Separate(kViolation, kCutsPerRound) == 0) break;
+    }
+    if (!TakeIntegral()) return node.bound >= best_;
+    least_integral_ = std::min(least_integral_, node.bound);
+    return true;
+  }
+
+  // Both ways of the move that promises the most, the better one on top.
+  void Branch(const Node& node) {
+    std::vector<std::pair<double, int>> fractional;
+    for (int j = 0; j < relaxation_.move_count(); ++j) {
+      const double x = lp().Primal(j);
+      if (x > kFractional && x < 1 - kFractional) fractional.emplace_back(std::abs(x - 0.5), j);
+    }
+    if (fractional.empty()) {
+      // Integral but no path, and no cut found at this violation: rounding. Give the node up.
+      stopped_ = true;
+      return;
+    }
+    std::sort(fractional.begin(), fractional.end());
+    if (fractional.size() > kStrongCandidates) fractional.resize(kStrongCandidates);
+    const std::vector<unsigned char> basis = lp().Basis();
+    const double value = lp().value();
+    int chosen = fractional.front().second;
+    double best_score = -1;
+    bool in_first = true;
+    for (const auto& [distance, move] : fractional) {
+      double gain[2];
+      for (const bool in : {false, true}) {
+        lp().SetColumnBounds(move, in ? 1 : 0, in ? 1 : 0);
+        const Status status = lp().SolveDual(*budget_, kStrongIterations);
+        gain[in ? 1 : 0] = status == Status::kInfeasible
+                               ? best_ - value
+                               : std::clamp(lp().value() - value, 0.0, best_ - value);
+        lp().SetColumnBounds(move, 0, 1);
+        lp().SetBasis(basis);
+      }
+      const double score = std::max(gain[0], 1e-6) * std::max(gain[1], 1e-6);
+      if (score > best_score) {
+        best_score = score;
+        chosen = move;
+        in_first = gain[1] <= gain[0];
+      }
+    }
+    for (const bool in : {!in_first, in_first}) {
+      Node child = node;
+      child.fixed.emplace_back(chosen, in);
+      open_.push_back(std::move(child));
+    }
+  }
+
+  const PathTsp problem_;
+  TspRelaxation relaxation_;
+  Budget* budget_ = nullptr;
+  Result result_;
+  double least_integral_ = 0;  // bound of the nodes that ended with a path
+  double best_ = 0;            // nothing from here up is of interest
+  std::vector<Node> open_;
+  std::vector<std::pair<int, bool>> applied_;
+  bool stopped_ = false;
+  int nodes_ = 0;
+};
+
+PathTspSolver::PathTspSolver(PathTsp problem)
+    : search_(std::make_unique<Search>(std::move(problem))) {
+  assert(search_->port_count() >= 2);
+}
+PathTspSolver::~PathTspSolver() = default;
+
+PathTspSolver::Result PathTspSolver::Solve(const std::vector<double>& start, double cutoff,
+                                           const std::vector<int>& known, Budget& budget) {
+  return search_->Solve(start, cutoff, known, budget);
+}
+double PathTspSolver::RootBound(const std::vector<double>& start, double cutoff, Budget& budget) {
+  return search_->RootBound(start, cutoff, budget);
+}
+int PathTspSolver::nodes() const { return search_->nodes(); }
+int PathTspSolver::cuts() const { return search_->cuts(); }
+
+}  // namespace traverse

@@ -1,0 +1,74 @@
+// Shortest paths through items with one or two ends, proven by branch and cut.
+//
+//   start -> p ==== p' -> q ==== q' -> r -> ... -> finish        p, p': the ends of one item
+//
+// An item is entered at one end and left at the other, or has one end only. Costs are symmetric. As
+// an integer programme, with x_e for each undirected move e, the start and the finish joined by a
+// fixed edge like the two ends of an item:
+//
+//   min sum c_e x_e,   x(moves of a node) = 1, or 2 for an item with one end
+//   x(moves out of S) >= 2                                     for sets S of items (subtours)
+//   x(moves out of H, not in F) + sum over F (1 - x_e) >= 1    F odd, fixed edges included
+//   (blossoms)
+//
+// Dantzig, Fulkerson and Johnson (1954); Padberg and Rinaldi (1991). Moves come in by reduced cost;
+// at the root those that no better path can use are left out for good; strong branching, depth
+// first. Bounds are safe: computed from the duals without trust in the solver's tolerances.
+
+#ifndef TRAVERSE_ENGINE_PROOF_TSP_PATH_TSP_H_
+#define TRAVERSE_ENGINE_PROOF_TSP_PATH_TSP_H_
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "engine/base/budget.h"
+
+namespace traverse {
+
+struct PathTsp {
+  int ports = 0;               // ends of items
+  std::vector<int> mate;       // [port] the item's other end; the port itself if there is none
+  std::vector<double> cost;    // [p * ports + q] of moves, symmetric, not negative
+  std::vector<double> finish;  // [port] cost of ending there
+
+  double Cost(int p, int q) const {
+    return cost[static_cast<size_t>(p) * static_cast<size_t>(ports) + static_cast<size_t>(q)];
+  }
+};
+
+// Solves one problem for several start costs, keeping what it learns.
+class PathTspSolver {
+ public:
+  struct Result {
+    // No path costs less; at least `cutoff` if there is none below it.
+    double lower_bound = 0;
+    // Where a path cheaper than `cutoff` enters each item, in order; empty if none was found.
+    std::vector<int> path;
+    double cost = 0;
+    bool complete = false;  // lower_bound is the least cost, or at least `cutoff`
+  };
+
+  // REQUIRES: there are at least two items.
+  explicit PathTspSolver(PathTsp problem);
+  ~PathTspSolver();
+
+  // `start`: cost of beginning at each port, kUnreached if that is not possible. `known`: a path in
+  // the form of Result::path, to begin with.
+  Result Solve(const std::vector<double>& start, double cutoff, const std::vector<int>& known,
+               Budget& budget);
+
+  // A lower bound without branching, at most `cutoff`: much quicker than Solve.
+  double RootBound(const std::vector<double>& start, double cutoff, Budget& budget);
+
+  int nodes() const;  // of all searches so far
+  int cuts() const;
+
+ private:
+  class Search;
+  std::unique_ptr<Search> search_;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_PROOF_TSP_PATH_TSP_H_

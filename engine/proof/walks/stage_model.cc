@@ -1,0 +1,223 @@
+#include "engine/proof/walks/stage_model.h"
+
+#include <algorithm>
+
+#include "engine/cost/entry_table.h"
+#include "engine/cost/travel_cost.h"
+#include "engine/proof/min_plus.h"
+
+namespace traverse {
+namespace {
+
+Point EnterOf(const Plan& plan, const Visit& visit) {
+  return EnterPoint(plan.paths[static_cast<size_t>(visit.path)], visit.entry);
+}
+Point ExitOf(const Plan& plan, const Visit& visit) {
+  return ExitPoint(plan.paths[static_cast<size_t>(visit.path)], visit.entry);
+}
+
+// Costs between all states of two clusters, and the transposed matrix. A gate leads to the entry
+// that it is in the state of.
+void FillMatrix(const Plan& plan, const TravelCost& cost, bool from_gate,
+                const std::vector<Visit>& from, const std::vector<Visit>& to, double* matrix,
+                double* transposed) {
+  for (size_t u = 0; u < from.size(); ++u) {
+    const Point exit = ExitOf(plan, from[u]);
+    for (size_t v = 0; v < to.size(); ++v) {
+      double move = 0;
+      if (!from_gate) {
+        move = cost(exit, EnterOf(plan, to[v]));
+      } else if (!(from[u] == to[v])) {
+        move = kUnreached;
+      }
+      matrix[u * to.size() + v] = move;
+      transposed[v * from.size() + u] = move;
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<StageModel> StageModel::Build(const LayerProblem& problem, size_t max_entries,
+                                            Budget* budget) {
+  StageModel model;
+  if (!model.LayOut(*problem.plan, max_entries)) return std::nullopt;
+  if (!model.FillMatrices(problem, budget)) return std::nullopt;
+  return model;
+}
+
+bool StageModel::Fits(const Plan& plan, size_t max_entries) {
+  return StageModel().LayOut(plan, max_entries);
+}
+
+bool StageModel::LayOut(const Plan& plan, size_t max_entries) {
+  const std::optional<std::vector<PlanStage>> stages = StagesOf(plan, kMostClusters);
+  if (!stages) return false;
+  first_.push_back(0);
+  for (const PlanStage& stage : *stages) AddStage(plan, stage);
+  return PlaceMatrices(*stages, max_entries);
+}
+
+void StageModel::AddStage(const Plan& plan, const PlanStage& stage) {
+  const int first = first_.back();
+  AddVisits(plan, stage);
+  for (int i = 0; i < stage.size(); ++i) {
+    const auto cluster = static_cast<size_t>(first + i);
+    const int path = stage.paths[static_cast<size_t>(i)];
+    stage_of_.push_back(static_cast<int>(first_.size()) - 1);
+    is_gate_.push_back(path == PlanStage::kGate);
+    const bool open =
+        path != PlanStage::kGate && plan.paths[static_cast<size_t>(path)].kind == Path::Kind::kOpen;
+    is_item_.push_back(open ? !plan.paths[static_cast<size_t>(path)].one_way
+                            : visits_[cluster].size() == 1);
+  }
+  before_.resize(visits_.size());
+  after_.resize(visits_.size());
+  for (const auto& [i, j] : stage.before) {
+    after_[static_cast<size_t>(first + i)].push_back(first + j);
+    before_[static_cast<size_t>(first + j)].push_back(first + i);
+  }
+  for (const PlanStage::Gate& gate : stage.gates) {
+    gates_.push_back({first + gate.item, first + gate.first, first + gate.last});
+  }
+  begins_.insert(begins_.end(), stage.begins.begin(), stage.begins.end());
+  ends_.insert(ends_.end(), stage.ends.begin(), stage.ends.end());
+  const auto pairs = std::count(stage.follows.begin(), stage.follows.end(), 1);
+  is_free_.push_back(pairs == static_cast<std::ptrdiff_t>(stage.size()) * (stage.size() - 1));
+  first_.push_back(static_cast<int>(visits_.size()));
+}
+
+// The states of each item. Those of a gate are the states of what follows it.
+void StageModel::AddVisits(const Plan& plan, const PlanStage& stage) {
+  const EntryTable table(plan);
+  const size_t first = visits_.size();
+  for (const int path : stage.paths) {
+    std::vector<Visit>& visits = visits_.emplace_back();
+    if (path == PlanStage::kGate) continue;
+    for (int e = table.first(path); e < table.first(path + 1); ++e) {
+      visits.push_back(table.VisitOf(e));
+    }
+  }
+  for (const PlanStage::Gate& gate : stage.gates) {
+    std::vector<Visit>& visits = visits_[first + static_cast<size_t>(gate.item)];
+    for (int i = gate.first; i < gate.last; ++i) {
+      if (!stage.CanFollow(gate.item, i)) continue;
+      const std::vector<Visit>& of_item = visits_[first + static_cast<size_t>(i)];
+      visits.insert(visits.end(), of_item.begin(), of_item.end());
+    }
+  }
+}
+
+bool StageModel::PlaceMatrices(const std::vector<PlanStage>& stages, size_t max_entries) {
+  const auto n = static_cast<size_t>(cluster_count());
+  offsets_.assign(n * n, kNoMoves);
+  for (int a = 0; a < cluster_count(); ++a) {
+    const int s = stage_of(a);
+    const PlanStage& stage = stages[static_cast<size_t>(s)];
+    const int end = s + 1 < stage_count() ? first(s + 2) : first(s + 1);
+    for (int b = first(s); b < end; ++b) {
+      const bool follows = stage_of(b) == s ? stage.CanFollow(a - first(s), b - first(s))
+                                            : ends_[static_cast<size_t>(a)] != 0 &&
+                                                  begins_[static_cast<size_t>(b)] != 0;
+      if (!follows) continue;
+      offsets_[static_cast<size_t>(a) * n + static_cast<size_t>(b)] = move_count_;
+      move_count_ += static_cast<size_t>(states(a)) * static_cast<size_t>(states(b));
+      if (move_count_ > max_entries) return false;
+    }
+  }
+  return true;
+}
+
+bool StageModel::FillMatrices(const LayerProblem& problem, Budget* budget) {
+  const TravelCost cost(problem);
+  costs_.reserve(move_count_);
+  transposed_.reserve(move_count_);
+  for (int a = 0; a < cluster_count(); ++a) {
+    if (budget != nullptr && budget->ExhaustedNow()) return false;
+    const int s = stage_of(a);
+    const int end = s + 1 < stage_count() ? first(s + 2) : first(s + 1);
+    for (int b = first(s); b < end; ++b) {
+      if (!CanFollow(a, b)) continue;
+      const size_t count = static_cast<size_t>(states(a)) * static_cast<size_t>(states(b));
+      costs_.resize(offset(a, b) + count);
+      transposed_.resize(offset(a, b) + count);
+      FillMatrix(*problem.plan, cost, IsGate(a), visits_[static_cast<size_t>(a)],
+                 visits_[static_cast<size_t>(b)], &costs_[offset(a, b)],
+                 &transposed_[offset(a, b)]);
+    }
+  }
+  if (stage_count() > 0) FillEnds(problem);
+  return true;
+}
+
+void StageModel::FillEnds(const LayerProblem& problem) {
+  const TravelCost cost(problem);
+  for (int c = 0; c < first(1); ++c) {
+    std::vector<double>& row = start_.emplace_back();
+    for (const Visit& visit : visits_[static_cast<size_t>(c)]) {
+      const bool begins = begins_[static_cast<size_t>(c)] != 0;
+      row.push_back(begins ? cost(problem.start, EnterOf(*problem.plan, visit)) : kUnreached);
+    }
+  }
+  for (int c = first(stage_count() - 1); c < cluster_count(); ++c) {
+    std::vector<double>& row = finish_.emplace_back();
+    for (const Visit& visit : visits_[static_cast<size_t>(c)]) {
+      const Point exit = ExitOf(*problem.plan, visit);
+      const double move = problem.finish ? cost(exit, *problem.finish) : 0;
+      row.push_back(ends_[static_cast<size_t>(c)] != 0 ? move : kUnreached);
+    }
+  }
+}
+
+Route StageModel::RouteOf(const std::vector<ClusterState>& walk) const {
+  Route route;
+  for (const ClusterState& at : walk) {
+    if (IsGate(at.cluster)) continue;
+    route.push_back(visits_[static_cast<size_t>(at.cluster)][static_cast<size_t>(at.state)]);
+  }
+  return route;
+}
+
+std::vector<ClusterState> StageModel::WalkOf(const Route& route) const {
+  std::vector<int> cluster_of(route.size());
+  for (int c = 0; c < cluster_count(); ++c) {
+    if (IsGate(c)) continue;
+    cluster_of[static_cast<size_t>(visits_[static_cast<size_t>(c)].front().path)] = c;
+  }
+  std::vector<ClusterState> walk;
+  const auto add = [&](int cluster, const Visit& visit) {
+    const std::vector<Visit>& visits = visits_[static_cast<size_t>(cluster)];
+    const auto state = std::find(visits.begin(), visits.end(), visit) - visits.begin();
+    walk.push_back({cluster, static_cast<int>(state)});
+  };
+  std::vector<PlanStage::Gate> ahead = gates_;  // of blocks not yet begun
+  for (const Visit& visit : route) {
+    const int cluster = cluster_of[static_cast<size_t>(visit.path)];
+    const auto holds = [&](const PlanStage::Gate& gate) {
+      return gate.first <= cluster && cluster < gate.last;
+    };
+    for (auto gate = ahead.rbegin(); gate != ahead.rend(); ++gate) {
+      if (holds(*gate)) add(gate->item, visit);
+    }
+    ahead.erase(std::remove_if(ahead.begin(), ahead.end(), holds), ahead.end());
+    add(cluster, visit);
+  }
+  return walk;
+}
+
+double StageModel::CostOf(const std::vector<ClusterState>& walk) const {
+  if (walk.empty()) return 0;
+  return CostBefore(walk) + Finish(walk.back().cluster)[walk.back().state];
+}
+
+double StageModel::CostBefore(const std::vector<ClusterState>& walk) const {
+  double sum = Start(walk.front().cluster)[walk.front().state];
+  for (size_t k = 1; k < walk.size(); ++k) {
+    const ClusterState from = walk[k - 1];
+    const ClusterState to = walk[k];
+    sum += Move(from.cluster, to.cluster)[from.state * states(to.cluster) + to.state];
+  }
+  return sum;
+}
+
+}  // namespace traverse

@@ -1,0 +1,151 @@
+// A layer as stages of clusters: the abstract problem that the exact methods solve.
+//
+// A plan is a sequence of stages (plan_stages.h); in each stage every cluster (a path) is done
+// once, in one of its states (an entry), in any order that keeps the stage's precedences and goes
+// from one cluster to another that can follow it. What is left of geometry is the cost of going
+// from a state of one cluster to a state of another:
+//
+//   start -> | stage 0: clusters in any order | -> | stage 1: ... | -> finish
+//
+// This is a generalised travelling salesman path with stages (SPEC section 2). The gate of a block
+// is a cluster too: its states are the entries at which the block may be begun, and each leads to
+// that entry alone, at no cost.
+
+#ifndef TRAVERSE_ENGINE_PROOF_WALKS_STAGE_MODEL_H_
+#define TRAVERSE_ENGINE_PROOF_WALKS_STAGE_MODEL_H_
+
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "engine/base/budget.h"
+#include "engine/model/layer_problem.h"
+#include "engine/model/route.h"
+#include "engine/proof/walks/plan_stages.h"
+
+namespace traverse {
+
+// A cluster in one of its states.
+struct ClusterState {
+  int cluster = 0;
+  int state = 0;
+  friend bool operator==(const ClusterState&, const ClusterState&) = default;
+};
+
+// Immutable once built. Clusters are numbered stage by stage; no stage is empty.
+class StageModel {
+ public:
+  // The model of `problem`, or nothing if a stage has more than kMostClusters, or if the matrices
+  // would have more than `max_entries` numbers, or if `budget` (may be null) ends. Time and memory
+  // are proportional to these: 16 million take 0.2 s.
+  static constexpr size_t kMostClusters = 512;
+  static std::optional<StageModel> Build(const LayerProblem& problem, size_t max_entries,
+                                         Budget* budget = nullptr);
+
+  // Whether Build has a model for `plan`. Much quicker.
+  static bool Fits(const Plan& plan, size_t max_entries);
+
+  int stage_count() const { return static_cast<int>(first_.size()) - 1; }
+  int cluster_count() const { return first_.back(); }
+
+  // The clusters of `stage` are [first(stage), first(stage + 1)).
+  int first(int stage) const { return first_[static_cast<size_t>(stage)]; }
+  int size(int stage) const { return first(stage + 1) - first(stage); }
+  int stage_of(int cluster) const { return stage_of_[static_cast<size_t>(cluster)]; }
+
+  int states(int cluster) const {
+    return static_cast<int>(visits_[static_cast<size_t>(cluster)].size());
+  }
+
+  // Whether `cluster` is an open path that may be done both ways, or has one point only: then
+  // states are its ends, and it is left at the other one.
+  bool IsItem(int cluster) const { return is_item_[static_cast<size_t>(cluster)] != 0; }
+
+  // Whether `b`, of the stage of `a` or of the next one, may come right after `a`.
+  bool CanFollow(int a, int b) const { return offset(a, b) != kNoMoves; }
+
+  // Whether any two clusters of `stage` may follow each other, but for precedences.
+  bool IsFree(int stage) const { return is_free_[static_cast<size_t>(stage)] != 0; }
+
+  // Cost of moves from `a` to `b`, [state of a * states(b) + state of b]. REQUIRES: CanFollow.
+  const double* Move(int a, int b) const {
+    assert(CanFollow(a, b));
+    return &costs_[offset(a, b)];
+  }
+
+  // The same numbers, [state of b * states(a) + state of a].
+  const double* MoveTransposed(int a, int b) const {
+    assert(CanFollow(a, b));
+    return &transposed_[offset(a, b)];
+  }
+
+  // Cost from the start to each state, kUnreached if it cannot come first. REQUIRES: `cluster` is
+  // of the first stage.
+  const double* Start(int cluster) const {
+    assert(stage_of(cluster) == 0);
+    return start_[static_cast<size_t>(cluster)].data();
+  }
+
+  // Cost from each state to the finish, 0 if there is none, kUnreached if `cluster` cannot come
+  // last. REQUIRES: `cluster` is of the last stage.
+  const double* Finish(int cluster) const {
+    assert(stage_of(cluster) == stage_count() - 1);
+    return finish_[static_cast<size_t>(cluster - first(stage_count() - 1))].data();
+  }
+
+  // The clusters of the same stage that come before, or after, `cluster`; transitive.
+  const std::vector<int>& Before(int cluster) const {
+    return before_[static_cast<size_t>(cluster)];
+  }
+  const std::vector<int>& After(int cluster) const { return after_[static_cast<size_t>(cluster)]; }
+
+  // The route of a walk that visits each cluster once, and back; gates are left out and put in.
+  Route RouteOf(const std::vector<ClusterState>& walk) const;
+  std::vector<ClusterState> WalkOf(const Route& route) const;
+
+  // Sum of the costs of the moves of `walk`, whether or not it is a route: with the move to the
+  // finish, and before it. `walk` may end in any stage for the latter.
+  double CostOf(const std::vector<ClusterState>& walk) const;
+  double CostBefore(const std::vector<ClusterState>& walk) const;
+
+ private:
+  static constexpr size_t kNoMoves = std::numeric_limits<size_t>::max();
+
+  StageModel() = default;
+  size_t offset(int a, int b) const {
+    return offsets_[static_cast<size_t>(a) * static_cast<size_t>(cluster_count()) +
+                    static_cast<size_t>(b)];
+  }
+  bool IsGate(int cluster) const { return is_gate_[static_cast<size_t>(cluster)] != 0; }
+  void AddStage(const Plan& plan, const PlanStage& stage);
+  void AddVisits(const Plan& plan, const PlanStage& stage);
+  bool LayOut(const Plan& plan, size_t max_entries);
+  bool PlaceMatrices(const std::vector<PlanStage>& stages, size_t max_entries);
+  bool FillMatrices(const LayerProblem& problem, Budget* budget);
+  void FillEnds(const LayerProblem& problem);
+
+  std::vector<int> first_;                  // [stage], stage_count() + 1 of them
+  std::vector<int> stage_of_;               // [cluster]
+  std::vector<std::vector<Visit>> visits_;  // [cluster][state]
+  std::vector<char> is_item_;               // [cluster]
+  std::vector<char> is_gate_;               // [cluster]
+  std::vector<PlanStage::Gate> gates_;      // in clusters; inner ones first
+  std::vector<char> is_free_;               // [stage]
+  std::vector<char> begins_;                // [cluster] whether it may come first in its stage
+  std::vector<char> ends_;                  // [cluster] and last
+  size_t move_count_ = 0;
+  std::vector<size_t> offsets_;              // [a * cluster_count() + b]
+  std::vector<double> costs_;                // [offset + ...]
+  std::vector<double> transposed_;           // [offset + ...]
+  std::vector<std::vector<double>> start_;   // [cluster][state]
+  std::vector<std::vector<double>> finish_;  // [cluster of the last stage][state]
+  std::vector<std::vector<int>> before_;     // [cluster]
+  std::vector<std::vector<int>> after_;      // [cluster]
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_PROOF_WALKS_STAGE_MODEL_H_

@@ -1,0 +1,64 @@
+#include "engine/search/end_groups.h"
+
+#include <vector>
+
+namespace traverse {
+namespace {
+
+using Member = NeighborLists::Member;
+
+// Appends the ends of all leaves with which `item` can begin or end. Pairs are not looked at.
+void AppendEnds(const OrderTree& tree, const PointGroups& groups, int item, int owner,
+                std::vector<Member>& members) {
+  if (item < tree.leaf_count()) {
+    for (const int end : {0, 1}) {
+      const int group = EndGroups::GroupOf(item, end);
+      if (!groups.of(group).empty()) members.push_back({group, owner});
+    }
+    return;
+  }
+  const absl::Span<const int> children = tree.children(item);
+  if (tree.free_order(item)) {
+    for (const int child : children) AppendEnds(tree, groups, child, owner, members);
+  } else {
+    AppendEnds(tree, groups, children.front(), owner, members);
+    AppendEnds(tree, groups, children.back(), owner, members);
+  }
+}
+
+}  // namespace
+
+EndGroups::EndGroups(const LeafEntries& entries) {
+  for (int leaf = 0; leaf + 2 < entries.leaf_count(); ++leaf) {
+    const int first = entries.first(leaf);
+    if (entries.open(leaf)) {
+      groups_.points.push_back(entries.enter(first));
+      groups_.Close();
+      groups_.points.push_back(entries.exit(first));
+    } else {
+      for (int i = 0; i < entries.count(leaf); ++i) {
+        groups_.points.push_back(entries.enter(first + i));
+      }
+      groups_.Close();
+    }
+    groups_.Close();
+  }
+}
+
+NeighborLists FindNeighbors(const OrderTree& tree, const EndGroups& groups, int count,
+                            Budget& budget) {
+  NeighborLists lists(groups.groups());
+  std::vector<Member> members;
+  for (int node = tree.root() + 1; node < tree.item_count(); ++node) {
+    if (!tree.free_order(node)) continue;
+    members.clear();
+    for (const int child : tree.children(node)) {
+      AppendEnds(tree, groups.groups(), child, child, members);
+    }
+    lists.FindAmong(members, count, budget);
+  }
+  lists.Seal();
+  return lists;
+}
+
+}  // namespace traverse

@@ -1,0 +1,199 @@
+#include "engine/search/iterated_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/tolerances.h"
+#include "engine/search/end_groups.h"
+#include "engine/search/turn_run.h"
+
+namespace traverse {
+namespace {
+
+// Places tried for a kick before an iteration goes by without one.
+constexpr int kTries = 20;
+
+}  // namespace
+
+IteratedSearch::IteratedSearch(SearchState& state, const NeighborLists& neighbors,
+                               const IteratedSearchOptions& options)
+    : state_(state),
+      neighbors_(neighbors),
+      options_(options),
+      local_search_(state, neighbors, options.local_search) {
+  const OrderTree& tree = state.tree();
+  for (int node = tree.root(); node < tree.item_count(); ++node) {
+    turns_ = turns_ || TurnsOnly(tree, node);
+  }
+}
+
+void IteratedSearch::Descend(Budget& budget) {
+  local_search_.set_depth(options_.descent_depth);
+  local_search_.PushAll();
+  local_search_.Run(budget);
+  local_search_.set_depth(options_.local_search.depth);
+  state_.Commit();
+}
+
+void IteratedSearch::Run(Rng& rng, Budget& budget) {
+  double cost = state_.TotalCost();
+  KeepBest(cost);
+  double best_before = cost;  // the last `patience` iterations
+  int64_t since = 0;
+  double window_before = cost;
+  const double temperature = options_.temperature * cost / state_.last_position();
+  for (int64_t idle = 0; idle < options_.patience && !budget.Exhausted(); ++idle, ++since) {
+    if (since == options_.patience) {
+      if (best_before - best_cost_ <= options_.least_gain * best_cost_) break;
+      best_before = best_cost_;
+      since = 0;
+    }
+    if (options_.least_gain_each > 0 && iterations_ > 0 && iterations_ % options_.window == 0) {
+      const double wanted = options_.least_gain_each * static_cast<double>(options_.window);
+      if (window_before - best_cost_ < wanted) break;
+      window_before = best_cost_;
+    }
+    ++iterations_;
+    double delta = 0;
+    if (!Kick(rng, delta)) continue;
+    delta += local_search_.Run(budget);
+    if (delta > kImprovementTolerance && rng.Unit() >= std::exp(-delta / temperature)) {
+      state_.UndoTo(0);
+      continue;
+    }
+    state_.Commit();
+    cost += delta;
+    if (cost >= best_cost_ - kImprovementTolerance) continue;
+    KeepBest(cost);
+    idle = 0;
+  }
+  if (cost > best_cost_ + kImprovementTolerance) state_.Load(best_);
+}
+
+void IteratedSearch::KeepBest(double cost) {
+  best_cost_ = cost;
+  state_.Unload(best_);
+}
+
+bool IteratedSearch::Kick(Rng& rng, double& delta) {
+  if (turns_ && rng.Unit() < options_.turn_share) return TurnKick(rng, delta);
+  return BridgeKick(rng, delta);
+}
+
+bool IteratedSearch::BridgeKick(Rng& rng, double& delta) {
+  const int paths = state_.tree().path_count();
+  for (int i = 0; i < kTries; ++i) {
+    const int node = ChooseNode(rng, static_cast<int>(rng.Below(static_cast<uint32_t>(paths))));
+    int cuts[4];
+    if (node < 0 || !ChooseCuts(rng, node, cuts)) continue;
+    // A | B | C | D -> A | D | C | B in two exchanges: B with C D, then C with D.
+    const SegmentMove whole{SegmentMove::Kind::kExchange, cuts[0], cuts[1], cuts[3] - 1};
+    const int after_c = cuts[0] + cuts[2] - cuts[1];
+    const int after_d = cuts[0] + cuts[3] - cuts[1];
+    const SegmentMove rest{SegmentMove::Kind::kExchange, cuts[0], after_c, after_d - 1};
+    if (!state_.Allows(whole)) continue;
+    const auto cut_costs = [&](std::initializer_list<int> places) {
+      double sum = 0;
+      for (const int place : places) {
+        sum += state_.StepCost(place - 1);
+        local_search_.Push(state_.leaf_at(place - 1));
+        local_search_.Push(state_.leaf_at(place));
+      }
+      return sum;
+    };
+    delta -= cut_costs({cuts[0], cuts[1], cuts[2], cuts[3]});
+    state_.Apply(whole);
+    int new_c = after_c;
+    if (state_.Allows(rest)) {
+      state_.Apply(rest);
+      new_c = cuts[0] + cuts[3] - cuts[2];
+    }
+    delta += cut_costs({cuts[0], new_c, after_d, cuts[3]});
+    return true;
+  }
+  return false;
+}
+
+bool IteratedSearch::TurnKick(Rng& rng, double& delta) {
+  const OrderTree& tree = state_.tree();
+  for (int i = 0; i < kTries; ++i) {
+    const int leaf = static_cast<int>(rng.Below(static_cast<uint32_t>(tree.path_count())));
+    const int node = ChooseNode(rng, leaf);
+    if (node < 0 || !TurnsOnly(tree, node)) continue;
+    const int first = state_.position(tree.ChildHolding(node, leaf));
+    const int last = ChooseRunEnd(rng, node, first);
+    if (last < 0 || last - first >= options_.most_span) continue;
+    const auto cost = [&] {
+      double sum = 0;
+      for (int at = first - 1; at <= last; ++at) sum += state_.StepCost(at);
+      return sum;
+    };
+    delta -= cost();
+    TurnRun(state_, node, first, last);
+    delta += cost();
+    for (int at = first - 1; at <= last + 1; ++at) local_search_.Push(state_.leaf_at(at));
+    return true;
+  }
+  return false;
+}
+
+// The last position of a run of children of `node` that begins at `first`: with a block near to
+// what comes before the run, or some blocks on. -1 if that is no run.
+int IteratedSearch::ChooseRunEnd(Rng& rng, int node, int first) const {
+  const OrderTree& tree = state_.tree();
+  const int node_end = state_.position(node) + tree.size(node);
+  const auto past_child = [&](int leaf) {
+    const int child = tree.ChildHolding(node, leaf);
+    return state_.position(child) + tree.size(child);
+  };
+  const int second = past_child(state_.leaf_at(first));
+  if (rng.Unit() >= options_.near_share) {
+    const double blocks = std::pow(static_cast<double>(options_.most_turned), rng.Unit());
+    int past = second;
+    for (int i = 1; i <= blocks && past < node_end; ++i) past = past_child(state_.leaf_at(past));
+    return past > second ? past - 1 : -1;
+  }
+  const int before = state_.leaf_at(first - 1);
+  if (before >= tree.path_count()) return -1;
+  auto near = neighbors_.of(EndGroups::GroupOf(before, static_cast<int>(rng.Below(2))));
+  if (near.empty()) near = neighbors_.of(EndGroups::GroupOf(before, 0));
+  if (near.empty()) return -1;
+  const size_t chosen = rng.Below(static_cast<uint32_t>(near.size()));
+  const int leaf = EndGroups::LeafOf(near[chosen].group);
+  const int at = state_.position(leaf);
+  return at >= second && at < node_end ? past_child(leaf) - 1 : -1;
+}
+
+// One of the nodes of free order around a leaf; -1 if there is none.
+int IteratedSearch::ChooseNode(Rng& rng, int leaf) const {
+  const OrderTree& tree = state_.tree();
+  int chosen = -1;
+  uint32_t seen = 0;
+  for (int node = tree.parent(leaf); node >= 0; node = tree.parent(node)) {
+    if (!tree.free_order(node)) continue;
+    if (++seen == 1 || rng.Below(seen) == 0) chosen = node;
+  }
+  return chosen;
+}
+
+int IteratedSearch::ChooseSpan(Rng& rng) const {
+  const double ratio = static_cast<double>(options_.most_span) / options_.least_span;
+  return static_cast<int>(options_.least_span * std::pow(ratio, rng.Unit()));
+}
+
+bool IteratedSearch::ChooseCuts(Rng& rng, int node, int (&cuts)[4]) const {
+  const OrderTree& tree = state_.tree();
+  const int size = tree.size(node);
+  const int span = std::min(size, ChooseSpan(rng));
+  const int begin = state_.position(node) + rng.Between(0, size - span);
+  for (int& cut : cuts) {
+    cut = begin + rng.Between(0, span);
+    if (cut < state_.position(node) + size) {
+      cut = state_.position(tree.ChildHolding(node, state_.leaf_at(cut)));
+    }
+  }
+  std::sort(std::begin(cuts), std::end(cuts));
+  return cuts[0] < cuts[1] && cuts[1] < cuts[2] && cuts[2] < cuts[3];
+}
+
+}  // namespace traverse

@@ -1,0 +1,91 @@
+// Iterated local search: kicks and repairs, until nothing more is gained.
+//
+//   kick     ... A | B | C | D ...   ->   ... A | D | C | B ...     double bridge, inside one node,
+//            or a run of blocks turned (turn_run.h) where the plan has blocks that cannot be
+//            reversed
+//   repair   local search from the visits at the cuts
+//   keep     the result if it costs no more, and by chance if it costs little more, else undo
+//            everything; the best route of all is what remains at the end
+//
+// A double bridge is the change that local search by sequential moves does not find, and does not
+// just undo; a walk among routes that are a little worse leads out of what no single kick leads out
+// of (both: Martin, Otto and Felten 1991, large-step Markov chains). All work of an iteration is
+// near the cuts: undoing goes through a log, and only a route better than all before is copied.
+
+#ifndef TRAVERSE_ENGINE_SEARCH_ITERATED_SEARCH_H_
+#define TRAVERSE_ENGINE_SEARCH_ITERATED_SEARCH_H_
+
+#include <cstdint>
+
+#include "engine/base/budget.h"
+#include "engine/base/rng.h"
+#include "engine/search/local_search.h"
+#include "engine/search/search_state.h"
+
+namespace traverse {
+
+struct IteratedSearchOptions {
+  LocalSearchOptions local_search;
+  int descent_depth = 2;  // LocalSearchOptions::depth of Descend
+
+  // Ends after this many iterations without a gain, or with less than least_gain of the cost.
+  int64_t patience = 1000;
+  double least_gain = 0;
+
+  // And after any `window` of iterations that did not gain so much each, in the unit of the cost.
+  double least_gain_each = 0;
+  int64_t window = 200;
+
+  // How much worse a route is kept with a chance of 1/e, in mean moves of the route searched.
+  double temperature = 0.2;
+
+  // Leaves between the first and the last cut of a kick: from the least to the most, as many kicks
+  // of one order of magnitude as of another. On small layers wide kicks find more, on large ones
+  // their repair costs too much. A run that is turned has the most of them, or fewer.
+  int least_span = 30;
+  int most_span = 400;
+
+  // Of the kicks that turn a run, where there are such: their share, the most blocks in a run, and
+  // the share of the runs that end near to where they begin.
+  double turn_share = 0.5;
+  int most_turned = 30;
+  double near_share = 0.5;
+};
+
+class IteratedSearch {
+ public:
+  // The arguments outlive the search.
+  IteratedSearch(SearchState& state, const NeighborLists& neighbors,
+                 const IteratedSearchOptions& options);
+
+  // Local search alone, from the route as it is.
+  void Descend(Budget& budget);
+
+  // Kicks and repairs the route, which is the best one found afterwards: never worse than before.
+  void Run(Rng& rng, Budget& budget);
+
+  int64_t iterations() const { return iterations_; }
+
+ private:
+  bool Kick(Rng& rng, double& delta);
+  bool BridgeKick(Rng& rng, double& delta);
+  bool TurnKick(Rng& rng, double& delta);
+  int ChooseRunEnd(Rng& rng, int node, int first) const;
+  int ChooseNode(Rng& rng, int leaf) const;
+  bool ChooseCuts(Rng& rng, int node, int (&cuts)[4]) const;
+  int ChooseSpan(Rng& rng) const;
+  void KeepBest(double cost);
+
+  SearchState& state_;
+  const NeighborLists& neighbors_;
+  const IteratedSearchOptions options_;
+  LocalSearch local_search_;
+  bool turns_ = false;  // whether there are runs to turn
+  int64_t iterations_ = 0;
+  double best_cost_ = 0;
+  Route best_;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_SEARCH_ITERATED_SEARCH_H_

@@ -1,0 +1,36 @@
+#include "engine/search/polisher.h"
+
+#include "engine/cost/route_entries.h"
+#include "engine/search/iterated_search.h"
+
+namespace traverse {
+
+Polisher::Polisher(const LayerView& layer, Budget& budget)
+    : layer_(layer),
+      tree_(layer.plan()),
+      entries_(layer.problem),
+      groups_(entries_),
+      neighbors_(FindNeighbors(tree_, groups_, ThreeOptOptions().first_breadth, budget)),
+      state_(layer.problem, tree_, entries_) {}
+
+Route Polisher::Descend(Route route, Budget& budget) {
+  Rng unused(0);
+  return Iterate(std::move(route), 0, unused, budget);
+}
+
+Route Polisher::Iterate(Route route, int64_t patience, Rng& rng, Budget& budget) {
+  ChooseEntries(layer_, route, budget);
+  if (!tree_.has_choice()) return route;
+  state_.Load(route);
+  IteratedSearchOptions options;
+  options.patience = patience;
+  options.temperature = 0;  // detours need more kicks than there are here
+  IteratedSearch search(state_, neighbors_, options);
+  search.Descend(budget);
+  search.Run(rng, budget);
+  Route polished = state_.Unload();
+  ChooseEntries(layer_, polished, budget);
+  return polished;
+}
+
+}  // namespace traverse

@@ -1,0 +1,285 @@
+#include "engine/souza/nearest_insertion.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "engine/cost/first_entries.h"
+#include "engine/geometry/bounding_box.h"
+
+namespace traverse {
+namespace {
+
+// Of so many points of a child that begins with an any_order node its distance is taken. All of
+// them would take memory again at each level of nested nodes.
+constexpr size_t kFirstPoints = 64;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// The entries of the paths below one node, in the order in which they are visited.
+using Entries = std::vector<int>;
+
+Entries Build(const LayerView& layer, int node, Point from, const std::optional<Point>& to,
+              Budget& budget);
+
+// A way to go through a child that is not in the route yet: a leaf's entry, or a point at which a
+// child with paths of its own may be begun, taken for its end as well.
+struct Way {
+  Point enter;
+  Point exit;
+  int entry;
+};
+
+// Builds the route of one any_order node.
+class NodeRoute {
+ public:
+  NodeRoute(const LayerView& layer, int node, Point from, const std::optional<Point>& to,
+            Budget& budget)
+      : layer_(layer),
+        children_(layer.tree.children(node)),
+        precedence_(layer.tree.precedence(node)),
+        from_(from),
+        to_(to),
+        budget_(budget),
+        nearest_(children_.size(), kInfinity),
+        boxes_(children_.size()),
+        built_(children_.size()),
+        position_(children_.size()),
+        move_{Move(from, to)},
+        awaited_(static_cast<size_t>(precedence_.item_count()), -1) {
+    ListWays();
+  }
+
+  // Incomplete if the budget ran out.
+  Entries Run() {
+    const auto open = [&](int slot) { open_.push_back(slot); };
+    ReadySlots ready(precedence_, static_cast<int>(children_.size()), open);
+    Approach(from_);
+    if (to_) Approach(*to_);
+    while (!open_.empty() && !budget_.Exhausted()) {
+      const int slot = TakeNearest();
+      if (!Insert(slot)) break;
+      ready.Finish(slot, open, [&](int first, int second) { Await(first, second); });
+    }
+    Entries entries;
+    for (const int slot : order_) {
+      const Entries& part = built_[static_cast<size_t>(slot)];
+      entries.insert(entries.end(), part.begin(), part.end());
+    }
+    return entries;
+  }
+
+ private:
+  // A place in the route: behind `index` blocks.
+  struct Place {
+    size_t index = 0;
+    int way = -1;
+    double cost = kInfinity;
+  };
+
+  void ListWays() {
+    for (size_t s = 0; s < children_.size(); ++s) {
+      first_way_.push_back(static_cast<int>(ways_.size()));
+      const bool is_leaf = layer_.tree.is_leaf(children_[s]);
+      ForEachFirstEntry(layer_, children_[s], kFirstPoints, [&](int e) {
+        const Point enter = layer_.table.enter(e);
+        ways_.push_back(Way{enter, is_leaf ? layer_.table.exit(e) : enter, e});
+        boxes_[s].Add(ways_.back().enter);
+        boxes_[s].Add(ways_.back().exit);
+      });
+    }
+    first_way_.push_back(static_cast<int>(ways_.size()));
+  }
+
+  absl::Span<const Way> WaysOf(int slot) const {
+    const size_t begin = static_cast<size_t>(first_way_[static_cast<size_t>(slot)]);
+    const size_t end = static_cast<size_t>(first_way_[static_cast<size_t>(slot) + 1]);
+    return absl::MakeConstSpan(ways_).subspan(begin, end - begin);
+  }
+
+  // The route has a point at `p`: brings the distances of all children up to date.
+  void Approach(Point p) {
+    for (size_t s = 0; s < children_.size(); ++s) {
+      double& nearest = nearest_[s];
+      if (in_route(s) || boxes_[s].SquaredDistanceTo(p) >= nearest * nearest) continue;
+      for (const Way& way : WaysOf(static_cast<int>(s))) {
+        nearest = std::min({nearest, Distance(p, way.enter), Distance(p, way.exit)});
+      }
+    }
+  }
+
+  bool in_route(size_t slot) const { return !built_[slot].empty(); }
+
+  // Takes out of open_ the slot nearest to the route, the lowest of several.
+  int TakeNearest() {
+    size_t next = 0;
+    for (size_t i = 1; i < open_.size(); ++i) {
+      const double distance = nearest_[static_cast<size_t>(open_[i])];
+      const double least = nearest_[static_cast<size_t>(open_[next])];
+      if (distance < least || (distance == least && open_[i] < open_[next])) next = i;
+    }
+    std::swap(open_[next], open_.back());
+    const int slot = open_.back();
+    open_.pop_back();
+    return slot;
+  }
+
+  // False if the budget ran out.
+  bool Insert(int slot) {
+    const Place place = BestPlace(slot);
+    const Point from = ExitBefore(place.index);
+    const std::optional<Point> to = EnterAt(place.index);
+    const int child = children_[static_cast<size_t>(slot)];
+    Entries& entries = built_[static_cast<size_t>(slot)];
+    if (layer_.tree.is_leaf(child)) {
+      entries = {ways_[static_cast<size_t>(place.way)].entry};
+    } else {
+      entries = Build(layer_, child, from, to, budget_);
+      if (budget_.was_exhausted()) return false;
+    }
+    const auto at = static_cast<std::ptrdiff_t>(place.index);
+    const Point enter = layer_.table.enter(entries.front());
+    const Point exit = layer_.table.exit(entries.back());
+    order_.insert(order_.begin() + at, slot);
+    enter_.insert(enter_.begin() + at, enter);
+    exit_.insert(exit_.begin() + at, exit);
+    for (size_t k = place.index; k < order_.size(); ++k) {
+      position_[static_cast<size_t>(order_[k])] = k;
+    }
+    move_[place.index] = Move(exit, to);
+    move_.insert(move_.begin() + at, layer_.cost(from, enter));
+    Approach(enter);
+    if (!(exit == enter)) Approach(exit);
+    return true;
+  }
+
+  Point ExitBefore(size_t index) const { return index > 0 ? exit_[index - 1] : from_; }
+  std::optional<Point> EnterAt(size_t index) const {
+    return index < order_.size() ? enter_[index] : to_;
+  }
+
+  Place BestPlace(int slot) const {
+    Place best;
+    size_t index = precedence_.empty() ? 0 : BehindSlot(awaited_[static_cast<size_t>(slot)]);
+    for (; index <= order_.size(); ++index) Try(slot, index, best);
+    return best;
+  }
+
+  // The first place behind a block of the route; the very first for -1.
+  size_t BehindSlot(int slot) const {
+    return slot < 0 ? 0 : position_[static_cast<size_t>(slot)] + 1;
+  }
+
+  // The item `second` has to come behind `first`, or behind what `first` waited for if that has no
+  // paths. The order of two blocks in the route never changes, so the later one may stand for both.
+  void Await(int first, int second) {
+    const bool has_paths = first < static_cast<int>(children_.size());
+    const int slot = has_paths ? first : awaited_[static_cast<size_t>(first)];
+    int& latest = awaited_[static_cast<size_t>(second)];
+    if (BehindSlot(slot) > BehindSlot(latest)) latest = slot;
+  }
+
+  // Replaces `best` if some way of `slot` costs less at the place `index`.
+  void Try(int slot, size_t index, Place& best) const {
+    const Point from = ExitBefore(index);
+    const std::optional<Point> to = EnterAt(index);
+    const BoundingBox& box = boxes_[static_cast<size_t>(slot)];
+    const double present = move_[index];
+    // Most places are too far away on one side alone.
+    const double reach = layer_.cost.LongestWithin(best.cost + present);
+    if (box.SquaredDistanceTo(from) > reach * reach) return;
+    double bound = layer_.cost.OfLength(box.DistanceTo(from)) - present;
+    if (to) bound += layer_.cost.OfLength(box.DistanceTo(*to));
+    if (bound >= best.cost) return;
+    const absl::Span<const Way> ways = WaysOf(slot);
+    for (size_t w = 0; w < ways.size(); ++w) {
+      if (layer_.cost.has_walls() && layer_.cost.Base(from, ways[w].enter) - present >= best.cost) {
+        continue;
+      }
+      const double cost = Around(from, ways[w].enter, ways[w].exit, to) - present;
+      if (cost >= best.cost) continue;
+      best = Place{index, first_way_[static_cast<size_t>(slot)] + static_cast<int>(w), cost};
+    }
+  }
+
+  double Move(Point from, const std::optional<Point>& to) const {
+    return to ? layer_.cost(from, *to) : 0;
+  }
+  double Around(Point from, Point enter, Point exit, const std::optional<Point>& to) const {
+    return layer_.cost(from, enter) + Move(exit, to);
+  }
+
+  const LayerView& layer_;
+  const absl::Span<const int> children_;
+  const Precedence& precedence_;
+  const Point from_;
+  const std::optional<Point> to_;
+  Budget& budget_;
+
+  std::vector<Way> ways_;
+  std::vector<int> first_way_;      // [slot] where its ways begin in ways_; one more
+  std::vector<double> nearest_;     // [slot] distance in mm of its points to the route's
+  std::vector<BoundingBox> boxes_;  // [slot] of its ways
+  std::vector<Entries> built_;      // [slot] empty until it is in the route
+  std::vector<int> open_;           // slots that may be inserted
+
+  // The route: slots, and where each is entered and left.
+  std::vector<int> order_;
+  std::vector<size_t> position_;  // [slot] its index in order_, if it is in the route
+  std::vector<Point> enter_;
+  std::vector<Point> exit_;
+  std::vector<double> move_;  // cost of the move to each; one more, of the move to to_
+
+  // [item of the precedence] the last slot in the route that has to come before it; -1 if none
+  std::vector<int> awaited_;
+};
+
+Entries BuildLeaf(const LayerView& layer, int path, Point from, const std::optional<Point>& to) {
+  int best = layer.table.first(path);
+  double least = kInfinity;
+  for (int e = layer.table.first(path); e < layer.table.first(path + 1); ++e) {
+    double cost = layer.cost(from, layer.table.enter(e));
+    if (to) cost += layer.cost(layer.table.exit(e), *to);
+    if (cost >= least) continue;
+    least = cost;
+    best = e;
+  }
+  return {best};
+}
+
+// Incomplete if the budget ran out. REQUIRES: there are paths below `node`.
+Entries Build(const LayerView& layer, int node, Point from, const std::optional<Point>& to,
+              Budget& budget) {
+  if (layer.tree.is_leaf(node)) return BuildLeaf(layer, layer.tree.node(node).path, from, to);
+  if (layer.tree.node(node).kind == PlanNode::Kind::kAnyOrder) {
+    return NodeRoute(layer, node, from, to, budget).Run();
+  }
+  const absl::Span<const int> children = layer.tree.children(node);
+  Entries entries;
+  for (const int child : children) {
+    const bool is_last = child == children.back();
+    const Entries part = Build(layer, child, from, is_last ? to : std::nullopt, budget);
+    if (budget.was_exhausted()) break;
+    entries.insert(entries.end(), part.begin(), part.end());
+    from = layer.table.exit(entries.back());
+  }
+  return entries;
+}
+
+}  // namespace
+
+std::optional<Route> NearestInsertionRoute(const LayerView& layer, Budget& budget) {
+  Route route;
+  if (layer.plan().paths.empty()) return route;
+  if (budget.Exhausted()) return std::nullopt;
+  const Entries entries = Build(layer, 0, layer.problem.start, layer.problem.finish, budget);
+  if (budget.was_exhausted()) return std::nullopt;
+  route.reserve(entries.size());
+  for (const int entry : entries) route.push_back(layer.table.VisitOf(entry));
+  return route;
+}
+
+}  // namespace traverse

@@ -1,0 +1,93 @@
+// The route that a local search changes: visits in flat arrays, and where each node of the plan's
+// tree has its place in them.
+
+#ifndef TRAVERSE_ENGINE_SOUZA_SEARCH_ROUTE_H_
+#define TRAVERSE_ENGINE_SOUZA_SEARCH_ROUTE_H_
+
+#include <optional>
+#include <vector>
+
+#include "absl/types/span.h"
+#include "engine/cost/layer_view.h"
+#include "engine/model/route.h"
+
+namespace traverse {
+
+// Loaded from a route and unloaded into one. Every change keeps it valid, given that what it asks
+// for is. Not thread-safe.
+//
+// The paths below a node are visited in one go, at positions [begin(node), begin(node) +
+// path_count(node)). Of an any_order node, order(node) lists the slots (PlanTree::children) as they
+// follow each other.
+//
+// It also notes what a search has yet to look at: a node or a visit is pending from the start, and
+// again whenever a change touched it or a neighbor.
+class SearchRoute {
+ public:
+  // `layer` outlives the search route. REQUIRES: `route` is a valid route of it.
+  SearchRoute(const LayerView& layer, const Route& route);
+
+  const LayerView& layer() const { return *layer_; }
+  int size() const { return static_cast<int>(entries_.size()); }
+
+  // The entry (of the layer's table) of the visit at `position`.
+  int entry(int position) const { return entries_[static_cast<size_t>(position)]; }
+
+  // The ends of the moves to and from the visit at `position`: where the head comes from, and where
+  // it goes, which is nowhere after the last visit of a problem without a finish.
+  Point from(int position) const {
+    return position > 0 ? layer_->table.exit(entry(position - 1)) : layer_->problem.start;
+  }
+  std::optional<Point> to(int position) const {
+    if (position + 1 == size()) return layer_->problem.finish;
+    return layer_->table.enter(entry(position + 1));
+  }
+
+  // Enters the path at `position` at another of its entries.
+  void SetEntry(int position, int entry);
+
+  int begin(int node) const { return begin_[static_cast<size_t>(node)]; }
+  absl::Span<const int> order(int node) const {
+    const size_t first = static_cast<size_t>(layer_->tree.first_child(node));
+    return absl::MakeConstSpan(order_).subspan(first, layer_->tree.children(node).size());
+  }
+
+  // Puts the children of an any_order node into another order: slots[k] is the k-th, and if
+  // reversed[k], all that is below it is done backwards. O(nodes below). REQUIRES: `slots` keeps
+  // the node's precedence; children that are reversed are reversible.
+  void Arrange(int node, absl::Span<const int> slots, absl::Span<const char> reversed);
+
+  // Whether the node, or the visit of `path`, is pending; from now on it is not.
+  bool TakePendingNode(int node) { return Take(pending_node_, node); }
+  bool TakePendingVisit(int path) { return Take(pending_visit_, path); }
+
+  Route ToRoute() const;
+
+  // Computed anew, in the unit of the problem's cost, the move to `finish` included.
+  double Cost() const;
+
+ private:
+  static bool Take(std::vector<char>& pending, int index) {
+    char& flag = pending[static_cast<size_t>(index)];
+    const bool was = flag != 0;
+    flag = 0;
+    return was;
+  }
+
+  int Backwards(int entry) const;
+  void SortChildren(int node);
+  void Place(int node, int begin, bool reversed);
+  void Touch(int position);
+
+  const LayerView* layer_;
+  std::vector<int> entries_;         // [position]
+  std::vector<int> begin_;           // [node]
+  std::vector<int> order_;           // slots of all nodes, laid out like PlanTree::first_child
+  std::vector<char> pending_node_;   // [node]
+  std::vector<char> pending_visit_;  // [path]
+  std::vector<int> scratch_;         // entries before Arrange
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_SOUZA_SEARCH_ROUTE_H_

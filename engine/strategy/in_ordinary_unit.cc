@@ -1,0 +1,73 @@
+#include "engine/strategy/in_ordinary_unit.h"
+
+#include <string>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "engine/cost/cost_unit.h"
+
+namespace traverse {
+namespace {
+
+LayerProblem InUnit(const LayerProblem& problem, double unit) {
+  LayerProblem scaled = problem;
+  scaled.cost = InUnit(problem.cost, unit);
+  scaled.walls_unit *= unit;
+  return scaled;
+}
+
+// See Solution::statistics.
+bool IsCost(const std::string& statistic) {
+  return absl::EndsWith(statistic, "_cost") || absl::EndsWith(statistic, "_value") ||
+         absl::EndsWith(statistic, "_bound") || absl::EndsWith(statistic, "_start") ||
+         absl::EndsWith(statistic, "_gained");
+}
+
+Solution FromUnit(Solution solution, double unit) {
+  if (solution.lower_bound) *solution.lower_bound /= unit;
+  for (auto& [name, value] : solution.statistics) {
+    if (IsCost(name)) value /= unit;
+  }
+  return solution;
+}
+
+class OrdinaryUnit : public Strategy {
+ public:
+  explicit OrdinaryUnit(std::unique_ptr<Strategy> strategy) : strategy_(std::move(strategy)) {}
+
+  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+    const double unit = CostUnit(problem.cost, {&problem});
+    return FromUnit(strategy_->Solve(InUnit(problem, unit), budget), unit);
+  }
+
+  Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
+    const double unit = CostUnit(problem.cost, {&problem});
+    return FromUnit(strategy_->Resume(InUnit(problem, unit), start, budget), unit);
+  }
+
+  Solution ResumeWithNext(const LayerProblem& problem, const Route& start, const LayerProblem& next,
+                          Route& next_start, Budget& budget) const override {
+    const double unit = CostUnit(problem.cost, {&problem, &next});
+    return FromUnit(strategy_->ResumeWithNext(InUnit(problem, unit), start, InUnit(next, unit),
+                                              next_start, budget),
+                    unit);
+  }
+
+  bool looks_ahead(size_t paths) const override { return strategy_->looks_ahead(paths); }
+  bool pure() const override { return strategy_->pure(); }
+  bool serial() const override { return strategy_->serial(); }
+  bool wants_bound() const override { return strategy_->wants_bound(); }
+  bool quick() const override { return strategy_->quick(); }
+  bool reuses_routes() const override { return strategy_->reuses_routes(); }
+
+ private:
+  const std::unique_ptr<Strategy> strategy_;
+};
+
+}  // namespace
+
+std::unique_ptr<Strategy> InOrdinaryUnit(std::unique_ptr<Strategy> strategy) {
+  return std::make_unique<OrdinaryUnit>(std::move(strategy));
+}
+
+}  // namespace traverse

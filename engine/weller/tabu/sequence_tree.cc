@@ -1,0 +1,201 @@
+#include "engine/weller/tabu/sequence_tree.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace traverse {
+namespace {
+
+// The pairs of `node` among the children that `wanted` marks. A child that holds no paths passes
+// its pairs on: what comes before it comes before all that it comes before.
+std::vector<std::pair<int, int>> PairsAmong(const PlanNode& node, const std::vector<bool>& wanted) {
+  std::vector<std::vector<int>> later(node.children.size());
+  for (const auto& [first, second] : node.before) {
+    later[static_cast<size_t>(first)].push_back(second);
+  }
+  std::vector<std::pair<int, int>> pairs;
+  std::vector<int> reached_from(node.children.size(), -1);
+  for (int first = 0; first < static_cast<int>(node.children.size()); ++first) {
+    if (!wanted[static_cast<size_t>(first)]) continue;
+    std::vector<int> open = later[static_cast<size_t>(first)];
+    while (!open.empty()) {
+      const size_t second = static_cast<size_t>(open.back());
+      open.pop_back();
+      if (std::exchange(reached_from[second], first) == first) continue;
+      if (wanted[second]) {
+        pairs.emplace_back(first, static_cast<int>(second));
+      } else {
+        open.insert(open.end(), later[second].begin(), later[second].end());
+      }
+    }
+  }
+  return pairs;
+}
+
+}  // namespace
+
+SequenceTree::SequenceTree(const Plan& plan) : leaf_of_(plan.paths.size(), -1) {
+  if (plan.paths.empty()) return;
+  Add(plan, 0, -1);
+  Reorder(0);
+  CountViolations();
+}
+
+int SequenceTree::Add(const Plan& plan, int index, int parent) {
+  const PlanNode& plan_node = plan.nodes[static_cast<size_t>(index)];
+  const int number = node_count();
+  nodes_.emplace_back();
+  At(number).parent = parent;
+  if (plan_node.kind == PlanNode::Kind::kPath) {
+    At(number).path = plan_node.path;
+    At(number).size = 1;
+    leaf_of_[static_cast<size_t>(plan_node.path)] = number;
+  } else {
+    At(number).any_order = plan_node.kind == PlanNode::Kind::kAnyOrder;
+    std::vector<int> number_of;  // [position of a plan's child]; -1: holds no paths
+    for (const int child : plan_node.children) {
+      const int added = Add(plan, child, number);
+      number_of.push_back(added);
+      if (added < 0) continue;
+      At(number).order.push_back(added);
+      At(number).size += At(added).size;
+    }
+    if (At(number).size == 0) {
+      nodes_.pop_back();
+      return -1;
+    }
+    if (At(number).any_order && At(number).order.size() > 1) {
+      movable_.push_back(number);
+      AddPairs(plan_node, number_of);
+      At(number).has_before = !plan_node.before.empty();
+    }
+  }
+  At(number).subtree_end = node_count();
+  return number;
+}
+
+void SequenceTree::AddPairs(const PlanNode& plan_node, const std::vector<int>& number_of) {
+  std::vector<bool> wanted;
+  for (const int number : number_of) wanted.push_back(number >= 0);
+  for (const auto& [first, second] : PairsAmong(plan_node, wanted)) {
+    const int a = number_of[static_cast<size_t>(first)];
+    const int b = number_of[static_cast<size_t>(second)];
+    At(a).later.push_back(b);
+    At(b).earlier.push_back(a);
+  }
+}
+
+// Writes positions and ranges below `node` anew, after its own begin.
+void SequenceTree::Reorder(int node) {
+  int begin = At(node).begin;
+  for (int position = 0; position < child_count(node); ++position) {
+    const int child = child_at(node, position);
+    At(child).position = position;
+    At(child).begin = begin;
+    begin += At(child).size;
+    Reorder(child);
+  }
+}
+
+void SequenceTree::CountViolations() {
+  violations_ = 0;
+  for (const Node& node : nodes_) {
+    for (const int second : node.later) violations_ += At(second).position < node.position;
+  }
+}
+
+int SequenceTree::ViolationDelta(int node, int i, int j) const {
+  if (!has_before(node)) return 0;
+  const Node& x = At(child_at(node, i));  // moves from i to j
+  const Node& y = At(child_at(node, j));  // moves from j to i
+  int delta = 0;
+  for (const int second : x.later) {
+    const int at = position_of(second);
+    delta += at > i && at <= j;
+  }
+  for (const int first : x.earlier) {
+    const int at = position_of(first);
+    delta -= at > i && at <= j;
+  }
+  // The pair of x and y, if there is one, was counted with x.
+  for (const int first : y.earlier) {
+    const int at = position_of(first);
+    delta += at > i && at < j;
+  }
+  for (const int second : y.later) {
+    const int at = position_of(second);
+    delta -= at > i && at < j;
+  }
+  return delta;
+}
+
+void SequenceTree::Shift(int node, int by) {
+  for (int v = node; v < At(node).subtree_end; ++v) At(v).begin += by;
+}
+
+void SequenceTree::Swap(int node, int i, int j) {
+  violations_ += ViolationDelta(node, i, j);
+  std::vector<int>& order = At(node).order;
+  const int x = order[static_cast<size_t>(i)];
+  const int y = order[static_cast<size_t>(j)];
+  const int x_size = At(x).size;
+  const int y_size = At(y).size;
+  const int gap = At(y).begin - At(x).begin - x_size;
+  Shift(x, gap + y_size);
+  Shift(y, -gap - x_size);
+  if (x_size != y_size) {
+    for (int k = i + 1; k < j; ++k) Shift(order[static_cast<size_t>(k)], y_size - x_size);
+  }
+  std::swap(order[static_cast<size_t>(i)], order[static_cast<size_t>(j)]);
+  std::swap(At(x).position, At(y).position);
+}
+
+void SequenceTree::Load(const std::vector<int>& paths) {
+  for (Node& node : nodes_) node.begin = static_cast<int>(paths.size());
+  for (int k = 0; k < static_cast<int>(paths.size()); ++k) {
+    for (int v = leaf_of_[static_cast<size_t>(paths[static_cast<size_t>(k)])]; v >= 0;
+         v = At(v).parent) {
+      At(v).begin = std::min(At(v).begin, k);
+    }
+  }
+  for (const int node : movable_) {
+    std::sort(At(node).order.begin(), At(node).order.end(),
+              [&](int a, int b) { return At(a).begin < At(b).begin; });
+  }
+  if (!nodes_.empty()) Reorder(0);
+  CountViolations();
+}
+
+void SequenceTree::Shuffle(Rng& rng) {
+  std::vector<int> waiting_for(nodes_.size());
+  std::vector<int> ready;
+  for (const int node : movable_) {
+    std::vector<int>& order = At(node).order;
+    ready.clear();
+    for (const int child : order) {
+      waiting_for[static_cast<size_t>(child)] = static_cast<int>(At(child).earlier.size());
+      if (At(child).earlier.empty()) ready.push_back(child);
+    }
+    for (int& next : order) {
+      std::swap(ready[rng.Below(static_cast<uint32_t>(ready.size()))], ready.back());
+      next = ready.back();
+      ready.pop_back();
+      for (const int second : At(next).later) {
+        if (--waiting_for[static_cast<size_t>(second)] == 0) ready.push_back(second);
+      }
+    }
+  }
+  if (!nodes_.empty()) Reorder(0);
+  violations_ = 0;
+}
+
+std::vector<int> SequenceTree::Paths() const {
+  std::vector<int> paths(leaf_of_.size());
+  for (const Node& node : nodes_) {
+    if (node.path >= 0) paths[static_cast<size_t>(node.begin)] = node.path;
+  }
+  return paths;
+}
+
+}  // namespace traverse

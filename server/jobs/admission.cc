@@ -1,0 +1,340 @@
+#include "server/jobs/admission.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "server/jobs/retry_delay.h"
+
+namespace traverse {
+namespace {
+
+// Bounds of the advice when to come back: not at once, as the queue has to change first; and not so
+// late that a caller gives up on a server that is free again.
+constexpr absl::Duration kMinRetryDelay = absl::Milliseconds(100);
+constexpr absl::Duration kMaxRetryDelay = absl::Seconds(30);
+
+// Advice where the limit is on jobs, whose durations are not known.
+constexpr absl::Duration kJobsRetryDelay = absl::Seconds(1);
+
+// With each layer solved the earlier ones count by so much less.
+constexpr double kFading = 0.998;
+
+}  // namespace
+
+const char* RefusalName(Refusal refusal) {
+  switch (refusal) {
+    case Refusal::kDraining:
+      return "draining";
+    case Refusal::kJobs:
+      return "jobs";
+    case Refusal::kCallerJobs:
+      return "caller_jobs";
+    case Refusal::kQueue:
+      return "queue";
+    case Refusal::kCallerQueue:
+      return "caller_queue";
+    case Refusal::kWait:
+      return "wait";
+    case Refusal::kMemory:
+      return "memory";
+    case Refusal::kCallerMemory:
+      return "caller_memory";
+    case Refusal::kMessage:
+      return "message";
+    case Refusal::kJobLayers:
+      return "job_layers";
+    case Refusal::kJobPoints:
+      return "job_points";
+    case Refusal::kLayerPoints:
+      return "layer_points";
+    case Refusal::kUnauthenticated:
+      return "unauthenticated";
+    case Refusal::kPermission:
+      return "permission";
+  }
+  return "other";
+}
+
+Admission::Admission(const AdmissionLimits& limits, std::function<void(Refusal)> on_refusal)
+    : limits_(limits), on_refusal_(std::move(on_refusal)) {}
+
+absl::StatusOr<std::unique_ptr<Admission::Ticket>> Admission::Admit(const std::string& caller,
+                                                                    int64_t points) {
+  std::optional<No> no;
+  {
+    MutexLock lock(mutex_);
+    no = Check(caller, points);
+    if (!no) {
+      std::unique_ptr<Ticket> ticket(new Ticket(*this));
+      ticket->admission_.mutex_.AssertHeld();  // it is ours
+      ticket->caller_ = callers_.try_emplace(caller).first;
+      ticket->caller_->second.jobs.insert(ticket.get());
+      ticket->Count(points);
+      ++jobs_;
+      return ticket;
+    }
+  }
+  on_refusal_(no->refusal);
+  return no->status;
+}
+
+std::optional<Admission::No> Admission::Check(const std::string& caller, int64_t points) const {
+  if (draining_) {
+    return No{Refusal::kDraining,
+              absl::UnavailableError("the server is shutting down; ask another one")};
+  }
+  if (memory_short_) {
+    return No{
+        Refusal::kMemory,
+        WithRetryDelay(absl::ResourceExhaustedError("the server is short of memory; try again"),
+                       kJobsRetryDelay)};
+  }
+  if (jobs_ >= limits_.max_jobs) {
+    return No{
+        Refusal::kJobs,
+        WithRetryDelay(absl::ResourceExhaustedError(absl::StrCat(
+                           "all ", limits_.max_jobs, " places for jobs are taken; try again")),
+                       kJobsRetryDelay)};
+  }
+  const auto of_caller = callers_.find(caller);
+  if (of_caller != callers_.end() &&
+      static_cast<int>(of_caller->second.jobs.size()) >= limits_.max_jobs_per_caller) {
+    return No{Refusal::kCallerJobs,
+              WithRetryDelay(absl::ResourceExhaustedError(absl::StrCat(
+                                 "this caller has all of its ", limits_.max_jobs_per_caller,
+                                 " jobs in flight; try again when one has ended")),
+                             kJobsRetryDelay)};
+  }
+  return CheckPoints(caller, points);
+}
+
+std::optional<Admission::No> Admission::CheckPoints(const std::string& caller,
+                                                    int64_t points) const {
+  if (std::optional<No> no = CheckQueues(caller, points); no) return no;
+  return CheckWait(caller, points, "");
+}
+
+std::optional<Admission::No> Admission::CheckQueues(const std::string& caller,
+                                                    int64_t points) const {
+  const auto of_caller = callers_.find(caller);
+  const int64_t own = of_caller == callers_.end() ? 0 : of_caller->second.queued_points;
+  const auto full = [&](Refusal refusal, const char* what, int64_t queued,
+                        int64_t limit) -> std::optional<No> {
+    mutex_.AssertHeld();
+    const int64_t excess = queued + points - limit;
+    if (excess <= 0 || queued == 0) return std::nullopt;
+    const absl::Duration delay = TimeFor(std::min(excess, queued));
+    return No{refusal,
+              WithRetryDelay(absl::ResourceExhaustedError(absl::StrCat(
+                                 what, " is full: ", queued, " of ", limit,
+                                 " points, and this job has about ", points, "; try again")),
+                             std::clamp(delay, kMinRetryDelay, kMaxRetryDelay))};
+  };
+  if (auto no = full(Refusal::kQueue, "the queue", PointsOfOthers(caller) + own,
+                     limits_.max_queued_points);
+      no) {
+    return no;
+  }
+  return full(Refusal::kCallerQueue, "this caller's part of the queue", own,
+              limits_.max_queued_points_per_caller);
+}
+
+int64_t Admission::PointsOfOthers(const std::string& caller) const {
+  int64_t points = 0;
+  for (const auto& [name, other] : callers_) {
+    if (name == caller) continue;
+    for (const Ticket* job : other.jobs) points += job->stalled() ? 0 : job->points_;
+  }
+  return points;
+}
+
+std::optional<Admission::No> Admission::CheckWait(const std::string& caller, int64_t points,
+                                                  const std::string& strategy) const {
+  const absl::Duration alone = TimeFor(points, strategy);
+  const absl::Duration expected = TimeUntilDone(caller, alone);
+  const absl::Duration bearable = std::max(limits_.max_wait, alone * limits_.max_slowdown);
+  if (expected <= bearable) return std::nullopt;
+  return No{
+      Refusal::kWait,
+      WithRetryDelay(
+          absl::ResourceExhaustedError(absl::StrCat(
+              "the server is busy: this job would take about ",
+              absl::FormatDuration(absl::Trunc(expected, absl::Milliseconds(1))), ", alone ",
+              absl::FormatDuration(absl::Trunc(alone, absl::Milliseconds(1))), "; try again")),
+          std::clamp(expected - bearable, kMinRetryDelay, kMaxRetryDelay))};
+}
+
+absl::Duration Admission::TimeUntilDone(const std::string& caller, absl::Duration alone) const {
+  const auto time_of = [this](const Ticket& job) {
+    return job.stalled() ? absl::ZeroDuration() : TimeFor(job.points_, job.strategy_);
+  };
+  absl::Duration own = alone;
+  const auto of_caller = callers_.find(caller);
+  if (of_caller != callers_.end()) {
+    for (const Ticket* job : of_caller->second.jobs) own += std::min(time_of(*job), alone);
+  }
+  absl::Duration all = own;
+  for (auto other = callers_.begin(); other != callers_.end(); ++other) {
+    if (other == of_caller) continue;
+    absl::Duration of_other = absl::ZeroDuration();
+    for (const Ticket* job : other->second.jobs) of_other += time_of(*job);
+    all += std::min(of_other, own);
+  }
+  return all;
+}
+
+std::optional<Admission::No> Admission::CheckBytes(const Caller& caller, int64_t bytes) const {
+  const auto full = [&](Refusal refusal, const char* whose, int64_t held,
+                        int64_t limit) -> std::optional<No> {
+    if (bytes <= limit - held) return std::nullopt;
+    const absl::Status status = absl::ResourceExhaustedError(
+        absl::StrCat(whose, " memory is taken: ", held >> 20, " of ", limit >> 20,
+                     " MiB, and this message comes to about ", bytes >> 20, "; try again"));
+    // What is too large for an empty server is so later too.
+    return No{refusal, bytes > limit ? status : WithRetryDelay(status, kJobsRetryDelay)};
+  };
+  if (auto no = full(Refusal::kMemory, "the server's", bytes_, limits_.max_bytes); no) return no;
+  return full(Refusal::kCallerMemory, "this caller's part of the", caller.bytes,
+              limits_.max_bytes_per_caller);
+}
+
+void Admission::SetMemoryShort(bool is_short) {
+  MutexLock lock(mutex_);
+  memory_short_ = is_short;
+}
+
+void Admission::StartDraining() {
+  MutexLock lock(mutex_);
+  draining_ = true;
+}
+
+bool Admission::draining() const {
+  MutexLock lock(mutex_);
+  return draining_;
+}
+
+int Admission::jobs() const {
+  MutexLock lock(mutex_);
+  return jobs_;
+}
+
+int64_t Admission::queued_points() const {
+  MutexLock lock(mutex_);
+  return queued_points_;
+}
+
+int64_t Admission::held_bytes() const {
+  MutexLock lock(mutex_);
+  return bytes_;
+}
+
+absl::Duration Admission::TimeFor(int64_t points, const std::string& strategy) const {
+  auto solved = solved_.find(strategy);
+  if (solved == solved_.end()) solved = solved_.find("");
+  if (solved == solved_.end() || solved->second.points <= 0) return absl::ZeroDuration();
+  return absl::Seconds(static_cast<double>(points) * solved->second.seconds /
+                       solved->second.points / limits_.workers);
+}
+
+Admission::Ticket::~Ticket() {
+  MutexLock lock(admission_.mutex_);
+  Count(-points_);
+  CountBytes(-bytes_);
+  --admission_.jobs_;
+  caller_->second.jobs.erase(this);
+  if (caller_->second.jobs.empty()) admission_.callers_.erase(caller_);
+}
+
+void Admission::Ticket::Count(int64_t points) {
+  points_ += points;
+  caller_->second.queued_points += points;
+  admission_.queued_points_ += points;
+}
+
+absl::Status Admission::Ticket::Resize(int64_t points) {
+  std::optional<No> no;
+  {
+    MutexLock lock(admission_.mutex_);
+    const int64_t before = points_;
+    Count(-before);
+    if (points > before) no = admission_.CheckPoints(caller_->first, points);
+    if (!no) Count(points);
+  }
+  if (!no) return absl::OkStatus();
+  admission_.on_refusal_(no->refusal);
+  return no->status;
+}
+
+void Admission::Ticket::Add(int64_t points) {
+  MutexLock lock(admission_.mutex_);
+  Count(points);
+}
+
+void Admission::Ticket::Remove(int64_t points, double seconds) {
+  MutexLock lock(admission_.mutex_);
+  if (points_ > 0) {
+    const double share =
+        static_cast<double>(std::min(points, points_)) / static_cast<double>(points_);
+    CountBytes(-static_cast<int64_t>(share * static_cast<double>(bytes_)));
+  }
+  Count(-points);
+  for (const std::string& name : {strategy_, std::string()}) {
+    Solved& solved = admission_.solved_[name];
+    solved.points = solved.points * kFading + static_cast<double>(points);
+    solved.seconds = solved.seconds * kFading + seconds;
+    if (strategy_.empty()) break;
+  }
+}
+
+void Admission::Ticket::CountBytes(int64_t bytes) {
+  bytes_ += bytes;
+  caller_->second.bytes += bytes;
+  admission_.bytes_ += bytes;
+}
+
+absl::Status Admission::Ticket::Hold(int64_t bytes) {
+  std::optional<No> no;
+  {
+    MutexLock lock(admission_.mutex_);
+    no = admission_.CheckBytes(caller_->second, bytes);
+    if (!no) CountBytes(bytes);
+  }
+  if (!no) return absl::OkStatus();
+  admission_.on_refusal_(no->refusal);
+  return no->status;
+}
+
+void Admission::Ticket::LetGo(int64_t bytes) {
+  MutexLock lock(admission_.mutex_);
+  CountBytes(-std::min(bytes, bytes_));
+}
+
+absl::Status Admission::Ticket::SetStrategy(const std::string& strategy) {
+  std::optional<No> no;
+  {
+    MutexLock lock(admission_.mutex_);
+    strategy_ = strategy;
+    const int64_t points = points_;
+    Count(-points);  // not beside itself
+    if (points > 0) no = admission_.CheckWait(caller_->first, points, strategy);
+    Count(points);
+  }
+  if (!no) return absl::OkStatus();
+  admission_.on_refusal_(no->refusal);
+  return no->status;
+}
+
+void Admission::Ticket::WatchWork(std::function<bool()> is_worked_on) {
+  MutexLock lock(admission_.mutex_);
+  is_worked_on_ = std::move(is_worked_on);
+}
+
+bool Admission::Ticket::MayBringMore() const {
+  MutexLock lock(admission_.mutex_);
+  const AdmissionLimits& limits = admission_.limits_;
+  return points_ == 0 || (admission_.queued_points_ < limits.max_queued_points &&
+                          caller_->second.queued_points < limits.max_queued_points_per_caller);
+}
+
+}  // namespace traverse

@@ -1,0 +1,202 @@
+// One job between the stream that brought it and the engine: feeds layers in, passes messages out,
+// and ends once.
+//
+// At most `window` layers are between "given to the engine" and "written to the caller": a caller
+// who reads slowly holds up his own job, in bounded memory, and no thread. One message is written
+// at a time; Finish is called exactly once, after everything else.
+//
+//   stream --Add--> backlog --window--> engine --OnLayer--> [build order] --> queue --> StartWrite
+//
+// Knows neither gRPC nor protobuf, so that it can be tested under ThreadSanitizer.
+
+#ifndef TRAVERSE_SERVER_JOBS_JOB_RUN_H_
+#define TRAVERSE_SERVER_JOBS_JOB_RUN_H_
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "engine/base/mutex.h"
+#include "engine/engine.h"
+
+namespace traverse {
+
+// How a job ends that wants more memory than there is.
+absl::Status NoMemory();
+
+// A layer with what has to be said about it in its result.
+struct LabelledLayer {
+  JobLayer layer;
+  uint64_t id = 0;     // Layer.id
+  int64_t points = 0;  // all pairs of coordinates sent, also those that the route does not need
+};
+
+// The stream's side of a job. No method is called after Finish.
+class JobPort {
+ public:
+  virtual ~JobPort() = default;
+
+  // The message for one layer, and the one at the end. Calls never overlap; from worker threads.
+  virtual std::string EncodeLayer(const LayerOutcome& outcome, uint64_t id, int64_t points) = 0;
+  virtual std::string EncodeSummary() = 0;
+
+  // Writes a message, then calls JobRun::OnWriteDone. Called again only after that.
+  // `more_follows`: another message or the end comes right behind it.
+  virtual void StartWrite(std::string message, bool more_follows) = 0;
+
+  // Whether the server as a whole would have more of this job now; asked when some of the job's
+  // layers are under way. Called with a lock held: calls nothing of the run.
+  virtual bool MayBringMore() const { return true; }
+
+  // Whether workers have something to do for the job. Called with a lock held: calls nothing of the
+  // run.
+  virtual bool IsWorkedOn() const { return false; }
+
+  // Frees layers that are not needed any more; many, so that it is best done aside. May be called
+  // from any thread, and at the end.
+  virtual void Discard(std::deque<LabelledLayer> layers) { layers.clear(); }
+
+  // Ends the call without waiting for its reader; OnWriteDone(false) follows if a write is under
+  // way.
+  virtual void CancelCall() {}
+
+  // It is worth asking JobRun::AskForRoom again.
+  virtual void OnRoom() = 0;
+
+  // The end. The port may be deleted by another thread before this returns.
+  virtual void Finish(const absl::Status& status) = 0;
+};
+
+// How much of a job may be under way: fed to the engine and not yet written.
+struct JobWindow {
+  int64_t layers = 256;
+  int64_t points = 500'000;  // three layers may exceed it
+};
+
+// Thread-safe, but for what is said below.
+class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
+ public:
+  struct Options {
+    JobWindow window;
+    bool build_order = false;  // messages in build order; else as layers are ready
+  };
+
+  // `port` outlives its Finish. Owned by a shared_ptr.
+  static std::shared_ptr<JobRun> Make(JobPort& port) {
+    return std::shared_ptr<JobRun>(new JobRun(port));
+  }
+
+  // Begins the job. `executor` outlives the run's Finish. At most once, before any Add.
+  void Start(const Options& options, const JobSpec& spec, std::unique_ptr<Strategy> strategy,
+             Executor& executor);
+
+  // The producer's calls, one at a time. Layers may be added without asking for room; they wait
+  // here. Push begins work on what was added.
+  void Add(LabelledLayer layer);
+  void Push();
+
+  // There are no more layers. Without Start: ends with an OK status and no summary.
+  void Close();
+
+  // True if more layers are welcome: there is room and the port may bring more. Else remembers that
+  // the producer waits, and JobPort::OnRoom is called when it is worth asking again.
+  bool AskForRoom();
+
+  // The message of the last StartWrite is out, or (`ok` false) will never be.
+  void OnWriteDone(bool ok);
+
+  // Ends the job with `status`: stops the work within 50 ms and drops what is not yet written.
+  // After the first call, or the end, it does nothing.
+  void Abort(const absl::Status& status);
+
+  // Abort with `status` if the caller has neither sent nor read anything for `time` and it is his
+  // turn: no worker has anything to do for the job. A write that he does not read is given up.
+  void AbortIfStalled(std::chrono::steady_clock::duration time, const absl::Status& status);
+
+  // While at least one hold is taken, Finish is not called: for work that uses the port. False, and
+  // nothing is taken, once the job has ended: the port may be deleted at any time then. A read of
+  // the transport may come in as late as that.
+  [[nodiscard]] bool Hold();
+  void Release();
+
+  // Whether the job may still bring layers, and when it was last seen to move.
+  bool waits_for_message() const;
+  std::chrono::steady_clock::time_point progress() const;
+
+  // Whether Abort was called.
+  bool aborted() const;
+
+  // JobSink, called by the engine.
+  void OnLayer(LayerOutcome outcome) override;
+  void OnDone() override;
+
+ private:
+  struct Label {
+    uint64_t id;
+    int64_t points;
+  };
+  struct Outgoing {
+    std::string message;
+    int64_t layers;  // of the window that it frees when it is written
+    int64_t points;
+  };
+
+  explicit JobRun(JobPort& port) : port_(port) {}
+
+  // Does whatever can be done next; the last thing that a public method does.
+  void Pump(bool feed);
+
+  // Gives layers to the engine while the window has room. Unlocks for the engine's calls.
+  void Feed() TRAVERSE_REQUIRES(mutex_);
+
+  void TakeLayer(LayerOutcome outcome);
+
+  // Something has moved.
+  void NoteProgress() TRAVERSE_REQUIRES(mutex_) { progress_ = std::chrono::steady_clock::now(); }
+
+  bool FitsWindow(int64_t points) const TRAVERSE_REQUIRES(mutex_);
+  bool HasRoom() const TRAVERSE_REQUIRES(mutex_);
+  void Queue(uint64_t index, Outgoing outgoing) TRAVERSE_REQUIRES(mutex_);
+
+  JobPort& port_;
+  mutable Mutex mutex_;
+  Options options_ TRAVERSE_GUARDED_BY(mutex_);
+  std::shared_ptr<Job> job_ TRAVERSE_GUARDED_BY(mutex_);  // null before Start
+
+  std::deque<LabelledLayer> backlog_ TRAVERSE_GUARDED_BY(mutex_);
+  bool closed_ TRAVERSE_GUARDED_BY(mutex_) = false;         // by the producer
+  bool engine_closed_ TRAVERSE_GUARDED_BY(mutex_) = false;  // Close was passed on
+  bool engine_done_ TRAVERSE_GUARDED_BY(mutex_) = true;     // false from Start to OnDone
+  bool feeding_ TRAVERSE_GUARDED_BY(mutex_) = false;        // a thread is in Feed
+
+  uint64_t next_index_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // of the next layer fed
+  std::unordered_map<uint64_t, Label> labels_
+      TRAVERSE_GUARDED_BY(mutex_);  // of layers in the engine
+  int64_t window_layers_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  int64_t window_points_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+
+  std::map<uint64_t, Outgoing> early_
+      TRAVERSE_GUARDED_BY(mutex_);                     // build order: solved before their turn
+  uint64_t next_out_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // build order: whose turn it is
+  std::deque<Outgoing> out_ TRAVERSE_GUARDED_BY(mutex_);
+  std::optional<Outgoing> writing_ TRAVERSE_GUARDED_BY(mutex_);  // its message was moved out
+  bool begun_writing_ TRAVERSE_GUARDED_BY(mutex_) = false;
+  bool room_wanted_ TRAVERSE_GUARDED_BY(mutex_) = false;
+
+  std::chrono::steady_clock::time_point progress_ TRAVERSE_GUARDED_BY(mutex_) =
+      std::chrono::steady_clock::now();
+  int holds_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  std::optional<absl::Status> abort_ TRAVERSE_GUARDED_BY(mutex_);
+  bool finished_ TRAVERSE_GUARDED_BY(mutex_) = false;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_SERVER_JOBS_JOB_RUN_H_

@@ -1,0 +1,191 @@
+// The threads that do the work of all jobs, shared fairly.
+//
+// So many tasks work at a time as there are processors to work on: each of these has a permit. Fair
+// means by time worked, on two levels: the caller who had least is next, and of his jobs the one
+// that had least (fair_order.h). What comes new has a head start.
+//
+// A task that takes long gives its permit up when others wait, each kSlice of its work, wherever it
+// asks its budget (engine/base/turn.h). It goes on in its thread when it is its turn again. So a
+// job of one small layer is answered beside whatever the others do, and there are more threads than
+// permits: one for each task under way.
+//
+//   WorkerPool pool(2);
+//   auto queue = pool.NewQueue("10.0.0.7");      // one for each job
+//   auto job = Job::Start(spec, strategy, *queue, sink);
+//
+// Knows nothing of gRPC, so that it can be tested under ThreadSanitizer.
+
+#ifndef TRAVERSE_SERVER_JOBS_WORKER_POOL_H_
+#define TRAVERSE_SERVER_JOBS_WORKER_POOL_H_
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "engine/base/executor.h"
+#include "engine/base/mutex.h"
+#include "server/jobs/fair_order.h"
+
+namespace traverse {
+
+// How long the tasks of one queue waited for a thread.
+struct QueueWait {
+  int64_t tasks = 0;           // begun so far
+  double first_seconds = 0;    // of the first task
+  double longest_seconds = 0;  // of any task
+};
+
+// A task that was asked for a sign of life and gave none.
+struct SilentTask {
+  std::string caller;
+  std::string job;
+  double seconds = 0;  // since the last one
+};
+
+// Thread-safe.
+class WorkerPool {
+ public:
+  // The engine's view of the pool for one job. Thread-safe. Tasks that are still waiting when the
+  // queue is destroyed are run all the same.
+  class Queue : public Executor {
+   public:
+    virtual QueueWait wait() const = 0;
+
+    // Time that threads spent on tasks of this queue, up to their last pause or their end.
+    virtual double busy_seconds() const = 0;
+
+    // Whether no task of this queue waits or is under way.
+    virtual bool idle() const = 0;
+
+    // The job's name, for SilentTask.
+    virtual void set_job(const std::string& job) = 0;
+  };
+
+  // The time in seconds that the calling thread has worked.
+  using WorkClock = std::function<double()>;
+  static double ThreadCpuSeconds();
+
+  // How long a task works before it gives way, if others wait.
+  static constexpr std::chrono::milliseconds kSlice{10};
+
+  // Tasks that may be under way at a time, paused ones included; and of those of more than
+  // kLargePoints points each, how many points together: their searches hold memory while they are
+  // paused. As many tasks as there are permits may be under way in any case.
+  static constexpr size_t kMostUnderWay = 512;
+  static constexpr int64_t kLargePoints = 20'000;
+  static constexpr int64_t kMostLargePoints = 4'000'000;
+
+  // `permits` tasks work at a time, at least one. `clock` says what they are charged. The threads
+  // are nicer by `nice` than the one that calls.
+  explicit WorkerPool(int permits, WorkClock clock = ThreadCpuSeconds, int nice = 0);
+
+  // Runs what is queued, then ends the threads. REQUIRES: no queue is used any more, except by
+  // tasks of the pool.
+  ~WorkerPool();
+
+  WorkerPool(const WorkerPool&) = delete;
+  WorkerPool& operator=(const WorkerPool&) = delete;
+
+  // A queue for one job of `caller`. May outlive its last task, not the pool. `on_no_memory` is
+  // called when a task has ended with std::bad_alloc: one job that wants too much ends, not the
+  // process.
+  std::shared_ptr<Queue> NewQueue(const std::string& caller,
+                                  std::function<void()> on_no_memory = {});
+
+  // How many tasks work at a time.
+  int threads() const { return permits_; }
+
+  // Threads there are: one for each task under way, and some that are idle.
+  size_t thread_count() const;
+
+  // Tasks that work now.
+  int busy() const;
+
+  // Tasks that wait now: for their beginning, or to go on.
+  int64_t waiting() const;
+
+  // The tasks at work that gave no sign of life for longer than `limit`. Asks all of them for one,
+  // which those that ask their budgets give at once: to be called again and again, more often than
+  // each `limit`.
+  std::vector<SilentTask> Silent(std::chrono::nanoseconds limit);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  class QueueImpl;
+  class Worker;
+
+  struct Task {
+    std::function<void()> run;
+    Clock::time_point submitted;
+    int64_t points = 0;
+    std::shared_ptr<QueueImpl> queue = nullptr;  // which lives as long as its tasks
+
+    bool large() const { return points > kLargePoints; }
+  };
+
+  // A caller with queues whose tasks wait or are under way.
+  struct Caller : FairOrder::Member {
+    FairOrder turns;
+    int queues = 0;
+  };
+
+  void Submit(const std::shared_ptr<QueueImpl>& queue, Task task) TRAVERSE_EXCLUDES(mutex_);
+  void Enter(QueueImpl& queue) TRAVERSE_REQUIRES(mutex_);
+  void LeaveIfIdle(QueueImpl& queue) TRAVERSE_REQUIRES(mutex_);
+
+  // Lets `queue` wait for its turn, if it has something to do.
+  void LetWait(QueueImpl& queue) TRAVERSE_REQUIRES(mutex_);
+
+  // The opposite, if it has nothing to do any more.
+  void WithdrawIfNothing(QueueImpl& queue) TRAVERSE_REQUIRES(mutex_);
+
+  // The queue whose turn it is; null if none waits that may go on.
+  QueueImpl* TakeNext() TRAVERSE_REQUIRES(mutex_);
+  bool MayBegin(const Task& task) const TRAVERSE_REQUIRES(mutex_);
+
+  // Gives permits that are free to those whose turn it is.
+  void Dispatch() TRAVERSE_REQUIRES(mutex_);
+  bool Begin(QueueImpl& queue) TRAVERSE_REQUIRES(mutex_);
+  void TellWorkers() TRAVERSE_REQUIRES(mutex_);
+
+  void Charge(Worker& worker) TRAVERSE_REQUIRES(mutex_);
+  bool Pause(Worker& worker) TRAVERSE_EXCLUDES(mutex_);
+  void WaitForTurn(Worker& worker) TRAVERSE_REQUIRES(mutex_);
+  void EndTask(Worker& worker) TRAVERSE_REQUIRES(mutex_);
+  void ReleaseHeldBack() TRAVERSE_REQUIRES(mutex_);
+
+  bool AddThread() TRAVERSE_REQUIRES(mutex_);
+  bool RetireIfTooMany(Worker& worker) TRAVERSE_REQUIRES(mutex_);
+  void Run(Worker& worker) TRAVERSE_EXCLUDES(mutex_);
+  void RunTasks(Worker& worker);
+  Worker* WorkerOfThisThread() const TRAVERSE_EXCLUDES(mutex_);
+
+  const WorkClock clock_;
+  const int permits_;
+  const int nice_;
+  mutable Mutex mutex_;
+  ConditionVariable work_;
+  std::map<std::string, Caller> callers_ TRAVERSE_GUARDED_BY(mutex_);  // those with tasks
+  FairOrder turns_ TRAVERSE_GUARDED_BY(mutex_);                        // of callers
+  std::deque<std::shared_ptr<QueueImpl>> held_back_ TRAVERSE_GUARDED_BY(mutex_);  // MayBegin: no
+  std::deque<Task> handed_out_ TRAVERSE_GUARDED_BY(mutex_);  // with a permit, for idle threads
+  int64_t waiting_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  int busy_ TRAVERSE_GUARDED_BY(mutex_) = 0;              // permits in use
+  size_t under_way_ TRAVERSE_GUARDED_BY(mutex_) = 0;      // tasks begun and not ended
+  int64_t large_points_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // of large tasks under way
+  size_t idle_ TRAVERSE_GUARDED_BY(mutex_) = 0;           // threads without a task
+  bool stopping_ TRAVERSE_GUARDED_BY(mutex_) = false;
+  std::vector<std::unique_ptr<Worker>> workers_ TRAVERSE_GUARDED_BY(mutex_);
+  std::vector<std::unique_ptr<Worker>> retired_ TRAVERSE_GUARDED_BY(mutex_);  // to be joined
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_SERVER_JOBS_WORKER_POOL_H_

@@ -1,0 +1,257 @@
+#include "server/net/connections.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <utility>
+
+#include "server/net/socket_info.h"
+#include "server/net/tcp_listen.h"
+
+namespace traverse {
+namespace {
+
+// How often the connections are looked at: while much comes in, and else.
+constexpr int kBusyMilliseconds = 10;
+constexpr int kQuietMilliseconds = 100;
+constexpr uint64_t kMuchBytes = 1 << 20;
+
+// Pending bytes are halved in so many seconds. What is small and never ends, such as the frames of
+// health checks, does not add up; a message that takes minutes is given up by --idle_timeout.
+constexpr double kHalfLifeSeconds = 30;
+
+// What a message takes beside its bytes (headers, frames, TLS), and what a call may send before it
+// hears that it is refused: the first window of its stream.
+constexpr double kFraming = 1.01;
+constexpr double kMessageOverhead = 1024;
+constexpr double kFirstWindow = 66'000;
+
+// What a message is taken to have beside its bytes, but has not, is no licence to send later.
+constexpr double kMostCredit = -(256 << 10);
+
+// A connection that says nothing for so long may be closed for a new one.
+constexpr auto kIdle = std::chrono::seconds(1);
+
+// Time for the end of a job to take effect before its connection is cut.
+constexpr auto kPatience = std::chrono::milliseconds(250);
+
+// What it is worth to cut a connection for, where memory is short.
+constexpr double kWorthCutting = 64 << 10;
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Connections>> Connections::Listen(const std::string& address,
+                                                                 const ConnectionRules& rules,
+                                                                 Hooks hooks) {
+  absl::StatusOr<std::vector<int>> listeners = TcpListen(address);
+  if (!listeners.ok()) return listeners.status();
+  std::unique_ptr<Connections> made(new Connections(rules, std::move(hooks)));
+  made->listeners_ = *std::move(listeners);
+  made->port_ = PortOf(made->listeners_.front());
+  made->stop_ = eventfd(0, EFD_CLOEXEC);
+  return made;
+}
+
+Connections::~Connections() {
+  StopListening();
+  MutexLock lock(mutex_);
+  for (auto it = table_.begin(); it != table_.end();) it = Cut(it);
+}
+
+void Connections::Start() {
+  thread_ = std::thread([this] { Serve(); });
+}
+
+void Connections::StopListening() {
+  if (thread_.joinable()) {
+    eventfd_write(stop_, 1);
+    thread_.join();
+  }
+  for (const int listener : listeners_) close(listener);
+  listeners_.clear();
+  if (stop_ >= 0) close(std::exchange(stop_, -1));
+}
+
+void Connections::Serve() {
+  std::vector<pollfd> polled = {{stop_, POLLIN, 0}};
+  for (const int listener : listeners_) polled.push_back({listener, POLLIN, 0});
+  Clock::time_point next = Clock::now();
+  bool busy = false;
+  while (true) {
+    poll(polled.data(), polled.size(), busy ? kBusyMilliseconds : kQuietMilliseconds);
+    if (polled[0].revents != 0) return;
+    for (size_t i = 1; i < polled.size(); ++i) {
+      if (polled[i].revents != 0) AcceptAll(polled[i].fd);
+    }
+    if (Clock::now() < next) continue;
+    for (const std::string& peer : Look(busy)) Restrain(peer);
+    next = Clock::now() + std::chrono::milliseconds(kBusyMilliseconds);
+  }
+}
+
+void Connections::AcceptAll(int listener) {
+  while (true) {
+    const int socket = accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    if (socket < 0) {
+      if (errno != EMFILE && errno != ENFILE) return;
+      MutexLock lock(mutex_);
+      MakeRoom();
+      poll(nullptr, 0, kBusyMilliseconds);  // its files are closed in a moment
+      return;
+    }
+    SetUp(socket, rules_.peer_timeout);
+    const std::string peer = PeerOf(socket);
+    const int ours = fcntl(socket, F_DUPFD_CLOEXEC, 0);
+    {
+      MutexLock lock(mutex_);
+      const bool full = static_cast<int>(table_.size()) >= rules_.max_connections;
+      if (peer.empty() || ours < 0 || (full && !MakeRoom())) {
+        close(socket);
+        if (ours >= 0) close(ours);
+        continue;
+      }
+      const auto [entry, is_new] = table_.try_emplace(peer);
+      if (!is_new) close(entry->second.socket);
+      entry->second = Connection();
+      entry->second.socket = ours;
+      entry->second.moved = Clock::now();
+    }
+    hooks_.hand_over(socket);
+  }
+}
+
+// Closes the connection that has been idle for longest.
+bool Connections::MakeRoom() {
+  auto oldest = table_.end();
+  for (auto it = table_.begin(); it != table_.end(); ++it) {
+    if (it->second.jobs > 0) continue;
+    if (oldest == table_.end() || it->second.moved < oldest->second.moved) oldest = it;
+  }
+  if (oldest == table_.end() || Clock::now() - oldest->second.moved < kIdle) return false;
+  Cut(oldest);
+  return true;
+}
+
+Connections::Table::iterator Connections::Cut(Table::iterator connection) {
+  // gRPC, which has the socket too, is told of its end.
+  shutdown(connection->second.socket, SHUT_RDWR);
+  close(connection->second.socket);
+  ++cut_;
+  return table_.erase(connection);
+}
+
+int64_t Connections::Allowed(const Connection& connection) const {
+  return rules_.stranger_bytes + connection.jobs * rules_.job_bytes;
+}
+
+std::vector<std::string> Connections::Look(bool& busy) {
+  std::vector<std::string> offenders;
+  uint64_t most = 0;
+  MutexLock lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  const double seconds = std::chrono::duration<double>(now - looked_).count();
+  const double fading = std::exp2(-seconds / kHalfLifeSeconds);
+  looked_ = now;
+  for (auto it = table_.begin(); it != table_.end();) {
+    Connection& connection = it->second;
+    const SocketInfo info = InfoOf(connection.socket);
+    if (!info.open) {
+      close(connection.socket);
+      it = table_.erase(it);
+      continue;
+    }
+    const uint64_t more = info.received - connection.received;
+    if (more > 0) connection.moved = now;
+    most = std::max(most, more);
+    connection.received = info.received;
+    connection.pending =
+        std::max(kMostCredit, connection.pending * fading + static_cast<double>(more));
+    if (connection.pending > static_cast<double>(Allowed(connection))) {
+      offenders.push_back(it->first);
+    }
+    ++it;
+  }
+  busy = most > kMuchBytes;
+  return offenders;
+}
+
+void Connections::Restrain(const std::string& peer) {
+  {
+    MutexLock lock(mutex_);
+    const auto found = table_.find(peer);
+    if (found == table_.end()) return;
+    Connection& connection = found->second;
+    const Clock::time_point now = Clock::now();
+    const bool told = connection.complained != Clock::time_point();
+    if (told && now - connection.complained < kPatience) return;
+    if (told || connection.jobs == 0) {
+      Cut(found);
+      return;
+    }
+    connection.complained = now;
+  }
+  // Not under the lock: the end of a job calls back.
+  if (hooks_.end_job(peer)) {
+    MutexLock lock(mutex_);
+    const auto found = table_.find(peer);
+    if (found == table_.end()) return;
+    found->second.pending -= static_cast<double>(rules_.job_bytes);
+    found->second.complained = Clock::time_point();
+  }
+}
+
+void Connections::OnCall(const std::string& peer) {
+  MutexLock lock(mutex_);
+  const auto found = table_.find(PeerKey(peer));
+  if (found == table_.end() || found->second.pending <= 0) return;
+  found->second.pending = std::max(0.0, found->second.pending - kFirstWindow);
+}
+
+void Connections::OnJob(const std::string& peer, int change) {
+  MutexLock lock(mutex_);
+  const auto found = table_.find(PeerKey(peer));
+  if (found != table_.end()) found->second.jobs = std::max(0, found->second.jobs + change);
+}
+
+void Connections::OnMessage(const std::string& peer, int64_t bytes) {
+  MutexLock lock(mutex_);
+  const auto found = table_.find(PeerKey(peer));
+  if (found == table_.end()) return;
+  // Not below zero by what Look has not seen yet: it will.
+  found->second.pending -= static_cast<double>(bytes) * kFraming + kMessageOverhead;
+}
+
+bool Connections::CutLargest() {
+  MutexLock lock(mutex_);
+  const auto largest = std::max_element(
+      table_.begin(), table_.end(),
+      [](const auto& a, const auto& b) { return a.second.pending < b.second.pending; });
+  if (largest == table_.end() || largest->second.pending < kWorthCutting) return false;
+  Cut(largest);
+  return true;
+}
+
+int Connections::open() const {
+  MutexLock lock(mutex_);
+  return static_cast<int>(table_.size());
+}
+
+int64_t Connections::pending_bytes() const {
+  MutexLock lock(mutex_);
+  double sum = 0;
+  for (const auto& [peer, connection] : table_) sum += std::max(0.0, connection.pending);
+  return static_cast<int64_t>(sum);
+}
+
+uint64_t Connections::cut() const {
+  MutexLock lock(mutex_);
+  return cut_;
+}
+
+}  // namespace traverse

@@ -1,0 +1,120 @@
+// The TCP connections of the service: taken here, handed to gRPC, and watched from outside.
+//
+// gRPC 1.51 buffers an unfinished message up to any length, headers without end and the control
+// frames of a flood, for whoever connects, and tells nobody of it. What it cannot hide is how many
+// bytes came in on a connection. Those that became no message yet are what the connection makes the
+// server hold:
+//
+//   pending = received - (messages delivered and what frames them), ever less as time goes by
+//
+// A connection may have so much pending for each of its jobs, and little beside. Beyond that it is
+// told on, or cut. A descriptor of our own for each connection makes that possible.
+//
+// It takes connections for itself, so that a process that has all of its files open loses none of
+// them: who came last or has been idle for longest has to go. Knows nothing of gRPC. Thread-safe.
+
+#ifndef TRAVERSE_SERVER_NET_CONNECTIONS_H_
+#define TRAVERSE_SERVER_NET_CONNECTIONS_H_
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "engine/base/mutex.h"
+
+namespace traverse {
+
+struct ConnectionRules {
+  int max_connections = 1024;
+  int64_t stranger_bytes = int64_t{4} << 20;  // pending beside those of jobs
+  int64_t job_bytes = int64_t{64} << 20;      // pending for each job
+
+  // Unacknowledged data for so long ends a connection.
+  std::chrono::milliseconds peer_timeout{10'000};
+};
+
+class Connections {
+ public:
+  struct Hooks {
+    std::function<void(int socket)> hand_over;  // a new connection, whose socket is given away
+
+    // `peer` has more pending than its jobs may: ends one of them. False if there is none to end.
+    std::function<bool(const std::string& peer)> end_job;
+  };
+
+  // Listens on `address`, as of TcpListen, until it is destroyed. Errors: as of TcpListen.
+  static absl::StatusOr<std::unique_ptr<Connections>> Listen(const std::string& address,
+                                                             const ConnectionRules& rules,
+                                                             Hooks hooks);
+  ~Connections();
+
+  Connections(const Connections&) = delete;
+  Connections& operator=(const Connections&) = delete;
+
+  // Takes no more connections, and begins to hand them over.
+  void Start();
+  void StopListening();
+
+  int port() const { return port_; }
+
+  // `peer`, as gRPC writes it (ipv4:10.0.0.7:41234), has called, and may do so: what it sent before
+  // it heard of a refusal is not held against it. Then: its job has begun, or ended; a message of
+  // `bytes` has come from it.
+  void OnCall(const std::string& peer);
+  void OnJob(const std::string& peer, int change);
+  void OnMessage(const std::string& peer, int64_t bytes);
+
+  // Ends the connection that has most pending, jobs or not, if that is worth it. Returns whether.
+  bool CutLargest();
+
+  int open() const;
+  int64_t pending_bytes() const;
+  uint64_t cut() const;  // so far
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  struct Connection {
+    int socket = -1;        // our descriptor
+    uint64_t received = 0;  // bytes, as seen last
+    double pending = 0;
+    int jobs = 0;
+    Clock::time_point moved;       // bytes came last
+    Clock::time_point complained;  // end_job was called
+  };
+  using Table = std::map<std::string, Connection>;
+
+  Connections(const ConnectionRules& rules, Hooks hooks)
+      : rules_(rules), hooks_(std::move(hooks)) {}
+
+  void Serve();
+  void AcceptAll(int listener);
+  bool MakeRoom() TRAVERSE_REQUIRES(mutex_);
+  Table::iterator Cut(Table::iterator connection) TRAVERSE_REQUIRES(mutex_);
+
+  // Brings the table up to date. Returns those with too much pending, and whether much came in.
+  std::vector<std::string> Look(bool& busy);
+  void Restrain(const std::string& peer);
+  int64_t Allowed(const Connection& connection) const;
+
+  const ConnectionRules rules_;
+  const Hooks hooks_;
+  int port_ = 0;
+  std::vector<int> listeners_;
+  int stop_ = -1;  // an eventfd
+  mutable Mutex mutex_;
+  Table table_ TRAVERSE_GUARDED_BY(mutex_);  // by address and port
+  Clock::time_point looked_ TRAVERSE_GUARDED_BY(mutex_) = Clock::now();
+  uint64_t cut_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  std::thread thread_;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_SERVER_NET_CONNECTIONS_H_

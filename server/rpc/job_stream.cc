@@ -1,0 +1,392 @@
+#include "server/rpc/job_stream.h"
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "server/rpc/grpc_status.h"
+
+namespace traverse {
+namespace {
+
+using Clock = Budget::Clock;
+
+// The way back of the last results takes part of the deadline: a share of the time, within bounds,
+// and something for each layer and point that is known to come, as even a layer whose time has run
+// out is given a greedy route, validated and written; at least what it took of late for this
+// caller, and what threads wait for a busy machine (return_lag.h). But never more than half.
+constexpr double kMarginShare = 0.1;
+constexpr auto kMinMargin = std::chrono::milliseconds(10);
+constexpr auto kMaxMargin = std::chrono::milliseconds(500);
+constexpr auto kMarginPerLayer = std::chrono::microseconds(100);
+constexpr auto kMarginPerPoint = std::chrono::nanoseconds(500);
+
+Clock::duration Margin(Clock::duration left, int64_t layers, int64_t points,
+                       Clock::duration measured, Clock::duration wakings) {
+  const auto share = std::chrono::duration_cast<Clock::duration>(left * kMarginShare);
+  const Clock::duration base =
+      std::max(std::clamp<Clock::duration>(share, kMinMargin, kMaxMargin), measured);
+  return std::min<Clock::duration>(
+      left / 2, base + wakings + layers * kMarginPerLayer + points * kMarginPerPoint);
+}
+
+// Messages up to this size are read in the thread of gRPC that brought them; a reaction has to be
+// quick.
+constexpr size_t kReadHereBytes = 32 << 10;
+
+// What is read at one go of a larger one: about a millisecond's work.
+constexpr int64_t kPieceBytes = 64 << 10;
+
+// Layers freed at one go, when a job ends early.
+constexpr size_t kDiscardedAtOnce = 64;
+
+std::string NewJobId() {
+  std::random_device random;
+  return absl::StrFormat("%08x%08x", random(), random());
+}
+
+// `text` as metadata may have it: what is not printable ASCII is escaped as in a URL.
+std::string MetadataText(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (absl::ascii_isprint(static_cast<unsigned char>(c)) && c != '%' && c != ' ') {
+      escaped.push_back(c);
+    } else {
+      escaped += absl::StrFormat("%%%02X", static_cast<unsigned char>(c));
+    }
+  }
+  return escaped;
+}
+
+absl::Status OverLimit(const std::string& place, int64_t found, const char* what, int64_t limit) {
+  return absl::ResourceExhaustedError(
+      absl::StrCat(place, ": ", found, " ", what, ", more than this server's limit of ", limit));
+}
+
+void DiscardSome(const std::shared_ptr<std::deque<LabelledLayer>>& layers,
+                 const std::shared_ptr<WorkerPool::Queue>& queue) {
+  layers->resize(layers->size() - std::min(layers->size(), kDiscardedAtOnce));
+  if (!layers->empty()) queue->Submit([layers, queue] { DiscardSome(layers, queue); });
+}
+
+}  // namespace
+
+JobStream::JobStream(ServiceCore& core, grpc::CallbackServerContext& context, CallInfo call)
+    : core_(core), context_(context), call_(std::move(call)) {}
+
+JobStream::~JobStream() {
+  if (run_ != nullptr) core_.Unregister(run_, call_.peer);
+}
+
+absl::Status JobStream::Admit(const absl::Status& authorized, int64_t points) {
+  if (authorized.ok()) core_.OnCall(call_.peer);
+  if (!authorized.ok()) {
+    core_.admission.CountRefusal(absl::IsUnauthenticated(authorized) ? Refusal::kUnauthenticated
+                                                                     : Refusal::kPermission);
+    return authorized;
+  }
+  absl::StatusOr<std::unique_ptr<Admission::Ticket>> ticket =
+      core_.admission.Admit(call_.caller, points);
+  if (!ticket.ok()) return ticket.status();
+  ticket_ = *std::move(ticket);
+  // What a header states may be a lie: it is looked at, and reserves nothing.
+  ticket_->Resize(0).IgnoreError();
+  run_ = JobRun::Make(*this);
+  queue_ = core_.pool.NewQueue(call_.caller, [run = run_] { run->Abort(NoMemory()); });
+  ticket_->WatchWork([queue = queue_] { return !queue->idle(); });
+  core_.Register(run_, call_.peer);
+  return absl::OkStatus();
+}
+
+absl::Status JobStream::Begin(const v1::JobOptions& options) {
+  absl::StatusOr<JobSetup> setup = JobFromProto(options);
+  if (!setup.ok()) {
+    setup_.job_id = options.job_id().substr(0, 256);  // for the log
+    AnnounceJob();
+    return setup.status();
+  }
+  setup_ = *std::move(setup);
+  AnnounceJob();
+  queue_->set_job(setup_.job_id);
+  layer_metrics_ = &core_.metrics.ForStrategy(setup_.strategy_name);
+  return ticket_->SetStrategy(setup_.strategy_name);
+}
+
+void JobStream::AnnounceJob() {
+  if (setup_.job_id.empty()) setup_.job_id = NewJobId();
+  context_.AddInitialMetadata("job_id", MetadataText(setup_.job_id));
+}
+
+absl::Status JobStream::CheckSize(const v1::Layer& layer, uint64_t index, int64_t points) const {
+  const std::string place = absl::StrCat("layers[", index, "]");
+  const int64_t limit = core_.limits.max_points_per_layer;
+  if (points > limit) {
+    core_.admission.CountRefusal(Refusal::kLayerPoints);
+    return OverLimit(place, points, "points", limit);
+  }
+  // Islands, nodes and pairs may be empty, but they take memory all the same.
+  int64_t pairs = 0;
+  for (const v1::PlanNode& node : layer.plan().nodes()) pairs += node.any_order().before_size();
+  const int64_t parts =
+      std::max<int64_t>(pairs, std::max<int64_t>(layer.islands_size(), layer.plan().nodes_size()));
+  if (parts / 4 > limit) {
+    core_.admission.CountRefusal(Refusal::kLayerPoints);
+    return OverLimit(place, parts, "islands, nodes or pairs", 4 * limit);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status JobStream::CheckLayerCount(int64_t more) const {
+  const JobLimits& limits = core_.limits;
+  const int64_t total = layers_received() + more;
+  if (more > limits.max_layers_per_message) {
+    core_.admission.CountRefusal(Refusal::kJobLayers);
+    return OverLimit("layers", more, "layers in a message", limits.max_layers_per_message);
+  }
+  if (limits.max_layers_per_job > 0 && total > limits.max_layers_per_job) {
+    core_.admission.CountRefusal(Refusal::kJobLayers);
+    return OverLimit("layers", total, "layers", limits.max_layers_per_job);
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<LabelledLayer> JobStream::Translate(const v1::Layer& layer, uint64_t index) const {
+  const int64_t points = CountPoints(layer);
+  if (absl::Status status = CheckSize(layer, index, points); !status.ok()) return status;
+  absl::StatusOr<LabelledLayer> value = LayerFromProto(layer, index, setup_.interleaved);
+  if (value.ok()) value->points = std::max<int64_t>(1, points);
+  return value;
+}
+
+absl::Status JobStream::Resize(int64_t points) {
+  admitted_points_ = points;
+  return ticket_->Resize(points);
+}
+
+void JobStream::ReadMessage(grpc::ByteBuffer& message) {
+  const std::shared_ptr<JobRun> run = run_;
+  if (!run->Hold()) return;  // the call was cancelled while its message came in
+  opened_ = false;
+  const auto bytes = static_cast<int64_t>(message.Length());
+  core_.OnMessage(call_.peer, bytes);
+  if (absl::Status status = CheckMessage(bytes); !status.ok()) {
+    run->Abort(status);
+    run->Release();
+    return;
+  }
+  if (message.Length() > kReadHereBytes) return ReadPiecesInTurns(message);
+  while (ReadPiece(message)) {
+  }
+  run->Release();  // may end the call
+}
+
+void JobStream::ReadPiecesInTurns(grpc::ByteBuffer& message) {
+  const std::shared_ptr<JobRun> run = run_;
+  const absl::Status submitted = Guarded([&] {
+    queue_->Submit([this, &message, run] {
+      if (ReadPiece(message)) return ReadPiecesInTurns(message);
+      run->Release();  // may end the call
+    });
+    return absl::OkStatus();
+  });
+  if (submitted.ok()) return;
+  run->Abort(submitted);
+  run->Release();
+}
+
+bool JobStream::ReadPiece(grpc::ByteBuffer& message) {
+  if (run_->aborted()) return false;
+  const absl::Status status =
+      Guarded([&] { return opened_ ? ReadLayers() : OpenMessage(message); });
+  if (!status.ok()) {
+    run_->Abort(status);
+    return false;
+  }
+  if (reader_.left() > 0) return true;
+  ticket_->LetGo(std::exchange(message_bytes_, 0));
+  if (setup_.validate_only) ticket_->LetGo(reader_.footprint_bytes());
+  OnMessageRead();
+  return false;
+}
+
+// The bytes of the message are held until it is read; what it comes to, until that is solved.
+absl::Status JobStream::CheckMessage(int64_t bytes) {
+  if (bytes > core_.limits.max_message_bytes) {
+    core_.admission.CountRefusal(Refusal::kMessage);
+    return OverLimit("the message", bytes, "bytes", core_.limits.max_message_bytes);
+  }
+  if (absl::Status status = ticket_->Hold(bytes); !status.ok()) return status;
+  message_bytes_ = bytes;
+  return absl::OkStatus();
+}
+
+absl::Status JobStream::OpenMessage(grpc::ByteBuffer& message) {
+  const RequestLimits limits = {.parts_of_layer = 4 * core_.limits.max_points_per_layer,
+                                .footprint_bytes = core_.limits.max_bytes_per_message};
+  if (absl::Status status = reader_.Open(RequestType(), message, limits); !status.ok()) {
+    if (absl::IsResourceExhausted(status)) core_.admission.CountRefusal(Refusal::kLayerPoints);
+    return status;
+  }
+  opened_ = true;
+  faults_ = FaultList();
+  if (absl::Status status = OnOptions(reader_); !status.ok()) {
+    if (!FaultList::IsFault(status) || reader_.layers() == 0) return status;
+    faults_.Add(status);  // those of the layers are told as well
+  }
+  if (absl::Status status = CheckLayerCount(reader_.layers()); !status.ok()) return status;
+  return ticket_->Hold(reader_.footprint_bytes());
+}
+
+absl::Status JobStream::ReadLayers() {
+  std::vector<LabelledLayer> layers;
+  uint64_t faulty = 0;
+  int64_t points = points_received_;
+  const auto take = [&](const v1::Layer& message) -> absl::Status {
+    const uint64_t index = layers_received_ + layers.size() + faulty;
+    absl::StatusOr<LabelledLayer> layer = Translate(message, index);
+    if (FaultList::IsFault(layer.status())) {
+      faults_.Add(layer.status());
+      ++faulty;
+      return faults_.full() ? faults_.status() : absl::OkStatus();
+    }
+    if (!layer.ok()) return layer.status();
+    points += layer->points;
+    if (core_.limits.max_points_per_job > 0 && points > core_.limits.max_points_per_job) {
+      core_.admission.CountRefusal(Refusal::kJobPoints);
+      return OverLimit(absl::StrCat("layers[", index, "]"), points, "points up to here",
+                       core_.limits.max_points_per_job);
+    }
+    layers.push_back(*std::move(layer));
+    return absl::OkStatus();
+  };
+  if (absl::Status status = reader_.Read(kPieceBytes, take); !status.ok()) return status;
+  if (!faults_.empty()) {
+    layers_received_ += layers.size() + faulty;
+    return reader_.left() == 0 ? faults_.status() : absl::OkStatus();
+  }
+  // By what was sent alone: neither the pieces nor what has arrived by now may change a route.
+  for (LabelledLayer& layer : layers) layer.layer.more_follows = true;
+  if (reader_.left() == 0 && !layers.empty())
+    layers.back().layer.more_follows = MoreFollowsMessage();
+  AddLayers(std::move(layers));
+  return absl::OkStatus();
+}
+
+void JobStream::StartEngine(int64_t expected_layers, int64_t expected_points) {
+  if (setup_.validate_only) return;
+  std::optional<Clock::time_point> end;
+  if (call_.deadline) {
+    const Clock::time_point now = Clock::now();
+    end = *call_.deadline - Margin(*call_.deadline - now, expected_layers, expected_points,
+                                   core_.return_lag.Margin(call_.caller),
+                                   core_.wake_lateness.Margin());
+    search_end_ = end;
+  }
+  if (setup_.time_limit != absl::InfiniteDuration()) {
+    const Clock::time_point limit =
+        call_.start + std::chrono::duration_cast<Clock::duration>(
+                          absl::ToChronoNanoseconds(std::min(setup_.time_limit, absl::Hours(1e5))));
+    end = end ? std::min(*end, limit) : limit;
+  }
+  setup_.spec.deadline = end;
+  run_->Start({core_.limits.window, setup_.build_order}, setup_.spec, std::move(setup_.strategy),
+              *queue_);
+}
+
+void JobStream::AddLayers(std::vector<LabelledLayer> layers) {
+  int64_t points = 0;
+  for (const LabelledLayer& layer : layers) points += layer.points;
+  // At the end of a message whatever was admitted too much is given back.
+  const bool last = reader_.left() == 0;
+  const int64_t admitted = last ? admitted_points_ : std::min(points, admitted_points_);
+  admitted_points_ -= admitted;
+  layers_received_ += layers.size();
+  points_received_ += points;
+  if (setup_.validate_only) return;
+  ticket_->Add(points - admitted);
+  layers_queued_ += layers.size();
+  core_.queue_layers += static_cast<int64_t>(layers.size());
+  for (LabelledLayer& layer : layers) run_->Add(std::move(layer));
+}
+
+void JobStream::Discard(std::deque<LabelledLayer> layers) {
+  // Without the memory for it they are freed here and now.
+  Guarded([&] {
+    // A function may be copied, and layers are not to be.
+    const auto left = std::make_shared<std::deque<LabelledLayer>>(std::move(layers));
+    queue_->Submit([left, queue = queue_] { DiscardSome(left, queue); });
+    return absl::OkStatus();
+  }).IgnoreError();
+}
+
+void JobStream::OnCallCancelled() {
+  if (run_ == nullptr) return;
+  const bool late = call_.deadline && Clock::now() >= *call_.deadline;
+  run_->Abort(late ? absl::DeadlineExceededError("the deadline of the call has passed")
+                   : absl::CancelledError("the caller cancelled the call"));
+}
+
+std::string JobStream::EncodeLayer(const LayerOutcome& outcome, uint64_t id, int64_t points) {
+  totals_.Add(outcome);
+  core_.metrics.CountLayer(*layer_metrics_, outcome, setup_.idle_speed_mm_s);
+  const double busy_seconds = queue_->busy_seconds();
+  ticket_->Remove(points, busy_seconds - counted_seconds_);
+  counted_seconds_ = busy_seconds;
+  --core_.queue_layers;
+  return Encode(outcome, id);
+}
+
+std::string JobStream::EncodeSummary() {
+  v1::JobSummary summary;
+  summary.set_job_id(setup_.job_id);
+  summary.set_strategy(setup_.strategy_name);
+  totals_.ToProto(setup_.idle_speed_mm_s, summary);
+  summary.set_wall_seconds(WallSeconds());
+  return Encode(summary);
+}
+
+double JobStream::WallSeconds() const {
+  return std::chrono::duration<double>(Clock::now() - call_.start).count();
+}
+
+JobRecord JobStream::Record(const absl::Status& status) const {
+  JobRecord record;
+  record.job_id = setup_.job_id;
+  record.method = call_.method;
+  record.caller = call_.caller;
+  record.peer = call_.peer;
+  record.trace_id = call_.trace_id;
+  record.strategy = layer_metrics_ != nullptr ? setup_.strategy_name : Metrics::kUnknownStrategy;
+  record.layers_received = layers_received_;
+  record.layers = totals_.layers();
+  record.points = points_received_;
+  record.queue_seconds = queue_ != nullptr ? queue_->wait().first_seconds : 0;
+  record.compute_seconds = totals_.compute_seconds();
+  record.wall_seconds = WallSeconds();
+  record.travel_given_mm = totals_.given_mm();
+  record.travel_mm = totals_.travel_mm();
+  record.idle_seconds_saved = (totals_.given_mm() - totals_.travel_mm()) / setup_.idle_speed_mm_s;
+  record.invalid_routes = totals_.invalid_routes();
+  record.status = status;
+  return record;
+}
+
+void JobStream::End(const absl::Status& status) {
+  const JobRecord record = Record(status);
+  core_.queue_layers -= static_cast<int64_t>(layers_queued_ - totals_.layers());
+  core_.metrics.CountJob(record.strategy, status.code(), record.wall_seconds);
+  core_.metrics.CountRpc(call_.method, status.code());
+  core_.log->Job(record);
+  if (const Clock::time_point now = Clock::now(); search_end_ && now > *search_end_) {
+    core_.return_lag.Record(call_.caller, now - *search_end_);
+  }
+  // Before the caller hears of the end: his next job may need the place.
+  ticket_.reset();
+  FinishCall(ToGrpcStatus(status));
+}
+
+}  // namespace traverse

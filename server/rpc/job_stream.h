@@ -1,0 +1,158 @@
+// What the two calls that bring jobs have in common: from translated options to the end of the
+// call. The reactors add how messages are read and written.
+
+#ifndef TRAVERSE_SERVER_RPC_JOB_STREAM_H_
+#define TRAVERSE_SERVER_RPC_JOB_STREAM_H_
+
+#include <grpcpp/server_context.h>
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/status.h>
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <new>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "server/jobs/job_run.h"
+#include "server/rpc/call_info.h"
+#include "server/rpc/request_reader.h"
+#include "server/service_core.h"
+#include "server/translate/fault_list.h"
+#include "server/translate/translate.h"
+#include "server/translate/translate_result.h"
+
+namespace traverse {
+
+// A reactor admits its call, then brings messages, one at a time; of each it is told when the
+// options are known and when the layers were added.
+class JobStream : public JobPort {
+ public:
+  ~JobStream() override;
+
+ protected:
+  // `context` is that of the call, and lives as long.
+  JobStream(ServiceCore& core, grpc::CallbackServerContext& context, CallInfo call);
+
+  // Lets the job in, with an estimate of its points, or returns why not: `authorized`, what
+  // Authorize said of the call, or a limit. On success run() is there.
+  absl::Status Admit(const absl::Status& authorized, int64_t points);
+
+  // What a message of so many bytes has at most: a point is two doubles, and little else is of any
+  // size.
+  static int64_t EstimatePoints(size_t bytes) { return static_cast<int64_t>(bytes / 16 + 1); }
+
+  // Admit for a job all of which is in a message that has arrived. REQUIRES: it was let in.
+  absl::Status Resize(int64_t points);
+
+  // Reads `message`, which lives until OnMessageRead and is emptied at once: checks and translates
+  // its layers, which follow those added so far. A large one is read by the workers, in pieces
+  // between which other jobs have their turns. Ends the job if there is a fault.
+  void ReadMessage(grpc::ByteBuffer& message);
+
+  // Reads the job's options.
+  absl::Status Begin(const v1::JobOptions& options);
+
+  // Starts the engine; once, after Begin. What is known to come widens the margin between the last
+  // results and the deadline.
+  void StartEngine(int64_t expected_layers, int64_t expected_points);
+
+  // Counts the job under no strategy: its caller never named one.
+  void ForgetStrategy() { layer_metrics_ = nullptr; }
+
+  // Stops the job because the call was cancelled or its deadline has passed.
+  void OnCallCancelled();
+
+  // Ends a call whose run has ended, or that was not let in: counts, logs, frees its place.
+  void End(const absl::Status& status);
+
+  const std::shared_ptr<JobRun>& run() const { return run_; }
+  ServiceCore& core() { return core_; }
+  const JobSetup& setup() const { return setup_; }
+
+  // Added so far.
+  int64_t layers_received() const { return static_cast<int64_t>(layers_received_); }
+  int64_t points_received() const { return points_received_; }
+
+ private:
+  // What the reactors add: what to do with a message, the end of the call, and messages of their
+  // types.
+  virtual const char* RequestType() const = 0;
+  virtual absl::Status OnOptions(const RequestReader& message) = 0;
+  virtual void OnMessageRead() = 0;
+  virtual bool MoreFollowsMessage() const = 0;  // JobLayer::more_follows of its last layer
+  virtual void FinishCall(const grpc::Status& status) = 0;
+  virtual std::string Encode(const LayerOutcome& outcome, uint64_t id) const = 0;
+  virtual std::string Encode(const v1::JobSummary& summary) const = 0;
+
+  // JobPort.
+  std::string EncodeLayer(const LayerOutcome& outcome, uint64_t id, int64_t points) final;
+  std::string EncodeSummary() final;
+  bool MayBringMore() const final { return ticket_->MayBringMore(); }
+  bool IsWorkedOn() const final { return !queue_->idle(); }
+  void Discard(std::deque<LabelledLayer> layers) final;
+  void CancelCall() final { context_.TryCancel(); }
+  void Finish(const absl::Status& status) final { End(status); }
+
+  // What `read` returns, or NoMemory if it runs out of memory.
+  template <typename Read>
+  static absl::Status Guarded(const Read& read) {
+    try {
+      return read();
+    } catch (const std::bad_alloc&) {
+      return NoMemory();
+    }
+  }
+
+  // The steps of ReadMessage.
+  void ReadPiecesInTurns(grpc::ByteBuffer& message);
+  bool ReadPiece(grpc::ByteBuffer& message);  // whether another one is to be read
+  absl::Status OpenMessage(grpc::ByteBuffer& message);
+  absl::Status ReadLayers();
+  absl::StatusOr<LabelledLayer> Translate(const v1::Layer& layer, uint64_t index) const;
+  void AddLayers(std::vector<LabelledLayer> layers);
+
+  // Puts the job's id into the initial metadata.
+  void AnnounceJob();
+
+  absl::Status CheckLayerCount(int64_t more) const;
+  absl::Status CheckMessage(int64_t bytes);
+  absl::Status CheckSize(const v1::Layer& layer, uint64_t index, int64_t points) const;
+  JobRecord Record(const absl::Status& status) const;
+  double WallSeconds() const;
+
+  ServiceCore& core_;
+  grpc::CallbackServerContext& context_;
+  const CallInfo call_;
+  std::shared_ptr<JobRun> run_;
+  std::unique_ptr<Admission::Ticket> ticket_;
+  std::shared_ptr<WorkerPool::Queue> queue_;
+
+  // Of the message being read.
+  RequestReader reader_;
+  bool opened_ = false;
+  FaultList faults_;             // found in it so far
+  int64_t message_bytes_ = 0;    // held for it
+  int64_t admitted_points_ = 0;  // counted by Admit, and not yet brought
+
+  // Set while messages are read, then read by the engine's calls and by End.
+  JobSetup setup_;
+  const LayerMetrics* layer_metrics_ = nullptr;
+  uint64_t layers_received_ = 0;
+  uint64_t layers_queued_ = 0;  // of them, counted as such: not those that are but checked
+  int64_t points_received_ = 0;
+
+  // When the search has to end because of the call's deadline; unset without one.
+  std::optional<Budget::Clock::time_point> search_end_;
+
+  // Of the engine's calls, which do not overlap; then of End.
+  JobTotals totals_;
+  double counted_seconds_ = 0;  // of queue_'s busy ones, as told to ticket_
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_SERVER_RPC_JOB_STREAM_H_

@@ -1,0 +1,219 @@
+#include "server/rpc/request_reader.h"
+
+#include <google/protobuf/arena.h>
+#include <google/protobuf/io/coded_stream.h>
+#include <google/protobuf/wire_format_lite.h>
+
+#include <algorithm>
+#include <climits>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "traverse/v1/route_optimizer_service.pb.h"
+
+namespace traverse {
+namespace {
+
+using google::protobuf::Descriptor;
+using google::protobuf::internal::WireFormatLite;
+using google::protobuf::io::CodedInputStream;
+
+using Batch = v1::OptimizeBatchRequest;
+static_assert(int{Batch::kOptionsFieldNumber} == int{v1::OptimizeRequest::kOptionsFieldNumber});
+static_assert(int{Batch::kLayersFieldNumber} == int{v1::OptimizeRequest::kLayersFieldNumber});
+
+constexpr uint32_t Tag(int field) {
+  return static_cast<uint32_t>(field) << 3 | WireFormatLite::WIRETYPE_LENGTH_DELIMITED;
+}
+constexpr uint32_t kOptionsTag = Tag(Batch::kOptionsFieldNumber);
+constexpr uint32_t kLayersTag = Tag(Batch::kLayersFieldNumber);
+
+// What a layer counts as, beside its bytes: an empty one takes time too.
+constexpr int64_t kLayerBytes = 64;
+
+bool ReadLength(CodedInputStream& in, int& length) {
+  uint32_t value = 0;
+  if (!in.ReadVarint32(&value) || value > INT_MAX) return false;
+  length = static_cast<int>(value);
+  return true;
+}
+
+// What is in a message: messages within it, and bytes of numbers and text.
+struct Content {
+  int64_t parts = 0;
+  int64_t bytes = 0;
+};
+
+// A part takes so much as a message and then in the engine; a point of two doubles stands in both.
+// Measured with contours of one point and with empty islands.
+constexpr int64_t kBytesOfPart = 320;
+constexpr int64_t kBytesOfByte = 3;
+
+// Counts what is in a message of `type`, up to the limit that `in` has. As deep as the types are.
+// Stops at `most` parts: to count on would take long.
+bool CountContent(CodedInputStream& in, const Descriptor& type, int64_t most, Content& content) {
+  uint32_t tag = 0;
+  while (content.parts <= most && (tag = in.ReadTag()) != 0) {
+    if (WireFormatLite::GetTagWireType(tag) != WireFormatLite::WIRETYPE_LENGTH_DELIMITED) {
+      content.bytes += static_cast<int64_t>(sizeof(double));
+      if (!WireFormatLite::SkipField(&in, tag)) return false;
+      continue;
+    }
+    int length = 0;
+    if (!ReadLength(in, length)) return false;
+    const google::protobuf::FieldDescriptor* const field =
+        type.FindFieldByNumber(WireFormatLite::GetTagFieldNumber(tag));
+    if (field == nullptr || field->message_type() == nullptr) {
+      content.bytes += length;
+      if (!in.Skip(length)) return false;
+      continue;
+    }
+    ++content.parts;
+    const CodedInputStream::Limit limit = in.PushLimit(length);
+    if (!CountContent(in, *field->message_type(), most, content)) return false;
+    if (content.parts > most) return true;
+    if (in.BytesUntilLimit() != 0) return false;
+    in.PopLimit(limit);
+  }
+  return content.parts > most || in.ConsumedEntireMessage();
+}
+
+google::protobuf::ArenaOptions LargeBlocks() {
+  google::protobuf::ArenaOptions options;
+  options.start_block_size = 32 << 10;
+  options.max_block_size = 256 << 10;
+  return options;
+}
+
+}  // namespace
+
+void SliceStream::Open(std::vector<grpc::Slice> slices) {
+  slices_ = std::move(slices);
+  next_ = 0;
+  offset_ = 0;
+  count_ = 0;
+  let_go_ = false;
+}
+
+void SliceStream::RewindAndLetGo() {
+  next_ = 0;
+  offset_ = 0;
+  count_ = 0;
+  let_go_ = true;
+}
+
+bool SliceStream::Next(const void** data, int* size) {
+  // The one before was read to its end, and nobody backs up into it any more.
+  if (let_go_ && offset_ == 0 && next_ > 0) slices_[next_ - 1] = grpc::Slice();
+  while (next_ < slices_.size() && slices_[next_].size() == 0) ++next_;
+  if (next_ == slices_.size()) return false;
+  const grpc::Slice& slice = slices_[next_];
+  *data = slice.begin() + offset_;
+  *size = static_cast<int>(slice.size() - offset_);
+  count_ += *size;
+  ++next_;
+  offset_ = 0;
+  return true;
+}
+
+void SliceStream::BackUp(int count) {
+  if (count == 0) return;
+  --next_;
+  offset_ = slices_[next_].size() - static_cast<size_t>(count);
+  count_ -= count;
+}
+
+bool SliceStream::Skip(int count) {
+  const void* data = nullptr;
+  int size = 0;
+  while (count > 0) {
+    if (!Next(&data, &size)) return false;
+    if (size > count) BackUp(size - count);
+    count -= size;
+  }
+  return true;
+}
+
+absl::Status RequestReader::NotValid() const {
+  return absl::InvalidArgumentError(
+      absl::StrCat("the message of ", bytes_, " bytes is not a valid ", type_name_));
+}
+
+absl::Status RequestReader::Open(const char* type_name, grpc::ByteBuffer& message,
+                                 const RequestLimits& limits) {
+  type_name_ = type_name;
+  bytes_ = static_cast<int64_t>(message.Length());
+  has_options_ = false;
+  options_.Clear();
+  layers_ = left_ = footprint_bytes_ = 0;
+  std::vector<grpc::Slice> slices;
+  if (bytes_ > 0 && !message.Dump(&slices).ok()) return NotValid();
+  message.Clear();
+  stream_.Open(std::move(slices));
+  {
+    CodedInputStream in(&stream_);
+    uint32_t tag = 0;
+    while ((tag = in.ReadTag()) != 0) {
+      int length = 0;
+      if (tag == kLayersTag) {
+        if (!ReadLength(in, length)) return NotValid();
+        const CodedInputStream::Limit limit = in.PushLimit(length);
+        Content content;
+        const Descriptor& layer = *v1::Layer::descriptor();
+        if (!CountContent(in, layer, limits.parts_of_layer, content)) return NotValid();
+        if (content.parts > limits.parts_of_layer) {
+          return absl::ResourceExhaustedError(
+              absl::StrCat("layers[", layers_, "]: more islands, paths, nodes and pairs than this ",
+                           "server's limit of ", limits.parts_of_layer));
+        }
+        in.PopLimit(limit);
+        ++layers_;
+        footprint_bytes_ += (content.parts + 1) * kBytesOfPart + content.bytes * kBytesOfByte;
+        if (footprint_bytes_ > limits.footprint_bytes) {
+          return absl::ResourceExhaustedError(
+              absl::StrCat("layers[", layers_ - 1, "]: up to here the message comes to more than ",
+                           limits.footprint_bytes >> 20, " MiB, which is all there is for jobs"));
+        }
+      } else if (tag == kOptionsTag) {
+        std::string bytes;
+        if (!ReadLength(in, length) || !in.ReadString(&bytes, length)) return NotValid();
+        if (!options_.MergeFromString(bytes)) return NotValid();
+        has_options_ = true;
+      } else {
+        if (!WireFormatLite::SkipField(&in, tag)) return NotValid();
+        return absl::UnimplementedError(
+            absl::StrCat("field number ", WireFormatLite::GetTagFieldNumber(tag),
+                         " of the message is not known to this version of the server"));
+      }
+    }
+    if (!in.ConsumedEntireMessage()) return NotValid();
+  }
+  left_ = layers_;
+  stream_.RewindAndLetGo();
+  return absl::OkStatus();
+}
+
+absl::Status RequestReader::Read(int64_t bytes,
+                                 const std::function<absl::Status(const v1::Layer&)>& take) {
+  google::protobuf::Arena arena(LargeBlocks());
+  for (int64_t read = 0; left_ > 0 && read < bytes;) {
+    bool is_layer = false;
+    int length = 0;
+    {
+      CodedInputStream in(&stream_);
+      is_layer = in.ReadTag() == kLayersTag;
+      if (!ReadLength(in, length)) return NotValid();
+      if (!is_layer && !in.Skip(length)) return NotValid();  // options, which are known by now
+    }
+    if (!is_layer) continue;
+    auto* layer = google::protobuf::Arena::CreateMessage<v1::Layer>(&arena);
+    if (!layer->ParseFromBoundedZeroCopyStream(&stream_, length)) return NotValid();
+    if (absl::Status status = take(*layer); !status.ok()) return status;
+    read += length + kLayerBytes;
+    --left_;
+  }
+  if (left_ == 0) stream_.Open({});
+  return absl::OkStatus();
+}
+
+}  // namespace traverse

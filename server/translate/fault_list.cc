@@ -1,0 +1,67 @@
+#include "server/translate/fault_list.h"
+
+#include <algorithm>
+#include <string>
+
+#include "absl/strings/cord.h"
+#include "google/rpc/error_details.pb.h"
+
+namespace traverse {
+namespace {
+
+using google::rpc::BadRequest;
+
+constexpr char kBadRequest[] = "type.googleapis.com/google.rpc.BadRequest";
+constexpr char kErrorInfo[] = "type.googleapis.com/google.rpc.ErrorInfo";
+
+// Trailers are limited to 8 KiB by default at the peers, and what is binary grows by a third.
+constexpr size_t kMostBytes = 3000;
+constexpr size_t kMostTextBytes = 200;
+
+// The faults that a status carries; else the one that its message tells, as `field: description`.
+BadRequest FaultsOf(const absl::Status& status) {
+  BadRequest faults;
+  const absl::optional<absl::Cord> payload = status.GetPayload(kBadRequest);
+  if (payload && faults.ParseFromString(std::string(*payload))) return faults;
+  const std::string message(status.message());
+  const size_t colon = message.find(": ");
+  BadRequest::FieldViolation& fault = *faults.add_field_violations();
+  if (colon == std::string::npos) {
+    fault.set_description(message.substr(0, kMostTextBytes));
+  } else {
+    fault.set_field(message.substr(0, std::min(colon, kMostTextBytes)));
+    fault.set_description(message.substr(colon + 2, kMostTextBytes));
+  }
+  return faults;
+}
+
+}  // namespace
+
+void FaultList::Add(const absl::Status& status) {
+  if (status.ok() || full()) return;
+  BadRequest all;
+  if (status_.ok()) {
+    status_ = absl::Status(status.code(), status.message());
+  } else {
+    all = FaultsOf(status_);
+  }
+  const BadRequest more = FaultsOf(status);
+  for (const BadRequest::FieldViolation& fault : more.field_violations()) {
+    if (all.field_violations_size() == kMost || all.ByteSizeLong() > kMostBytes) break;
+    *all.add_field_violations() = fault;
+  }
+  count_ = all.ByteSizeLong() > kMostBytes ? kMost : all.field_violations_size();
+  status_.SetPayload(kBadRequest, absl::Cord(all.SerializeAsString()));
+}
+
+absl::Status WithDetails(absl::Status status) {
+  if (!FaultList::IsFault(status)) return status;
+  status.SetPayload(kBadRequest, absl::Cord(FaultsOf(status).SerializeAsString()));
+  google::rpc::ErrorInfo info;
+  info.set_reason(absl::IsUnimplemented(status) ? "NOT_KNOWN_TO_THIS_VERSION" : "FIELD_AT_FAULT");
+  info.set_domain("traverse.v1");
+  status.SetPayload(kErrorInfo, absl::Cord(info.SerializeAsString()));
+  return status;
+}
+
+}  // namespace traverse

@@ -1,0 +1,462 @@
+"""Attacks a server of its own as a stranger would, one attack after the other, and checks what nobody may be able to do.
+
+    attack.py [--seconds=N of each attack, 3] [--only=NAME,...] [--max_memory=BYTES, 400 MB]
+
+Throughout: the process lives, /healthz answers within a second, a victim's one-layer jobs end well, memory stays below
+--max_memory, and at the end SIGTERM ends it within --drain_timeout + 2 s. The environment names the server's binary:
+TRAVERSE_SERVER. Needs nothing but Python; frames are written by hand (http2_client.py).
+"""
+import argparse
+import os
+import random
+import signal
+import struct
+import subprocess
+import sys
+import threading
+import time
+import urllib.request
+
+from http2_client import (CONTINUATION, DATA, END_HEADERS, END_STREAM, HEADERS, PING, RST_STREAM, SERVICE, SETTINGS, Connection,
+                          Window, bomb, field, frame, literal, message, varint)
+
+# What gRPC 1.51 holds of streams that were reset is seen by the server only a moment later: a proxy belongs in
+# front of a port that strangers reach (server/SECURITY.md).
+TRANSPORT_SHARE = 0.15
+DRAIN_SECONDS = 2
+HEALTH = "/grpc.health.v1.Health/Check"
+REFLECTION = "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo"
+
+
+def packed(doubles):
+    return struct.pack(f"<{len(doubles)}d", *doubles)
+
+
+def number(field_number, value):
+    return varint(field_number << 3 | 1) + struct.pack("<d", value)
+
+
+def layer(paths=20, random_points=None):
+    point = random_points or (lambda: random.uniform(0, 200))
+    contours = b"".join(field(2, field(2, packed([point() for _ in range(8)]))) for _ in range(paths))
+    return field(2, field(3, contours))
+
+
+def options(strategy="greedy", cost=b""):
+    return field(1, field(2, field(1, strategy.encode())) + (field(6, field(2, cost)) if cost else b""))
+
+
+class Server:
+    def __init__(self, max_memory, flags=(), files=None):
+        prefix = ["prlimit", f"--nofile={files}:{files}"] if files else []
+        self.log = open("/dev/null", "w")
+        self.process = subprocess.Popen(
+            [*prefix, os.environ["TRAVERSE_SERVER"], "--listen=127.0.0.1:0", "--metrics_listen=127.0.0.1:0",
+             f"--max_memory={max_memory}", f"--drain_timeout={DRAIN_SECONDS}s", *flags],
+            stdout=subprocess.PIPE, stderr=self.log, text=True)
+        self.port = int(self.process.stdout.readline().split()[-1])
+        self.metrics_port = int(self.process.stdout.readline().split()[-1])
+
+    def get(self, path, timeout=5):
+        with urllib.request.urlopen(f"http://127.0.0.1:{self.metrics_port}{path}", timeout=timeout) as answer:
+            return answer.read().decode()
+
+    def memory(self):
+        with open(f"/proc/{self.process.pid}/statm") as file:
+            _, resident, shared = (int(word) for word in file.read().split()[:3])
+        return (resident - shared) * os.sysconf("SC_PAGESIZE")
+
+    def end(self):
+        begin = time.monotonic()
+        self.process.send_signal(signal.SIGTERM)
+        code = self.process.wait(timeout=60)
+        self.process.stdout.close()
+        self.log.close()
+        return code, time.monotonic() - begin
+
+
+class Watch:
+    """Looks at the server while it is attacked: memory often, health and a victim's jobs now and then."""
+
+    def __init__(self, server):
+        self.server, self.peak, self.health, self.jobs, self.failed = server, 0, [], [], 0
+        self.stopping = threading.Event()
+        self.threads = [threading.Thread(target=target) for target in (self.watch_memory, self.watch_health, self.be_a_victim)]
+        for thread in self.threads:
+            thread.start()
+
+    def stop(self):
+        self.stopping.set()
+        for thread in self.threads:
+            thread.join()
+
+    def watch_memory(self):
+        while not self.stopping.wait(0.01):
+            try:
+                self.peak = max(self.peak, self.server.memory())
+            except OSError:
+                return
+
+    def watch_health(self):
+        while not self.stopping.wait(0.2):
+            begin = time.monotonic()
+            try:
+                self.server.get("/healthz")
+                self.health.append(time.monotonic() - begin)
+            except OSError as error:
+                self.health.append(float("inf"))
+                print("    /healthz:", error)
+
+    def be_a_victim(self):
+        body = options() + layer(5)
+        while not self.stopping.wait(0.1):
+            begin = time.monotonic()
+            try:
+                connection = Connection(self.server.port)
+                stream = connection.call(SERVICE + "OptimizeBatch", [("authorization", "Bearer victim")])
+                connection.send(frame(DATA, END_STREAM, stream, message(body)))
+                answered = b""
+                connection.socket.settimeout(5)
+                while b"grpc-status" not in answered and time.monotonic() - begin < 5:
+                    more = connection.socket.recv(65536)
+                    if not more:
+                        break
+                    answered += more
+                connection.close()
+                if b"grpc-status" in answered and len(answered) > 150:
+                    self.jobs.append(time.monotonic() - begin)
+                else:
+                    self.failed += 1
+            except OSError:
+                self.failed += 1
+
+
+def until(end, step):
+    while time.monotonic() < end:
+        if step() is False:
+            return
+
+
+def rapid_reset(server, end):
+    """Calls that are reset at once."""
+    connection = Connection(server.port)
+
+    def step():
+        nonlocal connection
+        block = b""
+        for _ in range(100):
+            stream = connection.next_stream
+            connection.next_stream += 2
+            block += frame(HEADERS, END_HEADERS, stream, connection.headers(SERVICE + "Optimize"))
+            block += frame(RST_STREAM, 0, stream, struct.pack(">I", 8))
+        if not connection.send(block):
+            connection.close()
+            connection = Connection(server.port)
+
+    until(end, step)
+    connection.close()
+
+
+def endless_headers(server, end):
+    """CONTINUATION frames without an end."""
+    connection = Connection(server.port)
+    connection.send(frame(HEADERS, 0, 1, connection.headers(SERVICE + "Optimize")))
+    block = b"".join(frame(CONTINUATION, 0, 1, b"".join(literal(f"x-{i}", "v" * 100) for i in range(120))) for _ in range(16))
+
+    def step():
+        nonlocal connection
+        if not connection.send(block):
+            connection.close()
+            connection = Connection(server.port)
+            connection.send(frame(HEADERS, 0, 1, connection.headers(SERVICE + "Optimize")))
+
+    until(end, step)
+    connection.close()
+
+
+def control_frames(server, end):
+    """Pings and settings by the thousand, whose answers nobody reads."""
+    connection = Connection(server.port)
+    block = (frame(PING, 0, 0, b"12345678") + frame(SETTINGS, 0, 0, struct.pack(">HI", 3, 100))) * 1000
+
+    def step():
+        nonlocal connection
+        if not connection.send(block):
+            connection.close()
+            connection = Connection(server.port)
+
+    until(end, step)
+    connection.close()
+
+
+def many_headers(server, end):
+    """Header fields by the thousand."""
+    connection = Connection(server.port)
+    extra = [(f"x-{i}", "") for i in range(1000)]
+
+    def step():
+        nonlocal connection
+        if not connection.send(frame(HEADERS, END_HEADERS | END_STREAM, connection.next_stream,
+                                     connection.headers(SERVICE + "Optimize", extra)[:16000])):
+            connection.close()
+            connection = Connection(server.port)
+        else:
+            connection.next_stream += 2
+
+    until(end, step)
+    connection.close()
+
+
+def unfinished(methods, connections, megabytes):
+    def attack(server, end):
+        def one(method):
+            while time.monotonic() < end:
+                try:
+                    connection = Connection(server.port)
+                except OSError:
+                    time.sleep(0.05)
+                    continue
+                stream = connection.call(method)
+                body = bytes([0]) + struct.pack(">I", (megabytes << 20) + 1) + bytes(megabytes << 20)
+                Window(connection).send(stream, body, patience=0.5)
+                while time.monotonic() < end and connection.send(frame(PING, 0, 0, b"12345678")):
+                    time.sleep(0.2)
+                connection.close()
+
+        threads = [threading.Thread(target=one, args=(methods[i % len(methods)],)) for i in range(connections)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+
+    return attack
+
+
+def bombs(server, end):
+    """A few bytes that unpack to many."""
+    body = message(bomb(60), compressed=True)
+
+    def step():
+        for method in (SERVICE + "ListStrategies", SERVICE + "OptimizeBatch", HEALTH, REFLECTION):
+            connection = Connection(server.port)
+            stream = connection.call(method, [("grpc-encoding", "gzip")])
+            Window(connection).send(stream, body, patience=0.2)
+            connection.drain(0.05)
+            connection.close()
+
+    until(end, step)
+
+
+def empty_islands(server, end):
+    """Two bytes for each island, up to the limit of a message."""
+    body = message(field(2, field(3, b"") * (15 << 20)))
+
+    def step():
+        connection = Connection(server.port)
+        stream = connection.call(SERVICE + "OptimizeBatch")
+        Window(connection).send(stream, body, patience=1)
+        connection.drain(0.3)
+        connection.close()
+
+    until(end, step)
+
+
+def small_contours(server, end):
+    """Contours of one point, as many as the limits allow."""
+    one = field(2, field(2, packed([1.0, 2.0])))
+    body = message(options() + field(2, field(3, one * 500_000)))
+
+    def step():
+        connection = Connection(server.port)
+        stream = connection.call(SERVICE + "OptimizeBatch")
+        Window(connection).send(stream, body, patience=1)
+        connection.drain(0.3)
+        connection.close()
+
+    until(end, step)
+
+
+def stated_sizes(server, end):
+    """Headers that state a size which never comes."""
+    held = []
+
+    def step():
+        if len(held) < 40:
+            connection = Connection(server.port)
+            connection.call(SERVICE + "OptimizeBatch", [("traverse-message-bytes", "2147483647")])
+            held.append(connection)
+        time.sleep(0.05)
+
+    until(end, step)
+    for connection in held:
+        connection.close()
+
+
+def stalled_readers(server, end):
+    """Jobs whose callers open no window."""
+    held = []
+    body = message(options() + layer(200) * 50)
+    for _ in range(5):
+        connection = Connection(server.port, window=0)
+        stream = connection.call(SERVICE + "OptimizeBatch")
+        Window(connection).send(stream, body, patience=1)
+        held.append(connection)
+    time.sleep(max(0.0, end - time.monotonic()))
+    for connection in held:
+        connection.close()
+
+
+def idle_connections(server, end):
+    """As many connections as there are files, and more."""
+    held = []
+
+    def step():
+        try:
+            held.append(Connection(server.port))
+        except OSError:
+            time.sleep(0.05)
+        if len(held) >= 600:
+            time.sleep(0.1)
+
+    until(end, step)
+    for connection in held:
+        connection.close()
+
+
+def one_byte_a_time(server, end):
+    """A message in single bytes."""
+    connection = Connection(server.port)
+    stream = connection.call(SERVICE + "OptimizeBatch")
+    body = message(options() + layer(3))
+
+    def step():
+        for at in range(len(body)):
+            if time.monotonic() > end or not connection.send(frame(DATA, 0, stream, body[at:at + 1])):
+                return False
+            time.sleep(0.005)
+        return False
+
+    until(end, step)
+    time.sleep(max(0.0, end - time.monotonic()))
+    connection.close()
+
+
+EXTREMES = [0.0, -0.0, 5e-324, 1e-320, 1e-306, 1e-5, 1.0, 1e5, 1e6, 1e7, 1e300, 1.7e308, float("inf"), float("-inf"), float("nan"), -1.0]
+
+
+def extremes(server, end):
+    """Random and extreme values of the cost and of coordinates, for every strategy."""
+    dice = random.Random(7)
+
+    def step():
+        strategy = dice.choice(["none", "greedy", "ni2opt", "tabu", "exact", "auto", "", "x" * 100])
+        cost = b"".join(number(n, dice.choice(EXTREMES)) for n in range(1, 5)) if dice.random() < 0.7 else b""
+        scale = dice.choice([1e-6, 1.0, 1e3, 1e6, 1e9])
+        points = (lambda: dice.choice(EXTREMES)) if dice.random() < 0.2 else (lambda: dice.uniform(0, scale))
+        body = options(strategy, cost) + b"".join(layer(dice.randint(0, 30), points) for _ in range(dice.randint(0, 3)))
+        if dice.random() < 0.1:
+            body = bytes(dice.randrange(256) for _ in range(dice.randint(0, 200)))
+        connection = Connection(server.port)
+        stream = connection.call(SERVICE + dice.choice(["OptimizeBatch", "Optimize"]), [("grpc-timeout", "2S")])
+        connection.send(frame(DATA, END_STREAM, stream, message(body)))
+        connection.drain(0.05)
+        connection.close()
+
+    until(end, step)
+
+
+def cancels(server, end):
+    """Large messages that are cancelled while they come in, and just after."""
+    dice = random.Random(3)
+    body = message(options("auto") + layer(50) * 20)
+
+    def step():
+        connection = Connection(server.port)
+        for _ in range(10):
+            stream = connection.call(SERVICE + dice.choice(["OptimizeBatch", "Optimize"]))
+            connection.send(b"".join(frame(DATA, 0, stream, body[at:at + 16384])
+                                     for at in range(0, dice.choice([len(body), len(body) // 2]), 16384)))
+            time.sleep(dice.choice([0, 0.001, 0.01]))
+            connection.send(frame(RST_STREAM, 0, stream, struct.pack(">I", 8)))
+        connection.close()
+
+    until(end, step)
+
+
+ATTACKS = {
+    "rapid_reset": rapid_reset,
+    "endless_headers": endless_headers,
+    "control_frames": control_frames,
+    "many_headers": many_headers,
+    "unfinished_strangers": unfinished([HEALTH, REFLECTION, SERVICE + "ListStrategies"], 12, 60),
+    "unfinished_batches": unfinished([SERVICE + "OptimizeBatch", SERVICE + "Optimize"], 22, 60),
+    "oversize": unfinished([SERVICE + "OptimizeBatch"], 3, 300),
+    "bombs": bombs,
+    "empty_islands": empty_islands,
+    "small_contours": small_contours,
+    "stated_sizes": stated_sizes,
+    "stalled_readers": stalled_readers,
+    "idle_connections": idle_connections,
+    "one_byte_a_time": one_byte_a_time,
+    "extremes": extremes,
+    "cancels": cancels,
+}
+
+
+def run(name, seconds, max_memory):
+    """The faults found."""
+    server = Server(max_memory, files=512 if name == "idle_connections" else None)
+    watch = Watch(server)
+    try:
+        ATTACKS[name](server, time.monotonic() + seconds)
+    except OSError as error:
+        print(f"    the attack itself: {error}")
+    time.sleep(0.5)
+    watch.stop()
+    faults = []
+    if server.process.poll() is not None:
+        return [f"the process ended with {server.process.returncode}"]
+    ended = False
+    try:
+        refused = {line.split('"')[1]: int(float(line.split()[-1])) for line in server.get("/metrics").splitlines()
+                   if line.startswith("traverse_rejected_total") and not line.endswith(" 0")}
+        code, took = server.end()
+        ended = True
+    except (OSError, subprocess.TimeoutExpired) as error:
+        server.process.kill()
+        return [f"it does not end: {error}"]
+    finally:
+        if not ended:
+            server.process.kill()
+    worst = max(watch.health, default=0)
+    jobs = sorted(watch.jobs) or [float("inf")]
+    p99 = jobs[min(len(jobs) - 1, int(len(jobs) * 0.99))]
+    print(f"  {name:22} peak {watch.peak / 1e6:6.0f} MB, health {1000 * worst:5.0f} ms, victim {len(watch.jobs)} jobs, "
+          f"{watch.failed} failed, p99 {1000 * p99:5.0f} ms, ended in {took:.1f} s, refused {refused}")
+    if code != 0:
+        faults.append(f"exit code {code}")
+    if took > DRAIN_SECONDS + 2:
+        faults.append(f"SIGTERM took {took:.1f} s")
+    if worst > 1:
+        faults.append(f"/healthz took {worst:.1f} s")
+    if watch.peak > max_memory * (1 + TRANSPORT_SHARE):
+        faults.append(f"memory came to {watch.peak / 1e6:.0f} MB")
+    return faults
+
+
+def main():
+    arguments = argparse.ArgumentParser()
+    arguments.add_argument("--seconds", type=float, default=3)
+    arguments.add_argument("--only", default=",".join(ATTACKS))
+    arguments.add_argument("--max_memory", type=int, default=400_000_000)
+    given = arguments.parse_args()
+    found = {}
+    for name in given.only.split(","):
+        if faults := run(name, given.seconds, given.max_memory):
+            found[name] = faults
+            print(f"  {name}: FAULT: {'; '.join(faults)}")
+    sys.exit(1 if found else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,187 @@
+"""traverse.v1.GcodeService over gRPC, with Debian's Python client.
+
+Skips without it. The environment names the binaries: TRAVERSE and TRAVERSE_GATEWAY.
+"""
+import os
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+sys.path.append(os.path.dirname(os.path.abspath(__file__)))
+from gateway_process import TESTS, Gateway, lines_of_infill, optimised_by_command
+
+PROTO = os.path.join(os.path.dirname(TESTS), "proto")
+PART = lines_of_infill(3)
+
+try:
+    import grpc
+    from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+except ImportError:
+    if sys.executable != "/usr/bin/python3" and os.path.exists("/usr/bin/python3"):
+        os.execv("/usr/bin/python3", ["/usr/bin/python3", *sys.argv])  # which has Debian's packages
+    print("SKIPPED: no python3-grpcio")
+    sys.exit(77)
+
+
+def messages():
+    """The messages of gcode_service.proto by name."""
+    with tempfile.NamedTemporaryFile() as file:
+        subprocess.run(["protoc", "-I", PROTO, "--include_imports", "-o", file.name, "traverse/v1/gcode_service.proto"],
+                       check=True)
+        files = descriptor_pb2.FileDescriptorSet.FromString(file.read())
+    pool = descriptor_pool.DescriptorPool()
+    for one in files.file:
+        pool.Add(one)
+    made = message_factory.MessageFactory(pool)
+    names = ["RewriteRequest", "RewriteResponse", "RewriteOptions", "InspectRequest", "InspectResponse", "VerifyRequest",
+             "VerifyResponse"]
+    return {name: made.GetPrototype(pool.FindMessageTypeByName("traverse.v1." + name)) for name in names}
+
+
+MESSAGES = messages()
+
+
+def pieces(content, size=1000):
+    return [content[at:at + size] for at in range(0, len(content), size)]
+
+
+class Calls(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.gateway = Gateway("--max_file_bytes=2000000", "--idle_timeout=2s")
+        cls.channel = grpc.insecure_channel(f"127.0.0.1:{cls.gateway.grpc_port}")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.channel.close()
+        cls.gateway.close()
+
+    def method(self, name, kind="stream_stream"):
+        return getattr(self.channel, kind)(
+            "/traverse.v1.GcodeService/" + name, request_serializer=lambda message: message.SerializeToString(),
+            response_deserializer=MESSAGES[name + "Response"].FromString)
+
+    def requests(self, content, **options):
+        request = MESSAGES["RewriteRequest"]
+        yield request(options=MESSAGES["RewriteOptions"](**options))
+        for piece in pieces(content):
+            yield request(data=piece)
+
+    def rewrite(self, content, timeout=60, **options):
+        """File, report, summary and stages."""
+        file, report, summary, stages = b"", b"", None, []
+        for answer in self.method("Rewrite")(self.requests(content, **options), timeout=timeout):
+            self.assertIsNone(summary)
+            file += answer.data
+            report += answer.report
+            if answer.HasField("progress"):
+                stages.append(answer.progress.stage)
+            if answer.HasField("summary"):
+                summary = answer.summary
+        return file, report, summary, stages
+
+    def refused(self, code, words, requests, name="Rewrite", kind="stream_stream", timeout=60):
+        with self.assertRaises(grpc.RpcError) as raised:
+            answer = self.method(name, kind)(iter(requests), timeout=timeout)
+            if kind == "stream_stream":
+                list(answer)
+        self.assertEqual(raised.exception.code(), code, raised.exception.details())
+        self.assertIn(words, raised.exception.details())
+
+    def test_the_bytes_are_those_of_the_command(self):
+        for options, flags in [({}, []), ({"policy": 3, "seed": 3}, ["--policy=free", "--seed=3"]),
+                               ({"first_layer": 2, "last_layer": 3}, ["--layers=2-3"]),
+                               ({"strategy": {"name": "greedy"}}, ["--strategy=greedy"])]:
+            file, report, summary, _ = self.rewrite(PART, name="part.gcode", **options)
+            self.assertEqual(file, optimised_by_command(PART, *flags), flags)
+            self.assertEqual(report, b"")
+            self.assertTrue(summary.verified)
+            self.assertEqual(summary.bytes, len(file))
+            self.assertLess(summary.written.travel_mm, summary.given.travel_mm)
+
+    def test_report_and_progress(self):
+        _, report, summary, stages = self.rewrite(lines_of_infill(50), report=True)
+        self.assertIn(b"</html>", report)
+        self.assertEqual(summary.layers, 50)
+        self.assertTrue(stages)
+
+    def test_a_large_file_comes_back_whole(self):
+        content = lines_of_infill(2500)
+        file, _, summary, _ = self.rewrite(content, strategy={"name": "greedy"})
+        self.assertGreater(len(file), 500000)
+        self.assertEqual(file, optimised_by_command(content, "--strategy=greedy"))
+        self.assertEqual(summary.bytes, len(file))
+
+    def test_inspect_and_verify(self):
+        request = MESSAGES["InspectRequest"]
+        found = self.method("Inspect", "stream_unary")(
+            iter([request(name="part.gcode")] + [request(data=piece) for piece in pieces(PART)]), timeout=60)
+        self.assertEqual((found.format, found.layers), ("G-code", 3))
+        self.assertGreater(found.totals.travel_mm, 0)
+        request = MESSAGES["VerifyRequest"]
+        made = optimised_by_command(PART)
+        same = self.method("Verify", "stream_unary")(iter([request(original=PART), request(optimised=made)]), timeout=60)
+        self.assertTrue(same.same)
+        other = self.method("Verify", "stream_unary")(
+            iter([request(original=PART), request(optimised=made.replace(b"E.5", b"E.6"))]), timeout=60)
+        self.assertFalse(other.same)
+        self.assertIn("optimised:", other.difference)
+
+    def test_what_is_wrong(self):
+        request, options = MESSAGES["RewriteRequest"], MESSAGES["RewriteOptions"]
+        bad = grpc.StatusCode.INVALID_ARGUMENT
+        self.refused(bad, "options: missing", [])
+        self.refused(bad, "options: missing", [request(data=PART)])
+        self.refused(bad, "without data", [request(options=options()), request()])
+        self.refused(bad, "first message alone", [request(options=options()), request(options=options())])
+        self.refused(bad, "there is no file", [request(options=options())])
+        self.refused(bad, "options.name", [request(options=options(name="../x"))])
+        self.refused(bad, "options.policy", [request(options=options(policy=9))])
+        self.refused(bad, "options.last_layer", [request(options=options(first_layer=3, last_layer=2))])
+        self.refused(bad, "layers=2-9", self.requests(PART, first_layer=2, last_layer=9))
+        self.refused(bad, "layer_time_limit", [request(options=options(layer_time_limit={"seconds": -1}))])
+        self.refused(bad, "magic", self.requests(PART, strategy={"name": "magic"}))
+        self.refused(bad, "file.gcode", self.requests(b"nothing of a slicer\n"))
+        self.refused(grpc.StatusCode.OUT_OF_RANGE, "longer than", self.requests(b"; comment\n" * 300000))
+        verify = MESSAGES["VerifyRequest"]
+        self.refused(bad, "optimised: missing", [verify(original=PART)], "Verify", "stream_unary")
+
+    def test_the_deadline(self):
+        long = lines_of_infill(400)
+        began = time.time()
+        _, _, summary, _ = self.rewrite(long, timeout=4, strategy={"name": "auto", "options": {"effort": "100"}})
+        self.assertLess(time.time() - began, 4)
+        self.assertLess(summary.written.travel_mm, summary.given.travel_mm)
+        with self.assertRaises(grpc.RpcError) as raised:
+            self.rewrite(long, timeout=0.3)
+        self.assertIn(raised.exception.code(), (grpc.StatusCode.FAILED_PRECONDITION, grpc.StatusCode.DEADLINE_EXCEEDED))
+
+    def test_cancelling_ends_the_work(self):
+        call = self.method("Rewrite")(
+            self.requests(lines_of_infill(1500), strategy={"name": "auto", "options": {"effort": "100"}}), timeout=60)
+        next(call)
+        call.cancel()
+        deadline = time.time() + 10
+        while self.gateway.metric("traverse_gateway_requests_in_flight") > 0 and time.time() < deadline:
+            time.sleep(0.05)
+        self.assertEqual(self.gateway.metric("traverse_gateway_requests_in_flight"), 0)
+
+    def test_a_client_that_stops_is_given_up(self):
+        stop = threading.Event()
+        self.addCleanup(stop.set)
+
+        def requests():
+            yield MESSAGES["RewriteRequest"](options=MESSAGES["RewriteOptions"]())
+            stop.wait(60)
+
+        began = time.time()
+        with self.assertRaises(grpc.RpcError):
+            list(self.method("Rewrite")(requests(), timeout=30))
+        self.assertLess(time.time() - began, 20)
+
+
+if __name__ == "__main__":
+    unittest.main()

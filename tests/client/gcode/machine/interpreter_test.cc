@@ -1,0 +1,150 @@
+#include "client/gcode/machine/interpreter.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace traverse::gcode {
+namespace {
+
+std::vector<StepKind> Kinds(const std::string& text) {
+  std::vector<StepKind> kinds;
+  Interpreter interpreter(text);
+  for (Step step; interpreter.Next(step);) kinds.push_back(step.kind);
+  return kinds;
+}
+
+StepKind LastKind(const std::string& text) { return Kinds(text).back(); }
+
+MachineState After(const std::string& text) {
+  Interpreter interpreter(text);
+  for (Step step; interpreter.Next(step);) {
+  }
+  return interpreter.state();
+}
+
+TEST(Interpreter, TellsMovesApart) {
+  EXPECT_EQ(LastKind("G1 X5 E1"), StepKind::kExtrude);
+  EXPECT_EQ(LastKind("G1 X5"), StepKind::kTravel);
+  EXPECT_EQ(LastKind("G0 X5 Y2 Z1"), StepKind::kTravel);
+  EXPECT_EQ(LastKind("G1 E-1"), StepKind::kFilament);
+  EXPECT_EQ(LastKind("M83\nG1 X5 E-.5"), StepKind::kWipe);
+  EXPECT_EQ(LastKind("G1 Z.25 F9000"), StepKind::kLift);
+  EXPECT_EQ(LastKind("G1 F1200"), StepKind::kFeed);
+  EXPECT_EQ(LastKind("G1 X.04 E0"), StepKind::kZeroExtrude);
+  EXPECT_EQ(LastKind("G1 X5 E0"), StepKind::kTravel);
+  EXPECT_EQ(LastKind("G92 E0"), StepKind::kSetE);
+  EXPECT_EQ(LastKind("G92 X0"), StepKind::kModeChange);
+}
+
+TEST(Interpreter, AbsoluteExtrusionCountsFromItsRegister) {
+  const MachineState state = After("G1 X1 E1\nG1 X2 E1.5\nG92 E0\nG1 X3 E.25");
+  EXPECT_EQ(state.e, kDecimalOne / 4);
+
+  Interpreter interpreter("G1 X1 E1\nG1 X2 E1.5\n");
+  Step step;
+  interpreter.Next(step);
+  interpreter.Next(step);
+  EXPECT_EQ(step.filament, kDecimalOne / 2);
+}
+
+TEST(Interpreter, G91MakesTheExtruderRelativeToo) {
+  // CuraEngine's end script: in absolute mode the pull would be to E-2, not by 2.
+  Interpreter interpreter("M82\nG92 E100\nG91\nG1 E-2\nG90\nG1 E98.5");
+  Step step;
+  for (int i = 0; i < 4; ++i) interpreter.Next(step);
+  EXPECT_EQ(interpreter.state().e, 98 * kDecimalOne);
+  interpreter.Next(step);
+  interpreter.Next(step);
+  EXPECT_EQ(step.filament, kDecimalOne / 2);
+}
+
+TEST(Interpreter, G10RetractsOnlyWithoutWords) {
+  // RepRapFirmware sets temperatures with it, in the same files.
+  EXPECT_EQ(LastKind("G10"), StepKind::kFirmwareRetract);
+  EXPECT_EQ(LastKind("G11 ; unretract"), StepKind::kFirmwareUnretract);
+  EXPECT_EQ(LastKind("G10 S215 P0"), StepKind::kUnknown);
+  EXPECT_FALSE(After("G10 S215 P0").Retracted());
+  EXPECT_TRUE(After("G10").Retracted());
+}
+
+TEST(Interpreter, PrimingMoreThanWasPulledBackLeavesNothingRetracted) {
+  EXPECT_TRUE(After("M83\nG1 E-.8").Retracted());
+  EXPECT_FALSE(After("M83\nG1 E-.8\nG1 E.83").Retracted());
+  EXPECT_TRUE(After("M83\nG1 E-.8\nG1 E.83\nG1 E-.02").Retracted());
+}
+
+TEST(Interpreter, APrimeOfALittleLessThanWasPulledBackPrimes) {
+  // Simplify3D after coasting.
+  EXPECT_FALSE(After("M83\nG1 E-6.5\nG1 E6.3").Retracted());
+  EXPECT_TRUE(After("M83\nG1 E-6.5\nG1 E5").Retracted());
+}
+
+TEST(Interpreter, AnotherToolBringsAnotherFilament) {
+  EXPECT_TRUE(After("M83\nT0\nG1 E-90\nT0").Retracted());
+  EXPECT_FALSE(After("M83\nT0\nG1 E-90\nT1").Retracted());
+}
+
+TEST(Interpreter, AWipeAddsUpToARetraction) {
+  EXPECT_FALSE(After("M83\nG1 E-.56\nG1 X5 E-.228\nG1 E-.012\nG1 E.8").Retracted());
+  EXPECT_TRUE(After("M83\nG1 E-.56\nG1 X5 E-.228\nG1 E-.012").Retracted());
+}
+
+TEST(Interpreter, KnowsTheMarksOfEachSlicer) {
+  EXPECT_EQ(LastKind(";LAYER_CHANGE"), StepKind::kLayerMark);
+  EXPECT_EQ(LastKind(";LAYER:7"), StepKind::kLayerMark);
+  EXPECT_EQ(LastKind("; CHANGE_LAYER"), StepKind::kLayerMark);
+  EXPECT_EQ(LastKind(";LAYER_COUNT:7"), StepKind::kComment);
+  EXPECT_EQ(LastKind(";WIPE_START"), StepKind::kWipeMark);
+  EXPECT_EQ(LastKind("; printing object a.stl id:0 copy 6"), StepKind::kLabel);
+  EXPECT_EQ(LastKind(";MESH:a.stl"), StepKind::kLabel);
+  EXPECT_EQ(LastKind("EXCLUDE_OBJECT_START NAME=a"), StepKind::kLabel);
+  EXPECT_EQ(LastKind("M486 S3"), StepKind::kLabel);
+  EXPECT_EQ(LastKind(";TYPE:Perimeter"), StepKind::kSlot);
+  EXPECT_EQ(LastKind("; LINE_WIDTH: 0.45"), StepKind::kSlot);
+  EXPECT_EQ(LastKind("M106 S255"), StepKind::kSlot);
+  EXPECT_EQ(LastKind("M204 P800 T1000"), StepKind::kSlot);
+  EXPECT_EQ(LastKind("SET_VELOCITY_LIMIT ACCEL=500"), StepKind::kSlot);
+  EXPECT_EQ(LastKind("M73 P3 R7"), StepKind::kProgress);
+}
+
+TEST(Interpreter, WhatItDoesNotKnowIsUnknown) {
+  for (const char* line : {"M600", "G4 P100", "G28", "M400", "PARK_HEAD", "M220 S50", "M204 P5 Q7",
+                           "SET_VELOCITY_LIMIT ACCEL=500 SOMETHING=1", "G1 X5 A3", "G5 X1 Y1",
+                           "M205 X8 S0", "M106 P9 S255"}) {
+    EXPECT_EQ(LastKind(line), StepKind::kUnknown) << line;
+  }
+}
+
+TEST(Interpreter, ModesMatterOnlyIfTheyChangeSomething) {
+  EXPECT_EQ(LastKind("G90"), StepKind::kStay);
+  EXPECT_EQ(LastKind("G91"), StepKind::kModeChange);
+  EXPECT_EQ(LastKind("G21"), StepKind::kStay);
+  EXPECT_EQ(LastKind("G20"), StepKind::kModeChange);
+  EXPECT_EQ(LastKind("M83\nM83"), StepKind::kStay);
+  EXPECT_EQ(LastKind("T1"), StepKind::kModeChange);
+  EXPECT_EQ(LastKind("G91\nG1 X5 E1"), StepKind::kUnknown);
+}
+
+TEST(Interpreter, ArcsNeedACenter) {
+  Interpreter interpreter("G2 X5 Y5 E1");
+  Step step;
+  interpreter.Next(step);
+  EXPECT_STREQ(step.fault, "G2 without I, J or R");
+
+  EXPECT_EQ(LastKind("G2 X5 Y5 I2 J3 E1"), StepKind::kExtrude);
+  EXPECT_EQ(LastKind("G3 X5 Y5 R9 E1"), StepKind::kExtrude);
+  EXPECT_EQ(LastKind("G3 Z.6 I1.2 J0 P1 F9000"), StepKind::kLift);  // a spiral up
+  EXPECT_EQ(LastKind("G2 X5 Y5 I2 J3"), StepKind::kTravel);
+  EXPECT_EQ(LastKind("G2 X5 Y5 I2 J3 E0"), StepKind::kTravel);
+  EXPECT_EQ(LastKind("M83\nG2 X5 Y5 I2 J3 E-.2"), StepKind::kWipe);
+}
+
+TEST(Interpreter, CoordinatesBeyondReasonAreNotFollowed) {
+  EXPECT_EQ(LastKind("G1 X31000 E1"), StepKind::kUnknown);
+  EXPECT_EQ(LastKind("M83\nG1 X1 E2000000"), StepKind::kUnknown);
+}
+
+}  // namespace
+}  // namespace traverse::gcode

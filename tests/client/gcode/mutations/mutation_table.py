@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""Which defects `traverse verify` finds, and whether it takes what is legal for one.
+
+  mutation_table.py TRAVERSE [--copies=10] [--legal] [--verbose] FILE or FOLDER...
+
+Puts each defect of defects.py into each file, `copies` times at places chosen by seed, and prints how
+many are found, and by the rule that is there for them. With --legal the files are optimised under
+the three policies, and verified. Ends with 1 if a defect is not found or a legal file is refused.
+"""
+
+import argparse
+import json
+import os
+import random
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+import defects  # noqa: E402
+import sliced  # noqa: E402
+
+
+def files_of(operands):
+    for operand in operands:
+        if os.path.isdir(operand):
+            for name in sorted(os.listdir(operand)):
+                if ".gcode" in name and ".3mf" not in name and ".bgcode" not in name:
+                    yield os.path.join(operand, name)
+        else:
+            yield operand
+
+
+def write(folder, name, text):
+    path = os.path.join(folder, name)
+    with open(path, "w", encoding="latin-1", newline="\n") as file:
+        file.write(text)
+    return path
+
+
+def broken(traverse, original, other, policy=None):
+    """The rules that are broken, and the message of the first one."""
+    command = [traverse, "verify", original, other, "--quiet", "--json=-"]
+    if policy:
+        command.append(f"--policy={policy}")
+    run = subprocess.run(command, capture_output=True, text=True, errors="replace")
+    if run.returncode not in (0, 1) or not run.stdout:
+        raise RuntimeError(f"{' '.join(command)}: {run.returncode}: {run.stderr}")
+    rules = [rule for rule in json.loads(run.stdout)["rules"] if rule["breaks"]]
+    if (run.returncode == 1) != bool(rules):
+        raise RuntimeError("the exit code and --json do not agree")
+    return [rule["rule"] for rule in rules], rules[0]["first"]["message"] if rules else ""
+
+
+def try_defect(args, folder, name, file, original, defect, counts):
+    title, rule, make, policy = defect
+    for copy in range(args.copies):
+        rng = random.Random(f"{args.seed} {name} {title} {copy}")
+        text = make(file, rng)
+        if text is None:
+            return
+        rules, message = broken(args.traverse, original, write(folder, "b.gcode", text), policy)
+        count = counts.setdefault(title, [0, 0, 0, set()])
+        count[0] += 1
+        count[1] += bool(rules)
+        count[2] += rule in rules
+        count[3].add(name)
+        if args.verbose and rule not in rules:
+            print(f"  {name}, copy {copy}: {title}: {rules} {message}", flush=True)
+            if args.keep and not rules:
+                write(args.keep, f"{title.replace(' ', '_')}.{name}.{copy}.gcode", text)
+                write(args.keep, f"{name}.original.gcode", file.text())
+
+
+def false_alarms(args, folder, name, path, original):
+    """The file against itself, and as this program optimises it; (tried, refused)."""
+    tried = refused = 0
+    for policy in ("safe", "balanced", "free"):
+        pairs = [(original, original)]
+        if args.legal:
+            out = os.path.join(folder, "legal.gcode")
+            plain = write(folder, "plain.gcode", sliced.read(path))
+            run = subprocess.run([args.traverse, "optimize", plain, "-o", out, "--strategy=ni2opt",
+                                  f"--policy={policy}", "--quiet"], capture_output=True, text=True)
+            if run.returncode == 0:
+                pairs.append((plain, out))
+        for one, other in pairs:
+            rules, message = broken(args.traverse, one, other, policy)
+            tried += 1
+            refused += bool(rules)
+            if rules:
+                print(f"  {name}, {policy}: {rules} {message}", flush=True)
+    return tried, refused
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("traverse")
+    parser.add_argument("files", nargs="+")
+    parser.add_argument("--copies", type=int, default=10)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--legal", action="store_true")
+    parser.add_argument("--verbose", action="store_true")
+    parser.add_argument("--keep", help="a folder for what is not found")
+    args = parser.parse_args()
+    counts, tried, refused, names = {}, 0, 0, []
+    with tempfile.TemporaryDirectory() as folder:
+        for path in files_of(args.files):
+            name = os.path.basename(path).split(".")[0]
+            names.append(name)
+            file = sliced.Sliced(sliced.read(path))
+            original = write(folder, "a.gcode", file.text())
+            for defect in defects.DEFECTS:
+                try_defect(args, folder, name, file, original, defect, counts)
+            one, two = false_alarms(args, folder, name, path, original)
+            tried, refused = tried + one, refused + two
+    print(f"{len(names)} files: {' '.join(names)}\n")
+    print("| defect | rule | files | copies | found | by its rule |\n|---|---|---:|---:|---:|---:|")
+    for title, rule, _, _ in defects.DEFECTS:
+        made, found, own, where = counts.get(title, [0, 0, 0, ()])
+        share = f"{100 * found / made:.0f} %" if made else "-"
+        own_share = f"{100 * own / made:.0f} %" if made else "-"
+        print(f"| {title} | `{rule}` | {len(where)} | {made} | {share} | {own_share} |")
+    missed = sum(count[0] - count[1] for count in counts.values())
+    made = sum(count[0] for count in counts.values())
+    print(f"\n{made} defects, {missed} not found; {tried} legal files, {refused} refused")
+    sys.exit(1 if missed or refused or not made else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,132 @@
+// Visible walls, which ways cross them, and ways around: client/gcode/model/visible_walls.h,
+// detour.h.
+
+#include "client/gcode/plan/detour.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/base/rng.h"
+
+namespace traverse::gcode {
+namespace {
+
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+Outline Wall(const std::vector<Vertex>& points, Feature feature = Feature::kOuterWall) {
+  Outline wall;
+  wall.points = points;
+  wall.closed = wall.exactly_closed = true;
+  wall.feature = feature;
+  return wall;
+}
+
+Outline Square(double x, double y, double side, Feature feature = Feature::kOuterWall) {
+  return Wall({{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}, {x, y}}, feature);
+}
+
+double LengthOf(Vertex a, const std::vector<Vertex>& bends, Vertex b) {
+  double length = 0;
+  for (const Vertex bend : bends) {
+    length += Distance(a, bend);
+    a = bend;
+  }
+  return length + Distance(a, b);
+}
+
+bool CrossesNone(const VisibleWalls& walls, Vertex a, const std::vector<Vertex>& bends, Vertex b) {
+  for (const Vertex bend : bends) {
+    if (walls.Crossed(a, bend)) return false;
+    a = bend;
+  }
+  return !walls.Crossed(a, b);
+}
+
+TEST(VisibleWalls, AreOuterWallsAndNotTouchedByWaysThatEndOnThem) {
+  const VisibleWalls walls({Square(0, 0, 10), Square(1, 1, 8, Feature::kInnerWall)});
+
+  EXPECT_TRUE(walls.Crossed({5, 5}, {15, 5}));
+  EXPECT_FALSE(walls.Crossed({5, 5}, {9.5, 5}));
+  EXPECT_FALSE(walls.Crossed({5, 5}, {10, 5}));
+  EXPECT_FALSE(walls.Crossed({15, 5}, {10.1, 5}));
+}
+
+TEST(Detours, StraightWaysStayStraight) {
+  const VisibleWalls walls({Square(0, 0, 40), Square(15, 15, 10)});
+
+  EXPECT_THAT(Detours(walls).Around({5, 5}, {35, 5}), IsEmpty());
+}
+
+TEST(Detours, LeadAroundAHoleTheShorterWay) {
+  const VisibleWalls walls({Square(0, 0, 40), Square(15, 15, 10)});
+  const Vertex a{5, 22};
+  const Vertex b{35, 22};
+
+  const std::vector<Vertex> bends = Detours(walls).Around(a, b);
+
+  ASSERT_THAT(bends, Not(IsEmpty()));
+  EXPECT_TRUE(CrossesNone(walls, a, bends, b));
+  EXPECT_LT(LengthOf(a, bends, b), 2 * std::hypot(10, 3.5) + 11);
+}
+
+TEST(Detours, ThereIsNoneFromOneIslandToAnother) {
+  const VisibleWalls walls({Square(0, 0, 10), Square(20, 0, 10)});
+
+  EXPECT_THAT(Detours(walls).Around({5, 5}, {25, 5}), IsEmpty());
+}
+
+TEST(Detours, LeadFromAWallAlongItsInside) {
+  // A horseshoe; the way from its one leg's tip, which lies on the wall, into the other leg.
+  const VisibleWalls walls(
+      {Wall({{0, 0}, {40, 0}, {40, 30}, {30, 30}, {30, 10}, {10, 10}, {10, 30}, {0, 30}, {0, 0}})});
+  const Vertex on_wall{10, 25};
+  const Vertex inside{35, 25};
+
+  const std::vector<Vertex> bends = Detours(walls).Around(on_wall, inside);
+
+  ASSERT_THAT(bends, Not(IsEmpty()));
+  EXPECT_TRUE(CrossesNone(walls, on_wall, bends, inside));
+}
+
+// Whatever is found crosses nothing, and little that is there to be found is missed.
+TEST(Detours, CrossNothingAmongRandomRoundHoles) {
+  int wanted = 0;
+  int found = 0;
+  for (uint64_t seed = 1; seed <= 200; ++seed) {
+    Rng rng(seed);
+    std::vector<Outline> outlines = {Square(0, 0, 100)};
+    for (int i = 0; i < 25; ++i) {
+      const Vertex center{10.0 + 20 * (i % 5), 10.0 + 20 * (i / 5)};
+      const double radius = 2 + 6.5 * rng.Unit();
+      std::vector<Vertex> points;
+      for (int k = 0; k <= 24; ++k) {
+        const double angle = 2 * std::numbers::pi * (k % 24) / 24;
+        points.push_back(
+            {center.x + radius * std::cos(angle), center.y + radius * std::sin(angle)});
+      }
+      outlines.push_back(Wall(points));
+    }
+    const VisibleWalls walls(outlines);
+    // Where the holes leave streets free.
+    const Vertex a{20.0 * rng.Below(6), 3 + 94 * rng.Unit()};
+    const Vertex b{3 + 94 * rng.Unit(), 20.0 * rng.Below(6)};
+    const Vertex from{std::clamp(a.x, 1.0, 99.0), a.y};
+    const Vertex to{b.x, std::clamp(b.y, 1.0, 99.0)};
+    if (!walls.Crossed(from, to)) continue;
+    ++wanted;
+    const std::vector<Vertex> bends = Detours(walls).Around(from, to);
+    if (bends.empty()) continue;
+    ++found;
+    EXPECT_TRUE(CrossesNone(walls, from, bends, to)) << "seed " << seed;
+    EXPECT_LT(LengthOf(from, bends, to), 2 * Distance(from, to) + 10) << "seed " << seed;
+  }
+  EXPECT_GT(wanted, 100);
+  EXPECT_GT(found, wanted * 9 / 10);
+}
+
+}  // namespace
+}  // namespace traverse::gcode

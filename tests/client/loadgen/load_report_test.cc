@@ -1,0 +1,68 @@
+#include "client/loadgen/load_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace traverse::loadgen {
+namespace {
+
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// A thousand jobs that took 1 to 1000 ms.
+LoadResult Thousand() {
+  LoadResult result;
+  result.duration = absl::Seconds(10);
+  result.sent = {1000};
+  result.ok.resize(1);
+  for (int ms = 1; ms <= 1000; ++ms) {
+    result.ok[0].Add(absl::Milliseconds(ms), absl::Milliseconds(ms));
+    result.code["OK"].Add(absl::Milliseconds(ms), absl::Milliseconds(ms));
+  }
+  return result;
+}
+
+LoadHeading Heading() {
+  LoadHeading heading;
+  heading.target = "127.0.0.1:1";
+  heading.strategy = "ni2opt";
+  heading.mix = {{1, 100}};
+  return heading;
+}
+
+TEST(LoadReport, EachColumnIsItsOwnPercentile) {
+  const auto json = nlohmann::json::parse(LoadJson(Heading(), Thousand()));
+  const auto& latency = json["sizes"][0]["latency_ms"];
+
+  EXPECT_NEAR(latency["p50"], 500, 5);
+  EXPECT_NEAR(latency["p90"], 900, 9);
+  EXPECT_NEAR(latency["p99"], 990, 9);
+  EXPECT_NEAR(latency["p99_9"], 999, 9);
+  EXPECT_NEAR(latency["max"], 1000, 1e-6);
+  EXPECT_NEAR(latency["mean"], 500.5, 1e-6);
+  EXPECT_EQ(json["ok"], 1000);
+  EXPECT_NEAR(json["ok_per_second"], 100, 1e-9);
+}
+
+TEST(LoadReport, TheTableHasTheSameFigures) {
+  const std::string table = LoadTable(Heading(), Thousand());
+
+  EXPECT_THAT(table, ContainsRegex("p50 +p90 +p99 +p99.9 +max ms"));
+  EXPECT_THAT(
+      table, ContainsRegex("1 +1000 +1000 +100.0 +50[0-4]\\.[0-9]+ +90[0-9]\\.[0-9]+ +99[0-9]\\."));
+}
+
+TEST(LoadReport, FailuresAreListedWithAnExample) {
+  LoadResult result = Thousand();
+  result.code["UNAVAILABLE"].Add(absl::Milliseconds(3), absl::Milliseconds(3));
+  result.example["UNAVAILABLE"] = "no server there";
+
+  EXPECT_THAT(LoadTable(Heading(), result), HasSubstr("UNAVAILABLE: no server there"));
+  EXPECT_THAT(LoadTable(Heading(), Thousand()), Not(HasSubstr("not ok")));
+}
+
+}  // namespace
+}  // namespace traverse::loadgen

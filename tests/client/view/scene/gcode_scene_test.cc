@@ -1,0 +1,119 @@
+// What is drawn of G-code is what the files do.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "client/api/embedded.h"
+#include "client/api/optimizer_client.h"
+#include "client/gcode/gcode_job.h"
+#include "client/gcode/rewrite.h"
+#include "client/view/scene/job_scene.h"
+#include "tests/client/gcode/support/corpus.h"
+
+namespace traverse::view {
+namespace {
+
+double LengthOf(const std::vector<DrawnMove>& moves) {
+  double sum = 0;
+  for (const DrawnMove& move : moves) {
+    for (size_t i = 1; i < move.size(); ++i) {
+      sum += std::hypot(move[i].x - move[i - 1].x, move[i].y - move[i - 1].y);
+    }
+  }
+  return sum;
+}
+
+// A run by the service.
+report::JobRun RunOf(const InputJob& job, const std::string& strategy) {
+  v1::JobOptions options = job.options;
+  options.clear_strategy();
+  options.mutable_strategy()->set_name(strategy);
+  const auto service = EmbeddedService::Start(2);
+  EXPECT_TRUE(service.ok());
+  report::JobRun run;
+  run.result = *OptimizerClient((*service)->channel()).Optimize(options, job.layers);
+  return run;
+}
+
+class DrawnGcode : public ::testing::TestWithParam<std::string> {};
+
+// The meter that the figures come from shares no code with what draws the moves.
+TEST_P(DrawnGcode, TravelsAsFarAsTheFileIsMeasuredTo) {
+  GcodeOptions options;
+  options.policy = gcode::Policy::kFree;
+  const absl::StatusOr<InputJob> job =
+      ReadGcodeJob(gcode::testing::TextOf(GetParam()), "part.gcode", options);
+  ASSERT_TRUE(job.ok()) << job.status();
+  // The writer takes some layers from the one and some from the other.
+  const std::vector<report::JobRun> runs = {RunOf(*job, "greedy"), RunOf(*job, "ni2opt")};
+  std::vector<gcode::FileOrder> tries;
+  for (const report::JobRun& run : runs) {
+    gcode::FileOrder& orders = tries.emplace_back();
+    for (size_t i = 0; i < job->layers.size(); ++i) {
+      orders.push_back(OrderOf(*job->gcode, i, run.result.layers[i]));
+    }
+  }
+  const absl::StatusOr<GcodeRewrite> rewrite =
+      RewriteGcode(*job->gcode, tries,
+                   {.policy = options.policy, .crossings = {}, .version = "1.0", .threads = 2});
+  ASSERT_TRUE(rewrite.ok()) << rewrite.status();
+
+  const absl::StatusOr<Scene> scene = GcodeScene(*job, "ni2opt", runs, *rewrite);
+  ASSERT_TRUE(scene.ok()) << scene.status();
+
+  ASSERT_EQ(scene->layers(), job->layers.size());
+  EXPECT_FALSE(scene->routes[1].gap) << "a bound on routes is none on files";
+  for (size_t i = 0; i < scene->layers(); ++i) {
+    const DrawnLayer layer = scene->layer(i);
+    for (size_t route = 0; route < 2; ++route) {
+      const double measured = scene->routes[route].layers[i].travel_mm;
+      EXPECT_NEAR(LengthOf(MovesOf(layer, layer.routes[route])), measured, 0.01 * measured + 0.5)
+          << "layer " << i + 1 << ", route " << route;
+    }
+  }
+}
+
+// A loop of two half circles and two lines; from the line right of it the way to its other side is
+// shorter than to where it begins.
+TEST(DrawnGcode, ArcsAreRound) {
+  const std::string text =
+      "M83\n;LAYER_CHANGE\nG1 Z.2 F600\n;TYPE:Perimeter\nG1 X30 Y14\nG1 X31 Y14 E.1\n"
+      "G1 X10 Y10\nG3 X20 Y10 I5 J0 E1\nG1 X20 Y14 E.5\nG3 X10 Y14 I-5 J0 E1\nG1 X10 Y10 E.5\n"
+      "G1 X60 Y12\n;TYPE:Internal infill\nG1 X40 Y12 E1\n";
+  GcodeOptions options;
+  options.policy = gcode::Policy::kFree;
+  const absl::StatusOr<InputJob> job = ReadGcodeJob(text, "part.gcode", options);
+  ASSERT_TRUE(job.ok()) << job.status();
+  const std::vector<report::JobRun> runs = {RunOf(*job, "ni2opt")};
+  const std::vector<gcode::FileOrder> tries = {{OrderOf(*job->gcode, 0, runs[0].result.layers[0])}};
+  const absl::StatusOr<GcodeRewrite> rewrite =
+      RewriteGcode(*job->gcode, tries,
+                   {.policy = options.policy, .crossings = {}, .version = "1.0", .threads = 2});
+  ASSERT_TRUE(rewrite.ok()) << rewrite.status();
+
+  const absl::StatusOr<Scene> scene = GcodeScene(*job, "ni2opt", runs, *rewrite);
+  ASSERT_TRUE(scene.ok()) << scene.status();
+  const DrawnLayer layer = scene->layer(0);
+
+  const DrawnPath& loop = layer.paths[1];
+  ASSERT_TRUE(loop.closed);
+  DrawnMove outline = loop.points;
+  outline.push_back(loop.points.front());
+  EXPECT_NEAR(LengthOf({outline}), 8 + 10 * std::numbers::pi, 0.1);
+  for (const Place& at : loop.points) {
+    const double beyond = at.y < 10 ? 10 - at.y : std::max(at.y - 14, 0.0);
+    EXPECT_NEAR(std::hypot(at.x - 15, beyond), 5, 0.001) << at.x << ", " << at.y;
+  }
+  // Routes begin it at the same corners as before it was bent.
+  EXPECT_EQ(EntryOf(loop, layer.routes[0].visits[1]), (Place{10, 10}));
+  EXPECT_EQ(EntryOf(loop, layer.routes[1].visits[1]), (Place{20, 14}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Kept, DrawnGcode, ::testing::ValuesIn(gcode::testing::KeptFiles()),
+                         [](const auto& info) { return gcode::testing::NameOf(info.param); });
+
+}  // namespace
+}  // namespace traverse::view

@@ -1,0 +1,83 @@
+#include "engine/geometry/wall_detour.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "engine/base/rng.h"
+#include "tests/support/walled_problem.h"
+
+namespace traverse {
+namespace {
+
+using namespace traverse::testing;  // NOLINT
+
+constexpr double kSlack = 0.25;
+
+Wall Box(double x, double y, double width, double height) {
+  return {{{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}}, true, -1};
+}
+
+TEST(WallDetours, LeadAroundAHole) {
+  const std::vector<Wall> walls = {Box(0, 0, 40, 40), Box(15, 15, 10, 10)};
+  const WallGrid grid(walls, kSlack);
+
+  const std::vector<Point> bends = WallDetours(grid, 0.4, 0.3).Around({5, 18}, {35, 18});
+
+  ASSERT_EQ(bends.size(), 2u);
+  for (const Point& bend : bends) EXPECT_NEAR(bend.y, 14.6, 1e-9);
+}
+
+TEST(WallDetours, AreNoneFromIslandToIslandAndWhereNothingIsInTheWay) {
+  const std::vector<Wall> walls = {Box(0, 0, 10, 10), Box(20, 0, 10, 10)};
+  const WallGrid grid(walls, kSlack);
+  const WallDetours detours(grid, 0.4, 0.3);
+
+  EXPECT_TRUE(detours.Around({5, 5}, {25, 5}).empty());
+  EXPECT_TRUE(detours.Around({2, 5}, {8, 5}).empty());
+}
+
+TEST(WallDetours, CrossNothingAndAreTheSameThereAndBack) {
+  int found = 0;
+  for (uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    Rng rng(seed);
+    // A ring of holes in a star of an outline.
+    LayerWalls walls;
+    Wall& star = walls.walls.emplace_back();
+    star.closed = true;
+    for (int i = 0; i < 24; ++i) {
+      const double reach = (i % 2 == 0 ? 50 : 25) + rng.Unit() * 10;
+      star.points.push_back({reach * std::cos(i * 0.2618), reach * std::sin(i * 0.2618)});
+    }
+    for (int i = 0; i < 5; ++i) {
+      walls.walls.push_back(Box(15 * std::cos(i * 1.2566) - 2, 15 * std::sin(i * 1.2566) - 2,
+                                1 + rng.Unit() * 6, 1 + rng.Unit() * 6));
+    }
+    const WallGrid grid(walls.walls, kSlack);
+    const WallDetours detours(grid, 0.4, 0.3);
+    for (int i = 0; i < 50; ++i) {
+      const auto point = [&] { return Point{rng.Unit() * 70 - 35, rng.Unit() * 70 - 35}; };
+      const Point a = point();
+      const Point b = point();
+
+      const std::vector<Point> there = detours.Around(a, b);
+
+      const std::vector<Point> back = detours.Around(b, a);
+      EXPECT_EQ(there.empty(), back.empty());
+      EXPECT_TRUE(there.empty() || CrossesAny(walls, kSlack, a, b));
+      found += there.empty() ? 0 : 1;
+      Point at = a;
+      for (size_t k = 0; k <= there.size() && !there.empty(); ++k) {
+        const Point next = k < there.size() ? there[k] : b;
+        EXPECT_FALSE(CrossesAny(walls, kSlack, at, next));
+        at = next;
+      }
+    }
+  }
+  EXPECT_GT(found, 1000);
+}
+
+}  // namespace
+}  // namespace traverse

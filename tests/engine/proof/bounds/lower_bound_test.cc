@@ -1,0 +1,143 @@
+#include "engine/proof/bounds/lower_bound.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "engine/base/rng.h"
+#include "engine/cost/route_cost.h"
+#include "engine/strategy/registry.h"
+#include "tests/support/brute_force.h"
+#include "tests/support/instances.h"
+#include "tests/support/random_plan.h"
+
+namespace traverse {
+namespace {
+
+using testing::OwnedProblem;
+
+TEST(LowerBound, IsNeverAboveTheOptimum) {
+  for (uint64_t seed = 1; seed <= 600; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const OwnedProblem owned = testing::RandomProblem(seed, {.max_paths = 7});
+    const double best = testing::BruteForce(owned.problem).cost;
+    Budget budget;
+
+    const std::optional<double> bound = LowerBound(owned.problem, 2 * best + 1, nullptr, budget);
+
+    ASSERT_TRUE(bound.has_value());
+    EXPECT_LE(*bound, best + 1e-9 * (1 + best));
+  }
+}
+
+TEST(LowerBound, IsNeverAboveTheOptimumOfDegenerateGeometry) {
+  for (const testing::Degeneracy degeneracy : testing::kDegeneracies) {
+    for (uint64_t seed = 1; seed <= 100; ++seed) {
+      SCOPED_TRACE(absl::StrCat("degeneracy ", static_cast<int>(degeneracy), ", seed ", seed));
+      const OwnedProblem owned =
+          testing::Degenerate(testing::RandomProblem(seed, {.max_paths = 6}), degeneracy);
+      const double best = testing::BruteForce(owned.problem).cost;
+      Budget budget;
+
+      const std::optional<double> bound = LowerBound(owned.problem, 2 * best + 1, nullptr, budget);
+
+      ASSERT_TRUE(bound.has_value());
+      EXPECT_LE(*bound, best + 1e-9 * (1 + best));
+    }
+  }
+}
+
+// Layers too large for brute force: what is proven by other means.
+TEST(LowerBound, IsNeverAboveAProvenOptimum) {
+  const std::unique_ptr<Strategy> exact = *MakeStrategy("exact", {});
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const OwnedProblem owned =
+        testing::RandomProblem(seed, {.shape = testing::PlanShape::kSequential,
+                                      .min_paths = 16,
+                                      .max_paths = 30,
+                                      .max_vertices = 8});
+    Budget budget;
+    const Solution proven = exact->Solve(owned.problem, budget);
+    ASSERT_EQ(proven.stop, StopReason::kOptimal);
+    const double best = RouteCost(owned.problem, proven.route);
+
+    const double bound = *LowerBound(owned.problem, 2 * best, nullptr, budget);
+
+    EXPECT_LE(bound, best * (1 + 1e-9));
+    EXPECT_GT(bound, 0.3 * best);
+  }
+}
+
+// A route's cost is not known to be the least, and what a bound is at most must not make it so.
+TEST(LowerBound, IsNeverAboveTheTarget) {
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const OwnedProblem owned = testing::RandomProblem(seed, {.max_paths = 6});
+    const double best = testing::BruteForce(owned.problem).cost;
+    Budget budget;
+
+    EXPECT_LE(LowerBound(owned.problem, best, nullptr, budget), best);
+  }
+}
+
+TEST(LowerBound, IsTightOnALine) {
+  const OwnedProblem owned(testing::FlatPlan(30));
+  Budget budget;
+
+  EXPECT_NEAR(*LowerBound(owned.problem, 40, nullptr, budget), 29, 1e-6);
+}
+
+// Points in the plane: the bound of Held and Karp is within a few percent of the optimum.
+TEST(LowerBound, IsNearTheOptimumOfPoints) {
+  Rng rng(5);
+  std::vector<Path> paths;
+  for (int i = 0; i < 60; ++i) paths.push_back(MakeContour({{100 * rng.Unit(), 100 * rng.Unit()}}));
+  const OwnedProblem owned(testing::AnyOrderPlan(std::move(paths)));
+  Budget budget;
+  const double cost = RouteCost(owned.problem, GivenRoute(owned.plan()));
+
+  const double rough = *LowerBound(owned.problem, cost, nullptr, budget);
+
+  EXPECT_GT(rough, 480);  // the best route known: 574
+}
+
+// What was found for one start bounds the routes from another one.
+TEST(LowerBound, IsValidWithMultipliersOfAnotherStart) {
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    OwnedProblem owned = testing::RandomProblem(seed, {.max_paths = 6});
+    Budget budget;
+    BoundMultipliers multipliers;
+    LowerBound(owned.problem, 1e6, &multipliers, budget);
+    owned.problem.start = Point{-50, 20};
+    const double best = testing::BruteForce(owned.problem).cost;
+
+    const std::optional<double> bound = LowerBound(owned.problem, 1e6, &multipliers, budget);
+
+    ASSERT_TRUE(bound.has_value());
+    EXPECT_LE(*bound, best + 1e-9 * (1 + best));
+  }
+}
+
+TEST(LowerBound, OfAnEmptyPlanIsWhatTheRestCosts) {
+  OwnedProblem owned{Plan()};
+  owned.problem.finish = Point{3, 4};
+  Budget budget;
+
+  EXPECT_EQ(LowerBound(owned.problem, 7, nullptr, budget), 5);
+}
+
+TEST(LowerBound, IsNotGivenWithoutTime) {
+  const OwnedProblem owned(SequentialPlan(testing::SquareGrid(12, 12)));
+  Budget budget(nullptr, Budget::Clock::now());
+
+  EXPECT_FALSE(LowerBound(owned.problem, 1e6, nullptr, budget).has_value());
+}
+
+}  // namespace
+}  // namespace traverse

@@ -1,0 +1,97 @@
+#include "engine/schedule/end_history.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace traverse {
+namespace {
+
+// Two lines and a contour, in any order but for one pair.
+Plan SmallPlan() {
+  Plan plan;
+  plan.paths = {MakeOpenPath({1, 1}, {5, 1}), MakeOpenPath({1, 3}, {5, 3}),
+                MakeContour({{0, 0}, {9, 0}, {9, 9}})};
+  PlanNode root;
+  root.kind = PlanNode::Kind::kAnyOrder;
+  root.children = {1, 2, 3};
+  plan.nodes = {root};
+  for (int p = 0; p < 3; ++p) {
+    PlanNode leaf;
+    leaf.path = p;
+    plan.nodes.push_back(leaf);
+  }
+  return plan;
+}
+
+TEST(PrintOf, ShiftedPlansAreOfOneMakeAndNotInOnePlace) {
+  const Plan plan = SmallPlan();
+  Plan moved = plan;
+  for (Path& path : moved.paths) {
+    for (Point& point : path.points) point = {point.x + 20, point.y - 3};
+  }
+
+  EXPECT_EQ(PrintOf(moved, {}).make, PrintOf(plan, {}).make);
+  EXPECT_NE(PrintOf(moved, {}).place, PrintOf(plan, {}).place);
+  EXPECT_EQ(PrintOf(plan, {}).place, PrintOf(SmallPlan(), {}).place);
+}
+
+TEST(PrintOf, WhateverChangesTheProblemChangesTheMake) {
+  const std::vector<std::pair<std::string, std::function<void(Plan&, CostSpec&)>>> changes = {
+      {"one way", [](Plan& plan, CostSpec&) { plan.paths[0].one_way = true; }},
+      {"kind of path", [](Plan& plan, CostSpec&) { plan.paths[2].kind = Path::Kind::kOpen; }},
+      {"point", [](Plan& plan, CostSpec&) { plan.paths[1].points[1].y += 0.001; }},
+      {"allowed entries", [](Plan& plan, CostSpec&) { plan.paths[2].allowed = {1}; }},
+      {"order of children",
+       [](Plan& plan, CostSpec&) {
+         std::swap(plan.nodes[0].children[0], plan.nodes[0].children[1]);
+       }},
+      {"kind of node",
+       [](Plan& plan, CostSpec&) { plan.nodes[0].kind = PlanNode::Kind::kInOrder; }},
+      {"pair",
+       [](Plan& plan, CostSpec&) {
+         plan.nodes[0].before = {{0, 1}};
+       }},
+      {"kind of cost", [](Plan&, CostSpec& cost) { cost.kind = CostSpec::Kind::kTime; }},
+      {"speed", [](Plan&, CostSpec& cost) { cost.speed_mm_s += 1; }},
+      {"acceleration", [](Plan&, CostSpec& cost) { cost.accel_mm_s2 += 1; }},
+      {"retraction", [](Plan&, CostSpec& cost) { cost.retraction_seconds += 1; }},
+      {"threshold", [](Plan&, CostSpec& cost) { cost.retraction_threshold_mm += 1; }},
+  };
+  for (const auto& [what, change] : changes) {
+    Plan plan = SmallPlan();
+    CostSpec cost;
+    change(plan, cost);
+
+    EXPECT_NE(PrintOf(plan, cost).make, PrintOf(SmallPlan(), {}).make) << what;
+  }
+}
+
+TEST(KindOf, DependsOnStartAndFinishFromTheOrigin) {
+  const uint64_t kind = KindOf(1, {0, 0}, {5, 5}, std::nullopt);
+
+  EXPECT_EQ(KindOf(1, {10, 0}, {15, 5}, std::nullopt), kind);
+  EXPECT_NE(KindOf(2, {0, 0}, {5, 5}, std::nullopt), kind);
+  EXPECT_NE(KindOf(1, {0, 0}, {5, 6}, std::nullopt), kind);
+  EXPECT_NE(KindOf(1, {0, 0}, {5, 5}, Point{0, 0}), kind);
+  EXPECT_NE(KindOf(1, {0, 0}, {5, 5}, Point{0, 0}), KindOf(1, {0, 0}, {5, 5}, Point{0, 1}));
+}
+
+TEST(EndHistory, PrefersTheKindToTheMakeAndTheLastToTheFirst) {
+  EndHistory history;
+  EXPECT_FALSE(history.EndOf(1, 10));
+
+  history.Learn(1, 10, {1, 1});
+  history.Learn(1, 11, {2, 2});
+
+  EXPECT_EQ(history.EndOf(1, 10), (Point{1, 1}));
+  EXPECT_EQ(history.EndOf(1, 11), (Point{2, 2}));
+  EXPECT_EQ(history.EndOf(1, 12), (Point{2, 2}));
+  EXPECT_FALSE(history.EndOf(2, 12));
+}
+
+}  // namespace
+}  // namespace traverse

@@ -1,0 +1,110 @@
+#include "engine/schedule/route_history.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+namespace traverse {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+constexpr uint64_t kMake = 7;
+constexpr uint64_t kKind = 70;
+
+KnownRoutePtr RouteThatCosts(double cost) {
+  auto known = std::make_shared<KnownRoute>();
+  known->cost = cost;
+  return known;
+}
+
+TEST(RouteHistory, TheFirstOfItsMakeHasNothingToStartFrom) {
+  RouteHistory history;
+
+  EXPECT_EQ(history.Enter(kMake, kKind, std::make_shared<RouteToCome>()), nullptr);
+}
+
+TEST(RouteHistory, KeepsTheCheaperRouteOfAKind) {
+  RouteHistory history;
+  const auto first = std::make_shared<RouteToCome>();
+  const auto second = std::make_shared<RouteToCome>();
+  const auto third = std::make_shared<RouteToCome>();
+  for (const auto& entry : {first, second, third}) history.Enter(kMake, kKind, entry);
+
+  RouteHistory::Complete(first, RouteThatCosts(10), false);
+  RouteHistory::Complete(second, RouteThatCosts(12), true);
+  EXPECT_EQ(second->best->cost, 10);
+  EXPECT_EQ(second->idle, 1);
+
+  RouteHistory::Complete(third, RouteThatCosts(9), false);
+  EXPECT_EQ(third->best->cost, 9);
+  EXPECT_EQ(third->idle, 0);
+}
+
+TEST(RouteHistory, ARouteThatCostsTheSameCountsAsTheOldOne) {
+  RouteHistory history;
+  const auto first = std::make_shared<RouteToCome>();
+  const auto second = std::make_shared<RouteToCome>();
+  for (const auto& entry : {first, second}) history.Enter(kMake, kKind, entry);
+  RouteHistory::Complete(first, RouteThatCosts(10), false);
+
+  RouteHistory::Complete(second, RouteThatCosts(10), true);
+
+  EXPECT_EQ(second->best, first->best);
+}
+
+TEST(RouteHistory, WhatWaitsIsReleasedInOrderOnceAllBeforeAreThere) {
+  RouteHistory history;
+  const auto first = std::make_shared<RouteToCome>();
+  const auto second = std::make_shared<RouteToCome>();
+  for (const auto& entry : {first, second}) history.Enter(kMake, kKind, entry);
+  first->waiting = {4};
+  second->waiting = {5, 6};
+
+  EXPECT_THAT(RouteHistory::Complete(second, RouteThatCosts(1), false), IsEmpty());
+  EXPECT_FALSE(second->ready);
+  EXPECT_THAT(RouteHistory::Complete(first, RouteThatCosts(2), false), ElementsAre(4, 5, 6));
+  EXPECT_TRUE(second->ready);
+}
+
+TEST(RouteHistory, StartsFromTheRouteSoManyRepetitionsBefore) {
+  RouteHistory history;
+  std::vector<RouteHistory::Entry> entries;
+  for (size_t i = 0; i <= RouteHistory::kLag; ++i) {
+    entries.push_back(std::make_shared<RouteToCome>());
+    const RouteHistory::Entry model = history.Enter(kMake, kKind, entries.back());
+    EXPECT_EQ(model, i > 0 ? entries[0] : nullptr) << i;
+  }
+  const auto next = std::make_shared<RouteToCome>();
+
+  EXPECT_EQ(history.Enter(kMake, kKind, next), entries[1]);
+}
+
+TEST(RouteHistory, ANewKindStartsFromARouteOfItsMake) {
+  RouteHistory history;
+  const auto first = std::make_shared<RouteToCome>();
+  history.Enter(kMake, kKind, first);
+
+  EXPECT_EQ(history.Enter(kMake, kKind + 1, std::make_shared<RouteToCome>()), first);
+  EXPECT_EQ(history.Enter(kMake + 1, kKind + 2, std::make_shared<RouteToCome>()), nullptr);
+}
+
+TEST(RouteHistory, WhatWasLearntTakesNoPlaceOfAKindThatIsKnown) {
+  RouteHistory history;
+  const auto first = std::make_shared<RouteToCome>();
+  history.Enter(kMake, kKind, first);
+
+  history.Learn(kMake, kKind, RouteThatCosts(1));
+  history.Learn(kMake, kKind + 1, RouteThatCosts(2));
+
+  EXPECT_EQ(history.Enter(kMake, kKind, std::make_shared<RouteToCome>()), first);
+  const auto learnt = history.Enter(kMake, kKind + 1, std::make_shared<RouteToCome>());
+  ASSERT_NE(learnt, nullptr);
+  EXPECT_EQ(learnt->best->cost, 2);
+}
+
+}  // namespace
+}  // namespace traverse

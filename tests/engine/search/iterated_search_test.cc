@@ -1,0 +1,129 @@
+#include "engine/search/iterated_search.h"
+
+#include <gtest/gtest.h>
+
+#include "absl/strings/str_cat.h"
+#include "engine/base/tolerances.h"
+#include "engine/validator.h"
+#include "tests/engine/search/searched.h"
+#include "tests/support/brute_force.h"
+#include "tests/support/status_matchers.h"
+
+namespace traverse {
+namespace {
+
+using namespace traverse::testing;  // NOLINT
+
+TEST(IteratedSearch, NeverMakesARouteWorse) {
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    Searched s(seed, {.min_paths = 1, .max_paths = 40, .max_vertices = 12});
+    IteratedSearch search(s.state, s.neighbors, {.local_search = {}, .patience = 20});
+    Rng rng(seed);
+    double cost = s.state.TotalCost();
+    for (int i = 0; i < 5; ++i) {
+      search.Run(rng, s.budget);
+
+      EXPECT_LE(s.state.TotalCost(), cost + kCostTolerance);
+      EXPECT_OK(ValidateRoute(s.owned.plan(), s.state.Unload()));
+      cost = s.state.TotalCost();
+    }
+  }
+}
+
+TEST(IteratedSearch, EndsWithTheBestRouteHoweverFarItWalksFromIt) {
+  for (uint64_t seed = 1; seed <= 30; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    Searched s(seed, {.min_paths = 20, .max_paths = 40});
+    IteratedSearch search(s.state, s.neighbors,
+                          {.local_search = {}, .patience = 50, .temperature = 1000});
+    Rng rng(seed);
+    search.Descend(s.budget);
+    const double cost = s.state.TotalCost();
+
+    search.Run(rng, s.budget);
+
+    EXPECT_LE(s.state.TotalCost(), cost + kCostTolerance);
+    EXPECT_OK(ValidateRoute(s.owned.plan(), s.state.Unload()));
+  }
+}
+
+TEST(IteratedSearch, EndsWhereIterationsGainTooLittle) {
+  Searched s(7, {.min_paths = 40, .max_paths = 60});
+  IteratedSearchOptions options;
+  options.patience = 1'000'000;
+  options.least_gain_each = 1e9;
+  options.window = 30;
+  IteratedSearch search(s.state, s.neighbors, options);
+  Rng rng(7);
+  search.Descend(s.budget);
+
+  search.Run(rng, s.budget);
+
+  EXPECT_EQ(search.iterations(), 30);
+}
+
+TEST(IteratedSearch, FindsTheOptimumOfSmallProblems) {
+  int optimal = 0;
+  for (uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    Searched s(seed, {.min_paths = 4, .max_paths = 7});
+    IteratedSearch search(s.state, s.neighbors, {.local_search = {}, .patience = 60});
+    Rng rng(seed);
+
+    search.Descend(s.budget);
+    search.Run(rng, s.budget);
+
+    optimal += s.state.TotalCost() <= BruteForce(s.owned.problem).cost + kCostTolerance;
+  }
+  EXPECT_GE(optimal, 180);
+}
+
+double SearchedCost(uint64_t seed, PlanShape shape, const IteratedSearchOptions& options) {
+  Searched s(seed, {.shape = shape, .min_paths = 60, .max_paths = 60});
+  IteratedSearch search(s.state, s.neighbors, options);
+  Rng rng(seed);
+  search.Descend(s.budget);
+  search.Run(rng, s.budget);
+  return s.state.TotalCost();
+}
+
+// Of the routes found with some options to those found with others.
+double CostRatio(PlanShape shape, const IteratedSearchOptions& options,
+                 const IteratedSearchOptions& others) {
+  double cost = 0;
+  double others_cost = 0;
+  for (uint64_t seed = 1; seed <= 12; ++seed) {
+    cost += SearchedCost(seed, shape, options);
+    others_cost += SearchedCost(seed, shape, others);
+  }
+  return cost / others_cost;
+}
+
+// Contours come first on each island: runs of islands cannot be reversed.
+TEST(IteratedSearch, FindsShorterRoutesByTurningRunsOfBlocks) {
+  const IteratedSearchOptions turning{.local_search = {}, .patience = 150, .turn_share = 0.5};
+  const IteratedSearchOptions not_turning{.local_search = {}, .patience = 150, .turn_share = 0};
+  EXPECT_LT(CostRatio(PlanShape::kInterleaved, turning, not_turning), 0.985);
+}
+
+TEST(IteratedSearch, FindsShorterRoutesByWalkingAmongWorseOnes) {
+  const IteratedSearchOptions walking{.local_search = {}, .patience = 500};
+  const IteratedSearchOptions not_walking{.local_search = {}, .patience = 500, .temperature = 0};
+  EXPECT_LT(CostRatio(PlanShape::kSequential, walking, not_walking), 0.999);
+}
+
+TEST(IteratedSearch, StopsWhenPatienceIsOut) {
+  Searched s(1, {.shape = PlanShape::kFlatContours, .min_paths = 6, .max_paths = 6});
+  IteratedSearch search(s.state, s.neighbors, {.local_search = {}, .patience = 7});
+  Rng rng(1);
+  search.Run(rng, s.budget);
+  const int64_t before = search.iterations();
+
+  search.Run(rng, s.budget);
+
+  EXPECT_EQ(search.iterations() - before, 7);
+}
+
+}  // namespace
+}  // namespace traverse

@@ -1,0 +1,85 @@
+#include "engine/search/polisher.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "absl/strings/str_cat.h"
+#include "engine/base/tolerances.h"
+#include "engine/cost/route_cost.h"
+#include "engine/validator.h"
+#include "tests/support/brute_force.h"
+#include "tests/support/instances.h"
+#include "tests/support/random_plan.h"
+#include "tests/support/status_matchers.h"
+
+namespace traverse {
+namespace {
+
+using namespace traverse::testing;  // NOLINT
+
+TEST(Polisher, NeverReturnsAWorseRoute) {
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const OwnedProblem owned = RandomProblem(seed, {.max_paths = 25});
+    const LayerView layer(owned.problem);
+    const Route given = GivenRoute(owned.plan());
+    Budget budget;
+    Polisher polisher(layer, budget);
+    Rng rng(seed);
+
+    const Route descended = polisher.Descend(given, budget);
+    const Route iterated = polisher.Iterate(descended, 50, rng, budget);
+
+    ASSERT_OK(ValidateRoute(owned.plan(), descended));
+    ASSERT_OK(ValidateRoute(owned.plan(), iterated));
+    const double cost = RouteCost(owned.problem, descended);
+    EXPECT_LE(cost, RouteCost(owned.problem, given) + kCostTolerance);
+    EXPECT_LE(RouteCost(owned.problem, iterated), cost + kCostTolerance);
+  }
+}
+
+TEST(Polisher, FindsTheOptimumOfNearlyAllSmallPlans) {
+  int optimal = 0;
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    const OwnedProblem owned = RandomProblem(seed, {.max_paths = 7});
+    const LayerView layer(owned.problem);
+    Budget budget;
+    Polisher polisher(layer, budget);
+    Rng rng(seed);
+
+    const Route route = polisher.Iterate(GivenRoute(owned.plan()), 100, rng, budget);
+
+    optimal += RouteCost(owned.problem, route) <= BruteForce(owned.problem).cost + kCostTolerance;
+  }
+  EXPECT_GE(optimal, 90);  // nodes of fewer than four children have no kicks
+}
+
+TEST(Polisher, OnlyChoosesEntriesWhereTheOrderIsFixed) {
+  Plan plan = SequentialPlan(SquareGrid(3, 1));
+  for (PlanNode& node : plan.nodes) {
+    if (node.kind == PlanNode::Kind::kAnyOrder) node.kind = PlanNode::Kind::kInOrder;
+  }
+  const OwnedProblem owned(plan);
+  const LayerView layer(owned.problem);
+  Budget budget;
+  Polisher polisher(layer, budget);
+  Rng rng(1);
+
+  const Route route = polisher.Iterate(GivenRoute(owned.plan()), 10, rng, budget);
+
+  ASSERT_OK(ValidateRoute(owned.plan(), route));
+  EXPECT_NEAR(RouteCost(owned.problem, route), BruteForce(owned.problem).cost, kCostTolerance);
+}
+
+TEST(Polisher, ReturnsTheRouteWhenTheBudgetHasRunOut) {
+  const OwnedProblem owned(SequentialPlan(SquareGrid(4, 4)));
+  const LayerView layer(owned.problem);
+  Budget late(nullptr, Budget::Clock::now() - std::chrono::seconds(1));
+  Polisher polisher(layer, late);
+
+  EXPECT_EQ(polisher.Descend(GivenRoute(owned.plan()), late), GivenRoute(owned.plan()));
+}
+
+}  // namespace
+}  // namespace traverse

@@ -1,0 +1,85 @@
+#include "engine/souza/nearest_insertion.h"
+
+#include <gtest/gtest.h>
+
+#include "absl/strings/str_cat.h"
+#include "engine/base/tolerances.h"
+#include "engine/cost/route_cost.h"
+#include "engine/validator.h"
+#include "tests/support/brute_force.h"
+#include "tests/support/instances.h"
+#include "tests/support/random_plan.h"
+#include "tests/support/status_matchers.h"
+
+namespace traverse {
+namespace {
+
+using namespace traverse::testing;  // NOLINT
+
+Route Inserted(const LayerProblem& problem) {
+  Budget budget;
+  return NearestInsertionRoute(LayerView(problem), budget).value();
+}
+
+// 0 is nearest to the start; then 1 is nearest to the route and costs least behind it; then 2,
+// which costs less between the start and 0 than at the end.
+TEST(NearestInsertion, InsertsWhereItCostsLeast) {
+  const OwnedProblem owned(AnyOrderPlan(
+      {MakeContour({{3, 0}}), MakeContour({{5, 0}}), MakeContour({{2, 2.5}, {9, 9}})}));
+
+  EXPECT_EQ(Inserted(owned.problem), (Route{{2, 0}, {0, 0}, {1, 0}}));
+}
+
+TEST(NearestInsertion, TakesTheEntryThatCostsLeastThere) {
+  const OwnedProblem owned(
+      AnyOrderPlan({MakeContour({{3, 0}}), MakeContour({{1, 3}, {1, 1}, {3, 4}}),
+                    MakeOpenPath({9, 0}, {5, 0})}));
+
+  EXPECT_EQ(Inserted(owned.problem), (Route{{1, 1}, {0, 0}, {2, 1}}));
+}
+
+TEST(NearestInsertion, InsertsBehindWhatComesBefore) {
+  Plan plan = FlatPlan(3);
+  plan.nodes[0].before = {{2, 0}};
+  const OwnedProblem owned(std::move(plan));
+
+  EXPECT_EQ(Inserted(owned.problem), (Route{{1, 0}, {2, 0}, {0, 0}}));
+}
+
+TEST(NearestInsertion, LooksAheadToTheFinish) {
+  OwnedProblem owned(FlatPlan(3), {5, 0});
+  owned.problem.finish = Point{-5, 0};
+
+  EXPECT_EQ(Inserted(owned.problem), (Route{{2, 0}, {1, 0}, {0, 0}}));
+}
+
+TEST(NearestInsertion, IsValidOnAnyPlan) {
+  for (uint64_t seed = 1; seed <= 500; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const OwnedProblem owned = RandomProblem(seed, {.max_paths = 40});
+
+    EXPECT_OK(ValidateRoute(owned.plan(), Inserted(owned.problem)));
+  }
+}
+
+TEST(NearestInsertion, BuildsNothingWithoutTime) {
+  const OwnedProblem owned(InterleavedPlan(SquareGrid(5, 5)));
+  CancelToken cancelled;
+  cancelled.Cancel();
+  Budget none(&cancelled);
+
+  EXPECT_EQ(NearestInsertionRoute(LayerView(owned.problem), none), std::nullopt);
+}
+
+TEST(NearestInsertion, IsNoBetterThanTheOptimum) {
+  for (uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const OwnedProblem owned = RandomProblem(seed, {.max_paths = 6});
+
+    EXPECT_GE(RouteCost(owned.problem, Inserted(owned.problem)),
+              BruteForce(owned.problem).cost - kCostTolerance);
+  }
+}
+
+}  // namespace
+}  // namespace traverse

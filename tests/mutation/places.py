@@ -1,0 +1,47 @@
+"""Where faults are put, and which tests have to find them: a binary of the build with a filter."""
+
+
+def place(file, target, suites, seconds=120):
+    return {"file": file, "targets": [target], "seconds": seconds,
+            "tests": [f"$(find $BUILD/tests -name {target} -type f) --gtest_brief=1 --gtest_filter='{suites}'"]}
+
+
+def engine(file, suites, seconds=120):
+    return place(f"engine/{file}", "engine_tests", suites, seconds)
+
+
+PLACES = [
+    place("server/jobs/auth.cc", "server_jobs_tests", "ParseTokens*:Authenticator*"),
+    place("server/jobs/admission.cc", "server_jobs_tests", "Admission*"),
+    place("server/jobs/retry_delay.cc", "server_jobs_tests", "WithRetryDelay*"),
+    place("server/jobs/job_run.cc", "server_jobs_tests", "JobRun*"),
+    place("server/jobs/worker_pool.cc", "server_jobs_tests", "WorkerPool*"),
+    place("server/jobs/fair_order.h", "server_jobs_tests", "FairOrder*:WorkerPool*"),
+    place("client/loadgen/latency_histogram.cc", "loadgen_tests", "LatencyHistogram*"),
+    place("client/loadgen/load_report.cc", "loadgen_tests", "LoadReport*"),
+    place("client/files/write_file.cc", "client_tests", "Files*"),
+    place("client/damat/reader.cc", "client_tests", "Damat*:*Reader*"),
+    engine("schedule/route_history.cc", "RouteHistory*:LayerChain*"),
+    engine("schedule/end_history.cc", "EndHistory*:PrintOf*:KindOf*"),
+    engine("schedule/budget_split.h", "BudgetSplit*"),
+    engine("cost/entry_choice.cc", "EntryChoice*"),
+    engine("cost/entry_table.cc", "EntryTable*"),
+    engine("cost/neighbor_lists.cc", "NeighborLists*"),
+    engine("geometry/convex_hull.cc", "ConvexHull*:OuterTangents*:FindOuterTangents*"),
+    engine("geometry/nearest_point_index.cc", "NearestPointIndex*"),
+    engine("geometry/visibility_polygon.cc", "VisibilityPolygon*:FindVisiblePoints*:VisiblePoints*"),
+    engine("search/greedy/frontier.cc", "Greedy*:Frontier*"),
+    engine("search/move_evaluator.cc", "MoveEvaluator*"),
+    engine("search/search_state.cc", "SearchState*:MoveEvaluator*"),
+    engine("search/turn_run.cc", "TurnRun*"),
+    engine("souza/block_line.cc", "BlockLine*"),
+    engine("souza/point_release.cc", "PointRelease*:ReleasePoints*"),
+    engine("souza/nearest_insertion.cc", "NearestInsertion*"),
+    engine("proof/small_parts/small_parts.cc", "SmallParts*:SolveSmallParts*"),
+    engine("proof/walks/walk_dp.cc", "WalkDp*:StageProof*"),
+    engine("weller/tabu/swap_sequence.cc", "SwapSequence*"),
+    engine("weller/tabu/tabu_list.h", "TabuList*"),
+    engine("weller/steps/point_reduction.cc", "PointReduction*:Reduce*"),
+    engine("weller/steps/neighborhood.cc", "Neighborhood*"),
+    engine("validator.cc", "ValidateRoute*:Validator*:MeasureTravel*"),
+]

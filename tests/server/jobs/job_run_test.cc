@@ -1,0 +1,490 @@
+#include "server/jobs/job_run.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "engine/model/route.h"
+#include "engine/strategy/strategy.h"
+#include "server/jobs/worker_pool.h"
+#include "tests/support/instances.h"
+
+namespace traverse {
+namespace {
+
+using testing::FlatPlan;
+
+constexpr auto kPatience = std::chrono::seconds(10);
+
+// Takes its time, and notices a cancellation.
+class SlowStrategy : public Strategy {
+ public:
+  explicit SlowStrategy(std::chrono::milliseconds time) : time_(time) {}
+
+  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+    const auto end = Budget::Clock::now() + time_;
+    while (Budget::Clock::now() < end && !budget.Exhausted()) std::this_thread::yield();
+    return {GivenRoute(*problem.plan), StopReason::kLocalOptimum, std::nullopt};
+  }
+  Solution Resume(const LayerProblem& /*problem*/, const Route& start,
+                  Budget& /*budget*/) const override {
+    return {start, StopReason::kLocalOptimum, std::nullopt};
+  }
+
+ private:
+  const std::chrono::milliseconds time_;
+};
+
+// A stream whose reader takes what it gets as fast as the test says. Writes are completed by a
+// thread of its own, as gRPC's are.
+class FakePort : public JobPort {
+ public:
+  FakePort() : run_(JobRun::Make(*this)), writer_([this] { CompleteWrites(); }) {}
+
+  ~FakePort() override {
+    {
+      std::lock_guard<std::mutex> lock(mutex_);
+      stop_ = true;
+      changed_.notify_all();
+    }
+    writer_.join();
+  }
+
+  JobRun& run() { return *run_; }
+
+  // While stalled, no write completes.
+  void Stall(bool stalled) {
+    std::lock_guard<std::mutex> lock(mutex_);
+    stalled_ = stalled;
+    changed_.notify_all();
+  }
+
+  bool WaitForFinish() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    return changed_.wait_for(lock, kPatience, [this] { return finishes_ > 0; });
+  }
+
+  std::vector<std::string> messages() {
+    std::lock_guard<std::mutex> lock(mutex_);
+    return messages_;
+  }
+  absl::Status status() {
+    std::lock_guard<std::mutex> lock(mutex_);
+    return status_;
+  }
+  int finishes() {
+    std::lock_guard<std::mutex> lock(mutex_);
+    return finishes_;
+  }
+  int encoded() {
+    std::lock_guard<std::mutex> lock(mutex_);
+    return encoded_;
+  }
+  int rooms() const { return rooms_; }
+
+  std::atomic<bool> worked_on{false};
+  std::function<void()> on_room;
+
+  // JobPort.
+  std::string EncodeLayer(const LayerOutcome& outcome, uint64_t id, int64_t /*points*/) override {
+    std::lock_guard<std::mutex> lock(mutex_);
+    ++encoded_;
+    return std::to_string(outcome.index) + ":" + std::to_string(id);
+  }
+  std::string EncodeSummary() override { return "summary"; }
+  void StartWrite(std::string message, bool /*more_follows*/) override {
+    std::lock_guard<std::mutex> lock(mutex_);
+    EXPECT_FALSE(writing_) << "a write during a write";
+    EXPECT_EQ(finishes_, 0) << "a write after the end";
+    messages_.push_back(std::move(message));
+    writing_ = true;
+    changed_.notify_all();
+  }
+  void OnRoom() override {
+    if (on_room) on_room();
+    ++rooms_;
+  }
+  bool IsWorkedOn() const override { return worked_on; }
+
+  // The transport gives up the write under way.
+  void CancelCall() override { Stall(false); }
+  void Finish(const absl::Status& status) override {
+    std::lock_guard<std::mutex> lock(mutex_);
+    EXPECT_FALSE(writing_) << "the end during a write";
+    status_ = status;
+    ++finishes_;
+    changed_.notify_all();
+  }
+
+ private:
+  void CompleteWrites() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (true) {
+      changed_.wait(lock, [this] { return stop_ || (writing_ && !stalled_); });
+      if (stop_) return;
+      writing_ = false;
+      lock.unlock();
+      run_->OnWriteDone(true);
+      lock.lock();
+    }
+  }
+
+  const std::shared_ptr<JobRun> run_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::string> messages_;
+  absl::Status status_;
+  int finishes_ = 0;
+  int encoded_ = 0;
+  std::atomic<int> rooms_{0};
+  bool writing_ = false;
+  bool stalled_ = false;
+  bool stop_ = false;
+  std::thread writer_;
+};
+
+LabelledLayer Layer(uint64_t id) { return {JobLayer{FlatPlan(2), {}, {}}, id, 2}; }
+
+std::unique_ptr<Strategy> Slow(int milliseconds) {
+  return std::make_unique<SlowStrategy>(std::chrono::milliseconds(milliseconds));
+}
+
+class JobRunTest : public ::testing::Test {
+ protected:
+  // In this order: the pool's threads end first, as they use the port.
+  FakePort port_;
+  WorkerPool pool_{2};
+  std::shared_ptr<WorkerPool::Queue> queue_ = pool_.NewQueue("test");
+};
+
+TEST_F(JobRunTest, DeliversAllLayersThenTheSummaryThenEnds) {
+  port_.run().Start({}, {}, Slow(0), *queue_);
+  for (uint64_t i = 0; i < 100; ++i) port_.run().Add(Layer(1000 + i));
+  port_.run().Push();
+  port_.run().Close();
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  const std::vector<std::string> messages = port_.messages();
+  ASSERT_EQ(messages.size(), 101u);
+  for (size_t i = 0; i < 100; ++i) {
+    EXPECT_EQ(messages[i], std::to_string(i) + ":" + std::to_string(1000 + i));
+  }
+  EXPECT_EQ(messages.back(), "summary");
+  EXPECT_TRUE(port_.status().ok());
+  EXPECT_EQ(port_.finishes(), 1);
+}
+
+TEST_F(JobRunTest, BuildOrderSortsLayersThatDoNotWaitForEachOther) {
+  port_.run().Start({.window = {}, .build_order = true}, {}, Slow(0), *queue_);
+  for (uint64_t i = 0; i < 200; ++i) {
+    LabelledLayer layer = Layer(i);
+    layer.layer.start = Point{1, 1};
+    port_.run().Add(std::move(layer));
+  }
+  port_.run().Push();
+  port_.run().Close();
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  const std::vector<std::string> messages = port_.messages();
+  ASSERT_EQ(messages.size(), 201u);
+  for (size_t i = 0; i < 200; ++i) {
+    EXPECT_EQ(messages[i], std::to_string(i) + ":" + std::to_string(i));
+  }
+}
+
+TEST_F(JobRunTest, StalledReaderHoldsUpItsJobInABoundedWindow) {
+  port_.Stall(true);
+  port_.run().Start({.window = {.layers = 8, .points = 1000}, .build_order = false}, {}, Slow(0),
+                    *queue_);
+  for (uint64_t i = 0; i < 100; ++i) port_.run().Add(Layer(i));
+  port_.run().Push();
+  port_.run().Close();
+  EXPECT_FALSE(port_.run().AskForRoom());
+
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(port_.encoded(), 8);
+  EXPECT_EQ(port_.messages().size(), 1u);
+  EXPECT_EQ(pool_.waiting(), 0);
+
+  port_.Stall(false);
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.messages().size(), 101u);
+  EXPECT_GE(port_.rooms(), 1);
+}
+
+TEST_F(JobRunTest, WindowCountsPoints) {
+  port_.Stall(true);
+  port_.run().Start({.window = {.layers = 100, .points = 10}, .build_order = false}, {}, Slow(0),
+                    *queue_);
+  for (uint64_t i = 0; i < 20; ++i) port_.run().Add(Layer(i));
+  port_.run().Push();
+
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(port_.encoded(), 5);
+
+  port_.Stall(false);
+  port_.run().Close();
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.encoded(), 20);
+}
+
+TEST_F(JobRunTest, AbortStopsTheWorkSoon) {
+  port_.run().Start({}, {}, Slow(60'000), *queue_);
+  for (uint64_t i = 0; i < 10; ++i) port_.run().Add(Layer(i));
+  port_.run().Push();
+  port_.run().Close();
+  while (pool_.busy() < 2) std::this_thread::yield();
+
+  const auto begin = std::chrono::steady_clock::now();
+  port_.run().Abort(absl::CancelledError("enough"));
+  ASSERT_TRUE(port_.WaitForFinish());
+  while (pool_.busy() > 0) std::this_thread::yield();
+
+  // 50 ms on a machine that has time; faults_test.cc measures that.
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+  EXPECT_EQ(port_.status().code(), absl::StatusCode::kCancelled);
+  EXPECT_TRUE(port_.messages().empty());
+  EXPECT_EQ(port_.finishes(), 1);
+}
+
+TEST_F(JobRunTest, AbortWaitsForTheWriteUnderWay) {
+  port_.Stall(true);
+  port_.run().Start({}, {}, Slow(0), *queue_);
+  for (uint64_t i = 0; i < 3; ++i) port_.run().Add(Layer(i));
+  port_.run().Push();
+  while (port_.messages().empty()) std::this_thread::yield();
+
+  port_.run().Abort(absl::UnavailableError("going"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(port_.finishes(), 0);
+
+  port_.Stall(false);
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.messages().size(), 1u);
+  EXPECT_EQ(port_.status().code(), absl::StatusCode::kUnavailable);
+}
+
+TEST_F(JobRunTest, FirstAbortWins) {
+  port_.run().Start({}, {}, Slow(1000), *queue_);
+  port_.run().Add(Layer(1));
+  port_.run().Push();
+
+  port_.run().Abort(absl::InvalidArgumentError("first"));
+  port_.run().Abort(absl::CancelledError("second"));
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.status().message(), "first");
+  EXPECT_EQ(port_.finishes(), 1);
+}
+
+TEST_F(JobRunTest, EndsOfAJobThatNeverStarted) {
+  port_.run().Abort(absl::InvalidArgumentError("options: bad"));
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  port_.run().Start({}, {}, Slow(0), *queue_);
+  port_.run().Add(Layer(1));
+  port_.run().Push();
+  port_.run().Close();
+  EXPECT_EQ(port_.finishes(), 1);
+  EXPECT_TRUE(port_.messages().empty());
+}
+
+// Wants more memory than there is, in every layer but the first.
+class HungryStrategy : public SlowStrategy {
+ public:
+  HungryStrategy() : SlowStrategy(std::chrono::milliseconds(0)) {}
+
+  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+    if (problem.plan->paths.size() > 2) throw std::bad_alloc();
+    return SlowStrategy::Solve(problem, budget);
+  }
+};
+
+TEST_F(JobRunTest, AJobThatRunsOutOfMemoryEndsAlone) {
+  const auto queue = pool_.NewQueue("hungry", [this] { port_.run().Abort(NoMemory()); });
+  port_.run().Start({}, {}, std::make_unique<HungryStrategy>(), *queue);
+  port_.run().Add(Layer(1));
+  for (uint64_t i = 2; i < 20; ++i) port_.run().Add({JobLayer{FlatPlan(3), {}, {}}, i, 3});
+  port_.run().Close();
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.status().code(), absl::StatusCode::kResourceExhausted);
+
+  FakePort other;
+  const auto next = pool_.NewQueue("next");
+  other.run().Start({}, {}, Slow(0), *next);
+  other.run().Add(Layer(1));
+  other.run().Close();
+  ASSERT_TRUE(other.WaitForFinish());
+  EXPECT_TRUE(other.status().ok());
+}
+
+TEST_F(JobRunTest, ACallerWhoDoesNothingIsGivenUp) {
+  const absl::Status idle = absl::DeadlineExceededError("idle");
+  port_.run().Start({}, {}, Slow(0), *queue_);
+  port_.run().Add(Layer(1));
+  port_.run().Push();
+  port_.run().AbortIfStalled(std::chrono::hours(1), idle);
+  EXPECT_FALSE(port_.run().aborted());
+
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  port_.run().AbortIfStalled(std::chrono::milliseconds(1), idle);
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.status(), idle);
+}
+
+TEST_F(JobRunTest, AReaderWhoReadsNothingIsGivenUp) {
+  port_.Stall(true);
+  port_.run().Start({}, {}, Slow(0), *queue_);
+  for (uint64_t i = 0; i < 5; ++i) port_.run().Add(Layer(i));
+  port_.run().Close();
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+
+  port_.run().AbortIfStalled(std::chrono::milliseconds(1), absl::DeadlineExceededError("idle"));
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.status().code(), absl::StatusCode::kDeadlineExceeded);
+}
+
+TEST_F(JobRunTest, AJobThatIsWorkedOnIsNotGivenUp) {
+  port_.worked_on = true;
+  port_.run().Start({}, {}, Slow(0), *queue_);
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+
+  port_.run().AbortIfStalled(std::chrono::milliseconds(1), absl::DeadlineExceededError("idle"));
+
+  EXPECT_FALSE(port_.run().aborted());
+  port_.run().Close();
+  ASSERT_TRUE(port_.WaitForFinish());
+}
+
+TEST_F(JobRunTest, HoldPostponesTheEnd) {
+  ASSERT_TRUE(port_.run().Hold());
+  port_.run().Abort(absl::CancelledError("now"));
+  EXPECT_EQ(port_.finishes(), 0);
+
+  port_.run().Release();
+  EXPECT_EQ(port_.finishes(), 1);
+}
+
+TEST_F(JobRunTest, NobodyUsesThePortOfAJobThatHasEnded) {
+  port_.run().Abort(absl::CancelledError("now"));
+  ASSERT_EQ(port_.finishes(), 1);
+
+  EXPECT_FALSE(port_.run().Hold());
+}
+
+// Cancelled in the gap between the lock and the call: the port was deleted in it.
+TEST_F(JobRunTest, ACancelWaitsForOnRoom) {
+  int finishes_within = -1;
+  port_.on_room = [&] {
+    std::thread([&] { port_.run().Abort(absl::CancelledError("now")); }).join();
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // for the engine's end
+    finishes_within = port_.finishes();
+  };
+  // So slow that nothing is there to be written when the first layer is out: a write keeps the
+  // port.
+  port_.run().Start({.window = {.layers = 3, .points = 100}, .build_order = false}, {}, Slow(100),
+                    *queue_);
+  for (uint64_t i = 0; i < 3; ++i) port_.run().Add(Layer(i));
+  port_.run().Push();
+  EXPECT_FALSE(port_.run().AskForRoom());
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.rooms(), 1);
+  EXPECT_EQ(finishes_within, 0);
+}
+
+// Aborts at every moment of a job's life; ThreadSanitizer looks on.
+TEST(JobRunRaces, AbortAtAnyTimeEndsOnce) {
+  for (int round = 0; round < 100; ++round) {
+    FakePort port;
+    WorkerPool pool(2);
+    const auto queue = pool.NewQueue("test");
+    std::thread aborter([&port, round] {
+      std::this_thread::sleep_for(std::chrono::microseconds(round * 20));
+      port.run().Abort(absl::CancelledError("now"));
+    });
+    ASSERT_TRUE(port.run().Hold());
+    port.run().Start({.window = {.layers = 4, .points = 100}, .build_order = round % 2 == 0}, {},
+                     Slow(0), *queue);
+    for (uint64_t i = 0; i < 50; ++i) {
+      port.run().Add(Layer(i));
+      port.run().Push();
+    }
+    port.run().Close();
+    port.run().Release();
+    aborter.join();
+    ASSERT_TRUE(port.WaitForFinish()) << "round " << round;
+    EXPECT_EQ(port.finishes(), 1);
+  }
+}
+
+// A port that is gone, and its run with it, as soon as the job has ended: as a reactor is.
+class VanishingPort : public JobPort {
+ public:
+  VanishingPort(WorkerPool& pool, std::atomic<int>& ended)
+      : run_(JobRun::Make(*this)), writes_(pool.NewQueue("writer")), ended_(ended) {}
+
+  void Start(Executor& executor) {
+    const std::shared_ptr<JobRun> run = run_;
+    EXPECT_TRUE(run->Hold());
+    run->Start({}, {}, Slow(0), executor);
+    run->Add(Layer(1));
+    run->Close();
+    run->Release();
+  }
+
+  std::string EncodeLayer(const LayerOutcome& /*outcome*/, uint64_t /*id*/,
+                          int64_t /*points*/) override {
+    return "layer";
+  }
+  std::string EncodeSummary() override { return "summary"; }
+  void StartWrite(std::string /*message*/, bool /*more_follows*/) override {
+    writes_->Submit([this] { run_->OnWriteDone(true); });
+  }
+  void OnRoom() override {}
+  void Finish(const absl::Status& /*status*/) override {
+    // After the reaction that is under way, in another thread.
+    writes_->Submit([this] {
+      ++ended_;
+      delete this;
+    });
+  }
+
+ private:
+  const std::shared_ptr<JobRun> run_;
+  const std::shared_ptr<WorkerPool::Queue> writes_;
+  std::atomic<int>& ended_;
+};
+
+// The summary may be written, and the job end, before the engine's last call returns.
+TEST(JobRunRaces, TheRunOutlivesTheEnginesLastCall) {
+  constexpr int kJobs = 10'000;
+  WorkerPool workers(3);
+  std::atomic<int> ended{0};
+  {
+    WorkerPool writers(1);
+    const auto queue = workers.NewQueue("jobs");
+    for (int i = 0; i < kJobs; ++i) {
+      (new VanishingPort(writers, ended))->Start(*queue);
+    }
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (ended < kJobs && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+  }
+
+  EXPECT_EQ(ended, kJobs);
+}
+
+}  // namespace
+}  // namespace traverse

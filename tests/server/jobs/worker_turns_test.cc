@@ -1,0 +1,174 @@
+// Tasks that take long give way to others, and answer the watchdog.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "engine/base/budget.h"
+#include "server/jobs/worker_pool.h"
+
+namespace traverse {
+namespace {
+
+using Clock = Budget::Clock;
+
+// A task that works until it is told to end, or its budget runs out.
+class Endless {
+ public:
+  std::function<void()> On(const std::shared_ptr<WorkerPool::Queue>& queue,
+                           std::optional<Clock::time_point> deadline = std::nullopt) {
+    return [this, queue, deadline] {
+      Budget budget(&cancel, deadline, queue->turn());
+      ++begun;
+      while (!budget.Exhausted()) ++steps;
+      ++ended;
+    };
+  }
+
+  CancelToken cancel;
+  std::atomic<int> begun{0};
+  std::atomic<int> ended{0};
+  std::atomic<int64_t> steps{0};
+};
+
+void WaitFor(const std::function<bool()>& condition) {
+  while (!condition()) std::this_thread::sleep_for(std::chrono::microseconds(200));
+}
+
+TEST(WorkerTurns, AShortJobIsDoneBesideAnyNumberOfEndlessOnes) {
+  WorkerPool pool(2);
+  Endless endless;
+  std::vector<std::shared_ptr<WorkerPool::Queue>> queues;
+  for (int i = 0; i < 20; ++i) {
+    queues.push_back(pool.NewQueue("caller " + std::to_string(i % 3)));
+    for (int task = 0; task < 3; ++task) queues.back()->Submit(endless.On(queues.back()));
+  }
+  WaitFor([&] { return endless.begun >= 2; });
+
+  for (int i = 0; i < 20; ++i) {
+    std::atomic<bool> done{false};
+    pool.NewQueue("victim")->Submit([&done] { done = true; });
+    WaitFor([&] { return done.load(); });
+  }
+
+  EXPECT_EQ(endless.ended, 0);
+  EXPECT_LE(pool.busy(), 2);
+  endless.cancel.Cancel();
+}
+
+TEST(WorkerTurns, LongTasksShareTheirTime) {
+  WorkerPool pool(1);
+  Endless a;
+  Endless b;
+  const auto queue_a = pool.NewQueue("a");
+  const auto queue_b = pool.NewQueue("b");
+  queue_a->Submit(a.On(queue_a));
+  queue_b->Submit(b.On(queue_b));
+  WaitFor([&] { return queue_a->busy_seconds() + queue_b->busy_seconds() > 0.5; });
+
+  EXPECT_GT(queue_a->busy_seconds(), 0.1);
+  EXPECT_GT(queue_b->busy_seconds(), 0.1);
+  a.cancel.Cancel();
+  b.cancel.Cancel();
+}
+
+TEST(WorkerTurns, APausedTaskEndsAtItsDeadlineAndWhenItIsCancelled) {
+  WorkerPool pool(1);
+  Endless busy;
+  Endless cancelled;
+  Endless late;
+  std::vector<std::shared_ptr<WorkerPool::Queue>> queues;
+  for (int i = 0; i < 8; ++i) {
+    queues.push_back(pool.NewQueue("busy " + std::to_string(i)));
+    queues.back()->Submit(busy.On(queues.back()));
+  }
+  queues.push_back(pool.NewQueue("a"));
+  queues.back()->Submit(cancelled.On(queues.back()));
+  queues.push_back(pool.NewQueue("b"));
+  queues.back()->Submit(late.On(queues.back(), Clock::now() + std::chrono::milliseconds(300)));
+  WaitFor([&] { return cancelled.begun == 1 && late.begun == 1; });
+
+  cancelled.cancel.Cancel();
+  WaitFor([&] { return cancelled.ended == 1 && late.ended == 1; });
+
+  EXPECT_EQ(busy.ended, 0);
+  busy.cancel.Cancel();
+}
+
+// Nobody gives way to what may not go on.
+TEST(WorkerTurns, LargeTasksUnderWayAreFew) {
+  WorkerPool pool(1);
+  Endless endless;
+  std::vector<std::shared_ptr<WorkerPool::Queue>> queues;
+  for (int i = 0; i < 8; ++i) {
+    queues.push_back(pool.NewQueue("caller " + std::to_string(i)));
+    queues.back()->SubmitLarge(endless.On(queues.back()), 1'000'000);
+  }
+  std::atomic<int> small{0};
+  for (int i = 0; i < 30; ++i) {
+    const auto queue = pool.NewQueue("small " + std::to_string(i));
+    queue->SubmitLarge([&] { ++small; }, 100);
+  }
+  WaitFor([&] { return small == 30 && endless.begun == 4; });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+
+  EXPECT_EQ(endless.begun, 4);
+  endless.cancel.Cancel();
+  WaitFor([&] { return endless.ended == 8; });
+}
+
+TEST(WorkerTurns, ThreadsThatManyPausesNeededAreGivenBack) {
+  WorkerPool pool(1);
+  for (int round = 0; round < 3; ++round) {
+    Endless endless;
+    std::vector<std::shared_ptr<WorkerPool::Queue>> queues;
+    for (int i = 0; i < 30; ++i) {
+      queues.push_back(pool.NewQueue("caller " + std::to_string(i)));
+      queues.back()->Submit(endless.On(queues.back()));
+    }
+    WaitFor([&] { return endless.begun == 30; });
+    EXPECT_GE(pool.thread_count(), 30u);
+    endless.cancel.Cancel();
+    WaitFor([&] { return endless.ended == 30 && pool.waiting() == 0 && pool.busy() == 0; });
+  }
+  EXPECT_LE(pool.thread_count(), 3u);
+}
+
+TEST(WorkerTurns, SilentTasksAreNamedAndOthersAreNot) {
+  WorkerPool pool(2);
+  Endless answers;
+  std::atomic<bool> end{false};
+  const auto good = pool.NewQueue("good");
+  const auto bad = pool.NewQueue("bad");
+  bad->set_job("job-7");
+  good->Submit(answers.On(good));
+  bad->Submit([&end] {
+    while (!end) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  });
+  constexpr auto kLimit = std::chrono::milliseconds(300);
+  std::vector<SilentTask> silent;
+  WaitFor([&] {
+    silent = pool.Silent(kLimit);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    return !silent.empty();
+  });
+
+  ASSERT_EQ(silent.size(), 1u);
+  EXPECT_EQ(silent[0].caller, "bad");
+  EXPECT_EQ(silent[0].job, "job-7");
+  EXPECT_GT(silent[0].seconds, 0.3);
+  end = true;
+  WaitFor([&] { return bad->idle(); });
+  EXPECT_TRUE(pool.Silent(kLimit).empty());
+  answers.cancel.Cancel();
+}
+
+}  // namespace
+}  // namespace traverse

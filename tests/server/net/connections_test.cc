@@ -1,0 +1,211 @@
+#include "server/net/connections.h"
+
+#include <arpa/inet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "server/net/socket_info.h"
+#include "tests/server/support/service_fixture.h"
+#include "tests/support/status_matchers.h"
+
+namespace traverse {
+namespace {
+
+bool Eventually(const std::function<bool()>& condition) {
+  return testing::TestService::Eventually(condition);
+}
+
+// A port whose connections are read from, and nothing is done with what they send.
+class Port {
+ public:
+  explicit Port(const ConnectionRules& rules) {
+    connections_ = *Connections::Listen("127.0.0.1:0", rules,
+                                        {.hand_over =
+                                             [this](int socket) {
+                                               std::lock_guard<std::mutex> lock(mutex_);
+                                               readers_.emplace_back([socket] {
+                                                 char block[65536];
+                                                 while (true) {
+                                                   const ssize_t count =
+                                                       recv(socket, block, sizeof(block), 0);
+                                                   if (count == 0 || (count < 0 && errno != EAGAIN))
+                                                     break;
+                                                   if (count < 0) usleep(1000);
+                                                 }
+                                                 close(socket);
+                                               });
+                                             },
+                                         .end_job =
+                                             [this](const std::string& peer) {
+                                               std::lock_guard<std::mutex> lock(mutex_);
+                                               told_.push_back(peer);
+                                               return may_end_;
+                                             }});
+    connections_->Start();
+  }
+
+  ~Port() {
+    connections_.reset();
+    for (std::thread& reader : readers_) reader.join();
+  }
+
+  Connections& connections() { return *connections_; }
+  std::vector<std::string> told() {
+    std::lock_guard<std::mutex> lock(mutex_);
+    return told_;
+  }
+  void MayEndJobs() { may_end_ = true; }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::thread> readers_;
+  std::vector<std::string> told_;
+  bool may_end_ = false;
+  std::unique_ptr<Connections> connections_;
+};
+
+// The caller's side.
+class Caller {
+ public:
+  explicit Caller(int port) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof(address));
+    sockaddr_in own{};
+    socklen_t size = sizeof(own);
+    getsockname(socket_, reinterpret_cast<sockaddr*>(&own), &size);
+    peer_ = "ipv4:127.0.0.1:" + std::to_string(ntohs(own.sin_port));
+  }
+  ~Caller() { close(socket_); }
+
+  void Send(size_t bytes) const {
+    const std::string block(bytes, 'x');
+    for (size_t sent = 0; sent < bytes;) {
+      const ssize_t count = send(socket_, block.data() + sent, bytes - sent, MSG_NOSIGNAL);
+      if (count <= 0) return;
+      sent += static_cast<size_t>(count);
+    }
+  }
+
+  bool IsCut() const {
+    char byte = 0;
+    const ssize_t count = recv(socket_, &byte, 1, MSG_DONTWAIT);
+    return count == 0 || (count < 0 && errno != EAGAIN);
+  }
+
+  const std::string& peer() const { return peer_; }
+
+ private:
+  const int socket_;
+  std::string peer_;
+};
+
+TEST(ConnectionsTest, AStrangerWhoSendsMuchIsCut) {
+  Port port({.stranger_bytes = 1 << 20});
+  const Caller loud(port.connections().port());
+  const Caller quiet(port.connections().port());
+
+  quiet.Send(1000);
+  loud.Send(4 << 20);
+
+  EXPECT_TRUE(Eventually([&] { return loud.IsCut(); }));
+  EXPECT_FALSE(quiet.IsCut());
+  EXPECT_EQ(port.connections().cut(), 1u);
+}
+
+TEST(ConnectionsTest, WhatIsDeliveredIsNotHeldAgainstACaller) {
+  Port port({.stranger_bytes = 1 << 20, .job_bytes = 1 << 20});
+  const Caller caller(port.connections().port());
+
+  for (int i = 0; i < 20; ++i) {
+    caller.Send(500'000);
+    ASSERT_TRUE(Eventually([&] { return port.connections().pending_bytes() > 200'000; }));
+    port.connections().OnMessage(caller.peer(), 500'000);
+  }
+
+  EXPECT_FALSE(caller.IsCut());
+}
+
+TEST(ConnectionsTest, AJobWhoseMessageIsTooLongIsEndedFirst) {
+  Port port({.stranger_bytes = 1 << 20, .job_bytes = 2 << 20});
+  port.MayEndJobs();
+  const Caller caller(port.connections().port());
+  ASSERT_TRUE(Eventually([&] { return port.connections().open() == 1; }));
+  port.connections().OnJob(caller.peer(), 1);
+
+  caller.Send(2'500'000);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_TRUE(port.told().empty());
+  caller.Send(1'500'000);
+
+  EXPECT_TRUE(Eventually([&] { return !port.told().empty(); }));
+  EXPECT_EQ(port.told()[0], PeerKey(caller.peer()));
+  EXPECT_FALSE(caller.IsCut());
+}
+
+TEST(ConnectionsTest, AJobThatCannotBeEndedIsCut) {
+  Port port({.stranger_bytes = 1 << 20, .job_bytes = 1 << 20});
+  const Caller caller(port.connections().port());
+  ASSERT_TRUE(Eventually([&] { return port.connections().open() == 1; }));
+  port.connections().OnJob(caller.peer(), 1);
+
+  caller.Send(4 << 20);
+
+  EXPECT_TRUE(Eventually([&] { return caller.IsCut(); }));
+  EXPECT_EQ(port.told().size(), 1u);
+}
+
+TEST(ConnectionsTest, WhereMemoryIsShortTheLargestIsCut) {
+  Port port({.stranger_bytes = 10 << 20});
+  const Caller small(port.connections().port());
+  const Caller large(port.connections().port());
+  small.Send(100'000);
+  large.Send(2 << 20);
+  ASSERT_TRUE(Eventually([&] { return port.connections().pending_bytes() > 2 << 20; }));
+
+  EXPECT_TRUE(port.connections().CutLargest());
+
+  EXPECT_TRUE(Eventually([&] { return large.IsCut(); }));
+  EXPECT_FALSE(small.IsCut());
+}
+
+TEST(ConnectionsTest, IdleOnesMakeRoomForNewOnes) {
+  Port port({.max_connections = 3});
+  const Caller working(port.connections().port());
+  ASSERT_TRUE(Eventually([&] { return port.connections().open() == 1; }));
+  port.connections().OnJob(working.peer(), 1);
+  const Caller idle(port.connections().port());
+  const Caller other(port.connections().port());
+  ASSERT_TRUE(Eventually([&] { return port.connections().open() == 3; }));
+
+  const Caller too_early(port.connections().port());
+  EXPECT_TRUE(Eventually([&] { return too_early.IsCut(); }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  other.Send(10);
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  const Caller next(port.connections().port());
+
+  EXPECT_TRUE(Eventually([&] { return idle.IsCut(); }));
+  EXPECT_FALSE(next.IsCut());
+  EXPECT_FALSE(working.IsCut());
+  EXPECT_FALSE(other.IsCut());
+}
+
+TEST(ConnectionsTest, AddressesAreToldAsGrpcWritesThem) {
+  EXPECT_EQ(PeerKey("ipv4:10.0.0.7:41234"), "10.0.0.7:41234");
+  EXPECT_EQ(PeerKey("ipv6:%5B::1%5D:41234"), "::1:41234");
+  EXPECT_EQ(PeerKey("ipv6:[::1]:41234"), "::1:41234");
+}
+
+}  // namespace
+}  // namespace traverse
