@@ -99,15 +99,16 @@ void Connections::AcceptAll(int listener) {
   while (true) {
     const int socket = accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (socket < 0) {
-      if (errno != EMFILE && errno != ENFILE) return;
-      MutexLock lock(mutex_);
-      MakeRoom();
-      poll(nullptr, 0, kBusyMilliseconds);  // its files are closed in a moment
+      if (errno == EMFILE || errno == ENFILE) WaitForRoom();
       return;
     }
     SetUp(socket, rules_.peer_timeout);
     const std::string peer = PeerOf(socket);
-    const int ours = fcntl(socket, F_DUPFD_CLOEXEC, 0);
+    int ours = fcntl(socket, F_DUPFD_CLOEXEC, 0);
+    if (ours < 0) {
+      WaitForRoom();
+      ours = fcntl(socket, F_DUPFD_CLOEXEC, 0);
+    }
     {
       MutexLock lock(mutex_);
       const bool full = static_cast<int>(table_.size()) >= rules_.max_connections;
@@ -124,6 +125,15 @@ void Connections::AcceptAll(int listener) {
     }
     hooks_.hand_over(socket);
   }
+}
+
+// For want of files.
+void Connections::WaitForRoom() {
+  {
+    MutexLock lock(mutex_);
+    MakeRoom();
+  }
+  poll(nullptr, 0, kBusyMilliseconds);  // its files are closed in a moment
 }
 
 // Closes the connection that has been idle for longest.

@@ -95,6 +95,7 @@ class Connections {
 
   void Serve();
   void AcceptAll(int listener);
+  void WaitForRoom() TRAVERSE_EXCLUDES(mutex_);
   bool MakeRoom() TRAVERSE_REQUIRES(mutex_);
   Table::iterator Cut(Table::iterator connection) TRAVERSE_REQUIRES(mutex_);
 

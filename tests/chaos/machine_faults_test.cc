@@ -7,10 +7,13 @@
 #include <netinet/in.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -48,40 +51,93 @@ int ConnectRaw(const std::string& address) {
   return fd;
 }
 
-// gRPC gives up the port then; a server that lives on without would be worse than one that is
-// started again.
-TEST(FileDescriptors, WhenTheyRunOutTheServerDrainsAndEnds) {
-  ServerProcess server;
-  OptimizerClient connected(*ConnectTo({server.address()}));
-  ASSERT_TRUE(RunJob(connected).ok());
-  // A job that is under way all the time.
-  grpc::ClientContext context;
-  const auto stub = v1::RouteOptimizerService::NewStub(*ConnectTo({server.address()}));
-  const auto stream = stub->Optimize(&context);
-  v1::OptimizeRequest request;
-  request.mutable_options()->mutable_strategy()->set_name("greedy");
-  *request.add_layers() = MakeLayer(1);
-  ASSERT_TRUE(stream->Write(request));
-  v1::OptimizeResponse response;
-  ASSERT_TRUE(stream->Read(&response));
+int ConnectUnix(const std::string& path) {
+  const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_un place{};
+  place.sun_family = AF_UNIX;
+  path.copy(place.sun_path, sizeof(place.sun_path) - 1);
+  connect(fd, reinterpret_cast<sockaddr*>(&place), sizeof(place));
+  return fd;
+}
+
+// A job that is under way from its construction to its end.
+class OpenJob {
+ public:
+  explicit OpenJob(const std::string& address)
+      : stub_(v1::RouteOptimizerService::NewStub(
+            grpc::CreateChannel(address, grpc::InsecureChannelCredentials()))) {
+    context_.set_deadline(std::chrono::system_clock::now() + ChildProcess::kPatience);
+    stream_ = stub_->Optimize(&context_);
+    v1::OptimizeRequest request;
+    request.mutable_options()->mutable_strategy()->set_name("greedy");
+    *request.add_layers() = MakeLayer(1);
+    v1::OptimizeResponse response;
+    EXPECT_TRUE(stream_->Write(request));
+    EXPECT_TRUE(stream_->Read(&response));
+  }
+
+  grpc::Status End() {
+    stream_->WritesDone();
+    v1::OptimizeResponse response;
+    while (stream_->Read(&response)) {
+    }
+    return stream_->Finish();
+  }
+
+ private:
+  const std::unique_ptr<v1::RouteOptimizerService::Stub> stub_;
+  grpc::ClientContext context_;
+  std::unique_ptr<grpc::ClientReaderWriter<v1::OptimizeRequest, v1::OptimizeResponse>> stream_;
+};
+
+// Leaves the process `files` more than it has open.
+void LimitFiles(pid_t process, rlim_t files) {
   namespace fs = std::filesystem;
   const auto open = std::distance(
-      fs::directory_iterator("/proc/" + std::to_string(server.process().pid()) + "/fd"),
-      fs::directory_iterator());
-  const rlimit few{static_cast<rlim_t>(open) + 8, static_cast<rlim_t>(open) + 8};
-  ASSERT_EQ(prlimit(server.process().pid(), RLIMIT_NOFILE, &few, nullptr), 0);
+      fs::directory_iterator("/proc/" + std::to_string(process) + "/fd"), fs::directory_iterator());
+  const rlimit few{static_cast<rlim_t>(open) + files, static_cast<rlim_t>(open) + files};
+  ASSERT_EQ(prlimit(process, RLIMIT_NOFILE, &few, nullptr), 0);
+}
+
+TEST(FileDescriptors, WhenTheyRunOutIdleConnectionsMakeRoomForJobs) {
+  ServerProcess server;
+  OpenJob under_way(server.address());
+  LimitFiles(server.process().pid(), 24);  // two for each connection
+  std::vector<int> idle;
+  for (int i = 0; i < 20; ++i) idle.push_back(ConnectRaw(server.address()));
+
+  // Each time by a new connection: a channel that was turned away waits for ever longer.
+  absl::Status served;
+  EXPECT_TRUE(TestService::Eventually([&] {
+    OptimizerClient late(*ConnectTo({server.address()}, {.tls = {}, .own_connection = true}));
+    served = RunJob(late, absl::Seconds(5));
+    return served.ok();
+  })) << served;
+
+  EXPECT_TRUE(under_way.End().ok()) << "what is under way is finished";
+  for (const int fd : idle) close(fd);
+  server.process().Signal(SIGTERM);
+  EXPECT_EQ(server.process().Wait(), 0);
+}
+
+// gRPC takes the connections of such a port, and gives it up then; a server that lives on without
+// would be worse than one that is started again.
+TEST(FileDescriptors, WhenTheyRunOutAServerOnAUnixSocketDrainsAndEnds) {
+  const ScratchFolder folder;
+  const std::string path = folder.Path("socket");
+  ServerProcess server({"--listen=unix:" + path});
+  OpenJob under_way("unix:" + path);
+  LimitFiles(server.process().pid(), 8);
 
   std::vector<int> connections;
-  for (int i = 0; i < 40; ++i) connections.push_back(ConnectRaw(server.address()));
-  absl::SleepFor(absl::Milliseconds(300));
-  stream->WritesDone();
-  while (stream->Read(&response)) {
-  }
-  EXPECT_TRUE(stream->Finish().ok()) << "what is under way is finished";
-  for (const int fd : connections) close(fd);
+  for (int i = 0; i < 40; ++i) connections.push_back(ConnectUnix(path));
 
+  EXPECT_TRUE(TestService::Eventually([&] {
+    return server.process().Errors().find("\"event\":\"port_lost\"") != std::string::npos;
+  })) << server.process().Errors();
+  EXPECT_TRUE(under_way.End().ok()) << "what is under way is finished";
+  for (const int fd : connections) close(fd);
   EXPECT_EQ(server.process().Wait(), 1);
-  EXPECT_NE(server.process().Errors().find("\"event\":\"port_lost\""), std::string::npos);
 }
 
 TEST(FullDisk, CostsTheLogAndNoJob) {
