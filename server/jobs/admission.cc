@@ -241,6 +241,7 @@ Admission::Ticket::~Ticket() {
   MutexLock lock(admission_.mutex_);
   Count(-points_);
   CountBytes(-bytes_);
+  CountAnswer(-answer_bytes_);
   --admission_.jobs_;
   caller_->second.jobs.erase(this);
   if (caller_->second.jobs.empty()) admission_.callers_.erase(caller_);
@@ -271,13 +272,9 @@ void Admission::Ticket::Add(int64_t points) {
   Count(points);
 }
 
-void Admission::Ticket::Remove(int64_t points, double seconds) {
+void Admission::Ticket::Remove(int64_t points, int64_t bytes, double seconds) {
   MutexLock lock(admission_.mutex_);
-  if (points_ > 0) {
-    const double share =
-        static_cast<double>(std::min(points, points_)) / static_cast<double>(points_);
-    CountBytes(-static_cast<int64_t>(share * static_cast<double>(bytes_)));
-  }
+  CountBytes(-std::min(bytes, bytes_));
   Count(-points);
   for (const std::string& name : {strategy_, std::string()}) {
     Solved& solved = admission_.solved_[name];
@@ -291,6 +288,22 @@ void Admission::Ticket::CountBytes(int64_t bytes) {
   bytes_ += bytes;
   caller_->second.bytes += bytes;
   admission_.bytes_ += bytes;
+}
+
+void Admission::Ticket::CountAnswer(int64_t bytes) {
+  answer_bytes_ += bytes;
+  caller_->second.bytes += bytes;
+  admission_.bytes_ += bytes;
+}
+
+void Admission::Ticket::KeepAnswer(int64_t bytes) {
+  MutexLock lock(admission_.mutex_);
+  CountAnswer(bytes);
+}
+
+void Admission::Ticket::LetGoAnswer(int64_t bytes) {
+  MutexLock lock(admission_.mutex_);
+  CountAnswer(-std::min(bytes, answer_bytes_));
 }
 
 absl::Status Admission::Ticket::Hold(int64_t bytes) {

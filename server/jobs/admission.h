@@ -42,7 +42,7 @@ struct AdmissionLimits {
 
   int workers = 1;
 
-  // Memory that jobs make the server hold, by what their messages are counted to come to.
+  // Memory that jobs make the server hold: what their messages are counted to come to, and answers.
   int64_t max_bytes = INT64_MAX;
   int64_t max_bytes_per_caller = INT64_MAX;
 };
@@ -94,13 +94,18 @@ class Admission {
     // Counts `points` more as queued, whether there is room or not.
     void Add(int64_t points);
 
-    // `points` are solved, which took a worker `seconds`. Their share of what is held goes.
-    void Remove(int64_t points, double seconds);
+    // A layer of `points`, for which `bytes` were held, is solved, which took a worker `seconds`.
+    void Remove(int64_t points, int64_t bytes, double seconds);
 
     // The job makes the server hold `bytes` more, or less. Errors: ResourceExhausted, as of Admit,
     // if the memory for jobs is taken; then nothing is counted.
     absl::Status Hold(int64_t bytes);
     void LetGo(int64_t bytes);
+
+    // The same for answers, which are there whether there is room or not: those that wait for a
+    // slow reader take the place of what would be let in.
+    void KeepAnswer(int64_t bytes);
+    void LetGoAnswer(int64_t bytes);
 
     // The job is done by `strategy`: from now on its time is known better. Errors: as of Admit.
     absl::Status SetStrategy(const std::string& strategy);
@@ -119,6 +124,7 @@ class Admission {
 
     void Count(int64_t points) TRAVERSE_REQUIRES(admission_.mutex_);
     void CountBytes(int64_t bytes) TRAVERSE_REQUIRES(admission_.mutex_);
+    void CountAnswer(int64_t bytes) TRAVERSE_REQUIRES(admission_.mutex_);
     bool stalled() const TRAVERSE_REQUIRES(admission_.mutex_) {
       return is_worked_on_ && !is_worked_on_();
     }
@@ -126,7 +132,8 @@ class Admission {
     Admission& admission_;
     std::map<std::string, Caller>::iterator caller_ TRAVERSE_GUARDED_BY(admission_.mutex_);
     int64_t points_ TRAVERSE_GUARDED_BY(admission_.mutex_) = 0;
-    int64_t bytes_ TRAVERSE_GUARDED_BY(admission_.mutex_) = 0;
+    int64_t bytes_ TRAVERSE_GUARDED_BY(admission_.mutex_) = 0;         // of layers to be solved
+    int64_t answer_bytes_ TRAVERSE_GUARDED_BY(admission_.mutex_) = 0;  // that wait to be written
     std::string strategy_ TRAVERSE_GUARDED_BY(admission_.mutex_);
     std::function<bool()> is_worked_on_ TRAVERSE_GUARDED_BY(admission_.mutex_);
   };

@@ -147,7 +147,7 @@ void JobRun::OnLayer(LayerOutcome outcome) {
 }
 
 void JobRun::TakeLayer(LayerOutcome outcome) {
-  Label label;
+  LayerLabel label;
   {
     MutexLock lock(mutex_);
     if (abort_) return;
@@ -155,7 +155,7 @@ void JobRun::TakeLayer(LayerOutcome outcome) {
     label = found->second;
     labels_.erase(found);
   }
-  std::string message = port_.EncodeLayer(outcome, label.id, label.points);
+  std::string message = port_.EncodeLayer(outcome, label);
   {
     MutexLock lock(mutex_);
     if (abort_) return;
@@ -211,12 +211,12 @@ bool JobRun::HasRoom() const { return backlog_.empty() && FitsWindow(1); }
 void JobRun::Feed() {
   if (feeding_ || job_ == nullptr) return;
   feeding_ = true;
-  while (!abort_ && !backlog_.empty() && FitsWindow(backlog_.front().points)) {
+  while (!abort_ && !backlog_.empty() && FitsWindow(backlog_.front().label.points)) {
     LabelledLayer next = std::move(backlog_.front());
     backlog_.pop_front();
-    labels_[next_index_++] = {next.id, next.points};
+    labels_[next_index_++] = next.label;
     ++window_layers_;
-    window_points_ += next.points;
+    window_points_ += next.label.points;
     const std::shared_ptr<Job> job = job_;
     mutex_.Unlock();
     job->Add(std::move(next.layer));

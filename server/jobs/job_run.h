@@ -31,11 +31,16 @@ namespace traverse {
 // How a job ends that wants more memory than there is.
 absl::Status NoMemory();
 
-// A layer with what has to be said about it in its result.
-struct LabelledLayer {
-  JobLayer layer;
+// What has to be said about a layer in its result.
+struct LayerLabel {
   uint64_t id = 0;     // Layer.id
   int64_t points = 0;  // all pairs of coordinates sent, also those that the route does not need
+  int64_t bytes = 0;   // of memory held for it
+};
+
+struct LabelledLayer {
+  JobLayer layer;
+  LayerLabel label;
 };
 
 // The stream's side of a job. No method is called after Finish.
@@ -44,7 +49,7 @@ class JobPort {
   virtual ~JobPort() = default;
 
   // The message for one layer, and the one at the end. Calls never overlap; from worker threads.
-  virtual std::string EncodeLayer(const LayerOutcome& outcome, uint64_t id, int64_t points) = 0;
+  virtual std::string EncodeLayer(const LayerOutcome& outcome, const LayerLabel& label) = 0;
   virtual std::string EncodeSummary() = 0;
 
   // Writes a message, then calls JobRun::OnWriteDone. Called again only after that.
@@ -138,10 +143,6 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
   void OnDone() override;
 
  private:
-  struct Label {
-    uint64_t id;
-    int64_t points;
-  };
   struct Outgoing {
     std::string message;
     int64_t layers;  // of the window that it frees when it is written
@@ -177,7 +178,7 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
   bool feeding_ TRAVERSE_GUARDED_BY(mutex_) = false;        // a thread is in Feed
 
   uint64_t next_index_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // of the next layer fed
-  std::unordered_map<uint64_t, Label> labels_
+  std::unordered_map<uint64_t, LayerLabel> labels_
       TRAVERSE_GUARDED_BY(mutex_);  // of layers in the engine
   int64_t window_layers_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   int64_t window_points_ TRAVERSE_GUARDED_BY(mutex_) = 0;

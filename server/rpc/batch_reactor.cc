@@ -39,10 +39,9 @@ void BatchReactor::OnMessageRead() {
 }
 
 void BatchReactor::StartWrite(std::string message, bool more_follows) {
-  write_ = ToByteBuffer(message);
   grpc::WriteOptions options;
   if (more_follows) options.set_buffer_hint();
-  Bidi::StartWrite(&write_, options);
+  Bidi::StartWrite(Outgoing(message), options);
 }
 
 std::string BatchReactor::Encode(const LayerOutcome& outcome, uint64_t id) const {

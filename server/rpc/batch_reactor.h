@@ -29,7 +29,7 @@ class BatchReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byte
 
   // grpc::ServerBidiReactor.
   void OnReadDone(bool ok) override;
-  void OnWriteDone(bool ok) override { run()->OnWriteDone(ok); }
+  void OnWriteDone(bool ok) override { AnswerWritten(ok); }
   void OnCancel() override { OnCallCancelled(); }
   void OnDone() override { delete this; }
 
@@ -46,7 +46,6 @@ class BatchReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byte
 
   grpc::CallbackServerContext& context_;
   grpc::ByteBuffer request_;
-  grpc::ByteBuffer write_;
 };
 
 }  // namespace traverse

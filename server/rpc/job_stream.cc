@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/rpc/grpc_status.h"
+#include "server/rpc/wire.h"
 
 namespace traverse {
 namespace {
@@ -158,7 +159,9 @@ absl::StatusOr<LabelledLayer> JobStream::Translate(const v1::Layer& layer, uint6
   const int64_t points = CountPoints(layer);
   if (absl::Status status = CheckSize(layer, index, points); !status.ok()) return status;
   absl::StatusOr<LabelledLayer> value = LayerFromProto(layer, index, setup_.interleaved);
-  if (value.ok()) value->points = std::max<int64_t>(1, points);
+  if (!value.ok()) return value;
+  value->label.points = std::max<int64_t>(1, points);
+  value->label.bytes = reader_.layer_footprint_bytes();
   return value;
 }
 
@@ -226,7 +229,8 @@ absl::Status JobStream::CheckMessage(int64_t bytes) {
 
 absl::Status JobStream::OpenMessage(grpc::ByteBuffer& message) {
   const RequestLimits limits = {.parts_of_layer = 4 * core_.limits.max_points_per_layer,
-                                .footprint_bytes = core_.limits.max_bytes_per_message};
+                                .footprint_bytes = core_.limits.max_bytes_per_message,
+                                .layers = core_.limits.max_layers_per_message};
   if (absl::Status status = reader_.Open(RequestType(), message, limits); !status.ok()) {
     if (absl::IsResourceExhausted(status)) core_.admission.CountRefusal(Refusal::kLayerPoints);
     return status;
@@ -254,7 +258,7 @@ absl::Status JobStream::ReadLayers() {
       return faults_.full() ? faults_.status() : absl::OkStatus();
     }
     if (!layer.ok()) return layer.status();
-    points += layer->points;
+    points += layer->label.points;
     if (core_.limits.max_points_per_job > 0 && points > core_.limits.max_points_per_job) {
       core_.admission.CountRefusal(Refusal::kJobPoints);
       return OverLimit(absl::StrCat("layers[", index, "]"), points, "points up to here",
@@ -299,7 +303,7 @@ void JobStream::StartEngine(int64_t expected_layers, int64_t expected_points) {
 
 void JobStream::AddLayers(std::vector<LabelledLayer> layers) {
   int64_t points = 0;
-  for (const LabelledLayer& layer : layers) points += layer.points;
+  for (const LabelledLayer& layer : layers) points += layer.label.points;
   // At the end of a message whatever was admitted too much is given back.
   const bool last = reader_.left() == 0;
   const int64_t admitted = last ? admitted_points_ : std::min(points, admitted_points_);
@@ -330,14 +334,16 @@ void JobStream::OnCallCancelled() {
                    : absl::CancelledError("the caller cancelled the call"));
 }
 
-std::string JobStream::EncodeLayer(const LayerOutcome& outcome, uint64_t id, int64_t points) {
+std::string JobStream::EncodeLayer(const LayerOutcome& outcome, const LayerLabel& label) {
   totals_.Add(outcome);
   core_.metrics.CountLayer(*layer_metrics_, outcome, setup_.idle_speed_mm_s);
   const double busy_seconds = queue_->busy_seconds();
-  ticket_->Remove(points, busy_seconds - counted_seconds_);
+  ticket_->Remove(label.points, label.bytes, busy_seconds - counted_seconds_);
   counted_seconds_ = busy_seconds;
   --core_.queue_layers;
-  return Encode(outcome, id);
+  std::string message = Encode(outcome, label.id);
+  ticket_->KeepAnswer(static_cast<int64_t>(message.size()));
+  return message;
 }
 
 std::string JobStream::EncodeSummary() {
@@ -346,7 +352,20 @@ std::string JobStream::EncodeSummary() {
   summary.set_strategy(setup_.strategy_name);
   totals_.ToProto(setup_.idle_speed_mm_s, summary);
   summary.set_wall_seconds(WallSeconds());
-  return Encode(summary);
+  std::string message = Encode(summary);
+  ticket_->KeepAnswer(static_cast<int64_t>(message.size()));
+  return message;
+}
+
+const grpc::ByteBuffer* JobStream::Outgoing(const std::string& message) {
+  outgoing_ = ToByteBuffer(message);
+  return &outgoing_;
+}
+
+void JobStream::AnswerWritten(bool ok) {
+  ticket_->LetGoAnswer(static_cast<int64_t>(outgoing_.Length()));
+  outgoing_.Clear();
+  run_->OnWriteDone(ok);
 }
 
 double JobStream::WallSeconds() const {

@@ -60,6 +60,11 @@ class JobStream : public JobPort {
   // results and the deadline.
   void StartEngine(int64_t expected_layers, int64_t expected_points);
 
+  // `message` as it is written; it lives until AnswerWritten, which tells the run of the end of the
+  // write, and may end the call.
+  const grpc::ByteBuffer* Outgoing(const std::string& message);
+  void AnswerWritten(bool ok);
+
   // Counts the job under no strategy: its caller never named one.
   void ForgetStrategy() { layer_metrics_ = nullptr; }
 
@@ -89,7 +94,7 @@ class JobStream : public JobPort {
   virtual std::string Encode(const v1::JobSummary& summary) const = 0;
 
   // JobPort.
-  std::string EncodeLayer(const LayerOutcome& outcome, uint64_t id, int64_t points) final;
+  std::string EncodeLayer(const LayerOutcome& outcome, const LayerLabel& label) final;
   std::string EncodeSummary() final;
   bool MayBringMore() const final { return ticket_->MayBringMore(); }
   bool IsWorkedOn() const final { return !queue_->idle(); }
@@ -151,6 +156,8 @@ class JobStream : public JobPort {
   // Of the engine's calls, which do not overlap; then of End.
   JobTotals totals_;
   double counted_seconds_ = 0;  // of queue_'s busy ones, as told to ticket_
+
+  grpc::ByteBuffer outgoing_;  // the message that is being written
 };
 
 }  // namespace traverse

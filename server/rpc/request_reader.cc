@@ -49,6 +49,21 @@ struct Content {
 constexpr int64_t kBytesOfPart = 320;
 constexpr int64_t kBytesOfByte = 3;
 
+// A packed number that has one byte here takes four in memory, or eight where its array grew.
+constexpr int64_t kBytesOfPacked = 4;
+
+// A field that this version does not know is kept until it is refused, and may have two bytes.
+constexpr int64_t kBytesOfUnknown = 2;
+
+// No options that mean anything have more bytes, or parts. They are parsed at once, before anything
+// of the message is held.
+constexpr int64_t kMostOptionsBytes = 1 << 20;
+constexpr int64_t kMostOptionsParts = 4096;
+
+bool IsPacked(const google::protobuf::FieldDescriptor& field) {
+  return field.is_packed() && field.cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE;
+}
+
 // Counts what is in a message of `type`, up to the limit that `in` has. As deep as the types are.
 // Stops at `most` parts: to count on would take long.
 bool CountContent(CodedInputStream& in, const Descriptor& type, int64_t most, Content& content) {
@@ -56,7 +71,12 @@ bool CountContent(CodedInputStream& in, const Descriptor& type, int64_t most, Co
   while (content.parts <= most && (tag = in.ReadTag()) != 0) {
     if (WireFormatLite::GetTagWireType(tag) != WireFormatLite::WIRETYPE_LENGTH_DELIMITED) {
       content.bytes += static_cast<int64_t>(sizeof(double));
+      const int before = in.CurrentPosition();
       if (!WireFormatLite::SkipField(&in, tag)) return false;
+      // A group, which no version has, may be as long as the message.
+      if (WireFormatLite::GetTagWireType(tag) == WireFormatLite::WIRETYPE_START_GROUP) {
+        content.parts += 1 + (in.CurrentPosition() - before) / kBytesOfUnknown;
+      }
       continue;
     }
     int length = 0;
@@ -64,7 +84,8 @@ bool CountContent(CodedInputStream& in, const Descriptor& type, int64_t most, Co
     const google::protobuf::FieldDescriptor* const field =
         type.FindFieldByNumber(WireFormatLite::GetTagFieldNumber(tag));
     if (field == nullptr || field->message_type() == nullptr) {
-      content.bytes += length;
+      if (field == nullptr) ++content.parts;
+      content.bytes += field != nullptr && IsPacked(*field) ? kBytesOfPacked * length : length;
       if (!in.Skip(length)) return false;
       continue;
     }
@@ -76,6 +97,14 @@ bool CountContent(CodedInputStream& in, const Descriptor& type, int64_t most, Co
     in.PopLimit(limit);
   }
   return content.parts > most || in.ConsumedEntireMessage();
+}
+
+bool HasFewParts(const std::string& options) {
+  CodedInputStream in(reinterpret_cast<const uint8_t*>(options.data()),
+                      static_cast<int>(options.size()));
+  Content content;
+  const bool valid = CountContent(in, *v1::JobOptions::descriptor(), kMostOptionsParts, content);
+  return !valid || content.parts <= kMostOptionsParts;
 }
 
 google::protobuf::ArenaOptions LargeBlocks() {
@@ -146,6 +175,7 @@ absl::Status RequestReader::Open(const char* type_name, grpc::ByteBuffer& messag
   has_options_ = false;
   options_.Clear();
   layers_ = left_ = footprint_bytes_ = 0;
+  layer_bytes_.clear();
   std::vector<grpc::Slice> slices;
   if (bytes_ > 0 && !message.Dump(&slices).ok()) return NotValid();
   message.Clear();
@@ -153,6 +183,7 @@ absl::Status RequestReader::Open(const char* type_name, grpc::ByteBuffer& messag
   {
     CodedInputStream in(&stream_);
     uint32_t tag = 0;
+    int64_t options_bytes = 0;
     while ((tag = in.ReadTag()) != 0) {
       int length = 0;
       if (tag == kLayersTag) {
@@ -167,8 +198,9 @@ absl::Status RequestReader::Open(const char* type_name, grpc::ByteBuffer& messag
                            "server's limit of ", limits.parts_of_layer));
         }
         in.PopLimit(limit);
-        ++layers_;
-        footprint_bytes_ += (content.parts + 1) * kBytesOfPart + content.bytes * kBytesOfByte;
+        if (++layers_ > limits.layers) return absl::OkStatus();
+        layer_bytes_.push_back((content.parts + 1) * kBytesOfPart + content.bytes * kBytesOfByte);
+        footprint_bytes_ += layer_bytes_.back();
         if (footprint_bytes_ > limits.footprint_bytes) {
           return absl::ResourceExhaustedError(
               absl::StrCat("layers[", layers_ - 1, "]: up to here the message comes to more than ",
@@ -176,7 +208,17 @@ absl::Status RequestReader::Open(const char* type_name, grpc::ByteBuffer& messag
         }
       } else if (tag == kOptionsTag) {
         std::string bytes;
-        if (!ReadLength(in, length) || !in.ReadString(&bytes, length)) return NotValid();
+        if (!ReadLength(in, length)) return NotValid();
+        options_bytes += length;
+        if (options_bytes > kMostOptionsBytes) {
+          return absl::ResourceExhaustedError(
+              absl::StrCat("options: more than ", kMostOptionsBytes, " bytes"));
+        }
+        if (!in.ReadString(&bytes, length)) return NotValid();
+        if (!HasFewParts(bytes)) {
+          return absl::ResourceExhaustedError(
+              absl::StrCat("options: more than ", kMostOptionsParts, " parts"));
+        }
         if (!options_.MergeFromString(bytes)) return NotValid();
         has_options_ = true;
       } else {

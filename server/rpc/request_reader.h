@@ -48,6 +48,10 @@ class SliceStream : public google::protobuf::io::ZeroCopyInputStream {
 struct RequestLimits {
   int64_t parts_of_layer = INT64_MAX;   // islands, paths, nodes, pairs
   int64_t footprint_bytes = INT64_MAX;  // of all layers, once they are read
+
+  // With more layers the message is looked at no further: layers() is then one more than this, and
+  // nothing may be read of it.
+  int64_t layers = INT64_MAX - 1;
 };
 
 // One message. Not thread-safe.
@@ -68,6 +72,11 @@ class RequestReader {
   // parsed: two bytes may stand for an island.
   int64_t footprint_bytes() const { return footprint_bytes_; }
 
+  // The same of the layer that was read last.
+  int64_t layer_footprint_bytes() const {
+    return layer_bytes_[static_cast<size_t>(layers_ - left_)];
+  }
+
   // Layers not read yet.
   int64_t left() const { return left_; }
 
@@ -86,6 +95,7 @@ class RequestReader {
   int64_t layers_ = 0;
   int64_t left_ = 0;
   int64_t footprint_bytes_ = 0;
+  std::vector<int64_t> layer_bytes_;  // [layer] of footprint_bytes_
 };
 
 }  // namespace traverse

@@ -30,7 +30,7 @@ class StreamReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
 
   // grpc::ServerBidiReactor.
   void OnReadDone(bool ok) override;
-  void OnWriteDone(bool ok) override { run()->OnWriteDone(ok); }
+  void OnWriteDone(bool ok) override { AnswerWritten(ok); }
   void OnCancel() override { OnCallCancelled(); }
   void OnDone() override { delete this; }
 
@@ -48,7 +48,6 @@ class StreamReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::Byt
   grpc::CallbackServerContext& context_;
   bool begun_ = false;
   grpc::ByteBuffer read_;
-  grpc::ByteBuffer write_;
 };
 
 }  // namespace traverse

@@ -302,8 +302,8 @@ absl::StatusOr<LabelledLayer> LayerFromProto(const v1::Layer& layer, uint64_t in
   FaultList faults;
   faults.Add(CheckRange(RangeOf("Layer.z_mm"), layer.z_mm(), place.text() + ".z_mm"));
   LabelledLayer result;
-  result.id = layer.id();
-  result.points = CountPoints(layer);
+  result.label.id = layer.id();
+  result.label.points = CountPoints(layer);
   absl::StatusOr<Plan> plan = layer.has_plan() ? FromProto(layer.plan(), place.text() + ".plan")
                                                : FromIslands(layer, place, interleaved);
   faults.Add(plan.status());

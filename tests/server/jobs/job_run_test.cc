@@ -95,10 +95,10 @@ class FakePort : public JobPort {
   std::function<void()> on_room;
 
   // JobPort.
-  std::string EncodeLayer(const LayerOutcome& outcome, uint64_t id, int64_t /*points*/) override {
+  std::string EncodeLayer(const LayerOutcome& outcome, const LayerLabel& label) override {
     std::lock_guard<std::mutex> lock(mutex_);
     ++encoded_;
-    return std::to_string(outcome.index) + ":" + std::to_string(id);
+    return std::to_string(outcome.index) + ":" + std::to_string(label.id);
   }
   std::string EncodeSummary() override { return "summary"; }
   void StartWrite(std::string message, bool /*more_follows*/) override {
@@ -152,7 +152,7 @@ class FakePort : public JobPort {
   std::thread writer_;
 };
 
-LabelledLayer Layer(uint64_t id) { return {JobLayer{FlatPlan(2), {}, {}}, id, 2}; }
+LabelledLayer Layer(uint64_t id) { return {JobLayer{FlatPlan(2), {}, {}}, {id, 2}}; }
 
 std::unique_ptr<Strategy> Slow(int milliseconds) {
   return std::make_unique<SlowStrategy>(std::chrono::milliseconds(milliseconds));
@@ -445,8 +445,7 @@ class VanishingPort : public JobPort {
     run->Release();
   }
 
-  std::string EncodeLayer(const LayerOutcome& /*outcome*/, uint64_t /*id*/,
-                          int64_t /*points*/) override {
+  std::string EncodeLayer(const LayerOutcome& /*outcome*/, const LayerLabel& /*label*/) override {
     return "layer";
   }
   std::string EncodeSummary() override { return "summary"; }

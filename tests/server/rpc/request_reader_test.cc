@@ -51,6 +51,71 @@ TEST(RequestReader, CountsWhatAMessageComesToBeforeItIsParsed) {
               StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("1 MiB")));
 }
 
+// A batch of one layer that is `bytes` on the wire.
+std::string BatchOf(const std::string& bytes) {
+  std::string length;
+  for (size_t left = bytes.size(); true; left >>= 7) {
+    length.push_back(static_cast<char>(left < 128 ? left : (left & 127) | 128));
+    if (left < 128) break;
+  }
+  return '\x12' + length + bytes;
+}
+
+std::string Repeated(const std::string& bytes, int times) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += bytes;
+  return all;
+}
+
+// Fields that no version knows are kept by protobuf until the message is refused: two bytes are an
+// empty text, or a group, of 48 bytes and more.
+TEST(RequestReader, CountsWhatItDoesNotKnow) {
+  constexpr int kFields = 10'000;
+  const std::string empty_texts = Repeated({'\x7a', '\x00'}, kFields);
+  const std::string groups = Repeated("\x7b\x7c", kFields);
+  const std::string in_a_group = "\x7b" + Repeated(std::string{'\x72', '\x00'}, kFields) + "\x7c";
+  for (const std::string& layer : {empty_texts, groups, in_a_group}) {
+    RequestReader reader;
+    grpc::ByteBuffer message = Sliced(BatchOf(layer), 1000);
+
+    ASSERT_OK(reader.Open(kType, message));
+
+    EXPECT_GT(reader.footprint_bytes(), kFields * 64);
+  }
+}
+
+// Children of a node are a byte each on the wire, and eight or more in memory.
+TEST(RequestReader, CountsPackedNumbersAsTheyAreInMemory) {
+  v1::OptimizeBatchRequest request;
+  v1::InOrder& node = *request.add_layers()->mutable_plan()->add_nodes()->mutable_in_order();
+  for (int i = 0; i < 10'000; ++i) node.add_children(1);
+  RequestReader reader;
+  grpc::ByteBuffer message = Sliced(request.SerializeAsString(), 1000);
+
+  ASSERT_OK(reader.Open(kType, message));
+
+  EXPECT_GT(reader.footprint_bytes(), 10'000 * 12);
+}
+
+TEST(RequestReader, OptionsMayHaveNoMoreBytesThanMeanAnything) {
+  v1::OptimizeBatchRequest request;
+  request.mutable_options()->set_job_id(std::string(900'000, 'x'));
+  RequestReader reader;
+  grpc::ByteBuffer message = Sliced(request.SerializeAsString(), 1000);
+  ASSERT_OK(reader.Open(kType, message));
+
+  const std::string twice = request.SerializeAsString() + request.SerializeAsString();
+  message = Sliced(twice, 1000);
+  EXPECT_THAT(reader.Open(kType, message),
+              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("options")));
+
+  // Two bytes each, of which protobuf makes fifty.
+  const std::string unknown = BatchOf(Repeated(std::string{'\x7a', '\x00'}, 5000));
+  message = Sliced('\x0a' + unknown.substr(1), 1000);
+  EXPECT_THAT(reader.Open(kType, message),
+              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("parts")));
+}
+
 // What the reader makes of a message in pieces of `piece_bytes`.
 absl::StatusOr<v1::OptimizeBatchRequest> ReadAll(grpc::ByteBuffer message, int64_t piece_bytes) {
   RequestReader reader;

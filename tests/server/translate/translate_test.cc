@@ -146,8 +146,8 @@ TEST(TranslateLayer, IslandsBecomeAPlanThatKnowsThem) {
     islands { contours { points: [9, 9] } })"),
                                                                   0, false));
 
-  EXPECT_EQ(result.id, 12u);
-  EXPECT_EQ(result.points, 6);
+  EXPECT_EQ(result.label.id, 12u);
+  EXPECT_EQ(result.label.points, 6);
   EXPECT_EQ(*result.layer.start, (Point{7, 0}));
   EXPECT_DOUBLE_EQ(result.layer.cost->speed_mm_s, 10);
   const Plan& plan = result.layer.plan;
@@ -269,7 +269,7 @@ TEST(TranslateLayer, WallsArriveAndMayBeContours) {
   EXPECT_EQ(walls.walls[1].path, 0);
   EXPECT_FALSE(walls.walls[2].closed);
   EXPECT_THAT(walls.exposed, ElementsAre(1));
-  EXPECT_EQ(result.points, 10);
+  EXPECT_EQ(result.label.points, 10);
 }
 
 TEST(TranslateLayer, FaultsOfWallsAreNamedByTheirPlace) {
