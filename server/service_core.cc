@@ -28,6 +28,8 @@ constexpr auto kIdleBeforeTrim = std::chrono::seconds(5);
 constexpr auto kMemoryWatch = std::chrono::milliseconds(10);
 constexpr double kShortShare = 0.7;
 constexpr double kCutShare = 0.78;
+// What searches may hold that gave way to others, beside the layers that they work on.
+constexpr double kSearchShare = 0.25;
 constexpr auto kTrimEvery = std::chrono::seconds(1);
 
 AdmissionLimits WithWorkers(AdmissionLimits limits, int workers) {
@@ -170,6 +172,7 @@ void ServiceCore::Watch(Connections* connections, int64_t max_memory) {
   connections_ = connections;
   max_memory_ = max_memory;
   if (max_memory == INT64_MAX) return;
+  pool.LimitMemory(static_cast<int64_t>(kSearchShare * static_cast<double>(max_memory)));
   watch_memory_.emplace(kMemoryWatch, [this] { WatchMemory(); });
 }
 
@@ -177,6 +180,7 @@ void ServiceCore::WatchMemory() {
   const int64_t bytes = ResidentBytes();
   const auto share = static_cast<double>(bytes) / static_cast<double>(max_memory_);
   admission.SetMemoryShort(share > kShortShare);
+  pool.SetMemoryShort(share > kShortShare);
   if (share <= kShortShare) return;
   const auto now = std::chrono::steady_clock::now();
   if (now - trimmed_for_memory_ > kTrimEvery) {

@@ -239,7 +239,29 @@ void WorkerPool::WithdrawIfNothing(QueueImpl& queue) {
 bool WorkerPool::MayBegin(const Task& task) const {
   if (under_way_ < static_cast<size_t>(permits_)) return true;
   if (under_way_ >= kMostUnderWay) return false;
-  return !task.large() || large_points_ + task.points <= kMostLargePoints;
+  if (task.small()) return true;
+  return !memory_short_ &&
+         (task.large() ? large_points_ : middle_points_) + task.points <= most_points_;
+}
+
+int64_t* WorkerPool::PointsUnderWay(const Task& task) {
+  if (task.small()) return nullptr;
+  return task.large() ? &large_points_ : &middle_points_;
+}
+
+void WorkerPool::LimitMemory(int64_t bytes) {
+  MutexLock lock(mutex_);
+  most_points_ = std::min(kMostPoints, bytes / 2 / kBytesOfPoint);
+}
+
+void WorkerPool::SetMemoryShort(bool is_short) {
+  MutexLock lock(mutex_);
+  if (memory_short_ && !is_short) {
+    memory_short_ = false;
+    ReleaseHeldBack();
+    Dispatch();
+  }
+  memory_short_ = is_short;
 }
 
 WorkerPool::QueueImpl* WorkerPool::TakeNext() {
@@ -286,7 +308,7 @@ bool WorkerPool::Begin(QueueImpl& queue) {
   queue.waited.longest_seconds = std::max(queue.waited.longest_seconds, waited);
   ++queue.under_way;
   ++under_way_;
-  if (task.large()) large_points_ += task.points;
+  if (int64_t* const points = PointsUnderWay(task)) *points += task.points;
   --waiting_;
   ++busy_;
   handed_out_.push_back(std::move(task));
@@ -362,7 +384,7 @@ void WorkerPool::WaitForTurn(Worker& worker) {
 void WorkerPool::EndTask(Worker& worker) {
   Charge(worker);
   const std::shared_ptr<QueueImpl> queue = worker.task.queue;
-  if (worker.task.large()) large_points_ -= worker.task.points;
+  if (int64_t* const points = PointsUnderWay(worker.task)) *points -= worker.task.points;
   worker.works = false;
   --busy_;
   --queue->under_way;

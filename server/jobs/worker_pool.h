@@ -74,12 +74,18 @@ class WorkerPool {
   // How long a task works before it gives way, if others wait.
   static constexpr std::chrono::milliseconds kSlice{10};
 
-  // Tasks that may be under way at a time, paused ones included; and of those of more than
-  // kLargePoints points each, how many points together: their searches hold memory while they are
-  // paused. As many tasks as there are permits may be under way in any case.
+  // Tasks that may be under way at a time, paused ones included. Those of more than kSmallPoints
+  // points hold memory while they are paused: of the large ones, and of those between, so many
+  // points together may be under way, unless LimitMemory says fewer. As many tasks as there are
+  // permits may be under way in any case.
   static constexpr size_t kMostUnderWay = 512;
+  static constexpr int64_t kSmallPoints = 1000;
   static constexpr int64_t kLargePoints = 20'000;
-  static constexpr int64_t kMostLargePoints = 4'000'000;
+  static constexpr int64_t kMostPoints = 4'000'000;
+
+  // What a search holds for each point, in bytes, beside the layer: measured with contours of one
+  // point, of which each is a path, in the strategy that needs most.
+  static constexpr int64_t kBytesOfPoint = 1500;
 
   // `permits` tasks work at a time, at least one. `clock` says what they are charged. The threads
   // are nicer by `nice` than the one that calls.
@@ -97,6 +103,13 @@ class WorkerPool {
   // process.
   std::shared_ptr<Queue> NewQueue(const std::string& caller,
                                   std::function<void()> on_no_memory = {});
+
+  // Searches that are under way may hold `bytes`, those of large layers and of others half each.
+  void LimitMemory(int64_t bytes);
+
+  // While memory is short no task that holds much begins beyond the permits: those that are under
+  // way end first.
+  void SetMemoryShort(bool is_short);
 
   // How many tasks work at a time.
   int threads() const { return permits_; }
@@ -127,6 +140,7 @@ class WorkerPool {
     int64_t points = 0;
     std::shared_ptr<QueueImpl> queue = nullptr;  // which lives as long as its tasks
 
+    bool small() const { return points <= kSmallPoints; }
     bool large() const { return points > kLargePoints; }
   };
 
@@ -149,6 +163,9 @@ class WorkerPool {
   // The queue whose turn it is; null if none waits that may go on.
   QueueImpl* TakeNext() TRAVERSE_REQUIRES(mutex_);
   bool MayBegin(const Task& task) const TRAVERSE_REQUIRES(mutex_);
+
+  // The points under way of tasks of the same size; null for small ones, which are not counted.
+  int64_t* PointsUnderWay(const Task& task) TRAVERSE_REQUIRES(mutex_);
 
   // Gives permits that are free to those whose turn it is.
   void Dispatch() TRAVERSE_REQUIRES(mutex_);
@@ -177,10 +194,13 @@ class WorkerPool {
   std::deque<std::shared_ptr<QueueImpl>> held_back_ TRAVERSE_GUARDED_BY(mutex_);  // MayBegin: no
   std::deque<Task> handed_out_ TRAVERSE_GUARDED_BY(mutex_);  // with a permit, for idle threads
   int64_t waiting_ TRAVERSE_GUARDED_BY(mutex_) = 0;
-  int busy_ TRAVERSE_GUARDED_BY(mutex_) = 0;              // permits in use
-  size_t under_way_ TRAVERSE_GUARDED_BY(mutex_) = 0;      // tasks begun and not ended
-  int64_t large_points_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // of large tasks under way
-  size_t idle_ TRAVERSE_GUARDED_BY(mutex_) = 0;           // threads without a task
+  int busy_ TRAVERSE_GUARDED_BY(mutex_) = 0;               // permits in use
+  size_t under_way_ TRAVERSE_GUARDED_BY(mutex_) = 0;       // tasks begun and not ended
+  int64_t middle_points_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // of tasks under way that are neither
+  int64_t large_points_ TRAVERSE_GUARDED_BY(mutex_) = 0;   // small nor large, and of large ones
+  int64_t most_points_ TRAVERSE_GUARDED_BY(mutex_) = kMostPoints;  // of either
+  bool memory_short_ TRAVERSE_GUARDED_BY(mutex_) = false;
+  size_t idle_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // threads without a task
   bool stopping_ TRAVERSE_GUARDED_BY(mutex_) = false;
   std::vector<std::unique_ptr<Worker>> workers_ TRAVERSE_GUARDED_BY(mutex_);
   std::vector<std::unique_ptr<Worker>> retired_ TRAVERSE_GUARDED_BY(mutex_);  // to be joined

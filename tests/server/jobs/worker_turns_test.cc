@@ -38,8 +38,13 @@ class Endless {
   std::atomic<int64_t> steps{0};
 };
 
+// Waits for `condition`; a test that waits for a minute fails, and hangs no suite.
 void WaitFor(const std::function<bool()>& condition) {
-  while (!condition()) std::this_thread::sleep_for(std::chrono::microseconds(200));
+  const auto end = Clock::now() + std::chrono::minutes(1);
+  while (!condition()) {
+    ASSERT_LT(Clock::now(), end);
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
 }
 
 TEST(WorkerTurns, AShortJobIsDoneBesideAnyNumberOfEndlessOnes) {
@@ -122,6 +127,57 @@ TEST(WorkerTurns, LargeTasksUnderWayAreFew) {
   EXPECT_EQ(endless.begun, 4);
   endless.cancel.Cancel();
   WaitFor([&] { return endless.ended == 8; });
+}
+
+// So that searches hold no more memory than there is; those of few points never wait for that.
+TEST(WorkerTurns, TasksUnderWayHaveNoMorePointsThanMemoryAllows) {
+  WorkerPool pool(1);
+  pool.LimitMemory(2 * WorkerPool::kBytesOfPoint * 50'000);
+  Endless large;
+  Endless middle;
+  std::vector<std::shared_ptr<WorkerPool::Queue>> queues;
+  for (int i = 0; i < 8; ++i) {
+    queues.push_back(pool.NewQueue("caller " + std::to_string(i)));
+    queues.back()->SubmitLarge(large.On(queues.back()), 25'000);
+    queues.push_back(pool.NewQueue("caller " + std::to_string(i)));
+    queues.back()->SubmitLarge(middle.On(queues.back()), 10'000);
+  }
+  std::atomic<int> small{0};
+  for (int i = 0; i < 30; ++i) {
+    pool.NewQueue("small " + std::to_string(i))->SubmitLarge([&] { ++small; }, 1000);
+  }
+  WaitFor([&] { return small == 30 && large.begun == 2 && middle.begun == 5; });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+
+  EXPECT_EQ(large.begun, 2);
+  EXPECT_EQ(middle.begun, 5);
+  large.cancel.Cancel();
+  middle.cancel.Cancel();
+  WaitFor([&] { return large.ended == 8 && middle.ended == 8; });
+}
+
+TEST(WorkerTurns, NothingThatHoldsMuchBeginsWhileMemoryIsShort) {
+  WorkerPool pool(1);
+  pool.SetMemoryShort(true);
+  Endless endless;
+  std::vector<std::shared_ptr<WorkerPool::Queue>> queues;
+  for (int i = 0; i < 4; ++i) {
+    queues.push_back(pool.NewQueue("caller " + std::to_string(i)));
+    queues.back()->SubmitLarge(endless.On(queues.back()), 10'000);
+  }
+  std::atomic<int> small{0};
+  for (int i = 0; i < 30; ++i) {
+    pool.NewQueue("small " + std::to_string(i))->SubmitLarge([&] { ++small; }, 100);
+  }
+  WaitFor([&] { return small == 30; });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(endless.begun, 1) << "as many as there are permits go on";
+
+  pool.SetMemoryShort(false);
+
+  WaitFor([&] { return endless.begun == 4; });
+  endless.cancel.Cancel();
+  WaitFor([&] { return endless.ended == 4; });
 }
 
 TEST(WorkerTurns, ThreadsThatManyPausesNeededAreGivenBack) {
