@@ -28,8 +28,8 @@ std::string GeneralHelp() {
   out +=
       "\n`traverse COMMAND --help` lists the flags of a command; `traverse --version`.\n"
       "INPUT: DAMAT, sliced G-code (.gcode .bgcode .gcode.3mf .ufp), or the API's\n"
-      "layers as .json or .pb; also .gz or .xz; - is standard input. Without --server\n"
-      "the service runs in the command.\n"
+      "layers as .json or .pb, or GTSPLIB (.gtsp); also .gz or .xz; - is standard\n"
+      "input. Without --server the service runs in the command.\n"
       "Exit codes: 0 done, 1 bad input, 2 usage, 3 server unreachable or refused.\n\n"
       "example: traverse compare part.damat --layers=1-5\n";
   return out;

@@ -36,6 +36,17 @@ bool LooksLikeGcode(std::string_view line) {
          line.substr(0, word).find('_') != std::string_view::npos;
 }
 
+// A line of GTSPLIB's, or TSPLIB's, head.
+bool LooksLikeGtsp(std::string_view line) {
+  for (const std::string_view key :
+       {"DIMENSION", "EDGE_WEIGHT_TYPE", "GTSP_SETS", "NODE_COORD_SECTION", "GTSP_SET_SECTION"}) {
+    if (!line.starts_with(key)) continue;
+    const size_t next = line.find_first_not_of(" \t\r", key.size());
+    return next == std::string_view::npos || line[next] == ':';
+  }
+  return false;
+}
+
 // True if `bytes` hold a control character that no text has.
 bool IsBinary(std::string_view bytes) {
   return std::any_of(bytes.begin(), bytes.end(), [](char c) {
@@ -46,6 +57,7 @@ bool IsBinary(std::string_view bytes) {
 std::optional<InputFormat> DetectText(std::string_view text) {
   int damat = 0;
   int gcode = 0;
+  int gtsp = 0;
   for (int lines = 0; !text.empty() && lines < kLinesAsked; ++lines) {
     const size_t end = text.find('\n');
     std::string_view line = text.substr(0, end);
@@ -55,7 +67,10 @@ std::optional<InputFormat> DetectText(std::string_view text) {
     if (lines == 0 && line[0] == '{') return InputFormat::kJson;
     damat += LooksLikeDamat(line);
     gcode += LooksLikeGcode(line);
+    gtsp += LooksLikeGtsp(line);
   }
+  // Its keys look like macros, but no file of macros has two of them.
+  if (gtsp > 1) return InputFormat::kGtsp;
   if (damat == 0 && gcode == 0) return std::nullopt;
   return damat >= gcode ? InputFormat::kDamat : InputFormat::kGcode;
 }
@@ -92,6 +107,7 @@ std::optional<InputFormat> DetectByExtension(const std::string& name) {
   }
   if (extension == ".json") return InputFormat::kJson;
   if (extension == ".pb") return InputFormat::kProto;
+  if (extension == ".gtsp") return InputFormat::kGtsp;
   return std::nullopt;
 }
 
@@ -105,6 +121,8 @@ const char* FormatName(InputFormat format) {
       return "JSON";
     case InputFormat::kProto:
       return "protobuf";
+    case InputFormat::kGtsp:
+      return "GTSPLIB";
   }
   return "unknown";
 }

@@ -9,6 +9,7 @@
 #include "client/files/read_file.h"
 #include "client/formats/api_format.h"
 #include "client/formats/detect.h"
+#include "client/gtsp/reader.h"
 
 namespace traverse {
 namespace {
@@ -26,6 +27,8 @@ absl::StatusOr<InputJob> ReadAs(InputFormat format, std::string bytes, const std
       return ReadApiJson(bytes, name);
     case InputFormat::kProto:
       return ReadApiProto(bytes, name);
+    case InputFormat::kGtsp:
+      return ReadGtsp(bytes, name);
     case InputFormat::kGcode:
       break;
   }
@@ -54,7 +57,7 @@ absl::StatusOr<InputFormat> FormatOf(const std::string& bytes, const std::string
   const bool weak = by_content == InputFormat::kProto && by_extension;
   const std::optional<InputFormat> format = weak || !by_content ? by_extension : by_content;
   if (!format) {
-    return Fault(name, "neither its content nor its name is DAMAT, G-code, JSON or protobuf");
+    return Fault(name, "neither its content nor its name is DAMAT, G-code, JSON, protobuf or GTSPLIB");
   }
   if (weak || !by_content) {
     if (absl::Status status = CheckPromise(name); !status.ok()) return status;

@@ -18,12 +18,17 @@ namespace traverse {
 
 struct GcodeFile;  // client/gcode: the text and its parts, for the writer
 
+namespace gtsp {
+struct Instance;  // client/gtsp
+}
+
 // The formats that the client reads.
 enum class InputFormat {
   kDamat,
   kGcode,
   kJson,   // OptimizeBatchRequest in protobuf's JSON mapping
   kProto,  // OptimizeBatchRequest on the wire
+  kGtsp,   // GTSPLIB
 };
 
 // What is known of the paths of one layer that is a plan, beside the plan; either list may be
@@ -69,6 +74,9 @@ struct InputJob {
 
   // Of G-code alone: the file as read. Null otherwise.
   std::shared_ptr<const GcodeFile> gcode;
+
+  // Of GTSPLIB alone: the instance. Null otherwise.
+  std::shared_ptr<const gtsp::Instance> gtsp;
 };
 
 }  // namespace traverse

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "absl/strings/str_format.h"
+#include "client/gtsp/tour.h"
 
 namespace traverse::report {
 namespace {
@@ -107,6 +108,14 @@ Json RewriteJson(const GcodeRewrite& rewrite) {
           {"written", GcodeTotalsJson(rewrite.after)}};
 }
 
+// Numbers as in the file, from 1.
+Json TourJson(const gtsp::Instance& instance, const JobResult& result) {
+  const gtsp::Tour tour = gtsp::BestTour(instance, result.layers);
+  Json points = Json::array();
+  for (const uint32_t point : tour.points) points.push_back(uint64_t{point} + 1);
+  return {{"rounded_length", tour.rounded_length}, {"points", std::move(points)}};
+}
+
 // Names of files may be any bytes; JSON is UTF-8.
 std::string Dump(const Json& json) {
   return json.dump(-1, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace);
@@ -127,6 +136,9 @@ std::string RoutesJson(const InputJob& job, const JobRun& run, const GcodeRewrit
                         Dump(TotalJson(job, run.result, run.wall_seconds)));
   if (rewrite != nullptr) {
     absl::StrAppendFormat(&out, " \"gcode\": %s,\n", Dump(RewriteJson(*rewrite)));
+  }
+  if (job.gtsp != nullptr) {
+    absl::StrAppendFormat(&out, " \"tour\": %s,\n", Dump(TourJson(*job.gtsp, run.result)));
   }
   out += " \"layers\": [";
   // Layer by layer: as one tree of values a large job would need many times its text's memory.

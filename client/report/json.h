@@ -32,6 +32,8 @@ namespace traverse::report {
 //             "given": {"travel_mm": , "extruded_mm": , "retractions": , "crossings": ,
 //                       "open_crossings": , "print_seconds": },
 //             "written": {...}}
+// Of a GTSPLIB instance the closed tour (client/gtsp/tour.h) stands there, in the file's numbers:
+//   "tour": {"rounded_length": 174, "points": [22, 3, ...]}
 // Crossings are ways across visible walls, open ones those with filament not pulled back.
 std::string RoutesJson(const InputJob& job, const JobRun& run,
                        const GcodeRewrite* rewrite = nullptr);

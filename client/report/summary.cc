@@ -5,6 +5,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "client/files/read_file.h"
+#include "client/gtsp/tour.h"
 #include "client/report/json.h"
 #include "client/report/numbers.h"
 
@@ -43,6 +44,10 @@ std::string OptimizeSummary(const InputJob& job, const JobRun& run) {
   if (job.options.cost().has_time()) {
     absl::StrAppendFormat(&out, "cost     %s -> %s  (%s)\n", Duration(summary.cost_given()),
                           Duration(summary.cost()), Change(summary.cost_given(), summary.cost()));
+  }
+  if (job.gtsp != nullptr) {
+    absl::StrAppendFormat(&out, "tour     %d by rounded distances, as EUC_2D has them\n",
+                          gtsp::BestTour(*job.gtsp, run.result.layers).rounded_length);
   }
   if (summary.has_lower_bound()) {
     absl::StrAppendFormat(&out, "gap      %s to a proven bound\n", GapText(summary));

@@ -35,7 +35,9 @@ Output OutputOf(const Flags& flags) {
   if (name.ends_with(".gz") || name.ends_with(".xz")) return {};
   const ContainerKind kind = ContainerByExtension(name).value_or(ContainerKind::kText);
   if (kind == ContainerKind::kGcode3mf || kind == ContainerKind::kUfp) return {};
-  return {DetectByExtension(name), kind};
+  const std::optional<InputFormat> format = DetectByExtension(name);
+  if (format == InputFormat::kGtsp) return {};
+  return {format, kind};
 }
 
 // The G-code of `input`, as it is, in another container or in none.

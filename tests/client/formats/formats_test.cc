@@ -29,6 +29,8 @@ TEST(DetectByContent, KnowsEachFormat) {
   EXPECT_THAT(DetectByContent("START_PRINT BED=60\nF1800\n"), Optional(InputFormat::kGcode));
   EXPECT_THAT(DetectByContent("M104 S200"), Optional(InputFormat::kGcode));
   EXPECT_THAT(DetectByContent("\n {\"layers\": []}"), Optional(InputFormat::kJson));
+  EXPECT_THAT(DetectByContent("NAME: a\nTYPE: GTSP\nDIMENSION : 3\nGTSP_SETS: 2\n"),
+              Optional(InputFormat::kGtsp));
   EXPECT_THAT(DetectByContent("\x12\x02\x08\x01"), Optional(InputFormat::kProto));
 }
 
@@ -48,6 +50,7 @@ TEST(DetectByExtension, IgnoresCaseAndCompression) {
   EXPECT_THAT(DetectByExtension("a.g"), Optional(InputFormat::kGcode));
   EXPECT_THAT(DetectByExtension("a.json.gz"), Optional(InputFormat::kJson));
   EXPECT_THAT(DetectByExtension("a.pb"), Optional(InputFormat::kProto));
+  EXPECT_THAT(DetectByExtension("a.GTSP.gz"), Optional(InputFormat::kGtsp));
   EXPECT_THAT(DetectByExtension("-"), Eq(std::nullopt));
   EXPECT_THAT(DetectByExtension("damat"), Eq(std::nullopt));
 }
@@ -71,7 +74,7 @@ TEST(ParseInput, ErrorsAreOneLineWithTheName) {
   EXPECT_EQ(error("", "a.damat"), "a.damat: the file is empty");
   EXPECT_EQ(error(" \r\n", "-"), "standard input: the file is empty");
   EXPECT_EQ(error("hello", "a"),
-            "a: neither its content nor its name is DAMAT, G-code, JSON or protobuf");
+            "a: neither its content nor its name is DAMAT, G-code, JSON, protobuf or GTSPLIB");
   EXPECT_EQ(error("hello", "a.damat"), "a.damat:1: not a DAMAT record: \"hello\"");
   EXPECT_EQ(error(std::string("\n\x00\x01", 3), "a.damat"),
             "a.damat:2: not a DAMAT record: \"??\"");
