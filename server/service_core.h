@@ -15,8 +15,9 @@
 #include "absl/status/status.h"
 #include "absl/time/time.h"
 #include "engine/base/mutex.h"
+#include "server/access/auth.h"
+#include "server/access/certificates.h"
 #include "server/jobs/admission.h"
-#include "server/jobs/auth.h"
 #include "server/jobs/job_run.h"
 #include "server/jobs/return_lag.h"
 #include "server/jobs/worker_pool.h"
@@ -25,7 +26,6 @@
 #include "server/ops/metrics.h"
 #include "server/ops/periodic.h"
 #include "server/ops/watchdog.h"
-#include "server/rpc/certificates.h"
 
 namespace traverse {
 

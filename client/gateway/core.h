@@ -15,9 +15,9 @@
 #include "client/gateway/spool/spool.h"
 #include "client/gateway/work/file_worker.h"
 #include "client/gateway/work/work_queue.h"
-#include "server/jobs/auth.h"
+#include "server/access/auth.h"
+#include "server/access/certificates.h"
 #include "server/ops/job_log.h"
-#include "server/rpc/certificates.h"
 
 namespace traverse::gateway {
 

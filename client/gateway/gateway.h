@@ -19,9 +19,9 @@
 #include "client/gateway/grpc/gcode_grpc_service.h"
 #include "client/gateway/http/http_server.h"
 #include "client/gateway/octoprint/printer_api.h"
+#include "server/access/credentials.h"
 #include "server/ops/metrics_http.h"
 #include "server/ops/periodic.h"
-#include "server/rpc/credentials.h"
 
 namespace traverse::gateway {
 

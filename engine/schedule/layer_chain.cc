@@ -24,7 +24,7 @@ LayerChain::LayerChain(const JobSpec& spec, std::unique_ptr<Strategy> strategy, 
       outbox_(sink),
       given_at_(spec.start),
       predicted_at_(spec.start),
-      split_(spec.deadline, strategy_->serial() ? 1 : std::max(1, executor.threads())) {}
+      split_(spec.deadline, strategy_->traits().serial ? 1 : std::max(1, executor.threads())) {}
 
 void LayerChain::Add(JobLayer layer) {
   auto slot = std::make_shared<Slot>();
@@ -74,7 +74,7 @@ void LayerChain::RunPrepare(const SlotPtr& slot) {
   MutexLock lock(mutex_);
   preparing_ = false;
   ++next_to_prepare_;
-  if (strategy_->reuses_routes()) {
+  if (strategy_->traits().reuses_routes) {
     slot->result = std::make_shared<RouteToCome>();
     slot->model = routes_.Enter(slot->print.make, slot->kind, slot->result);
   }
@@ -83,7 +83,7 @@ void LayerChain::RunPrepare(const SlotPtr& slot) {
     split_.Add(weight - slot->weight);
     slot->weight = weight;
   }
-  if (strategy_->serial()) {
+  if (strategy_->traits().serial) {
     slot->solved = true;
     MaybeAnchor(slot->index);
   } else {
@@ -118,7 +118,7 @@ void LayerChain::RunSolveSecond(const SlotPtr& slot) {
 }
 
 void LayerChain::RunAnchor(const SlotPtr& slot, const Place& place) {
-  if (strategy_->serial()) Allot(*slot);
+  if (strategy_->traits().serial) Allot(*slot);
   LayerOutcome outcome = Anchor(*slot, place);
   const Point route_end = outcome.end;
   const Point end = slot->finish.value_or(route_end);
@@ -180,7 +180,7 @@ void LayerChain::MaybeSolveSecond(uint64_t index) {
   if (index < first_index_ || index >= added_) return;
   const SlotPtr slot = SlotAt(index);
   if (!slot->first_end || slot->solved || slot->second_start) return;
-  if (strategy_->quick() && !FixedStart(*slot)) {
+  if (strategy_->traits().quick && !FixedStart(*slot)) {
     const std::optional<Point> start = SlotAt(index - 1)->first_end;
     if (!start) return;
     if (*start != slot->predicted_start) {
@@ -197,14 +197,14 @@ void LayerChain::MaybeSolveSecond(uint64_t index) {
 bool LayerChain::MayLookAhead(const Slot& slot) const {
   const size_t paths = slot.layer.plan.paths.size();
   return slot.layer.more_follows && !CleaningDueAfter(slot.index) && paths > 0 &&
-         strategy_->looks_ahead(paths + 1);
+         paths < strategy_->traits().look_ahead_paths;
 }
 
 // Whether it is worth a look at `next`.
 bool LayerChain::LooksAheadAt(const Slot& slot, const Slot& next) const {
   if (FixedStart(next) || next.cost != slot.cost) return false;
   const size_t paths = next.layer.plan.paths.size();
-  return paths > 0 && strategy_->looks_ahead(slot.layer.plan.paths.size() + paths);
+  return paths > 0 && slot.layer.plan.paths.size() + paths <= strategy_->traits().look_ahead_paths;
 }
 
 // The last stage of layer `index`, if it is solved, its start is known, and so is whatever it is to

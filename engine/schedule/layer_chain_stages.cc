@@ -102,11 +102,11 @@ void LayerChain::Prepare(Slot& slot) {
     slot.walls = std::make_unique<const WallCost>(slot.layer.walls, plan, slot.cost);
   }
   slot.origin = PlanOrigin(plan);
-  if (!strategy_->serial()) {
+  if (!strategy_->traits().serial) {
     slot.print = PrintOf(plan, slot.cost, slot.layer.walls);
     slot.kind = KindOf(slot.print.make, slot.origin, slot.predicted_start, slot.finish);
   }
-  if (strategy_->reuses_routes()) {
+  if (strategy_->traits().reuses_routes) {
     if (!anchored_ || FixedStart(slot)) anchored_ = std::make_shared<Anchored>();
     slot.anchored = anchored_;
   }
@@ -122,7 +122,7 @@ void LayerChain::Prepare(Slot& slot) {
   slot.outcome.cleaning_given_mm = MoveMm(given_at_, slot.finish);
 
   if (slot.finish) given_at_ = *slot.finish;
-  if (!strategy_->serial()) predicted_at_ = PredictEnd(slot);
+  if (!strategy_->traits().serial) predicted_at_ = PredictEnd(slot);
 }
 
 Point LayerChain::PredictEnd(const Slot& slot) {
@@ -263,7 +263,7 @@ const Route& LayerChain::BestToGoOnFrom(const LayerProblem& problem, const Slot&
 // that was to be compared with.
 Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot& slot,
                                         const KnownRoute* known, Slot*& next, Route& greedy) const {
-  if (strategy_->serial()) {
+  if (strategy_->traits().serial) {
     Budget budget = LayerBudget(slot, 1);
     return strategy_->Solve(problem, budget);
   }
@@ -295,8 +295,8 @@ Solution LayerChain::SolveFromTrueStart(const LayerProblem& problem, const Slot&
       solution = strategy_->Resume(problem, own, budget);
     }
   } else {
-    solution = strategy_->quick() ? strategy_->Solve(problem, budget)
-                                  : strategy_->Resume(problem, from, budget);
+    solution = strategy_->traits().quick ? strategy_->Solve(problem, budget)
+                                         : strategy_->Resume(problem, from, budget);
   }
   if (as_predicted && !solution.lower_bound) solution.lower_bound = slot.first.lower_bound;
   // What resuming does not tell of itself is as it was.
@@ -356,7 +356,7 @@ void LayerChain::KeepBestRoute(const LayerProblem& problem, const Slot& slot,
 // equal layer's route was taken over.
 bool LayerChain::GreedyMayBeBetter(const LayerProblem& problem, const Slot& slot,
                                    const KnownRoute* known, const Slot* next) const {
-  if (strategy_->serial() || strategy_->quick() || Expired()) return false;
+  if (strategy_->traits().serial || strategy_->traits().quick || Expired()) return false;
   const bool is_compared =
       known != nullptr && known->place == slot.print.place && known->start == problem.start;
   return !is_compared && (next != nullptr || slot.model || problem.start != slot.predicted_start);
@@ -366,7 +366,7 @@ bool LayerChain::GreedyMayBeBetter(const LayerProblem& problem, const Slot& slot
 // the first solution, in parallel, or was done for an equal layer; from another start its result is
 // used again.
 void LayerChain::Bound(const LayerProblem& problem, Slot& slot, Solution& solution) const {
-  if (!strategy_->wants_bound() || cancel_.cancelled()) return;
+  if (!strategy_->traits().wants_bound || cancel_.cancelled()) return;
   Budget budget = LayerBudget(slot, kSideShare);
   const double cost = RouteCost(problem, solution.route);
   solution.lower_bound = LowerBound(problem, cost, &slot.bound_multipliers, budget);
@@ -396,7 +396,7 @@ LayerOutcome LayerChain::Anchor(Slot& slot, const Place& place) const {
   if (absl::Status status = ValidateRoute(slot.layer.plan, solution.route); !status.ok()) {
     outcome.invalid_route = std::string(status.message());
     solution = Solution{slot.given_route, StopReason::kLocalOptimum, std::nullopt};
-  } else if (!strategy_->pure()) {
+  } else if (!strategy_->traits().pure) {
     KeepBestRoute(problem, slot, known, next, std::move(greedy), solution);
   }
   if (!solution.lower_bound) Bound(problem, slot, solution);

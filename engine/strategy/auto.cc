@@ -90,7 +90,10 @@ Plan SetApart(Plan plan, PointPairs& points) {
 class Auto : public Strategy {
  public:
   Auto(double effort, double least_gain_each, bool bound)
-      : effort_(effort), least_gain_each_(least_gain_each), bound_(bound) {}
+      : Strategy(
+            {.reuses_routes = true, .wants_bound = bound, .look_ahead_paths = kLookAheadPaths}),
+        effort_(effort),
+        least_gain_each_(least_gain_each) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
     const LayerView layer(problem);
@@ -124,12 +127,6 @@ class Auto : public Strategy {
     ProveIfSmall(problem, solution, budget);
     return solution;
   }
-
-  bool looks_ahead(size_t paths) const override { return paths <= kLookAheadPaths; }
-
-  bool reuses_routes() const override { return true; }
-
-  bool wants_bound() const override { return bound_; }
 
  private:
   struct Effort {
@@ -230,7 +227,6 @@ class Auto : public Strategy {
 
   const double effort_;
   const double least_gain_each_;
-  const bool bound_;
 };
 
 }  // namespace

@@ -15,9 +15,9 @@
 #include "engine/proof/walks/stage_model.h"
 #include "engine/proof/walks/stage_proof.h"
 #include "engine/strategy/auto.h"
-#include "engine/strategy/framework_options.h"
 #include "engine/strategy/greedy.h"
 #include "engine/strategy/ni2opt.h"
+#include "engine/strategy/options/framework_options.h"
 #include "engine/strategy/stop.h"
 #include "engine/weller/interleaved_search.h"
 #include "engine/weller/milp/milp_method.h"
@@ -55,7 +55,8 @@ Budget Share(const Budget& budget, double share) {
 class Exact : public Strategy {
  public:
   explicit Exact(double time_limit_seconds)
-      : time_limit_seconds_(time_limit_seconds),
+      : Strategy({.serial = true}),  // a proof holds for one start only, not for a predicted one
+        time_limit_seconds_(time_limit_seconds),
         heuristic_(MakeDefault(AutoEntry())),
         long_heuristic_(MakeWith(AutoEntry(), {{"effort", kEffort}})) {}
 
@@ -68,9 +69,6 @@ class Exact : public Strategy {
     if (RouteCost(problem, start) < RouteCost(problem, found.route)) found.route = start;
     return Prove(problem, std::move(found), budget);
   }
-
-  // A proof holds for one start only: predicted ones would be work for nothing.
-  bool serial() const override { return true; }
 
  private:
   Solution FirstRoute(const LayerProblem& problem, const Budget& budget) const {
@@ -129,11 +127,12 @@ class ExactFramework : public Strategy {
   // `cold`: as the thesis has it, from no start and without greedy's route instead of a longer one.
   ExactFramework(const FrameworkOptions& options, const MilpOptions& milp,
                  double time_limit_seconds, bool cold, bool bound)
-      : options_(options),
+      // As the thesis has it, every layer starts where the one before ended.
+      : Strategy({.serial = true, .pure = cold, .wants_bound = bound}),
+        options_(options),
         milp_(milp),
         time_limit_seconds_(time_limit_seconds),
         cold_(cold),
-        bound_(bound),
         greedy_(MakeDefault(GreedyEntry())),
         heuristic_(MakeDefault(Ni2optEntry())) {}
 
@@ -165,13 +164,6 @@ class ExactFramework : public Strategy {
     budget.ExhaustedNow();
     return Stopped(std::move(solution), method.timed_out(), budget);
   }
-
-  // As the thesis has it, every layer starts where the one before ended.
-  bool serial() const override { return true; }
-
-  bool pure() const override { return cold_; }
-
-  bool wants_bound() const override { return bound_; }
 
  private:
   MilpMethod::FirstRoute First() const {
@@ -230,7 +222,6 @@ class ExactFramework : public Strategy {
   const MilpOptions milp_;
   const double time_limit_seconds_;
   const bool cold_;
-  const bool bound_;
   const std::unique_ptr<Strategy> greedy_;     // which no result is worse than, unless cold
   const std::unique_ptr<Strategy> heuristic_;  // for plans that the framework does not know
 };

@@ -12,18 +12,13 @@ namespace {
 
 class Greedy : public Strategy {
  public:
-  explicit Greedy(bool pure) : pure_(pure) {}
+  explicit Greedy(bool pure) : Strategy({.serial = true, .pure = pure}) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
     const LayerView layer(problem);
-    Route route = pure_ ? GreedyRoute(layer, budget) : BaselineRoute(layer, budget);
+    Route route = traits().pure ? GreedyRoute(layer, budget) : BaselineRoute(layer, budget);
     return Solution{std::move(route), StopOr(budget, StopReason::kLocalOptimum), std::nullopt};
   }
-  bool serial() const override { return true; }
-  bool pure() const override { return pure_; }
-
- private:
-  const bool pure_;
 };
 
 }  // namespace

@@ -33,7 +33,8 @@ Solution FromUnit(Solution solution, double unit) {
 
 class OrdinaryUnit : public Strategy {
  public:
-  explicit OrdinaryUnit(std::unique_ptr<Strategy> strategy) : strategy_(std::move(strategy)) {}
+  explicit OrdinaryUnit(std::unique_ptr<Strategy> strategy)
+      : Strategy(strategy->traits()), strategy_(std::move(strategy)) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
     const double unit = CostUnit(problem.cost, {&problem});
@@ -52,13 +53,6 @@ class OrdinaryUnit : public Strategy {
                                               next_start, budget),
                     unit);
   }
-
-  bool looks_ahead(size_t paths) const override { return strategy_->looks_ahead(paths); }
-  bool pure() const override { return strategy_->pure(); }
-  bool serial() const override { return strategy_->serial(); }
-  bool wants_bound() const override { return strategy_->wants_bound(); }
-  bool quick() const override { return strategy_->quick(); }
-  bool reuses_routes() const override { return strategy_->reuses_routes(); }
 
  private:
   const std::unique_ptr<Strategy> strategy_;

@@ -16,7 +16,7 @@ namespace {
 
 class Ni2opt : public Strategy {
  public:
-  explicit Ni2opt(bool point_release) : descent_{point_release} {}
+  explicit Ni2opt(bool point_release) : Strategy({.quick = true}), descent_{point_release} {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
     const LayerView layer(problem);
@@ -27,8 +27,6 @@ class Ni2opt : public Strategy {
     }
     return Best(layer, std::move(baseline), *inserted, budget);
   }
-
-  bool quick() const override { return true; }
 
   // Without construction: the order that was found for another start is a good one still.
   Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
@@ -63,15 +61,13 @@ class Ni2opt : public Strategy {
 // Metodo 2, or with point release Metodo 3, as published.
 class PublishedNi2opt : public Strategy {
  public:
-  explicit PublishedNi2opt(bool point_release) : point_release_(point_release) {}
+  explicit PublishedNi2opt(bool point_release)
+      : Strategy({.serial = true, .pure = true}), point_release_(point_release) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
     Route route = PublishedRoute(LayerView(problem), point_release_, budget);
     return Solution{std::move(route), StopOr(budget, StopReason::kLocalOptimum), std::nullopt};
   }
-
-  bool serial() const override { return true; }
-  bool pure() const override { return true; }
 
  private:
   const bool point_release_;

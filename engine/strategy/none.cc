@@ -7,10 +7,11 @@ namespace {
 
 class None : public Strategy {
  public:
+  None() : Strategy({.serial = true}) {}
+
   Solution Solve(const LayerProblem& problem, Budget&) const override {
     return Solution{GivenRoute(*problem.plan), StopReason::kLocalOptimum, std::nullopt};
   }
-  bool serial() const override { return true; }
 };
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "engine/strategy/registry.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "absl/status/status.h"
@@ -16,13 +15,6 @@
 #include "engine/strategy/tabu.h"
 
 namespace traverse {
-namespace {
-
-// Names that callers may rely on in some version; those without an entry are not built in here.
-constexpr std::array<const char*, 6> kKnownNames = {"none", "greedy", "ni2opt",
-                                                    "tabu", "exact",  "auto"};
-
-}  // namespace
 
 const std::vector<StrategyEntry>& Strategies() {
   static const auto& entries = *new std::vector<StrategyEntry>{
@@ -43,10 +35,6 @@ absl::StatusOr<std::unique_ptr<Strategy>> MakeStrategy(
   const auto entry = std::find_if(entries.begin(), entries.end(),
                                   [&](const StrategyEntry& e) { return e.name == name; });
   if (entry == entries.end()) {
-    if (std::find(kKnownNames.begin(), kKnownNames.end(), name) != kKnownNames.end()) {
-      return absl::UnimplementedError(
-          absl::StrCat("name: strategy \"", name, "\" is not part of this server"));
-    }
     return absl::InvalidArgumentError(absl::StrCat(
         "name: no strategy \"", name, "\"; there are ",
         absl::StrJoin(entries, ", ",

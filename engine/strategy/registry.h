@@ -19,9 +19,8 @@ const std::vector<StrategyEntry>& Strategies();
 // The strategy of a job that names none.
 const std::string& DefaultStrategyName();
 
-// Makes a strategy. Errors: Unimplemented `name: ...` for a name of DESIGN section 4 that this
-// build lacks; InvalidArgument `name: ...` for any other unknown name, `options["x"]: ...` for bad
-// options.
+// Makes a strategy. Errors: InvalidArgument `name: ...` for an unknown name, `options["x"]: ...`
+// for bad options.
 absl::StatusOr<std::unique_ptr<Strategy>> MakeStrategy(
     const std::string& name, const std::map<std::string, std::string>& options);
 

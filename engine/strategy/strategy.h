@@ -13,7 +13,7 @@
 #include "engine/base/budget.h"
 #include "engine/model/layer_problem.h"
 #include "engine/model/route.h"
-#include "engine/strategy/options.h"
+#include "engine/strategy/options/options.h"
 
 namespace traverse {
 
@@ -30,11 +30,40 @@ struct Solution {
   std::map<std::string, double> statistics = {};
 };
 
+// What the chain of layers has to know of a strategy to call it as it is meant.
+struct StrategyTraits {
+  // Layers are solved one after another, each from its true start alone: where Solve takes no
+  // longer than a prediction of the start would, or where what is found for a predicted start is
+  // worth nothing at another one.
+  bool serial = false;
+
+  // Callers want the route of this method alone, however long: no other one, such as greedy's or
+  // the order given, takes its place.
+  bool pure = false;
+
+  // Solve is so quick that the chain may solve a layer again where its start was predicted wrongly,
+  // instead of resuming: the routes are then those of solving one layer after another.
+  bool quick = false;
+
+  // Resume may take the place of Solve where a route of an equal layer is known.
+  bool reuses_routes = false;
+
+  // Callers want a lower bound of solutions that have none: the chain looks for one then.
+  bool wants_bound = false;
+
+  // Two layers of at most so many paths together are worth ResumeWithNext: the chain calls it
+  // where the next layer is known. 0: it does no more than Resume.
+  size_t look_ahead_paths = 0;
+};
+
 // One method with the options of one job. Immutable after construction, so that layers may be
 // solved by several threads at once.
 class Strategy {
  public:
+  explicit Strategy(const StrategyTraits& traits = {}) : traits_(traits) {}
   virtual ~Strategy() = default;
+
+  const StrategyTraits& traits() const { return traits_; }
 
   // A valid route, always: when the budget runs out, the best so far, at worst the given order,
   // with stop kTimeLimit or kCancelled. The same problem gives the same solution unless the budget
@@ -56,28 +85,8 @@ class Strategy {
                                   const LayerProblem& next, Route& next_start,
                                   Budget& budget) const;
 
-  // Whether ResumeWithNext does more than Resume for two layers of so many paths together, and all
-  // smaller ones: the chain then calls it where the next layer is known.
-  virtual bool looks_ahead(size_t /*paths*/) const { return false; }
-
-  // True if layers are to be solved one after another, each from its true start alone: where Solve
-  // takes no longer than a prediction of the start would, or where what is found for a predicted
-  // start is worth nothing at another one.
-  virtual bool serial() const { return false; }
-
-  // True if callers want the route of this method alone, however long: no other one, such as
-  // greedy's or the order given, takes its place.
-  virtual bool pure() const { return false; }
-
-  // True if callers want a lower bound of solutions that have none: the chain looks for one then.
-  virtual bool wants_bound() const { return false; }
-
-  // True if Solve is so quick that the chain may solve a layer again where its start was predicted
-  // wrongly, instead of resuming: the routes are then those of solving one layer after another.
-  virtual bool quick() const { return false; }
-
-  // True if Resume may take the place of Solve where a route of an equal layer is known.
-  virtual bool reuses_routes() const { return false; }
+ private:
+  const StrategyTraits traits_;
 };
 
 // A row of the registry: what there is to know about a strategy without running it.

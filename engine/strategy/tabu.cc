@@ -13,8 +13,8 @@
 #include "engine/proof/small_parts/small_parts.h"
 #include "engine/search/greedy/greedy.h"
 #include "engine/search/polisher.h"
-#include "engine/strategy/framework_options.h"
 #include "engine/strategy/ni2opt.h"
+#include "engine/strategy/options/framework_options.h"
 #include "engine/strategy/stop.h"
 #include "engine/weller/framework_search.h"
 #include "engine/weller/interleaved_search.h"
@@ -62,7 +62,8 @@ Route Search(const LayerView& layer, const Route& start, const FrameworkOptions&
 // Metaheuristic of the thesis, step by step as it is written.
 class ThesisTabu : public Strategy {
  public:
-  explicit ThesisTabu(const FrameworkOptions& options) : options_(options) {}
+  explicit ThesisTabu(const FrameworkOptions& options)
+      : Strategy({.serial = true, .pure = true}), options_(options) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
     const LayerView layer(problem);
@@ -73,9 +74,6 @@ class ThesisTabu : public Strategy {
     return solution;
   }
 
-  bool serial() const override { return true; }
-  bool pure() const override { return true; }
-
  private:
   const FrameworkOptions options_;
 };
@@ -83,10 +81,10 @@ class ThesisTabu : public Strategy {
 class Tabu : public Strategy {
  public:
   Tabu(const FrameworkOptions& options, bool polish, double polish_rounds, bool bound)
-      : options_(options),
+      : Strategy(Traits(polish, bound)),
+        options_(options),
         polish_(polish),
         polish_rounds_(polish_rounds),
-        bound_(bound),
         ni2opt_(DefaultNi2opt()) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
@@ -111,13 +109,13 @@ class Tabu : public Strategy {
     return solution;
   }
 
+ private:
   // As the thesis has it, every layer starts where the one before ended: without polish nothing
   // repairs a route that was found for another start.
-  bool serial() const override { return !polish_; }
+  static StrategyTraits Traits(bool polish, bool bound) {
+    return {.serial = !polish, .wants_bound = bound};
+  }
 
-  bool wants_bound() const override { return bound_; }
-
- private:
   static void Take(const LayerView& layer, Route route, Candidate& best) {
     const double cost = RouteCost(layer.problem, route);
     if (cost < best.cost) best = {std::move(route), cost};
@@ -186,7 +184,6 @@ class Tabu : public Strategy {
   FrameworkOptions options_;
   bool polish_;
   double polish_rounds_;
-  bool bound_;
   std::unique_ptr<const Strategy> ni2opt_;
 };
 

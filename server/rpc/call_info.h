@@ -11,7 +11,7 @@
 
 #include "absl/status/status.h"
 #include "engine/base/budget.h"
-#include "server/jobs/auth.h"
+#include "server/access/auth.h"
 
 namespace traverse {
 

@@ -11,7 +11,7 @@ def engine(file, suites, seconds=120):
 
 
 PLACES = [
-    place("server/jobs/auth.cc", "server_jobs_tests", "ParseTokens*:Authenticator*"),
+    place("server/access/auth.cc", "server_jobs_tests", "ParseTokens*:Authenticator*"),
     place("server/jobs/admission.cc", "server_jobs_tests", "Admission*"),
     place("server/jobs/retry_delay.cc", "server_jobs_tests", "WithRetryDelay*"),
     place("server/jobs/job_run.cc", "server_jobs_tests", "JobRun*"),

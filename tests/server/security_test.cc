@@ -14,7 +14,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
-#include "server/rpc/credentials.h"
+#include "server/access/credentials.h"
 #include "tests/server/support/server_process.h"
 #include "tests/server/support/service_fixture.h"
 #include "tests/support/scratch_folder.h"

@@ -14,7 +14,7 @@
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "client/gateway/http/message.h"
-#include "server/rpc/certificates.h"
+#include "server/access/certificates.h"
 
 namespace traverse::gateway {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "server/rpc/certificates.h"
+#include "server/access/certificates.h"
 
 namespace traverse::gateway {
 

@@ -156,7 +156,7 @@ struct Calls {
 // Solves nothing, and notes what it is asked for.
 class Counting : public Strategy {
  public:
-  explicit Counting(Calls& calls) : calls_(calls) {}
+  explicit Counting(Calls& calls) : Strategy({.reuses_routes = true}), calls_(calls) {}
   Solution Solve(const LayerProblem& problem, Budget&) const override {
     std::lock_guard<std::mutex> lock(calls_.mutex);
     ++calls_.solved;
@@ -167,7 +167,6 @@ class Counting : public Strategy {
     ++calls_.resumed;
     return Solution{start, StopReason::kLocalOptimum, std::nullopt};
   }
-  bool reuses_routes() const override { return true; }
 
  private:
   Calls& calls_;
@@ -220,11 +219,11 @@ TEST(LayerChain, LayersOfAnotherCostHaveRoutesOfTheirOwn) {
 // Says that the given order is optimal, for every layer.
 class Proving : public Strategy {
  public:
+  Proving() : Strategy({.reuses_routes = true}) {}
   Solution Solve(const LayerProblem& problem, Budget&) const override {
     const Route route = GivenRoute(*problem.plan);
     return Solution{route, StopReason::kLocalOptimum, RouteCost(problem, route)};
   }
-  bool reuses_routes() const override { return true; }
 };
 
 // Equal layers may differ by what is rounded away when they are compared.

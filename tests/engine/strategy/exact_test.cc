@@ -285,7 +285,7 @@ TEST(ExactFramework, ColdHasNothingOfItsOwnWithoutTime) {
   EXPECT_EQ(cold.statistics.at("contours_found"), 0);
   EXPECT_EQ(cold.statistics.count("contours_value"), 0u);
   EXPECT_EQ(cold.stop, StopReason::kTimeLimit);
-  EXPECT_TRUE(MakeFramework({{"start", "none"}})->pure());
+  EXPECT_TRUE(MakeFramework({{"start", "none"}})->traits().pure);
 }
 
 TEST(ExactFramework, HasTheOptionsOfTheReductions) {

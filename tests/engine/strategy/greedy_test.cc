@@ -56,7 +56,7 @@ TEST(Greedy, PureMayBeLongerThanTheOrderGiven) {
   // To 1, to -2 (3 away), to 9: 1 + 3 + 11. Given: 2 + 3 + 8.
   EXPECT_NEAR(RouteCost(owned.problem, pure.route), 15, 1e-9);
   EXPECT_NEAR(RouteCost(owned.problem, usual.route), 13, 1e-9);
-  EXPECT_TRUE((*MakeStrategy("greedy", {{"pure", "true"}}))->pure());
+  EXPECT_TRUE((*MakeStrategy("greedy", {{"pure", "true"}}))->traits().pure);
 }
 
 }  // namespace

@@ -140,8 +140,8 @@ TEST(Tabu, OfTheThesisIsItsOwn) {
               RouteCost(owned.problem, Solve("greedy", {}, owned).route) + 1e-6;
   }
   EXPECT_GT(longer, 0);
-  EXPECT_TRUE((*MakeStrategy("tabu", {{"thesis", "true"}}))->pure());
-  EXPECT_TRUE((*MakeStrategy("tabu", {{"thesis", "true"}}))->serial());
+  EXPECT_TRUE((*MakeStrategy("tabu", {{"thesis", "true"}}))->traits().pure);
+  EXPECT_TRUE((*MakeStrategy("tabu", {{"thesis", "true"}}))->traits().serial);
 }
 
 TEST(Tabu, OfTheThesisKeepsFewerVisiblePoints) {

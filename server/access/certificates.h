@@ -1,8 +1,8 @@
 // The server's certificate with its key, and the authorities of its clients, as they stand in
 // files: read when they change, and used only if they are good.
 
-#ifndef TRAVERSE_SERVER_RPC_CERTIFICATES_H_
-#define TRAVERSE_SERVER_RPC_CERTIFICATES_H_
+#ifndef TRAVERSE_SERVER_ACCESS_CERTIFICATES_H_
+#define TRAVERSE_SERVER_ACCESS_CERTIFICATES_H_
 
 #include <array>
 #include <functional>
@@ -12,7 +12,7 @@
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "engine/base/mutex.h"
-#include "server/jobs/text_file.h"
+#include "server/access/text_file.h"
 
 namespace traverse {
 
@@ -68,4 +68,4 @@ class CertificateStore {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_SERVER_RPC_CERTIFICATES_H_
+#endif  // TRAVERSE_SERVER_ACCESS_CERTIFICATES_H_

@@ -1,7 +1,7 @@
 // The transport's side of security: TLS, mutual TLS, and where plaintext is allowed.
 
-#ifndef TRAVERSE_SERVER_RPC_CREDENTIALS_H_
-#define TRAVERSE_SERVER_RPC_CREDENTIALS_H_
+#ifndef TRAVERSE_SERVER_ACCESS_CREDENTIALS_H_
+#define TRAVERSE_SERVER_ACCESS_CREDENTIALS_H_
 
 #include <grpcpp/security/server_credentials.h>
 
@@ -9,7 +9,7 @@
 #include <string>
 
 #include "absl/status/status.h"
-#include "server/rpc/certificates.h"
+#include "server/access/certificates.h"
 
 namespace traverse {
 
@@ -25,4 +25,4 @@ std::shared_ptr<grpc::ServerCredentials> MakeTlsCredentials(
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_SERVER_RPC_CREDENTIALS_H_
+#endif  // TRAVERSE_SERVER_ACCESS_CREDENTIALS_H_

@@ -1,4 +1,4 @@
-#include "server/jobs/auth.h"
+#include "server/access/auth.h"
 
 #include <openssl/crypto.h>
 #include <openssl/sha.h>

@@ -1,4 +1,4 @@
-#include "engine/strategy/options.h"
+#include "engine/strategy/options/options.h"
 
 #include <algorithm>
 #include <cmath>

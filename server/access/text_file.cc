@@ -1,4 +1,4 @@
-#include "server/jobs/text_file.h"
+#include "server/access/text_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-#include "engine/strategy/framework_options.h"
+#include "engine/strategy/options/framework_options.h"
 
 #include <string>
 

@@ -1,13 +1,13 @@
 // The options of the thesis's framework, which `tabu` and `exact` share.
 
-#ifndef TRAVERSE_ENGINE_STRATEGY_FRAMEWORK_OPTIONS_H_
-#define TRAVERSE_ENGINE_STRATEGY_FRAMEWORK_OPTIONS_H_
+#ifndef TRAVERSE_ENGINE_STRATEGY_OPTIONS_FRAMEWORK_OPTIONS_H_
+#define TRAVERSE_ENGINE_STRATEGY_OPTIONS_FRAMEWORK_OPTIONS_H_
 
 #include <map>
 #include <string>
 #include <vector>
 
-#include "engine/strategy/options.h"
+#include "engine/strategy/options/options.h"
 #include "engine/weller/framework_search.h"
 
 namespace traverse {
@@ -29,4 +29,4 @@ OptionSpec SwitchOption(const char* name, const char* default_value, const char*
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_ENGINE_STRATEGY_FRAMEWORK_OPTIONS_H_
+#endif  // TRAVERSE_ENGINE_STRATEGY_OPTIONS_FRAMEWORK_OPTIONS_H_

@@ -1,7 +1,7 @@
 // Small files of text that an operator gives: tokens, certificates.
 
-#ifndef TRAVERSE_SERVER_JOBS_TEXT_FILE_H_
-#define TRAVERSE_SERVER_JOBS_TEXT_FILE_H_
+#ifndef TRAVERSE_SERVER_ACCESS_TEXT_FILE_H_
+#define TRAVERSE_SERVER_ACCESS_TEXT_FILE_H_
 
 #include <cstdint>
 #include <string>
@@ -27,4 +27,4 @@ FileState StateOfFile(const std::string& path);
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_SERVER_JOBS_TEXT_FILE_H_
+#endif  // TRAVERSE_SERVER_ACCESS_TEXT_FILE_H_

@@ -6,8 +6,8 @@
 //
 // Knows nothing of gRPC. Nothing here puts a token into a status or a log.
 
-#ifndef TRAVERSE_SERVER_JOBS_AUTH_H_
-#define TRAVERSE_SERVER_JOBS_AUTH_H_
+#ifndef TRAVERSE_SERVER_ACCESS_AUTH_H_
+#define TRAVERSE_SERVER_ACCESS_AUTH_H_
 
 #include <array>
 #include <chrono>
@@ -20,7 +20,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "engine/base/mutex.h"
-#include "server/jobs/text_file.h"
+#include "server/access/text_file.h"
 
 namespace traverse {
 
@@ -87,4 +87,4 @@ class Authenticator {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_SERVER_JOBS_AUTH_H_
+#endif  // TRAVERSE_SERVER_ACCESS_AUTH_H_

@@ -1,4 +1,4 @@
-#include "server/rpc/certificates.h"
+#include "server/access/certificates.h"
 
 #include <openssl/bio.h>
 #include <openssl/err.h>

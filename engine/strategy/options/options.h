@@ -1,7 +1,7 @@
 // Options of strategies: what there is, and the values of one job.
 
-#ifndef TRAVERSE_ENGINE_STRATEGY_OPTIONS_H_
-#define TRAVERSE_ENGINE_STRATEGY_OPTIONS_H_
+#ifndef TRAVERSE_ENGINE_STRATEGY_OPTIONS_OPTIONS_H_
+#define TRAVERSE_ENGINE_STRATEGY_OPTIONS_OPTIONS_H_
 
 #include <cstdint>
 #include <map>
@@ -63,4 +63,4 @@ class StrategyOptions {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_ENGINE_STRATEGY_OPTIONS_H_
+#endif  // TRAVERSE_ENGINE_STRATEGY_OPTIONS_OPTIONS_H_

@@ -1,4 +1,4 @@
-#include "server/rpc/credentials.h"
+#include "server/access/credentials.h"
 
 #include <grpc/grpc.h>
 #include <grpc/grpc_security.h>
