@@ -6,7 +6,6 @@
 
 #include "absl/cleanup/cleanup.h"
 #include "engine/cost/route_cost.h"
-#include "engine/strategy/greedy.h"
 
 namespace traverse {
 
@@ -18,26 +17,24 @@ std::shared_ptr<Job> Job::Start(const JobSpec& spec, std::unique_ptr<Strategy> s
 LayerChain::LayerChain(const JobSpec& spec, std::unique_ptr<Strategy> strategy, Executor& executor,
                        JobSink& sink)
     : spec_(spec),
-      strategy_(std::move(strategy)),
-      predictor_(GreedyEntry().make(*StrategyOptions::Parse(GreedyEntry().options, {}))),
       executor_(executor),
+      solver_(spec, std::move(strategy), executor, cancel_),
       outbox_(sink),
-      given_at_(spec.start),
-      predicted_at_(spec.start),
-      split_(spec.deadline, strategy_->traits().serial ? 1 : std::max(1, executor.threads())) {}
+      preparer_(spec.start, solver_),
+      split_(spec.deadline, solver_.traits().serial ? 1 : std::max(1, executor.threads())) {}
 
-void LayerChain::Add(JobLayer layer) {
-  auto slot = std::make_shared<Slot>();
-  slot->cost = layer.cost.value_or(spec_.cost);
-  for (const Path& path : layer.plan.paths)
-    slot->points += static_cast<int64_t>(path.points.size());
-  slot->layer = std::move(layer);
+void LayerChain::Add(JobLayer given) {
+  auto layer = std::make_shared<ChainLayer>();
+  layer->cost = given.cost.value_or(spec_.cost);
+  for (const Path& path : given.plan.paths)
+    layer->points += static_cast<int64_t>(path.points.size());
+  layer->given = std::move(given);
   MutexLock lock(mutex_);
   assert(!closed_);
-  slot->index = added_++;
-  slot->weight = BudgetSplit::Weight(slot->layer.plan.paths.size(), false);
-  split_.Add(slot->weight);
-  slots_.push_back(std::move(slot));
+  layer->index = added_++;
+  layer->weight = BudgetSplit::Weight(layer->given.plan.paths.size(), false);
+  split_.Add(layer->weight);
+  layers_.push_back(std::move(layer));
   ++pending_;
   MaybePrepare();
   // It may be one that the layer before need not look at.
@@ -63,76 +60,70 @@ int64_t LayerChain::pending() const {
   return pending_;
 }
 
-bool LayerChain::CleaningDueAfter(uint64_t index) const {
-  if (!spec_.cleaning) return false;
-  const uint64_t done = static_cast<uint64_t>(spec_.cleaning->layers_since_cleaning) + index + 1;
-  return done % static_cast<uint64_t>(spec_.cleaning->every_layers) == 0;
-}
-
-void LayerChain::RunPrepare(const SlotPtr& slot) {
-  Prepare(*slot);
+void LayerChain::RunPrepare(const ChainLayerPtr& layer) {
+  preparer_.Prepare(*layer);
   MutexLock lock(mutex_);
   preparing_ = false;
   ++next_to_prepare_;
-  if (strategy_->traits().reuses_routes) {
-    slot->result = std::make_shared<RouteToCome>();
-    slot->model = routes_.Enter(slot->print.make, slot->kind, slot->result);
+  if (solver_.traits().reuses_routes) {
+    layer->result = std::make_shared<PendingRoute>();
+    layer->precursor = routes_.Enter(layer->fingerprint.shape, layer->key, layer->result);
   }
-  if (slot->model) {
-    const double weight = BudgetSplit::Weight(slot->layer.plan.paths.size(), true);
-    split_.Add(weight - slot->weight);
-    slot->weight = weight;
+  if (layer->precursor) {
+    const double weight = BudgetSplit::Weight(layer->given.plan.paths.size(), true);
+    split_.Add(weight - layer->weight);
+    layer->weight = weight;
   }
-  if (strategy_->traits().serial) {
-    slot->solved = true;
-    MaybeAnchor(slot->index);
+  if (solver_.traits().serial) {
+    layer->solved = true;
+    MaybeAnchor(layer->index);
   } else {
-    MaybeSolveFirst(slot);
+    MaybeSolveFirst(layer);
   }
   MaybePrepare();
 }
 
-void LayerChain::Allot(Slot& slot) {
+void LayerChain::Allot(ChainLayer& layer) {
   MutexLock lock(mutex_);
-  slot.allotted = split_.Begin(slot.weight, Budget::Clock::now());
+  layer.allotted = split_.Begin(layer.weight, Budget::Clock::now());
 }
 
-void LayerChain::RunSolveFirst(const SlotPtr& slot) {
-  Allot(*slot);
-  SolveFirst(*slot);
-  const Point end =
-      slot->finish.value_or(RouteEnd(slot->layer.plan, slot->first.route, slot->predicted_start));
+void LayerChain::RunSolveFirst(const ChainLayerPtr& layer) {
+  Allot(*layer);
+  solver_.SolveFirst(*layer);
+  const Point end = layer->finish.value_or(
+      RouteEnd(layer->given.plan, layer->first.route, layer->predicted_start));
   MutexLock lock(mutex_);
-  slot->first_end = end;
-  HandOn(*slot);
-  MaybeSolveSecond(slot->index);
-  MaybeSolveSecond(slot->index + 1);
-  if (slot->index > 0) MaybeAnchor(slot->index - 1);
+  layer->first_end = end;
+  HandOn(*layer);
+  MaybeSolveSecond(layer->index);
+  MaybeSolveSecond(layer->index + 1);
+  if (layer->index > 0) MaybeAnchor(layer->index - 1);
 }
 
-void LayerChain::RunSolveSecond(const SlotPtr& slot) {
-  SolveSecond(*slot);
+void LayerChain::RunSolveSecond(const ChainLayerPtr& layer) {
+  solver_.SolveSecond(*layer);
   MutexLock lock(mutex_);
-  slot->solved = true;
-  MaybeAnchor(slot->index);
+  layer->solved = true;
+  MaybeAnchor(layer->index);
 }
 
-void LayerChain::RunAnchor(const SlotPtr& slot, const Place& place) {
-  if (strategy_->traits().serial) Allot(*slot);
-  LayerOutcome outcome = Anchor(*slot, place);
+void LayerChain::RunAnchor(const ChainLayerPtr& layer, const TrueStart& at) {
+  if (solver_.traits().serial) Allot(*layer);
+  LayerOutcome outcome = solver_.Anchor(*layer, at);
   const Point route_end = outcome.end;
-  const Point end = slot->finish.value_or(route_end);
+  const Point end = layer->finish.value_or(route_end);
   if (!cancel_.cancelled()) outbox_.Deliver(std::move(outcome));
   MutexLock lock(mutex_);
-  slot->end = end;
-  Lesson& lesson = lessons_[slot->index];
-  lesson.make = slot->print.make;
-  lesson.kind = KindOf(lesson.make, slot->origin, place.start, slot->finish);
-  lesson.end = RelativeTo(slot->origin, route_end);
-  lesson.known = slot->known;
+  layer->end = end;
+  LayerEnd& learned = ends_to_learn_[layer->index];
+  learned.shape = layer->fingerprint.shape;
+  learned.key = ProblemKey(learned.shape, layer->origin, at.start, layer->finish);
+  learned.end = RelativeTo(layer->origin, route_end);
+  learned.known = layer->known;
   --pending_;
   DropAnchored();
-  MaybeAnchor(slot->index + 1);
+  MaybeAnchor(layer->index + 1);
   MaybePrepare();
 }
 
@@ -141,96 +132,83 @@ void LayerChain::RunAnchor(const SlotPtr& slot, const Place& place) {
 void LayerChain::MaybePrepare() {
   if (preparing_ || next_to_prepare_ == added_) return;
   const bool learns = next_to_prepare_ >= kLearnDelay;
-  if (learns && lessons_.count(next_to_prepare_ - kLearnDelay) == 0) return;
+  if (learns && ends_to_learn_.count(next_to_prepare_ - kLearnDelay) == 0) return;
   const bool is_last_known = next_to_prepare_ + 1 == added_;
-  const bool cleaning_due = CleaningDueAfter(next_to_prepare_);
+  const bool cleaning_due = solver_.CleaningDueAfter(next_to_prepare_);
   if (cleaning_due && is_last_known && !closed_) return;
-  SlotPtr slot = SlotAt(next_to_prepare_);
-  if (cleaning_due && !is_last_known) slot->finish = spec_.cleaning->point;
+  ChainLayerPtr layer = LayerAt(next_to_prepare_);
+  if (cleaning_due && !is_last_known) layer->finish = spec_.cleaning->point;
   if (learns) {
-    const Lesson lesson = lessons_.extract(next_to_prepare_ - kLearnDelay).mapped();
-    history_.Learn(lesson.make, lesson.kind, lesson.end);
-    if (lesson.known) routes_.Learn(lesson.make, lesson.kind, lesson.known);
+    const LayerEnd learned = ends_to_learn_.extract(next_to_prepare_ - kLearnDelay).mapped();
+    preparer_.Learn(learned.shape, learned.key, learned.end);
+    if (learned.known) routes_.Learn(learned.shape, learned.key, learned.known);
   }
   preparing_ = true;
-  Submit([this, slot] { RunPrepare(slot); }, slot->points);
+  Submit([this, layer] { RunPrepare(layer); }, layer->points);
 }
 
 // The first solution of a layer, once there is what it starts from.
-void LayerChain::MaybeSolveFirst(const SlotPtr& slot) {
-  if (slot->model && !slot->model->ready) {
-    slot->model->waiting.push_back(slot->index);
+void LayerChain::MaybeSolveFirst(const ChainLayerPtr& layer) {
+  if (layer->precursor && !layer->precursor->ready) {
+    layer->precursor->waiting.push_back(layer->index);
     return;
   }
-  Submit([this, slot] { RunSolveFirst(slot); }, slot->points);
+  Submit([this, layer] { RunSolveFirst(layer); }, layer->points);
 }
 
 // Gives the first solution to the layers that start from it.
-void LayerChain::HandOn(const Slot& slot) {
-  if (!slot.result) return;
-  const LayerProblem problem = Problem(slot, slot.predicted_start);
-  for (const uint64_t index : RouteHistory::Complete(slot.result, Known(problem, slot, slot.first),
-                                                     slot.searched_in_vain)) {
-    MaybeSolveFirst(SlotAt(index));
+void LayerChain::HandOn(const ChainLayer& layer) {
+  if (!layer.result) return;
+  const LayerProblem problem = solver_.Problem(layer, layer.predicted_start);
+  for (const uint64_t index : RouteHistory::Complete(
+           layer.result, solver_.Known(problem, layer, layer.first), layer.searched_in_vain)) {
+    MaybeSolveFirst(LayerAt(index));
   }
 }
 
 // What follows the first solution of layer `index`: a second one, or anchor.
 void LayerChain::MaybeSolveSecond(uint64_t index) {
   if (index < first_index_ || index >= added_) return;
-  const SlotPtr slot = SlotAt(index);
-  if (!slot->first_end || slot->solved || slot->second_start) return;
-  if (strategy_->traits().quick && !FixedStart(*slot)) {
-    const std::optional<Point> start = SlotAt(index - 1)->first_end;
+  const ChainLayerPtr layer = LayerAt(index);
+  if (!layer->first_end || layer->solved || layer->second_start) return;
+  if (solver_.traits().quick && !solver_.FixedStart(*layer)) {
+    const std::optional<Point> start = LayerAt(index - 1)->first_end;
     if (!start) return;
-    if (*start != slot->predicted_start) {
-      slot->second_start = start;
-      Submit([this, slot] { RunSolveSecond(slot); }, slot->points);
+    if (*start != layer->predicted_start) {
+      layer->second_start = start;
+      Submit([this, layer] { RunSolveSecond(layer); }, layer->points);
       return;
     }
   }
-  slot->solved = true;
+  layer->solved = true;
   MaybeAnchor(index);
-}
-
-// Whether the layer's end is worth a look at the next layer, if there will be one.
-bool LayerChain::MayLookAhead(const Slot& slot) const {
-  const size_t paths = slot.layer.plan.paths.size();
-  return slot.layer.more_follows && !CleaningDueAfter(slot.index) && paths > 0 &&
-         paths < strategy_->traits().look_ahead_paths;
-}
-
-// Whether it is worth a look at `next`.
-bool LayerChain::LooksAheadAt(const Slot& slot, const Slot& next) const {
-  if (FixedStart(next) || next.cost != slot.cost) return false;
-  const size_t paths = next.layer.plan.paths.size();
-  return paths > 0 && slot.layer.plan.paths.size() + paths <= strategy_->traits().look_ahead_paths;
 }
 
 // The last stage of layer `index`, if it is solved, its start is known, and so is whatever it is to
 // look at of the next one.
 void LayerChain::MaybeAnchor(uint64_t index) {
   if (index < first_index_ || index >= added_) return;
-  const SlotPtr slot = SlotAt(index);
-  if (!slot->solved || slot->anchoring) return;
-  std::optional<Point> start = FixedStart(*slot);
-  if (!start) start = SlotAt(index - 1)->end;
+  const ChainLayerPtr layer = LayerAt(index);
+  if (!layer->solved || layer->anchoring) return;
+  std::optional<Point> start = solver_.FixedStart(*layer);
+  if (!start) start = LayerAt(index - 1)->end;
   if (!start) return;
-  Place place{*start, nullptr};
-  if (MayLookAhead(*slot)) {
+  TrueStart at{*start, nullptr};
+  if (solver_.MayLookAhead(*layer)) {
     const bool is_last_known = index + 1 == added_;
     if (is_last_known && !closed_) return;
-    if (!is_last_known && LooksAheadAt(*slot, *SlotAt(index + 1))) place.next = SlotAt(index + 1);
-    if (place.next && !place.next->first_end) return;
+    if (!is_last_known && solver_.LooksAheadAt(*layer, *LayerAt(index + 1)))
+      at.next = LayerAt(index + 1);
+    if (at.next && !at.next->first_end) return;
   }
-  slot->anchoring = true;
-  Submit([this, slot, place] { RunAnchor(slot, place); }, slot->points);
+  layer->anchoring = true;
+  Submit([this, layer, at] { RunAnchor(layer, at); }, layer->points);
 }
 
 // Layers from the front that are done, but for the last of them: its end is the next one's start.
 void LayerChain::DropAnchored() {
-  while (slots_.size() > 1 && slots_[0]->end && slots_[1]->anchoring) {
-    slots_.pop_front();
+  while (layers_.size() > 1 && layers_[0]->end && layers_[1]->anchoring) {
+    layers_.pop_front();
     ++first_index_;
   }
 }

@@ -32,16 +32,13 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
-#include <unordered_map>
-#include <utility>
 
 #include "engine/base/mutex.h"
-#include "engine/cost/wall_cost.h"
 #include "engine/engine.h"
-#include "engine/proof/bounds/lower_bound.h"
 #include "engine/schedule/budget_split.h"
-#include "engine/schedule/end_history.h"
+#include "engine/schedule/chain_layer.h"
+#include "engine/schedule/layer_preparer.h"
+#include "engine/schedule/layer_solver.h"
 #include "engine/schedule/outbox.h"
 #include "engine/schedule/route_history.h"
 
@@ -59,159 +56,55 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   int64_t pending() const override;
 
  private:
-  // The best routes of layers that were anchored, by kind.
-  using Anchored = std::unordered_map<uint64_t, KnownRoutePtr>;
-
-  // One layer on its way. A stage owns its layer and works without the lock; hand-over is under it.
-  struct Slot {
-    uint64_t index = 0;
-    JobLayer layer;
-    CostSpec cost;
-    int64_t points = 0;
-
-    // Set by prepare.
-    Point predicted_start;
-    PlanPrint print;
-    Point origin;
-    uint64_t kind = 0;  // with the predicted start
-    std::unique_ptr<const WallCost> walls;
-    std::optional<Point> finish;
-    Route given_route;
-    LayerOutcome outcome;  // what concerns the given order
-
-    // Set by prepare, where routes are used again: the route to start from, null if there is
-    // none, and this layer's own, for others. What they hold is guarded by the lock; it does not
-    // change once it is ready.
-    RouteHistory::Entry model;
-    RouteHistory::Entry result;
-
-    // Set by prepare: what is known of the layers before this one back to the last whose start was
-    // certain. Only anchor touches what it holds.
-    std::shared_ptr<Anchored> anchored;
-
-    // What the layer may use of the job's time, once it has begun to be solved.
-    double weight = 0;
-    Budget::Clock::duration allotted = Budget::Clock::duration::max();
-
-    std::unique_ptr<PlanMemory> memory;  // of the stage that is under way, for the next one
-
-    // Set by solve and second.
-    Solution first;
-    bool searched_in_vain = false;  // RouteToCome
-    BoundMultipliers bound_multipliers;
-    std::optional<Point> second_start;
-    Solution second;
-
-    // Set by the anchor of the layer before, where that looked ahead: a route from its end.
-    Route foreseen;
-
-    // Set by anchor, where routes are used again.
-    KnownRoutePtr known;
-
-    // Guarded by the lock.
-    std::optional<Point> first_end;  // solved: where the head is then, a cleaning included
-    bool solved = false;             // the layer itself is ready to be anchored
-    bool anchoring = false;          // anchor is submitted
-    std::optional<Point> end;        // anchored: where the head is then, a cleaning included
-  };
-  using SlotPtr = std::shared_ptr<Slot>;
-
   // Prepare is at most so many layers ahead of anchor; even, as many parts alternate two layers.
   static constexpr uint64_t kLearnDelay = 32;
 
-  // A layer's true start, and the next layer, if the end is chosen with a view to that.
-  struct Place {
-    Point start;
-    SlotPtr next;
-  };
-
-  bool CleaningDueAfter(uint64_t index) const;
-  std::optional<Point> FixedStart(const Slot& slot) const;
-  Budget LayerBudget(const Slot& slot, double share) const;
-  bool Expired() const;
-  LayerProblem Problem(const Slot& slot, Point start) const;
-  double AnchorShare() const;
-  double SolveShare(const Slot& slot) const;
-  bool MayLookAhead(const Slot& slot) const;
-  bool LooksAheadAt(const Slot& slot, const Slot& next) const;
-
-  // The stages.
-  void Prepare(Slot& slot);
-  Point PredictEnd(const Slot& slot);
-  void SolveFirst(Slot& slot) const;
-  void ResumeModel(const LayerProblem& problem, Slot& slot, Budget& budget) const;
-  bool TakeOver(const KnownRoute& known, const LayerProblem& problem, const Slot& slot,
-                Solution& solution) const;
-  void SolveSecond(Slot& slot) const;
-  LayerOutcome Anchor(Slot& slot, const Place& place) const;
-  uint64_t KindAt(const Slot& slot, const Place& place) const;
-  double CostInView(const LayerProblem& problem, const Route& route, const Slot* next) const;
-  const Route& BestToGoOnFrom(const LayerProblem& problem, const Slot& slot,
-                              const KnownRoute* known, const Slot* next) const;
-  Solution SolveFromTrueStart(const LayerProblem& problem, const Slot& slot,
-                              const KnownRoute* known, Slot*& next, Route& greedy) const;
-  Route GreedyRoute(const LayerProblem& problem, const Slot& slot) const;
-  bool GreedyMayBeBetter(const LayerProblem& problem, const Slot& slot, const KnownRoute* known,
-                         const Slot* next) const;
-  void KeepBestRoute(const LayerProblem& problem, const Slot& slot, const KnownRoute* known,
-                     const Slot* next, Route greedy, Solution& solution) const;
-  KnownRoutePtr Known(const LayerProblem& problem, const Slot& slot,
-                      const Solution& solution) const;
-  static const KnownRoute* FindAnchored(const Slot& slot, uint64_t kind);
-  void Bound(const LayerProblem& problem, Slot& slot, Solution& solution) const;
-
   // Fixes what the layer may use of the job's time. As its main stage begins.
-  void Allot(Slot& slot);
+  void Allot(ChainLayer& layer);
 
   // Run a stage and hand the layer over to the next one.
-  void RunPrepare(const SlotPtr& slot);
-  void RunSolveFirst(const SlotPtr& slot);
-  void RunSolveSecond(const SlotPtr& slot);
-  void RunAnchor(const SlotPtr& slot, const Place& place);
+  void RunPrepare(const ChainLayerPtr& layer);
+  void RunSolveFirst(const ChainLayerPtr& layer);
+  void RunSolveSecond(const ChainLayerPtr& layer);
+  void RunAnchor(const ChainLayerPtr& layer, const TrueStart& at);
 
   // Submit what is due.
   void MaybePrepare() TRAVERSE_REQUIRES(mutex_);
-  void MaybeSolveFirst(const SlotPtr& slot) TRAVERSE_REQUIRES(mutex_);
-  void HandOn(const Slot& slot) TRAVERSE_REQUIRES(mutex_);
+  void MaybeSolveFirst(const ChainLayerPtr& layer) TRAVERSE_REQUIRES(mutex_);
+  void HandOn(const ChainLayer& layer) TRAVERSE_REQUIRES(mutex_);
   void MaybeSolveSecond(uint64_t index) TRAVERSE_REQUIRES(mutex_);
   void MaybeAnchor(uint64_t index) TRAVERSE_REQUIRES(mutex_);
   void MaybeFinish() TRAVERSE_REQUIRES(mutex_);
   void Submit(std::function<void()> stage, int64_t points) TRAVERSE_REQUIRES(mutex_);
   void DropAnchored() TRAVERSE_REQUIRES(mutex_);
-  const SlotPtr& SlotAt(uint64_t index) const TRAVERSE_REQUIRES(mutex_) {
-    return slots_[index - first_index_];
+  const ChainLayerPtr& LayerAt(uint64_t index) const TRAVERSE_REQUIRES(mutex_) {
+    return layers_[index - first_index_];
   }
 
   const JobSpec spec_;
-  const std::unique_ptr<Strategy> strategy_;
-  const std::unique_ptr<Strategy> predictor_;
   Executor& executor_;
   CancelToken cancel_;
+  const LayerSolver solver_;
   Outbox outbox_;
-
-  // Where the head is after the layers prepared so far; only prepare touches these.
-  Point given_at_;
-  Point predicted_at_;
-  std::shared_ptr<Anchored> anchored_;
-  EndHistory history_;
+  LayerPreparer preparer_;  // only prepare touches it
 
   mutable Mutex mutex_;
   BudgetSplit split_ TRAVERSE_GUARDED_BY(mutex_);
   RouteHistory routes_ TRAVERSE_GUARDED_BY(mutex_);
-  std::deque<SlotPtr> slots_ TRAVERSE_GUARDED_BY(mutex_);  // [index - first_index_]
+  std::deque<ChainLayerPtr> layers_ TRAVERSE_GUARDED_BY(mutex_);  // [index - first_index_]
   uint64_t first_index_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   uint64_t added_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   uint64_t next_to_prepare_ TRAVERSE_GUARDED_BY(mutex_) = 0;
 
   // What prepare has not learned yet of anchored layers, by index. It learns of layer i -
   // kLearnDelay right before it prepares layer i: what it knows must not depend on timing.
-  struct Lesson {
-    uint64_t make = 0;
-    uint64_t kind = 0;
+  struct LayerEnd {
+    uint64_t shape = 0;
+    uint64_t key = 0;
     Point end;            // from the plan's origin
     KnownRoutePtr known;  // null where routes are not used again
   };
-  std::map<uint64_t, Lesson> lessons_ TRAVERSE_GUARDED_BY(mutex_);
+  std::map<uint64_t, LayerEnd> ends_to_learn_ TRAVERSE_GUARDED_BY(mutex_);
   int64_t pending_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   int64_t tasks_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // submitted and not yet ended
   bool preparing_ TRAVERSE_GUARDED_BY(mutex_) = false;

@@ -6,9 +6,9 @@
 
 namespace traverse {
 
-RouteHistory::Make& RouteHistory::MakeOf(uint64_t make) {
-  if (makes_.size() >= kMostMakes && makes_.count(make) == 0) makes_.clear();
-  return makes_[make];
+RouteHistory::Shape& RouteHistory::OfShape(uint64_t shape) {
+  if (shapes_.size() >= kMostShapes && shapes_.count(shape) == 0) shapes_.clear();
+  return shapes_[shape];
 }
 
 // Returns the entry kLag before, or the first one that is left; null if there is none.
@@ -19,30 +19,30 @@ RouteHistory::Entry RouteHistory::Push(std::deque<Entry>& entries, const Entry& 
   return model;
 }
 
-RouteHistory::Entry RouteHistory::Enter(uint64_t make, uint64_t kind, const Entry& mine) {
-  Make& same_make = MakeOf(make);
-  mine->kind = kind;
-  Entry of_make = Push(same_make.entries, mine);
-  if (same_make.kinds.size() >= kMostKinds && same_make.kinds.count(kind) == 0) {
-    same_make.kinds.clear();
+RouteHistory::Entry RouteHistory::Enter(uint64_t shape, uint64_t key, const Entry& mine) {
+  Shape& same_shape = OfShape(shape);
+  mine->key = key;
+  Entry of_shape = Push(same_shape.entries, mine);
+  if (same_shape.keys.size() >= kMostKeys && same_shape.keys.count(key) == 0) {
+    same_shape.keys.clear();
   }
-  std::deque<Entry>& same_kind = same_make.kinds[kind];
-  if (!same_kind.empty()) {
-    mine->previous = same_kind.back();
+  std::deque<Entry>& same_key = same_shape.keys[key];
+  if (!same_key.empty()) {
+    mine->previous = same_key.back();
     mine->previous->next = mine;
   }
-  Entry of_kind = Push(same_kind, mine);
-  return of_kind ? of_kind : of_make;
+  Entry of_key = Push(same_key, mine);
+  return of_key ? of_key : of_shape;
 }
 
-void RouteHistory::Learn(uint64_t make, uint64_t kind, KnownRoutePtr known) {
-  const auto found = makes_.find(make);
-  if (found == makes_.end() || found->second.kinds.count(kind) > 0) return;
-  auto entry = std::make_shared<RouteToCome>();
-  entry->kind = kind;
+void RouteHistory::Learn(uint64_t shape, uint64_t key, KnownRoutePtr known) {
+  const auto found = shapes_.find(shape);
+  if (found == shapes_.end() || found->second.keys.count(key) > 0) return;
+  auto entry = std::make_shared<PendingRoute>();
+  entry->key = key;
   entry->best = std::move(known);
   entry->ready = true;
-  found->second.kinds[kind].push_back(std::move(entry));
+  found->second.keys[key].push_back(std::move(entry));
 }
 
 std::vector<uint64_t> RouteHistory::Complete(Entry entry, KnownRoutePtr own, bool in_vain) {

@@ -22,7 +22,7 @@ PLACES = [
     place("client/files/write_file.cc", "client_tests", "Files*"),
     place("client/damat/reader.cc", "client_tests", "Damat*:*Reader*"),
     engine("schedule/route_history.cc", "RouteHistory*:LayerChain*"),
-    engine("schedule/end_history.cc", "EndHistory*:PrintOf*:KindOf*"),
+    engine("schedule/layer_fingerprint.cc", "EndHistory*:FingerprintOf*:ProblemKey*"),
     engine("schedule/budget_split.h", "BudgetSplit*"),
     engine("cost/entry_choice.cc", "EntryChoice*"),
     engine("cost/entry_table.cc", "EntryTable*"),

@@ -264,7 +264,7 @@ TEST(LayerChain, AQuickStrategySolvesEveryLayerFromItsTrueStart) {
 }
 
 TEST(EndHistory, GivesTheLastEndOfAnEqualLayerAboveAllFromTheSameStart) {
-  const auto make = [](const Plan& plan) { return PrintOf(plan, {}).make; };
+  const auto make = [](const Plan& plan) { return FingerprintOf(plan, {}).shape; };
   const uint64_t ring = make(RingLayer(3, 0.1));
   const uint64_t other = make(RingLayer(3, 0.2));
   EndHistory history;
@@ -278,19 +278,19 @@ TEST(EndHistory, GivesTheLastEndOfAnEqualLayerAboveAllFromTheSameStart) {
   EXPECT_EQ(history.EndOf(make(Moved(RingLayer(3, 0.2), 5)), 14), (Point{2, 2}));
 }
 
-TEST(PlanPrint, TellsLayersThatWereMovedFromOthers) {
-  const PlanPrint ring = PrintOf(RingLayer(3, 0.1), {});
-  const PlanPrint moved = PrintOf(Moved(RingLayer(3, 0.1), 5), {});
+TEST(LayerFingerprint, TellsLayersThatWereMovedFromOthers) {
+  const LayerFingerprint ring = FingerprintOf(RingLayer(3, 0.1), {});
+  const LayerFingerprint moved = FingerprintOf(Moved(RingLayer(3, 0.1), 5), {});
 
-  EXPECT_EQ(PrintOf(RingLayer(3, 0.1), {}).place, ring.place);
-  EXPECT_EQ(moved.make, ring.make);
+  EXPECT_EQ(FingerprintOf(RingLayer(3, 0.1), {}).exact, ring.exact);
+  EXPECT_EQ(moved.shape, ring.shape);
   CostSpec time;
   time.kind = CostSpec::Kind::kTime;
-  EXPECT_NE(PrintOf(RingLayer(3, 0.1), time).make, ring.make);
-  EXPECT_NE(moved.place, ring.place);
-  EXPECT_EQ(KindOf(7, {0, 0}, {1, 2}, std::nullopt), KindOf(7, {5, 5}, {6, 7}, std::nullopt));
-  EXPECT_NE(KindOf(7, {0, 0}, {1, 2}, std::nullopt), KindOf(7, {0, 0}, {1, 2.1}, std::nullopt));
-  EXPECT_NE(KindOf(7, {0, 0}, {1, 2}, Point{0, 0}), KindOf(7, {0, 0}, {1, 2}, std::nullopt));
+  EXPECT_NE(FingerprintOf(RingLayer(3, 0.1), time).shape, ring.shape);
+  EXPECT_NE(moved.exact, ring.exact);
+  EXPECT_EQ(ProblemKey(7, {0, 0}, {1, 2}, std::nullopt), ProblemKey(7, {5, 5}, {6, 7}, std::nullopt));
+  EXPECT_NE(ProblemKey(7, {0, 0}, {1, 2}, std::nullopt), ProblemKey(7, {0, 0}, {1, 2.1}, std::nullopt));
+  EXPECT_NE(ProblemKey(7, {0, 0}, {1, 2}, Point{0, 0}), ProblemKey(7, {0, 0}, {1, 2}, std::nullopt));
 }
 
 TEST(LayerChain, NoneReturnsTheGivenOrderAndItsTravel) {

@@ -12,8 +12,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr uint64_t kMake = 7;
-constexpr uint64_t kKind = 70;
+constexpr uint64_t kShape = 7;
+constexpr uint64_t kKey = 70;
 
 KnownRoutePtr RouteThatCosts(double cost) {
   auto known = std::make_shared<KnownRoute>();
@@ -21,18 +21,18 @@ KnownRoutePtr RouteThatCosts(double cost) {
   return known;
 }
 
-TEST(RouteHistory, TheFirstOfItsMakeHasNothingToStartFrom) {
+TEST(RouteHistory, TheFirstOfItsShapeHasNothingToStartFrom) {
   RouteHistory history;
 
-  EXPECT_EQ(history.Enter(kMake, kKind, std::make_shared<RouteToCome>()), nullptr);
+  EXPECT_EQ(history.Enter(kShape, kKey, std::make_shared<PendingRoute>()), nullptr);
 }
 
-TEST(RouteHistory, KeepsTheCheaperRouteOfAKind) {
+TEST(RouteHistory, KeepsTheCheaperRouteOfAKey) {
   RouteHistory history;
-  const auto first = std::make_shared<RouteToCome>();
-  const auto second = std::make_shared<RouteToCome>();
-  const auto third = std::make_shared<RouteToCome>();
-  for (const auto& entry : {first, second, third}) history.Enter(kMake, kKind, entry);
+  const auto first = std::make_shared<PendingRoute>();
+  const auto second = std::make_shared<PendingRoute>();
+  const auto third = std::make_shared<PendingRoute>();
+  for (const auto& entry : {first, second, third}) history.Enter(kShape, kKey, entry);
 
   RouteHistory::Complete(first, RouteThatCosts(10), false);
   RouteHistory::Complete(second, RouteThatCosts(12), true);
@@ -46,9 +46,9 @@ TEST(RouteHistory, KeepsTheCheaperRouteOfAKind) {
 
 TEST(RouteHistory, ARouteThatCostsTheSameCountsAsTheOldOne) {
   RouteHistory history;
-  const auto first = std::make_shared<RouteToCome>();
-  const auto second = std::make_shared<RouteToCome>();
-  for (const auto& entry : {first, second}) history.Enter(kMake, kKind, entry);
+  const auto first = std::make_shared<PendingRoute>();
+  const auto second = std::make_shared<PendingRoute>();
+  for (const auto& entry : {first, second}) history.Enter(kShape, kKey, entry);
   RouteHistory::Complete(first, RouteThatCosts(10), false);
 
   RouteHistory::Complete(second, RouteThatCosts(10), true);
@@ -58,9 +58,9 @@ TEST(RouteHistory, ARouteThatCostsTheSameCountsAsTheOldOne) {
 
 TEST(RouteHistory, WhatWaitsIsReleasedInOrderOnceAllBeforeAreThere) {
   RouteHistory history;
-  const auto first = std::make_shared<RouteToCome>();
-  const auto second = std::make_shared<RouteToCome>();
-  for (const auto& entry : {first, second}) history.Enter(kMake, kKind, entry);
+  const auto first = std::make_shared<PendingRoute>();
+  const auto second = std::make_shared<PendingRoute>();
+  for (const auto& entry : {first, second}) history.Enter(kShape, kKey, entry);
   first->waiting = {4};
   second->waiting = {5, 6};
 
@@ -74,34 +74,34 @@ TEST(RouteHistory, StartsFromTheRouteSoManyRepetitionsBefore) {
   RouteHistory history;
   std::vector<RouteHistory::Entry> entries;
   for (size_t i = 0; i <= RouteHistory::kLag; ++i) {
-    entries.push_back(std::make_shared<RouteToCome>());
-    const RouteHistory::Entry model = history.Enter(kMake, kKind, entries.back());
+    entries.push_back(std::make_shared<PendingRoute>());
+    const RouteHistory::Entry model = history.Enter(kShape, kKey, entries.back());
     EXPECT_EQ(model, i > 0 ? entries[0] : nullptr) << i;
   }
-  const auto next = std::make_shared<RouteToCome>();
+  const auto next = std::make_shared<PendingRoute>();
 
-  EXPECT_EQ(history.Enter(kMake, kKind, next), entries[1]);
+  EXPECT_EQ(history.Enter(kShape, kKey, next), entries[1]);
 }
 
-TEST(RouteHistory, ANewKindStartsFromARouteOfItsMake) {
+TEST(RouteHistory, ANewKindStartsFromARouteOfItsShape) {
   RouteHistory history;
-  const auto first = std::make_shared<RouteToCome>();
-  history.Enter(kMake, kKind, first);
+  const auto first = std::make_shared<PendingRoute>();
+  history.Enter(kShape, kKey, first);
 
-  EXPECT_EQ(history.Enter(kMake, kKind + 1, std::make_shared<RouteToCome>()), first);
-  EXPECT_EQ(history.Enter(kMake + 1, kKind + 2, std::make_shared<RouteToCome>()), nullptr);
+  EXPECT_EQ(history.Enter(kShape, kKey + 1, std::make_shared<PendingRoute>()), first);
+  EXPECT_EQ(history.Enter(kShape + 1, kKey + 2, std::make_shared<PendingRoute>()), nullptr);
 }
 
-TEST(RouteHistory, WhatWasLearntTakesNoPlaceOfAKindThatIsKnown) {
+TEST(RouteHistory, WhatWasLearntTakesNoPlaceOfAKeyThatIsKnown) {
   RouteHistory history;
-  const auto first = std::make_shared<RouteToCome>();
-  history.Enter(kMake, kKind, first);
+  const auto first = std::make_shared<PendingRoute>();
+  history.Enter(kShape, kKey, first);
 
-  history.Learn(kMake, kKind, RouteThatCosts(1));
-  history.Learn(kMake, kKind + 1, RouteThatCosts(2));
+  history.Learn(kShape, kKey, RouteThatCosts(1));
+  history.Learn(kShape, kKey + 1, RouteThatCosts(2));
 
-  EXPECT_EQ(history.Enter(kMake, kKind, std::make_shared<RouteToCome>()), first);
-  const auto learnt = history.Enter(kMake, kKind + 1, std::make_shared<RouteToCome>());
+  EXPECT_EQ(history.Enter(kShape, kKey, std::make_shared<PendingRoute>()), first);
+  const auto learnt = history.Enter(kShape, kKey + 1, std::make_shared<PendingRoute>());
   ASSERT_NE(learnt, nullptr);
   EXPECT_EQ(learnt->best->cost, 2);
 }

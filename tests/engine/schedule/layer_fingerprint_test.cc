@@ -1,4 +1,4 @@
-#include "engine/schedule/end_history.h"
+#include "engine/schedule/layer_fingerprint.h"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "engine/schedule/end_history.h"
 
 namespace traverse {
 namespace {
@@ -27,19 +29,19 @@ Plan SmallPlan() {
   return plan;
 }
 
-TEST(PrintOf, ShiftedPlansAreOfOneMakeAndNotInOnePlace) {
+TEST(FingerprintOf, ShiftedPlansAreOfOneShapeAndNotInOnePlace) {
   const Plan plan = SmallPlan();
   Plan moved = plan;
   for (Path& path : moved.paths) {
     for (Point& point : path.points) point = {point.x + 20, point.y - 3};
   }
 
-  EXPECT_EQ(PrintOf(moved, {}).make, PrintOf(plan, {}).make);
-  EXPECT_NE(PrintOf(moved, {}).place, PrintOf(plan, {}).place);
-  EXPECT_EQ(PrintOf(plan, {}).place, PrintOf(SmallPlan(), {}).place);
+  EXPECT_EQ(FingerprintOf(moved, {}).shape, FingerprintOf(plan, {}).shape);
+  EXPECT_NE(FingerprintOf(moved, {}).exact, FingerprintOf(plan, {}).exact);
+  EXPECT_EQ(FingerprintOf(plan, {}).exact, FingerprintOf(SmallPlan(), {}).exact);
 }
 
-TEST(PrintOf, WhateverChangesTheProblemChangesTheMake) {
+TEST(FingerprintOf, WhateverChangesTheProblemChangesTheShape) {
   const std::vector<std::pair<std::string, std::function<void(Plan&, CostSpec&)>>> changes = {
       {"one way", [](Plan& plan, CostSpec&) { plan.paths[0].one_way = true; }},
       {"kind of path", [](Plan& plan, CostSpec&) { plan.paths[2].kind = Path::Kind::kOpen; }},
@@ -66,21 +68,21 @@ TEST(PrintOf, WhateverChangesTheProblemChangesTheMake) {
     CostSpec cost;
     change(plan, cost);
 
-    EXPECT_NE(PrintOf(plan, cost).make, PrintOf(SmallPlan(), {}).make) << what;
+    EXPECT_NE(FingerprintOf(plan, cost).shape, FingerprintOf(SmallPlan(), {}).shape) << what;
   }
 }
 
-TEST(KindOf, DependsOnStartAndFinishFromTheOrigin) {
-  const uint64_t kind = KindOf(1, {0, 0}, {5, 5}, std::nullopt);
+TEST(ProblemKey, DependsOnStartAndFinishFromTheOrigin) {
+  const uint64_t key = ProblemKey(1, {0, 0}, {5, 5}, std::nullopt);
 
-  EXPECT_EQ(KindOf(1, {10, 0}, {15, 5}, std::nullopt), kind);
-  EXPECT_NE(KindOf(2, {0, 0}, {5, 5}, std::nullopt), kind);
-  EXPECT_NE(KindOf(1, {0, 0}, {5, 6}, std::nullopt), kind);
-  EXPECT_NE(KindOf(1, {0, 0}, {5, 5}, Point{0, 0}), kind);
-  EXPECT_NE(KindOf(1, {0, 0}, {5, 5}, Point{0, 0}), KindOf(1, {0, 0}, {5, 5}, Point{0, 1}));
+  EXPECT_EQ(ProblemKey(1, {10, 0}, {15, 5}, std::nullopt), key);
+  EXPECT_NE(ProblemKey(2, {0, 0}, {5, 5}, std::nullopt), key);
+  EXPECT_NE(ProblemKey(1, {0, 0}, {5, 6}, std::nullopt), key);
+  EXPECT_NE(ProblemKey(1, {0, 0}, {5, 5}, Point{0, 0}), key);
+  EXPECT_NE(ProblemKey(1, {0, 0}, {5, 5}, Point{0, 0}), ProblemKey(1, {0, 0}, {5, 5}, Point{0, 1}));
 }
 
-TEST(EndHistory, PrefersTheKindToTheMakeAndTheLastToTheFirst) {
+TEST(EndHistory, PrefersTheProblemToTheShapeAndTheLastToTheFirst) {
   EndHistory history;
   EXPECT_FALSE(history.EndOf(1, 10));
 

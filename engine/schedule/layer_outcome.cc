@@ -1,0 +1,84 @@
+#include "engine/schedule/layer_outcome.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "engine/cost/route_cost.h"
+#include "engine/cost/travel_cost.h"
+#include "engine/cost/wall_cost.h"
+#include "engine/validator.h"
+
+namespace traverse {
+namespace {
+
+// What the moves of `route` come to, the one to the cleaning point apart.
+struct Moves {
+  MoveCounts counts;
+  std::vector<Detour> detours;
+};
+
+Moves MovesOf(const LayerProblem& problem, const Route& route) {
+  Moves moves;
+  if (problem.cost.kind == CostSpec::Kind::kLength) return moves;
+  Point at = problem.start;
+  for (size_t i = 0; i < route.size(); ++i) {
+    const Path& path = problem.plan->paths[static_cast<size_t>(route[i].path)];
+    const Point to = EnterPoint(path, route[i].entry);
+    WallMove move;
+    if (problem.walls != nullptr) {
+      move = problem.walls->MoveOf(at, to);
+    } else {
+      move.retracts = Distance(at, to) > problem.cost.retraction_threshold_mm;
+    }
+    moves.counts.crossings += move.crosses ? 1 : 0;
+    moves.counts.retractions += move.retracts && problem.cost.retraction_seconds > 0 ? 1 : 0;
+    if (!move.via.empty()) moves.detours.push_back({i, std::move(move.via)});
+    at = ExitPoint(path, route[i].entry);
+  }
+  return moves;
+}
+
+double MoveMm(Point from, const std::optional<Point>& to) { return to ? Distance(from, *to) : 0; }
+
+}  // namespace
+
+void TellGiven(const LayerProblem& problem, const Route& given, LayerOutcome& outcome) {
+  const Plan& plan = *problem.plan;
+  LayerProblem open_ended = problem;
+  open_ended.finish.reset();
+  outcome.given = MeasureTravel(plan, problem.start, given);
+  outcome.cost_given = RouteCost(open_ended, given);
+  outcome.moves_given = MovesOf(open_ended, given).counts;
+  outcome.cleaning_given_mm = MoveMm(RouteEnd(plan, given, problem.start), problem.finish);
+}
+
+void TellFound(const LayerProblem& problem, Solution solution, JobLayer& layer,
+               LayerOutcome& outcome) {
+  const Plan& plan = layer.plan;
+  outcome.start = problem.start;
+  outcome.end = RouteEnd(plan, solution.route, problem.start);
+  outcome.travel = MeasureTravel(plan, problem.start, solution.route);
+  outcome.cleaning_mm = MoveMm(outcome.end, problem.finish);
+  const double finish_cost = problem.finish ? TravelCost(problem)(outcome.end, *problem.finish) : 0;
+  outcome.cost = RouteCost(problem, solution.route) - finish_cost;
+  Moves moves = MovesOf(problem, solution.route);
+  outcome.moves = moves.counts;
+  outcome.detours = std::move(moves.detours);
+  if (solution.lower_bound) outcome.lower_bound = *solution.lower_bound - finish_cost;
+  if (problem.walls != nullptr && outcome.invalid_route.empty()) {
+    const absl::Status same =
+        ValidateMoves(plan, layer.walls, problem.cost, problem.start, solution.route,
+                      {outcome.cost, outcome.moves, outcome.detours});
+    if (!same.ok()) outcome.invalid_route = std::string(same.message());
+  }
+  outcome.stop = solution.stop;
+  outcome.statistics = std::move(solution.statistics);
+  outcome.route = std::move(solution.route);
+  outcome.plan = std::move(layer.plan);
+}
+
+}  // namespace traverse

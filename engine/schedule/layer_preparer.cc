@@ -1,0 +1,46 @@
+#include "engine/schedule/layer_preparer.h"
+
+#include <optional>
+
+#include "engine/cost/route_cost.h"
+#include "engine/schedule/layer_outcome.h"
+
+namespace traverse {
+
+void LayerPreparer::Prepare(ChainLayer& layer) {
+  const Plan& plan = layer.given.plan;
+  if (layer.given.start) given_at_ = predicted_at_ = *layer.given.start;
+  layer.predicted_start = predicted_at_;
+
+  if (layer.cost.kind == CostSpec::Kind::kTime && !layer.given.walls.empty()) {
+    layer.walls = std::make_unique<const WallCost>(layer.given.walls, plan, layer.cost);
+  }
+  layer.origin = PlanOrigin(plan);
+  if (!solver_.traits().serial) {
+    layer.fingerprint = FingerprintOf(plan, layer.cost, layer.given.walls);
+    layer.key =
+        ProblemKey(layer.fingerprint.shape, layer.origin, layer.predicted_start, layer.finish);
+  }
+  if (solver_.traits().reuses_routes) {
+    if (!anchored_ || solver_.FixedStart(layer)) anchored_ = std::make_shared<AnchoredRoutes>();
+    layer.anchored = anchored_;
+  }
+
+  layer.given_route = GivenRoute(plan);
+  layer.outcome.index = layer.index;
+  TellGiven(solver_.Problem(layer, given_at_), layer.given_route, layer.outcome);
+  given_at_ = layer.finish.value_or(RouteEnd(plan, layer.given_route, given_at_));
+  if (!solver_.traits().serial) predicted_at_ = PredictEnd(layer);
+}
+
+Point LayerPreparer::PredictEnd(const ChainLayer& layer) const {
+  if (layer.finish) return *layer.finish;
+  if (const std::optional<Point> end = history_.EndOf(layer.fingerprint.shape, layer.key)) {
+    return {layer.origin.x + end->x, layer.origin.y + end->y};
+  }
+  if (solver_.Expired()) return layer.predicted_start;
+  const Route greedy = solver_.GreedyRoute(solver_.Problem(layer, layer.predicted_start), layer);
+  return RouteEnd(layer.given.plan, greedy, layer.predicted_start);
+}
+
+}  // namespace traverse

@@ -1,0 +1,41 @@
+// The first stage of a layer: what is told of the given order, and where the layer may end.
+
+#ifndef TRAVERSE_ENGINE_SCHEDULE_LAYER_PREPARER_H_
+#define TRAVERSE_ENGINE_SCHEDULE_LAYER_PREPARER_H_
+
+#include <memory>
+
+#include "engine/model/point.h"
+#include "engine/schedule/chain_layer.h"
+#include "engine/schedule/end_history.h"
+#include "engine/schedule/layer_solver.h"
+
+namespace traverse {
+
+// Goes through the layers in build order and keeps where the head is after those it has seen. Not
+// thread-safe: one layer at a time.
+class LayerPreparer {
+ public:
+  // `start`: of the job. `solver` is kept, not owned.
+  LayerPreparer(Point start, const LayerSolver& solver)
+      : solver_(solver), given_at_(start), predicted_at_(start) {}
+
+  // Sets what ChainLayer says that prepare sets, but for the entries in the history of routes.
+  void Prepare(ChainLayer& layer);
+
+  // A layer ended there, as told from its origin.
+  void Learn(uint64_t shape, uint64_t key, Point end) { history_.Learn(shape, key, end); }
+
+ private:
+  Point PredictEnd(const ChainLayer& layer) const;
+
+  const LayerSolver& solver_;
+  Point given_at_;      // where the head is in the given order
+  Point predicted_at_;  // where it may be in the order that will be found
+  std::shared_ptr<AnchoredRoutes> anchored_;
+  EndHistory history_;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_SCHEDULE_LAYER_PREPARER_H_

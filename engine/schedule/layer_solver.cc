@@ -1,0 +1,373 @@
+#include "engine/schedule/layer_solver.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/time/time.h"
+#include "engine/base/rng.h"
+#include "engine/base/tolerances.h"
+#include "engine/cost/route_cost.h"
+#include "engine/cost/travel_cost.h"
+#include "engine/schedule/layer_outcome.h"
+#include "engine/strategy/greedy.h"
+#include "engine/validator.h"
+
+namespace traverse {
+namespace {
+
+// Of a layer's time limit, what anchor may use at most and at least. It knows the true start; but
+// it is done one layer after another, so on many threads they would wait for it.
+constexpr double kMostAnchorShare = 0.5;
+constexpr double kLeastAnchorShare = 0.1;
+constexpr double kThreadsWorthOfAnchor = 0.8;
+
+// What predicting an end, or comparing with greedy, may use, and a search for a bound.
+constexpr double kSideShare = 0.15;
+
+// Layers of one problem key may differ by so much in the length of a move: its ends are the same to
+// 1e-4 mm in either direction, relative to origins that are the same to as much.
+constexpr double kSameMoveMm = 6e-4;
+
+}  // namespace
+
+LayerSolver::LayerSolver(const JobSpec& spec, std::unique_ptr<Strategy> strategy,
+                         Executor& executor, const CancelToken& cancel)
+    : spec_(spec),
+      strategy_(std::move(strategy)),
+      predictor_(GreedyEntry().make(*StrategyOptions::Parse(GreedyEntry().options, {}))),
+      executor_(executor),
+      cancel_(cancel) {}
+
+// `share` of the layer's time, which is limited by itself and by its part of the job's.
+Budget LayerSolver::LayerBudget(const ChainLayer& layer, double share) const {
+  using Duration = Budget::Clock::duration;
+  const Budget whole(&cancel_, spec_.deadline, executor_.turn());
+  Duration limit = layer.allotted;
+  if (spec_.layer_time_limit != absl::InfiniteDuration()) {
+    limit = std::min(limit, std::chrono::duration_cast<Duration>(
+                                absl::ToChronoNanoseconds(spec_.layer_time_limit)));
+  }
+  if (limit == Duration::max()) return whole;
+  return whole.Within(std::chrono::duration_cast<Duration>(share * limit));
+}
+
+double LayerSolver::AnchorShare() const {
+  return std::clamp(kThreadsWorthOfAnchor / std::max(1, executor_.threads()), kLeastAnchorShare,
+                    kMostAnchorShare);
+}
+
+// Nothing is left for anchor to do where the start is certain and the next layer is not looked at.
+double LayerSolver::SolveShare(const ChainLayer& layer) const {
+  return FixedStart(layer) && !MayLookAhead(layer) ? 1 : 1 - AnchorShare();
+}
+
+// Whether there is no time but to answer with what there is.
+bool LayerSolver::Expired() const { return Budget(&cancel_, spec_.deadline).ExhaustedNow(); }
+
+LayerProblem LayerSolver::Problem(const ChainLayer& layer, Point start) const {
+  LayerProblem problem{&layer.given.plan, start, layer.finish, layer.cost,
+                       StreamSeed(spec_.seed, layer.index)};
+  problem.walls = layer.walls.get();
+  return problem;
+}
+
+bool LayerSolver::CleaningDueAfter(uint64_t index) const {
+  if (!spec_.cleaning) return false;
+  const uint64_t done = static_cast<uint64_t>(spec_.cleaning->layers_since_cleaning) + index + 1;
+  return done % static_cast<uint64_t>(spec_.cleaning->every_layers) == 0;
+}
+
+// The start, where it does not depend on the layer before.
+std::optional<Point> LayerSolver::FixedStart(const ChainLayer& layer) const {
+  if (layer.given.start) return layer.given.start;
+  if (layer.index == 0) return spec_.start;
+  if (CleaningDueAfter(layer.index - 1)) return spec_.cleaning->point;
+  return std::nullopt;
+}
+
+// Whether the layer's end is worth a look at the next layer, if there will be one.
+bool LayerSolver::MayLookAhead(const ChainLayer& layer) const {
+  const size_t paths = layer.given.plan.paths.size();
+  return layer.given.more_follows && !CleaningDueAfter(layer.index) && paths > 0 &&
+         paths < strategy_->traits().look_ahead_paths;
+}
+
+// Whether it is worth a look at `next`.
+bool LayerSolver::LooksAheadAt(const ChainLayer& layer, const ChainLayer& next) const {
+  if (FixedStart(next) || next.cost != layer.cost) return false;
+  const size_t paths = next.given.plan.paths.size();
+  return paths > 0 && layer.given.plan.paths.size() + paths <= strategy_->traits().look_ahead_paths;
+}
+
+void LayerSolver::SolveFirst(ChainLayer& layer) const {
+  const Stopwatch watch;
+  if (Expired()) {
+    layer.first = Solution{layer.given_route, StopReason::kTimeLimit, std::nullopt};
+    return;
+  }
+  Budget budget = LayerBudget(layer, SolveShare(layer));
+  LayerProblem problem = Problem(layer, layer.predicted_start);
+  problem.memory = &layer.memory;
+  // Different layers that share a fingerprint are unheard of, not impossible.
+  const bool resumes = layer.precursor &&
+                       ValidateRoute(layer.given.plan, layer.precursor->best->solution.route).ok();
+  if (resumes) {
+    ResumeFromPrecursor(problem, layer, budget);
+  } else {
+    layer.first = strategy_->Solve(problem, budget);
+  }
+  if (!layer.first.lower_bound) Bound(problem, layer, layer.first);
+  layer.outcome.solve_seconds = watch.Seconds();
+}
+
+// Goes on from the route of an equal layer, unless searching it has long been in vain.
+void LayerSolver::ResumeFromPrecursor(const LayerProblem& problem, ChainLayer& layer,
+                                      Budget& budget) const {
+  const PendingRoute& precursor = *layer.precursor;
+  layer.bound_multipliers = precursor.best->multipliers;
+  const bool same = precursor.key == layer.key;
+  if (same && precursor.idle >= RouteHistory::kMostIdle &&
+      TakeOver(*precursor.best, problem, layer, layer.first)) {
+    return;
+  }
+  const Route& route = precursor.best->solution.route;
+  layer.first = strategy_->Resume(problem, route, budget);
+  const bool gained =
+      RouteCost(problem, layer.first.route) < RouteCost(problem, route) * (1 - kSameCost);
+  layer.searched_in_vain = same && !gained && layer.first.stop != StopReason::kTimeLimit;
+}
+
+// Answers with the route of a layer of the same problem key, as long as what was said of it holds
+// here.
+bool LayerSolver::TakeOver(const KnownRoute& known, const LayerProblem& problem,
+                           const ChainLayer& layer, Solution& solution) const {
+  const bool very_same = known.exact == layer.fingerprint.exact && known.start == problem.start &&
+                         known.finish == problem.finish;
+  if (!very_same && known.solution.stop != StopReason::kLocalOptimum) return false;
+  if (known.solution.stop == StopReason::kTimeLimit) return false;
+  solution.route = known.solution.route;
+  solution.stop = known.solution.stop;
+  solution.lower_bound = known.solution.lower_bound;
+  if (!solution.lower_bound || very_same) return true;
+  if (layer.cost.kind == CostSpec::Kind::kLength) {
+    *solution.lower_bound -= kSameMoveMm * static_cast<double>(solution.route.size() + 1);
+  } else {
+    solution.lower_bound.reset();
+  }
+  return true;
+}
+
+KnownRoutePtr LayerSolver::Known(const LayerProblem& problem, const ChainLayer& layer,
+                                 const Solution& solution) const {
+  auto known = std::make_shared<KnownRoute>();
+  known->solution = solution;
+  known->cost = RouteCost(problem, solution.route);
+  known->exact = layer.fingerprint.exact;
+  known->start = problem.start;
+  known->finish = problem.finish;
+  known->multipliers = layer.bound_multipliers;
+  return known;
+}
+
+const KnownRoute* LayerSolver::FindAnchored(const ChainLayer& layer, uint64_t key) {
+  if (!layer.anchored) return nullptr;
+  const auto found = layer.anchored->find(key);
+  if (found == layer.anchored->end()) return nullptr;
+  return ValidateRoute(layer.given.plan, found->second->solution.route).ok() ? found->second.get()
+                                                                             : nullptr;
+}
+
+void LayerSolver::SolveSecond(ChainLayer& layer) const {
+  const Stopwatch watch;
+  if (Expired()) {
+    layer.second = layer.first;
+    layer.second.stop = StopReason::kTimeLimit;
+    return;
+  }
+  Budget budget = LayerBudget(layer, SolveShare(layer));
+  layer.second = strategy_->Solve(Problem(layer, *layer.second_start), budget);
+  layer.outcome.solve_seconds += watch.Seconds();
+}
+
+// In view of the next layer, if there is one: with what its best known route would cost from the
+// end of this one.
+double LayerSolver::CostInView(const LayerProblem& problem, const Route& route,
+                               const ChainLayer* next) const {
+  const double cost = RouteCost(problem, route);
+  if (next == nullptr) return cost;
+  const Point end = RouteEnd(*problem.plan, route, problem.start);
+  const Route& known = next->foreseen.empty() ? next->first.route : next->foreseen;
+  return cost + RouteCost(Problem(*next, end), known);
+}
+
+// An equal layer's from the same start may be better than that found from a predicted one, and so
+// may what the layer before saw ahead.
+const Route& LayerSolver::BestToGoOnFrom(const LayerProblem& problem, const ChainLayer& layer,
+                                         const KnownRoute* known, const ChainLayer* next) const {
+  const Route* best = &layer.first.route;
+  double least = CostInView(problem, *best, next);
+  const auto offer = [&](const Route& route) {
+    const double cost = CostInView(problem, route, next);
+    if (cost >= least) return;
+    least = cost;
+    best = &route;
+  };
+  if (known != nullptr) offer(known->solution.route);
+  if (!layer.foreseen.empty()) offer(layer.foreseen);
+  return *best;
+}
+
+// `next` is null afterwards if the layer was better not ended with a view to it; `greedy` is set if
+// that was to be compared with.
+Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, const ChainLayer& layer,
+                                         const KnownRoute* known, ChainLayer*& next,
+                                         Route& greedy) const {
+  if (strategy_->traits().serial) {
+    Budget budget = LayerBudget(layer, 1);
+    return strategy_->Solve(problem, budget);
+  }
+  const bool as_predicted = problem.start == layer.predicted_start;
+  if (layer.second_start && problem.start == *layer.second_start) return layer.second;
+  // What the layer was to use for a look ahead is not left unused where there is nothing to see.
+  const bool has_time_left = layer.first.stop == StopReason::kTimeLimit && MayLookAhead(layer);
+  if (as_predicted && next == nullptr && !has_time_left) return layer.first;
+  Solution solution;
+  if (known != nullptr && TakeOver(*known, problem, layer, solution)) return solution;
+  if (Expired()) {
+    solution = layer.first;
+    solution.stop = StopReason::kTimeLimit;
+    if (!as_predicted) solution.lower_bound.reset();  // it was for another start
+    return solution;
+  }
+  Budget budget = LayerBudget(layer, AnchorShare());
+  const Route& from = BestToGoOnFrom(problem, layer, known, next);
+  if (next != nullptr) {
+    Route foreseen = next->first.route;
+    solution = strategy_->ResumeWithNext(problem, from, Problem(*next, Point()), foreseen, budget);
+    greedy = GreedyRoute(problem, layer);
+    if (RouteCost(problem, solution.route) <= RouteCost(problem, greedy) * (1 + kSameCost)) {
+      next->foreseen = std::move(foreseen);
+    } else {
+      next = nullptr;
+      if (as_predicted) return layer.first;
+      const Route& own = BestToGoOnFrom(problem, layer, known, nullptr);
+      solution = strategy_->Resume(problem, own, budget);
+    }
+  } else {
+    solution = strategy_->traits().quick ? strategy_->Solve(problem, budget)
+                                         : strategy_->Resume(problem, from, budget);
+  }
+  if (as_predicted && !solution.lower_bound) solution.lower_bound = layer.first.lower_bound;
+  // What resuming does not tell of itself is as it was.
+  solution.statistics.insert(layer.first.statistics.begin(), layer.first.statistics.end());
+  // A search that the clock cut short stays so, whatever the polishing came to.
+  if (layer.first.stop == StopReason::kTimeLimit) solution.stop = StopReason::kTimeLimit;
+  return solution;
+}
+
+Route LayerSolver::GreedyRoute(const LayerProblem& problem, const ChainLayer& layer) const {
+  Budget budget = LayerBudget(layer, kSideShare);
+  return predictor_->Solve(problem, budget).route;
+}
+
+// Other routes may be better from the true start: an equal layer's from the same start; what the
+// layer before saw ahead; those found for another start, where the clock cut the last search short;
+// greedy's, which a resumed route need not beat; the order given. All in view of the next layer,
+// for whose sake a layer's own travel may grow up to greedy's, and no further. `greedy`: its route,
+// or none if nobody asked for it yet.
+void LayerSolver::KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer,
+                                const KnownRoute* known, const ChainLayer* next, Route greedy,
+                                Solution& solution) const {
+  if (greedy.empty() && GreedyMayBeBetter(problem, layer, known, next)) {
+    greedy = GreedyRoute(problem, layer);
+  }
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  const bool has_limit = next != nullptr && greedy.size() == solution.route.size();
+  const double limit = has_limit ? RouteCost(problem, greedy) * (1 + kSameCost) : kAny;
+  double best =
+      RouteCost(problem, solution.route) > limit ? kAny : CostInView(problem, solution.route, next);
+  bool was_replaced = false;
+  const auto offer = [&](const Route& route) {
+    if (route.size() != solution.route.size()) return;  // there was no such search
+    const double cost = CostInView(problem, route, next);
+    if (cost >= best || RouteCost(problem, route) > limit) return;
+    best = cost;
+    solution.route = route;
+    was_replaced = true;
+  };
+  if (known != nullptr) offer(known->solution.route);
+  offer(layer.foreseen);
+  offer(greedy);
+  if (solution.stop == StopReason::kTimeLimit || has_limit) {
+    offer(layer.first.route);
+    offer(layer.second.route);
+  }
+  offer(layer.given_route);
+  // An optimal route was replaced for the sake of the next layer, or by one that is the same but
+  // for rounding.
+  if (was_replaced && solution.stop == StopReason::kOptimal &&
+      RouteCost(problem, solution.route) > solution.lower_bound.value_or(0) * (1 + kSameCost)) {
+    solution.stop = StopReason::kLocalOptimum;
+  }
+}
+
+// Whether greedy's route was not beaten yet: not if the strategy began at this very start, or if an
+// equal layer's route was taken over.
+bool LayerSolver::GreedyMayBeBetter(const LayerProblem& problem, const ChainLayer& layer,
+                                    const KnownRoute* known, const ChainLayer* next) const {
+  if (strategy_->traits().serial || strategy_->traits().quick || Expired()) return false;
+  const bool is_compared =
+      known != nullptr && known->exact == layer.fingerprint.exact && known->start == problem.start;
+  return !is_compared &&
+         (next != nullptr || layer.precursor || problem.start != layer.predicted_start);
+}
+
+// Looks for a lower bound of a solution, if the strategy wants one. The search for it is done with
+// the first solution, in parallel, or was done for an equal layer; from another start its result is
+// used again.
+void LayerSolver::Bound(const LayerProblem& problem, ChainLayer& layer, Solution& solution) const {
+  if (!strategy_->traits().wants_bound || cancel_.cancelled()) return;
+  Budget budget = LayerBudget(layer, kSideShare);
+  const double cost = RouteCost(problem, solution.route);
+  solution.lower_bound = LowerBound(problem, cost, &layer.bound_multipliers, budget);
+  if (solution.lower_bound == cost) solution.stop = StopReason::kOptimal;
+}
+
+// What the layer's route depends on, for equal layers to share it.
+uint64_t LayerSolver::KeyAt(const ChainLayer& layer, const TrueStart& at) const {
+  const uint64_t key = ProblemKey(layer.fingerprint.shape, layer.origin, at.start, layer.finish);
+  if (!at.next) return key;
+  const ChainLayer& next = *at.next;
+  return ProblemKeyBefore(key, layer.origin, next.fingerprint.shape, next.origin, next.finish);
+}
+
+LayerOutcome LayerSolver::Anchor(ChainLayer& layer, const TrueStart& at) const {
+  const Stopwatch watch;
+  const Point start = at.start;
+  ChainLayer* next = at.next.get();
+  LayerProblem problem = Problem(layer, start);
+  problem.memory = &layer.memory;
+  const uint64_t key = KeyAt(layer, at);
+  const KnownRoute* known = FindAnchored(layer, key);
+  if (!ValidateRoute(layer.given.plan, layer.foreseen).ok()) layer.foreseen.clear();
+  Route greedy;
+  Solution solution = SolveFromTrueStart(problem, layer, known, next, greedy);
+  LayerOutcome outcome = std::move(layer.outcome);
+  if (absl::Status status = ValidateRoute(layer.given.plan, solution.route); !status.ok()) {
+    outcome.invalid_route = std::string(status.message());
+    solution = Solution{layer.given_route, StopReason::kLocalOptimum, std::nullopt};
+  } else if (!strategy_->traits().pure) {
+    KeepBestRoute(problem, layer, known, next, std::move(greedy), solution);
+  }
+  if (!solution.lower_bound) Bound(problem, layer, solution);
+  if (layer.anchored) (*layer.anchored)[key] = layer.known = Known(problem, layer, solution);
+  TellFound(problem, std::move(solution), layer.given, outcome);
+  layer.memory.reset();
+  layer.walls.reset();
+  outcome.solve_seconds += watch.Seconds();
+  return outcome;
+}
+
+}  // namespace traverse

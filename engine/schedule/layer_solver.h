@@ -1,0 +1,85 @@
+// What is done with one layer at a time; layer_chain.h says when.
+
+#ifndef TRAVERSE_ENGINE_SCHEDULE_LAYER_SOLVER_H_
+#define TRAVERSE_ENGINE_SCHEDULE_LAYER_SOLVER_H_
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "engine/base/budget.h"
+#include "engine/engine.h"
+#include "engine/schedule/chain_layer.h"
+#include "engine/strategy/strategy.h"
+
+namespace traverse {
+
+// The stages of the layers of one job. Each works on one layer, alone and without a lock; layers
+// may be at their stages at the same time on several threads.
+class LayerSolver {
+ public:
+  // `executor` and `cancel` are kept, not owned.
+  LayerSolver(const JobSpec& spec, std::unique_ptr<Strategy> strategy, Executor& executor,
+              const CancelToken& cancel);
+
+  const StrategyTraits& traits() const { return strategy_->traits(); }
+
+  // Whether the head goes to the cleaning point when this layer is done, if there is a next one.
+  bool CleaningDueAfter(uint64_t index) const;
+
+  // The start, where it does not depend on the layer before.
+  std::optional<Point> FixedStart(const ChainLayer& layer) const;
+
+  // Whether the layer's end is worth a look at the next layer, if there will be one.
+  bool MayLookAhead(const ChainLayer& layer) const;
+
+  // Whether it is worth a look at `next`.
+  bool LooksAheadAt(const ChainLayer& layer, const ChainLayer& next) const;
+
+  // Whether there is no time but to answer with what there is.
+  bool Expired() const;
+
+  // The problem that the layer is from `start`. Refers to the layer.
+  LayerProblem Problem(const ChainLayer& layer, Point start) const;
+
+  Route GreedyRoute(const LayerProblem& problem, const ChainLayer& layer) const;
+
+  // `solution` with what later layers have to know to go on from it.
+  KnownRoutePtr Known(const LayerProblem& problem, const ChainLayer& layer,
+                      const Solution& solution) const;
+
+  // The stages; ChainLayer says what each sets.
+  void SolveFirst(ChainLayer& layer) const;
+  void SolveSecond(ChainLayer& layer) const;
+  LayerOutcome Anchor(ChainLayer& layer, const TrueStart& at) const;
+
+ private:
+  Budget LayerBudget(const ChainLayer& layer, double share) const;
+  double AnchorShare() const;
+  double SolveShare(const ChainLayer& layer) const;
+  void ResumeFromPrecursor(const LayerProblem& problem, ChainLayer& layer, Budget& budget) const;
+  bool TakeOver(const KnownRoute& known, const LayerProblem& problem, const ChainLayer& layer,
+                Solution& solution) const;
+  uint64_t KeyAt(const ChainLayer& layer, const TrueStart& at) const;
+  double CostInView(const LayerProblem& problem, const Route& route, const ChainLayer* next) const;
+  const Route& BestToGoOnFrom(const LayerProblem& problem, const ChainLayer& layer,
+                              const KnownRoute* known, const ChainLayer* next) const;
+  Solution SolveFromTrueStart(const LayerProblem& problem, const ChainLayer& layer,
+                              const KnownRoute* known, ChainLayer*& next, Route& greedy) const;
+  bool GreedyMayBeBetter(const LayerProblem& problem, const ChainLayer& layer,
+                         const KnownRoute* known, const ChainLayer* next) const;
+  void KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer, const KnownRoute* known,
+                     const ChainLayer* next, Route greedy, Solution& solution) const;
+  static const KnownRoute* FindAnchored(const ChainLayer& layer, uint64_t key);
+  void Bound(const LayerProblem& problem, ChainLayer& layer, Solution& solution) const;
+
+  const JobSpec spec_;
+  const std::unique_ptr<Strategy> strategy_;
+  const std::unique_ptr<Strategy> predictor_;
+  Executor& executor_;
+  const CancelToken& cancel_;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_SCHEDULE_LAYER_SOLVER_H_
