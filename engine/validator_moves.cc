@@ -2,6 +2,7 @@
 // of the walls, so that a fault of engine/cost shows.
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -214,6 +215,7 @@ class MoveCheck {
 
 absl::Status ValidateMoves(const Plan& plan, const LayerWalls& walls, const CostSpec& spec,
                            Point start, const Route& route, const MoveClaims& claims) {
+  assert(spec.kind == CostSpec::Kind::kTime && ValidateRoute(plan, route).ok());
   MoveCheck check(plan, walls, spec);
   size_t next = 0;
   Point at = start;

@@ -2,6 +2,7 @@
 
 #include <grpcpp/support/channel_arguments.h>
 
+#include <cassert>
 #include <utility>
 
 #include "server/server.h"
@@ -26,6 +27,7 @@ class Embedded : public EmbeddedService {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<EmbeddedService>> EmbeddedService::Start(int threads) {
+  assert(threads >= 1);
   absl::StatusOr<std::unique_ptr<Server>> server = Server::Start(ServerOptions::Embedded(threads));
   if (!server.ok()) return server.status();
   return std::make_unique<Embedded>(*std::move(server));

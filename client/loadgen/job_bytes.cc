@@ -2,6 +2,7 @@
 
 #include <grpcpp/support/slice.h>
 
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -53,6 +54,7 @@ v1::Layer MadeUpLayer(uint64_t seed, int islands) {
 
 grpc::ByteBuffer JobBytes(const v1::JobOptions& options, absl::Span<const v1::Layer> parts,
                           int layers) {
+  assert(!parts.empty());
   v1::OptimizeBatchRequest request;
   *request.mutable_options() = options;
   for (int i = 0; i < layers; ++i) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 
 namespace traverse::loadgen {
@@ -42,6 +43,7 @@ absl::Duration LatencyHistogram::mean() const {
 }
 
 absl::Duration LatencyHistogram::Percentile(double share) const {
+  assert(share >= 0 && share <= 1);
   const auto rank = std::max<uint64_t>(
       1, static_cast<uint64_t>(std::ceil(share * static_cast<double>(count_) - 1e-9)));
   uint64_t seen = 0;

@@ -4,6 +4,7 @@
 #include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/support/client_callback.h>
 
+#include <cassert>
 #include <chrono>
 #include <deque>
 #include <string>
@@ -173,6 +174,7 @@ class Starter {
 
 LoadResult RunLoad(const LoadOptions& options, const std::vector<JobKind>& kinds,
                    const std::vector<std::shared_ptr<grpc::Channel>>& channels) {
+  assert(!kinds.empty() && !channels.empty());
   Run run(options, kinds);
   Starter starter(run, kinds, channels);
   const absl::Duration all = options.warm_up + options.duration;

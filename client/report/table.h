@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_CLIENT_REPORT_TABLE_H_
 #define TRAVERSE_CLIENT_REPORT_TABLE_H_
 
+#include <cassert>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -30,7 +31,10 @@ class Table {
   explicit Table(std::vector<std::string> header);
 
   // REQUIRES: as many cells as the header has.
-  void Add(std::vector<Cell> cells) { rows_.push_back(std::move(cells)); }
+  void Add(std::vector<Cell> cells) {
+    assert(cells.size() == rows_.front().size());
+    rows_.push_back(std::move(cells));
+  }
 
   // The same for a row whose first cell may be `width` columns wide: a longer text goes on in rows
   // of its own below, broken before its colons.

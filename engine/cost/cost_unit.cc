@@ -1,6 +1,7 @@
 #include "engine/cost/cost_unit.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "engine/cost/travel_cost.h"
@@ -42,6 +43,7 @@ double CostUnit(const CostSpec& spec, std::initializer_list<const LayerProblem*>
 }
 
 CostSpec InUnit(const CostSpec& spec, double unit) {
+  assert(unit > 0);
   if (unit == 1) return spec;
   CostSpec scaled;
   scaled.kind = CostSpec::Kind::kTime;

@@ -1,6 +1,7 @@
 #include "engine/search/search_state.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 namespace traverse {
@@ -129,6 +130,7 @@ bool SearchState::AllowsExchange(int node, const SegmentMove& move) const {
 }
 
 void SearchState::Apply(const SegmentMove& move) {
+  assert(Allows(move));
   if (move.kind == Kind::kReverse) {
     Reverse(move.first, move.last);
     return;

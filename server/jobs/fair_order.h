@@ -82,6 +82,7 @@ class FairOrder {
 
   // `member` does not wait any more, without a turn. REQUIRES: it waits.
   void Withdraw(Member& member) {
+    assert(member.waits_);
     waiting_.erase(KeyOf(member));
     member.waits_ = false;
   }

@@ -41,70 +41,33 @@ const prometheus::Histogram::BucketBoundaries& GapBounds() {
 
 }  // namespace
 
-template <typename Builder>
-auto& Metrics::Family(Builder builder, const std::string& name, const std::string& help) {
-  return builder.Name(name).Help(help).Register(registry_);
+prometheus::Family<prometheus::Counter>& Metrics::NewCounters(const char* name, const char* help) {
+  return BuildCounter().Name(name).Help(help).Register(registry_);
 }
 
-Metrics::Metrics()
-    : jobs_(Family(BuildCounter(), "traverse_jobs_total", "Jobs ended, by gRPC status.")),
-      layers_(Family(BuildCounter(), "traverse_layers_total", "Layers solved, by stop reason.")),
-      rpcs_(Family(BuildCounter(), "traverse_rpcs_total", "Calls ended, by method and status.")),
-      rejected_(Family(BuildCounter(), "traverse_rejected_total",
-                       "Jobs refused for a limit or a permission, by reason.")),
-      reload_failures_(Family(BuildCounter(), "traverse_reload_failures_total",
-                              "Changed files of no use, by what they are of; what was good before "
-                              "stays.")),
-      layer_seconds_(
-          Family(BuildHistogram(), "traverse_layer_solve_seconds", "Time of work on one layer.")),
-      job_seconds_(Family(BuildHistogram(), "traverse_job_seconds",
-                          "Time from a job's first message to its last.")),
-      travel_given_mm_(Family(BuildCounter(), "traverse_travel_given_mm_total",
-                              "Travel of the orders given, cleaning included.")
-                           .Add({})),
-      travel_mm_(Family(BuildCounter(), "traverse_travel_mm_total",
-                        "Travel of the routes answered, cleaning included.")
-                     .Add({})),
-      idle_seconds_saved_(Family(BuildCounter(), "traverse_idle_seconds_saved_total",
-                                 "Idle time saved at the speeds stated by the jobs.")
-                              .Add({})),
-      invalid_routes_(Family(BuildCounter(), "traverse_invalid_routes_total",
-                             "Routes that failed the validator; each one is a bug.")
-                          .Add({})),
-      gap_(Family(BuildHistogram(), "traverse_optimality_gap_ratio",
-                  "Gap of layers with a lower bound.")
-               .Add({}, GapBounds())),
-      queue_layers_(
-          Family(BuildGauge(), "traverse_queue_layers", "Layers accepted and not yet solved.")
-              .Add({})),
-      queue_points_(
-          Family(BuildGauge(), "traverse_queue_points", "Points accepted and not yet solved.")
-              .Add({})),
-      jobs_in_flight_(
-          Family(BuildGauge(), "traverse_jobs_in_flight", "Jobs accepted and not ended.").Add({})),
-      workers_busy_(
-          Family(BuildGauge(), "traverse_workers_busy", "Workers that run a task.").Add({})),
-      workers_(Family(BuildGauge(), "traverse_workers", "Workers there are.").Add({})),
-      workers_silent_(Family(BuildGauge(), "traverse_workers_silent",
-                             "Workers that gave no sign of life for the time of --watchdog.")
-                          .Add({})),
-      ready_(Family(BuildGauge(), "traverse_ready", "1 if the server takes jobs, 0 if it drains.")
-                 .Add({})),
-      log_lines_lost_(Family(BuildCounter(), "traverse_log_lines_lost_total",
-                             "Lines of the log dropped or not written.")
-                          .Add({})),
-      memory_(Family(BuildGauge(), "traverse_memory_bytes",
-                     "Memory that callers make the server hold, by kind.")),
-      max_memory_(
-          Family(BuildGauge(), "traverse_memory_max_bytes", "Memory that the server may have.")
-              .Add({})),
-      connections_(Family(BuildGauge(), "traverse_connections", "Connections open.").Add({})),
-      connections_cut_(Family(BuildCounter(), "traverse_connections_cut_total",
-                              "Connections ended for what they sent, or to make room.")
-                           .Add({})),
-      certificate_expiry_(Family(BuildGauge(), "traverse_certificate_expiry_seconds",
-                                 "Time until the certificate in use expires, by file.")) {
-  Family(BuildGauge(), "traverse_build_info", "1, labelled with the version.")
+prometheus::Family<prometheus::Gauge>& Metrics::NewGauges(const char* name, const char* help) {
+  return BuildGauge().Name(name).Help(help).Register(registry_);
+}
+
+prometheus::Family<prometheus::Histogram>& Metrics::NewHistograms(const char* name,
+                                                                  const char* help) {
+  return BuildHistogram().Name(name).Help(help).Register(registry_);
+}
+
+prometheus::Counter& Metrics::NewCounter(const char* name, const char* help) {
+  return NewCounters(name, help).Add({});
+}
+
+prometheus::Gauge& Metrics::NewGauge(const char* name, const char* help) {
+  return NewGauges(name, help).Add({});
+}
+
+prometheus::Histogram& Metrics::NewGap(const char* name, const char* help) {
+  return NewHistograms(name, help).Add({}, GapBounds());
+}
+
+Metrics::Metrics() {
+  NewGauges("traverse_build_info", "1, labelled with the version.")
       .Add({{"version", kVersion}})
       .Set(1);
   // Reasons are there from the start, so that rates over them are.

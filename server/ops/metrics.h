@@ -72,35 +72,63 @@ class Metrics {
   std::string Text(const Gauges& gauges);
 
  private:
-  template <typename Builder>
-  auto& Family(Builder builder, const std::string& name, const std::string& help);
+  // Register a family of metrics told apart by labels, or the one without any.
+  prometheus::Family<prometheus::Counter>& NewCounters(const char* name, const char* help);
+  prometheus::Family<prometheus::Gauge>& NewGauges(const char* name, const char* help);
+  prometheus::Family<prometheus::Histogram>& NewHistograms(const char* name, const char* help);
+  prometheus::Counter& NewCounter(const char* name, const char* help);
+  prometheus::Gauge& NewGauge(const char* name, const char* help);
+  prometheus::Histogram& NewGap(const char* name, const char* help);
 
   prometheus::Registry registry_;
-  prometheus::Family<prometheus::Counter>& jobs_;
-  prometheus::Family<prometheus::Counter>& layers_;
-  prometheus::Family<prometheus::Counter>& rpcs_;
-  prometheus::Family<prometheus::Counter>& rejected_;
-  prometheus::Family<prometheus::Counter>& reload_failures_;
-  prometheus::Family<prometheus::Histogram>& layer_seconds_;
-  prometheus::Family<prometheus::Histogram>& job_seconds_;
-  prometheus::Counter& travel_given_mm_;
-  prometheus::Counter& travel_mm_;
-  prometheus::Counter& idle_seconds_saved_;
-  prometheus::Counter& invalid_routes_;
-  prometheus::Histogram& gap_;
-  prometheus::Gauge& queue_layers_;
-  prometheus::Gauge& queue_points_;
-  prometheus::Gauge& jobs_in_flight_;
-  prometheus::Gauge& workers_busy_;
-  prometheus::Gauge& workers_;
-  prometheus::Gauge& workers_silent_;
-  prometheus::Gauge& ready_;
-  prometheus::Counter& log_lines_lost_;
-  prometheus::Family<prometheus::Gauge>& memory_;
-  prometheus::Gauge& max_memory_;
-  prometheus::Gauge& connections_;
-  prometheus::Counter& connections_cut_;
-  prometheus::Family<prometheus::Gauge>& certificate_expiry_;
+  prometheus::Family<prometheus::Counter>& jobs_ =
+      NewCounters("traverse_jobs_total", "Jobs ended, by gRPC status.");
+  prometheus::Family<prometheus::Counter>& layers_ =
+      NewCounters("traverse_layers_total", "Layers solved, by stop reason.");
+  prometheus::Family<prometheus::Counter>& rpcs_ =
+      NewCounters("traverse_rpcs_total", "Calls ended, by method and status.");
+  prometheus::Family<prometheus::Counter>& rejected_ = NewCounters(
+      "traverse_rejected_total", "Jobs refused for a limit or a permission, by reason.");
+  prometheus::Family<prometheus::Counter>& reload_failures_ =
+      NewCounters("traverse_reload_failures_total",
+                  "Changed files of no use, by what they are of; what was good before stays.");
+  prometheus::Family<prometheus::Histogram>& layer_seconds_ =
+      NewHistograms("traverse_layer_solve_seconds", "Time of work on one layer.");
+  prometheus::Family<prometheus::Histogram>& job_seconds_ =
+      NewHistograms("traverse_job_seconds", "Time from a job's first message to its last.");
+  prometheus::Counter& travel_given_mm_ = NewCounter(
+      "traverse_travel_given_mm_total", "Travel of the orders given, cleaning included.");
+  prometheus::Counter& travel_mm_ =
+      NewCounter("traverse_travel_mm_total", "Travel of the routes answered, cleaning included.");
+  prometheus::Counter& idle_seconds_saved_ = NewCounter(
+      "traverse_idle_seconds_saved_total", "Idle time saved at the speeds stated by the jobs.");
+  prometheus::Counter& invalid_routes_ = NewCounter(
+      "traverse_invalid_routes_total", "Routes that failed the validator; each one is a bug.");
+  prometheus::Histogram& gap_ =
+      NewGap("traverse_optimality_gap_ratio", "Gap of layers with a lower bound.");
+  prometheus::Gauge& queue_layers_ =
+      NewGauge("traverse_queue_layers", "Layers accepted and not yet solved.");
+  prometheus::Gauge& queue_points_ =
+      NewGauge("traverse_queue_points", "Points accepted and not yet solved.");
+  prometheus::Gauge& jobs_in_flight_ =
+      NewGauge("traverse_jobs_in_flight", "Jobs accepted and not ended.");
+  prometheus::Gauge& workers_busy_ = NewGauge("traverse_workers_busy", "Workers that run a task.");
+  prometheus::Gauge& workers_ = NewGauge("traverse_workers", "Workers there are.");
+  prometheus::Gauge& workers_silent_ = NewGauge(
+      "traverse_workers_silent", "Workers that gave no sign of life for the time of --watchdog.");
+  prometheus::Gauge& ready_ =
+      NewGauge("traverse_ready", "1 if the server takes jobs, 0 if it drains.");
+  prometheus::Counter& log_lines_lost_ =
+      NewCounter("traverse_log_lines_lost_total", "Lines of the log dropped or not written.");
+  prometheus::Family<prometheus::Gauge>& memory_ =
+      NewGauges("traverse_memory_bytes", "Memory that callers make the server hold, by kind.");
+  prometheus::Gauge& max_memory_ =
+      NewGauge("traverse_memory_max_bytes", "Memory that the server may have.");
+  prometheus::Gauge& connections_ = NewGauge("traverse_connections", "Connections open.");
+  prometheus::Counter& connections_cut_ = NewCounter(
+      "traverse_connections_cut_total", "Connections ended for what they sent, or to make room.");
+  prometheus::Family<prometheus::Gauge>& certificate_expiry_ = NewGauges(
+      "traverse_certificate_expiry_seconds", "Time until the certificate in use expires, by file.");
 
   Mutex mutex_;
   std::map<std::string, LayerMetrics> by_strategy_

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -62,6 +63,7 @@ class SegmentGrid {
 
   // REQUIRES: the cell is occupied.
   size_t NumberOf(size_t cell) const {
+    assert(IsOccupied(cell));
     const uint64_t before = occupied_[cell / 64] & ((uint64_t{1} << (cell % 64)) - 1);
     return number_[cell / 64] + static_cast<size_t>(std::popcount(before));
   }

@@ -1,5 +1,6 @@
 #include "client/gcode/text/lexer.h"
 
+#include <cassert>
 #include <cstring>
 #include <optional>
 
@@ -47,6 +48,7 @@ bool HasCoordinates(const Command& command) {
 }  // namespace
 
 Line LineAt(std::string_view text, Offset begin) {
+  assert(begin < text.size());
   const char* const start = text.data() + begin;
   const void* const found = std::memchr(start, '\n', text.size() - begin);
   Line line;

@@ -1,5 +1,6 @@
 #include "client/view/scene/printed_route.h"
 
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -97,6 +98,7 @@ std::vector<DrawnVisit> InOrder(size_t paths) {
 
 DrawnRoute PrintedRoute(const GcodeFile& printed, size_t layer, const SlicedPaths& sliced,
                         const std::vector<std::vector<DrawnVisit>>& orders) {
+  assert(!orders.empty());
   DrawnRoute route;
   route.start = BlockWalk(printed, layer).Start();
   route.visits = orders.front();

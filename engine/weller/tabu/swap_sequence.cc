@@ -1,6 +1,7 @@
 #include "engine/weller/tabu/swap_sequence.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <limits>
 
@@ -178,6 +179,7 @@ void SwapSequence::EvaluateApart(int x, int y, SwapMove& move) const {
 }
 
 SwapMove SwapSequence::Evaluate(int node, int i, int j) const {
+  assert(0 <= i && i < j && j < tree_.child_count(node));
   SwapMove move;
   move.node = node;
   move.i = i;
