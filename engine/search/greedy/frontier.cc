@@ -7,6 +7,7 @@
 #include "engine/cost/first_entries.h"
 
 namespace traverse {
+
 Frontier& Frontier::Forest::Of(int node) {
   std::unique_ptr<Frontier>& frontier = frontiers_[static_cast<size_t>(node)];
   if (frontier == nullptr) frontier = std::make_unique<Frontier>(*layer_, node, *this);

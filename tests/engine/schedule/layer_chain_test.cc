@@ -250,6 +250,35 @@ TEST(LayerChain, ABoundTakenOverHoldsForLayersThatDifferALittle) {
   }
 }
 
+// As Proving, and in as many words.
+class ProvingOptimal : public Proving {
+ public:
+  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+    Solution solution = Proving::Solve(problem, budget);
+    solution.stop = StopReason::kOptimal;
+    return solution;
+  }
+};
+
+// A bound taken over is a little below the cost: what is optimal there is not proven so here.
+TEST(LayerChain, WhatIsCalledOptimalIsProvenForTheVeryLayer) {
+  RecordingSink sink;
+  TestExecutor executor(1);
+  auto job = Job::Start(JobSpec(), std::make_unique<ProvingOptimal>(), executor, sink);
+  for (int i = 0; i < 100; ++i) {
+    job->Add({Moved(RingLayer(5, 0), i % 2 == 0 ? 0 : 3e-5), Point{0, 0}, std::nullopt});
+  }
+  job->Close();
+  sink.Wait();
+
+  ASSERT_EQ(sink.outcomes.size(), 100u);
+  for (const LayerOutcome& outcome : sink.outcomes) {
+    ASSERT_TRUE(outcome.lower_bound.has_value());
+    if (outcome.stop != StopReason::kOptimal) continue;
+    EXPECT_NEAR(*outcome.lower_bound, outcome.cost, 1e-9) << "layer " << outcome.index;
+  }
+}
+
 TEST(LayerChain, AQuickStrategySolvesEveryLayerFromItsTrueStart) {
   RunOptions options;
   options.layers = 80;
@@ -288,9 +317,12 @@ TEST(LayerFingerprint, TellsLayersThatWereMovedFromOthers) {
   time.kind = CostSpec::Kind::kTime;
   EXPECT_NE(FingerprintOf(RingLayer(3, 0.1), time).shape, ring.shape);
   EXPECT_NE(moved.exact, ring.exact);
-  EXPECT_EQ(ProblemKey(7, {0, 0}, {1, 2}, std::nullopt), ProblemKey(7, {5, 5}, {6, 7}, std::nullopt));
-  EXPECT_NE(ProblemKey(7, {0, 0}, {1, 2}, std::nullopt), ProblemKey(7, {0, 0}, {1, 2.1}, std::nullopt));
-  EXPECT_NE(ProblemKey(7, {0, 0}, {1, 2}, Point{0, 0}), ProblemKey(7, {0, 0}, {1, 2}, std::nullopt));
+  EXPECT_EQ(ProblemKey(7, {0, 0}, {1, 2}, std::nullopt),
+            ProblemKey(7, {5, 5}, {6, 7}, std::nullopt));
+  EXPECT_NE(ProblemKey(7, {0, 0}, {1, 2}, std::nullopt),
+            ProblemKey(7, {0, 0}, {1, 2.1}, std::nullopt));
+  EXPECT_NE(ProblemKey(7, {0, 0}, {1, 2}, Point{0, 0}),
+            ProblemKey(7, {0, 0}, {1, 2}, std::nullopt));
 }
 
 TEST(LayerChain, NoneReturnsTheGivenOrderAndItsTravel) {

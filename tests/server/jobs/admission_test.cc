@@ -65,8 +65,9 @@ TEST_F(AdmissionTest, CallersHaveLimitsOfTheirOwn) {
   Admission admission({.max_jobs = 10, .max_jobs_per_caller = 1}, Count());
   auto first = admission.Admit("a", 1);
 
-  EXPECT_THAT(admission.Admit("a", 1),
-              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("this caller")));
+  const auto refused = admission.Admit("a", 1);
+  EXPECT_THAT(refused, StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("this caller")));
+  EXPECT_TRUE(refused.status().GetPayload(kRetryInfo).has_value());
   EXPECT_OK(admission.Admit("b", 1));
   EXPECT_THAT(refusals_, ElementsAre("caller_jobs"));
 }
