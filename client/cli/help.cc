@@ -1,5 +1,6 @@
 #include "client/cli/help.h"
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 
 namespace traverse::cli {
@@ -46,7 +47,7 @@ std::string FlagHelp(absl::Span<const Flag> flags) {
       continue;
     }
     std::string usage = FlagUsage(flag);
-    if (!flag.joint_help.empty()) usage += " " + FlagUsage(flags[++i]);
+    if (!flag.joint_help.empty()) absl::StrAppend(&usage, " ", FlagUsage(flags[++i]));
     absl::StrAppendFormat(&out, "  %-*s  %s\n", kWidth, usage,
                           flag.joint_help.empty() ? flag.help : flag.joint_help);
   }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/report/table.h"
 
@@ -75,7 +76,7 @@ std::string OtherTable(const LoadResult& result) {
     }
   }
   const bool none = result.code.size() == result.code.count("OK");
-  return none ? "" : "\n" + table.Text() + examples;
+  return none ? "" : absl::StrCat("\n", table.Text(), examples);
 }
 
 }  // namespace

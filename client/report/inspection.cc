@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/files/read_file.h"
 #include "client/formats/detect.h"
@@ -99,7 +100,7 @@ std::string InspectionText(const InputJob& job, const JobResult& given, size_t m
   for (const auto& [name, value] : rows) {
     absl::StrAppendFormat(&out, "%-*s  %s\n", static_cast<int>(width), name, value);
   }
-  if (counts.size() <= max_rows) out += "\n" + LayerTable(job, counts, given);
+  if (counts.size() <= max_rows) absl::StrAppend(&out, "\n", LayerTable(job, counts, given));
   return out;
 }
 

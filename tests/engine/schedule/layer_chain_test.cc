@@ -266,7 +266,12 @@ TEST(LayerChain, WhatIsCalledOptimalIsProvenForTheVeryLayer) {
   TestExecutor executor(1);
   auto job = Job::Start(JobSpec(), std::make_unique<ProvingOptimal>(), executor, sink);
   for (int i = 0; i < 100; ++i) {
-    job->Add({Moved(RingLayer(5, 0), i % 2 == 0 ? 0 : 3e-5), Point{0, 0}, std::nullopt});
+    IslandPaths row;
+    for (int k = 0; k < 6; ++k) {
+      const double shrink_mm = k % 2 == 1 && i >= 50 ? 4e-5 : 0;
+      row.contours.push_back(MakeContour({{10.0 * k - shrink_mm, 0}}));
+    }
+    job->Add({SequentialPlan({row}), Point{0, 0}, std::nullopt});
   }
   job->Close();
   sink.Wait();
