@@ -22,6 +22,7 @@ class FleetCases(unittest.TestCase):
     def setUpClass(cls):
         example_cases.generate()
         sys.path.insert(0, str(support.DEPLOY / "examples/python"))
+        sys.path.insert(0, str(support.DEPLOY.parent / "tests/chaos"))
         from google.protobuf import json_format
         from traverse.v1 import route_optimizer_service_pb2 as api
         cls.job = json_format.ParseDict(
@@ -93,6 +94,44 @@ class FleetCases(unittest.TestCase):
         self.assertEqual([], load.failures)
         self.assertEqual([0, 0, 0], codes)
         self.assertGreater(load.done, 20)
+
+    def test_the_balancer_keeps_floods_of_one_address_from_others(self):
+        from http2_client import END_HEADERS, HEADERS, RST_STREAM, SERVICE, Connection, frame
+        with fleet.Fleet() as servers:
+            port = int(servers.address.rsplit(":", 1)[1])
+            client = self.client(servers.address)
+            # More connections than an address may have: those beyond are closed at once.
+            held, closed = [], 0
+            for number in range(560):
+                try:
+                    held.append(Connection(port, source="127.0.0.3"))
+                    closed += number >= 500 and held[-1].drain(0.02) == b""
+                except OSError:
+                    closed += 1
+            # Calls that are reset at once, as many as fit into four seconds.
+            flood = Connection(port, source="127.0.0.4")
+            with fleet.Load(lambda: self.submit(client), threads=1) as load:
+                end, calls = time.monotonic() + 4, 0
+                while time.monotonic() < end:
+                    block = b""
+                    for _ in range(100):
+                        stream = flood.next_stream
+                        flood.next_stream += 2
+                        block += frame(HEADERS, END_HEADERS, stream, flood.headers(SERVICE + "Optimize"))
+                        block += frame(RST_STREAM, 0, stream, (8).to_bytes(4, "big"))
+                    calls += 100
+                    if not flood.send(block):
+                        flood = Connection(port, source="127.0.0.4")
+            begun = sum(server.sum_of("traverse_rpcs_total") for server in servers.servers)
+            for connection in [*held, flood]:
+                connection.close()
+
+        print(f"{closed} of 60 connections closed; {calls} calls reset, {begun:.0f} reached servers; "
+              f"{load.done} jobs beside, longest {max(load.seconds):.2f} s")
+        self.assertGreaterEqual(closed, 55)
+        self.assertEqual([], load.failures)
+        self.assertGreater(load.done, 0)
+        self.assertLess(begun, min(calls, 5000), "what is beyond the rate of an address never reaches a server")
 
     def test_a_killed_server_fails_no_job(self):
         with fleet.Fleet() as servers:
