@@ -83,8 +83,9 @@ Outcome Run(const std::vector<std::string>& arguments) {
 
 const std::vector<Command>& Commands() {
   static const std::vector<Command> commands = {
-      OptimizeCommand(), CompareCommand(),    VerifyCommand(),     InspectCommand(),
-      ConvertCommand(),  StrategiesCommand(), ReproduceCommand(), CompletionCommand(), ManualCommand(),
+      OptimizeCommand(),  CompareCommand(),    VerifyCommand(),
+      InspectCommand(),   ConvertCommand(),    StrategiesCommand(),
+      ReproduceCommand(), CompletionCommand(), ManualCommand(),
   };
   return commands;
 }

@@ -57,7 +57,8 @@ absl::StatusOr<InputFormat> FormatOf(const std::string& bytes, const std::string
   const bool weak = by_content == InputFormat::kProto && by_extension;
   const std::optional<InputFormat> format = weak || !by_content ? by_extension : by_content;
   if (!format) {
-    return Fault(name, "neither its content nor its name is DAMAT, G-code, JSON, protobuf or GTSPLIB");
+    return Fault(name,
+                 "neither its content nor its name is DAMAT, G-code, JSON, protobuf or GTSPLIB");
   }
   if (weak || !by_content) {
     if (absl::Status status = CheckPromise(name); !status.ok()) return status;

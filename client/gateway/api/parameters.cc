@@ -42,7 +42,8 @@ bool IsAllowed(const std::string& name) {
 }
 
 bool IsName(const std::string& name) {
-  return !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == name.npos;
+  return !name.empty() &&
+         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == name.npos;
 }
 
 absl::Status Fault(std::string message) { return absl::InvalidArgumentError(std::move(message)); }

@@ -135,7 +135,9 @@ TEST(MeatPack, PutsSpacesBackBeforeLettersOfMoves) {
 }
 
 TEST(MeatPack, KeepsSpacesThatCount) {
-  const std::string text = "G1 X1 Y2*71\nG21 \nG28 X ; c d\nG1 X1 Y1 \r\nG10 P\"a b\"\nM117 G 1\n G1 X1\n;G1 X1\nG1 X9 Y9";
+  const std::string text =
+      "G1 X1 Y2*71\nG21 \nG28 X ; c d\nG1 X1 Y1 \r\nG10 P\"a b\"\nM117 G 1\n G1 X1\n;G1 X1\nG1 X9 "
+      "Y9";
   std::string packed;
   std::string out;
   MeatPack(text, packed);

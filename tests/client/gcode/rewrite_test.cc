@@ -282,7 +282,8 @@ TEST(RewriteGcode, DamagedFilesStayEquivalentOrAsTheyAre) {
       continue;
     }
     ++rewritten;
-    EXPECT_EQ(VerifyGcode(text, "original", rewrite->text, "rewritten", OnlySamePrint()).message(), "")
+    EXPECT_EQ(VerifyGcode(text, "original", rewrite->text, "rewritten", OnlySamePrint()).message(),
+              "")
         << "seed " << seed;
   }
   EXPECT_GT(rewritten, 2000);
