@@ -13,7 +13,8 @@ async function codedLayer(i) {
   for (;;) {
     const done = document.readyState !== "loading";
     const element = document.getElementById(`layer-${i}`);
-    if (element) return element.textContent;
+    // What stands behind it shows that it is there to its end; the parser fills it piece by piece.
+    if (element && (done || element.nextSibling)) return element.textContent;
     if (done) throw new Error(`layer ${i} is missing: is the file cut short?`);
     await new Promise((resume) => setTimeout(resume, 15));
   }
