@@ -176,7 +176,7 @@ bool WallDetours::Follow(const Hit& first, const Hit& last, double side, Point a
   std::vector<Point> ways[2];
   double lengths_mm[2] = {0, 0};
   bool found[2];
-  for (const size_t forward : {0, 1}) {
+  for (const size_t forward : {size_t{0}, size_t{1}}) {
     ways[forward] = {begin};
     found[forward] =
         FollowOneWay(first, last, forward == 1, side, ways[forward], lengths_mm[forward]);
