@@ -19,6 +19,10 @@ namespace {
 
 using gcode::TimeScale;
 
+// Of all entries of metadata together: a slicer's settings are some ten thousand bytes. An entry of
+// three bytes takes twenty times as much once it is read.
+constexpr size_t kMaxMetadataBytes = size_t{4} << 20;
+
 bool HasMetadata(BlockKind kind) {
   return kind == BlockKind::kFileMetadata || kind == BlockKind::kSlicerMetadata ||
          kind == BlockKind::kPrinterMetadata || kind == BlockKind::kPrintMetadata;
@@ -76,7 +80,7 @@ class BgcodeContainer : public Container {
     absl::StatusOr<BgcodeBlocks> file = ParseBlocks(bytes_);
     if (!file.ok()) return Fault(file.status());
     file_ = *std::move(file);
-    size_t left = MaxTextBytes(bytes_.size(), options_.max_text_bytes);
+    size_t left = std::min(kMaxMetadataBytes, options_.max_text_bytes);
     bool any = false;
     for (size_t i = 0; i < file_.blocks.size(); ++i) {
       const Block& block = file_.blocks[i];
@@ -135,7 +139,10 @@ class BgcodeContainer : public Container {
   }
 
   absl::Status ReadMetadata(const Block& block, size_t& left) {
-    if (block.size > left) return absl::ResourceExhaustedError("it announces too much");
+    if (block.size > left) {
+      return absl::ResourceExhaustedError(absl::StrFormat(
+          "it announces %d bytes, and %d are left of those for metadata", block.size, left));
+    }
     left -= block.size;
     absl::StatusOr<std::string> text = DecompressBlock(block);
     if (!text.ok()) return text.status();

@@ -15,6 +15,10 @@ constexpr size_t kShortHeaderBytes = 8;
 constexpr size_t kLongHeaderBytes = 12;
 constexpr size_t kChecksumBytes = 4;
 
+// Far beyond what slicers write, 16 GiB of text in blocks of 64 KiB; a block takes 64 bytes of
+// memory here, and of a file made for that only 8.
+constexpr size_t kMaxBlocks = size_t{1} << 18;
+
 absl::Status Fault(const std::string& text) { return absl::InvalidArgumentError(text); }
 
 bool IsKnown(BlockKind kind) { return kind <= BlockKind::kThumbnail; }
@@ -44,6 +48,9 @@ class Parser {
 
   absl::Status ParseBlock() {
     const size_t left = file_.size() - next_;
+    if (out_.blocks.size() == kMaxBlocks) {
+      return Fault(absl::StrFormat("%s: more blocks than %d", Place(), kMaxBlocks));
+    }
     if (left < kShortHeaderBytes) return Fault(Place() + ": the file ends in its header");
     Block block;
     block.offset = next_;

@@ -23,7 +23,10 @@ constexpr std::string_view kSliceInfo = "Metadata/slice_info.config";
 constexpr std::string_view kUfpModel = "3D/model.gcode";
 
 // Entries besides G-code that are read at all: digests and slice_info.
-constexpr size_t kMaxSmallBytes = size_t{16} << 20;
+constexpr size_t kMaxSmallBytes = size_t{4} << 20;
+
+// Plates of one archive: slicers have some dozens at most.
+constexpr size_t kMaxPlates = 1000;
 
 std::string_view WithoutSlash(std::string_view name) {
   return name.starts_with('/') ? name.substr(1) : name;
@@ -53,6 +56,7 @@ class GcodeZip : public Container {
     archive_ = *std::move(archive);
     absl::Status status = FindParts();
     if (status.ok()) status = CheckNames();
+    if (status.ok()) status = CheckSizes();
     if (status.ok()) status = ReadSliceInfo();
     return status.ok() ? status : Fault(status);
   }
@@ -83,6 +87,10 @@ class GcodeZip : public Container {
     for (size_t i = 0; i < archive_.entries.size(); ++i) {
       const std::string_view name = archive_.entries[i].name;
       if (const uint32_t plate = PlateOf(name); plate > 0) {
+        if (parts_.size() == kMaxPlates) {
+          return absl::ResourceExhaustedError(
+              absl::StrFormat("entry %s: more than %d plates", std::string(name), kMaxPlates));
+        }
         parts_.push_back({std::string(name), plate});
         entries_.push_back(i);
       }
@@ -125,6 +133,22 @@ class GcodeZip : public Container {
     return absl::OkStatus();
   }
 
+  // All plates may be in memory at a time.
+  absl::Status CheckSizes() const {
+    const size_t most = MaxTextBytes(bytes_.size(), options_.max_text_bytes);
+    size_t sum = 0;
+    for (const size_t i : entries_) {
+      const ZipEntry& entry = archive_.entries[i];
+      sum += entry.size;
+      if (sum <= most) continue;
+      return absl::ResourceExhaustedError(
+          absl::StrFormat("entry %s: it announces %d MiB, which makes %d MiB of G-code, and %d are "
+                          "allowed",
+                          std::string(entry.name), entry.size >> 20, sum >> 20, most >> 20));
+    }
+    return absl::OkStatus();
+  }
+
   absl::Status ReadSliceInfo() {
     const ZipEntry* entry = archive_.Find(kSliceInfo);
     if (entry == nullptr || kind_ != ContainerKind::kGcode3mf) return absl::OkStatus();
@@ -147,7 +171,7 @@ class GcodeZip : public Container {
     const auto refuse = [&](const std::string& why) {
       return absl::InvalidArgumentError(
           absl::StrFormat("entry %s: %s; --ignore_md5 takes the G-code all the same",
-                          std::string(digest->name), why));
+                          absl::CHexEscape(std::string(digest->name)), why));
     };
     const std::optional<std::string> found = FindMd5(*stated);
     if (!found) return refuse("it is no MD5");
@@ -223,8 +247,9 @@ std::vector<std::pair<std::string, std::string>> GcodeZip::Facts() const {
   }
   for (const ZipEntry& entry : archive_.entries) {
     if (!entry.name.ends_with(".png") && !entry.name.ends_with(".jpg")) continue;
-    facts.emplace_back("thumbnail",
-                       absl::StrFormat("%s, %d bytes", std::string(entry.name), entry.size));
+    facts.emplace_back(
+        "thumbnail",
+        absl::StrFormat("%s, %d bytes", absl::CHexEscape(std::string(entry.name)), entry.size));
   }
   return facts;
 }

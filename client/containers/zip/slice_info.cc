@@ -26,10 +26,12 @@ std::optional<std::string_view> Attribute(std::string_view tag, std::string_view
 // The value of the metadata `key` in `text`, which is of one plate.
 std::optional<std::string_view> Value(std::string_view text, std::string_view key) {
   constexpr std::string_view kMetadata = "<metadata";
-  for (size_t at = text.find(kMetadata); at != std::string_view::npos;
-       at = text.find(kMetadata, at + 1)) {
-    const std::string_view tag = text.substr(at, text.find('>', at) - at);
+  for (size_t at = text.find(kMetadata); at != std::string_view::npos;) {
+    const size_t end = text.find('>', at);
+    if (end == std::string_view::npos) break;
+    const std::string_view tag = text.substr(at, end - at);
     if (Attribute(tag, "key") == key) return Attribute(tag, "value");
+    at = text.find(kMetadata, end);
   }
   return std::nullopt;
 }

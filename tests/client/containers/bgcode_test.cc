@@ -270,6 +270,24 @@ std::string WithU32(std::string bytes, size_t at, uint32_t value) {
   return bytes;
 }
 
+TEST(Bgcode, TakesNoMemoryForBlocksAndEntriesWithoutNumber) {
+  std::string blocks = BgcodeHeader(BgcodeChecksum::kNone);
+  for (int i = 0; i < (1 << 18) + 1; ++i) {
+    AppendBlock(BlockKind::kGcode, BlockCompression::kNone, {0}, 0, "", BgcodeChecksum::kNone,
+                blocks);
+  }
+  EXPECT_THAT(TextOf(blocks), StatusIs(absl::StatusCode::kInvalidArgument,
+                                       HasSubstr("block 262145 at offset 2621450: more blocks")));
+
+  std::string entries;
+  while (entries.size() < (size_t{5} << 20)) entries += "a=\n";
+  std::string file = BgcodeHeader(BgcodeChecksum::kNone);
+  AppendBlock(BlockKind::kSlicerMetadata, BlockCompression::kNone, {0},
+              static_cast<uint32_t>(entries.size()), entries, BgcodeChecksum::kNone, file);
+  EXPECT_THAT(TextOf(file), StatusIs(absl::StatusCode::kResourceExhausted,
+                                     HasSubstr("block 1 at offset 10 (slicer metadata)")));
+}
+
 TEST(Bgcode, SaysWhichBlockIsAtFault) {
   const Shape plain = {BgcodeChecksum::kNone, BlockCompression::kNone, BlockCompression::kNone,
                        GcodeEncoding::kNone};
