@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
@@ -28,6 +29,7 @@ struct CoreOptions {
   absl::Duration max_time = absl::Minutes(10);  // for one file, from the end of its upload
   WorkLimits work;
   AuthOptions auth;
+  std::vector<std::string> allowed_hosts;  // names that IsOwnHost takes besides its own
   std::string log_path;  // empty: stderr
   bool log = true;
 };

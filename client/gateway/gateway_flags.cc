@@ -65,6 +65,9 @@ ABSL_FLAG(
     "is asked for");
 ABSL_FLAG(std::vector<std::string>, allowed_clients, {},
           "Names in client certificates that may call; empty: all that are verified");
+ABSL_FLAG(std::vector<std::string>, allowed_hosts, {},
+          "Names besides this machine's own that requests of HTTP may be sent to, without port; *: "
+          "all. Only without TLS and tokens is anything refused unless this is set");
 ABSL_FLAG(std::string, tls_certificate, "", "Certificate chain in PEM; empty: no TLS");
 ABSL_FLAG(std::string, tls_key, "", "Its private key in PEM");
 ABSL_FLAG(
@@ -203,6 +206,7 @@ absl::StatusOr<GatewayOptions> OptionsFromFlags() {
                .max_requests_per_caller = absl::GetFlag(FLAGS_max_requests_per_caller),
                .max_memory_bytes = absl::GetFlag(FLAGS_max_memory)};
   core.auth.token_file = absl::GetFlag(FLAGS_token_file);
+  core.allowed_hosts = absl::GetFlag(FLAGS_allowed_hosts);
   core.auth.allowed_names = absl::GetFlag(FLAGS_allowed_clients);
   core.log_path = absl::GetFlag(FLAGS_log_file);
   const int threads = absl::GetFlag(FLAGS_threads);

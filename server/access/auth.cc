@@ -43,6 +43,17 @@ std::string BearerToken(const std::string& authorization) {
   return authorization.substr(kLength);
 }
 
+// The entry of `token`, or null. Every entry is compared, and each in constant time: how long it
+// takes tells nothing.
+const TokenEntry* FindToken(const std::vector<TokenEntry>& tokens, const std::string& token) {
+  const Sha256 hash = HashOf(token);
+  const TokenEntry* found = nullptr;
+  for (const TokenEntry& entry : tokens) {
+    if (CRYPTO_memcmp(entry.hash.data(), hash.data(), hash.size()) == 0) found = &entry;
+  }
+  return found;
+}
+
 }  // namespace
 
 Sha256 HashOf(const std::string& text) {
@@ -120,6 +131,12 @@ Authenticator::Tokens Authenticator::CurrentTokens() {
   return tokens_;
 }
 
+bool Authenticator::IsToken(const std::string& text) {
+  if (options_.token_file.empty()) return false;
+  const Tokens tokens = CurrentTokens();
+  return FindToken(*tokens, text) != nullptr;
+}
+
 absl::StatusOr<std::string> Authenticator::Identify(const CallCredentials& credentials) {
   const std::vector<std::string>& names = options_.allowed_names;
   if (!names.empty()) {
@@ -140,13 +157,8 @@ absl::StatusOr<std::string> Authenticator::Identify(const CallCredentials& crede
     if (token.empty()) {
       return absl::UnauthenticatedError("a bearer token is required: authorization: Bearer TOKEN");
     }
-    const Sha256 hash = HashOf(token);
     const Tokens tokens = CurrentTokens();
-    // Every entry is compared, and each in constant time: how long it takes tells nothing.
-    const TokenEntry* found = nullptr;
-    for (const TokenEntry& entry : *tokens) {
-      if (CRYPTO_memcmp(entry.hash.data(), hash.data(), hash.size()) == 0) found = &entry;
-    }
+    const TokenEntry* found = FindToken(*tokens, token);
     if (found == nullptr) return absl::UnauthenticatedError("the bearer token is not known");
     return absl::StrCat("token:", found->name);
   }

@@ -62,6 +62,9 @@ class Authenticator {
   // The name of the caller, by which he is counted. Errors: Unauthenticated, PermissionDenied.
   absl::StatusOr<std::string> Identify(const CallCredentials& credentials);
 
+  // Whether `text` is a token that Identify would take now: it is for us, and for nobody behind us.
+  bool IsToken(const std::string& text);
+
   // Reads the token file again if it has changed, or in any case if `anyway`. Identify looks at it
   // once a second at most.
   void Look(bool anyway);

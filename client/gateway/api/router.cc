@@ -7,6 +7,7 @@
 #include "client/gateway/api/counting.h"
 #include "client/gateway/api/file_routes.h"
 #include "client/gateway/api/openapi.h"
+#include "client/gateway/http/own_host.h"
 #include "client/gateway/http/problem.h"
 #include "client/gateway/octoprint/printer_api.h"
 #include "client/gateway/page/page.h"
@@ -42,6 +43,13 @@ bool IsForeign(const HttpRequest& request) {
   if (origin.empty()) return false;
   const size_t host = origin.find("://");
   return host == std::string::npos || origin.substr(host + 3) != request.Header("host");
+}
+
+// Where a token or a certificate is asked for, a page with a name of its own for us has neither.
+bool IsForUs(const HttpRequest& request, const Core& core) {
+  const std::vector<std::string>& allowed = core.options.allowed_hosts;
+  const bool guarded = core.certificates != nullptr || !core.options.auth.token_file.empty();
+  return (guarded && allowed.empty()) || IsOwnHost(request.Header("host"), allowed);
 }
 
 HttpResponse NotAllowed(const std::string& allowed) {
@@ -84,6 +92,9 @@ HttpDecision Router::Open(const HttpRequest& request, std::string& route) {
     if (path == "/healthz") return Text(200, "text/plain", "ok\n");
     return core_.queue->draining() ? Text(503, "text/plain", "draining\n")
                                    : Text(200, "text/plain", "ready\n");
+  }
+  if (!IsForUs(request, core_)) {
+    return Problem(421, "the Host of the request is no name of this gateway; see --allowed_hosts");
   }
   if (IsForeign(request)) {
     return Problem(403, "a page of another site asks: that is not allowed here");

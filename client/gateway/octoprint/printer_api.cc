@@ -146,11 +146,18 @@ HttpDecision PrinterApi::Handle(const HttpRequest& request, const std::string& c
   return HandleUpload(request, caller, *printer, rest[2]);
 }
 
+// A caller's token for the gateway stays here: a printer's server could use it against us.
+std::string PrinterApi::KeyFor(const Printer& printer, const HttpRequest& request) {
+  if (!printer.api_key.empty()) return printer.api_key;
+  std::string key = request.Header("x-api-key");
+  return core_.auth->IsToken(key) ? "" : key;
+}
+
 HttpDecision PrinterApi::HandleVersion(const HttpRequest& request, const std::string& caller,
                                        const Printer& printer) {
   absl::StatusOr<std::shared_ptr<WorkQueue::Place>> place = core_.queue->Enter(caller);
   if (!place.ok()) return Problem(503, std::string(place.status().message()));
-  const std::string key = printer.api_key.empty() ? request.Header("x-api-key") : printer.api_key;
+  const std::string key = KeyFor(printer, request);
   return std::make_unique<NoBody>(
       [this, &printer, key, place = *place](std::shared_ptr<HttpReply> reply) {
         Spawn([this, &printer, key, place, reply = std::move(reply)] {
@@ -174,7 +181,7 @@ HttpDecision PrinterApi::HandleUpload(const HttpRequest& request, const std::str
   absl::StatusOr<std::shared_ptr<WorkQueue::Place>> place = core_.queue->Enter(caller);
   if (!place.ok()) return Problem(503, std::string(place.status().message()));
   const UploadLimits limits = {.max_file_bytes = core_.options.max_file_bytes, .max_files = 1};
-  const std::string key = printer.api_key.empty() ? request.Header("x-api-key") : printer.api_key;
+  const std::string key = KeyFor(printer, request);
   const auto start = [this, &printer, storage, key, caller, peer = request.peer_host,
                       place = *place](Upload upload, std::shared_ptr<HttpReply> reply) {
     absl::StatusOr<PrinterUpload> wanted = UploadOf(upload, storage);

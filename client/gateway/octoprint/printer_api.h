@@ -50,6 +50,9 @@ class PrinterApi {
                             const Printer& printer, const std::string& storage);
   HttpDecision HandleVersion(const HttpRequest& request, const std::string& caller,
                              const Printer& printer);
+  // What the printer's own server is shown: its key of the configuration, or else the caller's.
+  std::string KeyFor(const Printer& printer, const HttpRequest& request);
+
   void Deliver(Delivery& delivery);
   void Optimise(Delivery& delivery);
   void Answer(Delivery& delivery, const absl::StatusOr<UpstreamAnswer>& answer);

@@ -151,6 +151,15 @@ struct Reading {
   }
 };
 
+// Whether a field of the caller's form goes on: those of OctoPrint's documentation. Others are
+// words of the servers' own, such as the path of a file that OctoPrint has stored, the root of a
+// Moonraker, or the checksum of the file as it came.
+bool GoesOn(const std::string& field, PrinterKind kind) {
+  if (field == "path") return true;
+  return kind == PrinterKind::kOctoPrint && (field == "select" || field == "userdata" ||
+                                             field == "foldername" || field == "noOverwrite");
+}
+
 void AddField(curl_mime* form, const std::string& name, const std::string& value) {
   curl_mimepart* part = curl_mime_addpart(form);
   curl_mime_name(part, name.c_str());
@@ -162,7 +171,9 @@ absl::StatusOr<UpstreamAnswer> SendForm(const Printer& printer, const std::strin
                                         const SpoolFile& file, const UpstreamLimits& limits) {
   Call call(printer, path, api_key, limits);
   const std::unique_ptr<curl_mime, FreeMime> form(curl_mime_init(call.get()));
-  for (const auto& [name, value] : upload.fields) AddField(form.get(), name, value);
+  for (const auto& [name, value] : upload.fields) {
+    if (GoesOn(name, printer.kind)) AddField(form.get(), name, value);
+  }
   AddField(form.get(), "print", upload.print ? "true" : "false");
   if (printer.kind == PrinterKind::kMoonraker) AddField(form.get(), "root", "gcodes");
   Reading reading{&file};

@@ -190,6 +190,20 @@ class Files(unittest.TestCase):
         own = {"Origin": f"http://127.0.0.1:{self.gateway.http_port}", "Sec-Fetch-Site": "same-origin"}
         self.assertEqual(self.post("/v1/gcode", PART, own)[0], 200)
 
+    def test_a_name_that_a_stranger_leads_here_is_refused(self):
+        port = self.gateway.http_port
+        rebound = {"Host": f"evil.example:{port}", "Origin": f"http://evil.example:{port}", "Sec-Fetch-Site": "same-origin"}
+        self.refused(421, "--allowed_hosts", self.post("/v1/gcode", PART, rebound))
+        self.refused(421, "--allowed_hosts", self.gateway.ask("GET", "/metrics", headers={"Host": "evil.example"}))
+        for host in ["localhost", "gateway:8080", "farm.local", f"[::1]:{port}"]:
+            self.assertEqual(self.post("/v1/gcode?strategy=greedy", PART, {"Host": host})[0], 200, host)
+        for path in ["/healthz", "/readyz"]:
+            self.assertEqual(self.gateway.ask("GET", path, headers={"Host": "evil.example"})[0], 200)
+        named = Gateway("--allowed_hosts=farm.example")
+        self.addCleanup(named.close)
+        for host, status in [("farm.example:1", 200), ("FARM.example", 200), ("evil.example", 421), ("127.0.0.1", 200)]:
+            self.assertEqual(named.ask("POST", "/v1/gcode?strategy=greedy", PART, {"Host": host})[0], status, host)
+
     def test_what_operators_ask(self):
         self.assertEqual(self.gateway.ask("GET", "/healthz")[::2], (200, b"ok\n"))
         self.assertEqual(self.gateway.ask("GET", "/readyz")[::2], (200, b"ready\n"))

@@ -2,9 +2,11 @@
 
 The environment names the binaries: TRAVERSE and TRAVERSE_GATEWAY.
 """
+import hashlib
 import json
 import os
 import signal
+import socket
 import sys
 import tempfile
 import threading
@@ -29,6 +31,10 @@ class Uploads(unittest.TestCase):
     def setUp(self):
         self.printer = PrinterStandIn()
         self.addCleanup(self.printer.close)
+        self.key_file = tempfile.NamedTemporaryFile("w")
+        self.addCleanup(self.key_file.close)
+        self.key_file.write("secret\n")
+        self.key_file.flush()
 
     def start(self, *flags, **more):
         config = tempfile.NamedTemporaryFile("w", suffix=".json", delete=False)
@@ -36,6 +42,7 @@ class Uploads(unittest.TestCase):
         printers = [{"name": "octo", "url": self.printer.url},
                     {"name": "moon", "kind": "moonraker", "url": self.printer.url},
                     {"name": "link", "kind": "prusalink", "url": self.printer.url, "storage": "usb"},
+                    {"name": "keyed", "url": self.printer.url, "api_key_file": self.key_file.name},
                     {"name": "strict", "url": self.printer.url, "on_failure": "refuse"},
                     {"name": "gone", "url": "http://127.0.0.1:1"}]
         with config:
@@ -59,6 +66,73 @@ class Uploads(unittest.TestCase):
         self.assertEqual(content, optimised_by_command(PART))
         self.assertEqual(fields, {"print": "true", "path": "", "select": "true", "userdata": "{}"})
         self.assertEqual(gateway.metric('traverse_gateway_uploads_total{outcome="optimised",printer="octo",reason=""}'), 1)
+
+    def test_requests_as_prusa_slicer_sends_them(self):
+        """To the byte as libcurl writes them when called as PrusaSlicer 2.5's Http.cpp and OctoPrint.cpp do."""
+        gateway = self.start()
+        place = f"127.0.0.1:{gateway.http_port}".encode()
+        head = b"Host: " + place + b"\r\nUser-Agent: PrusaSlicer/2.5.0\r\nAccept: */*\r\nX-Api-Key: secret\r\n"
+        body = (b"--------------------------d74496d66958873e\r\n"
+                b'Content-Disposition: form-data; name="print"\r\n\r\ntrue\r\n'
+                b"--------------------------d74496d66958873e\r\n"
+                b'Content-Disposition: form-data; name="path"\r\n\r\nfarm/today\r\n'
+                b"--------------------------d74496d66958873e\r\n"
+                b'Content-Disposition: form-data; name="file"; filename="box \\"A\\" T\xc3\xbcr_0.2mm.gcode"\r\n'
+                b"Content-Type: application/octet-stream\r\n\r\n" + PART +
+                b"\r\n--------------------------d74496d66958873e--\r\n")
+        post = (b"POST /api/files/local HTTP/1.1\r\n" + head + b"Content-Length: %d\r\n" % len(body) +
+                b"Content-Type: multipart/form-data; boundary=------------------------d74496d66958873e\r\n")
+        with socket.create_connection(("127.0.0.1", gateway.http_port), timeout=30) as connection:
+            answers = connection.makefile("rb")
+
+            def answer():
+                status, length = answers.readline(), 0
+                while (line := answers.readline()) != b"\r\n":
+                    if line.lower().startswith(b"content-length:"):
+                        length = int(line.split(b":")[1])
+                return status, answers.read(length)
+
+            # The test of the connection, then on the same one an upload, and one that waits to be told to go on.
+            connection.sendall(b"GET /api/version HTTP/1.1\r\n" + head + b"\r\n")
+            status, version = answer()
+            self.assertIn(b"200 OK", status)
+            self.assertTrue(json.loads(version)["text"].startswith("OctoPrint"))
+            connection.sendall(post + b"\r\n" + body)
+            self.assertIn(b"201 Created", answer()[0])
+            connection.sendall(post + b"Expect: 100-continue\r\n\r\n")
+            self.assertEqual(answer(), (b"HTTP/1.1 100 Continue\r\n", b""))
+            connection.sendall(body)
+            self.assertIn(b"201 Created", answer()[0])
+        for path, name, content, fields in self.printer.uploads:
+            self.assertEqual((path, content), ("/api/files/local", optimised_by_command(PART)))
+            self.assertEqual(fields, {"print": "true", "path": "farm/today"})
+            self.assertEqual(name, "box %22A%22 T\u00fcr_0.2mm.gcode")
+        self.assertEqual(len(self.printer.uploads), 2)
+
+    def test_a_token_for_the_gateway_is_shown_to_nobody_else(self):
+        with tempfile.NamedTemporaryFile("w") as tokens:
+            tokens.write("farm-1 " + hashlib.sha256(b"token for the gateway").hexdigest() + "\n")
+            tokens.flush()
+            gateway = self.start("--token_file=" + tokens.name)
+        token = {"X-Api-Key": "token for the gateway"}
+        self.assertEqual(self.send(gateway, headers=token)[0], 403)
+        self.assertEqual(gateway.ask("GET", "/api/version", headers=token)[0], 403)
+        self.assertEqual(self.printer.keys, [None, None])
+        both = {"Authorization": "Bearer token for the gateway", "X-Api-Key": "secret"}
+        self.assertEqual(self.send(gateway, headers=both)[0], 201)
+        self.assertEqual(self.send(gateway, headers={**both, **token})[0], 403)
+        self.assertEqual(self.send(gateway, path="/printers/keyed/api/files/local", headers=token)[0], 201)
+        self.assertEqual(self.printer.keys[2:], ["secret", None, "secret"])
+
+    def test_no_field_goes_on_that_a_server_keeps_for_itself(self):
+        gateway = self.start()
+        others = [("root", "config"), ("checksum", "0" * 64), ("file.path", "/etc/passwd"), ("file.name", "x"),
+                  ("location", "sdcard"), ("select", "true"), ("noOverwrite", "true")]
+        for name in ["octo", "moon", "link"]:
+            self.assertEqual(self.send(gateway, path=f"/printers/{name}/api/files/local", more=others)[0], 201)
+        octo, moon, _ = (fields for _, _, _, fields in self.printer.uploads)
+        self.assertEqual(octo, {"print": "false", "path": "", "select": "true", "noOverwrite": "true"})
+        self.assertEqual(moon, {"print": "false", "path": "", "root": "gcodes"})
 
     def test_each_kind_of_server_in_its_own_words(self):
         gateway = self.start()

@@ -19,10 +19,12 @@ def parts_of(body, content_type):
 
 
 class PrinterStandIn:
-    """One server on a port of its own. `uploads` has what came; `fail` and `delay` make it answer badly or late."""
+    """One server on a port of its own. `uploads` has what came, `keys` what each request showed; `fail` and `delay` make it
+    answer badly or late."""
 
     def __init__(self, key="secret"):
         self.uploads = []
+        self.keys = []
         self.fail = 0
         self.delay = 0
         stand_in = self
@@ -52,6 +54,7 @@ class PrinterStandIn:
 
             def handled(self):
                 """Whether all has been said: a key that is wrong, a fault that was asked for."""
+                stand_in.keys.append(self.headers.get("X-Api-Key"))
                 time.sleep(stand_in.delay)
                 if self.headers.get("X-Api-Key") != key:
                     self.answer(403, {"error": "You don't have the permission"})

@@ -69,6 +69,13 @@ class Security(unittest.TestCase):
         with open(gateway.log.name, encoding="utf-8") as log:
             self.assertNotIn(TOKEN, log.read())
 
+    def test_with_tokens_any_name_of_the_gateway_will_do(self):
+        gateway = self.start("--token_file=" + self.path("tokens"))
+        headers = {"Authorization": "Bearer " + TOKEN, "Host": "farm.example"}
+        self.assertEqual(gateway.ask("POST", "/v1/gcode", PART, headers)[0], 200)
+        strict = self.start("--token_file=" + self.path("tokens"), "--allowed_hosts=other.example")
+        self.assertEqual(strict.ask("POST", "/v1/gcode", PART, headers)[0], 421)
+
     def test_a_refused_caller_sends_nothing_into_the_spool(self):
         gateway = self.start("--token_file=" + self.path("tokens"))
         status, _, body = gateway.ask("POST", "/v1/gcode", PART)

@@ -98,6 +98,18 @@ TEST(Authenticator, TokensNameTheCaller) {
   }
 }
 
+TEST(Authenticator, KnowsATokenWhereverItIsShown) {
+  const TokenFile file(Line("farm-1", "sesame"));
+  ASSERT_OK_AND_ASSIGN(const auto auth,
+                       Authenticator::Make({file.path(), {}}, [](const absl::Status&) {}));
+  ASSERT_OK_AND_ASSIGN(const auto open, Authenticator::Make({}, [](const absl::Status&) {}));
+
+  EXPECT_TRUE(auth->IsToken("sesame"));
+  EXPECT_FALSE(auth->IsToken("a printer's key"));
+  EXPECT_FALSE(auth->IsToken(""));
+  EXPECT_FALSE(open->IsToken("sesame"));
+}
+
 TEST(Authenticator, FileIsReadAgainWhenItChanges) {
   const TokenFile file(Line("farm", "old"));
   std::vector<absl::Status> reloads;

@@ -1,0 +1,57 @@
+#include "server/ops/daemon.h"
+
+#include <sys/resource.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <thread>
+#include <utility>
+
+namespace traverse {
+namespace {
+
+// Each connection takes a file, and whatever else is under way may too.
+void RaiseFileLimit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+}  // namespace
+
+Daemon::Daemon(std::string name, int also_ends) : name_(std::move(name)), also_ends_(also_ends) {
+  sigemptyset(&signals_);
+  for (const int one : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals_, one);
+  if (also_ends != 0) sigaddset(&signals_, also_ends);
+  pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+  signal(SIGPIPE, SIG_IGN);
+  RaiseFileLimit();
+}
+
+int Daemon::Fail(const absl::Status& status) const {
+  std::fprintf(stderr, "%s: %s\n", name_.c_str(), std::string(status.message()).c_str());
+  return absl::IsInvalidArgument(status) ? kExitUsage : kExitStart;
+}
+
+int Daemon::WaitForEnd(JobLog& log, const std::function<void()>& reload) const {
+  int signal = SIGHUP;
+  while (true) {
+    sigwait(&signals_, &signal);
+    if (signal != SIGHUP) return signal;
+    reload();
+    log.Event(JobLog::Level::kInfo, "reloaded", {{"signal", strsignal(signal)}});
+  }
+}
+
+void Daemon::BeginDraining(int signal, JobLog& log) const {
+  log.Event(JobLog::Level::kInfo, "draining", {{"signal", strsignal(signal)}});
+  std::thread([signals = signals_, also_ends = also_ends_] {
+    int second = SIGHUP;
+    while (second == SIGHUP || second == also_ends) sigwait(&signals, &second);
+    std::_Exit(128 + second);
+  }).detach();
+}
+
+}  // namespace traverse
