@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A real Prometheus scrapes loaded servers: every panel and every recorded series has data.
+"""A real Prometheus scrapes loaded servers and a gateway: every panel and every recorded series has data.
 
 With TRAVERSE_PICTURE=FILE.svg in the environment the picture of the dashboard is kept there, of TRAVERSE_PICTURE_SECONDS of load.
 """
@@ -21,6 +21,10 @@ import example_cases
 import fleet
 import jobs
 
+sys.path.append(str(support.SOURCE / "tests/client/gateway"))
+import gateway_process  # noqa: E402
+from printer_stand_in import PrinterStandIn  # noqa: E402
+
 yaml = support.module("yaml", "python3-yaml")
 
 MONITORING = support.DEPLOY / "monitoring"
@@ -29,10 +33,11 @@ MONITORING = support.DEPLOY / "monitoring"
 class Prometheus(support.Process):
     """The configuration of compose.yaml with the fleet's addresses, scraping each second."""
 
-    def __init__(self, folder, servers, stats):
+    def __init__(self, folder, servers, stats, gateway):
         config = yaml.safe_load((support.DEPLOY / "compose/prometheus.yml").read_text())
         config["global"] = {"scrape_interval": "1s", "evaluation_interval": "1s"}
-        targets = {"traverse": [f"127.0.0.1:{server.metrics_port}" for server in servers], "balancer": [stats]}
+        targets = {"traverse": [f"127.0.0.1:{server.metrics_port}" for server in servers], "balancer": [stats],
+                   "traverse-gateway": [f"127.0.0.1:{gateway.metrics_port}"]}
         for scrape in config["scrape_configs"]:
             scrape["static_configs"][0]["targets"] = targets[scrape["job_name"]]
         (folder / "rules").mkdir()
@@ -104,14 +109,41 @@ class Observability(unittest.TestCase):
             time.sleep(0.02)
         return submit, any(info.lower_bound for info in infos)
 
+    def gateway(self, servers):
+        """A gateway before the servers, and a printer behind it."""
+        support.binary("TRAVERSE_GATEWAY")
+        printer = PrinterStandIn()
+        self.addCleanup(printer.close)
+        config = self.folder / "printers.json"
+        config.write_text(json.dumps({"default": "octo", "printers": [{"name": "octo", "url": printer.url}]}))
+        addresses = ",".join(server.address for server in servers)
+        gateway = gateway_process.Gateway(f"--server={addresses}", f"--printers={config}")
+        self.addCleanup(gateway.close)
+        return gateway
+
+    def files(self, gateway):
+        """One file after the other, to whoever sent it and to the printer."""
+        part = gateway_process.lines_of_infill(3)
+        form, headers = gateway_process.form([("print", "false"), ("file", "part.gcode", part)])
+
+        def submit():
+            if gateway.ask("POST", "/v1/gcode?strategy=greedy", part)[0] != 200:
+                raise AssertionError("a file was refused")
+            if gateway.ask("POST", "/api/files/local", form, {**headers, "X-Api-Key": "secret"})[0] != 201:
+                raise AssertionError("an upload was refused")
+            time.sleep(0.1)
+        return submit
+
     def test_every_panel_and_every_recorded_series_has_data(self):
         dashboard = json.loads((MONITORING / "dashboard/traverse.json").read_text())
         recorded = re.findall(r"record: (\S+)", (MONITORING / "rules/recording.yml").read_text())
         panels = [(panel["title"], concrete(target["expr"])) for panel in dashboard["panels"] if panel["type"] != "row"
                   for target in panel["targets"]]
-        with fleet.Fleet() as servers, Prometheus(self.folder, servers.servers, servers.stats) as prometheus:
+        with fleet.Fleet() as servers:
+            gateway = self.gateway(servers.servers)
+            prometheus = self.enterContext(Prometheus(self.folder, servers.servers, servers.stats, gateway))
             submit, bounds = self.load(servers.address)
-            with fleet.Load(submit, threads=2):
+            with fleet.Load(submit, threads=2), fleet.Load(self.files(gateway), threads=1):
                 missing = list(recorded) + panels
                 end = time.monotonic() + 40
                 while missing and time.monotonic() < end:
@@ -124,7 +156,7 @@ class Observability(unittest.TestCase):
 
         self.assertEqual([], firing)
         self.assertEqual({"up"}, set(active.values()))
-        self.assertEqual(4, len(active))
+        self.assertEqual(5, len(active))
         print(f"{len(panels)} queries of the dashboard and {len(recorded)} recorded series have data")
 
     def has_data(self, prometheus, one, bounds):

@@ -2,7 +2,7 @@
 //
 //   npm ci && node build.mjs
 //
-// Five rows: what the fleet is worth, traffic, latency, saturation, quality. Queries of the whole fleet
+// Six rows: what the fleet is worth, traffic, latency, saturation, quality, files through gateways. Queries of the whole fleet
 // use the recording rules of ../rules/recording.yml, those by server the metrics themselves.
 import { writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
@@ -154,8 +154,25 @@ const quality = [
     { instant: true, format: prometheus.PromQueryFormat.Table }),
 ];
 
+const gateway = [
+  chart("Files by outcome", "Files worked on per second. Refused are those of no slicer and those that would not print the same.", "ops",
+    [[`sum by (outcome) (rate(traverse_gateway_files_total{${SERVERS}}[${RATE}]))`, "{{outcome}}"]], { stacked: true }),
+  chart("Files for printers", "Uploads per second, by what went on to the printer and why.", "ops",
+    [[`sum by (printer, outcome, reason) (rate(traverse_gateway_uploads_total{${SERVERS}}[${RATE}]))`, "{{printer}} {{outcome}} {{reason}}"]],
+    { stacked: true }),
+  chart("Time of requests, quantiles", "From a request's head to its answer; of files the upload and the wait are in it.", "s",
+    quantiles("traverse_gateway_request_seconds")),
+  chart("Files under way", "Requests with files, and those of them that wait for a worker; the autoscaler's measure.", "none",
+    [[`traverse_gateway_requests_in_flight{${SERVERS}}`, "{{instance}}"],
+     [`traverse_gateway_requests_waiting{${SERVERS}}`, "{{instance}}, waiting"]]),
+  chart("Spool", "Bytes of uploads and answers on disk.", "bytes",
+    [[`traverse_gateway_spool_bytes{${SERVERS}}`, "{{instance}}"]]),
+  chart("Print time saved", "Hours of estimated print time saved per hour, of all files rewritten.", "none",
+    [[`sum(rate(traverse_gateway_print_seconds_saved_total{${SERVERS}}[${RATE}]))`, "saved"]]),
+];
+
 const board = new dashboard.DashboardBuilder("Traverse")
-  .uid("traverse-fleet").description("Route optimisation for a print farm: worth, traffic, latency, saturation, quality.")
+  .uid("traverse-fleet").description("Route optimisation for a print farm: worth, traffic, latency, saturation, quality, files.")
   .tags(["traverse", "3d-printing"]).timezone("browser").refresh("30s").time({ from: "now-3h", to: "now" })
   .tooltip(dashboard.DashboardCursorSync.Crosshair)
   .withVariable(new dashboard.DatasourceVariableBuilder("datasource").label("Data source").type("prometheus"))
@@ -170,7 +187,8 @@ const board = new dashboard.DashboardBuilder("Traverse")
 
 let id = 0;
 for (const [title, panels] of Object.entries({
-  "Worth": worth, "Traffic": traffic, "Latency": latency, "Saturation": saturation, "Quality": quality })) {
+  "Worth": worth, "Traffic": traffic, "Latency": latency, "Saturation": saturation, "Quality": quality,
+  "Gateway": gateway })) {
   board.withRow(new dashboard.RowBuilder(title).id(++id));
   for (const panel of panels) board.withPanel(panel.id(++id));
 }
