@@ -64,12 +64,11 @@ absl::StatusOr<Request> ParseRequest(const Flags& flags) {
   return request;
 }
 
-// The parts that come with the program: in the source tree, or installed beside it.
-std::string FindParts() {
+// The parts in `folder` or above it: in the source tree, or installed. Empty if there are none.
+std::string FindPartsAbove(std::filesystem::path folder) {
   namespace fs = std::filesystem;
   std::error_code ignored;
-  fs::path above = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  while (!above.empty()) {
+  for (fs::path above = std::move(folder); !above.empty();) {
     for (const char* below : {"share/traverse/parts", "tests/bench/instances"}) {
       if (fs::exists(above / below / "part1.damat", ignored)) return (above / below).string();
     }
@@ -77,6 +76,15 @@ std::string FindParts() {
     above = above.parent_path();
   }
   return "";
+}
+
+// The parts that come with the program; of one that was copied elsewhere, those of the source tree
+// that it is called in.
+std::string FindParts() {
+  std::error_code ignored;
+  std::string found =
+      FindPartsAbove(std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path());
+  return found.empty() ? FindPartsAbove(std::filesystem::current_path(ignored)) : found;
 }
 
 // Reads the parts and runs what is planned.
@@ -184,7 +192,9 @@ Outcome RunReproduce(const Flags& flags) {
   if (!request.ok()) return UsageFault(request.status());
   if (request->parts.empty()) request->parts = FindParts();
   if (request->parts.empty()) {
-    return UsageFault("no parts beside the program: say where they are with --parts=FOLDER");
+    return UsageFault(
+        "no parts beside the program or here: --parts=FOLDER says where they are, in the sources "
+        "tests/bench/instances");
   }
   Expected<Service> opened = Service::Open(flags);
   if (Outcome* outcome = std::get_if<Outcome>(&opened)) return *outcome;

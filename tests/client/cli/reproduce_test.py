@@ -4,6 +4,7 @@ The environment variable TRAVERSE names the binary.
 """
 import os
 import pathlib
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -41,6 +42,20 @@ class Reproduce(unittest.TestCase):
             results.write_text("{}\n{}\n", encoding="utf-8")
             broken = reproduce(f"--results={results}", "--source=paper")
             self.assertEqual((broken.returncode, broken.stderr.strip()), (1, f"{results}:1: no outcome of a run"))
+
+    def test_a_program_copied_elsewhere_finds_the_parts_of_the_sources_it_is_called_in(self):
+        sources = pathlib.Path(__file__).resolve().parents[3]
+        with tempfile.TemporaryDirectory() as folder:
+            copy = shutil.copy(TRAVERSE, folder)
+
+            def ask(place, *arguments):
+                return subprocess.run([copy, "reproduce", *TINY, "--source=paper", "--quiet", *arguments], cwd=place,
+                                      capture_output=True, text=True, check=False, timeout=300)
+            self.assertEqual(ask(sources / "engine").returncode, 0)
+            lost = ask(folder)
+            self.assertEqual(lost.returncode, 2)
+            self.assertIn("--parts=FOLDER says where they are, in the sources tests/bench/instances", lost.stderr)
+            self.assertEqual(ask(folder, f"--parts={sources}/tests/bench/instances").returncode, 0)
 
     def test_says_what_is_wrong(self):
         self.assertEqual(reproduce("--source=both").returncode, 2)
