@@ -2,27 +2,22 @@
 
 #include <grpc/support/log.h>
 #include <signal.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "server/ops/daemon.h"
 #include "server/server.h"
 #include "server/server_flags.h"
 #include "server/version.h"
 
 namespace traverse {
 namespace {
-
-// Exit codes.
-constexpr int kExitStart = 1;
-constexpr int kExitUsage = 2;
 
 // What the process sends itself when its port is lost.
 constexpr int kPortLost = SIGUSR1;
@@ -40,73 +35,25 @@ void WatchGrpcLog() {
   });
 }
 
-// As many as the system allows this process, for each connection takes one.
-void RaiseFileLimit() {
-  rlimit limit{};
-  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
-  limit.rlim_cur = limit.rlim_max;
-  setrlimit(RLIMIT_NOFILE, &limit);
-}
-
-// The signals that mean something. Blocked in all threads, they are only seen where they are waited
-// for.
-sigset_t BlockSignals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGHUP);
-  sigaddset(&signals, kPortLost);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  signal(SIGPIPE, SIG_IGN);
-  return signals;
-}
-
-int Fail(const absl::Status& status, int exit_code) {
-  std::fprintf(stderr, "traverse-server: %s\n", std::string(status.message()).c_str());
-  return exit_code;
-}
-
-// Waits for a signal that ends the server, and returns it.
-int WaitForEnd(const sigset_t& signals, Server& server) {
-  int signal = SIGHUP;
-  while (true) {
-    sigwait(&signals, &signal);
-    if (signal != SIGHUP) return signal;
-    server.Reload();
-    server.core().log->Event(JobLog::Level::kInfo, "reloaded", {{"signal", strsignal(signal)}});
-  }
-}
-
-int Run() {
-  const sigset_t signals = BlockSignals();
+int Run(const Daemon& daemon) {
   WatchGrpcLog();
-  RaiseFileLimit();
   absl::StatusOr<std::unique_ptr<Server>> server = Server::Start(OptionsFromFlags());
-  if (!server.ok()) {
-    return Fail(server.status(),
-                absl::IsInvalidArgument(server.status()) ? kExitUsage : kExitStart);
-  }
+  if (!server.ok()) return daemon.Fail(server.status());
   std::printf("listening on port %d\n", (*server)->port());
   if ((*server)->metrics_port() != 0)
     std::printf("metrics on port %d\n", (*server)->metrics_port());
   std::fflush(stdout);
-  JobLog& log = *(*server)->core().log;
+  JobLog& log = *(*server)->core().files.log;
   log.Event(JobLog::Level::kInfo, "started",
             {{"version", kVersion}, {"port", absl::StrCat((*server)->port())}});
 
-  const int signal = WaitForEnd(signals, **server);
+  const int signal = daemon.WaitForEnd(log, [&] { (*server)->Reload(); });
   const bool port_lost = signal == kPortLost;
   if (port_lost) {
     log.Event(JobLog::Level::kError, "port_lost",
               {{"message", "no file descriptor for a new connection; ends, to be started again"}});
   }
-  log.Event(JobLog::Level::kInfo, "draining", {{"signal", strsignal(signal)}});
-  std::thread([signals] {
-    int second = kPortLost;
-    while (second == kPortLost || second == SIGHUP) sigwait(&signals, &second);
-    std::_Exit(128 + second);
-  }).detach();
+  daemon.BeginDraining(signal, log);
   const bool all_done = (*server)->Drain(DrainTimeout());
   log.Event(all_done ? JobLog::Level::kInfo : JobLog::Level::kWarning, "stopped",
             {{"jobs_cut_off", all_done ? "no" : "yes"}});
@@ -119,8 +66,9 @@ int Run() {
 int main(int argc, char** argv) {
   const absl::StatusOr<std::string> text =
       traverse::ReadFlags(std::vector<std::string>(argv + 1, argv + argc));
-  if (!text.ok()) return traverse::Fail(text.status(), traverse::kExitUsage);
-  if (text->empty()) return traverse::Run();
+  const traverse::Daemon daemon("traverse-server", traverse::kPortLost);
+  if (!text.ok()) return daemon.Fail(text.status());
+  if (text->empty()) return traverse::Run(daemon);
   std::fputs(text->c_str(), stdout);
   return 0;
 }

@@ -130,11 +130,12 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   } catch (const std::exception& error) {
     return absl::UnavailableError(error.what());
   }
-  if (absl::Status status = server->core_.StartAuth(options.service.auth); !status.ok()) {
+  if (absl::Status status = server->core_.files.StartAuth(options.service.auth); !status.ok()) {
     return status;
   }
   if (options.tls.enabled()) {
-    if (absl::Status status = server->core_.StartTls(options.tls); !status.ok()) return status;
+    if (absl::Status status = server->core_.files.StartTls(options.tls); !status.ok())
+      return status;
   } else if (!options.listen.empty()) {
     if (absl::Status status = CheckPlaintext(options.listen, options.insecure); !status.ok()) {
       return status;
@@ -142,7 +143,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   }
   if (absl::Status status = server->Build(options); !status.ok()) return status;
   if (!options.tls.enabled() && options.service.auth.token_file.empty()) return server;
-  server->look_.emplace(kLookEvery, [core = &server->core_] { core->Reload(/*anyway=*/false); });
+  server->look_.emplace(kLookEvery, [core = &server->core_] { core->files.Reload(/*anyway=*/false); });
   return server;
 }
 
@@ -186,8 +187,8 @@ absl::Status Server::Build(const ServerOptions& options) {
 
 absl::Status Server::AddPort(const ServerOptions& options, grpc::ServerBuilder& builder) {
   const std::shared_ptr<grpc::ServerCredentials> credentials =
-      core_.certificates == nullptr ? grpc::InsecureServerCredentials()
-                                    : MakeTlsCredentials(core_.certificates);
+      core_.files.certificates == nullptr ? grpc::InsecureServerCredentials()
+                                          : MakeTlsCredentials(core_.files.certificates);
   if (absl::StartsWith(options.listen, "unix")) {
     builder.AddListeningPort(options.listen, credentials, &port_);
     return absl::OkStatus();

@@ -80,7 +80,7 @@ class Server {
   ServiceCore& core() { return core_; }
 
   // Opens the log anew and reads tokens and certificates, as somebody may have changed them.
-  void Reload() { core_.Reload(/*anyway=*/true); }
+  void Reload() { core_.files.Reload(/*anyway=*/true); }
 
  private:
   explicit Server(const ServerOptions& options);

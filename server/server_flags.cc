@@ -77,11 +77,7 @@ namespace {
 
 // Flags that are numbers with a least value.
 absl::Status CheckRanges() {
-  const struct {
-    const char* name;
-    int64_t value;
-    int64_t least;
-  } numbers[] = {
+  const absl::Status numbers = CheckLeastValues({
       {"threads", absl::GetFlag(FLAGS_threads), 0},
       {"worker_nice", absl::GetFlag(FLAGS_worker_nice), 0},
       {"max_message_bytes", absl::GetFlag(FLAGS_max_message_bytes), 1024},
@@ -103,24 +99,15 @@ absl::Status CheckRanges() {
       {"keepalive_time", absl::ToInt64Milliseconds(absl::GetFlag(FLAGS_keepalive_time)), 1000},
       {"idle_timeout", absl::ToInt64Milliseconds(absl::GetFlag(FLAGS_idle_timeout)), 100},
       {"keepalive_timeout", absl::ToInt64Milliseconds(absl::GetFlag(FLAGS_keepalive_timeout)), 100},
-  };
-  for (const auto& number : numbers) {
-    if (number.value < number.least) {
-      return BadFlag(number.name, absl::StrCat(number.value, " is below ", number.least));
-    }
-  }
-  if (absl::GetFlag(FLAGS_drain_timeout) < absl::ZeroDuration()) {
-    return BadFlag("drain_timeout", "below 0");
-  }
+  });
+  if (!numbers.ok()) return numbers;
   if (absl::GetFlag(FLAGS_watchdog) <= absl::ZeroDuration())
     return BadFlag("watchdog", "not above 0");
   if (absl::GetFlag(FLAGS_max_wait) <= absl::ZeroDuration())
     return BadFlag("max_wait", "not above 0");
   if (!(absl::GetFlag(FLAGS_max_slowdown) >= 1)) return BadFlag("max_slowdown", "below 1");
-  if (!absl::GetFlag(FLAGS_allowed_clients).empty() && absl::GetFlag(FLAGS_tls_client_ca).empty()) {
-    return BadFlag("allowed_clients", "needs --tls_client_ca");
-  }
-  return absl::OkStatus();
+  return CheckDaemonFlags(absl::GetFlag(FLAGS_drain_timeout), absl::GetFlag(FLAGS_allowed_clients),
+                          absl::GetFlag(FLAGS_tls_client_ca));
 }
 
 FlagProgram Program() {

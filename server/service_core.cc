@@ -41,17 +41,18 @@ AdmissionLimits WithWorkers(AdmissionLimits limits, int workers) {
 
 ServiceCore::ServiceCore(const ServiceOptions& options)
     : limits(options.limits),
-      log(options.log ? std::make_unique<JobLog>(options.log_path) : std::make_unique<JobLog>()),
+      files(options.log ? std::make_unique<JobLog>(options.log_path) : std::make_unique<JobLog>(),
+            [this](const std::string& what) { metrics.CountReloadFailure(what); }),
       admission(WithWorkers(options.admission, std::max(1, options.threads)),
                 [this](Refusal refusal) { metrics.CountRefusal(refusal); }),
       pool(options.threads, WorkerPool::ThreadCpuSeconds, options.worker_nice),
       wakes_(WakeLateness::kPeriod, [this] { wake_lateness.Tick(Budget::Clock::now()); }) {
   if (options.watchdog != absl::InfiniteDuration()) {
     watchdog_.emplace(pool, options.watchdog, [this](const SilentTask& task) {
-      log->Event(JobLog::Level::kError, "worker_silent",
-                 {{"job_id", task.job},
-                  {"caller", task.caller},
-                  {"seconds", absl::StrFormat("%.1f", task.seconds)}});
+      files.log->Event(JobLog::Level::kError, "worker_silent",
+                       {{"job_id", task.job},
+                        {"caller", task.caller},
+                        {"seconds", absl::StrFormat("%.1f", task.seconds)}});
     });
   }
   if (limits.idle_timeout == absl::InfiniteDuration()) return;
@@ -92,38 +93,6 @@ std::vector<std::shared_ptr<JobRun>> ServiceCore::Runs() const {
   std::vector<std::shared_ptr<JobRun>> runs;
   for (const auto& [key, call] : runs_) runs.push_back(call.run);
   return runs;
-}
-
-void ServiceCore::OnReload(const std::string& what, const absl::Status& status) {
-  if (!status.ok()) metrics.CountReloadFailure(what);
-  log->Event(status.ok() ? JobLog::Level::kInfo : JobLog::Level::kError, what + "_reloaded",
-             {{"result", status.ok() ? "ok" : std::string(status.message())}});
-}
-
-absl::Status ServiceCore::StartAuth(const AuthOptions& options) {
-  absl::StatusOr<std::unique_ptr<Authenticator>> made = Authenticator::Make(
-      options, [this](const absl::Status& status) { OnReload("tokens", status); });
-  if (!made.ok()) return made.status();
-  auth = *std::move(made);
-  return absl::OkStatus();
-}
-
-absl::Status ServiceCore::StartTls(const TlsOptions& options) {
-  absl::StatusOr<std::shared_ptr<CertificateStore>> made = CertificateStore::Make(
-      options, [this](const absl::Status& status) { OnReload("certificate", status); });
-  if (!made.ok()) return made.status();
-  certificates = *std::move(made);
-  return absl::OkStatus();
-}
-
-void ServiceCore::Reload(bool anyway) {
-  if (anyway && !log->Reopen()) {
-    metrics.CountReloadFailure("log");
-    log->Event(JobLog::Level::kError, "log_reopened",
-               {{"result", "the file cannot be opened; the one that was open stays"}});
-  }
-  auth->Look(anyway);
-  if (certificates != nullptr) certificates->Look(anyway);
 }
 
 void ServiceCore::Register(const std::shared_ptr<JobRun>& run, const std::string& peer) {
@@ -189,7 +158,7 @@ void ServiceCore::WatchMemory() {
   }
   if (share <= kCutShare) return;
   if (connections_ != nullptr && connections_->CutLargest()) {
-    log->Event(JobLog::Level::kWarning, "connection_cut", {{"message", "memory is short"}});
+    files.log->Event(JobLog::Level::kWarning, "connection_cut", {{"message", "memory is short"}});
   }
 }
 
@@ -213,9 +182,9 @@ std::string ServiceCore::MetricsText() {
     gauges.connections = connections_->open();
     gauges.connections_cut = static_cast<double>(connections_->cut());
   }
-  gauges.log_lines_lost = static_cast<double>(log->lost_lines());
-  if (certificates != nullptr) {
-    const std::shared_ptr<const CertificateSet> set = certificates->current();
+  gauges.log_lines_lost = static_cast<double>(files.log->lost_lines());
+  if (files.certificates != nullptr) {
+    const std::shared_ptr<const CertificateSet> set = files.certificates->current();
     const absl::Time now = absl::Now();
     gauges.certificate_expiry_seconds = absl::ToDoubleSeconds(set->expiry - now);
     if (!set->client_ca.empty()) {

@@ -22,8 +22,8 @@
 #include "server/jobs/return_lag.h"
 #include "server/jobs/worker_pool.h"
 #include "server/net/connections.h"
-#include "server/ops/job_log.h"
 #include "server/ops/metrics.h"
+#include "server/ops/operator_files.h"
 #include "server/ops/periodic.h"
 #include "server/ops/watchdog.h"
 
@@ -60,15 +60,6 @@ class ServiceCore {
   // Throws what JobLog throws.
   explicit ServiceCore(const ServiceOptions& options);
 
-  // Sets up `auth` and `certificates`; before the first call. Errors as of Authenticator::Make and
-  // CertificateStore::Make.
-  absl::Status StartAuth(const AuthOptions& options);
-  absl::Status StartTls(const TlsOptions& options);
-
-  // Reads anew what operators give in files, tokens and certificates, if it has changed; with
-  // `anyway` in any case, and the file of the log is opened anew.
-  void Reload(bool anyway);
-
   // The calls whose jobs were let in, until gRPC is done with them.
   void Register(const std::shared_ptr<JobRun>& run, const std::string& peer);
   void Unregister(const std::shared_ptr<JobRun>& run, const std::string& peer);
@@ -104,19 +95,14 @@ class ServiceCore {
 
   const JobLimits limits;
   Metrics metrics;
-  std::unique_ptr<JobLog> log;
+  OperatorFiles files;
   Admission admission;
-  std::unique_ptr<Authenticator> auth;
-  std::shared_ptr<CertificateStore> certificates;  // null without TLS
-  std::atomic<int64_t> queue_layers{0};            // accepted and not yet solved
+  std::atomic<int64_t> queue_layers{0};  // accepted and not yet solved
   ReturnLag return_lag;
   WakeLateness wake_lateness;
 
  private:
   std::vector<std::shared_ptr<JobRun>> Runs() const;
-
-  // Tells of the reload of tokens or of the certificate.
-  void OnReload(const std::string& what, const absl::Status& status);
 
   // Refuses, then cuts and ends, where the process has more memory than it should.
   void WatchMemory();

@@ -17,8 +17,7 @@
 #include "client/gateway/work/file_worker.h"
 #include "client/gateway/work/work_queue.h"
 #include "server/access/auth.h"
-#include "server/access/certificates.h"
-#include "server/ops/job_log.h"
+#include "server/ops/operator_files.h"
 
 namespace traverse::gateway {
 
@@ -30,7 +29,7 @@ struct CoreOptions {
   WorkLimits work;
   AuthOptions auth;
   std::vector<std::string> allowed_hosts;  // names that IsOwnHost takes besides its own
-  std::string log_path;  // empty: stderr
+  std::string log_path;                    // empty: stderr
   bool log = true;
 };
 
@@ -42,24 +41,15 @@ struct Core {
                                                     std::shared_ptr<grpc::Channel> channel,
                                                     std::string token);
 
-  // Sets up `certificates`; before the first connection. Errors as of CertificateStore::Make.
-  absl::Status StartTls(const TlsOptions& tls);
-
-  // Reads anew what operators give in files, tokens and certificates, if it has changed; with
-  // `anyway` in any case, and the file of the log is opened anew.
-  void Reload(bool anyway);
-
   // The text of /metrics.
   std::string MetricsText();
 
-  // Tells of the reload of tokens or of the certificate.
-  void OnReload(const std::string& what, const absl::Status& status);
+  // Throws what JobLog throws.
+  explicit Core(const CoreOptions& made_with);
 
-  CoreOptions options;
-  std::unique_ptr<JobLog> log;
+  const CoreOptions options;
   GatewayMetrics metrics;
-  std::unique_ptr<Authenticator> auth;
-  std::shared_ptr<CertificateStore> certificates;  // null without TLS
+  OperatorFiles files;
   std::unique_ptr<Spool> spool;
   std::unique_ptr<OptimizerClient> client;
   std::unique_ptr<FileWorker> worker;

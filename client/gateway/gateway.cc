@@ -38,14 +38,15 @@ absl::StatusOr<std::unique_ptr<Gateway>> Gateway::Start(const GatewayOptions& op
     return absl::UnavailableError(error.what());
   }
   if (options.tls.enabled()) {
-    if (absl::Status status = gateway->core_->StartTls(options.tls); !status.ok()) return status;
+    if (absl::Status status = gateway->core_->files.StartTls(options.tls); !status.ok())
+      return status;
   }
   if (absl::Status status = gateway->OpenPrinters(options); !status.ok()) return status;
   gateway->router_ = std::make_unique<Router>(*gateway->core_, gateway->printers_.get());
   if (absl::Status status = gateway->StartGrpc(options); !status.ok()) return status;
   if (absl::Status status = gateway->StartHttp(options); !status.ok()) return status;
   gateway->look_.emplace(kLookEvery,
-                         [core = gateway->core_.get()] { core->Reload(/*anyway=*/false); });
+                         [core = gateway->core_.get()] { core->files.Reload(/*anyway=*/false); });
   return gateway;
 }
 
@@ -90,8 +91,9 @@ absl::Status Gateway::StartGrpc(const GatewayOptions& options) {
   builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE,
                              static_cast<int>(options.http.max_head_bytes));
   builder.AddListeningPort(options.listen,
-                           core_->certificates == nullptr ? grpc::InsecureServerCredentials()
-                                                          : MakeTlsCredentials(core_->certificates),
+                           core_->files.certificates == nullptr
+                               ? grpc::InsecureServerCredentials()
+                               : MakeTlsCredentials(core_->files.certificates),
                            &grpc_port_);
   builder.RegisterService(grpc_service_.get());
   grpc_ = builder.BuildAndStart();
@@ -104,7 +106,7 @@ absl::Status Gateway::StartGrpc(const GatewayOptions& options) {
 
 absl::Status Gateway::StartHttp(const GatewayOptions& options) {
   absl::StatusOr<std::unique_ptr<HttpServer>> http = HttpServer::Start(
-      {options.listen_http, core_->certificates, options.http},
+      {options.listen_http, core_->files.certificates, options.http},
       [router = router_.get()](const HttpRequest& request) { return router->Handle(request); });
   if (!http.ok()) return http.status();
   http_ = *std::move(http);

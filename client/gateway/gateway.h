@@ -65,7 +65,7 @@ class Gateway {
   bool Drain(absl::Duration timeout);
 
   // Opens the log anew and reads tokens and certificates, as somebody may have changed them.
-  void Reload() { core_->Reload(/*anyway=*/true); }
+  void Reload() { core_->files.Reload(/*anyway=*/true); }
 
   Core& core() { return *core_; }
 

@@ -55,7 +55,8 @@ ABSL_FLAG(absl::Duration, header_timeout, absl::Seconds(20),
 ABSL_FLAG(absl::Duration, idle_timeout, absl::Seconds(30),
           "A request is given up whose client neither sends nor reads anything for so long");
 ABSL_FLAG(int64_t, min_upload_rate, 4096,
-          "Bytes a second that an upload has to bring on the whole, beyond --idle_timeout");
+          "Bytes a second that an upload has to bring on the whole, and a client to take of an "
+          "answer, beyond --idle_timeout");
 ABSL_FLAG(absl::Duration, drain_timeout, absl::Seconds(30),
           "How long requests under way may go on after SIGTERM");
 ABSL_FLAG(std::string, log_file, "", "File to append the log to; empty: stderr");
@@ -91,11 +92,7 @@ FlagProgram Program() {
 }
 
 absl::Status CheckRanges() {
-  const struct {
-    const char* name;
-    int64_t value;
-    int64_t least;
-  } numbers[] = {
+  const absl::Status numbers = CheckLeastValues({
       {"threads", absl::GetFlag(FLAGS_threads), 0},
       {"workers", absl::GetFlag(FLAGS_workers), 0},
       {"max_requests", absl::GetFlag(FLAGS_max_requests), 1},
@@ -106,12 +103,8 @@ absl::Status CheckRanges() {
       {"max_connections", absl::GetFlag(FLAGS_max_connections), 1},
       {"max_header_bytes", absl::GetFlag(FLAGS_max_header_bytes), 1024},
       {"min_upload_rate", absl::GetFlag(FLAGS_min_upload_rate), 1},
-  };
-  for (const auto& number : numbers) {
-    if (number.value < number.least) {
-      return BadFlag(number.name, absl::StrCat(number.value, " is below ", number.least));
-    }
-  }
+  });
+  if (!numbers.ok()) return numbers;
   const struct {
     const char* name;
     absl::Duration value;
@@ -125,13 +118,8 @@ absl::Status CheckRanges() {
   for (const auto& time : times) {
     if (time.value <= absl::ZeroDuration()) return BadFlag(time.name, "not above 0");
   }
-  if (absl::GetFlag(FLAGS_drain_timeout) < absl::ZeroDuration()) {
-    return BadFlag("drain_timeout", "below 0");
-  }
-  if (!absl::GetFlag(FLAGS_allowed_clients).empty() && absl::GetFlag(FLAGS_tls_client_ca).empty()) {
-    return BadFlag("allowed_clients", "needs --tls_client_ca");
-  }
-  return absl::OkStatus();
+  return CheckDaemonFlags(absl::GetFlag(FLAGS_drain_timeout), absl::GetFlag(FLAGS_allowed_clients),
+                          absl::GetFlag(FLAGS_tls_client_ca));
 }
 
 absl::Status SetServers(GatewayOptions& options) {

@@ -133,6 +133,25 @@ std::string Help(const FlagProgram& program) {
 
 }  // namespace
 
+absl::Status CheckLeastValues(const std::vector<LeastValue>& numbers) {
+  for (const LeastValue& number : numbers) {
+    if (number.value < number.least) {
+      return BadFlag(number.name, absl::StrCat(number.value, " is below ", number.least));
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status CheckDaemonFlags(absl::Duration drain_timeout,
+                              const std::vector<std::string>& allowed_clients,
+                              const std::string& tls_client_ca) {
+  if (drain_timeout < absl::ZeroDuration()) return BadFlag("drain_timeout", "below 0");
+  if (!allowed_clients.empty() && tls_client_ca.empty()) {
+    return BadFlag("allowed_clients", "needs --tls_client_ca");
+  }
+  return absl::OkStatus();
+}
+
 absl::Status BadFlag(const std::string& name, const std::string& what) {
   return absl::InvalidArgumentError(absl::StrCat("--", name, ": ", what));
 }

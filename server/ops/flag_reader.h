@@ -5,11 +5,13 @@
 #ifndef TRAVERSE_SERVER_OPS_FLAG_READER_H_
 #define TRAVERSE_SERVER_OPS_FLAG_READER_H_
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/time/time.h"
 
 namespace traverse {
 
@@ -24,6 +26,22 @@ struct FlagProgram {
 // and --version; else an empty text. InvalidArgument, in one line with its place.
 absl::StatusOr<std::string> ReadProgramFlags(const FlagProgram& program,
                                              const std::vector<std::string>& arguments);
+
+// A flag that is a number with a least value.
+struct LeastValue {
+  const char* name;
+  int64_t value;
+  int64_t least;
+};
+
+// InvalidArgument `--name: -1 is below 0` for the first that is below.
+absl::Status CheckLeastValues(const std::vector<LeastValue>& numbers);
+
+// InvalidArgument if --drain_timeout is below 0, or --allowed_clients is given without
+// --tls_client_ca: flags that each daemon has.
+absl::Status CheckDaemonFlags(absl::Duration drain_timeout,
+                              const std::vector<std::string>& allowed_clients,
+                              const std::string& tls_client_ca);
 
 // InvalidArgument `--name: what`.
 absl::Status BadFlag(const std::string& name, const std::string& what);

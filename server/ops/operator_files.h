@@ -9,9 +9,9 @@
 #include <string>
 
 #include "absl/status/status.h"
-#include "server/jobs/auth.h"
+#include "server/access/auth.h"
+#include "server/access/certificates.h"
 #include "server/ops/job_log.h"
-#include "server/rpc/certificates.h"
 
 namespace traverse {
 

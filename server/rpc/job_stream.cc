@@ -399,7 +399,7 @@ void JobStream::End(const absl::Status& status) {
   core_.queue_layers -= static_cast<int64_t>(layers_queued_ - totals_.layers());
   core_.metrics.CountJob(record.strategy, status.code(), record.wall_seconds);
   core_.metrics.CountRpc(call_.method, status.code());
-  core_.log->Job(record);
+  core_.files.log->Job(record);
   if (const Clock::time_point now = Clock::now(); search_end_ && now > *search_end_) {
     core_.return_lag.Record(call_.caller, now - *search_end_);
   }

@@ -37,21 +37,21 @@ void RouteOptimizerService::Add(const char* name, grpc::internal::RpcMethod::Rpc
 RouteOptimizerService::Reactor* RouteOptimizerService::OptimizeBatch(
     grpc::CallbackServerContext* context) {
   CallInfo call = ReadCallInfo(*context, "OptimizeBatch");
-  const absl::Status authorized = Authorize(*context, *core_.auth, call);
+  const absl::Status authorized = Authorize(*context, *core_.files.auth, call);
   return BatchReactor::Start(core_, *context, std::move(call), authorized);
 }
 
 RouteOptimizerService::Reactor* RouteOptimizerService::Optimize(
     grpc::CallbackServerContext* context) {
   CallInfo call = ReadCallInfo(*context, "Optimize");
-  const absl::Status authorized = Authorize(*context, *core_.auth, call);
+  const absl::Status authorized = Authorize(*context, *core_.files.auth, call);
   return StreamReactor::Start(core_, *context, std::move(call), authorized);
 }
 
 RouteOptimizerService::Reactor* RouteOptimizerService::ListStrategies(
     grpc::CallbackServerContext* context) {
   CallInfo call = ReadCallInfo(*context, "ListStrategies");
-  const absl::Status authorized = Authorize(*context, *core_.auth, call);
+  const absl::Status authorized = Authorize(*context, *core_.files.auth, call);
   if (authorized.ok()) core_.OnCall(call.peer);
   return new ListStrategiesReactor(core_, authorized);
 }

@@ -53,7 +53,8 @@ void RecordFile(Core& core, const FileRecord& record, const absl::Status& status
                            {"outcome", outcome}};
   if (!status.ok()) fields.emplace_back("message", std::string(status.message()));
   if (status.ok() && summary != nullptr) fields.emplace_back("message", summary->text());
-  core.log->Event(status.ok() ? JobLog::Level::kInfo : JobLog::Level::kWarning, "file", fields);
+  core.files.log->Event(status.ok() ? JobLog::Level::kInfo : JobLog::Level::kWarning, "file",
+                        fields);
 }
 
 std::vector<std::pair<std::string, std::string>> SummaryHeaders(const v1::RewriteSummary& summary) {

@@ -48,7 +48,7 @@ bool IsForeign(const HttpRequest& request) {
 // Where a token or a certificate is asked for, a page with a name of its own for us has neither.
 bool IsForUs(const HttpRequest& request, const Core& core) {
   const std::vector<std::string>& allowed = core.options.allowed_hosts;
-  const bool guarded = core.certificates != nullptr || !core.options.auth.token_file.empty();
+  const bool guarded = core.files.certificates != nullptr || !core.options.auth.token_file.empty();
   return (guarded && allowed.empty()) || IsOwnHost(request.Header("host"), allowed);
 }
 
@@ -99,7 +99,7 @@ HttpDecision Router::Open(const HttpRequest& request, std::string& route) {
   if (IsForeign(request)) {
     return Problem(403, "a page of another site asks: that is not allowed here");
   }
-  absl::StatusOr<std::string> caller = CallerOf(request, *core_.auth);
+  absl::StatusOr<std::string> caller = CallerOf(request, *core_.files.auth);
   if (!caller.ok()) return ProblemOf(caller.status());
   return ForCaller(request, *caller, route);
 }

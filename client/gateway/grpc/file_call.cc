@@ -39,7 +39,7 @@ FileCall::FileCall(Core& core, grpc::CallbackServerContext& context, const std::
   if (info_.deadline) {
     deadline_ = began_ + absl::FromChrono(*info_.deadline - Budget::Clock::now());
   }
-  status_ = Authorize(context, *core_.auth, info_);
+  status_ = Authorize(context, *core_.files.auth, info_);
   if (!status_.ok()) return;
   absl::StatusOr<std::shared_ptr<WorkQueue::Place>> place = core_.queue->Enter(info_.caller);
   status_ = place.status();

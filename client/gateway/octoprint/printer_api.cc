@@ -150,7 +150,7 @@ HttpDecision PrinterApi::Handle(const HttpRequest& request, const std::string& c
 std::string PrinterApi::KeyFor(const Printer& printer, const HttpRequest& request) {
   if (!printer.api_key.empty()) return printer.api_key;
   std::string key = request.Header("x-api-key");
-  return core_.auth->IsToken(key) ? "" : key;
+  return core_.files.auth->IsToken(key) ? "" : key;
 }
 
 HttpDecision PrinterApi::HandleVersion(const HttpRequest& request, const std::string& caller,
@@ -241,7 +241,7 @@ void PrinterApi::Deliver(Delivery& delivery) {
   if (!why.ok() && !absl::IsAlreadyExists(why) && delivery.printer.refuse_on_failure) {
     core_.metrics.CountUpload(printer, "refused", kind);
     fields[3].second = "nothing";
-    core_.log->Event(JobLog::Level::kWarning, "upload", fields);
+    core_.files.log->Event(JobLog::Level::kWarning, "upload", fields);
     return delivery.reply->Send(
         Problem(422, absl::StrCat("not sent to the printer, which takes optimised files alone: ",
                                   why.message())));
@@ -258,7 +258,7 @@ void PrinterApi::Deliver(Delivery& delivery) {
   fields.emplace_back("upstream", answer.ok() ? absl::StrCat(answer->status)
                                               : std::string(answer.status().message()));
   const bool well = taken && (why.ok() || absl::IsAlreadyExists(why));
-  core_.log->Event(well ? JobLog::Level::kInfo : JobLog::Level::kWarning, "upload", fields);
+  core_.files.log->Event(well ? JobLog::Level::kInfo : JobLog::Level::kWarning, "upload", fields);
   Answer(delivery, answer);
 }
 
