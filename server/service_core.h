@@ -15,8 +15,6 @@
 #include "absl/status/status.h"
 #include "absl/time/time.h"
 #include "engine/base/mutex.h"
-#include "server/access/auth.h"
-#include "server/access/certificates.h"
 #include "server/jobs/admission.h"
 #include "server/jobs/job_run.h"
 #include "server/jobs/return_lag.h"

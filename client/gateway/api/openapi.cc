@@ -70,7 +70,7 @@ Json RewritePath() {
                    {"text/event-stream", {{"schema", {{"type", "string"}}}}},
                    {"text/html", {{"schema", {{"type", "string"}}}}}};
   Json responses = {{"200", ok}};
-  AddProblems(responses, {400, 401, 403, 408, 413, 415, 422, 429, 503, 504, 507});
+  AddProblems(responses, {400, 401, 403, 408, 413, 415, 421, 422, 429, 503, 504, 507});
   return {{"post",
            {{"operationId", "rewrite"},
             {"summary", "The same print with less travel."},
@@ -81,7 +81,7 @@ Json RewritePath() {
 
 Json InspectPath() {
   Json responses = {{"200", JsonAnswer("What is in the file.", "InspectResponse")}};
-  AddProblems(responses, {400, 401, 403, 408, 413, 415, 429, 503, 507});
+  AddProblems(responses, {400, 401, 403, 408, 413, 415, 421, 429, 503, 507});
   return {{"post",
            {{"operationId", "inspect"},
             {"summary", "What is in a file."},
@@ -92,7 +92,7 @@ Json InspectPath() {
 Json VerifyPath() {
   const Json binary = {{"type", "string"}, {"contentMediaType", "application/octet-stream"}};
   Json responses = {{"200", JsonAnswer("Whether they print the same.", "VerifyResponse")}};
-  AddProblems(responses, {400, 401, 403, 408, 413, 429, 503, 507});
+  AddProblems(responses, {400, 401, 403, 408, 413, 421, 429, 503, 507});
   return {{"post",
            {{"operationId", "verify"},
             {"summary", "Does the second file print exactly what the first one prints?"},

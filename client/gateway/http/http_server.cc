@@ -1,5 +1,6 @@
 #include "client/gateway/http/http_server.h"
 
+#include <algorithm>
 #include <atomic>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -171,6 +172,13 @@ class BeastServer : public HttpServer {
 };
 
 }  // namespace
+
+absl::Duration HttpLimits::TimeForPiece(absl::Duration elapsed, uint64_t bytes) const {
+  const absl::Duration allowed =
+      idle_time + absl::Seconds(static_cast<double>(bytes) /
+                                static_cast<double>(std::max<int64_t>(1, min_bytes_per_second)));
+  return std::clamp(allowed - elapsed, absl::ZeroDuration(), idle_time);
+}
 
 std::string HttpRequest::Header(std::string_view name) const {
   for (const auto& [key, value] : headers) {

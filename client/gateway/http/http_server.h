@@ -24,8 +24,11 @@ struct HttpLimits {
   absl::Duration head_time = absl::Seconds(20);  // for a head, the wait for it included
   absl::Duration idle_time = absl::Seconds(30);  // without a byte of the body, either way
 
-  // A body may take `idle_time`, and beyond it a second for each so many bytes.
+  // A body may take `idle_time`, and beyond it a second for each so many bytes, either way.
   int64_t min_bytes_per_second = 4096;
+
+  // How long the next piece of a body may take that began `elapsed` ago and has had `bytes`.
+  absl::Duration TimeForPiece(absl::Duration elapsed, uint64_t bytes) const;
 };
 
 struct HttpServerOptions {

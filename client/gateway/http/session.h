@@ -25,9 +25,11 @@
 #include <string>
 #include <utility>
 
+#include "absl/time/clock.h"
 #include "client/gateway/http/http_server.h"
 #include "client/gateway/http/message.h"
 #include "client/gateway/http/problem.h"
+#include "client/gateway/http/read_faults.h"
 #include "client/gateway/http/reply_queue.h"
 #include "client/gateway/http/target.h"
 #include "client/gateway/http/tls_context.h"
@@ -87,7 +89,6 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
   using Parser = http::request_parser<http::buffer_body>;
   static constexpr size_t kPiece = 65536;
 
@@ -131,13 +132,13 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     idle_ = false;
     if (error) {
       unread_ = true;
-      std::optional<HttpResponse> refusal = HeadFault(error);
+      std::optional<HttpResponse> refusal = HeadFault(error, timed_out_, buffer_.size() > 0);
       if (refusal) co_await Respond(*refusal, false, 11, false);
       co_return false;
     }
     const unsigned version = parser.get().version();
     const bool head_only = parser.get().method() == http::verb::head;
-    bool keep = parser.keep_alive();
+    bool keep = parser.keep_alive() && HasKnownCoding(parser);
     HttpDecision decision = Decide(parser);
     if (auto* sink = std::get_if<std::unique_ptr<BodySink>>(&decision)) {
       std::optional<HttpResponse> refusal = co_await ReadBody(parser, **sink);
@@ -154,24 +155,10 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     co_return co_await Respond(std::get<HttpResponse>(decision), head_only, version, keep);
   }
 
-  // What a head that cannot be read is answered; nothing if nobody waits for an answer.
-  std::optional<HttpResponse> HeadFault(boost::system::error_code error) const {
-    if (error == http::error::header_limit || error == http::error::buffer_overflow) {
-      return Problem(431, "the head of the request is too long");
-    }
-    if (timed_out_ && buffer_.size() > 0) {
-      return Problem(408, "the head of the request did not come in time");
-    }
-    if (error == http::error::end_of_stream || error.category() != HttpCategory()) {
-      return std::nullopt;
-    }
-    return Problem(400, "the request is no HTTP/1.1: " + error.message());
-  }
-
-  static const boost::system::error_category& HttpCategory() {
-    static const boost::system::error_category& category =
-        http::make_error_code(http::error::bad_method).category();
-    return category;
+  // Beast takes other codings for none at all: the body would be the next request.
+  static bool HasKnownCoding(const Parser& parser) {
+    const auto coding = parser.get()[http::field::transfer_encoding];
+    return coding.empty() || beast::iequals(coding, "chunked");
   }
 
   HttpDecision Decide(Parser& parser) {
@@ -180,6 +167,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     const auto text = [](beast::string_view view) { return std::string(view.data(), view.size()); };
     absl::StatusOr<Target> target = ParseTarget(text(head.target()));
     if (!target.ok()) return Problem(400, std::string(target.status().message()));
+    if (!HasKnownCoding(parser)) return Problem(501, "no transfer encoding is known but chunked");
     request.method = text(head.method_string());
     request.path = std::move(target->path);
     request.query = std::move(target->query);
@@ -205,38 +193,24 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
                                 net::redirect_error(net::use_awaitable, error));
     }
     std::vector<char> piece(parser.is_done() ? 0 : kPiece);
-    const Clock::time_point began = Clock::now();
-    int64_t received = 0;
+    const absl::Time began = absl::Now();
+    uint64_t received = 0;
     while (!error && !parser.is_done()) {
       auto& body = parser.get().body();
       body.data = piece.data();
       body.size = piece.size();
-      SetTimer(TimeForBody(Clock::now() - began, received));
+      SetTimer(limits_.TimeForPiece(absl::Now() - began, received));
       co_await http::async_read_some(stream_, buffer_, parser,
                                      net::redirect_error(net::use_awaitable, error));
       if (error == http::error::need_buffer) error = {};
       const size_t got = piece.size() - body.size;
-      received += static_cast<int64_t>(got);
+      received += got;
       if (got == 0) continue;
       std::optional<HttpResponse> refusal = sink.Take({piece.data(), got});
       if (refusal) co_return refusal;
     }
     if (!error) co_return std::nullopt;
-    if (timed_out_) {
-      co_return Problem(
-          408, "the body came too slowly: " + std::to_string(received) + " bytes until now");
-    }
-    co_return Problem(400, "the body was cut short after " + std::to_string(received) + " bytes");
-  }
-
-  // How long the next piece of a body may take.
-  absl::Duration TimeForBody(Clock::duration elapsed, int64_t received) const {
-    const absl::Duration allowed =
-        limits_.idle_time +
-        absl::Seconds(static_cast<double>(received) /
-                      static_cast<double>(std::max<int64_t>(1, limits_.min_bytes_per_second)));
-    return std::max(absl::ZeroDuration(),
-                    std::min(limits_.idle_time, allowed - absl::FromChrono(elapsed)));
+    co_return BodyFault(error, timed_out_, received);
   }
 
   std::function<void()> Waker() {
@@ -325,9 +299,11 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
   }
 
   net::awaitable<bool> WriteBody(const HttpBody& body, bool chunked) {
+    const absl::Time began = absl::Now();
     if (const std::string* text = std::get_if<std::string>(&body)) {
       for (size_t at = 0; at < text->size(); at += kPiece) {
         const size_t size = std::min(kPiece, text->size() - at);
+        SetTimer(limits_.TimeForPiece(absl::Now() - began, at));
         if (!co_await WritePiece(text->data() + at, size, chunked)) co_return false;
       }
       co_return true;
@@ -337,6 +313,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     for (uint64_t at = 0; at < file->size();) {
       const absl::StatusOr<size_t> got = file->ReadAt(at, piece.data(), piece.size());
       if (!got.ok() || *got == 0) co_return false;
+      SetTimer(limits_.TimeForPiece(absl::Now() - began, at));
       if (!co_await WritePiece(piece.data(), *got, chunked)) co_return false;
       at += *got;
     }
@@ -344,7 +321,6 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
   }
 
   net::awaitable<bool> WritePiece(const char* data, size_t size, bool chunked) {
-    SetTimer(limits_.idle_time);
     boost::system::error_code error;
     if (chunked) {
       co_await net::async_write(stream_, http::make_chunk(net::const_buffer(data, size)),

@@ -291,6 +291,30 @@ class Connections(unittest.TestCase):
             pass
         self.assertLess(time.time() - began, 8)
 
+    def test_an_answer_that_is_read_too_slowly_is_given_up(self):
+        gateway = Gateway("--idle_timeout=1s", "--min_upload_rate=4000000")
+        self.addCleanup(gateway.close)
+        body = lines_of_infill(16000)  # longer than what sockets hold
+        connection = socket.socket()
+        self.addCleanup(connection.close)
+        connection.settimeout(60)
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 65536)
+        connection.connect(("127.0.0.1", gateway.http_port))
+        connection.sendall(b"POST /v1/gcode?strategy=greedy&layers=1 HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % len(body))
+        connection.sendall(body)
+        connection.recv(1000)
+        try:
+            for _ in range(100):  # a little all the time
+                time.sleep(0.1)
+                if not connection.recv(10000):
+                    break
+        except ConnectionResetError:
+            pass
+        deadline = time.time() + 5
+        while gateway.metric("traverse_gateway_spool_bytes") > 0 and time.time() < deadline:
+            time.sleep(0.1)
+        self.assertEqual(gateway.metric("traverse_gateway_spool_bytes"), 0)
+
     def test_a_head_that_drips_is_given_up(self):
         connection = self.connect()
         connection.sendall(b"POST /v1/gcode HTTP/1.1\r\nHost: x\r\n")
@@ -345,6 +369,22 @@ class Connections(unittest.TestCase):
             connection = self.connect()
             connection.sendall(text)
             self.assertIn(b"400", self.status(connection), text)
+
+    def test_bodies_that_lie_about_their_pieces(self):
+        head = b"POST /v1/gcode HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: %s\r\n\r\n"
+        for coding, body, status, words in [
+                (b"chunked", b"-5\r\nhello\r\n0\r\n\r\n", b"400", b"chunks cannot be read after 0 bytes"),
+                (b"chunked", b"5\r\nhelloX0\r\n\r\n", b"400", b"chunks cannot be read after 5 bytes"),
+                (b"chunked", b"fffffffffffffffff\r\nG1\r\n", b"400", b"chunks cannot be read"),
+                (b"chunked", b"280000000\r\nG1", b"408", b"too slowly"),
+                (b"gzip, chunked", b"5\r\nhello\r\n0\r\n\r\n", b"501", b"chunked"),
+                (b"xchunked", b"GET /metrics HTTP/1.1\r\n\r\n", b"501", b"chunked")]:
+            connection = self.connect()
+            connection.sendall(head % coding + body)
+            text = self.answer(connection)
+            self.assertIn(status, text.split(b"\r\n")[0], body)
+            self.assertIn(words, text)
+            self.assertEqual(text.count(b"HTTP/1.1"), 1)
 
     def test_a_head_that_is_too_long(self):
         connection = self.connect()
