@@ -13,9 +13,10 @@
 //             route of an equal layer that began there is taken over, or the strategy resumes its
 //             route from there; the route is validated and delivered
 //
-// Strategies that look ahead anchor a layer together with the next one, from the first solutions of
-// both, so that it ends where the next one is cheap to begin. The next one's part of what is found
-// is what it is anchored from in turn: nothing of that work is lost. Whether there is a next layer
+// Strategies that look ahead anchor a layer together with the next one, so that it ends where the
+// next one is cheap to begin: first the layer alone, then the next one from its end, then both from
+// these, which is never longer. The next one's part of what is found is what it is anchored from in
+// turn: nothing of that work is lost. Whether there is a next layer
 // to look at is said by whoever adds the layer (JobLayer::more_follows): it is then waited for, and
 // else not looked at even if it is there. There is no use in it where the next layer begins at a
 // given place or at the cleaning point; the move to that counts in any case.

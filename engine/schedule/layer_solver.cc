@@ -242,29 +242,44 @@ Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, const Chai
     return solution;
   }
   Budget budget = LayerBudget(layer, AnchorShare());
-  const Route& from = BestToGoOnFrom(problem, layer, known, next);
-  if (next != nullptr) {
-    Route foreseen = next->first.route;
-    solution = strategy_->ResumeWithNext(problem, from, Problem(*next, Point()), foreseen, budget);
-    greedy = GreedyRoute(problem, layer);
-    if (RouteCost(problem, solution.route) <= RouteCost(problem, greedy) * (1 + kSameCost)) {
-      next->foreseen = std::move(foreseen);
-    } else {
-      next = nullptr;
-      if (as_predicted) return layer.first;
-      const Route& own = BestToGoOnFrom(problem, layer, known, nullptr);
-      solution = strategy_->Resume(problem, own, budget);
-    }
+  if (as_predicted && next != nullptr) {
+    solution = layer.first;
   } else {
+    const Route& from = BestToGoOnFrom(problem, layer, known, nullptr);
     solution = strategy_->traits().quick ? strategy_->Solve(problem, budget)
                                          : strategy_->Resume(problem, from, budget);
   }
+  if (next != nullptr) SolveWithNext(problem, layer, next, greedy, budget, solution);
   if (as_predicted && !solution.lower_bound) solution.lower_bound = layer.first.lower_bound;
   // What resuming does not tell of itself is as it was.
   solution.statistics.insert(layer.first.statistics.begin(), layer.first.statistics.end());
   // A search that the clock cut short stays so, whatever the polishing came to.
   if (layer.first.stop == StopReason::kTimeLimit) solution.stop = StopReason::kTimeLimit;
   return solution;
+}
+
+// Ends the layer with a view to the next one. `solution` regards the layer alone: from its end the
+// next one is solved first, as it would be without a look ahead, and what is found for both
+// together is never longer than that. `next` and `greedy` as in SolveFromTrueStart.
+void LayerSolver::SolveWithNext(const LayerProblem& problem, const ChainLayer& layer,
+                                ChainLayer*& next, Route& greedy, Budget& budget,
+                                Solution& solution) const {
+  const Point end = RouteEnd(layer.given.plan, solution.route, problem.start);
+  LayerProblem follows = Problem(*next, end);
+  follows.memory = &next->memory;
+  next->foreseen = next->first.route;
+  if (end != next->predicted_start) {
+    next->foreseen = strategy_->Resume(follows, next->foreseen, budget).route;
+  }
+  Route foreseen = next->foreseen;
+  Solution seeing = strategy_->ResumeWithNext(problem, solution.route, follows, foreseen, budget);
+  greedy = GreedyRoute(problem, layer);
+  if (RouteCost(problem, seeing.route) > RouteCost(problem, greedy) * (1 + kSameCost)) {
+    next = nullptr;
+    return;
+  }
+  solution = std::move(seeing);
+  next->foreseen = std::move(foreseen);
 }
 
 Route LayerSolver::GreedyRoute(const LayerProblem& problem, const ChainLayer& layer) const {

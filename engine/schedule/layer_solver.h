@@ -66,6 +66,8 @@ class LayerSolver {
                               const KnownRoute* known, const ChainLayer* next) const;
   Solution SolveFromTrueStart(const LayerProblem& problem, const ChainLayer& layer,
                               const KnownRoute* known, ChainLayer*& next, Route& greedy) const;
+  void SolveWithNext(const LayerProblem& problem, const ChainLayer& layer, ChainLayer*& next,
+                     Route& greedy, Budget& budget, Solution& solution) const;
   bool GreedyMayBeBetter(const LayerProblem& problem, const ChainLayer& layer,
                          const KnownRoute* known, const ChainLayer* next) const;
   void KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer, const KnownRoute* known,

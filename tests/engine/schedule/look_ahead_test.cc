@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -135,6 +136,37 @@ TEST(LookAhead, MakesNoLayerDearerThanGreedyDoes) {
     }
   }
   EXPECT_GT(dearer_than_need_be, 10);
+}
+
+// Octagons on a grid, every second column moved by half a step.
+Plan HexagonalGrid(int columns, int rows) {
+  IslandPaths island;
+  for (int i = 0; i < columns; ++i) {
+    for (int j = 0; j < rows; ++j) {
+      const double x = 10 * i + (j % 2 == 0 ? 0 : 5);
+      std::vector<Point> corners;
+      for (int k = 0; k < 8; ++k) {
+        corners.push_back({x + 3 * std::cos(k * M_PI / 4), 8.66 * j + 3 * std::sin(k * M_PI / 4)});
+      }
+      island.contours.push_back(MakeContour(std::move(corners)));
+    }
+  }
+  return SequentialPlan({std::move(island)});
+}
+
+// Where many routes are of equal length, a search over both layers, begun with a route of the
+// second one for another start, used to end 1.2 to 1.8 % above one layer after the other.
+TEST(LookAhead, IsNeverLongerThanOneLayerAfterTheOtherOnHexagonalGrids) {
+  for (const auto& [columns, rows] : {std::pair(8, 3), {5, 6}, {3, 9}, {5, 5}}) {
+    SCOPED_TRACE(absl::StrCat(columns, " x ", rows));
+    const std::vector<JobLayer> layers = {{HexagonalGrid(columns, rows), {}, {}},
+                                          {HexagonalGrid(columns, rows), {}, {}}};
+
+    const double blind = Total(RunJob(layers, {.more_follows = false}));
+    const double seeing = Total(RunJob(layers, {.more_follows = true}));
+
+    EXPECT_LE(seeing, blind + 1e-6);
+  }
 }
 
 TEST(LookAhead, SavesTravelOverManyJobs) {
