@@ -30,8 +30,8 @@ namespace {
 // Iterations without a gain worth mentioning after which the search ends: so many, which more
 // effort does not raise, and so many more a path.
 constexpr double kLeastPatience = 150;
-constexpr double kPatience = 1;
-constexpr double kPatienceOfFew = 1.5;
+constexpr double kPatience = 4;
+constexpr double kPatienceOfFew = 6;
 constexpr double kLeastGain = 2e-4;
 
 // Paths times leaves between the cuts of the widest kicks.
@@ -45,8 +45,10 @@ constexpr double kSmallPartOperations = 3e6;
 // Of a search that starts from a route that was good from another start.
 constexpr double kResumeShare = 0.4;
 
-// Of more paths, two layers are harder to search than one by more than a good end is worth.
-constexpr size_t kLookAheadPaths = 64;
+// Of more paths, two layers take longer to search together than a good end is worth; of fewer where
+// the caller wants so much of each iteration that there is no time for it.
+constexpr size_t kLookAheadPaths = 400;
+constexpr size_t kLookAheadPathsInHaste = 64;
 
 // Layers of more paths are searched wider and deeper: each kick costs more, and gains more.
 constexpr int kFewPaths = 150;
@@ -91,7 +93,9 @@ class Auto : public Strategy {
  public:
   Auto(double effort, double least_gain_each, bool bound)
       : Strategy(
-            {.reuses_routes = true, .wants_bound = bound, .look_ahead_paths = kLookAheadPaths}),
+            {.reuses_routes = true,
+             .wants_bound = bound,
+             .look_ahead_paths = least_gain_each > 0 ? kLookAheadPathsInHaste : kLookAheadPaths}),
         effort_(effort),
         least_gain_each_(least_gain_each) {}
 

@@ -134,5 +134,13 @@ TEST(Auto, TwoLayersNeverGetWorseTogetherAndWhatIsProvenHoldsForTheFirst) {
   }
 }
 
+TEST(Auto, LooksAheadFromLargerLayersWhereNoIterationHasToPay) {
+  const auto patient = *MakeStrategy("auto", {});
+  const auto hasty = *MakeStrategy("auto", {{"least_gain_each", "1e-4"}});
+
+  EXPECT_EQ(patient->traits().look_ahead_paths, 400u);
+  EXPECT_EQ(hasty->traits().look_ahead_paths, 64u);
+}
+
 }  // namespace
 }  // namespace traverse
