@@ -1,0 +1,166 @@
+#!/usr/bin/env python3
+"""Traverse beside the literature on GTSPLIB, as a page of Markdown: lengths by effort, the bound, proofs.
+
+  tests/bench/literature.py FOLDER > tests/bench/LITERATURE.md      every .gtsp file there that literature.csv names
+  tests/bench/literature.py --seeds=1 --seconds=0 --only=31pr152,40d198 FOLDER     one seed, no proofs, two instances
+
+FOLDER holds your own copies of the instances (Fischetti, Salazar and Toth 1997); none come with the project.
+literature.csv has the published values and those of GLNS. One thread, one run after another.
+"""
+import argparse
+import csv
+import json
+import os
+import pathlib
+import platform
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+EFFORTS = ("0.25", "1", "4", "16")
+
+HEAD = """# GTSPLIB: the literature's table
+
+Written by `tests/bench/literature.py FOLDER`: {machine}, one thread, version {version}, seeds {seeds}.{note}
+
+{instances} symmetric instances in the plane of Fischetti, Salazar and Toth (1997); the number in front of a name is
+that of the sets. All columns but those of seconds and of proofs are percent over the published value, which is from
+1997 for the five without GLNS and else the best known of GLNS's benchmark.
+
+* *effort*: `auto` with that `effort`, 1 being the default, beside the CPU seconds of the whole command, start and
+  reading included; means over the seeds. It ends by itself, so lengths do not depend on the machine.
+* *bound*: how far the lower bound that comes with the default route is below it.
+* *GLNS*: as published, Smith and Imeson's method in C++ by default, mean of ten runs, on an Apple M4 Pro; its time is
+  of the solver alone.
+* *proof*: `exact` within {seconds:g} s of the wall: CPU seconds to a proof, or the gap that was left.
+
+What cannot be compared: the machines differ. Published lengths are of distances rounded to whole numbers (EUC_2D),
+and GLNS minimises these; Traverse minimises true distances, and its sets, in the order found, have their points
+chosen for rounded ones afterwards. So an optimal tour may be above 0 here, and a proof is one of the shortest true
+tour. An instance whose smallest set has several points is searched once from each, and the time is of all together.
+"""
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--traverse", default=str(ROOT / "build/release/client/traverse"))
+    parser.add_argument("--seeds", default="1,2,3")
+    parser.add_argument("--seconds", type=float, default=60, help="for a proof; 0: none is looked for")
+    parser.add_argument("--note", default="", help="a sentence about the machine, for the page")
+    parser.add_argument("--only", help="names, divided by commas")
+    return parser.parse_args()
+
+
+def run(traverse, file, *flags):
+    """The document of one run, and its CPU seconds."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = os.path.join(folder, "routes.json")
+        process = subprocess.Popen([traverse, "optimize", str(file), "--quiet", "--threads=1", f"--json={out}", *flags])
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode:
+            sys.exit(f"{file}: traverse failed with code {process.returncode}")
+        with open(out, encoding="utf-8") as document:
+            return json.load(document), usage.ru_utime + usage.ru_stime
+
+
+def mean(values):
+    values = list(values)
+    return sum(values) / len(values)
+
+
+def of_shortest(document):
+    """Length and bound in true distances: the tour is the shortest of the layers."""
+    layers = document["layers"]
+    bounds = [layer["lower_bound_mm"] for layer in layers]
+    return min(layer["travel_mm"] for layer in layers), None if None in bounds else min(bounds)
+
+
+def gap_below(document):
+    length, bound = of_shortest(document)
+    return None if bound is None else 100 * max(0.0, 1 - bound / length)
+
+
+def prove(options, file, layers):
+    if options.seconds <= 0:
+        return "-"
+    limit = f"--layer_time_limit={options.seconds / layers:g}s"
+    document, seconds = run(options.traverse, file, "--strategy=exact", limit)
+    length, bound = of_shortest(document)
+    if bound is None:
+        return "none"
+    # The layers from the other points need no proof once their bounds are above the shortest.
+    return f"{seconds:.2f} s" if bound >= length * (1 - 1e-9) else f"open {gap_below(document):.1f} %"
+
+
+def measure(options, file, known, seeds):
+    """One row: percentages, then texts."""
+    def over(documents):
+        return mean(100 * (d["tour"]["rounded_length"] / int(known["published"]) - 1) for d in documents)
+
+    runs = {effort: [run(options.traverse, file, f"--seed={seed}", f"--option=effort={effort}") for seed in seeds]
+            for effort in EFFORTS}
+    layers = len(runs["1"][0][0]["layers"])
+    by_effort = [(over(d for d, _ in found), mean(s for _, s in found)) for found in runs.values()]
+    glns = 100 * (float(known["glns_mean"]) / int(known["published"]) - 1) if known["glns_mean"] else None
+    return {
+        "name": known["instance"], "published": known["published"], "by_effort": by_effort,
+        "bound": mean(gap_below(d) for d, _ in runs["1"]), "glns": glns,
+        "glns_seconds": float(known["glns_seconds"]) if known["glns_seconds"] else None,
+        "proof": prove(options, file, layers)}
+
+
+def number(value, form="%.2f"):
+    return "-" if value is None else form % value
+
+
+def line(row):
+    cells = [row["name"], row["published"], *(number(value) for pair in row["by_effort"] for value in pair),
+             number(row["bound"], "%.1f"), number(row["glns"]), number(row["glns_seconds"]), row["proof"]]
+    return "| " + " | ".join(cells) + " |"
+
+
+def means(name, rows):
+    def of(key):
+        known = [row[key] for row in rows if row[key] is not None]
+        return mean(known) if known else None
+    proven = sum(row["proof"].endswith(" s") for row in rows)
+    by_effort = [tuple(map(mean, zip(*pairs))) for pairs in zip(*(row["by_effort"] for row in rows))]
+    return {"name": name, "published": "", "by_effort": by_effort, "bound": of("bound"), "glns": of("glns"), "glns_seconds": of("glns_seconds"), "proof": f"{proven} proven"}
+
+
+def main():
+    options = parse_arguments()
+    with open(HERE / "literature.csv", encoding="utf-8") as file:
+        known = list(csv.DictReader(file))
+    if options.only:
+        known = [row for row in known if row["instance"] in options.only.split(",")]
+    known = [row for row in known if (options.folder / (row["instance"] + ".gtsp")).exists()]
+    if not known:
+        sys.exit(f"{options.folder}: no .gtsp file of a name that literature.csv has")
+    seeds = options.seeds.split(",")
+    begin = time.monotonic()
+    rows = []
+    for row in known:
+        rows.append(measure(options, options.folder / (row["instance"] + ".gtsp"), row, seeds))
+        print(f"{line(rows[-1])}  {time.monotonic() - begin:.0f} s", file=sys.stderr)
+    version = subprocess.run([options.traverse, "--version"], capture_output=True, text=True, check=True).stdout.split()[1]
+    print(HEAD.format(machine=f"{platform.machine()}, {os.cpu_count()} cores", version=version, seeds=options.seeds,
+                      note=options.note and "\n" + options.note,
+                      instances=len(rows), seconds=options.seconds))
+    efforts = [name for effort in EFFORTS for name in (f"effort {effort}", "s")]
+    print("| instance | published | " + " | ".join([*efforts, "bound", "GLNS", "s", "proof"]) + " |")
+    print("|---|" + "---:|" * (5 + len(efforts)))
+    for row in rows:
+        print(line(row))
+    print(line(means("mean", rows)))
+    if any(row["glns"] is None for row in rows) and any(row["glns"] is not None for row in rows):
+        print(line(means("of those with GLNS", [row for row in rows if row["glns"] is not None])))
+
+
+if __name__ == "__main__":
+    main()
