@@ -1,13 +1,15 @@
 """The figures of the guides that a seed decides, not a machine: writes them there, or says where a guide differs.
 
-    TRAVERSE=build/release/client/traverse tests/docs/figures.py [--write] [GUIDE...]
+    TRAVERSE=build/release/client/traverse tests/docs/figures.py [--write] [--long] [GUIDE...]
 
-They stand between `<!-- figures NAME -->` and `<!-- end of figures -->`. All are of seed 1 and no time limit.
+They stand between `<!-- figures NAME -->` and `<!-- end of figures -->`, of seed 1 and no time limit; those of several seeds,
+which take minutes, between `<!-- long figures NAME -->` and the same end, and only --long looks at them.
 """
 import json
 import os
 import pathlib
 import re
+import statistics
 import subprocess
 import sys
 
@@ -16,12 +18,20 @@ INSTANCES = SOURCE / "tests" / "bench" / "instances"
 REFERENCE = json.loads((SOURCE / "tests" / "bench" / "reference.json").read_text(encoding="utf-8"))
 
 
+def runs_of(part, strategies, seeds=1, layers="1-5"):
+    """The documents of the runs of each strategy, one a seed, by their labels."""
+    ran = subprocess.run([os.environ["TRAVERSE"], "compare", str(INSTANCES / f"{part}.damat"), f"--layers={layers}", "--quiet",
+                          "--json=-", f"--repeat={seeds}", "--strategies=" + ",".join(strategies)], stdout=subprocess.PIPE,
+                         stderr=subprocess.DEVNULL, check=True)
+    found = {}
+    for run in json.loads(ran.stdout)["runs"]:
+        found.setdefault(run["label"], []).append(run["routes"])
+    return found
+
+
 def compare(part, strategies):
     """The documents of one run of each strategy on layers 1 to 5, by their labels."""
-    ran = subprocess.run([os.environ["TRAVERSE"], "compare", str(INSTANCES / f"{part}.damat"), "--layers=1-5", "--quiet",
-                          "--json=-", "--strategies=" + ",".join(strategies)], stdout=subprocess.PIPE,
-                         stderr=subprocess.DEVNULL, check=True)
-    return {run["label"]: run["routes"] for run in json.loads(ran.stdout)["runs"]}
+    return {label: runs[0] for label, runs in runs_of(part, strategies).items()}
 
 
 def travel(document):
@@ -81,18 +91,43 @@ def proven():
     return table(["part, layers 1-5", "length mm", "bound"], rows)
 
 
+# Table 5.2 of the thesis: gains over NO in %, of its Guloso, NI2OPT, and BT under NRP, BBCP, and BBCP with 5000 restarts.
+THESIS_GAINS = {"part1": (51.8, 46.3, 52.5, 52.5, 52.5), "part2": (56.6, 59.2, 57.6, 57.9, 58.9),
+                "part3": (65.4, 65.4, 65.0, 65.0, 65.8)}
+
+
+def five_seeds():
+    labels = ["none", "greedy", "ni2opt", "tabu:polish=false:representation=nrp", "tabu:polish=false",
+              "tabu:polish=false:diversifications=5000", "tabu"]
+    rows = []
+    for part, thesis in THESIS_GAINS.items():
+        found = runs_of(part, labels, seeds=5)
+        lengths = [[travel(run) for run in found[label]] for label in labels]
+        none = lengths[0][0]
+        rows.append([part, *(f"{one[0]:.2f}" for one in lengths[:3]),
+                     *(f"{statistics.mean(many):.2f} +- {statistics.stdev(many):.2f}" for many in lengths[3:])])
+        rows.append(["gain, ours", "", *(f"{100 * (1 - statistics.mean(many) / none):.1f} %" for many in lengths[1:])])
+        rows.append(["gain, thesis", "", *(f"{gain} %" for gain in thesis), ""])
+    return table(["part", "none", "greedy", "ni2opt", "NRP, 2500", "BBCP, 2500", "BBCP, 5000", "`tabu`"], rows)
+
+
 BLOCKS = {"methods": methods, "published": published, "reductions": reductions, "proven": proven}
+LONG_BLOCKS = {"five_seeds": five_seeds}
 GUIDES = ("README.md", "engine/TABU.md", "engine/EXACT.md")
-PLACE = re.compile(r"(?s)(<!-- figures (\w+) -->\n)(.*?)(\n<!-- end of figures -->)")
+PLACE = re.compile(r"(?s)(<!-- (long )?figures (\w+) -->\n)(.*?)(\n<!-- end of figures -->)")
 
 
-def renewed(text):
-    return PLACE.sub(lambda found: found[1] + BLOCKS[found[2]]() + found[4], text)
+def renewed(text, long=False):
+    def now(found):
+        if found[2] and not long:
+            return found[0]
+        return found[1] + (LONG_BLOCKS if found[2] else BLOCKS)[found[3]]() + found[5]
+    return PLACE.sub(now, text)
 
 
 def main(arguments):
     write = "--write" in arguments
-    named = [name for name in arguments if name != "--write"] or GUIDES
+    named = [name for name in arguments if not name.startswith("--")] or GUIDES
     faults = 0
     for name in named:
         guide = SOURCE / name
@@ -101,7 +136,7 @@ def main(arguments):
             print(f"{name}: holds no figures")
             faults += 1
             continue
-        now = renewed(text)
+        now = renewed(text, long="--long" in arguments)
         if now == text:
             continue
         if write:
