@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "engine/base/rest.h"
 
 namespace traverse {
 namespace {
@@ -24,10 +25,12 @@ bool Allows(const Path& path, int entry) {
 }
 
 // Fills `position`: [path] where in the route it is.
-absl::Status CheckVisits(const Plan& plan, const Route& route, std::vector<int>& position) {
+absl::Status CheckVisits(const Plan& plan, const Route& route, Rest& rest,
+                         std::vector<int>& position) {
   const int paths = static_cast<int>(plan.paths.size());
   position.assign(plan.paths.size(), -1);
   for (size_t i = 0; i < route.size(); ++i) {
+    rest(4);
     const Visit& visit = route[i];
     const auto fault = [&](const std::string& text) {
       return Fault(absl::StrCat("route[", i, "]: ", text));
@@ -134,10 +137,11 @@ class BeforeCheck {
 };
 
 // From the leaves up, as children have greater indices than their parents.
-absl::Status CheckTree(const Plan& plan, const std::vector<int>& position) {
+absl::Status CheckTree(const Plan& plan, const std::vector<int>& position, Rest& rest) {
   std::vector<Range> ranges(plan.nodes.size());
   for (size_t index = plan.nodes.size(); index-- > 0;) {
     const PlanNode& node = plan.nodes[index];
+    rest(2 + 2 * node.children.size() + 4 * node.before.size());
     Range& range = ranges[index];
     if (node.kind == PlanNode::Kind::kPath) {
       const int at = position[static_cast<size_t>(node.path)];
@@ -160,18 +164,21 @@ double Length(Point from, Point to) { return std::hypot(to.x - from.x, to.y - fr
 
 }  // namespace
 
-absl::Status ValidateRoute(const Plan& plan, const Route& route) {
+absl::Status ValidateRoute(const Plan& plan, const Route& route, Budget* budget) {
+  Rest rest(budget);
   std::vector<int> position;
-  if (absl::Status status = CheckVisits(plan, route, position); !status.ok()) return status;
-  return CheckTree(plan, position);
+  if (absl::Status status = CheckVisits(plan, route, rest, position); !status.ok()) return status;
+  return CheckTree(plan, position, rest);
 }
 
-TravelSplit MeasureTravel(const Plan& plan, Point start, const Route& route) {
+TravelSplit MeasureTravel(const Plan& plan, Point start, const Route& route, Budget* budget) {
   assert(ValidateRoute(plan, route).ok());
   TravelSplit split;
   Point at = start;
   Path::Kind from = Path::Kind::kContour;
+  Rest rest(budget);
   for (const Visit& visit : route) {
+    rest(4);
     const Path& path = plan.paths[static_cast<size_t>(visit.path)];
     const double length = Length(at, path.points[static_cast<size_t>(visit.entry)]);
     if (path.kind != from) {

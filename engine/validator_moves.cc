@@ -45,12 +45,16 @@ class Stripes {
     if (lines_.empty()) return;
     low_ = lines_[0].a.y;
     double high = low_;
+    double heights = 0;  // of all lines
     for (const Line& line : lines_) {
       low_ = std::min({low_, line.a.y, line.b.y});
       high = std::max({high, line.a.y, line.b.y});
+      heights += std::abs(line.a.y - line.b.y);
     }
-    const double count = std::ceil(std::sqrt(static_cast<double>(lines_.size())));
-    height_ = std::max((high - low_) / count, 1e-3);
+    const double lines = static_cast<double>(lines_.size());
+    const double count = std::ceil(std::sqrt(lines));
+    // Upright lines would be in every stripe: no more of those than that lines are in three.
+    height_ = std::max({(high - low_) / count, heights / lines, 1e-3});
     stripes_.resize(static_cast<size_t>((high - low_) / height_) + 1);
     for (const Line& line : lines_) {
       const auto [first, last] = StripesOf(line.a.y, line.b.y);
@@ -214,12 +218,14 @@ class MoveCheck {
 }  // namespace
 
 absl::Status ValidateMoves(const Plan& plan, const LayerWalls& walls, const CostSpec& spec,
-                           Point start, const Route& route, const MoveClaims& claims) {
+                           Point start, const Route& route, const MoveClaims& claims,
+                           Budget* budget) {
   assert(spec.kind == CostSpec::Kind::kTime && ValidateRoute(plan, route).ok());
   MoveCheck check(plan, walls, spec);
   size_t next = 0;
   Point at = start;
   for (size_t i = 0; i < route.size(); ++i) {
+    if (budget != nullptr && budget->Exhausted() && budget->cancelled()) return absl::OkStatus();
     const Path& path = plan.paths[static_cast<size_t>(route[i].path)];
     const bool leads_around = next < claims.detours.size() && claims.detours[next].visit == i;
     const Detour* detour = leads_around ? &claims.detours[next++] : nullptr;

@@ -20,6 +20,9 @@ constexpr size_t kPairsForTreeOfTimes = 1 << 12;
 // Entries in a leaf of the tree.
 constexpr int kTreeLeafSize = 8;
 
+// What a move with walls takes, as Rest counts steps.
+constexpr size_t kStepsOfWalls = 512;
+
 // totals[i] = best[i] + cost(exits[i] -> to). For lengths the loop has no branch, so that the
 // compiler uses vector instructions.
 void FillTotals(const TravelCost& cost, absl::Span<const Point> exits, Point to, const double* best,
@@ -50,6 +53,7 @@ double EntryChoice::Choose(Point from, absl::Span<const int> paths, const std::o
   if (to) {
     const int first = table_->first(paths.back());
     for (size_t i = 0; i < best_.size(); ++i) {
+      rest_(cost_.has_walls() ? kStepsOfWalls : 1);
       best_[i] += cost_(table_->exit(first + static_cast<int>(i)), *to);
     }
   }
@@ -67,6 +71,7 @@ void EntryChoice::EnterFirst(Point from, int path) {
   const int first = table_->first(path);
   best_.resize(static_cast<size_t>(table_->count(path)));
   for (size_t j = 0; j < best_.size(); ++j) {
+    rest_(cost_.has_walls() ? kStepsOfWalls : 1);
     best_[j] = cost_(from, table_->enter(first + static_cast<int>(j)));
   }
 }
@@ -92,6 +97,7 @@ void EntryChoice::AdvanceByScan(int from_path, int to_path, int* parent) {
   const absl::Span<const Point> enters = table_->enters(to_path);
   totals_.resize(exits.size());
   for (size_t j = 0; j < enters.size(); ++j) {
+    rest_(exits.size());
     FillTotals(cost_, exits, enters[j], best_.data(), totals_.data());
     size_t least = 0;
     for (size_t i = 1; i < totals_.size(); ++i) {
@@ -110,8 +116,9 @@ void EntryChoice::AdvanceByBounds(int from_path, int to_path, int* parent) {
   size_t guess = 0;
   for (size_t j = 0; j < enters.size(); ++j) {
     double least = best_[guess] + cost_(exits[guess], enters[j]);
-    for (size_t i = 0; i < exits.size(); ++i) {
+    for (size_t i = 0; i < exits.size() && rest_(); ++i) {
       if (best_[i] >= least || best_[i] + cost_.Base(exits[i], enters[j]) >= least) continue;
+      rest_(kStepsOfWalls);
       const double total = best_[i] + cost_(exits[i], enters[j]);
       if (total >= least) continue;
       least = total;
@@ -136,7 +143,7 @@ void EntryChoice::AdvanceByTree(int from_path, int to_path, int* parent) {
       return best_[static_cast<size_t>(i)] + cost_(table_->exit(from + i), enter);
     };
     double least = total(guess);
-    for (size_t t = 0; t < tree_.size();) {
+    for (size_t t = 0; t < tree_.size() && rest_(2);) {
       const TreeNode& node = tree_[t];
       if (node.best + cost_.OfLength(node.box.DistanceTo(enter)) >= least) {
         t = static_cast<size_t>(node.skip);
@@ -159,6 +166,7 @@ void EntryChoice::AdvanceByTree(int from_path, int to_path, int* parent) {
 // The vertices of a contour come in the order of their places on it, so halves of a range are
 // compact.
 int EntryChoice::BuildTree(int path, int first, int end) {
+  rest_(2 * kTreeLeafSize);
   const size_t index = tree_.size();
   tree_.push_back(TreeNode{{}, kInfinity, first, end, 0});
   TreeNode node = tree_[index];

@@ -17,6 +17,8 @@
 #include <vector>
 
 #include "absl/types/span.h"
+#include "engine/base/budget.h"
+#include "engine/base/rest.h"
 #include "engine/cost/entry_table.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/geometry/bounding_box.h"
@@ -27,8 +29,10 @@ namespace traverse {
 // A workspace for many choices: keeps its memory from one to the next. Not thread-safe.
 class EntryChoice {
  public:
-  // `table` outlives the workspace.
-  EntryChoice(const EntryTable& table, const TravelCost& cost) : table_(&table), cost_(cost) {}
+  // `table` outlives the workspace, and so does `budget`, if there is one: it is asked meanwhile.
+  // Once it is exhausted, choices are made at once, and are not the best any more.
+  EntryChoice(const EntryTable& table, const TravelCost& cost, Budget* budget = nullptr)
+      : table_(&table), cost_(cost), rest_(budget) {}
 
   // Writes the best entry (of the table) of paths[k] to entries[k] and returns the cost of all
   // moves, from `from` to the last path, and on to `to` if there is one. To choose again within a
@@ -56,6 +60,7 @@ class EntryChoice {
 
   const EntryTable* table_;
   TravelCost cost_;
+  Rest rest_;
 
   std::vector<double> best_;          // [entry of the last path] least cost to have entered there
   std::vector<double> next_;          // the same of the next path, under construction

@@ -4,9 +4,11 @@
 #include <cassert>
 #include <cstddef>
 
+#include "engine/base/rest.h"
+
 namespace traverse {
 
-EntryTable::EntryTable(const Plan& plan) {
+EntryTable::EntryTable(const Plan& plan, Budget* budget) {
   size_t total = 0;
   for (const Path& path : plan.paths) {
     total += path.allowed.empty() ? path.points.size() : path.allowed.size();
@@ -16,6 +18,7 @@ EntryTable::EntryTable(const Plan& plan) {
   exit_.reserve(total);
   path_of_.reserve(total);
   visit_entry_.reserve(total);
+  Rest rest(budget);
   for (size_t p = 0; p < plan.paths.size(); ++p) {
     const Path& path = plan.paths[p];
     first_.push_back(static_cast<int>(enter_.size()));
@@ -24,6 +27,7 @@ EntryTable::EntryTable(const Plan& plan) {
       exit_.push_back(ExitPoint(path, entry));
       path_of_.push_back(static_cast<int>(p));
       visit_entry_.push_back(entry);
+      rest(2);
     };
     if (path.kind == Path::Kind::kOpen) {
       add(0);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/types/span.h"
+#include "engine/base/budget.h"
 #include "engine/model/plan.h"
 #include "engine/model/route.h"
 
@@ -17,7 +18,8 @@ namespace traverse {
 // path. Contours have enter(e) == exit(e). Memory: 40 bytes an entry.
 class EntryTable {
  public:
-  explicit EntryTable(const Plan& plan);
+  // `budget`, if there is one, is asked meanwhile.
+  explicit EntryTable(const Plan& plan, Budget* budget = nullptr);
 
   int path_count() const { return static_cast<int>(first_.size()) - 1; }
   int entry_count() const { return first_.back(); }

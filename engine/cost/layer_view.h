@@ -12,9 +12,12 @@ namespace traverse {
 
 // Immutable; O(points + nodes + pairs) to build.
 struct LayerView {
-  // `problem` and its plan outlive the view.
-  explicit LayerView(const LayerProblem& layer_problem)
-      : problem(layer_problem), tree(*problem.plan), table(*problem.plan), cost(problem) {}
+  // `problem` and its plan outlive the view. `budget`, if there is one, is asked meanwhile.
+  explicit LayerView(const LayerProblem& layer_problem, Budget* budget = nullptr)
+      : problem(layer_problem),
+        tree(*problem.plan, budget),
+        table(*problem.plan, budget),
+        cost(problem) {}
 
   const Plan& plan() const { return *problem.plan; }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/rest.h"
 #include "engine/geometry/bounding_box.h"
 #include "engine/geometry/float_points.h"
 
@@ -88,10 +89,11 @@ class Nearest {
   std::vector<Item> list_;
 };
 
-// A tree of bounding boxes over pieces.
+// A tree of bounding boxes over pieces. Not parted any further once the budget is exhausted.
 class PieceTree {
  public:
-  explicit PieceTree(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
+  PieceTree(std::vector<Piece> pieces, Budget& budget)
+      : pieces_(std::move(pieces)), rest_(&budget) {
     nodes_.reserve(pieces_.size() / 2 + 1);
     if (!pieces_.empty()) Build(0, pieces_.size());
   }
@@ -118,7 +120,7 @@ class PieceTree {
     Box box;
     for (size_t i = begin; i < end; ++i) box.Add(pieces_[i].box);
     nodes_[index].box = box;
-    if (end - begin <= kLeafSize) return index;
+    if (!rest_(4 * (end - begin)) || end - begin <= kLeafSize) return index;
     const size_t middle = begin + (end - begin) / 2;
     const bool by_x = box.high_x - box.low_x > box.high_y - box.low_y;
     const auto at = [this](size_t i) { return pieces_.begin() + static_cast<std::ptrdiff_t>(i); };
@@ -160,16 +162,23 @@ class PieceTree {
 
   std::vector<Piece> pieces_;
   std::vector<Node> nodes_;
+  Rest rest_;
 };
 
 // The members of one search, in single precision.
 class Search {
  public:
-  Search(const PointGroups& groups, absl::Span<const Member> members) : groups_(groups) {
+  Search(const PointGroups& groups, absl::Span<const Member> members, Budget& budget)
+      : groups_(groups), budget_(budget) {
+    Rest rest(&budget);
     BoundingBox box;
-    for (const Member& member : members) box.Add(BoundingBox(groups.of(member.group)));
+    for (const Member& member : members) {
+      rest(4 + groups.of(member.group).size());
+      box.Add(BoundingBox(groups.of(member.group)));
+    }
     if (!box.empty()) origin_ = box.center();
     for (const Member& member : members) {
+      rest(16 + 4 * groups.of(member.group).size());
       if (!groups.of(member.group).empty()) Add(member);
     }
     stamps_.resize(members_.size(), -1);
@@ -177,7 +186,7 @@ class Search {
 
   int size() const { return static_cast<int>(members_.size()); }
   const Member& member(int slot) const { return members_[Index(slot)]; }
-  PieceTree Tree() { return PieceTree(std::move(pieces_)); }
+  PieceTree Tree() { return PieceTree(std::move(pieces_), budget_); }
 
   // Offers to `nearest` every member of another owner that may be among them.
   void Find(const PieceTree& tree, int slot, Nearest& nearest) {
@@ -237,6 +246,7 @@ class Search {
   }
 
   const PointGroups& groups_;
+  Budget& budget_;
   Point origin_;
   std::vector<Member> members_;  // [slot] those that have points
   std::vector<Box> boxes_;       // [slot] of the samples
@@ -252,7 +262,7 @@ NeighborLists::NeighborLists(const PointGroups& groups) : groups_(groups) {}
 
 void NeighborLists::FindAmong(absl::Span<const Member> members, int count, Budget& budget) {
   assert(first_.empty());  // not sealed
-  Search search(groups_, members);
+  Search search(groups_, members, budget);
   const PieceTree tree = search.Tree();
   Nearest nearest(count);
   for (int slot = 0; slot < search.size(); ++slot) {

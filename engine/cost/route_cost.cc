@@ -3,15 +3,20 @@
 #include <cassert>
 #include <cstddef>
 
+#include "engine/base/rest.h"
 #include "engine/cost/travel_cost.h"
 
 namespace traverse {
 
-double RouteCost(const LayerProblem& problem, const Route& route) {
+double RouteCost(const LayerProblem& problem, const Route& route, Budget* budget) {
+  Rest rest(budget);
+  const bool asks_often = problem.walls != nullptr && budget != nullptr;
   const TravelCost cost(problem);
   double sum = 0;
   Point at = problem.start;
   for (const Visit& visit : route) {
+    rest(4);
+    if (asks_often && budget->Exhausted() && budget->cancelled()) return sum;
     assert(visit.path >= 0 && static_cast<size_t>(visit.path) < problem.plan->paths.size());
     const Path& path = problem.plan->paths[static_cast<size_t>(visit.path)];
     sum += cost(at, EnterPoint(path, visit.entry));

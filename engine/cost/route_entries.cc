@@ -11,7 +11,7 @@ namespace traverse {
 
 void ChooseEntries(const LayerView& layer, Route& route, Budget& budget) {
   constexpr size_t kWindow = kEntryWindow;
-  EntryChoice choice(layer.table, layer.cost);
+  EntryChoice choice(layer.table, layer.cost, &budget);
   std::vector<int> paths;
   std::vector<int> entries;
   for (size_t begin = 0; begin < route.size(); begin += kWindow / 2) {
@@ -28,6 +28,7 @@ void ChooseEntries(const LayerView& layer, Route& route, Budget& budget) {
     for (size_t k = begin; k < end; ++k) paths.push_back(route[k].path);
     entries.resize(paths.size());
     choice.Choose(from, paths, to, absl::MakeSpan(entries));
+    if (budget.was_exhausted()) return;  // perhaps in the middle of it
     for (size_t k = begin; k < end; ++k) route[k] = layer.table.VisitOf(entries[k - begin]);
     if (end == route.size()) return;
   }

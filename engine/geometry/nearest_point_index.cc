@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/rest.h"
+
 namespace traverse {
 namespace {
 
@@ -20,19 +22,44 @@ uint32_t Spread(uint32_t x) {
   return x;
 }
 
+// Sorts by the upper 32 bits, and what is equal there as it comes: by digits, least first, as that
+// can be done bit by bit.
+void SortByUpperHalf(std::vector<uint64_t>& keys, Rest& rest) {
+  constexpr int kDigitBits = 11;
+  constexpr size_t kDigits = size_t{1} << kDigitBits;
+  constexpr size_t kMinSize = 1 << 12;
+  if (keys.size() < kMinSize) return std::sort(keys.begin(), keys.end());
+  std::vector<uint64_t> sorted(keys.size());
+  for (int shift = 32; shift < 64; shift += kDigitBits) {
+    const auto digit = [shift](uint64_t key) { return (key >> shift) & (kDigits - 1); };
+    std::array<size_t, kDigits + 1> begin{};
+    for (const uint64_t key : keys) {
+      ++begin[digit(key) + 1];
+      rest();
+    }
+    for (size_t d = 0; d < kDigits; ++d) begin[d + 1] += begin[d];
+    for (const uint64_t key : keys) {
+      sorted[begin[digit(key)]++] = key;
+      rest();
+    }
+    std::swap(keys, sorted);
+  }
+}
+
 // The points' ids in the order of their places on a Morton curve over a grid of 65536 x 65536.
-std::vector<int> MortonOrder(const std::vector<Point>& points) {
+std::vector<int> MortonOrder(const std::vector<Point>& points, Rest& rest) {
   const BoundingBox box((absl::MakeConstSpan(points)));
   const double size = std::max({box.width(), box.height(), std::numeric_limits<double>::min()});
   const auto cell = [&](double offset) { return static_cast<uint32_t>(offset / size * 65535); };
   std::vector<uint64_t> keys;
   keys.reserve(points.size());
   for (size_t i = 0; i < points.size(); ++i) {
+    rest(2);
     const uint64_t code =
         Spread(cell(points[i].x - box.low().x)) | (Spread(cell(points[i].y - box.low().y)) << 1);
     keys.push_back(code << 32 | i);
   }
-  std::sort(keys.begin(), keys.end());
+  SortByUpperHalf(keys, rest);
   std::vector<int> ids;
   ids.reserve(points.size());
   for (const uint64_t key : keys) ids.push_back(static_cast<int>(key & 0xffffffff));
@@ -41,14 +68,16 @@ std::vector<int> MortonOrder(const std::vector<Point>& points) {
 
 }  // namespace
 
-NearestPointIndex::NearestPointIndex(std::vector<Point> points)
-    : in_set_(points.size(), 1), place_(points.size()) {
-  if (!points.empty()) ids_ = MortonOrder(points);
+NearestPointIndex::NearestPointIndex(std::vector<Point> points, Budget* budget)
+    : in_set_(points.size() + 1, 1), place_(points.size()) {
+  Rest rest(budget);
+  if (!points.empty()) ids_ = MortonOrder(points, rest);
   while (leaves_ * kLeafSize < points.size()) leaves_ *= 2;
   boxes_.resize(2 * leaves_);
   count_.resize(2 * leaves_);
   points_.reserve(points.size());
   for (size_t place = 0; place < ids_.size(); ++place) {
+    rest(8);
     const Point point = points[static_cast<size_t>(ids_[place])];
     points_.push_back(point);
     place_[static_cast<size_t>(ids_[place])] = static_cast<int>(place);
@@ -57,6 +86,7 @@ NearestPointIndex::NearestPointIndex(std::vector<Point> points)
     ++count_[leaf];
   }
   for (size_t node = leaves_; node-- > 1;) {
+    rest(4);
     boxes_[node].Add(boxes_[2 * node]);
     boxes_[node].Add(boxes_[2 * node + 1]);
     count_[node] = count_[2 * node] + count_[2 * node + 1];
@@ -67,6 +97,11 @@ void NearestPointIndex::Change(int id, int by) {
   const size_t place = static_cast<size_t>(place_[static_cast<size_t>(id)]);
   assert(in_set_[place] == (by > 0 ? 0 : 1));
   in_set_[place] = by > 0 ? 1 : 0;
+  if (!searching_) {
+    count_[1] += by;
+    if (by > 0) first_ = std::min(first_, place);
+    return;
+  }
   for (size_t node = leaves_ + place / kLeafSize; node > 0; node /= 2) count_[node] += by;
 }
 
@@ -114,6 +149,10 @@ void NearestPointIndex::ScanLeaf(size_t leaf, Point p, double& least, int& neare
 
 int NearestPointIndex::Any() const {
   if (size() == 0) return -1;
+  if (!searching_) {
+    while (!in_set_[first_]) ++first_;
+    return ids_[first_];
+  }
   size_t node = 1;
   while (node < leaves_) node = 2 * node + (count_[2 * node] > 0 ? 0 : 1);
   size_t place = (node - leaves_) * kLeafSize;

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "engine/base/budget.h"
 #include "engine/geometry/bounding_box.h"
 #include "engine/model/point.h"
 
@@ -21,8 +22,9 @@ namespace traverse {
 //   index.Nearest({6, 0});   // 2
 class NearestPointIndex {
  public:
-  // Point i of `points` has the id i; all are in the set.
-  explicit NearestPointIndex(std::vector<Point> points);
+  // Point i of `points` has the id i; all are in the set. `budget`, if there is one, is asked
+  // meanwhile.
+  explicit NearestPointIndex(std::vector<Point> points, Budget* budget = nullptr);
 
   int size() const { return count_[1]; }
 
@@ -42,6 +44,10 @@ class NearestPointIndex {
   // Some id of the set, the same for the same history; -1 if it is empty. O(log n).
   int Any() const;
 
+  // From now on only Any is asked for, which takes O(1) on the average, as Remove and Insert do.
+  // The ids then come along a curve through the plane.
+  void StopSearching() { searching_ = false; }
+
  private:
   // Points in a leaf of the tree.
   static constexpr size_t kLeafSize = 8;
@@ -49,10 +55,12 @@ class NearestPointIndex {
   void Change(int id, int by);
   void ScanLeaf(size_t leaf, Point p, double& least, int& nearest) const;
 
+  bool searching_ = true;
+  mutable size_t first_ = 0;        // if not searching_: no place before it is in the set
   size_t leaves_ = 1;               // a power of two
   std::vector<Point> points_;       // in Morton order; leaf l has [l * kLeafSize, ...)
   std::vector<int> ids_;            // of points_
-  std::vector<char> in_set_;        // of points_
+  std::vector<char> in_set_;        // of points_, and a last one that ends searches
   std::vector<int> place_;          // [id] its place in points_
   std::vector<BoundingBox> boxes_;  // [node] a heap: the children of node n are 2n and 2n + 1, the
   std::vector<int> count_;          // leaves begin at leaves_; count_: points in the set

@@ -11,6 +11,9 @@ namespace {
 // Longer stretches of a wall are not followed.
 constexpr size_t kMostVertices = 500;
 
+// Ways that cross walls more often are not led around them: it would take the square of that.
+constexpr size_t kMostHits = 500;
+
 // Ways around walls that stand in the way around another one.
 constexpr int kMostDepth = 2;
 
@@ -104,7 +107,7 @@ std::optional<uint32_t> WallDetours::SegmentAt(uint32_t wall, Point at) const {
 
 std::vector<Point> WallDetours::OneWay(Point a, Point b, int depth) const {
   const std::vector<Hit> hits = HitsOf(a, b);
-  if (hits.empty()) return {};
+  if (hits.empty() || hits.size() > kMostHits) return {};
   std::vector<Point> way = {a};
   for (size_t i = 0; i < hits.size();) {
     const uint32_t wall = WallOf(hits[i].segment);

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "engine/base/rest.h"
+
 namespace traverse {
 
 Precedence::Precedence(const PlanNode& node, int slots, const std::vector<int>& item_of)
@@ -44,23 +46,40 @@ void Precedence::LastBefore(absl::Span<const int> position, std::vector<int>& la
   }
 }
 
-PlanTree::PlanTree(const Plan& plan)
+std::vector<uint64_t> Precedence::SlotsBefore(int first) const {
+  assert(!empty());
+  std::vector<uint64_t> before(topological_.size());
+  const int end = std::min(first + 64, slots_);
+  for (const int item : topological_) {
+    uint64_t slots = before[static_cast<size_t>(item)];
+    if (item >= first && item < end) slots |= uint64_t{1} << (item - first);
+    if (slots == 0) continue;
+    for (const int after : After(item)) before[static_cast<size_t>(after)] |= slots;
+  }
+  return before;
+}
+
+PlanTree::PlanTree(const Plan& plan, Budget* budget)
     : plan_(&plan), precedence_of_(plan.nodes.size()), precedences_(1) {
-  CountPaths();
-  ListChildren();
+  CountPaths(budget);
+  ListChildren(budget);
   reversible_.resize(plan.nodes.size());
+  Rest rest(budget);
   for (int index = node_count(); index-- > 0;) {
+    rest(1 + node(index).children.size() + node(index).before.size());
     if (!node(index).before.empty()) AddPrecedence(index);
     reversible_[static_cast<size_t>(index)] = ComputeReversible(index);
   }
 }
 
 // From the leaves up: children have greater indices than their parents.
-void PlanTree::CountPaths() {
+void PlanTree::CountPaths(Budget* budget) {
+  Rest rest(budget);
   parent_.assign(plan_->nodes.size(), -1);
   path_count_.assign(plan_->nodes.size(), 0);
   leaf_.assign(plan_->paths.size(), -1);
   for (int index = node_count(); index-- > 0;) {
+    rest(1 + node(index).children.size());
     int& count = path_count_[static_cast<size_t>(index)];
     if (is_leaf(index)) {
       count = 1;
@@ -73,9 +92,11 @@ void PlanTree::CountPaths() {
   }
 }
 
-void PlanTree::ListChildren() {
+void PlanTree::ListChildren(Budget* budget) {
+  Rest rest(budget);
   first_child_.reserve(plan_->nodes.size() + 1);
   for (const PlanNode& node : plan_->nodes) {
+    rest(1 + node.children.size());
     first_child_.push_back(static_cast<int>(children_.size()));
     for (const int child : node.children) {
       if (path_count(child) > 0) children_.push_back(child);

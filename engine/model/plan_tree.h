@@ -3,9 +3,11 @@
 #ifndef TRAVERSE_ENGINE_MODEL_PLAN_TREE_H_
 #define TRAVERSE_ENGINE_MODEL_PLAN_TREE_H_
 
+#include <cstdint>
 #include <vector>
 
 #include "absl/types/span.h"
+#include "engine/base/budget.h"
 #include "engine/model/plan.h"
 
 namespace traverse {
@@ -31,6 +33,10 @@ class Precedence {
   // An order of the slots is legal if last[s] < position[s] for all s. `position` and `last` are
   // indexed by slot. O(items + pairs). REQUIRES: not empty.
   void LastBefore(absl::Span<const int> position, std::vector<int>& last) const;
+
+  // [item] as bits, which of the slots `first` .. `first` + 63 have to come before it, by pairs or
+  // by several of them. O(items + pairs). REQUIRES: not empty.
+  std::vector<uint64_t> SlotsBefore(int first) const;
 
  private:
   friend class ReadySlots;
@@ -116,8 +122,8 @@ class ReadySlots {
 // A plan's tree with what follows from it. O(nodes + pairs) to build. Immutable.
 class PlanTree {
  public:
-  // `plan` outlives the tree.
-  explicit PlanTree(const Plan& plan);
+  // `plan` outlives the tree. `budget`, if there is one, is asked meanwhile.
+  explicit PlanTree(const Plan& plan, Budget* budget = nullptr);
 
   const Plan& plan() const { return *plan_; }
   const PlanNode& node(int index) const { return plan_->nodes[static_cast<size_t>(index)]; }
@@ -154,8 +160,8 @@ class PlanTree {
   bool reversible(int index) const { return reversible_[static_cast<size_t>(index)]; }
 
  private:
-  void CountPaths();
-  void ListChildren();
+  void CountPaths(Budget* budget);
+  void ListChildren(Budget* budget);
   void AddPrecedence(int index);
   bool ComputeReversible(int index) const;
 

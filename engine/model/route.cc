@@ -5,15 +5,18 @@
 #include <queue>
 #include <vector>
 
+#include "engine/base/rest.h"
+
 namespace traverse {
 namespace {
 
 // The children of `node` in the first order that keeps its pairs.
-std::vector<int> ChildrenInGivenOrder(const PlanNode& node) {
+std::vector<int> ChildrenInGivenOrder(const PlanNode& node, Rest& rest) {
   if (node.before.empty()) return node.children;
   std::vector<std::vector<int>> later(node.children.size());
   std::vector<int> waiting_for(node.children.size());
   for (const auto& [first, second] : node.before) {
+    rest(2);
     later[static_cast<size_t>(first)].push_back(second);
     ++waiting_for[static_cast<size_t>(second)];
   }
@@ -23,6 +26,7 @@ std::vector<int> ChildrenInGivenOrder(const PlanNode& node) {
   }
   std::vector<int> order;
   while (!ready.empty()) {
+    rest(16);
     const size_t child = static_cast<size_t>(ready.top());
     ready.pop();
     order.push_back(node.children[child]);
@@ -33,21 +37,23 @@ std::vector<int> ChildrenInGivenOrder(const PlanNode& node) {
   return order;
 }
 
-void AppendGiven(const Plan& plan, int index, Route& route) {
+void AppendGiven(const Plan& plan, int index, Rest& rest, Route& route) {
+  rest(2);
   const PlanNode& node = plan.nodes[static_cast<size_t>(index)];
   if (node.kind == PlanNode::Kind::kPath) {
     route.push_back(Visit{node.path, GivenEntry(plan.paths[static_cast<size_t>(node.path)])});
     return;
   }
-  for (const int child : ChildrenInGivenOrder(node)) AppendGiven(plan, child, route);
+  for (const int child : ChildrenInGivenOrder(node, rest)) AppendGiven(plan, child, rest, route);
 }
 
 }  // namespace
 
-Route GivenRoute(const Plan& plan) {
+Route GivenRoute(const Plan& plan, Budget* budget) {
+  Rest rest(budget);
   Route route;
   route.reserve(plan.paths.size());
-  if (!plan.nodes.empty()) AppendGiven(plan, 0, route);
+  if (!plan.nodes.empty()) AppendGiven(plan, 0, rest, route);
   return route;
 }
 

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "engine/base/budget.h"
 #include "engine/model/path.h"
 #include "engine/model/plan.h"
 #include "engine/model/point.h"
@@ -44,8 +45,8 @@ inline int GivenEntry(const Path& path) {
 
 // The order given: the tree's leaves from left to right, each at its given entry. `before` pairs
 // may contradict the order of children; the leaves then come in the first order (smallest child
-// positions first) that keeps them.
-Route GivenRoute(const Plan& plan);
+// positions first) that keeps them. `budget`, if there is one, is asked meanwhile.
+Route GivenRoute(const Plan& plan, Budget* budget = nullptr);
 
 }  // namespace traverse
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "engine/base/rest.h"
 #include "engine/cost/route_cost.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/cost/wall_cost.h"
@@ -21,11 +22,14 @@ struct Moves {
   std::vector<Detour> detours;
 };
 
-Moves MovesOf(const LayerProblem& problem, const Route& route) {
+Moves MovesOf(const LayerProblem& problem, const Route& route, Budget& budget) {
+  Rest rest(&budget);
   Moves moves;
   if (problem.cost.kind == CostSpec::Kind::kLength) return moves;
   Point at = problem.start;
   for (size_t i = 0; i < route.size(); ++i) {
+    rest(4);
+    if (problem.walls != nullptr && budget.Exhausted()) break;
     const Path& path = problem.plan->paths[static_cast<size_t>(route[i].path)];
     const Point to = EnterPoint(path, route[i].entry);
     WallMove move;
@@ -46,33 +50,34 @@ double MoveMm(Point from, const std::optional<Point>& to) { return to ? Distance
 
 }  // namespace
 
-void TellGiven(const LayerProblem& problem, const Route& given, LayerOutcome& outcome) {
+void TellGiven(const LayerProblem& problem, const Route& given, Budget& turns,
+               LayerOutcome& outcome) {
   const Plan& plan = *problem.plan;
   LayerProblem open_ended = problem;
   open_ended.finish.reset();
-  outcome.given = MeasureTravel(plan, problem.start, given);
-  outcome.cost_given = RouteCost(open_ended, given);
-  outcome.moves_given = MovesOf(open_ended, given).counts;
+  outcome.given = MeasureTravel(plan, problem.start, given, &turns);
+  outcome.cost_given = RouteCost(open_ended, given, &turns);
+  outcome.moves_given = MovesOf(open_ended, given, turns).counts;
   outcome.cleaning_given_mm = MoveMm(RouteEnd(plan, given, problem.start), problem.finish);
 }
 
-void TellFound(const LayerProblem& problem, Solution solution, JobLayer& layer,
+void TellFound(const LayerProblem& problem, Solution solution, JobLayer& layer, Budget& turns,
                LayerOutcome& outcome) {
   const Plan& plan = layer.plan;
   outcome.start = problem.start;
   outcome.end = RouteEnd(plan, solution.route, problem.start);
-  outcome.travel = MeasureTravel(plan, problem.start, solution.route);
+  outcome.travel = MeasureTravel(plan, problem.start, solution.route, &turns);
   outcome.cleaning_mm = MoveMm(outcome.end, problem.finish);
   const double finish_cost = problem.finish ? TravelCost(problem)(outcome.end, *problem.finish) : 0;
-  outcome.cost = RouteCost(problem, solution.route) - finish_cost;
-  Moves moves = MovesOf(problem, solution.route);
+  outcome.cost = RouteCost(problem, solution.route, &turns) - finish_cost;
+  Moves moves = MovesOf(problem, solution.route, turns);
   outcome.moves = moves.counts;
   outcome.detours = std::move(moves.detours);
   if (solution.lower_bound) outcome.lower_bound = *solution.lower_bound - finish_cost;
   if (problem.walls != nullptr && outcome.invalid_route.empty()) {
     const absl::Status same =
         ValidateMoves(plan, layer.walls, problem.cost, problem.start, solution.route,
-                      {outcome.cost, outcome.moves, outcome.detours});
+                      {outcome.cost, outcome.moves, outcome.detours}, &turns);
     if (!same.ok()) outcome.invalid_route = std::string(same.message());
   }
   outcome.stop = solution.stop;

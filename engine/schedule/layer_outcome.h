@@ -11,13 +11,15 @@
 namespace traverse {
 
 // Sets what concerns the given order. `problem` starts where that order does; the move to its
-// finish, if it has one, is told apart.
-void TellGiven(const LayerProblem& problem, const Route& given, LayerOutcome& outcome);
+// finish, if it has one, is told apart. Others have their turns meanwhile; once `turns` is
+// cancelled, nobody will look at what is told.
+void TellGiven(const LayerProblem& problem, const Route& given, Budget& turns,
+               LayerOutcome& outcome);
 
 // Sets what concerns the route that was found, and whether it is what it claims to be: with walls
 // its moves are computed again by other code. Takes the plan out of `layer`.
 // REQUIRES: problem.plan is that of `layer`; the route is valid for it.
-void TellFound(const LayerProblem& problem, Solution solution, JobLayer& layer,
+void TellFound(const LayerProblem& problem, Solution solution, JobLayer& layer, Budget& turns,
                LayerOutcome& outcome);
 
 }  // namespace traverse

@@ -9,6 +9,7 @@ namespace traverse {
 
 void LayerPreparer::Prepare(ChainLayer& layer) {
   const Plan& plan = layer.given.plan;
+  Budget turns = solver_.Turns();
   if (layer.given.start) given_at_ = predicted_at_ = *layer.given.start;
   layer.predicted_start = predicted_at_;
 
@@ -26,9 +27,11 @@ void LayerPreparer::Prepare(ChainLayer& layer) {
     layer.anchored = anchored_;
   }
 
-  layer.given_route = GivenRoute(plan);
+  turns.ExhaustedNow();
+  layer.given_route = GivenRoute(plan, &turns);
   layer.outcome.index = layer.index;
-  TellGiven(solver_.Problem(layer, given_at_), layer.given_route, layer.outcome);
+  if (turns.ExhaustedNow()) return;  // it was cancelled: nobody will look
+  TellGiven(solver_.Problem(layer, given_at_), layer.given_route, turns, layer.outcome);
   given_at_ = layer.finish.value_or(RouteEnd(plan, layer.given_route, given_at_));
   if (!solver_.traits().serial) predicted_at_ = PredictEnd(layer);
 }

@@ -111,8 +111,9 @@ void LayerSolver::SolveFirst(ChainLayer& layer) const {
   LayerProblem problem = Problem(layer, layer.predicted_start);
   problem.memory = &layer.memory;
   // Different layers that share a fingerprint are unheard of, not impossible.
-  const bool resumes = layer.precursor &&
-                       ValidateRoute(layer.given.plan, layer.precursor->best->solution.route).ok();
+  const bool resumes =
+      layer.precursor &&
+      ValidateRoute(layer.given.plan, layer.precursor->best->solution.route, &budget).ok();
   if (resumes) {
     ResumeFromPrecursor(problem, layer, budget);
   } else {
@@ -134,8 +135,8 @@ void LayerSolver::ResumeFromPrecursor(const LayerProblem& problem, ChainLayer& l
   }
   const Route& route = precursor.best->solution.route;
   layer.first = strategy_->Resume(problem, route, budget);
-  const bool gained =
-      RouteCost(problem, layer.first.route) < RouteCost(problem, route) * (1 - kSameCost);
+  const bool gained = RouteCost(problem, layer.first.route, &budget) <
+                      RouteCost(problem, route, &budget) * (1 - kSameCost);
   layer.searched_in_vain = same && !gained && layer.first.stop != StopReason::kTimeLimit;
 }
 
@@ -163,7 +164,8 @@ KnownRoutePtr LayerSolver::Known(const LayerProblem& problem, const ChainLayer& 
                                  const Solution& solution) const {
   auto known = std::make_shared<KnownRoute>();
   known->solution = solution;
-  known->cost = RouteCost(problem, solution.route);
+  Budget turns = Turns();
+  known->cost = RouteCost(problem, solution.route, &turns);
   known->exact = layer.fingerprint.exact;
   known->start = problem.start;
   known->finish = problem.finish;
@@ -171,12 +173,13 @@ KnownRoutePtr LayerSolver::Known(const LayerProblem& problem, const ChainLayer& 
   return known;
 }
 
-const KnownRoute* LayerSolver::FindAnchored(const ChainLayer& layer, uint64_t key) {
+const KnownRoute* LayerSolver::FindAnchored(const ChainLayer& layer, uint64_t key) const {
   if (!layer.anchored) return nullptr;
   const auto found = layer.anchored->find(key);
   if (found == layer.anchored->end()) return nullptr;
-  return ValidateRoute(layer.given.plan, found->second->solution.route).ok() ? found->second.get()
-                                                                             : nullptr;
+  Budget turns = Turns();
+  const bool fits = ValidateRoute(layer.given.plan, found->second->solution.route, &turns).ok();
+  return fits ? found->second.get() : nullptr;
 }
 
 void LayerSolver::SolveSecond(ChainLayer& layer) const {
@@ -195,7 +198,8 @@ void LayerSolver::SolveSecond(ChainLayer& layer) const {
 // end of this one.
 double LayerSolver::CostInView(const LayerProblem& problem, const Route& route,
                                const ChainLayer* next) const {
-  const double cost = RouteCost(problem, route);
+  Budget turns = Turns();
+  const double cost = RouteCost(problem, route, &turns);
   if (next == nullptr) return cost;
   const Point end = RouteEnd(*problem.plan, route, problem.start);
   const Route& known = next->foreseen.empty() ? next->first.route : next->foreseen;
@@ -299,15 +303,18 @@ void LayerSolver::KeepBestRoute(const LayerProblem& problem, const ChainLayer& l
     greedy = GreedyRoute(problem, layer);
   }
   constexpr double kAny = std::numeric_limits<double>::infinity();
+  Budget turns = Turns();
   const bool has_limit = next != nullptr && greedy.size() == solution.route.size();
   const double limit = has_limit ? RouteCost(problem, greedy) * (1 + kSameCost) : kAny;
-  double best =
-      RouteCost(problem, solution.route) > limit ? kAny : CostInView(problem, solution.route, next);
+  const auto is_over = [&](const Route& route) {
+    return has_limit && RouteCost(problem, route, &turns) > limit;
+  };
+  double best = is_over(solution.route) ? kAny : CostInView(problem, solution.route, next);
   bool was_replaced = false;
   const auto offer = [&](const Route& route) {
     if (route.size() != solution.route.size()) return;  // there was no such search
     const double cost = CostInView(problem, route, next);
-    if (cost >= best || RouteCost(problem, route) > limit) return;
+    if (cost >= best || is_over(route)) return;
     best = cost;
     solution.route = route;
     was_replaced = true;
@@ -345,7 +352,7 @@ bool LayerSolver::GreedyMayBeBetter(const LayerProblem& problem, const ChainLaye
 void LayerSolver::Bound(const LayerProblem& problem, ChainLayer& layer, Solution& solution) const {
   if (!strategy_->traits().wants_bound || cancel_.cancelled()) return;
   Budget budget = LayerBudget(layer, kSideShare);
-  const double cost = RouteCost(problem, solution.route);
+  const double cost = RouteCost(problem, solution.route, &budget);
   solution.lower_bound = LowerBound(problem, cost, &layer.bound_multipliers, budget);
   if (solution.lower_bound == cost) solution.stop = StopReason::kOptimal;
 }
@@ -366,11 +373,13 @@ LayerOutcome LayerSolver::Anchor(ChainLayer& layer, const TrueStart& at) const {
   problem.memory = &layer.memory;
   const uint64_t key = KeyAt(layer, at);
   const KnownRoute* known = FindAnchored(layer, key);
-  if (!ValidateRoute(layer.given.plan, layer.foreseen).ok()) layer.foreseen.clear();
+  Budget turns = Turns();
+  if (!ValidateRoute(layer.given.plan, layer.foreseen, &turns).ok()) layer.foreseen.clear();
   Route greedy;
   Solution solution = SolveFromTrueStart(problem, layer, known, next, greedy);
   LayerOutcome outcome = std::move(layer.outcome);
-  if (absl::Status status = ValidateRoute(layer.given.plan, solution.route); !status.ok()) {
+  if (turns.ExhaustedNow()) return outcome;  // it was cancelled: nobody will look
+  if (absl::Status status = ValidateRoute(layer.given.plan, solution.route, &turns); !status.ok()) {
     outcome.invalid_route = std::string(status.message());
     solution = Solution{layer.given_route, StopReason::kLocalOptimum, std::nullopt};
   } else if (!strategy_->traits().pure) {
@@ -378,7 +387,8 @@ LayerOutcome LayerSolver::Anchor(ChainLayer& layer, const TrueStart& at) const {
   }
   if (!solution.lower_bound) Bound(problem, layer, solution);
   if (layer.anchored) (*layer.anchored)[key] = layer.known = Known(problem, layer, solution);
-  TellFound(problem, std::move(solution), layer.given, outcome);
+  if (turns.ExhaustedNow()) return outcome;
+  TellFound(problem, std::move(solution), layer.given, turns, outcome);
   layer.memory.reset();
   layer.walls.reset();
   outcome.solve_seconds += watch.Seconds();

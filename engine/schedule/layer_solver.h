@@ -39,6 +39,10 @@ class LayerSolver {
   // Whether there is no time but to answer with what there is.
   bool Expired() const;
 
+  // For what has to be done whatever the time is: others have their turns meanwhile, and a
+  // cancellation is seen.
+  Budget Turns() const { return Budget(&cancel_, std::nullopt, executor_.turn()); }
+
   // The problem that the layer is from `start`. Refers to the layer.
   LayerProblem Problem(const ChainLayer& layer, Point start) const;
 
@@ -72,7 +76,7 @@ class LayerSolver {
                          const KnownRoute* known, const ChainLayer* next) const;
   void KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer, const KnownRoute* known,
                      const ChainLayer* next, Route greedy, Solution& solution) const;
-  static const KnownRoute* FindAnchored(const ChainLayer& layer, uint64_t key);
+  const KnownRoute* FindAnchored(const ChainLayer& layer, uint64_t key) const;
   void Bound(const LayerProblem& problem, ChainLayer& layer, Solution& solution) const;
 
   const JobSpec spec_;

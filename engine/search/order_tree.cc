@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "engine/model/passed_pairs.h"
+
 namespace traverse {
 namespace {
 
@@ -86,38 +88,32 @@ class OrderTree::Compiler {
     std::vector<int> item_of(node.children.size(), -1);
     const auto with_leaves = std::count_if(node.children.begin(), node.children.end(),
                                            [&](int child) { return leaves_[Index(child)] > 0; });
-    const int item = with_leaves > 1 ? NewItem(node.kind == PlanNode::Kind::kAnyOrder) : -1;
+    const bool any_order = node.kind == PlanNode::Kind::kAnyOrder;
+    const int item = with_leaves > 1 ? NewItem(any_order) : -1;
+    tree_.has_choice_ = tree_.has_choice_ || (any_order && with_leaves > 1);
     for (size_t c = 0; c < node.children.size(); ++c) {
       if (leaves_[Index(node.children[c])] == 0) continue;
       items.push_back(item_of[c] = Compile(node.children[c]));
     }
     if (items.size() == 1) return items[0];
-    AddPairs(node, item_of);
+    if (tree_.free_order(item)) AddPairs(node, item, item_of);
     Adopt(item, items);
     return item;
   }
 
-  // Passes pairs on through children without leaves: a before empty before b is a before b.
-  void AddPairs(const PlanNode& node, const std::vector<int>& item_of) {
-    if (node.before.empty()) return;
-    Lists later(item_of.size());
-    for (const auto& [first, second] : node.before) later[Index(first)].push_back(second);
-    std::vector<int> seen_from(item_of.size(), -1);
-    for (size_t c = 0; c < item_of.size(); ++c) {
-      if (item_of[c] < 0) continue;
-      std::vector<int> open = later[c];
-      while (!open.empty()) {
-        const size_t next = Index(open.back());
-        open.pop_back();
-        if (seen_from[next] == static_cast<int>(c)) continue;
-        seen_from[next] = static_cast<int>(c);
-        if (item_of[next] >= 0) {
-          after_[Index(item_of[c])].push_back(item_of[next]);
-          before_[Index(item_of[next])].push_back(item_of[c]);
-        } else {
-          open.insert(open.end(), later[next].begin(), later[next].end());
-        }
-      }
+  // Passes pairs on through children without leaves: a before empty before b is a before b. Where
+  // that comes to too many, the children stay in the order of the route that is searched from.
+  void AddPairs(const PlanNode& node, int item, const std::vector<int>& item_of) {
+    std::vector<bool> has_leaves;
+    for (const int child : item_of) has_leaves.push_back(child >= 0);
+    const auto pairs = PassedPairs(node, has_leaves);
+    tree_.free_order_[Index(item)] = pairs.has_value();
+    if (!pairs) return;
+    for (const auto& [first, second] : *pairs) {
+      const int a = item_of[Index(first)];
+      const int b = item_of[Index(second)];
+      after_[Index(a)].push_back(b);
+      before_[Index(b)].push_back(a);
     }
   }
 

@@ -3,7 +3,6 @@
 #ifndef TRAVERSE_ENGINE_SEARCH_ORDER_TREE_H_
 #define TRAVERSE_ENGINE_SEARCH_ORDER_TREE_H_
 
-#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <vector>
@@ -32,6 +31,9 @@ class OrderTree {
   int parent(int item) const { return parent_[Index(item)]; }  // -1 for the root
   int depth(int item) const { return depth_[Index(item)]; }
   int size(int item) const { return size_[Index(item)]; }  // leaves below, 1 for a leaf
+
+  // Whether the children of `item` may change place. Not so in an any_order node whose pairs,
+  // passed on, would be too many (PassedPairs).
   bool free_order(int item) const { return free_order_[Index(item)]; }
 
   // Whether everything below may be done backwards: paths can be reversed and no order is fixed.
@@ -50,10 +52,8 @@ class OrderTree {
   // Whether there are nodes whose leaves change place when others move.
   bool nested() const { return nested_; }
 
-  // Whether there is a node of free order at all.
-  bool has_choice() const {
-    return std::find(free_order_.begin(), free_order_.end(), 1) != free_order_.end();
-  }
+  // Whether the plan leaves an order open.
+  bool has_choice() const { return has_choice_; }
 
   absl::Span<const int> children(int item) const { return Range(children_, children_first_, item); }
 
@@ -100,10 +100,11 @@ class OrderTree {
 
   int start_;
   bool nested_ = false;
+  bool has_choice_ = false;
   std::vector<int> parent_;                // [item]
   std::vector<int> depth_;                 // [item], 0 for the root
   std::vector<int> size_;                  // [item]
-  std::vector<char> free_order_;           // [item] kAnyOrder
+  std::vector<char> free_order_;           // [item]
   std::vector<char> reversible_;           // [item]
   std::vector<char> children_reversible_;  // [item]
   std::vector<char> has_pairs_;            // [item]

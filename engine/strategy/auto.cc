@@ -100,13 +100,13 @@ class Auto : public Strategy {
         least_gain_each_(least_gain_each) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
-    const LayerView layer(problem);
+    const LayerView layer(problem, &budget);
     return Search(layer, BaselineRoute(layer, budget), {effort_, effort_}, budget);
   }
 
   Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
     const double effort = effort_ * kResumeShare;
-    return Search(LayerView(problem), start, {effort, effort, effort >= 1}, budget);
+    return Search(LayerView(problem, &budget), start, {effort, effort, effort >= 1}, budget);
   }
 
   Solution ResumeWithNext(const LayerProblem& problem, const Route& start, const LayerProblem& next,
@@ -124,7 +124,7 @@ class Auto : public Strategy {
     both.finish = next.finish;
     both.memory = nullptr;
     const double effort = effort_ * kResumeShare;
-    Solution solution = Search(LayerView(both), RouteOfBoth(start, next_start, paths),
+    Solution solution = Search(LayerView(both, &budget), RouteOfBoth(start, next_start, paths),
                                {effort, 2 * effort}, budget);
     next_start = RouteOfSecond(solution.route, paths);
     solution.route = RouteOfFirst(solution.route, paths);
@@ -193,7 +193,7 @@ class Auto : public Strategy {
   void ProveIfSmall(const LayerProblem& problem, Solution& solution, Budget& budget) const {
     if (solution.stop == StopReason::kOptimal) solution.stop = StopReason::kLocalOptimum;
     solution.lower_bound.reset();
-    const LayerView layer(problem);
+    const LayerView layer(problem, &budget);
     const SmallPartOptions options = SmallParts(effort_ * kResumeShare);
     Route optimal = solution.route;
     if (!IsSmall(layer, options) || !SolveSmallParts(layer, options, optimal, budget)) return;

@@ -15,7 +15,7 @@ class Greedy : public Strategy {
   explicit Greedy(bool pure) : Strategy({.serial = true, .pure = pure}) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
-    const LayerView layer(problem);
+    const LayerView layer(problem, &budget);
     Route route = traits().pure ? GreedyRoute(layer, budget) : BaselineRoute(layer, budget);
     return Solution{std::move(route), StopOr(budget, StopReason::kLocalOptimum), std::nullopt};
   }

@@ -19,7 +19,7 @@ class Ni2opt : public Strategy {
   explicit Ni2opt(bool point_release) : Strategy({.quick = true}), descent_{point_release} {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
-    const LayerView layer(problem);
+    const LayerView layer(problem, &budget);
     Route baseline = BaselineRoute(layer, budget);
     const std::optional<Route> inserted = NearestInsertionRoute(layer, budget);
     if (!inserted) {
@@ -30,7 +30,7 @@ class Ni2opt : public Strategy {
 
   // Without construction: the order that was found for another start is a good one still.
   Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
-    const LayerView layer(problem);
+    const LayerView layer(problem, &budget);
     Route baseline = BaselineRoute(layer, budget);
     return Best(layer, std::move(baseline), start, budget);
   }
@@ -65,7 +65,7 @@ class PublishedNi2opt : public Strategy {
       : Strategy({.serial = true, .pure = true}), point_release_(point_release) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
-    Route route = PublishedRoute(LayerView(problem), point_release_, budget);
+    Route route = PublishedRoute(LayerView(problem, &budget), point_release_, budget);
     return Solution{std::move(route), StopOr(budget, StopReason::kLocalOptimum), std::nullopt};
   }
 

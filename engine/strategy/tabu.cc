@@ -66,7 +66,7 @@ class ThesisTabu : public Strategy {
       : Strategy({.serial = true, .pure = true}), options_(options) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
-    const LayerView layer(problem);
+    const LayerView layer(problem, &budget);
     Solution solution;
     solution.route = Search(layer, GivenRoute(layer.plan()), options_, budget, solution.statistics);
     budget.ExhaustedNow();
@@ -88,7 +88,7 @@ class Tabu : public Strategy {
         ni2opt_(DefaultNi2opt()) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
-    const LayerView layer(problem);
+    const LayerView layer(problem, &budget);
     return polish_ ? SolvePolished(layer, budget) : SolvePlain(layer, budget);
   }
 
@@ -96,7 +96,7 @@ class Tabu : public Strategy {
   // it again any sooner.
   Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
     if (!polish_) return Strategy::Resume(problem, start, budget);
-    const LayerView layer(problem);
+    const LayerView layer(problem, &budget);
     Candidate best = Baseline(layer, budget);
     Polisher polisher(layer, budget);
     Rng rng(StreamSeed(problem.seed, kPolishStream));

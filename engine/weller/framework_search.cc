@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "engine/base/rest.h"
 #include "engine/base/rng.h"
 #include "engine/cost/entry_choice.h"
 #include "engine/cost/entry_table.h"
@@ -30,6 +31,13 @@ std::vector<int> InOrderOf(const Route& route, const std::vector<int>& paths) {
   return sorted;
 }
 
+// Whether what is left of the framework would take too long: once it was cancelled, or its time is
+// over and the steps to a feasible route are many.
+bool GivesUp(const Plan& plan, Budget& budget) {
+  constexpr size_t kFewPaths = 2000;
+  return budget.ExhaustedNow() && (budget.cancelled() || plan.paths.size() > kFewPaths);
+}
+
 // What the steps share.
 class FrameworkSearch {
  public:
@@ -47,7 +55,10 @@ class FrameworkSearch {
 
   FrameworkResult Run(const ClassicalLayer& layer, const Route& start) {
     analysis_.kept = InOrderOf(start, analysis_.kept);
-    if (!analysis_.kept.empty()) ArrangeContours();
+    if (!analysis_.kept.empty() && !ArrangeContours()) {
+      result_.route = start;
+      return std::move(result_);
+    }
     const Stopwatch watch;
     ArrangeRasters(InOrderOf(start, layer.rasters));
     result_.step_seconds[2] = watch.Seconds();
@@ -58,8 +69,10 @@ class FrameworkSearch {
   // Step 1, as far as it is cheap; the rest is counted where it is used.
   void CountPoints(const ClassicalLayer& layer) {
     ReductionCounts& points = result_.points;
+    Rest rest(&budget_);
     for (const int contour : layer.contours) {
       const Path& path = plan_.paths[static_cast<size_t>(contour)];
+      rest(16 + 4 * path.points.size());
       points.entries += static_cast<int>(EntryVertices(path).size());
       points.spaced += static_cast<int>(SpacedPoints(path, options_.spacing_mm).size());
     }
@@ -70,12 +83,14 @@ class FrameworkSearch {
     points.box_center = static_cast<int>(analysis_.kept.size());
   }
 
-  // Steps 2 and 3: appends the contours to the route.
-  void ArrangeContours() {
+  // Steps 2 and 3: appends the contours to the route. False if the time for that is over.
+  bool ArrangeContours() {
     const Stopwatch watch;
     Plan reduced;
     std::vector<CircledContour> circles;
+    Rest rest(&budget_);
     for (const int contour : analysis_.kept) {
+      rest(16 + 8 * plan_.paths[static_cast<size_t>(contour)].points.size());
       reduced.paths.push_back(MakeContour(RepresentativePoints(
           plan_, layout_, contour, options_.representation, options_.spacing_mm)));
       if (options_.representation == Representation::kNearRasterPoints) {
@@ -86,6 +101,7 @@ class FrameworkSearch {
     ArrangeFreely(reduced);
     neighborhood_ = GrowCircles(circles, problem_.start, options_.neighborhood, budget_);
     LinkClusters(circles, problem_.start, neighborhood_, budget_);
+    if (GivesUp(plan_, budget_)) return false;
 
     LinkRules rules;
     for (int node = 0; node < static_cast<int>(circles.size()); ++node) {
@@ -97,11 +113,13 @@ class FrameworkSearch {
     const LayerProblem sub = StepProblem(problem_, reduced, 2);
     const std::vector<TabuElite> found =
         method_.ArrangeContours(sub, rules, GivenRoute(reduced), budget_);
+    if (GivesUp(plan_, budget_)) return false;
     result_.penalized_contour_links = found.front().penalized;
     if (options_.trace) TraceSequence(found.front().route);
     result_.step_seconds[0] = watch.Seconds();
     MakeFeasible(sub, rules, found);
     result_.step_seconds[1] = watch.Seconds() - result_.step_seconds[0];
+    return true;
   }
 
   // Step 3 for the elite of step 2 and for sequences on the way from the others to the best one,
@@ -131,11 +149,12 @@ class FrameworkSearch {
     const std::vector<int> order =
         ReinsertOuterContours(plan_, layout_, analysis_.suppressed, sequence, problem_.start,
                               travel, options_.spacing_mm);
-    const auto visible =
-        VisiblePointsAlong(plan_, order, problem_.start, options_.spacing_mm, options_.visible_in);
-    Route route = options_.point_relinkings > 0
-                      ? RelinkedPoints({&plan_, order, visible, problem_.start}, sequence, travel)
-                      : ChooseContourPoints(plan_, order, visible, problem_.start, travel);
+    const auto visible = VisiblePointsAlong(plan_, order, problem_.start, options_.spacing_mm,
+                                            options_.visible_in, &budget_);
+    Route route =
+        options_.point_relinkings > 0
+            ? RelinkedPoints({&plan_, order, visible, problem_.start}, sequence, travel)
+            : ChooseContourPoints(plan_, order, visible, problem_.start, travel, &budget_);
     LayerProblem contours = problem_;
     contours.finish.reset();
     const double cost = RouteCost(contours, route);
@@ -269,6 +288,7 @@ Route SearchAnyPlan(const LayerProblem& problem, const Route& start,
                     const FrameworkOptions& options, Budget& budget) {
   const Plan& plan = *problem.plan;
   if (plan.paths.empty()) return {};
+  if (GivesUp(plan, budget)) return start;
   const IslandLayout layout = IslandsOf(plan);
   Plan reduced = plan;
   for (size_t p = 0; p < plan.paths.size(); ++p) {
@@ -285,13 +305,13 @@ Route SearchAnyPlan(const LayerProblem& problem, const Route& start,
   LinkRules rules;
   rules.node_of.assign(plan.paths.size(), 0);
   const TabuResult found = TabuSearch(sub, rules, reduced_start, options.tabu, budget);
-  if (found.elite.empty()) return start;
+  if (found.elite.empty() || GivesUp(plan, budget)) return start;
 
   std::vector<int> order;
   for (const Visit& visit : found.elite.front().route) order.push_back(visit.path);
   const EntryTable table(plan);
   std::vector<int> entries(order.size());
-  EntryChoice(table, TravelCost(problem))
+  EntryChoice(table, TravelCost(problem), &budget)
       .Choose(problem.start, order, problem.finish, absl::MakeSpan(entries));
   Route route;
   for (const int entry : entries) route.push_back(table.VisitOf(entry));

@@ -259,20 +259,36 @@ absl::StatusOr<Wall> FromProto(const v1::Wall& message, const Plan& plan, const 
 absl::Status SetWalls(const v1::Layer& message, const Place& place, JobLayer& layer) {
   LayerWalls& walls = layer.walls;
   walls.walls.reserve(static_cast<size_t>(message.walls_size()));
+  // A few bytes name a contour of any size. Each may be named once; more often only as long as all
+  // that is copied so is no more than the layer has.
+  size_t may_copy = 0;
+  for (const Path& path : layer.plan.paths) may_copy += path.points.size() + 1;
   for (int w = 0; w < message.walls_size(); ++w) {
     absl::StatusOr<Wall> wall =
         FromProto(message.walls(w), layer.plan, Place(&place, "walls", static_cast<uint64_t>(w)));
     if (!wall.ok()) return wall.status();
+    if (message.walls(w).points().empty()) {
+      if (wall->points.size() > may_copy) {
+        return Fault(absl::StrCat(place.text(), ".walls[", w, "].path"),
+                     "the walls up to here name contours that were named before");
+      }
+      may_copy -= wall->points.size();
+    }
     walls.walls.push_back(*std::move(wall));
   }
   walls.exposed.reserve(static_cast<size_t>(message.exposed_paths_size()));
   for (int i = 0; i < message.exposed_paths_size(); ++i) {
-    absl::StatusOr<int> path =
-        Index(message.exposed_paths(i), absl::StrCat(place.text(), ".exposed_paths[", i, "]"));
-    if (!path.ok()) return path.status();
-    walls.exposed.push_back(*path);
+    const uint32_t path = message.exposed_paths(i);
+    // The place is written for a fault alone: there may be millions of these.
+    if (path > INT_MAX) {
+      return Index(path, absl::StrCat(place.text(), ".exposed_paths[", i, "]")).status();
+    }
+    walls.exposed.push_back(static_cast<int>(path));
   }
   const absl::Status status = CheckWalls(walls, layer.plan);
+  // A path takes a byte to be named, and its points are looked up each time.
+  std::sort(walls.exposed.begin(), walls.exposed.end());
+  walls.exposed.erase(std::unique(walls.exposed.begin(), walls.exposed.end()), walls.exposed.end());
   if (status.ok()) return status;
   return absl::Status(status.code(), absl::StrCat(place.text(), ".", status.message()));
 }

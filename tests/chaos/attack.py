@@ -383,6 +383,197 @@ def cancels(server, end):
     until(end, step)
 
 
+def batches(bodies, extra=(), seconds=0.3, window=None):
+    """Sends each body as a batch, by a connection each, and waits a moment for the answer."""
+    def attack(server, end):
+        made = [message(body()) for body in bodies]
+        dice = random.Random(5)
+
+        def step():
+            connection = Connection(server.port, window)
+            stream = connection.call(SERVICE + "OptimizeBatch", extra)
+            Window(connection).send(stream, dice.choice(made), patience=1)
+            connection.drain(seconds)
+            connection.close()
+
+        until(end, step)
+
+    return attack
+
+
+# Time costs, in which alone walls count: so much for a retraction, a lift and a crossing, and ways around walls.
+def time_cost(clearance=0.4):
+    return b"".join(number(n, value) for n, value in ((1, 120.0), (2, 3000.0), (3, 0.1), (4, 2.0), (6, 0.1), (7, 1.0), (9, clearance)))
+
+
+def one_contour(points):
+    return field(3, field(2, field(2, packed([coordinate for point in points for coordinate in point]))))
+
+
+def layer_of(paths):
+    contours = b"".join(field(2, field(2, packed([random.uniform(0, 200) for _ in range(8)]))) for _ in range(paths))
+    return field(3, contours)
+
+
+def unknown_fields():
+    """Empty texts that no version knows: two bytes each."""
+    return options() + field(2, b"\x7a\x00" * (8 << 20))
+
+
+def unknown_options():
+    return field(1, b"\x7a\x00" * (8 << 20)) + layer(3)
+
+
+def packed_children():
+    """Children of a node, a byte each."""
+    return options() + field(2, field(4, field(2, field(2, field(1, b"\x01" * (30 << 20))))))
+
+
+def named_walls():
+    """Walls that name a large contour again and again."""
+    square = [(float(i), float(i % 2)) for i in range(50_000)]
+    return options("greedy", time_cost()) + field(2, one_contour(square) + field(7, b"\x18\x00") * 100_000)
+
+
+def exposed_paths():
+    square = [(float(i), float(i % 2)) for i in range(50_000)]
+    return options("greedy", time_cost()) + field(2, one_contour(square) + field(8, b"\x00" * (1 << 20)))
+
+
+def upright_walls():
+    """A wall that goes up and down all over the plate."""
+    wall = [coordinate for i in range(400_000) for coordinate in (5e-4 * i, i % 2 * 200.0)]
+    return options("greedy", time_cost(0)) + field(2, layer_of(5) + field(7, field(1, packed(wall))))
+
+
+def clustered_walls():
+    """Walls by the hundred thousand in one place, and two far away that make the place small."""
+    wall = [coordinate for i in range(100_000) for coordinate in (100 + 1e-4 * (i % 300), 100 + 1e-4 * (i % 7))]
+    far = packed([-9e5, -9e5, -9e5, -8e5])
+    return options("greedy", time_cost()) + field(2, layer_of(300) + field(7, field(1, packed(wall))) + field(7, field(1, far)))
+
+
+def barrier(strategy):
+    """Half of the paths before a node without any, and that before the others: their pairs are the square of that."""
+    def body():
+        half = 20_000
+        paths = b"".join(field(1, field(1, field(2, packed([random.uniform(0, 200), random.uniform(0, 200)]))))
+                         for _ in range(2 * half))
+        children = b"".join(varint(i + 1) for i in range(2 * half + 1))
+        pairs = b"".join(field(2, b"\x08" + varint(i) + b"\x10" + varint(2 * half)) for i in range(half))
+        pairs += b"".join(field(2, b"\x08" + varint(2 * half) + b"\x10" + varint(half + i)) for i in range(half))
+        nodes = field(2, field(3, field(1, children) + pairs))
+        nodes += b"".join(field(2, b"\x08" + varint(i)) for i in range(2 * half)) + field(2, field(2, b""))
+        return options(strategy) + field(2, field(4, paths + nodes))
+
+    return body
+
+
+def two_clouds(strategy):
+    """Two contours of many vertices that are in no order: each of the one may go with each of the other."""
+    def body():
+        cloud = field(2, field(2, packed([random.uniform(0, 200) for _ in range(200_000)])))
+        return options(strategy) + field(2, field(3, cloud) + field(3, cloud))
+
+    return body
+
+
+def large_layers(strategy):
+    return lambda: options(strategy) + field(2, field(3, b"".join(
+        field(2, field(2, packed([random.uniform(0, 200), random.uniform(0, 200)]))) for _ in range(19_000))))
+
+
+def paused_searches(server, end):
+    """Layers of 19,000 paths by the dozen: each is searched for a moment, and then waits for its turn."""
+    body = message(large_layers("auto")())
+    held = []
+
+    def step():
+        if len(held) < 60:
+            connection = Connection(server.port)
+            Window(connection).send(connection.call(SERVICE + "OptimizeBatch"), body, patience=0.3)
+            held.append(connection)
+        time.sleep(0.05)
+
+    until(end, step)
+    for connection in held:
+        connection.close()
+
+
+def unread_answers(server, end):
+    """Large answers by the dozen that nobody reads."""
+    body = message(options("none") + layer(20_000) * 4)
+    held = []
+
+    def step():
+        if len(held) < 60:
+            connection = Connection(server.port, window=0)
+            Window(connection).send(connection.call(SERVICE + "OptimizeBatch"), body, patience=0.3)
+            held.append(connection)
+        time.sleep(0.05)
+
+    until(end, step)
+    for connection in held:
+        connection.close()
+
+
+def corners(server, end):
+    """Every number of the options at its corners, in both calls, half-closed or not, with deadlines that race."""
+    dice = random.Random(11)
+    whole = [0, 1, 2, 127, 2**31 - 1, 2**31, 2**32 - 1, 2**63, 2**64 - 1]
+
+    def some_number(at):
+        return number(at, dice.choice(EXTREMES)) if dice.random() < 0.6 else varint(at << 3) + varint(dice.choice(whole))
+
+    def some_point():
+        return number(1, dice.choice(EXTREMES)) + number(2, dice.choice(EXTREMES))
+
+    def some_duration():
+        return b"\x08" + varint(dice.choice(whole)) + b"\x10" + varint(dice.choice(whole))
+
+    def some_options():
+        name = dice.choice(["none", "greedy", "ni2opt", "tabu", "exact", "auto"])
+        option = dice.choice(["effort", "least_gain_each", "bound", "pure", "point_release", "diversifications", "tenure", "neighbors",
+                              "spacing_mm", "relinked", "elite", "patience", "model", "start", "polish", ""])
+        value = dice.choice(["0", "-1", "1e308", "nan", "inf", "1e-320", "true", "", "9" * 400, "\x00", "thesis"])
+        strategy = field(1, name.encode())
+        if dice.random() < 0.4:
+            strategy += field(2, field(1, option.encode()) + field(2, value.encode()))
+        parts = [field(2, strategy)]
+        optional = [lambda: field(1, bytes(dice.randrange(256) for _ in range(dice.choice([1, 300])))),
+                    lambda: b"\x18" + varint(dice.choice(whole)), lambda: field(4, some_point()),
+                    lambda: field(5, field(1, some_point()) + b"\x10" + varint(dice.choice(whole)) + b"\x18" + varint(dice.choice(whole))),
+                    lambda: field(6, field(2, b"".join(some_number(n) for n in range(1, 11)))), lambda: some_number(7),
+                    lambda: b"\x40" + varint(dice.choice(whole)), lambda: field(9, some_duration()), lambda: field(10, some_duration()),
+                    lambda: b"\x58" + varint(dice.choice(whole)), lambda: b"\x60\x01", lambda: b"\x68\x01"]
+        parts += [make() for make in optional if dice.random() < 0.15]
+        return field(1, b"".join(parts))
+
+    def step():
+        connection = Connection(server.port)
+        for _ in range(4):
+            body = some_options() + b"".join(layer(dice.randint(0, 12)) for _ in range(dice.randint(0, 3)))
+            deadline = dice.choice(["1n", "1u", "5m", "20m", "50m", "1S", "99999999H"])
+            stream = connection.call(SERVICE + dice.choice(["OptimizeBatch", "Optimize"]), [("grpc-timeout", deadline)])
+            connection.send(frame(DATA, dice.choice([0, END_STREAM]), stream, message(body)))
+            if dice.random() < 0.3:
+                connection.send(frame(RST_STREAM, 0, stream, struct.pack(">I", 8)))
+        connection.drain(dice.choice([0.001, 0.03]))
+        connection.close()
+
+    until(end, step)
+
+
+def many_channels(server, end):
+    """New connections as fast as they come, with a call each."""
+    def step():
+        connection = Connection(server.port)
+        connection.call(SERVICE + "ListStrategies", [(f"x-{i}", "v" * 500) for i in range(20)], END_HEADERS | END_STREAM)
+        connection.close()
+
+    until(end, step)
+
+
 ATTACKS = {
     "rapid_reset": rapid_reset,
     "endless_headers": endless_headers,
@@ -400,6 +591,17 @@ ATTACKS = {
     "one_byte_a_time": one_byte_a_time,
     "extremes": extremes,
     "cancels": cancels,
+    "unknown_fields": batches([unknown_fields, unknown_options]),
+    "packed_children": batches([packed_children]),
+    "named_walls": batches([named_walls, exposed_paths]),
+    "upright_walls": batches([upright_walls]),
+    "clustered_walls": batches([clustered_walls]),
+    "barriers": batches([barrier("auto"), barrier("tabu"), barrier("exact")], seconds=1),
+    "two_clouds": batches([two_clouds("auto"), two_clouds("tabu"), two_clouds("exact")], seconds=1),
+    "paused_searches": paused_searches,
+    "unread_answers": unread_answers,
+    "corners": corners,
+    "many_channels": many_channels,
 }
 
 

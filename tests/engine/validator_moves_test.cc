@@ -1,4 +1,7 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <cstdint>
 
 #include "absl/strings/match.h"
 #include "engine/validator.h"
@@ -39,6 +42,24 @@ TEST_F(ValidateMovesTest, FindsAWrongCost) {
 TEST_F(ValidateMovesTest, FindsWrongCounts) {
   EXPECT_EQ(Validate({17, {0, 1}, {}}).message(), "crossings 0, computed anew 1 to 1");
   EXPECT_EQ(Validate({17, {1, 2}, {}}).message(), "retractions 2, computed anew 1 to 1");
+}
+
+int64_t PeakKilobytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
+// A wall that goes up and down all over the layer. Each line was noted in each of 300 stripes.
+TEST_F(ValidateMovesTest, UprightWallsTakeNoMoreMemoryThanOthers) {
+  constexpr int kLines = 100'000;
+  Wall& upright = walls_.walls.emplace_back();
+  for (int i = 0; i < kLines; ++i) upright.points.push_back({100 + 1e-3 * i, i % 2 * 200.0});
+  const int64_t before = PeakKilobytes();
+
+  EXPECT_OK(Validate({17, {1, 1}, {}}));
+
+  EXPECT_LT(PeakKilobytes() - before, 200'000);
 }
 
 TEST_F(ValidateMovesTest, LetsRoundingDecideWhatTouches) {

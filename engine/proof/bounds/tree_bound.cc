@@ -6,7 +6,9 @@
 #include <limits>
 #include <numeric>
 
+#include "engine/base/rest.h"
 #include "engine/cost/neighbor_lists.h"
+#include "engine/geometry/set_distance.h"
 
 namespace traverse {
 namespace {
@@ -93,7 +95,7 @@ struct TreeBound::Pool {
 };
 
 TreeBound::TreeBound(const LayerProblem& problem, Budget& budget)
-    : graph_(PlanTree(*problem.plan)),
+    : graph_(PlanTree(*problem.plan, &budget)),
       cost_(problem),
       multipliers_(graph_.ends.size()),
       best_multipliers_(graph_.ends.size()),
@@ -118,36 +120,32 @@ double TreeBound::CostTo(Point point, int end) const {
   return cost_.OfLength(nearest);
 }
 
-double TreeBound::Cost(int a, int b) const {
-  double nearest = kFar;
-  for (const Point& from : graph_.ends[static_cast<size_t>(a)].points) {
-    for (const Point& to : graph_.ends[static_cast<size_t>(b)].points) {
-      const double dx = from.x - to.x;
-      const double dy = from.y - to.y;
-      nearest = std::min(nearest, dx * dx + dy * dy);
-    }
-  }
-  return cost_.OfLength(std::sqrt(nearest));
+double TreeBound::Cost(int a, int b, Budget& budget) const {
+  return cost_.OfLength(LeastDistance(graph_.ends[static_cast<size_t>(a)].points,
+                                      graph_.ends[static_cast<size_t>(b)].points, budget));
 }
 
-void TreeBound::AddPair(int junction, const Junction::Member& a, const Junction::Member& b) {
+void TreeBound::AddPair(int junction, const Junction::Member& a, const Junction::Member& b,
+                        Budget& budget) {
   const auto& known = near_[static_cast<size_t>(a.end)];
   if (std::any_of(known.begin(), known.end(),
                   [&](const auto& pair) { return pair.first == b.end; })) {
     return;
   }
-  const double cost = Cost(a.end, b.end);
+  const double cost = Cost(a.end, b.end, budget);
   pairs_.push_back(Pair{junction, {a.end, b.end}, {a.side, b.side}, cost});
   near_[static_cast<size_t>(a.end)].emplace_back(b.end, cost);
   near_[static_cast<size_t>(b.end)].emplace_back(a.end, cost);
 }
 
 void TreeBound::FindNearPairs(Budget& budget) {
+  Rest rest(&budget);
   for (size_t j = 0; j < graph_.junctions.size() && !budget.ExhaustedNow(); ++j) {
     const Junction& junction = graph_.junctions[j];
     PointGroups groups;
     std::vector<NeighborLists::Member> members;
     for (const Junction::Member& member : junction.members) {
+      rest(16);
       members.push_back({groups.size(), member.side});
       const std::vector<Point>& points = graph_.ends[static_cast<size_t>(member.end)].points;
       groups.points.insert(groups.points.end(), points.begin(), points.end());
@@ -160,8 +158,9 @@ void TreeBound::FindNearPairs(Budget& budget) {
       const Junction::Member& member = junction.members[static_cast<size_t>(m)];
       for (const NeighborLists::Neighbor& neighbor : lists.of(m)) {
         const Junction::Member& other = junction.members[static_cast<size_t>(neighbor.group)];
-        if ((member.roles & Opposite(other.roles)) != 0)
-          AddPair(static_cast<int>(j), member, other);
+        if ((member.roles & Opposite(other.roles)) == 0) continue;
+        if (!rest(64)) return;
+        AddPair(static_cast<int>(j), member, other, budget);
       }
     }
   }
@@ -243,12 +242,14 @@ double TreeBound::JoinAll(int index, Budget& budget) {
   for (const Junction::Member& member : junction.members) {
     member_of_[static_cast<size_t>(member.end)] = -1;
   }
+  Rest rest(&budget);
   for (const auto& [a, b] : chosen) {
     const Junction::Member& one = junction.members[static_cast<size_t>(a)];
     const Junction::Member& other = junction.members[static_cast<size_t>(b)];
     ++moves_[static_cast<size_t>(one.end)];
     ++moves_[static_cast<size_t>(other.end)];
-    AddPair(index, one, other);
+    rest(64);
+    AddPair(index, one, other, budget);
   }
   return sum;
 }

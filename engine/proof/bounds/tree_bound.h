@@ -56,10 +56,10 @@ class TreeBound {
   // What remains to be joined in one junction, in arrays for the inner loop.
   struct Pool;
 
-  double Cost(int a, int b) const;
+  double Cost(int a, int b, Budget& budget) const;
   double CostTo(Point point, int end) const;
   void FindNearPairs(Budget& budget);
-  void AddPair(int junction, const Junction::Member& a, const Junction::Member& b);
+  void AddPair(int junction, const Junction::Member& a, const Junction::Member& b, Budget& budget);
   double JoinAll(int junction, Budget& budget);
   void Reach(const Junction::Member& from, Pool& pool) const;
   void ReachByBoxes(const Junction::Member& from, Pool& pool) const;

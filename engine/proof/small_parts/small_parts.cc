@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -124,7 +125,7 @@ class SubsetSearch {
 
   States RunAnyOrder(int node, const States& before) {
     const absl::Span<const int> children = layer_.tree.children(node);
-    const std::vector<uint32_t> needed = NeededBefore(node);
+    const std::vector<uint32_t>& needed = NeededBefore(node);
     const uint32_t all = (uint32_t{1} << children.size()) - 1;
     std::vector<States> after(all + 1);  // [set of children]
     after[0] = before;
@@ -143,35 +144,17 @@ class SubsetSearch {
   }
 
   // [slot] the slots that come before it, as a set. Pairs through children without paths count.
-  std::vector<uint32_t> NeededBefore(int node) const {
-    const std::vector<int>& children = layer_.tree.node(node).children;
-    std::vector<int> slot_of;
-    int slots = 0;
-    for (const int child : children) {
-      slot_of.push_back(layer_.tree.path_count(child) > 0 ? slots++ : -1);
-    }
-    std::vector<uint32_t> needed(static_cast<size_t>(slots));
-    const auto& before = layer_.tree.node(node).before;
-    if (before.empty()) return needed;
-    std::vector<std::vector<size_t>> after(children.size());
-    for (const auto& [first, second] : before) {
-      after[static_cast<size_t>(first)].push_back(static_cast<size_t>(second));
-    }
-    for (size_t c = 0; c < children.size(); ++c) {
-      if (slot_of[c] < 0) continue;
-      std::vector<size_t> open = after[c];
-      std::vector<bool> seen(children.size());
-      while (!open.empty()) {
-        const size_t next = open.back();
-        open.pop_back();
-        if (seen[next]) continue;
-        seen[next] = true;
-        if (slot_of[next] >= 0) {
-          needed[static_cast<size_t>(slot_of[next])] |= uint32_t{1} << slot_of[c];
-        } else {
-          open.insert(open.end(), after[next].begin(), after[next].end());
-        }
-      }
+  // Known from the first time on: a node may have many such children, and is come by often.
+  const std::vector<uint32_t>& NeededBefore(int node) {
+    const auto [known, is_new] = needed_.try_emplace(node);
+    if (!is_new) return known->second;
+    std::vector<uint32_t>& needed = known->second;
+    needed.resize(layer_.tree.children(node).size());
+    const Precedence& precedence = layer_.tree.precedence(node);
+    if (precedence.empty()) return needed;
+    const std::vector<uint64_t> before = precedence.SlotsBefore(0);
+    for (size_t slot = 0; slot < needed.size(); ++slot) {
+      needed[slot] = static_cast<uint32_t>(before[slot]);
     }
     return needed;
   }
@@ -179,6 +162,7 @@ class SubsetSearch {
   const LayerView& layer_;
   Budget& budget_;
   std::vector<Record> records_;
+  std::unordered_map<int, std::vector<uint32_t>> needed_;  // [node]
 };
 
 class SmallPartSolver {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
 #include "engine/model/plan_tree.h"
 
@@ -17,27 +18,13 @@ struct Block {
 };
 
 // All pairs of blocks that follow from `before`, those through children without paths included:
-// [i][j]. `block_of[c]`: the block of child c, -1 if it has no paths.
-std::vector<std::vector<char>> Closure(const PlanNode& node, const std::vector<int>& block_of,
-                                       size_t blocks) {
+// [i][j]. O(blocks / 64 (children + pairs)).
+std::vector<std::vector<char>> Closure(const Precedence& before, size_t blocks) {
   std::vector<std::vector<char>> closure(blocks, std::vector<char>(blocks));
-  if (node.before.empty()) return closure;
-  std::vector<std::vector<int>> after(node.children.size());
-  for (const auto& [first, second] : node.before) {
-    after[static_cast<size_t>(first)].push_back(second);
-  }
-  for (size_t c = 0; c < block_of.size(); ++c) {
-    if (block_of[c] < 0) continue;
-    std::vector<char>& reached = closure[static_cast<size_t>(block_of[c])];
-    std::vector<char> seen(node.children.size());
-    std::vector<int> open = after[c];
-    while (!open.empty()) {
-      const auto next = static_cast<size_t>(open.back());
-      open.pop_back();
-      if (seen[next] != 0) continue;
-      seen[next] = 1;
-      if (block_of[next] >= 0) reached[static_cast<size_t>(block_of[next])] = 1;
-      open.insert(open.end(), after[next].begin(), after[next].end());
+  for (size_t first = 0; first < blocks && !before.empty(); first += 64) {
+    const std::vector<uint64_t> slots = before.SlotsBefore(static_cast<int>(first));
+    for (size_t i = first; i < std::min(blocks, first + 64); ++i) {
+      for (size_t j = 0; j < blocks; ++j) closure[i][j] = (slots[j] >> (i - first) & 1) != 0;
     }
   }
   return closure;
@@ -77,7 +64,7 @@ class StageBuilder {
     const absl::Span<const int> children = tree_.children(index);
     if (children.size() == 1) return Add(children.front());
     const bool in_order = tree_.node(index).kind == PlanNode::Kind::kInOrder;
-    return in_order ? AddInOrder(children) : AddAnyOrder(tree_.node(index));
+    return in_order ? AddInOrder(children) : AddAnyOrder(index);
   }
 
   Block AddInOrder(absl::Span<const int> children) {
@@ -92,15 +79,10 @@ class StageBuilder {
     return whole;
   }
 
-  Block AddAnyOrder(const PlanNode& node) {
-    std::vector<int> block_of;
+  Block AddAnyOrder(int index) {
     std::vector<Block> blocks;
-    for (const int child : node.children) {
-      const bool empty = tree_.path_count(child) == 0;
-      block_of.push_back(empty ? -1 : static_cast<int>(blocks.size()));
-      if (!empty) blocks.push_back(WithGate(Add(child)));
-    }
-    const std::vector<std::vector<char>> before = Closure(node, block_of, blocks.size());
+    for (const int child : tree_.children(index)) blocks.push_back(WithGate(Add(child)));
+    const auto before = Closure(tree_.precedence(index), blocks.size());
     Block whole{blocks.front().first, blocks.back().last, {}, {}};
     for (size_t a = 0; a < blocks.size(); ++a) {
       bool begins = true;

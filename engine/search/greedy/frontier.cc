@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cstddef>
 
+#include "engine/base/rest.h"
 #include "engine/cost/first_entries.h"
 
 namespace traverse {
@@ -15,22 +16,29 @@ Frontier& Frontier::Forest::Of(int node) {
 }
 
 Frontier::Frontier(const LayerView& layer, int node, Forest& forest)
-    : nested_(layer.tree.children(node).size()), index_(ListEntries(layer, node, forest)) {
+    : nested_(layer.tree.children(node).size()),
+      index_(ListEntries(layer, node, forest), &forest.budget()) {
   const int slots = static_cast<int>(nested_.size());
   std::vector<bool> waits(nested_.size(), true);
   ready_.emplace(layer.tree.precedence(node), slots, [&](int slot) {
     waits[static_cast<size_t>(slot)] = false;
     if (is_nested(slot)) nested_next_.push_back(slot);
   });
+  Rest rest(&forest.budget());
   for (int slot = 0; slot < slots; ++slot) {
+    rest();
     if (!waits[static_cast<size_t>(slot)]) continue;
-    ForEachId(slot, [&](int id) { index_.Remove(id); });
+    ForEachId(slot, [&](int id) {
+      rest(32);
+      index_.Remove(id);
+    });
   }
 }
 
 // Ids follow the entries, as ties shall be broken.
 std::vector<Point> Frontier::ListEntries(const LayerView& layer, int node, Forest& forest) {
   const absl::Span<const int> children = layer.tree.children(node);
+  Rest rest(&forest.budget());
   for (size_t s = 0; s < children.size(); ++s) {
     const int beginning = Beginning(layer.tree, children[s]);
     if (!layer.tree.is_leaf(beginning)) {
@@ -41,6 +49,7 @@ std::vector<Point> Frontier::ListEntries(const LayerView& layer, int node, Fores
     const int path = layer.tree.node(beginning).path;
     for (int e = layer.table.first(path); e < layer.table.first(path + 1); ++e) {
       entries_.emplace_back(e, static_cast<int>(s));
+      rest(2);
     }
   }
   if (!std::is_sorted(entries_.begin(), entries_.end())) {
@@ -51,6 +60,7 @@ std::vector<Point> Frontier::ListEntries(const LayerView& layer, int node, Fores
   points.reserve(entries_.size());
   first_id_.assign(children.size() + 1, 0);
   for (const auto& [entry, slot] : entries_) {
+    rest(4);
     points.push_back(layer.table.enter(entry));
     box_.Add(points.back());
     ++first_id_[static_cast<size_t>(slot) + 1];
@@ -59,6 +69,7 @@ std::vector<Point> Frontier::ListEntries(const LayerView& layer, int node, Fores
   ids_.resize(entries_.size());
   std::vector<size_t> next(first_id_.begin(), first_id_.end() - 1);
   for (size_t id = 0; id < entries_.size(); ++id) {
+    rest(2);
     ids_[next[static_cast<size_t>(entries_[id].second)]++] = static_cast<int>(id);
   }
   return points;

@@ -25,9 +25,13 @@ class Frontier {
   // The frontiers of all nodes, made when they are first asked for.
   class Forest {
    public:
-    // `layer` outlives the forest.
-    explicit Forest(const LayerView& layer)
-        : layer_(&layer), frontiers_(static_cast<size_t>(layer.tree.node_count())) {}
+    // `layer` and `budget`, which is asked meanwhile, outlive the forest.
+    Forest(const LayerView& layer, Budget& budget)
+        : layer_(&layer),
+          budget_(&budget),
+          frontiers_(static_cast<size_t>(layer.tree.node_count())) {}
+
+    Budget& budget() const { return *budget_; }
 
     // REQUIRES: `node` is an any_order node with children.
     Frontier& Of(int node);
@@ -37,6 +41,7 @@ class Frontier {
 
    private:
     const LayerView* layer_;
+    Budget* budget_;
     std::vector<std::unique_ptr<Frontier>> frontiers_;  // [node]
   };
 
@@ -54,6 +59,9 @@ class Frontier {
 
   // Some child that may be next, found without a search: only `slot` is set. REQUIRES as above.
   Found Any() const;
+
+  // From now on only Any is asked for: that, Begin and Finish are quicker then.
+  void StopSearching() { index_.StopSearching(); }
 
   // The child is begun: it is not next any more.
   void Begin(int slot);

@@ -13,8 +13,9 @@ namespace {
 class Greedy {
  public:
   Greedy(const LayerView& layer, Budget& budget)
-      : layer_(layer), budget_(budget), frontiers_(layer), at_(layer.problem.start) {}
+      : layer_(layer), budget_(budget), frontiers_(layer, budget), at_(layer.problem.start) {}
 
+  // Incomplete if the search was cancelled.
   Route Build() {
     route_.reserve(layer_.plan().paths.size());
     if (!layer_.plan().paths.empty()) Complete(0);
@@ -22,7 +23,9 @@ class Greedy {
   }
 
  private:
+  // Nothing, once nobody wants the route any more.
   void Complete(int node) {
+    if (budget_.was_exhausted() && budget_.cancelled()) return;
     const absl::Span<const int> children = layer_.tree.children(node);
     if (layer_.tree.is_leaf(node)) {
       VisitAt(NearestEntry(layer_.tree.node(node).path));
@@ -39,7 +42,10 @@ class Greedy {
     if (budget_.Exhausted()) return CompleteInSomeOrder(node);
     Frontier& frontier = frontiers_.Of(node);
     for (size_t done = 0; done < children.size(); ++done) {
-      const Frontier::Found next = budget_.Exhausted() ? frontier.Any() : frontier.Nearest(at_);
+      const bool late = budget_.Exhausted();
+      if (late && budget_.cancelled()) return;
+      if (late) frontier.StopSearching();
+      const Frontier::Found next = late ? frontier.Any() : frontier.Nearest(at_);
       const int child = children[static_cast<size_t>(next.slot)];
       frontier.Begin(next.slot);
       if (layer_.tree.is_leaf(child) && next.entry >= 0) {
@@ -58,7 +64,7 @@ class Greedy {
     std::vector<int> slots;
     const auto note = [&](int slot) { slots.push_back(slot); };
     ReadySlots ready(layer_.tree.precedence(node), static_cast<int>(children.size()), note);
-    while (!slots.empty()) {
+    while (!slots.empty() && !budget_.cancelled()) {
       const int slot = slots.back();
       slots.pop_back();
       Complete(children[static_cast<size_t>(slot)]);
@@ -89,13 +95,18 @@ class Greedy {
 
 }  // namespace
 
-Route GreedyRoute(const LayerView& layer, Budget& budget) { return Greedy(layer, budget).Build(); }
+Route GreedyRoute(const LayerView& layer, Budget& budget) {
+  Route greedy = Greedy(layer, budget).Build();
+  return greedy.size() == layer.plan().paths.size() ? greedy : GivenRoute(layer.plan());
+}
 
 Route BaselineRoute(const LayerView& layer, Budget& budget) {
-  Route given = GivenRoute(layer.plan());
+  Route given = GivenRoute(layer.plan(), &budget);
   if (budget.Exhausted()) return given;
-  Route greedy = GreedyRoute(layer, budget);
-  return RouteCost(layer.problem, greedy) < RouteCost(layer.problem, given) ? greedy : given;
+  Route greedy = Greedy(layer, budget).Build();
+  if (greedy.size() != given.size()) return given;
+  const double cost = RouteCost(layer.problem, greedy, &budget);
+  return cost < RouteCost(layer.problem, given, &budget) ? greedy : given;
 }
 
 }  // namespace traverse

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "engine/base/rest.h"
 #include "engine/cost/entry_choice.h"
 #include "engine/cost/entry_table.h"
 #include "engine/geometry/visibility_polygon.h"
@@ -51,16 +52,20 @@ bool MarkVisible(const SpacedSequence& sequence, size_t k, size_t other, bool ma
   return true;
 }
 
-Marks MarkAlong(const SpacedSequence& sequence) {
+Marks MarkAlong(const SpacedSequence& sequence, Rest& rest) {
   const size_t count = sequence.points.size();
   Marks marks;
   for (const auto& points : sequence.points) marks.before.emplace_back(points.size());
   marks.after = marks.before;
   std::vector<bool> sees_next(count);
-  for (size_t k = 0; k + 1 < count; ++k) {
+  for (size_t k = 0;
+       k + 1 < count && rest(16 * (sequence.points[k].size() + sequence.points[k + 1].size()));
+       ++k) {
     sees_next[k] = MarkVisible(sequence, k, k + 1, true, true, marks);
   }
-  for (size_t k = 0; k + 2 < count; ++k) {
+  for (size_t k = 0;
+       k + 2 < count && rest(16 * (sequence.points[k].size() + sequence.points[k + 2].size()));
+       ++k) {
     if (sees_next[k] && sees_next[k + 1]) continue;
     MarkVisible(sequence, k, k + 2, !sees_next[k], !sees_next[k + 1], marks);
   }
@@ -124,15 +129,18 @@ std::vector<int> ReinsertOuterContours(const Plan& plan, const IslandLayout& lay
 
 std::vector<std::vector<int>> VisiblePointsAlong(const Plan& plan, const std::vector<int>& order,
                                                  Point start, double spacing_mm,
-                                                 VisibleIn visible_in) {
+                                                 VisibleIn visible_in, Budget* budget) {
   SpacedSequence sequence{{{0}}, {{start}}};
+  Rest rest(budget);
   for (const int path : order) {
+    rest(4 + 4 * PathOf(plan, path).points.size());
     sequence.vertices.push_back(SpacedPoints(PathOf(plan, path), spacing_mm));
     sequence.points.push_back(PointsAt(PathOf(plan, path), sequence.vertices.back()));
   }
-  const Marks marks = MarkAlong(sequence);
+  const Marks marks = MarkAlong(sequence, rest);
   std::vector<std::vector<int>> visible(order.size());
   for (size_t k = 1; k <= order.size(); ++k) {
+    rest(4 + 4 * sequence.vertices[k].size());
     const std::vector<bool> marked = Combine(marks.before[k], marks.after[k], visible_in);
     for (size_t i = 0; i < marked.size(); ++i) {
       if (marked[i]) visible[k - 1].push_back(sequence.vertices[k][i]);
@@ -144,16 +152,18 @@ std::vector<std::vector<int>> VisiblePointsAlong(const Plan& plan, const std::ve
 
 Route ChooseContourPoints(const Plan& plan, const std::vector<int>& order,
                           const std::vector<std::vector<int>>& vertices, Point start,
-                          const TravelCost& cost) {
+                          const TravelCost& cost, Budget* budget) {
+  Rest rest(budget);
   Plan reduced;  // path k is order[k] with its vertices[k] alone
   for (size_t k = 0; k < order.size(); ++k) {
+    rest(8 + vertices[k].size());
     reduced.paths.push_back(MakeContour(PointsAt(PathOf(plan, order[k]), vertices[k])));
   }
-  const EntryTable table(reduced);
+  const EntryTable table(reduced, budget);
   std::vector<int> paths(order.size());
   std::iota(paths.begin(), paths.end(), 0);
   std::vector<int> entries(order.size());
-  EntryChoice(table, cost).Choose(start, paths, std::nullopt, absl::MakeSpan(entries));
+  EntryChoice(table, cost, budget).Choose(start, paths, std::nullopt, absl::MakeSpan(entries));
   Route route;
   for (size_t k = 0; k < order.size(); ++k) {
     const int chosen = table.VisitOf(entries[k]).entry;

@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "engine/base/budget.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/model/plan.h"
 #include "engine/model/point.h"
@@ -47,17 +48,19 @@ enum class VisibleIn {
 //   a -> outer -> inner -> b      outer: with a and b; inner: with a and b
 //
 // If that has none either, all spaced points count. Indices of vertices, rising, at least one each.
-// O(m log m) for m points.
+// O(m log m) for m points. `budget`, if there is one, is asked meanwhile; once it is exhausted, all
+// spaced points of what is left count.
 std::vector<std::vector<int>> VisiblePointsAlong(const Plan& plan, const std::vector<int>& order,
                                                  Point start, double spacing_mm,
-                                                 VisibleIn visible_in = VisibleIn::kEitherPolygon);
+                                                 VisibleIn visible_in = VisibleIn::kEitherPolygon,
+                                                 Budget* budget = nullptr);
 
 // The visits of `order` with the least cost from `start`, if contour order[k] may be entered at
 // vertices[k] alone: a shortest path in a layered graph, exact (equations 4.8-4.13 without a MILP).
 // After the last contour the head goes nowhere. O(sum over k of |vertices[k]| |vertices[k + 1]|).
 Route ChooseContourPoints(const Plan& plan, const std::vector<int>& order,
                           const std::vector<std::vector<int>>& vertices, Point start,
-                          const TravelCost& cost);
+                          const TravelCost& cost, Budget* budget = nullptr);
 
 }  // namespace traverse
 

@@ -8,7 +8,9 @@
 #include <queue>
 #include <utility>
 
+#include "engine/base/rest.h"
 #include "engine/geometry/bounding_box.h"
+#include "engine/geometry/set_distance.h"
 #include "engine/weller/steps/point_reduction.h"
 
 namespace traverse {
@@ -19,14 +21,6 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 // Of so many clusters each pair is linked. The links of more would leave little of a neighborhood,
 // and take memory for each pair.
 constexpr int kMostPairedClusters = 200;
-
-double PointSetDistance(const std::vector<Point>& a, const std::vector<Point>& b) {
-  double least = kFar;
-  for (const Point& p : a) {
-    for (const Point& q : b) least = std::min(least, Distance(p, q));
-  }
-  return least;
-}
 
 std::vector<BoundingBox> BoxesOf(const std::vector<CircledContour>& nodes) {
   std::vector<BoundingBox> boxes;
@@ -46,8 +40,8 @@ std::vector<CircledContour> WithOrigin(const std::vector<CircledContour>& contou
 class NearestContours {
  public:
   NearestContours(const std::vector<CircledContour>& nodes, const std::vector<BoundingBox>& boxes,
-                  size_t node)
-      : nodes_(nodes), center_(nodes[node].center) {
+                  size_t node, Budget& budget)
+      : nodes_(nodes), center_(nodes[node].center), budget_(budget) {
     std::vector<Candidate> boxed;
     for (size_t i = 0; i + 1 < nodes.size(); ++i) {  // the origin, the last one, is never met
       if (i != node) boxed.push_back({boxes[i].DistanceTo(center_), false, static_cast<int>(i)});
@@ -64,7 +58,7 @@ class NearestContours {
       queue_.pop();
       if (candidate.exact) return {candidate.node, candidate.distance};
       const auto& points = nodes_[static_cast<size_t>(candidate.node)].points;
-      queue_.push({PointSetDistance(points, {center_}), true, candidate.node});
+      queue_.push({LeastDistance(points, {center_}, budget_), true, candidate.node});
     }
   }
 
@@ -79,6 +73,7 @@ class NearestContours {
 
   const std::vector<CircledContour>& nodes_;
   Point center_;
+  Budget& budget_;
   Queue queue_;
 };
 
@@ -99,14 +94,15 @@ std::vector<ShortestLink> LinksOfPairs(const std::vector<CircledContour>& nodes,
                                        const std::vector<BoundingBox>& boxes,
                                        const std::vector<int>& component, int clusters,
                                        Budget& budget) {
+  Rest rest(&budget);
   std::vector<ShortestLink> best(static_cast<size_t>(clusters) * static_cast<size_t>(clusters));
   for (size_t i = 0; i < nodes.size() && !budget.Exhausted(); ++i) {
-    for (size_t j = i + 1; j < nodes.size(); ++j) {
+    for (size_t j = i + 1; j < nodes.size() && rest(2); ++j) {
       if (component[i] == component[j]) continue;
       const auto [a, b] = std::minmax(component[i], component[j]);
       ShortestLink& link = best[static_cast<size_t>(a * clusters + b)];
       if (boxes[i].DistanceTo(boxes[j]) >= link.distance) continue;
-      const double distance = PointSetDistance(nodes[i].points, nodes[j].points);
+      const double distance = LeastDistance(nodes[i].points, nodes[j].points, budget);
       if (distance >= link.distance) continue;
       link = {distance, static_cast<int>(i), static_cast<int>(j)};
     }
@@ -119,14 +115,15 @@ std::vector<ShortestLink> LinksOfPairs(const std::vector<CircledContour>& nodes,
 std::vector<ShortestLink> ShortestLinks(const std::vector<CircledContour>& nodes,
                                         const std::vector<BoundingBox>& boxes,
                                         const std::vector<int>& component, Budget& budget) {
+  Rest rest(&budget);
   std::vector<ShortestLink> best(nodes.size());
   for (size_t i = 0; i < nodes.size() && !budget.Exhausted(); ++i) {
-    for (size_t j = i + 1; j < nodes.size(); ++j) {
+    for (size_t j = i + 1; j < nodes.size() && rest(2); ++j) {
       if (component[i] == component[j]) continue;
       ShortestLink& of_i = best[static_cast<size_t>(component[i])];
       ShortestLink& of_j = best[static_cast<size_t>(component[j])];
       if (boxes[i].DistanceTo(boxes[j]) >= std::max(of_i.distance, of_j.distance)) continue;
-      const ShortestLink link{PointSetDistance(nodes[i].points, nodes[j].points),
+      const ShortestLink link{LeastDistance(nodes[i].points, nodes[j].points, budget),
                               static_cast<int>(i), static_cast<int>(j)};
       if (link.distance < of_i.distance) of_i = link;
       if (link.distance < of_j.distance) of_j = link;
@@ -177,7 +174,7 @@ Neighborhood GrowCircles(const std::vector<CircledContour>& contours, Point orig
         options.first_radius_mm > 0 ? options.first_radius_mm : circle.shorter_side_mm;
     double radius =
         RadiusReaching(area.FarthestCornerDistance(circle.center), first, options.step_mm);
-    NearestContours nearest(nodes, boxes, node);
+    NearestContours nearest(nodes, boxes, node, budget);
     for (int met = 1; !nearest.empty(); ++met) {
       const auto [neighbor, distance] = nearest.Next();
       if (distance > radius) break;

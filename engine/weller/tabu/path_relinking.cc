@@ -10,10 +10,12 @@ namespace traverse {
 namespace {
 
 // The cheapest swap that puts a child where the guide has it; node -1 if all are there.
-SwapMove BestStep(const SwapSequence& sequence, int node, const std::vector<int>& guide) {
+SwapMove BestStep(const SwapSequence& sequence, int node, const std::vector<int>& guide,
+                  Budget& budget) {
   const SequenceTree& tree = sequence.tree();
   SwapMove best;
   for (int target = 0; target < static_cast<int>(guide.size()); ++target) {
+    if (budget.Exhausted()) break;
     const int at = tree.position_of(guide[static_cast<size_t>(target)]);
     if (at == target) continue;
     const SwapMove move = sequence.Evaluate(node, std::min(at, target), std::max(at, target));
@@ -27,7 +29,7 @@ SwapMove BestStep(const SwapSequence& sequence, int node, const std::vector<int>
 std::vector<Route> RelinkPaths(const LayerProblem& problem, const LinkRules& rules,
                                const Route& from, const Route& guide, int keep, Budget& budget) {
   if (keep <= 0) return {};
-  SwapSequence sequence(problem, rules);
+  SwapSequence sequence(problem, rules, &budget);
   if (sequence.tree().movable_nodes().empty()) return {};
   const int node = sequence.tree().movable_nodes().front();
   sequence.Load(guide);
@@ -40,7 +42,7 @@ std::vector<Route> RelinkPaths(const LayerProblem& problem, const LinkRules& rul
 
   std::vector<std::pair<double, Route>> kept;  // by cost
   while (!budget.Exhausted()) {
-    const SwapMove move = BestStep(sequence, node, guide_order);
+    const SwapMove move = BestStep(sequence, node, guide_order, budget);
     if (move.node < 0) break;
     sequence.Apply(move);
     if (sequence.tree().Paths() == guide_paths) break;

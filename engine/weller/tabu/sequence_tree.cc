@@ -4,36 +4,9 @@
 #include <cstddef>
 #include <utility>
 
+#include "engine/model/passed_pairs.h"
+
 namespace traverse {
-namespace {
-
-// The pairs of `node` among the children that `wanted` marks. A child that holds no paths passes
-// its pairs on: what comes before it comes before all that it comes before.
-std::vector<std::pair<int, int>> PairsAmong(const PlanNode& node, const std::vector<bool>& wanted) {
-  std::vector<std::vector<int>> later(node.children.size());
-  for (const auto& [first, second] : node.before) {
-    later[static_cast<size_t>(first)].push_back(second);
-  }
-  std::vector<std::pair<int, int>> pairs;
-  std::vector<int> reached_from(node.children.size(), -1);
-  for (int first = 0; first < static_cast<int>(node.children.size()); ++first) {
-    if (!wanted[static_cast<size_t>(first)]) continue;
-    std::vector<int> open = later[static_cast<size_t>(first)];
-    while (!open.empty()) {
-      const size_t second = static_cast<size_t>(open.back());
-      open.pop_back();
-      if (std::exchange(reached_from[second], first) == first) continue;
-      if (wanted[second]) {
-        pairs.emplace_back(first, static_cast<int>(second));
-      } else {
-        open.insert(open.end(), later[second].begin(), later[second].end());
-      }
-    }
-  }
-  return pairs;
-}
-
-}  // namespace
 
 SequenceTree::SequenceTree(const Plan& plan) : leaf_of_(plan.paths.size(), -1) {
   if (plan.paths.empty()) return;
@@ -66,8 +39,8 @@ int SequenceTree::Add(const Plan& plan, int index, int parent) {
       return -1;
     }
     if (At(number).any_order && At(number).order.size() > 1) {
-      movable_.push_back(number);
-      AddPairs(plan_node, number_of);
+      open_.push_back(number);
+      if (AddPairs(plan_node, number_of)) movable_.push_back(number);
       At(number).has_before = !plan_node.before.empty();
     }
   }
@@ -75,15 +48,18 @@ int SequenceTree::Add(const Plan& plan, int index, int parent) {
   return number;
 }
 
-void SequenceTree::AddPairs(const PlanNode& plan_node, const std::vector<int>& number_of) {
-  std::vector<bool> wanted;
-  for (const int number : number_of) wanted.push_back(number >= 0);
-  for (const auto& [first, second] : PairsAmong(plan_node, wanted)) {
+bool SequenceTree::AddPairs(const PlanNode& plan_node, const std::vector<int>& number_of) {
+  std::vector<bool> has_paths;
+  for (const int number : number_of) has_paths.push_back(number >= 0);
+  const auto pairs = PassedPairs(plan_node, has_paths);
+  if (!pairs) return false;
+  for (const auto& [first, second] : *pairs) {
     const int a = number_of[static_cast<size_t>(first)];
     const int b = number_of[static_cast<size_t>(second)];
     At(a).later.push_back(b);
     At(b).earlier.push_back(a);
   }
+  return true;
 }
 
 // Writes positions and ranges below `node` anew, after its own begin.
@@ -159,7 +135,7 @@ void SequenceTree::Load(const std::vector<int>& paths) {
       At(v).begin = std::min(At(v).begin, k);
     }
   }
-  for (const int node : movable_) {
+  for (const int node : open_) {
     std::sort(At(node).order.begin(), At(node).order.end(),
               [&](int a, int b) { return At(a).begin < At(b).begin; });
   }

@@ -23,7 +23,8 @@ class SequenceTree {
 
   int node_count() const { return static_cast<int>(nodes_.size()); }
 
-  // any_order nodes with at least two children that hold paths.
+  // any_order nodes with at least two children that hold paths, but for those whose pairs, passed
+  // on through children without paths, are too many (PassedPairs): their order is that loaded last.
   const std::vector<int>& movable_nodes() const { return movable_; }
   int child_count(int node) const { return static_cast<int>(At(node).order.size()); }
   int child_at(int node, int position) const {
@@ -80,13 +81,14 @@ class SequenceTree {
   Node& At(int node) { return nodes_[static_cast<size_t>(node)]; }
 
   int Add(const Plan& plan, int index, int parent);
-  void AddPairs(const PlanNode& plan_node, const std::vector<int>& number_of);
+  bool AddPairs(const PlanNode& plan_node, const std::vector<int>& number_of);
   void Shift(int node, int by);
   void Reorder(int node);
   void CountViolations();
 
-  std::vector<Node> nodes_;  // in preorder
-  std::vector<int> movable_;
+  std::vector<Node> nodes_;   // in preorder
+  std::vector<int> open_;     // all any_order nodes of at least two children
+  std::vector<int> movable_;  // of them, those whose children may change place
   std::vector<int> leaf_of_;  // [path] its node
   int violations_ = 0;
 };

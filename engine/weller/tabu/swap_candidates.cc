@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "engine/base/rest.h"
 #include "engine/geometry/bounding_box.h"
 #include "engine/model/point.h"
 
@@ -10,13 +11,15 @@ namespace traverse {
 namespace {
 
 // [node of the tree] center of the box around its paths, in the tree's present order.
-std::vector<Point> Centers(const Plan& plan, const SequenceTree& tree) {
+std::vector<Point> Centers(const Plan& plan, const SequenceTree& tree, Budget& budget) {
+  Rest rest(&budget);
   const std::vector<int> paths = tree.Paths();
   std::vector<Point> centers;
   for (int node = 0; node < tree.node_count(); ++node) {
     BoundingBox box;
     for (int k = tree.begin(node); k < tree.end(node); ++k) {
       const size_t path = static_cast<size_t>(paths[static_cast<size_t>(k)]);
+      rest(2 + plan.paths[path].points.size());
       for (const Point& point : plan.paths[path].points) box.Add(point);
     }
     centers.push_back(box.center());
@@ -28,7 +31,7 @@ std::vector<Point> Centers(const Plan& plan, const SequenceTree& tree) {
 
 SwapCandidates::SwapCandidates(const Plan& plan, const SequenceTree& tree, Budget& budget)
     : near_(static_cast<size_t>(tree.node_count())) {
-  const std::vector<Point> centers = Centers(plan, tree);
+  const std::vector<Point> centers = Centers(plan, tree, budget);
   std::vector<std::pair<double, int>> by_distance;
   for (const int node : tree.movable_nodes()) {
     if (tree.child_count(node) <= kAllSwaps) continue;

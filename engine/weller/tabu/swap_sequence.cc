@@ -13,19 +13,21 @@ constexpr int kTryAllEntries = 4;
 
 }  // namespace
 
-SwapSequence::SwapSequence(const LayerProblem& problem, const LinkRules& rules)
+SwapSequence::SwapSequence(const LayerProblem& problem, const LinkRules& rules, Budget* budget)
     : problem_(problem),
-      table_(*problem.plan),
+      table_(*problem.plan, budget),
       links_(problem, table_, rules),
-      choice_(table_, TravelCost(problem)),
+      rest_(budget),
+      choice_(table_, TravelCost(problem), budget),
       tree_(*problem.plan) {
-  Load(GivenRoute(*problem.plan));
+  Load(GivenRoute(*problem.plan, budget));
 }
 
 void SwapSequence::Load(const Route& route) {
   std::vector<int> paths;
   entries_.clear();
   for (const Visit& visit : route) {
+    rest_(4);
     paths.push_back(visit.path);
     entries_.push_back(table_.EntryOf(visit));
   }
@@ -43,6 +45,7 @@ Route SwapSequence::Unload() const {
 void SwapSequence::ComputeCost() {
   cost_ = 0;
   for (int k = 0; k <= static_cast<int>(entries_.size()); ++k) {
+    rest_(8);
     cost_ += links_(EntryBefore(k), EntryAt(k));
   }
 }
@@ -50,6 +53,7 @@ void SwapSequence::ComputeCost() {
 int SwapSequence::PenalizedLinks() const {
   int count = 0;
   for (int k = 0; k <= static_cast<int>(entries_.size()); ++k) {
+    rest_(8);
     count += links_.Penalized(EntryBefore(k), EntryAt(k));
   }
   return count;
@@ -57,7 +61,7 @@ int SwapSequence::PenalizedLinks() const {
 
 int SwapSequence::NearestEntry(int path, std::optional<Point> to) const {
   int nearest = table_.first(path);
-  if (!to) return nearest;
+  if (!to || !rest_(static_cast<size_t>(table_.count(path)))) return nearest;
   double least = std::numeric_limits<double>::infinity();
   for (int entry = table_.first(path); entry < table_.first(path + 1); ++entry) {
     const Point enter = table_.enter(entry);

@@ -41,8 +41,9 @@ struct SwapMove {
 // The state of the search. Memory: see LinkCosts.
 class SwapSequence {
  public:
-  // `problem`, its plan and `rules` outlive the sequence.
-  SwapSequence(const LayerProblem& problem, const LinkRules& rules);
+  // `problem`, its plan, `rules` and `budget` outlive the sequence. The budget is asked meanwhile;
+  // once it is exhausted, entries are chosen at once, and are not the best any more.
+  SwapSequence(const LayerProblem& problem, const LinkRules& rules, Budget* budget = nullptr);
   SwapSequence(const SwapSequence&) = delete;
   SwapSequence& operator=(const SwapSequence&) = delete;
 
@@ -121,6 +122,7 @@ class SwapSequence {
   const LayerProblem& problem_;
   EntryTable table_;
   LinkCosts links_;
+  mutable Rest rest_;
   EntryChoice choice_;
   SequenceTree tree_;
   std::vector<int> entries_;  // [position in the route]

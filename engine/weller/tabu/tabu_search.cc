@@ -109,7 +109,7 @@ class Search {
       : options_(options),
         budget_(budget),
         rng_(problem.seed),
-        sequence_(problem, rules),
+        sequence_(problem, rules, &budget),
         candidates_(*problem.plan, sequence_.tree(), budget),
         children_(ChildrenOf(sequence_.tree())),
         list_size_(static_cast<int>(std::ceil(options.list_size * children_))),
@@ -257,6 +257,7 @@ class Search {
     const auto& nodes = sequence_.tree().movable_nodes();
     for (size_t n = 0; n < nodes.size(); ++n) {
       for (int i = 0; i < sequence_.tree().child_count(nodes[n]); ++i) {
+        if (budget_.Exhausted()) return SwapMove();
         ConsiderRow(n, i, best, best_delta);
       }
     }
@@ -268,6 +269,7 @@ class Search {
   // The two nodes of a raster swapped: what a swap of two rasters does by the way, for one alone.
   void ConsiderReentries(SwapMove& best, double best_delta) {
     for (const int leaf : leaves_) {
+      if (budget_.Exhausted()) return;
       const std::optional<SwapMove> move = sequence_.EvaluateReentry(leaf);
       if (!move) continue;
       ++result_.evaluations;

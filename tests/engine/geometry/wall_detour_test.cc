@@ -38,6 +38,16 @@ TEST(WallDetours, AreNoneFromIslandToIslandAndWhereNothingIsInTheWay) {
   EXPECT_TRUE(detours.Around({2, 5}, {8, 5}).empty());
 }
 
+// To look for each wall's last crossing takes the square of their number.
+TEST(WallDetours, AreNotLookedForThroughAThousandWalls) {
+  std::vector<Wall> walls = {Box(-10, -10, 20'020, 40)};
+  for (int i = 0; i < 2000; ++i) walls.push_back(Box(10 * i, 0, 5, 5));
+  const WallGrid grid(walls, kSlack);
+
+  EXPECT_TRUE(WallDetours(grid, 0.4, 0.3).Around({-5, 2}, {20'005, 2}).empty());
+  EXPECT_FALSE(WallDetours(grid, 0.4, 0.3).Around({-5, 2}, {1007, 2}).empty());
+}
+
 TEST(WallDetours, CrossNothingAndAreTheSameThereAndBack) {
   int found = 0;
   for (uint64_t seed = 1; seed <= 200; ++seed) {

@@ -66,6 +66,36 @@ TEST(OrderTree, PassesPairsOnThroughNodesWithoutPaths) {
   EXPECT_TRUE(tree.has_pairs(tree.parent(0)));
 }
 
+// `k` leaves before an empty node, and that before as many others.
+Plan Barrier(int k) {
+  Plan plan{Dots(2 * k), {AnyOrder({})}};
+  for (int child = 0; child <= 2 * k; ++child) {
+    plan.nodes[0].children.push_back(child + 1);
+    if (child == k) {
+      plan.nodes.push_back(InOrder({}));
+      continue;
+    }
+    plan.nodes.push_back(Leaf(child < k ? child : child - 1));
+    plan.nodes[0].before.push_back(child < k ? std::pair(child, k) : std::pair(k, child));
+  }
+  return plan;
+}
+
+TEST(OrderTree, PassesOnNoMorePairsThanThePlanIsLarge) {
+  constexpr int k = 2000;
+  const OrderTree tree(Barrier(k));
+
+  size_t pairs = 0;
+  for (int item = 0; item < tree.item_count(); ++item) pairs += tree.after(item).size();
+
+  EXPECT_LT(pairs, size_t{k} * k / 10);
+  EXPECT_FALSE(tree.free_order(tree.parent(0))) << "without the pairs nothing may change place";
+  EXPECT_TRUE(tree.has_choice()) << "there is one, if it is not taken";
+  const OrderTree small(Barrier(20));
+  EXPECT_TRUE(small.free_order(small.parent(0)));
+  EXPECT_EQ(small.after(0).size(), 20u);
+}
+
 TEST(OrderTree, KnowsWhatCanBeDoneBackwards) {
   Plan plan{
       Dots(4),

@@ -272,6 +272,31 @@ TEST(TranslateLayer, WallsArriveAndMayBeContours) {
   EXPECT_EQ(result.label.points, 10);
 }
 
+// Four bytes for a copy of a contour of any size: a stranger would send a million of them.
+TEST(TranslateLayer, WallsNameEachContourAboutOnce) {
+  v1::Layer layer;
+  v1::Contour& contour = *layer.add_islands()->add_contours();
+  for (int i = 0; i < 1000; ++i) {
+    contour.add_points(i);
+    contour.add_points(i % 2);
+  }
+  layer.add_walls()->set_path(0);
+  ASSERT_OK(LayerFromProto(layer, 0, false));
+
+  layer.add_walls()->set_path(0);
+  EXPECT_THAT(LayerFromProto(layer, 0, false),
+              StatusIs(absl::StatusCode::kInvalidArgument, StartsWith("layers[0].walls[1].path")));
+}
+
+TEST(TranslateLayer, PathsThatAreExposedAreSoOnce) {
+  v1::Layer layer = Parse<v1::Layer>("islands { contours { points: [0, 0, 5, 0, 5, 5] } }");
+  for (int i = 0; i < 1000; ++i) layer.add_exposed_paths(0);
+
+  ASSERT_OK_AND_ASSIGN(const LabelledLayer result, LayerFromProto(layer, 0, false));
+
+  EXPECT_THAT(result.layer.walls.exposed, ElementsAre(0));
+}
+
 TEST(TranslateLayer, FaultsOfWallsAreNamedByTheirPlace) {
   const BadCase cases[] = {
       {"walls { points: [1, 2] }", "layers[3].walls[0].points: a wall needs at least two points"},

@@ -61,6 +61,42 @@ TEST(SequenceTree, PairsPassThroughChildrenWithoutPaths) {
   EXPECT_EQ(tree.ViolationDelta(0, 0, 1), -1);
 }
 
+// `k` leaves before an empty node, and that before as many others.
+Plan Barrier(int k) {
+  Plan plan = testing::FlatPlan(2 * k);
+  plan.nodes = {PlanNode{PlanNode::Kind::kAnyOrder, 0, {}, {}}};
+  for (int child = 0; child <= 2 * k; ++child) {
+    plan.nodes[0].children.push_back(child + 1);
+    if (child == k) {
+      plan.nodes.push_back(PlanNode{PlanNode::Kind::kInOrder, 0, {}, {}});
+      continue;
+    }
+    plan.nodes.push_back(Leaf(child < k ? child : child - 1));
+    plan.nodes[0].before.push_back(child < k ? std::pair(child, k) : std::pair(k, child));
+  }
+  return plan;
+}
+
+TEST(SequenceTree, PassesOnNoMorePairsThanThePlanIsLarge) {
+  constexpr int k = 2000;
+  const Plan plan = Barrier(k);
+  SequenceTree tree(plan);
+  std::vector<int> paths;
+  for (int p = 0; p < k; ++p) paths.push_back(k - 1 - p);
+  for (int p = 0; p < k; ++p) paths.push_back(k + p);
+
+  tree.Load(paths);
+  Rng rng(1);
+  tree.Shuffle(rng);
+
+  size_t pairs = 0;
+  for (int node = 0; node < tree.node_count(); ++node) pairs += size_t(tree.pair_count(node));
+  EXPECT_LT(pairs, size_t{k} * k / 10);
+  EXPECT_THAT(tree.movable_nodes(), IsEmpty());
+  EXPECT_EQ(tree.Paths(), paths) << "it stays as it was loaded";
+  EXPECT_EQ(SequenceTree(Barrier(20)).movable_nodes().size(), 1u);
+}
+
 TEST(SequenceTree, OfAnEmptyPlan) { EXPECT_THAT(SequenceTree(Plan{}).Paths(), IsEmpty()); }
 
 int CountViolations(const SequenceTree& tree, const Plan& plan) {

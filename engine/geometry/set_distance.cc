@@ -1,0 +1,43 @@
+#include "engine/geometry/set_distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "engine/base/rest.h"
+#include "engine/geometry/bounding_box.h"
+#include "engine/geometry/nearest_point_index.h"
+
+namespace traverse {
+namespace {
+
+// From so many pairs on an index is quicker.
+constexpr size_t kPairsForIndex = 1 << 15;
+
+double SquaredDistance(Point p, Point q) {
+  const double dx = p.x - q.x;
+  const double dy = p.y - q.y;
+  return dx * dx + dy * dy;
+}
+
+}  // namespace
+
+double LeastDistance(absl::Span<const Point> a, absl::Span<const Point> b, Budget& budget) {
+  double least = std::numeric_limits<double>::infinity();
+  if (a.size() * b.size() <= kPairsForIndex) {
+    for (const Point& p : a) {
+      for (const Point& q : b) least = std::min(least, SquaredDistance(p, q));
+    }
+    return std::sqrt(least);
+  }
+  if (a.size() < b.size()) std::swap(a, b);
+  const NearestPointIndex index({a.begin(), a.end()}, &budget);
+  for (const Point& p : b) {
+    if (budget.Exhausted()) return BoundingBox(a).DistanceTo(BoundingBox(b));
+    least = std::min(least, index.SquaredDistance(index.Nearest(p), p));
+  }
+  return std::sqrt(least);
+}
+
+}  // namespace traverse

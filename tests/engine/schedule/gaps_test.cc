@@ -1,0 +1,333 @@
+// No loop of the engine goes on for long without asking its budget: it is then that a layer gives
+// way to what others wait for, and that it sees its cancellation and its deadline. Whole jobs, so
+// that all that is done with a layer counts, on the shapes that are hardest on it.
+//
+// Time is that of the thread, which a busy machine does not change. With TRAVERSE_SHOW_GAPS=1 the
+// stacks of those longer than 20 ms are printed, for addr2line.
+
+#include <execinfo.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/time.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "engine/base/rng.h"
+#include "engine/engine.h"
+#include "engine/strategy/registry.h"
+#include "tests/support/instances.h"
+#include "tests/support/status_matchers.h"
+
+namespace traverse {
+namespace {
+
+using namespace traverse::testing;  // NOLINT
+
+double ThreadSeconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+volatile double last_ask = 0;  // for the handler of the signal below
+
+void ShowGap(int /*signal*/) {
+  if (last_ask == 0 || ThreadSeconds() - last_ask < 0.02) return;
+  void* frames[24];
+  backtrace_symbols_fd(frames, backtrace(frames, 24), STDERR_FILENO);
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, "--\n", 3);
+}
+
+// Prints, each 5 ms of work, where it is if nobody was asked for 20 ms.
+void ShowGaps(bool show) {
+  if (std::getenv("TRAVERSE_SHOW_GAPS") == nullptr) return;
+  signal(SIGPROF, ShowGap);
+  const itimerval often{{0, show ? 5000 : 0}, {0, show ? 5000 : 0}};
+  setitimer(ITIMER_PROF, &often, nullptr);
+}
+
+// Wanted by others all the time, notes how long they wait for an answer, and has the job cancelled
+// when its time is up.
+class WatchedTurn : public Turn {
+ public:
+  WatchedTurn() { SetWanted(true); }
+
+  bool GiveWay(const CancelToken* /*cancel*/, std::optional<Clock::time_point> /*end*/) override {
+    const double now = ThreadSeconds();
+    longest_ = std::max(longest_, now - last_ask);
+    if (now - begin_ > limit_ && !cancelled_) {
+      cancelled_ = true;
+      cancelled_at_ = now;
+      cancel_();
+    }
+    last_ask = ThreadSeconds();
+    return false;
+  }
+
+  void Begin(double limit, std::function<void()> cancel) {
+    limit_ = limit;
+    cancel_ = std::move(cancel);
+    begin_ = ThreadSeconds();
+    last_ask = begin_;
+    ShowGaps(true);
+  }
+
+  void End() {
+    ShowGaps(false);
+    if (cancelled_) after_cancel_ = ThreadSeconds() - cancelled_at_;
+    last_ask = 0;
+  }
+
+  void BeginTask() { last_ask = ThreadSeconds(); }
+  void EndTask() { longest_ = std::max(longest_, ThreadSeconds() - last_ask); }
+
+  double longest() const { return longest_; }            // seconds between two asks
+  double after_cancel() const { return after_cancel_; }  // seconds until the end, once cancelled
+
+ private:
+  double begin_ = 0;
+  double limit_ = 0;
+  double longest_ = 0;
+  bool cancelled_ = false;
+  double cancelled_at_ = 0;
+  double after_cancel_ = 0;
+  std::function<void()> cancel_;
+};
+
+// Runs tasks in the thread that says so.
+class OneThread : public Executor {
+ public:
+  void Submit(std::function<void()> task) override { tasks_.push_back(std::move(task)); }
+  Turn* turn() override { return &turn_; }
+
+  void Run() {
+    while (!tasks_.empty()) {
+      std::function<void()> task = std::move(tasks_.front());
+      tasks_.pop_front();
+      turn_.BeginTask();
+      task();
+      turn_.EndTask();
+    }
+  }
+
+  WatchedTurn& watched() { return turn_; }
+
+ private:
+  std::deque<std::function<void()>> tasks_;
+  WatchedTurn turn_;
+};
+
+class Answers : public JobSink {
+ public:
+  void OnLayer(LayerOutcome outcome) override {
+    ++layers;
+    invalid += outcome.invalid_route;
+  }
+  void OnDone() override { done = true; }
+
+  int layers = 0;
+  std::string invalid;
+  bool done = false;
+};
+
+PlanNode Leaf(int path) { return PlanNode{PlanNode::Kind::kPath, path, {}, {}}; }
+
+Path Dot(double x, double y) { return MakeContour({{x, y}}); }
+
+// `n` contours of one point, all over the plate.
+Plan Dots(int n) {
+  Rng rng(1);
+  std::vector<Path> paths;
+  for (int i = 0; i < n; ++i) paths.push_back(Dot(300 * rng.Unit(), 300 * rng.Unit()));
+  return AnyOrderPlan(std::move(paths));
+}
+
+Plan EqualDots(int n) {
+  return AnyOrderPlan(std::vector<Path>(static_cast<size_t>(n), Dot(100, 100)));
+}
+
+Plan DotsOnALine(int n) {
+  std::vector<Path> paths;
+  for (int i = 0; i < n; ++i)
+    paths.push_back(Dot(1e-3 * static_cast<double>(i * int64_t{7919} % n), 50));
+  return AnyOrderPlan(std::move(paths));
+}
+
+// Contours of `each` vertices on circles, `n` vertices in all, in sequential deposition.
+Plan Circles(int n, int each) {
+  Rng rng(2);
+  std::vector<IslandPaths> islands;
+  for (int left = n; left > 0; left -= each) {
+    Path path;
+    path.kind = Path::Kind::kContour;
+    const double x = 300 * rng.Unit(), y = 300 * rng.Unit();
+    for (int i = 0; i < each; ++i) {
+      const double angle = 2 * M_PI * i / each;
+      path.points.push_back({x + 40 * std::cos(angle), y + 40 * std::sin(angle)});
+    }
+    islands.push_back({{std::move(path)}, {}});
+  }
+  return SequentialPlan(std::move(islands));
+}
+
+// One island of one contour and `n` rasters.
+Plan Hatch(int n) {
+  IslandPaths island;
+  Path outline;
+  outline.kind = Path::Kind::kContour;
+  outline.points = {{0, 0}, {0.01 * n, 0}, {0.01 * n, 100}, {0, 100}};
+  island.contours.push_back(std::move(outline));
+  for (int i = 0; i < n; ++i) {
+    Path raster;
+    raster.kind = Path::Kind::kOpen;
+    raster.points = {{0.01 * i, 1}, {0.01 * i, 99}};
+    island.rasters.push_back(std::move(raster));
+  }
+  return SequentialPlan({std::move(island)});
+}
+
+// `n` nodes in columns of 90, one within the other, with two dots in each column's last.
+Plan DeepNodes(int n) {
+  constexpr int kDepth = 90;
+  Rng rng(3);
+  Plan plan;
+  plan.nodes.push_back({PlanNode::Kind::kAnyOrder, 0, {}, {}});
+  while (static_cast<int>(plan.nodes.size()) < n) {
+    plan.nodes[0].children.push_back(static_cast<int>(plan.nodes.size()));
+    for (int d = 0; d < kDepth; ++d) {
+      const int next = static_cast<int>(plan.nodes.size()) + 1;
+      const auto kind = d % 2 == 0 ? PlanNode::Kind::kAnyOrder : PlanNode::Kind::kInOrder;
+      plan.nodes.push_back({kind, 0, {next}, {}});
+    }
+    plan.nodes.back().kind = PlanNode::Kind::kAnyOrder;
+    plan.nodes.back().children.push_back(static_cast<int>(plan.nodes.size()) + 1);
+    for (int i = 0; i < 2; ++i) {
+      plan.nodes.push_back(Leaf(static_cast<int>(plan.paths.size())));
+      plan.paths.push_back(Dot(300 * rng.Unit(), 300 * rng.Unit()));
+    }
+  }
+  return plan;
+}
+
+// Half of `n` dots before a node without paths, and that before the others.
+Plan Barrier(int n) {
+  Plan plan = Dots(n);
+  plan.nodes.push_back({PlanNode::Kind::kInOrder, 0, {}, {}});
+  plan.nodes[0].children.push_back(static_cast<int>(plan.nodes.size()) - 1);
+  for (int i = 0; i < n; ++i) {
+    plan.nodes[0].before.push_back(i < n / 2 ? std::pair(i, n) : std::pair(n, i));
+  }
+  return plan;
+}
+
+// Eight times two dots, each pair with `n` / 8 nodes without paths in a chain of pairs.
+Plan EmptyChains(int n) {
+  Plan plan = Dots(16);
+  plan.nodes.assign(1, {PlanNode::Kind::kAnyOrder, 0, {}, {}});
+  for (int part = 0; part < 8; ++part) {
+    const size_t node = plan.nodes.size();
+    plan.nodes[0].children.push_back(static_cast<int>(node));
+    plan.nodes.push_back({PlanNode::Kind::kAnyOrder, 0, {}, {}});
+    for (int i = 0; i < n / 8; ++i) {
+      plan.nodes[node].children.push_back(static_cast<int>(plan.nodes.size()));
+      if (i > 0) plan.nodes[node].before.emplace_back(i - 1, i);
+      plan.nodes.push_back(i == 0           ? Leaf(2 * part)
+                           : i == n / 8 - 1 ? Leaf(2 * part + 1)
+                                            : PlanNode{PlanNode::Kind::kInOrder, 0, {}, {}});
+    }
+  }
+  return plan;
+}
+
+struct Shape {
+  std::string name;
+  std::function<Plan(int)> make;
+  int most;  // of what the server's limits let in
+};
+
+const Shape kShapes[] = {
+    {"Dots", Dots, 1'000'000},
+    {"EqualDots", EqualDots, 1'000'000},
+    {"DotsOnALine", DotsOnALine, 1'000'000},
+    {"OneContour", [](int n) { return Circles(n, n); }, 1'000'000},
+    {"LargeContours", [](int n) { return Circles(n, n / 10); }, 1'000'000},
+    {"SmallContours", [](int n) { return Circles(n, 20); }, 1'000'000},
+    {"Hatch", Hatch, 450'000},
+    {"DeepNodes", DeepNodes, 1'000'000},
+    {"Barrier", Barrier, 1'000'000},
+    {"EmptyChains", EmptyChains, 1'000'000},
+};
+
+// Bounds for machines that do other things as well: caches are cold after each of those.
+constexpr double kMostGap = 0.04;
+constexpr double kMostLargeGap = 0.2;
+constexpr double kMostLargeEnd = 0.4;
+
+class Gaps : public ::testing::TestWithParam<std::string> {
+ protected:
+  // Solves all shapes, in `share` of their largest size, for so many seconds.
+  void Run(double share, double seconds, double most_gap, double most_after_cancel) {
+    for (const Shape& shape : kShapes) {
+      for (const bool timed : {false, true}) {
+        RunOne(shape, timed, static_cast<int>(share * shape.most), seconds);
+        EXPECT_LT(longest_, most_gap) << shape.name << ", seconds without an ask";
+        EXPECT_LT(after_cancel_, most_after_cancel) << shape.name << ", seconds to the end";
+      }
+    }
+  }
+
+ private:
+  void RunOne(const Shape& shape, bool timed, int n, double seconds) {
+    ASSERT_OK_AND_ASSIGN(std::unique_ptr<Strategy> strategy, MakeStrategy(GetParam(), {}));
+    JobSpec spec;
+    if (timed) spec.cost = {CostSpec::Kind::kTime, 120, 3000, 0.05, 1};
+    OneThread executor;
+    Answers answers;
+    const std::shared_ptr<Job> job = Job::Start(spec, std::move(strategy), executor, answers);
+    for (int i = 0; i < 2; ++i) {
+      JobLayer layer;
+      layer.plan = shape.make(n);
+      job->Add(std::move(layer));
+    }
+    job->Close();
+
+    executor.watched().Begin(seconds, [&] { job->Cancel(); });
+    executor.Run();
+    executor.watched().End();
+
+    EXPECT_TRUE(answers.done);
+    EXPECT_EQ(answers.invalid, "");
+    longest_ = executor.watched().longest();
+    after_cancel_ = executor.watched().after_cancel();
+    std::printf("%-8s %-14s %-6s %8d: %6.1f ms between asks, %6.1f ms after the cancel\n",
+                GetParam().c_str(), shape.name.c_str(), timed ? "time" : "length", n,
+                1000 * longest_, 1000 * after_cancel_);
+  }
+
+  double longest_ = 0;
+  double after_cancel_ = 0;
+};
+
+TEST_P(Gaps, AreShort) { Run(0.01, 0.05, kMostGap, kMostGap); }
+
+// Registered with CTest by itself, as slow. What is done at one go on a million paths, such as
+// freeing them, takes longer.
+TEST_P(Gaps, DISABLED_AreShortInTheLargestLayers) { Run(1, 2, kMostLargeGap, kMostLargeEnd); }
+
+INSTANTIATE_TEST_SUITE_P(All, Gaps,
+                         ::testing::Values("none", "greedy", "ni2opt", "tabu", "exact", "auto"));
+
+}  // namespace
+}  // namespace traverse
