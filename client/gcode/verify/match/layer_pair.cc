@@ -232,7 +232,7 @@ void LayerPair::Match() {
 }
 
 uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
-                              absl::Span<const Piece> pieces) {
+                              absl::Span<const Piece> pieces, bool any_speed) {
   const TraceLink& link = chunk.links[path + 1];
   const TracePath& traced = chunk.paths[path];
   const Point before = chunk.StartOf(traced, traced.end_segment - 1);
@@ -240,9 +240,10 @@ uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
   uint32_t m = link.first_move;
   for (; m < link.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
-    if (move.kind != MoveKind::kTravel || !move.open || move.feed > traced.feed) break;
+    if (move.kind != MoveKind::kTravel || !move.open) break;
+    if (move.feed > traced.feed && !any_speed) break;
     if (move.z_to_mm != move.z_from_mm) break;
-    const bool straight = m == link.first_move && GoesStraightOn(move, last);
+    const bool straight = m == link.first_move && !any_speed && GoesStraightOn(move, last);
     const bool along =
         LiesOn(move.to, pieces) &&
         LiesOn({(move.from.x + move.to.x) / 2, (move.from.y + move.to.y) / 2}, pieces);
@@ -251,11 +252,12 @@ uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
   return m - link.first_move;
 }
 
-double LayerPair::CrossingLength(const TraceChunk& chunk, uint32_t link, bool open) const {
+double LayerPair::CrossingLength(const TraceChunk& chunk, uint32_t link, bool open,
+                                 uint32_t skipped) const {
   const TraceLink& traced = chunk.links[link];
   std::vector<const TraceMove*> way;
   double length = 0;
-  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
+  for (uint32_t m = traced.first_move + skipped; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (move.kind != MoveKind::kTravel || move.open != open) continue;
     way.push_back(&move);

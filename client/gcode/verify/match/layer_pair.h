@@ -67,12 +67,15 @@ class LayerPair {
   bool IsKnown(const TraceMove& move) const { return known_.contains(move.identity); }
 
   // The moves at the beginning of link `path` + 1 that go on along the path, without filament and
-  // no faster than it was printed; `pieces` are those of the path.
-  static uint32_t TailMoves(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces);
+  // no faster than it was printed, unless at `any_speed`; `pieces` are those of the path.
+  static uint32_t TailMoves(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces,
+                            bool any_speed = false);
 
   // The length of the ways of `link` across outer walls that are open (or retracted); 0 if there is
-  // none. The ends of a way, which may lie on walls, do not count.
-  double CrossingLength(const TraceChunk& chunk, uint32_t link, bool open) const;
+  // none. The ends of a way, which may lie on walls, do not count, nor do `skipped` moves before
+  // it.
+  double CrossingLength(const TraceChunk& chunk, uint32_t link, bool open,
+                        uint32_t skipped = 0) const;
 
  private:
   struct Facts {

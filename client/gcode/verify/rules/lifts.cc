@@ -109,6 +109,13 @@ Habit HabitOf(const LiftLog& log, const std::vector<WayProfile>& ways) {
 void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool only_new,
              Observations& seen) {
   const TraceLink& traced = chunk.links[link];
+  // The way to the first path comes from nowhere, or from the start script: it tells nothing of
+  // ways between layers.
+  const bool first =
+      layer.index() == 0 && link == (only_new ? layer.first_path_is() : layer.first_path_was());
+  if (first || (traced.first_move < traced.end_move && !chunk.moves[traced.first_move].in_print)) {
+    return;
+  }
   const TracePath& to = chunk.paths[link];
   bool retracted = false;
   bool known = true;

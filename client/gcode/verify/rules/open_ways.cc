@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/rules/rules.h"
+#include "client/gcode/verify/rules/tails.h"
 
 namespace traverse::gcode {
 namespace {
@@ -17,13 +18,17 @@ struct OpenWay {
   bool known = true;
 };
 
-std::vector<OpenWay> OpenWays(const LayerPair& layer, const TraceChunk& chunk, uint32_t first,
-                              uint32_t end) {
+std::vector<OpenWay> OpenWays(const LayerPair& layer, bool original) {
+  const TraceChunk& chunk = original ? layer.was() : layer.is();
+  const uint32_t first = original ? layer.first_path_was() : layer.first_path_is();
+  const uint32_t end = original ? layer.end_path_was() : layer.end_path_is();
+  // A way begins where the move along the path before it ends.
+  const Tails tails(layer, original, true);
   std::vector<OpenWay> ways;
   for (uint32_t link = first; link < end; ++link) {
     const TraceLink& traced = chunk.links[link];
     if (traced.first_move == traced.end_move) continue;
-    const double length = layer.CrossingLength(chunk, link, true);
+    const double length = layer.CrossingLength(chunk, link, true, tails.At(link));
     if (length <= 0) continue;
     OpenWay way{length, chunk.moves[traced.first_move].line, true};
     for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
@@ -41,11 +46,9 @@ std::vector<OpenWay> OpenWays(const LayerPair& layer, const TraceChunk& chunk, u
 
 void CheckOpenWays(const LayerPair& layer, LayerFindings& findings) {
   if (layer.outer_walls().empty()) return;
-  const std::vector<OpenWay> is =
-      OpenWays(layer, layer.is(), layer.first_path_is(), layer.end_path_is());
+  const std::vector<OpenWay> is = OpenWays(layer, false);
   if (std::all_of(is.begin(), is.end(), [](const OpenWay& way) { return way.known; })) return;
-  const std::vector<OpenWay> was =
-      OpenWays(layer, layer.was(), layer.first_path_was(), layer.end_path_was());
+  const std::vector<OpenWay> was = OpenWays(layer, true);
   const auto longest = std::max_element(
       was.begin(), was.end(),
       [](const OpenWay& a, const OpenWay& b) { return a.length_mm < b.length_mm; });

@@ -3,6 +3,7 @@
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/rules/rules.h"
+#include "client/gcode/verify/rules/tails.h"
 
 namespace traverse::gcode {
 namespace {
@@ -23,39 +24,6 @@ void Note(absl::flat_hash_map<uint64_t, Seen>& map, uint64_t key, const TraceMov
           int64_t layer) {
   ++map.try_emplace(key, Seen{move.line, layer, 0}).first->second.count;
 }
-
-// True if what moves along the end of a path, which is no travel, is to be left out.
-class Tails {
- public:
-  Tails(const LayerPair& layer, bool original) : layer_(layer) {
-    const TraceChunk& chunk = original ? layer.was() : layer.is();
-    const uint32_t first = original ? layer.first_path_was() : layer.first_path_is();
-    const uint32_t end = original ? layer.end_path_was() : layer.end_path_is();
-    first_link_ = first + 1;
-    moves_.assign(end - first, 0);
-    if (original) {
-      for (uint32_t path = first; path < end; ++path) {
-        moves_[path - first] = LayerPair::TailMoves(chunk, path, layer.PiecesOf(path));
-      }
-    } else {
-      for (const Visit& visit : layer.visits()) {
-        moves_[visit.last_path - first] =
-            LayerPair::TailMoves(chunk, visit.last_path, layer.PiecesOf(visit.path));
-      }
-    }
-  }
-
-  // How many moves at the beginning of the link are not travel.
-  uint32_t At(uint32_t link) const {
-    if (link < first_link_ || link - first_link_ >= moves_.size()) return 0;
-    return moves_[link - first_link_];
-  }
-
- private:
-  const LayerPair& layer_;
-  uint32_t first_link_ = 0;
-  std::vector<uint32_t> moves_;
-};
 
 void ObserveWas(const LayerPair& layer, const Tails& tails, Observations& seen) {
   const TraceChunk& chunk = layer.was();

@@ -253,6 +253,35 @@ std::string LiftedLine(const std::string& from, const std::string& to) {
 const std::string kLifted = LiftedLine("X10 Y10", "X20 Y10") + LiftedLine("X10 Y20", "X20 Y20") +
                             LiftedLine("X10 Y30", "X20 Y30") + LiftedLine("X10 Y40", "X20 Y40");
 
+// What goes on along the wall ends on it, so that the way from there begins on it as well.
+TEST(VerifyRules, OpenWaysBeginWhereTheMoveAlongTheWallEnds) {
+  const std::string wall = kSquare + "G1 X10.4 Y10\n";
+  const std::string inside = ";TYPE:Internal infill\nG1 F1800\nG1 X15 Y10.6 E.3\n";
+  const std::string a =
+      kHead + wall + Line("Internal infill", "X12 Y15", "X18 Y15") + Way("X10.5 Y10.6") + inside;
+  const std::string b = kHead + wall + "G1 X10.5 Y10.6 F9000\n" + inside +
+                        Line("Internal infill", "X12 Y15", "X18 Y15");
+
+  EXPECT_EQ(Broken(a, b), "");
+  EXPECT_EQ(Broken(With(a, "G1 X10.4 Y10\n", "G1 X10.4 Y10 F6000\n"),
+                   With(b, "G1 X10.4 Y10\n", "G1 X10.4 Y10 F6000\n")),
+            "");
+  // From beyond the wall it leads across it.
+  EXPECT_EQ(
+      Broken(a, With(b, "G1 X10.5 Y10.6 F9000\n", "G1 X10.5 Y9 F9000\nG1 X10.5 Y10.6 F9000\n")),
+      "open_ways");
+}
+
+TEST(VerifyRules, LiftsOfTheFirstWayOfAllTellNothingOfWaysBetweenLayers) {
+  const std::string first = kHead + "G1 E-1 F2100\nG1 Z.6 F9000\nG1 X0 Y0 F9000\nG1 Z.2 F9000\n" +
+                            "G1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 X5 Y0 E.3\n" +
+                            ";LAYER_CHANGE\nG1 Z.4 F9000\n";
+  const std::string inside = Line("Internal infill", "X12 Y12", "X18 Y12");
+  const std::string outside = Line("Internal infill", "X0 Y5", "X5 Y5");
+
+  EXPECT_EQ(Broken(first + inside + kSquare + outside, first + outside + inside + kSquare), "");
+}
+
 TEST(VerifyRules, LiftsAreNeitherDroppedNorHalvedNorDoneTooLate) {
   const std::string way = Lifted("X10 Y30");
   for (const std::string& other :

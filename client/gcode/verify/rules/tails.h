@@ -1,0 +1,48 @@
+// What moves along the end of a path without filament, and is no travel.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_RULES_TAILS_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_RULES_TAILS_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "client/gcode/verify/match/layer_pair.h"
+
+namespace traverse::gcode {
+
+// The tails of the paths of one layer, in the original or in the other file.
+class Tails {
+ public:
+  // At `any_speed`: but only what lies on the path, and does not go straight on beyond its end.
+  Tails(const LayerPair& layer, bool original, bool any_speed = false) {
+    const TraceChunk& chunk = original ? layer.was() : layer.is();
+    const uint32_t first = original ? layer.first_path_was() : layer.first_path_is();
+    const uint32_t end = original ? layer.end_path_was() : layer.end_path_is();
+    first_link_ = first + 1;
+    moves_.assign(end - first, 0);
+    if (original) {
+      for (uint32_t path = first; path < end; ++path) {
+        moves_[path - first] = LayerPair::TailMoves(chunk, path, layer.PiecesOf(path), any_speed);
+      }
+    } else {
+      for (const Visit& visit : layer.visits()) {
+        moves_[visit.last_path - first] =
+            LayerPair::TailMoves(chunk, visit.last_path, layer.PiecesOf(visit.path), any_speed);
+      }
+    }
+  }
+
+  // How many moves at the beginning of the link are not travel.
+  uint32_t At(uint32_t link) const {
+    if (link < first_link_ || link - first_link_ >= moves_.size()) return 0;
+    return moves_[link - first_link_];
+  }
+
+ private:
+  uint32_t first_link_ = 0;
+  std::vector<uint32_t> moves_;
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_RULES_TAILS_H_
