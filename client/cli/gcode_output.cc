@@ -113,9 +113,9 @@ std::string GcodeSummary(const GcodeRewrite& rewrite) {
           : absl::StrFormat("%d of %d layers rewritten: %s\n", rewrite.layers_changed,
                             rewrite.layers, DescribeRewrite(rewrite));
   if (rewrite.layers_unproven > 0) {
-    summary +=
-        absl::StrFormat("%d layers left as they are, for they would not print the same: %s\n",
-                        rewrite.layers_unproven, rewrite.unproven);
+    summary += absl::StrFormat(
+        "%d layers left as they are, for what was found for them breaks a rule: %s\n",
+        rewrite.layers_unproven, rewrite.unproven);
   }
   return summary;
 }

@@ -209,6 +209,9 @@ std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& opt
     const v1::Layer& layer = job.layers[i];
     layers[i].set_id(layer.id());
     if (layer.has_cost()) *layers[i].mutable_cost() = layer.cost();
+    if (options.crossings != gcode::Crossings::kAny && layers[i].cost().has_time()) {
+      layers[i].mutable_cost()->mutable_time()->set_crossing_seconds(gcode::kDearCrossingSeconds);
+    }
     *layers[i].mutable_walls() = layer.walls();
     *layers[i].mutable_exposed_paths() = layer.exposed_paths();
     const gcode::Layer& of_file = job.gcode->layers[job.first_layer + i];

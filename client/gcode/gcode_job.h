@@ -32,7 +32,7 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
 void AddMeasuredFacts(InputJob& job);
 
 // The layers of `job`, which is one of G-code, with plans of less latitude: a second way to look
-// for an order (policy.h).
+// for an order (policy.h). Crossings cost more there, unless any are allowed.
 std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& options);
 
 // The order that an answer of the service gives layer `layer` of `file`.

@@ -1,7 +1,9 @@
 #include "client/gcode/rewrite.h"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/measure/layer_meter.h"
@@ -14,8 +16,10 @@ namespace traverse {
 namespace gcode {
 namespace {
 
-// The rules that no file is written against; `verify` has them all.
-constexpr uint32_t kHeldRules = RuleBit(VerifyRule::kSamePrint);
+// A layer is looked at again so often before it stays as it is, and a file before what is left of
+// it does.
+constexpr int kRoundsOfLayers = 6;
+constexpr int kMostRounds = 24;
 
 std::string Minutes(double seconds) {
   const auto whole = static_cast<int64_t>(seconds + 0.5);
@@ -97,82 +101,136 @@ GcodeRewrite AsItIs(const GcodeFile& file, GcodeRewrite rewrite) {
   return rewrite;
 }
 
-absl::StatusOr<GcodeRewrite> RewriteOnce(const GcodeFile& file, const std::vector<FileOrder>& tries,
-                                         const RewriteOptions& options) {
-  GcodeRewrite rewrite;
-  rewrite.layers = static_cast<int64_t>(file.layers.size());
-  ChosenLayers chosen =
-      ChooseLayers(file, tries, {options.policy, options.crossings, options.threads});
-  rewrite.before = Sum(chosen.given);
-  rewrite.after = Sum(chosen.totals);
-  rewrite.layers_changed = chosen.changed;
-  if (!chosen.given.empty()) {
-    rewrite.first_before = chosen.given.front();
-    rewrite.first_after = chosen.totals.front();
-  }
-  if (chosen.changed == 0 || rewrite.after.seconds > rewrite.before.seconds) {
-    return AsItIs(file, std::move(rewrite));
-  }
-  const std::string head = HeadWithLine(file, AddedLine(rewrite, options));
-  rewrite.text = NewText(file, chosen, head);
-  chosen = {};  // its texts are in there
+VerifyOptions AllRules(Policy policy) {
   VerifyOptions verify;
-  verify.rules = kHeldRules;
-  const absl::Status same =
-      VerifyGcode(file.text, file.name, rewrite.text, file.name + " as optimised", verify);
-  if (!same.ok()) return same;
-  absl::StatusOr<PrintTotals> after = MeasureText(file, rewrite.text, options.threads);
-  if (!after.ok()) return after.status();
-  rewrite.after = *after;
-  if (rewrite.after.seconds > rewrite.before.seconds) return AsItIs(file, std::move(rewrite));
-  rewrite.text.replace(0, head.size(), HeadWithLine(file, AddedLine(rewrite, options)));
-  return rewrite;
+  verify.permissions = *ParsePermissions(PolicyName(policy), "");
+  return verify;
 }
 
-// Finds the layers whose orders cannot be proven, by halves.
-class Doubter {
+size_t LinesIn(std::string_view text) {
+  return static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+// Where the layers of a new text lie in it.
+class LayerLines {
  public:
-  Doubter(const GcodeFile& file, const std::vector<FileOrder>& tries, const RewriteOptions& options)
-      : file_(file), options_(options), tries_(tries) {}
-
-  const std::vector<FileOrder>& tries() const { return tries_; }
-  int64_t taken_out() const { return taken_out_; }
-
-  // Takes the orders of those among layers [begin, end) out of the tries; all of them if that takes
-  // too many attempts.
-  void TakeOut(size_t begin, size_t end) {
-    if (begin == end || (attempts_ > 0 && --attempts_ > 0 && Proven(begin, end))) return;
-    if (end - begin == 1 || attempts_ <= 0) {
-      for (FileOrder& order : tries_) {
-        for (size_t layer = begin; layer < end; ++layer) order[layer].clear();
-      }
-      taken_out_ += static_cast<int64_t>(end - begin);
-      return;
+  LayerLines(const GcodeFile& file, const ChosenLayers& chosen, const std::string& head) {
+    size_t line = LinesIn(head) + 1;
+    for (size_t i = 0; i < chosen.texts.size(); ++i) {
+      const LayerText& text = chosen.texts[i];
+      begins_.push_back(line);
+      line += LinesIn(text.way);
+      paths_.push_back(line);
+      line += LinesIn(text.paths.empty() ? file.PathsText(file.layers[i]) : text.paths);
     }
-    const size_t middle = begin + (end - begin) / 2;
-    TakeOut(begin, middle);
-    TakeOut(middle, end);
+  }
+
+  // The layer of a line, and whether it is on the way to the layer.
+  std::pair<size_t, bool> Find(size_t line) const {
+    const auto behind = std::upper_bound(begins_.begin(), begins_.end(), line);
+    const size_t layer =
+        behind == begins_.begin() ? 0 : static_cast<size_t>(behind - begins_.begin()) - 1;
+    return {layer, line < paths_[layer]};
   }
 
  private:
-  bool Proven(size_t begin, size_t end) const {
-    std::vector<FileOrder> only = tries_;
-    for (FileOrder& order : only) {
-      for (size_t layer = 0; layer < order.size(); ++layer) {
-        if (layer < begin || layer >= end) order[layer].clear();
+  std::vector<size_t> begins_;  // [layer] number of the first line of the way to it
+  std::vector<size_t> paths_;   // and of its paths
+};
+
+// Writes a file, looks for what breaks a rule of the verifier, rules that out and writes it again,
+// until nothing does.
+class Rewriter {
+ public:
+  Rewriter(const GcodeFile& file, const std::vector<FileOrder>& tries,
+           const RewriteOptions& options)
+      : file_(file),
+        options_(options),
+        chooser_(file, tries, {options.policy, options.crossings, options.threads}) {}
+
+  absl::StatusOr<GcodeRewrite> Rewrite() {
+    for (int round = 0;; ++round) {
+      GcodeRewrite rewrite;
+      ChosenLayers chosen = chooser_.Choose();
+      NoteChoice(chosen, rewrite);
+      if (chosen.changed == 0 || rewrite.after.seconds > rewrite.before.seconds) {
+        return AsItIs(file_, std::move(rewrite));
       }
+      const std::string head = HeadWithLine(file_, AddedLine(rewrite, options_));
+      rewrite.text = NewText(file_, chosen, head);
+      const VerifyReport report =
+          CheckGcode(file_.text, file_.name, rewrite.text, file_.name + " as optimised",
+                     AllRules(options_.policy));
+      if (report.ok()) {
+        chosen = {};  // its texts are in there
+        return Finish(head, std::move(rewrite));
+      }
+      if (unproven_.empty()) unproven_ = report.breaks.front().message;
+      RuleOut(report, LayerLines(file_, chosen, head), round);
     }
-    return RewriteOnce(file_, only, options_).ok();
   }
 
-  // Each is a rewriting of the file.
-  static constexpr int kMaxAttempts = 60;
+ private:
+  void NoteChoice(const ChosenLayers& chosen, GcodeRewrite& rewrite) const {
+    rewrite.layers = static_cast<int64_t>(file_.layers.size());
+    rewrite.before = Sum(chosen.given);
+    rewrite.after = Sum(chosen.totals);
+    rewrite.layers_changed = chosen.changed;
+    if (!chosen.given.empty()) {
+      rewrite.first_before = chosen.given.front();
+      rewrite.first_after = chosen.totals.front();
+    }
+    for (size_t layer = 0; layer < file_.layers.size(); ++layer) {
+      if (chooser_.IsGivenUp(layer)) ++rewrite.layers_unproven;
+    }
+    if (rewrite.layers_unproven > 0) rewrite.unproven = unproven_;
+  }
+
+  absl::StatusOr<GcodeRewrite> Finish(const std::string& head, GcodeRewrite rewrite) const {
+    const absl::StatusOr<PrintTotals> after = MeasureText(file_, rewrite.text, options_.threads);
+    if (!after.ok()) return after.status();
+    rewrite.after = *after;
+    if (rewrite.after.seconds > rewrite.before.seconds) return AsItIs(file_, std::move(rewrite));
+    rewrite.text.replace(0, head.size(), HeadWithLine(file_, AddedLine(rewrite, options_)));
+    return rewrite;
+  }
+
+  // At the latest in round kMostRounds nothing is left but the file as it is.
+  void RuleOut(const VerifyReport& report, const LayerLines& lines, int round) {
+    bool any = false;
+    for (const VerifyBreak& found : report.breaks) {
+      const auto [layer, way] = lines.Find(found.optimised_line);
+      // What comes behind a print that is another one was not looked at.
+      const bool other_print = found.rule == VerifyRule::kSamePrint;
+      if (other_print && round >= kRoundsOfLayers) {
+        any |= RuleOutFrom(layer);
+      } else if (other_print || round >= kRoundsOfLayers) {
+        any |= RuleOutAround(layer);
+      } else {
+        any |= chooser_.RuleOut(layer, way) || RuleOutAround(layer);
+      }
+    }
+    if (!any || round + 1 >= kMostRounds) RuleOutFrom(0);
+  }
+
+  bool RuleOutAround(size_t layer) {
+    if (chooser_.RuleOutAll(layer)) return true;
+    // It is as in the file: what is wrong with it comes from the layers beside it.
+    const bool before = layer > 0 && chooser_.RuleOutAll(layer - 1);
+    const bool behind = layer + 1 < file_.layers.size() && chooser_.RuleOutAll(layer + 1);
+    return before || behind;
+  }
+
+  bool RuleOutFrom(size_t layer) {
+    bool any = false;
+    for (; layer < file_.layers.size(); ++layer) any |= chooser_.RuleOutAll(layer);
+    return any;
+  }
 
   const GcodeFile& file_;
   const RewriteOptions& options_;
-  std::vector<FileOrder> tries_;
-  int attempts_ = kMaxAttempts;
-  int64_t taken_out_ = 0;
+  LayerChooser chooser_;
+  std::string unproven_;  // what was found first
 };
 
 }  // namespace
@@ -193,15 +251,7 @@ std::string DescribeRewrite(const GcodeRewrite& rewrite) {
 absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
                                           const std::vector<gcode::FileOrder>& tries,
                                           const RewriteOptions& options) {
-  absl::StatusOr<GcodeRewrite> rewrite = gcode::RewriteOnce(file, tries, options);
-  if (rewrite.ok() || !absl::IsFailedPrecondition(rewrite.status())) return rewrite;
-  gcode::Doubter doubter(file, tries, options);
-  doubter.TakeOut(0, file.layers.size());
-  absl::StatusOr<GcodeRewrite> proven = gcode::RewriteOnce(file, doubter.tries(), options);
-  if (!proven.ok()) return rewrite;
-  proven->layers_unproven = doubter.taken_out();
-  proven->unproven = std::string(rewrite.status().message());
-  return proven;
+  return gcode::Rewriter(file, tries, options).Rewrite();
 }
 
 }  // namespace traverse

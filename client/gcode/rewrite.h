@@ -24,7 +24,8 @@ struct GcodeRewrite {
   int64_t layers = 0;
   int64_t layers_changed = 0;
 
-  // Layers that were left as they are because their new order could not be proven, and why not.
+  // Layers that were left as they are because what was found for them breaks a rule of the
+  // verifier, and the first break that was found.
   int64_t layers_unproven = 0;
   std::string unproven;
 };
@@ -39,10 +40,10 @@ struct RewriteOptions {
 // Writes `file` with each layer in one of the orders that `tries` have for it, or in its own,
 // whichever makes the quickest print by the estimate; under Policy::kSafe no layer's travel grows,
 // neither within the layer nor with the way to it, and walls are spared (layer_choice.h). The text
-// is verified before it is returned (verify/verifier.h), and `after` is measured on it. Layers
-// whose new order cannot be proven are left as they are.
+// is verified by all rules of `policy` before it is returned (verify/verifier.h), and `after` is
+// measured on it. What breaks a rule is ruled out, layer by layer, and the file is written again.
 //
-// FailedPrecondition with the first difference if nothing can be proven: a fault of ours.
+// An error if the new text cannot be read again: a fault of ours.
 // REQUIRES: each order is empty, or has each path of its layer once as a plan of `policy` allows.
 absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
                                           const std::vector<gcode::FileOrder>& tries,

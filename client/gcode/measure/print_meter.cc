@@ -8,6 +8,9 @@
 namespace traverse::gcode {
 namespace {
 
+// Of what is pulled back in several moves, rounding may lose so much.
+constexpr Decimal kRounding = kDecimalOne / 10'000;
+
 double LengthXy(const Position& from, const Position& to) {
   const double dx = ToDouble(to.x - from.x);
   const double dy = ToDouble(to.y - from.y);
@@ -27,7 +30,9 @@ void PrintMeter::Follow(const Step& step, const Interpreter& interpreter) {
       return FollowXy(step, state);
     case StepKind::kFilament: {
       if (step.filament < 0 && !step.retracted) ++totals_.retractions;
-      if (step.filament > step.pulled) totals_.extra_mm += ToDouble(step.filament - step.pulled);
+      if (step.filament > step.pulled + (step.pulled > 0 ? kRounding : 0)) {
+        totals_.extra_mm += ToDouble(step.filament - step.pulled);
+      }
       const double speed = std::min(ToDouble(state.feed) / 60, profile_.max_e_speed);
       if (speed > 0) {
         planner_.Stop(

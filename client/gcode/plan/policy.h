@@ -31,14 +31,16 @@ std::string_view PolicyName(Policy policy);
 
 // What is done about visible walls in the way of travel.
 enum class Crossings : uint8_t {
-  kKeep,   // no layer crosses them more often than it did
+  kKeep,   // the file crosses them no more often than it did
   kFewer,  // and each crossing saved is worth kFewerCrossingSeconds
   kAny,    // as time says
 };
 
-// Prices of a crossing in a search. The small one is for orders that are as quick with fewer.
-inline constexpr double kKeepCrossingSeconds = 0.1;
+// Prices of a crossing in a search. The small one is for orders that are as quick with fewer, the
+// large one for a second search, so that there are orders with hardly any to choose from.
+inline constexpr double kKeepCrossingSeconds = 0.3;
 inline constexpr double kFewerCrossingSeconds = 0.5;
+inline constexpr double kDearCrossingSeconds = 1;
 
 // "keep", "fewer" or "any"; nothing for other text.
 std::optional<Crossings> CrossingsOfName(std::string_view name);

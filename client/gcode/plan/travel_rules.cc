@@ -140,13 +140,37 @@ bool TravelRules::AlwaysRetracts(Feature feature) const {
 
 bool TravelRules::Retracts(Vertex a, Vertex b, Feature feature) const {
   if (!habit_.retracts) return false;
-  if (Distance(a, b) < habit_.threshold_mm) return habit_.spares_walls && Crosses(a, b);
-  if (!habit_.crossing_matters || CountOf(feature).Mostly()) return true;
-  return Crosses(a, b);
+  const double mm = Distance(a, b);
+  const bool always =
+      mm >= habit_.threshold_mm && (!habit_.crossing_matters || CountOf(feature).Mostly());
+  const bool never = mm < habit_.threshold_mm && !habit_.spares_walls;
+  return always || (!never && Crosses(a, b));
 }
 
 bool TravelRules::Crosses(Vertex a, Vertex b) const {
   return walls_.Crossed(a, b) && (!habit_.avoids_walls || detours_.Around(a, b).empty());
+}
+
+TravelWay TravelRules::WayOf(Vertex a, Vertex b, Feature feature) const {
+  TravelWay way;
+  way.mm = Distance(a, b);
+  way.crosses = walls_.Crossed(a, b);
+  if (way.crosses && habit_.avoids_walls) {
+    const std::vector<Vertex> bends = detours_.Around(a, b);
+    Vertex at = a;
+    double mm = 0;
+    for (const Vertex bend : bends) {
+      mm += Distance(at, bend);
+      at = bend;
+    }
+    way.crosses = bends.empty();
+    if (!bends.empty()) way.mm = mm + Distance(at, b);
+  }
+  if (!habit_.retracts) return way;
+  const bool far = Distance(a, b) >= habit_.threshold_mm;
+  way.retracts = far && (!habit_.crossing_matters || CountOf(feature).Mostly());
+  way.retracts = way.retracts || ((far || habit_.spares_walls) && way.crosses);
+  return way;
 }
 
 }  // namespace traverse::gcode

@@ -51,6 +51,13 @@ RetractionHabit LearnRetraction(const GcodeFile& file);
 // LearnRetraction, and what new ways have to keep to under every policy.
 RetractionHabit HabitOfNewWays(const GcodeFile& file);
 
+// A new way as it is written.
+struct TravelWay {
+  bool retracts = false;
+  bool crosses = false;  // a visible wall, and there is no way around
+  double mm = 0;         // bends included
+};
+
 // The same for one layer: top and bottom layers are often retracted where others are not.
 class TravelRules {
  public:
@@ -61,6 +68,9 @@ class TravelRules {
   // Whether to pull back for the way from `a` to `b`, where a path of `feature` begins.
   bool Retracts(Vertex a, Vertex b, Feature feature) const;
 
+  // How the way is written for which it says whether to retract.
+  TravelWay WayOf(Vertex a, Vertex b, Feature feature) const;
+
   // Whether the file shows that ways to paths of `feature` are retracted wherever they lead.
   bool AlwaysRetracts(Feature feature) const;
 
@@ -70,10 +80,10 @@ class TravelRules {
  private:
   const RetractionCount& CountOf(Feature feature) const;
 
-  const RetractionHabit& habit_;
   // And there is no way around.
   bool Crosses(Vertex a, Vertex b) const;
 
+  const RetractionHabit& habit_;
   const VisibleWalls& walls_;
   const Detours detours_;
   RetractionCounts inside_;

@@ -2,32 +2,20 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <memory>
 #include <string_view>
 #include <utility>
 
 #include "client/gcode/parallel.h"
+#include "client/gcode/write/choice_row.h"
+#include "client/gcode/write/merged_orders.h"
 
 namespace traverse::gcode {
 namespace {
 
 // Rounding of sums of lengths.
 constexpr double kSlackMm = 1e-6;
-
-constexpr double kNever = std::numeric_limits<double>::infinity();
-
-// A second of print time is worth this much travel: between orders that take the same time the
-// shorter one is better.
-constexpr double kSecondsPerMm = 1e-6;
-
-double Score(const PrintTotals& totals, Crossings crossings) {
-  const double seconds = totals.seconds + kSecondsPerMm * totals.travel_mm;
-  if (crossings != Crossings::kFewer) return seconds;
-  return seconds + kFewerCrossingSeconds * static_cast<double>(totals.crossings);
-}
 
 // As slicers write it: a sign that the extruder's register does not count through.
 bool Resets(std::string_view text) { return text.find("G92") != std::string_view::npos; }
@@ -36,11 +24,11 @@ bool Resets(std::string_view text) { return text.find("G92") != std::string_view
 struct Choice {
   LayerOrder order;
   const LayerWriter* writer = nullptr;
-  PrintTotals inside;  // its paths and the ways between them
-  PartStart start;     // how it begins and ends in `text`
+  PartStart start;  // how it begins and ends in `text`
   PartStart behind;
   bool resets_e = false;  // the register is set on the way, and does not count through
   std::string text;       // empty for the order of the file
+  bool written = false;   // `text` was used up
 };
 
 // A layer and what it may be. choices[0] is the order of the file.
@@ -48,15 +36,16 @@ struct Column {
   std::unique_ptr<const LayerWriter> writer;
   std::unique_ptr<const LayerWriter> plain;  // which spares no walls; null if not needed
   std::vector<Choice> choices;
-  std::vector<PrintTotals> ways;  // [before * choices.size() + choice] from the layer before
-  std::vector<double> score;      // [choice] of the best row up to here
-  std::vector<uint32_t> from;     // [choice] the layer before in that row
+  ChoiceColumn totals;
+  bool ruled_out = false;  // something is
   uint32_t chosen = 0;
 };
 
-class Chooser {
+}  // namespace
+
+class LayerChooser::Impl {
  public:
-  Chooser(const GcodeFile& file, const std::vector<FileOrder>& tries, const ChoiceOptions& choice)
+  Impl(const GcodeFile& file, const std::vector<FileOrder>& tries, const ChoiceOptions& choice)
       : file_(file),
         tries_(tries),
         policy_(choice.policy),
@@ -65,14 +54,47 @@ class Chooser {
         habit_(HabitOfNewWays(file)),
         plain_habit_(Plain(habit_)),
         donors_(file),
-        columns_(file.layers.size()) {}
-
-  ChosenLayers Choose() {
+        travel_(LearnTravel(file, habit_.threshold_mm)),
+        columns_(file.layers.size()) {
     ParallelFor(columns_.size(), threads_, [this](size_t layer) { FillColumn(layer); });
     ParallelFor(columns_.size() - 1, threads_, [this](size_t i) { FillWays(i + 1); });
-    for (size_t layer = 0; layer < columns_.size(); ++layer) Extend(layer);
-    Trace();
-    return Write();
+    for (Column& column : columns_) column.totals.no_choice.assign(column.choices.size(), false);
+  }
+
+  ChosenLayers Choose() {
+    std::vector<const ChoiceColumn*> totals;
+    for (const Column& column : columns_) totals.push_back(&column.totals);
+    const std::vector<uint32_t> row = BestRow(totals, policy_, crossings_);
+    for (size_t layer = 0; layer < columns_.size(); ++layer) columns_[layer].chosen = row[layer];
+    ChosenLayers chosen = Write();
+    DropTexts();
+    return chosen;
+  }
+
+  bool RuleOut(size_t layer, bool way) {
+    Column& column = columns_[layer];
+    if (!way) {
+      if (column.chosen == 0) return false;
+      column.totals.no_choice[column.chosen] = true;
+    } else {
+      if (layer == 0) return false;
+      const uint32_t before = columns_[layer - 1].chosen;
+      if (before == 0 && column.chosen == 0) return false;
+      column.totals.no_way[before * column.choices.size() + column.chosen] = true;
+    }
+    column.ruled_out = true;
+    return true;
+  }
+
+  bool RuleOutAll(size_t layer) {
+    Column& column = columns_[layer];
+    for (size_t c = 1; c < column.choices.size(); ++c) column.totals.no_choice[c] = true;
+    column.ruled_out = column.choices.size() > 1;
+    return column.chosen != 0;
+  }
+
+  bool IsGivenUp(size_t layer) const {
+    return columns_[layer].chosen == 0 && columns_[layer].ruled_out;
   }
 
  private:
@@ -88,7 +110,8 @@ class Chooser {
     choice.start = StartOfPaths(file_, choice.order.front());
     choice.behind = StartBehind(file_, file_.blocks[file_.layers[layer].end_block - 1]);
     choice.resets_e = Resets(file_.PathsText(file_.layers[layer]));
-    choice.inside = MeasurePaths(file_, file_.layers[layer], column.writer->walls());
+    column.totals.inside.push_back(
+        MeasurePaths(file_, file_.layers[layer], column.writer->walls()));
   }
 
   // Writes `order` with walls spared. Where that leaves fewer ways across them with an open nozzle
@@ -100,9 +123,8 @@ class Chooser {
     }
     AddChoice(order, *column.writer, column);
     if (!habit_.spares_walls || habit_.avoids_walls) return;
-    if (column.choices.back().inside.open_crossings >= column.choices[0].inside.open_crossings) {
-      return;
-    }
+    const std::vector<PrintTotals>& inside = column.totals.inside;
+    if (inside.back().open_crossings >= inside.front().open_crossings) return;
     if (column.plain == nullptr) {
       column.plain =
           std::make_unique<const LayerWriter>(file_, file_.layers[layer], plain_habit_, donors_);
@@ -117,7 +139,8 @@ class Chooser {
     choice.start = StartOfPaths(file_, order.front());
     choice.behind = writer.WritePaths(order, choice.start, choice.text);
     choice.resets_e = Resets(choice.text);
-    choice.inside = Measure(file_, choice.text, choice.start, &column.writer->walls());
+    column.totals.inside.push_back(
+        Measure(file_, choice.text, choice.start, &column.writer->walls()));
   }
 
   void FillColumn(size_t layer) {
@@ -125,8 +148,18 @@ class Chooser {
     column.writer =
         std::make_unique<const LayerWriter>(file_, file_.layers[layer], habit_, donors_);
     AddGiven(layer, column);
+    std::vector<LayerOrder> found;
     for (const FileOrder& order : tries_) {
-      if (!order[layer].empty()) AddChoices(order[layer], layer, column);
+      const bool known = order[layer].empty() || order[layer] == column.choices[0].order;
+      if (!known) found.push_back(order[layer]);
+    }
+    if (found.empty()) return;
+    MergeRules rules{policy_, crossings_, column.totals.inside[0].extra_mm > kSlackMm, {}};
+    for (uint32_t b = file_.layers[layer].first_block; b < file_.layers[layer].end_block; ++b) {
+      rules.boundaries.push_back((file_.blocks[b].link & (kLinkSplits | kLinkFixed)) != 0);
+    }
+    for (const LayerOrder& order : MergedOrders(*column.writer, travel_[layer], found, rules)) {
+      AddChoices(order, layer, column);
     }
   }
 
@@ -136,61 +169,10 @@ class Chooser {
       for (const Choice& choice : column.choices) {
         std::string text;
         column.writer->WriteWay(before.order.back(), choice.order.front(), before.behind, text);
-        column.ways.push_back(Measure(file_, text, before.behind, &column.writer->walls()));
+        column.totals.ways.push_back(Measure(file_, text, before.behind, &column.writer->walls()));
       }
     }
-  }
-
-  // How the best rows of choices go on to `layer`.
-  void Extend(size_t layer) {
-    Column& column = columns_[layer];
-    const size_t n = column.choices.size();
-    column.score.assign(n, kNever);
-    column.from.assign(n, 0);
-    for (size_t c = 0; c < n; ++c) {
-      const PrintTotals& inside = column.choices[c].inside;
-      if (layer == 0) {
-        if (MayBe(column, {}, inside)) column.score[c] = Score(inside, crossings_);
-        continue;
-      }
-      const Column& before = columns_[layer - 1];
-      for (size_t b = 0; b < before.choices.size(); ++b) {
-        const PrintTotals& way = column.ways[b * n + c];
-        const double score = before.score[b] + Score(way, crossings_) + Score(inside, crossings_);
-        if (score >= column.score[c] || !MayBe(column, way, inside)) continue;
-        column.score[c] = score;
-        column.from[c] = static_cast<uint32_t>(b);
-      }
-    }
-  }
-
-  bool MayBe(const Column& column, const PrintTotals& way, const PrintTotals& inside) const {
-    const PrintTotals& given = column.choices[0].inside;
-    PrintTotals given_whole = given;
-    if (!column.ways.empty()) given_whole += column.ways[0];
-    PrintTotals whole = inside;
-    whole += way;
-    return MayBe(given, inside) && MayBe(given_whole, whole);
-  }
-
-  bool MayBe(const PrintTotals& given, const PrintTotals& chosen) const {
-    if (crossings_ != Crossings::kAny && chosen.crossings > given.crossings) return false;
-    if (chosen.open_crossings > given.open_crossings ||
-        chosen.longest_open_mm > given.longest_open_mm + kSlackMm) {
-      return false;
-    }
-    // Where each prime pushes a little more than was pulled back, their number is what is printed.
-    if (std::abs(chosen.extra_mm - given.extra_mm) > kSlackMm) return false;
-    return policy_ != Policy::kSafe || chosen.travel_mm <= given.travel_mm + kSlackMm;
-  }
-
-  void Trace() {
-    const std::vector<double>& last = columns_.back().score;
-    auto choice = static_cast<uint32_t>(std::min_element(last.begin(), last.end()) - last.begin());
-    for (size_t layer = columns_.size(); layer-- > 0;) {
-      columns_[layer].chosen = choice;
-      choice = columns_[layer].from[choice];
-    }
+    column.totals.no_way.assign(column.totals.ways.size(), false);
   }
 
   // The ways are written one after the other, for each needs to know where the extruder's register
@@ -207,7 +189,7 @@ class Chooser {
       starts.push_back(WriteWayTo(layer, chosen.behind, text.way));
       chosen.behind = Chosen(layer).behind;
       if (Fits(layer, starts[layer])) {
-        text.paths = std::move(Chosen(layer).text);
+        TakePaths(layer, text.paths);
       } else if (Chosen(layer).resets_e) {
         chosen.behind = WritePathsOf(layer, starts[layer], text.paths);
       } else {
@@ -238,6 +220,26 @@ class Chooser {
     }
   }
 
+  // The paths written for the choice; a second time they are written anew.
+  void TakePaths(size_t layer, std::string& text) {
+    Choice& choice = Chosen(layer);
+    if (choice.written) {
+      choice.writer->WritePaths(choice.order, choice.start, text);
+    } else {
+      text = std::exchange(choice.text, {});
+    }
+  }
+
+  // They are large, and hardly ever asked for again.
+  void DropTexts() {
+    for (Column& column : columns_) {
+      for (size_t c = 1; c < column.choices.size(); ++c) {
+        column.choices[c].text = {};
+        column.choices[c].written = true;
+      }
+    }
+  }
+
   Choice& Chosen(size_t layer) { return columns_[layer].choices[columns_[layer].chosen]; }
   const Choice& Chosen(size_t layer) const {
     return columns_[layer].choices[columns_[layer].chosen];
@@ -264,15 +266,9 @@ class Chooser {
 
   void NoteTotals(size_t layer, ChosenLayers& chosen) const {
     const Column& column = columns_[layer];
-    PrintTotals given = column.choices[0].inside;
-    PrintTotals totals = column.choices[column.chosen].inside;
-    if (layer > 0) {
-      const size_t before = columns_[layer - 1].chosen;
-      given += column.ways[0];
-      totals += column.ways[before * column.choices.size() + column.chosen];
-    }
-    chosen.given.push_back(given);
-    chosen.totals.push_back(totals);
+    const size_t before = layer > 0 ? columns_[layer - 1].chosen : 0;
+    chosen.given.push_back(column.totals.Whole(0, 0));
+    chosen.totals.push_back(column.totals.Whole(before, column.chosen));
     chosen.changed += column.chosen != 0 ? 1 : 0;
   }
 
@@ -284,10 +280,23 @@ class Chooser {
   const RetractionHabit habit_;
   const RetractionHabit plain_habit_;
   const LinkDonors donors_;
-  std::vector<Column> columns_;  // [layer]
+  const std::vector<TravelModel> travel_;  // [layer]
+  std::vector<Column> columns_;            // [layer]
 };
 
-}  // namespace
+LayerChooser::LayerChooser(const GcodeFile& file, const std::vector<FileOrder>& tries,
+                           const ChoiceOptions& options)
+    : impl_(std::make_unique<Impl>(file, tries, options)) {}
+
+LayerChooser::~LayerChooser() = default;
+
+ChosenLayers LayerChooser::Choose() { return impl_->Choose(); }
+
+bool LayerChooser::RuleOut(size_t layer, bool way) { return impl_->RuleOut(layer, way); }
+
+bool LayerChooser::RuleOutAll(size_t layer) { return impl_->RuleOutAll(layer); }
+
+bool LayerChooser::IsGivenUp(size_t layer) const { return impl_->IsGivenUp(layer); }
 
 void ChosenLayers::AppendTo(const GcodeFile& file, std::string& text) const {
   for (size_t i = 0; i < texts.size(); ++i) {
@@ -295,11 +304,6 @@ void ChosenLayers::AppendTo(const GcodeFile& file, std::string& text) const {
     text +=
         texts[i].paths.empty() ? file.PathsText(file.layers[i]) : std::string_view(texts[i].paths);
   }
-}
-
-ChosenLayers ChooseLayers(const GcodeFile& file, const std::vector<FileOrder>& tries,
-                          const ChoiceOptions& options) {
-  return Chooser(file, tries, options).Choose();
 }
 
 }  // namespace traverse::gcode

@@ -2,14 +2,16 @@
 //
 // For each layer there are a few orders to choose from, that of the file among them. Where a layer
 // ends is where the way to the next one begins, so that the choices hang together: the best row of
-// them is a shortest path through a graph with a column for each layer, whose edges are the ways
-// between layers, written and measured. O(layers * tries^2) ways and O(layers * tries) layers are
-// written.
+// them is taken (choice_row.h).
+//
+// O(layers * tries^2) ways between layers and O(layers * tries) layers are written and measured.
 
 #ifndef TRAVERSE_CLIENT_GCODE_WRITE_LAYER_CHOICE_H_
 #define TRAVERSE_CLIENT_GCODE_WRITE_LAYER_CHOICE_H_
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -46,13 +48,35 @@ struct ChoiceOptions {
   int threads = 1;
 };
 
-// Chooses among the order of the file and those of `tries` for the least estimated time; under
-// Crossings::kFewer a crossing counts as time. No layer has more ways across visible walls than in
-// the file but under Crossings::kAny, and under Policy::kSafe none has more travel, nor more such
-// ways with an open nozzle, neither within nor together with the way to it. The result does not
-// depend on `threads`.
-ChosenLayers ChooseLayers(const GcodeFile& file, const std::vector<FileOrder>& tries,
-                          const ChoiceOptions& options);
+// Chooses among the order of the file and those of `tries`, each made better by runs of the others
+// (merged_orders.h), by the rules of choice_row.h: for the least estimated time, with no more ways
+// across visible walls.
+//
+// The result does not depend on the number of threads.
+class LayerChooser {
+ public:
+  // Writes and measures what there is to choose from. `file` and `tries` outlive the chooser.
+  LayerChooser(const GcodeFile& file, const std::vector<FileOrder>& tries,
+               const ChoiceOptions& options);
+  ~LayerChooser();
+
+  // The best of what is not ruled out.
+  ChosenLayers Choose();
+
+  // What was chosen last for the paths of `layer` is not chosen again, nor, if `way`, its way from
+  // the layer before; false if that is how the file has it, which is always there to be chosen.
+  bool RuleOut(size_t layer, bool way);
+
+  // Of layer `layer` nothing but the order of the file is chosen from now on; false if it was.
+  bool RuleOutAll(size_t layer);
+
+  // Something that was found for `layer` is ruled out, and the order of the file was chosen last.
+  bool IsGivenUp(size_t layer) const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace traverse::gcode
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/model/loops.h"
 #include "client/gcode/model/outline.h"
 #include "client/gcode/write/link_writer.h"
@@ -120,6 +121,48 @@ void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32
   request.retract = request.wipe || Retracts(from, to);
   request.detours = rules_.detours();
   LinkWriter(file_, donors_, out).Write(request);
+}
+
+Vertex LayerWriter::Begin(const Placement& placement) const {
+  const Block& block = file_.blocks[placement.block];
+  if (placement.as_given()) return file_.modes[block.mode].InMm(block.first);
+  const std::vector<Vertex>& points = outlines_[placement.block - layer_.first_block].points;
+  return placement.closed ? points[placement.entry] : points.back();
+}
+
+Vertex LayerWriter::End(const Placement& placement) const {
+  const Block& block = file_.blocks[placement.block];
+  if (placement.as_given()) return file_.modes[block.mode].InMm(block.last);
+  const std::vector<Vertex>& points = outlines_[placement.block - layer_.first_block].points;
+  return placement.closed ? points[placement.entry] : points.front();
+}
+
+WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Placement& to,
+                                   const TravelModel& model) const {
+  const Block& here = file_.blocks[layer_.first_block + place];
+  const Block& next = file_.blocks[to.block];
+  const bool boundary = (here.link & (kLinkSplits | kLinkFixed)) != 0;
+  const bool as_given = from.block + 1 == to.block && from.as_given() && to.as_given() &&
+                        (!boundary || to.block == layer_.first_block + place);
+  TravelWay way =
+      rules_.WayOf(End(from), Begin(to), outlines_[to.block - layer_.first_block].feature);
+  if (as_given) {
+    way.retracts = (next.link & kLinkRetracts) != 0;
+    // Wipes and moves away from the path are no part of a way of our own either.
+    const bool plain = (next.link & (kLinkWipes | kLinkDeparts)) == 0;
+    if (plain) way.mm = static_cast<double>(next.travel_mm);
+  } else {
+    way.retracts = way.retracts || file_.WipedBehind(from.block) ||
+                   (boundary && (here.link & kLinkRetracts) != 0);
+  }
+  WayTotals totals;
+  totals.mm = way.mm;
+  totals.seconds = StopToStopSeconds(way.mm, model.speed_mm_s, model.accel_mm_s2) +
+                   (way.retracts ? model.retraction_seconds : 0);
+  totals.retractions = way.retracts ? 1 : 0;
+  totals.crossings = way.crosses ? 1 : 0;
+  totals.open = way.crosses && !way.retracts ? 1 : 0;
+  return totals;
 }
 
 bool LayerWriter::Retracts(const PlacedPath& from, const PlacedPath& to) const {

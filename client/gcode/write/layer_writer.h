@@ -7,15 +7,14 @@
 #include <vector>
 
 #include "client/gcode/measure/layer_meter.h"
+#include "client/gcode/plan/travel_model.h"
 #include "client/gcode/plan/travel_rules.h"
 #include "client/gcode/write/gcode_out.h"
 #include "client/gcode/write/link_donors.h"
+#include "client/gcode/write/order_merge.h"
 #include "client/gcode/write/placed_path.h"
 
 namespace traverse::gcode {
-
-// The paths of a layer in the order to print them.
-using LayerOrder = std::vector<Placement>;
 
 // Where the paths of an order begin, with everything set as its first path needs it. The extruder's
 // register is as it is there in the file.
@@ -44,7 +43,14 @@ class LayerWriter {
   // The paths in `order` and the ways between them. `start` is the machine where the first begins.
   PartStart WritePaths(const LayerOrder& order, const PartStart& start, std::string& text) const;
 
+  // About what the way to place `place` of the layer, from 1, comes to if `to` follows `from`
+  // there. Walls are crossed, and filament is pulled back, as it is written.
+  WayTotals EstimateWay(size_t place, const Placement& from, const Placement& to,
+                        const TravelModel& model) const;
+
  private:
+  Vertex Begin(const Placement& placement) const;
+  Vertex End(const Placement& placement) const;
   bool IsGiven(const LayerOrder& order, const PartStart& start) const;
   void WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place, GcodeOut& out) const;
   bool Retracts(const PlacedPath& from, const PlacedPath& to) const;

@@ -49,7 +49,9 @@ std::string NameOf(const std::string& path) {
 
 // What the text written amounts to by its own account, not the writer's.
 void MeasureResult(const GcodeFile& file, const std::string& text, CorpusRun& run) {
-  const auto verified = VerifyGcode(file.text, "before", text, "after", OnlySamePrint());
+  VerifyOptions rules;
+  rules.permissions = *ParsePermissions(gcode::PolicyName(run.policy), "");
+  const auto verified = VerifyGcode(file.text, "before", text, "after", rules);
   if (!verified.ok()) run.fault = std::string(verified.message());
   const auto again = ReadGcode(text, "after");
   if (!again.ok()) {

@@ -1,0 +1,101 @@
+#include "client/gcode/write/merged_orders.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "absl/container/flat_hash_map.h"
+
+namespace traverse::gcode {
+namespace {
+
+// Rounding of sums of lengths.
+constexpr double kSlackMm = 1e-6;
+
+MergeLimits LimitsOf(const WayTotals& given, const MergeRules& rules) {
+  MergeLimits limits;
+  if (rules.crossings != Crossings::kAny) limits.crossings = given.crossings;
+  if (rules.crossings == Crossings::kFewer) limits.crossing_seconds = kFewerCrossingSeconds;
+  limits.open = given.open;
+  if (rules.policy == Policy::kSafe) limits.mm = given.mm;
+  if (rules.as_many_retractions) {
+    limits.retractions = given.retractions;
+    limits.as_many_retractions = true;
+  }
+  return limits;
+}
+
+// Each path of the layer once. What is not has to be found out when it is verified.
+bool IsWhole(const LayerOrder& order, const LayerOrder& given) {
+  std::vector<bool> has(given.size());
+  for (const Placement& placement : order) {
+    const size_t path = placement.block - given.front().block;
+    if (path >= has.size() || has[path]) return false;
+    has[path] = true;
+  }
+  return order.size() == given.size();
+}
+
+bool EndsAlike(const LayerOrder& a, const LayerOrder& b) {
+  return a.front() == b.front() && a.back() == b.back();
+}
+
+}  // namespace
+
+std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelModel& travel,
+                                     const std::vector<LayerOrder>& found,
+                                     const MergeRules& rules) {
+  const LayerOrder given = writer.GivenOrder();
+  for (const LayerOrder& order : found) {
+    if (!IsWhole(order, given)) return found;
+  }
+  double longest_open_mm = 0;
+  for (size_t i = 1; i < given.size(); ++i) {
+    const WayTotals way = writer.EstimateWay(i, given[i - 1], given[i], travel);
+    if (way.open > 0) longest_open_mm = std::max(longest_open_mm, way.mm);
+  }
+  // Ways around walls take long to find, and the same few ways are asked for again and again.
+  absl::flat_hash_map<std::array<size_t, 5>, WayTotals> known;
+  const WayEstimate estimate = [&](size_t place, const Placement& from, const Placement& to) {
+    const std::array<size_t, 5> key = {from.block, from.entry, to.block, to.entry,
+                                       rules.boundaries[place] ? place : 0};
+    const auto [found_way, added] = known.try_emplace(key);
+    if (!added) return found_way->second;
+    WayTotals way = writer.EstimateWay(place, from, to, travel);
+    if (way.open > 0 && way.mm > longest_open_mm + kSlackMm) way.too_long = 1;
+    return found_way->second = way;
+  };
+  const WayTotals were = OrderMerger(estimate, {}).TotalsOf(given);
+  MergeLimits limits = LimitsOf(were, rules);
+  const OrderMerger strict(estimate, limits);
+  const auto rank = [&strict](const LayerOrder& order) {
+    const WayTotals totals = strict.TotalsOf(order);
+    return std::pair(strict.Excess(totals), strict.Score(totals));
+  };
+  // Of what begins or ends elsewhere only the whole file tells whether it crosses too many walls,
+  // and only the way to it whether it is too long.
+  limits.mm = std::numeric_limits<double>::infinity();
+  const OrderMerger few(estimate, limits);
+  limits.crossings = std::numeric_limits<int64_t>::max();
+  limits.crossing_seconds = std::max(limits.crossing_seconds, kKeepCrossingSeconds);
+  const OrderMerger quick(estimate, limits);
+  std::vector<LayerOrder> all = found;
+  all.push_back(given);
+  std::vector<LayerOrder> merged;
+  LayerOrder best_between = strict.Merge(given, found);
+  for (const LayerOrder& order : found) {
+    if (!EndsAlike(order, given)) {
+      merged.push_back(quick.Merge(order, all));
+      merged.push_back(few.Merge(order, all));
+      continue;
+    }
+    LayerOrder better = strict.Merge(order, all);
+    if (rank(better) < rank(best_between)) best_between = std::move(better);
+    merged.push_back(quick.Merge(order, all));
+  }
+  if (best_between != given) merged.push_back(std::move(best_between));
+  return merged;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,33 @@
+// What is worth writing of the orders that a search found for a layer.
+
+#ifndef TRAVERSE_CLIENT_GCODE_WRITE_MERGED_ORDERS_H_
+#define TRAVERSE_CLIENT_GCODE_WRITE_MERGED_ORDERS_H_
+
+#include <vector>
+
+#include "client/gcode/plan/policy.h"
+#include "client/gcode/plan/travel_model.h"
+#include "client/gcode/write/layer_writer.h"
+#include "client/gcode/write/order_merge.h"
+
+namespace traverse::gcode {
+
+// What an order has to keep to beside the file's own.
+struct MergeRules {
+  Policy policy = Policy::kSafe;
+  Crossings crossings = Crossings::kKeep;
+  bool as_many_retractions = false;  // each of them pushes a little more than it pulls
+
+  // [place] something stands there in the file that nothing crosses.
+  std::vector<bool> boundaries;
+};
+
+// The orders of `found`, each made better by runs of the others and of the file's own order, and
+// brought within the limits of `rules` as far as estimates go (order_merge.h). Of those that begin
+// and end with the paths that the file does only the best one.
+std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelModel& travel,
+                                     const std::vector<LayerOrder>& found, const MergeRules& rules);
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_WRITE_MERGED_ORDERS_H_

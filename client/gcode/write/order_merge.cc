@@ -1,0 +1,167 @@
+#include "client/gcode/write/order_merge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace traverse::gcode {
+namespace {
+
+// What rounding of sums is less than.
+constexpr double kGrain = 1e-7;
+
+// An order as it is looked up: [path - first path of the layer].
+struct Source {
+  std::vector<uint32_t> rank;
+  std::vector<Placement> placement;
+};
+
+Source SourceOf(const LayerOrder& order, uint32_t first) {
+  Source source;
+  source.rank.resize(order.size());
+  source.placement.resize(order.size());
+  for (uint32_t i = 0; i < order.size(); ++i) {
+    source.rank[order[i].block - first] = i;
+    source.placement[order[i].block - first] = order[i];
+  }
+  return source;
+}
+
+// One merge under way.
+class Merging {
+ public:
+  Merging(const OrderMerger& merger, const WayEstimate& estimate, LayerOrder begun)
+      : merger_(merger), estimate_(estimate), order_(std::move(begun)), ways_(order_.size()) {
+    for (size_t i = 1; i < order_.size(); ++i) {
+      ways_[i] = estimate_(i, order_[i - 1], order_[i]);
+      totals_ += ways_[i];
+    }
+  }
+
+  // True if a run of the order of `source` makes it better.
+  bool TryAllRuns(const Source& source, uint32_t first) {
+    bool better = false;
+    const size_t end = order_.size() - 1;  // the last path stays
+    for (size_t size = end - 1; size > 0; size /= 2) {
+      const size_t step = std::max<size_t>(1, size / 2);
+      for (size_t begin = 1; begin + size <= end && asked_ < most(); begin += step) {
+        better |= TryRun(source, first, begin, begin + size);
+      }
+    }
+    return better;
+  }
+
+  size_t most() const { return std::max(OrderMerger::kMostWays, order_.size()); }
+  LayerOrder Take() { return std::move(order_); }
+
+ private:
+  bool TryRun(const Source& source, uint32_t first, size_t begin, size_t end) {
+    run_.assign(order_.begin() + static_cast<std::ptrdiff_t>(begin),
+                order_.begin() + static_cast<std::ptrdiff_t>(end));
+    for (Placement& placement : run_) placement = source.placement[placement.block - first];
+    std::sort(run_.begin(), run_.end(), [&](const Placement& a, const Placement& b) {
+      return source.rank[a.block - first] < source.rank[b.block - first];
+    });
+    if (std::equal(run_.begin(), run_.end(), order_.begin() + static_cast<std::ptrdiff_t>(begin))) {
+      return false;
+    }
+    WayTotals totals = totals_;
+    new_ways_.clear();
+    const Placement* at = &order_[begin - 1];
+    for (size_t place = begin; place <= end; ++place) {
+      const Placement& to = place < end ? run_[place - begin] : order_[end];
+      new_ways_.push_back(estimate_(place, *at, to));
+      totals -= ways_[place];
+      totals += new_ways_.back();
+      at = &to;
+    }
+    asked_ += new_ways_.size();
+    if (!IsBetter(totals)) return false;
+    totals_ = totals;
+    std::copy(run_.begin(), run_.end(), order_.begin() + static_cast<std::ptrdiff_t>(begin));
+    std::copy(new_ways_.begin(), new_ways_.end(),
+              ways_.begin() + static_cast<std::ptrdiff_t>(begin));
+    return true;
+  }
+
+  bool IsBetter(const WayTotals& totals) const {
+    const double excess = merger_.Excess(totals);
+    const double excess_now = merger_.Excess(totals_);
+    if (std::abs(excess - excess_now) > kGrain) return excess < excess_now;
+    return merger_.Score(totals) < merger_.Score(totals_) - kGrain;
+  }
+
+  const OrderMerger& merger_;
+  const WayEstimate& estimate_;
+  LayerOrder order_;
+  std::vector<WayTotals> ways_;  // [place] the way to there
+  WayTotals totals_;
+  size_t asked_ = 0;
+  LayerOrder run_;
+  std::vector<WayTotals> new_ways_;
+};
+
+}  // namespace
+
+WayTotals& WayTotals::operator+=(const WayTotals& other) {
+  seconds += other.seconds;
+  mm += other.mm;
+  crossings += other.crossings;
+  open += other.open;
+  too_long += other.too_long;
+  retractions += other.retractions;
+  return *this;
+}
+
+WayTotals& WayTotals::operator-=(const WayTotals& other) {
+  seconds -= other.seconds;
+  mm -= other.mm;
+  crossings -= other.crossings;
+  open -= other.open;
+  too_long -= other.too_long;
+  retractions -= other.retractions;
+  return *this;
+}
+
+WayTotals OrderMerger::TotalsOf(const LayerOrder& order) const {
+  WayTotals totals;
+  for (size_t i = 1; i < order.size(); ++i) totals += estimate_(i, order[i - 1], order[i]);
+  return totals;
+}
+
+double OrderMerger::Excess(const WayTotals& totals) const {
+  const auto beyond = [](int64_t value, int64_t limit) {
+    return value > limit ? static_cast<double>(value - limit) : 0.0;
+  };
+  double excess = beyond(totals.crossings, limits_.crossings) + beyond(totals.open, limits_.open) +
+                  static_cast<double>(totals.too_long) +
+                  beyond(totals.retractions, limits_.retractions);
+  if (limits_.as_many_retractions) excess += beyond(limits_.retractions, totals.retractions);
+  // A millimetre is less than a crossing, but for long ways.
+  if (totals.mm > limits_.mm + kGrain) excess += (totals.mm - limits_.mm) / 100;
+  return excess;
+}
+
+double OrderMerger::Score(const WayTotals& totals) const {
+  return totals.seconds + limits_.crossing_seconds * static_cast<double>(totals.crossings);
+}
+
+LayerOrder OrderMerger::Merge(const LayerOrder& begun,
+                              const std::vector<LayerOrder>& others) const {
+  if (begun.size() < 3) return begun;
+  const uint32_t first =
+      std::min_element(begun.begin(), begun.end(), [](const Placement& a, const Placement& b) {
+        return a.block < b.block;
+      })->block;
+  std::vector<Source> sources;
+  for (const LayerOrder& other : others) sources.push_back(SourceOf(other, first));
+  sources.push_back(SourceOf(begun, first));  // what a longer run took away may be better
+  Merging merge(*this, estimate_, begun);
+  for (bool better = true; better;) {
+    better = false;
+    for (const Source& source : sources) better |= merge.TryAllRuns(source, first);
+  }
+  return merge.Take();
+}
+
+}  // namespace traverse::gcode

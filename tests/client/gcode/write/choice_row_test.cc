@@ -1,0 +1,89 @@
+// Rows of choices: client/gcode/write/choice_row.h.
+
+#include "client/gcode/write/choice_row.h"
+
+#include <gtest/gtest.h>
+
+namespace traverse::gcode {
+namespace {
+
+PrintTotals Totals(double seconds, int64_t crossings, double travel_mm = 10) {
+  PrintTotals totals;
+  totals.seconds = seconds;
+  totals.crossings = crossings;
+  totals.travel_mm = travel_mm;
+  return totals;
+}
+
+// Ways between layers that take no time.
+ChoiceColumn Column(const std::vector<PrintTotals>& inside, size_t choices_before) {
+  ChoiceColumn column;
+  column.inside = inside;
+  column.no_choice.assign(inside.size(), false);
+  column.ways.resize(choices_before * inside.size());
+  column.no_way.assign(column.ways.size(), false);
+  return column;
+}
+
+std::vector<uint32_t> Best(const std::vector<ChoiceColumn>& columns, Policy policy,
+                           Crossings crossings = Crossings::kKeep) {
+  std::vector<const ChoiceColumn*> pointers;
+  for (const ChoiceColumn& column : columns) pointers.push_back(&column);
+  return BestRow(pointers, policy, crossings);
+}
+
+using Row = std::vector<uint32_t>;
+
+TEST(BestRow, TheFileCrossesNoMoreWallsThoughALayerMay) {
+  const std::vector<ChoiceColumn> columns = {
+      Column({Totals(10, 4), Totals(9, 6)}, 0),
+      Column({Totals(10, 4), Totals(9.5, 2)}, 2),
+      Column({Totals(10, 4), Totals(9.8, 6)}, 2),
+  };
+
+  // What the second layer crosses less, the one of the others may that gains more.
+  EXPECT_EQ(Best(columns, Policy::kSafe), Row({1, 1, 0}));
+  EXPECT_EQ(Best(columns, Policy::kSafe, Crossings::kAny), Row({1, 1, 1}));
+}
+
+TEST(BestRow, UnderSafeNoLayerTravelsFurtherWithTheWayToIt) {
+  std::vector<ChoiceColumn> columns = {
+      Column({Totals(10, 0, 20), Totals(9, 0, 10)}, 0),
+      Column({Totals(10, 0, 20), Totals(9, 0, 25)}, 2),
+  };
+  // From the quick end of the first layer it is not far to the second one's quick order.
+  columns[1].ways = {Totals(1, 0, 30), Totals(1, 0, 30), Totals(1, 0, 35), Totals(1, 0, 5)};
+
+  EXPECT_EQ(Best(columns, Policy::kSafe), Row({1, 1}));
+  columns[1].ways[3].travel_mm = 35;
+  EXPECT_EQ(Best(columns, Policy::kSafe), Row({0, 0}));
+  EXPECT_EQ(Best(columns, Policy::kFree), Row({1, 1}));
+}
+
+TEST(BestRow, WhatIsRuledOutIsNotChosen) {
+  std::vector<ChoiceColumn> columns = {
+      Column({Totals(10, 0), Totals(9, 0)}, 0),
+      Column({Totals(10, 0), Totals(9, 0)}, 2),
+  };
+
+  columns[1].no_way[3] = true;
+  const Row one = Best(columns, Policy::kFree);
+  columns[0].no_choice[1] = true;
+  columns[1].no_choice[1] = true;
+
+  EXPECT_EQ(one[0] + one[1], 1u);
+  EXPECT_EQ(Best(columns, Policy::kFree), Row({0, 0}));
+}
+
+TEST(BestRow, OpenWaysAcrossWallsAndPushedFilamentStayAsTheyAre) {
+  PrintTotals open = Totals(9, 0);
+  open.open_crossings = 1;
+  PrintTotals pushed = Totals(9, 0);
+  pushed.extra_mm = 0.1;
+
+  EXPECT_EQ(Best({Column({Totals(10, 0), open}, 0)}, Policy::kFree), Row({0}));
+  EXPECT_EQ(Best({Column({Totals(10, 0), pushed}, 0)}, Policy::kFree), Row({0}));
+}
+
+}  // namespace
+}  // namespace traverse::gcode
