@@ -93,10 +93,6 @@ Link ReadLink(const GcodeFile& file, size_t index) {
     }
   }
   NoteLift(link);
-  const PrintState& path = file.states[behind.state_in];
-  for (size_t slot = 0; slot < kSlotCount; ++slot) {
-    if (link.travel_state[slot] != path[slot]) link.travel_slots |= SlotMask{1} << slot;
-  }
   return link;
 }
 

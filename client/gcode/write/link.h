@@ -40,9 +40,8 @@ struct Link {
   // Filament pulled back before the arrival; 0 if none.
   Decimal pulled = 0;
 
-  // What holds during the arrival, and where that is not what holds for the path behind it.
+  // What holds during the arrival.
   PrintState travel_state{};
-  SlotMask travel_slots = 0;
 
   // The height of what is printed on either side.
   Decimal z_before = 0;

@@ -119,13 +119,12 @@ void LinkWriter::WritePlain(const LinkRequest& request) {
   Settle(request, form);
 }
 
-// The way is gone as `form` goes: with what holds for the path, but for what `form` sets for the
-// way alone. A slot that was never set here stays so, for nothing could undo it.
+// The way is gone under the accelerations and jerks under which `form` goes, for that is how ways
+// are gone in this file. A slot that was never set here stays so, for nothing could undo it.
 void LinkWriter::SetTravelState(const PlacedPath& to, const Link& form) {
   PrintState state = to.state();
   for (size_t slot = 0; slot < kSlotCount; ++slot) {
-    const bool own = ((form.travel_slots >> slot) & 1u) != 0;
-    if (own && state[slot] != 0) state[slot] = form.travel_state[slot];
+    if (state[slot] != 0 && form.travel_state[slot] != 0) state[slot] = form.travel_state[slot];
   }
   out_.Set(state, kDynamicsSlots);
 }
