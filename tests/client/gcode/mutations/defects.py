@@ -570,6 +570,137 @@ def tail_longer(file, rng):
     return pick(rng, tails(file), 5, make)
 
 
+# --- what is set, and what is said -----------------------------------------------------------------
+
+
+def changed_number(file, rng, pattern):
+    """One of the lines that match has another number: the first group."""
+
+    def make(i):
+        found = re.match(pattern, file.lines[i].text)
+        value = number(float(found.group(1)) + 5)
+        text = file.lines[i].text
+        return edited(file, {i: [text[:found.start(1)] + value + text[found.end(1):]]})
+
+    return pick(rng, [i for i, line in enumerate(file.lines) if re.match(pattern, line.text)], 1, make)
+
+
+def temperature_changed(file, rng):
+    return changed_number(file, rng, r"M(?:104|109|140|190) .*?S(\d+)")
+
+
+def with_effect(file, pattern):
+    """Lines that set something to another value than before, under which something is deposited."""
+    before, pending = None, None
+    for i, line in enumerate(file.lines):
+        if re.match(pattern, line.text):
+            pending = i if before is not None and line.text != before else None
+            before = line.text
+        elif line.kind == "deposit" and pending is not None:
+            yield pending
+            pending = None
+
+
+def acceleration_lost(file, rng):
+    return pick(rng, with_effect(file, r"M204\b"), 1, lambda i: edited(file, {i: []}))
+
+
+def fan_late(file, rng):
+    """The fan changes one deposit later."""
+
+    def make(i):
+        fans = r"M10[67]\b"
+        behind = next((k for k in range(i + 1, len(file.lines)) if file.lines[k].kind == "deposit"), None)
+        if behind is None or any(re.match(fans, file.lines[k].text) for k in range(i + 1, behind)):
+            return None
+        return edited(file, {i: [], behind: [file.lines[behind].text, file.lines[i].text]})
+
+    return pick(rng, with_effect(file, r"M10[67]\b(?! P)"), 20, make)
+
+
+def layer_higher(file, rng):
+    """A layer's moves of Z lead 0.05 mm higher."""
+
+    def make(k):
+        z = file.paths[k].start[2]
+        changes = {}
+        for i in range(file.paths[k].first, 0, -1):
+            line = file.lines[i]
+            if line.kind == "z" and abs(line.end[2] - z) < 1e-6:
+                text = re.sub(r"Z\s*-?[0-9.]+", "Z" + number(z + 0.05), line.text)
+                changes[i] = [text]
+                break
+        return edited(file, changes) if changes else None
+
+    return pick(rng, range(len(file.paths)), 20, make)
+
+
+def arc_turned(file, rng):
+    arcs = [i for path in file.paths for i in path.deposits if re.match(r"G[23]\b", file.lines[i].text)]
+
+    def make(i):
+        text = file.lines[i].text
+        return edited(file, {i: [("G3" if text[1] == "2" else "G2") + text[2:]]})
+
+    return pick(rng, arcs, 1, make)
+
+
+def extrusion_doubled(file, rng):
+    def make(path):
+        i = rng.choice(path.deposits)
+        line = file.lines[i]
+        if line.e < 0.001 or not re.search(r"E\s*[-+]?[0-9.]+", line.text):
+            return None
+        return edited(file, {i: [re.sub(r"E\s*[-+]?[0-9.]+", "E" + number(2 * line.e), line.text)]})
+
+    return pick(rng, file.paths, 20, make)
+
+
+def exchanged(file, rng, pattern):
+    """Two lines that match, and differ, one behind the other, are exchanged."""
+    found = [i for i, line in enumerate(file.lines) if re.match(pattern, line.text)]
+    pairs = [(a, b) for a, b in zip(found, found[1:]) if file.lines[a].text != file.lines[b].text and any(
+        file.lines[k].kind == "deposit" for k in range(a, b))]
+    return pick(rng, pairs, 1, lambda pair: edited(file, {pair[0]: [file.lines[pair[1]].text],
+                                                          pair[1]: [file.lines[pair[0]].text]}))
+
+
+def labels_exchanged(file, rng):
+    return exchanged(file, rng, r"; printing object|M486 S\d|EXCLUDE_OBJECT_START|M624 |;MESH:(?!NON)|;PRINTING:")
+
+
+def tools_exchanged(file, rng):
+    return exchanged(file, rng, r"T\d+$")
+
+
+def feature_renamed(file, rng):
+    return exchanged(file, rng, r"; ?(?:TYPE|FEATURE):")
+
+
+def comment_dropped(file, rng):
+    """A comment that is not about the next path, its wipe or its size; some printer may read it."""
+    of_paths = re.compile(r";\s*(?:TYPE|FEATURE|(?:LINE_)?WIDTH|(?:LAYER_)?HEIGHT|WIPE_\w+|reset$|tool |\'|[a-z ]+$)")
+    notes = [i for i, line in enumerate(file.lines)
+             if line.kind == "comment" and line.text[1:].strip() and not of_paths.match(line.text)]
+    return pick(rng, notes, 1, lambda i: edited(file, {i: []}))
+
+
+def dwell_dropped(file, rng):
+    dwells = [i for i, line in enumerate(file.lines) if re.match(r"G4 [PS]\d*[1-9]", line.text)]
+    return pick(rng, dwells, 1, lambda i: edited(file, {i: []}))
+
+
+def deposit_faster(file, rng):
+    """A path is begun at another feed rate."""
+
+    def make(path):
+        line = file.lines[path.first]
+        text = re.sub(r"\s*F[0-9.]+", "", line.text.split(";")[0].rstrip())
+        return edited(file, {path.first: [f"{text} F{number(line.feed * 1.25)}"]})
+
+    return pick(rng, file.paths, 1, make)
+
+
 def with_xy(text, point):
     for axis, value in zip("XY", point):
         text = re.sub(axis + r"-?[0-9.]+", axis + number(value), text)
@@ -610,4 +741,16 @@ DEFECTS = (
     ("move of the start script", "scripts", from_script, "free"),
     ("move along a path's end dropped", "path_ends", tail_dropped, "free"),
     ("move along a path's end longer", "path_ends", tail_longer, "free"),
+    ("temperature changed", "same_print", temperature_changed, "free"),
+    ("acceleration lost", "same_print", acceleration_lost, "free"),
+    ("fan late by a segment", "same_print", fan_late, "free"),
+    ("layer higher", "same_print", layer_higher, "free"),
+    ("arc turned", "same_print", arc_turned, "free"),
+    ("extrusion doubled", "same_print", extrusion_doubled, "free"),
+    ("labels of objects exchanged", "same_print", labels_exchanged, "free"),
+    ("tools exchanged", "same_print", tools_exchanged, "free"),
+    ("feature renamed", "same_print", feature_renamed, "free"),
+    ("comment dropped", "same_print", comment_dropped, "free"),
+    ("dwell dropped", "same_print", dwell_dropped, "free"),
+    ("path at another speed", "same_print", deposit_faster, "free"),
 )
