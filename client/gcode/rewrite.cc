@@ -163,7 +163,12 @@ class Rewriter {
                      AllRules(options_.policy));
       if (report.ok()) {
         chosen = {};  // its texts are in there
-        return Finish(head, std::move(rewrite));
+        absl::StatusOr<GcodeRewrite> done = Finish(head, std::move(rewrite));
+        if (!done.ok() || !CrossesMore(*done)) return done;
+        // Where walls have no names, what is one is told by its neighbours, and they may change.
+        const int64_t more = done->after.crossings - done->before.crossings;
+        chooser_.Tighten(round + 1 < kRoundsOfLayers ? more : done->before.crossings + 1);
+        continue;
       }
       if (unproven_.empty()) unproven_ = report.breaks.front().message;
       RuleOut(report, LayerLines(file_, chosen, head), round);
@@ -193,6 +198,11 @@ class Rewriter {
     if (rewrite.after.seconds > rewrite.before.seconds) return AsItIs(file_, std::move(rewrite));
     rewrite.text.replace(0, head.size(), HeadWithLine(file_, AddedLine(rewrite, options_)));
     return rewrite;
+  }
+
+  bool CrossesMore(const GcodeRewrite& rewrite) const {
+    return options_.crossings != Crossings::kAny &&
+           rewrite.after.crossings > rewrite.before.crossings;
   }
 
   // At the latest in round kMostRounds nothing is left but the file as it is.

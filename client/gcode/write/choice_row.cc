@@ -23,11 +23,6 @@ constexpr double kFirstPrice = 0.02;
 constexpr int kDoublings = 16;
 constexpr int kHalvings = 6;
 
-struct Prices {
-  double crossing = 0;
-  double retraction = 0;
-};
-
 struct Row {
   std::vector<uint32_t> choices;
   PrintTotals totals;
@@ -35,47 +30,31 @@ struct Row {
 
 class RowFinder {
  public:
-  RowFinder(const std::vector<const ChoiceColumn*>& columns, Policy policy, Crossings crossings)
-      : columns_(columns), policy_(policy), crossings_(crossings) {
+  RowFinder(const std::vector<const ChoiceColumn*>& columns, Policy policy, Crossings crossings,
+            int64_t fewer)
+      : columns_(columns), policy_(policy), crossings_(crossings), fewer_(fewer) {
     for (const ChoiceColumn* column : columns) given_ += column->Whole(0, 0);
   }
 
   std::vector<uint32_t> Find() {
-    const Row best = Find({crossings_ == Crossings::kFewer ? kFewerCrossingSeconds : 0, 0});
+    const double least = crossings_ == Crossings::kFewer ? kFewerCrossingSeconds : 0;
+    const Row best = Find(least);
     if (MayBe(best.totals)) return best.choices;
-    std::optional<Row> dear = FindBy([](double price) { return Prices{price, price}; });
-    // Most files keep one of the two anyway.
-    const bool crosses = TooManyCrossings(best.totals);
-    const bool retracts = best.totals.retractions > given_.retractions;
-    if (crosses != retracts) {
-      const std::optional<Row> one = FindBy([crosses](double price) {
-        return Prices{crosses ? price : 0, crosses ? 0 : price};
-      });
-      if (one && (!dear || Score(one->totals, {}) < Score(dear->totals, {}))) dear = one;
-    }
+    const std::optional<Row> dear = FindDear(least);
     return dear ? dear->choices : std::vector<uint32_t>(columns_.size(), 0);
   }
 
  private:
-  bool TooManyCrossings(const PrintTotals& totals) const {
-    return crossings_ != Crossings::kAny && totals.crossings > given_.crossings;
+  bool MayBe(const PrintTotals& totals) const {
+    return crossings_ == Crossings::kAny || totals.crossings <= given_.crossings - fewer_;
   }
 
-  bool MayBe(const PrintTotals& totals) const { return !TooManyCrossings(totals); }
-
-  template <typename PricesAt>
-  std::optional<Row> FindBy(PricesAt prices_at) const {
-    const double least = crossings_ == Crossings::kFewer ? kFewerCrossingSeconds : 0;
-    const auto find = [&](double price) {
-      Prices prices = prices_at(price);
-      prices.crossing = std::max(prices.crossing, least);
-      return Find(prices);
-    };
-    double low = 0;
-    double high = kFirstPrice;
+  std::optional<Row> FindDear(double least) const {
+    double low = least;
+    double high = least + kFirstPrice;
     std::optional<Row> best;
     for (int i = 0; i < kDoublings && !best; ++i) {
-      Row row = find(high);
+      Row row = Find(high);
       if (MayBe(row.totals)) {
         best = std::move(row);
       } else {
@@ -85,18 +64,17 @@ class RowFinder {
     }
     for (int i = 0; i < kHalvings && best; ++i) {
       const double middle = (low + high) / 2;
-      Row row = find(middle);
+      Row row = Find(middle);
       const bool may_be = MayBe(row.totals);
       (may_be ? high : low) = middle;
-      if (may_be && Score(row.totals, {}) < Score(best->totals, {})) best = std::move(row);
+      if (may_be && Score(row.totals, 0) < Score(best->totals, 0)) best = std::move(row);
     }
     return best;
   }
 
-  static double Score(const PrintTotals& totals, const Prices& prices) {
+  static double Score(const PrintTotals& totals, double crossing_seconds) {
     return totals.seconds + kSecondsPerMm * totals.travel_mm +
-           prices.crossing * static_cast<double>(totals.crossings) +
-           prices.retraction * static_cast<double>(totals.retractions);
+           crossing_seconds * static_cast<double>(totals.crossings);
   }
 
   bool MayBe(const PrintTotals& given, const PrintTotals& chosen) const {
@@ -109,11 +87,11 @@ class RowFinder {
     return policy_ != Policy::kSafe || chosen.travel_mm <= given.travel_mm + kSlackMm;
   }
 
-  Row Find(const Prices& prices) const {
+  Row Find(double crossing_seconds) const {
     std::vector<std::vector<uint32_t>> from(columns_.size());
     std::vector<double> before = {0};
     for (size_t layer = 0; layer < columns_.size(); ++layer) {
-      before = Extend(layer, prices, before, from[layer]);
+      before = Extend(layer, crossing_seconds, before, from[layer]);
     }
     Row row;
     row.choices.resize(columns_.size());
@@ -128,8 +106,8 @@ class RowFinder {
   }
 
   // [choice] the score of the best row up to `layer`, and in `from` where it comes from.
-  std::vector<double> Extend(size_t layer, const Prices& prices, const std::vector<double>& before,
-                             std::vector<uint32_t>& from) const {
+  std::vector<double> Extend(size_t layer, double crossing_seconds,
+                             const std::vector<double>& before, std::vector<uint32_t>& from) const {
     const ChoiceColumn& column = *columns_[layer];
     const size_t n = column.inside.size();
     const PrintTotals given = column.Whole(0, 0);
@@ -142,7 +120,7 @@ class RowFinder {
       for (size_t b = 0; b < before.size(); ++b) {
         if (!column.no_way.empty() && column.no_way[b * n + c]) continue;
         const PrintTotals whole = column.Whole(b, c);
-        const double score = before[b] + Score(whole, prices);
+        const double score = before[b] + Score(whole, crossing_seconds);
         if (score >= scores[c] || !MayBe(given, whole)) continue;
         scores[c] = score;
         from[c] = static_cast<uint32_t>(b);
@@ -154,6 +132,7 @@ class RowFinder {
   const std::vector<const ChoiceColumn*>& columns_;
   const Policy policy_;
   const Crossings crossings_;
+  const int64_t fewer_;
   PrintTotals given_;
 };
 
@@ -166,8 +145,8 @@ PrintTotals ChoiceColumn::Whole(size_t before, size_t choice) const {
 }
 
 std::vector<uint32_t> BestRow(const std::vector<const ChoiceColumn*>& columns, Policy policy,
-                              Crossings crossings) {
-  return RowFinder(columns, policy, crossings).Find();
+                              Crossings crossings, int64_t fewer) {
+  return RowFinder(columns, policy, crossings, fewer).Find();
 }
 
 }  // namespace traverse::gcode

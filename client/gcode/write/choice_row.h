@@ -33,10 +33,10 @@ struct ChoiceColumn {
 // The row of choices with the least estimated time; under Crossings::kFewer a crossing counts as
 // time. Each layer, with the way to it, has no more and no longer open ways across visible walls
 // than in the file, and as much filament pushed beyond what was pulled back; under Policy::kSafe no
-// more travel. The whole file has no more retractions than it had, and no more ways across visible
-// walls but under Crossings::kAny. REQUIRES: not empty.
+// more travel. The whole file has at least `fewer` ways across visible walls fewer than it had, but
+// under Crossings::kAny; all as in the file if no row that was found has. REQUIRES: not empty.
 std::vector<uint32_t> BestRow(const std::vector<const ChoiceColumn*>& columns, Policy policy,
-                              Crossings crossings);
+                              Crossings crossings, int64_t fewer = 0);
 
 }  // namespace traverse::gcode
 

@@ -64,7 +64,7 @@ class LayerChooser::Impl {
   ChosenLayers Choose() {
     std::vector<const ChoiceColumn*> totals;
     for (const Column& column : columns_) totals.push_back(&column.totals);
-    const std::vector<uint32_t> row = BestRow(totals, policy_, crossings_);
+    const std::vector<uint32_t> row = BestRow(totals, policy_, crossings_, fewer_crossings_);
     for (size_t layer = 0; layer < columns_.size(); ++layer) columns_[layer].chosen = row[layer];
     ChosenLayers chosen = Write();
     DropTexts();
@@ -92,6 +92,8 @@ class LayerChooser::Impl {
     column.ruled_out = column.choices.size() > 1;
     return column.chosen != 0;
   }
+
+  void Tighten(int64_t crossings) { fewer_crossings_ += crossings; }
 
   bool IsGivenUp(size_t layer) const {
     return columns_[layer].chosen == 0 && columns_[layer].ruled_out;
@@ -282,6 +284,7 @@ class LayerChooser::Impl {
   const LinkDonors donors_;
   const std::vector<TravelModel> travel_;  // [layer]
   std::vector<Column> columns_;            // [layer]
+  int64_t fewer_crossings_ = 0;
 };
 
 LayerChooser::LayerChooser(const GcodeFile& file, const std::vector<FileOrder>& tries,
@@ -295,6 +298,8 @@ ChosenLayers LayerChooser::Choose() { return impl_->Choose(); }
 bool LayerChooser::RuleOut(size_t layer, bool way) { return impl_->RuleOut(layer, way); }
 
 bool LayerChooser::RuleOutAll(size_t layer) { return impl_->RuleOutAll(layer); }
+
+void LayerChooser::Tighten(int64_t crossings) { impl_->Tighten(crossings); }
 
 bool LayerChooser::IsGivenUp(size_t layer) const { return impl_->IsGivenUp(layer); }
 

@@ -70,6 +70,9 @@ class LayerChooser {
   // Of layer `layer` nothing but the order of the file is chosen from now on; false if it was.
   bool RuleOutAll(size_t layer);
 
+  // From now on the whole file has `crossings` ways across visible walls fewer than it may have.
+  void Tighten(int64_t crossings);
+
   // Something that was found for `layer` is ruled out, and the order of the file was chosen last.
   bool IsGivenUp(size_t layer) const;
 

@@ -263,9 +263,6 @@ TEST(VerifyRules, OpenWaysBeginWhereTheMoveAlongTheWallEnds) {
                         Line("Internal infill", "X12 Y15", "X18 Y15");
 
   EXPECT_EQ(Broken(a, b), "");
-  EXPECT_EQ(Broken(With(a, "G1 X10.4 Y10\n", "G1 X10.4 Y10 F6000\n"),
-                   With(b, "G1 X10.4 Y10\n", "G1 X10.4 Y10 F6000\n")),
-            "");
   // From beyond the wall it leads across it.
   EXPECT_EQ(
       Broken(a, With(b, "G1 X10.5 Y10.6 F9000\n", "G1 X10.5 Y9 F9000\nG1 X10.5 Y10.6 F9000\n")),

@@ -26,10 +26,10 @@ ChoiceColumn Column(const std::vector<PrintTotals>& inside, size_t choices_befor
 }
 
 std::vector<uint32_t> Best(const std::vector<ChoiceColumn>& columns, Policy policy,
-                           Crossings crossings = Crossings::kKeep) {
+                           Crossings crossings = Crossings::kKeep, int64_t fewer = 0) {
   std::vector<const ChoiceColumn*> pointers;
   for (const ChoiceColumn& column : columns) pointers.push_back(&column);
-  return BestRow(pointers, policy, crossings);
+  return BestRow(pointers, policy, crossings, fewer);
 }
 
 using Row = std::vector<uint32_t>;
@@ -44,6 +44,8 @@ TEST(BestRow, TheFileCrossesNoMoreWallsThoughALayerMay) {
   // What the second layer crosses less, the one of the others may that gains more.
   EXPECT_EQ(Best(columns, Policy::kSafe), Row({1, 1, 0}));
   EXPECT_EQ(Best(columns, Policy::kSafe, Crossings::kAny), Row({1, 1, 1}));
+  EXPECT_EQ(Best(columns, Policy::kSafe, Crossings::kKeep, 2), Row({0, 1, 0}));
+  EXPECT_EQ(Best(columns, Policy::kSafe, Crossings::kKeep, 3), Row({0, 0, 0}));
 }
 
 TEST(BestRow, UnderSafeNoLayerTravelsFurtherWithTheWayToIt) {
