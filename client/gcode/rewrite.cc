@@ -97,6 +97,7 @@ GcodeRewrite AsItIs(const GcodeFile& file, GcodeRewrite rewrite) {
   rewrite.after = rewrite.before;
   rewrite.first_after = rewrite.first_before;
   rewrite.layers_changed = 0;
+  rewrite.orders.assign(file.layers.size(), {});
   rewrite.text = file.text;
   return rewrite;
 }
@@ -162,6 +163,7 @@ class Rewriter {
           CheckGcode(file_.text, file_.name, rewrite.text, file_.name + " as optimised",
                      AllRules(options_.policy));
       if (report.ok()) {
+        rewrite.orders = std::move(chosen.orders);
         chosen = {};  // its texts are in there
         absl::StatusOr<GcodeRewrite> done = Finish(head, std::move(rewrite));
         if (!done.ok() || !CrossesMore(*done)) return done;

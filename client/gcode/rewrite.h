@@ -21,6 +21,7 @@ struct GcodeRewrite {
   gcode::PrintTotals after;
   gcode::PrintTotals first_before;  // of the first layer alone
   gcode::PrintTotals first_after;
+  gcode::FileOrder orders;  // [layer] as in `text`; empty for that of the old file
   int64_t layers = 0;
   int64_t layers_changed = 0;
 

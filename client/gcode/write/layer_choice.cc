@@ -268,6 +268,7 @@ class LayerChooser::Impl {
 
   void NoteTotals(size_t layer, ChosenLayers& chosen) const {
     const Column& column = columns_[layer];
+    chosen.orders.push_back(column.chosen == 0 ? LayerOrder() : Chosen(layer).order);
     const size_t before = layer > 0 ? columns_[layer - 1].chosen : 0;
     chosen.given.push_back(column.totals.Whole(0, 0));
     chosen.totals.push_back(column.totals.Whole(before, column.chosen));

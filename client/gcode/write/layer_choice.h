@@ -33,6 +33,7 @@ struct LayerText {
 // The layers of a file, each in the order chosen for it.
 struct ChosenLayers {
   std::vector<LayerText> texts;     // [layer]
+  FileOrder orders;                 // [layer], empty for that of the file
   PartStart behind;                 // the machine behind the last one
   std::vector<PrintTotals> given;   // [layer], with the way to it, in the file's order
   std::vector<PrintTotals> totals;  // [layer], as chosen

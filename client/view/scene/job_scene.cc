@@ -76,6 +76,16 @@ std::vector<double> LengthsOf(const GcodeFile& file, size_t layer) {
   return lengths;
 }
 
+// An order of layer `layer` of `file`, which is not empty.
+std::vector<DrawnVisit> VisitsOf(const GcodeFile& file, size_t layer,
+                                 const gcode::LayerOrder& order) {
+  std::vector<DrawnVisit> visits;
+  for (const gcode::Placement& placement : order) {
+    visits.push_back({placement.block - file.layers[layer].first_block, placement.entry, {}});
+  }
+  return visits;
+}
+
 // The name without its folders: what is shown may be passed on.
 std::string BaseName(const std::string& name) {
   return std::filesystem::path(name).filename().string();
@@ -142,20 +152,16 @@ absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
   after.layers = LayerFigures(*printed, job.first_layer, job.layers.size());
   scene.routes = {std::move(given), std::move(after)};
 
-  scene.layer = [&job, &runs, printed = std::move(printed)](size_t i) {
+  scene.layer = [&job, orders = rewrite.orders, printed = std::move(printed)](size_t i) {
     DrawnLayer layer;
     layer.paths = PathsOf(job, i);
     const size_t in_file = job.first_layer + i;
     const std::vector<DrawnVisit> sliced = InOrder(layer.paths.size());
-    // Each layer of the new file is in one of these orders.
-    std::vector<std::vector<DrawnVisit>> orders;
-    for (const report::JobRun& run : runs) {
-      orders.push_back(RouteOf(VisitReader(job.layers[i]), run.result.layers[i]).visits);
-    }
-    orders.push_back(sliced);
+    const std::vector<DrawnVisit> written =
+        orders[in_file].empty() ? sliced : VisitsOf(*job.gcode, in_file, orders[in_file]);
     const SlicedPaths paths = {layer.paths, LengthsOf(*job.gcode, in_file)};
-    layer.routes.push_back(PrintedRoute(*job.gcode, in_file, paths, {sliced}));
-    layer.routes.push_back(PrintedRoute(*printed, in_file, paths, orders));
+    layer.routes.push_back(PrintedRoute(*job.gcode, in_file, paths, sliced));
+    layer.routes.push_back(PrintedRoute(*printed, in_file, paths, written));
     DrawArcs(*job.gcode, in_file, layer);
     return layer;
   };

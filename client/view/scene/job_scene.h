@@ -27,7 +27,7 @@ Scene JobScene(const InputJob& job, const report::JobRun& given, const std::vect
 
 // G-code before and after: travel, retractions and time of both files, with the ways that the head
 // takes in each. `rewrite` is what RewriteGcode made of the job with the orders of `runs`, at least
-// one; job and runs outlive the scene. Errors are those of reading the new text.
+// one; the job outlives the scene. Errors are those of reading the new text.
 absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
                                  const std::vector<report::JobRun>& runs,
                                  const GcodeRewrite& rewrite);

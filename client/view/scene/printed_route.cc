@@ -1,6 +1,5 @@
 #include "client/view/scene/printed_route.h"
 
-#include <cassert>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -97,17 +96,10 @@ std::vector<DrawnVisit> InOrder(size_t paths) {
 }
 
 DrawnRoute PrintedRoute(const GcodeFile& printed, size_t layer, const SlicedPaths& sliced,
-                        const std::vector<std::vector<DrawnVisit>>& orders) {
-  assert(!orders.empty());
+                        const std::vector<DrawnVisit>& order) {
   DrawnRoute route;
   route.start = BlockWalk(printed, layer).Start();
-  route.visits = orders.front();
-  for (const std::vector<DrawnVisit>& order : orders) {
-    if (auto found = WithCorners(printed, layer, sliced, order)) {
-      route.visits = *std::move(found);
-      break;
-    }
-  }
+  route.visits = WithCorners(printed, layer, sliced, order).value_or(order);
   return route;
 }
 

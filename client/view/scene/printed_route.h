@@ -19,13 +19,12 @@ struct SlicedPaths {
 // Each path of a layer in its own order, begun where it is given.
 std::vector<DrawnVisit> InOrder(size_t paths);
 
-// The route through layer `layer` of `printed`, with the corners of its travel. `orders` are the
-// orders in which `printed` may have the paths; the first that fits is taken. Read again, a path
-// may be two blocks (a loop from another start, across the gap between its ends), and two paths
-// without a move between them one. Where no order fits, that is the first one with straight moves.
-// REQUIRES: at least one order.
+// The route through layer `layer` of `printed`, which has the paths in `order`, with the corners of
+// its travel. Read again, a path may be two blocks (a loop from another start, across the gap
+// between its ends), and two paths without a move between them one. Where the blocks do not fit the
+// order, its moves are straight.
 DrawnRoute PrintedRoute(const GcodeFile& printed, size_t layer, const SlicedPaths& sliced,
-                        const std::vector<std::vector<DrawnVisit>>& orders);
+                        const std::vector<DrawnVisit>& order);
 
 }  // namespace traverse::view
 
