@@ -322,7 +322,7 @@ class Gaps : public ::testing::TestWithParam<std::string> {
 
 TEST_P(Gaps, AreShort) { Run(0.01, 0.05, kMostGap, kMostGap); }
 
-// Registered with CTest by itself, as slow. What is done at one go on a million paths, such as
+// Takes minutes: run by hand. What is done at one go on a million paths, such as
 // freeing them, takes longer.
 TEST_P(Gaps, DISABLED_AreShortInTheLargestLayers) { Run(1, 2, kMostLargeGap, kMostLargeEnd); }
 

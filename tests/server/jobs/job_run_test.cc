@@ -411,11 +411,11 @@ TEST(JobRunRaces, AbortAtAnyTimeEndsOnce) {
     FakePort port;
     WorkerPool pool(2);
     const auto queue = pool.NewQueue("test");
+    ASSERT_TRUE(port.run().Hold());
     std::thread aborter([&port, round] {
       std::this_thread::sleep_for(std::chrono::microseconds(round * 20));
       port.run().Abort(absl::CancelledError("now"));
     });
-    ASSERT_TRUE(port.run().Hold());
     port.run().Start({.window = {.layers = 4, .points = 100}, .build_order = round % 2 == 0}, {},
                      Slow(0), *queue);
     for (uint64_t i = 0; i < 50; ++i) {

@@ -31,6 +31,8 @@ report::JobRun RunOf(const InputJob& job, const std::string& strategy) {
   v1::JobOptions options = job.options;
   options.clear_strategy();
   options.mutable_strategy()->set_name(strategy);
+  // Any routes do; among many walls the best ones take minutes.
+  options.mutable_layer_time_limit()->set_nanos(50'000'000);
   const auto service = EmbeddedService::Start(2);
   EXPECT_TRUE(service.ok());
   report::JobRun run;
