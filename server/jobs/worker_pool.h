@@ -83,8 +83,8 @@ class WorkerPool {
   static constexpr int64_t kLargePoints = 20'000;
   static constexpr int64_t kMostPoints = 4'000'000;
 
-  // What a search holds for each point, in bytes, beside the layer: measured with contours of one
-  // point, of which each is a path, in the strategy that needs most.
+  // What a search may hold for each point, in bytes, beside the layer: an estimate on the safe side
+  // for contours of one point, of which each is a path.
   static constexpr int64_t kBytesOfPoint = 1500;
 
   // `permits` tasks work at a time, at least one. `clock` says what they are charged. The threads
