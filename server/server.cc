@@ -69,6 +69,9 @@ void SetConnectionLimits(const ConnectionLimits& limits, grpc::ServerBuilder& bu
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, Milliseconds(limits.keepalive_timeout));
   // A caller may wait for long for a layer; without this the pings stop after two.
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
+  // A call sends no more than the first window before it hears that it is refused; the rest of a
+  // message that is wanted has room at once.
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_BDP_PROBE, 0);
   if (limits.max_age != absl::InfiniteDuration()) {
     builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_MS, Milliseconds(limits.max_age));
   }
@@ -143,7 +146,8 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   }
   if (absl::Status status = server->Build(options); !status.ok()) return status;
   if (!options.tls.enabled() && options.service.auth.token_file.empty()) return server;
-  server->look_.emplace(kLookEvery, [core = &server->core_] { core->files.Reload(/*anyway=*/false); });
+  server->look_.emplace(kLookEvery,
+                        [core = &server->core_] { core->files.Reload(/*anyway=*/false); });
   return server;
 }
 

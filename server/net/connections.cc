@@ -27,10 +27,10 @@ constexpr uint64_t kMuchBytes = 1 << 20;
 constexpr double kHalfLifeSeconds = 30;
 
 // What a message takes beside its bytes (headers, frames, TLS), and what a call may send before it
-// hears that it is refused: the first window of its stream.
+// hears that it is refused: the first window of its stream, which the server keeps from growing.
 constexpr double kFraming = 1.01;
 constexpr double kMessageOverhead = 1024;
-constexpr double kFirstWindow = 66'000;
+constexpr double kFirstWindow = 68'000;
 
 // What a message is taken to have beside its bytes, but has not, is no licence to send later.
 constexpr double kMostCredit = -(256 << 10);
@@ -219,8 +219,8 @@ void Connections::Restrain(const std::string& peer) {
 void Connections::OnCall(const std::string& peer) {
   MutexLock lock(mutex_);
   const auto found = table_.find(PeerKey(peer));
-  if (found == table_.end() || found->second.pending <= 0) return;
-  found->second.pending = std::max(0.0, found->second.pending - kFirstWindow);
+  // Below zero by what Look has not seen yet: it will.
+  if (found != table_.end()) found->second.pending -= kFirstWindow;
 }
 
 void Connections::OnJob(const std::string& peer, int change) {
@@ -233,7 +233,6 @@ void Connections::OnMessage(const std::string& peer, int64_t bytes) {
   MutexLock lock(mutex_);
   const auto found = table_.find(PeerKey(peer));
   if (found == table_.end()) return;
-  // Not below zero by what Look has not seen yet: it will.
   found->second.pending -= static_cast<double>(bytes) * kFraming + kMessageOverhead;
 }
 

@@ -280,6 +280,31 @@ class OpenStream {
   std::unique_ptr<grpc::ClientReaderWriter<v1::OptimizeRequest, v1::OptimizeResponse>> stream_;
 };
 
+// Large messages grow the windows of a connection; what comes through them before a refusal must
+// not look like a flood.
+TEST(Overload, ManyRefusalsOfLargeJobsDoNotCutTheConnection) {
+  TestService service([](ServerOptions& options) {
+    options.listen = "127.0.0.1:0";
+    options.service.admission.max_jobs = 1;
+  });
+  v1::OptimizeBatchRequest large = MakeBatch(0);
+  for (int i = 0; i < 40; ++i) {
+    *large.add_layers() = MakeLayer(static_cast<uint64_t>(i + 1), 20, 200);
+  }
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(service.Batch(large).status.ok());
+  // The job that keeps others out is another caller's: the connection of the refused has none.
+  absl::StatusOr<std::unique_ptr<Admission::Ticket>> other =
+      service.server().core().admission.Admit("other", 1);
+  ASSERT_TRUE(other.ok());
+
+  for (int i = 0; i < 50; ++i) {
+    const grpc::Status status = service.Batch(large).status;
+    ASSERT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << status.error_message();
+  }
+
+  EXPECT_THAT(service.server().core().MetricsText(), HasSubstr("traverse_connections_cut_total 0"));
+}
+
 TEST(Overload, JobsBeyondTheLimitAreRefusedWithAdviceWhenToRetry) {
   TestService service([](ServerOptions& options) { options.service.admission.max_jobs = 2; });
   OpenStream first(service);

@@ -136,6 +136,33 @@ TEST(ConnectionsTest, WhatIsDeliveredIsNotHeldAgainstACaller) {
   EXPECT_FALSE(caller.IsCut());
 }
 
+TEST(ConnectionsTest, WhatCallsSentBeforeTheyWereRefusedIsNotHeldAgainstTheirCaller) {
+  Port port({.stranger_bytes = 1 << 20});
+  const Caller caller(port.connections().port());
+  ASSERT_TRUE(Eventually([&] { return port.connections().open() == 1; }));
+
+  for (int round = 0; round < 5; ++round) {
+    // A call is told of at its headers; its bytes are counted when the table is looked at.
+    for (int i = 0; i < 20; ++i) port.connections().OnCall(caller.peer());
+    caller.Send(20 * 65'535);
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+  }
+
+  EXPECT_FALSE(caller.IsCut());
+}
+
+TEST(ConnectionsTest, CallsThatSendNothingAreNoLicenceToSendMuchLater) {
+  Port port({.stranger_bytes = 1 << 20});
+  const Caller caller(port.connections().port());
+  ASSERT_TRUE(Eventually([&] { return port.connections().open() == 1; }));
+
+  for (int i = 0; i < 1000; ++i) port.connections().OnCall(caller.peer());
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  caller.Send(2 << 20);
+
+  EXPECT_TRUE(Eventually([&] { return caller.IsCut(); }));
+}
+
 TEST(ConnectionsTest, AJobWhoseMessageIsTooLongIsEndedFirst) {
   Port port({.stranger_bytes = 1 << 20, .job_bytes = 2 << 20});
   port.MayEndJobs();
