@@ -224,13 +224,23 @@ absl::StatusOr<UpstreamAnswer> PutFile(const Printer& printer, const std::string
   return call.Run(printer);
 }
 
+// Whether the print that `upload` asks for has begun. A Moonraker says so, and takes files while
+// its printer is away or busy; a PrusaLink does not say.
+bool PrintBegan(const PrinterUpload& upload, const UpstreamAnswer& answer) {
+  const Json said = Json::parse(answer.body, nullptr, false);
+  if (!said.is_object()) return upload.print;
+  const auto started = said.find("print_started");
+  return upload.print && (started == said.end() || (started->is_boolean() && started->get<bool>()));
+}
+
 // What OctoPrint answers to an upload.
 void SayAsOctoPrint(const PrinterUpload& upload, UpstreamAnswer& answer) {
   const std::string folder = FolderOf(upload);
   const std::string path = folder.empty() ? upload.name : absl::StrCat(folder, "/", upload.name);
   const Json file = {{"name", upload.name}, {"path", path}, {"origin", upload.storage}};
-  const Json json = {
-      {"files", {{upload.storage, file}}}, {"done", true}, {"effectivePrint", upload.print}};
+  const Json json = {{"files", {{upload.storage, file}}},
+                     {"done", true},
+                     {"effectivePrint", PrintBegan(upload, answer)}};
   answer.status = 201;
   answer.content_type = "application/json";
   answer.body = json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";

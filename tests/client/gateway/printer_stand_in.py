@@ -20,13 +20,14 @@ def parts_of(body, content_type):
 
 class PrinterStandIn:
     """One server on a port of its own. `uploads` has what came, `keys` what each request showed; `fail` and `delay` make it
-    answer badly or late."""
+    answer badly or late; while it is `away` a Moonraker takes files and prints nothing."""
 
     def __init__(self, key="secret"):
         self.uploads = []
         self.keys = []
         self.fail = 0
         self.delay = 0
+        self.away = False
         stand_in = self
 
         class Handler(http.server.BaseHTTPRequestHandler):
@@ -83,7 +84,8 @@ class PrinterStandIn:
                 fields = {key: value[1].decode() for key, value in parts.items()}
                 stand_in.uploads.append((self.path, name, content, fields))
                 if self.path == "/server/files/upload":
-                    self.answer(201, {"item": {"path": name, "root": "gcodes"}, "print_started": False})
+                    self.answer(201, {"item": {"path": name, "root": "gcodes"},
+                                      "print_started": fields.get("print") == "true" and not stand_in.away})
                 elif self.path in ("/api/files/local", "/api/files/sdcard"):
                     self.answer(201, {"files": {"local": {"name": name, "origin": "local"}}, "done": True})
                 else:
