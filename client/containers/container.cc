@@ -21,6 +21,7 @@ class PlainText : public Container {
   ContainerKind kind() const override { return ContainerKind::kText; }
   const std::vector<GcodePart>& parts() const override { return parts_; }
   absl::StatusOr<std::string> Text(size_t) const override { return text_; }
+  absl::StatusOr<size_t> TextBytes() const override { return text_.size(); }
   absl::StatusOr<std::string> WithParts(const std::map<size_t, NewPart>& parts) const override {
     return parts.empty() ? text_ : parts.begin()->second.text;
   }

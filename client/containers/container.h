@@ -80,6 +80,10 @@ class Container {
   // The text of parts()[index], whole. Errors name the container and the place in it.
   virtual absl::StatusOr<std::string> Text(size_t index) const = 0;
 
+  // How long all texts are together, at least as long as Text() lets them be, for who has to know
+  // before they are unpacked. ResourceExhausted as of Text().
+  virtual absl::StatusOr<size_t> TextBytes() const = 0;
+
   // The container with other texts, by index; those not named stay. Reading what comes back gives
   // these texts, up to spaces that mean nothing; that is checked.
   virtual absl::StatusOr<std::string> WithParts(const std::map<size_t, NewPart>& parts) const = 0;

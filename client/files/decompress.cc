@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_format.h"
@@ -18,90 +19,121 @@ constexpr size_t kFirstBuffer = size_t{1} << 16;
 // Window, dictionary and so on of an xz stream; `xz -9` needs 65 MiB.
 constexpr uint64_t kXzMemoryLimit = uint64_t{512} << 20;
 
-absl::Status TooLong(size_t max_bytes) {
-  return absl::ResourceExhaustedError(
-      absl::StrFormat("more than %d MiB when decompressed", max_bytes >> 20));
-}
+// What comes out: kept, or counted alone.
+class Output {
+ public:
+  static constexpr size_t kFirst = 16;
 
-// Makes room for more output: twice as much, within the limit by one byte, which tells a result of
-// exactly `max_bytes` from a longer one.
-void Grow(std::string& out, size_t max_bytes) {
-  out.resize(std::min(std::max(out.size() * 2, kFirstBuffer), max_bytes + 1));
-}
+  // Keeps it in `kept` unless that is null.
+  Output(std::string* kept, size_t max_bytes) : kept_(kept), max_bytes_(max_bytes) {}
 
-absl::StatusOr<std::string> Gunzip(std::string_view bytes, size_t max_bytes) {
+  size_t size() const { return size_; }
+  bool too_long() const { return size_ > max_bytes_; }
+
+  // Where the next bytes go. What is kept grows twofold, within the limit by one byte, which tells
+  // a result of exactly that length from a longer one.
+  std::span<char> Room() {
+    if (kept_ == nullptr) {
+      if (scratch_.empty()) scratch_.resize(kFirstBuffer);
+      return scratch_;
+    }
+    if (size_ == kept_->size()) {
+      kept_->resize(std::min(std::max(kept_->size() * 2, kFirstBuffer), max_bytes_ + 1));
+    }
+    return {kept_->data() + size_, kept_->size() - size_};
+  }
+
+  // So many bytes of the room are taken.
+  void Add(size_t bytes) {
+    if (kept_ == nullptr) first_.append(scratch_, 0, std::min(bytes, kFirst - first_.size()));
+    size_ += bytes;
+  }
+
+  // The first bytes of what is not kept.
+  const std::string& first() const { return first_; }
+
+  void Trim() {
+    if (kept_ != nullptr) kept_->resize(size_);
+  }
+
+ private:
+  std::string* kept_;
+  std::string scratch_;
+  std::string first_;
+  const size_t max_bytes_;
+  size_t size_ = 0;
+};
+
+absl::Status Gunzip(std::string_view bytes, Output& out) {
   z_stream stream{};
   if (inflateInit2(&stream, 16 + MAX_WBITS) != Z_OK) {
     return absl::ResourceExhaustedError("no memory to decompress");
   }
-  std::string out;
-  size_t used = 0;
   size_t consumed = 0;
   int code = Z_OK;
-  while (true) {
-    if (used == out.size()) {
-      if (used > max_bytes) break;
-      Grow(out, max_bytes);
-    }
+  while (!out.too_long()) {
     // zlib counts in unsigned int: both sides go in pieces.
     constexpr size_t kPiece = std::numeric_limits<int>::max();
+    const std::span<char> room = out.Room();
     const size_t in = std::min(bytes.size() - consumed, kPiece);
-    const size_t room = std::min(out.size() - used, kPiece);
+    const size_t space = std::min(room.size(), kPiece);
     // zlib's interface predates const; it does not write here.
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + consumed));
     stream.avail_in = static_cast<uInt>(in);
-    stream.next_out = reinterpret_cast<Bytef*>(out.data() + used);
-    stream.avail_out = static_cast<uInt>(room);
+    stream.next_out = reinterpret_cast<Bytef*>(room.data());
+    stream.avail_out = static_cast<uInt>(space);
     code = inflate(&stream, Z_NO_FLUSH);
     consumed += in - stream.avail_in;
-    used += room - stream.avail_out;
+    out.Add(space - stream.avail_out);
     if (code == Z_STREAM_END) {
       // Another member may follow; anything else after the last one is padding.
       if (DetectCompression(bytes.substr(consumed)) != Compression::kGzip) break;
       inflateReset(&stream);
-    } else if (code != Z_OK && !(code == Z_BUF_ERROR && used == out.size())) {
+    } else if (code != Z_OK && !(code == Z_BUF_ERROR && stream.avail_out == 0)) {
       break;
     }
   }
   inflateEnd(&stream);
 
-  if (used > max_bytes) return TooLong(max_bytes);
+  if (out.too_long()) return absl::OkStatus();  // as the caller sees
   if (code == Z_BUF_ERROR) return absl::InvalidArgumentError("gzip data end too early");
   if (code != Z_STREAM_END) return absl::InvalidArgumentError("gzip data are damaged");
-  out.resize(used);
-  return out;
+  return absl::OkStatus();
 }
 
-absl::StatusOr<std::string> Unxz(std::string_view bytes, size_t max_bytes) {
+absl::Status Unxz(std::string_view bytes, Output& out) {
   lzma_stream stream = LZMA_STREAM_INIT;
   if (lzma_stream_decoder(&stream, kXzMemoryLimit, LZMA_CONCATENATED) != LZMA_OK) {
     return absl::ResourceExhaustedError("no memory to decompress");
   }
-  std::string out;
   stream.next_in = reinterpret_cast<const uint8_t*>(bytes.data());
   stream.avail_in = bytes.size();
-  size_t used = 0;
   lzma_ret code = LZMA_OK;
-  while (code == LZMA_OK) {
-    if (used == out.size()) {
-      if (used > max_bytes) break;
-      Grow(out, max_bytes);
-    }
-    stream.next_out = reinterpret_cast<uint8_t*>(out.data() + used);
-    stream.avail_out = out.size() - used;
+  while (code == LZMA_OK && !out.too_long()) {
+    const std::span<char> room = out.Room();
+    stream.next_out = reinterpret_cast<uint8_t*>(room.data());
+    stream.avail_out = room.size();
     code = lzma_code(&stream, LZMA_FINISH);
-    used = out.size() - stream.avail_out;
+    out.Add(room.size() - stream.avail_out);
   }
   lzma_end(&stream);
 
-  if (used > max_bytes) return TooLong(max_bytes);
+  if (out.too_long()) return absl::OkStatus();  // as the caller sees
   if (code == LZMA_MEMLIMIT_ERROR || code == LZMA_MEM_ERROR) {
     return absl::ResourceExhaustedError("xz data need too much memory");
   }
   if (code == LZMA_BUF_ERROR) return absl::InvalidArgumentError("xz data end too early");
   if (code != LZMA_STREAM_END) return absl::InvalidArgumentError("xz data are damaged");
-  out.resize(used);
-  return out;
+  return absl::OkStatus();
+}
+
+absl::Status DecompressTo(std::string_view bytes, Compression compression, size_t max_bytes,
+                          Output& out) {
+  const absl::Status status =
+      compression == Compression::kGzip ? Gunzip(bytes, out) : Unxz(bytes, out);
+  if (!out.too_long()) return status;
+  return absl::ResourceExhaustedError(
+      absl::StrFormat("more than %d MiB when decompressed", max_bytes >> 20));
 }
 
 }  // namespace
@@ -117,15 +149,24 @@ Compression DetectCompression(std::string_view bytes) {
 
 absl::StatusOr<std::string> Decompress(std::string_view bytes, Compression compression,
                                        size_t max_bytes) {
-  switch (compression) {
-    case Compression::kGzip:
-      return Gunzip(bytes, max_bytes);
-    case Compression::kXz:
-      return Unxz(bytes, max_bytes);
-    case Compression::kNone:
-      break;
+  if (compression == Compression::kNone) return std::string(bytes);
+  std::string kept;
+  Output out(&kept, max_bytes);
+  const absl::Status status = DecompressTo(bytes, compression, max_bytes, out);
+  if (!status.ok()) return status;
+  out.Trim();
+  return kept;
+}
+
+absl::StatusOr<DecompressedSize> MeasureDecompressed(std::string_view bytes,
+                                                     Compression compression, size_t max_bytes) {
+  if (compression == Compression::kNone) {
+    return DecompressedSize{bytes.size(), std::string(bytes.substr(0, Output::kFirst))};
   }
-  return std::string(bytes);
+  Output out(nullptr, max_bytes);
+  const absl::Status status = DecompressTo(bytes, compression, max_bytes, out);
+  if (!status.ok()) return status;
+  return DecompressedSize{out.size(), out.first()};
 }
 
 }  // namespace traverse

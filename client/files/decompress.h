@@ -22,6 +22,14 @@ Compression DetectCompression(std::string_view bytes);
 absl::StatusOr<std::string> Decompress(std::string_view bytes, Compression compression,
                                        size_t max_bytes);
 
+// The same without keeping it.
+struct DecompressedSize {
+  size_t bytes = 0;
+  std::string first;  // the first 16 of them
+};
+absl::StatusOr<DecompressedSize> MeasureDecompressed(std::string_view bytes,
+                                                     Compression compression, size_t max_bytes);
+
 }  // namespace traverse
 
 #endif  // TRAVERSE_CLIENT_FILES_DECOMPRESS_H_

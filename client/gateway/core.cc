@@ -1,6 +1,10 @@
 #include "client/gateway/core.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "absl/strings/str_format.h"
+#include "client/gateway/work/file_memory.h"
 
 namespace traverse::gateway {
 
@@ -22,6 +26,41 @@ absl::StatusOr<std::unique_ptr<Core>> Core::Make(const CoreOptions& options,
   core->worker = std::make_unique<FileWorker>(*core->client, *core->spool, options.max_file_bytes);
   core->queue = std::make_unique<WorkQueue>(options.work);
   return core;
+}
+
+namespace {
+
+absl::StatusOr<int64_t> MemoryForAll(const std::vector<std::shared_ptr<const SpoolFile>>& files,
+                                     uint64_t max_file_bytes, int64_t max_memory_bytes) {
+  int64_t sum = 0;
+  for (const auto& file : files) {
+    const absl::StatusOr<int64_t> bytes = MemoryFor(*file, max_file_bytes);
+    if (!bytes.ok()) return bytes;
+    sum += *bytes;
+  }
+  if (sum <= max_memory_bytes) return sum;
+  return absl::OutOfRangeError(
+      absl::StrFormat("the work on it may take %d MiB of memory, and this gateway has %d",
+                      sum >> 20, max_memory_bytes >> 20));
+}
+
+}  // namespace
+
+void Core::Submit(std::shared_ptr<WorkQueue::Place> place,
+                  std::vector<std::shared_ptr<const SpoolFile>> files, Task work) {
+  const bool packed =
+      std::any_of(files.begin(), files.end(), [](const auto& file) { return IsPacked(*file); });
+  auto submit = [this, place, files, work = std::move(work)] {
+    const absl::StatusOr<int64_t> memory =
+        MemoryForAll(files, options.max_file_bytes, queue->max_memory_bytes());
+    if (!memory.ok()) return work(memory.status());
+    queue->Submit(place, *memory, [work] { work(absl::OkStatus()); });
+  };
+  if (!packed) return submit();
+  // Going through packed files is work as well, and those who call have no time for it.
+  int64_t to_measure = 0;
+  for (const auto& file : files) to_measure += MemoryToMeasure(*file);
+  queue->Submit(place, std::min(to_measure, queue->max_memory_bytes()), std::move(submit));
 }
 
 std::string Core::MetricsText() {

@@ -4,6 +4,7 @@
 #ifndef TRAVERSE_CLIENT_GATEWAY_CORE_H_
 #define TRAVERSE_CLIENT_GATEWAY_CORE_H_
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -40,6 +41,13 @@ struct Core {
   static absl::StatusOr<std::unique_ptr<Core>> Make(const CoreOptions& options,
                                                     std::shared_ptr<grpc::Channel> channel,
                                                     std::string token);
+
+  // Calls `work` when there is a worker, and the memory that work on `files` may take; or, with why,
+  // where they need more than there is at all (OutOfRange) or cannot be read. `place` and the files
+  // live until then.
+  using Task = std::function<void(const absl::Status&)>;
+  void Submit(std::shared_ptr<WorkQueue::Place> place,
+              std::vector<std::shared_ptr<const SpoolFile>> files, Task work);
 
   // The text of /metrics.
   std::string MetricsText();

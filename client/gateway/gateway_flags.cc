@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/files/read_file.h"
 #include "server/ops/flag_reader.h"
+#include "server/ops/memory.h"
 #include "server/server.h"
 
 ABSL_FLAG(std::string, listen_http, "127.0.0.1:8080", "HOST:PORT of HTTP; port 0: a free one");
@@ -34,9 +35,9 @@ ABSL_FLAG(int32_t, workers, 0, "Files worked on at a time; 0: one for each core,
 ABSL_FLAG(int32_t, max_requests, 256, "Files under way at a time, those that wait included");
 ABSL_FLAG(int32_t, max_requests_per_caller, 64, "The same of one caller");
 ABSL_FLAG(int64_t, max_file_bytes, int64_t{256} << 20, "Longest file, unpacked");
-ABSL_FLAG(
-    int64_t, max_memory, int64_t{1} << 30,
-    "Bytes of memory for the files that are worked on; a file takes about twelve times its length");
+ABSL_FLAG(int64_t, max_memory, 0,
+          "Bytes of memory for the files that are worked on, twelve for each of a file; 0: three "
+          "quarters of what the container, or else the machine, has");
 ABSL_FLAG(std::string, spool_dir, "",
           "Folder for uploads and answers; empty: that of temporary files. No file there outlives "
           "the process");
@@ -49,6 +50,8 @@ ABSL_FLAG(absl::Duration, upload_deadline, absl::Seconds(60),
 ABSL_FLAG(absl::Duration, upstream_idle_timeout, absl::Seconds(60),
           "A printer's server is given up that neither takes nor sends anything for so long");
 ABSL_FLAG(int32_t, max_connections, 512, "Connections of HTTP at a time");
+ABSL_FLAG(int32_t, max_connections_per_address, 384,
+          "The same from one address; behind a proxy all are from one");
 ABSL_FLAG(int32_t, max_header_bytes, 16384, "Longest head of a request");
 ABSL_FLAG(absl::Duration, header_timeout, absl::Seconds(20),
           "Time for the head of a request, the wait for it included");
@@ -98,9 +101,10 @@ absl::Status CheckRanges() {
       {"max_requests", absl::GetFlag(FLAGS_max_requests), 1},
       {"max_requests_per_caller", absl::GetFlag(FLAGS_max_requests_per_caller), 1},
       {"max_file_bytes", absl::GetFlag(FLAGS_max_file_bytes), 1},
-      {"max_memory", absl::GetFlag(FLAGS_max_memory), int64_t{1} << 20},
+      {"max_memory", absl::GetFlag(FLAGS_max_memory), 0},
       {"max_spool_bytes", absl::GetFlag(FLAGS_max_spool_bytes), 1},
       {"max_connections", absl::GetFlag(FLAGS_max_connections), 1},
+      {"max_connections_per_address", absl::GetFlag(FLAGS_max_connections_per_address), 1},
       {"max_header_bytes", absl::GetFlag(FLAGS_max_header_bytes), 1024},
       {"min_upload_rate", absl::GetFlag(FLAGS_min_upload_rate), 1},
   });
@@ -159,6 +163,11 @@ std::string SpoolFolder() {
   return error ? "/tmp" : folder.string();
 }
 
+int64_t MaxMemory() {
+  const int64_t given = absl::GetFlag(FLAGS_max_memory);
+  return given > 0 ? given : MemoryLimit() / 4 * 3;
+}
+
 }  // namespace
 
 absl::StatusOr<std::string> ReadFlags(const std::vector<std::string>& arguments) {
@@ -179,6 +188,7 @@ absl::StatusOr<GatewayOptions> OptionsFromFlags() {
   options.tls = {absl::GetFlag(FLAGS_tls_certificate), absl::GetFlag(FLAGS_tls_key),
                  absl::GetFlag(FLAGS_tls_client_ca)};
   options.http = {.max_connections = absl::GetFlag(FLAGS_max_connections),
+                  .max_connections_per_address = absl::GetFlag(FLAGS_max_connections_per_address),
                   .max_head_bytes = static_cast<uint32_t>(absl::GetFlag(FLAGS_max_header_bytes)),
                   .head_time = absl::GetFlag(FLAGS_header_timeout),
                   .idle_time = absl::GetFlag(FLAGS_idle_timeout),
@@ -192,7 +202,7 @@ absl::StatusOr<GatewayOptions> OptionsFromFlags() {
   core.work = {.workers = workers > 0 ? workers : std::max(2, UsableCores()),
                .max_requests = absl::GetFlag(FLAGS_max_requests),
                .max_requests_per_caller = absl::GetFlag(FLAGS_max_requests_per_caller),
-               .max_memory_bytes = absl::GetFlag(FLAGS_max_memory)};
+               .max_memory_bytes = MaxMemory()};
   core.auth.token_file = absl::GetFlag(FLAGS_token_file);
   core.allowed_hosts = absl::GetFlag(FLAGS_allowed_hosts);
   core.auth.allowed_names = absl::GetFlag(FLAGS_allowed_clients);

@@ -113,6 +113,13 @@ class BgcodeContainer : public Container {
     return body;
   }
 
+  absl::StatusOr<size_t> TextBytes() const override {
+    const absl::StatusOr<size_t> body =
+        GcodeTextBytes(file_, MaxTextBytes(bytes_.size(), options_.max_text_bytes));
+    if (!body.ok()) return Fault(body.status());
+    return head_.size() + *body + 1 + tail_.size();
+  }
+
   absl::StatusOr<std::string> WithParts(const std::map<size_t, NewPart>& parts) const override;
   std::vector<std::pair<std::string, std::string>> Facts() const override;
 

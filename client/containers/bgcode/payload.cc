@@ -68,6 +68,12 @@ absl::Status AppendBlockOf(std::string_view text, const GcodeForm& form, std::st
   return absl::OkStatus();
 }
 
+absl::Status TooLong(const BgcodeBlocks& file, size_t index, size_t bytes, size_t max_bytes) {
+  return absl::ResourceExhaustedError(
+      absl::StrFormat("%s: the G-code up to here would be %d MiB, and %d are allowed",
+                      BlockPlace(file, index), bytes >> 20, max_bytes >> 20));
+}
+
 // Makes pieces 0 to n - 1, a batch at a time, and appends them in their order.
 template <typename Make>
 absl::Status AppendInBatches(size_t n, int threads, std::string& out, Make make) {
@@ -119,11 +125,7 @@ absl::StatusOr<std::string> GcodeText(const BgcodeBlocks& file, size_t max_bytes
     if (!file.blocks[i].is_gcode()) continue;
     indices.push_back(i);
     announced += file.blocks[i].size;
-    if (announced > max_bytes) {
-      return absl::ResourceExhaustedError(
-          absl::StrFormat("%s: the G-code up to here would be %d MiB, and %d are allowed",
-                          BlockPlace(file, i), announced >> 20, max_bytes >> 20));
-    }
+    if (announced > max_bytes) return TooLong(file, i, announced, max_bytes);
   }
   std::string out;
   constexpr size_t kUnpacked = 2;  // MeatPack halves a text
@@ -142,6 +144,21 @@ absl::StatusOr<std::string> GcodeText(const BgcodeBlocks& file, size_t max_bytes
         absl::StrFormat("more than %d MiB of G-code", max_bytes >> 20));
   }
   return out;
+}
+
+absl::StatusOr<size_t> GcodeTextBytes(const BgcodeBlocks& file, size_t max_bytes) {
+  size_t sum = 0;
+  std::string text;
+  for (size_t i = 0; i < file.blocks.size(); ++i) {
+    const Block& block = file.blocks[i];
+    if (!block.is_gcode()) continue;
+    text.clear();
+    const bool packed = static_cast<GcodeEncoding>(block.parameters[0]) != GcodeEncoding::kNone;
+    const bool unpacked = packed && AppendBlockText(block, max_bytes, text).ok();
+    sum += unpacked ? text.size() : block.size;
+    if (sum > max_bytes) return TooLong(file, i, sum, max_bytes);
+  }
+  return sum;
 }
 
 absl::Status AppendGcodeBlocks(std::string_view text, const GcodeForm& form, int threads,

@@ -33,6 +33,10 @@ absl::StatusOr<std::string> CompressBytes(std::string_view bytes, BlockCompressi
 // ResourceExhausted if the text is longer than `max_bytes`.
 absl::StatusOr<std::string> GcodeText(const BgcodeBlocks& file, size_t max_bytes, int threads);
 
+// How long that text is. Blocks in MeatPack are unpacked for it, one at a time; damaged ones count
+// as what they announce.
+absl::StatusOr<size_t> GcodeTextBytes(const BgcodeBlocks& file, size_t max_bytes);
+
 // Appends `text` as G-code blocks of whole lines, made on up to `threads` threads. A block with a
 // byte that MeatPack lacks is not encoded.
 absl::Status AppendGcodeBlocks(std::string_view text, const GcodeForm& form, int threads,

@@ -74,6 +74,12 @@ class GcodeZip : public Container {
     return text;
   }
 
+  absl::StatusOr<size_t> TextBytes() const override {
+    size_t sum = 0;
+    for (const size_t i : entries_) sum += archive_.entries[i].size;
+    return sum;
+  }
+
   absl::StatusOr<std::string> WithParts(const std::map<size_t, NewPart>& parts) const override;
   std::vector<std::pair<std::string, std::string>> Facts() const override;
 

@@ -139,9 +139,10 @@ void BeginEvents(HttpReply& reply) {
   reply.Write(Event("progress", MessageJson(queued)));
 }
 
-void RunRewrite(Core& core, const FileRequest& request, const FileRecord& record, AnswerKind kind,
-                const std::shared_ptr<SpoolFile>& upload, HttpReply& reply,
-                const std::stop_token& cancel) {
+// `may`: as of Core::Submit.
+void RunRewrite(Core& core, const absl::Status& may, const FileRequest& request,
+                const FileRecord& record, AnswerKind kind, const SpoolFile& upload,
+                HttpReply& reply, const std::stop_token& cancel) {
   const absl::Time began = absl::Now();
   ProgressSink progress;
   if (kind == AnswerKind::kEvents) {
@@ -149,7 +150,8 @@ void RunRewrite(Core& core, const FileRequest& request, const FileRecord& record
       reply.Write(Event("progress", MessageJson(now)), /*optional=*/true);
     };
   }
-  absl::StatusOr<RewrittenFile> made = core.worker->Rewrite(*upload, request, progress, cancel);
+  absl::StatusOr<RewrittenFile> made =
+      may.ok() ? core.worker->Rewrite(upload, request, progress, cancel) : may;
   FileRecord done = record;
   done.seconds = absl::ToDoubleSeconds(absl::Now() - began);
   RecordFile(core, done, made.status(), made.ok() ? &made->summary : nullptr);
@@ -188,10 +190,11 @@ HttpDecision RewriteRoute(const HttpRequest& request, const std::string& caller,
     std::stop_source stop;
     reply->OnGone([stop]() mutable { stop.request_stop(); });
     if (kind == AnswerKind::kEvents) BeginEvents(*reply);
-    core.queue->Submit(place, core.worker->MemoryFor(*file),
-                       [&core, wanted = *wanted, record, kind, file, reply, stop] {
-                         RunRewrite(core, wanted, record, kind, file, *reply, stop.get_token());
-                       });
+    core.Submit(
+        place, {file},
+        [&core, wanted = *wanted, record, kind, file, reply, stop](const absl::Status& may) {
+          RunRewrite(core, may, wanted, record, kind, *file, *reply, stop.get_token());
+        });
   };
   return TakeUpload(request, *core.spool, limits, start);
 }
@@ -208,12 +211,12 @@ HttpDecision InspectRoute(const HttpRequest& request, const std::string& caller,
     absl::StatusOr<FileRequest> wanted = WholeRequest(request, upload);
     if (!wanted.ok()) return reply->Send(ProblemOf(wanted.status()));
     const std::shared_ptr<SpoolFile> file = upload.files[0].file;
-    core.queue->Submit(
-        place, core.worker->MemoryFor(*file), [&core, wanted = *wanted, file, reply] {
-          absl::StatusOr<v1::InspectResponse> found = core.worker->Inspect(*file, wanted);
-          reply->Send(found.ok() ? JsonResponse(MessageJson(*found) + "\n")
-                                 : RefusalOf(found.status()));
-        });
+    core.Submit(place, {file}, [&core, wanted = *wanted, file, reply](const absl::Status& may) {
+      if (!may.ok()) return reply->Send(RefusalOf(may));
+      absl::StatusOr<v1::InspectResponse> found = core.worker->Inspect(*file, wanted);
+      reply->Send(found.ok() ? JsonResponse(MessageJson(*found) + "\n")
+                             : RefusalOf(found.status()));
+    });
   };
   return TakeUpload(request, *core.spool, limits, start);
 }
@@ -233,12 +236,13 @@ HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, 
     if (original == nullptr || optimised == nullptr || !upload.fields.empty()) {
       return reply->Send(Problem(400, "a form with the files original and optimised is expected"));
     }
-    const int64_t memory = core.worker->MemoryFor(*original) + core.worker->MemoryFor(*optimised);
-    core.queue->Submit(place, memory, [&core, original, optimised, reply] {
-      absl::StatusOr<v1::VerifyResponse> found = core.worker->Verify(*original, *optimised);
-      reply->Send(found.ok() ? JsonResponse(MessageJson(*found) + "\n")
-                             : RefusalOf(found.status()));
-    });
+    core.Submit(
+        place, {original, optimised}, [&core, original, optimised, reply](const absl::Status& may) {
+          if (!may.ok()) return reply->Send(RefusalOf(may));
+          absl::StatusOr<v1::VerifyResponse> found = core.worker->Verify(*original, *optimised);
+          reply->Send(found.ok() ? JsonResponse(MessageJson(*found) + "\n")
+                                 : RefusalOf(found.status()));
+        });
   };
   return TakeUpload(request, *core.spool, limits, start);
 }

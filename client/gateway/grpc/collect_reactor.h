@@ -6,6 +6,8 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "client/gateway/core.h"
 #include "client/gateway/grpc/file_call.h"
@@ -26,8 +28,8 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
  public:
   // Puts a message where it belongs. Errors for the client.
   using Take = std::function<absl::Status(const Request&, const FileCall&, Collected&)>;
-  // Whether all has come, and what it may take.
-  using Check = std::function<absl::StatusOr<int64_t>(const Collected&)>;
+  // Whether all has come. Errors for the client.
+  using Check = std::function<absl::Status(const Collected&)>;
   // Makes the answer.
   using Work = std::function<absl::Status(const Collected&)>;
 
@@ -64,9 +66,11 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
  private:
   void Submit() {
     live_.Rests(&context_);
-    const absl::StatusOr<int64_t> memory = check_(collected_);
-    if (!memory.ok()) return End(memory.status());
-    core_.queue->Submit(call_.place(), *memory, [this] {
+    if (absl::Status status = check_(collected_); !status.ok()) return End(status);
+    std::vector<std::shared_ptr<const SpoolFile>> files = {collected_.first};
+    if (collected_.second != nullptr) files.push_back(collected_.second);
+    core_.Submit(call_.place(), std::move(files), [this](const absl::Status& may) {
+      if (!may.ok()) return End(may);
       if (context_.IsCancelled()) return End(absl::CancelledError("cancelled"));
       End(work_(collected_));
     });

@@ -73,10 +73,10 @@ void RewriteReactor::Submit() {
   }
   wanted_->finish_by = call_.FinishBy();
   // From here on the task ends the call, so that it finds it alive.
-  core_.queue->Submit(call_.place(), core_.worker->MemoryFor(*upload_), [this] { Work(); });
+  core_.Submit(call_.place(), {upload_}, [this](const absl::Status& may) { Work(may); });
 }
 
-void RewriteReactor::Work() {
+void RewriteReactor::Work(const absl::Status& may) {
   const absl::Time began = absl::Now();
   const auto progress = [this](const v1::RewriteProgress& now) {
     MutexLock lock(mutex_);
@@ -84,7 +84,8 @@ void RewriteReactor::Work() {
     Next();
   };
   absl::StatusOr<RewrittenFile> made =
-      stop_.stop_requested()
+      !may.ok() ? may
+      : stop_.stop_requested()
           ? absl::CancelledError("cancelled")
           : core_.worker->Rewrite(*upload_, *wanted_, progress, stop_.get_token());
   const FileRecord record = {"grpc/Rewrite",  call_.caller(),

@@ -30,7 +30,7 @@ class RewriteReactor : public grpc::ServerBidiReactor<v1::RewriteRequest, v1::Re
  private:
   absl::Status TakeRequest();
   void Submit();
-  void Work();
+  void Work(const absl::Status& may);  // Core::Submit's
 
   // The call has come to its end; the status goes when no write is under way. REQUIRES: mutex_.
   void End(const absl::Status& status) TRAVERSE_REQUIRES(mutex_);

@@ -5,6 +5,7 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <map>
 #include <set>
 #include <thread>
 #include <utility>
@@ -119,44 +120,49 @@ class BeastServer : public HttpServer {
     boost::system::error_code error;
     const tcp::endpoint peer = socket.remote_endpoint(error);
     if (error) return;
+    const std::string address = PeerHostOf(peer);
     if (connections_ >= options_.limits.max_connections) {
-      Refuse(std::move(socket));
-      return;
+      return Refuse(std::move(socket), "too many connections");
+    }
+    if (addresses_[address] >= options_.limits.max_connections_per_address) {
+      return Refuse(std::move(socket), "too many connections from this address");
     }
     socket.set_option(tcp::no_delay(true), error);
     beast::tcp_stream stream(std::move(socket));
     if (tls_ == nullptr) {
-      Serve(std::make_shared<Session<beast::tcp_stream>>(
-          loop_, std::move(stream), nullptr, options_.limits, handler_, PeerHostOf(peer)));
+      Serve(std::make_shared<Session<beast::tcp_stream>>(loop_, std::move(stream), nullptr,
+                                                         options_.limits, handler_, address),
+            address);
       return;
     }
     const std::shared_ptr<TlsContext::Context> context = tls_->Current();
     Serve(std::make_shared<Session<TlsStream>>(loop_, TlsStream(std::move(stream), *context),
-                                               context, options_.limits, handler_,
-                                               PeerHostOf(peer)));
+                                               context, options_.limits, handler_, address),
+          address);
   }
 
   // Says so where that does not need to wait.
-  void Refuse(tcp::socket socket) {
+  void Refuse(tcp::socket socket, const std::string& why) {
     if (tls_ != nullptr) return;
-    static const std::string full = [] {
-      const std::string body = ProblemJson(503, "too many connections");
-      return absl::StrCat("HTTP/1.1 503 Service Unavailable\r\nContent-Type: ",
-                          "application/problem+json\r\nRetry-After: 5\r\nConnection: close\r\n",
-                          "Content-Length: ", body.size(), "\r\n\r\n", body);
-    }();
+    const std::string body = ProblemJson(503, why);
+    const std::string full =
+        absl::StrCat("HTTP/1.1 503 Service Unavailable\r\nContent-Type: ",
+                     "application/problem+json\r\nRetry-After: 5\r\nConnection: close\r\n",
+                     "Content-Length: ", body.size(), "\r\n\r\n", body);
     boost::system::error_code error;
     socket.non_blocking(true, error);
     socket.write_some(net::buffer(full), error);
   }
 
   template <typename T>
-  void Serve(std::shared_ptr<T> session) {
+  void Serve(std::shared_ptr<T> session, const std::string& address) {
     ++connections_;
+    ++addresses_[address];
     sessions_.insert(session.get());
-    net::co_spawn(*loop_, session->Run(), [this, session](const std::exception_ptr&) {
+    net::co_spawn(*loop_, session->Run(), [this, session, address](const std::exception_ptr&) {
       sessions_.erase(session.get());
       --connections_;
+      if (--addresses_[address] == 0) addresses_.erase(address);
     });
   }
 
@@ -165,7 +171,8 @@ class BeastServer : public HttpServer {
   std::unique_ptr<TlsContext> tls_;
   const std::shared_ptr<net::io_context> loop_;
   tcp::acceptor acceptor_;
-  std::set<AnySession*> sessions_;  // of the loop's thread
+  std::set<AnySession*> sessions_;        // of the loop's thread
+  std::map<std::string, int> addresses_;  // likewise: their connections
   std::atomic<int> connections_ = 0;
   int port_ = 0;
   std::thread thread_;

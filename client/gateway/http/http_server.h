@@ -20,6 +20,7 @@ namespace traverse::gateway {
 
 struct HttpLimits {
   int max_connections = 512;
+  int max_connections_per_address = 384;
   uint32_t max_head_bytes = 16384;
   absl::Duration head_time = absl::Seconds(20);  // for a head, the wait for it included
   absl::Duration idle_time = absl::Seconds(30);  // without a byte of the body, either way

@@ -336,34 +336,6 @@ absl::StatusOr<v1::VerifyResponse> FileWorker::Verify(const SpoolFile& original,
   });
 }
 
-int64_t FileWorker::MemoryFor(const SpoolFile& upload) const {
-  // Measured: the text, its parts, the job, the orders found, the new text and its verification.
-  constexpr int64_t kPerByte = 12;
-  constexpr int64_t kLeast = int64_t{16} << 20;
-  constexpr uint64_t kMostByGzip = 1032;  // bytes from one byte
-  // Containers are refused that hold more (client/containers/limits.h).
-  constexpr uint64_t kMostInContainer = 256;
-  constexpr uint64_t kAlwaysInContainer = uint64_t{64} << 20;
-  uint64_t bytes = upload.size();
-  std::string first(16, '\0');
-  const absl::StatusOr<size_t> got = upload.ReadAt(0, first.data(), first.size());
-  first.resize(got.value_or(0));
-  switch (DetectCompression(first)) {
-    case Compression::kNone:
-      break;
-    case Compression::kGzip:
-      bytes = std::min(max_file_bytes_, bytes * kMostByGzip);
-      break;
-    case Compression::kXz:
-      bytes = max_file_bytes_;
-      break;
-  }
-  if (DetectContainer(first) != ContainerKind::kText) {
-    bytes = std::min(max_file_bytes_, std::max(kAlwaysInContainer, kMostInContainer * bytes));
-  }
-  return kLeast + kPerByte * static_cast<int64_t>(bytes);
-}
-
 bool HasOurLine(std::string_view text) {
   for (size_t at = 0; at < text.size();) {
     const size_t end = std::min(text.find('\n', at), text.size());

@@ -69,9 +69,6 @@ class FileWorker {
 
   absl::StatusOr<v1::VerifyResponse> Verify(const SpoolFile& original, const SpoolFile& optimised);
 
-  // Memory that work on `upload` may take, by its size and whether it is compressed.
-  int64_t MemoryFor(const SpoolFile& upload) const;
-
  private:
   // All that is done about one file: its parts, one after another.
   struct Work;

@@ -1,6 +1,7 @@
 #include "client/gateway/work/work_queue.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "absl/status/status.h"
@@ -53,6 +54,7 @@ absl::StatusOr<std::shared_ptr<WorkQueue::Place>> WorkQueue::Enter(const std::st
 
 void WorkQueue::Submit(std::shared_ptr<Place> place, int64_t memory_bytes,
                        std::function<void()> task) {
+  assert(memory_bytes <= limits_.max_memory_bytes);
   const std::string caller = place->caller();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -99,7 +101,7 @@ bool WorkQueue::TakeNext(Task& task) {
   auto next = waiting_.upper_bound(last_caller_);
   if (next == waiting_.end()) next = waiting_.begin();
   const int64_t bytes = next->second.front().memory_bytes;
-  if (running_ > 0 && memory_bytes_ + bytes > limits_.max_memory_bytes) return false;
+  if (memory_bytes_ + bytes > limits_.max_memory_bytes) return false;
   task = std::move(next->second.front());
   next->second.pop_front();
   last_caller_ = next->first;

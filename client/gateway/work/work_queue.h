@@ -54,14 +54,15 @@ class WorkQueue {
   // draining. The queue outlives it.
   absl::StatusOr<std::shared_ptr<Place>> Enter(const std::string& caller);
 
-  // Runs `task` as soon as a worker is free and `memory_bytes` are, callers taking turns. A task
-  // that needs more than there is runs alone.
+  // Runs `task` as soon as a worker is free and `memory_bytes` are, callers taking turns.
+  // REQUIRES: no more than max_memory_bytes().
   void Submit(std::shared_ptr<Place> place, int64_t memory_bytes, std::function<void()> task);
 
   // No more places from now on.
   void StartDraining();
   bool draining() const;
 
+  int64_t max_memory_bytes() const { return limits_.max_memory_bytes; }
   int requests() const;          // places taken
   int waiting() const;           // tasks that wait
   int running() const;           // tasks under way

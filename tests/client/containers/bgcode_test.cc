@@ -19,7 +19,9 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
+using ::testing::Ge;
 using ::testing::HasSubstr;
+using ::testing::Le;
 using ::testing::Pair;
 using ::testing::StartsWith;
 using testing::StatusIs;
@@ -113,6 +115,7 @@ TEST(Bgcode, IsWrittenInTheShapeThatItHad) {
     ASSERT_OK(container);
     const auto text = (*container)->Text(0);
     ASSERT_OK(text);
+    EXPECT_THAT(*(*container)->TextBytes(), AllOf(Ge(text->size()), Le(text->size() + 1)));
 
     const auto same = (*container)->WithParts({{0, {*text, {}}}});
     const auto changed =

@@ -88,6 +88,7 @@ TEST(GcodeZip, HasItsPlatesByNumber) {
   EXPECT_EQ((*container)->parts()[0].plate, 1u);
   EXPECT_EQ(*(*container)->Text(0), kPlate1);
   EXPECT_EQ(*(*container)->Text(1), kPlate2);
+  EXPECT_EQ(*(*container)->TextBytes(), kPlate1.size() + kPlate2.size());
   EXPECT_EQ(*FindPlate(**container, 2, kName), 1u);
   EXPECT_THAT(FindPlate(**container, 3, kName),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("no plate 3, only 1, 2")));

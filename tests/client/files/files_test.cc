@@ -114,6 +114,26 @@ TEST_P(Compressed, LimitsTheResultToTheByte) {
             absl::StatusCode::kResourceExhausted);
 }
 
+TEST_P(Compressed, IsMeasuredWithoutBeingKept) {
+  for (const size_t size : {size_t{0}, size_t{5}, size_t{65536}, size_t{1000000}}) {
+    std::string text(size, 'x');
+    if (size > 2) text[2] = 'y';
+    const std::string bytes = GetParam()(text);
+    const Compression compression = DetectCompression(bytes);
+
+    const absl::StatusOr<DecompressedSize> found = MeasureDecompressed(bytes, compression, kLimit);
+
+    ASSERT_TRUE(found.ok()) << found.status();
+    EXPECT_EQ(found->bytes, size);
+    EXPECT_EQ(found->first, text.substr(0, 16));
+    if (size == 0) continue;
+    EXPECT_EQ(MeasureDecompressed(bytes, compression, size - 1).status().code(),
+              absl::StatusCode::kResourceExhausted);
+    EXPECT_EQ(MeasureDecompressed(bytes.substr(0, bytes.size() / 2), compression, kLimit).status(),
+              Decompress(bytes.substr(0, bytes.size() / 2), compression, kLimit).status());
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(, Compressed, ::testing::Values(&Gzipped, &Xzipped),
                          [](const auto& info) { return info.index == 0 ? "Gzip" : "Xz"; });
 

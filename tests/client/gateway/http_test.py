@@ -4,6 +4,7 @@ The environment names the binaries: TRAVERSE and TRAVERSE_GATEWAY.
 """
 import base64
 import gzip
+import http.client
 import json
 import lzma
 import os
@@ -463,6 +464,41 @@ class Time(unittest.TestCase):
         self.assertLess(float(headers["traverse-travel-mm"]), float(headers["traverse-travel-given-mm"]))
         status, _, body = gateway.ask("POST", "/v1/gcode?deadline=1ms", long)
         self.assertEqual(status, 504, body[:300])
+
+    def test_what_needs_more_memory_than_there_is_is_refused(self):
+        gateway = Gateway("--max_memory=33554432")  # 16 MiB, and twelve bytes for each of the text
+        self.addCleanup(gateway.close)
+        long = lines_of_infill(8000)
+        self.assertGreater(12 * len(long), 16 << 20)
+        self.assertLess(len(gzip.compress(long)), 1 << 20)
+        for path in ["/v1/gcode?strategy=none", "/v1/inspect"]:
+            for body in [long, gzip.compress(long)]:
+                status, _, answer = gateway.ask("POST", path, body)
+                self.assertEqual(status, 413, answer[:300])
+                self.assertIn("this gateway has 32", detail(answer))
+        for packed in [gzip.compress(PART), lzma.compress(PART), b"\x1f\x8b damaged"]:
+            status, _, answer = gateway.ask("POST", "/v1/gcode", packed)
+            self.assertEqual(status, 400 if packed.endswith(b"damaged") else 200, answer[:300])
+
+    def test_one_address_leaves_connections_to_others(self):
+        gateway = Gateway("--max_connections_per_address=5")
+        self.addCleanup(gateway.close)
+        held = [socket.create_connection(("127.0.0.1", gateway.http_port)) for _ in range(5)]
+        for connection in held:
+            self.addCleanup(connection.close)
+        time.sleep(0.2)
+        status, _, answer = gateway.ask("GET", "/healthz")
+        self.assertEqual((status, detail(answer)), (503, "too many connections from this address"))
+        other = http.client.HTTPConnection("127.0.0.1", gateway.http_port, source_address=("127.0.0.2", 0))
+        self.addCleanup(other.close)
+        other.request("GET", "/healthz")
+        self.assertEqual(other.getresponse().status, 200)
+        for connection in held:
+            connection.close()
+        deadline = time.time() + 10
+        while gateway.ask("GET", "/healthz")[0] != 200 and time.time() < deadline:
+            time.sleep(0.05)
+        self.assertEqual(gateway.ask("GET", "/healthz")[0], 200)
 
     def test_who_goes_stops_the_work(self):
         gateway = Gateway("--workers=1")

@@ -148,6 +148,20 @@ class Uploads(unittest.TestCase):
         self.assertEqual(self.printer.uploads[0][3], {"print": "true", "root": "gcodes", "path": ""})
         self.assertEqual(self.printer.uploads[1][3], {"print": "?1", "overwrite": "?1"})
 
+    def test_a_print_that_did_not_begin_is_not_said_to_have(self):
+        gateway = self.start()
+        for print_it, away, began in [("true", False, True), ("true", True, False), ("false", False, False)]:
+            self.printer.away = away
+            status, _, body = self.send(gateway, path="/printers/moon/api/files/local", print_it=print_it)
+            self.assertEqual((status, json.loads(body)["effectivePrint"]), (201, began), body)
+
+    def test_a_file_that_needs_too_much_memory_goes_on_as_it_came(self):
+        gateway = self.start("--max_memory=16777216")
+        status, headers, _ = self.send(gateway, PART)
+        self.assertEqual((status, headers["traverse-sent"]), (201, "original"))
+        self.assertIn("memory", headers["traverse-reason"])
+        self.assertEqual(self.printer.uploads[-1][2], PART)
+
     def test_version(self):
         gateway = self.start()
         self.assertEqual(json.loads(gateway.ask("GET", "/api/version", headers=KEY)[2])["text"], "OctoPrint 1.9.3")

@@ -77,15 +77,6 @@ TEST(WorkQueue, TasksWaitForMemory) {
   EXPECT_TRUE(second);
 }
 
-TEST(WorkQueue, WhatNeedsMoreThanThereIsRunsAlone) {
-  WorkQueue queue({.workers = 2, .max_memory_bytes = 100});
-  std::promise<void> done;
-
-  queue.Submit(*queue.Enter("a"), 1000, [&] { done.set_value(); });
-
-  done.get_future().wait();
-}
-
 TEST(WorkQueue, TasksThatWaitAtTheEndAreDropped) {
   std::promise<void> began;
   bool second = false;
