@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
+#include "client/gcode/verify/text.h"
 
 namespace traverse {
 namespace {
@@ -28,10 +29,6 @@ std::string_view TakeWord(std::string_view& text, std::string_view ends) {
   const std::string_view word = text.substr(0, end);
   text.remove_prefix(std::min(end + 1, text.size()));
   return word;
-}
-
-bool Begins(std::string_view text, std::string_view with) {
-  return text.substr(0, with.size()) == with;
 }
 
 }  // namespace
@@ -67,13 +64,14 @@ std::optional<VerifyPermissions> PermissionsInHead(std::string_view text) {
     line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size()));
     if (line.empty()) continue;
     if (line[0] != ';') return std::nullopt;
-    if (!Begins(line, kOptimisedMark)) continue;
+    if (!gcode::Begins(line, kOptimisedMark)) continue;
     const size_t at = line.find(kPolicy);
     if (at == std::string_view::npos) return std::nullopt;
     std::string_view rest = line.substr(at + kPolicy.size());
     std::string_view clause = TakeWord(rest, ":");
     const std::string_view policy = TakeWord(clause, ",");
-    const std::string_view allow = Begins(clause, kAllow) ? clause.substr(kAllow.size()) : "";
+    const std::string_view allow =
+        gcode::Begins(clause, kAllow) ? clause.substr(kAllow.size()) : "";
     const absl::StatusOr<VerifyPermissions> read = ParsePermissions(policy, allow);
     if (!read.ok()) return std::nullopt;
     return *read;

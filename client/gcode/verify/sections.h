@@ -7,7 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "client/gcode/verify/verify_machine.h"
+#include "client/gcode/verify/machine/verify_machine.h"
+#include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 

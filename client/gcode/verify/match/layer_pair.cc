@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "client/gcode/verify/text.h"
+
 namespace traverse::gcode {
 namespace {
 
@@ -15,10 +17,6 @@ constexpr double kStraightCosine = 0.996;  // of 5 degrees
 constexpr double kThinFlow = 0.4;          // of what is usual: ironing
 constexpr double kOverMm = 0.3;            // ironing lies this near to what it irons
 constexpr double kWallsApartMm = 0.9;      // walls of one outline lie no farther apart
-
-bool Begins(std::string_view text, std::string_view with) {
-  return text.substr(0, with.size()) == with;
-}
 
 // The value of `; NAME = VALUE` in `text`.
 std::string_view Setting(std::string_view text, std::string_view name) {

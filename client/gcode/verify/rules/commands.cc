@@ -5,6 +5,7 @@
 
 #include "absl/container/flat_hash_set.h"
 #include "client/gcode/verify/rules/rules.h"
+#include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 namespace {

@@ -5,6 +5,8 @@
 #include <string>
 #include <unordered_map>
 
+#include "client/gcode/verify/text.h"
+
 namespace traverse::gcode {
 namespace {
 
@@ -107,10 +109,6 @@ constexpr std::string_view kBareNames[] = {"outer perimeter",
                                            "outer shell",
                                            "inner shell",
                                            "shell"};
-
-bool Begins(std::string_view text, std::string_view with) {
-  return text.substr(0, with.size()) == with;
-}
 
 std::string Plain(std::string_view name) {
   std::string plain;

@@ -15,8 +15,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "client/gcode/verify/machine/verify_machine.h"
 #include "client/gcode/verify/trace/path_class.h"
-#include "client/gcode/verify/verify_machine.h"
 
 namespace traverse::gcode {
 

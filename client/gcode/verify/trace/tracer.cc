@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "client/gcode/verify/text.h"
+
 namespace traverse::gcode {
 namespace {
 
@@ -14,10 +16,6 @@ constexpr double kInch = 25.4;
 constexpr double kRoundedMm = 0.05;
 
 constexpr uint32_t Bit(char letter) { return 1u << (letter - 'A'); }
-
-bool Begins(std::string_view text, std::string_view with) {
-  return text.substr(0, with.size()) == with;
-}
 
 double LengthOf(const Motion& motion) {
   const auto dx = static_cast<double>(motion.to[0] - motion.from[0]);

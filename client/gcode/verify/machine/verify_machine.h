@@ -4,18 +4,18 @@
 // numbers become integers of 1e-6, and states become numbers to be compared, not lines to be
 // written.
 
-#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_VERIFY_MACHINE_H_
-#define TRAVERSE_CLIENT_GCODE_VERIFY_VERIFY_MACHINE_H_
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MACHINE_VERIFY_MACHINE_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_MACHINE_VERIFY_MACHINE_H_
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
-namespace traverse::gcode {
+#include "client/gcode/verify/machine/command_words.h"
+#include "client/gcode/verify/machine/print_settings.h"
 
-// In units of 1e-6 of what the file's words count in.
-using Micro = int64_t;
+namespace traverse::gcode {
 
 // What one line is to the verifier.
 enum class LineRole : uint8_t {
@@ -74,39 +74,26 @@ class VerifyMachine {
   const Motion& motion() const { return motion_; }
 
   // Of the accelerations, jerks and limits in force, those of travel included.
-  uint64_t AccelerationDigest();
+  uint64_t AccelerationDigest() { return settings_.AccelerationDigest(); }
 
-  uint64_t fan() const { return fan_; }
+  uint64_t fan() const { return settings_.fan(); }
 
   static constexpr Micro kSlack = 100;  // of filament that rounding may lose
 
  private:
-  struct Words;
-
   void Do(VerifyLine& line);
   void DoComment(VerifyLine& line);
   void DoG(int number, VerifyLine& line);
   void DoM(int number, VerifyLine& line);
   void DoKlipper(VerifyLine& line);
-  void Move(int number, const Words& words, VerifyLine& line);
-  void Deposit(int number, const Words& words, const std::array<Micro, 3>& from, Micro filament,
-               VerifyLine& line);
+  void Move(int number, const CommandWords& words, VerifyLine& line);
+  void Deposit(int number, const CommandWords& words, const std::array<Micro, 3>& from,
+               Micro filament, VerifyLine& line);
   void FollowFilament(Micro filament, bool moves);
-  bool IsCircular(const Words& words, const std::array<Micro, 3>& from) const;
+  bool IsCircular(const CommandWords& words, const std::array<Micro, 3>& from) const;
   void NoteMotion(int number, uint32_t words, const std::array<Micro, 3>& from, Micro filament);
-  void SetState(size_t slot, uint64_t value);
-  uint64_t StateDigest();
   void Mode(bool& mode, bool value, VerifyLine& line);
   void Fence(VerifyLine& line, LineRole role);
-
-  static constexpr size_t kStates = 26;
-
-  // The values that a setting had since a move; four are enough to find out that one came back.
-  struct Held {
-    uint64_t behind = 0;  // how many moves
-    size_t count = 0;
-    std::array<uint64_t, 4> values{};
-  };
 
   std::string_view rest_;
   size_t number_ = 0;
@@ -121,27 +108,10 @@ class VerifyMachine {
   bool inches_ = false;
   bool plane_xy_ = true;
   uint64_t tool_ = 0;
-  uint64_t fan_ = 0;
-  std::array<uint64_t, kStates> state_{};
-  uint64_t state_digest_ = 0;         // of state_, unless state_changed_
-  uint64_t acceleration_digest_ = 0;  // the same
-  bool state_changed_ = true;
+  PrintSettings settings_;
   Motion motion_;
-  uint64_t motions_ = 1;
-  std::array<Held, kStates> held_{};  // [slot]
-  bool sets_back_ = false;
 };
-
-// Mixes `value` into `digest`.
-inline uint64_t Mix(uint64_t digest, uint64_t value) {
-  uint64_t z = (digest ^ value) + 0x9e3779b97f4a7c15u + (digest << 6) + (digest >> 2);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
-
-uint64_t DigestOf(std::string_view text);
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_VERIFY_MACHINE_H_
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_MACHINE_VERIFY_MACHINE_H_

@@ -1,0 +1,95 @@
+// What a print is set to while it deposits, and the lines that set it: widths, fans, accelerations.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MACHINE_PRINT_SETTINGS_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_MACHINE_PRINT_SETTINGS_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "client/gcode/verify/machine/command_words.h"
+
+namespace traverse::gcode {
+
+// Values are digests or numbers, to be compared; 0 where nothing was set yet.
+class PrintSettings {
+ public:
+  // Each takes a line and returns true if it is one that sets something and nothing else; else
+  // nothing is changed. What is given without text is the command and its words.
+  bool SetByComment(std::string_view comment);
+  bool SetByM(int number, const CommandWords& words);
+  bool SetByKlipper(std::string_view line);
+
+  // What is set so is compared with what held since the last call of Move.
+  void Move() { ++motions_; }
+
+  // A new line begins: sets_back() is false.
+  void BeginLine() { sets_back_ = false; }
+
+  // The line gave a setting a value that it had, and lost, since the last move.
+  bool sets_back() const { return sets_back_; }
+
+  // Of all that deposits depend on.
+  uint64_t Digest() {
+    if (changed_) Renew();
+    return digest_;
+  }
+
+  // Of the accelerations, jerks and limits, those of travel included.
+  uint64_t AccelerationDigest() {
+    if (changed_) Renew();
+    return acceleration_digest_;
+  }
+
+  uint64_t fan() const { return fan_; }
+
+ private:
+  enum Slot : size_t {
+    kType,
+    kWidth,
+    kHeight,
+    kFans,  // and the three behind it
+    kAccelPrint = kFans + 4,
+    kJerkX,
+    kJerkY,
+    kMaxAccelX,
+    kMaxAccelY,
+    kMaxTravelX,
+    kMaxTravelY,
+    kKlipperAccel,
+    kKlipperDecel,
+    kKlipperCorner,
+    kKlipperSpeed,
+    kPressure,
+    kFlow,
+    kAccelTravel,  // from here on what no deposit depends on
+    kAccelRetract,
+    kSlots,
+  };
+
+  // The values that a setting had since a move; four are enough to find out that one came back.
+  struct Held {
+    uint64_t behind = 0;  // how many moves
+    size_t count = 0;
+    std::array<uint64_t, 4> values{};
+  };
+
+  void Set(size_t slot, uint64_t value);
+  void SetWord(const CommandWords& words, char letter, size_t slot);
+  bool SetFan(int number, const CommandWords& words);
+  void Renew();
+
+  std::array<uint64_t, kSlots> values_{};
+  std::array<Held, kSlots> held_{};
+  uint64_t digest_ = 0;               // of values_, unless changed_
+  uint64_t acceleration_digest_ = 0;  // the same
+  bool changed_ = true;
+  uint64_t fan_ = 0;
+  uint64_t motions_ = 1;
+  bool sets_back_ = false;
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_MACHINE_PRINT_SETTINGS_H_

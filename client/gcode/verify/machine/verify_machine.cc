@@ -1,0 +1,279 @@
+#include "client/gcode/verify/machine/verify_machine.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "client/gcode/verify/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+// True if the E words of the first moves in the plane hardly add up to a register, and no line says
+// how they count: then they count from the move before.
+bool FallsAsOftenAsItRises(std::string_view text) {
+  for (const std::string_view mode : {"M82", "M83"}) {
+    for (size_t at = text.find(mode); at != std::string_view::npos; at = text.find(mode, at + 1)) {
+      if (at == 0 || text[at - 1] == '\n') return false;
+    }
+  }
+  double last = 0;
+  int rises = 0;
+  int falls = 0;
+  while (!text.empty() && rises + falls < 200) {
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    line = line.substr(0, line.find(';'));
+    const size_t e = line.find('E');
+    if (e == std::string_view::npos || line[0] != 'G') continue;
+    double value = 0;
+    std::from_chars(line.data() + e + 1, line.data() + line.size(), value);
+    const bool sets = Begins(line, "G92");
+    if (!sets && line.find('X') == std::string_view::npos &&
+        line.find('Y') == std::string_view::npos) {
+      continue;
+    }
+    if (!sets) ++(value <= last ? falls : rises);
+    last = value;
+  }
+  return falls * 4 > rises;
+}
+
+}  // namespace
+
+void VerifyMachine::NoteMotion(int number, uint32_t words, const std::array<Micro, 3>& from,
+                               Micro filament) {
+  motion_ = Motion{from, at_, filament, pulled_, feed_, number, words, retracted(), false, 0, 0};
+  settings_.Move();
+}
+
+VerifyMachine::VerifyMachine(std::string_view text) : rest_(text) {
+  relative_e_ = FallsAsOftenAsItRises(text);
+}
+
+bool VerifyMachine::Next(VerifyLine& line) {
+  if (rest_.empty()) return false;
+  const size_t end = std::min(rest_.find('\n'), rest_.size());
+  line = VerifyLine{};
+  line.number = ++number_;
+  line.text = TrimLine(rest_.substr(0, end));
+  rest_.remove_prefix(std::min(end + 1, rest_.size()));
+  if (!line.text.empty()) Do(line);
+  return true;
+}
+
+void VerifyMachine::Fence(VerifyLine& line, LineRole role) {
+  line.role = role;
+  line.digest = DigestOf(line.text);
+}
+
+void VerifyMachine::Do(VerifyLine& line) {
+  const std::string_view text = line.text;
+  if (text[0] == ';') return DoComment(line);
+  const char letter = UpperCase(text[0]);
+  int number = 0;
+  const auto read = std::from_chars(text.data() + 1, text.data() + text.size(), number);
+  settings_.BeginLine();
+  const bool numbered =
+      read.ec == std::errc{} && text[1] != '-' &&
+      (read.ptr == text.data() + text.size() || (*read.ptr != '.' && *read.ptr != '_'));
+  if (letter == 'G' && numbered) {
+    DoG(number, line);
+    const bool moving = number <= 3 || number == 10 || number == 11 || number == 92;
+    if (!moving) line.command = Mix('G', static_cast<uint64_t>(number));
+  } else if (letter == 'M' && numbered) {
+    DoM(number, line);
+    line.command = Mix('M', static_cast<uint64_t>(number));
+  } else {
+    DoKlipper(line);
+    line.command = DigestOf(text.substr(0, text.find_first_of(" \t=")));
+  }
+  line.sets_back = settings_.sets_back();
+}
+
+void VerifyMachine::DoComment(VerifyLine& line) {
+  const std::string_view text = line.text;
+  if (settings_.SetByComment(text)) return;
+  for (const std::string_view wipe : {";WIPE_START", ";WIPE_END", "; WIPE_START", "; WIPE_END"}) {
+    if (Begins(text, wipe)) return;
+  }
+  for (const std::string_view mark :
+       {";LAYER_CHANGE", ";LAYER:", ";LAYER ", "; CHANGE_LAYER", ";MESH:", "; printing object",
+        "; stop printing object", "; start printing object",
+        "; OBJECT_ID:", ";layer:", "; BEGIN_LAYER_OBJECT", "; END_LAYER_OBJECT", "; <layer>",
+        "; </layer>", ";; --- layer ", ";PRINTING:", ";PRINTING_ID:"}) {
+    if (Begins(text, mark)) return Fence(line, LineRole::kFence);
+  }
+  constexpr std::string_view kNumbered = "; layer ";
+  const bool numbered = text.size() > kNumbered.size() && text[kNumbered.size()] >= '0' &&
+                        text[kNumbered.size()] <= '9';
+  if (numbered && Begins(text, kNumbered)) return Fence(line, LineRole::kFence);
+  Fence(line, LineRole::kComment);
+}
+
+void VerifyMachine::Mode(bool& mode, bool value, VerifyLine& line) {
+  Fence(line, mode == value ? LineRole::kFence : LineRole::kFixed);
+  mode = value;
+}
+
+void VerifyMachine::DoG(int number, VerifyLine& line) {
+  const CommandWords words(WordsOf(line.text));
+  switch (number) {
+    case 0:
+    case 1:
+    case 2:
+    case 3:
+      if (!words.OnlyFrom("XYZEFIJRP") || (number >= 2 && !plane_xy_)) {
+        return Fence(line, LineRole::kFixed);
+      }
+      return Move(number, words, line);
+    case 10:
+    case 11:
+      if (words.set != 0 || !words.readable) return Fence(line, LineRole::kFixed);
+      NoteMotion(number, 0, at_, 0);
+      line.moves = true;
+      firmware_retracted_ = number == 10;
+      return;
+    case 17:
+      // Slicers write it before each spiral lift.
+      if (plane_xy_) return;
+      [[fallthrough]];
+    case 18:
+    case 19:
+      return Mode(plane_xy_, number == 17, line);
+    case 20:
+    case 21:
+      return Mode(inches_, number == 20, line);
+    case 90:
+    case 91:
+      return Mode(relative_, number == 91, line);
+    case 92:
+      if (words.readable && words.set == 1u << ('E' - 'A')) {
+        e_ = words['E'];
+        return;
+      }
+      for (size_t axis = 0; axis < 3 && words.readable; ++axis) {
+        const char letter = static_cast<char>('X' + axis);
+        if (words.Has(letter)) at_[axis] = words[letter];
+      }
+      if (words.readable && words.Has('E')) e_ = words['E'];
+      return Fence(line, LineRole::kFixed);
+    default:
+      return Fence(line, LineRole::kFixed);
+  }
+}
+
+void VerifyMachine::Move(int number, const CommandWords& words, VerifyLine& line) {
+  if (words.Has('F')) feed_ = words['F'];
+  const std::array<Micro, 3> from = at_;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const char letter = static_cast<char>('X' + axis);
+    if (words.Has(letter)) at_[axis] = relative_ ? at_[axis] + words[letter] : words[letter];
+  }
+  Micro filament = 0;
+  if (words.Has('E')) {
+    filament = relative_ || relative_e_ ? words['E'] : words['E'] - e_;
+    e_ += filament;
+  }
+  const bool moves = at_[0] != from[0] || at_[1] != from[1];
+  line.moves = moves || at_[2] != from[2] || filament != 0 || number >= 2;
+  if (line.moves) {
+    NoteMotion(number, words.set, from, filament);
+    motion_.has_center = number >= 2 && (words.Has('I') || words.Has('J'));
+    motion_.center_x = from[0] + words.ValueOr('I', 0);
+    motion_.center_y = from[1] + words.ValueOr('J', 0);
+  }
+  if ((moves || number >= 2) && filament > 0) {
+    Deposit(number, words, from, filament, line);
+  } else {
+    line.travels = moves;
+    if (filament > 0) {
+      line.primes = true;
+      line.surplus = std::max<Micro>(filament - pulled_, 0);
+    }
+    // Moves relative to each other are kept as they are, and circles that deposit nothing.
+    const bool circle = number >= 2 && !moves && at_[2] == from[2];
+    if (relative_ || circle) Fence(line, LineRole::kFixed);
+  }
+  FollowFilament(filament, moves);
+}
+
+// Where slicers coast before a retraction they push a little less than they pulled back.
+void VerifyMachine::FollowFilament(Micro filament, bool moves) {
+  constexpr Micro kPrimeShare = 30;
+  if (filament < 0) deepest_ = std::max(deepest_, pulled_ - filament);
+  pulled_ = std::max<Micro>(pulled_ - filament, 0);
+  if (!moves && filament > 0 && pulled_ * kPrimeShare <= deepest_) pulled_ = 0;
+  if (pulled_ == 0) deepest_ = 0;
+}
+
+// Gone the other way, an arc that ends beside its circle would lie elsewhere.
+bool VerifyMachine::IsCircular(const CommandWords& words, const std::array<Micro, 3>& from) const {
+  constexpr double kSlackMicro = 20'000;
+  if (!words.Has('I') && !words.Has('J')) return true;
+  const auto i = static_cast<double>(words.ValueOr('I', 0));
+  const auto j = static_cast<double>(words.ValueOr('J', 0));
+  const double end_radius = std::hypot(static_cast<double>(at_[0] - from[0]) - i,
+                                       static_cast<double>(at_[1] - from[1]) - j);
+  return std::abs(std::hypot(i, j) - end_radius) * (inches_ ? 25.4 : 1) <= kSlackMicro;
+}
+
+void VerifyMachine::Deposit(int number, const CommandWords& words, const std::array<Micro, 3>& from,
+                            Micro filament, VerifyLine& line) {
+  std::array<Micro, 3> begin = from;
+  std::array<Micro, 3> end = at_;
+  // An arc by its center, or its radius, and the way round when gone from its smaller end.
+  bool clockwise = number == 2;
+  if (begin > end && (number < 2 || IsCircular(words, from))) {
+    std::swap(begin, end);
+    clockwise = number == 3;
+  }
+  // Each value is mixed with its place, and the sum taken: no value waits for the one before it.
+  uint64_t sum = 0;
+  uint64_t place = 0;
+  const auto add = [&sum, &place](uint64_t value) { sum += Mix(++place, value); };
+  add(number >= 2 ? (clockwise ? 2 : 3) : 1);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    add(static_cast<uint64_t>(begin[axis]));
+    add(static_cast<uint64_t>(end[axis]));
+  }
+  add(static_cast<uint64_t>(filament));
+  add(static_cast<uint64_t>(feed_));
+  add(tool_);
+  add((retracted() ? 1u : 0u) + (inches_ ? 2u : 0u));
+  add(settings_.Digest());
+  if (number >= 2 && (words.Has('I') || words.Has('J'))) {
+    add(static_cast<uint64_t>(from[0] + words.ValueOr('I', 0)));
+    add(static_cast<uint64_t>(from[1] + words.ValueOr('J', 0)));
+  } else if (number >= 2) {
+    add(static_cast<uint64_t>(words.ValueOr('R', 0)));
+  }
+  line.role = LineRole::kDeposit;
+  line.digest = Mix(0, sum);
+  line.z = at_[2];
+}
+
+void VerifyMachine::DoM(int number, VerifyLine& line) {
+  if (number == 73) return Fence(line, LineRole::kProgress);
+  if (number == 82 || number == 83) return Mode(relative_e_, number == 83, line);
+  for (const int known : {74, 104, 105, 117, 118, 140, 142, 155, 486, 591, 624, 625}) {
+    if (number == known) return Fence(line, LineRole::kFence);
+  }
+  if (!settings_.SetByM(number, CommandWords(WordsOf(line.text)))) Fence(line, LineRole::kFixed);
+}
+
+void VerifyMachine::DoKlipper(VerifyLine& line) {
+  const std::string_view text = line.text;
+  if (settings_.SetByKlipper(text)) return;
+  if (Begins(text, "EXCLUDE_OBJECT_START") || Begins(text, "EXCLUDE_OBJECT_END")) {
+    return Fence(line, LineRole::kFence);
+  }
+  // What the next tool, or filament, has in its nozzle is not known.
+  if (UpperCase(text[0]) == 'T' && std::exchange(tool_, DigestOf(text)) != tool_) {
+    pulled_ = deepest_ = 0;
+  }
+  Fence(line, LineRole::kFixed);
+}
+
+}  // namespace traverse::gcode

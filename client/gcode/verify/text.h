@@ -1,0 +1,42 @@
+// Characters and digests for the verifier, which shares none of them with the reader.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_TEXT_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_TEXT_H_
+
+#include <cstdint>
+#include <string_view>
+
+namespace traverse::gcode {
+
+inline bool Begins(std::string_view text, std::string_view with) {
+  return text.substr(0, with.size()) == with;
+}
+
+// Without blanks, tabs and the carriage return around it.
+inline std::string_view TrimLine(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) {
+    text.remove_suffix(1);
+  }
+  return text;
+}
+
+inline char UpperCase(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; }
+
+// Mixes `value` into `digest`.
+inline uint64_t Mix(uint64_t digest, uint64_t value) {
+  uint64_t z = (digest ^ value) + 0x9e3779b97f4a7c15u + (digest << 6) + (digest >> 2);
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+inline uint64_t DigestOf(std::string_view text) {
+  uint64_t digest = 0xcbf29ce484222325u;
+  for (const char c : text) digest = (digest ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return Mix(digest, text.size());
+}
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_TEXT_H_
