@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/choose/layer_choice.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/read/reader.h"
 #include "client/gcode/verify/verifier.h"
 #include "client/gcode/write/gcode_out.h"
-#include "client/gcode/write/layer_choice.h"
 
 namespace traverse {
 namespace gcode {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "client/gcode/choose/layer_choice.h"
 #include "client/gcode/measure/print_totals.h"
 #include "client/gcode/model/gcode_file.h"
 #include "client/gcode/plan/policy.h"
-#include "client/gcode/write/layer_choice.h"
 
 namespace traverse {
 

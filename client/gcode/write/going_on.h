@@ -1,8 +1,8 @@
 // Moves that go on along a closed path, behind its end and without filament: CuraEngine wipes its
 // outer walls so. They are part of how a path ends, wherever it is made to end.
 
-#ifndef TRAVERSE_CLIENT_GCODE_GOING_ON_H_
-#define TRAVERSE_CLIENT_GCODE_GOING_ON_H_
+#ifndef TRAVERSE_CLIENT_GCODE_WRITE_GOING_ON_H_
+#define TRAVERSE_CLIENT_GCODE_WRITE_GOING_ON_H_
 
 #include <cstdint>
 #include <optional>
@@ -17,4 +17,4 @@ std::optional<LinkStep> ReadGoingOn(const GcodeFile& file, uint32_t block);
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_GOING_ON_H_
+#endif  // TRAVERSE_CLIENT_GCODE_WRITE_GOING_ON_H_

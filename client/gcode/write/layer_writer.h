@@ -11,8 +11,8 @@
 #include "client/gcode/plan/travel_rules.h"
 #include "client/gcode/write/gcode_out.h"
 #include "client/gcode/write/link_donors.h"
-#include "client/gcode/write/order_merge.h"
 #include "client/gcode/write/placed_path.h"
+#include "client/gcode/write/way_totals.h"
 
 namespace traverse::gcode {
 

@@ -4,6 +4,7 @@
 #define TRAVERSE_CLIENT_GCODE_WRITE_PLACED_PATH_H_
 
 #include <cstdint>
+#include <vector>
 
 #include "client/gcode/model/gcode_file.h"
 #include "client/gcode/model/path_body.h"
@@ -21,6 +22,9 @@ struct Placement {
   bool as_given() const { return entry == 0; }
   friend bool operator==(const Placement&, const Placement&) = default;
 };
+
+// The paths of a layer in the order to print them.
+using LayerOrder = std::vector<Placement>;
 
 // The other way round: the same segments from the last to the first, each with its own extrusion,
 // feed rate and state; arcs turn the other way; a wiping tail is made at the new end. From another

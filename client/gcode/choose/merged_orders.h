@@ -1,14 +1,14 @@
 // What is worth writing of the orders that a search found for a layer.
 
-#ifndef TRAVERSE_CLIENT_GCODE_WRITE_MERGED_ORDERS_H_
-#define TRAVERSE_CLIENT_GCODE_WRITE_MERGED_ORDERS_H_
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_MERGED_ORDERS_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_MERGED_ORDERS_H_
 
 #include <vector>
 
+#include "client/gcode/choose/order_merge.h"
 #include "client/gcode/plan/policy.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/write/layer_writer.h"
-#include "client/gcode/write/order_merge.h"
 
 namespace traverse::gcode {
 
@@ -30,4 +30,4 @@ std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelMode
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_WRITE_MERGED_ORDERS_H_
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_MERGED_ORDERS_H_

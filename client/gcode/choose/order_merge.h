@@ -8,8 +8,8 @@
 // What makes the order better is kept, until nothing does. Orders of two paths on which all agree
 // stay as they are; so do the first and the last path of the order that is begun with.
 
-#ifndef TRAVERSE_CLIENT_GCODE_WRITE_ORDER_MERGE_H_
-#define TRAVERSE_CLIENT_GCODE_WRITE_ORDER_MERGE_H_
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_MERGE_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_MERGE_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -18,24 +18,9 @@
 #include <vector>
 
 #include "client/gcode/write/placed_path.h"
+#include "client/gcode/write/way_totals.h"
 
 namespace traverse::gcode {
-
-// The paths of a layer in the order to print them.
-using LayerOrder = std::vector<Placement>;
-
-// What one way from path to path comes to, or all ways of an order.
-struct WayTotals {
-  double seconds = 0;
-  double mm = 0;
-  int64_t crossings = 0;  // of visible walls
-  int64_t open = 0;       // of these, with filament not pulled back
-  int64_t too_long = 0;   // of these, longer than may be
-  int64_t retractions = 0;
-
-  WayTotals& operator+=(const WayTotals& other);
-  WayTotals& operator-=(const WayTotals& other);
-};
 
 // What an order may come to at most.
 struct MergeLimits {
@@ -79,4 +64,4 @@ class OrderMerger {
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_WRITE_ORDER_MERGE_H_
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_MERGE_H_

@@ -1,4 +1,4 @@
-#include "client/gcode/write/order_merge.h"
+#include "client/gcode/choose/order_merge.h"
 
 #include <algorithm>
 #include <cmath>
@@ -102,26 +102,6 @@ class Merging {
 };
 
 }  // namespace
-
-WayTotals& WayTotals::operator+=(const WayTotals& other) {
-  seconds += other.seconds;
-  mm += other.mm;
-  crossings += other.crossings;
-  open += other.open;
-  too_long += other.too_long;
-  retractions += other.retractions;
-  return *this;
-}
-
-WayTotals& WayTotals::operator-=(const WayTotals& other) {
-  seconds -= other.seconds;
-  mm -= other.mm;
-  crossings -= other.crossings;
-  open -= other.open;
-  too_long -= other.too_long;
-  retractions -= other.retractions;
-  return *this;
-}
 
 WayTotals OrderMerger::TotalsOf(const LayerOrder& order) const {
   WayTotals totals;

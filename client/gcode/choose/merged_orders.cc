@@ -1,4 +1,4 @@
-#include "client/gcode/write/merged_orders.h"
+#include "client/gcode/choose/merged_orders.h"
 
 #include <algorithm>
 #include <array>

@@ -5,8 +5,8 @@
 // holds for the whole file is priced: so high that the best row at that price keeps to it.
 // O(layers * choices^2) for each price that is tried.
 
-#ifndef TRAVERSE_CLIENT_GCODE_WRITE_CHOICE_ROW_H_
-#define TRAVERSE_CLIENT_GCODE_WRITE_CHOICE_ROW_H_
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_CHOICE_ROW_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_CHOICE_ROW_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -40,4 +40,4 @@ std::vector<uint32_t> BestRow(const std::vector<const ChoiceColumn*>& columns, P
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_WRITE_CHOICE_ROW_H_
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_CHOICE_ROW_H_

@@ -1,4 +1,4 @@
-#include "client/gcode/write/choice_row.h"
+#include "client/gcode/choose/choice_row.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 //
 // O(layers * tries^2) ways between layers and O(layers * tries) layers are written and measured.
 
-#ifndef TRAVERSE_CLIENT_GCODE_WRITE_LAYER_CHOICE_H_
-#define TRAVERSE_CLIENT_GCODE_WRITE_LAYER_CHOICE_H_
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_LAYER_CHOICE_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_LAYER_CHOICE_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -84,4 +84,4 @@ class LayerChooser {
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_WRITE_LAYER_CHOICE_H_
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_LAYER_CHOICE_H_

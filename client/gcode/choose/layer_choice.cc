@@ -1,4 +1,4 @@
-#include "client/gcode/write/layer_choice.h"
+#include "client/gcode/choose/layer_choice.h"
 
 #include <algorithm>
 #include <atomic>
@@ -7,9 +7,9 @@
 #include <string_view>
 #include <utility>
 
+#include "client/gcode/choose/choice_row.h"
+#include "client/gcode/choose/merged_orders.h"
 #include "client/gcode/parallel.h"
-#include "client/gcode/write/choice_row.h"
-#include "client/gcode/write/merged_orders.h"
 
 namespace traverse::gcode {
 namespace {

@@ -1,0 +1,42 @@
+// What ways between paths come to before they are written: an estimate.
+
+#ifndef TRAVERSE_CLIENT_GCODE_WRITE_WAY_TOTALS_H_
+#define TRAVERSE_CLIENT_GCODE_WRITE_WAY_TOTALS_H_
+
+#include <cstdint>
+
+namespace traverse::gcode {
+
+// Of one way from path to path, or of all ways of an order.
+struct WayTotals {
+  double seconds = 0;
+  double mm = 0;
+  int64_t crossings = 0;  // of visible walls
+  int64_t open = 0;       // of these, with filament not pulled back
+  int64_t too_long = 0;   // of these, longer than may be
+  int64_t retractions = 0;
+
+  WayTotals& operator+=(const WayTotals& other) {
+    seconds += other.seconds;
+    mm += other.mm;
+    crossings += other.crossings;
+    open += other.open;
+    too_long += other.too_long;
+    retractions += other.retractions;
+    return *this;
+  }
+
+  WayTotals& operator-=(const WayTotals& other) {
+    seconds -= other.seconds;
+    mm -= other.mm;
+    crossings -= other.crossings;
+    open -= other.open;
+    too_long -= other.too_long;
+    retractions -= other.retractions;
+    return *this;
+  }
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_WRITE_WAY_TOTALS_H_
