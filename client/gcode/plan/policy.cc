@@ -1,54 +1,38 @@
 #include "client/gcode/plan/policy.h"
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
 #include <set>
-#include <string>
 #include <utility>
 
 #include "client/gcode/model/loops.h"
+#include "client/gcode/plan/path_rules.h"
 #include "client/gcode/plan/precedence.h"
-#include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
 namespace {
 
-// A wall may begin at corners at least this sharp, and nearly as sharp as its sharpest.
-constexpr double kMinCornerRadians = 0.5;
-constexpr double kCornerShare = 0.8;
-
 constexpr SlotMask kOrderedSlots = kFanSlots | SlotBit(kSlotPressure) | SlotBit(kSlotFlow);
-
-// How one path may be done.
-struct PathRule {
-  bool pinned = false;   // stays where and as it is
-  bool contour = false;  // closed; else an open path
-  bool one_way = false;
-  std::vector<uint32_t> entries;  // contour: where it may begin; empty for anywhere
-};
 
 class LayerPlanner {
  public:
   LayerPlanner(const GcodeFile& file, const Layer& layer, Policy policy, Latitude latitude)
-      : file_(file), layer_(layer), policy_(policy), latitude_(latitude) {}
+      : file_(file), policy_(policy), latitude_(latitude) {
+    result_.outlines = OutlinesOf(file, layer);
+    paths_.emplace(file, layer, policy, latitude, result_.outlines);
+  }
 
   LayerPlan Make();
 
  private:
-  const Block& BlockOf(size_t path) const { return file_.blocks[layer_.first_block + path]; }
-  Feature FeatureOf(size_t path) const { return result_.outlines[path].feature; }
+  const Block& BlockOf(size_t path) const { return paths_->BlockOf(path); }
+  Feature FeatureOf(size_t path) const { return paths_->FeatureOf(path); }
   size_t size() const { return result_.outlines.size(); }
 
-  bool IsPinned(size_t path) const;
-  PathRule RuleOf(size_t path) const;
-  bool MayBeginAnywhere(size_t path) const;
-  bool MayTurnRound(size_t path) const;
-  bool OrderIsQuality(Feature feature) const;
-  bool KeepsOrder(uint32_t i, uint32_t j) const;
   bool BeginsGroup(size_t path) const;
 
   void AddPath(size_t path);
-  uint32_t AddNode(uint32_t parent_any_or_root);
+  uint32_t AddNode(uint32_t parent);
   bool GoesWithBefore(size_t path) const;
   void AddLeaf(uint32_t parent, size_t path);
   void AddGroup(size_t begin, size_t end);
@@ -57,138 +41,14 @@ class LayerPlanner {
   std::pair<Pairs::const_iterator, Pairs::const_iterator> PairsFrom(size_t begin, size_t end) const;
 
   const GcodeFile& file_;
-  const Layer& layer_;
   const Policy policy_;
   const Latitude latitude_;
   std::vector<PathRule> rules_;
   Contacts contacts_;
   std::vector<uint32_t> position_;  // [path] among the children of its any_order
   LayerPlan result_;
+  std::optional<PathRules> paths_;  // of result_.outlines
 };
-
-bool LayerPlanner::IsPinned(size_t path) const {
-  const size_t block = layer_.first_block + path;
-  const bool last = block + 1 == file_.blocks.size();
-  const Feature feature = FeatureOf(path);
-  if (latitude_ != Latitude::kFull && (path == 0 || path + 1 == size())) return true;
-  return (BlockOf(path).flags & kBlockPinned) != 0 || (BlockOf(path).link & kLinkFixed) != 0 ||
-         last || (file_.blocks[block + 1].link & (kLinkFixed | kLinkFixedFrom)) != 0 ||
-         feature == Feature::kTower || feature == Feature::kCustom;
-}
-
-// Monotonic surfaces and ironing look the way they do because of the order of their lines.
-bool LayerPlanner::OrderIsQuality(Feature feature) const {
-  if (policy_ == Policy::kFree) return false;
-  if (feature == Feature::kIroning) return true;
-  if (feature == Feature::kBottomInfill) return file_.profile.monotonic_bottom;
-  if (feature != Feature::kTopInfill) return false;
-  const std::optional<std::string>& pattern = file_.profile.top_fill_pattern;
-  return !pattern || StartsWith(*pattern, "monotonic");
-}
-
-bool LayerPlanner::MayBeginAnywhere(size_t path) const {
-  constexpr uint16_t kFixing =
-      kBlockTail | kBlockCoast | kBlockCommand | kBlockType | kBlockComments | kBlockPinned;
-  if ((BlockOf(path).flags & kFixing) != 0) return false;
-  if (policy_ != Policy::kSafe) return true;
-  const Feature feature = FeatureOf(path);
-  return feature != Feature::kOuterWall && feature != Feature::kLoop &&
-         feature != Feature::kOverhangWall;
-}
-
-bool LayerPlanner::MayTurnRound(size_t path) const {
-  constexpr uint16_t kFixing =
-      kBlockCoast | kBlockCommand | kBlockType | kBlockComments | kBlockPinned;
-  const Feature feature = FeatureOf(path);
-  if ((BlockOf(path).flags & kFixing) != 0 || OrderIsQuality(feature)) return false;
-  return policy_ == Policy::kFree || !IsWall(feature);
-}
-
-// The vertices at corners about as sharp as the sharpest, and the given start.
-std::vector<uint32_t> SharpCorners(const std::vector<Vertex>& points) {
-  const size_t n = points.size();
-  std::vector<double> turn(n);
-  double sharpest = 0;
-  for (size_t k = 0; k < n; ++k) {
-    const Vertex a = points[(k + n - 1) % n];
-    const Vertex b = points[k];
-    const Vertex c = points[(k + 1) % n];
-    const double cross = (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x);
-    const double dot = (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y);
-    turn[k] = std::abs(std::atan2(cross, dot));
-    sharpest = std::max(sharpest, turn[k]);
-  }
-  std::vector<uint32_t> corners = {0};
-  for (size_t k = 1; k < n; ++k) {
-    if (turn[k] >= std::max(kMinCornerRadians, kCornerShare * sharpest)) {
-      corners.push_back(static_cast<uint32_t>(k));
-    }
-  }
-  return corners;
-}
-
-// The vertices of a closed outline. The last point is the first again, or lies so near to it that
-// to begin there would only cross the gap first.
-std::vector<Vertex> ContourVertices(const Outline& outline) {
-  return {outline.points.begin(), outline.points.end() - 1};
-}
-
-PathRule LayerPlanner::RuleOf(size_t path) const {
-  PathRule rule;
-  const Outline& outline = result_.outlines[path];
-  rule.pinned = IsPinned(path);
-  rule.contour = outline.closed;
-  if (!rule.contour) {
-    rule.one_way = rule.pinned || !MayTurnRound(path);
-  } else if (rule.pinned || !MayBeginAnywhere(path)) {
-    rule.entries = {0};
-  } else if (policy_ == Policy::kBalanced && outline.feature != Feature::kInnerWall &&
-             IsWall(outline.feature)) {
-    rule.entries = SharpCorners(ContourVertices(outline));
-  }
-  return rule;
-}
-
-// What a path is to the order of others. That lines of different infills lie side by side is no
-// reason for an order; that they lie against a wall is.
-enum class Kind { kWall, kFill, kBridge, kIroning, kSupport, kOther };
-
-Kind KindOf(Feature feature) {
-  switch (feature) {
-    case Feature::kLoop:
-    case Feature::kOuterWall:
-    case Feature::kInnerWall:
-    case Feature::kOverhangWall:
-      return Kind::kWall;
-    case Feature::kLine:
-    case Feature::kGapFill:
-    case Feature::kSparseInfill:
-    case Feature::kSolidInfill:
-    case Feature::kBottomInfill:
-    case Feature::kTopInfill:
-      return Kind::kFill;
-    case Feature::kBridge:
-      return Kind::kBridge;
-    case Feature::kIroning:
-      return Kind::kIroning;
-    case Feature::kSupport:
-    case Feature::kSupportInterface:
-      return Kind::kSupport;
-    default:
-      return Kind::kOther;
-  }
-}
-
-bool LayerPlanner::KeepsOrder(uint32_t i, uint32_t j) const {
-  const Feature a = FeatureOf(i);
-  const Feature b = FeatureOf(j);
-  const Kind kind = KindOf(a);
-  if (kind != KindOf(b) || kind == Kind::kIroning) return true;
-  if (kind == Kind::kSupport) return a != b || a == Feature::kSupportInterface;
-  if (policy_ == Policy::kFree) return false;
-  if (kind == Kind::kWall) return true;
-  return OrderIsQuality(a) && a == b;
-}
 
 bool LayerPlanner::BeginsGroup(size_t path) const {
   if (path == 0 || rules_[path].pinned || rules_[path - 1].pinned) return true;
@@ -227,15 +87,15 @@ void LayerPlanner::AddPath(size_t path) {
   }
 }
 
-// Adds a node and makes it a child of `parent_any_or_root`.
-uint32_t LayerPlanner::AddNode(uint32_t parent_any_or_root) {
+// Adds a node and makes it the last child of `parent`.
+uint32_t LayerPlanner::AddNode(uint32_t parent) {
   const auto index = static_cast<uint32_t>(result_.plan.nodes_size());
   result_.plan.add_nodes();
-  v1::PlanNode& parent = *result_.plan.mutable_nodes(static_cast<int>(parent_any_or_root));
-  if (parent_any_or_root == 0) {
-    parent.mutable_in_order()->add_children(index);
+  v1::PlanNode& node = *result_.plan.mutable_nodes(static_cast<int>(parent));
+  if (node.has_in_order()) {
+    node.mutable_in_order()->add_children(index);
   } else {
-    parent.mutable_any_order()->add_children(index);
+    node.mutable_any_order()->add_children(index);
   }
   return index;
 }
@@ -260,14 +120,8 @@ bool LayerPlanner::GoesWithBefore(size_t path) const {
 }
 
 void LayerPlanner::AddLeaf(uint32_t parent, size_t path) {
-  const auto index = static_cast<uint32_t>(result_.plan.nodes_size());
-  result_.plan.add_nodes()->set_path(static_cast<uint32_t>(path));
-  v1::PlanNode& node = *result_.plan.mutable_nodes(static_cast<int>(parent));
-  if (node.has_in_order()) {
-    node.mutable_in_order()->add_children(index);
-  } else {
-    node.mutable_any_order()->add_children(index);
-  }
+  const uint32_t leaf = AddNode(parent);
+  result_.plan.mutable_nodes(static_cast<int>(leaf))->set_path(static_cast<uint32_t>(path));
 }
 
 void LayerPlanner::AddGroup(size_t begin, size_t end) {
@@ -325,8 +179,7 @@ void LayerPlanner::AddGroupByIslands(uint32_t group, size_t begin, size_t end) {
     }
     uint32_t& children = count[static_cast<size_t>(found - node_of.begin())];
     position_[path] = children++;
-    const uint32_t leaf = AddNode(found->second);
-    result_.plan.mutable_nodes(static_cast<int>(leaf))->set_path(static_cast<uint32_t>(path));
+    AddLeaf(found->second, path);
   }
   const auto [first, last] = PairsFrom(begin, end);
   for (auto pair = first; pair != last; ++pair) {
@@ -343,12 +196,11 @@ void LayerPlanner::AddGroupByIslands(uint32_t group, size_t begin, size_t end) {
 }
 
 LayerPlan LayerPlanner::Make() {
-  result_.outlines = OutlinesOf(file_, layer_);
   position_.resize(size());
   rules_.reserve(size());
-  for (size_t path = 0; path < size(); ++path) rules_.push_back(RuleOf(path));
-  contacts_ =
-      FindContacts(result_.outlines, [this](uint32_t i, uint32_t j) { return KeepsOrder(i, j); });
+  for (size_t path = 0; path < size(); ++path) rules_.push_back(paths_->RuleOf(path));
+  contacts_ = FindContacts(result_.outlines,
+                           [this](uint32_t i, uint32_t j) { return paths_->KeepsOrder(i, j); });
   result_.island = contacts_.island;
   result_.plan.add_nodes()->mutable_in_order();
   for (size_t path = 0; path < size(); ++path) AddPath(path);

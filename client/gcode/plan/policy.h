@@ -1,4 +1,4 @@
-// What of a layer may change places: DESIGN section 8.
+// What of a layer may change places.
 //
 //   in_order                          groups: nothing crosses a fence, a label, a skirt's end, or
 //    |                                (but under `free`) a change of the fan

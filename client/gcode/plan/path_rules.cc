@@ -1,0 +1,151 @@
+#include "client/gcode/plan/path_rules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "client/gcode/text/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+// A wall may begin at corners at least this sharp, and nearly as sharp as its sharpest.
+constexpr double kMinCornerRadians = 0.5;
+constexpr double kCornerShare = 0.8;
+
+// The vertices at corners about as sharp as the sharpest, and the given start.
+std::vector<uint32_t> SharpCorners(const std::vector<Vertex>& points) {
+  const size_t n = points.size();
+  std::vector<double> turn(n);
+  double sharpest = 0;
+  for (size_t k = 0; k < n; ++k) {
+    const Vertex a = points[(k + n - 1) % n];
+    const Vertex b = points[k];
+    const Vertex c = points[(k + 1) % n];
+    const double cross = (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x);
+    const double dot = (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y);
+    turn[k] = std::abs(std::atan2(cross, dot));
+    sharpest = std::max(sharpest, turn[k]);
+  }
+  std::vector<uint32_t> corners = {0};
+  for (size_t k = 1; k < n; ++k) {
+    if (turn[k] >= std::max(kMinCornerRadians, kCornerShare * sharpest)) {
+      corners.push_back(static_cast<uint32_t>(k));
+    }
+  }
+  return corners;
+}
+
+// The vertices of a closed outline. The last point is the first again, or lies so near to it that
+// to begin there would only cross the gap first.
+std::vector<Vertex> ContourVertices(const Outline& outline) {
+  return {outline.points.begin(), outline.points.end() - 1};
+}
+
+// What a path is to the order of others. That lines of different infills lie side by side is no
+// reason for an order; that they lie against a wall is.
+enum class Kind { kWall, kFill, kBridge, kIroning, kSupport, kOther };
+
+Kind KindOf(Feature feature) {
+  switch (feature) {
+    case Feature::kLoop:
+    case Feature::kOuterWall:
+    case Feature::kInnerWall:
+    case Feature::kOverhangWall:
+      return Kind::kWall;
+    case Feature::kLine:
+    case Feature::kGapFill:
+    case Feature::kSparseInfill:
+    case Feature::kSolidInfill:
+    case Feature::kBottomInfill:
+    case Feature::kTopInfill:
+      return Kind::kFill;
+    case Feature::kBridge:
+      return Kind::kBridge;
+    case Feature::kIroning:
+      return Kind::kIroning;
+    case Feature::kSupport:
+    case Feature::kSupportInterface:
+      return Kind::kSupport;
+    default:
+      return Kind::kOther;
+  }
+}
+
+}  // namespace
+
+PathRules::PathRules(const GcodeFile& file, const Layer& layer, Policy policy, Latitude latitude,
+                     const std::vector<Outline>& outlines)
+    : file_(file),
+      first_block_(layer.first_block),
+      policy_(policy),
+      latitude_(latitude),
+      outlines_(outlines) {}
+
+bool PathRules::IsPinned(size_t path) const {
+  const size_t block = first_block_ + path;
+  const bool last = block + 1 == file_.blocks.size();
+  const Feature feature = FeatureOf(path);
+  if (latitude_ != Latitude::kFull && (path == 0 || path + 1 == outlines_.size())) return true;
+  return (BlockOf(path).flags & kBlockPinned) != 0 || (BlockOf(path).link & kLinkFixed) != 0 ||
+         last || (file_.blocks[block + 1].link & (kLinkFixed | kLinkFixedFrom)) != 0 ||
+         feature == Feature::kTower || feature == Feature::kCustom;
+}
+
+// Monotonic surfaces and ironing look the way they do because of the order of their lines.
+bool PathRules::OrderIsQuality(Feature feature) const {
+  if (policy_ == Policy::kFree) return false;
+  if (feature == Feature::kIroning) return true;
+  if (feature == Feature::kBottomInfill) return file_.profile.monotonic_bottom;
+  if (feature != Feature::kTopInfill) return false;
+  const std::optional<std::string>& pattern = file_.profile.top_fill_pattern;
+  return !pattern || StartsWith(*pattern, "monotonic");
+}
+
+bool PathRules::MayBeginAnywhere(size_t path) const {
+  constexpr uint16_t kFixing =
+      kBlockTail | kBlockCoast | kBlockCommand | kBlockType | kBlockComments | kBlockPinned;
+  if ((BlockOf(path).flags & kFixing) != 0) return false;
+  if (policy_ != Policy::kSafe) return true;
+  const Feature feature = FeatureOf(path);
+  return feature != Feature::kOuterWall && feature != Feature::kLoop &&
+         feature != Feature::kOverhangWall;
+}
+
+bool PathRules::MayTurnRound(size_t path) const {
+  constexpr uint16_t kFixing =
+      kBlockCoast | kBlockCommand | kBlockType | kBlockComments | kBlockPinned;
+  const Feature feature = FeatureOf(path);
+  if ((BlockOf(path).flags & kFixing) != 0 || OrderIsQuality(feature)) return false;
+  return policy_ == Policy::kFree || !IsWall(feature);
+}
+
+PathRule PathRules::RuleOf(size_t path) const {
+  PathRule rule;
+  const Outline& outline = outlines_[path];
+  rule.pinned = IsPinned(path);
+  rule.contour = outline.closed;
+  if (!rule.contour) {
+    rule.one_way = rule.pinned || !MayTurnRound(path);
+  } else if (rule.pinned || !MayBeginAnywhere(path)) {
+    rule.entries = {0};
+  } else if (policy_ == Policy::kBalanced && outline.feature != Feature::kInnerWall &&
+             IsWall(outline.feature)) {
+    rule.entries = SharpCorners(ContourVertices(outline));
+  }
+  return rule;
+}
+
+bool PathRules::KeepsOrder(size_t i, size_t j) const {
+  const Feature a = FeatureOf(i);
+  const Feature b = FeatureOf(j);
+  const Kind kind = KindOf(a);
+  if (kind != KindOf(b) || kind == Kind::kIroning) return true;
+  if (kind == Kind::kSupport) return a != b || a == Feature::kSupportInterface;
+  if (policy_ == Policy::kFree) return false;
+  if (kind == Kind::kWall) return true;
+  return OrderIsQuality(a) && a == b;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,53 @@
+// How each path of a layer may be done, and which pairs of paths keep their order.
+
+#ifndef TRAVERSE_CLIENT_GCODE_PLAN_PATH_RULES_H_
+#define TRAVERSE_CLIENT_GCODE_PLAN_PATH_RULES_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "client/gcode/model/gcode_file.h"
+#include "client/gcode/model/outline.h"
+#include "client/gcode/plan/policy.h"
+
+namespace traverse::gcode {
+
+struct PathRule {
+  bool pinned = false;   // stays where and as it is
+  bool contour = false;  // closed; else an open path
+  bool one_way = false;
+  std::vector<uint32_t> entries;  // contour: where it may begin; empty for anywhere
+};
+
+// The paths of one layer, by their index in it.
+class PathRules {
+ public:
+  // `file` and `outlines`, those of the paths of `layer`, outlive the rules.
+  PathRules(const GcodeFile& file, const Layer& layer, Policy policy, Latitude latitude,
+            const std::vector<Outline>& outlines);
+
+  PathRule RuleOf(size_t path) const;
+
+  // True if paths `i` and `j`, which touch, stay in the order sliced.
+  bool KeepsOrder(size_t i, size_t j) const;
+
+  Feature FeatureOf(size_t path) const { return outlines_[path].feature; }
+  const Block& BlockOf(size_t path) const { return file_.blocks[first_block_ + path]; }
+
+ private:
+  bool IsPinned(size_t path) const;
+  bool MayBeginAnywhere(size_t path) const;
+  bool MayTurnRound(size_t path) const;
+  bool OrderIsQuality(Feature feature) const;
+
+  const GcodeFile& file_;
+  const size_t first_block_;
+  const Policy policy_;
+  const Latitude latitude_;
+  const std::vector<Outline>& outlines_;
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_PLAN_PATH_RULES_H_
