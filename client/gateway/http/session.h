@@ -90,21 +90,39 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
 
  private:
   using Parser = http::request_parser<http::buffer_body>;
-  static constexpr size_t kPiece = 65536;
+  using Clock = std::chrono::steady_clock;
+  static constexpr size_t kPiece = 131072;
 
   beast::tcp_stream& Lowest() { return beast::get_lowest_layer(stream_); }
 
-  // From now on operations that take longer than `time` fail; the connection stays.
+  // From now on operations that take longer than `time` fail; the connection stays. Called for
+  // every piece of a body: a timer that is set and goes off too early is cheaper than one set anew.
   void SetTimer(absl::Duration time) {
-    const uint64_t set = ++timer_set_;
-    timer_.expires_after(absl::ToChronoMilliseconds(time));
-    timer_.async_wait([self = this->weak_from_this(), set](boost::system::error_code error) {
-      const auto session = self.lock();
-      if (error || session == nullptr || session->timer_set_ != set) return;
-      session->timed_out_ = true;
-      session->Lowest().cancel();
-    });
     timed_out_ = false;
+    deadline_ = Clock::now() + absl::ToChronoMilliseconds(time);
+    if (armed_until_ > deadline_) Arm();
+  }
+
+  // A handler may take its time.
+  void StopTimer() { deadline_ = Clock::time_point::max(); }
+
+  void Arm() {
+    armed_until_ = deadline_;
+    timer_.expires_at(deadline_);
+    timer_.async_wait(
+        [self = this->weak_from_this(), until = deadline_](boost::system::error_code error) {
+          const auto session = self.lock();
+          if (error || session == nullptr || session->armed_until_ != until) return;
+          session->armed_until_ = Clock::time_point::max();
+          session->OnTimer();
+        });
+  }
+
+  void OnTimer() {
+    if (deadline_ == Clock::time_point::max()) return;
+    if (Clock::now() < deadline_) return Arm();
+    timed_out_ = true;
+    Lowest().cancel();
   }
 
   net::awaitable<bool> Handshake() {
@@ -195,15 +213,9 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     std::vector<char> piece(parser.is_done() ? 0 : kPiece);
     const absl::Time began = absl::Now();
     uint64_t received = 0;
-    while (!error && !parser.is_done()) {
-      auto& body = parser.get().body();
-      body.data = piece.data();
-      body.size = piece.size();
+    while (!error && !AllCame(parser, received)) {
       SetTimer(limits_.TimeForPiece(absl::Now() - began, received));
-      co_await http::async_read_some(stream_, buffer_, parser,
-                                     net::redirect_error(net::use_awaitable, error));
-      if (error == http::error::need_buffer) error = {};
-      const size_t got = piece.size() - body.size;
+      const size_t got = co_await ReadPiece(parser, received, piece, error);
       received += got;
       if (got == 0) continue;
       std::optional<HttpResponse> refusal = sink.Take({piece.data(), got});
@@ -211,6 +223,36 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     }
     if (!error) co_return std::nullopt;
     co_return BodyFault(error, timed_out_, received);
+  }
+
+  static bool AllCame(const Parser& parser, uint64_t received) {
+    return parser.is_done() || (IsPlain(parser) && received == *parser.content_length());
+  }
+
+  // Whether the body is so many bytes as they stand.
+  static bool IsPlain(const Parser& parser) {
+    return !parser.chunked() && parser.content_length().has_value();
+  }
+
+  // The next bytes of a body of which `received` came, into `piece`. Most go by the parser, which
+  // would only copy them.
+  net::awaitable<size_t> ReadPiece(Parser& parser, uint64_t received, std::vector<char>& piece,
+                                   boost::system::error_code& error) {
+    if (IsPlain(parser) && buffer_.size() == 0) {
+      const uint64_t left = *parser.content_length() - received;
+      const size_t got = co_await stream_.async_read_some(
+          net::buffer(piece.data(), std::min<uint64_t>(piece.size(), left)),
+          net::redirect_error(net::use_awaitable, error));
+      if (error == net::error::eof) error = http::error::partial_message;
+      co_return got;
+    }
+    auto& body = parser.get().body();
+    body.data = piece.data();
+    body.size = piece.size();
+    co_await http::async_read_some(stream_, buffer_, parser,
+                                   net::redirect_error(net::use_awaitable, error));
+    if (error == http::error::need_buffer) error = {};
+    co_return piece.size() - body.size;
   }
 
   std::function<void()> Waker() {
@@ -226,7 +268,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
   // Waits until the handler has put something in. False if the client has gone.
   net::awaitable<bool> WaitForReply() {
     constexpr auto kLook = std::chrono::milliseconds(250);
-    ++timer_set_;  // a handler may take its time
+    StopTimer();
     wake_.expires_after(kLook);
     boost::system::error_code error;
     co_await wake_.async_wait(net::redirect_error(net::use_awaitable, error));
@@ -364,7 +406,8 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
   std::vector<std::string> identities_;
   beast::flat_buffer buffer_{size_t{2} * kPiece};
   net::steady_timer timer_;
-  uint64_t timer_set_ = 0;  // which setting of the timer counts
+  Clock::time_point deadline_ = Clock::time_point::max();
+  Clock::time_point armed_until_ = Clock::time_point::max();  // the timer goes off
   bool timed_out_ = false;
   net::steady_timer wake_;
   std::shared_ptr<ReplyQueue> reply_;  // of the request under way
