@@ -126,15 +126,16 @@ Census FillLayers(const GcodeFile& file, const GcodeOptions& options, const File
 
 // The search of `auto` ends after so many rounds without a gain for each path: short files are
 // searched as long as it pays, long ones as others are. And it ends where a second of computing
-// saves less than two seconds of printing, as the search is half of the work.
-void SetStrategy(size_t paths, v1::Strategy& strategy) {
+// saves less than two seconds of printing, as the search is half of the work; where ways are looked
+// for around walls, a round takes five times as long.
+void SetStrategy(size_t paths, bool avoids_walls, v1::Strategy& strategy) {
   constexpr double kRounds = 20000;
   constexpr double kMaxEffort = 10;
   const double effort = std::clamp(kRounds / static_cast<double>(paths), 1.0, kMaxEffort);
   strategy.set_name("auto");
   (*strategy.mutable_options())["effort"] = absl::StrFormat("%.3g", effort);
-  constexpr double kSecondsPerRound = 20e-6;
-  (*strategy.mutable_options())["least_gain_each"] = absl::StrFormat("%.3g", 2 * kSecondsPerRound);
+  const double seconds_per_round = avoids_walls ? 100e-6 : 20e-6;
+  (*strategy.mutable_options())["least_gain_each"] = absl::StrFormat("%.3g", 2 * seconds_per_round);
 }
 
 std::string Duration(double seconds) {
@@ -177,7 +178,8 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   job.options.mutable_start()->set_x_mm(first.points.front().x);
   job.options.mutable_start()->set_y_mm(first.points.front().y);
   gcode::SetCost(models.back(), *job.options.mutable_cost());
-  gcode::SetStrategy(file->blocks.size(), *job.options.mutable_strategy());
+  gcode::SetStrategy(file->blocks.size(), habits.retraction.avoids_walls,
+                     *job.options.mutable_strategy());
   job.options.set_idle_speed_mm_s(std::clamp(models.back().speed_mm_s, 0.001, 1e5));
   gcode::AddFacts(*file, census, options.policy, job);
   job.gcode = std::move(file);

@@ -7,9 +7,12 @@
 namespace traverse {
 namespace {
 
-// Moves remembered for each path, and at most.
+// Moves remembered for each path, and at most; more of them where a way around walls has to be
+// looked for again if it was forgotten.
 constexpr size_t kMovesPerPath = 64;
 constexpr size_t kMostMoves = size_t{1} << 15;
+constexpr size_t kDetoursPerPath = 512;
+constexpr size_t kMostDetours = size_t{1} << 16;
 
 // A point so many slacks away from the middle of a wall still lies on it.
 constexpr double kOnWall = 1.2;
@@ -20,8 +23,9 @@ uint64_t Mix(uint64_t state, double value) {
   return (std::rotl(state, 23) ^ std::bit_cast<uint64_t>(value)) * 0x9e3779b97f4a7c15u;
 }
 
-size_t PlacesFor(size_t paths) {
-  return std::bit_ceil(std::clamp<size_t>(paths * kMovesPerPath, 1024, kMostMoves));
+size_t PlacesFor(size_t paths, bool detours) {
+  const size_t wanted = paths * (detours ? kDetoursPerPath : kMovesPerPath);
+  return std::bit_ceil(std::clamp<size_t>(wanted, 1024, detours ? kMostDetours : kMostMoves));
 }
 
 }  // namespace
@@ -38,7 +42,7 @@ WallCost::WallCost(const LayerWalls& walls, const Plan& plan, const CostSpec& sp
                    ? std::optional<WallDetours>(std::in_place, grid_, spec.wall_clearance_mm,
                                                 kOnWall * spec.wall_slack_mm)
                    : std::nullopt),
-      places_(PlacesFor(plan.paths.size())) {
+      places_(PlacesFor(plan.paths.size(), detours_.has_value())) {
   for (const int path : walls.exposed) {
     const std::vector<Point>& points = plan.paths[static_cast<size_t>(path)].points;
     exposed_.insert(exposed_.end(), points.begin(), points.end());

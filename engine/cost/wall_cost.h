@@ -35,7 +35,7 @@ struct WallMove {
 };
 
 // Remembers what it was asked, so not for several threads at once. Memory: 40 bytes for each of up
-// to 32,768 moves, from the first question on.
+// to 32,768 moves, or 65,536 where ways are led around walls, from the first question on.
 class WallCost {
  public:
   // REQUIRES: `spec` is a time; `walls` passes CheckWalls for `plan`. O(points).
