@@ -86,11 +86,14 @@ std::string NewText(const GcodeFile& file, const ChosenLayers& chosen, const std
   return text;
 }
 
-// What a person sees who looks at the text: it is read and measured like any other.
-absl::StatusOr<PrintTotals> MeasureText(const GcodeFile& file, std::string text, int threads) {
+// What a person sees who looks at `text`: it is read and measured like any other. There are not two
+// of it at a time.
+absl::StatusOr<PrintTotals> MeasureText(const GcodeFile& file, std::string& text, int threads) {
   const absl::StatusOr<std::shared_ptr<GcodeFile>> read = ReadGcode(std::move(text), file.name);
   if (!read.ok()) return read.status();
-  return Sum(MeasureLayers(**read, threads));
+  const PrintTotals totals = Sum(MeasureLayers(**read, threads));
+  text = std::move((*read)->text);
+  return totals;
 }
 
 GcodeRewrite AsItIs(const GcodeFile& file, GcodeRewrite rewrite) {
@@ -159,12 +162,13 @@ class Rewriter {
       }
       const std::string head = HeadWithLine(file_, AddedLine(rewrite, options_));
       rewrite.text = NewText(file_, chosen, head);
+      const LayerLines lines(file_, chosen, head);
+      chosen.texts = {};  // they are in there
       const VerifyReport report =
           CheckGcode(file_.text, file_.name, rewrite.text, file_.name + " as optimised",
                      AllRules(options_.policy));
       if (report.ok()) {
         rewrite.orders = std::move(chosen.orders);
-        chosen = {};  // its texts are in there
         absl::StatusOr<GcodeRewrite> done = Finish(head, std::move(rewrite));
         if (!done.ok() || !CrossesMore(*done)) return done;
         // Where walls have no names, what is one is told by its neighbours, and they may change.
@@ -173,7 +177,7 @@ class Rewriter {
         continue;
       }
       if (unproven_.empty()) unproven_ = report.breaks.front().message;
-      RuleOut(report, LayerLines(file_, chosen, head), round);
+      RuleOut(report, lines, round);
     }
   }
 

@@ -140,6 +140,7 @@ class LayerChooser::Impl {
     choice.writer = &writer;
     choice.start = StartOfPaths(file_, order.front());
     choice.behind = writer.WritePaths(order, choice.start, choice.text);
+    choice.text.shrink_to_fit();  // those of all layers are kept until one order of each is chosen
     choice.resets_e = Resets(choice.text);
     column.totals.inside.push_back(
         Measure(file_, choice.text, choice.start, &column.writer->walls()));

@@ -15,8 +15,15 @@ namespace traverse {
 namespace gcode {
 namespace {
 
-// So much of the original is looked at in one go.
-constexpr size_t kChunkBytes = 4 << 20;
+// So much of the original is looked at in one go: enough for all threads, but little of a file, for
+// the paths in it take four times the memory of their text, thrice.
+constexpr size_t kLeastChunkBytes = 1 << 20;
+constexpr size_t kMostChunkBytes = 4 << 20;
+constexpr size_t kChunksOfAFile = 32;
+
+size_t ChunkBytes(size_t file_bytes) {
+  return std::clamp(file_bytes / kChunksOfAFile, kLeastChunkBytes, kMostChunkBytes);
+}
 
 class Verifier {
  public:
@@ -79,7 +86,7 @@ void Verifier::ReadNext() {
     if (i == 1) {
       chunk_is_ = is_.NextSections(last ? UINT32_MAX : chunk_was_.end_section);
     } else if (!last) {
-      next_was_ = was_.NextBytes(kChunkBytes);
+      next_was_ = was_.NextBytes(ChunkBytes(original_.size()));
     }
   });
   more_ = !last;
@@ -180,7 +187,7 @@ void Verifier::Finish() {
 }
 
 VerifyReport Verifier::Verify() {
-  next_was_ = was_.NextBytes(kChunkBytes);
+  next_was_ = was_.NextBytes(ChunkBytes(original_.size()));
   while (more_) {
     ReadNext();
     if (!SamePrint()) return std::move(report_);
