@@ -1,0 +1,126 @@
+// What a WorkerPool is made of; for its sources alone.
+
+#ifndef TRAVERSE_SERVER_JOBS_WORKER_POOL_PARTS_H_
+#define TRAVERSE_SERVER_JOBS_WORKER_POOL_PARTS_H_
+
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "server/jobs/worker_pool.h"
+
+namespace traverse {
+
+// A thread, and the turn of the task that it runs. Guarded by the pool's mutex, but for what the
+// thread alone uses.
+class WorkerPool::Worker : public Turn {
+ public:
+  explicit Worker(WorkerPool& pool) : pool_(pool) {}
+
+  // Quick while its slice lasts.
+  bool GiveWay(const CancelToken* cancel, std::optional<Clock::time_point> deadline) override {
+    const Clock::time_point now = Clock::now();
+    heard_of.store(now, std::memory_order_relaxed);
+    if (now < slice_end) return false;
+    cancelled_by = cancel;
+    due = deadline;
+    return pool_.Pause(*this);
+  }
+
+  // Whether others wait. The wish stays as long as a sign of life was asked for in vain.
+  void Want(bool others_wait) {
+    const bool is_asked = heard_of.load(std::memory_order_relaxed) < asked;
+    if (wanted() != (others_wait || is_asked)) SetWanted(!wanted());
+  }
+
+  // Begins a slice of work.
+  void BeginSlice(double worked) {
+    slice_begin = Clock::now();
+    slice_end = slice_begin + kSlice;
+    slice_worked = worked;
+    heard_of.store(slice_begin, std::memory_order_relaxed);
+  }
+
+  std::thread thread;
+  std::thread::id id;
+  Task task;
+  bool works = false;    // it has a permit
+  bool resumes = false;  // was given one after a pause
+  ConditionVariable resumed;
+
+  std::atomic<Clock::time_point> heard_of{};
+  Clock::time_point asked{};  // when a sign of life was asked for
+
+  // Used by the thread alone.
+  Clock::time_point slice_begin;
+  Clock::time_point slice_end;
+  double slice_worked = 0;  // by the work clock, as the slice began
+  const CancelToken* cancelled_by = nullptr;
+  std::optional<Clock::time_point> due;
+
+ private:
+  WorkerPool& pool_;
+};
+
+// All members but the constants are guarded by the pool's mutex.
+class WorkerPool::QueueImpl : public Queue,
+                              public FairOrder::Member,
+                              public std::enable_shared_from_this<QueueImpl> {
+ public:
+  QueueImpl(WorkerPool& pool, std::string caller, std::function<void()> on_no_memory)
+      : pool(pool), caller(std::move(caller)), on_no_memory(std::move(on_no_memory)) {}
+
+  void Submit(std::function<void()> task) override { SubmitLarge(std::move(task), 0); }
+
+  void SubmitLarge(std::function<void()> task, int64_t points) override {
+    pool.Submit(shared_from_this(), {std::move(task), Clock::now(), points, shared_from_this()});
+  }
+
+  int threads() const override { return pool.threads(); }
+
+  Turn* turn() override { return pool.WorkerOfThisThread(); }
+
+  QueueWait wait() const override {
+    MutexLock lock(pool.mutex_);
+    return waited;
+  }
+
+  double busy_seconds() const override {
+    MutexLock lock(pool.mutex_);
+    return busy;
+  }
+
+  bool idle() const override {
+    MutexLock lock(pool.mutex_);
+    return Idle();
+  }
+
+  void set_job(const std::string& name) override {
+    MutexLock lock(pool.mutex_);
+    job = name;
+  }
+
+  bool Idle() const { return tasks.empty() && under_way == 0; }
+  bool HasSomethingToDo() const { return !tasks.empty() || !paused.empty(); }
+
+  WorkerPool& pool;
+  const std::string caller;
+  std::string job;
+  Caller* entry = nullptr;  // of the caller; null while the queue is idle
+  const std::function<void()> on_no_memory;
+  std::deque<Task> tasks;
+  std::deque<Worker*> paused;
+  int under_way = 0;       // tasks begun and not ended
+  bool held_back = false;  // in held_back_
+  double busy = 0;         // seconds
+  QueueWait waited;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_SERVER_JOBS_WORKER_POOL_PARTS_H_
