@@ -8,6 +8,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/jobs/return_margin.h"
 #include "server/rpc/grpc_status.h"
 #include "server/rpc/wire.h"
 
@@ -15,25 +16,6 @@ namespace traverse {
 namespace {
 
 using Clock = Budget::Clock;
-
-// The way back of the last results takes part of the deadline: a share of the time, within bounds,
-// and something for each layer and point that is known to come, as even a layer whose time has run
-// out is given a greedy route, validated and written; at least what it took of late for this
-// caller, and what threads wait for a busy machine (return_lag.h). But never more than half.
-constexpr double kMarginShare = 0.1;
-constexpr auto kMinMargin = std::chrono::milliseconds(10);
-constexpr auto kMaxMargin = std::chrono::milliseconds(500);
-constexpr auto kMarginPerLayer = std::chrono::microseconds(100);
-constexpr auto kMarginPerPoint = std::chrono::nanoseconds(500);
-
-Clock::duration Margin(Clock::duration left, int64_t layers, int64_t points,
-                       Clock::duration measured, Clock::duration wakings) {
-  const auto share = std::chrono::duration_cast<Clock::duration>(left * kMarginShare);
-  const Clock::duration base =
-      std::max(std::clamp<Clock::duration>(share, kMinMargin, kMaxMargin), measured);
-  return std::min<Clock::duration>(
-      left / 2, base + wakings + layers * kMarginPerLayer + points * kMarginPerPoint);
-}
 
 // Messages up to this size are read in the thread of gRPC that brought them; a reaction has to be
 // quick.
@@ -285,9 +267,11 @@ void JobStream::StartEngine(int64_t expected_layers, int64_t expected_points) {
   std::optional<Clock::time_point> end;
   if (call_.deadline) {
     const Clock::time_point now = Clock::now();
-    end = *call_.deadline - Margin(*call_.deadline - now, expected_layers, expected_points,
-                                   core_.return_lag.Margin(call_.caller),
-                                   core_.wake_lateness.Margin());
+    end = *call_.deadline - MarginOfReturn({.left = *call_.deadline - now,
+                                            .layers = expected_layers,
+                                            .points = expected_points,
+                                            .lag = core_.return_lag.Margin(call_.caller),
+                                            .wakings = core_.wake_lateness.Margin()});
     search_end_ = end;
   }
   if (setup_.time_limit != absl::InfiniteDuration()) {

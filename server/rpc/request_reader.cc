@@ -1,7 +1,6 @@
 #include "server/rpc/request_reader.h"
 
 #include <google/protobuf/arena.h>
-#include <google/protobuf/io/coded_stream.h>
 #include <google/protobuf/wire_format_lite.h>
 
 #include <algorithm>
@@ -116,53 +115,6 @@ google::protobuf::ArenaOptions LargeBlocks() {
 
 }  // namespace
 
-void SliceStream::Open(std::vector<grpc::Slice> slices) {
-  slices_ = std::move(slices);
-  next_ = 0;
-  offset_ = 0;
-  count_ = 0;
-  let_go_ = false;
-}
-
-void SliceStream::RewindAndLetGo() {
-  next_ = 0;
-  offset_ = 0;
-  count_ = 0;
-  let_go_ = true;
-}
-
-bool SliceStream::Next(const void** data, int* size) {
-  // The one before was read to its end, and nobody backs up into it any more.
-  if (let_go_ && offset_ == 0 && next_ > 0) slices_[next_ - 1] = grpc::Slice();
-  while (next_ < slices_.size() && slices_[next_].size() == 0) ++next_;
-  if (next_ == slices_.size()) return false;
-  const grpc::Slice& slice = slices_[next_];
-  *data = slice.begin() + offset_;
-  *size = static_cast<int>(slice.size() - offset_);
-  count_ += *size;
-  ++next_;
-  offset_ = 0;
-  return true;
-}
-
-void SliceStream::BackUp(int count) {
-  if (count == 0) return;
-  --next_;
-  offset_ = slices_[next_].size() - static_cast<size_t>(count);
-  count_ -= count;
-}
-
-bool SliceStream::Skip(int count) {
-  const void* data = nullptr;
-  int size = 0;
-  while (count > 0) {
-    if (!Next(&data, &size)) return false;
-    if (size > count) BackUp(size - count);
-    count -= size;
-  }
-  return true;
-}
-
 absl::Status RequestReader::NotValid() const {
   return absl::InvalidArgumentError(
       absl::StrCat("the message of ", bytes_, " bytes is not a valid ", type_name_));
@@ -174,7 +126,7 @@ absl::Status RequestReader::Open(const char* type_name, grpc::ByteBuffer& messag
   bytes_ = static_cast<int64_t>(message.Length());
   has_options_ = false;
   options_.Clear();
-  layers_ = left_ = footprint_bytes_ = 0;
+  options_bytes_ = layers_ = left_ = footprint_bytes_ = 0;
   layer_bytes_.clear();
   std::vector<grpc::Slice> slices;
   if (bytes_ > 0 && !message.Dump(&slices).ok()) return NotValid();
@@ -183,55 +135,67 @@ absl::Status RequestReader::Open(const char* type_name, grpc::ByteBuffer& messag
   {
     CodedInputStream in(&stream_);
     uint32_t tag = 0;
-    int64_t options_bytes = 0;
     while ((tag = in.ReadTag()) != 0) {
-      int length = 0;
-      if (tag == kLayersTag) {
-        if (!ReadLength(in, length)) return NotValid();
-        const CodedInputStream::Limit limit = in.PushLimit(length);
-        Content content;
-        const Descriptor& layer = *v1::Layer::descriptor();
-        if (!CountContent(in, layer, limits.parts_of_layer, content)) return NotValid();
-        if (content.parts > limits.parts_of_layer) {
-          return absl::ResourceExhaustedError(
-              absl::StrCat("layers[", layers_, "]: more islands, paths, nodes and pairs than this ",
-                           "server's limit of ", limits.parts_of_layer));
-        }
-        in.PopLimit(limit);
-        if (++layers_ > limits.layers) return absl::OkStatus();
-        layer_bytes_.push_back((content.parts + 1) * kBytesOfPart + content.bytes * kBytesOfByte);
-        footprint_bytes_ += layer_bytes_.back();
-        if (footprint_bytes_ > limits.footprint_bytes) {
-          return absl::ResourceExhaustedError(
-              absl::StrCat("layers[", layers_ - 1, "]: up to here the message comes to more than ",
-                           limits.footprint_bytes >> 20, " MiB, which is all there is for jobs"));
-        }
-      } else if (tag == kOptionsTag) {
-        std::string bytes;
-        if (!ReadLength(in, length)) return NotValid();
-        options_bytes += length;
-        if (options_bytes > kMostOptionsBytes) {
-          return absl::ResourceExhaustedError(
-              absl::StrCat("options: more than ", kMostOptionsBytes, " bytes"));
-        }
-        if (!in.ReadString(&bytes, length)) return NotValid();
-        if (!HasFewParts(bytes)) {
-          return absl::ResourceExhaustedError(
-              absl::StrCat("options: more than ", kMostOptionsParts, " parts"));
-        }
-        if (!options_.MergeFromString(bytes)) return NotValid();
-        has_options_ = true;
-      } else {
-        if (!WireFormatLite::SkipField(&in, tag)) return NotValid();
-        return absl::UnimplementedError(
-            absl::StrCat("field number ", WireFormatLite::GetTagFieldNumber(tag),
-                         " of the message is not known to this version of the server"));
-      }
+      if (absl::Status status = LookAtField(tag, limits, in); !status.ok()) return status;
+      if (layers_ > limits.layers) return absl::OkStatus();
     }
     if (!in.ConsumedEntireMessage()) return NotValid();
   }
   left_ = layers_;
   stream_.RewindAndLetGo();
+  return absl::OkStatus();
+}
+
+absl::Status RequestReader::LookAtField(uint32_t tag, const RequestLimits& limits,
+                                        CodedInputStream& in) {
+  if (tag == kLayersTag) return CountLayer(limits, in);
+  if (tag == kOptionsTag) return ReadOptions(in);
+  if (!WireFormatLite::SkipField(&in, tag)) return NotValid();
+  return absl::UnimplementedError(
+      absl::StrCat("field number ", WireFormatLite::GetTagFieldNumber(tag),
+                   " of the message is not known to this version of the server"));
+}
+
+absl::Status RequestReader::CountLayer(const RequestLimits& limits, CodedInputStream& in) {
+  int length = 0;
+  if (!ReadLength(in, length)) return NotValid();
+  const CodedInputStream::Limit limit = in.PushLimit(length);
+  Content content;
+  const Descriptor& layer = *v1::Layer::descriptor();
+  if (!CountContent(in, layer, limits.parts_of_layer, content)) return NotValid();
+  if (content.parts > limits.parts_of_layer) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("layers[", layers_, "]: more islands, paths, nodes and pairs than this ",
+                     "server's limit of ", limits.parts_of_layer));
+  }
+  in.PopLimit(limit);
+  if (++layers_ > limits.layers) return absl::OkStatus();
+  layer_bytes_.push_back((content.parts + 1) * kBytesOfPart + content.bytes * kBytesOfByte);
+  footprint_bytes_ += layer_bytes_.back();
+  if (footprint_bytes_ > limits.footprint_bytes) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("layers[", layers_ - 1, "]: up to here the message comes to more than ",
+                     limits.footprint_bytes >> 20, " MiB, which is all there is for jobs"));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status RequestReader::ReadOptions(CodedInputStream& in) {
+  int length = 0;
+  std::string bytes;
+  if (!ReadLength(in, length)) return NotValid();
+  options_bytes_ += length;
+  if (options_bytes_ > kMostOptionsBytes) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("options: more than ", kMostOptionsBytes, " bytes"));
+  }
+  if (!in.ReadString(&bytes, length)) return NotValid();
+  if (!HasFewParts(bytes)) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("options: more than ", kMostOptionsParts, " parts"));
+  }
+  if (!options_.MergeFromString(bytes)) return NotValid();
+  has_options_ = true;
   return absl::OkStatus();
 }
 

@@ -7,9 +7,8 @@
 #ifndef TRAVERSE_SERVER_RPC_REQUEST_READER_H_
 #define TRAVERSE_SERVER_RPC_REQUEST_READER_H_
 
-#include <google/protobuf/io/zero_copy_stream.h>
+#include <google/protobuf/io/coded_stream.h>
 #include <grpcpp/support/byte_buffer.h>
-#include <grpcpp/support/slice.h>
 
 #include <cstdint>
 #include <functional>
@@ -17,32 +16,11 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "server/rpc/slice_stream.h"
 #include "traverse/v1/options.pb.h"
 #include "traverse/v1/plan.pb.h"
 
 namespace traverse {
-
-// The bytes of a message, in the slices that gRPC received.
-class SliceStream : public google::protobuf::io::ZeroCopyInputStream {
- public:
-  // Begins with the first byte of `slices`.
-  void Open(std::vector<grpc::Slice> slices);
-
-  // Begins anew; from now on slices that were read are let go.
-  void RewindAndLetGo();
-
-  bool Next(const void** data, int* size) override;
-  void BackUp(int count) override;
-  bool Skip(int count) override;
-  int64_t ByteCount() const override { return count_; }
-
- private:
-  std::vector<grpc::Slice> slices_;
-  size_t next_ = 0;    // the slice that comes next, or of which a part is left
-  size_t offset_ = 0;  // what was read of it
-  int64_t count_ = 0;
-  bool let_go_ = false;
-};
 
 // How much there may be in a message.
 struct RequestLimits {
@@ -85,13 +63,21 @@ class RequestReader {
   absl::Status Read(int64_t bytes, const std::function<absl::Status(const v1::Layer&)>& take);
 
  private:
+  using CodedInputStream = google::protobuf::io::CodedInputStream;
+
   absl::Status NotValid() const;
+
+  // The steps of Open, for the field behind `tag`.
+  absl::Status LookAtField(uint32_t tag, const RequestLimits& limits, CodedInputStream& in);
+  absl::Status CountLayer(const RequestLimits& limits, CodedInputStream& in);
+  absl::Status ReadOptions(CodedInputStream& in);
 
   std::string type_name_;
   int64_t bytes_ = 0;
   SliceStream stream_;
   bool has_options_ = false;
   v1::JobOptions options_;
+  int64_t options_bytes_ = 0;
   int64_t layers_ = 0;
   int64_t left_ = 0;
   int64_t footprint_bytes_ = 0;
