@@ -20,7 +20,7 @@
 #include "server/jobs/return_lag.h"
 #include "server/jobs/worker_pool.h"
 #include "server/net/connections.h"
-#include "server/ops/metrics.h"
+#include "server/ops/metrics/metrics.h"
 #include "server/ops/operator_files.h"
 #include "server/ops/periodic.h"
 #include "server/ops/watchdog.h"

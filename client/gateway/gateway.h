@@ -20,7 +20,7 @@
 #include "client/gateway/http/http_server.h"
 #include "client/gateway/octoprint/printer_api.h"
 #include "server/access/credentials.h"
-#include "server/ops/metrics_http.h"
+#include "server/ops/metrics/metrics_http.h"
 #include "server/ops/periodic.h"
 
 namespace traverse::gateway {

@@ -5,14 +5,9 @@
 #ifndef TRAVERSE_CLIENT_GATEWAY_GATEWAY_METRICS_H_
 #define TRAVERSE_CLIENT_GATEWAY_GATEWAY_METRICS_H_
 
-#include <prometheus/counter.h>
-#include <prometheus/family.h>
-#include <prometheus/gauge.h>
-#include <prometheus/histogram.h>
-#include <prometheus/registry.h>
-
 #include <string>
 
+#include "server/ops/metrics/metric_registry.h"
 #include "traverse/v1/gcode_service.pb.h"
 
 namespace traverse::gateway {
@@ -52,11 +47,7 @@ class GatewayMetrics {
   std::string Text(const Gauges& gauges);
 
  private:
-  template <typename Builder>
-  auto& Family(Builder builder, const std::string& name, const std::string& help);
-  prometheus::Gauge& Gauge(const std::string& name, const std::string& help);
-
-  prometheus::Registry registry_;
+  MetricRegistry registry_;
   prometheus::Family<prometheus::Counter>& requests_;
   prometheus::Family<prometheus::Histogram>& request_seconds_;
   prometheus::Family<prometheus::Counter>& files_;

@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-#include "server/ops/metrics_http.h"
+#include "server/ops/metrics/metrics_http.h"
 #include "tests/fuzz/check.h"
 #include "tests/fuzz/tcp_exchange.h"
 

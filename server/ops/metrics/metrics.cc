@@ -1,22 +1,12 @@
-#include "server/ops/metrics.h"
-
-#include <prometheus/text_serializer.h>
+#include "server/ops/metrics/metrics.h"
 
 #include <algorithm>
-#include <utility>
-#include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "server/ops/process_metrics.h"
 #include "server/translate/translate_result.h"
-#include "server/version.h"
 
 namespace traverse {
 namespace {
-
-using prometheus::BuildCounter;
-using prometheus::BuildGauge;
-using prometheus::BuildHistogram;
 
 // Bounds of the histograms, in s: a layer takes from microseconds to the minutes of a proof.
 const prometheus::Histogram::BucketBoundaries& LayerSecondsBounds() {
@@ -33,43 +23,9 @@ const prometheus::Histogram::BucketBoundaries& JobSecondsBounds() {
   return bounds;
 }
 
-const prometheus::Histogram::BucketBoundaries& GapBounds() {
-  static const auto& bounds = *new prometheus::Histogram::BucketBoundaries{
-      0, 0.001, 0.0025, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5};
-  return bounds;
-}
-
 }  // namespace
 
-prometheus::Family<prometheus::Counter>& Metrics::NewCounters(const char* name, const char* help) {
-  return BuildCounter().Name(name).Help(help).Register(registry_);
-}
-
-prometheus::Family<prometheus::Gauge>& Metrics::NewGauges(const char* name, const char* help) {
-  return BuildGauge().Name(name).Help(help).Register(registry_);
-}
-
-prometheus::Family<prometheus::Histogram>& Metrics::NewHistograms(const char* name,
-                                                                  const char* help) {
-  return BuildHistogram().Name(name).Help(help).Register(registry_);
-}
-
-prometheus::Counter& Metrics::NewCounter(const char* name, const char* help) {
-  return NewCounters(name, help).Add({});
-}
-
-prometheus::Gauge& Metrics::NewGauge(const char* name, const char* help) {
-  return NewGauges(name, help).Add({});
-}
-
-prometheus::Histogram& Metrics::NewGap(const char* name, const char* help) {
-  return NewHistograms(name, help).Add({}, GapBounds());
-}
-
 Metrics::Metrics() {
-  NewGauges("traverse_build_info", "1, labelled with the version.")
-      .Add({{"version", kVersion}})
-      .Set(1);
   // Reasons are there from the start, so that rates over them are.
   for (int r = 0; r <= static_cast<int>(Refusal::kPermission); ++r) {
     rejected_.Add({{"reason", RefusalName(static_cast<Refusal>(r))}});
@@ -141,9 +97,7 @@ std::string Metrics::Text(const Gauges& gauges) {
   if (gauges.client_ca_expiry_seconds) {
     certificate_expiry_.Add({{"file", "client_ca"}}).Set(*gauges.client_ca_expiry_seconds);
   }
-  std::vector<prometheus::MetricFamily> families = registry_.Collect();
-  for (prometheus::MetricFamily& family : ProcessMetrics()) families.push_back(std::move(family));
-  return prometheus::TextSerializer().Serialize(families);
+  return registry_.Text();
 }
 
 }  // namespace traverse

@@ -1,7 +1,7 @@
 // Metrics of the process, as Prometheus names them, read from /proc/self.
 
-#ifndef TRAVERSE_SERVER_OPS_PROCESS_METRICS_H_
-#define TRAVERSE_SERVER_OPS_PROCESS_METRICS_H_
+#ifndef TRAVERSE_SERVER_OPS_METRICS_PROCESS_METRICS_H_
+#define TRAVERSE_SERVER_OPS_METRICS_PROCESS_METRICS_H_
 
 #include <prometheus/metric_family.h>
 
@@ -16,4 +16,4 @@ std::vector<prometheus::MetricFamily> ProcessMetrics();
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_SERVER_OPS_PROCESS_METRICS_H_
+#endif  // TRAVERSE_SERVER_OPS_METRICS_PROCESS_METRICS_H_

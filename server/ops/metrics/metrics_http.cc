@@ -1,4 +1,4 @@
-#include "server/ops/metrics_http.h"
+#include "server/ops/metrics/metrics_http.h"
 
 #include <microhttpd.h>
 #include <sys/socket.h>

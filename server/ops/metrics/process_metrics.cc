@@ -1,4 +1,4 @@
-#include "server/ops/process_metrics.h"
+#include "server/ops/metrics/process_metrics.h"
 
 #include <malloc.h>
 #include <sys/resource.h>

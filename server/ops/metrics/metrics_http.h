@@ -5,8 +5,8 @@
 // has to go: whoever asks and reads is done in milliseconds, and never kept out by those who do
 // not.
 
-#ifndef TRAVERSE_SERVER_OPS_METRICS_HTTP_H_
-#define TRAVERSE_SERVER_OPS_METRICS_HTTP_H_
+#ifndef TRAVERSE_SERVER_OPS_METRICS_METRICS_HTTP_H_
+#define TRAVERSE_SERVER_OPS_METRICS_METRICS_HTTP_H_
 
 #include <cstdint>
 #include <functional>
@@ -64,4 +64,4 @@ class MetricsHttp {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_SERVER_OPS_METRICS_HTTP_H_
+#endif  // TRAVERSE_SERVER_OPS_METRICS_METRICS_HTTP_H_

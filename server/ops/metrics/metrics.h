@@ -2,19 +2,12 @@
 //
 // Thread-safe.
 
-#ifndef TRAVERSE_SERVER_OPS_METRICS_H_
-#define TRAVERSE_SERVER_OPS_METRICS_H_
-
-#include <prometheus/counter.h>
-#include <prometheus/family.h>
-#include <prometheus/gauge.h>
-#include <prometheus/histogram.h>
-#include <prometheus/registry.h>
+#ifndef TRAVERSE_SERVER_OPS_METRICS_METRICS_H_
+#define TRAVERSE_SERVER_OPS_METRICS_METRICS_H_
 
 #include <array>
-#include <functional>
+#include <initializer_list>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -22,6 +15,7 @@
 #include "engine/base/mutex.h"
 #include "engine/engine.h"
 #include "server/jobs/admission.h"
+#include "server/ops/metrics/metric_registry.h"
 
 namespace traverse {
 
@@ -72,62 +66,58 @@ class Metrics {
   std::string Text(const Gauges& gauges);
 
  private:
-  // Register a family of metrics told apart by labels, or the one without any.
-  prometheus::Family<prometheus::Counter>& NewCounters(const char* name, const char* help);
-  prometheus::Family<prometheus::Gauge>& NewGauges(const char* name, const char* help);
-  prometheus::Family<prometheus::Histogram>& NewHistograms(const char* name, const char* help);
-  prometheus::Counter& NewCounter(const char* name, const char* help);
-  prometheus::Gauge& NewGauge(const char* name, const char* help);
-  prometheus::Histogram& NewGap(const char* name, const char* help);
+  static constexpr std::initializer_list<double> kGapBounds = {0,    0.001, 0.0025, 0.005, 0.01,
+                                                               0.02, 0.05,  0.1,    0.2,   0.5};
 
-  prometheus::Registry registry_;
+  MetricRegistry registry_;
   prometheus::Family<prometheus::Counter>& jobs_ =
-      NewCounters("traverse_jobs_total", "Jobs ended, by gRPC status.");
+      registry_.Counters("traverse_jobs_total", "Jobs ended, by gRPC status.");
   prometheus::Family<prometheus::Counter>& layers_ =
-      NewCounters("traverse_layers_total", "Layers solved, by stop reason.");
+      registry_.Counters("traverse_layers_total", "Layers solved, by stop reason.");
   prometheus::Family<prometheus::Counter>& rpcs_ =
-      NewCounters("traverse_rpcs_total", "Calls ended, by method and status.");
-  prometheus::Family<prometheus::Counter>& rejected_ = NewCounters(
+      registry_.Counters("traverse_rpcs_total", "Calls ended, by method and status.");
+  prometheus::Family<prometheus::Counter>& rejected_ = registry_.Counters(
       "traverse_rejected_total", "Jobs refused for a limit or a permission, by reason.");
-  prometheus::Family<prometheus::Counter>& reload_failures_ =
-      NewCounters("traverse_reload_failures_total",
-                  "Changed files of no use, by what they are of; what was good before stays.");
+  prometheus::Family<prometheus::Counter>& reload_failures_ = registry_.Counters(
+      "traverse_reload_failures_total",
+      "Changed files of no use, by what they are of; what was good before stays.");
   prometheus::Family<prometheus::Histogram>& layer_seconds_ =
-      NewHistograms("traverse_layer_solve_seconds", "Time of work on one layer.");
+      registry_.Histograms("traverse_layer_solve_seconds", "Time of work on one layer.");
   prometheus::Family<prometheus::Histogram>& job_seconds_ =
-      NewHistograms("traverse_job_seconds", "Time from a job's first message to its last.");
-  prometheus::Counter& travel_given_mm_ = NewCounter(
+      registry_.Histograms("traverse_job_seconds", "Time from a job's first message to its last.");
+  prometheus::Counter& travel_given_mm_ = registry_.Counter(
       "traverse_travel_given_mm_total", "Travel of the orders given, cleaning included.");
-  prometheus::Counter& travel_mm_ =
-      NewCounter("traverse_travel_mm_total", "Travel of the routes answered, cleaning included.");
-  prometheus::Counter& idle_seconds_saved_ = NewCounter(
+  prometheus::Counter& travel_mm_ = registry_.Counter(
+      "traverse_travel_mm_total", "Travel of the routes answered, cleaning included.");
+  prometheus::Counter& idle_seconds_saved_ = registry_.Counter(
       "traverse_idle_seconds_saved_total", "Idle time saved at the speeds stated by the jobs.");
-  prometheus::Counter& invalid_routes_ = NewCounter(
+  prometheus::Counter& invalid_routes_ = registry_.Counter(
       "traverse_invalid_routes_total", "Routes that failed the validator; each one is a bug.");
-  prometheus::Histogram& gap_ =
-      NewGap("traverse_optimality_gap_ratio", "Gap of layers with a lower bound.");
+  prometheus::Histogram& gap_ = registry_.Histogram(
+      "traverse_optimality_gap_ratio", "Gap of layers with a lower bound.", kGapBounds);
   prometheus::Gauge& queue_layers_ =
-      NewGauge("traverse_queue_layers", "Layers accepted and not yet solved.");
+      registry_.Gauge("traverse_queue_layers", "Layers accepted and not yet solved.");
   prometheus::Gauge& queue_points_ =
-      NewGauge("traverse_queue_points", "Points accepted and not yet solved.");
+      registry_.Gauge("traverse_queue_points", "Points accepted and not yet solved.");
   prometheus::Gauge& jobs_in_flight_ =
-      NewGauge("traverse_jobs_in_flight", "Jobs accepted and not ended.");
-  prometheus::Gauge& workers_busy_ = NewGauge("traverse_workers_busy", "Workers that run a task.");
-  prometheus::Gauge& workers_ = NewGauge("traverse_workers", "Workers there are.");
-  prometheus::Gauge& workers_silent_ = NewGauge(
+      registry_.Gauge("traverse_jobs_in_flight", "Jobs accepted and not ended.");
+  prometheus::Gauge& workers_busy_ =
+      registry_.Gauge("traverse_workers_busy", "Workers that run a task.");
+  prometheus::Gauge& workers_ = registry_.Gauge("traverse_workers", "Workers there are.");
+  prometheus::Gauge& workers_silent_ = registry_.Gauge(
       "traverse_workers_silent", "Workers that gave no sign of life for the time of --watchdog.");
   prometheus::Gauge& ready_ =
-      NewGauge("traverse_ready", "1 if the server takes jobs, 0 if it drains.");
-  prometheus::Counter& log_lines_lost_ =
-      NewCounter("traverse_log_lines_lost_total", "Lines of the log dropped or not written.");
-  prometheus::Family<prometheus::Gauge>& memory_ =
-      NewGauges("traverse_memory_bytes", "Memory that callers make the server hold, by kind.");
+      registry_.Gauge("traverse_ready", "1 if the server takes jobs, 0 if it drains.");
+  prometheus::Counter& log_lines_lost_ = registry_.Counter(
+      "traverse_log_lines_lost_total", "Lines of the log dropped or not written.");
+  prometheus::Family<prometheus::Gauge>& memory_ = registry_.Gauges(
+      "traverse_memory_bytes", "Memory that callers make the server hold, by kind.");
   prometheus::Gauge& max_memory_ =
-      NewGauge("traverse_memory_max_bytes", "Memory that the server may have.");
-  prometheus::Gauge& connections_ = NewGauge("traverse_connections", "Connections open.");
-  prometheus::Counter& connections_cut_ = NewCounter(
+      registry_.Gauge("traverse_memory_max_bytes", "Memory that the server may have.");
+  prometheus::Gauge& connections_ = registry_.Gauge("traverse_connections", "Connections open.");
+  prometheus::Counter& connections_cut_ = registry_.Counter(
       "traverse_connections_cut_total", "Connections ended for what they sent, or to make room.");
-  prometheus::Family<prometheus::Gauge>& certificate_expiry_ = NewGauges(
+  prometheus::Family<prometheus::Gauge>& certificate_expiry_ = registry_.Gauges(
       "traverse_certificate_expiry_seconds", "Time until the certificate in use expires, by file.");
 
   Mutex mutex_;
@@ -137,4 +127,4 @@ class Metrics {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_SERVER_OPS_METRICS_H_
+#endif  // TRAVERSE_SERVER_OPS_METRICS_METRICS_H_

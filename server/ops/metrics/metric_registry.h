@@ -1,0 +1,42 @@
+// The metrics of one daemon, and the text that Prometheus reads.
+
+#ifndef TRAVERSE_SERVER_OPS_METRICS_METRIC_REGISTRY_H_
+#define TRAVERSE_SERVER_OPS_METRICS_METRIC_REGISTRY_H_
+
+#include <prometheus/counter.h>
+#include <prometheus/family.h>
+#include <prometheus/gauge.h>
+#include <prometheus/histogram.h>
+#include <prometheus/registry.h>
+
+#include <string>
+
+namespace traverse {
+
+// Thread-safe. What is registered lives as long as this.
+class MetricRegistry {
+ public:
+  // Registers traverse_build_info.
+  MetricRegistry();
+
+  // A family of metrics told apart by labels.
+  prometheus::Family<prometheus::Counter>& Counters(const char* name, const char* help);
+  prometheus::Family<prometheus::Gauge>& Gauges(const char* name, const char* help);
+  prometheus::Family<prometheus::Histogram>& Histograms(const char* name, const char* help);
+
+  // A metric without labels.
+  prometheus::Counter& Counter(const char* name, const char* help);
+  prometheus::Gauge& Gauge(const char* name, const char* help);
+  prometheus::Histogram& Histogram(const char* name, const char* help,
+                                   const prometheus::Histogram::BucketBoundaries& bounds);
+
+  // The text of /metrics, with the metrics of the process.
+  std::string Text() const;
+
+ private:
+  prometheus::Registry registry_;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_SERVER_OPS_METRICS_METRIC_REGISTRY_H_
