@@ -116,16 +116,14 @@ FlagProgram Program() {
           "\nusage: traverse-server [--listen=HOST:PORT] [--metrics_listen=HOST:PORT] "
           "[--name=value ...]\n"
           "       traverse-server --config=FILE\n"
-          "       traverse-server --version | --help\n\n"};
+          "       traverse-server --version | --help\n\n",
+          CheckRanges};
 }
 
 }  // namespace
 
 absl::StatusOr<std::string> ReadFlags(const std::vector<std::string>& arguments) {
-  absl::StatusOr<std::string> text = ReadProgramFlags(Program(), arguments);
-  if (!text.ok() || !text->empty()) return text;
-  if (absl::Status status = CheckRanges(); !status.ok()) return status;
-  return text;
+  return ReadProgramFlags(Program(), arguments);
 }
 
 absl::Duration DrainTimeout() { return absl::GetFlag(FLAGS_drain_timeout); }

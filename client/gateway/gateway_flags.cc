@@ -84,16 +84,6 @@ ABSL_FLAG(std::string, flagfile, "", "The same as --config, at its place on the 
 namespace traverse::gateway {
 namespace {
 
-FlagProgram Program() {
-  return {"traverse-gateway", "client/gateway/gateway_flags.cc",
-          "Takes sliced files over HTTP and gRPC and gives them back with less travel; see "
-          "client/gateway/README.md.\n"
-          "\nusage: traverse-gateway [--listen_http=HOST:PORT] [--server=HOST:PORT,...] "
-          "[--name=value ...]\n"
-          "       traverse-gateway --config=FILE\n"
-          "       traverse-gateway --version | --help\n\n"};
-}
-
 absl::Status CheckRanges() {
   const absl::Status numbers = CheckLeastValues({
       {"threads", absl::GetFlag(FLAGS_threads), 0},
@@ -124,6 +114,17 @@ absl::Status CheckRanges() {
   }
   return CheckDaemonFlags(absl::GetFlag(FLAGS_drain_timeout), absl::GetFlag(FLAGS_allowed_clients),
                           absl::GetFlag(FLAGS_tls_client_ca));
+}
+
+FlagProgram Program() {
+  return {"traverse-gateway", "client/gateway/gateway_flags.cc",
+          "Takes sliced files over HTTP and gRPC and gives them back with less travel; see "
+          "client/gateway/README.md.\n"
+          "\nusage: traverse-gateway [--listen_http=HOST:PORT] [--server=HOST:PORT,...] "
+          "[--name=value ...]\n"
+          "       traverse-gateway --config=FILE\n"
+          "       traverse-gateway --version | --help\n\n",
+          CheckRanges};
 }
 
 absl::Status SetServers(GatewayOptions& options) {
@@ -171,10 +172,7 @@ int64_t MaxMemory() {
 }  // namespace
 
 absl::StatusOr<std::string> ReadFlags(const std::vector<std::string>& arguments) {
-  absl::StatusOr<std::string> text = ReadProgramFlags(Program(), arguments);
-  if (!text.ok() || !text->empty()) return text;
-  if (absl::Status status = CheckRanges(); !status.ok()) return status;
-  return text;
+  return ReadProgramFlags(Program(), arguments);
 }
 
 absl::Duration DrainTimeout() { return absl::GetFlag(FLAGS_drain_timeout); }

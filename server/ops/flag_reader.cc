@@ -170,6 +170,7 @@ absl::StatusOr<std::string> ReadProgramFlags(const FlagProgram& program,
     return absl::InvalidArgumentError(
         absl::StrCat(one.place, "\"", one.value, "\" is no value of --", one.flag->Name()));
   }
+  if (absl::Status status = program.check(); !status.ok()) return status;
   return std::string();
 }
 

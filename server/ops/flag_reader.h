@@ -19,11 +19,15 @@ struct FlagProgram {
   std::string name;   // "traverse-server"
   std::string file;   // the end of the path of the source that defines its flags
   std::string usage;  // the text that --help begins with
+
+  // InvalidArgument if the flags, which are set, do not go together or are out of range.
+  absl::Status (*check)();
 };
 
 // Sets the flags of `program` to what `arguments` (without the program's name) state, and before
 // them the file that --config names. Returns what is to be printed instead of running, for --help
-// and --version; else an empty text. InvalidArgument, in one line with its place.
+// and --version; else an empty text. Errors: InvalidArgument in one line with its place; that of
+// `check`.
 absl::StatusOr<std::string> ReadProgramFlags(const FlagProgram& program,
                                              const std::vector<std::string>& arguments);
 
