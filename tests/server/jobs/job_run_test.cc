@@ -298,6 +298,33 @@ TEST_F(JobRunTest, EndsOfAJobThatNeverStarted) {
   EXPECT_TRUE(port_.messages().empty());
 }
 
+// Calls `meanwhile` as the engine starts a job.
+class StartingExecutor : public Executor {
+ public:
+  StartingExecutor(Executor& executor, std::function<void()> meanwhile)
+      : executor_(executor), meanwhile_(std::move(meanwhile)) {}
+
+  void Submit(std::function<void()> task) override { executor_.Submit(std::move(task)); }
+  int threads() const override {
+    meanwhile_();
+    return executor_.threads();
+  }
+
+ private:
+  Executor& executor_;
+  const std::function<void()> meanwhile_;
+};
+
+TEST_F(JobRunTest, AnAbortWhileTheEngineStartsIsNotLost) {
+  StartingExecutor executor(*queue_, [this] { port_.run().Abort(absl::CancelledError("now")); });
+
+  port_.run().Start({}, {}, Slow(0), executor);
+
+  ASSERT_TRUE(port_.WaitForFinish());
+  EXPECT_EQ(port_.status().message(), "now");
+  EXPECT_TRUE(port_.messages().empty());
+}
+
 // Wants more memory than there is, in every layer but the first.
 class HungryStrategy : public SlowStrategy {
  public:
