@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/report/numbers.h"
+#include "client/report/reproduce/sample.h"
 #include "client/report/reproduce/thesis_values.h"
 #include "client/report/table.h"
 
@@ -15,13 +16,6 @@ namespace traverse::report {
 namespace {
 
 using thesis::kNa;
-
-// Student's t for 95 % by degrees of freedom, from 1 on; 1.96 beyond.
-constexpr double kStudent[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306,
-                               2.262,  2.228, 2.201, 2.179, 2.160, 2.145, 2.131, 2.120,
-                               2.110,  2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064,
-                               2.060,  2.056, 2.052, 2.048, 2.045, 2.042};
-constexpr double kTolerance = 0.10;
 
 // One column of table 5.2, and how it is run.
 struct Column {
@@ -104,8 +98,8 @@ class Tables {
     AddText(table, {"Tolerância (k)", "10%", "10%"});
     AddText(table, {"Amostras iniciais (n)", absl::StrCat(n), "10"});
     AddText(table, {"Graus liberdade", absl::StrCat(n - 1), "9"});
-    AddText(table, {"Valor T (alpha/2;GL)",
-                    absl::StrFormat("%.3f", n > 1 ? kStudent[std::min(n - 2, 29)] : 0), "2.262"});
+    AddText(table, {"Valor T (alpha/2;GL)", absl::StrFormat("%.3f", n > 1 ? StudentT(n - 1) : 0),
+                    "2.262"});
     return Titled("Tabela 3.1 - Parâmetros da quantidade de amostras necessárias", table);
   }
 
@@ -400,25 +394,6 @@ class Tables {
 };
 
 }  // namespace
-
-Sample SampleOf(const std::vector<double>& values) {
-  Sample sample;
-  sample.size = static_cast<int>(values.size());
-  if (values.empty()) return sample;
-  for (const double value : values) sample.mean += value / static_cast<double>(values.size());
-  double squares = 0;
-  for (const double value : values) squares += (value - sample.mean) * (value - sample.mean);
-  if (values.size() > 1) sample.deviation = std::sqrt(squares / (sample.size - 1));
-  return sample;
-}
-
-double SamplesNeeded(const Sample& sample) {
-  if (sample.size < 2 || sample.mean == 0) return 0;
-  const size_t freedom = static_cast<size_t>(sample.size - 1);
-  const double t = freedom <= std::size(kStudent) ? kStudent[freedom - 1] : 1.96;
-  const double root = 2 * t * sample.deviation / (kTolerance * sample.mean);
-  return root * root;
-}
 
 std::string ThesisTables(const ReproduceForm& form, const OutcomeOfRun& outcome) {
   return Tables(form, outcome).All();

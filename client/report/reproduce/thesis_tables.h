@@ -17,18 +17,6 @@ using OutcomeOfRun = std::function<const RunOutcome*(const PlannedRun&)>;
 // Head speed of [T] 3.4 for idle times, mm/s.
 inline constexpr double kIdleSpeed = 20.32;
 
-// Mean and standard deviation of the sample.
-struct Sample {
-  int size = 0;
-  double mean = 0;
-  double deviation = 0;
-};
-Sample SampleOf(const std::vector<double>& values);
-
-// Equation 3.2: how many samples a tolerance of k = 10 % takes at 95 %, (2 t S / (k mean))^2 for
-// Student's t of the sample's size less one. 0 of fewer than two values.
-double SamplesNeeded(const Sample& sample);
-
 // Tables 3.1 and 3.2, 5.1 to 5.8, and the figures of 5.13, in the thesis's rows and words; the
 // thesis's own figures in the lines marked "tese". What was not run is left out.
 std::string ThesisTables(const ReproduceForm& form, const OutcomeOfRun& outcome);

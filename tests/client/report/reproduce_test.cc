@@ -9,6 +9,7 @@
 #include "client/report/reproduce/figures_page.h"
 #include "client/report/reproduce/outcomes.h"
 #include "client/report/reproduce/paper_table.h"
+#include "client/report/reproduce/sample.h"
 #include "client/report/reproduce/thesis_tables.h"
 
 namespace traverse::report {
