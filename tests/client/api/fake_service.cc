@@ -59,6 +59,7 @@ std::string FakeService::address() const { return absl::StrFormat("127.0.0.1:%d"
 grpc::Status FakeService::Optimize(
     grpc::ServerContext*,
     grpc::ServerReaderWriter<v1::OptimizeResponse, v1::OptimizeRequest>* stream) {
+  on_call();
   layers.clear();
   messages = 0;
   uint64_t answered = 0;

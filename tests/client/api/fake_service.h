@@ -36,6 +36,9 @@ class FakeService : public v1::RouteOptimizerService::Service {
   grpc::Status status;
   uint64_t layers_before_status = 0;
 
+  // Called at the beginning of each call.
+  std::function<void()> on_call = [] {};
+
   // True: the summary is left out.
   bool forget_summary = false;
 

@@ -3,11 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "absl/time/clock.h"
 #include "client/api/optimizer_client.h"
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
 #include "tests/client/api/fake_service.h"
 
 namespace traverse {
@@ -70,6 +74,46 @@ TEST(Resume, GivesUpAfterAttemptsThatBroughtNothing) {
   const absl::StatusOr<JobResult> result = client.Optimize({}, Layers(3), Quick(3));
 
   EXPECT_EQ(result.status().code(), absl::StatusCode::kUnavailable);
+}
+
+// The statuses of a server that is full, or about to go, with the advice to come back then.
+grpc::Status WithAdvice(grpc::StatusCode code, absl::Duration delay) {
+  google::rpc::RetryInfo advice;
+  advice.mutable_retry_delay()->set_nanos(static_cast<int32_t>(absl::ToInt64Nanoseconds(delay)));
+  google::rpc::Status details;
+  details.add_details()->PackFrom(advice);
+  return {code, "full", details.SerializeAsString()};
+}
+
+TEST(Resume, ComesBackNoEarlierThanTheServerAdvises) {
+  constexpr absl::Duration kAdvice = absl::Milliseconds(150);
+  for (const auto code : {grpc::StatusCode::RESOURCE_EXHAUSTED, grpc::StatusCode::UNAVAILABLE}) {
+    FakeService service;
+    service.status = WithAdvice(code, kAdvice);
+    OptimizerClient client(service.InProcessChannel());
+    CallOptions call = Quick(2);
+    call.retry.max_refusals = 2;
+
+    const absl::Time began = absl::Now();
+    const absl::StatusOr<JobResult> result = client.Optimize({}, Layers(3), call);
+
+    EXPECT_EQ(result.status().code(), static_cast<absl::StatusCode>(code));
+    EXPECT_GE(absl::Now() - began, kAdvice);
+  }
+}
+
+TEST(Resume, AServerThatIsFullIsAskedMoreOftenThanOneThatIsGone) {
+  FakeService service;
+  service.status = WithAdvice(grpc::StatusCode::RESOURCE_EXHAUSTED, absl::Milliseconds(1));
+  std::atomic<int> calls{0};
+  service.on_call = [&] { ++calls; };
+  OptimizerClient client(service.InProcessChannel());
+  CallOptions call = Quick(2);
+  call.retry.max_refusals = 4;
+
+  EXPECT_FALSE(client.Optimize({}, Layers(3), call).ok());
+
+  EXPECT_EQ(calls, 4);
 }
 
 TEST(Resume, EverySignOfALostConnectionCounts) {

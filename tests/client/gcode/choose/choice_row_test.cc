@@ -62,6 +62,15 @@ TEST(BestRow, UnderSafeNoLayerTravelsFurtherWithTheWayToIt) {
   EXPECT_EQ(Best(columns, Policy::kFree), Row({1, 1}));
 }
 
+TEST(BestRow, UnderSafeALittleFurtherIsTooFar) {
+  const std::vector<ChoiceColumn> columns = {
+      Column({Totals(10, 0, 20), Totals(9, 0, 20.01)}, 0),
+  };
+
+  EXPECT_EQ(Best(columns, Policy::kSafe), Row({0}));
+  EXPECT_EQ(Best(columns, Policy::kBalanced), Row({1}));
+}
+
 TEST(BestRow, WhatIsRuledOutIsNotChosen) {
   std::vector<ChoiceColumn> columns = {
       Column({Totals(10, 0), Totals(9, 0)}, 0),
@@ -83,8 +92,24 @@ TEST(BestRow, OpenWaysAcrossWallsAndPushedFilamentStayAsTheyAre) {
   PrintTotals pushed = Totals(9, 0);
   pushed.extra_mm = 0.1;
 
-  EXPECT_EQ(Best({Column({Totals(10, 0), open}, 0)}, Policy::kFree), Row({0}));
-  EXPECT_EQ(Best({Column({Totals(10, 0), pushed}, 0)}, Policy::kFree), Row({0}));
+  for (const Policy policy : {Policy::kSafe, Policy::kFree}) {
+    EXPECT_EQ(Best({Column({Totals(10, 0), open}, 0)}, policy, Crossings::kAny), Row({0}));
+    EXPECT_EQ(Best({Column({Totals(10, 0), pushed}, 0)}, policy, Crossings::kAny), Row({0}));
+  }
+}
+
+TEST(BestRow, NoOpenWayAcrossWallsIsLongerThanInTheFile) {
+  PrintTotals given = Totals(10, 1);
+  given.open_crossings = 1;
+  given.longest_open_mm = 2;
+  PrintTotals longer = given;
+  longer.seconds = 9;
+  longer.longest_open_mm = 2.01;
+  PrintTotals as_long = given;
+  as_long.seconds = 9.5;
+
+  EXPECT_EQ(Best({Column({given, longer, as_long}, 0)}, Policy::kSafe), Row({2}));
+  EXPECT_EQ(Best({Column({given, longer, as_long}, 0)}, Policy::kFree), Row({2}));
 }
 
 }  // namespace

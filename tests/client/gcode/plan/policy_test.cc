@@ -156,6 +156,15 @@ TEST(Policy, SafeKeepsTheStartOfVisibleWallsAlone) {
   EXPECT_THAT(free.plan.paths(2).contour().entries(), IsEmpty());
 }
 
+TEST(Policy, SafeKeepsTheStartOfOverhangsToo) {
+  Sheet sheet;
+  sheet.Square(";TYPE:Overhang perimeter", 0, 0, 10);
+  Sheet same = sheet;
+
+  EXPECT_THAT(sheet.Plan().plan.paths(1).contour().entries(), ElementsAre(0));
+  EXPECT_THAT(same.Plan(Policy::kFree).plan.paths(1).contour().entries(), IsEmpty());
+}
+
 TEST(Policy, BalancedStartsVisibleWallsAtTheirCorners) {
   Sheet sheet;
   sheet.Path(kOuter, {{5, 0}, {10, 0}, {10, 10}, {5, 10.3}, {0, 10}, {0, 0}, {5, 0}});
