@@ -24,10 +24,15 @@ Route Polisher::Iterate(Route route, int64_t patience, Rng& rng, Budget& budget)
   state_.Load(route);
   IteratedSearchOptions options;
   options.patience = patience;
-  options.temperature = 0;  // detours need more kicks than there are here
+  // First without detours, which find less where kicks are as few as here; then with them, from the
+  // best route, out of what no single kick leads out of.
+  const double detours = options.temperature;
+  options.temperature = 0;
   IteratedSearch search(state_, neighbors_, options);
   search.Descend(budget);
   search.Run(rng, budget);
+  options.temperature = detours;
+  IteratedSearch(state_, neighbors_, options).Run(rng, budget);
   Route polished = state_.Unload();
   ChooseEntries(layer_, polished, budget);
   return polished;

@@ -7,7 +7,9 @@
 #include "absl/strings/str_cat.h"
 #include "engine/base/tolerances.h"
 #include "engine/cost/route_cost.h"
+#include "engine/search/iterated_search.h"
 #include "engine/validator.h"
+#include "tests/engine/search/searched.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/instances.h"
 #include "tests/support/random_plan.h"
@@ -53,6 +55,30 @@ TEST(Polisher, FindsTheOptimumOfNearlyAllSmallPlans) {
     optimal += RouteCost(owned.problem, route) <= BruteForce(owned.problem).cost + kCostTolerance;
   }
   EXPECT_GE(optimal, 90);  // nodes of fewer than four children have no kicks
+}
+
+// Than kicks alone find with the same patience.
+TEST(Polisher, FindsShorterRoutesByDetours) {
+  constexpr int kPatience = 100;
+  double kicked_cost = 0;
+  double polished_cost = 0;
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    Searched s(seed, {.shape = PlanShape::kSequential, .min_paths = 60, .max_paths = 60});
+    IteratedSearch kicks(s.state, s.neighbors,
+                         {.local_search = {}, .patience = kPatience, .temperature = 0});
+    Rng rng(seed);
+    kicks.Descend(s.budget);
+    kicks.Run(rng, s.budget);
+    const Route kicked = s.state.Unload();
+    const LayerView layer(s.owned.problem);
+    Polisher polisher(layer, s.budget);
+
+    const Route polished = polisher.Iterate(kicked, kPatience, rng, s.budget);
+
+    kicked_cost += RouteCost(s.owned.problem, kicked);
+    polished_cost += RouteCost(s.owned.problem, polished);
+  }
+  EXPECT_LT(polished_cost, 0.9945 * kicked_cost);
 }
 
 TEST(Polisher, OnlyChoosesEntriesWhereTheOrderIsFixed) {
