@@ -5,6 +5,7 @@
 
 #include "engine/cost/route_cost.h"
 #include "engine/proof/bounds/tree_bound.h"
+#include "engine/proof/bounds/vertex_bound.h"
 
 namespace traverse {
 namespace {
@@ -16,6 +17,11 @@ constexpr int kStepsPerRound = 40;
 // Evaluations at the end, as long as they gain so much.
 constexpr int kMostEvaluations = 6;
 constexpr double kLeastGain = 1e-3;
+
+// Steps of the search that knows points, where it fits; fewer from multipliers that were found
+// before.
+constexpr int kVertexSteps = 400;
+constexpr int kVertexStepsAgain = 100;
 
 // Of the time that is left, what a search may use: the evaluation after it is what counts.
 constexpr double kSearchShare = 0.4;
@@ -53,7 +59,13 @@ std::optional<double> LowerBound(const LayerProblem& problem, double target,
   }
   EvaluateAgain(tree, budget);
   if (multipliers != nullptr) *multipliers = tree.multipliers();
-  return std::min(tree.lower_bound(), target);
+  double bound = tree.lower_bound();
+  if (bound < target && VertexBound::Fits(tree.graph())) {
+    VertexBound vertices(problem, tree.graph(), tree.multipliers());
+    const int steps = known ? kVertexStepsAgain : kVertexSteps;
+    bound = std::max(bound, vertices.Search(target, steps, budget));
+  }
+  return std::min(bound, target);
 }
 
 }  // namespace traverse

@@ -40,6 +40,8 @@ class TreeBound {
   // No route costs less. 0 before the first evaluation.
   double lower_bound() const { return lower_bound_; }
 
+  const EndGraph& graph() const { return graph_; }
+
   // Those of the bound, [end], in an order that is the same for equal plans.
   const std::vector<double>& multipliers() const { return best_multipliers_; }
   void SetMultipliers(const std::vector<double>& multipliers) { multipliers_ = multipliers; }

@@ -106,6 +106,30 @@ TEST(LowerBound, IsNearTheOptimumOfPoints) {
   EXPECT_GT(rough, 480);  // the best route known: 574
 }
 
+// Contours far wider than the ways between them: trees that join the nearest points of each two
+// are at 0.52 of the shortest route here.
+TEST(LowerBound, KnowsThatAContourIsLeftWhereItIsEntered) {
+  Rng rng(7);
+  std::vector<Path> paths;
+  for (int i = 0; i < 40; ++i) {
+    const Point middle{100 * rng.Unit(), 100 * rng.Unit()};
+    std::vector<Point> vertices;
+    for (int k = 0; k < 5; ++k) {
+      vertices.push_back({middle.x + 20 * rng.Unit(), middle.y + 20 * rng.Unit()});
+    }
+    paths.push_back(MakeContour(std::move(vertices)));
+  }
+  const OwnedProblem owned(testing::AnyOrderPlan(std::move(paths)));
+  Budget budget;
+  const Solution found = (*MakeStrategy("auto", {}))->Solve(owned.problem, budget);
+  const double cost = RouteCost(owned.problem, found.route);
+
+  const double bound = *LowerBound(owned.problem, cost, nullptr, budget);
+
+  EXPECT_LE(bound, cost);
+  EXPECT_GT(bound, 0.75 * cost) << bound / cost;
+}
+
 // What was found for one start bounds the routes from another one.
 TEST(LowerBound, IsValidWithMultipliersOfAnotherStart) {
   for (uint64_t seed = 1; seed <= 100; ++seed) {
