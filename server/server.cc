@@ -77,6 +77,10 @@ void SetConnectionLimits(const ConnectionLimits& limits, grpc::ServerBuilder& bu
   }
 }
 
+// Calls that a connection may have here for each stream that it may have open: they are not done
+// with at once when their streams end.
+constexpr int64_t kCallsOfStreams = 3;
+
 // How often files are looked at that operators may change.
 constexpr auto kLookEvery = std::chrono::seconds(1);
 
@@ -203,6 +207,8 @@ absl::Status Server::AddPort(const ServerOptions& options, grpc::ServerBuilder& 
   rules.max_connections = options.connections.max_connections;
   // Twice as much as a message may have: one that has more is told so, where it comes to an end.
   rules.job_bytes = 2 * options.service.limits.max_message_bytes;
+  rules.max_calls = static_cast<int>(
+      std::min<int64_t>(INT_MAX, kCallsOfStreams * options.connections.max_streams));
   rules.peer_timeout = absl::ToChronoMilliseconds(options.connections.keepalive_timeout);
   absl::StatusOr<std::unique_ptr<Connections>> connections = Connections::Listen(
       options.listen, rules,

@@ -96,16 +96,21 @@ std::vector<std::shared_ptr<JobRun>> ServiceCore::Runs() const {
 }
 
 void ServiceCore::Register(const std::shared_ptr<JobRun>& run, const std::string& peer) {
-  if (connections_ != nullptr) connections_->OnJob(peer, 1);
+  const double pending_before = connections_ != nullptr ? connections_->OnJob(peer) : 0;
   MutexLock lock(mutex_);
-  runs_[run.get()] = {run, PeerKey(peer)};
+  runs_[run.get()] = {run, PeerKey(peer), pending_before};
   ++registered_;
 }
 
 void ServiceCore::Unregister(const std::shared_ptr<JobRun>& run, const std::string& peer) {
-  if (connections_ != nullptr) connections_->OnJob(peer, -1);
-  MutexLock lock(mutex_);
-  runs_.erase(run.get());
+  double pending_before = 0;
+  {
+    MutexLock lock(mutex_);
+    const auto call = runs_.find(run.get());
+    pending_before = call->second.pending_before;
+    runs_.erase(call);
+  }
+  if (connections_ != nullptr) connections_->OnJobDone(peer, pending_before, run->closed());
 }
 
 size_t ServiceCore::calls() const {
@@ -115,6 +120,14 @@ size_t ServiceCore::calls() const {
 
 void ServiceCore::OnCall(const std::string& peer) {
   if (connections_ != nullptr) connections_->OnCall(peer);
+}
+
+void ServiceCore::OnCallDone(const std::string& peer) {
+  if (connections_ != nullptr) connections_->OnCallDone(peer);
+}
+
+void ServiceCore::OnAuthorized(const std::string& peer) {
+  if (connections_ != nullptr) connections_->OnAuthorized(peer);
 }
 
 void ServiceCore::OnMessage(const std::string& peer, int64_t bytes) {

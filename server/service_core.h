@@ -66,8 +66,10 @@ class ServiceCore {
   // calls. `max_memory` is what the process may have, in bytes.
   void Watch(Connections* connections, int64_t max_memory);
 
-  // For Connections: `peer` has called and may; a message of it has come.
+  // For Connections, as there.
   void OnCall(const std::string& peer);
+  void OnCallDone(const std::string& peer);
+  void OnAuthorized(const std::string& peer);
   void OnMessage(const std::string& peer, int64_t bytes);
 
   // Ends the oldest job of `peer`, as of PeerKey, whose message has not come to its end yet: it is
@@ -108,7 +110,8 @@ class ServiceCore {
   // A call, and from where.
   struct Call {
     std::shared_ptr<JobRun> run;
-    std::string peer;  // as of PeerKey
+    std::string peer;           // as of PeerKey
+    double pending_before = 0;  // of Connections::OnJob
   };
 
   mutable Mutex mutex_;

@@ -133,6 +133,11 @@ std::chrono::steady_clock::time_point JobRun::progress() const {
   return progress_;
 }
 
+bool JobRun::closed() const {
+  MutexLock lock(mutex_);
+  return closed_;
+}
+
 bool JobRun::aborted() const {
   MutexLock lock(mutex_);
   return abort_.has_value();

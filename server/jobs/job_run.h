@@ -135,6 +135,9 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
   bool waits_for_message() const;
   std::chrono::steady_clock::time_point progress() const;
 
+  // Whether Close was called: all has come that the job is to have.
+  bool closed() const;
+
   // Whether Abort was called.
   bool aborted() const;
 

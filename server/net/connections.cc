@@ -41,6 +41,15 @@ constexpr auto kIdle = std::chrono::seconds(1);
 // Time for the end of a job to take effect before its connection is cut.
 constexpr auto kPatience = std::chrono::milliseconds(250);
 
+// An address is turned away for so long after its first flood, twice as long after each other one,
+// up to the most; and after the last part of that without a flood, all is forgotten.
+constexpr auto kFirstBan = std::chrono::seconds(1);
+constexpr int kMostDoublings = 5;
+constexpr auto kForgotten = std::chrono::minutes(2);
+constexpr size_t kMostOffenders = 10'000;
+
+std::string AddressOf(const std::string& peer) { return peer.substr(0, peer.rfind(':')); }
+
 // What it is worth to cut a connection for, where memory is short.
 constexpr double kWorthCutting = 64 << 10;
 
@@ -111,6 +120,12 @@ void Connections::AcceptAll(int listener) {
     }
     {
       MutexLock lock(mutex_);
+      if (!peer.empty() && IsBanned(peer)) {
+        close(socket);
+        if (ours >= 0) close(ours);
+        ++cut_;
+        continue;
+      }
       const bool full = static_cast<int>(table_.size()) >= rules_.max_connections;
       if (peer.empty() || ours < 0 || (full && !MakeRoom())) {
         close(socket);
@@ -156,6 +171,32 @@ Connections::Table::iterator Connections::Cut(Table::iterator connection) {
   return table_.erase(connection);
 }
 
+// The address of `peer` is banned: at once, or if it was noted before.
+void Connections::NoteFlood(const std::string& peer, bool ban_at_once) {
+  const Clock::time_point now = Clock::now();
+  if (offenders_.size() >= kMostOffenders) offenders_.clear();
+  Offender& offender = offenders_[AddressOf(peer)];
+  offender.last = now;
+  if (ban_at_once || offender.noted) {
+    offender.banned_until = now + kFirstBan * (1 << std::min(offender.bans++, kMostDoublings));
+  }
+  offender.noted = true;
+}
+
+bool Connections::IsBanned(const std::string& peer) const {
+  const auto found = offenders_.find(AddressOf(peer));
+  return found != offenders_.end() && Clock::now() < found->second.banned_until;
+}
+
+// Returns how many bytes came since the last time.
+uint64_t Connections::Update(Connection& connection, const SocketInfo& info) const {
+  const uint64_t more = info.received - connection.received;
+  if (more > 0) connection.moved = Clock::now();
+  connection.received = info.received;
+  connection.pending += static_cast<double>(more);
+  return more;
+}
+
 int64_t Connections::Allowed(const Connection& connection) const {
   return rules_.stranger_bytes + connection.jobs * rules_.job_bytes;
 }
@@ -176,16 +217,16 @@ std::vector<std::string> Connections::Look(bool& busy) {
       it = table_.erase(it);
       continue;
     }
-    const uint64_t more = info.received - connection.received;
-    if (more > 0) connection.moved = now;
-    most = std::max(most, more);
-    connection.received = info.received;
-    connection.pending =
-        std::max(kMostCredit, connection.pending * fading + static_cast<double>(more));
+    connection.pending *= fading;
+    most = std::max(most, Update(connection, info));
+    connection.pending = std::max(kMostCredit, connection.pending);
     if (connection.pending > static_cast<double>(Allowed(connection))) {
       offenders.push_back(it->first);
     }
     ++it;
+  }
+  for (auto it = offenders_.begin(); it != offenders_.end();) {
+    it = now - it->second.last > kForgotten ? offenders_.erase(it) : std::next(it);
   }
   busy = most > kMuchBytes;
   return offenders;
@@ -201,6 +242,7 @@ void Connections::Restrain(const std::string& peer) {
     const bool told = connection.complained != Clock::time_point();
     if (told && now - connection.complained < kPatience) return;
     if (told || connection.jobs == 0) {
+      if (connection.jobs == 0) NoteFlood(peer, /*ban_at_once=*/false);
       Cut(found);
       return;
     }
@@ -219,14 +261,44 @@ void Connections::Restrain(const std::string& peer) {
 void Connections::OnCall(const std::string& peer) {
   MutexLock lock(mutex_);
   const auto found = table_.find(PeerKey(peer));
+  if (found == table_.end() || ++found->second.calls <= rules_.max_calls) return;
+  NoteFlood(found->first, /*ban_at_once=*/true);
+  Cut(found);
+}
+
+void Connections::OnCallDone(const std::string& peer) {
+  MutexLock lock(mutex_);
+  const auto found = table_.find(PeerKey(peer));
+  if (found != table_.end()) found->second.calls = std::max(0, found->second.calls - 1);
+}
+
+void Connections::OnAuthorized(const std::string& peer) {
+  MutexLock lock(mutex_);
+  const auto found = table_.find(PeerKey(peer));
   // Below zero by what Look has not seen yet: it will.
   if (found != table_.end()) found->second.pending -= kFirstWindow;
 }
 
-void Connections::OnJob(const std::string& peer, int change) {
+double Connections::OnJob(const std::string& peer) {
   MutexLock lock(mutex_);
   const auto found = table_.find(PeerKey(peer));
-  if (found != table_.end()) found->second.jobs = std::max(0, found->second.jobs + change);
+  if (found == table_.end()) return 0;
+  ++found->second.jobs;
+  return std::max(0.0, found->second.pending);
+}
+
+void Connections::OnJobDone(const std::string& peer, double pending_before, bool all_came) {
+  MutexLock lock(mutex_);
+  const auto found = table_.find(PeerKey(peer));
+  if (found == table_.end()) return;
+  Connection& connection = found->second;
+  if (!all_came) {
+    // What came since the last look counts as well. Which job it was for nobody knows.
+    if (const SocketInfo info = InfoOf(connection.socket); info.open) Update(connection, info);
+    const double more = connection.pending - pending_before;
+    if (more > 0) connection.pending -= more / std::max(1, connection.jobs);
+  }
+  connection.jobs = std::max(0, connection.jobs - 1);
 }
 
 void Connections::OnMessage(const std::string& peer, int64_t bytes) {

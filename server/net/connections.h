@@ -10,6 +10,12 @@
 // A connection may have so much pending for each of its jobs, and little beside. Beyond that it is
 // told on, or cut. A descriptor of our own for each connection makes that possible.
 //
+// Nor does gRPC bound the calls of a peer that resets them as soon as they are opened: HTTP/2
+// counts only streams that are open, and each that was reset takes some 20 kB until its turn comes
+// to be looked at. Whoever has far more calls here than streams may be open is cut, and new
+// connections from his address are turned away for a while, the longer the more often it happens.
+// So are those of an address from which strangers sent too much twice.
+//
 // It takes connections for itself, so that a process that has all of its files open loses none of
 // them: who came last or has been idle for longest has to go. Knows nothing of gRPC. Thread-safe.
 
@@ -27,6 +33,7 @@
 
 #include "absl/status/statusor.h"
 #include "engine/base/mutex.h"
+#include "server/net/socket_info.h"
 
 namespace traverse {
 
@@ -34,6 +41,7 @@ struct ConnectionRules {
   int max_connections = 1024;
   int64_t stranger_bytes = int64_t{4} << 20;  // pending beside those of jobs
   int64_t job_bytes = int64_t{64} << 20;      // pending for each job
+  int max_calls = 1000;                       // that were begun and gRPC is not done with
 
   // Unacknowledged data for so long ends a connection.
   std::chrono::milliseconds peer_timeout{10'000};
@@ -63,12 +71,20 @@ class Connections {
 
   int port() const { return port_; }
 
-  // `peer`, as gRPC writes it (ipv4:10.0.0.7:41234), has called, and may do so: what it sent before
-  // it heard of a refusal is not held against it. Then: its job has begun, or ended; a message of
-  // `bytes` has come from it.
+  // `peer`, as gRPC writes it (ipv4:10.0.0.7:41234), has called; gRPC is done with the call.
   void OnCall(const std::string& peer);
-  void OnJob(const std::string& peer, int change);
+  void OnCallDone(const std::string& peer);
+
+  // The call of `peer` may be made: what it sent before it heard of a refusal is not held against
+  // it. Then: a message of `bytes` has come from it.
+  void OnAuthorized(const std::string& peer);
   void OnMessage(const std::string& peer, int64_t bytes);
+
+  // A job of `peer` has begun. Returns what is to be given back at its end: what was pending then.
+  // `all_came`: its messages have come to their ends. If not, its share of what is pending is not
+  // coming any more, and gRPC has let go of it.
+  double OnJob(const std::string& peer);
+  void OnJobDone(const std::string& peer, double pending_before, bool all_came);
 
   // Ends the connection that has most pending, jobs or not, if that is worth it. Returns whether.
   bool CutLargest();
@@ -85,10 +101,19 @@ class Connections {
     uint64_t received = 0;  // bytes, as seen last
     double pending = 0;
     int jobs = 0;
+    int calls = 0;
     Clock::time_point moved;       // bytes came last
     Clock::time_point complained;  // end_job was called
   };
   using Table = std::map<std::string, Connection>;
+
+  // An address from which there was a flood.
+  struct Offender {
+    bool noted = false;
+    int bans = 0;
+    Clock::time_point last;
+    Clock::time_point banned_until;
+  };
 
   Connections(const ConnectionRules& rules, Hooks hooks)
       : rules_(rules), hooks_(std::move(hooks)) {}
@@ -103,6 +128,9 @@ class Connections {
   std::vector<std::string> Look(bool& busy);
   void Restrain(const std::string& peer);
   int64_t Allowed(const Connection& connection) const;
+  uint64_t Update(Connection& connection, const SocketInfo& info) const;
+  void NoteFlood(const std::string& peer, bool ban_at_once) TRAVERSE_REQUIRES(mutex_);
+  bool IsBanned(const std::string& peer) const TRAVERSE_REQUIRES(mutex_);
 
   const ConnectionRules rules_;
   const Hooks hooks_;
@@ -110,7 +138,8 @@ class Connections {
   std::vector<int> listeners_;
   int stop_ = -1;  // an eventfd
   mutable Mutex mutex_;
-  Table table_ TRAVERSE_GUARDED_BY(mutex_);  // by address and port
+  Table table_ TRAVERSE_GUARDED_BY(mutex_);                                // by address and port
+  std::map<std::string, Offender> offenders_ TRAVERSE_GUARDED_BY(mutex_);  // by address
   Clock::time_point looked_ TRAVERSE_GUARDED_BY(mutex_) = Clock::now();
   uint64_t cut_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   std::thread thread_;

@@ -59,14 +59,17 @@ void DiscardSome(const std::shared_ptr<std::deque<LabelledLayer>>& layers,
 }  // namespace
 
 JobStream::JobStream(ServiceCore& core, grpc::CallbackServerContext& context, CallInfo call)
-    : core_(core), context_(context), call_(std::move(call)) {}
+    : core_(core), context_(context), call_(std::move(call)) {
+  core_.OnCall(call_.peer);
+}
 
 JobStream::~JobStream() {
   if (run_ != nullptr) core_.Unregister(run_, call_.peer);
+  core_.OnCallDone(call_.peer);
 }
 
 absl::Status JobStream::Admit(const absl::Status& authorized, int64_t points) {
-  if (authorized.ok()) core_.OnCall(call_.peer);
+  if (authorized.ok()) core_.OnAuthorized(call_.peer);
   if (!authorized.ok()) {
     core_.admission.CountRefusal(absl::IsUnauthenticated(authorized) ? Refusal::kUnauthenticated
                                                                      : Refusal::kPermission);

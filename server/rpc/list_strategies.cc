@@ -13,14 +13,18 @@ constexpr size_t kMaxRequestBytes = 4096;
 
 }  // namespace
 
-ListStrategiesReactor::ListStrategiesReactor(ServiceCore& core, const absl::Status& authorized)
-    : core_(core) {
+ListStrategiesReactor::ListStrategiesReactor(ServiceCore& core, const std::string& peer,
+                                             const absl::Status& authorized)
+    : core_(core), peer_(peer) {
+  core_.OnCall(peer_);
   if (authorized.ok()) {
     StartRead(&request_);
   } else {
     End(authorized);
   }
 }
+
+ListStrategiesReactor::~ListStrategiesReactor() { core_.OnCallDone(peer_); }
 
 absl::Status ListStrategiesReactor::Check(bool ok) const {
   if (!ok) return absl::CancelledError("the call ended without a message");

@@ -6,6 +6,8 @@
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/server_callback.h>
 
+#include <string>
+
 #include "absl/status/status.h"
 #include "server/service_core.h"
 
@@ -15,7 +17,9 @@ namespace traverse {
 // itself when the call is done.
 class ListStrategiesReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
  public:
-  ListStrategiesReactor(ServiceCore& core, const absl::Status& authorized);
+  // `peer` is who calls, as gRPC writes it.
+  ListStrategiesReactor(ServiceCore& core, const std::string& peer, const absl::Status& authorized);
+  ~ListStrategiesReactor() override;
 
  private:
   void OnReadDone(bool ok) override;
@@ -25,6 +29,7 @@ class ListStrategiesReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, g
   void End(const absl::Status& status);
 
   ServiceCore& core_;
+  const std::string peer_;
   grpc::ByteBuffer request_;
   grpc::ByteBuffer response_;
 };

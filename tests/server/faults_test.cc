@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -302,6 +303,39 @@ TEST(Overload, ManyRefusalsOfLargeJobsDoNotCutTheConnection) {
     ASSERT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << status.error_message();
   }
 
+  EXPECT_THAT(service.server().core().MetricsText(), HasSubstr("traverse_connections_cut_total 0"));
+}
+
+double ReceivingBytes(TestService& service) {
+  const std::string text = service.server().core().MetricsText();
+  const std::string name = "traverse_memory_bytes{kind=\"receiving\"} ";
+  return std::stod(text.substr(text.find(name) + name.size()));
+}
+
+// What came of a message until it was cancelled is let go of, and must not look like a flood.
+TEST(Overload, UploadsThatAreCancelledDoNotCutTheConnection) {
+  TestService service([](ServerOptions& options) { options.listen = "127.0.0.1:0"; });
+  v1::OptimizeBatchRequest large = MakeBatch(0);
+  const v1::Layer layer = MakeLayer(1, 2000, 200);
+  while (large.ByteSizeLong() < size_t{55} << 20) *large.add_layers() = layer;
+
+  int cancelled = 0;
+  for (int i = 0; i < 4; ++i) {
+    grpc::ClientContext context;
+    std::thread canceller([&] {
+      TestService::Eventually([&] { return ReceivingBytes(service) > 8 << 20; });
+      context.TryCancel();
+    });
+    const auto reader = service.stub().OptimizeBatch(&context, large);
+    v1::OptimizeBatchResponse response;
+    while (reader->Read(&response)) {
+    }
+    cancelled += reader->Finish().error_code() == grpc::StatusCode::CANCELLED;
+    canceller.join();
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));  // for the table to be looked at
+  }
+
+  EXPECT_GE(cancelled, 1);
   EXPECT_THAT(service.server().core().MetricsText(), HasSubstr("traverse_connections_cut_total 0"));
 }
 

@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "server/net/socket_info.h"
 #include "tests/server/support/service_fixture.h"
 #include "tests/support/status_matchers.h"
@@ -75,16 +76,19 @@ class Port {
 // The caller's side.
 class Caller {
  public:
-  explicit Caller(int port) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+  explicit Caller(int port, const char* source = "127.0.0.1")
+      : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
+    inet_pton(AF_INET, source, &address.sin_addr);
+    bind(socket_, reinterpret_cast<sockaddr*>(&address), sizeof(address));
     address.sin_port = htons(static_cast<uint16_t>(port));
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof(address));
     sockaddr_in own{};
     socklen_t size = sizeof(own);
     getsockname(socket_, reinterpret_cast<sockaddr*>(&own), &size);
-    peer_ = "ipv4:127.0.0.1:" + std::to_string(ntohs(own.sin_port));
+    peer_ = absl::StrCat("ipv4:", source, ":") + std::to_string(ntohs(own.sin_port));
   }
   ~Caller() { close(socket_); }
 
@@ -143,7 +147,7 @@ TEST(ConnectionsTest, WhatCallsSentBeforeTheyWereRefusedIsNotHeldAgainstTheirCal
 
   for (int round = 0; round < 5; ++round) {
     // A call is told of at its headers; its bytes are counted when the table is looked at.
-    for (int i = 0; i < 20; ++i) port.connections().OnCall(caller.peer());
+    for (int i = 0; i < 20; ++i) port.connections().OnAuthorized(caller.peer());
     caller.Send(20 * 65'535);
     std::this_thread::sleep_for(std::chrono::milliseconds(150));
   }
@@ -156,7 +160,7 @@ TEST(ConnectionsTest, CallsThatSendNothingAreNoLicenceToSendMuchLater) {
   const Caller caller(port.connections().port());
   ASSERT_TRUE(Eventually([&] { return port.connections().open() == 1; }));
 
-  for (int i = 0; i < 1000; ++i) port.connections().OnCall(caller.peer());
+  for (int i = 0; i < 1000; ++i) port.connections().OnAuthorized(caller.peer());
   std::this_thread::sleep_for(std::chrono::milliseconds(250));
   caller.Send(2 << 20);
 
@@ -168,7 +172,7 @@ TEST(ConnectionsTest, AJobWhoseMessageIsTooLongIsEndedFirst) {
   port.MayEndJobs();
   const Caller caller(port.connections().port());
   ASSERT_TRUE(Eventually([&] { return port.connections().open() == 1; }));
-  port.connections().OnJob(caller.peer(), 1);
+  port.connections().OnJob(caller.peer());
 
   caller.Send(2'500'000);
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
@@ -184,12 +188,87 @@ TEST(ConnectionsTest, AJobThatCannotBeEndedIsCut) {
   Port port({.stranger_bytes = 1 << 20, .job_bytes = 1 << 20});
   const Caller caller(port.connections().port());
   ASSERT_TRUE(Eventually([&] { return port.connections().open() == 1; }));
-  port.connections().OnJob(caller.peer(), 1);
+  port.connections().OnJob(caller.peer());
 
   caller.Send(4 << 20);
 
   EXPECT_TRUE(Eventually([&] { return caller.IsCut(); }));
   EXPECT_EQ(port.told().size(), 1u);
+}
+
+// As HTTP/2 lets it: each call is reset before the next one is opened.
+TEST(ConnectionsTest, MoreCallsThanStreamsAreAFlood) {
+  Port port({.max_calls = 10});
+  const Caller calm(port.connections().port());
+  const Caller flood(port.connections().port());
+  ASSERT_TRUE(Eventually([&] { return port.connections().open() == 2; }));
+
+  for (int i = 0; i < 100; ++i) {
+    port.connections().OnCall(calm.peer());
+    port.connections().OnCallDone(calm.peer());
+  }
+  for (int i = 0; i < 11; ++i) port.connections().OnCall(flood.peer());
+
+  EXPECT_TRUE(Eventually([&] { return flood.IsCut(); }));
+  EXPECT_FALSE(calm.IsCut());
+}
+
+TEST(ConnectionsTest, TheAddressOfAFloodIsTurnedAwayForAWhile) {
+  Port port({.max_calls = 10});
+  const auto make_flood = [&] {
+    const int before = port.connections().open();
+    const Caller flood(port.connections().port());
+    ASSERT_TRUE(Eventually([&] { return port.connections().open() == before + 1; }));
+    for (int i = 0; i < 11; ++i) port.connections().OnCall(flood.peer());
+    ASSERT_TRUE(Eventually([&] { return flood.IsCut(); }));
+  };
+  const auto is_turned_away = [&](const char* source) {
+    const Caller caller(port.connections().port(), source);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    return caller.IsCut();
+  };
+
+  make_flood();
+  EXPECT_TRUE(is_turned_away("127.0.0.1"));
+  EXPECT_FALSE(is_turned_away("127.0.0.2"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  EXPECT_FALSE(is_turned_away("127.0.0.1"));
+
+  make_flood();
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  EXPECT_TRUE(is_turned_away("127.0.0.1"));  // longer than the first time
+}
+
+// Of a message that was cancelled nothing more comes, and gRPC has let go of what had come.
+TEST(ConnectionsTest, MessagesThatWereCancelledAreNotHeldAgainstTheirCaller) {
+  Port port({.stranger_bytes = 1 << 20, .job_bytes = 4 << 20});
+  const Caller caller(port.connections().port());
+  ASSERT_TRUE(Eventually([&] { return port.connections().open() == 1; }));
+
+  for (int i = 0; i < 10; ++i) {
+    const double before = port.connections().OnJob(caller.peer());
+    caller.Send(3 << 20);
+    ASSERT_TRUE(Eventually([&] { return port.connections().pending_bytes() > 5 << 19; }));
+    port.connections().OnJobDone(caller.peer(), before, /*all_came=*/false);
+  }
+
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  EXPECT_FALSE(caller.IsCut());
+  EXPECT_TRUE(port.told().empty());
+}
+
+TEST(ConnectionsTest, TheEndOfOneJobForgivesOnlyItsShareOfWhatIsPending) {
+  Port port({.stranger_bytes = 1 << 20, .job_bytes = 16 << 20});
+  const Caller caller(port.connections().port());
+  ASSERT_TRUE(Eventually([&] { return port.connections().open() == 1; }));
+  port.connections().OnJob(caller.peer());
+
+  const double before = port.connections().OnJob(caller.peer());
+  caller.Send(8 << 20);
+  ASSERT_TRUE(Eventually([&] { return port.connections().pending_bytes() > 7 << 20; }));
+  port.connections().OnJobDone(caller.peer(), before, /*all_came=*/false);
+
+  EXPECT_NEAR(static_cast<double>(port.connections().pending_bytes()), 4 << 20, 1 << 20);
 }
 
 TEST(ConnectionsTest, WhereMemoryIsShortTheLargestIsCut) {
@@ -210,7 +289,7 @@ TEST(ConnectionsTest, IdleOnesMakeRoomForNewOnes) {
   Port port({.max_connections = 3});
   const Caller working(port.connections().port());
   ASSERT_TRUE(Eventually([&] { return port.connections().open() == 1; }));
-  port.connections().OnJob(working.peer(), 1);
+  port.connections().OnJob(working.peer());
   const Caller idle(port.connections().port());
   const Caller other(port.connections().port());
   ASSERT_TRUE(Eventually([&] { return port.connections().open() == 3; }));
