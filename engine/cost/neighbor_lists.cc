@@ -271,22 +271,46 @@ void NeighborLists::FindAmong(absl::Span<const Member> members, int count, Budge
     search.Find(tree, slot, nearest);
     for (const Nearest::Item& item : nearest.list()) {
       const double distance_mm = search.Refine(slot, item);
-      found_.push_back({search.member(slot).group, {search.member(item.slot).group, distance_mm}});
+      Note({search.member(slot).group, {search.member(item.slot).group, distance_mm}});
     }
   }
 }
 
-void NeighborLists::Seal() {
+void NeighborLists::Note(const Found& found) {
+  if (found_.empty() || found_.back().size() == kBlock) {
+    found_.emplace_back();
+    if (found_.size() > 1) found_.back().reserve(kBlock);
+  }
+  found_.back().push_back(found);
+}
+
+void NeighborLists::Seal(Budget* budget) {
+  Rest rest(budget);
+  if (budget != nullptr && budget->was_exhausted()) {
+    first_.assign(static_cast<size_t>(groups_.size()) + 1, 0);
+    found_ = {};
+    return;
+  }
   first_.assign(static_cast<size_t>(groups_.size()) + 2, 0);
-  for (const Found& found : found_) ++first_[static_cast<size_t>(found.from) + 2];
+  if (found_.size() > 1) neighbors_.reserve(found_.size() * kBlock);
+  for (const std::vector<Found>& block : found_) {
+    rest(2 * block.size());
+    for (const Found& found : block) ++first_[static_cast<size_t>(found.from) + 2];
+    neighbors_.resize(neighbors_.size() + block.size());
+  }
   for (size_t g = 2; g < first_.size(); ++g) first_[g] += first_[g - 1];
-  neighbors_.resize(found_.size());
-  for (const Found& found : found_) {
-    neighbors_[static_cast<size_t>(first_[static_cast<size_t>(found.from) + 1]++)] = found.neighbor;
+  for (std::vector<Found>& block : found_) {
+    rest(4 * block.size());
+    for (const Found& found : block) {
+      const size_t place = static_cast<size_t>(first_[static_cast<size_t>(found.from) + 1]++);
+      neighbors_[place] = found.neighbor;
+    }
+    block = {};
   }
   first_.pop_back();
   found_ = {};
   for (size_t g = 0; g + 1 < first_.size(); ++g) {
+    rest(4 + 4 * static_cast<size_t>(first_[g + 1] - first_[g]));
     std::sort(neighbors_.begin() + first_[g], neighbors_.begin() + first_[g + 1],
               [](const Neighbor& a, const Neighbor& b) {
                 return a.distance_mm != b.distance_mm ? a.distance_mm < b.distance_mm

@@ -61,8 +61,9 @@ class NeighborLists {
   // the members that are left get none. REQUIRES: not sealed; every group at most once.
   void FindAmong(absl::Span<const Member> members, int count, Budget& budget);
 
-  // Ends the search. Only then `of` may be called.
-  void Seal();
+  // Ends the search, asking `budget` meanwhile, if there is one; if that has run out, nobody has
+  // neighbors. Only then `of` may be called.
+  void Seal(Budget* budget = nullptr);
 
   // Nearest first.
   absl::Span<const Neighbor> of(int group) const {
@@ -77,8 +78,12 @@ class NeighborLists {
     Neighbor neighbor;
   };
 
+  // In blocks, as a long array takes long to be moved and to be freed.
+  static constexpr size_t kBlock = 1 << 15;
+  void Note(const Found& found);
+
   const PointGroups& groups_;
-  std::vector<Found> found_;
+  std::vector<std::vector<Found>> found_;
   std::vector<int> first_;  // [group] where its neighbors begin; one more
   std::vector<Neighbor> neighbors_;
 };

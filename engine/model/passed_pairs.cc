@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/types/span.h"
+#include "engine/base/rest.h"
 
 namespace traverse {
 namespace {
@@ -12,12 +13,16 @@ namespace {
 // What comes after each child by the pairs of a node, in two arrays.
 class Later {
  public:
-  explicit Later(const PlanNode& node)
+  Later(const PlanNode& node, Rest& rest)
       : first_(node.children.size() + 1), second_(node.before.size()) {
-    for (const auto& [first, second] : node.before) ++first_[static_cast<size_t>(first) + 1];
+    for (const auto& [first, second] : node.before) {
+      rest(2);
+      ++first_[static_cast<size_t>(first) + 1];
+    }
     for (size_t c = 0; c < node.children.size(); ++c) first_[c + 1] += first_[c];
     std::vector<size_t> next(first_.begin(), first_.end() - 1);
     for (const auto& [first, second] : node.before) {
+      rest(4);
       second_[next[static_cast<size_t>(first)]++] = second;
     }
   }
@@ -34,17 +39,20 @@ class Later {
 }  // namespace
 
 std::optional<std::vector<std::pair<int, int>>> PassedPairs(const PlanNode& node,
-                                                            const std::vector<bool>& has_paths) {
+                                                            const std::vector<bool>& has_paths,
+                                                            Budget* budget) {
   std::vector<std::pair<int, int>> pairs;
   if (node.before.empty()) return pairs;
   const size_t parts = node.children.size() + node.before.size();
   size_t steps = std::max(kPassedPairs, kPassedPairsEach * parts);
-  const Later later(node);
+  Rest rest(budget);
+  const Later later(node, rest);
   std::vector<size_t> reached_from(node.children.size(), node.children.size());
   std::vector<int> open;
   const auto follow = [&](size_t child) {
     const absl::Span<const int> after = later[child];
     if (after.size() > steps) return false;
+    rest(1 + 4 * after.size());
     steps -= after.size();
     open.insert(open.end(), after.begin(), after.end());
     return true;

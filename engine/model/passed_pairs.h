@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/budget.h"
 #include "engine/model/plan.h"
 
 namespace traverse {
@@ -19,9 +20,11 @@ namespace traverse {
 // k children before an empty one before k others are k^2 such pairs. So that a plan takes no more
 // time and memory than it is large, there are none, that is nullopt, where finding them takes more
 // than kPassedPairsEach steps for each child and pair of the node, and more than kPassedPairs: then
-// the order of the node's children is best left as it is.
+// the order of the node's children is best left as it is. `budget`, if there is one, is asked
+// meanwhile.
 std::optional<std::vector<std::pair<int, int>>> PassedPairs(const PlanNode& node,
-                                                            const std::vector<bool>& has_paths);
+                                                            const std::vector<bool>& has_paths,
+                                                            Budget* budget = nullptr);
 
 inline constexpr size_t kPassedPairsEach = 8;
 inline constexpr size_t kPassedPairs = 1 << 16;

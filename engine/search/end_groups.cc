@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "engine/base/rest.h"
+
 namespace traverse {
 namespace {
 
@@ -28,8 +30,10 @@ void AppendEnds(const OrderTree& tree, const PointGroups& groups, int item, int 
 
 }  // namespace
 
-EndGroups::EndGroups(const LeafEntries& entries) {
+EndGroups::EndGroups(const LeafEntries& entries, Budget* budget) {
+  Rest rest(budget);
   for (int leaf = 0; leaf + 2 < entries.leaf_count(); ++leaf) {
+    rest(4);
     const int first = entries.first(leaf);
     if (entries.open(leaf)) {
       groups_.points.push_back(entries.enter(first));
@@ -38,6 +42,7 @@ EndGroups::EndGroups(const LeafEntries& entries) {
     } else {
       for (int i = 0; i < entries.count(leaf); ++i) {
         groups_.points.push_back(entries.enter(first + i));
+        rest(2);
       }
       groups_.Close();
     }
@@ -49,15 +54,18 @@ NeighborLists FindNeighbors(const OrderTree& tree, const EndGroups& groups, int 
                             Budget& budget) {
   NeighborLists lists(groups.groups());
   std::vector<Member> members;
+  Rest rest(&budget);
   for (int node = tree.root() + 1; node < tree.item_count(); ++node) {
+    rest();
     if (!tree.free_order(node)) continue;
     members.clear();
     for (const int child : tree.children(node)) {
+      rest(8 * static_cast<size_t>(tree.size(child)));
       AppendEnds(tree, groups.groups(), child, child, members);
     }
     lists.FindAmong(members, count, budget);
   }
-  lists.Seal();
+  lists.Seal(&budget);
   return lists;
 }
 

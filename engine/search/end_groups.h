@@ -14,7 +14,8 @@ namespace traverse {
 // for each end.
 class EndGroups {
  public:
-  explicit EndGroups(const LeafEntries& entries);
+  // `budget`, if there is one, is asked meanwhile; the groups are whole all the same.
+  explicit EndGroups(const LeafEntries& entries, Budget* budget = nullptr);
 
   const PointGroups& groups() const { return groups_; }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/types/span.h"
+#include "engine/base/budget.h"
 #include "engine/model/plan.h"
 
 namespace traverse {
@@ -19,7 +20,8 @@ namespace traverse {
 // in_order(start, plan, finish), so that every leaf of a path has a leaf before and after it.
 class OrderTree {
  public:
-  explicit OrderTree(const Plan& plan);
+  // `budget`, if there is one, is asked meanwhile; the tree is whole all the same.
+  explicit OrderTree(const Plan& plan, Budget* budget = nullptr);
 
   int path_count() const { return start_; }
   int leaf_count() const { return start_ + 2; }

@@ -7,9 +7,9 @@ namespace traverse {
 
 Polisher::Polisher(const LayerView& layer, Budget& budget)
     : layer_(layer),
-      tree_(layer.plan()),
-      entries_(layer.problem),
-      groups_(entries_),
+      tree_(layer.plan(), &budget),
+      entries_(layer.problem, &budget),
+      groups_(entries_, &budget),
       neighbors_(FindNeighbors(tree_, groups_, ThreeOptOptions().first_breadth, budget)),
       state_(layer.problem, tree_, entries_) {}
 
@@ -21,7 +21,7 @@ Route Polisher::Descend(Route route, Budget& budget) {
 Route Polisher::Iterate(Route route, int64_t patience, Rng& rng, Budget& budget) {
   ChooseEntries(layer_, route, budget);
   if (!tree_.has_choice()) return route;
-  state_.Load(route);
+  state_.Load(route, &budget);
   IteratedSearchOptions options;
   options.patience = patience;
   // First without detours, which find less where kicks are as few as here; then with them, from the

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <utility>
 
+#include "engine/base/rest.h"
+
 namespace traverse {
 
 using Kind = SegmentMove::Kind;
@@ -21,18 +23,28 @@ SearchState::SearchState(const LayerProblem& problem, const OrderTree& tree,
       in_(order_.size()),
       out_(order_.size()) {}
 
-void SearchState::Load(const Route& route) {
+void SearchState::Load(const Route& route, Budget* budget) {
   size_t k = 0;
   const auto append = [&](int leaf, int entry) {
     order_[k] = leaf;
     position_[Index(leaf)] = static_cast<int>(k++);
     Enter(leaf, entry);
   };
+  Rest rest(budget);
   append(tree_.start(), entries_.first(tree_.start()));
-  for (const Visit& visit : route) append(visit.path, entries_.EntryOf(visit));
+  for (const Visit& visit : route) {
+    rest(8 + static_cast<size_t>(visit.entry) / 4);
+    append(visit.path, entries_.EntryOf(visit));
+  }
   append(tree_.finish(), entries_.first(tree_.finish()));
-  PlaceInnerNodes(0, last_position());
-  for (int i = 0; i < last_position(); ++i) MeasureStep(i);
+  for (int i = last_position(); i >= 0; --i) {
+    rest(4 * static_cast<size_t>(tree_.depth(leaf_at(i))));
+    PlaceInnerNodesAbove(i, tree_.leaf_count());
+  }
+  for (int i = 0; i < last_position(); ++i) {
+    rest(8);
+    MeasureStep(i);
+  }
   log_.clear();
 }
 
@@ -223,11 +235,14 @@ void SearchState::Enter(int leaf, int entry) {
 // first leaf of a node has the last word.
 void SearchState::PlaceInnerNodes(int first, int last) {
   const int size = last - first + 1;
-  for (int i = last; i >= first; --i) {
-    for (int node = tree_.parent(leaf_at(i)); node >= 0 && tree_.size(node) <= size;
-         node = tree_.parent(node)) {
-      position_[Index(node)] = i;
-    }
+  for (int i = last; i >= first; --i) PlaceInnerNodesAbove(i, size);
+}
+
+// Notes a leaf's position for the nodes of up to `size` leaves that it is in.
+void SearchState::PlaceInnerNodesAbove(int position, int size) {
+  for (int node = tree_.parent(leaf_at(position)); node >= 0 && tree_.size(node) <= size;
+       node = tree_.parent(node)) {
+    position_[Index(node)] = position;
   }
 }
 

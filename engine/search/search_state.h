@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "engine/base/budget.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/model/layer_problem.h"
 #include "engine/model/route.h"
@@ -23,8 +24,9 @@ class SearchState {
   // The arguments outlive the state; of `problem`, only its plan does not have to.
   SearchState(const LayerProblem& problem, const OrderTree& tree, const LeafEntries& entries);
 
-  // From a valid route of the problem, and to one. Loading forgets the log.
-  void Load(const Route& route);
+  // From a valid route of the problem, and to one. Loading forgets the log, and asks `budget`, if
+  // there is one, meanwhile.
+  void Load(const Route& route, Budget* budget = nullptr);
   Route Unload() const;
   void Unload(Route& route) const;  // the same; allocates nothing if the route has room
 
@@ -86,6 +88,7 @@ class SearchState {
   void DoSetEntry(int leaf, int entry);
   void Enter(int leaf, int entry);
   void PlaceInnerNodes(int first, int last);
+  void PlaceInnerNodesAbove(int position, int size);
 
   const OrderTree& tree_;
   const LeafEntries& entries_;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/rest.h"
 #include "engine/cost/first_entries.h"
 #include "engine/geometry/bounding_box.h"
 
@@ -44,6 +45,7 @@ class NodeRoute {
         from_(from),
         to_(to),
         budget_(budget),
+        rest_(&budget),
         nearest_(children_.size(), kInfinity),
         boxes_(children_.size()),
         built_(children_.size()),
@@ -55,6 +57,7 @@ class NodeRoute {
 
   // Incomplete if the budget ran out.
   Entries Run() {
+    if (budget_.was_exhausted()) return {};
     const auto open = [&](int slot) { open_.push_back(slot); };
     ReadySlots ready(precedence_, static_cast<int>(children_.size()), open);
     Approach(from_);
@@ -80,8 +83,10 @@ class NodeRoute {
     double cost = kInfinity;
   };
 
+  // Those of the children so far, if the budget ran out.
   void ListWays() {
     for (size_t s = 0; s < children_.size(); ++s) {
+      if (!rest_(8)) return;
       first_way_.push_back(static_cast<int>(ways_.size()));
       const bool is_leaf = layer_.tree.is_leaf(children_[s]);
       ForEachFirstEntry(layer_, children_[s], kFirstPoints, [&](int e) {
@@ -89,6 +94,7 @@ class NodeRoute {
         ways_.push_back(Way{enter, is_leaf ? layer_.table.exit(e) : enter, e});
         boxes_[s].Add(ways_.back().enter);
         boxes_[s].Add(ways_.back().exit);
+        rest_(4);
       });
     }
     first_way_.push_back(static_cast<int>(ways_.size()));
@@ -100,14 +106,27 @@ class NodeRoute {
     return absl::MakeConstSpan(ways_).subspan(begin, end - begin);
   }
 
+  // Calls `f` with the number of each way of `slot`, until the budget runs out.
+  template <typename F>
+  void ForEachWay(int slot, F&& f) {
+    constexpr size_t kAtOnce = 1 << 12;
+    const size_t count = WaysOf(slot).size();
+    for (size_t begin = 0; begin < count; begin += kAtOnce) {
+      const size_t end = std::min(count, begin + kAtOnce);
+      if (!rest_(2 * (end - begin))) return;
+      for (size_t w = begin; w < end; ++w) f(w);
+    }
+  }
+
   // The route has a point at `p`: brings the distances of all children up to date.
   void Approach(Point p) {
     for (size_t s = 0; s < children_.size(); ++s) {
       double& nearest = nearest_[s];
       if (in_route(s) || boxes_[s].SquaredDistanceTo(p) >= nearest * nearest) continue;
-      for (const Way& way : WaysOf(static_cast<int>(s))) {
-        nearest = std::min({nearest, Distance(p, way.enter), Distance(p, way.exit)});
-      }
+      const absl::Span<const Way> ways = WaysOf(static_cast<int>(s));
+      ForEachWay(static_cast<int>(s), [&](size_t w) {
+        nearest = std::min({nearest, Distance(p, ways[w].enter), Distance(p, ways[w].exit)});
+      });
     }
   }
 
@@ -130,6 +149,7 @@ class NodeRoute {
   // False if the budget ran out.
   bool Insert(int slot) {
     const Place place = BestPlace(slot);
+    if (budget_.was_exhausted()) return false;
     const Point from = ExitBefore(place.index);
     const std::optional<Point> to = EnterAt(place.index);
     const int child = children_[static_cast<size_t>(slot)];
@@ -161,7 +181,7 @@ class NodeRoute {
     return index < order_.size() ? enter_[index] : to_;
   }
 
-  Place BestPlace(int slot) const {
+  Place BestPlace(int slot) {
     Place best;
     size_t index = precedence_.empty() ? 0 : BehindSlot(awaited_[static_cast<size_t>(slot)]);
     for (; index <= order_.size(); ++index) Try(slot, index, best);
@@ -183,7 +203,7 @@ class NodeRoute {
   }
 
   // Replaces `best` if some way of `slot` costs less at the place `index`.
-  void Try(int slot, size_t index, Place& best) const {
+  void Try(int slot, size_t index, Place& best) {
     const Point from = ExitBefore(index);
     const std::optional<Point> to = EnterAt(index);
     const BoundingBox& box = boxes_[static_cast<size_t>(slot)];
@@ -195,14 +215,14 @@ class NodeRoute {
     if (to) bound += layer_.cost.OfLength(box.DistanceTo(*to));
     if (bound >= best.cost) return;
     const absl::Span<const Way> ways = WaysOf(slot);
-    for (size_t w = 0; w < ways.size(); ++w) {
+    ForEachWay(slot, [&](size_t w) {
       if (layer_.cost.has_walls() && layer_.cost.Base(from, ways[w].enter) - present >= best.cost) {
-        continue;
+        return;
       }
       const double cost = Around(from, ways[w].enter, ways[w].exit, to) - present;
-      if (cost >= best.cost) continue;
+      if (cost >= best.cost) return;
       best = Place{index, first_way_[static_cast<size_t>(slot)] + static_cast<int>(w), cost};
-    }
+    });
   }
 
   double Move(Point from, const std::optional<Point>& to) const {
@@ -218,6 +238,7 @@ class NodeRoute {
   const Point from_;
   const std::optional<Point> to_;
   Budget& budget_;
+  Rest rest_;
 
   std::vector<Way> ways_;
   std::vector<int> first_way_;      // [slot] where its ways begin in ways_; one more

@@ -66,8 +66,8 @@ LocalSearchOptions SearchOptions(int paths) {
 
 // What depends on the plan alone: most of what is done before a search begins.
 struct SearchMemory : PlanMemory {
-  SearchMemory(const Plan& plan, const LeafEntries& entries)
-      : tree(plan), groups(entries), options(SearchOptions(tree.path_count())) {}
+  SearchMemory(const Plan& plan, const LeafEntries& entries, Budget& budget)
+      : tree(plan, &budget), groups(entries, &budget), options(SearchOptions(tree.path_count())) {}
 
   const OrderTree tree;
   const EndGroups groups;
@@ -143,9 +143,10 @@ class Auto : public Strategy {
 
   Solution Search(const LayerView& layer, Route route, const Effort& effort, Budget& budget) const {
     ChooseEntries(layer, route, budget);
-    const LeafEntries entries(layer.problem);
+    if (budget.was_exhausted()) return Finish(std::move(route), 0, budget);
+    const LeafEntries entries(layer.problem, &budget);
     std::unique_ptr<PlanMemory> own;
-    SearchMemory& memory = Recall(layer.problem, entries, own);
+    SearchMemory& memory = Recall(layer.problem, entries, own, budget);
     const OrderTree& tree = memory.tree;
     if (!tree.has_choice()) {
       const double cost = RouteCost(layer.problem, route);
@@ -155,8 +156,10 @@ class Auto : public Strategy {
         return Solution{std::move(route), StopReason::kOptimal, cost};
       return Finish(std::move(route), 0, budget);
     }
+    FindNeighborsOnce(memory, budget);
+    if (budget.was_exhausted()) return Finish(std::move(route), 0, budget);
     SearchState state(layer.problem, tree, entries);
-    state.Load(route);
+    state.Load(route, &budget);
     IteratedSearchOptions options;
     options.local_search = memory.options;
     options.descent_depth = 1;  // kicks find sooner what trials would
@@ -168,7 +171,6 @@ class Auto : public Strategy {
     options.least_gain_each = least_gain_each_;
     options.most_span = std::clamp(kWidestKicks / paths, kLeastMostSpan, kMostSpan);
     if (!effort.detours) options.temperature = 0;
-    FindNeighborsOnce(memory, budget);
     IteratedSearch search(state, *memory.neighbors, options);
     search.Descend(budget);
     Rng rng(layer.problem.seed);
@@ -176,6 +178,7 @@ class Auto : public Strategy {
     Route improved = state.Unload();
     ChooseEntries(layer, improved, budget);
     const bool optimal =
+        !budget.was_exhausted() &&
         SolveSmallParts(layer, SmallParts(layer.problem, effort.small_parts), improved, budget);
     Solution solution = Finish(std::move(improved), search.iterations(), budget);
     if (optimal) {
@@ -201,7 +204,8 @@ class Auto : public Strategy {
     const LayerView layer(problem, &budget);
     const SmallPartOptions options = SmallParts(problem, effort_ * kResumeShare);
     Route optimal = solution.route;
-    if (!IsSmall(layer, options) || !SolveSmallParts(layer, options, optimal, budget)) return;
+    if (!IsSmall(layer, options, &budget) || !SolveSmallParts(layer, options, optimal, budget))
+      return;
     solution.lower_bound = RouteCost(problem, optimal);
     if (optimal == solution.route) solution.stop = StopReason::kOptimal;
   }
@@ -209,11 +213,11 @@ class Auto : public Strategy {
   // What was derived of the plan before, or else is derived now; it is kept in `own` if it cannot
   // be kept with the problem.
   static SearchMemory& Recall(const LayerProblem& problem, const LeafEntries& entries,
-                              std::unique_ptr<PlanMemory>& own) {
+                              std::unique_ptr<PlanMemory>& own, Budget& budget) {
     std::unique_ptr<PlanMemory>& place = problem.memory != nullptr ? *problem.memory : own;
     auto* known = dynamic_cast<SearchMemory*>(place.get());
     if (known != nullptr) return *known;
-    auto memory = std::make_unique<SearchMemory>(*problem.plan, entries);
+    auto memory = std::make_unique<SearchMemory>(*problem.plan, entries, budget);
     known = memory.get();
     place = std::move(memory);
     return *known;

@@ -66,7 +66,8 @@ class Exact : public Strategy {
 
   Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
     Solution found = FirstRoute(problem, budget);
-    if (RouteCost(problem, start) < RouteCost(problem, found.route)) found.route = start;
+    if (RouteCost(problem, start, &budget) < RouteCost(problem, found.route, &budget))
+      found.route = start;
     return Prove(problem, std::move(found), budget);
   }
 
@@ -80,7 +81,7 @@ class Exact : public Strategy {
   }
 
   Solution Prove(const LayerProblem& problem, Solution solution, Budget& budget) const {
-    const double cost = RouteCost(problem, solution.route);
+    const double cost = RouteCost(problem, solution.route, &budget);
     if (solution.route.empty()) {
       return Solution{std::move(solution.route), StopReason::kOptimal, cost};
     }

@@ -41,18 +41,18 @@ class Ni2opt : public Strategy {
   // Never behind either.
   Solution Best(const LayerView& layer, Route baseline, const Route& start, Budget& budget) const {
     Route route = Improve(layer, start, descent_, budget);
-    if (RouteCost(layer.problem, baseline) < RouteCost(layer.problem, route)) {
+    if (RouteCost(layer.problem, baseline, &budget) < RouteCost(layer.problem, route, &budget)) {
       route = descent_.point_release ? Improve(layer, baseline, descent_, budget) : baseline;
       // An improvement that rounding made a loss.
-      route = Cheaper(layer, std::move(route), std::move(baseline));
+      route = Cheaper(layer, std::move(route), std::move(baseline), budget);
     }
-    route = Cheaper(layer, std::move(route), start);
+    route = Cheaper(layer, std::move(route), start, budget);
     return Solution{std::move(route), StopOr(budget, StopReason::kLocalOptimum), std::nullopt};
   }
 
-  static Route Cheaper(const LayerView& layer, Route first, Route second) {
-    return RouteCost(layer.problem, second) < RouteCost(layer.problem, first) ? std::move(second)
-                                                                              : std::move(first);
+  static Route Cheaper(const LayerView& layer, Route first, Route second, Budget& budget) {
+    const double least = RouteCost(layer.problem, first, &budget);
+    return RouteCost(layer.problem, second, &budget) < least ? std::move(second) : std::move(first);
   }
 
   DescentOptions descent_;

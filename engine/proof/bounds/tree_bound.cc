@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "engine/base/rest.h"
+#include "engine/base/resting_sort.h"
 #include "engine/cost/neighbor_lists.h"
 #include "engine/geometry/set_distance.h"
 
@@ -153,7 +154,7 @@ void TreeBound::FindNearPairs(Budget& budget) {
     }
     NeighborLists lists(groups);
     lists.FindAmong(members, junction.sides > 2 ? kNeighbors : kNeighborsOfTwo, budget);
-    lists.Seal();
+    lists.Seal(&budget);
     for (int m = 0; m < groups.size(); ++m) {
       const Junction::Member& member = junction.members[static_cast<size_t>(m)];
       for (const NeighborLists::Neighbor& neighbor : lists.of(m)) {
@@ -301,20 +302,23 @@ bool TreeBound::Evaluate(Budget& budget) {
 
 // Kruskal's algorithm over the near pairs of all junctions at once. REQUIRES: these connect the
 // sides of each.
-double TreeBound::EvaluateNear() {
+double TreeBound::EvaluateNear(Budget& budget) {
   moves_.assign(graph_.ends.size(), 0);
   double sum = AddFirstAndLast();
   sorted_.clear();
+  Rest rest(&budget);
   for (size_t p = 0; p < pairs_.size(); ++p) {
+    rest(2);
     const Pair& pair = pairs_[p];
     sorted_.emplace_back(pair.cost - multipliers_[static_cast<size_t>(pair.ends[0])] -
                              multipliers_[static_cast<size_t>(pair.ends[1])],
                          static_cast<int>(p));
   }
-  std::sort(sorted_.begin(), sorted_.end());
+  RestingSort(sorted_, rest);
   parent_.resize(static_cast<size_t>(first_side_.back()));
   std::iota(parent_.begin(), parent_.end(), 0);
   for (const auto& [cost, index] : sorted_) {
+    rest(8);
     const Pair& pair = pairs_[static_cast<size_t>(index)];
     const int base = first_side_[static_cast<size_t>(pair.junction)];
     const int a = Find(parent_, base + pair.sides[0]);
@@ -342,7 +346,7 @@ void TreeBound::Ascend(double target, int most_steps, Budget& budget) {
   double factor = kFirstFactor;
   int without_gain = 0;
   for (int step = 0; step < most_steps && !budget.ExhaustedNow(); ++step) {
-    const double value = EvaluateNear();
+    const double value = EvaluateNear(budget);
     if (value > best_value) {
       best_value = value;
       best = multipliers_;
@@ -351,7 +355,7 @@ void TreeBound::Ascend(double target, int most_steps, Budget& budget) {
       without_gain = 0;
       factor /= 2;
       multipliers_ = best;
-      EvaluateNear();
+      EvaluateNear(budget);
     }
     const std::vector<double> gradient = Subgradient();
     double square = 0;

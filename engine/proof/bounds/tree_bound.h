@@ -66,7 +66,7 @@ class TreeBound {
   void Reach(const Junction::Member& from, Pool& pool) const;
   void ReachByBoxes(const Junction::Member& from, Pool& pool) const;
   double AddFirstAndLast();
-  double EvaluateNear();
+  double EvaluateNear(Budget& budget);
   std::vector<double> Subgradient() const;
 
   const EndGraph graph_;

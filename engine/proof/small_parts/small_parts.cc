@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/rest.h"
 #include "engine/base/tolerances.h"
 
 namespace traverse {
@@ -24,10 +25,12 @@ struct Effort {
   bool has_choice = false;  // an order or an entry
 };
 
-std::vector<Effort> EffortsOf(const LayerView& layer, int most_children) {
+std::vector<Effort> EffortsOf(const LayerView& layer, int most_children, Budget* budget) {
+  Rest rest(budget);
   std::vector<Effort> efforts(layer.plan().nodes.size());
   for (int index = layer.tree.node_count(); index-- > 0;) {
     Effort& effort = efforts[static_cast<size_t>(index)];
+    rest(4);
     if (layer.tree.path_count(index) == 0) continue;
     if (layer.tree.is_leaf(index)) {
       effort.per_state = effort.states = layer.table.count(layer.tree.node(index).path);
@@ -38,8 +41,10 @@ std::vector<Effort> EffortsOf(const LayerView& layer, int most_children) {
     const bool any_order = layer.tree.node(index).kind == PlanNode::Kind::kAnyOrder;
     const double k = static_cast<double>(children.size());
     effort.has_choice = any_order && k > 1;
+    const double sets = std::exp2(k - 1);
     double states_before = 0;
     for (const int child : children) {
+      rest(4);
       const Effort& below = efforts[static_cast<size_t>(child)];
       effort.has_choice = effort.has_choice || below.has_choice;
       if (!any_order) {
@@ -50,13 +55,14 @@ std::vector<Effort> EffortsOf(const LayerView& layer, int most_children) {
       }
       // Each other child is in a quarter of the sets that this one is not in.
       effort.per_state += below.per_state;
-      effort.once += below.once * std::exp2(k - 1);
+      effort.once += below.once * sets;
       effort.states += below.states;
     }
     if (!any_order) continue;
     for (const int child : children) {
+      rest(2);
       const Effort& below = efforts[static_cast<size_t>(child)];
-      effort.once += below.per_state * (effort.states - below.states) * std::exp2(k - 2);
+      effort.once += below.per_state * (effort.states - below.states) * (sets / 2);
     }
     if (k > most_children) effort.once = std::numeric_limits<double>::infinity();
   }
@@ -171,7 +177,7 @@ class SmallPartSolver {
                   Budget& budget)
       : layer_(layer),
         options_(options),
-        efforts_(EffortsOf(layer, options.most_children)),
+        efforts_(EffortsOf(layer, options.most_children, &budget)),
         route_(route),
         budget_(budget),
         search_(layer, budget) {}
@@ -250,9 +256,9 @@ class SmallPartSolver {
 
 }  // namespace
 
-bool IsSmall(const LayerView& layer, const SmallPartOptions& options) {
+bool IsSmall(const LayerView& layer, const SmallPartOptions& options, Budget* budget) {
   if (layer.plan().paths.empty()) return true;
-  const Effort whole = EffortsOf(layer, options.most_children)[0];
+  const Effort whole = EffortsOf(layer, options.most_children, budget)[0];
   return whole.per_state + whole.once <= options.most_operations;
 }
 

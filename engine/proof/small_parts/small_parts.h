@@ -25,7 +25,7 @@ struct SmallPartOptions {
 };
 
 // Whether the whole plan is small: SolveSmallParts then solves all of it. O(nodes).
-bool IsSmall(const LayerView& layer, const SmallPartOptions& options);
+bool IsSmall(const LayerView& layer, const SmallPartOptions& options, Budget* budget = nullptr);
 
 // Replaces, in the part of `route` below each node that is small enough and below none that is,
 // orders and entries by the best ones between the visits before and after it. Never makes the route

@@ -5,13 +5,22 @@
 #include "engine/geometry/bounding_box.h"
 
 namespace traverse {
-LeafEntries::LeafEntries(const LayerProblem& problem) {
+
+LeafEntries::LeafEntries(const LayerProblem& problem, Budget* budget) {
   if (problem.cost.kind == CostSpec::Kind::kTime) time_.emplace(problem.cost);
+  Reserve(*problem.plan, budget);
+  Rest rest(budget);
   BoundingBox box;
   box.Add(problem.start);
-  for (const Path& path : problem.plan->paths) box.Add(BoundingBox(path.points));
+  for (const Path& path : problem.plan->paths) {
+    rest(2 + path.points.size());
+    box.Add(BoundingBox(path.points));
+  }
   origin_ = box.center();
-  for (const Path& path : problem.plan->paths) AddPath(path);
+  for (const Path& path : problem.plan->paths) {
+    rest(8);
+    AddPath(path, rest);
+  }
   AddEntry(problem.start, problem.start, 0);
   CloseLeaf(1, false);
   const Point finish = problem.finish.value_or(problem.start);
@@ -19,7 +28,22 @@ LeafEntries::LeafEntries(const LayerProblem& problem) {
   CloseLeaf(1, false);
 }
 
-void LeafEntries::AddPath(const Path& path) {
+// So that no array is moved while it grows: of a million entries that takes long.
+void LeafEntries::Reserve(const Plan& plan, Budget* budget) {
+  Rest rest(budget);
+  size_t entries = 2;
+  for (const Path& path : plan.paths) {
+    rest(2);
+    entries += path.kind == Path::Kind::kOpen ? 2 : path.points.size() + Index(kLanes);
+  }
+  enter_.reserve(entries);
+  exit_.reserve(entries);
+  visit_entry_.reserve(entries);
+  x_.reserve(entries);
+  y_.reserve(entries);
+}
+
+void LeafEntries::AddPath(const Path& path, Rest& rest) {
   const auto point = [&path](int i) { return path.points[Index(i)]; };
   if (path.kind == Path::Kind::kOpen) {
     AddEntry(point(0), point(1), 0);
@@ -32,6 +56,7 @@ void LeafEntries::AddPath(const Path& path) {
   for (int i = 0; i < count; ++i) {
     const int vertex = path.allowed.empty() ? i : path.allowed[Index(i)];
     AddEntry(point(vertex), point(vertex), vertex);
+    rest(8);
   }
   CloseLeaf(count, false);
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/rest.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/model/layer_problem.h"
 #include "engine/model/route.h"
@@ -24,7 +25,8 @@ class LeafEntries {
  public:
   static constexpr int kLanes = 8;
 
-  explicit LeafEntries(const LayerProblem& problem);
+  // `budget`, if there is one, is asked meanwhile; the entries are whole all the same.
+  explicit LeafEntries(const LayerProblem& problem, Budget* budget = nullptr);
 
   int leaf_count() const { return static_cast<int>(count_.size()); }
   int first(int leaf) const { return first_[Index(leaf)]; }
@@ -71,7 +73,8 @@ class LeafEntries {
  private:
   static size_t Index(int i) { return static_cast<size_t>(i); }
 
-  void AddPath(const Path& path);
+  void Reserve(const Plan& plan, Budget* budget);
+  void AddPath(const Path& path, Rest& rest);
   int BestByLength(int leaf, Point from, const Point* to) const;
   int BestAmongWalls(int leaf, Point from, const Point* to, const TravelCost& cost) const;
   void AddEntry(Point enter, Point exit, int visit_entry);

@@ -4,10 +4,22 @@
 #include <cassert>
 #include <cstddef>
 
-#include "engine/base/rest.h"
+#include "engine/base/resting_sort.h"
 #include "engine/cost/first_entries.h"
 
 namespace traverse {
+namespace {
+
+// The leaf, or the any_order node of several children, with which `node` begins.
+int SearchedBeginning(const PlanTree& tree, int node) {
+  node = Beginning(tree, node);
+  while (!tree.is_leaf(node) && tree.children(node).size() == 1) {
+    node = Beginning(tree, tree.children(node)[0]);
+  }
+  return node;
+}
+
+}  // namespace
 
 Frontier& Frontier::Forest::Of(int node) {
   std::unique_ptr<Frontier>& frontier = frontiers_[static_cast<size_t>(node)];
@@ -24,7 +36,7 @@ Frontier::Frontier(const LayerView& layer, int node, Forest& forest)
     waits[static_cast<size_t>(slot)] = false;
     if (is_nested(slot)) nested_next_.push_back(slot);
   });
-  Rest rest(&forest.budget());
+  Rest& rest = forest.rest();
   for (int slot = 0; slot < slots; ++slot) {
     rest();
     if (!waits[static_cast<size_t>(slot)]) continue;
@@ -38,9 +50,11 @@ Frontier::Frontier(const LayerView& layer, int node, Forest& forest)
 // Ids follow the entries, as ties shall be broken.
 std::vector<Point> Frontier::ListEntries(const LayerView& layer, int node, Forest& forest) {
   const absl::Span<const int> children = layer.tree.children(node);
-  Rest rest(&forest.budget());
+  Rest& rest = forest.rest();
+  first_id_.assign(children.size() + 1, 0);
   for (size_t s = 0; s < children.size(); ++s) {
-    const int beginning = Beginning(layer.tree, children[s]);
+    if (!rest(16) && forest.budget().cancelled()) return {};
+    const int beginning = SearchedBeginning(layer.tree, children[s]);
     if (!layer.tree.is_leaf(beginning)) {
       nested_[s] = &forest.Of(beginning);
       box_.Add(nested_[s]->box_);
@@ -53,12 +67,11 @@ std::vector<Point> Frontier::ListEntries(const LayerView& layer, int node, Fores
     }
   }
   if (!std::is_sorted(entries_.begin(), entries_.end())) {
-    std::sort(entries_.begin(), entries_.end());
+    RestingSort(entries_, rest);
   }
 
   std::vector<Point> points;
   points.reserve(entries_.size());
-  first_id_.assign(children.size() + 1, 0);
   for (const auto& [entry, slot] : entries_) {
     rest(4);
     points.push_back(layer.table.enter(entry));

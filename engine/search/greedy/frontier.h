@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/rest.h"
 #include "engine/cost/layer_view.h"
 #include "engine/geometry/bounding_box.h"
 #include "engine/geometry/nearest_point_index.h"
@@ -29,11 +30,14 @@ class Frontier {
     Forest(const LayerView& layer, Budget& budget)
         : layer_(&layer),
           budget_(&budget),
+          rest_(&budget),
           frontiers_(static_cast<size_t>(layer.tree.node_count())) {}
 
     Budget& budget() const { return *budget_; }
+    Rest& rest() { return rest_; }  // of all nodes together: each of them may be small
 
-    // REQUIRES: `node` is an any_order node with children.
+    // Not to be used if it was cancelled meanwhile. REQUIRES: `node` is an any_order node with
+    // children.
     Frontier& Of(int node);
 
     // For a node that is completed.
@@ -42,6 +46,7 @@ class Frontier {
    private:
     const LayerView* layer_;
     Budget* budget_;
+    Rest rest_;
     std::vector<std::unique_ptr<Frontier>> frontiers_;  // [node]
   };
 

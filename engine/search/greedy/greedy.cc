@@ -41,6 +41,7 @@ class Greedy {
     // Not worth a frontier any more.
     if (budget_.Exhausted()) return CompleteInSomeOrder(node);
     Frontier& frontier = frontiers_.Of(node);
+    if (budget_.was_exhausted() && budget_.cancelled()) return;
     for (size_t done = 0; done < children.size(); ++done) {
       const bool late = budget_.Exhausted();
       if (late && budget_.cancelled()) return;
