@@ -139,8 +139,10 @@ void CompareRetractions(const Observations& was, const Observations& is,
   for (const RetractionCycle& cycle : is.cycles) {
     if (cycle.known) continue;
     const auto [deepest, line] = pairs.Deepest(cycle.tool);
-    const auto report = [&](std::string what) {
-      breaks.push_back({VerifyRule::kRetractions, line, cycle.line, cycle.layer, std::move(what)});
+    // A copy of its own: C++20 has lambdas take structured bindings, clang 14 has not.
+    const auto report = [&, was_line = line](std::string what) {
+      breaks.push_back(
+          {VerifyRule::kRetractions, was_line, cycle.line, cycle.layer, std::move(what)});
     };
     if (!cycle.firmware && cycle.pulled > deepest + kGrain) {
       report(absl::StrFormat("pulls %.4f mm back; the most for this tool is %.4f mm",
