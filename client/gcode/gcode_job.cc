@@ -84,7 +84,7 @@ struct FileHabits {
 void FillLayer(const GcodeFile& file, size_t index, const FileHabits& habits,
                const GcodeOptions& options, InputJob& job, Census& census) {
   const Layer& layer = file.layers[index];
-  LayerPlan planned = MakeLayerPlan(file, layer, options.policy);
+  LayerPlan planned = MakeLayerPlan(file, layer, options.policy, Latitude::kFull, options.allow);
   v1::Layer& filled = job.layers[index];
   filled.set_id(index + 1);
   filled.set_z_mm(ToDouble(layer.z) * file.modes[file.blocks[layer.first_block].mode].UnitMm());
@@ -218,7 +218,7 @@ std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& opt
     *layers[i].mutable_exposed_paths() = layer.exposed_paths();
     const gcode::Layer& of_file = job.gcode->layers[job.first_layer + i];
     *layers[i].mutable_plan() =
-        std::move(gcode::MakeLayerPlan(*job.gcode, of_file, options.policy, latitude).plan);
+        gcode::MakeLayerPlan(*job.gcode, of_file, options.policy, latitude, options.allow).plan;
   });
   return layers;
 }

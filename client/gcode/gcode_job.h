@@ -19,6 +19,7 @@ namespace traverse {
 struct GcodeOptions {
   gcode::Policy policy = gcode::Policy::kSafe;
   gcode::Crossings crossings = gcode::Crossings::kKeep;
+  gcode::Allowance allow = {};
 };
 
 // The job in `file`: a plan for each of its layers, the cost of travel as its own moves show it

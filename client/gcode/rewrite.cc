@@ -74,8 +74,10 @@ std::string Foot(const GcodeFile& file, const ChosenLayers& chosen) {
 }
 
 std::string AddedLine(const GcodeRewrite& rewrite, const RewriteOptions& options) {
-  return absl::StrFormat("%s %s, policy %s: %s", kOptimisedMark, options.version,
-                         PolicyName(options.policy), DescribeRewrite(rewrite));
+  const std::string allowed = AllowanceNames(options.allow);
+  return absl::StrFormat("%s %s, policy %s%s%s: %s", kOptimisedMark, options.version,
+                         PolicyName(options.policy), allowed.empty() ? "" : ", allow ", allowed,
+                         DescribeRewrite(rewrite));
 }
 
 std::string NewText(const GcodeFile& file, const ChosenLayers& chosen, const std::string& head) {
@@ -105,9 +107,9 @@ GcodeRewrite AsItIs(const GcodeFile& file, GcodeRewrite rewrite) {
   return rewrite;
 }
 
-VerifyOptions AllRules(Policy policy) {
+VerifyOptions AllRules(const RewriteOptions& options) {
   VerifyOptions verify;
-  verify.permissions = *ParsePermissions(PolicyName(policy), "");
+  verify.permissions = *ParsePermissions(PolicyName(options.policy), AllowanceNames(options.allow));
   return verify;
 }
 
@@ -164,9 +166,8 @@ class Rewriter {
       rewrite.text = NewText(file_, chosen, head);
       const LayerLines lines(file_, chosen, head);
       chosen.texts = {};  // they are in there
-      const VerifyReport report =
-          CheckGcode(file_.text, file_.name, rewrite.text, file_.name + " as optimised",
-                     AllRules(options_.policy));
+      const VerifyReport report = CheckGcode(file_.text, file_.name, rewrite.text,
+                                             file_.name + " as optimised", AllRules(options_));
       if (report.ok()) {
         rewrite.orders = std::move(chosen.orders);
         absl::StatusOr<GcodeRewrite> done = Finish(head, std::move(rewrite));

@@ -34,7 +34,8 @@ struct GcodeRewrite {
 struct RewriteOptions {
   gcode::Policy policy = gcode::Policy::kSafe;
   gcode::Crossings crossings = gcode::Crossings::kKeep;
-  std::string version;  // of this program, for the line that is added behind the head
+  gcode::Allowance allow = {};  // is in that line too
+  std::string version;          // of this program, for the line that is added behind the head
   int threads = 1;
 };
 

@@ -43,6 +43,7 @@ absl::StatusOr<GcodeRewrite> RewriteByRuns(const InputJob& job,
   RewriteOptions rewrite;
   rewrite.policy = options.policy;
   rewrite.crossings = options.crossings;
+  rewrite.allow = options.allow;
   rewrite.version = TRAVERSE_VERSION;
   rewrite.threads = gcode::ThreadsFor(job.gcode->text.size());
   return RewriteGcode(*job.gcode, tries, rewrite);

@@ -32,6 +32,7 @@ constexpr absl::Duration kDefaultLayerLimit = absl::Milliseconds(500);
 struct Request : RunFlags {
   std::vector<StrategySpec> strategies;  // empty: all that the service has
   uint64_t repeats = 1;
+  GcodeOptions gcode;
   PlateOptions plates;
 };
 
@@ -50,6 +51,9 @@ absl::StatusOr<Request> ParseRequest(const Flags& flags) {
     if (!specs.ok()) return specs.status();
     request.strategies = *std::move(specs);
   }
+  absl::StatusOr<GcodeOptions> gcode = ParseGcodeOptions(flags);
+  if (!gcode.ok()) return gcode.status();
+  request.gcode = *std::move(gcode);
   const auto repeats = flags.Integer("repeat", 1, kMaxRepeats);
   if (!repeats.ok()) return repeats.status();
   request.repeats = repeats->value_or(1);
@@ -117,8 +121,7 @@ Outcome RunCompare(const Flags& flags) {
   if (Outcome* outcome = std::get_if<Outcome>(&opened)) return *outcome;
   Service& service = std::get<Service>(opened);
 
-  absl::StatusOr<InputJob> job =
-      ReadInput(flags.operands()[0], ParseGcodeOptions(flags), request->plates);
+  absl::StatusOr<InputJob> job = ReadInput(flags.operands()[0], request->gcode, request->plates);
   if (!job.ok()) return InputFault(job.status());
   if (absl::Status status = ApplyJobFlags(request->job, *job); !status.ok()) {
     return UsageFault(status);

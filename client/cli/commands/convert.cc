@@ -51,7 +51,9 @@ absl::StatusOr<std::string> Repacked(InputFile& input, ContainerKind kind) {
 absl::StatusOr<std::string> Converted(InputFile& input, InputFormat format, const Flags& flags,
                                       const JobFlags& job_flags) {
   if (absl::Status status = CheckOnePlate(input); !status.ok()) return status;
-  absl::StatusOr<InputJob> job = ReadJob(input, 0, ParseGcodeOptions(flags));
+  const absl::StatusOr<GcodeOptions> gcode = ParseGcodeOptions(flags);
+  if (!gcode.ok()) return gcode.status();
+  absl::StatusOr<InputJob> job = ReadJob(input, 0, *gcode);
   if (!job.ok()) return job.status();
   if (absl::Status status = SelectJobLayers(job_flags, *job); !status.ok()) {
     return absl::OutOfRangeError(status.message());
@@ -100,6 +102,7 @@ Command ConvertCommand() {
        {"damat", "json", "pb", "gcode", "bgcode"}},
       {"layers", "A-B", "only these, counted from 1"},
       PolicyFlag(),
+      AllowFlag(),
   };
   for (Flag& flag : PlateFlagTable()) command.flags.push_back(std::move(flag));
   command.example = "traverse convert part.damat -o part.json --layers=1-5";

@@ -22,7 +22,9 @@ constexpr size_t kRows = 20;
 // Appends what is in one part of the input.
 Outcome InspectPart(Service& service, const Flags& flags, const JobFlags& job_flags,
                     InputFile& input, size_t index, std::string& text) {
-  absl::StatusOr<InputJob> job = ReadJob(input, index, ParseGcodeOptions(flags));
+  const absl::StatusOr<GcodeOptions> gcode = ParseGcodeOptions(flags);
+  if (!gcode.ok()) return UsageFault(gcode.status());
+  absl::StatusOr<InputJob> job = ReadJob(input, index, *gcode);
   if (!job.ok()) return InputFault(job.status());
   if (absl::Status status = ApplyJobFlags(job_flags, *job); !status.ok()) {
     return UsageFault(status);
@@ -74,6 +76,7 @@ Command InspectCommand() {
       {"layers", "A-B", "only these, counted from 1, one by one"},
       {"travel_speed", "MM_S", "for the idle time (default: the file's, or 20.32)"},
       PolicyFlag(),
+      AllowFlag(),
   };
   for (Flag& flag : PlateFlagTable()) command.flags.push_back(std::move(flag));
   command.example = "traverse inspect part.damat --layers=1-5";

@@ -44,7 +44,9 @@ absl::StatusOr<Request> ParseRequest(const Flags& flags) {
   auto plates = ParsePlateOptions(flags);
   if (!plates.ok()) return plates.status();
   request.plates = *plates;
-  request.rewrite = {ParseGcodeOptions(flags), flags.Switch("restate_times")};
+  absl::StatusOr<GcodeOptions> gcode = ParseGcodeOptions(flags);
+  if (!gcode.ok()) return gcode.status();
+  request.rewrite = {*std::move(gcode), flags.Switch("restate_times")};
   return request;
 }
 

@@ -95,7 +95,9 @@ Flag Joint(Flag flag, const std::string& help) {
 std::vector<Flag> JobFlagTable() {
   const std::vector<std::string> any;
   return {
-      {"option", "NAME=VALUE", "an option of the strategy; repeatable", any, /*repeatable=*/true},
+      {"option", "NAME=VALUE", "an option of the strategy; repeatable", any, /*repeatable=*/true,
+       "of the strategy; what else may move"},
+      AllowFlag(),
       {"layers", "A-B", "only these, counted from 1"},
       {"deposition",
        "ORDER",
@@ -150,8 +152,18 @@ Flag CrossingsFlag() {
           {"keep", "fewer", "any"}};
 }
 
-GcodeOptions ParseGcodeOptions(const Flags& flags) {
+Flag AllowFlag() { return {"allow", "NAME,...", "besides: infill_order, wall_order, fan_order"}; }
+
+absl::StatusOr<GcodeOptions> ParseGcodeOptions(const Flags& flags) {
   GcodeOptions options;
+  const std::string allow = flags.Text("allow");
+  const std::optional<gcode::Allowance> allowed = gcode::AllowanceOfNames(allow);
+  if (!allowed) {
+    return Fault(absl::StrFormat(
+        "--allow=%s: not infill_order, wall_order or fan_order, or several with commas between",
+        allow));
+  }
+  options.allow = *allowed;
   // The flag's own choices leave no other text.
   options.policy = gcode::PolicyOfName(flags.Text("policy", "safe")).value_or(options.policy);
   options.crossings =

@@ -29,10 +29,13 @@ std::vector<Flag> JobFlagTable();
 // --threads and those of connection_flags.h.
 std::vector<Flag> ServiceFlagTable();
 
-// The rows of --policy and --crossings, and what they say to the reader of G-code.
+// The rows of --policy, --crossings and --allow, and what they say to the reader of G-code.
 Flag PolicyFlag();
 Flag CrossingsFlag();
-GcodeOptions ParseGcodeOptions(const Flags& flags);
+Flag AllowFlag();
+
+// InvalidArgument for --allow with other names than there are.
+absl::StatusOr<GcodeOptions> ParseGcodeOptions(const Flags& flags);
 
 absl::StatusOr<JobFlags> ParseJobFlags(const Flags& flags);
 

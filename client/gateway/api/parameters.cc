@@ -99,7 +99,9 @@ absl::StatusOr<FileRequest> ParseParameters(const Parameters& parameters) {
   request.settings = *job;
   request.strategy_options = job->strategy_options;
   request.deadline = job->deadline;
-  request.gcode = cli::ParseGcodeOptions(*flags);
+  absl::StatusOr<GcodeOptions> gcode = cli::ParseGcodeOptions(*flags);
+  if (!gcode.ok()) return InTheseWords(gcode.status());
+  request.gcode = *std::move(gcode);
   request.report = flags->Switch("report");
   request.restate_times = flags->Switch("restate_times");
   absl::StatusOr<PlateOptions> plates = cli::ParsePlateOptions(*flags);

@@ -75,12 +75,13 @@ Kind KindOf(Feature feature) {
 
 }  // namespace
 
-PathRules::PathRules(const GcodeFile& file, const Layer& layer, Policy policy, Latitude latitude,
+PathRules::PathRules(const GcodeFile& file, const Layer& layer, const PathPermissions& permissions,
                      const std::vector<Outline>& outlines)
     : file_(file),
       first_block_(layer.first_block),
-      policy_(policy),
-      latitude_(latitude),
+      policy_(permissions.policy),
+      latitude_(permissions.latitude),
+      allow_(permissions.allow),
       outlines_(outlines) {}
 
 bool PathRules::IsPinned(size_t path) const {
@@ -141,10 +142,14 @@ bool PathRules::KeepsOrder(size_t i, size_t j) const {
   const Feature a = FeatureOf(i);
   const Feature b = FeatureOf(j);
   const Kind kind = KindOf(a);
-  if (kind != KindOf(b) || kind == Kind::kIroning) return true;
+  const Kind other = KindOf(b);
+  const bool wall_and_fill = (kind == Kind::kWall && other == Kind::kFill) ||
+                             (kind == Kind::kFill && other == Kind::kWall);
+  if (wall_and_fill && allow_.infill_order) return false;
+  if (kind != other || kind == Kind::kIroning) return true;
   if (kind == Kind::kSupport) return a != b || a == Feature::kSupportInterface;
   if (policy_ == Policy::kFree) return false;
-  if (kind == Kind::kWall) return true;
+  if (kind == Kind::kWall) return !allow_.wall_order;
   return OrderIsQuality(a) && a == b;
 }
 

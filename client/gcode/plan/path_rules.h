@@ -20,11 +20,18 @@ struct PathRule {
   std::vector<uint32_t> entries;  // contour: where it may begin; empty for anywhere
 };
 
+// What may change, and how far from the file's own order.
+struct PathPermissions {
+  Policy policy = Policy::kSafe;
+  Latitude latitude = Latitude::kFull;
+  Allowance allow = {};
+};
+
 // The paths of one layer, by their index in it.
 class PathRules {
  public:
   // `file` and `outlines`, those of the paths of `layer`, outlive the rules.
-  PathRules(const GcodeFile& file, const Layer& layer, Policy policy, Latitude latitude,
+  PathRules(const GcodeFile& file, const Layer& layer, const PathPermissions& permissions,
             const std::vector<Outline>& outlines);
 
   PathRule RuleOf(size_t path) const;
@@ -45,6 +52,7 @@ class PathRules {
   const size_t first_block_;
   const Policy policy_;
   const Latitude latitude_;
+  const Allowance allow_;
   const std::vector<Outline>& outlines_;
 };
 

@@ -1,6 +1,7 @@
 #include "client/gcode/plan/policy.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <utility>
@@ -16,10 +17,11 @@ constexpr SlotMask kOrderedSlots = kFanSlots | SlotBit(kSlotPressure) | SlotBit(
 
 class LayerPlanner {
  public:
-  LayerPlanner(const GcodeFile& file, const Layer& layer, Policy policy, Latitude latitude)
-      : file_(file), policy_(policy), latitude_(latitude) {
+  LayerPlanner(const GcodeFile& file, const Layer& layer, Policy policy, Latitude latitude,
+               const Allowance& allow)
+      : file_(file), policy_(policy), latitude_(latitude), fan_order_(allow.fan_order) {
     result_.outlines = OutlinesOf(file, layer);
-    paths_.emplace(file, layer, policy, latitude, result_.outlines);
+    paths_.emplace(file, layer, PathPermissions{policy, latitude, allow}, result_.outlines);
   }
 
   LayerPlan Make();
@@ -43,6 +45,7 @@ class LayerPlanner {
   const GcodeFile& file_;
   const Policy policy_;
   const Latitude latitude_;
+  const bool fan_order_;
   std::vector<PathRule> rules_;
   Contacts contacts_;
   std::vector<uint32_t> position_;  // [path] among the children of its any_order
@@ -54,7 +57,7 @@ bool LayerPlanner::BeginsGroup(size_t path) const {
   if (path == 0 || rules_[path].pinned || rules_[path - 1].pinned) return true;
   if ((BlockOf(path).link & (kLinkSplits | kLinkFixed)) != 0) return true;
   if ((FeatureOf(path) == Feature::kSkirt) != (FeatureOf(path - 1) == Feature::kSkirt)) return true;
-  if (policy_ == Policy::kFree) return false;
+  if (policy_ == Policy::kFree || fan_order_) return false;
   const PrintState& state = file_.states[BlockOf(path).state_in];
   const PrintState& before = file_.states[BlockOf(path - 1).state_in];
   for (size_t slot = 0; slot < kSlotCount; ++slot) {
@@ -234,6 +237,45 @@ std::string_view PolicyName(Policy policy) {
   return "";
 }
 
+namespace {
+
+struct AllowanceName {
+  std::string_view name;
+  bool Allowance::*flag;
+};
+
+constexpr AllowanceName kAllowances[] = {
+    {"infill_order", &Allowance::infill_order},
+    {"wall_order", &Allowance::wall_order},
+    {"fan_order", &Allowance::fan_order},
+};
+
+}  // namespace
+
+std::optional<Allowance> AllowanceOfNames(std::string_view names) {
+  Allowance allow;
+  while (!names.empty()) {
+    const size_t end = std::min(names.find(','), names.size());
+    const std::string_view word = names.substr(0, end);
+    const auto* known = std::find_if(std::begin(kAllowances), std::end(kAllowances),
+                                     [word](const AllowanceName& it) { return it.name == word; });
+    if (known == std::end(kAllowances) || end + 1 == names.size()) return std::nullopt;
+    allow.*known->flag = true;
+    names.remove_prefix(std::min(end + 1, names.size()));
+  }
+  return allow;
+}
+
+std::string AllowanceNames(const Allowance& allow) {
+  std::string names;
+  for (const AllowanceName& it : kAllowances) {
+    if (!(allow.*it.flag)) continue;
+    if (!names.empty()) names += '+';
+    names += it.name;
+  }
+  return names;
+}
+
 std::optional<Crossings> CrossingsOfName(std::string_view name) {
   for (const Crossings crossings : {Crossings::kKeep, Crossings::kFewer, Crossings::kAny}) {
     if (CrossingsName(crossings) == name) return crossings;
@@ -253,9 +295,9 @@ std::string_view CrossingsName(Crossings crossings) {
   return "";
 }
 
-LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy,
-                        Latitude latitude) {
-  return LayerPlanner(file, layer, policy, latitude).Make();
+LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy, Latitude latitude,
+                        const Allowance& allow) {
+  return LayerPlanner(file, layer, policy, latitude, allow).Make();
 }
 
 }  // namespace traverse::gcode

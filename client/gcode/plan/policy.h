@@ -1,7 +1,8 @@
 // What of a layer may change places.
 //
 //   in_order                          groups: nothing crosses a fence, a label, a skirt's end, or
-//    |                                (but under `free`) a change of the fan
+//    |                                (unless it is allowed, as it is under `free`) a change of the
+//    |                                fan
 //    +- any_order(paths, before)      the paths of a group; `before` keeps the sliced order of
 //    +- path                          paths that touch; pinned paths stand alone
 //    +- any_order(islands of any_order(paths, before))      under `balanced`
@@ -11,6 +12,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -28,6 +30,21 @@ enum class Policy : uint8_t {
 // "safe", "balanced" or "free"; nothing for other text.
 std::optional<Policy> PolicyOfName(std::string_view name);
 std::string_view PolicyName(Policy policy);
+
+// What a user allows beyond any policy, each by its name.
+struct Allowance {
+  bool infill_order = false;  // walls and the infill that touches them may change places
+  bool wall_order = false;    // walls that touch one another may
+  bool fan_order = false;     // paths may across a change of the fan, of pressure advance or flow
+
+  bool operator==(const Allowance&) const = default;
+};
+
+// From names with commas between them, such as "infill_order,wall_order"; nothing for other text.
+std::optional<Allowance> AllowanceOfNames(std::string_view names);
+
+// "infill_order+wall_order"; empty if nothing is allowed.
+std::string AllowanceNames(const Allowance& allow);
 
 // What is done about visible walls in the way of travel.
 enum class Crossings : uint8_t {
@@ -68,7 +85,7 @@ enum class Latitude : uint8_t {
 };
 
 LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy,
-                        Latitude latitude = Latitude::kFull);
+                        Latitude latitude = Latitude::kFull, const Allowance& allow = {});
 
 }  // namespace traverse::gcode
 

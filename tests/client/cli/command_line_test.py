@@ -3,6 +3,7 @@
 The environment names it: TRAVERSE, and TRAVERSE_SERVER for the tests with a remote service.
 """
 import json
+import lzma
 import os
 import re
 import shutil
@@ -261,6 +262,21 @@ class Views(CommandLine):
 
     def scene(self, page):
         return json.loads(re.search(r'<script id="scene" type="application/json">(.*?)</script>', read(page))[1])
+
+    def test_what_is_allowed_beside_the_policy(self):
+        gcode = os.path.join(TESTS, "data", "gcode", "sl_clusters13_brim.gcode.xz")
+        plain = self.path("plain.gcode")
+        with lzma.open(gcode, "rb") as packed, open(plain, "wb") as file:
+            file.write(packed.read())
+        made = self.path("made.gcode")
+        out = self.succeed("optimize", plain, "-o", made, "--allow=infill_order")
+        self.assertRegex(out, r"travel [0-9.]+ -> [0-9.]+ m \(-[1-9]")
+        self.assertIn(", policy safe, allow infill_order: travel", read(made))
+        self.assertIn("(policy safe, infill_order)", self.succeed("verify", plain, made))
+        code, _, err = self.run_traverse("verify", plain, made, "--policy=safe", "--allow=")
+        self.assertEqual(code, 1)
+        self.assertIn("(order; ", err)
+        self.assertIn("--allow=doors", self.fail_with(2, "optimize", plain, "-o", made, "--allow=doors"))
 
     def test_reports_of_gcode_state_what_the_files_amount_to(self):
         gcode = os.path.join(TESTS, os.pardir, "deploy", "samples", "clusters13.gcode")

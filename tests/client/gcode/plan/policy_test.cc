@@ -42,11 +42,15 @@ class Sheet {
   }
 
   // The plan, with paths numbered from 0 without the first one.
-  LayerPlan Plan(Policy policy = Policy::kSafe, Latitude latitude = Latitude::kFull) {
+  LayerPlan Plan(Policy policy = Policy::kSafe, Latitude latitude = Latitude::kFull,
+                 const Allowance& allow = {}) {
     Line(";TYPE:Custom", 950, 950, 960, 950);
     file_ = *ReadGcode(text_, "sheet.gcode");
     EXPECT_EQ(file_->layers.size(), 1u);
-    return MakeLayerPlan(*file_, file_->layers[0], policy, latitude);
+    return MakeLayerPlan(*file_, file_->layers[0], policy, latitude, allow);
+  }
+  LayerPlan PlanAllowing(const Allowance& allow) {
+    return Plan(Policy::kSafe, Latitude::kFull, allow);
   }
 
  private:
@@ -287,6 +291,45 @@ TEST(Policy, SkirtsAndObjectsAndFansDivideALayer) {
               ElementsAre(ElementsAre(0), ElementsAre(1), ElementsAre(2), ElementsAre(3),
                           ElementsAre(4), ElementsAre(5)));
   EXPECT_THAT(Groups(same.Plan(Policy::kFree).plan), Contains(ElementsAre(3, 4)));
+}
+
+TEST(Policy, WhatIsAllowedByNameMayChangePlacesAndNothingElse) {
+  Sheet sheet;
+  sheet.Square(kInner, 0.4, 0.4, 9.2).Square(kOuter, 0, 0, 10).Line(kInfill, 0.8, 5, 9, 5);
+  sheet.Line(";TYPE:Bridge infill", 0.8, 5.2, 9, 5.2);
+  const auto pairs = [&sheet](const Allowance& allow) {
+    Sheet same = sheet;
+    return Pairs(same.PlanAllowing(allow).plan);
+  };
+
+  EXPECT_THAT(pairs({}), UnorderedElementsAre(Pair(1, 2), Pair(1, 3), Pair(1, 4), Pair(3, 4)));
+  EXPECT_THAT(pairs({.infill_order = true}),
+              UnorderedElementsAre(Pair(1, 2), Pair(1, 4), Pair(3, 4)));
+  EXPECT_THAT(pairs({.wall_order = true}),
+              UnorderedElementsAre(Pair(1, 3), Pair(1, 4), Pair(3, 4)));
+  EXPECT_THAT(pairs({.infill_order = true, .wall_order = true}),
+              UnorderedElementsAre(Pair(1, 4), Pair(3, 4)));
+}
+
+TEST(Policy, AChangeOfTheFanDividesALayerUnlessThatIsAllowed) {
+  Sheet sheet;
+  sheet.Line(kInfill, 0, 5, 9, 5).Add("M106 S255").Line(kInfill, 0, 15, 9, 15);
+  Sheet same = sheet;
+
+  EXPECT_THAT(Groups(sheet.Plan().plan), Contains(ElementsAre(2)));
+  EXPECT_THAT(Groups(same.PlanAllowing({.fan_order = true}).plan), Contains(ElementsAre(1, 2)));
+}
+
+TEST(Policy, NamesOfWhatIsAllowedAreReadAndWritten) {
+  const Allowance both = {.infill_order = true, .fan_order = true};
+
+  EXPECT_EQ(AllowanceOfNames("fan_order,infill_order"), both);
+  EXPECT_EQ(AllowanceNames(both), "infill_order+fan_order");
+  EXPECT_EQ(AllowanceOfNames(""), Allowance{});
+  EXPECT_EQ(AllowanceNames({}), "");
+  for (const char* wrong : {"infill", "infill_order,", ",infill_order", "wall_order fan_order"}) {
+    EXPECT_EQ(AllowanceOfNames(wrong), std::nullopt) << wrong;
+  }
 }
 
 TEST(Policy, TowersArePinned) {
