@@ -20,6 +20,7 @@ struct GcodeOptions {
   gcode::Policy policy = gcode::Policy::kSafe;
   gcode::Crossings crossings = gcode::Crossings::kKeep;
   gcode::Allowance allow = {};
+  double min_revisit_seconds = 0;  // see RewriteOptions
 };
 
 // The job in `file`: a plan for each of its layers, the cost of travel as its own moves show it

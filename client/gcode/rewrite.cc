@@ -152,7 +152,9 @@ class Rewriter {
            const RewriteOptions& options)
       : file_(file),
         options_(options),
-        chooser_(file, tries, {options.policy, options.crossings, options.threads}) {}
+        chooser_(
+            file, tries,
+            {options.policy, options.crossings, options.threads, options.min_revisit_seconds}) {}
 
   absl::StatusOr<GcodeRewrite> Rewrite() {
     for (int round = 0;; ++round) {

@@ -34,8 +34,9 @@ struct GcodeRewrite {
 struct RewriteOptions {
   gcode::Policy policy = gcode::Policy::kSafe;
   gcode::Crossings crossings = gcode::Crossings::kKeep;
-  gcode::Allowance allow = {};  // is in that line too
-  std::string version;          // of this program, for the line that is added behind the head
+  gcode::Allowance allow = {};     // is in that line too
+  double min_revisit_seconds = 0;  // no island is printed on sooner than it was, unless so late
+  std::string version;             // of this program, for the line that is added behind the head
   int threads = 1;
 };
 

@@ -44,6 +44,7 @@ absl::StatusOr<GcodeRewrite> RewriteByRuns(const InputJob& job,
   rewrite.policy = options.policy;
   rewrite.crossings = options.crossings;
   rewrite.allow = options.allow;
+  rewrite.min_revisit_seconds = options.min_revisit_seconds;
   rewrite.version = TRAVERSE_VERSION;
   rewrite.threads = gcode::ThreadsFor(job.gcode->text.size());
   return RewriteGcode(*job.gcode, tries, rewrite);

@@ -98,7 +98,9 @@ std::vector<Flag> JobFlagTable() {
       {"option", "NAME=VALUE", "an option of the strategy; repeatable", any, /*repeatable=*/true,
        "of the strategy; what else may move"},
       AllowFlag(),
-      {"layers", "A-B", "only these, counted from 1"},
+      {"layers", "A-B", "only these, counted from 1", any, false,
+       "only these; least time between layers"},
+      {"min_revisit", "S", "G-code: least time before an island is printed on again"},
       {"deposition",
        "ORDER",
        "sequential (default) or interleaved",
@@ -164,6 +166,10 @@ absl::StatusOr<GcodeOptions> ParseGcodeOptions(const Flags& flags) {
         allow));
   }
   options.allow = *allowed;
+  constexpr double kMostSeconds = 3600;
+  const auto revisit = flags.Number("min_revisit", 0, kMostSeconds);
+  if (!revisit.ok()) return revisit.status();
+  options.min_revisit_seconds = revisit->value_or(0);
   // The flag's own choices leave no other text.
   options.policy = gcode::PolicyOfName(flags.Text("policy", "safe")).value_or(options.policy);
   options.crossings =

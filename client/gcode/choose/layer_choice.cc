@@ -9,6 +9,7 @@
 
 #include "client/gcode/choose/choice_row.h"
 #include "client/gcode/choose/merged_orders.h"
+#include "client/gcode/choose/revisits.h"
 #include "client/gcode/parallel.h"
 
 namespace traverse::gcode {
@@ -55,6 +56,7 @@ class LayerChooser::Impl {
         plain_habit_(Plain(habit_)),
         donors_(file),
         travel_(LearnTravel(file, habit_.threshold_mm)),
+        revisits_(file, choice.min_revisit_seconds, choice.threads),
         columns_(file.layers.size()) {
     ParallelFor(columns_.size(), threads_, [this](size_t layer) { FillColumn(layer); });
     ParallelFor(columns_.size() - 1, threads_, [this](size_t i) { FillWays(i + 1); });
@@ -176,6 +178,24 @@ class LayerChooser::Impl {
       }
     }
     column.totals.no_way.assign(column.totals.ways.size(), false);
+    ForbidRevisits(layer);
+  }
+
+  // The file's own orders one after the other may always be chosen.
+  void ForbidRevisits(size_t layer) {
+    const auto timed = [this](size_t l, size_t choice) {
+      const Column& column = columns_[l];
+      return TimedOrder{&column.choices[choice].order, column.totals.inside[choice].seconds};
+    };
+    const size_t choices = columns_[layer].choices.size();
+    for (size_t before = 0; before < columns_[layer - 1].choices.size(); ++before) {
+      for (size_t choice = 0; choice < choices; ++choice) {
+        if (before == 0 && choice == 0) continue;
+        columns_[layer].totals.no_way[before * choices + choice] =
+            revisits_.TooSoon(layer, timed(layer - 1, before), timed(layer, choice),
+                              timed(layer - 1, 0), timed(layer, 0));
+      }
+    }
   }
 
   // The ways are written one after the other, for each needs to know where the extruder's register
@@ -285,7 +305,8 @@ class LayerChooser::Impl {
   const RetractionHabit plain_habit_;
   const LinkDonors donors_;
   const std::vector<TravelModel> travel_;  // [layer]
-  std::vector<Column> columns_;            // [layer]
+  const Revisits revisits_;
+  std::vector<Column> columns_;  // [layer]
   int64_t fewer_crossings_ = 0;
 };
 

@@ -47,6 +47,7 @@ struct ChoiceOptions {
   Policy policy = Policy::kSafe;
   Crossings crossings = Crossings::kKeep;
   int threads = 1;
+  double min_revisit_seconds = 0;  // see revisits.h
 };
 
 // Chooses among the order of the file and those of `tries`, each made better by runs of the others

@@ -147,7 +147,8 @@ class Files(unittest.TestCase):
                              ("report=perhaps", "report"), ("machine=/etc/passwd", "machine"), ("json=/tmp/x", "json"),
                              ("o=/tmp/x", "parameter o"), ("Policy=safe", "Policy"), ("name=../x.gcode", "slash"),
                              ("name=%00", "control"), ("name=..", "name"), ("policy=%zz", "percent"), ("option=effort", "effort"),
-                             ("allow=walls", "allow=walls"), ("allow=infill_order,", "allow")]:
+                             ("allow=walls", "allow=walls"), ("allow=infill_order,", "allow"),
+                             ("min_revisit=-1", "min_revisit"), ("min_revisit=nan", "min_revisit")]:
             self.refused(400, words, self.post("/v1/gcode?" + query, PART))
         self.refused(400, "strategy", self.post("/v1/gcode?strategy=magic", PART))
         self.refused(400, "layers=4-9", self.post("/v1/gcode?layers=4-9", PART))
