@@ -38,6 +38,14 @@ constexpr double kMostCredit = -(256 << 10);
 // A connection that says nothing for so long may be closed for a new one.
 constexpr auto kIdle = std::chrono::seconds(1);
 
+// Bytes that are pending where there is no job may be of calls that nobody has looked at yet, for
+// so long. A flood of calls to what is not the service's own, such as health checks, is seen by
+// them.
+constexpr auto kMoment = std::chrono::milliseconds(300);
+
+// What a caller goes on sending for a job that was ended has come by then.
+constexpr auto kOnItsWay = std::chrono::seconds(2);
+
 // Time for the end of a job to take effect before its connection is cut.
 constexpr auto kPatience = std::chrono::milliseconds(250);
 
@@ -127,7 +135,7 @@ void Connections::AcceptAll(int listener) {
         continue;
       }
       const bool full = static_cast<int>(table_.size()) >= rules_.max_connections;
-      if (peer.empty() || ours < 0 || (full && !MakeRoom())) {
+      if (peer.empty() || ours < 0 || (full && !MakeRoom(peer))) {
         close(socket);
         if (ours >= 0) close(ours);
         continue;
@@ -146,20 +154,41 @@ void Connections::AcceptAll(int listener) {
 void Connections::WaitForRoom() {
   {
     MutexLock lock(mutex_);
-    MakeRoom();
+    MakeRoom("");
   }
   poll(nullptr, 0, kBusyMilliseconds);  // its files are closed in a moment
 }
 
-// Closes the connection that has been idle for longest.
-bool Connections::MakeRoom() {
+// Closes the connection that has been idle for longest; if none has been so for a while, then of
+// the address that has most of them, if that has more than the one of `peer`, for whom room is
+// made.
+bool Connections::MakeRoom(const std::string& peer) {
+  std::map<std::string, int> counts;  // by address
+  auto most = counts.end();
+  for (const auto& [other, connection] : table_) {
+    const auto count = counts.try_emplace(AddressOf(other)).first;
+    if (++count->second > (most == counts.end() ? 0 : most->second)) most = count;
+  }
+  const Clock::time_point now = Clock::now();
   auto oldest = table_.end();
+  auto oldest_of_most = table_.end();
+  const auto offer = [](Table::iterator it, Table::iterator end, Table::iterator& least) {
+    if (least == end || it->second.moved < least->second.moved) least = it;
+  };
   for (auto it = table_.begin(); it != table_.end(); ++it) {
     if (it->second.jobs > 0) continue;
-    if (oldest == table_.end() || it->second.moved < oldest->second.moved) oldest = it;
+    offer(it, table_.end(), oldest);
+    if (AddressOf(it->first) == most->first) offer(it, table_.end(), oldest_of_most);
   }
-  if (oldest == table_.end() || Clock::now() - oldest->second.moved < kIdle) return false;
-  Cut(oldest);
+  if (oldest == table_.end()) return false;
+  if (now - oldest->second.moved >= kIdle) {
+    Cut(oldest);
+    return true;
+  }
+  const auto own = counts.find(AddressOf(peer));
+  const int own_count = own == counts.end() ? 0 : own->second;
+  if (oldest_of_most == table_.end() || most->second <= own_count + 1) return false;
+  Cut(oldest_of_most);
   return true;
 }
 
@@ -201,6 +230,15 @@ int64_t Connections::Allowed(const Connection& connection) const {
   return rules_.stranger_bytes + connection.jobs * rules_.job_bytes;
 }
 
+bool Connections::IsLoud(Connection& connection, Clock::time_point now) const {
+  if (connection.jobs > 0 || connection.pending <= static_cast<double>(rules_.quiet_bytes)) {
+    if (connection.loud_since <= now) connection.loud_since = Clock::time_point();
+    return false;
+  }
+  if (connection.loud_since == Clock::time_point()) connection.loud_since = now;
+  return now - connection.loud_since > kMoment;
+}
+
 std::vector<std::string> Connections::Look(bool& busy) {
   std::vector<std::string> offenders;
   uint64_t most = 0;
@@ -220,7 +258,7 @@ std::vector<std::string> Connections::Look(bool& busy) {
     connection.pending *= fading;
     most = std::max(most, Update(connection, info));
     connection.pending = std::max(kMostCredit, connection.pending);
-    if (connection.pending > static_cast<double>(Allowed(connection))) {
+    if (connection.pending > static_cast<double>(Allowed(connection)) || IsLoud(connection, now)) {
       offenders.push_back(it->first);
     }
     ++it;
@@ -242,7 +280,7 @@ void Connections::Restrain(const std::string& peer) {
     const bool told = connection.complained != Clock::time_point();
     if (told && now - connection.complained < kPatience) return;
     if (told || connection.jobs == 0) {
-      if (connection.jobs == 0) NoteFlood(peer, /*ban_at_once=*/false);
+      if (connection.jobs == 0) NoteFlood(peer, IsLoud(connection, now));
       Cut(found);
       return;
     }
@@ -299,6 +337,8 @@ void Connections::OnJobDone(const std::string& peer, double pending_before, bool
     if (more > 0) connection.pending -= more / std::max(1, connection.jobs);
   }
   connection.jobs = std::max(0, connection.jobs - 1);
+  // Of a job that the server has ended more may be on its way.
+  if (!all_came) connection.loud_since = Clock::now() + kOnItsWay;
 }
 
 void Connections::OnMessage(const std::string& peer, int64_t bytes) {

@@ -41,6 +41,7 @@ struct ConnectionRules {
   int max_connections = 1024;
   int64_t stranger_bytes = int64_t{4} << 20;  // pending beside those of jobs
   int64_t job_bytes = int64_t{64} << 20;      // pending for each job
+  int64_t quiet_bytes = int64_t{256} << 10;   // the same for longer than a moment
   int max_calls = 1000;                       // that were begun and gRPC is not done with
 
   // Unacknowledged data for so long ends a connection.
@@ -104,6 +105,9 @@ class Connections {
     int calls = 0;
     Clock::time_point moved;       // bytes came last
     Clock::time_point complained;  // end_job was called
+
+    // Since when more than quiet_bytes were pending without a job; none: not so. May be to come.
+    Clock::time_point loud_since;
   };
   using Table = std::map<std::string, Connection>;
 
@@ -121,13 +125,14 @@ class Connections {
   void Serve();
   void AcceptAll(int listener);
   void WaitForRoom() TRAVERSE_EXCLUDES(mutex_);
-  bool MakeRoom() TRAVERSE_REQUIRES(mutex_);
+  bool MakeRoom(const std::string& peer) TRAVERSE_REQUIRES(mutex_);
   Table::iterator Cut(Table::iterator connection) TRAVERSE_REQUIRES(mutex_);
 
   // Brings the table up to date. Returns those with too much pending, and whether much came in.
   std::vector<std::string> Look(bool& busy);
   void Restrain(const std::string& peer);
   int64_t Allowed(const Connection& connection) const;
+  bool IsLoud(Connection& connection, Clock::time_point now) const;
   uint64_t Update(Connection& connection, const SocketInfo& info) const;
   void NoteFlood(const std::string& peer, bool ban_at_once) TRAVERSE_REQUIRES(mutex_);
   bool IsBanned(const std::string& peer) const TRAVERSE_REQUIRES(mutex_);

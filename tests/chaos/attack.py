@@ -12,6 +12,7 @@ import multiprocessing
 import os
 import random
 import signal
+import socket
 import struct
 import subprocess
 import sys
@@ -19,8 +20,8 @@ import threading
 import time
 import urllib.request
 
-from http2_client import (CONTINUATION, DATA, END_HEADERS, END_STREAM, HEADERS, PING, RST_STREAM, SERVICE, SETTINGS, Connection,
-                          Window, bomb, field, frame, literal, message, varint)
+from http2_client import (CONTINUATION, DATA, END_HEADERS, END_STREAM, HEADERS, PING, RST_STREAM, SERVICE, SETTINGS,
+                          WINDOW_UPDATE, Connection, Window, bomb, field, frame, literal, message, varint)
 
 # What gRPC 1.51 holds of streams that were reset is seen by the server only a moment later: a proxy belongs in
 # front of a port that strangers reach (server/SECURITY.md).
@@ -169,6 +170,139 @@ def rapid_reset(server, end):
 
     until(end, step)
     connection.close()
+
+
+def resets_of(methods, deadline=None):
+    """The same elsewhere: calls that no code of the service sees, or that are late before they are looked at."""
+    def attack(server, end):
+        dice = random.Random(13)
+        connection = None
+
+        def step():
+            nonlocal connection
+            if connection is None:
+                connection = Connection(server.port)
+            block = b""
+            for _ in range(100):
+                stream = connection.next_stream
+                connection.next_stream += 2
+                extra = [("grpc-timeout", dice.choice(deadline))] if deadline else ()
+                block += frame(HEADERS, END_HEADERS, stream, connection.headers(dice.choice(methods), extra))
+                if deadline is None:
+                    block += frame(RST_STREAM, 0, stream, struct.pack(">I", 8))
+            if not connection.send(block):
+                connection.close()
+                connection = None
+
+        def patient_step():
+            try:
+                step()
+            except OSError:
+                time.sleep(0.05)
+
+        until(end, patient_step)
+        if connection is not None:
+            connection.close()
+
+    return attack
+
+
+def half_closed(server, end):
+    """Streams that end twice, send headers in the middle of a message, data after the end, or windows that overflow."""
+    dice = random.Random(17)
+    body = message(options("auto") + layer(30) * 5)
+
+    def step():
+        connection = Connection(server.port)
+        for _ in range(10):
+            stream = connection.call(SERVICE + dice.choice(["OptimizeBatch", "Optimize", "ListStrategies"]))
+            pieces = [frame(DATA, 0, stream, body[:len(body) // 2]), frame(DATA, END_STREAM, stream, body[len(body) // 2:]),
+                      frame(HEADERS, END_HEADERS | END_STREAM, stream, literal("x-late", "1")), frame(DATA, END_STREAM, stream),
+                      frame(WINDOW_UPDATE, 0, stream, struct.pack(">I", 0x7FFFFFFF)), frame(DATA, 0, stream + 2, b"early"),
+                      frame(RST_STREAM, 0, stream, struct.pack(">I", dice.randrange(20)))]
+            dice.shuffle(pieces)
+            if not connection.send(b"".join(pieces[:dice.randint(1, len(pieces))])):
+                break
+        connection.drain(dice.choice([0.001, 0.02]))
+        connection.close()
+
+    until(end, step)
+
+
+def half_prefaces(server, end):
+    """Connections that never come to their settings: nothing, half a preface, a handshake of TLS, HTTP/1.1."""
+    dice = random.Random(19)
+    held = []
+    beginnings = [b"", b"PRI * HTTP", b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03" + bytes(32), b"POST / HTTP/1.1\r\nHost: a\r\n"]
+
+    def step():
+        try:
+            held.append(socket.create_connection(("127.0.0.1", server.port), timeout=1))
+            held[-1].sendall(dice.choice(beginnings))
+        except OSError:
+            time.sleep(0.02)
+        if len(held) > 800:
+            held.pop(0).close()
+
+    until(end, step)
+    for connection in held:
+        connection.close()
+
+
+def cancelled_uploads(server, end):
+    """Messages of 30 MB that are cancelled in the middle, one after the other on one connection."""
+    body = message(options() + layer(20_000) * 23)
+    connection = Connection(server.port)
+    window = Window(connection)
+
+    def step():
+        nonlocal connection, window
+        stream = connection.call(SERVICE + "OptimizeBatch")
+        sent = window.send(stream, body[:len(body) // 2], patience=0.3)
+        if not connection.send(frame(RST_STREAM, 0, stream, struct.pack(">I", 8))) or sent == 0:
+            connection.close()
+            connection = Connection(server.port)
+            window = Window(connection)
+
+    until(end, step)
+    connection.close()
+
+
+def validate_only(strategy="auto"):
+    """Options of a job that is checked and not done."""
+    return field(1, field(2, field(1, strategy.encode())) + b"\x68\x01")
+
+
+def many_pairs():
+    """A node of a hundred thousand paths with as many pairs."""
+    count = 100_000
+    paths = field(1, field(1, field(2, packed([1.0, 2.0])))) * count
+    pairs = b"".join(field(2, b"\x08" + varint(i) + b"\x10" + varint(i + 1)) for i in range(count - 1))
+    nodes = field(2, field(3, field(1, b"".join(varint(i + 1) for i in range(count))) + pairs))
+    nodes += b"".join(field(2, b"\x08" + varint(i)) for i in range(count))
+    return validate_only() + field(2, field(4, paths + nodes))
+
+
+def names(server, end):
+    """Names of jobs and texts of metadata of every kind and length, and options by the thousand."""
+    dice = random.Random(23)
+
+    def text():
+        return dice.choice([b"\x00", b"\xff" * 300, b"a" * 70_000, b"%", b"\r\nx-y: z", "\u2028".encode() * 100, b"x" * 255, b"\x9b31m"])
+
+    def step():
+        connection = Connection(server.port)
+        for _ in range(5):
+            some = b"".join(field(2, field(1, text()[:dice.choice([1, 100])]) + field(2, text())) for _ in range(dice.choice([0, 3, 2000])))
+            body = field(1, field(1, text()) + field(2, field(1, b"auto") + some)) + layer(3)
+            extra = [("x-a-bin", "!!!"), ("traceparent", "0" * 55), ("authorization", "Bearer " + "z" * dice.choice([0, 9000]))]
+            stream = connection.call(SERVICE + "OptimizeBatch", [dice.choice(extra), ("traverse-message-bytes", dice.choice(
+                ["-1", "9" * 30, "0x10", ""]))])
+            Window(connection).send(stream, message(body), patience=0.05)
+        connection.drain(0.02)
+        connection.close()
+
+    until(end, step)
 
 
 def endless_headers(server, end):
@@ -590,6 +724,13 @@ def many_channels(server, end):
 
 ATTACKS = {
     "rapid_reset": rapid_reset,
+    "resets_elsewhere": resets_of([HEALTH, REFLECTION, "/no.such.Service/Method", SERVICE + "ListStrategies"]),
+    "late_calls": resets_of([SERVICE + "Optimize", SERVICE + "OptimizeBatch"], ["1n", "1u", "1m"]),
+    "half_closed": half_closed,
+    "half_prefaces": half_prefaces,
+    "cancelled_uploads": cancelled_uploads,
+    "validate_only": batches([many_pairs, lambda: validate_only() + layer(200_000)]),
+    "names": names,
     "endless_headers": endless_headers,
     "control_frames": control_frames,
     "many_headers": many_headers,
@@ -621,7 +762,7 @@ ATTACKS = {
 
 def run(name, seconds, max_memory, most_p99):
     """The faults found."""
-    server = Server(max_memory, files=512 if name == "idle_connections" else None)
+    server = Server(max_memory, files=512 if name in ("idle_connections", "half_prefaces") else None)
     watch = Watch(server)
     try:
         ATTACKS[name](server, time.monotonic() + seconds)
