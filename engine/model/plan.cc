@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "engine/base/rest.h"
 #include "engine/base/tolerances.h"
 
 namespace traverse {
@@ -15,83 +16,109 @@ absl::Status Fault(const std::string& place, const std::string& what) {
   return absl::InvalidArgumentError(absl::StrCat(place, ": ", what));
 }
 
-absl::Status CheckAllowed(const Path& path, const std::string& place) {
-  std::vector<bool> seen(path.points.size());
+// The text of a place is put together for a fault alone: there may be millions of places.
+std::string PathPlace(size_t index) { return absl::StrCat("paths[", index, "]"); }
+std::string NodePlace(int index, const PlanNode& node) {
+  const char* kind = "";
+  if (node.kind == PlanNode::Kind::kInOrder) kind = ".in_order";
+  if (node.kind == PlanNode::Kind::kAnyOrder) kind = ".any_order";
+  return absl::StrCat("nodes[", index, "]", kind);
+}
+
+absl::Status CheckAllowed(const Path& path, size_t index, Rest& rest) {
+  std::vector<bool> seen(path.allowed.empty() ? 0 : path.points.size());
   for (size_t i = 0; i < path.allowed.size(); ++i) {
+    rest();
     const int vertex = path.allowed[i];
     if (vertex < 0 || vertex >= static_cast<int>(path.points.size())) {
-      return Fault(absl::StrCat(place, ".entries[", i, "]"),
+      return Fault(absl::StrCat(PathPlace(index), ".entries[", i, "]"),
                    absl::StrCat(vertex, " is not a vertex of a contour of ", path.points.size()));
     }
     if (seen[static_cast<size_t>(vertex)]) {
-      return Fault(absl::StrCat(place, ".entries[", i, "]"), absl::StrCat(vertex, " is repeated"));
+      return Fault(absl::StrCat(PathPlace(index), ".entries[", i, "]"),
+                   absl::StrCat(vertex, " is repeated"));
     }
     seen[static_cast<size_t>(vertex)] = true;
   }
   return absl::OkStatus();
 }
 
-absl::Status CheckPath(const Path& path, size_t index) {
-  const std::string place = absl::StrCat("paths[", index, "]");
+absl::Status CheckPath(const Path& path, size_t index, Rest& rest) {
   if (path.kind == Path::Kind::kContour && path.points.empty()) {
-    return Fault(absl::StrCat(place, ".points"), "a contour needs at least one point");
+    return Fault(absl::StrCat(PathPlace(index), ".points"), "a contour needs at least one point");
   }
   if (path.kind == Path::Kind::kOpen && path.points.size() != 2) {
-    return Fault(absl::StrCat(place, ".points"), "an open path has two ends");
+    return Fault(absl::StrCat(PathPlace(index), ".points"), "an open path has two ends");
   }
   for (size_t i = 0; i < path.points.size(); ++i) {
+    rest();
     if (const char* fault = CoordinateFault(path.points[i].x)) {
-      return Fault(absl::StrCat(place, ".points[", i, "].x"), fault);
+      return Fault(absl::StrCat(PathPlace(index), ".points[", i, "].x"), fault);
     }
     if (const char* fault = CoordinateFault(path.points[i].y)) {
-      return Fault(absl::StrCat(place, ".points[", i, "].y"), fault);
+      return Fault(absl::StrCat(PathPlace(index), ".points[", i, "].y"), fault);
     }
   }
-  return CheckAllowed(path, place);
+  return CheckAllowed(path, index, rest);
 }
 
 // Kahn's algorithm over the pairs of one node.
-bool HasCycle(const PlanNode& node) {
+bool HasCycle(const PlanNode& node, Rest& rest) {
   const size_t n = node.children.size();
-  std::vector<std::vector<int>> later(n);
+  std::vector<size_t> first_later(n + 2);
+  std::vector<int> later(node.before.size());
   std::vector<int> waiting_for(n);
   for (const auto& [first, second] : node.before) {
-    later[static_cast<size_t>(first)].push_back(second);
+    rest(2);
+    ++first_later[static_cast<size_t>(first) + 2];
     ++waiting_for[static_cast<size_t>(second)];
   }
-  std::vector<int> ready;
+  for (size_t i = 2; i < first_later.size(); ++i) first_later[i] += first_later[i - 1];
+  for (const auto& [first, second] : node.before) {
+    rest(4);
+    later[first_later[static_cast<size_t>(first) + 1]++] = second;
+  }
+  std::vector<size_t> ready;
   for (size_t i = 0; i < n; ++i) {
-    if (waiting_for[i] == 0) ready.push_back(static_cast<int>(i));
+    if (waiting_for[i] == 0) ready.push_back(i);
   }
   for (size_t next = 0; next < ready.size(); ++next) {
-    for (const int second : later[static_cast<size_t>(ready[next])]) {
-      if (--waiting_for[static_cast<size_t>(second)] == 0) ready.push_back(second);
+    rest();
+    for (size_t i = first_later[ready[next]]; i < first_later[ready[next] + 1]; ++i) {
+      rest(4);
+      const auto second = static_cast<size_t>(later[i]);
+      if (--waiting_for[second] == 0) ready.push_back(second);
     }
   }
   return ready.size() < n;
 }
 
-absl::Status CheckBefore(const PlanNode& node, const std::string& place) {
+absl::Status CheckBefore(const PlanNode& node, int index, Rest& rest) {
   const int n = static_cast<int>(node.children.size());
+  const auto place = [&](size_t i) {
+    return absl::StrCat(NodePlace(index, node), ".before[", i, "]");
+  };
   for (size_t i = 0; i < node.before.size(); ++i) {
+    rest();
     const auto [first, second] = node.before[i];
-    const std::string pair = absl::StrCat(place, ".before[", i, "]");
     if (first < 0 || first >= n) {
-      return Fault(pair + ".first", absl::StrCat(first, " is not the position of a child"));
+      return Fault(place(i) + ".first", absl::StrCat(first, " is not the position of a child"));
     }
     if (second < 0 || second >= n) {
-      return Fault(pair + ".second", absl::StrCat(second, " is not the position of a child"));
+      return Fault(place(i) + ".second", absl::StrCat(second, " is not the position of a child"));
     }
   }
-  if (HasCycle(node)) return Fault(place + ".before", "the pairs form a cycle");
+  if (!node.before.empty() && HasCycle(node, rest)) {
+    return Fault(NodePlace(index, node) + ".before", "the pairs form a cycle");
+  }
   return absl::OkStatus();
 }
 
 // Collects what the nodes say of each other, one node after the other.
 class TreeCheck {
  public:
-  explicit TreeCheck(const Plan& plan)
-      : plan_(plan), depth_(plan.nodes.size()), leaf_of_(plan.paths.size(), -1) {}
+  TreeCheck(const Plan& plan, Rest& rest)
+      : plan_(plan), depth_(plan.nodes.size()), leaf_of_(plan.paths.size(), -1), rest_(rest) {}
 
   absl::Status Run() {
     if (plan_.nodes.empty() && !plan_.paths.empty()) {
@@ -99,6 +126,7 @@ class TreeCheck {
     }
     if (!plan_.nodes.empty()) depth_[0] = 1;
     for (size_t i = 0; i < plan_.nodes.size(); ++i) {
+      rest_(8);
       if (depth_[i] == 0) return Fault(absl::StrCat("nodes[", i, "]"), "is no node's child");
       if (absl::Status status = CheckNode(static_cast<int>(i)); !status.ok()) return status;
     }
@@ -111,38 +139,41 @@ class TreeCheck {
  private:
   absl::Status CheckNode(int index) {
     const PlanNode& node = plan_.nodes[static_cast<size_t>(index)];
-    const std::string place = absl::StrCat("nodes[", index, "]");
-    if (node.kind == PlanNode::Kind::kPath) return CheckLeaf(node, index, place);
-    const std::string kind = node.kind == PlanNode::Kind::kInOrder ? ".in_order" : ".any_order";
-    if (absl::Status status = CheckChildren(node, index, place + kind); !status.ok()) return status;
-    return CheckBefore(node, place + kind);
+    if (node.kind == PlanNode::Kind::kPath) return CheckLeaf(node, index);
+    if (absl::Status status = CheckChildren(node, index); !status.ok()) return status;
+    return CheckBefore(node, index, rest_);
   }
 
-  absl::Status CheckLeaf(const PlanNode& node, int index, const std::string& place) {
+  absl::Status CheckLeaf(const PlanNode& node, int index) {
+    const auto place = [&] { return NodePlace(index, node) + ".path"; };
     if (node.path < 0 || node.path >= static_cast<int>(plan_.paths.size())) {
-      return Fault(place + ".path", absl::StrCat(node.path, " is not the index of a path"));
+      return Fault(place(), absl::StrCat(node.path, " is not the index of a path"));
     }
     int& leaf = leaf_of_[static_cast<size_t>(node.path)];
     if (leaf >= 0) {
-      return Fault(place + ".path",
+      return Fault(place(),
                    absl::StrCat("path ", node.path, " is already that of nodes[", leaf, "]"));
     }
     leaf = index;
     return absl::OkStatus();
   }
 
-  absl::Status CheckChildren(const PlanNode& node, int index, const std::string& place) {
+  absl::Status CheckChildren(const PlanNode& node, int index) {
+    const auto place = [&](size_t c) {
+      return absl::StrCat(NodePlace(index, node), ".children[", c, "]");
+    };
     for (size_t c = 0; c < node.children.size(); ++c) {
+      rest_(2);
       const int child = node.children[c];
-      const std::string at = absl::StrCat(place, ".children[", c, "]");
       if (child <= index || child >= static_cast<int>(plan_.nodes.size())) {
-        return Fault(at, absl::StrCat(child, " is not the index of a later node"));
+        return Fault(place(c), absl::StrCat(child, " is not the index of a later node"));
       }
       int& depth = depth_[static_cast<size_t>(child)];
-      if (depth != 0) return Fault(at, absl::StrCat("nodes[", child, "] already has a parent"));
+      if (depth != 0)
+        return Fault(place(c), absl::StrCat("nodes[", child, "] already has a parent"));
       depth = depth_[static_cast<size_t>(index)] + 1;
       if (depth > kMaxPlanDepth) {
-        return Fault(at, absl::StrCat("nested deeper than ", kMaxPlanDepth, " levels"));
+        return Fault(place(c), absl::StrCat("nested deeper than ", kMaxPlanDepth, " levels"));
       }
     }
     return absl::OkStatus();
@@ -151,12 +182,26 @@ class TreeCheck {
   const Plan& plan_;
   std::vector<int> depth_;    // [node] level from 1; 0: not yet a child
   std::vector<int> leaf_of_;  // [path] its node; -1: none yet
+  Rest& rest_;
 };
 
 // Appends nodes of a plan under construction.
 class PlanBuilder {
  public:
+  // Asks `budget`, if there is one, meanwhile. `islands` are going to be added: long arrays are not
+  // moved while they grow.
+  PlanBuilder(const std::vector<IslandPaths>& islands, Budget* budget) : rest_(budget) {
+    size_t paths = 0;
+    for (const IslandPaths& island : islands) {
+      rest_();
+      paths += island.contours.size() + island.rasters.size();
+    }
+    plan_.paths.reserve(paths);
+    plan_.nodes.reserve(paths + 3);
+  }
+
   int AddNode(PlanNode::Kind kind, int parent) {
+    rest_(16);
     const int index = static_cast<int>(plan_.nodes.size());
     plan_.nodes.push_back(PlanNode{kind, 0, {}, {}});
     if (parent >= 0) plan_.nodes[static_cast<size_t>(parent)].children.push_back(index);
@@ -177,6 +222,7 @@ class PlanBuilder {
 
  private:
   Plan plan_;
+  Rest rest_;
 };
 
 bool NoPaths(const std::vector<IslandPaths>& islands) {
@@ -186,8 +232,10 @@ bool NoPaths(const std::vector<IslandPaths>& islands) {
 }
 
 // Writes into every path which island it belongs to.
-void MarkIslands(std::vector<IslandPaths>& islands) {
+void MarkIslands(std::vector<IslandPaths>& islands, Budget* budget) {
+  Rest rest(budget);
   for (size_t i = 0; i < islands.size(); ++i) {
+    rest(4 + 4 * (islands[i].contours.size() + islands[i].rasters.size()));
     for (Path& path : islands[i].contours) path.island = static_cast<int>(i);
     for (Path& path : islands[i].rasters) path.island = static_cast<int>(i);
     if (!islands[i].contours.empty()) islands[i].contours.front().outer = true;
@@ -203,17 +251,19 @@ const char* CoordinateFault(double coordinate) {
   return nullptr;
 }
 
-absl::Status CheckPlan(const Plan& plan) {
+absl::Status CheckPlan(const Plan& plan, Budget* budget) {
+  Rest rest(budget);
   for (size_t p = 0; p < plan.paths.size(); ++p) {
-    if (absl::Status status = CheckPath(plan.paths[p], p); !status.ok()) return status;
+    rest(4);
+    if (absl::Status status = CheckPath(plan.paths[p], p, rest); !status.ok()) return status;
   }
-  return TreeCheck(plan).Run();
+  return TreeCheck(plan, rest).Run();
 }
 
-Plan SequentialPlan(std::vector<IslandPaths> islands) {
+Plan SequentialPlan(std::vector<IslandPaths> islands, Budget* budget) {
   if (NoPaths(islands)) return Plan{};
-  MarkIslands(islands);
-  PlanBuilder builder;
+  MarkIslands(islands, budget);
+  PlanBuilder builder(islands, budget);
   const int root = builder.AddNode(PlanNode::Kind::kInOrder, -1);
   const int contours = builder.AddNode(PlanNode::Kind::kAnyOrder, root);
   const int rasters = builder.AddNode(PlanNode::Kind::kAnyOrder, root);
@@ -224,10 +274,10 @@ Plan SequentialPlan(std::vector<IslandPaths> islands) {
   return builder.Build();
 }
 
-Plan InterleavedPlan(std::vector<IslandPaths> islands) {
+Plan InterleavedPlan(std::vector<IslandPaths> islands, Budget* budget) {
   if (NoPaths(islands)) return Plan{};
-  MarkIslands(islands);
-  PlanBuilder builder;
+  MarkIslands(islands, budget);
+  PlanBuilder builder(islands, budget);
   const int root = builder.AddNode(PlanNode::Kind::kAnyOrder, -1);
   for (IslandPaths& island : islands) {
     if (island.contours.empty() && island.rasters.empty()) continue;

@@ -12,6 +12,8 @@
 
 namespace traverse {
 
+class Budget;
+
 // One node of a plan's tree.
 struct PlanNode {
   enum class Kind {
@@ -48,7 +50,8 @@ inline constexpr int kMaxPlanDepth = 100;
 // and that no `before` has a cycle. InvalidArgument names the place, as in
 // `nodes[3].before[2].first: 7 is not a child position` or `paths[0].points[7].x: not finite`.
 // O(nodes + paths + points + pairs). Past this check, algorithms neither re-check nor repair.
-absl::Status CheckPlan(const Plan& plan);
+// `budget`, if there is one, is asked meanwhile, here and below; all is done all the same.
+absl::Status CheckPlan(const Plan& plan, Budget* budget = nullptr);
 
 // Why `coordinate` (mm) is unfit, as "not finite" or "beyond 1e+06 mm"; null if it is fit.
 const char* CoordinateFault(double coordinate);
@@ -62,11 +65,11 @@ struct IslandPaths {
 
 // in_order(any_order(all contours), any_order(all rasters)): SPEC section 1, sequential deposition.
 // Plan::paths holds island by island its contours, then its rasters.
-Plan SequentialPlan(std::vector<IslandPaths> islands);
+Plan SequentialPlan(std::vector<IslandPaths> islands, Budget* budget = nullptr);
 
 // any_order over islands of in_order(outer contour, any_order(inner contours), any_order(rasters)):
 // SPEC section 1, interleaved deposition. Plan::paths as above.
-Plan InterleavedPlan(std::vector<IslandPaths> islands);
+Plan InterleavedPlan(std::vector<IslandPaths> islands, Budget* budget = nullptr);
 
 }  // namespace traverse
 

@@ -33,8 +33,9 @@ struct LayerWalls {
 };
 
 // Checks what the comments above state, and that coordinates are finite and in range.
-// InvalidArgument names the place, as in `walls[3].points[7].x: not finite`. O(points).
-absl::Status CheckWalls(const LayerWalls& walls, const Plan& plan);
+// InvalidArgument names the place, as in `walls[3].points[7].x: not finite`. O(points). `budget`,
+// if there is one, is asked meanwhile.
+absl::Status CheckWalls(const LayerWalls& walls, const Plan& plan, Budget* budget = nullptr);
 
 }  // namespace traverse
 

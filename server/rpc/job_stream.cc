@@ -8,6 +8,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "engine/base/rest.h"
 #include "server/jobs/return_margin.h"
 #include "server/rpc/grpc_status.h"
 #include "server/rpc/wire.h"
@@ -116,7 +117,12 @@ absl::Status JobStream::CheckSize(const v1::Layer& layer, uint64_t index, int64_
   }
   // Islands, nodes and pairs may be empty, but they take memory all the same.
   int64_t pairs = 0;
-  for (const v1::PlanNode& node : layer.plan().nodes()) pairs += node.any_order().before_size();
+  Budget turns(nullptr, std::nullopt, queue_->turn());
+  Rest rest(&turns);
+  for (const v1::PlanNode& node : layer.plan().nodes()) {
+    rest(8);
+    pairs += node.any_order().before_size();
+  }
   const int64_t parts =
       std::max<int64_t>(pairs, std::max<int64_t>(layer.islands_size(), layer.plan().nodes_size()));
   if (parts / 4 > limit) {
@@ -141,9 +147,10 @@ absl::Status JobStream::CheckLayerCount(int64_t more) const {
 }
 
 absl::StatusOr<LabelledLayer> JobStream::Translate(const v1::Layer& layer, uint64_t index) const {
-  const int64_t points = CountPoints(layer);
+  Budget turns(nullptr, std::nullopt, queue_->turn());
+  const int64_t points = CountPoints(layer, &turns);
   if (absl::Status status = CheckSize(layer, index, points); !status.ok()) return status;
-  absl::StatusOr<LabelledLayer> value = LayerFromProto(layer, index, setup_.interleaved);
+  absl::StatusOr<LabelledLayer> value = LayerFromProto(layer, index, setup_.interleaved, &turns);
   if (!value.ok()) return value;
   value->label.points = std::max<int64_t>(1, points);
   value->label.bytes = reader_.layer_footprint_bytes();
@@ -216,7 +223,11 @@ absl::Status JobStream::OpenMessage(grpc::ByteBuffer& message) {
   const RequestLimits limits = {.parts_of_layer = 4 * core_.limits.max_points_per_layer,
                                 .footprint_bytes = core_.limits.max_bytes_per_message,
                                 .layers = core_.limits.max_layers_per_message};
-  if (absl::Status status = reader_.Open(RequestType(), message, limits); !status.ok()) {
+  const auto goes_on = [this] {
+    Budget(nullptr, std::nullopt, queue_->turn()).Exhausted();
+    return !run_->aborted();
+  };
+  if (absl::Status status = reader_.Open(RequestType(), message, limits, goes_on); !status.ok()) {
     if (absl::IsResourceExhausted(status)) core_.admission.CountRefusal(Refusal::kLayerPoints);
     return status;
   }

@@ -121,7 +121,7 @@ absl::Status RequestReader::NotValid() const {
 }
 
 absl::Status RequestReader::Open(const char* type_name, grpc::ByteBuffer& message,
-                                 const RequestLimits& limits) {
+                                 const RequestLimits& limits, SliceStream::GoesOn goes_on) {
   type_name_ = type_name;
   bytes_ = static_cast<int64_t>(message.Length());
   has_options_ = false;
@@ -131,7 +131,7 @@ absl::Status RequestReader::Open(const char* type_name, grpc::ByteBuffer& messag
   std::vector<grpc::Slice> slices;
   if (bytes_ > 0 && !message.Dump(&slices).ok()) return NotValid();
   message.Clear();
-  stream_.Open(std::move(slices));
+  stream_.Open(std::move(slices), std::move(goes_on));
   {
     CodedInputStream in(&stream_);
     uint32_t tag = 0;
@@ -139,7 +139,7 @@ absl::Status RequestReader::Open(const char* type_name, grpc::ByteBuffer& messag
       if (absl::Status status = LookAtField(tag, limits, in); !status.ok()) return status;
       if (layers_ > limits.layers) return absl::OkStatus();
     }
-    if (!in.ConsumedEntireMessage()) return NotValid();
+    if (!in.ConsumedEntireMessage() || stream_.stopped()) return NotValid();
   }
   left_ = layers_;
   stream_.RewindAndLetGo();

@@ -38,8 +38,11 @@ class RequestReader {
   // Takes the bytes out of `message` and finds what is in them. Errors: InvalidArgument if it is no
   // `type_name`; Unimplemented if it has a field that only a later version knows; ResourceExhausted
   // if there is more in it than `limits` allow.
+  //
+  // `goes_on`, if there is one, is asked after every some thousand bytes, by Read too: it may let
+  // others have their turns; once it says false the message counts as not valid.
   absl::Status Open(const char* type_name, grpc::ByteBuffer& message,
-                    const RequestLimits& limits = {});
+                    const RequestLimits& limits = {}, SliceStream::GoesOn goes_on = nullptr);
 
   // Of the message that is open.
   bool has_options() const { return has_options_; }

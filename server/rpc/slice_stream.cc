@@ -1,42 +1,48 @@
 #include "server/rpc/slice_stream.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace traverse {
 
-void SliceStream::Open(std::vector<grpc::Slice> slices) {
+void SliceStream::Open(std::vector<grpc::Slice> slices, GoesOn goes_on) {
   slices_ = std::move(slices);
-  next_ = 0;
+  goes_on_ = std::move(goes_on);
+  slice_ = 0;
   offset_ = 0;
   count_ = 0;
   let_go_ = false;
+  stopped_ = false;
 }
 
 void SliceStream::RewindAndLetGo() {
-  next_ = 0;
+  slice_ = 0;
   offset_ = 0;
   count_ = 0;
   let_go_ = true;
 }
 
 bool SliceStream::Next(const void** data, int* size) {
-  // The one before was read to its end, and nobody backs up into it any more.
-  if (let_go_ && offset_ == 0 && next_ > 0) slices_[next_ - 1] = grpc::Slice();
-  while (next_ < slices_.size() && slices_[next_].size() == 0) ++next_;
-  if (next_ == slices_.size()) return false;
-  const grpc::Slice& slice = slices_[next_];
+  stopped_ = stopped_ || (goes_on_ && !goes_on_());
+  if (stopped_) return false;
+  while (slice_ < slices_.size() && offset_ == slices_[slice_].size()) {
+    // Read to its end, and nobody backs up into it any more.
+    if (let_go_) slices_[slice_] = grpc::Slice();
+    ++slice_;
+    offset_ = 0;
+  }
+  if (slice_ == slices_.size()) return false;
+  const grpc::Slice& slice = slices_[slice_];
+  const size_t count = std::min(kPiece, slice.size() - offset_);
   *data = slice.begin() + offset_;
-  *size = static_cast<int>(slice.size() - offset_);
+  *size = static_cast<int>(count);
+  offset_ += count;
   count_ += *size;
-  ++next_;
-  offset_ = 0;
   return true;
 }
 
 void SliceStream::BackUp(int count) {
-  if (count == 0) return;
-  --next_;
-  offset_ = slices_[next_].size() - static_cast<size_t>(count);
+  offset_ -= static_cast<size_t>(count);
   count_ -= count;
 }
 

@@ -7,6 +7,7 @@
 #include <grpcpp/support/slice.h>
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace traverse {
@@ -14,11 +15,17 @@ namespace traverse {
 // The bytes of a message, in the slices that gRPC received.
 class SliceStream : public google::protobuf::io::ZeroCopyInputStream {
  public:
+  // Asked before each piece that is given out; false ends the stream.
+  using GoesOn = std::function<bool()>;
+
   // Begins with the first byte of `slices`.
-  void Open(std::vector<grpc::Slice> slices);
+  void Open(std::vector<grpc::Slice> slices, GoesOn goes_on = nullptr);
 
   // Begins anew; from now on slices that were read are let go.
   void RewindAndLetGo();
+
+  // Whether it was ended: what was read of it is not all.
+  bool stopped() const { return stopped_; }
 
   bool Next(const void** data, int* size) override;
   void BackUp(int count) override;
@@ -26,11 +33,16 @@ class SliceStream : public google::protobuf::io::ZeroCopyInputStream {
   int64_t ByteCount() const override { return count_; }
 
  private:
+  // About a millisecond's work, if each two bytes are an island.
+  static constexpr size_t kPiece = 16 << 10;
+
   std::vector<grpc::Slice> slices_;
-  size_t next_ = 0;    // the slice that comes next, or of which a part is left
+  GoesOn goes_on_;
+  size_t slice_ = 0;   // that is being read
   size_t offset_ = 0;  // what was read of it
   int64_t count_ = 0;
   bool let_go_ = false;
+  bool stopped_ = false;
 };
 
 }  // namespace traverse

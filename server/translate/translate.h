@@ -40,12 +40,13 @@ struct JobSetup {
 // Places in errors begin with `options.`.
 absl::StatusOr<JobSetup> JobFromProto(const v1::JobOptions& options);
 
-// The layer at position `index` of its job.
+// The layer at position `index` of its job. `budget`, if there is one, is asked meanwhile, here and
+// below; all is done all the same.
 absl::StatusOr<LabelledLayer> LayerFromProto(const v1::Layer& layer, uint64_t index,
-                                             bool interleaved);
+                                             bool interleaved, Budget* budget = nullptr);
 
 // The number of points of a layer: of its contours and open paths together. O(paths).
-int64_t CountPoints(const v1::Layer& layer);
+int64_t CountPoints(const v1::Layer& layer, Budget* budget = nullptr);
 
 }  // namespace traverse
 

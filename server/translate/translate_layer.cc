@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/resting_sort.h"
 #include "server/translate/fault_list.h"
 #include "server/translate/field_ranges.h"
 #include "server/translate/translate.h"
@@ -97,13 +98,22 @@ absl::StatusOr<Path> FromProto(const v1::OpenPath& open, const Place& place) {
                       open.one_way());
 }
 
+// What Rest counts for a message that is translated, and for its points.
+constexpr size_t kStepsOfMessage = 64;
+size_t StepsOf(const v1::Contour& contour) {
+  return static_cast<size_t>(contour.points_size() + contour.entries_size());
+}
+size_t StepsOf(const v1::OpenPath& open) { return static_cast<size_t>(open.points_size()); }
+
 // Translates a list of contours or open paths and appends them to `paths`.
 template <typename Message>
 absl::Status AppendPaths(const google::protobuf::RepeatedPtrField<Message>& messages,
-                         const char* field, const Place& parent, std::vector<Path>& paths) {
+                         const char* field, const Place& parent, Rest& rest,
+                         std::vector<Path>& paths) {
   FaultList faults;
   paths.reserve(static_cast<size_t>(messages.size()));
   for (int i = 0; i < messages.size() && !faults.full(); ++i) {
+    rest(kStepsOfMessage + StepsOf(messages[i]));
     absl::StatusOr<Path> path =
         FromProto(messages[i], Place(&parent, field, static_cast<uint64_t>(i)));
     faults.Add(path.status());
@@ -112,19 +122,24 @@ absl::Status AppendPaths(const google::protobuf::RepeatedPtrField<Message>& mess
   return faults.status();
 }
 
-absl::StatusOr<Plan> FromIslands(const v1::Layer& layer, const Place& place, bool interleaved) {
-  std::vector<IslandPaths> islands(static_cast<size_t>(layer.islands_size()));
+absl::StatusOr<Plan> FromIslands(const v1::Layer& layer, const Place& place, bool interleaved,
+                                 Budget* budget) {
+  Rest rest(budget);
+  std::vector<IslandPaths> islands;
+  islands.reserve(static_cast<size_t>(layer.islands_size()));
   FaultList faults;
   for (int i = 0; i < layer.islands_size() && !faults.full(); ++i) {
     const v1::Island& island = layer.islands(i);
+    rest(kStepsOfMessage);
     const Place at(&place, "islands", static_cast<uint64_t>(i));
-    IslandPaths& paths = islands[static_cast<size_t>(i)];
+    IslandPaths& paths = islands.emplace_back();
     faults.Add(CheckKnownAt(island, at));
-    faults.Add(AppendPaths(island.contours(), "contours", at, paths.contours));
-    faults.Add(AppendPaths(island.rasters(), "rasters", at, paths.rasters));
+    faults.Add(AppendPaths(island.contours(), "contours", at, rest, paths.contours));
+    faults.Add(AppendPaths(island.rasters(), "rasters", at, rest, paths.rasters));
   }
   if (!faults.empty()) return faults.status();
-  return interleaved ? InterleavedPlan(std::move(islands)) : SequentialPlan(std::move(islands));
+  return interleaved ? InterleavedPlan(std::move(islands), budget)
+                     : SequentialPlan(std::move(islands), budget);
 }
 
 // An index as sent to one of the engine. Values beyond int are no index of anything.
@@ -134,9 +149,10 @@ absl::StatusOr<int> Index(uint32_t value, const std::string& place) {
 }
 
 absl::Status SetChildren(const google::protobuf::RepeatedField<uint32_t>& children,
-                         const char* field, const Place& place, PlanNode& node) {
+                         const char* field, const Place& place, Rest& rest, PlanNode& node) {
   node.children.reserve(static_cast<size_t>(children.size()));
   for (int c = 0; c < children.size(); ++c) {
+    rest();
     if (children[c] > INT_MAX) {
       return Index(children[c], absl::StrCat(place.text(), field, ".children[", c, "]")).status();
     }
@@ -145,44 +161,49 @@ absl::Status SetChildren(const google::protobuf::RepeatedField<uint32_t>& childr
   return absl::OkStatus();
 }
 
-absl::Status SetBefore(const v1::AnyOrder& any_order, const Place& place, PlanNode& node) {
+absl::Status SetBefore(const v1::AnyOrder& any_order, const Place& place, Rest& rest,
+                       PlanNode& node) {
   node.before.reserve(static_cast<size_t>(any_order.before_size()));
+  const std::string field = place.text() + ".any_order.before";
   for (int i = 0; i < any_order.before_size(); ++i) {
-    const std::string at = absl::StrCat(place.text(), ".any_order.before[", i, "]");
+    rest(kStepsOfMessage);
     const v1::Precedence& pair = any_order.before(i);
-    TRAVERSE_RETURN_IF_ERROR(CheckKnown(pair, at));
-    absl::StatusOr<int> first = Index(pair.first(), at + ".first");
-    if (!first.ok()) return first.status();
-    absl::StatusOr<int> second = Index(pair.second(), at + ".second");
-    if (!second.ok()) return second.status();
-    node.before.emplace_back(*first, *second);
+    const Place at(nullptr, field.c_str(), static_cast<uint64_t>(i));
+    TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(pair, at));
+    for (const bool is_first : {true, false}) {
+      const uint32_t value = is_first ? pair.first() : pair.second();
+      if (value <= INT_MAX) continue;
+      return Index(value, at.text() + (is_first ? ".first" : ".second")).status();
+    }
+    node.before.emplace_back(static_cast<int>(pair.first()), static_cast<int>(pair.second()));
   }
   return absl::OkStatus();
 }
 
-absl::StatusOr<PlanNode> FromProto(const v1::PlanNode& message, const Place& place) {
+absl::StatusOr<PlanNode> FromProto(const v1::PlanNode& message, const Place& place, Rest& rest) {
   TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(message, place));
   PlanNode node;
   switch (message.kind_case()) {
     case v1::PlanNode::kPath: {
-      absl::StatusOr<int> path = Index(message.path(), place.text() + ".path");
-      if (!path.ok()) return path.status();
-      node.path = *path;
+      if (message.path() > INT_MAX) {
+        return Index(message.path(), place.text() + ".path").status();
+      }
+      node.path = static_cast<int>(message.path());
       return node;
     }
     case v1::PlanNode::kInOrder: {
       node.kind = PlanNode::Kind::kInOrder;
       TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(message.in_order(), place));
       TRAVERSE_RETURN_IF_ERROR(
-          SetChildren(message.in_order().children(), ".in_order", place, node));
+          SetChildren(message.in_order().children(), ".in_order", place, rest, node));
       return node;
     }
     case v1::PlanNode::kAnyOrder: {
       node.kind = PlanNode::Kind::kAnyOrder;
       TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(message.any_order(), place));
       TRAVERSE_RETURN_IF_ERROR(
-          SetChildren(message.any_order().children(), ".any_order", place, node));
-      TRAVERSE_RETURN_IF_ERROR(SetBefore(message.any_order(), place, node));
+          SetChildren(message.any_order().children(), ".any_order", place, rest, node));
+      TRAVERSE_RETURN_IF_ERROR(SetBefore(message.any_order(), place, rest, node));
       return node;
     }
     case v1::PlanNode::KIND_NOT_SET:
@@ -204,7 +225,8 @@ absl::StatusOr<Path> FromProto(const v1::PlanPath& message, const Place& place) 
   return Fault(place.text(), "neither contour nor open_path is set");
 }
 
-absl::StatusOr<Plan> FromProto(const v1::Plan& message, const std::string& place) {
+absl::StatusOr<Plan> FromProto(const v1::Plan& message, const std::string& place, Budget* budget) {
+  Rest rest(budget);
   TRAVERSE_RETURN_IF_ERROR(CheckKnown(message, place));
   const std::string paths_field = place + ".paths";
   const std::string nodes_field = place + ".nodes";
@@ -212,6 +234,8 @@ absl::StatusOr<Plan> FromProto(const v1::Plan& message, const std::string& place
   plan.paths.reserve(static_cast<size_t>(message.paths_size()));
   FaultList faults;
   for (int p = 0; p < message.paths_size() && !faults.full(); ++p) {
+    rest(kStepsOfMessage + StepsOf(message.paths(p).contour()) +
+         StepsOf(message.paths(p).open_path()));
     absl::StatusOr<Path> path =
         FromProto(message.paths(p), Place(nullptr, paths_field.c_str(), static_cast<uint64_t>(p)));
     faults.Add(path.status());
@@ -219,13 +243,14 @@ absl::StatusOr<Plan> FromProto(const v1::Plan& message, const std::string& place
   }
   plan.nodes.reserve(static_cast<size_t>(message.nodes_size()));
   for (int n = 0; n < message.nodes_size() && !faults.full(); ++n) {
-    absl::StatusOr<PlanNode> node =
-        FromProto(message.nodes(n), Place(nullptr, nodes_field.c_str(), static_cast<uint64_t>(n)));
+    rest(kStepsOfMessage);
+    absl::StatusOr<PlanNode> node = FromProto(
+        message.nodes(n), Place(nullptr, nodes_field.c_str(), static_cast<uint64_t>(n)), rest);
     faults.Add(node.status());
     if (node.ok()) plan.nodes.push_back(*std::move(node));
   }
   if (!faults.empty()) return faults.status();
-  if (absl::Status status = CheckPlan(plan); !status.ok()) {
+  if (absl::Status status = CheckPlan(plan, budget); !status.ok()) {
     return absl::Status(status.code(), absl::StrCat(place, ".", status.message()));
   }
   return plan;
@@ -256,14 +281,20 @@ absl::StatusOr<Wall> FromProto(const v1::Wall& message, const Plan& plan, const 
   return wall;
 }
 
-absl::Status SetWalls(const v1::Layer& message, const Place& place, JobLayer& layer) {
+absl::Status SetWalls(const v1::Layer& message, const Place& place, Budget* budget,
+                      JobLayer& layer) {
+  Rest rest(budget);
   LayerWalls& walls = layer.walls;
   walls.walls.reserve(static_cast<size_t>(message.walls_size()));
   // A few bytes name a contour of any size. Each may be named once; more often only as long as all
   // that is copied so is no more than the layer has.
   size_t may_copy = 0;
-  for (const Path& path : layer.plan.paths) may_copy += path.points.size() + 1;
+  for (const Path& path : layer.plan.paths) {
+    rest();
+    may_copy += path.points.size() + 1;
+  }
   for (int w = 0; w < message.walls_size(); ++w) {
+    rest(kStepsOfMessage + static_cast<size_t>(message.walls(w).points_size()));
     absl::StatusOr<Wall> wall =
         FromProto(message.walls(w), layer.plan, Place(&place, "walls", static_cast<uint64_t>(w)));
     if (!wall.ok()) return wall.status();
@@ -278,6 +309,7 @@ absl::Status SetWalls(const v1::Layer& message, const Place& place, JobLayer& la
   }
   walls.exposed.reserve(static_cast<size_t>(message.exposed_paths_size()));
   for (int i = 0; i < message.exposed_paths_size(); ++i) {
+    rest();
     const uint32_t path = message.exposed_paths(i);
     // The place is written for a fault alone: there may be millions of these.
     if (path > INT_MAX) {
@@ -285,9 +317,9 @@ absl::Status SetWalls(const v1::Layer& message, const Place& place, JobLayer& la
     }
     walls.exposed.push_back(static_cast<int>(path));
   }
-  const absl::Status status = CheckWalls(walls, layer.plan);
+  const absl::Status status = CheckWalls(walls, layer.plan, budget);
   // A path takes a byte to be named, and its points are looked up each time.
-  std::sort(walls.exposed.begin(), walls.exposed.end());
+  RestingSort(walls.exposed, rest);
   walls.exposed.erase(std::unique(walls.exposed.begin(), walls.exposed.end()), walls.exposed.end());
   if (status.ok()) return status;
   return absl::Status(status.code(), absl::StrCat(place.text(), ".", status.message()));
@@ -295,21 +327,27 @@ absl::Status SetWalls(const v1::Layer& message, const Place& place, JobLayer& la
 
 }  // namespace
 
-int64_t CountPoints(const v1::Layer& layer) {
+int64_t CountPoints(const v1::Layer& layer, Budget* budget) {
+  Rest rest(budget);
   int64_t coordinates = 0;
   for (const v1::Island& island : layer.islands()) {
+    rest(8 + 8 * static_cast<size_t>(island.contours_size() + island.rasters_size()));
     for (const v1::Contour& contour : island.contours()) coordinates += contour.points_size();
     for (const v1::OpenPath& raster : island.rasters()) coordinates += raster.points_size();
   }
   for (const v1::PlanPath& path : layer.plan().paths()) {
+    rest(8);
     coordinates += path.contour().points_size() + path.open_path().points_size();
   }
-  for (const v1::Wall& wall : layer.walls()) coordinates += wall.points_size();
+  for (const v1::Wall& wall : layer.walls()) {
+    rest(8);
+    coordinates += wall.points_size();
+  }
   return coordinates / 2;
 }
 
 absl::StatusOr<LabelledLayer> LayerFromProto(const v1::Layer& layer, uint64_t index,
-                                             bool interleaved) {
+                                             bool interleaved, Budget* budget) {
   const Place place(nullptr, "layers", index);
   TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(layer, place));
   if (layer.has_plan() && !layer.islands().empty()) {
@@ -319,13 +357,14 @@ absl::StatusOr<LabelledLayer> LayerFromProto(const v1::Layer& layer, uint64_t in
   faults.Add(CheckRange(RangeOf("Layer.z_mm"), layer.z_mm(), place.text() + ".z_mm"));
   LabelledLayer result;
   result.label.id = layer.id();
-  result.label.points = CountPoints(layer);
-  absl::StatusOr<Plan> plan = layer.has_plan() ? FromProto(layer.plan(), place.text() + ".plan")
-                                               : FromIslands(layer, place, interleaved);
+  result.label.points = CountPoints(layer, budget);
+  absl::StatusOr<Plan> plan = layer.has_plan()
+                                  ? FromProto(layer.plan(), place.text() + ".plan", budget)
+                                  : FromIslands(layer, place, interleaved, budget);
   faults.Add(plan.status());
   if (plan.ok()) {
     result.layer.plan = *std::move(plan);
-    faults.Add(SetWalls(layer, place, result.layer));
+    faults.Add(SetWalls(layer, place, budget, result.layer));
   }
   if (layer.has_start()) {
     absl::StatusOr<Point> start = PointFromProto(layer.start(), place.text() + ".start");

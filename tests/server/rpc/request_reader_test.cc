@@ -150,6 +150,29 @@ TEST(RequestReader, ReadsWhatWasWrittenHoweverItIsCut) {
   }
 }
 
+// Whatever one layer is: a slice may be as long as the message.
+TEST(RequestReader, AsksWhetherToGoOnWithinALayerToo) {
+  v1::OptimizeBatchRequest request;
+  v1::Layer& layer = *request.add_layers();
+  for (int i = 0; i < 100'000; ++i) layer.add_islands();
+  const std::string bytes = request.SerializeAsString();
+  for (const int most : {3, 15, 1000}) {
+    int asked = 0;
+    RequestReader reader;
+    grpc::ByteBuffer message = Sliced(bytes, bytes.size());
+    absl::Status status = reader.Open(kType, message, {}, [&] { return ++asked < most; });
+    if (status.ok()) {
+      EXPECT_GT(asked, 10);
+      status = reader.Read(1, [](const v1::Layer&) { return absl::OkStatus(); });
+    }
+    EXPECT_EQ(status.ok(), most == 1000) << status;
+    if (status.ok()) {
+      EXPECT_GT(asked, 20);
+    }
+    EXPECT_LE(asked, most);
+  }
+}
+
 TEST(RequestReader, NothingAtAllIsAJobWithoutLayers) {
   ASSERT_OK_AND_ASSIGN(const v1::OptimizeBatchRequest read, ReadAll(grpc::ByteBuffer(), 100));
 
