@@ -13,10 +13,10 @@ namespace traverse::cli {
 
 // One command: a row of the table. The number of operands is that of the words in `operands`.
 struct Command {
-  std::string name;                   // "optimize"
-  std::vector<std::string> operands;  // {"INPUT"}
-  std::string summary;                // one line
-  std::vector<Flag> flags;
+  std::string name;                        // "optimize"
+  std::vector<std::string> operands = {};  // {"INPUT"}
+  std::string summary;                     // one line
+  std::vector<Flag> flags = {};
   std::string example;  // a whole command line
   Outcome (*run)(const Flags& flags);
 };

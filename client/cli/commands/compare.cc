@@ -154,20 +154,18 @@ Outcome RunCompare(const Flags& flags) {
 }  // namespace
 
 Command CompareCommand() {
-  Command command;
-  command.name = "compare";
-  command.operands = {"INPUT"};
-  command.summary = "Sets strategies side by side on one job.";
-  std::vector<Flag> own = {
-      {"strategies", "NAME,...", "or NAME:OPTION=VALUE (default: all, 5s each)"},
-      {"repeat", "N", "runs of each, seed after seed; means are shown"},
-      {"quiet", "", "no progress"},
-  };
-  for (Flag& flag : PlateFlagTable()) own.push_back(std::move(flag));
-  command.flags = WithRunFlagTable(std::move(own));
-  command.example = "traverse compare part.damat --layers=1-5 --strategies=greedy,ni2opt";
-  command.run = RunCompare;
-  return command;
+  return {.name = "compare",
+          .operands = {"INPUT"},
+          .summary = "Sets strategies side by side on one job.",
+          .flags = WithRunFlagTable(Joined(
+              {
+                  {"strategies", "NAME,...", "or NAME:OPTION=VALUE (default: all, 5s each)"},
+                  {"repeat", "N", "runs of each, seed after seed; means are shown"},
+                  {"quiet", "", "no progress"},
+              },
+              PlateFlagTable())),
+          .example = "traverse compare part.damat --layers=1-5 --strategies=greedy,ni2opt",
+          .run = RunCompare};
 }
 
 }  // namespace traverse::cli

@@ -132,13 +132,11 @@ Outcome RunCompletion(const Flags& flags) {
 }  // namespace
 
 Command CompletionCommand() {
-  Command command;
-  command.name = "completion";
-  command.operands = {"SHELL"};
-  command.summary = "Prints the completion script for bash or zsh.";
-  command.example = "eval \"$(traverse completion bash)\"";
-  command.run = RunCompletion;
-  return command;
+  return {.name = "completion",
+          .operands = {"SHELL"},
+          .summary = "Prints the completion script for bash or zsh.",
+          .example = "eval \"$(traverse completion bash)\"",
+          .run = RunCompletion};
 }
 
 }  // namespace traverse::cli

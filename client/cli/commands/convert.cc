@@ -90,24 +90,23 @@ Outcome RunConvert(const Flags& flags) {
 }  // namespace
 
 Command ConvertCommand() {
-  Command command;
-  command.name = "convert";
-  command.operands = {"INPUT"};
-  command.summary = "Writes a job in another format.";
-  command.flags = {
-      {"o", "OUTPUT", ".damat, .json, .pb; of G-code .gcode, .bgcode"},
-      {"to",
-       "FORMAT",
-       "damat, json, pb, gcode or bgcode",
-       {"damat", "json", "pb", "gcode", "bgcode"}},
-      {"layers", "A-B", "only these, counted from 1"},
-      PolicyFlag(),
-      AllowFlag(),
-  };
-  for (Flag& flag : PlateFlagTable()) command.flags.push_back(std::move(flag));
-  command.example = "traverse convert part.damat -o part.json --layers=1-5";
-  command.run = RunConvert;
-  return command;
+  return {.name = "convert",
+          .operands = {"INPUT"},
+          .summary = "Writes a job in another format.",
+          .flags = Joined(
+              {
+                  {"o", "OUTPUT", ".damat, .json, .pb; of G-code .gcode, .bgcode"},
+                  {"to",
+                   "FORMAT",
+                   "damat, json, pb, gcode or bgcode",
+                   {"damat", "json", "pb", "gcode", "bgcode"}},
+                  {"layers", "A-B", "only these, counted from 1"},
+                  PolicyFlag(),
+                  AllowFlag(),
+              },
+              PlateFlagTable()),
+          .example = "traverse convert part.damat -o part.json --layers=1-5",
+          .run = RunConvert};
 }
 
 }  // namespace traverse::cli

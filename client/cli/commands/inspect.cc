@@ -68,20 +68,19 @@ Outcome RunInspect(const Flags& flags) {
 }  // namespace
 
 Command InspectCommand() {
-  Command command;
-  command.name = "inspect";
-  command.operands = {"INPUT"};
-  command.summary = "Says what is in a file.";
-  command.flags = {
-      {"layers", "A-B", "only these, counted from 1, one by one"},
-      {"travel_speed", "MM_S", "for the idle time (default: the file's, or 20.32)"},
-      PolicyFlag(),
-      AllowFlag(),
-  };
-  for (Flag& flag : PlateFlagTable()) command.flags.push_back(std::move(flag));
-  command.example = "traverse inspect part.damat --layers=1-5";
-  command.run = RunInspect;
-  return command;
+  return {.name = "inspect",
+          .operands = {"INPUT"},
+          .summary = "Says what is in a file.",
+          .flags = Joined(
+              {
+                  {"layers", "A-B", "only these, counted from 1, one by one"},
+                  {"travel_speed", "MM_S", "for the idle time (default: the file's, or 20.32)"},
+                  PolicyFlag(),
+                  AllowFlag(),
+              },
+              PlateFlagTable()),
+          .example = "traverse inspect part.damat --layers=1-5",
+          .run = RunInspect};
 }
 
 }  // namespace traverse::cli

@@ -84,12 +84,10 @@ Outcome RunManual(const Flags&) {
 }  // namespace
 
 Command ManualCommand() {
-  Command command;
-  command.name = "manual";
-  command.summary = "Prints the man page.";
-  command.example = "traverse manual | man -l -";
-  command.run = RunManual;
-  return command;
+  return {.name = "manual",
+          .summary = "Prints the man page.",
+          .example = "traverse manual | man -l -",
+          .run = RunManual};
 }
 
 }  // namespace traverse::cli

@@ -207,27 +207,26 @@ Outcome RunOptimize(const Flags& flags) {
 }  // namespace
 
 Command OptimizeCommand() {
-  Command command;
-  command.name = "optimize";
-  command.operands = {"INPUT"};
-  command.summary = "Shortens the travel of a job.";
-  std::vector<Flag> own = {
-      {"o",
-       "OUTPUT",
-       "G-code (default: INPUT; with --json none)",
-       {},
-       false,
-       "(default: INPUT; with --json none); no summary"},
-      {"quiet", "", "no progress, no summary"},
-      {"strategy", "NAME", "see `traverse strategies`; or NAME:OPTION=VALUE"},
-  };
-  for (Flag& flag : ContainerFlagTable()) own.push_back(std::move(flag));
+  std::vector<Flag> own = Joined(
+      {
+          {"o",
+           "OUTPUT",
+           "G-code (default: INPUT; with --json none)",
+           {},
+           false,
+           "(default: INPUT; with --json none); no summary"},
+          {"quiet", "", "no progress, no summary"},
+          {"strategy", "NAME", "see `traverse strategies`; or NAME:OPTION=VALUE"},
+      },
+      ContainerFlagTable());
   own.back().joint_help = "despite a wrong MD5; M73 and headers too";
   own.push_back({"restate_times", "", "sets print times in M73, headers and metadata anew"});
-  command.flags = WithRunFlagTable(std::move(own));
-  command.example = "traverse optimize part.gcode -o shorter.gcode --policy=balanced";
-  command.run = RunOptimize;
-  return command;
+  return {.name = "optimize",
+          .operands = {"INPUT"},
+          .summary = "Shortens the travel of a job.",
+          .flags = WithRunFlagTable(std::move(own)),
+          .example = "traverse optimize part.gcode -o shorter.gcode --policy=balanced",
+          .run = RunOptimize};
 }
 
 }  // namespace traverse::cli

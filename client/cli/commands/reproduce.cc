@@ -210,25 +210,24 @@ Outcome RunReproduce(const Flags& flags) {
 }  // namespace
 
 Command ReproduceCommand() {
-  Command command;
-  command.name = "reproduce";
-  command.summary = "Prints the tables of the two sources, ours beside their own.";
-  command.flags = {
-      {"source", "NAME", "Weller 2019 or Souza et al. 2017 alone", {"thesis", "paper"}},
-      {"short", "", "three minutes of two cores, instead of a night"},
-      {"layers", "N", "of each part (default: 5; paper 393)"},
-      {"seeds", "N", "runs of the tabu search (default: 5)"},
-      {"diversifications", "N", "of the first tabu search (default: 2500)"},
-      {"programme_limit", "DURATION", "for each integer programme (default: 2h)"},
-      {"parts", "FOLDER", "part1.damat and others (default: bundled)"},
-      {"results", "FILE", "keeps every finished run, and goes on from there"},
-      {"report", "FILE.html", "draws the sources' figures"},
-      {"quiet", "", "no progress"},
-  };
-  for (Flag& flag : ServiceFlagTable()) command.flags.push_back(std::move(flag));
-  command.example = "traverse reproduce --short --results=runs.jsonl --report=figures.html";
-  command.run = RunReproduce;
-  return command;
+  return {.name = "reproduce",
+          .summary = "Prints the tables of the two sources, ours beside their own.",
+          .flags = Joined(
+              {
+                  {"source", "NAME", "Weller 2019 or Souza et al. 2017 alone", {"thesis", "paper"}},
+                  {"short", "", "three minutes of two cores, instead of a night"},
+                  {"layers", "N", "of each part (default: 5; paper 393)"},
+                  {"seeds", "N", "runs of the tabu search (default: 5)"},
+                  {"diversifications", "N", "of the first tabu search (default: 2500)"},
+                  {"programme_limit", "DURATION", "for each integer programme (default: 2h)"},
+                  {"parts", "FOLDER", "part1.damat and others (default: bundled)"},
+                  {"results", "FILE", "keeps every finished run, and goes on from there"},
+                  {"report", "FILE.html", "draws the sources' figures"},
+                  {"quiet", "", "no progress"},
+              },
+              ServiceFlagTable()),
+          .example = "traverse reproduce --short --results=runs.jsonl --report=figures.html",
+          .run = RunReproduce};
 }
 
 }  // namespace traverse::cli

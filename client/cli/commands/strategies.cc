@@ -47,13 +47,11 @@ Outcome RunStrategies(const Flags& flags) {
 }  // namespace
 
 Command StrategiesCommand() {
-  Command command;
-  command.name = "strategies";
-  command.summary = "Lists the strategies, with their options and defaults.";
-  command.flags = ServiceFlagTable();
-  command.example = "traverse strategies --server=farm-1:50051";
-  command.run = RunStrategies;
-  return command;
+  return {.name = "strategies",
+          .summary = "Lists the strategies, with their options and defaults.",
+          .flags = ServiceFlagTable(),
+          .example = "traverse strategies --server=farm-1:50051",
+          .run = RunStrategies};
 }
 
 }  // namespace traverse::cli

@@ -87,21 +87,19 @@ Outcome RunVerify(const Flags& flags) {
 }  // namespace
 
 Command VerifyCommand() {
-  Command command;
-  command.name = "verify";
-  command.operands = {"ORIGINAL", "OPTIMISED"};
-  command.summary = "Does the second G-code print exactly what the first prints?";
-  command.flags = {{"policy",
-                    "POLICY",
-                    "safe, balanced or free (default: as stated)",
-                    {"safe", "balanced", "free"}},
-                   {"allow", "NAME,...", "what else: infill_order, wall_order, fan_order"},
-                   {"json", "FILE", "what was found, rule by rule"},
-                   {"quiet", "", "nothing if it does"}};
-  for (Flag& flag : PlateFlagTable()) command.flags.push_back(std::move(flag));
-  command.example = "traverse verify part.gcode part.optimised.gcode";
-  command.run = RunVerify;
-  return command;
+  return {.name = "verify",
+          .operands = {"ORIGINAL", "OPTIMISED"},
+          .summary = "Does the second G-code print exactly what the first prints?",
+          .flags = Joined({{"policy",
+                            "POLICY",
+                            "safe, balanced or free (default: as stated)",
+                            {"safe", "balanced", "free"}},
+                           {"allow", "NAME,...", "what else: infill_order, wall_order, fan_order"},
+                           {"json", "FILE", "what was found, rule by rule"},
+                           {"quiet", "", "nothing if it does"}},
+                          PlateFlagTable()),
+          .example = "traverse verify part.gcode part.optimised.gcode",
+          .run = RunVerify};
 }
 
 }  // namespace traverse::cli

@@ -64,6 +64,11 @@ absl::Status CheckValue(const Flag& flag, const std::string& value) {
 
 }  // namespace
 
+std::vector<Flag> Joined(std::vector<Flag> table, const std::vector<Flag>& more) {
+  table.insert(table.end(), more.begin(), more.end());
+  return table;
+}
+
 absl::StatusOr<Flags> Flags::Parse(absl::Span<const Flag> table,
                                    absl::Span<const std::string> arguments) {
   Flags flags;

@@ -39,6 +39,9 @@ struct Flag {
   bool brief = false;
 };
 
+// The rows of `table`, and behind them those of `more`.
+std::vector<Flag> Joined(std::vector<Flag> table, const std::vector<Flag>& more);
+
 // The flags given to a command, all of them in its table, and its operands.
 class Flags {
  public:

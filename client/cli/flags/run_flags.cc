@@ -12,10 +12,8 @@ std::vector<Flag> WithRunFlagTable(std::vector<Flag> own) {
                  false,
                  "routes; a page to look at"});
   own.push_back({"report", "FILE.html", "writes a page to look at"});
-  for (auto table : {ViewFlagTable(), JobFlagTable(), ServiceFlagTable()}) {
-    own.insert(own.end(), table.begin(), table.end());
-  }
-  return own;
+  return Joined(Joined(Joined(std::move(own), ViewFlagTable()), JobFlagTable()),
+                ServiceFlagTable());
 }
 
 absl::StatusOr<RunFlags> ParseRunFlags(const Flags& flags) {
