@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <utility>
 
 #include "absl/strings/str_format.h"
@@ -224,6 +225,8 @@ std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& opt
 }
 
 gcode::LayerOrder OrderOf(const GcodeFile& file, size_t layer, const v1::LayerResult& answer) {
+  assert(static_cast<uint32_t>(answer.visits_size()) ==
+         file.layers[layer].end_block - file.layers[layer].first_block);
   gcode::LayerOrder order;
   order.reserve(static_cast<size_t>(answer.visits_size()));
   for (const v1::Visit& visit : answer.visits()) {

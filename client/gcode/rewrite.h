@@ -46,8 +46,9 @@ struct RewriteOptions {
 // is verified by all rules of `policy` before it is returned (verify/verifier.h), and `after` is
 // measured on it. What breaks a rule is ruled out, layer by layer, and the file is written again.
 //
+// Each order is empty, or of paths of its layer. One that has a path twice, or that a plan of
+// `policy` does not allow, is found when the text is verified: its layer stays as it is.
 // An error if the new text cannot be read again: a fault of ours.
-// REQUIRES: each order is empty, or has each path of its layer once as a plan of `policy` allows.
 absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
                                           const std::vector<gcode::FileOrder>& tries,
                                           const RewriteOptions& options);

@@ -1,6 +1,7 @@
 #include "client/gtsp/tour.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -56,6 +57,7 @@ int64_t RoundedDistance(const Instance::Point& a, const Instance::Point& b) {
 }
 
 Tour BestTour(const Instance& instance, absl::Span<const v1::LayerResult> layers) {
+  assert(!layers.empty());
   const auto& layer = *std::min_element(
       layers.begin(), layers.end(),
       [](const auto& a, const auto& b) { return a.travel().total_mm() < b.travel().total_mm(); });

@@ -1,6 +1,7 @@
 #include "client/report/compare.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <utility>
@@ -174,6 +175,8 @@ class Columns {
 }  // namespace
 
 std::string CompareTable(const std::vector<ComparedStrategy>& strategies, const TextStyle& style) {
+  assert(std::all_of(strategies.begin(), strategies.end(),
+                     [](const ComparedStrategy& one) { return !one.runs.empty(); }));
   Columns columns(strategies);
   columns.Fit(style.width);
   const int bar = std::min(style.width - columns.Width(), kMostBar);

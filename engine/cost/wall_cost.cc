@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <utility>
 
 namespace traverse {
@@ -43,6 +44,7 @@ WallCost::WallCost(const LayerWalls& walls, const Plan& plan, const CostSpec& sp
                                                 kOnWall * spec.wall_slack_mm)
                    : std::nullopt),
       places_(PlacesFor(plan.paths.size(), detours_.has_value())) {
+  assert(spec.kind == CostSpec::Kind::kTime);
   for (const int path : walls.exposed) {
     const std::vector<Point>& points = plan.paths[static_cast<size_t>(path)].points;
     exposed_.insert(exposed_.end(), points.begin(), points.end());

@@ -1,6 +1,7 @@
 #include "engine/geometry/set_distance.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -24,6 +25,7 @@ double SquaredDistance(Point p, Point q) {
 }  // namespace
 
 double LeastDistance(absl::Span<const Point> a, absl::Span<const Point> b, Budget& budget) {
+  assert(!a.empty() && !b.empty());
   double least = std::numeric_limits<double>::infinity();
   if (a.size() * b.size() <= kPairsForIndex) {
     for (const Point& p : a) {

@@ -1,5 +1,6 @@
 #include "engine/schedule/layer_outcome.h"
 
+#include <cassert>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -63,6 +64,7 @@ void TellGiven(const LayerProblem& problem, const Route& given, Budget& turns,
 
 void TellFound(const LayerProblem& problem, Solution solution, JobLayer& layer, Budget& turns,
                LayerOutcome& outcome) {
+  assert(problem.plan == &layer.plan && solution.route.size() == layer.plan.paths.size());
   const Plan& plan = layer.plan;
   outcome.start = problem.start;
   outcome.end = RouteEnd(plan, solution.route, problem.start);

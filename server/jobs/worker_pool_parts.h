@@ -4,6 +4,7 @@
 #define TRAVERSE_SERVER_JOBS_WORKER_POOL_PARTS_H_
 
 #include <atomic>
+#include <cassert>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -24,6 +25,7 @@ class WorkerPool::Worker : public Turn {
 
   // Quick while its slice lasts.
   bool GiveWay(const CancelToken* cancel, std::optional<Clock::time_point> deadline) override {
+    assert(works && std::this_thread::get_id() == id);
     const Clock::time_point now = Clock::now();
     heard_of.store(now, std::memory_order_relaxed);
     if (now < slice_end) return false;

@@ -1,6 +1,7 @@
 #include "server/rpc/job_stream.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <random>
 #include <utility>
@@ -158,6 +159,7 @@ absl::StatusOr<LabelledLayer> JobStream::Translate(const v1::Layer& layer, uint6
 }
 
 absl::Status JobStream::Resize(int64_t points) {
+  assert(ticket_ != nullptr);
   admitted_points_ = points;
   return ticket_->Resize(points);
 }

@@ -1,6 +1,7 @@
 #include "client/gcode/choose/choice_row.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -146,6 +147,7 @@ PrintTotals ChoiceColumn::Whole(size_t before, size_t choice) const {
 
 std::vector<uint32_t> BestRow(const std::vector<const ChoiceColumn*>& columns, Policy policy,
                               Crossings crossings, int64_t fewer) {
+  assert(!columns.empty());
   return RowFinder(columns, policy, crossings, fewer).Find();
 }
 

@@ -179,6 +179,7 @@ class Prover : public WalkProver {
 
 std::unique_ptr<WalkProver> WalkProver::Make(const StageModel& model, int stages,
                                              const Options& options) {
+  assert(1 <= stages && stages <= model.stage_count());
   int largest = 0;
   for (int s = 0; s < stages; ++s) largest = std::max(largest, model.size(s));
   if (largest <= MemorySet<1>::kCapacity) {

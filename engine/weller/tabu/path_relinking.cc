@@ -1,6 +1,7 @@
 #include "engine/weller/tabu/path_relinking.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <utility>
 
@@ -28,6 +29,7 @@ SwapMove BestStep(const SwapSequence& sequence, int node, const std::vector<int>
 
 std::vector<Route> RelinkPaths(const LayerProblem& problem, const LinkRules& rules,
                                const Route& from, const Route& guide, int keep, Budget& budget) {
+  assert(from.size() == guide.size());
   if (keep <= 0) return {};
   SwapSequence sequence(problem, rules, &budget);
   if (sequence.tree().movable_nodes().empty()) return {};

@@ -1,6 +1,7 @@
 #include "client/gcode/verify/match/layer_pair.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -92,6 +93,7 @@ LayerPair::LayerPair(const TraceChunk& was, const TraceChunk& is, size_t layer)
     : was_(was), is_(is), layer_(layer), outer_walls_({}, kCellMm) {
   const TraceLayer& of_was = was.layers[layer];
   const TraceLayer& of_is = is.layers[layer];
+  assert(of_was.end_section - of_was.first_section == of_is.end_section - of_is.first_section);
   first_path_ = was.sections[of_was.first_section].first_path;
   end_was_ = was.sections[of_was.end_section - 1].end_path;
   first_is_ = is.sections[of_is.first_section].first_path;

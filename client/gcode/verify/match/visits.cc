@@ -1,6 +1,7 @@
 #include "client/gcode/verify/match/visits.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "client/gcode/verify/match/plane.h"
 
@@ -208,6 +209,14 @@ class Matcher {
   std::vector<Visit> visits_;
 };
 
+[[maybe_unused]] uint32_t SegmentsOf(const TraceChunk& chunk, const TraceSection& section) {
+  uint32_t segments = 0;
+  for (uint32_t path = section.first_path; path < section.end_path; ++path) {
+    segments += chunk.paths[path].size();
+  }
+  return segments;
+}
+
 }  // namespace
 
 bool IsClosed(const TraceChunk& chunk, uint32_t path) {
@@ -218,6 +227,7 @@ bool IsClosed(const TraceChunk& chunk, uint32_t path) {
 
 std::vector<Visit> FindVisits(const TraceChunk& original, const TraceSection& was,
                               const TraceChunk& optimised, const TraceSection& is) {
+  assert(SegmentsOf(original, was) == SegmentsOf(optimised, is));
   return Matcher(original, was, optimised, is).Match();
 }
 
