@@ -10,13 +10,47 @@ def engine(file, suites, seconds=120):
     return place(f"engine/{file}", "engine_tests", suites, seconds)
 
 
+def gcode(file, suites, seconds=120):
+    return place(f"client/gcode/{file}", "gcode_tests", suites, seconds)
+
+
+# What ShuffledFile and Golden write is held against the verifier and against files looked at by eye.
+WRITTEN = "LayerWriter*:RewriteGcode*:Dialects/Golden*:Kept/ShuffledFile*"
+VERIFIED = "Verify*"
+
 PLACES = [
     place("server/access/auth.cc", "server_jobs_tests", "ParseTokens*:Authenticator*"),
     place("server/jobs/admission.cc", "server_jobs_tests", "Admission*"),
     place("server/jobs/retry_delay.cc", "server_jobs_tests", "WithRetryDelay*"),
     place("server/jobs/job_run.cc", "server_jobs_tests", "JobRun*"),
+    place("server/jobs/return_margin.h", "server_jobs_tests", "MarginOfReturn*"),
     place("server/jobs/worker_pool.cc", "server_jobs_tests", "WorkerPool*"),
+    place("server/jobs/worker_threads.cc", "server_jobs_tests", "WorkerPool*"),
+    place("server/server.cc", "server_tests", "Drain*:Service*:Overload*"),
     place("server/jobs/fair_order.h", "server_jobs_tests", "FairOrder*:WorkerPool*"),
+    place("client/api/optimizer_client.cc", "client_tests", "Resume*:OptimizerClient*"),
+    place("client/api/resume.cc", "client_tests", "Resume*:ShiftPlace*:FirstMissing*"),
+    gcode("choose/choice_row.cc", "BestRow*"),
+    gcode("choose/layer_choice.cc", f"BestRow*:{WRITTEN}"),
+    gcode("choose/merged_orders.cc", f"OrderMerger*:{WRITTEN}"),
+    gcode("choose/order_merge.cc", "OrderMerger*"),
+    gcode("machine/motion_planner.cc", "MotionPlanner*:StopToStop*:Measure*"),
+    gcode("plan/path_rules.cc", "Policy*"),
+    gcode("plan/policy.cc", "Policy*"),
+    gcode("plan/travel_rules.cc", "TravelRules*"),
+    gcode("text/decimal.cc", "Decimal*:NumberStyle*"),
+    gcode("verify/machine/command_words.cc", VERIFIED),
+    gcode("verify/machine/print_settings.cc", VERIFIED),
+    gcode("verify/machine/verify_machine.cc", VERIFIED),
+    gcode("verify/match/visits.cc", VERIFIED),
+    gcode("verify/rules/lifts.cc", VERIFIED),
+    gcode("verify/rules/open_ways.cc", VERIFIED),
+    gcode("verify/rules/order.cc", VERIFIED),
+    gcode("verify/rules/retractions.cc", VERIFIED),
+    gcode("verify/sections.cc", VERIFIED),
+    gcode("write/gcode_out.cc", WRITTEN),
+    gcode("write/link_writer.cc", WRITTEN),
+    gcode("write/placed_path.cc", WRITTEN),
     place("client/loadgen/latency_histogram.cc", "loadgen_tests", "LatencyHistogram*"),
     place("client/loadgen/load_report.cc", "loadgen_tests", "LoadReport*"),
     place("client/files/write_file.cc", "client_tests", "Files*"),
