@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "client/report/numbers.h"
 #include "client/report/reproduce/sample.h"
+#include "client/report/reproduce/thesis_columns.h"
 #include "client/report/reproduce/thesis_values.h"
 #include "client/report/table.h"
 
@@ -17,37 +18,10 @@ namespace {
 
 using thesis::kNa;
 
-// One column of table 5.2, and how it is run.
-struct Column {
-  std::string title;
-  std::string method;
-  bool programme = false;
-  bool samples = false;  // one run for each seed
-};
-
-std::vector<Column> Columns(const ReproduceForm& form) {
-  std::vector<Column> columns = {
-      {"NO", "none"}, {"Guloso", GreedyMethod()}, {"NI2OPT", Ni2optMethod()}};
-  for (const char* name : {"sp", "nrp", "bbcp"}) {
-    const std::string title = name == std::string("sp")    ? "MILP SP"
-                              : name == std::string("nrp") ? "MILP NRP"
-                                                           : "MILP BBCP";
-    columns.push_back({title, MilpMethodName(name, true, form), true});
-  }
-  for (const char* name : {"nrp", "bbcp"}) {
-    for (const int diversifications : form.diversifications) {
-      columns.push_back({absl::StrFormat("BT %s %d", name == std::string("nrp") ? "NRP" : "BBCP",
-                                         diversifications),
-                         TabuMethodName(name, diversifications), false, true});
-    }
-  }
-  return columns;
-}
-
 class Tables {
  public:
   Tables(const ReproduceForm& form, const OutcomeOfRun& outcome)
-      : form_(form), outcome_(outcome), columns_(Columns(form)) {}
+      : form_(form), outcome_(outcome), columns_(ThesisColumns(form)) {}
 
   std::string All() const {
     return absl::StrCat(Parameters(), SampleTable(), Points(), Distances(), Deviations(), Visible(),
@@ -59,7 +33,7 @@ class Tables {
   using Value = double (*)(const RunOutcome&);
 
   // Of one part: a value of each run of a column; empty if it was not run, or has no route.
-  std::vector<double> Values(int part, const Column& column, const Value& value) const {
+  std::vector<double> Values(int part, const ThesisColumn& column, const Value& value) const {
     std::vector<double> values;
     for (int seed = 1; seed <= (column.samples ? form_.seeds : 1); ++seed) {
       const RunOutcome* found = outcome_(ThesisRun(kThesisParts[part], column.method, seed, form_));
@@ -69,7 +43,7 @@ class Tables {
     }
     return values;
   }
-  double Mean(int part, const Column& column, const Value& value) const {
+  double Mean(int part, const ThesisColumn& column, const Value& value) const {
     const std::vector<double> values = Values(part, column, value);
     return values.empty() ? kNa : SampleOf(values).mean;
   }
@@ -149,7 +123,7 @@ class Tables {
 
   std::string Points() const {
     Table table({"peça", "pontos", "Análise de Ilhas", "SP", "NRP", "BBCP"});
-    const Column nrp = columns_[6], bbcp = columns_[8];
+    const ThesisColumn nrp = columns_[6], bbcp = columns_[8];
     for (int part = 0; part < 3; ++part) {
       const double layers = Mean(part, nrp, [](const RunOutcome& o) { return o.Get("layers"); });
       if (std::isnan(layers)) continue;
@@ -180,7 +154,7 @@ class Tables {
 
   std::string Distances() const {
     std::vector<std::string> header = {"peça, mm"};
-    for (const Column& column : columns_) header.push_back(column.title);
+    for (const ThesisColumn& column : columns_) header.push_back(column.title);
     Table table(header);
     for (int part = 0; part < 3; ++part) AddDistances(part, table);
     return Titled(
@@ -195,7 +169,7 @@ class Tables {
   void AddDistances(int part, Table& table) const {
     const auto row = [&](const Value& value) {
       std::vector<double> values;
-      for (const Column& column : columns_) values.push_back(Mean(part, column, value));
+      for (const ThesisColumn& column : columns_) values.push_back(Mean(part, column, value));
       return values;
     };
     const auto theirs = [&](const double(&values)[thesis::kMethods]) {
@@ -284,7 +258,7 @@ class Tables {
     return Titled("Tabela 5.5 - Tempo de processamento (s): Guloso e NI2OPT", table);
   }
 
-  std::vector<double> Steps(int part, const Column& column) const {
+  std::vector<double> Steps(int part, const ThesisColumn& column) const {
     return {Mean(part, column, [](const RunOutcome& o) { return o.Get("step2_seconds"); }),
             Mean(part, column, [](const RunOutcome& o) { return o.Get("step3_seconds"); }),
             Mean(part, column, [](const RunOutcome& o) { return o.Get("step4_seconds"); })};
@@ -390,7 +364,7 @@ class Tables {
 
   const ReproduceForm& form_;
   const OutcomeOfRun& outcome_;
-  const std::vector<Column> columns_;
+  const std::vector<ThesisColumn> columns_;
 };
 
 }  // namespace
