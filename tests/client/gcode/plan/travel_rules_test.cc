@@ -129,6 +129,14 @@ TEST(TravelRules, ShortWaysAcrossWallsAreRetractedIfWallsAreToBeSpared) {
   EXPECT_FALSE(sparing.Retracts({30, 20}, {31.1, 20}));
 }
 
+TEST(TravelRules, WaysThatNoDetourSparesAWallAreRetractedWhereOthersLeadAround) {
+  const Rules avoiding(TwoIslands(false).Add("; avoid_crossing_perimeters = 1").Read());
+
+  ASSERT_TRUE(avoiding.habit.avoids_walls);
+  EXPECT_TRUE(avoiding.Retracts({35, 20}, {65, 20}));
+  EXPECT_FALSE(avoiding.Retracts({5, 5}, {35, 35}));
+}
+
 TEST(MeasureLayers, CountsWaysAcrossVisibleWalls) {
   Sketch sketch = TwoIslands(false);
   sketch.Go(5, 37).Infill(35, 37);
