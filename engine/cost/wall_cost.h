@@ -10,11 +10,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "absl/container/flat_hash_map.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/geometry/wall_detour.h"
 #include "engine/geometry/wall_grid.h"
@@ -76,7 +76,7 @@ class WallCost {
   const bool two_layers_ = false;
   const WallCost* first_ = nullptr;
   const WallCost* second_ = nullptr;
-  std::map<std::pair<double, double>, Point> second_points_;
+  absl::flat_hash_map<std::pair<double, double>, Point> second_points_;
 
   const size_t places_;
   mutable std::vector<Known> known_;  // by a hash of the move; empty at first

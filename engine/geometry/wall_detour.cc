@@ -50,6 +50,24 @@ double DistanceTo(const WallSegment& s, Point p) {
 
 }  // namespace
 
+WallDetours::WallDetours(const WallGrid& grid, double clearance_mm, double on_wall_mm)
+    : grid_(grid), clearance_mm_(clearance_mm), on_wall_mm_(on_wall_mm) {
+  const std::vector<WallSegment>& segments = grid.segments();
+  left_.reserve(segments.size());
+  for (const WallSegment& segment : segments) left_.push_back(LeftOf(segment));
+  for (const double side : {-1.0, 1.0}) {
+    Side& beside = sides_[side > 0 ? 1 : 0];
+    beside.bends.reserve(segments.size());
+    beside.upto_mm.reserve(segments.size());
+    for (uint32_t s = 0; s < segments.size(); ++s) {
+      const auto [first, end] = grid.SegmentsOf(segments[s].wall);
+      beside.bends.push_back(Beside(s, s + 1 == end ? first : s + 1, segments[s].b, side));
+      beside.upto_mm.push_back(
+          s == first ? 0 : beside.upto_mm.back() + Distance(beside.bends[s - 1], beside.bends[s]));
+    }
+  }
+}
+
 std::vector<Point> WallDetours::Around(Point a, Point b) const {
   std::vector<Point> there = OneWay(a, b, 0);
   std::vector<Point> back = OneWay(b, a, 0);
@@ -70,7 +88,7 @@ std::vector<WallDetours::Hit> WallDetours::HitsOf(Point a, Point b) const {
   grid_.ForEachOnLine(from, to, [&, from = from, to = to](uint32_t s) {
     const WallSegment& wall = grid_.segments()[s];
     if (SegmentsCross(from, to, wall.a, wall.b)) {
-      const Point left = LeftOf(wall);
+      const Point left = left_[s];
       const double before = (wall.a.x - a.x) * left.x + (wall.a.y - a.y) * left.y;
       const double whole = (b.x - a.x) * left.x + (b.y - a.y) * left.y;
       hits.push_back({before / whole, s});
@@ -143,8 +161,8 @@ std::vector<Point> WallDetours::OneWay(Point a, Point b, int depth) const {
 
 // Beside the corner between two segments, on the side given.
 Point WallDetours::Beside(uint32_t before, uint32_t behind, Point at, double side) const {
-  const Point one = LeftOf(grid_.segments()[before]);
-  const Point other = LeftOf(grid_.segments()[behind]);
+  const Point one = left_[before];
+  const Point other = left_[behind];
   Point middle{one.x + other.x, one.y + other.y};
   const double length = Distance({0, 0}, middle);
   const double out = side * clearance_mm_;
@@ -155,40 +173,55 @@ Point WallDetours::Beside(uint32_t before, uint32_t behind, Point at, double sid
   return {at.x + middle.x * reach, at.y + middle.y * reach};
 }
 
-// Appends the corners from one hit to another in one direction. False if they are too many.
-bool WallDetours::FollowOneWay(const Hit& first, const Hit& last, bool forward, double side,
-                               std::vector<Point>& way, double& length_mm) const {
-  const auto [begin, end] = grid_.SegmentsOf(WallOf(first.segment));
-  for (uint32_t s = first.segment; s != last.segment;) {
-    const uint32_t next = forward ? (s + 1 == end ? begin : s + 1) : (s == begin ? end : s) - 1;
-    const Point corner = forward ? grid_.segments()[s].b : grid_.segments()[s].a;
-    const Point bend = forward ? Beside(s, next, corner, side) : Beside(next, s, corner, side);
-    length_mm += Distance(way.back(), bend);
-    way.push_back(bend);
-    if (way.size() > kMostVertices) return false;
-    s = next;
-  }
-  return true;
+// The way beside a wall, with the wall, from the bend of one segment to that of another.
+double WallDetours::BetweenBends(uint32_t wall, const Side& side, uint32_t from,
+                                 uint32_t to) const {
+  const double between = side.upto_mm[to] - side.upto_mm[from];
+  if (to >= from) return between;
+  const auto [first, end] = grid_.SegmentsOf(wall);
+  return side.upto_mm[end - 1] + Distance(side.bends[end - 1], side.bends[first]) + between;
 }
 
-// Appends the shorter way along a wall from one hit to another, on one side of it.
+// Appends the shorter way along a wall from one hit to another, on one side of it. False if its
+// corners are too many.
 bool WallDetours::Follow(const Hit& first, const Hit& last, double side, Point a, Point b,
                          std::vector<Point>& way) const {
+  const uint32_t wall = WallOf(first.segment);
+  const auto [from, to] = grid_.SegmentsOf(wall);
+  const uint32_t n = to - from;
+  const Side& beside = SideAt(side);
+  const auto at = [from = from, n](uint32_t segment, uint32_t steps) {
+    return from + (segment - from + steps) % n;
+  };
   const Point begin = Beside(first.segment, first.segment, Between(a, b, first.along), side);
   const Point end = Beside(last.segment, last.segment, Between(a, b, last.along), side);
-  std::vector<Point> ways[2];
-  double lengths_mm[2] = {0, 0};
+  // With the wall the corners at the ends of `first` up to the one before `last`; against it those
+  // at the ends of the one before `first` down to `last`.
+  const uint32_t corners[2] = {(first.segment + n - last.segment) % n,
+                               (last.segment + n - first.segment) % n};
+  const auto corner = [&](bool forward, uint32_t i) {
+    return forward ? at(first.segment, i) : at(first.segment, n - 1 - i);
+  };
+  double lengths_mm[2];
   bool found[2];
-  for (const size_t forward : {size_t{0}, size_t{1}}) {
-    ways[forward] = {begin};
-    found[forward] =
-        FollowOneWay(first, last, forward == 1, side, ways[forward], lengths_mm[forward]);
-    lengths_mm[forward] += Distance(ways[forward].back(), end);
+  for (const bool forward : {false, true}) {
+    const uint32_t count = corners[forward];
+    found[forward] = count < kMostVertices;
+    lengths_mm[forward] = Distance(begin, end);
+    if (count == 0) continue;
+    const uint32_t one = corner(forward, 0);
+    const uint32_t other = corner(forward, count - 1);
+    lengths_mm[forward] = Distance(begin, beside.bends[one]) +
+                          (forward ? BetweenBends(wall, beside, one, other)
+                                   : BetweenBends(wall, beside, other, one)) +
+                          Distance(beside.bends[other], end);
   }
   if (!found[0] && !found[1]) return false;
   const bool forward = !found[0] || (found[1] && lengths_mm[1] <= lengths_mm[0]);
-  const std::vector<Point>& shorter = ways[forward ? 1 : 0];
-  way.insert(way.end(), shorter.begin(), shorter.end());
+  way.push_back(begin);
+  for (uint32_t i = 0; i < corners[forward]; ++i) {
+    way.push_back(beside.bends[corner(forward, i)]);
+  }
   way.push_back(end);
   return true;
 }

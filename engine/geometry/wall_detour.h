@@ -23,8 +23,8 @@ class WallDetours {
  public:
   // `grid` outlives the detours. Ways lead by walls at `clearance_mm`; a point nearer to one than
   // `on_wall_mm` lies on it.
-  WallDetours(const WallGrid& grid, double clearance_mm, double on_wall_mm)
-      : grid_(grid), clearance_mm_(clearance_mm), on_wall_mm_(on_wall_mm) {}
+  // O(w).
+  WallDetours(const WallGrid& grid, double clearance_mm, double on_wall_mm);
 
   // The bends of a way from `a` to `b` whose straight pieces cross no wall (WallGrid::Crosses).
   // Empty if the straight way crosses none, and if no way was found: from one island to another
@@ -46,14 +46,22 @@ class WallDetours {
   std::optional<uint32_t> SegmentAt(uint32_t wall, Point at) const;
   bool Follow(const Hit& first, const Hit& last, double side, Point a, Point b,
               std::vector<Point>& way) const;
-  bool FollowOneWay(const Hit& first, const Hit& last, bool forward, double side,
-                    std::vector<Point>& way, double& length_mm) const;
   Point Beside(uint32_t before, uint32_t behind, Point at, double side) const;
+
+  // On one side of the walls.
+  struct Side {
+    std::vector<Point> bends;     // [segment] beside the corner at its end
+    std::vector<double> upto_mm;  // [segment] from the first bend of its wall to its own
+  };
+  const Side& SideAt(double side) const { return sides_[side > 0 ? 1 : 0]; }
+  double BetweenBends(uint32_t wall, const Side& side, uint32_t from, uint32_t to) const;
   bool PullTaut(std::vector<Point>& way, int depth) const;
 
   const WallGrid& grid_;
   const double clearance_mm_;
   const double on_wall_mm_;
+  std::vector<Point> left_;  // [segment] the unit vector to its left
+  Side sides_[2];            // on the right, on the left
 };
 
 }  // namespace traverse

@@ -1,6 +1,7 @@
 #include "client/gcode/plan/travel_rules.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "client/gcode/model/loops.h"
 
@@ -120,7 +121,9 @@ RetractionHabit HabitOfNewWays(const GcodeFile& file) {
 
 TravelRules::TravelRules(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
                          const std::vector<Outline>& outlines, const VisibleWalls& walls)
-    : habit_(habit), walls_(walls), detours_(walls) {
+    : habit_(habit),
+      walls_(walls),
+      detours_(habit.avoids_walls ? std::optional<Detours>(std::in_place, walls) : std::nullopt) {
   if (habit.crossing_matters) {
     Count(file, layer, outlines, walls, habit.threshold_mm, inside_);
   }
@@ -148,15 +151,15 @@ bool TravelRules::Retracts(Vertex a, Vertex b, Feature feature) const {
 }
 
 bool TravelRules::Crosses(Vertex a, Vertex b) const {
-  return walls_.Crossed(a, b) && (!habit_.avoids_walls || detours_.Around(a, b).empty());
+  return walls_.Crossed(a, b) && (!detours_ || detours_->Around(a, b).empty());
 }
 
 TravelWay TravelRules::WayOf(Vertex a, Vertex b, Feature feature) const {
   TravelWay way;
   way.mm = Distance(a, b);
   way.crosses = walls_.Crossed(a, b);
-  if (way.crosses && habit_.avoids_walls) {
-    const std::vector<Vertex> bends = detours_.Around(a, b);
+  if (way.crosses && detours_) {
+    const std::vector<Vertex> bends = detours_->Around(a, b);
     Vertex at = a;
     double mm = 0;
     for (const Vertex bend : bends) {

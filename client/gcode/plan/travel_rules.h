@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "client/gcode/model/outline.h"
@@ -75,7 +76,7 @@ class TravelRules {
   bool AlwaysRetracts(Feature feature) const;
 
   // Where new ways are led around visible walls; null if the file's are not.
-  const Detours* detours() const { return habit_.avoids_walls ? &detours_ : nullptr; }
+  const Detours* detours() const { return detours_ ? &*detours_ : nullptr; }
 
  private:
   const RetractionCount& CountOf(Feature feature) const;
@@ -85,7 +86,7 @@ class TravelRules {
 
   const RetractionHabit& habit_;
   const VisibleWalls& walls_;
-  const Detours detours_;
+  const std::optional<Detours> detours_;  // if the file has any
   RetractionCounts inside_;
 };
 

@@ -110,24 +110,32 @@ int LeafEntries::Best(int leaf, Point from, const Point* to, const TravelCost& c
   return BestByLength(leaf, from, to);
 }
 
-// The best by its length mostly is the best: others are looked at where walls make it dearer.
+// The best by its length mostly is the best: others are looked at where walls make it dearer, from
+// there on to either side, so that soon most need not be asked about.
 int LeafEntries::BestAmongWalls(int leaf, Point from, const Point* to,
                                 const TravelCost& cost) const {
-  const auto base = [&](int entry) {
-    return cost.Base(from, enter(entry)) + (to != nullptr ? cost.Base(exit(entry), *to) : 0);
+  const auto base_behind = [&](int entry) {
+    return to != nullptr ? cost.Base(exit(entry), *to) : 0;
   };
-  const auto total = [&](int entry) {
-    return cost(from, enter(entry)) + (to != nullptr ? cost(exit(entry), *to) : 0);
-  };
+  const auto base = [&](int entry) { return cost.Base(from, enter(entry)) + base_behind(entry); };
+  const auto behind = [&](int entry) { return to != nullptr ? cost(exit(entry), *to) : 0; };
   int best = BestByLength(leaf, from, to);
-  double least = total(best);
+  double least = cost(from, enter(best)) + behind(best);
   if (least <= base(best)) return best;
-  for (int entry = first(leaf); entry < first(leaf) + count(leaf); ++entry) {
-    if (base(entry) >= least) continue;
-    if (const double here = total(entry); here < least) {
+  const auto try_entry = [&](int entry) {
+    if (base(entry) >= least) return;
+    const double before = cost(from, enter(entry));
+    if (before + base_behind(entry) >= least) return;
+    if (const double here = before + behind(entry); here < least) {
       least = here;
       best = entry;
     }
+  };
+  const int n = count(leaf);
+  const int nearest = best - first(leaf);
+  for (int i = 1; i < n; ++i) {
+    const int step = i % 2 == 1 ? i / 2 + 1 : n - i / 2;
+    try_entry(first(leaf) + (nearest + step) % n);
   }
   return best;
 }
