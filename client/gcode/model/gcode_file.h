@@ -56,6 +56,7 @@ enum BlockFlag : uint16_t {
   kBlockScript = 1 << 9,    // before the first mark of a layer: a start script's
   kBlockCommand = 1 << 10,  // a command inside it sets a slot
   kBlockGoesOn = 1 << 11,   // closed; a move without filament goes on along it behind its end
+  kBlockArcs = 1 << 12,     // has arcs
 };
 
 struct Block {

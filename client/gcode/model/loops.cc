@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "client/gcode/model/feature.h"
 #include "client/gcode/model/segment_grid.h"
 #include "client/gcode/text/text.h"
 
@@ -15,8 +16,8 @@ constexpr double kNeighborSlack = 0.45;
 
 // A point on the right of the middle of segment `k`, where a neighbor would run.
 Segment ProbeAt(const Outline& outline, size_t k) {
-  const Vertex a = outline.points[k];
-  const Vertex b = outline.points[k + 1];
+  const Vertex a = outline.shape()[k];
+  const Vertex b = outline.shape()[k + 1];
   const Vertex middle{(a.x + b.x) / 2, (a.y + b.y) / 2};
   const double length = Distance(a, b);
   if (!(length > 0)) return {middle, middle, 0};
@@ -24,25 +25,78 @@ Segment ProbeAt(const Outline& outline, size_t k) {
   return {middle, {middle.x + (b.y - a.y) * reach, middle.y - (b.x - a.x) * reach}, 0};
 }
 
-bool HasNeighborOutside(const Outline& outline, uint32_t path, const SegmentGrid& grid) {
-  const size_t segments = outline.points.size() - 1;
+// Of the places looked at, those with a neighbor and all.
+struct Probes {
+  size_t hits = 0;
+  size_t all = 0;
+};
+
+void ProbeOutside(const Outline& outline, uint32_t loop, const SegmentGrid& grid, Probes& probes) {
+  const size_t segments = outline.shape().size() - 1;
   const size_t step = std::max<size_t>(1, segments / kProbes);
   const double slack = kNeighborSlack * outline.width_mm;
-  size_t probes = 0;
-  size_t hits = 0;
   for (size_t k = 0; k < segments; k += step) {
     const Segment probe = ProbeAt(outline, k);
     const Segment end{probe.b, probe.b, 0};
     bool hit = false;
     grid.ForEachOnWay(probe.a, probe.b, [&](uint32_t s) {
       const Segment& other = grid.segments()[s];
-      hit = other.path != path && SquaredDistance(end, other) <= slack * slack;
+      hit = other.path != loop && SquaredDistance(end, other) <= slack * slack;
       return !hit;
     });
-    ++probes;
-    hits += hit ? 1 : 0;
+    ++probes.all;
+    probes.hits += hit ? 1 : 0;
   }
-  return hits * 2 > probes;
+}
+
+// A loop that ends short of its start, and that was begun elsewhere, is two paths with the gap
+// between them.
+bool AreLoopInTwo(const GcodeFile& file, const Layer& layer, const std::vector<Outline>& outlines,
+                  size_t path) {
+  constexpr double kSameMm = 1e-3;
+  const Outline& one = outlines[path];
+  const Outline& other = outlines[path + 1];
+  if (one.is_loop || other.is_loop || one.feature != other.feature ||
+      one.shape().size() + other.shape().size() < 5 ||
+      Distance(one.points.back(), other.points.front()) > kMaxLoopGapMm ||
+      Distance(other.points.back(), one.points.front()) > kSameMm) {
+    return false;
+  }
+  const size_t block = layer.first_block + path;
+  return FeatureOf(file, file.blocks[block], true) == Feature::kLoop &&
+         FeatureOf(file, file.blocks[block + 1], true) == Feature::kLoop;
+}
+
+// Loops without a name: those that have another one along most of their outside are inner walls.
+void TellWalls(const GcodeFile& file, const Layer& layer, std::vector<Outline>& outlines) {
+  std::vector<uint32_t> loops;  // the first path of each; its second one follows, if it has two
+  std::vector<bool> in_two(outlines.size(), false);
+  std::vector<Segment> segments;
+  const auto add = [&](uint32_t path, uint32_t loop) {
+    const std::vector<Vertex>& shape = outlines[path].shape();
+    for (size_t k = 0; k + 1 < shape.size(); ++k)
+      segments.push_back({shape[k], shape[k + 1], loop});
+  };
+  for (uint32_t path = 0; path < outlines.size(); ++path) {
+    in_two[path] = path + 1 < outlines.size() && AreLoopInTwo(file, layer, outlines, path);
+    if (!in_two[path] && outlines[path].feature != Feature::kLoop) continue;
+    loops.push_back(path);
+    add(path, path);
+    if (!in_two[path]) continue;
+    add(path + 1, path);
+    outlines[path].feature = outlines[path + 1].feature = Feature::kLoop;
+    ++path;
+  }
+  if (loops.empty()) return;
+  const SegmentGrid grid(std::move(segments));
+  for (const uint32_t loop : loops) {
+    Probes probes;
+    ProbeOutside(outlines[loop], loop, grid, probes);
+    if (in_two[loop]) ProbeOutside(outlines[loop + 1], loop, grid, probes);
+    if (probes.hits * 2 <= probes.all) continue;
+    outlines[loop].feature = Feature::kInnerWall;
+    if (in_two[loop]) outlines[loop + 1].feature = Feature::kInnerWall;
+  }
 }
 
 // Filament for each mm of way.
@@ -100,7 +154,7 @@ void MarkIroning(const GcodeFile& file, const Layer& layer, std::vector<Outline>
   for (uint32_t path = 0; path < outlines.size(); ++path) {
     const Block& block = file.blocks[layer.first_block + path];
     if (!IsCuraSkin(file, block)) continue;
-    const std::vector<Vertex>& points = outlines[path].points;
+    const std::vector<Vertex>& points = outlines[path].shape();
     if (FlowOf(block) < kLeastShare * usual) {
       thin.push_back(path);
     } else {
@@ -120,26 +174,12 @@ void MarkIroning(const GcodeFile& file, const Layer& layer, std::vector<Outline>
 
 std::vector<Outline> OutlinesOf(const GcodeFile& file, const Layer& layer) {
   std::vector<Outline> outlines;
-  std::vector<Segment> loops;
   outlines.reserve(layer.end_block - layer.first_block);
   for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
     outlines.push_back(OutlineOf(file, file.blocks[b]));
-    const Outline& outline = outlines.back();
-    if (outline.feature != Feature::kLoop) continue;
-    for (size_t k = 0; k + 1 < outline.points.size(); ++k) {
-      loops.push_back({outline.points[k], outline.points[k + 1], b - layer.first_block});
-    }
   }
   MarkIroning(file, layer, outlines);
-  if (loops.empty()) return outlines;
-  const SegmentGrid grid(std::move(loops));
-  for (size_t path = 0; path < outlines.size(); ++path) {
-    Outline& outline = outlines[path];
-    if (outline.feature != Feature::kLoop) continue;
-    if (HasNeighborOutside(outline, static_cast<uint32_t>(path), grid)) {
-      outline.feature = Feature::kInnerWall;
-    }
-  }
+  TellWalls(file, layer, outlines);
   return outlines;
 }
 

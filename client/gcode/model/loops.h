@@ -11,8 +11,9 @@ namespace traverse::gcode {
 
 // The outlines of a layer. CuraEngine's ironing is told from the skin that it irons. Of loops
 // without a name (Feature::kLoop) those become inner walls that have another loop along most of
-// their outer side: slicers print outlines counter-clockwise and holes clockwise, so that the
-// outside is always on the right.
+// their outer side (two paths that make up a loop, as where one was begun elsewhere, count as one):
+// slicers print outlines counter-clockwise and holes clockwise, so that the outside is always on
+// the right.
 std::vector<Outline> OutlinesOf(const GcodeFile& file, const Layer& layer);
 
 }  // namespace traverse::gcode

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <optional>
 
+#include "client/gcode/model/arc.h"
+#include "client/gcode/model/path_body.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
@@ -43,6 +45,26 @@ double WidthOf(const GcodeFile& file, const Block& block) {
   return std::clamp(width, 0.2, 1.2);
 }
 
+// An arc of a larger radius is as good as straight.
+constexpr double kMostRadiusMm = 1e4;
+constexpr double kBentToleranceMm = 0.01;
+
+std::vector<Vertex> BentShape(const GcodeFile& file, const Block& block) {
+  const MachineState& mode = file.modes[block.mode];
+  std::vector<Vertex> shape = {mode.InMm(block.first)};
+  for (const BodySegment& segment : ReadBody(file, block).segments) {
+    if (segment.command >= 2) {
+      const Vertex from = mode.InMm(segment.from);
+      for (const Vertex& point : ArcPoints(ArcCommand(segment), segment.from, segment.to,
+                                           mode.UnitMm(), kBentToleranceMm)) {
+        if (Distance(from, point) < 2 * kMostRadiusMm) shape.push_back(point);
+      }
+    }
+    shape.push_back(mode.InMm(segment.to));
+  }
+  return shape;
+}
+
 }  // namespace
 
 MachineState StateAt(const GcodeFile& file, const Block& block) {
@@ -62,21 +84,24 @@ Outline OutlineOf(const GcodeFile& file, const Block& block) {
   outline.points.push_back(file.modes[block.mode].InMm(block.first));
   outline.points.insert(outline.points.end(), ends, ends + block.end_count);
   outline.exactly_closed = outline.points.front() == outline.points.back();
-  outline.closed = outline.points.size() > 3 &&
-                   Distance(outline.points.front(), outline.points.back()) <= kMaxLoopGapMm &&
-                   static_cast<double>(block.length_mm) > 8 * kMaxLoopGapMm;
-  outline.feature = FeatureOf(file, block, outline.closed);
+  if ((block.flags & kBlockArcs) != 0) outline.bent = BentShape(file, block);
+  outline.is_loop = outline.shape().size() > 3 &&
+                    Distance(outline.points.front(), outline.points.back()) <= kMaxLoopGapMm &&
+                    static_cast<double>(block.length_mm) > 8 * kMaxLoopGapMm;
+  outline.closed = outline.is_loop && outline.points.size() > 3;
+  outline.feature = FeatureOf(file, block, outline.is_loop);
   outline.width_mm = WidthOf(file, block);
   return outline;
 }
 
 bool LiesWithin(const Outline& inner, const Outline& outer) {
-  if (!outer.closed) return false;
+  if (!outer.is_loop) return false;
   const Vertex p = inner.points.front();
+  const std::vector<Vertex>& loop = outer.shape();
   bool within = false;
-  for (size_t k = 0; k + 1 < outer.points.size(); ++k) {
-    const Vertex a = outer.points[k];
-    const Vertex b = outer.points[k + 1];
+  for (size_t k = 0; k + 1 < loop.size(); ++k) {
+    const Vertex a = loop[k];
+    const Vertex b = loop[k + 1];
     if ((a.y > p.y) == (b.y > p.y)) continue;
     if (p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)) within = !within;
   }

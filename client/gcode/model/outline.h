@@ -16,8 +16,18 @@ struct Outline {
   // one segment.
   std::vector<Vertex> points;
 
+  // The same with points on its arcs, so near to each other that lines will do; empty if it has
+  // none.
+  std::vector<Vertex> bent;
+
+  // What is printed: where it lies, not where it may begin.
+  const std::vector<Vertex>& shape() const { return bent.empty() ? points : bent; }
+
   // It ends where it began, or less than kMaxLoopGapMm short of it.
   bool closed = false;
+
+  // The same for its shape: of a circle in two arcs no point but the first is a start.
+  bool is_loop = false;
 
   // points.front() == points.back().
   bool exactly_closed = false;

@@ -13,9 +13,9 @@ std::vector<Wall> VisibleWallsOf(const std::vector<Outline>& outlines) {
     const Outline& outline = outlines[path];
     if (!IsVisibleWall(outline.feature) || outline.points.size() < 2) continue;
     Wall& wall = walls.emplace_back();
-    wall.points.reserve(outline.points.size());
-    for (const Vertex& point : outline.points) wall.points.push_back({point.x, point.y});
-    wall.closed = outline.closed;
+    wall.points.reserve(outline.shape().size());
+    for (const Vertex& point : outline.shape()) wall.points.push_back({point.x, point.y});
+    wall.closed = outline.is_loop;
     wall.path = static_cast<int>(path);
   }
   return walls;

@@ -297,7 +297,7 @@ void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
   pending_ = 0;
   link_ = OpenLink{};
   if (step.retracted || before.at.z != after.at.z) block.flags |= kBlockPinned;
-  if (step.arc && !EndsOnItsCircle(step, after)) block.flags |= kBlockPinned;
+  if (step.arc) block.flags |= EndsOnItsCircle(step, after) ? kBlockArcs : kBlockPinned;
   if (step.kind == StepKind::kZeroExtrude) block.flags |= kBlockZero;
   block.length_mm += static_cast<float>(StepMm(step, after));
   file_.ends.push_back(after.InMm(after.at));
