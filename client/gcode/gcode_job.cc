@@ -58,6 +58,15 @@ void SetWallCost(const RetractionHabit& habit, Crossings crossings, v1::TimeCost
   if (habit.crossing_matters) time.set_retraction_threshold_mm(kNeverMm);
 }
 
+// Paths that the slicer wipes stay wiped, so that what follows them is retracted wherever it leads:
+// an order saves, or costs, the retractions behind the others alone.
+double ShareNotWiped(const GcodeFile& file, const Layer& layer) {
+  size_t wiped = 0;
+  for (uint32_t b = layer.first_block; b < layer.end_block; ++b)
+    wiped += file.WipedBehind(b) ? 1 : 0;
+  return 1 - static_cast<double>(wiped) / (layer.end_block - layer.first_block);
+}
+
 void SetWalls(const TravelRules& rules, const RetractionHabit& habit,
               const std::vector<Outline>& outlines, v1::Layer& layer) {
   for (size_t path = 0; path < outlines.size() && habit.crossing_matters; ++path) {
@@ -90,7 +99,9 @@ void FillLayer(const GcodeFile& file, size_t index, const FileHabits& habits,
   filled.set_id(index + 1);
   filled.set_z_mm(ToDouble(layer.z) * file.modes[file.blocks[layer.first_block].mode].UnitMm());
   *filled.mutable_plan() = std::move(planned.plan);
-  SetCost(habits.travel[index], *filled.mutable_cost());
+  TravelModel travel = habits.travel[index];
+  travel.retraction_seconds *= ShareNotWiped(file, layer);
+  SetCost(travel, *filled.mutable_cost());
   SetWallCost(habits.retraction, options.crossings, *filled.mutable_cost()->mutable_time());
   const VisibleWalls walls(planned.outlines);
   SetWalls(TravelRules(file, layer, habits.retraction, planned.outlines, walls), habits.retraction,
