@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_format.h"
 #include "client/gateway/work/file_memory.h"
+#include "client/gateway/work/guarded.h"
 
 namespace traverse::gateway {
 
@@ -51,8 +52,8 @@ void Core::Submit(std::shared_ptr<WorkQueue::Place> place,
   const bool packed =
       std::any_of(files.begin(), files.end(), [](const auto& file) { return IsPacked(*file); });
   auto submit = [this, place, files, work = std::move(work)] {
-    const absl::StatusOr<int64_t> memory =
-        MemoryForAll(files, options.max_file_bytes, queue->max_memory_bytes());
+    const absl::StatusOr<int64_t> memory = Guarded(
+        [&] { return MemoryForAll(files, options.max_file_bytes, queue->max_memory_bytes()); });
     if (!memory.ok()) return work(memory.status());
     queue->Submit(place, *memory, [work] { work(absl::OkStatus()); });
   };

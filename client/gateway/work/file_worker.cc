@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <new>
 #include <utility>
 #include <variant>
 
@@ -13,6 +12,7 @@
 #include "client/files/decompress.h"
 #include "client/formats/detect.h"
 #include "client/formats/read_input.h"
+#include "client/gateway/work/guarded.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/measure/print_totals.h"
 #include "client/gcode/parallel.h"
@@ -128,16 +128,6 @@ absl::StatusOr<std::shared_ptr<const SpoolFile>> Spooled(Spool& spool, std::stri
   if (!file.ok()) return file.status();
   if (absl::Status status = (*file)->Append(text); !status.ok()) return status;
   return *std::move(file);
-}
-
-// What `work` returns; ResourceExhausted where the memory of the process was not enough for it.
-template <typename Work>
-auto Guarded(const Work& work) -> decltype(work()) {
-  try {
-    return work();
-  } catch (const std::bad_alloc&) {
-    return absl::ResourceExhaustedError("there is not enough memory for this file now");
-  }
 }
 
 }  // namespace

@@ -8,6 +8,8 @@ import http.client
 import json
 import lzma
 import os
+import re
+import resource
 import signal
 import socket
 import subprocess
@@ -481,6 +483,20 @@ class Time(unittest.TestCase):
         for packed in [gzip.compress(PART), lzma.compress(PART), b"\x1f\x8b damaged"]:
             status, _, answer = gateway.ask("POST", "/v1/gcode", packed)
             self.assertEqual(status, 400 if packed.endswith(b"damaged") else 200, answer[:300])
+
+    def test_a_packed_file_that_there_is_no_memory_to_measure_is_refused(self):
+        gateway = Gateway()
+        self.addCleanup(gateway.close)
+        with open(f"/proc/{gateway.process.pid}/status", encoding="utf-8") as status:
+            size = 1024 * int(re.search(r"VmSize:\s+(\d+)", status.read())[1])
+        if size > 1 << 40:
+            self.skipTest("a sanitizer has taken all addresses")
+        most = size + (32 << 20)
+        resource.prlimit(gateway.process.pid, resource.RLIMIT_AS, (most, most))
+        for first in (b"\x1f\x8b", b"GCDE\x01\0\0\0\0\0"):
+            status, _, answer = gateway.ask("POST", "/v1/gcode", first + bytes(100_000_000))
+            self.assertEqual((status, detail(answer)), (503, "there is not enough memory for this file now"))
+        self.assertEqual(gateway.ask("GET", "/healthz")[0], 200)
 
     def test_one_address_leaves_connections_to_others(self):
         gateway = Gateway("--max_connections_per_address=5")
