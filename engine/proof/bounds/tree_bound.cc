@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 
 #include "engine/base/rest.h"
 #include "engine/base/resting_sort.h"
@@ -28,18 +27,6 @@ constexpr int kStepsWithoutGain = 6;
 
 // What rounding can add up to in a sum over all moves, relative to the numbers summed up.
 constexpr double kRounding = 1e-12;
-
-// The roles that the other end of a move has to have one of.
-int Opposite(int roles) { return (roles >> 1 & 1) | (roles << 1 & 2); }
-
-int Find(std::vector<int>& parent, int side) {
-  while (parent[static_cast<size_t>(side)] != side) {
-    int& up = parent[static_cast<size_t>(side)];
-    up = parent[static_cast<size_t>(up)];
-    side = up;
-  }
-  return side;
-}
 
 }  // namespace
 
@@ -66,7 +53,7 @@ struct TreeBound::Pool {
     low_y[at] = box.low().y;
     high_y[at] = box.high().y;
     multiplier[at] = of_end;
-    wants[at] = Opposite(it.roles);
+    wants[at] = OppositeRoles(it.roles);
     member[at] = index;
     position[at] = index;
   }
@@ -159,7 +146,7 @@ void TreeBound::FindNearPairs(Budget& budget) {
       const Junction::Member& member = junction.members[static_cast<size_t>(m)];
       for (const NeighborLists::Neighbor& neighbor : lists.of(m)) {
         const Junction::Member& other = junction.members[static_cast<size_t>(neighbor.group)];
-        if ((member.roles & Opposite(other.roles)) == 0) continue;
+        if ((member.roles & OppositeRoles(other.roles)) == 0) continue;
         if (!rest(64)) return;
         AddPair(static_cast<int>(j), member, other, budget);
       }
@@ -315,16 +302,12 @@ double TreeBound::EvaluateNear(Budget& budget) {
                          static_cast<int>(p));
   }
   RestingSort(sorted_, rest);
-  parent_.resize(static_cast<size_t>(first_side_.back()));
-  std::iota(parent_.begin(), parent_.end(), 0);
+  joined_.Reset(first_side_.back());
   for (const auto& [cost, index] : sorted_) {
     rest(8);
     const Pair& pair = pairs_[static_cast<size_t>(index)];
     const int base = first_side_[static_cast<size_t>(pair.junction)];
-    const int a = Find(parent_, base + pair.sides[0]);
-    const int b = Find(parent_, base + pair.sides[1]);
-    if (a == b) continue;
-    parent_[static_cast<size_t>(a)] = b;
+    if (!joined_.Join(base + pair.sides[0], base + pair.sides[1])) continue;
     sum += cost;
     for (const int end : pair.ends) ++moves_[static_cast<size_t>(end)];
   }

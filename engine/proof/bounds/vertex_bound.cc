@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "engine/model/point.h"
@@ -35,18 +34,6 @@ constexpr int kRounds = 2;
 
 // What rounding can add up to in a sum over all moves, relative to the numbers summed up.
 constexpr double kRounding = 1e-12;
-
-// The roles that the other end of a move has to have one of.
-int Opposite(int roles) { return (roles >> 1 & 1) | (roles << 1 & 2); }
-
-int Find(std::vector<int>& parent, int side) {
-  while (parent[static_cast<size_t>(side)] != side) {
-    int& up = parent[static_cast<size_t>(side)];
-    up = parent[static_cast<size_t>(up)];
-    side = up;
-  }
-  return side;
-}
 
 size_t At(int index) { return static_cast<size_t>(index); }
 
@@ -212,26 +199,17 @@ VertexBound::AnyCandidate VertexBound::CheapestOfAny(int junction, const Junctio
   return best;
 }
 
-// Whether the two were apart.
-bool VertexBound::Join(int side, int other) {
-  const int a = Find(parent_, side);
-  const int b = Find(parent_, other);
-  parent_[At(a)] = b;
-  return a != b;
-}
-
 // Kruskal's algorithm over the known pairs, which connect the sides of each junction.
 double VertexBound::EvaluateNear() {
   double sum = AddFirstAndLast() + ChoosePoints();
   candidates_.clear();
   for (size_t pair = 0; pair < pairs_.size(); ++pair) candidates_.push_back(CheapestOf(pair));
   std::sort(candidates_.begin(), candidates_.end());
-  parent_.resize(At(first_side_.back()));
-  std::iota(parent_.begin(), parent_.end(), 0);
+  joined_.Reset(first_side_.back());
   moves_.clear();
   for (const Candidate& candidate : candidates_) {
     const Pair& pair = pairs_[candidate.pair];
-    if (!Join(pair.sides[0], pair.sides[1])) continue;
+    if (!joined_.Join(pair.sides[0], pair.sides[1])) continue;
     sum += candidate.cost;
     moves_.push_back(candidate);
   }
@@ -248,7 +226,7 @@ double VertexBound::EvaluateAll(Budget& budget) {
       if (budget.ExhaustedNow()) return 0;
       for (size_t b = a + 1; b < members.size(); ++b) {
         if (members[a].side == members[b].side) continue;
-        if ((members[a].roles & Opposite(members[b].roles)) == 0) continue;
+        if ((members[a].roles & OppositeRoles(members[b].roles)) == 0) continue;
         all.push_back(CheapestOfAny(static_cast<int>(j), members[a], members[b]));
       }
     }
@@ -257,12 +235,11 @@ double VertexBound::EvaluateAll(Budget& budget) {
                    [](const auto& a, const auto& b) { return a.cost < b.cost; });
   double sum = AddFirstAndLast() + ChoosePoints();
   double scale = std::abs(sum);
-  parent_.resize(At(first_side_.back()));
-  std::iota(parent_.begin(), parent_.end(), 0);
+  joined_.Reset(first_side_.back());
   const bool is_first = pairs_.empty();
   for (const AnyCandidate& it : all) {
     const int base = first_side_[At(it.junction)];
-    if (!Join(base + it.members[0]->side, base + it.members[1]->side)) continue;
+    if (!joined_.Join(base + it.members[0]->side, base + it.members[1]->side)) continue;
     sum += it.cost;
     scale += std::abs(it.cost);
     AddPair(it.junction, *it.members[0], *it.members[1]);

@@ -22,6 +22,7 @@
 #include "engine/cost/travel_cost.h"
 #include "engine/model/layer_problem.h"
 #include "engine/proof/bounds/end_graph.h"
+#include "engine/proof/bounds/joined_sides.h"
 
 namespace traverse {
 
@@ -81,7 +82,6 @@ class VertexBound {
   Candidate CheapestOf(size_t pair) const;
   AnyCandidate CheapestOfAny(int junction, const Junction::Member& a,
                              const Junction::Member& b) const;
-  bool Join(int side, int other);
   double EvaluateNear();
   double EvaluateAll(Budget& budget);
   void AddNearest(std::vector<AnyCandidate>& candidates);
@@ -108,7 +108,7 @@ class VertexBound {
   // Scratch.
   std::vector<Candidate> candidates_;
   std::vector<double> paid_back_;  // [point] by the multipliers of pairs
-  std::vector<int> parent_;        // [side]
+  JoinedSides joined_;
 };
 
 }  // namespace traverse
