@@ -8,9 +8,13 @@
 #include <vector>
 
 #include "engine/schedule/end_history.h"
+#include "tests/engine/schedule/ring_job.h"
 
 namespace traverse {
 namespace {
+
+using testing::Moved;
+using testing::RingLayer;
 
 // Two lines and a contour, in any order but for one pair.
 Plan SmallPlan() {
@@ -93,6 +97,39 @@ TEST(EndHistory, PrefersTheProblemToTheShapeAndTheLastToTheFirst) {
   EXPECT_EQ(history.EndOf(1, 11), (Point{2, 2}));
   EXPECT_EQ(history.EndOf(1, 12), (Point{2, 2}));
   EXPECT_FALSE(history.EndOf(2, 12));
+}
+
+TEST(EndHistory, GivesTheLastEndOfAnEqualLayerAboveAllFromTheSameStart) {
+  const auto make = [](const Plan& plan) { return FingerprintOf(plan, {}).shape; };
+  const uint64_t ring = make(RingLayer(3, 0.1));
+  const uint64_t other = make(RingLayer(3, 0.2));
+  EndHistory history;
+  history.Learn(ring, 11, {1, 1});
+  history.Learn(other, 12, {2, 2});
+  history.Learn(ring, 13, {3, 3});
+
+  EXPECT_EQ(history.EndOf(ring, 11), (Point{1, 1}));
+  EXPECT_EQ(history.EndOf(ring, 14), (Point{3, 3}));
+  EXPECT_EQ(history.EndOf(make(RingLayer(4, 0.1)), 14), std::nullopt);
+  EXPECT_EQ(history.EndOf(make(Moved(RingLayer(3, 0.2), 5)), 14), (Point{2, 2}));
+}
+
+TEST(LayerFingerprint, TellsLayersThatWereMovedFromOthers) {
+  const LayerFingerprint ring = FingerprintOf(RingLayer(3, 0.1), {});
+  const LayerFingerprint moved = FingerprintOf(Moved(RingLayer(3, 0.1), 5), {});
+
+  EXPECT_EQ(FingerprintOf(RingLayer(3, 0.1), {}).exact, ring.exact);
+  EXPECT_EQ(moved.shape, ring.shape);
+  CostSpec time;
+  time.kind = CostSpec::Kind::kTime;
+  EXPECT_NE(FingerprintOf(RingLayer(3, 0.1), time).shape, ring.shape);
+  EXPECT_NE(moved.exact, ring.exact);
+  EXPECT_EQ(ProblemKey(7, {0, 0}, {1, 2}, std::nullopt),
+            ProblemKey(7, {5, 5}, {6, 7}, std::nullopt));
+  EXPECT_NE(ProblemKey(7, {0, 0}, {1, 2}, std::nullopt),
+            ProblemKey(7, {0, 0}, {1, 2.1}, std::nullopt));
+  EXPECT_NE(ProblemKey(7, {0, 0}, {1, 2}, Point{0, 0}),
+            ProblemKey(7, {0, 0}, {1, 2}, std::nullopt));
 }
 
 }  // namespace
