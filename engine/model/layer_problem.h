@@ -4,7 +4,6 @@
 #define TRAVERSE_ENGINE_MODEL_LAYER_PROBLEM_H_
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 
 #include "engine/model/cost_spec.h"
@@ -14,11 +13,6 @@
 namespace traverse {
 
 class WallCost;  // engine/cost/wall_cost.h
-
-// What a strategy derived of a plan and may use again when it solves that plan from another start.
-struct PlanMemory {
-  virtual ~PlanMemory() = default;
-};
 
 // Travel of a route is the sum of the moves start -> first entry, exit -> next entry, and, if
 // `finish` is set, last exit -> finish. `plan` passes CheckPlan and outlives the problem.
@@ -33,10 +27,6 @@ struct LayerProblem {
 
   // Of this layer's own random generator.
   uint64_t seed = 1;
-
-  // Where a strategy may keep what it derives of `plan` from one call to the next; null: nowhere.
-  // What is there was put there for the same plan, by one call at a time.
-  std::unique_ptr<PlanMemory>* memory = nullptr;
 
   // What the layer's walls add to the cost; null: there are none. Used by one call at a time.
   const WallCost* walls = nullptr;

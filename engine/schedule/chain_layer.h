@@ -14,6 +14,7 @@
 #include "engine/proof/bounds/lower_bound.h"
 #include "engine/schedule/layer_fingerprint.h"
 #include "engine/schedule/route_history.h"
+#include "engine/strategy/strategy.h"
 
 namespace traverse {
 
@@ -51,7 +52,8 @@ struct ChainLayer {
   double weight = 0;
   Budget::Clock::duration allotted = Budget::Clock::duration::max();
 
-  std::unique_ptr<PlanMemory> memory;  // of the stage that is under way, for the next one
+  // From the first stage that solves the layer to its anchor; one stage at a time uses it.
+  std::unique_ptr<PreparedLayer> prepared;
 
   // Set by solve and second.
   Solution first;

@@ -108,8 +108,7 @@ void LayerSolver::SolveFirst(ChainLayer& layer) const {
     return;
   }
   Budget budget = LayerBudget(layer, SolveShare(layer));
-  LayerProblem problem = Problem(layer, layer.predicted_start);
-  problem.memory = &layer.memory;
+  const LayerProblem problem = Problem(layer, layer.predicted_start);
   // Different layers that share a fingerprint are unheard of, not impossible.
   const bool resumes =
       layer.precursor &&
@@ -117,7 +116,7 @@ void LayerSolver::SolveFirst(ChainLayer& layer) const {
   if (resumes) {
     ResumeFromPrecursor(problem, layer, budget);
   } else {
-    layer.first = strategy_->Solve(problem, budget);
+    layer.first = Prepared(layer).Solve(problem, budget);
   }
   if (!layer.first.lower_bound) Bound(problem, layer, layer.first);
   layer.outcome.solve_seconds = watch.Seconds();
@@ -134,7 +133,7 @@ void LayerSolver::ResumeFromPrecursor(const LayerProblem& problem, ChainLayer& l
     return;
   }
   const Route& route = precursor.best->solution.route;
-  layer.first = strategy_->Resume(problem, route, budget);
+  layer.first = Prepared(layer).Resume(problem, route, budget);
   const bool gained = RouteCost(problem, layer.first.route, &budget) <
                       RouteCost(problem, route, &budget) * (1 - kSameCost);
   layer.searched_in_vain = same && !gained && layer.first.stop != StopReason::kTimeLimit;
@@ -225,12 +224,12 @@ const Route& LayerSolver::BestToGoOnFrom(const LayerProblem& problem, const Chai
 
 // `next` is null afterwards if the layer was better not ended with a view to it; `greedy` is set if
 // that was to be compared with.
-Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, const ChainLayer& layer,
+Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, ChainLayer& layer,
                                          const KnownRoute* known, ChainLayer*& next,
                                          Route& greedy) const {
   if (strategy_->traits().serial) {
     Budget budget = LayerBudget(layer, 1);
-    return strategy_->Solve(problem, budget);
+    return Prepared(layer).Solve(problem, budget);
   }
   const bool as_predicted = problem.start == layer.predicted_start;
   if (layer.second_start && problem.start == *layer.second_start) return layer.second;
@@ -250,8 +249,8 @@ Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, const Chai
     solution = layer.first;
   } else {
     const Route& from = BestToGoOnFrom(problem, layer, known, nullptr);
-    solution = strategy_->traits().quick ? strategy_->Solve(problem, budget)
-                                         : strategy_->Resume(problem, from, budget);
+    solution = strategy_->traits().quick ? Prepared(layer).Solve(problem, budget)
+                                         : Prepared(layer).Resume(problem, from, budget);
   }
   if (next != nullptr) SolveWithNext(problem, layer, next, greedy, budget, solution);
   if (as_predicted && !solution.lower_bound) solution.lower_bound = layer.first.lower_bound;
@@ -265,18 +264,17 @@ Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, const Chai
 // Ends the layer with a view to the next one. `solution` regards the layer alone: from its end the
 // next one is solved first, as it would be without a look ahead, and what is found for both
 // together is never longer than that. `next` and `greedy` as in SolveFromTrueStart.
-void LayerSolver::SolveWithNext(const LayerProblem& problem, const ChainLayer& layer,
-                                ChainLayer*& next, Route& greedy, Budget& budget,
-                                Solution& solution) const {
+void LayerSolver::SolveWithNext(const LayerProblem& problem, ChainLayer& layer, ChainLayer*& next,
+                                Route& greedy, Budget& budget, Solution& solution) const {
   const Point end = RouteEnd(layer.given.plan, solution.route, problem.start);
-  LayerProblem follows = Problem(*next, end);
-  follows.memory = &next->memory;
+  const LayerProblem follows = Problem(*next, end);
   next->foreseen = next->first.route;
   if (end != next->predicted_start) {
-    next->foreseen = strategy_->Resume(follows, next->foreseen, budget).route;
+    next->foreseen = Prepared(*next).Resume(follows, next->foreseen, budget).route;
   }
   Route foreseen = next->foreseen;
-  Solution seeing = strategy_->ResumeWithNext(problem, solution.route, follows, foreseen, budget);
+  Solution seeing =
+      Prepared(layer).ResumeWithNext(problem, solution.route, follows, foreseen, budget);
   greedy = GreedyRoute(problem, layer);
   if (RouteCost(problem, seeing.route) > RouteCost(problem, greedy) * (1 + kSameCost)) {
     next = nullptr;
@@ -369,8 +367,7 @@ LayerOutcome LayerSolver::Anchor(ChainLayer& layer, const TrueStart& at) const {
   const Stopwatch watch;
   const Point start = at.start;
   ChainLayer* next = at.next.get();
-  LayerProblem problem = Problem(layer, start);
-  problem.memory = &layer.memory;
+  const LayerProblem problem = Problem(layer, start);
   const uint64_t key = KeyAt(layer, at);
   const KnownRoute* known = FindAnchored(layer, key);
   Budget turns = Turns();
@@ -389,7 +386,7 @@ LayerOutcome LayerSolver::Anchor(ChainLayer& layer, const TrueStart& at) const {
   if (layer.anchored) (*layer.anchored)[key] = layer.known = Known(problem, layer, solution);
   if (turns.ExhaustedNow()) return outcome;
   TellFound(problem, std::move(solution), layer.given, turns, outcome);
-  layer.memory.reset();
+  layer.prepared.reset();
   layer.walls.reset();
   outcome.solve_seconds += watch.Seconds();
   return outcome;

@@ -58,6 +58,10 @@ class LayerSolver {
   LayerOutcome Anchor(ChainLayer& layer, const TrueStart& at) const;
 
  private:
+  PreparedLayer& Prepared(ChainLayer& layer) const {
+    if (!layer.prepared) layer.prepared = strategy_->Prepare(layer.given.plan);
+    return *layer.prepared;
+  }
   Budget LayerBudget(const ChainLayer& layer, double share) const;
   double AnchorShare() const;
   double SolveShare(const ChainLayer& layer) const;
@@ -68,9 +72,9 @@ class LayerSolver {
   double CostInView(const LayerProblem& problem, const Route& route, const ChainLayer* next) const;
   const Route& BestToGoOnFrom(const LayerProblem& problem, const ChainLayer& layer,
                               const KnownRoute* known, const ChainLayer* next) const;
-  Solution SolveFromTrueStart(const LayerProblem& problem, const ChainLayer& layer,
+  Solution SolveFromTrueStart(const LayerProblem& problem, ChainLayer& layer,
                               const KnownRoute* known, ChainLayer*& next, Route& greedy) const;
-  void SolveWithNext(const LayerProblem& problem, const ChainLayer& layer, ChainLayer*& next,
+  void SolveWithNext(const LayerProblem& problem, ChainLayer& layer, ChainLayer*& next,
                      Route& greedy, Budget& budget, Solution& solution) const;
   bool GreedyMayBeBetter(const LayerProblem& problem, const ChainLayer& layer,
                          const KnownRoute* known, const ChainLayer* next) const;

@@ -1,6 +1,7 @@
 #include "engine/strategy/auto.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -65,8 +66,8 @@ LocalSearchOptions SearchOptions(int paths) {
 }
 
 // What depends on the plan alone: most of what is done before a search begins.
-struct SearchMemory : PlanMemory {
-  SearchMemory(const Plan& plan, const LeafEntries& entries, Budget& budget)
+struct DerivedOfPlan {
+  DerivedOfPlan(const Plan& plan, const LeafEntries& entries, Budget& budget)
       : tree(plan, &budget), groups(entries, &budget), options(SearchOptions(tree.path_count())) {}
 
   const OrderTree tree;
@@ -91,28 +92,28 @@ Plan SetApart(Plan plan, PointPairs& points) {
   return plan;
 }
 
-class Auto : public Strategy {
- public:
-  Auto(double effort, double least_gain_each, bool bound)
-      : Strategy(
-            {.reuses_routes = true,
-             .wants_bound = bound,
-             .look_ahead_paths = least_gain_each > 0 ? kLookAheadPathsInHaste : kLookAheadPaths}),
-        effort_(effort),
-        least_gain_each_(least_gain_each) {}
+struct AutoOptions {
+  double effort = 1;
+  double least_gain_each = 0;
+};
 
-  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+class AutoLayer : public PreparedLayer {
+ public:
+  // `plan` outlives it.
+  AutoLayer(const AutoOptions& options, const Plan& plan) : options_(options), plan_(plan) {}
+
+  Solution Solve(const LayerProblem& problem, Budget& budget) override {
     const LayerView layer(problem, &budget);
-    return Search(layer, BaselineRoute(layer, budget), {effort_, effort_}, budget);
+    return Search(layer, BaselineRoute(layer, budget), {options_.effort, options_.effort}, budget);
   }
 
-  Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
-    const double effort = effort_ * kResumeShare;
+  Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) override {
+    const double effort = options_.effort * kResumeShare;
     return Search(LayerView(problem, &budget), start, {effort, effort, effort >= 1}, budget);
   }
 
   Solution ResumeWithNext(const LayerProblem& problem, const Route& start, const LayerProblem& next,
-                          Route& next_start, Budget& budget) const override {
+                          Route& next_start, Budget& budget) override {
     const int paths = static_cast<int>(problem.plan->paths.size());
     const bool has_walls = problem.walls != nullptr || next.walls != nullptr;
     if (has_walls && problem.walls_unit != 1) return Resume(problem, start, budget);
@@ -124,10 +125,11 @@ class Auto : public Strategy {
     both.plan = &plan;
     both.walls = has_walls ? &walls : nullptr;
     both.finish = next.finish;
-    both.memory = nullptr;
-    const double effort = effort_ * kResumeShare;
-    Solution solution = Search(LayerView(both, &budget), RouteOfBoth(start, next_start, paths),
-                               {effort, 2 * effort}, budget);
+    const double effort = options_.effort * kResumeShare;
+    AutoLayer joined(options_, plan);
+    Solution solution =
+        joined.Search(LayerView(both, &budget), RouteOfBoth(start, next_start, paths),
+                      {effort, 2 * effort}, budget);
     next_start = RouteOfSecond(solution.route, paths);
     solution.route = RouteOfFirst(solution.route, paths);
     ProveIfSmall(problem, solution, budget);
@@ -141,13 +143,14 @@ class Auto : public Strategy {
     bool detours = true;  // whether worse routes are walked through: too far for a short search
   };
 
-  Solution Search(const LayerView& layer, Route route, const Effort& effort, Budget& budget) const {
+  // REQUIRES: the layer's plan is the one that was prepared.
+  Solution Search(const LayerView& layer, Route route, const Effort& effort, Budget& budget) {
+    assert(layer.problem.plan == &plan_);
     ChooseEntries(layer, route, budget);
     if (budget.was_exhausted()) return Finish(std::move(route), 0, budget);
     const LeafEntries entries(layer.problem, &budget);
-    std::unique_ptr<PlanMemory> own;
-    SearchMemory& memory = Recall(layer.problem, entries, own, budget);
-    const OrderTree& tree = memory.tree;
+    if (!derived_) derived_.emplace(plan_, entries, budget);
+    const OrderTree& tree = derived_->tree;
     if (!tree.has_choice()) {
       const double cost = RouteCost(layer.problem, route);
       if (budget.was_exhausted()) return Finish(std::move(route), 0, budget);
@@ -156,22 +159,22 @@ class Auto : public Strategy {
         return Solution{std::move(route), StopReason::kOptimal, cost};
       return Finish(std::move(route), 0, budget);
     }
-    FindNeighborsOnce(memory, budget);
+    FindNeighborsOnce(*derived_, budget);
     if (budget.was_exhausted()) return Finish(std::move(route), 0, budget);
     SearchState state(layer.problem, tree, entries);
     state.Load(route, &budget);
     IteratedSearchOptions options;
-    options.local_search = memory.options;
+    options.local_search = derived_->options;
     options.descent_depth = 1;  // kicks find sooner what trials would
     const int paths = tree.path_count();
     const double patience = paths > kFewPaths ? kPatience : kPatienceOfFew;
     options.patience = static_cast<int64_t>(std::min(effort.kicks, 1.0) * kLeastPatience +
                                             effort.kicks * patience * paths);
     options.least_gain = kLeastGain;
-    options.least_gain_each = least_gain_each_;
+    options.least_gain_each = options_.least_gain_each;
     options.most_span = std::clamp(kWidestKicks / paths, kLeastMostSpan, kMostSpan);
     if (!effort.detours) options.temperature = 0;
-    IteratedSearch search(state, *memory.neighbors, options);
+    IteratedSearch search(state, *derived_->neighbors, options);
     search.Descend(budget);
     Rng rng(layer.problem.seed);
     search.Run(rng, budget);
@@ -202,7 +205,7 @@ class Auto : public Strategy {
     if (solution.stop == StopReason::kOptimal) solution.stop = StopReason::kLocalOptimum;
     solution.lower_bound.reset();
     const LayerView layer(problem, &budget);
-    const SmallPartOptions options = SmallParts(problem, effort_ * kResumeShare);
+    const SmallPartOptions options = SmallParts(problem, options_.effort * kResumeShare);
     Route optimal = solution.route;
     if (!IsSmall(layer, options, &budget) || !SolveSmallParts(layer, options, optimal, budget))
       return;
@@ -210,25 +213,12 @@ class Auto : public Strategy {
     if (optimal == solution.route) solution.stop = StopReason::kOptimal;
   }
 
-  // What was derived of the plan before, or else is derived now; it is kept in `own` if it cannot
-  // be kept with the problem.
-  static SearchMemory& Recall(const LayerProblem& problem, const LeafEntries& entries,
-                              std::unique_ptr<PlanMemory>& own, Budget& budget) {
-    std::unique_ptr<PlanMemory>& place = problem.memory != nullptr ? *problem.memory : own;
-    auto* known = dynamic_cast<SearchMemory*>(place.get());
-    if (known != nullptr) return *known;
-    auto memory = std::make_unique<SearchMemory>(*problem.plan, entries, budget);
-    known = memory.get();
-    place = std::move(memory);
-    return *known;
-  }
-
   // Lists that the budget cut short are looked for again.
-  static void FindNeighborsOnce(SearchMemory& memory, Budget& budget) {
-    if (memory.complete) return;
-    memory.neighbors.emplace(
-        FindNeighbors(memory.tree, memory.groups, memory.options.three_opt.first_breadth, budget));
-    memory.complete = !budget.was_exhausted();
+  static void FindNeighborsOnce(DerivedOfPlan& derived, Budget& budget) {
+    if (derived.complete) return;
+    derived.neighbors.emplace(FindNeighbors(derived.tree, derived.groups,
+                                            derived.options.three_opt.first_breadth, budget));
+    derived.complete = !budget.was_exhausted();
   }
 
   static Solution Finish(Route route, int64_t iterations, const Budget& budget) {
@@ -238,8 +228,26 @@ class Auto : public Strategy {
                     {{"iterations", static_cast<double>(iterations)}}};
   }
 
-  const double effort_;
-  const double least_gain_each_;
+  const AutoOptions options_;
+  const Plan& plan_;
+  std::optional<DerivedOfPlan> derived_;  // by the first search that gets so far
+};
+
+class Auto : public PreparingStrategy {
+ public:
+  Auto(const AutoOptions& options, bool bound)
+      : PreparingStrategy({.reuses_routes = true,
+                           .wants_bound = bound,
+                           .look_ahead_paths = options.least_gain_each > 0 ? kLookAheadPathsInHaste
+                                                                           : kLookAheadPaths}),
+        options_(options) {}
+
+  std::unique_ptr<PreparedLayer> Prepare(const Plan& plan) const override {
+    return std::make_unique<AutoLayer>(options_, plan);
+  }
+
+ private:
+  const AutoOptions options_;
 };
 
 }  // namespace
@@ -266,8 +274,9 @@ StrategyEntry AutoEntry() {
                   "on; one takes some 20 microseconds."},
        BoundOption(true)},
       [](const StrategyOptions& options) -> std::unique_ptr<Strategy> {
-        return std::make_unique<Auto>(options.Double("effort"), options.Double("least_gain_each"),
-                                      options.Bool("bound"));
+        return std::make_unique<Auto>(
+            AutoOptions{options.Double("effort"), options.Double("least_gain_each")},
+            options.Bool("bound"));
       }};
 }
 

@@ -31,27 +31,39 @@ Solution FromUnit(Solution solution, double unit) {
   return solution;
 }
 
-class OrdinaryUnit : public Strategy {
+class LayerInOrdinaryUnit : public PreparedLayer {
  public:
-  explicit OrdinaryUnit(std::unique_ptr<Strategy> strategy)
-      : Strategy(strategy->traits()), strategy_(std::move(strategy)) {}
+  explicit LayerInOrdinaryUnit(std::unique_ptr<PreparedLayer> layer) : layer_(std::move(layer)) {}
 
-  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+  Solution Solve(const LayerProblem& problem, Budget& budget) override {
     const double unit = CostUnit(problem.cost, {&problem});
-    return FromUnit(strategy_->Solve(InUnit(problem, unit), budget), unit);
+    return FromUnit(layer_->Solve(InUnit(problem, unit), budget), unit);
   }
 
-  Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
+  Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) override {
     const double unit = CostUnit(problem.cost, {&problem});
-    return FromUnit(strategy_->Resume(InUnit(problem, unit), start, budget), unit);
+    return FromUnit(layer_->Resume(InUnit(problem, unit), start, budget), unit);
   }
 
   Solution ResumeWithNext(const LayerProblem& problem, const Route& start, const LayerProblem& next,
-                          Route& next_start, Budget& budget) const override {
+                          Route& next_start, Budget& budget) override {
     const double unit = CostUnit(problem.cost, {&problem, &next});
-    return FromUnit(strategy_->ResumeWithNext(InUnit(problem, unit), start, InUnit(next, unit),
-                                              next_start, budget),
+    return FromUnit(layer_->ResumeWithNext(InUnit(problem, unit), start, InUnit(next, unit),
+                                           next_start, budget),
                     unit);
+  }
+
+ private:
+  const std::unique_ptr<PreparedLayer> layer_;
+};
+
+class OrdinaryUnit : public PreparingStrategy {
+ public:
+  explicit OrdinaryUnit(std::unique_ptr<Strategy> strategy)
+      : PreparingStrategy(strategy->traits()), strategy_(std::move(strategy)) {}
+
+  std::unique_ptr<PreparedLayer> Prepare(const Plan& plan) const override {
+    return std::make_unique<LayerInOrdinaryUnit>(strategy_->Prepare(plan));
   }
 
  private:

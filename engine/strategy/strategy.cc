@@ -6,6 +6,35 @@
 #include "engine/cost/route_cost.h"
 
 namespace traverse {
+namespace {
+
+// Of a strategy that keeps nothing.
+class Unprepared : public PreparedLayer {
+ public:
+  Unprepared(const Strategy& strategy, const Plan& plan) : strategy_(strategy), plan_(plan) {}
+
+  Solution Solve(const LayerProblem& problem, Budget& budget) override {
+    assert(problem.plan == &plan_);
+    return strategy_.Solve(problem, budget);
+  }
+
+  Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) override {
+    assert(problem.plan == &plan_);
+    return strategy_.Resume(problem, start, budget);
+  }
+
+  Solution ResumeWithNext(const LayerProblem& problem, const Route& start, const LayerProblem& next,
+                          Route& next_start, Budget& budget) override {
+    assert(problem.plan == &plan_);
+    return strategy_.ResumeWithNext(problem, start, next, next_start, budget);
+  }
+
+ private:
+  const Strategy& strategy_;
+  [[maybe_unused]] const Plan& plan_;
+};
+
+}  // namespace
 
 Solution Strategy::Resume(const LayerProblem& problem, const Route& start, Budget& budget) const {
   Solution solution = Solve(problem, budget);
@@ -18,6 +47,25 @@ Solution Strategy::ResumeWithNext(const LayerProblem& problem, const Route& star
                                   Budget& budget) const {
   assert(problem.cost == next.cost && !problem.finish);
   return Resume(problem, start, budget);
+}
+
+std::unique_ptr<PreparedLayer> Strategy::Prepare(const Plan& plan) const {
+  return std::make_unique<Unprepared>(*this, plan);
+}
+
+Solution PreparingStrategy::Solve(const LayerProblem& problem, Budget& budget) const {
+  return Prepare(*problem.plan)->Solve(problem, budget);
+}
+
+Solution PreparingStrategy::Resume(const LayerProblem& problem, const Route& start,
+                                   Budget& budget) const {
+  return Prepare(*problem.plan)->Resume(problem, start, budget);
+}
+
+Solution PreparingStrategy::ResumeWithNext(const LayerProblem& problem, const Route& start,
+                                           const LayerProblem& next, Route& next_start,
+                                           Budget& budget) const {
+  return Prepare(*problem.plan)->ResumeWithNext(problem, start, next, next_start, budget);
 }
 
 }  // namespace traverse

@@ -56,6 +56,20 @@ struct StrategyTraits {
   size_t look_ahead_paths = 0;
 };
 
+// A strategy set up for one plan. It keeps what it derives of the plan from one call to the next,
+// so solving the plan again, from another start, takes less time. The solutions are those of the
+// strategy itself. Not thread-safe: one call at a time.
+class PreparedLayer {
+ public:
+  virtual ~PreparedLayer() = default;
+
+  // As those of Strategy. REQUIRES: problem.plan is the plan that was prepared.
+  virtual Solution Solve(const LayerProblem& problem, Budget& budget) = 0;
+  virtual Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) = 0;
+  virtual Solution ResumeWithNext(const LayerProblem& problem, const Route& start,
+                                  const LayerProblem& next, Route& next_start, Budget& budget) = 0;
+};
+
 // One method with the options of one job. Immutable after construction, so that layers may be
 // solved by several threads at once.
 class Strategy {
@@ -85,8 +99,25 @@ class Strategy {
                                   const LayerProblem& next, Route& next_start,
                                   Budget& budget) const;
 
+  // For a plan that is solved more than once. The plan and this strategy outlive what is returned.
+  // The default keeps nothing of the plan.
+  virtual std::unique_ptr<PreparedLayer> Prepare(const Plan& plan) const;
+
  private:
   const StrategyTraits traits_;
+};
+
+// A strategy that solves each problem with a PreparedLayer, if need be one for this call alone.
+class PreparingStrategy : public Strategy {
+ public:
+  using Strategy::Strategy;
+
+  std::unique_ptr<PreparedLayer> Prepare(const Plan& plan) const override = 0;
+
+  Solution Solve(const LayerProblem& problem, Budget& budget) const final;
+  Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const final;
+  Solution ResumeWithNext(const LayerProblem& problem, const Route& start, const LayerProblem& next,
+                          Route& next_start, Budget& budget) const final;
 };
 
 // A row of the registry: what there is to know about a strategy without running it.

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -17,31 +16,13 @@
 #include "engine/search/entries/leaf_entries.h"
 #include "engine/search/order_tree.h"
 #include "engine/search/search_state.h"
+#include "tests/support/counting_turn.h"
 #include "tests/support/instances.h"
 
 namespace traverse {
 namespace {
 
 using namespace traverse::testing;  // NOLINT
-
-// Wanted all the time; counts how often it is asked to give way.
-class CountingTurn : public Turn {
- public:
-  CountingTurn() { SetWanted(true); }
-  bool GiveWay(const CancelToken* /*cancel*/, std::optional<Clock::time_point> /*end*/) override {
-    ++asks;
-    return false;
-  }
-  int asks = 0;
-};
-
-// How often `work` asks the budget that it is given.
-int AsksOf(const std::function<void(Budget&)>& work) {
-  CountingTurn turn;
-  Budget budget(nullptr, std::nullopt, &turn);
-  work(budget);
-  return turn.asks;
-}
 
 Plan Dots(int n) {
   Rng rng(1);

@@ -20,6 +20,99 @@ namespace {
 
 using namespace traverse::testing;  // NOLINT
 
+// What a strategy is asked for, by several threads.
+struct Calls {
+  std::atomic<int> prepared = 0;
+  std::atomic<int> dropped = 0;
+  std::atomic<int> solved = 0;
+  std::atomic<int> resumed_after_solve = 0;
+  std::atomic<int> resumed_without_solve = 0;
+};
+
+// Answers with the route it is given, or the order given backwards: a layer whose route no other
+// takes the place of does not end where it is predicted to.
+class NotingLayer : public PreparedLayer {
+ public:
+  explicit NotingLayer(Calls& calls) : calls_(calls) { ++calls_.prepared; }
+  ~NotingLayer() override { ++calls_.dropped; }
+
+  Solution Solve(const LayerProblem& problem, Budget&) override {
+    ++calls_.solved;
+    solved_ = true;
+    Route route = GivenRoute(*problem.plan);
+    return Solution{Route(route.rbegin(), route.rend()), StopReason::kLocalOptimum, std::nullopt};
+  }
+  Solution Resume(const LayerProblem&, const Route& start, Budget&) override {
+    ++(solved_ ? calls_.resumed_after_solve : calls_.resumed_without_solve);
+    return Solution{start, StopReason::kLocalOptimum, std::nullopt};
+  }
+  Solution ResumeWithNext(const LayerProblem& problem, const Route& start, const LayerProblem&,
+                          Route&, Budget& budget) override {
+    return Resume(problem, start, budget);
+  }
+
+ private:
+  Calls& calls_;
+  bool solved_ = false;
+};
+
+class Noting : public PreparingStrategy {
+ public:
+  Noting(Calls& calls, const StrategyTraits& traits) : PreparingStrategy(traits), calls_(calls) {}
+  std::unique_ptr<PreparedLayer> Prepare(const Plan&) const override {
+    return std::make_unique<NotingLayer>(calls_);
+  }
+
+ private:
+  Calls& calls_;
+};
+
+// Runs a job of layers that are rows of dots, none like another.
+void RunRows(Calls& calls, int layers, const StrategyTraits& traits) {
+  RecordingSink sink;
+  TestExecutor executor(4);
+  auto job = Job::Start(JobSpec(), std::make_unique<Noting>(calls, traits), executor, sink);
+  for (int i = 0; i < layers; ++i) {
+    std::vector<Path> dots;
+    for (int k = 0; k < 5; ++k) dots.push_back(MakeContour({{10.0 * k + i, 5.0 + i * k}}));
+    JobLayer layer{AnyOrderPlan(std::move(dots)), std::nullopt, std::nullopt};
+    layer.more_follows = i + 1 < layers;
+    job->Add(std::move(layer));
+  }
+  job->Close();
+  sink.Wait();
+  EXPECT_EQ(sink.outcomes.size(), static_cast<size_t>(layers));
+  // What is derived of a plan is large: it goes with the layer, not with the job.
+  EXPECT_EQ(calls.dropped, calls.prepared);
+}
+
+TEST(LayerSolver, ALayerIsPreparedOnceForAllItsStages) {
+  Calls calls;
+  RunRows(calls, 20, {.pure = true});
+
+  EXPECT_EQ(calls.prepared, 20);
+  EXPECT_EQ(calls.solved, 20);
+  EXPECT_GT(calls.resumed_after_solve, 5);
+  EXPECT_EQ(calls.resumed_without_solve, 0);
+}
+
+TEST(LayerSolver, ALayerSeenFromTheOneBeforeIsNotPreparedAgain) {
+  Calls calls;
+  RunRows(calls, 20, {.look_ahead_paths = 100});
+
+  EXPECT_EQ(calls.prepared, 20);
+  EXPECT_GT(calls.resumed_after_solve, 20);
+  EXPECT_EQ(calls.resumed_without_solve, 0);
+}
+
+TEST(LayerSolver, SerialStrategiesPrepareEachLayerOnce) {
+  Calls calls;
+  RunRows(calls, 20, {.serial = true});
+
+  EXPECT_EQ(calls.prepared, 20);
+  EXPECT_EQ(calls.solved, 20);
+}
+
 // A strategy that is wrong: it leaves the last path out.
 class Forgetful : public Strategy {
  public:

@@ -128,6 +128,36 @@ TEST_P(EveryStrategy, ResumeNeverReturnsAWorseRoute) {
   }
 }
 
+TEST_P(EveryStrategy, AnswersTheSameWhereItPreparedThePlan) {
+  for (uint64_t seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    OwnedProblem owned = RandomProblem(seed, {.max_paths = 9});
+    OwnedProblem next = RandomProblem(seed + 1000, {.max_paths = 9});
+    owned.problem.finish.reset();
+    next.problem.cost = owned.problem.cost;
+    LayerProblem elsewhere = owned.problem;
+    elsewhere.start = {40, 70};
+    const auto prepared = strategy_->Prepare(owned.plan());
+    Budget budget;
+
+    const Solution solved = prepared->Solve(owned.problem, budget);
+    const Solution resumed = prepared->Resume(elsewhere, solved.route, budget);
+    Route next_route = GivenRoute(next.plan());
+    const Solution seeing =
+        prepared->ResumeWithNext(elsewhere, resumed.route, next.problem, next_route, budget);
+
+    EXPECT_EQ(solved.route, strategy_->Solve(owned.problem, budget).route);
+    const Solution resumed_alone = strategy_->Resume(elsewhere, solved.route, budget);
+    EXPECT_EQ(resumed.route, resumed_alone.route);
+    EXPECT_EQ(resumed.lower_bound, resumed_alone.lower_bound);
+    Route next_alone = GivenRoute(next.plan());
+    EXPECT_EQ(seeing.route,
+              strategy_->ResumeWithNext(elsewhere, resumed.route, next.problem, next_alone, budget)
+                  .route);
+    EXPECT_EQ(next_route, next_alone);
+  }
+}
+
 TEST_P(EveryStrategy, StopsSoonAfterItIsCancelled) {
   const OwnedProblem owned(SequentialPlan(SquareGrid(50, 50)));
   CancelToken token;
