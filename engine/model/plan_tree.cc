@@ -60,49 +60,16 @@ std::vector<uint64_t> Precedence::SlotsBefore(int first) const {
 }
 
 PlanTree::PlanTree(const Plan& plan, Budget* budget)
-    : plan_(&plan), precedence_of_(plan.nodes.size()), precedences_(1) {
-  CountPaths(budget);
-  ListChildren(budget);
-  reversible_.resize(plan.nodes.size());
+    : CompiledPlan(plan, budget),
+      precedence_of_(plan.nodes.size()),
+      precedences_(1),
+      reversible_(plan.nodes.size()) {
   Rest rest(budget);
   for (int index = node_count(); index-- > 0;) {
     rest(1 + node(index).children.size() + node(index).before.size());
     if (!node(index).before.empty()) AddPrecedence(index);
     reversible_[static_cast<size_t>(index)] = ComputeReversible(index);
   }
-}
-
-// From the leaves up: children have greater indices than their parents.
-void PlanTree::CountPaths(Budget* budget) {
-  Rest rest(budget);
-  parent_.assign(plan_->nodes.size(), -1);
-  path_count_.assign(plan_->nodes.size(), 0);
-  leaf_.assign(plan_->paths.size(), -1);
-  for (int index = node_count(); index-- > 0;) {
-    rest(1 + node(index).children.size());
-    int& count = path_count_[static_cast<size_t>(index)];
-    if (is_leaf(index)) {
-      count = 1;
-      leaf_[static_cast<size_t>(node(index).path)] = index;
-    }
-    for (const int child : node(index).children) {
-      parent_[static_cast<size_t>(child)] = index;
-      count += path_count(child);
-    }
-  }
-}
-
-void PlanTree::ListChildren(Budget* budget) {
-  Rest rest(budget);
-  first_child_.reserve(plan_->nodes.size() + 1);
-  for (const PlanNode& node : plan_->nodes) {
-    rest(1 + node.children.size());
-    first_child_.push_back(static_cast<int>(children_.size()));
-    for (const int child : node.children) {
-      if (path_count(child) > 0) children_.push_back(child);
-    }
-  }
-  first_child_.push_back(static_cast<int>(children_.size()));
 }
 
 void PlanTree::AddPrecedence(int index) {
@@ -118,7 +85,7 @@ void PlanTree::AddPrecedence(int index) {
 }
 
 bool PlanTree::ComputeReversible(int index) const {
-  if (is_leaf(index)) return !plan_->paths[static_cast<size_t>(node(index).path)].one_way;
+  if (is_leaf(index)) return !plan().paths[static_cast<size_t>(node(index).path)].one_way;
   const absl::Span<const int> below = children(index);
   const bool free_order =
       node(index).kind == PlanNode::Kind::kAnyOrder && precedence(index).empty();

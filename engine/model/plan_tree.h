@@ -8,6 +8,7 @@
 
 #include "absl/types/span.h"
 #include "engine/base/budget.h"
+#include "engine/model/compiled_plan.h"
 #include "engine/model/plan.h"
 
 namespace traverse {
@@ -119,36 +120,11 @@ class ReadySlots {
   std::vector<int> waiting_for_;  // [item] pairs whose first is not yet done
 };
 
-// A plan's tree with what follows from it. O(nodes + pairs) to build. Immutable.
-class PlanTree {
+// A plan's tree, with what the order of its paths may be. O(nodes + pairs) to build. Immutable.
+class PlanTree : public CompiledPlan {
  public:
-  // `plan` outlives the tree. `budget`, if there is one, is asked meanwhile.
+  // See CompiledPlan.
   explicit PlanTree(const Plan& plan, Budget* budget = nullptr);
-
-  const Plan& plan() const { return *plan_; }
-  const PlanNode& node(int index) const { return plan_->nodes[static_cast<size_t>(index)]; }
-  int node_count() const { return static_cast<int>(plan_->nodes.size()); }
-  bool is_leaf(int index) const { return node(index).kind == PlanNode::Kind::kPath; }
-
-  // -1 for the root.
-  int parent(int index) const { return parent_[static_cast<size_t>(index)]; }
-
-  // The leaf of a path.
-  int leaf(int path) const { return leaf_[static_cast<size_t>(path)]; }
-
-  // The number of paths below a node, itself included.
-  int path_count(int index) const { return path_count_[static_cast<size_t>(index)]; }
-
-  // The children that have paths, in the order given.
-  absl::Span<const int> children(int index) const {
-    const size_t begin = static_cast<size_t>(first_child_[static_cast<size_t>(index)]);
-    const size_t end = static_cast<size_t>(first_child_[static_cast<size_t>(index) + 1]);
-    return absl::MakeConstSpan(children_).subspan(begin, end - begin);
-  }
-
-  // Where children(index) begins in a list of the children of all nodes, for arrays laid out like
-  // it; first_child(node_count()) is the length of the list.
-  int first_child(int index) const { return first_child_[static_cast<size_t>(index)]; }
 
   // The pairs of an any_order node; empty for every other node.
   const Precedence& precedence(int index) const {
@@ -160,17 +136,9 @@ class PlanTree {
   bool reversible(int index) const { return reversible_[static_cast<size_t>(index)]; }
 
  private:
-  void CountPaths(Budget* budget);
-  void ListChildren(Budget* budget);
   void AddPrecedence(int index);
   bool ComputeReversible(int index) const;
 
-  const Plan* plan_;
-  std::vector<int> parent_;       // [node]
-  std::vector<int> leaf_;         // [path]
-  std::vector<int> path_count_;   // [node]
-  std::vector<int> first_child_;  // [node] where its children begin in children_; one more
-  std::vector<int> children_;
   std::vector<int> precedence_of_;       // [node] index into precedences_
   std::vector<Precedence> precedences_;  // [0] is the empty one
   std::vector<bool> reversible_;         // [node]

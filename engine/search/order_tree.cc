@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "engine/base/rest.h"
-#include "engine/model/passed_pairs.h"
 
 namespace traverse {
 namespace {
@@ -37,21 +36,21 @@ bool CanReverse(const Path& path) { return path.kind == Path::Kind::kContour || 
 // Builds the items from the plan's nodes, children first.
 class OrderTree::Compiler {
  public:
-  Compiler(const Plan& plan, OrderTree& tree, Budget* budget)
+  Compiler(const CompiledPlan& plan, OrderTree& tree, Budget* budget)
       : plan_(plan), tree_(tree), budget_(budget), rest_(budget) {}
 
   void Run() {
-    CountLeaves();
     const size_t leaves = static_cast<size_t>(tree_.leaf_count());
     Resize(leaves);
     std::fill_n(tree_.size_.begin(), leaves, 1);
-    for (size_t p = 0; p < plan_.paths.size(); ++p) {
+    const std::vector<Path>& paths = plan_.plan().paths;
+    for (size_t p = 0; p < paths.size(); ++p) {
       rest_();
-      tree_.reversible_[p] = CanReverse(plan_.paths[p]);
+      tree_.reversible_[p] = CanReverse(paths[p]);
     }
     const int root = NewItem(false);
     std::vector<int> children = {tree_.start()};
-    if (!plan_.nodes.empty() && leaves_[0] > 0) children.push_back(Compile(0));
+    if (plan_.node_count() > 0 && plan_.path_count(0) > 0) children.push_back(Compile(0));
     children.push_back(tree_.finish());
     Adopt(root, children);
     tree_.parent_[Index(root)] = -1;
@@ -63,17 +62,6 @@ class OrderTree::Compiler {
   }
 
  private:
-  // Children have larger indices than their parents.
-  void CountLeaves() {
-    leaves_.resize(plan_.nodes.size());
-    for (size_t i = plan_.nodes.size(); i-- > 0;) {
-      const PlanNode& node = plan_.nodes[i];
-      rest_(1 + node.children.size());
-      leaves_[i] = node.kind == PlanNode::Kind::kPath;
-      for (const int child : node.children) leaves_[i] += leaves_[Index(child)];
-    }
-  }
-
   void Resize(size_t items) {
     tree_.parent_.resize(items, -1);
     tree_.depth_.resize(items);
@@ -93,38 +81,31 @@ class OrderTree::Compiler {
 
   // Returns the item that stands for a node. REQUIRES: there are leaves below it.
   int Compile(int index) {
-    const PlanNode& node = plan_.nodes[Index(index)];
+    const PlanNode& node = plan_.node(index);
     if (node.kind == PlanNode::Kind::kPath) return node.path;
     rest_(8 + 4 * node.children.size());
-    std::vector<int> items;  // of the children with leaves
-    std::vector<int> item_of(node.children.size(), -1);
-    const auto with_leaves = std::count_if(node.children.begin(), node.children.end(),
-                                           [&](int child) { return leaves_[Index(child)] > 0; });
+    const absl::Span<const int> children = plan_.children(index);
     const bool any_order = node.kind == PlanNode::Kind::kAnyOrder;
-    const int item = with_leaves > 1 ? NewItem(any_order) : -1;
-    tree_.has_choice_ = tree_.has_choice_ || (any_order && with_leaves > 1);
-    for (size_t c = 0; c < node.children.size(); ++c) {
-      if (leaves_[Index(node.children[c])] == 0) continue;
-      items.push_back(item_of[c] = Compile(node.children[c]));
-    }
+    const int item = children.size() > 1 ? NewItem(any_order) : -1;
+    tree_.has_choice_ = tree_.has_choice_ || (any_order && children.size() > 1);
+    std::vector<int> items;
+    for (const int child : children) items.push_back(Compile(child));
     if (items.size() == 1) return items[0];
-    if (tree_.free_order(item)) AddPairs(node, item, item_of);
+    if (tree_.free_order(item)) AddPairs(index, item, items);
     Adopt(item, items);
     return item;
   }
 
-  // Passes pairs on through children without leaves: a before empty before b is a before b. Where
-  // that comes to too many, the children stay in the order of the route that is searched from.
-  void AddPairs(const PlanNode& node, int item, const std::vector<int>& item_of) {
-    rest_(4 * node.before.size());
-    std::vector<bool> has_leaves;
-    for (const int child : item_of) has_leaves.push_back(child >= 0);
-    const auto pairs = PassedPairs(node, has_leaves, budget_);
+  // Where the pairs are too many, the children stay in the order of the route that is searched
+  // from.
+  void AddPairs(int index, int item, const std::vector<int>& items) {
+    rest_(4 * plan_.node(index).before.size());
+    const auto pairs = plan_.SlotPairs(index, budget_);
     tree_.free_order_[Index(item)] = pairs.has_value();
     if (!pairs) return;
     for (const auto& [first, second] : *pairs) {
-      const int a = item_of[Index(first)];
-      const int b = item_of[Index(second)];
+      const int a = items[Index(first)];
+      const int b = items[Index(second)];
       rest_(2);
       after_.emplace_back(a, b);
       before_.emplace_back(b, a);
@@ -164,17 +145,19 @@ class OrderTree::Compiler {
     tree_.depth_[Index(item)] = tree_.depth(tree_.parent(item)) + 1;
   }
 
-  const Plan& plan_;
+  const CompiledPlan& plan_;
   OrderTree& tree_;
   Budget* const budget_;
-  std::vector<int> leaves_;          // [node] leaves below
   Pairs after_, before_, children_;  // of an item, and the other one
   Rest rest_;
 };
 
-OrderTree::OrderTree(const Plan& plan, Budget* budget)
-    : start_(static_cast<int>(plan.paths.size())) {
+OrderTree::OrderTree(const CompiledPlan& plan, Budget* budget)
+    : start_(static_cast<int>(plan.plan().paths.size())) {
   Compiler(plan, *this, budget).Run();
 }
+
+OrderTree::OrderTree(const Plan& plan, Budget* budget)
+    : OrderTree(CompiledPlan(plan, budget), budget) {}
 
 }  // namespace traverse

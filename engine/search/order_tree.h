@@ -9,6 +9,7 @@
 
 #include "absl/types/span.h"
 #include "engine/base/budget.h"
+#include "engine/model/compiled_plan.h"
 #include "engine/model/plan.h"
 
 namespace traverse {
@@ -21,6 +22,7 @@ namespace traverse {
 class OrderTree {
  public:
   // `budget`, if there is one, is asked meanwhile; the tree is whole all the same.
+  explicit OrderTree(const CompiledPlan& plan, Budget* budget = nullptr);
   explicit OrderTree(const Plan& plan, Budget* budget = nullptr);
 
   int path_count() const { return start_; }

@@ -7,7 +7,7 @@ namespace traverse {
 
 Polisher::Polisher(const LayerView& layer, Budget& budget)
     : layer_(layer),
-      tree_(layer.plan(), &budget),
+      tree_(layer.tree, &budget),
       entries_(layer.problem, &budget),
       groups_(entries_, &budget),
       neighbors_(FindNeighbors(tree_, groups_, ThreeOptOptions().first_breadth, budget)),

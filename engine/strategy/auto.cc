@@ -67,7 +67,7 @@ LocalSearchOptions SearchOptions(int paths) {
 
 // What depends on the plan alone: most of what is done before a search begins.
 struct DerivedOfPlan {
-  DerivedOfPlan(const Plan& plan, const LeafEntries& entries, Budget& budget)
+  DerivedOfPlan(const CompiledPlan& plan, const LeafEntries& entries, Budget& budget)
       : tree(plan, &budget), groups(entries, &budget), options(SearchOptions(tree.path_count())) {}
 
   const OrderTree tree;
@@ -149,7 +149,7 @@ class AutoLayer : public PreparedLayer {
     ChooseEntries(layer, route, budget);
     if (budget.was_exhausted()) return Finish(std::move(route), 0, budget);
     const LeafEntries entries(layer.problem, &budget);
-    if (!derived_) derived_.emplace(plan_, entries, budget);
+    if (!derived_) derived_.emplace(layer.tree, entries, budget);
     const OrderTree& tree = derived_->tree;
     if (!tree.has_choice()) {
       const double cost = RouteCost(layer.problem, route);

@@ -4,43 +4,33 @@
 #include <cstddef>
 #include <utility>
 
-#include "engine/model/passed_pairs.h"
-
 namespace traverse {
 
 SequenceTree::SequenceTree(const Plan& plan) : leaf_of_(plan.paths.size(), -1) {
   if (plan.paths.empty()) return;
-  Add(plan, 0, -1);
+  Add(CompiledPlan(plan), 0, -1);
   Reorder(0);
   CountViolations();
 }
 
-int SequenceTree::Add(const Plan& plan, int index, int parent) {
-  const PlanNode& plan_node = plan.nodes[static_cast<size_t>(index)];
+int SequenceTree::Add(const CompiledPlan& plan, int index, int parent) {
+  const PlanNode& plan_node = plan.node(index);
   const int number = node_count();
   nodes_.emplace_back();
   At(number).parent = parent;
-  if (plan_node.kind == PlanNode::Kind::kPath) {
+  At(number).size = plan.path_count(index);
+  if (plan.is_leaf(index)) {
     At(number).path = plan_node.path;
-    At(number).size = 1;
     leaf_of_[static_cast<size_t>(plan_node.path)] = number;
   } else {
-    At(number).any_order = plan_node.kind == PlanNode::Kind::kAnyOrder;
-    std::vector<int> number_of;  // [position of a plan's child]; -1: holds no paths
-    for (const int child : plan_node.children) {
+    for (const int child : plan.children(index)) {
       const int added = Add(plan, child, number);
-      number_of.push_back(added);
-      if (added < 0) continue;
       At(number).order.push_back(added);
-      At(number).size += At(added).size;
     }
-    if (At(number).size == 0) {
-      nodes_.pop_back();
-      return -1;
-    }
+    At(number).any_order = plan_node.kind == PlanNode::Kind::kAnyOrder;
     if (At(number).any_order && At(number).order.size() > 1) {
       open_.push_back(number);
-      if (AddPairs(plan_node, number_of)) movable_.push_back(number);
+      if (AddPairs(plan, index, number)) movable_.push_back(number);
       At(number).has_before = !plan_node.before.empty();
     }
   }
@@ -48,14 +38,12 @@ int SequenceTree::Add(const Plan& plan, int index, int parent) {
   return number;
 }
 
-bool SequenceTree::AddPairs(const PlanNode& plan_node, const std::vector<int>& number_of) {
-  std::vector<bool> has_paths;
-  for (const int number : number_of) has_paths.push_back(number >= 0);
-  const auto pairs = PassedPairs(plan_node, has_paths);
+bool SequenceTree::AddPairs(const CompiledPlan& plan, int index, int number) {
+  const auto pairs = plan.SlotPairs(index);
   if (!pairs) return false;
   for (const auto& [first, second] : *pairs) {
-    const int a = number_of[static_cast<size_t>(first)];
-    const int b = number_of[static_cast<size_t>(second)];
+    const int a = child_at(number, first);
+    const int b = child_at(number, second);
     At(a).later.push_back(b);
     At(b).earlier.push_back(a);
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/base/rng.h"
+#include "engine/model/compiled_plan.h"
 #include "engine/model/plan.h"
 
 namespace traverse {
@@ -80,8 +81,11 @@ class SequenceTree {
   const Node& At(int node) const { return nodes_[static_cast<size_t>(node)]; }
   Node& At(int node) { return nodes_[static_cast<size_t>(node)]; }
 
-  int Add(const Plan& plan, int index, int parent);
-  bool AddPairs(const PlanNode& plan_node, const std::vector<int>& number_of);
+  // Adds a node that holds paths and those below it. Returns its number.
+  int Add(const CompiledPlan& plan, int index, int parent);
+
+  // False if they are too many.
+  bool AddPairs(const CompiledPlan& plan, int index, int number);
   void Shift(int node, int by);
   void Reorder(int node);
   void CountViolations();
