@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <vector>
 
 #include "engine/base/rng.h"
 
@@ -45,26 +46,24 @@ LayerFingerprint FingerprintOf(const Plan& plan, const CostSpec& cost, const Lay
   }
   Fingerprint exact;
   const Point origin = PlanOrigin(plan);
-  for (const Path& path : plan.paths) {
-    shape.Add(static_cast<int>(path.kind) * 2 + (path.one_way ? 1 : 0));
-    shape.Add(path.points.size());
-    for (const Point& point : path.points) {
+  const auto add_points = [&](const std::vector<Point>& points) {
+    for (const Point& point : points) {
       shape.Add(Rounded(point.x - origin.x));
       shape.Add(Rounded(point.y - origin.y));
       exact.Add(point.x);
       exact.Add(point.y);
     }
+  };
+  for (const Path& path : plan.paths) {
+    shape.Add(static_cast<int>(path.kind) * 2 + (path.one_way ? 1 : 0));
+    shape.Add(path.points.size());
+    add_points(path.points);
     for (const int vertex : path.allowed) shape.Add(vertex);
   }
   for (const Wall& wall : walls.walls) {
     shape.Add(wall.points.size());
     shape.Add(wall.closed ? 1 : 0);
-    for (const Point& point : wall.points) {
-      shape.Add(Rounded(point.x - origin.x));
-      shape.Add(Rounded(point.y - origin.y));
-      exact.Add(point.x);
-      exact.Add(point.y);
-    }
+    add_points(wall.points);
   }
   for (const int path : walls.exposed) shape.Add(path);
   for (const PlanNode& node : plan.nodes) {
