@@ -2,34 +2,26 @@
 
 #include <utility>
 
-#include "server/rpc/wire.h"
-
 namespace traverse {
 
 StreamReactor* StreamReactor::Start(ServiceCore& core, grpc::CallbackServerContext& context,
                                     CallInfo call, const absl::Status& authorized) {
   auto* reactor = new StreamReactor(core, context, std::move(call));
-  if (absl::Status status = reactor->Admit(authorized, /*points=*/0); !status.ok()) {
-    reactor->End(status);
-  } else {
-    reactor->StartRead(&reactor->read_);
-  }
+  reactor->Open(authorized, /*points=*/0);
   return reactor;
 }
 
-void StreamReactor::ReadNext() {
-  if (run()->AskForRoom()) StartRead(&read_);
+void StreamReactor::ReadIfRoom() {
+  if (run()->AskForRoom()) ReadNext();
 }
 
-void StreamReactor::OnReadDone(bool ok) {
-  if (ok) return ReadMessage(read_);
-  const std::shared_ptr<JobRun> run = this->run();
-  if (!run->Hold()) return;
-  if (context_.IsCancelled()) run->Abort(absl::CancelledError("the caller went away"));
-  if (!run->aborted()) {
-    if (const absl::Status status = OnEnd(); !status.ok()) run->Abort(status);
+absl::Status StreamReactor::OnRead(bool ok) {
+  if (ok) {
+    ReadMessage(incoming());
+    return absl::OkStatus();
   }
-  run->Release();  // may end the call
+  if (is_cancelled()) return absl::CancelledError("the caller went away");
+  return run()->aborted() ? absl::OkStatus() : OnEnd();
 }
 
 absl::Status StreamReactor::OnOptions(const RequestReader& message) {
@@ -45,7 +37,7 @@ absl::Status StreamReactor::OnOptions(const RequestReader& message) {
 
 void StreamReactor::OnMessageRead() {
   run()->Push();
-  ReadNext();
+  ReadIfRoom();
 }
 
 // A stream without any message is a job of no layers.
@@ -58,23 +50,6 @@ absl::Status StreamReactor::OnEnd() {
   }
   run()->Close();
   return absl::OkStatus();
-}
-
-void StreamReactor::StartWrite(std::string message, bool more_follows) {
-  grpc::WriteOptions options;
-  if (more_follows) options.set_buffer_hint();
-  Bidi::StartWrite(Outgoing(message), options);
-}
-
-std::string StreamReactor::Encode(const LayerOutcome& outcome, uint64_t id) const {
-  return Serialize<v1::OptimizeResponse>([&](v1::OptimizeResponse& response) {
-    ToProto(outcome, id, setup().strategy_name, *response.mutable_layer());
-  });
-}
-
-std::string StreamReactor::Encode(const v1::JobSummary& summary) const {
-  return Serialize<v1::OptimizeResponse>(
-      [&](v1::OptimizeResponse& response) { *response.mutable_summary() = summary; });
 }
 
 }  // namespace traverse
