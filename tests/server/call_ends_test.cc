@@ -1,0 +1,282 @@
+// Cancellation, deadlines, slow readers, idle callers, drain: how calls end.
+
+#include <gmock/gmock.h>
+#include <grpcpp/grpcpp.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <thread>
+
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
+#include "tests/server/support/open_stream.h"
+#include "tests/server/support/service_fixture.h"
+
+namespace traverse::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Sanitizers slow everything down several times.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+#else
+constexpr bool kSanitized = false;
+#endif
+
+TEST(Cancellation, FreesTheJobsPlace) {
+  TestService service;
+  OpenStream stream(service);
+  ASSERT_TRUE(stream.ReadLayer());
+  EXPECT_EQ(service.server().core().admission.jobs(), 1);
+
+  stream.context().TryCancel();
+
+  EXPECT_EQ(stream.Finish().error_code(), grpc::StatusCode::CANCELLED);
+  EXPECT_TRUE(service.Eventually([&] { return service.server().core().admission.jobs() == 0; }));
+  EXPECT_EQ(service.server().core().queue_layers, 0);
+}
+
+// Layers that keep `exact` busy for longer than any test, each with a start of its own.
+v1::OptimizeBatchRequest HardBatch(int layers) {
+  v1::OptimizeBatchRequest request = MakeBatch(0, "exact");
+  for (int i = 0; i < layers; ++i) {
+    *request.add_layers() = MakeLayer(static_cast<uint64_t>(i), 150);
+    request.mutable_layers(i)->mutable_start();
+  }
+  return request;
+}
+
+// How long the workers go on after a cancellation.
+absl::Duration TimeToStop(TestService& service) {
+  ServiceCore& core = service.server().core();
+  grpc::ClientContext context;
+  const auto reader = service.stub().OptimizeBatch(&context, HardBatch(20));
+  EXPECT_TRUE(service.Eventually([&] { return core.pool.busy() == 2; }));
+  absl::SleepFor(absl::Milliseconds(100));
+  EXPECT_EQ(core.pool.busy(), 2) << "the layers are too easy";
+
+  const absl::Time begin = absl::Now();
+  context.TryCancel();
+  EXPECT_TRUE(service.Eventually([&] { return core.pool.busy() == 0; }));
+  const absl::Duration took = absl::Now() - begin;
+
+  EXPECT_EQ(reader->Finish().error_code(), grpc::StatusCode::CANCELLED);
+  EXPECT_TRUE(service.Eventually([&] { return core.queue_layers == 0; }));
+  return took;
+}
+
+TEST(Cancellation, FreesTheWorkersWithin50Milliseconds) {
+  TestService service;
+
+  // The best of several: on a busy machine a thread may have to wait for its turn to stop.
+  absl::Duration best = absl::InfiniteDuration();
+  for (int i = 0; i < 5 && best > absl::Milliseconds(50); ++i) {
+    best = std::min(best, TimeToStop(service));
+  }
+
+  EXPECT_LT(best, kSanitized ? absl::Seconds(2) : absl::Milliseconds(50));
+}
+
+TEST(Deadline, HardLayersComeBackBeforeIt) {
+  TestService service;
+  const v1::OptimizeBatchRequest request = HardBatch(20);
+  const absl::Duration deadline = absl::Milliseconds(500);
+
+  // The best of several: on a busy machine an answer in time may be read too late.
+  Answer answer;
+  for (int i = 0; i < 5; ++i) {
+    const absl::Time begin = absl::Now();
+    answer = service.Batch(request, deadline);
+    EXPECT_GT(absl::Now() - begin, deadline / 2) << "the layers are too easy";
+    if (answer.status.ok()) break;
+  }
+
+  ASSERT_TRUE(answer.status.ok()) << answer.status.error_message();
+  ASSERT_EQ(answer.layers.size(), 20u);
+  ASSERT_TRUE(answer.summary.has_value());
+  EXPECT_EQ(answer.layers.back().stop_reason(), v1::STOP_REASON_TIME_LIMIT);
+}
+
+TEST(Deadline, TimeLimitOfTheJobCountsToo) {
+  TestService service;
+  v1::OptimizeBatchRequest request = HardBatch(5);
+  request.mutable_options()->mutable_time_limit()->set_nanos(100'000'000);
+
+  const absl::Time begin = absl::Now();
+  const Answer answer = service.Batch(request);
+
+  ASSERT_TRUE(answer.status.ok()) << answer.status.error_message();
+  EXPECT_LT(absl::Now() - begin, absl::Seconds(kSanitized ? 5 : 1));
+  EXPECT_EQ(answer.layers.size(), 5u);
+}
+
+TEST(Deadline, LayerTimeLimitLetsEveryLayerHaveItsShare) {
+  TestService service;
+  v1::OptimizeBatchRequest request = HardBatch(4);
+  request.mutable_options()->mutable_layer_time_limit()->set_nanos(50'000'000);
+
+  const Answer answer = service.Batch(request);
+
+  ASSERT_EQ(answer.layers.size(), 4u);
+  for (const v1::LayerResult& layer : answer.layers) {
+    EXPECT_LT(layer.solve_seconds(), kSanitized ? 5 : 0.5);
+    EXPECT_LT(layer.cost(), layer.cost_given());
+  }
+}
+
+TEST(Deadline, AllLayersComeBackBeforeIt) {
+  TestService service;
+  const v1::OptimizeBatchRequest request = MakeBatch(500);
+
+  const Answer answer = service.Batch(request, absl::Milliseconds(400));
+
+  ASSERT_TRUE(answer.status.ok()) << answer.status.error_message();
+  EXPECT_EQ(answer.layers.size(), 500u);
+  EXPECT_TRUE(answer.summary.has_value());
+}
+
+TEST(SlowReader, HoldsUpNobodyElse) {
+  TestService service([](ServerOptions& options) {
+    options.service.limits.window = {.layers = 16, .points = 100'000};
+  });
+  grpc::ClientContext context;
+  const auto reader = service.stub().OptimizeBatch(&context, MakeBatch(1000));
+  ServiceCore& core = service.server().core();
+  // 1,000 layers less the window and what the transport holds.
+  ASSERT_TRUE(service.Eventually(
+      [&] { return core.queue_layers > 0 && core.queue_layers < 1000 && core.pool.busy() == 0; }));
+  absl::SleepFor(absl::Milliseconds(50));
+  EXPECT_GT(core.queue_layers, 900);
+  EXPECT_EQ(core.pool.waiting(), 0);
+
+  EXPECT_TRUE(service.Batch(MakeBatch(100)).status.ok());
+
+  int layers = 0;
+  v1::OptimizeBatchResponse response;
+  while (reader->Read(&response)) layers += response.has_layer() ? 1 : 0;
+  EXPECT_TRUE(reader->Finish().ok());
+  EXPECT_EQ(layers, 1000);
+}
+
+TEST(SlowReader, HoldsBackHisOwnStream) {
+  TestService service([](ServerOptions& options) {
+    options.service.limits.window = {.layers = 16, .points = 100'000};
+  });
+  grpc::ClientContext context;
+  const auto stream = service.stub().Optimize(&context);
+  v1::OptimizeRequest message;
+  message.mutable_options()->mutable_strategy()->set_name("none");
+  std::atomic<int> written{0};
+  std::thread writer([&] {
+    for (uint64_t i = 0; i < 5000; ++i) {
+      *message.add_layers() = MakeLayer(i);
+      if (!stream->Write(message)) break;
+      ++written;
+      message.Clear();
+    }
+    stream->WritesDone();
+  });
+  absl::SleepFor(absl::Milliseconds(200));
+  EXPECT_LT(written, 1000);
+
+  int layers = 0;
+  v1::OptimizeResponse response;
+  while (stream->Read(&response)) layers += response.has_layer() ? 1 : 0;
+  writer.join();
+  EXPECT_TRUE(stream->Finish().ok());
+  EXPECT_EQ(layers, 5000);
+}
+
+TEST(IdleTimeout, ACallThatIsOpenedAndNeverEndsIsGivenUp) {
+  TestService service([](ServerOptions& options) {
+    options.service.limits.idle_timeout = absl::Milliseconds(200);
+  });
+  OpenStream stream(service);
+  ASSERT_TRUE(stream.ReadLayer());
+
+  const grpc::Status status = stream.WaitForEnd();
+
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED);
+  EXPECT_THAT(status.error_message(), HasSubstr("nothing was sent or read for 200ms"));
+  EXPECT_TRUE(service.Eventually([&] { return service.server().core().admission.jobs() == 0; }));
+}
+
+TEST(IdleTimeout, AReaderWhoNeverReadsIsGivenUp) {
+  TestService service([](ServerOptions& options) {
+    options.service.limits.idle_timeout = absl::Milliseconds(200);
+  });
+  ServiceCore& core = service.server().core();
+  grpc::ClientContext context;
+  const auto reader = service.stub().OptimizeBatch(&context, MakeBatch(2000));
+  ASSERT_TRUE(service.Eventually([&] { return core.admission.jobs() == 1; }));
+
+  EXPECT_TRUE(service.Eventually([&] { return core.admission.jobs() == 0; }));
+  EXPECT_TRUE(service.Eventually([&] { return core.queue_layers == 0; }));
+  context.TryCancel();
+  reader->Finish();
+}
+
+TEST(IdleTimeout, WorkThatTakesLongerIsNoIdleness) {
+  TestService service([](ServerOptions& options) {
+    options.service.limits.idle_timeout = absl::Milliseconds(100);
+  });
+  v1::OptimizeBatchRequest request = HardBatch(1);
+  request.mutable_options()->mutable_time_limit()->set_nanos(500'000'000);
+
+  EXPECT_TRUE(service.Stream(request).status.ok());
+}
+
+TEST(Drain, RunningJobsFinishAndNewOnesAreRefused) {
+  TestService service;
+  OpenStream stream(service);
+  ASSERT_TRUE(stream.ReadLayer());
+  bool drained = false;
+  std::thread drain([&] { drained = service.server().Drain(absl::Seconds(10)); });
+  ASSERT_TRUE(service.Eventually([&] { return service.server().core().admission.draining(); }));
+
+  const Answer refused = service.Batch(MakeBatch(1));
+  EXPECT_EQ(refused.status.error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_TRUE(stream.Finish().ok());
+  drain.join();
+  EXPECT_TRUE(drained);
+}
+
+TEST(Drain, JobsThatTakeTooLongEndWithUnavailable) {
+  // Within a process the end of the server overtakes statuses that nobody has read yet.
+  TestService service([](ServerOptions& options) { options.listen = "127.0.0.1:0"; });
+  OpenStream stream(service);
+  ASSERT_TRUE(stream.ReadLayer());
+
+  grpc::Status status;
+  std::thread reader([&] { status = stream.WaitForEnd(); });
+  EXPECT_FALSE(service.server().Drain(absl::Milliseconds(50)));
+
+  reader.join();
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_THAT(status.error_message(), HasSubstr("layers that are missing"));
+}
+
+TEST(Drain, ServerMayGoWhileJobsRun) {
+  auto service = std::make_unique<TestService>();
+  OpenStream stream(*service);
+  ASSERT_TRUE(stream.ReadLayer());
+
+  grpc::Status status;
+  std::thread reader([&] { status = stream.WaitForEnd(); });
+  service.reset();
+  reader.join();
+
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE) << status.error_message();
+}
+
+}  // namespace
+}  // namespace traverse::testing

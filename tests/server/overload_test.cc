@@ -1,0 +1,141 @@
+// More jobs, or larger ones, than the server has room for.
+
+#include <gmock/gmock.h>
+#include <grpcpp/generic/generic_stub.h>
+#include <grpcpp/grpcpp.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "tests/server/support/open_stream.h"
+#include "tests/server/support/service_fixture.h"
+
+namespace traverse::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Large messages grow the windows of a connection; what comes through them before a refusal must
+// not look like a flood.
+TEST(Overload, ManyRefusalsOfLargeJobsDoNotCutTheConnection) {
+  TestService service([](ServerOptions& options) {
+    options.listen = "127.0.0.1:0";
+    options.service.admission.max_jobs = 1;
+  });
+  v1::OptimizeBatchRequest large = MakeBatch(0);
+  for (int i = 0; i < 40; ++i) {
+    *large.add_layers() = MakeLayer(static_cast<uint64_t>(i + 1), 20, 200);
+  }
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(service.Batch(large).status.ok());
+  // The job that keeps others out is another caller's: the connection of the refused has none.
+  absl::StatusOr<std::unique_ptr<Admission::Ticket>> other =
+      service.server().core().admission.Admit("other", 1);
+  ASSERT_TRUE(other.ok());
+
+  for (int i = 0; i < 50; ++i) {
+    const grpc::Status status = service.Batch(large).status;
+    ASSERT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << status.error_message();
+  }
+
+  EXPECT_THAT(service.server().core().MetricsText(), HasSubstr("traverse_connections_cut_total 0"));
+}
+
+double ReceivingBytes(TestService& service) {
+  const std::string text = service.server().core().MetricsText();
+  const std::string name = "traverse_memory_bytes{kind=\"receiving\"} ";
+  return std::stod(text.substr(text.find(name) + name.size()));
+}
+
+// What came of a message until it was cancelled is let go of, and must not look like a flood.
+TEST(Overload, UploadsThatAreCancelledDoNotCutTheConnection) {
+  TestService service([](ServerOptions& options) { options.listen = "127.0.0.1:0"; });
+  v1::OptimizeBatchRequest large = MakeBatch(0);
+  const v1::Layer layer = MakeLayer(1, 2000, 200);
+  while (large.ByteSizeLong() < size_t{55} << 20) *large.add_layers() = layer;
+
+  int cancelled = 0;
+  for (int i = 0; i < 4; ++i) {
+    grpc::ClientContext context;
+    std::thread canceller([&] {
+      TestService::Eventually([&] { return ReceivingBytes(service) > 8 << 20; });
+      context.TryCancel();
+    });
+    const auto reader = service.stub().OptimizeBatch(&context, large);
+    v1::OptimizeBatchResponse response;
+    while (reader->Read(&response)) {
+    }
+    cancelled += reader->Finish().error_code() == grpc::StatusCode::CANCELLED;
+    canceller.join();
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));  // for the table to be looked at
+  }
+
+  EXPECT_GE(cancelled, 1);
+  EXPECT_THAT(service.server().core().MetricsText(), HasSubstr("traverse_connections_cut_total 0"));
+}
+
+TEST(Overload, JobsBeyondTheLimitAreRefusedWithAdviceWhenToRetry) {
+  TestService service([](ServerOptions& options) { options.service.admission.max_jobs = 2; });
+  OpenStream first(service);
+  OpenStream second(service);
+  ASSERT_TRUE(first.ReadLayer());
+  ASSERT_TRUE(second.ReadLayer());
+
+  const Answer refused = service.Batch(MakeBatch(1));
+
+  EXPECT_EQ(refused.status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  ASSERT_TRUE(RetryDelay(refused.status).has_value());
+  EXPECT_GT(*RetryDelay(refused.status), absl::ZeroDuration());
+  EXPECT_THAT(service.server().core().MetricsText(),
+              HasSubstr("traverse_rejected_total{reason=\"jobs\"} 1"));
+  EXPECT_TRUE(first.Finish().ok());
+  EXPECT_TRUE(service.Batch(MakeBatch(1)).status.ok());
+  EXPECT_TRUE(second.Finish().ok());
+}
+
+// What becomes of a batch of which only the headers are sent.
+grpc::Status HeadersOnly(TestService& service, const std::string& message_bytes) {
+  grpc::GenericStub stub(service.shared_channel());
+  grpc::CompletionQueue queue;
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + std::chrono::milliseconds(300));
+  if (!message_bytes.empty()) context.AddMetadata("traverse-message-bytes", message_bytes);
+  const auto call =
+      stub.PrepareCall(&context, "/traverse.v1.RouteOptimizerService/OptimizeBatch", &queue);
+  void* tag = nullptr;
+  bool ok = false;
+  call->StartCall(nullptr);
+  queue.Next(&tag, &ok);
+  grpc::Status status;
+  call->Finish(&status, nullptr);
+  queue.Next(&tag, &ok);
+  return status;
+}
+
+TEST(Overload, ABatchIsRefusedBeforeItsMessageIsSent) {
+  TestService service([](ServerOptions& options) {
+    options.service.admission.max_queued_points = 1500;
+    options.service.admission.max_jobs = 3;
+  });
+  Admission& admission = service.server().core().admission;
+  const auto queued = admission.Admit("another", 1000);
+  const auto full = grpc::StatusCode::RESOURCE_EXHAUSTED;
+  const auto waits_for_the_message = grpc::StatusCode::DEADLINE_EXCEEDED;
+
+  EXPECT_EQ(HeadersOnly(service, "16000").error_code(), full);
+  // What is no number states nothing.
+  for (const char* bytes : {"1600", "16000 bytes", ""}) {
+    EXPECT_EQ(HeadersOnly(service, bytes).error_code(), waits_for_the_message) << bytes;
+    ASSERT_TRUE(service.Eventually([&admission] { return admission.jobs() == 1; }));
+  }
+  const auto second = admission.Admit("another", 1);
+  const auto third = admission.Admit("another", 1);
+  EXPECT_EQ(HeadersOnly(service, "").error_code(), full);
+}
+
+}  // namespace
+}  // namespace traverse::testing
