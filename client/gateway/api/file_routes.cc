@@ -1,7 +1,11 @@
 #include "client/gateway/api/file_routes.h"
 
 #include <algorithm>
+#include <functional>
+#include <memory>
 #include <stop_token>
+#include <utility>
+#include <variant>
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/match.h"
@@ -168,67 +172,79 @@ FileRecord RecordOf(const HttpRequest& request, const std::string& caller,
   return {request.path, caller, request.peer_host, wanted.name, upload.size()};
 }
 
-}  // namespace
+using PlacePtr = std::shared_ptr<WorkQueue::Place>;
+using ReplyPtr = std::shared_ptr<HttpReply>;
 
-HttpDecision RewriteRoute(const HttpRequest& request, const std::string& caller, Core& core) {
+// Lets `caller` wait in line, and takes up to `max_files` of his; `start` is called when they are
+// there.
+HttpDecision TakeFiles(const HttpRequest& request, const std::string& caller, size_t max_files,
+                       Core& core,
+                       std::function<void(const PlacePtr&, Upload, const ReplyPtr&)> start) {
+  auto entered = EnterQueue(caller, core);
+  if (auto* refusal = std::get_if<HttpResponse>(&entered)) return std::move(*refusal);
+  const UploadLimits limits = {.max_file_bytes = core.options.max_file_bytes,
+                               .max_files = max_files};
+  return TakeUpload(
+      request, *core.spool, limits,
+      [place = std::get<PlacePtr>(std::move(entered)), start = std::move(start)](
+          Upload upload, const ReplyPtr& reply) { start(place, std::move(upload), reply); });
+}
+
+using FilePtr = std::shared_ptr<SpoolFile>;
+using Work = std::function<void(const PlacePtr&, FileRequest, const FilePtr&, const ReplyPtr&)>;
+
+// The same for one file and what is asked of it.
+HttpDecision TakeFile(const HttpRequest& request, const std::string& caller, Core& core,
+                      Work start) {
   // What is wrong with the query is said before the file is sent.
   if (absl::StatusOr<FileRequest> query = ParseParameters(request.query); !query.ok()) {
     return ProblemOf(query.status());
   }
-  auto entered = EnterQueue(caller, core);
-  if (auto* refusal = std::get_if<HttpResponse>(&entered)) return std::move(*refusal);
-  auto place = std::get<std::shared_ptr<WorkQueue::Place>>(std::move(entered));
-  const UploadLimits limits = {.max_file_bytes = core.options.max_file_bytes, .max_files = 1};
-  const auto start = [&core, request, caller, place](Upload upload,
-                                                     std::shared_ptr<HttpReply> reply) {
-    absl::StatusOr<FileRequest> wanted = WholeRequest(request, upload);
-    if (!wanted.ok()) return reply->Send(ProblemOf(wanted.status()));
-    wanted->finish_by = absl::Now() + std::min(wanted->deadline, core.options.max_time);
-    const std::shared_ptr<SpoolFile> file = upload.files[0].file;
+  return TakeFiles(request, caller, 1, core,
+                   [request, start = std::move(start)](const PlacePtr& place, Upload upload,
+                                                       const ReplyPtr& reply) {
+                     absl::StatusOr<FileRequest> wanted = WholeRequest(request, upload);
+                     if (!wanted.ok()) return reply->Send(ProblemOf(wanted.status()));
+                     start(place, *std::move(wanted), upload.files[0].file, reply);
+                   });
+}
+
+}  // namespace
+
+HttpDecision RewriteRoute(const HttpRequest& request, const std::string& caller, Core& core) {
+  const auto start = [&core, request, caller](const PlacePtr& place, FileRequest wanted,
+                                              const FilePtr& file, const ReplyPtr& reply) {
+    wanted.finish_by = absl::Now() + std::min(wanted.deadline, core.options.max_time);
     const AnswerKind kind = KindOf(request);
-    const FileRecord record = RecordOf(request, caller, *wanted, *file);
+    const FileRecord record = RecordOf(request, caller, wanted, *file);
     std::stop_source stop;
     reply->OnGone([stop]() mutable { stop.request_stop(); });
     if (kind == AnswerKind::kEvents) BeginEvents(*reply);
-    core.Submit(
-        place, {file},
-        [&core, wanted = *wanted, record, kind, file, reply, stop](const absl::Status& may) {
-          RunRewrite(core, may, wanted, record, kind, *file, *reply, stop.get_token());
-        });
+    core.Submit(place, {file},
+                [&core, wanted, record, kind, file, reply, stop](const absl::Status& may) {
+                  RunRewrite(core, may, wanted, record, kind, *file, *reply, stop.get_token());
+                });
   };
-  return TakeUpload(request, *core.spool, limits, start);
+  return TakeFile(request, caller, core, start);
 }
 
 HttpDecision InspectRoute(const HttpRequest& request, const std::string& caller, Core& core) {
-  if (absl::StatusOr<FileRequest> query = ParseParameters(request.query); !query.ok()) {
-    return ProblemOf(query.status());
-  }
-  auto entered = EnterQueue(caller, core);
-  if (auto* refusal = std::get_if<HttpResponse>(&entered)) return std::move(*refusal);
-  auto place = std::get<std::shared_ptr<WorkQueue::Place>>(std::move(entered));
-  const UploadLimits limits = {.max_file_bytes = core.options.max_file_bytes, .max_files = 1};
-  const auto start = [&core, request, place](Upload upload, std::shared_ptr<HttpReply> reply) {
-    absl::StatusOr<FileRequest> wanted = WholeRequest(request, upload);
-    if (!wanted.ok()) return reply->Send(ProblemOf(wanted.status()));
-    const std::shared_ptr<SpoolFile> file = upload.files[0].file;
-    core.Submit(place, {file}, [&core, wanted = *wanted, file, reply](const absl::Status& may) {
+  const auto start = [&core](const PlacePtr& place, const FileRequest& wanted, const FilePtr& file,
+                             const ReplyPtr& reply) {
+    core.Submit(place, {file}, [&core, wanted, file, reply](const absl::Status& may) {
       if (!may.ok()) return reply->Send(RefusalOf(may));
       absl::StatusOr<v1::InspectResponse> found = core.worker->Inspect(*file, wanted);
       reply->Send(found.ok() ? JsonResponse(MessageJson(*found) + "\n")
                              : RefusalOf(found.status()));
     });
   };
-  return TakeUpload(request, *core.spool, limits, start);
+  return TakeFile(request, caller, core, start);
 }
 
 HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, Core& core) {
   if (!request.query.empty()) return Problem(400, "this path has no parameters");
-  auto entered = EnterQueue(caller, core);
-  if (auto* refusal = std::get_if<HttpResponse>(&entered)) return std::move(*refusal);
-  auto place = std::get<std::shared_ptr<WorkQueue::Place>>(std::move(entered));
-  const UploadLimits limits = {.max_file_bytes = core.options.max_file_bytes, .max_files = 2};
-  const auto start = [&core, place](Upload upload, std::shared_ptr<HttpReply> reply) {
-    std::shared_ptr<SpoolFile> original, optimised;
+  const auto start = [&core](const PlacePtr& place, Upload upload, const ReplyPtr& reply) {
+    FilePtr original, optimised;
     for (Upload::File& file : upload.files) {
       if (file.field == "original") original = file.file;
       if (file.field == "optimised") optimised = file.file;
@@ -244,7 +260,7 @@ HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, 
                                  : RefusalOf(found.status()));
         });
   };
-  return TakeUpload(request, *core.spool, limits, start);
+  return TakeFiles(request, caller, 2, core, start);
 }
 
 }  // namespace traverse::gateway

@@ -26,12 +26,12 @@
 #include <utility>
 
 #include "absl/time/clock.h"
+#include "client/gateway/http/heads.h"
 #include "client/gateway/http/http_server.h"
 #include "client/gateway/http/message.h"
 #include "client/gateway/http/problem.h"
 #include "client/gateway/http/read_faults.h"
 #include "client/gateway/http/reply_queue.h"
-#include "client/gateway/http/target.h"
 #include "client/gateway/http/tls_context.h"
 
 namespace traverse::gateway {
@@ -89,7 +89,6 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
   }
 
  private:
-  using Parser = http::request_parser<http::buffer_body>;
   using Clock = std::chrono::steady_clock;
   static constexpr size_t kPiece = 131072;
 
@@ -139,7 +138,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
 
   // Returns whether another request may come.
   net::awaitable<bool> ServeOne() {
-    Parser parser;
+    HeadParser parser;
     parser.header_limit(limits_.max_head_bytes);
     parser.body_limit(std::numeric_limits<uint64_t>::max());  // the handler knows
     SetTimer(limits_.head_time);
@@ -156,7 +155,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     }
     const unsigned version = parser.get().version();
     const bool head_only = parser.get().method() == http::verb::head;
-    bool keep = parser.keep_alive() && HasKnownCoding(parser);
+    bool keep = parser.keep_alive() && HasKnownCoding(parser.get());
     HttpDecision decision = Decide(parser);
     if (auto* sink = std::get_if<std::unique_ptr<BodySink>>(&decision)) {
       std::optional<HttpResponse> refusal = co_await ReadBody(parser, **sink);
@@ -173,36 +172,17 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     co_return co_await Respond(std::get<HttpResponse>(decision), head_only, version, keep);
   }
 
-  // Beast takes other codings for none at all: the body would be the next request.
-  static bool HasKnownCoding(const Parser& parser) {
-    const auto coding = parser.get()[http::field::transfer_encoding];
-    return coding.empty() || beast::iequals(coding, "chunked");
-  }
-
-  HttpDecision Decide(Parser& parser) {
-    HttpRequest request;
-    const auto& head = parser.get();
-    const auto text = [](beast::string_view view) { return std::string(view.data(), view.size()); };
-    absl::StatusOr<Target> target = ParseTarget(text(head.target()));
-    if (!target.ok()) return Problem(400, std::string(target.status().message()));
-    if (!HasKnownCoding(parser)) return Problem(501, "no transfer encoding is known but chunked");
-    request.method = text(head.method_string());
-    request.path = std::move(target->path);
-    request.query = std::move(target->query);
-    for (const auto& field : head) {
-      std::string name = text(field.name_string());
-      std::transform(name.begin(), name.end(), name.begin(),
-                     [](unsigned char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
-      request.headers.emplace_back(std::move(name), text(field.value()));
-    }
-    if (const auto length = parser.content_length()) request.content_length = *length;
-    request.peer_host = peer_host_;
-    request.identities = identities_;
-    return handler_(request);
+  HttpDecision Decide(const HeadParser& parser) {
+    auto request = RequestOf(parser);
+    if (auto* refusal = std::get_if<HttpResponse>(&request)) return std::move(*refusal);
+    auto& known = std::get<HttpRequest>(request);
+    known.peer_host = peer_host_;
+    known.identities = identities_;
+    return handler_(known);
   }
 
   // Hands the body to `sink`. A response if it came to no good end.
-  net::awaitable<std::optional<HttpResponse>> ReadBody(Parser& parser, BodySink& sink) {
+  net::awaitable<std::optional<HttpResponse>> ReadBody(HeadParser& parser, BodySink& sink) {
     boost::system::error_code error;
     const bool wait = parser.get()[http::field::expect] == "100-continue";
     if (wait && !parser.is_done() && buffer_.size() == 0) {
@@ -225,18 +205,9 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     co_return BodyFault(error, timed_out_, received);
   }
 
-  static bool AllCame(const Parser& parser, uint64_t received) {
-    return parser.is_done() || (IsPlain(parser) && received == *parser.content_length());
-  }
-
-  // Whether the body is so many bytes as they stand.
-  static bool IsPlain(const Parser& parser) {
-    return !parser.chunked() && parser.content_length().has_value();
-  }
-
   // The next bytes of a body of which `received` came, into `piece`. Most go by the parser, which
   // would only copy them.
-  net::awaitable<size_t> ReadPiece(Parser& parser, uint64_t received, std::vector<char>& piece,
+  net::awaitable<size_t> ReadPiece(HeadParser& parser, uint64_t received, std::vector<char>& piece,
                                    boost::system::error_code& error) {
     if (IsPlain(parser) && buffer_.size() == 0) {
       const uint64_t left = *parser.content_length() - received;
@@ -314,25 +285,11 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     co_return keep;
   }
 
-  // `size` of the body; without it it comes in chunks, or until the connection ends.
+  // `size` as of HeadOf.
   net::awaitable<bool> WriteHead(const HttpResponse& response, unsigned version, bool keep,
                                  std::optional<uint64_t> size) {
-    http::response<http::empty_body> head;
-    head.version(version);
-    head.result(static_cast<unsigned>(response.status));
-    head.reason(ReasonOf(response.status));
-    if (!response.content_type.empty()) {
-      head.set(http::field::content_type, response.content_type);
-    }
-    for (const auto& [name, value] : response.headers) head.set(name, value);
-    head.set("X-Content-Type-Options", "nosniff");
-    head.keep_alive(keep);
-    if (size) {
-      if (response.status != 204) head.content_length(*size);
-    } else {
-      head.chunked(version >= 11);
-    }
-    http::response_serializer<http::empty_body> serializer(head);
+    const http::response<http::empty_body> head = HeadOf(response, version, keep, size);
+    http::response_serializer<http::empty_body, http::fields> serializer(head);
     SetTimer(limits_.idle_time);
     boost::system::error_code error;
     co_await http::async_write_header(stream_, serializer,
