@@ -6,9 +6,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <thread>
+#include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "tests/server/support/open_stream.h"
@@ -276,6 +279,54 @@ TEST(Drain, ServerMayGoWhileJobsRun) {
   reader.join();
 
   EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE) << status.error_message();
+}
+
+// A caller who is slow to read has 2 s to read how his job ended.
+TEST(Drain, WhoReadsLateStillLearnsHowItEnded) {
+  TestService service([](ServerOptions& options) { options.listen = "127.0.0.1:0"; });
+  ServiceCore& core = service.server().core();
+  // A channel that takes in little of what nobody reads.
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+  arguments.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, 1024);
+  const auto stub = v1::RouteOptimizerService::NewStub(
+      grpc::CreateCustomChannel(absl::StrCat("127.0.0.1:", service.server().port()),
+                                grpc::InsecureChannelCredentials(), arguments));
+  v1::OptimizeBatchRequest request = MakeBatch(0);
+  for (uint64_t i = 0; i < 1000; ++i) *request.add_layers() = MakeLayer(i, 50);
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(20));
+  const auto reader = stub->OptimizeBatch(&context, request);
+  // Until nothing moves any more: a write is under way that nobody reads.
+  int64_t left = 0;
+  EXPECT_TRUE(service.Eventually([&] {
+    absl::SleepFor(absl::Milliseconds(50));
+    const int64_t before = std::exchange(left, core.queue_layers);
+    return left > 0 && left == before;
+  }));
+
+  std::thread drain([&] { EXPECT_FALSE(service.server().Drain(absl::Milliseconds(10))); });
+  absl::SleepFor(absl::Milliseconds(700));
+  v1::OptimizeBatchResponse response;
+  while (reader->Read(&response)) {
+  }
+  const grpc::Status status = reader->Finish();
+  drain.join();
+
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_THAT(status.error_message(), HasSubstr("layers that are missing"));
+}
+
+TEST(Drain, ThePortIsClosedAfterwards) {
+  TestService service([](ServerOptions& options) { options.listen = "127.0.0.1:0"; });
+  EXPECT_TRUE(service.Batch(MakeBatch(1)).status.ok());
+
+  EXPECT_TRUE(service.server().Drain(absl::Seconds(10)));
+
+  // The server itself would answer that it is draining.
+  const grpc::Status status = service.Batch(MakeBatch(1)).status;
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_THAT(status.error_message(), HasSubstr("connect"));
 }
 
 }  // namespace

@@ -111,5 +111,20 @@ TEST(FairOrder, ChargingOneThatWaitsMovesIt) {
   EXPECT_EQ(Serve(order, 3), "bbb");
 }
 
+TEST(FairOrder, WhoWithdrawsHasNoTurn) {
+  FairOrder order;
+  Named a('a', 1), b('b', 1);
+  Come(order, a);
+  Come(order, b);
+
+  order.Withdraw(a);
+
+  EXPECT_EQ(Serve(order, 3), "bbb");
+  order.Withdraw(b);
+  EXPECT_TRUE(order.empty());
+  order.Wait(a);
+  EXPECT_EQ(Serve(order, 1), "a");
+}
+
 }  // namespace
 }  // namespace traverse

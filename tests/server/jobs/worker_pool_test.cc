@@ -239,5 +239,16 @@ TEST(WorkerPool, FewerThanOneThreadIsOne) {
   EXPECT_EQ(runs, 1);
 }
 
+TEST(WorkerPool, ThreadsThatAreDoneTakeTheNextTasks) {
+  WorkerPool pool(2);
+  const auto queue = pool.NewQueue("a");
+  for (int i = 0; i < 50; ++i) {
+    queue->Submit([] {});
+    while (!queue->idle()) std::this_thread::yield();
+  }
+
+  EXPECT_LE(pool.thread_count(), 4u);
+}
+
 }  // namespace
 }  // namespace traverse
