@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "absl/strings/str_cat.h"
 #include "engine/base/tolerances.h"
 #include "engine/validator.h"
@@ -75,6 +77,26 @@ TEST(MoveEvaluator, ChoosesEntriesForTheNewNeighbors) {
 
   EXPECT_NEAR(state.TotalCost(), 18 + 6 + 16, 1e-9);
   EXPECT_NEAR(delta, 28 - 40, 1e-9);
+}
+
+// The middle one of three: both its entries are as far from the one before, and one is nearer to
+// the one behind.
+TEST(MoveEvaluator, ChoosesEntriesWithTheNextNeighborInView) {
+  const OwnedProblem owned(AnyOrderPlan(
+      {MakeContour({{20, 5}, {20, -5}}), MakeContour({{10, 0}}), MakeContour({{30, -5}})}));
+  const OrderTree tree(owned.plan());
+  const LeafEntries entries(owned.problem);
+  SearchState state(owned.problem, tree, entries);
+  state.Load({{0, 0}, {1, 0}, {2, 0}});
+  MoveEvaluator evaluator(state);
+  const double before = state.TotalCost();
+
+  const SegmentMove move{SegmentMove::Kind::kReverse, 1, 1, 2};
+  const double delta = evaluator.Evaluate(move);
+  evaluator.Apply(move);
+
+  EXPECT_EQ(state.Unload(), (Route{{1, 0}, {0, 1}, {2, 0}}));
+  EXPECT_NEAR(before + delta, 10 + std::sqrt(125) + 10, 1e-9);
 }
 
 }  // namespace

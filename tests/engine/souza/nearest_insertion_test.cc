@@ -5,6 +5,8 @@
 #include "absl/strings/str_cat.h"
 #include "engine/base/tolerances.h"
 #include "engine/cost/route_cost.h"
+#include "engine/cost/wall_cost.h"
+#include "engine/model/walls.h"
 #include "engine/validator.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/instances.h"
@@ -78,6 +80,21 @@ TEST(NearestInsertion, IsNoBetterThanTheOptimum) {
 
     EXPECT_GE(RouteCost(owned.problem, Inserted(owned.problem)),
               BruteForce(owned.problem).cost - kCostTolerance);
+  }
+}
+
+TEST(NearestInsertion, WallsThatNoMoveComesNearChangeNothing) {
+  LayerWalls walls;
+  walls.walls.emplace_back().points = {{1000, 1000}, {1001, 1000}};
+  for (uint64_t seed = 1; seed <= 50; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    OwnedProblem owned = RandomProblem(seed, {.max_paths = 20});
+    owned.problem.cost.kind = CostSpec::Kind::kTime;
+    const WallCost cost(walls, owned.plan(), owned.problem.cost);
+    LayerProblem among = owned.problem;
+    among.walls = &cost;
+
+    EXPECT_EQ(Inserted(among), Inserted(owned.problem));
   }
 }
 
