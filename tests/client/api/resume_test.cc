@@ -197,5 +197,19 @@ TEST(FirstMissing, IsOneRun) {
   EXPECT_EQ(FirstMissing({true, true}).begin, 2u);
 }
 
+TEST(CleaningDueAfter, CountsFromTheLastCleaning) {
+  v1::JobOptions options;
+  EXPECT_FALSE(CleaningDueAfter(options, 2));
+  options.mutable_cleaning()->set_every_layers(3);
+  options.mutable_cleaning()->set_layers_since_cleaning(1);
+
+  std::vector<size_t> due;
+  for (size_t layer = 0; layer < 8; ++layer) {
+    if (CleaningDueAfter(options, layer)) due.push_back(layer);
+  }
+
+  EXPECT_EQ(due, (std::vector<size_t>{1, 4, 7}));
+}
+
 }  // namespace
 }  // namespace traverse

@@ -5,6 +5,7 @@
 #include <lzma.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 #include <zlib.h>
 
 #include <csignal>
@@ -12,6 +13,7 @@
 #include <fstream>
 #include <string>
 
+#include "absl/strings/str_cat.h"
 #include "client/files/decompress.h"
 #include "client/files/read_file.h"
 #include "client/files/write_file.h"
@@ -244,6 +246,17 @@ TEST_F(Files, WriteGoesThroughDevices) {
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
   EXPECT_THAT(std::string(WriteWholeFile("/dev/full", "x").message()),
               EndsWith("/dev/full: No space left on device"));
+}
+
+// As one that was killed leaves it.
+TEST_F(Files, WriteGoesByATemporaryFileOfAnother) {
+  const std::string left = absl::StrCat("file.", getpid(), "-0.tmp");
+  Put(left, "half");
+
+  ASSERT_TRUE(WriteWholeFile(Path("file"), "new").ok());
+
+  EXPECT_EQ(Get("file"), "new");
+  EXPECT_EQ(Get(left), "half");
 }
 
 }  // namespace

@@ -122,5 +122,20 @@ TEST(OrderMerger, KeepsWhatAllAgreeOnAndNeverGetsWorse) {
   }
 }
 
+TEST(OrderMerger, KnowsPathsByTheirNumbersInTheFile) {
+  const auto from_1000 = [](const LayerOrder& order) {
+    LayerOrder moved = order;
+    for (Placement& placement : moved) placement.block += 1000;
+    return moved;
+  };
+  const WayEstimate estimate = OnALine;
+  const OrderMerger merger(estimate, {});
+  const LayerOrder left = OrderOf({0, 1, 2, 3, 4, 5, 8, 6, 7, 9});
+  const LayerOrder right = OrderOf({0, 3, 1, 4, 2, 5, 6, 7, 8, 9});
+
+  EXPECT_EQ(merger.Merge(from_1000(left), {from_1000(right)}),
+            from_1000(OrderOf({0, 1, 2, 3, 4, 5, 6, 7, 8, 9})));
+}
+
 }  // namespace
 }  // namespace traverse::gcode

@@ -383,5 +383,17 @@ TEST(Policy, NamesAndNumbersAgree) {
   EXPECT_EQ(PolicyOfName("reckless"), std::nullopt);
 }
 
+TEST(Policy, SupportIsFreeButForItsInterfaces) {
+  const auto pairs = [](const std::string& type, Policy policy) {
+    Sheet sheet;
+    sheet.Line(type, 30, 0, 39, 0).Line(type, 30, .4, 39, .4);
+    return Pairs(sheet.Plan(policy).plan);
+  };
+  for (const Policy policy : {Policy::kSafe, Policy::kFree}) {
+    EXPECT_THAT(pairs(";TYPE:Support material", policy), IsEmpty());
+    EXPECT_THAT(pairs(";TYPE:Support material interface", policy), ElementsAre(Pair(1, 2)));
+  }
+}
+
 }  // namespace
 }  // namespace traverse::gcode

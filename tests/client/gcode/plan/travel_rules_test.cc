@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "client/gcode/gcode_job.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/model/loops.h"
@@ -83,6 +85,10 @@ struct Rules {
   bool Retracts(Vertex a, Vertex b) const {
     return TravelRules(*file, file->layers[0], habit, outlines, walls)
         .Retracts(a, b, Feature::kSparseInfill);
+  }
+  TravelWay WayOf(Vertex a, Vertex b) const {
+    return TravelRules(*file, file->layers[0], habit, outlines, walls)
+        .WayOf(a, b, Feature::kSparseInfill);
   }
 
   std::shared_ptr<GcodeFile> file;
@@ -255,6 +261,19 @@ TEST(RewriteGcode, UnderSafeNoMoreWaysCrossWallsWithAnOpenNozzle) {
 
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
   EXPECT_LE(rewrite->after.open_crossings, rewrite->before.open_crossings);
+}
+
+TEST(TravelRules, AWayAroundAWallIsAsLongAsItsBends) {
+  const Rules avoiding(AroundTheHole().Add("; avoid_crossing_perimeters = 1").Read());
+  ASSERT_TRUE(avoiding.habit.avoids_walls);
+
+  const TravelWay past = avoiding.WayOf({5, 10}, {35, 10});
+  EXPECT_FALSE(past.crosses);
+  EXPECT_NEAR(past.mm, 30, 1e-9);
+  // From 5, 20 to a corner of the hole at 15, 15, along it to 25, 15, and to 35, 20.
+  const TravelWay around = avoiding.WayOf({5, 20}, {35, 20});
+  EXPECT_FALSE(around.crosses);
+  EXPECT_NEAR(around.mm, 10 + 2 * std::hypot(10, 5), 2);
 }
 
 }  // namespace

@@ -1,0 +1,31 @@
+#include "client/gcode/verify/machine/command_words.h"
+
+#include <gtest/gtest.h>
+
+namespace traverse::gcode {
+namespace {
+
+TEST(VerifyCommandWords, AreLettersAndNumbersOfAMillionth) {
+  const CommandWords words(" X1.5 y-2 E.03 F9000 Z");
+
+  ASSERT_TRUE(words.readable);
+  EXPECT_EQ(words['X'], 1'500'000);
+  EXPECT_EQ(words['Y'], -2'000'000);
+  EXPECT_EQ(words['E'], 30'000);
+  EXPECT_EQ(words['Z'], 0);
+  EXPECT_EQ(words.ValueOr('F', 7), 9'000'000'000);
+  EXPECT_EQ(words.ValueOr('A', 7), 7);
+  EXPECT_TRUE(words.OnlyFrom("EFXYZ"));
+  EXPECT_FALSE(words.OnlyFrom("FXYZ"));
+}
+
+TEST(VerifyCommandWords, WhatIsTwiceOrNoWordIsUnreadable) {
+  for (const char* text : {"X1 X2", "X1 1", "-X1", "X1 Y-", "X1..5", "X1 \"Y2", "X1 x2"}) {
+    const CommandWords words(text);
+    EXPECT_FALSE(words.readable) << text;
+    EXPECT_FALSE(words.OnlyFrom("XY")) << text;
+  }
+}
+
+}  // namespace
+}  // namespace traverse::gcode

@@ -1,0 +1,44 @@
+#include "client/gcode/verify/machine/print_settings.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace traverse::gcode {
+namespace {
+
+struct Digests {
+  uint64_t print;
+  uint64_t acceleration;
+};
+
+// After `M<number> <words>`, which has to be known.
+Digests After(int number, const std::string& words) {
+  PrintSettings settings;
+  EXPECT_TRUE(settings.SetByM(number, CommandWords(words))) << "M" << number << " " << words;
+  return {settings.Digest(), settings.AccelerationDigest()};
+}
+
+TEST(VerifyPrintSettings, EachAccelerationAndLimitCountsForDeposits) {
+  PrintSettings none;
+  for (const int number : {201, 202, 205}) {
+    for (const std::string axis : {"X", "Y"}) {
+      const Digests digests = After(number, axis + "800");
+      EXPECT_NE(digests.print, none.Digest()) << "M" << number << " " << axis;
+      EXPECT_NE(digests.acceleration, none.AccelerationDigest()) << "M" << number << " " << axis;
+      EXPECT_NE(digests.print, After(number, axis + "900").print) << "M" << number << " " << axis;
+    }
+    EXPECT_NE(After(number, "X800").print, After(number, "Y800").print) << "M" << number;
+  }
+  EXPECT_NE(After(204, "P800").print, none.Digest());
+}
+
+TEST(VerifyPrintSettings, AccelerationOfTravelAndRetractionsCountsForNoDeposit) {
+  PrintSettings none;
+  EXPECT_EQ(After(204, "T800").print, none.Digest());
+  EXPECT_EQ(After(204, "R800").print, none.Digest());
+  EXPECT_NE(After(204, "T800").acceleration, none.AccelerationDigest());
+}
+
+}  // namespace
+}  // namespace traverse::gcode
