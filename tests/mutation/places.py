@@ -29,7 +29,7 @@ PLACES = [
     place("server/server.cc", "server_tests", "Drain*:Service*:Overload*"),
     place("server/jobs/fair_order.h", "server_jobs_tests", "FairOrder*:WorkerPool*"),
     place("client/api/optimizer_client.cc", "client_tests", "Resume*:OptimizerClient*"),
-    place("client/api/resume.cc", "client_tests", "Resume*:ShiftPlace*:FirstMissing*"),
+    place("client/api/resume.cc", "client_tests", "Resume*:ShiftPlace*:FirstMissing*:CleaningDueAfter*"),
     gcode("choose/choice_row.cc", "BestRow*"),
     gcode("choose/layer_choice.cc", f"BestRow*:{WRITTEN}"),
     gcode("choose/merged_orders.cc", f"OrderMerger*:{WRITTEN}"),
@@ -75,7 +75,7 @@ PLACES = [
     engine("proof/walks/walk_dp.cc", "WalkDp*:StageProof*"),
     engine("weller/tabu/swap_sequence.cc", "SwapSequence*"),
     engine("weller/tabu/tabu_list.h", "TabuList*"),
-    engine("weller/steps/point_reduction.cc", "PointReduction*:Reduce*"),
-    engine("weller/steps/neighborhood.cc", "Neighborhood*"),
+    engine("weller/steps/point_reduction.cc", "PointReduction*:AnalyzeIslands*:SpacedPoints*:NearRasterPoints*:BoxCenterPoint*"),
+    engine("weller/steps/neighborhood.cc", "Neighborhood*:GrowCircles*:LinkClusters*:IslandNeighborhood*"),
     engine("validator.cc", "ValidateRoute*:Validator*:MeasureTravel*"),
 ]
