@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <coin/ClpDualRowSteepest.hpp>
 #include <coin/ClpEventHandler.hpp>
 #include <coin/ClpSimplex.hpp>
 #include <coin/CoinError.hpp>
@@ -27,6 +28,21 @@ class BudgetHandler : public ClpEventHandler {
   Budget* budget_;
 };
 
+// Rows or columns one after the other, as Clp takes them.
+struct Packed {
+  std::vector<double> lower, upper, values;
+  std::vector<CoinBigIndex> starts = {0};
+  std::vector<int> indices;
+
+  void Add(double least, double most, const LinearProgram::Entries& entries) {
+    lower.push_back(std::max(least, -COIN_DBL_MAX));
+    upper.push_back(std::min(most, COIN_DBL_MAX));
+    indices.insert(indices.end(), entries.indices.begin(), entries.indices.end());
+    values.insert(values.end(), entries.values.begin(), entries.values.end());
+    starts.push_back(static_cast<CoinBigIndex>(indices.size()));
+  }
+};
+
 }  // namespace
 
 class LinearProgram::Impl {
@@ -34,6 +50,10 @@ class LinearProgram::Impl {
   Impl() {
     simplex_.setLogLevel(0);
     simplex_.resize(0, 0);
+    // Weights that are not known are not computed: rows come and go too often.
+    constexpr int kPartialWeights = 2;
+    ClpDualRowSteepest steepest(kPartialWeights);
+    simplex_.setDualRowPivotAlgorithm(steepest);
   }
 
   // Clp throws where numbers go wrong.
@@ -117,6 +137,27 @@ int LinearProgram::AddColumn(double cost, double lower, double upper, const Entr
   return column_count() - 1;
 }
 
+void LinearProgram::AddColumns(const std::vector<Column>& columns) {
+  if (columns.empty()) return;
+  Packed packed;
+  std::vector<double> costs;
+  for (const Column& it : columns) {
+    packed.Add(it.lower, it.upper, it.rows);
+    costs.push_back(it.cost);
+  }
+  impl_->simplex_.addColumns(static_cast<int>(columns.size()), packed.lower.data(),
+                             packed.upper.data(), costs.data(), packed.starts.data(),
+                             packed.indices.data(), packed.values.data());
+}
+
+void LinearProgram::AddRows(const std::vector<Row>& rows) {
+  if (rows.empty()) return;
+  Packed packed;
+  for (const Row& it : rows) packed.Add(it.lower, it.upper, it.columns);
+  impl_->simplex_.addRows(static_cast<int>(rows.size()), packed.lower.data(), packed.upper.data(),
+                          packed.starts.data(), packed.indices.data(), packed.values.data());
+}
+
 void LinearProgram::SetColumnBounds(int column, double lower, double upper) {
   impl_->simplex_.setColumnBounds(column, lower, upper);
 }
@@ -127,6 +168,10 @@ void LinearProgram::SetCost(int column, double cost) {
 
 void LinearProgram::DeleteRows(const std::vector<int>& rows) {
   impl_->simplex_.deleteRows(static_cast<int>(rows.size()), rows.data());
+}
+
+void LinearProgram::DeleteColumns(const std::vector<int>& columns) {
+  impl_->simplex_.deleteColumns(static_cast<int>(columns.size()), columns.data());
 }
 
 LinearProgram::Status LinearProgram::SolveDual(Budget& budget, int most_iterations) {
@@ -144,6 +189,11 @@ double LinearProgram::Primal(int column) const {
 double LinearProgram::Dual(int row) const { return impl_->simplex_.dualRowSolution()[row]; }
 bool LinearProgram::RowIsBasic(int row) const {
   return impl_->simplex_.getRowStatus(row) == ClpSimplex::basic;
+}
+
+double LinearProgram::ReducedCost(int column) const {
+  return impl_->Reduced(column, impl_->simplex_.dualRowSolution(),
+                        impl_->simplex_.getObjCoefficients()[column]);
 }
 
 double LinearProgram::SafeBound() const {

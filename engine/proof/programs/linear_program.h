@@ -47,11 +47,27 @@ class LinearProgram {
   int AddRow(double lower, double upper, const Entries& columns);
   int AddColumn(double cost, double lower, double upper, const Entries& rows);
 
+  // Several at once, which is quicker: each call copies the matrix.
+  struct Column {
+    double cost = 0;
+    double lower = 0;
+    double upper = 0;
+    Entries rows;
+  };
+  struct Row {
+    double lower = 0;
+    double upper = 0;
+    Entries columns;
+  };
+  void AddColumns(const std::vector<Column>& columns);
+  void AddRows(const std::vector<Row>& rows);
+
   void SetColumnBounds(int column, double lower, double upper);
   void SetCost(int column, double cost);
 
-  // Rows after a deleted one move up. `rows` ascends.
+  // What comes after a deleted one moves up. The arguments ascend.
   void DeleteRows(const std::vector<int>& rows);
+  void DeleteColumns(const std::vector<int>& columns);
 
   // Starts from the last basis. Dual simplex is quick after changes of rows and bounds, primal
   // simplex after new columns and costs.
@@ -63,6 +79,7 @@ class LinearProgram {
   double Primal(int column) const;
   double Dual(int row) const;
   bool RowIsBasic(int row) const;
+  double ReducedCost(int column) const;  // of the cost, less what the duals make of its entries
 
   // A lower bound of the value from the last duals alone, whether or not these are optimal: with
   // multipliers y, sum of y x (the row bound that y pushes against) + sum over columns of the least

@@ -12,13 +12,21 @@
 namespace traverse {
 namespace {
 
-constexpr int kFirstNeighbors = 8;  // moves of a port that the first programme has
+constexpr size_t kFirstNeighbors = 4;  // moves of a port that the first programme has
 constexpr int kMovesPerPricing = 500;
-constexpr int kMostNewMoves = 2500;  // at the root; each copies the matrix, about 0.1 ms
+constexpr int kMostNewMoves = 20'000;  // before branching
 constexpr int kCutsPerRound = 100;
 constexpr double kViolation = 0.01;
 constexpr int kRoundsWithoutGain = 3;
+constexpr int kRoundsWithoutGainAtRoot = 20;
 constexpr double kGain = 0.01;  // of the gap
+
+// Moves are left out when the gap is below that share of the cost, and again each time it is below
+// that share of what it was.
+constexpr double kWidestGap = 0.1;
+constexpr double kLessGap = 0.7;
+
+constexpr double kRounding = 1e-9;  // relative to the cost; far above that of a bound
 constexpr int kStrongCandidates = 12;
 constexpr int kStrongIterations = 40;
 constexpr double kFractional = 1e-6;
@@ -28,19 +36,13 @@ constexpr double kFractional = 1e-6;
 class PathTspSolver::Search {
  public:
   explicit Search(PathTsp problem) : problem_(std::move(problem)), relaxation_(problem_) {
+    std::vector<TspMove> moves;
     for (int p = 0; p < problem_.ports; ++p) {
-      std::vector<std::pair<double, int>> near;
-      for (int q = 0; q < problem_.ports; ++q) near.emplace_back(problem_.Cost(p, q), q);
-      std::sort(near.begin(), near.end());
-      int added = 0;
-      for (const auto& [cost, q] : near) {
-        if (q == p || q == problem_.mate[static_cast<size_t>(p)]) continue;
-        if (added++ == kFirstNeighbors) break;
-        relaxation_.AddMove({std::min(p, q), std::max(p, q)});
-      }
-      relaxation_.AddMove({p, relaxation_.start_node()});
-      relaxation_.AddMove({p, relaxation_.finish_node()});
+      AddNearest(p, moves);
+      moves.push_back({p, relaxation_.nodes().start()});
+      moves.push_back({p, relaxation_.nodes().finish()});
     }
+    relaxation_.AddMoves(moves);
   }
 
   int port_count() const { return problem_.ports; }
@@ -48,14 +50,16 @@ class PathTspSolver::Search {
   Result Solve(const std::vector<double>& start, double cutoff, const std::vector<int>& known,
                Budget& budget) {
     Begin(start, cutoff, budget);
+    std::vector<TspMove> moves;
     for (size_t i = 0; i + 1 < known.size(); ++i) {
       const int from = problem_.mate[static_cast<size_t>(known[i])];
       const int to = known[i + 1];
-      relaxation_.AddMove({std::min(from, to), std::max(from, to)});
+      moves.push_back({std::min(from, to), std::max(from, to)});
     }
+    relaxation_.AddMoves(moves);
     const double root = Root();
     if (!stopped_ && root < best_) {
-      if (relaxation_.Restrict(best_ - root + kViolation * 1e-6, kMostNewMoves)) {
+      if (CompleteMoves()) {
         open_.push_back(Node{{}, root});
         Explore();
       } else {
@@ -84,11 +88,23 @@ class PathTspSolver::Search {
  private:
   using Status = LinearProgram::Status;
   struct Node {
-    std::vector<std::pair<int, bool>> fixed;  // (move, in or out)
+    std::vector<std::pair<int, bool>> fixed;  // (column, in or out)
     double bound = 0;
   };
 
   LinearProgram& lp() { return relaxation_.lp(); }
+
+  void AddNearest(int port, std::vector<TspMove>& moves) const {
+    std::vector<std::pair<double, int>> near;
+    for (int q = 0; q < problem_.ports; ++q) {
+      if (relaxation_.nodes().CanJoin(port, q)) near.emplace_back(problem_.Cost(port, q), q);
+    }
+    const size_t count = std::min(static_cast<size_t>(kFirstNeighbors), near.size());
+    std::partial_sort(near.begin(), near.begin() + static_cast<ptrdiff_t>(count), near.end());
+    for (size_t i = 0; i < count; ++i) {
+      moves.push_back({std::min(port, near[i].second), std::max(port, near[i].second)});
+    }
+  }
 
   void Begin(const std::vector<double>& start, double cutoff, Budget& budget) {
     budget_ = &budget;
@@ -102,30 +118,55 @@ class PathTspSolver::Search {
     ReleaseAll();
   }
 
+  // What a better path may cost above the bound of the duals that there are, and a little more.
+  double Gap() const { return best_ - bound_now_ + kRounding * std::max(1.0, std::abs(best_)); }
+
+  // False if there are too many moves to branch among, or a limit ended it.
+  bool CompleteMoves() {
+    relaxation_.LeaveOutDear(Gap(), *budget_);
+    return !budget_->was_exhausted() && relaxation_.Complete(kMostNewMoves);
+  }
+
   // The bound of the relaxation without branching.
   double Root() {
     double bound = 0;
     double last = 0;
+    double gap = kWidestGap * best_;  // when moves were left out
     int without_gain = 0;
     while (true) {
-      double missing = 0;
-      Status status = lp().SolveDual(*budget_);
-      while (status == Status::kOptimal && relaxation_.Price(kMovesPerPricing, missing) > 0) {
-        status = lp().SolvePrimal(*budget_);
+      Status status = SolveAndPrice();
+      if (status == Status::kInfeasible && relaxation_.Complete(kMostNewMoves)) {
+        status = lp().SolveDual(*budget_);
+        if (status == Status::kInfeasible && lp().IsSurelyInfeasible()) return best_;
+        if (status == Status::kOptimal) status = SolveAndPrice();
       }
-      if (status != Status::kOptimal) {
-        stopped_ = true;
-        return bound;
-      }
-      bound = std::max(bound, lp().SafeBound() + missing);
+      stopped_ = status != Status::kOptimal || budget_->was_exhausted();
+      if (stopped_) return bound;
+      bound = std::max(bound, bound_now_);
       if (bound >= best_) return bound;
       TakeIntegral();  // cuts may be missing: goes on
       without_gain = bound > last + kGain * (best_ - bound) ? 0 : without_gain + 1;
       last = bound;
-      if (without_gain > 2 * kRoundsWithoutGain) return bound;
-      if (relaxation_.Separate(kViolation, kCutsPerRound) == 0) return bound;
+      if (without_gain > kRoundsWithoutGainAtRoot) return bound;
+      if (Gap() < kLessGap * gap) {
+        gap = Gap();
+        relaxation_.LeaveOutDear(gap, *budget_);
+      }
       relaxation_.DropIdleCuts();
+      if (relaxation_.Separate(kViolation, kCutsPerRound, *budget_) == 0) return bound;
     }
+  }
+
+  // Brings in all the moves that the relaxation wants.
+  Status SolveAndPrice() {
+    double missing = 0;
+    Status status = lp().SolveDual(*budget_);
+    while (status == Status::kOptimal &&
+           relaxation_.Price(kMovesPerPricing, missing, *budget_) > 0) {
+      status = lp().SolvePrimal(*budget_);
+    }
+    if (status == Status::kOptimal) bound_now_ = lp().SafeBound() + missing;
+    return status;
   }
 
   // True if the last solution is a path: the best one there is within its node.
@@ -134,7 +175,7 @@ class PathTspSolver::Search {
     if (path.empty()) return false;
     double cost =
         problem_.finish[static_cast<size_t>(problem_.mate[static_cast<size_t>(path.back())])];
-    cost += relaxation_.MoveCost({path.front(), relaxation_.start_node()});
+    cost += relaxation_.MoveCost({path.front(), relaxation_.nodes().start()});
     for (size_t i = 0; i + 1 < path.size(); ++i) {
       cost += problem_.Cost(problem_.mate[static_cast<size_t>(path[i])], path[i + 1]);
     }
@@ -162,14 +203,14 @@ class PathTspSolver::Search {
   }
 
   void ReleaseAll() {
-    for (const auto& [move, in] : applied_) lp().SetColumnBounds(move, 0, 1);
+    for (const auto& [column, in] : applied_) relaxation_.Free(column);
     applied_.clear();
   }
 
   void Apply(const Node& node) {
     ReleaseAll();
     applied_ = node.fixed;
-    for (const auto& [move, in] : applied_) lp().SetColumnBounds(move, in ? 1 : 0, in ? 1 : 0);
+    for (const auto& [column, in] : applied_) relaxation_.Fix(column, in);
   }
 
   // Solves and cuts; true if nothing better than best_ can be left in the node.
@@ -187,7 +228,8 @@ class PathTspSolver::Search {
       node.bound = std::max(node.bound, bound);
       if (node.bound >= best_) return true;
       if (without_gain > kRoundsWithoutGain) break;
-      if (relaxation_.Separate(kViolation, kCutsPerRound) == 0) break;
+      relaxation_.DropIdleCuts();
+      if (relaxation_.Separate(kViolation, kCutsPerRound, *budget_) == 0) break;
     }
     if (!TakeIntegral()) return node.bound >= best_;
     least_integral_ = std::min(least_integral_, node.bound);
@@ -197,7 +239,7 @@ class PathTspSolver::Search {
   // Both ways of the move that promises the most, the better one on top.
   void Branch(const Node& node) {
     std::vector<std::pair<double, int>> fractional;
-    for (int j = 0; j < relaxation_.move_count(); ++j) {
+    for (int j = 0; j < relaxation_.column_count(); ++j) {
       const double x = lp().Primal(j);
       if (x > kFractional && x < 1 - kFractional) fractional.emplace_back(std::abs(x - 0.5), j);
     }
@@ -213,21 +255,21 @@ class PathTspSolver::Search {
     int chosen = fractional.front().second;
     double best_score = -1;
     bool in_first = true;
-    for (const auto& [distance, move] : fractional) {
+    for (const auto& [distance, column] : fractional) {
       double gain[2];
       for (const bool in : {false, true}) {
-        lp().SetColumnBounds(move, in ? 1 : 0, in ? 1 : 0);
+        relaxation_.Fix(column, in);
         const Status status = lp().SolveDual(*budget_, kStrongIterations);
         gain[in ? 1 : 0] = status == Status::kInfeasible
                                ? best_ - value
                                : std::clamp(lp().value() - value, 0.0, best_ - value);
-        lp().SetColumnBounds(move, 0, 1);
+        relaxation_.Free(column);
         lp().SetBasis(basis);
       }
       const double score = std::max(gain[0], 1e-6) * std::max(gain[1], 1e-6);
       if (score > best_score) {
         best_score = score;
-        chosen = move;
+        chosen = column;
         in_first = gain[1] <= gain[0];
       }
     }
@@ -244,6 +286,7 @@ class PathTspSolver::Search {
   Result result_;
   double least_integral_ = 0;  // bound of the nodes that ended with a path
   double best_ = 0;            // nothing from here up is of interest
+  double bound_now_ = 0;       // of the last solution at the root
   std::vector<Node> open_;
   std::vector<std::pair<int, bool>> applied_;
   bool stopped_ = false;

@@ -1,19 +1,25 @@
-// Shortest paths through items with one or two ends, proven by branch and cut.
+// Shortest paths through items, proven by branch and cut.
 //
 //   start -> p ==== p' -> q ==== q' -> r -> ... -> finish        p, p': the ends of one item
 //
-// An item is entered at one end and left at the other, or has one end only. Costs are symmetric. As
-// an integer programme, with x_e for each undirected move e, the start and the finish joined by a
-// fixed edge like the two ends of an item:
+// An item is entered at one of its two ends and left at the other, or is entered and left at the
+// same one of its ports, of which it may have many: a generalised travelling salesman path. Costs
+// are symmetric. As an integer programme, with x_e for each undirected move e, y_p for each port of
+// an item that has a choice of them, the start and the finish joined by a fixed edge like the two
+// ends of an item:
 //
-//   min sum c_e x_e,   x(moves of a node) = 1, or 2 for an item with one end
-//   x(moves out of S) >= 2                                     for sets S of items (subtours)
+//   min sum c_e x_e,   x(moves of a node) = 1 for an end, 2 for a lone port, 2 y_p for a choice
+//   sum of y_p over an item = 1
+//   x(moves within S) <= ports of S that are visited - 1       S a set of ports with all of an item
+//   x(moves within S) <= ports of S that are visited - y_p     p in S, S any set (subtours)
 //   x(moves out of H, not in F) + sum over F (1 - x_e) >= 1    F odd, fixed edges included
-//   (blossoms)
+//   (blossoms; all moves between two items with a choice are one edge)
 //
-// Dantzig, Fulkerson and Johnson (1954); Padberg and Rinaldi (1991). Moves come in by reduced cost;
-// at the root those that no better path can use are left out for good; strong branching, depth
-// first. Bounds are safe: computed from the duals without trust in the solver's tolerances.
+// Dantzig, Fulkerson and Johnson (1954); Padberg and Rinaldi (1991); of items with a choice
+// Fischetti, Salazar and Toth (1997), whose generalised subtours these are. Moves come in by
+// reduced cost; at the root those that no better path can use are left out for good; strong
+// branching, depth first. Bounds are safe: computed from the duals without trust in the solver's
+// tolerances.
 
 #ifndef TRAVERSE_ENGINE_PROOF_TSP_PATH_TSP_H_
 #define TRAVERSE_ENGINE_PROOF_TSP_PATH_TSP_H_
@@ -27,8 +33,9 @@
 namespace traverse {
 
 struct PathTsp {
-  int ports = 0;               // ends of items
-  std::vector<int> mate;       // [port] the item's other end; the port itself if there is none
+  int ports = 0;
+  std::vector<int> item;       // [port] from 0; the ports of an item follow each other
+  std::vector<int> mate;       // [port] where its item is left if it is entered there
   std::vector<double> cost;    // [p * ports + q] of moves, symmetric, not negative
   std::vector<double> finish;  // [port] cost of ending there
 

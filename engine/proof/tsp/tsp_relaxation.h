@@ -3,50 +3,55 @@
 #ifndef TRAVERSE_ENGINE_PROOF_TSP_TSP_RELAXATION_H_
 #define TRAVERSE_ENGINE_PROOF_TSP_TSP_RELAXATION_H_
 
-#include <cstdint>
 #include <vector>
 
 #include "engine/base/budget.h"
 #include "engine/proof/programs/linear_program.h"
 #include "engine/proof/tsp/path_tsp.h"
-#include "engine/proof/tsp/support_graph.h"
+#include "engine/proof/tsp/tsp_cuts.h"
+#include "engine/proof/tsp/tsp_nodes.h"
 
 namespace traverse {
 
 class TspRelaxation {
  public:
-  // A move between two nodes, a < b: ports, then the start, then the finish.
-  struct Move {
-    int a = 0;
-    int b = 0;
-  };
+  using Move = TspMove;
 
   explicit TspRelaxation(const PathTsp& problem);
 
-  int start_node() const { return problem_.ports; }
-  int finish_node() const { return problem_.ports + 1; }
-  int node_count() const { return problem_.ports + 2; }
+  const TspNodes& nodes() const { return nodes_; }
 
   // Moves from the start to a port with cost kUnreached cost `forbidden` instead.
   void SetStart(const std::vector<double>& start, double forbidden);
 
   double MoveCost(const Move& move) const;
-  int move_count() const { return static_cast<int>(moves_.size()); }
-  const Move& move(int index) const { return moves_[static_cast<size_t>(index)]; }
-  void AddMove(const Move& move);
+  // Brings moves in, but those that are in.
+  void AddMoves(const std::vector<Move>& moves);
+
+  // What follows looks at all moves; where the budget ends it, what it says is worth nothing.
 
   // Brings in moves with negative reduced cost, the lowest first. The sum of all negative reduced
   // costs of moves that are not in the programme goes to `missing`. Returns how many were added.
-  int Price(int most, double& missing);
+  int Price(int most, double& missing, Budget& budget);
 
-  // All moves allowed again; then all those out whose reduced cost is above `gap`, and those in
-  // that were not yet and are not. After Restrict no move has to be priced. False, with nothing
-  // changed, if more than `most_new` would have to come in: the gap is too wide for branching.
+  // Leaves out ports and moves whose reduced cost is above `gap`: no path has them that costs less
+  // than the last bound and `gap` together.
+  void LeaveOutDear(double gap, Budget& budget);
+
+  // Brings in all moves that were not left out, so that none has to be priced any more. False, with
+  // nothing changed, if that would be more than `most`.
+  bool Complete(int most);
+
+  // Allows all ports and moves again.
   void AllowAll();
-  bool Restrict(double gap, int most_new);
 
-  // Adds cuts that the last solution violates, at most `most`; returns how many.
-  int Separate(double violation, int most);
+  // Columns, of ports and moves, that are 0 or 1 in every path: what can be branched on.
+  int column_count() const { return lp_.column_count(); }
+  void Fix(int column, bool in) { lp_.SetColumnBounds(column, in ? 1 : 0, in ? 1 : 0); }
+  void Free(int column) { lp_.SetColumnBounds(column, 0, 1); }
+
+  // Adds cuts that the last solution violates, about `most`; returns how many.
+  int Separate(double violation, int most, Budget& budget);
 
   // Deletes cuts that have not been tight for a while.
   void DropIdleCuts();
@@ -58,39 +63,42 @@ class TspRelaxation {
   int total_cuts() const { return total_cuts_; }
 
  private:
-  struct Cut {
-    bool is_subtour = false;
-    CutSide side;           // [node]
-    std::vector<Move> odd;  // of a blossom: the moves in F
+  struct RowOfCut {
+    TspCut cut;
     int row = 0;
     int idle = 0;  // rounds without being tight
   };
 
-  double Coefficient(const Cut& cut, const Move& move) const;
-  LinearProgram::Entries ColumnOf(const Move& move) const;
+  void AddRowsOfNodes();
+  int ColumnOf(int move) const { return first_move_ + move; }
+  int move_count() const { return static_cast<int>(moves_.size()); }
+  const Move& move(int index) const { return moves_[static_cast<size_t>(index)]; }
+  LinearProgram::Entries EntriesOf(const Move& move) const;
   bool Has(const Move& move) const { return has_[Key(move)] != 0; }
+  bool IsAllowed(const Move& move) const {
+    return is_dear_[Key(move)] == 0 && left_out_[static_cast<size_t>(move.a)] == 0 &&
+           left_out_[static_cast<size_t>(move.b)] == 0;
+  }
   size_t Key(const Move& move) const {
-    return static_cast<size_t>(move.a) * static_cast<size_t>(node_count()) +
+    return static_cast<size_t>(move.a) * static_cast<size_t>(nodes_.count()) +
            static_cast<size_t>(move.b);
   }
-  bool IsPossible(int a, int b) const;
   template <typename Visit>
-  void ForEachCheapMove(double most, const Visit& visit);
-
-  SupportGraph ItemGraph() const;
-  SupportGraph PortGraph(std::vector<int>& move_of_edge) const;
-  void AddSubtourCut(const CutSide& items);
-  void AddBlossomCut(const CutSide& nodes, const std::vector<Move>& odd);
-  void AddCut(Cut cut, double lower, double upper);
+  void ForEachCheapMove(double most, Budget& budget, const Visit& visit) const;
+  TspSolution Solution() const;
+  LinearProgram::Row RowOf(const TspCut& cut) const;
 
   const PathTsp& problem_;
-  std::vector<double> start_;  // [port]
-  std::vector<int> item_;      // [node] from 1; the start and the finish are 0
-  int item_count_ = 1;
-  LinearProgram lp_;         // rows: nodes, then cuts; columns: moves
-  std::vector<Move> moves_;  // [column]
-  std::vector<char> has_;    // [Key(move)]
-  std::vector<Cut> cuts_;
+  const TspNodes nodes_;
+  std::vector<double> start_;     // [port]
+  LinearProgram lp_;              // rows: nodes, items with a choice, cuts; columns: ports, moves
+  std::vector<int> port_column_;  // [port] -1 without a choice
+  int first_move_ = 0;            // column
+  std::vector<char> left_out_;    // [node] by Restrict: ports that no better path visits
+  std::vector<Move> moves_;       // [column - first_move_]
+  std::vector<char> has_;         // [Key(move)]
+  std::vector<char> is_dear_;     // [Key(move)] left out
+  std::vector<RowOfCut> cuts_;
   int total_cuts_ = 0;
 };
 

@@ -4,12 +4,28 @@
 #include <cassert>
 #include <cmath>
 
+#include "engine/proof/min_plus.h"
+
 namespace traverse {
 namespace {
 
-// The other end of an item: where it is left when it is entered at `state`.
+// Of more, or more for each item, a programme takes longer than walks do.
+constexpr int kMostPorts = 1500;
+constexpr int kMostPortsOfEach = 16;  // on average
+
+// Whether the clusters of `stage` may be done in any order, and `fits` holds for each.
+template <typename Fits>
+bool IsFreeOf(const StageModel& model, int stage, const Fits& fits) {
+  if (!model.IsFree(stage)) return false;
+  for (int c = model.first(stage); c < model.first(stage + 1); ++c) {
+    if (!fits(c) || !model.Before(c).empty() || !model.After(c).empty()) return false;
+  }
+  return true;
+}
+
+// Where an item is left when it is entered at `state`.
 int OtherEnd(const StageModel& model, int cluster, int state) {
-  return model.states(cluster) == 1 ? 0 : 1 - state;
+  return model.IsItem(cluster) && model.states(cluster) == 2 ? 1 - state : state;
 }
 
 // Cost of moving from one end to another. Move() has costs from the exits of states, and an item's
@@ -18,14 +34,35 @@ double MoveBetweenEnds(const StageModel& model, int a, int end_of_a, int b, int 
   return model.Move(a, b)[OtherEnd(model, a, end_of_a) * model.states(b) + end_of_b];
 }
 
+// Least cost of all that comes after a stage that is left at an exit of `from`, in `state` then.
+double FinishAfter(const StageModel& model, ClusterState from, int* best = nullptr) {
+  const int stage = model.stage_of(from.cluster);
+  if (stage == model.stage_count() - 1) return model.Finish(from.cluster)[from.state];
+  const int last = model.first(stage + 1);
+  double least = kUnreached;
+  for (int v = 0; v < model.states(last); ++v) {
+    const double cost =
+        model.Move(from.cluster, last)[from.state * model.states(last) + v] + model.Finish(last)[v];
+    if (cost >= least) continue;
+    least = cost;
+    if (best != nullptr) *best = v;
+  }
+  return least;
+}
+
 }  // namespace
 
 bool IsItemStage(const StageModel& model, int stage) {
-  if (!model.IsFree(stage)) return false;
-  for (int c = model.first(stage); c < model.first(stage + 1); ++c) {
-    if (!model.IsItem(c) || !model.Before(c).empty() || !model.After(c).empty()) return false;
-  }
-  return true;
+  return IsFreeOf(model, stage, [&](int c) { return model.IsItem(c); });
+}
+
+bool IsPortStage(const StageModel& model, int stage) {
+  int ports = 0;
+  const int most = std::min(kMostPorts, kMostPortsOfEach * model.size(stage));
+  return IsFreeOf(model, stage, [&](int c) {
+    ports += model.states(c);
+    return ports <= most && (model.IsItem(c) || model.IsContour(c));
+  });
 }
 
 PathTsp ItemStage::MakeTsp(const StageModel& model, int stage) {
@@ -34,8 +71,9 @@ PathTsp ItemStage::MakeTsp(const StageModel& model, int stage) {
   for (int c = model.first(stage); c < model.first(stage + 1); ++c) {
     for (int state = 0; state < model.states(c); ++state) {
       const int port = static_cast<int>(ports.size());
-      tsp.mate.push_back(model.states(c) == 1 ? port : port + 1 - 2 * state);
-      tsp.finish.push_back(model.Finish(c)[OtherEnd(model, c, state)]);
+      tsp.item.push_back(c - model.first(stage));
+      tsp.mate.push_back(port + OtherEnd(model, c, state) - state);
+      tsp.finish.push_back(FinishAfter(model, {c, OtherEnd(model, c, state)}));
       ports.push_back({c, state});
     }
   }
@@ -52,7 +90,8 @@ PathTsp ItemStage::MakeTsp(const StageModel& model, int stage) {
 
 ItemStage::ItemStage(const StageModel& model, int stage)
     : model_(model), first_cluster_(model.first(stage)), solver_(MakeTsp(model, stage)) {
-  assert(IsItemStage(model, stage) && stage == model.stage_count() - 1 && model.size(stage) >= 2);
+  assert(IsItemStage(model, stage) || IsPortStage(model, stage));
+  assert(model.size(stage) >= 2 && model.cluster_count() - model.first(stage + 1) <= 1);
   for (int c = first_cluster_; c < model.first(stage + 1); ++c) {
     first_.push_back(state_count_);
     state_count_ += model.states(c);
@@ -72,7 +111,7 @@ ItemStage::Best ItemStage::Solve(const std::vector<double>& start, double limit,
                                  const std::vector<ClusterState>& known, Budget& budget) {
   std::vector<int> path;
   for (const ClusterState& at : known) {
-    if (at.cluster >= first_cluster_) path.push_back(static_cast<int>(StateIndex(at)));
+    if (Has(at.cluster)) path.push_back(static_cast<int>(StateIndex(at)));
   }
   const PathTspSolver::Result result = solver_.Solve(start, limit, path, budget);
   Best best{result.lower_bound, {}, result.complete};
@@ -81,6 +120,13 @@ ItemStage::Best ItemStage::Solve(const std::vector<double>& start, double limit,
     const auto i = after - first_.begin() - 1;
     best.walk.push_back(
         {first_cluster_ + static_cast<int>(i), port - first_[static_cast<size_t>(i)]});
+  }
+  if (!best.walk.empty() && Has(model_.cluster_count() - 1)) return best;
+  if (!best.walk.empty()) {
+    const ClusterState from = best.walk.back();
+    ClusterState last{model_.cluster_count() - 1, 0};
+    FinishAfter(model_, {from.cluster, OtherEnd(model_, from.cluster, from.state)}, &last.state);
+    best.walk.push_back(last);
   }
   return best;
 }

@@ -1,4 +1,4 @@
-// The last stage of a model as a path TSP.
+// A stage of a model as a path TSP.
 
 #ifndef TRAVERSE_ENGINE_PROOF_WALKS_ITEM_STAGE_H_
 #define TRAVERSE_ENGINE_PROOF_WALKS_ITEM_STAGE_H_
@@ -16,15 +16,21 @@ namespace traverse {
 // point, in any order: what path_tsp.h can do.
 bool IsItemStage(const StageModel& model, int stage);
 
+// The same where contours of few points are among them, and not too many points in all: then
+// path_tsp.h is better at it than walks.
+bool IsPortStage(const StageModel& model, int stage);
+
 class ItemStage {
  public:
   struct Best {
     double lower_bound = 0;
-    std::vector<ClusterState> walk;  // of this stage; empty if none is cheaper than the limit
+    // From this stage on; empty if none is cheaper than the limit.
+    std::vector<ClusterState> walk;
     bool complete = false;
   };
 
-  // REQUIRES: IsItemStage, and it is the last stage, with at least two clusters.
+  // REQUIRES: IsItemStage or IsPortStage, at least two clusters, and at most one in all the stages
+  // that follow.
   ItemStage(const StageModel& model, int stage);
 
   // States of the stage are numbered from 0.
@@ -50,6 +56,9 @@ class ItemStage {
 
  private:
   static PathTsp MakeTsp(const StageModel& model, int stage);
+  bool Has(int cluster) const {
+    return cluster >= first_cluster_ && cluster < first_cluster_ + static_cast<int>(first_.size());
+  }
 
   const StageModel& model_;
   const int first_cluster_;

@@ -70,6 +70,7 @@ void StageModel::AddStage(const Plan& plan, const PlanStage& stage) {
         path != PlanStage::kGate && plan.paths[static_cast<size_t>(path)].kind == Path::Kind::kOpen;
     is_item_.push_back(open ? !plan.paths[static_cast<size_t>(path)].one_way
                             : visits_[cluster].size() == 1);
+    is_contour_.push_back(path != PlanStage::kGate && !open);
   }
   before_.resize(visits_.size());
   after_.resize(visits_.size());

@@ -64,6 +64,9 @@ class StageModel {
   // states are its ends, and it is left at the other one.
   bool IsItem(int cluster) const { return is_item_[static_cast<size_t>(cluster)] != 0; }
 
+  // Whether `cluster` is a contour, which is left where it was entered.
+  bool IsContour(int cluster) const { return is_contour_[static_cast<size_t>(cluster)] != 0; }
+
   // Whether `b`, of the stage of `a` or of the next one, may come right after `a`.
   bool CanFollow(int a, int b) const { return offset(a, b) != kNoMoves; }
 
@@ -131,6 +134,7 @@ class StageModel {
   std::vector<int> stage_of_;               // [cluster]
   std::vector<std::vector<Visit>> visits_;  // [cluster][state]
   std::vector<char> is_item_;               // [cluster]
+  std::vector<char> is_contour_;            // [cluster]
   std::vector<char> is_gate_;               // [cluster]
   std::vector<PlanStage::Gate> gates_;      // in clusters; inner ones first
   std::vector<char> is_free_;               // [stage]

@@ -35,12 +35,13 @@ class Proof {
     const int last = model_.stage_count() - 1;
     const bool branch =
         model_.size(last) >= options_.least_items_to_branch && IsItemStage(model_, last);
-    if (!branch) {
-      WalksAlone();
-    } else if (last == 0) {
+    if (CanBranchAlone()) {
       BranchAlone();
-    } else {
+      if (!result_.proven && !budget_.ExhaustedNow()) WalksAlone();
+    } else if (branch) {
       Together();
+    } else {
+      WalksAlone();
     }
     return std::move(result_);
   }
@@ -72,6 +73,13 @@ class Proof {
     if (cost >= result_.cost) return;
     result_.walk = walk;
     result_.cost = cost;
+  }
+
+  // Whether the first stage is all there is, but for a cluster that has to come last.
+  bool CanBranchAlone() const {
+    if (model_.size(0) < options_.least_items_to_branch) return false;
+    if (model_.cluster_count() - model_.size(0) > 1) return false;
+    return IsItemStage(model_, 0) || IsPortStage(model_, 0);
   }
 
   void WalksAlone() {

@@ -252,6 +252,19 @@ Plan EmptyChains(int n) {
   return plan;
 }
 
+// `n` contours of five points each, near each other: what branch and cut takes on.
+Plan Clusters(int n) {
+  Rng rng(4);
+  std::vector<Path> paths;
+  for (int i = 0; i < n; ++i) {
+    const double x = 300 * rng.Unit(), y = 300 * rng.Unit();
+    std::vector<Point> points;
+    for (int k = 0; k < 5; ++k) points.push_back({x + 40 * rng.Unit(), y + 40 * rng.Unit()});
+    paths.push_back(MakeContour(std::move(points)));
+  }
+  return AnyOrderPlan(std::move(paths));
+}
+
 struct Shape {
   std::string name;
   std::function<Plan(int)> make;
@@ -291,7 +304,9 @@ class Gaps : public ::testing::TestWithParam<std::string> {
     }
   }
 
- private:
+  double longest() const { return longest_; }
+  double after_cancel() const { return after_cancel_; }
+
   void RunOne(const Shape& shape, bool timed, int n, double seconds) {
     ASSERT_OK_AND_ASSIGN(std::unique_ptr<Strategy> strategy, MakeStrategy(GetParam(), {}));
     JobSpec spec;
@@ -319,6 +334,7 @@ class Gaps : public ::testing::TestWithParam<std::string> {
                 1000 * longest_, 1000 * after_cancel_);
   }
 
+ private:
   double longest_ = 0;
   double after_cancel_ = 0;
 };
@@ -329,6 +345,15 @@ TEST_P(Gaps, AreShort) { Run(0.01, 0.05, kMostGap, kMostGap); }
 // freeing them, takes longer.
 TEST_P(Gaps, DISABLED_AreShortInTheLargestLayers) { Run(1, 2, kMostLargeGap, kMostLargeEnd); }
 
+using GapsOfProofs = Gaps;
+
+TEST_P(GapsOfProofs, AreShort) {
+  RunOne({"Clusters", Clusters, 60}, false, 60, 2.5);
+  EXPECT_LT(longest(), kMostGap) << "seconds without an ask";
+  EXPECT_LT(after_cancel(), kMostGap) << "seconds to the end";
+}
+
+INSTANTIATE_TEST_SUITE_P(Exact, GapsOfProofs, ::testing::Values("exact"));
 INSTANTIATE_TEST_SUITE_P(All, Gaps,
                          ::testing::Values("none", "greedy", "ni2opt", "tabu", "exact", "auto"));
 

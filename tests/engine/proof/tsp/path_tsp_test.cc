@@ -20,7 +20,8 @@ struct Instance {
   std::vector<double> start;
 };
 
-// `items` with one or two ends in a square of side 100, some on a grid, so that there are ties.
+// `items` with one end, with two, or with a choice of up to three ports in a square of side 100,
+// some on a grid, so that there are ties.
 Instance RandomInstance(uint64_t seed, int items) {
   Rng rng(seed);
   const bool grid = rng.Below(3) == 0;
@@ -30,12 +31,13 @@ Instance RandomInstance(uint64_t seed, int items) {
   PathTsp& tsp = instance.tsp;
   for (int i = 0; i < items; ++i) {
     const int port = static_cast<int>(ends.size());
-    const bool two_ends = rng.Below(4) != 0;
-    tsp.mate.push_back(two_ends ? port + 1 : port);
-    ends.push_back({coordinate(), coordinate()});
-    if (!two_ends) continue;
-    tsp.mate.push_back(port);
-    ends.push_back({coordinate(), coordinate()});
+    const bool two_ends = rng.Below(3) != 0;
+    const int ports = two_ends ? 2 : rng.Between(1, 3);
+    for (int p = 0; p < ports; ++p) {
+      tsp.item.push_back(i);
+      tsp.mate.push_back(port + (two_ends ? 1 - p : p));
+      ends.push_back({coordinate(), coordinate()});
+    }
   }
   tsp.ports = static_cast<int>(ends.size());
   const bool has_finish = rng.Below(2) == 0;
@@ -57,21 +59,38 @@ double CostOf(const Instance& instance, const std::vector<int>& path) {
   return cost + instance.tsp.finish[static_cast<size_t>(exit(path.back()))];
 }
 
-// Tries all orders and directions.
-double BestCost(const Instance& instance) {
+// The first port of each item, in the order given.
+std::vector<int> FirstPorts(const PathTsp& tsp) {
   std::vector<int> firsts;
-  for (int p = 0; p < instance.tsp.ports; ++p) {
-    if (instance.tsp.mate[static_cast<size_t>(p)] >= p) firsts.push_back(p);
+  for (int p = 0; p < tsp.ports; ++p) {
+    if (p == 0 || tsp.item[static_cast<size_t>(p)] != tsp.item[static_cast<size_t>(p) - 1]) {
+      firsts.push_back(p);
+    }
   }
+  return firsts;
+}
+
+// The least cost with items from `i` on entered at any of their ports.
+double BestEntries(const Instance& instance, std::vector<int>& path, size_t i) {
+  if (i == path.size()) return CostOf(instance, path);
+  double best = kUnreached;
+  const int first = path[i];
+  const int item = instance.tsp.item[static_cast<size_t>(first)];
+  for (int p = first; p < instance.tsp.ports && instance.tsp.item[static_cast<size_t>(p)] == item;
+       ++p) {
+    path[i] = p;
+    best = std::min(best, BestEntries(instance, path, i + 1));
+  }
+  path[i] = first;
+  return best;
+}
+
+// Tries all orders, directions and ports.
+double BestCost(const Instance& instance) {
+  std::vector<int> firsts = FirstPorts(instance.tsp);
   double best = kUnreached;
   do {
-    for (int bits = 0; bits < 1 << firsts.size(); ++bits) {
-      std::vector<int> path = firsts;
-      for (size_t i = 0; i < path.size(); ++i) {
-        if (((bits >> i) & 1) != 0) path[i] = instance.tsp.mate[static_cast<size_t>(path[i])];
-      }
-      best = std::min(best, CostOf(instance, path));
-    }
+    best = std::min(best, BestEntries(instance, firsts, 0));
   } while (std::next_permutation(firsts.begin(), firsts.end()));
   return best;
 }
@@ -132,12 +151,43 @@ TEST(PathTspSolver, IsAskedAgainWithOtherStarts) {
   }
 }
 
+// Clusters of five points in the plane, as GTSPLIB has them, are within reach at once; walks of
+// half as much at each of two points of a cluster are what generalised subtours forbid.
+TEST(PathTspSolver, ProvesClustersOfPoints) {
+  Rng rng(5);
+  Instance instance;
+  PathTsp& tsp = instance.tsp;
+  std::vector<Point> points;
+  for (int item = 0; item < 30; ++item) {
+    const Point middle{100 * rng.Unit(), 100 * rng.Unit()};
+    for (int i = 0; i < 5; ++i) {
+      tsp.item.push_back(item);
+      tsp.mate.push_back(static_cast<int>(points.size()));
+      points.push_back({middle.x + 20 * rng.Unit(), middle.y + 20 * rng.Unit()});
+    }
+  }
+  tsp.ports = static_cast<int>(points.size());
+  for (const Point& p : points) {
+    for (const Point& q : points) tsp.cost.push_back(Distance(p, q));
+    tsp.finish.push_back(0);
+    instance.start.push_back(Distance(p, {0, 0}));
+  }
+  const double given = CostOf(instance, FirstPorts(tsp));
+  PathTspSolver solver(tsp);
+  Budget budget;
+
+  const PathTspSolver::Result result = solver.Solve(instance.start, given, {}, budget);
+  const double root = PathTspSolver(tsp).RootBound(instance.start, given, budget);
+
+  EXPECT_TRUE(result.complete);
+  EXPECT_NEAR(result.lower_bound, result.cost, 1e-6 * result.cost);
+  EXPECT_NEAR(CostOf(instance, result.path), result.cost, 1e-9 * result.cost);
+  EXPECT_GT(root, 0.97 * result.cost);
+}
+
 TEST(PathTspSolver, BoundsWhatItCannotSolveInTime) {
   const Instance instance = RandomInstance(3, 120);
-  std::vector<int> known;
-  for (int p = 0; p < instance.tsp.ports; ++p) {
-    if (instance.tsp.mate[static_cast<size_t>(p)] >= p) known.push_back(p);
-  }
+  const std::vector<int> known = FirstPorts(instance.tsp);
   const double given = CostOf(instance, known);
   PathTspSolver solver(instance.tsp);
   CancelToken cancel;

@@ -56,13 +56,14 @@ TEST(ProveByStages, WalksProveWhatBruteForceFinds) {
 TEST(ProveByStages, BranchAndCutProvesWhatBruteForceFinds) {
   for (uint64_t seed = 1; seed <= 240; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
-    // Plans that end with a stage of items: contours with one point, or open paths.
+    // Plans that end with a stage of items: contours with one point, or open paths; or that are one
+    // stage of contours with a choice.
     const bool one_stage = seed % 3 == 0;
     OwnedProblem owned =
         RandomProblem(seed, {.shape = one_stage ? PlanShape::kFlatContours : PlanShape::kSequential,
                              .min_paths = 3,
                              .max_paths = 7,
-                             .max_vertices = one_stage ? 1 : 5});
+                             .max_vertices = one_stage && seed % 2 == 0 ? 1 : 5});
     Plan plan = owned.plan();
     for (Path& path : plan.paths) path.one_way = false;
     OwnedProblem reversible(std::move(plan), owned.problem.start);
@@ -70,6 +71,31 @@ TEST(ProveByStages, BranchAndCutProvesWhatBruteForceFinds) {
     reversible.problem.cost = owned.problem.cost;
 
     ExpectProves(reversible, {.walks = {.first_memory = 2}, .least_items_to_branch = 2});
+  }
+}
+
+// As closed jobs have it: everything in any order, and then the point where it began.
+TEST(ProveByStages, BranchAndCutKnowsWhatComesLast) {
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const OwnedProblem owned =
+        RandomProblem(seed, {.shape = PlanShape::kFlatContours, .min_paths = 3, .max_paths = 6});
+    Plan plan = owned.plan();
+    const int last = static_cast<int>(plan.paths.size());
+    Path end = plan.paths.back();
+    if (seed % 2 == 0) end.points.resize(1);
+    plan.paths.push_back(std::move(end));
+    plan.nodes = {{PlanNode::Kind::kInOrder, 0, {1, last + 2}, {}},
+                  {PlanNode::Kind::kAnyOrder, 0, {}, {}}};
+    for (int path = 0; path <= last; ++path) {
+      if (path < last) plan.nodes[1].children.push_back(path + 2);
+      plan.nodes.push_back({PlanNode::Kind::kPath, path, {}, {}});
+    }
+    OwnedProblem closed(std::move(plan), owned.problem.start);
+    closed.problem.finish = owned.problem.finish;
+    closed.problem.cost = owned.problem.cost;
+
+    ExpectProves(closed, {.walks = {.first_memory = 2}, .least_items_to_branch = 2});
   }
 }
 

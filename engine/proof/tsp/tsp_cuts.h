@@ -1,0 +1,45 @@
+// The inequalities that a fractional solution of a path TSP (path_tsp.h) violates.
+
+#ifndef TRAVERSE_ENGINE_PROOF_TSP_TSP_CUTS_H_
+#define TRAVERSE_ENGINE_PROOF_TSP_TSP_CUTS_H_
+
+#include <utility>
+#include <vector>
+
+#include "engine/base/budget.h"
+#include "engine/proof/tsp/support_graph.h"
+#include "engine/proof/tsp/tsp_nodes.h"
+
+namespace traverse {
+
+// A move between two nodes, a < b.
+struct TspMove {
+  int a = 0;
+  int b = 0;
+};
+
+// lower <= sum of x over moves, each with its coefficient, + sum over ports <= upper.
+struct TspCut {
+  bool is_blossom = false;
+  CutSide side;                               // [node] S or H
+  std::vector<std::pair<int, int>> odd;       // of a blossom, groups of F's moves: first < second
+  std::vector<std::pair<int, double>> ports;  // with a choice, and their coefficients
+  double lower = 0;
+  double upper = 0;
+
+  double Coefficient(const TspNodes& nodes, const TspMove& move) const;
+};
+
+// Values of the moves and ports that are not 0.
+struct TspSolution {
+  std::vector<std::pair<TspMove, double>> moves;
+  std::vector<double> ports;  // [port] 1 without a choice
+};
+
+// Cuts that are violated by more than `violation`, about `most`; fewer if the budget ends.
+std::vector<TspCut> ViolatedCuts(const TspNodes& nodes, const TspSolution& solution,
+                                 double violation, int most, Budget& budget);
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_ENGINE_PROOF_TSP_TSP_CUTS_H_
