@@ -156,6 +156,7 @@ void Interpreter::FollowG(Step& step) {
     case 20:
     case 21:
       step.kind = SwitchMode(state_.inches, step.command.number == 20);
+      if (step.kind == StepKind::kModeChange) SwitchUnits();
       return;
     case 90:
     case 91:
@@ -172,6 +173,16 @@ StepKind Interpreter::SwitchMode(bool& mode, bool value) {
   const bool changed = mode != value;
   mode = value;
   return changed ? StepKind::kModeChange : StepKind::kStay;
+}
+
+// The head stays where it is, and the register as well: words count in another unit from here on.
+void Interpreter::SwitchUnits() {
+  const long double scale = state_.inches ? 1 / 25.4L : 25.4L;
+  for (Decimal* value : {&state_.at.x, &state_.at.y, &state_.at.z, &state_.e, &state_.feed,
+                         &state_.retracted, &state_.deepest}) {
+    const long double scaled = static_cast<long double>(*value) * scale;
+    *value = std::clamp<Decimal>(std::llroundl(scaled), -kDecimalMax, kDecimalMax);
+  }
 }
 
 void Interpreter::FollowM(Step& step) {

@@ -126,6 +126,7 @@ class Interpreter {
   // `still`: the head does not move in XY.
   void FollowFilament(Decimal filament, bool still);
   static StepKind SwitchMode(bool& mode, bool value);
+  void SwitchUnits();
 
   std::string_view text_;
   Offset next_;

@@ -117,6 +117,17 @@ void VerifyMachine::Mode(bool& mode, bool value, VerifyLine& line) {
   mode = value;
 }
 
+// Where the head is, and what the register says, is the same in other units.
+void VerifyMachine::SwitchUnits(bool inches, VerifyLine& line) {
+  if (inches != inches_) {
+    const double scale = inches ? 1 / 25.4 : 25.4;
+    for (Micro* value : {&at_[0], &at_[1], &at_[2], &e_, &feed_, &pulled_, &deepest_}) {
+      *value = std::llround(static_cast<double>(*value) * scale);
+    }
+  }
+  Mode(inches_, inches, line);
+}
+
 void VerifyMachine::DoG(int number, VerifyLine& line) {
   const CommandWords words(WordsOf(line.text));
   switch (number) {
@@ -144,7 +155,7 @@ void VerifyMachine::DoG(int number, VerifyLine& line) {
       return Mode(plane_xy_, number == 17, line);
     case 20:
     case 21:
-      return Mode(inches_, number == 20, line);
+      return SwitchUnits(number == 20, line);
     case 90:
     case 91:
       return Mode(relative_, number == 91, line);

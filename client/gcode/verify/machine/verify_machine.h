@@ -93,6 +93,7 @@ class VerifyMachine {
   bool IsCircular(const CommandWords& words, const std::array<Micro, 3>& from) const;
   void NoteMotion(int number, uint32_t words, const std::array<Micro, 3>& from, Micro filament);
   void Mode(bool& mode, bool value, VerifyLine& line);
+  void SwitchUnits(bool inches, VerifyLine& line);
   void Fence(VerifyLine& line, LineRole role);
 
   std::string_view rest_;

@@ -141,6 +141,16 @@ TEST(Interpreter, ArcsNeedACenter) {
   EXPECT_EQ(LastKind("M83\nG2 X5 Y5 I2 J3 E-.2"), StepKind::kWipe);
 }
 
+TEST(Interpreter, HeadAndRegisterStayWhereTheyAreWhenUnitsChange) {
+  Interpreter interpreter("M82\nG20\nG1 X2 Y1 Z.1 E.5 F100\nG21\n");
+  for (Step step; interpreter.Next(step);) continue;
+  const MachineState& state = interpreter.state();
+  EXPECT_EQ(state.at.x, 508 * kDecimalOne / 10);
+  EXPECT_EQ(state.at.z, 254 * kDecimalOne / 100);
+  EXPECT_EQ(state.e, 127 * kDecimalOne / 10);
+  EXPECT_EQ(state.feed, 2540 * kDecimalOne);
+}
+
 TEST(Interpreter, CoordinatesBeyondReasonAreNotFollowed) {
   EXPECT_EQ(LastKind("G1 X31000 E1"), StepKind::kUnknown);
   EXPECT_EQ(LastKind("M83\nG1 X1 E2000000"), StepKind::kUnknown);

@@ -62,6 +62,13 @@ TEST(VerifyGcode, ATextPrintsWhatItPrints) {
   EXPECT_EQ(Difference(kPrusa, testing::WithCrLf(kPrusa)), "");
 }
 
+// The second line after the change pushes 1 mm, whether its register counts on or anew.
+TEST(VerifyGcode, RegistersCountOnInOtherUnits) {
+  const std::string head = "M82\nG1 F100\nG20\nG1 X1 Y0 E.1 F100\nG21\n";
+  EXPECT_EQ(Difference(head + "G1 X30 Y0 E3.54\n", head + "G92 E0\nG1 X30 Y0 E1\n"), "");
+  EXPECT_NE(Difference(head + "G1 X30 Y0 E3.54\n", head + "G92 E0\nG1 X30 Y0 E3.44\n"), "");
+}
+
 TEST(VerifyGcode, NamesBothLines) {
   const std::string changed = With(kPrusa, "G1 X40 Y30 E.4", "G1 X40 Y30 E.5");
 
