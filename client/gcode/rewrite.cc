@@ -9,6 +9,7 @@
 #include "client/gcode/choose/layer_choice.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/read/reader.h"
+#include "client/gcode/text/text.h"
 #include "client/gcode/verify/verifier.h"
 #include "client/gcode/write/gcode_out.h"
 
@@ -31,10 +32,11 @@ double Percent(double before, double after) {
   return before > 0 ? 100 * (after - before) / before : 0;
 }
 
-// Where the head of the file ends: its comments, with blank lines between them.
+// Where the head of the file ends: its comments, with blank lines between them. The mark of UTF-8
+// stays in front of whatever it stands in front of.
 Offset EndOfHead(std::string_view text) {
-  Offset end = 0;
-  for (Offset next = 0; next < text.size();) {
+  Offset end = StartsWith(text, "\xEF\xBB\xBF") ? LineAt(text, 0).next : 0;
+  for (Offset next = end; next < text.size();) {
     const Line line = LineAt(text, next);
     next = line.next;
     const std::string_view content = line.Text(text);

@@ -357,6 +357,17 @@ TEST(RewriteGcode, LineEndsSurvive) {
   }
 }
 
+TEST(RewriteGcode, TheMarkOfUtf8StaysAtTheBeginning) {
+  const std::string bom = "\xEF\xBB\xBF";
+  for (const std::string& text : {bom + kZigzag, bom + std::string(kZigzag).substr(51)}) {
+    const auto rewrite = RewriteGcode(*Read(text), {{kBetter}}, Options());
+
+    ASSERT_TRUE(rewrite.ok()) << rewrite.status();
+    EXPECT_EQ(rewrite->layers_changed, 1);
+    EXPECT_THAT(rewrite->text, StartsWith(bom));
+  }
+}
+
 // Random damage to small files: what can be read gives a file that prints the same, or a reason
 // why there is none.
 TEST(RewriteGcode, DamagedFilesStayEquivalentOrAsTheyAre) {
