@@ -109,6 +109,10 @@ struct GcodeFile {
   gcode::SetterTable setters;  // also holds labels of objects
   gcode::StateTable states;
 
+  // Behind the last line of the start script: the first mark of a layer, or in files without such
+  // marks the last line near the beginning that switches modes or waits for heat; 0 if there is none.
+  gcode::Offset script_end = 0;
+
   // Begins of the M73 lines, ascending.
   std::vector<gcode::Offset> progress;
 

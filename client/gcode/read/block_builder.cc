@@ -182,10 +182,11 @@ void BlockBuilder::NoteScript(const Step& step) {
                       c.Is('M', 82) || c.Is('M', 83) || c.Is('M', 109) || c.Is('M', 190);
   if (step.kind == StepKind::kLayerMark) {
     layers_marked_ = true;
-    scripted_ = file_.blocks.size();
-  } else if (starts && file_.blocks.size() <= kMostPurges) {
-    scripted_ = file_.blocks.size();
+  } else if (!starts || file_.blocks.size() > kMostPurges) {
+    return;
   }
+  scripted_ = file_.blocks.size();
+  file_.script_end = step.line.next;
 }
 
 uint32_t BlockBuilder::CurrentState() {
@@ -360,8 +361,11 @@ void BlockBuilder::Finish() {
   if (file_.blocks.empty()) return;
   file_.layers.back().end_block = static_cast<uint32_t>(file_.blocks.size());
   // A first mark that most of the print stands before is none.
-  if (scripted_ * 2 > file_.blocks.size()) return;
-  for (size_t i = 0; i < scripted_; ++i) file_.blocks[i].flags |= kBlockScript;
+  if (scripted_ * 2 > file_.blocks.size()) {
+    file_.script_end = 0;
+    return;
+  }
+  for (size_t i = 0; i < scripted_; ++i) file_.blocks[i].flags |= kBlockScript | kBlockPinned;
 }
 
 }  // namespace traverse::gcode

@@ -50,6 +50,8 @@ void NoteLift(Link& link) {
   const LinkStep& arrival = link.steps[static_cast<size_t>(link.arrival)];
   const Decimal top = std::max(arrival.from.z, arrival.to.z);
   link.lift = std::max<Decimal>(0, top - std::max(link.z_before, link.z_behind));
+  link.top = std::max(top, link.z_behind);
+  link.sinks = link.lift == 0 && arrival.to.z < arrival.from.z && arrival.to.z == link.z_behind;
   for (size_t i = link.fixed; i <= static_cast<size_t>(link.arrival); ++i) {
     const LinkStep& step = link.steps[i];
     if (step.kind == StepKind::kTravel && step.to.z > step.from.z) link.ramp_mm += step.way_mm;
@@ -86,7 +88,8 @@ Link ReadLink(const GcodeFile& file, size_t index) {
       link.travel_state = state;
     }
     link.steps.push_back(added);
-    if (added.kind == StepKind::kUnknown || added.kind == StepKind::kModeChange) {
+    const bool of_script = step.line.begin < file.script_end;
+    if (added.kind == StepKind::kUnknown || added.kind == StepKind::kModeChange || of_script) {
       link.fixed = link.steps.size();
       link.behind_fixed = {interpreter.state(), state};
       link.arrival = -1;

@@ -50,6 +50,9 @@ struct Link {
   // The arrival leads, or begins, this much above both of them.
   Decimal lift = 0;
 
+  // The arrival itself leads down to what follows, which lies lower than what was printed before.
+  bool sinks = false;
+
   // Moves in XY that rise to there as well: how long they are, and whether the arrival, level,
   // follows them. 0: it rises by moves of Z alone, or not at all.
   double ramp_mm = 0;
@@ -69,8 +72,8 @@ struct Link {
   bool wipes = false;
   bool departs = false;  // steps before the arrival begin with a short move away from the path
 
-  // The height at which the arrival leads.
-  Decimal Top() const { return std::max(z_before, z_behind) + lift; }
+  // The height at which the arrival leads, or that of what follows if it leads lower.
+  Decimal top = 0;
 };
 
 // Link `index` of the file; 0 < index < file.blocks.size().

@@ -22,11 +22,13 @@ struct WipeForm {
   double way_mm = 0;
   Decimal pulled = 0;
   Decimal feed = 0;
+  Decimal still_feed = 0;  // of what is pulled at a standstill; 0: nothing is
 };
 
 WipeForm FormOf(const Link& link) {
   WipeForm form;
   for (const LinkStep& step : link.steps) {
+    if (step.kind == StepKind::kFilament && step.filament < 0) form.still_feed = step.feed;
     if (step.kind != StepKind::kWipe) continue;
     form.way_mm += step.way_mm;
     form.pulled -= step.filament;
@@ -190,10 +192,14 @@ void LinkWriter::WriteWipe(const PlacedPath& path, const Link& form) {
   for (size_t i = 0; i < way.size(); ++i) {
     length += LengthXy(i == 0 ? path.last() : way[i - 1], way[i]);
   }
+  // Rounding makes a way no shorter.
+  constexpr double kAsLong = 0.99;
+  const bool shorter = wipe.still_feed > 0 && length < kAsLong * wipe.way_mm;
+  if (shorter) length = wipe.way_mm;
   Decimal left = wipe.pulled;
   for (size_t i = 0; i < way.size(); ++i) {
     const double share = LengthXy(i == 0 ? path.last() : way[i - 1], way[i]) / length;
-    const bool last = i + 1 == way.size();
+    const bool last = i + 1 == way.size() && !shorter;
     // Rounded as slicers write E: to hundredths of a micrometre.
     constexpr Decimal kStep = kDecimalOne / 100'000;
     const Decimal pull =
@@ -202,7 +208,7 @@ void LinkWriter::WriteWipe(const PlacedPath& path, const Link& form) {
     left -= pull;
     out_.Segment("G1", way[i], true, -pull, wipe.feed, {}, {});
   }
-  if (left > 0) out_.Pull(left, wipe.feed);
+  if (left > 0) out_.Pull(left, shorter ? wipe.still_feed : wipe.feed);
 }
 
 // Writes a step that moves filament or Z alone; Z relative to the height of what is printed.
@@ -256,6 +262,7 @@ void LinkWriter::WriteTravel(const LinkRequest& request, const Link& form, Decim
   top = std::max(top, z);
   std::vector<Position> way = WayTo(request);
   for (Position& at : way) at.z = top;
+  if (form.sinks) way.back().z = to.z;
   if (top > z && !(rise.ramp_mm > 0)) {
     out_.Lift(top, form.lift_feed > 0 ? form.lift_feed : step.feed);
   } else if (top > z) {
@@ -308,10 +315,10 @@ void LinkWriter::WriteBoundary(const LinkRequest& request) {
     if (static_cast<int>(i) != link.arrival) {
       WriteBoundaryStep(request, link, i);
     } else if (form) {
-      WriteTravel(request, link, std::max(link.Top(), request.to->first().z + form->lift), *form);
+      WriteTravel(request, link, std::max(link.top, request.to->first().z + form->lift), *form);
       WriteArrival(request, *form);
     } else {
-      WriteTravel(request, link, link.Top(), link);
+      WriteTravel(request, link, link.top, link);
     }
   }
   const uint32_t to = request.to->placement().block;
