@@ -26,6 +26,7 @@ constexpr RuleWords kRules[] = {
     {"progress", "the sequence of M73 is the same"},
     {"scripts", "nothing of the scripts comes between paths"},
     {"path_ends", "what goes on along the end of a path stays with it"},
+    {"bounds", "no way leads out of the room that the original moves in"},
 };
 static_assert(std::size(kRules) == static_cast<size_t>(VerifyRule::kCount));
 

@@ -32,6 +32,7 @@ enum class VerifyRule : uint8_t {
   kProgress,     // M73
   kScripts,      // nothing of them between paths
   kPathEnds,     // moves that go on along a path
+  kBounds,       // the room that the moves lie in
   kCount,
 };
 

@@ -74,6 +74,24 @@ std::optional<VerifyBreak> CompareEnds(const Side& original, const Side& optimis
   return std::nullopt;
 }
 
+// True if all that is done in section `index` is as a script has it: before the first layer,
+// between two lines that are not known, or behind the print.
+bool IsScript(const Sections& cut, size_t index, size_t end_of_print) {
+  if (index < cut.of_script) return true;
+  const Section& section = cut.sections[index];
+  if (section.deposits.count > 0 || index == 0) return false;
+  return (section.fixed && cut.sections[index - 1].fixed) || index > end_of_print;
+}
+
+// The section that ends with the first command behind the last deposit.
+size_t EndOfPrint(const Sections& cut) {
+  size_t end = cut.sections.size();
+  while (end > 0 && cut.sections[end - 1].deposits.count == 0) --end;
+  if (end > 0) --end;
+  while (end < cut.sections.size() && !cut.sections[end].command) ++end;
+  return end;
+}
+
 }  // namespace
 
 std::optional<VerifyBreak> FirstDifference(const Side& original, const Side& optimised,
@@ -81,12 +99,21 @@ std::optional<VerifyBreak> FirstDifference(const Side& original, const Side& opt
   const std::vector<Section>& sections_was = original.cut.sections;
   const std::vector<Section>& sections_is = optimised.cut.sections;
   const size_t common = std::min({sections_was.size(), sections_is.size(), end});
+  const size_t end_of_print = whole ? EndOfPrint(original.cut) : SIZE_MAX;
   for (size_t i = first; i < common; ++i) {
     const Section& was = sections_was[i];
     const Section& is = sections_is[i];
     if (was.deposits != is.deposits) return MultisetDifference(original, optimised, i, true);
     if (auto ends = CompareEnds(original, optimised, i)) return ends;
     if (was.notes != is.notes) return MultisetDifference(original, optimised, i, false);
+    if (was.moves != is.moves && IsScript(original.cut, i, end_of_print)) {
+      return VerifyBreak{
+          VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
+          absl::StrFormat("%s:%d: lines %d to %d, which are of a script, move otherwise than lines "
+                          "%d to %d of %s",
+                          optimised.name, is.first_line, is.first_line, is.last_line,
+                          was.first_line, was.last_line, original.name)};
+    }
     if (is.lowest < was.lowest) {
       return VerifyBreak{
           VerifyRule::kSamePrint, was.first_line, is.first_line, -1,

@@ -9,9 +9,19 @@ namespace {
 // Stands for a line that ends the last section: what holds there has to agree as well.
 constexpr uint64_t kEndOfText = 1;
 
+uint64_t DigestOf(const Motion& motion) {
+  uint64_t digest = Mix(static_cast<uint64_t>(motion.number), static_cast<uint64_t>(motion.feed));
+  for (size_t axis = 0; axis < 3; ++axis) {
+    digest = Mix(digest, static_cast<uint64_t>(motion.from[axis]));
+    digest = Mix(digest, static_cast<uint64_t>(motion.to[axis]));
+  }
+  return Mix(digest, static_cast<uint64_t>(motion.filament));
+}
+
 }  // namespace
 
-SectionCutter::SectionCutter(std::string_view ignored) : ignored_(ignored) {
+SectionCutter::SectionCutter(std::string_view ignored, bool marked)
+    : ignored_(ignored), in_script_(marked) {
   section_.first_line = section_.first_note = 1;
 }
 
@@ -25,6 +35,9 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
     cut.before = true;
   }
   last_line_ = line.number;
+  if (line.moves && (in_script_ || section_.deposits.count == 0)) {
+    section_.moves = Mix(section_.moves, DigestOf(machine.motion()));
+  }
   if (line.travels) section_.lowest = std::min(section_.lowest, machine.z());
   switch (line.role) {
     case LineRole::kDeposit:
@@ -43,6 +56,7 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
     case LineRole::kFence:
     case LineRole::kFixed:
       Close(machine, line.number, line.digest, line.role == LineRole::kFixed);
+      cut_.sections.back().command = line.text.front() != ';';
       cut.behind = true;
       break;
     case LineRole::kNothing:
@@ -82,6 +96,7 @@ void SectionCutter::Close(const VerifyMachine& machine, size_t last_line, uint64
   // A change of height is no line: what holds there may still change before it prints.
   if (fence != 0) section_.fan = machine.fan();
   cut_.sections.push_back(section_);
+  if (in_script_) cut_.of_script = cut_.sections.size();
   section_ = Section{};
   section_.first_line = section_.first_note = last_line + 1;
 }

@@ -41,6 +41,8 @@ struct Section {
   size_t first_note = 0;  // behind a change of height they are counted from the last deposit on
   size_t last_note = 0;
   Micro lowest = INT64_MAX;  // height of all moves in XY
+  uint64_t moves = 0;    // of those that are no deposits, in their order, before the first deposit
+  bool command = false;  // it ends with a command
 
   // How it ends: with a line, or with a change of height (digest 0), or with the text.
   uint64_t fence = 0;
@@ -54,6 +56,7 @@ struct Section {
 
 struct Sections {
   std::vector<Section> sections;
+  size_t of_script = 0;  // the first ones, before the first mark of a layer
 };
 
 // Cuts a text, line by line; comments that begin with `ignored` are left out.
@@ -65,10 +68,14 @@ class SectionCutter {
     bool behind = false;  // one ends with it
   };
 
-  explicit SectionCutter(std::string_view ignored);
+  // `marked`: what stands before the first mark of a layer is a script.
+  SectionCutter(std::string_view ignored, bool marked);
 
   Cut Take(const VerifyLine& line, const VerifyMachine& machine);
   void Finish(const VerifyMachine& machine);
+
+  // What follows is no start script.
+  void EndScript() { in_script_ = false; }
 
   // Index of the section that the next line belongs to.
   uint32_t open_section() const { return static_cast<uint32_t>(cut_.sections.size()); }
@@ -86,6 +93,7 @@ class SectionCutter {
   DigestSet loose_notes_;  // since the last deposit
   size_t last_line_ = 0;
   size_t last_deposit_ = 0;
+  bool in_script_;
   Micro height_ = 0;
   bool has_height_ = false;
 };

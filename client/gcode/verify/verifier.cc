@@ -115,7 +115,9 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
   CheckSeam(layer, context_, findings);
   CheckOpenWays(layer, findings);
   ObserveLifts(layer, findings);
+  ObserveHeights(layer, findings);
   ObserveRetractions(layer, findings);
+  ObserveFarMoves(layer, findings);
   ObserveSpeeds(layer, findings);
   CheckWipes(layer, findings);
   CheckCommands(layer, findings);
@@ -125,8 +127,11 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
 void Verifier::CheckChunk() {
   const size_t layers = std::min(chunk_was_.layers.size(), chunk_is_.layers.size());
   std::vector<LayerFindings> found(layers);
-  ParallelFor(layers, threads_,
-              [&](size_t i) { CheckLayer(LayerPair(chunk_was_, chunk_is_, i), found[i]); });
+  ParallelFor(layers, threads_, [&](size_t i) {
+    const LayerPair layer(chunk_was_, chunk_is_, i);
+    CheckLayer(layer, found[i]);
+    if (!more_ && i + 1 == layers) ObserveLastRetraction(layer, found[i]);
+  });
   for (size_t i = 0; i < layers; ++i) {
     const TraceSection& section = chunk_is_.sections[chunk_is_.layers[i].first_section];
     layer_lines_.push_back(chunk_is_.LineOf(chunk_is_.paths[section.first_path]));
@@ -134,6 +139,9 @@ void Verifier::CheckChunk() {
     seen_is_.Append(found[i].is);
     findings_.insert(findings_.end(), found[i].breaks.begin(), found[i].breaks.end());
   }
+  ObserveBounds(chunk_was_, seen_was_.box);
+  seen_was_.deposit_accelerations.insert(chunk_was_.accelerations.begin(),
+                                         chunk_was_.accelerations.end());
   CheckStandstill(chunk_was_, chunk_is_, findings_);
   CheckSetBacks(chunk_was_, chunk_is_, findings_);
   const auto append = [](const std::vector<Progress>& from, std::vector<Progress>& to) {
@@ -150,6 +158,8 @@ void Verifier::CheckChunk() {
 void Verifier::Compare(std::vector<Finding>& breaks) const {
   CompareProgress(progress_was_, progress_is_, breaks);
   CompareLifts(seen_was_, seen_is_, breaks);
+  CompareHeights(seen_was_, seen_is_, breaks);
+  CompareBounds(seen_was_, seen_is_, breaks);
   CompareRetractions(seen_was_, seen_is_, breaks);
   CompareSpeeds(seen_was_, seen_is_, breaks);
   CompareWipes(seen_was_, seen_is_, breaks);

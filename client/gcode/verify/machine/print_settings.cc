@@ -139,6 +139,7 @@ void PrintSettings::Renew() {
     acceleration_digest_ = Mix(acceleration_digest_, values_[i]);
   }
   acceleration_digest_ = Mix(acceleration_digest_, values_[kAccelTravel]);
+  acceleration_digest_ = Mix(acceleration_digest_, values_[kAccelRetract]);
   changed_ = false;
 }
 

@@ -1,4 +1,5 @@
-// The direction of open walls, overhanging loops and outer loops is as sliced, but under `free`.
+// The direction of open walls, overhanging loops and outer loops is as sliced, but under `free`;
+// and that of lines of ironing and of monotonic surfaces.
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/rules/rules.h"
@@ -8,14 +9,19 @@ namespace traverse::gcode {
 void CheckDirection(const LayerPair& layer, const RuleContext& context, LayerFindings& findings) {
   if (context.permissions.policy == VerifyPermissions::Policy::kFree) return;
   for (const Visit& visit : layer.visits()) {
-    if (visit.forward || !layer.IsWall(visit.path)) continue;
+    if (visit.forward) continue;
     const TracePath& path = layer.was().paths[visit.path];
-    if (layer.Closed(visit.path) && !layer.Outer(visit.path) && !path.overhangs) continue;
-    findings.breaks.push_back(
-        {VerifyRule::kDirection, layer.was().LineOf(path),
-         layer.is().segments[visit.first_segment].line, layer.index(),
-         absl::StrFormat("this %s is printed the other way round",
-                         std::string(PathClassName(layer.ClassOf(visit.path))))});
+    const PathClass path_class = layer.ClassOf(visit.path);
+    const bool of_surface = path_class == PathClass::kIroning ||
+                            (path_class == PathClass::kTop && context.settings.monotonic_top) ||
+                            (path_class == PathClass::kBottom && context.settings.monotonic_bottom);
+    if (!of_surface && !layer.IsWall(visit.path)) continue;
+    const bool may_turn = of_surface || (!layer.Outer(visit.path) && !path.overhangs);
+    if (layer.Closed(visit.path) && may_turn) continue;
+    findings.breaks.push_back({VerifyRule::kDirection, layer.was().LineOf(path),
+                               layer.is().segments[visit.first_segment].line, layer.index(),
+                               absl::StrFormat("this %s is printed the other way round",
+                                               std::string(PathClassName(path_class)))});
   }
 }
 

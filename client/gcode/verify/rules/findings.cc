@@ -32,6 +32,9 @@ void Observations::Append(const Observations& other) {
   }
   AppendSeen(other.signatures, signatures);
   AppendSeen(other.heights, heights);
+  AppendSeen(other.rises, rises);
+  lowest.insert(lowest.end(), other.lowest.begin(), other.lowest.end());
+  farthest.insert(farthest.end(), other.farthest.begin(), other.farthest.end());
   script_signatures.insert(other.script_signatures.begin(), other.script_signatures.end());
   lifts.Append(other.lifts);
   cycles.insert(cycles.end(), other.cycles.begin(), other.cycles.end());

@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_RULES_FINDINGS_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_RULES_FINDINGS_H_
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -59,22 +60,53 @@ struct LiftLog {
   void Append(const LiftLog& other);
 };
 
+// How low a way leads beside the heights of what it connects.
+enum class WayRise : uint8_t { kLevel, kUp, kDown, kCount };
+
+struct LowestWay {
+  float above_mm = 0;  // the higher one of the two heights; less than 0: below it
+  uint32_t line = 0;
+  int64_t layer = -1;
+  WayRise rise = WayRise::kLevel;
+};
+
 // Filament pulled back, and what undoes it.
 struct RetractionCycle {
   uint64_t tool = 0;
   Micro pulled = 0;
   Micro pushed = 0;
   bool firmware = false;
-  bool early = false;  // pushed before the way is done
+  bool early = false;        // pushed before the way is done
+  bool pushed_high = false;  // above what is printed on either side
+  bool pulled_high = false;
   bool known = false;  // all its moves are moves of the original
   uint32_t line = 0;
   int64_t layer = -1;
 };
 
 struct WipeDeviation {
-  float off_mm = 0;
+  float off_mm = 0;     // where its moves end
+  float astray_mm = 0;  // halfway
+  float pull = 0;       // filament pulled back per mm of it
   uint32_t line = 0;
   uint32_t original_line = 0;
+  int64_t layer = -1;
+};
+
+struct Box {
+  Point low{1e9, 1e9};
+  Point high{-1e9, -1e9};
+
+  void Add(Point p) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+};
+
+// Where a layer's new moves lie farthest to one side.
+struct FarPoint {
+  Point at;
+  uint32_t line = 0;
   int64_t layer = -1;
 };
 
@@ -86,6 +118,11 @@ struct Observations {
   absl::flat_hash_map<uint64_t, Seen> signatures;
   absl::flat_hash_set<uint64_t> script_signatures;
   absl::flat_hash_map<int64_t, Seen> heights;  // um above the layer, of moves that state Z
+  absl::flat_hash_map<int64_t, Seen> rises;    // the same of moves straight up
+  std::vector<LowestWay> lowest;               // ways that lead lower than what they connect
+  absl::flat_hash_set<uint64_t> deposit_accelerations;  // of the whole file, as the box is
+  std::vector<FarPoint> farthest;
+  Box box;  // of all points
   LiftLog lifts;
   std::vector<RetractionCycle> cycles;
   std::vector<WipeDeviation> wipes;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
+#include "absl/types/span.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
@@ -73,7 +74,7 @@ struct Habit {
   bool may_end_low = false;
 };
 
-Habit HabitOf(const LiftLog& log, const std::vector<WayProfile>& ways) {
+Habit HabitOf(const LiftLog& log, absl::Span<const WayProfile> ways) {
   Habit habit;
   size_t lifted = 0;
   for (const WayProfile& way : ways) {
@@ -162,14 +163,31 @@ std::string KindText(size_t kind) {
                          (kind & 1) != 0 ? " across outer walls" : "");
 }
 
+// Some slicers lift in some layers alone: above a height, or below it.
+absl::Span<const WayProfile> OfLayer(const std::vector<WayProfile>& ways, int64_t layer) {
+  constexpr std::ptrdiff_t kFewest = 4;
+  const auto [first, end] =
+      std::equal_range(ways.begin(), ways.end(), WayProfile{0, layer, 0, 0},
+                       [](const WayProfile& a, const WayProfile& b) { return a.layer < b.layer; });
+  if (end - first < kFewest) return {};
+  return absl::MakeSpan(&*first, static_cast<size_t>(end - first));
+}
+
 void CompareKind(const Observations& was, const Observations& is, size_t kind,
                  std::vector<Finding>& breaks) {
   // Of a kind that the original has none of, the nearest one tells.
   const std::vector<WayProfile>& ways =
       was.lifts.ways[kind].empty() ? was.lifts.ways[kind ^ 1] : was.lifts.ways[kind];
-  const Habit habit = HabitOf(was.lifts, ways);
-  if (!habit.lifts) return;
+  const Habit of_print = HabitOf(was.lifts, ways);
+  Habit of_layer;
+  int64_t layer = -1;
   for (const WayProfile& way : is.lifts.ways[kind]) {
+    if (!of_print.lifts && way.layer != layer) {
+      layer = way.layer;
+      of_layer = HabitOf(was.lifts, OfLayer(was.lifts.ways[kind], layer));
+    }
+    const Habit& habit = of_print.lifts ? of_print : of_layer;
+    if (!habit.lifts) continue;
     const Height height = HeightOf(is.lifts, way);
     const float low = LowLength(is.lifts, way, habit.least_mm);
     const bool ends_low = !habit.may_end_low && EndsLow(is.lifts, way, habit.least_mm);

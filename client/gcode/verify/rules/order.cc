@@ -75,7 +75,8 @@ class OrderKeeper {
     }
     if (as_sliced) return;
     first_ = was.first_path;
-    CheckSkirts(was, visits, findings);
+    CheckSkirts(visits, findings);
+    CheckTowers(visits, findings);
     CheckNear(was, visits, findings);
   }
 
@@ -88,7 +89,7 @@ class OrderKeeper {
     if (a == Group::kOther || b == Group::kOther) return false;
     if (a == b) {
       if (a == Group::kWall) return careful && !permissions_.wall_order;
-      return careful && (a == Group::kMonotonic || a == Group::kIroning);
+      return (careful && a == Group::kMonotonic) || a == Group::kIroning;
     }
     const auto is = [a, b](Group group) { return a == group || b == group; };
     if (is(Group::kIroning) || is(Group::kBridge) || is(Group::kSupport) || is(Group::kInterface) ||
@@ -99,8 +100,7 @@ class OrderKeeper {
   }
 
   // A skirt is seldom near to anything, but it is there to be printed first.
-  void CheckSkirts(const TraceSection& was, absl::Span<const Visit> visits,
-                   LayerFindings& findings) {
+  void CheckSkirts(absl::Span<const Visit> visits, LayerFindings& findings) {
     uint32_t latest = 0;  // of those printed so far, the one that is the last in the original
     bool any = false;
     for (const Visit& visit : visits) {
@@ -113,7 +113,20 @@ class OrderKeeper {
         return;
       }
     }
-    (void)was;
+  }
+
+  // A tower cleans the nozzle for what comes next, and a script has reasons of its own: nothing
+  // passes them.
+  void CheckTowers(absl::Span<const Visit> visits, LayerFindings& findings) {
+    uint32_t latest = first_;        // of those printed so far, the last one of the original
+    uint32_t latest_tower = first_;  // the same of towers and scripts
+    for (const Visit& visit : visits) {
+      const bool tower = GroupAt(visit.path) == Group::kOther;
+      const uint32_t behind = tower ? latest : latest_tower;
+      if (visit.path < behind) return Report(visit.path, behind, visits, findings);
+      latest = std::max(latest, visit.path);
+      if (tower) latest_tower = std::max(latest_tower, visit.path);
+    }
   }
 
   void CheckNear(const TraceSection& was, absl::Span<const Visit> visits, LayerFindings& findings) {

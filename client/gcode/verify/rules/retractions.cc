@@ -13,8 +13,9 @@ namespace traverse::gcode {
 namespace {
 
 constexpr double kSidewaysMm = 0.05;
-constexpr Micro kGrain = 2'000;       // pairs this near to each other are the same
-constexpr double kShareEarly = 0.01;  // so many of the original's come back early: it does that
+constexpr Micro kGrain = 2'000;     // pairs this near to each other are the same
+constexpr double kShareOdd = 0.01;  // so many of the original's do something: it does that
+constexpr double kHighMm = 0.02;
 
 class CycleReader {
  public:
@@ -24,13 +25,19 @@ class CycleReader {
   void Read(const TraceChunk& chunk, uint32_t link) {
     const TraceLink& traced = chunk.links[link];
     open_ = false;
+    if (traced.first_move == traced.end_move) return;
+    // At the height of what is printed on either side.
+    double high = chunk.moves[traced.first_move].z_from_mm + kHighMm;
+    if (link < chunk.paths.size()) high = std::max(high, chunk.paths[link].z_mm + kHighMm);
     const size_t first = cycles_.size();
     for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
       const TraceMove& move = chunk.moves[m];
       if (!move.in_print) continue;
       if (move.firmware ? move.kind == MoveKind::kRetraction : move.filament < 0) {
         Pull(move);
+        cycle_.pulled_high |= move.z_from_mm > high;
       } else if (open_ && (move.firmware || move.filament > 0)) {
+        cycle_.pushed_high |= move.z_from_mm > high;
         Push(move);
       } else if (move.kind == MoveKind::kTravel) {
         if (open_) cycle_.known &= layer_.IsKnown(move);
@@ -44,7 +51,9 @@ class CycleReader {
     if (open_) cycles_.push_back(cycle_);
     if (!traced.scripted) return;
     // Scripts push filament wherever they want to.
-    for (size_t i = first; i < cycles_.size(); ++i) cycles_[i].early = false;
+    for (size_t i = first; i < cycles_.size(); ++i) {
+      cycles_[i].early = cycles_[i].pulled_high = cycles_[i].pushed_high = false;
+    }
   }
 
  private:
@@ -53,7 +62,14 @@ class CycleReader {
       cycles_.push_back(cycle_);
       open_ = false;
     }
-    if (!open_) cycle_ = {move.tool, 0, 0, move.firmware, false, true, move.line, layer_.index()};
+    if (!open_) {
+      cycle_ = RetractionCycle{};
+      cycle_.tool = move.tool;
+      cycle_.firmware = move.firmware;
+      cycle_.known = true;
+      cycle_.line = move.line;
+      cycle_.layer = layer_.index();
+    }
     open_ = true;
     cycle_.pulled -= move.filament;
     cycle_.known &= layer_.IsKnown(move);
@@ -126,16 +142,25 @@ void ObserveRetractions(const LayerPair& layer, LayerFindings& findings) {
   }
 }
 
+void ObserveLastRetraction(const LayerPair& layer, LayerFindings& findings) {
+  CycleReader(layer, findings.was.cycles)
+      .Read(layer.was(), static_cast<uint32_t>(layer.was().paths.size()));
+  CycleReader(layer, findings.is.cycles)
+      .Read(layer.is(), static_cast<uint32_t>(layer.is().paths.size()));
+}
+
 void CompareRetractions(const Observations& was, const Observations& is,
                         std::vector<Finding>& breaks) {
   PairTable pairs;
-  size_t early = 0;
-  for (const RetractionCycle& cycle : was.cycles) {
-    pairs.Add(cycle);
-    if (cycle.early) ++early;
-  }
-  const bool may_be_early =
-      static_cast<double>(early) > kShareEarly * static_cast<double>(was.cycles.size());
+  for (const RetractionCycle& cycle : was.cycles) pairs.Add(cycle);
+  const auto is_usual = [&was](bool RetractionCycle::*odd) {
+    const auto count = std::count_if(was.cycles.begin(), was.cycles.end(),
+                                     [odd](const RetractionCycle& cycle) { return cycle.*odd; });
+    return static_cast<double>(count) > kShareOdd * static_cast<double>(was.cycles.size());
+  };
+  const bool may_be_early = is_usual(&RetractionCycle::early);
+  const bool may_push_high = is_usual(&RetractionCycle::pushed_high);
+  const bool may_pull_high = is_usual(&RetractionCycle::pulled_high);
   for (const RetractionCycle& cycle : is.cycles) {
     if (cycle.known) continue;
     const auto [deepest, line] = pairs.Deepest(cycle.tool);
@@ -154,6 +179,10 @@ void CompareRetractions(const Observations& was, const Observations& is,
                              static_cast<double>(cycle.pushed) * 1e-6));
     } else if (cycle.early && !may_be_early) {
       report("filament comes back before the way is done");
+    } else if (cycle.pushed_high && !may_push_high) {
+      report("filament comes back above the layer");
+    } else if (cycle.pulled_high && !may_pull_high) {
+      report("filament is pulled back above the layer");
     }
   }
 }

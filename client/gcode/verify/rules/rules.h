@@ -24,7 +24,9 @@ void CheckDirection(const LayerPair& layer, const RuleContext& context, LayerFin
 void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings& findings);
 void CheckOpenWays(const LayerPair& layer, LayerFindings& findings);
 void ObserveLifts(const LayerPair& layer, LayerFindings& findings);
+void ObserveHeights(const LayerPair& layer, LayerFindings& findings);
 void ObserveRetractions(const LayerPair& layer, LayerFindings& findings);
+void ObserveFarMoves(const LayerPair& layer, LayerFindings& findings);
 void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings);
 void CheckWipes(const LayerPair& layer, LayerFindings& findings);
 void CheckCommands(const LayerPair& layer, LayerFindings& findings);
@@ -33,14 +35,22 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings);
 // The moves of the start and end scripts in link `link` of the original.
 void ObserveScript(const TraceChunk& was, uint32_t link, Observations& seen);
 
+// The same for what follows the last layer of both files.
+void ObserveLastRetraction(const LayerPair& layer, LayerFindings& findings);
+
 // Chunk by chunk: what belongs to sections.
 void CheckStandstill(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks);
 void CheckSetBacks(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks);
+
+// The same: where the original moves.
+void ObserveBounds(const TraceChunk& was, Box& box);
 
 // At the end.
 void CompareProgress(const std::vector<Progress>& was, const std::vector<Progress>& is,
                      std::vector<Finding>& breaks);
 void CompareLifts(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
+void CompareHeights(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
+void CompareBounds(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void CompareRetractions(const Observations& was, const Observations& is,
                         std::vector<Finding>& breaks);
 void CompareSpeeds(const Observations& was, const Observations& is, std::vector<Finding>& breaks);

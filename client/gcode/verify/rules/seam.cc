@@ -36,9 +36,9 @@ void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings
     if (!layer.Closed(visit.path) || !layer.Outer(visit.path)) continue;
     const TracePath& path = was.paths[visit.path];
     const uint32_t begin = visit.forward ? visit.entry : (visit.entry + 1) % path.size();
-    const Point seam = PointOf(was, path, begin);
-    if (DistanceOf(seam, path.start) <= kSamePointMm) continue;
     const bool balanced = context.permissions.policy == VerifyPermissions::Policy::kBalanced;
+    const Point seam = PointOf(was, path, begin);
+    if (begin == 0 || (balanced && DistanceOf(seam, path.start) <= kSamePointMm)) continue;
     if (balanced && TurnAt(was, path, begin) >= kSharpRadians) continue;
     findings.breaks.push_back(
         {VerifyRule::kSeam, was.LineOf(path), layer.is().segments[visit.first_segment].line,

@@ -80,6 +80,21 @@ void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings) {
   ObserveIs(layer, Tails(layer, false), findings.is);
 }
 
+namespace {
+
+// Under which accelerations moves of `kind` may be. Ways that are open and ways that are not are
+// the same to a slicer; what else is done between paths goes with the path before it, or with the
+// travel.
+bool IsKnownAcceleration(const Observations& was, size_t kind, uint64_t acceleration) {
+  constexpr auto kTravel = static_cast<size_t>(MoveKind::kTravel);
+  for (const size_t like : {kind, kTravel, kOpenTravel}) {
+    if (was.accelerations[like].contains(acceleration)) return true;
+  }
+  return kind != kTravel && kind != kOpenTravel && was.deposit_accelerations.contains(acceleration);
+}
+
+}  // namespace
+
 void CompareSpeeds(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   for (size_t kind = 0; kind < was.feeds.size(); ++kind) {
     // Ways that are open and ways that are not are the same to a slicer: of a kind that the
@@ -94,14 +109,8 @@ void CompareSpeeds(const Observations& was, const Observations& is, std::vector<
                         absl::StrFormat("%s at F%g, as none of the original", KindName(kind),
                                         static_cast<double>(static_cast<Micro>(feed)) * 1e-6)});
     }
-    const bool travels = kind == kTravel || kind == kOpenTravel;
     for (const auto& [acceleration, seen] : is.accelerations[kind]) {
-      bool known = was.accelerations[like].contains(acceleration);
-      if (!known && travels) {
-        known = was.accelerations[kTravel + kOpenTravel - kind].contains(acceleration);
-      }
-      // What else is done between paths goes with the path before it or with the travel.
-      if (!travels || known) continue;
+      if (IsKnownAcceleration(was, kind, acceleration)) continue;
       breaks.push_back(
           {VerifyRule::kSpeeds, AnyLine(was.accelerations[like]), seen.line, seen.layer,
            absl::StrFormat("%s under an acceleration as none of the original", KindName(kind))});

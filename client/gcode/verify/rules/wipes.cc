@@ -1,6 +1,7 @@
 // A wipe lies within 0.05 mm of its own path, and paths that were wiped stay wiped.
 
 #include <algorithm>
+#include <utility>
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/rules/rules.h"
@@ -10,12 +11,25 @@ namespace {
 
 constexpr float kOnPathMm = 0.05f;
 constexpr double kUsualShare = 0.99;
+constexpr float kPullSlack = 1.02f;
 
 struct Wipe {
   float off_mm = 0;
+  float astray_mm = 0;
+  float length_mm = 0;
+  float pulled_mm = 0;
   uint32_t line = 0;  // 0: none
   bool known = true;
 };
+
+double DistanceTo(Point p, absl::Span<const Piece> pieces) {
+  double nearest = 1e9;
+  for (const Piece& piece : pieces) {
+    nearest = std::min(nearest, DistanceToPiece(p, piece.a, piece.b));
+    if (nearest <= kOnPathMm) break;
+  }
+  return nearest;
+}
 
 // The wipe behind path `path` of `chunk`, whose pieces are `pieces`.
 Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
@@ -27,64 +41,83 @@ Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
     if (move.kind != MoveKind::kWipe || move.length_mm() <= 0) continue;
     if (wipe.line == 0) wipe.line = move.line;
     wipe.known &= layer.IsKnown(move);
+    wipe.length_mm += static_cast<float>(move.length_mm());
+    wipe.pulled_mm -= static_cast<float>(static_cast<double>(move.filament) * 1e-6);
     if (!measure) continue;
-    double nearest = 1e9;
-    for (const Piece& piece : pieces) {
-      nearest = std::min(nearest, DistanceToPiece(move.to, piece.a, piece.b));
-      if (nearest <= kOnPathMm) break;
-    }
-    wipe.off_mm = std::max(wipe.off_mm, static_cast<float>(nearest));
+    wipe.off_mm = std::max(wipe.off_mm, static_cast<float>(DistanceTo(move.to, pieces)));
+    if (move.arc) continue;
+    // A chord of the path has both its ends on it.
+    const Point middle{(move.from.x + move.to.x) / 2, (move.from.y + move.to.y) / 2};
+    wipe.astray_mm = std::max(wipe.astray_mm, static_cast<float>(DistanceTo(middle, pieces)));
   }
   return wipe;
+}
+
+// What the wipes of the original do not exceed, but for a few.
+float Limit(std::vector<float> values) {
+  if (values.empty()) return kOnPathMm;
+  const auto at = static_cast<std::ptrdiff_t>(kUsualShare * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return std::max(kOnPathMm, values[static_cast<size_t>(at)] + 0.002f) + 1e-4f;
 }
 
 }  // namespace
 
 void CheckWipes(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& was = layer.was();
-  std::vector<uint32_t> wiped(layer.end_path_was() - layer.first_path_was(), 0);  // line
+  std::vector<Wipe> wiped(layer.end_path_was() - layer.first_path_was());
   bool any = false;
   for (uint32_t path = layer.first_path_was(); path < layer.end_path_was(); ++path) {
     const Wipe wipe = WipeBehind(layer, was, path, layer.PiecesOf(path), true);
-    wiped[path - layer.first_path_was()] = wipe.line;
+    wiped[path - layer.first_path_was()] = wipe;
     if (wipe.line == 0) continue;
     any = true;
     if (was.links[path + 1].scripted) continue;
-    findings.was.wipes.push_back({wipe.off_mm, wipe.line, wipe.line, layer.index()});
+    findings.was.wipes.push_back({wipe.off_mm, wipe.astray_mm, wipe.pulled_mm / wipe.length_mm,
+                                  wipe.line, wipe.line, layer.index()});
   }
   for (const Visit& visit : layer.visits()) {
-    const uint32_t line = wiped[visit.path - layer.first_path_was()];
+    const Wipe& had = wiped[visit.path - layer.first_path_was()];
     if (!any && layer.is().links[visit.last_path + 1].first_move ==
                     layer.is().links[visit.last_path + 1].end_move) {
       continue;
     }
     Wipe wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), false);
-    if (line != 0 && wipe.line == 0) {
-      findings.breaks.push_back({VerifyRule::kWipes, line,
+    if (had.line != 0 && wipe.line == 0) {
+      findings.breaks.push_back({VerifyRule::kWipes, had.line,
                                  layer.is().segments[visit.last_segment].line, layer.index(),
                                  "the wipe behind this path is gone"});
     }
     if (wipe.line == 0 || wipe.known) continue;
     wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), true);
-    findings.is.wipes.push_back(
-        {wipe.off_mm, wipe.line, was.LineOf(was.paths[visit.path]), layer.index()});
+    findings.is.wipes.push_back({wipe.off_mm, wipe.astray_mm, wipe.pulled_mm / wipe.length_mm,
+                                 wipe.line, was.LineOf(was.paths[visit.path]), layer.index()});
   }
 }
 
 void CompareWipes(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   std::vector<float> off;
-  for (const WipeDeviation& wipe : was.wipes) off.push_back(wipe.off_mm);
-  float limit = kOnPathMm;
-  if (!off.empty()) {
-    const auto at = static_cast<std::ptrdiff_t>(kUsualShare * static_cast<double>(off.size() - 1));
-    std::nth_element(off.begin(), off.begin() + at, off.end());
-    limit = std::max(limit, off[static_cast<size_t>(at)] + 0.002f);
+  std::vector<float> astray;
+  for (const WipeDeviation& wipe : was.wipes) {
+    off.push_back(wipe.off_mm);
+    astray.push_back(wipe.astray_mm);
   }
+  const float off_limit = Limit(std::move(off));
+  const float astray_limit = Limit(std::move(astray));
+  const auto fastest = std::max_element(
+      was.wipes.begin(), was.wipes.end(),
+      [](const WipeDeviation& a, const WipeDeviation& b) { return a.pull < b.pull; });
   for (const WipeDeviation& wipe : is.wipes) {
-    if (wipe.off_mm <= limit + 1e-4f) continue;
-    breaks.push_back(
-        {VerifyRule::kWipes, wipe.original_line, wipe.line, wipe.layer,
-         absl::StrFormat("a wipe leads %.2f mm away from the path that it follows", wipe.off_mm)});
+    if (fastest != was.wipes.end() && wipe.pull > fastest->pull * kPullSlack) {
+      breaks.push_back(
+          {VerifyRule::kWipes, fastest->line, wipe.line, wipe.layer,
+           absl::StrFormat("a wipe pulls %.3f mm a mm back; the most of the original is %.3f mm",
+                           wipe.pull, fastest->pull)});
+    }
+    if (wipe.off_mm <= off_limit && wipe.astray_mm <= astray_limit) continue;
+    breaks.push_back({VerifyRule::kWipes, wipe.original_line, wipe.line, wipe.layer,
+                      absl::StrFormat("a wipe leads %.2f mm away from the path that it follows",
+                                      std::max(wipe.off_mm, wipe.astray_mm))});
   }
 }
 

@@ -31,7 +31,7 @@ bool HasLayerMarks(std::string_view text) {
 }
 
 SideReader::SideReader(std::string_view text, std::string_view ignored, bool marked)
-    : machine_(text), cutter_(ignored), tracer_(marked) {}
+    : machine_(text), cutter_(ignored, marked), tracer_(marked) {}
 
 void SideReader::TakeHeld() {
   held_ = false;
@@ -54,6 +54,7 @@ TraceChunk SideReader::ReadUntil(Enough enough) {
     }
     tracer_.Take(line_, machine_, cut.before ? cutter_.open_section() : section);
     const bool mark = line_.text.size() > 1 && line_.text[0] == ';' && IsLayerMark(line_.text);
+    if (mark) cutter_.EndScript();
     if (cut.behind) tracer_.EndSection(mark, mark);
     if (mark && !cut.behind) tracer_.Mark();
   }

@@ -142,6 +142,7 @@ struct TraceChunk {
   std::vector<TracePath> paths;
   std::vector<TraceLink> links;  // one more than paths
   std::vector<TraceMove> moves;
+  std::vector<uint64_t> accelerations;  // that deposits are under, some of them more than once
   std::vector<TraceCommand> commands;   // by segment
   std::vector<Standstill> standstills;  // by line
   std::vector<SetBack> set_backs;       // by line

@@ -169,6 +169,10 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
          motion.number == 2});
   }
   chunk_.segments.push_back(segment);
+  const uint64_t acceleration = machine.AccelerationDigest();
+  if (chunk_.accelerations.empty() || chunk_.accelerations.back() != acceleration) {
+    chunk_.accelerations.push_back(acceleration);
+  }
   TracePath& path = chunk_.paths.back();
   path.end_segment = static_cast<uint32_t>(chunk_.segments.size());
   const auto length = static_cast<float>(LengthOf(motion) * unit / kMicro);

@@ -100,13 +100,14 @@ def crosses_wall(file, k, ways):
     return False
 
 
-def distance(one, other, limit):
-    def to_piece(p, a, b):
-        dx, dy = b[0] - a[0], b[1] - a[1]
-        squared = dx * dx + dy * dy
-        t = 0 if squared == 0 else max(0, min(1, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / squared))
-        return math.dist(p, (a[0] + t * dx, a[1] + t * dy))
+def to_piece(p, a, b):
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    squared = dx * dx + dy * dy
+    t = 0 if squared == 0 else max(0, min(1, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / squared))
+    return math.dist(p, (a[0] + t * dx, a[1] + t * dy))
 
+
+def distance(one, other, limit):
     best = 1e9
     for p, q in ((one, other), (other, one)):
         for point in p.points:
@@ -594,8 +595,9 @@ def with_effect(file, pattern):
     before, pending = None, None
     for i, line in enumerate(file.lines):
         if re.match(pattern, line.text):
-            pending = i if before is not None and line.text != before else None
-            before = line.text
+            text = "M106 S0" if line.text == "M107" else line.text
+            pending = i if before is not None and text != before else None
+            before = text
         elif line.kind == "deposit" and pending is not None:
             yield pending
             pending = None

@@ -3,7 +3,7 @@
 
   mutation_table.py TRAVERSE [--copies=10] [--legal] [--verbose] FILE or FOLDER...
 
-Puts each defect of defects.py into each file, `copies` times at places chosen by seed, and prints how
+Puts each defect of defects.py and further_defects.py into each file, `copies` times at places chosen by seed, and prints how
 many are found, and by the rule that is there for them. With --legal the files are optimised under
 the three policies, and verified. Ends with 1 if a defect is not found or a legal file is refused.
 """
@@ -12,6 +12,7 @@ import argparse
 import json
 import os
 import random
+import re
 import subprocess
 import sys
 import tempfile
@@ -19,7 +20,10 @@ import tempfile
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import defects  # noqa: E402
+import further_defects  # noqa: E402
 import sliced  # noqa: E402
+
+DEFECTS = defects.DEFECTS + further_defects.DEFECTS
 
 
 def files_of(operands):
@@ -82,11 +86,15 @@ def false_alarms(args, folder, name, path, original):
             out = os.path.join(folder, "legal.gcode")
             plain = write(folder, "plain.gcode", sliced.read(path))
             run = subprocess.run([args.traverse, "optimize", plain, "-o", out, "--strategy=ni2opt",
-                                  f"--policy={policy}", "--quiet"], capture_output=True, text=True)
+                                  f"--policy={policy}", "--quiet"] + args.with_flags.split(),
+                                 capture_output=True, text=True, errors="replace")
             if run.returncode == 0:
                 pairs.append((plain, out))
+            else:
+                print(f"  {name}, {policy}: not optimised: {run.stderr.strip()[-300:]}", flush=True)
         for one, other in pairs:
-            rules, message = broken(args.traverse, one, other, policy)
+            # What was allowed on top stands at the head of the optimised file.
+            rules, message = broken(args.traverse, one, other, None if args.with_flags else policy)
             tried += 1
             refused += bool(rules)
             if rules:
@@ -101,6 +109,9 @@ def main():
     parser.add_argument("--copies", type=int, default=10)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--legal", action="store_true")
+    parser.add_argument("--with-flags", default="", help="more flags of `optimize` for --legal")
+    parser.add_argument("--spread", type=int, default=0, help="put each defect into every nth file alone")
+    parser.add_argument("--only", help="a regular expression: the defects to put in, by name")
     parser.add_argument("--verbose", action="store_true")
     parser.add_argument("--keep", help="a folder for what is not found")
     args = parser.parse_args()
@@ -111,13 +122,16 @@ def main():
             names.append(name)
             file = sliced.Sliced(sliced.read(path))
             original = write(folder, "a.gcode", file.text())
-            for defect in defects.DEFECTS:
+            for i, defect in enumerate(DEFECTS):
+                left_out = args.spread and (i + len(names)) % args.spread
+                if left_out or (args.only and not re.search(args.only, defect[0])):
+                    continue
                 try_defect(args, folder, name, file, original, defect, counts)
             one, two = false_alarms(args, folder, name, path, original)
             tried, refused = tried + one, refused + two
     print(f"{len(names)} files: {' '.join(names)}\n")
     print("| defect | rule | files | copies | found | by its rule |\n|---|---|---:|---:|---:|---:|")
-    for title, rule, _, _ in defects.DEFECTS:
+    for title, rule, _, _ in DEFECTS:
         made, found, own, where = counts.get(title, [0, 0, 0, ()])
         share = f"{100 * found / made:.0f} %" if made else "-"
         own_share = f"{100 * own / made:.0f} %" if made else "-"

@@ -6,67 +6,13 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/gcode/verify/verifier.h"
+#include "tests/client/gcode/verify/small_prints.h"
 
 namespace traverse::gcode {
 namespace {
 
-using Policy = VerifyPermissions::Policy;
-using ::testing::AllOf;
+using namespace testing;  // NOLINT: the small prints
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
-
-// "lifts" or "order seam": the rules that are broken.
-std::string Broken(const std::string& original, const std::string& optimised,
-                   VerifyPermissions permissions = {}) {
-  VerifyOptions options;
-  options.permissions = permissions;
-  const VerifyReport report = CheckGcode(original, "a", optimised, "b", options);
-  std::string names;
-  for (size_t rule = 0; rule < report.counts.size(); ++rule) {
-    if (report.counts[rule] == 0) continue;
-    absl::StrAppend(&names, names.empty() ? "" : " ",
-                    std::string(VerifyRuleName(static_cast<VerifyRule>(rule))));
-  }
-  return names;
-}
-
-std::string Broken(const std::string& original, const std::string& optimised, Policy policy) {
-  VerifyPermissions permissions;
-  permissions.policy = policy;
-  return Broken(original, optimised, permissions);
-}
-
-std::string FirstMessage(const std::string& original, const std::string& optimised) {
-  const VerifyReport report = CheckGcode(original, "a", optimised, "b");
-  return report.ok() ? "" : report.breaks.front().message;
-}
-
-// `text` with the first `from` replaced.
-std::string With(std::string text, const std::string& from, const std::string& to) {
-  const size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
-
-const std::string kHead = "M83\n;LAYER_CHANGE\nG1 Z.2 F9000\n";
-
-// A way to a point with filament pulled back.
-std::string Way(const std::string& to) {
-  return absl::StrCat("G1 E-1 F2100\nG1 ", to, " F9000\nG1 E1 F2100\n");
-}
-
-// A square wall of 10 mm that begins at its lower left corner; and its other entries.
-const std::string kWall = ";TYPE:External perimeter\nG1 F1200\n";
-const std::string kSquare =
-    Way("X10 Y10") + kWall + "G1 X20 Y10 E.4\nG1 X20 Y20 E.4\nG1 X10 Y20 E.4\nG1 X10 Y10 E.4\n";
-const std::string kSquareElsewhere =
-    Way("X20 Y10") + kWall + "G1 X20 Y20 E.4\nG1 X10 Y20 E.4\nG1 X10 Y10 E.4\nG1 X20 Y10 E.4\n";
-const std::string kSquareTurned =
-    Way("X10 Y10") + kWall + "G1 X10 Y20 E.4\nG1 X20 Y20 E.4\nG1 X20 Y10 E.4\nG1 X10 Y10 E.4\n";
-
-std::string Line(const std::string& type, const std::string& from, const std::string& to) {
-  return absl::StrCat(Way(from), ";TYPE:", type, "\nG1 F1800\nG1 ", to, " E.3\n");
-}
 
 TEST(VerifyRules, ThePolicyIsThatOfTheFlagsOrOfTheLineAtTheHead) {
   const std::string a = kHead + kSquare;
@@ -241,18 +187,6 @@ TEST(VerifyRules, OpenWaysAcrossWallsGetNoLonger) {
   EXPECT_EQ(Broken(kHead + to_and_fro, kHead + longer), "open_ways");
 }
 
-// A way that is lifted by 0.4 mm.
-std::string Lifted(const std::string& to) {
-  return absl::StrCat("G1 E-1 F2100\nG1 Z.6 F9000\nG1 ", to, " F9000\nG1 Z.2\nG1 E1 F2100\n");
-}
-
-std::string LiftedLine(const std::string& from, const std::string& to) {
-  return absl::StrCat(Lifted(from), ";TYPE:Internal infill\nG1 F1800\nG1 ", to, " E.3\n");
-}
-
-const std::string kLifted = LiftedLine("X10 Y10", "X20 Y10") + LiftedLine("X10 Y20", "X20 Y20") +
-                            LiftedLine("X10 Y30", "X20 Y30") + LiftedLine("X10 Y40", "X20 Y40");
-
 // What goes on along the wall ends on it, so that the way from there begins on it as well.
 TEST(VerifyRules, OpenWaysBeginWhereTheMoveAlongTheWallEnds) {
   const std::string wall = kSquare + "G1 X10.4 Y10\n";
@@ -359,13 +293,6 @@ TEST(VerifyRules, SpeedsTravelKeepsItsAcceleration) {
   EXPECT_EQ(Broken(kHead + two,
                    kHead + With(path("X9 Y0", "X0 Y0"), "P1000", "P900") + path("X0 Y5", "X9 Y5")),
             "speeds");
-}
-
-// A line that is wiped where it ends.
-std::string Wiped(const std::string& from, const std::string& to, const std::string& back) {
-  return absl::StrCat("G1 ", from, " F9000\nG1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 ", to,
-                      " E.3\nG1 E-.5 F2100\n;WIPE_START\nG1 F7200\nG1 ", back,
-                      " E-.5\n;WIPE_END\n");
 }
 
 TEST(VerifyRules, WipesLieOnTheirPath) {

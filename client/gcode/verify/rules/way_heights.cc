@@ -1,0 +1,90 @@
+// How high ways may lead, whether or not their kind is lifted: none lies lower than the higher of
+// the two paths that it connects, unless such ways of the original do; and a move straight up leads
+// to a height above the layer that the original knows.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "absl/strings/str_format.h"
+#include "client/gcode/verify/rules/rules.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kSlackMm = 0.003;
+constexpr double kShortestMm = 0.05;
+constexpr double kLevelMm = 1e-4;
+
+WayRise RiseOf(double from, double to) {
+  if (std::abs(to - from) <= kLevelMm) return WayRise::kLevel;
+  return to > from ? WayRise::kUp : WayRise::kDown;
+}
+
+int64_t Um(double mm) { return std::llround(mm * 1000); }
+
+void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool only_new,
+             Observations& seen) {
+  const TraceLink& traced = chunk.links[link];
+  if (traced.first_move == traced.end_move || !chunk.moves[traced.first_move].in_print) return;
+  const double to = chunk.paths[link].z_mm;
+  const double from = chunk.moves[traced.first_move].z_from_mm;
+  LowestWay lowest{0, 0, layer.index(), RiseOf(from, to)};
+  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (only_new && layer.IsKnown(move)) continue;
+    const auto note_rise = [&](double base) {
+      seen.rises.try_emplace(Um(move.z_to_mm - base), Seen{move.line, layer.index(), 0});
+    };
+    if (move.kind == MoveKind::kUp && move.z_to_mm > move.z_from_mm) {
+      note_rise(to);
+      if (!only_new) note_rise(from);
+    }
+    if (move.kind != MoveKind::kTravel || move.length_mm() < kShortestMm) continue;
+    const auto above = static_cast<float>(move.z_to_mm - std::max(from, to));
+    if (above >= lowest.above_mm) continue;
+    lowest.above_mm = above;
+    lowest.line = move.line;
+  }
+  if (lowest.line != 0) seen.lowest.push_back(lowest);
+}
+
+}  // namespace
+
+void ObserveHeights(const LayerPair& layer, LayerFindings& findings) {
+  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
+    Observe(layer, layer.was(), link, false, findings.was);
+  }
+  for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
+    Observe(layer, layer.is(), link, true, findings.is);
+  }
+}
+
+void CompareHeights(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
+  std::array<LowestWay, static_cast<size_t>(WayRise::kCount)> known;
+  for (const LowestWay& way : was.lowest) {
+    LowestWay& lowest = known[static_cast<size_t>(way.rise)];
+    if (way.above_mm < lowest.above_mm) lowest = way;
+  }
+  for (const LowestWay& way : is.lowest) {
+    const LowestWay& lowest = known[static_cast<size_t>(way.rise)];
+    if (way.above_mm >= lowest.above_mm - kSlackMm) continue;
+    breaks.push_back(
+        {VerifyRule::kLifts, lowest.line, way.line, way.layer,
+         absl::StrFormat("leads %.3f mm below what it connects; none of the original does so by "
+                         "more than %.3f mm",
+                         -way.above_mm, -lowest.above_mm)});
+  }
+  for (const auto& [um, seen] : is.rises) {
+    bool found = false;
+    for (int64_t near = um - 2; near <= um + 2; ++near) {
+      found |= was.rises.contains(near) || was.heights.contains(near);
+    }
+    if (found) continue;
+    breaks.push_back({VerifyRule::kLifts, 0, seen.line, seen.layer,
+                      absl::StrFormat("rises to %.3f mm above the layer, as none of the original",
+                                      static_cast<double>(um) / 1000)});
+  }
+}
+
+}  // namespace traverse::gcode
