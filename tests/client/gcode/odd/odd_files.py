@@ -23,7 +23,32 @@ import tempfile
 STYLES = ("cr", "crlf", "crcrlf", "tabs", "checksums", "numbers", "lower", "packed", "long", "radius",
           "inches", "relative", "relative_e", "e_switches", "no_marks", "twice_marked", "z_down",
           "no_newline", "parentheses", "offsets", "tools", "bom", "progress", "mixed_marks",
-          "never_closed", "absolute_e", "resets")
+          "never_closed", "absolute_e", "resets", "planes", "firmware", "modes_of_arcs", "deleted", "macros",
+          "plus", "dotted", "two_codes", "quoted", "offsets_by_g", "volumetric", "percent", "rising",
+          "bare_resets", "padded", "spaced", "shuffled", "more_axes", "foreign", "fan_within", "blind_marks",
+          "splines", "codes_in_comments", "twice_worded", "inserted_modes")
+
+# Lines that come between two paths, by style. Most are not known to anything but some firmware.
+BETWEEN = {
+    "firmware": ("G10", "G10 P0 S180", "G11 S1"),
+    "modes_of_arcs": ("G90.1", "G91.1"),
+    "deleted": ("/G1 X11 Y12 F9000", "/M106 S9", "/ G1 X30 Y30 E2", "/G92 E0"),
+    "macros": ("_MOVE X=10 Y=20", "SET_FAN_SPEED FAN=a SPEED={s}", "{if layer>3}M106 S9{endif}", "G1 X{x} Y[y] E1",
+               "MACRO_WITH G1=2", "PRINT_START BED=60", "RESTORE_GCODE_STATE NAME=x MOVE=1"),
+    "two_codes": ("G90 G1 X5 Y5", "G21 G90", "M106 S0 M107", "M73 P5 G1 X1", "G1 X5 G1 Y5", "T0 M6"),
+    "quoted": ('M117 "a; b" G1 X5', "M117 it's (half)", 'M118 P0 "x;y"', "M117 ;", "M23 /G1.gcode"),
+    "offsets_by_g": ("G54", "G53 G1 X3 Y3", "G55", "G52 X1", "M206 X1", "M290 Z.01"),
+    "volumetric": ("M200 D1.75", "M200 D0", "M221 S95", "M220 S50", "M220 B", "M220 R", "M221 T0 S90"),
+    "percent": ("%", "", ";", "   ", ";;", "\x0b", "%O100"),
+    "bare_resets": ("G92", "G92.1", "G92 Z0.2", "G92 E", "G92 E-0"),
+    "foreign": ("; \u5c42 \u00e9", ";TYPE:\u00c4u\u00dfere Wand", "M117 \u00fc"),
+    "blind_marks": (";WIPE_END", "M624 AQ==", "M625", "; stop printing object x", "M486 S-1", ";TYPE:",
+                    "EXCLUDE_OBJECT_END", ";LAYER:-1", "; layer 3", "; OBJECT_ID: 7", ";MESH:NONMESH", "; WIPE_START"),
+    "splines": ("G5 I0 J3 P0 Q-3 X20 Y20 E.3", "G12 P1", "G27", "G29", "G61", "G64 P.1", "G28 X"),
+    "codes_in_comments": ("; T1", ";G91", ";M83", "G4 P1 ; M82", "M105 ; G1 X5 E1", "; G92 E5"),
+    "twice_worded": ("G1 X5 X6 Y3", "G1 X Y", "G1 X5 Y5 F", "G1 E", "G X5", "G1 XY5", "G1 X--5", "G1 X1.2.3"),
+    "inserted_modes": ("M82 S1", "M83 P0", "G90 S0", "G21 P1"),
+}
 
 
 def num(value, digits=5):
@@ -151,10 +176,23 @@ def print_layer(out, styles, rng, cura):
         if pulls:
             out.out(f"G1 {out.extrude(0.8)} F{num(2100 / out.scale())}")
         print_path(out, styles, rng, x, y)
+        for style in sorted(styles & BETWEEN.keys()):
+            if rng.random() < 0.15:
+                out.out(rng.choice(BETWEEN[style]))
 
 
 def print_path(out, styles, rng, x, y):
     shape = rng.choice(("line", "loop", "arc", "zigzag"))
+    if "fan_within" in styles and rng.random() < 0.3:
+        out.move(x + 1, y, e=0.03, feed=1200)
+        out.out(rng.choice(("M106 S99", "M107", ";WIDTH:0.5", "M204 S700", "M117 in", "; note")))
+    if "planes" in styles and rng.random() < 0.2:
+        out.out("G18")
+        out.out(rng.choice(("G2 X5 Z.3 I1 K0 E.1", "G3 X4 Y4 I1 J0", "G1 X7 Y8 E.1")))
+        out.out("G17")
+    if "rising" in styles and rng.random() < 0.3:
+        out.out(f"G1 {out.moved('X', x + 2)} {out.moved('Y', y)} {out.moved('Z', out.at[2] + 0.05)} "
+                f"{out.extrude(0.07)}")
     if shape == "loop":
         for dx, dy in ((3, 0), (3, 3), (0, 3), (0, 0)):
             out.move(x + dx, y + dy, e=0.11, feed=1200)
@@ -177,13 +215,29 @@ def styled(lines, styles, rng):
     made = []
     for number, line in enumerate(lines):
         code = not line.startswith(";")
-        if code and "lower" in styles:
+        # Lines with text in them stay as they are.
+        plain = code and line[:1] in "GMT" and not re.search(r"[{\[\"_=']|M117|M118|M23|M624", line)
+        if plain and "shuffled" in styles:
+            name, *words = line.split(" ")
+            rng.shuffle(words)
+            line = " ".join([name] + words)
+        if plain and "padded" in styles:
+            line = re.sub(r"^([GM])(\d)\b", r"\g<1>0\2", line)
+        if plain and "plus" in styles:
+            line = re.sub(r" ([XYZEF])(\d)", r" \1+\2", line)
+        if plain and "dotted" in styles:
+            line = re.sub(r" ([XYF]\d+)(?= |$)", r" \1.", line)
+        if plain and "spaced" in styles:
+            line = "  " + re.sub(r" ([XYZEF])", r"  \1 ", line)
+        if plain and "more_axes" in styles and line.startswith("G1 ") and rng.random() < 0.1:
+            line += rng.choice((" S1", " U5", " A2", " H1", " P5", " I1", " K2"))
+        if plain and "lower" in styles:
             line = line.lower()
-        if code and "packed" in styles:
+        if plain and "packed" in styles:
             line = line.replace(" ", "")
-        if code and "tabs" in styles:
+        if plain and "tabs" in styles:
             line = line.replace(" ", "\t")
-        if code and "parentheses" in styles and rng.random() < 0.3:
+        if plain and "parentheses" in styles and rng.random() < 0.3:
             line += rng.choice((" (a; comment)", " (X1 Y2)", " ; (open", " ()"))
         if "long" in styles and rng.random() < 0.05:
             line += " ;" + "x" * 5000
@@ -205,17 +259,36 @@ def styled(lines, styles, rng):
 WORD = re.compile(r"([A-Za-z])\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
 
 
-def deposits(data):
-    """Runs of equal height, each a multiset of what is deposited there."""
+# What the simulation follows; other lines have to stay where they are among the runs.
+FOLLOWED = re.compile(r"(?:G(?:0|1|2|3|10|11|17|18|19|20|21|90|91|92)|M(?:82|83|106|107|204|221|73|104|105|117|118)|T\d+)"
+                      r"(?![0-9.])", re.IGNORECASE)
+
+
+def deposits(data, deleted=False):
+    """Runs of equal height, each a multiset of what is deposited there; between them, lines that are
+    not followed, and where the head is. Lines behind a slash are done, or not: `deleted`."""
     text = data.decode("utf-8", "replace").lstrip("\ufeff")
     at, e, unit = [0.0, 0.0, 0.0], 0.0, 1.0
     relative = relative_e = False
     offset = [0.0] * 3  # machine position less what the words say
-    pulled, tool = 0.0, 0
+    pulled, tool, pulled_by_firmware = 0.0, 0, False
     runs = []
     for line in re.split(r"[\r\n]+", text):
         line = re.sub(r"\([^)]*\)", "", line.split(";")[0] if "(" not in line.split(";")[0] else
                       re.sub(r"\([^)]*\)", "", line).split(";")[0]).split("*")[0]
+        line = line.strip(" \t\v\f")
+        if line.startswith("/"):
+            runs.append((line, []))
+            if deleted:
+                continue
+            line = line[1:].strip()
+        bare = re.sub(r"^[Nn]\d+\s*", "", line)
+        bare = re.sub(r"^([GMTgmt])0+(?=\d)", r"\1", bare)
+        if bare and not FOLLOWED.match(bare):
+            # Marks of objects stay in their order, wherever the head is.
+            label = bare.startswith(("M624", "M625", "M486", "EXCLUDE_OBJECT"))
+            runs.append((bare, None if label else tuple(round(v, 3) for v in at), []))
+            continue
         words = [(letter.upper(), float(value)) for letter, value in WORD.findall(line)]
         if words and words[0][0] == "N":
             words = words[1:]
@@ -231,6 +304,8 @@ def deposits(data):
             unit = 25.4 if code == "G20" else 1.0
         elif letter == "T":
             tool = value
+        elif code in ("G10", "G11") and not words:
+            pulled_by_firmware = code == "G10"
         elif code == "G92":
             for i, axis in enumerate("XYZ"):
                 if axis in words:
@@ -248,7 +323,8 @@ def deposits(data):
                 e = e + filament
             sideways = math.dist(at[:2], to[:2]) > 1e-9
             if sideways and filament > 1e-9:
-                note(runs, at, to, filament, code, words, unit, tool, pulled > 1e-4)
+                note(runs, at, to, filament, code, words, unit, tool,
+                     pulled > 1e-4 or pulled_by_firmware)
             elif filament:
                 pulled = max(0.0, pulled - filament)
             at = to
@@ -267,14 +343,17 @@ def note(runs, at, to, filament, code, words, unit, tool, retracted):
     z = round(to[2], 3)
     if not runs or runs[-1][0] != z:
         runs.append((z, []))
-    runs[-1][1].append((min(a, b), max(a, b), turn if shape else "", shape, tool, retracted, filament))
+    runs[-1][-1].append((min(a, b), max(a, b), turn if shape else "", shape, tool, retracted, filament))
 
 
 def same(one, other):
     """Whether two files deposit the same, but for rounding."""
-    if [z for z, _ in one] != [z for z, _ in other]:
-        return "heights differ"
-    for (z, a), (_, b) in zip(one, other):
+    if [run[:-1] for run in one] != [run[:-1] for run in other]:
+        for run, other_run in zip(one, other):
+            if run[:-1] != other_run[:-1]:
+                return f"heights or lines differ: {run[:-1]}, {other_run[:-1]}"
+        return "one has more heights or lines"
+    for (z, a), (_, b) in [(run[::len(run) - 1], other_run[::len(run) - 1]) for run, other_run in zip(one, other)]:
         if len(a) != len(b):
             return f"{len(a)} segments at {z}, and {len(b)}"
         left = collections.defaultdict(list)
@@ -332,7 +411,7 @@ def try_seed(traverse, seed, folder, verbose):
         result = file.read()
     if result == data:
         return None, "as it was"
-    wrong = same(deposits(data), deposits(result))
+    wrong = same(deposits(data), deposits(result)) or same(deposits(data, True), deposits(result, True))
     return (f"{title}: {wrong}" if wrong else None), "optimised"
 
 
