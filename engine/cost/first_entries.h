@@ -10,7 +10,7 @@
 
 #include "absl/types/span.h"
 #include "engine/cost/layer_view.h"
-#include "engine/model/plan_tree.h"
+#include "engine/model/tree/plan_tree.h"
 
 namespace traverse {
 

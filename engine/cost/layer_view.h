@@ -6,7 +6,7 @@
 #include "engine/cost/entry_table.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/model/layer_problem.h"
-#include "engine/model/plan_tree.h"
+#include "engine/model/tree/plan_tree.h"
 
 namespace traverse {
 

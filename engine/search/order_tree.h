@@ -9,8 +9,8 @@
 
 #include "absl/types/span.h"
 #include "engine/base/budget.h"
-#include "engine/model/compiled_plan.h"
 #include "engine/model/plan.h"
+#include "engine/model/tree/compiled_plan.h"
 
 namespace traverse {
 

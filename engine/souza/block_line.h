@@ -14,8 +14,8 @@
 
 #include "absl/types/span.h"
 #include "engine/cost/travel_cost.h"
-#include "engine/model/plan_tree.h"
 #include "engine/model/point.h"
+#include "engine/model/tree/plan_tree.h"
 
 namespace traverse {
 

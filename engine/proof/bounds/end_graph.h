@@ -17,8 +17,8 @@
 
 #include "absl/types/span.h"
 #include "engine/geometry/bounding_box.h"
-#include "engine/model/plan_tree.h"
 #include "engine/model/point.h"
+#include "engine/model/tree/plan_tree.h"
 
 namespace traverse {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "engine/model/plan_tree.h"
+#include "engine/model/tree/plan_tree.h"
 
 namespace traverse {
 namespace {

@@ -13,7 +13,7 @@
 #include "engine/cost/layer_view.h"
 #include "engine/geometry/bounding_box.h"
 #include "engine/geometry/nearest_point_index.h"
-#include "engine/model/plan_tree.h"
+#include "engine/model/tree/plan_tree.h"
 
 namespace traverse {
 

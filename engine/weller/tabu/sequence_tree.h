@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "engine/base/rng.h"
-#include "engine/model/compiled_plan.h"
 #include "engine/model/plan.h"
+#include "engine/model/tree/compiled_plan.h"
 
 namespace traverse {
 

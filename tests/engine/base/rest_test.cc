@@ -11,7 +11,7 @@
 
 #include "engine/base/resting_sort.h"
 #include "engine/base/rng.h"
-#include "engine/model/passed_pairs.h"
+#include "engine/model/tree/passed_pairs.h"
 #include "engine/search/end_groups.h"
 #include "engine/search/entries/leaf_entries.h"
 #include "engine/search/order_tree.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/model/plan_tree.h"
+#include "engine/model/tree/plan_tree.h"
 #include "tests/support/instances.h"
 
 namespace traverse {

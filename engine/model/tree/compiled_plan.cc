@@ -1,9 +1,9 @@
-#include "engine/model/compiled_plan.h"
+#include "engine/model/tree/compiled_plan.h"
 
 #include <cstddef>
 
 #include "engine/base/rest.h"
-#include "engine/model/passed_pairs.h"
+#include "engine/model/tree/passed_pairs.h"
 
 namespace traverse {
 

@@ -1,15 +1,15 @@
 // What algorithms want to know of a plan's tree again and again, computed once.
 
-#ifndef TRAVERSE_ENGINE_MODEL_PLAN_TREE_H_
-#define TRAVERSE_ENGINE_MODEL_PLAN_TREE_H_
+#ifndef TRAVERSE_ENGINE_MODEL_TREE_PLAN_TREE_H_
+#define TRAVERSE_ENGINE_MODEL_TREE_PLAN_TREE_H_
 
 #include <cstdint>
 #include <vector>
 
 #include "absl/types/span.h"
 #include "engine/base/budget.h"
-#include "engine/model/compiled_plan.h"
 #include "engine/model/plan.h"
+#include "engine/model/tree/compiled_plan.h"
 
 namespace traverse {
 
@@ -146,4 +146,4 @@ class PlanTree : public CompiledPlan {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_ENGINE_MODEL_PLAN_TREE_H_
+#endif  // TRAVERSE_ENGINE_MODEL_TREE_PLAN_TREE_H_

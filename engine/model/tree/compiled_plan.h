@@ -2,8 +2,8 @@
 // of the trees that algorithms work on (plan_tree.h, search/order_tree.h,
 // weller/tabu/sequence_tree.h).
 
-#ifndef TRAVERSE_ENGINE_MODEL_COMPILED_PLAN_H_
-#define TRAVERSE_ENGINE_MODEL_COMPILED_PLAN_H_
+#ifndef TRAVERSE_ENGINE_MODEL_TREE_COMPILED_PLAN_H_
+#define TRAVERSE_ENGINE_MODEL_TREE_COMPILED_PLAN_H_
 
 #include <optional>
 #include <utility>
@@ -67,4 +67,4 @@ class CompiledPlan {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_ENGINE_MODEL_COMPILED_PLAN_H_
+#endif  // TRAVERSE_ENGINE_MODEL_TREE_COMPILED_PLAN_H_

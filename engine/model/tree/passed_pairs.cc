@@ -1,4 +1,4 @@
-#include "engine/model/passed_pairs.h"
+#include "engine/model/tree/passed_pairs.h"
 
 #include <algorithm>
 #include <cstddef>

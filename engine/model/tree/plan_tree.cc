@@ -1,4 +1,4 @@
-#include "engine/model/plan_tree.h"
+#include "engine/model/tree/plan_tree.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,7 +1,7 @@
 // The pairs `before` of a node among those of its children that have paths.
 
-#ifndef TRAVERSE_ENGINE_MODEL_PASSED_PAIRS_H_
-#define TRAVERSE_ENGINE_MODEL_PASSED_PAIRS_H_
+#ifndef TRAVERSE_ENGINE_MODEL_TREE_PASSED_PAIRS_H_
+#define TRAVERSE_ENGINE_MODEL_TREE_PASSED_PAIRS_H_
 
 #include <cstddef>
 #include <optional>
@@ -31,4 +31,4 @@ inline constexpr size_t kPassedPairs = 1 << 16;
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_ENGINE_MODEL_PASSED_PAIRS_H_
+#endif  // TRAVERSE_ENGINE_MODEL_TREE_PASSED_PAIRS_H_

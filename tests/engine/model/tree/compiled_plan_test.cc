@@ -1,4 +1,4 @@
-#include "engine/model/compiled_plan.h"
+#include "engine/model/tree/compiled_plan.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "engine/model/passed_pairs.h"
+#include "engine/model/tree/passed_pairs.h"
 #include "tests/support/instances.h"
 #include "tests/support/random_plan.h"
 
