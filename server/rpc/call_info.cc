@@ -7,7 +7,11 @@
 #include <charconv>
 #include <chrono>
 #include <climits>
+#include <random>
 #include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_format.h"
 
 namespace traverse {
 namespace {
@@ -95,6 +99,23 @@ CallInfo ReadCallInfo(const grpc::CallbackServerContext& context, const std::str
   const auto bytes = metadata.find(kMessageBytes);
   if (bytes != metadata.end()) info.message_bytes = MessageBytes(bytes->second);
   return info;
+}
+
+std::string NewJobId() {
+  std::random_device random;
+  return absl::StrFormat("%08x%08x", random(), random());
+}
+
+std::string MetadataText(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (absl::ascii_isprint(static_cast<unsigned char>(c)) && c != '%' && c != ' ') {
+      escaped.push_back(c);
+    } else {
+      escaped += absl::StrFormat("%%%02X", static_cast<unsigned char>(c));
+    }
+  }
+  return escaped;
 }
 
 }  // namespace traverse

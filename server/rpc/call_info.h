@@ -43,6 +43,12 @@ std::string PeerHost(const std::string& peer);
 // The trace id of a W3C `traceparent` header, or empty if it is not valid.
 std::string TraceId(const std::string& traceparent);
 
+// The id of a job whose caller gave it none: 16 random hexadecimal digits.
+std::string NewJobId();
+
+// `text` as metadata may have it: what is not printable ASCII is escaped as in a URL.
+std::string MetadataText(const std::string& text);
+
 }  // namespace traverse
 
 #endif  // TRAVERSE_SERVER_RPC_CALL_INFO_H_

@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <chrono>
-#include <random>
 #include <utility>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "engine/base/rest.h"
 #include "server/jobs/return_margin.h"
 #include "server/rpc/grpc_status.h"
@@ -28,24 +25,6 @@ constexpr int64_t kPieceBytes = 64 << 10;
 
 // Layers freed at one go, when a job ends early.
 constexpr size_t kDiscardedAtOnce = 64;
-
-std::string NewJobId() {
-  std::random_device random;
-  return absl::StrFormat("%08x%08x", random(), random());
-}
-
-// `text` as metadata may have it: what is not printable ASCII is escaped as in a URL.
-std::string MetadataText(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (absl::ascii_isprint(static_cast<unsigned char>(c)) && c != '%' && c != ' ') {
-      escaped.push_back(c);
-    } else {
-      escaped += absl::StrFormat("%%%02X", static_cast<unsigned char>(c));
-    }
-  }
-  return escaped;
-}
 
 absl::Status OverLimit(const std::string& place, int64_t found, const char* what, int64_t limit) {
   return absl::ResourceExhaustedError(
