@@ -345,7 +345,11 @@ void LinkWriter::WriteBoundaryStep(const LinkRequest& request, const Link& link,
     case StepKind::kLift:
       return out_.LiftLine(step, step.to.z);
     case StepKind::kSlot:
-      if (link.Leaves(i) && (step.slots & kDynamicsSlots) != 0) return;
+      // What another path is printed under is set at its beginning, once.
+      if ((step.slots & kDynamicsSlots) != 0 &&
+          (link.Leaves(i) || request.to->placement().block != *request.boundary)) {
+        return;
+      }
       return out_.SetBy(raw, step.slots);
     default:
       out_.LinkLine(step);

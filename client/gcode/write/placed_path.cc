@@ -146,6 +146,8 @@ std::vector<Position> PlacedPath::WayBack(double length_mm) const {
     length_mm -= step;
     if (step > 0) way.push_back(at);
   };
+  // A loop that ends short of its start is wiped across that gap, and on along its beginning.
+  if (placement_.closed) go_to(first_);
   const size_t n = segments.size();
   for (size_t i = 0; i < n && length_mm > 0; ++i) {
     const BodySegment next = placement_.closed ? segments[i] : Reversed(segments[n - 1 - i]);

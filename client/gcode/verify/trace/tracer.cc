@@ -214,9 +214,11 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
   move.rounding = move.kind == MoveKind::kTravel && (motion.words & Bit('E')) != 0 &&
                   motion.filament == 0 && move.length_mm() <= kRoundedMm && !chunk_.paths.empty() &&
                   motion.feed == chunk_.paths.back().feed;
-  // What was pulled back may be returned with what rounding makes of it.
+  // What was pulled back may be returned with what rounding makes of it, piece by piece; some
+  // slicers prime with next to nothing.
+  constexpr Micro kRounding = 1'000;
   const bool fresh = motion.pulled <= VerifyMachine::kSlack && !motion.was_retracted;
-  if (line.primes && line.surplus > (motion.pulled == 0 ? 0 : VerifyMachine::kSlack)) {
+  if (line.primes && line.surplus > kRounding) {
     chunk_.standstills.push_back({section, move.line, line.surplus, fresh, move.to});
   }
   pending_.push_back(move);

@@ -143,6 +143,13 @@ std::string Accelerated(const std::string& from, const std::string& to, int prin
                       "\n;TYPE:Internal infill\nG1 F1800\nG1 ", to, " E.3\n");
 }
 
+TEST(VerifyRules, StandstillWhatRoundingLeavesIsNothing) {
+  const std::string more = With(kTwo, Way("X0 Y5"), With(Way("X0 Y5"), "E1 ", "E1.0009 "));
+  EXPECT_EQ(Broken(kHead + more, kHead + kOneTurned), "");
+  const std::string little = With(kTwo, "G1 X9 Y5", "G1 E.00001\nG1 X9 Y5");
+  EXPECT_EQ(Broken(kHead + little, kHead + kOneTurned), "");
+}
+
 TEST(VerifyRules, SpeedsRetractionsKeepTheirAccelerations) {
   const std::string a = kHead + "M204 S1000\n" + Accelerated("X0 Y0", "X9 Y0", 300) +
                         Accelerated("X0 Y5", "X9 Y5", 400) + Accelerated("X0 Y9", "X9 Y9", 500);
