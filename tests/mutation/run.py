@@ -15,9 +15,11 @@ The tree must be built (build/release), and nobody else may be building it.
 """
 
 import argparse
+import os
 import pathlib
 import random
 import re
+import signal
 import subprocess
 import sys
 import time
@@ -85,11 +87,18 @@ def choose(place, each, seed):
 
 
 def run(command, seconds):
-    try:
-        return subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                              text=True, timeout=seconds, check=False).returncode
-    except subprocess.TimeoutExpired:
-        return "time"
+    """The exit code, or "time". What it started ends with it: a fault may well never return."""
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                          start_new_session=True) as process:
+        try:
+            return process.wait(timeout=seconds)
+        except subprocess.TimeoutExpired:
+            return "time"
+        finally:
+            try:
+                os.killpg(process.pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
 
 
 def try_fault(place, fault, build):
