@@ -33,6 +33,8 @@ void Observations::Append(const Observations& other) {
   AppendSeen(other.signatures, signatures);
   AppendSeen(other.heights, heights);
   AppendSeen(other.rises, rises);
+  slopes.insert(other.slopes.begin(), other.slopes.end());
+  stated.insert(stated.end(), other.stated.begin(), other.stated.end());
   lowest.insert(lowest.end(), other.lowest.begin(), other.lowest.end());
   farthest.insert(farthest.end(), other.farthest.begin(), other.farthest.end());
   script_signatures.insert(other.script_signatures.begin(), other.script_signatures.end());

@@ -70,6 +70,14 @@ struct LowestWay {
   WayRise rise = WayRise::kLevel;
 };
 
+// The height that a move states, and the slope on which it comes to it; 0: it does not rise.
+struct StatedHeight {
+  int64_t um = 0;
+  int64_t slope = 0;  // um in 10 mm
+  uint32_t line = 0;
+  int64_t layer = -1;
+};
+
 // Filament pulled back, and what undoes it.
 struct RetractionCycle {
   uint64_t tool = 0;
@@ -118,8 +126,10 @@ struct Observations {
   absl::flat_hash_map<uint64_t, Seen> signatures;
   absl::flat_hash_set<uint64_t> script_signatures;
   absl::flat_hash_map<int64_t, Seen> heights;  // um above the layer, of moves that state Z
-  absl::flat_hash_map<int64_t, Seen> rises;    // the same of moves straight up
-  std::vector<LowestWay> lowest;               // ways that lead lower than what they connect
+  absl::flat_hash_set<int64_t> slopes;       // um of rise in 10 mm, of moves that rise on their way
+  std::vector<StatedHeight> stated;          // what the other file's moves state
+  absl::flat_hash_map<int64_t, Seen> rises;  // the same of moves straight up
+  std::vector<LowestWay> lowest;             // ways that lead lower than what they connect
   absl::flat_hash_set<uint64_t> deposit_accelerations;  // of the whole file, as the box is
   std::vector<FarPoint> farthest;
   Box box;  // of all points

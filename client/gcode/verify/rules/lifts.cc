@@ -19,6 +19,8 @@ constexpr float kLowMm = 0.5f;
 constexpr float kLowShare = 0.1f;
 constexpr double kUsualShare = 0.99;  // of the original's ways, for how low they may lie
 constexpr double kShortestMm = 0.05;
+constexpr int64_t kHeightSlackUm = 2;
+constexpr int64_t kSlopeSlackUm = 2;
 
 struct Height {
   float apex_mm = 0;
@@ -105,6 +107,23 @@ Habit HabitOf(const LiftLog& log, absl::Span<const WayProfile> ways) {
   return habit;
 }
 
+// How far the move rises in 10 mm; 0 if it does not, or is too short to tell.
+int64_t SlopeOf(const TraceMove& move) {
+  constexpr double kTellingMm = 2;
+  const double length = move.length_mm();
+  if (move.z_to_mm <= move.z_from_mm || length < kTellingMm) return 0;
+  return std::llround((move.z_to_mm - move.z_from_mm) * 10'000 / length);
+}
+
+// True if `map` has `key`, or one that is no more than `slack` from it.
+template <typename Map>
+bool Knows(const Map& map, int64_t key, int64_t slack) {
+  for (int64_t near = key - slack; near <= key + slack; ++near) {
+    if (map.contains(near)) return true;
+  }
+  return false;
+}
+
 // Appends the profile of the way in `link`, and the heights that it states. The kind of the way;
 // nothing if it goes nowhere.
 void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool only_new,
@@ -144,7 +163,13 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
                                  static_cast<float>(move.length_mm())});
     if (!move.states_z || (only_new && layer.IsKnown(move))) continue;
     const int64_t um = std::llround((move.z_to_mm - to.z_mm) * 1000);
-    seen.heights.try_emplace(um, Seen{move.line, layer.index(), 0}).first->second.count++;
+    const int64_t slope = SlopeOf(move);
+    if (only_new) {
+      seen.stated.push_back({um, slope, move.line, layer.index()});
+    } else {
+      seen.heights.try_emplace(um, Seen{move.line, layer.index(), 0}).first->second.count++;
+      if (slope > 0) seen.slopes.insert(slope);
+    }
   }
   if (length < kShortestMm) {
     seen.lifts.pieces.resize(way.first);
@@ -216,13 +241,17 @@ void ObserveLifts(const LayerPair& layer, LayerFindings& findings) {
 
 void CompareLifts(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   for (size_t kind = 0; kind < kWayKinds; ++kind) CompareKind(was, is, kind, breaks);
-  for (const auto& [um, seen] : is.heights) {
-    bool known = false;
-    for (int64_t near = um - 2; near <= um + 2; ++near) known |= was.heights.contains(near);
+  int64_t highest = 0;
+  for (const auto& [um, seen] : was.heights) highest = std::max(highest, um);
+  for (const StatedHeight& stated : is.stated) {
+    bool known = Knows(was.heights, stated.um, kHeightSlackUm);
+    // On a slope of the original's, which ends with its way, a shorter way comes less high.
+    known |=
+        stated.slope > 0 && stated.um <= highest && Knows(was.slopes, stated.slope, kSlopeSlackUm);
     if (known) continue;
-    breaks.push_back({VerifyRule::kLifts, 0, seen.line, seen.layer,
+    breaks.push_back({VerifyRule::kLifts, 0, stated.line, stated.layer,
                       absl::StrFormat("a way goes %.3f mm above the layer, as none of the original",
-                                      static_cast<double>(um) / 1000)});
+                                      static_cast<double>(stated.um) / 1000)});
   }
 }
 

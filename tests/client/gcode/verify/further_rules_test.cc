@@ -110,6 +110,24 @@ TEST(VerifyRules, LiftsNoneIsInventedNorHigher) {
   EXPECT_THAT(Broken(kHead + kTwo, kHead + invented), HasSubstr("lifts"));
 }
 
+// Ways that rise all along, by 0.2 mm in 10 mm: how high they come follows from how long they are.
+TEST(VerifyRules, LiftsOnASlopeOfTheOriginalComeAsHighAsTheirWayIsLong) {
+  const auto line = [](const char* z, const char* from, const char* to) {
+    return absl::StrCat("G1 E-1 F2100\nG1 ", from, " Z", z, " F9000\nG1 Z.2 F720\nG1 E1 F2100\n",
+                        ";TYPE:Internal infill\nG1 F1800\nG1 ", to, " E.3\n");
+  };
+  const std::string first = Line("Internal infill", "X0 Y0", "X10 Y0");
+  const std::string a = kHead + first + line(".4", "X10 Y10", "X0 Y10") +
+                        line(".832", "X10 Y40", "X0 Y40") + line(".4", "X0 Y50", "X10 Y50");
+  const auto turned = [&](const char* z, const char* next) {
+    return kHead + first + line(z, "X0 Y10", "X10 Y10") + line(next, "X10 Y40", "X0 Y40") +
+           line(".4", "X0 Y50", "X10 Y50");
+  };
+  EXPECT_EQ(Broken(a, turned(".483", ".8")), "");
+  EXPECT_EQ(Broken(a, turned(".62", ".8")), "lifts");
+  EXPECT_EQ(Broken(a, turned(".483", ".82")), "lifts");
+}
+
 TEST(VerifyRules, RetractionsAreMadeAtTheHeightOfWhatIsPrinted) {
   const std::string way = Lifted("X10 Y30");
   const std::string above =
