@@ -76,6 +76,15 @@ TEST(FingerprintOf, WhateverChangesTheProblemChangesTheShape) {
   }
 }
 
+TEST(FingerprintOf, PlansWithoutPathsBeginAtTheOrigin) {
+  Plan empty;
+  empty.nodes.emplace_back().kind = PlanNode::Kind::kAnyOrder;
+
+  EXPECT_EQ(PlanOrigin(empty), (Point{0, 0}));
+  EXPECT_EQ(FingerprintOf(empty, {}).shape, FingerprintOf(empty, {}).shape);
+  EXPECT_NE(FingerprintOf(empty, {}).shape, FingerprintOf(SmallPlan(), {}).shape);
+}
+
 TEST(ProblemKey, DependsOnStartAndFinishFromTheOrigin) {
   const uint64_t key = ProblemKey(1, {0, 0}, {5, 5}, std::nullopt);
 
