@@ -595,7 +595,7 @@ def with_effect(file, pattern):
     before, pending = None, None
     for i, line in enumerate(file.lines):
         if re.match(pattern, line.text):
-            text = "M106 S0" if line.text == "M107" else line.text
+            text = line.text.split(";")[0].strip().replace("M107", "M106 S0")
             pending = i if before is not None and text != before else None
             before = text
         elif line.kind == "deposit" and pending is not None:
