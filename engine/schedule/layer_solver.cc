@@ -348,10 +348,11 @@ bool LayerSolver::GreedyMayBeBetter(const LayerProblem& problem, const ChainLaye
 // the first solution, in parallel, or was done for an equal layer; from another start its result is
 // used again.
 void LayerSolver::Bound(const LayerProblem& problem, ChainLayer& layer, Solution& solution) const {
-  if (!strategy_->traits().wants_bound || cancel_.cancelled()) return;
+  const double effort = strategy_->traits().bound_effort;
+  if (effort == 0 || cancel_.cancelled()) return;
   Budget budget = LayerBudget(layer, kSideShare);
   const double cost = RouteCost(problem, solution.route, &budget);
-  solution.lower_bound = LowerBound(problem, cost, &layer.bound_multipliers, budget);
+  solution.lower_bound = LowerBound(problem, cost, &layer.bound_multipliers, effort, budget);
   if (solution.lower_bound == cost) solution.stop = StopReason::kOptimal;
 }
 

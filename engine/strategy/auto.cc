@@ -237,7 +237,7 @@ class Auto : public PreparingStrategy {
  public:
   Auto(const AutoOptions& options, bool bound)
       : PreparingStrategy({.reuses_routes = true,
-                           .wants_bound = bound,
+                           .bound_effort = bound ? options.effort : 0,
                            .look_ahead_paths = options.least_gain_each > 0 ? kLookAheadPathsInHaste
                                                                            : kLookAheadPaths}),
         options_(options) {}

@@ -90,7 +90,7 @@ class Exact : public Strategy {
         std::chrono::duration<double>(time_limit_seconds_)));
     const bool provable = solution.statistics["provable"] > 0;
     Budget share = Share(limited, provable ? kBoundShare : kBoundShareWithoutProof);
-    solution.lower_bound = LowerBound(problem, cost, nullptr, share);
+    solution.lower_bound = LowerBound(problem, cost, nullptr, /*effort=*/0, share);
     if (solution.lower_bound == cost) {
       solution.stop = StopReason::kOptimal;
     } else if (!provable || limited.ExhaustedNow() || !ProveByStages(problem, solution, limited)) {
@@ -129,7 +129,7 @@ class ExactFramework : public Strategy {
   ExactFramework(const FrameworkOptions& options, const MilpOptions& milp,
                  double time_limit_seconds, bool cold, bool bound)
       // As the thesis has it, every layer starts where the one before ended.
-      : Strategy({.serial = true, .pure = cold, .wants_bound = bound}),
+      : Strategy({.serial = true, .pure = cold, .bound_effort = bound ? 1.0 : 0.0}),
         options_(options),
         milp_(milp),
         time_limit_seconds_(time_limit_seconds),

@@ -48,8 +48,9 @@ struct StrategyTraits {
   // Resume may take the place of Solve where a route of an equal layer is known.
   bool reuses_routes = false;
 
-  // Callers want a lower bound of solutions that have none: the chain looks for one then.
-  bool wants_bound = false;
+  // Callers want a lower bound of solutions that have none: the chain looks for one then, with so
+  // much effort (LowerBound). 0: they want none.
+  double bound_effort = 0;
 
   // Two layers of at most so many paths together are worth ResumeWithNext: the chain calls it
   // where the next layer is known. 0: it does no more than Resume.

@@ -113,7 +113,7 @@ class Tabu : public Strategy {
   // As the thesis has it, every layer starts where the one before ended: without polish nothing
   // repairs a route that was found for another start.
   static StrategyTraits Traits(bool polish, bool bound) {
-    return {.serial = !polish, .wants_bound = bound};
+    return {.serial = !polish, .bound_effort = bound ? 1.0 : 0.0};
   }
 
   static void Take(const LayerView& layer, Route route, Candidate& best) {

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "engine/cost/route_cost.h"
+#include "engine/proof/bounds/programme_bound.h"
 #include "engine/proof/bounds/tree_bound.h"
 #include "engine/proof/bounds/vertex_bound.h"
 
@@ -22,6 +23,7 @@ constexpr double kLeastGain = 1e-3;
 // before.
 constexpr int kVertexSteps = 400;
 constexpr int kVertexStepsAgain = 100;
+constexpr double kShareOfProgrammeAgain = 0.25;
 
 // Of the time that is left, what a search may use: the evaluation after it is what counts.
 constexpr double kSearchShare = 0.4;
@@ -44,7 +46,7 @@ void EvaluateAgain(TreeBound& tree, Budget& budget) {
 }  // namespace
 
 std::optional<double> LowerBound(const LayerProblem& problem, double target,
-                                 BoundMultipliers* multipliers, Budget& budget) {
+                                 BoundMultipliers* multipliers, double effort, Budget& budget) {
   if (problem.plan->paths.empty()) return RouteCost(problem, {});
   if (budget.ExhaustedNow()) return std::nullopt;
   TreeBound tree(problem, budget);
@@ -64,6 +66,10 @@ std::optional<double> LowerBound(const LayerProblem& problem, double target,
     VertexBound vertices(problem, tree.graph(), tree.multipliers());
     const int steps = known ? kVertexStepsAgain : kVertexSteps;
     bound = std::max(bound, vertices.Search(target, steps, budget));
+  }
+  if (bound < target && effort > 0) {
+    if (known) effort *= kShareOfProgrammeAgain;
+    bound = std::max(bound, ProgrammeBound(problem, target, effort, budget).value_or(0));
   }
   return std::min(bound, target);
 }

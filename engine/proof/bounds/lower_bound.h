@@ -21,10 +21,12 @@ using BoundMultipliers = std::vector<double>;
 // another number of paths: then they become what was found. The same plan at a neighboring start
 // has nearly as good a bound by them, at a small part of the time. Any are valid.
 //
-// Linear memory. Bounds by trees (tree_bound.h): 4 ms for 26 contours and 26 rasters, 0.3 s for 500
-// and 500.
+// `effort` is that of linear programmes (programme_bound.h), beyond trees.
+//
+// Linear memory but for these. Bounds by trees (tree_bound.h): 4 ms for 26 contours and 26 rasters,
+// 0.3 s for 500 and 500.
 std::optional<double> LowerBound(const LayerProblem& problem, double target,
-                                 BoundMultipliers* multipliers, Budget& budget);
+                                 BoundMultipliers* multipliers, double effort, Budget& budget);
 
 }  // namespace traverse
 

@@ -68,6 +68,7 @@ class LinearProgram::Impl {
     } catch (const CoinError&) {
       return Status::kStopped;
     }
+    work_ += static_cast<double>(simplex_.numberIterations()) * simplex_.numberRows();
     if (simplex_.status() == 0) return Status::kOptimal;
     return simplex_.status() == 1 ? Status::kInfeasible : Status::kStopped;
   }
@@ -116,6 +117,7 @@ class LinearProgram::Impl {
 
   static constexpr double kHuge = 1e29;
   ClpSimplex simplex_;
+  double work_ = 0;
 };
 
 LinearProgram::LinearProgram() : impl_(std::make_unique<Impl>()) {}
@@ -182,6 +184,7 @@ LinearProgram::Status LinearProgram::SolvePrimal(Budget& budget) {
   return impl_->Solve(budget, kNoLimit, [](ClpSimplex& simplex) { simplex.primal(); });
 }
 
+double LinearProgram::work() const { return impl_->work_; }
 double LinearProgram::value() const { return impl_->simplex_.objectiveValue(); }
 double LinearProgram::Primal(int column) const {
   return impl_->simplex_.primalColumnSolution()[column];

@@ -74,6 +74,9 @@ class LinearProgram {
   Status SolveDual(Budget& budget, int most_iterations = kNoLimit);
   Status SolvePrimal(Budget& budget);
 
+  // What all solves took: iterations times rows, which their time is about proportional to.
+  double work() const;
+
   // Of the last solution.
   double value() const;
   double Primal(int column) const;

@@ -42,6 +42,11 @@ class PathTspSolver::Search {
       moves.push_back({p, relaxation_.nodes().start()});
       moves.push_back({p, relaxation_.nodes().finish()});
     }
+    // A path, however long, so that there is a solution whatever cuts come.
+    for (int item = 2; item < relaxation_.nodes().item_count(); ++item) {
+      const int to = relaxation_.nodes().first(item);
+      moves.push_back({relaxation_.nodes().mate(relaxation_.nodes().first(item - 1)), to});
+    }
     relaxation_.AddMoves(moves);
   }
 
@@ -77,8 +82,10 @@ class PathTspSolver::Search {
     return result_;
   }
 
-  double RootBound(const std::vector<double>& start, double cutoff, Budget& budget) {
+  double RootBound(const std::vector<double>& start, double cutoff, Budget& budget,
+                   double most_work) {
     Begin(start, cutoff, budget);
+    most_work_ = lp().work() + most_work;
     return std::min(cutoff, Root());
   }
 
@@ -110,6 +117,7 @@ class PathTspSolver::Search {
     budget_ = &budget;
     result_ = Result();
     best_ = cutoff;
+    most_work_ = kUnlimited;
     least_integral_ = kUnreached;
     stopped_ = false;
     // Far more than any path below the cutoff can pay.
@@ -147,7 +155,7 @@ class PathTspSolver::Search {
       TakeIntegral();  // cuts may be missing: goes on
       without_gain = bound > last + kGain * (best_ - bound) ? 0 : without_gain + 1;
       last = bound;
-      if (without_gain > kRoundsWithoutGainAtRoot) return bound;
+      if (without_gain > kRoundsWithoutGainAtRoot || lp().work() > most_work_) return bound;
       if (Gap() < kLessGap * gap) {
         gap = Gap();
         relaxation_.LeaveOutDear(gap, *budget_);
@@ -286,6 +294,7 @@ class PathTspSolver::Search {
   Result result_;
   double least_integral_ = 0;  // bound of the nodes that ended with a path
   double best_ = 0;            // nothing from here up is of interest
+  double most_work_ = kUnlimited;  // of the programmes, where the root alone is solved
   double bound_now_ = 0;       // of the last solution at the root
   std::vector<Node> open_;
   std::vector<std::pair<int, bool>> applied_;
@@ -303,8 +312,9 @@ PathTspSolver::Result PathTspSolver::Solve(const std::vector<double>& start, dou
                                            const std::vector<int>& known, Budget& budget) {
   return search_->Solve(start, cutoff, known, budget);
 }
-double PathTspSolver::RootBound(const std::vector<double>& start, double cutoff, Budget& budget) {
-  return search_->RootBound(start, cutoff, budget);
+double PathTspSolver::RootBound(const std::vector<double>& start, double cutoff, Budget& budget,
+                                double most_work) {
+  return search_->RootBound(start, cutoff, budget, most_work);
 }
 int PathTspSolver::nodes() const { return search_->nodes(); }
 int PathTspSolver::cuts() const { return search_->cuts(); }

@@ -25,6 +25,7 @@
 #define TRAVERSE_ENGINE_PROOF_TSP_PATH_TSP_H_
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -47,6 +48,8 @@ struct PathTsp {
 // Solves one problem for several start costs, keeping what it learns.
 class PathTspSolver {
  public:
+  static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
   struct Result {
     // No path costs less; at least `cutoff` if there is none below it.
     double lower_bound = 0;
@@ -65,8 +68,10 @@ class PathTspSolver {
   Result Solve(const std::vector<double>& start, double cutoff, const std::vector<int>& known,
                Budget& budget);
 
-  // A lower bound without branching, at most `cutoff`: much quicker than Solve.
-  double RootBound(const std::vector<double>& start, double cutoff, Budget& budget);
+  // A lower bound without branching, at most `cutoff`: much quicker than Solve. Ends when the
+  // programmes have taken `most_work` (LinearProgram::work).
+  double RootBound(const std::vector<double>& start, double cutoff, Budget& budget,
+                   double most_work = kUnlimited);
 
   int nodes() const;  // of all searches so far
   int cuts() const;

@@ -98,6 +98,11 @@ ItemStage::ItemStage(const StageModel& model, int stage)
   }
 }
 
+bool ItemStage::IsAll(const StageModel& model) {
+  if (model.size(0) < 2 || model.cluster_count() - model.size(0) > 1) return false;
+  return IsItemStage(model, 0) || IsPortStage(model, 0);
+}
+
 std::vector<double> ItemStage::StartOfModel() const {
   std::vector<double> start;
   for (size_t i = 0; i < first_.size(); ++i) {

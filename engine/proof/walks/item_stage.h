@@ -33,6 +33,10 @@ class ItemStage {
   // that follow.
   ItemStage(const StageModel& model, int stage);
 
+  // Whether the first stage can be one of these and is all there is, but for a cluster that has to
+  // come last.
+  static bool IsAll(const StageModel& model);
+
   // States of the stage are numbered from 0.
   int state_count() const { return state_count_; }
   size_t StateIndex(ClusterState at) const {
@@ -48,8 +52,9 @@ class ItemStage {
              Budget& budget);
 
   // A lower bound of what Solve finds, quicker.
-  double Bound(const std::vector<double>& start, double limit, Budget& budget) {
-    return solver_.RootBound(start, limit, budget);
+  double Bound(const std::vector<double>& start, double limit, Budget& budget,
+               double most_work = PathTspSolver::kUnlimited) {
+    return solver_.RootBound(start, limit, budget, most_work);
   }
 
   const PathTspSolver& solver() const { return solver_; }

@@ -75,11 +75,8 @@ class Proof {
     result_.cost = cost;
   }
 
-  // Whether the first stage is all there is, but for a cluster that has to come last.
   bool CanBranchAlone() const {
-    if (model_.size(0) < options_.least_items_to_branch) return false;
-    if (model_.cluster_count() - model_.size(0) > 1) return false;
-    return IsItemStage(model_, 0) || IsPortStage(model_, 0);
+    return model_.size(0) >= options_.least_items_to_branch && ItemStage::IsAll(model_);
   }
 
   void WalksAlone() {

@@ -25,7 +25,7 @@ struct OptionSpec {
   std::string description;          // what it does, with its unit
 };
 
-// The option `bound` that several strategies have: see Strategy::wants_bound.
+// The option `bound` that several strategies have: see StrategyTraits::bound_effort.
 OptionSpec BoundOption(bool default_value);
 
 // The option `pure` of the sources' methods, off by default: as published, and the only promise

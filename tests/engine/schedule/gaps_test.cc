@@ -353,7 +353,7 @@ TEST_P(GapsOfProofs, AreShort) {
   EXPECT_LT(after_cancel(), kMostGap) << "seconds to the end";
 }
 
-INSTANTIATE_TEST_SUITE_P(Exact, GapsOfProofs, ::testing::Values("exact"));
+INSTANTIATE_TEST_SUITE_P(All, GapsOfProofs, ::testing::Values("exact", "auto"));
 INSTANTIATE_TEST_SUITE_P(All, Gaps,
                          ::testing::Values("none", "greedy", "ni2opt", "tabu", "exact", "auto"));
 

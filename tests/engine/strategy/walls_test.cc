@@ -94,7 +94,7 @@ TEST(LowerBound, StaysBelowTheOptimumAmongWalls) {
         RandomWalledProblem(seed, {.min_paths = 1, .max_paths = 6, .special = false});
     Budget budget;
 
-    const auto bound = LowerBound(walled.problem(), 1e9, nullptr, budget);
+    const auto bound = LowerBound(walled.problem(), 1e9, nullptr, 1, budget);
 
     ASSERT_TRUE(bound.has_value());
     EXPECT_LE(*bound, BruteForceCost(walled) + kCostTolerance);

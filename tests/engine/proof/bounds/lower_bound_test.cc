@@ -27,7 +27,7 @@ TEST(LowerBound, IsNeverAboveTheOptimum) {
     const double best = testing::BruteForce(owned.problem).cost;
     Budget budget;
 
-    const std::optional<double> bound = LowerBound(owned.problem, 2 * best + 1, nullptr, budget);
+    const std::optional<double> bound = LowerBound(owned.problem, 2 * best + 1, nullptr, 1, budget);
 
     ASSERT_TRUE(bound.has_value());
     EXPECT_LE(*bound, best + 1e-9 * (1 + best));
@@ -43,7 +43,8 @@ TEST(LowerBound, IsNeverAboveTheOptimumOfDegenerateGeometry) {
       const double best = testing::BruteForce(owned.problem).cost;
       Budget budget;
 
-      const std::optional<double> bound = LowerBound(owned.problem, 2 * best + 1, nullptr, budget);
+      const std::optional<double> bound =
+          LowerBound(owned.problem, 2 * best + 1, nullptr, 1, budget);
 
       ASSERT_TRUE(bound.has_value());
       EXPECT_LE(*bound, best + 1e-9 * (1 + best));
@@ -66,7 +67,7 @@ TEST(LowerBound, IsNeverAboveAProvenOptimum) {
     ASSERT_EQ(proven.stop, StopReason::kOptimal);
     const double best = RouteCost(owned.problem, proven.route);
 
-    const double bound = *LowerBound(owned.problem, 2 * best, nullptr, budget);
+    const double bound = *LowerBound(owned.problem, 2 * best, nullptr, 1, budget);
 
     EXPECT_LE(bound, best * (1 + 1e-9));
     EXPECT_GT(bound, 0.3 * best);
@@ -81,7 +82,7 @@ TEST(LowerBound, IsNeverAboveTheTarget) {
     const double best = testing::BruteForce(owned.problem).cost;
     Budget budget;
 
-    EXPECT_LE(LowerBound(owned.problem, best, nullptr, budget), best);
+    EXPECT_LE(LowerBound(owned.problem, best, nullptr, 1, budget), best);
   }
 }
 
@@ -89,7 +90,7 @@ TEST(LowerBound, IsTightOnALine) {
   const OwnedProblem owned(testing::FlatPlan(30));
   Budget budget;
 
-  EXPECT_NEAR(*LowerBound(owned.problem, 40, nullptr, budget), 29, 1e-6);
+  EXPECT_NEAR(*LowerBound(owned.problem, 40, nullptr, 1, budget), 29, 1e-6);
 }
 
 // Points in the plane: the bound of Held and Karp is within a few percent of the optimum.
@@ -101,7 +102,7 @@ TEST(LowerBound, IsNearTheOptimumOfPoints) {
   Budget budget;
   const double cost = RouteCost(owned.problem, GivenRoute(owned.plan()));
 
-  const double rough = *LowerBound(owned.problem, cost, nullptr, budget);
+  const double rough = *LowerBound(owned.problem, cost, nullptr, 1, budget);
 
   EXPECT_GT(rough, 480);  // the best route known: 574
 }
@@ -124,7 +125,7 @@ TEST(LowerBound, KnowsThatAContourIsLeftWhereItIsEntered) {
   const Solution found = (*MakeStrategy("auto", {}))->Solve(owned.problem, budget);
   const double cost = RouteCost(owned.problem, found.route);
 
-  const double bound = *LowerBound(owned.problem, cost, nullptr, budget);
+  const double bound = *LowerBound(owned.problem, cost, nullptr, 1, budget);
 
   EXPECT_LE(bound, cost);
   EXPECT_GT(bound, 0.75 * cost) << bound / cost;
@@ -137,11 +138,11 @@ TEST(LowerBound, IsValidWithMultipliersOfAnotherStart) {
     OwnedProblem owned = testing::RandomProblem(seed, {.max_paths = 6});
     Budget budget;
     BoundMultipliers multipliers;
-    LowerBound(owned.problem, 1e6, &multipliers, budget);
+    LowerBound(owned.problem, 1e6, &multipliers, 1, budget);
     owned.problem.start = Point{-50, 20};
     const double best = testing::BruteForce(owned.problem).cost;
 
-    const std::optional<double> bound = LowerBound(owned.problem, 1e6, &multipliers, budget);
+    const std::optional<double> bound = LowerBound(owned.problem, 1e6, &multipliers, 1, budget);
 
     ASSERT_TRUE(bound.has_value());
     EXPECT_LE(*bound, best + 1e-9 * (1 + best));
@@ -153,14 +154,14 @@ TEST(LowerBound, OfAnEmptyPlanIsWhatTheRestCosts) {
   owned.problem.finish = Point{3, 4};
   Budget budget;
 
-  EXPECT_EQ(LowerBound(owned.problem, 7, nullptr, budget), 5);
+  EXPECT_EQ(LowerBound(owned.problem, 7, nullptr, 1, budget), 5);
 }
 
 TEST(LowerBound, IsNotGivenWithoutTime) {
   const OwnedProblem owned(SequentialPlan(testing::SquareGrid(12, 12)));
   Budget budget(nullptr, Budget::Clock::now());
 
-  EXPECT_FALSE(LowerBound(owned.problem, 1e6, nullptr, budget).has_value());
+  EXPECT_FALSE(LowerBound(owned.problem, 1e6, nullptr, 1, budget).has_value());
 }
 
 }  // namespace

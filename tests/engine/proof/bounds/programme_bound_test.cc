@@ -1,0 +1,84 @@
+#include "engine/proof/bounds/programme_bound.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "engine/base/rng.h"
+#include "engine/cost/route_cost.h"
+#include "engine/proof/bounds/lower_bound.h"
+#include "tests/support/brute_force.h"
+#include "tests/support/instances.h"
+#include "tests/support/random_plan.h"
+
+namespace traverse {
+namespace {
+
+using namespace traverse::testing;  // NOLINT
+
+// `n` contours of five points.
+Plan Clusters(int n) {
+  Rng rng(4);
+  std::vector<Path> paths;
+  for (int i = 0; i < n; ++i) {
+    const Point middle{300 * rng.Unit(), 300 * rng.Unit()};
+    std::vector<Point> points;
+    for (int k = 0; k < 5; ++k) {
+      points.push_back({middle.x + 40 * rng.Unit(), middle.y + 40 * rng.Unit()});
+    }
+    paths.push_back(MakeContour(std::move(points)));
+  }
+  return AnyOrderPlan(std::move(paths));
+}
+
+TEST(ProgrammeBound, IsNeverAboveTheBestRoute) {
+  for (uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const OwnedProblem owned =
+        RandomProblem(seed, {.shape = PlanShape::kFlatContours, .min_paths = 2, .max_paths = 6});
+    const double best = BruteForce(owned.problem).cost;
+    Budget budget;
+
+    const std::optional<double> bound = ProgrammeBound(owned.problem, 2 * best + 1, 1, budget);
+
+    ASSERT_TRUE(bound.has_value());
+    EXPECT_LE(*bound, best + 1e-9 * (1 + best));
+    EXPECT_GE(*bound, 0.8 * best);
+  }
+}
+
+TEST(ProgrammeBound, ComesNearerThanTreesAndNearerWithMoreEffort) {
+  const OwnedProblem owned(Clusters(60));
+  Budget budget;
+  const double cost = RouteCost(owned.problem, GivenRoute(owned.plan()));
+  const double trees = *LowerBound(owned.problem, cost, nullptr, /*effort=*/0, budget);
+
+  const double quick = *ProgrammeBound(owned.problem, cost, 1, budget);
+  const double slow = *ProgrammeBound(owned.problem, cost, 8, budget);
+
+  EXPECT_GT(quick, 1.02 * trees);
+  EXPECT_GT(slow, 1.02 * quick);
+  EXPECT_EQ(*LowerBound(owned.problem, cost, nullptr, 1, budget), quick);
+}
+
+TEST(ProgrammeBound, IsForLayersThatAreOneStageOfSmallContours) {
+  Budget budget;
+  const OwnedProblem stages(SequentialPlan(SquareGrid(3, 3)));
+
+  EXPECT_EQ(ProgrammeBound(stages.problem, 1e6, 1, budget), std::nullopt);
+}
+
+TEST(ProgrammeBound, EndsWithItsBudget) {
+  const OwnedProblem owned(Clusters(60));
+  CancelToken cancel;
+  cancel.Cancel();
+  Budget cancelled(&cancel);
+
+  EXPECT_EQ(ProgrammeBound(owned.problem, 1e6, 1, cancelled), std::nullopt);
+}
+
+}  // namespace
+}  // namespace traverse
