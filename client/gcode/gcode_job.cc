@@ -32,6 +32,9 @@ void SetCost(const TravelModel& model, v1::CostModel& cost) {
   time.set_retraction_threshold_mm(std::clamp(model.retraction_threshold_mm, 0.0, 1e7));
 }
 
+// Rounding of sums of filament.
+constexpr double kLeastExtraMm = 1e-6;
+
 // Longer than any way.
 constexpr double kNeverMm = 1e7;
 
@@ -136,18 +139,40 @@ Census FillLayers(const GcodeFile& file, const GcodeOptions& options, const File
   return all;
 }
 
+// Where each prime pushes more than was pulled back, the number of retractions in a layer is part
+// of what is printed, and hardly an order that is found has it: of a few layers, whether any does
+// so.
+bool KeepsRetractions(const GcodeFile& file) {
+  constexpr size_t kLayers = 3;
+  for (size_t i = 1; i <= kLayers; ++i) {
+    const Layer& layer = file.layers[file.layers.size() * i / (kLayers + 1)];
+    const Block& first = file.blocks[layer.first_block];
+    const PartStart start{StateAt(file, first), file.states[first.state_in]};
+    if (Measure(file, file.PathsText(layer), start).extra_mm > kLeastExtraMm) return true;
+  }
+  return false;
+}
+
 // The search of `auto` ends after so many rounds without a gain for each path: short files are
 // searched as long as it pays, long ones as others are. And it ends where a second of computing
-// saves less than two seconds of printing, as the search is half of the work; where ways are looked
-// for around walls, a round takes five times as long.
-void SetStrategy(size_t paths, bool avoids_walls, v1::Strategy& strategy) {
+// saves less than half a second of printing, or has saved less than six on the average: a layer is
+// searched some six times. What is done in any case is shared by the layers.
+void SetStrategy(const GcodeFile& file, v1::Strategy& strategy) {
+  const auto paths = static_cast<double>(file.blocks.size());
   constexpr double kRounds = 20000;
   constexpr double kMaxEffort = 10;
-  const double effort = std::clamp(kRounds / static_cast<double>(paths), 1.0, kMaxEffort);
+  constexpr double kSecondsPerRound = 20e-6;
+  constexpr double kFreeRounds = 5000;
+  constexpr double kLeastFreeRounds = 50;
+  constexpr double kOfLittleUse = 8;
+  const double effort = std::clamp(kRounds / paths, 1.0, kMaxEffort);
   strategy.set_name("auto");
   (*strategy.mutable_options())["effort"] = absl::StrFormat("%.3g", effort);
-  const double seconds_per_round = avoids_walls ? 100e-6 : 20e-6;
-  (*strategy.mutable_options())["least_gain_each"] = absl::StrFormat("%.3g", 2 * seconds_per_round);
+  const double least = kSecondsPerRound / 2 * (KeepsRetractions(file) ? kOfLittleUse : 1);
+  (*strategy.mutable_options())["least_gain_each"] = absl::StrFormat("%.3g", least);
+  const double free = kFreeRounds / static_cast<double>(file.layers.size());
+  (*strategy.mutable_options())["gain_window"] =
+      absl::StrFormat("%.0f", std::max(free, kLeastFreeRounds));
 }
 
 std::string Duration(double seconds) {
@@ -190,8 +215,7 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   job.options.mutable_start()->set_x_mm(first.points.front().x);
   job.options.mutable_start()->set_y_mm(first.points.front().y);
   gcode::SetCost(models.back(), *job.options.mutable_cost());
-  gcode::SetStrategy(file->blocks.size(), habits.retraction.avoids_walls,
-                     *job.options.mutable_strategy());
+  gcode::SetStrategy(*file, *job.options.mutable_strategy());
   job.options.set_idle_speed_mm_s(std::clamp(models.back().speed_mm_s, 0.001, 1e5));
   gcode::AddFacts(*file, census, options.policy, job);
   job.gcode = std::move(file);
@@ -213,7 +237,8 @@ void AddMeasuredFacts(InputJob& job) {
                                   " (trapezoidal speeds with look-ahead, heating not counted)");
 }
 
-std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& options) {
+std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& options,
+                                    absl::Span<const v1::LayerResult> found) {
   std::vector<v1::Layer> layers(job.layers.size());
   const gcode::Latitude latitude = gcode::LearnRetraction(*job.gcode).avoids_walls
                                        ? gcode::Latitude::kIslands
@@ -223,8 +248,17 @@ std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& opt
     const v1::Layer& layer = job.layers[i];
     layers[i].set_id(layer.id());
     if (layer.has_cost()) *layers[i].mutable_cost() = layer.cost();
-    if (options.crossings != gcode::Crossings::kAny && layers[i].cost().has_time()) {
-      layers[i].mutable_cost()->mutable_time()->set_crossing_seconds(gcode::kDearCrossingSeconds);
+    if (layers[i].cost().has_time()) {
+      v1::TimeCost& time = *layers[i].mutable_cost()->mutable_time();
+      const bool too_long = options.policy == gcode::Policy::kSafe && i < found.size() &&
+                            time.wall_clearance_mm() == 0 &&
+                            found[i].travel().total_mm() > found[i].given().total_mm();
+      if (too_long) {
+        time.set_retraction_seconds(0);
+        time.set_crossing_seconds(0);
+      } else if (options.crossings != gcode::Crossings::kAny) {
+        time.set_crossing_seconds(gcode::kDearCrossingSeconds);
+      }
     }
     *layers[i].mutable_walls() = layer.walls();
     *layers[i].mutable_exposed_paths() = layer.exposed_paths();

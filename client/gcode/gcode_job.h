@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/types/span.h"
 #include "client/gcode/model/gcode_file.h"
 #include "client/gcode/plan/policy.h"
 #include "client/gcode/write/layer_writer.h"
@@ -34,8 +35,11 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
 void AddMeasuredFacts(InputJob& job);
 
 // The layers of `job`, which is one of G-code, with plans of less latitude: a second way to look
-// for an order (policy.h). Crossings cost more there, unless any are allowed.
-std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& options);
+// for an order (policy.h). Crossings cost more there, unless any are allowed; but where the routes
+// `found` for `job`, if there are any, are longer than given, which Policy::kSafe does not allow,
+// neither they nor retractions cost anything, but in files whose ways lead around walls.
+std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& options,
+                                    absl::Span<const v1::LayerResult> found = {});
 
 // The order that an answer of the service gives layer `layer` of `file`.
 // REQUIRES: the answer was checked against the layer of the job.

@@ -19,11 +19,13 @@ bool IsAskedTwice(const InputJob& job, const SearchOptions& options) {
 }
 
 // The layers of `job` once more, with plans of less latitude.
-InputJob NarrowJob(const InputJob& job, const GcodeOptions& options) {
+InputJob NarrowJob(const InputJob& job, const GcodeOptions& options, const JobResult& found) {
   InputJob narrow;
   narrow.name = job.name;
   narrow.options = job.options;
-  narrow.layers = NarrowLayers(job, options);
+  // Nobody asks how good the second search is by itself.
+  (*narrow.options.mutable_strategy()->mutable_options())["bound"] = "false";
+  narrow.layers = NarrowLayers(job, options, found.layers);
   return narrow;
 }
 
@@ -90,7 +92,8 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
   if (!first.ok()) return SearchFault(first.status());
   made.runs.push_back(*std::move(first));
   if (IsAskedTwice(job, options) && absl::Now() < search.finish_by) {
-    absl::StatusOr<report::JobRun> second = Search(client, NarrowJob(job, options.gcode), search);
+    absl::StatusOr<report::JobRun> second =
+        Search(client, NarrowJob(job, options.gcode, made.runs[0].result), search);
     // What the first one found is good enough when the time is over.
     const bool late =
         absl::IsDeadlineExceeded(second.status()) && options.finish_by != absl::InfiniteFuture();

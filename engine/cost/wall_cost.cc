@@ -15,6 +15,11 @@ constexpr size_t kMostMoves = size_t{1} << 15;
 constexpr size_t kDetoursPerPath = 512;
 constexpr size_t kMostDetours = size_t{1} << 16;
 
+// What a question takes whose answer is not known, in what one takes whose answer is; and what each
+// test does for a way around walls.
+constexpr int64_t kWorkOfCrossing = 5;
+constexpr int64_t kWorkOfTest = 4;
+
 // A point so many slacks away from the middle of a wall still lies on it.
 constexpr double kOnWall = 1.2;
 
@@ -103,7 +108,9 @@ WallMove WallCost::MoveOf(Point a, Point b) const {
   if (!straight.crosses || !detours_) return straight;
   const bool swapped = Less(b, a);
   if (swapped) std::swap(a, b);
-  std::vector<Point> via = detours_->Around(a, b);
+  int64_t tests = 0;
+  std::vector<Point> via = detours_->Around(a, b, &tests);
+  work_ += tests * kWorkOfTest;
   if (via.empty()) return straight;
   double length_mm = 0;
   Point at = a;
@@ -126,7 +133,18 @@ WallMove WallCost::MoveOf(Point a, Point b) const {
   return around;
 }
 
+double WallCost::PriceOf(Point a, Point b) const {
+  if (two_layers_ || detours_ || !grid_.Crosses(a, b)) return 0;
+  return spec_.crossing_seconds;
+}
+
+int64_t WallCost::work() const {
+  if (!two_layers_) return work_;
+  return (first_ != nullptr ? first_->work() : 0) + (second_ != nullptr ? second_->work() : 0);
+}
+
 double WallCost::Compute(Point a, Point b) const {
+  work_ += kWorkOfCrossing;
   if (detours_) return MoveOf(a, b).cost;
   return Straight(a, b, grid_.Crosses(a, b)).cost;
 }
@@ -134,6 +152,7 @@ double WallCost::Compute(Point a, Point b) const {
 double WallCost::operator()(Point a, Point b) const {
   if (two_layers_) return OfTwoLayers(a, b);
   if (known_.empty()) known_.resize(places_);
+  ++work_;
   if (Less(b, a)) std::swap(a, b);
   const uint64_t hash = Mix(Mix(Mix(Mix(1, a.x), a.y), b.x), b.y);
   Known& known = known_[(hash >> 40) & (places_ - 1)];

@@ -56,6 +56,15 @@ class WallCost {
 
   const WallGrid& grid() const { return grid_; }
 
+  // What of the cost of a move is the price of a crossing. Where ways are led around walls, and of
+  // two layers, nobody knows: 0.
+  double PriceOf(Point a, Point b) const;
+
+  // What has been asked so far, counted in what takes some 50 ns: the same for the same questions,
+  // so that a search may end by it. What the two layers were asked through a cost of both counts
+  // there, and here.
+  int64_t work() const;
+
  private:
   struct Known {
     Point a, b;
@@ -80,6 +89,7 @@ class WallCost {
 
   const size_t places_;
   mutable std::vector<Known> known_;  // by a hash of the move; empty at first
+  mutable int64_t work_ = 0;
 };
 
 }  // namespace traverse

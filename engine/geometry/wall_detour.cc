@@ -68,9 +68,11 @@ WallDetours::WallDetours(const WallGrid& grid, double clearance_mm, double on_wa
   }
 }
 
-std::vector<Point> WallDetours::Around(Point a, Point b) const {
-  std::vector<Point> there = OneWay(a, b, 0);
-  std::vector<Point> back = OneWay(b, a, 0);
+std::vector<Point> WallDetours::Around(Point a, Point b, int64_t* tests) const {
+  int64_t done = 0;
+  std::vector<Point> there = OneWay(a, b, 0, done);
+  std::vector<Point> back = OneWay(b, a, 0, done);
+  if (tests != nullptr) *tests += done;
   std::reverse(back.begin(), back.end());
   if (there.empty()) return back;
   if (back.empty() || LengthOf(a, there, b) <= LengthOf(a, back, b)) return there;
@@ -123,8 +125,9 @@ std::optional<uint32_t> WallDetours::SegmentAt(uint32_t wall, Point at) const {
   return nearest;
 }
 
-std::vector<Point> WallDetours::OneWay(Point a, Point b, int depth) const {
+std::vector<Point> WallDetours::OneWay(Point a, Point b, int depth, int64_t& tests) const {
   const std::vector<Hit> hits = HitsOf(a, b);
+  tests += 1 + static_cast<int64_t>(hits.size());
   if (hits.empty() || hits.size() > kMostHits) return {};
   std::vector<Point> way = {a};
   for (size_t i = 0; i < hits.size();) {
@@ -155,7 +158,7 @@ std::vector<Point> WallDetours::OneWay(Point a, Point b, int depth) const {
     i = last + 1;
   }
   way.push_back(b);
-  if (!PullTaut(way, depth)) return {};
+  if (!PullTaut(way, depth, tests)) return {};
   return {way.begin() + 1, way.end() - 1};
 }
 
@@ -228,13 +231,14 @@ bool WallDetours::Follow(const Hit& first, const Hit& last, double side, Point a
 
 // Leaves out the points that are not needed. False if a stretch crosses a wall, and there is no way
 // around that one.
-bool WallDetours::PullTaut(std::vector<Point>& way, int depth) const {
+bool WallDetours::PullTaut(std::vector<Point>& way, int depth, int64_t& tests) const {
   std::vector<Point> taut = {way.front()};
+  tests += static_cast<int64_t>(way.size());
   for (size_t at = 0; at + 1 < way.size();) {
     size_t next = at + 1;
     if (grid_.Crosses(way[at], way[next])) {
       if (depth == kMostDepth) return false;
-      const std::vector<Point> around = OneWay(way[at], way[next], depth + 1);
+      const std::vector<Point> around = OneWay(way[at], way[next], depth + 1, tests);
       if (around.empty()) return false;
       taut.insert(taut.end(), around.begin(), around.end());
     } else {

@@ -29,8 +29,9 @@ class WallDetours {
   // The bends of a way from `a` to `b` whose straight pieces cross no wall (WallGrid::Crosses).
   // Empty if the straight way crosses none, and if no way was found: from one island to another
   // there is none, and through a maze this does not look for one. The shorter one of what is found
-  // there and back. O(w) tests for walls crossed, w points of the walls followed.
-  std::vector<Point> Around(Point a, Point b) const;
+  // there and back. O(w) tests for walls crossed, w points of the walls followed; their number is
+  // added to `tests`, unless that is null.
+  std::vector<Point> Around(Point a, Point b, int64_t* tests = nullptr) const;
 
  private:
   // Where a way crosses a wall: a segment, and how far along the way.
@@ -42,7 +43,7 @@ class WallDetours {
   uint32_t WallOf(uint32_t segment) const { return grid_.segments()[segment].wall; }
   bool IsClosed(uint32_t wall) const;
   std::vector<Hit> HitsOf(Point a, Point b) const;
-  std::vector<Point> OneWay(Point a, Point b, int depth) const;
+  std::vector<Point> OneWay(Point a, Point b, int depth, int64_t& tests) const;
   std::optional<uint32_t> SegmentAt(uint32_t wall, Point at) const;
   bool Follow(const Hit& first, const Hit& last, double side, Point a, Point b,
               std::vector<Point>& way) const;
@@ -55,7 +56,7 @@ class WallDetours {
   };
   const Side& SideAt(double side) const { return sides_[side > 0 ? 1 : 0]; }
   double BetweenBends(uint32_t wall, const Side& side, uint32_t from, uint32_t to) const;
-  bool PullTaut(std::vector<Point>& way, int depth) const;
+  bool PullTaut(std::vector<Point>& way, int depth, int64_t& tests) const;
 
   const WallGrid& grid_;
   const double clearance_mm_;

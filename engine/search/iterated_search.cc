@@ -40,7 +40,10 @@ void IteratedSearch::Run(Rng& rng, Budget& budget) {
   KeepBest(cost);
   double best_before = cost;  // the last `patience` iterations
   int64_t since = 0;
-  double window_before = cost;
+  begun_at_ = looked_at_ = Work();
+  cost_looked_at_ = cost;
+  iterations_looked_at_ = iterations_;
+  price_looked_at_ = options_.least_gain_each > 0 ? Price() : 0;
   const double temperature = options_.temperature * cost / state_.last_position();
   for (int64_t idle = 0; idle < options_.patience && !budget.Exhausted(); ++idle, ++since) {
     if (since == options_.patience) {
@@ -48,11 +51,7 @@ void IteratedSearch::Run(Rng& rng, Budget& budget) {
       best_before = best_cost_;
       since = 0;
     }
-    if (options_.least_gain_each > 0 && iterations_ > 0 && iterations_ % options_.window == 0) {
-      const double wanted = options_.least_gain_each * static_cast<double>(options_.window);
-      if (window_before - best_cost_ < wanted) break;
-      window_before = best_cost_;
-    }
+    if (options_.least_gain_each > 0 && !IsWorthIt(Work())) break;
     ++iterations_;
     double delta = 0;
     if (!Kick(rng, delta)) continue;
@@ -68,6 +67,29 @@ void IteratedSearch::Run(Rng& rng, Budget& budget) {
     idle = 0;
   }
   if (cost > best_cost_ + kImprovementTolerance) state_.Load(best_);
+}
+
+double IteratedSearch::Work() const {
+  const double walls = options_.walls != nullptr ? static_cast<double>(options_.walls->work()) : 0;
+  return static_cast<double>(iterations_) + walls / kWallWorkOfIteration;
+}
+
+double IteratedSearch::Price() const { return options_.price ? options_.price(best_) : 0; }
+
+bool IteratedSearch::IsWorthIt(double work) {
+  const double done = work - begun_at_;
+  const double gained = std::max(0.0, options_.given_cost - (best_cost_ - price_looked_at_));
+  const double least = options_.least_gain_each;
+  if (done >= options_.window + gained / (options_.earned * least)) return false;
+  const double since = work - looked_at_;
+  if (since < std::max(options_.window, done / 3)) return true;
+  if (iterations_ - iterations_looked_at_ < kLeastIterations) return true;
+  if (cost_looked_at_ - best_cost_ < least * since) return false;
+  looked_at_ = work;
+  iterations_looked_at_ = iterations_;
+  cost_looked_at_ = best_cost_;
+  price_looked_at_ = Price();
+  return true;
 }
 
 void IteratedSearch::KeepBest(double cost) {

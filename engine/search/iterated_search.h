@@ -16,9 +16,12 @@
 #define TRAVERSE_ENGINE_SEARCH_ITERATED_SEARCH_H_
 
 #include <cstdint>
+#include <functional>
+#include <limits>
 
 #include "engine/base/budget.h"
 #include "engine/base/rng.h"
+#include "engine/cost/wall_cost.h"
 #include "engine/search/local_search.h"
 #include "engine/search/search_state.h"
 
@@ -32,9 +35,17 @@ struct IteratedSearchOptions {
   int64_t patience = 1000;
   double least_gain = 0;
 
-  // And after any `window` of iterations that did not gain so much each, in the unit of the cost.
+  // And where iterations are not worth it: where the last third of them, or the last `window` if
+  // that is more, did not gain so much each, in the unit of the cost; or where all beyond the first
+  // `window` together have not gained `earned` times as much over `given_cost`, less what `price`
+  // says of a route. Questions to `walls`, if there are any, count as so many more iterations as
+  // they take the time of.
   double least_gain_each = 0;
-  int64_t window = 200;
+  double window = 200;
+  double given_cost = std::numeric_limits<double>::infinity();
+  std::function<double(const Route& route)> price = nullptr;  // that is no gain if it is saved
+  double earned = 1;
+  const WallCost* walls = nullptr;
 
   // How much worse a route is kept with a chance of 1/e, in mean moves of the route searched.
   double temperature = 0.2;
@@ -66,6 +77,12 @@ class IteratedSearch {
 
   int64_t iterations() const { return iterations_; }
 
+  // Of WallCost::work(), what takes as long as an iteration without walls: some 20 us.
+  static constexpr double kWallWorkOfIteration = 400;
+
+  // Fewer iterations say nothing of what the next ones gain, whatever their walls cost.
+  static constexpr int64_t kLeastIterations = 200;
+
  private:
   bool Kick(Rng& rng, double& delta);
   bool BridgeKick(Rng& rng, double& delta);
@@ -76,6 +93,11 @@ class IteratedSearch {
   int ChooseSpan(Rng& rng) const;
   void KeepBest(double cost);
 
+  // What was done so far, in iterations without walls.
+  double Work() const;
+  double Price() const;
+  bool IsWorthIt(double work);
+
   SearchState& state_;
   const NeighborLists& neighbors_;
   const IteratedSearchOptions options_;
@@ -83,6 +105,11 @@ class IteratedSearch {
   bool turns_ = false;  // whether there are runs to turn
   int64_t iterations_ = 0;
   double best_cost_ = 0;
+  double begun_at_ = 0;   // Work() when Run() began
+  double looked_at_ = 0;  // Work(), and the best cost, when the last iterations were looked at
+  double cost_looked_at_ = 0;
+  int64_t iterations_looked_at_ = 0;
+  double price_looked_at_ = 0;
   Route best_;
 };
 

@@ -48,6 +48,10 @@ constexpr double kSmallPartOperationsAmongWalls = 3e5;
 // Of a search that starts from a route that was good from another start.
 constexpr double kResumeShare = 0.4;
 
+// How much more than the last iterations all of them have to gain, each on the average; of a search
+// of less effort so much more.
+constexpr double kEarned = 12;
+
 // Of more paths, two layers take longer to search together than a good end is worth; of fewer where
 // the caller wants so much of each iteration that there is no time for it.
 constexpr size_t kLookAheadPaths = 400;
@@ -92,9 +96,23 @@ Plan SetApart(Plan plan, PointPairs& points) {
   return plan;
 }
 
+// What of a route's cost is the price of crossings, in the unit of the problem.
+double CrossingPrice(const LayerProblem& problem, const Route& route) {
+  if (problem.walls == nullptr) return 0;
+  double sum = 0;
+  Point at = problem.start;
+  for (const Visit& visit : route) {
+    const Path& path = problem.plan->paths[static_cast<size_t>(visit.path)];
+    sum += problem.walls->PriceOf(at, EnterPoint(path, visit.entry));
+    at = ExitPoint(path, visit.entry);
+  }
+  return sum * problem.walls_unit;
+}
+
 struct AutoOptions {
   double effort = 1;
   double least_gain_each = 0;
+  int64_t gain_window = 200;
 };
 
 class AutoLayer : public PreparedLayer {
@@ -172,6 +190,15 @@ class AutoLayer : public PreparedLayer {
                                             effort.kicks * patience * paths);
     options.least_gain = kLeastGain;
     options.least_gain_each = options_.least_gain_each;
+    options.window = static_cast<double>(options_.gain_window);
+    if (options_.least_gain_each > 0) {
+      options.earned = effort.kicks > 0 ? kEarned * options_.effort / effort.kicks : kEarned;
+      const Route given = GivenRoute(*layer.problem.plan, &budget);
+      options.price = [&layer](const Route& of) { return CrossingPrice(layer.problem, of); };
+      options.given_cost =
+          RouteCost(layer.problem, given, &budget) - CrossingPrice(layer.problem, given);
+    }
+    options.walls = layer.problem.walls;
     options.most_span = std::clamp(kWidestKicks / paths, kLeastMostSpan, kMostSpan);
     if (!effort.detours) options.temperature = 0;
     IteratedSearch search(state, *derived_->neighbors, options);
@@ -271,11 +298,20 @@ StrategyEntry AutoEntry() {
                   1e6,
                   {},
                   "Cost in mm or s that an iteration must gain on the average for the search to go "
-                  "on; one takes some 20 microseconds."},
+                  "on; one takes some 20 microseconds, and questions to walls count as more."},
+       OptionSpec{"gain_window",
+                  OptionSpec::Type::kInt,
+                  "200",
+                  1,
+                  1e9,
+                  {},
+                  "Iterations over which least_gain_each is looked at, and that are done in any "
+                  "case."},
        BoundOption(true)},
       [](const StrategyOptions& options) -> std::unique_ptr<Strategy> {
         return std::make_unique<Auto>(
-            AutoOptions{options.Double("effort"), options.Double("least_gain_each")},
+            AutoOptions{options.Double("effort"), options.Double("least_gain_each"),
+                        options.Int("gain_window")},
             options.Bool("bound"));
       }};
 }

@@ -103,12 +103,16 @@ absl::StatusOr<CorpusRun> RunFile(const std::string& path, gcode::Policy policy,
   run.slicer =
       file.slicer.empty() ? "unknown" : file.slicer.substr(0, file.slicer.find_first_of(" _"));
   std::vector<gcode::FileOrder> tries;
-  std::vector<std::vector<v1::Layer>> ways_to_ask = {job->layers};
-  if (strategy == "auto") ways_to_ask.push_back(NarrowLayers(*job, options));
-  for (const std::vector<v1::Layer>& layers : ways_to_ask) {
+  std::vector<v1::LayerResult> found;
+  for (const bool narrow : {false, true}) {
+    if (narrow && strategy != "auto") break;
+    const std::vector<v1::Layer> layers = narrow ? NarrowLayers(*job, options, found) : job->layers;
     const absl::StatusOr<JobResult> result = client.Optimize(job->options, layers);
     if (!result.ok()) return result.status();
-    if (tries.empty()) run.found_seconds = FoundSeconds(*job, result->layers);
+    if (!narrow) {
+      found = result->layers;
+      run.found_seconds = FoundSeconds(*job, found);
+    }
     gcode::FileOrder& orders = tries.emplace_back();
     for (size_t i = 0; i < result->layers.size(); ++i) {
       orders.push_back(OrderOf(file, i, result->layers[i]));

@@ -53,6 +53,37 @@ TEST(WallCost, LetsMovesBeginAndEndOnAWall) {
   EXPECT_GT(cost({4.6, 0}, {15, 0}), 2);
 }
 
+TEST(WallCost, CountsWhatItIsAsked) {
+  CostSpec spec = PrinterCost();
+  spec.wall_clearance_mm = 0.4;
+  LayerWalls square;
+  square.walls.push_back({{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, true, -1});
+  const WallCost cost(square, FlatPlan(1), spec);
+  EXPECT_EQ(cost.work(), 0);
+
+  cost({20, 0}, {30, 0});
+  const int64_t straight = cost.work();
+  EXPECT_GT(straight, 1);
+  cost({30, 0}, {20, 0});
+  EXPECT_EQ(cost.work(), straight + 1);  // it is known
+  cost({-5, 5}, {15, 5});
+  EXPECT_GT(cost.work(), 3 * straight);  // there is a way around
+}
+
+TEST(WallCost, CountsWithTwoLayersWhatEitherIsAsked) {
+  const WallCost first(OneWall(), FlatPlan(1), PrinterCost());
+  const WallCost second(OneWall(), FlatPlan(1), PrinterCost());
+  const std::vector<std::pair<Point, Point>> points = {{{7, 7}, {8, 8}}};
+  const WallCost both(&first, &second, points, PrinterCost());
+
+  both({0, 0}, {1, 1});
+  both({0, 0}, {7, 7});
+
+  EXPECT_GT(first.work(), 0);
+  EXPECT_GT(second.work(), 0);
+  EXPECT_EQ(both.work(), first.work() + second.work());
+}
+
 TEST(WallCost, RetractsToAndFromExposedPaths) {
   LayerWalls walls = OneWall();
   walls.exposed = {1};

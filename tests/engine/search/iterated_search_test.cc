@@ -60,7 +60,32 @@ TEST(IteratedSearch, EndsWhereIterationsGainTooLittle) {
 
   search.Run(rng, s.budget);
 
-  EXPECT_EQ(search.iterations(), 30);
+  EXPECT_EQ(search.iterations(), IteratedSearch::kLeastIterations);
+}
+
+// The iterations of a search that has gained `gained` over the order given before it begins.
+int64_t IterationsFor(double gained) {
+  Searched s(7, {.min_paths = 40, .max_paths = 60});
+  IteratedSearchOptions options;
+  options.patience = 1'000'000;
+  options.least_gain_each = 1;
+  options.earned = 4;
+  options.window = 30;
+  Budget budget;
+  IteratedSearch descent(s.state, s.neighbors, options);
+  descent.Descend(budget);
+  options.given_cost = s.state.TotalCost() + gained;
+  IteratedSearch search(s.state, s.neighbors, options);
+  Rng rng(7);
+  search.Run(rng, budget);
+  return search.iterations();
+}
+
+TEST(IteratedSearch, GoesOnAsLongAsWhatItHasGainedIsWorth) {
+  EXPECT_GE(IterationsFor(0), 30);
+  EXPECT_LT(IterationsFor(0), 60);
+  EXPECT_GE(IterationsFor(200), 80);
+  EXPECT_LT(IterationsFor(200), 110);
 }
 
 TEST(IteratedSearch, FindsTheOptimumOfSmallProblems) {
