@@ -121,6 +121,7 @@ absl::StatusOr<CertificateSet> ReadCertificates(const TlsOptions& tls, absl::Tim
 absl::StatusOr<std::shared_ptr<CertificateStore>> CertificateStore::Make(
     const TlsOptions& tls, std::function<void(const absl::Status&)> on_reload) {
   std::shared_ptr<CertificateStore> store(new CertificateStore(tls, std::move(on_reload)));
+  const MutexLock lock(store->mutex_);
   store->states_ = store->StatesNow();
   absl::StatusOr<CertificateSet> set = ReadCertificates(tls, absl::Now());
   if (!set.ok()) return set.status();

@@ -140,11 +140,19 @@ std::optional<Admission::No> Admission::CheckQueues(const std::string& caller,
               limits_.max_queued_points_per_caller);
 }
 
+int64_t Admission::WaitingPoints(const Ticket& job) const {
+  return job.stalled() ? 0 : job.points_;
+}
+
+absl::Duration Admission::WaitingTime(const Ticket& job) const {
+  return job.stalled() ? absl::ZeroDuration() : TimeFor(job.points_, job.strategy_);
+}
+
 int64_t Admission::PointsOfOthers(const std::string& caller) const {
   int64_t points = 0;
   for (const auto& [name, other] : callers_) {
     if (name == caller) continue;
-    for (const Ticket* job : other.jobs) points += job->stalled() ? 0 : job->points_;
+    for (const Ticket* job : other.jobs) points += WaitingPoints(*job);
   }
   return points;
 }
@@ -166,19 +174,16 @@ std::optional<Admission::No> Admission::CheckWait(const std::string& caller, int
 }
 
 absl::Duration Admission::TimeUntilDone(const std::string& caller, absl::Duration alone) const {
-  const auto time_of = [this](const Ticket& job) {
-    return job.stalled() ? absl::ZeroDuration() : TimeFor(job.points_, job.strategy_);
-  };
   absl::Duration own = alone;
   const auto of_caller = callers_.find(caller);
   if (of_caller != callers_.end()) {
-    for (const Ticket* job : of_caller->second.jobs) own += std::min(time_of(*job), alone);
+    for (const Ticket* job : of_caller->second.jobs) own += std::min(WaitingTime(*job), alone);
   }
   absl::Duration all = own;
   for (auto other = callers_.begin(); other != callers_.end(); ++other) {
     if (other == of_caller) continue;
     absl::Duration of_other = absl::ZeroDuration();
-    for (const Ticket* job : other->second.jobs) of_other += time_of(*job);
+    for (const Ticket* job : other->second.jobs) of_other += WaitingTime(*job);
     all += std::min(of_other, own);
   }
   return all;

@@ -176,7 +176,14 @@ class Admission {
                               const std::string& strategy) const TRAVERSE_REQUIRES(mutex_);
   std::optional<No> CheckBytes(const Caller& caller, int64_t bytes) const TRAVERSE_REQUIRES(mutex_);
 
-  // Points that wait for a worker: those of jobs that are held up by their callers do not.
+  // Points of a job that wait for a worker, and its time: none while its caller holds it up. A
+  // ticket's mutex is this one's, which the compiler cannot see.
+  int64_t WaitingPoints(const Ticket& job) const
+      TRAVERSE_REQUIRES(mutex_) TRAVERSE_NO_THREAD_SAFETY_ANALYSIS;
+  absl::Duration WaitingTime(const Ticket& job) const
+      TRAVERSE_REQUIRES(mutex_) TRAVERSE_NO_THREAD_SAFETY_ANALYSIS;
+
+  // Points that wait for a worker.
   int64_t PointsOfOthers(const std::string& caller) const TRAVERSE_REQUIRES(mutex_);
 
   // Time until a new job that takes `alone` is done, beside those that are there.
