@@ -103,8 +103,16 @@ void Connections::Serve() {
   while (true) {
     poll(polled.data(), polled.size(), busy ? kBusyMilliseconds : kQuietMilliseconds);
     if (polled[0].revents != 0) return;
+    bool accepted = false;
     for (size_t i = 1; i < polled.size(); ++i) {
-      if (polled[i].revents != 0) AcceptAll(polled[i].fd);
+      if (polled[i].revents == 0) continue;
+      AcceptAll(polled[i].fd);
+      accepted = true;
+    }
+    // What a new connection sends at once is seen soon.
+    if (accepted && !busy) {
+      busy = true;
+      next = Clock::now() + std::chrono::milliseconds(kBusyMilliseconds);
     }
     if (Clock::now() < next) continue;
     for (const std::string& peer : Look(busy)) Restrain(peer);
