@@ -18,6 +18,8 @@
 namespace traverse {
 
 struct GcodeOptions {
+  static constexpr double kMostRevisitSeconds = 3600;
+
   gcode::Policy policy = gcode::Policy::kSafe;
   gcode::Crossings crossings = gcode::Crossings::kKeep;
   gcode::Allowance allow = {};

@@ -166,8 +166,7 @@ absl::StatusOr<GcodeOptions> ParseGcodeOptions(const Flags& flags) {
         allow));
   }
   options.allow = *allowed;
-  constexpr double kMostSeconds = 3600;
-  const auto revisit = flags.Number("min_revisit", 0, kMostSeconds);
+  const auto revisit = flags.Number("min_revisit", 0, GcodeOptions::kMostRevisitSeconds);
   if (!revisit.ok()) return revisit.status();
   options.min_revisit_seconds = revisit->value_or(0);
   // The flag's own choices leave no other text.

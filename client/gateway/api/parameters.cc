@@ -119,6 +119,82 @@ absl::StatusOr<FileRequest> ParseParameters(const Parameters& parameters) {
   return request;
 }
 
+namespace {
+
+absl::Status NoneKnown(const std::string& field, int value) {
+  return Fault(absl::StrCat("options.", field, ": ", value, " is none that is known"));
+}
+
+absl::Status SetPolicy(const v1::RewriteOptions& options, GcodeOptions& gcode) {
+  switch (options.policy()) {
+    case v1::POLICY_UNSPECIFIED:
+    case v1::POLICY_SAFE:
+      return absl::OkStatus();
+    case v1::POLICY_BALANCED:
+      gcode.policy = gcode::Policy::kBalanced;
+      return absl::OkStatus();
+    case v1::POLICY_FREE:
+      gcode.policy = gcode::Policy::kFree;
+      return absl::OkStatus();
+    default:
+      return NoneKnown("policy", options.policy());
+  }
+}
+
+absl::Status SetCrossings(const v1::RewriteOptions& options, GcodeOptions& gcode) {
+  switch (options.crossings()) {
+    case v1::CROSSINGS_UNSPECIFIED:
+    case v1::CROSSINGS_KEEP:
+      return absl::OkStatus();
+    case v1::CROSSINGS_FEWER:
+      gcode.crossings = gcode::Crossings::kFewer;
+      return absl::OkStatus();
+    case v1::CROSSINGS_ANY:
+      gcode.crossings = gcode::Crossings::kAny;
+      return absl::OkStatus();
+    default:
+      return NoneKnown("crossings", options.crossings());
+  }
+}
+
+absl::Status SetAllowances(const v1::RewriteOptions& options, gcode::Allowance& allow) {
+  constexpr int kMost = 16;
+  if (options.allow_size() > kMost) {
+    return Fault(absl::StrCat("options.allow: ", options.allow_size(), " values, more than 16"));
+  }
+  for (int i = 0; i < options.allow_size(); ++i) {
+    switch (options.allow(i)) {
+      case v1::ALLOWANCE_INFILL_ORDER:
+        allow.infill_order = true;
+        break;
+      case v1::ALLOWANCE_WALL_ORDER:
+        allow.wall_order = true;
+        break;
+      case v1::ALLOWANCE_FAN_ORDER:
+        allow.fan_order = true;
+        break;
+      default:
+        return NoneKnown(absl::StrCat("allow[", i, "]"), options.allow(i));
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status SetWhatMayMove(const v1::RewriteOptions& options, GcodeOptions& gcode) {
+  if (absl::Status status = SetPolicy(options, gcode); !status.ok()) return status;
+  if (absl::Status status = SetCrossings(options, gcode); !status.ok()) return status;
+  if (absl::Status status = SetAllowances(options, gcode.allow); !status.ok()) return status;
+  // Not so of a number that is none.
+  if (!(options.min_revisit_s() >= 0 &&
+        options.min_revisit_s() <= GcodeOptions::kMostRevisitSeconds)) {
+    return Fault("options.min_revisit_s: not within 0 to 3600");
+  }
+  gcode.min_revisit_seconds = options.min_revisit_s();
+  return absl::OkStatus();
+}
+
+}  // namespace
+
 absl::StatusOr<FileRequest> RequestOf(const v1::RewriteOptions& options) {
   FileRequest request;
   if (!options.name().empty()) {
@@ -127,19 +203,7 @@ absl::StatusOr<FileRequest> RequestOf(const v1::RewriteOptions& options) {
     }
     request.name = options.name();
   }
-  switch (options.policy()) {
-    case v1::POLICY_UNSPECIFIED:
-    case v1::POLICY_SAFE:
-      break;
-    case v1::POLICY_BALANCED:
-      request.gcode.policy = gcode::Policy::kBalanced;
-      break;
-    case v1::POLICY_FREE:
-      request.gcode.policy = gcode::Policy::kFree;
-      break;
-    default:
-      return Fault(absl::StrCat("options.policy: ", options.policy(), " is none that is known"));
-  }
+  if (absl::Status status = SetWhatMayMove(options, request.gcode); !status.ok()) return status;
   if (options.has_strategy()) request.strategy = options.strategy();
   if (options.has_seed()) request.settings.seed = options.seed();
   const uint32_t first = std::max(1u, options.first_layer());
