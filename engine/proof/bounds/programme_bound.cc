@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 
 #include "engine/proof/walks/item_stage.h"
@@ -30,7 +31,7 @@ std::optional<double> ProgrammeBound(const LayerProblem& problem, double target,
   if (!model || !ItemStage::IsAll(*model)) return std::nullopt;
   ItemStage stage(*model, 0);
   const double bound = stage.Bound(stage.StartOfModel(), target, budget,
-                                   kWorkOfPoint * stage.state_count() * effort);
+                                   kWorkOfPoint * stage.state_count() * std::sqrt(effort));
   return bound > 0 ? std::optional<double>(bound) : std::nullopt;
 }
 

@@ -16,8 +16,8 @@ namespace traverse {
 
 // Unset for other layers (IsPortStage) and those too large for the effort, or if the budget ends
 // before there is a bound. At most `target`, the cost of a route. Walls are not looked at: they
-// only add to costs. `effort` 1 takes some 50 ms, and time grows with it; deterministic unless the
-// budget ends it. REQUIRES: effort >= 0.
+// only add to costs. `effort` 1 takes some 100 ms, and time grows with its root; deterministic
+// unless the budget ends it. REQUIRES: effort >= 0.
 std::optional<double> ProgrammeBound(const LayerProblem& problem, double target, double effort,
                                      Budget& budget);
 
