@@ -1,10 +1,10 @@
 #include "client/gcode/plan/precedence.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "absl/container/flat_hash_map.h"
 #include "client/gcode/model/segment_grid.h"
+#include "engine/base/disjoint_sets.h"
 
 namespace traverse::gcode {
 namespace {
@@ -14,20 +14,6 @@ constexpr double kNearInCells = 0.75;
 
 // What is known of the order of two paths.
 enum class Order : uint8_t { kNone, kIfTheyTouch, kKnown };
-
-class UnionFind {
- public:
-  explicit UnionFind(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-  uint32_t Find(uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void Join(uint32_t i, uint32_t j) { parent_[Find(i)] = Find(j); }
-
- private:
-  std::vector<uint32_t> parent_;
-};
 
 std::vector<Segment> AllSegments(const std::vector<Outline>& outlines) {
   std::vector<Segment> segments;
@@ -46,24 +32,12 @@ double WidestOf(const std::vector<Outline>& outlines) {
   return widest;
 }
 
-std::vector<uint32_t> Numbered(UnionFind& regions, size_t n) {
-  std::vector<uint32_t> number(n, UINT32_MAX);
-  std::vector<uint32_t> island(n);
-  uint32_t next = 0;
-  for (uint32_t i = 0; i < n; ++i) {
-    uint32_t& of_root = number[regions.Find(i)];
-    if (of_root == UINT32_MAX) of_root = next++;
-    island[i] = of_root;
-  }
-  return island;
-}
-
 }  // namespace
 
 Contacts FindContacts(const std::vector<Outline>& outlines,
                       const std::function<bool(uint32_t, uint32_t)>& keeps_order) {
   Contacts contacts;
-  UnionFind regions(outlines.size());
+  DisjointSets regions(static_cast<int>(outlines.size()));
   absl::flat_hash_map<std::pair<uint32_t, uint32_t>, Order> orders;
   const auto ascending = [](uint32_t i, uint32_t j) {
     return std::pair<uint32_t, uint32_t>(std::min(i, j), std::max(i, j));
@@ -81,7 +55,7 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
   };
   // Of most paths that touch nothing more is to be learnt: they do in many places.
   const auto reach_if_wanted = [&](uint32_t one, uint32_t other) {
-    const bool joined = regions.Find(one) == regions.Find(other);
+    const bool joined = regions.AreJoined(static_cast<int>(one), static_cast<int>(other));
     return joined && order_of(one, other) != Order::kIfTheyTouch ? -1.0 : reach(one, other);
   };
   grid.ForEachNearPair(reach_if_wanted, [&](uint32_t s, uint32_t t) {
@@ -89,7 +63,7 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
     const Segment& other = grid.segments()[t];
     const double near = reach(one.path, other.path);
     if (SquaredDistance(one, other) > near * near) return true;
-    regions.Join(one.path, other.path);
+    regions.Join(static_cast<int>(one.path), static_cast<int>(other.path));
     if (Order& order = order_of(one.path, other.path); order == Order::kIfTheyTouch) {
       order = Order::kKnown;
       contacts.ordered.push_back(ascending(one.path, other.path));
@@ -97,7 +71,9 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
     return false;
   });
   std::sort(contacts.ordered.begin(), contacts.ordered.end());
-  contacts.island = Numbered(regions, outlines.size());
+  for (const int island : regions.Numbered()) {
+    contacts.island.push_back(static_cast<uint32_t>(island));
+  }
   return contacts;
 }
 

@@ -32,6 +32,9 @@ struct PathEnd {
   int moves = 1;              // of a route here: 2 for a contour
 };
 
+// The roles that the other end of a move has to have one of.
+inline int OppositeRoles(int roles) { return (roles >> 1 & 1) | (roles << 1 & 2); }
+
 struct Junction {
   struct Member {
     int end = 0;

@@ -19,10 +19,10 @@
 #include <vector>
 
 #include "engine/base/budget.h"
+#include "engine/base/disjoint_sets.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/model/layer_problem.h"
 #include "engine/proof/bounds/end_graph.h"
-#include "engine/proof/bounds/joined_sides.h"
 
 namespace traverse {
 
@@ -86,8 +86,8 @@ class TreeBound {
   // Scratch.
   std::vector<int> moves_;                      // [end] of the last tree
   std::vector<std::pair<double, int>> sorted_;  // costs less multipliers, pairs
-  JoinedSides joined_;
-  std::vector<int> member_of_;  // [end] in the junction at hand, else -1
+  DisjointSets joined_;                         // the sides of all junctions
+  std::vector<int> member_of_;                  // [end] in the junction at hand, else -1
 };
 
 }  // namespace traverse

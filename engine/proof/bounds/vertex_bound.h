@@ -19,10 +19,10 @@
 #include <vector>
 
 #include "engine/base/budget.h"
+#include "engine/base/disjoint_sets.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/model/layer_problem.h"
 #include "engine/proof/bounds/end_graph.h"
-#include "engine/proof/bounds/joined_sides.h"
 
 namespace traverse {
 
@@ -108,7 +108,7 @@ class VertexBound {
   // Scratch.
   std::vector<Candidate> candidates_;
   std::vector<double> paid_back_;  // [point] by the multipliers of pairs
-  JoinedSides joined_;
+  DisjointSets joined_;            // the sides of all junctions
 };
 
 }  // namespace traverse

@@ -3,38 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <set>
+
+#include "engine/base/disjoint_sets.h"
 
 namespace traverse {
 namespace {
 
-// Sets of nodes, merged one after the other.
-class DisjointSets {
- public:
-  explicit DisjointSets(int nodes) : parent_(static_cast<size_t>(nodes)) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int Find(int node) {
-    int& parent = parent_[static_cast<size_t>(node)];
-    if (parent != node) parent = Find(parent);
-    return parent;
-  }
-  void Merge(int a, int b) { parent_[static_cast<size_t>(Find(a))] = Find(b); }
-
- private:
-  std::vector<int> parent_;
-};
-
-// Numbers the sets from 0, that of node 0 first, and sums up the weights between them.
+// The sets as nodes, with the weights between them summed up.
 struct Shrunk {
-  Shrunk(const SupportGraph& graph, DisjointSets& sets) : group(static_cast<size_t>(graph.nodes)) {
-    std::vector<int> number(static_cast<size_t>(graph.nodes), -1);
-    for (int node = 0; node < graph.nodes; ++node) {
-      int& n = number[static_cast<size_t>(sets.Find(node))];
-      if (n < 0) n = count++;
-      group[static_cast<size_t>(node)] = n;
-    }
+  Shrunk(const SupportGraph& graph, DisjointSets& sets) : group(sets.Numbered()) {
+    if (!group.empty()) count = *std::max_element(group.begin(), group.end()) + 1;
     weight.assign(static_cast<size_t>(count) * static_cast<size_t>(count), 0);
     for (const SupportGraph::Edge& edge : graph.edges) {
       const int a = group[static_cast<size_t>(edge.a)];
@@ -49,7 +28,7 @@ struct Shrunk {
   }
 
   int count = 0;
-  std::vector<int> group;      // [node]
+  std::vector<int> group;      // [node]; that of node 0 is 0
   std::vector<double> weight;  // [a * count + b]
 };
 
@@ -65,7 +44,7 @@ CutSide SideOf(const Shrunk& shrunk, const std::vector<char>& groups) {
 
 std::vector<CutSide> LooseComponents(const SupportGraph& graph) {
   DisjointSets sets(graph.nodes);
-  for (const SupportGraph::Edge& edge : graph.edges) sets.Merge(edge.a, edge.b);
+  for (const SupportGraph::Edge& edge : graph.edges) sets.Join(edge.a, edge.b);
   const Shrunk components(graph, sets);
   std::vector<CutSide> sides;
   for (int c = 1; c < components.count; ++c) {
@@ -145,7 +124,7 @@ std::vector<CutSide> SmallCuts(const SupportGraph& graph, double least) {
   if (!loose.empty()) return loose;
   DisjointSets sets(graph.nodes);
   for (const SupportGraph::Edge& edge : graph.edges) {
-    if (edge.weight >= least / 2) sets.Merge(edge.a, edge.b);
+    if (edge.weight >= least / 2) sets.Join(edge.a, edge.b);
   }
   Shrunk shrunk(graph, sets);
   return MinimumCut(shrunk, least).Run();
@@ -184,7 +163,7 @@ std::vector<CutSide> OddCuts(const SupportGraph& graph, double violation) {
   for (const double threshold : kThresholds) {
     DisjointSets sets(graph.nodes);
     for (const SupportGraph::Edge& edge : graph.edges) {
-      if (edge.weight > threshold && edge.weight < 1 - threshold) sets.Merge(edge.a, edge.b);
+      if (edge.weight > threshold && edge.weight < 1 - threshold) sets.Join(edge.a, edge.b);
     }
     const Shrunk components(graph, sets);
     for (int c = 0; c < components.count; ++c) {
