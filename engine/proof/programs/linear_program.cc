@@ -127,15 +127,12 @@ int LinearProgram::row_count() const { return impl_->simplex_.numberRows(); }
 int LinearProgram::column_count() const { return impl_->simplex_.numberColumns(); }
 
 int LinearProgram::AddRow(double lower, double upper, const Entries& columns) {
-  impl_->simplex_.addRow(static_cast<int>(columns.indices.size()), columns.indices.data(),
-                         columns.values.data(), std::max(lower, -COIN_DBL_MAX),
-                         std::min(upper, COIN_DBL_MAX));
+  AddRows({{lower, upper, columns}});
   return row_count() - 1;
 }
 
 int LinearProgram::AddColumn(double cost, double lower, double upper, const Entries& rows) {
-  impl_->simplex_.addColumn(static_cast<int>(rows.indices.size()), rows.indices.data(),
-                            rows.values.data(), lower, std::min(upper, COIN_DBL_MAX), cost);
+  AddColumns({{cost, lower, upper, rows}});
   return column_count() - 1;
 }
 

@@ -28,20 +28,26 @@ TspRelaxation::TspRelaxation(const PathTsp& problem)
 }
 
 void TspRelaxation::AddRowsOfNodes() {
+  std::vector<LinearProgram::Row> rows;
+  std::vector<LinearProgram::Column> columns;
   for (int v = 0; v < nodes_.count(); ++v) {
     const double moves = nodes_.IsChoice(v) ? 0 : nodes_.mate(v) == v ? 2 : 1;
-    lp_.AddRow(moves, moves, {});
+    rows.push_back({moves, moves, {}});
   }
   for (int item = 1; item < nodes_.item_count(); ++item) {
     if (!nodes_.HasChoice(item)) continue;
-    const int row = lp_.AddRow(1, 1, {});
+    const int row = static_cast<int>(rows.size());
+    rows.push_back({1, 1, {}});
     for (int p = nodes_.first(item); p < nodes_.first(item + 1); ++p) {
       LinearProgram::Entries entries;
       entries.Add(p, -2);
       entries.Add(row, 1);
-      port_column_[static_cast<size_t>(p)] = lp_.AddColumn(0, 0, 1, entries);
+      port_column_[static_cast<size_t>(p)] = static_cast<int>(columns.size());
+      columns.push_back({0, 0, 1, std::move(entries)});
     }
   }
+  lp_.AddRows(rows);
+  lp_.AddColumns(columns);
   first_move_ = lp_.column_count();
 }
 

@@ -25,6 +25,7 @@ class TspRelaxation {
   void SetStart(const std::vector<double>& start, double forbidden);
 
   double MoveCost(const Move& move) const;
+
   // Brings moves in, but those that are in.
   void AddMoves(const std::vector<Move>& moves);
 
@@ -94,7 +95,7 @@ class TspRelaxation {
   LinearProgram lp_;              // rows: nodes, items with a choice, cuts; columns: ports, moves
   std::vector<int> port_column_;  // [port] -1 without a choice
   int first_move_ = 0;            // column
-  std::vector<char> left_out_;    // [node] by Restrict: ports that no better path visits
+  std::vector<char> left_out_;    // [node] by LeaveOutDear: ports that no better path visits
   std::vector<Move> moves_;       // [column - first_move_]
   std::vector<char> has_;         // [Key(move)]
   std::vector<char> is_dear_;     // [Key(move)] left out
