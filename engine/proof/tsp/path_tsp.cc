@@ -292,10 +292,10 @@ class PathTspSolver::Search {
   TspRelaxation relaxation_;
   Budget* budget_ = nullptr;
   Result result_;
-  double least_integral_ = 0;  // bound of the nodes that ended with a path
-  double best_ = 0;            // nothing from here up is of interest
+  double least_integral_ = 0;      // bound of the nodes that ended with a path
+  double best_ = 0;                // nothing from here up is of interest
   double most_work_ = kUnlimited;  // of the programmes, where the root alone is solved
-  double bound_now_ = 0;       // of the last solution at the root
+  double bound_now_ = 0;           // of the last solution at the root
   std::vector<Node> open_;
   std::vector<std::pair<int, bool>> applied_;
   bool stopped_ = false;

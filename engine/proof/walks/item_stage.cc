@@ -126,8 +126,7 @@ ItemStage::Best ItemStage::Solve(const std::vector<double>& start, double limit,
     best.walk.push_back(
         {first_cluster_ + static_cast<int>(i), port - first_[static_cast<size_t>(i)]});
   }
-  if (!best.walk.empty() && Has(model_.cluster_count() - 1)) return best;
-  if (!best.walk.empty()) {
+  if (!best.walk.empty() && !Has(model_.cluster_count() - 1)) {
     const ClusterState from = best.walk.back();
     ClusterState last{model_.cluster_count() - 1, 0};
     FinishAfter(model_, {from.cluster, OtherEnd(model_, from.cluster, from.state)}, &last.state);

@@ -33,8 +33,8 @@ class Proof {
 
   StageProof Run() {
     const int last = model_.stage_count() - 1;
-    const bool branch =
-        model_.size(last) >= options_.least_items_to_branch && IsItemStage(model_, last);
+    const bool branch = last > 0 && model_.size(last) >= options_.least_items_to_branch &&
+                        IsItemStage(model_, last);
     if (CanBranchAlone()) {
       BranchAlone();
       if (!result_.proven && !budget_.ExhaustedNow()) WalksAlone();
