@@ -189,8 +189,12 @@ bool WorkerPool::Begin(QueueImpl& queue) {
   --waiting_;
   ++busy_;
   handed_out_.push_back(std::move(task));
-  // Whoever ends the pool waits as well.
-  stopping_ ? work_.NotifyAll() : work_.NotifyOne();
+  // Nobody is woken for what a thread that is awake will take. Whoever ends the pool waits as well.
+  if (stopping_) {
+    work_.NotifyAll();
+  } else if (handed_out_.size() > looking_) {
+    work_.NotifyOne();
+  }
   return true;
 }
 

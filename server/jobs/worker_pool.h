@@ -200,7 +200,8 @@ class WorkerPool {
   int64_t large_points_ TRAVERSE_GUARDED_BY(mutex_) = 0;   // small nor large, and of large ones
   int64_t most_points_ TRAVERSE_GUARDED_BY(mutex_) = kMostPoints;  // of either
   bool memory_short_ TRAVERSE_GUARDED_BY(mutex_) = false;
-  size_t idle_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // threads without a task
+  size_t idle_ TRAVERSE_GUARDED_BY(mutex_) = 0;     // threads without a task
+  size_t looking_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // of these awake, about to look for one
   bool stopping_ TRAVERSE_GUARDED_BY(mutex_) = false;
   std::vector<std::unique_ptr<Worker>> workers_ TRAVERSE_GUARDED_BY(mutex_);
   std::vector<std::unique_ptr<Worker>> retired_ TRAVERSE_GUARDED_BY(mutex_);  // to be joined

@@ -112,7 +112,7 @@ bool WorkerPool::AddThread() {
 
 // Threads that many paused tasks had needed are not kept.
 bool WorkerPool::RetireIfTooMany(Worker& worker) {
-  if (stopping_ || idle_ <= static_cast<size_t>(2 * permits_) + handed_out_.size()) return false;
+  if (stopping_ || !handed_out_.empty() || idle_ <= static_cast<size_t>(2 * permits_)) return false;
   --idle_;
   const auto own = std::find_if(workers_.begin(), workers_.end(),
                                 [&](const auto& other) { return other.get() == &worker; });
@@ -152,11 +152,13 @@ void WorkerPool::RunTasks(Worker& worker) {
     lock.Lock();
     EndTask(worker);
     ++idle_;
+    ++looking_;
     Dispatch();
     if (stopping_) work_.NotifyAll();
     lock.Unlock();
     worker.task.queue = nullptr;  // may be the last to hold it
     lock.Lock();
+    --looking_;
   }
 }
 
