@@ -201,8 +201,10 @@ absl::Status Server::AddPort(const ServerOptions& options, grpc::ServerBuilder& 
     builder.AddListeningPort(options.listen, credentials, &port_);
     return absl::OkStatus();
   }
-  acceptor_ = builder.experimental().AddExternalConnectionAcceptor(
-      grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD, credentials);
+  for (int hand = 0; hand < Connections::kHands; ++hand) {
+    acceptors_.push_back(builder.experimental().AddExternalConnectionAcceptor(
+        grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD, credentials));
+  }
   ConnectionRules rules;
   rules.max_connections = options.connections.max_connections;
   // Twice as much as a message may have: one that has more is told so, where it comes to an end.
@@ -213,10 +215,10 @@ absl::Status Server::AddPort(const ServerOptions& options, grpc::ServerBuilder& 
   absl::StatusOr<std::unique_ptr<Connections>> connections = Connections::Listen(
       options.listen, rules,
       {.hand_over =
-           [this](int socket) {
+           [this](int socket, int hand) {
              grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters parameters;
              parameters.fd = socket;
-             acceptor_->HandleNewConnection(&parameters);
+             acceptors_[static_cast<size_t>(hand)]->HandleNewConnection(&parameters);
            },
        .end_job = [this](const std::string& peer) { return core_.EndOversizeJob(peer); }});
   if (!connections.ok()) return connections.status();

@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
@@ -90,12 +91,14 @@ class Server {
   // Takes no more connections; calls are cancelled that are there after `grace`.
   void Shutdown(absl::Duration grace);
 
-  // Hands connections to acceptor_, if the port is one of TCP. Before core_, which uses it.
+  // Hands connections to acceptors_, if the port is one of TCP. Before core_, which uses it.
   std::unique_ptr<Connections> connections_;
   ServiceCore core_;
   RouteOptimizerService service_;
   std::unique_ptr<MetricsHttp> metrics_;
-  std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor_;
+
+  // Several, as each is locked as long as it takes a connection in.
+  std::vector<std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor>> acceptors_;
   std::unique_ptr<grpc::Server> server_;
   int port_ = 0;
   std::optional<Periodic> look_;  // for files that have changed; last, as it uses the others

@@ -82,6 +82,7 @@ Connections::~Connections() {
 }
 
 void Connections::Start() {
+  hand_over_.emplace(kHands, hooks_.hand_over);
   thread_ = std::thread([this] { Serve(); });
 }
 
@@ -89,6 +90,10 @@ void Connections::StopListening() {
   if (thread_.joinable()) {
     eventfd_write(stop_, 1);
     thread_.join();
+    hand_over_->Stop([this](const std::string& peer) {
+      MutexLock lock(mutex_);
+      if (const auto found = table_.find(peer); found != table_.end()) Cut(found);
+    });
   }
   for (const int listener : listeners_) close(listener);
   listeners_.clear();
@@ -154,7 +159,7 @@ void Connections::AcceptAll(int listener) {
       entry->second.socket = ours;
       entry->second.moved = Clock::now();
     }
-    hooks_.hand_over(socket);
+    hand_over_->Add(socket, peer);
   }
 }
 

@@ -27,12 +27,14 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "engine/base/mutex.h"
+#include "server/net/hand_over.h"
 #include "server/net/socket_info.h"
 
 namespace traverse {
@@ -50,8 +52,11 @@ struct ConnectionRules {
 
 class Connections {
  public:
+  static constexpr int kHands = 8;
+
   struct Hooks {
-    std::function<void(int socket)> hand_over;  // a new connection, whose socket is given away
+    // Takes a new connection, as of HandOver: called by kHands threads.
+    HandOver::Take hand_over;
 
     // `peer` has more pending than its jobs may: ends one of them. False if there is none to end.
     std::function<bool(const std::string& peer)> end_job;
@@ -66,8 +71,10 @@ class Connections {
   Connections(const Connections&) = delete;
   Connections& operator=(const Connections&) = delete;
 
-  // Takes no more connections, and begins to hand them over.
+  // Begins to take connections.
   void Start();
+
+  // Takes no more. Afterwards none is being handed over.
   void StopListening();
 
   int port() const { return port_; }
@@ -147,6 +154,7 @@ class Connections {
   std::map<std::string, Offender> offenders_ TRAVERSE_GUARDED_BY(mutex_);  // by address
   Clock::time_point looked_ TRAVERSE_GUARDED_BY(mutex_) = Clock::now();
   uint64_t cut_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  std::optional<HandOver> hand_over_;
   std::thread thread_;
 };
 

@@ -25,32 +25,37 @@ bool Eventually(const std::function<bool()>& condition) {
   return testing::TestService::Eventually(condition);
 }
 
+// Reads until the other side or the server has ended it.
+void ReadAll(int socket) {
+  char block[65536];
+  while (true) {
+    const ssize_t count = recv(socket, block, sizeof(block), 0);
+    if (count == 0 || (count < 0 && errno != EAGAIN)) break;
+    if (count < 0) usleep(1000);
+  }
+  close(socket);
+}
+
+// Who reads what a connection sends: a thread of its own, or whoever takes it in, who is kept by it
+// as gRPC may keep him.
+enum class Reader { kOwn, kTaker };
+
 // A port whose connections are read from, and nothing is done with what they send.
 class Port {
  public:
-  explicit Port(const ConnectionRules& rules) {
-    connections_ = *Connections::Listen("127.0.0.1:0", rules,
-                                        {.hand_over =
-                                             [this](int socket) {
-                                               std::lock_guard<std::mutex> lock(mutex_);
-                                               readers_.emplace_back([socket] {
-                                                 char block[65536];
-                                                 while (true) {
-                                                   const ssize_t count =
-                                                       recv(socket, block, sizeof(block), 0);
-                                                   if (count == 0 || (count < 0 && errno != EAGAIN))
-                                                     break;
-                                                   if (count < 0) usleep(1000);
-                                                 }
-                                                 close(socket);
-                                               });
-                                             },
-                                         .end_job =
-                                             [this](const std::string& peer) {
-                                               std::lock_guard<std::mutex> lock(mutex_);
-                                               told_.push_back(peer);
-                                               return may_end_;
-                                             }});
+  explicit Port(const ConnectionRules& rules, Reader reader = Reader::kOwn) {
+    const auto take = [this, reader](int socket, int) {
+      if (reader == Reader::kTaker) return ReadAll(socket);
+      std::lock_guard<std::mutex> lock(mutex_);
+      readers_.emplace_back([socket] { ReadAll(socket); });
+    };
+    const auto end_job = [this](const std::string& peer) {
+      std::lock_guard<std::mutex> lock(mutex_);
+      told_.push_back(peer);
+      return may_end_;
+    };
+    connections_ =
+        *Connections::Listen("127.0.0.1:0", rules, {.hand_over = take, .end_job = end_job});
     connections_->Start();
   }
 
@@ -126,6 +131,21 @@ TEST(ConnectionsTest, AStrangerWhoSendsMuchIsCut) {
   EXPECT_TRUE(Eventually([&] { return loud.IsCut(); }));
   EXPECT_FALSE(quiet.IsCut());
   EXPECT_EQ(port.connections().cut(), 1u);
+}
+
+TEST(ConnectionsTest, WhoeverTakesConnectionsInMayBeKeptByThem) {
+  Port port({.stranger_bytes = 1 << 20}, Reader::kTaker);
+  const Caller quiet(port.connections().port());
+  quiet.Send(1000);
+  const Caller loud(port.connections().port());
+
+  loud.Send(4 << 20);
+
+  EXPECT_TRUE(Eventually([&] { return loud.IsCut(); }));
+  EXPECT_FALSE(quiet.IsCut());
+  EXPECT_EQ(port.connections().open(), 1);
+  port.connections().StopListening();  // comes to an end though `quiet` does not
+  EXPECT_TRUE(Eventually([&] { return quiet.IsCut(); }));
 }
 
 TEST(ConnectionsTest, WhatIsDeliveredIsNotHeldAgainstACaller) {
