@@ -3,40 +3,23 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 
 #include "client/files/read_file.h"
 #include "tests/support/golden.h"
 
 namespace traverse::gcode::testing {
-namespace {
 
-std::vector<std::string> FilesIn(const std::filesystem::path& folder) {
+std::vector<std::string> KeptFiles() {
   std::vector<std::string> files;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+  const std::filesystem::path folder = traverse::testing::DataPath("gcode");
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().filename().string().find(".gcode") != std::string::npos) {
       files.push_back(entry.path().string());
     }
   }
   std::sort(files.begin(), files.end());
   return files;
-}
-
-}  // namespace
-
-std::vector<std::string> KeptFiles() { return FilesIn(traverse::testing::DataPath("gcode")); }
-
-std::vector<std::string> CorpusFiles() {
-  if (const char* folder = std::getenv("TRAVERSE_CORPUS")) return FilesIn(folder);
-  const std::filesystem::path root =
-      std::filesystem::path(traverse::testing::DataPath("")).parent_path().parent_path();
-  for (std::filesystem::path at = root; at.has_relative_path(); at = at.parent_path()) {
-    const std::vector<std::string> files = FilesIn(at.parent_path() / "shared/corpus/gcode");
-    if (!files.empty()) return files;
-  }
-  return {};
 }
 
 std::string TextOf(const std::string& path) {
