@@ -181,6 +181,13 @@ LinearProgram::Status LinearProgram::SolvePrimal(Budget& budget) {
   return impl_->Solve(budget, kNoLimit, [](ClpSimplex& simplex) { simplex.primal(); });
 }
 
+LinearProgram::Status LinearProgram::SolveAfresh(Budget& budget) {
+  return impl_->Solve(budget, kNoLimit, [](ClpSimplex& simplex) {
+    simplex.allSlackBasis(/*resetSolution=*/true);
+    simplex.dual();
+  });
+}
+
 double LinearProgram::work() const { return impl_->work_; }
 double LinearProgram::value() const { return impl_->simplex_.objectiveValue(); }
 double LinearProgram::Primal(int column) const {

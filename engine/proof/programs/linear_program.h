@@ -74,6 +74,10 @@ class LinearProgram {
   Status SolveDual(Budget& budget, int most_iterations = kNoLimit);
   Status SolvePrimal(Budget& budget);
 
+  // Starts from no basis: where a solve ended without an answer and there is still time, this one
+  // may have it, as errors of rounding had added up in the basis.
+  Status SolveAfresh(Budget& budget);
+
   // What all solves took: iterations times rows, which their time is about proportional to.
   double work() const;
 

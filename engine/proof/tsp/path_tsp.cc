@@ -144,7 +144,7 @@ class PathTspSolver::Search {
     while (true) {
       Status status = SolveAndPrice();
       if (status == Status::kInfeasible && relaxation_.Complete(kMostNewMoves)) {
-        status = lp().SolveDual(*budget_);
+        status = SolveSurely();
         if (status == Status::kInfeasible && lp().IsSurelyInfeasible()) return best_;
         if (status == Status::kOptimal) status = SolveAndPrice();
       }
@@ -165,13 +165,22 @@ class PathTspSolver::Search {
     }
   }
 
+  // Tries again without the basis unless there is an optimum, or surely no point.
+  Status SolveSurely() {
+    const Status status = lp().SolveDual(*budget_);
+    if (status == Status::kOptimal) return status;
+    if (status == Status::kInfeasible && lp().IsSurelyInfeasible()) return status;
+    return lp().SolveAfresh(*budget_);
+  }
+
   // Brings in all the moves that the relaxation wants.
   Status SolveAndPrice() {
     double missing = 0;
-    Status status = lp().SolveDual(*budget_);
+    Status status = SolveSurely();
     while (status == Status::kOptimal &&
            relaxation_.Price(kMovesPerPricing, missing, *budget_) > 0) {
       status = lp().SolvePrimal(*budget_);
+      if (status != Status::kOptimal) status = lp().SolveAfresh(*budget_);
     }
     if (status == Status::kOptimal) bound_now_ = lp().SafeBound() + missing;
     return status;
@@ -225,7 +234,7 @@ class PathTspSolver::Search {
   bool Process(Node& node) {
     int without_gain = 0;
     while (true) {
-      const Status status = lp().SolveDual(*budget_);
+      const Status status = SolveSurely();
       if (status == Status::kInfeasible && lp().IsSurelyInfeasible()) return true;
       if (status != Status::kOptimal) {
         stopped_ = true;

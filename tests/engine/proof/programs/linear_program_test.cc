@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "absl/strings/str_cat.h"
 #include "engine/base/rng.h"
 
@@ -73,6 +75,24 @@ TEST(LinearProgram, SafeBoundHoldsForAnyDuals) {
     EXPECT_LE(early, lp.value() + 1e-7);
     EXPECT_NEAR(lp.SafeBound(), lp.value(), 1e-6);
   }
+}
+
+TEST(LinearProgram, SolvedAfreshItHasTheSameValue) {
+  LinearProgram lp;
+  Budget budget;
+  LinearProgram::Entries sum;
+  for (int j = 0; j < 4; ++j) sum.Add(lp.AddColumn(j + 1, 0, 1, {}), 1);
+  lp.AddRow(2, 3, sum);
+  ASSERT_EQ(lp.SolveDual(budget), Status::kOptimal);
+  ASSERT_NEAR(lp.value(), 3, 1e-9);
+
+  lp.SetBasis(std::vector<unsigned char>(5, 0));  // none at all
+  EXPECT_EQ(lp.SolveAfresh(budget), Status::kOptimal);
+  EXPECT_NEAR(lp.value(), 3, 1e-9);
+
+  for (int j = 0; j < 3; ++j) lp.SetColumnBounds(j, 0, 0);
+  EXPECT_EQ(lp.SolveAfresh(budget), Status::kInfeasible);
+  EXPECT_TRUE(lp.IsSurelyInfeasible());
 }
 
 TEST(LinearProgram, StopsWhenTheBudgetIsCancelled) {
