@@ -68,6 +68,24 @@ inline std::string Line(const std::string& type, const std::string& from, const 
   return absl::StrCat(Way(from), ";TYPE:", type, "\nG1 F1800\nG1 ", to, " E.3\n");
 }
 
+// One path of infill: to the right, up and back.
+inline const std::string kZigzag =
+    Way("X10 Y10") +
+    ";TYPE:Internal infill\nG1 F1800\nG1 X20 Y10 E.3\nG1 X20 Y11 E.1\n"
+    "G1 X10 Y11 E.3\n";
+
+// From within the square to beside it, and on within the square.
+inline const std::string kAcross = kSquare + Line("Internal infill", "X15 Y15", "X16 Y15") +
+                                   Line("Internal infill", "X30 Y15", "X31 Y15");
+
+// Two lines of infill far from each other, and with the first one the other way round.
+inline const std::string kTwo =
+    Line("Internal infill", "X0 Y0", "X9 Y0") + Line("Internal infill", "X0 Y5", "X9 Y5");
+inline const std::string kOneTurned =
+    Line("Internal infill", "X9 Y0", "X0 Y0") + Line("Internal infill", "X0 Y5", "X9 Y5");
+
+inline const std::string kNextLayer = ";LAYER_CHANGE\nG1 Z.4 F9000\n";
+
 // A way that is lifted by 0.4 mm.
 inline std::string Lifted(const std::string& to) {
   return absl::StrCat("G1 E-1 F2100\nG1 Z.6 F9000\nG1 ", to, " F9000\nG1 Z.2\nG1 E1 F2100\n");

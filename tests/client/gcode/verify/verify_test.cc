@@ -18,7 +18,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-// What is printed, and nothing of how: rules_test.cc has the other rules.
+// What is printed, and nothing of how: rules/ has the other rules.
 std::string Difference(const std::string& original, const std::string& optimised) {
   return std::string(VerifyGcode(original, "a", optimised, "b", OnlySamePrint()).message());
 }

@@ -1,14 +1,111 @@
 // Lifts of travel: client/gcode/verify/rules/lifts.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "absl/strings/str_cat.h"
 #include "client/gcode/verify/verifier.h"
+#include "tests/client/gcode/verify/small_prints.h"
 
 namespace traverse::gcode {
 namespace {
+
+using namespace testing;  // NOLINT: the small prints
+using ::testing::HasSubstr;
+
+TEST(VerifyLifts, OfTheFirstWayOfAllTellNothingOfWaysBetweenLayers) {
+  const std::string first = kHead + "G1 E-1 F2100\nG1 Z.6 F9000\nG1 X0 Y0 F9000\nG1 Z.2 F9000\n" +
+                            "G1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 X5 Y0 E.3\n" +
+                            ";LAYER_CHANGE\nG1 Z.4 F9000\n";
+  const std::string inside = Line("Internal infill", "X12 Y12", "X18 Y12");
+  const std::string outside = Line("Internal infill", "X0 Y5", "X5 Y5");
+
+  EXPECT_EQ(Broken(first + inside + kSquare + outside, first + outside + inside + kSquare), "");
+}
+
+TEST(VerifyLifts, AreNeitherDroppedNorHalvedNorDoneTooLate) {
+  const std::string way = Lifted("X10 Y30");
+  for (const std::string& other :
+       {With(With(way, "G1 Z.6 F9000\n", ""), "G1 Z.2\n", ""), With(way, "Z.6", "Z.4"),
+        With(With(way, "G1 Z.6 F9000\n", ""), "F9000\n", "F9000\nG1 Z.6\n"),
+        With(With(way, "G1 Z.6 F9000\n", ""), "Y30", "Y30 Z.6")}) {
+    EXPECT_EQ(Broken(kHead + kLifted, kHead + With(kLifted, way, other)), "lifts") << other;
+  }
+}
+
+TEST(VerifyLifts, OfOtherWaysAreHeightsAboveTheLayer) {
+  const std::string other = LiftedLine("X20 Y30", "X10 Y30") + LiftedLine("X10 Y20", "X20 Y20") +
+                            LiftedLine("X10 Y10", "X20 Y10") + LiftedLine("X10 Y40", "X20 Y40");
+  EXPECT_EQ(Broken(kHead + kLifted, kHead + other), "");
+  // A number copied from another layer.
+  const std::string copied = With(other, "G1 Z.6 F9000\nG1 X10 Y20", "G1 X10 Y20 Z.9");
+  EXPECT_THAT(Broken(kHead + kLifted, kHead + copied), HasSubstr("lifts"));
+}
+
+// Lifted above the first layer alone.
+TEST(VerifyLifts, OfALayerThatHasThemAreNotDropped) {
+  std::string layer = kTwo + Line("Internal infill", "X0 Y10", "X9 Y10") + kNextLayer;
+  const auto lifted = [](const char* y, const char* from, const char* to) {
+    return absl::StrCat("G1 E-1 F2100\nG1 Z.8 F9000\nG1 X", from, " Y", y,
+                        " F9000\nG1 Z.4\nG1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 X", to,
+                        " Y", y, " E.3\n");
+  };
+  for (const char* y : {"0", "5", "10", "15", "20", "25"}) layer += lifted(y, "0", "9");
+  const std::string last = lifted("25", "0", "9");
+  EXPECT_EQ(Broken(kHead + layer, kHead + With(layer, last, lifted("25", "9", "0"))), "");
+  EXPECT_EQ(Broken(kHead + layer,
+                   kHead + With(layer, last, With(lifted("25", "9", "0"), "G1 Z.8 F9000\n", ""))),
+            "lifts");
+}
+
+TEST(VerifyLifts, TheHeadRisesBeforeTheWayToALayer) {
+  const std::string unmarked = kTwo + "G1 E-1 F2100\nG1 Z.4 F9000\nG1 X0 Y0 F9000\nG1 E1 F2100\n" +
+                               "G1 F1800\nG1 X9 Y0 E.3\n";
+  const std::string late =
+      With(unmarked, "G1 Z.4 F9000\nG1 X0 Y0 F9000\n", "G1 X0 Y0 F9000\nG1 Z.4 F9000\n");
+  EXPECT_EQ(Broken(kHead + unmarked, kHead + late), "lifts");
+  EXPECT_EQ(Broken(kHead + late, kHead + late), "");
+}
+
+// From the top of one object to the foot of the next one.
+TEST(VerifyLifts, TheHeadGoesDownBehindTheWayToAnObject) {
+  const std::string first = kTwo + "G1 Z5 F9000\n" + kTwo;
+  const std::string way = "G1 X50 Y50 F9000\nG1 Z.2 F9000\n";
+  const std::string a = first + "; printing object b\nG1 E-1 F2100\n" + way +
+                        "G1 E1 F2100\nG1 F1800\nG1 X60 Y50 E.3\n";
+  EXPECT_EQ(Broken(kHead + a, kHead + a), "");
+  EXPECT_EQ(Broken(kHead + a, kHead + With(a, way, "G1 Z.2 F9000\nG1 X50 Y50 F9000\n")),
+            "same_print");
+}
+
+TEST(VerifyLifts, NoneIsInventedNorHigher) {
+  const std::string higher =
+      With(kLifted, Lifted("X10 Y30"), With(Lifted("X10 Y30"), "Z.6", "Z.9"));
+  EXPECT_EQ(Broken(kHead + kLifted, kHead + higher), "lifts");
+  const std::string invented =
+      With(kTwo, "G1 X0 Y5 F9000\n", "G1 Z.3 F9000\nG1 X0 Y5 F9000\nG1 Z.2\n");
+  EXPECT_THAT(Broken(kHead + kTwo, kHead + invented), HasSubstr("lifts"));
+}
+
+// Ways that rise all along, by 0.2 mm in 10 mm: how high they come follows from how long they are.
+TEST(VerifyLifts, OnASlopeOfTheOriginalComeAsHighAsTheirWayIsLong) {
+  const auto line = [](const char* z, const char* from, const char* to) {
+    return absl::StrCat("G1 E-1 F2100\nG1 ", from, " Z", z, " F9000\nG1 Z.2 F720\nG1 E1 F2100\n",
+                        ";TYPE:Internal infill\nG1 F1800\nG1 ", to, " E.3\n");
+  };
+  const std::string first = Line("Internal infill", "X0 Y0", "X10 Y0");
+  const std::string a = kHead + first + line(".4", "X10 Y10", "X0 Y10") +
+                        line(".832", "X10 Y40", "X0 Y40") + line(".4", "X0 Y50", "X10 Y50");
+  const auto turned = [&](const char* z, const char* next) {
+    return kHead + first + line(z, "X0 Y10", "X10 Y10") + line(next, "X10 Y40", "X0 Y40") +
+           line(".4", "X0 Y50", "X10 Y50");
+  };
+  EXPECT_EQ(Broken(a, turned(".483", ".8")), "");
+  EXPECT_EQ(Broken(a, turned(".62", ".8")), "lifts");
+  EXPECT_EQ(Broken(a, turned(".483", ".82")), "lifts");
+}
 
 // Lines of infill with retracted ways to them, each lifted but for that to line `low`.
 std::string Lines(int count, int low) {

@@ -1,0 +1,55 @@
+// Travel across outer walls without a retraction: client/gcode/verify/rules/open_ways.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/client/gcode/verify/small_prints.h"
+
+namespace traverse::gcode {
+namespace {
+
+using namespace testing;  // NOLINT: the small prints
+
+TEST(VerifyOpenWays, NoRetractionIsLostAcrossAnOuterWall) {
+  const std::string open = With(kAcross, Way("X30 Y15"), "G1 X30 Y15 F9000\n");
+  EXPECT_EQ(Broken(kHead + kAcross, kHead + open), "open_ways");
+  EXPECT_EQ(Broken(kHead + kAcross, kHead + open, Policy::kFree), "open_ways");
+  // Nor comes filament back before the wall.
+  const std::string early = With(kAcross, Way("X30 Y15"),
+                                 "G1 E-1 F2100\nG1 X18 Y15 F9000\nG1 E1 F2100\nG1 X30 Y15 F9000\n");
+  EXPECT_EQ(Broken(kHead + kAcross, kHead + early), "open_ways retractions");
+}
+
+TEST(VerifyOpenWays, WithinTheWallAreFree) {
+  const std::string within = kSquare + Line("Internal infill", "X15 Y15", "X16 Y15") +
+                             Line("Internal infill", "X12 Y18", "X13 Y18");
+  EXPECT_EQ(Broken(kHead + within, kHead + With(within, Way("X12 Y18"), "G1 X12 Y18 F9000\n")), "");
+}
+
+TEST(VerifyOpenWays, AcrossWallsGetNoLonger) {
+  const std::string to_and_fro = With(kAcross, Way("X30 Y15"), "G1 X30 Y15 F9000\n");
+  const std::string longer =
+      kSquare + Line("Internal infill", "X30 Y15", "X31 Y15") +
+      With(Line("Internal infill", "X15 Y15", "X16 Y15"), Way("X15 Y15"), "G1 X15 Y15 F9000\n");
+  EXPECT_EQ(Broken(kHead + to_and_fro, kHead + longer), "open_ways");
+}
+
+// What goes on along the wall ends on it, so that the way from there begins on it as well.
+TEST(VerifyOpenWays, BeginWhereTheMoveAlongTheWallEnds) {
+  const std::string wall = kSquare + "G1 X10.4 Y10\n";
+  const std::string inside = ";TYPE:Internal infill\nG1 F1800\nG1 X15 Y10.6 E.3\n";
+  const std::string a =
+      kHead + wall + Line("Internal infill", "X12 Y15", "X18 Y15") + Way("X10.5 Y10.6") + inside;
+  const std::string b = kHead + wall + "G1 X10.5 Y10.6 F9000\n" + inside +
+                        Line("Internal infill", "X12 Y15", "X18 Y15");
+
+  EXPECT_EQ(Broken(a, b), "");
+  // From beyond the wall it leads across it.
+  EXPECT_EQ(
+      Broken(a, With(b, "G1 X10.5 Y10.6 F9000\n", "G1 X10.5 Y9 F9000\nG1 X10.5 Y10.6 F9000\n")),
+      "open_ways");
+}
+
+}  // namespace
+}  // namespace traverse::gcode

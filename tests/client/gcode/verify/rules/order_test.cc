@@ -1,0 +1,87 @@
+// What keeps its order within a layer: client/gcode/verify/rules/order.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "client/gcode/verify/verifier.h"
+#include "tests/client/gcode/verify/small_prints.h"
+
+namespace traverse::gcode {
+namespace {
+
+using namespace testing;  // NOLINT: the small prints
+
+TEST(VerifyOrder, InfillStaysBehindTheWallBesideIt) {
+  const std::string near = Line("Internal infill", "X12 Y10.4", "X18 Y10.4");
+  const std::string far = Line("Internal infill", "X12 Y15", "X18 Y15");
+
+  EXPECT_EQ(Broken(kHead + kSquare + near, kHead + near + kSquare), "order");
+  EXPECT_EQ(Broken(kHead + kSquare + near, kHead + near + kSquare, Policy::kFree), "order");
+  EXPECT_EQ(Broken(kHead + kSquare + far, kHead + far + kSquare), "");
+  VerifyPermissions allowed;
+  allowed.infill_order = true;
+  EXPECT_EQ(Broken(kHead + kSquare + near, kHead + near + kSquare, allowed), "");
+}
+
+TEST(VerifyOrder, WallsKeepTheirsUnderSafeAndBalanced) {
+  const std::string inner = Line("Perimeter", "X12 Y10.4", "X18 Y10.4");
+
+  EXPECT_EQ(Broken(kHead + kSquare + inner, kHead + inner + kSquare), "order");
+  EXPECT_EQ(Broken(kHead + kSquare + inner, kHead + inner + kSquare, Policy::kBalanced), "order");
+  EXPECT_EQ(Broken(kHead + kSquare + inner, kHead + inner + kSquare, Policy::kFree), "");
+  VerifyPermissions allowed;
+  allowed.wall_order = true;
+  EXPECT_EQ(Broken(kHead + kSquare + inner, kHead + inner + kSquare, allowed), "");
+}
+
+TEST(VerifyOrder, BridgesSupportAndSkirtsKeepTheirs) {
+  for (const char* type : {"Bridge infill", "Support material", "Support material interface"}) {
+    const std::string one = Line(type, "X0 Y0", "X9 Y0");
+    const std::string other = Line("Internal infill", "X0 Y.4", "X9 Y.4");
+    EXPECT_EQ(Broken(kHead + one + other, kHead + other + one, Policy::kFree), "order") << type;
+    const std::string like = Line(type, "X0 Y.4", "X9 Y.4");
+    EXPECT_EQ(Broken(kHead + one + like, kHead + like + one), "") << type;
+  }
+  const std::string skirt = Line("Skirt/Brim", "X0 Y0", "X9 Y0");
+  EXPECT_EQ(Broken(kHead + skirt + kSquare, kHead + kSquare + skirt, Policy::kFree), "order");
+}
+
+TEST(VerifyOrder, MonotonicSurfacesKeepTheirs) {
+  const std::string one = Line("Top solid infill", "X0 Y0", "X9 Y0");
+  const std::string two = Line("Top solid infill", "X0 Y.4", "X9 Y.4");
+  EXPECT_EQ(Broken(kHead + one + two, kHead + two + one), "order");
+  EXPECT_EQ(Broken(kHead + one + two, kHead + two + one, Policy::kFree), "");
+
+  const std::string settings = "; top_fill_pattern = rectilinear\n";
+  EXPECT_EQ(Broken(kHead + one + two + settings, kHead + two + one + settings), "");
+}
+
+TEST(VerifyOrder, ThinSkinOverSkinIsIroning) {
+  const std::string head = "M83\n;LAYER:1\nG1 Z.2 F9000\n";
+  const std::string skin = Line("SKIN", "X0 Y0", "X9 Y0") + Line("SKIN", "X0 Y.4", "X9 Y.4");
+  const std::string iron = With(Line("SKIN", "X0 Y.2", "X9 Y.2"), "E.3", "E.02");
+  const std::string beside = With(Line("SKIN", "X0 Y2", "X9 Y2"), "E.3", "E.02");
+
+  EXPECT_EQ(Broken(head + skin + iron, head + iron + skin, Policy::kFree), "order");
+  EXPECT_EQ(Broken(head + skin + beside, head + beside + skin, Policy::kFree), "");
+}
+
+TEST(VerifyOrder, LinesOfIroningKeepTheirsUnderFreeToo) {
+  const std::string one = Line("Ironing", "X0 Y0", "X9 Y0");
+  const std::string two = Line("Ironing", "X0 Y.1", "X9 Y.1");
+  EXPECT_EQ(Broken(kHead + one + two, kHead + two + one, Policy::kFree), "order");
+  const std::string far = Line("Ironing", "X0 Y9", "X9 Y9");
+  EXPECT_EQ(Broken(kHead + one + far, kHead + far + one, Policy::kFree), "");
+}
+
+TEST(VerifyOrder, NothingPassesATower) {
+  const std::string tower = Line("Wipe tower", "X50 Y50", "X59 Y50");
+  const std::string more = Line("Wipe tower", "X50 Y60", "X59 Y60");
+  EXPECT_EQ(Broken(kHead + kTwo + tower, kHead + tower + kTwo, Policy::kFree), "order");
+  EXPECT_EQ(Broken(kHead + tower + more, kHead + more + tower, Policy::kFree), "order");
+  EXPECT_EQ(Broken(kHead + kTwo + tower + more, kHead + kOneTurned + tower + more), "");
+}
+
+}  // namespace
+}  // namespace traverse::gcode

@@ -1,0 +1,57 @@
+// Retractions: client/gcode/verify/rules/retractions.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/client/gcode/verify/small_prints.h"
+
+namespace traverse::gcode {
+namespace {
+
+using namespace testing;  // NOLINT: the small prints
+
+TEST(VerifyRetractions, AreNoDeeperAndPairsOfTheOriginal) {
+  const std::string deeper =
+      With(kTwo, Way("X0 Y5"), "G1 E-1.8 F2100\nG1 X0 Y5 F9000\nG1 E1.8 F2100\n");
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + deeper), "retractions");
+  const std::string uneven =
+      With(kTwo, Way("X0 Y5"), "G1 E-.8 F2100\nG1 X0 Y5 F9000\nG1 E.8 F2100\n");
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + uneven), "retractions");
+}
+
+TEST(VerifyRetractions, MayBeMoreOrFewer) {
+  const std::string fewer = With(kTwo, Way("X0 Y5"), "G1 X0 Y5 F9000\n");
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + fewer), "");
+  EXPECT_EQ(Broken(kHead + fewer, kHead + kTwo), "");
+}
+
+TEST(VerifyRetractions, AreMadeAtTheHeightOfWhatIsPrinted) {
+  const std::string way = Lifted("X10 Y30");
+  const std::string above =
+      With(With(way, "G1 E1 F2100\n", ""), "G1 Z.2\n", "G1 E1 F2100\nG1 Z.2 F9000\n");
+  const std::string late =
+      With(With(way, "G1 E-1 F2100\n", ""), "G1 Z.6 F9000\n", "G1 Z.6 F9000\nG1 E-1 F2100\n");
+  EXPECT_EQ(Broken(kHead + kLifted, kHead + With(kLifted, way, above)), "retractions");
+  EXPECT_EQ(Broken(kHead + kLifted, kHead + With(kLifted, way, late)), "retractions");
+  // A slicer may do so.
+  std::string all = kLifted;
+  for (const char* y : {"X10 Y10", "X10 Y20", "X10 Y30"}) {
+    all =
+        With(all, Lifted(y),
+             With(With(Lifted(y), "G1 E1 F2100\n", ""), "G1 Z.2\n", "G1 E1 F2100\nG1 Z.2 F9000\n"));
+  }
+  const std::string other = With(all, Lifted("X10 Y40"),
+                                 With(With(Lifted("X10 Y40"), "G1 E1 F2100\n", ""), "G1 Z.2\n",
+                                      "G1 E1 F2100\nG1 Z.2 F9000\n"));
+  EXPECT_EQ(Broken(kHead + all, kHead + other), "");
+}
+
+TEST(VerifyRetractions, TheLastOneIsNoDeeper) {
+  const std::string end = "G1 E-1 F2100\nM104 S0\nM84\n";
+  EXPECT_EQ(Broken(kHead + kTwo + end, kHead + kTwo + With(end, "E-1", "E-1.9")), "retractions");
+  EXPECT_EQ(Broken(kHead + kTwo + end, kHead + kOneTurned + end), "");
+}
+
+}  // namespace
+}  // namespace traverse::gcode

@@ -1,0 +1,40 @@
+// Scripts at the start, the end and between layers: client/gcode/verify/rules/scripts.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/client/gcode/verify/small_prints.h"
+
+namespace traverse::gcode {
+namespace {
+
+using namespace testing;  // NOLINT: the small prints
+using ::testing::HasSubstr;
+
+TEST(VerifyScripts, NothingOfThemComesBetweenPaths) {
+  const std::string start = "M83\nG1 Z5 F3000\nG1 E-2.5 F4800\nG1 E2.5 F4800\n";
+  const std::string rest = ";LAYER_CHANGE\nG1 Z.2 F9000\n";
+  const std::string two = kZigzag + Line("Internal infill", "X0 Y5", "X9 Y5");
+  const std::string script =
+      With(two, Way("X0 Y5"), "G1 E-2.5 F4800\nG1 X0 Y5 F9000\nG1 E2.5 F4800\n");
+  EXPECT_THAT(Broken(start + rest + two, start + rest + script), HasSubstr("scripts"));
+  const std::string turned = kZigzag + Line("Internal infill", "X9 Y5", "X0 Y5");
+  EXPECT_EQ(Broken(start + rest + two, start + rest + turned), "");
+}
+
+TEST(VerifyScripts, MoveAsTheyDid) {
+  const std::string start = "M83\nG28\nG1 Z5 F3000\nM109 S200\nG1 Z.3 F3000\nG1 X60 E9 F1000\n" +
+                            std::string("G1 X63 Z.05 F8000\nG1 X66 Z.3\n");
+  const std::string rest = ";LAYER_CHANGE\nG1 Z.2 F9000\n" + kTwo;
+  const std::string end = "M104 S0\nG1 E-2 F2100\nG1 Z10 F9000\nM84\n";
+  const std::string a = start + rest + end;
+  EXPECT_EQ(Broken(a, start + ";LAYER_CHANGE\nG1 Z.2 F9000\n" + kOneTurned + end), "");
+  for (const char* line : {"G1 Z5 F3000\n", "G1 X63 Z.05 F8000\n", "G1 E-2 F2100\n"}) {
+    EXPECT_THAT(Broken(a, With(a, line, "")), HasSubstr("same_print")) << line;
+  }
+}
+
+}  // namespace
+}  // namespace traverse::gcode

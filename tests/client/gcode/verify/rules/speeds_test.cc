@@ -1,0 +1,61 @@
+// Speeds and accelerations of travel and retractions: client/gcode/verify/rules/speeds.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "tests/client/gcode/verify/small_prints.h"
+
+namespace traverse::gcode {
+namespace {
+
+using namespace testing;  // NOLINT: the small prints
+
+TEST(VerifySpeeds, AreThoseOfSuchMoves) {
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + kOneTurned), "");
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kOneTurned, "X9 Y0 F9000", "X9 Y0 F1800")), "speeds");
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kOneTurned, "G1 E-1 F2100", "G1 E-1 F1800")),
+            "speeds");
+}
+
+TEST(VerifySpeeds, TravelKeepsItsAcceleration) {
+  const auto path = [](const std::string& from, const std::string& to) {
+    return absl::StrCat("M204 P1000\n",
+                        With(Line("Internal infill", from, to), "G1 F1800", "M204 P500\nG1 F1800"));
+  };
+  const std::string two = path("X0 Y0", "X9 Y0") + path("X0 Y5", "X9 Y5");
+  EXPECT_EQ(Broken(kHead + two, kHead + path("X9 Y0", "X0 Y0") + path("X0 Y5", "X9 Y5")), "");
+  EXPECT_EQ(Broken(kHead + two,
+                   kHead + With(path("X9 Y0", "X0 Y0"), "P1000", "P900") + path("X0 Y5", "X9 Y5")),
+            "speeds");
+}
+
+// Each line printed under an acceleration of its own, all ways under one.
+std::string Accelerated(const std::string& from, const std::string& to, int print) {
+  return absl::StrCat("G1 E-1 F2100\nM204 S1000\nG1 ", from, " F9000\nG1 E1 F2100\nM204 S", print,
+                      "\n;TYPE:Internal infill\nG1 F1800\nG1 ", to, " E.3\n");
+}
+
+TEST(VerifySpeeds, RetractionsKeepTheirAccelerations) {
+  const std::string a = kHead + "M204 S1000\n" + Accelerated("X0 Y0", "X9 Y0", 300) +
+                        Accelerated("X0 Y5", "X9 Y5", 400) + Accelerated("X0 Y9", "X9 Y9", 500);
+  // Under that of whatever path comes before.
+  const std::string other = kHead + "M204 S1000\n" + Accelerated("X0 Y9", "X9 Y9", 500) +
+                            Accelerated("X0 Y0", "X9 Y0", 300) + Accelerated("X0 Y5", "X9 Y5", 400);
+  EXPECT_EQ(Broken(a, other), "");
+  EXPECT_EQ(
+      Broken(a, With(other, "E.3\nG1 E-1 F2100\n", "E.3\nM204 S777\nG1 E-1 F2100\nM204 S1000\n")),
+      "speeds");
+}
+
+TEST(VerifySpeeds, TheAccelerationOfRetractionsIsOneOfThem) {
+  const std::string a = kHead + "M204 P500 R900 T1000\n" + kTwo;
+  const std::string b =
+      kHead + "M204 P500 R900 T1000\n" +
+      With(kTwo, Way("X0 Y5"), "M204 P500 R90 T1000\n" + Way("X0 Y5") + "M204 P500 R900 T1000\n");
+  EXPECT_EQ(Broken(a, b), "speeds");
+}
+
+}  // namespace
+}  // namespace traverse::gcode

@@ -1,0 +1,44 @@
+// Filament pushed without a move: client/gcode/verify/rules/standstill.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/client/gcode/verify/small_prints.h"
+
+namespace traverse::gcode {
+namespace {
+
+using namespace testing;  // NOLINT: the small prints
+using ::testing::HasSubstr;
+
+TEST(VerifyStandstill, NoBlobComesInOrMoves) {
+  const std::string blob = With(kTwo, Way("X0 Y5"), "G1 E1 F2100\n" + Way("X0 Y5"));
+  EXPECT_THAT(Broken(kHead + kTwo, kHead + blob), HasSubstr("standstill"));
+  EXPECT_THAT(Broken(kHead + blob, kHead + kTwo), HasSubstr("standstill"));
+  const std::string moved = With(kTwo, Way("X0 Y5"), Way("X0 Y5") + "G1 E1 F2100\n");
+  EXPECT_THAT(Broken(kHead + blob, kHead + moved), HasSubstr("standstill"));
+  EXPECT_EQ(Broken(kHead + blob, kHead + blob), "");
+}
+
+TEST(VerifyStandstill, WhatIsPushedMoreThanPulledIsPushedAsOften) {
+  const std::string more = "G1 E-1 F2100\nG1 X0 Y5 F9000\nG1 E1.02 F2100\n";
+  const std::string two = Line("Internal infill", "X0 Y0", "X9 Y0") +
+                          With(Line("Internal infill", "X0 Y5", "X9 Y5"), Way("X0 Y5"), more);
+  const std::string without = With(two, more, "G1 X0 Y5 F9000\n");
+  EXPECT_EQ(Broken(kHead + two, kHead + without), "standstill");
+  // It comes with the way, wherever that leads.
+  const std::string turned = With(With(two, "X0 Y5", "X9 Y5"), "G1 X9 Y5 E.3", "G1 X0 Y5 E.3");
+  EXPECT_EQ(Broken(kHead + two, kHead + turned), "");
+}
+
+TEST(VerifyStandstill, WhatRoundingLeavesIsNothing) {
+  const std::string more = With(kTwo, Way("X0 Y5"), With(Way("X0 Y5"), "E1 ", "E1.0009 "));
+  EXPECT_EQ(Broken(kHead + more, kHead + kOneTurned), "");
+  const std::string little = With(kTwo, "G1 X9 Y5", "G1 E.00001\nG1 X9 Y5");
+  EXPECT_EQ(Broken(kHead + little, kHead + kOneTurned), "");
+}
+
+}  // namespace
+}  // namespace traverse::gcode

@@ -1,0 +1,56 @@
+// Wipes: client/gcode/verify/rules/wipes.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "tests/client/gcode/verify/small_prints.h"
+
+namespace traverse::gcode {
+namespace {
+
+using namespace testing;  // NOLINT: the small prints
+
+TEST(VerifyWipes, LieOnTheirPath) {
+  const std::string head = kHead + "G1 E-1 F2100\n";
+  const std::string two = Wiped("X0 Y0", "X9 Y0", "X7 Y0") + Wiped("X0 Y5", "X9 Y5", "X7 Y5");
+  const std::string turned = Wiped("X9 Y5", "X0 Y5", "X2 Y5") + Wiped("X9 Y0", "X0 Y0", "X2 Y0");
+  EXPECT_EQ(Broken(head + two, head + turned), "");
+  const std::string beside = Wiped("X9 Y5", "X0 Y5", "X7 Y5.2") + Wiped("X9 Y0", "X0 Y0", "X2 Y0");
+  EXPECT_EQ(Broken(head + two, head + beside), "wipes");
+}
+
+TEST(VerifyWipes, AreNotLost) {
+  const std::string head = kHead + "G1 E-1 F2100\n";
+  const std::string two = Wiped("X0 Y0", "X9 Y0", "X7 Y0") + Wiped("X0 Y5", "X9 Y5", "X7 Y5");
+  const std::string bare = With(
+      two, "G1 E-.5 F2100\n;WIPE_START\nG1 F7200\nG1 X7 Y0 E-.5\n;WIPE_END\n", "G1 E-1 F2100\n");
+  EXPECT_EQ(Broken(head + two, head + bare), "wipes");
+  EXPECT_EQ(Broken(head + two, head + two), "");
+}
+
+// A corner that is wiped along both its sides.
+std::string WipedCorner(const std::string& wipe) {
+  return absl::StrCat("G1 X0 Y5 F9000\nG1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\n",
+                      "G1 X5 Y5 E.3\nG1 X5 Y10 E.3\n;WIPE_START\nG1 F7200\n", wipe, ";WIPE_END\n");
+}
+
+TEST(VerifyWipes, TakeNoShortCut) {
+  const std::string head = kHead + "G1 E-1 F2100\n";
+  const std::string along = WipedCorner("G1 X5 Y5 E-.6\nG1 X1 Y5 E-.4\n");
+  const std::string across = WipedCorner("G1 X0 Y5 E-1\n");
+  EXPECT_EQ(Broken(head + along, head + along), "");
+  EXPECT_EQ(Broken(head + along, head + across), "wipes");
+  EXPECT_EQ(Broken(head + across, head + across), "");
+}
+
+TEST(VerifyWipes, AreNotShortened) {
+  const std::string head = kHead + "G1 E-1 F2100\n";
+  const std::string two = Wiped("X0 Y0", "X9 Y0", "X7 Y0") + Wiped("X0 Y5", "X9 Y5", "X7 Y5");
+  EXPECT_EQ(Broken(head + two, head + With(two, "G1 X7 Y5 E-.5", "G1 X8 Y5 E-.5")), "wipes");
+  EXPECT_EQ(Broken(head + two, head + With(two, "G1 X7 Y5 E-.5", "G1 X6.5 Y5 E-.5")), "");
+}
+
+}  // namespace
+}  // namespace traverse::gcode
