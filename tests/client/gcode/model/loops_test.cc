@@ -8,16 +8,12 @@
 
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/model/visible_walls.h"
-#include "client/gcode/read/reader.h"
+#include "tests/client/gcode/support/read_text.h"
 
 namespace traverse::gcode {
 namespace {
 
-std::shared_ptr<GcodeFile> Read(const std::string& text) {
-  absl::StatusOr<std::shared_ptr<GcodeFile>> file = ReadGcode(text, "part.gcode");
-  EXPECT_TRUE(file.ok()) << file.status();
-  return file.ok() ? *file : std::make_shared<GcodeFile>();
-}
+using testing::Read;
 
 std::vector<Outline> OutlinesOf(const GcodeFile& file) {
   return gcode::OutlinesOf(file, file.layers.front());

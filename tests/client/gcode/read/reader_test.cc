@@ -6,6 +6,7 @@
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/model/feature.h"
 #include "client/gcode/model/outline.h"
+#include "tests/client/gcode/support/read_text.h"
 #include "tests/client/gcode/support/samples.h"
 
 namespace traverse::gcode {
@@ -13,12 +14,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-std::shared_ptr<GcodeFile> Read(const std::string& text) {
-  absl::StatusOr<std::shared_ptr<GcodeFile>> file = ReadGcode(text, "part.gcode");
-  EXPECT_TRUE(file.ok()) << file.status();
-  return file.ok() ? *file : std::make_shared<GcodeFile>();
-}
+using testing::Read;
 
 std::string Fault(const std::string& text) {
   const absl::StatusOr<std::shared_ptr<GcodeFile>> file = ReadGcode(text, "part.gcode");
@@ -84,18 +80,6 @@ TEST(ReadGcode, FindsThePathsOfCuraEngineWithTheirTails) {
   EXPECT_EQ(file->layers[1].first_block, 3u);
   // ;TYPE stands before the prime, and is the next path's all the same.
   EXPECT_EQ(FeatureOf(*file, file->blocks[3], false), Feature::kSparseInfill);
-}
-
-TEST(MeasureLayers, CountsTravelFromTheFirstToTheLastExtrusion) {
-  const auto file = Read(testing::kPrusaSample);
-
-  // The wipe, the way to the infill, the way between its lines.
-  const double wipe = std::hypot(5, 0.06);
-  const PrintTotals totals = Sum(MeasureLayers(*file));
-  EXPECT_NEAR(totals.travel_mm, wipe + std::hypot(15, 20) + 1, 1e-6);
-  EXPECT_NEAR(totals.extruded_mm, 39.94 + 20, 1e-6);
-  EXPECT_EQ(totals.retractions, 1);
-  EXPECT_GT(totals.seconds, 0);
 }
 
 TEST(ReadGcode, ALayerIsARunAtOneHeight) {

@@ -10,6 +10,7 @@
 #include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/support/corpus.h"
 #include "tests/client/gcode/support/random_order.h"
+#include "tests/client/gcode/support/read_text.h"
 #include "tests/client/gcode/support/samples.h"
 
 namespace traverse::gcode {
@@ -17,12 +18,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-std::shared_ptr<GcodeFile> Read(const std::string& text) {
-  absl::StatusOr<std::shared_ptr<GcodeFile>> file = ReadGcode(text, "part.gcode");
-  EXPECT_TRUE(file.ok()) << file.status();
-  return *file;
-}
+using testing::Read;
 
 class ShuffledFile : public ::testing::TestWithParam<std::string> {};
 
