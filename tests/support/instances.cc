@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "engine/base/rng.h"
+
 namespace traverse::testing {
 namespace {
 
@@ -27,6 +29,20 @@ Plan FlatPlan(int paths) {
   std::vector<Path> contours;
   for (int p = 0; p < paths; ++p) contours.push_back(MakeContour({{static_cast<double>(p), 0}}));
   return AnyOrderPlan(std::move(contours));
+}
+
+Plan ClusterPlan(int n) {
+  Rng rng(4);
+  std::vector<Path> paths;
+  for (int i = 0; i < n; ++i) {
+    const Point corner{300 * rng.Unit(), 300 * rng.Unit()};
+    std::vector<Point> points;
+    for (int k = 0; k < 5; ++k) {
+      points.push_back({corner.x + 40 * rng.Unit(), corner.y + 40 * rng.Unit()});
+    }
+    paths.push_back(MakeContour(std::move(points)));
+  }
+  return AnyOrderPlan(std::move(paths));
 }
 
 std::vector<IslandPaths> SquareGrid(int columns, int rows) {

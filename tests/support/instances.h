@@ -15,6 +15,10 @@ Plan AnyOrderPlan(std::vector<Path> paths);
 // any_order over `paths` contours of one point each, at (0, 0), (1, 0), (2, 0), ...
 Plan FlatPlan(int paths);
 
+// any_order over `n` contours of five points each, near each other within 300 x 300 mm: what branch
+// and cut takes on.
+Plan ClusterPlan(int n);
+
 // columns x rows islands: each a square contour of side 1 mm with its lower left corner at
 // (4 column, 4 row), and one raster across its middle. Row by row.
 std::vector<IslandPaths> SquareGrid(int columns, int rows);

@@ -252,19 +252,6 @@ Plan EmptyChains(int n) {
   return plan;
 }
 
-// `n` contours of five points each, near each other: what branch and cut takes on.
-Plan Clusters(int n) {
-  Rng rng(4);
-  std::vector<Path> paths;
-  for (int i = 0; i < n; ++i) {
-    const double x = 300 * rng.Unit(), y = 300 * rng.Unit();
-    std::vector<Point> points;
-    for (int k = 0; k < 5; ++k) points.push_back({x + 40 * rng.Unit(), y + 40 * rng.Unit()});
-    paths.push_back(MakeContour(std::move(points)));
-  }
-  return AnyOrderPlan(std::move(paths));
-}
-
 struct Shape {
   std::string name;
   std::function<Plan(int)> make;
@@ -348,7 +335,7 @@ TEST_P(Gaps, DISABLED_AreShortInTheLargestLayers) { Run(1, 2, kMostLargeGap, kMo
 using GapsOfProofs = Gaps;
 
 TEST_P(GapsOfProofs, AreShort) {
-  RunOne({"Clusters", Clusters, 60}, false, 60, 2.5);
+  RunOne({"Clusters", ClusterPlan, 60}, false, 60, 2.5);
   EXPECT_LT(longest(), kMostGap) << "seconds without an ask";
   EXPECT_LT(after_cancel(), kMostGap) << "seconds to the end";
 }

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -120,11 +121,12 @@ class Proving : public Strategy {
   }
 };
 
-// Equal layers may differ by what is rounded away when they are compared.
-TEST(LayerChain, ABoundTakenOverHoldsForLayersThatDifferALittle) {
+// Layers are equal that differ by no more than is rounded away when they are compared: here the
+// last 50 from the first 50.
+std::vector<LayerOutcome> OutcomesOfAlmostEqualLayers(std::unique_ptr<Strategy> strategy) {
   RecordingSink sink;
   TestExecutor executor(1);
-  auto job = Job::Start(JobSpec(), std::make_unique<Proving>(), executor, sink);
+  auto job = Job::Start(JobSpec(), std::move(strategy), executor, sink);
   for (int i = 0; i < 100; ++i) {
     IslandPaths row;
     for (int k = 0; k < 6; ++k) {
@@ -135,9 +137,15 @@ TEST(LayerChain, ABoundTakenOverHoldsForLayersThatDifferALittle) {
   }
   job->Close();
   sink.Wait();
+  return std::move(sink.outcomes);
+}
 
-  ASSERT_EQ(sink.outcomes.size(), 100u);
-  for (const LayerOutcome& outcome : sink.outcomes) {
+TEST(LayerChain, ABoundTakenOverHoldsForLayersThatDifferALittle) {
+  const std::vector<LayerOutcome> outcomes =
+      OutcomesOfAlmostEqualLayers(std::make_unique<Proving>());
+
+  ASSERT_EQ(outcomes.size(), 100u);
+  for (const LayerOutcome& outcome : outcomes) {
     ASSERT_TRUE(outcome.lower_bound.has_value());
     EXPECT_LE(*outcome.lower_bound, outcome.cost + 1e-9) << "layer " << outcome.index;
     EXPECT_GT(*outcome.lower_bound, 0.99 * outcome.cost);
@@ -156,22 +164,11 @@ class ProvingOptimal : public Proving {
 
 // A bound taken over is a little below the cost: what is optimal there is not proven so here.
 TEST(LayerChain, WhatIsCalledOptimalIsProvenForTheVeryLayer) {
-  RecordingSink sink;
-  TestExecutor executor(1);
-  auto job = Job::Start(JobSpec(), std::make_unique<ProvingOptimal>(), executor, sink);
-  for (int i = 0; i < 100; ++i) {
-    IslandPaths row;
-    for (int k = 0; k < 6; ++k) {
-      const double shrink_mm = k % 2 == 1 && i >= 50 ? 4e-5 : 0;
-      row.contours.push_back(MakeContour({{10.0 * k - shrink_mm, 0}}));
-    }
-    job->Add({SequentialPlan({row}), Point{0, 0}, std::nullopt});
-  }
-  job->Close();
-  sink.Wait();
+  const std::vector<LayerOutcome> outcomes =
+      OutcomesOfAlmostEqualLayers(std::make_unique<ProvingOptimal>());
 
-  ASSERT_EQ(sink.outcomes.size(), 100u);
-  for (const LayerOutcome& outcome : sink.outcomes) {
+  ASSERT_EQ(outcomes.size(), 100u);
+  for (const LayerOutcome& outcome : outcomes) {
     ASSERT_TRUE(outcome.lower_bound.has_value());
     if (outcome.stop != StopReason::kOptimal) continue;
     EXPECT_NEAR(*outcome.lower_bound, outcome.cost, 1e-9) << "layer " << outcome.index;

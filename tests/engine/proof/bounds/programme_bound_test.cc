@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "engine/base/rng.h"
 #include "engine/cost/route_cost.h"
 #include "engine/proof/bounds/lower_bound.h"
 #include "tests/support/brute_force.h"
@@ -18,21 +17,6 @@ namespace traverse {
 namespace {
 
 using namespace traverse::testing;  // NOLINT
-
-// `n` contours of five points.
-Plan Clusters(int n) {
-  Rng rng(4);
-  std::vector<Path> paths;
-  for (int i = 0; i < n; ++i) {
-    const Point middle{300 * rng.Unit(), 300 * rng.Unit()};
-    std::vector<Point> points;
-    for (int k = 0; k < 5; ++k) {
-      points.push_back({middle.x + 40 * rng.Unit(), middle.y + 40 * rng.Unit()});
-    }
-    paths.push_back(MakeContour(std::move(points)));
-  }
-  return AnyOrderPlan(std::move(paths));
-}
 
 TEST(ProgrammeBound, IsNeverAboveTheBestRoute) {
   for (uint64_t seed = 1; seed <= 200; ++seed) {
@@ -51,7 +35,7 @@ TEST(ProgrammeBound, IsNeverAboveTheBestRoute) {
 }
 
 TEST(ProgrammeBound, ComesNearerThanTreesAndNearerWithMoreEffort) {
-  const OwnedProblem owned(Clusters(60));
+  const OwnedProblem owned(ClusterPlan(60));
   Budget budget;
   const double cost = RouteCost(owned.problem, GivenRoute(owned.plan()));
   const double trees = *LowerBound(owned.problem, cost, nullptr, /*effort=*/0, budget);
@@ -72,7 +56,7 @@ TEST(ProgrammeBound, IsForLayersThatAreOneStageOfSmallContours) {
 }
 
 TEST(ProgrammeBound, EndsWithItsBudget) {
-  const OwnedProblem owned(Clusters(60));
+  const OwnedProblem owned(ClusterPlan(60));
   CancelToken cancel;
   cancel.Cancel();
   Budget cancelled(&cancel);

@@ -8,9 +8,12 @@
 
 #include "absl/strings/str_cat.h"
 #include "engine/base/rng.h"
+#include "tests/engine/proof/tsp/cut_weight.h"
 
 namespace traverse {
 namespace {
+
+using testing::CutWeight;
 
 constexpr int kNodes = 8;
 
@@ -23,14 +26,6 @@ SupportGraph RandomGraph(Rng& rng) {
     }
   }
   return graph;
-}
-
-double CutWeight(const SupportGraph& graph, const std::vector<char>& side) {
-  double sum = 0;
-  for (const SupportGraph::Edge& edge : graph.edges) {
-    if (side[static_cast<size_t>(edge.a)] != side[static_cast<size_t>(edge.b)]) sum += edge.weight;
-  }
-  return sum;
 }
 
 // Of all sides with `sources` and without `sink`.

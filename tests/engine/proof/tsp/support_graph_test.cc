@@ -9,17 +9,12 @@
 
 #include "absl/strings/str_cat.h"
 #include "engine/base/rng.h"
+#include "tests/engine/proof/tsp/cut_weight.h"
 
 namespace traverse {
 namespace {
 
-double CutWeight(const SupportGraph& graph, const CutSide& side) {
-  double sum = 0;
-  for (const SupportGraph::Edge& edge : graph.edges) {
-    if (side[static_cast<size_t>(edge.a)] != side[static_cast<size_t>(edge.b)]) sum += edge.weight;
-  }
-  return sum;
-}
+using testing::CutWeight;
 
 // All sides without node 0.
 std::vector<CutSide> AllSides(int nodes) {
