@@ -286,6 +286,7 @@ absl::StatusOr<InputJob> ReadGcodeJob(std::string text, const std::string& name,
                                       const GcodeOptions& options) {
   absl::StatusOr<std::shared_ptr<GcodeFile>> file = ReadGcode(std::move(text), name);
   if (!file.ok()) return file.status();
+  if (options.machine) gcode::ApplyLimits(*options.machine, (*file)->profile);
   return MakeGcodeJob(*std::move(file), options);
 }
 

@@ -4,11 +4,13 @@
 #define TRAVERSE_CLIENT_GCODE_GCODE_JOB_H_
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
+#include "client/gcode/machine/machine_limits.h"
 #include "client/gcode/model/gcode_file.h"
 #include "client/gcode/plan/policy.h"
 #include "client/gcode/write/layer_writer.h"
@@ -24,6 +26,9 @@ struct GcodeOptions {
   gcode::Crossings crossings = gcode::Crossings::kKeep;
   gcode::Allowance allow = {};
   double min_revisit_seconds = 0;  // see RewriteOptions
+
+  // What counts in place of what files state of their machine.
+  std::optional<gcode::MachineLimits> machine = {};
 };
 
 // The job in `file`: a plan for each of its layers, the cost of travel as its own moves show it

@@ -95,6 +95,7 @@ std::string NewText(const GcodeFile& file, const ChosenLayers& chosen, const std
 absl::StatusOr<PrintTotals> MeasureText(const GcodeFile& file, std::string& text, int threads) {
   const absl::StatusOr<std::shared_ptr<GcodeFile>> read = ReadGcode(std::move(text), file.name);
   if (!read.ok()) return read.status();
+  (*read)->profile = file.profile;  // it may know more of the machine than the text says
   const PrintTotals totals = Sum(MeasureLayers(**read, threads));
   text = std::move((*read)->text);
   return totals;

@@ -33,6 +33,7 @@ PLACES = [
     gcode("choose/layer_choice.cc", f"BestRow*:LayerChooser*:{WRITTEN}"),
     gcode("choose/merged_orders.cc", f"OrderMerger*:{WRITTEN}"),
     gcode("choose/order_merge.cc", "OrderMerger*"),
+    gcode("machine/machine_limits.cc", "MachineLimits*"),
     gcode("machine/motion_planner.cc", "MotionPlanner*:StopToStop*:Measure*"),
     gcode("plan/path_rules.cc", "Policy*"),
     gcode("plan/policy.cc", "Policy*"),

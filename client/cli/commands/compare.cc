@@ -161,7 +161,8 @@ Command CompareCommand() {
               {
                   {"strategies", "NAME,...", "or NAME:OPTION=VALUE (default: all, 5s each)"},
                   {"repeat", "N", "runs of each, seed after seed; means are shown"},
-                  {"quiet", "", "no progress"},
+                  {"quiet", "", "no progress", {}, false, "no progress; printer's limits"},
+                  MachineFlag(),
               },
               PlateFlagTable())),
           .example = "traverse compare part.damat --layers=1-5 --strategies=greedy,ni2opt",

@@ -77,6 +77,7 @@ Command InspectCommand() {
                   {"travel_speed", "MM_S", "for the idle time (default: the file's, or 20.32)"},
                   PolicyFlag(),
                   AllowFlag(),
+                  MachineFlag(),
               },
               PlateFlagTable()),
           .example = "traverse inspect part.damat --layers=1-5",

@@ -216,7 +216,13 @@ Command OptimizeCommand() {
            false,
            "(default: INPUT; with --json none); no summary"},
           {"quiet", "", "no progress, no summary"},
-          {"strategy", "NAME", "see `traverse strategies`; or NAME:OPTION=VALUE"},
+          {"strategy",
+           "NAME",
+           "see `traverse strategies`; or NAME:OPTION=VALUE",
+           {},
+           false,
+           "see `traverse strategies`; printer's limits"},
+          MachineFlag(),
       },
       ContainerFlagTable());
   own.back().joint_help = "despite a wrong MD5; M73 and headers too";

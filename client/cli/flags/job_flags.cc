@@ -9,6 +9,7 @@
 #include "absl/strings/str_split.h"
 #include "client/cli/flags/connection_flags.h"
 #include "client/cli/flags/strategy_spec.h"
+#include "client/files/read_file.h"
 
 namespace traverse::cli {
 namespace {
@@ -84,6 +85,16 @@ absl::Status AsFlagFault(const absl::Status& fault) {
 
 namespace {
 
+// The limits in the file `name`. Faults begin with the name.
+absl::StatusOr<gcode::MachineLimits> ReadMachine(const std::string& name) {
+  constexpr size_t kMostBytes = size_t{16} << 20;
+  const absl::StatusOr<std::string> text = ReadWholeFile(name, kMostBytes);
+  if (!text.ok()) return Fault(absl::StrCat("--machine: ", text.status().message()));
+  absl::StatusOr<gcode::MachineLimits> limits = gcode::ReadMachineLimits(*text, DisplayName(name));
+  if (!limits.ok()) return Fault(absl::StrCat("--machine: ", limits.status().message()));
+  return limits;
+}
+
 // `flag` and the one behind it on one line of the help.
 Flag Joint(Flag flag, const std::string& help) {
   flag.joint_help = help;
@@ -156,6 +167,8 @@ Flag CrossingsFlag() {
 
 Flag AllowFlag() { return {"allow", "NAME,...", "besides: infill_order, wall_order, fan_order"}; }
 
+Flag MachineFlag() { return {"machine", "FILE", "printer's limits: klipper.cfg, or M201 to M205"}; }
+
 absl::StatusOr<GcodeOptions> ParseGcodeOptions(const Flags& flags) {
   GcodeOptions options;
   const std::string allow = flags.Text("allow");
@@ -169,6 +182,11 @@ absl::StatusOr<GcodeOptions> ParseGcodeOptions(const Flags& flags) {
   const auto revisit = flags.Number("min_revisit", 0, GcodeOptions::kMostRevisitSeconds);
   if (!revisit.ok()) return revisit.status();
   options.min_revisit_seconds = revisit->value_or(0);
+  if (flags.Has("machine")) {
+    absl::StatusOr<gcode::MachineLimits> machine = ReadMachine(flags.Text("machine"));
+    if (!machine.ok()) return machine.status();
+    options.machine = *std::move(machine);
+  }
   // The flag's own choices leave no other text.
   options.policy = gcode::PolicyOfName(flags.Text("policy", "safe")).value_or(options.policy);
   options.crossings =

@@ -34,7 +34,11 @@ Flag PolicyFlag();
 Flag CrossingsFlag();
 Flag AllowFlag();
 
-// InvalidArgument for --allow with other names than there are.
+// The row of --machine.
+Flag MachineFlag();
+
+// InvalidArgument for --allow with other names than there are, and for a file of --machine that
+// cannot be read.
 absl::StatusOr<GcodeOptions> ParseGcodeOptions(const Flags& flags);
 
 absl::StatusOr<JobFlags> ParseJobFlags(const Flags& flags);

@@ -56,6 +56,7 @@ void Apply(std::string_view key, std::string_view value, MachineProfile& profile
     SetPositive(profile.firmware_retract_length, number);
   } else if (key == "retract_speed" || key == "retraction_speed") {
     SetPositive(profile.firmware_retract_speed, number);
+    profile.firmware_prime_speed = profile.firmware_retract_speed;
   } else if (key == "retract_before_travel" || key == "retraction_minimum_travel") {
     profile.retract_before_travel = number;
   } else if (key == "only_retract_when_crossing_perimeters" || key == "reduce_infill_retraction") {
@@ -95,9 +96,12 @@ MachineProfile ReadProfile(std::string_view text) {
 }
 
 Dynamics::Dynamics(const MachineProfile& profile)
-    : print_accel_(profile.print_accel),
+    : klipper_(profile.klipper),
+      print_accel_(profile.print_accel),
       travel_accel_(profile.travel_accel),
-      corner_speed_(profile.corner_speed) {}
+      max_accel_(profile.max_accel),
+      corner_speed_(profile.corner_speed),
+      max_speed_(profile.max_speed) {}
 
 void Dynamics::Follow(std::string_view line) {
   Command command;
@@ -108,7 +112,9 @@ void Dynamics::Follow(std::string_view line) {
     if (!command.Has(letter)) return std::nullopt;
     return ToDouble(command.Value(letter));
   };
-  if (command.number == 204) {
+  if (klipper_) {
+    if (command.number == 204) FollowKlipperAccel(value('S'), value('P'), value('T'));
+  } else if (command.number == 204) {
     SetPositive(print_accel_, value('S'));
     SetPositive(travel_accel_, value('S'));
     SetPositive(print_accel_, value('P'));
@@ -124,6 +130,15 @@ void Dynamics::FollowKlipper(std::string_view line) {
   SetPositive(print_accel_, Parameter(line, " ACCEL="));
   SetPositive(travel_accel_, Parameter(line, " ACCEL="));
   SetPositive(corner_speed_, Parameter(line, " SQUARE_CORNER_VELOCITY="));
+  if (klipper_) SetPositive(max_speed_, Parameter(line, " VELOCITY="));
+}
+
+// Klipper takes S, or the smaller of P and T; it ignores one of these by itself.
+void Dynamics::FollowKlipperAccel(std::optional<double> all, std::optional<double> print,
+                                  std::optional<double> travel) {
+  if (!all && print && travel) all = std::min(*print, *travel);
+  SetPositive(print_accel_, all);
+  SetPositive(travel_accel_, all);
 }
 
 Dynamics DynamicsOf(const MachineProfile& profile, const PrintState& state,

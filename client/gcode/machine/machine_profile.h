@@ -21,10 +21,20 @@ struct MachineProfile {
   double max_z_speed = 1e9;
   double max_e_speed = 1e9;
   double corner_speed = 5;
+  double max_speed = 1e9;  // of moves in the plane
+  double max_accel = 1e9;  // of them too, whatever they ask for
+
+  // Klipper plans otherwise than others do (motion_planner.h), has one acceleration for all moves,
+  // and limits all axes together. What follows is of no meaning elsewhere.
+  bool klipper = false;
+  double cruise_ratio = 0;
+  double extruder_corner_speed = 0;
+  double arc_chord = 1;  // mm
 
   // G10 and G11 do not say how far and how fast.
   double firmware_retract_length = 1;
   double firmware_retract_speed = 40;
+  double firmware_prime_speed = 40;
 
   // The slicer's own rules, where its configuration is in the file.
   std::optional<double> retract_before_travel;
@@ -51,15 +61,20 @@ class Dynamics {
   double print_accel() const { return Limited(print_accel_); }
   double travel_accel() const { return Limited(travel_accel_); }
   double corner_speed() const { return corner_speed_; }
+  double max_speed() const { return max_speed_; }
 
  private:
   double Limited(double accel) const { return accel < max_accel_ ? accel : max_accel_; }
   void FollowKlipper(std::string_view line);
+  void FollowKlipperAccel(std::optional<double> all, std::optional<double> print,
+                          std::optional<double> travel);
 
+  bool klipper_;
   double print_accel_;
   double travel_accel_;
-  double max_accel_ = 1e9;
+  double max_accel_;
   double corner_speed_;
+  double max_speed_;
 };
 
 // Those in force in `state`.

@@ -2,9 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace traverse::gcode {
 namespace {
+
+// Half the angle of a turn that is none has a sine below this.
+constexpr double kStraight = 1e-9;
+
+constexpr double kNoLimit = 1e18;
 
 // Time for `length` from speed^2 `entry2` to `exit2`, at most `speed2`, with `accel`.
 double TrapezoidSeconds(double length, double entry2, double exit2, double speed2, double accel) {
@@ -25,28 +31,59 @@ double StopToStopSeconds(double length, double speed, double accel) {
   return TrapezoidSeconds(length, 0, 0, speed * speed, accel);
 }
 
-void MotionPlanner::Move(double dx, double dy, double speed, double accel, double corner) {
+void MotionPlanner::Move(double dx, double dy, double speed, double accel, double corner,
+                         double filament) {
   const double length = std::sqrt(dx * dx + dy * dy);
   if (!(length > 0)) return;
   const double x = dx / length;
   const double y = dy / length;
-  Arc(length, x, y, x, y, speed, accel, corner);
+  Arc(length, x, y, x, y, speed, accel, corner, filament);
 }
 
 void MotionPlanner::Arc(double length_mm, double bx, double by, double ex, double ey, double speed,
-                        double accel, double corner) {
+                        double accel, double corner, double filament) {
   if (!(length_mm > 0) || !(speed > 0)) return;
-  const double speed2 = speed * speed;
-  double limit2 = 0;
+  Segment segment{length_mm, speed * speed, accel, 0, 0};
   if (!queue_.empty()) {
-    // 2 sin(t / 2) squared is 2 - 2 cos t.
-    const double turn2 = std::max(2 - 2 * (last_x_ * bx + last_y_ * by), 1e-9);
-    limit2 = std::min({2 * corner * corner / turn2, speed2, queue_.back().speed2});
+    const double limit2 = rules_.klipper ? KlipperLimit2(bx, by, corner, segment, filament)
+                                         : CornerLimit2(bx, by, corner);
+    segment.limit2 = std::min({limit2, segment.speed2, queue_.back().speed2});
+    segment.entry2 = segment.limit2;
   }
-  queue_.push_back(Segment{length_mm, speed2, accel, limit2, limit2});
+  queue_.push_back(segment);
   last_x_ = ex;
   last_y_ = ey;
+  last_filament_ = filament;
   if (queue_.size() >= kWindow) Plan(0, kWindow / 2);
+}
+
+double MotionPlanner::CornerLimit2(double bx, double by, double corner) const {
+  // 2 sin(t / 2) squared is 2 - 2 cos t.
+  const double turn2 = std::max(2 - 2 * (last_x_ * bx + last_y_ * by), 1e-9);
+  return 2 * corner * corner / turn2;
+}
+
+double MotionPlanner::KlipperLimit2(double bx, double by, double corner, const Segment& next,
+                                    double filament) const {
+  const Segment& last = queue_.back();
+  const double cosine = last_x_ * bx + last_y_ * by;
+  const double half_cos = std::sqrt(std::max((1 + cosine) / 2, 0.0));
+  const double half_sin = std::sqrt(std::max((1 - cosine) / 2, 0.0));
+  double limit2 = kNoLimit;
+  if (half_sin > kStraight) {
+    // On a circle that misses the corner by d the radius is d cos / (1 - cos), of half the angle,
+    // and d at a right angle is what the corner speed says.
+    const double missing = corner * corner * (std::numbers::sqrt2 - 1);
+    const double middle = half_cos / half_sin / 2;
+    limit2 = std::min({half_cos / (1 - half_cos) * missing, middle * next.accel * next.length,
+                       middle * last.accel * last.length});
+  }
+  const double change = std::abs(filament - last_filament_);
+  if (change > 0) {
+    const double extruder = rules_.extruder_corner_speed / change;
+    limit2 = std::min(limit2, extruder * extruder);
+  }
+  return limit2;
 }
 
 void MotionPlanner::Stop(double seconds) {
@@ -55,11 +92,50 @@ void MotionPlanner::Stop(double seconds) {
   seconds_ += seconds;
 }
 
+// With the acceleration less the share of cruising the machine would go more slowly, but up and
+// down in the same places; it is to be no faster than the peaks of that. A peak holds as far as the
+// speed rises to it and falls from it.
+void MotionPlanner::FindPeaks() {
+  const size_t n = queue_.size();
+  slow2_.assign(n + 1, 0);
+  peaks2_.resize(n);
+  const auto gain2 = [this](size_t i) {
+    return 2 * (1 - rules_.cruise_ratio) * queue_[i].accel * queue_[i].length;
+  };
+  for (size_t i = n; i-- > 0;) slow2_[i] = std::min(queue_[i].limit2, slow2_[i + 1] + gain2(i));
+  slow2_[0] = slow_entry2_;
+  for (size_t i = 0; i < n; ++i) slow2_[i + 1] = std::min(slow2_[i + 1], slow2_[i] + gain2(i));
+  const auto falls = [&](size_t i) { return slow2_[i + 1] + gain2(i) <= slow2_[i]; };
+  double next2 = 0;
+  for (size_t i = n; i-- > 0;) {
+    const bool rises = slow2_[i] + gain2(i) <= slow2_[i + 1];
+    if (falls(i)) {
+      next2 = slow2_[i];
+    } else if (!rises) {
+      next2 = (slow2_[i] + slow2_[i + 1] + gain2(i)) / 2;
+    }
+    peaks2_[i] = next2;
+  }
+  double before2 = peak_entry2_;
+  for (size_t i = 0; i < n; ++i) {
+    if (falls(i)) peaks2_[i] = std::max(peaks2_[i], before2);
+    before2 = peaks2_[i];
+  }
+}
+
+double MotionPlanner::Speed2(size_t i) const {
+  return rules_.klipper ? std::min(queue_[i].speed2, peaks2_[i]) : queue_[i].speed2;
+}
+
 void MotionPlanner::Plan(double exit2, size_t count) {
+  if (rules_.klipper) FindPeaks();
   double next2 = exit2;
   for (size_t i = queue_.size(); i-- > 0;) {
     Segment& segment = queue_[i];
     segment.entry2 = std::min(segment.limit2, next2 + 2 * segment.accel * segment.length);
+    if (rules_.klipper && i > 0) {
+      segment.entry2 = std::min({segment.entry2, peaks2_[i], peaks2_[i - 1]});
+    }
     next2 = segment.entry2;
   }
   double entry2 = entry2_;
@@ -67,10 +143,16 @@ void MotionPlanner::Plan(double exit2, size_t count) {
     const Segment& segment = queue_[i];
     const double limit2 = i + 1 < queue_.size() ? queue_[i + 1].entry2 : exit2;
     const double leave2 = std::min(limit2, entry2 + 2 * segment.accel * segment.length);
-    seconds_ += TrapezoidSeconds(segment.length, entry2, leave2, segment.speed2, segment.accel);
+    // What was planned before more was known may be a little faster.
+    const double speed2 = std::max({Speed2(i), entry2, leave2});
+    seconds_ += TrapezoidSeconds(segment.length, entry2, leave2, speed2, segment.accel);
     entry2 = leave2;
   }
   entry2_ = entry2;
+  if (rules_.klipper) {
+    slow_entry2_ = count < queue_.size() ? slow2_[count] : 0;
+    peak_entry2_ = count < queue_.size() ? peaks2_[count - 1] : 0;
+  }
   queue_.erase(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(count));
 }
 

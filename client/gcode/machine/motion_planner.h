@@ -7,6 +7,13 @@
 // - the planner looks ahead: a move is entered no faster than what follows allows to brake for;
 // - the machine stands still before and after moves of Z or of the extruder alone.
 // Left out: heating, the extruder's own limits while printing, steps and pressure advance.
+//
+// Told that the machine runs Klipper, it plans as that does (its document Kinematics.md):
+// - a corner is taken on the circle that misses it by as much as a right angle at the corner speed
+//   would, and that touches both moves no farther away than in their middle;
+// - the extruder's speed changes at once by no more than its own corner speed;
+// - of a way that goes up to a speed and down again, a share is at constant speed: the peak is the
+//   one that is reached with the acceleration less that share.
 
 #ifndef TRAVERSE_CLIENT_GCODE_MACHINE_MOTION_PLANNER_H_
 #define TRAVERSE_CLIENT_GCODE_MACHINE_MOTION_PLANNER_H_
@@ -20,16 +27,25 @@ namespace traverse::gcode {
 // filament; above 0).
 double StopToStopSeconds(double length, double speed, double accel);
 
+// How a machine goes around corners.
+struct PlannerRules {
+  bool klipper = false;
+  double cruise_ratio = 0;           // share of a way that is at constant speed, below 1
+  double extruder_corner_speed = 0;  // mm/s of filament
+};
+
 class MotionPlanner {
  public:
+  explicit MotionPlanner(const PlannerRules& rules = {}) : rules_(rules) {}
+
   // A move by (dx, dy) mm at most `speed` mm/s with `accel` mm/s^2. `corner` mm/s is the corner
-  // speed to the move before it.
-  void Move(double dx, double dy, double speed, double accel, double corner);
+  // speed to the move before it; `filament` mm of it are pushed for each mm.
+  void Move(double dx, double dy, double speed, double accel, double corner, double filament = 0);
 
   // A move along an arc of `length_mm` that begins in direction (bx, by) and ends in direction
   // (ex, ey), both of length 1.
   void Arc(double length_mm, double bx, double by, double ex, double ey, double speed, double accel,
-           double corner);
+           double corner, double filament = 0);
 
   // The machine stops, and stands for `seconds`.
   void Stop(double seconds = 0);
@@ -46,16 +62,35 @@ class MotionPlanner {
     double entry2;  // planned: at most limit2, and low enough to brake for what follows
   };
 
+  // The corner between the last queued move and one that begins in direction (bx, by).
+  double CornerLimit2(double bx, double by, double corner) const;
+  double KlipperLimit2(double bx, double by, double corner, const Segment& next,
+                       double filament) const;
+
+  // Fills slow2_ and peaks2_, so that each way up to a speed and down again has its cruise.
+  void FindPeaks();
+  double Speed2(size_t i) const;
+
   // Plans what is queued, with speed `exit2` after the last segment, and takes `count` segments
   // out.
   void Plan(double exit2, size_t count);
 
   static constexpr size_t kWindow = 512;
 
+  const PlannerRules rules_;
   std::vector<Segment> queue_;
   double last_x_ = 0;  // direction in which the last queued move ends
   double last_y_ = 0;
+  double last_filament_ = 0;
   double entry2_ = 0;  // speed at which the first queued segment is entered
+
+  // Of Klipper's rules: for each queued segment the speed at which it would be entered with less
+  // acceleration, one more for the end, and the peak that it belongs to; and what both were before
+  // the first one.
+  std::vector<double> slow2_;
+  std::vector<double> peaks2_;
+  double slow_entry2_ = 0;
+  double peak_entry2_ = 0;
   double seconds_ = 0;
 };
 

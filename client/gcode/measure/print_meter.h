@@ -13,12 +13,16 @@
 
 namespace traverse::gcode {
 
+// Seconds for which `step` keeps the machine in its place: filament alone, a lift, G10 and G11.
+// `state` is how it is behind the step.
+double StandstillSeconds(const Step& step, const MachineState& state,
+                         const MachineProfile& profile);
+
 class PrintMeter {
  public:
   // `profile` and `walls` outlive the meter; `dynamics` are those in force at the beginning.
   // Crossings are counted where there are `walls`: null for none.
-  PrintMeter(const MachineProfile& profile, const Dynamics& dynamics, const VisibleWalls* walls)
-      : profile_(profile), dynamics_(dynamics), walls_(walls) {}
+  PrintMeter(const MachineProfile& profile, const Dynamics& dynamics, const VisibleWalls* walls);
 
   // Follows one step of `interpreter`, which has just made it.
   void Follow(const Step& step, const Interpreter& interpreter);
@@ -28,6 +32,10 @@ class PrintMeter {
 
  private:
   void FollowXy(const Step& step, const MachineState& state);
+
+  // Queues the move in the plane, for a machine with Klipper or another one; its length in mm.
+  double MoveXy(const Step& step, const MachineState& state);
+  double MoveKlipper(const Step& step, const MachineState& state);
   void NoteCrossing(const Step& step, const MachineState& state);
 
   const MachineProfile& profile_;

@@ -46,6 +46,23 @@ Circle CircleOf(const Command& command, double dx, double dy) {
   return circle;
 }
 
+// The points between the ends that part an arc from `from` into `lines`, or kMostLines.
+std::vector<Vertex> Parted(const Circle& circle, const Position& from, double unit_mm,
+                           double lines) {
+  const double radius_mm = circle.radius * unit_mm;
+  const int parts = static_cast<int>(std::min(lines, kMostLines));
+  const double first = std::atan2(-circle.j, -circle.i);
+  const double center_x = (ToDouble(from.x) + circle.i) * unit_mm;
+  const double center_y = (ToDouble(from.y) + circle.j) * unit_mm;
+  std::vector<Vertex> points;
+  for (int k = 1; k < parts; ++k) {
+    const double angle = first + circle.turn * circle.angle * k / parts;
+    points.push_back(
+        {center_x + radius_mm * std::cos(angle), center_y + radius_mm * std::sin(angle)});
+  }
+  return points;
+}
+
 }  // namespace
 
 double ArcLength(const Command& command, const Position& from, const Position& to, double unit_mm,
@@ -69,17 +86,13 @@ std::vector<Vertex> ArcPoints(const Command& command, const Position& from, cons
   if (!(radius_mm > tolerance_mm)) return {};
   // A line within the arc misses it by the radius times 1 - cos(half its angle).
   const double step = 2 * std::acos(1 - tolerance_mm / radius_mm);
-  const int lines = static_cast<int>(std::min(std::ceil(circle.angle / step), kMostLines));
-  const double first = std::atan2(-circle.j, -circle.i);
-  const double center_x = (ToDouble(from.x) + circle.i) * unit_mm;
-  const double center_y = (ToDouble(from.y) + circle.j) * unit_mm;
-  std::vector<Vertex> points;
-  for (int k = 1; k < lines; ++k) {
-    const double angle = first + circle.turn * circle.angle * k / lines;
-    points.push_back(
-        {center_x + radius_mm * std::cos(angle), center_y + radius_mm * std::sin(angle)});
-  }
-  return points;
+  return Parted(circle, from, unit_mm, std::ceil(circle.angle / step));
+}
+
+std::vector<Vertex> ArcChords(const Command& command, const Position& from, const Position& to,
+                              double unit_mm, double lines) {
+  const Circle circle = CircleOf(command, ToDouble(to.x - from.x), ToDouble(to.y - from.y));
+  return Parted(circle, from, unit_mm, lines);
 }
 
 }  // namespace traverse::gcode

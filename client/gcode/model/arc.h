@@ -20,6 +20,11 @@ double ArcLength(const Command& command, const Position& from, const Position& t
 std::vector<Vertex> ArcPoints(const Command& command, const Position& from, const Position& to,
                               double unit_mm, double tolerance_mm);
 
+// The points between its ends that part the arc into `lines` of one length, or 720 if that is less:
+// as firmware that knows no arcs does. `lines` is a whole number, at least 1.
+std::vector<Vertex> ArcChords(const Command& command, const Position& from, const Position& to,
+                              double unit_mm, double lines);
+
 }  // namespace traverse::gcode
 
 #endif  // TRAVERSE_CLIENT_GCODE_MODEL_ARC_H_

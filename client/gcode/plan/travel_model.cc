@@ -5,7 +5,6 @@
 #include <map>
 #include <utility>
 
-#include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/measure/print_meter.h"
 
 namespace traverse::gcode {
@@ -61,10 +60,9 @@ class TravelLearner {
   // Returns the time of what is not travel proper.
   double LearnStep(const Step& step, const Interpreter& interpreter, Dynamics& dynamics,
                    LayerTravel& learnt) {
-    const MachineProfile& profile = file_.profile;
     const MachineState& state = interpreter.state();
     const double unit = state.UnitMm();
-    const double speed = ToDouble(state.feed) / 60;
+    const double speed = std::min(ToDouble(state.feed) / 60 * unit, dynamics.max_speed());
     switch (step.kind) {
       case StepKind::kSlot:
         if ((step.slots & kDynamicsSlots) != 0) {
@@ -76,26 +74,12 @@ class TravelLearner {
         const double way =
             std::hypot(ToDouble(state.at.x - step.from.x), ToDouble(state.at.y - step.from.y)) *
             unit;
-        if (step.kind == StepKind::kWipe) return speed > 0 ? way / (speed * unit) : 0;
-        learnt.way_mm[{speed * unit, dynamics.travel_accel()}] += way;
+        if (step.kind == StepKind::kWipe) return speed > 0 ? way / speed : 0;
+        learnt.way_mm[{speed, dynamics.travel_accel()}] += way;
         return 0;
       }
-      case StepKind::kFilament:
-        return speed > 0
-                   ? StopToStopSeconds(std::abs(ToDouble(step.filament)),
-                                       std::min(speed, profile.max_e_speed), profile.retract_accel)
-                   : 0;
-      case StepKind::kLift:
-        return speed > 0
-                   ? StopToStopSeconds(std::abs(ToDouble(state.at.z - step.from.z)) * unit,
-                                       std::min(speed * unit, profile.max_z_speed), profile.z_accel)
-                   : 0;
-      case StepKind::kFirmwareRetract:
-      case StepKind::kFirmwareUnretract:
-        return StopToStopSeconds(profile.firmware_retract_length, profile.firmware_retract_speed,
-                                 profile.retract_accel);
       default:
-        return 0;
+        return StandstillSeconds(step, state, file_.profile);
     }
   }
 
@@ -109,7 +93,7 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm)
   TravelLearner learner(file);
   std::vector<TravelModel> models;
   TravelModel model;
-  model.accel_mm_s2 = file.profile.travel_accel;
+  model.accel_mm_s2 = Dynamics(file.profile).travel_accel();
   for (const Layer& layer : file.layers) {
     const LayerTravel learnt = learner.LearnLayer(layer);
     double longest_mm = 0;

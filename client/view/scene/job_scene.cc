@@ -139,6 +139,7 @@ absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
   if (rewrite.layers_changed > 0) {
     absl::StatusOr<std::shared_ptr<GcodeFile>> read = ReadGcode(rewrite.text, job.name);
     if (!read.ok()) return read.status();
+    (*read)->profile = job.gcode->profile;  // it may know more of the machine than the text says
     printed = *std::move(read);
   }
   RouteNotes given;

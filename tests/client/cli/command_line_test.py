@@ -104,6 +104,8 @@ class Usage(CommandLine):
              "did you mean sequential?"),
             (["optimize", SMALL, "--travel_speed=0"],
              "traverse optimize: --travel_speed=0: not a number from 0.001 to 100000"),
+            (["optimize", SMALL, "--machine=no/such.cfg"],
+             "traverse optimize: --machine: no/such.cfg: No such file or directory"),
             (["optimize", SMALL, "--threads=0"], "traverse optimize: --threads=0: not a whole number from 1 to 1024"),
             (["optimize", SMALL, "--server=farm"], 'traverse optimize: --server: "farm" is not HOST:PORT'),
             (["optimize", SMALL, "--server=farm:1", "--threads=2"],
@@ -134,6 +136,16 @@ class Usage(CommandLine):
         for arguments, line in cases:
             with self.subTest(arguments):
                 self.assertEqual(self.fail_with(USAGE, *arguments), line)
+
+    def test_a_machine_is_read_from_a_file(self):
+        for content, fault in [("[printer]\nmax_velocity: fast\n",
+                                ':2: max_velocity: "fast" is no number above 0, at most 1e9'),
+                               ("[printer]\nmax_accel: 5\n", ": [printer] has no max_velocity"),
+                               ("fast\n", ": neither a Klipper configuration, with [printer], nor lines of M201 to M205")]:
+            machine = self.put("printer.cfg", content)
+            for command in ("optimize", "compare", "inspect"):
+                self.assertEqual(self.fail_with(USAGE, command, SMALL, f"--machine={machine}"),
+                                 f"traverse {command}: --machine: {machine}{fault}")
 
     def test_help_names_every_flag_and_has_an_example(self):
         general = self.succeed("--help")

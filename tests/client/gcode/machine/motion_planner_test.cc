@@ -67,5 +67,88 @@ TEST(MotionPlanner, NonsenseTakesNoTime) {
   EXPECT_EQ(Seconds(planner), 0);
 }
 
+// Klipper's rules without a share of cruising and without an extruder.
+constexpr PlannerRules kKlipper = {true, 0, 1e9};
+
+TEST(MotionPlannerOfKlipper, TakesARightAngleAtTheCornerSpeed) {
+  MotionPlanner usual;
+  MotionPlanner klipper(kKlipper);
+  for (MotionPlanner* planner : {&usual, &klipper}) {
+    planner->Move(50, 0, 100, 1000, 5);
+    planner->Move(0, 50, 100, 1000, 5);
+  }
+
+  EXPECT_NEAR(Seconds(klipper), Seconds(usual), 1e-9);
+}
+
+TEST(MotionPlannerOfKlipper, TakesAnotherAngleOnTheCircleThatMissesItByAsMuch) {
+  // A turn of 60 degrees: cos 30 / (1 - cos 30) of 5^2 * (sqrt 2 - 1).
+  MotionPlanner planner(kKlipper);
+  planner.Move(50, 0, 100, 1000, 5);
+  planner.Move(25, 25 * std::sqrt(3), 100, 1000, 5);
+
+  const double half = std::sqrt(3) / 2;
+  const double corner2 = half / (1 - half) * 25 * (std::sqrt(2) - 1);
+  const double ramps = (200 - std::sqrt(corner2)) / 1000;
+  const double way = 50 - 5 - (100.0 * 100 - corner2) / 2000;
+  EXPECT_NEAR(Seconds(planner), 2 * (ramps + way / 100), 1e-9);
+}
+
+TEST(MotionPlannerOfKlipper, ShortMovesTakeCornersOnCirclesThatTouchTheirMiddles) {
+  MotionPlanner planner(kKlipper);
+  planner.Move(0.5, 0, 100, 1000, 20);
+  planner.Move(0, 0.5, 100, 1000, 20);
+
+  // The radius is 0.25 mm, so the corner is passed at the root of 250; each move peaks at 25.
+  EXPECT_NEAR(Seconds(planner), 2 * (50 - std::sqrt(250)) / 1000, 1e-9);
+}
+
+TEST(MotionPlannerOfKlipper, TheExtruderHasItsOwnCornerSpeed) {
+  MotionPlanner planner({true, 0, 1});
+  planner.Move(50, 0, 100, 1000, 5, 0);
+  planner.Move(50, 0, 100, 1000, 5, 0.05);
+
+  // From no filament to 0.05 mm a mm at once: 20 mm/s.
+  const double ramps = (100 + 80) / 1000.0;
+  const double way = 50 - 5 - (100.0 * 100 - 400) / 2000;
+  EXPECT_NEAR(Seconds(planner), 2 * (ramps + way / 100), 1e-9);
+}
+
+TEST(MotionPlannerOfKlipper, AShareOfAWayIsCruising) {
+  MotionPlanner planner({true, 0.5, 1e9});
+  planner.Move(10, 0, 1000, 1000, 5);
+
+  const double peak = std::sqrt(5000);
+  EXPECT_NEAR(Seconds(planner), 2 * peak / 1000 + 5 / peak, 1e-9);
+}
+
+TEST(MotionPlannerOfKlipper, SpeedThatIsReachedAnywayIsReachedAsSoon) {
+  MotionPlanner planner({true, 0.5, 1e9});
+  planner.Move(100, 0, 100, 1000, 5);
+
+  EXPECT_NEAR(Seconds(planner), StopToStopSeconds(100, 100, 1000), 1e-9);
+}
+
+TEST(MotionPlannerOfKlipper, APeakHoldsOverAllMovesThatLeadUpToItAndDown) {
+  MotionPlanner one({true, 0.5, 1e9});
+  one.Move(100, 0, 400, 1000, 5);
+  MotionPlanner many({true, 0.5, 1e9});
+  for (int i = 0; i < 400; ++i) many.Move(0.25, 0, 400, 1000, 5);
+
+  EXPECT_NEAR(Seconds(many), Seconds(one), 1e-6);
+}
+
+TEST(MotionPlannerOfKlipper, EachCornerBeginsAnotherPeak) {
+  // Between right angles each move peaks by itself, whatever is beside it.
+  MotionPlanner planner({true, 0.5, 1e9});
+  for (int i = 0; i < 1000; ++i) planner.Move(i % 2 == 0 ? 4 : 0, i % 2 == 0 ? 0 : 4, 200, 1000, 5);
+
+  // From 5 mm/s: 2 * 500 * 4 / 2 more of the square.
+  const double peak = std::sqrt(25 + 2000);
+  const double ramps = 2 * (peak - 5) / 1000;
+  const double way = 4 - (peak * peak - 25) / 1000;
+  EXPECT_NEAR(Seconds(planner), 1000 * (ramps + way / peak), 0.05);
+}
+
 }  // namespace
 }  // namespace traverse::gcode

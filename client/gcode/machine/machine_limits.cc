@@ -1,0 +1,317 @@
+#include "client/gcode/machine/machine_limits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+#include "absl/status/status.h"
+#include "absl/strings/ascii.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/gcode/text/lexer.h"
+#include "client/gcode/text/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+// Beyond all machines, and far from where sums of squares are not finite.
+constexpr double kMost = 1e9;
+
+constexpr char kNeither[] =
+    "neither a Klipper configuration, with [printer], nor lines of M201 to "
+    "M205";
+
+absl::Status Fault(const std::string& where, const std::string& what) {
+  return absl::InvalidArgumentError(absl::StrCat(where, ": ", what));
+}
+
+std::string At(const std::string& name, int line) { return absl::StrFormat("%s:%d", name, line); }
+
+// Calls visit(line, number from 1) until that is a fault.
+template <typename Visit>
+absl::Status ForEachLine(std::string_view text, Visit visit) {
+  int number = 0;
+  for (Offset next = 0; next < text.size();) {
+    const Line line = LineAt(text, next);
+    next = line.next;
+    if (absl::Status status = visit(line.Text(text), ++number); !status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+// Which values a setting may have.
+enum class Range { kAboveZero, kFromZero, kRatio };
+
+bool Holds(Range range, double value) {
+  switch (range) {
+    case Range::kAboveZero:
+      return value > 0 && value <= kMost;
+    case Range::kFromZero:
+      return value >= 0 && value <= kMost;
+    case Range::kRatio:
+      return value >= 0 && value < 1;
+  }
+  return false;
+}
+
+const char* NameOf(Range range) {
+  switch (range) {
+    case Range::kAboveZero:
+      return "no number above 0, at most 1e9";
+    case Range::kFromZero:
+      return "no number from 0 to 1e9";
+    case Range::kRatio:
+      return "no number from 0 to below 1";
+  }
+  return "";
+}
+
+using Field = std::optional<double> MachineLimits::*;
+
+// One setting of Klipper that is read.
+struct Setting {
+  std::string_view section;
+  std::string_view key;
+  Field field;
+  Range range = Range::kAboveZero;
+};
+
+constexpr Setting kSettings[] = {
+    {"printer", "max_velocity", &MachineLimits::max_speed},
+    {"printer", "max_accel", &MachineLimits::max_accel},
+    {"printer", "square_corner_velocity", &MachineLimits::corner_speed, Range::kFromZero},
+    {"printer", "minimum_cruise_ratio", &MachineLimits::cruise_ratio, Range::kRatio},
+    {"printer", "max_z_velocity", &MachineLimits::max_z_speed},
+    {"printer", "max_z_accel", &MachineLimits::z_accel},
+    {"extruder", "nozzle_diameter", &MachineLimits::nozzle_diameter},
+    {"extruder", "filament_diameter", &MachineLimits::filament_diameter},
+    {"extruder", "max_extrude_only_velocity", &MachineLimits::max_e_speed},
+    {"extruder", "max_extrude_only_accel", &MachineLimits::retract_accel},
+    {"extruder", "instantaneous_corner_velocity", &MachineLimits::extruder_corner_speed,
+     Range::kFromZero},
+    {"firmware_retraction", "retract_length", &MachineLimits::firmware_retract_length,
+     Range::kFromZero},
+    {"firmware_retraction", "retract_speed", &MachineLimits::firmware_retract_speed},
+    {"firmware_retraction", "unretract_speed", &MachineLimits::firmware_prime_speed},
+    {"gcode_arcs", "resolution", &MachineLimits::arc_chord},
+};
+
+class KlipperReader {
+ public:
+  explicit KlipperReader(const std::string& name) : name_(name) { limits_.klipper = true; }
+
+  absl::StatusOr<MachineLimits> Read(std::string_view text) {
+    const absl::Status status =
+        ForEachLine(text, [this](std::string_view line, int number) { return Take(line, number); });
+    if (!status.ok()) return status;
+    for (const auto& [field, key] : {std::pair(limits_.max_speed, "max_velocity"),
+                                     std::pair(limits_.max_accel, "max_accel")}) {
+      if (field) continue;
+      return Fault(name_,
+                   absl::StrFormat("%s has no %s%s", has_printer_ ? "[printer]" : "it", key,
+                                   includes_ ? "; files that it includes are not read" : ""));
+    }
+    FillDefaults();
+    return limits_;
+  }
+
+ private:
+  absl::Status Take(std::string_view line, int number) {
+    line = line.substr(0, std::min(line.find('#'), line.find(';')));
+    // What is indented goes on with a value of several lines: a macro.
+    if (line.empty() || line[0] == ' ' || line[0] == '\t' || line[0] == '\r') {
+      return absl::OkStatus();
+    }
+    line = TrimBlanks(line);
+    if (line.front() == '[') return BeginSection(line, number);
+    const size_t mark = line.find_first_of(":=");
+    if (mark == std::string_view::npos) return absl::OkStatus();
+    const std::string key = absl::AsciiStrToLower(std::string(TrimBlanks(line.substr(0, mark))));
+    const std::string value(TrimBlanks(line.substr(mark + 1)));
+    if (section_ == "printer" && key == "max_accel_to_decel") {
+      return Set(value, key, number, Range::kAboveZero, accel_to_decel_);
+    }
+    for (const Setting& setting : kSettings) {
+      if (section_ != setting.section || key != setting.key) continue;
+      return Set(value, key, number, setting.range, limits_.*setting.field);
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status BeginSection(std::string_view line, int number) {
+    const size_t end = line.find(']');
+    if (end == std::string_view::npos) return Fault(At(name_, number), "a section without a ]");
+    section_ = std::string(TrimBlanks(line.substr(1, end - 1)));
+    has_printer_ = has_printer_ || section_ == "printer";
+    includes_ = includes_ || StartsWith(section_, "include");
+    return absl::OkStatus();
+  }
+
+  absl::Status Set(const std::string& text, const std::string& key, int number, Range range,
+                   std::optional<double>& field) const {
+    double value = 0;
+    if (!absl::SimpleAtod(text, &value) || !Holds(range, value)) {
+      return Fault(At(name_, number),
+                   absl::StrFormat("%s: \"%s\" is %s", key, text, NameOf(range)));
+    }
+    field = value;
+    return absl::OkStatus();
+  }
+
+  void FillDefaults() {
+    const auto fill = [](std::optional<double>& field, double value) {
+      if (!field) field = value;
+    };
+    fill(limits_.max_z_speed, *limits_.max_speed);
+    fill(limits_.z_accel, *limits_.max_accel);
+    fill(limits_.corner_speed, 5);
+    // The setting of before 2024, which counts with the acceleration of the configuration.
+    if (accel_to_decel_) {
+      fill(limits_.cruise_ratio, 1 - std::min(1.0, *accel_to_decel_ / *limits_.max_accel));
+    }
+    fill(limits_.cruise_ratio, 0.5);
+    fill(limits_.extruder_corner_speed, 1);
+    fill(limits_.arc_chord, 1);
+  }
+
+  const std::string& name_;
+  std::string section_;
+  bool has_printer_ = false;
+  bool includes_ = false;
+  std::optional<double> accel_to_decel_;
+  MachineLimits limits_;
+};
+
+class MarlinReader {
+ public:
+  explicit MarlinReader(const std::string& name) : name_(name) {}
+
+  absl::StatusOr<MachineLimits> Read(std::string_view text) {
+    const absl::Status status =
+        ForEachLine(text, [this](std::string_view line, int number) { return Take(line, number); });
+    if (!status.ok()) return status;
+    if (!any_) return Fault(name_, kNeither);
+    return limits_;
+  }
+
+ private:
+  absl::Status Take(std::string_view line, int number) {
+    constexpr std::string_view kEcho = "echo:";
+    line = TrimBlanks(line);
+    const bool echoed = StartsWith(line, kEcho);
+    if (echoed) line = TrimBlanks(line.substr(kEcho.size()));
+    Command command;
+    LexLine(line, command);
+    if (command.kind == LineKind::kText && !echoed) {
+      return Fault(any_ ? At(name_, number) : name_,
+                   any_ ? "neither a command nor a comment" : kNeither);
+    }
+    const bool ours = command.kind == LineKind::kCommand && command.letter == 'M' &&
+                      command.number >= 201 && command.number <= 205;
+    if (!ours) return absl::OkStatus();
+    if (!ReadWords(command)) {
+      return Fault(At(name_, number),
+                   absl::StrFormat("M%d: its words cannot be read", command.number));
+    }
+    any_ = true;
+    return Follow(command, number);
+  }
+
+  absl::Status Follow(const Command& command, int number) {
+    for (const Word& word : kWords) {
+      if (command.number != word.number || !command.Has(word.letter)) continue;
+      const double value = ToDouble(command.Value(word.letter));
+      if (!Holds(Range::kAboveZero, value)) {
+        return Fault(At(name_, number), absl::StrFormat("M%d %c: %s", word.number, word.letter,
+                                                        NameOf(Range::kAboveZero)));
+      }
+      std::optional<double>& field = limits_.*word.field;
+      // Moves lead anywhere: of X and Y the slower one counts.
+      const bool slower = word.letter == 'Y' && command.Has('X') && field;
+      field = slower ? std::min(*field, value) : value;
+    }
+    return absl::OkStatus();
+  }
+
+  // One word that is read, in the order in which they count.
+  struct Word {
+    int number;
+    char letter;
+    Field field;
+  };
+  static constexpr Word kWords[] = {
+      {201, 'X', &MachineLimits::max_accel},     {201, 'Y', &MachineLimits::max_accel},
+      {201, 'Z', &MachineLimits::z_accel},       {201, 'E', &MachineLimits::retract_accel},
+      {202, 'X', &MachineLimits::travel_accel},  {202, 'Y', &MachineLimits::travel_accel},
+      {203, 'X', &MachineLimits::max_speed},     {203, 'Y', &MachineLimits::max_speed},
+      {203, 'Z', &MachineLimits::max_z_speed},   {203, 'E', &MachineLimits::max_e_speed},
+      {204, 'S', &MachineLimits::print_accel},   {204, 'S', &MachineLimits::travel_accel},
+      {204, 'P', &MachineLimits::print_accel},   {204, 'T', &MachineLimits::travel_accel},
+      {204, 'R', &MachineLimits::retract_accel}, {205, 'X', &MachineLimits::corner_speed},
+      {205, 'Y', &MachineLimits::corner_speed},  {205, 'J', &MachineLimits::junction_deviation},
+  };
+
+  const std::string& name_;
+  bool any_ = false;
+  MachineLimits limits_;
+};
+
+// A section: a line that begins with a bracket.
+bool LooksLikeKlipper(std::string_view text) {
+  bool found = false;
+  const absl::Status all = ForEachLine(text, [&found](std::string_view line, int) {
+    found = found || StartsWith(line, "[");
+    return absl::OkStatus();
+  });
+  return all.ok() && found;
+}
+
+}  // namespace
+
+absl::StatusOr<MachineLimits> ReadMachineLimits(std::string_view text, const std::string& name) {
+  if (LooksLikeKlipper(text)) return KlipperReader(name).Read(text);
+  return MarlinReader(name).Read(text);
+}
+
+void ApplyLimits(const MachineLimits& limits, MachineProfile& profile) {
+  const auto set = [](double& field, const std::optional<double>& value) {
+    if (value) field = *value;
+  };
+  set(profile.max_speed, limits.max_speed);
+  set(profile.max_accel, limits.max_accel);
+  set(profile.z_accel, limits.z_accel);
+  set(profile.max_z_speed, limits.max_z_speed);
+  set(profile.corner_speed, limits.corner_speed);
+  set(profile.cruise_ratio, limits.cruise_ratio);
+  set(profile.firmware_retract_length, limits.firmware_retract_length);
+  set(profile.firmware_retract_speed, limits.firmware_retract_speed);
+  profile.firmware_prime_speed = profile.firmware_retract_speed;
+  set(profile.firmware_prime_speed, limits.firmware_prime_speed);
+  profile.klipper = limits.klipper;
+  if (limits.klipper) {
+    // One acceleration for all moves, and by default what extruding needs at most for filament.
+    profile.print_accel = profile.travel_accel = *limits.max_accel;
+    profile.max_accel = kMost;
+    profile.extruder_corner_speed = *limits.extruder_corner_speed;
+    profile.arc_chord = *limits.arc_chord;
+    const double nozzle = limits.nozzle_diameter.value_or(profile.nozzle_diameter.value_or(0.4));
+    const double radius = limits.filament_diameter.value_or(profile.filament_diameter) / 2;
+    const double ratio = 4 * nozzle * nozzle / (std::numbers::pi * radius * radius);
+    profile.max_e_speed = ratio * *limits.max_speed;
+    profile.retract_accel = ratio * *limits.max_accel;
+  }
+  set(profile.print_accel, limits.print_accel);
+  set(profile.travel_accel, limits.travel_accel);
+  set(profile.max_e_speed, limits.max_e_speed);
+  set(profile.retract_accel, limits.retract_accel);
+  if (limits.junction_deviation) {
+    // The corner speed at a right angle of the circle that misses the corner by so much.
+    const double accel = std::min(profile.print_accel, profile.max_accel);
+    profile.corner_speed =
+        std::sqrt((1 + std::numbers::sqrt2) * accel * *limits.junction_deviation);
+  }
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,183 @@
+#include "client/gcode/machine/machine_limits.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "absl/strings/str_format.h"
+#include "client/gcode/gcode_job.h"
+#include "client/gcode/measure/layer_meter.h"
+#include "client/gcode/read/reader.h"
+
+namespace traverse::gcode {
+namespace {
+
+MachineLimits Read(const std::string& text) {
+  const absl::StatusOr<MachineLimits> limits = ReadMachineLimits(text, "printer.cfg");
+  EXPECT_TRUE(limits.ok()) << limits.status();
+  return limits.ok() ? *limits : MachineLimits();
+}
+
+std::string FaultOf(const std::string& text) {
+  const absl::StatusOr<MachineLimits> limits = ReadMachineLimits(text, "printer.cfg");
+  EXPECT_FALSE(limits.ok()) << text;
+  return std::string(limits.status().message());
+}
+
+constexpr char kPrinter[] =
+    "# a comment\r\n"
+    "[stepper_z]\n"
+    "max_accel: 7\n"
+    "[printer]\n"
+    "kinematics: corexy\n"
+    "Max_Velocity = 300   # mm/s\n"
+    "max_accel: 3000 ; mm/s^2\n";
+
+TEST(MachineLimits, OfKlipperWithItsDefaults) {
+  const MachineLimits limits = Read(kPrinter);
+
+  EXPECT_TRUE(limits.klipper);
+  EXPECT_EQ(limits.max_speed, 300);
+  EXPECT_EQ(limits.max_accel, 3000);
+  EXPECT_EQ(limits.corner_speed, 5);
+  EXPECT_EQ(limits.cruise_ratio, 0.5);
+  EXPECT_EQ(limits.max_z_speed, 300);
+  EXPECT_EQ(limits.z_accel, 3000);
+  EXPECT_EQ(limits.extruder_corner_speed, 1);
+}
+
+TEST(MachineLimits, OfKlipperWithAllOfThem) {
+  const MachineLimits limits = Read(std::string(kPrinter) +
+                                    "square_corner_velocity: 0\n"
+                                    "minimum_cruise_ratio: 0.25\n"
+                                    "max_z_velocity: 10\n"
+                                    "max_z_accel: 100\n"
+                                    "[gcode_macro START]\n"
+                                    "gcode:\n"
+                                    "  max_velocity: none\n"
+                                    "\n"
+                                    "\tmax_accel: none\n"
+                                    "[firmware_retraction]\n"
+                                    "retract_length: 0.8\n"
+                                    "retract_speed: 35\n"
+                                    "unretract_speed: 20\n"
+                                    "[extruder]\n"
+                                    "max_extrude_only_velocity: 60\n");
+
+  EXPECT_EQ(limits.corner_speed, 0);
+  EXPECT_EQ(limits.cruise_ratio, 0.25);
+  EXPECT_EQ(limits.max_z_speed, 10);
+  EXPECT_EQ(limits.z_accel, 100);
+  EXPECT_EQ(limits.firmware_retract_length, 0.8);
+  EXPECT_EQ(limits.firmware_retract_speed, 35);
+  EXPECT_EQ(limits.firmware_prime_speed, 20);
+  EXPECT_EQ(limits.max_e_speed, 60);
+}
+
+TEST(MachineLimits, OfKlipperBeforeThereWasACruiseRatio) {
+  EXPECT_EQ(Read(std::string(kPrinter) + "max_accel_to_decel: 750\n").cruise_ratio, 0.75);
+  EXPECT_EQ(Read(std::string(kPrinter) + "max_accel_to_decel: 9000\n").cruise_ratio, 0);
+}
+
+TEST(MachineLimits, FaultsOfKlipperNameTheLine) {
+  EXPECT_EQ(FaultOf("[printer]\nmax_velocity: fast\nmax_accel: 1\n"),
+            "printer.cfg:2: max_velocity: \"fast\" is no number above 0, at most 1e9");
+  for (const char* bad : {"0", "-1", "nan", "inf", "1e10", "", "300 mm"}) {
+    const std::string text = absl::StrFormat("[printer]\nmax_velocity: 3\nmax_accel: %s\n", bad);
+    EXPECT_EQ(FaultOf(text).find("printer.cfg:3: max_accel: "), 0u) << bad;
+  }
+  EXPECT_EQ(FaultOf(std::string(kPrinter) + "minimum_cruise_ratio: 1\n"),
+            "printer.cfg:8: minimum_cruise_ratio: \"1\" is no number from 0 to below 1");
+  EXPECT_EQ(FaultOf("[printer\n"), "printer.cfg:1: a section without a ]");
+  EXPECT_EQ(FaultOf("[printer]\nmax_accel: 1\n"), "printer.cfg: [printer] has no max_velocity");
+  EXPECT_EQ(FaultOf("[include machine.cfg]\n[printer]\nmax_velocity: 1\n"),
+            "printer.cfg: [printer] has no max_accel; files that it includes are not read");
+  EXPECT_EQ(FaultOf("[extruder]\n"), "printer.cfg: it has no max_velocity");
+}
+
+TEST(MachineLimits, OfMarlin) {
+  const MachineLimits limits = Read(
+      "; of M503\n"
+      "echo:; Maximum Acceleration (units/s2):\n"
+      "echo:  M201 X3000.00 Y2000.00 Z100.00 E5000.00\n"
+      "M203 X200 Y250 Z12 E120 ; mm/s\n"
+      "M92 X80 Y80\n"
+      "M204 S900\n"
+      "M204 P1500 R1250\n"
+      "M205 X8 Y7\n"
+      "echo:Filament settings: Disabled\n");
+
+  EXPECT_FALSE(limits.klipper);
+  EXPECT_DOUBLE_EQ(limits.max_accel.value_or(0), 2000);
+  EXPECT_DOUBLE_EQ(limits.z_accel.value_or(0), 100);
+  EXPECT_DOUBLE_EQ(limits.max_speed.value_or(0), 200);
+  EXPECT_DOUBLE_EQ(limits.max_z_speed.value_or(0), 12);
+  EXPECT_DOUBLE_EQ(limits.max_e_speed.value_or(0), 120);
+  EXPECT_DOUBLE_EQ(limits.print_accel.value_or(0), 1500);
+  EXPECT_DOUBLE_EQ(limits.travel_accel.value_or(0), 900);
+  EXPECT_DOUBLE_EQ(limits.retract_accel.value_or(0), 1250);
+  EXPECT_DOUBLE_EQ(limits.corner_speed.value_or(0), 7);
+}
+
+TEST(MachineLimits, FaultsOfMarlin) {
+  EXPECT_EQ(FaultOf("M203 X200\nM201 X0\n"),
+            "printer.cfg:2: M201 X: no number above 0, at most 1e9");
+  EXPECT_EQ(FaultOf("M204 P1000 P2000\n"), "printer.cfg:1: M204: its words cannot be read");
+  EXPECT_EQ(FaultOf("M203 X200\nfast\n"), "printer.cfg:2: neither a command nor a comment");
+  const char* neither =
+      "printer.cfg: neither a Klipper configuration, with [printer], nor lines of M201 to M205";
+  EXPECT_EQ(FaultOf("fast\n"), neither);
+  EXPECT_EQ(FaultOf("M92 X80\n"), neither);
+  EXPECT_EQ(FaultOf(""), neither);
+  EXPECT_EQ(FaultOf(std::string("\0\xff\x01", 3)), neither);
+}
+
+TEST(MachineLimits, ACornerIsMissedByTheJunctionDeviation) {
+  MachineProfile profile;
+  ApplyLimits(Read("M204 P1000\nM205 J0.02\n"), profile);
+
+  // v^2 = a r, where r (sqrt 2 - 1) is the deviation.
+  EXPECT_NEAR(profile.corner_speed, std::sqrt(1000 * 0.02 / (std::sqrt(2) - 1)), 1e-9);
+}
+
+TEST(MachineLimits, FilamentAloneMayWhatExtrudingMay) {
+  MachineProfile profile;
+  ApplyLimits(Read(kPrinter), profile);
+
+  // Lines of 4 * 0.4^2 mm^2 of filament of 1.75 mm.
+  EXPECT_NEAR(profile.max_e_speed, 79.82, 0.01);
+  EXPECT_NEAR(profile.retract_accel, 798.2, 0.1);
+}
+
+TEST(MachineLimits, StandInPlaceOfWhatAFileStates) {
+  const std::string text =
+      "; generated by PrusaSlicer 2.7.4\n"
+      "M204 P500 ; not for Klipper\n"
+      "G1 X10 Y10 Z0.2 F6000\n"
+      ";LAYER_CHANGE\n;TYPE:Perimeter\n"
+      "G1 X60 E2 F12000\n"
+      "G1 X60 Y20 F12000\n"
+      "G1 X10 E2\n"
+      "M104 S0\n"
+      "; machine_max_acceleration_extruding = 800\n";
+  const auto seconds = [&](const std::string& machine) {
+    GcodeOptions options;
+    if (!machine.empty()) options.machine = Read(machine);
+    const absl::StatusOr<InputJob> job = ReadGcodeJob("M83\n" + text, "part.gcode", options);
+    EXPECT_TRUE(job.ok()) << job.status();
+    return job.ok() ? Sum(MeasureLayers(*job->gcode)).seconds : 0;
+  };
+
+  const double stated = seconds("");
+  const double slow = seconds("[printer]\nmax_velocity: 50\nmax_accel: 3000\n");
+  const double fast = seconds("[printer]\nmax_velocity: 300\nmax_accel: 9000\n");
+  EXPECT_GT(slow, 110 / 50.0);
+  EXPECT_LT(slow, stated * 2);
+  EXPECT_LT(fast, stated);
+  EXPECT_LT(seconds("M204 S3000\n"), stated);
+  EXPECT_GT(seconds("M203 X50 Y50\n"), 110 / 50.0);
+}
+
+}  // namespace
+}  // namespace traverse::gcode
