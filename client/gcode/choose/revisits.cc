@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "client/gcode/choose/box_pairs.h"
 #include "client/gcode/model/outline.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/plan/policy.h"
@@ -25,11 +26,6 @@ double LengthOf(const Outline& outline) {
   return sum;
 }
 
-bool Overlap(const BoundingBox& a, const BoundingBox& b) {
-  return a.low().x <= b.high().x && b.low().x <= a.high().x && a.low().y <= b.high().y &&
-         b.low().y <= a.high().y;
-}
-
 }  // namespace
 
 Revisits::Revisits(const GcodeFile& file, double min_seconds, int threads)
@@ -38,13 +34,7 @@ Revisits::Revisits(const GcodeFile& file, double min_seconds, int threads)
   layers_.resize(file.layers.size());
   ParallelFor(layers_.size(), threads, [this](size_t i) { layers_[i] = IslandsOf(i); });
   for (size_t i = 1; i < layers_.size(); ++i) {
-    LayerIslands& layer = layers_[i];
-    for (size_t below = 0; below < layers_[i - 1].boxes.size(); ++below) {
-      for (size_t here = 0; here < layer.boxes.size(); ++here) {
-        if (!Overlap(layers_[i - 1].boxes[below], layer.boxes[here])) continue;
-        layer.over.emplace_back(static_cast<uint32_t>(below), static_cast<uint32_t>(here));
-      }
-    }
+    layers_[i].over = OverlappingBoxes(layers_[i - 1].boxes, layers_[i].boxes);
   }
 }
 
