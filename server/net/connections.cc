@@ -106,7 +106,11 @@ void Connections::Serve() {
   Clock::time_point next = Clock::now();
   bool busy = false;
   while (true) {
-    poll(polled.data(), polled.size(), busy ? kBusyMilliseconds : kQuietMilliseconds);
+    const bool full = hand_over_->IsFull();
+    for (size_t i = 1; i < polled.size(); ++i) {
+      polled[i].events = static_cast<int16_t>(full ? 0 : POLLIN);
+    }
+    poll(polled.data(), polled.size(), busy || full ? kBusyMilliseconds : kQuietMilliseconds);
     if (polled[0].revents != 0) return;
     bool accepted = false;
     for (size_t i = 1; i < polled.size(); ++i) {
@@ -126,7 +130,7 @@ void Connections::Serve() {
 }
 
 void Connections::AcceptAll(int listener) {
-  while (true) {
+  while (!hand_over_->IsFull()) {
     const int socket = accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (socket < 0) {
       if (errno == EMFILE || errno == ENFILE) WaitForRoom();

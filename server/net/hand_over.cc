@@ -23,6 +23,11 @@ void HandOver::Add(int socket, const std::string& peer) {
   changed_.NotifyOne();
 }
 
+bool HandOver::IsFull() const {
+  MutexLock lock(mutex_);
+  return waiting_.size() >= kMostWaiting;
+}
+
 void HandOver::Run(int hand) {
   MutexLock lock(mutex_);
   std::string& peer = in_hand_[static_cast<size_t>(hand)];

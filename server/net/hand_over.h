@@ -36,6 +36,10 @@ class HandOver {
   // Returns at once. `peer` is what Stop calls it.
   void Add(int socket, const std::string& peer);
 
+  // Whether so many wait that new ones are better left where the kernel keeps them.
+  static constexpr size_t kMostWaiting = 64;
+  bool IsFull() const;
+
   // Closes the sockets that wait, calls `cut` for each peer whose socket is being taken, and waits
   // until that is done. REQUIRES: Add is not called any more.
   void Stop(const std::function<void(const std::string& peer)>& cut);
@@ -49,7 +53,7 @@ class HandOver {
   void Run(int hand);
 
   const Take take_;
-  Mutex mutex_;
+  mutable Mutex mutex_;
   ConditionVariable changed_;
   std::deque<NewConnection> waiting_ TRAVERSE_GUARDED_BY(mutex_);
   std::vector<std::string> in_hand_ TRAVERSE_GUARDED_BY(mutex_);  // [hand] a peer, or empty

@@ -59,6 +59,28 @@ TEST(HandOver, AHandThatIsKeptHoldsUpNoOther) {
   hand_over.Stop([](const std::string& peer) { ADD_FAILURE() << peer << " is done with"; });
 }
 
+TEST(HandOver, IsFullWhileManyWait) {
+  std::atomic<bool> taken{false};
+  std::atomic<bool> done{false};
+  HandOver hand_over(1, [&](int socket, int) {
+    taken = true;
+    while (!done) usleep(1000);
+    close(socket);
+  });
+  std::vector<Pair> pairs(HandOver::kMostWaiting + 1);
+  for (const Pair& it : pairs) {
+    EXPECT_FALSE(hand_over.IsFull());
+    hand_over.Add(it.given_away(), "one of many");
+    ASSERT_TRUE(Eventually([&] { return taken.load(); }));  // the first, at once
+  }
+  EXPECT_TRUE(hand_over.IsFull());
+
+  done = true;
+  EXPECT_TRUE(Eventually([&] { return pairs.back().IsClosed(); }));
+  EXPECT_FALSE(hand_over.IsFull());
+  hand_over.Stop([](const std::string&) {});
+}
+
 TEST(HandOver, StopCutsWhatIsTakenAndClosesWhatWaits) {
   std::atomic<bool> taken{false};
   std::atomic<bool> is_cut{false};
