@@ -40,5 +40,26 @@ TEST(VerifyPrintSettings, AccelerationOfTravelAndRetractionsCountsForNoDeposit) 
   EXPECT_NE(After(204, "T800").acceleration, none.AccelerationDigest());
 }
 
+uint64_t DigestAfter(const std::string& comment) {
+  PrintSettings settings;
+  EXPECT_TRUE(settings.SetByComment(comment)) << comment;
+  return settings.Digest();
+}
+
+TEST(VerifyPrintSettings, TypeWidthAndHeightCountInTheWordsOfEachSlicer) {
+  const char* const marks[][2] = {
+      {";TYPE:", "; FEATURE: "}, {";WIDTH:", "; LINE_WIDTH: "}, {";HEIGHT:", "; LAYER_HEIGHT: "}};
+  for (const auto& [one, other] : marks) {
+    const std::string mark = one;
+    EXPECT_NE(DigestAfter(mark + "0.2"), PrintSettings().Digest()) << mark;
+    EXPECT_NE(DigestAfter(mark + "0.2"), DigestAfter(mark + "0.3")) << mark;
+    EXPECT_EQ(DigestAfter(mark + "0.2"), DigestAfter(other + std::string("0.2"))) << mark;
+  }
+  EXPECT_NE(DigestAfter(";WIDTH:0.2"), DigestAfter(";HEIGHT:0.2"));
+  PrintSettings none;
+  EXPECT_FALSE(none.SetByComment("; layer 7"));
+  EXPECT_EQ(none.Digest(), PrintSettings().Digest());
+}
+
 }  // namespace
 }  // namespace traverse::gcode

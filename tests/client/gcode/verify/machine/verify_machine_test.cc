@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 namespace traverse::gcode {
 namespace {
@@ -22,6 +23,29 @@ TEST(VerifyMachine, WhatComesBackAllButAThirtiethIsBack) {
   EXPECT_TRUE(IsRetractedAfter("M83\nG1 E-1 F2100\nG1 E.9\n"));
   // In two pulls, the deepest of which counts.
   EXPECT_FALSE(IsRetractedAfter("M83\nG1 E-.5 F2100\nG1 E-.5\nG1 E.97\n"));
+}
+
+TEST(VerifyMachine, G92SaysWhereTheAxesAreThatItNames) {
+  VerifyMachine machine("G90\nG1 X10 Y20 Z1 F9000\nG92 X1 Z2\nG91\nG1 X.5 Y.5 Z.5\n");
+  VerifyLine line;
+  while (machine.Next(line)) {
+  }
+  EXPECT_EQ(machine.x(), 1'500'000);
+  EXPECT_EQ(machine.y(), 20'500'000);
+  EXPECT_EQ(machine.z(), 2'500'000);
+}
+
+TEST(VerifyMachine, G92OfTheFilamentAloneIsNoFence) {
+  const auto roles = [](const std::string& text) {
+    VerifyMachine machine(text);
+    std::vector<LineRole> found;
+    VerifyLine line;
+    while (machine.Next(line)) found.push_back(line.role);
+    return found;
+  };
+  EXPECT_EQ(roles("M82\nG92 E0\n").back(), LineRole::kNothing);
+  EXPECT_EQ(roles("M82\nG92 X0 E0\n").back(), LineRole::kFixed);
+  EXPECT_EQ(roles("M82\nG92\n").back(), LineRole::kFixed);
 }
 
 }  // namespace

@@ -24,6 +24,15 @@ TEST(VerifyOrder, InfillStaysBehindTheWallBesideIt) {
   EXPECT_EQ(Broken(kHead + kSquare + near, kHead + near + kSquare, allowed), "");
 }
 
+TEST(VerifyOrder, HoldsInLayersAboveTheFirstToo) {
+  const std::string near = Line("Internal infill", "X12 Y10.4", "X18 Y10.4");
+  const std::string far = Line("Internal infill", "X12 Y15", "X18 Y15");
+  const std::string below = kHead + near + far + kNextLayer;
+
+  EXPECT_EQ(Broken(below + kSquare + near, below + near + kSquare), "order");
+  EXPECT_EQ(Broken(below + kSquare + far, below + far + kSquare), "");
+}
+
 TEST(VerifyOrder, WallsKeepTheirsUnderSafeAndBalanced) {
   const std::string inner = Line("Perimeter", "X12 Y10.4", "X18 Y10.4");
 

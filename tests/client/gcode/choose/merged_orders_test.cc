@@ -1,0 +1,74 @@
+#include "client/gcode/choose/merged_orders.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "client/gcode/write/layer_writer.h"
+#include "client/gcode/write/link_donors.h"
+#include "tests/client/gcode/support/sketch.h"
+
+namespace traverse::gcode {
+namespace {
+
+using testing::Sketch;
+
+constexpr TravelModel kTravel = {.speed_mm_s = 150, .accel_mm_s2 = 1000, .retraction_seconds = 0.5};
+
+LayerOrder OrderOf(const std::vector<uint32_t>& blocks) {
+  LayerOrder order;
+  for (const uint32_t block : blocks) order.push_back({block, 0, block == 0});
+  return order;
+}
+
+// A wall with infill on both sides of it. With an open nozzle the head crosses it for 1.1 mm, from
+// the first infill to the second.
+class MergedOrdersTest : public ::testing::Test {
+ protected:
+  MergedOrdersTest() {
+    Sketch sketch;
+    sketch.Square(0, 0, 40).GoRetracted(38, 5).Infill(39.5, 5).Go(40.6, 5).Infill(45, 5);
+    sketch.GoRetracted(38, 20).Infill(39.3, 20).GoRetracted(20, 20).Infill(21, 20);
+    sketch.GoRetracted(40.7, 20).Infill(45, 20).GoRetracted(60, 60).Infill(61, 60);
+    file_ = sketch.Read();
+    donors_ = std::make_unique<LinkDonors>(*file_);
+    writer_ =
+        std::make_unique<LayerWriter>(*file_, file_->layers[0], LearnRetraction(*file_), *donors_);
+  }
+
+  std::vector<WayTotals> WaysOf(const LayerOrder& order) const {
+    std::vector<WayTotals> ways;
+    for (size_t i = 1; i < order.size(); ++i) {
+      ways.push_back(writer_->EstimateWay(i, order[i - 1], order[i], kTravel));
+    }
+    return ways;
+  }
+
+  std::shared_ptr<GcodeFile> file_;
+  std::unique_ptr<LinkDonors> donors_;
+  std::unique_ptr<LayerWriter> writer_;
+};
+
+TEST_F(MergedOrdersTest, HaveNoOpenWayAcrossWallsThatIsLongerThanTheFiles) {
+  const LayerOrder found = OrderOf({0, 2, 1, 4, 3, 5, 6});
+  const WayTotals across = WaysOf(found)[4];
+  ASSERT_EQ(across.open, 1);
+  ASSERT_NEAR(across.mm, 1.4, 1e-6);
+  MergeRules rules;
+  rules.policy = Policy::kFree;
+  rules.crossings = Crossings::kAny;
+  rules.boundaries.assign(found.size(), false);
+
+  const std::vector<LayerOrder> merged = MergedOrders(*writer_, kTravel, {found}, rules);
+
+  ASSERT_FALSE(merged.empty());
+  for (const LayerOrder& order : merged) {
+    for (const WayTotals& way : WaysOf(order)) {
+      EXPECT_TRUE(way.open == 0 || way.mm <= 1.1 + 1e-6) << way.mm;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace traverse::gcode
