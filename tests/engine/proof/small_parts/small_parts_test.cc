@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "absl/strings/str_cat.h"
 #include "engine/cost/route_cost.h"
@@ -79,6 +80,26 @@ TEST(SmallParts, LeavesTheRouteWhenTheBudgetIsOver) {
 
   EXPECT_FALSE(SolveSmallParts(layer, {}, route, budget));
   EXPECT_EQ(route, before);
+}
+
+// n single points: from the start to each of them, and from each subset's last one to another.
+TEST(IsSmall, CountsTheStepsOfAllSubsets) {
+  for (int n = 2; n <= 9; ++n) {
+    const OwnedProblem owned(testing::FlatPlan(n));
+    const LayerView layer(owned.problem);
+    const double steps = n + n * (n - 1) * std::exp2(n - 2);
+
+    EXPECT_TRUE(IsSmall(layer, {.most_operations = steps})) << n;
+    EXPECT_FALSE(IsSmall(layer, {.most_operations = steps - 1})) << n;
+  }
+}
+
+TEST(IsSmall, LimitsTheChildrenOfANode) {
+  const OwnedProblem owned(testing::FlatPlan(5));
+  const LayerView layer(owned.problem);
+
+  EXPECT_TRUE(IsSmall(layer, {.most_children = 5}));
+  EXPECT_FALSE(IsSmall(layer, {.most_children = 4}));
 }
 
 }  // namespace

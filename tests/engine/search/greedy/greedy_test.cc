@@ -49,16 +49,18 @@ TEST(Greedy, CompletesANodeBeforeItLeavesIt) {
 
 // What is as near within a nested node counts as if it were not nested.
 TEST(Greedy, BreaksTiesByTheLowestPathAcrossNodesToo) {
-  Plan plan;
-  plan.paths = {MakeContour({{1, 0}}), MakeContour({{-1, 0}}), MakeContour({{5, 0}})};
-  plan.nodes = {PlanNode{PlanNode::Kind::kAnyOrder, 0, {1, 2}, {}},
-                PlanNode{PlanNode::Kind::kPath, 1, {}, {}},
-                PlanNode{PlanNode::Kind::kAnyOrder, 0, {3, 4}, {}},
-                PlanNode{PlanNode::Kind::kPath, 0, {}, {}},
-                PlanNode{PlanNode::Kind::kPath, 2, {}, {}}};
-  const OwnedProblem owned(plan);
+  for (const int nested : {0, 1}) {
+    Plan plan;
+    plan.paths = {MakeContour({{1, 0}}), MakeContour({{-1, 0}}), MakeContour({{5, 0}})};
+    plan.nodes = {PlanNode{PlanNode::Kind::kAnyOrder, 0, {1, 2}, {}},
+                  PlanNode{PlanNode::Kind::kPath, 1 - nested, {}, {}},
+                  PlanNode{PlanNode::Kind::kAnyOrder, 0, {3, 4}, {}},
+                  PlanNode{PlanNode::Kind::kPath, nested, {}, {}},
+                  PlanNode{PlanNode::Kind::kPath, 2, {}, {}}};
+    const OwnedProblem owned(plan);
 
-  EXPECT_EQ(Greedy(owned.problem).front(), (Visit{0, 0}));
+    EXPECT_EQ(Greedy(owned.problem).front(), (Visit{0, 0})) << "nested: path " << nested;
+  }
 }
 
 // any_order nodes in each other, a contour beside each: the outermost ones offer what is innermost.

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -118,6 +119,36 @@ TEST(SwapSequence, OfPointsOnALine) {
 
   EXPECT_DOUBLE_EQ(state.cost(), 5);
   EXPECT_DOUBLE_EQ(move.delta, -2);
+}
+
+// Of many entries those nearest to either neighbor are tried.
+TEST(SwapSequence, PlacesAPathOfManyEntriesAtThoseNearestToItsNeighbors) {
+  for (uint64_t seed = 1; seed <= 50; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    Rng rng(seed);
+    const auto point = [&rng](double size) {
+      return Point{size * (rng.Unit() - 0.5), size * (rng.Unit() - 0.5)};
+    };
+    std::vector<Point> many;
+    for (int k = 0; k < 30; ++k) many.push_back(point(10));
+    const Point before = point(60);
+    const Point after = point(60);
+    const OwnedProblem owned(testing::AnyOrderPlan(
+        {MakeContour({before}), MakeContour(std::vector<Point>(many)), MakeContour({after})}));
+    const LinkRules rules;
+    const SwapSequence state(owned.problem, rules);
+    const auto nearest = [&many](Point to) {
+      return *std::min_element(many.begin(), many.end(), [to](Point a, Point b) {
+        return Distance(a, to) < Distance(b, to);
+      });
+    };
+    const auto cost = [&](Point at) { return Distance(before, at) + Distance(at, after); };
+    const int node = state.tree().child_at(0, 1);
+
+    const double placed = state.PlacedCost(node, state.entry_before(node), state.entry_after(node));
+
+    EXPECT_DOUBLE_EQ(placed, std::min(cost(nearest(before)), cost(nearest(after))));
+  }
 }
 
 // With the penalty of figure 4.3: the link 0-1 is against the neighborhood.
