@@ -22,6 +22,7 @@ using testing::FakeService;
 using testing::KeepOrder;
 using ::testing::Pair;
 using ::testing::SizeIs;
+using ::testing::UnorderedElementsAre;
 
 std::vector<v1::Layer> Layers(int count) {
   std::vector<v1::Layer> layers;
@@ -182,6 +183,68 @@ TEST(ResumedOptions, GoOnWhereTheJobBrokeOff) {
   EXPECT_EQ(fourth.start().x_mm(), -5);  // the head was cleaned after the third layer
   EXPECT_EQ(fourth.cleaning().layers_since_cleaning(), 0u);
   EXPECT_EQ(fourth.time_limit().nanos(), 1'000'000);
+}
+
+v1::LayerResult Result(double given_mm, double travel_mm, v1::StopReason stop) {
+  v1::LayerResult result;
+  for (v1::Travel* travel : {result.mutable_given(), result.mutable_travel()}) {
+    const double total_mm = travel == &result.given() ? given_mm : travel_mm;
+    travel->set_contours_mm(0.5 * total_mm);
+    travel->set_rasters_mm(0.3 * total_mm);
+    travel->set_links_mm(0.2 * total_mm);
+    travel->set_total_mm(total_mm);
+  }
+  result.set_cleaning_given_mm(8);
+  result.set_cleaning_mm(4);
+  result.set_cost_given(given_mm + 8);
+  result.set_cost(travel_mm + 4);
+  result.set_solve_seconds(0.25);
+  result.set_lower_bound(travel_mm - 1);
+  result.set_stop_reason(stop);
+  return result;
+}
+
+TEST(SummaryOf, AddsUpTheLayers) {
+  std::vector<v1::LayerResult> layers = {Result(100, 60, v1::STOP_REASON_TIME_LIMIT),
+                                         Result(50, 20, v1::STOP_REASON_OPTIMAL),
+                                         Result(30, 20, v1::STOP_REASON_TIME_LIMIT)};
+  v1::JobSummary last;
+  last.set_job_id("job-3");
+  last.set_strategy("auto");
+  v1::JobOptions options;
+  options.set_idle_speed_mm_s(2);
+
+  const v1::JobSummary sum = SummaryOf(options, layers, last, 1.5);
+
+  EXPECT_EQ(sum.job_id(), "job-3");
+  EXPECT_EQ(sum.strategy(), "auto");
+  EXPECT_EQ(sum.layers(), 3u);
+  EXPECT_DOUBLE_EQ(sum.given().contours_mm(), 90);
+  EXPECT_DOUBLE_EQ(sum.given().rasters_mm(), 54);
+  EXPECT_DOUBLE_EQ(sum.given().links_mm(), 36);
+  EXPECT_DOUBLE_EQ(sum.given().total_mm(), 180);
+  EXPECT_DOUBLE_EQ(sum.travel().total_mm(), 100);
+  EXPECT_DOUBLE_EQ(sum.cleaning_given_mm(), 24);
+  EXPECT_DOUBLE_EQ(sum.cleaning_mm(), 12);
+  EXPECT_DOUBLE_EQ(sum.cost_given(), 204);
+  EXPECT_DOUBLE_EQ(sum.cost(), 112);
+  EXPECT_DOUBLE_EQ(sum.compute_seconds(), 0.75);
+  EXPECT_DOUBLE_EQ(sum.lower_bound(), 97);
+  EXPECT_DOUBLE_EQ(sum.idle_seconds_given(), 102);
+  EXPECT_DOUBLE_EQ(sum.idle_seconds(), 56);
+  EXPECT_DOUBLE_EQ(sum.wall_seconds(), 1.5);
+  std::map<v1::StopReason, uint64_t> stops;
+  for (const v1::StopCount& stop : sum.stops()) stops[stop.stop_reason()] = stop.layers();
+  EXPECT_THAT(stops, UnorderedElementsAre(Pair(v1::STOP_REASON_TIME_LIMIT, 2),
+                                          Pair(v1::STOP_REASON_OPTIMAL, 1)));
+}
+
+TEST(SummaryOf, HasABoundOnlyIfAllLayersHave) {
+  std::vector<v1::LayerResult> layers = {Result(100, 60, v1::STOP_REASON_TIME_LIMIT),
+                                         Result(50, 20, v1::STOP_REASON_TIME_LIMIT)};
+  EXPECT_TRUE(SummaryOf({}, layers, {}, 0).has_lower_bound());
+  layers[0].clear_lower_bound();
+  EXPECT_FALSE(SummaryOf({}, layers, {}, 0).has_lower_bound());
 }
 
 TEST(ShiftPlace, CountsFromTheWholeJob) {
