@@ -1,8 +1,8 @@
 """Where faults are put, and which tests have to find them: a binary of the build with a filter."""
 
 
-def place(file, target, suites, seconds=120):
-    return {"file": file, "target": target, "seconds": seconds, "suites": suites}
+def place(file, target, suites, seconds=120, others=()):
+    return {"file": file, "target": target, "seconds": seconds, "suites": suites, "others": others}
 
 
 def engine(file, suites, seconds=120):
@@ -25,7 +25,7 @@ PLACES = [
     place("server/jobs/return_margin.h", "server_jobs_tests", "MarginOfReturn*"),
     place("server/jobs/worker_pool.cc", "server_jobs_tests", "WorkerPool*"),
     place("server/jobs/worker_threads.cc", "server_jobs_tests", "WorkerPool*"),
-    place("server/server.cc", "server_tests", "Drain*:Service*:Overload*"),
+    place("server/server.cc", "server_tests", "Drain*:Service*:Overload*", others=("server_binary_tests",)),
     place("server/jobs/fair_order.h", "server_jobs_tests", "FairOrder*:WorkerPool*"),
     place("client/api/optimizer_client.cc", "client_tests", "Resume*:OptimizerClient*"),
     place("client/api/resume.cc", "client_tests", "Resume*:ShiftPlace*:FirstMissing*:CleaningDueAfter*"),
@@ -71,7 +71,7 @@ PLACES = [
     engine("souza/block_line.cc", "BlockLine*"),
     engine("souza/point_release.cc", "PointRelease*"),
     engine("souza/nearest_insertion.cc", "NearestInsertion*"),
-    engine("proof/small_parts/small_parts.cc", "SmallParts*"),
+    engine("proof/small_parts/small_parts.cc", "SmallParts*:IsSmall*"),
     engine("proof/walks/walk_dp.cc", "WalkDp*"),
     engine("weller/tabu/swap_sequence.cc", "SwapSequence*"),
     engine("weller/tabu/tabu_list.h", "TabuList*"),
@@ -80,9 +80,21 @@ PLACES = [
     engine("validator.cc", "ValidateRoute*:MeasureTravel*"),
 ]
 
-# Lines in which faults make no difference, each with the reason.
+# Faults that make no difference, as their lines say then, and why.
+COUNTS_FOR_AN_ASSERTION = "what it counts is looked at in an assertion"
+ORDER_ON_THE_CURVE = "which points share a leaf changes how long a search takes, and not what it finds"
+PRUNES_LESS = "a bound that rules out less: the cost itself is looked at behind it"
+NOTHING_TO_LET_IN = "tasks are held back only while all permits are in use"
 VISITS = "client/gcode/verify/match/visits.cc"
+POINT_INDEX = "engine/geometry/nearest_point_index.cc"
 EQUIVALENT = {
-    (VISITS, "for (uint32_t path = section.first_path; path < section.end_path; ++path) {"): "for an assertion alone",
-    (VISITS, "segments += chunk.paths[path].size();"): "for an assertion alone",
+    (VISITS, "without segments += chunk.paths[path].size();"): COUNTS_FOR_AN_ASSERTION,
+    (VISITS, "segments -= chunk.paths[path].size();"): COUNTS_FOR_AN_ASSERTION,
+    (POINT_INDEX, "without x &= 0xffff;"): ORDER_ON_THE_CURVE,
+    (POINT_INDEX, "without x = (x | (x << 8)) & 0x00ff00ff;"): ORDER_ON_THE_CURVE,
+    (POINT_INDEX, "without x = (x | (x << 4)) & 0x0f0f0f0f;"): ORDER_ON_THE_CURVE,
+    (POINT_INDEX, "without x = (x | (x << 2)) & 0x33333333;"): ORDER_ON_THE_CURVE,
+    (POINT_INDEX, "without x = (x | (x << 1)) & 0x55555555;"): ORDER_ON_THE_CURVE,
+    ("engine/souza/block_line.cc", "const double limit = gone + move_[j + 1] - detour_[j] - best.delta;"): PRUNES_LESS,
+    ("server/jobs/worker_pool.cc", "if (memory_short_ || !is_short) {"): NOTHING_TO_LET_IN,
 }

@@ -12,13 +12,13 @@ leaves a statement out. What does not compile is not counted. The sources are pu
 fault, also when the script is stopped. Exit code 1 if fewer than --least of 100 are found.
 
 First the tests of the place run, then, if they miss the fault, all of their binary: both count as
-found, and the output tells which ("found by others").
+found, and the output tells which ("found by others"). For a few places another binary follows.
 
 Some faults make no difference. Those known by their form are never chosen: assertions, as release
 builds have none; reserve(); and a statement that only counts steps for the budget, rest(n), since
-tests/engine/schedule/gaps_test.cc holds for the engine as a whole how often it asks. Lines that
-were looked at one by one are in EQUIVALENT of places.py, each with the reason. All other faults
-that are missed count as missed.
+tests/engine/schedule/gaps_test.cc holds for the engine as a whole how often it asks. Those that
+were looked at one by one are in EQUIVALENT of places.py, each with the reason. All others that
+are missed count as missed.
 
 The tree must be built (build/release), and nobody else may be building it. To go on working
 meanwhile, let it run in a worktree of its own; CMAKE_BUILD_PARALLEL_LEVEL limits its builds.
@@ -31,6 +31,7 @@ import os
 import pathlib
 import random
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -65,7 +66,7 @@ def code_part(line):
 
 
 def faults_of(text):
-    """All faults of a source: (line number from 1, new line, what was done)."""
+    """All faults of a source: (line number from 1, new line, what the line says then)."""
     depth_of_parameters = 0
     asserting = False
     for number, line in enumerate(text.splitlines(), 1):
@@ -83,16 +84,14 @@ def faults_of(text):
             for match in re.finditer(pattern, code):
                 # What a bracket of a template means is not a comparison.
                 new = line[:match.start()] + match.expand(replacement) + line[match.end():]
-                yield number, new, f"{match.group().strip()} -> {match.expand(replacement).strip()}"
+                yield number, new, new.strip()
         if not continues and depth_of_parameters == 0 and STATEMENT.match(code.rstrip()):
-            yield number, re.sub(r"\S.*", ";", line), "left out"
+            yield number, re.sub(r"\S.*", ";", line), f"without {line.strip()}"
 
 
 def choose(place, each, seed):
     text = (ROOT / place["file"]).read_text()
-    lines = text.splitlines()
-    faults = [fault for fault in faults_of(text)
-              if (place["file"], lines[fault[0] - 1].strip()) not in EQUIVALENT]
+    faults = [fault for fault in faults_of(text) if (place["file"], fault[2]) not in EQUIVALENT]
     random.Random(f"{seed} {place['file']}").shuffle(faults)
     taken = set()
     chosen = []
@@ -104,11 +103,15 @@ def choose(place, each, seed):
 
 
 def run(command, seconds):
-    """The exit code, or "time". What it started ends with it: a fault may well never return."""
+    """The exit code, or "time". What it started ends with it: a fault may well never return.
+
+    The limit is of computing, so that a busy machine finds nothing; one that waits has longer.
+    """
     with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                          start_new_session=True) as process:
+                          start_new_session=True,
+                          preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))) as process:
         try:
-            return process.wait(timeout=seconds)
+            return process.wait(timeout=8 * seconds)
         except subprocess.TimeoutExpired:
             return "time"
         finally:
@@ -118,11 +121,11 @@ def run(command, seconds):
                 pass
 
 
-def binary_of(place, build):
-    """The test binary of a place."""
-    found = [path for path in (ROOT / build / "tests").rglob(place["target"]) if path.is_file()]
+def binary_of(target, build):
+    """The test binary of a target."""
+    found = [path for path in (ROOT / build / "tests").rglob(target) if path.is_file()]
     if not found:
-        sys.exit(f"{place['target']} is not built in {build}")
+        sys.exit(f"{target} is not built in {build}")
     return str(found[0])
 
 
@@ -146,11 +149,11 @@ def gone_from_the_list(places, build):
         if not list(faults_of((ROOT / place["file"]).read_text())):
             yield f"{place['file']}: nothing to put a fault into"
         for suites in place["suites"].split(":"):
-            if not fnmatch.filter(tests_of(binary_of(place, build)), suites):
+            if not fnmatch.filter(tests_of(binary_of(place["target"], build)), suites):
                 yield f"{place['file']}: no test is called {suites}"
-    for file, line in EQUIVALENT:
-        if line not in map(str.strip, (ROOT / file).read_text().splitlines()):
-            yield f"{file}: no line '{line}'"
+    for file, fault in EQUIVALENT:
+        if fault not in (what for _, _, what in faults_of((ROOT / file).read_text())):
+            yield f"{file}: no fault '{fault}'"
 
 
 def try_fault(place, fault, build):
@@ -161,13 +164,15 @@ def try_fault(place, fault, build):
     lines[fault[0] - 1] = fault[1] + "\n"
     try:
         path.write_text("".join(lines))
-        if run(["cmake", "--build", build, "--target", place["target"]], 600) != 0:
+        if run(["cmake", "--build", build, "--target", place["target"]], 1200) != 0:
             return None
-        binary = binary_of(place, build)
-        if run([binary, "--gtest_brief=1", f"--gtest_filter={place['suites']}"], place["seconds"]) != 0:
+        near = [binary_of(place["target"], build), "--gtest_brief=1", f"--gtest_filter={place['suites']}"]
+        if run(near, place["seconds"]) != 0:
             return "found"
-        if run([binary, "--gtest_brief=1", "--gtest_fail_fast"], 600) != 0:
-            return "found by others"
+        for target in (place["target"], *place["others"]):
+            run(["cmake", "--build", build, "--target", target], 1200)
+            if run([binary_of(target, build), "--gtest_brief=1", "--gtest_fail_fast"], 600) != 0:
+                return "found by others"
         return "missed"
     finally:
         path.write_text(original)
