@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -121,6 +122,54 @@ TEST(LinkClusters, LinksManyClustersAsATree) {
 
   EXPECT_THAT(found.Components(), Each(0));
   for (int i = 0; i < found.node_count(); ++i) EXPECT_LE(found.of(i).size(), 4u);
+}
+
+// By Prim's algorithm: the length of the shortest tree over the points.
+double LengthOfShortestTree(const std::vector<Point>& points) {
+  std::vector<double> distance(points.size(), std::numeric_limits<double>::infinity());
+  std::vector<bool> linked(points.size());
+  distance[0] = 0;
+  double length = 0;
+  for (size_t round = 0; round < points.size(); ++round) {
+    size_t next = points.size();
+    for (size_t i = 0; i < points.size(); ++i) {
+      if (!linked[i] && (next == points.size() || distance[i] < distance[next])) next = i;
+    }
+    linked[next] = true;
+    length += distance[next];
+    for (size_t i = 0; i < points.size(); ++i) {
+      distance[i] = std::min(distance[i], Distance(points[next], points[i]));
+    }
+  }
+  return length;
+}
+
+TEST(LinkClusters, TheTreeOfManyClustersIsTheShortest) {
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    Rng rng(seed);
+    std::vector<Point> points;
+    std::vector<CircledContour> contours;
+    for (int i = 0; i < 210; ++i) {
+      points.push_back({300 * rng.Unit(), 300 * rng.Unit()});
+      contours.push_back({{points.back()}, points.back(), 0});
+    }
+    const Point origin{-20, -20};
+    points.push_back(origin);
+    Neighborhood found(static_cast<int>(points.size()));
+    Budget budget;
+
+    LinkClusters(contours, origin, found, budget);
+
+    double length = 0;
+    for (int a = 0; a < found.node_count(); ++a) {
+      for (const int b : found.of(a)) {
+        if (a < b)
+          length += Distance(points[static_cast<size_t>(a)], points[static_cast<size_t>(b)]);
+      }
+    }
+    EXPECT_NEAR(length, LengthOfShortestTree(points), 1e-6);
+  }
 }
 
 TEST(Neighborhoods, AreSymmetricAndConnected) {
