@@ -24,9 +24,19 @@ constexpr double kFirstPrice = 0.02;
 constexpr int kDoublings = 16;
 constexpr int kHalvings = 6;
 
+// Seconds that each of them counts for, beside those that it takes.
+struct Prices {
+  double crossing = 0;
+  double retraction = 0;
+};
+
+// What a file saves by one retraction more is no less than this, or it does without.
+constexpr double kMostRetractionSeconds = 1;
+
 struct Row {
   std::vector<uint32_t> choices;
   PrintTotals totals;
+  Prices prices;  // at which it is the best one
 };
 
 class RowFinder {
@@ -38,25 +48,42 @@ class RowFinder {
   }
 
   std::vector<uint32_t> Find() {
-    const double least = crossings_ == Crossings::kFewer ? kFewerCrossingSeconds : 0;
-    const Row best = Find(least);
-    if (MayBe(best.totals)) return best.choices;
-    const std::optional<Row> dear = FindDear(least);
-    return dear ? dear->choices : std::vector<uint32_t>(columns_.size(), 0);
+    Prices prices;
+    if (crossings_ == Crossings::kFewer) prices.crossing = kFewerCrossingSeconds;
+    std::optional<Row> row = Find(prices);
+    if (!CrossesFewEnough(row->totals)) {
+      const auto few = [this](const PrintTotals& totals) { return CrossesFewEnough(totals); };
+      row = FindDear(prices, {.crossing = 1}, few);
+    }
+    if (!row) return std::vector<uint32_t>(columns_.size(), 0);
+    if (row->totals.retractions <= given_.retractions) return row->choices;
+    const auto both = [this](const PrintTotals& totals) {
+      return CrossesFewEnough(totals) && totals.retractions <= given_.retractions;
+    };
+    const std::optional<Row> spare = FindDear(row->prices, {.retraction = 1}, both);
+    if (spare && spare->prices.retraction <= kMostRetractionSeconds) return spare->choices;
+    Row less = Find({row->prices.crossing, kMostRetractionSeconds});
+    return CrossesFewEnough(less.totals) ? less.choices : row->choices;
   }
 
  private:
-  bool MayBe(const PrintTotals& totals) const {
+  bool CrossesFewEnough(const PrintTotals& totals) const {
     return crossings_ == Crossings::kAny || totals.crossings <= given_.crossings - fewer_;
   }
 
-  std::optional<Row> FindDear(double least) const {
-    double low = least;
-    double high = least + kFirstPrice;
+  // The best row that `may_be`, at prices that are raised from `least` on in the ratio of `steps`.
+  template <typename MayBeRow>
+  std::optional<Row> FindDear(const Prices& least, const Prices& steps, MayBeRow may_be) const {
+    double low = 0;
+    double high = kFirstPrice;
+    const auto raised = [&](double price) {
+      return Prices{least.crossing + price * steps.crossing,
+                    least.retraction + price * steps.retraction};
+    };
     std::optional<Row> best;
     for (int i = 0; i < kDoublings && !best; ++i) {
-      Row row = Find(high);
-      if (MayBe(row.totals)) {
+      Row row = Find(raised(high));
+      if (may_be(row.totals)) {
         best = std::move(row);
       } else {
         low = high;
@@ -65,17 +92,18 @@ class RowFinder {
     }
     for (int i = 0; i < kHalvings && best; ++i) {
       const double middle = (low + high) / 2;
-      Row row = Find(middle);
-      const bool may_be = MayBe(row.totals);
-      (may_be ? high : low) = middle;
-      if (may_be && Score(row.totals, 0) < Score(best->totals, 0)) best = std::move(row);
+      Row row = Find(raised(middle));
+      const bool fits = may_be(row.totals);
+      (fits ? high : low) = middle;
+      if (fits && Score(row.totals, {}) <= Score(best->totals, {})) best = std::move(row);
     }
     return best;
   }
 
-  static double Score(const PrintTotals& totals, double crossing_seconds) {
+  static double Score(const PrintTotals& totals, const Prices& prices) {
     return totals.seconds + kSecondsPerMm * totals.travel_mm +
-           crossing_seconds * static_cast<double>(totals.crossings);
+           prices.crossing * static_cast<double>(totals.crossings) +
+           prices.retraction * static_cast<double>(totals.retractions);
   }
 
   bool MayBe(const PrintTotals& given, const PrintTotals& chosen) const {
@@ -88,13 +116,14 @@ class RowFinder {
     return policy_ != Policy::kSafe || chosen.travel_mm <= given.travel_mm + kSlackMm;
   }
 
-  Row Find(double crossing_seconds) const {
+  Row Find(const Prices& prices) const {
     std::vector<std::vector<uint32_t>> from(columns_.size());
     std::vector<double> before = {0};
     for (size_t layer = 0; layer < columns_.size(); ++layer) {
-      before = Extend(layer, crossing_seconds, before, from[layer]);
+      before = Extend(layer, prices, before, from[layer]);
     }
     Row row;
+    row.prices = prices;
     row.choices.resize(columns_.size());
     auto choice =
         static_cast<uint32_t>(std::min_element(before.begin(), before.end()) - before.begin());
@@ -107,8 +136,8 @@ class RowFinder {
   }
 
   // [choice] the score of the best row up to `layer`, and in `from` where it comes from.
-  std::vector<double> Extend(size_t layer, double crossing_seconds,
-                             const std::vector<double>& before, std::vector<uint32_t>& from) const {
+  std::vector<double> Extend(size_t layer, const Prices& prices, const std::vector<double>& before,
+                             std::vector<uint32_t>& from) const {
     const ChoiceColumn& column = *columns_[layer];
     const size_t n = column.inside.size();
     const PrintTotals given = column.Whole(0, 0);
@@ -121,7 +150,7 @@ class RowFinder {
       for (size_t b = 0; b < before.size(); ++b) {
         if (!column.no_way.empty() && column.no_way[b * n + c]) continue;
         const PrintTotals whole = column.Whole(b, c);
-        const double score = before[b] + Score(whole, crossing_seconds);
+        const double score = before[b] + Score(whole, prices);
         if (score >= scores[c] || !MayBe(given, whole)) continue;
         scores[c] = score;
         from[c] = static_cast<uint32_t>(b);

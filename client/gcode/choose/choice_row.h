@@ -34,7 +34,8 @@ struct ChoiceColumn {
 // time. Each layer, with the way to it, has no more and no longer open ways across visible walls
 // than in the file, and as much filament pushed beyond what was pulled back; under Policy::kSafe no
 // more travel. The whole file has at least `fewer` ways across visible walls fewer than it had, but
-// under Crossings::kAny; all as in the file if no row that was found has. REQUIRES: not empty.
+// under Crossings::kAny; all as in the file if no row that was found has. It has no more retractions
+// than it had, unless each one more saves a second. REQUIRES: not empty.
 std::vector<uint32_t> BestRow(const std::vector<const ChoiceColumn*>& columns, Policy policy,
                               Crossings crossings, int64_t fewer = 0);
 

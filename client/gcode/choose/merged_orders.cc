@@ -95,6 +95,16 @@ std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelMode
     merged.push_back(quick.Merge(order, all));
   }
   if (best_between != given) merged.push_back(std::move(best_between));
+  // The file may have no retractions to spare.
+  const bool all_retract_more = std::all_of(merged.begin(), merged.end(), [&](const auto& order) {
+    return strict.TotalsOf(order).retractions > were.retractions;
+  });
+  if (all_retract_more && !rules.as_many_retractions) {
+    MergeLimits sparing = LimitsOf(were, rules);
+    sparing.retractions = were.retractions;
+    LayerOrder order = OrderMerger(estimate, sparing).Merge(given, found);
+    if (order != given) merged.push_back(std::move(order));
+  }
   return merged;
 }
 

@@ -48,6 +48,51 @@ TEST(BestRow, TheFileCrossesNoMoreWallsThoughALayerMay) {
   EXPECT_EQ(Best(columns, Policy::kSafe, Crossings::kKeep, 3), Row({0, 0, 0}));
 }
 
+PrintTotals Retracting(double seconds, int64_t retractions, int64_t crossings = 0) {
+  PrintTotals totals = Totals(seconds, crossings);
+  totals.retractions = retractions;
+  return totals;
+}
+
+TEST(BestRow, TheFileRetractsNoMoreThoughALayerMay) {
+  const std::vector<ChoiceColumn> columns = {
+      Column({Retracting(10, 4), Retracting(9, 6)}, 0),
+      Column({Retracting(10, 4), Retracting(9.5, 2)}, 2),
+      Column({Retracting(10, 4), Retracting(9.8, 6)}, 2),
+  };
+
+  for (const Crossings crossings : {Crossings::kKeep, Crossings::kFewer, Crossings::kAny}) {
+    EXPECT_EQ(Best(columns, Policy::kFree, crossings), Row({1, 1, 0}));
+  }
+}
+
+TEST(BestRow, WhatRetractsLessMustNotCrossMoreWallsForIt) {
+  const std::vector<ChoiceColumn> columns = {
+      Column({Retracting(10, 4, 4), Retracting(8, 6, 4), Retracting(9, 5, 3)}, 0),
+      Column({Retracting(10, 4, 4), Retracting(9.9, 1, 5)}, 3),
+  };
+
+  // Each of the first one's needs the second one's fewer retractions, and one crosses less instead.
+  EXPECT_EQ(Best(columns, Policy::kFree), Row({2, 1}));
+  EXPECT_EQ(Best(columns, Policy::kFree, Crossings::kAny), Row({1, 1}));
+}
+
+TEST(BestRow, RetractionsGiveWayWhereNoRowHasFewer) {
+  std::vector<ChoiceColumn> columns = {Column({Retracting(10, 4), Retracting(9, 6)}, 0)};
+  columns[0].no_choice[0] = true;
+
+  EXPECT_EQ(Best(columns, Policy::kFree), Row({1}));
+}
+
+TEST(BestRow, ARetractionMoreHasToSaveASecond) {
+  const std::vector<ChoiceColumn> columns = {
+      Column({Retracting(50, 4), Retracting(40, 9)}, 0),
+      Column({Retracting(50, 4), Retracting(46, 9)}, 2),
+  };
+
+  EXPECT_EQ(Best(columns, Policy::kFree), Row({1, 0}));
+}
+
 TEST(BestRow, UnderSafeNoLayerTravelsFurtherWithTheWayToIt) {
   std::vector<ChoiceColumn> columns = {
       Column({Totals(10, 0, 20), Totals(9, 0, 10)}, 0),
