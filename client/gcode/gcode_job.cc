@@ -155,20 +155,20 @@ bool KeepsRetractions(const GcodeFile& file) {
 
 // The search of `auto` ends after so many rounds without a gain for each path: short files are
 // searched as long as it pays, long ones as others are. And it ends where a second of computing
-// saves less than half a second of printing, or has saved less than six on the average: a layer is
+// saves less than a second of printing, or has saved less than twelve on the average: a layer is
 // searched some six times. What is done in any case is shared by the layers.
 void SetStrategy(const GcodeFile& file, v1::Strategy& strategy) {
   const auto paths = static_cast<double>(file.blocks.size());
   constexpr double kRounds = 20000;
   constexpr double kMaxEffort = 10;
   constexpr double kSecondsPerRound = 20e-6;
-  constexpr double kFreeRounds = 5000;
+  constexpr double kFreeRounds = 2500;
   constexpr double kLeastFreeRounds = 50;
-  constexpr double kOfLittleUse = 8;
+  constexpr double kOfLittleUse = 4;
   const double effort = std::clamp(kRounds / paths, 1.0, kMaxEffort);
   strategy.set_name("auto");
   (*strategy.mutable_options())["effort"] = absl::StrFormat("%.3g", effort);
-  const double least = kSecondsPerRound / 2 * (KeepsRetractions(file) ? kOfLittleUse : 1);
+  const double least = kSecondsPerRound * (KeepsRetractions(file) ? kOfLittleUse : 1);
   (*strategy.mutable_options())["least_gain_each"] = absl::StrFormat("%.3g", least);
   const double free = kFreeRounds / static_cast<double>(file.layers.size());
   (*strategy.mutable_options())["gain_window"] =
@@ -250,14 +250,19 @@ std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& opt
     if (layer.has_cost()) *layers[i].mutable_cost() = layer.cost();
     if (layers[i].cost().has_time()) {
       v1::TimeCost& time = *layers[i].mutable_cost()->mutable_time();
+      const bool crosses_more =
+          i >= found.size() || found[i].crossings() > found[i].crossings_given();
       const bool too_long = options.policy == gcode::Policy::kSafe && i < found.size() &&
                             time.wall_clearance_mm() == 0 &&
                             found[i].travel().total_mm() > found[i].given().total_mm();
-      if (too_long) {
+      const bool dear = options.crossings == gcode::Crossings::kFewer
+                            ? !too_long
+                            : options.crossings == gcode::Crossings::kKeep && crosses_more;
+      if (dear) {
+        time.set_crossing_seconds(gcode::kDearCrossingSeconds);
+      } else if (too_long) {
         time.set_retraction_seconds(0);
         time.set_crossing_seconds(0);
-      } else if (options.crossings != gcode::Crossings::kAny) {
-        time.set_crossing_seconds(gcode::kDearCrossingSeconds);
       }
     }
     *layers[i].mutable_walls() = layer.walls();

@@ -42,9 +42,9 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
 void AddMeasuredFacts(InputJob& job);
 
 // The layers of `job`, which is one of G-code, with plans of less latitude: a second way to look
-// for an order (policy.h). Crossings cost more there, unless any are allowed; but where the routes
-// `found` for `job`, if there are any, are longer than given, which Policy::kSafe does not allow,
-// neither they nor retractions cost anything, but in files whose ways lead around walls.
+// for an order (policy.h). Crossings cost more where `found` has more of them than given, or is not
+// there, unless any are allowed; else, where it is longer, which Policy::kSafe does not allow, they
+// cost nothing, nor do retractions, but in files whose ways lead around walls.
 std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& options,
                                     absl::Span<const v1::LayerResult> found = {});
 

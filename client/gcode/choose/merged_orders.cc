@@ -10,6 +10,10 @@
 namespace traverse::gcode {
 namespace {
 
+// What a crossing counts where an order may have more of them than the file: some layers are to
+// have fewer, so that others may have more.
+constexpr double kSparingCrossingSeconds = 0.25;
+
 // Rounding of sums of lengths.
 constexpr double kSlackMm = 1e-6;
 
@@ -78,7 +82,7 @@ std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelMode
   limits.mm = std::numeric_limits<double>::infinity();
   const OrderMerger few(estimate, limits);
   limits.crossings = std::numeric_limits<int64_t>::max();
-  limits.crossing_seconds = std::max(limits.crossing_seconds, kKeepCrossingSeconds);
+  limits.crossing_seconds = std::max(limits.crossing_seconds, kSparingCrossingSeconds);
   const OrderMerger quick(estimate, limits);
   std::vector<LayerOrder> all = found;
   all.push_back(given);

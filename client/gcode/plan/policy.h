@@ -54,8 +54,9 @@ enum class Crossings : uint8_t {
 };
 
 // Prices of a crossing in a search. The small one is for orders that are as quick with fewer, the
-// large one for a second search, so that there are orders with hardly any to choose from.
-inline constexpr double kKeepCrossingSeconds = 0.3;
+// large one for a second search of what was found to cross more, so that there are orders with
+// hardly any to choose from.
+inline constexpr double kKeepCrossingSeconds = 0.03;
 inline constexpr double kFewerCrossingSeconds = 0.5;
 inline constexpr double kDearCrossingSeconds = 1;
 

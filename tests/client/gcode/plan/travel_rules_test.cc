@@ -188,6 +188,34 @@ TEST(MakeGcodeJob, TellsTheSearchOfWallsAndRetractions) {
   EXPECT_EQ(NarrowLayers(job, {})[0].walls_size(), 2);
 }
 
+TEST(MakeGcodeJob, LooksForFewerCrossingsWhereMoreWereFound) {
+  const InputJob job = MakeGcodeJob(TwoIslands(false).Read(), {});
+  const auto second = [&job](uint64_t crossings, double mm, Policy policy, Crossings allowed) {
+    v1::LayerResult found;
+    found.set_crossings_given(3);
+    found.set_crossings(crossings);
+    found.mutable_given()->set_total_mm(10);
+    found.mutable_travel()->set_total_mm(mm);
+    GcodeOptions options;
+    options.policy = policy;
+    options.crossings = allowed;
+    return NarrowLayers(job, options, {found})[0].cost().time();
+  };
+
+  for (const double mm : {9.0, 11.0}) {
+    EXPECT_EQ(second(4, mm, Policy::kSafe, Crossings::kKeep).crossing_seconds(),
+              kDearCrossingSeconds);
+  }
+  EXPECT_EQ(second(3, 9, Policy::kSafe, Crossings::kKeep).crossing_seconds(), kKeepCrossingSeconds);
+  EXPECT_EQ(second(3, 11, Policy::kFree, Crossings::kKeep).crossing_seconds(),
+            kKeepCrossingSeconds);
+  // What `safe` forbids for its length is looked for by length alone.
+  EXPECT_EQ(second(3, 11, Policy::kSafe, Crossings::kKeep).crossing_seconds(), 0);
+  EXPECT_EQ(second(3, 11, Policy::kSafe, Crossings::kKeep).retraction_seconds(), 0);
+  EXPECT_EQ(second(4, 9, Policy::kSafe, Crossings::kAny).crossing_seconds(),
+            job.layers[0].cost().time().crossing_seconds());
+}
+
 // What is wiped is retracted whatever follows it, so that no order saves that. (Half a minute of
 // computing went into 1,421 retractions of ps_grille_klipper_wipe, and none was saved.)
 TEST(MakeGcodeJob, RetractionsBehindWipedPathsAreNothingToSave) {
