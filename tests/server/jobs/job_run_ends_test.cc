@@ -123,7 +123,7 @@ TEST_F(JobRunTest, AJobThatRunsOutOfMemoryEndsAlone) {
   const auto queue = pool_.NewQueue("hungry", [this] { port_.run().Abort(NoMemory()); });
   port_.run().Start({}, {}, std::make_unique<HungryStrategy>(), *queue);
   port_.run().Add(Layer(1));
-  for (uint64_t i = 2; i < 20; ++i) port_.run().Add({JobLayer{FlatPlan(3), {}, {}}, i, 3});
+  for (uint64_t i = 2; i < 20; ++i) port_.run().Add({JobLayer{FlatPlan(3), {}, {}}, {i, 3}});
   port_.run().Close();
 
   ASSERT_TRUE(port_.WaitForFinish());

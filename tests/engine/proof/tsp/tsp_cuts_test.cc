@@ -54,7 +54,9 @@ TspSolution RandomPath(const TspNodes& nodes, Rng& rng) {
 void Add(const TspSolution& path, double share, TspSolution& mix) {
   mix.ports.resize(path.ports.size());
   for (size_t p = 0; p < path.ports.size(); ++p) mix.ports[p] += share * path.ports[p];
-  for (const auto& [move, x] : path.moves) {
+  for (const auto& in_path : path.moves) {
+    const TspMove& move = in_path.first;
+    const double x = in_path.second;
     const auto known = std::find_if(mix.moves.begin(), mix.moves.end(), [&](const auto& it) {
       return it.first.a == move.a && it.first.b == move.b;
     });
