@@ -51,8 +51,6 @@ Offset EndOfHead(std::string_view text) {
 std::string HeadWithLine(const GcodeFile& file, const std::string& added) {
   const std::string_view head = std::string_view(file.text).substr(0, file.blocks.front().begin);
   const Offset end = EndOfHead(head);
-  const size_t first_end = file.text.find('\n');
-  const bool crlf = first_end > 0 && file.text[first_end - 1] == '\r';
   std::string out;
   for (Offset next = 0; next < end;) {
     const Line line = LineAt(head, next);
@@ -60,7 +58,7 @@ std::string HeadWithLine(const GcodeFile& file, const std::string& added) {
     const bool ours = line.Text(head).substr(0, kOptimisedMark.size()) == kOptimisedMark;
     if (!ours) out.append(line.Raw(head));
   }
-  out += added + (crlf ? "\r\n" : "\n");
+  out += added + LineEndOf(file.text);
   out.append(head.substr(end));
   return out;
 }

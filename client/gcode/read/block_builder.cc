@@ -94,9 +94,11 @@ uint16_t LinkFlagsOf(StepKind kind) {
 
 void BlockBuilder::Take(const Step& step, const MachineState& before,
                         const Interpreter& interpreter) {
-  const bool prints =
-      step.kind == StepKind::kExtrude || (step.kind == StepKind::kZeroExtrude && !step.retracted);
   const MachineState& after = interpreter.state();
+  // Some slicers write E0 on travel: what follows a path at another speed is none of its segments.
+  const bool goes_on = where_ != Where::kBody || after.feed == Last().feed_out;
+  const bool prints = step.kind == StepKind::kExtrude ||
+                      (step.kind == StepKind::kZeroExtrude && !step.retracted && goes_on);
   if (prints) return TakePrinting(step, before, after);
   if (step.kind == StepKind::kSlot) TakeSlot(step);
   if (step.kind == StepKind::kLabel) TakeLabel(step);

@@ -1,5 +1,6 @@
 #include "client/gcode/write/gcode_out.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace traverse::gcode {
@@ -15,11 +16,16 @@ void FollowModes(const Command& command, MachineState& modes) {
 
 }  // namespace
 
+std::string LineEndOf(std::string_view text) {
+  const size_t first = std::min(text.find('\n'), text.size());
+  size_t returns = 0;
+  while (returns < first && text[first - 1 - returns] == '\r') ++returns;
+  return std::string(returns, '\r') + "\n";
+}
+
 GcodeOut::GcodeOut(const GcodeFile& file, const PartStart& start, std::string& text)
     : at(start), file_(file), text_(text), wanted_{} {
-  const size_t first = file.text.find('\n');
-  const bool crlf = first != std::string::npos && first > 0 && file.text[first - 1] == '\r';
-  line_end_ = crlf ? "\r\n" : "\n";
+  line_end_ = LineEndOf(file.text);
 }
 
 void GcodeOut::Copy(Offset begin, Offset end, const PartStart& before, const PartStart& behind,

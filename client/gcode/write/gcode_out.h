@@ -13,6 +13,9 @@
 
 namespace traverse::gcode {
 
+// How the first line of `text` ends: "\n", "\r\n", or with more carriage returns.
+std::string LineEndOf(std::string_view text);
+
 class GcodeOut {
  public:
   // Appends to `text`, which outlives this object. `at` is the machine behind what `text` holds.
@@ -80,7 +83,7 @@ class GcodeOut {
 
   const GcodeFile& file_;
   std::string& text_;
-  std::string_view line_end_;
+  std::string line_end_;
   PrintState wanted_;  // in the slots of wanted_slots_
   SlotMask wanted_slots_ = 0;
 };

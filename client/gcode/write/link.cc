@@ -36,8 +36,6 @@ LinkStep StepOf(const Step& step, const MachineState& after) {
                             : std::hypot(ToDouble(after.at.x - step.from.x),
                                          ToDouble(after.at.y - step.from.y));
   }
-  // A wipe's pull may round to nothing.
-  if (taken.kind == StepKind::kZeroExtrude) taken.kind = StepKind::kWipe;
   return taken;
 }
 
@@ -73,8 +71,14 @@ Link ReadLink(const GcodeFile& file, size_t index) {
                           start.machine);
   Decimal retracted = 0;
   PrintState state = start.state;
+  bool marked = false;
   for (Step step; interpreter.Next(step);) {
-    const LinkStep added = StepOf(step, interpreter.state());
+    LinkStep added = StepOf(step, interpreter.state());
+    marked = marked || added.kind == StepKind::kWipeMark;
+    // A wipe's pull may round to nothing.
+    if (added.kind == StepKind::kZeroExtrude) {
+      added.kind = step.retracted || marked ? StepKind::kWipe : StepKind::kTravel;
+    }
     if (added.kind != StepKind::kSetE) NoteRetraction(added, retracted, link);
     link.wipes = link.wipes || added.kind == StepKind::kWipe;
     if (added.kind == StepKind::kSlot) {

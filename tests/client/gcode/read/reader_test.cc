@@ -152,6 +152,17 @@ TEST(ReadGcode, SegmentsThatRoundToNothingBelongToTheirPath) {
   EXPECT_EQ(file->blocks[1].segments, 2);
 }
 
+TEST(ReadGcode, TravelWithAnEThatPushesNothingBelongsToNoPathHoweverShort) {
+  const auto file = Read(
+      "M83\nG1 F1200 X5 E1\nG1 X5.03 E0 F9000\nG1 X9 E0\nG1 X20 E1 F1200\nG1 X20.03 E0\nG1 X30 "
+      "E1\n");
+
+  ASSERT_EQ(file->blocks.size(), 2u);
+  EXPECT_FALSE(file->blocks[0].flags & kBlockZero);
+  EXPECT_EQ(file->blocks[0].segments, 1);
+  EXPECT_EQ(file->blocks[1].segments, 3);
+}
+
 TEST(ReadGcode, ATailThatLeadsToTheNextPathIsTravel) {
   const auto file = Read("M83\nG1 F1200 X5 E1\nG1 X5.5 Y.5\nG1 X0 E1\n");
 
