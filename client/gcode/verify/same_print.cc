@@ -69,8 +69,9 @@ std::optional<VerifyBreak> CompareEnds(const Side& original, const Side& optimis
   };
   if (was.fence != is.fence || was.fixed != is.fixed) return differ("not the line that stands");
   if (was.fan != is.fan) return differ("the fan is not as");
+  if (was.settings != is.settings) return differ("other settings hold than");
   if (was.x != is.x || was.y != is.y || was.z != is.z) return differ("the head is not where it is");
-  if (was.retracted != is.retracted) return differ("filament is not pulled back as");
+  if (was.fixed && was.retracted != is.retracted) return differ("filament is not pulled back as");
   return std::nullopt;
 }
 
@@ -106,6 +107,21 @@ std::optional<VerifyBreak> FirstDifference(const Side& original, const Side& opt
     if (was.deposits != is.deposits) return MultisetDifference(original, optimised, i, true);
     if (auto ends = CompareEnds(original, optimised, i)) return ends;
     if (was.notes != is.notes) return MultisetDifference(original, optimised, i, false);
+    if (was.header != is.header) {
+      return VerifyBreak{
+          VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
+          absl::StrFormat("%s:%d: other comments stand behind the mark of the layer "
+                          "than at %s:%d",
+                          optimised.name, is.first_line, original.name, was.first_line)};
+    }
+    const bool ordered = was.deposits.count == 0 || i < original.cut.of_script;
+    if (was.sequence != is.sequence && ordered) {
+      return VerifyBreak{VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
+                         absl::StrFormat("%s:%d: the comments of lines %d to %d stand in another "
+                                         "order in %s",
+                                         optimised.name, is.first_line, was.first_line,
+                                         was.last_line, original.name)};
+    }
     if (was.moves != is.moves && IsScript(original.cut, i, end_of_print)) {
       return VerifyBreak{
           VerifyRule::kSamePrint, was.first_line, is.first_line, -1,

@@ -18,6 +18,14 @@ uint64_t DigestOf(const Motion& motion) {
   return Mix(digest, static_cast<uint64_t>(motion.filament));
 }
 
+// Comments that slicers put behind the mark of a layer, and scripts look for there.
+bool SaysOfLayer(std::string_view text) {
+  constexpr std::string_view kNotes[] = {
+      ";Z:", ";HEIGHT:", "; Z_HEIGHT:", "; LAYER_HEIGHT:", "; layer num"};
+  return std::any_of(std::begin(kNotes), std::end(kNotes),
+                     [text](std::string_view note) { return Begins(text, note); });
+}
+
 }  // namespace
 
 SectionCutter::SectionCutter(std::string_view ignored, bool marked)
@@ -25,18 +33,43 @@ SectionCutter::SectionCutter(std::string_view ignored, bool marked)
   section_.first_line = section_.first_note = 1;
 }
 
-SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachine& machine) {
-  Cut cut;
-  if (line.role == LineRole::kComment && line.text.substr(0, ignored_.size()) == ignored_) {
-    return cut;
+// A line within a picture would spoil it, and one behind the head could be anything.
+bool SectionCutter::Ignores(const VerifyLine& line) {
+  if (line.text.empty()) return false;
+  in_head_ = in_head_ && (line.text[0] == ';' || line.number == 1);
+  if (!in_head_ || line.role != LineRole::kComment) return false;
+  if (Begins(line.text, "; thumbnail")) {
+    in_picture_ = line.text.find(" begin") != std::string_view::npos;
   }
+  return !in_picture_ && Begins(line.text, ignored_);
+}
+
+// Of comments that are about no path the order counts: settings, pictures, what is said of a layer.
+void SectionCutter::NoteOrder(const VerifyLine& line, bool mark) {
+  const bool of_layer = !line.text.empty() && line.text[0] == ';' && SaysOfLayer(line.text);
+  if (in_header_ && of_layer) section_.header = Mix(section_.header, DigestOf(line.text));
+  const bool ends = line.travels || line.role == LineRole::kDeposit ||
+                    line.role == LineRole::kFence || line.role == LineRole::kFixed;
+  in_header_ = mark || (in_header_ && !ends);
+  if (line.role == LineRole::kComment && section_.deposits.count == 0) {
+    section_.sequence = Mix(section_.sequence, line.digest);
+  }
+}
+
+SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachine& machine,
+                                       bool mark) {
+  Cut cut;
+  if (Ignores(line)) return cut;
   if (line.role == LineRole::kDeposit && has_height_ && line.z != height_) {
     CutAtHeight(machine);
     cut.before = true;
   }
   last_line_ = line.number;
+  NoteOrder(line, mark);
   if (line.moves && (in_script_ || section_.deposits.count == 0)) {
     section_.moves = Mix(section_.moves, DigestOf(machine.motion()));
+  } else if (line.sets && (in_script_ || section_.deposits.count == 0)) {
+    section_.moves = Mix(section_.moves, DigestOf(line.text));
   }
   if (line.travels) section_.lowest = std::min(section_.lowest, machine.z());
   switch (line.role) {
@@ -55,7 +88,7 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
       break;
     case LineRole::kFence:
     case LineRole::kFixed:
-      Close(machine, line.number, line.digest, line.role == LineRole::kFixed);
+      Close(machine, line.number, line.digest, line.role == LineRole::kFixed, line.label);
       cut_.sections.back().command = line.text.front() != ';';
       cut.behind = true;
       break;
@@ -76,12 +109,13 @@ void SectionCutter::CutAtHeight(const VerifyMachine& machine) {
   const DigestSet notes = std::exchange(loose_notes_, {});
   Close(machine, last_line_, 0, false);
   cut_.sections.back().last_note = first_note - 1;
+  if (!in_script_) cut_.sections.back().sequence = 0;
   section_.first_note = first_note;
   loose_notes_ = notes;
 }
 
 void SectionCutter::Close(const VerifyMachine& machine, size_t last_line, uint64_t fence,
-                          bool fixed) {
+                          bool fixed, bool label) {
   section_.last_line = section_.last_note = last_line;
   section_.notes += loose_notes_;
   loose_notes_ = {};
@@ -92,9 +126,12 @@ void SectionCutter::Close(const VerifyMachine& machine, size_t last_line, uint64
     section_.y = machine.y();
     section_.z = machine.z();
     section_.retracted = machine.retracted();
+    section_.settings = machine.SettingsDigest();
   }
   // A change of height is no line: what holds there may still change before it prints.
   if (fence != 0) section_.fan = machine.fan();
+  section_.label = label;
+  if (label) section_.retracted = machine.retracted();
   cut_.sections.push_back(section_);
   if (in_script_) cut_.of_script = cut_.sections.size();
   section_ = Section{};

@@ -41,16 +41,20 @@ struct Section {
   size_t first_note = 0;  // behind a change of height they are counted from the last deposit on
   size_t last_note = 0;
   Micro lowest = INT64_MAX;  // height of all moves in XY
-  uint64_t moves = 0;    // of those that are no deposits, in their order, before the first deposit
+  uint64_t moves = 0;    // of what is no deposit, and what sets something, before the first deposit
   bool command = false;  // it ends with a command
+  uint64_t header = 0;   // of the comments between the mark of a layer and the first way
+  uint64_t sequence = 0;  // of all comments, in their order, before the first deposit
 
   // How it ends: with a line, or with a change of height (digest 0), or with the text.
   uint64_t fence = 0;
   bool fixed = false;
-  Micro x = 0;  // of the head there, if the line is fixed
+  bool label = false;  // it ends with the label of an object
+  Micro x = 0;         // of the head there, if the line is fixed
   Micro y = 0;
   Micro z = 0;
-  bool retracted = false;
+  bool retracted = false;  // at labels of objects, too
+  uint64_t settings = 0;
   uint64_t fan = 0;
 };
 
@@ -59,7 +63,8 @@ struct Sections {
   size_t of_script = 0;  // the first ones, before the first mark of a layer
 };
 
-// Cuts a text, line by line; comments that begin with `ignored` are left out.
+// Cuts a text, line by line; comments before the first command that begin with `ignored` are left
+// out, but for those in pictures.
 class SectionCutter {
  public:
   // Which sections ended with a line.
@@ -71,7 +76,8 @@ class SectionCutter {
   // `marked`: what stands before the first mark of a layer is a script.
   SectionCutter(std::string_view ignored, bool marked);
 
-  Cut Take(const VerifyLine& line, const VerifyMachine& machine);
+  // `mark`: the line is the mark of a layer.
+  Cut Take(const VerifyLine& line, const VerifyMachine& machine, bool mark);
   void Finish(const VerifyMachine& machine);
 
   // What follows is no start script.
@@ -85,7 +91,10 @@ class SectionCutter {
 
  private:
   void CutAtHeight(const VerifyMachine& machine);
-  void Close(const VerifyMachine& machine, size_t last_line, uint64_t fence, bool fixed);
+  void Close(const VerifyMachine& machine, size_t last_line, uint64_t fence, bool fixed,
+             bool label = false);
+  bool Ignores(const VerifyLine& line);
+  void NoteOrder(const VerifyLine& line, bool mark);
 
   const std::string_view ignored_;
   Sections cut_;
@@ -96,6 +105,9 @@ class SectionCutter {
   bool in_script_;
   Micro height_ = 0;
   bool has_height_ = false;
+  bool in_head_ = true;  // no command so far
+  bool in_picture_ = false;
+  bool in_header_ = false;  // no way and no command that ends a section since the mark of a layer
 };
 
 // The lines `first` to `last`, for a message: calls visit(line) for each of them.

@@ -9,6 +9,7 @@
 #include "client/gcode/parallel.h"
 #include "client/gcode/verify/rules/rules.h"
 #include "client/gcode/verify/same_print.h"
+#include "client/gcode/verify/text.h"
 #include "client/gcode/verify/trace/side_reader.h"
 
 namespace traverse {
@@ -50,6 +51,8 @@ class Verifier {
   bool SamePrint();
   void CheckChunk();
   void CheckLayer(const LayerPair& layer, LayerFindings& findings) const;
+  void CheckLabels(size_t first, size_t end);
+  void CheckText();
   void Finish();
   void Compare(std::vector<Finding>& breaks) const;
   void Add(Finding finding);
@@ -97,6 +100,7 @@ bool Verifier::SamePrint() {
   const Side is{optimised_, optimised_name_, is_.cut()};
   std::optional<VerifyBreak> difference =
       FirstDifference(was, is, sections_, chunk_was_.end_section, !more_);
+  if (!difference) CheckLabels(sections_, chunk_was_.end_section);
   sections_ = chunk_was_.end_section;
   if (!difference && chunk_is_.end_section != chunk_was_.end_section) {
     // Some line ends a section in one of the two alone; the next ones tell which.
@@ -106,6 +110,22 @@ bool Verifier::SamePrint() {
   ++report_.counts[static_cast<size_t>(VerifyRule::kSamePrint)];
   report_.breaks.push_back(*std::move(difference));
   return false;
+}
+
+// A printer may be told to leave an object out, with all that is between its labels: what was
+// pulled back in there is not to be pushed out there.
+void Verifier::CheckLabels(size_t first, size_t end) {
+  const std::vector<Section>& was = was_.cut().sections;
+  const std::vector<Section>& is = is_.cut().sections;
+  end = std::min({end, was.size(), is.size()});
+  for (size_t i = first; i < end; ++i) {
+    if (!was[i].label || was[i].retracted == is[i].retracted) continue;
+    findings_.push_back({VerifyRule::kRetractions, static_cast<uint32_t>(was[i].last_line),
+                         static_cast<uint32_t>(is[i].last_line), -1,
+                         is[i].retracted
+                             ? "filament is pulled back at this label of an object"
+                             : "filament is not pulled back at this label of an object"});
+  }
 }
 
 void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const {
@@ -118,6 +138,7 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
   ObserveHeights(layer, findings);
   ObserveRetractions(layer, findings);
   ObserveFarMoves(layer, findings);
+  ObserveWayLengths(layer, findings);
   ObserveSpeeds(layer, findings);
   CheckWipes(layer, findings);
   CheckCommands(layer, findings);
@@ -144,6 +165,7 @@ void Verifier::CheckChunk() {
                                          chunk_was_.accelerations.end());
   CheckStandstill(chunk_was_, chunk_is_, findings_);
   CheckSetBacks(chunk_was_, chunk_is_, findings_);
+  CheckWipeMarks(chunk_was_, chunk_is_, findings_);
   const auto append = [](const std::vector<Progress>& from, std::vector<Progress>& to) {
     to.insert(to.end(), from.begin(), from.end());
   };
@@ -160,6 +182,7 @@ void Verifier::Compare(std::vector<Finding>& breaks) const {
   CompareLifts(seen_was_, seen_is_, breaks);
   CompareHeights(seen_was_, seen_is_, breaks);
   CompareBounds(seen_was_, seen_is_, breaks);
+  CompareWayLengths(seen_was_, seen_is_, breaks);
   CompareRetractions(seen_was_, seen_is_, breaks);
   CompareSpeeds(seen_was_, seen_is_, breaks);
   CompareWipes(seen_was_, seen_is_, breaks);
@@ -188,7 +211,24 @@ void Verifier::Add(Finding finding) {
                        place(original_name_, finding.original_line))});
 }
 
+// What is no line of G-code, and yet part of the file.
+void Verifier::CheckText() {
+  constexpr std::string_view kMarkOfUtf8 = "\xEF\xBB\xBF";
+  if (Begins(original_, kMarkOfUtf8) != Begins(optimised_, kMarkOfUtf8)) {
+    findings_.push_back({VerifyRule::kSamePrint, 1, 1, -1,
+                         "one of the two begins with the mark of UTF-8, the other one does not"});
+  }
+  // All of them may have become others on the way, but not some.
+  const uint32_t ends = is_.line_ends();
+  const bool one_kind = (ends & (ends - 1)) == 0 && (ends & VerifyMachine::kLoneReturn) == 0;
+  if ((ends & ~was_.line_ends()) != 0 && !one_kind) {
+    findings_.push_back({VerifyRule::kSamePrint, 0, 0, -1,
+                         "some lines end otherwise than any line of the original"});
+  }
+}
+
 void Verifier::Finish() {
+  CheckText();
   Compare(findings_);
   std::stable_sort(findings_.begin(), findings_.end(), [](const Finding& a, const Finding& b) {
     return std::pair(a.rule, a.optimised_line) < std::pair(b.rule, b.optimised_line);

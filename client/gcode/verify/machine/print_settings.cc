@@ -131,6 +131,12 @@ bool PrintSettings::SetByKlipper(std::string_view text) {
   return true;
 }
 
+uint64_t PrintSettings::SettingsDigest() const {
+  uint64_t digest = 0;
+  for (size_t i = kFans; i < kSlots; ++i) digest = Mix(digest, values_[i]);
+  return digest;
+}
+
 void PrintSettings::Renew() {
   digest_ = 0;
   for (size_t i = 0; i < kAccelTravel; ++i) digest_ = Mix(digest_, values_[i]);

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "client/gcode/verify/machine/command_words.h"
+#include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 
@@ -42,7 +43,13 @@ class PrintSettings {
     return acceleration_digest_;
   }
 
+  // Of all but what comments say.
+  uint64_t SettingsDigest() const;
+
   uint64_t fan() const { return fan_; }
+
+  // Of fans, flow and pressure advance: what takes time to come into force.
+  uint64_t FlowDigest() const { return Mix(Mix(fan_, values_[kPressure]), values_[kFlow]); }
 
  private:
   enum Slot : size_t {

@@ -54,13 +54,28 @@ VerifyMachine::VerifyMachine(std::string_view text) : rest_(text) {
 
 bool VerifyMachine::Next(VerifyLine& line) {
   if (rest_.empty()) return false;
-  const size_t end = std::min(rest_.find('\n'), rest_.size());
   line = VerifyLine{};
   line.number = ++number_;
-  line.text = TrimLine(rest_.substr(0, end));
-  rest_.remove_prefix(std::min(end + 1, rest_.size()));
+  line.text = TrimLine(TakeLine());
   if (!line.text.empty()) Do(line);
   return true;
+}
+
+// To firmware a carriage return ends a line, wherever it stands.
+std::string_view VerifyMachine::TakeLine() {
+  const size_t end = std::min(rest_.find('\n'), rest_.size());
+  std::string_view line = rest_.substr(0, end);
+  size_t returns = 0;
+  while (returns < line.size() && line[line.size() - 1 - returns] == '\r') ++returns;
+  const size_t inside = line.substr(0, line.size() - returns).find('\r');
+  if (inside != std::string_view::npos) {
+    line_ends_ |= kLoneReturn;
+    rest_.remove_prefix(inside + 1);
+    return line.substr(0, inside);
+  }
+  if (end < rest_.size()) line_ends_ |= 1u << std::min(returns, kMostReturns);
+  rest_.remove_prefix(std::min(end + 1, rest_.size()));
+  return line;
 }
 
 void VerifyMachine::Fence(VerifyLine& line, LineRole role) {
@@ -89,6 +104,7 @@ void VerifyMachine::Do(VerifyLine& line) {
     DoKlipper(line);
     line.command = DigestOf(text.substr(0, text.find_first_of(" \t=")));
   }
+  line.sets = line.command != 0 && line.role == LineRole::kNothing;
   line.sets_back = settings_.sets_back();
 }
 
@@ -103,7 +119,9 @@ void VerifyMachine::DoComment(VerifyLine& line) {
         "; stop printing object", "; start printing object",
         "; OBJECT_ID:", ";layer:", "; BEGIN_LAYER_OBJECT", "; END_LAYER_OBJECT", "; <layer>",
         "; </layer>", ";; --- layer ", ";PRINTING:", ";PRINTING_ID:"}) {
-    if (Begins(text, mark)) return Fence(line, LineRole::kFence);
+    if (!Begins(text, mark)) continue;
+    line.label = text.find("printing object") != std::string_view::npos;
+    return Fence(line, LineRole::kFence);
   }
   constexpr std::string_view kNumbered = "; layer ";
   const bool numbered = text.size() > kNumbered.size() && text[kNumbered.size()] >= '0' &&
@@ -244,7 +262,7 @@ void VerifyMachine::Deposit(int number, const CommandWords& words, const std::ar
   uint64_t sum = 0;
   uint64_t place = 0;
   const auto add = [&sum, &place](uint64_t value) { sum += Mix(++place, value); };
-  add(number >= 2 ? (clockwise ? 2 : 3) : 1);
+  add(number >= 2 ? (clockwise ? 2 : 3) : static_cast<uint64_t>(number));
   for (size_t axis = 0; axis < 3; ++axis) {
     add(static_cast<uint64_t>(begin[axis]));
     add(static_cast<uint64_t>(end[axis]));
@@ -260,6 +278,10 @@ void VerifyMachine::Deposit(int number, const CommandWords& words, const std::ar
   } else if (number >= 2) {
     add(static_cast<uint64_t>(words.ValueOr('R', 0)));
   }
+  if (number >= 2) add(static_cast<uint64_t>(words.ValueOr('P', 0)));
+  if (const size_t note = line.text.find(';'); note != std::string_view::npos) {
+    add(DigestOf(TrimLine(line.text.substr(note + 1))));
+  }
   line.role = LineRole::kDeposit;
   line.digest = Mix(0, sum);
   line.z = at_[2];
@@ -269,7 +291,9 @@ void VerifyMachine::DoM(int number, VerifyLine& line) {
   if (number == 73) return Fence(line, LineRole::kProgress);
   if (number == 82 || number == 83) return Mode(relative_e_, number == 83, line);
   for (const int known : {74, 104, 105, 117, 118, 140, 142, 155, 486, 591, 624, 625}) {
-    if (number == known) return Fence(line, LineRole::kFence);
+    if (number != known) continue;
+    line.label = number == 486 || number == 624 || number == 625;
+    return Fence(line, LineRole::kFence);
   }
   if (!settings_.SetByM(number, CommandWords(WordsOf(line.text)))) Fence(line, LineRole::kFixed);
 }
@@ -278,6 +302,7 @@ void VerifyMachine::DoKlipper(VerifyLine& line) {
   const std::string_view text = line.text;
   if (settings_.SetByKlipper(text)) return;
   if (Begins(text, "EXCLUDE_OBJECT_START") || Begins(text, "EXCLUDE_OBJECT_END")) {
+    line.label = true;
     return Fence(line, LineRole::kFence);
   }
   // What the next tool, or filament, has in its nozzle is not known.

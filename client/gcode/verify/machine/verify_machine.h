@@ -37,7 +37,9 @@ struct VerifyLine {
   bool primes = false;   // such a move ended here
   bool travels = false;  // moves in XY without depositing
   bool moves = false;    // the head or the filament moved: VerifyMachine::motion
+  bool sets = false;     // a setting and nothing else, by a command
   uint64_t command = 0;  // what is set or done, without its values; 0: moves, comments, G92 E
+  bool label = false;    // of an object, whose moves a printer may be told to leave out
   bool sets_back = false;  // gives a setting a value that it had, and lost, since the last move
 };
 
@@ -76,11 +78,21 @@ class VerifyMachine {
   // Of the accelerations, jerks and limits in force, those of travel included.
   uint64_t AccelerationDigest() { return settings_.AccelerationDigest(); }
 
+  // Of all that is set but by comments: what a line may depend on of which no more is known.
+  uint64_t SettingsDigest() const { return settings_.SettingsDigest(); }
+
   uint64_t fan() const { return settings_.fan(); }
+  uint64_t FlowDigest() const { return settings_.FlowDigest(); }
+
+  // Which line ends there were so far: bit n for LF behind n carriage returns, and kLoneReturn.
+  uint32_t line_ends() const { return line_ends_; }
+  static constexpr size_t kMostReturns = 3;
+  static constexpr uint32_t kLoneReturn = 1u << (kMostReturns + 1);
 
   static constexpr Micro kSlack = 100;  // of filament that rounding may lose
 
  private:
+  std::string_view TakeLine();
   void Do(VerifyLine& line);
   void DoComment(VerifyLine& line);
   void DoG(int number, VerifyLine& line);
@@ -98,6 +110,7 @@ class VerifyMachine {
 
   std::string_view rest_;
   size_t number_ = 0;
+  uint32_t line_ends_ = 0;
   std::array<Micro, 3> at_{};
   Micro e_ = 0;
   Micro feed_ = 0;

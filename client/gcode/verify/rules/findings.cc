@@ -36,6 +36,11 @@ void Observations::Append(const Observations& other) {
   slopes.insert(other.slopes.begin(), other.slopes.end());
   stated.insert(stated.end(), other.stated.begin(), other.stated.end());
   lowest.insert(lowest.end(), other.lowest.begin(), other.lowest.end());
+  deepest.insert(deepest.end(), other.deepest.begin(), other.deepest.end());
+  AppendSeen(other.radii, radii);
+  lifts_of_links.insert(lifts_of_links.end(), other.lifts_of_links.begin(),
+                        other.lifts_of_links.end());
+  way_lengths.insert(way_lengths.end(), other.way_lengths.begin(), other.way_lengths.end());
   farthest.insert(farthest.end(), other.farthest.begin(), other.farthest.end());
   script_signatures.insert(other.script_signatures.begin(), other.script_signatures.end());
   lifts.Append(other.lifts);

@@ -70,6 +70,25 @@ struct LowestWay {
   WayRise rise = WayRise::kLevel;
 };
 
+// How often the head rises between two paths.
+struct RepeatedLift {
+  bool level = false;  // both paths have the same height
+  uint32_t times = 0;
+  uint32_t line = 0;
+  int64_t layer = -1;
+};
+
+// A way from path to path.
+struct WayLength {
+  float length_mm = 0;
+  float open_mm = 0;        // of it, with filament not pulled back
+  float excess_mm = 0;      // beyond the straight line
+  bool turns_back = false;  // one of its moves leads back to where the one before began
+  bool to_layer = false;    // with an open nozzle, from one layer to the next
+  uint32_t line = 0;
+  int64_t layer = -1;
+};
+
 // The height that a move states, and the slope on which it comes to it; 0: it does not rise.
 struct StatedHeight {
   int64_t um = 0;
@@ -85,6 +104,9 @@ struct RetractionCycle {
   Micro pushed = 0;
   bool firmware = false;
   bool early = false;        // pushed before the way is done
+  bool in_parts = false;     // pushed bit by bit on the way
+  bool idle = false;         // no way between the two
+  float late_mm = 0;         // of the way, gone before it was pulled back
   bool pushed_high = false;  // above what is printed on either side
   bool pulled_high = false;
   bool known = false;  // all its moves are moves of the original
@@ -96,6 +118,7 @@ struct WipeDeviation {
   float off_mm = 0;     // where its moves end
   float astray_mm = 0;  // halfway
   float pull = 0;       // filament pulled back per mm of it
+  float steepest = 0;   // the same of its longer moves, one by one, the most
   uint32_t line = 0;
   uint32_t original_line = 0;
   int64_t layer = -1;
@@ -130,9 +153,13 @@ struct Observations {
   std::vector<StatedHeight> stated;          // what the other file's moves state
   absl::flat_hash_map<int64_t, Seen> rises;  // the same of moves straight up
   std::vector<LowestWay> lowest;             // ways that lead lower than what they connect
+  std::vector<LowestWay> deepest;            // moves straight down that do so
+  absl::flat_hash_map<int64_t, Seen> radii;  // um, of arcs that rise
+  std::vector<RepeatedLift> lifts_of_links;  // links that rise more than once
   absl::flat_hash_set<uint64_t> deposit_accelerations;  // of the whole file, as the box is
   std::vector<FarPoint> farthest;
-  Box box;  // of all points
+  Box box;                             // of all points
+  std::vector<WayLength> way_lengths;  // the greatest of each layer
   LiftLog lifts;
   std::vector<RetractionCycle> cycles;
   std::vector<WipeDeviation> wipes;

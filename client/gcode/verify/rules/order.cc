@@ -1,6 +1,6 @@
 // Two paths within 0.5 mm keep their order if one is a wall and the other is not, or one is
 // ironing, a bridge, support or skirt; under `safe` and `balanced` walls among each other and the
-// lines of a monotonic surface or of ironing do so as well.
+// lines of a monotonic surface or of ironing do so as well, and what a change of the fan parts.
 
 #include <algorithm>
 
@@ -77,6 +77,7 @@ class OrderKeeper {
     first_ = was.first_path;
     CheckSkirts(visits, findings);
     CheckTowers(visits, findings);
+    if (careful() && !permissions_.fan_order) CheckFans(visits, findings);
     CheckNear(was, visits, findings);
   }
 
@@ -84,12 +85,13 @@ class OrderKeeper {
   Group GroupAt(uint32_t path) const { return groups_[path - layer_.first_path_was()]; }
   uint32_t PlaceOf(uint32_t path) const { return place_[path - first_]; }
 
+  bool careful() const { return permissions_.policy != VerifyPermissions::Policy::kFree; }
+
   bool Matters(Group a, Group b) const {
-    const bool careful = permissions_.policy != VerifyPermissions::Policy::kFree;
     if (a == Group::kOther || b == Group::kOther) return false;
     if (a == b) {
-      if (a == Group::kWall) return careful && !permissions_.wall_order;
-      return (careful && a == Group::kMonotonic) || a == Group::kIroning;
+      if (a == Group::kWall) return careful() && !permissions_.wall_order;
+      return (careful() && a == Group::kMonotonic) || a == Group::kIroning;
     }
     const auto is = [a, b](Group group) { return a == group || b == group; };
     if (is(Group::kIroning) || is(Group::kBridge) || is(Group::kSupport) || is(Group::kInterface) ||
@@ -126,6 +128,23 @@ class OrderKeeper {
       if (visit.path < behind) return Report(visit.path, behind, visits, findings);
       latest = std::max(latest, visit.path);
       if (tower) latest_tower = std::max(latest_tower, visit.path);
+    }
+  }
+
+  // Fans, flow and pressure take time to come into force: where one of them changes, what is before
+  // stays before.
+  void CheckFans(absl::Span<const Visit> visits, LayerFindings& findings) {
+    std::vector<uint32_t> changes(place_.size(), 0);  // [path - first_], so far
+    for (size_t i = 1; i < changes.size(); ++i) {
+      const TracePath* path = &layer_.was().paths[first_ + i];
+      changes[i] = changes[i - 1] + (path->flow_settings != (path - 1)->flow_settings ? 1 : 0);
+    }
+    uint32_t latest = first_;
+    for (const Visit& visit : visits) {
+      if (changes[visit.path - first_] < changes[latest - first_]) {
+        return Report(visit.path, latest, visits, findings);
+      }
+      latest = std::max(latest, visit.path);
     }
   }
 

@@ -13,9 +13,11 @@ namespace traverse::gcode {
 namespace {
 
 constexpr double kSidewaysMm = 0.05;
-constexpr Micro kGrain = 2'000;     // pairs this near to each other are the same
+constexpr Micro kGrain = 100;       // pairs this near to each other are the same
 constexpr double kShareOdd = 0.01;  // so many of the original's do something: it does that
 constexpr double kHighMm = 0.02;
+constexpr float kLateMm = 0.25f;
+constexpr Micro kOnce = 1'000'000;  // what G10 and G11 count for
 
 class CycleReader {
  public:
@@ -25,6 +27,7 @@ class CycleReader {
   void Read(const TraceChunk& chunk, uint32_t link) {
     const TraceLink& traced = chunk.links[link];
     open_ = false;
+    way_mm_ = 0;
     if (traced.first_move == traced.end_move) return;
     // At the height of what is printed on either side.
     double high = chunk.moves[traced.first_move].z_from_mm + kHighMm;
@@ -36,10 +39,14 @@ class CycleReader {
       if (move.firmware ? move.kind == MoveKind::kRetraction : move.filament < 0) {
         Pull(move);
         cycle_.pulled_high |= move.z_from_mm > high;
-      } else if (open_ && (move.firmware || move.filament > 0)) {
+      } else if (move.firmware || (open_ && move.filament > 0)) {
+        if (!open_) Begin(move);
         cycle_.pushed_high |= move.z_from_mm > high;
         Push(move);
       } else if (move.kind == MoveKind::kTravel) {
+        way_mm_ += move.length_mm();
+        cycle_.idle = false;
+        cycle_.in_parts |= open_ && cycle_.pushed > 0 && move.length_mm() > kSidewaysMm;
         if (open_) cycle_.known &= layer_.IsKnown(move);
         // What came back before this, came back early.
         if (move.open && move.length_mm() > kSidewaysMm) {
@@ -49,10 +56,14 @@ class CycleReader {
       }
     }
     if (open_) cycles_.push_back(cycle_);
+    // Two paths that meet have no way between them, and may yet be parted.
+    if (way_mm_ == 0 && cycles_.size() == first + 1) cycles_[first].idle = false;
     if (!traced.scripted) return;
     // Scripts push filament wherever they want to.
     for (size_t i = first; i < cycles_.size(); ++i) {
-      cycles_[i].early = cycles_[i].pulled_high = cycles_[i].pushed_high = false;
+      RetractionCycle& cycle = cycles_[i];
+      cycle.early = cycle.in_parts = cycle.idle = cycle.pulled_high = cycle.pushed_high = false;
+      cycle.late_mm = 0;
     }
   }
 
@@ -62,21 +73,26 @@ class CycleReader {
       cycles_.push_back(cycle_);
       open_ = false;
     }
-    if (!open_) {
-      cycle_ = RetractionCycle{};
-      cycle_.tool = move.tool;
-      cycle_.firmware = move.firmware;
-      cycle_.known = true;
-      cycle_.line = move.line;
-      cycle_.layer = layer_.index();
-    }
+    if (!open_) Begin(move);
     open_ = true;
-    cycle_.pulled -= move.filament;
+    cycle_.pulled += move.firmware ? kOnce : -move.filament;
+    cycle_.late_mm = static_cast<float>(way_mm_);
+    cycle_.idle &= !move.sideways();
     cycle_.known &= layer_.IsKnown(move);
   }
 
+  void Begin(const TraceMove& move) {
+    cycle_ = RetractionCycle{};
+    cycle_.tool = move.tool;
+    cycle_.firmware = move.firmware;
+    cycle_.known = true;
+    cycle_.idle = move.kind == MoveKind::kRetraction;
+    cycle_.line = move.line;
+    cycle_.layer = layer_.index();
+  }
+
   void Push(const TraceMove& move) {
-    cycle_.pushed += move.filament;
+    cycle_.pushed += move.firmware ? kOnce : move.filament;
     cycle_.known &= layer_.IsKnown(move);
     if (!move.firmware && cycle_.pushed < cycle_.pulled - VerifyMachine::kSlack) return;
     cycles_.push_back(cycle_);
@@ -87,6 +103,7 @@ class CycleReader {
   std::vector<RetractionCycle>& cycles_;
   RetractionCycle cycle_;
   bool open_ = false;
+  double way_mm_ = 0;  // gone in this link without filament
 };
 
 struct Pair {
@@ -161,6 +178,10 @@ void CompareRetractions(const Observations& was, const Observations& is,
   const bool may_be_early = is_usual(&RetractionCycle::early);
   const bool may_push_high = is_usual(&RetractionCycle::pushed_high);
   const bool may_pull_high = is_usual(&RetractionCycle::pulled_high);
+  const bool may_be_in_parts = is_usual(&RetractionCycle::in_parts);
+  const bool may_be_idle = is_usual(&RetractionCycle::idle);
+  float latest_mm = 0;
+  for (const RetractionCycle& cycle : was.cycles) latest_mm = std::max(latest_mm, cycle.late_mm);
   for (const RetractionCycle& cycle : is.cycles) {
     if (cycle.known) continue;
     const auto [deepest, line] = pairs.Deepest(cycle.tool);
@@ -177,6 +198,15 @@ void CompareRetractions(const Observations& was, const Observations& is,
       report(absl::StrFormat("pulls %.4f mm back and pushes %.4f mm, a pair that there is not",
                              static_cast<double>(cycle.pulled) * 1e-6,
                              static_cast<double>(cycle.pushed) * 1e-6));
+    } else if (cycle.late_mm > latest_mm + kLateMm) {
+      report(
+          absl::StrFormat("filament is pulled back when %.2f mm of the way are done; the most "
+                          "of the original is %.2f mm",
+                          cycle.late_mm, latest_mm));
+    } else if (cycle.idle && !may_be_idle) {
+      report("filament is pulled back for no way");
+    } else if (cycle.in_parts && !may_be_in_parts) {
+      report("filament comes back bit by bit on the way");
     } else if (cycle.early && !may_be_early) {
       report("filament comes back before the way is done");
     } else if (cycle.pushed_high && !may_push_high) {

@@ -27,6 +27,7 @@ void ObserveLifts(const LayerPair& layer, LayerFindings& findings);
 void ObserveHeights(const LayerPair& layer, LayerFindings& findings);
 void ObserveRetractions(const LayerPair& layer, LayerFindings& findings);
 void ObserveFarMoves(const LayerPair& layer, LayerFindings& findings);
+void ObserveWayLengths(const LayerPair& layer, LayerFindings& findings);
 void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings);
 void CheckWipes(const LayerPair& layer, LayerFindings& findings);
 void CheckCommands(const LayerPair& layer, LayerFindings& findings);
@@ -42,6 +43,9 @@ void ObserveLastRetraction(const LayerPair& layer, LayerFindings& findings);
 void CheckStandstill(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks);
 void CheckSetBacks(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks);
 
+// The same: marks of wipes that are out of place.
+void CheckWipeMarks(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks);
+
 // The same: where the original moves.
 void ObserveBounds(const TraceChunk& was, Box& box);
 
@@ -51,6 +55,8 @@ void CompareProgress(const std::vector<Progress>& was, const std::vector<Progres
 void CompareLifts(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void CompareHeights(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void CompareBounds(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
+void CompareWayLengths(const Observations& was, const Observations& is,
+                       std::vector<Finding>& breaks);
 void CompareRetractions(const Observations& was, const Observations& is,
                         std::vector<Finding>& breaks);
 void CompareSpeeds(const Observations& was, const Observations& is, std::vector<Finding>& breaks);

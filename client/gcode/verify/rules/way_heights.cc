@@ -30,8 +30,13 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
   const double to = chunk.paths[link].z_mm;
   const double from = chunk.moves[traced.first_move].z_from_mm;
   LowestWay lowest{0, 0, layer.index(), RiseOf(from, to)};
+  LowestWay deepest = lowest;
+  RepeatedLift lifts{lowest.rise == WayRise::kLevel, 0, 0, layer.index()};
   for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
+    if (move.kind == MoveKind::kUp && move.z_to_mm > move.z_from_mm && ++lifts.times > 1) {
+      lifts.line = move.line;
+    }
     if (only_new && layer.IsKnown(move)) continue;
     const auto note_rise = [&](double base) {
       seen.rises.try_emplace(Um(move.z_to_mm - base), Seen{move.line, layer.index(), 0});
@@ -39,6 +44,16 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
     if (move.kind == MoveKind::kUp && move.z_to_mm > move.z_from_mm) {
       note_rise(to);
       if (!only_new) note_rise(from);
+      if (move.radius_mm > 0) {
+        seen.radii.try_emplace(Um(move.radius_mm), Seen{move.line, layer.index(), 0});
+      }
+    }
+    if (move.kind == MoveKind::kDown) {
+      const auto below = static_cast<float>(move.z_to_mm - std::min(from, to));
+      if (below < deepest.above_mm) {
+        deepest.above_mm = below;
+        deepest.line = move.line;
+      }
     }
     if (move.kind != MoveKind::kTravel || move.length_mm() < kShortestMm) continue;
     const auto above = static_cast<float>(move.z_to_mm - std::max(from, to));
@@ -47,6 +62,38 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
     lowest.line = move.line;
   }
   if (lowest.line != 0) seen.lowest.push_back(lowest);
+  if (deepest.line != 0) seen.deepest.push_back(deepest);
+  if (lifts.line != 0) seen.lifts_of_links.push_back(lifts);
+}
+
+// Moves straight down lead no deeper than such of the original; nothing rises again and again.
+void CompareMoves(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
+  float deepest = 0;
+  for (const LowestWay& move : was.deepest) deepest = std::min(deepest, move.above_mm);
+  for (const LowestWay& move : is.deepest) {
+    if (move.above_mm >= deepest - kSlackMm) continue;
+    breaks.push_back(
+        {VerifyRule::kLifts, 0, move.line, move.layer,
+         absl::StrFormat("the head goes down to %.3f mm below what is printed", -move.above_mm)});
+  }
+  std::array<uint32_t, 2> most{1, 1};
+  for (const RepeatedLift& lifts : was.lifts_of_links) {
+    most[lifts.level] = std::max(most[lifts.level], lifts.times);
+  }
+  for (const RepeatedLift& lifts : is.lifts_of_links) {
+    if (lifts.times <= most[lifts.level]) continue;
+    breaks.push_back({VerifyRule::kLifts, 0, lifts.line, lifts.layer,
+                      absl::StrFormat("the head rises %d times between two paths", lifts.times)});
+  }
+  for (const auto& [um, seen] : is.radii) {
+    bool known = false;
+    for (int64_t near = um - 5; near <= um + 5; ++near) known |= was.radii.contains(near);
+    if (known) continue;
+    breaks.push_back(
+        {VerifyRule::kLifts, 0, seen.line, seen.layer,
+         absl::StrFormat("rises along an arc of radius %.3f mm, as none of the original",
+                         static_cast<double>(um) / 1000)});
+  }
 }
 
 }  // namespace
@@ -61,6 +108,7 @@ void ObserveHeights(const LayerPair& layer, LayerFindings& findings) {
 }
 
 void CompareHeights(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
+  CompareMoves(was, is, breaks);
   std::array<LowestWay, static_cast<size_t>(WayRise::kCount)> known;
   for (const LowestWay& way : was.lowest) {
     LowestWay& lowest = known[static_cast<size_t>(way.rise)];

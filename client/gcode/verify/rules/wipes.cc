@@ -1,6 +1,7 @@
 // A wipe lies within 0.05 mm of its own path, and paths that were wiped stay wiped.
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "absl/strings/str_format.h"
@@ -12,13 +13,16 @@ namespace {
 constexpr float kOnPathMm = 0.05f;
 constexpr double kUsualShare = 0.99;
 constexpr float kPullSlack = 1.02f;
+constexpr float kGentleShare = 0.5f;
+constexpr float kTellingMm = 0.3f;  // rounding is nothing beside the filament of such a move
 
 struct Wipe {
   float off_mm = 0;
   float astray_mm = 0;
   float length_mm = 0;
   float pulled_mm = 0;
-  uint32_t line = 0;  // 0: none
+  float steepest = 0;  // filament pulled back per mm of one move
+  uint32_t line = 0;   // 0: none
   bool known = true;
 };
 
@@ -42,13 +46,14 @@ Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
     if (wipe.line == 0) wipe.line = move.line;
     wipe.known &= layer.IsKnown(move);
     wipe.length_mm += static_cast<float>(move.length_mm());
-    wipe.pulled_mm -= static_cast<float>(static_cast<double>(move.filament) * 1e-6);
+    const auto pulled = static_cast<float>(static_cast<double>(-move.filament) * 1e-6);
+    wipe.pulled_mm += pulled;
+    const auto length = static_cast<float>(move.length_mm());
+    if (length >= kTellingMm) wipe.steepest = std::max(wipe.steepest, pulled / length);
     if (!measure) continue;
     wipe.off_mm = std::max(wipe.off_mm, static_cast<float>(DistanceTo(move.to, pieces)));
-    if (move.arc) continue;
     // A chord of the path has both its ends on it.
-    const Point middle{(move.from.x + move.to.x) / 2, (move.from.y + move.to.y) / 2};
-    wipe.astray_mm = std::max(wipe.astray_mm, static_cast<float>(DistanceTo(middle, pieces)));
+    wipe.astray_mm = std::max(wipe.astray_mm, static_cast<float>(DistanceTo(move.middle, pieces)));
   }
   return wipe;
 }
@@ -74,7 +79,7 @@ void CheckWipes(const LayerPair& layer, LayerFindings& findings) {
     any = true;
     if (was.links[path + 1].scripted) continue;
     findings.was.wipes.push_back({wipe.off_mm, wipe.astray_mm, wipe.pulled_mm / wipe.length_mm,
-                                  wipe.line, wipe.line, layer.index()});
+                                  wipe.steepest, wipe.line, wipe.line, layer.index()});
   }
   for (const Visit& visit : layer.visits()) {
     const Wipe& had = wiped[visit.path - layer.first_path_was()];
@@ -91,7 +96,23 @@ void CheckWipes(const LayerPair& layer, LayerFindings& findings) {
     if (wipe.line == 0 || wipe.known) continue;
     wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), true);
     findings.is.wipes.push_back({wipe.off_mm, wipe.astray_mm, wipe.pulled_mm / wipe.length_mm,
-                                 wipe.line, was.LineOf(was.paths[visit.path]), layer.index()});
+                                 wipe.steepest, wipe.line, was.LineOf(was.paths[visit.path]),
+                                 layer.index()});
+  }
+}
+
+void CheckWipeMarks(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks) {
+  std::map<std::pair<uint32_t, bool>, std::pair<int64_t, uint32_t>> had;  // how many, the first one
+  for (const MarkFault& fault : was.mark_faults) {
+    auto& [count, line] = had[{fault.section, fault.unmarked}];
+    if (count++ == 0) line = fault.line;
+  }
+  for (const MarkFault& fault : is.mark_faults) {
+    auto& [count, line] = had[{fault.section, fault.unmarked}];
+    if (count-- > 0) continue;
+    breaks.push_back({VerifyRule::kWipes, line, fault.line, -1,
+                      fault.unmarked ? "a wipe without the marks that wipes have"
+                                     : "a mark of a wipe's begin or end is out of place"});
   }
 }
 
@@ -107,7 +128,19 @@ void CompareWipes(const Observations& was, const Observations& is, std::vector<F
   const auto fastest = std::max_element(
       was.wipes.begin(), was.wipes.end(),
       [](const WipeDeviation& a, const WipeDeviation& b) { return a.pull < b.pull; });
+  float steepest = 0;
+  float gentlest = fastest != was.wipes.end() ? fastest->pull : 0;
+  for (const WipeDeviation& wipe : was.wipes) {
+    steepest = std::max(steepest, wipe.steepest);
+    gentlest = std::min(gentlest, wipe.pull);
+  }
   for (const WipeDeviation& wipe : is.wipes) {
+    if (fastest != was.wipes.end() &&
+        (wipe.steepest > std::max(steepest, fastest->pull) * kPullSlack ||
+         wipe.pull < gentlest * kGentleShare)) {
+      breaks.push_back({VerifyRule::kWipes, fastest->line, wipe.line, wipe.layer,
+                        "a wipe pulls filament back unlike those of the original"});
+    }
     if (fastest != was.wipes.end() && wipe.pull > fastest->pull * kPullSlack) {
       breaks.push_back(
           {VerifyRule::kWipes, fastest->line, wipe.line, wipe.layer,

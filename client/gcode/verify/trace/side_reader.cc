@@ -46,14 +46,14 @@ TraceChunk SideReader::ReadUntil(Enough enough) {
   while (machine_.Next(line_)) {
     bytes_ += line_.text.size() + 1;
     const uint32_t section = cutter_.open_section();
-    const SectionCutter::Cut cut = cutter_.Take(line_, machine_);
+    const bool mark = line_.text.size() > 1 && line_.text[0] == ';' && IsLayerMark(line_.text);
+    const SectionCutter::Cut cut = cutter_.Take(line_, machine_, mark);
     if (cut.before) tracer_.EndSection(true, false);
     if (line_.role == LineRole::kDeposit && tracer_.AtLayer() && enough()) {
       held_ = true;
       return tracer_.TakeChunk(cutter_.open_section());
     }
     tracer_.Take(line_, machine_, cut.before ? cutter_.open_section() : section);
-    const bool mark = line_.text.size() > 1 && line_.text[0] == ';' && IsLayerMark(line_.text);
     if (mark) cutter_.EndScript();
     if (cut.behind) tracer_.EndSection(mark, mark);
     if (mark && !cut.behind) tracer_.Mark();

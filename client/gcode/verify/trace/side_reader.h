@@ -29,6 +29,9 @@ class SideReader {
 
   bool done() const { return done_; }
 
+  // VerifyMachine::line_ends of what has been read.
+  uint32_t line_ends() const { return machine_.line_ends(); }
+
   // Of what has been read.
   const Sections& cut() const { return cutter_.cut(); }
 

@@ -45,7 +45,8 @@ struct TracePath {
   double z_mm = 0;
   float length_mm = 0;
   float filament_mm = 0;
-  Micro feed = 0;  // of its last segment
+  Micro feed = 0;              // of its last segment
+  uint64_t flow_settings = 0;  // VerifyMachine::FlowDigest at its first segment
   PathClass path_class = PathClass::kUnnamed;
   bool overhangs = false;  // some of it is of class kOverhang
   bool outer = false;      // some of it is of class kOuterWall
@@ -72,8 +73,10 @@ struct TraceMove {
   uint64_t tool = 0;
   Point from;
   Point to;
+  Point middle;  // of an arc, halfway along it
   double z_from_mm = 0;
   double z_to_mm = 0;
+  double radius_mm = 0;  // of an arc by its center
   Micro filament = 0;
   Micro feed = 0;
   uint32_t line = 0;
@@ -119,6 +122,13 @@ struct SetBack {
   uint32_t line = 0;
 };
 
+// A mark of a wipe's begin or end that is out of place, or a wipe without such marks.
+struct MarkFault {
+  uint32_t section = 0;
+  uint32_t line = 0;
+  bool unmarked = false;
+};
+
 struct TraceSection {
   uint32_t index = 0;  // from the beginning of the file
   uint32_t first_path = 0;
@@ -146,6 +156,7 @@ struct TraceChunk {
   std::vector<TraceCommand> commands;   // by segment
   std::vector<Standstill> standstills;  // by line
   std::vector<SetBack> set_backs;       // by line
+  std::vector<MarkFault> mark_faults;   // by line
   std::vector<Progress> progress;       // M73
   std::vector<TraceSection> sections;
   std::vector<TraceLayer> layers;

@@ -41,7 +41,22 @@ uint64_t IdentityOf(const Motion& motion, uint64_t acceleration, bool wiping) {
   }
   digest = Mix(digest, static_cast<uint64_t>(motion.filament));
   digest = Mix(digest, static_cast<uint64_t>(motion.feed));
+  if (motion.has_center) {
+    digest = Mix(digest, static_cast<uint64_t>(motion.center_x));
+    digest = Mix(digest, static_cast<uint64_t>(motion.center_y));
+  }
   return Mix(digest, static_cast<uint64_t>(motion.number) * 2 + (wiping ? 1 : 0));
+}
+
+// Halfway along the arc from `from` to `to`.
+Point MiddleOfArc(Point from, Point to, Point center, bool clockwise) {
+  const double begin = std::atan2(from.y - center.y, from.x - center.x);
+  const double end = std::atan2(to.y - center.y, to.x - center.x);
+  double sweep = clockwise ? begin - end : end - begin;
+  while (sweep <= 1e-9) sweep += 2 * M_PI;
+  const double radius = std::hypot(from.x - center.x, from.y - center.y);
+  const double angle = begin + (clockwise ? -sweep : sweep) / 2;
+  return {center.x + radius * std::cos(angle), center.y + radius * std::sin(angle)};
 }
 
 uint64_t SignatureOf(const Motion& motion) {
@@ -73,7 +88,7 @@ double TraceMove::length_mm() const { return std::hypot(to.x - from.x, to.y - fr
 void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t section) {
   if (line.text.empty()) return;
   if (line.text[0] == ';') {
-    TakeComment(line);
+    TakeComment(line, section);
   } else if (line.role == LineRole::kDeposit) {
     TakeDeposit(line, machine, section);
   } else if (line.moves) {
@@ -86,13 +101,23 @@ void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t secti
   if (line.role == LineRole::kFixed) link_.scripted = true;
 }
 
-void Tracer::TakeComment(const VerifyLine& line) {
+void Tracer::TakeWipeMark(bool begins, uint32_t line, uint32_t section) {
+  if (begins == wiping_ || (!begins && !wiped_)) {
+    chunk_.mark_faults.push_back({section, line, false});
+  }
+  marks_wipes_ = true;
+  wiping_ = begins;
+  wiped_ = false;
+}
+
+void Tracer::TakeComment(const VerifyLine& line, uint32_t section) {
   if (line.role == LineRole::kFence) return;
   const std::string_view text = line.text;
+  const auto number = static_cast<uint32_t>(line.number);
   if (Begins(text, ";WIPE_START") || Begins(text, "; WIPE_START")) {
-    wiping_ = true;
+    TakeWipeMark(true, number, section);
   } else if (Begins(text, ";WIPE_END") || Begins(text, "; WIPE_END")) {
-    wiping_ = false;
+    TakeWipeMark(false, number, section);
   } else if (const std::optional<PathClass> path_class = ClassOfComment(text)) {
     named_ = path_class;
   }
@@ -155,8 +180,13 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
     link_ = TraceLink{};
   } else {
     BeginPath(motion, section, unit);
+    chunk_.paths.back().flow_settings = machine.FlowDigest();
   }
   in_path_ = true;
+  // What is printed within a wipe is a fault of its mark; one of it is enough.
+  if (wiping_ && wiped_)
+    chunk_.mark_faults.push_back({section, static_cast<uint32_t>(line.number), false});
+  wiped_ &= !wiping_;
   TraceSegment segment;
   segment.digest = line.digest;
   segment.end = {static_cast<double>(motion.to[0]) * unit,
@@ -193,6 +223,10 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
   TraceMove move;
   move.kind = KindOf(motion);
   if (wiping_ && move.kind == MoveKind::kTravel) move.kind = MoveKind::kWipe;
+  wiped_ |= wiping_ && move.sideways();
+  if (!wiping_ && marks_wipes_ && move.kind == MoveKind::kWipe && motion.number < 10) {
+    chunk_.mark_faults.push_back({section, static_cast<uint32_t>(line.number), true});
+  }
   move.acceleration = machine.AccelerationDigest();
   move.identity = IdentityOf(motion, move.acceleration, wiping_);
   move.signature = SignatureOf(motion);
@@ -200,6 +234,13 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
   move.from = {static_cast<double>(motion.from[0]) * unit,
                static_cast<double>(motion.from[1]) * unit};
   move.to = {static_cast<double>(motion.to[0]) * unit, static_cast<double>(motion.to[1]) * unit};
+  move.middle = {(move.from.x + move.to.x) / 2, (move.from.y + move.to.y) / 2};
+  if (motion.has_center) {
+    const Point center{static_cast<double>(motion.center_x) * unit,
+                       static_cast<double>(motion.center_y) * unit};
+    move.middle = MiddleOfArc(move.from, move.to, center, motion.number == 2);
+    move.radius_mm = std::hypot(center.x - move.from.x, center.y - move.from.y);
+  }
   move.z_from_mm = static_cast<double>(motion.from[2]) * unit;
   move.z_to_mm = static_cast<double>(motion.to[2]) * unit;
   move.filament = motion.filament;
@@ -247,6 +288,7 @@ TraceChunk Tracer::TakeChunk(uint32_t end_section) {
   TraceChunk taken = std::exchange(chunk_, TraceChunk{});
   MoveLater(end_section, taken.standstills, chunk_.standstills);
   MoveLater(end_section, taken.set_backs, chunk_.set_backs);
+  MoveLater(end_section, taken.mark_faults, chunk_.mark_faults);
   return taken;
 }
 

@@ -34,7 +34,8 @@ class Tracer {
   TraceChunk TakeChunk(uint32_t end_section);
 
  private:
-  void TakeComment(const VerifyLine& line);
+  void TakeComment(const VerifyLine& line, uint32_t section);
+  void TakeWipeMark(bool begins, uint32_t line, uint32_t section);
   void TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_t section);
   void TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t section);
   void BeginPath(const Motion& motion, uint32_t section, double unit);
@@ -51,6 +52,8 @@ class Tracer {
   bool section_due_ = true;
   bool layer_due_ = true;
   bool wiping_ = false;  // between the marks of a wipe
+  bool wiped_ = false;   // something moved sideways there
+  bool marks_wipes_ = false;
   bool in_print_;
   uint32_t layers_ = 0;
 };

@@ -23,7 +23,8 @@ TEST(VerifyOpenWays, NoRetractionIsLostAcrossAnOuterWall) {
 
 TEST(VerifyOpenWays, WithinTheWallAreFree) {
   const std::string within = kSquare + Line("Internal infill", "X15 Y15", "X16 Y15") +
-                             Line("Internal infill", "X12 Y18", "X13 Y18");
+                             Line("Internal infill", "X12 Y18", "X13 Y18") +
+                             "G1 X16 Y16 F9000\nG1 F1800\nG1 X17 Y16 E.3\n";
   EXPECT_EQ(Broken(kHead + within, kHead + With(within, Way("X12 Y18"), "G1 X12 Y18 F9000\n")), "");
 }
 

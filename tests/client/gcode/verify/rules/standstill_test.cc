@@ -27,7 +27,7 @@ TEST(VerifyStandstill, WhatIsPushedMoreThanPulledIsPushedAsOften) {
   const std::string two = Line("Internal infill", "X0 Y0", "X9 Y0") +
                           With(Line("Internal infill", "X0 Y5", "X9 Y5"), Way("X0 Y5"), more);
   const std::string without = With(two, more, "G1 X0 Y5 F9000\n");
-  EXPECT_EQ(Broken(kHead + two, kHead + without), "standstill");
+  EXPECT_THAT(Broken(kHead + two, kHead + without), HasSubstr("standstill"));
   // It comes with the way, wherever that leads.
   const std::string turned = With(With(two, "X0 Y5", "X9 Y5"), "G1 X9 Y5 E.3", "G1 X0 Y5 E.3");
   EXPECT_EQ(Broken(kHead + two, kHead + turned), "");
