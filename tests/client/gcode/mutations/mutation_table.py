@@ -21,9 +21,12 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import defects  # noqa: E402
 import further_defects  # noqa: E402
+import legal_changes  # noqa: E402
 import sliced  # noqa: E402
+import text_defects  # noqa: E402
+import way_defects  # noqa: E402
 
-DEFECTS = defects.DEFECTS + further_defects.DEFECTS
+DEFECTS = defects.DEFECTS + further_defects.DEFECTS + text_defects.DEFECTS + way_defects.DEFECTS
 
 
 def files_of(operands):
@@ -77,8 +80,9 @@ def try_defect(args, folder, name, file, original, defect, counts):
                 write(args.keep, f"{name}.original.gcode", file.text())
 
 
-def false_alarms(args, folder, name, path, original):
-    """The file against itself, and as this program optimises it; (tried, refused)."""
+def false_alarms(args, folder, name, path, file, original):
+    """The file against itself, changed as a print does not feel, and as this program optimises it;
+    (tried, refused)."""
     tried = refused = 0
     for policy in ("safe", "balanced", "free"):
         pairs = [(original, original)]
@@ -92,13 +96,17 @@ def false_alarms(args, folder, name, path, original):
                 pairs.append((plain, out))
             else:
                 print(f"  {name}, {policy}: not optimised: {run.stderr.strip()[-300:]}", flush=True)
+        for title, change in legal_changes.CHANGES if policy == "free" else ():
+            text = change(file, random.Random(f"{args.seed} {name} {title}"))
+            if text is not None:
+                pairs.append((original, write(folder, f"{title.replace(' ', '_')}.gcode", text)))
         for one, other in pairs:
             # What was allowed on top stands at the head of the optimised file.
             rules, message = broken(args.traverse, one, other, None if args.with_flags else policy)
             tried += 1
             refused += bool(rules)
             if rules:
-                print(f"  {name}, {policy}: {rules} {message}", flush=True)
+                print(f"  {name}, {policy}: {os.path.basename(other)}: {rules} {message}", flush=True)
     return tried, refused
 
 
@@ -127,7 +135,7 @@ def main():
                 if left_out or (args.only and not re.search(args.only, defect[0])):
                     continue
                 try_defect(args, folder, name, file, original, defect, counts)
-            one, two = false_alarms(args, folder, name, path, original)
+            one, two = false_alarms(args, folder, name, path, file, original)
             tried, refused = tried + one, refused + two
     print(f"{len(names)} files: {' '.join(names)}\n")
     print("| defect | rule | files | copies | found | by its rule |\n|---|---|---:|---:|---:|---:|")
