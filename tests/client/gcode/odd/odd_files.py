@@ -26,7 +26,9 @@ STYLES = ("cr", "crlf", "crcrlf", "tabs", "checksums", "numbers", "lower", "pack
           "never_closed", "absolute_e", "resets", "planes", "firmware", "modes_of_arcs", "deleted", "macros",
           "plus", "dotted", "two_codes", "quoted", "offsets_by_g", "volumetric", "percent", "rising",
           "bare_resets", "padded", "spaced", "shuffled", "more_axes", "foreign", "fan_within", "blind_marks",
-          "splines", "codes_in_comments", "twice_worded", "inserted_modes")
+          "splines", "codes_in_comments", "twice_worded", "inserted_modes", "nul", "utf16", "exponents",
+          "far_off", "around_zero", "belt", "circles", "rotated", "lying_labels", "lying_wipes", "two_slicers",
+          "torn", "very_long", "form_feeds", "fans_within", "z_hops", "heights_twice", "scripts")
 
 # Lines that come between two paths, by style. Most are not known to anything but some firmware.
 BETWEEN = {
@@ -47,6 +49,20 @@ BETWEEN = {
     "splines": ("G5 I0 J3 P0 Q-3 X20 Y20 E.3", "G12 P1", "G27", "G29", "G61", "G64 P.1", "G28 X"),
     "codes_in_comments": ("; T1", ";G91", ";M83", "G4 P1 ; M82", "M105 ; G1 X5 E1", "; G92 E5"),
     "twice_worded": ("G1 X5 X6 Y3", "G1 X Y", "G1 X5 Y5 F", "G1 E", "G X5", "G1 XY5", "G1 X--5", "G1 X1.2.3"),
+    "exponents": ("G1 X1e1 Y2 F9000", "M106 S1e2", "G1 F1e4", "G92 E1e0"),
+    "rotated": ("G68 X0 Y0 R30", "G69", "G51 P2", "G16", "G53"),
+    "lying_labels": ("M624 AQAAAAAAAAA=", "; start printing object, unique label id: 12", "M486 S1", "M486 S0",
+                     "EXCLUDE_OBJECT_START NAME=a", "; printing object a id:0 copy 0", "; OBJECT_ID: 3",
+                     ";MESH:a.stl", ";PRINTING:a", "; object:{}", "M486 C", "EXCLUDE_OBJECT NAME=a"),
+    "lying_wipes": (";WIPE_START", ";WIPE_END", "; WIPE_START", "; FLUSH_START", "; WIPE_TOWER_END", "; FLUSH_END"),
+    "two_slicers": ("; FEATURE: Outer wall", ";TYPE:WALL-OUTER", "; feature infill", "; 'Loop Path', 0.4", ";shell",
+                    "; tool H0.2 W0.4", "; LINE_WIDTH: 0.4", ";WIDTH:0.45", "; layer 3, Z = 0.6", ";LAYER:99",
+                    "; BEGIN_LAYER_OBJECT z=0.2", "; CHANGE_LAYER", ";; --- layer 2 (", ";LAYER_CHANGE", ";layer:1"),
+    "nul": ("M117 a\0b", ";\0", "\0", "G1 X5\0 Y5 F9000"),
+    "form_feeds": ("\x0c", "; a\x0cb", "\x1a", "G4\x0bP1", "\x85", "; \u2028 x"),
+    "z_hops": ("G1 Z9 F600", "G91\nG1 Z.4 F600\nG1 Z-.4\nG90", "G1 Z-1 F600", "G17\nG3 Z3 I1.2 J0 P1 F600"),
+    "scripts": ("M622 J1\nG1 X0 Y90 F9000\nM400\nM623", "M600", "M601 ; pause", ";PAUSE_PRINT\nM25",
+                "TIMELAPSE_TAKE_FRAME", "M0 wait", "@pause", "M226", "T1\nG1 E15 F300\nT0\nG1 E-15"),
     "inserted_modes": ("M82 S1", "M83 P0", "G90 S0", "G21 P1"),
 }
 
@@ -158,6 +174,10 @@ def switch_modes(out, styles, rng):
 def print_layer(out, styles, rng, cura):
     n = rng.randint(4, 14)
     places = [(rng.randint(0, 20) * 5.0, rng.randint(0, 20) * 5.0) for _ in range(n)]
+    if "around_zero" in styles:
+        places = [(x - 50, y - 50) for x, y in places]
+    if "far_off" in styles:
+        places = [(x + 999900, y - 999900) for x, y in places]
     for k, (x, y) in enumerate(places):
         if "tools" in styles and rng.random() < 0.1:
             out.out(f"T{rng.randint(0, 1)}")
@@ -175,10 +195,17 @@ def print_layer(out, styles, rng, cura):
         out.move(x, y, feed=9000)
         if pulls:
             out.out(f"G1 {out.extrude(0.8)} F{num(2100 / out.scale())}")
+        if "belt" in styles and rng.random() < 0.4:
+            out.up(round(out.at[2] + rng.choice((-0.1, 0.1, 0.05)), 3))
+        if "heights_twice" in styles and rng.random() < 0.3:
+            here = out.at[2]
+            out.up(here + 0.2)
+            out.up(here)
         print_path(out, styles, rng, x, y)
         for style in sorted(styles & BETWEEN.keys()):
             if rng.random() < 0.15:
-                out.out(rng.choice(BETWEEN[style]))
+                for line in rng.choice(BETWEEN[style]).split("\n"):
+                    out.out(line)
 
 
 def print_path(out, styles, rng, x, y):
@@ -193,6 +220,10 @@ def print_path(out, styles, rng, x, y):
     if "rising" in styles and rng.random() < 0.3:
         out.out(f"G1 {out.moved('X', x + 2)} {out.moved('Y', y)} {out.moved('Z', out.at[2] + 0.05)} "
                 f"{out.extrude(0.07)}")
+    if "circles" in styles and rng.random() < 0.3:
+        out.out(f"{rng.choice(('G2', 'G3'))} {out.word('I', 2)} {out.word('J', 0)} {out.extrude(0.4)}")
+    if "fans_within" in styles and rng.random() < 0.5:
+        out.out(f"M106 S{rng.randint(0, 255)}")
     if shape == "loop":
         for dx, dy in ((3, 0), (3, 3), (0, 3), (0, 0)):
             out.move(x + dx, y + dy, e=0.11, feed=1200)
@@ -241,6 +272,8 @@ def styled(lines, styles, rng):
             line += rng.choice((" (a; comment)", " (X1 Y2)", " ; (open", " ()"))
         if "long" in styles and rng.random() < 0.05:
             line += " ;" + "x" * 5000
+        if "very_long" in styles and rng.random() < 0.02:
+            line += " ;" + "x" * 300000
         if code and ("checksums" in styles or "numbers" in styles):
             line = f"N{number} {line}"
             if "checksums" in styles:
@@ -251,7 +284,10 @@ def styled(lines, styles, rng):
         made.append(line)
     end = "\r" if "cr" in styles else "\r\n" if "crlf" in styles else "\r\r\n" if "crcrlf" in styles else "\n"
     text = end.join(made) + ("" if "no_newline" in styles else end)
-    return ("\ufeff" if "bom" in styles else "").encode() + text.encode()
+    data = ("\ufeff" if "bom" in styles else "").encode() + text.encode()
+    if "utf16" in styles:
+        return text.encode("utf-16")
+    return data[:rng.randint(len(data) // 2, len(data))] if "torn" in styles else data
 
 
 # --- what a file deposits --------------------------------------------------------------------------
@@ -321,7 +357,7 @@ def deposits(data, deleted=False):
             if "E" in words:
                 filament = words["E"] * unit if relative or relative_e else words["E"] * unit - e
                 e = e + filament
-            sideways = math.dist(at[:2], to[:2]) > 1e-9
+            sideways = math.dist(at[:2], to[:2]) > 1e-9 or code in ("G2", "G3")
             if sideways and filament > 1e-9:
                 note(runs, at, to, filament, code, words, unit, tool,
                      pulled > 1e-4 or pulled_by_firmware)
