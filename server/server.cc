@@ -194,16 +194,18 @@ absl::Status Server::Build(const ServerOptions& options) {
 }
 
 absl::Status Server::AddPort(const ServerOptions& options, grpc::ServerBuilder& builder) {
-  const std::shared_ptr<grpc::ServerCredentials> credentials =
-      core_.files.certificates == nullptr ? grpc::InsecureServerCredentials()
-                                          : MakeTlsCredentials(core_.files.certificates);
+  const auto make_credentials = [this] {
+    return core_.files.certificates == nullptr ? grpc::InsecureServerCredentials()
+                                               : MakeTlsCredentials(core_.files.certificates);
+  };
   if (absl::StartsWith(options.listen, "unix")) {
-    builder.AddListeningPort(options.listen, credentials, &port_);
+    builder.AddListeningPort(options.listen, make_credentials(), &port_);
     return absl::OkStatus();
   }
   for (int hand = 0; hand < Connections::kHands; ++hand) {
     acceptors_.push_back(builder.experimental().AddExternalConnectionAcceptor(
-        grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD, credentials));
+        grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD,
+        make_credentials()));
   }
   ConnectionRules rules;
   rules.max_connections = options.connections.max_connections;
