@@ -263,6 +263,8 @@ std::vector<std::string> Connections::Look(bool& busy) {
   const Clock::time_point now = Clock::now();
   const double seconds = std::chrono::duration<double>(now - looked_).count();
   const double fading = std::exp2(-seconds / kHalfLifeSeconds);
+  // Where this thread was late, so may have been those that deliver what had come.
+  const auto late = now - looked_ - std::chrono::milliseconds(kQuietMilliseconds);
   looked_ = now;
   for (auto it = table_.begin(); it != table_.end();) {
     Connection& connection = it->second;
@@ -273,6 +275,9 @@ std::vector<std::string> Connections::Look(bool& busy) {
       continue;
     }
     connection.pending *= fading;
+    if (late.count() > 0 && connection.loud_since != Clock::time_point()) {
+      connection.loud_since += late;
+    }
     most = std::max(most, Update(connection, info));
     connection.pending = std::max(kMostCredit, connection.pending);
     if (connection.pending > static_cast<double>(Allowed(connection)) || IsLoud(connection, now)) {
