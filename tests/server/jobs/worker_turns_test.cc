@@ -19,7 +19,7 @@ namespace {
 
 using Clock = Budget::Clock;
 
-// A task that works until it is told to end, or its budget runs out.
+// A task that works until it is told to end, or its budget runs out. Outlives its pool.
 class Endless {
  public:
   std::function<void()> On(const std::shared_ptr<WorkerPool::Queue>& queue,
@@ -48,8 +48,8 @@ void WaitFor(const std::function<bool()>& condition) {
 }
 
 TEST(WorkerTurns, AShortJobIsDoneBesideAnyNumberOfEndlessOnes) {
-  WorkerPool pool(2);
   Endless endless;
+  WorkerPool pool(2);
   std::vector<std::shared_ptr<WorkerPool::Queue>> queues;
   for (int i = 0; i < 20; ++i) {
     queues.push_back(pool.NewQueue("caller " + std::to_string(i % 3)));
@@ -69,9 +69,9 @@ TEST(WorkerTurns, AShortJobIsDoneBesideAnyNumberOfEndlessOnes) {
 }
 
 TEST(WorkerTurns, LongTasksShareTheirTime) {
-  WorkerPool pool(1);
   Endless a;
   Endless b;
+  WorkerPool pool(1);
   const auto queue_a = pool.NewQueue("a");
   const auto queue_b = pool.NewQueue("b");
   queue_a->Submit(a.On(queue_a));
@@ -85,10 +85,10 @@ TEST(WorkerTurns, LongTasksShareTheirTime) {
 }
 
 TEST(WorkerTurns, APausedTaskEndsAtItsDeadlineAndWhenItIsCancelled) {
-  WorkerPool pool(1);
   Endless busy;
   Endless cancelled;
   Endless late;
+  WorkerPool pool(1);
   std::vector<std::shared_ptr<WorkerPool::Queue>> queues;
   for (int i = 0; i < 8; ++i) {
     queues.push_back(pool.NewQueue("busy " + std::to_string(i)));
@@ -109,8 +109,8 @@ TEST(WorkerTurns, APausedTaskEndsAtItsDeadlineAndWhenItIsCancelled) {
 
 // Nobody gives way to what may not go on.
 TEST(WorkerTurns, LargeTasksUnderWayAreFew) {
-  WorkerPool pool(1);
   Endless endless;
+  WorkerPool pool(1);
   std::vector<std::shared_ptr<WorkerPool::Queue>> queues;
   for (int i = 0; i < 8; ++i) {
     queues.push_back(pool.NewQueue("caller " + std::to_string(i)));
@@ -198,9 +198,9 @@ TEST(WorkerTurns, ThreadsThatManyPausesNeededAreGivenBack) {
 }
 
 TEST(WorkerTurns, SilentTasksAreNamedAndOthersAreNot) {
-  WorkerPool pool(2);
   Endless answers;
   std::atomic<bool> end{false};
+  WorkerPool pool(2);
   const auto good = pool.NewQueue("good");
   const auto bad = pool.NewQueue("bad");
   bad->set_job("job-7");
