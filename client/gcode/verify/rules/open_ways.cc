@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/tails.h"
 #include "client/gcode/verify/rules/rules.h"
-#include "client/gcode/verify/rules/tails.h"
 
 namespace traverse::gcode {
 namespace {

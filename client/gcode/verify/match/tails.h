@@ -1,7 +1,7 @@
 // What moves along the end of a path without filament, and is no travel.
 
-#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_RULES_TAILS_H_
-#define TRAVERSE_CLIENT_GCODE_VERIFY_RULES_TAILS_H_
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_TAILS_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_TAILS_H_
 
 #include <cstdint>
 #include <vector>
@@ -45,4 +45,4 @@ class Tails {
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_RULES_TAILS_H_
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_TAILS_H_
