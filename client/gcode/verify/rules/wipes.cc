@@ -102,17 +102,19 @@ void CheckWipes(const LayerPair& layer, LayerFindings& findings) {
 }
 
 void CheckWipeMarks(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks) {
-  std::map<std::pair<uint32_t, bool>, std::pair<int64_t, uint32_t>> had;  // how many, the first one
+  // How many, and the first one.
+  std::map<std::pair<uint32_t, MarkFaultKind>, std::pair<int64_t, uint32_t>> had;
   for (const MarkFault& fault : was.mark_faults) {
-    auto& [count, line] = had[{fault.section, fault.unmarked}];
+    auto& [count, line] = had[{fault.section, fault.kind}];
     if (count++ == 0) line = fault.line;
   }
   for (const MarkFault& fault : is.mark_faults) {
-    auto& [count, line] = had[{fault.section, fault.unmarked}];
+    auto& [count, line] = had[{fault.section, fault.kind}];
     if (count-- > 0) continue;
     breaks.push_back({VerifyRule::kWipes, line, fault.line, -1,
-                      fault.unmarked ? "a wipe without the marks that wipes have"
-                                     : "a mark of a wipe's begin or end is out of place"});
+                      fault.kind == MarkFaultKind::kUnmarked
+                          ? "a wipe without the marks that wipes have"
+                          : "a mark of a wipe's begin or end is out of place"});
   }
 }
 

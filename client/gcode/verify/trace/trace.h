@@ -122,11 +122,19 @@ struct SetBack {
   uint32_t line = 0;
 };
 
-// A mark of a wipe's begin or end that is out of place, or a wipe without such marks.
+// What may be wrong with the marks of a wipe's begin and end.
+enum class MarkFaultKind : uint8_t {
+  kUnmarked,  // a wipe without them
+  kBeginsTwice,
+  kEndsTwice,
+  kEmpty,    // nothing moves between the two
+  kDeposit,  // something is printed between the two
+};
+
 struct MarkFault {
   uint32_t section = 0;
   uint32_t line = 0;
-  bool unmarked = false;
+  MarkFaultKind kind = MarkFaultKind::kUnmarked;
 };
 
 struct TraceSection {

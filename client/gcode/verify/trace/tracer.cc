@@ -102,8 +102,11 @@ void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t secti
 }
 
 void Tracer::TakeWipeMark(bool begins, uint32_t line, uint32_t section) {
-  if (begins == wiping_ || (!begins && !wiped_)) {
-    chunk_.mark_faults.push_back({section, line, false});
+  if (begins == wiping_) {
+    const MarkFaultKind twice = begins ? MarkFaultKind::kBeginsTwice : MarkFaultKind::kEndsTwice;
+    chunk_.mark_faults.push_back({section, line, twice});
+  } else if (!begins && !wiped_) {
+    chunk_.mark_faults.push_back({section, line, MarkFaultKind::kEmpty});
   }
   marks_wipes_ = true;
   wiping_ = begins;
@@ -185,7 +188,8 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
   in_path_ = true;
   // What is printed within a wipe is a fault of its mark; one of it is enough.
   if (wiping_ && wiped_)
-    chunk_.mark_faults.push_back({section, static_cast<uint32_t>(line.number), false});
+    chunk_.mark_faults.push_back(
+        {section, static_cast<uint32_t>(line.number), MarkFaultKind::kDeposit});
   wiped_ &= !wiping_;
   TraceSegment segment;
   segment.digest = line.digest;
@@ -225,7 +229,8 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
   if (wiping_ && move.kind == MoveKind::kTravel) move.kind = MoveKind::kWipe;
   wiped_ |= wiping_ && move.sideways();
   if (!wiping_ && marks_wipes_ && move.kind == MoveKind::kWipe && motion.number < 10) {
-    chunk_.mark_faults.push_back({section, static_cast<uint32_t>(line.number), true});
+    chunk_.mark_faults.push_back(
+        {section, static_cast<uint32_t>(line.number), MarkFaultKind::kUnmarked});
   }
   move.acceleration = machine.AccelerationDigest();
   move.identity = IdentityOf(motion, move.acceleration, wiping_);

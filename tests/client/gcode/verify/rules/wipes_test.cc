@@ -52,5 +52,14 @@ TEST(VerifyWipes, AreNotShortened) {
   EXPECT_EQ(Broken(head + two, head + With(two, "G1 X7 Y5 E-.5", "G1 X6.5 Y5 E-.5")), "");
 }
 
+// Towers have marks of wipes around what they print: there is a fault in the original, but another.
+TEST(VerifyWipes, MarksAreNoMoreOutOfPlaceThanTheyWere) {
+  const std::string odd = kHead + Line("Prime tower", "X0 Y0", "X9 Y0") +
+                          "; WIPE_START\nG1 X7 Y0 E.01\n; WIPE_END\nG1 E-1 F2100\n";
+  EXPECT_EQ(Broken(odd, odd), "");
+  EXPECT_EQ(Broken(odd, With(odd, "; WIPE_START\n", "")), "wipes");
+  EXPECT_EQ(Broken(odd, With(odd, "; WIPE_END\n", "; WIPE_START\n")), "wipes");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
