@@ -109,7 +109,8 @@ struct RetractionCycle {
   float late_mm = 0;         // of the way, gone before it was pulled back
   bool pushed_high = false;  // above what is printed on either side
   bool pulled_high = false;
-  bool known = false;  // all its moves are moves of the original
+  bool known = false;     // all its moves are moves of the original
+  uint64_t identity = 0;  // of all its moves
   uint32_t line = 0;
   int64_t layer = -1;
 };

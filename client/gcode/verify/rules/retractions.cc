@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/rules/rules.h"
+#include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 namespace {
@@ -78,7 +79,12 @@ class CycleReader {
     cycle_.pulled += move.firmware ? kOnce : -move.filament;
     cycle_.late_mm = static_cast<float>(way_mm_);
     cycle_.idle &= !move.sideways();
+    Note(move);
+  }
+
+  void Note(const TraceMove& move) {
     cycle_.known &= layer_.IsKnown(move);
+    cycle_.identity = Mix(cycle_.identity, move.identity);
   }
 
   void Begin(const TraceMove& move) {
@@ -93,7 +99,7 @@ class CycleReader {
 
   void Push(const TraceMove& move) {
     cycle_.pushed += move.firmware ? kOnce : move.filament;
-    cycle_.known &= layer_.IsKnown(move);
+    Note(move);
     if (!move.firmware && cycle_.pushed < cycle_.pulled - VerifyMachine::kSlack) return;
     cycles_.push_back(cycle_);
     open_ = false;
@@ -146,6 +152,16 @@ class PairTable {
   std::map<uint64_t, std::pair<Micro, uint32_t>> deepest_;
 };
 
+// Where a loop ends in the point that it began in, filament is pulled back and pushed in one place,
+// and yet there is a way between the two.
+void ForgetNewIdle(const std::vector<RetractionCycle>& was, std::vector<RetractionCycle>& is) {
+  absl::flat_hash_set<uint64_t> idle;
+  for (const RetractionCycle& cycle : was) {
+    if (cycle.idle) idle.insert(cycle.identity);
+  }
+  for (RetractionCycle& cycle : is) cycle.known &= !cycle.idle || idle.contains(cycle.identity);
+}
+
 }  // namespace
 
 void ObserveRetractions(const LayerPair& layer, LayerFindings& findings) {
@@ -157,6 +173,7 @@ void ObserveRetractions(const LayerPair& layer, LayerFindings& findings) {
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
     is.Read(layer.is(), link);
   }
+  ForgetNewIdle(findings.was.cycles, findings.is.cycles);
 }
 
 void ObserveLastRetraction(const LayerPair& layer, LayerFindings& findings) {

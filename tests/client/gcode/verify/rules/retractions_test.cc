@@ -56,5 +56,13 @@ TEST(VerifyRetractions, TheLastOneIsNoDeeper) {
   EXPECT_EQ(Broken(kHead + kTwo + end, kHead + kOneTurned + end), "");
 }
 
+// A loop ends where it began: what is pulled back there and pushed before it is in one place.
+TEST(VerifyRetractions, AreForAWay) {
+  const std::string on = Way("X5 Y10") + ";TYPE:Internal infill\nG1 F1800\nG1 X0 Y10 E.3\n";
+  const std::string a = kHead + kSquare + on;
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, With(a, kWall, "G1 E-1\nG1 E1\n" + kWall)), "retractions");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
