@@ -41,6 +41,8 @@ void Observations::Append(const Observations& other) {
   lifts_of_links.insert(lifts_of_links.end(), other.lifts_of_links.begin(),
                         other.lifts_of_links.end());
   way_lengths.insert(way_lengths.end(), other.way_lengths.begin(), other.way_lengths.end());
+  ways_to_layers.insert(ways_to_layers.end(), other.ways_to_layers.begin(),
+                        other.ways_to_layers.end());
   farthest.insert(farthest.end(), other.farthest.begin(), other.farthest.end());
   script_signatures.insert(other.script_signatures.begin(), other.script_signatures.end());
   lifts.Append(other.lifts);

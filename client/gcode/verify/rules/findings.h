@@ -85,6 +85,9 @@ struct WayLength {
   float excess_mm = 0;      // beyond the straight line
   bool turns_back = false;  // one of its moves leads back to where the one before began
   bool to_layer = false;    // with an open nozzle, from one layer to the next
+  // With filament pulled back all the way, from one layer to the next.
+  bool retracted_to_layer = false;
+  bool was_retracted = false;  // the original has filament pulled back on the way to this layer
   uint32_t line = 0;
   int64_t layer = -1;
 };
@@ -161,6 +164,7 @@ struct Observations {
   std::vector<FarPoint> farthest;
   Box box;                             // of all points
   std::vector<WayLength> way_lengths;  // the greatest of each layer
+  std::vector<WayLength> ways_to_layers;
   LiftLog lifts;
   std::vector<RetractionCycle> cycles;
   std::vector<WipeDeviation> wipes;

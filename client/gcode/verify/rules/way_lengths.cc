@@ -1,6 +1,6 @@
 // No way with an open nozzle is much longer than the longest one of the original, whatever it
-// crosses, nor leads to another layer where none does; and none winds more than ways of the
-// original do.
+// crosses, nor leads to another layer where none does, or where the original's way to that layer is
+// retracted as even shorter ones are; and none winds more than ways of the original do.
 
 #include <algorithm>
 
@@ -16,6 +16,7 @@ namespace {
 constexpr float kOpenSlackMm = 1.0f;
 constexpr float kOpenFactor = 2.0f;
 constexpr float kShortestMm = 0.5f;
+constexpr float kToLayerSlackMm = 0.05f;
 constexpr double kSamePointMm = 0.01;
 constexpr float kWindingSlackMm = 2.0f;
 constexpr float kWindingFactor = 3.0f;
@@ -46,8 +47,20 @@ WayLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t lin
   if (first == nullptr || traced.scripted || (only_new && known)) return {};
   if (way.line == 0) way.line = first->line;
   way.to_layer = traced.new_layer && way.open_mm > 0;
+  way.retracted_to_layer = traced.new_layer && way.length_mm > 0 && way.open_mm == 0;
   way.excess_mm = way.length_mm - static_cast<float>(DistanceOf(first->from, last->to));
   return way;
+}
+
+void ObserveWaysToLayers(const LayerPair& layer, const Tails& was_tails, const Tails& is_tails,
+                         LayerFindings& findings) {
+  const WayLength was = LengthOf(layer, layer.was(), layer.first_path_was(),
+                                 was_tails.At(layer.first_path_was()), false);
+  WayLength is =
+      LengthOf(layer, layer.is(), layer.first_path_is(), is_tails.At(layer.first_path_is()), true);
+  is.was_retracted = was.retracted_to_layer;
+  if (was.to_layer || was.retracted_to_layer) findings.was.ways_to_layers.push_back(was);
+  if (is.to_layer) findings.is.ways_to_layers.push_back(is);
 }
 
 void Observe(const LayerPair& layer, const Tails& tails, bool original, Observations& seen) {
@@ -56,38 +69,59 @@ void Observe(const LayerPair& layer, const Tails& tails, bool original, Observat
   const uint32_t end = original ? layer.end_path_was() : layer.end_path_is();
   WayLength open;
   WayLength winding;
-  WayLength open_to_layer;
   WayLength back;
   for (uint32_t link = first; link < end; ++link) {
     const WayLength way = LengthOf(layer, chunk, link, tails.At(link), !original);
     if (way.open_mm > open.open_mm) open = way;
     if (way.excess_mm > winding.excess_mm) winding = way;
     if (way.turns_back) back = way;
-    if (way.to_layer && way.open_mm > kShortestMm) open_to_layer = way;
   }
   if (back.turns_back) seen.way_lengths.push_back(back);
-  if (open_to_layer.to_layer) seen.way_lengths.push_back(open_to_layer);
   for (const WayLength& way : {open, winding}) {
     if (way.line != 0) seen.way_lengths.push_back(way);
+  }
+}
+
+void CompareWaysToLayers(const Observations& was, const Observations& is,
+                         std::vector<Finding>& breaks) {
+  bool any_open = false;
+  float shortest_retracted = 1e9f;
+  for (const WayLength& way : was.ways_to_layers) {
+    any_open |= way.open_mm > kShortestMm;
+    if (way.retracted_to_layer) shortest_retracted = std::min(shortest_retracted, way.length_mm);
+  }
+  for (const WayLength& way : is.ways_to_layers) {
+    if (way.open_mm > kShortestMm && !any_open) {
+      breaks.push_back({VerifyRule::kOpenWays, 0, way.line, way.layer,
+                        "an open way to another layer, as the original has none"});
+    } else if (way.was_retracted && way.open_mm > shortest_retracted - kToLayerSlackMm &&
+               way.open_mm > kToLayerSlackMm) {
+      breaks.push_back({VerifyRule::kOpenWays, 0, way.line, way.layer,
+                        absl::StrFormat("an open way of %.2f mm to this layer; the original's is "
+                                        "retracted, as shorter ones are",
+                                        way.open_mm)});
+    }
   }
 }
 
 }  // namespace
 
 void ObserveWayLengths(const LayerPair& layer, LayerFindings& findings) {
-  Observe(layer, Tails(layer, true), true, findings.was);
-  Observe(layer, Tails(layer, false), false, findings.is);
+  const Tails was(layer, true);
+  const Tails is(layer, false);
+  Observe(layer, was, true, findings.was);
+  Observe(layer, is, false, findings.is);
+  ObserveWaysToLayers(layer, was, is, findings);
 }
 
 void CompareWayLengths(const Observations& was, const Observations& is,
                        std::vector<Finding>& breaks) {
+  CompareWaysToLayers(was, is, breaks);
   WayLength open;
   WayLength winding;
-  bool open_to_layers = false;
   bool turn_back = false;
   for (const WayLength& way : was.way_lengths) {
     turn_back |= way.turns_back;
-    open_to_layers |= way.to_layer;
     if (way.open_mm > open.open_mm) open = way;
     if (way.excess_mm > winding.excess_mm) winding = way;
   }
@@ -95,11 +129,6 @@ void CompareWayLengths(const Observations& was, const Observations& is,
     if (way.turns_back && !turn_back) {
       breaks.push_back({VerifyRule::kBounds, 0, way.line, way.layer,
                         "a way leads back to where it was, as none of the original"});
-      continue;
-    }
-    if (way.to_layer && !open_to_layers) {
-      breaks.push_back({VerifyRule::kOpenWays, 0, way.line, way.layer,
-                        "an open way to another layer, as the original has none"});
       continue;
     }
     if (way.open_mm > open.open_mm * kOpenFactor + kOpenSlackMm) {

@@ -91,7 +91,8 @@ def layers_exchanged(file, rng):
     def make(k):
         for other in range(k + 1, min(k + 60, len(file.paths))):
             if file.paths[other].start[2] != file.paths[k].start[2]:
-                both = file.paths[k].plain and file.paths[other].plain
+                one, two = file.paths[k], file.paths[other]
+                both = one.plain and two.plain and body(file, one) != body(file, two)
                 return swap(file, k, other) if both else None
         return None
 

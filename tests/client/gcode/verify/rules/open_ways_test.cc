@@ -52,5 +52,21 @@ TEST(VerifyOpenWays, BeginWhereTheMoveAlongTheWallEnds) {
       "open_ways");
 }
 
+// Some layers are reached with an open nozzle; where one is reached with filament pulled back, as
+// no longer way is, the next file does the same.
+TEST(VerifyOpenWays, LeadToLayersAsTheyDid) {
+  const std::string infill = ";TYPE:Internal infill\nG1 F1800\n";
+  const std::string third = ";LAYER_CHANGE\nG1 Z.6 F9000\n";
+  const std::string a = kHead + kTwo + kNextLayer + Way("X9 Y5.4") + infill + "G1 X0 Y5.4 E.3\n" +
+                        third + "G1 X4 Y8 F9000\n" + infill + "G1 X0 Y8 E.3\n";
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, With(a, Way("X9 Y5.4"), "G1 X9 Y5.4 F9000\n")), "open_ways");
+  EXPECT_EQ(Broken(a,
+                   With(a, "G1 X4 Y8 F9000\n" + infill + "G1 X0 Y8",
+                        "G1 X0 Y8 F9000\n" + infill + "G1 X4 Y8"),
+                   Policy::kFree),
+            "");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
