@@ -6,6 +6,15 @@
 
 namespace traverse {
 
+// One after another: a job that is given up may leave a million in a row, and the stack holds no
+// call for each.
+PendingRoute::~PendingRoute() {
+  std::shared_ptr<PendingRoute> entry = std::move(previous);
+  while (entry != nullptr && entry.use_count() == 1) {
+    entry = std::exchange(entry->previous, nullptr);
+  }
+}
+
 RouteHistory::Shape& RouteHistory::OfShape(uint64_t shape) {
   if (shapes_.size() >= kMostShapes && shapes_.count(shape) == 0) shapes_.clear();
   return shapes_[shape];
@@ -61,7 +70,7 @@ std::vector<uint64_t> RouteHistory::Complete(Entry entry, KnownRoutePtr own, boo
     entry->ready = true;
     released.insert(released.end(), entry->waiting.begin(), entry->waiting.end());
     entry->waiting.clear();
-    entry = entry->next;
+    entry = entry->next.lock();
   }
   return released;
 }

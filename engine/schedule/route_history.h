@@ -35,9 +35,11 @@ using KnownRoutePtr = std::shared_ptr<const KnownRoute>;
 // What a layer will have added to what is known of its key: layers of one shape that begin and end
 // at the same place, all told from their own origins. Guarded by whoever shares it between threads.
 struct PendingRoute {
+  ~PendingRoute();
+
   uint64_t key = 0;
   std::shared_ptr<PendingRoute> previous;  // of the same key, as long as this one needs it
-  std::shared_ptr<PendingRoute> next;
+  std::weak_ptr<PendingRoute> next;        // null, too, if nobody needs it any more
 
   // The layer's own part.
   KnownRoutePtr own;

@@ -92,6 +92,23 @@ TEST(RouteHistory, ANewKindStartsFromARouteOfItsShape) {
   EXPECT_EQ(history.Enter(kShape + 1, kKey + 2, std::make_shared<PendingRoute>()), nullptr);
 }
 
+TEST(RouteHistory, NothingIsLeftOfAJobThatIsGivenUp) {
+  std::weak_ptr<PendingRoute> first, last;
+  {
+    RouteHistory history;
+    std::vector<RouteHistory::Entry> entries;  // of layers that were never solved
+    for (int i = 0; i < 1'000'000; ++i) {
+      entries.push_back(std::make_shared<PendingRoute>());
+      history.Enter(kShape, kKey, entries.back());
+    }
+    first = entries.front();
+    last = entries.back();
+  }
+
+  EXPECT_TRUE(first.expired());
+  EXPECT_TRUE(last.expired());
+}
+
 TEST(RouteHistory, WhatWasLearntTakesNoPlaceOfAKeyThatIsKnown) {
   RouteHistory history;
   const auto first = std::make_shared<PendingRoute>();
