@@ -1,5 +1,6 @@
 #include "engine/search/move_evaluator.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -46,7 +47,8 @@ double MoveEvaluator::Evaluate(const SegmentMove& move, double most) {
   }
   complete_ = new_cost < limit;
   delta_ = new_cost - old_cost_;
-  return delta_;
+  // Where costs are large, the limit is rounded to beside itself, and the difference is less.
+  return complete_ ? delta_ : std::max(delta_, most);
 }
 
 // The segment's ends are free. A long segment divides the stretch: what is inside stays.

@@ -62,6 +62,22 @@ TEST(MoveEvaluator, EndsEarlyForMovesThatCostTooMuchAlone) {
   EXPECT_GT(ended, 100);
 }
 
+// `most` is above the change by less than costs are rounded by.
+TEST(MoveEvaluator, WhatCostsLessThanTheMostByRoundingAloneMayBeDone) {
+  ForRandomMoves(300, [](Searched& s, MoveEvaluator& evaluator, const SegmentMove& move, Rng& rng) {
+    const double before = s.state.TotalCost();
+    const double delta = evaluator.Evaluate(move);
+    const double ulp = std::nextafter(before, 2 * before) - before;
+    const double most = delta + rng.Unit() * ulp;
+
+    const double limited = evaluator.Evaluate(move, most);
+
+    if (limited >= most) return;
+    evaluator.Apply(move);
+    ASSERT_NEAR(s.state.TotalCost(), before + limited, kCostTolerance);
+  });
+}
+
 // Two contours change places: with the entries that suited the old neighbors, which face away from
 // the new ones, the move would seem to cost 16 mm.
 TEST(MoveEvaluator, ChoosesEntriesForTheNewNeighbors) {
