@@ -16,24 +16,12 @@
 #include "absl/time/time.h"
 #include "tests/server/support/open_stream.h"
 #include "tests/server/support/service_fixture.h"
+#include "tests/support/sanitizers.h"
 
 namespace traverse::testing {
 namespace {
 
 using ::testing::HasSubstr;
-
-// Sanitizers slow everything down several times.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
-#else
-constexpr bool kSanitized = false;
-#endif
 
 TEST(Cancellation, FreesTheJobsPlace) {
   TestService service;

@@ -26,6 +26,8 @@ import bgcode  # noqa: E402
 TRAVERSE = os.environ["TRAVERSE"]
 SLICED = os.path.join(TESTS, "data", "gcode", "ps_hooks_support_bridge.gcode.xz")
 DONE, INPUT, USAGE = 0, 1, 2
+with open(TRAVERSE, "rb") as binary:
+    SANITIZED = b"__asan_init" in binary.read()  # takes all addresses there are
 
 METADATA = {
     "file": "Producer=PrusaSlicer 2.8.1\nProduced on=2024-10-21 at 06:38:01 UTC\n",
@@ -71,6 +73,10 @@ def commands(text):
         if line:
             out.append(line.replace(" ", "") if re.match(r"G\d", line) else line)
     return out
+
+
+def little_memory():
+    resource.setrlimit(resource.RLIMIT_DATA, (1 << 30, 1 << 30))
 
 
 class Containers(unittest.TestCase):
@@ -247,8 +253,7 @@ class Bgcode(Containers):
         for name, (content, message) in cases.items():
             with self.subTest(name):
                 path = self.put(name, content)
-                fault = self.fail_with(INPUT, "optimize", path, preexec_fn=lambda: resource.setrlimit(
-                    resource.RLIMIT_DATA, (1 << 30, 1 << 30)))
+                fault = self.fail_with(INPUT, "optimize", path, preexec_fn=None if SANITIZED else little_memory)
                 self.assertRegex(fault, f"^{re.escape(path)}: ")
                 self.assertRegex(fault, message)
                 self.assertEqual(content, read(path))
@@ -357,8 +362,7 @@ class GcodeZip(Containers):
         for name, (content, message) in cases.items():
             with self.subTest(name):
                 path = self.put(name, content)
-                fault = self.fail_with(INPUT, "optimize", path, preexec_fn=lambda: resource.setrlimit(
-                    resource.RLIMIT_DATA, (1 << 30, 1 << 30)))
+                fault = self.fail_with(INPUT, "optimize", path, preexec_fn=None if SANITIZED else little_memory)
                 self.assertRegex(fault, f"^{re.escape(path)}: ")
                 self.assertIn(message, fault)
                 self.assertEqual(content, read(path))

@@ -29,6 +29,7 @@
 #include "engine/engine.h"
 #include "engine/strategy/registry.h"
 #include "tests/support/instances.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {
@@ -272,9 +273,10 @@ const Shape kShapes[] = {
 };
 
 // Bounds for machines that do other things as well: caches are cold after each of those.
-constexpr double kMostGap = 0.04;
-constexpr double kMostLargeGap = 0.06;
-constexpr double kMostLargeEnd = 0.06;
+constexpr double kPatience = kSanitized ? 10 : 1;
+constexpr double kMostGap = 0.04 * kPatience;
+constexpr double kMostLargeGap = 0.06 * kPatience;
+constexpr double kMostLargeEnd = 0.06 * kPatience;
 
 class Gaps : public ::testing::TestWithParam<std::string> {
  protected:

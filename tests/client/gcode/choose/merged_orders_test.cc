@@ -32,9 +32,9 @@ class MergedOrdersTest : public ::testing::Test {
     sketch.GoRetracted(38, 20).Infill(39.3, 20).GoRetracted(20, 20).Infill(21, 20);
     sketch.GoRetracted(40.7, 20).Infill(45, 20).GoRetracted(60, 60).Infill(61, 60);
     file_ = sketch.Read();
+    habit_ = LearnRetraction(*file_);
     donors_ = std::make_unique<LinkDonors>(*file_);
-    writer_ =
-        std::make_unique<LayerWriter>(*file_, file_->layers[0], LearnRetraction(*file_), *donors_);
+    writer_ = std::make_unique<LayerWriter>(*file_, file_->layers[0], habit_, *donors_);
   }
 
   std::vector<WayTotals> WaysOf(const LayerOrder& order) const {
@@ -46,6 +46,7 @@ class MergedOrdersTest : public ::testing::Test {
   }
 
   std::shared_ptr<GcodeFile> file_;
+  RetractionHabit habit_;
   std::unique_ptr<LinkDonors> donors_;
   std::unique_ptr<LayerWriter> writer_;
 };
