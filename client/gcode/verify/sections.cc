@@ -10,7 +10,9 @@ namespace {
 constexpr uint64_t kEndOfText = 1;
 
 uint64_t DigestOf(const Motion& motion) {
-  uint64_t digest = Mix(static_cast<uint64_t>(motion.number), static_cast<uint64_t>(motion.feed));
+  // G0 and G1 are the same to what prints nothing.
+  const auto number = static_cast<uint64_t>(std::max(motion.number, 1));
+  uint64_t digest = Mix(number, static_cast<uint64_t>(motion.feed));
   for (size_t axis = 0; axis < 3; ++axis) {
     digest = Mix(digest, static_cast<uint64_t>(motion.from[axis]));
     digest = Mix(digest, static_cast<uint64_t>(motion.to[axis]));

@@ -37,6 +37,7 @@ void Observations::Append(const Observations& other) {
   stated.insert(stated.end(), other.stated.begin(), other.stated.end());
   lowest.insert(lowest.end(), other.lowest.begin(), other.lowest.end());
   deepest.insert(deepest.end(), other.deepest.begin(), other.deepest.end());
+  descents.insert(descents.end(), other.descents.begin(), other.descents.end());
   AppendSeen(other.radii, radii);
   lifts_of_links.insert(lifts_of_links.end(), other.lifts_of_links.begin(),
                         other.lifts_of_links.end());

@@ -70,6 +70,14 @@ struct LowestWay {
   WayRise rise = WayRise::kLevel;
 };
 
+// How far a move leads sideways on its way down.
+struct Descent {
+  float length_mm = 0;
+  uint32_t line = 0;
+  int64_t layer = -1;
+  WayRise rise = WayRise::kLevel;  // of the way that it is part of
+};
+
 // How often the head rises between two paths.
 struct RepeatedLift {
   bool level = false;  // both paths have the same height
@@ -158,6 +166,7 @@ struct Observations {
   absl::flat_hash_map<int64_t, Seen> rises;  // the same of moves straight up
   std::vector<LowestWay> lowest;             // ways that lead lower than what they connect
   std::vector<LowestWay> deepest;            // moves straight down that do so
+  std::vector<Descent> descents;             // the longest of each way
   absl::flat_hash_map<int64_t, Seen> radii;  // um, of arcs that rise
   std::vector<RepeatedLift> lifts_of_links;  // links that rise more than once
   absl::flat_hash_set<uint64_t> deposit_accelerations;  // of the whole file, as the box is

@@ -1,6 +1,6 @@
 // How high ways may lead, whether or not their kind is lifted: none lies lower than the higher of
-// the two paths that it connects, unless such ways of the original do; and a move straight up leads
-// to a height above the layer that the original knows.
+// the two paths that it connects, unless such ways of the original do; none sinks over a longer
+// stretch; and a move straight up leads to a height above the layer that the original knows.
 
 #include <algorithm>
 #include <array>
@@ -15,6 +15,7 @@ namespace {
 constexpr double kSlackMm = 0.003;
 constexpr double kShortestMm = 0.05;
 constexpr double kLevelMm = 1e-4;
+constexpr float kDescentSlackMm = 0.5f;
 
 WayRise RiseOf(double from, double to) {
   if (std::abs(to - from) <= kLevelMm) return WayRise::kLevel;
@@ -31,6 +32,7 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
   const double from = chunk.moves[traced.first_move].z_from_mm;
   LowestWay lowest{0, 0, layer.index(), RiseOf(from, to)};
   LowestWay deepest = lowest;
+  Descent descent{0, 0, layer.index(), lowest.rise};
   RepeatedLift lifts{lowest.rise == WayRise::kLevel, 0, 0, layer.index()};
   for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
@@ -56,11 +58,17 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
       }
     }
     if (move.kind != MoveKind::kTravel || move.length_mm() < kShortestMm) continue;
+    const auto length = static_cast<float>(move.length_mm());
+    if (move.z_to_mm < move.z_from_mm - kSlackMm && length > descent.length_mm) {
+      descent.length_mm = length;
+      descent.line = move.line;
+    }
     const auto above = static_cast<float>(move.z_to_mm - std::max(from, to));
     if (above >= lowest.above_mm) continue;
     lowest.above_mm = above;
     lowest.line = move.line;
   }
+  if (descent.line != 0) seen.descents.push_back(descent);
   if (lowest.line != 0) seen.lowest.push_back(lowest);
   if (deepest.line != 0) seen.deepest.push_back(deepest);
   if (lifts.line != 0) seen.lifts_of_links.push_back(lifts);
@@ -96,6 +104,23 @@ void CompareMoves(const Observations& was, const Observations& is, std::vector<F
   }
 }
 
+void CompareDescents(const Observations& was, const Observations& is,
+                     std::vector<Finding>& breaks) {
+  std::array<Descent, static_cast<size_t>(WayRise::kCount)> known;
+  for (const Descent& descent : was.descents) {
+    Descent& longest = known[static_cast<size_t>(descent.rise)];
+    if (descent.length_mm > longest.length_mm) longest = descent;
+  }
+  for (const Descent& descent : is.descents) {
+    const Descent& longest = known[static_cast<size_t>(descent.rise)];
+    if (descent.length_mm <= longest.length_mm + kDescentSlackMm) continue;
+    breaks.push_back({VerifyRule::kLifts, longest.line, descent.line, descent.layer,
+                      absl::StrFormat("sinks over %.2f mm of the way; none of the original does so "
+                                      "over more than %.2f mm",
+                                      descent.length_mm, longest.length_mm)});
+  }
+}
+
 }  // namespace
 
 void ObserveHeights(const LayerPair& layer, LayerFindings& findings) {
@@ -109,6 +134,7 @@ void ObserveHeights(const LayerPair& layer, LayerFindings& findings) {
 
 void CompareHeights(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   CompareMoves(was, is, breaks);
+  CompareDescents(was, is, breaks);
   std::array<LowestWay, static_cast<size_t>(WayRise::kCount)> known;
   for (const LowestWay& way : was.lowest) {
     LowestWay& lowest = known[static_cast<size_t>(way.rise)];

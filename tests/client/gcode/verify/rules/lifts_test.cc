@@ -132,5 +132,17 @@ TEST(VerifyLifts, WhatTheFileLeavesLowMayStayLow) {
   EXPECT_EQ(LiftsBroken(Lines(150, -1), Lines(150, 40)), 1);
 }
 
+// Not all ways of this file are lifted, so that a low one is no break; one that sinks on the way
+// is.
+TEST(VerifyLifts, NoWaySinksOnItsWay) {
+  const std::string low = Line("Internal infill", "X10 Y50", "X20 Y50");
+  const std::string a = kHead + kLifted + low;
+  EXPECT_EQ(Broken(a, a), "");
+  const std::string sinks = With(a, "G1 X10 Y40 F9000\nG1 Z.2\n", "G1 X10 Y40 Z.2 F9000\n");
+  EXPECT_EQ(Broken(a, sinks), "lifts");
+  EXPECT_EQ(Broken(sinks, sinks), "");
+  EXPECT_EQ(Broken(sinks, With(sinks, "G1 X10 Y20 F9000\nG1 Z.2\n", "G1 X10 Y20 Z.2 F9000\n")), "");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
