@@ -17,6 +17,9 @@ constexpr double kRoundedMm = 0.05;
 
 constexpr uint32_t Bit(char letter) { return 1u << (letter - 'A'); }
 
+// Of inches.
+Micro InMm(Micro length) { return std::llround(static_cast<double>(length) * kInch); }
+
 double LengthOf(const Motion& motion) {
   const auto dx = static_cast<double>(motion.to[0] - motion.from[0]);
   const auto dy = static_cast<double>(motion.to[1] - motion.from[1]);
@@ -45,7 +48,9 @@ uint64_t IdentityOf(const Motion& motion, uint64_t acceleration, bool wiping) {
     digest = Mix(digest, static_cast<uint64_t>(motion.center_x));
     digest = Mix(digest, static_cast<uint64_t>(motion.center_y));
   }
-  return Mix(digest, static_cast<uint64_t>(motion.number) * 2 + (wiping ? 1 : 0));
+  // G0 and G1 are the same to what prints nothing.
+  const auto number = static_cast<uint64_t>(std::max(motion.number, 1));
+  return Mix(digest, number * 2 + (wiping ? 1 : 0));
 }
 
 // Halfway along the arc from `from` to `to`.
@@ -248,7 +253,7 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
   }
   move.z_from_mm = static_cast<double>(motion.from[2]) * unit;
   move.z_to_mm = static_cast<double>(motion.to[2]) * unit;
-  move.filament = motion.filament;
+  move.filament = machine.inches() ? InMm(motion.filament) : motion.filament;
   move.feed = motion.feed;
   move.line = static_cast<uint32_t>(line.number);
   move.section = section;
@@ -263,9 +268,10 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
   // What was pulled back may be returned with what rounding makes of it, piece by piece; some
   // slicers prime with next to nothing.
   constexpr Micro kRounding = 1'000;
+  const Micro surplus = machine.inches() ? InMm(line.surplus) : line.surplus;
   const bool fresh = motion.pulled <= VerifyMachine::kSlack && !motion.was_retracted;
-  if (line.primes && line.surplus > kRounding) {
-    chunk_.standstills.push_back({section, move.line, line.surplus, fresh, move.to});
+  if (line.primes && surplus > kRounding) {
+    chunk_.standstills.push_back({section, move.line, surplus, fresh, move.to});
   }
   pending_.push_back(move);
 }

@@ -39,6 +39,13 @@ TEST(VerifyRules, LinesEndAsTheyDidAndACarriageReturnEndsOne) {
   EXPECT_EQ(Broken(both, both), "");
 }
 
+TEST(VerifyRules, TravelMayBeByG0) {
+  const std::string script = "G28\nM83\nG1 X5 Y5 F9000\n;LAYER_CHANGE\nG1 Z.2 F9000\n";
+  EXPECT_EQ(Broken(script + kTwo, With(script, "G1 X5", "G0 X5") + kTwo), "");
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, "G1 X0 Y5", "G0 X0 Y5")), "");
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, "G1 X9 Y5", "G0 X9 Y5")), "same_print");
+}
+
 TEST(VerifyRules, TheMarkOfUtf8StaysInFrontOfTheFile) {
   const std::string a = "; generated\n" + kHead + kTwo;
   EXPECT_EQ(Broken(a, "\xEF\xBB\xBF" + a), "same_print");

@@ -64,5 +64,13 @@ TEST(VerifyRetractions, AreForAWay) {
   EXPECT_EQ(Broken(a, With(a, kWall, "G1 E-1\nG1 E1\n" + kWall)), "retractions");
 }
 
+TEST(VerifyRetractions, AreMeasuredInInchesAsInMillimetres) {
+  const std::string a =
+      With("G20\n" + kHead + kTwo, Way("X0 Y5"), "G1 E-.04 F80\nG1 X0 Y5 F350\nG1 E.04 F80\n");
+  EXPECT_EQ(Broken(a, a), "");
+  // By 0.0025 mm.
+  EXPECT_EQ(Broken(a, With(a, "G1 E.04", "G1 E.0399")), "retractions");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
