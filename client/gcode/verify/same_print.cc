@@ -71,7 +71,7 @@ std::optional<VerifyBreak> CompareEnds(const Side& original, const Side& optimis
   if (was.fan != is.fan) return differ("the fan is not as");
   if (was.settings != is.settings) return differ("other settings hold than");
   if (was.x != is.x || was.y != is.y || was.z != is.z) return differ("the head is not where it is");
-  if (was.fixed && was.retracted != is.retracted) return differ("filament is not pulled back as");
+  if (!was.label && was.retracted != is.retracted) return differ("filament is not pulled back as");
   return std::nullopt;
 }
 
@@ -114,8 +114,10 @@ std::optional<VerifyBreak> FirstDifference(const Side& original, const Side& opt
                           "than at %s:%d",
                           optimised.name, is.first_line, original.name, was.first_line)};
     }
+    // Where paths change places, what is said of them does so too.
     const bool ordered = was.deposits.count == 0 || i < original.cut.of_script;
-    if (was.sequence != is.sequence && ordered) {
+    if ((was.sequence != is.sequence && ordered) ||
+        (was.order == is.order && was.said != is.said)) {
       return VerifyBreak{VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
                          absl::StrFormat("%s:%d: the comments of lines %d to %d stand in another "
                                          "order in %s",

@@ -58,6 +58,13 @@ void SectionCutter::NoteOrder(const VerifyLine& line, bool mark) {
   }
 }
 
+void SectionCutter::TakeLoose() {
+  section_.notes += loose_notes_;
+  loose_notes_ = {};
+  for (const uint64_t digest : loose_said_) section_.said = Mix(section_.said, digest);
+  loose_said_.clear();
+}
+
 SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachine& machine,
                                        bool mark) {
   Cut cut;
@@ -80,11 +87,13 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
       has_height_ = true;
       section_.lowest = std::min(section_.lowest, line.z);
       section_.deposits.Add(line.digest);
+      section_.order = Mix(section_.order, line.digest);
       last_deposit_ = line.number;
-      section_.notes += loose_notes_;
-      loose_notes_ = {};
+      TakeLoose();
       break;
     case LineRole::kComment:
+      loose_said_.push_back(line.digest);
+      [[fallthrough]];
     case LineRole::kProgress:
       loose_notes_.Add(line.digest);
       break;
@@ -109,31 +118,34 @@ void SectionCutter::Finish(const VerifyMachine& machine) {
 void SectionCutter::CutAtHeight(const VerifyMachine& machine) {
   const size_t first_note = std::max(last_deposit_ + 1, section_.first_note);
   const DigestSet notes = std::exchange(loose_notes_, {});
+  std::vector<uint64_t> said = std::exchange(loose_said_, {});
   Close(machine, last_line_, 0, false);
   cut_.sections.back().last_note = first_note - 1;
   if (!in_script_) cut_.sections.back().sequence = 0;
   section_.first_note = first_note;
   loose_notes_ = notes;
+  loose_said_ = std::move(said);
 }
 
 void SectionCutter::Close(const VerifyMachine& machine, size_t last_line, uint64_t fence,
                           bool fixed, bool label) {
   section_.last_line = section_.last_note = last_line;
-  section_.notes += loose_notes_;
-  loose_notes_ = {};
+  TakeLoose();
   section_.fence = fence;
   section_.fixed = fixed;
+  // What stands behind the print may be all that leads away from it.
+  const bool end = fence == kEndOfText;
   if (fixed) {
     section_.x = machine.x();
     section_.y = machine.y();
     section_.z = machine.z();
-    section_.retracted = machine.retracted();
     section_.settings = machine.SettingsDigest();
   }
   // A change of height is no line: what holds there may still change before it prints.
   if (fence != 0) section_.fan = machine.fan();
   section_.label = label;
-  if (label) section_.retracted = machine.retracted();
+  if (end) section_.z = machine.z();
+  if (label || fixed || end) section_.retracted = machine.retracted();
   cut_.sections.push_back(section_);
   if (in_script_) cut_.of_script = cut_.sections.size();
   section_ = Section{};

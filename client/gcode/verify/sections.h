@@ -46,6 +46,10 @@ struct Section {
   uint64_t header = 0;   // of the comments between the mark of a layer and the first way
   uint64_t sequence = 0;  // of all comments, in their order, before the first deposit
 
+  // Of the deposits and of the comments, in their order; notes say to which section these belong.
+  uint64_t order = 0;
+  uint64_t said = 0;
+
   // How it ends: with a line, or with a change of height (digest 0), or with the text.
   uint64_t fence = 0;
   bool fixed = false;
@@ -94,12 +98,14 @@ class SectionCutter {
   void Close(const VerifyMachine& machine, size_t last_line, uint64_t fence, bool fixed,
              bool label = false);
   bool Ignores(const VerifyLine& line);
+  void TakeLoose();
   void NoteOrder(const VerifyLine& line, bool mark);
 
   const std::string_view ignored_;
   Sections cut_;
   Section section_;
-  DigestSet loose_notes_;  // since the last deposit
+  DigestSet loose_notes_;             // since the last deposit
+  std::vector<uint64_t> loose_said_;  // comments among them
   size_t last_line_ = 0;
   size_t last_deposit_ = 0;
   bool in_script_;

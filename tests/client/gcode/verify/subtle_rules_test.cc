@@ -39,6 +39,21 @@ TEST(VerifyRules, LinesEndAsTheyDidAndACarriageReturnEndsOne) {
   EXPECT_EQ(Broken(both, both), "");
 }
 
+TEST(VerifyRules, CommentsBetweenPathsThatStayKeepTheirOrder) {
+  const std::string a = kHead + "; here\n" + kOne + "; there\n" + kOther;
+  EXPECT_EQ(Broken(a, kHead + "; there\n" + kOne + "; here\n" + kOther), "same_print");
+  EXPECT_EQ(Broken(a, kHead + "; there\n" + kOther + "; here\n" + kOne), "");
+}
+
+TEST(VerifyRules, TheHeadLeavesThePrintThoughNoScriptFollows) {
+  const std::string end = "G1 E-1 F2100\nG1 Z10 F9000\n";
+  const std::string a = kHead + kTwo + end;
+  EXPECT_EQ(Broken(a, kHead + kTwo), "same_print");
+  EXPECT_EQ(Broken(a, kHead + kTwo + "G1 Z10 F9000\n"), "same_print");
+  EXPECT_EQ(Broken(a, kHead + kTwo + "G1 E-1 F2100\n"), "same_print");
+  EXPECT_EQ(Broken(a, kHead + kOther + kOne + end), "");
+}
+
 TEST(VerifyRules, TravelMayBeByG0) {
   const std::string script = "G28\nM83\nG1 X5 Y5 F9000\n;LAYER_CHANGE\nG1 Z.2 F9000\n";
   EXPECT_EQ(Broken(script + kTwo, With(script, "G1 X5", "G0 X5") + kTwo), "");
