@@ -1,6 +1,5 @@
 """Further defects to put into a good file, of the kinds of defects.py: one change each."""
 
-import math
 import re
 
 from defects import (body, distance, edited, go, is_outer, lifted, links, long_way, pick, restated, reverse,

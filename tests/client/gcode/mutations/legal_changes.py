@@ -34,7 +34,8 @@ def settings_restated(file, rng):
     if re.search(r"^M204 [PT]", file.text(), re.MULTILINE):
         return None
     path = rng.choice(file.paths)
-    return edited(file, {path.first: [line for line in restated(file, path.first) if line[0] != ";"] + [file.lines[path.first].text]})
+    again = [line for line in restated(file, path.first) if line[0] != ";"]
+    return edited(file, {path.first: again + [file.lines[path.first].text]})
 
 
 def numbers_otherwise(file, _):

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Which defects `traverse verify` finds, and whether it takes what is legal for one.
 
-  mutation_table.py TRAVERSE [--copies=10] [--legal] [--verbose] FILE or FOLDER...
+  mutation_table.py TRAVERSE [--copies=10] [--as=FORM] [--legal] [--verbose] FILE or FOLDER...
 
-Puts each defect of defects.py and further_defects.py into each file, `copies` times at places chosen by seed, and prints how
-many are found, and by the rule that is there for them. With --legal the files are optimised under
+Puts each defect of the *_defects.py here into each file, `copies` times at places chosen by seed, and prints
+how many are found, and by the rule that is there for them. With --legal the files are optimised under
 the three policies, and verified. Ends with 1 if a defect is not found or a legal file is refused.
 """
 
@@ -20,13 +20,17 @@ import tempfile
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import defects  # noqa: E402
+import dress  # noqa: E402
 import further_defects  # noqa: E402
 import legal_changes  # noqa: E402
+import path_defects  # noqa: E402
 import sliced  # noqa: E402
+import state_defects  # noqa: E402
 import text_defects  # noqa: E402
 import way_defects  # noqa: E402
 
-DEFECTS = defects.DEFECTS + further_defects.DEFECTS + text_defects.DEFECTS + way_defects.DEFECTS
+DEFECTS = (defects.DEFECTS + further_defects.DEFECTS + text_defects.DEFECTS + way_defects.DEFECTS +
+           path_defects.DEFECTS + state_defects.DEFECTS)
 
 
 def files_of(operands):
@@ -67,7 +71,8 @@ def try_defect(args, folder, name, file, original, defect, counts):
         text = make(file, rng)
         if text is None:
             return
-        rules, message = broken(args.traverse, original, write(folder, "b.gcode", text), policy)
+        other = write(folder, "b.gcode", dress.DRESSES[args.form](text))
+        rules, message = broken(args.traverse, original, other, policy)
         count = counts.setdefault(title, [0, 0, 0, set()])
         count[0] += 1
         count[1] += bool(rules)
@@ -76,8 +81,8 @@ def try_defect(args, folder, name, file, original, defect, counts):
         if args.verbose and rule not in rules:
             print(f"  {name}, copy {copy}: {title}: {rules} {message}", flush=True)
             if args.keep and not rules:
-                write(args.keep, f"{title.replace(' ', '_')}.{name}.{copy}.gcode", text)
-                write(args.keep, f"{name}.original.gcode", file.text())
+                write(args.keep, f"{title.replace(' ', '_')}.{name}.{copy}.gcode", dress.DRESSES[args.form](text))
+                write(args.keep, f"{name}.original.gcode", dress.DRESSES[args.form](file.text()))
 
 
 def false_alarms(args, folder, name, path, file, original):
@@ -99,7 +104,8 @@ def false_alarms(args, folder, name, path, file, original):
         for title, change in legal_changes.CHANGES if policy == "free" else ():
             text = change(file, random.Random(f"{args.seed} {name} {title}"))
             if text is not None:
-                pairs.append((original, write(folder, f"{title.replace(' ', '_')}.gcode", text)))
+                pairs.append((original, write(folder, f"{title.replace(' ', '_')}.gcode",
+                                               dress.DRESSES[args.form](text))))
         for one, other in pairs:
             # What was allowed on top stands at the head of the optimised file.
             rules, message = broken(args.traverse, one, other, None if args.with_flags else policy)
@@ -116,6 +122,7 @@ def main():
     parser.add_argument("files", nargs="+")
     parser.add_argument("--copies", type=int, default=10)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--as", dest="form", default="plain", choices=dress.DRESSES, help="in which form")
     parser.add_argument("--legal", action="store_true")
     parser.add_argument("--with-flags", default="", help="more flags of `optimize` for --legal")
     parser.add_argument("--spread", type=int, default=0, help="put each defect into every nth file alone")
@@ -129,9 +136,10 @@ def main():
             name = os.path.basename(path).split(".")[0]
             names.append(name)
             file = sliced.Sliced(sliced.read(path))
-            original = write(folder, "a.gcode", file.text())
+            original = write(folder, "a.gcode", dress.DRESSES[args.form](file.text()))
             for i, defect in enumerate(DEFECTS):
                 left_out = args.spread and (i + len(names)) % args.spread
+                left_out = left_out or (args.form == "inches" and re.search("inches|millimetres", defect[0]))
                 if left_out or (args.only and not re.search(args.only, defect[0])):
                     continue
                 try_defect(args, folder, name, file, original, defect, counts)

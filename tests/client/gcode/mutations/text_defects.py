@@ -2,8 +2,8 @@
 
 import re
 
-from defects import distance, edited, is_outer, pick, restated, swap
-from further_defects import (end_script_begin, moved_behind, next_path, start_script_end, with_word)
+from defects import distance, edited, is_outer, pick, swap
+from further_defects import moved_behind, next_path, start_script_end, with_word
 
 SETTERS = re.compile(r"M(?:106|107|201|204|205|221|572|900)\b|SET_(?:VELOCITY_LIMIT|PRESSURE_ADVANCE)")
 
