@@ -1,6 +1,7 @@
 #include "client/gcode/verify/verifier.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -247,13 +248,39 @@ VerifyReport Verifier::Verify() {
   return std::move(report_);
 }
 
+// Where the next line begins, behind blanks, with a slash: machines may do it or leave it out.
+size_t NextOptional(std::string_view text, size_t from) {
+  for (size_t at = text.find('/', from); at != std::string_view::npos;
+       at = text.find('/', at + 1)) {
+    size_t begin = at;
+    while (begin > 0 && (text[begin - 1] == ' ' || text[begin - 1] == '\t')) --begin;
+    if (begin == 0 || text[begin - 1] == '\n' || text[begin - 1] == '\r') return at;
+  }
+  return std::string_view::npos;
+}
+
+// The text to a machine that does such lines.
+std::string WithOptionalLines(std::string_view text) {
+  std::string done(text);
+  for (size_t at = NextOptional(done, 0); at != std::string::npos;
+       at = NextOptional(done, at + 1)) {
+    done[at] = ' ';
+  }
+  return done;
+}
+
 }  // namespace
 }  // namespace gcode
 
 VerifyReport CheckGcode(std::string_view original, const std::string& original_name,
                         std::string_view optimised, const std::string& optimised_name,
                         const VerifyOptions& options) {
-  return gcode::Verifier(original, original_name, optimised, optimised_name, options).Verify();
+  VerifyReport report =
+      gcode::Verifier(original, original_name, optimised, optimised_name, options).Verify();
+  if (!report.ok() || gcode::NextOptional(original, 0) == std::string_view::npos) return report;
+  const std::string was = gcode::WithOptionalLines(original);
+  const std::string is = gcode::WithOptionalLines(optimised);
+  return gcode::Verifier(was, original_name, is, optimised_name, options).Verify();
 }
 
 absl::Status VerifyGcode(std::string_view original, const std::string& original_name,

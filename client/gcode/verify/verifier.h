@@ -13,7 +13,8 @@
 // Then each path is found again, and the rules of rules/rules.h look at the order of the paths, at
 // where they begin and in which direction, and at all that is done between them. A move that the
 // original has too, from the same point to the same point in the same layer, breaks no rule: what a
-// slicer does itself is never refused.
+// slicer does itself is never refused. All of it holds whether or not a machine does the lines that
+// begin with a slash.
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_VERIFIER_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_VERIFIER_H_

@@ -28,7 +28,9 @@ STYLES = ("cr", "crlf", "crcrlf", "tabs", "checksums", "numbers", "lower", "pack
           "bare_resets", "padded", "spaced", "shuffled", "more_axes", "foreign", "fan_within", "blind_marks",
           "splines", "codes_in_comments", "twice_worded", "inserted_modes", "nul", "utf16", "exponents",
           "far_off", "around_zero", "belt", "circles", "rotated", "lying_labels", "lying_wipes", "two_slicers",
-          "torn", "very_long", "form_feeds", "fans_within", "z_hops", "heights_twice", "scripts")
+          "torn", "very_long", "form_feeds", "fans_within", "z_hops", "heights_twice", "scripts", "rapid", "mixed_ends",
+          "empty_layers", "semicolons", "wrong_checksums", "restarted_numbers", "several_axes", "same_tool",
+          "lone_words", "bare_moves", "feeds", "pauses", "glued_comments", "slow_fans")
 
 # Lines that come between two paths, by style. Most are not known to anything but some firmware.
 BETWEEN = {
@@ -63,6 +65,14 @@ BETWEEN = {
     "z_hops": ("G1 Z9 F600", "G91\nG1 Z.4 F600\nG1 Z-.4\nG90", "G1 Z-1 F600", "G17\nG3 Z3 I1.2 J0 P1 F600"),
     "scripts": ("M622 J1\nG1 X0 Y90 F9000\nM400\nM623", "M600", "M601 ; pause", ";PAUSE_PRINT\nM25",
                 "TIMELAPSE_TAKE_FRAME", "M0 wait", "@pause", "M226", "T1\nG1 E15 F300\nT0\nG1 E-15"),
+    "several_axes": ("G92 X{x} Y{y} E{e}", "G92 Z{z} E{e}", "G92 X{x} Y{y} Z{z}"),
+    "same_tool": ("T0", "T0 ; again", "M6 T0", "T0 P1", "T-1", "Tx", "T"),
+    "lone_words": ("X5 Y5", "E.5", "F900", "X9 Y9 E1", "S5", "Z.3"),
+    "bare_moves": ("G1", "G0", "G1 ;", "G2", "G3 I1", "G1 P1", "G0 S1", "G10 R1", "G1 H2 X1"),
+    "feeds": ("G1 F0", "G0 F-100", "G1 F999999999", "G1 F.001", "M203 X1", "M220 S1", "G93", "G94", "G95"),
+    "pauses": ("G4", "G4 S0", "G4 P0.5", "M0", "M1", "M25", "M600 X0 Y0 Z5", "M125", "M76", "M77", "M109 S0"),
+    "glued_comments": ("G1;X5", "G1 ;X5 E1", "M106;S5", "G92;E0", "M83;", ";G1 X5 E1", "(G1 X5)", "G1 X5(Y7)E0 F9000"),
+    "slow_fans": ("M106", "M106 P1 S3", "M106 S-1", "M106 S300", "M107 P0", "M106 T2", "M106 I1", "M107 S5"),
     "inserted_modes": ("M82 S1", "M83 P0", "G90 S0", "G21 P1"),
 }
 
@@ -105,7 +115,8 @@ class Writer:
         return text
 
     def move(self, x, y, e=None, feed=None, arc=None):
-        words = [arc[0] if arc else "G1" if e is not None else "G0"]
+        prints = "G0" if "rapid" in self.styles and self.rng.random() < 0.5 else "G1"
+        words = [arc[0] if arc else prints if e is not None else "G0"]
         words += [self.moved("X", x), self.moved("Y", y)]
         if arc:
             words += [self.word(*pair) for pair in arc[1]]
@@ -143,6 +154,8 @@ def print_of(styles, rng):
             z = 0.2
         out.up(z)
         z += 0.2
+        if "empty_layers" in styles and rng.random() < 0.5:
+            out.out(rng.choice((";LAYER_CHANGE", ";LAYER:7", "; CHANGE_LAYER", ";LAYER:-2")))
         switch_modes(out, styles, rng)
         if "resets" in styles and rng.random() < 0.5:
             out.out("G92 E0")
@@ -205,7 +218,15 @@ def print_layer(out, styles, rng, cura):
         for style in sorted(styles & BETWEEN.keys()):
             if rng.random() < 0.15:
                 for line in rng.choice(BETWEEN[style]).split("\n"):
-                    out.out(line)
+                    out.out(where_it_is(out, line))
+
+
+def where_it_is(out, line):
+    """With what the words say where the head is, and the register, so that nothing is another place."""
+    if not line.startswith("G92 ") or "{" not in line:
+        return line
+    words = {"x": out.at[0] + out.offset[0], "y": out.at[1] + out.offset[1], "z": out.at[2], "e": out.e}
+    return line.format(**{key: num(value / out.scale(), 6) for key, value in words.items()})
 
 
 def print_path(out, styles, rng, x, y):
@@ -272,11 +293,17 @@ def styled(lines, styles, rng):
             line += rng.choice((" (a; comment)", " (X1 Y2)", " ; (open", " ()"))
         if "long" in styles and rng.random() < 0.05:
             line += " ;" + "x" * 5000
+        if "semicolons" in styles and rng.random() < 0.05:
+            made.append(";" * rng.choice((1, 2, 10000)))
         if "very_long" in styles and rng.random() < 0.02:
             line += " ;" + "x" * 300000
         if code and ("checksums" in styles or "numbers" in styles):
+            if "restarted_numbers" in styles and rng.random() < 0.05:
+                made.append("M110 N0")
             line = f"N{number} {line}"
-            if "checksums" in styles:
+            if "wrong_checksums" in styles and rng.random() < 0.1:
+                line += "*7"
+            elif "checksums" in styles:
                 total = 0
                 for byte in line.encode():
                     total ^= byte
@@ -284,6 +311,8 @@ def styled(lines, styles, rng):
         made.append(line)
     end = "\r" if "cr" in styles else "\r\n" if "crlf" in styles else "\r\r\n" if "crcrlf" in styles else "\n"
     text = end.join(made) + ("" if "no_newline" in styles else end)
+    if "mixed_ends" in styles:
+        text = re.sub(r"\n", lambda _: rng.choice(("\n", "\r\n", "\r", "\n\n", "\r\r\n")), text)
     data = ("\ufeff" if "bom" in styles else "").encode() + text.encode()
     if "utf16" in styles:
         return text.encode("utf-16")

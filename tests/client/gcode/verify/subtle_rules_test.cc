@@ -61,6 +61,15 @@ TEST(VerifyRules, TravelMayBeByG0) {
   EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, "G1 X9 Y5", "G0 X9 Y5")), "same_print");
 }
 
+TEST(VerifyRules, LinesBehindASlashMayBeDoneOrNot) {
+  const std::string head = "M82\n;LAYER_CHANGE\nG1 Z.2 F9000\nG92 E1\n/G92 E0\n";
+  const std::string a = head + "G1 X0 Y0\nG1 X5 Y0 E2 F1200\nG1 X0 Y5 F9000\nG1 X5 Y5 E4 F1200\n";
+  const std::string b = head + "G1 X0 Y5\nG1 X5 Y5 E3 F1200\nG1 X0 Y0 F9000\nG1 X5 Y0 E4 F1200\n";
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, b), "same_print");
+  EXPECT_EQ(Broken(With(a, "/G92 E0", "/M7"), With(b, "/G92 E0", "/M7")), "");
+}
+
 TEST(VerifyRules, TheMarkOfUtf8StaysInFrontOfTheFile) {
   const std::string a = "; generated\n" + kHead + kTwo;
   EXPECT_EQ(Broken(a, "\xEF\xBB\xBF" + a), "same_print");
