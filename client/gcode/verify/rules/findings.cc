@@ -7,7 +7,9 @@ template <typename Map>
 void AppendSeen(const Map& other, Map& map) {
   for (const auto& [key, seen] : other) {
     const auto [known, added] = map.try_emplace(key, seen);
-    if (!added) known->second.count += seen.count;
+    if (added) continue;
+    known->second.count += seen.count;
+    known->second.longest_mm = std::max(known->second.longest_mm, seen.longest_mm);
   }
 }
 
@@ -44,6 +46,7 @@ void Observations::Append(const Observations& other) {
   way_lengths.insert(way_lengths.end(), other.way_lengths.begin(), other.way_lengths.end());
   ways_to_layers.insert(ways_to_layers.end(), other.ways_to_layers.begin(),
                         other.ways_to_layers.end());
+  long_ways.insert(long_ways.end(), other.long_ways.begin(), other.long_ways.end());
   farthest.insert(farthest.end(), other.farthest.begin(), other.farthest.end());
   script_signatures.insert(other.script_signatures.begin(), other.script_signatures.end());
   lifts.Append(other.lifts);

@@ -30,6 +30,7 @@ struct Seen {
   uint32_t line = 0;
   int64_t layer = -1;
   int64_t count = 0;
+  float longest_mm = 0;  // of sideways moves, the longest
 };
 
 // Something at one speed, or under one acceleration.
@@ -146,6 +147,14 @@ struct Box {
   }
 };
 
+// A way under an acceleration that only shorter ones of its layer are under.
+struct LongWay {
+  uint64_t acceleration = 0;
+  float length_mm = 0;
+  uint32_t line = 0;
+  int64_t layer = -1;
+};
+
 // Where a layer's new moves lie farthest to one side.
 struct FarPoint {
   Point at;
@@ -174,6 +183,7 @@ struct Observations {
   Box box;                             // of all points
   std::vector<WayLength> way_lengths;  // the greatest of each layer
   std::vector<WayLength> ways_to_layers;
+  std::vector<LongWay> long_ways;
   LiftLog lifts;
   std::vector<RetractionCycle> cycles;
   std::vector<WipeDeviation> wipes;

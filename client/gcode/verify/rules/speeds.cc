@@ -1,12 +1,18 @@
 // Feed rate and acceleration of each travel, wipe, lift and retraction are those of the same kind
 // of move within the print.
 
+#include <algorithm>
+
+#include "absl/container/flat_hash_map.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/tails.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
 namespace {
+
+constexpr float kLengthFactor = 2.0f;
+constexpr float kLengthSlackMm = 1.0f;
 
 // Travel with an open nozzle is a kind of its own, behind those of MoveKind.
 constexpr auto kOpenTravel = static_cast<size_t>(MoveKind::kCount);
@@ -22,7 +28,11 @@ std::string KindName(size_t kind) {
 
 void Note(absl::flat_hash_map<uint64_t, Seen>& map, uint64_t key, const TraceMove& move,
           int64_t layer) {
-  ++map.try_emplace(key, Seen{move.line, layer, 0}).first->second.count;
+  Seen& seen = map.try_emplace(key, Seen{move.line, layer, 0}).first->second;
+  ++seen.count;
+  if (move.sideways()) {
+    seen.longest_mm = std::max(seen.longest_mm, static_cast<float>(move.length_mm()));
+  }
 }
 
 void ObserveWas(const LayerPair& layer, const Tails& tails, Observations& seen) {
@@ -46,8 +56,38 @@ void ObserveWas(const LayerPair& layer, const Tails& tails, Observations& seen) 
   }
 }
 
+using LongestWays = absl::flat_hash_map<uint64_t, float>;  // by acceleration, mm
+
+LongestWays LongestOf(const LayerPair& layer) {
+  LongestWays longest;
+  const TraceChunk& chunk = layer.was();
+  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
+    for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
+      const TraceMove& move = chunk.moves[m];
+      if (move.kind != MoveKind::kTravel || !move.in_print) continue;
+      float& of_one = longest[move.acceleration];
+      of_one = std::max(of_one, static_cast<float>(move.length_mm()));
+    }
+  }
+  return longest;
+}
+
+// Some slicers accelerate less on short ways: true if ways as long as `move` are under another
+// acceleration in this layer, and under its own there are but much shorter ones.
+bool IsTooLong(const TraceMove& move, const LongestWays& longest) {
+  if (move.kind != MoveKind::kTravel) return false;
+  const auto length = static_cast<float>(move.length_mm());
+  const auto own = longest.find(move.acceleration);
+  const float most = own == longest.end() ? 0 : own->second;
+  if (length <= most * kLengthFactor + kLengthSlackMm) return false;
+  return std::any_of(longest.begin(), longest.end(), [&](const auto& other) {
+    return other.first != move.acceleration && other.second >= length;
+  });
+}
+
 void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
   const TraceChunk& chunk = layer.is();
+  const LongestWays longest = LongestOf(layer);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
     const TraceLink& traced = chunk.links[link];
     for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
@@ -58,6 +98,10 @@ void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
       if (!move.firmware) {
         Note(seen.feeds[KindOf(move)], static_cast<uint64_t>(move.feed), move, layer.index());
         Note(seen.accelerations[KindOf(move)], move.acceleration, move, layer.index());
+        if (IsTooLong(move, longest)) {
+          seen.long_ways.push_back(
+              {move.acceleration, static_cast<float>(move.length_mm()), move.line, layer.index()});
+        }
       }
       if (move.filament != 0 && move.kind != MoveKind::kWipe)
         Note(seen.signatures, move.signature, move, layer.index());
@@ -93,9 +137,34 @@ bool IsKnownAcceleration(const Observations& was, size_t kind, uint64_t accelera
   return kind != kTravel && kind != kOpenTravel && was.deposit_accelerations.contains(acceleration);
 }
 
+// The longest way under `acceleration`.
+float LongestUnder(const Observations& was, uint64_t acceleration) {
+  float longest = 0;
+  for (const size_t kind : {static_cast<size_t>(MoveKind::kTravel), kOpenTravel}) {
+    const auto found = was.accelerations[kind].find(acceleration);
+    if (found != was.accelerations[kind].end()) {
+      longest = std::max(longest, found->second.longest_mm);
+    }
+  }
+  return longest;
+}
+
+void CompareLengths(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
+  for (const LongWay& way : is.long_ways) {
+    const float longest = LongestUnder(was, way.acceleration);
+    if (longest <= 0 || way.length_mm <= longest * kLengthFactor + kLengthSlackMm) continue;
+    breaks.push_back(
+        {VerifyRule::kSpeeds, 0, way.line, way.layer,
+         absl::StrFormat("travel of %.2f mm under an acceleration that none of the original longer "
+                         "than %.2f mm has",
+                         way.length_mm, longest)});
+  }
+}
+
 }  // namespace
 
 void CompareSpeeds(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
+  CompareLengths(was, is, breaks);
   for (size_t kind = 0; kind < was.feeds.size(); ++kind) {
     // Ways that are open and ways that are not are the same to a slicer: of a kind that the
     // original has none of, the other one tells.

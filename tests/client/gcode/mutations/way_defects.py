@@ -44,11 +44,22 @@ def dip(file, rng):
     return pick(rng, links(file), 50, make)
 
 
+def most_winding(file):
+    """How much longer than straight the file's own ways are, at most."""
+    most = 0
+    for k in range(len(file.paths) - 1):
+        ways = [file.lines[i] for i in file.link(k) if file.lines[i].kind == "travel"]
+        if ways:
+            most = max(most, sum(way.length() for way in ways) - math.dist(ways[0].start[:2], ways[-1].end[:2]))
+    return most
+
+
 def stray(retracted):
     """A way leads by a point that lies far off its line, within the room of the print."""
 
     def defect(file, rng):
         xs, ys = zip(*(path.start[:2] for path in file.paths))
+        least = 3 * most_winding(file) + 2
 
         def make(found):
             ways = found
@@ -56,7 +67,9 @@ def stray(retracted):
             line = file.lines[i]
             corner = max(((x, y) for x in (min(xs), max(xs)) for y in (min(ys), max(ys))),
                          key=lambda p: math.dist(p, line.start[:2]))
-            if math.dist(corner, line.end[:2]) < 8 or line.start[2] != line.end[2] or "Z" in line.text:
+            farther = math.dist(corner, line.start[:2]) + math.dist(corner, line.end[:2]) - line.length()
+            if farther < least or math.dist(corner, line.end[:2]) < 8 or line.start[2] != line.end[2] or (
+                    "Z" in line.text):
                 return None
             return edited(file, {i: [go(file, corner).rsplit(" ", 1)[0] + f" F{number(line.feed)}", line.text]})
 

@@ -57,5 +57,18 @@ TEST(VerifySpeeds, TheAccelerationOfRetractionsIsOneOfThem) {
   EXPECT_EQ(Broken(a, b), "speeds");
 }
 
+// Some slicers accelerate less on short ways.
+TEST(VerifySpeeds, LongWaysAreNotUnderTheAccelerationOfShortOnes) {
+  const std::string slow = "M204 T250\n";
+  const std::string fast = "M204 T5000\n";
+  const std::string a = kHead + fast + Line("Internal infill", "X0 Y0", "X9 Y0") +
+                        Line("Internal infill", "X30 Y30", "X39 Y30") + slow +
+                        Line("Internal infill", "X40 Y30", "X49 Y30") + fast +
+                        Line("Internal infill", "X10 Y10", "X19 Y10");
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, With(a, "M204 T5000\nG1 E-1 F2100\nG1 X10", "G1 E-1 F2100\nG1 X10") + fast),
+            "speeds");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
