@@ -64,6 +64,11 @@ class Load {
     for (std::thread& caller : callers_) caller.join();
   }
 
+  // Some caller has begun another job, if that happens within 20 seconds.
+  void AwaitMoreJobsThanCallers() const {
+    for (int i = 0; i < 200 && jobs_ <= kCallers; ++i) absl::SleepFor(absl::Milliseconds(100));
+  }
+
   int jobs() const { return jobs_; }
   int failures() const { return failures_; }
 
@@ -100,6 +105,7 @@ TEST(Fleet, DeathOfOneServerLosesNoJob) {
 
   fleet.Kill(1);
   absl::SleepFor(absl::Milliseconds(1000));
+  load.AwaitMoreJobsThanCallers();
   load.Stop();
 
   EXPECT_GT(load.jobs(), kCallers);
@@ -114,6 +120,7 @@ TEST(Fleet, RolloutLosesNoJob) {
     EXPECT_EQ(fleet.Replace(server), 0);
   }
   absl::SleepFor(absl::Milliseconds(300));
+  load.AwaitMoreJobsThanCallers();
   load.Stop();
 
   EXPECT_GT(load.jobs(), kCallers);
