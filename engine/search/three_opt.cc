@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <type_traits>
 #include <utility>
 
 namespace traverse {
@@ -57,11 +56,12 @@ constexpr MoveTable MakeMoveTable() {
 
 constexpr MoveTable kMoveTable = MakeMoveTable();
 
-// Whether a move costs less than `most`: for most moves this can be said without a square root.
+// Whether a move may cost less than `most`: for most moves this can be said without a square root.
 struct LengthCost {
+  static constexpr bool kHasWalls = false;
   double OfLength(double length_mm) const { return length_mm; }
   double operator()(Point a, Point b) const { return Distance(a, b); }
-  bool Within(Point a, Point b, double most) const {
+  bool MayBeWithin(Point a, Point b, double most) const {
     const double dx = a.x - b.x;
     const double dy = a.y - b.y;
     return most > 0 && dx * dx + dy * dy < most * most;
@@ -69,18 +69,24 @@ struct LengthCost {
 };
 
 struct TimeCost {
+  static constexpr bool kHasWalls = false;
   double OfLength(double length_mm) const { return cost.OfLength(length_mm); }
   double operator()(Point a, Point b) const { return cost.Base(a, b); }
-  bool Within(Point a, Point b, double most) const { return most > 0 && cost.Base(a, b) < most; }
+  bool MayBeWithin(Point a, Point b, double most) const {
+    return most > 0 && cost.Base(a, b) < most;
+  }
 
   const TravelCost& cost;
 };
 
-// A length does not tell what lies in its way.
+// A length does not tell what lies in its way, but what the move costs at least; more is only asked
+// for where that does not rule a move out.
 struct WallsCost {
+  static constexpr bool kHasWalls = true;
+  double AtLeast(Point a, Point b) const { return cost.Base(a, b); }
   double operator()(Point a, Point b) const { return cost(a, b); }
-  bool Within(Point a, Point b, double most) const {
-    return most > 0 && cost.Base(a, b) < most && cost(a, b) < most;
+  bool MayBeWithin(Point a, Point b, double most) const {
+    return most > 0 && cost.Base(a, b) < most;
   }
 
   const TravelCost& cost;
@@ -172,12 +178,19 @@ void ThreeOpt::SearchFirst(int t1, bool forward, double debt, const Cost& cost) 
 template <typename Cost>
 double ThreeOpt::CostTo(const End& from, const End& to, const Neighbor& neighbor,
                         const Cost& cost) const {
-  if constexpr (std::is_same_v<Cost, WallsCost>) {
+  if constexpr (Cost::kHasWalls) {
     return cost(from.point, to.point);
   } else {
     return state_.entries().open(from.leaf) ? cost.OfLength(neighbor.distance_mm)
                                             : cost(from.point, to.point);
   }
+}
+
+// What joining the ends costs at least: with walls as if there were none.
+template <typename Cost>
+double ThreeOpt::LeastOf(const End& a, const End& b, const Cost& cost) const {
+  if constexpr (Cost::kHasWalls) return cost.AtLeast(a.point, b.point);
+  return cost(a.point, b.point);
 }
 
 // t2 is joined with t3, for so much.
@@ -192,7 +205,8 @@ void ThreeOpt::SearchSecond(const End& t3, double joined, const Cost& cost) {
   gain1_ = gain + cut2_.cost;
   radii_ = Radius(t1_.leaf) + Radius(t2_.leaf) + Radius(t3_.leaf) + Radius(t4_.leaf);
   const auto [left, right] = std::minmax(cut1_.position, cut2_.position);
-  if (t2_.right == t3_.right && right > left + 1) {
+  const bool reverses = t2_.right == t3_.right && right > left + 1;
+  if (reverses && (!Cost::kHasWalls || MayKeep(t4_, t1_, gain1_, radii_, cost))) {
     const double delta = Join(t4_, t1_, cost) - gain1_;
     Offer({Kind::kReverse, left + 1, left + 1, right}, delta, gain1_, t4_.leaf, radii_);
   }
@@ -202,19 +216,19 @@ void ThreeOpt::SearchSecond(const End& t3, double joined, const Cost& cost) {
     if (neighbor.distance_mm >= limit_mm) break;
     const int leaf = EndGroups::LeafOf(neighbor.group);
     if (state_.entries().open(leaf)) {
-      const bool is_right = RightOf(neighbor.group, leaf);
-      const double gain2 = gain1_ - CostTo(t4_, EndAt(leaf, is_right), neighbor, cost);
-      SearchThird(leaf, is_right, gain2, cost);
+      const End t5 = EndAt(leaf, RightOf(neighbor.group, leaf));
+      SearchThird(t5, Cost::kHasWalls ? LeastOf(t4_, t5, cost) : CostTo(t4_, t5, neighbor, cost),
+                  cost);
     } else {
-      const double gain2 = gain1_ - cost(t4_.point, state_.in(leaf));
-      SearchThird(leaf, false, gain2, cost);
-      SearchThird(leaf, true, gain2, cost);
+      const double joined = LeastOf(t4_, EndAt(leaf, false), cost);
+      SearchThird(EndAt(leaf, false), joined, cost);
+      SearchThird(EndAt(leaf, true), joined, cost);
     }
   }
   if (t4_.leaf >= state_.tree().path_count()) return;
   for (const End& t5 : {EndAt(state_.tree().start(), false), EndAt(state_.tree().finish(), true)}) {
-    const double gain2 = gain1_ - Join(t4_, t5, cost);
-    if (gain2 > 0) SearchThird(t5.leaf, t5.right, gain2, cost);
+    const double joined = Join(t4_, t5, cost);
+    if (gain1_ - joined > 0) SearchThird(t5, joined, cost);
   }
 }
 
@@ -232,27 +246,38 @@ void ThreeOpt::SetKinds(int left, int right) {
   }
 }
 
-// t4 is joined with t5, an end of `leaf`; `gain2` is what is left of the gain then.
+// t4 is joined with t5, for `joined`, or for no less than that where there are walls.
 template <typename Cost>
-void ThreeOpt::SearchThird(int leaf, bool is_right, double gain2, const Cost& cost) {
-  const int at = state_.position(leaf) - is_right;
+void ThreeOpt::SearchThird(const End& t5, double joined, const Cost& cost) {
+  const int at = state_.position(t5.leaf) - t5.right;
   if (at == left_ || at == right_) return;
   const size_t place = static_cast<size_t>((at > left_) + (at > right_));
-  const int kind = kinds_[is_right][place];
+  const int kind = kinds_[t5.right][place];
   if (kind == kNoMove) return;
-  const double gain = gain2 + state_.StepCost(at);
-  const int t6 = state_.leaf_at(is_right ? at : at + 1);
-  const double radii = radii_ + Radius(t6);
-  const double most = LeastRejected(radii) + gain;
-  const bool continues = wants_open_ && gain > open_.gain;
-  const bool is_free = state_.IsFree(t6) || state_.IsFree(t1_.leaf);
-  const Point t6_point = is_right ? state_.out(t6) : state_.in(t6);
-  if (!continues && (is_free ? most <= 0 : !cost.Within(t6_point, t1_.point, most))) return;
-  const double delta = is_free ? -gain : cost(t6_point, t1_.point) - gain;
+  const int t6_leaf = state_.leaf_at(t5.right ? at : at + 1);
+  const End t6{t6_leaf, !t5.right, t5.right ? state_.out(t6_leaf) : state_.in(t6_leaf)};
+  const double radii = radii_ + Radius(t6.leaf);
+  double gain = gain1_ - joined + state_.StepCost(at);
+  if (Cost::kHasWalls) {
+    if (!MayKeep(t6, t1_, gain, radii, cost)) return;
+    gain = gain1_ - Join(t4_, t5, cost) + state_.StepCost(at);
+  }
+  if (!MayKeep(t6, t1_, gain, radii, cost)) return;
+  const double last = Join(t6, t1_, cost);
   const int first = place == 0 ? at : left_;
   const int middle = place == 0 ? left_ : place == 1 ? at : right_;
-  const int last = place == 2 ? at : right_;
-  Offer({static_cast<Kind>(kind), first + 1, middle + 1, last}, delta, gain, t6, radii);
+  const int end = place == 2 ? at : right_;
+  Offer({static_cast<Kind>(kind), first + 1, middle + 1, end}, last - gain, gain, t6.leaf, radii);
+}
+
+// Whether Offer() may want what gains so much before `from` is joined with `to`.
+template <typename Cost>
+bool ThreeOpt::MayKeep(const End& from, const End& to, double gain, double radii,
+                       const Cost& cost) const {
+  if (wants_open_ && gain > open_.gain) return true;
+  const double most = LeastRejected(radii) + gain;
+  if (state_.IsFree(from.leaf) || state_.IsFree(to.leaf)) return most > 0;
+  return cost.MayBeWithin(from.point, to.point, most);
 }
 
 // `radii`: of the contours at the cuts.

@@ -105,7 +105,11 @@ class ThreeOpt {
   template <typename Cost>
   void SearchSecond(const End& t3, double joined, const Cost& cost);
   template <typename Cost>
-  void SearchThird(int leaf, bool is_right, double gain2, const Cost& cost);
+  void SearchThird(const End& t5, double joined, const Cost& cost);
+  template <typename Cost>
+  double LeastOf(const End& a, const End& b, const Cost& cost) const;
+  template <typename Cost>
+  bool MayKeep(const End& from, const End& to, double gain, double radii, const Cost& cost) const;
   void SetKinds(int left, int right);
   void Offer(const SegmentMove& move, double delta, double gain, int last_leaf, double radii);
 
