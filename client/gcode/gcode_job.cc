@@ -63,11 +63,10 @@ void SetWallCost(const RetractionHabit& habit, Crossings crossings, v1::TimeCost
 
 // Paths that the slicer wipes stay wiped, so that what follows them is retracted wherever it leads:
 // an order saves, or costs, the retractions behind the others alone.
-double ShareNotWiped(const GcodeFile& file, const Layer& layer) {
+double ShareNotWiped(const GcodeFile& file, uint32_t first_block, uint32_t end_block) {
   size_t wiped = 0;
-  for (uint32_t b = layer.first_block; b < layer.end_block; ++b)
-    wiped += file.WipedBehind(b) ? 1 : 0;
-  return 1 - static_cast<double>(wiped) / (layer.end_block - layer.first_block);
+  for (uint32_t b = first_block; b < end_block; ++b) wiped += file.WipedBehind(b) ? 1 : 0;
+  return 1 - static_cast<double>(wiped) / (end_block - first_block);
 }
 
 void SetWalls(const TravelRules& rules, const RetractionHabit& habit,
@@ -103,7 +102,7 @@ void FillLayer(const GcodeFile& file, size_t index, const FileHabits& habits,
   filled.set_z_mm(ToDouble(layer.z) * file.modes[file.blocks[layer.first_block].mode].UnitMm());
   *filled.mutable_plan() = std::move(planned.plan);
   TravelModel travel = habits.travel[index];
-  travel.retraction_seconds *= ShareNotWiped(file, layer);
+  travel.retraction_seconds *= ShareNotWiped(file, layer.first_block, layer.end_block);
   SetCost(travel, *filled.mutable_cost());
   SetWallCost(habits.retraction, options.crossings, *filled.mutable_cost()->mutable_time());
   const VisibleWalls walls(planned.outlines);
@@ -156,7 +155,9 @@ bool KeepsRetractions(const GcodeFile& file) {
 // The search of `auto` ends after so many rounds without a gain for each path: short files are
 // searched as long as it pays, long ones as others are. And it ends where a second of computing
 // saves less than a second of printing, or has saved less than twelve on the average: a layer is
-// searched some six times. What is done in any case is shared by the layers.
+// searched some six times. What is done in any case is shared by the layers. Of what is found among
+// wiped paths little is had: a third of it where half of them are, for a way begins where the wipe
+// ends, and a retraction more is no less for those that are made anyway.
 void SetStrategy(const GcodeFile& file, v1::Strategy& strategy) {
   const auto paths = static_cast<double>(file.blocks.size());
   constexpr double kRounds = 20000;
@@ -165,12 +166,18 @@ void SetStrategy(const GcodeFile& file, v1::Strategy& strategy) {
   constexpr double kFreeRounds = 2500;
   constexpr double kLeastFreeRounds = 50;
   constexpr double kOfLittleUse = 4;
+  constexpr double kOfLittleUseAmongWiped = 16;
+  constexpr double kMostWiped = 0.5;
   const double effort = std::clamp(kRounds / paths, 1.0, kMaxEffort);
   strategy.set_name("auto");
   (*strategy.mutable_options())["effort"] = absl::StrFormat("%.3g", effort);
-  const double least = kSecondsPerRound * (KeepsRetractions(file) ? kOfLittleUse : 1);
+  const auto blocks = static_cast<uint32_t>(file.blocks.size());
+  const double wiped = std::min(1 - ShareNotWiped(file, 0, blocks), kMostWiped);
+  const double little = 1 + (kOfLittleUseAmongWiped - 1) * wiped;
+  const double least =
+      kSecondsPerRound * std::max(little, KeepsRetractions(file) ? kOfLittleUse : 1);
   (*strategy.mutable_options())["least_gain_each"] = absl::StrFormat("%.3g", least);
-  const double free = kFreeRounds / static_cast<double>(file.layers.size());
+  const double free = kFreeRounds * (1 - wiped) / static_cast<double>(file.layers.size());
   (*strategy.mutable_options())["gain_window"] =
       absl::StrFormat("%.0f", std::max(free, kLeastFreeRounds));
 }

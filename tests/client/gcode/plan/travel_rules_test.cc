@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "client/gcode/gcode_job.h"
 #include "client/gcode/measure/layer_meter.h"
@@ -216,29 +217,44 @@ TEST(MakeGcodeJob, LooksForFewerCrossingsWhereMoreWereFound) {
             job.layers[0].cost().time().crossing_seconds());
 }
 
+// Four lines, of which the first so many are wiped.
+InputJob WipedLines(int wiped) {
+  Sketch sketch;
+  for (int line = 0; line < 4; ++line) {
+    if (line > 0) sketch.Add("G1 E-.4 F2100");
+    if (line > 0 && line <= wiped) {
+      sketch.Add("G1 X5 Y" + std::to_string(10 * line - 10) + " E-.4 F7200");
+    } else if (line > 0) {
+      sketch.Add("G1 E-.4 F2100");
+    }
+    sketch.Go(0, 10 * line);
+    if (line > 0) sketch.Add("G1 E.8 F2100");
+    sketch.Infill(10, 10 * line);
+  }
+  return MakeGcodeJob(sketch.Read(), {});
+}
+
 // What is wiped is retracted whatever follows it, so that no order saves that. (Half a minute of
 // computing went into 1,421 retractions of ps_grille_klipper_wipe, and none was saved.)
 TEST(MakeGcodeJob, RetractionsBehindWipedPathsAreNothingToSave) {
   const auto seconds = [](int wiped) {
-    Sketch sketch;
-    for (int line = 0; line < 4; ++line) {
-      if (line > 0) sketch.Add("G1 E-.4 F2100");
-      if (line > 0 && line <= wiped) {
-        sketch.Add("G1 X5 Y" + std::to_string(10 * line - 10) + " E-.4 F7200");
-      } else if (line > 0) {
-        sketch.Add("G1 E-.4 F2100");
-      }
-      sketch.Go(0, 10 * line);
-      if (line > 0) sketch.Add("G1 E.8 F2100");
-      sketch.Infill(10, 10 * line);
-    }
-    const InputJob job = MakeGcodeJob(sketch.Read(), {});
-    return job.layers[0].cost().time().retraction_seconds();
+    return WipedLines(wiped).layers[0].cost().time().retraction_seconds();
   };
 
   EXPECT_GT(seconds(0), 0);
   EXPECT_GT(seconds(0), 1.5 * seconds(2));
   EXPECT_GT(seconds(2), 1.5 * seconds(3));
+}
+
+// (6 s of computing went into sl_grille_comments_wipe, which saved 2.7 s of printing.)
+TEST(MakeGcodeJob, WhereWipesLeaveLittleToGainTheSearchEndsSooner) {
+  const auto number = [](int wiped, const char* option) {
+    return std::stod(WipedLines(wiped).options.strategy().options().at(option));
+  };
+
+  EXPECT_GT(number(1, "least_gain_each"), 3 * number(0, "least_gain_each"));
+  EXPECT_GT(number(3, "least_gain_each"), 1.5 * number(1, "least_gain_each"));
+  EXPECT_LT(number(3, "gain_window"), number(0, "gain_window"));
 }
 
 TEST(RewriteGcode, UnderSafeNoMoreWaysCrossWallsWithAnOpenNozzle) {
