@@ -21,6 +21,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import defects  # noqa: E402
 import dress  # noqa: E402
+import filament_defects  # noqa: E402
 import further_defects  # noqa: E402
 import legal_changes  # noqa: E402
 import path_defects  # noqa: E402
@@ -30,7 +31,7 @@ import text_defects  # noqa: E402
 import way_defects  # noqa: E402
 
 DEFECTS = (defects.DEFECTS + further_defects.DEFECTS + text_defects.DEFECTS + way_defects.DEFECTS +
-           path_defects.DEFECTS + state_defects.DEFECTS)
+           filament_defects.DEFECTS + path_defects.DEFECTS + state_defects.DEFECTS)
 
 
 def files_of(operands):
