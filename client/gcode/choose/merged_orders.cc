@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -41,6 +42,37 @@ bool IsWhole(const LayerOrder& order, const LayerOrder& given) {
   return order.size() == given.size();
 }
 
+// The ways of a layer. Those around walls take long to find, and the same few are asked for again
+// and again.
+class KnownWays {
+ public:
+  KnownWays(const LayerWriter& writer, const TravelModel& travel, const MergeRules& rules)
+      : writer_(writer), travel_(travel), rules_(rules) {
+    const LayerOrder given = writer.GivenOrder();
+    for (size_t i = 1; i < given.size(); ++i) {
+      const WayTotals way = writer.EstimateWay(i, given[i - 1], given[i], travel);
+      if (way.open > 0) longest_open_mm_ = std::max(longest_open_mm_, way.mm);
+    }
+  }
+
+  WayTotals operator()(size_t place, const Placement& from, const Placement& to) {
+    const std::array<size_t, 5> key = {from.block, from.entry, to.block, to.entry,
+                                       rules_.boundaries[place] ? place : 0};
+    const auto [found, added] = known_.try_emplace(key);
+    if (!added) return found->second;
+    WayTotals way = writer_.EstimateWay(place, from, to, travel_);
+    if (way.open > 0 && way.mm > longest_open_mm_ + kSlackMm) way.too_long = 1;
+    return found->second = way;
+  }
+
+ private:
+  const LayerWriter& writer_;
+  const TravelModel& travel_;
+  const MergeRules& rules_;
+  double longest_open_mm_ = 0;  // as the layer was given
+  absl::flat_hash_map<std::array<size_t, 5>, WayTotals> known_;
+};
+
 bool EndsAlike(const LayerOrder& a, const LayerOrder& b) {
   return a.front() == b.front() && a.back() == b.back();
 }
@@ -54,22 +86,8 @@ std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelMode
   for (const LayerOrder& order : found) {
     if (!IsWhole(order, given)) return found;
   }
-  double longest_open_mm = 0;
-  for (size_t i = 1; i < given.size(); ++i) {
-    const WayTotals way = writer.EstimateWay(i, given[i - 1], given[i], travel);
-    if (way.open > 0) longest_open_mm = std::max(longest_open_mm, way.mm);
-  }
-  // Ways around walls take long to find, and the same few ways are asked for again and again.
-  absl::flat_hash_map<std::array<size_t, 5>, WayTotals> known;
-  const WayEstimate estimate = [&](size_t place, const Placement& from, const Placement& to) {
-    const std::array<size_t, 5> key = {from.block, from.entry, to.block, to.entry,
-                                       rules.boundaries[place] ? place : 0};
-    const auto [found_way, added] = known.try_emplace(key);
-    if (!added) return found_way->second;
-    WayTotals way = writer.EstimateWay(place, from, to, travel);
-    if (way.open > 0 && way.mm > longest_open_mm + kSlackMm) way.too_long = 1;
-    return found_way->second = way;
-  };
+  KnownWays ways(writer, travel, rules);
+  const WayEstimate estimate = std::ref(ways);
   const WayTotals were = OrderMerger(estimate, {}).TotalsOf(given);
   MergeLimits limits = LimitsOf(were, rules);
   const OrderMerger strict(estimate, limits);
