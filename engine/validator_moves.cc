@@ -220,7 +220,8 @@ class MoveCheck {
 absl::Status ValidateMoves(const Plan& plan, const LayerWalls& walls, const CostSpec& spec,
                            Point start, const Route& route, const MoveClaims& claims,
                            Budget* budget) {
-  assert(spec.kind == CostSpec::Kind::kTime && ValidateRoute(plan, route).ok());
+  assert(spec.kind == CostSpec::Kind::kTime && CheckWalls(walls, plan).ok());
+  assert(ValidateRoute(plan, route).ok());
   MoveCheck check(plan, walls, spec);
   size_t next = 0;
   Point at = start;

@@ -49,7 +49,7 @@ WallCost::WallCost(const LayerWalls& walls, const Plan& plan, const CostSpec& sp
                                                 kOnWall * spec.wall_slack_mm)
                    : std::nullopt),
       places_(PlacesFor(plan.paths.size(), detours_.has_value())) {
-  assert(spec.kind == CostSpec::Kind::kTime);
+  assert(spec.kind == CostSpec::Kind::kTime && CheckWalls(walls, plan).ok());
   for (const int path : walls.exposed) {
     const std::vector<Point>& points = plan.paths[static_cast<size_t>(path)].points;
     exposed_.insert(exposed_.end(), points.begin(), points.end());
@@ -66,6 +66,8 @@ WallCost::WallCost(const WallCost* first, const WallCost* second,
       first_(first),
       second_(second),
       places_(0) {
+  assert(first == nullptr || first->spec_ == spec);
+  assert(second == nullptr || second->spec_ == spec);
   for (const auto& [asked, meant] : second_points) {
     second_points_.emplace(std::pair(asked.x, asked.y), meant);
   }

@@ -160,6 +160,8 @@ void SearchState::Apply(const SegmentMove& move) {
 }
 
 void SearchState::SetEntry(int leaf, int new_entry) {
+  assert(entries_.first(leaf) <= new_entry);
+  assert(new_entry < entries_.first(leaf) + entries_.count(leaf));
   if (entry(leaf) == new_entry) return;
   log_.push_back({Change::Kind::kEntry, leaf, entry(leaf), 0});
   DoSetEntry(leaf, new_entry);

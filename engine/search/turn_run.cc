@@ -18,6 +18,13 @@ bool MayComeFirst(const SearchState& state, int child, int first, int last) {
   });
 }
 
+[[maybe_unused]] bool IsUnionOfChildren(const SearchState& state, int node, int first, int last) {
+  const OrderTree& tree = state.tree();
+  const int begin = tree.ChildHolding(node, state.leaf_at(first));
+  const int end = tree.ChildHolding(node, state.leaf_at(last));
+  return state.position(begin) == first && state.position(end) + tree.size(end) - 1 == last;
+}
+
 void TurnItem(SearchState& state, int item) {
   const OrderTree& tree = state.tree();
   const int first = state.position(item);
@@ -39,7 +46,7 @@ bool TurnsOnly(const OrderTree& tree, int node) {
 
 void TurnRun(SearchState& state, int node, int first, int last) {
   const OrderTree& tree = state.tree();
-  assert(tree.free_order(node));
+  assert(tree.free_order(node) && IsUnionOfChildren(state, node, first, last));
   // Of what is left, the last child that may come now goes to the front. There is always one: what
   // comes first has nothing before it.
   for (int begin = first; begin < last;) {

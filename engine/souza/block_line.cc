@@ -104,6 +104,8 @@ BlockLine::Reversal BlockLine::BestReversalFrom(int first, double delta) const {
 
 void BlockLine::Reverse(int first, int last) {
   assert(0 <= first && first <= last && last < size());
+  assert(std::all_of(last_before_.begin() + first, last_before_.begin() + last + 1,
+                     [first](int before) { return before < first; }));
   const auto reverse = [&](auto& values) {
     std::reverse(values.begin() + first, values.begin() + last + 1);
   };

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <functional>
 #include <numeric>
+#include <vector>
 
 #include "engine/cost/route_cost.h"
 #include "engine/validator.h"
@@ -43,9 +45,28 @@ void SearchRoute::SetEntry(int position, int entry) {
   for (int p = position - 1; p <= position + 1; ++p) Touch(p);
 }
 
+#ifndef NDEBUG
+bool SearchRoute::MayArrange(int node, absl::Span<const int> slots,
+                             absl::Span<const char> reversed) const {
+  const absl::Span<const int> children = layer_->tree.children(node);
+  if (slots.size() != children.size() || reversed.size() != children.size()) return false;
+  std::vector<int> position(slots.size(), -1);
+  for (size_t k = 0; k < slots.size(); ++k) {
+    const size_t slot = static_cast<size_t>(slots[k]);
+    if (reversed[k] != 0 && !layer_->tree.reversible(children[slot])) return false;
+    position[slot] = static_cast<int>(k);
+  }
+  const Precedence& precedence = layer_->tree.precedence(node);
+  if (precedence.empty()) return true;
+  std::vector<int> last;
+  precedence.LastBefore(position, last);
+  return std::equal(position.begin(), position.end(), last.begin(), std::greater<>());
+}
+#endif
+
 void SearchRoute::Arrange(int node, absl::Span<const int> slots, absl::Span<const char> reversed) {
   const absl::Span<const int> children = layer_->tree.children(node);
-  assert(slots.size() == children.size() && reversed.size() == children.size());
+  assert(MayArrange(node, slots, reversed));
   const int first = begin(node);
   const int end = first + layer_->tree.path_count(node);
   scratch_.assign(entries_.begin() + first, entries_.begin() + end);

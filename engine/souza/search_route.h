@@ -67,6 +67,10 @@ class SearchRoute {
   double Cost() const;
 
  private:
+#ifndef NDEBUG
+  bool MayArrange(int node, absl::Span<const int> slots, absl::Span<const char> reversed) const;
+#endif
+
   static bool Take(std::vector<char>& pending, int index) {
     char& flag = pending[static_cast<size_t>(index)];
     const bool was = flag != 0;

@@ -179,6 +179,7 @@ std::string BgcodeHeader(BgcodeChecksum checksum) {
 void AppendBlock(BlockKind kind, BlockCompression compression,
                  const std::vector<uint16_t>& parameters, uint32_t size, std::string_view data,
                  BgcodeChecksum checksum, std::string& out) {
+  assert(!IsKnown(kind) || 2 * parameters.size() == ParameterBytes(kind));
   assert(compression != BlockCompression::kNone || size == data.size());
   const size_t begin = out.size();
   AppendU16(out, static_cast<uint16_t>(kind));

@@ -13,6 +13,7 @@
 
 #include "engine/base/rest.h"
 #include "engine/base/tolerances.h"
+#include "engine/validator.h"
 
 namespace traverse {
 namespace {
@@ -264,7 +265,7 @@ bool IsSmall(const LayerView& layer, const SmallPartOptions& options, Budget* bu
 
 bool SolveSmallParts(const LayerView& layer, const SmallPartOptions& options, Route& route,
                      Budget& budget) {
-  assert(route.size() == layer.plan().paths.size());
+  assert(ValidateRoute(layer.plan(), route).ok());
   return SmallPartSolver(layer, options, route, budget).Run();
 }
 

@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_ENGINE_PROOF_TSP_TSP_NODES_H_
 #define TRAVERSE_ENGINE_PROOF_TSP_TSP_NODES_H_
 
+#include <cassert>
 #include <cstddef>
 #include <vector>
 
@@ -24,8 +25,11 @@ class TspNodes {
   int item(int node) const { return item_[Index(node)]; }
 
   // The ports of `item` are [first(item), first(item + 1)). REQUIRES: it is not 0.
-  int first(int item) const { return first_[Index(item)]; }
-  int size(int item) const { return first_[Index(item) + 1] - first_[Index(item)]; }
+  int first(int item) const {
+    assert(item > 0);
+    return first_[Index(item)];
+  }
+  int size(int item) const { return first_[Index(item) + 1] - first(item); }
 
   // Where a path goes on from `node`, after a fixed edge or at once.
   int mate(int node) const { return mate_[Index(node)]; }

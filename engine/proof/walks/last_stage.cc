@@ -13,7 +13,7 @@ LastStage::LastStage(const StageModel& model)
       stage_(model.stage_count() - 2),
       items_(model, model.stage_count() - 1),
       least_(static_cast<size_t>(items_.state_count())) {
-  assert(model.stage_count() >= 2);
+  assert(model.stage_count() >= 2 && IsItemStage(model, stage_ + 1));
 }
 
 std::vector<double> LastStage::StartAfter(ClusterState from, double cost) const {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 
 namespace traverse {
 namespace {
@@ -53,8 +54,15 @@ const double* WalkDp<kWords>::Finish(int cluster) const {
 
 template <int kWords>
 void WalkDp<kWords>::SetMultipliers(const std::vector<double>& multipliers) {
+  complete_ = {};
   multipliers_ = multipliers;
   multiplier_sum_ = std::accumulate(multipliers.begin(), multipliers.end(), 0.0);
+}
+
+template <int kWords>
+void WalkDp<kWords>::SetFinish(std::vector<std::vector<double>> finish) {
+  complete_ = {};
+  finish_ = std::move(finish);
 }
 
 template <int kWords>
@@ -75,6 +83,7 @@ typename WalkDp<kWords>::Outcome WalkDp<kWords>::Run(Direction direction, bool p
                                                      double most_cost, double most_operations,
                                                      Budget& budget) {
   const bool is_forward = direction == Direction::kForward;
+  complete_[static_cast<size_t>(direction)] = false;
   Table& filled = table(direction);
   const Table& other = is_forward ? backward_ : forward_;
   filled.assign(static_cast<size_t>(positions()), {});
@@ -109,6 +118,7 @@ typename WalkDp<kWords>::Outcome WalkDp<kWords>::Run(Direction direction, bool p
       if (operations_ > most_operations) return Outcome::kTooBig;
     }
   }
+  complete_[static_cast<size_t>(direction)] = true;
   return Outcome::kDone;
 }
 
@@ -308,6 +318,7 @@ std::vector<std::vector<double>> WalkDp<kWords>::LowestByEnd() const {
 
 template <int kWords>
 void WalkDp<kWords>::Eliminate(double most_cost, Budget& budget) {
+  assert(complete_[0] && complete_[1]);
   const double most_sum = most_cost + multiplier_sum_;
   for (int position = 0; position < positions(); ++position) {
     const auto p = static_cast<size_t>(position);

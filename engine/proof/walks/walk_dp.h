@@ -22,6 +22,8 @@
 #ifndef TRAVERSE_ENGINE_PROOF_WALKS_WALK_DP_H_
 #define TRAVERSE_ENGINE_PROOF_WALKS_WALK_DP_H_
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -54,7 +56,8 @@ class WalkDp {
   void SetMultipliers(const std::vector<double>& multipliers);  // [cluster]
 
   // Costs after the last stage, [cluster - first of that stage][state].
-  void SetFinish(std::vector<std::vector<double>> finish) { finish_ = std::move(finish); }
+  void SetFinish(std::vector<std::vector<double>> finish);
+  const std::vector<std::vector<double>>& finish() const { return finish_; }
 
   // Makes `cluster` remember `other`. True if that is new. REQUIRES: they are of one stage.
   bool Remember(int cluster, int other);
@@ -124,6 +127,7 @@ class WalkDp {
 
   Table forward_;
   Table backward_;
+  std::array<bool, 2> complete_{};  // [direction] whether its table fits multipliers and finish
   double operations_ = 0;
 
   // Scratch of one cell.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <functional>
 #include <iterator>
 #include <utility>
 
@@ -25,6 +26,17 @@ constexpr double kGain = 0.02;
 constexpr int kPassesWithoutGain = 6;
 constexpr int kPassesBetweenGrowth = 10;
 
+[[maybe_unused]] bool CostsNoLess(const std::vector<std::vector<double>>& finish,
+                                  const std::vector<std::vector<double>>& before) {
+  for (size_t c = 0; c < before.size(); ++c) {
+    if (!std::equal(before[c].begin(), before[c].end(), finish[c].begin(), finish[c].end(),
+                    std::less_equal<>())) {
+      return false;
+    }
+  }
+  return true;
+}
+
 template <int kWords>
 class Prover : public WalkProver {
  public:
@@ -37,6 +49,7 @@ class Prover : public WalkProver {
   }
 
   void SetFinish(std::vector<std::vector<double>> finish) override {
+    assert(CostsNoLess(finish, dp_.finish()));
     dp_.SetFinish(std::move(finish));
   }
 

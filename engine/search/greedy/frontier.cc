@@ -22,6 +22,8 @@ int SearchedBeginning(const PlanTree& tree, int node) {
 }  // namespace
 
 Frontier& Frontier::Forest::Of(int node) {
+  assert(layer_->tree.node(node).kind == PlanNode::Kind::kAnyOrder);
+  assert(!layer_->tree.children(node).empty());
   std::unique_ptr<Frontier>& frontier = frontiers_[static_cast<size_t>(node)];
   if (frontier == nullptr) frontier = std::make_unique<Frontier>(*layer_, node, *this);
   return *frontier;

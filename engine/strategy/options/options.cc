@@ -44,6 +44,7 @@ OptionSpec PureOption(const char* description) {
 absl::StatusOr<StrategyOptions::Value> StrategyOptions::ParseValue(const OptionSpec& spec,
                                                                    const std::string& text) {
   Value value;
+  value.type = spec.type;
   switch (spec.type) {
     case OptionSpec::Type::kBool:
       if (!absl::SimpleAtob(text, &value.boolean)) return Fault(spec, text, "true or false");

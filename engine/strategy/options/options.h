@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_ENGINE_STRATEGY_OPTIONS_OPTIONS_H_
 #define TRAVERSE_ENGINE_STRATEGY_OPTIONS_OPTIONS_H_
 
+#include <cassert>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -43,18 +44,33 @@ class StrategyOptions {
   StrategyOptions() = default;
 
   // REQUIRES: the strategy's specs have `name`, with this type.
-  bool Bool(const std::string& name) const { return values_.at(name).boolean; }
-  int64_t Int(const std::string& name) const { return values_.at(name).integer; }
-  double Double(const std::string& name) const { return values_.at(name).real; }
-  const std::string& Choice(const std::string& name) const { return values_.at(name).text; }
+  bool Bool(const std::string& name) const {
+    return ValueOf(name, OptionSpec::Type::kBool).boolean;
+  }
+  int64_t Int(const std::string& name) const {
+    return ValueOf(name, OptionSpec::Type::kInt).integer;
+  }
+  double Double(const std::string& name) const {
+    return ValueOf(name, OptionSpec::Type::kDouble).real;
+  }
+  const std::string& Choice(const std::string& name) const {
+    return ValueOf(name, OptionSpec::Type::kChoice).text;
+  }
 
  private:
   struct Value {
+    OptionSpec::Type type = OptionSpec::Type::kBool;
     bool boolean = false;
     int64_t integer = 0;
     double real = 0;
     std::string text;
   };
+
+  const Value& ValueOf(const std::string& name, [[maybe_unused]] OptionSpec::Type type) const {
+    const Value& value = values_.at(name);
+    assert(value.type == type);
+    return value;
+  }
 
   static absl::StatusOr<Value> ParseValue(const OptionSpec& spec, const std::string& text);
 

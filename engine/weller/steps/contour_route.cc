@@ -1,6 +1,7 @@
 #include "engine/weller/steps/contour_route.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <limits>
 #include <numeric>
@@ -124,6 +125,7 @@ std::vector<int> ReinsertOuterContours(const Plan& plan, const IslandLayout& lay
     if (at[island] == static_cast<int>(k)) order.push_back(outer_of[island]);
     order.push_back(sequence[k].path);
   }
+  assert(order.size() == sequence.size() + suppressed.size());
   return order;
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "engine/validator.h"
 #include "engine/weller/tabu/swap_sequence.h"
 
 namespace traverse {
@@ -29,11 +30,12 @@ SwapMove BestStep(const SwapSequence& sequence, int node, const std::vector<int>
 
 std::vector<Route> RelinkPaths(const LayerProblem& problem, const LinkRules& rules,
                                const Route& from, const Route& guide, int keep, Budget& budget) {
-  assert(from.size() == guide.size());
+  assert(ValidateRoute(*problem.plan, from).ok() && ValidateRoute(*problem.plan, guide).ok());
   if (keep <= 0) return {};
   SwapSequence sequence(problem, rules, &budget);
   if (sequence.tree().movable_nodes().empty()) return {};
   const int node = sequence.tree().movable_nodes().front();
+  assert(sequence.tree().movable_nodes().size() == 1);
   sequence.Load(guide);
   std::vector<int> guide_order;  // children by number
   for (int k = 0; k < sequence.tree().child_count(node); ++k) {

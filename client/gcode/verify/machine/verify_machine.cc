@@ -45,6 +45,7 @@ bool FallsAsOftenAsItRises(std::string_view text) {
 void VerifyMachine::NoteMotion(int number, uint32_t words, const std::array<Micro, 3>& from,
                                Micro filament) {
   motion_ = Motion{from, at_, filament, pulled_, feed_, number, words, retracted(), false, 0, 0};
+  moved_at_ = number_;
   settings_.Move();
 }
 

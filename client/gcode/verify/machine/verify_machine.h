@@ -8,6 +8,7 @@
 #define TRAVERSE_CLIENT_GCODE_VERIFY_MACHINE_VERIFY_MACHINE_H_
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -73,7 +74,10 @@ class VerifyMachine {
   uint64_t tool() const { return tool_; }
 
   // REQUIRES: the last line moves.
-  const Motion& motion() const { return motion_; }
+  const Motion& motion() const {
+    assert(moved_at_ == number_);
+    return motion_;
+  }
 
   // Of the accelerations, jerks and limits in force, those of travel included.
   uint64_t AccelerationDigest() { return settings_.AccelerationDigest(); }
@@ -110,6 +114,7 @@ class VerifyMachine {
 
   std::string_view rest_;
   size_t number_ = 0;
+  size_t moved_at_ = 0;  // the line of motion_
   uint32_t line_ends_ = 0;
   std::array<Micro, 3> at_{};
   Micro e_ = 0;
