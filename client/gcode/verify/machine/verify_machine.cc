@@ -64,7 +64,11 @@ bool VerifyMachine::Next(VerifyLine& line) {
 
 // To firmware a carriage return ends a line, wherever it stands.
 std::string_view VerifyMachine::TakeLine() {
-  const size_t end = std::min(rest_.find('\n'), rest_.size());
+  // Where carriage returns alone end lines, all of them are before one line feed.
+  if (line_feed_ == nullptr || line_feed_ < rest_.data()) {
+    line_feed_ = rest_.data() + std::min(rest_.find('\n'), rest_.size());
+  }
+  const auto end = static_cast<size_t>(line_feed_ - rest_.data());
   std::string_view line = rest_.substr(0, end);
   size_t returns = 0;
   while (returns < line.size() && line[line.size() - 1 - returns] == '\r') ++returns;

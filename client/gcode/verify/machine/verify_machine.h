@@ -113,6 +113,7 @@ class VerifyMachine {
   void Fence(VerifyLine& line, LineRole role);
 
   std::string_view rest_;
+  const char* line_feed_ = nullptr;  // the next one, or the end
   size_t number_ = 0;
   size_t moved_at_ = 0;  // the line of motion_
   uint32_t line_ends_ = 0;

@@ -48,5 +48,15 @@ TEST(VerifyMachine, G92OfTheFilamentAloneIsNoFence) {
   EXPECT_EQ(roles("M82\nG92\n").back(), LineRole::kFixed);
 }
 
+// A scan for the next line feed in each of these lines would take minutes.
+TEST(VerifyMachine, CarriageReturnsAloneTakeNoLonger) {
+  std::string text;
+  for (int i = 0; i < 1'000'000; ++i) text += "G1 X1 Y1\r";
+  VerifyMachine machine(text);
+  size_t lines = 0;
+  for (VerifyLine line; machine.Next(line);) ++lines;
+  EXPECT_EQ(lines, 1'000'000u);
+}
+
 }  // namespace
 }  // namespace traverse::gcode
