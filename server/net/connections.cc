@@ -145,16 +145,12 @@ void Connections::AcceptAll(int listener) {
     }
     {
       MutexLock lock(mutex_);
-      if (!peer.empty() && IsBanned(peer)) {
-        close(socket);
-        if (ours >= 0) close(ours);
-        ++cut_;
-        continue;
-      }
+      const bool banned = !peer.empty() && IsBanned(peer);
       const bool full = static_cast<int>(table_.size()) >= rules_.max_connections;
-      if (peer.empty() || ours < 0 || (full && !MakeRoom(peer))) {
+      if (banned || peer.empty() || ours < 0 || (full && !MakeRoom(peer))) {
         close(socket);
         if (ours >= 0) close(ours);
+        if (banned) ++cut_;
         continue;
       }
       const auto [entry, is_new] = table_.try_emplace(peer);
