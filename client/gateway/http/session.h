@@ -18,6 +18,7 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
+#include <cassert>
 #include <chrono>
 #include <limits>
 #include <memory>
@@ -70,6 +71,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
 
   // Until the connection ends.
   net::awaitable<void> Run() {
+    assert(IsInLoop());
     const auto self = this->shared_from_this();
     if (!co_await Handshake()) co_return;
     bool again = true;
@@ -84,6 +86,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
   }
 
   void Drain() override {
+    assert(IsInLoop());
     draining_ = true;
     if (idle_) Lowest().cancel();
   }
@@ -91,6 +94,8 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr size_t kPiece = 131072;
+
+  bool IsInLoop() const { return loop_->get_executor().running_in_this_thread(); }
 
   beast::tcp_stream& Lowest() { return beast::get_lowest_layer(stream_); }
 

@@ -107,21 +107,21 @@ struct PrinterApi::Delivery {
 };
 
 PrinterApi::~PrinterApi() {
-  std::unique_lock<std::mutex> lock(mutex_);
-  ended_.wait(lock, [&] { return threads_ == 0; });
+  MutexLock lock(mutex_);
+  while (threads_ > 0) ended_.Wait(mutex_);
 }
 
 void PrinterApi::Spawn(std::function<void()> work) {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    MutexLock lock(mutex_);
     ++threads_;
   }
   std::thread([this, work = std::move(work)]() mutable {
     work();
     work = nullptr;
-    const std::lock_guard<std::mutex> lock(mutex_);
+    MutexLock lock(mutex_);
     --threads_;
-    ended_.notify_all();
+    ended_.NotifyAll();
   }).detach();
 }
 

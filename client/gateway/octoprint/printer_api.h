@@ -10,9 +10,8 @@
 #ifndef TRAVERSE_CLIENT_GATEWAY_OCTOPRINT_PRINTER_API_H_
 #define TRAVERSE_CLIENT_GATEWAY_OCTOPRINT_PRINTER_API_H_
 
-#include <condition_variable>
+#include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 
 #include "absl/time/time.h"
@@ -21,6 +20,7 @@
 #include "client/gateway/http/message.h"
 #include "client/gateway/octoprint/printers_config.h"
 #include "client/gateway/octoprint/upstream.h"
+#include "engine/base/mutex.h"
 
 namespace traverse::gateway {
 
@@ -62,9 +62,9 @@ class PrinterApi {
 
   Core& core_;
   const PrinterApiOptions options_;
-  std::mutex mutex_;
-  std::condition_variable ended_;
-  int threads_ = 0;
+  Mutex mutex_;
+  ConditionVariable ended_;
+  int threads_ TRAVERSE_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace traverse::gateway

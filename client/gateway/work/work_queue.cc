@@ -10,7 +10,7 @@
 namespace traverse::gateway {
 
 WorkQueue::Place::~Place() {
-  const std::lock_guard<std::mutex> lock(queue_.mutex_);
+  MutexLock lock(queue_.mutex_);
   --queue_.requests_;
   const auto of_caller = queue_.places_.find(caller_);
   if (--of_caller->second == 0) queue_.places_.erase(of_caller);
@@ -22,21 +22,21 @@ WorkQueue::WorkQueue(const WorkLimits& limits) : limits_(limits) {
 
 WorkQueue::~WorkQueue() {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    MutexLock lock(mutex_);
     stopping_ = true;
   }
-  changed_.notify_all();
+  changed_.NotifyAll();
   for (std::thread& worker : workers_) worker.join();
   // Places lock the mutex when they go.
   std::map<std::string, std::deque<Task>> dropped;
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    MutexLock lock(mutex_);
     dropped = std::exchange(waiting_, {});
   }
 }
 
 absl::StatusOr<std::shared_ptr<WorkQueue::Place>> WorkQueue::Enter(const std::string& caller) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   if (draining_) return absl::UnavailableError("the gateway is shutting down; ask another one");
   if (requests_ >= limits_.max_requests) {
     return absl::ResourceExhaustedError(
@@ -57,40 +57,40 @@ void WorkQueue::Submit(std::shared_ptr<Place> place, int64_t memory_bytes,
   assert(memory_bytes <= limits_.max_memory_bytes);
   const std::string caller = place->caller();
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    MutexLock lock(mutex_);
     ++waiting_count_;
     waiting_[caller].push_back({std::move(place), memory_bytes, std::move(task)});
   }
-  changed_.notify_one();
+  changed_.NotifyOne();
 }
 
 void WorkQueue::StartDraining() {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   draining_ = true;
 }
 
 bool WorkQueue::draining() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   return draining_;
 }
 
 int WorkQueue::requests() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   return requests_;
 }
 
 int WorkQueue::waiting() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   return waiting_count_;
 }
 
 int WorkQueue::running() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   return running_;
 }
 
 int64_t WorkQueue::memory_bytes() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   return memory_bytes_;
 }
 
@@ -113,19 +113,19 @@ bool WorkQueue::TakeNext(Task& task) {
 }
 
 void WorkQueue::Work() {
-  std::unique_lock<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   while (true) {
     Task task;
-    changed_.wait(lock, [&] { return stopping_ || TakeNext(task); });
+    while (!stopping_ && !TakeNext(task)) changed_.Wait(mutex_);
     if (task.run == nullptr) return;
-    lock.unlock();
+    lock.Unlock();
     task.run();
     const int64_t bytes = task.memory_bytes;
     task = {};
-    lock.lock();
+    lock.Lock();
     --running_;
     memory_bytes_ -= bytes;
-    changed_.notify_all();
+    changed_.NotifyAll();
   }
 }
 

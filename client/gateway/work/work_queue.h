@@ -3,18 +3,17 @@
 #ifndef TRAVERSE_CLIENT_GATEWAY_WORK_WORK_QUEUE_H_
 #define TRAVERSE_CLIENT_GATEWAY_WORK_WORK_QUEUE_H_
 
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "engine/base/mutex.h"
 
 namespace traverse::gateway {
 
@@ -78,20 +77,21 @@ class WorkQueue {
   void Work();
 
   // The next task that may run now: of the caller whose turn it is. False if there is none.
-  bool TakeNext(Task& task);  // REQUIRES: mutex_ is held
+  bool TakeNext(Task& task) TRAVERSE_REQUIRES(mutex_);
 
   const WorkLimits limits_;
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  std::map<std::string, int> places_;  // by caller
-  int requests_ = 0;
-  std::map<std::string, std::deque<Task>> waiting_;  // by caller; none is empty
-  std::string last_caller_;                          // whose turn it was
-  int waiting_count_ = 0;
-  int running_ = 0;
-  int64_t memory_bytes_ = 0;
-  bool draining_ = false;
-  bool stopping_ = false;
+  mutable Mutex mutex_;
+  ConditionVariable changed_;
+  std::map<std::string, int> places_ TRAVERSE_GUARDED_BY(mutex_);  // by caller
+  int requests_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  std::map<std::string, std::deque<Task>> waiting_
+      TRAVERSE_GUARDED_BY(mutex_);                       // by caller; none is empty
+  std::string last_caller_ TRAVERSE_GUARDED_BY(mutex_);  // whose turn it was
+  int waiting_count_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  int running_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  int64_t memory_bytes_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  bool draining_ TRAVERSE_GUARDED_BY(mutex_) = false;
+  bool stopping_ TRAVERSE_GUARDED_BY(mutex_) = false;
   std::vector<std::thread> workers_;
 };
 
