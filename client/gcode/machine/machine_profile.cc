@@ -101,7 +101,8 @@ Dynamics::Dynamics(const MachineProfile& profile)
       travel_accel_(profile.travel_accel),
       max_accel_(profile.max_accel),
       corner_speed_(profile.corner_speed),
-      max_speed_(profile.max_speed) {}
+      max_speed_(profile.max_speed),
+      cruise_ratio_(profile.cruise_ratio) {}
 
 void Dynamics::Follow(std::string_view line) {
   Command command;
@@ -126,11 +127,47 @@ void Dynamics::Follow(std::string_view line) {
   }
 }
 
+void Dynamics::FollowFor(Slot slot, std::string_view line) {
+  Dynamics after = *this;
+  after.Follow(line);
+  switch (slot) {
+    case kSlotPrintAccel:
+      print_accel_ = after.print_accel_;
+      break;
+    case kSlotTravelAccel:
+      travel_accel_ = after.travel_accel_;
+      break;
+    case kSlotKlipperAccel:
+      print_accel_ = after.print_accel_;
+      travel_accel_ = after.travel_accel_;
+      break;
+    case kSlotMaxAccelX:
+      max_accel_ = after.max_accel_;
+      break;
+    case kSlotJerkX:
+    case kSlotKlipperCorner:
+      corner_speed_ = after.corner_speed_;
+      break;
+    case kSlotKlipperSpeed:
+      max_speed_ = after.max_speed_;
+      break;
+    case kSlotKlipperDecel:
+      cruise_ratio_ = after.cruise_ratio_;
+      break;
+    default:
+      break;
+  }
+}
+
 void Dynamics::FollowKlipper(std::string_view line) {
   SetPositive(print_accel_, Parameter(line, " ACCEL="));
   SetPositive(travel_accel_, Parameter(line, " ACCEL="));
   SetPositive(corner_speed_, Parameter(line, " SQUARE_CORNER_VELOCITY="));
-  if (klipper_) SetPositive(max_speed_, Parameter(line, " VELOCITY="));
+  if (!klipper_) return;
+  SetPositive(max_speed_, Parameter(line, " VELOCITY="));
+  // ACCEL_TO_DECEL said the same to Klipper before 2024, which ignores it since.
+  const std::optional<double> ratio = Parameter(line, " MINIMUM_CRUISE_RATIO=");
+  if (ratio && *ratio >= 0 && *ratio < 1) cruise_ratio_ = *ratio;
 }
 
 // Klipper takes S, or the smaller of P and T; it ignores one of these by itself.
@@ -146,7 +183,7 @@ Dynamics DynamicsOf(const MachineProfile& profile, const PrintState& state,
   Dynamics dynamics(profile);
   for (size_t slot = 0; slot < kSlotCount; ++slot) {
     if (((kDynamicsSlots >> slot) & 1u) == 0 || state[slot] == 0) continue;
-    dynamics.Follow(setters.Line(state[slot]));
+    dynamics.FollowFor(static_cast<Slot>(slot), setters.Line(state[slot]));
   }
   return dynamics;
 }

@@ -58,10 +58,14 @@ class Dynamics {
   // Follows the setter `line`.
   void Follow(std::string_view line);
 
+  // The same, but only what it sets of `slot`: another setter may hold for the rest.
+  void FollowFor(Slot slot, std::string_view line);
+
   double print_accel() const { return Limited(print_accel_); }
   double travel_accel() const { return Limited(travel_accel_); }
   double corner_speed() const { return corner_speed_; }
   double max_speed() const { return max_speed_; }
+  double cruise_ratio() const { return cruise_ratio_; }
 
  private:
   double Limited(double accel) const { return accel < max_accel_ ? accel : max_accel_; }
@@ -75,6 +79,7 @@ class Dynamics {
   double max_accel_;
   double corner_speed_;
   double max_speed_;
+  double cruise_ratio_;
 };
 
 // Those in force in `state`.

@@ -43,7 +43,8 @@ void MotionPlanner::Move(double dx, double dy, double speed, double accel, doubl
 void MotionPlanner::Arc(double length_mm, double bx, double by, double ex, double ey, double speed,
                         double accel, double corner, double filament) {
   if (!(length_mm > 0) || !(speed > 0)) return;
-  Segment segment{length_mm, speed * speed, accel, 0, 0};
+  Segment segment{
+      length_mm, speed * speed, accel, 0, 0, 2 * (1 - rules_.cruise_ratio) * accel * length_mm};
   if (!queue_.empty()) {
     const double limit2 = rules_.klipper ? KlipperLimit2(bx, by, corner, segment, filament)
                                          : CornerLimit2(bx, by, corner);
@@ -99,9 +100,7 @@ void MotionPlanner::FindPeaks() {
   const size_t n = queue_.size();
   slow2_.assign(n + 1, 0);
   peaks2_.resize(n);
-  const auto gain2 = [this](size_t i) {
-    return 2 * (1 - rules_.cruise_ratio) * queue_[i].accel * queue_[i].length;
-  };
+  const auto gain2 = [this](size_t i) { return queue_[i].slow_gain2; };
   for (size_t i = n; i-- > 0;) slow2_[i] = std::min(queue_[i].limit2, slow2_[i + 1] + gain2(i));
   slow2_[0] = slow_entry2_;
   for (size_t i = 0; i < n; ++i) slow2_[i + 1] = std::min(slow2_[i + 1], slow2_[i] + gain2(i));

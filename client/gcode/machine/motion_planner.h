@@ -38,6 +38,9 @@ class MotionPlanner {
  public:
   explicit MotionPlanner(const PlannerRules& rules = {}) : rules_(rules) {}
 
+  // For the moves from here on; from 0 to below 1.
+  void set_cruise_ratio(double ratio) { rules_.cruise_ratio = ratio; }
+
   // A move by (dx, dy) mm at most `speed` mm/s with `accel` mm/s^2. `corner` mm/s is the corner
   // speed to the move before it; `filament` mm of it are pushed for each mm.
   void Move(double dx, double dy, double speed, double accel, double corner, double filament = 0);
@@ -58,8 +61,9 @@ class MotionPlanner {
     double length;
     double speed2;  // squares of speeds, (mm/s)^2
     double accel;
-    double limit2;  // of the corner before it
-    double entry2;  // planned: at most limit2, and low enough to brake for what follows
+    double limit2;      // of the corner before it
+    double entry2;      // planned: at most limit2, and low enough to brake for what follows
+    double slow_gain2;  // of speed^2, with the acceleration less the share of cruising
   };
 
   // The corner between the last queued move and one that begins in direction (bx, by).
@@ -77,7 +81,7 @@ class MotionPlanner {
 
   static constexpr size_t kWindow = 512;
 
-  const PlannerRules rules_;
+  PlannerRules rules_;
   std::vector<Segment> queue_;
   double last_x_ = 0;  // direction in which the last queued move ends
   double last_y_ = 0;

@@ -137,7 +137,8 @@ SlotMask TextSlots(std::string_view line) {
     rest = blank == std::string_view::npos ? std::string_view{} : rest.substr(blank);
     if (StartsWith(parameter, "ACCEL=")) {
       slots |= SlotBit(kSlotKlipperAccel);
-    } else if (StartsWith(parameter, "ACCEL_TO_DECEL=")) {
+    } else if (StartsWith(parameter, "ACCEL_TO_DECEL=") ||
+               StartsWith(parameter, "MINIMUM_CRUISE_RATIO=")) {
       slots |= SlotBit(kSlotKlipperDecel);
     } else if (StartsWith(parameter, "SQUARE_CORNER_VELOCITY=")) {
       slots |= SlotBit(kSlotKlipperCorner);

@@ -39,7 +39,7 @@ enum Slot : uint8_t {
   kSlotMaxTravelX,     // M202 X, of Repetier
   kSlotMaxTravelY,     // M202 Y
   kSlotKlipperAccel,   // SET_VELOCITY_LIMIT ACCEL
-  kSlotKlipperDecel,   // SET_VELOCITY_LIMIT ACCEL_TO_DECEL
+  kSlotKlipperDecel,   // SET_VELOCITY_LIMIT ACCEL_TO_DECEL, MINIMUM_CRUISE_RATIO
   kSlotKlipperCorner,  // SET_VELOCITY_LIMIT SQUARE_CORNER_VELOCITY
   kSlotKlipperSpeed,   // SET_VELOCITY_LIMIT VELOCITY
   kSlotPressure,       // M900, M572, SET_PRESSURE_ADVANCE

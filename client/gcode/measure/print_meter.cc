@@ -127,6 +127,7 @@ double PrintMeter::MoveKlipper(const Step& step, const MachineState& state) {
     }
   }
   points.push_back(state.InMm(state.at));
+  planner_.set_cruise_ratio(dynamics_.cruise_ratio());
   for (size_t i = 1; i < points.size(); ++i) {
     planner_.Move((points[i].x - points[i - 1].x) * length / flat,
                   (points[i].y - points[i - 1].y) * length / flat, speed, accel,

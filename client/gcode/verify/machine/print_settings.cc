@@ -117,7 +117,7 @@ bool PrintSettings::SetByKlipper(std::string_view text) {
     const uint64_t value = DigestOf(word.substr(equals));
     if (name == "ACCEL") {
       settings.emplace_back(kKlipperAccel, value);
-    } else if (name == "ACCEL_TO_DECEL") {
+    } else if (name == "ACCEL_TO_DECEL" || name == "MINIMUM_CRUISE_RATIO") {
       settings.emplace_back(kKlipperDecel, value);
     } else if (name == "SQUARE_CORNER_VELOCITY") {
       settings.emplace_back(kKlipperCorner, value);

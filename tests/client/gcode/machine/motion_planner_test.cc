@@ -122,6 +122,17 @@ TEST(MotionPlannerOfKlipper, AShareOfAWayIsCruising) {
   EXPECT_NEAR(Seconds(planner), 2 * peak / 1000 + 5 / peak, 1e-9);
 }
 
+TEST(MotionPlannerOfKlipper, TheShareMayChangeFromMoveToMove) {
+  MotionPlanner planner({true, 0.5, 1e9});
+  planner.Move(10, 0, 1000, 1000, 5);
+  planner.set_cruise_ratio(0);
+  planner.Move(-10, 0, 1000, 1000, 0);
+
+  const double peak = std::sqrt(5000);
+  EXPECT_NEAR(Seconds(planner), 2 * peak / 1000 + 5 / peak + StopToStopSeconds(10, 1000, 1000),
+              1e-6);
+}
+
 TEST(MotionPlannerOfKlipper, SpeedThatIsReachedAnywayIsReachedAsSoon) {
   MotionPlanner planner({true, 0.5, 1e9});
   planner.Move(100, 0, 100, 1000, 5);

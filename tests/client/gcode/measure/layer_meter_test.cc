@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "absl/strings/str_format.h"
 #include "tests/client/gcode/support/read_text.h"
 #include "tests/client/gcode/support/samples.h"
 #include "tests/client/gcode/support/scattered_lines.h"
@@ -24,6 +25,69 @@ TEST(Measure, WhatRoundingLosesOfAWipeIsNotPushedBeyondIt) {
   EXPECT_EQ(Measure(*file, "G1 E-.17001\nG1 E-.62998\nG1 E.8\n", start).extra_mm, 0);
   EXPECT_NEAR(Measure(*file, "G1 E-.17001\nG1 E-.62998\nG1 E.82\n", start).extra_mm, 0.02, 1e-4);
   EXPECT_NEAR(Measure(*file, "G1 E.00005\n", start).extra_mm, 5e-5, 1e-9);
+}
+
+double SecondsOfMove(const MachineProfile& profile, const std::string& setter) {
+  const auto file = Read(kScattered);
+  file->profile = profile;
+  const Block& first = file->blocks.front();
+  const PartStart start{StateAt(*file, first), file->states[first.state_in]};
+  const Position& at = start.machine.at;
+  return Measure(*file, setter + absl::StrFormat("\nG1 X%g F60000\n", ToDouble(at.x) + 10), start)
+      .seconds;
+}
+
+// From standstill to standstill, as Klipper's own planner has it.
+TEST(Measure, KlippersShareOfCruisingMayBeSetInAFile) {
+  MachineProfile klipper;
+  klipper.klipper = true;
+  klipper.print_accel = klipper.travel_accel = 1000;
+  const auto seconds = [&klipper](double ratio) {
+    return SecondsOfMove(klipper,
+                         absl::StrFormat("SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO=%g", ratio));
+  };
+  const auto expected = [](double ratio) {
+    const double peak = std::sqrt((1 - ratio) * 1000 * 10);
+    return 2 * peak / 1000 + ratio * 10 / peak;
+  };
+
+  EXPECT_NEAR(seconds(0), expected(0), 1e-6);
+  EXPECT_NEAR(seconds(0.5), expected(0.5), 1e-6);
+  EXPECT_NEAR(seconds(0.8), expected(0.8), 1e-6);
+  EXPECT_NEAR(seconds(1), seconds(0), 1e-6);  // Klipper refuses it
+
+  klipper.cruise_ratio = 0.5;
+  EXPECT_NEAR(seconds(0.8), expected(0.8), 1e-6);
+  EXPECT_NEAR(seconds(-1), expected(0.5), 1e-6);
+  // Ignored since 2024.
+  EXPECT_NEAR(SecondsOfMove(klipper, "SET_VELOCITY_LIMIT ACCEL_TO_DECEL=1000"), expected(0.5),
+              1e-6);
+  // Whoever does not run Klipper cruises as long as there is room for it.
+  EXPECT_NEAR(SecondsOfMove({}, "SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO=0.8"),
+              SecondsOfMove({}, "; nothing"), 1e-9);
+}
+
+// A line that sets two things holds for the one that no later line set.
+TEST(DynamicsOf, WhatALaterLineSetHoldsThoughAnEarlierOneSetMore) {
+  SetterTable setters;
+  PrintState state{};
+  const auto set = [&](const std::string& line, SlotMask slots) {
+    ApplySetter(state, setters.Intern(line, slots), slots);
+  };
+  MachineProfile profile;
+  profile.klipper = true;
+  for (const char* line : {"SET_VELOCITY_LIMIT ACCEL=1000 MINIMUM_CRUISE_RATIO=0.25 VELOCITY=70",
+                           "SET_VELOCITY_LIMIT ACCEL=500", "SET_VELOCITY_LIMIT VELOCITY=90"}) {
+    ASSERT_NE(TextSlots(line), 0u) << line;
+    set(line, TextSlots(line));
+  }
+
+  const Dynamics dynamics = DynamicsOf(profile, state, setters);
+
+  EXPECT_EQ(dynamics.travel_accel(), 500);
+  EXPECT_EQ(dynamics.print_accel(), 500);
+  EXPECT_EQ(dynamics.max_speed(), 90);
+  EXPECT_EQ(dynamics.cruise_ratio(), 0.25);
 }
 
 TEST(MeasureLayers, CountsTravelFromTheFirstToTheLastExtrusion) {
