@@ -84,10 +84,10 @@ TEST(DynamicsOf, WhatALaterLineSetHoldsThoughAnEarlierOneSetMore) {
 
   const Dynamics dynamics = DynamicsOf(profile, state, setters);
 
-  EXPECT_EQ(dynamics.travel_accel(), 500);
-  EXPECT_EQ(dynamics.print_accel(), 500);
-  EXPECT_EQ(dynamics.max_speed(), 90);
-  EXPECT_EQ(dynamics.cruise_ratio(), 0.25);
+  EXPECT_DOUBLE_EQ(dynamics.travel_accel(), 500);
+  EXPECT_DOUBLE_EQ(dynamics.print_accel(), 500);
+  EXPECT_DOUBLE_EQ(dynamics.max_speed(), 90);
+  EXPECT_DOUBLE_EQ(dynamics.cruise_ratio(), 0.25);
 }
 
 TEST(MeasureLayers, CountsTravelFromTheFirstToTheLastExtrusion) {
