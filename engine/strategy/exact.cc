@@ -72,8 +72,8 @@ class Exact : public Strategy {
   }
 
  private:
-  Solution FirstRoute(const LayerProblem& problem, const Budget& budget) const {
-    const bool provable = StageModel::Fits(*problem.plan, kMostModelEntries);
+  Solution FirstRoute(const LayerProblem& problem, Budget& budget) const {
+    const bool provable = StageModel::Fits(*problem.plan, kMostModelEntries, &budget);
     Budget share = Share(budget, provable ? kRouteShare : kRouteShareWithoutProof);
     Solution solution = (provable ? long_heuristic_ : heuristic_)->Solve(problem, share);
     solution.statistics["provable"] = provable ? 1 : 0;

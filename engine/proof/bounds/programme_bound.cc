@@ -24,7 +24,7 @@ std::optional<double> ProgrammeBound(const LayerProblem& problem, double target,
                                      Budget& budget) {
   assert(effort >= 0);
   const auto entries = static_cast<size_t>(std::min(kEntriesEach * effort, kMostEntries));
-  if (!StageModel::Fits(*problem.plan, entries)) return std::nullopt;
+  if (!StageModel::Fits(*problem.plan, entries, &budget)) return std::nullopt;
   LayerProblem without_walls = problem;
   without_walls.walls = nullptr;
   const std::optional<StageModel> model = StageModel::Build(without_walls, entries, &budget);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/cost/entry_table.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/proof/min_plus.h"
 
@@ -41,26 +40,30 @@ void FillMatrix(const Plan& plan, const TravelCost& cost, bool from_gate,
 std::optional<StageModel> StageModel::Build(const LayerProblem& problem, size_t max_entries,
                                             Budget* budget) {
   StageModel model;
-  if (!model.LayOut(*problem.plan, max_entries)) return std::nullopt;
+  if (!model.LayOut(*problem.plan, max_entries, budget)) return std::nullopt;
   if (!model.FillMatrices(problem, budget)) return std::nullopt;
   return model;
 }
 
-bool StageModel::Fits(const Plan& plan, size_t max_entries) {
-  return StageModel().LayOut(plan, max_entries);
+bool StageModel::Fits(const Plan& plan, size_t max_entries, Budget* budget) {
+  return StageModel().LayOut(plan, max_entries, budget);
 }
 
-bool StageModel::LayOut(const Plan& plan, size_t max_entries) {
+bool StageModel::LayOut(const Plan& plan, size_t max_entries, Budget* budget) {
   const std::optional<std::vector<PlanStage>> stages = StagesOf(plan, kMostClusters);
   if (!stages) return false;
+  const EntryTable entries(plan, budget);
   first_.push_back(0);
-  for (const PlanStage& stage : *stages) AddStage(plan, stage);
+  for (const PlanStage& stage : *stages) {
+    if (budget != nullptr && budget->Exhausted()) return false;
+    AddStage(plan, entries, stage);
+  }
   return PlaceMatrices(*stages, max_entries);
 }
 
-void StageModel::AddStage(const Plan& plan, const PlanStage& stage) {
+void StageModel::AddStage(const Plan& plan, const EntryTable& entries, const PlanStage& stage) {
   const int first = first_.back();
-  AddVisits(plan, stage);
+  AddVisits(entries, stage);
   for (int i = 0; i < stage.size(); ++i) {
     const auto cluster = static_cast<size_t>(first + i);
     const int path = stage.paths[static_cast<size_t>(i)];
@@ -89,14 +92,13 @@ void StageModel::AddStage(const Plan& plan, const PlanStage& stage) {
 }
 
 // The states of each item. Those of a gate are the states of what follows it.
-void StageModel::AddVisits(const Plan& plan, const PlanStage& stage) {
-  const EntryTable table(plan);
+void StageModel::AddVisits(const EntryTable& entries, const PlanStage& stage) {
   const size_t first = visits_.size();
   for (const int path : stage.paths) {
     std::vector<Visit>& visits = visits_.emplace_back();
     if (path == PlanStage::kGate) continue;
-    for (int e = table.first(path); e < table.first(path + 1); ++e) {
-      visits.push_back(table.VisitOf(e));
+    for (int e = entries.first(path); e < entries.first(path + 1); ++e) {
+      visits.push_back(entries.VisitOf(e));
     }
   }
   for (const PlanStage::Gate& gate : stage.gates) {
@@ -110,18 +112,19 @@ void StageModel::AddVisits(const Plan& plan, const PlanStage& stage) {
 }
 
 bool StageModel::PlaceMatrices(const std::vector<PlanStage>& stages, size_t max_entries) {
-  const auto n = static_cast<size_t>(cluster_count());
-  offsets_.assign(n * n, kNoMoves);
   for (int a = 0; a < cluster_count(); ++a) {
     const int s = stage_of(a);
     const PlanStage& stage = stages[static_cast<size_t>(s)];
-    const int end = s + 1 < stage_count() ? first(s + 2) : first(s + 1);
+    const int end = end_of_next(s);
+    row_.push_back(offsets_.size());
+    offsets_.resize(offsets_.size() + static_cast<size_t>(end - first(s)), kNoMoves);
+    if (offsets_.size() > max_entries) return false;
     for (int b = first(s); b < end; ++b) {
       const bool follows = stage_of(b) == s ? stage.CanFollow(a - first(s), b - first(s))
                                             : ends_[static_cast<size_t>(a)] != 0 &&
                                                   begins_[static_cast<size_t>(b)] != 0;
       if (!follows) continue;
-      offsets_[static_cast<size_t>(a) * n + static_cast<size_t>(b)] = move_count_;
+      offsets_[row_.back() + static_cast<size_t>(b - first(s))] = move_count_;
       move_count_ += static_cast<size_t>(states(a)) * static_cast<size_t>(states(b));
       if (move_count_ > max_entries) return false;
     }
@@ -136,8 +139,7 @@ bool StageModel::FillMatrices(const LayerProblem& problem, Budget* budget) {
   for (int a = 0; a < cluster_count(); ++a) {
     if (budget != nullptr && budget->ExhaustedNow()) return false;
     const int s = stage_of(a);
-    const int end = s + 1 < stage_count() ? first(s + 2) : first(s + 1);
-    for (int b = first(s); b < end; ++b) {
+    for (int b = first(s); b < end_of_next(s); ++b) {
       if (!CanFollow(a, b)) continue;
       const size_t count = static_cast<size_t>(states(a)) * static_cast<size_t>(states(b));
       costs_.resize(offset(a, b) + count);

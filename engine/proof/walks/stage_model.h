@@ -14,6 +14,7 @@
 #ifndef TRAVERSE_ENGINE_PROOF_WALKS_STAGE_MODEL_H_
 #define TRAVERSE_ENGINE_PROOF_WALKS_STAGE_MODEL_H_
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
@@ -22,6 +23,7 @@
 #include <vector>
 
 #include "engine/base/budget.h"
+#include "engine/cost/entry_table.h"
 #include "engine/model/layer_problem.h"
 #include "engine/model/route.h"
 #include "engine/proof/walks/plan_stages.h"
@@ -39,14 +41,15 @@ struct ClusterState {
 class StageModel {
  public:
   // The model of `problem`, or nothing if a stage has more than kMostClusters, or if the matrices
-  // would have more than `max_entries` numbers, or if `budget` (may be null) ends. Time and memory
-  // are proportional to these: 16 million take 0.2 s.
+  // would have more than `max_entries` numbers, or there are more pairs of clusters of one stage or
+  // of two in a row, or if `budget` (may be null) ends. Time and memory are proportional to these:
+  // 16 million take 0.2 s.
   static constexpr size_t kMostClusters = 512;
   static std::optional<StageModel> Build(const LayerProblem& problem, size_t max_entries,
                                          Budget* budget = nullptr);
 
-  // Whether Build has a model for `plan`. Much quicker.
-  static bool Fits(const Plan& plan, size_t max_entries);
+  // Whether Build has a model for `plan`, `budget` (may be null) permitting. Much quicker.
+  static bool Fits(const Plan& plan, size_t max_entries, Budget* budget = nullptr);
 
   int stage_count() const { return static_cast<int>(first_.size()) - 1; }
   int cluster_count() const { return first_.back(); }
@@ -67,8 +70,11 @@ class StageModel {
   // Whether `cluster` is a contour, which is left where it was entered.
   bool IsContour(int cluster) const { return is_contour_[static_cast<size_t>(cluster)] != 0; }
 
-  // Whether `b`, of the stage of `a` or of the next one, may come right after `a`.
-  bool CanFollow(int a, int b) const { return offset(a, b) != kNoMoves; }
+  // Whether `b` may come right after `a`: it is of the same stage, or of the next one.
+  bool CanFollow(int a, int b) const {
+    const int stage = stage_of(a);
+    return b >= first(stage) && b < end_of_next(stage) && offset(a, b) != kNoMoves;
+  }
 
   // Whether any two clusters of `stage` may follow each other, but for precedences.
   bool IsFree(int stage) const { return is_free_[static_cast<size_t>(stage)] != 0; }
@@ -118,14 +124,17 @@ class StageModel {
   static constexpr size_t kNoMoves = std::numeric_limits<size_t>::max();
 
   StageModel() = default;
+  // REQUIRES: `b` is of the stage of `a` or of the next one.
   size_t offset(int a, int b) const {
-    return offsets_[static_cast<size_t>(a) * static_cast<size_t>(cluster_count()) +
-                    static_cast<size_t>(b)];
+    assert(b >= first(stage_of(a)) && b < end_of_next(stage_of(a)));
+    return offsets_[row_[static_cast<size_t>(a)] + static_cast<size_t>(b - first(stage_of(a)))];
   }
+  // Behind the last cluster of the stage after `stage`, or of `stage` if that is the last one.
+  int end_of_next(int stage) const { return first(std::min(stage + 2, stage_count())); }
   bool IsGate(int cluster) const { return is_gate_[static_cast<size_t>(cluster)] != 0; }
-  void AddStage(const Plan& plan, const PlanStage& stage);
-  void AddVisits(const Plan& plan, const PlanStage& stage);
-  bool LayOut(const Plan& plan, size_t max_entries);
+  void AddStage(const Plan& plan, const EntryTable& entries, const PlanStage& stage);
+  void AddVisits(const EntryTable& entries, const PlanStage& stage);
+  bool LayOut(const Plan& plan, size_t max_entries, Budget* budget);
   bool PlaceMatrices(const std::vector<PlanStage>& stages, size_t max_entries);
   bool FillMatrices(const LayerProblem& problem, Budget* budget);
   void FillEnds(const LayerProblem& problem);
@@ -141,7 +150,8 @@ class StageModel {
   std::vector<char> begins_;                // [cluster] whether it may come first in its stage
   std::vector<char> ends_;                  // [cluster] and last
   size_t move_count_ = 0;
-  std::vector<size_t> offsets_;              // [a * cluster_count() + b]
+  std::vector<size_t> row_;                  // [a] where its offsets begin
+  std::vector<size_t> offsets_;              // [row + b - first cluster of the stage of a]
   std::vector<double> costs_;                // [offset + ...]
   std::vector<double> transposed_;           // [offset + ...]
   std::vector<std::vector<double>> start_;   // [cluster][state]

@@ -253,6 +253,13 @@ Plan EmptyChains(int n) {
   return plan;
 }
 
+// Dots in the order that they are in: as many stages, of one each.
+Plan FixedOrder(int n) {
+  Plan plan = Dots(n);
+  plan.nodes[0].kind = PlanNode::Kind::kInOrder;
+  return plan;
+}
+
 struct Shape {
   std::string name;
   std::function<Plan(int)> make;
@@ -270,6 +277,7 @@ const Shape kShapes[] = {
     {"DeepNodes", DeepNodes, 1'000'000},
     {"Barrier", Barrier, 1'000'000},
     {"EmptyChains", EmptyChains, 1'000'000},
+    {"FixedOrder", FixedOrder, 1'000'000},
 };
 
 // Bounds for machines that do other things as well: caches are cold after each of those.
