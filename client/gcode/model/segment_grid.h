@@ -7,6 +7,7 @@
 #include <bit>
 #include <cassert>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -43,9 +44,15 @@ class SegmentGrid {
   // as near to each other as reach(i, j), and for some that do not; for some more than once. It is
   // asked anew, in mm and at most three quarters of a cell, for each two cells in which both paths
   // are; what is negative is near to nothing. When visit returns false the next two paths or cells
-  // are looked at. Segments of one path follow one another in `segments`.
+  // are looked at. Segments of one path follow one another in `segments`. Returns false, and calls
+  // nothing, if there are more than `most` pairs of paths to look at, each counted once in each two
+  // cells next to each other.
   template <typename Reach, typename Visit>
-  void ForEachNearPair(Reach reach, Visit visit) const;
+  bool ForEachNearPair(Reach reach, Visit visit,
+                       double most = std::numeric_limits<double>::infinity()) const;
+
+  // How many segments there are in all cells, one counted in each of its cells.
+  size_t entry_count() const { return entries_.size(); }
 
   // Calls visit(s) for all segments that the straight way from `a` to `b` may cross, until it
   // returns false.
@@ -71,6 +78,11 @@ class SegmentGrid {
   // Calls visit(column, row, number) for the occupied cells, in the order of their numbers.
   template <typename Visit>
   void ForEachOccupied(Visit visit) const;
+
+  // Calls visit(number, number) for all pairs of occupied cells that are one or have a side or a
+  // corner in common, once for each.
+  template <typename Visit>
+  void ForEachTwoCells(Visit visit) const;
 
   // Calls visit(column, row) for the cells along a segment, each once in a row.
   template <typename Visit>
@@ -196,21 +208,33 @@ void SegmentGrid::VisitCells(const Runs& runs, size_t one, size_t other, Reach& 
   }
 }
 
-template <typename Reach, typename Visit>
-void SegmentGrid::ForEachNearPair(Reach reach, Visit visit) const {
-  const Runs runs = MakeRuns();
+template <typename Visit>
+void SegmentGrid::ForEachTwoCells(Visit visit) const {
   ForEachOccupied([&](int column, int row, size_t number) {
-    VisitCells(runs, number, number, reach, visit);
+    visit(number, number);
     const auto visit_with = [&](int other_column, int other_row) {
       if (other_column < 0 || other_column >= columns_ || other_row >= rows_) return;
       const size_t other = Cell(other_column, other_row);
-      if (IsOccupied(other)) VisitCells(runs, number, NumberOf(other), reach, visit);
+      if (IsOccupied(other)) visit(number, NumberOf(other));
     };
     visit_with(column + 1, row);
     visit_with(column - 1, row + 1);
     visit_with(column, row + 1);
     visit_with(column + 1, row + 1);
   });
+}
+
+template <typename Reach, typename Visit>
+bool SegmentGrid::ForEachNearPair(Reach reach, Visit visit, double most) const {
+  const Runs runs = MakeRuns();
+  const auto paths_in = [&runs](size_t cell) {
+    return static_cast<double>(runs.first[cell + 1] - runs.first[cell]);
+  };
+  double pairs = 0;
+  ForEachTwoCells([&](size_t one, size_t other) { pairs += paths_in(one) * paths_in(other); });
+  if (pairs > most) return false;
+  ForEachTwoCells([&](size_t one, size_t other) { VisitCells(runs, one, other, reach, visit); });
+  return true;
 }
 
 template <typename Visit>

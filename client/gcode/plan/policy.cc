@@ -209,7 +209,7 @@ LayerPlan LayerPlanner::Make() {
   for (size_t path = 0; path < size(); ++path) AddPath(path);
   for (size_t begin = 0; begin < size();) {
     size_t end = begin + 1;
-    while (end < size() && !BeginsGroup(end)) ++end;
+    while (end < size() && contacts_.complete && !BeginsGroup(end)) ++end;
     AddGroup(begin, end);
     begin = end;
   }

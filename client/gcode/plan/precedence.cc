@@ -58,7 +58,7 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
     const bool joined = regions.AreJoined(static_cast<int>(one), static_cast<int>(other));
     return joined && order_of(one, other) != Order::kIfTheyTouch ? -1.0 : reach(one, other);
   };
-  grid.ForEachNearPair(reach_if_wanted, [&](uint32_t s, uint32_t t) {
+  const auto look_at = [&](uint32_t s, uint32_t t) {
     const Segment& one = grid.segments()[s];
     const Segment& other = grid.segments()[t];
     const double near = reach(one.path, other.path);
@@ -69,7 +69,13 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
       contacts.ordered.push_back(ascending(one.path, other.path));
     }
     return false;
-  });
+  };
+  const double most = kMostPairsOfAll + kMostPairsEach * static_cast<double>(grid.entry_count());
+  contacts.complete = grid.ForEachNearPair(reach_if_wanted, look_at, most);
+  if (!contacts.complete) {
+    contacts.island.assign(outlines.size(), 0);
+    return contacts;
+  }
   std::sort(contacts.ordered.begin(), contacts.ordered.end());
   for (const int island : regions.Numbered()) {
     contacts.island.push_back(static_cast<uint32_t>(island));

@@ -395,5 +395,27 @@ TEST(Policy, SupportIsFreeButForItsInterfaces) {
   }
 }
 
+// Every line touches every other: a square of their number, which nobody waits for.
+TEST(Policy, PathsInOnePlaceByTheThousandStayAsTheyAre) {
+  Sheet sheet;
+  for (int i = 0; i < 6000; ++i) sheet.Line(";TYPE:Internal infill", 0, 0, 9, 0);
+
+  const LayerPlan plan = sheet.Plan(Policy::kFree);
+
+  EXPECT_EQ(plan.movable, 0);
+  EXPECT_EQ(plan.plan.nodes(0).in_order().children_size(), plan.plan.paths_size());
+}
+
+// As close as paths of a part are to one another, but a whole layer of them.
+TEST(Policy, ManyPathsSideBySideMayMove) {
+  Sheet sheet;
+  for (int i = 0; i < 6000; ++i) {
+    sheet.Line(";TYPE:Internal infill", 0.5 * (i % 80), 0.4 * (i / 80), 0.5 * (i % 80) + 0.4,
+               0.4 * (i / 80));
+  }
+
+  EXPECT_GE(sheet.Plan(Policy::kFree).movable, 6000);
+}
+
 }  // namespace
 }  // namespace traverse::gcode
