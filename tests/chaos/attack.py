@@ -277,7 +277,7 @@ def validate_only(strategy="auto"):
 
 def many_pairs():
     """A node of a hundred thousand paths with as many pairs."""
-    count = 100_000
+    count = 60_000
     paths = field(1, field(1, field(2, packed([1.0, 2.0])))) * count
     pairs = b"".join(field(2, b"\x08" + varint(i) + b"\x10" + varint(i + 1)) for i in range(count - 1))
     nodes = field(2, field(3, field(1, b"".join(varint(i + 1) for i in range(count))) + pairs))
@@ -619,6 +619,15 @@ def barrier(strategy):
     return body
 
 
+def fixed_order():
+    """Paths that may not change places: as many steps, and hardly anything to choose."""
+    count = 60_000
+    dot = field(1, field(1, field(2, packed([100.0, 100.0]))))
+    nodes = field(2, field(2, field(1, b"".join(varint(i + 1) for i in range(count)))))
+    nodes += b"".join(field(2, b"\x08" + varint(i)) for i in range(count))
+    return options("exact") + field(2, field(4, dot * count + nodes))
+
+
 def two_clouds(strategy):
     """Two contours of many vertices that are in no order: each of the one may go with each of the other."""
     def body():
@@ -754,6 +763,7 @@ ATTACKS = {
     "upright_walls": batches([upright_walls]),
     "clustered_walls": batches([clustered_walls]),
     "barriers": batches([barrier("auto"), barrier("tabu"), barrier("exact")], seconds=1),
+    "fixed_order": batches([fixed_order], seconds=1),
     "two_clouds": batches([two_clouds("auto"), two_clouds("tabu"), two_clouds("exact")], seconds=1),
     "paused_searches": paused_searches,
     "unread_answers": unread_answers,
