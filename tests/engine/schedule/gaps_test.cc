@@ -260,6 +260,27 @@ Plan FixedOrder(int n) {
   return plan;
 }
 
+// Dots by twos: the twos in one kind of order, and the dots of each in another.
+Plan Twos(int n, PlanNode::Kind outer, PlanNode::Kind inner) {
+  Plan plan = Dots(n / 2 * 2);
+  plan.nodes.assign(1, {outer, 0, {}, {}});
+  for (int i = 0; i < n / 2; ++i) {
+    const int node = static_cast<int>(plan.nodes.size());
+    plan.nodes[0].children.push_back(node);
+    plan.nodes.push_back({inner, 0, {node + 1, node + 2}, {}});
+    plan.nodes.push_back(Leaf(2 * i));
+    plan.nodes.push_back(Leaf(2 * i + 1));
+  }
+  return plan;
+}
+
+// Dots each of which comes before the next one.
+Plan ChainOfPairs(int n) {
+  Plan plan = Dots(n);
+  for (int i = 1; i < n; ++i) plan.nodes[0].before.emplace_back(i - 1, i);
+  return plan;
+}
+
 struct Shape {
   std::string name;
   std::function<Plan(int)> make;
@@ -278,6 +299,11 @@ const Shape kShapes[] = {
     {"Barrier", Barrier, 1'000'000},
     {"EmptyChains", EmptyChains, 1'000'000},
     {"FixedOrder", FixedOrder, 1'000'000},
+    {"TwosInOrder",
+     [](int n) { return Twos(n, PlanNode::Kind::kInOrder, PlanNode::Kind::kAnyOrder); }, 1'000'000},
+    {"BlocksOfTwo",
+     [](int n) { return Twos(n, PlanNode::Kind::kAnyOrder, PlanNode::Kind::kInOrder); }, 1'000'000},
+    {"ChainOfPairs", ChainOfPairs, 1'000'000},
 };
 
 // Bounds for machines that do other things as well: caches are cold after each of those.
