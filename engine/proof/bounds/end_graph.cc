@@ -3,8 +3,13 @@
 #include <cstddef>
 #include <utility>
 
+#include "engine/base/rest.h"
+
 namespace traverse {
 namespace {
+
+// What it takes to make a short list, or to free it, as Rest counts steps.
+constexpr size_t kStepsOfList = 32;
 
 // Where a part of a route may begin and end.
 struct Reach {
@@ -14,11 +19,13 @@ struct Reach {
 
 class GraphBuilder {
  public:
-  GraphBuilder(const PlanTree& tree, EndGraph& graph) : tree_(tree), graph_(graph) {}
+  GraphBuilder(const PlanTree& tree, Budget* budget, EndGraph& graph)
+      : tree_(tree), graph_(graph), rest_(budget) {}
 
   void Build() {
     reach_.resize(static_cast<size_t>(tree_.node_count()));
     for (int index = tree_.node_count(); index-- > 0;) {
+      rest_(kStepsOfList + tree_.children(index).size());
       if (tree_.path_count(index) > 0) At(index) = Visit(index);
     }
     if (reach_.empty()) return;
@@ -61,6 +68,7 @@ class GraphBuilder {
     for (size_t c = 0; c + 1 < children.size(); ++c) {
       Junction junction;
       junction.sides = 2;
+      rest_(kStepsOfList);
       for (const int end : At(children[c]).last) {
         junction.members.push_back({end, 0, PathEnd::kLeave});
       }
@@ -80,6 +88,7 @@ class GraphBuilder {
     junction.sides = static_cast<int>(children.size());
     for (size_t c = 0; c < children.size(); ++c) {
       const Reach child = std::move(At(children[c]));
+      rest_(child.first.size() + child.last.size());
       AddMembers(child, static_cast<int>(c), junction);
       if (!preceded[c]) Append(child.first, reach.first);
       if (!succeeded[c]) Append(child.last, reach.last);
@@ -128,12 +137,21 @@ class GraphBuilder {
 
   const PlanTree& tree_;
   EndGraph& graph_;
+  Rest rest_;
   std::vector<Reach> reach_;    // [node]
   std::vector<uint8_t> roles_;  // [end] scratch, zero between calls
 };
 
 }  // namespace
 
-EndGraph::EndGraph(const PlanTree& tree) { GraphBuilder(tree, *this).Build(); }
+EndGraph::EndGraph(const PlanTree& tree, Budget* budget) {
+  GraphBuilder(tree, budget, *this).Build();
+}
+
+void EndGraph::Clear(Budget* budget) {
+  Rest rest(budget);
+  for (; !ends.empty(); ends.pop_back()) rest(kStepsOfList);
+  for (; !junctions.empty(); junctions.pop_back()) rest(kStepsOfList);
+}
 
 }  // namespace traverse

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "absl/types/span.h"
+#include "engine/base/budget.h"
 #include "engine/geometry/bounding_box.h"
 #include "engine/model/point.h"
 #include "engine/model/tree/plan_tree.h"
@@ -45,9 +46,14 @@ struct Junction {
   int sides = 0;
 };
 
-// Immutable. Memory: proportional to the points and to the sum over nodes of the ends below.
+// Immutable but for its end. Memory: proportional to the points and to the sum over nodes of the
+// ends below.
 struct EndGraph {
-  explicit EndGraph(const PlanTree& tree);
+  // Others are let on through `budget`, which may be null.
+  explicit EndGraph(const PlanTree& tree, Budget* budget = nullptr);
+
+  // Frees all that is held, which takes long where it is much, and lets others on meanwhile.
+  void Clear(Budget* budget);
 
   std::vector<PathEnd> ends;
   std::vector<Junction> junctions;

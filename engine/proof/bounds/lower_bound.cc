@@ -43,13 +43,10 @@ void EvaluateAgain(TreeBound& tree, Budget& budget) {
   }
 }
 
-}  // namespace
-
-std::optional<double> LowerBound(const LayerProblem& problem, double target,
-                                 BoundMultipliers* multipliers, double effort, Budget& budget) {
-  if (problem.plan->paths.empty()) return RouteCost(problem, {});
-  if (budget.ExhaustedNow()) return std::nullopt;
-  TreeBound tree(problem, budget);
+// The bound of `tree`, made better with `multipliers` of before if they fit, which become those of
+// the bound.
+std::optional<double> BoundByTrees(const LayerProblem& problem, double target, TreeBound& tree,
+                                   BoundMultipliers* multipliers, double effort, Budget& budget) {
   if (budget.ExhaustedNow()) return std::nullopt;
   const bool known = multipliers != nullptr && multipliers->size() == tree.multipliers().size();
   if (known) tree.SetMultipliers(*multipliers);
@@ -72,6 +69,19 @@ std::optional<double> LowerBound(const LayerProblem& problem, double target,
     bound = std::max(bound, ProgrammeBound(problem, target, effort, budget).value_or(0));
   }
   return std::min(bound, target);
+}
+
+}  // namespace
+
+std::optional<double> LowerBound(const LayerProblem& problem, double target,
+                                 BoundMultipliers* multipliers, double effort, Budget& budget) {
+  if (problem.plan->paths.empty()) return RouteCost(problem, {});
+  if (budget.ExhaustedNow()) return std::nullopt;
+  TreeBound tree(problem, budget);
+  const std::optional<double> bound =
+      BoundByTrees(problem, target, tree, multipliers, effort, budget);
+  tree.Clear(budget);
+  return bound;
 }
 
 }  // namespace traverse

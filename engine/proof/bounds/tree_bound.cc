@@ -83,12 +83,13 @@ struct TreeBound::Pool {
 };
 
 TreeBound::TreeBound(const LayerProblem& problem, Budget& budget)
-    : graph_(PlanTree(*problem.plan, &budget)),
+    : graph_(PlanTree(*problem.plan, &budget), &budget),
       cost_(problem),
       multipliers_(graph_.ends.size()),
       best_multipliers_(graph_.ends.size()),
       near_(graph_.ends.size()),
       member_of_(graph_.ends.size(), -1) {
+  if (budget.ExhaustedNow()) return;
   for (const int end : graph_.first) start_costs_.push_back(CostTo(problem.start, end));
   for (const int end : graph_.last) {
     finish_costs_.push_back(problem.finish ? CostTo(*problem.finish, end) : 0);
@@ -98,6 +99,12 @@ TreeBound::TreeBound(const LayerProblem& problem, Budget& budget)
     first_side_.push_back(first_side_.back() + junction.sides);
   }
   FindNearPairs(budget);
+}
+
+void TreeBound::Clear(Budget& budget) {
+  graph_.Clear(&budget);
+  Rest rest(&budget);
+  for (; !near_.empty(); near_.pop_back()) rest(16);
 }
 
 double TreeBound::CostTo(Point point, int end) const {

@@ -31,6 +31,10 @@ class TreeBound {
   // `problem` has a path; its plan outlives this. When the budget ends, ascents become blind.
   TreeBound(const LayerProblem& problem, Budget& budget);
 
+  // Ends this bound: frees what takes long to free, letting others on meanwhile. Nothing may be
+  // asked afterwards but the bound and its multipliers.
+  void Clear(Budget& budget);
+
   // Evaluates all pairs at the current multipliers and remembers the highest bound so far.
   // False if the budget ended it. O(ends^2) time.
   bool Evaluate(Budget& budget);
@@ -70,7 +74,7 @@ class TreeBound {
   double EvaluateNear(Budget& budget);
   std::vector<double> Subgradient() const;
 
-  const EndGraph graph_;
+  EndGraph graph_;
   const TravelCost cost_;
   std::vector<double> start_costs_;   // [graph_.first] from the start
   std::vector<double> finish_costs_;  // [graph_.last] to the finish, 0 if there is none

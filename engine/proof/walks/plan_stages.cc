@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/base/rest.h"
 #include "engine/model/tree/plan_tree.h"
 
 namespace traverse {
@@ -141,13 +142,18 @@ class StageBuilder {
   std::vector<std::pair<int, int>> follows_;
 };
 
-// Appends the stages below `index`, which has paths. False if one is too large.
-bool Collect(const PlanTree& tree, int index, size_t most_items, std::vector<PlanStage>& stages) {
+// What a stage of one path takes, as Rest counts steps: its lists are allocated.
+constexpr size_t kStepsOfStage = 64;
+
+// Appends the stages below `index`, which has paths. False if one is too large, or the budget ends.
+bool Collect(const PlanTree& tree, int index, size_t most_items, Rest& rest,
+             std::vector<PlanStage>& stages) {
+  if (!rest(kStepsOfStage)) return false;
   const absl::Span<const int> children = tree.children(index);
-  if (children.size() == 1) return Collect(tree, children.front(), most_items, stages);
+  if (children.size() == 1) return Collect(tree, children.front(), most_items, rest, stages);
   if (!tree.is_leaf(index) && tree.node(index).kind == PlanNode::Kind::kInOrder) {
     return std::all_of(children.begin(), children.end(),
-                       [&](int child) { return Collect(tree, child, most_items, stages); });
+                       [&](int child) { return Collect(tree, child, most_items, rest, stages); });
   }
   if (static_cast<size_t>(tree.path_count(index)) > most_items) return false;
   stages.push_back(StageBuilder(tree).Build(index));
@@ -156,10 +162,12 @@ bool Collect(const PlanTree& tree, int index, size_t most_items, std::vector<Pla
 
 }  // namespace
 
-std::optional<std::vector<PlanStage>> StagesOf(const Plan& plan, size_t most_items) {
+std::optional<std::vector<PlanStage>> StagesOf(const Plan& plan, size_t most_items,
+                                               Budget* budget) {
   std::vector<PlanStage> stages;
   if (plan.paths.empty()) return stages;
-  if (!Collect(PlanTree(plan), 0, most_items, stages)) return std::nullopt;
+  Rest rest(budget);
+  if (!Collect(PlanTree(plan, budget), 0, most_items, rest, stages)) return std::nullopt;
   return stages;
 }
 

@@ -23,6 +23,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/budget.h"
 #include "engine/model/plan.h"
 
 namespace traverse {
@@ -51,10 +52,12 @@ struct PlanStage {
   std::vector<Gate> gates;                  // inner ones first
 };
 
-// The stages of `plan`, done one after the other, or nothing if one has more than `most_items`.
+// The stages of `plan`, done one after the other, or nothing if one has more than `most_items`, or
+// if `budget` (may be null) ends.
 // Nested in_orders outside of any_orders are flattened; nodes without paths vanish, but the
 // precedences that go through them are kept. O(nodes + most_items (pairs + most_items^2)).
-std::optional<std::vector<PlanStage>> StagesOf(const Plan& plan, size_t most_items);
+std::optional<std::vector<PlanStage>> StagesOf(const Plan& plan, size_t most_items,
+                                               Budget* budget = nullptr);
 
 }  // namespace traverse
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/base/rest.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/proof/min_plus.h"
 
@@ -18,7 +19,7 @@ Point ExitOf(const Plan& plan, const Visit& visit) {
 // Costs between all states of two clusters, and the transposed matrix. A gate leads to the entry
 // that it is in the state of.
 void FillMatrix(const Plan& plan, const TravelCost& cost, bool from_gate,
-                const std::vector<Visit>& from, const std::vector<Visit>& to, double* matrix,
+                absl::Span<const Visit> from, absl::Span<const Visit> to, double* matrix,
                 double* transposed) {
   for (size_t u = 0; u < from.size(); ++u) {
     const Point exit = ExitOf(plan, from[u]);
@@ -35,6 +36,9 @@ void FillMatrix(const Plan& plan, const TravelCost& cost, bool from_gate,
   }
 }
 
+// What freeing the lists of a stage of one cluster takes, as Rest counts steps.
+constexpr size_t kStepsOfCluster = 32;
+
 }  // namespace
 
 std::optional<StageModel> StageModel::Build(const LayerProblem& problem, size_t max_entries,
@@ -50,7 +54,7 @@ bool StageModel::Fits(const Plan& plan, size_t max_entries, Budget* budget) {
 }
 
 bool StageModel::LayOut(const Plan& plan, size_t max_entries, Budget* budget) {
-  const std::optional<std::vector<PlanStage>> stages = StagesOf(plan, kMostClusters);
+  std::optional<std::vector<PlanStage>> stages = StagesOf(plan, kMostClusters, budget);
   if (!stages) return false;
   const EntryTable entries(plan, budget);
   first_.push_back(0);
@@ -58,25 +62,25 @@ bool StageModel::LayOut(const Plan& plan, size_t max_entries, Budget* budget) {
     if (budget != nullptr && budget->Exhausted()) return false;
     AddStage(plan, entries, stage);
   }
-  return PlaceMatrices(*stages, max_entries);
+  return PlaceMatrices(*std::move(stages), max_entries, budget);
 }
 
 void StageModel::AddStage(const Plan& plan, const EntryTable& entries, const PlanStage& stage) {
   const int first = first_.back();
   AddVisits(entries, stage);
   for (int i = 0; i < stage.size(); ++i) {
-    const auto cluster = static_cast<size_t>(first + i);
     const int path = stage.paths[static_cast<size_t>(i)];
     stage_of_.push_back(static_cast<int>(first_.size()) - 1);
     is_gate_.push_back(path == PlanStage::kGate);
     const bool open =
         path != PlanStage::kGate && plan.paths[static_cast<size_t>(path)].kind == Path::Kind::kOpen;
     is_item_.push_back(open ? !plan.paths[static_cast<size_t>(path)].one_way
-                            : visits_[cluster].size() == 1);
+                            : states(first + i) == 1);
     is_contour_.push_back(path != PlanStage::kGate && !open);
   }
-  before_.resize(visits_.size());
-  after_.resize(visits_.size());
+  const size_t clusters = first_visit_.size() - 1;
+  before_.resize(clusters);
+  after_.resize(clusters);
   for (const auto& [i, j] : stage.before) {
     after_[static_cast<size_t>(first + i)].push_back(first + j);
     before_[static_cast<size_t>(first + j)].push_back(first + i);
@@ -88,37 +92,51 @@ void StageModel::AddStage(const Plan& plan, const EntryTable& entries, const Pla
   ends_.insert(ends_.end(), stage.ends.begin(), stage.ends.end());
   const auto pairs = std::count(stage.follows.begin(), stage.follows.end(), 1);
   is_free_.push_back(pairs == static_cast<std::ptrdiff_t>(stage.size()) * (stage.size() - 1));
-  first_.push_back(static_cast<int>(visits_.size()));
+  first_.push_back(static_cast<int>(clusters));
 }
 
-// The states of each item. Those of a gate are the states of what follows it.
+// The states of each item. Those of a gate, which comes after its block, are the states of what
+// follows it.
 void StageModel::AddVisits(const EntryTable& entries, const PlanStage& stage) {
-  const size_t first = visits_.size();
+  const size_t first = first_visit_.size() - 1;
+  auto gate = stage.gates.begin();
   for (const int path : stage.paths) {
-    std::vector<Visit>& visits = visits_.emplace_back();
-    if (path == PlanStage::kGate) continue;
-    for (int e = entries.first(path); e < entries.first(path + 1); ++e) {
-      visits.push_back(entries.VisitOf(e));
+    if (path == PlanStage::kGate) {
+      assert(gate->item == static_cast<int>(first_visit_.size() - 1 - first));
+      for (int i = gate->first; i < gate->last; ++i) {
+        if (!stage.CanFollow(gate->item, i)) continue;
+        const size_t of_item = first + static_cast<size_t>(i);
+        for (size_t v = first_visit_[of_item]; v < first_visit_[of_item + 1]; ++v) {
+          visits_.push_back(Visit(visits_[v]));
+        }
+      }
+      ++gate;
+    } else {
+      for (int e = entries.first(path); e < entries.first(path + 1); ++e) {
+        visits_.push_back(entries.VisitOf(e));
+      }
     }
-  }
-  for (const PlanStage::Gate& gate : stage.gates) {
-    std::vector<Visit>& visits = visits_[first + static_cast<size_t>(gate.item)];
-    for (int i = gate.first; i < gate.last; ++i) {
-      if (!stage.CanFollow(gate.item, i)) continue;
-      const std::vector<Visit>& of_item = visits_[first + static_cast<size_t>(i)];
-      visits.insert(visits.end(), of_item.begin(), of_item.end());
-    }
+    first_visit_.push_back(visits_.size());
   }
 }
 
-bool StageModel::PlaceMatrices(const std::vector<PlanStage>& stages, size_t max_entries) {
+bool StageModel::PlaceMatrices(std::vector<PlanStage> stages, size_t max_entries, Budget* budget) {
+  size_t pairs = 0;
+  for (int s = 0; s < stage_count(); ++s) {
+    pairs += static_cast<size_t>(size(s)) * static_cast<size_t>(end_of_next(s) - first(s));
+    if (pairs > max_entries) return false;
+  }
+  row_.reserve(static_cast<size_t>(cluster_count()));
+  offsets_.reserve(pairs);
+  Rest rest(budget);
   for (int a = 0; a < cluster_count(); ++a) {
     const int s = stage_of(a);
+    if (s > 0 && a == first(s)) stages[static_cast<size_t>(s - 1)] = PlanStage();
     const PlanStage& stage = stages[static_cast<size_t>(s)];
     const int end = end_of_next(s);
+    if (!rest(kStepsOfCluster + static_cast<size_t>(end - first(s)))) return false;
     row_.push_back(offsets_.size());
     offsets_.resize(offsets_.size() + static_cast<size_t>(end - first(s)), kNoMoves);
-    if (offsets_.size() > max_entries) return false;
     for (int b = first(s); b < end; ++b) {
       const bool follows = stage_of(b) == s ? stage.CanFollow(a - first(s), b - first(s))
                                             : ends_[static_cast<size_t>(a)] != 0 &&
@@ -144,8 +162,7 @@ bool StageModel::FillMatrices(const LayerProblem& problem, Budget* budget) {
       const size_t count = static_cast<size_t>(states(a)) * static_cast<size_t>(states(b));
       costs_.resize(offset(a, b) + count);
       transposed_.resize(offset(a, b) + count);
-      FillMatrix(*problem.plan, cost, IsGate(a), visits_[static_cast<size_t>(a)],
-                 visits_[static_cast<size_t>(b)], &costs_[offset(a, b)],
+      FillMatrix(*problem.plan, cost, IsGate(a), visits(a), visits(b), &costs_[offset(a, b)],
                  &transposed_[offset(a, b)]);
     }
   }
@@ -157,14 +174,14 @@ void StageModel::FillEnds(const LayerProblem& problem) {
   const TravelCost cost(problem);
   for (int c = 0; c < first(1); ++c) {
     std::vector<double>& row = start_.emplace_back();
-    for (const Visit& visit : visits_[static_cast<size_t>(c)]) {
+    for (const Visit& visit : visits(c)) {
       const bool begins = begins_[static_cast<size_t>(c)] != 0;
       row.push_back(begins ? cost(problem.start, EnterOf(*problem.plan, visit)) : kUnreached);
     }
   }
   for (int c = first(stage_count() - 1); c < cluster_count(); ++c) {
     std::vector<double>& row = finish_.emplace_back();
-    for (const Visit& visit : visits_[static_cast<size_t>(c)]) {
+    for (const Visit& visit : visits(c)) {
       const Point exit = ExitOf(*problem.plan, visit);
       const double move = problem.finish ? cost(exit, *problem.finish) : 0;
       row.push_back(ends_[static_cast<size_t>(c)] != 0 ? move : kUnreached);
@@ -176,7 +193,7 @@ Route StageModel::RouteOf(const std::vector<ClusterState>& walk) const {
   Route route;
   for (const ClusterState& at : walk) {
     if (IsGate(at.cluster)) continue;
-    route.push_back(visits_[static_cast<size_t>(at.cluster)][static_cast<size_t>(at.state)]);
+    route.push_back(visits(at.cluster)[static_cast<size_t>(at.state)]);
   }
   return route;
 }
@@ -185,17 +202,21 @@ std::vector<ClusterState> StageModel::WalkOf(const Route& route) const {
   std::vector<int> cluster_of(route.size());
   for (int c = 0; c < cluster_count(); ++c) {
     if (IsGate(c)) continue;
-    cluster_of[static_cast<size_t>(visits_[static_cast<size_t>(c)].front().path)] = c;
+    cluster_of[static_cast<size_t>(visits(c).front().path)] = c;
   }
   std::vector<ClusterState> walk;
   const auto add = [&](int cluster, const Visit& visit) {
-    const std::vector<Visit>& visits = visits_[static_cast<size_t>(cluster)];
-    const auto state = std::find(visits.begin(), visits.end(), visit) - visits.begin();
+    const absl::Span<const Visit> states = visits(cluster);
+    const auto state = std::find(states.begin(), states.end(), visit) - states.begin();
     walk.push_back({cluster, static_cast<int>(state)});
   };
-  std::vector<PlanStage::Gate> ahead = gates_;  // of blocks not yet begun
+  std::vector<PlanStage::Gate> ahead;  // of blocks of the stage that are not yet begun
+  auto later = gates_.begin();         // those of later stages
   for (const Visit& visit : route) {
     const int cluster = cluster_of[static_cast<size_t>(visit.path)];
+    for (; later != gates_.end() && stage_of(later->item) <= stage_of(cluster); ++later) {
+      ahead.push_back(*later);
+    }
     const auto holds = [&](const PlanStage::Gate& gate) {
       return gate.first <= cluster && cluster < gate.last;
     };

@@ -22,6 +22,7 @@
 #include <optional>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "engine/base/budget.h"
 #include "engine/cost/entry_table.h"
 #include "engine/model/layer_problem.h"
@@ -59,9 +60,7 @@ class StageModel {
   int size(int stage) const { return first(stage + 1) - first(stage); }
   int stage_of(int cluster) const { return stage_of_[static_cast<size_t>(cluster)]; }
 
-  int states(int cluster) const {
-    return static_cast<int>(visits_[static_cast<size_t>(cluster)].size());
-  }
+  int states(int cluster) const { return static_cast<int>(visits(cluster).size()); }
 
   // Whether `cluster` is an open path that may be done both ways, or has one point only: then
   // states are its ends, and it is left at the other one.
@@ -132,23 +131,30 @@ class StageModel {
   // Behind the last cluster of the stage after `stage`, or of `stage` if that is the last one.
   int end_of_next(int stage) const { return first(std::min(stage + 2, stage_count())); }
   bool IsGate(int cluster) const { return is_gate_[static_cast<size_t>(cluster)] != 0; }
+  // What the states of `cluster` are.
+  absl::Span<const Visit> visits(int cluster) const {
+    const size_t first = first_visit_[static_cast<size_t>(cluster)];
+    return absl::MakeConstSpan(visits_).subspan(
+        first, first_visit_[static_cast<size_t>(cluster) + 1] - first);
+  }
   void AddStage(const Plan& plan, const EntryTable& entries, const PlanStage& stage);
   void AddVisits(const EntryTable& entries, const PlanStage& stage);
   bool LayOut(const Plan& plan, size_t max_entries, Budget* budget);
-  bool PlaceMatrices(const std::vector<PlanStage>& stages, size_t max_entries);
+  bool PlaceMatrices(std::vector<PlanStage> stages, size_t max_entries, Budget* budget);
   bool FillMatrices(const LayerProblem& problem, Budget* budget);
   void FillEnds(const LayerProblem& problem);
 
-  std::vector<int> first_;                  // [stage], stage_count() + 1 of them
-  std::vector<int> stage_of_;               // [cluster]
-  std::vector<std::vector<Visit>> visits_;  // [cluster][state]
-  std::vector<char> is_item_;               // [cluster]
-  std::vector<char> is_contour_;            // [cluster]
-  std::vector<char> is_gate_;               // [cluster]
-  std::vector<PlanStage::Gate> gates_;      // in clusters; inner ones first
-  std::vector<char> is_free_;               // [stage]
-  std::vector<char> begins_;                // [cluster] whether it may come first in its stage
-  std::vector<char> ends_;                  // [cluster] and last
+  std::vector<int> first_;              // [stage], stage_count() + 1 of them
+  std::vector<int> stage_of_;           // [cluster]
+  std::vector<size_t> first_visit_{0};  // [cluster] in visits_; one more at the end
+  std::vector<Visit> visits_;           // those of each cluster by states
+  std::vector<char> is_item_;           // [cluster]
+  std::vector<char> is_contour_;        // [cluster]
+  std::vector<char> is_gate_;           // [cluster]
+  std::vector<PlanStage::Gate> gates_;  // in clusters, by stages; inner ones first
+  std::vector<char> is_free_;           // [stage]
+  std::vector<char> begins_;            // [cluster] whether it may come first in its stage
+  std::vector<char> ends_;              // [cluster] and last
   size_t move_count_ = 0;
   std::vector<size_t> row_;                  // [a] where its offsets begin
   std::vector<size_t> offsets_;              // [row + b - first cluster of the stage of a]
