@@ -31,7 +31,7 @@ class Budget {
   // True once the search has to return what it has; stays true then. Cheap: the cancellation and
   // the turn are looked at every time, the clock only every kCallsPerClockReading calls.
   bool Exhausted() {
-    if (exhausted_) return true;
+    if (exhausted_) return LeaveTurn();
     if (turn_ != nullptr && turn_->wanted() && turn_->GiveWay(cancel_, deadline_)) {
       calls_to_clock_ = 1;
     }
@@ -66,6 +66,12 @@ class Budget {
   }
 
  private:
+  // Nobody waits for what was cancelled: what is still to be done of it lets others on. True.
+  bool LeaveTurn() {
+    if (turn_ != nullptr && turn_->wanted() && cancelled()) turn_->GiveWay(nullptr, std::nullopt);
+    return true;
+  }
+
   static constexpr int kCallsPerClockReading = 4;
 
   const CancelToken* cancel_ = nullptr;
