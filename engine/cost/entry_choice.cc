@@ -20,6 +20,9 @@ constexpr size_t kPairsForTreeOfTimes = 1 << 12;
 // Entries in a leaf of the tree.
 constexpr int kTreeLeafSize = 8;
 
+// What choosing the best way to an entry takes beside the costs.
+constexpr size_t kStepsOfEntry = 8;
+
 // What a move with walls takes, as Rest counts steps.
 constexpr size_t kStepsOfWalls = 512;
 
@@ -42,6 +45,7 @@ double EntryChoice::Choose(Point from, absl::Span<const int> paths, const std::o
   if (paths.empty()) return to ? cost_(from, *to) : 0;
   parent_begin_.assign(paths.size() + 1, 0);
   for (size_t k = 1; k < paths.size(); ++k) {
+    rest_(4);
     parent_begin_[k + 1] = parent_begin_[k] + static_cast<size_t>(table_->count(paths[k]));
   }
   parents_.resize(parent_begin_.back());
@@ -61,6 +65,7 @@ double EntryChoice::Choose(Point from, absl::Span<const int> paths, const std::o
   const auto least = std::min_element(best_.begin(), best_.end());
   int chosen = static_cast<int>(least - best_.begin());
   for (size_t k = paths.size(); k-- > 0;) {
+    rest_(4);
     entries[k] = table_->first(paths[k]) + chosen;
     if (k > 0) chosen = parents_[parent_begin_[k] + static_cast<size_t>(chosen)];
   }
@@ -97,7 +102,7 @@ void EntryChoice::AdvanceByScan(int from_path, int to_path, int* parent) {
   const absl::Span<const Point> enters = table_->enters(to_path);
   totals_.resize(exits.size());
   for (size_t j = 0; j < enters.size(); ++j) {
-    rest_(exits.size());
+    rest_(kStepsOfEntry + exits.size());
     FillTotals(cost_, exits, enters[j], best_.data(), totals_.data());
     size_t least = 0;
     for (size_t i = 1; i < totals_.size(); ++i) {

@@ -80,7 +80,7 @@ double Descend(SearchRoute& route, const DescentOptions& options, Budget& budget
 
 Route Improve(const LayerView& layer, const Route& route, const DescentOptions& options,
               Budget& budget) {
-  SearchRoute search(layer, route);
+  SearchRoute search(layer, route, &budget);
   Descend(search, options, budget);
   return search.ToRoute();
 }

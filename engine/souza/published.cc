@@ -32,7 +32,7 @@ Route PublishedRoute(const LayerView& layer, bool point_release, Budget& budget)
     AppendRoute(stage, Improve(view, *inserted, two_opt, budget), route);
   }
   if (!point_release) return route;
-  SearchRoute search(layer, route);
+  SearchRoute search(layer, route, &budget);
   ReleasePoints(search, Released::kAll, budget);
   return search.ToRoute();
 }

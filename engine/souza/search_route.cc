@@ -7,12 +7,14 @@
 #include <numeric>
 #include <vector>
 
+#include "engine/base/rest.h"
+#include "engine/base/resting_sort.h"
 #include "engine/cost/route_cost.h"
 #include "engine/validator.h"
 
 namespace traverse {
 
-SearchRoute::SearchRoute(const LayerView& layer, const Route& route)
+SearchRoute::SearchRoute(const LayerView& layer, const Route& route, Budget* budget)
     : layer_(&layer),
       begin_(static_cast<size_t>(layer.tree.node_count())),
       order_(static_cast<size_t>(layer.tree.first_child(layer.tree.node_count()))),
@@ -20,23 +22,27 @@ SearchRoute::SearchRoute(const LayerView& layer, const Route& route)
       pending_visit_(route.size(), 1) {
   assert(ValidateRoute(layer.plan(), route).ok());
   entries_.reserve(route.size());
+  Rest rest(budget);
   for (const Visit& visit : route) {
+    rest(16);
     begin_[static_cast<size_t>(layer.tree.leaf(visit.path))] = size();
     entries_.push_back(layer.table.EntryOf(visit));
   }
   // From the leaves up: children have greater indices than their parents.
   for (int node = layer.tree.node_count(); node-- > 0;) {
-    if (!layer.tree.children(node).empty()) SortChildren(node);
+    rest();
+    if (!layer.tree.children(node).empty()) SortChildren(node, rest);
   }
 }
 
-void SearchRoute::SortChildren(int node) {
+void SearchRoute::SortChildren(int node, Rest& rest) {
   const absl::Span<const int> children = layer_->tree.children(node);
   const auto first = order_.begin() + layer_->tree.first_child(node);
-  const auto last = first + static_cast<std::ptrdiff_t>(children.size());
   const auto begin_of = [&](int slot) { return begin(children[static_cast<size_t>(slot)]); };
-  std::iota(first, last, 0);
-  std::sort(first, last, [&](int a, int b) { return begin_of(a) < begin_of(b); });
+  std::vector<int> slots(children.size());
+  std::iota(slots.begin(), slots.end(), 0);
+  RestingSort(slots, rest, [&](int a, int b) { return begin_of(a) < begin_of(b); });
+  std::copy(slots.begin(), slots.end(), first);
   begin_[static_cast<size_t>(node)] = begin_of(*first);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/types/span.h"
+#include "engine/base/rest.h"
 #include "engine/cost/layer_view.h"
 #include "engine/model/route.h"
 
@@ -24,8 +25,9 @@ namespace traverse {
 // again whenever a change touched it or a neighbor.
 class SearchRoute {
  public:
-  // `layer` outlives the search route. REQUIRES: `route` is a valid route of it.
-  SearchRoute(const LayerView& layer, const Route& route);
+  // `layer` outlives the search route. Others are let on through `budget`, which may be null.
+  // REQUIRES: `route` is a valid route of it.
+  SearchRoute(const LayerView& layer, const Route& route, Budget* budget = nullptr);
 
   const LayerView& layer() const { return *layer_; }
   int size() const { return static_cast<int>(entries_.size()); }
@@ -79,7 +81,7 @@ class SearchRoute {
   }
 
   int Backwards(int entry) const;
-  void SortChildren(int node);
+  void SortChildren(int node, Rest& rest);
   void Place(int node, int begin, bool reversed);
   void Touch(int position);
 

@@ -48,7 +48,7 @@ class FrameworkSearch {
         options_(options),
         method_(method),
         budget_(budget),
-        layout_(IslandsOf(plan_)),
+        layout_(IslandsOf(plan_, &budget)),
         analysis_(AnalyzeIslands(layout_, layer.contours)) {
     CountPoints(layer);
   }
@@ -284,20 +284,45 @@ FrameworkResult SearchFramework(const LayerProblem& problem, const ClassicalLaye
   return result;
 }
 
+namespace {
+
+// The same tree, with contours of what stands for them.
+Plan WithRepresentativePoints(const Plan& plan, const FrameworkOptions& options, Budget& budget) {
+  const IslandLayout layout = IslandsOf(plan, &budget);
+  Rest rest(&budget);
+  Plan reduced;
+  reduced.nodes.reserve(plan.nodes.size());
+  for (const PlanNode& node : plan.nodes) {
+    rest(16 + node.children.size() + node.before.size());
+    reduced.nodes.push_back(node);
+  }
+  reduced.paths.reserve(plan.paths.size());
+  for (const Path& path : plan.paths) {
+    rest(64 + path.points.size());
+    if (path.kind != Path::Kind::kContour) {
+      reduced.paths.push_back(path);
+      continue;
+    }
+    const int contour = static_cast<int>(reduced.paths.size());
+    reduced.paths.push_back(MakeContour(
+        RepresentativePoints(plan, layout, contour, options.representation, options.spacing_mm)));
+  }
+  return reduced;
+}
+
+}  // namespace
+
 Route SearchAnyPlan(const LayerProblem& problem, const Route& start,
                     const FrameworkOptions& options, Budget& budget) {
   const Plan& plan = *problem.plan;
   if (plan.paths.empty()) return {};
   if (GivesUp(plan, budget)) return start;
-  const IslandLayout layout = IslandsOf(plan);
-  Plan reduced = plan;
-  for (size_t p = 0; p < plan.paths.size(); ++p) {
-    if (plan.paths[p].kind != Path::Kind::kContour) continue;
-    reduced.paths[p] = MakeContour(RepresentativePoints(
-        plan, layout, static_cast<int>(p), options.representation, options.spacing_mm));
-  }
+  Rest rest(&budget);
+  const Plan reduced = WithRepresentativePoints(plan, options, budget);
+  if (GivesUp(plan, budget)) return start;
   Route reduced_start = start;
   for (Visit& visit : reduced_start) {
+    rest(8);
     visit.entry = GivenEntry(reduced.paths[static_cast<size_t>(visit.path)]);
   }
   LayerProblem sub = StepProblem(problem, reduced, 2);
@@ -309,7 +334,7 @@ Route SearchAnyPlan(const LayerProblem& problem, const Route& start,
 
   std::vector<int> order;
   for (const Visit& visit : found.elite.front().route) order.push_back(visit.path);
-  const EntryTable table(plan);
+  const EntryTable table(plan, &budget);
   std::vector<int> entries(order.size());
   EntryChoice(table, TravelCost(problem), &budget)
       .Choose(problem.start, order, problem.finish, absl::MakeSpan(entries));

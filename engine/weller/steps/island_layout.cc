@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <map>
 
+#include "engine/base/rest.h"
+
 namespace traverse {
 namespace {
 
@@ -43,11 +45,13 @@ bool AddStage(const Plan& plan, const PlanNode& node, ClassicalLayer& layer) {
 
 }  // namespace
 
-IslandLayout IslandsOf(const Plan& plan) {
+IslandLayout IslandsOf(const Plan& plan, Budget* budget) {
+  Rest rest(budget);
   IslandLayout layout;
   layout.island_of.reserve(plan.paths.size());
   std::map<int, int> index_of;  // by Path::island
   for (size_t p = 0; p < plan.paths.size(); ++p) {
+    rest(64);
     const Path& path = plan.paths[p];
     int index = static_cast<int>(layout.islands.size());
     if (path.island >= 0) index = index_of.emplace(path.island, index).first->second;

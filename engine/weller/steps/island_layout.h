@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/budget.h"
 #include "engine/model/plan.h"
 
 namespace traverse {
@@ -29,8 +30,8 @@ struct IslandLayout {
 // island (Path::island < 0, as in plans that did not come from islands) is an island of its own,
 // without an outer contour: then no contour is suppressed in step 1, near raster points are unknown
 // (NearRasterPoints falls back to spaced points), and step 4 may order the rasters freely.
-// O(paths).
-IslandLayout IslandsOf(const Plan& plan);
+// O(paths log paths). Others are let on through `budget`, which may be null.
+IslandLayout IslandsOf(const Plan& plan, Budget* budget = nullptr);
 
 // A layer in sequential deposition: in any order all contours, then in any order all open paths.
 // Indices into Plan::paths, in the order given.

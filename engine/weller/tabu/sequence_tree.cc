@@ -4,16 +4,27 @@
 #include <cstddef>
 #include <utility>
 
-namespace traverse {
+#include "engine/base/resting_sort.h"
 
-SequenceTree::SequenceTree(const Plan& plan) : leaf_of_(plan.paths.size(), -1) {
+namespace traverse {
+namespace {
+
+// What it takes to look at a node, which is seldom at hand, as Rest counts steps.
+constexpr size_t kStepsOfNode = 16;
+
+}  // namespace
+
+SequenceTree::SequenceTree(const Plan& plan, Budget* budget)
+    : rest_(budget), leaf_of_(plan.paths.size(), -1) {
   if (plan.paths.empty()) return;
-  Add(CompiledPlan(plan), 0, -1);
+  nodes_.reserve(plan.nodes.size());
+  Add(CompiledPlan(plan, budget), 0, -1);
   Reorder(0);
   CountViolations();
 }
 
 int SequenceTree::Add(const CompiledPlan& plan, int index, int parent) {
+  rest_(kStepsOfNode);
   const PlanNode& plan_node = plan.node(index);
   const int number = node_count();
   nodes_.emplace_back();
@@ -54,6 +65,7 @@ bool SequenceTree::AddPairs(const CompiledPlan& plan, int index, int number) {
 void SequenceTree::Reorder(int node) {
   int begin = At(node).begin;
   for (int position = 0; position < child_count(node); ++position) {
+    rest_(kStepsOfNode);
     const int child = child_at(node, position);
     At(child).position = position;
     At(child).begin = begin;
@@ -65,6 +77,7 @@ void SequenceTree::Reorder(int node) {
 void SequenceTree::CountViolations() {
   violations_ = 0;
   for (const Node& node : nodes_) {
+    rest_(4 + node.later.size());
     for (const int second : node.later) violations_ += At(second).position < node.position;
   }
 }
@@ -118,14 +131,14 @@ void SequenceTree::Swap(int node, int i, int j) {
 void SequenceTree::Load(const std::vector<int>& paths) {
   for (Node& node : nodes_) node.begin = static_cast<int>(paths.size());
   for (int k = 0; k < static_cast<int>(paths.size()); ++k) {
+    rest_(kStepsOfNode);
     for (int v = leaf_of_[static_cast<size_t>(paths[static_cast<size_t>(k)])]; v >= 0;
          v = At(v).parent) {
       At(v).begin = std::min(At(v).begin, k);
     }
   }
   for (const int node : open_) {
-    std::sort(At(node).order.begin(), At(node).order.end(),
-              [&](int a, int b) { return At(a).begin < At(b).begin; });
+    RestingSort(At(node).order, rest_, [&](int a, int b) { return At(a).begin < At(b).begin; });
   }
   if (!nodes_.empty()) Reorder(0);
   CountViolations();
@@ -138,10 +151,12 @@ void SequenceTree::Shuffle(Rng& rng) {
     std::vector<int>& order = At(node).order;
     ready.clear();
     for (const int child : order) {
+      rest_(8);
       waiting_for[static_cast<size_t>(child)] = static_cast<int>(At(child).earlier.size());
       if (At(child).earlier.empty()) ready.push_back(child);
     }
     for (int& next : order) {
+      rest_(kStepsOfNode);
       std::swap(ready[rng.Below(static_cast<uint32_t>(ready.size()))], ready.back());
       next = ready.back();
       ready.pop_back();
@@ -157,6 +172,7 @@ void SequenceTree::Shuffle(Rng& rng) {
 std::vector<int> SequenceTree::Paths() const {
   std::vector<int> paths(leaf_of_.size());
   for (const Node& node : nodes_) {
+    rest_(4);
     if (node.path >= 0) paths[static_cast<size_t>(node.begin)] = node.path;
   }
   return paths;

@@ -9,6 +9,8 @@
 
 #include <vector>
 
+#include "engine/base/budget.h"
+#include "engine/base/rest.h"
 #include "engine/base/rng.h"
 #include "engine/model/plan.h"
 #include "engine/model/tree/compiled_plan.h"
@@ -19,8 +21,9 @@ namespace traverse {
 // node are known by their positions in its present order, or by their numbers, which stay.
 class SequenceTree {
  public:
-  // Begins with the order given (which may violate `before`).
-  explicit SequenceTree(const Plan& plan);
+  // Begins with the order given (which may violate `before`). What takes long here and below lets
+  // others on through `budget`, which may be null and else outlives this.
+  explicit SequenceTree(const Plan& plan, Budget* budget = nullptr);
 
   int node_count() const { return static_cast<int>(nodes_.size()); }
 
@@ -90,6 +93,7 @@ class SequenceTree {
   void Reorder(int node);
   void CountViolations();
 
+  mutable Rest rest_;
   std::vector<Node> nodes_;   // in preorder
   std::vector<int> open_;     // all any_order nodes of at least two children
   std::vector<int> movable_;  // of them, those whose children may change place

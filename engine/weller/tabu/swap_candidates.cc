@@ -31,10 +31,13 @@ std::vector<Point> Centers(const Plan& plan, const SequenceTree& tree, Budget& b
 
 SwapCandidates::SwapCandidates(const Plan& plan, const SequenceTree& tree, Budget& budget)
     : near_(static_cast<size_t>(tree.node_count())) {
+  const auto is_large = [&](int node) { return tree.child_count(node) > kAllSwaps; };
+  const std::vector<int>& movable = tree.movable_nodes();
+  if (std::none_of(movable.begin(), movable.end(), is_large)) return;
   const std::vector<Point> centers = Centers(plan, tree, budget);
   std::vector<std::pair<double, int>> by_distance;
-  for (const int node : tree.movable_nodes()) {
-    if (tree.child_count(node) <= kAllSwaps) continue;
+  for (const int node : movable) {
+    if (!is_large(node)) continue;
     for (int i = 0; i < tree.child_count(node) && !budget.Exhausted(); ++i) {
       const int child = tree.child_at(node, i);
       by_distance.clear();

@@ -19,7 +19,7 @@ SwapSequence::SwapSequence(const LayerProblem& problem, const LinkRules& rules, 
       links_(problem, table_, rules),
       rest_(budget),
       choice_(table_, TravelCost(problem), budget),
-      tree_(*problem.plan) {
+      tree_(*problem.plan, budget) {
   Load(GivenRoute(*problem.plan, budget));
 }
 
@@ -38,7 +38,10 @@ void SwapSequence::Load(const Route& route) {
 Route SwapSequence::Unload() const {
   Route route;
   route.reserve(entries_.size());
-  for (const int entry : entries_) route.push_back(table_.VisitOf(entry));
+  for (const int entry : entries_) {
+    rest_(4);
+    route.push_back(table_.VisitOf(entry));
+  }
   return route;
 }
 
@@ -247,7 +250,10 @@ void SwapSequence::Apply(const SwapMove& move) {
 
 void SwapSequence::ChooseEntries() {
   scratch_.clear();
-  for (const int entry : entries_) scratch_.push_back(table_.path_of(entry));
+  for (const int entry : entries_) {
+    rest_(4);
+    scratch_.push_back(table_.path_of(entry));
+  }
   choice_.Choose(problem_.start, scratch_, problem_.finish, absl::MakeSpan(entries_));
   ComputeCost();
 }
@@ -256,6 +262,7 @@ void SwapSequence::Shuffle(Rng& rng, bool best_entries) {
   tree_.Shuffle(rng);
   const std::vector<int> paths = tree_.Paths();
   for (size_t k = 0; k < paths.size(); ++k) {
+    rest_(4);
     entries_[k] = table_.first(paths[k]);
     if (!best_entries) {
       entries_[k] += static_cast<int>(rng.Below(static_cast<uint32_t>(table_.count(paths[k]))));

@@ -281,6 +281,26 @@ Plan ChainOfPairs(int n) {
   return plan;
 }
 
+// Fours of dots in order, of any order of two twos of any order: each has gates before it.
+Plan BlocksInOrder(int n) {
+  Plan plan = Dots(n / 4 * 4);
+  plan.nodes.assign(1, {PlanNode::Kind::kInOrder, 0, {}, {}});
+  const auto add = [&](int parent, PlanNode node) {
+    const int index = static_cast<int>(plan.nodes.size());
+    plan.nodes[static_cast<size_t>(parent)].children.push_back(index);
+    plan.nodes.push_back(std::move(node));
+    return index;
+  };
+  for (int i = 0; i + 4 <= n; i += 4) {
+    const int four = add(0, {PlanNode::Kind::kAnyOrder, 0, {}, {}});
+    for (int two = 0; two < 2; ++two) {
+      const int block = add(four, {PlanNode::Kind::kAnyOrder, 0, {}, {}});
+      for (int dot = 0; dot < 2; ++dot) add(block, Leaf(i + 2 * two + dot));
+    }
+  }
+  return plan;
+}
+
 struct Shape {
   std::string name;
   std::function<Plan(int)> make;
@@ -304,6 +324,7 @@ const Shape kShapes[] = {
     {"BlocksOfTwo",
      [](int n) { return Twos(n, PlanNode::Kind::kAnyOrder, PlanNode::Kind::kInOrder); }, 1'000'000},
     {"ChainOfPairs", ChainOfPairs, 1'000'000},
+    {"BlocksInOrder", BlocksInOrder, 1'000'000},
 };
 
 // Bounds for machines that do other things as well: caches are cold after each of those.
