@@ -2,7 +2,6 @@
 import multiprocessing
 import os
 import signal
-import socket
 import subprocess
 import threading
 import time

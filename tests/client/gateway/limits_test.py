@@ -1,0 +1,158 @@
+"""What the gateway holds on to: its spool, memory, time, connections; and its end.
+
+The environment names the binaries: TRAVERSE and TRAVERSE_GATEWAY.
+"""
+import gzip
+import http.client
+import lzma
+import os
+import re
+import resource
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+sys.path.append(os.path.dirname(os.path.abspath(__file__)))
+from gateway_process import Gateway, detail, lines_of_infill
+
+PART = lines_of_infill(3)
+
+
+class Disk(unittest.TestCase):
+    def test_a_spool_without_room_is_said(self):
+        gateway = Gateway("--max_spool_bytes=1000")
+        self.addCleanup(gateway.close)
+        status, _, body = gateway.ask("POST", "/v1/gcode", lines_of_infill(20))
+        self.assertEqual(status, 507, body)
+        self.assertIn("spool is full", detail(body))
+        self.assertEqual(gateway.metric("traverse_gateway_spool_bytes"), 0)
+
+    def test_a_spool_that_is_not_there_ends_the_start(self):
+        done = subprocess.run([os.environ["TRAVERSE_GATEWAY"], "--spool_dir=/not/there", "--listen_http=127.0.0.1:0",
+                               "--listen=", "--metrics_listen="], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("/not/there", done.stderr)
+
+    def test_killed_it_leaves_nothing_in_the_spool(self):
+        with tempfile.TemporaryDirectory() as spool:
+            gateway = Gateway("--spool_dir=" + spool)
+            self.addCleanup(gateway.close)
+            connection = socket.create_connection(("127.0.0.1", gateway.http_port))
+            self.addCleanup(connection.close)
+            connection.sendall(b"POST /v1/gcode HTTP/1.1\r\nHost: x\r\nContent-Length: 199000\r\n\r\n" + PART)
+            deadline = time.time() + 5
+            while gateway.metric("traverse_gateway_spool_bytes") < len(PART) and time.time() < deadline:
+                time.sleep(0.02)
+            gateway.process.send_signal(signal.SIGKILL)
+            gateway.process.wait()
+            self.assertEqual(os.listdir(spool), [])
+
+
+class Time(unittest.TestCase):
+    def test_the_best_until_the_deadline_or_a_reason(self):
+        gateway = Gateway()
+        self.addCleanup(gateway.close)
+        long = lines_of_infill(400)
+        began = time.time()
+        status, headers, body = gateway.ask("POST", "/v1/gcode?deadline=5s&option=effort=100", long)
+        self.assertLess(time.time() - began, 20)
+        self.assertEqual(status, 200, body[:300])
+        self.assertLess(float(headers["traverse-travel-mm"]), float(headers["traverse-travel-given-mm"]))
+        status, _, body = gateway.ask("POST", "/v1/gcode?deadline=1ms", long)
+        self.assertEqual(status, 504, body[:300])
+
+    def test_what_needs_more_memory_than_there_is_is_refused(self):
+        gateway = Gateway("--max_memory=33554432")  # 16 MiB, and twelve bytes for each of the text
+        self.addCleanup(gateway.close)
+        long = lines_of_infill(8000)
+        self.assertGreater(12 * len(long), 16 << 20)
+        self.assertLess(len(gzip.compress(long)), 1 << 20)
+        for path in ["/v1/gcode?strategy=none", "/v1/inspect"]:
+            for body in [long, gzip.compress(long)]:
+                status, _, answer = gateway.ask("POST", path, body)
+                self.assertEqual(status, 413, answer[:300])
+                self.assertIn("this gateway has 32", detail(answer))
+        for packed in [gzip.compress(PART), lzma.compress(PART), b"\x1f\x8b damaged"]:
+            status, _, answer = gateway.ask("POST", "/v1/gcode", packed)
+            self.assertEqual(status, 400 if packed.endswith(b"damaged") else 200, answer[:300])
+
+    def addresses(self, gateway):
+        """How many bytes of addresses the gateway has taken."""
+        with open(f"/proc/{gateway.process.pid}/status", encoding="utf-8") as status:
+            return 1024 * int(re.search(r"VmSize:\s+(\d+)", status.read())[1])
+
+    def test_a_packed_file_that_there_is_no_memory_to_measure_is_refused(self):
+        gateway = Gateway()
+        self.addCleanup(gateway.close)
+        self.assertEqual(gateway.ask("POST", "/v1/gcode", PART)[0], 200)  # starts all threads there will be
+        size, before = self.addresses(gateway), 0
+        while size != before:
+            time.sleep(0.3)
+            size, before = self.addresses(gateway), size
+        if size > 1 << 40:
+            self.skipTest("a sanitizer has taken all addresses")
+        most = size + (32 << 20)
+        resource.prlimit(gateway.process.pid, resource.RLIMIT_AS, (most, most))
+        for first in (b"\x1f\x8b", b"GCDE\x01\0\0\0\0\0"):
+            status, _, answer = gateway.ask("POST", "/v1/gcode", first + bytes(100_000_000))
+            self.assertEqual((status, detail(answer)), (503, "there is not enough memory for this file now"))
+        self.assertEqual(gateway.ask("GET", "/healthz")[0], 200)
+
+    def test_one_address_leaves_connections_to_others(self):
+        gateway = Gateway("--max_connections_per_address=5")
+        self.addCleanup(gateway.close)
+        held = [socket.create_connection(("127.0.0.1", gateway.http_port)) for _ in range(5)]
+        for connection in held:
+            self.addCleanup(connection.close)
+        status, _, answer = gateway.ask("GET", "/healthz")  # connections are accepted in their order
+        self.assertEqual((status, detail(answer)), (503, "too many connections from this address"))
+        other = http.client.HTTPConnection("127.0.0.1", gateway.http_port, source_address=("127.0.0.2", 0))
+        self.addCleanup(other.close)
+        other.request("GET", "/healthz")
+        self.assertEqual(other.getresponse().status, 200)
+        for connection in held:
+            connection.close()
+        deadline = time.time() + 10
+        while gateway.ask("GET", "/healthz")[0] != 200 and time.time() < deadline:
+            time.sleep(0.05)
+        self.assertEqual(gateway.ask("GET", "/healthz")[0], 200)
+
+    def test_who_goes_stops_the_work(self):
+        gateway = Gateway("--workers=1")
+        self.addCleanup(gateway.close)
+        connection = socket.create_connection(("127.0.0.1", gateway.http_port))
+        body = lines_of_infill(1500)
+        connection.sendall(b"POST /v1/gcode?option=effort=100 HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % len(body) + body)
+        deadline = time.time() + 10
+        while gateway.metric("traverse_gateway_workers_busy") == 0 and time.time() < deadline:
+            time.sleep(0.02)
+        connection.close()
+        began = time.time()
+        while gateway.metric("traverse_gateway_workers_busy") > 0 and time.time() < began + 20:
+            time.sleep(0.02)
+        self.assertLess(time.time() - began, 10)
+        self.assertEqual(gateway.metric('traverse_gateway_files_total{outcome="cancelled"}'), 1)
+
+    def test_draining_ends_what_is_under_way_well(self):
+        gateway = Gateway()
+        self.addCleanup(gateway.close)
+        answers = []
+        thread = threading.Thread(
+            target=lambda: answers.append(gateway.ask("POST", "/v1/gcode?option=effort=10", lines_of_infill(100))))
+        thread.start()
+        deadline = time.time() + 10
+        while gateway.metric("traverse_gateway_requests_in_flight") == 0 and time.time() < deadline:
+            time.sleep(0.01)
+        gateway.process.send_signal(signal.SIGTERM)
+        thread.join()
+        self.assertEqual(answers[0][0], 200)
+        self.assertEqual(gateway.process.wait(timeout=20), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
