@@ -10,45 +10,49 @@ size_t TextBytes(const HttpBody& body) {
 
 }  // namespace
 
-void ReplyQueue::Put(const std::function<void()>& change) {
+void ReplyQueue::Send(HttpResponse response) {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (gone_ || ended_) return;
-    change();
+    MutexLock lock(mutex_);
+    if (!Open()) return;
+    head_ = std::move(response);
+    ended_ = true;
   }
   wake_();
 }
 
-void ReplyQueue::Send(HttpResponse response) {
-  Put([&] {
-    head_ = std::move(response);
-    ended_ = true;
-  });
-}
-
 void ReplyQueue::Begin(HttpResponse head) {
-  Put([&] {
+  {
+    MutexLock lock(mutex_);
+    if (!Open()) return;
     head_ = std::move(head);
     streaming_ = true;
-  });
+  }
+  wake_();
 }
 
 void ReplyQueue::Write(HttpBody piece, bool optional) {
-  Put([&] {
+  {
+    MutexLock lock(mutex_);
     const size_t bytes = TextBytes(piece);
-    if (optional && text_bytes_ + bytes > kMaxOptionalBytes) return;
+    if (!Open() || (optional && text_bytes_ + bytes > kMaxOptionalBytes)) return;
     text_bytes_ += bytes;
     pieces_.push_back(std::move(piece));
-  });
+  }
+  wake_();
 }
 
 void ReplyQueue::End() {
-  Put([&] { ended_ = true; });
+  {
+    MutexLock lock(mutex_);
+    if (!Open()) return;
+    ended_ = true;
+  }
+  wake_();
 }
 
 void ReplyQueue::OnGone(std::function<void()> on_gone) {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    MutexLock lock(mutex_);
     if (!gone_) {
       on_gone_ = std::move(on_gone);
       return;
@@ -58,17 +62,17 @@ void ReplyQueue::OnGone(std::function<void()> on_gone) {
 }
 
 std::optional<HttpResponse> ReplyQueue::TakeHead() {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   return std::exchange(head_, std::nullopt);
 }
 
 bool ReplyQueue::streaming() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   return streaming_;
 }
 
 std::optional<HttpBody> ReplyQueue::TakePiece() {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   if (pieces_.empty()) return std::nullopt;
   HttpBody piece = std::move(pieces_.front());
   pieces_.pop_front();
@@ -77,14 +81,14 @@ std::optional<HttpBody> ReplyQueue::TakePiece() {
 }
 
 bool ReplyQueue::ended() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  MutexLock lock(mutex_);
   return ended_ && pieces_.empty();
 }
 
 void ReplyQueue::Gone() {
   std::function<void()> on_gone;
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    MutexLock lock(mutex_);
     if (gone_) return;
     gone_ = true;
     pieces_.clear();

@@ -5,11 +5,11 @@
 
 #include <deque>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <utility>
 
 #include "client/gateway/http/message.h"
+#include "engine/base/mutex.h"
 
 namespace traverse::gateway {
 
@@ -40,17 +40,18 @@ class ReplyQueue : public HttpReply {
   void Gone();
 
  private:
-  void Put(const std::function<void()>& change);
+  // Whether there is anybody to tell more.
+  bool Open() const TRAVERSE_REQUIRES(mutex_) { return !gone_ && !ended_; }
 
   const std::function<void()> wake_;
-  mutable std::mutex mutex_;
-  std::optional<HttpResponse> head_;
-  bool streaming_ = false;
-  std::deque<HttpBody> pieces_;
-  size_t text_bytes_ = 0;  // of pieces_
-  bool ended_ = false;
-  bool gone_ = false;
-  std::function<void()> on_gone_;
+  mutable Mutex mutex_;
+  std::optional<HttpResponse> head_ TRAVERSE_GUARDED_BY(mutex_);
+  bool streaming_ TRAVERSE_GUARDED_BY(mutex_) = false;
+  std::deque<HttpBody> pieces_ TRAVERSE_GUARDED_BY(mutex_);
+  size_t text_bytes_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // of pieces_
+  bool ended_ TRAVERSE_GUARDED_BY(mutex_) = false;
+  bool gone_ TRAVERSE_GUARDED_BY(mutex_) = false;
+  std::function<void()> on_gone_ TRAVERSE_GUARDED_BY(mutex_);
 };
 
 }  // namespace traverse::gateway
