@@ -117,6 +117,11 @@ std::string GcodeSummary(const GcodeRewrite& rewrite) {
         "%d layers left as they are, for what was found for them breaks a rule: %s\n",
         rewrite.layers_unproven, rewrite.unproven);
   }
+  if (rewrite.layers_unclear > 0) {
+    summary += absl::StrFormat(
+        "%d layers left as they are, for machines differ in what they make of a line: %s\n",
+        rewrite.layers_unclear, rewrite.unclear);
+  }
   return summary;
 }
 

@@ -99,12 +99,17 @@ absl::StatusOr<PrintTotals> MeasureText(const GcodeFile& file, std::string& text
   return totals;
 }
 
+// As lines were numbered when the file was read.
+std::string Numbered(const GcodeFile& file, std::string text) {
+  return file.numbers ? WithLineNumbers(text, *file.numbers) : std::move(text);
+}
+
 GcodeRewrite AsItIs(const GcodeFile& file, GcodeRewrite rewrite) {
   rewrite.after = rewrite.before;
   rewrite.first_after = rewrite.first_before;
   rewrite.layers_changed = 0;
   rewrite.orders.assign(file.layers.size(), {});
-  rewrite.text = file.text;
+  rewrite.text = Numbered(file, file.text);
   return rewrite;
 }
 
@@ -199,6 +204,15 @@ class Rewriter {
       if (chooser_.IsGivenUp(layer)) ++rewrite.layers_unproven;
     }
     if (rewrite.layers_unproven > 0) rewrite.unproven = unproven_;
+    NoteUnclear(rewrite);
+  }
+
+  void NoteUnclear(GcodeRewrite& rewrite) const {
+    for (const Layer& layer : file_.layers) {
+      if (layer.fault == nullptr || rewrite.layers_unclear++ > 0) continue;
+      rewrite.unclear =
+          absl::StrFormat("%s:%d: %s", file_.name, file_.LineNumber(layer.fault_at), layer.fault);
+    }
   }
 
   absl::StatusOr<GcodeRewrite> Finish(const std::string& head, GcodeRewrite rewrite) const {
@@ -207,6 +221,7 @@ class Rewriter {
     rewrite.after = *after;
     if (rewrite.after.seconds > rewrite.before.seconds) return AsItIs(file_, std::move(rewrite));
     rewrite.text.replace(0, head.size(), HeadWithLine(file_, AddedLine(rewrite, options_)));
+    rewrite.text = Numbered(file_, std::move(rewrite.text));
     return rewrite;
   }
 

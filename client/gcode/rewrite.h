@@ -29,6 +29,11 @@ struct GcodeRewrite {
   // verifier, and the first break that was found.
   int64_t layers_unproven = 0;
   std::string unproven;
+
+  // Layers that were left as they are for a line of which nobody knows what a machine makes of it,
+  // and the first of these: "part.gcode:118: G2 without I, J or R".
+  int64_t layers_unclear = 0;
+  std::string unclear;
 };
 
 struct RewriteOptions {

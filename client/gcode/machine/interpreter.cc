@@ -285,6 +285,8 @@ void Interpreter::Arc(Step& step) {
     return;
   }
   if (!c.Has('I') && !c.Has('J') && !c.Has('R')) {
+    // Marlin takes the feed rate and says that this is no arc, Klipper ends the print.
+    if (c.Has('F')) state_.feed = c.Value('F');
     step.fault = step.command.number == 2 ? "G2 without I, J or R" : "G3 without I, J or R";
     step.kind = StepKind::kUnknown;
     return;

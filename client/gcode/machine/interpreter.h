@@ -100,7 +100,7 @@ struct Step {
   Decimal pulled = 0;           // before: how much of it, by E words
   Decimal filament = 0;         // pushed (above 0) or pulled back by this line
   SlotMask slots = 0;           // kSlot
-  const char* fault = nullptr;  // what is wrong with this line, if nothing can be made of it
+  const char* fault = nullptr;  // why nobody knows what a machine makes of this line
   Command command;
 };
 

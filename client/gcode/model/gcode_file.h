@@ -14,6 +14,7 @@
 #define TRAVERSE_CLIENT_GCODE_MODEL_GCODE_FILE_H_
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,7 @@
 #include "client/gcode/machine/machine_profile.h"
 #include "client/gcode/machine/print_state.h"
 #include "client/gcode/machine/vertex.h"
+#include "client/gcode/text/line_numbers.h"
 
 namespace traverse {
 namespace gcode {
@@ -87,13 +89,16 @@ struct Layer {
   uint32_t first_block = 0;
   uint32_t end_block = 0;
   Decimal z = 0;
+  Offset fault_at = 0;          // if `fault`, its line
+  const char* fault = nullptr;  // of a line in it or on the way to or from it: it stays as it is
 };
 
 }  // namespace gcode
 
 struct GcodeFile {
   std::string name;  // for messages
-  std::string text;
+  std::string text;  // without the numbers of its lines
+  std::optional<gcode::LineNumbers> numbers;
   gcode::Dialect dialect = gcode::Dialect::kOther;
   std::string slicer;  // as the file names it, "PrusaSlicer 2.5.0"; empty if it does not
 
@@ -110,7 +115,8 @@ struct GcodeFile {
   gcode::StateTable states;
 
   // Behind the last line of the start script: the first mark of a layer, or in files without such
-  // marks the last line near the beginning that switches modes or waits for heat; 0 if there is none.
+  // marks the last line near the beginning that switches modes or waits for heat; 0 if there is
+  // none.
   gcode::Offset script_end = 0;
 
   // Begins of the M73 lines, ascending.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "client/gcode/model/arc.h"
@@ -104,6 +105,9 @@ void BlockBuilder::Take(const Step& step, const MachineState& before,
   if (step.kind == StepKind::kLabel) TakeLabel(step);
   NoteScript(step);
   if (step.kind == StepKind::kProgress) file_.progress.push_back(step.line.begin);
+  if (step.fault != nullptr) {
+    faults_.push_back({step.line.begin, step.fault, file_.blocks.size()});
+  }
   TakeOther(step, before, after);
 }
 
@@ -359,9 +363,30 @@ void BlockBuilder::UndoTail() {
   link_ = tail_;
 }
 
+// Where the head is behind such a line is not known, nor what was printed on the way there.
+void BlockBuilder::KeepLayersWithFaults() {
+  const auto keep = [this](const LineFault& fault, size_t block) {
+    const auto behind = std::upper_bound(
+        file_.layers.begin(), file_.layers.end(), block,
+        [](size_t number, const Layer& layer) { return number < layer.first_block; });
+    Layer& layer = *std::prev(behind);
+    if (layer.fault != nullptr) return;
+    layer.fault = fault.what;
+    layer.fault_at = fault.at;
+    for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
+      file_.blocks[b].flags |= kBlockPinned;
+    }
+  };
+  for (const LineFault& fault : faults_) {
+    if (fault.block > 0) keep(fault, fault.block - 1);
+    if (fault.block < file_.blocks.size()) keep(fault, fault.block);
+  }
+}
+
 void BlockBuilder::Finish() {
   if (file_.blocks.empty()) return;
   file_.layers.back().end_block = static_cast<uint32_t>(file_.blocks.size());
+  KeepLayersWithFaults();
   // A first mark that most of the print stands before is none.
   if (scripted_ * 2 > file_.blocks.size()) {
     file_.script_end = 0;

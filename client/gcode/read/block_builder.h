@@ -3,6 +3,8 @@
 #ifndef TRAVERSE_CLIENT_GCODE_READ_BLOCK_BUILDER_H_
 #define TRAVERSE_CLIENT_GCODE_READ_BLOCK_BUILDER_H_
 
+#include <vector>
+
 #include "client/gcode/model/gcode_file.h"
 
 namespace traverse::gcode {
@@ -20,6 +22,13 @@ class BlockBuilder {
 
  private:
   enum class Where { kHead, kBody, kTail, kLink };
+
+  // A line of which nobody knows what a machine makes of it.
+  struct LineFault {
+    Offset at = 0;
+    const char* what = nullptr;
+    size_t block = 0;  // the next one
+  };
 
   // What is known of the link that is being read.
   struct OpenLink {
@@ -49,6 +58,7 @@ class BlockBuilder {
   bool GoesOn() const;
   void CloseLink(const Block& block);
   void BeginLayer(const Block& block);
+  void KeepLayersWithFaults();
   uint32_t CurrentState();
   uint16_t ModeOf(const MachineState& state);
   Block& Last() { return file_.blocks.back(); }
@@ -60,6 +70,7 @@ class BlockBuilder {
   uint32_t state_id_ = 0;
   uint32_t object_ = 0;
 
+  std::vector<LineFault> faults_;
   size_t scripted_ = 0;  // blocks of the start script, as far as is known
   bool layers_marked_ = false;
 

@@ -133,13 +133,25 @@ absl::Status ReadBlocks(GcodeFile& file) {
   Step step;
   for (MachineState before = interpreter.state(); interpreter.Next(step);
        before = interpreter.state()) {
-    if (step.fault != nullptr) return Fault(file, step.line.begin, step.fault);
     style.Take(step, file.text);
     builder.Take(step, before, interpreter);
   }
   builder.Finish();
   style.Finish(file);
   return absl::OkStatus();
+}
+
+// Takes the numbers of lines away, if all are as they have to be; else returns the first line of
+// which that is not so.
+std::optional<Offset> TakeNumbers(GcodeFile& file) {
+  std::optional<LineNumbers> numbers = LearnLineNumbers(file.text);
+  if (!numbers) return std::nullopt;
+  std::string plain = WithoutLineNumbers(file.text, *numbers);
+  const std::optional<Offset> odd = FirstOtherLine(file.text, WithLineNumbers(plain, *numbers));
+  if (odd) return odd;
+  file.text = std::move(plain);
+  file.numbers = *std::move(numbers);
+  return std::nullopt;
 }
 
 }  // namespace
@@ -160,9 +172,14 @@ absl::StatusOr<std::shared_ptr<GcodeFile>> ReadGcode(std::string text, const std
   if (nul != std::string::npos) {
     return gcode::Fault(*file, static_cast<gcode::Offset>(nul), "NUL byte: this is not text");
   }
+  const std::optional<gcode::Offset> misnumbered = gcode::TakeNumbers(*file);
   gcode::FindSlicer(*file);
   file->profile = gcode::ReadProfile(file->text);
   if (absl::Status status = gcode::ReadBlocks(*file); !status.ok()) return status;
+  if (file->blocks.empty() && misnumbered) {
+    return gcode::Fault(*file, *misnumbered,
+                        "its number or checksum is not what those of the other lines lead to");
+  }
   if (file->blocks.empty()) {
     return absl::InvalidArgumentError(absl::StrCat(name, ": no extruding move"));
   }

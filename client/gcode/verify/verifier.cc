@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/parallel.h"
+#include "client/gcode/verify/line_numbers.h"
 #include "client/gcode/verify/rules/rules.h"
 #include "client/gcode/verify/same_print.h"
 #include "client/gcode/verify/text.h"
@@ -275,6 +276,14 @@ std::string WithOptionalLines(std::string_view text) {
 VerifyReport CheckGcode(std::string_view original, const std::string& original_name,
                         std::string_view optimised, const std::string& optimised_name,
                         const VerifyOptions& options) {
+  const std::optional<gcode::Unnumbered> unnumbered = gcode::WithoutNumbers(original);
+  if (unnumbered) {
+    const std::optional<gcode::Unnumbered> other = gcode::WithoutNumbers(optimised);
+    // Else they are compared with their numbers.
+    if (other && other->form == unnumbered->form) {
+      return CheckGcode(unnumbered->text, original_name, other->text, optimised_name, options);
+    }
+  }
   VerifyReport report =
       gcode::Verifier(original, original_name, optimised, optimised_name, options).Verify();
   if (!report.ok() || gcode::NextOptional(original, 0) == std::string_view::npos) return report;

@@ -14,7 +14,8 @@
 // where they begin and in which direction, and at all that is done between them. A move that the
 // original has too, from the same point to the same point in the same layer, breaks no rule: what a
 // slicer does itself is never refused. All of it holds whether or not a machine does the lines that
-// begin with a slash.
+// begin with a slash. Where all lines of both files are numbered on and their checksums are right,
+// that is what is looked at of these (line_numbers.h).
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_VERIFIER_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_VERIFIER_H_

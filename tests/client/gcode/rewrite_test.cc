@@ -5,6 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
 #include "client/gcode/gcode_job.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/read/reader.h"
@@ -72,6 +75,34 @@ TEST(RewriteGcode, LineEndsSurvive) {
   for (size_t at = 0; (at = rewrite->text.find('\n', at)) != std::string::npos; ++at) {
     EXPECT_EQ(rewrite->text[at - 1], '\r');
   }
+}
+
+TEST(RewriteGcode, AnArcWithoutCenterIsNamedAsTheReasonForItsLayer) {
+  const std::string text = std::string(kScattered) + "G1 Z.4\n" + "G1 X5 Y5 E1\nG3 X9 Y9 E1\n";
+
+  const auto rewrite = RewriteGcode(*Read(text), {{kBetterOrder, {}}}, OptionsWithVersion());
+
+  ASSERT_TRUE(rewrite.ok()) << rewrite.status();
+  EXPECT_EQ(rewrite->layers_changed, 1);
+  EXPECT_EQ(rewrite->layers_unclear, 1);
+  const size_t lines = static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
+  EXPECT_EQ(rewrite->unclear, absl::StrCat("part.gcode:", lines, ": G3 without I, J or R"));
+  EXPECT_EQ(VerifyGcode(text, "a", rewrite->text, "b").message(), "");
+}
+
+TEST(RewriteGcode, NumberedLinesAreNumberedAnew) {
+  const LineNumbers numbers{0, 1, 1, " ", true};
+  const std::string text = WithLineNumbers(kScattered, numbers);
+
+  const auto rewrite = RewriteGcode(*Read(text), {{kBetterOrder}}, OptionsWithVersion());
+
+  ASSERT_TRUE(rewrite.ok()) << rewrite.status();
+  EXPECT_EQ(rewrite->layers_changed, 1);
+  EXPECT_EQ(rewrite->text, WithLineNumbers(WithoutLineNumbers(rewrite->text, numbers), numbers));
+  EXPECT_EQ(VerifyGcode(text, "a", rewrite->text, "b").message(), "");
+  const auto same = RewriteGcode(*Read(text), {}, OptionsWithVersion());
+  ASSERT_TRUE(same.ok()) << same.status();
+  EXPECT_EQ(same->text, text);
 }
 
 TEST(RewriteGcode, TheMarkOfUtf8StaysAtTheBeginning) {

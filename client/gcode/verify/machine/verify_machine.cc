@@ -161,6 +161,11 @@ void VerifyMachine::DoG(int number, VerifyLine& line) {
       if (!words.OnlyFrom("XYZEFIJRP") || (number >= 2 && !plane_xy_)) {
         return Fence(line, LineRole::kFixed);
       }
+      if (number >= 2 && !words.Has('I') && !words.Has('J') && !words.Has('R')) {
+        // No arc, and where the head is behind it each machine says otherwise.
+        feed_ = words.ValueOr('F', feed_);
+        return Fence(line, LineRole::kFixed);
+      }
       return Move(number, words, line);
     case 10:
     case 11:

@@ -190,10 +190,37 @@ TEST(ReadGcode, LineEndsDoNotMatter) {
 }
 
 TEST(ReadGcode, NamesThePlaceOfAFault) {
-  EXPECT_EQ(Fault("G28\nG1 X1 E1\nG2 X5 Y5 E2\n"), "part.gcode:3: G2 without I, J or R");
   EXPECT_EQ(Fault(std::string("G28\nG1 X\0 E1\n", 14)), "part.gcode:2: NUL byte: this is not text");
   EXPECT_EQ(Fault("G28\nG1 X5\n"), "part.gcode: no extruding move");
   EXPECT_THAT(Fault(""), HasSubstr("no extruding move"));
+  EXPECT_EQ(Fault("N1 G28*18\nN2 G1 X5 E1*3\n"),
+            "part.gcode:2: its number or checksum is not what those of the other lines lead to");
+  EXPECT_EQ(Fault("G28\nN1 G1 X5 E1\nN2 G1 X6 E1\nN4 G1 X7 E1\n"),
+            "part.gcode:4: its number or checksum is not what those of the other lines lead to");
+}
+
+TEST(ReadGcode, NumberedLinesAreReadWithoutTheirNumbers) {
+  const auto file = Read("N1 M83*25\nN2 G1 X5 E1*51\n");
+
+  EXPECT_EQ(file->text, "M83\nG1 X5 E1\n");
+  EXPECT_EQ(file->blocks.size(), 1u);
+}
+
+// Marlin says that this is no arc and goes on, Klipper ends the print.
+TEST(ReadGcode, AnArcWithoutCenterKeepsItsLayerAndNoOther) {
+  const std::string path = "G1 X9 Y9 F9000\nG1 X5 Y5 E1 F900\nG1 X1 Y9 F9000\nG1 X5 Y7 E1 F900\n";
+  const auto file =
+      Read("M83\nG1 Z.2\n" + path + "G1 Z.4\n" + path + "G2 X7 Y7 E1\n" + path + "G1 Z.6\n" + path);
+
+  ASSERT_EQ(file->layers.size(), 3u);
+  EXPECT_EQ(file->layers[0].fault, nullptr);
+  EXPECT_STREQ(file->layers[1].fault, "G2 without I, J or R");
+  EXPECT_EQ(file->LineNumber(file->layers[1].fault_at), 12u);
+  EXPECT_EQ(file->layers[2].fault, nullptr);
+  for (uint32_t b = file->layers[1].first_block; b < file->layers[1].end_block; ++b) {
+    EXPECT_TRUE(file->blocks[b].flags & kBlockPinned);
+  }
+  EXPECT_FALSE(file->blocks[0].flags & kBlockPinned);
 }
 
 TEST(ReadGcode, AFileMayEndAnywhere) {
