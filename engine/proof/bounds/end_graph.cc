@@ -11,10 +11,12 @@ namespace {
 // What it takes to make a short list, or to free it, as Rest counts steps.
 constexpr size_t kStepsOfList = 32;
 
+using Ends = absl::InlinedVector<int, 2>;
+
 // Where a part of a route may begin and end.
 struct Reach {
-  std::vector<int> first;
-  std::vector<int> last;
+  Ends first;
+  Ends last;
 };
 
 class GraphBuilder {
@@ -29,8 +31,8 @@ class GraphBuilder {
       if (tree_.path_count(index) > 0) At(index) = Visit(index);
     }
     if (reach_.empty()) return;
-    graph_.first = std::move(reach_[0].first);
-    graph_.last = std::move(reach_[0].last);
+    graph_.first.assign(reach_[0].first.begin(), reach_[0].first.end());
+    graph_.last.assign(reach_[0].last.begin(), reach_[0].last.end());
   }
 
  private:
@@ -42,9 +44,9 @@ class GraphBuilder {
                                                               : VisitAnyOrder(index);
   }
 
-  int AddEnd(std::vector<Point> points, uint8_t roles, int moves) {
-    const BoundingBox box(points);
-    graph_.ends.push_back(PathEnd{std::move(points), box, roles, moves});
+  int AddEnd(absl::Span<const Point> points, uint8_t roles, int moves) {
+    graph_.ends.push_back(
+        PathEnd{{points.begin(), points.end()}, BoundingBox(points), roles, moves});
     return static_cast<int>(graph_.ends.size()) - 1;
   }
 
@@ -57,8 +59,10 @@ class GraphBuilder {
       const int end = AddEnd(path.allowed.empty() ? path.points : points, kBoth, 2);
       return {{end}, {end}};
     }
-    const int first = AddEnd({path.points[0]}, path.one_way ? PathEnd::kEnter : kBoth, 1);
-    const int last = AddEnd({path.points[1]}, path.one_way ? PathEnd::kLeave : kBoth, 1);
+    const int first = AddEnd(absl::MakeConstSpan(path.points).first(1),
+                             path.one_way ? PathEnd::kEnter : kBoth, 1);
+    const int last = AddEnd(absl::MakeConstSpan(path.points).subspan(1, 1),
+                            path.one_way ? PathEnd::kLeave : kBoth, 1);
     if (path.one_way) return {{first}, {last}};
     return {{first, last}, {first, last}};
   }
@@ -101,7 +105,7 @@ class GraphBuilder {
     roles_.resize(graph_.ends.size());
     for (const int end : child.first) roles_[static_cast<size_t>(end)] |= PathEnd::kEnter;
     for (const int end : child.last) roles_[static_cast<size_t>(end)] |= PathEnd::kLeave;
-    for (const std::vector<int>* list : {&child.first, &child.last}) {
+    for (const Ends* list : {&child.first, &child.last}) {
       for (const int end : *list) {
         uint8_t& roles = roles_[static_cast<size_t>(end)];
         if (roles == 0) continue;
@@ -111,9 +115,7 @@ class GraphBuilder {
     }
   }
 
-  static void Append(const std::vector<int>& from, std::vector<int>& to) {
-    to.insert(to.end(), from.begin(), from.end());
-  }
+  static void Append(const Ends& from, Ends& to) { to.insert(to.end(), from.begin(), from.end()); }
 
   // Which children of an any_order have another one before them, and after them.
   std::pair<std::vector<bool>, std::vector<bool>> Preceded(int index) const {

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "absl/container/inlined_vector.h"
 #include "absl/types/span.h"
 #include "engine/base/budget.h"
 #include "engine/geometry/bounding_box.h"
@@ -27,10 +28,10 @@ struct PathEnd {
   static constexpr uint8_t kEnter = 1;
   static constexpr uint8_t kLeave = 2;
 
-  std::vector<Point> points;  // at which the head may be here
-  BoundingBox box;            // around them
-  uint8_t roles = 0;          // whether the path may be entered here, and left
-  int moves = 1;              // of a route here: 2 for a contour
+  absl::InlinedVector<Point, 1> points;  // at which the head may be here
+  BoundingBox box;                       // around them
+  uint8_t roles = 0;                     // whether the path may be entered here, and left
+  int moves = 1;                         // of a route here: 2 for a contour
 };
 
 // The roles that the other end of a move has to have one of.
@@ -42,12 +43,13 @@ struct Junction {
     int side = 0;
     uint8_t roles = 0;  // whether this side may be entered here, and left
   };
-  std::vector<Member> members;  // by sides
+  absl::InlinedVector<Member, 4> members;  // by sides
   int sides = 0;
 };
 
-// Immutable but for its end. Memory: proportional to the points and to the sum over nodes of the
-// ends below.
+// Lists of one point or of two paths are within what holds them: there are millions of these in
+// large layers. Immutable but for its end. Memory: proportional to the points and to the sum over
+// nodes of the ends below.
 struct EndGraph {
   // Others are let on through `budget`, which may be null.
   explicit EndGraph(const PlanTree& tree, Budget* budget = nullptr);

@@ -142,7 +142,7 @@ void TreeBound::FindNearPairs(Budget& budget) {
     for (const Junction::Member& member : junction.members) {
       rest(16);
       members.push_back({groups.size(), member.side});
-      const std::vector<Point>& points = graph_.ends[static_cast<size_t>(member.end)].points;
+      const auto& points = graph_.ends[static_cast<size_t>(member.end)].points;
       groups.points.insert(groups.points.end(), points.begin(), points.end());
       groups.Close();
     }

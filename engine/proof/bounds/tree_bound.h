@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/container/inlined_vector.h"
 #include "engine/base/budget.h"
 #include "engine/base/disjoint_sets.h"
 #include "engine/cost/travel_cost.h"
@@ -84,8 +85,9 @@ class TreeBound {
   std::vector<double> best_multipliers_;  // [end] of the bound
   double lower_bound_ = 0;
 
-  std::vector<Pair> pairs_;                                // the near ones
-  std::vector<std::vector<std::pair<int, double>>> near_;  // [end] other ends and costs of pairs_
+  std::vector<Pair> pairs_;  // the near ones
+  std::vector<absl::InlinedVector<std::pair<int, double>, 4>>
+      near_;  // [end] others and costs of pairs_
 
   // Scratch.
   std::vector<int> moves_;                      // [end] of the last tree

@@ -187,8 +187,8 @@ VertexBound::AnyCandidate VertexBound::CheapestOfAny(int junction, const Junctio
     if (other == b.end) best.cost = CheapestOf(pair).cost;
   }
   if (best.cost < kFar) return best;
-  const std::vector<Point>& from = graph_.ends[At(a.end)].points;
-  const std::vector<Point>& to = graph_.ends[At(b.end)].points;
+  const auto& from = graph_.ends[At(a.end)].points;
+  const auto& to = graph_.ends[At(b.end)].points;
   const double* of_a = multipliers_.point.data() + first_point_[At(a.end)];
   const double* of_b = multipliers_.point.data() + first_point_[At(b.end)];
   for (size_t i = 0; i < from.size(); ++i) {
@@ -221,7 +221,7 @@ double VertexBound::EvaluateNear() {
 double VertexBound::EvaluateAll(Budget& budget) {
   std::vector<AnyCandidate> all;
   for (size_t j = 0; j < graph_.junctions.size(); ++j) {
-    const std::vector<Junction::Member>& members = graph_.junctions[j].members;
+    const auto& members = graph_.junctions[j].members;
     for (size_t a = 0; a < members.size(); ++a) {
       if (budget.ExhaustedNow()) return 0;
       for (size_t b = a + 1; b < members.size(); ++b) {

@@ -14,8 +14,8 @@ namespace {
 struct Block {
   int first = 0;  // its items are [first, last)
   int last = 0;
-  std::vector<int> begins;
-  std::vector<int> ends;
+  absl::InlinedVector<int, 1> begins;
+  absl::InlinedVector<int, 1> ends;
 };
 
 // All pairs of blocks that follow from `before`, those through children without paths included:
@@ -133,7 +133,7 @@ class StageBuilder {
     }
   }
 
-  static void Append(const std::vector<int>& items, std::vector<int>& to) {
+  static void Append(const absl::InlinedVector<int, 1>& items, absl::InlinedVector<int, 1>& to) {
     to.insert(to.end(), items.begin(), items.end());
   }
 
@@ -147,7 +147,7 @@ constexpr size_t kStepsOfStage = 64;
 
 // Appends the stages below `index`, which has paths. False if one is too large, or the budget ends.
 bool Collect(const PlanTree& tree, int index, size_t most_items, Rest& rest,
-             std::vector<PlanStage>& stages) {
+             std::deque<PlanStage>& stages) {
   if (!rest(kStepsOfStage)) return false;
   const absl::Span<const int> children = tree.children(index);
   if (children.size() == 1) return Collect(tree, children.front(), most_items, rest, stages);
@@ -162,9 +162,8 @@ bool Collect(const PlanTree& tree, int index, size_t most_items, Rest& rest,
 
 }  // namespace
 
-std::optional<std::vector<PlanStage>> StagesOf(const Plan& plan, size_t most_items,
-                                               Budget* budget) {
-  std::vector<PlanStage> stages;
+std::optional<std::deque<PlanStage>> StagesOf(const Plan& plan, size_t most_items, Budget* budget) {
+  std::deque<PlanStage> stages;
   if (plan.paths.empty()) return stages;
   Rest rest(budget);
   if (!Collect(PlanTree(plan, budget), 0, most_items, rest, stages)) return std::nullopt;

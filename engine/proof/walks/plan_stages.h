@@ -19,10 +19,12 @@
 #define TRAVERSE_ENGINE_PROOF_WALKS_PLAN_STAGES_H_
 
 #include <cstddef>
+#include <deque>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "absl/container/inlined_vector.h"
 #include "engine/base/budget.h"
 #include "engine/model/plan.h"
 
@@ -44,11 +46,12 @@ struct PlanStage {
     return follows[static_cast<size_t>(i) * paths.size() + static_cast<size_t>(j)] != 0;
   }
 
-  std::vector<int> paths;                   // [item] index into Plan::paths, or kGate
+  // Those of a stage of one path are without lists elsewhere: a plan may have a million of these.
+  absl::InlinedVector<int, 1> paths;        // [item] index into Plan::paths, or kGate
   std::vector<std::pair<int, int>> before;  // items; transitively closed
-  std::vector<char> follows;                // [i * size() + j] whether j may follow i directly
-  std::vector<char> begins;                 // [item] whether it may be the first
-  std::vector<char> ends;                   // [item] whether it may be the last
+  absl::InlinedVector<char, 8> follows;     // [i * size() + j] whether j may follow i directly
+  absl::InlinedVector<char, 8> begins;      // [item] whether it may be the first
+  absl::InlinedVector<char, 8> ends;        // [item] whether it may be the last
   std::vector<Gate> gates;                  // inner ones first
 };
 
@@ -56,8 +59,8 @@ struct PlanStage {
 // if `budget` (may be null) ends.
 // Nested in_orders outside of any_orders are flattened; nodes without paths vanish, but the
 // precedences that go through them are kept. O(nodes + most_items (pairs + most_items^2)).
-std::optional<std::vector<PlanStage>> StagesOf(const Plan& plan, size_t most_items,
-                                               Budget* budget = nullptr);
+std::optional<std::deque<PlanStage>> StagesOf(const Plan& plan, size_t most_items,
+                                              Budget* budget = nullptr);
 
 }  // namespace traverse
 

@@ -54,7 +54,7 @@ bool StageModel::Fits(const Plan& plan, size_t max_entries, Budget* budget) {
 }
 
 bool StageModel::LayOut(const Plan& plan, size_t max_entries, Budget* budget) {
-  std::optional<std::vector<PlanStage>> stages = StagesOf(plan, kMostClusters, budget);
+  std::optional<std::deque<PlanStage>> stages = StagesOf(plan, kMostClusters, budget);
   if (!stages) return false;
   const EntryTable entries(plan, budget);
   first_.push_back(0);
@@ -120,7 +120,7 @@ void StageModel::AddVisits(const EntryTable& entries, const PlanStage& stage) {
   }
 }
 
-bool StageModel::PlaceMatrices(std::vector<PlanStage> stages, size_t max_entries, Budget* budget) {
+bool StageModel::PlaceMatrices(std::deque<PlanStage> stages, size_t max_entries, Budget* budget) {
   size_t pairs = 0;
   for (int s = 0; s < stage_count(); ++s) {
     pairs += static_cast<size_t>(size(s)) * static_cast<size_t>(end_of_next(s) - first(s));
@@ -131,8 +131,8 @@ bool StageModel::PlaceMatrices(std::vector<PlanStage> stages, size_t max_entries
   Rest rest(budget);
   for (int a = 0; a < cluster_count(); ++a) {
     const int s = stage_of(a);
-    if (s > 0 && a == first(s)) stages[static_cast<size_t>(s - 1)] = PlanStage();
-    const PlanStage& stage = stages[static_cast<size_t>(s)];
+    if (s > 0 && a == first(s)) stages.pop_front();
+    const PlanStage& stage = stages.front();
     const int end = end_of_next(s);
     if (!rest(kStepsOfCluster + static_cast<size_t>(end - first(s)))) return false;
     row_.push_back(offsets_.size());

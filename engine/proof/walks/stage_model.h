@@ -18,6 +18,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -140,7 +141,7 @@ class StageModel {
   void AddStage(const Plan& plan, const EntryTable& entries, const PlanStage& stage);
   void AddVisits(const EntryTable& entries, const PlanStage& stage);
   bool LayOut(const Plan& plan, size_t max_entries, Budget* budget);
-  bool PlaceMatrices(std::vector<PlanStage> stages, size_t max_entries, Budget* budget);
+  bool PlaceMatrices(std::deque<PlanStage> stages, size_t max_entries, Budget* budget);
   bool FillMatrices(const LayerProblem& problem, Budget* budget);
   void FillEnds(const LayerProblem& problem);
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <deque>
 #include <optional>
 #include <set>
 #include <utility>
@@ -73,7 +74,7 @@ void ExtendOrders(const PlanStage& stage, std::vector<int>& items,
   }
 }
 
-std::set<std::vector<int>> OrdersOf(const std::vector<PlanStage>& stages) {
+std::set<std::vector<int>> OrdersOf(const std::deque<PlanStage>& stages) {
   std::set<std::vector<int>> orders = {{}};
   for (const PlanStage& stage : stages) {
     std::vector<int> items;

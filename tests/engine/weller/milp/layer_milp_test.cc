@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <deque>
 #include <utility>
 #include <vector>
 
@@ -36,7 +37,7 @@ class LayerProgram {
  public:
   explicit LayerProgram(const LayerProblem& problem)
       : problem_(problem), once_(problem.plan->paths.size()), places_(once_.size()) {
-    const std::vector<PlanStage> stages = *StagesOf(*problem.plan, 100);
+    const std::deque<PlanStage> stages = *StagesOf(*problem.plan, 100);
     for (const PlanStage& stage : stages) AddStage(stage);
     for (const auto& row : once_) program_.AddRow(1, 1, row);
   }
