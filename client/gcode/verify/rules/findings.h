@@ -132,6 +132,8 @@ struct WipeDeviation {
   float astray_mm = 0;  // halfway
   float pull = 0;       // filament pulled back per mm of it
   float steepest = 0;   // the same of its longer moves, one by one, the most
+  float uneven_mm = 0;  // filament pulled by some point of it more, or less, than evenly
+  float length_mm = 0;
   uint32_t line = 0;
   uint32_t original_line = 0;
   int64_t layer = -1;

@@ -1,6 +1,7 @@
 // A wipe lies within 0.05 mm of its own path, and paths that were wiped stay wiped.
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -14,6 +15,8 @@ constexpr float kOnPathMm = 0.05f;
 constexpr double kUsualShare = 0.99;
 constexpr float kPullSlack = 1.02f;
 constexpr float kGentleShare = 0.5f;
+constexpr float kAsLong = 0.9f;
+constexpr float kUnevenSlackMm = 0.01f;
 constexpr float kTellingMm = 0.3f;  // rounding is nothing beside the filament of such a move
 
 struct Wipe {
@@ -22,7 +25,8 @@ struct Wipe {
   float length_mm = 0;
   float pulled_mm = 0;
   float steepest = 0;  // filament pulled back per mm of one move
-  uint32_t line = 0;   // 0: none
+  float uneven_mm = 0;
+  uint32_t line = 0;  // 0: none
   bool known = true;
 };
 
@@ -33,6 +37,23 @@ double DistanceTo(Point p, absl::Span<const Piece> pieces) {
     if (nearest <= kOnPathMm) break;
   }
   return nearest;
+}
+
+// How much more or less filament than evenly some point of `wipe` has seen pulled back; its moves
+// are those of `link`.
+float Unevenness(const TraceChunk& chunk, const TraceLink& link, const Wipe& wipe) {
+  double pulled = 0;
+  double length = 0;
+  double most = 0;
+  const double pull = static_cast<double>(wipe.pulled_mm / wipe.length_mm);
+  for (uint32_t m = link.first_move; m < link.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (move.kind != MoveKind::kWipe || move.length_mm() <= 0) continue;
+    pulled -= static_cast<double>(move.filament) * 1e-6;
+    length += move.length_mm();
+    most = std::max(most, std::abs(pulled - pull * length));
+  }
+  return static_cast<float>(most);
 }
 
 // The wipe behind path `path` of `chunk`, whose pieces are `pieces`.
@@ -55,6 +76,7 @@ Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
     // A chord of the path has both its ends on it.
     wipe.astray_mm = std::max(wipe.astray_mm, static_cast<float>(DistanceTo(move.middle, pieces)));
   }
+  if (measure && wipe.line != 0) wipe.uneven_mm = Unevenness(chunk, link, wipe);
   return wipe;
 }
 
@@ -64,6 +86,46 @@ float Limit(std::vector<float> values) {
   const auto at = static_cast<std::ptrdiff_t>(kUsualShare * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + at, values.end());
   return std::max(kOnPathMm, values[static_cast<size_t>(at)] + 0.002f) + 1e-4f;
+}
+
+// How wipes pull filament back.
+struct Pulls {
+  std::vector<float> longest;                 // their lengths, descending
+  std::vector<const WipeDeviation*> fastest;  // [i] of the i + 1 longest ones
+  float steepest = 0;
+  float gentlest = 0;
+  float uneven_mm = 0;
+
+  // Some are cut short, and pull as much: that tells nothing of longer ones.
+  const WipeDeviation& FastestOfLength(float length_mm) const {
+    const auto behind = std::partition_point(
+        longest.begin(), longest.end(), [length_mm](float l) { return l >= kAsLong * length_mm; });
+    return *fastest[behind == longest.begin() ? fastest.size() - 1 : behind - longest.begin() - 1];
+  }
+
+  bool Unlike(const WipeDeviation& wipe) const {
+    return wipe.steepest > std::max(steepest, fastest.back()->pull) * kPullSlack ||
+           wipe.pull < gentlest * kGentleShare || wipe.uneven_mm > uneven_mm + kUnevenSlackMm;
+  }
+};
+
+Pulls PullsOf(const std::vector<WipeDeviation>& wipes) {
+  Pulls pulls;
+  for (const WipeDeviation& wipe : wipes) {
+    pulls.gentlest = pulls.fastest.empty() ? wipe.pull : std::min(pulls.gentlest, wipe.pull);
+    pulls.fastest.push_back(&wipe);
+    pulls.steepest = std::max(pulls.steepest, wipe.steepest);
+    pulls.uneven_mm = std::max(pulls.uneven_mm, wipe.uneven_mm);
+  }
+  std::sort(
+      pulls.fastest.begin(), pulls.fastest.end(),
+      [](const WipeDeviation* a, const WipeDeviation* b) { return a->length_mm > b->length_mm; });
+  for (size_t i = 0; i < pulls.fastest.size(); ++i) {
+    pulls.longest.push_back(pulls.fastest[i]->length_mm);
+    if (i > 0 && pulls.fastest[i - 1]->pull >= pulls.fastest[i]->pull)
+      pulls.fastest[i] = pulls.fastest[i - 1];
+  }
+  return pulls;
 }
 
 }  // namespace
@@ -79,7 +141,8 @@ void CheckWipes(const LayerPair& layer, LayerFindings& findings) {
     any = true;
     if (was.links[path + 1].scripted) continue;
     findings.was.wipes.push_back({wipe.off_mm, wipe.astray_mm, wipe.pulled_mm / wipe.length_mm,
-                                  wipe.steepest, wipe.line, wipe.line, layer.index()});
+                                  wipe.steepest, wipe.uneven_mm, wipe.length_mm, wipe.line,
+                                  wipe.line, layer.index()});
   }
   for (const Visit& visit : layer.visits()) {
     const Wipe& had = wiped[visit.path - layer.first_path_was()];
@@ -96,8 +159,8 @@ void CheckWipes(const LayerPair& layer, LayerFindings& findings) {
     if (wipe.line == 0 || wipe.known) continue;
     wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), true);
     findings.is.wipes.push_back({wipe.off_mm, wipe.astray_mm, wipe.pulled_mm / wipe.length_mm,
-                                 wipe.steepest, wipe.line, was.LineOf(was.paths[visit.path]),
-                                 layer.index()});
+                                 wipe.steepest, wipe.uneven_mm, wipe.length_mm, wipe.line,
+                                 was.LineOf(was.paths[visit.path]), layer.index()});
   }
 }
 
@@ -127,27 +190,19 @@ void CompareWipes(const Observations& was, const Observations& is, std::vector<F
   }
   const float off_limit = Limit(std::move(off));
   const float astray_limit = Limit(std::move(astray));
-  const auto fastest = std::max_element(
-      was.wipes.begin(), was.wipes.end(),
-      [](const WipeDeviation& a, const WipeDeviation& b) { return a.pull < b.pull; });
-  float steepest = 0;
-  float gentlest = fastest != was.wipes.end() ? fastest->pull : 0;
-  for (const WipeDeviation& wipe : was.wipes) {
-    steepest = std::max(steepest, wipe.steepest);
-    gentlest = std::min(gentlest, wipe.pull);
-  }
+  const Pulls pulls = PullsOf(was.wipes);
   for (const WipeDeviation& wipe : is.wipes) {
-    if (fastest != was.wipes.end() &&
-        (wipe.steepest > std::max(steepest, fastest->pull) * kPullSlack ||
-         wipe.pull < gentlest * kGentleShare)) {
-      breaks.push_back({VerifyRule::kWipes, fastest->line, wipe.line, wipe.layer,
+    if (!pulls.fastest.empty() && pulls.Unlike(wipe)) {
+      breaks.push_back({VerifyRule::kWipes, pulls.fastest.back()->line, wipe.line, wipe.layer,
                         "a wipe pulls filament back unlike those of the original"});
     }
-    if (fastest != was.wipes.end() && wipe.pull > fastest->pull * kPullSlack) {
+    const WipeDeviation* most =
+        pulls.fastest.empty() ? nullptr : &pulls.FastestOfLength(wipe.length_mm);
+    if (most != nullptr && wipe.pull > most->pull * kPullSlack) {
       breaks.push_back(
-          {VerifyRule::kWipes, fastest->line, wipe.line, wipe.layer,
+          {VerifyRule::kWipes, most->line, wipe.line, wipe.layer,
            absl::StrFormat("a wipe pulls %.3f mm a mm back; the most of the original is %.3f mm",
-                           wipe.pull, fastest->pull)});
+                           wipe.pull, most->pull)});
     }
     if (wipe.off_mm <= off_limit && wipe.astray_mm <= astray_limit) continue;
     breaks.push_back({VerifyRule::kWipes, wipe.original_line, wipe.line, wipe.layer,

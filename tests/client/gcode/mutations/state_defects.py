@@ -34,13 +34,18 @@ def late(pattern):
     return defect
 
 
+def before_it(file, i, pattern):
+    """The last line before line `i` that is like this."""
+    return next((file.lines[k].text for k in range(i - 1, -1, -1) if re.match(pattern, file.lines[k].text)), None)
+
+
 def early(pattern):
-    """A line comes before the path it stood behind."""
+    """A line comes before the path it stood behind, which is printed otherwise by that."""
 
     def defect(file, rng):
         def make(i):
             before = [path for path in file.paths if path.last < i]
-            if not before:
+            if not before or before_it(file, before[-1].first, pattern) == file.lines[i].text:
                 return None
             first = before[-1].first
             return edited(file, {i: [], first: [file.lines[i].text, file.lines[first].text]})

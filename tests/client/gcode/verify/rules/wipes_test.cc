@@ -52,6 +52,23 @@ TEST(VerifyWipes, AreNotShortened) {
   EXPECT_EQ(Broken(head + two, head + With(two, "G1 X7 Y5 E-.5", "G1 X6.5 Y5 E-.5")), "");
 }
 
+// A path that is shorter than a wipe is wiped from end to end, steeper than others.
+TEST(VerifyWipes, AreNoSteeperThanThoseThatAreAsLong) {
+  const std::string head = kHead + "G1 E-1 F2100\n";
+  const std::string two = Wiped("X0 Y0", "X9 Y0", "X7 Y0") + Wiped("X0 Y5", "X.5 Y5", "X0 Y5");
+  EXPECT_EQ(Broken(head + two, head + With(two, "G1 X7 Y0 E-.5", "G1 X8 Y0 E-.5")), "wipes");
+  const std::string turned = Wiped("X9 Y0", "X0 Y0", "X2 Y0") + Wiped("X.5 Y5", "X0 Y5", "X.5 Y5");
+  EXPECT_EQ(Broken(head + two, head + turned), "");
+}
+
+TEST(VerifyWipes, PullAsEvenlyAsThoseOfTheOriginal) {
+  const std::string head = kHead + "G1 E-1 F2100\n";
+  const std::string even = WipedCorner("G1 X5 Y9.8 E-.02\nG1 X5 Y5 E-.48\n");
+  const std::string at_once = WipedCorner("G1 X5 Y9.8 E-.5\nG1 X5 Y5 E0\n");
+  EXPECT_EQ(Broken(head + even, head + at_once), "wipes");
+  EXPECT_EQ(Broken(head + at_once, head + at_once), "");
+}
+
 // Towers have marks of wipes around what they print: there is a fault in the original, but another.
 TEST(VerifyWipes, MarksAreNoMoreOutOfPlaceThanTheyWere) {
   const std::string odd = kHead + Line("Prime tower", "X0 Y0", "X9 Y0") +
