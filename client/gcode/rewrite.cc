@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -32,19 +33,25 @@ double Percent(double before, double after) {
   return before > 0 ? 100 * (after - before) / before : 0;
 }
 
-// Where the head of the file ends: its comments, with blank lines between them. The mark of UTF-8
-// stays in front of whatever it stands in front of.
+// Where the head of the file ends: its comments, with blank lines between them; in front of a
+// picture that something else stands in. The mark of UTF-8 stays in front of whatever it stands in
+// front of.
 Offset EndOfHead(std::string_view text) {
   Offset end = StartsWith(text, "\xEF\xBB\xBF") ? LineAt(text, 0).next : 0;
+  std::optional<Offset> picture;
   for (Offset next = end; next < text.size();) {
     const Line line = LineAt(text, next);
     next = line.next;
-    const std::string_view content = line.Text(text);
+    const std::string_view content = TrimBlanks(line.Text(text));
     if (content.empty()) continue;
     if (content[0] != ';') break;
+    if (StartsWith(content, "; thumbnail")) {
+      picture.reset();
+      if (content.find(" begin") != std::string_view::npos) picture = line.begin;
+    }
     end = line.next;
   }
-  return end;
+  return picture.value_or(end);
 }
 
 // The part before the first path with the line added, in place of an earlier one.
