@@ -95,4 +95,15 @@ std::vector<Vertex> ArcChords(const Command& command, const Position& from, cons
   return Parted(circle, from, unit_mm, lines);
 }
 
+bool EndsOnItsCircle(const Command& command, const Position& from, const Position& to,
+                     double unit_mm) {
+  constexpr double kMaxOffMm = 0.02;
+  if (!command.Has('I') && !command.Has('J')) return true;
+  const double i = command.Has('I') ? ToDouble(command.Value('I')) : 0;
+  const double j = command.Has('J') ? ToDouble(command.Value('J')) : 0;
+  const double x = ToDouble(to.x - from.x) - i;
+  const double y = ToDouble(to.y - from.y) - j;
+  return std::abs(std::hypot(i, j) - std::hypot(x, y)) * unit_mm <= kMaxOffMm;
+}
+
 }  // namespace traverse::gcode

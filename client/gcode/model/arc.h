@@ -25,6 +25,11 @@ std::vector<Vertex> ArcPoints(const Command& command, const Position& from, cons
 std::vector<Vertex> ArcChords(const Command& command, const Position& from, const Position& to,
                               double unit_mm, double lines);
 
+// An arc that ends beside its circle is no arc: what a machine makes of it depends on where it
+// begins. False if it ends farther off than rounding explains.
+bool EndsOnItsCircle(const Command& command, const Position& from, const Position& to,
+                     double unit_mm);
+
 }  // namespace traverse::gcode
 
 #endif  // TRAVERSE_CLIENT_GCODE_MODEL_ARC_H_

@@ -32,6 +32,13 @@ bool IsQuiet(StepKind kind) {
   }
 }
 
+// KISSlicer's coordinates round to where the head is; the filament of such a move does not.
+bool IsSpeck(const Step& step) {
+  constexpr Decimal kMostFilament = kDecimalOne / 1000;
+  return step.kind == StepKind::kFilament && !step.retracted && step.filament > 0 &&
+         step.filament <= kMostFilament && (step.command.Has('X') || step.command.Has('Y'));
+}
+
 // A move whose words could not be read, or one like G28, that leads who knows where.
 bool IsLostMove(const Step& step, const MachineState& after, std::string_view text) {
   if (step.kind != StepKind::kUnknown) return false;
@@ -50,21 +57,6 @@ double StepMm(const Step& step, const MachineState& after) {
   const double dx = ToDouble(after.at.x - step.from.x);
   const double dy = ToDouble(after.at.y - step.from.y);
   return std::sqrt(dx * dx + dy * dy) * unit;
-}
-
-// An arc that ends beside its circle is no arc: what a machine makes of it depends on where it
-// begins. Rounding is less than this.
-constexpr double kMaxOffCircleMm = 0.02;
-
-bool EndsOnItsCircle(const Step& step, const MachineState& after) {
-  const Command& c = step.command;
-  if (!c.Has('I') && !c.Has('J')) return true;
-  const double i = c.Has('I') ? ToDouble(c.Value('I')) : 0;
-  const double j = c.Has('J') ? ToDouble(c.Value('J')) : 0;
-  const double x = ToDouble(after.at.x - step.from.x) - i;
-  const double y = ToDouble(after.at.y - step.from.y) - j;
-  const double unit = after.UnitMm();
-  return std::abs(std::hypot(i, j) - std::hypot(x, y)) * unit <= kMaxOffCircleMm;
 }
 
 // What a line that moves nothing does to the link that it stands in.
@@ -125,7 +117,8 @@ void BlockBuilder::TakeOther(const Step& step, const MachineState& before,
     where_ = Where::kTail;
     return;
   }
-  if (where_ == Where::kBody && IsQuiet(step.kind)) {
+  if (where_ == Where::kBody && (IsQuiet(step.kind) || IsSpeck(step))) {
+    if (IsSpeck(step)) pending_ |= kBlockCommand;
     if (step.kind == StepKind::kComment) pending_ |= kBlockComments;
     if (step.kind == StepKind::kProgress) pending_ |= kBlockProgress;
   } else if (where_ != Where::kHead) {
@@ -304,7 +297,10 @@ void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
   pending_ = 0;
   link_ = OpenLink{};
   if (step.retracted || before.at.z != after.at.z) block.flags |= kBlockPinned;
-  if (step.arc) block.flags |= EndsOnItsCircle(step, after) ? kBlockArcs : kBlockPinned;
+  if (step.arc)
+    block.flags |= EndsOnItsCircle(step.command, step.from, after.at, after.UnitMm())
+                       ? kBlockArcs
+                       : kBlockPinned;
   if (step.kind == StepKind::kZeroExtrude) block.flags |= kBlockZero;
   block.length_mm += static_cast<float>(StepMm(step, after));
   file_.ends.push_back(after.InMm(after.at));

@@ -163,6 +163,19 @@ TEST(ReadGcode, TravelWithAnEThatPushesNothingBelongsToNoPathHoweverShort) {
   EXPECT_EQ(file->blocks[1].segments, 3);
 }
 
+TEST(ReadGcode, AMoveThatRoundsToNothingEndsNoPath) {
+  const std::string head = "M83\nG1 X1 Y0 F900\nG1 X5 E1\n";
+  const std::string tail = "G1 X9 E1\nG1 X9 Y9 F9000\nG1 X5 E1\n";
+
+  const auto speck = Read(head + "G1 X5 Y0 E.00003\n" + tail);
+  ASSERT_EQ(speck->blocks.size(), 2u);
+  EXPECT_TRUE(speck->blocks[0].flags & kBlockCommand);
+  EXPECT_FALSE(speck->blocks[1].link & kLinkFixed);
+  // What is pushed without words of a place, or is more than rounding leaves, is a blob.
+  EXPECT_EQ(Read(head + "G1 E.00003\n" + tail)->blocks.size(), 3u);
+  EXPECT_EQ(Read(head + "G1 X5 Y0 E.1\n" + tail)->blocks.size(), 3u);
+}
+
 TEST(ReadGcode, ATailThatLeadsToTheNextPathIsTravel) {
   const auto file = Read("M83\nG1 F1200 X5 E1\nG1 X5.5 Y.5\nG1 X0 E1\n");
 
