@@ -1,6 +1,7 @@
 #include "client/gcode/machine/print_state.h"
 
 #include <algorithm>
+#include <bit>
 #include <iterator>
 
 #include "client/gcode/text/text.h"
@@ -169,10 +170,12 @@ uint32_t StateTable::Intern(const PrintState& state) {
 std::vector<uint32_t> SettersBetween(PrintState& from, const PrintState& to, SlotMask mask,
                                      const SetterTable& setters) {
   std::vector<uint32_t> lines;
-  // A setter of several slots may undo what another one did; the second pass puts that right.
-  for (int pass = 0; pass < 2; ++pass) {
+  // A setter of several slots may undo what another one did: these come first, and the last pass
+  // puts right what they undid of each other.
+  for (int pass = 0; pass < 3; ++pass) {
     for (size_t slot = 0; slot < kSlotCount; ++slot) {
       if (((mask >> slot) & 1u) == 0 || from[slot] == to[slot] || to[slot] == 0) continue;
+      if (pass == 0 && std::has_single_bit(setters.Slots(to[slot]))) continue;
       lines.push_back(to[slot]);
       ApplySetter(from, to[slot], setters.Slots(to[slot]));
     }
