@@ -21,6 +21,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "server/rpc/other_calls.h"
 
 namespace traverse {
 namespace {
@@ -81,8 +82,19 @@ void SetConnectionLimits(const ConnectionLimits& limits, grpc::ServerBuilder& bu
 // with at once when their streams end.
 constexpr int64_t kCallsOfStreams = 3;
 
+// gRPC has a thread for each open call of reflection, the one service here that blocks: whoever
+// left thousands of them open would have as many threads. Beyond these they are refused.
+int MaxBlockingThreads() {
+  constexpr int kOpenReflections = 16;
+  return 2 * static_cast<int>(std::thread::hardware_concurrency()) + kOpenReflections;
+}
+
 // How often files are looked at that operators may change.
 constexpr auto kLookEvery = std::chrono::seconds(1);
+
+// How often it is looked how long calls wait, and how long they may before somebody has to go.
+constexpr auto kLagEvery = std::chrono::milliseconds(20);
+constexpr std::chrono::duration<double> kMostLag = std::chrono::milliseconds(50);
 
 // For calls that have ended to be done with, at the end of the server.
 constexpr absl::Duration kGrace = absl::Seconds(2);
@@ -168,20 +180,25 @@ absl::Status Server::Build(const ServerOptions& options) {
   if (!options.reflection) builder.SetOption(std::make_unique<NoReflection>());
   SetConnectionLimits(options.connections, builder);
   grpc::ResourceQuota quota("traverse");
-  if (options.max_memory != INT64_MAX) {
-    quota.Resize(static_cast<size_t>(options.max_memory));
-    builder.SetResourceQuota(quota);
-  }
+  if (options.max_memory != INT64_MAX) quota.Resize(static_cast<size_t>(options.max_memory));
+  quota.SetMaxThreads(MaxBlockingThreads());
+  builder.SetResourceQuota(quota);
   if (!options.listen.empty()) {
     if (absl::Status status = AddPort(options, builder); !status.ok()) return status;
   }
   core_.Watch(connections_.get(), options.max_memory);
+  std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> others;
+  others.push_back(std::make_unique<OtherCalls>(core_));
+  builder.experimental().SetInterceptorCreators(std::move(others));
   builder.RegisterService(&service_);
   server_ = builder.BuildAndStart();
   if (server_ == nullptr || (!options.listen.empty() && port_ == 0)) {
     return absl::UnavailableError(absl::StrCat("cannot listen on ", options.listen));
   }
-  if (connections_ != nullptr) connections_->Start();
+  if (connections_ != nullptr) {
+    connections_->Start();
+    WatchLag();
+  }
   server_->GetHealthCheckService()->SetServingStatus(kServiceName, true);
   if (options.metrics_listen.empty()) return absl::OkStatus();
   absl::StatusOr<std::unique_ptr<MetricsHttp>> metrics = MetricsHttp::Start(
@@ -255,7 +272,18 @@ bool Server::Drain(absl::Duration timeout) {
   return all_done;
 }
 
+void Server::WatchLag() {
+  lag_probe_.emplace(*server_);
+  watch_lag_.emplace(kLagEvery, [this, late = 0]() mutable {
+    late = lag_probe_->Look() > kMostLag ? late + 1 : 0;
+    // Once is a machine that stood still.
+    if (late >= 2 && connections_->TurnAwayBusiest()) late = 0;
+  });
+}
+
 void Server::Shutdown(absl::Duration grace) {
+  watch_lag_.reset();
+  lag_probe_.reset();
   if (connections_ != nullptr) connections_->StopListening();
   if (server_ == nullptr) return;
   server_->Shutdown(std::chrono::system_clock::now() + absl::ToChronoMicroseconds(grace));

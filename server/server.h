@@ -20,6 +20,7 @@
 #include "absl/time/time.h"
 #include "server/access/credentials.h"
 #include "server/ops/metrics/metrics_http.h"
+#include "server/rpc/lag_probe.h"
 #include "server/rpc/route_optimizer_service.h"
 #include "server/service_core.h"
 
@@ -88,6 +89,9 @@ class Server {
   absl::Status Build(const ServerOptions& options);
   absl::Status AddPort(const ServerOptions& options, grpc::ServerBuilder& builder);
 
+  // Turns callers away who make others wait.
+  void WatchLag();
+
   // Takes no more connections; calls are cancelled that are there after `grace`.
   void Shutdown(absl::Duration grace);
 
@@ -101,7 +105,9 @@ class Server {
   std::vector<std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor>> acceptors_;
   std::unique_ptr<grpc::Server> server_;
   int port_ = 0;
-  std::optional<Periodic> look_;  // for files that have changed; last, as it uses the others
+  std::optional<LagProbe> lag_probe_;
+  std::optional<Periodic> watch_lag_;  // by lag_probe_
+  std::optional<Periodic> look_;       // for files that have changed; last, as it uses the others
 };
 
 }  // namespace traverse

@@ -49,14 +49,9 @@ constexpr auto kOnItsWay = std::chrono::seconds(2);
 // Time for the end of a job to take effect before its connection is cut.
 constexpr auto kPatience = std::chrono::milliseconds(250);
 
-// An address is turned away for so long after its first flood, twice as long after each other one,
-// up to the most; and after the last part of that without a flood, all is forgotten.
-constexpr auto kFirstBan = std::chrono::seconds(1);
-constexpr int kMostDoublings = 5;
-constexpr auto kForgotten = std::chrono::minutes(2);
-constexpr size_t kMostOffenders = 10'000;
-
-std::string AddressOf(const std::string& peer) { return peer.substr(0, peer.rfind(':')); }
+// The work that a connection makes beside its calls, counted in these: gRPC may have as many as a
+// connection may have streams to end when it goes.
+constexpr double kWorkOfConnection = 50;
 
 // What it is worth to cut a connection for, where memory is short.
 constexpr double kWorthCutting = 64 << 10;
@@ -82,7 +77,15 @@ Connections::~Connections() {
 }
 
 void Connections::Start() {
-  hand_over_.emplace(kHands, hooks_.hand_over);
+  hand_over_.emplace(kHands, [this](int socket, int hand) {
+    // Whoever has gone meanwhile costs no more.
+    if (InfoOf(socket).ended) {
+      shutdown(socket, SHUT_RDWR);
+      close(socket);
+    } else {
+      hooks_.hand_over(socket, hand);
+    }
+  });
   thread_ = std::thread([this] { Serve(); });
 }
 
@@ -90,10 +93,7 @@ void Connections::StopListening() {
   if (thread_.joinable()) {
     eventfd_write(stop_, 1);
     thread_.join();
-    hand_over_->Stop([this](const std::string& peer) {
-      MutexLock lock(mutex_);
-      if (const auto found = table_.find(peer); found != table_.end()) Cut(found);
-    });
+    hand_over_->Stop([this](const std::string& peer) { CutPeer(peer); });
   }
   for (const int listener : listeners_) close(listener);
   listeners_.clear();
@@ -145,7 +145,8 @@ void Connections::AcceptAll(int listener) {
     }
     {
       MutexLock lock(mutex_);
-      const bool banned = !peer.empty() && IsBanned(peer);
+      const Clock::time_point now = Clock::now();
+      const bool banned = !peer.empty() && offenders_.IsBanned(AddressOf(peer), now);
       const bool full = static_cast<int>(table_.size()) >= rules_.max_connections;
       if (banned || peer.empty() || ours < 0 || (full && !MakeRoom(peer))) {
         close(socket);
@@ -157,14 +158,16 @@ void Connections::AcceptAll(int listener) {
       if (!is_new) close(entry->second.socket);
       entry->second = Connection();
       entry->second.socket = ours;
-      entry->second.moved = Clock::now();
+      entry->second.moved = now;
+      offenders_.NoteWork(AddressOf(peer), kWorkOfConnection, now);
     }
-    hand_over_->Add(socket, peer);
+    if (const std::string away = hand_over_->Add(socket, peer); !away.empty()) CutPeer(away);
   }
 }
 
 // For want of files.
 void Connections::WaitForRoom() {
+  if (const std::string away = hand_over_->TurnAway(); !away.empty()) CutPeer(away);
   {
     MutexLock lock(mutex_);
     MakeRoom("");
@@ -205,29 +208,17 @@ bool Connections::MakeRoom(const std::string& peer) {
   return true;
 }
 
+void Connections::CutPeer(const std::string& peer) {
+  MutexLock lock(mutex_);
+  if (const auto found = table_.find(peer); found != table_.end()) Cut(found);
+}
+
 Connections::Table::iterator Connections::Cut(Table::iterator connection) {
   // gRPC, which has the socket too, is told of its end.
   shutdown(connection->second.socket, SHUT_RDWR);
   close(connection->second.socket);
   ++cut_;
   return table_.erase(connection);
-}
-
-// The address of `peer` is banned: at once, or if it was noted before.
-void Connections::NoteFlood(const std::string& peer, bool ban_at_once) {
-  const Clock::time_point now = Clock::now();
-  if (offenders_.size() >= kMostOffenders) offenders_.clear();
-  Offender& offender = offenders_[AddressOf(peer)];
-  offender.last = now;
-  if (ban_at_once || offender.noted) {
-    offender.banned_until = now + kFirstBan * (1 << std::min(offender.bans++, kMostDoublings));
-  }
-  offender.noted = true;
-}
-
-bool Connections::IsBanned(const std::string& peer) const {
-  const auto found = offenders_.find(AddressOf(peer));
-  return found != offenders_.end() && Clock::now() < found->second.banned_until;
 }
 
 // Returns how many bytes came since the last time.
@@ -281,9 +272,7 @@ std::vector<std::string> Connections::Look(bool& busy) {
     }
     ++it;
   }
-  for (auto it = offenders_.begin(); it != offenders_.end();) {
-    it = now - it->second.last > kForgotten ? offenders_.erase(it) : std::next(it);
-  }
+  offenders_.Tidy(now);
   busy = most > kMuchBytes;
   return offenders;
 }
@@ -298,7 +287,7 @@ void Connections::Restrain(const std::string& peer) {
     const bool told = connection.complained != Clock::time_point();
     if (told && now - connection.complained < kPatience) return;
     if (told || connection.jobs == 0) {
-      if (connection.jobs == 0) NoteFlood(peer, IsLoud(connection, now));
+      if (connection.jobs == 0) offenders_.NoteFlood(AddressOf(peer), IsLoud(connection, now), now);
       Cut(found);
       return;
     }
@@ -317,9 +306,23 @@ void Connections::Restrain(const std::string& peer) {
 void Connections::OnCall(const std::string& peer) {
   MutexLock lock(mutex_);
   const auto found = table_.find(PeerKey(peer));
-  if (found == table_.end() || ++found->second.calls <= rules_.max_calls) return;
-  NoteFlood(found->first, /*ban_at_once=*/true);
+  if (found == table_.end()) return;
+  const std::string address = AddressOf(found->first);
+  offenders_.NoteWork(address, 1, Clock::now());
+  if (++found->second.calls <= rules_.max_calls) return;
+  offenders_.NoteFlood(address, /*ban_at_once=*/true, Clock::now());
   Cut(found);
+}
+
+bool Connections::TurnAwayBusiest() {
+  MutexLock lock(mutex_);
+  const std::string address = offenders_.TakeBusiest(Clock::now());
+  if (address.empty()) return false;
+  offenders_.NoteFlood(address, /*ban_at_once=*/true, Clock::now());
+  for (auto it = table_.begin(); it != table_.end();) {
+    it = AddressOf(it->first) == address ? Cut(it) : std::next(it);
+  }
+  return true;
 }
 
 void Connections::OnCallDone(const std::string& peer) {
@@ -340,6 +343,7 @@ double Connections::OnJob(const std::string& peer) {
   const auto found = table_.find(PeerKey(peer));
   if (found == table_.end()) return 0;
   ++found->second.jobs;
+  offenders_.NoteWork(AddressOf(found->first), -1, Clock::now());
   return std::max(0.0, found->second.pending);
 }
 

@@ -14,7 +14,8 @@
 // counts only streams that are open, and each that was reset takes some 20 kB until its turn comes
 // to be looked at. Whoever has far more calls here than streams may be open is cut, and new
 // connections from his address are turned away for a while, the longer the more often it happens.
-// So are those of an address from which strangers sent too much twice.
+// So are those of an address from which strangers sent too much twice, and of one that makes so
+// many calls, by however many connections, that those of others wait.
 //
 // It takes connections for itself, so that a process that has all of its files open loses none of
 // them: who came last or has been idle for longest has to go. Knows nothing of gRPC. Thread-safe.
@@ -35,6 +36,7 @@
 #include "absl/status/statusor.h"
 #include "engine/base/mutex.h"
 #include "server/net/hand_over.h"
+#include "server/net/offenders.h"
 #include "server/net/socket_info.h"
 
 namespace traverse {
@@ -83,8 +85,8 @@ class Connections {
   void OnCall(const std::string& peer);
   void OnCallDone(const std::string& peer);
 
-  // The call of `peer` may be made: what it sent before it heard of a refusal is not held against
-  // it. Then: a message of `bytes` has come from it.
+  // The call of `peer` may bring a job: what it sent before it heard of a refusal is not held
+  // against it. Then: a message of `bytes` has come from it.
   void OnAuthorized(const std::string& peer);
   void OnMessage(const std::string& peer, int64_t bytes);
 
@@ -93,6 +95,11 @@ class Connections {
   // coming any more, and gRPC has let go of it.
   double OnJob(const std::string& peer);
   void OnJobDone(const std::string& peer, double pending_before, bool all_came);
+
+  // Calls wait for long before anybody looks at them: ends all connections of the address that made
+  // most of the work of late by connections and calls that brought no job, if it was much and more
+  // than half of all, and turns it away for a while as after a flood. Returns whether there is one.
+  bool TurnAwayBusiest();
 
   // Ends the connection that has most pending, jobs or not, if that is worth it. Returns whether.
   bool CutLargest();
@@ -118,14 +125,6 @@ class Connections {
   };
   using Table = std::map<std::string, Connection>;
 
-  // An address from which there was a flood.
-  struct Offender {
-    bool noted = false;
-    int bans = 0;
-    Clock::time_point last;
-    Clock::time_point banned_until;
-  };
-
   Connections(const ConnectionRules& rules, Hooks hooks)
       : rules_(rules), hooks_(std::move(hooks)) {}
 
@@ -134,6 +133,7 @@ class Connections {
   void WaitForRoom() TRAVERSE_EXCLUDES(mutex_);
   bool MakeRoom(const std::string& peer) TRAVERSE_REQUIRES(mutex_);
   Table::iterator Cut(Table::iterator connection) TRAVERSE_REQUIRES(mutex_);
+  void CutPeer(const std::string& peer) TRAVERSE_EXCLUDES(mutex_);
 
   // Brings the table up to date. Returns those with too much pending, and whether much came in.
   std::vector<std::string> Look(bool& busy);
@@ -141,8 +141,6 @@ class Connections {
   int64_t Allowed(const Connection& connection) const;
   bool IsLoud(Connection& connection, Clock::time_point now) const;
   uint64_t Update(Connection& connection, const SocketInfo& info) const;
-  void NoteFlood(const std::string& peer, bool ban_at_once) TRAVERSE_REQUIRES(mutex_);
-  bool IsBanned(const std::string& peer) const TRAVERSE_REQUIRES(mutex_);
 
   const ConnectionRules rules_;
   const Hooks hooks_;
@@ -150,8 +148,8 @@ class Connections {
   std::vector<int> listeners_;
   int stop_ = -1;  // an eventfd
   mutable Mutex mutex_;
-  Table table_ TRAVERSE_GUARDED_BY(mutex_);                                // by address and port
-  std::map<std::string, Offender> offenders_ TRAVERSE_GUARDED_BY(mutex_);  // by address
+  Table table_ TRAVERSE_GUARDED_BY(mutex_);  // by address and port
+  Offenders offenders_ TRAVERSE_GUARDED_BY(mutex_);
   Clock::time_point looked_ TRAVERSE_GUARDED_BY(mutex_) = Clock::now();
   uint64_t cut_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   std::optional<HandOver> hand_over_;

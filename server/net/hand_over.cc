@@ -2,8 +2,11 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
+
+#include "server/net/socket_info.h"
 
 namespace traverse {
 
@@ -14,18 +17,65 @@ HandOver::HandOver(int hands, Take take)
 
 HandOver::~HandOver() { assert(threads_.empty()); }
 
-void HandOver::Add(int socket, const std::string& peer) {
+std::string HandOver::Add(int socket, const std::string& peer) {
+  std::string away;
   {
     MutexLock lock(mutex_);
     assert(!stopping_);
-    waiting_.push_back({socket, peer});
+    const auto [address, is_new] = waiting_.try_emplace(AddressOf(peer));
+    if (is_new) turns_.push_back(address->first);
+    address->second.push_back({socket, peer});
+    ++count_;
+    if (count_ > kMostWaiting) {
+      const auto longest = Longest();
+      if (longest->second.size() > kMostOfAddress) away = TurnAwayOf(longest);
+    }
   }
   changed_.NotifyOne();
+  return away;
+}
+
+std::string HandOver::TurnAway() {
+  MutexLock lock(mutex_);
+  return waiting_.empty() ? "" : TurnAwayOf(Longest());
 }
 
 bool HandOver::IsFull() const {
   MutexLock lock(mutex_);
-  return waiting_.size() >= kMostWaiting;
+  return count_ > kMostWaiting;
+}
+
+HandOver::Waiting::iterator HandOver::Longest() {
+  return std::max_element(waiting_.begin(), waiting_.end(), [](const auto& a, const auto& b) {
+    return a.second.size() < b.second.size();
+  });
+}
+
+std::string HandOver::TurnAwayOf(Waiting::iterator address) {
+  const NewConnection last = std::move(address->second.back());
+  address->second.pop_back();
+  --count_;
+  if (address->second.empty()) {
+    turns_.erase(std::find(turns_.begin(), turns_.end(), address->first));
+    waiting_.erase(address);
+  }
+  close(last.socket);
+  return last.peer;
+}
+
+// The address goes to the end of the turns, if more of it wait.
+HandOver::NewConnection HandOver::TakeNext() {
+  const auto address = waiting_.find(turns_.front());
+  turns_.pop_front();
+  NewConnection next = std::move(address->second.front());
+  address->second.pop_front();
+  --count_;
+  if (address->second.empty()) {
+    waiting_.erase(address);
+  } else {
+    turns_.push_back(address->first);
+  }
+  return next;
 }
 
 void HandOver::Run(int hand) {
@@ -34,11 +84,10 @@ void HandOver::Run(int hand) {
   while (true) {
     while (waiting_.empty() && !stopping_) changed_.Wait(mutex_);
     if (stopping_) return;
-    const int socket = waiting_.front().socket;
-    peer = std::move(waiting_.front().peer);
-    waiting_.pop_front();
+    NewConnection next = TakeNext();
+    peer = std::move(next.peer);
     lock.Unlock();
-    take_(socket, hand);
+    take_(next.socket, hand);
     lock.Lock();
     peer.clear();
   }
@@ -48,8 +97,12 @@ void HandOver::Stop(const std::function<void(const std::string& peer)>& cut) {
   {
     MutexLock lock(mutex_);
     stopping_ = true;
-    for (const NewConnection& it : waiting_) close(it.socket);
+    for (const auto& [address, connections] : waiting_) {
+      for (const NewConnection& it : connections) close(it.socket);
+    }
     waiting_.clear();
+    turns_.clear();
+    count_ = 0;
     for (const std::string& peer : in_hand_) {
       if (!peer.empty()) cut(peer);
     }

@@ -25,6 +25,7 @@ SocketInfo InfoOf(int socket) {
   if (getsockopt(socket, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return {};
   SocketInfo result;
   result.open = info.tcpi_state == kEstablished || info.tcpi_state == kCloseWait;
+  result.ended = info.tcpi_state != kEstablished;
   if (size >= offsetof(tcp_info, tcpi_bytes_received) + sizeof(info.tcpi_bytes_received)) {
     result.received = info.tcpi_bytes_received;
   }
@@ -50,6 +51,8 @@ std::string PeerOf(int socket) {
   }
   return absl::StrCat(text, ":", ntohs(v6.sin6_port));
 }
+
+std::string AddressOf(const std::string& peer) { return peer.substr(0, peer.rfind(':')); }
 
 std::string PeerKey(const std::string& peer) {
   const size_t colon = peer.find(':');

@@ -11,6 +11,7 @@ namespace traverse {
 
 struct SocketInfo {
   bool open = false;      // both sides may still send, or ours
+  bool ended = false;     // the peer sends no more
   uint64_t received = 0;  // bytes so far
 };
 SocketInfo InfoOf(int socket);
@@ -20,6 +21,9 @@ std::string PeerOf(int socket);
 
 // The same for an address as gRPC writes it: ipv4:10.0.0.7:1 or ipv6:%5B::1%5D:1.
 std::string PeerKey(const std::string& peer);
+
+// The address of ADDRESS:PORT.
+std::string AddressOf(const std::string& peer);
 
 // Sends small messages at once, and gives the connection up when the other side is silent.
 void SetUp(int socket, std::chrono::milliseconds peer_timeout);

@@ -52,7 +52,6 @@ RouteOptimizerService::Reactor* RouteOptimizerService::ListStrategies(
     grpc::CallbackServerContext* context) {
   CallInfo call = ReadCallInfo(*context, "ListStrategies");
   const absl::Status authorized = Authorize(*context, *core_.files.auth, call);
-  if (authorized.ok()) core_.OnAuthorized(call.peer);
   return new ListStrategiesReactor(core_, call.peer, authorized);
 }
 

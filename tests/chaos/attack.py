@@ -59,6 +59,10 @@ ATTACKS = {
     "unread_answers": callers.unread_answers,
     "corners": callers.corners,
     "many_channels": transport.many_channels,
+    "watches": transport.left_open(transport.WATCH),
+    "reflections": transport.left_open(transport.REFLECTION),
+    "silent_streams": transport.left_open(SERVICE + "Optimize"),
+    "unread_reflections": transport.unread_reflections,
 }
 
 

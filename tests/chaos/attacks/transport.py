@@ -7,9 +7,10 @@ import time
 
 from attacks.requests import layer, options
 from http2_client import (CONTINUATION, DATA, END_HEADERS, END_STREAM, HEADERS, PING, RST_STREAM, SERVICE, SETTINGS,
-                          WINDOW_UPDATE, Connection, Window, bomb, frame, literal, message)
+                          WINDOW_UPDATE, Connection, Window, bomb, field, frame, literal, message)
 
 HEALTH = "/grpc.health.v1.Health/Check"
+WATCH = "/grpc.health.v1.Health/Watch"
 REFLECTION = "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo"
 
 
@@ -17,6 +18,17 @@ def until(end, step):
     while time.monotonic() < end:
         if step() is False:
             return
+
+
+def patiently(step):
+    """The same, but for a moment's rest where the server has had enough."""
+    def patient_step():
+        try:
+            step()
+        except OSError:
+            time.sleep(0.05)
+
+    return patient_step
 
 
 def rapid_reset(server, end):
@@ -49,6 +61,7 @@ def resets_of(methods, deadline=None):
             nonlocal connection
             if connection is None:
                 connection = Connection(server.port)
+                connection.socket.settimeout(0.3)
             block = b""
             for _ in range(100):
                 stream = connection.next_stream
@@ -61,13 +74,7 @@ def resets_of(methods, deadline=None):
                 connection.close()
                 connection = None
 
-        def patient_step():
-            try:
-                step()
-            except OSError:
-                time.sleep(0.05)
-
-        until(end, patient_step)
+        until(end, patiently(step))
         if connection is not None:
             connection.close()
 
@@ -265,3 +272,43 @@ def many_channels(server, end):
         connection.close()
 
     until(end, step)
+
+
+def left_open(method):
+    """Calls that stay open by themselves, a hundred on each of many connections that come and go."""
+    def attack(server, end):
+        dice = random.Random(29)
+        held = []
+
+        def step():
+            if len(held) >= 60:
+                held.pop(dice.randrange(len(held))).close()
+            connection = Connection(server.port)
+            for _ in range(100):
+                stream = connection.call(method)
+                connection.send(frame(DATA, 0, stream, message(b"")))
+            held.append(connection)
+
+        until(end, patiently(step))
+        for connection in held:
+            connection.close()
+
+    return attack
+
+
+def unread_reflections(server, end):
+    """Questions by the thousand on one stream, whose long answers nobody reads."""
+    question = b"".join(message(field(4, name)) for name in (b"traverse.v1.RouteOptimizerService", b"traverse.v1.Layer")) * 300
+    held = []
+
+    def step():
+        if len(held) < 30:
+            connection = Connection(server.port, window=0)
+            held.append((connection, connection.call(REFLECTION), Window(connection)))
+        for connection, stream, window in held:
+            window.send(stream, question, patience=0.01)
+        time.sleep(0.01)
+
+    until(end, patiently(step))
+    for connection, _, _ in held:
+        connection.close()

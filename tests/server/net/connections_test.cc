@@ -374,5 +374,34 @@ TEST(ConnectionsTest, AddressesAreToldAsGrpcWritesThem) {
   EXPECT_EQ(PeerKey("ipv6:[::1]:41234"), "::1:41234");
 }
 
+TEST(ConnectionsTest, TheBusiestAddressIsTurnedAwayWhereCallsWait) {
+  Port port({});
+  Connections& connections = port.connections();
+  const Caller busy(connections.port());
+  const Caller also_busy(connections.port());
+  const Caller other(connections.port(), "127.0.0.2");
+  ASSERT_TRUE(Eventually([&] { return connections.open() == 3; }));
+  EXPECT_FALSE(connections.TurnAwayBusiest());
+  for (int i = 0; i < 20'000; ++i) {  // with jobs
+    connections.OnCall(other.peer());
+    connections.OnJobDone(other.peer(), connections.OnJob(other.peer()), true);
+    connections.OnCallDone(other.peer());
+  }
+  EXPECT_FALSE(connections.TurnAwayBusiest());
+  for (int i = 0; i < 12'000; ++i) {
+    const std::string& peer = (i % 10 == 0 ? other : i % 10 < 5 ? busy : also_busy).peer();
+    connections.OnCall(peer);
+    connections.OnCallDone(peer);
+  }
+
+  EXPECT_TRUE(connections.TurnAwayBusiest());
+
+  EXPECT_TRUE(Eventually([&] { return busy.IsCut() && also_busy.IsCut(); }));
+  EXPECT_FALSE(other.IsCut());
+  const Caller again(connections.port());
+  EXPECT_TRUE(Eventually([&] { return again.IsCut(); }));
+  EXPECT_FALSE(connections.TurnAwayBusiest());
+}
+
 }  // namespace
 }  // namespace traverse

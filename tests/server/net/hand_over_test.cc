@@ -1,5 +1,6 @@
 #include "server/net/hand_over.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -9,8 +10,10 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "tests/server/support/service_fixture.h"
 
 namespace traverse {
@@ -59,26 +62,83 @@ TEST(HandOver, AHandThatIsKeptHoldsUpNoOther) {
   hand_over.Stop([](const std::string& peer) { ADD_FAILURE() << peer << " is done with"; });
 }
 
-TEST(HandOver, IsFullWhileManyWait) {
-  std::atomic<bool> taken{false};
-  std::atomic<bool> done{false};
-  HandOver hand_over(1, [&](int socket, int) {
-    taken = true;
-    while (!done) usleep(1000);
-    close(socket);
-  });
-  std::vector<Pair> pairs(HandOver::kMostWaiting + 1);
-  for (const Pair& it : pairs) {
-    EXPECT_FALSE(hand_over.IsFull());
-    hand_over.Add(it.given_away(), "one of many");
-    ASSERT_TRUE(Eventually([&] { return taken.load(); }));  // the first, at once
+// One hand, kept by the first connection until it is let go.
+class KeptHand {
+ public:
+  KeptHand()
+      : hand_over_(1, [this](int socket, int) {
+          taken_ = true;
+          while (!done_) usleep(1000);
+          std::lock_guard<std::mutex> lock(mutex_);
+          order_.push_back(socket);
+          close(socket);
+        }) {}
+  ~KeptHand() {
+    done_ = true;
+    hand_over_.Stop([](const std::string&) {});
   }
-  EXPECT_TRUE(hand_over.IsFull());
 
-  done = true;
-  EXPECT_TRUE(Eventually([&] { return pairs.back().IsClosed(); }));
-  EXPECT_FALSE(hand_over.IsFull());
-  hand_over.Stop([](const std::string&) {});
+  // A socket that is as good as any. Returns it and what Add returned.
+  std::pair<int, std::string> Add(const std::string& peer) {
+    const int socket = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    std::string away = hand_over_.Add(socket, peer);
+    EXPECT_TRUE(Eventually([&] { return taken_.load(); }));  // the first, at once
+    return {socket, std::move(away)};
+  }
+  void LetGo() { done_ = true; }
+  HandOver& hand_over() { return hand_over_; }
+  std::vector<int> order() {
+    std::lock_guard<std::mutex> lock(mutex_);
+    return order_;
+  }
+
+ private:
+  std::atomic<bool> taken_{false};
+  std::atomic<bool> done_{false};
+  std::mutex mutex_;
+  std::vector<int> order_;
+  HandOver hand_over_;
+};
+
+TEST(HandOver, AddressesTakeTurns) {
+  KeptHand kept;
+  const int first = kept.Add("10.0.0.1:1").first;
+  const int second = kept.Add("10.0.0.1:2").first;
+  const int third = kept.Add("10.0.0.1:3").first;
+  const int other = kept.Add("10.0.0.2:1").first;
+
+  kept.LetGo();
+
+  EXPECT_TRUE(Eventually([&] { return kept.order().size() == 4; }));
+  EXPECT_THAT(kept.order(), ::testing::ElementsAre(first, second, other, third));
+}
+
+TEST(HandOver, IsFullWhileManyOfManyAddressesWait) {
+  KeptHand kept;
+  for (size_t i = 0; i <= HandOver::kMostWaiting + 1; ++i) {
+    EXPECT_FALSE(kept.hand_over().IsFull());
+    EXPECT_EQ(kept.Add(absl::StrCat("10.0.", i % 20, ".1:", i)).second, "");
+  }
+  EXPECT_TRUE(kept.hand_over().IsFull());
+
+  kept.LetGo();
+
+  EXPECT_TRUE(Eventually([&] { return !kept.hand_over().IsFull(); }));
+}
+
+TEST(HandOver, TurnsTheLastAwayOfTheAddressThatHasMost) {
+  KeptHand kept;
+  kept.Add("10.0.0.1:0");
+  EXPECT_EQ(kept.hand_over().TurnAway(), "");  // the one in hand is not to be had
+  kept.Add("10.0.0.2:1");
+  for (size_t i = 1; i < HandOver::kMostWaiting; ++i) {
+    EXPECT_EQ(kept.Add(absl::StrCat("10.0.0.1:", i)).second, "");
+  }
+
+  EXPECT_EQ(kept.Add("10.0.0.1:9999").second, "10.0.0.1:9999");
+  EXPECT_EQ(kept.Add("10.0.0.2:2").second, absl::StrCat("10.0.0.1:", HandOver::kMostWaiting - 1));
+  EXPECT_EQ(kept.hand_over().TurnAway(), absl::StrCat("10.0.0.1:", HandOver::kMostWaiting - 2));
+  EXPECT_FALSE(kept.hand_over().IsFull());
 }
 
 TEST(HandOver, StopCutsWhatIsTakenAndClosesWhatWaits) {

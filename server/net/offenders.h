@@ -1,0 +1,53 @@
+// What is held against addresses: floods that came from there, and the work that they make.
+
+#ifndef TRAVERSE_SERVER_NET_OFFENDERS_H_
+#define TRAVERSE_SERVER_NET_OFFENDERS_H_
+
+#include <chrono>
+#include <map>
+#include <string>
+
+namespace traverse {
+
+// Not thread-safe.
+class Offenders {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  // A flood came from `address`. It is banned if `ban_at_once`, or if there was one before: for a
+  // second, twice as long each other time, up to 32 s. After two minutes without one all is
+  // forgotten.
+  void NoteFlood(const std::string& address, bool ban_at_once, Clock::time_point now);
+  bool IsBanned(const std::string& address, Clock::time_point now) const;
+
+  // `address` has made so much work, counted in calls; less than 0: it was no work that came to
+  // nothing, as had been noted. It is halved in each second.
+  void NoteWork(const std::string& address, double calls, Clock::time_point now);
+
+  // The address that made more than half of all work of late, if that was more than kMuchWork; else
+  // empty. Its work is forgotten.
+  static constexpr double kMuchWork = 3000;
+  std::string TakeBusiest(Clock::time_point now);
+
+  // Frees what does not matter any more.
+  void Tidy(Clock::time_point now);
+
+ private:
+  struct Address {
+    double work = 0;
+    Clock::time_point worked;
+    bool noted = false;  // a flood
+    int bans = 0;
+    Clock::time_point last_flood;
+    Clock::time_point banned_until;
+  };
+
+  Address& At(const std::string& address);
+  static double WorkOf(const Address& address, Clock::time_point now);
+
+  std::map<std::string, Address> addresses_;
+};
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_SERVER_NET_OFFENDERS_H_
