@@ -256,12 +256,22 @@ class Search {
   std::vector<Piece> pieces_;
 };
 
+#ifndef NDEBUG
+bool NamesGroupsOnce(absl::Span<const NeighborLists::Member> members) {
+  std::vector<int> groups;
+  for (const NeighborLists::Member& member : members) groups.push_back(member.group);
+  std::sort(groups.begin(), groups.end());
+  return std::adjacent_find(groups.begin(), groups.end()) == groups.end();
+}
+#endif
+
 }  // namespace
 
 NeighborLists::NeighborLists(const PointGroups& groups) : groups_(groups) {}
 
 void NeighborLists::FindAmong(absl::Span<const Member> members, int count, Budget& budget) {
   assert(first_.empty());  // not sealed
+  assert(NamesGroupsOnce(members));
   Search search(groups_, members, budget);
   const PieceTree tree = search.Tree();
   Nearest nearest(count);

@@ -139,6 +139,10 @@ class Tabu : public Strategy {
     Candidate best = Baseline(layer, budget);
     Solution solution;
     Take(layer, Search(layer, best.route, options_, budget, solution.statistics), best);
+    return Ended(std::move(best), std::move(solution), budget);
+  }
+
+  static Solution Ended(Candidate best, Solution solution, Budget& budget) {
     budget.ExhaustedNow();
     solution.stop = StopOr(budget, StopReason::kIterationLimit);
     solution.route = std::move(best.route);
@@ -150,13 +154,17 @@ class Tabu : public Strategy {
   Solution SolvePolished(const LayerView& layer, Budget& budget) const {
     Candidate best = Baseline(layer, budget);
     const Route start = best.route;
+    Solution solution;
+    // Each of what follows takes a pass over the layer, and nobody waits for what was cancelled.
+    if (budget.cancelled()) return Ended(std::move(best), std::move(solution), budget);
     Polisher polisher(layer, budget);
     Take(layer, polisher.Descend(best.route, budget), best);
+    if (budget.cancelled()) return Ended(std::move(best), std::move(solution), budget);
     Take(layer, ni2opt_->Solve(layer.problem, budget).route, best);
-
-    Solution solution;
+    if (budget.cancelled()) return Ended(std::move(best), std::move(solution), budget);
     Budget share = FrameworkBudget(budget);
     Route found = Search(layer, start, options_, share, solution.statistics);
+    if (budget.cancelled()) return Ended(std::move(best), std::move(solution), budget);
     Rng rng(StreamSeed(layer.problem.seed, kPolishStream));
     Take(layer, polisher.Iterate(best.route, Patience(layer), rng, budget), best);
     Take(layer, polisher.Iterate(std::move(found), Patience(layer), rng, budget), best);

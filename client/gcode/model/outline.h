@@ -42,7 +42,7 @@ inline constexpr double kMaxLoopGapMm = 0.13;
 
 Outline OutlineOf(const GcodeFile& file, const Block& block);
 
-// True if `inner` lies within the loop `outer`. REQUIRES: the two do not cross.
+// True if `inner` lies within the loop `outer`; of outlines that cross, whether it begins there.
 bool LiesWithin(const Outline& inner, const Outline& outer);
 
 // The machine as it is when `block` begins.

@@ -1,8 +1,10 @@
 #include "server/ops/metrics/metrics.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "absl/strings/str_cat.h"
+#include "engine/strategy/registry.h"
 #include "server/translate/translate_result.h"
 
 namespace traverse {
@@ -34,6 +36,9 @@ Metrics::Metrics() {
 }
 
 const LayerMetrics& Metrics::ForStrategy(const std::string& strategy) {
+  assert(strategy == kUnknownStrategy ||
+         std::any_of(Strategies().begin(), Strategies().end(),
+                     [&](const StrategyEntry& entry) { return entry.name == strategy; }));
   MutexLock lock(mutex_);
   const auto found = by_strategy_.find(strategy);
   if (found != by_strategy_.end()) return found->second;
