@@ -1,5 +1,7 @@
 #include "server/rpc/other_calls.h"
 
+#include <grpcpp/server_context.h>
+
 #include <string>
 #include <utility>
 
