@@ -22,7 +22,6 @@ from http2_client import SERVICE
 # front of a port that strangers reach (server/SECURITY.md).
 TRANSPORT_SHARE = 0.15
 
-
 ATTACKS = {
     "rapid_reset": transport.rapid_reset,
     "resets_elsewhere": transport.resets_of([transport.HEALTH, transport.REFLECTION, "/no.such.Service/Method", SERVICE + "ListStrategies"]),
@@ -39,8 +38,8 @@ ATTACKS = {
     "unfinished_batches": transport.unfinished([SERVICE + "OptimizeBatch", SERVICE + "Optimize"], 22, 60),
     "oversize": transport.unfinished([SERVICE + "OptimizeBatch"], 3, 300),
     "bombs": transport.bombs,
-    "empty_islands": callers.empty_islands,
-    "small_contours": callers.small_contours,
+    "empty_islands": callers.batches([requests.empty_islands]),
+    "small_contours": callers.batches([requests.small_contours]),
     "stated_sizes": transport.stated_sizes,
     "stalled_readers": callers.stalled_readers,
     "idle_connections": transport.idle_connections,

@@ -3,7 +3,7 @@ import random
 import struct
 import time
 
-from attacks.requests import packed, number, layer, options, large_layers
+from attacks.requests import large_layers, layer, number, options
 from attacks.transport import until
 from http2_client import DATA, END_STREAM, RST_STREAM, SERVICE, Connection, Window, field, frame, message, varint
 
@@ -46,35 +46,6 @@ def names(server, end):
                 ["-1", "9" * 30, "0x10", ""]))])
             Window(connection).send(stream, message(body), patience=0.05)
         connection.drain(0.02)
-        connection.close()
-
-    until(end, step)
-
-
-def empty_islands(server, end):
-    """Two bytes for each island, up to the limit of a message."""
-    body = message(field(2, field(3, b"") * (15 << 20)))
-
-    def step():
-        connection = Connection(server.port)
-        stream = connection.call(SERVICE + "OptimizeBatch")
-        Window(connection).send(stream, body, patience=1)
-        connection.drain(0.3)
-        connection.close()
-
-    until(end, step)
-
-
-def small_contours(server, end):
-    """Contours of one point, as many as the limits allow."""
-    one = field(2, field(2, packed([1.0, 2.0])))
-    body = message(options() + field(2, field(3, one * 500_000)))
-
-    def step():
-        connection = Connection(server.port)
-        stream = connection.call(SERVICE + "OptimizeBatch")
-        Window(connection).send(stream, body, patience=1)
-        connection.drain(0.3)
         connection.close()
 
     until(end, step)

@@ -52,6 +52,16 @@ def many_pairs():
     return validate_only() + field(2, field(4, paths + nodes))
 
 
+def empty_islands():
+    """Two bytes for each island, up to the limit of a message."""
+    return field(2, field(3, b"") * (15 << 20))
+
+
+def small_contours():
+    """Contours of one point, as many as the limits allow."""
+    return options() + field(2, field(3, field(2, field(2, packed([1.0, 2.0]))) * 500_000))
+
+
 def unknown_fields():
     """Empty texts that no version knows: two bytes each."""
     return options() + field(2, b"\x7a\x00" * (8 << 20))
