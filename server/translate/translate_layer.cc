@@ -1,61 +1,23 @@
-#include <algorithm>
 #include <climits>
+#include <cstddef>
+#include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "engine/base/resting_sort.h"
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/str_cat.h"
+#include "engine/base/rest.h"
 #include "server/translate/fault_list.h"
 #include "server/translate/field_ranges.h"
 #include "server/translate/translate.h"
 #include "server/translate/translate_check.h"
+#include "server/translate/translate_place.h"
+#include "server/translate/translate_walls.h"
 
 namespace traverse {
 namespace {
-
-// Where in the request we are, as text that is only put together when there is a fault.
-class Place {
- public:
-  Place(const Place* parent, const char* field, uint64_t index)
-      : parent_(parent), field_(field), index_(index) {}
-
-  std::string text() const {
-    return absl::StrCat(parent_ == nullptr ? "" : absl::StrCat(parent_->text(), "."), field_, "[",
-                        index_, "]");
-  }
-
- private:
-  const Place* parent_;
-  const char* field_;
-  uint64_t index_;
-};
-
-// As CheckKnown, but without building the place's text; for the messages of which there are many.
-template <typename Message>
-absl::Status CheckKnownAt(const Message& message, const Place& place) {
-  if (message.GetReflection()->GetUnknownFields(message).empty()) return absl::OkStatus();
-  return CheckKnown(message, place.text());
-}
-
-using Coordinates = google::protobuf::RepeatedField<double>;
-
-absl::Status CheckCoordinates(const Coordinates& coordinates, const FieldRange& range,
-                              const Place& place) {
-  if (coordinates.size() % 2 != 0) {
-    return Fault(place.text() + ".points",
-                 absl::StrCat(coordinates.size(), " coordinates, which are no pairs of x and y"));
-  }
-  for (int i = 0; i < coordinates.size(); ++i) {
-    // What is not a number is in no range.
-    if (coordinates[i] >= range.least && coordinates[i] <= range.greatest) continue;
-    return CheckRange(range, coordinates[i],
-                      absl::StrCat(place.text(), ".points[", i / 2, "].", i % 2 == 0 ? "x" : "y"));
-  }
-  return absl::OkStatus();
-}
-
-Point PointAt(const Coordinates& coordinates, int point) {
-  return {coordinates[2 * point], coordinates[2 * point + 1]};
-}
 
 absl::StatusOr<Path> FromProto(const v1::Contour& contour, const Place& place) {
   static const FieldRange& range = RangeOf("Contour.points");
@@ -98,8 +60,7 @@ absl::StatusOr<Path> FromProto(const v1::OpenPath& open, const Place& place) {
                       open.one_way());
 }
 
-// What Rest counts for a message that is translated, and for its points.
-constexpr size_t kStepsOfMessage = 64;
+// What Rest counts for the points of a message.
 size_t StepsOf(const v1::Contour& contour) {
   return static_cast<size_t>(contour.points_size() + contour.entries_size());
 }
@@ -140,12 +101,6 @@ absl::StatusOr<Plan> FromIslands(const v1::Layer& layer, const Place& place, boo
   if (!faults.empty()) return faults.status();
   return interleaved ? InterleavedPlan(std::move(islands), budget)
                      : SequentialPlan(std::move(islands), budget);
-}
-
-// An index as sent to one of the engine. Values beyond int are no index of anything.
-absl::StatusOr<int> Index(uint32_t value, const std::string& place) {
-  if (value > INT_MAX) return Fault(place, absl::StrCat(value, " is too large for an index"));
-  return static_cast<int>(value);
 }
 
 absl::Status SetChildren(const google::protobuf::RepeatedField<uint32_t>& children,
@@ -254,75 +209,6 @@ absl::StatusOr<Plan> FromProto(const v1::Plan& message, const std::string& place
     return absl::Status(status.code(), absl::StrCat(place, ".", status.message()));
   }
   return plan;
-}
-
-absl::StatusOr<Wall> FromProto(const v1::Wall& message, const Plan& plan, const Place& place) {
-  TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(message, place));
-  TRAVERSE_RETURN_IF_ERROR(CheckCoordinates(message.points(), RangeOf("Wall.points"), place));
-  Wall wall;
-  wall.closed = message.closed();
-  if (message.has_path()) {
-    absl::StatusOr<int> path = Index(message.path(), place.text() + ".path");
-    if (!path.ok()) return path.status();
-    wall.path = *path;
-  }
-  const int points = message.points_size() / 2;
-  wall.points.reserve(static_cast<size_t>(points));
-  for (int i = 0; i < points; ++i) wall.points.push_back(PointAt(message.points(), i));
-  if (points > 0 || wall.path < 0 || wall.path >= static_cast<int>(plan.paths.size())) return wall;
-  const Path& path = plan.paths[static_cast<size_t>(wall.path)];
-  if (path.kind != Path::Kind::kContour) {
-    return Fault(place.text() + ".points", "none, and the path named is no contour");
-  }
-  wall.points = path.points;
-  wall.closed = true;
-  // A contour may be a point, which nothing crosses.
-  if (wall.points.size() == 1) wall.points.push_back(wall.points[0]);
-  return wall;
-}
-
-absl::Status SetWalls(const v1::Layer& message, const Place& place, Budget* budget,
-                      JobLayer& layer) {
-  Rest rest(budget);
-  LayerWalls& walls = layer.walls;
-  walls.walls.reserve(static_cast<size_t>(message.walls_size()));
-  // A few bytes name a contour of any size. Each may be named once; more often only as long as all
-  // that is copied so is no more than the layer has.
-  size_t may_copy = 0;
-  for (const Path& path : layer.plan.paths) {
-    rest();
-    may_copy += path.points.size() + 1;
-  }
-  for (int w = 0; w < message.walls_size(); ++w) {
-    rest(kStepsOfMessage + static_cast<size_t>(message.walls(w).points_size()));
-    absl::StatusOr<Wall> wall =
-        FromProto(message.walls(w), layer.plan, Place(&place, "walls", static_cast<uint64_t>(w)));
-    if (!wall.ok()) return wall.status();
-    if (message.walls(w).points().empty()) {
-      if (wall->points.size() > may_copy) {
-        return Fault(absl::StrCat(place.text(), ".walls[", w, "].path"),
-                     "the walls up to here name contours that were named before");
-      }
-      may_copy -= wall->points.size();
-    }
-    walls.walls.push_back(*std::move(wall));
-  }
-  walls.exposed.reserve(static_cast<size_t>(message.exposed_paths_size()));
-  for (int i = 0; i < message.exposed_paths_size(); ++i) {
-    rest();
-    const uint32_t path = message.exposed_paths(i);
-    // The place is written for a fault alone: there may be millions of these.
-    if (path > INT_MAX) {
-      return Index(path, absl::StrCat(place.text(), ".exposed_paths[", i, "]")).status();
-    }
-    walls.exposed.push_back(static_cast<int>(path));
-  }
-  const absl::Status status = CheckWalls(walls, layer.plan, budget);
-  // A path takes a byte to be named, and its points are looked up each time.
-  RestingSort(walls.exposed, rest);
-  walls.exposed.erase(std::unique(walls.exposed.begin(), walls.exposed.end()), walls.exposed.end());
-  if (status.ok()) return status;
-  return absl::Status(status.code(), absl::StrCat(place.text(), ".", status.message()));
 }
 
 }  // namespace

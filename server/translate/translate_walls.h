@@ -1,0 +1,20 @@
+// The walls of a layer and what else is said of its moves, from the API.
+
+#ifndef TRAVERSE_SERVER_TRANSLATE_TRANSLATE_WALLS_H_
+#define TRAVERSE_SERVER_TRANSLATE_TRANSLATE_WALLS_H_
+
+#include "absl/status/status.h"
+#include "engine/base/budget.h"
+#include "engine/engine.h"
+#include "server/translate/translate_place.h"
+#include "traverse/v1/plan.pb.h"
+
+namespace traverse {
+
+// Sets `layer.walls`; `layer.plan` is set. InvalidArgument names the place.
+absl::Status SetWalls(const v1::Layer& message, const Place& place, Budget* budget,
+                      JobLayer& layer);
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_SERVER_TRANSLATE_TRANSLATE_WALLS_H_
