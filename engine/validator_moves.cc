@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <set>
 #include <utility>
 #include <vector>
@@ -150,11 +151,32 @@ class MoveCheck {
       for (const Point& p : plan.paths[static_cast<size_t>(path)].points)
         exposed_.insert({p.x, p.y});
     }
+    for (const int path : walls.retracted) {
+      for (const Point& p : plan.paths[static_cast<size_t>(path)].points)
+        retracted_.insert({p.x, p.y});
+    }
+    for (const KnownMove& move : walls.known) {
+      const Path& from = plan.paths[static_cast<size_t>(move.from)];
+      const Point a = from.kind == Path::Kind::kOpen ? from.points[1] : from.points[0];
+      const Point b = plan.paths[static_cast<size_t>(move.to)].points[0];
+      const std::pair<double, double> one(a.x, a.y);
+      const std::pair<double, double> other(b.x, b.y);
+      known_.emplace(std::minmax(one, other), move);
+    }
   }
 
-  // Of a straight move or, with `detour`, one over its points. False if that crosses a wall.
-  bool Add(Point from, Point to, const Detour* detour) {
+  // Of a straight move or, with `detour`, one over its points.
+  absl::Status Add(Point from, Point to, const Detour* detour) {
     double length = Length(from, to);
+    const std::pair<double, double> one(from.x, from.y);
+    const std::pair<double, double> other(to.x, to.y);
+    if (const auto move = known_.find(std::minmax(one, other)); move != known_.end()) {
+      if (detour != nullptr) {
+        return absl::FailedPreconditionError("it is known, and not led around walls");
+      }
+      AddKnown(move->second, length);
+      return absl::OkStatus();
+    }
     Crossing crossing = Crossing::kNo;
     if (detour == nullptr) {
       crossing = stripes_.Of(from, to, spec_.wall_slack_mm);
@@ -163,14 +185,18 @@ class MoveCheck {
       Point at = from;
       for (size_t i = 0; i <= detour->points.size(); ++i) {
         const Point next = i < detour->points.size() ? detour->points[i] : to;
-        if (stripes_.Of(at, next, spec_.wall_slack_mm) == Crossing::kYes) return false;
+        if (stripes_.Of(at, next, spec_.wall_slack_mm) == Crossing::kYes) {
+          return absl::FailedPreconditionError("its way around walls crosses one");
+        }
         length += Length(at, next);
         at = next;
       }
     }
     const bool exposed = exposed_.count({from.x, from.y}) > 0 || exposed_.count({to.x, to.y}) > 0;
-    const auto [low, low_retracts] = Of(length, exposed, false);
-    const auto [high, high_retracts] = Of(length, exposed, true);
+    const double pays = 1 - 0.5 * static_cast<double>(retracted_.count(one)) -
+                        0.5 * static_cast<double>(retracted_.count(other));
+    const auto [low, low_retracts] = Of(length, exposed, false, pays);
+    const auto [high, high_retracts] = Of(length, exposed, true, pays);
     const bool surely = crossing == Crossing::kYes;
     const bool perhaps = crossing != Crossing::kNo;
     cost_.Add(surely ? high : low, perhaps ? high : low);
@@ -178,7 +204,7 @@ class MoveCheck {
     const bool pulls = spec_.retraction_seconds > 0;
     retractions_.Add(pulls && (surely ? high_retracts : low_retracts) ? 1 : 0,
                      pulls && (perhaps ? high_retracts : low_retracts) ? 1 : 0);
-    return true;
+    return absl::OkStatus();
   }
 
   absl::Status Compare(const MoveClaims& claims) const {
@@ -195,13 +221,24 @@ class MoveCheck {
   }
 
  private:
-  // Time, and whether filament is pulled back.
-  std::pair<double, bool> Of(double length, bool exposed, bool crosses) const {
-    const bool retracts = length > spec_.retraction_threshold_mm ||
-                          (crosses && length > spec_.wall_retraction_threshold_mm) ||
+  void AddKnown(const KnownMove& move, double length) {
+    double least = MotionSeconds(spec_, length);
+    if (length > spec_.retraction_threshold_mm) least += spec_.retraction_seconds;
+    const double seconds =
+        std::max(least, move.seconds) + (move.crosses ? spec_.crossing_seconds : 0);
+    const double retractions = move.retracts && spec_.retraction_seconds > 0 ? 1 : 0;
+    cost_.Add(seconds, seconds);
+    crossings_.Add(move.crosses ? 1 : 0, move.crosses ? 1 : 0);
+    retractions_.Add(retractions, retractions);
+  }
+
+  // Time, and whether filament is pulled back. `pays`: the share of a retraction for walls.
+  std::pair<double, bool> Of(double length, bool exposed, bool crosses, double pays) const {
+    const bool far = length > spec_.retraction_threshold_mm;
+    const bool retracts = far || (crosses && length > spec_.wall_retraction_threshold_mm) ||
                           (exposed && length > spec_.exposed_retraction_threshold_mm);
     double seconds = MotionSeconds(spec_, length);
-    if (retracts) seconds += spec_.retraction_seconds;
+    if (retracts) seconds += spec_.retraction_seconds * (far ? 1 : pays);
     if (crosses && retracts) seconds += spec_.lift_seconds;
     if (crosses) seconds += spec_.crossing_seconds;
     return {seconds, retracts};
@@ -210,6 +247,8 @@ class MoveCheck {
   const CostSpec& spec_;
   const Stripes stripes_;
   std::set<std::pair<double, double>> exposed_;
+  std::set<std::pair<double, double>> retracted_;
+  std::map<std::pair<std::pair<double, double>, std::pair<double, double>>, KnownMove> known_;
   Range cost_;
   Range crossings_;
   Range retractions_;
@@ -230,9 +269,9 @@ absl::Status ValidateMoves(const Plan& plan, const LayerWalls& walls, const Cost
     const Path& path = plan.paths[static_cast<size_t>(route[i].path)];
     const bool leads_around = next < claims.detours.size() && claims.detours[next].visit == i;
     const Detour* detour = leads_around ? &claims.detours[next++] : nullptr;
-    if (!check.Add(at, path.points[static_cast<size_t>(route[i].entry)], detour)) {
-      return absl::FailedPreconditionError(
-          absl::StrCat("route[", i, "]: its way around walls crosses one"));
+    const Point to = path.points[static_cast<size_t>(route[i].entry)];
+    if (const absl::Status fault = check.Add(at, to, detour); !fault.ok()) {
+      return absl::Status(fault.code(), absl::StrCat("route[", i, "]: ", fault.message()));
     }
     const int exit = path.kind == Path::Kind::kOpen ? 1 - route[i].entry : route[i].entry;
     at = path.points[static_cast<size_t>(exit)];

@@ -29,6 +29,25 @@ uint64_t Mix(uint64_t state, double value) {
   return (std::rotl(state, 23) ^ std::bit_cast<uint64_t>(value)) * 0x9e3779b97f4a7c15u;
 }
 
+std::vector<Point> SortedPoints(const Plan& plan, const std::vector<int>& paths) {
+  std::vector<Point> sorted;
+  for (const int path : paths) {
+    const std::vector<Point>& points = plan.paths[static_cast<size_t>(path)].points;
+    sorted.insert(sorted.end(), points.begin(), points.end());
+  }
+  std::sort(sorted.begin(), sorted.end(), Less);
+  return sorted;
+}
+
+bool IsAmong(const std::vector<Point>& sorted, Point point) {
+  return std::binary_search(sorted.begin(), sorted.end(), point, Less);
+}
+
+std::array<double, 4> KeyOf(Point a, Point b) {
+  if (Less(b, a)) std::swap(a, b);
+  return {a.x, a.y, b.x, b.y};
+}
+
 size_t PlacesFor(size_t paths, bool detours) {
   const size_t wanted = paths * (detours ? kDetoursPerPath : kMovesPerPath);
   return std::bit_ceil(std::clamp<size_t>(wanted, 1024, detours ? kMostDetours : kMostMoves));
@@ -50,11 +69,13 @@ WallCost::WallCost(const LayerWalls& walls, const Plan& plan, const CostSpec& sp
                    : std::nullopt),
       places_(PlacesFor(plan.paths.size(), detours_.has_value())) {
   assert(spec.kind == CostSpec::Kind::kTime && CheckWalls(walls, plan).ok());
-  for (const int path : walls.exposed) {
-    const std::vector<Point>& points = plan.paths[static_cast<size_t>(path)].points;
-    exposed_.insert(exposed_.end(), points.begin(), points.end());
+  exposed_ = SortedPoints(plan, walls.exposed);
+  retracted_ = SortedPoints(plan, walls.retracted);
+  for (const KnownMove& move : walls.known) {
+    const Path& from = plan.paths[static_cast<size_t>(move.from)];
+    const Point a = from.points[from.kind == Path::Kind::kOpen ? 1 : 0];
+    moves_.emplace(KeyOf(a, plan.paths[static_cast<size_t>(move.to)].points[0]), move);
   }
-  std::sort(exposed_.begin(), exposed_.end(), Less);
 }
 
 WallCost::WallCost(const WallCost* first, const WallCost* second,
@@ -84,9 +105,28 @@ double WallCost::OfTwoLayers(Point a, Point b) const {
 }
 
 bool WallCost::IsExposed(Point a, Point b) const {
-  if (exposed_.empty()) return false;
-  return std::binary_search(exposed_.begin(), exposed_.end(), a, Less) ||
-         std::binary_search(exposed_.begin(), exposed_.end(), b, Less);
+  return IsAmong(exposed_, a) || IsAmong(exposed_, b);
+}
+
+// Of what a retraction costs for which walls are the reason.
+double WallCost::ShareOfRetraction(Point a, Point b) const {
+  return 1 - (IsAmong(retracted_, a) ? 0.5 : 0) - (IsAmong(retracted_, b) ? 0.5 : 0);
+}
+
+const KnownMove* WallCost::FindKnown(Point a, Point b) const {
+  if (moves_.empty()) return nullptr;
+  const auto found = moves_.find(KeyOf(a, b));
+  return found != moves_.end() ? &found->second : nullptr;
+}
+
+WallMove WallCost::Done(const KnownMove& known, Point a, Point b) const {
+  WallMove move;
+  move.crosses = known.crosses;
+  move.retracts = known.retracts;
+  move.length_mm = Distance(a, b);
+  move.cost = std::max(known.seconds, base_.OfLength(move.length_mm));
+  if (known.crosses) move.cost += spec_.crossing_seconds;
+  return move;
 }
 
 WallMove WallCost::Straight(Point a, Point b, bool crosses) const {
@@ -99,13 +139,14 @@ WallMove WallCost::Straight(Point a, Point b, bool crosses) const {
       ((crosses && move.length_mm > spec_.wall_retraction_threshold_mm) ||
        (move.length_mm > spec_.exposed_retraction_threshold_mm && IsExposed(a, b)))) {
     move.retracts = true;
-    move.cost += spec_.retraction_seconds;
+    move.cost += spec_.retraction_seconds * ShareOfRetraction(a, b);
   }
   if (crosses) move.cost += spec_.crossing_seconds + (move.retracts ? spec_.lift_seconds : 0);
   return move;
 }
 
 WallMove WallCost::MoveOf(Point a, Point b) const {
+  if (const KnownMove* known = FindKnown(a, b)) return Done(*known, a, b);
   WallMove straight = Straight(a, b, grid_.Crosses(a, b));
   if (!straight.crosses || !detours_) return straight;
   const bool swapped = Less(b, a);
@@ -127,7 +168,7 @@ WallMove WallCost::MoveOf(Point a, Point b) const {
   around.retracts = length_mm > spec_.retraction_threshold_mm;
   if (!around.retracts && length_mm > spec_.exposed_retraction_threshold_mm && IsExposed(a, b)) {
     around.retracts = true;
-    around.cost += spec_.retraction_seconds;
+    around.cost += spec_.retraction_seconds * ShareOfRetraction(a, b);
   }
   if (around.cost >= straight.cost) return straight;
   if (swapped) std::reverse(via.begin(), via.end());
@@ -136,8 +177,10 @@ WallMove WallCost::MoveOf(Point a, Point b) const {
 }
 
 double WallCost::PriceOf(Point a, Point b) const {
-  if (two_layers_ || detours_ || !grid_.Crosses(a, b)) return 0;
-  return spec_.crossing_seconds;
+  if (two_layers_ || detours_) return 0;
+  const KnownMove* const known = FindKnown(a, b);
+  const bool crosses = known != nullptr ? known->crosses : grid_.Crosses(a, b);
+  return crosses ? spec_.crossing_seconds : 0;
 }
 
 int64_t WallCost::work() const {
@@ -148,6 +191,7 @@ int64_t WallCost::work() const {
 double WallCost::Compute(Point a, Point b) const {
   work_ += kWorkOfCrossing;
   if (detours_) return MoveOf(a, b).cost;
+  if (const KnownMove* known = FindKnown(a, b)) return Done(*known, a, b).cost;
   return Straight(a, b, grid_.Crosses(a, b)).cost;
 }
 

@@ -3,11 +3,13 @@
 //
 // A move across a wall is retracted beyond a threshold of its own, is lifted, and pays a price; or
 // it is led around the walls, if there is a way that costs less. Either costs no less than the
-// straight move does without walls (TravelCost::OfLength), which therefore bounds it from below.
+// straight move does without walls (TravelCost::OfLength), which therefore bounds it from below;
+// nor does a move of which it is known what it costs.
 
 #ifndef TRAVERSE_ENGINE_COST_WALL_COST_H_
 #define TRAVERSE_ENGINE_COST_WALL_COST_H_
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -72,6 +74,9 @@ class WallCost {
   };
 
   bool IsExposed(Point a, Point b) const;
+  double ShareOfRetraction(Point a, Point b) const;
+  const KnownMove* FindKnown(Point a, Point b) const;
+  WallMove Done(const KnownMove& known, Point a, Point b) const;
   WallMove Straight(Point a, Point b, bool crosses) const;
   double Compute(Point a, Point b) const;
   double OfTwoLayers(Point a, Point b) const;
@@ -80,7 +85,9 @@ class WallCost {
   const TravelCost base_;
   const WallGrid grid_;
   const std::optional<WallDetours> detours_;
-  std::vector<Point> exposed_;  // sorted
+  std::vector<Point> exposed_;                                   // sorted
+  std::vector<Point> retracted_;                                 // the same
+  absl::flat_hash_map<std::array<double, 4>, KnownMove> moves_;  // by their ends in order
 
   const bool two_layers_ = false;
   const WallCost* first_ = nullptr;

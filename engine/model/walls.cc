@@ -1,5 +1,6 @@
 #include "engine/model/walls.h"
 
+#include <cmath>
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -39,11 +40,34 @@ absl::Status CheckWalls(const LayerWalls& walls, const Plan& plan, Budget* budge
     const absl::Status status = CheckWall(walls.walls[w], paths, w, rest);
     if (!status.ok()) return status;
   }
-  for (size_t i = 0; i < walls.exposed.size(); ++i) {
+  const auto is_path = [paths](int path) { return path >= 0 && path < paths; };
+  const auto check_paths = [&](const std::vector<int>& named, const char* field) {
+    for (size_t i = 0; i < named.size(); ++i) {
+      rest();
+      if (is_path(named[i])) continue;
+      return absl::InvalidArgumentError(
+          absl::StrCat(field, "[", i, "]: there is no path ", named[i]));
+    }
+    return absl::OkStatus();
+  };
+  if (absl::Status status = check_paths(walls.exposed, "exposed_paths"); !status.ok())
+    return status;
+  if (absl::Status status = check_paths(walls.retracted, "retracted_paths"); !status.ok())
+    return status;
+  if (walls.known.size() > plan.paths.size()) {
+    return absl::InvalidArgumentError(absl::StrCat("known_moves: ", walls.known.size(),
+                                                   " are more than there are paths, ", paths));
+  }
+  for (size_t i = 0; i < walls.known.size(); ++i) {
     rest();
-    if (walls.exposed[i] >= 0 && walls.exposed[i] < paths) continue;
-    return absl::InvalidArgumentError(
-        absl::StrCat("exposed_paths[", i, "]: there is no path ", walls.exposed[i]));
+    const KnownMove& move = walls.known[i];
+    for (const int path : {move.from, move.to}) {
+      if (is_path(path)) continue;
+      return absl::InvalidArgumentError(
+          absl::StrCat("known_moves[", i, "]: there is no path ", path));
+    }
+    if (std::isfinite(move.seconds) && move.seconds >= 0) continue;
+    return absl::InvalidArgumentError(absl::StrCat("known_moves[", i, "].seconds: not a time"));
   }
   return absl::OkStatus();
 }

@@ -65,7 +65,16 @@ LayerFingerprint FingerprintOf(const Plan& plan, const CostSpec& cost, const Lay
     shape.Add(wall.closed ? 1 : 0);
     add_points(wall.points);
   }
-  for (const int path : walls.exposed) shape.Add(path);
+  for (const std::vector<int>* paths : {&walls.exposed, &walls.retracted}) {
+    shape.Add(paths->size());
+    for (const int path : *paths) shape.Add(path);
+  }
+  for (const KnownMove& move : walls.known) {
+    shape.Add(move.from);
+    shape.Add(move.to);
+    shape.Add(move.seconds);
+    shape.Add((move.crosses ? 1 : 0) + (move.retracts ? 2 : 0));
+  }
   for (const PlanNode& node : plan.nodes) {
     shape.Add(static_cast<int>(node.kind));
     shape.Add(node.path);

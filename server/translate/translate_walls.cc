@@ -2,13 +2,21 @@
 
 #include <algorithm>
 #include <climits>
-#include <string>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "absl/status/statusor.h"
+#include "absl/strings/str_cat.h"
 #include "engine/base/rest.h"
 #include "engine/base/resting_sort.h"
-#include "server/translate/translate.h"
+#include "engine/model/path.h"
+#include "engine/model/plan.h"
+#include "engine/model/walls.h"
+#include "google/protobuf/repeated_field.h"
+#include "server/translate/field_ranges.h"
+#include "server/translate/translate_check.h"
 
 namespace traverse {
 namespace {
@@ -52,6 +60,41 @@ absl::Status SetPaths(const google::protobuf::RepeatedField<uint32_t>& named, co
   return absl::OkStatus();
 }
 
+absl::StatusOr<KnownMove> FromProto(const v1::KnownMove& message, const Place& place) {
+  static const FieldRange& range = RangeOf("KnownMove.seconds");
+  TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(message, place));
+  if (message.from() > INT_MAX) return Index(message.from(), place.text() + ".from").status();
+  if (message.to() > INT_MAX) return Index(message.to(), place.text() + ".to").status();
+  // What is not a number is in no range.
+  if (!(message.seconds() >= range.least && message.seconds() <= range.greatest)) {
+    return CheckRange(range, message.seconds(), place.text() + ".seconds");
+  }
+  KnownMove move;
+  move.from = static_cast<int>(message.from());
+  move.to = static_cast<int>(message.to());
+  move.seconds = message.seconds();
+  move.crosses = message.crosses();
+  move.retracts = message.retracts();
+  return move;
+}
+
+absl::Status SetKnownMoves(const v1::Layer& message, const Place& place, Rest& rest,
+                           JobLayer& layer) {
+  if (static_cast<size_t>(message.known_moves_size()) > layer.plan.paths.size()) {
+    return Fault(place.text() + ".known_moves",
+                 absl::StrCat(message.known_moves_size(), " are more than there are paths"));
+  }
+  layer.walls.known.reserve(static_cast<size_t>(message.known_moves_size()));
+  for (int i = 0; i < message.known_moves_size(); ++i) {
+    rest(kStepsOfMessage);
+    absl::StatusOr<KnownMove> move =
+        FromProto(message.known_moves(i), Place(&place, "known_moves", static_cast<uint64_t>(i)));
+    if (!move.ok()) return move.status();
+    layer.walls.known.push_back(*move);
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::Status SetWalls(const v1::Layer& message, const Place& place, Budget* budget,
@@ -82,10 +125,15 @@ absl::Status SetWalls(const v1::Layer& message, const Place& place, Budget* budg
   }
   TRAVERSE_RETURN_IF_ERROR(
       SetPaths(message.exposed_paths(), place, "exposed_paths", rest, walls.exposed));
+  TRAVERSE_RETURN_IF_ERROR(
+      SetPaths(message.retracted_paths(), place, "retracted_paths", rest, walls.retracted));
+  TRAVERSE_RETURN_IF_ERROR(SetKnownMoves(message, place, rest, layer));
   const absl::Status status = CheckWalls(walls, layer.plan, budget);
   // A path takes a byte to be named, and its points are looked up each time.
-  RestingSort(walls.exposed, rest);
-  walls.exposed.erase(std::unique(walls.exposed.begin(), walls.exposed.end()), walls.exposed.end());
+  for (std::vector<int>* paths : {&walls.exposed, &walls.retracted}) {
+    RestingSort(*paths, rest);
+    paths->erase(std::unique(paths->begin(), paths->end()), paths->end());
+  }
   if (status.ok()) return status;
   return absl::Status(status.code(), absl::StrCat(place.text(), ".", status.message()));
 }

@@ -48,7 +48,7 @@ ATTACKS = {
     "cancels": callers.cancels,
     "unknown_fields": callers.batches([requests.unknown_fields, requests.unknown_options]),
     "packed_children": callers.batches([requests.packed_children]),
-    "named_walls": callers.batches([requests.named_walls, requests.exposed_paths]),
+    "named_walls": callers.batches([requests.named_walls, requests.exposed_paths, requests.retracted_paths]),
     "upright_walls": callers.batches([requests.upright_walls]),
     "clustered_walls": callers.batches([requests.clustered_walls]),
     "barriers": callers.batches([requests.barrier("auto"), requests.barrier("tabu"), requests.barrier("exact")], seconds=1),

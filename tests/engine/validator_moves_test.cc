@@ -44,6 +44,25 @@ TEST_F(ValidateMovesTest, FindsWrongCounts) {
   EXPECT_EQ(Validate({17, {1, 2}, {}}).message(), "retractions 2, computed anew 1 to 1");
 }
 
+TEST_F(ValidateMovesTest, KnowsTheMovesThatAreKnown) {
+  walls_.known = {{1, 2, 3, true, false}};
+
+  EXPECT_OK(Validate({1 + 3 + 5, {1, 0}, {}}));
+  EXPECT_EQ(Validate({17, {1, 1}, {}}).message(), "cost 17, computed anew 9 to 9");
+  EXPECT_EQ(Validate({9, {0, 0}, {}}).message(), "crossings 0, computed anew 1 to 1");
+  EXPECT_EQ(Validate({9, {1, 1}, {}}).message(), "retractions 1, computed anew 0 to 0");
+  EXPECT_EQ(Validate({9, {1, 0}, {{2, {{1.5, 20}}}}}).message(),
+            "route[2]: it is known, and not led around walls");
+}
+
+TEST_F(ValidateMovesTest, KnowsWhatIsRetractedInAnyCase) {
+  walls_.retracted = {1};
+  EXPECT_OK(Validate({12, {1, 1}, {}}));
+
+  walls_.retracted = {1, 2};
+  EXPECT_OK(Validate({7, {1, 1}, {}}));
+}
+
 int64_t PeakKilobytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

@@ -48,6 +48,10 @@ LayerWalls RandomWalls(Rng& rng, const Plan& plan) {
       walls.walls.push_back({path.points, path.kind == Path::Kind::kContour, static_cast<int>(p)});
     }
     if (rng.Between(0, 4) == 0) walls.exposed.push_back(static_cast<int>(p));
+    if (rng.Between(0, 3) == 0) walls.retracted.push_back(static_cast<int>(p));
+    if (p == 0 || rng.Between(0, 2) == 0) continue;
+    walls.known.push_back({static_cast<int>(p) - 1, static_cast<int>(p), rng.Unit() * 2,
+                           rng.Between(0, 3) == 0, rng.Between(0, 1) == 0});
   }
   return walls;
 }
@@ -116,6 +120,28 @@ double WalledMoveCost(const WalledProblem& walled, Point from, Point to) {
   const CostSpec& spec = walled.problem().cost;
   const double length = std::hypot(to.x - from.x, to.y - from.y);
   const bool crosses = CrossesAny(walled.walls, spec.wall_slack_mm, from, to);
+  const auto& paths = walled.owned.plan().paths;
+  const auto point_of = [&paths](int path, bool last) {
+    const Path& of = paths[static_cast<size_t>(path)];
+    return of.points[last && of.kind == Path::Kind::kOpen ? 1 : 0];
+  };
+  for (const KnownMove& move : walled.walls.known) {
+    const Point a = point_of(move.from, true);
+    const Point b = point_of(move.to, false);
+    if (!((a == from && b == to) || (a == to && b == from))) continue;
+    CostSpec bare = spec;
+    bare.crossing_seconds = 0;
+    const double least = MoveCost(bare, from, to);
+    return std::max(least, move.seconds) + (move.crosses ? spec.crossing_seconds : 0);
+  }
+  double pays = 1;
+  for (const Point end : {from, to}) {
+    bool retracted = false;
+    for (const int path : walled.walls.retracted) {
+      for (const Point& p : paths[static_cast<size_t>(path)].points) retracted |= p == end;
+    }
+    if (retracted) pays -= 0.5;
+  }
   bool exposed = false;
   for (const int path : walled.walls.exposed) {
     for (const Point& p : walled.owned.plan().paths[static_cast<size_t>(path)].points) {
@@ -128,7 +154,8 @@ double WalledMoveCost(const WalledProblem& walled, Point from, Point to) {
   const bool retracts = length > spec.retraction_threshold_mm ||
                         (crosses && length > spec.wall_retraction_threshold_mm) ||
                         (exposed && length > spec.exposed_retraction_threshold_mm);
-  if (retracts) seconds += spec.retraction_seconds;
+  if (length > spec.retraction_threshold_mm) pays = 1;
+  if (retracts) seconds += spec.retraction_seconds * pays;
   if (crosses) seconds += spec.crossing_seconds + (retracts ? spec.lift_seconds : 0);
   return seconds;
 }

@@ -87,6 +87,13 @@ def exposed_paths():
     return options("greedy", time_cost()) + field(2, one_contour(square) + field(8, b"\x00" * (1 << 20)))
 
 
+def retracted_paths():
+    """A path that is named again and again, and moves that are no more than it."""
+    square = [(float(i), float(i % 2)) for i in range(50_000)]
+    return options("greedy", time_cost()) + field(
+        2, one_contour(square) + field(9, b"\x00" * (1 << 20)) + field(10, b"") * 100_000)
+
+
 def upright_walls():
     """A wall that goes up and down all over the plate."""
     wall = [coordinate for i in range(400_000) for coordinate in (5e-4 * i, i % 2 * 200.0)]

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "absl/strings/str_cat.h"
@@ -95,6 +96,42 @@ TEST(WallCost, RetractsToAndFromExposedPaths) {
   EXPECT_DOUBLE_EQ(cost({14, 0}, {14, 0.5}), 0.005);  // shorter than the threshold
 }
 
+// Filament is pulled back behind the second path in any case, and before it as often as behind.
+TEST(WallCost, RetractionsThatAreMadeInAnyCaseAreNothingToSave) {
+  LayerWalls walls = OneWall();
+  walls.retracted = {1, 2};
+  const Plan plan = AnyOrderPlan({MakeOpenPath({0, 0}, {0, 5}), MakeOpenPath({10, 0}, {10, 5}),
+                                  MakeOpenPath({-10, 0}, {-10, 5})});
+  const WallCost cost(walls, plan, PrinterCost());
+
+  EXPECT_DOUBLE_EQ(cost({0, 5}, {10, 5}), 0.1 + 0.25 + 0.25 + 2);
+  EXPECT_DOUBLE_EQ(cost({-10, 5}, {10, 5}), 0.2 + 0.25 + 2);
+  EXPECT_DOUBLE_EQ(cost({-10, 5}, {10, 0}), cost({10, 0}, {-10, 5}));
+  // Beyond the threshold of all moves it counts, so that a length bounds the cost.
+  EXPECT_DOUBLE_EQ(cost({-10, 0}, {10, 5}), std::hypot(20, 5) / 100 + 0.5 + 0.25 + 2);
+  EXPECT_TRUE(cost.MoveOf({-10, 5}, {10, 5}).retracts);
+}
+
+TEST(WallCost, MovesThatAreKnownCostWhatIsKnownInEitherDirection) {
+  LayerWalls walls = OneWall();
+  const Plan plan = AnyOrderPlan({MakeOpenPath({0, 0}, {0, 5}), MakeOpenPath({10, 0}, {10, 5}),
+                                  MakeContour({{-10, 0}, {-10, 5}, {-5, 5}})});
+  walls.known = {{0, 1, 0.75}, {2, 0, 0.3, true, true}, {1, 2, 0.01}, {0, 1, 9}};
+  const WallCost cost(walls, plan, PrinterCost());
+
+  EXPECT_EQ(cost({0, 5}, {10, 0}), 0.75);  // the first one counts
+  EXPECT_EQ(cost({10, 0}, {0, 5}), 0.75);
+  EXPECT_FALSE(cost.MoveOf({0, 5}, {10, 0}).crosses);
+  EXPECT_EQ(cost({-10, 0}, {0, 0}), 0.3 + 2);
+  EXPECT_TRUE(cost.MoveOf({-10, 0}, {0, 0}).crosses);
+  EXPECT_TRUE(cost.MoveOf({-10, 0}, {0, 0}).retracts);
+  EXPECT_EQ(cost.PriceOf({-10, 0}, {0, 0}), 2);
+  EXPECT_EQ(cost.PriceOf({0, 5}, {10, 0}), 0);
+  // No less than the straight move without walls.
+  EXPECT_DOUBLE_EQ(cost({10, 5}, {-10, 0}), std::hypot(20, 5) / 100 + 0.5);
+  EXPECT_DOUBLE_EQ(cost({0, 0}, {10, 5}), std::hypot(10, 5) / 100 + 0.5 + 0.25 + 2);
+}
+
 TEST(WallCost, LeadsAWayAroundWhereThatCostsLess) {
   CostSpec spec = PrinterCost();
   spec.wall_clearance_mm = 0.4;
@@ -130,6 +167,23 @@ TEST(WallCost, EqualsABruteForceRecomputationAndIsNeverBelowItsBase) {
       EXPECT_NEAR(cost(from, to), WalledMoveCost(walled, from, to), 1e-9);
       EXPECT_EQ(cost(from, to), cost(to, from));
       EXPECT_GE(cost(from, to), cost.Base(from, to));
+    }
+    const std::vector<Path>& paths = walled.owned.plan().paths;
+    for (int i = 0; i < 50 && !paths.empty(); ++i) {
+      const auto any = [&rng, &paths] {
+        const Path& path = paths[rng.Below(static_cast<uint32_t>(paths.size()))];
+        return path.points[rng.Below(static_cast<uint32_t>(path.points.size()))];
+      };
+      const Point from = any();
+      const Point to = any();
+      EXPECT_EQ(cost(from, to), cost(to, from));
+      EXPECT_GE(cost(from, to), cost.Base(from, to));
+    }
+    for (const KnownMove& move : walled.walls.known) {
+      const Path& left = paths[static_cast<size_t>(move.from)];
+      const Point from = left.points[left.kind == Path::Kind::kOpen ? 1 : 0];
+      const Point to = paths[static_cast<size_t>(move.to)].points[0];
+      EXPECT_NEAR(cost(from, to), WalledMoveCost(walled, from, to), 1e-9);
     }
   }
 }

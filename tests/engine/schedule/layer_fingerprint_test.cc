@@ -141,5 +141,30 @@ TEST(LayerFingerprint, TellsLayersThatWereMovedFromOthers) {
             ProblemKey(7, {0, 0}, {1, 2}, std::nullopt));
 }
 
+TEST(LayerFingerprint, TellsLayersApartByWhatIsSaidOfTheirMoves) {
+  const Plan plan = RingLayer(3, 0.1);
+  const auto shape = [&plan](const LayerWalls& walls) {
+    return FingerprintOf(plan, {}, walls).shape;
+  };
+  const KnownMove known{0, 1, 2};
+  const std::vector<LayerWalls> different = {
+      {},
+      {{}, {1}},
+      {{}, {}, {1}},
+      {{}, {1}, {1}},
+      {{}, {1, 1}},
+      {{}, {}, {}, {known}},
+      {{}, {}, {}, {{1, 0, 2}}},
+      {{}, {}, {}, {{0, 1, 3}}},
+      {{}, {}, {}, {{0, 1, 2, true}}},
+      {{}, {}, {}, {{0, 1, 2, false, true}}},
+      {{}, {}, {}, {known, known}},
+  };
+  for (size_t i = 0; i < different.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) EXPECT_NE(shape(different[i]), shape(different[j])) << i << j;
+    EXPECT_EQ(shape(different[i]), shape(LayerWalls(different[i])));
+  }
+}
+
 }  // namespace
 }  // namespace traverse

@@ -109,6 +109,16 @@ const Shape kShapes[] = {
        }
      },
      900'000},
+    {"moves that are known",
+     [](int n, v1::Layer& layer) {
+       v1::Island& island = *layer.add_islands();
+       for (int i = 0; i < n; ++i) {
+         AddDot(*island.add_contours(), i);
+         layer.add_known_moves()->set_to(static_cast<uint32_t>(i));
+         layer.add_retracted_paths(static_cast<uint32_t>(n - 1 - i));
+       }
+     },
+     900'000},
 };
 
 void ReadAndTranslate(const Shape& shape, int n, MeasuringTurn& turn, double& longest_of_reader) {

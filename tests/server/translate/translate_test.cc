@@ -272,6 +272,25 @@ TEST(TranslateLayer, WallsArriveAndMayBeContours) {
   EXPECT_EQ(result.label.points, 10);
 }
 
+TEST(TranslateLayer, MovesThatAreKnownArrive) {
+  ASSERT_OK_AND_ASSIGN(const LabelledLayer result, LayerFromProto(Parse<v1::Layer>(R"(
+    islands { contours { points: [0, 0, 5, 0, 5, 5] } rasters { points: [1, 1, 2, 2] } }
+    retracted_paths: [1, 0, 1]
+    known_moves { from: 1 seconds: 2.5 crosses: true } known_moves { to: 1 retracts: true })"),
+                                                                  0, false));
+
+  const LayerWalls& walls = result.layer.walls;
+  EXPECT_THAT(walls.retracted, ElementsAre(0, 1));
+  ASSERT_EQ(walls.known.size(), 2u);
+  EXPECT_EQ(walls.known[0].from, 1);
+  EXPECT_EQ(walls.known[0].to, 0);
+  EXPECT_EQ(walls.known[0].seconds, 2.5);
+  EXPECT_TRUE(walls.known[0].crosses);
+  EXPECT_FALSE(walls.known[0].retracts);
+  EXPECT_EQ(walls.known[1].to, 1);
+  EXPECT_TRUE(walls.known[1].retracts);
+}
+
 // Four bytes for a copy of a contour of any size: a stranger would send a million of them.
 TEST(TranslateLayer, WallsNameEachContourAboutOnce) {
   v1::Layer layer;
@@ -308,6 +327,14 @@ TEST(TranslateLayer, FaultsOfWallsAreNamedByTheirPlace) {
       {"walls { path: 4000000000 }", "layers[3].walls[0].path: 4"},
       {"walls { path: 1 }", "layers[3].walls[0].points: none, and the path named is no contour"},
       {"exposed_paths: [0, 2]", "layers[3].exposed_paths[1]: there is no path 2"},
+      {"retracted_paths: [2]", "layers[3].retracted_paths[0]: there is no path 2"},
+      {"retracted_paths: [4000000000]", "layers[3].retracted_paths[0]: 4"},
+      {"known_moves { from: 2 }", "layers[3].known_moves[0]: there is no path 2"},
+      {"known_moves { to: 4000000000 }", "layers[3].known_moves[0].to: 4"},
+      {"known_moves { seconds: -1 }", "layers[3].known_moves[0].seconds: -1 is not from 0 to 1"},
+      {"known_moves { seconds: nan }", "layers[3].known_moves[0].seconds: not finite"},
+      {"known_moves {} known_moves {} known_moves {}",
+       "layers[3].known_moves: 3 are more than there are paths"},
   };
   for (const BadCase& bad : cases) {
     const std::string layer = absl::StrCat(
