@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/plan/travel_model.h"
@@ -38,6 +39,9 @@ constexpr double kLeastExtraMm = 1e-6;
 // Longer than any way.
 constexpr double kNeverMm = 1e7;
 
+// The service knows no longer moves.
+constexpr double kMostKnownSeconds = 1e7;
+
 double CrossingSeconds(Crossings crossings) {
   switch (crossings) {
     case Crossings::kKeep:
@@ -63,10 +67,25 @@ void SetWallCost(const RetractionHabit& habit, Crossings crossings, v1::TimeCost
 
 // Paths that the slicer wipes stay wiped, so that what follows them is retracted wherever it leads:
 // an order saves, or costs, the retractions behind the others alone.
-double ShareNotWiped(const GcodeFile& file, uint32_t first_block, uint32_t end_block) {
+double ShareWiped(const GcodeFile& file) {
+  const auto blocks = static_cast<uint32_t>(file.blocks.size());
   size_t wiped = 0;
-  for (uint32_t b = first_block; b < end_block; ++b) wiped += file.WipedBehind(b) ? 1 : 0;
-  return 1 - static_cast<double>(wiped) / (end_block - first_block);
+  for (uint32_t b = 0; b < blocks; ++b) wiped += file.WipedBehind(b) ? 1 : 0;
+  return static_cast<double>(wiped) / blocks;
+}
+
+// Where a retraction is a matter of length it is told as one of exposed paths, which all of them
+// are then, for only of such a one what is wiped pays less.
+void SetWiped(const GcodeFile& file, const Layer& of_file, bool crossing_matters,
+              v1::Layer& layer) {
+  for (uint32_t b = of_file.first_block; b < of_file.end_block; ++b) {
+    if (file.WipedBehind(b)) layer.add_retracted_paths(b - of_file.first_block);
+  }
+  if (layer.retracted_paths().empty() || crossing_matters) return;
+  layer.mutable_cost()->mutable_time()->set_retraction_threshold_mm(kNeverMm);
+  for (uint32_t b = of_file.first_block; b < of_file.end_block; ++b) {
+    layer.add_exposed_paths(b - of_file.first_block);
+  }
 }
 
 void SetWalls(const TravelRules& rules, const RetractionHabit& habit,
@@ -86,6 +105,35 @@ void SetWalls(const TravelRules& rules, const RetractionHabit& habit,
   }
 }
 
+// The ways of the file from one path to the next stay as they are where an order has them: some
+// have bends, and some no retraction where a new one would have it.
+void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const TravelModel& travel,
+                   const TravelRules& rules, const std::vector<Outline>& outlines,
+                   v1::Layer& layer) {
+  for (uint32_t b = of_file.first_block + 1; b < of_file.end_block; ++b) {
+    const Block& before = file.blocks[b - 1];
+    const Block& block = file.blocks[b];
+    const TravelWay way = rules.WayOf(file.modes[before.mode].InMm(before.last),
+                                      file.modes[block.mode].InMm(block.first),
+                                      outlines[b - of_file.first_block].feature);
+    // Wipes and moves away from the path are no part of a new way either.
+    const bool plain = (block.link & (kLinkWipes | kLinkDeparts)) == 0;
+    double seconds = plain ? WaySeconds(file, b, travel)
+                           : StopToStopSeconds(way.mm, travel.speed_mm_s, travel.accel_mm_s2);
+    // What is pulled back because of a wipe is priced as for a new way, which begins with it too.
+    const double wiped = (file.WipedBehind(b - 1) ? 0.5 : 0) + (file.WipedBehind(b) ? 0.5 : 0);
+    const bool retracts = (block.link & kLinkRetracts) != 0;
+    const bool pays = file.WipedBehind(b - 1) ? way.retracts : retracts;
+    if (pays) seconds += layer.cost().time().retraction_seconds() * (1 - wiped);
+    v1::KnownMove& move = *layer.add_known_moves();
+    move.set_from(b - 1 - of_file.first_block);
+    move.set_to(b - of_file.first_block);
+    move.set_seconds(seconds < kMostKnownSeconds ? seconds : kMostKnownSeconds);
+    move.set_crosses(way.crosses);
+    move.set_retracts(retracts);
+  }
+}
+
 // What holds for all layers of a file.
 struct FileHabits {
   RetractionHabit retraction;
@@ -101,13 +149,13 @@ void FillLayer(const GcodeFile& file, size_t index, const FileHabits& habits,
   filled.set_id(index + 1);
   filled.set_z_mm(ToDouble(layer.z) * file.modes[file.blocks[layer.first_block].mode].UnitMm());
   *filled.mutable_plan() = std::move(planned.plan);
-  TravelModel travel = habits.travel[index];
-  travel.retraction_seconds *= ShareNotWiped(file, layer.first_block, layer.end_block);
-  SetCost(travel, *filled.mutable_cost());
+  SetCost(habits.travel[index], *filled.mutable_cost());
   SetWallCost(habits.retraction, options.crossings, *filled.mutable_cost()->mutable_time());
   const VisibleWalls walls(planned.outlines);
-  SetWalls(TravelRules(file, layer, habits.retraction, planned.outlines, walls), habits.retraction,
-           planned.outlines, filled);
+  const TravelRules rules(file, layer, habits.retraction, planned.outlines, walls);
+  SetWalls(rules, habits.retraction, planned.outlines, filled);
+  SetWiped(file, layer, habits.retraction.crossing_matters, filled);
+  SetKnownMoves(file, layer, habits.travel[index], rules, planned.outlines, filled);
   PathNotes& notes = job.notes[index];
   for (size_t path = 0; path < planned.outlines.size(); ++path) {
     const auto feature = static_cast<size_t>(planned.outlines[path].feature);
@@ -171,8 +219,7 @@ void SetStrategy(const GcodeFile& file, v1::Strategy& strategy) {
   const double effort = std::clamp(kRounds / paths, 1.0, kMaxEffort);
   strategy.set_name("auto");
   (*strategy.mutable_options())["effort"] = absl::StrFormat("%.3g", effort);
-  const auto blocks = static_cast<uint32_t>(file.blocks.size());
-  const double wiped = std::min(1 - ShareNotWiped(file, 0, blocks), kMostWiped);
+  const double wiped = std::min(ShareWiped(file), kMostWiped);
   const double little = 1 + (kOfLittleUseAmongWiped - 1) * wiped;
   const double least =
       kSecondsPerRound * std::max(little, KeepsRetractions(file) ? kOfLittleUse : 1);
@@ -274,6 +321,10 @@ std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& opt
     }
     *layers[i].mutable_walls() = layer.walls();
     *layers[i].mutable_exposed_paths() = layer.exposed_paths();
+    *layers[i].mutable_retracted_paths() = layer.retracted_paths();
+    // Where only length counts, that of the file's own ways is no other one.
+    const bool by_time = layers[i].cost().time().retraction_seconds() > 0;
+    if (by_time) *layers[i].mutable_known_moves() = layer.known_moves();
     const gcode::Layer& of_file = job.gcode->layers[job.first_layer + i];
     *layers[i].mutable_plan() =
         gcode::MakeLayerPlan(*job.gcode, of_file, options.policy, latitude, options.allow).plan;

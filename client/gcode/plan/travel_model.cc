@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/measure/print_meter.h"
 
 namespace traverse::gcode {
@@ -48,38 +49,30 @@ class TravelLearner {
     state.e = before.e_out;
     state.feed = before.feed_out;
     Interpreter interpreter(std::string_view(file_.text).substr(0, block.begin), before.end, state);
-    double still_seconds = 0;
+    PrintMeter all(file_.profile, dynamics, nullptr);
+    PrintMeter travel(file_.profile, dynamics, nullptr);
     for (Step step; interpreter.Next(step);) {
-      still_seconds += LearnStep(step, interpreter, dynamics, learnt);
+      all.Follow(step, interpreter);
+      const bool travels = step.kind == StepKind::kTravel || step.kind == StepKind::kSlot;
+      if (travels) travel.Follow(step, interpreter);
+      LearnStep(step, interpreter, dynamics, learnt);
     }
     if (!retracts) return;
-    learnt.retraction_seconds += still_seconds;
+    learnt.retraction_seconds += all.Finish().seconds - travel.Finish().seconds;
     ++learnt.retractions;
   }
 
-  // Returns the time of what is not travel proper.
-  double LearnStep(const Step& step, const Interpreter& interpreter, Dynamics& dynamics,
-                   LayerTravel& learnt) {
+  void LearnStep(const Step& step, const Interpreter& interpreter, Dynamics& dynamics,
+                 LayerTravel& learnt) {
     const MachineState& state = interpreter.state();
     const double unit = state.UnitMm();
-    const double speed = std::min(ToDouble(state.feed) / 60 * unit, dynamics.max_speed());
-    switch (step.kind) {
-      case StepKind::kSlot:
-        if ((step.slots & kDynamicsSlots) != 0) {
-          dynamics.Follow(step.line.Text(interpreter.text()));
-        }
-        return 0;
-      case StepKind::kTravel:
-      case StepKind::kWipe: {
-        const double way =
-            std::hypot(ToDouble(state.at.x - step.from.x), ToDouble(state.at.y - step.from.y)) *
-            unit;
-        if (step.kind == StepKind::kWipe) return speed > 0 ? way / speed : 0;
-        learnt.way_mm[{speed, dynamics.travel_accel()}] += way;
-        return 0;
-      }
-      default:
-        return StandstillSeconds(step, state, file_.profile);
+    if (step.kind == StepKind::kSlot && (step.slots & kDynamicsSlots) != 0) {
+      dynamics.Follow(step.line.Text(interpreter.text()));
+    } else if (step.kind == StepKind::kTravel) {
+      const double speed = std::min(ToDouble(state.feed) / 60 * unit, dynamics.max_speed());
+      const double way =
+          std::hypot(ToDouble(state.at.x - step.from.x), ToDouble(state.at.y - step.from.y)) * unit;
+      learnt.way_mm[{speed, dynamics.travel_accel()}] += way;
     }
   }
 
@@ -111,6 +104,26 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm)
   }
   for (TravelModel& each : models) each.retraction_threshold_mm = threshold_mm;
   return models;
+}
+
+double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& model) {
+  const Block& before = file.blocks[block - 1];
+  const Dynamics dynamics = DynamicsOf(file.profile, file.states[before.state_out], file.setters);
+  MotionPlanner planner({file.profile.klipper, dynamics.cruise_ratio()});
+  MachineState state = file.modes[before.mode];
+  state.at = before.last;
+  state.e = before.e_out;
+  state.feed = before.feed_out;
+  Interpreter interpreter(file.LinkText(block), 0, state);
+  for (Step step; interpreter.Next(step);) {
+    if (step.kind != StepKind::kTravel) continue;
+    const MachineState& at = interpreter.state();
+    planner.Move(ToDouble(at.at.x - step.from.x) * at.UnitMm(),
+                 ToDouble(at.at.y - step.from.y) * at.UnitMm(), model.speed_mm_s, model.accel_mm_s2,
+                 dynamics.corner_speed());
+  }
+  planner.Stop();
+  return planner.seconds();
 }
 
 }  // namespace traverse::gcode

@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_CLIENT_GCODE_PLAN_TRAVEL_MODEL_H_
 #define TRAVERSE_CLIENT_GCODE_PLAN_TRAVEL_MODEL_H_
 
+#include <cstdint>
 #include <vector>
 
 #include "client/gcode/model/gcode_file.h"
@@ -18,9 +19,14 @@ struct TravelModel {
 };
 
 // [layer]. Speed and acceleration are those at which most of the layer's travel is done, the time
-// is the mean over its retractions; a layer without such moves has what the one before has.
-// O(length of all links).
+// is the mean over its retractions of what they add to the travel; a layer without such moves has
+// what the one before has. O(length of all links).
 std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm);
+
+// What the travel in the link before block `block` takes as it is in the file, from standstill to
+// standstill at the speed and the acceleration of `model`: with its bends, at each of which the
+// machine slows down, and without retraction, lift and wipe. REQUIRES: there is a block before it.
+double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& model);
 
 }  // namespace traverse::gcode
 

@@ -146,19 +146,21 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
                         (!boundary || to.block == layer_.first_block + place);
   TravelWay way =
       rules_.WayOf(End(from), Begin(to), outlines_[to.block - layer_.first_block].feature);
-  if (as_given) {
-    way.retracts = (next.link & kLinkRetracts) != 0;
-    // Wipes and moves away from the path are no part of a way of our own either.
-    const bool plain = (next.link & (kLinkWipes | kLinkDeparts)) == 0;
-    if (plain) way.mm = static_cast<double>(next.travel_mm);
+  double way_seconds = 0;
+  // Wipes and moves away from the path are no part of a way of our own either.
+  const bool plain = (next.link & (kLinkWipes | kLinkDeparts)) == 0;
+  if (as_given && plain) {
+    way.mm = static_cast<double>(next.travel_mm);
+    way_seconds = WaySeconds(file_, to.block, model);
   } else {
-    way.retracts = way.retracts || file_.WipedBehind(from.block) ||
-                   (boundary && (here.link & kLinkRetracts) != 0);
+    way_seconds = StopToStopSeconds(way.mm, model.speed_mm_s, model.accel_mm_s2);
   }
+  way.retracts = as_given ? (next.link & kLinkRetracts) != 0
+                          : way.retracts || file_.WipedBehind(from.block) ||
+                                (boundary && (here.link & kLinkRetracts) != 0);
   WayTotals totals;
   totals.mm = way.mm;
-  totals.seconds = StopToStopSeconds(way.mm, model.speed_mm_s, model.accel_mm_s2) +
-                   (way.retracts ? model.retraction_seconds : 0);
+  totals.seconds = way_seconds + (way.retracts ? model.retraction_seconds : 0);
   totals.retractions = way.retracts ? 1 : 0;
   totals.crossings = way.crosses ? 1 : 0;
   totals.open = way.crosses && !way.retracts ? 1 : 0;

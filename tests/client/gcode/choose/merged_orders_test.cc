@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
+#include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/write/layer_writer.h"
 #include "client/gcode/write/link_donors.h"
 #include "tests/client/gcode/support/sketch.h"
@@ -69,6 +71,22 @@ TEST_F(MergedOrdersTest, HaveNoOpenWayAcrossWallsThatIsLongerThanTheFiles) {
       EXPECT_TRUE(way.open == 0 || way.mm <= 1.1 + 1e-6) << way.mm;
     }
   }
+}
+
+TEST_F(MergedOrdersTest, WaysOfTheFileTakeWhatTheirBendsTake) {
+  Sketch sketch;
+  sketch.Infill(10, 0).Go(10, 20).Go(30, 20).Infill(30, 30).Go(50, 20).Infill(50, 30);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+  const LayerWriter writer(*file, file->layers[0], habit_, *donors_);
+  const LayerOrder given = writer.GivenOrder();
+
+  const WayTotals bent = writer.EstimateWay(1, given[0], given[1], kTravel);
+
+  EXPECT_NEAR(bent.mm, 40, 1e-4);
+  EXPECT_NEAR(bent.seconds, WaySeconds(*file, 1, kTravel), 1e-9);
+  EXPECT_GT(bent.seconds, StopToStopSeconds(40, 150, 1000) + 0.01);
+  const WayTotals straight = writer.EstimateWay(2, given[1], given[2], kTravel);
+  EXPECT_NEAR(straight.seconds, StopToStopSeconds(std::hypot(20, 10), 150, 1000), 1e-6);
 }
 
 }  // namespace

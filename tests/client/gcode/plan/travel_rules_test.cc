@@ -237,13 +237,62 @@ InputJob WipedLines(int wiped) {
 // What is wiped is retracted whatever follows it, so that no order saves that. (Half a minute of
 // computing went into 1,421 retractions of ps_grille_klipper_wipe, and none was saved.)
 TEST(MakeGcodeJob, RetractionsBehindWipedPathsAreNothingToSave) {
-  const auto seconds = [](int wiped) {
-    return WipedLines(wiped).layers[0].cost().time().retraction_seconds();
-  };
+  const v1::Layer layer = WipedLines(1).layers[0];
 
-  EXPECT_GT(seconds(0), 0);
-  EXPECT_GT(seconds(0), 1.5 * seconds(2));
-  EXPECT_GT(seconds(2), 1.5 * seconds(3));
+  ASSERT_EQ(layer.retracted_paths_size(), 1);
+  EXPECT_EQ(layer.retracted_paths(0), 0u);
+  EXPECT_EQ(layer.exposed_paths_size(), 4);
+  EXPECT_GT(layer.cost().time().retraction_threshold_mm(), 1000);
+  EXPECT_LT(layer.cost().time().exposed_retraction_threshold_mm(), 20);
+  EXPECT_EQ(WipedLines(0).layers[0].exposed_paths_size(), 0);
+  EXPECT_LT(WipedLines(0).layers[0].cost().time().retraction_threshold_mm(), 20);
+}
+
+// As new ways are: half of a retraction at either end.
+TEST(MakeGcodeJob, WaysOfTheFileFromWipedPathsAreToldWithoutTheirRetraction) {
+  const v1::Layer layer = WipedLines(2).layers[0];
+
+  ASSERT_EQ(layer.known_moves_size(), 3);
+  const double retraction = layer.cost().time().retraction_seconds();
+  EXPECT_GT(retraction, 0);
+  const double between_wiped = layer.known_moves(0).seconds();
+  EXPECT_NEAR(layer.known_moves(1).seconds(), between_wiped + retraction / 2, 1e-9);
+  EXPECT_NEAR(layer.known_moves(2).seconds(), between_wiped + retraction, 1e-9);
+  for (const v1::KnownMove& move : layer.known_moves()) EXPECT_TRUE(move.retracts());
+}
+
+// New ways across walls are retracted, those of the file often are not: who is not told so finds
+// retractions to save where there are none.
+TEST(MakeGcodeJob, TellsTheSearchWhatTheWaysOfTheFileTake) {
+  Sketch sketch = TwoIslands(false);
+  sketch.Go(5, 37).Infill(35, 37);  // across the walls of both islands
+  const InputJob job = MakeGcodeJob(sketch.Read(), {});
+
+  const v1::Layer& layer = job.layers[0];
+  ASSERT_EQ(layer.known_moves_size(), 14);
+  const v1::KnownMove& retracted = layer.known_moves(6);
+  EXPECT_EQ(retracted.from(), 6u);
+  EXPECT_EQ(retracted.to(), 7u);
+  EXPECT_TRUE(retracted.crosses());
+  EXPECT_TRUE(retracted.retracts());
+  const v1::KnownMove& open = layer.known_moves(13);
+  EXPECT_TRUE(open.crosses());
+  EXPECT_FALSE(open.retracts());
+  EXPECT_GT(retracted.seconds(), layer.cost().time().retraction_seconds());
+  EXPECT_NEAR(open.seconds(), std::hypot(85, 2) / layer.cost().time().speed_mm_s(), 0.2);
+  EXPECT_EQ(NarrowLayers(job, {})[0].known_moves_size(), 14);
+}
+
+// CuraEngine's ways have bends of its own, longer than a way of ours would be.
+TEST(MakeGcodeJob, TellsTheSearchOfBendsThatTheFileHas) {
+  Sketch sketch = AroundTheHole().Add("; avoid_crossing_perimeters = 1");
+  sketch.Go(1, 37).Go(1, 1).Infill(5, 1);
+  const v1::Layer layer = MakeGcodeJob(sketch.Read(), {}).layers[0];
+
+  const v1::KnownMove& last = layer.known_moves(layer.known_moves_size() - 1);
+  const double speed = layer.cost().time().speed_mm_s();
+  EXPECT_GT(last.seconds(), (std::hypot(34, 15) + 36) / speed);
+  EXPECT_FALSE(last.crosses());
 }
 
 // (6 s of computing went into sl_grille_comments_wipe, which saved 2.7 s of printing.)

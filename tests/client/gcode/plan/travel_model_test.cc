@@ -1,0 +1,58 @@
+#include "client/gcode/plan/travel_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "client/gcode/machine/motion_planner.h"
+#include "tests/client/gcode/support/sketch.h"
+
+namespace traverse::gcode {
+namespace {
+
+using testing::Sketch;
+
+constexpr TravelModel kTravel = {.speed_mm_s = 100, .accel_mm_s2 = 1000};
+
+TEST(WaySeconds, OfAStraightWayAreThoseFromStandstillToStandstill) {
+  Sketch sketch;
+  sketch.Infill(10, 0).Go(0, 10).Infill(10, 10).GoRetracted(20, 10).Infill(30, 10);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+  ASSERT_EQ(file->blocks.size(), 3u);
+
+  EXPECT_NEAR(WaySeconds(*file, 1, kTravel), StopToStopSeconds(std::sqrt(200), 100, 1000), 1e-6);
+  EXPECT_NEAR(WaySeconds(*file, 2, kTravel), StopToStopSeconds(10, 100, 1000), 1e-6);
+}
+
+TEST(WaySeconds, BendsTakeTimeAsLongAsNobodyStopsThere) {
+  Sketch sketch;
+  sketch.Infill(10, 0).Go(10, 20).Go(30, 20).Infill(30, 30);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+  ASSERT_EQ(file->blocks.size(), 2u);
+
+  EXPECT_GT(WaySeconds(*file, 1, kTravel), StopToStopSeconds(40, 100, 1000) + 0.01);
+  EXPECT_LT(WaySeconds(*file, 1, kTravel), 2 * StopToStopSeconds(20, 100, 1000));
+}
+
+// A wipe is a move as any other one: the machine has to get going for it.
+TEST(LearnTravel, RetractionsTakeTheTimeThatTheyAddToTravel) {
+  Sketch sketch;
+  sketch.Infill(10, 0).Add("G1 E-.4 F2100").Add("G1 X5 Y0 E-.4 F7200").Go(0, 10);
+  sketch.Add("G1 E.8 F2100").Infill(10, 10).Go(0, 20).Infill(10, 20);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+  ASSERT_EQ(file->layers.size(), 1u);
+
+  const std::vector<TravelModel> models = LearnTravel(*file, 1.5);
+
+  ASSERT_EQ(models.size(), 1u);
+  const double still = 1.2 / 35;
+  EXPECT_GT(models[0].retraction_seconds, still + 5.0 / 120 + 0.01);
+  EXPECT_LT(models[0].retraction_seconds,
+            still + 2 * StopToStopSeconds(5, 120, models[0].accel_mm_s2));
+  EXPECT_EQ(models[0].speed_mm_s, 150);
+}
+
+}  // namespace
+}  // namespace traverse::gcode
