@@ -18,6 +18,12 @@ namespace {
 // them would take memory again at each level of nested nodes.
 constexpr size_t kFirstPoints = 64;
 
+// More than rounding makes of a bound on the cost of two moves, relative to that.
+constexpr double kSlackOfBounds = 1e-6;
+
+// What one question for a way around walls takes, in steps of Rest.
+constexpr size_t kStepsOfWayAmongWalls = 256;
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The entries of the paths below one node, in the order in which they are visited.
@@ -182,10 +188,31 @@ class NodeRoute {
   }
 
   Place BestPlace(int slot) {
+    const size_t first = precedence_.empty() ? 0 : BehindSlot(awaited_[static_cast<size_t>(slot)]);
     Place best;
-    size_t index = precedence_.empty() ? 0 : BehindSlot(awaited_[static_cast<size_t>(slot)]);
-    for (; index <= order_.size(); ++index) Try(slot, index, best);
+    if (layer_.cost.has_walls()) best.cost = LimitAmongWalls(slot, first);
+    for (size_t index = first; index <= order_.size(); ++index) {
+      Try(slot, index, best, [&](Point from, const Way& way, const std::optional<Point>& to) {
+        return Around(from, way, to, move_[index], best.cost) - move_[index];
+      });
+    }
     return best;
+  }
+
+  // A little more than what the place costs that would be the best if there were no walls: what
+  // costs more is not worth asking for.
+  double LimitAmongWalls(int slot, size_t first) {
+    Place best;
+    for (size_t index = first; index <= order_.size(); ++index) {
+      Try(slot, index, best, [&](Point from, const Way& way, const std::optional<Point>& to) {
+        return LeastAround(from, way, to) - move_[index];
+      });
+    }
+    if (best.way < 0) return kInfinity;
+    const Way& way = ways_[static_cast<size_t>(best.way)];
+    const double cost =
+        layer_.cost(ExitBefore(best.index), way.enter) + Move(way.exit, EnterAt(best.index));
+    return cost - move_[best.index] + kSlackOfBounds * (1 + cost);
   }
 
   // The first place behind a block of the route; the very first for -1.
@@ -202,8 +229,10 @@ class NodeRoute {
     if (BehindSlot(slot) > BehindSlot(latest)) latest = slot;
   }
 
-  // Replaces `best` if some way of `slot` costs less at the place `index`.
-  void Try(int slot, size_t index, Place& best) {
+  // Replaces `best` if some way of `slot` costs less at the place `index`: added(from, way, to)
+  // more.
+  template <typename Added>
+  void Try(int slot, size_t index, Place& best, Added added) {
     const Point from = ExitBefore(index);
     const std::optional<Point> to = EnterAt(index);
     const BoundingBox& box = boxes_[static_cast<size_t>(slot)];
@@ -216,10 +245,7 @@ class NodeRoute {
     if (bound >= best.cost) return;
     const absl::Span<const Way> ways = WaysOf(slot);
     ForEachWay(slot, [&](size_t w) {
-      if (layer_.cost.has_walls() && layer_.cost.Base(from, ways[w].enter) - present >= best.cost) {
-        return;
-      }
-      const double cost = Around(from, ways[w].enter, ways[w].exit, to) - present;
+      const double cost = added(from, ways[w], to);
       if (cost >= best.cost) return;
       best = Place{index, first_way_[static_cast<size_t>(slot)] + static_cast<int>(w), cost};
     });
@@ -228,8 +254,24 @@ class NodeRoute {
   double Move(Point from, const std::optional<Point>& to) const {
     return to ? layer_.cost(from, *to) : 0;
   }
-  double Around(Point from, Point enter, Point exit, const std::optional<Point>& to) const {
-    return layer_.cost(from, enter) + Move(exit, to);
+
+  // What the moves to and from `way` cost at least: with walls as if there were none.
+  double LeastAround(Point from, const Way& way, const std::optional<Point>& to) const {
+    return layer_.cost.Base(from, way.enter) + (to ? layer_.cost.Base(way.exit, *to) : 0);
+  }
+
+  // The moves to and from `way`, which take the place of one of cost `present`. Where walls may be
+  // in the way, each of the two is asked for only if it may cost less than `most` more than that:
+  // else what they cost at least.
+  double Around(Point from, const Way& way, const std::optional<Point>& to, double present,
+                double most) {
+    if (!layer_.cost.has_walls()) return layer_.cost(from, way.enter) + Move(way.exit, to);
+    const double least = LeastAround(from, way, to);
+    if (least - present >= most) return least;
+    rest_(kStepsOfWayAmongWalls);
+    const double arrival = layer_.cost(from, way.enter);
+    const double either = arrival + (to ? layer_.cost.Base(way.exit, *to) : 0);
+    return either - present >= most ? either : arrival + Move(way.exit, to);
   }
 
   const LayerView& layer_;

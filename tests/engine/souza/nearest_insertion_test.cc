@@ -98,5 +98,37 @@ TEST(NearestInsertion, WallsThatNoMoveComesNearChangeNothing) {
   }
 }
 
+// A plate with holes: nearly all places are too far away to be worth the way around the walls.
+TEST(NearestInsertion, AsksForFewWaysAmongWalls) {
+  std::vector<Path> paths;
+  LayerWalls walls;
+  for (int row = 0; row < 12; ++row) {
+    for (int column = 0; column < 12; ++column) {
+      const double x = 5.0 * column;
+      const double y = 5.0 * row;
+      Wall& wall = walls.walls.emplace_back();
+      wall.closed = true;
+      wall.points = {{x, y}, {x + 3, y}, {x + 3, y + 3}, {x, y + 3}};
+      paths.push_back(MakeContour({{x, y}, {x + 3, y}, {x + 3, y + 3}, {x, y + 3}}));
+    }
+  }
+  const int64_t count = static_cast<int64_t>(paths.size());
+  OwnedProblem owned(AnyOrderPlan(std::move(paths)));
+  CostSpec& spec = owned.problem.cost;
+  spec.kind = CostSpec::Kind::kTime;
+  spec.speed_mm_s = 100;
+  spec.retraction_seconds = 0.1;
+  spec.retraction_threshold_mm = 1.5;
+  spec.crossing_seconds = 0.1;
+  spec.wall_clearance_mm = 0.4;
+  const WallCost cost(walls, owned.plan(), spec);
+  owned.problem.walls = &cost;
+
+  const Route route = Inserted(owned.problem);
+
+  EXPECT_OK(ValidateRoute(owned.plan(), route));
+  EXPECT_LT(cost.work(), 3000 * count);
+}
+
 }  // namespace
 }  // namespace traverse
