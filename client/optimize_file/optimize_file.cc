@@ -12,6 +12,20 @@
 namespace traverse {
 namespace {
 
+// The strategy to search with. Of one that the file comes with, by its name, it keeps what the file
+// sets of its options, but for those that are named too.
+v1::Strategy StrategyFor(const InputJob& job, const SearchOptions& options) {
+  const v1::Strategy& own = job.options.strategy();
+  if (!options.strategy || options.strategy->name() != own.name()) {
+    return options.strategy.value_or(own);
+  }
+  v1::Strategy both = own;
+  for (const auto& [name, value] : options.strategy->options()) {
+    (*both.mutable_options())[name] = value;
+  }
+  return both;
+}
+
 // `auto` looks at a file of G-code twice, the second time with less latitude.
 bool IsAskedTwice(const InputJob& job, const SearchOptions& options) {
   const v1::Strategy& named = options.strategy ? *options.strategy : job.options.strategy();
@@ -66,7 +80,7 @@ FileFault SearchFault(absl::Status status) { return {FileStage::kSearch, std::mo
 absl::StatusOr<report::JobRun> Search(OptimizerClient& client, const InputJob& job,
                                       const SearchOptions& options) {
   v1::JobOptions asked = job.options;
-  if (options.strategy) *asked.mutable_strategy() = *options.strategy;
+  *asked.mutable_strategy() = StrategyFor(job, options);
   if (options.progress.on_search) options.progress.on_search(job.layers.size());
   const absl::Time began = absl::Now();
   CallOptions call;

@@ -169,6 +169,24 @@ TEST_F(OptimizeFileTest, PassesOnWhatTheServiceSays) {
   EXPECT_THAT(std::string(fault->status.message()), HasSubstr("magic"));
 }
 
+// Whoever names the strategy that would be taken anyway gets what it would have been.
+TEST_F(OptimizeFileTest, TheStrategyOfTheFileKeepsItsOptionsWhenItIsNamed) {
+  InputJob job = Job(1);
+  (*job.options.mutable_strategy()->mutable_options())["effort"] = "none";
+  SearchOptions named;
+  named.strategy.emplace();
+  named.strategy->set_name("auto");
+  SearchOptions with_option = named;
+  (*with_option.strategy->mutable_options())["effort"] = "2";
+  SearchOptions other;
+  other.strategy.emplace();
+  other.strategy->set_name("ni2opt");
+
+  EXPECT_EQ(Search(client_, job, named).status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_TRUE(Search(client_, job, with_option).ok());
+  EXPECT_TRUE(Search(client_, job, other).ok());
+}
+
 TEST_F(OptimizeFileTest, SettingsThatNameLayersThatAreNotThereAreAFault) {
   InputJob job = Job(3);
   JobSettings settings;
