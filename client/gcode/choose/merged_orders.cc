@@ -77,6 +77,14 @@ bool EndsAlike(const LayerOrder& a, const LayerOrder& b) {
   return a.front() == b.front() && a.back() == b.back();
 }
 
+// The paths in the order of the file, begun as in `order`: where walls may change places, ways that
+// are as long may have to be retracted that were open.
+LayerOrder InGivenOrder(LayerOrder order) {
+  std::sort(order.begin(), order.end(),
+            [](const Placement& a, const Placement& b) { return a.block < b.block; });
+  return order;
+}
+
 }  // namespace
 
 std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelModel& travel,
@@ -106,7 +114,11 @@ std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelMode
   all.push_back(given);
   std::vector<LayerOrder> merged;
   LayerOrder best_between = strict.Merge(given, found);
-  for (const LayerOrder& order : found) {
+  std::vector<LayerOrder> begun = found;
+  if (rules.policy == Policy::kFree) {
+    for (const LayerOrder& order : found) begun.push_back(InGivenOrder(order));
+  }
+  for (const LayerOrder& order : begun) {
     if (!EndsAlike(order, given)) {
       merged.push_back(quick.Merge(order, all));
       merged.push_back(few.Merge(order, all));

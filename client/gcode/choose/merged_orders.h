@@ -24,7 +24,8 @@ struct MergeRules {
 
 // The orders of `found`, each made better by runs of the others and of the file's own order, and
 // brought within the limits of `rules` as far as estimates go (order_merge.h). Of those that begin
-// and end with the paths that the file does only the best one.
+// and end with the paths that the file does only the best one. Under Policy::kFree each is also
+// tried with its paths in the order of the file.
 std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelModel& travel,
                                      const std::vector<LayerOrder>& found, const MergeRules& rules);
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -87,6 +88,37 @@ TEST_F(MergedOrdersTest, WaysOfTheFileTakeWhatTheirBendsTake) {
   EXPECT_GT(bent.seconds, StopToStopSeconds(40, 150, 1000) + 0.01);
   const WayTotals straight = writer.EstimateWay(2, given[1], given[2], kTravel);
   EXPECT_NEAR(straight.seconds, StopToStopSeconds(std::hypot(20, 10), 150, 1000), 1e-6);
+}
+
+// Four squares in a row. What was found begins them at near corners, but with the second one; the
+// file begins with the first one, at a corner that is far away.
+TEST_F(MergedOrdersTest, UnderFreeWhatWasFoundIsTriedInTheOrderOfTheFile) {
+  Sketch sketch;
+  sketch.Square(0, 0, 10).Go(20, -10).Square(20, -10, 10).Go(40, 0).Square(40, 0, 10);
+  sketch.Go(60, -10).Square(60, -10, 10);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+  const RetractionHabit habit = LearnRetraction(*file);
+  const LinkDonors donors(*file);
+  const LayerWriter writer(*file, file->layers[0], habit, donors);
+  const LayerOrder found = {{1, 3, true}, {0, 2, true}, {2, 0, true}, {3, 3, true}};
+  MergeRules rules;
+  rules.crossings = Crossings::kAny;
+  rules.boundaries.assign(found.size(), false);
+  const auto shortest_mm = [&](Policy policy) {
+    rules.policy = policy;
+    double least = 1e9;
+    for (const LayerOrder& order : MergedOrders(writer, kTravel, {found}, rules)) {
+      double mm = 0;
+      for (size_t i = 1; i < order.size(); ++i) {
+        mm += writer.EstimateWay(i, order[i - 1], order[i], kTravel).mm;
+      }
+      least = std::min(least, mm);
+    }
+    return least;
+  };
+
+  EXPECT_NEAR(shortest_mm(Policy::kFree), std::hypot(10, 10) + 40, 1e-3);
+  EXPECT_GT(shortest_mm(Policy::kBalanced), 62);
 }
 
 }  // namespace
