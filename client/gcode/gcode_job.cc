@@ -62,7 +62,10 @@ void SetWallCost(const RetractionHabit& habit, Crossings crossings, v1::TimeCost
   time.set_exposed_retraction_threshold_mm(std::min(habit.threshold_mm, kNeverMm));
   time.set_wall_retraction_threshold_mm(
       habit.spares_walls ? 0 : std::min(habit.threshold_mm, kNeverMm));
-  if (habit.crossing_matters) time.set_retraction_threshold_mm(kNeverMm);
+  if (habit.crossing_matters) {
+    time.set_retraction_threshold_mm(
+        std::min(std::max(habit.longest_open_mm, habit.threshold_mm), kNeverMm));
+  }
 }
 
 // Paths that the slicer wipes stay wiped, so that what follows them is retracted wherever it leads:

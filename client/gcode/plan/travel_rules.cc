@@ -34,6 +34,22 @@ void Count(const GcodeFile& file, const Layer& layer, const std::vector<Outline>
   });
 }
 
+// How much longer than the longest open way of the file a new one may be: less than what the
+// verifier allows.
+constexpr double kLongestOpenFactor = 1.9;
+constexpr double kLongestOpenSlackMm = 0.95;
+
+double LongestOpenMm(const GcodeFile& file) {
+  double longest = 0;
+  for (const Layer& layer : file.layers) {
+    ForEachWay(file, layer, [&](const Block& block, Vertex, Vertex, uint32_t) {
+      if ((block.link & kLinkRetracts) != 0) return;
+      longest = std::max(longest, static_cast<double>(block.travel_mm));
+    });
+  }
+  return kLongestOpenFactor * longest + kLongestOpenSlackMm;
+}
+
 // The usual setting of slicers.
 constexpr double kUsualThresholdMm = 1.5;
 
@@ -100,6 +116,7 @@ RetractionHabit LearnRetraction(const GcodeFile& file) {
   if (!habit.retracts) return habit;
   const std::vector<size_t> sample = SampledLayers(file);
   habit.threshold_mm = LearnThreshold(file, sample);
+  habit.longest_open_mm = LongestOpenMm(file);
   for (const size_t i : sample) {
     const std::vector<Outline> outlines = OutlinesOf(file, file.layers[i]);
     Count(file, file.layers[i], outlines, VisibleWalls(outlines), habit.threshold_mm, habit.inside);
@@ -142,16 +159,7 @@ bool TravelRules::AlwaysRetracts(Feature feature) const {
 }
 
 bool TravelRules::Retracts(Vertex a, Vertex b, Feature feature) const {
-  if (!habit_.retracts) return false;
-  const double mm = Distance(a, b);
-  const bool always =
-      mm >= habit_.threshold_mm && (!habit_.crossing_matters || CountOf(feature).Mostly());
-  const bool never = mm < habit_.threshold_mm && !habit_.spares_walls;
-  return always || (!never && Crosses(a, b));
-}
-
-bool TravelRules::Crosses(Vertex a, Vertex b) const {
-  return walls_.Crossed(a, b) && (!detours_ || detours_->Around(a, b).empty());
+  return WayOf(a, b, feature).retracts;
 }
 
 TravelWay TravelRules::WayOf(Vertex a, Vertex b, Feature feature) const {
@@ -172,7 +180,8 @@ TravelWay TravelRules::WayOf(Vertex a, Vertex b, Feature feature) const {
   if (!habit_.retracts) return way;
   const bool far = Distance(a, b) >= habit_.threshold_mm;
   way.retracts = far && (!habit_.crossing_matters || CountOf(feature).Mostly());
-  way.retracts = way.retracts || ((far || habit_.spares_walls) && way.crosses);
+  way.retracts = way.retracts || ((far || habit_.spares_walls) && way.crosses) ||
+                 (far && way.mm > habit_.longest_open_mm);
   return way;
 }
 

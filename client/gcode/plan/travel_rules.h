@@ -39,6 +39,10 @@ struct RetractionHabit {
   // Travel is led around visible walls.
   bool avoids_walls = false;
 
+  // Longer ways, beyond the threshold, are retracted whatever they cross: an open one that is much
+  // longer than all of the file would ooze.
+  double longest_open_mm = 1e9;
+
   // Not learnt but asked for: for a new way across a visible wall filament is pulled back however
   // short the way is, so that no layer has more such ways with an open nozzle than the file.
   bool spares_walls = false;
@@ -80,9 +84,6 @@ class TravelRules {
 
  private:
   const RetractionCount& CountOf(Feature feature) const;
-
-  // And there is no way around.
-  bool Crosses(Vertex a, Vertex b) const;
 
   const RetractionHabit& habit_;
   const VisibleWalls& walls_;

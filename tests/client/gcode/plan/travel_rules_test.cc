@@ -94,6 +94,17 @@ TEST(TravelRules, ShortWaysAcrossWallsAreRetractedIfWallsAreToBeSpared) {
   EXPECT_FALSE(sparing.Retracts({30, 20}, {31.1, 20}));
 }
 
+TEST(TravelRules, WaysMuchLongerThanAllOpenOnesAreRetracted) {
+  Sketch short_ways;
+  short_ways.Infill(10, 0).Go(10, 10).Infill(20, 10).GoRetracted(50, 10).Infill(60, 10);
+  Rules rules(TwoIslands(false).Read());
+
+  EXPECT_NEAR(LearnRetraction(*short_ways.Read()).longest_open_mm, 19.95, 1e-3);
+  rules.habit.longest_open_mm = 19.95;
+  EXPECT_TRUE(rules.Retracts({5, 5}, {5, 26}));
+  EXPECT_FALSE(rules.Retracts({5, 5}, {5, 24}));
+}
+
 TEST(TravelRules, WaysThatNoDetourSparesAWallAreRetractedWhereOthersLeadAround) {
   const Rules avoiding(TwoIslands(false).Add("; avoid_crossing_perimeters = 1").Read());
 
@@ -183,7 +194,8 @@ TEST(MakeGcodeJob, TellsTheSearchOfWallsAndRetractions) {
   EXPECT_EQ(layer.exposed_paths_size(), 0);
   const v1::TimeCost& time = layer.cost().time();
   EXPECT_GT(time.retraction_seconds(), 0);
-  EXPECT_GT(time.retraction_threshold_mm(), 1000);
+  EXPECT_GT(time.retraction_threshold_mm(), 40);
+  EXPECT_LT(time.retraction_threshold_mm(), 100);
   EXPECT_EQ(time.wall_retraction_threshold_mm(), 0);
   EXPECT_EQ(time.crossing_seconds(), kKeepCrossingSeconds);
   EXPECT_EQ(NarrowLayers(job, {})[0].walls_size(), 2);
