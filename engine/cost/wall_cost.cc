@@ -5,6 +5,9 @@
 #include <cassert>
 #include <utility>
 
+#include "engine/base/rest.h"
+#include "engine/base/resting_sort.h"
+
 namespace traverse {
 namespace {
 
@@ -20,6 +23,9 @@ constexpr size_t kMostDetours = size_t{1} << 16;
 constexpr int64_t kWorkOfCrossing = 5;
 constexpr int64_t kWorkOfTest = 4;
 
+// What Rest counts for one that is put into a table.
+constexpr size_t kStepsOfKnownMove = 32;
+
 // A point so many slacks away from the middle of a wall still lies on it.
 constexpr double kOnWall = 1.2;
 
@@ -29,13 +35,14 @@ uint64_t Mix(uint64_t state, double value) {
   return (std::rotl(state, 23) ^ std::bit_cast<uint64_t>(value)) * 0x9e3779b97f4a7c15u;
 }
 
-std::vector<Point> SortedPoints(const Plan& plan, const std::vector<int>& paths) {
+std::vector<Point> SortedPoints(const Plan& plan, const std::vector<int>& paths, Rest& rest) {
   std::vector<Point> sorted;
   for (const int path : paths) {
     const std::vector<Point>& points = plan.paths[static_cast<size_t>(path)].points;
+    rest(points.size() + 1);
     sorted.insert(sorted.end(), points.begin(), points.end());
   }
-  std::sort(sorted.begin(), sorted.end(), Less);
+  RestingSort(sorted, rest, Less);
   return sorted;
 }
 
@@ -59,19 +66,21 @@ double TravelCost::WithWalls(Point from, Point to) const {
   return walls_unit_ * (*walls_)(from, to);
 }
 
-WallCost::WallCost(const LayerWalls& walls, const Plan& plan, const CostSpec& spec)
+WallCost::WallCost(const LayerWalls& walls, const Plan& plan, const CostSpec& spec, Budget* budget)
     : spec_(spec),
       base_(spec),
-      grid_(walls.walls, spec.wall_slack_mm),
+      grid_(walls.walls, spec.wall_slack_mm, budget),
       detours_(spec.wall_clearance_mm > 0
                    ? std::optional<WallDetours>(std::in_place, grid_, spec.wall_clearance_mm,
-                                                kOnWall * spec.wall_slack_mm)
+                                                kOnWall * spec.wall_slack_mm, budget)
                    : std::nullopt),
       places_(PlacesFor(plan.paths.size(), detours_.has_value())) {
   assert(spec.kind == CostSpec::Kind::kTime && CheckWalls(walls, plan).ok());
-  exposed_ = SortedPoints(plan, walls.exposed);
-  retracted_ = SortedPoints(plan, walls.retracted);
+  Rest rest(budget);
+  exposed_ = SortedPoints(plan, walls.exposed, rest);
+  retracted_ = SortedPoints(plan, walls.retracted, rest);
   for (const KnownMove& move : walls.known) {
+    rest(kStepsOfKnownMove);
     const Path& from = plan.paths[static_cast<size_t>(move.from)];
     const Point a = from.points[from.kind == Path::Kind::kOpen ? 1 : 0];
     moves_.emplace(KeyOf(a, plan.paths[static_cast<size_t>(move.to)].points[0]), move);

@@ -40,8 +40,10 @@ struct WallMove {
 // to 32,768 moves, or 65,536 where ways are led around walls, from the first question on.
 class WallCost {
  public:
-  // REQUIRES: `spec` is a time; `walls` passes CheckWalls for `plan`. O(points).
-  WallCost(const LayerWalls& walls, const Plan& plan, const CostSpec& spec);
+  // REQUIRES: `spec` is a time; `walls` passes CheckWalls for `plan`. O(points) and sorting those
+  // of exposed and retracted paths; asks `budget`, if there is one, meanwhile.
+  WallCost(const LayerWalls& walls, const Plan& plan, const CostSpec& spec,
+           Budget* budget = nullptr);
 
   // Of two layers, one done right after the other: moves to and from the points of the second are
   // among its walls, all others among those of the first. `second_points`: for each point of the

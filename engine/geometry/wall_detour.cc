@@ -8,6 +8,9 @@
 namespace traverse {
 namespace {
 
+// What Rest counts for a bend beside a corner of a wall.
+constexpr size_t kStepsOfBend = 8;
+
 // Longer stretches of a wall are not followed.
 constexpr size_t kMostVertices = 500;
 
@@ -50,16 +53,22 @@ double DistanceTo(const WallSegment& s, Point p) {
 
 }  // namespace
 
-WallDetours::WallDetours(const WallGrid& grid, double clearance_mm, double on_wall_mm)
+WallDetours::WallDetours(const WallGrid& grid, double clearance_mm, double on_wall_mm,
+                         Budget* budget)
     : grid_(grid), clearance_mm_(clearance_mm), on_wall_mm_(on_wall_mm) {
+  Rest rest(budget);
   const std::vector<WallSegment>& segments = grid.segments();
   left_.reserve(segments.size());
-  for (const WallSegment& segment : segments) left_.push_back(LeftOf(segment));
+  for (const WallSegment& segment : segments) {
+    rest();
+    left_.push_back(LeftOf(segment));
+  }
   for (const double side : {-1.0, 1.0}) {
     Side& beside = sides_[side > 0 ? 1 : 0];
     beside.bends.reserve(segments.size());
     beside.upto_mm.reserve(segments.size());
     for (uint32_t s = 0; s < segments.size(); ++s) {
+      rest(kStepsOfBend);
       const auto [first, end] = grid.SegmentsOf(segments[s].wall);
       beside.bends.push_back(Beside(s, s + 1 == end ? first : s + 1, segments[s].b, side));
       beside.upto_mm.push_back(

@@ -23,8 +23,9 @@ class WallDetours {
  public:
   // `grid` outlives the detours. Ways lead by walls at `clearance_mm`; a point nearer to one than
   // `on_wall_mm` lies on it.
-  // O(w).
-  WallDetours(const WallGrid& grid, double clearance_mm, double on_wall_mm);
+  // O(w); asks `budget`, if there is one, meanwhile.
+  WallDetours(const WallGrid& grid, double clearance_mm, double on_wall_mm,
+              Budget* budget = nullptr);
 
   // The bends of a way from `a` to `b` whose straight pieces cross no wall (WallGrid::Crosses).
   // Empty if the straight way crosses none, and if no way was found: from one island to another

@@ -10,7 +10,7 @@ constexpr double kMostEnd = 0.2;
 constexpr double kCellsPerSegment = 4;
 constexpr double kLeastCells = 64;
 
-double Turn(Point a, Point b, Point c) {
+double TurnAt(Point a, Point b, Point c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
@@ -20,13 +20,15 @@ bool SegmentsCross(Point a, Point b, Point c, Point d) {
   // What is so near to the line lies on it: a way along a wall does not cross it.
   constexpr double kTouchMm = 1e-7;
   const double touch = kTouchMm * (std::abs(b.x - a.x) + std::abs(b.y - a.y));
-  if ((Turn(a, b, c) < -touch) == (Turn(a, b, d) < -touch)) return false;
-  const double of_a = Turn(c, d, a);
-  const double of_b = Turn(c, d, b);
+  if ((TurnAt(a, b, c) < -touch) == (TurnAt(a, b, d) < -touch)) return false;
+  const double of_a = TurnAt(c, d, a);
+  const double of_b = TurnAt(c, d, b);
   return (of_a < 0 && of_b > 0) || (of_a > 0 && of_b < 0);
 }
 
-WallGrid::WallGrid(absl::Span<const Wall> walls, double slack_mm) : slack_mm_(slack_mm) {
+WallGrid::WallGrid(absl::Span<const Wall> walls, double slack_mm, Budget* budget)
+    : slack_mm_(slack_mm) {
+  Rest rest(budget);
   size_t points = 0;
   for (const Wall& wall : walls) points += wall.points.size() + 1;
   segments_.reserve(points);
@@ -35,6 +37,7 @@ WallGrid::WallGrid(absl::Span<const Wall> walls, double slack_mm) : slack_mm_(sl
     first_of_wall_.push_back(static_cast<uint32_t>(segments_.size()));
     const std::vector<Point>& line = walls[w].points;
     const auto add = [&](Point a, Point b) {
+      rest();
       if (a == b) return;
       segments_.push_back({a, b, static_cast<uint32_t>(w)});
       box_.Add(a);
@@ -45,15 +48,18 @@ WallGrid::WallGrid(absl::Span<const Wall> walls, double slack_mm) : slack_mm_(sl
   }
   first_of_wall_.push_back(static_cast<uint32_t>(segments_.size()));
   if (segments_.empty()) return;
-  SizeCells();
-  Fill();
+  SizeCells(rest);
+  Fill(rest);
 }
 
 // A segment as long as a cell is in three of them at most, and longer ones are few.
-void WallGrid::SizeCells() {
+void WallGrid::SizeCells(Rest& rest) {
   const double n = static_cast<double>(segments_.size());
   double length_mm = 0;
-  for (const WallSegment& segment : segments_) length_mm += Distance(segment.a, segment.b);
+  for (const WallSegment& segment : segments_) {
+    rest();
+    length_mm += Distance(segment.a, segment.b);
+  }
   const double most = kCellsPerSegment * n + kLeastCells;
   const double width = box_.width();
   const double height = box_.height();
@@ -68,9 +74,10 @@ void WallGrid::SizeCells() {
 }
 
 // Counting sort: how many entries a cell has, then where they begin, then the entries.
-void WallGrid::Fill() {
-  const auto for_each_cell = [this](const WallSegment& segment, const auto& visit) {
+void WallGrid::Fill(Rest& rest) {
+  const auto for_each_cell = [&](const WallSegment& segment, const auto& visit) {
     ForEachRow(segment.a, segment.b, [&](int row, int first, int last) {
+      rest(static_cast<size_t>(last - first) + 1);
       const size_t cell = static_cast<size_t>(row) * static_cast<size_t>(columns_);
       for (int column = first; column <= last; ++column) {
         visit(cell + static_cast<size_t>(column));
@@ -81,7 +88,10 @@ void WallGrid::Fill() {
   for (const WallSegment& segment : segments_) {
     for_each_cell(segment, [this](size_t cell) { ++first_[cell + 2]; });
   }
-  for (size_t cell = 2; cell < first_.size(); ++cell) first_[cell] += first_[cell - 1];
+  for (size_t cell = 2; cell < first_.size(); ++cell) {
+    rest();
+    first_[cell] += first_[cell - 1];
+  }
   entries_.resize(first_.back());
   for (uint32_t s = 0; s < segments_.size(); ++s) {
     for_each_cell(segments_[s], [&](size_t cell) { entries_[first_[cell + 1]++] = s; });

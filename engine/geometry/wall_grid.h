@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "absl/types/span.h"
+#include "engine/base/rest.h"
 #include "engine/geometry/bounding_box.h"
 #include "engine/model/point.h"
 #include "engine/model/walls.h"
@@ -36,8 +37,9 @@ bool SegmentsCross(Point a, Point b, Point c, Point d);
 class WallGrid {
  public:
   // Of a way, `slack_mm` at each end are not looked at, but no more than a fifth of it: ways begin
-  // and end on lines that may be walls themselves, or lie against them. O(n) for n points.
-  WallGrid(absl::Span<const Wall> walls, double slack_mm);
+  // and end on lines that may be walls themselves, or lie against them. O(n) for n points; asks
+  // `budget`, if there is one, meanwhile.
+  WallGrid(absl::Span<const Wall> walls, double slack_mm, Budget* budget = nullptr);
 
   const std::vector<WallSegment>& segments() const { return segments_; }
 
@@ -68,8 +70,8 @@ class WallGrid {
   // Calls visit(row, first column, last column) for rows of cells that hold the line.
   template <typename Visit>
   void ForEachRow(Point a, Point b, Visit visit) const;
-  void SizeCells();
-  void Fill();
+  void SizeCells(Rest& rest);
+  void Fill(Rest& rest);
 
   const double slack_mm_;
   std::vector<WallSegment> segments_;

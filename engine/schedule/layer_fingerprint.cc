@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/base/rest.h"
 #include "engine/base/rng.h"
 
 namespace traverse {
@@ -35,7 +36,9 @@ Point PlanOrigin(const Plan& plan) {
   return plan.paths.empty() || plan.paths[0].points.empty() ? Point{} : plan.paths[0].points[0];
 }
 
-LayerFingerprint FingerprintOf(const Plan& plan, const CostSpec& cost, const LayerWalls& walls) {
+LayerFingerprint FingerprintOf(const Plan& plan, const CostSpec& cost, const LayerWalls& walls,
+                               Budget* budget) {
+  Rest rest(budget);
   Fingerprint shape;
   shape.Add(static_cast<int>(cost.kind));
   for (const double part :
@@ -48,6 +51,7 @@ LayerFingerprint FingerprintOf(const Plan& plan, const CostSpec& cost, const Lay
   const Point origin = PlanOrigin(plan);
   const auto add_points = [&](const std::vector<Point>& points) {
     for (const Point& point : points) {
+      rest(2);
       shape.Add(Rounded(point.x - origin.x));
       shape.Add(Rounded(point.y - origin.y));
       exact.Add(point.x);
@@ -55,6 +59,7 @@ LayerFingerprint FingerprintOf(const Plan& plan, const CostSpec& cost, const Lay
     }
   };
   for (const Path& path : plan.paths) {
+    rest();
     shape.Add(static_cast<int>(path.kind) * 2 + (path.one_way ? 1 : 0));
     shape.Add(path.points.size());
     add_points(path.points);
@@ -76,6 +81,7 @@ LayerFingerprint FingerprintOf(const Plan& plan, const CostSpec& cost, const Lay
     shape.Add((move.crosses ? 1 : 0) + (move.retracts ? 2 : 0));
   }
   for (const PlanNode& node : plan.nodes) {
+    rest(node.children.size() + node.before.size() + 1);
     shape.Add(static_cast<int>(node.kind));
     shape.Add(node.path);
     shape.Add(node.children.size());

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "engine/base/budget.h"
 #include "engine/model/cost_spec.h"
 #include "engine/model/plan.h"
 #include "engine/model/point.h"
@@ -22,9 +23,9 @@ struct LayerFingerprint {
   uint64_t exact = 0;
 };
 
-// O(points).
-LayerFingerprint FingerprintOf(const Plan& plan, const CostSpec& cost,
-                               const LayerWalls& walls = {});
+// O(points); asks `budget`, if there is one, meanwhile.
+LayerFingerprint FingerprintOf(const Plan& plan, const CostSpec& cost, const LayerWalls& walls = {},
+                               Budget* budget = nullptr);
 
 // Layers of one shape with the same start, and finish if they have one, are the same problem moved
 // along. Places are relative to the layer's origin, to 1e-4 mm.

@@ -14,11 +14,11 @@ void LayerPreparer::Prepare(ChainLayer& layer) {
   layer.predicted_start = predicted_at_;
 
   if (layer.cost.kind == CostSpec::Kind::kTime && !layer.given.walls.empty()) {
-    layer.walls = std::make_unique<const WallCost>(layer.given.walls, plan, layer.cost);
+    layer.walls = std::make_unique<const WallCost>(layer.given.walls, plan, layer.cost, &turns);
   }
   layer.origin = PlanOrigin(plan);
   if (!solver_.traits().serial) {
-    layer.fingerprint = FingerprintOf(plan, layer.cost, layer.given.walls);
+    layer.fingerprint = FingerprintOf(plan, layer.cost, layer.given.walls, &turns);
     layer.key =
         ProblemKey(layer.fingerprint.shape, layer.origin, layer.predicted_start, layer.finish);
   }

@@ -11,7 +11,9 @@
 
 #include "engine/base/resting_sort.h"
 #include "engine/base/rng.h"
+#include "engine/cost/wall_cost.h"
 #include "engine/model/tree/passed_pairs.h"
+#include "engine/schedule/layer_fingerprint.h"
 #include "engine/search/end_groups.h"
 #include "engine/search/entries/leaf_entries.h"
 #include "engine/search/order_tree.h"
@@ -59,6 +61,29 @@ TEST(Rest, IsTakenWithinOnePathOfManyVertices) {
               const EndGroups groups(entries, &budget);
             }),
             kOften);
+}
+
+TEST(Rest, IsTakenWhileTheCostOfManyWallsIsLaidOut) {
+  const Plan plan = Dots(kMany);
+  LayerWalls walls;
+  Wall& wall = walls.walls.emplace_back();
+  for (const Path& dot : plan.paths) wall.points.push_back(dot.points[0]);
+  const CostSpec spec = {CostSpec::Kind::kTime, 120, 3000, 0.05, 1};
+  const auto asks = [&](const LayerWalls& laid_out, const CostSpec& by) {
+    return AsksOf([&](Budget& budget) { const WallCost asked(laid_out, plan, by, &budget); });
+  };
+  const int of_grid = asks(walls, spec);
+  EXPECT_GE(of_grid, kOften);
+  CostSpec around = spec;
+  around.wall_clearance_mm = 0.3;
+  EXPECT_GE(asks(walls, around), of_grid + kOften);
+  LayerWalls paths;
+  for (int i = 0; i < kMany; ++i) paths.exposed.push_back(i);
+  EXPECT_GE(asks(paths, spec), kOften);
+  LayerWalls moves;
+  for (int i = 1; i < kMany; ++i) moves.known.push_back({i - 1, i, 1});
+  EXPECT_GE(asks(moves, spec), kOften);
+  EXPECT_GE(AsksOf([&](Budget& budget) { FingerprintOf(plan, spec, walls, &budget); }), kOften);
 }
 
 TEST(Rest, IsTakenWhilePairsArePassedOn) {
