@@ -119,8 +119,8 @@ void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const TravelMode
     const TravelWay way = rules.WayOf(file.modes[before.mode].InMm(before.last),
                                       file.modes[block.mode].InMm(block.first),
                                       outlines[b - of_file.first_block].feature);
-    // Wipes and moves away from the path are no part of a new way either.
-    const bool plain = (block.link & (kLinkWipes | kLinkDeparts)) == 0;
+    // Wipes are no part of a new way either.
+    const bool plain = (block.link & kLinkWipes) == 0;
     double seconds = plain ? WaySeconds(file, b, travel)
                            : StopToStopSeconds(way.mm, travel.speed_mm_s, travel.accel_mm_s2);
     // What is pulled back because of a wipe is priced as for a new way, which begins with it too.

@@ -115,8 +115,9 @@ double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& mode
   state.e = before.e_out;
   state.feed = before.feed_out;
   Interpreter interpreter(file.LinkText(block), 0, state);
+  bool departs = file.dialect != Dialect::kCura && (file.blocks[block].link & kLinkDeparts) != 0;
   for (Step step; interpreter.Next(step);) {
-    if (step.kind != StepKind::kTravel) continue;
+    if (step.kind != StepKind::kTravel || std::exchange(departs, false)) continue;
     const MachineState& at = interpreter.state();
     planner.Move(ToDouble(at.at.x - step.from.x) * at.UnitMm(),
                  ToDouble(at.at.y - step.from.y) * at.UnitMm(), model.speed_mm_s, model.accel_mm_s2,

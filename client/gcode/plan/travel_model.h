@@ -25,7 +25,9 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm)
 
 // What the travel in the link before block `block` takes as it is in the file, from standstill to
 // standstill at the speed and the acceleration of `model`: with its bends, at each of which the
-// machine slows down, and without retraction, lift and wipe. REQUIRES: there is a block before it.
+// machine slows down, and without retraction, lift and wipe; nor with a short move inwards, with
+// which other ways from that path begin too, but under CuraEngine, whose bends may lie as near.
+// REQUIRES: there is a block before it.
 double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& model);
 
 }  // namespace traverse::gcode

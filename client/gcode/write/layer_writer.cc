@@ -147,8 +147,8 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
   TravelWay way =
       rules_.WayOf(End(from), Begin(to), outlines_[to.block - layer_.first_block].feature);
   double way_seconds = 0;
-  // Wipes and moves away from the path are no part of a way of our own either.
-  const bool plain = (next.link & (kLinkWipes | kLinkDeparts)) == 0;
+  // Wipes are no part of a way of our own either.
+  const bool plain = (next.link & kLinkWipes) == 0;
   if (as_given && plain) {
     way.mm = static_cast<double>(next.travel_mm);
     way_seconds = WaySeconds(file_, to.block, model);

@@ -36,6 +36,18 @@ TEST(WaySeconds, BendsTakeTimeAsLongAsNobodyStopsThere) {
   EXPECT_LT(WaySeconds(*file, 1, kTravel), 2 * StopToStopSeconds(20, 100, 1000));
 }
 
+// Other ways from the same path begin with it too; those of CuraEngine have bends there.
+TEST(WaySeconds, AreWithoutTheShortMoveInwards) {
+  Sketch sketch;
+  sketch.Infill(10, 0).Go(10, .5).Go(40, .5).Infill(50, .5);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+  ASSERT_NE(file->blocks[1].link & kLinkDeparts, 0);
+
+  EXPECT_NEAR(WaySeconds(*file, 1, kTravel), StopToStopSeconds(30, 100, 1000), 1e-6);
+  file->dialect = Dialect::kCura;
+  EXPECT_GT(WaySeconds(*file, 1, kTravel), StopToStopSeconds(30, 100, 1000) + 0.02);
+}
+
 // A wipe is a move as any other one: the machine has to get going for it.
 TEST(LearnTravel, RetractionsTakeTheTimeThatTheyAddToTravel) {
   Sketch sketch;
