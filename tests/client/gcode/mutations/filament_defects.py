@@ -1,13 +1,11 @@
-"""Defects of the filament between paths: retractions, primings, wipes. Kinds as in defects.py."""
+"""Defects of the filament on the way, and of all retractions at once. Kinds as in defects.py."""
 
 import re
 
-from defects import (crosses_wall, edited, links, pick, restated, wiped, with_e, with_f, with_xy)
+from edits import edited, pick, restated, with_e, with_f, with_xy
+from places import crosses_wall, level, links
 from sliced import number
-from way_defects import cut_way, level, open_ways
-
-
-# --- filament --------------------------------------------------------------------------------------
+from way_defects import cut_way, open_ways
 
 
 def halves(text):
@@ -169,61 +167,6 @@ def primed_elsewhere(file, rng):
     return pick(rng, links(file), 50, make)
 
 
-# --- wipes -----------------------------------------------------------------------------------------
-
-
-def wipe_slow(file, rng):
-    def make(found):
-        _, wipes = found
-        i = wipes[0]
-        return edited(file, {i: [with_f(file.lines[i].text, 321)],
-                             i + 1: [f"G1 F{number(file.lines[i].feed)}", file.lines[i + 1].text]})
-
-    return pick(rng, wiped(file), 20, make)
-
-
-def wipe_pulls_at_once(file, rng):
-    """All of a wipe's filament is pulled in its first move."""
-
-    def make(found):
-        _, wipes = found
-        if len(wipes) < 2 or file.lines[wipes[0]].length() > 0.5 * sum(file.lines[i].length() for i in wipes):
-            return None
-        pulled = sum(file.lines[i].e for i in wipes)
-        changes = {i: [with_e(file.lines[i].text, lambda _: 0)] for i in wipes[1:]}
-        changes[wipes[0]] = [with_e(file.lines[wipes[0]].text, lambda _: pulled)]
-        return edited(file, changes)
-
-    return pick(rng, wiped(file), 200, make)
-
-
-def wipe_without_filament(file, rng):
-    """The wipe's filament is pulled before it."""
-
-    def make(found):
-        _, wipes = found
-        pulled = sum(file.lines[i].e for i in wipes)
-        changes = {i: [re.sub(r"\s*E-?[0-9.]+", "", file.lines[i].text)] for i in wipes}
-        changes[wipes[0]] = [f"G1 E{number(pulled)}"] + changes[wipes[0]]
-        return edited(file, changes)
-
-    return pick(rng, wiped(file), 20, make)
-
-
-def wipe_of_other_path(file, rng):
-    """A path that is not wiped gets the wipe of none."""
-
-    def make(found):
-        _, pulls, ways, _ = found
-        if any(file.lines[i].kind != "retract" for i in pulls):
-            return None
-        pull, at = file.lines[pulls[-1]], file.lines[pulls[-1]].start
-        return edited(file, {pulls[-1]: [f"G1 X{number(at[0] + 1.3)} Y{number(at[1] + 0.8)} E{number(pull.e)} "
-                                         f"F{number(pull.feed)}"]})
-
-    return pick(rng, links(file), 20, make)
-
-
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("half of the filament back halfway", "retractions", primed_on_way, "free"),
@@ -239,8 +182,4 @@ DEFECTS = (
     ("G11 doubled", "retractions", firmware_doubled("G11"), "free"),
     ("priming at another speed", "speeds", prime_slow, "free"),
     ("filament back 0.4 mm early", "retractions", primed_elsewhere, "free"),
-    ("wipe at another speed", "speeds", wipe_slow, "free"),
-    ("wipe pulls all at once", "wipes", wipe_pulls_at_once, "free"),
-    ("wipe's filament pulled before it", "wipes", wipe_without_filament, "free"),
-    ("wipe beside a path that had none", "wipes", wipe_of_other_path, "free"),
 )

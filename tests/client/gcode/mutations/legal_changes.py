@@ -6,7 +6,8 @@ Each takes (file, rng) and returns the changed text, or None, as in defects.py.
 import math
 import re
 
-from defects import edited, links, pick, restated, reverse, steady, with_xy
+from edits import edited, pick, restated, reverse, with_xy
+from places import links, steady
 from sliced import number
 
 

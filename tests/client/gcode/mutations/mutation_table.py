@@ -21,17 +21,8 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import defects  # noqa: E402
 import dress  # noqa: E402
-import filament_defects  # noqa: E402
-import further_defects  # noqa: E402
 import legal_changes  # noqa: E402
-import path_defects  # noqa: E402
 import sliced  # noqa: E402
-import state_defects  # noqa: E402
-import text_defects  # noqa: E402
-import way_defects  # noqa: E402
-
-DEFECTS = (defects.DEFECTS + further_defects.DEFECTS + text_defects.DEFECTS + way_defects.DEFECTS +
-           filament_defects.DEFECTS + path_defects.DEFECTS + state_defects.DEFECTS)
 
 
 def files_of(operands):
@@ -138,7 +129,7 @@ def main():
             names.append(name)
             file = sliced.Sliced(sliced.read(path))
             original = write(folder, "a.gcode", dress.DRESSES[args.form](file.text()))
-            for i, defect in enumerate(DEFECTS):
+            for i, defect in enumerate(defects.DEFECTS):
                 left_out = args.spread and (i + len(names)) % args.spread
                 left_out = left_out or (args.form == "inches" and re.search("inches|millimetres", defect[0]))
                 if left_out or (args.only and not re.search(args.only, defect[0])):
@@ -148,7 +139,7 @@ def main():
             tried, refused = tried + one, refused + two
     print(f"{len(names)} files: {' '.join(names)}\n")
     print("| defect | rule | files | copies | found | by its rule |\n|---|---|---:|---:|---:|---:|")
-    for title, rule, _, _ in DEFECTS:
+    for title, rule, _, _ in defects.DEFECTS:
         made, found, own, where = counts.get(title, [0, 0, 0, ()])
         share = f"{100 * found / made:.0f} %" if made else "-"
         own_share = f"{100 * own / made:.0f} %" if made else "-"

@@ -2,10 +2,10 @@
 
 import re
 
-from defects import changed_number, edited, pick, with_effect
-from further_defects import moved_behind, next_path, with_word
+from edits import changed_number, edited, moved_behind, next_path, pick, with_word
+from places import lines_of, with_effect
 from sliced import number
-from text_defects import lines_of, mark_inserted
+from text_defects import mark_inserted
 
 TEMPERATURE = r"M(?:104|109|140|190|141|191) "
 LABEL = r"; (?:printing|start printing) object|EXCLUDE_OBJECT_START|M624|M486 S\d"

@@ -1,11 +1,16 @@
-"""Defects of the ways between paths: where they lead, and how high. Kinds as in defects.py."""
+"""Defects of the ways between paths: where they lead. Kinds as in defects.py."""
 
 import math
-import re
 
-from defects import (crosses_wall, edited, go, lifted, links, long_way, pick, way_of, with_f, with_xy, with_z)
-from further_defects import at_its_feed, down_of, with_word
+from edits import at_its_feed, edited, go, pick, with_f, with_xy
+from places import links
 from sliced import number
+
+
+def way_far(file, rng):
+    """A way leads to a point far from all the others."""
+    return pick(rng, links(file), 5, lambda found: edited(
+        file, {found[2][-1]: [go(file, (-400, 700)), file.lines[found[2][-1]].text]}))
 
 
 def travel_feed(file, ways):
@@ -14,15 +19,6 @@ def travel_feed(file, ways):
 
 def way_points(file, ways):
     return file.lines[ways[0]].start, file.lines[ways[-1]].end
-
-
-def level(file, found):
-    """The whole way lies at the height of both paths."""
-    k, pulls, ways, pushes = found
-    z = file.paths[k].start[2]
-    return file.paths[k + 1].start[2] == z and all(
-        file.lines[i].start[2] == file.lines[i].end[2] == z for i in range(pulls[0], pushes[-1] + 1)
-        if file.lines[i].kind != "comment" and file.lines[i].kind != "command")
 
 
 def middle_of(file, i):
@@ -37,9 +33,6 @@ def cut_way(file, ways, between):
     middle = middle_of(file, ways[-1])
     return [with_xy(line.text, middle)] + between + [
         f"G1 X{number(line.end[0])} Y{number(line.end[1])} F{feed}"]
-
-
-# --- where the head goes ---------------------------------------------------------------------------
 
 
 def dip(file, rng):
@@ -134,82 +127,12 @@ def open_way_slow(file, rng):
     return pick(rng, open_ways(file), 50, make)
 
 
-def lift_twice(file, rng):
-    """Up, down and up again before the way."""
-
-    def make(found):
-        index, z = way_of(file, found)
-        ups = [i for i in index if file.lines[i].kind == "z" and file.lines[i].end[2] > file.lines[i].start[2]]
-        if not ups:
-            return None
-        up = file.lines[ups[0]]
-        return edited(file, {ups[0]: [up.text, f"G1 Z{number(up.start[2])}", f"G1 Z{number(up.end[2])}"]})
-
-    return pick(rng, lifted(file), 50, make)
-
-
-def some_lift_dropped(file, rng):
-    """Of a way across a wall, whatever other ways do."""
-
-    def make(found):
-        k, pulls, ways, _ = found
-        z = file.paths[k + 1].start[2]
-        if file.paths[k].start[2] != z or max(file.lines[i].end[2] for i in ways) < z + 0.05 or (
-                not long_way(file, found) or not crosses_wall(file, k, ways)):
-            return None
-        index = range(pulls[-1] + 1, ways[-1] + 1)
-        return edited(file, {i: [with_z(file.lines[i].text, z)] for i in index
-                             if file.lines[i].kind in ("z", "travel")})
-
-    return pick(rng, links(file), 150, make)
-
-
-def descends_on_way(file, rng):
-    """Down to the layer halfway."""
-
-    def make(found):
-        k, _, ways, _ = found
-        index, z = way_of(file, found)
-        i = ways[-1]
-        line = file.lines[i]
-        down = down_of(file, (k, None, ways, found_pushes(file, k)))
-        if line.length() < 6 or down is None or line.start[2] != line.end[2]:
-            return None
-        middle = [(line.start[a] + line.end[a]) / 2 for a in (0, 1)]
-        return edited(file, {i: [with_xy(line.text, middle), file.lines[down].text,
-                                 f"G1 X{number(line.end[0])} Y{number(line.end[1])} F{number(line.feed)}"],
-                             down: []})
-
-    return pick(rng, lifted(file), 50, make)
-
-
-def found_pushes(file, k):
-    return [i for i in file.link(k) if file.lines[i].kind == "prime"] or [file.paths[k + 1].first]
-
-
-def spiral_wider(file, rng):
-    """A spiral lift goes round a wider circle."""
-    found = [i for i, line in enumerate(file.lines) if line.kind == "z" and re.match(r"G[23] .*I", line.text)]
-    return pick(rng, found, 1, lambda i: edited(
-        file, {i: [with_word(file.lines[i].text, "I", lambda v: v * 3 + 2)]}))
-
-
-def wipe_arc_wider(file, rng):
-    found = [i for i, line in enumerate(file.lines) if line.kind == "wipe" and re.match(r"G[23] .*I", line.text)]
-    return pick(rng, found, 1, lambda i: edited(
-        file, {i: [("G3" if file.lines[i].text[1] == "2" else "G2") + file.lines[i].text[2:]]}))
-
-
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
+    ("way to far away", "speeds", way_far, "free"),
     ("dip into the layer", "lifts", dip, "free"),
     ("retracted way astray", "bounds", stray(True), "free"),
     ("open way astray", "bounds", stray(False), "free"),
     ("way there, back and there", "bounds", way_twice, "free"),
     ("open way at another speed", "speeds", open_way_slow, "free"),
-    ("lifted twice", "lifts", lift_twice, "free"),
-    ("lift across a wall dropped", "lifts", some_lift_dropped, "free"),
-    ("down halfway", "lifts", descends_on_way, "free"),
-    ("spiral lift wider", "lifts", spiral_wider, "free"),
-    ("arc of a wipe turned", "wipes", wipe_arc_wider, "free"),
 )

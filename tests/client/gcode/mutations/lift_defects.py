@@ -1,0 +1,258 @@
+"""Defects of lifts. Kinds as in defects.py."""
+
+import re
+
+from edits import at_its_feed, edited, pick, restated, with_f, with_word, with_xy, with_z
+from places import crosses_wall, down_of, lifted, links, long_way, way_of
+from sliced import number
+
+
+def lift_dropped(file, rng):
+    def make(found):
+        index, z = way_of(file, found)
+        return edited(file, {i: [with_z(file.lines[i].text, z)] for i in index}) if (
+            long_way(file, found)) else None
+
+    return pick(rng, lifted(file), 50, make)
+
+
+def lift_halved(file, rng):
+    def make(found):
+        index, z = way_of(file, found)
+        return edited(file, {i: [with_z(file.lines[i].text, z + (file.lines[i].end[2] - z) / 2)]
+                             for i in index}) if long_way(file, found) else None
+
+    return pick(rng, lifted(file), 50, make)
+
+
+def lift_late(file, rng):
+    """Up where the way ends."""
+
+    def make(found):
+        index, z = way_of(file, found)
+        if not long_way(file, found):
+            return None
+        changes = {i: [re.sub(r"\s*Z-?[0-9.]+", "", file.lines[i].text)]
+                   if file.lines[i].kind == "travel" else [] for i in index}
+        top = max(file.lines[i].end[2] for i in index)
+        changes[index[-1]] = changes[index[-1]] + [f"G1 Z{number(top)}"]
+        return edited(file, changes)
+
+    return pick(rng, lifted(file), 50, make)
+
+
+def lift_copied(file, rng):
+    """The number of another layer."""
+
+    def make(found):
+        index, z = way_of(file, found)
+        top = max(file.lines[i].end[2] for i in index)
+        return edited(file, {i: [with_z(file.lines[i].text, top + 0.137)] for i in index}) if (
+            any("Z" in file.lines[i].text and file.lines[i].kind == "travel" for i in index)) else None
+
+    return pick(rng, lifted(file), 50, make)
+
+
+def way_low(file, rng):
+    """A way leads through what has been printed."""
+
+    def make(found):
+        k, pulls, ways, _ = found
+        z = file.paths[k + 1].start[2]
+        low = number(z - 0.12)
+        if file.paths[k].start[2] != z or not long_way(file, found):
+            return None
+        changes = {i: [with_z(file.lines[i].text, z - 0.12)]
+                   for i in range(pulls[-1] + 1, ways[-1] + 1) if file.lines[i].kind in ("z", "travel")}
+        changes[ways[0]] = [f"G1 Z{low}"] + changes[ways[0]]
+        changes[ways[-1]] = (changes[ways[-1]] if ways[-1] != ways[0] else changes[ways[0]]) + [
+            f"G1 Z{number(z)}"]
+        return edited(file, changes)
+
+    return pick(rng, links(file), 50, make)
+
+
+def lift_higher(file, rng):
+    """By a height that no lift has."""
+
+    def make(found):
+        index, z = way_of(file, found)
+        if not any(file.lines[i].kind == "z" for i in index):
+            return None
+        return edited(file, {i: [with_z(file.lines[i].text, file.lines[i].end[2] + 0.313)]
+                             for i in index if file.lines[i].end[2] > z + 0.01})
+
+    return pick(rng, lifted(file), 50, make)
+
+
+def lift_invented(file, rng):
+    feed = number(max((line.feed for line in file.lines if line.kind == "z"), default=600))
+
+    def make(found):
+        k, pulls, ways, _ = found
+        z = file.paths[k + 1].start[2]
+        index = range(pulls[-1] + 1, ways[-1] + 1)
+        if any(file.lines[i].end[2] != z for i in index) or file.paths[k].start[2] != z:
+            return None
+        changes = {i: [file.lines[i].text] for i in ways}
+        changes[ways[0]] = [f"G1 Z{number(z + 0.117)} F{feed}"] + at_its_feed(file, ways[0])
+        changes[ways[-1]] = changes[ways[-1]] + [f"G1 Z{number(z)} F{feed}"] + restated(file, ways[-1])
+        return edited(file, changes)
+
+    return pick(rng, links(file), 50, make)
+
+
+def lift_dropped_in_layer(file, rng):
+    """In a layer whose retracted ways are all lifted, whatever the other layers do."""
+    up = {}
+    for k, pulls, ways, _ in links(file):
+        z = file.paths[k + 1].start[2]
+        if file.paths[k].start[2] != z:
+            continue
+        high = max(file.lines[i].end[2] for i in ways) > z + 0.05
+        up.setdefault(z, []).append((high, (k, pulls, ways, z)))
+    found = [way for all_ways in up.values() if len(all_ways) > 3 and all(high for high, _ in all_ways)
+             for _, way in all_ways]
+
+    def make(way):
+        index, z = way_of(file, way)
+        return edited(file, {i: [with_z(file.lines[i].text, z)] for i in index}) if long_way(file, way) else None
+
+    return pick(rng, found, 50, make)
+
+
+def low_to_next_layer(file, rng):
+    """The head rises to the layer where the way ends, not where it begins."""
+
+    def make(k):
+        link = list(file.link(k))
+        ups = [i for i in link if file.lines[i].kind == "z"]
+        ways = [i for i in link if file.lines[i].kind == "travel"]
+        rises = file.paths[k + 1].start[2] - file.paths[k].start[2]
+        if not 0.03 < rises < 1 or len(ups) != 1 or not ways or ups[0] > ways[0]:
+            return None
+        if any("Z" in file.lines[i].text for i in ways) or sum(file.lines[i].length() for i in ways) < 3:
+            return None
+        up = with_f(file.lines[ups[0]].text, file.lines[ups[0]].feed)
+        return edited(file, {ups[0]: [f"G1 F{number(file.lines[ups[0]].feed)}"],
+                             ways[-1]: [file.lines[ways[-1]].text, up] + restated(file, ways[-1])})
+
+    return pick(rng, range(len(file.paths) - 1), len(file.paths), make)
+
+
+def down_before_way(file, rng):
+    """Between objects printed one after the other: down first, then through what stands there."""
+
+    def make(k):
+        link = list(file.link(k))
+        downs = [i for i in link if file.lines[i].kind == "z" and file.lines[i].end[2] < file.lines[i].start[2]]
+        ways = [i for i in link if file.lines[i].kind == "travel"]
+        falls = file.paths[k].start[2] - file.paths[k + 1].start[2]
+        if falls < 0.5 or not downs or not ways or downs[-1] < ways[0]:
+            return None
+        return edited(file, {downs[-1]: [], ways[0]: [file.lines[downs[-1]].text, file.lines[ways[0]].text]})
+
+    return pick(rng, range(len(file.paths) - 1), len(file.paths), make)
+
+
+def of_all(kind, change):
+    """The same change to all moves of a kind."""
+
+    def defect(file, _):
+        changes = {i: [change(line)] for i, line in enumerate(file.lines)
+                   if line.kind == kind and file.paths[0].first < i < file.paths[-1].first}
+        changes = {i: made for i, made in changes.items() if made != [file.lines[i].text]}
+        return edited(file, changes) if len(changes) > 3 else None
+
+    return defect
+
+
+def lift_lower_by(um):
+    def change(line):
+        return with_word(line.text, "Z", lambda z: z - um / 1000) if line.end[2] > line.start[2] else line.text
+
+    return change
+
+
+def lift_twice(file, rng):
+    """Up, down and up again before the way."""
+
+    def make(found):
+        index, z = way_of(file, found)
+        ups = [i for i in index if file.lines[i].kind == "z" and file.lines[i].end[2] > file.lines[i].start[2]]
+        if not ups:
+            return None
+        up = file.lines[ups[0]]
+        return edited(file, {ups[0]: [up.text, f"G1 Z{number(up.start[2])}", f"G1 Z{number(up.end[2])}"]})
+
+    return pick(rng, lifted(file), 50, make)
+
+
+def some_lift_dropped(file, rng):
+    """Of a way across a wall, whatever other ways do."""
+
+    def make(found):
+        k, pulls, ways, _ = found
+        z = file.paths[k + 1].start[2]
+        if file.paths[k].start[2] != z or max(file.lines[i].end[2] for i in ways) < z + 0.05 or (
+                not long_way(file, found) or not crosses_wall(file, k, ways)):
+            return None
+        index = range(pulls[-1] + 1, ways[-1] + 1)
+        return edited(file, {i: [with_z(file.lines[i].text, z)] for i in index
+                             if file.lines[i].kind in ("z", "travel")})
+
+    return pick(rng, links(file), 150, make)
+
+
+def descends_on_way(file, rng):
+    """Down to the layer halfway."""
+
+    def make(found):
+        k, _, ways, _ = found
+        index, z = way_of(file, found)
+        i = ways[-1]
+        line = file.lines[i]
+        down = down_of(file, (k, None, ways, found_pushes(file, k)))
+        if line.length() < 6 or down is None or line.start[2] != line.end[2]:
+            return None
+        middle = [(line.start[a] + line.end[a]) / 2 for a in (0, 1)]
+        return edited(file, {i: [with_xy(line.text, middle), file.lines[down].text,
+                                 f"G1 X{number(line.end[0])} Y{number(line.end[1])} F{number(line.feed)}"],
+                             down: []})
+
+    return pick(rng, lifted(file), 50, make)
+
+
+def found_pushes(file, k):
+    return [i for i in file.link(k) if file.lines[i].kind == "prime"] or [file.paths[k + 1].first]
+
+
+def spiral_wider(file, rng):
+    """A spiral lift goes round a wider circle."""
+    found = [i for i, line in enumerate(file.lines) if line.kind == "z" and re.match(r"G[23] .*I", line.text)]
+    return pick(rng, found, 1, lambda i: edited(
+        file, {i: [with_word(file.lines[i].text, "I", lambda v: v * 3 + 2)]}))
+
+
+# (name, rule, defect, the most daring policy under which it is one)
+DEFECTS = (
+    ("lift dropped", "lifts", lift_dropped, "free"),
+    ("lift halved", "lifts", lift_halved, "free"),
+    ("lift behind the way", "lifts", lift_late, "free"),
+    ("height copied from elsewhere", "lifts", lift_copied, "free"),
+    ("way below the layer", "lifts", way_low, "free"),
+    ("lift higher", "lifts", lift_higher, "free"),
+    ("lift invented", "lifts", lift_invented, "free"),
+    ("lift dropped in a layer that has them", "lifts", lift_dropped_in_layer, "free"),
+    ("rises where the way to the layer ends", "lifts", low_to_next_layer, "free"),
+    ("down before the way to the next object", "lifts", down_before_way, "free"),
+    ("all ways a tenth faster", "speeds", of_all("travel", lambda line: with_word(
+        line.text, "F", lambda f: f * 1.1)), "free"),
+    ("all lifts 0.05 mm lower", "lifts", of_all("z", lift_lower_by(50)), "free"),
+    ("all retractions a tenth slower", "speeds", of_all("retract", lambda line: with_word(
+        line.text, "F", lambda f: f * 0.9)), "free"),
+    ("lifted twice", "lifts", lift_twice, "free"),
+    ("lift across a wall dropped", "lifts", some_lift_dropped, "free"),
+    ("down halfway", "lifts", descends_on_way, "free"),
+    ("spiral lift wider", "lifts", spiral_wider, "free"),
+)

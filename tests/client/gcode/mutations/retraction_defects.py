@@ -1,0 +1,221 @@
+"""Defects of single retractions and primings. Kinds as in defects.py."""
+
+import re
+
+from edits import edited, go, next_deposit, pick, restated, with_e, with_word, without_e
+from places import crosses_wall, down_of, lifted_links, lines_of, links
+from sliced import number
+
+
+def retraction_dropped(file, rng):
+    def make(found):
+        k, pulls, ways, pushes = found
+        if not crosses_wall(file, k, ways):
+            return None
+        changes = {i: [without_e(file.lines[i].text)] if file.lines[i].kind == "wipe" else []
+                   for i in pulls}
+        changes.update({i: [] for i in pushes})
+        return edited(file, changes)
+
+    return pick(rng, links(file), 150, make)
+
+
+def primed_early(file, rng):
+    def make(found):
+        k, pulls, ways, pushes = found
+        if not crosses_wall(file, k, ways):
+            return None
+        pushed = [file.lines[i].text for i in pushes]
+        changes = {i: [] for i in pushes}
+        changes[ways[0]] = pushed + [go(file, file.lines[ways[0]].end)] if (
+            file.lines[ways[0]].start[2] == file.lines[ways[0]].end[2]) else (
+            pushed + [file.lines[ways[0]].text])
+        return edited(file, changes)
+
+    return pick(rng, links(file), 150, make)
+
+
+def retraction_deeper(file, rng):
+    def make(found):
+        _, pulls, _, pushes = found
+        return edited(file, {pulls[-1]: [with_e(file.lines[pulls[-1]].text, lambda e: e - 0.8)],
+                             pushes[-1]: [with_e(file.lines[pushes[-1]].text, lambda e: e + 0.8)]})
+
+    return pick(rng, links(file), 5, make)
+
+
+def retraction_halved(file, rng):
+    def make(found):
+        _, pulls, _, pushes = found
+        half = file.lines[pulls[-1]].e / 2
+        if abs(half) < 0.02:
+            return None
+        return edited(file, {pulls[-1]: [with_e(file.lines[pulls[-1]].text, lambda e: e - half)],
+                             pushes[-1]: [with_e(file.lines[pushes[-1]].text, lambda e: e + half)]})
+
+    return pick(rng, links(file), 50, make)
+
+
+def blob(file, rng):
+    amounts = [line.e for line in file.lines if line.kind == "prime" and line.e > 0.05] or [0.5]
+
+    def make(path):
+        text = f"G1 E{number(rng.choice(amounts))} F1800"
+        return edited(file, {path.first: [text] + restated(file, path.first) +
+                             [file.lines[path.first].text]})
+
+    return pick(rng, file.paths, 5, make)
+
+
+def last_retraction_deeper(file, rng):
+    end = min(len(file.lines), file.paths[-1].last + 40)
+    pulls = [i for i in range(file.paths[-1].last + 1, end) if file.lines[i].kind == "retract"]
+    return pick(rng, pulls[:1], 1, lambda i: edited(
+        file, {i: [with_word(file.lines[i].text, "E", lambda e: e - 0.9)]}))
+
+
+def primed_above(file, rng):
+    """Filament comes back while the nozzle is still lifted."""
+
+    def make(found):
+        i = down_of(file, found)
+        if i is None:
+            return None
+        changes = {p: [] for p in found[3]}
+        changes[i] = [file.lines[p].text for p in found[3]] + [file.lines[i].text]
+        changes[found[3][-1]] = restated(file, found[3][-1])
+        return edited(file, changes)
+
+    return pick(rng, links(file), 50, make)
+
+
+def pulled_above(file, rng):
+    """The nozzle is lifted before filament is pulled back."""
+
+    def make(found):
+        _, pulls, ways, _ = found
+        i = next((i for i in range(pulls[-1] + 1, ways[0]) if file.lines[i].kind == "z"), None)
+        if i is None or any(file.lines[p].kind != "retract" for p in pulls):
+            return None
+        changes = {p: [] for p in pulls}
+        changes[i] = [file.lines[i].text] + [file.lines[p].text for p in pulls]
+        return edited(file, changes)
+
+    return pick(rng, lifted_links(file), 50, make)
+
+
+def retraction_in_two(file, rng):
+    """Two retractions of less in sum, and as much pushed."""
+
+    def make(found):
+        _, pulls, _, pushes = found
+        pull, push = file.lines[pulls[-1]], file.lines[pushes[-1]]
+        if pull.kind != "retract" or pull.e > -0.1 or push.e < 0.1:
+            return None
+        part = with_word(pull.text, "E", lambda e: e * 0.4)
+        return edited(file, {pulls[-1]: [part, part],
+                             pushes[-1]: [with_word(push.text, "E", lambda e: e + 0.2 * pull.e)]})
+
+    return pick(rng, links(file), 20, make)
+
+
+def prime_dropped(file, rng):
+    return pick(rng, links(file), 5, lambda found: edited(file, {i: [] for i in found[3]}))
+
+
+def primed_late(file, rng):
+    """Filament comes back behind the first segment."""
+
+    def make(found):
+        first = next_deposit(file, found[3][-1])
+        changes = {i: [] for i in found[3]}
+        changes[first] = [file.lines[first].text] + [file.lines[i].text for i in found[3]] + [
+            f"G1 F{number(file.lines[first].feed)}"]
+        return edited(file, changes)
+
+    return pick(rng, links(file), 5, make)
+
+
+def primed_by_segment(file, rng):
+    """The filament comes back with the first segment."""
+
+    def make(found):
+        first = next_deposit(file, found[3][-1])
+        line = file.lines[first]
+        if not re.search(r"E-?[0-9.]", line.text) or re.search(r"G[23]", line.text):
+            return None
+        pushed = sum(file.lines[i].e for i in found[3])
+        changes = {i: [] for i in found[3]}
+        changes[first] = [with_e(line.text, lambda _: line.e + pushed)]
+        return edited(file, changes)
+
+    return pick(rng, links(file), 20, make)
+
+
+def pulled_early(file, rng):
+    """Filament is pulled back before the last segment."""
+
+    def make(found):
+        k, pulls, _, _ = found
+        path = file.paths[k]
+        if not path.plain or any(file.lines[i].kind != "retract" for i in pulls) or len(path.deposits) < 2:
+            return None
+        changes = {i: [] for i in pulls}
+        changes[path.last] = [file.lines[i].text for i in pulls] + restated(file, path.last) + [
+            file.lines[path.last].text]
+        return edited(file, changes)
+
+    return pick(rng, links(file), 50, make)
+
+
+def only_pulled(which):
+    """Of a retraction and its priming one is dropped, or done twice."""
+
+    def defect(file, rng):
+        def make(found):
+            kind, times = which
+            index = found[1] if kind == "pull" else found[3]
+            if any(file.lines[i].kind == "wipe" for i in index):
+                return None
+            return edited(file, {i: [file.lines[i].text] * times for i in index})
+
+        return pick(rng, links(file), 20, make)
+
+    return defect
+
+
+def label_before_retraction(file, rng):
+    """A label of an object comes before the retraction that stood before it, or the other way."""
+    labels = r"; (?:printing|stop printing) object|M486 S|EXCLUDE_OBJECT_(?:START|END)|M62[45]"
+
+    def make(i):
+        for k in range(i + 1, min(i + 8, len(file.lines))):
+            if file.lines[k].kind == "retract":
+                return edited(file, {i: [], k: [file.lines[k].text, file.lines[i].text]})
+            if file.lines[k].kind in ("deposit", "travel"):
+                return None
+        return None
+
+    return pick(rng, lines_of(file, labels, file.paths[0].first), 50, make)
+
+
+# (name, rule, defect, the most daring policy under which it is one)
+DEFECTS = (
+    ("retraction dropped across a wall", "open_ways", retraction_dropped, "free"),
+    ("filament back before a wall", "retractions", primed_early, "free"),
+    ("retraction deeper by 0.8 mm", "retractions", retraction_deeper, "free"),
+    ("retraction halved", "retractions", retraction_halved, "free"),
+    ("blob of an amount of the file", "standstill", blob, "free"),
+    ("last retraction deeper", "retractions", last_retraction_deeper, "free"),
+    ("retraction in two, and less", "retractions", retraction_in_two, "free"),
+    ("priming dropped", "same_print", prime_dropped, "free"),
+    ("filament back above the layer", "retractions", primed_above, "free"),
+    ("filament pulled back above the layer", "retractions", pulled_above, "free"),
+    ("filament back a segment late", "same_print", primed_late, "free"),
+    ("filament back with a segment", "same_print", primed_by_segment, "free"),
+    ("filament pulled back a segment early", "same_print", pulled_early, "free"),
+    ("retraction dropped, and not its priming", "standstill", only_pulled(("pull", 0)), "free"),
+    ("retraction done twice", "same_print", only_pulled(("pull", 2)), "free"),
+    ("priming done twice", "standstill", only_pulled(("push", 2)), "free"),
+    ("retraction moved across a label", "retractions", label_before_retraction, "free"),
+)

@@ -1,0 +1,110 @@
+"""Defects of the speed and acceleration between paths. Kinds as in defects.py."""
+
+import re
+
+from edits import edited, pick, with_f
+from places import links, long_way
+from sliced import number
+
+
+def travel_slow(file, rng):
+    travel = {line.feed for line in file.lines if line.kind == "travel"}
+
+    def make(found):
+        k, _, ways, _ = found
+        feed = next((f for f in (file.lines[file.paths[k].last].feed, 1234) if f not in travel))
+        follower = next(i for i in range(ways[-1] + 1, len(file.lines)) if file.lines[i].kind != "comment")
+        return edited(file, {ways[-1]: [with_f(file.lines[ways[-1]].text, feed)],
+                             follower: [f"G1 F{number(file.lines[ways[-1]].feed)}",
+                                        file.lines[follower].text]})
+
+    return pick(rng, links(file), 20, make)
+
+
+def retraction_slow(file, rng):
+    def make(found):
+        _, pulls, _, _ = found
+        i = pulls[0]
+        return edited(file, {i: [with_f(file.lines[i].text, 777),
+                                 f"G1 F{number(file.lines[i].feed)}"]})
+
+    return pick(rng, links(file), 20, make)
+
+
+def travel_acceleration(file, rng):
+    def make(found):
+        _, _, ways, _ = found
+        i = ways[-1]
+        setter = file.lines[i].state.get("M204")
+        if setter is None:
+            return None
+        other = re.sub(r"([SPT])[0-9.]+", r"\g<1>333", setter)
+        return edited(file, {i: [other, file.lines[i].text, setter]})
+
+    return pick(rng, links(file), 20, make)
+
+
+def around(wanted):
+    """The first move of a link that is `wanted` is done under another acceleration."""
+
+    def defect(file, rng):
+        def make(found):
+            i = wanted(file, found)
+            setter = i is not None and file.lines[i].state.get("M204")
+            if not setter:
+                return None
+            other = re.sub(r"([SPTR])[0-9.]+", r"\g<1>333", setter)
+            return edited(file, {i: [other, file.lines[i].text, setter]})
+
+        return pick(rng, links(file), 50, make)
+
+    return defect
+
+
+def retraction_of(file, found):
+    return next((i for i in found[1] if file.lines[i].kind == "retract"), None)
+
+
+def wipe_of(file, found):
+    return next((i for i in found[1] if file.lines[i].kind == "wipe"), None)
+
+
+def lift_of(file, found):
+    return next((i for i in range(found[1][-1], found[2][0]) if file.lines[i].kind == "z"), None)
+
+
+def lift_slow(file, rng):
+    def make(found):
+        i = lift_of(file, found)
+        return None if i is None else edited(file, {i: [with_f(file.lines[i].text, 123),
+                                                        f"G1 F{number(file.lines[i].feed)}"]})
+
+    return pick(rng, links(file), 50, make)
+
+
+def way_faster(file, rng):
+    feeds = {number(line.feed) for line in file.lines if line.feed}
+
+    def make(found):
+        i = found[2][-1]
+        line = file.lines[i]
+        if number(line.feed * 1.1) in feeds or not long_way(file, found):
+            return None
+        after = next(k for k in range(i + 1, len(file.lines)) if file.lines[k].kind != "comment")
+        return edited(file, {i: [with_f(line.text, line.feed * 1.1)],
+                             after: [f"G1 F{number(line.feed)}", file.lines[after].text]})
+
+    return pick(rng, links(file), 20, make)
+
+
+# (name, rule, defect, the most daring policy under which it is one)
+DEFECTS = (
+    ("travel at another speed", "speeds", travel_slow, "free"),
+    ("retraction at another speed", "speeds", retraction_slow, "free"),
+    ("travel under another acceleration", "speeds", travel_acceleration, "free"),
+    ("lift at another speed", "speeds", lift_slow, "free"),
+    ("retraction under another acceleration", "speeds", around(retraction_of), "free"),
+    ("wipe under another acceleration", "speeds", around(wipe_of), "free"),
+    ("lift under another acceleration", "speeds", around(lift_of), "free"),
+    ("way a tenth faster", "speeds", way_faster, "free"),
+)

@@ -1,0 +1,138 @@
+"""Defects of wipes. Kinds as in defects.py."""
+
+import re
+
+from edits import edited, pick, with_e, with_f
+from places import links, to_piece, wiped
+from sliced import number
+
+
+def wipe_dropped(file, rng):
+    def make(found):
+        k, wipes = found
+        pulled = sum(file.lines[i].e for i in wipes)
+        changes = {i: [] for i in wipes}
+        changes[wipes[-1]] = [f"G1 E{number(pulled)}"]
+        return edited(file, changes)
+
+    return pick(rng, wiped(file), 5, make)
+
+
+def wipe_moved(file, rng):
+    def make(found):
+        _, wipes = found
+        changes = {}
+        for i in wipes:
+            line = file.lines[i]
+            if "J" in line.text:
+                return None
+            changes[i] = [f"G1 X{number(line.end[0] + 0.7)} Y{number(line.end[1] + 0.9)} "
+                          f"E{number(line.e)}"]
+        return edited(file, changes)
+
+    return pick(rng, wiped(file), 20, make)
+
+
+def wipe_halved(file, rng):
+    """The wipe leads half as far along the path, all of its filament on the way."""
+
+    def make(found):
+        k, wipes = found
+        line = file.lines[wipes[-1]]
+        if len(wipes) != 1 or line.length() < 0.5 or not line.text.startswith("G1"):
+            return None
+        middle = [(line.start[i] + line.end[i]) / 2 for i in (0, 1)]
+        return edited(file, {wipes[0]: [f"G1 X{number(middle[0])} Y{number(middle[1])} E{number(line.e)}"]})
+
+    return pick(rng, wiped(file), 50, make)
+
+
+def wipe_across(file, rng):
+    """The wipe of a loop takes the straight way to a point of the loop that lies far."""
+
+    def make(found):
+        k, wipes = found
+        path = file.paths[k]
+        if not path.closed() or len(wipes) != 1:
+            return None
+        line = file.lines[wipes[0]]
+        middle_of = [((line.start[0] + p[0]) / 2, (line.start[1] + p[1]) / 2) for p in path.points]
+        far = [p for p, middle in zip(path.points, middle_of)
+               if min(to_piece(middle, a, b) for a, b in zip(path.points, path.points[1:])) > 1]
+        if not far:
+            return None
+        return edited(file, {wipes[0]: [f"G1 X{number(far[0][0])} Y{number(far[0][1])} E{number(line.e)}"]})
+
+    return pick(rng, wiped(file), 100, make)
+
+
+def wipe_arc_wider(file, rng):
+    found = [i for i, line in enumerate(file.lines) if line.kind == "wipe" and re.match(r"G[23] .*I", line.text)]
+    return pick(rng, found, 1, lambda i: edited(
+        file, {i: [("G3" if file.lines[i].text[1] == "2" else "G2") + file.lines[i].text[2:]]}))
+
+
+def wipe_slow(file, rng):
+    def make(found):
+        _, wipes = found
+        i = wipes[0]
+        return edited(file, {i: [with_f(file.lines[i].text, 321)],
+                             i + 1: [f"G1 F{number(file.lines[i].feed)}", file.lines[i + 1].text]})
+
+    return pick(rng, wiped(file), 20, make)
+
+
+def wipe_pulls_at_once(file, rng):
+    """All of a wipe's filament is pulled in its first move."""
+
+    def make(found):
+        _, wipes = found
+        if len(wipes) < 2 or file.lines[wipes[0]].length() > 0.5 * sum(file.lines[i].length() for i in wipes):
+            return None
+        pulled = sum(file.lines[i].e for i in wipes)
+        changes = {i: [with_e(file.lines[i].text, lambda _: 0)] for i in wipes[1:]}
+        changes[wipes[0]] = [with_e(file.lines[wipes[0]].text, lambda _: pulled)]
+        return edited(file, changes)
+
+    return pick(rng, wiped(file), 200, make)
+
+
+def wipe_without_filament(file, rng):
+    """The wipe's filament is pulled before it."""
+
+    def make(found):
+        _, wipes = found
+        pulled = sum(file.lines[i].e for i in wipes)
+        changes = {i: [re.sub(r"\s*E-?[0-9.]+", "", file.lines[i].text)] for i in wipes}
+        changes[wipes[0]] = [f"G1 E{number(pulled)}"] + changes[wipes[0]]
+        return edited(file, changes)
+
+    return pick(rng, wiped(file), 20, make)
+
+
+def wipe_of_other_path(file, rng):
+    """A path that is not wiped gets the wipe of none."""
+
+    def make(found):
+        _, pulls, ways, _ = found
+        if any(file.lines[i].kind != "retract" for i in pulls):
+            return None
+        pull, at = file.lines[pulls[-1]], file.lines[pulls[-1]].start
+        return edited(file, {pulls[-1]: [f"G1 X{number(at[0] + 1.3)} Y{number(at[1] + 0.8)} E{number(pull.e)} "
+                                         f"F{number(pull.feed)}"]})
+
+    return pick(rng, links(file), 20, make)
+
+
+# (name, rule, defect, the most daring policy under which it is one)
+DEFECTS = (
+    ("wipe dropped", "wipes", wipe_dropped, "free"),
+    ("wipe beside its path", "wipes", wipe_moved, "free"),
+    ("wipe half as long", "wipes", wipe_halved, "free"),
+    ("wipe across its loop", "wipes", wipe_across, "free"),
+    ("arc of a wipe turned", "wipes", wipe_arc_wider, "free"),
+    ("wipe at another speed", "speeds", wipe_slow, "free"),
+    ("wipe pulls all at once", "wipes", wipe_pulls_at_once, "free"),
+    ("wipe's filament pulled before it", "wipes", wipe_without_filament, "free"),
+    ("wipe beside a path that had none", "wipes", wipe_of_other_path, "free"),
+)
