@@ -7,14 +7,13 @@
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_format.h"
+#include "client/gcode/text/decimal.h"
 #include "client/gcode/verify/verifier.h"
 
 namespace traverse::gcode {
 namespace {
 
 constexpr std::string_view kRestated = "times restated x";
-
-bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
 absl::string_view AsAbsl(std::string_view text) { return {text.data(), text.size()}; }
 

@@ -20,10 +20,6 @@
 namespace traverse::testing {
 namespace {
 
-bool Eventually(const std::function<bool()>& condition) {
-  return TestService::Eventually(condition);
-}
-
 std::vector<v1::Layer> Layers(int count) {
   std::vector<v1::Layer> layers;
   for (int i = 0; i < count; ++i) layers.push_back(MakeLayer(static_cast<uint64_t>(i), 20, 10));
@@ -99,7 +95,8 @@ void BearsStalledReaders(absl::Duration time) {
         latencies.size(), absl::FormatDuration(latencies[latencies.size() / 2]).c_str(),
         (most - before) / 1e6, (most - settled) / 1e6);
   }
-  EXPECT_TRUE(Eventually([&] { return server.Metric("traverse_jobs_in_flight") == 0; }));
+  EXPECT_TRUE(
+      TestService::Eventually([&] { return server.Metric("traverse_jobs_in_flight") == 0; }));
 }
 
 // TRAVERSE_STALL_SECONDS: how long they stall, 2 unless stated.
@@ -112,14 +109,14 @@ TEST(DeadCaller, FreesItsPlacesAndWorkers) {
   ServerProcess server({"--log_file=/dev/null"});
   ChildProcess caller({TRAVERSE_LOADGEN_BINARY, "--target=" + server.address(), "--in_flight=8",
                        "--mix=5000", "--duration=60s", "--strategy=ni2opt"});
-  ASSERT_TRUE(Eventually([&] {
+  ASSERT_TRUE(TestService::Eventually([&] {
     return server.Metric("traverse_jobs_in_flight") > 1 &&
            server.Metric("traverse_workers_busy") > 0;
   }));
 
   caller.Signal(SIGKILL);
   caller.Wait();
-  EXPECT_TRUE(Eventually([&] {
+  EXPECT_TRUE(TestService::Eventually([&] {
     return server.Metric("traverse_jobs_in_flight") == 0 &&
            server.Metric("traverse_workers_busy") == 0;
   }));

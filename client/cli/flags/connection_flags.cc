@@ -11,8 +11,6 @@
 namespace traverse::cli {
 namespace {
 
-absl::Status Fault(std::string message) { return absl::InvalidArgumentError(std::move(message)); }
-
 // A header takes printable ASCII alone.
 bool IsToken(const std::string& text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), absl::ascii_isgraph);
@@ -23,16 +21,19 @@ absl::StatusOr<std::string> ReadToken(const Flags& flags) {
     const char* variable = std::getenv("TRAVERSE_TOKEN");
     const std::string token = variable == nullptr ? "" : variable;
     if (token.empty() || IsToken(token)) return token;
-    return Fault("TRAVERSE_TOKEN: not a token: characters that are not printable");
+    return absl::InvalidArgumentError(
+        "TRAVERSE_TOKEN: not a token: characters that are not printable");
   }
   const std::string path = flags.Text("token_file");
   std::ifstream file(path);
   std::string line;
   if (!std::getline(file, line)) {
-    return Fault(absl::StrFormat("--token_file=%s: cannot be read, or is empty", path));
+    return absl::InvalidArgumentError(
+        absl::StrFormat("--token_file=%s: cannot be read, or is empty", path));
   }
   absl::StripAsciiWhitespace(&line);
-  if (!IsToken(line)) return Fault(absl::StrFormat("--token_file=%s: has no token", path));
+  if (!IsToken(line))
+    return absl::InvalidArgumentError(absl::StrFormat("--token_file=%s: has no token", path));
   return line;
 }
 
@@ -60,7 +61,7 @@ absl::StatusOr<Connection> ParseConnectionFlags(const Flags& flags,
   const bool any = flags.Has("tls_ca") || flags.Has("tls_certificate") || flags.Has("tls_key") ||
                    flags.Has("tls_name");
   if (any && flags.Has("tls") && !flags.Switch("tls")) {
-    return Fault("--tls=false with other flags of TLS");
+    return absl::InvalidArgumentError("--tls=false with other flags of TLS");
   }
   if (any || flags.Switch("tls")) connection.options.tls = tls;
   absl::StatusOr<std::string> token = ReadToken(flags);
@@ -68,14 +69,16 @@ absl::StatusOr<Connection> ParseConnectionFlags(const Flags& flags,
   connection.token = *std::move(token);
   const bool local = std::all_of(addresses.begin(), addresses.end(), IsLocal);
   if (!connection.token.empty() && !connection.options.tls && !local && !flags.Switch("insecure")) {
-    return Fault("a token would go to another machine unencrypted: use --tls, or --insecure");
+    return absl::InvalidArgumentError(
+        "a token would go to another machine unencrypted: use --tls, or --insecure");
   }
   return connection;
 }
 
 absl::Status CheckNoConnectionFlags(const Flags& flags) {
   for (const Flag& flag : ConnectionFlagTable()) {
-    if (flags.Has(flag.name)) return Fault(absl::StrFormat("--%s is for --server", flag.name));
+    if (flags.Has(flag.name))
+      return absl::InvalidArgumentError(absl::StrFormat("--%s is for --server", flag.name));
   }
   return absl::OkStatus();
 }

@@ -12,10 +12,8 @@
 namespace traverse::cli {
 namespace {
 
-absl::Status Fault(std::string message) { return absl::InvalidArgumentError(std::move(message)); }
-
 absl::Status BadValue(const std::string& name, const std::string& value, const std::string& want) {
-  return Fault(absl::StrFormat("--%s=%s: %s", name, value, want));
+  return absl::InvalidArgumentError(absl::StrFormat("--%s=%s: %s", name, value, want));
 }
 
 std::string Dashed(const std::string& name) { return (name.size() == 1 ? "-" : "--") + name; }
@@ -39,13 +37,15 @@ const Flag* Find(absl::Span<const Flag> table, const std::string& name) {
 absl::Status Unknown(absl::Span<const Flag> table, const std::string& typed,
                      const std::string& name) {
   if (Find(table, name) != nullptr) {
-    return Fault(absl::StrFormat("unknown flag %s; did you mean %s?", typed, Dashed(name)));
+    return absl::InvalidArgumentError(
+        absl::StrFormat("unknown flag %s; did you mean %s?", typed, Dashed(name)));
   }
   std::vector<std::string> names;
   for (const Flag& flag : table) {
     if (flag.name.size() > 1) names.push_back(flag.name);
   }
-  return Fault(absl::StrFormat("unknown flag %s%s", typed, DidYouMean(name, names, "--")));
+  return absl::InvalidArgumentError(
+      absl::StrFormat("unknown flag %s%s", typed, DidYouMean(name, names, "--")));
 }
 
 absl::Status CheckValue(const Flag& flag, const std::string& value) {
@@ -97,7 +97,8 @@ absl::StatusOr<Flags> Flags::Parse(absl::Span<const Flag> table,
     } else if (!flag->value.empty()) {
       // A flag in its place is no value: else --json --quiet writes a file named --quiet.
       if (++i == arguments.size() || arguments[i].starts_with("--")) {
-        return Fault(absl::StrFormat("%s needs a value: %s", Dashed(name), flag->value));
+        return absl::InvalidArgumentError(
+            absl::StrFormat("%s needs a value: %s", Dashed(name), flag->value));
       }
       value = arguments[i];
     }

@@ -14,8 +14,6 @@
 namespace traverse::cli {
 namespace {
 
-absl::Status Fault(std::string message) { return absl::InvalidArgumentError(std::move(message)); }
-
 v1::Point ToPoint(const std::pair<double, double>& pair) {
   v1::Point point;
   point.set_x_mm(pair.first);
@@ -32,14 +30,15 @@ absl::StatusOr<std::optional<std::pair<uint64_t, uint64_t>>> ParseLayers(const F
   const bool digits = text.find_first_not_of("0123456789-") == std::string::npos;
   if (!digits || ends.size() > 2 || !absl::SimpleAtoi(ends.front(), &first) ||
       !absl::SimpleAtoi(ends.back(), &last) || first < 1 || last < first) {
-    return Fault(absl::StrFormat("--layers=%s: not A-B, two positions from 1", text));
+    return absl::InvalidArgumentError(
+        absl::StrFormat("--layers=%s: not A-B, two positions from 1", text));
   }
   return std::make_pair(first, last);
 }
 
 absl::StatusOr<std::optional<v1::Cleaning>> ParseCleaning(const Flags& flags) {
   if (flags.Has("cleaning_every") != flags.Has("cleaning_point")) {
-    return Fault("--cleaning_every and --cleaning_point go together");
+    return absl::InvalidArgumentError("--cleaning_every and --cleaning_point go together");
   }
   const auto every = flags.Integer("cleaning_every", 1, std::numeric_limits<int32_t>::max());
   if (!every.ok()) return every.status();
@@ -70,15 +69,16 @@ absl::StatusOr<CostSettings> ParseCost(const Flags& flags) {
   if (status.ok()) status = read("retraction_threshold", 0, 1e7, cost.retraction_threshold_mm);
   if (!status.ok()) return status;
   if (cost.accel_mm_s2 && *cost.accel_mm_s2 > 0 && *cost.accel_mm_s2 < kLeastAccelMmS2) {
-    return Fault(absl::StrFormat("--travel_accel=%s: not 0 or a number from %g to 1e+07",
-                                 flags.Text("travel_accel"), kLeastAccelMmS2));
+    return absl::InvalidArgumentError(
+        absl::StrFormat("--travel_accel=%s: not 0 or a number from %g to 1e+07",
+                        flags.Text("travel_accel"), kLeastAccelMmS2));
   }
   return cost;
 }
 
 // `fault` begins with a setting's name, which is the flag's.
 absl::Status AsFlagFault(const absl::Status& fault) {
-  return fault.ok() ? fault : Fault(absl::StrCat("--", fault.message()));
+  return fault.ok() ? fault : absl::InvalidArgumentError(absl::StrCat("--", fault.message()));
 }
 
 }  // namespace
@@ -89,9 +89,11 @@ namespace {
 absl::StatusOr<gcode::MachineLimits> ReadMachine(const std::string& name) {
   constexpr size_t kMostBytes = size_t{16} << 20;
   const absl::StatusOr<std::string> text = ReadWholeFile(name, kMostBytes);
-  if (!text.ok()) return Fault(absl::StrCat("--machine: ", text.status().message()));
+  if (!text.ok())
+    return absl::InvalidArgumentError(absl::StrCat("--machine: ", text.status().message()));
   absl::StatusOr<gcode::MachineLimits> limits = gcode::ReadMachineLimits(*text, DisplayName(name));
-  if (!limits.ok()) return Fault(absl::StrCat("--machine: ", limits.status().message()));
+  if (!limits.ok())
+    return absl::InvalidArgumentError(absl::StrCat("--machine: ", limits.status().message()));
   return limits;
 }
 
@@ -174,7 +176,7 @@ absl::StatusOr<GcodeOptions> ParseGcodeOptions(const Flags& flags) {
   const std::string allow = flags.Text("allow");
   const std::optional<gcode::Allowance> allowed = gcode::AllowanceOfNames(allow);
   if (!allowed) {
-    return Fault(absl::StrFormat(
+    return absl::InvalidArgumentError(absl::StrFormat(
         "--allow=%s: not infill_order, wall_order or fan_order, or several with commas between",
         allow));
   }

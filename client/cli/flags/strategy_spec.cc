@@ -12,8 +12,6 @@
 namespace traverse::cli {
 namespace {
 
-absl::Status Fault(std::string message) { return absl::InvalidArgumentError(std::move(message)); }
-
 const v1::StrategyInfo* FindStrategy(const v1::ListStrategiesResponse& known,
                                      const std::string& name) {
   for (const v1::StrategyInfo& info : known.strategies()) {
@@ -38,15 +36,16 @@ bool HasOption(const v1::StrategyInfo& info, const std::string& name) {
 absl::Status UnknownStrategy(const v1::ListStrategiesResponse& known, const std::string& name) {
   std::vector<std::string> names;
   for (const v1::StrategyInfo& info : known.strategies()) names.push_back(info.name());
-  return Fault(absl::StrFormat("unknown strategy \"%s\"%s (`traverse strategies` lists them)", name,
-                               DidYouMean(name, names)));
+  return absl::InvalidArgumentError(
+      absl::StrFormat("unknown strategy \"%s\"%s (`traverse strategies` lists them)", name,
+                      DidYouMean(name, names)));
 }
 
 absl::Status CheckOptions(const v1::StrategyInfo& info, const v1::Strategy& strategy) {
   for (const auto& [name, value] : strategy.options()) {
     if (HasOption(info, name)) continue;
-    return Fault(absl::StrFormat("%s has no option \"%s\"%s", info.name(), name,
-                                 DidYouMean(name, OptionNames(info))));
+    return absl::InvalidArgumentError(absl::StrFormat("%s has no option \"%s\"%s", info.name(),
+                                                      name, DidYouMean(name, OptionNames(info))));
   }
   return absl::OkStatus();
 }
@@ -56,7 +55,7 @@ absl::Status CheckOptions(const v1::StrategyInfo& info, const v1::Strategy& stra
 absl::StatusOr<std::pair<std::string, std::string>> ParseOption(const std::string& text) {
   const size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
-    return Fault(absl::StrFormat("option \"%s\" is not NAME=VALUE", text));
+    return absl::InvalidArgumentError(absl::StrFormat("option \"%s\" is not NAME=VALUE", text));
   }
   return std::make_pair(text.substr(0, equals), text.substr(equals + 1));
 }
@@ -66,7 +65,8 @@ absl::StatusOr<std::vector<StrategySpec>> ParseStrategySpecs(const std::string& 
   const std::vector<std::string> words = absl::StrSplit(text, ',');
   for (const std::string& word : words) {
     const std::vector<std::string> parts = absl::StrSplit(word, ':');
-    if (parts.front().empty()) return Fault(absl::StrFormat("\"%s\" names no strategy", text));
+    if (parts.front().empty())
+      return absl::InvalidArgumentError(absl::StrFormat("\"%s\" names no strategy", text));
     StrategySpec spec;
     spec.label = word;
     spec.strategy.set_name(parts.front());
@@ -104,8 +104,9 @@ absl::Status ResolveStrategies(const v1::ListStrategiesResponse& known,
   }
   for (size_t i = 0; i < options.size(); ++i) {
     if (used[i]) continue;
-    return Fault(absl::StrFormat("--option=%s: no strategy asked for has this option%s",
-                                 options[i].first, DidYouMean(options[i].first, all_names)));
+    return absl::InvalidArgumentError(
+        absl::StrFormat("--option=%s: no strategy asked for has this option%s", options[i].first,
+                        DidYouMean(options[i].first, all_names)));
   }
   return absl::OkStatus();
 }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <system_error>
 
+#include "absl/status/status.h"
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_format.h"
 #include "client/cli/help.h"
@@ -15,14 +16,13 @@
 namespace traverse::cli {
 namespace {
 
-absl::Status Fault(std::string message) { return absl::InvalidArgumentError(std::move(message)); }
-
 // A file can be made under `name`, as far as its folder goes.
 absl::Status CheckFolder(const std::string& flag, const std::string& name) {
   const std::filesystem::path folder = std::filesystem::path(name).parent_path();
   std::error_code error;
   if (folder.empty() || std::filesystem::is_directory(folder, error)) return absl::OkStatus();
-  return Fault(absl::StrFormat("--%s=%s: there is no folder %s", flag, name, folder.string()));
+  return absl::InvalidArgumentError(
+      absl::StrFormat("--%s=%s: there is no folder %s", flag, name, folder.string()));
 }
 
 }  // namespace
@@ -44,18 +44,20 @@ absl::StatusOr<ViewFlags> ParseViewFlags(const Flags& flags) {
   out.picture = flags.Text("picture");
   if (flags.Has("picture")) {
     if (!view::PictureFormatOf(out.picture)) {
-      return Fault(absl::StrFormat("--picture=%s: ends neither in .svg nor in .png", out.picture));
+      return absl::InvalidArgumentError(
+          absl::StrFormat("--picture=%s: ends neither in .svg nor in .png", out.picture));
     }
     if (absl::Status status = CheckFolder("picture", out.picture); !status.ok()) return status;
   } else if (flags.Has("layer")) {
-    return Fault("--layer is for --picture");
+    return absl::InvalidArgumentError("--layer is for --picture");
   }
   out.report = flags.Text("report");
   if (flags.Has("report")) {
     // Another name may well be that of the input.
     const std::string lower = absl::AsciiStrToLower(out.report);
     if (!lower.ends_with(".html") && !lower.ends_with(".htm")) {
-      return Fault(absl::StrFormat("--report=%s: does not end in .html", out.report));
+      return absl::InvalidArgumentError(
+          absl::StrFormat("--report=%s: does not end in .html", out.report));
     }
     if (absl::Status status = CheckFolder("report", out.report); !status.ok()) return status;
   }
@@ -70,12 +72,12 @@ absl::Status CheckViewLayer(const ViewFlags& flags, const InputJob& job) {
   const size_t first = job.first_layer + 1;
   const size_t last = job.first_layer + job.layers.size();
   if (flags.layer && (*flags.layer < first || *flags.layer > last)) {
-    return Fault(
+    return absl::InvalidArgumentError(
         absl::StrFormat("--layer=%d: not one of the layers %d to %d", *flags.layer, first, last));
   }
   if (job.layers.empty())
-    return Fault(absl::StrFormat("--%s: the file has no layers",
-                                 flags.picture.empty() ? "report" : "picture"));
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "--%s: the file has no layers", flags.picture.empty() ? "report" : "picture"));
   return absl::OkStatus();
 }
 

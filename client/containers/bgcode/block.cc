@@ -19,8 +19,6 @@ constexpr size_t kChecksumBytes = 4;
 // memory here, and of a file made for that only 8.
 constexpr size_t kMaxBlocks = size_t{1} << 18;
 
-absl::Status Fault(const std::string& text) { return absl::InvalidArgumentError(text); }
-
 bool IsKnown(BlockKind kind) { return kind <= BlockKind::kThumbnail; }
 
 size_t ParameterBytes(BlockKind kind) { return kind == BlockKind::kThumbnail ? 6 : 2; }
@@ -49,9 +47,11 @@ class Parser {
   absl::Status ParseBlock() {
     const size_t left = file_.size() - next_;
     if (out_.blocks.size() == kMaxBlocks) {
-      return Fault(absl::StrFormat("%s: more blocks than %d", Place(), kMaxBlocks));
+      return absl::InvalidArgumentError(
+          absl::StrFormat("%s: more blocks than %d", Place(), kMaxBlocks));
     }
-    if (left < kShortHeaderBytes) return Fault(Place() + ": the file ends in its header");
+    if (left < kShortHeaderBytes)
+      return absl::InvalidArgumentError(Place() + ": the file ends in its header");
     Block block;
     block.offset = next_;
     block.kind = static_cast<BlockKind>(LoadU16(file_, next_));
@@ -61,14 +61,16 @@ class Parser {
     size_t header = kShortHeaderBytes;
     if (block.compression != BlockCompression::kNone) {
       header = kLongHeaderBytes;
-      if (left < header) return Fault(Place() + ": the file ends in its header");
+      if (left < header)
+        return absl::InvalidArgumentError(Place() + ": the file ends in its header");
       stored = LoadU32(file_, next_ + 8);
     }
     const size_t parameters = FindParameterBytes(block, header, stored);
     const size_t whole = header + parameters + stored + ChecksumBytes();
     if (whole > left) {
-      return Fault(absl::StrFormat("%s announces %d bytes of %s, and the file has %d more", Place(),
-                                   stored, BlockName(block.kind), left - header));
+      return absl::InvalidArgumentError(
+          absl::StrFormat("%s announces %d bytes of %s, and the file has %d more", Place(), stored,
+                          BlockName(block.kind), left - header));
     }
     block.whole = file_.substr(next_, whole);
     block.data = block.whole.substr(header + parameters, stored);
@@ -102,9 +104,9 @@ class Parser {
   absl::Status CheckChecksum(const Block& block) const {
     if (ChecksumBytes() == 0 || HasRightChecksum(block.whole)) return absl::OkStatus();
     const size_t end = block.whole.size() - kChecksumBytes;
-    return Fault(absl::StrFormat("%s (%s): its CRC32 is said to be %08x, but it is %08x", Place(),
-                                 BlockName(block.kind), LoadU32(block.whole, end),
-                                 Crc32(block.whole.substr(0, end))));
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "%s (%s): its CRC32 is said to be %08x, but it is %08x", Place(), BlockName(block.kind),
+        LoadU32(block.whole, end), Crc32(block.whole.substr(0, end))));
   }
 
   std::string_view file_;
@@ -152,16 +154,17 @@ std::string BlockPlace(const BgcodeBlocks& file, size_t index) {
 
 absl::StatusOr<BgcodeBlocks> ParseBlocks(std::string_view file) {
   if (file.size() < kFileHeaderBytes || !file.starts_with(kBgcodeMagic)) {
-    return Fault("the header of binary G-code is cut short");
+    return absl::InvalidArgumentError("the header of binary G-code is cut short");
   }
   const uint32_t version = LoadU32(file, 4);
   if (version != kBgcodeVersion) {
-    return Fault(absl::StrFormat("binary G-code of version %d is not known, only 1", version));
+    return absl::InvalidArgumentError(
+        absl::StrFormat("binary G-code of version %d is not known, only 1", version));
   }
   const uint16_t checksum = LoadU16(file, 8);
   if (checksum > static_cast<uint16_t>(BgcodeChecksum::kCrc32)) {
-    return Fault(absl::StrFormat("checksums of kind %d are not known, only 0 (none) and 1 (CRC32)",
-                                 checksum));
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "checksums of kind %d are not known, only 0 (none) and 1 (CRC32)", checksum));
   }
   BgcodeBlocks out;
   out.checksum = static_cast<BgcodeChecksum>(checksum);

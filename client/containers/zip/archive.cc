@@ -18,12 +18,10 @@ namespace {
 
 using namespace zip_format;  // NOLINT: offsets of one format
 
-absl::Status Fault(const std::string& text) { return absl::InvalidArgumentError(text); }
-
 absl::Status EntryFault(std::string_view name, const std::string& text) {
   constexpr size_t kMaxShown = 100;
   const std::string shown(name.substr(0, kMaxShown));
-  return Fault(absl::StrFormat("entry %s: %s", absl::CHexEscape(shown), text));
+  return absl::InvalidArgumentError(absl::StrFormat("entry %s: %s", absl::CHexEscape(shown), text));
 }
 
 // Where the record that ends the archive begins: before its comment, which ends the file.
@@ -40,7 +38,7 @@ std::optional<size_t> FindEnd(std::string_view file) {
 
 absl::Status CheckName(std::string_view name) {
   const auto refuse = [&](const char* why) { return EntryFault(name, why); };
-  if (name.empty()) return Fault("an entry without a name");
+  if (name.empty()) return absl::InvalidArgumentError("an entry without a name");
   if (name.find('\0') != std::string_view::npos) return refuse("its name has a zero byte");
   if (name.find('\\') != std::string_view::npos) return refuse("its name has a backslash");
   if (name.size() > 1 && name[1] == ':') return refuse("its name begins with a drive");
@@ -56,14 +54,15 @@ absl::Status CheckName(std::string_view name) {
 // Fills `entry` from the record of the directory at `at`.
 absl::Status ParseRecord(std::string_view file, size_t at, size_t end, ZipEntry& entry) {
   if (end - at < kRecordBytes || LoadU32(file, at) != kRecordSignature) {
-    return Fault(absl::StrFormat("the directory is damaged at offset %d", at));
+    return absl::InvalidArgumentError(absl::StrFormat("the directory is damaged at offset %d", at));
   }
   const size_t name_bytes = LoadU16(file, at + kRecordNameBytes);
   entry.record = at;
   entry.record_bytes = kRecordBytes + name_bytes + LoadU16(file, at + kRecordExtraBytes) +
                        LoadU16(file, at + kRecordCommentBytes);
   if (entry.record_bytes > end - at) {
-    return Fault(absl::StrFormat("the directory is cut short at offset %d", at));
+    return absl::InvalidArgumentError(
+        absl::StrFormat("the directory is cut short at offset %d", at));
   }
   entry.name = file.substr(at + kRecordBytes, name_bytes);
   if (absl::Status status = CheckName(entry.name); !status.ok()) return status;
@@ -264,10 +263,10 @@ const ZipEntry* ZipArchive::Find(std::string_view name) const {
 
 absl::StatusOr<ZipArchive> ParseZip(std::string_view file) {
   const std::optional<size_t> end = FindEnd(file);
-  if (!end) return Fault("the zip archive is cut short: it has no directory");
+  if (!end) return absl::InvalidArgumentError("the zip archive is cut short: it has no directory");
   if (*end >= kZip64LocatorBytes &&
       LoadU32(file, *end - kZip64LocatorBytes) == kZip64LocatorSignature) {
-    return Fault("it is a zip64 archive, which are not read");
+    return absl::InvalidArgumentError("it is a zip64 archive, which are not read");
   }
   ZipArchive out;
   out.file = file;
@@ -276,10 +275,10 @@ absl::StatusOr<ZipArchive> ParseZip(std::string_view file) {
   const size_t bytes = LoadU32(file, *end + kEndDirectoryBytes);
   const size_t count = LoadU16(file, *end + kEndEntries);
   if (LoadU16(file, *end + kEndDisk) != 0 || LoadU16(file, *end + kEndEntriesHere) != count) {
-    return Fault("it is one of several parts of an archive");
+    return absl::InvalidArgumentError("it is one of several parts of an archive");
   }
   if (out.directory > *end || bytes > *end - out.directory) {
-    return Fault("the zip archive's directory is not where it is said to be");
+    return absl::InvalidArgumentError("the zip archive's directory is not where it is said to be");
   }
   out.directory_end = out.directory + bytes;
   size_t at = out.directory;
@@ -291,7 +290,8 @@ absl::StatusOr<ZipArchive> ParseZip(std::string_view file) {
     at += entry.record_bytes;
     out.entries.push_back(entry);
   }
-  if (at != out.directory_end) return Fault("the directory has more than the entries counted");
+  if (at != out.directory_end)
+    return absl::InvalidArgumentError("the directory has more than the entries counted");
   if (absl::Status status = CheckTogether(out); !status.ok()) return status;
   return out;
 }

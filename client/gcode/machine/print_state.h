@@ -51,6 +51,8 @@ using SlotMask = uint32_t;
 
 constexpr SlotMask SlotBit(Slot slot) { return SlotMask{1} << slot; }
 
+inline constexpr SlotMask kAllSlots = (SlotMask{1} << kSlotCount) - 1;
+
 // The slots of how the machine moves, as against what it deposits: they may differ between the
 // travel to a path and the path.
 inline constexpr SlotMask kDynamicsSlots =

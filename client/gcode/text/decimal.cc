@@ -9,8 +9,6 @@ namespace {
 constexpr Decimal kPowers[kDecimalDigits + 1] = {
     1, 10, 100, 1'000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000, 1'000'000'000};
 
-bool IsDigit(char c) { return c >= '0' && c <= '9'; }
-
 // A number of any length from its first digit or point on; see ParseDecimal.
 std::optional<Decimal> ParseLong(const char** text, const char* end) {
   const char* p = *text;

@@ -23,6 +23,8 @@ inline constexpr Decimal kDecimalOne = 1'000'000'000;
 // Numbers beyond this are refused, so that sums and differences of a few cannot overflow.
 inline constexpr Decimal kDecimalMax = 1'000'000'000 * kDecimalOne;
 
+inline bool IsDigit(char c) { return c >= '0' && c <= '9'; }
+
 inline double ToDouble(Decimal value) { return static_cast<double>(value) * 1e-9; }
 
 // Reads a number as G-code writes it (`-.8`, `12`, `9000.000`, `+1.5`) at `*text` and moves `*text`

@@ -10,7 +10,6 @@ namespace {
 constexpr int kMaxCommandNumber = 99999;
 
 bool IsBlank(char c) { return c == ' ' || c == '\t'; }
-bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 char Capital(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 bool IsLetter(char c) { return c >= 'A' && c <= 'Z'; }
 

@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "absl/strings/str_cat.h"
+#include "client/gcode/text/decimal.h"
 
 namespace traverse::gcode {
 namespace {
@@ -19,8 +20,6 @@ struct NumberedLine {
   bool checksum = false;
   std::string_view rest;  // behind the checksum: blanks and a comment
 };
-
-bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
 bool IsCommand(std::string_view line) {
   const size_t first = line.find_first_not_of(" \t");

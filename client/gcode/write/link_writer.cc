@@ -13,8 +13,6 @@ namespace {
 // What is left of a way behind a slope is at least this long.
 constexpr double kMinSlopeRestMm = 0.5;
 
-constexpr SlotMask kAllSlots = (SlotMask{1} << kSlotCount) - 1;
-
 bool IsSoft(const Block& block) { return (block.link & (kLinkSplits | kLinkFixed)) == 0; }
 
 // What a wipe of the file does.

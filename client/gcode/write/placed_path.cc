@@ -12,8 +12,6 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr SlotMask kAllSlots = (SlotMask{1} << kSlotCount) - 1;
-
 // I and J, or R, of an arc.
 std::string ArcWords(const BodySegment& segment, NumberStyle style) {
   std::string words;

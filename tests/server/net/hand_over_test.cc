@@ -32,10 +32,6 @@ struct Pair {
   int ends[2];
 };
 
-bool Eventually(const std::function<bool()>& condition) {
-  return testing::TestService::Eventually(condition);
-}
-
 TEST(HandOver, AHandThatIsKeptHoldsUpNoOther) {
   std::atomic<bool> done{false};
   std::mutex mutex;
@@ -53,12 +49,12 @@ TEST(HandOver, AHandThatIsKeptHoldsUpNoOther) {
   hand_over.Add(one.given_away(), "one");
   hand_over.Add(other.given_away(), "other");
 
-  EXPECT_TRUE(Eventually([&] {
+  EXPECT_TRUE(testing::TestService::Eventually([&] {
     std::lock_guard<std::mutex> lock(mutex);
     return hands == std::set<int>{0, 1};
   }));
   done = true;
-  EXPECT_TRUE(Eventually([&] { return one.IsClosed() && other.IsClosed(); }));
+  EXPECT_TRUE(testing::TestService::Eventually([&] { return one.IsClosed() && other.IsClosed(); }));
   hand_over.Stop([](const std::string& peer) { ADD_FAILURE() << peer << " is done with"; });
 }
 
@@ -82,7 +78,8 @@ class KeptHand {
   std::pair<int, std::string> Add(const std::string& peer) {
     const int socket = open("/dev/null", O_RDONLY | O_CLOEXEC);
     std::string away = hand_over_.Add(socket, peer);
-    EXPECT_TRUE(Eventually([&] { return taken_.load(); }));  // the first, at once
+    EXPECT_TRUE(
+        testing::TestService::Eventually([&] { return taken_.load(); }));  // the first, at once
     return {socket, std::move(away)};
   }
   void LetGo() { done_ = true; }
@@ -109,7 +106,7 @@ TEST(HandOver, AddressesTakeTurns) {
 
   kept.LetGo();
 
-  EXPECT_TRUE(Eventually([&] { return kept.order().size() == 4; }));
+  EXPECT_TRUE(testing::TestService::Eventually([&] { return kept.order().size() == 4; }));
   EXPECT_THAT(kept.order(), ::testing::ElementsAre(first, second, other, third));
 }
 
@@ -123,7 +120,7 @@ TEST(HandOver, IsFullWhileManyOfManyAddressesWait) {
 
   kept.LetGo();
 
-  EXPECT_TRUE(Eventually([&] { return !kept.hand_over().IsFull(); }));
+  EXPECT_TRUE(testing::TestService::Eventually([&] { return !kept.hand_over().IsFull(); }));
 }
 
 TEST(HandOver, TurnsTheLastAwayOfTheAddressThatHasMost) {
@@ -152,7 +149,7 @@ TEST(HandOver, StopCutsWhatIsTakenAndClosesWhatWaits) {
   const Pair kept;
   const Pair waiting;
   hand_over.Add(kept.given_away(), "kept");
-  ASSERT_TRUE(Eventually([&] { return taken.load(); }));
+  ASSERT_TRUE(testing::TestService::Eventually([&] { return taken.load(); }));
   hand_over.Add(waiting.given_away(), "waiting");
 
   std::vector<std::string> cut;

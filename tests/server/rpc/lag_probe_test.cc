@@ -32,15 +32,11 @@ class OwnServer {
   std::unique_ptr<grpc::Server> server_;
 };
 
-bool Eventually(const std::function<bool()>& condition) {
-  return testing::TestService::Eventually(condition);
-}
-
 TEST(LagProbe, TellsHowLongACallTakes) {
   OwnServer server(/*with_health=*/true);
   LagProbe probe(server.get());
   for (int calls = 0; calls < 3; ++calls) {
-    EXPECT_TRUE(Eventually([&] { return probe.Look().count() > 0; }));
+    EXPECT_TRUE(testing::TestService::Eventually([&] { return probe.Look().count() > 0; }));
   }
 }
 
