@@ -41,7 +41,12 @@ for argument in "$@"; do
 done
 
 deploy/install-packages.sh "$packages"
-cmake --preset "$preset" -DTRAVERSE_TESTS=ON
+# A clean checkout is built a folder at a time, in half the time; a build that is there goes on as it was begun.
+lumps=()
+if [ "$preset" = release ] && [ ! -e "build/$preset/CMakeCache.txt" ]; then
+  lumps=(-DCMAKE_UNITY_BUILD=ON)
+fi
+cmake --preset "$preset" -DTRAVERSE_TESTS=ON "${lumps[@]}"
 cmake --build --preset "$preset" --target "${target[@]}"
 if [ -n "$fuzz_seconds" ]; then
   exec tests/fuzz/run.sh "$fuzz_seconds"

@@ -13,9 +13,12 @@ def gcode(file, suites, seconds=120):
     return place(f"client/gcode/{file}", "gcode_tests", suites, seconds)
 
 
+def verify(file):
+    return place(f"client/gcode/verify/{file}", "gcode_verify_tests", "Verify*")
+
+
 # What ShuffledFile and Golden write is held against the verifier and against files looked at by eye.
 WRITTEN = "LayerWriter*:RewriteGcode*:Dialects/Golden*:Kept/ShuffledFile*"
-VERIFIED = "Verify*"
 
 PLACES = [
     place("server/access/auth.cc", "server_jobs_tests", "ParseTokens*:Authenticator*"),
@@ -39,15 +42,15 @@ PLACES = [
     gcode("plan/policy.cc", "Policy*"),
     gcode("plan/travel_rules.cc", "TravelRules*"),
     gcode("text/decimal.cc", "Decimal*:NumberStyle*"),
-    gcode("verify/machine/command_words.cc", VERIFIED),
-    gcode("verify/machine/print_settings.cc", VERIFIED),
-    gcode("verify/machine/verify_machine.cc", VERIFIED),
-    gcode("verify/match/visits.cc", VERIFIED),
-    gcode("verify/rules/lifts.cc", VERIFIED),
-    gcode("verify/rules/open_ways.cc", VERIFIED),
-    gcode("verify/rules/order.cc", VERIFIED),
-    gcode("verify/rules/retractions.cc", VERIFIED),
-    gcode("verify/sections.cc", VERIFIED),
+    verify("machine/command_words.cc"),
+    verify("machine/print_settings.cc"),
+    verify("machine/verify_machine.cc"),
+    verify("match/visits.cc"),
+    verify("rules/lifts.cc"),
+    verify("rules/open_ways.cc"),
+    verify("rules/order.cc"),
+    verify("rules/retractions.cc"),
+    verify("sections.cc"),
     gcode("write/gcode_out.cc", WRITTEN),
     gcode("write/link_writer.cc", WRITTEN),
     gcode("write/placed_path.cc", f"PlacedPath*:{WRITTEN}"),

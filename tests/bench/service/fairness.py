@@ -30,7 +30,7 @@ def parse():
     parser.add_argument("--server_flag", action="append", default=[])
     arguments = parser.parse_args()
     if arguments.short:
-        arguments.rounds, arguments.seconds = 2, 4
+        arguments.rounds, arguments.seconds = 2, 2.5
     return arguments
 
 

@@ -29,7 +29,7 @@ def parse():
     parser.add_argument("--server_flag", action="append", default=[])
     arguments = parser.parse_args()
     if arguments.short:
-        arguments.seconds, arguments.sizes = 3, "1,400"
+        arguments.seconds, arguments.sizes = 2, "1,400"
     return arguments
 
 

@@ -1,0 +1,28 @@
+# With CMAKE_UNITY_BUILD, compiles the files of a folder together: most of their time is for the headers they share.
+# By folder, so that a new file changes no other folder's lump, and a name that two unnamed namespaces have in common
+# is looked for in one folder. See traverse_compile_alone.
+function(traverse_lump_folders directory)
+  get_property(targets DIRECTORY ${directory} PROPERTY BUILDSYSTEM_TARGETS)
+  foreach(target IN LISTS targets)
+    get_target_property(sources ${target} SOURCES)
+    get_target_property(base ${target} SOURCE_DIR)
+    get_target_property(lumped ${target} UNITY_BUILD)
+    if(NOT sources OR NOT lumped)
+      continue()
+    endif()
+    set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+    foreach(source IN LISTS sources)
+      get_filename_component(folder ${source} DIRECTORY)
+      if(NOT IS_ABSOLUTE ${source})
+        string(MAKE_C_IDENTIFIER "in_${folder}" group)
+        set_source_files_properties(${base}/${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${group})
+      endif()
+    endforeach()
+  endforeach()
+  get_property(folders DIRECTORY ${directory} PROPERTY SUBDIRECTORIES)
+  foreach(folder IN LISTS folders)
+    traverse_lump_folders(${folder})
+  endforeach()
+endfunction()
+
+traverse_lump_folders(${PROJECT_SOURCE_DIR})
