@@ -21,7 +21,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "server/rpc/other_calls.h"
+#include "server/net/other_calls.h"
 
 namespace traverse {
 namespace {

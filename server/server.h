@@ -19,8 +19,8 @@
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "server/access/credentials.h"
+#include "server/net/lag_probe.h"
 #include "server/ops/metrics/metrics_http.h"
-#include "server/rpc/lag_probe.h"
 #include "server/rpc/route_optimizer_service.h"
 #include "server/service_core.h"
 

@@ -5,7 +5,7 @@
 
 #include "absl/strings/match.h"
 #include "engine/validator.h"
-#include "tests/support/instances.h"
+#include "tests/support/problems/instances.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {

@@ -15,8 +15,8 @@
 #include "client/containers/bytes.h"
 #include "client/containers/container.h"
 #include "client/containers/deflate.h"
-#include "tests/fuzz/byte_changes.h"
-#include "tests/fuzz/check.h"
+#include "tests/fuzz/support/byte_changes.h"
+#include "tests/fuzz/support/check.h"
 
 namespace traverse::fuzz {
 namespace {

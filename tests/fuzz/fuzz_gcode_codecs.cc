@@ -8,7 +8,7 @@
 
 #include "client/containers/bgcode/heatshrink.h"
 #include "client/containers/bgcode/meatpack.h"
-#include "tests/fuzz/check.h"
+#include "tests/fuzz/support/check.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace traverse;

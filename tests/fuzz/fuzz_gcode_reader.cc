@@ -10,8 +10,8 @@
 #include "absl/strings/match.h"
 #include "client/gcode/gcode_job.h"
 #include "client/gcode/read/reader.h"
-#include "tests/fuzz/check.h"
-#include "tests/fuzz/gcode_mutator.h"
+#include "tests/fuzz/support/check.h"
+#include "tests/fuzz/support/gcode_mutator.h"
 
 namespace traverse::fuzz {
 namespace {

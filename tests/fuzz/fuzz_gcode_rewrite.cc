@@ -14,8 +14,8 @@
 #include "client/gcode/verify/verifier.h"
 #include "engine/base/rng.h"
 #include "tests/client/gcode/support/random_order.h"
-#include "tests/fuzz/check.h"
-#include "tests/fuzz/gcode_mutator.h"
+#include "tests/fuzz/support/check.h"
+#include "tests/fuzz/support/gcode_mutator.h"
 
 namespace traverse::fuzz {
 namespace {

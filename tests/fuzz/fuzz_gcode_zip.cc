@@ -14,8 +14,8 @@
 #include "client/containers/zip/archive.h"
 #include "client/containers/zip/md5.h"
 #include "tests/client/containers/zip_maker.h"
-#include "tests/fuzz/byte_changes.h"
-#include "tests/fuzz/check.h"
+#include "tests/fuzz/support/byte_changes.h"
+#include "tests/fuzz/support/check.h"
 
 namespace traverse::fuzz {
 namespace {

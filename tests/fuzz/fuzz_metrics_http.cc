@@ -10,8 +10,8 @@
 #include <string>
 
 #include "server/ops/metrics/metrics_http.h"
-#include "tests/fuzz/check.h"
-#include "tests/fuzz/tcp_exchange.h"
+#include "tests/fuzz/support/check.h"
+#include "tests/fuzz/support/tcp_exchange.h"
 
 namespace {
 

@@ -14,8 +14,8 @@
 #include "absl/strings/str_cat.h"
 #include "client/api/job_result.h"
 #include "server/server.h"
-#include "tests/fuzz/check.h"
-#include "tests/fuzz/seed_jobs.h"
+#include "tests/fuzz/support/check.h"
+#include "tests/fuzz/support/seed_jobs.h"
 #include "traverse/v1/route_optimizer_service.pb.h"
 
 namespace traverse::fuzz {

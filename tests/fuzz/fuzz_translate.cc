@@ -8,8 +8,8 @@
 #include "absl/strings/str_cat.h"
 #include "engine/model/plan.h"
 #include "server/translate/translate.h"
-#include "tests/fuzz/check.h"
-#include "tests/fuzz/seed_jobs.h"
+#include "tests/fuzz/support/check.h"
+#include "tests/fuzz/support/seed_jobs.h"
 
 namespace traverse::fuzz {
 namespace {

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "server/server.h"
-#include "tests/fuzz/check.h"
-#include "tests/fuzz/seed_jobs.h"
-#include "tests/fuzz/tcp_exchange.h"
+#include "tests/fuzz/support/check.h"
+#include "tests/fuzz/support/seed_jobs.h"
+#include "tests/fuzz/support/tcp_exchange.h"
 #include "traverse/v1/route_optimizer_service.grpc.pb.h"
 
 namespace traverse::fuzz {

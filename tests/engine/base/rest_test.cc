@@ -19,7 +19,7 @@
 #include "engine/search/order_tree.h"
 #include "engine/search/search_state.h"
 #include "tests/support/counting_turn.h"
-#include "tests/support/instances.h"
+#include "tests/support/problems/instances.h"
 
 namespace traverse {
 namespace {

@@ -10,8 +10,8 @@
 #include "engine/cost/entry_choice.h"
 #include "engine/cost/route_cost.h"
 #include "engine/validator.h"
-#include "tests/support/instances.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/problems/random_plan.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {

@@ -7,8 +7,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "engine/base/rng.h"
-#include "tests/support/brute_force.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/brute_force.h"
+#include "tests/support/problems/random_plan.h"
 
 namespace traverse {
 namespace {

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "absl/strings/str_cat.h"
-#include "tests/support/instances.h"
-#include "tests/support/walled_problem.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/problems/walled_problem.h"
 
 namespace traverse {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "engine/base/rng.h"
-#include "tests/support/walled_problem.h"
+#include "tests/support/problems/walled_problem.h"
 
 namespace traverse {
 namespace {

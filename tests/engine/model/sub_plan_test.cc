@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "absl/strings/str_cat.h"
-#include "tests/support/instances.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/problems/random_plan.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {

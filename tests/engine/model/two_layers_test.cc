@@ -4,7 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "engine/validator.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/random_plan.h"
 
 namespace traverse {
 namespace {

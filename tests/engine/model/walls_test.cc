@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/support/instances.h"
+#include "tests/support/problems/instances.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {

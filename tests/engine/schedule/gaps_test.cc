@@ -27,7 +27,7 @@
 #include "engine/engine.h"
 #include "engine/strategy/registry.h"
 #include "tests/engine/schedule/hard_shapes.h"
-#include "tests/support/instances.h"
+#include "tests/support/problems/instances.h"
 #include "tests/support/sanitizers.h"
 #include "tests/support/status_matchers.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/base/rng.h"
-#include "tests/support/instances.h"
+#include "tests/support/problems/instances.h"
 
 namespace traverse::testing {
 namespace {

@@ -11,7 +11,7 @@
 #include "engine/cost/route_cost.h"
 #include "engine/strategy/registry.h"
 #include "tests/engine/schedule/ring_job.h"
-#include "tests/support/instances.h"
+#include "tests/support/problems/instances.h"
 #include "tests/support/recording_sink.h"
 #include "tests/support/test_executor.h"
 

@@ -15,8 +15,8 @@
 #include "engine/cost/route_cost.h"
 #include "engine/schedule/layer_chain.h"
 #include "engine/strategy/registry.h"
-#include "tests/support/brute_force.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/brute_force.h"
+#include "tests/support/problems/random_plan.h"
 #include "tests/support/recording_sink.h"
 #include "tests/support/test_executor.h"
 

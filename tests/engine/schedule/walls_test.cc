@@ -12,10 +12,10 @@
 #include "engine/engine.h"
 #include "engine/strategy/registry.h"
 #include "engine/validator.h"
+#include "tests/support/problems/walled_problem.h"
 #include "tests/support/recording_sink.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/test_executor.h"
-#include "tests/support/walled_problem.h"
 
 namespace traverse {
 namespace {

@@ -6,7 +6,7 @@
 #include "engine/base/tolerances.h"
 #include "engine/validator.h"
 #include "tests/engine/search/searched.h"
-#include "tests/support/brute_force.h"
+#include "tests/support/problems/brute_force.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {

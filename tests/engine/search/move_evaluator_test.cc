@@ -8,7 +8,7 @@
 #include "engine/base/tolerances.h"
 #include "engine/validator.h"
 #include "tests/engine/search/searched.h"
-#include "tests/support/instances.h"
+#include "tests/support/problems/instances.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {

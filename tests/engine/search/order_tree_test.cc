@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "tests/support/instances.h"
+#include "tests/support/problems/instances.h"
 
 namespace traverse {
 namespace {

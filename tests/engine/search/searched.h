@@ -7,7 +7,7 @@
 #include "engine/model/route.h"
 #include "engine/search/end_groups.h"
 #include "engine/search/search_state.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/random_plan.h"
 
 namespace traverse::testing {
 

@@ -9,8 +9,8 @@
 #include "engine/cost/route_cost.h"
 #include "engine/validator.h"
 #include "tests/engine/search/searched.h"
-#include "tests/support/instances.h"
-#include "tests/support/owned_problem.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/problems/owned_problem.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {

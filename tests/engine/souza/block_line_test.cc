@@ -11,7 +11,7 @@
 #include "engine/base/rng.h"
 #include "engine/base/tolerances.h"
 #include "engine/model/route.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/random_plan.h"
 
 namespace traverse {
 namespace {

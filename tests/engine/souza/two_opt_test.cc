@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/model/tree/plan_tree.h"
-#include "tests/support/instances.h"
+#include "tests/support/problems/instances.h"
 
 namespace traverse {
 namespace {

@@ -12,8 +12,8 @@
 #include "engine/cost/route_cost.h"
 #include "engine/strategy/registry.h"
 #include "engine/validator.h"
-#include "tests/support/brute_force.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/brute_force.h"
+#include "tests/support/problems/random_plan.h"
 #include "tests/support/source_dir.h"
 #include "tests/support/status_matchers.h"
 

@@ -11,10 +11,10 @@
 #include "engine/proof/bounds/lower_bound.h"
 #include "engine/strategy/registry.h"
 #include "engine/validator.h"
-#include "tests/support/brute_force.h"
-#include "tests/support/instances.h"
+#include "tests/support/problems/brute_force.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/problems/walled_problem.h"
 #include "tests/support/status_matchers.h"
-#include "tests/support/walled_problem.h"
 
 namespace traverse {
 namespace {

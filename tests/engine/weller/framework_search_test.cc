@@ -9,8 +9,8 @@
 #include "engine/cost/route_cost.h"
 #include "engine/validator.h"
 #include "engine/weller/steps/raster_route.h"
-#include "tests/support/instances.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/problems/random_plan.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {

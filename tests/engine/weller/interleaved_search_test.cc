@@ -6,8 +6,8 @@
 #include "engine/cost/route_cost.h"
 #include "engine/strategy/registry.h"
 #include "engine/validator.h"
-#include "tests/support/instances.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/problems/random_plan.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {

@@ -21,7 +21,7 @@
 #include "engine/strategy/strategy.h"
 #include "server/jobs/job_run.h"
 #include "server/jobs/worker_pool.h"
-#include "tests/support/instances.h"
+#include "tests/support/problems/instances.h"
 
 namespace traverse::testing {
 

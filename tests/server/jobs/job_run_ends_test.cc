@@ -13,7 +13,7 @@
 #include "server/jobs/job_run.h"
 #include "server/jobs/worker_pool.h"
 #include "tests/server/jobs/fake_port.h"
-#include "tests/support/instances.h"
+#include "tests/support/problems/instances.h"
 
 namespace traverse {
 namespace {

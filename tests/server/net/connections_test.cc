@@ -21,6 +21,8 @@
 namespace traverse {
 namespace {
 
+using testing::TestService;
+
 // Reads until the other side or the server has ended it.
 void ReadAll(int socket) {
   char block[65536];
@@ -124,7 +126,7 @@ TEST(ConnectionsTest, AStrangerWhoSendsMuchIsCut) {
   quiet.Send(1000);
   loud.Send(4 << 20);
 
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return loud.IsCut(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return loud.IsCut(); }));
   EXPECT_FALSE(quiet.IsCut());
   EXPECT_EQ(port.connections().cut(), 1u);
 }
@@ -137,11 +139,11 @@ TEST(ConnectionsTest, WhoeverTakesConnectionsInMayBeKeptByThem) {
 
   loud.Send(4 << 20);
 
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return loud.IsCut(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return loud.IsCut(); }));
   EXPECT_FALSE(quiet.IsCut());
   EXPECT_EQ(port.connections().open(), 1);
   port.connections().StopListening();  // comes to an end though `quiet` does not
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return quiet.IsCut(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return quiet.IsCut(); }));
 }
 
 TEST(ConnectionsTest, WhatIsDeliveredIsNotHeldAgainstACaller) {
@@ -150,8 +152,8 @@ TEST(ConnectionsTest, WhatIsDeliveredIsNotHeldAgainstACaller) {
 
   for (int i = 0; i < 20; ++i) {
     caller.Send(500'000);
-    ASSERT_TRUE(testing::TestService::Eventually(
-        [&] { return port.connections().pending_bytes() > 200'000; }));
+    ASSERT_TRUE(
+        TestService::Eventually([&] { return port.connections().pending_bytes() > 200'000; }));
     port.connections().OnMessage(caller.peer(), 500'000);
   }
 
@@ -161,7 +163,7 @@ TEST(ConnectionsTest, WhatIsDeliveredIsNotHeldAgainstACaller) {
 TEST(ConnectionsTest, WhatCallsSentBeforeTheyWereRefusedIsNotHeldAgainstTheirCaller) {
   Port port({.stranger_bytes = 1 << 20});
   const Caller caller(port.connections().port());
-  ASSERT_TRUE(testing::TestService::Eventually([&] { return port.connections().open() == 1; }));
+  ASSERT_TRUE(TestService::Eventually([&] { return port.connections().open() == 1; }));
 
   for (int round = 0; round < 5; ++round) {
     // A call is told of at its headers; its bytes are counted when the table is looked at.
@@ -176,20 +178,20 @@ TEST(ConnectionsTest, WhatCallsSentBeforeTheyWereRefusedIsNotHeldAgainstTheirCal
 TEST(ConnectionsTest, CallsThatSendNothingAreNoLicenceToSendMuchLater) {
   Port port({.stranger_bytes = 1 << 20});
   const Caller caller(port.connections().port());
-  ASSERT_TRUE(testing::TestService::Eventually([&] { return port.connections().open() == 1; }));
+  ASSERT_TRUE(TestService::Eventually([&] { return port.connections().open() == 1; }));
 
   for (int i = 0; i < 1000; ++i) port.connections().OnAuthorized(caller.peer());
   std::this_thread::sleep_for(std::chrono::milliseconds(250));
   caller.Send(2 << 20);
 
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return caller.IsCut(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return caller.IsCut(); }));
 }
 
 TEST(ConnectionsTest, AJobWhoseMessageIsTooLongIsEndedFirst) {
   Port port({.stranger_bytes = 1 << 20, .job_bytes = 2 << 20});
   port.MayEndJobs();
   const Caller caller(port.connections().port());
-  ASSERT_TRUE(testing::TestService::Eventually([&] { return port.connections().open() == 1; }));
+  ASSERT_TRUE(TestService::Eventually([&] { return port.connections().open() == 1; }));
   port.connections().OnJob(caller.peer());
 
   caller.Send(2'500'000);
@@ -197,7 +199,7 @@ TEST(ConnectionsTest, AJobWhoseMessageIsTooLongIsEndedFirst) {
   EXPECT_TRUE(port.told().empty());
   caller.Send(1'500'000);
 
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return !port.told().empty(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return !port.told().empty(); }));
   EXPECT_EQ(port.told()[0], PeerKey(caller.peer()));
   EXPECT_FALSE(caller.IsCut());
 }
@@ -205,12 +207,12 @@ TEST(ConnectionsTest, AJobWhoseMessageIsTooLongIsEndedFirst) {
 TEST(ConnectionsTest, AJobThatCannotBeEndedIsCut) {
   Port port({.stranger_bytes = 1 << 20, .job_bytes = 1 << 20});
   const Caller caller(port.connections().port());
-  ASSERT_TRUE(testing::TestService::Eventually([&] { return port.connections().open() == 1; }));
+  ASSERT_TRUE(TestService::Eventually([&] { return port.connections().open() == 1; }));
   port.connections().OnJob(caller.peer());
 
   caller.Send(4 << 20);
 
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return caller.IsCut(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return caller.IsCut(); }));
   EXPECT_EQ(port.told().size(), 1u);
 }
 
@@ -220,7 +222,7 @@ TEST(ConnectionsTest, BytesThatNoCallExplainsAreAFloodAfterAMoment) {
   const Caller flood(port.connections().port());
   const Caller caller(port.connections().port());
   const Caller ended(port.connections().port());
-  ASSERT_TRUE(testing::TestService::Eventually([&] { return port.connections().open() == 3; }));
+  ASSERT_TRUE(TestService::Eventually([&] { return port.connections().open() == 3; }));
 
   port.connections().OnJobDone(ended.peer(), port.connections().OnJob(ended.peer()), false);
   for (const Caller* each : {&flood, &caller, &ended}) each->Send(300'000);
@@ -228,7 +230,7 @@ TEST(ConnectionsTest, BytesThatNoCallExplainsAreAFloodAfterAMoment) {
   EXPECT_FALSE(flood.IsCut());
   for (int i = 0; i < 5; ++i) port.connections().OnAuthorized(caller.peer());
 
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return flood.IsCut(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return flood.IsCut(); }));
   EXPECT_FALSE(caller.IsCut());
   EXPECT_FALSE(ended.IsCut());
 }
@@ -238,15 +240,14 @@ TEST(ConnectionsTest, WhoHasMostConnectionsMakesRoomForOthers) {
   std::vector<std::unique_ptr<Caller>> many;
   for (int i = 0; i < 4; ++i) {
     many.push_back(std::make_unique<Caller>(port.connections().port()));
-    ASSERT_TRUE(
-        testing::TestService::Eventually([&] { return port.connections().open() == i + 1; }));
+    ASSERT_TRUE(TestService::Eventually([&] { return port.connections().open() == i + 1; }));
   }
 
   const Caller one_more(port.connections().port());
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return one_more.IsCut(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return one_more.IsCut(); }));
   const Caller other(port.connections().port(), "127.0.0.2");
 
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return many[0]->IsCut(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return many[0]->IsCut(); }));
   EXPECT_FALSE(many[1]->IsCut());
   EXPECT_FALSE(other.IsCut());
 }
@@ -256,7 +257,7 @@ TEST(ConnectionsTest, MoreCallsThanStreamsAreAFlood) {
   Port port({.max_calls = 10});
   const Caller calm(port.connections().port());
   const Caller flood(port.connections().port());
-  ASSERT_TRUE(testing::TestService::Eventually([&] { return port.connections().open() == 2; }));
+  ASSERT_TRUE(TestService::Eventually([&] { return port.connections().open() == 2; }));
 
   for (int i = 0; i < 100; ++i) {
     port.connections().OnCall(calm.peer());
@@ -264,7 +265,7 @@ TEST(ConnectionsTest, MoreCallsThanStreamsAreAFlood) {
   }
   for (int i = 0; i < 11; ++i) port.connections().OnCall(flood.peer());
 
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return flood.IsCut(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return flood.IsCut(); }));
   EXPECT_FALSE(calm.IsCut());
 }
 
@@ -273,20 +274,18 @@ TEST(ConnectionsTest, TheAddressOfAFloodIsTurnedAwayForAWhile) {
   const auto make_flood = [&] {
     const int before = port.connections().open();
     const Caller flood(port.connections().port());
-    ASSERT_TRUE(
-        testing::TestService::Eventually([&] { return port.connections().open() == before + 1; }));
+    ASSERT_TRUE(TestService::Eventually([&] { return port.connections().open() == before + 1; }));
     for (int i = 0; i < 11; ++i) port.connections().OnCall(flood.peer());
-    ASSERT_TRUE(testing::TestService::Eventually([&] { return flood.IsCut(); }));
+    ASSERT_TRUE(TestService::Eventually([&] { return flood.IsCut(); }));
   };
   const auto is_turned_away = [&](const char* source) {
     const Caller caller(port.connections().port(), source);
-    return testing::TestService::Eventually([&] { return caller.IsCut(); });
+    return TestService::Eventually([&] { return caller.IsCut(); });
   };
   const auto is_let_in = [&](const char* source) {
     const int before = port.connections().open();
     const Caller caller(port.connections().port(), source);
-    return testing::TestService::Eventually(
-        [&] { return port.connections().open() == before + 1; });
+    return TestService::Eventually([&] { return port.connections().open() == before + 1; });
   };
 
   make_flood();
@@ -304,13 +303,13 @@ TEST(ConnectionsTest, TheAddressOfAFloodIsTurnedAwayForAWhile) {
 TEST(ConnectionsTest, MessagesThatWereCancelledAreNotHeldAgainstTheirCaller) {
   Port port({.stranger_bytes = 1 << 20, .job_bytes = 4 << 20});
   const Caller caller(port.connections().port());
-  ASSERT_TRUE(testing::TestService::Eventually([&] { return port.connections().open() == 1; }));
+  ASSERT_TRUE(TestService::Eventually([&] { return port.connections().open() == 1; }));
 
   for (int i = 0; i < 10; ++i) {
     const double before = port.connections().OnJob(caller.peer());
     caller.Send(3 << 20);
-    ASSERT_TRUE(testing::TestService::Eventually(
-        [&] { return port.connections().pending_bytes() > 5 << 19; }));
+    ASSERT_TRUE(
+        TestService::Eventually([&] { return port.connections().pending_bytes() > 5 << 19; }));
     port.connections().OnJobDone(caller.peer(), before, /*all_came=*/false);
   }
 
@@ -322,13 +321,13 @@ TEST(ConnectionsTest, MessagesThatWereCancelledAreNotHeldAgainstTheirCaller) {
 TEST(ConnectionsTest, TheEndOfOneJobForgivesOnlyItsShareOfWhatIsPending) {
   Port port({.stranger_bytes = 1 << 20, .job_bytes = 16 << 20});
   const Caller caller(port.connections().port());
-  ASSERT_TRUE(testing::TestService::Eventually([&] { return port.connections().open() == 1; }));
+  ASSERT_TRUE(TestService::Eventually([&] { return port.connections().open() == 1; }));
   port.connections().OnJob(caller.peer());
 
   const double before = port.connections().OnJob(caller.peer());
   caller.Send(8 << 20);
-  ASSERT_TRUE(testing::TestService::Eventually(
-      [&] { return port.connections().pending_bytes() > 7 << 20; }));
+  ASSERT_TRUE(
+      TestService::Eventually([&] { return port.connections().pending_bytes() > 7 << 20; }));
   port.connections().OnJobDone(caller.peer(), before, /*all_came=*/false);
 
   EXPECT_NEAR(static_cast<double>(port.connections().pending_bytes()), 4 << 20, 1 << 20);
@@ -340,32 +339,32 @@ TEST(ConnectionsTest, WhereMemoryIsShortTheLargestIsCut) {
   const Caller large(port.connections().port());
   small.Send(100'000);
   large.Send(2 << 20);
-  ASSERT_TRUE(testing::TestService::Eventually(
-      [&] { return port.connections().pending_bytes() > 2 << 20; }));
+  ASSERT_TRUE(
+      TestService::Eventually([&] { return port.connections().pending_bytes() > 2 << 20; }));
 
   EXPECT_TRUE(port.connections().CutLargest());
 
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return large.IsCut(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return large.IsCut(); }));
   EXPECT_FALSE(small.IsCut());
 }
 
 TEST(ConnectionsTest, IdleOnesMakeRoomForNewOnes) {
   Port port({.max_connections = 3});
   const Caller working(port.connections().port());
-  ASSERT_TRUE(testing::TestService::Eventually([&] { return port.connections().open() == 1; }));
+  ASSERT_TRUE(TestService::Eventually([&] { return port.connections().open() == 1; }));
   port.connections().OnJob(working.peer());
   const Caller idle(port.connections().port());
   const Caller other(port.connections().port());
-  ASSERT_TRUE(testing::TestService::Eventually([&] { return port.connections().open() == 3; }));
+  ASSERT_TRUE(TestService::Eventually([&] { return port.connections().open() == 3; }));
 
   const Caller too_early(port.connections().port());
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return too_early.IsCut(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return too_early.IsCut(); }));
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));
   other.Send(10);
   std::this_thread::sleep_for(std::chrono::milliseconds(250));
   const Caller next(port.connections().port());
 
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return idle.IsCut(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return idle.IsCut(); }));
   EXPECT_FALSE(next.IsCut());
   EXPECT_FALSE(working.IsCut());
   EXPECT_FALSE(other.IsCut());
@@ -383,7 +382,7 @@ TEST(ConnectionsTest, TheBusiestAddressIsTurnedAwayWhereCallsWait) {
   const Caller busy(connections.port());
   const Caller also_busy(connections.port());
   const Caller other(connections.port(), "127.0.0.2");
-  ASSERT_TRUE(testing::TestService::Eventually([&] { return connections.open() == 3; }));
+  ASSERT_TRUE(TestService::Eventually([&] { return connections.open() == 3; }));
   EXPECT_FALSE(connections.TurnAwayBusiest());
   for (int i = 0; i < 20'000; ++i) {  // with jobs
     connections.OnCall(other.peer());
@@ -399,10 +398,10 @@ TEST(ConnectionsTest, TheBusiestAddressIsTurnedAwayWhereCallsWait) {
 
   EXPECT_TRUE(connections.TurnAwayBusiest());
 
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return busy.IsCut() && also_busy.IsCut(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return busy.IsCut() && also_busy.IsCut(); }));
   EXPECT_FALSE(other.IsCut());
   const Caller again(connections.port());
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return again.IsCut(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return again.IsCut(); }));
   EXPECT_FALSE(connections.TurnAwayBusiest());
 }
 

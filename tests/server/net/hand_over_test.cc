@@ -19,6 +19,8 @@
 namespace traverse {
 namespace {
 
+using testing::TestService;
+
 // Two ends of a connection; that which is given away is closed by whoever has it.
 struct Pair {
   Pair() { EXPECT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends), 0); }
@@ -49,12 +51,12 @@ TEST(HandOver, AHandThatIsKeptHoldsUpNoOther) {
   hand_over.Add(one.given_away(), "one");
   hand_over.Add(other.given_away(), "other");
 
-  EXPECT_TRUE(testing::TestService::Eventually([&] {
+  EXPECT_TRUE(TestService::Eventually([&] {
     std::lock_guard<std::mutex> lock(mutex);
     return hands == std::set<int>{0, 1};
   }));
   done = true;
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return one.IsClosed() && other.IsClosed(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return one.IsClosed() && other.IsClosed(); }));
   hand_over.Stop([](const std::string& peer) { ADD_FAILURE() << peer << " is done with"; });
 }
 
@@ -78,8 +80,7 @@ class KeptHand {
   std::pair<int, std::string> Add(const std::string& peer) {
     const int socket = open("/dev/null", O_RDONLY | O_CLOEXEC);
     std::string away = hand_over_.Add(socket, peer);
-    EXPECT_TRUE(
-        testing::TestService::Eventually([&] { return taken_.load(); }));  // the first, at once
+    EXPECT_TRUE(TestService::Eventually([&] { return taken_.load(); }));  // the first, at once
     return {socket, std::move(away)};
   }
   void LetGo() { done_ = true; }
@@ -106,7 +107,7 @@ TEST(HandOver, AddressesTakeTurns) {
 
   kept.LetGo();
 
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return kept.order().size() == 4; }));
+  EXPECT_TRUE(TestService::Eventually([&] { return kept.order().size() == 4; }));
   EXPECT_THAT(kept.order(), ::testing::ElementsAre(first, second, other, third));
 }
 
@@ -120,7 +121,7 @@ TEST(HandOver, IsFullWhileManyOfManyAddressesWait) {
 
   kept.LetGo();
 
-  EXPECT_TRUE(testing::TestService::Eventually([&] { return !kept.hand_over().IsFull(); }));
+  EXPECT_TRUE(TestService::Eventually([&] { return !kept.hand_over().IsFull(); }));
 }
 
 TEST(HandOver, TurnsTheLastAwayOfTheAddressThatHasMost) {
@@ -149,7 +150,7 @@ TEST(HandOver, StopCutsWhatIsTakenAndClosesWhatWaits) {
   const Pair kept;
   const Pair waiting;
   hand_over.Add(kept.given_away(), "kept");
-  ASSERT_TRUE(testing::TestService::Eventually([&] { return taken.load(); }));
+  ASSERT_TRUE(TestService::Eventually([&] { return taken.load(); }));
   hand_over.Add(waiting.given_away(), "waiting");
 
   std::vector<std::string> cut;

@@ -9,8 +9,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "engine/model/tree/passed_pairs.h"
-#include "tests/support/instances.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/problems/random_plan.h"
 
 namespace traverse {
 namespace {

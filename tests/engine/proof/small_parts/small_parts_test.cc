@@ -8,9 +8,9 @@
 #include "absl/strings/str_cat.h"
 #include "engine/cost/route_cost.h"
 #include "engine/validator.h"
-#include "tests/support/brute_force.h"
-#include "tests/support/instances.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/brute_force.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/problems/random_plan.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "tests/support/brute_force.h"
-#include "tests/support/instances.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/brute_force.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/problems/random_plan.h"
 
 namespace traverse {
 namespace {

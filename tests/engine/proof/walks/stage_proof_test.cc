@@ -10,9 +10,9 @@
 #include "engine/proof/walks/stage_model.h"
 #include "engine/proof/walks/walk_conflicts.h"
 #include "engine/proof/walks/walk_prover.h"
-#include "tests/support/brute_force.h"
-#include "tests/support/instances.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/brute_force.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/problems/random_plan.h"
 
 namespace traverse {
 namespace {

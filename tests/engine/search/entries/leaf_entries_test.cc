@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/random_plan.h"
 
 namespace traverse {
 namespace {

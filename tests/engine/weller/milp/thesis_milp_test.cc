@@ -13,9 +13,9 @@
 #include "engine/weller/milp/contour_milp.h"
 #include "engine/weller/milp/raster_milp.h"
 #include "engine/weller/steps/contour_route.h"
-#include "tests/support/brute_force.h"
-#include "tests/support/instances.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/brute_force.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/problems/random_plan.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "tests/support/instances.h"
+#include "tests/support/problems/instances.h"
 
 namespace traverse {
 namespace {

@@ -10,7 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "engine/base/rng.h"
 #include "engine/weller/steps/point_reduction.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/random_plan.h"
 
 namespace traverse {
 namespace {

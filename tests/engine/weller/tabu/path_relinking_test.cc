@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/cost/route_cost.h"
-#include "tests/support/instances.h"
-#include "tests/support/owned_problem.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/problems/owned_problem.h"
 
 namespace traverse {
 namespace {

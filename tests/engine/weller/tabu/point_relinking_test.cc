@@ -5,9 +5,9 @@
 #include "absl/strings/str_cat.h"
 #include "engine/cost/route_cost.h"
 #include "engine/weller/steps/contour_route.h"
-#include "tests/support/instances.h"
-#include "tests/support/owned_problem.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/problems/owned_problem.h"
+#include "tests/support/problems/random_plan.h"
 
 namespace traverse {
 namespace {

@@ -8,8 +8,8 @@
 #include "absl/strings/str_cat.h"
 #include "engine/model/route.h"
 #include "engine/validator.h"
-#include "tests/support/instances.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/problems/random_plan.h"
 
 namespace traverse {
 namespace {

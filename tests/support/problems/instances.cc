@@ -1,4 +1,4 @@
-#include "tests/support/instances.h"
+#include "tests/support/problems/instances.h"
 
 #include <utility>
 

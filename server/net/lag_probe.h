@@ -4,8 +4,8 @@
 // caller who keeps them busy makes everybody wait, whatever is done with his calls in the end. So
 // calls are sent through a connection of the process to itself.
 
-#ifndef TRAVERSE_SERVER_RPC_LAG_PROBE_H_
-#define TRAVERSE_SERVER_RPC_LAG_PROBE_H_
+#ifndef TRAVERSE_SERVER_NET_LAG_PROBE_H_
+#define TRAVERSE_SERVER_NET_LAG_PROBE_H_
 
 #include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/server.h>
@@ -59,4 +59,4 @@ class LagProbe {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_SERVER_RPC_LAG_PROBE_H_
+#endif  // TRAVERSE_SERVER_NET_LAG_PROBE_H_

@@ -1,11 +1,11 @@
-#include "tests/support/brute_force.h"
+#include "tests/support/problems/brute_force.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "engine/cost/route_cost.h"
-#include "tests/support/instances.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/problems/random_plan.h"
 
 namespace traverse::testing {
 namespace {

@@ -1,4 +1,4 @@
-#include "tests/fuzz/tcp_exchange.h"
+#include "tests/fuzz/support/tcp_exchange.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>

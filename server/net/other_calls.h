@@ -1,8 +1,8 @@
 // Counts the calls of services that gRPC brings along, health and reflection, as the service's own
 // are counted: their floods are floods too.
 
-#ifndef TRAVERSE_SERVER_RPC_OTHER_CALLS_H_
-#define TRAVERSE_SERVER_RPC_OTHER_CALLS_H_
+#ifndef TRAVERSE_SERVER_NET_OTHER_CALLS_H_
+#define TRAVERSE_SERVER_NET_OTHER_CALLS_H_
 
 #include <grpcpp/support/server_interceptor.h>
 
@@ -25,4 +25,4 @@ class OtherCalls : public grpc::experimental::ServerInterceptorFactoryInterface 
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_SERVER_RPC_OTHER_CALLS_H_
+#endif  // TRAVERSE_SERVER_NET_OTHER_CALLS_H_

@@ -1,7 +1,7 @@
 // Changes G-code line by line, so that most of what comes out is still read as G-code.
 
-#ifndef TRAVERSE_TESTS_FUZZ_GCODE_MUTATOR_H_
-#define TRAVERSE_TESTS_FUZZ_GCODE_MUTATOR_H_
+#ifndef TRAVERSE_TESTS_FUZZ_SUPPORT_GCODE_MUTATOR_H_
+#define TRAVERSE_TESTS_FUZZ_SUPPORT_GCODE_MUTATOR_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -14,4 +14,4 @@ size_t MutateGcode(uint8_t* data, size_t size, size_t max_size, unsigned int see
 
 }  // namespace traverse::fuzz
 
-#endif  // TRAVERSE_TESTS_FUZZ_GCODE_MUTATOR_H_
+#endif  // TRAVERSE_TESTS_FUZZ_SUPPORT_GCODE_MUTATOR_H_

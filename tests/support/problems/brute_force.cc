@@ -1,4 +1,4 @@
-#include "tests/support/brute_force.h"
+#include "tests/support/problems/brute_force.h"
 
 #include <algorithm>
 #include <cmath>

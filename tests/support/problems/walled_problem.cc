@@ -1,11 +1,11 @@
-#include "tests/support/walled_problem.h"
+#include "tests/support/problems/walled_problem.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
-#include "tests/support/brute_force.h"
+#include "tests/support/problems/brute_force.h"
 
 namespace traverse::testing {
 namespace {

@@ -1,4 +1,4 @@
-#include "server/rpc/other_calls.h"
+#include "server/net/other_calls.h"
 
 #include <grpcpp/server_context.h>
 

@@ -1,7 +1,7 @@
 // What a fuzz target says when a rule is broken.
 
-#ifndef TRAVERSE_TESTS_FUZZ_CHECK_H_
-#define TRAVERSE_TESTS_FUZZ_CHECK_H_
+#ifndef TRAVERSE_TESTS_FUZZ_SUPPORT_CHECK_H_
+#define TRAVERSE_TESTS_FUZZ_SUPPORT_CHECK_H_
 
 #include <cstdio>
 #include <cstdlib>
@@ -18,4 +18,4 @@ inline void Check(bool rule, const std::string& what) {
 
 }  // namespace traverse::fuzz
 
-#endif  // TRAVERSE_TESTS_FUZZ_CHECK_H_
+#endif  // TRAVERSE_TESTS_FUZZ_SUPPORT_CHECK_H_

@@ -1,4 +1,4 @@
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/random_plan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,15 +1,15 @@
 // Seeded random problems with walls, and what their moves cost, computed by brute force.
 
-#ifndef TRAVERSE_TESTS_SUPPORT_WALLED_PROBLEM_H_
-#define TRAVERSE_TESTS_SUPPORT_WALLED_PROBLEM_H_
+#ifndef TRAVERSE_TESTS_SUPPORT_PROBLEMS_WALLED_PROBLEM_H_
+#define TRAVERSE_TESTS_SUPPORT_PROBLEMS_WALLED_PROBLEM_H_
 
 #include <cstdint>
 #include <memory>
 
 #include "engine/cost/wall_cost.h"
 #include "engine/model/walls.h"
-#include "tests/support/owned_problem.h"
-#include "tests/support/random_plan.h"
+#include "tests/support/problems/owned_problem.h"
+#include "tests/support/problems/random_plan.h"
 
 namespace traverse::testing {
 
@@ -42,4 +42,4 @@ double WalledMoveCost(const WalledProblem& walled, Point from, Point to);
 
 }  // namespace traverse::testing
 
-#endif  // TRAVERSE_TESTS_SUPPORT_WALLED_PROBLEM_H_
+#endif  // TRAVERSE_TESTS_SUPPORT_PROBLEMS_WALLED_PROBLEM_H_

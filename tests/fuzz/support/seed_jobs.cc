@@ -1,4 +1,4 @@
-#include "tests/fuzz/seed_jobs.h"
+#include "tests/fuzz/support/seed_jobs.h"
 
 #include <google/protobuf/text_format.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/fuzz/proto_mutator.h"
+#include "tests/fuzz/support/proto_mutator.h"
 
 namespace traverse::fuzz {
 namespace {

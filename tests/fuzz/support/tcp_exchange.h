@@ -1,7 +1,7 @@
 // Bytes to a port of this machine, and what comes back.
 
-#ifndef TRAVERSE_TESTS_FUZZ_TCP_EXCHANGE_H_
-#define TRAVERSE_TESTS_FUZZ_TCP_EXCHANGE_H_
+#ifndef TRAVERSE_TESTS_FUZZ_SUPPORT_TCP_EXCHANGE_H_
+#define TRAVERSE_TESTS_FUZZ_SUPPORT_TCP_EXCHANGE_H_
 
 #include <string>
 
@@ -18,4 +18,4 @@ Exchange TcpExchange(int port, const std::string& bytes, int patience_ms);
 
 }  // namespace traverse::fuzz
 
-#endif  // TRAVERSE_TESTS_FUZZ_TCP_EXCHANGE_H_
+#endif  // TRAVERSE_TESTS_FUZZ_SUPPORT_TCP_EXCHANGE_H_

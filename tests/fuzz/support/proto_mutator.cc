@@ -1,4 +1,4 @@
-#include "tests/fuzz/proto_mutator.h"
+#include "tests/fuzz/support/proto_mutator.h"
 
 #include <cmath>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // The optimum of a small problem, found by trying everything. Shares no code with the engine's
 // algorithms.
 
-#ifndef TRAVERSE_TESTS_SUPPORT_BRUTE_FORCE_H_
-#define TRAVERSE_TESTS_SUPPORT_BRUTE_FORCE_H_
+#ifndef TRAVERSE_TESTS_SUPPORT_PROBLEMS_BRUTE_FORCE_H_
+#define TRAVERSE_TESTS_SUPPORT_PROBLEMS_BRUTE_FORCE_H_
 
 #include <functional>
 #include <vector>
@@ -36,4 +36,4 @@ double MoveCost(const CostSpec& spec, Point from, Point to);
 
 }  // namespace traverse::testing
 
-#endif  // TRAVERSE_TESTS_SUPPORT_BRUTE_FORCE_H_
+#endif  // TRAVERSE_TESTS_SUPPORT_PROBLEMS_BRUTE_FORCE_H_

@@ -1,7 +1,7 @@
 // Random changes of bytes, for mutators that make their own first inputs.
 
-#ifndef TRAVERSE_TESTS_FUZZ_BYTE_CHANGES_H_
-#define TRAVERSE_TESTS_FUZZ_BYTE_CHANGES_H_
+#ifndef TRAVERSE_TESTS_FUZZ_SUPPORT_BYTE_CHANGES_H_
+#define TRAVERSE_TESTS_FUZZ_SUPPORT_BYTE_CHANGES_H_
 
 #include <algorithm>
 #include <random>
@@ -40,4 +40,4 @@ inline void ChangeBytes(std::string& bytes, size_t keep, std::mt19937& random) {
 
 }  // namespace traverse::fuzz
 
-#endif  // TRAVERSE_TESTS_FUZZ_BYTE_CHANGES_H_
+#endif  // TRAVERSE_TESTS_FUZZ_SUPPORT_BYTE_CHANGES_H_

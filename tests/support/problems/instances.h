@@ -1,7 +1,7 @@
 // Small instances with names, shared by tests.
 
-#ifndef TRAVERSE_TESTS_SUPPORT_INSTANCES_H_
-#define TRAVERSE_TESTS_SUPPORT_INSTANCES_H_
+#ifndef TRAVERSE_TESTS_SUPPORT_PROBLEMS_INSTANCES_H_
+#define TRAVERSE_TESTS_SUPPORT_PROBLEMS_INSTANCES_H_
 
 #include <vector>
 
@@ -28,4 +28,4 @@ std::vector<IslandPaths> PlateWithHoles();
 
 }  // namespace traverse::testing
 
-#endif  // TRAVERSE_TESTS_SUPPORT_INSTANCES_H_
+#endif  // TRAVERSE_TESTS_SUPPORT_PROBLEMS_INSTANCES_H_

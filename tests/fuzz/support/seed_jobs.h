@@ -1,7 +1,7 @@
 // Small jobs that use every field of the API: where fuzzing begins.
 
-#ifndef TRAVERSE_TESTS_FUZZ_SEED_JOBS_H_
-#define TRAVERSE_TESTS_FUZZ_SEED_JOBS_H_
+#ifndef TRAVERSE_TESTS_FUZZ_SUPPORT_SEED_JOBS_H_
+#define TRAVERSE_TESTS_FUZZ_SUPPORT_SEED_JOBS_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -20,4 +20,4 @@ size_t MutateJob(uint8_t* data, size_t size, size_t max_size, unsigned int seed)
 
 }  // namespace traverse::fuzz
 
-#endif  // TRAVERSE_TESTS_FUZZ_SEED_JOBS_H_
+#endif  // TRAVERSE_TESTS_FUZZ_SUPPORT_SEED_JOBS_H_

@@ -3,8 +3,8 @@
 // Random bytes hardly ever parse as a job; a job with one odd field does, and reaches the code
 // behind the parser.
 
-#ifndef TRAVERSE_TESTS_FUZZ_PROTO_MUTATOR_H_
-#define TRAVERSE_TESTS_FUZZ_PROTO_MUTATOR_H_
+#ifndef TRAVERSE_TESTS_FUZZ_SUPPORT_PROTO_MUTATOR_H_
+#define TRAVERSE_TESTS_FUZZ_SUPPORT_PROTO_MUTATOR_H_
 
 #include <google/protobuf/message.h>
 
@@ -20,4 +20,4 @@ void MutateMessage(google::protobuf::Message& message, const google::protobuf::M
 
 }  // namespace traverse::fuzz
 
-#endif  // TRAVERSE_TESTS_FUZZ_PROTO_MUTATOR_H_
+#endif  // TRAVERSE_TESTS_FUZZ_SUPPORT_PROTO_MUTATOR_H_

@@ -1,4 +1,4 @@
-#include "tests/fuzz/gcode_mutator.h"
+#include "tests/fuzz/support/gcode_mutator.h"
 
 #include <algorithm>
 #include <cstring>

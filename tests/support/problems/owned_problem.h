@@ -1,7 +1,7 @@
 // A problem together with the plan it points to.
 
-#ifndef TRAVERSE_TESTS_SUPPORT_OWNED_PROBLEM_H_
-#define TRAVERSE_TESTS_SUPPORT_OWNED_PROBLEM_H_
+#ifndef TRAVERSE_TESTS_SUPPORT_PROBLEMS_OWNED_PROBLEM_H_
+#define TRAVERSE_TESTS_SUPPORT_PROBLEMS_OWNED_PROBLEM_H_
 
 #include <memory>
 #include <utility>
@@ -29,4 +29,4 @@ class OwnedProblem {
 
 }  // namespace traverse::testing
 
-#endif  // TRAVERSE_TESTS_SUPPORT_OWNED_PROBLEM_H_
+#endif  // TRAVERSE_TESTS_SUPPORT_PROBLEMS_OWNED_PROBLEM_H_

@@ -1,4 +1,4 @@
-#include "server/rpc/lag_probe.h"
+#include "server/net/lag_probe.h"
 
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/server_builder.h>
@@ -12,6 +12,8 @@
 
 namespace traverse {
 namespace {
+
+using testing::TestService;
 
 // A server without a port.
 class OwnServer {
@@ -36,7 +38,7 @@ TEST(LagProbe, TellsHowLongACallTakes) {
   OwnServer server(/*with_health=*/true);
   LagProbe probe(server.get());
   for (int calls = 0; calls < 3; ++calls) {
-    EXPECT_TRUE(testing::TestService::Eventually([&] { return probe.Look().count() > 0; }));
+    EXPECT_TRUE(TestService::Eventually([&] { return probe.Look().count() > 0; }));
   }
 }
 

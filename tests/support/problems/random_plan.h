@@ -6,8 +6,8 @@
 //     ...
 //   }
 
-#ifndef TRAVERSE_TESTS_SUPPORT_RANDOM_PLAN_H_
-#define TRAVERSE_TESTS_SUPPORT_RANDOM_PLAN_H_
+#ifndef TRAVERSE_TESTS_SUPPORT_PROBLEMS_RANDOM_PLAN_H_
+#define TRAVERSE_TESTS_SUPPORT_PROBLEMS_RANDOM_PLAN_H_
 
 #include <cstdint>
 #include <optional>
@@ -15,7 +15,7 @@
 #include "engine/base/rng.h"
 #include "engine/model/cost_spec.h"
 #include "engine/model/plan.h"
-#include "tests/support/owned_problem.h"
+#include "tests/support/problems/owned_problem.h"
 
 namespace traverse::testing {
 
@@ -68,4 +68,4 @@ OwnedProblem Degenerate(const OwnedProblem& owned, Degeneracy degeneracy);
 
 }  // namespace traverse::testing
 
-#endif  // TRAVERSE_TESTS_SUPPORT_RANDOM_PLAN_H_
+#endif  // TRAVERSE_TESTS_SUPPORT_PROBLEMS_RANDOM_PLAN_H_

@@ -1,4 +1,4 @@
-#include "server/rpc/lag_probe.h"
+#include "server/net/lag_probe.h"
 
 #include <grpcpp/create_channel_posix.h>
 #include <grpcpp/server_posix.h>
