@@ -1,6 +1,7 @@
 #include "client/gcode/plan/travel_model.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -107,6 +108,7 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm)
 }
 
 double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& model) {
+  assert(0 < block && block < file.blocks.size());
   const Block& before = file.blocks[block - 1];
   const Dynamics dynamics = DynamicsOf(file.profile, file.states[before.state_out], file.setters);
   MotionPlanner planner({file.profile.klipper, dynamics.cruise_ratio()});
