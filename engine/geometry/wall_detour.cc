@@ -256,8 +256,25 @@ bool WallDetours::PullTaut(std::vector<Point>& way, int depth, int64_t& tests) c
     taut.push_back(way[next]);
     at = next;
   }
+  Straighten(taut, tests);
   way = std::move(taut);
   return true;
+}
+
+// Leaves out bends that no wall is the reason of: behind a stretch that a wall is in the way of
+// there may be one that sees past it, and what leads around another wall does not fit what it is
+// put into.
+void WallDetours::Straighten(std::vector<Point>& way, int64_t& tests) const {
+  if (way.size() < 3) return;
+  std::vector<Point> straight = {way.front()};
+  for (size_t at = 1; at < way.size(); ++at) {
+    for (; straight.size() > 1; straight.pop_back()) {
+      ++tests;
+      if (grid_.Crosses(straight[straight.size() - 2], way[at])) break;
+    }
+    straight.push_back(way[at]);
+  }
+  way = std::move(straight);
 }
 
 }  // namespace traverse

@@ -58,6 +58,7 @@ class WallDetours {
   const Side& SideAt(double side) const { return sides_[side > 0 ? 1 : 0]; }
   double BetweenBends(uint32_t wall, const Side& side, uint32_t from, uint32_t to) const;
   bool PullTaut(std::vector<Point>& way, int depth, int64_t& tests) const;
+  void Straighten(std::vector<Point>& way, int64_t& tests) const;
 
   const WallGrid& grid_;
   const double clearance_mm_;

@@ -48,7 +48,7 @@ TEST(WallDetours, AreNotLookedForThroughAThousandWalls) {
   EXPECT_FALSE(WallDetours(grid, 0.4, 0.3).Around({-5, 2}, {1007, 2}).empty());
 }
 
-TEST(WallDetours, CrossNothingAndAreTheSameThereAndBack) {
+TEST(WallDetours, CrossNothingAreTautAndTheSameThereAndBack) {
   int found = 0;
   for (uint64_t seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
@@ -82,6 +82,8 @@ TEST(WallDetours, CrossNothingAndAreTheSameThereAndBack) {
       for (size_t k = 0; k <= there.size() && !there.empty(); ++k) {
         const Point next = k < there.size() ? there[k] : b;
         EXPECT_FALSE(CrossesAny(walls, kSlack, at, next));
+        const Point behind = k + 1 < there.size() ? there[k + 1] : b;
+        EXPECT_TRUE(k == there.size() || CrossesAny(walls, kSlack, at, behind));
         at = next;
       }
     }
