@@ -276,17 +276,27 @@ double LayerPair::CrossingLength(const TraceChunk& chunk, uint32_t link, bool op
       return Point{move->from.x + (move->to.x - move->from.x) * t / own,
                    move->from.y + (move->to.y - move->from.y) * t / own};
     };
-    const Point a = point(from);
-    const Point b = point(to);
-    bool crossed = false;
-    outer_walls_.ForEachAlong(a, b, [&](uint32_t i) {
-      const Piece& wall = outer_walls_.pieces()[i];
-      crossed = PiecesCross(a, b, wall.a, wall.b);
-      return !crossed;
-    });
-    if (crossed) return length;
+    if (MeetsOuterWall(point(from), point(to))) return length;
   }
   return 0;
+}
+
+bool LayerPair::CrossesOuterWall(Point a, Point b) const {
+  const double length = DistanceOf(a, b);
+  if (length <= 0) return false;
+  const double share = std::min(kEndSlackMm / length, 0.2);
+  const Point cut{(b.x - a.x) * share, (b.y - a.y) * share};
+  return MeetsOuterWall({a.x + cut.x, a.y + cut.y}, {b.x - cut.x, b.y - cut.y});
+}
+
+bool LayerPair::MeetsOuterWall(Point a, Point b) const {
+  bool meets = false;
+  outer_walls_.ForEachAlong(a, b, [&](uint32_t i) {
+    const Piece& wall = outer_walls_.pieces()[i];
+    meets = PiecesCross(a, b, wall.a, wall.b);
+    return !meets;
+  });
+  return meets;
 }
 
 }  // namespace traverse::gcode

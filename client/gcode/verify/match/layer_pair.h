@@ -77,7 +77,12 @@ class LayerPair {
   double CrossingLength(const TraceChunk& chunk, uint32_t link, bool open,
                         uint32_t skipped = 0) const;
 
+  // True if the straight way from `a` to `b` crosses an outer wall, its ends apart.
+  bool CrossesOuterWall(Point a, Point b) const;
+
  private:
+  bool MeetsOuterWall(Point a, Point b) const;
+
   struct Facts {
     PathClass path_class = PathClass::kUnnamed;
     bool closed = false;

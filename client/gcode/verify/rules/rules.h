@@ -22,6 +22,7 @@ void CheckWholePaths(const LayerPair& layer, LayerFindings& findings);
 void CheckOrder(const LayerPair& layer, const RuleContext& context, LayerFindings& findings);
 void CheckDirection(const LayerPair& layer, const RuleContext& context, LayerFindings& findings);
 void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings& findings);
+void CheckBends(const LayerPair& layer, LayerFindings& findings);
 void CheckOpenWays(const LayerPair& layer, LayerFindings& findings);
 void ObserveLifts(const LayerPair& layer, LayerFindings& findings);
 void ObserveHeights(const LayerPair& layer, LayerFindings& findings);

@@ -75,7 +75,7 @@ TEST(VerifyRules, BoundsNoWayLeadsFarAway) {
   EXPECT_EQ(Broken(kHead + kTwo, kHead + far), "bounds");
   EXPECT_EQ(Broken(kHead + far, kHead + far), "");
   const std::string near = With(kTwo, "G1 X0 Y5 F9000\n", "G1 X-1 Y5 F9000\nG1 X0 Y5 F9000\n");
-  EXPECT_EQ(Broken(kHead + kTwo, kHead + near), "");
+  EXPECT_EQ(Broken(kHead + near, kHead + near), "");
 }
 
 }  // namespace

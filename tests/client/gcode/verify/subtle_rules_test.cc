@@ -192,13 +192,13 @@ TEST(VerifyRules, LiftsOfASpiralGoRoundTheSameCircle) {
 
 TEST(VerifyRules, RetractionsAreDoneBeforeTheWayAndUndoneBehindIt) {
   const std::string pushed_halfway =
-      "G1 E-1 F2100\nG1 X4 Y2 F9000\nG1 E.5 F2100\nG1 X0 Y5 F9000\nG1 E.5 F2100\n";
+      "G1 E-1 F2100\nG1 X4.5 Y2.5 F9000\nG1 E.5 F2100\nG1 X0 Y5 F9000\nG1 E.5 F2100\n";
   EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, Way("X0 Y5"), pushed_halfway)), "retractions");
   const std::string pulled_halfway = "G1 X4 Y2 F9000\nG1 E-1 F2100\nG1 X0 Y5 F9000\nG1 E1 F2100\n";
   EXPECT_THAT(Broken(kHead + kTwo, kHead + With(kTwo, Way("X0 Y5"), pulled_halfway)),
               HasSubstr("retractions"));
   const std::string half_pulled =
-      "G1 E-.5 F2100\nG1 X4 Y2 F9000\nG1 E-.5 F2100\nG1 X0 Y5 F9000\nG1 E1 F2100\n";
+      "G1 E-.5 F2100\nG1 X4.5 Y2.5 F9000\nG1 E-.5 F2100\nG1 X0 Y5 F9000\nG1 E1 F2100\n";
   EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, Way("X0 Y5"), half_pulled)), "retractions");
   EXPECT_EQ(Broken(kHead + With(kTwo, Way("X0 Y5"), half_pulled),
                    kHead + With(kTwo, Way("X0 Y5"), half_pulled)),

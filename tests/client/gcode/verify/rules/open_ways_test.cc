@@ -49,7 +49,7 @@ TEST(VerifyOpenWays, BeginWhereTheMoveAlongTheWallEnds) {
   // From beyond the wall it leads across it.
   EXPECT_EQ(
       Broken(a, With(b, "G1 X10.5 Y10.6 F9000\n", "G1 X10.5 Y9 F9000\nG1 X10.5 Y10.6 F9000\n")),
-      "open_ways");
+      "open_ways bounds");
 }
 
 // Some layers are reached with an open nozzle; where one is reached with filament pulled back, as

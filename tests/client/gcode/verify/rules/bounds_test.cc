@@ -1,0 +1,55 @@
+// Where ways lead, and how: client/gcode/verify/rules/bends, bounds.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/client/gcode/verify/small_prints.h"
+
+namespace traverse::gcode {
+namespace {
+
+using namespace testing;  // NOLINT: the small prints
+
+const std::string kTo = "G1 X0 Y5 F9000\n";
+
+TEST(VerifyBounds, NoWayOvershoots) {
+  const std::string a = kHead + kTwo;
+  EXPECT_EQ(Broken(a, With(a, kTo, "G1 X-.5 Y5.3 F9000\n" + kTo), Policy::kFree), "bounds");
+  EXPECT_EQ(Broken(a, With(a, kTo, "G1 X4.5 Y2.5 F9000\n" + kTo), Policy::kFree), "");
+}
+
+// The first way of the file leads around, and yet a new one is straight.
+TEST(VerifyBounds, NoWayBendsThoughOthersDo) {
+  const std::string around = With(kTwo, kTo, "G1 X30 Y30 F9000\n" + kTo);
+  const std::string more = Line("Internal infill", "X0 Y20", "X9 Y20");
+  const std::string bent = With(more, "G1 X0 Y20 F9000\n", "G1 X5 Y14 F9000\nG1 X0 Y20 F9000\n");
+  EXPECT_EQ(Broken(kHead + around + more, kHead + around + bent, Policy::kFree), "bounds");
+  EXPECT_EQ(Broken(kHead + around + bent, kHead + around + bent, Policy::kFree), "");
+}
+
+// A hole in the way.
+TEST(VerifyBounds, WaysMayBendAroundAWall) {
+  const std::string hole = kSquare + Line("Internal infill", "X5 Y10.6", "X8 Y10.6");
+  const std::string straight = "G1 X24 Y10.6 F9000\n";
+  const std::string behind =
+      Way("X24 Y10.6") + ";TYPE:Internal infill\nG1 F1800\nG1 X28 Y10.6 E.3\n";
+  const std::string a = kHead + hole + behind;
+  const auto bent = [&](const std::string& bends) {
+    return Broken(a, With(a, straight, bends + straight), Policy::kFree);
+  };
+  EXPECT_EQ(bent("G1 X9.6 Y9.6 F9000\nG1 X20.4 Y9.6\n"), "");
+  EXPECT_EQ(bent("G1 X9.6 Y9.6 F9000\n"), "bounds");
+  EXPECT_EQ(bent("G1 X9.6 Y9.6 F9000\nG1 X20.4 Y9.6\nG1 X25 Y10.6\n"), "bounds");
+}
+
+// Along the wall, with an open nozzle, to one that lies beside it.
+TEST(VerifyBounds, NoWayIsLedAlongAWall) {
+  const std::string infill = ";TYPE:Internal infill\nG1 F1800\nG1 X15 Y15 E.3\n";
+  const std::string a = kHead + kSquare + "G1 X12 Y12 F9000\n" + infill;
+  const std::string along = With(a, "G1 X12 Y12 F9000\n", "G1 X14 Y10 F9000\nG1 X12 Y12 F9000\n");
+  EXPECT_EQ(Broken(a, along, Policy::kFree), "open_ways bounds");
+}
+
+}  // namespace
+}  // namespace traverse::gcode
