@@ -37,6 +37,14 @@ Tail TailOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
   return tail;
 }
 
+// True if all that follows the path leads to the next one: between lines of a zigzag there is such
+// a way where slicers round what is printed there to nothing.
+bool LeadsOn(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces) {
+  if (path + 1 >= chunk.paths.size()) return false;
+  const TraceLink& link = chunk.links[path + 1];
+  return link.first_move + LayerPair::TailMoves(chunk, path, pieces) == link.end_move;
+}
+
 }  // namespace
 
 void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
@@ -55,12 +63,17 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
     };
     if (had.length_mm < kShortestMm) {
       const bool new_tail = has.length_mm >= kShortestMm && !has.known &&
-                            has.length_mm > kLoopGapMm && has.feed == path.feed;
+                            has.length_mm > kLoopGapMm && has.feed == path.feed &&
+                            !LeadsOn(is, visit.last_path, pieces);
       if (new_tail) {
         report(was.segments[path.end_segment - 1].line, has.line,
                absl::StrFormat("goes on along the path for %.2f mm, as it does not there",
                                has.length_mm));
       }
+      continue;
+    }
+    if (has.length_mm < kShortestMm && !layer.Closed(visit.path) &&
+        LeadsOn(was, visit.path, pieces)) {
       continue;
     }
     const bool same_end = visit.forward && visit.entry == 0;

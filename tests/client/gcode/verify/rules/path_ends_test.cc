@@ -32,5 +32,15 @@ TEST(VerifyPathEnds, TurnWithTheirPaths) {
   EXPECT_EQ(Broken(kHead + two, kHead + turned), "");
 }
 
+// The way from line to line of a zigzag, of which nothing is left to print, lies along the line.
+TEST(VerifyPathEnds, AreNoWaysToTheNextPath) {
+  const std::string line = Line("Internal infill", "X0 Y0", "X9 Y0");
+  const std::string open = "G1 X8 Y20 F1800\nG1 X9 Y20 E.3\n";
+  const std::string a = kHead + open + line + "G1 X8.92 Y.03\nG1 X0 Y.8 E.3\n";
+  const std::string b = kHead + open + Line("Internal infill", "X8.92 Y.03", "X0 Y.8") + line;
+  EXPECT_EQ(Broken(a, b), "");
+  EXPECT_EQ(Broken(a, With(a, "G1 X8.92 Y.03\n", "")), "same_print");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
