@@ -105,10 +105,11 @@ class Matcher {
     return run;
   }
 
-  // The segment of the original that segment `at` is: of several the one that goes on as it does
-  // for longest.
+  // The segment of the original that segment `at` is: of several the one that a path begun goes on
+  // with, else the one that goes on as it does for longest.
   uint32_t Find(const TracePath& path, uint32_t at) const {
     const uint64_t digest = optimised_.segments[at].digest;
+    if (due_ != kNone && Unused(due_) && original_.segments[due_].digest == digest) return due_;
     uint32_t found = kNone;
     uint32_t others = 0;
     table_.ForEach(digest, [&](uint32_t s) {
@@ -147,6 +148,7 @@ class Matcher {
         visit.last_segment = at++;
         guess_ = s + 1;
         const uint32_t next = Next(s, visit.forward);
+        due_ = next;
         if (at >= path.end_segment || next == kNone || !Unused(next) ||
             original_.segments[next].digest != optimised_.segments[at].digest) {
           break;
@@ -206,6 +208,7 @@ class Matcher {
   std::vector<uint32_t> path_of_;
   std::vector<bool> closed_;
   uint32_t guess_ = kNone;  // the segment that comes next in the original
+  uint32_t due_ = kNone;    // the same of the path that is being printed
   std::vector<Visit> visits_;
 };
 

@@ -41,5 +41,23 @@ TEST(VerifyWholePaths, ASecondCutOfALoopIsNone) {
   EXPECT_THAT(Broken(kHead + inner, kHead + twice), HasSubstr("whole_paths"));
 }
 
+// Three loops in one place, one of them begun elsewhere, are printed in one go: what is left of a
+// loop comes first.
+TEST(VerifyWholePaths, LoopsOfOnePlaceAreToldApart) {
+  const std::string infill = ";TYPE:Internal infill\nG1 F1800\n";
+  const std::string left = "G1 X10 Y10 E.4\n";
+  const std::string up = "G1 X10 Y20 E.4\n";
+  const std::string right = "G1 X20 Y20 E.4\n";
+  const std::string short_down = "G1 X20 Y10.07 E.397\n";
+  const std::string one = infill + left + up + right + short_down;
+  const std::string a = kHead + Way("X20 Y10") + one + Way("X20 Y10") + one + Way("X10 Y20") +
+                        infill + right + "G1 X20 Y10 E.4\n" + left + "G1 X10 Y19.93 E.397\n";
+  const std::string turned = up + right + short_down + "G1 X20 Y10\n" + left;
+  const std::string b = kHead + Way("X10 Y10") + infill + turned +
+                        "G1 X10 Y19.93 E.397\nG1 X10 Y20\n" + right + "G1 X20 Y10 E.4\n" + left +
+                        turned;
+  EXPECT_EQ(Broken(a, b, Policy::kFree), "");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
