@@ -100,7 +100,8 @@ struct Pulls {
   const WipeDeviation& FastestOfLength(float length_mm) const {
     const auto behind = std::partition_point(
         longest.begin(), longest.end(), [length_mm](float l) { return l >= kAsLong * length_mm; });
-    return *fastest[behind == longest.begin() ? fastest.size() - 1 : behind - longest.begin() - 1];
+    const auto as_long = static_cast<size_t>(behind - longest.begin());
+    return *fastest[(as_long == 0 ? fastest.size() : as_long) - 1];
   }
 
   bool Unlike(const WipeDeviation& wipe) const {
