@@ -18,15 +18,22 @@ class Tails {
     const TraceChunk& chunk = original ? layer.was() : layer.is();
     const uint32_t first = original ? layer.first_path_was() : layer.first_path_is();
     const uint32_t end = original ? layer.end_path_was() : layer.end_path_is();
-    first_link_ = first + 1;
-    moves_.assign(end - first, 0);
+    first_link_ = first;
+    moves_.assign(end - first + 1, 0);
+    // The way to the layer begins with what goes on along the last path of the one before.
+    if (first > 0) {
+      std::vector<Piece> pieces;
+      AppendPieces(chunk, first - 1, pieces);
+      moves_[0] = LayerPair::TailMoves(chunk, first - 1, pieces, any_speed);
+    }
     if (original) {
       for (uint32_t path = first; path < end; ++path) {
-        moves_[path - first] = LayerPair::TailMoves(chunk, path, layer.PiecesOf(path), any_speed);
+        moves_[path + 1 - first] =
+            LayerPair::TailMoves(chunk, path, layer.PiecesOf(path), any_speed);
       }
     } else {
       for (const Visit& visit : layer.visits()) {
-        moves_[visit.last_path - first] =
+        moves_[visit.last_path + 1 - first] =
             LayerPair::TailMoves(chunk, visit.last_path, layer.PiecesOf(visit.path), any_speed);
       }
     }

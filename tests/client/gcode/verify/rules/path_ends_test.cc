@@ -42,5 +42,15 @@ TEST(VerifyPathEnds, AreNoWaysToTheNextPath) {
   EXPECT_EQ(Broken(a, With(a, "G1 X8.92 Y.03\n", "")), "same_print");
 }
 
+// At its own feed rate, which no way has; the way to the next layer begins with it.
+TEST(VerifyPathEnds, AreNoWaysAtTheEndOfALayer) {
+  const std::string one = With(Tailed("X0 Y0", "X9 Y0", "X9.2 Y0"), "F1800", "F1556");
+  const std::string other = Tailed("X0 Y5", "X9 Y5", "X9.2 Y5");
+  const std::string next = kNextLayer + kTwo;
+  EXPECT_EQ(Broken(kHead + one + other + next, kHead + other + one + next), "");
+  const std::string slow = With(next, "G1 X0 Y0 F9000", "G1 X0 Y0 F1556");
+  EXPECT_EQ(Broken(kHead + one + other + next, kHead + other + one + slow), "speeds");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
