@@ -3,7 +3,7 @@
 import math
 
 from edits import at_its_feed, edited, go, pick, with_f, with_xy
-from places import links
+from places import is_outer, links
 from sliced import number
 
 
@@ -127,6 +127,41 @@ def open_way_slow(file, rng):
     return pick(rng, open_ways(file), 50, make)
 
 
+def way_beyond(file, rng):
+    """A way leads 1 mm beyond its end, and back."""
+
+    def make(found):
+        _, _, ways, _ = found
+        i = ways[-1]
+        line = file.lines[i]
+        if line.length() < 3 or line.start[2] != line.end[2] or not line.text.startswith(("G0 ", "G1 ")):
+            return None
+        beyond = [line.end[a] + (line.end[a] - line.start[a]) / line.length() for a in (0, 1)]
+        return edited(file, {i: [with_xy(line.text, beyond), line.text]})
+
+    return pick(rng, links(file), 60, make)
+
+
+def way_along_wall(file, rng):
+    """An open way is led along a stretch of an outer wall near to it."""
+    walls = [p for p in file.paths if is_outer(p)]
+
+    def make(ways):
+        line = file.lines[ways[0]]
+        if len(ways) != 1 or line.length() < 2 or not line.text.startswith(("G0 ", "G1 ")):
+            return None
+        for wall in walls:
+            if wall.start[2] != line.end[2]:
+                continue
+            for one, other in zip(wall.points, wall.points[1:]):
+                near = min(math.dist(one, line.start[:2]), math.dist(other, line.start[:2])) < 4
+                if near and 1.5 < math.dist(one, other) < 8:
+                    return edited(file, {ways[0]: [with_xy(line.text, one), with_xy(line.text, other), line.text]})
+        return None
+
+    return pick(rng, open_ways(file), 200, make)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("way to far away", "speeds", way_far, "free"),
@@ -134,5 +169,7 @@ DEFECTS = (
     ("retracted way astray", "bounds", stray(True), "free"),
     ("open way astray", "bounds", stray(False), "free"),
     ("way there, back and there", "bounds", way_twice, "free"),
+    ("way beyond its end and back", "bounds", way_beyond, "free"),
+    ("open way along a wall", "bounds", way_along_wall, "free"),
     ("open way at another speed", "speeds", open_way_slow, "free"),
 )
