@@ -1,15 +1,16 @@
-"""Attacks a server of its own as a stranger would, one attack after the other, and checks what nobody may be able to do.
+"""Attacks servers as a stranger would, each attack a server of its own, and checks what nobody may be able to do.
 
     attack.py [--seconds=N of each attack, 3] [--only=NAME,...] [--max_memory=BYTES, 400 MB] [--most_p99=S]
-              [--twice]
+              [--twice] [--side_by_side=N attacks, 1]
 
 Throughout: the process lives, /healthz answers within a second, a victim's one-layer jobs end well, memory stays below
 --max_memory, and at the end SIGTERM ends it within --drain_timeout + 2 s; on a quiet machine --most_p99=0.25 can be asked for:
 the victim's time for a job. A machine that stands still for a moment lets much in before anybody can look: with --twice an
-attack that did harm is made again, and counts if it does so again. The environment names the server's binary:
-TRAVERSE_SERVER. Needs nothing but Python; frames are written by hand (http2_client.py).
+attack that did harm is made again, and counts if it does so again; of attacks made side by side it is made again alone.
+The environment names the server's binary: TRAVERSE_SERVER. Needs nothing but Python; frames are written by hand (http2_client.py).
 """
 import argparse
+import concurrent.futures
 import subprocess
 import sys
 import time
@@ -108,6 +109,17 @@ def run(name, seconds, max_memory, most_p99):
     return faults
 
 
+def attack_all(names, side_by_side, *limits):
+    """The faults found, by the attack's name."""
+    found = {}
+    with concurrent.futures.ProcessPoolExecutor(side_by_side) as attackers:
+        for name, faults in zip(names, attackers.map(run, names, *([limit] * len(names) for limit in limits))):
+            if faults:
+                print(f"  {name}: FAULT: {'; '.join(faults)}")
+                found[name] = faults
+    return found
+
+
 def main():
     arguments = argparse.ArgumentParser()
     arguments.add_argument("--seconds", type=float, default=3)
@@ -115,16 +127,12 @@ def main():
     arguments.add_argument("--max_memory", type=int, default=400_000_000)
     arguments.add_argument("--most_p99", type=float, default=float("inf"))
     arguments.add_argument("--twice", action="store_true")
+    arguments.add_argument("--side_by_side", type=int, default=1)
     given = arguments.parse_args()
-    found = {}
-    for name in given.only.split(","):
-        for _ in range(2 if given.twice else 1):
-            faults = run(name, given.seconds, given.max_memory, given.most_p99)
-            if not faults:
-                break
-            print(f"  {name}: FAULT: {'; '.join(faults)}")
-        if faults:
-            found[name] = faults
+    limits = given.seconds, given.max_memory, given.most_p99
+    found = attack_all(given.only.split(","), given.side_by_side, *limits)
+    if found and given.twice:
+        found = attack_all(list(found), 1, *limits)
     sys.exit(1 if found else 0)
 
 

@@ -131,6 +131,7 @@ def endless_headers(server, end):
 
     def step():
         nonlocal connection
+        connection.socket.settimeout(max(0.05, end - time.monotonic()))  # a server may stop reading instead of closing
         if not connection.send(block):
             connection.close()
             connection = Connection(server.port)
