@@ -51,4 +51,5 @@ cmake --build --preset "$preset" --target "${target[@]}"
 if [ -n "$fuzz_seconds" ]; then
   exec tests/fuzz/run.sh "$fuzz_seconds"
 fi
-ctest --test-dir "build/$preset" -j "$(nproc)" --output-on-failure "${select[@]}"
+# More tests than processors: many of them wait for most of their time.
+ctest --test-dir "build/$preset" -j "$(($(nproc) * 2))" --output-on-failure "${select[@]}"

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The Kubernetes objects, rendered: they fit the schemas, and each other."""
 
+import functools
 import pathlib
 import re
 import shutil
@@ -15,6 +16,7 @@ KUBERNETES = support.DEPLOY / "kubernetes"
 OVERLAYS = sorted(path.name for path in (KUBERNETES / "overlays").iterdir())
 
 
+@functools.cache
 def render(overlay):
     return support.run("kubectl", "kustomize", KUBERNETES / "overlays" / overlay).stdout
 
