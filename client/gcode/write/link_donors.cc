@@ -23,7 +23,7 @@ LinkDonors::LinkDonors(const GcodeFile& file) : file_(file), layer_of_(file.bloc
     std::fill(layer_of_.begin() + of.first_block, layer_of_.begin() + of.end_block, layer);
   }
   for (uint32_t i = 1; i < file.blocks.size(); ++i) {
-    if (!MayFollow(i)) continue;
+    if (!MayFollow(i) || !Travels(i)) continue;
     const Kind kind{file.blocks[i].mode, (file.blocks[i].link & kLinkRetracts) != 0};
     donors_[kind].push_back(i);
     if (file.blocks[i].lift > 0) lifted_[kind].push_back(i);
@@ -44,6 +44,9 @@ bool LinkDonors::MayFollow(uint32_t block) const {
   return block > 0 && (to.link & (kLinkSplits | kLinkFixed)) == 0 && IsOfPart(file_, to) &&
          IsOfPart(file_, file_.blocks[block - 1]);
 }
+
+// Where a path begins at the end of the one before it there is no way to learn from.
+bool LinkDonors::Travels(uint32_t block) const { return file_.blocks[block].travel_mm > 0; }
 
 bool LinkDonors::LacksLift(uint32_t block) const {
   const Block& to = file_.blocks[block];

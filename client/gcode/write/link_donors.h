@@ -18,10 +18,10 @@ class LinkDonors {
   explicit LinkDonors(const GcodeFile& file);
 
   // A link that may be followed on the way to `block`: without marks, between two paths in the
-  // modes of `block` that are printed for the part itself (no scripts, no towers), which retracts
-  // or not, and wipes if `wipes` and any does. Of those, the nearest in the layer of `block`, else
-  // the nearest before it, else the nearest behind it. Where the file lifts in most such links, one
-  // that lifts. Nothing if there is none.
+  // modes of `block` that do not meet and are printed for the part itself (no scripts, no towers),
+  // which retracts or not, and wipes if `wipes` and any does. Of those, the nearest in the layer of
+  // `block`, else the nearest before it, else the nearest behind it. Where the file lifts in most
+  // such links, one that lifts. Nothing if there is none.
   std::optional<uint32_t> Find(uint32_t block, bool retracts, bool wipes = false) const;
 
   // Link `block` itself may be followed.
@@ -38,6 +38,7 @@ class LinkDonors {
   // Of what kind a link is: its modes, and whether it retracts.
   using Kind = std::pair<uint16_t, bool>;
 
+  bool Travels(uint32_t block) const;
   std::optional<uint32_t> FindAmong(const std::vector<uint32_t>& links, uint32_t block) const;
   void CountLifts(uint32_t link);
 

@@ -1,0 +1,34 @@
+// Which ways of a file others may follow.
+
+#include "client/gcode/write/link_donors.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "client/gcode/write/link.h"
+#include "tests/client/gcode/support/sketch.h"
+
+namespace traverse::gcode {
+namespace {
+
+using testing::Sketch;
+
+// The short move at the end of the second line belongs to that line, and the third one begins
+// there. Who follows that would go nowhere, and the writer would look for a retracted way instead.
+TEST(LinkDonors, WherePathsMeetThereIsNoWayToFollow) {
+  Sketch sketch;
+  sketch.Infill(10, 0).Go(10, 2).Infill(0, 2).Add("G1 X-.1 Y2");
+  sketch.Infill(-.1, 4).GoRetracted(0, 6).Infill(10, 6);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+  ASSERT_EQ(file->blocks.size(), 4u);
+  ASSERT_EQ(file->blocks[2].travel_mm, 0);
+  const LinkDonors donors(*file);
+
+  for (const uint32_t to : {1u, 2u, 3u}) EXPECT_EQ(donors.Find(to, false), 1u) << to;
+  EXPECT_EQ(donors.Find(2, true), 3u);
+  EXPECT_GE(ReadLink(*file, *donors.Find(2, false)).arrival, 0);
+}
+
+}  // namespace
+}  // namespace traverse::gcode
