@@ -12,11 +12,16 @@
 namespace traverse::gcode {
 namespace {
 
+struct Retractions {
+  double seconds = 0;
+  int64_t count = 0;
+};
+
 // What the links of one layer add up to.
 struct LayerTravel {
   std::map<std::pair<double, double>, double> way_mm;  // by speed and acceleration
-  double retraction_seconds = 0;
-  int64_t retractions = 0;
+  Retractions between_paths;
+  Retractions at_marks;  // where scripts may change tools, prime and wait as well
 };
 
 class TravelLearner {
@@ -59,8 +64,10 @@ class TravelLearner {
       LearnStep(step, interpreter, dynamics, learnt);
     }
     if (!retracts) return;
-    learnt.retraction_seconds += all.Finish().seconds - travel.Finish().seconds;
-    ++learnt.retractions;
+    const bool at_mark = (block.link & kLinkSplits) != 0;
+    Retractions& retractions = at_mark ? learnt.at_marks : learnt.between_paths;
+    retractions.seconds += all.Finish().seconds - travel.Finish().seconds;
+    ++retractions.count;
   }
 
   void LearnStep(const Step& step, const Interpreter& interpreter, Dynamics& dynamics,
@@ -88,6 +95,7 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm)
   std::vector<TravelModel> models;
   TravelModel model;
   model.accel_mm_s2 = Dynamics(file.profile).travel_accel();
+  bool from_paths = false;
   for (const Layer& layer : file.layers) {
     const LayerTravel learnt = learner.LearnLayer(layer);
     double longest_mm = 0;
@@ -97,9 +105,10 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm)
       model.speed_mm_s = how.first;
       model.accel_mm_s2 = how.second;
     }
-    if (learnt.retractions > 0) {
-      model.retraction_seconds =
-          learnt.retraction_seconds / static_cast<double>(learnt.retractions);
+    from_paths = from_paths || learnt.between_paths.count > 0;
+    const Retractions& retractions = from_paths ? learnt.between_paths : learnt.at_marks;
+    if (retractions.count > 0) {
+      model.retraction_seconds = retractions.seconds / static_cast<double>(retractions.count);
     }
     models.push_back(model);
   }

@@ -20,7 +20,8 @@ struct TravelModel {
 
 // [layer]. Speed and acceleration are those at which most of the layer's travel is done, the time
 // is the mean over its retractions of what they add to the travel; a layer without such moves has
-// what the one before has. O(length of all links).
+// what the one before has. Retractions at marks, where tools may be changed, count only until there
+// are others. O(length of all links).
 std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm);
 
 // What the travel in the link before block `block` takes as it is in the file, from standstill to

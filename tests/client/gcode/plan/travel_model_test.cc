@@ -66,5 +66,31 @@ TEST(LearnTravel, RetractionsTakeTheTimeThatTheyAddToTravel) {
   EXPECT_EQ(models[0].speed_mm_s, 150);
 }
 
+// Behind a mark filament may be loaded, or waited for.
+TEST(LearnTravel, RetractionsAtMarksTellNothingOfTheOthers) {
+  Sketch sketch;
+  sketch.Infill(10, 0).GoRetracted(0, 10).Infill(10, 10);
+  sketch.Add("G1 E-.8 F2100").Add("; printing object b").Add("G1 E-15 F300").Add("G1 E15 F300");
+  sketch.Go(0, 20).Add("G1 E.8 F2100").Infill(10, 20);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+  ASSERT_EQ(file->layers.size(), 1u);
+  ASSERT_EQ(file->blocks.size(), 3u);
+  ASSERT_NE(file->blocks[2].link & kLinkSplits, 0);
+
+  EXPECT_LT(LearnTravel(*file, 1.5)[0].retraction_seconds, 0.2);
+}
+
+// Better a rough price than none.
+TEST(LearnTravel, RetractionsAtMarksCountWhereThereAreNoOthers) {
+  Sketch sketch;
+  sketch.Infill(10, 0).Go(0, 10).Infill(10, 10);
+  sketch.Add("G1 E-.8 F2100").Add("; printing object b").Go(0, 20).Add("G1 E.8 F2100");
+  sketch.Infill(10, 20);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+  ASSERT_NE(file->blocks[2].link & kLinkSplits, 0);
+
+  EXPECT_GT(LearnTravel(*file, 1.5)[0].retraction_seconds, 0.04);
+}
+
 }  // namespace
 }  // namespace traverse::gcode
