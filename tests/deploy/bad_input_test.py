@@ -15,9 +15,8 @@ import threading
 import unittest
 import unittest.mock
 
-import certificates
-import example_cases
 import support
+from support import certificates, example_cases
 
 yaml = support.module("yaml", "python3-yaml")
 

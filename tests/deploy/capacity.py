@@ -13,9 +13,7 @@ import sys
 import time
 
 import support
-import example_cases
-import fleet
-import jobs
+from support import example_cases, fleet, jobs
 
 SIZES = (10, 30, 100, 300)
 LAYERS = 40

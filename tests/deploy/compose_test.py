@@ -12,8 +12,7 @@ import tempfile
 import unittest
 
 import support
-import certificates
-import containers
+from support import certificates, containers
 import image_test
 
 yaml = support.module("yaml", "python3-yaml")

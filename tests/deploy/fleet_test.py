@@ -7,11 +7,8 @@ import threading
 import time
 import unittest
 
-import certificates
 import support
-import example_cases
-import fleet
-import jobs
+from support import certificates, example_cases, fleet, jobs
 
 yaml = support.module("yaml", "python3-yaml")
 

@@ -8,7 +8,7 @@ import time
 import unittest
 
 import support
-import containers
+from support import containers
 
 yaml = support.module("yaml", "python3-yaml")
 

@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 import support
-import example_cases
+from support import example_cases
 
 
 class NodeExample(example_cases.ExampleCases, unittest.TestCase):

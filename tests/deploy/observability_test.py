@@ -17,9 +17,7 @@ import urllib.parse
 import xml.etree.ElementTree
 
 import support
-import example_cases
-import fleet
-import jobs
+from support import example_cases, fleet, jobs
 
 sys.path.append(str(support.SOURCE / "tests/client/gateway"))
 import gateway_process  # noqa: E402

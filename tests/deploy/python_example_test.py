@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 import support
-import example_cases
+from support import example_cases
 
 
 class PythonExample(example_cases.ExampleCases, unittest.TestCase):

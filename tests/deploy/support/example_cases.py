@@ -15,9 +15,8 @@ import tempfile
 import threading
 import unittest
 
-import certificates
-import jobs
 import support
+from support import certificates, jobs
 
 grpc = support.module("grpc", "python3-grpcio")
 json_format = support.module("google.protobuf.json_format", "python3-protobuf")

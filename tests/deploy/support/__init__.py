@@ -17,7 +17,7 @@ import unittest
 import urllib.error
 import urllib.request
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
+SOURCE = pathlib.Path(__file__).resolve().parents[3]
 sys.path.append(str(SOURCE))
 from tests.support import node_packages
 
