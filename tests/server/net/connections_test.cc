@@ -1,122 +1,25 @@
 #include "server/net/connections.h"
 
-#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "absl/strings/str_cat.h"
 #include "server/net/socket_info.h"
+#include "tests/server/net/raw_port.h"
 #include "tests/server/support/service_fixture.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {
 namespace {
 
+using testing::Caller;
+using testing::Port;
+using testing::Reader;
 using testing::TestService;
-
-// Reads until the other side or the server has ended it.
-void ReadAll(int socket) {
-  char block[65536];
-  while (true) {
-    const ssize_t count = recv(socket, block, sizeof(block), 0);
-    if (count == 0 || (count < 0 && errno != EAGAIN)) break;
-    if (count < 0) usleep(1000);
-  }
-  close(socket);
-}
-
-// Who reads what a connection sends: a thread of its own, or whoever takes it in, who is kept by it
-// as gRPC may keep him.
-enum class Reader { kOwn, kTaker };
-
-// A port whose connections are read from, and nothing is done with what they send.
-class Port {
- public:
-  explicit Port(const ConnectionRules& rules, Reader reader = Reader::kOwn) {
-    const auto take = [this, reader](int socket, int) {
-      if (reader == Reader::kTaker) return ReadAll(socket);
-      std::lock_guard<std::mutex> lock(mutex_);
-      readers_.emplace_back([socket] { ReadAll(socket); });
-    };
-    const auto end_job = [this](const std::string& peer) {
-      std::lock_guard<std::mutex> lock(mutex_);
-      told_.push_back(peer);
-      return may_end_;
-    };
-    connections_ =
-        *Connections::Listen("127.0.0.1:0", rules, {.hand_over = take, .end_job = end_job});
-    connections_->Start();
-  }
-
-  ~Port() {
-    connections_.reset();
-    for (std::thread& reader : readers_) reader.join();
-  }
-
-  Connections& connections() { return *connections_; }
-  std::vector<std::string> told() {
-    std::lock_guard<std::mutex> lock(mutex_);
-    return told_;
-  }
-  void MayEndJobs() { may_end_ = true; }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::thread> readers_;
-  std::vector<std::string> told_;
-  bool may_end_ = false;
-  std::unique_ptr<Connections> connections_;
-};
-
-// The caller's side.
-class Caller {
- public:
-  explicit Caller(int port, const char* source = "127.0.0.1")
-      : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    inet_pton(AF_INET, source, &address.sin_addr);
-    bind(socket_, reinterpret_cast<sockaddr*>(&address), sizeof(address));
-    address.sin_port = htons(static_cast<uint16_t>(port));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof(address));
-    sockaddr_in own{};
-    socklen_t size = sizeof(own);
-    getsockname(socket_, reinterpret_cast<sockaddr*>(&own), &size);
-    peer_ = absl::StrCat("ipv4:", source, ":") + std::to_string(ntohs(own.sin_port));
-  }
-  ~Caller() { close(socket_); }
-
-  void Send(size_t bytes) const {
-    const std::string block(bytes, 'x');
-    for (size_t sent = 0; sent < bytes;) {
-      const ssize_t count = send(socket_, block.data() + sent, bytes - sent, MSG_NOSIGNAL);
-      if (count <= 0) return;
-      sent += static_cast<size_t>(count);
-    }
-  }
-
-  bool IsCut() const {
-    char byte = 0;
-    const ssize_t count = recv(socket_, &byte, 1, MSG_DONTWAIT);
-    return count == 0 || (count < 0 && errno != EAGAIN);
-  }
-
-  const std::string& peer() const { return peer_; }
-
- private:
-  const int socket_;
-  std::string peer_;
-};
 
 TEST(ConnectionsTest, AStrangerWhoSendsMuchIsCut) {
   Port port({.stranger_bytes = 1 << 20});
