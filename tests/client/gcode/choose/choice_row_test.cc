@@ -48,6 +48,19 @@ TEST(BestRow, TheFileCrossesNoMoreWallsThoughALayerMay) {
   EXPECT_EQ(Best(columns, Policy::kSafe, Crossings::kKeep, 3), Row({0, 0, 0}));
 }
 
+TEST(BestRow, NoMoreIsGivenUpForCrossingsThanHasToBe) {
+  for (const double gain : {0.6, 0.7, 0.8, 0.9, 1.1, 1.3}) {
+    // One of the first two has to be given up: that which gains a tenth less.
+    const std::vector<ChoiceColumn> columns = {
+        Column({Totals(10, 4), Totals(10 - gain, 6)}, 0),
+        Column({Totals(10, 4), Totals(10 - 0.9 * gain, 6)}, 2),
+        Column({Totals(10, 4), Totals(9, 2)}, 2),
+    };
+
+    EXPECT_EQ(Best(columns, Policy::kSafe), Row({1, 0, 1})) << gain;
+  }
+}
+
 PrintTotals Retracting(double seconds, int64_t retractions, int64_t crossings = 0) {
   PrintTotals totals = Totals(seconds, crossings);
   totals.retractions = retractions;

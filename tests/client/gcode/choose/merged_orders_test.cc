@@ -74,6 +74,32 @@ TEST_F(MergedOrdersTest, HaveNoOpenWayAcrossWallsThatIsLongerThanTheFiles) {
   }
 }
 
+// Infill inside a wall and outside of it, by turns in the file; one side after the other crosses
+// the wall less often and goes further.
+TEST_F(MergedOrdersTest, UnderSafeTheBestTravelsNoFurtherThanTheFile) {
+  Sketch sketch;
+  sketch.Square(0, 0, 40).GoRetracted(38, 5).Infill(39, 5).GoRetracted(41, 5).Infill(42, 5);
+  sketch.GoRetracted(39, 35).Infill(38, 35).GoRetracted(42, 35).Infill(43, 35);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+  const RetractionHabit habit = LearnRetraction(*file);
+  const LinkDonors donors(*file);
+  const LayerWriter writer(*file, file->layers[0], habit, donors);
+  const LayerOrder found = OrderOf({0, 1, 3, 2, 4});
+  MergeRules rules;
+  rules.crossings = Crossings::kFewer;
+  rules.boundaries.assign(found.size(), false);
+  const auto merged = [&](Policy policy) {
+    rules.policy = policy;
+    const std::vector<LayerOrder> orders = MergedOrders(writer, kTravel, {found}, rules);
+    return std::count(orders.begin(), orders.end(), found);
+  };
+
+  // Once as what only the way to the layer can tell to be too long, and once as the best of all
+  // that keep to the limits.
+  EXPECT_EQ(merged(Policy::kSafe), 1);
+  EXPECT_EQ(merged(Policy::kBalanced), 2);
+}
+
 TEST_F(MergedOrdersTest, WaysOfTheFileTakeWhatTheirBendsTake) {
   Sketch sketch;
   sketch.Infill(10, 0).Go(10, 20).Go(30, 20).Infill(30, 30).Go(50, 20).Infill(50, 30);

@@ -141,6 +141,20 @@ TEST(MachineLimits, ACornerIsMissedByTheJunctionDeviation) {
   EXPECT_NEAR(profile.corner_speed, std::sqrt(1000 * 0.02 / (std::sqrt(2) - 1)), 1e-9);
 }
 
+TEST(MachineLimits, FirmwareRetractsAndPrimesAsTheyState) {
+  const std::string retraction =
+      std::string(kPrinter) + "[firmware_retraction]\nretract_length: 0.8\nretract_speed: 35\n";
+  MachineProfile profile;
+  ApplyLimits(Read(retraction), profile);
+
+  EXPECT_EQ(profile.firmware_retract_length, 0.8);
+  EXPECT_EQ(profile.firmware_retract_speed, 35);
+  EXPECT_EQ(profile.firmware_prime_speed, 35);
+  ApplyLimits(Read(retraction + "unretract_speed: 20\n"), profile);
+  EXPECT_EQ(profile.firmware_retract_speed, 35);
+  EXPECT_EQ(profile.firmware_prime_speed, 20);
+}
+
 TEST(MachineLimits, FilamentAloneMayWhatExtrudingMay) {
   MachineProfile profile;
   ApplyLimits(Read(kPrinter), profile);
