@@ -95,13 +95,21 @@ std::string NewText(const GcodeFile& file, const ChosenLayers& chosen, const std
   return text;
 }
 
+// Whether both are read as counting E in the same way: a file that does not say so is taken by its
+// words, and those stand in another order now.
+bool CountAlike(const GcodeFile& a, const GcodeFile& b) {
+  return a.modes.empty() || b.modes.empty() || a.modes[0].relative_e == b.modes[0].relative_e;
+}
+
 // What a person sees who looks at `text`: it is read and measured like any other. There are not two
-// of it at a time.
-absl::StatusOr<PrintTotals> MeasureText(const GcodeFile& file, std::string& text, int threads) {
+// of it at a time. Nothing where E is taken otherwise.
+absl::StatusOr<std::optional<PrintTotals>> MeasureText(const GcodeFile& file, std::string& text,
+                                                       int threads) {
   const absl::StatusOr<std::shared_ptr<GcodeFile>> read = ReadGcode(std::move(text), file.name);
   if (!read.ok()) return read.status();
   (*read)->profile = file.profile;  // it may know more of the machine than the text says
-  const PrintTotals totals = Sum(MeasureLayers(**read, threads));
+  std::optional<PrintTotals> totals;
+  if (CountAlike(file, **read)) totals = Sum(MeasureLayers(**read, threads));
   text = std::move((*read)->text);
   return totals;
 }
@@ -223,9 +231,17 @@ class Rewriter {
   }
 
   absl::StatusOr<GcodeRewrite> Finish(const std::string& head, GcodeRewrite rewrite) const {
-    const absl::StatusOr<PrintTotals> after = MeasureText(file_, rewrite.text, options_.threads);
+    const absl::StatusOr<std::optional<PrintTotals>> after =
+        MeasureText(file_, rewrite.text, options_.threads);
     if (!after.ok()) return after.status();
-    rewrite.after = *after;
+    if (!after->has_value()) {
+      rewrite.layers_unproven = rewrite.layers_changed;
+      rewrite.unproven = absl::StrCat(
+          file_.name, ": neither M82 nor M83 says how E counts, and its words in another order ",
+          "would be taken otherwise");
+      return AsItIs(file_, std::move(rewrite));
+    }
+    rewrite.after = **after;
     if (rewrite.after.seconds > rewrite.before.seconds) return AsItIs(file_, std::move(rewrite));
     rewrite.text.replace(0, head.size(), HeadWithLine(file_, AddedLine(rewrite, options_)));
     rewrite.text = Numbered(file_, std::move(rewrite.text));
