@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
 #include "client/gcode/gcode_job.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/read/reader.h"
@@ -97,6 +98,17 @@ TEST(RewriteGcode, WhereNothingSaysHowECountsTheWordsInAnotherOrderMustNotEither
   EXPECT_EQ(silent->layers_unproven, 1);
   EXPECT_THAT(silent->unproven, HasSubstr("neither M82 nor M83 says how E counts"));
   EXPECT_EQ(silent->text, text(""));
+}
+
+TEST(RewriteGcode, SpeedsOfTravelStayAsTheyAreWritten) {
+  const std::string text = absl::StrReplaceAll(kScattered, {{"Y20 F9000\n", "Y20 F09000\n"}});
+  ASSERT_NE(text, kScattered);
+
+  const auto rewrite = RewriteGcode(*Read(text), {{kBetterOrder}}, OptionsWithVersion());
+
+  ASSERT_TRUE(rewrite.ok()) << rewrite.status();
+  EXPECT_EQ(rewrite->layers_changed, 1);
+  EXPECT_THAT(rewrite->text, HasSubstr("\nG1 X0 Y20 F09000\n"));
 }
 
 TEST(RewriteGcode, LineEndsSurvive) {

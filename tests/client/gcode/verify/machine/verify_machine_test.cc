@@ -35,17 +35,24 @@ TEST(VerifyMachine, G92SaysWhereTheAxesAreThatItNames) {
   EXPECT_EQ(machine.z(), 2'500'000);
 }
 
+LineRole LastRole(const std::string& text) {
+  VerifyMachine machine(text);
+  VerifyLine line;
+  while (machine.Next(line)) {
+  }
+  return line.role;
+}
+
 TEST(VerifyMachine, G92OfTheFilamentAloneIsNoFence) {
-  const auto roles = [](const std::string& text) {
-    VerifyMachine machine(text);
-    std::vector<LineRole> found;
-    VerifyLine line;
-    while (machine.Next(line)) found.push_back(line.role);
-    return found;
-  };
-  EXPECT_EQ(roles("M82\nG92 E0\n").back(), LineRole::kNothing);
-  EXPECT_EQ(roles("M82\nG92 X0 E0\n").back(), LineRole::kFixed);
-  EXPECT_EQ(roles("M82\nG92\n").back(), LineRole::kFixed);
+  EXPECT_EQ(LastRole("M82\nG92 E0\n"), LineRole::kNothing);
+  EXPECT_EQ(LastRole("M82\nG92 X0 E0\n"), LineRole::kFixed);
+  EXPECT_EQ(LastRole("M82\nG92\n"), LineRole::kFixed);
+}
+
+TEST(VerifyMachine, ACommentThatNumbersALayerIsAFence) {
+  EXPECT_EQ(LastRole("; layer 5, Z = 1.0\n"), LineRole::kFence);
+  EXPECT_EQ(LastRole("; layer height 0.2\n"), LineRole::kComment);
+  EXPECT_EQ(LastRole("; width 0.4\n"), LineRole::kComment);
 }
 
 // A scan for the next line feed in each of these lines would take minutes.

@@ -36,6 +36,19 @@ TEST(VerifyOpenWays, AcrossWallsGetNoLonger) {
   EXPECT_EQ(Broken(kHead + to_and_fro, kHead + longer), "open_ways");
 }
 
+TEST(VerifyOpenWays, AcrossWallsMayBeAsLongElsewhere) {
+  const std::string open = "G1 X30 Y15 F9000\n";
+  const std::string further = "G1 X30 Y17 F9000\n";
+  const std::string a = kSquare + Line("Internal infill", "X15 Y15", "X16 Y15") +
+                        With(Line("Internal infill", "X30 Y15", "X31 Y15"), Way("X30 Y15"), open) +
+                        Line("Internal infill", "X15 Y17", "X16 Y17") +
+                        Line("Internal infill", "X30 Y17", "X31 Y17");
+  const std::string b = With(With(a, open, Way("X30 Y15")), Way("X30 Y17"), further);
+
+  EXPECT_EQ(Broken(kHead + a, kHead + b), "");
+  EXPECT_EQ(Broken(kHead + b, kHead + a), "");
+}
+
 // What goes on along the wall ends on it, so that the way from there begins on it as well.
 TEST(VerifyOpenWays, BeginWhereTheMoveAlongTheWallEnds) {
   const std::string wall = kSquare + "G1 X10.4 Y10\n";
