@@ -1,4 +1,4 @@
-// Where ways lead, and how: client/gcode/verify/rules/bends, bounds.
+// Where ways lead, and how: client/gcode/verify/rules/bounds.
 
 #include <gtest/gtest.h>
 
