@@ -154,7 +154,9 @@ void Verifier::CheckChunk() {
   ParallelFor(layers, threads_, [&](size_t i) {
     const LayerPair layer(chunk_was_, chunk_is_, i);
     CheckLayer(layer, found[i]);
-    if (!more_ && i + 1 == layers) ObserveLastRetraction(layer, found[i]);
+    if (more_ || i + 1 < layers) return;
+    ObserveLastRetraction(layer, found[i]);
+    ObserveLastSpeeds(layer, found[i]);
   });
   for (size_t i = 0; i < layers; ++i) {
     const TraceSection& section = chunk_is_.sections[chunk_is_.layers[i].first_section];

@@ -4,9 +4,11 @@
 #include <algorithm>
 
 #include "absl/container/flat_hash_map.h"
+#include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/tails.h"
 #include "client/gcode/verify/rules/rules.h"
+#include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 namespace {
@@ -122,6 +124,33 @@ uint32_t AnyLine(const absl::flat_hash_map<uint64_t, Seen>& map) {
 void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings) {
   ObserveWas(layer, Tails(layer, true), findings.was);
   ObserveIs(layer, Tails(layer, false), findings.is);
+}
+
+// Behind the last path stand moves of the end script as well, which are no example for the print.
+void ObserveLastSpeeds(const LayerPair& layer, LayerFindings& findings) {
+  const TraceChunk& was = layer.was();
+  const TraceChunk& is = layer.is();
+  const TraceLink& last_was = was.links.back();
+  absl::flat_hash_set<uint64_t> feeds;
+  absl::flat_hash_set<uint64_t> accelerations;
+  const auto key = [](const TraceMove& move, uint64_t value) { return Mix(KindOf(move), value); };
+  for (uint32_t m = last_was.first_move; m < last_was.end_move; ++m) {
+    const TraceMove& move = was.moves[m];
+    feeds.insert(key(move, static_cast<uint64_t>(move.feed)));
+    accelerations.insert(key(move, move.acceleration));
+  }
+  for (uint32_t m = is.links.back().first_move; m < is.links.back().end_move; ++m) {
+    const TraceMove& move = is.moves[m];
+    if (move.firmware || layer.IsKnown(move)) continue;
+    const size_t kind = KindOf(move);
+    const auto feed = static_cast<uint64_t>(move.feed);
+    if (!feeds.contains(key(move, feed))) {
+      Note(findings.is.feeds[kind], feed, move, layer.index());
+    }
+    if (!accelerations.contains(key(move, move.acceleration))) {
+      Note(findings.is.accelerations[kind], move.acceleration, move, layer.index());
+    }
+  }
 }
 
 namespace {

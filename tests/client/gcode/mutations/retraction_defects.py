@@ -3,7 +3,7 @@
 import re
 
 from edits import edited, go, next_deposit, pick, restated, with_e, with_word, without_e
-from places import crosses_wall, down_of, lifted_links, lines_of, links
+from places import crosses_wall, down_of, level, lifted_links, lines_of, links
 from sliced import number
 
 
@@ -18,6 +18,46 @@ def retraction_dropped(file, rng):
         return edited(file, changes)
 
     return pick(rng, links(file), 150, make)
+
+
+def retraction_to_other_way(file, rng):
+    """Filament is pulled back for an open way of the layer instead of for its own."""
+    ways = {k: pulled for k, *pulled in links(file)}
+
+    def open_way(k):
+        index = file.link(k)
+        kinds = [file.lines[i].kind for i in index]
+        travels = [i for i in index if file.lines[i].kind == "travel"]
+        if not travels or set(kinds) & {"retract", "prime", "wipe", "z", "other"}:
+            return None
+        return travels if sum(file.lines[i].length() for i in travels) > 0.6 else None
+
+    def make(k):
+        pulls, own, pushes = ways[k]
+        if not level(file, (k, pulls, own, pushes)) or any(file.lines[i].kind == "wipe" for i in pulls):
+            return None
+        if sum(file.lines[i].length() for i in own) < 0.6:
+            return None
+        for other in list(range(k + 1, k + 30)) + list(range(k - 30, k)):
+            if not 0 <= other < len(file.paths) - 1 or other in ways:
+                continue
+            if {file.paths[other].section, file.paths[other + 1].section} != {file.paths[k].section}:
+                continue
+            travels = open_way(other)
+            if travels is None:
+                continue
+            changes = {i: [] for i in pulls + pushes}
+            changes[pulls[0]] = [f"G1 F{number(file.lines[pulls[-1]].feed)}"]
+            changes[pushes[-1]] = [f"G1 F{number(file.lines[pushes[-1]].feed)}"]
+            changes[travels[0]] = ([file.lines[i].text for i in pulls] +
+                                   [f"G1 F{number(file.lines[travels[0]].feed)}", file.lines[travels[0]].text])
+            changes.setdefault(travels[-1], [file.lines[travels[-1]].text])
+            changes[travels[-1]] = (changes[travels[-1]] + [file.lines[i].text for i in pushes] +
+                                    [f"G1 F{number(file.lines[travels[-1]].feed)}"])
+            return edited(file, changes)
+        return None
+
+    return pick(rng, ways, 200, make)
 
 
 def primed_early(file, rng):
@@ -202,6 +242,7 @@ def label_before_retraction(file, rng):
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("retraction dropped across a wall", "open_ways", retraction_dropped, "free"),
+    ("retraction moved to another way", "open_ways", retraction_to_other_way, "free"),
     ("filament back before a wall", "retractions", primed_early, "free"),
     ("retraction deeper by 0.8 mm", "retractions", retraction_deeper, "free"),
     ("retraction halved", "retractions", retraction_halved, "free"),

@@ -31,6 +31,17 @@ def retraction_slow(file, rng):
     return pick(rng, links(file), 20, make)
 
 
+def last_retraction_slow(file, rng):
+    """Behind the last path, in front of the end script."""
+    end = min(len(file.lines), file.paths[-1].last + 40)
+    index = next((i for i in range(file.paths[-1].last + 1, end)
+                  if file.lines[i].kind in ("retract", "command", "other")), None)
+    if index is None or file.lines[index].kind != "retract":
+        return None
+    line = file.lines[index]
+    return edited(file, {index: [with_f(line.text, line.feed / 2), f"G1 F{number(line.feed)}"]})
+
+
 def travel_acceleration(file, rng):
     def make(found):
         _, _, ways, _ = found
@@ -101,6 +112,7 @@ def way_faster(file, rng):
 DEFECTS = (
     ("travel at another speed", "speeds", travel_slow, "free"),
     ("retraction at another speed", "speeds", retraction_slow, "free"),
+    ("last retraction at half its speed", "speeds", last_retraction_slow, "free"),
     ("travel under another acceleration", "speeds", travel_acceleration, "free"),
     ("lift at another speed", "speeds", lift_slow, "free"),
     ("retraction under another acceleration", "speeds", around(retraction_of), "free"),

@@ -21,11 +21,26 @@ TEST(VerifyOpenWays, NoRetractionIsLostAcrossAnOuterWall) {
   EXPECT_EQ(Broken(kHead + kAcross, kHead + early), "open_ways retractions");
 }
 
+// Nothing lies between the paths, and another way of the layer is open and as long.
+TEST(VerifyOpenWays, ARetractionStaysWithItsWay) {
+  const std::string third = Line("Internal infill", "X0 Y10", "X9 Y10");
+  const std::string open = "G1 X0 Y10 F9000\n";
+  const std::string a = kTwo + With(third, Way("X0 Y10"), open);
+  const std::string moved = With(With(a, Way("X0 Y5"), "G1 X0 Y5 F9000\n"), open, Way("X0 Y10"));
+  EXPECT_EQ(Broken(kHead + a, kHead + moved, Policy::kFree), "open_ways");
+  // A way from there to another point may be open.
+  const std::string turned =
+      With(With(a, Way("X0 Y5"), "G1 X9 Y5 F9000\n"), "G1 X9 Y5 E.3", "G1 X0 Y5 E.3");
+  EXPECT_EQ(Broken(kHead + a, kHead + turned, Policy::kFree), "");
+}
+
 TEST(VerifyOpenWays, WithinTheWallAreFree) {
   const std::string within = kSquare + Line("Internal infill", "X15 Y15", "X16 Y15") +
                              Line("Internal infill", "X12 Y18", "X13 Y18") +
                              "G1 X16 Y16 F9000\nG1 F1800\nG1 X17 Y16 E.3\n";
-  EXPECT_EQ(Broken(kHead + within, kHead + With(within, Way("X12 Y18"), "G1 X12 Y18 F9000\n")), "");
+  const std::string turned =
+      With(With(within, Way("X12 Y18"), "G1 X13 Y18 F9000\n"), "G1 X13 Y18 E.3", "G1 X12 Y18 E.3");
+  EXPECT_EQ(Broken(kHead + within, kHead + turned), "");
 }
 
 TEST(VerifyOpenWays, AcrossWallsGetNoLonger) {
@@ -42,11 +57,12 @@ TEST(VerifyOpenWays, AcrossWallsMayBeAsLongElsewhere) {
   const std::string a = kSquare + Line("Internal infill", "X15 Y15", "X16 Y15") +
                         With(Line("Internal infill", "X30 Y15", "X31 Y15"), Way("X30 Y15"), open) +
                         Line("Internal infill", "X15 Y17", "X16 Y17") +
-                        Line("Internal infill", "X30 Y17", "X31 Y17");
-  const std::string b = With(With(a, open, Way("X30 Y15")), Way("X30 Y17"), further);
+                        Line("Internal infill", "X28 Y17", "X30 Y17");
+  // With the last line the other way round: the way to it is another one.
+  const std::string b = With(With(With(a, open, Way("X30 Y15")), Way("X28 Y17"), further),
+                             "G1 X30 Y17 E.3", "G1 X28 Y17 E.3");
 
   EXPECT_EQ(Broken(kHead + a, kHead + b), "");
-  EXPECT_EQ(Broken(kHead + b, kHead + a), "");
 }
 
 // What goes on along the wall ends on it, so that the way from there begins on it as well.

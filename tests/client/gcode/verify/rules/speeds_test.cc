@@ -19,6 +19,17 @@ TEST(VerifySpeeds, AreThoseOfSuchMoves) {
             "speeds");
 }
 
+// Behind the last path the end script pulls filament back as well, at a speed of its own.
+TEST(VerifySpeeds, TheLastRetractionIsAsFastAsTheOthers) {
+  const std::string end =
+      "G1 E-1 F2100\n;TIME_ELAPSED:9\nM107\nG1 E-2 F2700\nG1 X0 Y200 F3000\nM84\n";
+  const std::string a = kHead + kTwo + end;
+  EXPECT_EQ(Broken(a, kHead + kTwo + With(end, "E-1 F2100", "E-1 F1050")), "speeds");
+  EXPECT_EQ(Broken(a, kHead + Line("Internal infill", "X0 Y0", "X9 Y0") +
+                          Line("Internal infill", "X9 Y5", "X0 Y5") + end),
+            "");
+}
+
 TEST(VerifySpeeds, TravelKeepsItsAcceleration) {
   const auto path = [](const std::string& from, const std::string& to) {
     return absl::StrCat("M204 P1000\n",
