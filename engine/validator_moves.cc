@@ -178,10 +178,12 @@ class MoveCheck {
       return absl::OkStatus();
     }
     Crossing crossing = Crossing::kNo;
+    double motion = MotionSeconds(spec_, length);
     if (detour == nullptr) {
       crossing = stripes_.Of(from, to, spec_.wall_slack_mm);
     } else {
       length = 0;
+      motion = 0;  // with a stop at each bend
       Point at = from;
       for (size_t i = 0; i <= detour->points.size(); ++i) {
         const Point next = i < detour->points.size() ? detour->points[i] : to;
@@ -189,14 +191,17 @@ class MoveCheck {
           return absl::FailedPreconditionError("its way around walls crosses one");
         }
         length += Length(at, next);
+        motion += MotionSeconds(spec_, Length(at, next));
         at = next;
       }
     }
     const bool exposed = exposed_.count({from.x, from.y}) > 0 || exposed_.count({to.x, to.y}) > 0;
     const double pays = 1 - 0.5 * static_cast<double>(retracted_.count(one)) -
                         0.5 * static_cast<double>(retracted_.count(other));
-    const auto [low, low_retracts] = Of(length, exposed, false, pays);
-    const auto [high, high_retracts] = Of(length, exposed, true, pays);
+    const auto [added_low, low_retracts] = Of(length, exposed, false, pays);
+    const auto [added_high, high_retracts] = Of(length, exposed, true, pays);
+    const double low = motion + added_low;
+    const double high = motion + added_high;
     const bool surely = crossing == Crossing::kYes;
     const bool perhaps = crossing != Crossing::kNo;
     cost_.Add(surely ? high : low, perhaps ? high : low);
@@ -232,12 +237,13 @@ class MoveCheck {
     retractions_.Add(retractions, retractions);
   }
 
-  // Time, and whether filament is pulled back. `pays`: the share of a retraction for walls.
+  // Time beyond that of the motion, and whether filament is pulled back. `pays`: the share of a
+  // retraction for walls.
   std::pair<double, bool> Of(double length, bool exposed, bool crosses, double pays) const {
     const bool far = length > spec_.retraction_threshold_mm;
     const bool retracts = far || (crosses && length > spec_.wall_retraction_threshold_mm) ||
                           (exposed && length > spec_.exposed_retraction_threshold_mm);
-    double seconds = MotionSeconds(spec_, length);
+    double seconds = 0;
     if (retracts) seconds += spec_.retraction_seconds * (far ? 1 : pays);
     if (crosses && retracts) seconds += spec_.lift_seconds;
     if (crosses) seconds += spec_.crossing_seconds;

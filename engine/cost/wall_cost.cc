@@ -55,6 +55,11 @@ std::array<double, 4> KeyOf(Point a, Point b) {
   return {a.x, a.y, b.x, b.y};
 }
 
+TravelCost WithoutRetraction(CostSpec spec) {
+  spec.retraction_seconds = 0;
+  return TravelCost(spec);
+}
+
 size_t PlacesFor(size_t paths, bool detours) {
   const size_t wanted = paths * (detours ? kDetoursPerPath : kMovesPerPath);
   return std::bit_ceil(std::clamp<size_t>(wanted, 1024, detours ? kMostDetours : kMostMoves));
@@ -164,18 +169,20 @@ WallMove WallCost::MoveOf(Point a, Point b) const {
   std::vector<Point> via = detours_->Around(a, b, &tests);
   work_ += tests * kWorkOfTest;
   if (via.empty()) return straight;
-  double length_mm = 0;
+  const TravelCost motion = WithoutRetraction(spec_);
+  WallMove around;
   Point at = a;
   for (const Point& bend : via) {
-    length_mm += Distance(at, bend);
+    around.length_mm += Distance(at, bend);
+    around.cost += motion.OfLength(Distance(at, bend));
     at = bend;
   }
-  length_mm += Distance(at, b);
-  WallMove around;
-  around.length_mm = length_mm;
-  around.cost = base_.OfLength(length_mm);
-  around.retracts = length_mm > spec_.retraction_threshold_mm;
-  if (!around.retracts && length_mm > spec_.exposed_retraction_threshold_mm && IsExposed(a, b)) {
+  around.length_mm += Distance(at, b);
+  around.cost += motion.OfLength(Distance(at, b));
+  around.retracts = around.length_mm > spec_.retraction_threshold_mm;
+  if (around.retracts) {
+    around.cost += spec_.retraction_seconds;
+  } else if (around.length_mm > spec_.exposed_retraction_threshold_mm && IsExposed(a, b)) {
     around.retracts = true;
     around.cost += spec_.retraction_seconds * ShareOfRetraction(a, b);
   }

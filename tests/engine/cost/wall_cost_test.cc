@@ -154,6 +154,32 @@ TEST(WallCost, LeadsAWayAroundWhereThatCostsLess) {
   EXPECT_TRUE(cost.MoveOf({15, 10}, {60, 10}).crosses);  // outside
 }
 
+TEST(WallCost, OfAWayAroundHasAStopAtEachBend) {
+  CostSpec spec = PrinterCost();
+  spec.accel_mm_s2 = 1000;
+  spec.retraction_threshold_mm = 22;
+  spec.wall_clearance_mm = 0.4;
+  LayerWalls walls;
+  walls.walls.push_back(
+      {{{0, 0}, {19, 0}, {19, 20}, {21, 20}, {21, 0}, {40, 0}, {40, 40}, {0, 40}}, true, -1});
+  const WallCost cost(walls, FlatPlan(1), spec);
+
+  const WallMove move = cost.MoveOf({15, 10}, {25, 10});
+
+  ASSERT_GE(move.via.size(), 2u);
+  const auto motion = [](double mm) { return mm < 10 ? 2 * std::sqrt(mm / 1000) : mm / 100 + 0.1; };
+  double seconds = 0;
+  Point at{15, 10};
+  for (const Point& bend : move.via) {
+    seconds += motion(Distance(at, bend));
+    at = bend;
+  }
+  seconds += motion(Distance(at, {25, 10}));
+  EXPECT_TRUE(move.retracts);
+  EXPECT_NEAR(move.cost, seconds + 0.5, 1e-9);
+  EXPECT_GT(seconds, 0.1 + move.length_mm / 100 + 0.05);
+}
+
 TEST(WallCost, EqualsABruteForceRecomputationAndIsNeverBelowItsBase) {
   for (uint64_t seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
