@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
-#include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/plan/travel_model.h"
@@ -112,7 +111,7 @@ void SetWalls(const TravelRules& rules, const RetractionHabit& habit,
 // have bends, and some no retraction where a new one would have it.
 void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const TravelModel& travel,
                    const TravelRules& rules, const std::vector<Outline>& outlines,
-                   v1::Layer& layer) {
+                   const VisibleWalls& walls, v1::Layer& layer) {
   for (uint32_t b = of_file.first_block + 1; b < of_file.end_block; ++b) {
     const Block& before = file.blocks[b - 1];
     const Block& block = file.blocks[b];
@@ -121,8 +120,7 @@ void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const TravelMode
                                       outlines[b - of_file.first_block].feature);
     // Wipes are no part of a new way either.
     const bool plain = (block.link & kLinkWipes) == 0;
-    double seconds = plain ? WaySeconds(file, b, travel)
-                           : StopToStopSeconds(way.mm, travel.speed_mm_s, travel.accel_mm_s2);
+    double seconds = plain ? WaySeconds(file, b, travel) : NewWaySeconds(file, b - 1, way, travel);
     // What is pulled back because of a wipe is priced as for a new way, which begins with it too.
     const double wiped = (file.WipedBehind(b - 1) ? 0.5 : 0) + (file.WipedBehind(b) ? 0.5 : 0);
     const bool retracts = (block.link & kLinkRetracts) != 0;
@@ -132,7 +130,7 @@ void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const TravelMode
     move.set_from(b - 1 - of_file.first_block);
     move.set_to(b - of_file.first_block);
     move.set_seconds(seconds < kMostKnownSeconds ? seconds : kMostKnownSeconds);
-    move.set_crosses(way.crosses);
+    move.set_crosses(MeasureLink(file, b, walls).crossings > 0);
     move.set_retracts(retracts);
   }
 }
@@ -158,7 +156,7 @@ void FillLayer(const GcodeFile& file, size_t index, const FileHabits& habits,
   const TravelRules rules(file, layer, habits.retraction, planned.outlines, walls);
   SetWalls(rules, habits.retraction, planned.outlines, filled);
   SetWiped(file, layer, habits.retraction.crossing_matters, filled);
-  SetKnownMoves(file, layer, habits.travel[index], rules, planned.outlines, filled);
+  SetKnownMoves(file, layer, habits.travel[index], rules, planned.outlines, walls, filled);
   PathNotes& notes = job.notes[index];
   for (size_t path = 0; path < planned.outlines.size(); ++path) {
     const auto feature = static_cast<size_t>(planned.outlines[path].feature);

@@ -30,9 +30,12 @@ PrintTotals MeasurePaths(const GcodeFile& file, const Layer& layer, const Visibl
 }
 
 PrintTotals MeasureWay(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls) {
-  if (layer.first_block == 0) return {};
-  const PartStart start = StartBehind(file, file.blocks[layer.first_block - 1]);
-  return Measure(file, file.LinkText(layer.first_block), start, &walls);
+  return layer.first_block > 0 ? MeasureLink(file, layer.first_block, walls) : PrintTotals{};
+}
+
+PrintTotals MeasureLink(const GcodeFile& file, uint32_t block, const VisibleWalls& walls) {
+  const PartStart start = StartBehind(file, file.blocks[block - 1]);
+  return Measure(file, file.LinkText(block), start, &walls);
 }
 
 std::vector<PrintTotals> MeasureLayers(const GcodeFile& file, int threads) {

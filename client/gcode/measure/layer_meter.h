@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_CLIENT_GCODE_MEASURE_LAYER_METER_H_
 #define TRAVERSE_CLIENT_GCODE_MEASURE_LAYER_METER_H_
 
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -31,6 +32,9 @@ PrintTotals MeasurePaths(const GcodeFile& file, const Layer& layer, const Visibl
 
 // The way to the first path of `layer`, from the end of the layer before; nothing for the first.
 PrintTotals MeasureWay(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls);
+
+// The link before block `block`, whichever it is, as it is in the file. REQUIRES: block > 0.
+PrintTotals MeasureLink(const GcodeFile& file, uint32_t block, const VisibleWalls& walls);
 
 // [layer]: its paths and the way to it, with a standstill between the two. Uses `threads` threads;
 // the result does not depend on them.

@@ -138,4 +138,22 @@ double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& mode
   return planner.seconds();
 }
 
+double NewWaySeconds(const GcodeFile& file, uint32_t before, const TravelWay& way,
+                     const TravelModel& model) {
+  if (way.via.empty()) return StopToStopSeconds(way.mm, model.speed_mm_s, model.accel_mm_s2);
+  const Dynamics dynamics =
+      DynamicsOf(file.profile, file.states[file.blocks[before].state_out], file.setters);
+  MotionPlanner planner({file.profile.klipper, dynamics.cruise_ratio()});
+  Vertex at = way.from;
+  const auto go = [&](Vertex to) {
+    planner.Move(to.x - at.x, to.y - at.y, model.speed_mm_s, model.accel_mm_s2,
+                 dynamics.corner_speed());
+    at = to;
+  };
+  for (const Vertex bend : way.via) go(bend);
+  go(way.to);
+  planner.Stop();
+  return planner.seconds();
+}
+
 }  // namespace traverse::gcode

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "client/gcode/model/gcode_file.h"
+#include "client/gcode/plan/travel_rules.h"
 
 namespace traverse::gcode {
 
@@ -30,6 +31,10 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm)
 // which other ways from that path begin too, but under CuraEngine, whose bends may lie as near.
 // REQUIRES: there is a block before it.
 double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& model);
+
+// The same of a new way from the path `before`.
+double NewWaySeconds(const GcodeFile& file, uint32_t before, const TravelWay& way,
+                     const TravelModel& model);
 
 }  // namespace traverse::gcode
 

@@ -164,18 +164,20 @@ bool TravelRules::Retracts(Vertex a, Vertex b, Feature feature) const {
 
 TravelWay TravelRules::WayOf(Vertex a, Vertex b, Feature feature) const {
   TravelWay way;
+  way.from = a;
+  way.to = b;
   way.mm = Distance(a, b);
   way.crosses = walls_.Crossed(a, b);
   if (way.crosses && detours_) {
-    const std::vector<Vertex> bends = detours_->Around(a, b);
+    way.via = detours_->Around(a, b);
     Vertex at = a;
     double mm = 0;
-    for (const Vertex bend : bends) {
+    for (const Vertex bend : way.via) {
       mm += Distance(at, bend);
       at = bend;
     }
-    way.crosses = bends.empty();
-    if (!bends.empty()) way.mm = mm + Distance(at, b);
+    way.crosses = way.via.empty();
+    if (!way.via.empty()) way.mm = mm + Distance(at, b);
   }
   if (!habit_.retracts) return way;
   const bool far = Distance(a, b) >= habit_.threshold_mm;

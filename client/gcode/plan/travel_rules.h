@@ -58,9 +58,12 @@ RetractionHabit HabitOfNewWays(const GcodeFile& file);
 
 // A new way as it is written.
 struct TravelWay {
+  Vertex from;
+  Vertex to;
   bool retracts = false;
-  bool crosses = false;  // a visible wall, and there is no way around
-  double mm = 0;         // bends included
+  bool crosses = false;     // a visible wall, and there is no way around
+  double mm = 0;            // bends included
+  std::vector<Vertex> via;  // the bends of the way around visible walls; empty: it is straight
 };
 
 // The same for one layer: top and bottom layers are often retracted where others are not.

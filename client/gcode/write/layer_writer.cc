@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/model/loops.h"
 #include "client/gcode/model/outline.h"
 #include "client/gcode/write/link_writer.h"
@@ -153,8 +152,9 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
     way.mm = static_cast<double>(next.travel_mm);
     way_seconds = WaySeconds(file_, to.block, model);
   } else {
-    way_seconds = StopToStopSeconds(way.mm, model.speed_mm_s, model.accel_mm_s2);
+    way_seconds = NewWaySeconds(file_, from.block, way, model);
   }
+  if (as_given) way.crosses = MeasureLink(file_, to.block, walls_).crossings > 0;
   way.retracts = as_given ? (next.link & kLinkRetracts) != 0
                           : way.retracts || file_.WipedBehind(from.block) ||
                                 (boundary && (here.link & kLinkRetracts) != 0);

@@ -116,6 +116,37 @@ TEST_F(MergedOrdersTest, WaysOfTheFileTakeWhatTheirBendsTake) {
   EXPECT_NEAR(straight.seconds, StopToStopSeconds(std::hypot(20, 10), 150, 1000), 1e-6);
 }
 
+// Straight on it would lead through the square.
+TEST_F(MergedOrdersTest, AWayOfTheFileCrossesWhatItCrossesWithItsBends) {
+  Sketch sketch;
+  sketch.Square(0, 0, 10).Go(-5, 5).Infill(-2, 5).Go(-2, 15).Go(12, 15).Go(12, 5).Infill(15, 5);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+  const LayerWriter writer(*file, file->layers[0], habit_, *donors_);
+  const LayerOrder given = writer.GivenOrder();
+
+  EXPECT_EQ(writer.EstimateWay(2, given[1], given[2], kTravel).crossings, 0);
+  EXPECT_EQ(writer.EstimateWay(2, given[2], given[1], kTravel).crossings, 1);
+}
+
+// As it is written: from bend to bend.
+TEST_F(MergedOrdersTest, NewWaysAroundWallsTakeWhatTheirBendsTake) {
+  Sketch sketch;
+  sketch.Square(0, 0, 40).Go(15, 15).Square(15, 15, 10).Go(5, 5).Infill(5, 20);
+  sketch.Go(20, 35).Infill(35, 35).Go(35, 20).Infill(35, 18);
+  const std::shared_ptr<GcodeFile> file = sketch.Add("; avoid_crossing_perimeters = 1").Read();
+  const RetractionHabit habit = LearnRetraction(*file);
+  const LinkDonors donors(*file);
+  const LayerWriter writer(*file, file->layers[0], habit, donors);
+  const LayerOrder given = writer.GivenOrder();
+  ASSERT_EQ(given.size(), 5u);
+
+  const WayTotals around = writer.EstimateWay(3, given[2], given[4], kTravel);
+
+  EXPECT_EQ(around.crossings, 0);
+  EXPECT_GT(around.mm, 32);
+  EXPECT_GT(around.seconds, StopToStopSeconds(around.mm, 150, 1000) + 0.05);
+}
+
 // Four squares in a row. What was found begins them at near corners, but with the second one; the
 // file begins with the first one, at a corner that is far away.
 TEST_F(MergedOrdersTest, UnderFreeWhatWasFoundIsTriedInTheOrderOfTheFile) {
