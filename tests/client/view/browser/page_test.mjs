@@ -82,7 +82,7 @@ test("opens with its headline, both pictures, and the layer with the most saved"
     assert.match(cards[0], /^Travel\n−\d+\.\d %\n[\d.]+ mm → [\d.]+ mm$/);
     assert.match(cards[1], /^Print time\n/);
     assert.match(cards[3], /^Visible walls crossed\n.* %\n\d+ → \d+$/);
-    assert.match(cards[2], /^Retractions\n[−+]\d+\.\d %\n\d+ → \d+$/);
+    assert.match(cards[2], /^Retractions\n(?:[−+]\d+\.\d|±0) %\n\d+ → \d+$/);
     assert.match(await text(page, "#before-name"), /^Before: \d+\.\d mm, \d+ retractions, \d+ walls? crossed$/);
     assert.match(await text(page, "#after-name"), /^After, auto: \d+\.\d mm \(−\d+\.\d %\), \d+ retractions, \d+ walls? crossed$/);
     for (const id of ["before", "after"]) {
