@@ -32,6 +32,7 @@ void Observations::Append(const Observations& other) {
     AppendSeen(other.feeds[kind], feeds[kind]);
     AppendSeen(other.accelerations[kind], accelerations[kind]);
   }
+  AppendSeen(other.tail_feeds, tail_feeds);
   AppendSeen(other.signatures, signatures);
   AppendSeen(other.heights, heights);
   AppendSeen(other.rises, rises);

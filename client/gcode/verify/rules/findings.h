@@ -169,6 +169,7 @@ struct Observations {
   std::array<absl::flat_hash_map<uint64_t, Seen>, static_cast<size_t>(MoveKind::kCount) + 1> feeds;
   std::array<absl::flat_hash_map<uint64_t, Seen>, static_cast<size_t>(MoveKind::kCount) + 1>
       accelerations;
+  absl::flat_hash_map<uint64_t, Seen> tail_feeds;  // of what goes on along a path
   absl::flat_hash_map<uint64_t, Seen> signatures;
   absl::flat_hash_set<uint64_t> script_signatures;
   absl::flat_hash_map<int64_t, Seen> heights;  // um above the layer, of moves that state Z

@@ -37,6 +37,17 @@ void Note(absl::flat_hash_map<uint64_t, Seen>& map, uint64_t key, const TraceMov
   }
 }
 
+// What goes on along a path without filament, at another speed than the path.
+void ObserveTail(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, uint32_t moves,
+                 Observations& seen) {
+  if (link == 0) return;
+  for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].first_move + moves; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (!move.sideways() || move.feed == chunk.paths[link - 1].feed) continue;
+    Note(seen.tail_feeds, static_cast<uint64_t>(move.feed), move, layer.index());
+  }
+}
+
 void ObserveWas(const LayerPair& layer, const Tails& tails, Observations& seen) {
   const TraceChunk& chunk = layer.was();
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
@@ -45,6 +56,7 @@ void ObserveWas(const LayerPair& layer, const Tails& tails, Observations& seen) 
       ObserveScript(chunk, link, seen);
       continue;
     }
+    ObserveTail(layer, chunk, link, tails.At(link), seen);
     for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
       const TraceMove& move = chunk.moves[m];
       if (!move.in_print) {
@@ -92,6 +104,7 @@ void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
   const LongestWays longest = LongestOf(layer);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
     const TraceLink& traced = chunk.links[link];
+    ObserveTail(layer, chunk, link, tails.At(link), seen);
     for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
       const TraceMove& move = chunk.moves[m];
       if (!move.in_print || layer.IsKnown(move)) continue;
@@ -192,8 +205,28 @@ void CompareLengths(const Observations& was, const Observations& is, std::vector
 
 }  // namespace
 
+namespace {
+
+// What drips out of the nozzle on a tail depends on how long that takes.
+void CompareTails(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
+  for (const auto& [feed, seen] : is.tail_feeds) {
+    const uint64_t key = feed;
+    if (was.tail_feeds.contains(key) ||
+        std::any_of(was.feeds.begin(), was.feeds.end(),
+                    [key](const auto& of_kind) { return of_kind.contains(key); })) {
+      continue;
+    }
+    breaks.push_back({VerifyRule::kSpeeds, 0, seen.line, seen.layer,
+                      absl::StrFormat("goes on along a path at F%g, as nothing of the original",
+                                      static_cast<double>(static_cast<Micro>(feed)) * 1e-6)});
+  }
+}
+
+}  // namespace
+
 void CompareSpeeds(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   CompareLengths(was, is, breaks);
+  CompareTails(was, is, breaks);
   for (size_t kind = 0; kind < was.feeds.size(); ++kind) {
     // Ways that are open and ways that are not are the same to a slicer: of a kind that the
     // original has none of, the other one tells.

@@ -3,8 +3,9 @@
 import math
 import re
 
-from edits import edited, pick, restated, with_xy
+from edits import edited, pick, restated, with_f, with_xy
 from places import lines_of
+from sliced import number
 from text_defects import SETTERS, without
 
 
@@ -46,6 +47,16 @@ def tail_longer(file, rng):
         line = file.lines[i]
         far = [b[k] + (line.end[k] - b[k]) * 3 for k in (0, 1)]
         return edited(file, {i: [with_xy(line.text, far)]})
+
+    return pick(rng, tails(file), 5, make)
+
+
+def tail_slow(file, rng):
+    """At half its speed, or so: half may be another speed of the file. More drips out of the nozzle."""
+
+    def make(found):
+        line = file.lines[found[0]]
+        return edited(file, {found[0]: [with_f(line.text, line.feed * 0.53), f"G1 F{number(line.feed)}"]})
 
     return pick(rng, tails(file), 5, make)
 
@@ -108,6 +119,7 @@ DEFECTS = (
     ("move of the start script", "scripts", from_script, "free"),
     ("move along a path's end dropped", "path_ends", tail_dropped, "free"),
     ("move along a path's end longer", "path_ends", tail_longer, "free"),
+    ("move along a path's end at half its speed", "speeds", tail_slow, "free"),
     ("file cut off", "same_print", truncated, "free"),
     ("move of the start script dropped", "scripts", script_move_dropped(lambda _: 0, start_script_end), "free"),
     ("move of the end script dropped", "scripts",
