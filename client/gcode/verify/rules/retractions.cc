@@ -197,10 +197,13 @@ void CompareRetractions(const Observations& was, const Observations& is,
   const bool may_pull_high = is_usual(&RetractionCycle::pulled_high);
   const bool may_be_in_parts = is_usual(&RetractionCycle::in_parts);
   const bool may_be_idle = is_usual(&RetractionCycle::idle);
+  // Of moves that the original has one may be missing.
+  absl::flat_hash_set<uint64_t> whole;
+  for (const RetractionCycle& cycle : was.cycles) whole.insert(cycle.identity);
   float latest_mm = 0;
   for (const RetractionCycle& cycle : was.cycles) latest_mm = std::max(latest_mm, cycle.late_mm);
   for (const RetractionCycle& cycle : is.cycles) {
-    if (cycle.known) continue;
+    if (cycle.known && whole.contains(cycle.identity)) continue;
     const auto [deepest, line] = pairs.Deepest(cycle.tool);
     // A copy of its own: C++20 has lambdas take structured bindings, clang 14 has not.
     const auto report = [&, was_line = line](std::string what) {

@@ -20,6 +20,14 @@ TEST(VerifyRetractions, AreNoDeeperAndPairsOfTheOriginal) {
   EXPECT_EQ(Broken(kHead + kTwo, kHead + uneven), "retractions");
 }
 
+// Where a tool is unloaded it is pulled back and pushed more than once.
+TEST(VerifyRetractions, NoPartOfOneIsMissing) {
+  const std::string a = kHead + kTwo + "G1 E-5 F2100\nG1 E2 F2000\nG1 E-9 F2100\nT1\n" +
+                        "G1 E12 F2100\n" + Line("Internal infill", "X0 Y9", "X9 Y9");
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_NE(Broken(a, With(a, "G1 E2 F2000\n", ""), Policy::kFree), "");
+}
+
 TEST(VerifyRetractions, MayBeMoreOrFewer) {
   const std::string fewer = With(kOneTurned, Way("X0 Y5"), "G1 X0 Y5 F9000\n");
   const std::string third = "G1 X0 Y6 F9000\nG1 F1800\nG1 X9 Y6 E.3\n";
