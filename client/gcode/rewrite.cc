@@ -95,12 +95,6 @@ std::string NewText(const GcodeFile& file, const ChosenLayers& chosen, const std
   return text;
 }
 
-// Whether both are read as counting E in the same way: a file that does not say so is taken by its
-// words, and those stand in another order now.
-bool CountAlike(const GcodeFile& a, const GcodeFile& b) {
-  return a.modes.empty() || b.modes.empty() || a.modes[0].relative_e == b.modes[0].relative_e;
-}
-
 // What a person sees who looks at `text`: it is read and measured like any other. There are not two
 // of it at a time. Nothing where E is taken otherwise.
 absl::StatusOr<std::optional<PrintTotals>> MeasureText(const GcodeFile& file, std::string& text,

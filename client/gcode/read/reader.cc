@@ -155,6 +155,11 @@ std::optional<Offset> TakeNumbers(GcodeFile& file) {
 }
 
 }  // namespace
+
+bool CountAlike(const GcodeFile& a, const GcodeFile& b) {
+  return a.modes.empty() || b.modes.empty() || a.modes[0].relative_e == b.modes[0].relative_e;
+}
+
 }  // namespace gcode
 
 size_t GcodeFile::LineNumber(gcode::Offset offset) const {

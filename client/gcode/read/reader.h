@@ -18,6 +18,13 @@ namespace traverse {
 // understood is no error: it becomes a fence.
 absl::StatusOr<std::shared_ptr<GcodeFile>> ReadGcode(std::string text, const std::string& name);
 
+namespace gcode {
+
+// Whether both were read as counting E in the same way. A file that has neither M82 nor M83 is
+// taken by its words, so that the same lines in another order may be taken otherwise.
+bool CountAlike(const GcodeFile& a, const GcodeFile& b);
+
+}  // namespace gcode
 }  // namespace traverse
 
 #endif  // TRAVERSE_CLIENT_GCODE_READ_READER_H_
