@@ -203,10 +203,6 @@ void CompareLengths(const Observations& was, const Observations& is, std::vector
   }
 }
 
-}  // namespace
-
-namespace {
-
 // What drips out of the nozzle on a tail depends on how long that takes.
 void CompareTails(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   for (const auto& [feed, seen] : is.tail_feeds) {
