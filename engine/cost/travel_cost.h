@@ -45,6 +45,14 @@ class TravelCost {
     return spec_.kind == CostSpec::Kind::kLength ? length_mm : Seconds(length_mm);
   }
 
+  // Seconds of a move of `length_mm` >= 0 without a retraction, where the cost is a time. From
+  // standstill to standstill: with a = acceleration and v = speed, the speed is reached only by
+  // moves longer than v^2 / a; these take l / v + v / a, shorter ones 2 sqrt(l / a).
+  double Motion(double length_mm) const {
+    if (length_mm >= full_speed_mm_) return length_mm / spec_.speed_mm_s + ramp_seconds_;
+    return 2 * std::sqrt(length_mm / spec_.accel_mm_s2);
+  }
+
   // The length in mm of the longest moves that cost no more than `cost` >= 0, but for rounding. For
   // quick rejections: what is farther away costs more.
   double LongestWithin(double cost) const {
@@ -62,13 +70,6 @@ class TravelCost {
   bool has_walls() const { return walls_ != nullptr; }
 
  private:
-  // From standstill to standstill. With a = acceleration and v = speed, the speed is reached only
-  // by moves longer than v^2 / a; these take l / v + v / a, shorter ones 2 sqrt(l / a).
-  double Motion(double length_mm) const {
-    if (length_mm >= full_speed_mm_) return length_mm / spec_.speed_mm_s + ramp_seconds_;
-    return 2 * std::sqrt(length_mm / spec_.accel_mm_s2);
-  }
-
   double Seconds(double length_mm) const {
     const double seconds = Motion(length_mm);
     return length_mm > spec_.retraction_threshold_mm ? seconds + spec_.retraction_seconds : seconds;

@@ -55,11 +55,6 @@ std::array<double, 4> KeyOf(Point a, Point b) {
   return {a.x, a.y, b.x, b.y};
 }
 
-TravelCost WithoutRetraction(CostSpec spec) {
-  spec.retraction_seconds = 0;
-  return TravelCost(spec);
-}
-
 size_t PlacesFor(size_t paths, bool detours) {
   const size_t wanted = paths * (detours ? kDetoursPerPath : kMovesPerPath);
   return std::bit_ceil(std::clamp<size_t>(wanted, 1024, detours ? kMostDetours : kMostMoves));
@@ -169,16 +164,15 @@ WallMove WallCost::MoveOf(Point a, Point b) const {
   std::vector<Point> via = detours_->Around(a, b, &tests);
   work_ += tests * kWorkOfTest;
   if (via.empty()) return straight;
-  const TravelCost motion = WithoutRetraction(spec_);
   WallMove around;
   Point at = a;
   for (const Point& bend : via) {
     around.length_mm += Distance(at, bend);
-    around.cost += motion.OfLength(Distance(at, bend));
+    around.cost += base_.Motion(Distance(at, bend));
     at = bend;
   }
   around.length_mm += Distance(at, b);
-  around.cost += motion.OfLength(Distance(at, b));
+  around.cost += base_.Motion(Distance(at, b));
   around.retracts = around.length_mm > spec_.retraction_threshold_mm;
   if (around.retracts) {
     around.cost += spec_.retraction_seconds;
