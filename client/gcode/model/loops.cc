@@ -124,24 +124,42 @@ double WallFlow(const GcodeFile& file, const Layer& layer, const std::vector<Out
   return way > 0 ? filament / way : 0;
 }
 
-// True if the middle of the first stretch of `outline` lies on a segment of an earlier path.
-bool LiesOnEarlier(const Outline& outline, uint32_t path, const SegmentGrid& grid) {
-  const Vertex a = outline.points[0];
-  const Vertex b = outline.points[1];
-  const Vertex middle{(a.x + b.x) / 2, (a.y + b.y) / 2};
-  const double reach = 1.1 * outline.width_mm;
+// True if a segment of an earlier path than `path` lies within `reach` of `point`.
+bool LiesOnEarlier(Vertex point, double reach, uint32_t path, const SegmentGrid& grid) {
   bool lies = false;
   for (const Vertex way : {Vertex{reach, 0}, Vertex{0, reach}}) {
     grid.ForEachOnWay(
-        {middle.x - way.x, middle.y - way.y}, {middle.x + way.x, middle.y + way.y},
-        [&](uint32_t s) {
+        {point.x - way.x, point.y - way.y}, {point.x + way.x, point.y + way.y}, [&](uint32_t s) {
           const Segment& other = grid.segments()[s];
-          lies = other.path < path && SquaredDistance({middle, middle, 0}, other) <= reach * reach;
+          lies = other.path < path && SquaredDistance({point, point, 0}, other) <= reach * reach;
           return !lies;
         });
     if (lies) break;
   }
   return lies;
+}
+
+// True if most of the longest stretch of `outline` lies on earlier paths. The first one may be a
+// short one at the edge of the skin, where nothing is.
+bool LiesOnEarlier(const Outline& outline, uint32_t path, const SegmentGrid& grid) {
+  // Ironing is so thin that its width reaches no line of a skin from between two of them.
+  constexpr double kLeastReachMm = 0.3;
+  const std::vector<Vertex>& points = outline.shape();
+  size_t longest = 0;
+  for (size_t k = 1; k + 1 < points.size(); ++k) {
+    if (Distance(points[k], points[k + 1]) > Distance(points[longest], points[longest + 1])) {
+      longest = k;
+    }
+  }
+  const Vertex a = points[longest];
+  const Vertex b = points[longest + 1];
+  const double reach = std::max(1.1 * outline.width_mm, kLeastReachMm);
+  int lying = 0;
+  for (const double t : {0.25, 0.5, 0.75}) {
+    const Vertex probe{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
+    lying += LiesOnEarlier(probe, reach, path, grid) ? 1 : 0;
+  }
+  return lying >= 2;
 }
 
 // CuraEngine gives ironing the type of the skin that it irons: it is known by its flow, a fraction
