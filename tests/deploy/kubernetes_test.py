@@ -140,6 +140,12 @@ class Objects(unittest.TestCase):
             self.assertEqual(f"docker.io/library/traverse-server:{version}", container["image"])
 
 
+# An overlay, what stands in it, and what makes its document a wrong one.
+WRONG = (("production", "minReplicas", "minReplica"), ("production", "containerPort", "containrPort"),
+         ("production", "cpu: ", "cpu: [1] #"), ("encrypted", "renewBefore", "renewBeforehand"),
+         ("encrypted", "secretName: traverse-tls\n    ", "secretNam: traverse-tls\n    "))
+
+
 class Schemas(unittest.TestCase):
 
     def test_every_document_fits_its_schema_and_a_wrong_one_does_not(self):
@@ -149,15 +155,20 @@ class Schemas(unittest.TestCase):
                 shutil.copy(path, work)
             support.install_node_packages(work)
 
-            for overlay in OVERLAYS:
-                support.run("node", work / "validate.mjs", input=render(overlay), cwd=work)
-            for overlay, *wrong in (("production", "minReplicas", "minReplica"), ("production", "containerPort", "containrPort"),
-                                    ("production", "cpu: ", "cpu: 1, x: "), ("encrypted", "renewBefore", "renewBeforehand"),
-                                    ("encrypted", "secretName: traverse-tls\n    ", "secretNam: traverse-tls\n    ")):
-                text = render(overlay).replace(*wrong)
-                self.assertNotEqual(render(overlay), text)
-                done = support.run("node", work / "validate.mjs", ok=False, input=text, cwd=work)
-                self.assertNotEqual(0, done.returncode, wrong)
+            texts = {overlay: render(overlay) for overlay in OVERLAYS}
+            for index, (overlay, *wrong) in enumerate(WRONG):
+                texts[f"wrong-{index}"] = render(overlay).replace(*wrong)
+                self.assertNotEqual(render(overlay), texts[f"wrong-{index}"], wrong)
+            for name, text in texts.items():
+                (work / f"{name}.yaml").write_text(text)
+            done = support.run("node", work / "validate.mjs", *(f"{name}.yaml" for name in texts), ok=False, cwd=work)
+
+            faults = {match[1]: int(match[2]) for match in re.finditer(r"^(.+)\.yaml: [1-9]\d* documents, (\d+) faults$", done.stdout, re.M)}
+            self.assertEqual(set(texts), set(faults), done.stdout + done.stderr)
+            for name, count in faults.items():
+                with self.subTest(name=name):
+                    self.assertEqual(name.startswith("wrong-"), count > 0, done.stdout)
+            self.assertNotEqual(0, done.returncode)
 
 
 if __name__ == "__main__":
