@@ -16,7 +16,7 @@ micro=()
 builds=1
 for argument in "$@"; do
   case "$argument" in
-    --quick) quick=(--quick) micro=(--benchmark_min_time=0.05) ;;
+    --quick) quick=(--quick) micro=(--benchmark_min_time=0.01) ;;
     --corpus=*) corpus=${argument#*=} ;;
     --build=*) build=${argument#*=} ;;
     --as_built) builds=0 ;;
