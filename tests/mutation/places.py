@@ -1,15 +1,15 @@
 """Where faults are put, and which tests have to find them: a binary of the build with a filter."""
 
 
-def place(file, target, suites, seconds=120, others=()):
+def place(file, target, suites, seconds=60, others=()):
     return {"file": file, "target": target, "seconds": seconds, "suites": suites, "others": others}
 
 
-def engine(file, suites, seconds=120):
+def engine(file, suites, seconds=60):
     return place(f"engine/{file}", "engine_tests", suites, seconds)
 
 
-def gcode(file, suites, seconds=120):
+def gcode(file, suites, seconds=60):
     return place(f"client/gcode/{file}", "gcode_tests", suites, seconds)
 
 

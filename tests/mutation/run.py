@@ -105,13 +105,13 @@ def choose(place, each, seed):
 def run(command, seconds):
     """The exit code, or "time". What it started ends with it: a fault may well never return.
 
-    The limit is of computing, so that a busy machine finds nothing; one that waits has longer.
+    The limit is of computing, so that a busy machine finds nothing; one that waits has twice as long.
     """
     with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                           start_new_session=True,
                           preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))) as process:
         try:
-            return process.wait(timeout=8 * seconds)
+            return process.wait(timeout=2 * seconds)
         except subprocess.TimeoutExpired:
             return "time"
         finally:
@@ -171,7 +171,7 @@ def try_fault(place, fault, build):
             return "found"
         for target in (place["target"], *place["others"]):
             run(["cmake", "--build", build, "--target", target], 1200)
-            if run([binary_of(target, build), "--gtest_brief=1", "--gtest_fail_fast"], 600) != 0:
+            if run([binary_of(target, build), "--gtest_brief=1", "--gtest_fail_fast"], 240) != 0:
                 return "found by others"
         return "missed"
     finally:
