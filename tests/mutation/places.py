@@ -98,6 +98,7 @@ EQUIVALENT = {
     (POINT_INDEX, "without x = (x | (x << 4)) & 0x0f0f0f0f;"): ORDER_ON_THE_CURVE,
     (POINT_INDEX, "without x = (x | (x << 2)) & 0x33333333;"): ORDER_ON_THE_CURVE,
     (POINT_INDEX, "without x = (x | (x << 1)) & 0x55555555;"): ORDER_ON_THE_CURVE,
+    (POINT_INDEX, "without std::swap(keys, sorted);"): ORDER_ON_THE_CURVE,
     ("engine/souza/block_line.cc", "const double limit = gone + move_[j + 1] - detour_[j] - best.delta;"): PRUNES_LESS,
     ("server/jobs/worker_pool.cc", "if (memory_short_ || !is_short) {"): NOTHING_TO_LET_IN,
 }

@@ -53,6 +53,24 @@ TEST(OrderMerger, OfAnOrderThatMayNotBeItTakesWhatMay) {
   EXPECT_EQ(merged, OrderOf({0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
 }
 
+// Where only the number of the file's retractions will do, fewer are as far off as more.
+TEST(OrderMerger, AsManyRetractionsMeansNoFewerEither) {
+  const WayEstimate estimate = OnALine;
+  MergeLimits limits;
+  limits.retractions = 4;
+  WayTotals totals;
+  const auto excess = [&](int64_t retractions) {
+    totals.retractions = retractions;
+    return OrderMerger(estimate, limits).Excess(totals);
+  };
+  EXPECT_EQ(excess(2), 0);
+  EXPECT_EQ(excess(6), 2);
+  limits.as_many_retractions = true;
+  EXPECT_EQ(excess(2), 2);
+  EXPECT_EQ(excess(4), 0);
+  EXPECT_EQ(excess(6), 2);
+}
+
 TEST(OrderMerger, EntriesComeFromTheOrdersToo) {
   const WayEstimate estimate = [](size_t, const Placement& from, const Placement& to) {
     WayTotals way;

@@ -19,6 +19,17 @@ TEST(VerifyCommandWords, AreLettersAndNumbersOfAMillionth) {
   EXPECT_FALSE(words.OnlyFrom("FXYZ"));
 }
 
+// More digits than a millionth needs, or than fit into nine before the point.
+TEST(VerifyCommandWords, LongNumbersAreRounded) {
+  const CommandWords words("X1.23456789 Y+2.0000004 Z0000000012.5");
+
+  ASSERT_TRUE(words.readable);
+  EXPECT_EQ(words['X'], 1'234'568);
+  EXPECT_EQ(words['Y'], 2'000'000);
+  EXPECT_EQ(words['Z'], 12'500'000);
+  EXPECT_FALSE(CommandWords("X99999999999999999999").readable);
+}
+
 TEST(VerifyCommandWords, WhatIsTwiceOrNoWordIsUnreadable) {
   for (const char* text : {"X1 X2", "X1 1", "-X1", "X1 Y-", "X1..5", "X1 \"Y2", "X1 x2"}) {
     const CommandWords words(text);

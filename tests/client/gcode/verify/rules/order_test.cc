@@ -54,6 +54,7 @@ TEST(VerifyOrder, BridgesSupportAndSkirtsKeepTheirs) {
   }
   const std::string skirt = Line("Skirt/Brim", "X0 Y0", "X9 Y0");
   EXPECT_EQ(Broken(kHead + skirt + kSquare, kHead + kSquare + skirt, Policy::kFree), "order");
+  EXPECT_EQ(Broken(kHead + kTwo + skirt, kHead + kOneTurned + skirt), "") << "last, as it was";
 }
 
 TEST(VerifyOrder, MonotonicSurfacesKeepTheirs) {
