@@ -24,18 +24,22 @@ LinkDonors::LinkDonors(const GcodeFile& file) : file_(file), layer_of_(file.bloc
   }
   for (uint32_t i = 1; i < file.blocks.size(); ++i) {
     if (!MayFollow(i) || !Travels(i)) continue;
-    const Kind kind{file.blocks[i].mode, (file.blocks[i].link & kLinkRetracts) != 0};
+    const Kind kind = KindOf(i);
     donors_[kind].push_back(i);
+    first_.emplace(std::pair(kind, layer_of_[i]), i);
     if (file.blocks[i].lift > 0) lifted_[kind].push_back(i);
     if ((file.blocks[i].link & kLinkWipes) != 0) wiping_[kind].push_back(i);
     CountLifts(i);
   }
 }
 
+LinkDonors::Kind LinkDonors::KindOf(uint32_t block) const {
+  return {file_.blocks[block].mode, (file_.blocks[block].link & kLinkRetracts) != 0};
+}
+
 void LinkDonors::CountLifts(uint32_t link) {
   const Block& block = file_.blocks[link];
-  const Kind kind{block.mode, (block.link & kLinkRetracts) != 0};
-  lifts_[{kind, layer_of_[link]}] += block.lift > 0 ? 1 : -1;
+  lifts_[{KindOf(link), layer_of_[link]}] += block.lift > 0 ? 1 : -1;
   highest_lift_ = std::max(highest_lift_, block.lift);
 }
 
@@ -51,7 +55,7 @@ bool LinkDonors::Travels(uint32_t block) const { return file_.blocks[block].trav
 bool LinkDonors::LacksLift(uint32_t block) const {
   const Block& to = file_.blocks[block];
   if (to.lift > 0) return false;
-  const auto found = lifts_.find({{to.mode, (to.link & kLinkRetracts) != 0}, layer_of_[block]});
+  const auto found = lifts_.find({KindOf(block), layer_of_[block]});
   return found != lifts_.end() && found->second > 0;
 }
 
@@ -67,6 +71,17 @@ std::optional<uint32_t> LinkDonors::Find(uint32_t block, bool retracts, bool wip
   if (!nearest || !LacksLift(*nearest)) return nearest;
   const auto lifted = lifted_.find(kind);
   return lifted == lifted_.end() ? nearest : FindAmong(lifted->second, block);
+}
+
+std::optional<uint32_t> LinkDonors::PaceFor(uint32_t block, uint32_t link) const {
+  const uint32_t layer = layer_of_[block];
+  if (layer_of_[link] == layer) return std::nullopt;
+  Kind kind = KindOf(link);
+  for (int i = 0; i < 2; ++i, kind.second = !kind.second) {
+    const auto found = first_.find({kind, layer});
+    if (found != first_.end()) return found->second;
+  }
+  return std::nullopt;
 }
 
 std::optional<uint32_t> LinkDonors::FindAmong(const std::vector<uint32_t>& links,

@@ -24,6 +24,11 @@ class LinkDonors {
   // such links, one that lifts. Nothing if there is none.
   std::optional<uint32_t> Find(uint32_t block, bool retracts, bool wipes = false) const;
 
+  // How fast the ways of a layer are may be its own: the link of the layer of `block` that tells it
+  // where `link` is followed. One that retracts as `link` does, if there is any. Nothing if `link`
+  // is of that layer, or the layer has no way to learn from.
+  std::optional<uint32_t> PaceFor(uint32_t block, uint32_t link) const;
+
   // Link `block` itself may be followed.
   bool MayFollow(uint32_t block) const;
 
@@ -39,14 +44,16 @@ class LinkDonors {
   using Kind = std::pair<uint16_t, bool>;
 
   bool Travels(uint32_t block) const;
+  Kind KindOf(uint32_t block) const;
   std::optional<uint32_t> FindAmong(const std::vector<uint32_t>& links, uint32_t block) const;
   void CountLifts(uint32_t link);
 
   const GcodeFile& file_;
-  std::vector<uint32_t> layer_of_;                // [block]
-  std::map<Kind, std::vector<uint32_t>> donors_;  // ascending
-  std::map<Kind, std::vector<uint32_t>> lifted_;  // those of them that lift
-  std::map<Kind, std::vector<uint32_t>> wiping_;  // that wipe
+  std::vector<uint32_t> layer_of_;                       // [block]
+  std::map<Kind, std::vector<uint32_t>> donors_;         // ascending
+  std::map<Kind, std::vector<uint32_t>> lifted_;         // those of them that lift
+  std::map<Kind, std::vector<uint32_t>> wiping_;         // that wipe
+  std::map<std::pair<Kind, uint32_t>, uint32_t> first_;  // by kind and layer
   // By kind and layer: links that lift, less those that do not.
   std::map<std::pair<Kind, uint32_t>, int64_t> lifts_;
   Decimal highest_lift_ = 0;

@@ -101,7 +101,14 @@ Link LinkWriter::TemplateFor(const LinkRequest& request) const {
     const std::optional<uint32_t> donor = donors_.Find(to, retracts, request.wipe);
     if (!donor) continue;
     Link link = ReadLink(file_, *donor);
-    if (link.arrival >= 0) return link;
+    if (link.arrival < 0) continue;
+    if (const std::optional<uint32_t> pace = donors_.PaceFor(to, *donor)) {
+      const Link own = ReadLink(file_, *pace);
+      if (own.arrival >= 0)
+        link.steps[static_cast<size_t>(link.arrival)].feed =
+            own.steps[static_cast<size_t>(own.arrival)].feed;
+    }
+    return link;
   }
   return ReadLink(file_, to);
 }

@@ -99,6 +99,13 @@ bool IsTooLong(const TraceMove& move, const LongestWays& longest) {
   });
 }
 
+// What the original does not do in this layer. The gap of a loop that is begun elsewhere belongs to
+// the loop.
+bool IsNew(const LayerPair& layer, const TraceMove& move) {
+  if (!move.in_print || layer.IsKnown(move)) return false;
+  return move.kind != MoveKind::kTravel || !move.open || move.length_mm() > kLoopGapMm;
+}
+
 void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
   const TraceChunk& chunk = layer.is();
   const LongestWays longest = LongestOf(layer);
@@ -107,9 +114,7 @@ void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
     ObserveTail(layer, chunk, link, tails.At(link), seen);
     for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
       const TraceMove& move = chunk.moves[m];
-      if (!move.in_print || layer.IsKnown(move)) continue;
-      // The gap of a loop that is begun elsewhere belongs to the loop.
-      if (move.kind == MoveKind::kTravel && move.open && move.length_mm() <= kLoopGapMm) continue;
+      if (!IsNew(layer, move)) continue;
       if (!move.firmware) {
         Note(seen.feeds[KindOf(move)], static_cast<uint64_t>(move.feed), move, layer.index());
         Note(seen.accelerations[KindOf(move)], move.acceleration, move, layer.index());
@@ -120,6 +125,38 @@ void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
       }
       if (move.filament != 0 && move.kind != MoveKind::kWipe)
         Note(seen.signatures, move.signature, move, layer.index());
+    }
+  }
+}
+
+// First layers, and others, may have ways of their own speed.
+void CheckWayFeeds(const LayerPair& layer, LayerFindings& findings) {
+  absl::flat_hash_set<Micro> were;
+  uint32_t line = 0;  // of the first of them
+  const TraceChunk& was = layer.was();
+  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
+    for (uint32_t m = was.links[link].first_move; m < was.links[link].end_move; ++m) {
+      const TraceMove& move = was.moves[m];
+      if (move.kind != MoveKind::kTravel || !move.in_print) continue;
+      if (were.empty()) line = move.line;
+      were.insert(move.feed);
+    }
+  }
+  if (were.empty()) return;
+  const TraceChunk& is = layer.is();
+  const Tails tails(layer, false);
+  for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
+    for (uint32_t m = is.links[link].first_move + tails.At(link); m < is.links[link].end_move;
+         ++m) {
+      const TraceMove& move = is.moves[m];
+      if (move.kind != MoveKind::kTravel || !IsNew(layer, move) || were.contains(move.feed)) {
+        continue;
+      }
+      findings.breaks.push_back(
+          {VerifyRule::kSpeeds, line, move.line, layer.index(),
+           absl::StrFormat("travel at F%g, as none of its layer in the original",
+                           static_cast<double>(move.feed) * 1e-6)});
+      return;
     }
   }
 }
@@ -137,6 +174,7 @@ uint32_t AnyLine(const absl::flat_hash_map<uint64_t, Seen>& map) {
 void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings) {
   ObserveWas(layer, Tails(layer, true), findings.was);
   ObserveIs(layer, Tails(layer, false), findings.is);
+  CheckWayFeeds(layer, findings);
 }
 
 // Behind the last path stand moves of the end script as well, which are no example for the print.

@@ -19,9 +19,10 @@ def cut_path(file, rng):
             return None
         k = len(path.deposits) // 2
         lines = body(file, path)
-        new = ([go(file, path.points[k])] + restated(file, path.first + k) + lines[k:] +
-               [go(file, path.start)] + restated(file, path.first) + lines[:k] +
-               [go(file, path.end)] + restated(file, path.last))
+        begin = file.lines[path.first]
+        new = ([go(path.points[k], begin)] + restated(file, path.first + k) + lines[k:] +
+               [go(path.start, begin)] + restated(file, path.first) + lines[:k] +
+               [go(path.end, begin)] + restated(file, path.last))
         changes = {i: [] for i in range(path.first, path.last + 1)}
         changes[path.first] = new
         return edited(file, changes)
@@ -107,7 +108,7 @@ def two_passes(file, line):
     if line.text[:2] != "G1" or line.e < 0.01:
         return None
     half = with_word(line.text, "E", lambda _: line.e / 2)
-    return [half, go(file, line.start), f"G1 F{number(line.feed)}", half]
+    return [half, go(line.start, line), f"G1 F{number(line.feed)}", half]
 
 
 def arcs_of(file):
@@ -139,7 +140,7 @@ def flow_exchanged(file, rng):
 
 def path_doubled(file, rng):
     def make(path):
-        again = [go(file, path.start)] + restated(file, path.first) + body(file, path)
+        again = [go(path.start, file.lines[path.first])] + restated(file, path.first) + body(file, path)
         return edited(file, {path.last: [file.lines[path.last].text] + again}) if path.plain else None
 
     return pick(rng, file.paths, 20, make)
@@ -155,7 +156,7 @@ def travel_dribbles(file, rng):
 
 def path_dropped(file, rng):
     """The head goes on from where the path ends."""
-    return pick(rng, file.paths, 5, lambda p: edited(file, without_path(p, [go(file, p.end)])))
+    return pick(rng, file.paths, 5, lambda p: edited(file, without_path(p, [go(p.end, file.lines[p.first])])))
 
 
 def of_whole_path(letter, factor):

@@ -24,10 +24,9 @@ def pick(rng, candidates, tries, make):
     return None
 
 
-def go(file, point):
-    feeds = [line.feed for line in file.lines[: 20000] if line.kind == "travel" and line.feed]
-    feed = max(feeds, default=9000)
-    return f"G1 X{number(point[0])} Y{number(point[1])} F{number(feed)}"
+def go(point, line):
+    """A way to a point beside `line`, as fast as the ways there."""
+    return f"G1 X{number(point[0])} Y{number(point[1])} F{number(line.way_feed)}"
 
 
 def restated(file, index):
@@ -48,7 +47,8 @@ def reverse(file, path):
         texts.append(f"G1 X{number(line.start[0])} Y{number(line.start[1])} E{number(line.e)}")
     changes = {i: [] for i in range(path.first, path.last + 1)}
     feed = restated(file, path.first)
-    changes[path.first] = [go(file, path.end)] + feed + texts + [go(file, path.end)] + feed
+    leave = go(path.end, file.lines[path.first])
+    changes[path.first] = [leave] + feed + texts + [leave] + feed
     return changes
 
 

@@ -17,8 +17,9 @@ def swap(file, k, other):
         path, comes = file.paths[here], file.paths[there]
         for i in range(path.first, path.last + 1):
             changes[i] = []
-        changes[path.first] = ([go(file, comes.start)] + restated(file, comes.first) +
-                               body(file, comes) + [go(file, path.end)] +
+        begin = file.lines[path.first]
+        changes[path.first] = ([go(comes.start, begin)] + restated(file, comes.first) +
+                               body(file, comes) + [go(path.end, begin)] +
                                restated(file, path.last))
     return edited(file, changes)
 
@@ -114,8 +115,9 @@ def seam_moved(file, rng):
         changes = {i: [] for i in range(path.first, path.last + 1)}
         feed = restated(file, path.first)
         gap = [f"G1 X{number(path.start[0])} Y{number(path.start[1])}"]
-        changes[path.first] = ([go(file, path.points[k])] + feed + lines[k:] + gap + lines[:k] +
-                               [go(file, path.end)] + feed)
+        begin = file.lines[path.first]
+        changes[path.first] = ([go(path.points[k], begin)] + feed + lines[k:] + gap + lines[:k] +
+                               [go(path.end, begin)] + feed)
         return edited(file, changes)
 
     return pick(rng, [p for p in file.paths if is_outer(p)], 100, make)
@@ -163,8 +165,9 @@ def seam_by_one(file, rng):
         feed = restated(file, path.first)
         changes = {i: [] for i in range(path.first, path.last + 1)}
         gap = [f"G1 X{number(path.start[0])} Y{number(path.start[1])}"]
-        changes[path.first] = ([go(file, path.points[1])] + feed + lines[1:] + gap + lines[:1] +
-                               [go(file, path.end)] + feed)
+        begin = file.lines[path.first]
+        changes[path.first] = ([go(path.points[1], begin)] + feed + lines[1:] + gap + lines[:1] +
+                               [go(path.end, begin)] + feed)
         return edited(file, changes)
 
     return pick(rng, [p for p in file.paths if is_outer(p)], 100, make)
@@ -187,9 +190,9 @@ def path_moved(file, rng):
         path, other = file.paths[k], file.paths[min(k + 7, len(file.paths) - 1)]
         if not path.plain or other.section == path.section or other.start[2] != path.start[2]:
             return None
-        changes = without_path(path, [go(file, path.end)])
-        changes[other.first] = ([go(file, path.start)] + restated(file, path.first) + body(file, path) +
-                                [go(file, other.start)] + restated(file, other.first) +
+        changes = without_path(path, [go(path.end, file.lines[path.first])])
+        changes[other.first] = ([go(path.start, file.lines[other.first])] + restated(file, path.first) + body(file, path) +
+                                [go(other.start, file.lines[other.first])] + restated(file, other.first) +
                                 [file.lines[other.first].text])
         return edited(file, changes)
 

@@ -37,7 +37,7 @@ def pull_and_push(file, line):
 
 def there_and_back(file, line):
     x, y = line.start[0] + 2, line.start[1] + 1
-    return [go(file, (x, y)), go(file, line.start)]
+    return [go((x, y), line), go(line.start, line)]
 
 
 def up_and_down(file, line):

@@ -67,7 +67,7 @@ def primed_early(file, rng):
             return None
         pushed = [file.lines[i].text for i in pushes]
         changes = {i: [] for i in pushes}
-        changes[ways[0]] = pushed + [go(file, file.lines[ways[0]].end)] if (
+        changes[ways[0]] = pushed + [go(file.lines[ways[0]].end, file.lines[ways[0]])] if (
             file.lines[ways[0]].start[2] == file.lines[ways[0]].end[2]) else (
             pushed + [file.lines[ways[0]].text])
         return edited(file, changes)

@@ -21,7 +21,7 @@ def number(value, digits=5):
 class Line:
     """One line: `text`, and for moves where from and to, filament, feed and the state in force."""
 
-    __slots__ = ("text", "kind", "start", "end", "e", "feed", "type", "state", "wipe")
+    __slots__ = ("text", "kind", "start", "end", "e", "feed", "type", "state", "wipe", "way_feed")
 
     def __init__(self, text):
         self.text = text
@@ -32,6 +32,7 @@ class Line:
         self.type = ""
         self.state = {}
         self.wipe = False
+        self.way_feed = 0.0  # of the last travel up to here
 
     def length(self):
         return math.dist(self.start[:2], self.end[:2])
@@ -67,7 +68,7 @@ class Sliced:
     def _read(self, texts):
         at, e, feed = [0.0, 0.0, 0.0], 0.0, 0.0
         relative, relative_e = False, False
-        kind_of, state, wipe = "", {}, False
+        kind_of, state, wipe, way_feed = "", {}, False, 9000.0
         for text in texts:
             text = text.rstrip("\r")
             code = text.split(";")[0].strip()
@@ -114,7 +115,9 @@ class Sliced:
                     fan = re.search(r" P(\d+)", code)
                     state = {**state, key + fan.group(1) if key == "M106" and fan else key: text}
             line.end = tuple(at)
-            line.feed, line.type, line.state, line.wipe = feed, kind_of, state, wipe
+            if line.kind == "travel" and feed:
+                way_feed = feed
+            line.feed, line.type, line.state, line.wipe, line.way_feed = feed, kind_of, state, wipe, way_feed
             self.lines.append(line)
 
     @staticmethod
@@ -132,14 +135,14 @@ class Sliced:
 
     def _paths(self):
         paths, first, last, section = [], None, None, 0
-        begun = not any(self._is_layer(line.text) for line in self.lines)
+        begun = not any(self.is_layer(line.text) for line in self.lines)
         for i, line in enumerate(self.lines):
             if line.kind == "deposit":
                 if first is None:
                     first = i
                 last = i
                 continue
-            begun |= self._is_layer(line.text)
+            begun |= self.is_layer(line.text)
             fence = line.kind == "other" or self._is_fence(line)
             if fence or line.kind in ("travel", "wipe", "retract", "prime", "z"):
                 if first is not None and begun:
@@ -150,12 +153,12 @@ class Sliced:
         return paths
 
     @staticmethod
-    def _is_layer(text):
+    def is_layer(text):
         return text.startswith((";LAYER", "; CHANGE_LAYER", "; layer ", ";layer:", "; BEGIN_LAYER"))
 
     def _is_fence(self, line):
         if line.kind == "comment":
-            return self._is_layer(line.text) or "printing object" in line.text or ";MESH" in line.text
+            return self.is_layer(line.text) or "printing object" in line.text or ";MESH" in line.text
         return line.kind == "command" and not line.text.startswith(SETTERS + ("M73",))
 
     def text(self):

@@ -108,6 +108,30 @@ def way_faster(file, rng):
     return pick(rng, links(file), 20, make)
 
 
+def way_of_other_layer(file, rng):
+    """As fast as the ways of other layers, and as none of its own."""
+    feeds, layers = [set()], []
+    for line in file.lines:
+        if file.is_layer(line.text):
+            feeds.append(set())
+        if line.kind == "travel":
+            feeds[-1].add(number(line.feed))
+        layers.append(len(feeds) - 1)
+    known = set().union(*feeds[1:])
+
+    def make(found):
+        i = found[2][-1]
+        line = file.lines[i]
+        others = sorted(known - feeds[layers[i]])
+        if not others or layers[i] == 0:
+            return None
+        after = next(k for k in range(i + 1, len(file.lines)) if file.lines[k].kind != "comment")
+        return edited(file, {i: [with_f(line.text, float(rng.choice(others)))],
+                             after: [f"G1 F{number(line.feed)}", file.lines[after].text]})
+
+    return pick(rng, links(file), 20, make)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("travel at another speed", "speeds", travel_slow, "free"),
@@ -118,5 +142,6 @@ DEFECTS = (
     ("retraction under another acceleration", "speeds", around(retraction_of), "free"),
     ("wipe under another acceleration", "speeds", around(wipe_of), "free"),
     ("lift under another acceleration", "speeds", around(lift_of), "free"),
+    ("way at the speed of another layer", "speeds", way_of_other_layer, "free"),
     ("way a tenth faster", "speeds", way_faster, "free"),
 )

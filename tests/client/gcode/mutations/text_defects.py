@@ -66,7 +66,7 @@ def header_notes(file):
     """Comments that stand directly behind the mark of a layer, and say something of it."""
     found = []
     for i, line in enumerate(file.lines):
-        if not file._is_layer(line.text):
+        if not file.is_layer(line.text):
             continue
         k = i + 1
         while k < len(file.lines) and file.lines[k].text.startswith(";"):

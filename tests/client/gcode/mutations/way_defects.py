@@ -10,7 +10,7 @@ from sliced import number
 def way_far(file, rng):
     """A way leads to a point far from all the others."""
     return pick(rng, links(file), 5, lambda found: edited(
-        file, {found[2][-1]: [go(file, (-400, 700)), file.lines[found[2][-1]].text]}))
+        file, {found[2][-1]: [go((-400, 700), file.lines[found[2][-1]]), file.lines[found[2][-1]].text]}))
 
 
 def travel_feed(file, ways):
@@ -77,7 +77,7 @@ def stray(retracted):
             if farther < least or math.dist(corner, line.end[:2]) < 8 or line.start[2] != line.end[2] or (
                     "Z" in line.text):
                 return None
-            return edited(file, {i: [go(file, corner).rsplit(" ", 1)[0] + f" F{number(line.feed)}", line.text]})
+            return edited(file, {i: [go(corner, line), line.text]})
 
         if retracted:
             return pick(rng, [found[2] for found in links(file)], 50, make)

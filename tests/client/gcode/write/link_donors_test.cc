@@ -30,5 +30,22 @@ TEST(LinkDonors, WherePathsMeetThereIsNoWayToFollow) {
   EXPECT_GE(ReadLink(*file, *donors.Find(2, false)).arrival, 0);
 }
 
+// Where the way to follow is of another layer, one of the own layer tells how fast ways are.
+TEST(LinkDonors, TheLayerTellsHowFastItsWaysAre) {
+  Sketch sketch;
+  sketch.Infill(10, 0).GoRetracted(0, 2).Infill(10, 2).Go(10, 4).Infill(0, 4);
+  sketch.Add("G1 Z.4 F9000").Go(0, 0).Infill(10, 0).Go(10, 2).Infill(0, 2);
+  sketch.Add("G1 Z.6 F9000").Infill(10, 0);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+  ASSERT_EQ(file->layers.size(), 3u);
+  ASSERT_EQ(file->blocks.size(), 6u);
+  const LinkDonors donors(*file);
+
+  ASSERT_EQ(donors.Find(4, true), 1u);
+  EXPECT_EQ(donors.PaceFor(4, 1), 4u) << "no way of its layer retracts";
+  EXPECT_EQ(donors.PaceFor(2, 1), std::nullopt) << "of the same layer";
+  EXPECT_EQ(donors.PaceFor(5, 1), std::nullopt) << "a layer of one path";
+}
+
 }  // namespace
 }  // namespace traverse::gcode

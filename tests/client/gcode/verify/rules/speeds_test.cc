@@ -19,6 +19,18 @@ TEST(VerifySpeeds, AreThoseOfSuchMoves) {
             "speeds");
 }
 
+// The first layer may have ways of its own speed, and so may any other.
+TEST(VerifySpeeds, WaysAreAsFastAsThoseOfTheirLayer) {
+  const std::string first = With(kTwo, "X0 Y0 F9000", "X0 Y0 F3000");
+  const std::string slow = With(first, "X0 Y5 F9000", "X0 Y5 F3000");
+  const std::string a = kHead + slow + kNextLayer + kTwo;
+  EXPECT_EQ(Broken(a, kHead + slow + kNextLayer + kOneTurned), "");
+  const std::string b = kHead + slow + kNextLayer + With(kOneTurned, "X9 Y0 F9000", "X9 Y0 F3000");
+  EXPECT_EQ(Broken(a, b), "speeds");
+  EXPECT_NE(FirstMessage(a, b).find("travel at F3000, as none of its layer"), std::string::npos)
+      << FirstMessage(a, b);
+}
+
 // Behind the last path the end script pulls filament back as well, at a speed of its own.
 TEST(VerifySpeeds, TheLastRetractionIsAsFastAsTheOthers) {
   const std::string end =
