@@ -136,6 +136,7 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
   CheckDirection(layer, context_, findings);
   CheckSeam(layer, context_, findings);
   CheckOpenWays(layer, findings);
+  CheckSameWays(layer, findings);
   CheckBends(layer, findings);
   ObserveLifts(layer, findings);
   ObserveHeights(layer, findings);

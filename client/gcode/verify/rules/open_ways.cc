@@ -1,15 +1,11 @@
 // A layer has no more ways with an open nozzle across outer walls than before, and none longer than
-// the longest before. The way to a layer is one of its ways. A way from one point to another for
-// which the original pulls filament back is not open, whatever it crosses.
+// the longest before. The way to a layer is one of its ways.
 
 #include <algorithm>
-#include <cmath>
 
-#include "absl/container/flat_hash_map.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/tails.h"
 #include "client/gcode/verify/rules/rules.h"
-#include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 namespace {
@@ -46,66 +42,9 @@ std::vector<OpenWay> OpenWays(const LayerPair& layer, bool original) {
   return ways;
 }
 
-// Shorter ways come out of rounding.
-constexpr double kShortestMm = 0.5;
-
-// From the end of the path before to the start of the path behind, to the micrometre.
-uint64_t EndsOf(const TraceChunk& chunk, uint32_t link) {
-  const auto um = [](double mm) { return static_cast<uint64_t>(std::llround(mm * 1000)); };
-  const Point from = chunk.EndOf(chunk.paths[link - 1]);
-  const Point to = chunk.paths[link].start;
-  return Mix(Mix(um(from.x), um(from.y)), Mix(um(to.x), um(to.y)));
-}
-
-enum class Nozzle : uint8_t { kNoWay, kOpen, kRetracted };
-
-// How the nozzle is on the way in `link`, from path to path; open if it is so on some of it.
-Nozzle NozzleIn(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool new_ones) {
-  const TraceLink& traced = chunk.links[link];
-  if (link == 0 || traced.new_layer || traced.scripted) return Nozzle::kNoWay;
-  if (DistanceOf(chunk.EndOf(chunk.paths[link - 1]), chunk.paths[link].start) < kShortestMm) {
-    return Nozzle::kNoWay;
-  }
-  Nozzle nozzle = Nozzle::kNoWay;
-  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
-    const TraceMove& move = chunk.moves[m];
-    if (move.kind != MoveKind::kTravel || !move.in_print) continue;
-    if (new_ones && layer.IsKnown(move)) continue;
-    if (move.open && move.length_mm() > kShortestMm) return Nozzle::kOpen;
-    if (!move.open) nozzle = Nozzle::kRetracted;
-  }
-  return nozzle;
-}
-
-void CheckSameWays(const LayerPair& layer, LayerFindings& findings) {
-  std::vector<uint32_t> open;  // links
-  for (uint32_t link = layer.first_path_is() + 1; link < layer.end_path_is(); ++link) {
-    if (NozzleIn(layer, layer.is(), link, true) == Nozzle::kOpen) open.push_back(link);
-  }
-  if (open.empty()) return;
-  const TraceChunk& was = layer.was();
-  absl::flat_hash_map<uint64_t, uint32_t> retracted;  // their links
-  for (uint32_t link = layer.first_path_was() + 1; link < layer.end_path_was(); ++link) {
-    if (NozzleIn(layer, was, link, false) == Nozzle::kRetracted) {
-      retracted.emplace(EndsOf(was, link), link);
-    }
-  }
-  for (const uint32_t link : open) {
-    const auto same = retracted.find(EndsOf(layer.is(), link));
-    if (same == retracted.end()) continue;
-    const auto line_of = [](const TraceChunk& chunk, uint32_t at) {
-      return chunk.moves[chunk.links[at].first_move].line;
-    };
-    findings.breaks.push_back({VerifyRule::kOpenWays, line_of(was, same->second),
-                               line_of(layer.is(), link), layer.index(),
-                               "an open way for which the original pulls filament back"});
-  }
-}
-
 }  // namespace
 
 void CheckOpenWays(const LayerPair& layer, LayerFindings& findings) {
-  CheckSameWays(layer, findings);
   if (layer.outer_walls().empty()) return;
   const std::vector<OpenWay> is = OpenWays(layer, false);
   if (std::all_of(is.begin(), is.end(), [](const OpenWay& way) { return way.known; })) return;

@@ -8,7 +8,7 @@
 
 #include "client/gcode/verify/match/layer_pair.h"
 #include "client/gcode/verify/permissions.h"
-#include "client/gcode/verify/rules/findings.h"
+#include "client/gcode/verify/findings.h"
 
 namespace traverse::gcode {
 
@@ -24,6 +24,7 @@ void CheckDirection(const LayerPair& layer, const RuleContext& context, LayerFin
 void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings& findings);
 void CheckBends(const LayerPair& layer, LayerFindings& findings);
 void CheckOpenWays(const LayerPair& layer, LayerFindings& findings);
+void CheckSameWays(const LayerPair& layer, LayerFindings& findings);
 void ObserveLifts(const LayerPair& layer, LayerFindings& findings);
 void ObserveHeights(const LayerPair& layer, LayerFindings& findings);
 void ObserveRetractions(const LayerPair& layer, LayerFindings& findings);

@@ -188,20 +188,29 @@ def lift_twice(file, rng):
     return pick(rng, lifted(file), 50, make)
 
 
-def some_lift_dropped(file, rng):
-    """Of a way across a wall, whatever other ways do."""
+def some_lift(wanted, share):
+    """Of a way that is `wanted` a share of the lift is left, whatever other ways do."""
 
-    def make(found):
-        k, pulls, ways, _ = found
-        z = file.paths[k + 1].start[2]
-        if file.paths[k].start[2] != z or max(file.lines[i].end[2] for i in ways) < z + 0.05 or (
-                not long_way(file, found) or not crosses_wall(file, k, ways)):
-            return None
-        index = range(pulls[-1] + 1, ways[-1] + 1)
-        return edited(file, {i: [with_z(file.lines[i].text, z)] for i in index
-                             if file.lines[i].kind in ("z", "travel")})
+    def defect(file, rng):
+        def make(found):
+            k, pulls, ways, _ = found
+            z = file.paths[k + 1].start[2]
+            top = max(file.lines[i].end[2] for i in ways)
+            if file.paths[k].start[2] != z or top < z + 0.05 or not long_way(file, found) or (
+                    not wanted(file, k, ways)):
+                return None
+            index = range(pulls[-1] + 1, ways[-1] + 1)
+            return edited(file, {i: [with_z(file.lines[i].text, z + share * (top - z))] for i in index
+                                 if file.lines[i].kind in ("z", "travel")})
 
-    return pick(rng, links(file), 150, make)
+        return pick(rng, links(file), 150, make)
+
+    return defect
+
+
+def any_way(file, k, ways):
+    del file, k, ways
+    return True
 
 
 def descends_on_way(file, rng):
@@ -252,7 +261,9 @@ DEFECTS = (
     ("all retractions a tenth slower", "speeds", of_all("retract", lambda line: with_word(
         line.text, "F", lambda f: f * 0.9)), "free"),
     ("lifted twice", "lifts", lift_twice, "free"),
-    ("lift across a wall dropped", "lifts", some_lift_dropped, "free"),
+    ("lift of any way dropped", "lifts", some_lift(any_way, 0), "free"),
+    ("lift of any way halved", "lifts", some_lift(any_way, 0.5), "free"),
+    ("lift across a wall dropped", "lifts", some_lift(crosses_wall, 0), "free"),
     ("down halfway", "lifts", descends_on_way, "free"),
     ("spiral lift wider", "lifts", spiral_wider, "free"),
 )

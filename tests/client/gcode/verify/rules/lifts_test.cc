@@ -128,8 +128,8 @@ TEST(VerifyLifts, WhatTheFileLeavesLowMayStayLow) {
   EXPECT_EQ(LiftsBroken(Lines(150, 70), Lines(150, 70)), 0);
   EXPECT_EQ(LiftsBroken(Lines(150, 70), Lines(150, -1)), 0);
   // Another one may not, though the file has one.
-  EXPECT_EQ(LiftsBroken(Lines(150, 70), Lines(150, 40)), 1);
-  EXPECT_EQ(LiftsBroken(Lines(150, -1), Lines(150, 40)), 1);
+  EXPECT_GT(LiftsBroken(Lines(150, 70), Lines(150, 40)), 0);
+  EXPECT_GT(LiftsBroken(Lines(150, -1), Lines(150, 40)), 0);
 }
 
 // Not all ways of this file are lifted, so that a low one is no break; one that sinks on the way

@@ -21,19 +21,6 @@ TEST(VerifyOpenWays, NoRetractionIsLostAcrossAnOuterWall) {
   EXPECT_EQ(Broken(kHead + kAcross, kHead + early), "open_ways retractions");
 }
 
-// Nothing lies between the paths, and another way of the layer is open and as long.
-TEST(VerifyOpenWays, ARetractionStaysWithItsWay) {
-  const std::string third = Line("Internal infill", "X0 Y10", "X9 Y10");
-  const std::string open = "G1 X0 Y10 F9000\n";
-  const std::string a = kTwo + With(third, Way("X0 Y10"), open);
-  const std::string moved = With(With(a, Way("X0 Y5"), "G1 X0 Y5 F9000\n"), open, Way("X0 Y10"));
-  EXPECT_EQ(Broken(kHead + a, kHead + moved, Policy::kFree), "open_ways");
-  // A way from there to another point may be open.
-  const std::string turned =
-      With(With(a, Way("X0 Y5"), "G1 X9 Y5 F9000\n"), "G1 X9 Y5 E.3", "G1 X0 Y5 E.3");
-  EXPECT_EQ(Broken(kHead + a, kHead + turned, Policy::kFree), "");
-}
-
 TEST(VerifyOpenWays, WithinTheWallAreFree) {
   const std::string within = kSquare + Line("Internal infill", "X15 Y15", "X16 Y15") +
                              Line("Internal infill", "X12 Y18", "X13 Y18") +

@@ -1,7 +1,7 @@
 // What the rules find in one layer: breaks, and what has to be compared with the whole print.
 
-#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_RULES_FINDINGS_H_
-#define TRAVERSE_CLIENT_GCODE_VERIFY_RULES_FINDINGS_H_
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_FINDINGS_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_FINDINGS_H_
 
 #include <algorithm>
 #include <array>
@@ -202,4 +202,4 @@ struct LayerFindings {
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_RULES_FINDINGS_H_
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_FINDINGS_H_

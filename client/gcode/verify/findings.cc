@@ -1,4 +1,4 @@
-#include "client/gcode/verify/rules/findings.h"
+#include "client/gcode/verify/findings.h"
 
 namespace traverse::gcode {
 namespace {

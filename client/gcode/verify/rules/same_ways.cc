@@ -1,0 +1,106 @@
+// Ways between the same two points as in the original: not open where it pulls filament back,
+// whatever they cross; and where it pulls back and lifts, as high.
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/container/flat_hash_map.h"
+#include "absl/strings/str_format.h"
+#include "client/gcode/verify/rules/rules.h"
+#include "client/gcode/verify/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kShortestWayMm = 0.5;  // shorter ways come out of rounding
+constexpr double kApexSlackMm = 0.003;
+
+// From the end of the path before to the start of the path behind, to the micrometre.
+uint64_t EndsOf(const TraceChunk& chunk, uint32_t link) {
+  const auto um = [](double mm) { return static_cast<uint64_t>(std::llround(mm * 1000)); };
+  const Point from = chunk.EndOf(chunk.paths[link - 1]);
+  const Point to = chunk.paths[link].start;
+  return Mix(Mix(um(from.x), um(from.y)), Mix(um(to.x), um(to.y)));
+}
+
+enum class Nozzle : uint8_t { kNoWay, kOpen, kRetracted };
+
+// How the nozzle is on the way in `link`, from path to path; open if it is so on some of it.
+Nozzle NozzleIn(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool new_ones) {
+  const TraceLink& traced = chunk.links[link];
+  if (link == 0 || traced.new_layer || traced.scripted) return Nozzle::kNoWay;
+  if (DistanceOf(chunk.EndOf(chunk.paths[link - 1]), chunk.paths[link].start) < kShortestWayMm) {
+    return Nozzle::kNoWay;
+  }
+  Nozzle nozzle = Nozzle::kNoWay;
+  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (move.kind != MoveKind::kTravel || !move.in_print) continue;
+    if (new_ones && layer.IsKnown(move)) continue;
+    if (move.open && move.length_mm() > kShortestWayMm) return Nozzle::kOpen;
+    if (!move.open) nozzle = Nozzle::kRetracted;
+  }
+  return nozzle;
+}
+
+// How far above the paths that it connects the retracted way in `link` comes.
+double ApexOf(const TraceChunk& chunk, uint32_t link) {
+  const double base = std::max(chunk.paths[link - 1].z_mm, chunk.paths[link].z_mm);
+  double apex = 0;
+  for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (move.kind != MoveKind::kTravel || move.open) continue;
+    apex = std::max(apex, std::max(move.z_from_mm, move.z_to_mm) - base);
+  }
+  return apex;
+}
+
+uint32_t LineOf(const TraceChunk& chunk, uint32_t link) {
+  return chunk.moves[chunk.links[link].first_move].line;
+}
+
+// The ways of the original that are retracted all along, by their ends: of several the lowest.
+absl::flat_hash_map<uint64_t, uint32_t> RetractedWays(const LayerPair& layer) {
+  const TraceChunk& was = layer.was();
+  absl::flat_hash_map<uint64_t, uint32_t> ways;
+  for (uint32_t link = layer.first_path_was() + 1; link < layer.end_path_was(); ++link) {
+    if (NozzleIn(layer, was, link, false) != Nozzle::kRetracted) continue;
+    const auto [found, added] = ways.try_emplace(EndsOf(was, link), link);
+    if (!added && ApexOf(was, link) < ApexOf(was, found->second)) found->second = link;
+  }
+  return ways;
+}
+
+}  // namespace
+
+void CheckSameWays(const LayerPair& layer, LayerFindings& findings) {
+  const TraceChunk& was = layer.was();
+  const TraceChunk& is = layer.is();
+  std::vector<uint32_t> changed;  // links
+  for (uint32_t link = layer.first_path_is() + 1; link < layer.end_path_is(); ++link) {
+    if (NozzleIn(layer, is, link, true) != Nozzle::kNoWay) changed.push_back(link);
+  }
+  if (changed.empty()) return;
+  const absl::flat_hash_map<uint64_t, uint32_t> retracted = RetractedWays(layer);
+  for (const uint32_t link : changed) {
+    const auto same = retracted.find(EndsOf(is, link));
+    if (same == retracted.end()) continue;
+    const auto report = [&](VerifyRule rule, std::string what) {
+      findings.breaks.push_back(
+          {rule, LineOf(was, same->second), LineOf(is, link), layer.index(), std::move(what)});
+    };
+    if (NozzleIn(layer, is, link, true) == Nozzle::kOpen) {
+      report(VerifyRule::kOpenWays, "an open way for which the original pulls filament back");
+      continue;
+    }
+    const double lift = ApexOf(was, same->second);
+    const double apex = ApexOf(is, link);
+    if (apex >= lift - kApexSlackMm) continue;
+    report(
+        VerifyRule::kLifts,
+        absl::StrFormat("a way %.3f mm above the layer that is lifted by %.3f mm in the original",
+                        apex, lift));
+  }
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,51 @@
+// Ways between the same two points as in the original: client/gcode/verify/rules/same_ways.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "tests/client/gcode/verify/small_prints.h"
+
+namespace traverse::gcode {
+namespace {
+
+using namespace testing;  // NOLINT: the small prints
+
+// Nothing lies between the paths, and another way of the layer is open and as long.
+TEST(VerifySameWays, ARetractionStaysWithItsWay) {
+  const std::string third = Line("Internal infill", "X0 Y10", "X9 Y10");
+  const std::string open = "G1 X0 Y10 F9000\n";
+  const std::string a = kTwo + With(third, Way("X0 Y10"), open);
+  const std::string moved = With(With(a, Way("X0 Y5"), "G1 X0 Y5 F9000\n"), open, Way("X0 Y10"));
+  EXPECT_EQ(Broken(kHead + a, kHead + moved, Policy::kFree), "open_ways");
+  // A way from there to another point may be open.
+  const std::string turned =
+      With(With(a, Way("X0 Y5"), "G1 X9 Y5 F9000\n"), "G1 X9 Y5 E.3", "G1 X0 Y5 E.3");
+  EXPECT_EQ(Broken(kHead + a, kHead + turned, Policy::kFree), "");
+}
+
+// One way in three is lifted: nothing is to be learnt of ways as such.
+std::string ThreeWays(const std::string& lifted) {
+  return absl::StrCat(kHead, kTwo, Lifted("X0 Y10"),
+                      ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y10 E.3\n", lifted,
+                      ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y20 E.3\n",
+                      Line("Internal infill", "X0 Y30", "X9 Y30"));
+}
+
+TEST(VerifySameWays, ALiftStaysWithItsWay) {
+  const std::string way = Lifted("X0 Y20");
+  const std::string a = ThreeWays(way);
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, ThreeWays(Way("X0 Y20")), Policy::kFree), "lifts");
+  const std::string half = With(way, "Z.6", "Z.4");
+  EXPECT_EQ(Broken(a, ThreeWays(half), Policy::kFree), "lifts");
+  EXPECT_NE(FirstMessage(a, ThreeWays(half)).find("lifted by 0.400 mm in the original"),
+            std::string::npos);
+  // A way from there to another point may be low.
+  const std::string turned = With(ThreeWays(Way("X9 Y20")), "G1 X9 Y20 E.3", "G1 X0 Y20 E.3");
+  EXPECT_EQ(Broken(a, turned, Policy::kFree), "");
+}
+
+}  // namespace
+}  // namespace traverse::gcode
