@@ -31,6 +31,9 @@ class VisibleWalls {
   // do not. It is the function by which the search knows it.
   bool Crossed(Vertex a, Vertex b) const { return grid_.Crosses({a.x, a.y}, {b.x, b.y}); }
 
+  // The same of a way with bends, near which it is looked at as well.
+  bool CrossedByWay(const std::vector<Vertex>& way) const;
+
   const WallGrid& grid() const { return grid_; }
 
  private:

@@ -170,19 +170,21 @@ TravelWay TravelRules::WayOf(Vertex a, Vertex b, Feature feature) const {
   way.crosses = walls_.Crossed(a, b);
   if (way.crosses && detours_) {
     way.via = detours_->Around(a, b);
-    Vertex at = a;
-    double mm = 0;
-    for (const Vertex bend : way.via) {
-      mm += Distance(at, bend);
-      at = bend;
-    }
     way.crosses = way.via.empty();
-    if (!way.via.empty()) way.mm = mm + Distance(at, b);
+    if (!way.via.empty()) {
+      std::vector<Vertex> bent = {a};
+      bent.insert(bent.end(), way.via.begin(), way.via.end());
+      bent.push_back(b);
+      way.mm = 0;
+      for (size_t i = 1; i < bent.size(); ++i) way.mm += Distance(bent[i - 1], bent[i]);
+      // A bend may lie within another wall where there is hardly room for one between the two.
+      way.grazes = walls_.CrossedByWay(bent);
+    }
   }
   if (!habit_.retracts) return way;
   const bool far = Distance(a, b) >= habit_.threshold_mm;
   way.retracts = far && (!habit_.crossing_matters || CountOf(feature).Mostly());
-  way.retracts = way.retracts || ((far || habit_.spares_walls) && way.crosses) ||
+  way.retracts = way.retracts || ((far || habit_.spares_walls) && (way.crosses || way.grazes)) ||
                  (far && way.mm > habit_.longest_open_mm);
   return way;
 }

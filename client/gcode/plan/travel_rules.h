@@ -62,6 +62,7 @@ struct TravelWay {
   Vertex to;
   bool retracts = false;
   bool crosses = false;     // a visible wall, and there is no way around
+  bool grazes = false;      // a visible wall with one of its bends
   double mm = 0;            // bends included
   std::vector<Vertex> via;  // the bends of the way around visible walls; empty: it is straight
 };

@@ -1,10 +1,12 @@
 #include "client/gcode/write/layer_writer.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "client/gcode/model/loops.h"
 #include "client/gcode/model/outline.h"
+#include "client/gcode/write/going_on.h"
 #include "client/gcode/write/link_writer.h"
 
 namespace traverse::gcode {
@@ -54,7 +56,12 @@ LayerWriter::LayerWriter(const GcodeFile& file, const Layer& layer, const Retrac
       donors_(donors),
       outlines_(OutlinesOf(file, layer)),
       walls_(outlines_),
-      rules_(file, layer, habit, outlines_, walls_) {}
+      rules_(file, layer, habit, outlines_, walls_),
+      spares_walls_(habit.retracts && habit.spares_walls) {
+  for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
+    if (const std::optional<LinkStep> step = ReadGoingOn(file, b)) goes_on_.emplace(b, *step);
+  }
+}
 
 LayerOrder LayerWriter::GivenOrder() const {
   LayerOrder order;
@@ -136,6 +143,29 @@ Vertex LayerWriter::End(const Placement& placement) const {
   return placement.closed ? points[placement.entry] : points.front();
 }
 
+bool LayerWriter::GoesOnAcross(const Placement& from, Vertex to, Feature feature) const {
+  if (!spares_walls_) return false;
+  const auto found = goes_on_.find(from.block);
+  if (found == goes_on_.end()) return false;
+  const LinkStep& step = found->second;
+  Vertex at = file_.modes[file_.blocks[from.block].mode].InMm(step.to);
+  if (!from.as_given()) {
+    const std::vector<Vertex>& points = outlines_[from.block - layer_.first_block].points;
+    at = points[from.entry];
+    double left = step.way_mm;
+    // The last point is the first one.
+    for (size_t i = 1; i < points.size() && left > 0; ++i) {
+      const Vertex next = points[(from.entry + i) % (points.size() - 1)];
+      const double length = Distance(at, next);
+      const double share = length > left ? left / length : 1;
+      at = {at.x + (next.x - at.x) * share, at.y + (next.y - at.y) * share};
+      left -= length;
+    }
+  }
+  const TravelWay way = rules_.WayOf(at, to, feature);
+  return way.crosses || way.grazes;
+}
+
 WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Placement& to,
                                    const TravelModel& model) const {
   const Block& here = file_.blocks[layer_.first_block + place];
@@ -143,8 +173,8 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
   const bool boundary = (here.link & (kLinkSplits | kLinkFixed)) != 0;
   const bool as_given = from.block + 1 == to.block && from.as_given() && to.as_given() &&
                         (!boundary || to.block == layer_.first_block + place);
-  TravelWay way =
-      rules_.WayOf(End(from), Begin(to), outlines_[to.block - layer_.first_block].feature);
+  const Feature feature = outlines_[to.block - layer_.first_block].feature;
+  TravelWay way = rules_.WayOf(End(from), Begin(to), feature);
   double way_seconds = 0;
   // Wipes are no part of a way of our own either.
   const bool plain = (next.link & kLinkWipes) == 0;
@@ -157,7 +187,8 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
   if (as_given) way.crosses = MeasureLink(file_, to.block, walls_).crossings > 0;
   way.retracts = as_given ? (next.link & kLinkRetracts) != 0
                           : way.retracts || file_.WipedBehind(from.block) ||
-                                (boundary && (here.link & kLinkRetracts) != 0);
+                                (boundary && (here.link & kLinkRetracts) != 0) ||
+                                GoesOnAcross(from, way.to, feature);
   WayTotals totals;
   totals.mm = way.mm;
   totals.seconds = way_seconds + (way.retracts ? model.retraction_seconds : 0);
@@ -169,8 +200,9 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
 
 bool LayerWriter::Retracts(const PlacedPath& from, const PlacedPath& to) const {
   const MachineState& mode = file_.modes[to.block().mode];
-  const Outline& outline = outlines_[to.placement().block - layer_.first_block];
-  return rules_.Retracts(mode.InMm(from.last()), mode.InMm(to.first()), outline.feature);
+  const Feature feature = outlines_[to.placement().block - layer_.first_block].feature;
+  return rules_.Retracts(mode.InMm(from.last()), mode.InMm(to.first()), feature) ||
+         GoesOnAcross(from.placement(), mode.InMm(to.first()), feature);
 }
 
 }  // namespace traverse::gcode

@@ -3,13 +3,16 @@
 #ifndef TRAVERSE_CLIENT_GCODE_WRITE_LAYER_WRITER_H_
 #define TRAVERSE_CLIENT_GCODE_WRITE_LAYER_WRITER_H_
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "absl/container/flat_hash_map.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/plan/travel_rules.h"
 #include "client/gcode/write/gcode_out.h"
+#include "client/gcode/write/link.h"
 #include "client/gcode/write/link_donors.h"
 #include "client/gcode/write/placed_path.h"
 #include "client/gcode/write/way_totals.h"
@@ -51,6 +54,10 @@ class LayerWriter {
  private:
   Vertex Begin(const Placement& placement) const;
   Vertex End(const Placement& placement) const;
+
+  // The way that goes on behind the end of `from` leads the nozzle to where a visible wall is
+  // between it and `to`, which has to be spared.
+  bool GoesOnAcross(const Placement& from, Vertex to, Feature feature) const;
   bool IsGiven(const LayerOrder& order, const PartStart& start) const;
   void WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place, GcodeOut& out) const;
   bool Retracts(const PlacedPath& from, const PlacedPath& to) const;
@@ -61,6 +68,8 @@ class LayerWriter {
   const std::vector<Outline> outlines_;
   const VisibleWalls walls_;
   const TravelRules rules_;
+  const bool spares_walls_;
+  absl::flat_hash_map<uint32_t, LinkStep> goes_on_;  // behind blocks that have such a move
 };
 
 }  // namespace traverse::gcode

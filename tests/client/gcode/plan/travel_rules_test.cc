@@ -354,5 +354,22 @@ TEST(TravelRules, AWayAroundAWallIsAsLongAsItsBends) {
   EXPECT_NEAR(around.mm, 10 + 2 * std::hypot(10, 5), 2);
 }
 
+// The bend beside the corner at 40, 40 lies within a square that hardly leaves room for it.
+TEST(TravelRules, WaysWithABendWithinAnotherWallAreRetracted) {
+  Sketch sketch = TwoIslands(false).GoRetracted(40.3, 40.3).Square(40.3, 40.3, 10);
+  const auto file = sketch.Add("; avoid_crossing_perimeters = 1").Read();
+  const Rules sparing(file, true);
+  ASSERT_TRUE(sparing.habit.avoids_walls);
+
+  const TravelWay narrow = sparing.WayOf({42, 35}, {35, 42});
+  EXPECT_FALSE(narrow.crosses);
+  EXPECT_TRUE(narrow.grazes);
+  EXPECT_TRUE(narrow.retracts);
+  const TravelWay wide = sparing.WayOf({-2, 35}, {5, 42});
+  EXPECT_FALSE(wide.via.empty());
+  EXPECT_FALSE(wide.grazes);
+  EXPECT_FALSE(wide.retracts);
+}
+
 }  // namespace
 }  // namespace traverse::gcode
