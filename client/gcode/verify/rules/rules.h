@@ -6,9 +6,9 @@
 
 #include <vector>
 
+#include "client/gcode/verify/findings.h"
 #include "client/gcode/verify/match/layer_pair.h"
 #include "client/gcode/verify/permissions.h"
-#include "client/gcode/verify/findings.h"
 
 namespace traverse::gcode {
 

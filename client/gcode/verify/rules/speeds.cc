@@ -2,6 +2,7 @@
 // of move within the print.
 
 #include <algorithm>
+#include <array>
 
 #include "absl/container/flat_hash_map.h"
 #include "absl/container/flat_hash_set.h"
@@ -129,33 +130,54 @@ void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
   }
 }
 
-// First layers, and others, may have ways of their own speed.
-void CheckWayFeeds(const LayerPair& layer, LayerFindings& findings) {
-  absl::flat_hash_set<Micro> were;
+// What layers may do at speeds of their own, as first layers do.
+bool HasLayerSpeed(const TraceMove& move) {
+  if (!move.in_print || move.firmware) return false;
+  return move.kind != MoveKind::kWipe;
+}
+
+// The speeds of one kind of move in a layer of the original.
+struct LayerFeeds {
+  absl::flat_hash_set<Micro> feeds;
   uint32_t line = 0;  // of the first of them
+};
+
+using FeedsByKind = std::array<LayerFeeds, static_cast<size_t>(MoveKind::kCount)>;
+
+FeedsByKind FeedsOf(const LayerPair& layer) {
+  FeedsByKind were;
   const TraceChunk& was = layer.was();
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
     for (uint32_t m = was.links[link].first_move; m < was.links[link].end_move; ++m) {
       const TraceMove& move = was.moves[m];
-      if (move.kind != MoveKind::kTravel || !move.in_print) continue;
-      if (were.empty()) line = move.line;
-      were.insert(move.feed);
+      if (!HasLayerSpeed(move)) continue;
+      LayerFeeds& of_kind = were[static_cast<size_t>(move.kind)];
+      if (of_kind.feeds.empty()) of_kind.line = move.line;
+      of_kind.feeds.insert(move.feed);
     }
   }
-  if (were.empty()) return;
+  return were;
+}
+
+// New moves are as fast as those of their kind in the layer. Where it has none of the kind, those
+// of the whole file tell.
+void CheckLayerFeeds(const LayerPair& layer, LayerFindings& findings) {
+  const FeedsByKind were = FeedsOf(layer);
   const TraceChunk& is = layer.is();
   const Tails tails(layer, false);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
     for (uint32_t m = is.links[link].first_move + tails.At(link); m < is.links[link].end_move;
          ++m) {
       const TraceMove& move = is.moves[m];
-      if (move.kind != MoveKind::kTravel || !IsNew(layer, move) || were.contains(move.feed)) {
+      const LayerFeeds& of_kind = were[static_cast<size_t>(move.kind)];
+      if (!HasLayerSpeed(move) || of_kind.feeds.empty() || of_kind.feeds.contains(move.feed) ||
+          !IsNew(layer, move)) {
         continue;
       }
       findings.breaks.push_back(
-          {VerifyRule::kSpeeds, line, move.line, layer.index(),
-           absl::StrFormat("travel at F%g, as none of its layer in the original",
-                           static_cast<double>(move.feed) * 1e-6)});
+          {VerifyRule::kSpeeds, of_kind.line, move.line, layer.index(),
+           absl::StrFormat("%s at F%g, as none of its layer in the original",
+                           MoveKindName(move.kind), static_cast<double>(move.feed) * 1e-6)});
       return;
     }
   }
@@ -174,7 +196,7 @@ uint32_t AnyLine(const absl::flat_hash_map<uint64_t, Seen>& map) {
 void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings) {
   ObserveWas(layer, Tails(layer, true), findings.was);
   ObserveIs(layer, Tails(layer, false), findings.is);
-  CheckWayFeeds(layer, findings);
+  CheckLayerFeeds(layer, findings);
 }
 
 // Behind the last path stand moves of the end script as well, which are no example for the print.

@@ -132,6 +132,34 @@ def way_of_other_layer(file, rng):
     return pick(rng, links(file), 20, make)
 
 
+def as_fast_as_travel(kind, place):
+    """The last move of `kind` in list `place` of a link is as fast as travel, and as no such move of its
+    layer."""
+
+    def defect(file, rng):
+        feeds, layers = [set()], []
+        for line in file.lines:
+            if file.is_layer(line.text):
+                feeds.append(set())
+            if line.kind == kind:
+                feeds[-1].add(number(line.feed))
+            layers.append(len(feeds) - 1)
+        travel = {number(line.feed) for line in file.lines if line.kind == "travel"}
+
+        def make(found):
+            i = found[place][-1]
+            line = file.lines[i]
+            others = sorted(travel - feeds[layers[i]])
+            if line.kind != kind or not others or layers[i] == 0:
+                return None
+            return edited(file, {i: [with_f(line.text, float(rng.choice(others))),
+                                     f"G1 F{number(line.feed)}"]})
+
+        return pick(rng, links(file), 50, make)
+
+    return defect
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("travel at another speed", "speeds", travel_slow, "free"),
@@ -143,5 +171,7 @@ DEFECTS = (
     ("wipe under another acceleration", "speeds", around(wipe_of), "free"),
     ("lift under another acceleration", "speeds", around(lift_of), "free"),
     ("way at the speed of another layer", "speeds", way_of_other_layer, "free"),
+    ("retraction as fast as travel", "speeds", as_fast_as_travel("retract", 1), "free"),
+    ("priming as fast as travel", "speeds", as_fast_as_travel("prime", 3), "free"),
     ("way a tenth faster", "speeds", way_faster, "free"),
 )

@@ -31,6 +31,25 @@ TEST(VerifySpeeds, WaysAreAsFastAsThoseOfTheirLayer) {
       << FirstMessage(a, b);
 }
 
+// What another layer does at the speed of its travel is no example.
+TEST(VerifySpeeds, RetractionsAreAsFastAsThoseOfTheirLayer) {
+  const auto pulled_as_fast_as_travel = [](const std::string& text) {
+    return With(text, "G1 E-1 F2100", "G1 E-1 F9000");
+  };
+  const auto pushed_as_fast_as_travel = [](const std::string& text) {
+    return With(text, "G1 E1 F2100", "G1 E1 F9000");
+  };
+  const std::string fast = pushed_as_fast_as_travel(pulled_as_fast_as_travel(kTwo));
+  const std::string a = kHead + fast + kNextLayer + kTwo;
+  EXPECT_EQ(Broken(a, kHead + fast + kNextLayer + kOneTurned), "");
+  const std::string pulled = kHead + fast + kNextLayer + pulled_as_fast_as_travel(kOneTurned);
+  EXPECT_EQ(Broken(a, pulled), "speeds");
+  EXPECT_NE(FirstMessage(a, pulled).find("retraction at F9000, as none of its layer"),
+            std::string::npos)
+      << FirstMessage(a, pulled);
+  EXPECT_EQ(Broken(a, kHead + fast + kNextLayer + pushed_as_fast_as_travel(kOneTurned)), "speeds");
+}
+
 // Behind the last path the end script pulls filament back as well, at a speed of its own.
 TEST(VerifySpeeds, TheLastRetractionIsAsFastAsTheOthers) {
   const std::string end =
