@@ -88,6 +88,7 @@ COUNTS_FOR_AN_ASSERTION = "what it counts is looked at in an assertion"
 ORDER_ON_THE_CURVE = "which points share a leaf changes how long a search takes, and not what it finds"
 PRUNES_LESS = "a bound that rules out less: the cost itself is looked at behind it"
 NOTHING_TO_LET_IN = "tasks are held back only while all permits are in use"
+READ_THE_LONG_WAY = "the number is read by the function for all numbers, to the same value"
 VISITS = "client/gcode/verify/match/visits.cc"
 POINT_INDEX = "engine/geometry/nearest_point_index.cc"
 EQUIVALENT = {
@@ -99,6 +100,8 @@ EQUIVALENT = {
     (POINT_INDEX, "without x = (x | (x << 2)) & 0x33333333;"): ORDER_ON_THE_CURVE,
     (POINT_INDEX, "without x = (x | (x << 1)) & 0x55555555;"): ORDER_ON_THE_CURVE,
     (POINT_INDEX, "without std::swap(keys, sorted);"): ORDER_ON_THE_CURVE,
+    ("client/gcode/verify/machine/command_words.cc",
+     "for (; at < text.size() && text[at] >= '0' && text[at] > '9'; ++at) {"): READ_THE_LONG_WAY,
     ("engine/souza/block_line.cc", "const double limit = gone + move_[j + 1] - detour_[j] - best.delta;"): PRUNES_LESS,
     ("server/jobs/worker_pool.cc", "if (memory_short_ || !is_short) {"): NOTHING_TO_LET_IN,
 }

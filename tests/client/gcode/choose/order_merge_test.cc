@@ -140,6 +140,17 @@ TEST(OrderMerger, KeepsWhatAllAgreeOnAndNeverGetsWorse) {
   }
 }
 
+TEST(OrderMerger, WhatIsNoBetterStaysAsItWasBegun) {
+  const WayEstimate estimate = [](size_t, const Placement&, const Placement&) {
+    WayTotals way;
+    way.seconds = 1;
+    return way;
+  };
+  const OrderMerger merger(estimate, {});
+
+  EXPECT_EQ(merger.Merge(OrderOf({0, 1, 2, 3}), {OrderOf({0, 2, 1, 3})}), OrderOf({0, 1, 2, 3}));
+}
+
 TEST(OrderMerger, KnowsPathsByTheirNumbersInTheFile) {
   const auto from_1000 = [](const LayerOrder& order) {
     LayerOrder moved = order;

@@ -133,6 +133,25 @@ TEST(MachineLimits, FaultsOfMarlin) {
   EXPECT_EQ(FaultOf(std::string("\0\xff\x01", 3)), neither);
 }
 
+TEST(MachineLimits, ReplaceThoseOfTheProfile) {
+  MachineProfile profile;
+  ApplyLimits(Read("M201 X3000 Y2000 Z100 E5000\nM203 X200 Y250 Z12 E120\n"
+                   "M204 P1500 R1250 T900\nM205 X8 Y7\n"),
+              profile);
+
+  EXPECT_DOUBLE_EQ(profile.max_accel, 2000);
+  EXPECT_DOUBLE_EQ(profile.z_accel, 100);
+  EXPECT_DOUBLE_EQ(profile.max_speed, 200);
+  EXPECT_DOUBLE_EQ(profile.max_z_speed, 12);
+  EXPECT_DOUBLE_EQ(profile.max_e_speed, 120);
+  EXPECT_DOUBLE_EQ(profile.print_accel, 1500);
+  EXPECT_DOUBLE_EQ(profile.travel_accel, 900);
+  EXPECT_DOUBLE_EQ(profile.retract_accel, 1250);
+  EXPECT_DOUBLE_EQ(profile.corner_speed, 7);
+  ApplyLimits(Read(std::string(kPrinter) + "minimum_cruise_ratio: 0.25\n"), profile);
+  EXPECT_DOUBLE_EQ(profile.cruise_ratio, 0.25);
+}
+
 TEST(MachineLimits, ACornerIsMissedByTheJunctionDeviation) {
   MachineProfile profile;
   ApplyLimits(Read("M204 P1000\nM205 J0.02\n"), profile);
