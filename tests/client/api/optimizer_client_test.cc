@@ -96,6 +96,26 @@ TEST(OptimizerClient, SendsTheEndsOfOpenPathsAlone) {
 }
 
 // Both sides would wait for ever if the client sent everything before it read anything.
+// Half a point is for the service to refuse.
+TEST(OptimizerClient, SendsOpenPathsThatAreNoneAsTheyAre) {
+  FakeService service;
+  OptimizerClient client(service.InProcessChannel());
+  std::vector<v1::Layer> layers = Layers(3);
+  const auto points = [&](size_t layer) {
+    return layers[layer].mutable_islands(0)->mutable_rasters(0)->mutable_points();
+  };
+  points(0)->Truncate(2);
+  points(1)->Truncate(3);
+  points(2)->Add(7);
+
+  ASSERT_TRUE(client.Optimize({}, layers).ok());
+
+  ASSERT_THAT(service.layers, SizeIs(3));
+  EXPECT_THAT(service.layers[0].islands(0).rasters(0).points(), ElementsAre(0, 1));
+  EXPECT_THAT(service.layers[1].islands(0).rasters(0).points(), ElementsAre(0, 1, 2));
+  EXPECT_THAT(service.layers[2].islands(0).rasters(0).points(), ElementsAre(0, 1, 2, 3, 7));
+}
+
 TEST(OptimizerClient, ReadsWhileItSends) {
   FakeService service;
   service.answer = [](const v1::Layer& layer, uint64_t index) {

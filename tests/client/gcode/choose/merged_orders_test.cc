@@ -100,6 +100,35 @@ TEST_F(MergedOrdersTest, UnderSafeTheBestTravelsNoFurtherThanTheFile) {
   EXPECT_EQ(merged(Policy::kBalanced), 2);
 }
 
+// What is found is quicker within the wall, and beside it for more ways across.
+TEST_F(MergedOrdersTest, TakeFromAnOrderWhatNeedsNoMoreCrossings) {
+  Sketch sketch;
+  sketch.Square(0, 0, 100);
+  for (const double y : {5.0, 8.0}) {
+    sketch.GoRetracted(2, y).Infill(3, y).GoRetracted(95, y).Infill(94, y);
+  }
+  sketch.GoRetracted(98, 20).Infill(99, 20).GoRetracted(98, 90).Infill(99, 90);
+  sketch.GoRetracted(101, 20).Infill(102, 20).GoRetracted(101, 90).Infill(102, 90);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+  const RetractionHabit habit = LearnRetraction(*file);
+  const LinkDonors donors(*file);
+  const LayerWriter writer(*file, file->layers[0], habit, donors);
+  const LayerOrder found = OrderOf({0, 1, 3, 2, 4, 5, 7, 6, 8});
+  MergeRules rules;
+  rules.policy = Policy::kBalanced;
+  rules.boundaries.assign(found.size(), false);
+  const auto has = [&](const LayerOrder& order) {
+    const std::vector<LayerOrder> orders = MergedOrders(writer, kTravel, {found}, rules);
+    return std::count(orders.begin(), orders.end(), order) > 0;
+  };
+  const LayerOrder sparing = OrderOf({0, 1, 3, 2, 4, 5, 6, 7, 8});
+
+  EXPECT_TRUE(has(sparing));
+  rules.crossings = Crossings::kAny;
+  EXPECT_FALSE(has(sparing));
+  EXPECT_TRUE(has(found));
+}
+
 TEST_F(MergedOrdersTest, WaysOfTheFileTakeWhatTheirBendsTake) {
   Sketch sketch;
   sketch.Infill(10, 0).Go(10, 20).Go(30, 20).Infill(30, 30).Go(50, 20).Infill(50, 30);

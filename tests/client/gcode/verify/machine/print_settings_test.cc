@@ -40,6 +40,24 @@ TEST(VerifyPrintSettings, AccelerationOfTravelAndRetractionsCountsForNoDeposit) 
   EXPECT_NE(After(204, "T800").acceleration, none.AccelerationDigest());
 }
 
+uint64_t KlipperDigestAfter(const std::string& text) {
+  PrintSettings settings;
+  EXPECT_TRUE(settings.SetByKlipper(text)) << text;
+  return settings.Digest();
+}
+
+TEST(VerifyPrintSettings, LimitsOfKlipperEndWhereAComment) {
+  const std::string set = "SET_VELOCITY_LIMIT ACCEL=800 SQUARE_CORNER_VELOCITY=5";
+  EXPECT_NE(KlipperDigestAfter(set), PrintSettings().Digest());
+  EXPECT_EQ(KlipperDigestAfter(set + " ; as slow as that"), KlipperDigestAfter(set));
+  EXPECT_EQ(KlipperDigestAfter(set + ";slow"), KlipperDigestAfter(set));
+  EXPECT_NE(KlipperDigestAfter("SET_VELOCITY_LIMIT ACCEL=900 SQUARE_CORNER_VELOCITY=5"),
+            KlipperDigestAfter(set));
+  PrintSettings none;
+  EXPECT_FALSE(none.SetByKlipper("SET_VELOCITY_LIMIT ACCEL=800 NEW=1"));
+  EXPECT_EQ(none.Digest(), PrintSettings().Digest());
+}
+
 uint64_t DigestAfter(const std::string& comment) {
   PrintSettings settings;
   EXPECT_TRUE(settings.SetByComment(comment)) << comment;
