@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -148,6 +151,38 @@ TEST(SwapSequence, PlacesAPathOfManyEntriesAtThoseNearestToItsNeighbors) {
     const double placed = state.PlacedCost(node, state.entry_before(node), state.entry_after(node));
 
     EXPECT_DOUBLE_EQ(placed, std::min(cost(nearest(before)), cost(nearest(after))));
+  }
+}
+
+TEST(SwapSequence, EntersAPathAnewAtTheBestOfItsOtherVertices) {
+  Rng rng(1);
+  std::vector<Path> squares;
+  for (int i = 0; i < 8; ++i) {
+    std::vector<Point> points;
+    for (int k = 0; k < 5; ++k) points.push_back({20 * rng.Unit(), 20 * rng.Unit()});
+    squares.push_back(MakeContour(std::move(points)));
+  }
+  const OwnedProblem owned(testing::AnyOrderPlan(std::move(squares)));
+  const LinkRules rules;
+  SwapSequence state(owned.problem, rules);
+  state.Shuffle(rng, false);
+  const Route route = state.Unload();
+  for (size_t at = 0; at < route.size(); ++at) {
+    const int leaf = state.tree().child_at(0, static_cast<int>(at));
+    double best = std::numeric_limits<double>::infinity();
+    for (int entry = 0; entry < 5; ++entry) {
+      Route other = route;
+      other[at].entry = entry;
+      if (entry != route[at].entry) best = std::min(best, RouteCost(owned.problem, other));
+    }
+
+    const std::optional<SwapMove> move = state.EvaluateReentry(leaf);
+
+    ASSERT_TRUE(move.has_value());
+    EXPECT_NEAR(state.cost() + move->delta, best, 1e-9);
+    state.Apply(*move);
+    EXPECT_NEAR(RouteCost(owned.problem, state.Unload()), best, 1e-9);
+    state.Load(route);
   }
 }
 
