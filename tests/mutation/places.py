@@ -100,6 +100,11 @@ EQUIVALENT = {
     (POINT_INDEX, "without x = (x | (x << 2)) & 0x33333333;"): ORDER_ON_THE_CURVE,
     (POINT_INDEX, "without x = (x | (x << 1)) & 0x55555555;"): ORDER_ON_THE_CURVE,
     (POINT_INDEX, "without std::swap(keys, sorted);"): ORDER_ON_THE_CURVE,
+    (POINT_INDEX, "if (!(keys.size() < kMinSize)) return std::sort(keys.begin(), keys.end());"):
+        ORDER_ON_THE_CURVE,
+    ("engine/search/turn_run.cc",
+     "return state.position(begin) == first && state.position(end) + tree.size(end) - 1 != last;"):
+        COUNTS_FOR_AN_ASSERTION,
     ("client/gcode/verify/machine/command_words.cc",
      "for (; at < text.size() && text[at] >= '0' && text[at] > '9'; ++at) {"): READ_THE_LONG_WAY,
     ("engine/souza/block_line.cc", "const double limit = gone + move_[j + 1] - detour_[j] - best.delta;"): PRUNES_LESS,

@@ -55,6 +55,8 @@ TEST(FingerprintOf, WhateverChangesTheProblemChangesTheShape) {
        [](Plan& plan, CostSpec&) {
          std::swap(plan.nodes[0].children[0], plan.nodes[0].children[1]);
        }},
+      {"path of a node",
+       [](Plan& plan, CostSpec&) { std::swap(plan.nodes[1].path, plan.nodes[2].path); }},
       {"kind of node",
        [](Plan& plan, CostSpec&) { plan.nodes[0].kind = PlanNode::Kind::kInOrder; }},
       {"pair",

@@ -32,6 +32,14 @@ TEST(NearestInsertion, InsertsWhereItCostsLeast) {
   EXPECT_EQ(Inserted(owned.problem), (Route{{2, 0}, {0, 0}, {1, 0}}));
 }
 
+// The first of those as near is inserted first, and what costs as much before it goes there.
+TEST(NearestInsertion, OfTwoAsNearInsertsTheFirst) {
+  const OwnedProblem owned(
+      AnyOrderPlan({MakeContour({{3, 0}}), MakeContour({{0, 3}}), MakeContour({{-3, 0}})}));
+
+  EXPECT_EQ(Inserted(owned.problem), (Route{{2, 0}, {1, 0}, {0, 0}}));
+}
+
 TEST(NearestInsertion, TakesTheEntryThatCostsLeastThere) {
   const OwnedProblem owned(
       AnyOrderPlan({MakeContour({{3, 0}}), MakeContour({{1, 3}, {1, 1}, {3, 4}}),
