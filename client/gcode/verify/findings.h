@@ -48,6 +48,7 @@ struct WayProfile {
   int64_t layer = -1;
   uint32_t first = 0;  // in LiftLog::pieces
   uint32_t end = 0;
+  uint64_t ends = 0;  // a digest of its two points
 };
 
 // The kinds of ways: with filament pulled back or not, between layers or within one, across outer

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_format.h"
 #include "absl/types/span.h"
+#include "client/gcode/verify/match/way_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
@@ -148,6 +149,7 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
   if ((only_new && known) || traced.scripted) return;
   WayProfile way;
   way.layer = layer.index();
+  if (link > 0) way.ends = EndsOf(chunk, link);
   way.first = static_cast<uint32_t>(seen.lifts.pieces.size());
   double length = 0;
   double z_before = to.z_mm;
@@ -188,14 +190,33 @@ std::string KindText(size_t kind) {
                          (kind & 1) != 0 ? " across outer walls" : "");
 }
 
-// Some slicers lift in some layers alone: above a height, or below it.
 absl::Span<const WayProfile> OfLayer(const std::vector<WayProfile>& ways, int64_t layer) {
-  constexpr std::ptrdiff_t kFewest = 4;
   const auto [first, end] =
-      std::equal_range(ways.begin(), ways.end(), WayProfile{0, layer, 0, 0},
+      std::equal_range(ways.begin(), ways.end(), WayProfile{.layer = layer},
                        [](const WayProfile& a, const WayProfile& b) { return a.layer < b.layer; });
-  if (end - first < kFewest) return {};
+  if (first == end) return {};
   return absl::MakeSpan(&*first, static_cast<size_t>(end - first));
+}
+
+// Some slicers lift in some layers alone: above a height, or below it.
+Habit HabitOfLayer(const LiftLog& log, const std::vector<WayProfile>& ways, int64_t layer) {
+  constexpr size_t kFewest = 4;
+  const absl::Span<const WayProfile> own = OfLayer(ways, layer);
+  return own.size() < kFewest ? Habit() : HabitOf(log, own);
+}
+
+// Whether the original has a way between the same two points of the layer that is as low.
+bool WasAsLow(const LiftLog& was, const LiftLog& is, const WayProfile& way, size_t kind,
+              float lift) {
+  const absl::Span<const WayProfile> ways = OfLayer(was.ways[kind], way.layer);
+  const Height now = HeightOf(is, way);
+  return std::any_of(ways.begin(), ways.end(), [&](const WayProfile& before) {
+    if (before.ends != way.ends) return false;
+    const Height then = HeightOf(was, before);
+    return now.apex_mm >= then.apex_mm - kHeightSlackMm &&
+           LowLength(is, way, lift) <= LowLength(was, before, lift) + kShortestMm &&
+           (!EndsLow(is, way, lift) || EndsLow(was, before, lift));
+  });
 }
 
 void CompareKind(const Observations& was, const Observations& is, size_t kind,
@@ -209,7 +230,7 @@ void CompareKind(const Observations& was, const Observations& is, size_t kind,
   for (const WayProfile& way : is.lifts.ways[kind]) {
     if (!of_print.lifts && way.layer != layer) {
       layer = way.layer;
-      of_layer = HabitOf(was.lifts, OfLayer(was.lifts.ways[kind], layer));
+      of_layer = HabitOfLayer(was.lifts, was.lifts.ways[kind], layer);
     }
     const Habit& habit = of_print.lifts ? of_print : of_layer;
     if (!habit.lifts) continue;
@@ -220,6 +241,7 @@ void CompareKind(const Observations& was, const Observations& is, size_t kind,
         low > kLowMm && (low > habit.low_mm || low / height.length_mm > habit.low_share);
     const bool never = height.apex_mm < habit.least_mm - kHeightSlackMm;
     if (!ends_low && !lies_low && !never) continue;
+    if (WasAsLow(was.lifts, is.lifts, way, kind, habit.least_mm)) continue;
     breaks.push_back(
         {VerifyRule::kLifts, habit.least_line, way.line, way.layer,
          absl::StrFormat("%.2f of %.2f mm of this way lie lower than %.2f mm above the "

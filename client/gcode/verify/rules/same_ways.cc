@@ -2,26 +2,17 @@
 // whatever they cross; and where it pulls back and lifts, as high.
 
 #include <algorithm>
-#include <cmath>
 
 #include "absl/container/flat_hash_map.h"
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/way_ends.h"
 #include "client/gcode/verify/rules/rules.h"
-#include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 namespace {
 
 constexpr double kShortestWayMm = 0.5;  // shorter ways come out of rounding
 constexpr double kApexSlackMm = 0.003;
-
-// From the end of the path before to the start of the path behind, to the micrometre.
-uint64_t EndsOf(const TraceChunk& chunk, uint32_t link) {
-  const auto um = [](double mm) { return static_cast<uint64_t>(std::llround(mm * 1000)); };
-  const Point from = chunk.EndOf(chunk.paths[link - 1]);
-  const Point to = chunk.paths[link].start;
-  return Mix(Mix(um(from.x), um(from.y)), Mix(um(to.x), um(to.y)));
-}
 
 enum class Nozzle : uint8_t { kNoWay, kOpen, kRetracted };
 

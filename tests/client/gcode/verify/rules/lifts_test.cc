@@ -132,6 +132,15 @@ TEST(VerifyLifts, WhatTheFileLeavesLowMayStayLow) {
   EXPECT_GT(LiftsBroken(Lines(150, -1), Lines(150, 40)), 0);
 }
 
+TEST(VerifyLifts, AWayThatTheFileLeavesLowMayBeLowInOtherWords) {
+  const std::string low = "G1 X0 Y70 F9000\n";
+  const std::string in_two = With(Lines(150, 70), low, "G1 X0 Y69.5 F9000\n" + low);
+  EXPECT_EQ(LiftsBroken(Lines(150, 70), in_two), 0);
+  EXPECT_GT(LiftsBroken(Lines(150, -1), in_two), 0);
+  const std::string around = With(in_two, "G1 X0 Y69.5 F9000\n", "G1 X0 Y40 F9000\n");
+  EXPECT_GT(LiftsBroken(Lines(150, 70), around), 0);
+}
+
 // Not all ways of this file are lifted, so that a low one is no break; one that sinks on the way
 // is.
 TEST(VerifyLifts, NoWaySinksOnItsWay) {

@@ -1,0 +1,27 @@
+// By which two points a way of the original and one of the other file are known to be the same.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_WAY_ENDS_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_WAY_ENDS_H_
+
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+
+#include "client/gcode/verify/text.h"
+#include "client/gcode/verify/trace/trace.h"
+
+namespace traverse::gcode {
+
+// A digest of the end of the path before and the start of the path behind, to the micrometre.
+// REQUIRES: link > 0.
+inline uint64_t EndsOf(const TraceChunk& chunk, uint32_t link) {
+  assert(link > 0);
+  const auto um = [](double mm) { return static_cast<uint64_t>(std::llround(mm * 1000)); };
+  const Point from = chunk.EndOf(chunk.paths[link - 1]);
+  const Point to = chunk.paths[link].start;
+  return Mix(Mix(um(from.x), um(from.y)), Mix(um(to.x), um(to.y)));
+}
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_WAY_ENDS_H_
