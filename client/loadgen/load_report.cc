@@ -134,6 +134,8 @@ std::string LoadJson(const LoadHeading& heading, const LoadResult& result) {
     out["codes"][code] = {{"jobs", tally.jobs},
                           {"latency_ms", LatencyJson(tally.latency)},
                           {"from_sent_ms", LatencyJson(tally.from_sent)}};
+    const auto example = result.example.find(code);
+    if (example != result.example.end()) out["codes"][code]["example"] = example->second;
   }
   return out.dump(1) + "\n";
 }

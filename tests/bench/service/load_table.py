@@ -75,7 +75,8 @@ def faults(near, above):
         yield f"memory {above['resident_mb']:.0f} MB, at 80 % {near['resident_mb']:.0f}"
     others = set(above["codes"]) - {"OK", "RESOURCE_EXHAUSTED"}
     if others:
-        yield f"other outcomes: {sorted(others)}"
+        said = {code: above["codes"][code]["example"] for code in sorted(others)}
+        yield f"other outcomes: {said}"
 
 
 def main():
