@@ -15,18 +15,21 @@ import sys
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 INSTANCES = SOURCE / "tests" / "bench" / "instances"
+RUNS = {}
 REFERENCE = json.loads((SOURCE / "tests" / "bench" / "reference.json").read_text(encoding="utf-8"))
 
 
 def runs_of(part, strategies, seeds=1, layers="1-5"):
-    """The documents of the runs of each strategy, one a seed, by their labels."""
-    ran = subprocess.run([os.environ["TRAVERSE"], "compare", str(INSTANCES / f"{part}.damat"), f"--layers={layers}", "--quiet",
-                          "--json=-", f"--repeat={seeds}", "--strategies=" + ",".join(strategies)], stdout=subprocess.PIPE,
-                         stderr=subprocess.DEVNULL, check=True)
-    found = {}
-    for run in json.loads(ran.stdout)["runs"]:
-        found.setdefault(run["label"], []).append(run["routes"])
-    return found
+    """The documents of the runs of each strategy, one a seed, by their labels; each is run once for all tables."""
+    key = (part, seeds, layers)
+    missing = [name for name in strategies if (key, name) not in RUNS]
+    if missing:
+        ran = subprocess.run([os.environ["TRAVERSE"], "compare", str(INSTANCES / f"{part}.damat"), f"--layers={layers}",
+                              "--quiet", "--json=-", f"--repeat={seeds}", "--strategies=" + ",".join(missing)],
+                             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
+        for run in json.loads(ran.stdout)["runs"]:
+            RUNS.setdefault((key, run["label"]), []).append(run["routes"])
+    return {name: RUNS[key, name] for name in strategies}
 
 
 def compare(part, strategies):
