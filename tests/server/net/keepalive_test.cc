@@ -68,7 +68,7 @@ std::vector<uint8_t> FramesUntilCut(int port, const std::string& bytes, bool& cu
   for (size_t at = 0; at + kFrameHeader <= received.size();) {
     const auto byte = [&](size_t i) { return static_cast<uint8_t>(received[at + i]); };
     types.push_back(byte(3));
-    at += kFrameHeader + (static_cast<size_t>(byte(0)) << 16 | byte(1) << 8 | byte(2));
+    at += kFrameHeader + static_cast<size_t>(byte(0) << 16 | byte(1) << 8 | byte(2));
   }
   return types;
 }
