@@ -161,7 +161,7 @@ class Calls(unittest.TestCase):
         self.refused(bad, "optimised: missing", [verify(original=PART)], "Verify", "stream_unary")
 
     def test_the_deadline(self):
-        long = lines_of_infill(400)
+        long = lines_of_infill(200)
         began = time.time()
         _, _, summary, _ = self.rewrite(long, timeout=8, strategy={"name": "auto", "options": {"effort": "100"}})
         self.assertLess(time.time() - began, 8)
