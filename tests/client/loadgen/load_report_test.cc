@@ -55,6 +55,13 @@ TEST(LoadReport, TheTableHasTheSameFigures) {
       table, ContainsRegex("1 +1000 +1000 +100.0 +50[0-4]\\.[0-9]+ +90[0-9]\\.[0-9]+ +99[0-9]\\."));
 }
 
+TEST(LoadReport, TellsOfJobsThatWereNotSent) {
+  LoadResult result = Thousand();
+  EXPECT_THAT(LoadTable(Heading(), result), Not(HasSubstr("not sent")));
+  result.not_sent = 7;
+  EXPECT_THAT(LoadTable(Heading(), result), HasSubstr("7 jobs were not sent"));
+}
+
 TEST(LoadReport, FailuresAreListedWithAnExample) {
   LoadResult result = Thousand();
   result.code["UNAVAILABLE"].Add(absl::Milliseconds(3), absl::Milliseconds(3));
