@@ -75,7 +75,8 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
   }
   last_line_ = line.number;
   NoteOrder(line, mark);
-  if (line.moves && (in_script_ || section_.deposits.count == 0)) {
+  // Commands that nobody knows leave the head elsewhere, so that a move to where it was moves it.
+  if ((line.moves || line.stays) && (in_script_ || section_.deposits.count == 0)) {
     section_.moves = Mix(section_.moves, DigestOf(machine.motion()));
   } else if (line.sets && (in_script_ || section_.deposits.count == 0)) {
     section_.moves = Mix(section_.moves, DigestOf(line.text));

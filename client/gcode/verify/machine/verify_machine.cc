@@ -46,7 +46,6 @@ void VerifyMachine::NoteMotion(int number, uint32_t words, const std::array<Micr
                                Micro filament) {
   motion_ = Motion{from, at_, filament, pulled_, feed_, number, words, retracted(), false, 0, 0};
   moved_at_ = number_;
-  settings_.Move();
 }
 
 VerifyMachine::VerifyMachine(std::string_view text) : rest_(text) {
@@ -171,6 +170,7 @@ void VerifyMachine::DoG(int number, VerifyLine& line) {
     case 11:
       if (words.set != 0 || !words.readable) return Fence(line, LineRole::kFixed);
       NoteMotion(number, 0, at_, 0);
+      settings_.Move();
       line.moves = true;
       firmware_retracted_ = number == 10;
       return;
@@ -217,7 +217,9 @@ void VerifyMachine::Move(int number, const CommandWords& words, VerifyLine& line
   }
   const bool moves = at_[0] != from[0] || at_[1] != from[1];
   line.moves = moves || at_[2] != from[2] || filament != 0 || number >= 2;
-  if (line.moves) {
+  if (line.moves) settings_.Move();
+  line.stays = !line.moves && (words.Has('X') || words.Has('Y') || words.Has('Z'));
+  if (line.moves || line.stays) {
     NoteMotion(number, words.set, from, filament);
     motion_.has_center = number >= 2 && (words.Has('I') || words.Has('J'));
     motion_.center_x = from[0] + words.ValueOr('I', 0);

@@ -38,6 +38,7 @@ struct VerifyLine {
   bool primes = false;   // such a move ended here
   bool travels = false;  // moves in XY without depositing
   bool moves = false;    // the head or the filament moved: VerifyMachine::motion
+  bool stays = false;    // states where the head is already, as far as can be told: motion, too
   bool sets = false;     // a setting and nothing else, by a command
   uint64_t command = 0;  // what is set or done, without its values; 0: moves, comments, G92 E
   bool label = false;    // of an object, whose moves a printer may be told to leave out
@@ -73,7 +74,7 @@ class VerifyMachine {
   bool inches() const { return inches_; }
   uint64_t tool() const { return tool_; }
 
-  // REQUIRES: the last line moves.
+  // REQUIRES: the last line moves, or stays.
   const Motion& motion() const {
     assert(moved_at_ == number_);
     return motion_;

@@ -36,5 +36,17 @@ TEST(VerifyScripts, MoveAsTheyDid) {
   }
 }
 
+// G380 goes until something is touched: where the head is then, no file tells.
+TEST(VerifyScripts, MoveToWhereTheHeadSeemsToBe) {
+  const std::string wipe = "G1 Z2 F1200\nG380 S3 Z-5 F1200\nG1 Z2 F1200\nG1 X94 F10000\n";
+  const std::string rest = ";LAYER_CHANGE\nG1 Z.2 F9000\n" + kTwo;
+  const std::string a = "M83\nG28\n" + wipe + rest;
+  EXPECT_EQ(Broken(a, "M83\nG28\n" + wipe + ";LAYER_CHANGE\nG1 Z.2 F9000\n" + kOneTurned), "");
+  const std::string end = "G1 Z2 F1200\nG1 X94";
+  for (const char* other : {"G1 X94", "G1 Z2 F600\nG1 X94", "G1 X94 F10000\nG1 Z2 F1200\nG1 X94"}) {
+    EXPECT_THAT(Broken(a, With(a, end, other)), HasSubstr("same_print")) << other;
+  }
+}
+
 }  // namespace
 }  // namespace traverse::gcode
