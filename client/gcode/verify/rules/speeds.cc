@@ -38,13 +38,15 @@ void Note(absl::flat_hash_map<uint64_t, Seen>& map, uint64_t key, const TraceMov
   }
 }
 
-// What goes on along a path without filament, at another speed than the path.
+// What goes on along a path without filament, at another speed than the path. `only_new`: but for
+// what the original does in this layer.
 void ObserveTail(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, uint32_t moves,
-                 Observations& seen) {
+                 bool only_new, Observations& seen) {
   if (link == 0) return;
   for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].first_move + moves; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (!move.sideways() || move.feed == chunk.paths[link - 1].feed) continue;
+    if (only_new && layer.IsKnown(move)) continue;
     Note(seen.tail_feeds, static_cast<uint64_t>(move.feed), move, layer.index());
   }
 }
@@ -57,7 +59,7 @@ void ObserveWas(const LayerPair& layer, const Tails& tails, Observations& seen) 
       ObserveScript(chunk, link, seen);
       continue;
     }
-    ObserveTail(layer, chunk, link, tails.At(link), seen);
+    ObserveTail(layer, chunk, link, tails.At(link), false, seen);
     for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
       const TraceMove& move = chunk.moves[m];
       if (!move.in_print) {
@@ -112,7 +114,7 @@ void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
   const LongestWays longest = LongestOf(layer);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
     const TraceLink& traced = chunk.links[link];
-    ObserveTail(layer, chunk, link, tails.At(link), seen);
+    ObserveTail(layer, chunk, link, tails.At(link), true, seen);
     for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
       const TraceMove& move = chunk.moves[m];
       if (!IsNew(layer, move)) continue;

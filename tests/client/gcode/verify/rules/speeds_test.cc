@@ -61,6 +61,15 @@ TEST(VerifySpeeds, TheLastRetractionIsAsFastAsTheOthers) {
             "");
 }
 
+// A tail on its way to a line that nobody knows is one that the original does.
+TEST(VerifySpeeds, ATailInAFixedWayIsAsItWas) {
+  const std::string a =
+      "G1 F1200 X20 Y10 E.4\nG1 X10 Y20 E1.2\nG1 X10 Y10.5 E1.58\nG0 F1080 X10 Y10\n"
+      "G30001 F2400\nG1 F1200 X18 Y30 E2.5\n";
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_NE(Broken(a, With(a, "F1080", "F1060")), "");
+}
+
 TEST(VerifySpeeds, TravelKeepsItsAcceleration) {
   const auto path = [](const std::string& from, const std::string& to) {
     return absl::StrCat("M204 P1000\n",
