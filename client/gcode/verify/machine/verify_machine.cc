@@ -233,9 +233,11 @@ void VerifyMachine::Move(int number, const CommandWords& words, VerifyLine& line
       line.primes = true;
       line.surplus = std::max<Micro>(filament - pulled_, 0);
     }
-    // Moves relative to each other are kept as they are, and circles that deposit nothing.
+    // Moves relative to each other are kept as they are, and circles that deposit nothing, and
+    // arcs by a radius, whose center is nowhere known.
     const bool circle = number >= 2 && !moves && at_[2] == from[2];
-    if (relative_ || circle) Fence(line, LineRole::kFixed);
+    const bool by_radius = number >= 2 && words.Has('R');
+    if (relative_ || circle || by_radius) Fence(line, LineRole::kFixed);
   }
   FollowFilament(filament, moves);
 }

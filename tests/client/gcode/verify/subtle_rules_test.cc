@@ -123,6 +123,14 @@ TEST(VerifyRules, DepositsAreOfTheSameCommand) {
   EXPECT_EQ(Broken(kHead + arc, kHead + With(arc, "J0 E.3", "J0 P2 E.3")), "same_print");
 }
 
+// The center of an arc by its radius is nowhere known: it stays as it is.
+TEST(VerifyRules, ArcsByARadiusKeepIt) {
+  const std::string way = "G1 E-1 F2100\nG1 X0 Y5 F9000\nG1 E1 F2100\n";
+  const std::string a = kHead + With(kTwo, way, "G1 E-1 F2100\nG2 X0 Y5 R8 F9000\nG1 E1 F2100\n");
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, With(a, "R8", "R1000000")), "same_print");
+}
+
 TEST(VerifyRules, SettingsAreAsTheyWereWhereALineIsNotKnown) {
   const std::string set = "M204 S500\n" + kTwo + "M104 S0\nM84\n";
   EXPECT_EQ(Broken(kHead + set, kHead + With(set, "M104 S0\n", "M204 S9\nM104 S0\n")),
