@@ -179,6 +179,7 @@ void Verifier::CheckChunk() {
   append(chunk_is_.progress, progress_is_);
   // What follows the last path is a script.
   if (!more_) {
+    CheckLeaving(chunk_was_, chunk_is_, findings_);
     ObserveScript(chunk_was_, static_cast<uint32_t>(chunk_was_.links.size()) - 1, seen_was_);
   }
 }

@@ -41,6 +41,7 @@ void ObserveScript(const TraceChunk& was, uint32_t link, Observations& seen);
 // The same for what follows the last layer of both files.
 void ObserveLastRetraction(const LayerPair& layer, LayerFindings& findings);
 void ObserveLastSpeeds(const LayerPair& layer, LayerFindings& findings);
+void CheckLeaving(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks);
 
 // Chunk by chunk: what belongs to sections.
 void CheckStandstill(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks);

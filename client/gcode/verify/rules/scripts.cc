@@ -1,10 +1,47 @@
 // No move between paths comes from the start or the end script, nor from those at tool changes and
-// changes of layers.
+// changes of layers; and the head leaves the print as it did.
+
+#include <algorithm>
 
 #include "absl/strings/str_format.h"
+#include "absl/types/span.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
+namespace {
+
+bool ChangesHeight(const TraceMove& move) { return move.z_to_mm != move.z_from_mm; }
+
+// What follows the last path, from where the head first leaves its height: what stands before it
+// belongs to the path, and may be that of another one.
+absl::Span<const TraceMove> Leaving(const TraceChunk& chunk) {
+  const TraceLink& link = chunk.links.back();
+  const absl::Span<const TraceMove> moves =
+      absl::MakeConstSpan(chunk.moves).subspan(link.first_move, link.end_move - link.first_move);
+  const auto first = std::find_if(moves.begin(), moves.end(), ChangesHeight);
+  return moves.subspan(static_cast<size_t>(first - moves.begin()));
+}
+
+// Where a way begins depends on the path that is the last one.
+bool DoTheSame(const TraceMove& was, const TraceMove& is) {
+  if (was.kind != is.kind || was.filament != is.filament || was.z_to_mm != is.z_to_mm) return false;
+  if (!was.sideways()) return true;
+  const bool same_begin = was.from.x == is.from.x && was.from.y == is.from.y;
+  return !same_begin || was.identity == is.identity;
+}
+
+}  // namespace
+
+void CheckLeaving(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks) {
+  const absl::Span<const TraceMove> moves = Leaving(was);
+  const absl::Span<const TraceMove> others = Leaving(is);
+  const auto [a, b] =
+      std::mismatch(moves.begin(), moves.end(), others.begin(), others.end(), DoTheSame);
+  if (a == moves.end() && b == others.end()) return;
+  breaks.push_back({VerifyRule::kScripts, a == moves.end() ? 0 : a->line,
+                    b == others.end() ? 0 : b->line, -1,
+                    "leaves the print otherwise than the original"});
+}
 
 void CompareScripts(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   for (const auto& [signature, seen] : is.signatures) {

@@ -48,5 +48,25 @@ TEST(VerifyScripts, MoveToWhereTheHeadSeemsToBe) {
   }
 }
 
+TEST(VerifyScripts, LeaveThePrintAsTheyDid) {
+  const std::string end =
+      "G1 E-1 F2100\nM107\nG1 E-2 F2400\nG1 Z3 F600\nG1 X5 Y187 F9000\nG1 Z11 F600\n"
+      "G1 Z15 F600\nM104 S0\nM84\n";
+  const std::string a = kHead + kTwo + end;
+  EXPECT_EQ(Broken(a, kHead + kOneTurned + end), "");
+  const std::string last_turned =
+      Line("Internal infill", "X0 Y0", "X9 Y0") + Line("Internal infill", "X9 Y5", "X0 Y5");
+  EXPECT_EQ(Broken(a, kHead + last_turned + end), "");
+  const auto with = [&](const std::string& from, const std::string& to) {
+    return Broken(a, kHead + last_turned + With(end, from, to));
+  };
+  EXPECT_THAT(with("G1 Z11 F600\n", ""), HasSubstr("scripts"));
+  EXPECT_THAT(with("Z11", "Z12"), HasSubstr("scripts"));
+  EXPECT_THAT(with("G1 X5 Y187 F9000\nG1 Z11 F600\n", "G1 Z11 F600\nG1 X5 Y187 F9000\n"),
+              HasSubstr("scripts"));
+  EXPECT_THAT(with("G1 E-2 F2400\nG1 Z3 F600\n", "G1 Z3 F600\nG1 E-2 F2400\n"),
+              HasSubstr("scripts"));
+}
+
 }  // namespace
 }  // namespace traverse::gcode
