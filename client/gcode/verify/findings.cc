@@ -38,6 +38,7 @@ void Observations::Append(const Observations& other) {
   AppendSeen(other.rises, rises);
   slopes.insert(other.slopes.begin(), other.slopes.end());
   stated.insert(stated.end(), other.stated.begin(), other.stated.end());
+  if (other.first_way.line != 0) first_way = other.first_way;
   lowest.insert(lowest.end(), other.lowest.begin(), other.lowest.end());
   deepest.insert(deepest.end(), other.deepest.begin(), other.deepest.end());
   descents.insert(descents.end(), other.descents.begin(), other.descents.end());

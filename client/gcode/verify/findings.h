@@ -165,6 +165,13 @@ struct FarPoint {
   int64_t layer = -1;
 };
 
+// How high a way leads, above the bed.
+struct HighestPoint {
+  double z_mm = 0;
+  uint32_t line = 0;  // 0: there is no such way
+  int64_t layer = -1;
+};
+
 // What one file shows in some of its layers.
 struct Observations {
   std::array<absl::flat_hash_map<uint64_t, Seen>, static_cast<size_t>(MoveKind::kCount) + 1> feeds;
@@ -177,6 +184,7 @@ struct Observations {
   absl::flat_hash_set<int64_t> slopes;       // um of rise in 10 mm, of moves that rise on their way
   std::vector<StatedHeight> stated;          // what the other file's moves state
   absl::flat_hash_map<int64_t, Seen> rises;  // the same of moves straight up
+  HighestPoint first_way;                    // of the way from the start script
   std::vector<LowestWay> lowest;             // ways that lead lower than what they connect
   std::vector<LowestWay> deepest;            // moves straight down that do so
   std::vector<Descent> descents;             // the longest of each way

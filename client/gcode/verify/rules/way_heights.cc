@@ -1,6 +1,7 @@
 // How high ways may lead, whether or not their kind is lifted: none lies lower than the higher of
 // the two paths that it connects, unless such ways of the original do; none sinks over a longer
-// stretch; and a move straight up leads to a height above the layer that the original knows.
+// stretch; and a move straight up, or up in any way beside a line that is not known, leads to a
+// height above the layer that the original knows.
 
 #include <algorithm>
 #include <array>
@@ -24,10 +25,24 @@ WayRise RiseOf(double from, double to) {
 
 int64_t Um(double mm) { return std::llround(mm * 1000); }
 
+// The way from the start script tells nothing of others: it is only no higher than it was.
+void ObserveFirstWay(const LayerPair& layer, const TraceChunk& chunk, const TraceLink& traced,
+                     HighestPoint& highest) {
+  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (!move.in_print) continue;
+    if (highest.line != 0 && move.z_to_mm <= highest.z_mm) continue;
+    highest = {move.z_to_mm, move.line, layer.index()};
+  }
+}
+
 void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool only_new,
              Observations& seen) {
   const TraceLink& traced = chunk.links[link];
-  if (traced.first_move == traced.end_move || !chunk.moves[traced.first_move].in_print) return;
+  if (traced.first_move == traced.end_move) return;
+  if (!chunk.moves[traced.first_move].in_print) {
+    return ObserveFirstWay(layer, chunk, traced, seen.first_way);
+  }
   const double to = chunk.paths[link].z_mm;
   const double from = chunk.moves[traced.first_move].z_from_mm;
   LowestWay lowest{0, 0, layer.index(), RiseOf(from, to)};
@@ -43,7 +58,9 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
     const auto note_rise = [&](double base) {
       seen.rises.try_emplace(Um(move.z_to_mm - base), Seen{move.line, layer.index(), 0});
     };
-    if (move.kind == MoveKind::kUp && move.z_to_mm > move.z_from_mm) {
+    // A slope among known lines is compared with the heights of all ways: lifts.
+    const bool rises = move.kind == MoveKind::kUp || (traced.scripted && move.sideways());
+    if (rises && move.z_to_mm > move.z_from_mm) {
       note_rise(to);
       if (!only_new) note_rise(from);
       if (move.radius_mm > 0) {
@@ -121,6 +138,14 @@ void CompareDescents(const Observations& was, const Observations& is,
   }
 }
 
+void CompareFirstWay(const HighestPoint& was, const HighestPoint& is,
+                     std::vector<Finding>& breaks) {
+  if (was.line == 0 || is.line == 0 || is.z_mm <= was.z_mm + kSlackMm) return;
+  breaks.push_back({VerifyRule::kLifts, was.line, is.line, is.layer,
+                    absl::StrFormat("the way from the start script rises to %.3f mm, not %.3f mm",
+                                    is.z_mm, was.z_mm)});
+}
+
 }  // namespace
 
 void ObserveHeights(const LayerPair& layer, LayerFindings& findings) {
@@ -134,6 +159,7 @@ void ObserveHeights(const LayerPair& layer, LayerFindings& findings) {
 
 void CompareHeights(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   CompareMoves(was, is, breaks);
+  CompareFirstWay(was.first_way, is.first_way, breaks);
   CompareDescents(was, is, breaks);
   std::array<LowestWay, static_cast<size_t>(WayRise::kCount)> known;
   for (const LowestWay& way : was.lowest) {

@@ -153,5 +153,24 @@ TEST(VerifyLifts, NoWaySinksOnItsWay) {
   EXPECT_EQ(Broken(sinks, With(sinks, "G1 X10 Y20 F9000\nG1 Z.2\n", "G1 X10 Y20 Z.2 F9000\n")), "");
 }
 
+// What an unknown line does is no reason to rise to anywhere beside it.
+TEST(VerifyLifts, HeightsBesideUnknownLinesAreThoseOfTheOriginal) {
+  const std::string change = "G1 X15 Y15 Z.6 F9000\nTOOL_CHANGE\nG1 X30 Y15 Z.2 F9000\n";
+  const std::string a = kHead + kSquare + change +
+                        ";TYPE:Internal infill\nG1 F1800\nG1 X31 Y15 E.3\n" +
+                        Line("Internal infill", "X30 Y20", "X31 Y20");
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_NE(Broken(a, With(a, "Y15 Z.6", "Y15 Z9 F9000\nG1 X15 Y15 Z.6")).find("lifts"),
+            std::string::npos);
+}
+
+TEST(VerifyLifts, TheWayFromTheStartScriptRisesNoHigher) {
+  const std::string purge = "M83\nG1 X20 Y0 Z.2 F9000\nG1 X60 E9 F1000\nG1 X62 F9000\n";
+  const std::string way = ";LAYER_CHANGE\nG1 X10 Y10 Z.6 F9000\nG1 Z.2\n";
+  const std::string a = purge + way + kTwo;
+  EXPECT_EQ(Broken(a, purge + way + kOneTurned), "");
+  EXPECT_EQ(Broken(a, With(a, "Z.6", "Z30")), "lifts");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
