@@ -1,0 +1,115 @@
+#include "engine/proof/tsp/tsp_relaxation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "tests/engine/proof/tsp/small_tsp.h"
+
+namespace traverse {
+namespace {
+
+using Status = LinearProgram::Status;
+
+constexpr double kRounding = 1e-6;
+constexpr double kForbidden = 1e5;
+
+// Solves with all moves, and with cuts until there are none left to add. What it came to with each.
+std::vector<double> SolveWithCuts(TspRelaxation& relaxation, Budget& budget) {
+  std::vector<double> values;
+  do {
+    EXPECT_EQ(relaxation.lp().SolveDual(budget), Status::kOptimal);
+    values.push_back(relaxation.lp().value());
+  } while (relaxation.Separate(1e-4, 50, budget) > 0);
+  return values;
+}
+
+TEST(TspRelaxation, IsNeverAboveTheBestPathAndRisesWithCuts) {
+  int cut = 0;
+  int paths = 0;
+  for (uint64_t seed = 1; seed <= 80; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const SmallTsp small = RandomTsp(seed, static_cast<int>(3 + seed % 4));
+    const double best = BestTspCost(small);
+    Budget budget;
+    TspRelaxation relaxation(small.tsp);
+    relaxation.SetStart(small.start, kForbidden);
+    ASSERT_TRUE(relaxation.Complete(1'000'000));
+
+    const std::vector<double> values = SolveWithCuts(relaxation, budget);
+
+    EXPECT_TRUE(std::is_sorted(values.begin(), values.end(),
+                               [](double a, double b) { return a < b - kRounding; }));
+    EXPECT_LE(values.back(), best + kRounding * (1 + best));
+    EXPECT_LE(relaxation.lp().SafeBound(), best + kRounding * (1 + best));
+    cut += relaxation.total_cuts() > 0 ? 1 : 0;
+    const std::vector<int> path = relaxation.IntegralPath();
+    if (path.empty()) continue;
+    ++paths;
+    EXPECT_NEAR(TspCostOf(small, path), values.back(), kRounding * (1 + best));
+  }
+  EXPECT_GT(cut, 20);
+  EXPECT_GT(paths, 40);
+}
+
+// Moves that come in by their price do what all moves do.
+TEST(TspRelaxation, PricingBringsInWhatIsMissing) {
+  int priced = 0;
+  for (uint64_t seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const SmallTsp small = RandomTsp(seed, 6);
+    Budget budget;
+    TspRelaxation whole(small.tsp);
+    whole.SetStart(small.start, kForbidden);
+    ASSERT_TRUE(whole.Complete(1'000'000));
+    ASSERT_EQ(whole.lp().SolveDual(budget), Status::kOptimal);
+    double missing = 0;
+    EXPECT_EQ(whole.Price(1000, missing, budget), 0);
+    EXPECT_EQ(missing, 0);
+    const std::vector<int> firsts = FirstPorts(small.tsp);
+    const auto exit = [&](int port) { return small.tsp.mate[static_cast<size_t>(port)]; };
+    TspRelaxation part(small.tsp);
+    part.SetStart(small.start, kForbidden);
+    // Moves name the lower node first.
+    std::vector<TspMove> first = {{firsts.front(), part.nodes().start()},
+                                  {exit(firsts.back()), part.nodes().finish()}};
+    for (size_t i = 0; i + 1 < firsts.size(); ++i) {
+      first.push_back(
+          {std::min(exit(firsts[i]), firsts[i + 1]), std::max(exit(firsts[i]), firsts[i + 1])});
+    }
+    part.AddMoves(first);
+    ASSERT_EQ(part.lp().SolveDual(budget), Status::kOptimal);
+    while (part.Price(5, missing, budget) > 0) {
+      ++priced;
+      EXPECT_LT(missing, 0);
+      ASSERT_EQ(part.lp().SolvePrimal(budget), Status::kOptimal);
+    }
+    EXPECT_NEAR(part.lp().value(), whole.lp().value(), kRounding * (1 + whole.lp().value()));
+  }
+  EXPECT_GT(priced, 10);
+}
+
+TEST(TspRelaxation, WhatIsLeftOutIsOfNoPathWithinTheGap) {
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const SmallTsp small = RandomTsp(seed, 6);
+    const double best = BestTspCost(small);
+    Budget budget;
+    TspRelaxation relaxation(small.tsp);
+    relaxation.SetStart(small.start, kForbidden);
+    ASSERT_TRUE(relaxation.Complete(1'000'000));
+    const double bound = SolveWithCuts(relaxation, budget).back();
+
+    relaxation.LeaveOutDear(best - bound + kRounding * (1 + best), budget);
+
+    const double left = SolveWithCuts(relaxation, budget).back();
+    EXPECT_LE(left, best + kRounding * (1 + best));
+    relaxation.AllowAll();
+    EXPECT_LE(SolveWithCuts(relaxation, budget).back(), left + kRounding * (1 + best));
+  }
+}
+
+}  // namespace
+}  // namespace traverse
