@@ -1,12 +1,14 @@
+// Flags as people write them: client/cli/flags/flags.
+
 #include "client/cli/flags/flags.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
-
-#include "client/cli/flags/nearest.h"
 
 namespace traverse::cli {
 namespace {
@@ -131,18 +133,6 @@ TEST(Flags, PointsAreTwoCoordinates) {
   for (const char* value : {"", "1", "1,", ",1", "1,2,3", "1;2", "nan,1", "1,1e7"}) {
     EXPECT_FALSE(point(value).ok()) << value;
   }
-}
-
-TEST(Nearest, KnowsSlipsAndSwaps) {
-  const std::vector<std::string> words = {"optimize", "compare", "inspect", "convert", "none"};
-
-  EXPECT_EQ(Nearest("optimise", words), "optimize");
-  EXPECT_EQ(Nearest("cmopare", words), "compare");
-  EXPECT_EQ(Nearest("opt", words), "optimize");
-  EXPECT_EQ(Nearest("nonee", words), "none");
-  EXPECT_EQ(Nearest("xyz", words), "");
-  EXPECT_EQ(Nearest("", words), "");
-  EXPECT_EQ(Nearest(std::string(10'000, 'x'), words), "");
 }
 
 }  // namespace

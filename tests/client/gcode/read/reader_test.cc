@@ -1,28 +1,28 @@
+// Whole files of sliced G-code: client/gcode/read/reader.
+
 #include "client/gcode/read/reader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/model/feature.h"
 #include "client/gcode/model/outline.h"
+#include "tests/client/gcode/read/block_text.h"
 #include "tests/client/gcode/support/read_text.h"
 #include "tests/client/gcode/support/samples.h"
 
 namespace traverse::gcode {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::Read;
 
 std::string Fault(const std::string& text) {
   const absl::StatusOr<std::shared_ptr<GcodeFile>> file = ReadGcode(text, "part.gcode");
   return file.ok() ? "" : std::string(file.status().message());
-}
-
-std::string TextOf(const GcodeFile& file, const Block& block) {
-  return file.text.substr(block.begin, block.end - block.begin);
 }
 
 TEST(ReadGcode, FindsThePathsOfPrusaSlicer) {
@@ -68,54 +68,6 @@ TEST(ReadGcode, StateIsThatOfTheFirstSegment) {
   EXPECT_EQ(file->blocks[1].feed_in, 4800 * kDecimalOne);
 }
 
-TEST(ReadGcode, FindsThePathsOfCuraEngineWithTheirTails) {
-  const auto file = Read(testing::kCuraSample);
-
-  ASSERT_EQ(file->blocks.size(), 4u);
-  ASSERT_EQ(file->layers.size(), 2u);
-  EXPECT_EQ(file->blocks[0].flags & (kBlockTail | kBlockCoast), kBlockTail | kBlockCoast);
-  EXPECT_EQ(file->blocks[1].flags & (kBlockTail | kBlockCoast), kBlockTail);
-  EXPECT_EQ(TextOf(*file, file->blocks[1]), "G1 F1200 X19 Y11 E1.9\nG1 X19.04 Y11\n");
-  EXPECT_EQ(file->blocks[2].flags, 0);
-  EXPECT_EQ(file->layers[1].first_block, 3u);
-  // ;TYPE stands before the prime, and is the next path's all the same.
-  EXPECT_EQ(FeatureOf(*file, file->blocks[3], false), Feature::kSparseInfill);
-}
-
-TEST(ReadGcode, ALayerIsARunAtOneHeight) {
-  const auto file = Read("M83\nG1 X1 E1\nG0 X5\nG1 X6 E1\nG1 Z1\nG0 X7\nG1 X8 E1\n");
-
-  ASSERT_EQ(file->layers.size(), 2u);
-  EXPECT_EQ(file->layers[0].end_block, 2u);
-  EXPECT_EQ(file->layers[1].z, kDecimalOne);
-}
-
-TEST(ReadGcode, LiftsDoNotEndALayer) {
-  const auto file = Read("M83\nG1 X1 E1\nG1 E-1\nG1 Z.5\nG0 X5\nG1 Z0\nG1 E1\nG1 X6 E1\n");
-
-  EXPECT_EQ(file->layers.size(), 1u);
-  EXPECT_EQ(file->blocks[1].link, kLinkRetracts | kLinkLifts);
-}
-
-TEST(ReadGcode, WhatItDoesNotKnowFixesThePathsOnEitherSide) {
-  for (const char* line : {"M600", "G28", "G4 P5", "T1", "M82", "G20", "G91\nG1 Z1\nG90",
-                           "TIMELAPSE_TAKE_FRAME", "N5 G1 X4*7"}) {
-    const auto file = Read(std::string("M83\nG1 X1 E1\nG0 X5\n") + line + "\nG1 X6 E9\n");
-    ASSERT_EQ(file->blocks.size(), 2u) << line;
-    EXPECT_TRUE(file->blocks[1].link & kLinkFixed) << line;
-  }
-}
-
-TEST(ReadGcode, TravelBehindWhatItDoesNotKnowSetsThePathBehindItFree) {
-  for (const char* line : {"M600", "G4 P5", "T1", "TIMELAPSE_TAKE_FRAME"}) {
-    const auto file = Read(std::string("M83\nG1 X1 E1\n") + line + "\nG0 X5\nG1 X6 E9\n");
-    ASSERT_EQ(file->blocks.size(), 2u) << line;
-    EXPECT_EQ(file->blocks[1].link & (kLinkFixed | kLinkFixedFrom | kLinkSplits),
-              kLinkFixedFrom | kLinkSplits)
-        << line;
-  }
-}
-
 TEST(ReadGcode, WhatCountsFromTheMoveBeforeNeedNotSaySo) {
   const auto relative = Read("G1 X1 E.3\nG1 X2 E.3\nG1 X3 E.2\nG0 X9\nG1 X10 E.3\n");
   const auto absolute = Read("G1 X1 E.3\nG1 X2 E.6\nG1 X3 E.8\nG0 X9\nG1 X10 E1.1\n");
@@ -123,74 +75,6 @@ TEST(ReadGcode, WhatCountsFromTheMoveBeforeNeedNotSaySo) {
   EXPECT_TRUE(relative->modes[0].relative_e);
   EXPECT_EQ(relative->blocks[0].segments, 3);
   EXPECT_FALSE(absolute->modes[0].relative_e);
-}
-
-TEST(ReadGcode, KnownLinesSplitWithoutFixing) {
-  for (const char* line : {"M104 S200", "M117 hello", "; printing object a id:0 copy 0", "M486 S1",
-                           "EXCLUDE_OBJECT_START NAME=a", ";MESH:a.stl"}) {
-    const auto file = Read(std::string("M83\nG1 X1 E1\nG0 X5\n") + line + "\nG1 X6 E1\n");
-    EXPECT_EQ(file->blocks[1].link & (kLinkFixed | kLinkSplits), kLinkSplits) << line;
-  }
-}
-
-TEST(ReadGcode, PathsPrintedWhileRetractedOrRisingArePinned) {
-  const auto file = Read("M83\nG1 E-5\nG1 X1 E1\nG0 X2\nG1 E5\nG1 X3 E1\nG0 X4\nG1 X5 Z1 E1\n");
-
-  EXPECT_TRUE(file->blocks[0].flags & kBlockPinned);
-  EXPECT_FALSE(file->blocks[1].flags & kBlockPinned);
-  EXPECT_TRUE(file->blocks[2].flags & kBlockPinned);
-}
-
-TEST(ReadGcode, SegmentsThatRoundToNothingBelongToTheirPath) {
-  const auto file = Read(
-      "M82\nG1 X1 E1\nG1 X1.04 E1\nG1 X3 E1.00001\nG0 X9\nG1 X9.04 E1.00001\n"
-      "G1 X11 E1.1\n");
-
-  ASSERT_EQ(file->blocks.size(), 2u);
-  EXPECT_EQ(file->blocks[0].segments, 3);
-  EXPECT_TRUE(file->blocks[0].flags & kBlockZero);
-  EXPECT_EQ(file->blocks[1].segments, 2);
-}
-
-TEST(ReadGcode, TravelWithAnEThatPushesNothingBelongsToNoPathHoweverShort) {
-  const auto file = Read(
-      "M83\nG1 F1200 X5 E1\nG1 X5.03 E0 F9000\nG1 X9 E0\nG1 X20 E1 F1200\nG1 X20.03 E0\nG1 X30 "
-      "E1\n");
-
-  ASSERT_EQ(file->blocks.size(), 2u);
-  EXPECT_FALSE(file->blocks[0].flags & kBlockZero);
-  EXPECT_EQ(file->blocks[0].segments, 1);
-  EXPECT_EQ(file->blocks[1].segments, 3);
-}
-
-TEST(ReadGcode, AMoveThatRoundsToNothingEndsNoPath) {
-  const std::string head = "M83\nG1 X1 Y0 F900\nG1 X5 E1\n";
-  const std::string tail = "G1 X9 E1\nG1 X9 Y9 F9000\nG1 X5 E1\n";
-
-  const auto speck = Read(head + "G1 X5 Y0 E.00003\n" + tail);
-  ASSERT_EQ(speck->blocks.size(), 2u);
-  EXPECT_TRUE(speck->blocks[0].flags & kBlockCommand);
-  EXPECT_FALSE(speck->blocks[1].link & kLinkFixed);
-  // What is pushed without words of a place, or is more than rounding leaves, is a blob.
-  EXPECT_EQ(Read(head + "G1 E.00003\n" + tail)->blocks.size(), 3u);
-  EXPECT_EQ(Read(head + "G1 X5 Y0 E.1\n" + tail)->blocks.size(), 3u);
-}
-
-TEST(ReadGcode, ATailThatLeadsToTheNextPathIsTravel) {
-  const auto file = Read("M83\nG1 F1200 X5 E1\nG1 X5.5 Y.5\nG1 X0 E1\n");
-
-  ASSERT_EQ(file->blocks.size(), 2u);
-  EXPECT_FALSE(file->blocks[0].flags & kBlockTail);
-  EXPECT_FALSE(file->blocks[1].link & kLinkFixed);
-}
-
-TEST(ReadGcode, ATailThatGoesOnStaysWithItsPath) {
-  // The next path begins where the infill's wipe ended.
-  const auto file = Read("M83\nG1 F1200 X5 E1\nG1 X5.5\nG1 X5.5 Y9 E1\nG0 X9\nG1 X20 E1\n");
-
-  ASSERT_EQ(file->blocks.size(), 3u);
-  EXPECT_TRUE(file->blocks[0].flags & kBlockTail);
-  EXPECT_FALSE(file->blocks[1].link & kLinkFixed);
 }
 
 TEST(ReadGcode, LineEndsDoNotMatter) {

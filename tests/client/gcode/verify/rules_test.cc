@@ -1,8 +1,6 @@
-// What the rules of client/gcode/verify/rules have in common, and the rules that need a test or
-// two. Of each rule a file that breaks it, and one beside it that does not; the others are in
-// rules/.
+// What all rules have in common, and lines that machines may leave out:
+// client/gcode/verify/verifier.
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -14,42 +12,10 @@ namespace traverse::gcode {
 namespace {
 
 using namespace testing;  // NOLINT: the small prints
-using ::testing::HasSubstr;
-
-TEST(VerifyRules, ThePolicyIsThatOfTheFlagsOrOfTheLineAtTheHead) {
-  const std::string a = kHead + kSquare;
-  const std::string b = kHead + kSquareElsewhere;
-  const std::string says = "; optimised by Traverse 1.0, policy balanced: travel\n";
-
-  EXPECT_EQ(FirstMessage(a, says + b), "");
-  EXPECT_THAT(FirstMessage(a, b), HasSubstr("seam"));
-  EXPECT_EQ(Broken(a, says + b, Policy::kSafe), "seam");
-  EXPECT_EQ(Broken(a, b, Policy::kFree), "");
-  // Behind a command it is not at the head.
-  EXPECT_THAT(FirstMessage(a, With(b, "M83\n", "M83\n" + says)), HasSubstr("seam"));
-}
-
-TEST(VerifyRules, WhatIsAllowedIsReadFromTheLineToo) {
-  const auto head = PermissionsInHead(
-      ";FLAVOR:Marlin\n; optimised by Traverse 1.0, policy safe, allow wall_order+fan_order: x\n");
-  ASSERT_TRUE(head.has_value());
-  EXPECT_EQ(DescribePermissions(*head), "safe, wall_order, fan_order");
-  EXPECT_FALSE(PermissionsInHead("; optimised by Traverse 1.0: x\n").has_value());
-  EXPECT_FALSE(ParsePermissions("daring", "").ok());
-  EXPECT_FALSE(ParsePermissions("safe", "anything").ok());
-}
 
 TEST(VerifyRules, NamesRuleFileAndBothLines) {
   EXPECT_EQ(FirstMessage(kHead + kSquare, kHead + kSquareTurned),
             "b:9: this outer wall is printed the other way round (direction; a:9)");
-}
-
-TEST(VerifyRules, ProgressKeepsItsSequence) {
-  const std::string a = kHead + "M73 P1\n" + kSquare + "M73 P2\n" + kZigzag;
-  EXPECT_EQ(
-      Broken(a, With(With(With(a, "M73 P1", "M73 P3"), "M73 P2", "M73 P1"), "M73 P3", "M73 P2")),
-      "progress");
-  EXPECT_EQ(Broken(a, kHead + "M73 P1\nM73 P2\n" + kSquare + kZigzag), "");
 }
 
 // Whichever rule: what a slicer does itself is never refused.
@@ -70,12 +36,21 @@ TEST(VerifyRules, TellTheLayerOfABreak) {
   EXPECT_EQ(report.breaks[0].rule, VerifyRule::kDirection);
 }
 
-TEST(VerifyRules, BoundsNoWayLeadsFarAway) {
-  const std::string far = With(kTwo, "G1 X0 Y5 F9000\n", "G1 X-90 Y5 F9000\nG1 X0 Y5 F9000\n");
-  EXPECT_EQ(Broken(kHead + kTwo, kHead + far), "bounds");
-  EXPECT_EQ(Broken(kHead + far, kHead + far), "");
-  const std::string near = With(kTwo, "G1 X0 Y5 F9000\n", "G1 X-1 Y5 F9000\nG1 X0 Y5 F9000\n");
-  EXPECT_EQ(Broken(kHead + near, kHead + near), "");
+TEST(VerifyRules, LinesBehindASlashMayBeDoneOrNot) {
+  const std::string head = "M82\n;LAYER_CHANGE\nG1 Z.2 F9000\nG92 E1\n/G92 E0\n";
+  const std::string a = head + "G1 X0 Y0\nG1 X5 Y0 E2 F1200\nG1 X0 Y5 F9000\nG1 X5 Y5 E4 F1200\n";
+  const std::string b = head + "G1 X0 Y5\nG1 X5 Y5 E3 F1200\nG1 X0 Y0 F9000\nG1 X5 Y0 E4 F1200\n";
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, b), "same_print");
+  EXPECT_EQ(Broken(With(a, "/G92 E0", "/M7"), With(b, "/G92 E0", "/M7")), "");
+}
+
+TEST(VerifyRules, TheMarkOfUtf8StaysInFrontOfTheFile) {
+  const std::string a = "; generated\n" + kHead + kTwo;
+  EXPECT_EQ(Broken(a, "\xEF\xBB\xBF" + a), "same_print");
+  const std::string marked = "\xEF\xBB\xBF" + a;
+  EXPECT_EQ(Broken(marked, "; optimised by Traverse 1.0: x\n" + marked), "same_print");
+  EXPECT_EQ(Broken(marked, With(marked, "ted\n", "ted\n; optimised by Traverse 1.0: x\n")), "");
 }
 
 }  // namespace

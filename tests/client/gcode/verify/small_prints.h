@@ -78,9 +78,10 @@ inline const std::string kZigzag =
 inline const std::string kAcross = kSquare + Line("Internal infill", "X15 Y15", "X16 Y15") +
                                    Line("Internal infill", "X30 Y15", "X31 Y15");
 
-// Two lines of infill far from each other, and with the first one the other way round.
-inline const std::string kTwo =
-    Line("Internal infill", "X0 Y0", "X9 Y0") + Line("Internal infill", "X0 Y5", "X9 Y5");
+// Two lines of infill far from each other, and both with the first one the other way round.
+inline const std::string kOne = Line("Internal infill", "X0 Y0", "X9 Y0");
+inline const std::string kOther = Line("Internal infill", "X0 Y5", "X9 Y5");
+inline const std::string kTwo = kOne + kOther;
 inline const std::string kOneTurned =
     Line("Internal infill", "X9 Y0", "X0 Y0") + Line("Internal infill", "X0 Y5", "X9 Y5");
 

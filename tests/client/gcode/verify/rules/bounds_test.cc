@@ -51,5 +51,23 @@ TEST(VerifyBounds, NoWayIsLedAlongAWall) {
   EXPECT_EQ(Broken(a, along, Policy::kFree), "open_ways bounds");
 }
 
+TEST(VerifyBounds, NoWayLeadsFarAway) {
+  const std::string far = With(kTwo, "G1 X0 Y5 F9000\n", "G1 X-90 Y5 F9000\nG1 X0 Y5 F9000\n");
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + far), "bounds");
+  EXPECT_EQ(Broken(kHead + far, kHead + far), "");
+  const std::string near = With(kTwo, "G1 X0 Y5 F9000\n", "G1 X-1 Y5 F9000\nG1 X0 Y5 F9000\n");
+  EXPECT_EQ(Broken(kHead + near, kHead + near), "");
+}
+
+TEST(VerifyBounds, AWayWindsNoMoreThanWaysDo) {
+  const std::string frame = Line("Internal infill", "X60 Y60", "X50 Y60");
+  const std::string astray = With(kTwo, "G1 X0 Y5 F9000\n", "G1 X40 Y50 F9000\nG1 X0 Y5 F9000\n");
+  EXPECT_EQ(Broken(kHead + kTwo + frame, kHead + astray + frame), "bounds");
+  const std::string back = With(kTwo, "G1 X0 Y5 F9000\n", "G1 X0 Y5 F9000\nG1 X9 Y0\nG1 X0 Y5\n");
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + back), "bounds");
+  const std::string in_two = With(kTwo, "G1 X0 Y5 F9000\n", "G1 X5 Y2 F9000\nG1 X0 Y5 F9000\n");
+  EXPECT_EQ(Broken(kHead + kTwo + frame, kHead + in_two + frame), "");
+}
+
 }  // namespace
 }  // namespace traverse::gcode

@@ -172,5 +172,30 @@ TEST(VerifyLifts, TheWayFromTheStartScriptRisesNoHigher) {
   EXPECT_EQ(Broken(a, With(a, "Z.6", "Z30")), "lifts");
 }
 
+TEST(VerifyLifts, TheHeadDoesNotGoDownIntoWhatIsPrinted) {
+  const std::string dips =
+      With(kTwo, "G1 X0 Y5 F9000\n", "G1 X0 Y5 F9000\nG1 Z.05\nG1 Z.2 F9000\n");
+  EXPECT_THAT(Broken(kHead + kTwo, kHead + dips), HasSubstr("lifts"));
+  EXPECT_EQ(Broken(kHead + dips, kHead + dips), "");
+}
+
+TEST(VerifyLifts, AreDoneOnce) {
+  const std::string twice =
+      With(kLifted, "G1 Z.6 F9000\nG1 X10 Y30", "G1 Z.6 F9000\nG1 Z.2\nG1 Z.6\nG1 X10 Y30");
+  EXPECT_EQ(Broken(kHead + kLifted, kHead + twice), "lifts");
+  EXPECT_EQ(Broken(kHead + twice, kHead + twice), "");
+}
+
+TEST(VerifyLifts, OfASpiralGoRoundTheSameCircle) {
+  const auto spiral = [](const char* x, const char* i) {
+    return absl::StrCat("G1 E-1 F2100\nG17\nG3 Z.6 I", i, " J0 F9000\nG1 X", x,
+                        " Y9 F9000\nG1 Z.2\nG1 E1 F2100\nG1 F1800\nG1 X", x, " Y20 E.3\n");
+  };
+  const std::string a = kHead + spiral("1", "1.2") + spiral("5", "1.2") + spiral("9", "1.2");
+  const std::string moved = kHead + spiral("1", "1.2") + spiral("9", "1.2") + spiral("5", "1.2");
+  EXPECT_EQ(Broken(a, moved), "");
+  EXPECT_EQ(Broken(a, kHead + spiral("1", "1.2") + spiral("5", "9") + spiral("9", "1.2")), "lifts");
+}
+
 }  // namespace
 }  // namespace traverse::gcode

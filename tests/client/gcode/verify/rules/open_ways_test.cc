@@ -84,5 +84,21 @@ TEST(VerifyOpenWays, LeadToLayersAsTheyDid) {
             "");
 }
 
+TEST(VerifyOpenWays, AreNoLongerThanTheLongestWhateverTheyCross) {
+  const std::string far = Line("Internal infill", "X80 Y5", "X89 Y5");
+  const std::string near = kOne + "G1 X9 Y2 F9000\nG1 F1800\nG1 X0 Y2 E.3\n";
+  const std::string open = With(far, Way("X80 Y5"), "G1 X80 Y5 F9000\n");
+  EXPECT_EQ(Broken(kHead + near + far, kHead + near + open), "open_ways");
+  EXPECT_EQ(Broken(kHead + near + open, kHead + near + open), "");
+}
+
+TEST(VerifyOpenWays, LeadToALayerWhereSuchDo) {
+  const std::string next = ";LAYER_CHANGE\nG1 Z.4 F9000\n";
+  const std::string a = kHead + kOne + "G1 X9 Y3 F9000\nG1 F1800\nG1 X0 Y3 E.3\n" + next;
+  const std::string open = With(kOther, Way("X0 Y5"), "G1 X0 Y5 F9000\n");
+  EXPECT_EQ(Broken(a + kOther, a + open), "open_ways");
+  EXPECT_EQ(Broken(a + open, a + kOther), "");
+}
+
 }  // namespace
 }  // namespace traverse::gcode

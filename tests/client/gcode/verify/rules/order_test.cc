@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "absl/strings/str_cat.h"
 #include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/verify/small_prints.h"
 
@@ -91,6 +92,22 @@ TEST(VerifyOrder, NothingPassesATower) {
   EXPECT_EQ(Broken(kHead + kTwo + tower, kHead + tower + kTwo, Policy::kFree), "order");
   EXPECT_EQ(Broken(kHead + tower + more, kHead + more + tower, Policy::kFree), "order");
   EXPECT_EQ(Broken(kHead + kTwo + tower + more, kHead + kOneTurned + tower + more), "");
+}
+
+TEST(VerifyOrder, NothingPassesAChangeOfTheFanUnderSafeAndBalanced) {
+  const auto under = [](const char* fan, const std::string& path) {
+    return absl::StrCat(fan, path);
+  };
+  const std::string a = under("M106 S9\n", kOne) + under("M106 S99\n", kOther) + "M106 S99\n";
+  const std::string b = under("M106 S99\n", kOther) + under("M106 S9\n", kOne) + "M106 S99\n";
+  EXPECT_EQ(Broken(kHead + a, kHead + b), "order");
+  EXPECT_EQ(Broken(kHead + a, kHead + b, Policy::kBalanced), "order");
+  EXPECT_EQ(Broken(kHead + a, kHead + b, Policy::kFree), "");
+  VerifyPermissions allowed;
+  allowed.fan_order = true;
+  EXPECT_EQ(Broken(kHead + a, kHead + b, allowed), "");
+  const std::string same = "M106 S9\n" + kTwo;
+  EXPECT_EQ(Broken(kHead + same, kHead + "M106 S9\n" + kOther + kOne), "");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Retractions: client/gcode/verify/rules/retractions.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -10,6 +11,7 @@ namespace traverse::gcode {
 namespace {
 
 using namespace testing;  // NOLINT: the small prints
+using ::testing::HasSubstr;
 
 TEST(VerifyRetractions, AreNoDeeperAndPairsOfTheOriginal) {
   const std::string deeper =
@@ -78,6 +80,38 @@ TEST(VerifyRetractions, AreMeasuredInInchesAsInMillimetres) {
   EXPECT_EQ(Broken(a, a), "");
   // By 0.0025 mm.
   EXPECT_EQ(Broken(a, With(a, "G1 E.04", "G1 E.0399")), "retractions");
+}
+
+TEST(VerifyRetractions, AreDoneBeforeTheWayAndUndoneBehindIt) {
+  const std::string pushed_halfway =
+      "G1 E-1 F2100\nG1 X4.5 Y2.5 F9000\nG1 E.5 F2100\nG1 X0 Y5 F9000\nG1 E.5 F2100\n";
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, Way("X0 Y5"), pushed_halfway)), "retractions");
+  const std::string pulled_halfway = "G1 X4 Y2 F9000\nG1 E-1 F2100\nG1 X0 Y5 F9000\nG1 E1 F2100\n";
+  EXPECT_THAT(Broken(kHead + kTwo, kHead + With(kTwo, Way("X0 Y5"), pulled_halfway)),
+              HasSubstr("retractions"));
+  const std::string half_pulled =
+      "G1 E-.5 F2100\nG1 X4.5 Y2.5 F9000\nG1 E-.5 F2100\nG1 X0 Y5 F9000\nG1 E1 F2100\n";
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, Way("X0 Y5"), half_pulled)), "retractions");
+  EXPECT_EQ(Broken(kHead + With(kTwo, Way("X0 Y5"), half_pulled),
+                   kHead + With(kTwo, Way("X0 Y5"), half_pulled)),
+            "");
+}
+
+TEST(VerifyRetractions, AreForAWayAlone) {
+  const std::string idle = Way("X0 Y5") + "G1 E-1 F2100\nG1 E1 F2100\n";
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, Way("X0 Y5"), idle)), "retractions");
+}
+
+TEST(VerifyRetractions, FilamentIsPulledBackOnTheSameSideOfALabel) {
+  const std::string way = Way("X0 Y5");
+  const std::string inside =
+      "G1 E-1 F2100\n; stop printing object a\n" + With(way, "G1 E-1 F2100\n", "");
+  const std::string outside = "; stop printing object a\n" + way;
+  const std::string a = kHead + With(kTwo, way, inside);
+  const std::string b = kHead + With(kTwo, way, outside);
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, b), "retractions");
+  EXPECT_EQ(Broken(b, a), "retractions");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Wipes: client/gcode/verify/rules/wipes.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -11,6 +12,7 @@ namespace traverse::gcode {
 namespace {
 
 using namespace testing;  // NOLINT: the small prints
+using ::testing::HasSubstr;
 
 TEST(VerifyWipes, LieOnTheirPath) {
   const std::string head = kHead + "G1 E-1 F2100\n";
@@ -76,6 +78,23 @@ TEST(VerifyWipes, MarksAreNoMoreOutOfPlaceThanTheyWere) {
   EXPECT_EQ(Broken(odd, odd), "");
   EXPECT_EQ(Broken(odd, With(odd, "; WIPE_START\n", "")), "wipes");
   EXPECT_EQ(Broken(odd, With(odd, "; WIPE_END\n", "; WIPE_START\n")), "wipes");
+}
+
+TEST(VerifyWipes, KeepTheirMarks) {
+  const std::string a = kHead + Wiped("X0 Y0", "X9 Y0", "X5 Y0") + Wiped("X0 Y5", "X9 Y5", "X5 Y5");
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, With(a, ";WIPE_START\n", "")), "wipes");
+  EXPECT_THAT(Broken(a, With(a, ";WIPE_END\n", "")), HasSubstr("wipes"));
+  EXPECT_EQ(Broken(a, With(a, "G1 F1800\n", ";WIPE_START\n;WIPE_END\nG1 F1800\n")), "wipes");
+}
+
+TEST(VerifyWipes, PullAllAlong) {
+  const std::string one = "G1 X7 Y5 E-.25\nG1 X5 Y5 E-.25\n";
+  const std::string wiped = With(Wiped("X0 Y5", "X9 Y5", "X5 Y5"), "G1 X5 Y5 E-.5\n", one);
+  const std::string a = kHead + Wiped("X0 Y0", "X9 Y0", "X5 Y0") + wiped;
+  const auto other = [&](const char* lines) { return With(a, one, lines); };
+  EXPECT_EQ(Broken(a, other("G1 X5 Y5 E-.5\n")), "");
+  EXPECT_EQ(Broken(a, other("G1 X7 Y5 E-.5\nG1 X5 Y5\n")), "wipes");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <random>
 #include <string>
@@ -12,64 +13,19 @@
 #include "client/containers/bgcode/payload.h"
 #include "client/containers/bytes.h"
 #include "client/containers/container.h"
+#include "tests/client/containers/bgcode/made_file.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse::containers {
 namespace {
 
 using ::testing::AllOf;
-using ::testing::ElementsAre;
 using ::testing::Ge;
 using ::testing::HasSubstr;
 using ::testing::Le;
 using ::testing::Pair;
 using ::testing::StartsWith;
 using testing::StatusIs;
-
-constexpr const char* kName = "part.bgcode";
-
-const std::string kPrinter = "printer_model=MK4S\nestimated printing time (normal mode)=3m 41s\n";
-const std::string kPrint =
-    "filament used [mm]=252.22\nestimated printing time (normal mode)=3m 41s\n"
-    "estimated first layer printing time (normal mode)=20s\n";
-const std::string kSlicer = "arc_fitting=emit_center\nend_gcode=G4 ; wait\\nM107\n";
-const std::string kGcode =
-    "M73 P0 R3\n;LAYER_CHANGE\nG28\nG1 X1 Y2 E.5\nG1 X3 Y-2 F1200\nM117 a message\n";
-
-struct Shape {
-  BgcodeChecksum checksum = BgcodeChecksum::kCrc32;
-  BlockCompression metadata = BlockCompression::kDeflate;
-  BlockCompression gcode = BlockCompression::kHeatshrink12;
-  GcodeEncoding encoding = GcodeEncoding::kMeatPackComments;
-};
-
-void Append(BlockKind kind, BlockCompression compression, const std::vector<uint16_t>& parameters,
-            const std::string& content, BgcodeChecksum checksum, std::string& out) {
-  const auto data = CompressBytes(content, compression);
-  ASSERT_OK(data);
-  AppendBlock(kind, compression, parameters, static_cast<uint32_t>(content.size()), *data, checksum,
-              out);
-}
-
-std::string MakeFile(const Shape& shape, const std::string& gcode = kGcode) {
-  std::string out = BgcodeHeader(shape.checksum);
-  const auto none = BlockCompression::kNone;
-  Append(BlockKind::kFileMetadata, none, {0},
-         "Producer=PrusaSlicer 2.8.1\nProduced on=2024-10-21 at 06:38:01 UTC\n", shape.checksum,
-         out);
-  Append(BlockKind::kPrinterMetadata, none, {0}, kPrinter, shape.checksum, out);
-  Append(BlockKind::kThumbnail, none, {2, 16, 16}, "qoif-picture", shape.checksum, out);
-  Append(BlockKind::kPrintMetadata, shape.metadata, {0}, kPrint, shape.checksum, out);
-  Append(BlockKind::kSlicerMetadata, shape.metadata, {0}, kSlicer, shape.checksum, out);
-  EXPECT_OK(AppendGcodeBlocks(gcode, {shape.gcode, shape.encoding, shape.checksum}, 1, out));
-  return out;
-}
-
-absl::StatusOr<std::string> TextOf(const std::string& bytes) {
-  auto container = OpenContainer(bytes, kName, {});
-  if (!container.ok()) return container.status();
-  return (*container)->Text(0);
-}
 
 std::string Replaced(std::string text, const std::string& from, const std::string& to) {
   const size_t at = text.find(from);
@@ -91,6 +47,22 @@ std::vector<Shape> AllShapes() {
   return shapes;
 }
 
+struct BadFile {
+  const char* what;
+  std::string bytes;
+  const char* message;
+};
+
+std::string WithU16(std::string bytes, size_t at, uint16_t value) {
+  StoreU16(bytes, at, value);
+  return bytes;
+}
+
+std::string WithU32(std::string bytes, size_t at, uint32_t value) {
+  StoreU32(bytes, at, value);
+  return bytes;
+}
+
 TEST(Bgcode, IsReadAsTheTextThatItIs) {
   const auto text = TextOf(MakeFile({}));
 
@@ -100,7 +72,7 @@ TEST(Bgcode, IsReadAsTheTextThatItIs) {
             "; printer_model = MK4S\n"
             "; estimated printing time (normal mode) = 3m 41s\n"
             "\n;\n; thumbnail_QOI begin 16x16 16\n; cW9pZi1waWN0dXJl\n; thumbnail_QOI end\n;\n\n" +
-                kGcode +
+                kMadeGcode +
                 "\n; filament used [mm] = 252.22\n"
                 "; estimated printing time (normal mode) = 3m 41s\n"
                 "; estimated first layer printing time (normal mode) = 20s\n"
@@ -111,7 +83,7 @@ TEST(Bgcode, IsReadAsTheTextThatItIs) {
 TEST(Bgcode, IsWrittenInTheShapeThatItHad) {
   for (const Shape& shape : AllShapes()) {
     const std::string bytes = MakeFile(shape);
-    auto container = OpenContainer(bytes, kName, {});
+    auto container = OpenContainer(bytes, kBgcodeName, {});
     ASSERT_OK(container);
     const auto text = (*container)->Text(0);
     ASSERT_OK(text);
@@ -126,13 +98,13 @@ TEST(Bgcode, IsWrittenInTheShapeThatItHad) {
     ASSERT_OK(changed);
     const size_t gcode = MakeFile(shape, "").size();
     EXPECT_EQ(changed->substr(0, gcode), bytes.substr(0, gcode));
-    EXPECT_EQ(*changed, MakeFile(shape, Replaced(kGcode, "G1 X3 Y-2", "G1 X4 Y-2")));
+    EXPECT_EQ(*changed, MakeFile(shape, Replaced(kMadeGcode, "G1 X3 Y-2", "G1 X4 Y-2")));
   }
 }
 
 TEST(Bgcode, StaysByteByByteWithoutNewText) {
   const std::string bytes = MakeFile({});
-  auto container = OpenContainer(bytes, kName, {});
+  auto container = OpenContainer(bytes, kBgcodeName, {});
   ASSERT_OK(container);
   const auto same = (*container)->WithParts({});
   ASSERT_OK(same);
@@ -140,7 +112,7 @@ TEST(Bgcode, StaysByteByByteWithoutNewText) {
 }
 
 TEST(Bgcode, RestatesTimesInMetadata) {
-  auto container = OpenContainer(MakeFile({}), kName, {});
+  auto container = OpenContainer(MakeFile({}), kBgcodeName, {});
   ASSERT_OK(container);
   const auto text = (*container)->Text(0);
   ASSERT_OK(text);
@@ -149,7 +121,7 @@ TEST(Bgcode, RestatesTimesInMetadata) {
   const auto written = (*container)->WithParts({{0, {gcode::RestateTimes(*text, scale), scale}}});
 
   ASSERT_OK(written);
-  auto again = OpenContainer(*written, kName, {});
+  auto again = OpenContainer(*written, kBgcodeName, {});
   ASSERT_OK(again);
   const auto facts = (*again)->Facts();
   EXPECT_THAT(facts, ::testing::Contains(Pair("estimated printing time (normal mode)", "3m 19s")));
@@ -206,7 +178,7 @@ TEST(Bgcode, KeepsBlocksOfUnknownKinds) {
   // Four numbers as parameters: how many there are only the checksum tells.
   AppendBlock(static_cast<BlockKind>(77), BlockCompression::kNone, {1, 2, 3, 4}, 5, "xyzzy",
               BgcodeChecksum::kCrc32, bytes);
-  auto container = OpenContainer(bytes, kName, {});
+  auto container = OpenContainer(bytes, kBgcodeName, {});
   ASSERT_OK(container);
   const auto text = (*container)->Text(0);
   ASSERT_OK(text);
@@ -218,7 +190,7 @@ TEST(Bgcode, KeepsBlocksOfUnknownKinds) {
 }
 
 TEST(Bgcode, RefusesNewTextWithoutItsFrame) {
-  auto container = OpenContainer(MakeFile({}), kName, {});
+  auto container = OpenContainer(MakeFile({}), kBgcodeName, {});
   ASSERT_OK(container);
   EXPECT_THAT((*container)->WithParts({{0, {"G28\n", {}}}}),
               StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("not framed")));
@@ -233,9 +205,9 @@ TEST(Bgcode, RefusesAFileThatIsCutShortAnywhere) {
     const auto parsed = ParseBlocks(std::string_view(bytes).substr(0, size));
     if (parsed.ok()) {  // between two blocks
       EXPECT_THAT(text, StatusIs(absl::StatusCode::kInvalidArgument,
-                                 AllOf(StartsWith(kName), HasSubstr("no block of G-code"))));
+                                 AllOf(StartsWith(kBgcodeName), HasSubstr("no block of G-code"))));
     } else {
-      EXPECT_THAT(text, StatusIs(absl::StatusCode::kInvalidArgument, StartsWith(kName)));
+      EXPECT_THAT(text, StatusIs(absl::StatusCode::kInvalidArgument, StartsWith(kBgcodeName)));
       if (size > 10) {
         EXPECT_THAT(text, StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(": block ")));
       }
@@ -253,24 +225,8 @@ TEST(Bgcode, RefusesAnyByteThatWasChanged) {
     const auto text = TextOf(bad);
     // Without checksums, which bit 0 of byte 8 says, what is read is still not another file.
     if (at == 8) continue;
-    EXPECT_THAT(text, StatusIs(absl::StatusCode::kInvalidArgument, StartsWith(kName)));
+    EXPECT_THAT(text, StatusIs(absl::StatusCode::kInvalidArgument, StartsWith(kBgcodeName)));
   }
-}
-
-struct BadFile {
-  const char* what;
-  std::string bytes;
-  const char* message;
-};
-
-std::string WithU16(std::string bytes, size_t at, uint16_t value) {
-  StoreU16(bytes, at, value);
-  return bytes;
-}
-
-std::string WithU32(std::string bytes, size_t at, uint32_t value) {
-  StoreU32(bytes, at, value);
-  return bytes;
 }
 
 TEST(Bgcode, TakesNoMemoryForBlocksAndEntriesWithoutNumber) {
@@ -324,45 +280,6 @@ TEST(Bgcode, SaysWhichBlockIsAtFault) {
               StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("3840 MiB, and 64")));
   EXPECT_THAT(TextOf(WithU16(MakeFile(shrunk), gcode + 2, 9)),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(at)));
-}
-
-TEST(PackText, MakesMetadataOfComments) {
-  const auto text = TextOf(MakeFile({}));
-  ASSERT_OK(text);
-
-  const auto packed = PackText(*text, ContainerKind::kBgcode);
-
-  ASSERT_OK(packed);
-  EXPECT_EQ(*packed, MakeFile({}));
-}
-
-TEST(PackText, TellsThePrinterWhatTheSlicerSays) {
-  const std::string text =
-      "; generated by PrusaSlicer 2.9.2 on 2025-01-01 at 00:00:00 UTC\n\n"
-      "; external perimeters extrusion width = 0.45mm\n\nG28\n; note = in the middle\nG1 X1\n"
-      "; filament used [mm] = 252.22\n; prusaslicer_config = begin\n; printer_model = MK4\n"
-      "; nozzle_diameter = 0.4\n; secret = 1\n; prusaslicer_config = end\n";
-
-  const SplitText split = SplitMetadata(text);
-
-  EXPECT_THAT(split.metadata.printer,
-              ElementsAre(Pair("printer_model", "MK4"), Pair("nozzle_diameter", "0.4"),
-                          Pair("filament used [mm]", "252.22")));
-  EXPECT_THAT(split.metadata.print, ElementsAre(Pair("filament used [mm]", "252.22")));
-  EXPECT_THAT(split.metadata.slicer, ::testing::SizeIs(3));
-  EXPECT_EQ(split.body,
-            "; external perimeters extrusion width = 0.45mm\nG28\n; note = in the middle\nG1 X1\n");
-}
-
-TEST(PackText, LeavesDamagedThumbnailsAndOpenConfigsInTheText) {
-  const std::string text =
-      "; thumbnail begin 16x16 99\n; cW9pZi1waWN0dXJl\n; thumbnail end\nG28\nG1 X1\n"
-      "; prusaslicer_config = begin\n; a = 1\nno end\n";
-
-  const SplitText split = SplitMetadata(text);
-
-  EXPECT_EQ(split.body, text);
-  EXPECT_TRUE(split.metadata.thumbnails.empty());
 }
 
 }  // namespace

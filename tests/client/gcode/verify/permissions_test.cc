@@ -1,0 +1,50 @@
+// What may have changed, by flags and by the line at the head: client/gcode/verify/permissions.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/client/gcode/verify/small_prints.h"
+
+namespace traverse::gcode {
+namespace {
+
+using namespace testing;  // NOLINT: the small prints
+using ::testing::HasSubstr;
+
+TEST(PermissionsInHead, ThePolicyIsThatOfTheFlagsOrOfTheLineAtTheHead) {
+  const std::string a = kHead + kSquare;
+  const std::string b = kHead + kSquareElsewhere;
+  const std::string says = "; optimised by Traverse 1.0, policy balanced: travel\n";
+
+  EXPECT_EQ(FirstMessage(a, says + b), "");
+  EXPECT_THAT(FirstMessage(a, b), HasSubstr("seam"));
+  EXPECT_EQ(Broken(a, says + b, Policy::kSafe), "seam");
+  EXPECT_EQ(Broken(a, b, Policy::kFree), "");
+  // Behind a command it is not at the head.
+  EXPECT_THAT(FirstMessage(a, With(b, "M83\n", "M83\n" + says)), HasSubstr("seam"));
+}
+
+TEST(PermissionsInHead, WhatIsAllowedIsReadFromTheLineToo) {
+  const auto head = PermissionsInHead(
+      ";FLAVOR:Marlin\n; optimised by Traverse 1.0, policy safe, allow wall_order+fan_order: x\n");
+  ASSERT_TRUE(head.has_value());
+  EXPECT_EQ(DescribePermissions(*head), "safe, wall_order, fan_order");
+  EXPECT_FALSE(PermissionsInHead("; optimised by Traverse 1.0: x\n").has_value());
+  EXPECT_FALSE(ParsePermissions("daring", "").ok());
+  EXPECT_FALSE(ParsePermissions("safe", "anything").ok());
+}
+
+TEST(PermissionsInHead, TheLineOfTheWriterIsInTheHeadAndNotInAPicture) {
+  const std::string says = "; optimised by Traverse 1.0, policy safe: x\n";
+  const std::string picture = "; thumbnail begin 16x16 8\n; abcd\n; thumbnail end\n";
+  const std::string a = picture + kHead + kTwo;
+  EXPECT_EQ(Broken(a, picture + says + kHead + kTwo), "");
+  EXPECT_EQ(Broken(a, says + a), "");
+  EXPECT_EQ(Broken(a, With(a, "; abcd\n", says + "; abcd\n")), "same_print");
+  EXPECT_EQ(Broken(a, picture + kHead + kOne + says + kOther), "same_print");
+}
+
+}  // namespace
+}  // namespace traverse::gcode

@@ -1,0 +1,106 @@
+// Sections line by line: client/gcode/verify/same_print.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "absl/strings/str_replace.h"
+#include "tests/client/gcode/verify/small_prints.h"
+
+namespace traverse::gcode {
+namespace {
+
+using namespace testing;  // NOLINT: the small prints
+
+TEST(SamePrint, LinesEndAsTheyDidAndACarriageReturnEndsOne) {
+  const std::string a = kHead + kTwo;
+  const std::string crlf = absl::StrReplaceAll(a, {{"\n", "\r\n"}});
+  const std::string mixed = With(a, "M83\n", "M83\r\n");
+  EXPECT_EQ(Broken(a, mixed), "same_print");
+  EXPECT_EQ(Broken(crlf, With(crlf, "M83\r\n", "M83\n")), "same_print");
+  EXPECT_EQ(Broken(mixed, mixed), "");
+  // Whoever carries files about may change all of them.
+  EXPECT_EQ(Broken(a, crlf), "");
+  EXPECT_EQ(Broken(crlf, a), "");
+
+  // To firmware there is a command behind it.
+  EXPECT_EQ(Broken(a, With(a, "X9 Y5 E.3\n", "X9 Y5 E.3 ; x\rM106 S3\n")), "same_print");
+  const std::string both = With(a, "M83\n", "M83 ; x\rM106 S3\n");
+  EXPECT_EQ(Broken(both, both), "");
+}
+
+TEST(SamePrint, CommentsBetweenPathsThatStayKeepTheirOrder) {
+  const std::string a = kHead + "; here\n" + kOne + "; there\n" + kOther;
+  EXPECT_EQ(Broken(a, kHead + "; there\n" + kOne + "; here\n" + kOther), "same_print");
+  EXPECT_EQ(Broken(a, kHead + "; there\n" + kOther + "; here\n" + kOne), "");
+}
+
+TEST(SamePrint, TheHeadLeavesThePrintThoughNoScriptFollows) {
+  const std::string end = "G1 E-1 F2100\nG1 Z10 F9000\n";
+  const std::string a = kHead + kTwo + end;
+  EXPECT_EQ(Broken(a, kHead + kTwo), "same_print");
+  EXPECT_EQ(Broken(a, kHead + kTwo + "G1 Z10 F9000\n"), "same_print");
+  EXPECT_EQ(Broken(a, kHead + kTwo + "G1 E-1 F2100\n"), "same_print");
+  EXPECT_EQ(Broken(a, kHead + kOther + kOne + end), "");
+}
+
+TEST(SamePrint, TravelMayBeByG0) {
+  const std::string script = "G28\nM83\nG1 X5 Y5 F9000\n;LAYER_CHANGE\nG1 Z.2 F9000\n";
+  EXPECT_EQ(Broken(script + kTwo, With(script, "G1 X5", "G0 X5") + kTwo), "");
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, "G1 X0 Y5", "G0 X0 Y5")), "");
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, "G1 X9 Y5", "G0 X9 Y5")), "same_print");
+}
+
+TEST(SamePrint, CommentsThatAreAboutNoPathKeepTheirOrder) {
+  const std::string settings = "M104 S0\n; a = 1\n; b = 2\n";
+  const std::string turned = "M104 S0\n; b = 2\n; a = 1\n";
+  EXPECT_EQ(Broken(kHead + kTwo + settings, kHead + kTwo + turned), "same_print");
+  const std::string picture = "; thumbnail begin 16x16 8\n; abcd\n; efgh\n; thumbnail end\n";
+  const std::string spoilt = "; thumbnail begin 16x16 8\n; efgh\n; abcd\n; thumbnail end\n";
+  EXPECT_EQ(Broken(picture + kHead + kTwo, spoilt + kHead + kTwo), "same_print");
+}
+
+TEST(SamePrint, WhatIsSaidOfALayerStandsBehindItsMark) {
+  const std::string mark = ";LAYER_CHANGE\n;Z:.2\n;HEIGHT:.2\n";
+  const std::string layer = "G1 Z.2 F9000\n" + kTwo;
+  const std::string a =
+      "M83\n" + mark + layer + ";LAYER_CHANGE\n;Z:.4\n;HEIGHT:.2\nG1 Z.4\n" + kTwo;
+  EXPECT_EQ(Broken(a, a), "");
+  // It is .2 all the same.
+  EXPECT_EQ(Broken(a, With(a, ";Z:.4\n;HEIGHT:.2\n", ";Z:.4\n")), "same_print");
+  EXPECT_EQ(Broken(a, With(With(a, ";Z:.4\n", ""), "G1 Z.4\n", "G1 Z.4\n;Z:.4\n")), "same_print");
+  EXPECT_EQ(Broken(a, With(a, kOther, ";HEIGHT:.2\n" + kOther)), "");
+}
+
+TEST(SamePrint, WhatStandsBehindADepositStaysThere) {
+  const std::string a = kHead + With(kTwo, "X9 Y5 E.3\n", "X9 Y5 E.3 ; infill\n");
+  EXPECT_EQ(Broken(a, With(a, " ; infill", "")), "same_print");
+  EXPECT_EQ(Broken(a, With(a, "; infill", "; bridge")), "same_print");
+  EXPECT_EQ(Broken(a, With(a, " ; infill", ";infill")), "");
+}
+
+TEST(SamePrint, DepositsAreOfTheSameCommand) {
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, "G1 X9 Y5 E.3", "G0 X9 Y5 E.3")), "same_print");
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, "G1 X0 Y5 F9000", "G0 X0 Y5 F9000")), "");
+  const std::string arc = With(kTwo, "G1 X9 Y5 E.3", "G2 X9 Y5 I4.5 J0 E.3");
+  EXPECT_EQ(Broken(kHead + arc, kHead + With(arc, "J0 E.3", "J0 P2 E.3")), "same_print");
+}
+
+// The center of an arc by its radius is nowhere known: it stays as it is.
+TEST(SamePrint, ArcsByARadiusKeepIt) {
+  const std::string way = "G1 E-1 F2100\nG1 X0 Y5 F9000\nG1 E1 F2100\n";
+  const std::string a = kHead + With(kTwo, way, "G1 E-1 F2100\nG2 X0 Y5 R8 F9000\nG1 E1 F2100\n");
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, With(a, "R8", "R1000000")), "same_print");
+}
+
+TEST(SamePrint, SettingsAreAsTheyWereWhereALineIsNotKnown) {
+  const std::string set = "M204 S500\n" + kTwo + "M104 S0\nM84\n";
+  EXPECT_EQ(Broken(kHead + set, kHead + With(set, "M104 S0\n", "M204 S9\nM104 S0\n")),
+            "same_print");
+  EXPECT_EQ(Broken(kHead + set, kHead + With(set, "M104 S0\n", "M204 S500\nM104 S0\n")), "");
+  EXPECT_EQ(Broken(kHead + set, kHead + With(set, "M84\n", "M84\nM221 S90\n")), "same_print");
+}
+
+}  // namespace
+}  // namespace traverse::gcode
