@@ -14,11 +14,11 @@ def gcode(file, suites, seconds=60):
 
 
 def verify(file):
-    return place(f"client/gcode/verify/{file}", "gcode_verify_tests", "Verify*")
+    return place(f"client/gcode/verify/{file}", "gcode_verify_tests", "Verify*:SamePrint*:PermissionsInHead*")
 
 
 # What ShuffledFile and Golden write is held against the verifier and against files looked at by eye.
-WRITTEN = "LayerWriter*:RewriteGcode*:Dialects/Golden*:Kept/ShuffledFile*"
+WRITTEN = "LayerWriter*:LinkWriter*:*ShortPath*:RewriteGcode*:Dialects/Golden*:Kept/ShuffledFile*"
 
 PLACES = [
     place("server/access/auth.cc", "server_jobs_tests", "ParseTokens*:Authenticator*"),
@@ -56,7 +56,7 @@ PLACES = [
     gcode("write/placed_path.cc", f"PlacedPath*:{WRITTEN}"),
     place("client/loadgen/latency_histogram.cc", "loadgen_tests", "LatencyHistogram*"),
     place("client/loadgen/load_report.cc", "loadgen_tests", "LoadReport*"),
-    place("client/files/write_file.cc", "client_tests", "Files*"),
+    place("client/files/write_file.cc", "client_tests", "WriteFile*"),
     place("client/damat/reader.cc", "client_tests", "Damat*:*Reader*"),
     engine("schedule/route_history.cc", "RouteHistory*:LayerChain*"),
     engine("schedule/layer_fingerprint.cc", "EndHistory*:FingerprintOf*:ProblemKey*"),
