@@ -20,7 +20,8 @@ void AppendArc(Point from, Point to, const TraceArc& arc, uint32_t path,
   double sweep = arc.clockwise ? begin - end : end - begin;
   while (sweep <= 1e-9) sweep += 2 * M_PI;
   const double step = radius > kChordMm ? 2 * std::acos(1 - kChordMm / radius) : M_PI;
-  const int n = std::clamp(static_cast<int>(std::ceil(sweep / step)), 1, kMostChords);
+  // Of an arc as large as a line is long the step is 0.
+  const int n = static_cast<int>(std::clamp(std::ceil(sweep / step), 1.0, 1.0 * kMostChords));
   Point at = from;
   for (int k = 1; k <= n; ++k) {
     const double angle = begin + (arc.clockwise ? -sweep : sweep) * k / n;

@@ -77,12 +77,12 @@ class PieceGrid {
   }
 
  private:
-  int CellX(double x) const {
-    return std::clamp(static_cast<int>((x - low_.x) / cell_mm_), 0, columns_ - 1);
+  // Ways may lead farther than an int counts cells.
+  static int Clamped(double cell, int count) {
+    return static_cast<int>(std::clamp(cell, 0.0, static_cast<double>(count - 1)));
   }
-  int CellY(double y) const {
-    return std::clamp(static_cast<int>((y - low_.y) / cell_mm_), 0, rows_ - 1);
-  }
+  int CellX(double x) const { return Clamped((x - low_.x) / cell_mm_, columns_); }
+  int CellY(double y) const { return Clamped((y - low_.y) / cell_mm_, rows_); }
 
   // Row by row: the cells between where the way enters the row and where it leaves it.
   template <typename Visit>
