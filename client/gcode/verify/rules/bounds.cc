@@ -57,6 +57,24 @@ void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped, LayerFin
   }
 }
 
+// Of the first `moves` of link `link`.
+double LengthOf(const TraceChunk& chunk, uint32_t link, uint32_t moves) {
+  double length = 0;
+  const uint32_t first = chunk.links[link].first_move;
+  for (uint32_t m = first; m < first + moves; ++m) length += chunk.moves[m].length_mm();
+  return length;
+}
+
+// Of what goes along paths of the original, however fast.
+double LongestAlong(const LayerPair& layer) {
+  const Tails along(layer, true, true);
+  double longest = 0;
+  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
+    longest = std::max(longest, LengthOf(layer.was(), link, along.At(link)));
+  }
+  return longest;
+}
+
 }  // namespace
 
 void ObserveBounds(const TraceChunk& was, Box& box) {
@@ -100,10 +118,13 @@ void CompareBounds(const Observations& was, const Observations& is, std::vector<
 
 void CheckBends(const LayerPair& layer, LayerFindings& findings) {
   const Tails tails(layer, false);
-  // What goes along a path may be as fast as travel.
+  // What goes along a path may be as fast as travel, if it is no longer than such of the original.
   const Tails along(layer, false, true);
+  const double longest = LongestAlong(layer);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
-    CheckLink(layer, link, std::max(tails.At(link), along.At(link)), findings);
+    const uint32_t moves = along.At(link);
+    const bool is_known = LengthOf(layer.is(), link, moves) <= longest + kLeastExcessMm;
+    CheckLink(layer, link, std::max(tails.At(link), is_known ? moves : 0), findings);
   }
 }
 

@@ -69,5 +69,15 @@ TEST(VerifyBounds, AWayWindsNoMoreThanWaysDo) {
   EXPECT_EQ(Broken(kHead + kTwo + frame, kHead + in_two + frame), "");
 }
 
+// However fast: the nozzle is open over what has just been printed.
+TEST(VerifyBounds, NoWayGoesAlongAFinishedLoopUnlessTheOriginalDoes) {
+  const std::string rest = "G1 X30 Y15 F9000\n;TYPE:Internal infill\nG1 F1800\nG1 X31 Y15 E.3\n";
+  const std::string along = "G1 X20 Y10 F9000\nG1 X20 Y20 F9000\n";
+  const std::string a = kHead + kSquare + "G1 X10 Y40 F9000\n" + rest;
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, kHead + kSquare + along + rest), "bounds");
+  EXPECT_EQ(Broken(kHead + kSquare + along + rest, kHead + kSquare + along + rest), "");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
