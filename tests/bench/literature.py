@@ -26,21 +26,21 @@ HEAD = """# GTSPLIB: the literature's table
 
 Written by `tests/bench/literature.py FOLDER`: {machine}, one thread, version {version}, seeds {seeds}.{note}
 
-{instances} symmetric instances in the plane of Fischetti, Salazar and Toth (1997); the number in front of a name is
-that of the sets. All columns but those of seconds and of proofs are percent over the published value, which is from
-1997 for the five without GLNS and else the best known of GLNS's benchmark.
+{instances} symmetric instances in the plane from Fischetti, Salazar and Toth (1997). The number before a name is the
+number of sets. All columns except seconds and proofs are percent above the published value: from 1997 for the five
+instances without GLNS, and otherwise the best known of GLNS's benchmark.
 
-* *effort*: `auto` with that `effort`, 1 being the default, beside the CPU seconds of the whole command, start and
-  reading included; means over the seeds. It ends by itself, so lengths do not depend on the machine.
-* *bound*: how far the lower bound that comes with the default route is below it.
-* *GLNS*: as published, Smith and Imeson's method in C++ by default, mean of ten runs, on an Apple M4 Pro; its time is
-  of the solver alone.
-* *proof*: `exact` within {seconds:g} s of the wall: CPU seconds to a proof, or the gap that was left.
+* *effort*: `auto` with that `effort` (1 is the default), beside the CPU seconds of the whole command, including start
+  and reading; means over the seeds. The search ends by itself, so lengths do not depend on the machine.
+* *bound*: how far below the default route its lower bound is.
+* *GLNS*: as published: Smith and Imeson's method in C++ with its default settings, mean of ten runs on an Apple M4 Pro.
+  Its time is that of the solver alone.
+* *proof*: `exact` within {seconds:g} s of wall time: CPU seconds to a proof, or the gap that was left.
 
-What cannot be compared: the machines differ. Published lengths are of distances rounded to whole numbers (EUC_2D),
-and GLNS minimises these; Traverse minimises true distances, and its sets, in the order found, have their points
-chosen for rounded ones afterwards. So an optimal tour may be above 0 here, and a proof is one of the shortest true
-tour. An instance whose smallest set has several points is searched once from each, and the time is of all together.
+Not everything can be compared. The machines differ. Published lengths use distances rounded to whole numbers (EUC_2D),
+and GLNS minimises these. Traverse minimises true distances; afterwards it chooses the points of its sets, in the order
+found, for rounded distances. So an optimal tour may be above 0 here, and a proof concerns the shortest true tour. An
+instance whose smallest set has several points is searched once from each of them; the time is for all together.
 """
 
 

@@ -1,4 +1,4 @@
-"""The guides: every link and picture leads somewhere, every heading that is linked exists, and codespell knows the words."""
+"""The guides: links, pictures and linked headings exist, lines are short, and codespell knows the words."""
 import pathlib
 import re
 import shutil
@@ -44,6 +44,11 @@ class Words(unittest.TestCase):
                         self.assertIn(anchor, anchors(file.read_text(encoding="utf-8")))
                 checked += 1
         self.assertGreater(checked, 30)
+
+    def test_no_line_is_longer_than_120_characters(self):
+        for guide in guides():
+            for number, line in enumerate(guide.read_text(encoding="utf-8").splitlines(), 1):
+                self.assertLessEqual(len(line), 120, f"{guide.relative_to(SOURCE)}:{number}")
 
     def test_no_link_is_plaintext_http(self):
         for guide in guides():
