@@ -33,21 +33,21 @@ namespace traverse {
 // Nozzle cleaning, SPEC section 2.
 struct CleaningSpec {
   Point point;
-  int every_layers = 1;           // >= 1
-  int layers_since_cleaning = 0;  // before the first layer; in [0, every_layers)
+  int every_layers = 1;           // at least 1
+  int layers_since_cleaning = 0;  // printed before the first layer; in [0, every_layers)
 };
 
-// What holds for a whole job.
+// What a job sets for all of its layers.
 struct JobSpec {
   Point start;
   std::optional<CleaningSpec> cleaning;
   CostSpec cost;
   uint64_t seed = 1;
 
-  // The job's end, if it has one; then layers that are left come back as they are.
+  // When the job must end; then the remaining layers come back as given. Unset: never.
   std::optional<Budget::Clock::time_point> deadline;
 
-  // Most time for one layer; absl::InfiniteDuration() for no limit.
+  // Longest time for one layer; absl::InfiniteDuration() for no limit.
   absl::Duration layer_time_limit = absl::InfiniteDuration();
 };
 
@@ -57,12 +57,12 @@ struct JobLayer {
   std::optional<Point> start;    // unset: where the layer before ended
   std::optional<CostSpec> cost;  // unset: the job's
 
-  // Add or Close is called again without waiting for this layer's answer: where the strategy looks
-  // ahead, the answer waits for that, and the layer's end is chosen with the next layer in view.
-  // False, as for a caller who sends on after an answer: it is not waited for.
+  // If true, Add or Close will be called again without waiting for this layer's answer. A strategy
+  // that looks ahead then waits for that call, and ends the layer where the next one is cheap to
+  // begin. If false, answer without waiting for the next layer.
   bool more_follows = false;
 
-  // What moves by time should not cross; passes CheckWalls.
+  // Walls that travel should not cross if the cost is a time; passes CheckWalls.
   LayerWalls walls = {};
 };
 
@@ -75,45 +75,45 @@ struct LayerOutcome {
   Route route;  // valid: checked by the validator
   TravelSplit given;
   TravelSplit travel;
-  double cost_given = 0;  // in the unit of the layer's cost; moves to the cleaning point apart
+  double cost_given = 0;  // in the unit of the layer's cost, without moves to the cleaning point
   double cost = 0;
   MoveCounts moves_given = {};
   MoveCounts moves = {};
   std::vector<Detour> detours = {};
 
-  // No route from this start costs less, where a move to the cleaning point follows: none costs
-  // less together with that move than this bound and this route's move.
+  // A lower bound: no route from this start costs less. If a move to the cleaning point follows, no
+  // route together with that move costs less than this bound plus the found route's own move.
   std::optional<double> lower_bound;
-  double cleaning_given_mm = 0;  // move to the cleaning point after this layer
+  double cleaning_given_mm = 0;  // length of the move to the cleaning point after this layer
   double cleaning_mm = 0;
   StopReason stop = StopReason::kLocalOptimum;
   double solve_seconds = 0;
   std::map<std::string, double> statistics = {};  // Solution::statistics
 
-  // Not empty: the strategy's route was invalid, for this reason, and the given order took its
-  // place.
+  // If not empty, the strategy's route was invalid for this reason, and the given order replaced
+  // it.
   std::string invalid_route;
 };
 
-// Receives the answers of one job. Calls never overlap; they come from threads of the executor.
+// Receives the answers of one job. Calls never overlap. They come from threads of the executor.
 class JobSink {
  public:
   virtual ~JobSink() = default;
 
-  // A layer is done. Layers that start where the one before ended come in build order; a layer
-  // whose start does not depend on the one before (after a cleaning, or given) may come before
-  // earlier ones.
+  // A layer is done. Layers that start where the one before ended come in build order.
+  // A layer whose start is given, or follows a cleaning, may come before earlier
+  // layers.
   virtual void OnLayer(LayerOutcome outcome) = 0;
 
-  // Last call: all layers of a closed job were delivered, or the job was cancelled.
+  // The last call: all layers of a closed job were delivered, or the job was cancelled.
   virtual void OnDone() = 0;
 };
 
-// A job under way. Thread-safe.
+// A running job. Thread-safe.
 class Job {
  public:
-  // `executor` and `sink` outlive the job's last call of OnDone. `strategy` is shared by all
-  // layers.
+  // Starts a job. `executor` and `sink` must outlive the job's call of OnDone. All layers share
+  // `strategy`.
   static std::shared_ptr<Job> Start(const JobSpec& spec, std::unique_ptr<Strategy> strategy,
                                     Executor& executor, JobSink& sink);
 
@@ -122,15 +122,15 @@ class Job {
   // Adds the next layer. REQUIRES: not closed.
   virtual void Add(JobLayer layer) = 0;
 
-  // There are no more layers. OnDone follows when all are answered, possibly within this call's
-  // time.
+  // Says that no more layers follow. OnDone comes when all are answered, possibly before this call
+  // returns.
   virtual void Close() = 0;
 
-  // Stops the work within 50 ms: layers not yet delivered are dropped and OnDone follows. May be
+  // Stops the work within 50 ms: drops the layers not yet delivered, then calls OnDone. May be
   // called at any time, more than once.
   virtual void Cancel() = 0;
 
-  // The number of layers added and not yet delivered, for callers that bound it.
+  // The number of layers added but not yet delivered, for callers that bound it.
   virtual int64_t pending() const = 0;
 };
 

@@ -1,4 +1,4 @@
-// The budget of a search: a deadline and a cancellation, asked in inner loops.
+// The budget of a search: a deadline and a cancellation, checked in inner loops.
 
 #ifndef TRAVERSE_ENGINE_BASE_BUDGET_H_
 #define TRAVERSE_ENGINE_BASE_BUDGET_H_
@@ -10,8 +10,8 @@
 
 namespace traverse {
 
-// How long a search may go on. One object for each search: not thread-safe, but the token that it
-// watches is. The engine sees no clock but this one.
+// Says how long a search may continue. Each search has its own object, which is not thread-safe;
+// the token that it watches is. The engine has no other clock.
 //
 //   Budget budget(&token, deadline);
 //   while (!budget.Exhausted()) { ... one small step, well under 10 ms ... }
@@ -19,17 +19,17 @@ class Budget {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // Without a limit.
+  // No limit.
   Budget() = default;
 
-  // Ends when `cancel` is cancelled, or at `deadline`. Whoever asks it gives way when `turn` is
-  // wanted. Both may be null; not owned, they outlive the budget.
+  // Ends when `cancel` is cancelled, or at `deadline`. A thread that asks this budget yields when
+  // others want `turn`. Both may be null; the caller owns them, and they outlive the budget.
   explicit Budget(const CancelToken* cancel,
                   std::optional<Clock::time_point> deadline = std::nullopt, Turn* turn = nullptr)
       : cancel_(cancel), turn_(turn), deadline_(deadline) {}
 
-  // True once the search has to return what it has; stays true then. Cheap: the cancellation and
-  // the turn are looked at every time, the clock only every kCallsPerClockReading calls.
+  // True once the search must return what it has, and from then on. Cheap: each call checks the
+  // cancellation and the turn, but reads the clock only every kCallsPerClockReading calls.
   bool Exhausted() {
     if (exhausted_) return LeaveTurn();
     if (turn_ != nullptr && turn_->wanted() && turn_->GiveWay(cancel_, deadline_)) {
@@ -41,17 +41,17 @@ class Budget {
     return exhausted_ = Clock::now() >= *deadline_;
   }
 
-  // Same, but always looks at the clock. For steps that are slow themselves.
+  // The same, but always reads the clock. For steps that are slow themselves.
   bool ExhaustedNow() {
     calls_to_clock_ = 1;
     return Exhausted();
   }
 
-  // True if Exhausted() has said so: the search was cut short. Does not look again, so a search
-  // that ended by itself is not taken for one that its deadline ended.
+  // True if Exhausted() has returned true, so the search was cut short. Does not check again, so a
+  // search that ended by itself does not count as ended by its deadline.
   bool was_exhausted() const { return exhausted_; }
 
-  // True if the end was, or would now be, for the cancellation and not for the clock.
+  // True if the budget ended, or would end now, because of the cancellation and not the clock.
   bool cancelled() const { return cancel_ != nullptr && cancel_->cancelled(); }
 
   // The cancellation watched, or null; for budgets derived from this one.
@@ -66,7 +66,7 @@ class Budget {
   }
 
  private:
-  // Nobody waits for what was cancelled: what is still to be done of it lets others on. True.
+  // Yields, so that cancelled work that must still finish delays nobody. Returns true.
   bool LeaveTurn() {
     if (turn_ != nullptr && turn_->wanted() && cancelled()) turn_->GiveWay(nullptr, std::nullopt);
     return true;
@@ -81,7 +81,7 @@ class Budget {
   bool exhausted_ = false;
 };
 
-// Measures how long something took. Kept here, as the engine's other use of the clock.
+// Measures elapsed time. It is here because it is the engine's only other use of the clock.
 class Stopwatch {
  public:
   double Seconds() const {

@@ -12,14 +12,14 @@ namespace traverse {
 
 class DisjointSets {
  public:
-  // The members 0 to `count` - 1, each alone.
+  // Creates the sets {0}, {1}, ... {count - 1}.
   explicit DisjointSets(int count = 0) { Reset(count); }
   void Reset(int count) {
     parent_.resize(static_cast<size_t>(count));
     std::iota(parent_.begin(), parent_.end(), 0);
   }
 
-  // Joins the sets of two members. Whether they were apart. REQUIRES: both are members.
+  // Joins the sets of two members. Returns whether they were separate. REQUIRES: both are members.
   bool Join(int a, int b) {
     a = Find(a);
     b = Find(b);
@@ -30,7 +30,7 @@ class DisjointSets {
   // REQUIRES: both are members.
   bool AreJoined(int a, int b) { return Find(a) == Find(b); }
 
-  // [member] its set. Sets are numbered from 0 in the order of their first members.
+  // [member] the number of its set; sets are numbered from 0, in order of their first members.
   std::vector<int> Numbered() {
     std::vector<int> number(parent_.size(), -1);  // [root]
     std::vector<int> set_of(parent_.size());

@@ -1,4 +1,4 @@
-// Where the engine's work is run. The engine owns no threads: its caller brings them.
+// Where the engine's work runs. The engine owns no threads; its caller brings them.
 
 #ifndef TRAVERSE_ENGINE_BASE_EXECUTOR_H_
 #define TRAVERSE_ENGINE_BASE_EXECUTOR_H_
@@ -11,25 +11,25 @@
 
 namespace traverse {
 
-// Runs tasks, at any later time, on any threads, in any order. Thread-safe. A task never waits for
-// another one, so one thread is enough for progress.
+// Runs tasks at any later time, on any threads, in any order. Thread-safe. No task waits for
+// another, so one thread is enough for progress.
 class Executor {
  public:
   virtual ~Executor() = default;
 
-  // Runs `task` once. Must not run it before returning.
+  // Runs `task` once, but not before this call returns.
   virtual void Submit(std::function<void()> task) = 0;
 
-  // The same for one that works on so many points: it may take long, and much memory.
+  // The same for a task that works on `points` points: it may take long and need much memory.
   virtual void SubmitLarge(std::function<void()> task, int64_t /*points*/) {
     Submit(std::move(task));
   }
 
-  // The turn of the task that the calling thread runs; null if it need not give way. Valid until
-  // the task ends.
+  // The turn of the task that the calling thread runs; null if it need not yield. Valid until the
+  // task ends.
   virtual Turn* turn() { return nullptr; }
 
-  // About how many tasks it runs at once. Nothing but the split of a job's time depends on it.
+  // About how many tasks run at once. Only the division of a job's time depends on it.
   virtual int threads() const { return 1; }
 };
 

@@ -1,5 +1,5 @@
-// A mutex whose use the compiler checks: clang's -Wthread-safety tells of every member that is read
-// or written without the lock that guards it.
+// A mutex whose use the compiler checks: clang's -Wthread-safety reports every member that
+// is read or written without the lock that guards it.
 //
 //   Mutex mutex_;
 //   int jobs_ TRAVERSE_GUARDED_BY(mutex_) = 0;
@@ -9,9 +9,9 @@
 //     ++jobs_;
 //   }
 //
-// A thin layer over std::mutex: absl::Mutex of Debian's library is not instrumented, so that
-// ThreadSanitizer takes what it guards for unguarded. The annotations mean nothing to other
-// compilers.
+// A thin wrapper of std::mutex. Debian's absl::Mutex is not instrumented, so
+// ThreadSanitizer would report what it guards as unguarded. Other compilers ignore the
+// annotations.
 
 #ifndef TRAVERSE_ENGINE_BASE_MUTEX_H_
 #define TRAVERSE_ENGINE_BASE_MUTEX_H_
@@ -26,13 +26,13 @@
 #define TRAVERSE_THREAD_ANNOTATION(x)
 #endif
 
-// Of a member: reading and writing it needs the mutex.
+// For a member: reading and writing it requires the mutex.
 #define TRAVERSE_GUARDED_BY(mutex) TRAVERSE_THREAD_ANNOTATION(guarded_by(mutex))
-// Of a function: the caller holds the mutex, before and after.
+// For a function: the caller holds the mutex, before and after.
 #define TRAVERSE_REQUIRES(...) TRAVERSE_THREAD_ANNOTATION(requires_capability(__VA_ARGS__))
-// Of a function: the caller does not hold the mutex; the function takes it.
+// For a function: the caller does not hold the mutex; the function takes it.
 #define TRAVERSE_EXCLUDES(...) TRAVERSE_THREAD_ANNOTATION(locks_excluded(__VA_ARGS__))
-// Of a function that the analysis cannot follow. Say why where it is used.
+// For a function that the analysis cannot follow. Say why where you use it.
 #define TRAVERSE_NO_THREAD_SAFETY_ANALYSIS TRAVERSE_THREAD_ANNOTATION(no_thread_safety_analysis)
 
 namespace traverse {
@@ -47,7 +47,7 @@ class TRAVERSE_THREAD_ANNOTATION(capability("mutex")) Mutex {
   void Unlock() TRAVERSE_THREAD_ANNOTATION(release_capability()) { mutex_.unlock(); }
 
   // Tells the analysis what it cannot see: this mutex is held here, under another name or around a
-  // lambda. Does nothing.
+  // lambda. Does nothing at run time.
   void AssertHeld() const TRAVERSE_THREAD_ANNOTATION(assert_capability(this)) {}
 
  private:
@@ -55,7 +55,7 @@ class TRAVERSE_THREAD_ANNOTATION(capability("mutex")) Mutex {
   std::mutex mutex_;
 };
 
-// Holds a mutex from construction to destruction, but for what lies between Unlock and Lock.
+// Holds a mutex from construction to destruction, except between Unlock and Lock.
 class TRAVERSE_THREAD_ANNOTATION(scoped_lockable) MutexLock {
  public:
   explicit MutexLock(Mutex& mutex) TRAVERSE_THREAD_ANNOTATION(acquire_capability(mutex))
@@ -82,7 +82,7 @@ class TRAVERSE_THREAD_ANNOTATION(scoped_lockable) MutexLock {
   bool held_ = true;
 };
 
-// Waits are loops of the caller's, so that the analysis sees what the condition reads:
+// The caller writes the waiting loop, so that the analysis sees what the condition reads:
 //
 //   MutexLock lock(mutex_);
 //   while (!ready_) changed_.Wait(mutex_);
@@ -91,14 +91,14 @@ class ConditionVariable {
   void NotifyOne() { condition_.notify_one(); }
   void NotifyAll() { condition_.notify_all(); }
 
-  // Gives the mutex up until a notification, or for no reason, and takes it again.
+  // Releases the mutex until a notification, or a spurious wake-up, and takes it again.
   void Wait(Mutex& mutex) TRAVERSE_REQUIRES(mutex) {
     std::unique_lock<std::mutex> lock(mutex.mutex_, std::adopt_lock);
     condition_.wait(lock);
     lock.release();
   }
 
-  // Wait, until `time` at the latest. False if the time has come.
+  // Like Wait, but until `time` at the latest. Returns false if that time has come.
   template <typename Clock, typename Duration>
   bool WaitUntil(Mutex& mutex, const std::chrono::time_point<Clock, Duration>& time)
       TRAVERSE_REQUIRES(mutex) {

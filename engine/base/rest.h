@@ -1,4 +1,4 @@
-// Asks a budget now and then, in loops of many small steps.
+// Asks a budget regularly in loops of many small steps.
 
 #ifndef TRAVERSE_ENGINE_BASE_REST_H_
 #define TRAVERSE_ENGINE_BASE_REST_H_
@@ -9,8 +9,8 @@
 
 namespace traverse {
 
-// For what has to be done whole, as tables and checks of a layer have: others are let on with
-// theirs meanwhile, and the budget notes its end for whoever asks next.
+// For work that must be finished, such as tables and checks of a layer. Other tasks get their turns
+// meanwhile, and the budget notes its end for whoever asks next.
 //
 //   Rest rest(budget);
 //   for (const Path& path : plan.paths) {
@@ -18,11 +18,11 @@ namespace traverse {
 //     ...
 class Rest {
  public:
-  // `budget` may be null: then nobody is asked.
+  // `budget` may be null; then nothing is asked.
   explicit Rest(Budget* budget) : budget_(budget) {}
 
-  // So many steps of some nanoseconds, each of which may read memory that is not at hand, were
-  // done, or are about to be. False if the budget is exhausted.
+  // Counts `steps` steps, done or about to be done, of a few nanoseconds each, which may read
+  // memory that is not in the cache. Returns false if the budget is exhausted.
   bool operator()(size_t steps = 1) {
     if (budget_ == nullptr || (steps_ += steps) < kSteps) return !exhausted_;
     steps_ = 0;

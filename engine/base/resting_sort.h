@@ -1,4 +1,4 @@
-// Sorts long arrays piece by piece, asking a budget meanwhile.
+// Sorts long arrays piece by piece and asks a budget meanwhile.
 
 #ifndef TRAVERSE_ENGINE_BASE_RESTING_SORT_H_
 #define TRAVERSE_ENGINE_BASE_RESTING_SORT_H_
@@ -13,9 +13,9 @@
 
 namespace traverse {
 
-// Sorts `values`: whole, even if the budget of `rest` runs out. Where elements are equal by `less`,
-// their order is any, but the same each time. O(n log n), and room for as many values again if
-// there are more than a few thousand. Source: merging from the bottom up (Knuth, TAOCP 3, 5.2.4).
+// Sorts `values` completely, even if the budget of `rest` runs out. Equal elements end in an
+// unspecified order that is the same each time. O(n log n); beyond a few thousand values it needs
+// room for as many again. Source: bottom-up merging (Knuth, TAOCP 3, 5.2.4).
 template <typename Value, typename Less = std::less<Value>>
 void RestingSort(std::vector<Value>& values, Rest& rest, const Less& less = Less()) {
   constexpr size_t kPiece = 1 << 12;

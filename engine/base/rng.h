@@ -1,6 +1,6 @@
-// Seeded random numbers. The sequence is the same on every platform, as results depend on it.
+// Seeded random numbers. The sequence is the same on every platform, because results depend on it.
 //
-// Source: xoshiro256++ and SplitMix64, Blackman and Vigna (2021), "Scrambled linear pseudorandom
+// Sources: xoshiro256++ and SplitMix64, Blackman and Vigna (2021), "Scrambled linear pseudorandom
 // number generators"; bounded integers after Lemire (2019), "Fast random integer generation in an
 // interval".
 
@@ -12,7 +12,7 @@
 
 namespace traverse {
 
-// One step of SplitMix64: a well-mixed value for each `state`, which moves on.
+// One step of SplitMix64: returns a well-mixed value for `state` and advances it.
 inline uint64_t SplitMix64(uint64_t& state) {
   state += 0x9e3779b97f4a7c15u;
   uint64_t z = state;
@@ -21,8 +21,8 @@ inline uint64_t SplitMix64(uint64_t& state) {
   return z ^ (z >> 31);
 }
 
-// Seed of a stream of its own for item `index` of something seeded with `seed`, such as a layer of
-// a job: items may then be worked on in any order and by any thread.
+// The seed of a separate stream for item `index`, such as a layer of a job seeded with `seed`. So
+// threads may work on items in any order.
 inline uint64_t StreamSeed(uint64_t seed, uint64_t index) {
   uint64_t state = seed;
   uint64_t mixed = SplitMix64(state) ^ (index * 0xd1342543de82ef95u);

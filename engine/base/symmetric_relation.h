@@ -1,4 +1,4 @@
-// Which of n things go with each other.
+// Says which of n things belong together.
 
 #ifndef TRAVERSE_ENGINE_BASE_SYMMETRIC_RELATION_H_
 #define TRAVERSE_ENGINE_BASE_SYMMETRIC_RELATION_H_
@@ -17,7 +17,7 @@ class SymmetricRelation {
       : neighbors_(static_cast<size_t>(nodes)),
         bits_((static_cast<size_t>(nodes) * static_cast<size_t>(nodes) + 63) / 64) {}
 
-  // Makes both neighbors of each other. A node is no neighbor of itself.
+  // Makes `a` and `b` neighbors of each other. A node is never its own neighbor.
   void Link(int a, int b) {
     if (a == b || Linked(a, b)) return;
     for (const size_t bit : {Bit(a, b), Bit(b, a)}) bits_[bit / 64] |= uint64_t{1} << (bit % 64);

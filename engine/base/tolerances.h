@@ -5,20 +5,20 @@
 
 namespace traverse {
 
-// Costs are as they are on ordinary parts: cost/cost_unit.h sees to that.
+// Costs have the magnitude that they have on ordinary parts; cost/cost_unit.h ensures that.
 
-// A change of cost (mm or s) counts as a gain only below -kImprovementTolerance: a search that
-// accepts rounding noise as progress can go round in circles.
+// A change of cost (mm or s) counts as a gain only below -kImprovementTolerance. A search that
+// takes rounding noise for progress can go round in circles.
 inline constexpr double kImprovementTolerance = 1e-9;
 
-// Two computations of one cost agree within kCostTolerance, relative to max(1, cost).
+// Two computations of the same cost agree within kCostTolerance, relative to max(1, cost).
 inline constexpr double kCostTolerance = 1e-6;
 
-// Costs of two routes that differ by no more than this, relative to them, count as the same: in the
-// chain of layers, whose costs are in the caller's unit.
+// Two routes count as equally expensive if their costs differ by no more than this, relatively. For
+// the chain of layers, whose costs are in the caller's unit.
 inline constexpr double kSameCost = 1e-9;
 
-// Largest coordinate, in mm. Squares and sums of such lengths keep their micrometres in a double.
+// Largest coordinate, in mm. A double keeps micrometres in squares and sums of such lengths.
 inline constexpr double kMaxCoordinateMm = 1e6;
 
 }  // namespace traverse

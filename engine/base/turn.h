@@ -1,4 +1,4 @@
-// The turn of a task among those that share a processor.
+// How tasks that share a processor take turns.
 
 #ifndef TRAVERSE_ENGINE_BASE_TURN_H_
 #define TRAVERSE_ENGINE_BASE_TURN_H_
@@ -19,18 +19,18 @@ class CancelToken {
   std::atomic<bool> cancelled_{false};
 };
 
-// A task that may take long asks wanted() again and again, as every Budget does, and gives way when
-// it is: others then need not wait for its end. Results do not depend on it.
+// A task that may take long calls wanted() again and again, as every Budget does, and yields when
+// it returns true. So others need not wait for its end. Results do not depend on it.
 class Turn {
  public:
   virtual ~Turn() = default;
 
-  // Whether others wait, or somebody wants to know that the task is alive. Any thread may ask.
+  // Whether others wait, or somebody checks that the task is alive. Any thread may ask.
   bool wanted() const { return wanted_.load(std::memory_order_relaxed); }
 
-  // Lets others go on, and returns when it is the task's turn again, or soon after it was cancelled
-  // (`cancel` may be null), or at `deadline`. Returns whether it had to wait. REQUIRES: the calling
-  // thread runs the task, and holds no lock.
+  // Lets others run. Returns when it is the task's turn again, soon after `cancel` (may be null)
+  // was cancelled, or at `deadline`. Returns whether it had to wait. REQUIRES: the calling thread
+  // runs the task and holds no lock.
   using Clock = std::chrono::steady_clock;
   virtual bool GiveWay(const CancelToken* cancel, std::optional<Clock::time_point> deadline) = 0;
 

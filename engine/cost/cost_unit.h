@@ -1,9 +1,9 @@
 // The unit in which costs are computed.
 //
-// A move may take a nanosecond or a century: the tolerances of searches and programmes
-// (base/tolerances.h) are for costs as they are on ordinary parts. Problems whose costs are of
-// another order are therefore solved in another unit. Units are powers of two, so that nothing is
-// rounded: routes, and costs in the problem's own unit, are what they would be anyway.
+// A move may take a nanosecond or a century, but the tolerances of searches and programmes
+// (base/tolerances.h) suit costs of ordinary parts. So problems with costs of another magnitude are
+// solved in another unit. Units are powers of two, so nothing is rounded: routes, and costs in the
+// problem's own unit, do not change.
 
 #ifndef TRAVERSE_ENGINE_COST_COST_UNIT_H_
 #define TRAVERSE_ENGINE_COST_COST_UNIT_H_
@@ -15,11 +15,11 @@
 
 namespace traverse {
 
-// By what to multiply the costs of some problems, for which `spec` holds: 1 if a move across all of
-// them costs about as much as on ordinary parts. O(points).
+// The factor by which to multiply the costs of some problems that share `spec`: 1 if a move across
+// all of them costs about as much as on ordinary parts. O(points).
 double CostUnit(const CostSpec& spec, std::initializer_list<const LayerProblem*> problems);
 
-// What costs `unit` times as much as by `spec`. REQUIRES: `unit` is of CostUnit(spec, ...).
+// The same costs as `spec`, multiplied by `unit`. REQUIRES: `unit` comes from CostUnit(spec, ...).
 CostSpec InUnit(const CostSpec& spec, double unit);
 
 }  // namespace traverse

@@ -26,18 +26,18 @@
 
 namespace traverse {
 
-// A workspace for many choices: keeps its memory from one to the next. Not thread-safe.
+// A workspace for many choices, which keeps its memory between them. Not thread-safe.
 class EntryChoice {
  public:
-  // `table` outlives the workspace, and so does `budget`, if there is one: it is asked meanwhile.
-  // Once it is exhausted, choices are made at once, and are not the best any more.
+  // `table` must outlive the workspace, and so must `budget` if it is not null. Asks `budget`
+  // regularly; once that is exhausted, choices come at once and are no longer optimal.
   EntryChoice(const EntryTable& table, const TravelCost& cost, Budget* budget = nullptr)
       : table_(&table), cost_(cost), rest_(budget) {}
 
-  // Writes the best entry (of the table) of paths[k] to entries[k] and returns the cost of all
-  // moves, from `from` to the last path, and on to `to` if there is one. To choose again within a
-  // route, between two visits that stay: `from` is the exit of the one and `to` the entry of the
-  // other. Deterministic. REQUIRES: entries.size() == paths.size().
+  // Sets entries[k] to the best entry (of the table) of paths[k]. Returns the cost of all moves,
+  // from `from` to the last path, and on to `to` if that is set. To choose again within a route
+  // between two visits that stay, `from` is the exit of the first and `to` the entry of the second.
+  // Deterministic. REQUIRES: entries.size() == paths.size().
   double Choose(Point from, absl::Span<const int> paths, const std::optional<Point>& to,
                 absl::Span<int> entries);
 
@@ -45,7 +45,7 @@ class EntryChoice {
   // One node of a tree over the entries of a path: entries [first, end) of the layer, in preorder.
   struct TreeNode {
     BoundingBox box;  // of their exits
-    double best = 0;  // least best_ of them
+    double best = 0;  // least best_ of these entries
     int first = 0;
     int end = 0;
     int skip = 0;  // the node that follows the subtree
@@ -62,11 +62,11 @@ class EntryChoice {
   TravelCost cost_;
   Rest rest_;
 
-  std::vector<double> best_;          // [entry of the last path] least cost to have entered there
-  std::vector<double> next_;          // the same of the next path, under construction
-  std::vector<double> totals_;        // [entry of the last path] scratch of AdvanceByScan
-  std::vector<int> parents_;          // [entry of any path but the first] the best one before it
-  std::vector<size_t> parent_begin_;  // [k] where those of paths[k] begin
+  std::vector<double> best_;          // [entry of the last path] least cost up to entering there
+  std::vector<double> next_;          // [entry of the next path] the same, under construction
+  std::vector<double> totals_;        // [entry of the last path] scratch space of AdvanceByScan
+  std::vector<int> parents_;          // [entry of any path but the first] the best entry before it
+  std::vector<size_t> parent_begin_;  // [k] where the entries of paths[k] begin
   std::vector<TreeNode> tree_;
 };
 

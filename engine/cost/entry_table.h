@@ -13,12 +13,12 @@
 
 namespace traverse {
 
-// Entries are numbered from 0 over all paths; those of path p are [first(p), first(p + 1)), in the
-// order of Path::allowed (or of the vertices) for a contour, forward then reversed for an open
-// path. Contours have enter(e) == exit(e). Memory: 40 bytes an entry.
+// Entries are numbered from 0 over all paths. Path p has [first(p), first(p + 1)), for a contour in
+// the order of Path::allowed (or of its vertices), for an open path forward and then reversed.
+// Contours have enter(e) == exit(e). Memory: 40 bytes per entry.
 class EntryTable {
  public:
-  // `budget`, if there is one, is asked meanwhile.
+  // Asks `budget` regularly, if it is not null.
   explicit EntryTable(const Plan& plan, Budget* budget = nullptr);
 
   int path_count() const { return static_cast<int>(first_.size()) - 1; }
@@ -36,7 +36,7 @@ class EntryTable {
 
   int path_of(int entry) const { return path_of_[static_cast<size_t>(entry)]; }
 
-  // The visit that `entry` stands for, and back. REQUIRES for EntryOf: visit.entry is allowed.
+  // Converts an entry to its visit, and back. REQUIRES for EntryOf: visit.entry is allowed.
   Visit VisitOf(int entry) const {
     return Visit{path_of(entry), visit_entry_[static_cast<size_t>(entry)]};
   }

@@ -1,4 +1,4 @@
-// Where the parts of a plan may be begun.
+// Where the parts of a plan may begin.
 
 #ifndef TRAVERSE_ENGINE_COST_FIRST_ENTRIES_H_
 #define TRAVERSE_ENGINE_COST_FIRST_ENTRIES_H_
@@ -23,10 +23,10 @@ inline int Beginning(const PlanTree& tree, int node) {
   return node;
 }
 
-// Calls `f(entry)` for entries of the layer's table at which `node` may be begun: for all of the
-// leaf if it begins with one, else for about `limit` or fewer, at least one, evenly spread over the
-// children that may be first. O(entries) for a leaf, else O(limit + children), a level of nested
-// nodes.
+// Calls `f(entry)` for entries of the layer's table at which `node` may begin. If it begins with a
+// leaf, these are all entries of it. Otherwise they are about `limit` or fewer, at least one,
+// evenly spread over the children that may come first. O(entries) for a leaf, else O(limit +
+// children) per level of nested nodes.
 template <typename F>
 void ForEachFirstEntry(const LayerView& layer, int node, size_t limit, F&& f, bool all = true) {
   node = Beginning(layer.tree, node);

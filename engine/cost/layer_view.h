@@ -12,7 +12,7 @@ namespace traverse {
 
 // Immutable; O(points + nodes + pairs) to build.
 struct LayerView {
-  // `problem` and its plan outlive the view. `budget`, if there is one, is asked meanwhile.
+  // `problem` and its plan must outlive the view. Asks `budget` regularly, if it is not null.
   explicit LayerView(const LayerProblem& layer_problem, Budget* budget = nullptr)
       : problem(layer_problem),
         tree(*problem.plan, budget),

@@ -1,12 +1,12 @@
 // The nearest neighbors of groups of points.
 //
-// A group is what a route may enter or leave at one place of its choice: all vertices of a contour,
-// or one end of an open path. Local search looks for new moves between near groups only, so that
-// its work grows with the number of groups and not with its square (Johnson and McGeoch 1997).
+// A group is a set of points of which a route may choose one to enter or leave: all vertices of a
+// contour, or one end of an open path. Local search looks for new moves only between near groups,
+// so its work grows with the number of groups and not its square (Johnson and McGeoch 1997).
 //
-// A tree over the points, halved at the median of the longer side (Bentley 1975), answers one
-// query a group. O(n log n) for n points, whatever their distribution. Of a large group a sample of
-// kSamples points takes part; the distances are refined over all of its points afterwards. 1000
+// A tree over the points, halved at the median of the longer side (Bentley 1975), answers one query
+// per group. O(n log n) for n points, whatever their distribution. A large group takes part with a
+// sample of kSamples points; afterwards the distances are refined over all of its points. 1000
 // contours of 40 vertices and as many rasters: 7 ms (tests/bench/micro).
 
 #ifndef TRAVERSE_ENGINE_COST_NEIGHBOR_LISTS_H_
@@ -21,8 +21,8 @@
 
 namespace traverse {
 
-// Groups of points, numbered from 0: the points of group g are points[first[g]] to
-// points[first[g + 1] - 1]. `first` has one element more than there are groups.
+// Groups of points, numbered from 0: group g has points[first[g]] to points[first[g + 1] - 1].
+// `first` has one element more than there are groups.
 struct PointGroups {
   std::vector<Point> points;
   std::vector<int> first = {0};
@@ -45,27 +45,27 @@ class NeighborLists {
     double distance_mm = 0;  // between the nearest points of the two groups; rarely a little more
   };
 
-  // Groups between which neighbors are looked for: groups of the same owner are no neighbors.
+  // A group that takes part in a search. Groups of the same owner are not neighbors.
   struct Member {
     int group = 0;
     int owner = 0;
   };
 
-  // Points of a large group that stand for it when neighbors are looked for.
+  // Points that represent a large group in a search.
   static constexpr size_t kSamples = 12;
 
-  // Nobody has neighbors yet. `groups` outlives the lists.
+  // Starts without neighbors. `groups` must outlive the lists.
   explicit NeighborLists(const PointGroups& groups);
 
   // Finds for each member its `count` nearest members of other owners. When the budget runs out,
-  // the members that are left get none. REQUIRES: not sealed; every group at most once.
+  // the remaining members get none. REQUIRES: not sealed; every group at most once.
   void FindAmong(absl::Span<const Member> members, int count, Budget& budget);
 
-  // Ends the search, asking `budget` meanwhile, if there is one; if that has run out, nobody has
-  // neighbors. Only then `of` may be called.
+  // Ends the search; `of` may be called only after this. Asks `budget` regularly, if it is not
+  // null; if that has run out, no group has neighbors.
   void Seal(Budget* budget = nullptr);
 
-  // Nearest first.
+  // The neighbors of `group`, nearest first.
   absl::Span<const Neighbor> of(int group) const {
     const size_t begin = static_cast<size_t>(first_[static_cast<size_t>(group)]);
     const size_t end = static_cast<size_t>(first_[static_cast<size_t>(group) + 1]);
@@ -78,13 +78,13 @@ class NeighborLists {
     Neighbor neighbor;
   };
 
-  // In blocks, as a long array takes long to be moved and to be freed.
+  // Neighbors are kept in blocks, because moving and freeing one long array takes long.
   static constexpr size_t kBlock = 1 << 15;
   void Note(const Found& found);
 
   const PointGroups& groups_;
   std::vector<std::vector<Found>> found_;
-  std::vector<int> first_;  // [group] where its neighbors begin; one more
+  std::vector<int> first_;  // [group] where its neighbors begin; one more at the end
   std::vector<Neighbor> neighbors_;
 };
 

@@ -8,10 +8,10 @@
 
 namespace traverse {
 
-// Sum of the costs of all moves of `route`, in the unit of problem.cost, the move to `finish`
-// included. REQUIRES: the visits are of paths of the problem's plan; they need not be all of
-// them. `budget`, if there is one, is asked meanwhile; among walls, where each move may take long,
-// the sum is left once that is cancelled.
+// Sum of the costs of all moves of `route`, in the unit of problem.cost, including the move to
+// `finish`. Asks `budget` regularly, if it is not null; among walls, where each move may take long,
+// stops once that is cancelled. REQUIRES: the visits are of paths of the problem's plan; they need
+// not be all of them.
 double RouteCost(const LayerProblem& problem, const Route& route, Budget* budget = nullptr);
 
 // Where the head is after `route`: the last exit, or `start` for an empty route.

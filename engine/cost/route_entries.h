@@ -1,4 +1,4 @@
-// The entries of a given route, chosen again.
+// Chooses the entries of a given route again.
 
 #ifndef TRAVERSE_ENGINE_COST_ROUTE_ENTRIES_H_
 #define TRAVERSE_ENGINE_COST_ROUTE_ENTRIES_H_
@@ -9,13 +9,13 @@
 
 namespace traverse {
 
-// A route of up to so many visits is chosen as a whole; more of them would be too many between two
-// looks at the clock.
+// A route of up to this many visits is chosen as a whole. Longer windows would take too long
+// between two readings of the clock.
 inline constexpr int kEntryWindow = 256;
 
-// Chooses the entries of `route`, a valid one, again, its order kept: exactly (EntryChoice) within
-// windows of kEntryWindow visits that overlap by half. Never worse. When the budget runs out, the
-// windows that are left stay as they are.
+// Chooses the entries of `route`, a valid one, again and keeps its order: exactly (EntryChoice)
+// within windows of kEntryWindow visits that overlap by half. Never worse. When the budget runs
+// out, the remaining windows stay as they are.
 void ChooseEntries(const LayerView& layer, Route& route, Budget& budget);
 
 }  // namespace traverse

@@ -13,12 +13,12 @@
 
 namespace traverse {
 
-// A small value to pass by const reference into inner loops. The cost never falls as the length
-// grows, so without walls the nearest point is also the cheapest one to reach; walls only add to
-// what a length costs, which bounds the cost from below.
+// A small value to pass by const reference into inner loops. Without walls the cost never falls as
+// the length grows, so the nearest point is also the cheapest to reach. Walls only add to the cost
+// of the length, so that bounds the cost from below.
 class TravelCost {
  public:
-  // `walls` outlive the cost, and are multiplied by `walls_unit`; null: there are none.
+  // `walls` must outlive this object and are multiplied by `walls_unit`; null: there are none.
   explicit TravelCost(const CostSpec& spec, const WallCost* walls = nullptr, double walls_unit = 1)
       : spec_(spec),
         walls_(walls),
@@ -27,34 +27,34 @@ class TravelCost {
         full_speed_mm_(spec.speed_mm_s * ramp_seconds_),
         threshold_seconds_(Motion(spec.retraction_threshold_mm)) {}
 
-  // Not for what {} may stand for as well.
+  // A template, so that {} is not taken for a LayerProblem.
   template <std::same_as<LayerProblem> Problem>
   explicit TravelCost(const Problem& problem)
       : TravelCost(problem.cost, problem.walls, problem.walls_unit) {}
 
-  // In mm or s, as the spec says; the same there and back.
+  // In mm or s, as the spec says. The same in both directions.
   double operator()(Point from, Point to) const {
     return walls_ == nullptr ? Base(from, to) : WithWalls(from, to);
   }
 
-  // What the move costs at least: its cost if there were no walls.
+  // A lower bound of the move's cost: its cost without walls.
   double Base(Point from, Point to) const { return OfLength(Distance(from, to)); }
 
-  // Cost of a move of `length_mm` >= 0 that no wall has to do with.
+  // Cost of a move of `length_mm` >= 0 that no wall affects.
   double OfLength(double length_mm) const {
     return spec_.kind == CostSpec::Kind::kLength ? length_mm : Seconds(length_mm);
   }
 
-  // Seconds of a move of `length_mm` >= 0 without a retraction, where the cost is a time. From
-  // standstill to standstill: with a = acceleration and v = speed, the speed is reached only by
-  // moves longer than v^2 / a; these take l / v + v / a, shorter ones 2 sqrt(l / a).
+  // Seconds of a move of `length_mm` >= 0 without a retraction, if the cost is a time. From
+  // standstill to standstill, with a = acceleration and v = speed: only moves longer than v^2 / a
+  // reach the speed and take l / v + v / a; shorter ones take 2 sqrt(l / a).
   double Motion(double length_mm) const {
     if (length_mm >= full_speed_mm_) return length_mm / spec_.speed_mm_s + ramp_seconds_;
     return 2 * std::sqrt(length_mm / spec_.accel_mm_s2);
   }
 
-  // The length in mm of the longest moves that cost no more than `cost` >= 0, but for rounding. For
-  // quick rejections: what is farther away costs more.
+  // The length in mm of the longest moves that cost no more than `cost` >= 0, apart from rounding.
+  // For quick rejections: whatever is farther away costs more.
   double LongestWithin(double cost) const {
     if (is_length()) return cost;
     // Just above the threshold, moves cost a whole retraction more.
@@ -82,7 +82,7 @@ class TravelCost {
   double walls_unit_;
   double ramp_seconds_;       // v / a
   double full_speed_mm_;      // v^2 / a
-  double threshold_seconds_;  // motion of a move as long as the retraction threshold
+  double threshold_seconds_;  // motion of a move with the length of the retraction threshold
 };
 
 }  // namespace traverse

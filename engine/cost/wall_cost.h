@@ -1,10 +1,10 @@
-// What a travel move costs in a layer with walls: the one function that strategies ask, and that
-// whoever carries the moves out can ask, so that what was found is what is done.
+// What a travel move costs in a layer with walls. All strategies ask this one function, and so can
+// the code that writes the moves, so that moves are made as the search counted them.
 //
-// A move across a wall is retracted beyond a threshold of its own, is lifted, and pays a price; or
-// it is led around the walls, if there is a way that costs less. Either costs no less than the
-// straight move does without walls (TravelCost::OfLength), which therefore bounds it from below;
-// nor does a move of which it is known what it costs.
+// A move across a wall retracts beyond a threshold of its own, lifts, and pays a price. Or it leads
+// around the walls, if a detour is found that costs less. Both cost at least as much as the
+// straight move without walls (TravelCost::OfLength), which is therefore a lower bound. Moves with
+// a known cost do not cost less either.
 
 #ifndef TRAVERSE_ENGINE_COST_WALL_COST_H_
 #define TRAVERSE_ENGINE_COST_WALL_COST_H_
@@ -27,52 +27,52 @@
 
 namespace traverse {
 
-// How a move is done.
+// How a move is made.
 struct WallMove {
   bool crosses = false;    // a wall
-  bool retracts = false;   // filament is pulled back for it
-  double length_mm = 0;    // with the bends
+  bool retracts = false;   // with a retraction
+  double length_mm = 0;    // with its bends
   double cost = 0;         // in s
-  std::vector<Point> via;  // bends of the way around walls; empty: it is straight
+  std::vector<Point> via;  // bends of the detour around walls; empty if the move is straight
 };
 
-// Remembers what it was asked, so not for several threads at once. Memory: 40 bytes for each of up
-// to 32,768 moves, or 65,536 where ways are led around walls, from the first question on.
+// Remembers what it was asked, so it must not be shared between threads. Memory: 40 bytes for each
+// of up to 32,768 moves, or 65,536 with detours, from the first question on.
 class WallCost {
  public:
-  // REQUIRES: `spec` is a time; `walls` passes CheckWalls for `plan`. O(points) and sorting those
-  // of exposed and retracted paths; asks `budget`, if there is one, meanwhile.
+  // REQUIRES: `spec` is a time; `walls` passes CheckWalls for `plan`. O(points), and sorting those
+  // of exposed and retracted paths. Asks `budget` regularly, if it is not null.
   WallCost(const LayerWalls& walls, const Plan& plan, const CostSpec& spec,
            Budget* budget = nullptr);
 
-  // Of two layers, one done right after the other: moves to and from the points of the second are
-  // among its walls, all others among those of the first. `second_points`: for each point of the
-  // second layer, as it is asked for, what it stands for. Null: that layer has no walls; what is
-  // pointed to outlives this. REQUIRES: both have the same `spec`.
+  // For two layers, one done right after the other: moves to and from the points of the second
+  // layer are among its walls, all others among those of the first. `second_points` maps each point
+  // of the second layer, as callers name it, to the point that it represents. Null: that layer has
+  // no walls. The pointers must outlive this object. REQUIRES: both have the same `spec`.
   WallCost(const WallCost* first, const WallCost* second,
            const std::vector<std::pair<Point, Point>>& second_points, const CostSpec& spec);
 
-  // The cost in s of the move from `a` to `b`, the same there and back.
+  // The cost in s of the move from `a` to `b`, the same in both directions.
   double operator()(Point a, Point b) const;
 
-  // The same, and how it comes about.
+  // The same, with how the move is made.
   WallMove MoveOf(Point a, Point b) const;
 
   const WallGrid& grid() const { return grid_; }
 
-  // What of the cost of a move is the price of a crossing. Where ways are led around walls, and of
-  // two layers, nobody knows: 0.
+  // The part of a move's cost that is the price of a crossing. 0, because it is unknown, with
+  // detours and for two layers.
   double PriceOf(Point a, Point b) const;
 
-  // What has been asked so far, counted in what takes some 50 ns: the same for the same questions,
-  // so that a search may end by it. What the two layers were asked through a cost of both counts
-  // there, and here.
+  // All questions so far, in units of about 50 ns of work. The same questions give the same
+  // number, so a search may end by it. Questions to a cost of two layers count there and
+  // here.
   int64_t work() const;
 
  private:
   struct Known {
     Point a, b;
-    double cost = -1;  // negative: nothing is known
+    double cost = -1;  // negative: unknown
   };
 
   bool IsExposed(Point a, Point b) const;

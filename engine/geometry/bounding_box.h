@@ -1,4 +1,4 @@
-// The smallest rectangle, parallel to the axes, that holds some points.
+// The smallest axis-parallel rectangle that contains some points.
 
 #ifndef TRAVERSE_ENGINE_GEOMETRY_BOUNDING_BOX_H_
 #define TRAVERSE_ENGINE_GEOMETRY_BOUNDING_BOX_H_
@@ -13,7 +13,7 @@
 
 namespace traverse {
 
-// In mm. Empty until the first point was added.
+// In mm. Empty until the first point is added.
 class BoundingBox {
  public:
   BoundingBox() = default;
@@ -35,7 +35,7 @@ class BoundingBox {
   Point low() const { return low_; }
   Point high() const { return high_; }
 
-  // REQUIRES of these: not empty.
+  // Each of these REQUIRES: not empty.
   double width() const {
     assert(!empty());
     return high_.x - low_.x;
@@ -50,15 +50,15 @@ class BoundingBox {
     return {(low_.x + high_.x) / 2, (low_.y + high_.y) / 2};
   }
 
-  // Square of the distance from `point` to the nearest point of the box. No point of the box is
-  // nearer, rounding included, as each step rounds both the same way. Infinite for an empty box.
+  // Squared distance from `point` to the nearest point of the box; infinite if that is empty. No
+  // point of the box is nearer, even with rounding, because each step rounds both the same way.
   double SquaredDistanceTo(Point point) const {
     const double dx = std::max({low_.x - point.x, point.x - high_.x, 0.0});
     const double dy = std::max({low_.y - point.y, point.y - high_.y, 0.0});
     return dx * dx + dy * dy;
   }
 
-  // From the point or box to the nearest point of this box; 0 if they meet.
+  // From the point or box to the nearest point of this box; 0 if they touch.
   double DistanceTo(Point point) const { return std::sqrt(SquaredDistanceTo(point)); }
   double DistanceTo(const BoundingBox& other) const {
     const double dx = std::max({low_.x - other.high_.x, other.low_.x - high_.x, 0.0});
@@ -66,7 +66,7 @@ class BoundingBox {
     return std::sqrt(dx * dx + dy * dy);
   }
 
-  // From `point` to the corner that is farthest from it.
+  // From `point` to the farthest corner.
   double FarthestCornerDistance(Point point) const {
     return Distance(
         point, {point.x > center().x ? low_.x : high_.x, point.y > center().y ? low_.y : high_.y});

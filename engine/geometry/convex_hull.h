@@ -20,18 +20,18 @@ inline double Cross(Point a, Point b, Point c) {
 }
 
 // Indices of the corners of the convex hull of `points`, counterclockwise from the leftmost (of
-// these the lowest). Points on an edge, and all but the first of coinciding ones, are no corners:
-// one point, or points on a line, give one or two corners. No points give none. O(n log n).
+// several the lowest). Points on an edge are not corners, nor are repeated points after the first
+// one. One point, or points on a line, give one or two corners; no points give none. O(n log n).
 std::vector<int> ConvexHull(absl::Span<const Point> points);
 
-// The two lines that touch both of two sets of points and have both sets on one side, each as the
-// points where it touches (indices). Seen from the first set towards the second one,
+// The two lines that touch both of two sets of points and have both sets on one side, each given by
+// the points where it touches (indices). Seen from the first set towards the second,
 //
 //        a_left  o-------------o  b_left
 //        (first set)       (second set)
 //        a_right o-------------o  b_right
 //
-// with both sets to the right of a_left -> b_left and to the left of a_right -> b_right.
+// both sets lie to the right of a_left -> b_left and to the left of a_right -> b_right.
 struct OuterTangents {
   int a_left = 0;
   int b_left = 0;
@@ -39,8 +39,8 @@ struct OuterTangents {
   int b_right = 0;
 };
 
-// Unset if there are not exactly two: one hull lies in the other one, or they cross. REQUIRES:
-// neither is empty. O(n log n).
+// Unset if there are not exactly two: one hull lies in the other, or they cross. REQUIRES: neither
+// set is empty. O(n log n).
 std::optional<OuterTangents> FindOuterTangents(absl::Span<const Point> a,
                                                absl::Span<const Point> b);
 

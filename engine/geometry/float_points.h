@@ -1,4 +1,4 @@
-// Points in single precision, four at a time: enough to tell which are near each other.
+// Points in single precision, four at a time: precise enough to find which are near each other.
 
 #ifndef TRAVERSE_ENGINE_GEOMETRY_FLOAT_POINTS_H_
 #define TRAVERSE_ENGINE_GEOMETRY_FLOAT_POINTS_H_
@@ -12,12 +12,12 @@
 
 namespace traverse {
 
-// In mm, relative to an origin that whoever makes them chooses near them.
+// In mm, relative to a nearby origin that the caller chooses.
 struct FloatPoint {
   float x, y;
 };
 
-// Groups of points, each filled up to whole vectors with its last one. Memory: 8 bytes a point.
+// Groups of points, padded with their last point to whole vectors. Memory: 8 bytes per point.
 class FloatGroups {
  public:
   static constexpr size_t kLanes = 4;
@@ -25,7 +25,7 @@ class FloatGroups {
   struct Group {
     const float* x;
     const float* y;
-    size_t n;  // filled up
+    size_t n;  // including the repeated points
   };
 
   size_t size() const { return first_.size() - 1; }
@@ -35,7 +35,7 @@ class FloatGroups {
             first_[group + 1] - first_[group]};
   }
 
-  // Adds to the group that is last; ends it. REQUIRES for Close: it has points.
+  // Adds to the last group; ends it. REQUIRES for Close: the group has points.
   void Add(FloatPoint point) {
     x_.push_back(point.x);
     y_.push_back(point.y);
@@ -52,13 +52,13 @@ class FloatGroups {
   std::vector<size_t> first_ = {0};
 };
 
-// The number of the point of `group` that is nearest to `from`; those that fill it up count.
+// The number of the point of `group` that is nearest to `from`. It may be a repeated one.
 size_t NearestOf(const FloatGroups::Group& group, FloatPoint from);
 
-// The least square of a distance between points of two groups.
+// The least squared distance between points of two groups.
 struct NearestPair {
   float squared;
-  size_t there;  // the number of a point of the second group that is so near
+  size_t there;  // the number of a point of the second group at that distance
 };
 NearestPair NearestBetween(const FloatGroups::Group& here, const FloatGroups::Group& there);
 

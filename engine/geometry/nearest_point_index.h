@@ -1,9 +1,9 @@
-// Nearest of a set of points, where points leave and come back.
+// Finds the nearest point of a set from which points are removed and to which they return.
 //
-// A tree of bounding boxes over the points in Morton order (Morton 1966): neighbors on the curve
-// are neighbors in the plane, so no splitting planes have to be found. O(n log n) to build, O(log
-// n) to remove and insert, about O(log n) for a query, however the points cluster and however few
-// are left. Memory: about 40 bytes a point. 200 000 points: 20 ms to build.
+// A tree of bounding boxes over the points in Morton order (Morton 1966). Neighbors on that curve
+// are neighbors in the plane, so the tree needs no splitting planes. O(n log n) to build, O(log n)
+// to remove and insert, about O(log n) for a query, however the points cluster and however few are
+// left. Memory: about 40 bytes per point. 200 000 points: 20 ms to build.
 
 #ifndef TRAVERSE_ENGINE_GEOMETRY_NEAREST_POINT_INDEX_H_
 #define TRAVERSE_ENGINE_GEOMETRY_NEAREST_POINT_INDEX_H_
@@ -22,8 +22,8 @@ namespace traverse {
 //   index.Nearest({6, 0});   // 2
 class NearestPointIndex {
  public:
-  // Point i of `points` has the id i; all are in the set. `budget`, if there is one, is asked
-  // meanwhile.
+  // Point i of `points` has the id i; the set contains all of them. Asks `budget` regularly, if it
+  // is not null.
   explicit NearestPointIndex(std::vector<Point> points, Budget* budget = nullptr);
 
   int size() const { return count_[1]; }
@@ -35,17 +35,17 @@ class NearestPointIndex {
   // The id of the point nearest to `p`, the smallest of several; -1 if the set is empty.
   int Nearest(Point p) const;
 
-  // Square of the distance in mm from `p` to a point, in the set or not.
+  // Square of the distance in mm from `p` to a point, whether or not the set contains it.
   double SquaredDistance(int id, Point p) const {
     const Point point = points_[static_cast<size_t>(place_[static_cast<size_t>(id)])];
     return (point.x - p.x) * (point.x - p.x) + (point.y - p.y) * (point.y - p.y);
   }
 
-  // Some id of the set, the same for the same history; -1 if it is empty. O(log n).
+  // Some id of the set, the same one after the same calls; -1 if the set is empty. O(log n).
   int Any() const;
 
-  // From now on only Any is asked for, which takes O(1) on the average, as Remove and Insert do.
-  // The ids then come along a curve through the plane.
+  // Promises that only Any will be called. It then takes O(1) on average, as Remove and Insert do,
+  // and its ids follow a curve through the plane.
   void StopSearching() { searching_ = false; }
 
  private:
@@ -56,12 +56,12 @@ class NearestPointIndex {
   void ScanLeaf(size_t leaf, Point p, double& least, int& nearest) const;
 
   bool searching_ = true;
-  mutable size_t first_ = 0;        // if not searching_: no place before it is in the set
+  mutable size_t first_ = 0;        // if not searching_: no earlier position is in the set
   size_t leaves_ = 1;               // a power of two
   std::vector<Point> points_;       // in Morton order; leaf l has [l * kLeafSize, ...)
   std::vector<int> ids_;            // of points_
   std::vector<char> in_set_;        // of points_, and a last one that ends searches
-  std::vector<int> place_;          // [id] its place in points_
+  std::vector<int> place_;          // [id] its position in points_
   std::vector<BoundingBox> boxes_;  // [node] a heap: the children of node n are 2n and 2n + 1, the
   std::vector<int> count_;          // leaves begin at leaves_; count_: points in the set
 };

@@ -9,9 +9,9 @@
 
 namespace traverse {
 
-// Between a point of `a` and one of `b`, in mm. O(n log n) for large sets on the average; small
-// ones are compared pair by pair. Asks the budget, and returns that of the sets' boxes, which is no
-// greater, once it is exhausted. REQUIRES: neither is empty.
+// The least distance between a point of `a` and one of `b`, in mm. Large sets take O(n log n) on
+// average; small ones are compared pair by pair. Once the budget is exhausted, returns the distance
+// of the sets' boxes, which is no greater. REQUIRES: neither set is empty.
 double LeastDistance(absl::Span<const Point> a, absl::Span<const Point> b, Budget& budget);
 
 }  // namespace traverse

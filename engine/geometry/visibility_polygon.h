@@ -1,4 +1,4 @@
-// The visibility polygon of two contours: what lies between their outer tangents.
+// The visibility polygon of two contours: the area between their outer tangents.
 //
 //        a1 o------------------o b1       the tangents touch a in a1 and a2, b in b1 and b2;
 //         / .\                /. \        the polygon is a1, a2, b2, b1
@@ -19,16 +19,16 @@
 
 namespace traverse {
 
-// The points of two contours that lie in their visibility polygon, its border included: indices in
-// rising order, for each contour at least one.
+// The points of two contours in their visibility polygon or on its border: indices in rising order,
+// at least one for each contour.
 struct VisiblePoints {
   std::vector<int> a;
   std::vector<int> b;
 };
 
-// One point is a contour too: the origin. Unset if there is no polygon between them, as the convex
-// hulls of the contours overlap: one encloses the other one, or they interlock. REQUIRES: neither
-// is empty. O(n log n).
+// A single point, such as the origin, is a contour too. Unset if there is no polygon because the
+// convex hulls overlap: one contour encloses the other, or they interlock. REQUIRES: neither is
+// empty. O(n log n).
 std::optional<VisiblePoints> FindVisiblePoints(absl::Span<const Point> a,
                                                absl::Span<const Point> b);
 

@@ -1,11 +1,11 @@
-// Ways around walls.
+// Detours around walls.
 //
 //        a        b                 a        b
 //   -----+--------+-----       -----+        +-----
-//   |    |        |    |       |    |        |    |     The wall is followed at a distance from
-//   |  __|________|__  |       |  __|_      _|__  |     where the straight way meets it first to
-//   | |  |        |  | |       | |  | |    | |  | |     where it leaves it last, the shorter way
-//   | |  +--------+  | |       | |  | +----+ |  | |     round, and the way is pulled taut.
+//   |    |        |    |       |    |        |    |     The detour follows the wall at a distance,
+//   |  __|________|__  |       |  __|_      _|__  |     from where the straight move first meets it
+//   | |  |        |  | |       | |  | |    | |  | |     to where it last leaves it, the shorter way
+//   | |  +--------+  | |       | |  | +----+ |  | |     round, and is then pulled taut.
 
 #ifndef TRAVERSE_ENGINE_GEOMETRY_WALL_DETOUR_H_
 #define TRAVERSE_ENGINE_GEOMETRY_WALL_DETOUR_H_
@@ -21,21 +21,21 @@ namespace traverse {
 
 class WallDetours {
  public:
-  // `grid` outlives the detours. Ways lead by walls at `clearance_mm`; a point nearer to one than
-  // `on_wall_mm` lies on it.
-  // O(w); asks `budget`, if there is one, meanwhile.
+  // `grid` must outlive this object. Detours pass walls at `clearance_mm`. A point nearer
+  // to a wall than `on_wall_mm` lies on it. Asks `budget` regularly, if it is not null.
+  // O(w).
   WallDetours(const WallGrid& grid, double clearance_mm, double on_wall_mm,
               Budget* budget = nullptr);
 
-  // The bends of a way from `a` to `b` whose straight pieces cross no wall (WallGrid::Crosses).
-  // Empty if the straight way crosses none, and if no way was found: from one island to another
-  // there is none, and through a maze this does not look for one. The shorter one of what is found
-  // there and back. O(w) tests for walls crossed, w points of the walls followed; their number is
-  // added to `tests`, unless that is null.
+  // The bends of a detour from `a` to `b` whose straight pieces cross no wall (WallGrid::Crosses).
+  // Empty if the straight move crosses none, and if no detour was found: there is none from one
+  // island to another, and this does not search mazes. Returns the shorter of the detours found in
+  // the two directions. Does O(w) tests for crossings, for w points of the walls followed, and adds
+  // their number to `tests` unless that is null.
   std::vector<Point> Around(Point a, Point b, int64_t* tests = nullptr) const;
 
  private:
-  // Where a way crosses a wall: a segment, and how far along the way.
+  // Where a move crosses a wall: the segment, and the position along the move.
   struct Hit {
     double along = 0;
     uint32_t segment = 0;
@@ -50,10 +50,10 @@ class WallDetours {
               std::vector<Point>& way) const;
   Point Beside(uint32_t before, uint32_t behind, Point at, double side) const;
 
-  // On one side of the walls.
+  // One side of the walls.
   struct Side {
     std::vector<Point> bends;     // [segment] beside the corner at its end
-    std::vector<double> upto_mm;  // [segment] from the first bend of its wall to its own
+    std::vector<double> upto_mm;  // [segment] length from the first bend of its wall to its own
   };
   const Side& SideAt(double side) const { return sides_[side > 0 ? 1 : 0]; }
   double BetweenBends(uint32_t wall, const Side& side, uint32_t from, uint32_t to) const;

@@ -1,8 +1,8 @@
-// The walls of a layer in a grid of cells: which of them does a straight way cross?
+// The walls of a layer in a grid of cells, which finds the walls that a straight move crosses.
 //
-// The cells are as large as the segments are long on average, so that n segments take O(n) memory
-// and a way looks at the few segments of the cells that it leads through. A layer without walls
-// near a way costs it next to nothing.
+// The cells are as large as the mean length of the segments. So n segments take O(n) memory, and a
+// test looks only at the few segments in the cells that the move passes. A layer without walls near
+// a move costs almost nothing.
 
 #ifndef TRAVERSE_ENGINE_GEOMETRY_WALL_GRID_H_
 #define TRAVERSE_ENGINE_GEOMETRY_WALL_GRID_H_
@@ -26,36 +26,36 @@ namespace traverse {
 struct WallSegment {
   Point a;
   Point b;
-  uint32_t wall = 0;  // index in the walls given
+  uint32_t wall = 0;  // index into the given walls
 };
 
-// True if the segments ab and cd cross at one point inside ab. A line from a to b through a point
-// at which two others meet that lie on either side of it crosses one of these.
+// True if the segments ab and cd cross at one point inside ab. If a line from a to b passes a point
+// where two other segments meet from either side of it, it crosses one of these.
 bool SegmentsCross(Point a, Point b, Point c, Point d);
 
-// Immutable. Segments of a wall follow one another; those without length are left out.
+// Immutable. The segments of a wall follow one another, without those of length zero.
 class WallGrid {
  public:
-  // Of a way, `slack_mm` at each end are not looked at, but no more than a fifth of it: ways begin
-  // and end on lines that may be walls themselves, or lie against them. O(n) for n points; asks
-  // `budget`, if there is one, meanwhile.
+  // Ignores `slack_mm` at each end of a move, but no more than a fifth of it: moves begin and end
+  // on lines that may be walls themselves, or touch them. Asks `budget` regularly, if it is not
+  // null. O(n) for n points.
   WallGrid(absl::Span<const Wall> walls, double slack_mm, Budget* budget = nullptr);
 
   const std::vector<WallSegment>& segments() const { return segments_; }
 
-  // The segments of one of the walls given: [first, second).
+  // The segments of one of the given walls: [first, second).
   std::pair<uint32_t, uint32_t> SegmentsOf(uint32_t wall) const {
     return {first_of_wall_[wall], first_of_wall_[wall + size_t{1}]};
   }
 
-  // Whether a way, less its ends, crosses a wall; the same there and back.
+  // Whether a move, without its ignored ends, crosses a wall. The same in both directions.
   bool Crosses(Point a, Point b) const;
 
-  // The part of a way that is looked at.
+  // The move without its ignored ends.
   std::pair<Point, Point> WithoutEnds(Point a, Point b) const;
 
   // Calls visit(index of a segment) for all segments that may meet the straight line from `a` to
-  // `b`, some of them more than once, until it returns false.
+  // `b`, for some more than once, until it returns false.
   template <typename Visit>
   void ForEachOnLine(Point a, Point b, Visit visit) const;
 
@@ -67,7 +67,7 @@ class WallGrid {
     return static_cast<int>(std::clamp((y - low_.y) * per_mm_, 0.0, rows_ - 1.0));
   }
 
-  // Calls visit(row, first column, last column) for rows of cells that hold the line.
+  // Calls visit(row, first column, last column) for the rows of cells that contain the line.
   template <typename Visit>
   void ForEachRow(Point a, Point b, Visit visit) const;
   void SizeCells(Rest& rest);
@@ -87,7 +87,7 @@ class WallGrid {
 
 template <typename Visit>
 void WallGrid::ForEachRow(Point a, Point b, Visit visit) const {
-  // More than rounding can move a point of the line.
+  // More than rounding can shift a point of the line.
   constexpr double kSlack = 1e-6;
   if (a.y > b.y) std::swap(a, b);
   const int first = Row(a.y - kSlack);

@@ -1,4 +1,4 @@
-// How the moves of a route are done, where their cost is a time.
+// How the moves of a route are made, if their cost is a time.
 
 #ifndef TRAVERSE_ENGINE_MODEL_MOVES_H_
 #define TRAVERSE_ENGINE_MODEL_MOVES_H_
@@ -12,8 +12,8 @@
 namespace traverse {
 
 struct MoveCounts {
-  int64_t crossings = 0;    // moves across a wall, or several
-  int64_t retractions = 0;  // moves for which filament is pulled back
+  int64_t crossings = 0;    // moves that cross one or more walls
+  int64_t retractions = 0;  // moves that retract
 
   MoveCounts& operator+=(const MoveCounts& other) {
     crossings += other.crossings;

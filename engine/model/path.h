@@ -1,4 +1,4 @@
-// A path: what is deposited in one go.
+// A path: what is deposited without interruption.
 
 #ifndef TRAVERSE_ENGINE_MODEL_PATH_H_
 #define TRAVERSE_ENGINE_MODEL_PATH_H_
@@ -25,12 +25,12 @@ struct Path {
   // Open path: always from points[0] to points[1].
   bool one_way = false;
 
-  // The island that the path belongs to: its position among the islands that the plan was built
-  // from; -1 if the plan knows of none (engine/weller/steps/island_layout.h says what follows). Set
-  // by the plan builders. It restricts no route; methods that reason about islands use it.
+  // The island of the path: its position among the islands from which the plan was built; -1 if the
+  // plan has none (engine/weller/steps/island_layout.h says what follows). The plan builders set
+  // it. It restricts no route; methods that reason about islands use it.
   int island = -1;
 
-  // The contour that encloses its island. Set by the plan builders.
+  // True for the contour that encloses its island. The plan builders set it.
   bool outer = false;
 };
 

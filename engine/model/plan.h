@@ -18,9 +18,9 @@ class Budget;
 struct PlanNode {
   enum class Kind {
     kPath,      // a leaf
-    kInOrder,   // children in the order given
-    kAnyOrder,  // children in any order that keeps `before`, each done completely before the next
-                // starts
+    kInOrder,   // children in the given order
+    kAnyOrder,  // children in any order that keeps `before`, each done completely before
+                // the next starts
   };
 
   Kind kind = Kind::kPath;
@@ -28,7 +28,7 @@ struct PlanNode {
   // kPath: index into Plan::paths.
   int path = 0;
 
-  // Else: indices into Plan::nodes, each greater than this node's own.
+  // Otherwise: indices into Plan::nodes, each greater than this node's own.
   std::vector<int> children;
 
   // kAnyOrder: pairs (i, j) of positions in `children`; child i comes before child j.
@@ -46,18 +46,18 @@ struct Plan {
 // Deepest tree accepted, in levels of nodes. Algorithms may recurse over a plan.
 inline constexpr int kMaxPlanDepth = 100;
 
-// Checks everything that the comments above state, coordinates (finite, within kMaxCoordinateMm),
-// and that no `before` has a cycle. InvalidArgument names the place, as in
-// `nodes[3].before[2].first: 7 is not a child position` or `paths[0].points[7].x: not finite`.
-// O(nodes + paths + points + pairs). Past this check, algorithms neither re-check nor repair.
-// `budget`, if there is one, is asked meanwhile, here and below; all is done all the same.
+// Checks everything that the comments above state, that coordinates are finite and within
+// kMaxCoordinateMm, and that no `before` has a cycle. InvalidArgument says where, as in
+// `nodes[3].before[2].first: 7 is not the position of a child` or `paths[0].points[7].x: not
+// finite`. Algorithms rely on this check. Asks `budget` regularly, if it is not null, as do the
+// functions below; always finishes. O(nodes + paths + points + pairs).
 absl::Status CheckPlan(const Plan& plan, Budget* budget = nullptr);
 
-// Why `coordinate` (mm) is unfit, as "not finite" or "beyond 1e+06 mm"; null if it is fit.
+// Says why `coordinate` (mm) is invalid, as "not finite" or "beyond 1e+06 mm"; null if it is valid.
 const char* CoordinateFault(double coordinate);
 
 // The contours and rasters of one island, for the plan builders below. The first contour is the
-// outer one. Either may be empty. The builders set Path::island and Path::outer.
+// outer one. Either list may be empty. The builders set Path::island and Path::outer.
 struct IslandPaths {
   std::vector<Path> contours;
   std::vector<Path> rasters;

@@ -1,4 +1,4 @@
-// A point of a layer's plane.
+// A point in the plane of a layer.
 
 #ifndef TRAVERSE_ENGINE_MODEL_POINT_H_
 #define TRAVERSE_ENGINE_MODEL_POINT_H_
@@ -15,8 +15,8 @@ struct Point {
   friend bool operator==(const Point&, const Point&) = default;
 };
 
-// Euclidean distance in mm. Coordinates are bounded (kMaxCoordinateMm), so the overflow-proof and
-// slower std::hypot is not needed.
+// Euclidean distance in mm. Coordinates are bounded (kMaxCoordinateMm), so the slower,
+// overflow-proof std::hypot is not needed.
 inline double Distance(Point a, Point b) {
   const double dx = a.x - b.x;
   const double dy = a.y - b.y;

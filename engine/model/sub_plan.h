@@ -15,11 +15,11 @@ struct SubPlan {
   std::vector<int> path_of;  // [path of `plan`] index into the whole plan's paths
 };
 
-// What is below `node` of `whole`, with the same tree. O(nodes and points below).
+// The part of `whole` below `node`, with the same tree. O(nodes and points below).
 SubPlan PlanBelow(const Plan& whole, int node);
 
-// The parts of a plan that are done one after the other: the children of a root that is in_order,
-// those without paths left out, or the whole plan. O(plan).
+// The parts of a plan that are done one after the other: the children of an in_order root, without
+// those that have no paths, or else the whole plan. O(plan).
 std::vector<SubPlan> StagesOf(const Plan& whole);
 
 // Appends `part`, a route of `sub`, to a route of the whole plan.

@@ -11,7 +11,7 @@ namespace traverse {
 // in_order(first, second). The paths of `second` are numbered from first.paths.size() on.
 Plan PlanOfBoth(const Plan& first, const Plan& second);
 
-// A route of PlanOfBoth from a route of each, and back; `paths`: the number of those of the first.
+// A route of PlanOfBoth from a route of each, and back; `paths`: how many the first layer has.
 Route RouteOfBoth(const Route& first, const Route& second, int paths);
 Route RouteOfFirst(const Route& both, int paths);
 Route RouteOfSecond(const Route& both, int paths);

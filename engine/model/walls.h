@@ -1,4 +1,4 @@
-// The walls of a layer: what travel moves should not cross.
+// The walls of a layer, which travel should not cross.
 
 #ifndef TRAVERSE_ENGINE_MODEL_WALLS_H_
 #define TRAVERSE_ENGINE_MODEL_WALLS_H_
@@ -17,12 +17,12 @@ struct Wall {
   std::vector<Point> points;  // at least two
   bool closed = false;        // the last point is joined to the first
 
-  // Index into Plan::paths of the path whose outline it is; -1: of none, or nobody said.
+  // Index into Plan::paths of the path whose outline the wall is; -1: none, or unknown.
   int path = -1;
 };
 
-// A move that is done in another way than others are, from the end of one path, as it is given, to
-// the beginning of another one.
+// A move with a cost of its own, from the given end of one path to the given beginning of
+// another.
 struct KnownMove {
   int from = 0;  // indices into Plan::paths
   int to = 0;
@@ -31,19 +31,19 @@ struct KnownMove {
   bool retracts = false;
 };
 
-// They count where CostSpec::kind is kTime; CostSpec has the prices.
+// Walls count if CostSpec::kind is kTime; CostSpec has the prices.
 struct LayerWalls {
   std::vector<Wall> walls;
 
-  // Indices into Plan::paths. A move that begins or ends at one of their points is retracted beyond
-  // a threshold of its own, for on them strings would be seen.
+  // Indices into Plan::paths. A move that begins or ends at one of their points retracts beyond a
+  // threshold of its own, because strings would be visible there.
   std::vector<int> exposed = {};
 
-  // Indices into Plan::paths. Behind them filament is pulled back in any case: a retraction for a
+  // Indices into Plan::paths. After these the printer retracts in any case. So a retraction for a
   // wall or an exposed path costs half at one of their points, and nothing between two of them.
   std::vector<int> retracted = {};
 
-  // Of several between the same points the first counts. No more than there are paths.
+  // At most as many as there are paths. Of several between the same points the first counts.
   std::vector<KnownMove> known = {};
 
   bool empty() const {
@@ -52,8 +52,8 @@ struct LayerWalls {
 };
 
 // Checks what the comments above state, and that coordinates are finite and in range.
-// InvalidArgument names the place, as in `walls[3].points[7].x: not finite`. O(points). `budget`,
-// if there is one, is asked meanwhile.
+// InvalidArgument names the position, as in `walls[3].points[7].x: not finite`. Asks `budget`
+// regularly, if it is not null. O(points).
 absl::Status CheckWalls(const LayerWalls& walls, const Plan& plan, Budget* budget = nullptr);
 
 }  // namespace traverse

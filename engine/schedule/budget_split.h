@@ -1,4 +1,4 @@
-// A job's time, spread over its layers.
+// Divides a job's time among its layers.
 
 #ifndef TRAVERSE_ENGINE_SCHEDULE_BUDGET_SPLIT_H_
 #define TRAVERSE_ENGINE_SCHEDULE_BUDGET_SPLIT_H_
@@ -14,10 +14,10 @@
 
 namespace traverse {
 
-// Each layer, as it begins, is allotted the share of what time is left that its weight is of all
-// weight that has not begun; times the number of threads, as so many layers go on at once. Time
-// that a layer does not use is thus left to those after it, time that it takes too much of is taken
-// from all of them, and none is left without. Not thread-safe.
+// When a layer begins, it gets a share of the remaining time: its weight over the weight of all
+// layers that have not begun, times the number of threads, because that many layers run at once. So
+// time that a layer does not use goes to those after it, time that it overruns is taken from all of
+// them, and no layer gets none. Not thread-safe.
 class BudgetSplit {
  public:
   using Clock = Budget::Clock;
@@ -28,8 +28,8 @@ class BudgetSplit {
     assert(threads > 0);
   }
 
-  // What a layer of so many paths can gain, in no unit: the time to a good route grows a little
-  // faster than the number of paths. A layer that starts from a good route gains less.
+  // How much a layer of `paths` paths can gain, without a unit. The time to a good route grows a
+  // little faster than the number of paths. A layer that starts from a good route gains less.
   static double Weight(size_t paths, bool from_good_route) {
     constexpr double kGrowth = 1.25;
     constexpr double kGoodRouteShare = 0.25;
@@ -37,11 +37,11 @@ class BudgetSplit {
     return from_good_route ? kGoodRouteShare * weight : weight;
   }
 
-  // A layer that is to begin is known, or weighs `change` more than was thought.
+  // Adds a layer that will begin, or changes the weight of one by `change`.
   void Add(double change) { waiting_ += change; }
 
-  // What a layer of this weight may use from `now` on; the largest duration if there is no end.
-  // REQUIRES: `weight` was added and has not begun.
+  // The time that a layer of this weight may use from `now` on; the largest duration if there is no
+  // deadline. REQUIRES: `weight` was added and has not begun.
   Clock::duration Begin(double weight, Clock::time_point now) {
     assert(weight <= waiting_ * (1 + kRounding) + kRounding);
     const double share = std::min(1.0, threads_ * weight / std::max(waiting_, weight));
@@ -56,7 +56,7 @@ class BudgetSplit {
 
   const std::optional<Clock::time_point> deadline_;
   const int threads_;
-  double waiting_ = 0;  // weight that has not begun
+  double waiting_ = 0;  // total weight of the layers that have not begun
 };
 
 }  // namespace traverse

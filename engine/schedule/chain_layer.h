@@ -18,10 +18,10 @@
 
 namespace traverse {
 
-// The best routes of layers that were anchored, by problem key and what comes next.
+// The best routes of anchored layers, by problem key and by what comes next.
 using AnchoredRoutes = std::unordered_map<uint64_t, KnownRoutePtr>;
 
-// One layer on its way. A stage owns its layer and works without the lock; hand-over is under it.
+// A layer on its way. A stage owns its layer and works without the lock, but hands over under it.
 struct ChainLayer {
   uint64_t index = 0;
   JobLayer given;  // as it was added
@@ -32,51 +32,51 @@ struct ChainLayer {
   Point predicted_start;
   LayerFingerprint fingerprint;
   Point origin;
-  uint64_t key = 0;  // with the predicted start
+  uint64_t key = 0;  // for the predicted start
   std::unique_ptr<const WallCost> walls;
   std::optional<Point> finish;
   Route given_route;
-  LayerOutcome outcome;  // what concerns the given order
+  LayerOutcome outcome;  // the part about the given order
 
-  // Set by prepare, where routes are used again: the route to start from, null if there is
-  // none, and this layer's own, for others. What they hold is guarded by the lock; it does not
-  // change once it is ready.
+  // Set by prepare, if routes are reused: the route to start from (null if there is none), and this
+  // layer's own route, for others. The lock guards their contents, which do not change once they
+  // are ready.
   RouteHistory::Entry precursor;
   RouteHistory::Entry result;
 
-  // Set by prepare: what is known of the layers before this one back to the last whose start was
-  // certain. Only anchor touches what it holds.
+  // Set by prepare: the known routes of the layers before this one, back to the last whose start
+  // was certain. Only anchor uses the contents.
   std::shared_ptr<AnchoredRoutes> anchored;
 
-  // What the layer may use of the job's time, once it has begun to be solved.
+  // What share of the job's time the layer may use, once solving has begun.
   double weight = 0;
   Budget::Clock::duration allotted = Budget::Clock::duration::max();
 
-  // From the first stage that solves the layer to its anchor; one stage at a time uses it.
+  // From the first stage that solves the layer to its anchor. One stage at a time uses it.
   std::unique_ptr<PreparedLayer> prepared;
 
   // Set by solve and second.
   Solution first;
-  bool searched_in_vain = false;  // PendingRoute
+  bool searched_in_vain = false;  // see PendingRoute
   BoundMultipliers bound_multipliers;
   std::optional<Point> second_start;
   Solution second;
 
-  // Set by the anchor of the layer before, where that looked ahead: a route from its end.
+  // Set by the anchor of the layer before, if that looked ahead: a route from its end.
   Route foreseen;
 
-  // Set by anchor, where routes are used again.
+  // Set by anchor, if routes are reused.
   KnownRoutePtr known;
 
   // Guarded by the lock.
-  std::optional<Point> first_end;  // solved: where the head is then, a cleaning included
-  bool solved = false;             // the layer itself is ready to be anchored
-  bool anchoring = false;          // anchor is submitted
-  std::optional<Point> end;        // anchored: where the head is then, a cleaning included
+  std::optional<Point> first_end;  // if solved: where the head is then, cleaning included
+  bool solved = false;             // the layer can be anchored
+  bool anchoring = false;          // anchor has been submitted
+  std::optional<Point> end;        // if anchored: where the head is then, cleaning included
 };
 using ChainLayerPtr = std::shared_ptr<ChainLayer>;
 
-// A layer's true start, and the next layer, if the end is chosen with a view to that.
+// A layer's true start, and the next layer if the end is chosen for its sake.
 struct TrueStart {
   Point start;
   ChainLayerPtr next;

@@ -5,25 +5,25 @@
 //
 //   prepare   in build order, cheap: the travel of the given order, and a prediction of where the
 //             layer will end: where an equal layer ended before, else where its greedy route ends
-//   solve     on any thread: the strategy, from the predicted start; where an equal layer came
-//             before, it may go on from that one's route, or take it over (route_history.h)
-//   second    quick strategies alone, on any thread: solve from where the first solution of the
-//             layer before ends, if that is elsewhere; mostly this is the true start
-//   anchor    in build order, cheap: the true start is known now; if it is yet another one, the
-//             route of an equal layer that began there is taken over, or the strategy resumes its
-//             route from there; the route is validated and delivered
+//   solve     on any thread: the strategy, from the predicted start; after an equal layer it may
+//             continue from that one's route, or reuse it (route_history.h)
+//   second    only quick strategies, on any thread: solve from where the first solution of the
+//             layer before ends, if that is elsewhere; usually this is the true start
+//   anchor    in build order, cheap: now the true start is known. If it is yet another one, reuse
+//             the route of an equal layer that began there, or let the strategy resume its route
+//             from there; validate and deliver the route
 //
 // Strategies that look ahead anchor a layer together with the next one, so that it ends where the
 // next one is cheap to begin: first the layer alone, then the next one from its end, then both from
-// these, which is never longer. The next one's part of what is found is what it is anchored from in
-// turn: nothing of that work is lost. Whether there is a next layer
-// to look at is said by whoever adds the layer (JobLayer::more_follows): it is then waited for, and
-// else not looked at even if it is there. There is no use in it where the next layer begins at a
-// given place or at the cleaning point; the move to that counts in any case.
+// these, which is never longer. The anchoring of the next layer starts from its part of the result,
+// so that no work is lost. The caller says whether another layer follows (JobLayer::more_follows).
+// If so, the chain waits for that layer; if not, it ignores the next layer even if that is there.
+// Looking ahead is useless where the next layer begins at a given point or at the cleaning point;
+// the move to that point counts in any case.
 //
-// What a stage does depends on the job and the seed alone, never on timing, so the routes are the
-// same on any number of threads. Every stage of a layer is a task of its own: the executor can
-// share its threads fairly between jobs, and no task waits for another.
+// What a stage does depends only on the job and the seed, never on timing, so the routes are the
+// same on any number of threads. Every stage of a layer is a separate task: the executor can share
+// its threads fairly between jobs, and no task waits for another.
 
 #ifndef TRAVERSE_ENGINE_SCHEDULE_LAYER_CHAIN_H_
 #define TRAVERSE_ENGINE_SCHEDULE_LAYER_CHAIN_H_
@@ -57,19 +57,19 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   int64_t pending() const override;
 
  private:
-  // Prepare is at most so many layers ahead of anchor; even, as many parts alternate two layers.
+  // Layers that prepare may be ahead of anchor. Even, because many parts alternate two layers.
   static constexpr uint64_t kLearnDelay = 32;
 
-  // Fixes what the layer may use of the job's time. As its main stage begins.
+  // Fixes the share of the job's time that the layer may use, when its main stage begins.
   void Allot(ChainLayer& layer);
 
-  // Run a stage and hand the layer over to the next one.
+  // Run a stage and hand the layer to the next one.
   void RunPrepare(const ChainLayerPtr& layer);
   void RunSolveFirst(const ChainLayerPtr& layer);
   void RunSolveSecond(const ChainLayerPtr& layer);
   void RunAnchor(const ChainLayerPtr& layer, const TrueStart& at);
 
-  // Submit what is due.
+  // Submit the stages that are due.
   void MaybePrepare() TRAVERSE_REQUIRES(mutex_);
   void MaybeSolveFirst(const ChainLayerPtr& layer) TRAVERSE_REQUIRES(mutex_);
   void HandOn(const ChainLayer& layer) TRAVERSE_REQUIRES(mutex_);
@@ -87,7 +87,7 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   CancelToken cancel_;
   const LayerSolver solver_;
   Outbox outbox_;
-  LayerPreparer preparer_;  // only prepare touches it
+  LayerPreparer preparer_;  // used only by prepare
 
   mutable Mutex mutex_;
   BudgetSplit split_ TRAVERSE_GUARDED_BY(mutex_);
@@ -97,13 +97,13 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   uint64_t added_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   uint64_t next_to_prepare_ TRAVERSE_GUARDED_BY(mutex_) = 0;
 
-  // What prepare has not learned yet of anchored layers, by index. It learns of layer i -
-  // kLearnDelay right before it prepares layer i: what it knows must not depend on timing.
+  // What prepare has not yet learned from anchored layers, by index. It learns from layer i -
+  // kLearnDelay right before it prepares layer i, so that its knowledge does not depend on timing.
   struct LayerEnd {
     uint64_t shape = 0;
     uint64_t key = 0;
-    Point end;            // from the plan's origin
-    KnownRoutePtr known;  // null where routes are not used again
+    Point end;            // relative to the plan's origin
+    KnownRoutePtr known;  // null if routes are not reused
   };
   std::map<uint64_t, LayerEnd> ends_to_learn_ TRAVERSE_GUARDED_BY(mutex_);
   int64_t pending_ TRAVERSE_GUARDED_BY(mutex_) = 0;

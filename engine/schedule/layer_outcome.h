@@ -1,4 +1,4 @@
-// What is told of a layer: the travel of a route, and what its moves come to.
+// Fills in the answer for a layer: the travel of a route, and the totals of its moves.
 
 #ifndef TRAVERSE_ENGINE_SCHEDULE_LAYER_OUTCOME_H_
 #define TRAVERSE_ENGINE_SCHEDULE_LAYER_OUTCOME_H_
@@ -10,15 +10,15 @@
 
 namespace traverse {
 
-// Sets what concerns the given order. `problem` starts where that order does; the move to its
-// finish, if it has one, is told apart. Others have their turns meanwhile; once `turns` is
-// cancelled, nobody will look at what is told.
+// Sets the part about the given order. `problem` starts where that order does; the move to its
+// finish, if it has one, is reported separately. Other tasks get their turns meanwhile. Once
+// `turns` is cancelled, nobody will read the result.
 void TellGiven(const LayerProblem& problem, const Route& given, Budget& turns,
                LayerOutcome& outcome);
 
-// Sets what concerns the route that was found, and whether it is what it claims to be: with walls
-// its moves are computed again by other code. Takes the plan out of `layer`.
-// REQUIRES: problem.plan is that of `layer`; the route is valid for it.
+// Sets the part about the route that was found, after checking the solution's claims: with walls,
+// other code computes its moves again. Takes the plan out of `layer`. REQUIRES: problem.plan is
+// that of `layer`; the route is valid for it.
 void TellFound(const LayerProblem& problem, Solution solution, JobLayer& layer, Budget& turns,
                LayerOutcome& outcome);
 

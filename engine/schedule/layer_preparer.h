@@ -1,4 +1,4 @@
-// The first stage of a layer: what is told of the given order, and where the layer may end.
+// The first stage of a layer: measures the given order, and predicts where the layer will end.
 
 #ifndef TRAVERSE_ENGINE_SCHEDULE_LAYER_PREPARER_H_
 #define TRAVERSE_ENGINE_SCHEDULE_LAYER_PREPARER_H_
@@ -12,18 +12,18 @@
 
 namespace traverse {
 
-// Goes through the layers in build order and keeps where the head is after those it has seen. Not
-// thread-safe: one layer at a time.
+// Goes through the layers in build order and tracks where the head is after each. Not thread-safe:
+// one layer at a time.
 class LayerPreparer {
  public:
-  // `start`: of the job. `solver` is kept, not owned.
+  // `start`: of the job. Keeps, but does not own, `solver`.
   LayerPreparer(Point start, const LayerSolver& solver)
       : solver_(solver), given_at_(start), predicted_at_(start) {}
 
-  // Sets what ChainLayer says that prepare sets, but for the entries in the history of routes.
+  // Sets what ChainLayer says that prepare sets, except the entries in the route history.
   void Prepare(ChainLayer& layer);
 
-  // A layer ended there, as told from its origin.
+  // Notes that a layer ended at `end`, relative to its origin.
   void Learn(uint64_t shape, uint64_t key, Point end) { history_.Learn(shape, key, end); }
 
  private:
@@ -31,7 +31,7 @@ class LayerPreparer {
 
   const LayerSolver& solver_;
   Point given_at_;      // where the head is in the given order
-  Point predicted_at_;  // where it may be in the order that will be found
+  Point predicted_at_;  // where the head will probably be in the order that is found
   std::shared_ptr<AnchoredRoutes> anchored_;
   EndHistory history_;
 };

@@ -14,45 +14,45 @@
 
 namespace traverse {
 
-// The stages of the layers of one job. Each works on one layer, alone and without a lock; layers
-// may be at their stages at the same time on several threads.
+// The stages of the layers of one job. Each works on one layer, alone and without a lock. Several
+// layers may be at their stages at the same time, on several threads.
 class LayerSolver {
  public:
-  // `executor` and `cancel` are kept, not owned.
+  // Keeps, but does not own, `executor` and `cancel`.
   LayerSolver(const JobSpec& spec, std::unique_ptr<Strategy> strategy, Executor& executor,
               const CancelToken& cancel);
 
   const StrategyTraits& traits() const { return strategy_->traits(); }
 
-  // Whether the head goes to the cleaning point when this layer is done, if there is a next one.
+  // Whether the head goes to the cleaning point after this layer, if another layer follows.
   bool CleaningDueAfter(uint64_t index) const;
 
-  // The start, where it does not depend on the layer before.
+  // The start, if it does not depend on the layer before.
   std::optional<Point> FixedStart(const ChainLayer& layer) const;
 
-  // Whether the layer's end is worth a look at the next layer, if there will be one.
+  // Whether it may pay to choose the layer's end for the next layer's sake, if there is one.
   bool MayLookAhead(const ChainLayer& layer) const;
 
-  // Whether it is worth a look at `next`.
+  // Whether it pays to do so for `next`.
   bool LooksAheadAt(const ChainLayer& layer, const ChainLayer& next) const;
 
-  // Whether there is no time but to answer with what there is.
+  // True if time is up, so that the layer must be answered with what there is.
   bool Expired() const;
 
-  // For what has to be done whatever the time is: others have their turns meanwhile, and a
+  // For work that must be done regardless of time: other tasks get their turns meanwhile, and a
   // cancellation is seen.
   Budget Turns() const { return Budget(&cancel_, std::nullopt, executor_.turn()); }
 
-  // The problem that the layer is from `start`. Refers to the layer.
+  // The problem of solving the layer from `start`. Refers to `layer`.
   LayerProblem Problem(const ChainLayer& layer, Point start) const;
 
   Route GreedyRoute(const LayerProblem& problem, const ChainLayer& layer) const;
 
-  // `solution` with what later layers have to know to go on from it.
+  // `solution` with what later layers need to continue from it.
   KnownRoutePtr Known(const LayerProblem& problem, const ChainLayer& layer,
                       const Solution& solution) const;
 
-  // The stages; ChainLayer says what each sets.
+  // The stages. ChainLayer says what each sets.
   void SolveFirst(ChainLayer& layer) const;
   void SolveSecond(ChainLayer& layer) const;
   LayerOutcome Anchor(ChainLayer& layer, const TrueStart& at) const;

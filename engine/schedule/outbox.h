@@ -11,7 +11,7 @@
 
 namespace traverse {
 
-// Answers come from several threads, but a sink sees calls that never overlap. Whichever thread
+// Answers come from several threads, but a sink must see calls that never overlap. A thread that
 // finds nobody delivering delivers for all of them; none waits. Thread-safe.
 class Outbox {
  public:
@@ -25,7 +25,7 @@ class Outbox {
     Drain();
   }
 
-  // The last call; what is delivered after it is dropped.
+  // The last call. Whatever is delivered after it is dropped.
   void Done() {
     {
       MutexLock lock(mutex_);
@@ -46,7 +46,7 @@ class Outbox {
       sink_.OnLayer(std::move(outcome));
       lock.Lock();
     }
-    // After the last call nobody drains again; the sink may be gone.
+    // After the last call nobody delivers again; the sink may be gone.
     draining_ = done_;
     if (!done_) return;
     lock.Unlock();

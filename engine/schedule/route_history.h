@@ -18,35 +18,35 @@
 
 namespace traverse {
 
-// A route of a layer and what is known of it. Immutable once it is shared.
+// A route of a layer with its bound. Immutable once it is shared.
 struct KnownRoute {
   Solution solution;
   double cost = 0;
 
-  // The very layer: layers that share all of these are the same problem.
+  // Identifies the layer exactly: layers that share all of these are the same problem.
   uint64_t exact = 0;  // LayerFingerprint::exact
   Point start;
   std::optional<Point> finish;
 
-  BoundMultipliers multipliers;  // of the search for its lower bound
+  BoundMultipliers multipliers;  // from the search for its lower bound
 };
 using KnownRoutePtr = std::shared_ptr<const KnownRoute>;
 
-// What a layer will have added to what is known of its key: layers of one shape that begin and end
-// at the same place, all told from their own origins. Guarded by whoever shares it between threads.
+// What a layer will contribute to the routes of its key: layers of one shape that begin and end at
+// the same points, relative to their own origins. Whoever shares it between threads guards it.
 struct PendingRoute {
   ~PendingRoute();
 
   uint64_t key = 0;
-  std::shared_ptr<PendingRoute> previous;  // of the same key, as long as this one needs it
-  std::weak_ptr<PendingRoute> next;        // null, too, if nobody needs it any more
+  std::shared_ptr<PendingRoute> previous;  // of the same key, while this layer needs it
+  std::weak_ptr<PendingRoute> next;        // null also if nobody needs it any more
 
-  // The layer's own part.
+  // The layer's own contribution.
   KnownRoutePtr own;
-  bool in_vain = false;  // it was searched from the best route known, and nothing was gained
+  bool in_vain = false;  // the layer was searched from the best known route without any gain
 
-  // Once the layer and all of its key before it have given theirs: the best of their routes, and
-  // how many searches since it was found were in vain.
+  // Set once this layer and all before it with the same key have contributed: the best of their
+  // routes, and how many searches since it was found were in vain.
   bool ready = false;
   KnownRoutePtr best;
   int idle = 0;
@@ -54,32 +54,32 @@ struct PendingRoute {
   std::vector<uint64_t> waiting;  // layers that start from it
 };
 
-// Extruded parts repeat their layers, as they are or moved along. A layer then starts from the best
-// route that is known of its key kLag repetitions before it, so that what is gained adds up along
-// the job, while kLag layers of each key can still be solved at the same time; the first of a key
-// starts from a route of its shape. Which routes these are depends on the order of layers alone,
-// never on timing.
+// Extruded parts repeat their layers, in place or shifted. A layer then starts from the best
+// route that its key had kLag repetitions earlier. So gains add up along the job, while kLag
+// layers of each key can be solved at the same time. The first layer of a key starts from a
+// route of its shape. Which routes these are depends only on the order of layers, never on
+// timing.
 class RouteHistory {
  public:
   using Entry = std::shared_ptr<PendingRoute>;
 
-  // Enters a layer, later than those entered before, and sets `mine` up. Returns what to start
-  // from; null for the first of its shape.
+  // Enters a layer that comes after those entered before, and sets `mine` up. Returns the entry to
+  // start from; null for the first layer of its shape.
   Entry Enter(uint64_t shape, uint64_t key, const Entry& mine);
 
-  // A route of this key was found in another way.
+  // Adds a route of this key that was found in another way.
   void Learn(uint64_t shape, uint64_t key, KnownRoutePtr known);
 
-  // Sets the layer's part. Returns the layers that waited for what is ready now.
+  // Sets the layer's contribution. Returns the layers that waited for what is now ready.
   static std::vector<uint64_t> Complete(Entry entry, KnownRoutePtr own, bool in_vain);
 
   static constexpr size_t kLag = 4;
 
-  // After so many searches in vain, layers of a key are not searched again.
+  // After this many searches in vain, layers of a key are not searched again.
   static constexpr int kMostIdle = 3;
 
  private:
-  // A job that never repeats a layer must not grow without bound.
+  // Bounds the memory of a job that never repeats a layer.
   static constexpr size_t kMostShapes = 128;
   static constexpr size_t kMostKeys = 32;
 

@@ -1,4 +1,4 @@
-// Strategy `auto`: the best route for the time given. The default.
+// Strategy `auto`: the best route for the given time. The default.
 //
 // Greedy, then local search over order, entries and directions together, then kicks and repairs
 // until they no longer pay (engine/search/). Any plan, any cost.

@@ -1,4 +1,4 @@
-// Any strategy, asked about costs as they are on ordinary parts only.
+// Wraps any strategy so that it only sees costs of ordinary magnitude.
 
 #ifndef TRAVERSE_ENGINE_STRATEGY_IN_ORDINARY_UNIT_H_
 #define TRAVERSE_ENGINE_STRATEGY_IN_ORDINARY_UNIT_H_
@@ -9,8 +9,8 @@
 
 namespace traverse {
 
-// Solves by `strategy`, in the unit of cost/cost_unit.h; solutions are in the problem's own. Routes
-// of problems whose costs are ordinary are those of `strategy` itself.
+// Solves with `strategy`, in the unit of cost/cost_unit.h. Solutions are in the problem's own unit.
+// If a problem's costs are ordinary, the routes are those of `strategy` itself.
 std::unique_ptr<Strategy> InOrdinaryUnit(std::unique_ptr<Strategy> strategy);
 
 }  // namespace traverse

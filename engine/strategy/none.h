@@ -1,4 +1,4 @@
-// Strategy `none`: the order given. SPEC 3.1.
+// Strategy `none`: the given order. SPEC 3.1.
 
 #ifndef TRAVERSE_ENGINE_STRATEGY_NONE_H_
 #define TRAVERSE_ENGINE_STRATEGY_NONE_H_

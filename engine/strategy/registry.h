@@ -16,7 +16,7 @@ namespace traverse {
 // All strategies of this build, in the order of growing effort.
 const std::vector<StrategyEntry>& Strategies();
 
-// The strategy of a job that names none.
+// The strategy of a job that does not name one.
 const std::string& DefaultStrategyName();
 
 // Makes a strategy. Errors: InvalidArgument `name: ...` for an unknown name, `options["x"]: ...`

@@ -1,4 +1,4 @@
-// Strategy `tabu`: the thesis's framework with tabu search, and what cures its known faults. SPEC
+// Strategy `tabu`: the thesis's framework with tabu search, and cures of its known faults. SPEC
 // 3.5; engine/TABU.md has results.
 
 #ifndef TRAVERSE_ENGINE_STRATEGY_TABU_H_

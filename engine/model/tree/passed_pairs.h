@@ -1,4 +1,4 @@
-// The pairs `before` of a node among those of its children that have paths.
+// The pairs `before` of a node, reduced to its children that have paths.
 
 #ifndef TRAVERSE_ENGINE_MODEL_TREE_PASSED_PAIRS_H_
 #define TRAVERSE_ENGINE_MODEL_TREE_PASSED_PAIRS_H_
@@ -13,15 +13,15 @@
 
 namespace traverse {
 
-// All pairs (i, j) of positions in node.children, both marked by `has_paths`, such that i comes
-// before j by a pair, or by pairs through children without paths: a before empty before b is a
-// before b. No pair twice.
+// Returns all pairs (i, j) of positions in node.children, both marked by `has_paths`, such that i
+// comes before j by a pair, or by several pairs through children without paths: a before empty and
+// empty before b make a before b. No pair comes twice.
 //
-// k children before an empty one before k others are k^2 such pairs. So that a plan takes no more
-// time and memory than it is large, there are none, that is nullopt, where finding them takes more
-// than kPassedPairsEach steps for each child and pair of the node, and more than kPassedPairs: then
-// the order of the node's children is best left as it is. `budget`, if there is one, is asked
-// meanwhile.
+// An empty child after k children and before k others gives k^2 such pairs. So that a plan never
+// takes more time and memory than its size warrants, the result is nullopt if finding them takes
+// more than kPassedPairsEach steps for each child and pair of the node, and more than kPassedPairs.
+// The order of the node's children is then best left as given. Asks `budget` regularly, if it is
+// not null.
 std::optional<std::vector<std::pair<int, int>>> PassedPairs(const PlanNode& node,
                                                             const std::vector<bool>& has_paths,
                                                             Budget* budget = nullptr);

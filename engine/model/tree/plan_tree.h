@@ -1,4 +1,4 @@
-// What algorithms want to know of a plan's tree again and again, computed once.
+// What algorithms ask about a plan's tree again and again, computed once.
 
 #ifndef TRAVERSE_ENGINE_MODEL_TREE_PLAN_TREE_H_
 #define TRAVERSE_ENGINE_MODEL_TREE_PLAN_TREE_H_
@@ -13,13 +13,13 @@
 
 namespace traverse {
 
-// The pairs `before` of one any_order node, in terms of its slots: its children that have paths,
-// numbered from 0 in the order given. Children without paths have no place in a route, but what
-// comes before them still comes before what comes after them: they stay in here as items above the
-// slots.
+// The pairs `before` of one any_order node, in terms of its slots: its children that have
+// paths, numbered from 0 in the given order. Children without paths have no place in a route.
+// But what precedes them still precedes what follows them, so they remain here as items above
+// the slots.
 class Precedence {
  public:
-  // Nothing is before anything.
+  // No pairs.
   Precedence() = default;
 
   // `item_of[c]`: the slot of child c, or an item from `slots` on for a child without paths.
@@ -27,16 +27,16 @@ class Precedence {
 
   bool empty() const { return pairs_.empty(); }
 
-  // Slots, and above them the children without paths. 0 if empty.
+  // The number of slots plus children without paths. 0 if empty.
   int item_count() const { return static_cast<int>(topological_.size()); }
 
-  // Writes to last[s] the greatest position of a slot that has to come before slot s, -1 if none.
-  // An order of the slots is legal if last[s] < position[s] for all s. `position` and `last` are
-  // indexed by slot. O(items + pairs). REQUIRES: not empty.
+  // Sets last[s] to the greatest position of a slot that must come before slot s, or -1 if there is
+  // none. An order of the slots is legal if last[s] < position[s] for all s. `position` and `last`
+  // are indexed by slot. O(items + pairs). REQUIRES: not empty.
   void LastBefore(absl::Span<const int> position, std::vector<int>& last) const;
 
-  // [item] as bits, which of the slots `first` .. `first` + 63 have to come before it, by pairs or
-  // by several of them. O(items + pairs). REQUIRES: not empty.
+  // Returns [item] as bits which of the slots `first` .. `first` + 63 must come before it, directly
+  // or through several pairs. O(items + pairs). REQUIRES: not empty.
   std::vector<uint64_t> SlotsBefore(int first) const;
 
  private:
@@ -54,10 +54,10 @@ class Precedence {
   std::vector<int> topological_;  // items in an order that keeps all pairs
 };
 
-// Which slots of a node may be done next, while they are done one after the other.
+// Tracks which slots of a node may come next while they are done one after the other.
 class ReadySlots {
  public:
-  // Calls `ready(slot)` for each slot that may be done first. `precedence` outlives this.
+  // Calls `ready(slot)` for each slot that may come first. `precedence` outlives this object.
   template <typename F>
   ReadySlots(const Precedence& precedence, int slots, F&& ready) : precedence_(&precedence) {
     if (precedence.empty()) {
@@ -72,14 +72,14 @@ class ReadySlots {
     }
   }
 
-  // Notes that `slot` is done; calls `ready(slot)` for each that may be done from now on.
+  // Notes that `slot` is done. Calls `ready(slot)` for each slot that may come from now on.
   template <typename F>
   void Finish(int slot, F&& ready) {
     Finish(slot, ready, [](int, int) {});
   }
 
-  // Same; before that calls `pair(first, second)` for each pair of items that is fulfilled now. All
-  // pairs to an item come before those from it.
+  // The same, but before that calls `pair(first, second)` for each pair of items that is now
+  // fulfilled. All pairs to an item come before those from it.
   template <typename F, typename G>
   void Finish(int slot, F&& ready, G&& pair) {
     if (precedence_->empty()) return;
@@ -87,7 +87,7 @@ class ReadySlots {
   }
 
  private:
-  // An item has nothing left to wait for: a slot is reported, any other is done at once.
+  // An item waits for nothing any more: report a slot; any other item is done at once.
   template <typename F>
   void Pass(int item, F&& ready) {
     if (item < precedence_->slots_) {
@@ -97,7 +97,7 @@ class ReadySlots {
     }
   }
 
-  // A chain of items without paths is followed by a list, as it may be long.
+  // A list, not recursion, follows a chain of items without paths, because it may be long.
   template <typename F, typename G>
   void Release(int item, F&& ready, G&& pair) {
     std::vector<int> done = {item};
@@ -117,10 +117,10 @@ class ReadySlots {
   }
 
   const Precedence* precedence_;
-  std::vector<int> waiting_for_;  // [item] pairs whose first is not yet done
+  std::vector<int> waiting_for_;  // [item] pairs whose first item is not done yet
 };
 
-// A plan's tree, with what the order of its paths may be. O(nodes + pairs) to build. Immutable.
+// A plan's tree with the possible orders of its paths. O(nodes + pairs) to build. Immutable.
 class PlanTree : public CompiledPlan {
  public:
   // See CompiledPlan.
@@ -131,8 +131,8 @@ class PlanTree : public CompiledPlan {
     return precedences_[static_cast<size_t>(precedence_of_[static_cast<size_t>(index)])];
   }
 
-  // Whether every legal order of the node's paths is still legal when it is reversed and each path
-  // is run through backwards. The travel between the paths is then the same.
+  // True if every legal order of the node's paths stays legal when reversed with each path
+  // traversed backwards. The travel between the paths is then the same.
   bool reversible(int index) const { return reversible_[static_cast<size_t>(index)]; }
 
  private:

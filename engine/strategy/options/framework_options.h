@@ -15,14 +15,14 @@ namespace traverse {
 // Rows of a strategy's table: representation, Dp, neighborhoods. Descriptions begin with `of`.
 std::vector<OptionSpec> FrameworkOptionSpecs(const char* of);
 
-// Their values; everything else as it is by default.
+// Their values; everything else has its default.
 FrameworkOptions FrameworkOptionsFrom(const StrategyOptions& values);
 
-// Adds to a solution's statistics what each reduction left and what each step took.
+// Adds to a solution's statistics how many points each reduction left and how long each step took.
 void DescribeFramework(const FrameworkResult& result, const FrameworkOptions& options,
                        std::map<std::string, double>& statistics);
 
-// A row of a number's, and of a switch's.
+// A row for a number, and one for a switch.
 OptionSpec NumberOption(const char* name, OptionSpec::Type type, const char* default_value,
                         double minimum, double maximum, const char* description);
 OptionSpec SwitchOption(const char* name, const char* default_value, const char* description);

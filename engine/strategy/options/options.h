@@ -1,4 +1,4 @@
-// Options of strategies: what there is, and the values of one job.
+// Options of strategies: their definitions, and the values of one job.
 
 #ifndef TRAVERSE_ENGINE_STRATEGY_OPTIONS_OPTIONS_H_
 #define TRAVERSE_ENGINE_STRATEGY_OPTIONS_OPTIONS_H_
@@ -20,24 +20,24 @@ struct OptionSpec {
   std::string name;  // lower_case_with_underscores
   Type type = Type::kBool;
   std::string default_value;        // as text: "true", "250", "2.5", "sp"
-  double minimum = 0;               // of numbers, inclusive
-  double maximum = 0;               // of numbers, inclusive
-  std::vector<std::string> values;  // of a choice
+  double minimum = 0;               // for numbers, inclusive
+  double maximum = 0;               // for numbers, inclusive
+  std::vector<std::string> values;  // for a choice
   std::string description;          // what it does, with its unit
 };
 
-// The option `bound` that several strategies have: see StrategyTraits::bound_effort.
+// The option `bound`, which several strategies have; see StrategyTraits::bound_effort.
 OptionSpec BoundOption(bool default_value);
 
-// The option `pure` of the sources' methods, off by default: as published, and the only promise
-// that stays is a valid route.
+// The option `pure` of the sources' methods, off by default. It runs the method as published; a
+// valid route is the only promise left.
 OptionSpec PureOption(const char* description);
 
 // The values of a strategy's options, all of them set. Immutable.
 class StrategyOptions {
  public:
   // The defaults of `specs`, overridden by `texts`. InvalidArgument `options["tenure"]: ...` for a
-  // name that is not in `specs`, or a text that is no value of its type or out of range.
+  // name that is not in `specs`, or a text that is not a value of its type or is out of range.
   static absl::StatusOr<StrategyOptions> Parse(const std::vector<OptionSpec>& specs,
                                                const std::map<std::string, std::string>& texts);
 
