@@ -1,4 +1,4 @@
-// The ends of leaves at which visits can be joined, and which of them are near each other.
+// The ends of leaves at which visits can be joined, and which of these ends are near each other.
 
 #ifndef TRAVERSE_ENGINE_SEARCH_END_GROUPS_H_
 #define TRAVERSE_ENGINE_SEARCH_END_GROUPS_H_
@@ -14,7 +14,7 @@ namespace traverse {
 // for each end.
 class EndGroups {
  public:
-  // `budget`, if there is one, is asked meanwhile; the groups are whole all the same.
+  // Asks `budget` regularly, if it is not null; the groups are complete in any case.
   explicit EndGroups(const LeafEntries& entries, Budget* budget = nullptr);
 
   const PointGroups& groups() const { return groups_; }
@@ -27,9 +27,9 @@ class EndGroups {
   PointGroups groups_;
 };
 
-// For each end, the `count` nearest ends that the plan may let it be next to, for every node of
-// free order around it: ends of leaves with which another child of the node can begin or end. When
-// the budget runs out, lists are missing. `groups` outlives the lists.
+// For each end, the `count` nearest ends that the plan lets it adjoin, for every node of free order
+// around it: ends of leaves with which another child of the node can begin or end. When the budget
+// runs out, lists are missing. `groups` must outlive the lists.
 NeighborLists FindNeighbors(const OrderTree& tree, const EndGroups& groups, int count,
                             Budget& budget);
 

@@ -1,4 +1,4 @@
-// Iterated local search: kicks and repairs, until nothing more is gained.
+// Iterated local search: kicks and repairs, until they gain nothing more.
 //
 //   kick     ... A | B | C | D ...   ->   ... A | D | C | B ...     double bridge, inside one node,
 //            or a run of blocks turned (turn_run.h) where the plan has blocks that cannot be
@@ -7,10 +7,10 @@
 //   keep     the result if it costs no more, and by chance if it costs little more, else undo
 //            everything; the best route of all is what remains at the end
 //
-// A double bridge is the change that local search by sequential moves does not find, and does not
-// just undo; a walk among routes that are a little worse leads out of what no single kick leads out
-// of (both: Martin, Otto and Felten 1991, large-step Markov chains). All work of an iteration is
-// near the cuts: undoing goes through a log, and only a route better than all before is copied.
+// Local search by sequential moves does not find a double bridge, and does not simply undo it. A
+// walk among slightly worse routes escapes from where no single kick leads out (both: Martin, Otto
+// and Felten 1991, large-step Markov chains). All work of an iteration is near the cuts: undoing
+// uses a log, and only a route better than all before is copied.
 
 #ifndef TRAVERSE_ENGINE_SEARCH_ITERATED_SEARCH_H_
 #define TRAVERSE_ENGINE_SEARCH_ITERATED_SEARCH_H_
@@ -31,33 +31,33 @@ struct IteratedSearchOptions {
   LocalSearchOptions local_search;
   int descent_depth = 2;  // LocalSearchOptions::depth of Descend
 
-  // Ends after this many iterations without a gain, or with less than least_gain of the cost.
+  // Iterations without a gain, or with less than least_gain of the cost, that end the search.
   int64_t patience = 1000;
   double least_gain = 0;
 
-  // And where iterations are not worth it: where the last third of them, or the last `window` if
-  // that is more, did not gain so much each, in the unit of the cost; or where all beyond the first
-  // `window` together have not gained `earned` times as much over `given_cost`, less what `price`
-  // says of a route. Questions to `walls`, if there are any, count as so many more iterations as
-  // they take the time of.
+  // It also ends when iterations do not pay: when the last third of them, or the last `window` if
+  // that is more, gained less than this per iteration, in the unit of the cost; or when all beyond
+  // the first `window` together gained less than `earned` times as much over `given_cost`, not
+  // counting what `price` says of a route. Questions to `walls`, if any, count as the iterations
+  // that they take the time of.
   double least_gain_each = 0;
   double window = 200;
   double given_cost = std::numeric_limits<double>::infinity();
-  std::function<double(const Route& route)> price = nullptr;  // that is no gain if it is saved
+  std::function<double(const Route& route)> price = nullptr;  // saving this is no gain
   double earned = 1;
   const WallCost* walls = nullptr;
 
-  // How much worse a route is kept with a chance of 1/e, in mean moves of the route searched.
+  // How much worse a route may be to stay with a chance of 1/e, in mean moves of the route.
   double temperature = 0.2;
 
-  // Leaves between the first and the last cut of a kick: from the least to the most, as many kicks
-  // of one order of magnitude as of another. On small layers wide kicks find more, on large ones
-  // their repair costs too much. A run that is turned has the most of them, or fewer.
+  // Leaves between the first and the last cut of a kick: least and most, with as many kicks of one
+  // order of magnitude as of another. Wide kicks find more on small layers, but their repair costs
+  // too much on large ones. A turned run has at most the largest span.
   int least_span = 30;
   int most_span = 400;
 
-  // Of the kicks that turn a run, where there are such: their share, the most blocks in a run, and
-  // the share of the runs that end near to where they begin.
+  // For kicks that turn a run, where those exist: their share of all kicks, the most blocks in a
+  // run, and the share of the runs that end near where they begin.
   double turn_share = 0.5;
   int most_turned = 30;
   double near_share = 0.5;
@@ -65,22 +65,22 @@ struct IteratedSearchOptions {
 
 class IteratedSearch {
  public:
-  // The arguments outlive the search.
+  // The arguments must outlive the search.
   IteratedSearch(SearchState& state, const NeighborLists& neighbors,
                  const IteratedSearchOptions& options);
 
-  // Local search alone, from the route as it is.
+  // Runs only local search, from the current route.
   void Descend(Budget& budget);
 
-  // Kicks and repairs the route, which is the best one found afterwards: never worse than before.
+  // Kicks and repairs the route. Afterwards it is the best one found, never worse than before.
   void Run(Rng& rng, Budget& budget);
 
   int64_t iterations() const { return iterations_; }
 
-  // Of WallCost::work(), what takes as long as an iteration without walls: some 20 us.
+  // The WallCost::work() that takes as long as an iteration without walls: about 20 us.
   static constexpr double kWallWorkOfIteration = 400;
 
-  // Fewer iterations say nothing of what the next ones gain, whatever their walls cost.
+  // Fewer iterations do not predict the gain of the next ones, whatever their walls cost.
   static constexpr int64_t kLeastIterations = 200;
 
  private:
@@ -93,7 +93,7 @@ class IteratedSearch {
   int ChooseSpan(Rng& rng) const;
   void KeepBest(double cost);
 
-  // What was done so far, in iterations without walls.
+  // The work so far, in iterations without walls.
   double Work() const;
   double Price() const;
   bool IsWorthIt(double work);
@@ -106,7 +106,7 @@ class IteratedSearch {
   int64_t iterations_ = 0;
   double best_cost_ = 0;
   double begun_at_ = 0;   // Work() when Run() began
-  double looked_at_ = 0;  // Work(), and the best cost, when the last iterations were looked at
+  double looked_at_ = 0;  // Work(), and the best cost, when the last iterations were judged
   double cost_looked_at_ = 0;
   int64_t iterations_looked_at_ = 0;
   double price_looked_at_ = 0;

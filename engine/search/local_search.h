@@ -1,10 +1,10 @@
 // Local search over order, entry and direction together.
 //
-// A queue holds the leaves whose surroundings changed (don't-look bits, Bentley 1992). For each,
-// its own entry is chosen again, then 3-opt moves at its two edges are tried (three_opt.h), each
-// with new entries at the cuts (move_evaluator.h); the first that helps is done. If none does, the
-// most promising one is done on trial, and the search goes on from there, as in Lin-Kernighan, to
-// some depth. Any plan, any cost: the plan decides which moves there are.
+// A queue holds the leaves whose surroundings changed (don't-look bits, Bentley 1992). For each
+// leaf the search chooses the entry again and then tries 3-opt moves at its two edges
+// (three_opt.h), each with new entries at the cuts (move_evaluator.h). It applies the first move
+// that helps. If none does, it applies the most promising one on trial and searches on from there,
+// as in Lin-Kernighan, to some depth. Any plan, any cost: the plan decides which moves exist.
 
 #ifndef TRAVERSE_ENGINE_SEARCH_LOCAL_SEARCH_H_
 #define TRAVERSE_ENGINE_SEARCH_LOCAL_SEARCH_H_
@@ -26,23 +26,23 @@ struct LocalSearchOptions {
 
 class LocalSearch {
  public:
-  // The arguments outlive the search.
+  // The arguments must outlive the search.
   LocalSearch(SearchState& state, const NeighborLists& neighbors,
               const LocalSearchOptions& options);
 
   // Changes LocalSearchOptions::depth.
   void set_depth(int depth) { options_.depth = depth; }
 
-  // Notes that the surroundings of `leaf`, or of all, changed.
+  // Notes that the surroundings of `leaf`, or of all leaves, changed.
   void Push(int leaf);
   void PushAll();
 
-  // Improves the route until the queue is empty or the budget has run out; returns the change of
+  // Improves the route until the queue is empty or the budget has run out. Returns the change of
   // cost, which is 0 or negative. Allocates nothing.
   double Run(Budget& budget);
 
-  // Chooses the entries of the visits at [first, last] again, exactly for up to two of them at a
-  // time. Returns the change of cost.
+  // Chooses the entries of the visits at [first, last] again, exactly for up to two at a time.
+  // Returns the change of cost.
   double ChooseEntries(int first, int last);
 
  private:
@@ -70,7 +70,7 @@ class LocalSearch {
   ThreeOpt three_opt_;
   MoveEvaluator evaluator_;
 
-  // A ring of the leaves to look at.
+  // A ring buffer of the leaves to look at.
   std::vector<int> queue_;
   std::vector<char> queued_;  // [leaf]
   size_t head_ = 0;

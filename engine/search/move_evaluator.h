@@ -23,26 +23,26 @@ namespace traverse {
 
 class MoveEvaluator {
  public:
-  // `state` outlives the evaluator.
+  // `state` must outlive the evaluator.
   explicit MoveEvaluator(SearchState& state) : state_(state) {}
 
   // The change of cost by `move` with new entries; negative is better. Equals a full recomputation
-  // after Apply. From `most` on, the work ends early, with some value that is not less than `most`.
-  // Leaves the route as it is. REQUIRES: the plan allows the move, or it is not applied.
+  // after Apply. Stops early once the change reaches `most`, with some value not below `most`. Does
+  // not change the route. REQUIRES: the plan allows the move, or it is not applied.
   double Evaluate(const SegmentMove& move, double most = std::numeric_limits<double>::infinity());
 
-  // Does the move evaluated last, with its entries. REQUIRES: that was not ended early.
+  // Applies the move evaluated last, with its entries. REQUIRES: it was not ended early.
   void Apply(const SegmentMove& move);
 
  private:
-  // A visit near a cut, as it is run through after the move.
+  // A visit near a cut, as it is traversed after the move.
   struct Place {
     int leaf;
     Point in;
     Point out;
     bool free;
     bool begins;  // a stretch: the move to it is not counted
-    int entry;    // chosen; -1: as it is
+    int entry;    // chosen; -1: unchanged
   };
 
   void AddPlace(int position, bool reversed, bool free);

@@ -1,4 +1,4 @@
-// The tree of a plan, compiled for local search: what may be moved where.
+// The tree of a plan, compiled for local search: what may move where.
 
 #ifndef TRAVERSE_ENGINE_SEARCH_ORDER_TREE_H_
 #define TRAVERSE_ENGINE_SEARCH_ORDER_TREE_H_
@@ -14,14 +14,14 @@
 
 namespace traverse {
 
-// A plan's tree without what does not matter to the order: nodes without paths are gone (their
-// `before` pairs are passed on), nodes with one child are replaced by that child. Items are
-// numbered: 0 .. path_count() - 1 are the leaves, by path; then start() and finish(), two leaves
-// that stand for the head's places before and after the layer; then the inner nodes. The root is
-// in_order(start, plan, finish), so that every leaf of a path has a leaf before and after it.
+// A plan's tree reduced to what matters for the order. Nodes without paths are gone (their `before`
+// pairs are passed on); nodes with one child are replaced by that child. Items are numbered: 0 ..
+// path_count() - 1 are the leaves, by path; then start() and finish(), two leaves for the head's
+// positions before and after the layer; then the inner nodes. The root is in_order(start, plan,
+// finish), so that every leaf of a path has a leaf before and after it.
 class OrderTree {
  public:
-  // `budget`, if there is one, is asked meanwhile; the tree is whole all the same.
+  // Asks `budget` regularly, if it is not null; the tree is complete in any case.
   explicit OrderTree(const CompiledPlan& plan, Budget* budget = nullptr);
   explicit OrderTree(const Plan& plan, Budget* budget = nullptr);
 
@@ -36,27 +36,27 @@ class OrderTree {
   int depth(int item) const { return depth_[Index(item)]; }
   int size(int item) const { return size_[Index(item)]; }  // leaves below, 1 for a leaf
 
-  // Whether the children of `item` may change place. Not so in an any_order node whose pairs,
-  // passed on, would be too many (PassedPairs).
+  // Whether the children of `item` may change places. Not in an any_order node whose pairs, passed
+  // on, would be too many (PassedPairs).
   bool free_order(int item) const { return free_order_[Index(item)]; }
 
-  // Whether everything below may be done backwards: paths can be reversed and no order is fixed.
+  // Whether everything below may run backwards: paths can be reversed and no order is fixed.
   bool reversible(int item) const { return reversible_[Index(item)]; }
 
-  // Whether that holds for all children of `item`.
+  // Whether that is true for all children of `item`.
   bool children_reversible(int item) const { return children_reversible_[Index(item)]; }
 
   // Whether `item` has children whose order is not free.
   bool has_pairs(int item) const { return has_pairs_[Index(item)]; }
 
-  // Siblings of `item` that come after it, or before it, by a pair of their parent.
+  // Siblings of `item` that must come after it, or before it, by a pair of their parent.
   absl::Span<const int> after(int item) const { return Range(after_, after_first_, item); }
   absl::Span<const int> before(int item) const { return Range(before_, before_first_, item); }
 
-  // Whether there are nodes whose leaves change place when others move.
+  // Whether there are nodes whose leaves change position when others move.
   bool nested() const { return nested_; }
 
-  // Whether the plan leaves an order open.
+  // Whether the plan leaves any order open.
   bool has_choice() const { return has_choice_; }
 
   absl::Span<const int> children(int item) const { return Range(children_, children_first_, item); }
@@ -67,7 +67,7 @@ class OrderTree {
     return item == node;
   }
 
-  // The child of `node` that holds `leaf`, or is it. REQUIRES: `leaf` is below `node`.
+  // The child of `node` that contains `leaf`, or is it. REQUIRES: `leaf` is below `node`.
   int ChildHolding(int node, int leaf) const {
     int item = leaf;
     assert(IsBelow(node, leaf));
@@ -75,7 +75,7 @@ class OrderTree {
     return item;
   }
 
-  // The deepest node that holds both leaves. REQUIRES: they differ.
+  // The deepest node that contains both leaves. REQUIRES: they differ.
   int CommonNode(int leaf1, int leaf2) const {
     assert(leaf1 != leaf2);
     int a = parent(leaf1);

@@ -1,8 +1,8 @@
-// Polishing: local search over order and entries together, from routes found otherwise.
+// Polishing: local search over order and entries together, from routes found by another method.
 //
-// The cure that the thesis names for its tabu search (5.2, p. 95-97, and 6.2): bad contour points
-// and crossing moves go, and what local search does not find, iterated local search does. All
-// vertices of the contours count, not those of a reduction alone.
+// The thesis names this cure for its tabu search (5.2, p. 95-97, and 6.2): it removes bad contour
+// points and crossing moves, and iterated local search finds what local search does not. It uses
+// all vertices of the contours, not only those that a reduction left.
 
 #ifndef TRAVERSE_ENGINE_SEARCH_POLISHER_H_
 #define TRAVERSE_ENGINE_SEARCH_POLISHER_H_
@@ -21,17 +21,17 @@
 
 namespace traverse {
 
-// What polishing several routes of one layer shares. Setting it up takes O(points log points).
+// What polishing several routes of one layer shares. Building it takes O(points log points).
 class Polisher {
  public:
-  // `layer` outlives the polisher. When the budget runs out, it knows of fewer moves.
+  // `layer` must outlive the polisher. If the budget runs out, the polisher knows fewer moves.
   Polisher(const LayerView& layer, Budget& budget);
 
   // A valid route that costs no more than `route`, which is valid: entries chosen exactly, then
-  // local search until nothing near helps.
+  // local search until no near move helps.
   Route Descend(Route route, Budget& budget);
 
-  // The same, and then kicks and repairs until `patience` of them in a row gained nothing.
+  // The same, then kicks and repairs until `patience` of them in a row gain nothing.
   Route Iterate(Route route, int64_t patience, Rng& rng, Budget& budget);
 
  private:

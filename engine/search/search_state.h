@@ -16,16 +16,16 @@
 
 namespace traverse {
 
-// An array of leaves with the place of each, the start at position 0 and the finish at
-// last_position(). Changes are logged, so that a trial costs what it touches and not a copy of the
-// route. Memory: about 90 bytes a path.
+// An array of leaves with the position of each; the start is at position 0, the finish at
+// last_position(). Changes are logged, so a trial costs only what it touches and not a copy of the
+// route. Memory: about 90 bytes per path.
 class SearchState {
  public:
-  // The arguments outlive the state; of `problem`, only its plan does not have to.
+  // The arguments must outlive the state; of `problem`, everything but its plan.
   SearchState(const LayerProblem& problem, const OrderTree& tree, const LeafEntries& entries);
 
-  // From a valid route of the problem, and to one. Loading forgets the log, and asks `budget`, if
-  // there is one, meanwhile.
+  // Load from a valid route of the problem, and unload to one. Loading clears the log, and asks
+  // `budget` regularly, if it is not null.
   void Load(const Route& route, Budget* budget = nullptr);
   Route Unload() const;
   void Unload(Route& route) const;  // the same; allocates nothing if the route has room
@@ -40,7 +40,7 @@ class SearchState {
   int last_position() const { return tree_.leaf_count() - 1; }
   int leaf_at(int position) const { return order_[Index(position)]; }
 
-  // Of a leaf; of an inner node, where its first leaf is.
+  // The position of a leaf; of an inner node, that of its first leaf.
   int position(int item) const { return position_[Index(item)]; }
 
   int entry(int leaf) const { return entry_[Index(leaf)]; }
@@ -55,7 +55,7 @@ class SearchState {
   double StepCost(int position) const { return steps_[Index(position)]; }
   double TotalCost() const;
 
-  // Whether the plan allows `move`. O(1) where the leaves moved are children of one node without
+  // Whether the plan allows `move`. O(1) if the moved leaves are children of one node without
   // pairs, else up to O(leaves and pairs moved).
   bool Allows(const SegmentMove& move) const;
 
@@ -63,7 +63,7 @@ class SearchState {
   void Apply(const SegmentMove& move);
   void SetEntry(int leaf, int entry);
 
-  // Undo everything since Mark() returned `mark`; forget how to undo.
+  // Undo everything since Mark() returned `mark`; forget how to undo it.
   size_t Mark() const { return log_.size(); }
   void UndoTo(size_t mark);
   void Commit() { log_.clear(); }

@@ -18,14 +18,14 @@
 
 namespace traverse {
 
-// A run of positions [first, last], done backwards if `reversed`.
+// A run of positions [first, last], traversed backwards if `reversed`.
 struct Segment {
   int first = 0;
   int last = 0;
   bool reversed = false;
 
   int size() const { return last - first + 1; }
-  // The position that comes in place i.
+  // The position that comes at index i.
   int At(int i) const { return reversed ? last - i : first + i; }
 };
 
@@ -45,7 +45,7 @@ struct SegmentMove {
 
   bool exchanges() const { return kind >= Kind::kExchange; }
 
-  // The segments in their new order: the first of the array alone for kReverse.
+  // The segments in their new order; for kReverse only the first element counts.
   std::array<Segment, 2> NewOrder() const {
     switch (kind) {
       case Kind::kReverse:
@@ -59,7 +59,7 @@ struct SegmentMove {
   }
   int segment_count() const { return kind == Kind::kReverse ? 1 : 2; }
 
-  // Where, after the move, the second segment of the new order begins. REQUIRES: there is one.
+  // Where the second segment of the new order begins after the move. REQUIRES: there is one.
   int NewMiddle() const {
     assert(segment_count() == 2);
     return exchanges() ? first + (last - middle + 1) : middle;

@@ -3,10 +3,10 @@
 //   ... t1 | t2 ... t4 | t3 ... t5 | t6 ...     cut after t1; t2 wants t3 for a neighbor, so cut
 //                                               next to t3; t4 wants t5; t6 is left for t1
 //
-// Cuts are looked for one after the other, on either side of near neighbors only, and only as long
-// as the moves gained exceed those added: every improving exchange can be found so, begun at the
-// right visit (Lin and Kernighan 1973). Changes of cost are judged with the entries as they are,
-// but with some slack, as entries will be chosen again (move_evaluator.h).
+// The search looks for one cut after another, only on either side of near neighbors, and only while
+// the removed moves cost more than the added ones: begun at the right visit, this finds every
+// improving exchange (Lin and Kernighan 1973). It judges changes of cost with the present entries,
+// but with some slack, because entries will be chosen again (move_evaluator.h).
 
 #ifndef TRAVERSE_ENGINE_SEARCH_THREE_OPT_H_
 #define TRAVERSE_ENGINE_SEARCH_THREE_OPT_H_
@@ -24,14 +24,14 @@
 namespace traverse {
 
 struct ThreeOptOptions {
-  int first_breadth = 8;   // neighbors looked at for t3
+  int first_breadth = 8;   // neighbors considered for t3
   int second_breadth = 5;  // and for t5
   size_t keep = 4;         // most moves found by one search
 
-  // Visits between the cuts of a move done on trial: doing it, and undoing it, takes so long.
+  // Most visits between the cuts of a move applied on trial; applying and undoing it takes as long.
   int longest_trial = 1000;
 
-  // Shares of the radii of the contours at the cuts by which a move may seem to fall short.
+  // By how much a move may seem to lose: as shares of the radii of the contours at the cuts.
   double slack = 0.6;         // as a whole
   double first_slack = 0.5;   // after t3
   double second_slack = 0.2;  // after t5
@@ -41,11 +41,11 @@ class ThreeOpt {
  public:
   struct Found {
     SegmentMove move;
-    double delta = 0;  // with the entries as they are
+    double delta = 0;  // with the present entries
   };
 
-  // The move after which a search may go on from the same t1, as in Lin-Kernighan: of those that
-  // the plan allows the one with the most gain, the last added edge not counted.
+  // The move after which a search may continue from the same t1, as in Lin-Kernighan: among those
+  // that the plan allows the one with the largest gain, without counting the last added edge.
   struct Open {
     SegmentMove move;
     double delta = 0;
@@ -53,17 +53,17 @@ class ThreeOpt {
     int t2 = -1;  // next to t1 after the move; -1: there is none
   };
 
-  // The arguments outlive the search.
+  // The arguments must outlive the search.
   ThreeOpt(const SearchState& state, const NeighborLists& neighbors, const ThreeOptOptions& options)
       : state_(state), neighbors_(neighbors), options_(options) {}
 
   // Looks for moves that the plan allows and that cut the edge after the leaf t1 (`forward`) or
-  // before it. `debt`: what the route already costs more than the one to be improved. Without
-  // `wants_open`, open() is of no interest and stays empty: most moves are then seen to be too bad
-  // without their last edge.
+  // before it. `debt`: how much the route costs above the one to be improved. Without
+  // `wants_open`, nobody needs open() and it stays empty: most moves then prove too bad without
+  // their last edge.
   void Search(int t1, bool forward, double debt, bool wants_open = true);
 
-  // What the last search found: deltas from `debt` on, least first.
+  // The moves that the last search found: deltas up to `debt`, least first.
   absl::Span<const Found> found() const { return found_; }
   const Open& open() const { return open_; }
 
@@ -88,13 +88,13 @@ class ThreeOpt {
   double LimitMm(double limit) const;
   double Radius(int leaf) const { return state_.entries().radius(leaf); }
 
-  // Deltas from here on are not kept, if contours with these radii are at the cuts.
+  // Deltas from here on are rejected, if contours with these radii are at the cuts.
   double LeastRejected(double radii) const {
     const double slack = options_.slack * radii;
     return found_.size() < options_.keep ? slack : std::min(slack, found_.back().delta);
   }
 
-  // Cost: callable with two points, for the inner loops to have a length without a branch.
+  // Cost: callable with two points, so that the inner loops compute a length without a branch.
   template <typename Cost>
   double Join(const End& a, const End& b, const Cost& cost) const;
   template <typename Cost>
@@ -117,16 +117,16 @@ class ThreeOpt {
   const NeighborLists& neighbors_;
   const ThreeOptOptions options_;
 
-  // The search under way.
+  // The current search.
   bool wants_open_ = true;
   End t1_{}, t2_{}, t3_{}, t4_{};
   Cut cut1_{}, cut2_{};
-  double gain0_ = 0;  // edges cut less edges added so far
+  double gain0_ = 0;  // cost of the cut edges less that of the added ones so far
   double gain1_ = 0;
   double radii_ = 0;  // of the contours at the first two cuts
   int left_ = 0;      // the first two cuts, in the order of the route
   int right_ = 0;
-  int kinds_[2][3] = {};  // the move by the third cut's place and the side of t5; see SetKinds
+  int kinds_[2][3] = {};  // the move by the third cut's position and the side of t5; see SetKinds
 
   std::vector<Found> found_;
   Open open_;

@@ -1,11 +1,11 @@
-// Turning a run of blocks: what is left of 2-opt where blocks cannot be reversed.
+// Turns a run of blocks: what remains of 2-opt where blocks cannot be reversed.
 //
 //   ... p | A  B  C | q ...   ->   ... p | C~ B~ A~ | q ...      each block turned as far as may be
 //
-// An island of interleaved deposition comes contours first, a feature of a sliced file after those
-// that it touches: their order along a route can be turned round, they themselves cannot. 3-opt
-// moves reverse all or nothing, so they turn no run of such blocks, and a route that goes round a
-// layer the wrong way stays so.
+// An island of interleaved deposition has its contours first, and a feature of a sliced file comes
+// after those that it touches. The order of such blocks along a route can be turned round, but not
+// the blocks themselves. 3-opt moves reverse all or nothing, so they turn no such run, and a route
+// that goes round a layer the wrong way stays so.
 
 #ifndef TRAVERSE_ENGINE_SEARCH_TURN_RUN_H_
 #define TRAVERSE_ENGINE_SEARCH_TURN_RUN_H_
@@ -15,13 +15,13 @@
 
 namespace traverse {
 
-// Whether runs of children of `node` can be turned by TurnRun but not be reversed.
+// Whether TurnRun can turn runs of children of `node` that cannot be reversed.
 bool TurnsOnly(const OrderTree& tree, int node);
 
 // Puts the children of `node` at positions [first, last] in the opposite order, as far as their
-// `before` pairs allow, and does the same within each child: what is reversible is reversed.
-// Twice is the identity where there are no pairs. O(size * depth + children^2 * pairs).
-// REQUIRES: `node` has free order; [first, last] is a union of children of it.
+// `before` pairs allow, and does the same within each child; reversible parts are reversed. Doing
+// it twice is the identity if there are no pairs. O(size * depth + children^2 * pairs). REQUIRES:
+// `node` has free order; [first, last] is a union of children of it.
 void TurnRun(SearchState& state, int node, int first, int last);
 
 }  // namespace traverse

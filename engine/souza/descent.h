@@ -1,7 +1,7 @@
-// Descent: 2-opt and point release in turn, on any plan, until neither finds a gain.
+// Descent: alternates 2-opt and point release, on any plan, until neither finds a gain.
 //
-// 2-opt works on one any_order node after the other: the node's children are blocks between the
-// visits before and behind it, each with its own order inside (BlockLine). Point release works on
+// 2-opt works on one any_order node after another: the node's children are blocks between the
+// visits before and after it, each with its own order inside (BlockLine). Point release works on
 // all visits.
 
 #ifndef TRAVERSE_ENGINE_SOUZA_DESCENT_H_
@@ -15,15 +15,15 @@
 namespace traverse {
 
 struct DescentOptions {
-  // Off: the entries of contours stay as they are, and only the direction of open paths changes.
+  // If false, the entries of contours stay, and only the direction of open paths changes.
   bool point_release = true;
 };
 
-// Improves `route` and returns the change of cost, <= 0.
+// Improves `route`. Returns the change of cost, <= 0.
 double Descend(SearchRoute& route, const DescentOptions& options, Budget& budget);
 
-// A valid route that costs no more than `route`, which is valid: with options as above. When the
-// budget runs out, as far as it got.
+// A valid route that costs no more than `route`, which is valid. Options as above. When the budget
+// runs out, the route as improved so far.
 Route Improve(const LayerView& layer, const Route& route, const DescentOptions& options,
               Budget& budget);
 

@@ -19,7 +19,7 @@ namespace traverse {
 // `entry` is one of that path.
 double PointReleaseDelta(const SearchRoute& route, int position, int entry);
 
-// Which paths are released.
+// Which paths point release works on.
 enum class Released {
   kAll,
   kOpenPaths,  // only directions: the second pass of NI2OPT, SPEC 3.3

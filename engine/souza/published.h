@@ -1,4 +1,4 @@
-// Métodos 2 and 3 of Souza et al. (2017) as they are published: nothing of ours among them.
+// Métodos 2 and 3 of Souza et al. (2017) as published, with nothing of ours among them.
 //
 //   contours   nearest insertion, then 2-opt; the vertices chosen at insertion stay
 //   rasters    the same on pairs of ends, from where the contours end; a reversed stretch of the
@@ -6,7 +6,7 @@
 //   Método 3   then point release over the whole route, until nothing improves
 //
 // Source: [S] section 2, thesis 2.6.2 (p. 49, after Volpato et al. 2019); SPEC 3.3 and 3.4. On any
-// plan: the parts that are done one after the other (StagesOf) take the place of contours and
+// plan: the parts that are done one after the other (StagesOf) take the roles of contours and
 // rasters.
 
 #ifndef TRAVERSE_ENGINE_SOUZA_PUBLISHED_H_
@@ -19,7 +19,7 @@
 namespace traverse {
 
 // The route of Método 2, or with `point_release` of Método 3. It may be longer than any other: no
-// other method's takes its place. The order given if the budget runs out before there is one.
+// other method's route replaces it. The given order if the budget runs out first.
 Route PublishedRoute(const LayerView& layer, bool point_release, Budget& budget);
 
 }  // namespace traverse

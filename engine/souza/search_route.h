@@ -1,5 +1,5 @@
-// The route that a local search changes: visits in flat arrays, and where each node of the plan's
-// tree has its place in them.
+// The route that a local search changes: visits in flat arrays, and the position of each node of
+// the plan's tree in them.
 
 #ifndef TRAVERSE_ENGINE_SOUZA_SEARCH_ROUTE_H_
 #define TRAVERSE_ENGINE_SOUZA_SEARCH_ROUTE_H_
@@ -14,19 +14,19 @@
 
 namespace traverse {
 
-// Loaded from a route and unloaded into one. Every change keeps it valid, given that what it asks
-// for is. Not thread-safe.
+// Loaded from a route and unloaded into one. Every change keeps it valid if its REQUIRES hold. Not
+// thread-safe.
 //
-// The paths below a node are visited in one go, at positions [begin(node), begin(node) +
-// path_count(node)). Of an any_order node, order(node) lists the slots (PlanTree::children) as they
-// follow each other.
+// The paths below a node are visited without interruption, at positions [begin(node), begin(node) +
+// path_count(node)). For an any_order node, order(node) lists the slots (PlanTree::children) as
+// they follow each other.
 //
-// It also notes what a search has yet to look at: a node or a visit is pending from the start, and
-// again whenever a change touched it or a neighbor.
+// It also notes what a search still has to look at: a node or a visit is pending at the start, and
+// again whenever a change touches it or a neighbor.
 class SearchRoute {
  public:
-  // `layer` outlives the search route. Others are let on through `budget`, which may be null.
-  // REQUIRES: `route` is a valid route of it.
+  // `layer` must outlive the search route. Yields to others through `budget`, which may be null.
+  // REQUIRES: `route` is a valid route of `layer`.
   SearchRoute(const LayerView& layer, const Route& route, Budget* budget = nullptr);
 
   const LayerView& layer() const { return *layer_; }
@@ -35,7 +35,7 @@ class SearchRoute {
   // The entry (of the layer's table) of the visit at `position`.
   int entry(int position) const { return entries_[static_cast<size_t>(position)]; }
 
-  // The ends of the moves to and from the visit at `position`: where the head comes from, and where
+  // The ends of the moves to and from the visit at `position`: where the head comes from and where
   // it goes, which is nowhere after the last visit of a problem without a finish.
   Point from(int position) const {
     return position > 0 ? layer_->table.exit(entry(position - 1)) : layer_->problem.start;
@@ -55,17 +55,17 @@ class SearchRoute {
   }
 
   // Puts the children of an any_order node into another order: slots[k] is the k-th, and if
-  // reversed[k], all that is below it is done backwards. O(nodes below). REQUIRES: `slots` keeps
-  // the node's precedence; children that are reversed are reversible.
+  // reversed[k], everything below it runs backwards. O(nodes below). REQUIRES: `slots` keeps the
+  // node's precedence; children that are reversed are reversible.
   void Arrange(int node, absl::Span<const int> slots, absl::Span<const char> reversed);
 
-  // Whether the node, or the visit of `path`, is pending; from now on it is not.
+  // Whether the node, or the visit of `path`, is pending. Clears that.
   bool TakePendingNode(int node) { return Take(pending_node_, node); }
   bool TakePendingVisit(int path) { return Take(pending_visit_, path); }
 
   Route ToRoute() const;
 
-  // Computed anew, in the unit of the problem's cost, the move to `finish` included.
+  // Computed again, in the unit of the problem's cost, including the move to `finish`.
   double Cost() const;
 
  private:

@@ -1,11 +1,11 @@
 // 2-opt: exchanges two moves of a line of blocks for two others, which reverses what lies between.
 //
-//   before   a -> [i ... j] -> b         reversible blocks of i..j are then run through
+//   before   a -> [i ... j] -> b         reversible blocks of i..j are then traversed
 //   after    a -> [j ... i] -> b         backwards, the others keep their direction
 //
-// A stretch of one block is tried as well: the reversal of a single raster ([T] 2.6.2). Source:
-// SPEC 3.3; Croes (1958). Reversals keep precedence as in Gambardella and Dorigo (2000): a stretch
-// grows until it meets a block that waits for one inside.
+// A stretch may be a single block: the reversal of one raster ([T] 2.6.2). Source: SPEC 3.3; Croes
+// (1958). Reversals keep precedence as in Gambardella and Dorigo (2000): a stretch grows until it
+// meets a block that waits for one inside.
 
 #ifndef TRAVERSE_ENGINE_SOUZA_TWO_OPT_H_
 #define TRAVERSE_ENGINE_SOUZA_TWO_OPT_H_

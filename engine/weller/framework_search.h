@@ -21,7 +21,7 @@
 
 namespace traverse {
 
-// "sp", "nrp" or "bbcp", as options name them.
+// "sp", "nrp" or "bbcp", the names used in options.
 Representation RepresentationNamed(const std::string& name);
 
 struct FrameworkOptions {
@@ -30,18 +30,18 @@ struct FrameworkOptions {
   NeighborhoodOptions neighborhood;
   double neighbor_penalty_mm = 100;
   TabuOptions tabu;
-  int relinked = 5;  // sequences of a relinked path that step 3 takes up
+  int relinked = 5;  // sequences of a relinked path that step 3 considers
   VisibleIn visible_in = VisibleIn::kEitherPolygon;
 
-  // Paths of RelinkPoints by which step 3 chooses the contours' points, as the thesis's tabu search
-  // does; 0: the best of them, exactly, which is what its programme (4.8-4.13) looks for.
+  // Paths of RelinkPoints with which step 3 chooses the contours' points, as the thesis's tabu
+  // search does. 0: the optimal choice, which the thesis's programme (4.8-4.13) looks for.
   int point_relinkings = 0;
 
   bool trace = false;  // fills FrameworkResult::trace
 };
 
-// What the steps came to, for drawing, in sequential deposition. Indices into Plan::paths; the
-// origin has the number of paths.
+// The results of the steps, for drawing, in sequential deposition. Indices into Plan::paths; the
+// number of paths stands for the origin.
 struct FrameworkTrace {
   std::vector<std::pair<int, int>> neighbors;
   std::vector<int> sequence;                 // the preliminary one
@@ -54,7 +54,7 @@ struct ReductionCounts {
   int island_analysis = 0;  // of the contours that step 2 arranges
   int spaced = 0;           // SP of all contours
   int near_raster = 0;      // NRP of the contours that step 2 arranges
-  int box_center = 0;       // BBCP of the same
+  int box_center = 0;       // BBCP of these contours
   int visible = 0;          // in visibility polygons of the route
 };
 
@@ -64,8 +64,8 @@ struct FrameworkResult {
   int penalized_contour_links = 0;  // of the preliminary sequence, against the neighborhood
   int penalized_raster_links = 0;   // of the raster route
 
-  // Of tabu search alone.
-  int diversifications = 0;  // done in the step that did fewer of them
+  // Only for tabu search.
+  int diversifications = 0;  // in the step that did fewer of them
   int64_t evaluations = 0;   // of swaps, in both steps
 
   FrameworkTrace trace;
@@ -78,7 +78,7 @@ class SequenceMethod {
   virtual ~SequenceMethod() = default;
 
   // The best sequences found, best first, at least one: routes of `problem`, whose moves should
-  // keep to `rules`. Contours: any_order over contours of the points that stand for them. Rasters:
+  // keep to `rules`. Contours: any_order over contours of their representing points. Rasters:
   // any_order over islands of any_order over their rasters. The search starts from `start`.
   virtual std::vector<TabuElite> ArrangeContours(const LayerProblem& problem,
                                                  const LinkRules& rules, const Route& start,
@@ -87,9 +87,9 @@ class SequenceMethod {
                                                 const Route& start, Budget& budget) = 0;
 };
 
-// Steps 1 to 4 on `layer`, which is AsClassicalLayer of the problem's plan. The search for the
-// contours starts from the order in `start`, so does that for the rasters. Always a valid route;
-// deterministic by problem.seed unless the budget ends it. `options.tabu` is not looked at.
+// Steps 1 to 4 on `layer`, which is AsClassicalLayer of the problem's plan. The searches for the
+// contours and for the rasters start from the order in `start`. Always returns a valid route;
+// deterministic by problem.seed unless the budget ends it. Ignores `options.tabu`.
 FrameworkResult SearchFramework(const LayerProblem& problem, const ClassicalLayer& layer,
                                 const Route& start, const FrameworkOptions& options,
                                 SequenceMethod& method, Budget& budget);
@@ -99,10 +99,10 @@ FrameworkResult SearchFramework(const LayerProblem& problem, const ClassicalLaye
                                 const Route& start, const FrameworkOptions& options,
                                 Budget& budget);
 
-// For plans of any other form: tabu search over all its any_order nodes at once, contours
-// represented as `representation` says but for the near raster points of contours without known
-// islands (see NearRasterPoints), without steps that need islands (no suppressed contours, no
-// neighborhoods), and then the best entries for the order found. Valid if `start` is.
+// For plans of any other form: one tabu search over all any_order nodes, then the best entries for
+// the order found. Contours are represented as `representation` says, except for the near raster
+// points of contours without known islands (see NearRasterPoints). Steps that need islands are left
+// out (no suppressed contours, no neighborhoods). Valid if `start` is.
 Route SearchAnyPlan(const LayerProblem& problem, const Route& start,
                     const FrameworkOptions& options, Budget& budget);
 

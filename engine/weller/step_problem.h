@@ -1,4 +1,4 @@
-// What the steps of the framework solve: problems on plans of their own.
+// The problems that the steps of the framework solve, on plans of their own.
 
 #ifndef TRAVERSE_ENGINE_WELLER_STEP_PROBLEM_H_
 #define TRAVERSE_ENGINE_WELLER_STEP_PROBLEM_H_
@@ -13,8 +13,8 @@ namespace traverse {
 // Makes the tree of `plan` any_order over its paths 0, 1, ...
 void ArrangeFreely(Plan& plan);
 
-// A problem on `plan`, which outlives it: start and cost of `problem`, no finish, and a seed of its
-// own for each `step`.
+// A problem on `plan`, which must outlive it: start and cost of `problem`, no finish, and a
+// separate seed for each `step`.
 LayerProblem StepProblem(const LayerProblem& problem, const Plan& plan, uint64_t step);
 
 }  // namespace traverse

@@ -17,16 +17,16 @@
 
 namespace traverse {
 
-// The children of one any_order node that may be next, and the entries at which these may be begun:
-// those of a leaf, or of the first child's, or again those of a frontier, where the child begins
-// with an any_order node. Frontiers are nested like the nodes, so that all of them together hold
-// each entry once.
+// The children of one any_order node that may come next, and the entries at which they may begin:
+// those of a leaf, or of the first child, or those of another frontier if the child begins with an
+// any_order node. Frontiers are nested like the nodes, so that all of them together hold each entry
+// once.
 class Frontier {
  public:
-  // The frontiers of all nodes, made when they are first asked for.
+  // The frontiers of all nodes, each created when it is first needed.
   class Forest {
    public:
-    // `layer` and `budget`, which is asked meanwhile, outlive the forest.
+    // `layer` and `budget`, which it asks regularly, must outlive the forest.
     Forest(const LayerView& layer, Budget& budget)
         : layer_(&layer),
           budget_(&budget),
@@ -34,13 +34,13 @@ class Frontier {
           frontiers_(static_cast<size_t>(layer.tree.node_count())) {}
 
     Budget& budget() const { return *budget_; }
-    Rest& rest() { return rest_; }  // of all nodes together: each of them may be small
+    Rest& rest() { return rest_; }  // shared by all nodes: each of them may be small
 
-    // Not to be used if it was cancelled meanwhile. REQUIRES: `node` is an any_order node with
-    // children.
+    // Do not use it if the budget was cancelled meanwhile. REQUIRES: `node` is an any_order node
+    // with children.
     Frontier& Of(int node);
 
-    // For a node that is completed.
+    // Call it for a completed node.
     void Drop(int node) { frontiers_[static_cast<size_t>(node)].reset(); }
 
    private:
@@ -58,20 +58,20 @@ class Frontier {
 
   Frontier(const LayerView& layer, int node, Forest& forest);
 
-  // The entry nearest to `at`, the smallest of several, and the slot of the child that it begins.
-  // REQUIRES: a child may be next.
+  // The entry nearest to `at`, the smallest of several, and the slot of the child that begins
+  // there. REQUIRES: some child may come next.
   Found Nearest(Point at) const;
 
-  // Some child that may be next, found without a search: only `slot` is set. REQUIRES as above.
+  // Some child that may come next, found without a search: sets only `slot`. REQUIRES as above.
   Found Any() const;
 
-  // From now on only Any is asked for: that, Begin and Finish are quicker then.
+  // Promises that only Any will be called: that, Begin and Finish are then quicker.
   void StopSearching() { index_.StopSearching(); }
 
-  // The child is begun: it is not next any more.
+  // The child has begun: it can no longer come next.
   void Begin(int slot);
 
-  // The child is completed: those that waited for it may be next.
+  // The child is completed: those that waited for it may come next.
   void Finish(int slot);
 
  private:
@@ -91,8 +91,8 @@ class Frontier {
   std::vector<size_t> first_id_;              // [slot] where its ids begin in ids_; one more
   std::vector<int> ids_;
   std::vector<const Frontier*> nested_;  // [slot] where such a child begins; else null
-  std::vector<int> nested_next_;         // slots of nested_ that may be next
-  BoundingBox box_;                      // of all entries, nested ones included
+  std::vector<int> nested_next_;         // slots of nested_ that may come next
+  BoundingBox box_;                      // of all entries, including nested ones
   NearestPointIndex index_;              // of entries_, by id; built from what ListEntries fills
   std::optional<ReadySlots> ready_;
 };

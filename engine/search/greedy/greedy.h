@@ -1,11 +1,11 @@
-// Greedy construction: repeatedly the nearest point at which a path may be begun.
+// Greedy construction: repeatedly goes to the nearest point at which a path may be entered.
 //
-// Source: SPEC 3.2. On any plan: which paths may be next follows from the tree. A node is completed
-// once one of its paths was visited; of an in_order node, the first child left offers its points;
-// of an any_order node, each child does that waits for no other one. Nearest is by length for every
-// cost: a cost never falls with the length. Ties go to the lowest path, then the first entry.
-// About O(points log points) a level of nested any_order nodes. 5000 contours of 40 vertices: 90
-// ms.
+// Source: SPEC 3.2. On any plan, the tree says which paths may come next. Once a path of a node was
+// visited, the node is completed first. An in_order node offers the points of its first remaining
+// child; an any_order node those of each child that waits for no other one. Nearest is by length
+// for every cost, because a cost never falls as the length grows. Ties go to the lowest path, then
+// the first entry. About O(points log points) per level of nested any_order nodes. 5000 contours of
+// 40 vertices: 90 ms.
 
 #ifndef TRAVERSE_ENGINE_SEARCH_GREEDY_GREEDY_H_
 #define TRAVERSE_ENGINE_SEARCH_GREEDY_GREEDY_H_
@@ -16,12 +16,12 @@
 
 namespace traverse {
 
-// A valid route. When the budget runs out, the paths left follow in some order that the plan
+// A valid route. When the budget runs out, the remaining paths follow in some order that the plan
 // allows, each at its nearest entry.
 Route GreedyRoute(const LayerView& layer, Budget& budget);
 
-// The route that no strategy may fall behind: the cheaper of the greedy one and the order given,
-// the latter if they cost the same.
+// The route that every strategy must at least equal: the cheaper of the greedy one and the given
+// order; the latter if they cost the same.
 Route BaselineRoute(const LayerView& layer, Budget& budget);
 
 }  // namespace traverse
