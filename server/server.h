@@ -26,19 +26,19 @@
 
 namespace traverse {
 
-// What one connection may do.
+// Limits on one connection.
 struct ConnectionLimits {
   int max_connections = 1024;
   int max_streams = 100;  // calls at a time
   int max_header_bytes = 16384;
-  absl::Duration keepalive_time = absl::Seconds(30);     // idle, then the peer is asked
-  absl::Duration keepalive_timeout = absl::Seconds(10);  // for the answer
-  absl::Duration max_age = absl::InfiniteDuration();     // then clients connect anew
+  absl::Duration keepalive_time = absl::Seconds(30);     // idle time after which the peer is pinged
+  absl::Duration keepalive_timeout = absl::Seconds(10);  // for the answer to the ping
+  absl::Duration max_age = absl::InfiniteDuration();     // then clients are asked to reconnect
 };
 
 struct ServerOptions {
-  std::string listen;          // HOST:PORT; port 0 takes a free one; empty: in-process only
-  std::string metrics_listen;  // the same; empty: none
+  std::string listen;          // HOST:PORT; port 0 takes a free port; empty: in-process only
+  std::string metrics_listen;  // the same; empty: no such port
   bool reflection = true;
   int64_t max_memory = INT64_MAX;  // of the process, in bytes; jobs get a part of it
   bool insecure = false;           // plaintext on addresses that other machines can reach
@@ -46,7 +46,7 @@ struct ServerOptions {
   ConnectionLimits connections;
   ServiceOptions service;
 
-  // No ports, no log, no limits but those that keep memory bounded. `threads` 0: one for each core.
+  // No ports, no log, and only the limits that bound memory. `threads` 0: one per core.
   static ServerOptions Embedded(int threads);
 };
 
@@ -56,32 +56,32 @@ int UsableCores();
 // Thread-safe.
 class Server {
  public:
-  // Errors, with one line: InvalidArgument for plaintext that was not asked for and for files of
-  // tokens or certificates that cannot be used; Unavailable for what could not be had: a port, a
-  // log file.
+  // Errors, in one line: InvalidArgument for plaintext without --insecure, and for unusable
+  // files of tokens or certificates; Unavailable for a port or a log file that cannot be
+  // opened.
   static absl::StatusOr<std::unique_ptr<Server>> Start(const ServerOptions& options);
 
-  // Ends at once what is under way.
+  // Ends all running calls at once.
   ~Server();
 
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  // The ports that were chosen; 0 if there is none.
+  // The chosen ports; 0 if there is none.
   int port() const { return port_; }
   int metrics_port() const { return metrics_ == nullptr ? 0 : metrics_->port(); }
 
-  // A channel to the service without any port. The server outlives its calls.
+  // A channel to the service without any port. The server must outlive its calls.
   std::shared_ptr<grpc::Channel> InProcessChannel(const grpc::ChannelArguments& arguments);
 
-  // Turns NOT_SERVING, refuses new jobs, and waits for those under way for at most `timeout`; those
-  // that are left then end with UNAVAILABLE. Afterwards the ports are closed. True if none was
-  // left.
+  // Turns NOT_SERVING, refuses new jobs, and waits for the running ones for at most `timeout`.
+  // Those that remain then end with UNAVAILABLE. Afterwards the ports are closed. Returns true if
+  // none remained.
   bool Drain(absl::Duration timeout);
 
   ServiceCore& core() { return core_; }
 
-  // Opens the log anew and reads tokens and certificates, as somebody may have changed them.
+  // Reopens the log and reads tokens and certificates again, in case somebody changed them.
   void Reload() { core_.files.Reload(/*anyway=*/true); }
 
  private:
@@ -89,25 +89,25 @@ class Server {
   absl::Status Build(const ServerOptions& options);
   absl::Status AddPort(const ServerOptions& options, grpc::ServerBuilder& builder);
 
-  // Turns callers away who make others wait.
+  // Turns away callers who make others wait.
   void WatchLag();
 
-  // Takes no more connections; calls are cancelled that are there after `grace`.
+  // Takes no more connections; after `grace`, cancels the remaining calls.
   void Shutdown(absl::Duration grace);
 
-  // Hands connections to acceptors_, if the port is one of TCP. Before core_, which uses it.
+  // Hands connections to acceptors_, if the port is a TCP port. Before core_, which uses it.
   std::unique_ptr<Connections> connections_;
   ServiceCore core_;
   RouteOptimizerService service_;
   std::unique_ptr<MetricsHttp> metrics_;
 
-  // Several, as each is locked as long as it takes a connection in.
+  // Several, because each is locked while it takes a connection.
   std::vector<std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor>> acceptors_;
   std::unique_ptr<grpc::Server> server_;
   int port_ = 0;
   std::optional<LagProbe> lag_probe_;
   std::optional<Periodic> watch_lag_;  // by lag_probe_
-  std::optional<Periodic> look_;       // for files that have changed; last, as it uses the others
+  std::optional<Periodic> look_;       // at changed files; last, because it uses the other members
 };
 
 }  // namespace traverse

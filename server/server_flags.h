@@ -13,14 +13,14 @@
 
 namespace traverse {
 
-// Reads the command line, without the program's name, and first the file that --config names, so
-// that the command line wins. Returns what to print instead of serving, for --help and --version;
-// else an empty text. InvalidArgument, in one line, for everything that is wrong, such as
+// Reads the command line, without the program's name. Before that it reads the file that --config
+// names, so that the command line wins. Returns the text to print instead of serving, for --help
+// and --version; otherwise an empty text. InvalidArgument, in one line, for any mistake, such as
 // `unknown flag --thread; ...`, `server.conf:3: unknown flag --thread; ...` or `--threads: -1 is
 // below 0`.
 absl::StatusOr<std::string> ReadFlags(const std::vector<std::string>& arguments);
 
-// What the flags say, after ReadFlags.
+// The options that the flags state, after ReadFlags.
 ServerOptions OptionsFromFlags();
 
 absl::Duration DrainTimeout();

@@ -1,4 +1,4 @@
-// What all calls of the service share: pool, admission, metrics, log, limits, the jobs under way.
+// What all calls of the service share: pool, admission, metrics, log, limits, the running jobs.
 
 #ifndef TRAVERSE_SERVER_SERVICE_CORE_H_
 #define TRAVERSE_SERVER_SERVICE_CORE_H_
@@ -27,24 +27,24 @@
 
 namespace traverse {
 
-// Limits on what one message or job may hold. They protect memory; admission.h has those on jobs.
+// Limits on one message or job. They protect memory; admission.h has the limits on jobs.
 struct JobLimits {
   int64_t max_message_bytes = int64_t{64} << 20;
-  int64_t max_bytes_per_message = INT64_MAX;  // that its layers come to once they are read
+  int64_t max_bytes_per_message = INT64_MAX;  // that its layers need once they are read
   int64_t max_layers_per_message = 100'000;
   int64_t max_layers_per_job = 0;  // 0: no limit
   int64_t max_points_per_job = 0;  // 0: no limit
   int64_t max_points_per_layer = 1'000'000;
   JobWindow window;
 
-  // A job is given up whose caller neither sends nor reads anything for so long.
+  // A job ends if its caller neither sends nor reads anything for this long.
   absl::Duration idle_timeout = absl::Minutes(5);
 };
 
 struct ServiceOptions {
   int threads = 1;
-  absl::Duration watchdog = absl::InfiniteDuration();  // silence of a worker that is a fault
-  int worker_nice = 0;  // how much nicer the workers are than the threads of the calls
+  absl::Duration watchdog = absl::InfiniteDuration();  // silence of a worker that counts as a fault
+  int worker_nice = 0;                                 // added to the workers' nice value
   JobLimits limits;
   AdmissionLimits admission;
   AuthOptions auth;
@@ -55,39 +55,39 @@ struct ServiceOptions {
 // Thread-safe.
 class ServiceCore {
  public:
-  // Throws what JobLog throws.
+  // Throws what the constructor of JobLog throws.
   explicit ServiceCore(const ServiceOptions& options);
 
-  // The calls whose jobs were let in, until gRPC is done with them.
+  // The calls whose jobs were admitted, until gRPC is done with them.
   void Register(const std::shared_ptr<JobRun>& run, const std::string& peer);
   void Unregister(const std::shared_ptr<JobRun>& run, const std::string& peer);
 
-  // Begins to look after memory and after the connections, if there are any: they outlive their
-  // calls. `max_memory` is what the process may have, in bytes.
+  // Begins to watch memory, and the connections if `connections` is not null; they must outlive
+  // their calls. `max_memory`: what the process may use, in bytes.
   void Watch(Connections* connections, int64_t max_memory);
 
-  // For Connections, as there.
+  // Passed on to Connections.
   void OnCall(const std::string& peer);
   void OnCallDone(const std::string& peer);
   void OnAuthorized(const std::string& peer);
   void OnMessage(const std::string& peer, int64_t bytes);
 
-  // Ends the oldest job of `peer`, as of PeerKey, whose message has not come to its end yet: it is
-  // larger than any may be. False if there is none.
+  // Ends the oldest job of `peer` (see PeerKey) whose message is still incomplete, because it is
+  // larger than any may be. Returns false if there is none.
   bool EndOversizeJob(const std::string& peer);
   size_t calls() const;
 
-  // Ends all jobs under way with `status`.
+  // Ends all running jobs with `status`.
   void AbortAll(const absl::Status& status);
 
-  // Ends the jobs under way whose callers do nothing.
+  // Ends the running jobs whose callers do nothing.
   void AbortStalled();
 
-  // Gives memory that the allocator keeps back to the system, once no job was under way for some
-  // seconds. To be called again and again, by one thread. Returns whether it did so now.
+  // Returns memory that the allocator keeps to the system, once no job has run for some seconds.
+  // One thread must call it regularly. Returns whether it did so now.
   bool TrimIfIdle(std::chrono::steady_clock::time_point now);
 
-  // Whether all workers answer.
+  // Whether all workers respond.
   bool healthy() const { return !watchdog_ || watchdog_->silent() == 0; }
 
   // The text of /metrics.
@@ -97,21 +97,21 @@ class ServiceCore {
   Metrics metrics;
   OperatorFiles files;
   Admission admission;
-  std::atomic<int64_t> queue_layers{0};  // accepted and not yet solved
+  std::atomic<int64_t> queue_layers{0};  // accepted but not yet solved
   ReturnLag return_lag;
   WakeLateness wake_lateness;
 
  private:
   std::vector<std::shared_ptr<JobRun>> Runs() const;
 
-  // Refuses, then cuts and ends, where the process has more memory than it should.
+  // Refuses jobs, then cuts connections and ends jobs, while the process uses too much memory.
   void WatchMemory();
 
-  // A call, and from where.
+  // A call, and its origin.
   struct Call {
     std::shared_ptr<JobRun> run;
-    std::string peer;           // as of PeerKey
-    double pending_before = 0;  // of Connections::OnJob
+    std::string peer;           // see PeerKey
+    double pending_before = 0;  // from Connections::OnJob
   };
 
   mutable Mutex mutex_;
@@ -119,15 +119,15 @@ class ServiceCore {
   Connections* connections_ = nullptr;
   int64_t max_memory_ = INT64_MAX;
   std::chrono::steady_clock::time_point trimmed_for_memory_{};
-  uint64_t registered_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // so far
+  uint64_t registered_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // number of calls so far
 
-  // Of TrimIfIdle: what it saw.
+  // What TrimIfIdle last saw.
   uint64_t seen_registered_ = 0;
   bool trimmed_ = true;
   std::chrono::steady_clock::time_point idle_since_{};
 
  public:
-  WorkerPool pool;  // its threads end before anything that tasks use is gone
+  WorkerPool pool;  // its threads end before anything that its tasks use
 
  private:
   Periodic wakes_;  // measures wake_lateness

@@ -1,4 +1,4 @@
-// Who a call is from, and whether they may call.
+// Identifies callers and checks whether they may call.
 //
 //   bearer token   from a file of hashes; the caller is "token:NAME"
 //   certificate    of a client, verified by TLS; the caller is "cert:IDENTITY"
@@ -35,11 +35,11 @@ struct TokenEntry {
 };
 
 // Reads "NAME HASH" lines: a name of letters, digits, '.', '_' and '-', and the SHA-256 of the
-// token in hexadecimal. '#' begins a comment. A name may stand on several lines, for tokens old and
+// token in hexadecimal. '#' begins a comment. Several lines may have one name, for tokens old and
 // new. InvalidArgument `line 3: ...`.
 absl::StatusOr<std::vector<TokenEntry>> ParseTokens(const std::string& text);
 
-// What a call shows of itself.
+// The credentials that a call presents.
 struct CallCredentials {
   std::string authorization;            // the metadata of that name; empty if there is none
   std::vector<std::string> identities;  // of the verified client certificate; empty without one
@@ -47,26 +47,26 @@ struct CallCredentials {
 };
 
 struct AuthOptions {
-  std::string token_file;                  // empty: no token is asked for
+  std::string token_file;                  // empty: no token needed
   std::vector<std::string> allowed_names;  // identities that may call; empty: all verified ones
 };
 
 // Thread-safe.
 class Authenticator {
  public:
-  // `on_reload` is told of each reload of the token file that happened (OK) or failed; the tokens
-  // known before then stay. Errors: InvalidArgument if the token file cannot be used.
+  // Calls `on_reload` for each reload of the token file, OK or failed; after a failure the last
+  // good tokens stay. Errors: InvalidArgument if the token file cannot be used.
   static absl::StatusOr<std::unique_ptr<Authenticator>> Make(
       const AuthOptions& options, std::function<void(const absl::Status&)> on_reload);
 
-  // The name of the caller, by which he is counted. Errors: Unauthenticated, PermissionDenied.
+  // The name under which the caller is counted. Errors: Unauthenticated, PermissionDenied.
   absl::StatusOr<std::string> Identify(const CallCredentials& credentials);
 
-  // Whether `text` is a token that Identify would take now: it is for us, and for nobody behind us.
+  // Whether Identify would accept `text` as a token now; if so, it must not be passed on.
   bool IsToken(const std::string& text);
 
-  // Reads the token file again if it has changed, or in any case if `anyway`. Identify looks at it
-  // once a second at most.
+  // Reads the token file again if it has changed, or in any case if `anyway`. Identify checks at
+  // most once a second.
   void Look(bool anyway);
 
  private:
@@ -75,7 +75,7 @@ class Authenticator {
   Authenticator(const AuthOptions& options, std::function<void(const absl::Status&)> on_reload)
       : options_(options), on_reload_(std::move(on_reload)) {}
 
-  // The tokens of the file as it is now; looks at it once a second at most.
+  // The tokens of the file as it is now; checks the file at most once a second.
   Tokens CurrentTokens();
 
   absl::Status Load() TRAVERSE_REQUIRES(mutex_);

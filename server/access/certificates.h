@@ -1,5 +1,5 @@
-// The server's certificate with its key, and the authorities of its clients, as they stand in
-// files: read when they change, and used only if they are good.
+// The server's certificate with its key, and the authorities of its clients: read from files when
+// they change, and used only if they are good.
 
 #ifndef TRAVERSE_SERVER_ACCESS_CERTIFICATES_H_
 #define TRAVERSE_SERVER_ACCESS_CERTIFICATES_H_
@@ -20,35 +20,35 @@ namespace traverse {
 struct TlsOptions {
   std::string certificate;  // chain, leaf first; empty: no TLS
   std::string key;
-  std::string client_ca;  // not empty: a client certificate of these authorities is required
+  std::string client_ca;  // if not empty, a client certificate of these authorities is required
 
   bool enabled() const { return !certificate.empty() || !key.empty() || !client_ca.empty(); }
 };
 
-// What the files had in them.
+// The contents of the files.
 struct CertificateSet {
   std::string chain;
   std::string key;
-  std::string client_ca;  // empty if none is asked for
+  std::string client_ca;  // empty if no client certificate is required
   absl::Time expiry;      // of the first certificate of the chain to expire
   absl::Time ca_expiry;   // of the last of the authorities to expire; infinite without any
 };
 
-// Reads and checks the files: what a handshake needs is there, fits together and has not expired
-// `now`. Errors: InvalidArgument, with one line that names the file.
+// Reads and checks the files: they must contain what a handshake needs, fit together, and not have
+// expired at `now`. Errors: InvalidArgument, in one line that names the file.
 absl::StatusOr<CertificateSet> ReadCertificates(const TlsOptions& tls, absl::Time now);
 
 // Thread-safe.
 class CertificateStore {
  public:
-  // `on_reload` is told of each reload that happened (OK) or failed; what was good then stays.
-  // Errors: as of ReadCertificates.
+  // Calls `on_reload` for each reload, OK or failed; after a failure the last good files stay.
+  // Errors: see ReadCertificates.
   static absl::StatusOr<std::shared_ptr<CertificateStore>> Make(
       const TlsOptions& tls, std::function<void(const absl::Status&)> on_reload);
 
   std::shared_ptr<const CertificateSet> current() const;
 
-  // Reads the files again if one of them has changed, or in any case if `anyway`.
+  // Reads the files again if one of them changed, or in any case if `anyway`.
   void Look(bool anyway);
 
  private:

@@ -1,4 +1,4 @@
-// The transport's side of security: TLS, mutual TLS, and where plaintext is allowed.
+// The transport's part of security: TLS, mutual TLS, and where plaintext is allowed.
 
 #ifndef TRAVERSE_SERVER_ACCESS_CREDENTIALS_H_
 #define TRAVERSE_SERVER_ACCESS_CREDENTIALS_H_
@@ -13,13 +13,13 @@
 
 namespace traverse {
 
-// Whether `address`, as of --listen, is reached from this machine alone.
+// Whether only this machine can reach `address`, as given to --listen.
 bool IsLoopback(const std::string& address);
 
 // InvalidArgument for plaintext off loopback unless `insecure`.
 absl::Status CheckPlaintext(const std::string& listen, bool insecure);
 
-// Credentials for a port: each new connection gets what `store` has then.
+// Credentials for a port: each new connection gets the current certificates of `store`.
 std::shared_ptr<grpc::ServerCredentials> MakeTlsCredentials(
     std::shared_ptr<CertificateStore> store);
 

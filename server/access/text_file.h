@@ -1,4 +1,4 @@
-// Small files of text that an operator gives: tokens, certificates.
+// Small text files that an operator provides: tokens, certificates.
 
 #ifndef TRAVERSE_SERVER_ACCESS_TEXT_FILE_H_
 #define TRAVERSE_SERVER_ACCESS_TEXT_FILE_H_
@@ -10,11 +10,11 @@
 
 namespace traverse {
 
-// The content of a file of at most 4 MiB. Errors: InvalidArgument, with why alone (`it is a
-// directory`): the caller says which file it is.
+// The content of a file of at most 4 MiB. Errors: InvalidArgument with only the reason (`it is a
+// directory`); the caller adds the file's name.
 absl::StatusOr<std::string> ReadTextFile(const std::string& path);
 
-// Tells whether a file has changed.
+// Shows whether a file has changed.
 struct FileState {
   int64_t modified_ns = 0;
   int64_t size = -1;
@@ -22,7 +22,7 @@ struct FileState {
   friend bool operator==(const FileState&, const FileState&) = default;
 };
 
-// The state of a file now; that of a missing one is FileState().
+// The state of a file now; FileState() if it is missing.
 FileState StateOfFile(const std::string& path);
 
 }  // namespace traverse

@@ -1,13 +1,13 @@
-// Who may come in: limits on jobs and on queued work.
+// Decides which jobs may enter: limits on jobs and on queued work.
 //
-// Work is counted in points: the time and the memory that a layer takes grow with them, a request's
-// or a layer's do not. A job is refused as a whole and at once, before any work; what was let in is
-// done. Streams that were let in are held back, not refused, while the queue is full.
+// Work is counted in points, because the time and memory of a layer grow with them; those of a
+// request or a layer do not. A job is refused as a whole and at once, before any work; an admitted
+// job is done. While the queue is full, admitted streams are held back, not refused.
 //
-// A job is also refused if it would take much longer than alone. Workers take turns, so that a job
-// of p points is done when each other job of its caller has had p points of work or has ended, and
-// each other caller as much as this one. Small jobs are therefore let in beside large ones that
-// would themselves have to wait; under overload the large ones are refused first.
+// A job is also refused if it would take much longer than alone. Workers take turns, so a job of p
+// points is done when each other job of its caller has had p points of work or has ended, and each
+// other caller as much as this one. So small jobs are admitted beside large ones that would have to
+// wait themselves; under overload the large ones are refused first.
 //
 // Knows nothing of gRPC.
 
@@ -35,14 +35,14 @@ struct AdmissionLimits {
   int64_t max_queued_points = 8'000'000;  // of all jobs together, not yet solved
   int64_t max_queued_points_per_caller = 4'000'000;
 
-  // A job is refused that is expected to take longer than `max_wait` and longer than `max_slowdown`
-  // times what it would take alone.
+  // Refuse jobs expected to take longer than both `max_wait` and `max_slowdown` times as long as
+  // alone.
   absl::Duration max_wait = absl::Milliseconds(250);
   double max_slowdown = 3;
 
   int workers = 1;
 
-  // Memory that jobs make the server hold: what their messages are counted to come to, and answers.
+  // Memory that the server holds for jobs: what their messages need, as counted, and answers.
   int64_t max_bytes = INT64_MAX;
   int64_t max_bytes_per_caller = INT64_MAX;
 };
@@ -80,42 +80,42 @@ class Admission {
   };
 
  public:
-  // The place of one job; leaves when it is destroyed. Thread-safe. Outlived by the Admission.
+  // The place of one job, given up on destruction. Thread-safe. The Admission must outlive it.
   class Ticket {
    public:
     ~Ticket();
     Ticket(const Ticket&) = delete;
     Ticket& operator=(const Ticket&) = delete;
 
-    // The job turned out to have `points`, none of which it brought yet. Errors: as of Admit, if
-    // they are more than was said then; the job is to end.
+    // Corrects the job's size to `points`, none of which it has brought yet. Errors: as Admit, if
+    // the size is larger than stated then; the job must end.
     absl::Status Resize(int64_t points);
 
-    // Counts `points` more as queued, whether there is room or not.
+    // Counts `points` more as queued, whether or not there is room.
     void Add(int64_t points);
 
-    // A layer of `points`, for which `bytes` were held, is solved, which took a worker `seconds`.
+    // Notes that a layer of `points`, for which `bytes` were held, took a worker `seconds`.
     void Remove(int64_t points, int64_t bytes, double seconds);
 
-    // The job makes the server hold `bytes` more, or less. Errors: ResourceExhausted, as of Admit,
-    // if the memory for jobs is taken; then nothing is counted.
+    // Counts `bytes` more, or less, that the server holds for the job. Errors: ResourceExhausted,
+    // as Admit, if the memory for jobs is used up; then it counts nothing.
     absl::Status Hold(int64_t bytes);
     void LetGo(int64_t bytes);
 
-    // The same for answers, which are there whether there is room or not: those that wait for a
-    // slow reader take the place of what would be let in.
+    // The same for answers, which exist whether or not there is room. Those that wait for a slow
+    // reader take the place of new jobs.
     void KeepAnswer(int64_t bytes);
     void LetGoAnswer(int64_t bytes);
 
-    // The job is done by `strategy`: from now on its time is known better. Errors: as of Admit.
+    // Notes the job's strategy, which gives a better estimate of its time. Errors: as Admit.
     absl::Status SetStrategy(const std::string& strategy);
 
-    // Asks whether workers have something to do for the job, with a lock held. While they have not,
-    // for its caller does not read or send, its points are no load for others.
+    // Sets how to ask, with a lock held, whether workers have work for the job. If not, because its
+    // caller does not read or send, its points are no load for others.
     void WatchWork(std::function<bool()> is_worked_on);
 
-    // False if the queue, or the caller's part of it, is full and this job has its share of it:
-    // then the job should bring no more until some of its own is solved.
+    // False if the queue, or the caller's share of it, is full and this job has its own share: then
+    // the job should bring no more until some of it is solved.
     bool MayBringMore() const;
 
    private:
@@ -132,27 +132,27 @@ class Admission {
     Admission& admission_;
     std::map<std::string, Caller>::iterator caller_ TRAVERSE_GUARDED_BY(admission_.mutex_);
     int64_t points_ TRAVERSE_GUARDED_BY(admission_.mutex_) = 0;
-    int64_t bytes_ TRAVERSE_GUARDED_BY(admission_.mutex_) = 0;         // of layers to be solved
-    int64_t answer_bytes_ TRAVERSE_GUARDED_BY(admission_.mutex_) = 0;  // that wait to be written
+    int64_t bytes_ TRAVERSE_GUARDED_BY(admission_.mutex_) = 0;         // of unsolved layers
+    int64_t answer_bytes_ TRAVERSE_GUARDED_BY(admission_.mutex_) = 0;  // of answers not yet written
     std::string strategy_ TRAVERSE_GUARDED_BY(admission_.mutex_);
     std::function<bool()> is_worked_on_ TRAVERSE_GUARDED_BY(admission_.mutex_);
   };
 
-  // `on_refusal` is called for each refusal, from any thread.
+  // Calls `on_refusal` for each refusal, from any thread.
   Admission(const AdmissionLimits& limits, std::function<void(Refusal)> on_refusal);
 
-  // Lets a job of `caller` in that is about to queue `points`. Errors: Unavailable while draining;
-  // ResourceExhausted with a retry delay (server/jobs/retry_delay.h) if a limit is
-  // reached. A job is let into an empty queue whatever its size.
+  // Admits a job of `caller` that is about to queue `points`. Errors: Unavailable while draining;
+  // ResourceExhausted with a retry delay (server/jobs/retry_delay.h) if a limit is reached. An
+  // empty queue admits a job of any size.
   absl::StatusOr<std::unique_ptr<Ticket>> Admit(const std::string& caller, int64_t points);
 
   // Counts a refusal that was decided elsewhere.
   void CountRefusal(Refusal refusal) { on_refusal_(refusal); }
 
-  // The process has more memory than it should: no job is let in until it has less.
+  // While `is_short`, the process uses too much memory, and no job is admitted.
   void SetMemoryShort(bool is_short);
 
-  // From now on no job is let in.
+  // From now on no job is admitted.
   void StartDraining();
   bool draining() const;
 
@@ -161,7 +161,7 @@ class Admission {
   int64_t held_bytes() const;
 
  private:
-  // Why the job may not come in; nothing if it may.
+  // Why a job may not enter; unset if it may.
   struct No {
     Refusal refusal;
     absl::Status status;
@@ -176,22 +176,22 @@ class Admission {
                               const std::string& strategy) const TRAVERSE_REQUIRES(mutex_);
   std::optional<No> CheckBytes(const Caller& caller, int64_t bytes) const TRAVERSE_REQUIRES(mutex_);
 
-  // Points of a job that wait for a worker, and its time: none while its caller holds it up. A
+  // The job's points that wait for a worker, and their time; none while its caller holds it up. A
   // ticket's mutex is this one's, which the compiler cannot see.
   int64_t WaitingPoints(const Ticket& job) const
       TRAVERSE_REQUIRES(mutex_) TRAVERSE_NO_THREAD_SAFETY_ANALYSIS;
   absl::Duration WaitingTime(const Ticket& job) const
       TRAVERSE_REQUIRES(mutex_) TRAVERSE_NO_THREAD_SAFETY_ANALYSIS;
 
-  // Points that wait for a worker.
+  // Points of other callers that wait for a worker.
   int64_t PointsOfOthers(const std::string& caller) const TRAVERSE_REQUIRES(mutex_);
 
-  // Time until a new job that takes `alone` is done, beside those that are there.
+  // Time until a new job that takes `alone` is done beside the present ones.
   absl::Duration TimeUntilDone(const std::string& caller, absl::Duration alone) const
       TRAVERSE_REQUIRES(mutex_);
 
-  // Time of all workers for `points`, at the rate of late of a strategy, or of all if that is
-  // unknown; zero while nothing is known.
+  // Time of all workers for `points`, at the recent rate of `strategy`, or of all strategies if
+  // that is unknown; zero while nothing is known.
   absl::Duration TimeFor(int64_t points, const std::string& strategy = "") const
       TRAVERSE_REQUIRES(mutex_);
 
@@ -206,12 +206,12 @@ class Admission {
   int64_t bytes_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   bool memory_short_ TRAVERSE_GUARDED_BY(mutex_) = false;
 
-  // Of layers solved of late: sums whose older parts count ever less.
+  // Recently solved layers: sums in which older layers count ever less.
   struct Solved {
     double points = 0;
     double seconds = 0;
   };
-  // By strategy, those of the registry; of all of them under the empty name.
+  // By strategy of the registry; the empty name has the sum of all.
   std::map<std::string, Solved> solved_ TRAVERSE_GUARDED_BY(mutex_);
 };
 

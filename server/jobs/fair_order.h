@@ -1,11 +1,11 @@
-// Whose turn it is, by the time that each was served.
+// Whose turn it is, by how long each member has been served.
 //
 // Start-time fair queueing (Goyal, Vin, Cheng 1996): each member has a clock that runs while it is
-// served, and the one whose clock is furthest behind is next; among equals, the one that waits
-// longest. A member that comes, or comes back, begins a head start behind the others: what is
-// quickly done is done before what goes on for long. To serve a member within its head start takes
-// time from those that come later, its fair part of it: one after the other they cannot hold up for
-// good those that were there.
+// served. The next is the one whose clock is furthest behind; among equals, the one that waits
+// longest. A member that enters, or returns, begins a head start behind the others, so that quick
+// work is done before long work. Serving a member within its head start takes time from those that
+// come later, and only its fair share: one after the other, newcomers cannot hold up for good those
+// that were there before.
 //
 //   FairOrder order;
 //   FairOrder::Member a, b;
@@ -31,10 +31,10 @@ namespace traverse {
 
 class FairOrder {
  public:
-  // What a member is served before those that were there, in seconds.
+  // How long a new member is served before those that were there, in seconds.
   static constexpr double kHeadStart = 0.01;
 
-  // Derived from by what takes turns. Left alone by it.
+  // Base class of whatever takes turns, which must not touch its members.
   class Member {
    public:
     bool waits() const { return waits_; }
@@ -42,19 +42,19 @@ class FairOrder {
    private:
     friend class FairOrder;
     double clock_ = -std::numeric_limits<double>::infinity();
-    double head_start_ = 0;  // what is left of it
+    double head_start_ = 0;  // the rest of it
     uint64_t turn_ = 0;
     bool waits_ = false;
   };
 
-  // `member` has something to do, after it had nothing.
+  // `member` has work again after it had none.
   void Enter(Member& member) {
     member.clock_ = std::max(member.clock_, now_ - kHeadStart);
     member.head_start_ = std::max(0.0, now_ - member.clock_);
     ++members_;
   }
 
-  // `member` has nothing to do any more. REQUIRES: it does not wait.
+  // `member` has no more work. REQUIRES: it does not wait.
   void Leave([[maybe_unused]] Member& member) {
     assert(!member.waits_ && members_ > 0);
     --members_;
@@ -70,7 +70,7 @@ class FairOrder {
 
   bool empty() const { return waiting_.empty(); }
 
-  // Whose turn it is; it then waits no longer. REQUIRES: a member waits.
+  // Returns the member whose turn it is, which then no longer waits. REQUIRES: a member waits.
   Member& TakeNext() {
     assert(!empty());
     Member& next = *std::get<Member*>(*waiting_.begin());
@@ -80,14 +80,14 @@ class FairOrder {
     return next;
   }
 
-  // `member` does not wait any more, without a turn. REQUIRES: it waits.
+  // `member` stops waiting without having had a turn. REQUIRES: it waits.
   void Withdraw(Member& member) {
     assert(member.waits_);
     waiting_.erase(KeyOf(member));
     member.waits_ = false;
   }
 
-  // `member` was served for `seconds`. REQUIRES: it has not left.
+  // Notes that `member` was served for `seconds`. REQUIRES: it has not left.
   void Charge(Member& member, double seconds) {
     assert(members_ > 0);
     if (member.waits_) waiting_.erase(KeyOf(member));
@@ -102,8 +102,8 @@ class FairOrder {
 
   static Key KeyOf(Member& member) { return {member.clock_, member.turn_, &member}; }
 
-  double now_ = 0;   // the clock of whoever was served last, but never back
-  int members_ = 0;  // that have something to do
+  double now_ = 0;   // the clock of the member served last; never runs back
+  int members_ = 0;  // number of members with work
   uint64_t turns_ = 0;
   std::set<Key> waiting_;
 };

@@ -1,9 +1,9 @@
-// One job between the stream that brought it and the engine: feeds layers in, passes messages out,
+// One job between the stream that brought it and the engine: feeds in layers, passes on messages,
 // and ends once.
 //
-// At most `window` layers are between "given to the engine" and "written to the caller": a caller
-// who reads slowly holds up his own job, in bounded memory, and no thread. One message is written
-// at a time; Finish is called exactly once, after everything else.
+// At most `window` layers are between "given to the engine" and "written to the caller". So a slow
+// reader delays only its own job, in bounded memory and without blocking a thread. One message is
+// written at a time. Finish is called exactly once, after everything else.
 //
 //   stream --Add--> backlog --window--> engine --OnLayer--> [build order] --> queue --> StartWrite
 //
@@ -28,13 +28,13 @@
 
 namespace traverse {
 
-// How a job ends that wants more memory than there is.
+// The status of a job that needs more memory than there is.
 absl::Status NoMemory();
 
-// What has to be said about a layer in its result.
+// What the result of a layer must repeat from its request.
 struct LayerLabel {
   uint64_t id = 0;     // Layer.id
-  int64_t points = 0;  // all pairs of coordinates sent, also those that the route does not need
+  int64_t points = 0;  // all coordinate pairs sent, including those that the route does not need
   int64_t bytes = 0;   // of memory held for it
 };
 
@@ -48,94 +48,94 @@ class JobPort {
  public:
   virtual ~JobPort() = default;
 
-  // The message for one layer, and the one at the end. Calls never overlap; from worker threads.
+  // The message for one layer, and the last one. Worker threads call these, never at once.
   virtual std::string EncodeLayer(const LayerOutcome& outcome, const LayerLabel& label) = 0;
   virtual std::string EncodeSummary() = 0;
 
-  // Writes a message, then calls JobRun::OnWriteDone. Called again only after that.
-  // `more_follows`: another message or the end comes right behind it.
+  // Writes a message, then calls JobRun::OnWriteDone. It is called again only after that.
+  // `more_follows`: another message or the end comes right after this one.
   virtual void StartWrite(std::string message, bool more_follows) = 0;
 
-  // Whether the server as a whole would have more of this job now; asked when some of the job's
-  // layers are under way. Called with a lock held: calls nothing of the run.
+  // Whether the server as a whole accepts more of this job now; asked while some of its layers are
+  // in progress. Called with a lock held: must not call the run.
   virtual bool MayBringMore() const { return true; }
 
-  // Whether workers have something to do for the job. Called with a lock held: calls nothing of the
+  // Whether workers have work for the job. Called with a lock held: must not call the
   // run.
   virtual bool IsWorkedOn() const { return false; }
 
-  // Frees layers that are not needed any more; many, so that it is best done aside. May be called
-  // from any thread, and at the end.
+  // Frees layers that are no longer needed. They may be many, so do it in the background. May be
+  // called from any thread, and at the end.
   virtual void Discard(std::deque<LabelledLayer> layers) { layers.clear(); }
 
-  // Ends the call without waiting for its reader; OnWriteDone(false) follows if a write is under
-  // way.
+  // Ends the call without waiting for its reader. OnWriteDone(false) follows if a write is in
+  // progress.
   virtual void CancelCall() {}
 
-  // It is worth asking JobRun::AskForRoom again.
+  // Says that it is worth calling JobRun::AskForRoom again.
   virtual void OnRoom() = 0;
 
-  // The end. The port may be deleted by another thread before this returns.
+  // Ends the job. Another thread may delete the port before this returns.
   virtual void Finish(const absl::Status& status) = 0;
 };
 
-// How much of a job may be under way: fed to the engine and not yet written.
+// How much of a job may be in progress: given to the engine and not yet written.
 struct JobWindow {
   int64_t layers = 256;
   int64_t points = 500'000;  // three layers may exceed it
 };
 
-// Thread-safe, but for what is said below.
+// Thread-safe, except as stated below.
 class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
  public:
   struct Options {
     JobWindow window;
-    bool build_order = false;  // messages in build order; else as layers are ready
+    bool build_order = false;  // messages in build order; otherwise as layers are ready
   };
 
-  // `port` outlives its Finish. Owned by a shared_ptr.
+  // `port` must outlive its Finish. Owned by a shared_ptr.
   static std::shared_ptr<JobRun> Make(JobPort& port) {
     return std::shared_ptr<JobRun>(new JobRun(port));
   }
 
-  // Begins the job. `executor` outlives the run's Finish. At most once, before any Add.
+  // Begins the job. `executor` must outlive the run's Finish. At most once, before any Add.
   void Start(const Options& options, const JobSpec& spec, std::unique_ptr<Strategy> strategy,
              Executor& executor);
 
   // The producer's calls, one at a time. Layers may be added without asking for room; they wait
-  // here. Push begins work on what was added.
+  // here. Push begins work on the added layers.
   void Add(LabelledLayer layer);
   void Push();
 
-  // There are no more layers. Without Start: ends with an OK status and no summary.
+  // Says that no more layers follow. Without Start: ends with an OK status and no summary.
   void Close();
 
-  // True if more layers are welcome: there is room and the port may bring more. Else remembers that
-  // the producer waits, and JobPort::OnRoom is called when it is worth asking again.
+  // True if more layers are welcome: there is room and the port may bring more. Otherwise remembers
+  // that the producer waits; JobPort::OnRoom is called when it is worth asking again.
   bool AskForRoom();
 
-  // The message of the last StartWrite is out, or (`ok` false) will never be.
+  // The message of the last StartWrite has been written, or (`ok` false) will never be.
   void OnWriteDone(bool ok);
 
-  // Ends the job with `status`: stops the work within 50 ms and drops what is not yet written.
-  // After the first call, or the end, it does nothing.
+  // Ends the job with `status`: stops the work within 50 ms and drops what is not yet written. Does
+  // nothing after the first call, or after the end.
   void Abort(const absl::Status& status);
 
-  // Abort with `status` if the caller has neither sent nor read anything for `time` and it is his
-  // turn: no worker has anything to do for the job. A write that he does not read is given up.
+  // Aborts with `status` if the caller has neither sent nor read anything for `time` although the
+  // job waits for it: no worker has work for the job. Gives up a write that nobody reads.
   void AbortIfStalled(std::chrono::steady_clock::duration time, const absl::Status& status);
 
-  // While at least one hold is taken, Finish is not called: for work that uses the port. False, and
-  // nothing is taken, once the job has ended: the port may be deleted at any time then. A read of
-  // the transport may come in as late as that.
+  // While a hold is taken, Finish is not called: for work that uses the port. Returns false, and
+  // takes none, once the job has ended: the port may then be deleted at any time. A read of the
+  // transport may arrive as late as that.
   [[nodiscard]] bool Hold();
   void Release();
 
-  // Whether the job may still bring layers, and when it was last seen to move.
+  // Whether the job may still bring layers, and when it last made progress.
   bool waits_for_message() const;
   std::chrono::steady_clock::time_point progress() const;
 
-  // Whether Close was called: all has come that the job is to have.
+  // Whether Close was called, so that all layers have arrived.
   bool closed() const;
 
   // Whether Abort was called.
@@ -148,13 +148,13 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
  private:
   struct Outgoing {
     std::string message;
-    int64_t layers;  // of the window that it frees when it is written
+    int64_t layers;  // of the window, which it frees when it is written
     int64_t points;
   };
 
   explicit JobRun(JobPort& port) : port_(port) {}
 
-  // Does whatever can be done next; the last thing that a public method does.
+  // Does whatever can be done next. Every public method ends with it.
   void Pump(bool feed);
 
   // Gives layers to the engine while the window has room. Unlocks for the engine's calls.
@@ -162,7 +162,7 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
 
   void TakeLayer(LayerOutcome outcome);
 
-  // Something has moved.
+  // Notes that the job has made progress.
   void NoteProgress() TRAVERSE_REQUIRES(mutex_) { progress_ = std::chrono::steady_clock::now(); }
 
   bool FitsWindow(int64_t points) const TRAVERSE_REQUIRES(mutex_);

@@ -8,7 +8,7 @@
 
 namespace traverse {
 
-// `status` with the advice to try again after `delay`: google.rpc.RetryInfo as a payload, which
+// `status` with the advice to try again after `delay`: a payload google.rpc.RetryInfo, which
 // ToGrpcStatus puts into the error details.
 absl::Status WithRetryDelay(absl::Status status, absl::Duration delay);
 

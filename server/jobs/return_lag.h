@@ -1,5 +1,5 @@
-// How long results take from the end of the search to the end of the call: measured, so that
-// deadlines are also kept where the machine is busy or a caller's connection is slow.
+// Measures how long results take from the end of the search to the end of the call, so that
+// deadlines hold even on a busy machine or a slow connection.
 
 #ifndef TRAVERSE_SERVER_JOBS_RETURN_LAG_H_
 #define TRAVERSE_SERVER_JOBS_RETURN_LAG_H_
@@ -13,13 +13,13 @@
 
 namespace traverse {
 
-// The greatest of late: up at once, down slowly, as a deadline that is missed costs more than a
-// search that is shorter. Not thread-safe.
+// The greatest recent value: rises at once and falls slowly, because a missed deadline costs more
+// than a shorter search. Not thread-safe.
 class FadingMaximum {
  public:
   using Duration = Budget::Clock::duration;
 
-  // Forgets a difference after about so many records.
+  // Forgets a difference after about this many records.
   explicit FadingMaximum(int records) : records_(records) {}
 
   void Record(Duration value) {
@@ -32,20 +32,20 @@ class FadingMaximum {
   Duration value_{};
 };
 
-// Of each caller by himself: who reads slowly, or goes away, takes no time from others.
+// Counted per caller: a caller that reads slowly, or leaves, takes no time from others.
 // Thread-safe.
 class ReturnLag {
  public:
   using Duration = Budget::Clock::duration;
 
-  // A call of `caller` whose search was ended by its deadline ended `lag` later.
+  // Notes that a call of `caller`, whose deadline ended the search, ended `lag` later.
   void Record(const std::string& caller, Duration lag) {
     MutexLock lock(mutex_);
     if (lags_.size() >= kMostCallers && lags_.count(caller) == 0) lags_.clear();
     lags_.try_emplace(caller, kFadingCalls).first->second.Record(lag);
   }
 
-  // The time that should be left to the way back to `caller`.
+  // The time to reserve for the way back to `caller`.
   Duration Margin(const std::string& caller) const {
     MutexLock lock(mutex_);
     const auto found = lags_.find(caller);
@@ -60,14 +60,14 @@ class ReturnLag {
   std::map<std::string, FadingMaximum> lags_ TRAVERSE_GUARDED_BY(mutex_);
 };
 
-// How late threads are woken: where others use the cores, a thread goes on tens of milliseconds
-// after the time that it slept for. Thread-safe.
+// How late threads wake up: if others use the cores, a thread continues tens of milliseconds after
+// its sleep should end. Thread-safe.
 class WakeLateness {
  public:
   using Clock = Budget::Clock;
   using Duration = Clock::duration;
 
-  // How often to measure: Tick is called so much later, and then so much later again.
+  // The period of the measurement: Tick is called this much later, again and again.
   static constexpr std::chrono::milliseconds kPeriod{20};
 
   void Tick(Clock::time_point now) {
@@ -76,14 +76,14 @@ class WakeLateness {
     last_ = now;
   }
 
-  // The time that should be left for an answer to pass from thread to thread.
+  // The time to reserve for passing an answer from thread to thread.
   Duration Margin() const {
     MutexLock lock(mutex_);
     return kWakings * lateness_.value();
   }
 
  private:
-  // From the search's thread to that which writes, and there to be sent.
+  // From the search's thread to the writing one, and from there to the sender.
   static constexpr int kWakings = 2;
   static constexpr int kFadingTicks = 250;  // five seconds
 

@@ -1,4 +1,4 @@
-// How long before its deadline a search has to end.
+// How long before its deadline a search must end.
 
 #ifndef TRAVERSE_SERVER_JOBS_RETURN_MARGIN_H_
 #define TRAVERSE_SERVER_JOBS_RETURN_MARGIN_H_
@@ -11,21 +11,21 @@
 
 namespace traverse {
 
-// A call with a deadline, as its search begins.
+// A call with a deadline, when its search begins.
 struct ReturnConditions {
   using Duration = Budget::Clock::duration;
 
   Duration left{};     // until the deadline
-  int64_t layers = 0;  // known to come
+  int64_t layers = 0;  // number of layers known to come
   int64_t points = 0;
   Duration lag{};      // ReturnLag::Margin of the caller
   Duration wakings{};  // WakeLateness::Margin
 };
 
-// The way back of the last results takes part of the deadline: a tenth of the time, from 10 ms to
-// 500 ms, or what it took before for this caller if that is more; what threads wait for a busy
-// machine; and something for each layer and point, as even a layer whose time has run out is given
-// a greedy route, validated and written. But never more than half of the time.
+// The way back of the last results takes part of the deadline: a tenth of it, from 10 ms to 500 ms,
+// or what it took this caller before, if that is more; the time for which threads wait on a busy
+// machine; and some time per layer and point, because even a layer without time left is given a
+// greedy route, validated and written. But never more than half of the time.
 inline ReturnConditions::Duration MarginOfReturn(const ReturnConditions& call) {
   using Duration = ReturnConditions::Duration;
   constexpr auto kMargin = std::chrono::milliseconds(10);

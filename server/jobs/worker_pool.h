@@ -1,13 +1,13 @@
 // The threads that do the work of all jobs, shared fairly.
 //
-// So many tasks work at a time as there are processors to work on: each of these has a permit. Fair
-// means by time worked, on two levels: the caller who had least is next, and of his jobs the one
-// that had least (fair_order.h). What comes new has a head start.
+// As many tasks work at a time as there are processors; each of these has a permit. Fair means by
+// time worked, on two levels: the next is the caller that has had the least, and among that
+// caller's jobs the one that has had the least (fair_order.h). New work has a head start.
 //
-// A task that takes long gives its permit up when others wait, each kSlice of its work, wherever it
-// asks its budget (engine/base/turn.h). It goes on in its thread when it is its turn again. So a
-// job of one small layer is answered beside whatever the others do, and there are more threads than
-// permits: one for each task under way.
+// A long task gives its permit up to waiting ones after each kSlice of its work, wherever it asks
+// its budget (engine/base/turn.h), and continues in its thread when its turn comes again. So a job
+// of one small layer is answered whatever the others do. And there are more threads than permits:
+// one for each task in progress.
 //
 //   WorkerPool pool(2);
 //   auto queue = pool.NewQueue("10.0.0.7");      // one for each job
@@ -36,7 +36,7 @@ namespace traverse {
 
 // How long the tasks of one queue waited for a thread.
 struct QueueWait {
-  int64_t tasks = 0;           // begun so far
+  int64_t tasks = 0;           // number of tasks begun so far
   double first_seconds = 0;    // of the first task
   double longest_seconds = 0;  // of any task
 };
@@ -45,14 +45,14 @@ struct QueueWait {
 struct SilentTask {
   std::string caller;
   std::string job;
-  double seconds = 0;  // since the last one
+  double seconds = 0;  // since the last sign
 };
 
 // Thread-safe.
 class WorkerPool {
  public:
-  // The engine's view of the pool for one job. Thread-safe. Tasks that are still waiting when the
-  // queue is destroyed are run all the same.
+  // The engine's view of the pool for one job. Thread-safe. Tasks that still wait when the queue is
+  // destroyed run nevertheless.
   class Queue : public Executor {
    public:
     virtual QueueWait wait() const = 0;
@@ -60,7 +60,7 @@ class WorkerPool {
     // Time that threads spent on tasks of this queue, up to their last pause or their end.
     virtual double busy_seconds() const = 0;
 
-    // Whether no task of this queue waits or is under way.
+    // Whether no task of this queue waits or is in progress.
     virtual bool idle() const = 0;
 
     // The job's name, for SilentTask.
@@ -71,25 +71,25 @@ class WorkerPool {
   using WorkClock = std::function<double()>;
   static double ThreadCpuSeconds();
 
-  // How long a task works before it gives way, if others wait.
+  // How long a task works before it yields, if others wait.
   static constexpr std::chrono::milliseconds kSlice{10};
 
-  // Tasks that may be under way at a time, paused ones included. Those of more than kSmallPoints
-  // points hold memory while they are paused: of the large ones, and of those between, so many
-  // points together may be under way, unless LimitMemory says fewer. As many tasks as there are
-  // permits may be under way in any case.
+  // Tasks that may be in progress at a time, including paused ones. Tasks of more than kSmallPoints
+  // points hold memory while paused: so the large ones together, and the medium ones together, may
+  // be in progress with at most this many points, or fewer after LimitMemory. In any case as many
+  // tasks as there are permits may be in progress.
   static constexpr size_t kMostUnderWay = 512;
   static constexpr int64_t kSmallPoints = 1000;
   static constexpr int64_t kLargePoints = 20'000;
   static constexpr int64_t kMostPoints = 4'000'000;
 
-  // What a search may hold for each point, in bytes, beside the layer: above what tabu was measured
-  // to take, which takes most, of 20,000 contours of one point (3,000); `exact` takes 900, `auto`
-  // 800.
+  // Memory that a search may hold per point, in bytes, in addition to the layer. More than was
+  // measured for tabu, which needs most, on 20,000 contours of one point (3,000); `exact` needs
+  // 900, `auto` 800.
   static constexpr int64_t kBytesOfPoint = 3200;
 
-  // `permits` tasks work at a time, at least one. `clock` says what they are charged. The threads
-  // are nicer by `nice` than the one that calls.
+  // `permits` tasks work at a time, at least one. `clock` measures what they are charged. Adds
+  // `nice` to the workers' nice value, relative to the calling thread.
   explicit WorkerPool(int permits, WorkClock clock = ThreadCpuSeconds, int nice = 0);
 
   // Runs what is queued, then ends the threads. REQUIRES: no queue is used any more, except by
@@ -99,34 +99,34 @@ class WorkerPool {
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
-  // A queue for one job of `caller`. May outlive its last task, not the pool. `on_no_memory` is
-  // called when a task has ended with std::bad_alloc: one job that wants too much ends, not the
-  // process.
+  // A queue for one job of `caller`. May outlive its last task, but not the pool. Calls
+  // `on_no_memory` when a task ended with std::bad_alloc: the one job that wants too much ends, not
+  // the process.
   std::shared_ptr<Queue> NewQueue(const std::string& caller,
                                   std::function<void()> on_no_memory = {});
 
-  // Searches that are under way may hold `bytes`, those of large layers and of others half each.
+  // Searches in progress may hold `bytes`, half for those of large layers and half for the others.
   void LimitMemory(int64_t bytes);
 
-  // While memory is short no task that holds much begins beyond the permits: those that are under
-  // way end first.
+  // While memory is short, no task that holds much begins beyond the permits: those in progress end
+  // first.
   void SetMemoryShort(bool is_short);
 
   // How many tasks work at a time.
   int threads() const { return permits_; }
 
-  // Threads there are: one for each task under way, and some that are idle.
+  // Number of threads: one for each task in progress, and some idle ones.
   size_t thread_count() const;
 
   // Tasks that work now.
   int busy() const;
 
-  // Tasks that wait now: for their beginning, or to go on.
+  // Tasks that wait now, to begin or to continue.
   int64_t waiting() const;
 
-  // The tasks at work that gave no sign of life for longer than `limit`. Asks all of them for one,
-  // which those that ask their budgets give at once: to be called again and again, more often than
-  // each `limit`.
+  // The working tasks that gave no sign of life for longer than `limit`. Asks all of them for one,
+  // which those that ask their budgets give at once. Call it regularly, more often than each
+  // `limit`.
   std::vector<SilentTask> Silent(std::chrono::nanoseconds limit);
 
  private:
@@ -145,7 +145,7 @@ class WorkerPool {
     bool large() const { return points > kLargePoints; }
   };
 
-  // A caller with queues whose tasks wait or are under way.
+  // A caller with queues whose tasks wait or are in progress.
   struct Caller : FairOrder::Member {
     FairOrder turns;
     int queues = 0;
@@ -155,20 +155,20 @@ class WorkerPool {
   void Enter(QueueImpl& queue) TRAVERSE_REQUIRES(mutex_);
   void LeaveIfIdle(QueueImpl& queue) TRAVERSE_REQUIRES(mutex_);
 
-  // Lets `queue` wait for its turn, if it has something to do.
+  // Lets `queue` wait for its turn, if it has work.
   void LetWait(QueueImpl& queue) TRAVERSE_REQUIRES(mutex_);
 
-  // The opposite, if it has nothing to do any more.
+  // The opposite, if it has no more work.
   void WithdrawIfNothing(QueueImpl& queue) TRAVERSE_REQUIRES(mutex_);
 
-  // The queue whose turn it is; null if none waits that may go on.
+  // The queue whose turn it is; null if none of those that wait may continue.
   QueueImpl* TakeNext() TRAVERSE_REQUIRES(mutex_);
   bool MayBegin(const Task& task) const TRAVERSE_REQUIRES(mutex_);
 
-  // The points under way of tasks of the same size; null for small ones, which are not counted.
+  // The points in progress of tasks of the same size; null for small ones, which are not counted.
   int64_t* PointsUnderWay(const Task& task) TRAVERSE_REQUIRES(mutex_);
 
-  // Gives permits that are free to those whose turn it is.
+  // Gives free permits to those whose turn it is.
   void Dispatch() TRAVERSE_REQUIRES(mutex_);
   bool Begin(QueueImpl& queue) TRAVERSE_REQUIRES(mutex_);
   void TellWorkers() TRAVERSE_REQUIRES(mutex_);
@@ -202,7 +202,7 @@ class WorkerPool {
   int64_t most_points_ TRAVERSE_GUARDED_BY(mutex_) = kMostPoints;  // of either
   bool memory_short_ TRAVERSE_GUARDED_BY(mutex_) = false;
   size_t idle_ TRAVERSE_GUARDED_BY(mutex_) = 0;     // threads without a task
-  size_t looking_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // of these awake, about to look for one
+  size_t looking_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // of these awake, about to look for a task
   bool stopping_ TRAVERSE_GUARDED_BY(mutex_) = false;
   std::vector<std::unique_ptr<Worker>> workers_ TRAVERSE_GUARDED_BY(mutex_);
   std::vector<std::unique_ptr<Worker>> retired_ TRAVERSE_GUARDED_BY(mutex_);  // to be joined

@@ -1,4 +1,4 @@
-// What a WorkerPool is made of; for its sources alone.
+// The parts of a WorkerPool; only for its sources.
 
 #ifndef TRAVERSE_SERVER_JOBS_WORKER_POOL_PARTS_H_
 #define TRAVERSE_SERVER_JOBS_WORKER_POOL_PARTS_H_
@@ -17,14 +17,14 @@
 
 namespace traverse {
 
-// A thread, and the turn of the task that it runs. Guarded by the pool's mutex, but for what the
-// thread alone uses.
+// A thread, and the turn of the task that it runs. The pool's mutex guards it, except what only the
+// thread uses.
 class WorkerPool::Worker : public Turn {
  public:
   explicit Worker(WorkerPool& pool) : pool_(pool) {}
 
   // While others wait, GiveWay is called wherever a search asks its budget, often each microsecond.
-  // After calls as quick as that it does not look at the clock for so many of them.
+  // After calls in such quick succession it skips the clock for this many of them.
   static constexpr std::chrono::microseconds kQuick{100};
   static constexpr int kQuickCalls = 8;
 
@@ -42,7 +42,7 @@ class WorkerPool::Worker : public Turn {
     return pool_.Pause(*this);
   }
 
-  // Whether others wait. The wish stays as long as a sign of life was asked for in vain.
+  // Sets whether others wait. The wish stays as long as a sign of life was asked for in vain.
   void Want(bool others_wait) {
     const bool is_asked = heard_of.load(std::memory_order_relaxed) < asked;
     if (wanted() != (others_wait || is_asked)) SetWanted(!wanted());
@@ -62,7 +62,7 @@ class WorkerPool::Worker : public Turn {
   std::thread::id id;
   Task task;
   bool works = false;    // it has a permit
-  bool resumes = false;  // was given one after a pause
+  bool resumes = false;  // got a permit after a pause
   ConditionVariable resumed;
 
   std::atomic<Clock::time_point> heard_of{};
@@ -71,7 +71,7 @@ class WorkerPool::Worker : public Turn {
   // Used by the thread alone.
   Clock::time_point slice_begin;
   Clock::time_point slice_end;
-  double slice_worked = 0;  // by the work clock, as the slice began
+  double slice_worked = 0;  // by the work clock, when the slice began
   Clock::time_point looked_at_clock;
   int calls_to_clock = 1;
   const CancelToken* cancelled_by = nullptr;
@@ -81,7 +81,7 @@ class WorkerPool::Worker : public Turn {
   WorkerPool& pool_;
 };
 
-// All members but the constants are guarded by the pool's mutex.
+// The pool's mutex guards all members except the constants.
 class WorkerPool::QueueImpl : public Queue,
                               public FairOrder::Member,
                               public std::enable_shared_from_this<QueueImpl> {
@@ -129,7 +129,7 @@ class WorkerPool::QueueImpl : public Queue,
   const std::function<void()> on_no_memory;
   std::deque<Task> tasks;
   std::deque<Worker*> paused;
-  int under_way = 0;       // tasks begun and not ended
+  int under_way = 0;       // tasks begun and not yet ended
   bool held_back = false;  // in held_back_
   double busy = 0;         // seconds
   QueueWait waited;

@@ -1,24 +1,24 @@
-// The TCP connections of the service: taken here, handed to gRPC, and watched from outside.
+// The TCP connections of the service: accepted here, handed to gRPC, and watched from outside.
 //
-// gRPC 1.51 buffers an unfinished message up to any length, headers without end and the control
-// frames of a flood, for whoever connects, and tells nobody of it. What it cannot hide is how many
-// bytes came in on a connection. Those that became no message yet are what the connection makes the
-// server hold:
+// gRPC 1.51 buffers unfinished messages of any length, endless headers and the control frames of a
+// flood, for anyone who connects, and does not report it. What it cannot hide is how many bytes
+// arrived on a connection. Those that have not become a message yet are what the connection makes
+// the server hold:
 //
 //   pending = received - (messages delivered and what frames them), ever less as time goes by
 //
-// A connection may have so much pending for each of its jobs, and little beside. Beyond that it is
-// told on, or cut. A descriptor of our own for each connection makes that possible.
+// A connection may have so much pending for each of its jobs, and a little more. Beyond that one of
+// its jobs is ended, or it is cut. A descriptor of our own for each connection makes that possible.
 //
-// Nor does gRPC bound the calls of a peer that resets them as soon as they are opened: HTTP/2
-// counts only streams that are open, and each that was reset takes some 20 kB until its turn comes
-// to be looked at. Whoever has far more calls here than streams may be open is cut, and new
-// connections from his address are turned away for a while, the longer the more often it happens.
-// So are those of an address from which strangers sent too much twice, and of one that makes so
-// many calls, by however many connections, that those of others wait.
+// Nor does gRPC bound the calls of a peer that resets them as soon as they are opened. HTTP/2
+// counts only open streams, but each reset one takes about 20 kB until it is processed. A peer with
+// far more calls here than streams may be open is cut, and new connections from its address are
+// turned away for a while, longer each time it happens. The same goes for an address from which
+// strangers twice sent too much, and for one that makes so many calls, over any number of
+// connections, that others wait.
 //
-// It takes connections for itself, so that a process that has all of its files open loses none of
-// them: who came last or has been idle for longest has to go. Knows nothing of gRPC. Thread-safe.
+// The service accepts connections itself, so that a process with all of its files open loses none:
+// it closes the newest, or the one idle longest. Knows nothing of gRPC. Thread-safe.
 
 #ifndef TRAVERSE_SERVER_NET_CONNECTIONS_H_
 #define TRAVERSE_SERVER_NET_CONNECTIONS_H_
@@ -43,12 +43,12 @@ namespace traverse {
 
 struct ConnectionRules {
   int max_connections = 1024;
-  int64_t stranger_bytes = int64_t{4} << 20;  // pending beside those of jobs
+  int64_t stranger_bytes = int64_t{4} << 20;  // pending in addition to that of jobs
   int64_t job_bytes = int64_t{64} << 20;      // pending for each job
   int64_t quiet_bytes = int64_t{256} << 10;   // the same for longer than a moment
-  int max_calls = 1000;                       // that were begun and gRPC is not done with
+  int max_calls = 1000;                       // begun, and gRPC is not done with them
 
-  // Unacknowledged data for so long ends a connection.
+  // Data unacknowledged for this long ends a connection.
   std::chrono::milliseconds peer_timeout{10'000};
 };
 
@@ -57,14 +57,14 @@ class Connections {
   static constexpr int kHands = 8;
 
   struct Hooks {
-    // Takes a new connection, as of HandOver: called by kHands threads.
+    // Passes a new connection on, see HandOver; kHands threads call it.
     HandOver::Take hand_over;
 
-    // `peer` has more pending than its jobs may: ends one of them. False if there is none to end.
+    // Ends a job of `peer`, which has more pending than its jobs may. False if there is none.
     std::function<bool(const std::string& peer)> end_job;
   };
 
-  // Listens on `address`, as of TcpListen, until it is destroyed. Errors: as of TcpListen.
+  // Listens on `address` (see TcpListen) until it is destroyed. Errors: see TcpListen.
   static absl::StatusOr<std::unique_ptr<Connections>> Listen(const std::string& address,
                                                              const ConnectionRules& rules,
                                                              Hooks hooks);
@@ -73,10 +73,10 @@ class Connections {
   Connections(const Connections&) = delete;
   Connections& operator=(const Connections&) = delete;
 
-  // Begins to take connections.
+  // Begins to accept connections.
   void Start();
 
-  // Takes no more. Afterwards none is being handed over.
+  // Accepts no more. After it returns, none is being handed over.
   void StopListening();
 
   int port() const { return port_; }
@@ -85,23 +85,23 @@ class Connections {
   void OnCall(const std::string& peer);
   void OnCallDone(const std::string& peer);
 
-  // The call of `peer` may bring a job: what it sent before it heard of a refusal is not held
-  // against it. Then: a message of `bytes` has come from it.
+  // The call of `peer` may bring a job: what it sent before it learned of a refusal does not count
+  // against it. Then: a message of `bytes` has arrived from it.
   void OnAuthorized(const std::string& peer);
   void OnMessage(const std::string& peer, int64_t bytes);
 
-  // A job of `peer` has begun. Returns what is to be given back at its end: what was pending then.
-  // `all_came`: its messages have come to their ends. If not, its share of what is pending is not
-  // coming any more, and gRPC has let go of it.
+  // A job of `peer` has begun. Returns what was pending then, which the caller must give back at
+  // the job's end. `all_came`: its messages are complete. If not, its share of the pending bytes
+  // will not come any more, and gRPC has freed it.
   double OnJob(const std::string& peer);
   void OnJobDone(const std::string& peer, double pending_before, bool all_came);
 
-  // Calls wait for long before anybody looks at them: ends all connections of the address that made
-  // most of the work of late by connections and calls that brought no job, if it was much and more
-  // than half of all, and turns it away for a while as after a flood. Returns whether there is one.
+  // Call it when calls wait long before they are processed. If one address made much of the recent
+  // work with connections and calls that brought no job, and more than half of all, cuts its
+  // connections and turns it away for a while, as after a flood. Returns whether there was one.
   bool TurnAwayBusiest();
 
-  // Ends the connection that has most pending, jobs or not, if that is worth it. Returns whether.
+  // Ends the connection with most pending, with jobs or not, if that helps. Returns whether.
   bool CutLargest();
 
   int open() const;
@@ -117,10 +117,10 @@ class Connections {
     double pending = 0;
     int jobs = 0;
     int calls = 0;
-    Clock::time_point moved;       // bytes came last
-    Clock::time_point complained;  // end_job was called
+    Clock::time_point moved;       // when bytes last arrived
+    Clock::time_point complained;  // when end_job was called
 
-    // Since when more than quiet_bytes were pending without a job; none: not so. May be to come.
+    // Since when more than quiet_bytes are pending without a job, if so. May lie ahead.
     Clock::time_point loud_since;
   };
   using Table = std::map<std::string, Connection>;
@@ -135,7 +135,7 @@ class Connections {
   Table::iterator Cut(Table::iterator connection) TRAVERSE_REQUIRES(mutex_);
   void CutPeer(const std::string& peer) TRAVERSE_EXCLUDES(mutex_);
 
-  // Brings the table up to date. Returns those with too much pending, and whether much came in.
+  // Updates the table. Returns those with too much pending, and whether much arrived.
   std::vector<std::string> Look(bool& busy);
   void Restrain(const std::string& peer);
   int64_t Allowed(const Connection& connection) const;

@@ -1,10 +1,10 @@
 // Hands new connections to gRPC, in threads of its own.
 //
-// gRPC lets whoever gives it a connection do work for it: where bytes have come already, the thread
-// reads and parses them, and goes on as long as more come. A caller who never stops sending keeps
-// it. So neither the thread that accepts connections nor the one that watches them gives any away,
-// and there are several that do. Addresses take turns: whoever opens connections by the thousand
-// waits for himself.
+// gRPC makes the thread that hands it a connection work for it: if bytes have arrived already, the
+// thread reads and parses them, and continues while more arrive. So a caller who never stops
+// sending holds the thread. Therefore neither the accepting nor the watching thread hands over any,
+// and several threads do. Addresses take turns: one that opens thousands of connections only delays
+// itself.
 
 #ifndef TRAVERSE_SERVER_NET_HAND_OVER_H_
 #define TRAVERSE_SERVER_NET_HAND_OVER_H_
@@ -23,8 +23,8 @@ namespace traverse {
 // Thread-safe.
 class HandOver {
  public:
-  // Takes a socket, which is given away. Each of the threads, or hands, calls it with its number,
-  // from 0.
+  // Takes over a socket. Each of the threads ("hands") calls it with its number, from
+  // 0.
   using Take = std::function<void(int socket, int hand)>;
 
   HandOver(int hands, Take take);
@@ -35,22 +35,22 @@ class HandOver {
   HandOver(const HandOver&) = delete;
   HandOver& operator=(const HandOver&) = delete;
 
-  // Returns at once. `peer` is ADDRESS:PORT, by which others call it. If more than kMostWaiting
-  // wait then, and more than kMostOfAddress of one address, the last of these is turned away: it is
-  // closed, and returned for the caller to forget it. Else returns nothing.
+  // Returns at once. `peer` is ADDRESS:PORT, its name for others. If more than kMostWaiting then
+  // wait, and more than kMostOfAddress of one address, turns away the last of these: closes it and
+  // returns it, so that the caller can forget it. Otherwise returns nothing.
   static constexpr size_t kMostWaiting = 512;
   static constexpr size_t kMostOfAddress = 64;
   std::string Add(int socket, const std::string& peer);
 
-  // Turns the last one away of the address of which most wait, as Add does.
+  // Turns away the last one of the address with most waiting ones, as Add does.
   std::string TurnAway();
 
-  // Whether so many wait, of many addresses, that new ones are better left where the kernel keeps
-  // them.
+  // Whether so many of many addresses wait that new ones are better left in the kernel's
+  // queue.
   bool IsFull() const;
 
-  // Closes the sockets that wait, calls `cut` for each peer whose socket is being taken, and waits
-  // until that is done. REQUIRES: Add is not called any more.
+  // Closes the waiting sockets, calls `cut` for each peer whose socket is being handed over, and
+  // waits until that is done. REQUIRES: Add is not called any more.
   void Stop(const std::function<void(const std::string& peer)>& cut);
 
  private:
@@ -71,7 +71,7 @@ class HandOver {
   ConditionVariable changed_;
   Waiting waiting_ TRAVERSE_GUARDED_BY(mutex_);  // by address; none is empty
   std::deque<std::string> turns_
-      TRAVERSE_GUARDED_BY(mutex_);                // its addresses, whose turn it is first
+      TRAVERSE_GUARDED_BY(mutex_);                // its addresses, in the order of their turns
   size_t count_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // of those that wait
   std::vector<std::string> in_hand_ TRAVERSE_GUARDED_BY(mutex_);  // [hand] a peer, or empty
   bool stopping_ TRAVERSE_GUARDED_BY(mutex_) = false;

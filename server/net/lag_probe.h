@@ -1,8 +1,8 @@
-// How long gRPC lets calls wait before anybody looks at them.
+// Measures how long gRPC lets calls wait before it processes them.
 //
-// gRPC 1.51 reads all connections by the same few threads, and says nothing of how late they are. A
-// caller who keeps them busy makes everybody wait, whatever is done with his calls in the end. So
-// calls are sent through a connection of the process to itself.
+// gRPC 1.51 reads all connections with the same few threads and does not report how late they are.
+// A caller who keeps them busy makes everybody wait, whatever becomes of that caller's calls. So
+// this sends calls through a connection of the process to itself.
 
 #ifndef TRAVERSE_SERVER_NET_LAG_PROBE_H_
 #define TRAVERSE_SERVER_NET_LAG_PROBE_H_
@@ -17,20 +17,20 @@
 
 namespace traverse {
 
-// Look is for one thread.
+// Only one thread may call Look.
 class LagProbe {
  public:
-  // `server` has been started; it is not shut down before this has ended.
+  // `server` has been started; do not shut it down before this object is destroyed.
   explicit LagProbe(grpc::Server& server) : server_(server) {}
 
-  // Waits for the call under way.
+  // Waits for the running call.
   ~LagProbe();
 
   LagProbe(const LagProbe&) = delete;
   LagProbe& operator=(const LagProbe&) = delete;
 
-  // How long the last call took, or how long the one under way has by now. Sends the next one if
-  // none is under way.
+  // How long the last call took, or how long the running one has taken so far. Sends the next one
+  // if none is running.
   std::chrono::duration<double> Look();
 
  private:
@@ -48,7 +48,7 @@ class LagProbe {
   void Send();
 
   grpc::Server& server_;
-  std::unique_ptr<grpc::GenericStub> stub_;  // null: to be connected
+  std::unique_ptr<grpc::GenericStub> stub_;  // null: not connected yet
   std::unique_ptr<Call> call_;
   Mutex mutex_;
   ConditionVariable done_;

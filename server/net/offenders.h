@@ -1,4 +1,4 @@
-// What is held against addresses: floods that came from there, and the work that they make.
+// Remembers floods from addresses, and the work that addresses cause.
 
 #ifndef TRAVERSE_SERVER_NET_OFFENDERS_H_
 #define TRAVERSE_SERVER_NET_OFFENDERS_H_
@@ -14,23 +14,23 @@ class Offenders {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // A flood came from `address`. It is banned if `ban_at_once`, or if there was one before: for a
+  // Notes a flood from `address`. It is banned if `ban_at_once`, or if there was one before: for a
   // second, twice as long each other time, up to 32 s. After two minutes without one all is
   // forgotten.
   void NoteFlood(const std::string& address, bool ban_at_once, Clock::time_point now);
   bool IsBanned(const std::string& address, Clock::time_point now) const;
 
-  // `address` has made so much work, counted in calls; less than 0: it was no work that came to
-  // nothing, as had been noted. It is halved in each second.
+  // Notes work caused by `address`, counted in calls. Less than 0: takes back work noted before,
+  // which led to a job after all. Halves every second.
   void NoteWork(const std::string& address, double calls, Clock::time_point now);
 
-  // The address that made more than half of all work of late, if that was more than kMuchWork; else
-  // empty. Its work is forgotten. A scheduler that sends half as much again as the service can do
-  // stays below, also where the machine is busy with other things.
+  // The address that made more than half of all recent work, if that was more than kMuchWork;
+  // otherwise empty. Its work is then forgotten. A scheduler that sends half as much again as the
+  // service can do stays below, even on a machine that is busy with other work.
   static constexpr double kMuchWork = 6000;
   std::string TakeBusiest(Clock::time_point now);
 
-  // Frees what does not matter any more.
+  // Frees records that no longer matter.
   void Tidy(Clock::time_point now);
 
  private:

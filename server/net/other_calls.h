@@ -1,5 +1,5 @@
-// Counts the calls of services that gRPC brings along, health and reflection, as the service's own
-// are counted: their floods are floods too.
+// Counts the calls of services that gRPC brings along, health and reflection, like the service's
+// own: their floods are floods too.
 
 #ifndef TRAVERSE_SERVER_NET_OTHER_CALLS_H_
 #define TRAVERSE_SERVER_NET_OTHER_CALLS_H_
@@ -10,7 +10,7 @@
 
 namespace traverse {
 
-// Tells `core`, which outlives the server, of each call's begin and end. Thread-safe.
+// Reports the begin and end of each call to `core`, which must outlive the server. Thread-safe.
 class OtherCalls : public grpc::experimental::ServerInterceptorFactoryInterface {
  public:
   explicit OtherCalls(ServiceCore& core) : core_(core) {}

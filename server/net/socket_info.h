@@ -1,4 +1,4 @@
-// What the kernel knows of a TCP connection.
+// What the kernel knows about a TCP connection.
 
 #ifndef TRAVERSE_SERVER_NET_SOCKET_INFO_H_
 #define TRAVERSE_SERVER_NET_SOCKET_INFO_H_
@@ -10,13 +10,13 @@
 namespace traverse {
 
 struct SocketInfo {
-  bool open = false;      // both sides may still send, or ours
-  bool ended = false;     // the peer sends no more
+  bool open = false;      // both sides may still send, or only ours
+  bool ended = false;     // the peer will send no more
   uint64_t received = 0;  // bytes so far
 };
 SocketInfo InfoOf(int socket);
 
-// The other side as ADDRESS:PORT, an address of IPv4 in its own form; empty if it is gone.
+// The other side as ADDRESS:PORT, with IPv4 addresses in IPv4 form; empty if it is gone.
 std::string PeerOf(int socket);
 
 // The same for an address as gRPC writes it: ipv4:10.0.0.7:1 or ipv6:%5B::1%5D:1.
@@ -25,7 +25,7 @@ std::string PeerKey(const std::string& peer);
 // The address of ADDRESS:PORT.
 std::string AddressOf(const std::string& peer);
 
-// Sends small messages at once, and gives the connection up when the other side is silent.
+// Sends small messages at once, and gives up the connection when the other side is silent.
 void SetUp(int socket, std::chrono::milliseconds peer_timeout);
 
 }  // namespace traverse

@@ -1,4 +1,4 @@
-// What the main function of a daemon does around its work: signals, open files, exit codes.
+// What a daemon's main function does around its work: signals, open files, exit codes.
 
 #ifndef TRAVERSE_SERVER_OPS_DAEMON_H_
 #define TRAVERSE_SERVER_OPS_DAEMON_H_
@@ -19,19 +19,19 @@ inline constexpr int kExitUsage = 2;
 
 class Daemon {
  public:
-  // To be made before any thread. SIGTERM, SIGINT, SIGHUP and `also_ends` (0: none) are seen from
-  // now on only where they are waited for, SIGPIPE nowhere; the limit of open files becomes the
+  // Create it before any thread. From then on SIGTERM, SIGINT, SIGHUP and `also_ends` (0: none) are
+  // seen only where they are waited for, SIGPIPE nowhere. Raises the limit of open files to the
   // highest that the system allows this process. `name` stands before messages on stderr.
   explicit Daemon(std::string name, int also_ends = 0);
 
-  // Prints `status` in one line. The exit code: kExitUsage for InvalidArgument, else kExitStart.
+  // Prints `status` in one line. Returns kExitUsage for InvalidArgument, else kExitStart.
   int Fail(const absl::Status& status) const;
 
-  // Waits for a signal that ends the daemon, and returns it. At each SIGHUP `reload` is called.
+  // Waits for a signal that ends the daemon, and returns it. Calls `reload` at each SIGHUP.
   int WaitForEnd(JobLog& log, const std::function<void()>& reload) const;
 
-  // Says in the log that `signal` came. From now on another one ends the process at once, with 128
-  // and its number; SIGHUP and the constructor's `also_ends` do not.
+  // Logs that `signal` came. From now on another one ends the process at once, with 128 plus its
+  // number; SIGHUP and the constructor's `also_ends` do not.
   void BeginDraining(int signal, JobLog& log) const;
 
  private:

@@ -2,8 +2,8 @@
 //
 //   {"time":"2026-08-01T12:00:00.123Z","level":"info","event":"job","job_id":"plate-7",...}
 //
-// Thread-safe. Lines are written by a thread of their own; where the reader of the log is slower
-// than the server, the oldest lines are dropped rather than jobs held up.
+// Thread-safe. A separate thread writes the lines. If the log's reader is slower than the server,
+// the oldest lines are dropped, so that jobs are not delayed.
 
 #ifndef TRAVERSE_SERVER_OPS_JOB_LOG_H_
 #define TRAVERSE_SERVER_OPS_JOB_LOG_H_
@@ -27,19 +27,19 @@ namespace traverse {
 
 class LogFile;
 
-// What is said about a job when it has ended.
+// What the log says about a job that has ended.
 struct JobRecord {
   std::string job_id;
   std::string method;    // of the service
-  std::string caller;    // who it is counted for
+  std::string caller;    // the name under which it is counted
   std::string peer;      // address, as gRPC writes it
-  std::string trace_id;  // of the traceparent that came with the call; empty if none did
+  std::string trace_id;  // of the traceparent that came with the call; empty if there was none
   std::string strategy;
   uint64_t layers_received = 0;
   uint64_t layers = 0;  // answered
   int64_t points = 0;
-  double queue_seconds = 0;    // until the first worker took it up
-  double compute_seconds = 0;  // of work, over all threads
+  double queue_seconds = 0;    // until the first worker began it
+  double compute_seconds = 0;  // of work, summed over all threads
   double wall_seconds = 0;
   double travel_given_mm = 0;
   double travel_mm = 0;
@@ -59,14 +59,14 @@ class JobLog {
   JobLog() = default;
   ~JobLog();
 
-  // A log to `path`, which is appended to; empty for stderr. Throws spdlog::spdlog_ex if the file
-  // cannot be opened.
+  // A log that appends to `path`; empty for stderr. Throws spdlog::spdlog_ex if the file cannot be
+  // opened.
   explicit JobLog(const std::string& path);
 
   void Job(const JobRecord& record);
   void Event(Level level, const std::string& event, const Fields& fields);
 
-  // Opens the file anew, for somebody has moved it away. False if that cannot be done.
+  // Opens the file again, because somebody has moved it. Returns false if that fails.
   bool Reopen();
 
   // Lines dropped because the log could not keep up, or could not be written.
@@ -83,8 +83,8 @@ class JobLog {
 // One line without the line break.
 std::string FormatJobLine(const JobRecord& record);
 
-// `text` as a JSON string, with its quotes. Invalid UTF-8 is replaced; control characters, those of
-// a terminal among them, are escaped.
+// `text` as a JSON string with its quotes. Replaces invalid UTF-8; escapes control characters,
+// including those of a terminal.
 std::string JsonString(const std::string& text);
 
 }  // namespace traverse

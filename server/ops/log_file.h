@@ -1,4 +1,4 @@
-// Where the lines of the log go: a file that can be opened anew, or stderr.
+// Where the lines of the log go: a file that can be reopened, or stderr.
 
 #ifndef TRAVERSE_SERVER_OPS_LOG_FILE_H_
 #define TRAVERSE_SERVER_OPS_LOG_FILE_H_
@@ -19,11 +19,11 @@ class LogFile : public spdlog::sinks::base_sink<std::mutex> {
   explicit LogFile(const std::string& path);
   ~LogFile() override;
 
-  // Opens the path anew, for somebody has moved the file away. False if that cannot be done; the
-  // one that is open stays then.
+  // Opens the path again, because somebody has moved the file. Returns false if that fails; the
+  // open file then stays in use.
   bool Reopen();
 
-  // Lines that could not be written, as where the disk is full.
+  // Lines that could not be written, for example because the disk is full.
   uint64_t lost() const { return lost_; }
 
  private:
@@ -32,7 +32,7 @@ class LogFile : public spdlog::sinks::base_sink<std::mutex> {
 
   const std::string path_;
   int fd_;
-  bool within_line_ = false;  // what was written last is part of a line
+  bool within_line_ = false;  // the last output was part of a line
   std::atomic<uint64_t> lost_{0};
 };
 

@@ -1,4 +1,4 @@
-// How much memory there is, and how much of it the process has.
+// How much memory there is, and how much of it the process uses.
 
 #ifndef TRAVERSE_SERVER_OPS_MEMORY_H_
 #define TRAVERSE_SERVER_OPS_MEMORY_H_
@@ -8,11 +8,11 @@
 
 namespace traverse {
 
-// The memory that this process may use: the least of the limits of its control groups, of version 1
-// or 2, and of the machine's memory. `root` is the folder of /proc and /sys, for tests.
+// The memory that this process may use: the least of the limits of its control groups (version 1 or
+// 2) and the machine's memory. `root` is the folder of /proc and /sys, for tests.
 int64_t MemoryLimit(const std::string& root = "");
 
-// Memory of the process that is nobody else's, in bytes; 0 if unknown. Some microseconds.
+// Memory that only this process uses, in bytes; 0 if unknown. Takes some microseconds.
 int64_t ResidentBytes();
 
 }  // namespace traverse

@@ -1,4 +1,4 @@
-// The files of an operator that a daemon reads or writes while it runs: the log, tokens,
+// The operator's files that a daemon reads or writes while it runs: log, tokens,
 // certificates.
 
 #ifndef TRAVERSE_SERVER_OPS_OPERATOR_FILES_H_
@@ -18,17 +18,17 @@ namespace traverse {
 // Thread-safe after StartAuth and StartTls.
 class OperatorFiles {
  public:
-  // `on_failure` is told of each file that could not be read or opened anew, "tokens",
-  // "certificate" or "log": what was there before stays.
+  // Calls `on_failure` for each file that could not be reloaded: "tokens", "certificate" or "log".
+  // The last good one stays in use.
   OperatorFiles(std::unique_ptr<JobLog> log, std::function<void(const std::string&)> on_failure);
 
-  // Set up `auth` and `certificates`; before the first call. Errors as of Authenticator::Make and
+  // Set up `auth` and `certificates`, before the first call. Errors: see Authenticator::Make and
   // CertificateStore::Make.
   absl::Status StartAuth(const AuthOptions& options);
   absl::Status StartTls(const TlsOptions& options);
 
-  // Reads anew what has changed of tokens and certificates; with `anyway` in any case, and the file
-  // of the log is opened anew.
+  // Reloads the tokens and certificates that have changed; with `anyway` all of them, and reopens
+  // the log file.
   void Reload(bool anyway);
 
   const std::unique_ptr<JobLog> log;
@@ -36,7 +36,7 @@ class OperatorFiles {
   std::shared_ptr<CertificateStore> certificates;  // null without TLS
 
  private:
-  // Tells of the reload of `what`.
+  // Reports the reload of `what`.
   void OnReload(const std::string& what, const absl::Status& status);
 
   const std::function<void(const std::string&)> on_failure_;

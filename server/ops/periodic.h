@@ -1,4 +1,4 @@
-// Calls a function again and again.
+// Calls a function periodically.
 
 #ifndef TRAVERSE_SERVER_OPS_PERIODIC_H_
 #define TRAVERSE_SERVER_OPS_PERIODIC_H_
@@ -12,7 +12,7 @@
 
 namespace traverse {
 
-// From construction to destruction, every `period`, in a thread of its own.
+// Calls it every `period`, from construction to destruction, in a thread of its own.
 class Periodic {
  public:
   Periodic(std::chrono::nanoseconds period, std::function<void()> call)

@@ -1,8 +1,8 @@
-// Sees workers that do not answer.
+// Finds workers that do not respond.
 //
-// Whatever works on a layer asks its budget again and again, and so gives signs of life; what gives
-// none for long is stuck, and neither cancellation nor deadline will end it. Only a new process
-// helps: /healthz fails as long as there is such a worker.
+// Work on a layer asks its budget again and again, and so gives signs of life. A worker that gives
+// none for long is stuck: neither cancellation nor deadline will end it, only a new process helps.
+// So /healthz fails as long as there is such a worker.
 
 #ifndef TRAVERSE_SERVER_WATCHDOG_H_
 #define TRAVERSE_SERVER_WATCHDOG_H_
@@ -21,8 +21,8 @@ namespace traverse {
 // Thread-safe.
 class Watchdog {
  public:
-  // Looks at `pool`, which outlives it, and calls `on_silent` once for each job with a task that
-  // has been silent for longer than `limit`.
+  // Watches `pool`, which must outlive it. Calls `on_silent` once for each job with a task that has
+  // been silent for longer than `limit`.
   Watchdog(WorkerPool& pool, absl::Duration limit,
            std::function<void(const SilentTask&)> on_silent);
 

@@ -1,4 +1,4 @@
-// What a call brings beside its messages: who, from where, until when, as part of what.
+// What a call brings besides its messages: who, from where, until when, as part of what.
 
 #ifndef TRAVERSE_SERVER_RPC_CALL_INFO_H_
 #define TRAVERSE_SERVER_RPC_CALL_INFO_H_
@@ -15,14 +15,14 @@
 
 namespace traverse {
 
-// The metadata in which a caller may state how large the message is that he is about to send, so
-// that a job that is too large now is refused before it is sent.
+// The metadata in which a caller may declare the size of the message that follows, so that a job
+// that is too large is refused before it is sent.
 constexpr char kMessageBytes[] = "traverse-message-bytes";
 
 struct CallInfo {
   std::string method;          // without the service's name
   std::string peer;            // address with port, as gRPC writes it
-  std::string caller;          // who it is counted for; the peer without its port until Authorize
+  std::string caller;          // who it is counted for; until Authorize the peer without its port
   std::string trace_id;        // 32 hexadecimal digits of a valid traceparent, or empty
   uint64_t message_bytes = 0;  // of the first message, as stated in kMessageBytes; 0: not stated
   Budget::Clock::time_point start;
@@ -30,10 +30,10 @@ struct CallInfo {
 };
 
 // Reads the call's context. The deadline is counted from now on the steady clock, so that setting
-// the machine's clock moves no deadline.
+// the machine's clock does not move it.
 CallInfo ReadCallInfo(const grpc::CallbackServerContext& context, const std::string& method);
 
-// Sets `info.caller` to who `authenticator` says it is. Errors: Unauthenticated, PermissionDenied.
+// Sets `info.caller` to what `authenticator` says. Errors: Unauthenticated, PermissionDenied.
 absl::Status Authorize(const grpc::CallbackServerContext& context, Authenticator& authenticator,
                        CallInfo& info);
 
@@ -43,10 +43,10 @@ std::string PeerHost(const std::string& peer);
 // The trace id of a W3C `traceparent` header, or empty if it is not valid.
 std::string TraceId(const std::string& traceparent);
 
-// The id of a job whose caller gave it none: 16 random hexadecimal digits.
+// An id for a job whose caller gave none: 16 random hexadecimal digits.
 std::string NewJobId();
 
-// `text` as metadata may have it: what is not printable ASCII is escaped as in a URL.
+// `text` in a form allowed in metadata: other than printable ASCII is escaped as in a URL.
 std::string MetadataText(const std::string& text);
 
 }  // namespace traverse

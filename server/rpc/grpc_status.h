@@ -9,7 +9,7 @@
 
 namespace traverse {
 
-// The same code and message (cut where it is very long); payloads become the error details
+// The same code and message (cut if it is very long); payloads become the error details
 // (google.rpc.Status).
 grpc::Status ToGrpcStatus(const absl::Status& status);
 

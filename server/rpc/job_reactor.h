@@ -1,4 +1,4 @@
-// What the reactors of both calls that bring jobs do alike, whatever their messages are called.
+// What the reactors of both calls that bring jobs share, whatever their messages are called.
 
 #ifndef TRAVERSE_SERVER_RPC_JOB_REACTOR_H_
 #define TRAVERSE_SERVER_RPC_JOB_REACTOR_H_
@@ -14,9 +14,9 @@
 
 namespace traverse {
 
-// A reactor of both directions, as it is called when the headers are there: a job that can be
-// refused for them is refused before a message has come. One read at a time and one write. Deletes
-// itself when the call is done.
+// A bidirectional reactor, so that it is called when the headers have arrived: a job that can be
+// refused by its headers is refused before its message comes. One read and one write at a time.
+// Deletes itself when the call is done.
 template <typename Request, typename Response>
 class JobReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
                    protected JobStream {
@@ -24,7 +24,7 @@ class JobReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBu
   JobReactor(ServiceCore& core, grpc::CallbackServerContext& context, CallInfo call)
       : JobStream(core, context, std::move(call)), context_(context) {}
 
-  // Lets the call in and reads its first message, or ends it; see JobStream::Admit.
+  // Admits the call and reads its first message, or ends it; see JobStream::Admit.
   void Open(const absl::Status& authorized, int64_t points) {
     if (const absl::Status status = Admit(authorized, points); !status.ok()) {
       End(status);
@@ -35,7 +35,7 @@ class JobReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBu
 
   void ReadNext() { StartRead(&incoming_); }
 
-  // A message is there, or (`ok` false) there will be no more. A status that is not OK ends the
+  // A message has arrived, or (`ok` false) no more will. A status other than OK ends the
   // job.
   virtual absl::Status OnRead(bool ok) = 0;
 

@@ -1,5 +1,5 @@
-// What the two calls that bring jobs have in common: from translated options to the end of the
-// call. The reactors add how messages are read and written.
+// What the two calls that bring jobs share: from translated options to the end of the call. The
+// reactors add how messages are read and written.
 
 #ifndef TRAVERSE_SERVER_RPC_JOB_STREAM_H_
 #define TRAVERSE_SERVER_RPC_JOB_STREAM_H_
@@ -27,63 +27,63 @@
 
 namespace traverse {
 
-// A reactor admits its call, then brings messages, one at a time; of each it is told when the
-// options are known and when the layers were added.
+// A reactor admits its call, then brings messages, one at a time. It learns when the options of a
+// message are known and when its layers were added.
 class JobStream : public JobPort {
  public:
   ~JobStream() override;
 
  protected:
-  // `context` is that of the call, and lives as long.
+  // `context` belongs to the call, and lives as long.
   JobStream(ServiceCore& core, grpc::CallbackServerContext& context, CallInfo call);
 
-  // Lets the job in, with an estimate of its points, or returns why not: `authorized`, what
-  // Authorize said of the call, or a limit. On success run() is there.
+  // Admits the job, with an estimate of its points, or returns why not: `authorized` (the result of
+  // Authorize), or a limit. On success run() exists.
   absl::Status Admit(const absl::Status& authorized, int64_t points);
 
-  // What a message of so many bytes has at most: a point is two doubles, and little else is of any
-  // size.
+  // The most points that a message of this size has: a point is two doubles, and little else has
+  // any size.
   static int64_t EstimatePoints(size_t bytes) { return static_cast<int64_t>(bytes / 16 + 1); }
 
-  // Admit for a job all of which is in a message that has arrived. REQUIRES: it was let in.
+  // Admit for a job whose whole message has arrived. REQUIRES: it was admitted.
   absl::Status Resize(int64_t points);
 
-  // Reads `message`, which lives until OnMessageRead and is emptied at once: checks and translates
-  // its layers, which follow those added so far. A large one is read by the workers, in pieces
+  // Reads `message`, which must live until OnMessageRead and is emptied at once: checks and
+  // translates its layers, which follow those added so far. The workers read a large one, in pieces
   // between which other jobs have their turns. Ends the job if there is a fault.
   void ReadMessage(grpc::ByteBuffer& message);
 
   // Reads the job's options.
   absl::Status Begin(const v1::JobOptions& options);
 
-  // Starts the engine; once, after Begin. What is known to come widens the margin between the last
-  // results and the deadline.
+  // Starts the engine; once, after Begin. The expected layers and points widen the margin between
+  // the last results and the deadline.
   void StartEngine(int64_t expected_layers, int64_t expected_points);
 
-  // `message` as it is written; it lives until AnswerWritten, which tells the run of the end of the
-  // write, and may end the call.
+  // `message` in the form in which it is written. It lives until AnswerWritten, which reports the
+  // end of the write to the run, and may end the call.
   const grpc::ByteBuffer* Outgoing(const std::string& message);
   void AnswerWritten(bool ok);
 
-  // Counts the job under no strategy: its caller never named one.
+  // Counts the job under no strategy, because its caller never named one.
   void ForgetStrategy() { layer_metrics_ = nullptr; }
 
   // Stops the job because the call was cancelled or its deadline has passed.
   void OnCallCancelled();
 
-  // Ends a call whose run has ended, or that was not let in: counts, logs, frees its place.
+  // Ends a call whose run has ended, or that was refused: counts, logs, frees its place.
   void End(const absl::Status& status);
 
   const std::shared_ptr<JobRun>& run() const { return run_; }
   ServiceCore& core() { return core_; }
   const JobSetup& setup() const { return setup_; }
 
-  // Added so far.
+  // Number of layers added so far.
   int64_t layers_received() const { return static_cast<int64_t>(layers_received_); }
   int64_t points_received() const { return points_received_; }
 
  private:
-  // What the reactors add: what to do with a message, the end of the call, and messages of their
+  // What the reactors add: how to handle a message and the end of the call, and messages of their
   // types.
   virtual const char* RequestType() const = 0;
   virtual absl::Status OnOptions(const RequestReader& message) = 0;
@@ -102,7 +102,7 @@ class JobStream : public JobPort {
   void CancelCall() final { context_.TryCancel(); }
   void Finish(const absl::Status& status) final { End(status); }
 
-  // What `read` returns, or NoMemory if it runs out of memory.
+  // Returns what `read` returns, or NoMemory if it runs out of memory.
   template <typename Read>
   static absl::Status Guarded(const Read& read) {
     try {
@@ -136,28 +136,28 @@ class JobStream : public JobPort {
   std::unique_ptr<Admission::Ticket> ticket_;
   std::shared_ptr<WorkerPool::Queue> queue_;
 
-  // Of the message being read.
+  // For the message being read.
   RequestReader reader_;
   bool opened_ = false;
-  FaultList faults_;             // found in it so far
+  FaultList faults_;             // faults found in it so far
   int64_t message_bytes_ = 0;    // held for it
-  int64_t admitted_points_ = 0;  // counted by Admit, and not yet brought
+  int64_t admitted_points_ = 0;  // counted by Admit, but not yet brought
 
-  // Set while messages are read, then read by the engine's calls and by End.
+  // Set while messages are read; then read by the engine's calls and by End.
   JobSetup setup_;
   const LayerMetrics* layer_metrics_ = nullptr;
   uint64_t layers_received_ = 0;
-  uint64_t layers_queued_ = 0;  // of them, counted as such: not those that are but checked
+  uint64_t layers_queued_ = 0;  // of them, counted as queued: not those that are only checked
   int64_t points_received_ = 0;
 
-  // When the search has to end because of the call's deadline; unset without one.
+  // When the search must end because of the call's deadline; unset without one.
   std::optional<Budget::Clock::time_point> search_end_;
 
-  // Of the engine's calls, which do not overlap; then of End.
+  // Used by the engine's calls, which do not overlap; then by End.
   JobTotals totals_;
-  double counted_seconds_ = 0;  // of queue_'s busy ones, as told to ticket_
+  double counted_seconds_ = 0;  // busy seconds of queue_ that were reported to ticket_
 
-  grpc::ByteBuffer outgoing_;  // the message that is being written
+  grpc::ByteBuffer outgoing_;  // the message being written
 };
 
 }  // namespace traverse

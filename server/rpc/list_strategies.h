@@ -13,11 +13,11 @@
 
 namespace traverse {
 
-// A reactor of both directions, so that nothing is read of a caller who may not call. Deletes
-// itself when the call is done.
+// A bidirectional reactor, so that nothing is read from a caller who may not call. Deletes itself
+// when the call is done.
 class ListStrategiesReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
  public:
-  // `peer` is who calls, as gRPC writes it.
+  // `peer` is the caller's address, as gRPC writes it.
   ListStrategiesReactor(ServiceCore& core, const std::string& peer, const absl::Status& authorized);
   ~ListStrategiesReactor() override;
 

@@ -1,4 +1,4 @@
-// traverse.v1.RouteOptimizerService: one method a call, each of which only starts its reactor.
+// traverse.v1.RouteOptimizerService: one method per call, each of which only starts its reactor.
 
 #ifndef TRAVERSE_SERVER_RPC_ROUTE_OPTIMIZER_SERVICE_H_
 #define TRAVERSE_SERVER_RPC_ROUTE_OPTIMIZER_SERVICE_H_
@@ -15,20 +15,20 @@
 
 namespace traverse {
 
-// Not derived from the generated class. That calls OptimizeBatch when the whole request has come,
-// tens of MB perhaps; here it is called when the headers have, so that jobs are refused before
-// their bytes are read. To gRPC's server a request is a stream of one message. And messages are
-// raw, see server/wire.h. Thread-safe.
+// Not derived from the generated class. That calls OptimizeBatch when the whole request has
+// arrived, perhaps tens of MB. This class is called when the headers have arrived, so that jobs are
+// refused before their bytes are read: for gRPC's server a request is a stream of one message. And
+// messages are raw, see server/wire.h. Thread-safe.
 class RouteOptimizerService : public grpc::Service {
  public:
-  // `core` outlives the service.
+  // `core` must outlive the service.
   explicit RouteOptimizerService(ServiceCore& core);
 
  private:
   using Reactor = grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>;
   using MakeReactor = std::function<Reactor*(grpc::CallbackServerContext*)>;
 
-  // `name` is a literal. Takes the handler.
+  // `name` is a literal. Takes ownership of the handler.
   void Add(const char* name, grpc::internal::RpcMethod::RpcType type,
            grpc::internal::MethodHandler* handler);
   void AddStream(const char* name, const MakeReactor& make_reactor);

@@ -1,4 +1,4 @@
-// The bytes of a message as protobuf reads them.
+// The bytes of a message, in the form in which protobuf reads them.
 
 #ifndef TRAVERSE_SERVER_RPC_SLICE_STREAM_H_
 #define TRAVERSE_SERVER_RPC_SLICE_STREAM_H_
@@ -15,16 +15,16 @@ namespace traverse {
 // The bytes of a message, in the slices that gRPC received.
 class SliceStream : public google::protobuf::io::ZeroCopyInputStream {
  public:
-  // Asked before each piece that is given out; false ends the stream.
+  // Called before each piece is read; false ends the stream.
   using GoesOn = std::function<bool()>;
 
   // Begins with the first byte of `slices`.
   void Open(std::vector<grpc::Slice> slices, GoesOn goes_on = nullptr);
 
-  // Begins anew; from now on slices that were read are let go.
+  // Begins again; from now on frees slices that were read.
   void RewindAndLetGo();
 
-  // Whether it was ended: what was read of it is not all.
+  // Whether it was ended early, so that not all of it was read.
   bool stopped() const { return stopped_; }
 
   bool Next(const void** data, int* size) override;
@@ -33,13 +33,13 @@ class SliceStream : public google::protobuf::io::ZeroCopyInputStream {
   int64_t ByteCount() const override { return count_; }
 
  private:
-  // About a millisecond's work, if each two bytes are an island.
+  // About a millisecond's work, if every two bytes are an island.
   static constexpr size_t kPiece = 16 << 10;
 
   std::vector<grpc::Slice> slices_;
   GoesOn goes_on_;
-  size_t slice_ = 0;   // that is being read
-  size_t offset_ = 0;  // what was read of it
+  size_t slice_ = 0;   // the slice being read
+  size_t offset_ = 0;  // how much of it was read
   int64_t count_ = 0;
   bool let_go_ = false;
   bool stopped_ = false;

@@ -7,8 +7,8 @@
 
 namespace traverse {
 
-// Does not read while the job has enough under way: the flow control of the transport then holds
-// back the caller.
+// Does not read while enough of the job is in progress: the flow control of the transport then
+// holds the caller back.
 class StreamReactor : public JobReactor<v1::OptimizeRequest, v1::OptimizeResponse> {
  public:
   static StreamReactor* Start(ServiceCore& core, grpc::CallbackServerContext& context,

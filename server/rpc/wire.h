@@ -1,5 +1,5 @@
-// Messages to and from gRPC's buffers. The service parses for itself, so that a message that cannot
-// be parsed is the caller's fault, with a status that says so, and not INTERNAL.
+// Messages to and from gRPC's buffers. The service parses messages itself, so that an invalid
+// message is the caller's fault, with a status that says so, and not INTERNAL.
 
 #ifndef TRAVERSE_SERVER_RPC_WIRE_H_
 #define TRAVERSE_SERVER_RPC_WIRE_H_
@@ -17,7 +17,7 @@
 
 namespace traverse {
 
-// Parses `buffer` into `message`. InvalidArgument if it is no such message.
+// Parses `buffer` into `message`. InvalidArgument if that fails.
 inline absl::Status ParseMessage(const grpc::ByteBuffer& buffer,
                                  google::protobuf::MessageLite& message) {
   if (buffer.Length() == 0) return absl::OkStatus();
@@ -34,7 +34,7 @@ inline grpc::ByteBuffer ToByteBuffer(const std::string& bytes) {
   return grpc::ByteBuffer(&slice, 1);
 }
 
-// Serialises what `fill` makes of a fresh Message, without the heap for small ones.
+// Serialises a fresh Message after `fill` has filled it, without the heap for small ones.
 template <typename Message, typename Fill>
 std::string Serialize(const Fill& fill) {
   alignas(8) char block[4096];

@@ -1,10 +1,10 @@
-// The faults of a request, all of which its caller is told at once.
+// The faults of a request, all of which are reported to its caller at once.
 //
 //   FaultList faults;
 //   for (const auto& path : paths) faults.Add(Check(path));
 //   return faults.status();
 //
-// A status carries its faults as google.rpc.BadRequest, so that lists within lists become one.
+// A status carries its faults as google.rpc.BadRequest, so lists within lists become one.
 
 #ifndef TRAVERSE_SERVER_TRANSLATE_FAULT_LIST_H_
 #define TRAVERSE_SERVER_TRANSLATE_FAULT_LIST_H_
@@ -16,20 +16,20 @@ namespace traverse {
 // A value; not thread-safe.
 class FaultList {
  public:
-  // So many are told.
+  // At most this many are reported.
   static constexpr int kMost = 20;
 
-  // Whether `status` is a fault of a request, of which there may be several, and not a limit.
+  // Whether `status` is a fault of the request, of which there may be several, and not a limit.
   static bool IsFault(const absl::Status& status) {
     return absl::IsInvalidArgument(status) || absl::IsUnimplemented(status);
   }
 
-  // Adds what `status` tells; nothing if it is OK. The first one gives code and message.
+  // Adds the faults of `status`; nothing if it is OK. The first one gives code and message.
   void Add(const absl::Status& status);
 
   bool empty() const { return status_.ok(); }
 
-  // No more are told: there is no need to look for any.
+  // No more are reported: there is no need to look for any.
   bool full() const { return count_ >= kMost; }
 
   // OK if there are none.
@@ -40,8 +40,8 @@ class FaultList {
   int count_ = 0;
 };
 
-// `status`, if it is a fault, with its field as google.rpc.BadRequest, where it has none yet, and
-// with google.rpc.ErrorInfo.
+// `status`; if it is a fault, with its field as google.rpc.BadRequest if it has none yet, and with
+// google.rpc.ErrorInfo.
 absl::Status WithDetails(absl::Status status);
 
 }  // namespace traverse

@@ -1,7 +1,7 @@
-// What numbers the fields of requests may have: one table, for all of them.
+// Which numbers the fields of requests may have: one table for all of them.
 //
-// The comments in proto/ say the same, which tests compare. The engine keeps its promises over all
-// of these ranges: tests/engine/strategy/corners_test.cc.
+// The comments in proto/ say the same; tests compare the two. The engine keeps its promises over
+// all of these ranges: tests/engine/strategy/corners_test.cc.
 
 #ifndef TRAVERSE_SERVER_FIELD_RANGES_H_
 #define TRAVERSE_SERVER_FIELD_RANGES_H_
@@ -17,7 +17,7 @@ struct FieldRange {
   const char* field;  // "TimeCost.speed_mm_s": message and field of traverse.v1
   double least;
   double greatest;
-  bool or_zero = false;  // 0 may be, although it is below `least`
+  bool or_zero = false;  // 0 is allowed, although it is below `least`
 };
 
 absl::Span<const FieldRange> FieldRanges();

@@ -1,10 +1,10 @@
 // From traverse.v1 to the engine: what a caller asked for.
 //
-// All functions are total: whatever bytes a caller managed to send, they return either a value that
-// the engine accepts or a status with the place of the fault, such as
-// `layers[3].islands[0].contours[1].points[7].x: not finite` or
-// `options.cleaning.every_layers: 0 is not at least 1`. Codes: InvalidArgument; Unimplemented for
-// what only a later version knows (a strategy by name, or a field).
+// All functions are total: for any bytes that a caller managed to send, they return a value that
+// the engine accepts, or a status that names the field at fault, such as
+// `layers[3].islands[0].contours[1].points[7].x: not finite` or `options.cleaning.every_layers: 0
+// is not at least 1`. Codes: InvalidArgument; Unimplemented for what only a later version knows (a
+// strategy by name, or a field).
 
 #ifndef TRAVERSE_SERVER_TRANSLATE_TRANSLATE_H_
 #define TRAVERSE_SERVER_TRANSLATE_TRANSLATE_H_
@@ -37,11 +37,11 @@ struct JobSetup {
   absl::Duration time_limit = absl::InfiniteDuration();
 };
 
-// Places in errors begin with `options.`.
+// Field names in errors begin with `options.`.
 absl::StatusOr<JobSetup> JobFromProto(const v1::JobOptions& options);
 
-// The layer at position `index` of its job. `budget`, if there is one, is asked meanwhile, here and
-// below; all is done all the same.
+// The layer at position `index` of its job. Like the functions below, asks `budget` regularly, if
+// it is not null, but always finishes.
 absl::StatusOr<LabelledLayer> LayerFromProto(const v1::Layer& layer, uint64_t index,
                                              bool interleaved, Budget* budget = nullptr);
 

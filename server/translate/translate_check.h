@@ -30,8 +30,8 @@ inline absl::Status Fault(const std::string& place, const std::string& what) {
   return absl::InvalidArgumentError(absl::StrCat(place, ": ", what));
 }
 
-// Unimplemented `place: ...` if `message` itself (not what it contains) has a field that this
-// version does not know: what it asks for would silently not be done.
+// Unimplemented `place: ...` if `message` itself (not its parts) has a field that this version does
+// not know: what the field asks for would silently not be done.
 absl::Status CheckKnown(const google::protobuf::Message& message, const std::string& place);
 
 // A point whose coordinates are in range (field_ranges.h).

@@ -1,4 +1,4 @@
-// Places in a layer of a request, and what is found at many of them.
+// Positions in a layer of a request, and the checks made at many of them.
 
 #ifndef TRAVERSE_SERVER_TRANSLATE_TRANSLATE_PLACE_H_
 #define TRAVERSE_SERVER_TRANSLATE_TRANSLATE_PLACE_H_
@@ -18,10 +18,10 @@
 
 namespace traverse {
 
-// What Rest counts for a message that is translated.
+// The steps that Rest counts for a translated message.
 inline constexpr size_t kStepsOfMessage = 64;
 
-// Where in the request we are, as text that is only put together when there is a fault.
+// A position in the request, whose text is only built when there is a fault.
 class Place {
  public:
   Place(const Place* parent, const char* field, uint64_t index)
@@ -38,7 +38,7 @@ class Place {
   uint64_t index_;
 };
 
-// As CheckKnown, but without building the place's text; for the messages of which there are many.
+// Like CheckKnown, but without building the text of the position; for frequent messages.
 template <typename Message>
 absl::Status CheckKnownAt(const Message& message, const Place& place) {
   if (message.GetReflection()->GetUnknownFields(message).empty()) return absl::OkStatus();
@@ -54,7 +54,7 @@ inline absl::Status CheckCoordinates(const Coordinates& coordinates, const Field
                  absl::StrCat(coordinates.size(), " coordinates, which are no pairs of x and y"));
   }
   for (int i = 0; i < coordinates.size(); ++i) {
-    // What is not a number is in no range.
+    // NaN is in no range.
     if (coordinates[i] >= range.least && coordinates[i] <= range.greatest) continue;
     return CheckRange(range, coordinates[i],
                       absl::StrCat(place.text(), ".points[", i / 2, "].", i % 2 == 0 ? "x" : "y"));
@@ -66,7 +66,7 @@ inline Point PointAt(const Coordinates& coordinates, int point) {
   return {coordinates[2 * point], coordinates[2 * point + 1]};
 }
 
-// An index as sent to one of the engine. Values beyond int are no index of anything.
+// An index of the API as one of the engine. Values beyond int are not valid indices.
 inline absl::StatusOr<int> Index(uint32_t value, const std::string& place) {
   if (value > INT_MAX) return Fault(place, absl::StrCat(value, " is too large for an index"));
   return static_cast<int>(value);

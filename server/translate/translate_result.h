@@ -16,7 +16,7 @@ namespace traverse {
 void ToProto(const LayerOutcome& outcome, uint64_t id, const std::string& strategy_name,
              v1::LayerResult& result);
 
-// What a job has come to so far. A value; not thread-safe.
+// The totals of a job so far. A value; not thread-safe.
 class JobTotals {
  public:
   void Add(const LayerOutcome& outcome);
@@ -24,16 +24,16 @@ class JobTotals {
   uint64_t layers() const { return layers_; }
   double compute_seconds() const { return compute_seconds_; }
 
-  // Travel with the moves to the cleaning point, in mm.
+  // Travel including the moves to the cleaning point, in mm.
   double given_mm() const { return given_.total_mm() + cleaning_given_mm_; }
   double travel_mm() const { return travel_.total_mm() + cleaning_mm_; }
 
   uint64_t invalid_routes() const { return invalid_routes_; }
 
-  // Layers that stopped for `reason`.
+  // Number of layers that stopped for `reason`.
   uint64_t stops(StopReason reason) const { return stops_[static_cast<size_t>(reason)]; }
 
-  // Fills everything but the job's id, strategy and wall time.
+  // Fills everything except the job's id, strategy and wall time.
   void ToProto(double idle_speed_mm_s, v1::JobSummary& summary) const;
 
  private:
@@ -55,10 +55,10 @@ class JobTotals {
   std::array<uint64_t, kReasons> stops_{};
 };
 
-// The API's reason for one of the engine.
+// The API's value for a reason of the engine.
 v1::StopReason ToProto(StopReason reason);
 
-// The label of metrics, such as LOCAL_OPTIMUM.
+// The label in metrics, such as LOCAL_OPTIMUM.
 const char* StopReasonName(StopReason reason);
 
 // (cost - bound) / cost, 0 where the cost is 0; never negative.

@@ -1,4 +1,4 @@
-// The walls of a layer and what else is said of its moves, from the API.
+// The walls of a layer and what the API says about its moves.
 
 #ifndef TRAVERSE_SERVER_TRANSLATE_TRANSLATE_WALLS_H_
 #define TRAVERSE_SERVER_TRANSLATE_TRANSLATE_WALLS_H_
@@ -11,7 +11,7 @@
 
 namespace traverse {
 
-// Sets `layer.walls`; `layer.plan` is set. InvalidArgument names the place.
+// Sets `layer.walls`; `layer.plan` is set. InvalidArgument says where.
 absl::Status SetWalls(const v1::Layer& message, const Place& place, Budget* budget,
                       JobLayer& layer);
 

@@ -13,13 +13,13 @@
 
 namespace traverse {
 
-// Thread-safe. What is registered lives as long as this.
+// Thread-safe. Registered metrics live as long as this object.
 class MetricRegistry {
  public:
   // Registers traverse_build_info.
   MetricRegistry();
 
-  // A family of metrics told apart by labels.
+  // A family of metrics that labels distinguish.
   prometheus::Family<prometheus::Counter>& Counters(const char* name, const char* help);
   prometheus::Family<prometheus::Gauge>& Gauges(const char* name, const char* help);
   prometheus::Family<prometheus::Histogram>& Histograms(const char* name, const char* help);

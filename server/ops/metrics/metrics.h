@@ -19,7 +19,7 @@
 
 namespace traverse {
 
-// The metrics of one strategy's layers; found once a job, used for each layer.
+// The metrics of one strategy's layers; looked up once per job, used for each layer.
 struct LayerMetrics {
   std::array<prometheus::Counter*, 5> layers_by_stop;  // [StopReason]
   prometheus::Histogram* solve_seconds;
@@ -40,7 +40,7 @@ class Metrics {
   void CountRpc(const std::string& method, absl::StatusCode code);
   void CountRefusal(Refusal refusal);
 
-  // What an operator gave has changed, but is of no use: `what` is certificate, tokens or log.
+  // Counts a changed file that cannot be used; `what` is certificate, tokens or log.
   void CountReloadFailure(const std::string& what);
 
   // Gauges are read when the metrics are.
@@ -51,15 +51,15 @@ class Metrics {
     double workers_busy = 0;
     double workers = 0;
     double workers_silent = 0;
-    double ready = 0;  // 1: takes jobs
+    double ready = 0;  // 1: accepts jobs
     double jobs_bytes = 0;
     double receiving_bytes = 0;
     double max_memory_bytes = 0;
     double connections = 0;
     double connections_cut = 0;
     double log_lines_lost = 0;
-    std::optional<double> certificate_expiry_seconds;  // from now on; unset: no TLS
-    std::optional<double> client_ca_expiry_seconds;    // the same; unset: no client is asked
+    std::optional<double> certificate_expiry_seconds;  // from now; unset: no TLS
+    std::optional<double> client_ca_expiry_seconds;    // the same; unset: no client certificates
   };
 
   // The text of /metrics, with the metrics of the process.

@@ -1,9 +1,9 @@
-// The port for operators: /metrics, /healthz (the process lives), /readyz (it takes jobs).
+// The port for operators: /metrics, /healthz (the process lives), /readyz (it accepts jobs).
 //
-// Plain HTTP/1.1 for GET and HEAD, one request a connection: what Prometheus, kubelet and curl
-// need. libmicrohttpd speaks HTTP, in one thread. Where many connections are open, the oldest one
-// has to go: whoever asks and reads is done in milliseconds, and never kept out by those who do
-// not.
+// Plain HTTP/1.1 for GET and HEAD, one request per connection, as Prometheus, kubelet and curl
+// need. libmicrohttpd speaks HTTP, in one thread. If many connections are open, the oldest is
+// closed: a client that asks and reads is done in milliseconds, and idle clients never keep it
+// out.
 
 #ifndef TRAVERSE_SERVER_OPS_METRICS_METRICS_HTTP_H_
 #define TRAVERSE_SERVER_OPS_METRICS_METRICS_HTTP_H_
@@ -29,8 +29,8 @@ class MetricsHttp {
     std::function<bool()> healthy = [] { return true; };
   };
 
-  // Serves on `address`, HOST:PORT or [HOST]:PORT, until it is destroyed; port 0 takes a free one.
-  // The sources are called from a thread of its own. Errors: Unavailable if it cannot listen.
+  // Serves on `address`, HOST:PORT or [HOST]:PORT, until it is destroyed; port 0 takes a free port.
+  // Calls the sources from a thread of its own. Errors: Unavailable if it cannot listen.
   static absl::StatusOr<std::unique_ptr<MetricsHttp>> Start(const std::string& address,
                                                             Sources sources);
   ~MetricsHttp();
@@ -51,7 +51,7 @@ class MetricsHttp {
 
   Answer AnswerTo(const std::string& method, const std::string& path) const;
 
-  // Connections come and go; called in the daemon's thread alone.
+  // Connections open and close; called only in the daemon's thread.
   void* OnOpened(int fd);
   void OnClosed(void* handle) { connections_.erase(reinterpret_cast<uintptr_t>(handle)); }
 

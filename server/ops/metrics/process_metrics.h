@@ -10,8 +10,8 @@
 namespace traverse {
 
 // process_cpu_seconds_total, process_resident_memory_bytes, process_virtual_memory_bytes,
-// process_start_time_seconds, process_open_fds, process_max_fds, process_threads. What cannot be
-// read is left out.
+// process_start_time_seconds, process_open_fds, process_max_fds, process_threads. Those that cannot
+// be read are left out.
 std::vector<prometheus::MetricFamily> ProcessMetrics();
 
 }  // namespace traverse
