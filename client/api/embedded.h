@@ -1,5 +1,5 @@
 // The service inside this process: the same object that traverse-server serves, behind an
-// in-process channel, so that there is one path through the system. No port is opened.
+// in-process channel, so that all jobs take the same path. Opens no port.
 
 #ifndef TRAVERSE_CLIENT_API_EMBEDDED_H_
 #define TRAVERSE_CLIENT_API_EMBEDDED_H_
@@ -14,7 +14,7 @@ namespace traverse {
 
 class EmbeddedService {
  public:
-  // A service with `threads` workers. REQUIRES: threads >= 1.
+  // Starts a service with `threads` workers. REQUIRES: threads >= 1.
   static absl::StatusOr<std::unique_ptr<EmbeddedService>> Start(int threads);
 
   // Ends all calls. Channels stay valid; calls on them fail.

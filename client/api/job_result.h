@@ -1,4 +1,4 @@
-// What the service made of one job.
+// What the service returned for one job.
 
 #ifndef TRAVERSE_CLIENT_API_JOB_RESULT_H_
 #define TRAVERSE_CLIENT_API_JOB_RESULT_H_
@@ -11,15 +11,15 @@
 
 namespace traverse {
 
-// A whole job's answers.
+// The answers for a whole job.
 struct JobResult {
-  // `layers[i]` answers layer i of the job; all are there.
+  // `layers[i]` answers layer i of the job; none is missing.
   std::vector<v1::LayerResult> layers;
   v1::JobSummary summary;
 };
 
-// OK if `result` visits each path of `layer` exactly once, at an entry that exists: past this check
-// whoever uses a result may index by it. Internal `visits[4]: ...` if not: the server is not ours.
+// OK if `result` visits each path of `layer` exactly once, at an entry that exists. Past this check
+// you may index by the result. Otherwise Internal `visits[4]: ...`: the server is not ours.
 absl::Status CheckVisits(const v1::Layer& layer, const v1::LayerResult& result);
 
 }  // namespace traverse

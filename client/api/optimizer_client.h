@@ -1,4 +1,4 @@
-// The client's end of the service: a job goes up and its answers come back on one stream.
+// The client of the service: sends a job and receives its answers on one stream.
 //
 //   absl::StatusOr<std::shared_ptr<grpc::Channel>> channel = ConnectTo({"farm-1:50051"});
 //   OptimizerClient client(*channel);
@@ -6,8 +6,8 @@
 //   absl::Seconds(30)});
 //
 // Errors are the service's own statuses (route_optimizer_service.proto): InvalidArgument with a
-// field path, ResourceExhausted, Unavailable and so on; DeadlineExceeded; Internal for answers that
-// are no answers.
+// field path, ResourceExhausted, Unavailable and so on; DeadlineExceeded; Internal for invalid
+// answers.
 
 #ifndef TRAVERSE_CLIENT_API_OPTIMIZER_CLIENT_H_
 #define TRAVERSE_CLIENT_API_OPTIMIZER_CLIENT_H_
@@ -29,50 +29,50 @@
 
 namespace traverse {
 
-// How often and when a job whose call broke off is taken up again: after UNAVAILABLE and the other
-// signs of a lost connection, and after RESOURCE_EXHAUSTED with the server's advice when to come
+// How often and when to resume a job whose call was lost: after UNAVAILABLE and other signs
+// of a lost connection, and after RESOURCE_EXHAUSTED with the server's advice when to come
 // back.
 struct RetryPolicy {
-  int max_attempts = 5;  // in a row that brought no layer; 1: never again
+  int max_attempts = 5;  // in a row that brought no layer; 1: never try again
   int max_refusals =
-      20;  // the same where the last of them was refused: a busy server is worth waiting for
+      20;  // the same if the last attempt was refused: a busy server is worth waiting for
   absl::Duration first_delay = absl::Milliseconds(100);  // doubles with each attempt
   absl::Duration max_delay = absl::Seconds(10);          // the server's advice may be longer
 };
 
-// How one job is done.
+// How to do one job.
 struct CallOptions {
-  // The answer is due within this time; the service sends the best routes it has before it.
+  // Time for the whole answer. The service sends its best routes before it is over.
   absl::Duration deadline = absl::InfiniteDuration();
 
   RetryPolicy retry = {};
 
-  // Asked to stop, the call ends within milliseconds with Cancelled.
+  // When stop is requested, the call ends within milliseconds with Cancelled.
   std::stop_token cancel = {};
 
-  // Called with each layer's answer as it comes, on the calling thread. May be empty.
+  // Called with each layer's answer when it arrives, on the calling thread. May be empty.
   std::function<void(const v1::LayerResult&)> on_layer = {};
 };
 
 // Thread-safe: calls may overlap.
 class OptimizerClient {
  public:
-  // `token`, if not empty, goes with each call as a bearer token. It can be read on the way unless
-  // the channel is encrypted.
+  // If `token` is not empty, each call carries it as a bearer token. Others can read it on the way
+  // unless the channel is encrypted.
   explicit OptimizerClient(std::shared_ptr<grpc::Channel> channel, std::string token = "");
 
-  // Sends `layers` in build order on one stream while answers come back: neither side holds more
-  // than its flow control window of what the other has not read. Of open paths the ends alone are
-  // sent, for no other point matters to a route. Every answer was checked by CheckVisits.
+  // Sends `layers` in build order on one stream while answers come back. Neither side holds more
+  // unread data than its flow control window. Of open paths only the ends are sent, because no
+  // other point matters to a route. Every answer has passed CheckVisits.
   //
-  // A call that breaks off is taken up again as `call.retry` says, on another address if there is
-  // one, for the layers that have not come back. The given order of the first of these is then
-  // measured from where the route left off.
+  // If the call is lost, resumes it as `call.retry` says, on another address if there is one, for
+  // the layers without an answer. The given order of the first of these is then measured from where
+  // the route ended.
   absl::StatusOr<JobResult> Optimize(const v1::JobOptions& options,
                                      absl::Span<const v1::Layer> layers,
                                      const CallOptions& call = {});
 
-  // The server's strategies.
+  // Returns the server's strategies.
   absl::StatusOr<v1::ListStrategiesResponse> ListStrategies(
       absl::Duration deadline = absl::InfiniteDuration());
 

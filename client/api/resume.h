@@ -1,7 +1,7 @@
-// What is left of a job after its call broke off, as jobs of their own.
+// The rest of a job whose call was lost, as jobs of their own.
 //
-// Layers are chained: each starts where the one before ended. A job that goes on therefore begins
-// at the end of the last layer that came back, and counts the layers since the last cleaning.
+// Layers are chained: each starts where the one before ended. So a resumed job begins at the end of
+// the last layer that came back, and counts the layers since the last cleaning.
 
 #ifndef TRAVERSE_CLIENT_API_RESUME_H_
 #define TRAVERSE_CLIENT_API_RESUME_H_
@@ -18,7 +18,7 @@
 
 namespace traverse {
 
-// Layers [begin, end) of a job, none of which came back.
+// Layers [begin, end) of a job, all without an answer.
 struct MissingRun {
   size_t begin = 0;
   size_t end = 0;
@@ -27,15 +27,15 @@ struct MissingRun {
 // The first run of layers that are not `answered`; empty if there is none.
 MissingRun FirstMissing(const std::vector<bool>& answered);
 
-// Whether the head is cleaned after layer `index` of the job, if another layer follows.
+// Whether the nozzle is cleaned after layer `index` of the job, if another layer follows.
 bool CleaningDueAfter(const v1::JobOptions& options, size_t index);
 
-// The options of a job of the layers from `begin` on. `before` is the answer to the layer before
-// it (null if begin is 0), `elapsed` the time since the whole job began.
+// The options for a job of the layers from `begin` on. `before` is the answer to the layer before
+// it (null if begin is 0); `elapsed` is the time since the whole job began.
 v1::JobOptions ResumedOptions(const v1::JobOptions& options, size_t begin,
                               const v1::LayerResult* before, absl::Duration elapsed);
 
-// `message` with the position in a leading `layers[3]` counted from `begin`.
+// `message` with the position in a leading `layers[3]` shifted by `begin`.
 std::string ShiftPlace(const std::string& message, size_t begin);
 
 // The summary of a job that took several calls.

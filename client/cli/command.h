@@ -11,7 +11,7 @@
 
 namespace traverse::cli {
 
-// One command: a row of the table. The number of operands is that of the words in `operands`.
+// One command: a row of the table. It takes as many operands as `operands` has words.
 struct Command {
   std::string name;                        // "optimize"
   std::vector<std::string> operands = {};  // {"INPUT"}
@@ -24,7 +24,7 @@ struct Command {
 // All commands, in the order of help.
 const std::vector<Command>& Commands();
 
-// Each command's row; its file has the rest.
+// Each command's row; the command's file has the rest.
 Command OptimizeCommand();
 Command CompareCommand();
 Command VerifyCommand();
@@ -35,8 +35,8 @@ Command ReproduceCommand();
 Command CompletionCommand();
 Command ManualCommand();
 
-// Runs the command that `arguments` (without the program's name) ask for; prints the outcome's
-// message to standard error. Returns the exit code.
+// Runs the command that `arguments` (without the program's name) name. Prints the outcome's message
+// to standard error. Returns the exit code.
 int Main(const std::vector<std::string>& arguments);
 
 }  // namespace traverse::cli

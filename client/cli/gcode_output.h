@@ -1,4 +1,4 @@
-// Where the G-code that `optimize` writes goes, in which container, and writing it.
+// Decides where `optimize` writes G-code, and in which container, and writes it.
 
 #ifndef TRAVERSE_CLIENT_CLI_GCODE_OUTPUT_H_
 #define TRAVERSE_CLIENT_CLI_GCODE_OUTPUT_H_
@@ -16,7 +16,7 @@
 
 namespace traverse::cli {
 
-// The rows of the flags about containers: --container, and those that ParsePlateOptions reads.
+// The flags about containers: --container, and those that ParsePlateOptions reads.
 std::vector<Flag> ContainerFlagTable();
 std::vector<Flag> PlateFlagTable();
 
@@ -24,19 +24,19 @@ std::vector<Flag> PlateFlagTable();
 absl::StatusOr<PlateOptions> ParsePlateOptions(const Flags& flags);
 
 struct GcodeTarget {
-  std::string name;  // empty: none is written
+  std::string name;  // empty: write none
   ContainerKind kind = ContainerKind::kText;
 };
 
-// The file that gets the rewritten G-code of `input`: -o; without it `input` itself, as slicers
-// call post-processing scripts, and for standard input standard output. None if none is to be
-// written: --json without -o asks for the routes alone. It is a container of the kind that
-// --container or the extension of -o says, and else of the input's. A fault if `input` would be
-// replaced by another kind of file (compressed input too), or if that kind cannot be made of it.
+// The file for the rewritten G-code of `input`: -o; without it `input` itself, as slicers expect of
+// post-processing scripts; for standard input standard output. None with --json but without -o,
+// which asks for the routes alone. Its format is that of --container or of the extension of -o,
+// otherwise the input's. An error if `input` would be replaced by a file of another format (also if
+// it is compressed), or if it cannot be converted to the format.
 absl::StatusOr<GcodeTarget> FindGcodeTarget(const Flags& flags, const InputFile& input);
 
-// Writes `parts`: rewritten texts by index of the container, where that is kept, and else the one
-// text by any index. Unless anything `changed`, a file that would replace itself is not touched.
+// Writes `parts`: rewritten texts by their index in the container, if that is kept; otherwise one
+// text with any index. Does not touch a file that would replace itself unless anything `changed`.
 absl::Status WriteGcode(const InputFile& input, const std::map<size_t, NewPart>& parts,
                         bool changed, const GcodeTarget& target);
 

@@ -1,4 +1,4 @@
-// Help texts, made from the tables of commands and flags.
+// Help texts, built from the tables of commands and flags.
 
 #ifndef TRAVERSE_CLIENT_CLI_HELP_H_
 #define TRAVERSE_CLIENT_CLI_HELP_H_
@@ -22,7 +22,7 @@ std::string FlagHelp(absl::Span<const Flag> flags);
 // "--seed=N", "-o OUTPUT", "--quiet".
 std::string FlagUsage(const Flag& flag);
 
-// " ORIGINAL OPTIMISED": a command's operands, a blank before each.
+// " ORIGINAL OPTIMISED": a command's operands, each after a blank.
 std::string Operands(const Command& command);
 
 // "traverse 0.1.0".

@@ -1,4 +1,4 @@
-// How far a job has come, on standard error: a bar on a terminal, now and then a line off it.
+// Shows a job's progress on standard error: a bar on a terminal, otherwise occasional lines.
 
 #ifndef TRAVERSE_CLIENT_CLI_PROGRESS_H_
 #define TRAVERSE_CLIENT_CLI_PROGRESS_H_
@@ -18,20 +18,20 @@ class Progress {
   // The style that suits standard error.
   static Style StyleFor(bool quiet);
 
-  // A job of `layers` layers begins now; `label` comes before what is shown.
+  // Starts showing a job of `layers` layers; `label` stands before the progress.
   Progress(Style style, std::string label, uint64_t layers);
 
-  // Takes the bar away.
+  // Removes the bar.
   ~Progress();
 
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // One more layer is done. Shows it at most ten times a second, as lines every few seconds.
+  // Counts one more layer. Shows it at most ten times a second, as lines every few seconds.
   void Take(const v1::LayerResult& layer);
 
-  // The text shown when `elapsed` has passed: `ni2opt  [####----] 50/100 layers, travel 31.2 %
-  // shorter, 5 s left`; the bar only with kBar, fitted to `width` columns.
+  // The text to show after `elapsed`: `ni2opt  [####----] 50/100 layers, travel 31.2 % shorter, 5 s
+  // left`. The bar appears only with kBar, and fits into `width` columns.
   std::string Text(absl::Duration elapsed, int width) const;
 
  private:

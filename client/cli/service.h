@@ -20,11 +20,11 @@
 
 namespace traverse::cli {
 
-// A value, or how the command ends.
+// A value, or how the command ends without one.
 template <typename T>
 using Expected = std::variant<T, Outcome>;
 
-// How G-code is rewritten.
+// How to rewrite G-code.
 struct RewriteFlags {
   GcodeOptions gcode;
   bool restate_times = false;
@@ -32,22 +32,22 @@ struct RewriteFlags {
 
 class Service {
  public:
-  // As --server and --threads say. UsageFault for bad values; kServerFault for names that nobody
-  // knows. A server is asked for the first time by the calls below.
+  // As --server and --threads say. UsageFault for bad values; kServerFault for names that do not
+  // resolve. Only the calls below contact a server.
   static Expected<Service> Open(const Flags& flags);
 
-  // The strategies that the service has.
+  // Returns the service's strategies.
   Expected<v1::ListStrategiesResponse> ListStrategies();
 
-  // Checks `specs` against the service's strategies and gives them the options of --option. Without
-  // specs those options go to the job's own strategy or the service's default, which joins `specs`.
+  // Checks `specs` against the service's strategies and adds the options of --option. Without specs
+  // those options go to the job's own strategy or the service's default, which joins `specs`.
   Outcome Resolve(const JobFlags& flags, const InputJob& job, std::vector<StrategySpec>& specs);
 
   // Runs the job with `strategy` (unset: the service's default) and shows its progress.
   Expected<report::JobRun> Optimize(const InputJob& job, const StrategySpec* strategy,
                                     const JobFlags& flags, bool quiet);
 
-  // The same, and rewrites the file of the job, which is one of G-code read with `rewrite.gcode`.
+  // The same, and rewrites the job's file, which is G-code that was read with `rewrite.gcode`.
   Expected<OptimizedFile> Rewrite(const InputJob& job, const StrategySpec* strategy,
                                   const JobFlags& flags, const RewriteFlags& rewrite, bool quiet);
 
@@ -55,7 +55,7 @@ class Service {
   Service(std::unique_ptr<EmbeddedService> embedded, std::shared_ptr<grpc::Channel> channel,
           std::string name, std::string token);
 
-  // How a command ends that the service answered with `status`.
+  // How a command ends when the service answers with `status`.
   Outcome Failure(const absl::Status& status, const std::string& input) const;
 
   std::unique_ptr<EmbeddedService> embedded_;  // null: remote

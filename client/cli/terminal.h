@@ -1,4 +1,4 @@
-// What the user's terminal can do.
+// What the user's terminal supports.
 
 #ifndef TRAVERSE_CLIENT_CLI_TERMINAL_H_
 #define TRAVERSE_CLIENT_CLI_TERMINAL_H_
@@ -13,14 +13,14 @@ namespace traverse::cli {
 // True if `file` is a terminal that understands cursor movement.
 bool IsTerminal(std::FILE* file);
 
-// True if text on `file` may be colored: a terminal, and the user has not set NO_COLOR
+// True if text on `file` may be colored: it is a terminal, and the user has not set NO_COLOR
 // (https://no-color.org).
 bool MayColor(std::FILE* file);
 
-// Columns of the terminal behind `file`; 80 if that is not known.
+// Columns of the terminal behind `file`; 80 if unknown.
 int TerminalWidth(std::FILE* file);
 
-// How tables look on `file`: as wide as the terminal or, off it, a page.
+// The style of tables on `file`: as wide as the terminal, otherwise as a page.
 report::TextStyle StyleFor(std::FILE* file);
 
 // Writes all of `text`.

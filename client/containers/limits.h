@@ -8,7 +8,7 @@
 
 namespace traverse::containers {
 
-// Most bytes of text of a container of `container_bytes`, if a caller takes `max_bytes`.
+// Most bytes of text in a container of `container_bytes`, if a caller accepts `max_bytes`.
 inline size_t MaxTextBytes(size_t container_bytes, size_t max_bytes) {
   constexpr size_t kAlways = size_t{64} << 20;
   constexpr size_t kMaxRatio = 256;

@@ -1,4 +1,4 @@
-// Does one file print what another one prints, whatever containers they are in?
+// Checks whether one file prints what another one prints, whatever containers they are in.
 
 #ifndef TRAVERSE_CLIENT_CONTAINERS_VERIFY_FILES_H_
 #define TRAVERSE_CLIENT_CONTAINERS_VERIFY_FILES_H_
@@ -19,20 +19,20 @@ struct VerifyFilesOptions {
   ContainerOptions container;
   std::optional<uint32_t> plate;  // unset: all of them
 
-  // What may have changed in one text, from that of the optimised file. Empty: what its line at the
+  // What may have changed in one text, derived from the optimised one. Empty: what the line at its
   // head says, or safe.
   std::function<absl::StatusOr<VerifyOptions>(std::string_view optimised)> rules;
 };
 
-// What CheckGcode finds between each text of `optimised` and that of the same plate of `original`,
-// put together. Both are the bytes of files of any kind that OpenContainer takes.
+// The findings of CheckGcode between each text of `optimised` and the text of the same plate of
+// `original`, combined. Both are the bytes of files of any kind that OpenContainer accepts.
 //
-// Binary G-code keeps less than text does: spaces in moves, comments behind commands, and the
-// comments of head and foot become metadata. If one of the two is binary, both are compared as a
-// printer reads them, without these. Times that the optimised file says it
-// restated are restated in the original first.
+// Binary G-code keeps less than text: it drops spaces in moves and comments behind commands, and
+// turns the comments of head and foot into metadata. If one of the two is binary, both are compared
+// as a printer reads them, without these. If the optimised file says that it restated times, they
+// are restated in the original first.
 //
-// The errors of OpenContainer and of `rules`; InvalidArgument if the files have not the same
+// Errors: those of OpenContainer and of `rules`; InvalidArgument if the files have different
 // plates.
 absl::StatusOr<VerifyReport> VerifyFiles(std::string original, const std::string& original_name,
                                          std::string optimised, const std::string& optimised_name,

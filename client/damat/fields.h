@@ -10,19 +10,19 @@
 
 namespace traverse::damat {
 
-// `text` without blanks, tabs and carriage returns at its ends.
+// `text` without blanks, tabs and carriage returns at both ends.
 std::string_view Trimmed(std::string_view text);
 
-// `text` between quotation marks for a message: its beginning, without bytes that do not print.
+// `text` in quotation marks for a message: its beginning, without unprintable bytes.
 std::string Quoted(std::string_view text);
 
-// A whole number, digits alone; nothing if `text` is none or exceeds 64 bits.
+// A whole number of digits; unset if `text` is not one or exceeds 64 bits.
 std::optional<uint64_t> ParseCount(std::string_view text);
 
-// A number in mm, finite and within kMaxCoordinateMm; nothing if `text` is none.
+// A number in mm, finite and within kMaxCoordinateMm; unset if `text` is not one.
 std::optional<double> ParseCoordinate(std::string_view text);
 
-// Walks over fields that commas divide; a comma behind the last one is ignored. Points into the
+// Iterates over fields separated by commas; ignores a comma at the end. Points into the
 // record.
 class Fields {
  public:

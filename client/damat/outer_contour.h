@@ -1,4 +1,4 @@
-// Which contour of an island encloses it, by geometry.
+// Finds the contour that encloses an island, by geometry.
 
 #ifndef TRAVERSE_CLIENT_DAMAT_OUTER_CONTOUR_H_
 #define TRAVERSE_CLIENT_DAMAT_OUTER_CONTOUR_H_
@@ -12,12 +12,12 @@ namespace traverse::damat {
 struct OuterContour {
   int index = 0;  // of the contour with the largest area; the first one if none has any
 
-  // Contours that lie outside it with all their vertices, in the order given.
+  // Contours that lie outside it with all their vertices, in the given order.
   std::vector<int> outside;
 };
 
-// O(vertices) where contours lie apart or within each other, as they do; for islands of very many
-// contours of very many vertices, where that would take long, bounding boxes alone are compared.
+// O(vertices) in the usual case, contours that lie apart or within each other. If it would take
+// long, for very many contours with very many vertices, compares only bounding boxes.
 OuterContour FindOuterContour(const v1::Island& island);
 
 }  // namespace traverse::damat

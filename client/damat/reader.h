@@ -12,8 +12,8 @@
 namespace traverse {
 
 // The job in `text`: layers of islands. InvalidArgument with name and line for the first fault:
-// `part.damat:118: X12.5 without Y`. Degenerate geometry is none: contours of one vertex, repeated
-// vertices, rasters of no length, islands without rasters or contours, layers without islands.
+// `part.damat:118: X12.5 without Y`. Degenerate geometry is valid: contours of one vertex, repeated
+// vertices, rasters of length zero, islands without rasters or contours, layers without islands.
 absl::StatusOr<InputJob> ReadDamat(std::string_view text, const std::string& name);
 
 }  // namespace traverse

@@ -10,11 +10,11 @@
 
 namespace traverse {
 
-// `job` as DAMAT, each coordinate with the digits that give it back exactly: reading it again gives
-// the same layers, z where all layers are equally thick from the bed on. Without an envelope of its
-// own the job's bounding box stands in M. InvalidArgument with the place for what DAMAT cannot
-// hold: a layer that is a plan or that has a start or a cost of its own, limited entries, one-way
-// paths, repeated ids, contours outside the first one of their island.
+// `job` as DAMAT, with enough digits to restore each coordinate exactly. Reading it again gives the
+// same layers, and z too if all layers are equally thick from the bed on. If the job has no
+// envelope, M has its bounding box. InvalidArgument, with the position, for what DAMAT cannot hold:
+// a layer that is a plan or has a start or a cost of its own, limited entries, one-way paths,
+// repeated ids, contours outside the first one of their island.
 absl::StatusOr<std::string> WriteDamat(const InputJob& job);
 
 }  // namespace traverse

@@ -1,4 +1,4 @@
-// Decompression of whole files: gzip (RFC 1952, with members one after another) and xz.
+// Decompresses whole files: gzip (RFC 1952, with several members) and xz.
 
 #ifndef TRAVERSE_CLIENT_FILES_DECOMPRESS_H_
 #define TRAVERSE_CLIENT_FILES_DECOMPRESS_H_
@@ -13,7 +13,7 @@ namespace traverse {
 
 enum class Compression { kNone, kGzip, kXz };
 
-// The compression of `bytes`, by their first bytes.
+// The compression of `bytes`, judged by their first bytes.
 Compression DetectCompression(std::string_view bytes);
 
 // The decompressed `bytes`; with kNone a copy. InvalidArgument if they are truncated or damaged,
@@ -22,10 +22,10 @@ Compression DetectCompression(std::string_view bytes);
 absl::StatusOr<std::string> Decompress(std::string_view bytes, Compression compression,
                                        size_t max_bytes);
 
-// The same without keeping it.
+// The same without keeping the result.
 struct DecompressedSize {
   size_t bytes = 0;
-  std::string first;  // the first 16 of them
+  std::string first;  // its first 16 bytes
 };
 absl::StatusOr<DecompressedSize> MeasureDecompressed(std::string_view bytes,
                                                      Compression compression, size_t max_bytes);

@@ -1,4 +1,4 @@
-// What file errors say.
+// The messages of file errors.
 
 #ifndef TRAVERSE_CLIENT_FILES_FILE_ERROR_H_
 #define TRAVERSE_CLIENT_FILES_FILE_ERROR_H_

@@ -1,4 +1,4 @@
-// Reading whole files.
+// Reads whole files.
 
 #ifndef TRAVERSE_CLIENT_FILES_READ_FILE_H_
 #define TRAVERSE_CLIENT_FILES_READ_FILE_H_
@@ -10,7 +10,7 @@
 
 namespace traverse {
 
-// Most bytes that are read from one file, and most that a compressed one may expand to.
+// Most bytes to read from one file, and to which a compressed one may expand.
 inline constexpr size_t kMaxFileBytes = size_t{4} << 30;
 
 // The bytes of the file `name`, decompressed if they are gzip or xz; "-" is standard input.
@@ -20,7 +20,7 @@ inline constexpr size_t kMaxFileBytes = size_t{4} << 30;
 absl::StatusOr<std::string> ReadWholeFile(const std::string& name,
                                           size_t max_bytes = kMaxFileBytes);
 
-// What `name` is called in messages: "standard input" for "-".
+// The name of `name` in messages: "standard input" for "-".
 std::string DisplayName(const std::string& name);
 
 }  // namespace traverse

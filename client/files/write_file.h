@@ -1,4 +1,4 @@
-// Writing files whole or not at all.
+// Writes files whole or not at all.
 
 #ifndef TRAVERSE_CLIENT_FILES_WRITE_FILE_H_
 #define TRAVERSE_CLIENT_FILES_WRITE_FILE_H_
@@ -10,11 +10,11 @@
 
 namespace traverse {
 
-// Makes `bytes` the content of the file `name`: they are written to a new file beside it, brought
-// to the disk, and then take its name in one step, so that a reader sees the old content or the
-// new, and a failure leaves the old. A file that is replaced keeps its permissions (and its owner
-// where the system allows); a symbolic link stays, its target is replaced. What is not a regular
-// file, such as /dev/null or a pipe, is written to directly; "-" is standard output. Errors begin
+// Replaces the content of the file `name` with `bytes`: writes a new file beside it, flushes
+// it to disk, and renames it. So a reader sees either the old content or the new, and a
+// failure leaves the old. An existing file keeps its permissions (and its owner where the
+// system allows it); a symbolic link stays and its target is replaced. Anything but a regular
+// file, such as /dev/null or a pipe, is written directly; "-" is standard output. Errors begin
 // with the name.
 absl::Status WriteWholeFile(const std::string& name, std::string_view bytes);
 

@@ -1,5 +1,5 @@
-// The service's own messages as files: OptimizeBatchRequest, in protobuf's JSON mapping or on the
-// wire.
+// The service's own messages as files: OptimizeBatchRequest, in protobuf's JSON mapping or in wire
+// format.
 
 #ifndef TRAVERSE_CLIENT_FORMATS_API_FORMAT_H_
 #define TRAVERSE_CLIENT_FORMATS_API_FORMAT_H_
@@ -13,12 +13,12 @@
 namespace traverse {
 
 // The job in `bytes`, with the options that the request states. InvalidArgument `name: ...` if they
-// are no such message; whether its values make sense is for the service to say.
+// are not such a message. The service checks the values.
 absl::StatusOr<InputJob> ReadApiJson(std::string_view bytes, const std::string& name);
 absl::StatusOr<InputJob> ReadApiProto(std::string_view bytes, const std::string& name);
 
 // `job` as such a file. Open paths keep all their points. InvalidArgument if the message would
-// exceed protobuf's 2 GiB. The JSON of a number that is not finite is a string, as protobuf has it.
+// exceed protobuf's 2 GiB. In JSON, numbers that are not finite are strings, as in protobuf.
 absl::StatusOr<std::string> WriteApiJson(const InputJob& job);
 absl::StatusOr<std::string> WriteApiProto(const InputJob& job);
 

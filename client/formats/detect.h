@@ -1,4 +1,4 @@
-// Which format a file is in.
+// Recognises the format of a file.
 
 #ifndef TRAVERSE_CLIENT_FORMATS_DETECT_H_
 #define TRAVERSE_CLIENT_FORMATS_DETECT_H_
@@ -11,14 +11,14 @@
 
 namespace traverse {
 
-// The format of `bytes` (decompressed) by what they look like: the first thousand lines of text are
-// asked, of which each may look like a record of DAMAT, a line of G-code or a key of GTSPLIB;
-// containers of G-code begin with a magic number; JSON begins with a brace; what is not text but
-// begins as a message of OptimizeBatchRequest does is kProto. Nothing if there is no sign.
+// The format of `bytes` (decompressed), judged by their content. Of text it looks at the first
+// thousand lines, each of which may look like a record of DAMAT, a line of G-code or a key of
+// GTSPLIB. Containers of G-code begin with a magic number, JSON begins with a brace; binary data
+// that begin like an OptimizeBatchRequest are kProto. Unset if nothing fits.
 std::optional<InputFormat> DetectByContent(std::string_view bytes);
 
-// The format by the extension of `name`, `.gz` and `.xz` ignored, capitals as small letters;
-// nothing if the extension is none of ours.
+// The format by the extension of `name`, ignoring `.gz`, `.xz` and case; unset if it is
+// unknown.
 std::optional<InputFormat> DetectByExtension(const std::string& name);
 
 // "DAMAT", "G-code", "JSON", "protobuf", "GTSPLIB".

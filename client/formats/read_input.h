@@ -1,4 +1,4 @@
-// From a file to a job, whatever its format.
+// From a file to a job, whatever the format.
 
 #ifndef TRAVERSE_CLIENT_FORMATS_READ_INPUT_H_
 #define TRAVERSE_CLIENT_FORMATS_READ_INPUT_H_
@@ -17,20 +17,20 @@
 
 namespace traverse {
 
-// Which texts of a container are meant, and how it is opened.
+// Which texts of a container to read, and how to open it.
 struct PlateOptions {
   std::optional<uint32_t> plate;  // unset: all of them
   ContainerOptions container;
 };
 
-// A file whose format is recognised, with one job or, where it is a container, several.
+// A file of known format, with one job, or several if it is a container.
 struct InputFile {
   std::string name;
   InputFormat format = InputFormat::kDamat;
 
-  // Null for files in no container, whose content is in `bytes`.
+  // Null for files without a container, whose content is in `bytes`.
   std::shared_ptr<const Container> container;
-  std::vector<size_t> parts = {0};  // those of the container that are meant
+  std::vector<size_t> parts = {0};  // selected texts of the container
   std::string bytes;
 
   ContainerKind kind() const { return container ? container->kind() : ContainerKind::kText; }
@@ -44,15 +44,15 @@ absl::StatusOr<InputFile> OpenInput(const std::string& name, const PlateOptions&
 absl::StatusOr<InputFile> OpenInputBytes(std::string bytes, const std::string& name,
                                          const PlateOptions& plates = {});
 
-// InvalidArgument if more than one part of `file` is meant.
+// InvalidArgument if more than one part of `file` is selected.
 absl::Status CheckOnePlate(const InputFile& file);
 
-// The job in file.parts[index]; bytes of a file in no container go into it, so that its job is read
-// once. Errors are one line that begins with the name and, in archives, the entry, with the line
-// number where the format has lines. `gcode` says what G-code is read for.
+// The job in file.parts[index]. The bytes of a file without a container move into it, so its job
+// can be read only once. Errors are one line that begins with the name and, for archives, the
+// entry, with the line number if the format has lines. `gcode` says how to read G-code.
 absl::StatusOr<InputJob> ReadJob(InputFile& file, size_t index, const GcodeOptions& gcode = {});
 
-// OpenInput, and its only job: an error if it has several.
+// OpenInput, and its only job; an error if there are several.
 absl::StatusOr<InputJob> ReadInput(const std::string& name, const GcodeOptions& gcode = {},
                                    const PlateOptions& plates = {});
 

@@ -1,5 +1,5 @@
-// An instance of the generalised travelling salesman problem: points in sets, of which a closed
-// tour visits one point each.
+// An instance of the generalised travelling salesman problem: points in sets, and a closed tour
+// that visits one point of each.
 
 #ifndef TRAVERSE_CLIENT_GTSP_INSTANCE_H_
 #define TRAVERSE_CLIENT_GTSP_INSTANCE_H_
@@ -9,7 +9,7 @@
 
 namespace traverse::gtsp {
 
-// As the file has it. Its numbers of points and of sets count from 1, those here from 0.
+// As in the file. The file numbers points and sets from 1, this class from 0.
 struct Instance {
   struct Point {
     double x = 0;
@@ -18,11 +18,11 @@ struct Instance {
 
   std::vector<Point> points;
 
-  // `sets[s]`: the points of set s, in the order of the file; each point is in one set, no set is
+  // `sets[s]`: the points of set s, in the order of the file. Each point is in one set; no set is
   // empty.
   std::vector<std::vector<uint32_t>> sets;
 
-  // The smallest set, of several the first: a tour begins and ends there, once from each of its
+  // The smallest set, the first of several: tours begin and end there, one tour for each of its
   // points.
   uint32_t first_set = 0;
 };

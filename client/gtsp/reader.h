@@ -27,17 +27,17 @@
 
 namespace traverse {
 
-// Most points that the layers of one file may have together: the smallest set's points times all
+// Most points in all layers of one file: the points of the smallest set times all
 // points.
 inline constexpr size_t kMostGtspPoints = 1'000'000;
 
 // The job in `text`, with InputJob::gtsp. Coordinates are taken as mm.
 //
-// The service's routes are open, so a closed tour is a layer that begins at a point of the smallest
-// set, visits the other sets in any order, each a contour that may be begun at any of its points,
-// and ends with a contour of the one point where it began. There is a layer for each point of the
-// smallest set, with that point's number as its id; the shortest of them is the tour. Contours have
-// the numbers of their sets as ids.
+// The service's routes are open. So a closed tour is a layer that begins at a point of the smallest
+// set, visits the other sets in any order (each a contour that may be entered at any of its
+// points), and ends with a contour of the one point where it began. There is a layer for each point
+// of the smallest set, with that point's number as its id; the shortest layer is the tour. The ids
+// of contours are the numbers of their sets.
 //
 // InvalidArgument with name and line for the first fault: `a.gtsp:12: point 3 is in set 1 and in
 // set 2`.

@@ -1,4 +1,4 @@
-// The closed tour of a GTSPLIB instance, as published values count it.
+// The closed tour of a GTSPLIB instance, measured as published values are.
 
 #ifndef TRAVERSE_CLIENT_GTSP_TOUR_H_
 #define TRAVERSE_CLIENT_GTSP_TOUR_H_
@@ -12,7 +12,7 @@
 
 namespace traverse::gtsp {
 
-// The distance EUC_2D of TSPLIB: the true one, rounded to the nearest whole number.
+// The distance EUC_2D of TSPLIB: the true distance, rounded to the nearest whole number.
 int64_t RoundedDistance(const Instance::Point& a, const Instance::Point& b);
 
 struct Tour {
@@ -21,11 +21,11 @@ struct Tour {
   std::vector<uint32_t> points;  // from 0, one of each set
 };
 
-// The tour of the layer with the least travel. The service minimises true distances, and the
-// published values are of rounded ones: the sets stay in the order found, and of each set the point
-// is chosen again, exactly, for rounded distances. Time: the product of the sizes of each two sets
-// that follow each other, times the smallest set's. REQUIRES: `layers` answer layers of ReadGtsp
-// for `instance`, at least one, and passed CheckVisits.
+// The tour of the layer with the least travel. The service minimises true distances, while
+// published values use rounded ones. So the sets stay in the order found, and the point of each set
+// is chosen again, exactly, for rounded distances. Time: the product of the sizes of each two
+// successive sets, times that of the smallest. REQUIRES: `layers` answer layers of ReadGtsp for
+// `instance`, at least one, and passed CheckVisits.
 Tour BestTour(const Instance& instance, absl::Span<const v1::LayerResult> layers);
 
 }  // namespace traverse::gtsp

@@ -1,4 +1,4 @@
-// What a reader makes of a file: a job for the service, and what the file knows beyond it.
+// What a reader makes of a file: a job for the service, and other facts about the file.
 
 #ifndef TRAVERSE_CLIENT_INPUT_INPUT_JOB_H_
 #define TRAVERSE_CLIENT_INPUT_INPUT_JOB_H_
@@ -27,37 +27,37 @@ enum class InputFormat {
   kDamat,
   kGcode,
   kJson,   // OptimizeBatchRequest in protobuf's JSON mapping
-  kProto,  // OptimizeBatchRequest on the wire
+  kProto,  // OptimizeBatchRequest in wire format
   kGtsp,   // GTSPLIB
 };
 
-// What is known of the paths of one layer that is a plan, beside the plan; either list may be
-// empty. Layers of islands need none of it.
+// Notes on the paths of one layer that is a plan; either list may be empty. Layers of islands need
+// none.
 struct PathNotes {
-  // `feature[i]`: index into InputJob::features of what Plan.paths[i] is (wall, infill, ...).
+  // `feature[i]`: index into InputJob::features for Plan.paths[i] (wall, infill, ...).
   std::vector<uint16_t> feature;
 
-  // `island[i]`: label of the island that Plan.paths[i] lies in, as --json states it.
+  // `island[i]`: label of the island of Plan.paths[i], as --json states it.
   std::vector<uint32_t> island;
 };
 
 // One file's work. Labels for --json are the ids in the layers: Layer.id, Island.id, Contour.id,
-// OpenPath.id. Open paths hold all their points, so that they can be drawn; what goes to the
-// service is stripped to the ends by client/api.
+// OpenPath.id. Open paths have all their points, so that they can be drawn; client/api sends only
+// their ends to the service.
 struct InputJob {
   // As the user named it; "-" for standard input.
   std::string name;
   InputFormat format = InputFormat::kDamat;
 
-  // What the file itself says of how the job is done: start, cost model, idle speed and, in the
-  // service's own formats, all the rest. Fields that the file is silent on are unset. Flags of the
+  // What the file says about how to do the job: start, cost model, idle speed and, in the service's
+  // own formats, everything else. Fields that the file does not mention are unset. Flags on the
   // command line override it.
   v1::JobOptions options;
 
-  // Of DAMAT alone: the far corner of the build envelope, whose near corner is (0, 0).
+  // Only for DAMAT: the far corner of the build envelope, whose near corner is (0, 0).
   std::optional<v1::Point> envelope;
 
-  // The layers in build order: those of the file, or the stretch of them that was asked for.
+  // The layers in build order: those of the file, or the requested range of them.
   std::vector<v1::Layer> layers;
 
   // Position in the file of layers[0].
@@ -66,16 +66,16 @@ struct InputJob {
   // Names of features, such as "External perimeter"; PathNotes refer to them by index.
   std::vector<std::string> features;
 
-  // One for each layer, or empty if nothing is known.
+  // One for each layer, or empty if there are none.
   std::vector<PathNotes> notes;
 
-  // What `inspect` prints of the file as a whole, in this order: ("slicer", "PrusaSlicer 2.5.0").
+  // What `inspect` prints about the file, in this order: ("slicer", "PrusaSlicer 2.5.0").
   std::vector<std::pair<std::string, std::string>> facts;
 
-  // Of G-code alone: the file as read. Null otherwise.
+  // Only for G-code: the file as read. Otherwise null.
   std::shared_ptr<const GcodeFile> gcode;
 
-  // Of GTSPLIB alone: the instance. Null otherwise.
+  // Only for GTSPLIB: the instance. Otherwise null.
   std::shared_ptr<const gtsp::Instance> gtsp;
 };
 

@@ -1,8 +1,8 @@
-// Latencies counted in buckets whose width grows with the value, as HDR histograms do: any number
-// of values in fixed memory, each percentile within 0.8 % of the true one.
+// Counts latencies in buckets whose width grows with the value, as HDR histograms do: any number of
+// values in fixed memory, each percentile within 0.8 % of the true one.
 //
-// Values below 256 ns have a bucket each; above, each octave [2^k, 2^(k+1)) is cut into 128 equal
-// buckets.
+// Values below 256 ns have a bucket each; above that, each octave [2^k, 2^(k+1)) has 128 equal
+// ones.
 
 #ifndef TRAVERSE_CLIENT_LOADGEN_LATENCY_HISTOGRAM_H_
 #define TRAVERSE_CLIENT_LOADGEN_LATENCY_HISTOGRAM_H_
@@ -23,8 +23,8 @@ class LatencyHistogram {
   absl::Duration max() const { return absl::Nanoseconds(max_ns_); }
   absl::Duration mean() const;
 
-  // The value that `share` of all values do not exceed: its bucket's upper end, at most max(). The
-  // smallest value for share 0; 0 without values. REQUIRES: 0 <= share <= 1.
+  // The value that `share` of all values do not exceed: the upper end of its bucket, at most max().
+  // The smallest value for share 0; 0 without values. REQUIRES: 0 <= share <= 1.
   absl::Duration Percentile(double share) const;
 
  private:

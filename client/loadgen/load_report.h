@@ -1,4 +1,4 @@
-// What a load run came to, for people and for scripts.
+// The results of a load run, for people and for scripts.
 
 #ifndef TRAVERSE_CLIENT_LOADGEN_LOAD_REPORT_H_
 #define TRAVERSE_CLIENT_LOADGEN_LOAD_REPORT_H_
@@ -11,7 +11,7 @@
 
 namespace traverse::loadgen {
 
-// What was asked for.
+// The settings of the run.
 struct LoadHeading {
   std::string target;
   std::string strategy;

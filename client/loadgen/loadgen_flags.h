@@ -15,7 +15,7 @@
 
 namespace traverse::loadgen {
 
-// What the flags say, checked.
+// The values of the flags, checked.
 struct LoadgenFlags {
   std::vector<std::string> target;  // addresses, HOST:PORT
   ConnectOptions connect;
@@ -23,8 +23,8 @@ struct LoadgenFlags {
   std::vector<SizeShare> mix;
   v1::JobOptions job;
   std::string strategy;  // as written
-  std::string input;     // file whose layers are sent; empty: made up
-  int islands = 10;      // of a layer made up
+  std::string input;     // file whose layers are sent; empty: generated
+  int islands = 10;      // of a generated layer
   int connections = 1;
   std::string json;  // file; empty: none
 };
@@ -34,7 +34,7 @@ const std::vector<cli::Flag>& LoadgenFlagTable();
 // What --help prints.
 std::string LoadgenHelp();
 
-// InvalidArgument, with the flag's name and what is wrong with its value.
+// InvalidArgument, with the flag's name and the fault in its value.
 absl::StatusOr<LoadgenFlags> ParseLoadgenFlags(const std::vector<std::string>& arguments);
 
 }  // namespace traverse::loadgen

@@ -1,4 +1,4 @@
-// What a caller wants of a job, over what its file says.
+// What a caller requests for a job, beyond what its file says.
 
 #ifndef TRAVERSE_CLIENT_OPTIMIZE_FILE_JOB_SETTINGS_H_
 #define TRAVERSE_CLIENT_OPTIMIZE_FILE_JOB_SETTINGS_H_
@@ -14,7 +14,7 @@
 
 namespace traverse {
 
-// What is minimised. Unset: as the file says.
+// What to minimise. Unset: as the file says.
 struct CostSettings {
   std::optional<bool> by_time;
   std::optional<double> speed_mm_s;
@@ -23,7 +23,7 @@ struct CostSettings {
   std::optional<double> retraction_threshold_mm;
 };
 
-// All of it; unset: as the file says.
+// Everything unset is as the file says.
 struct JobSettings {
   std::optional<std::pair<uint64_t, uint64_t>> layers;  // positions from 1, both included
   std::optional<v1::Deposition> deposition;
@@ -35,10 +35,10 @@ struct JobSettings {
   std::optional<absl::Duration> layer_time_limit;
 };
 
-// Leaves the layers that `settings` select. InvalidArgument if the job has no such layers.
+// Keeps only the layers that `settings` select. InvalidArgument if the job has no such layers.
 absl::Status SelectLayers(const JobSettings& settings, InputJob& job);
 
-// SelectLayers, then changes the options of the job and its layers to what `settings` say.
+// SelectLayers, then sets the options of the job and its layers as `settings` say.
 absl::Status ApplySettings(const JobSettings& settings, InputJob& job);
 
 }  // namespace traverse

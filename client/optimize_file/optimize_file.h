@@ -1,5 +1,5 @@
-// From a sliced file to the same print with less travel: how it is searched, what is chosen and how
-// it is written is decided here, for the command line and for traverse-gateway alike.
+// From a sliced file to the same print with less travel: searches it, chooses the orders and writes
+// it. The command line and traverse-gateway both use this.
 //
 //   absl::StatusOr<InputJob> job = ReadInput("part.gcode", {.policy = policy});
 //   FileResult<OptimizedFile> made = OptimizeFile(client, *job, {.gcode = {.policy = policy}});
@@ -29,7 +29,7 @@
 
 namespace traverse {
 
-// Where it ended that could not be done.
+// The step that failed.
 enum class FileStage {
   kSearch,  // the service's status: it refused, was not reached, or was too late
   kWrite,   // the new file would not print the same; the message names the file
@@ -43,9 +43,9 @@ struct FileFault {
 template <typename T>
 using FileResult = std::variant<T, FileFault>;
 
-// What is told while the service searches, on the calling thread. Either may be empty.
+// Called while the service searches, on the calling thread. Either may be empty.
 struct SearchProgress {
-  // A search of so many layers begins. There may be two, one after the other.
+  // A search of `layers` layers begins. There may be two, one after the other.
   std::function<void(size_t layers)> on_search = {};
 
   // One more layer is done.
@@ -55,46 +55,46 @@ struct SearchProgress {
 struct SearchOptions {
   std::optional<v1::Strategy> strategy = std::nullopt;  // unset: the job's own
 
-  // Given to the service with each search. A search that has one is not repeated.
+  // Passed to the service with each search. A search with a deadline is not repeated.
   absl::Duration deadline = absl::InfiniteDuration();
 
-  // The whole file is due then. Searches end so early that the file can still be written and
-  // verified, by the best that they have found.
+  // When the whole file must be ready. Searches end early enough that the file can still be written
+  // and verified with the best results so far.
   absl::Time finish_by = absl::InfiniteFuture();
 
-  // Asked to stop, the call ends soon with Cancelled.
+  // When stop is requested, the call ends soon with Cancelled.
   std::stop_token cancel = {};
 
   SearchProgress progress = {};
 };
 
-// One search of `job`. Errors are the service's.
+// Runs one search of `job`. Errors are the service's.
 absl::StatusOr<report::JobRun> Search(OptimizerClient& client, const InputJob& job,
                                       const SearchOptions& options);
 
 struct OptimizeFileOptions : SearchOptions {
-  GcodeOptions gcode = {};  // those that the job was read with
+  GcodeOptions gcode = {};  // with which the job was read
 
-  // Print times that the file states are set anew, by as much as the estimate changed.
+  // Renews the print times that the file states, by as much as the estimate changed.
   bool restate_times = false;
 };
 
-// A file rewritten.
+// A rewritten file.
 struct OptimizedFile {
-  std::vector<report::JobRun> runs;  // of the searches; the first one is what reports show
+  std::vector<report::JobRun> runs;  // of the searches; reports show the first one
   GcodeRewrite rewrite;              // its text is the new file
-  std::optional<gcode::TimeScale> times = std::nullopt;  // by which it restates times
+  std::optional<gcode::TimeScale> times = std::nullopt;  // by which the file restates times
 };
 
-// Searches `job`, once or twice, and writes its file anew by the best of what was found for each
-// layer. The text was verified against the file that `job` was read from. DeadlineExceeded where
-// `finish_by` is too near for anything.
-// REQUIRES: job.gcode is not null.
+// Searches `job`, once or twice, and writes its file again with the best result for each
+// layer. The text has been verified against the file from which `job` was read.
+// DeadlineExceeded if `finish_by` leaves too little time for anything. REQUIRES: job.gcode is
+// not null.
 FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& job,
                                        const OptimizeFileOptions& options);
 
-// How long writing and verifying a text of so many bytes may take: what `finish_by` is reduced by
-// for the searches.
+// How long writing and verifying a text of `bytes` bytes may take. Searches end this much before
+// `finish_by`.
 absl::Duration WritingTime(size_t bytes);
 
 }  // namespace traverse

@@ -1,4 +1,4 @@
-// What is in a file.
+// Describes the contents of a file.
 
 #ifndef TRAVERSE_CLIENT_REPORT_INSPECTION_H_
 #define TRAVERSE_CLIENT_REPORT_INSPECTION_H_
@@ -10,8 +10,8 @@
 
 namespace traverse::report {
 
-// Format, layers, islands, paths by kind or feature, points, and the travel of the order given, as
-// `given` (a run of the strategy none) has it; then one row a layer, if there are at most
+// Format, layers, islands, paths by kind or feature, points, and the travel of the given order,
+// taken from `given` (a run of the strategy none); then one row per layer, if there are at most
 // `max_rows`.
 std::string InspectionText(const InputJob& job, const JobResult& given, size_t max_rows);
 

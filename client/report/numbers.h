@@ -1,4 +1,4 @@
-// Numbers as people read them.
+// Numbers in the form in which people read them.
 
 #ifndef TRAVERSE_CLIENT_REPORT_NUMBERS_H_
 #define TRAVERSE_CLIENT_REPORT_NUMBERS_H_
@@ -7,7 +7,7 @@
 
 namespace traverse::report {
 
-// "31.2 % less", "4.0 % more", "the same": `after` against `before`.
+// "31.2 % less", "4.0 % more", "the same": `after` compared with `before`.
 std::string Change(double before, double after);
 
 // Gain of `after` over `before` in percent, positive if `after` is less; 0 if both are 0.

@@ -1,4 +1,4 @@
-// What the point reductions of the thesis's framework leave, as a table.
+// A table of what the point reductions of the thesis's framework leave.
 
 #ifndef TRAVERSE_CLIENT_REPORT_REDUCTIONS_H_
 #define TRAVERSE_CLIENT_REPORT_REDUCTIONS_H_
@@ -11,10 +11,10 @@
 
 namespace traverse::report {
 
-// The rows of thesis tables 5.1 and 5.4: for each strategy that tells of it (`tabu`, `exact` with
-// the model of the framework), the contour points of a layer before and after each reduction, means
-// over layers and runs, with the percent that are gone: of all points; for VP of those of SP. A
-// table with a title and an empty line before it; empty if no strategy tells of reductions.
+// The rows of thesis tables 5.1 and 5.4: for each strategy that reports them (`tabu`, and `exact`
+// with the framework's model), the contour points of a layer before and after each reduction, means
+// over layers and runs, with the percentage removed: of all points, for VP of those of SP. A table
+// with a title and an empty line before it; empty if no strategy reports reductions.
 std::string ReductionTable(const std::vector<ComparedStrategy>& strategies, const TextStyle& style);
 
 }  // namespace traverse::report

@@ -1,4 +1,4 @@
-// Runs of a job: what reports are made of.
+// Runs of a job, from which reports are made.
 
 #ifndef TRAVERSE_CLIENT_REPORT_RUN_H_
 #define TRAVERSE_CLIENT_REPORT_RUN_H_
@@ -15,10 +15,10 @@ namespace traverse::report {
 struct JobRun {
   JobResult result;
   uint64_t seed = 1;
-  double wall_seconds = 0;  // as the caller saw it
+  double wall_seconds = 0;  // as the caller waited
 };
 
-// The runs of one strategy, which differ in their seeds alone; at least one.
+// The runs of one strategy, which differ only in their seeds; at least one.
 struct ComparedStrategy {
   std::string label;  // as the user wrote it: "tabu:polish=false"
   std::vector<JobRun> runs;

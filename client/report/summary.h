@@ -1,4 +1,4 @@
-// What a job came to, in words.
+// The result of a job, in words.
 
 #ifndef TRAVERSE_CLIENT_REPORT_SUMMARY_H_
 #define TRAVERSE_CLIENT_REPORT_SUMMARY_H_

@@ -10,11 +10,11 @@
 
 namespace traverse::report {
 
-// What may be done to text.
+// How text may be styled.
 struct TextStyle {
-  int width = 1'000'000;  // columns there are
+  int width = 1'000'000;  // available columns
   bool color = false;     // ANSI colors
-  bool blocks = true;     // block characters of UTF-8; else bars are of '#'
+  bool blocks = true;     // block characters of UTF-8; otherwise bars are of '#'
 };
 
 enum class Color { kNone, kGood, kBad, kBar };
@@ -25,7 +25,7 @@ struct Cell {
   Color color = Color::kNone;
 };
 
-// Columns of cells, the first one set to the left, the others to the right.
+// Columns of cells: the first one is aligned left, the others right.
 class Table {
  public:
   explicit Table(std::vector<std::string> header);
@@ -36,14 +36,14 @@ class Table {
     rows_.push_back(std::move(cells));
   }
 
-  // The same for a row whose first cell may be `width` columns wide: a longer text goes on in rows
-  // of its own below, broken before its colons.
+  // The same for a row whose first cell may be `width` columns wide: a longer text continues in
+  // rows of its own below, broken before its colons.
   void AddFolded(std::vector<Cell> cells, size_t width);
 
-  // Sets the last column to the left too: bars and texts.
+  // Aligns the last column left too: for bars and texts.
   void SetLastLeft() { last_left_ = true; }
 
-  // All rows, each ended by a newline, columns two blanks apart; a line under the header.
+  // All rows, each ended by a newline, with columns two blanks apart and a line under the header.
   std::string Text(const TextStyle& style = {}) const;
 
  private:
@@ -51,14 +51,14 @@ class Table {
   bool last_left_ = false;
 };
 
-// Columns that `text` takes: its letters, of UTF-8, each one column wide.
+// The columns that `text` takes: its UTF-8 letters, each one column wide.
 size_t TextWidth(const std::string& text);
 
-// `text` in lines of up to `width` columns, broken before colons alone, all but the first one
-// indented by two blanks. A piece that is wider stays whole.
+// `text` in lines of up to `width` columns, broken only before colons; all but the first are
+// indented by two blanks. A wider piece stays whole.
 std::vector<std::string> FoldAtColons(const std::string& text, size_t width);
 
-// A bar of at most `cells` columns for `fraction` in [0, 1] of them, to an eighth of a column with
+// A bar that fills `fraction` in [0, 1] of `cells` columns, to an eighth of a column with
 // blocks.
 std::string Bar(double fraction, int cells, const TextStyle& style);
 

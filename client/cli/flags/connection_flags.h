@@ -1,4 +1,4 @@
-// The flags that say how servers are reached: TLS, tokens.
+// The flags about connections to servers: TLS, tokens.
 
 #ifndef TRAVERSE_CLIENT_CLI_FLAGS_CONNECTION_FLAGS_H_
 #define TRAVERSE_CLIENT_CLI_FLAGS_CONNECTION_FLAGS_H_
@@ -13,7 +13,7 @@
 
 namespace traverse::cli {
 
-// What the flags say.
+// The values of these flags.
 struct Connection {
   ConnectOptions options;
   std::string token;  // bearer token; empty: none
@@ -22,17 +22,17 @@ struct Connection {
 // --tls, --tls_ca, --tls_certificate, --tls_key, --tls_name, --token_file, --insecure.
 std::vector<Flag> ConnectionFlagTable();
 
-// The token is the first line of --token_file, or without that flag TRAVERSE_TOKEN of the
-// environment; never a flag, for other users of the machine can read those. InvalidArgument if it
-// would go to another machine unencrypted and --insecure does not say so; for a file that cannot be
-// read; for TLS flags without --tls or with no meaning together.
+// The token is the first line of --token_file, or without that flag the environment variable
+// TRAVERSE_TOKEN. It is never a flag, because other users of the machine can read flags.
+// InvalidArgument if it would go to another machine unencrypted without --insecure; for a file that
+// cannot be read; for TLS flags without --tls, or that contradict each other.
 absl::StatusOr<Connection> ParseConnectionFlags(const Flags& flags,
                                                 const std::vector<std::string>& addresses);
 
-// InvalidArgument if one of these flags is given, for a command that asks no server.
+// InvalidArgument if one of these flags is given to a command that contacts no server.
 absl::Status CheckNoConnectionFlags(const Flags& flags);
 
-// How a command ends whose ConnectTo failed.
+// How a command ends when ConnectTo failed.
 Outcome ConnectFault(const absl::Status& status);
 
 }  // namespace traverse::cli

@@ -1,10 +1,10 @@
-// Flags of one command: declared in a table, parsed, asked for by name.
+// Flags of one command: declared in a table, parsed, and looked up by name.
 //
-// --name=value and --name value are the same, as are - and _ in names; a switch takes no value, but
-// --name=true and
-// --name=false are allowed. `--` ends the flags. Of a flag given twice the last one counts, unless
-// it is repeatable. absl's own flags are not used: they are global, know no commands, and exit with
-// 1 where a usage error is due.
+// --name=value and --name value are the same, and so are - and _ in names. A switch
+// takes no value, but --name=true and --name=false are allowed. `--` ends the flags. If
+// a flag is given twice, the last one counts, unless it is repeatable. absl's own flags
+// are not used: they are global, know no commands, and exit with 1 where a usage error
+// is due.
 
 #ifndef TRAVERSE_CLIENT_CLI_FLAGS_FLAGS_H_
 #define TRAVERSE_CLIENT_CLI_FLAGS_FLAGS_H_
@@ -26,27 +26,27 @@ namespace traverse::cli {
 // One flag: a row of a command's table.
 struct Flag {
   std::string name;                       // "strategy"; "o" for the one-letter flag -o
-  std::string value;                      // what help calls its value: "NAME"; empty: a switch
+  std::string value;                      // the name of its value in help: "NAME"; empty: a switch
   std::string help;                       // one line
-  std::vector<std::string> choices = {};  // the values allowed; empty: any
+  std::vector<std::string> choices = {};  // the allowed values; empty: any
   bool repeatable = false;
 
-  // Not empty: help has this flag and the next one on one line, with this text for both.
+  // If not empty, help shows this flag and the next one on one line, with this text for both.
   std::string joint_help = "";
 
-  // True: help lists this flag by its name alone, beside the others like it; the man page has it
-  // all.
+  // True: help lists only this flag's name, beside similar ones; the man page describes it
+  // fully.
   bool brief = false;
 };
 
-// The rows of `table`, and behind them those of `more`.
+// The rows of `table`, followed by those of `more`.
 std::vector<Flag> Joined(std::vector<Flag> table, const std::vector<Flag>& more);
 
 // The flags given to a command, all of them in its table, and its operands.
 class Flags {
  public:
-  // InvalidArgument for an unknown flag, with the nearest known one; for a missing, superfluous or
-  // unknown value.
+  // InvalidArgument for an unknown flag, with the nearest known one as a suggestion; for a missing,
+  // superfluous or unknown value.
   static absl::StatusOr<Flags> Parse(absl::Span<const Flag> table,
                                      absl::Span<const std::string> arguments);
 
@@ -54,7 +54,7 @@ class Flags {
 
   bool Has(const std::string& name) const { return values_.contains(name); }
 
-  // The value, the last one if repeated; `unset` if not given.
+  // The value, the last one if repeated; `unset` if it was not given.
   std::string Text(const std::string& name, const std::string& unset = "") const;
 
   // All values of a repeatable flag.
@@ -63,8 +63,8 @@ class Flags {
   // True if the switch is given (and not as --name=false).
   bool Switch(const std::string& name) const { return Text(name, "false") != "false"; }
 
-  // The value as a number in [least, most], a duration above 0, a point "X,Y" in mm. Nothing if the
-  // flag is not given; InvalidArgument naming the flag if its value is no such thing.
+  // The value as a number in [least, most], a duration above 0, a point "X,Y" in mm. Unset if the
+  // flag is not given; InvalidArgument, with the flag's name, if the value is not valid.
   absl::StatusOr<std::optional<double>> Number(const std::string& name, double least,
                                                double most) const;
   absl::StatusOr<std::optional<uint64_t>> Integer(const std::string& name, uint64_t least,

@@ -1,4 +1,4 @@
-// The flags of all commands that run jobs, and what they make of a job's options.
+// The flags of all commands that run jobs, and their effect on a job's options.
 
 #ifndef TRAVERSE_CLIENT_CLI_FLAGS_JOB_FLAGS_H_
 #define TRAVERSE_CLIENT_CLI_FLAGS_JOB_FLAGS_H_
@@ -16,7 +16,7 @@
 
 namespace traverse::cli {
 
-// The values of the flags, checked; nothing: not given.
+// The values of the flags, checked; unset: not given.
 struct JobFlags : JobSettings {
   std::vector<std::pair<std::string, std::string>> strategy_options;  // --option
   absl::Duration deadline = absl::InfiniteDuration();
@@ -25,11 +25,11 @@ struct JobFlags : JobSettings {
 // The rows of these flags.
 std::vector<Flag> JobFlagTable();
 
-// The rows of the flags that say where the service runs and how it is reached: --server,
-// --threads and those of connection_flags.h.
+// The rows of the flags that say where the service runs and how to reach it: --server, --threads
+// and those of connection_flags.h.
 std::vector<Flag> ServiceFlagTable();
 
-// The rows of --policy, --crossings and --allow, and what they say to the reader of G-code.
+// The rows of --policy, --crossings and --allow, and their values for the reader of G-code.
 Flag PolicyFlag();
 Flag CrossingsFlag();
 Flag AllowFlag();
@@ -37,16 +37,16 @@ Flag AllowFlag();
 // The row of --machine.
 Flag MachineFlag();
 
-// InvalidArgument for --allow with other names than there are, and for a file of --machine that
-// cannot be read.
+// InvalidArgument for unknown names in --allow, and if the file of --machine cannot be
+// read.
 absl::StatusOr<GcodeOptions> ParseGcodeOptions(const Flags& flags);
 
 absl::StatusOr<JobFlags> ParseJobFlags(const Flags& flags);
 
-// Leaves the layers that --layers selects. InvalidArgument if the job has no such layers.
+// Keeps only the layers that --layers selects. InvalidArgument if the job has none of them.
 absl::Status SelectJobLayers(const JobFlags& flags, InputJob& job);
 
-// SelectJobLayers, then changes the job's and its layers' options to what the flags say.
+// SelectJobLayers, then sets the options of the job and its layers as the flags say.
 absl::Status ApplyJobFlags(const JobFlags& flags, InputJob& job);
 
 }  // namespace traverse::cli

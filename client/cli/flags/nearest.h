@@ -1,4 +1,4 @@
-// What a mistyped word was meant to be.
+// Guesses what a mistyped word was meant to be.
 
 #ifndef TRAVERSE_CLIENT_CLI_FLAGS_NEAREST_H_
 #define TRAVERSE_CLIENT_CLI_FLAGS_NEAREST_H_
@@ -9,10 +9,10 @@
 
 namespace traverse::cli {
 
-// The word of `known` that `word` was probably meant to be; empty if none is near.
+// The word of `known` that `word` probably means; empty if none is near.
 std::string Nearest(const std::string& word, absl::Span<const std::string> known);
 
-// "; did you mean NEAREST?", or nothing.
+// "; did you mean NEAREST?", or an empty text.
 std::string DidYouMean(const std::string& word, absl::Span<const std::string> known,
                        const std::string& prefix = "");
 

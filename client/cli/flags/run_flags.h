@@ -1,4 +1,4 @@
-// The flags that `optimize` and `compare` share: what to run, and what to write of it.
+// The flags that `optimize` and `compare` share: what to run, and what to write.
 
 #ifndef TRAVERSE_CLIENT_CLI_FLAGS_RUN_FLAGS_H_
 #define TRAVERSE_CLIENT_CLI_FLAGS_RUN_FLAGS_H_
@@ -20,10 +20,10 @@ struct RunFlags {
   bool quiet = false;
 };
 
-// `own`, the flags of one command alone, and after them the rows of these.
+// `own`, the flags of one command, followed by the rows of these.
 std::vector<Flag> WithRunFlagTable(std::vector<Flag> own);
 
-// InvalidArgument naming the flag.
+// InvalidArgument, with the flag's name.
 absl::StatusOr<RunFlags> ParseRunFlags(const Flags& flags);
 
 }  // namespace traverse::cli

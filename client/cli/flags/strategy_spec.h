@@ -1,4 +1,4 @@
-// Strategies as the command line names them.
+// Strategies in the form of the command line.
 
 #ifndef TRAVERSE_CLIENT_CLI_FLAGS_STRATEGY_SPEC_H_
 #define TRAVERSE_CLIENT_CLI_FLAGS_STRATEGY_SPEC_H_
@@ -26,10 +26,10 @@ absl::StatusOr<std::vector<StrategySpec>> ParseStrategySpecs(const std::string& 
 // An option of --option: "name=value".
 absl::StatusOr<std::pair<std::string, std::string>> ParseOption(const std::string& text);
 
-// Gives `options` to each of `specs` whose strategy has an option of that name and does not set it
-// itself, and checks all names against the server's `known`. InvalidArgument, with the nearest
-// known name, for an unknown strategy or an option that none of them has. Values are for the server
-// to check.
+// Gives `options` to each of `specs` whose strategy has an option of that name and does not set
+// it itself. Checks all names against the server's `known`. InvalidArgument, with the nearest
+// known name, for an unknown strategy, or an option that none of them has. The server checks the
+// values.
 absl::Status ResolveStrategies(const v1::ListStrategiesResponse& known,
                                absl::Span<const std::pair<std::string, std::string>> options,
                                std::vector<StrategySpec>& specs);

@@ -1,4 +1,4 @@
-// What there is to look at: --picture with --layer, and --report.
+// The flags for pictures: --picture with --layer, and --report.
 
 #ifndef TRAVERSE_CLIENT_CLI_FLAGS_VIEW_FLAGS_H_
 #define TRAVERSE_CLIENT_CLI_FLAGS_VIEW_FLAGS_H_
@@ -30,18 +30,18 @@ struct ViewFlags {
 // The rows of these flags.
 std::vector<Flag> ViewFlagTable();
 
-// InvalidArgument naming the flag for a name that does not tell its format, and for a folder that
-// is not there: before the work, not after it.
+// InvalidArgument, with the flag's name, for a name that does not show its format, and for a
+// missing folder: before the work, not after it.
 absl::StatusOr<ViewFlags> ParseViewFlags(const Flags& flags);
 
-// InvalidArgument if --layer is none of the job's layers. To be asked once --layers has chosen
+// InvalidArgument if --layer is not a layer of the job. Call it after --layers has selected
 // them.
 absl::Status CheckViewLayer(const ViewFlags& flags, const InputJob& job);
 
-// A run of the job in the order given.
+// Runs the job in the given order.
 Expected<report::JobRun> RunAsGiven(Service& service, const JobFlags& flags, const InputJob& job);
 
-// Writes what is asked for, each file whole or not at all.
+// Writes what the flags request, each file whole or not at all.
 absl::Status WriteViews(const ViewFlags& flags, const view::Scene& scene);
 
 }  // namespace traverse::cli

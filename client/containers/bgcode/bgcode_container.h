@@ -11,13 +11,13 @@
 
 namespace traverse::containers {
 
-// See OpenContainer. All checksums are checked, and metadata read.
+// See OpenContainer. Checks all checksums and reads the metadata.
 absl::StatusOr<std::unique_ptr<Container>> OpenBgcode(std::string bytes, const std::string& name,
                                                       const ContainerOptions& options);
 
-// `text` as binary G-code: CRC32, metadata by deflate, G-code by heatshrink 12/4 and MeatPack with
-// comments, as PrusaSlicer writes it. What comments of its head and foot say becomes metadata and
-// thumbnails; the others stay in the G-code.
+// `text` as binary G-code: CRC32, deflated metadata, G-code in heatshrink 12/4 and MeatPack with
+// comments, as PrusaSlicer writes it. Comments of head and foot with a known meaning become
+// metadata and thumbnails; the others stay in the G-code.
 absl::StatusOr<std::string> MakeBgcode(const std::string& text);
 
 }  // namespace traverse::containers

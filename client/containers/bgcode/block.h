@@ -44,11 +44,11 @@ enum class BgcodeChecksum : uint16_t { kNone = 0, kCrc32 = 1 };
 
 enum class GcodeEncoding : uint16_t { kNone = 0, kMeatPack = 1, kMeatPackComments = 2 };
 
-// One block; `whole` and `data` are of the file that was parsed.
+// One block; `whole` and `data` point into the parsed file.
 struct Block {
   BlockKind kind = BlockKind::kGcode;  // may be none of the names
   BlockCompression compression = BlockCompression::kNone;
-  uint32_t size = 0;                     // of the data once decompressed
+  uint32_t size = 0;                     // of the decompressed data
   std::array<uint16_t, 3> parameters{};  // a thumbnail has three, the known others one
   size_t offset = 0;                     // in the file
   std::string_view whole;                // header to checksum
@@ -62,23 +62,23 @@ struct BgcodeBlocks {
   std::vector<Block> blocks;
 };
 
-// "file metadata", "G-code", ...; "kind 9" for what has no name.
+// "file metadata", "G-code", ...; "kind 9" for unknown kinds.
 std::string BlockName(BlockKind kind);
 std::string CompressionName(BlockCompression compression);
 
 // "block 3 at offset 1234": blocks are counted from 1.
 std::string BlockPlace(const BgcodeBlocks& file, size_t index);
 
-// The blocks of `file`, each checksum checked. A block of an unknown kind is taken as it is: the
-// length of its parameters is the one that fits its checksum. InvalidArgument with the block and
-// its offset if a header is cut short, announces more than there is, or a checksum is wrong.
-// Allocates nothing by what headers say.
+// The blocks of `file`, with each checksum checked. A block of unknown kind is kept as it is: its
+// parameters have the length that fits its checksum. InvalidArgument with the block and its offset
+// if a header is truncated, states more than there is, or a checksum is wrong. Allocates nothing
+// because of what headers state.
 absl::StatusOr<BgcodeBlocks> ParseBlocks(std::string_view file);
 
 // The ten bytes before the blocks.
 std::string BgcodeHeader(BgcodeChecksum checksum);
 
-// Appends a block. `data` is what `size` bytes were compressed to, or those bytes themselves.
+// Appends a block. `data` is the compressed form of `size` bytes, or those bytes themselves.
 // REQUIRES: `parameters` has as many numbers as the kind has.
 void AppendBlock(BlockKind kind, BlockCompression compression,
                  const std::vector<uint16_t>& parameters, uint32_t size, std::string_view data,

@@ -10,10 +10,10 @@
 
 namespace traverse::containers {
 
-// `text` with spaces in moves as MeatPack gives them back, and without the comments that binary
-// G-code does not keep: those before the first command, behind the last one, and entries
-// (`; key = value`) anywhere, which are metadata; with kLines also those behind commands and empty
-// ones, with kNone all of them. The line that Traverse adds stays. Lines keep their numbers.
+// `text` with spaces in moves as MeatPack restores them, and without the comments that binary
+// G-code does not keep: those before the first command and after the last one, and entries (`; key
+// = value`) anywhere, which are metadata; with kLines also those behind commands and empty ones,
+// with kNone all of them. The line that Traverse adds stays. Lines keep their numbers.
 std::string ForPrinter(std::string_view text, CommentsKept kept);
 
 }  // namespace traverse::containers

@@ -1,8 +1,8 @@
-// Heatshrink: LZSS for small machines (github.com/atomicobject/heatshrink has its description).
+// Heatshrink: LZSS for small machines (github.com/atomicobject/heatshrink describes it).
 //
-// A stream of bits, the highest of each byte first: 1 and 8 bits are a byte as it is; 0, then
-// `window_bits` of distance - 1 and `lookahead_bits` of length - 1 repeat what was written before.
-// What would lie before the beginning is zeros. The last byte is filled up with zeros.
+// A stream of bits, the highest of each byte first. 1 and 8 bits are a literal byte; 0, then
+// `window_bits` of distance - 1 and `lookahead_bits` of length - 1, repeat earlier output. Whatever
+// would lie before the beginning is zeros. The last byte is padded with zeros.
 //
 // Linear time. Longest repeat: 2^lookahead_bits bytes from 2^window_bits bytes back.
 
@@ -25,8 +25,8 @@ struct HeatshrinkWindow {
 // `bytes`, compressed.
 std::string HeatshrinkCompress(std::string_view bytes, HeatshrinkWindow window);
 
-// The `size` bytes that `bytes` were before they were compressed. InvalidArgument if `bytes` end
-// before that, or go on behind it. Allocates no more than 8 (lookahead of 4) times bytes.size().
+// The `size` bytes from which `bytes` were compressed. InvalidArgument if `bytes` end before that,
+// or continue after it. Allocates at most 8 times bytes.size() (with lookahead 4).
 absl::StatusOr<std::string> HeatshrinkDecompress(std::string_view bytes, HeatshrinkWindow window,
                                                  size_t size);
 

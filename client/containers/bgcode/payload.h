@@ -1,4 +1,4 @@
-// What blocks hold: compressing, decompressing, and the texts of G-code blocks.
+// The contents of blocks: compresses and decompresses them, and handles the texts of G-code blocks.
 
 #ifndef TRAVERSE_CLIENT_CONTAINERS_BGCODE_PAYLOAD_H_
 #define TRAVERSE_CLIENT_CONTAINERS_BGCODE_PAYLOAD_H_
@@ -13,18 +13,18 @@
 
 namespace traverse::containers {
 
-// How G-code blocks are written.
+// How to write G-code blocks.
 struct GcodeForm {
   BlockCompression compression = BlockCompression::kHeatshrink12;
   GcodeEncoding encoding = GcodeEncoding::kMeatPackComments;
   BgcodeChecksum checksum = BgcodeChecksum::kCrc32;
 };
 
-// Most text of one G-code block, before and after MeatPack; a longer line is a block by itself.
+// Most text in one G-code block, before and after MeatPack; a longer line is a block by itself.
 inline constexpr size_t kMaxBlockText = 65536;
 
-// The data of `block`, decompressed. InvalidArgument if they are damaged or the compression is not
-// known. Takes no memory for a size that cannot be true.
+// The data of `block`, decompressed. InvalidArgument if they are damaged or the compression is
+// unknown. Allocates nothing for an impossible size.
 absl::StatusOr<std::string> DecompressBlock(const Block& block);
 
 absl::StatusOr<std::string> CompressBytes(std::string_view bytes, BlockCompression compression);
@@ -33,12 +33,12 @@ absl::StatusOr<std::string> CompressBytes(std::string_view bytes, BlockCompressi
 // ResourceExhausted if the text is longer than `max_bytes`.
 absl::StatusOr<std::string> GcodeText(const BgcodeBlocks& file, size_t max_bytes, int threads);
 
-// How long that text is. Blocks in MeatPack are unpacked for it, one at a time; damaged ones count
-// as what they announce.
+// The length of that text. Unpacks MeatPack blocks for it, one at a time; damaged ones count as
+// what they state.
 absl::StatusOr<size_t> GcodeTextBytes(const BgcodeBlocks& file, size_t max_bytes);
 
-// Appends `text` as G-code blocks of whole lines, made on up to `threads` threads. A block with a
-// byte that MeatPack lacks is not encoded.
+// Appends `text` as G-code blocks of whole lines, built on up to `threads` threads. A block with a
+// byte that MeatPack cannot express is not encoded.
 absl::Status AppendGcodeBlocks(std::string_view text, const GcodeForm& form, int threads,
                                std::string& out);
 

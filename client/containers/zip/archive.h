@@ -1,11 +1,12 @@
-// Zip archives: reading their directory, and writing them again with some entries replaced.
+// Zip archives: reads their directory, and writes them again with some entries replaced.
 //
-// Everything that is not replaced is copied byte by byte: local headers, data descriptors, what
-// stands between entries, the directory's records but for offsets, the comment. Debian's libzip
-// (1.7.3) writes local headers anew, without the descriptors that streaming writers leave, and
-// minizip replaces no entries; so the archive is ours, and zlib does deflate and CRC-32.
+// Everything else is copied byte by byte: local headers, data descriptors, padding between entries,
+// the directory's records except offsets, the comment. The code is our own, because Debian's libzip
+// (1.7.3) drops descriptors of streaming writers and minizip cannot replace entries; zlib does
+// deflate and CRC-32.
 //
-// Not read: encrypted entries, archives in several parts, zip64 (beyond 4 GiB or 65,535 entries).
+// Not supported: encrypted entries, archives in several parts, zip64 (beyond 4 GiB or 65,535
+// entries).
 
 #ifndef TRAVERSE_CLIENT_CONTAINERS_ZIP_ARCHIVE_H_
 #define TRAVERSE_CLIENT_CONTAINERS_ZIP_ARCHIVE_H_
@@ -30,11 +31,11 @@ struct ZipEntry {
   uint32_t crc = 0;
   uint32_t compressed_size = 0;
   uint32_t size = 0;
-  size_t record = 0;  // of the directory; offsets in the file
+  size_t record = 0;  // in the directory; offsets are relative to the file
   size_t record_bytes = 0;
   size_t begin = 0;  // of the local header
-  size_t data = 0;   // of what is compressed
-  size_t end = 0;    // behind data and descriptor
+  size_t data = 0;   // of the compressed data
+  size_t end = 0;    // after data and descriptor
 };
 
 struct ZipArchive {
@@ -42,27 +43,27 @@ struct ZipArchive {
   std::vector<ZipEntry> entries;  // in the directory's order
   size_t directory = 0;
   size_t directory_end = 0;
-  size_t tail = 0;  // the record behind the directory, up to the file's end
+  size_t tail = 0;  // the record after the directory, up to the file's end
 
-  // The entry of that name, or null.
+  // The entry with that name, or null.
   const ZipEntry* Find(std::string_view name) const;
 };
 
-// The directory of `file`, each local header checked against it. InvalidArgument, with the entry's
-// name, for what is cut short, lies outside the file or over another entry; encrypted or zip64;
-// names that occur twice, or that would lead out of a folder (`..`, backslashes, drive letters).
-// Names that begin with '/' are for the caller to judge.
+// The directory of `file`, with each local header checked against it. InvalidArgument, with the
+// entry's name, if anything is truncated, lies outside the file or overlaps another entry; is
+// encrypted or zip64; or if names occur twice or would lead out of a folder (`..`, backslashes,
+// drive letters). The caller judges names that begin with '/'.
 absl::StatusOr<ZipArchive> ParseZip(std::string_view file);
 
 // The content of `entry`, checked against its CRC-32. InvalidArgument with its name if it is
-// damaged, not what the directory says, or compressed otherwise than by deflate; ResourceExhausted
-// if it is longer than `max_bytes`.
+// damaged, differs from the directory, or is not compressed by deflate; ResourceExhausted if it is
+// longer than `max_bytes`.
 absl::StatusOr<std::string> ReadEntry(const ZipArchive& archive, const ZipEntry& entry,
                                       size_t max_bytes);
 
-// The archive with the contents of `replaced` (by index of the entry) in place of those it had,
-// compressed by the same method, with the same names and times.
-// ResourceExhausted if it would become a zip64.
+// The archive with the contents of `replaced` (by index of the entry) instead of the old ones,
+// compressed by the same method, with the same names and times. ResourceExhausted if it would
+// become a zip64.
 absl::StatusOr<std::string> WriteZip(const ZipArchive& archive,
                                      const std::map<size_t, std::string>& replaced, int threads);
 

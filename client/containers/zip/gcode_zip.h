@@ -1,4 +1,4 @@
-// Zip archives that hold G-code: .gcode.3mf and .ufp.
+// Zip archives with G-code: .gcode.3mf and .ufp.
 
 #ifndef TRAVERSE_CLIENT_CONTAINERS_ZIP_GCODE_ZIP_H_
 #define TRAVERSE_CLIENT_CONTAINERS_ZIP_GCODE_ZIP_H_
@@ -11,7 +11,7 @@
 
 namespace traverse::containers {
 
-// See OpenContainer. Of a .gcode.3mf the texts are Metadata/plate_N.gcode, of a .ufp
+// See OpenContainer. The texts of a .gcode.3mf are Metadata/plate_N.gcode; that of a .ufp is
 // /3D/model.gcode (with or without the slash).
 absl::StatusOr<std::unique_ptr<Container>> OpenGcodeZip(std::string bytes, const std::string& name,
                                                         const ContainerOptions& options);

@@ -1,4 +1,4 @@
-// MD5 as files beside G-code state it, by OpenSSL.
+// MD5 in the form in which files beside G-code state it, by OpenSSL.
 
 #ifndef TRAVERSE_CLIENT_CONTAINERS_ZIP_MD5_H_
 #define TRAVERSE_CLIENT_CONTAINERS_ZIP_MD5_H_
@@ -9,13 +9,13 @@
 
 namespace traverse::containers {
 
-// 32 digits, in capitals. Empty if the system's OpenSSL refuses MD5.
+// 32 digits in capitals. Empty if the system's OpenSSL refuses MD5.
 std::string Md5Hex(std::string_view bytes);
 
-// The 32 hexadecimal digits in `stated`, in capitals; nothing if it does not have exactly these.
+// The 32 hexadecimal digits in `stated`, in capitals; unset if there are not exactly 32.
 std::optional<std::string> FindMd5(std::string_view stated);
 
-// `stated` with another digest in its place: the same case, and the same characters around it.
+// `stated` with another digest in its place: in the same case, with the same characters around it.
 // REQUIRES: FindMd5(stated).
 std::string WithMd5(std::string_view stated, const std::string& digest);
 

@@ -4,7 +4,7 @@
 //     <metadata key="index" value="1"/>
 //     <metadata key="prediction" value="543"/>   seconds
 //
-// It is changed in place, for a printer's reader is not ours: not parsed and written anew.
+// Changed in place, not parsed and rewritten: a printer's parser may differ from ours.
 
 #ifndef TRAVERSE_CLIENT_CONTAINERS_ZIP_SLICE_INFO_H_
 #define TRAVERSE_CLIENT_CONTAINERS_ZIP_SLICE_INFO_H_
@@ -17,7 +17,7 @@
 
 namespace traverse::containers {
 
-// The value of `key` in the part of plate `plate`; empty if there is none.
+// The value of `key` for plate `plate`; empty if there is none.
 std::string PlateValue(std::string_view slice_info, uint32_t plate, std::string_view key);
 
 // `slice_info` with the times of plate `plate` scaled: `prediction`, `first_layer_time`.

@@ -1,4 +1,4 @@
-// The thesis's figures of our runs, as one page of HTML with drawings in SVG.
+// The thesis's figures for our runs, as one HTML page with drawings in SVG.
 
 #ifndef TRAVERSE_CLIENT_REPORT_REPRODUCE_FIGURES_PAGE_H_
 #define TRAVERSE_CLIENT_REPORT_REPRODUCE_FIGURES_PAGE_H_
@@ -12,8 +12,8 @@
 
 namespace traverse::report {
 
-// `layers`: the first layer of each part of the thesis that is to be drawn. `tables` is printed at
-// the end as it is. What was not run is left out.
+// `layers`: the first layer of each part of the thesis to draw. Prints `tables` unchanged at the
+// end. Leaves out what was not run.
 std::string FiguresPage(const ReproduceForm& form, const OutcomeOfRun& outcome,
                         const std::map<std::string, v1::Layer>& layers, const std::string& tables);
 

@@ -1,4 +1,4 @@
-// Table 1 of Souza et al. (2017), ours beside the paper's own.
+// Table 1 of Souza et al. (2017): ours beside the paper's own.
 
 #ifndef TRAVERSE_CLIENT_REPORT_REPRODUCE_PAPER_TABLE_H_
 #define TRAVERSE_CLIENT_REPORT_REPRODUCE_PAPER_TABLE_H_

@@ -1,4 +1,4 @@
-// Which runs the tables of the two sources take.
+// Which runs the tables of the two sources need.
 
 #ifndef TRAVERSE_CLIENT_REPORT_REPRODUCE_RUN_PLAN_H_
 #define TRAVERSE_CLIENT_REPORT_REPRODUCE_RUN_PLAN_H_
@@ -9,18 +9,18 @@
 
 namespace traverse::report {
 
-// How much of it all.
+// How much to run.
 struct ReproduceForm {
   int thesis_layers = 5;
   int paper_layers = 393;
   int seeds = 5;           // thesis table 3.2
-  int first_samples = 10;  // the same: before the sample size was known
+  int first_samples = 10;  // the same, before the sample size was known
   int diversifications[2] = {2500, 5000};
   double programme_seconds = 7200;  // thesis table 4.1; each of steps 2 and 4
   std::vector<std::string> paper_parts = {"part1",     "part2",        "part3",    "s3_bracket",
                                           "s4_grille", "s5_islands40", "s6_gears", "s7_text"};
 
-  // Three minutes of two cores.
+  // For three minutes on two cores.
   static ReproduceForm Short();
 };
 
@@ -32,7 +32,7 @@ struct PlannedRun {
   int layers = 5;
   int cleaning_every = 0;  // 0: none
 
-  // What is known of it alone: "part2 tabu:thesis seed=3 layers=5".
+  // Identifies this run: "part2 tabu:thesis seed=3 layers=5".
   std::string Key() const;
 };
 
@@ -45,19 +45,19 @@ std::string TabuMethodName(const std::string& representation, int diversificatio
 
 inline constexpr const char* kThesisParts[3] = {"part1", "part2", "part3"};
 
-// Of the thesis's tables: each method on each part with each seed.
+// For the thesis's tables: each method on each part with each seed.
 PlannedRun ThesisRun(const std::string& part, const std::string& method, int seed,
                      const ReproduceForm& form);
-// Of table 3.2: one layer of part 2.
+// For table 3.2: one layer of part 2.
 PlannedRun SampleRun(int diversifications, int seed);
-// Of the paper's table: every `cleaning_every` layers a cleaning; 0: none.
+// For the paper's table, with a cleaning every `cleaning_every` layers; 0: none.
 PlannedRun PaperRun(const std::string& part, const std::string& method, int cleaning_every,
                     const ReproduceForm& form);
 
 // The frequencies of the paper's table; the last one stands for "none" there too.
 inline constexpr int kCleanings[3] = {2, 10, 0};
 
-// All runs of a source's tables, the quick ones first.
+// All runs for a source's tables, the quick ones first.
 std::vector<PlannedRun> ThesisRuns(const ReproduceForm& form);
 std::vector<PlannedRun> PaperRuns(const ReproduceForm& form);
 

@@ -1,4 +1,4 @@
-// What samples of runs say: their mean, their spread, and how many of them it takes.
+// Statistics of samples of runs: mean, spread, and the number of runs needed.
 
 #ifndef TRAVERSE_CLIENT_REPORT_REPRODUCE_SAMPLE_H_
 #define TRAVERSE_CLIENT_REPORT_REPRODUCE_SAMPLE_H_
@@ -15,12 +15,12 @@ struct Sample {
 };
 Sample SampleOf(const std::vector<double>& values);
 
-// Student's t for 95 %, two-sided; the normal distribution's beyond 30 degrees of freedom.
+// Student's t for 95 %, two-sided; that of the normal distribution beyond 30 degrees of freedom.
 // REQUIRES: freedom >= 1.
 double StudentT(int freedom);
 
-// Equation 3.2: how many samples a tolerance of k = 10 % takes at 95 %, (2 t S / (k mean))^2 for
-// Student's t of the sample's size less one. 0 of fewer than two values.
+// Equation 3.2: the samples needed for a tolerance of k = 10 % at 95 %, (2 t S / (k mean))^2, with
+// Student's t for the sample's size less one. 0 for fewer than two values.
 double SamplesNeeded(const Sample& sample);
 
 }  // namespace traverse::report

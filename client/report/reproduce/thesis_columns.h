@@ -10,12 +10,12 @@
 
 namespace traverse::report {
 
-// One column, and how it is run.
+// One column, and how to run it.
 struct ThesisColumn {
   std::string title;
   std::string method;
   bool programme = false;
-  bool samples = false;  // one run for each seed
+  bool samples = false;  // one run per seed
 };
 
 std::vector<ThesisColumn> ThesisColumns(const ReproduceForm& form);

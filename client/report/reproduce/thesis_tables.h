@@ -17,8 +17,8 @@ using OutcomeOfRun = std::function<const RunOutcome*(const PlannedRun&)>;
 // Head speed of [T] 3.4 for idle times, mm/s.
 inline constexpr double kIdleSpeed = 20.32;
 
-// Tables 3.1 and 3.2, 5.1 to 5.8, and the figures of 5.13, in the thesis's rows and words; the
-// thesis's own figures in the lines marked "tese". What was not run is left out.
+// Tables 3.1 and 3.2, 5.1 to 5.8, and the figures of 5.13, with the thesis's rows and words; lines
+// marked "tese" have the thesis's own figures. Leaves out what was not run.
 std::string ThesisTables(const ReproduceForm& form, const OutcomeOfRun& outcome);
 
 }  // namespace traverse::report

@@ -1,5 +1,5 @@
-// The figures that Weller (2019) prints in its tables. Parts 2 and 3 as its text has them: 17
-// islands are part 2; rows 2 and 3 of tables 5.1 and 5.4 are exchanged there against that.
+// The figures that Weller (2019) prints in its tables. Parts 2 and 3 follow its text (17 islands
+// are part 2); in its tables 5.1 and 5.4 rows 2 and 3 are swapped.
 
 #ifndef TRAVERSE_CLIENT_REPORT_REPRODUCE_THESIS_VALUES_H_
 #define TRAVERSE_CLIENT_REPORT_REPRODUCE_THESIS_VALUES_H_
