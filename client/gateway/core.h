@@ -1,5 +1,5 @@
-// What all ways into the gateway share: who may call, the spool, the queue, the service behind it,
-// metrics and log.
+// What all interfaces of the gateway share: who may call, the spool, the queue, the service behind
+// it, metrics and log.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_CORE_H_
 #define TRAVERSE_CLIENT_GATEWAY_CORE_H_
@@ -29,22 +29,22 @@ struct CoreOptions {
   absl::Duration max_time = absl::Minutes(10);  // for one file, from the end of its upload
   WorkLimits work;
   AuthOptions auth;
-  std::vector<std::string> allowed_hosts;  // names that IsOwnHost takes besides its own
+  std::vector<std::string> allowed_hosts;  // names that IsOwnHost accepts besides its own
   std::string log_path;                    // empty: stderr
   bool log = true;
 };
 
-// A value that lives as long as the gateway; all of it is thread-safe.
+// Lives as long as the gateway. All of it is thread-safe.
 struct Core {
-  // `channel` leads to the service; `token` goes with calls there. Errors: InvalidArgument for a
-  // token file that cannot be used, Unavailable for a spool. Throws what JobLog throws.
+  // `channel` leads to the service; `token` goes with calls there. Errors: InvalidArgument for an
+  // unusable token file, Unavailable for a spool. Throws what the constructor of JobLog throws.
   static absl::StatusOr<std::unique_ptr<Core>> Make(const CoreOptions& options,
                                                     std::shared_ptr<grpc::Channel> channel,
                                                     std::string token);
 
-  // Calls `work` when there is a worker, and the memory that work on `files` may take; or, with why,
-  // where they need more than there is at all (OutOfRange) or cannot be read. `place` and the files
-  // live until then.
+  // Calls `work` when there are a worker and the memory that work on `files` may take. Calls it
+  // with an error if they need more than there is at all (OutOfRange), or cannot be read. `place`
+  // and the files live until then.
   using Task = std::function<void(const absl::Status&)>;
   void Submit(std::shared_ptr<WorkQueue::Place> place,
               std::vector<std::shared_ptr<const SpoolFile>> files, Task work);
@@ -52,7 +52,7 @@ struct Core {
   // The text of /metrics.
   std::string MetricsText();
 
-  // Throws what JobLog throws.
+  // Throws what the constructor of JobLog throws.
   explicit Core(const CoreOptions& made_with);
 
   const CoreOptions options;
@@ -61,7 +61,7 @@ struct Core {
   std::unique_ptr<Spool> spool;
   std::unique_ptr<OptimizerClient> client;
   std::unique_ptr<FileWorker> worker;
-  std::unique_ptr<WorkQueue> queue;  // last: its tasks use the rest
+  std::unique_ptr<WorkQueue> queue;  // last: its tasks use the other members
 };
 
 }  // namespace traverse::gateway

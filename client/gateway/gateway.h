@@ -26,15 +26,15 @@
 namespace traverse::gateway {
 
 struct GatewayOptions {
-  std::string listen_http;     // HOST:PORT; port 0 takes a free one
-  std::string listen;          // the same, of gRPC; empty: none
-  std::string metrics_listen;  // the same; empty: none beside listen_http
+  std::string listen_http;     // HOST:PORT; port 0 takes a free port
+  std::string listen;          // the same, for gRPC; empty: no gRPC
+  std::string metrics_listen;  // the same; empty: only those on listen_http
   bool insecure = false;       // plaintext on addresses that other machines can reach
   TlsOptions tls;
   HttpLimits http;
   CoreOptions core;
 
-  // The service: these servers, or an embedded one of so many threads.
+  // The service: these servers, or an embedded one with `threads` threads.
   std::vector<std::string> servers;
   ConnectOptions connect;
   std::string token;  // goes with calls to the servers
@@ -48,23 +48,23 @@ struct GatewayOptions {
 // Thread-safe.
 class Gateway {
  public:
-  // Errors, with one line: InvalidArgument for options that do not fit and for files that cannot be
-  // used; Unavailable for what could not be had.
+  // Errors, in one line: InvalidArgument for options that contradict each other and for unusable
+  // files; Unavailable for a port or a file that cannot be opened.
   static absl::StatusOr<std::unique_ptr<Gateway>> Start(const GatewayOptions& options);
 
-  // Ends at once what is under way.
+  // Ends all running requests at once.
   ~Gateway();
 
-  // The ports that were chosen; 0 if there is none.
+  // The chosen ports; 0 if there is none.
   int http_port() const { return http_->port(); }
   int grpc_port() const { return grpc_port_; }
   int metrics_port() const { return metrics_ == nullptr ? 0 : metrics_->port(); }
 
-  // Takes no more files, and waits for those under way for at most `timeout`. True if none was
-  // left.
+  // Accepts no more files, and waits for the running ones for at most `timeout`. Returns true if
+  // none remained.
   bool Drain(absl::Duration timeout);
 
-  // Opens the log anew and reads tokens and certificates, as somebody may have changed them.
+  // Reopens the log and reads tokens and certificates again, in case somebody changed them.
   void Reload() { core_->files.Reload(/*anyway=*/true); }
 
   Core& core() { return *core_; }
@@ -77,7 +77,7 @@ class Gateway {
   absl::Status StartGrpc(const GatewayOptions& options);
   absl::Status StartHttp(const GatewayOptions& options);
 
-  // In the order in which they are made; each uses those before it.
+  // In the order of their creation; each uses those before it.
   std::unique_ptr<EmbeddedService> embedded_;
   std::unique_ptr<Core> core_;
   std::unique_ptr<PrinterApi> printers_;
@@ -87,7 +87,7 @@ class Gateway {
   int grpc_port_ = 0;
   std::unique_ptr<HttpServer> http_;
   std::unique_ptr<MetricsHttp> metrics_;
-  std::optional<Periodic> look_;  // for files that have changed
+  std::optional<Periodic> look_;  // at changed files
 };
 
 }  // namespace traverse::gateway

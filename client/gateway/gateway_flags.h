@@ -12,12 +12,12 @@
 
 namespace traverse::gateway {
 
-// Reads the command line, without the program's name, and the file of --config. Returns what to
-// print instead of serving, for --help and --version; else an empty text. InvalidArgument, in one
-// line.
+// Reads the command line, without the program's name, and the file of --config. Returns the text to
+// print instead of serving, for --help and --version; otherwise an empty text. InvalidArgument, in
+// one line.
 absl::StatusOr<std::string> ReadFlags(const std::vector<std::string>& arguments);
 
-// What the flags say, after ReadFlags. InvalidArgument for what does not fit together.
+// The options that the flags state, after ReadFlags. InvalidArgument if they contradict each other.
 absl::StatusOr<GatewayOptions> OptionsFromFlags();
 
 absl::Duration DrainTimeout();

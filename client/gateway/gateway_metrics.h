@@ -16,21 +16,21 @@ class GatewayMetrics {
  public:
   GatewayMetrics();
 
-  // A request of HTTP or gRPC has ended. `route` is one of a fixed few; `code` a status of HTTP, or
-  // the name of one of gRPC.
+  // Counts an ended request of HTTP or gRPC. `route` is one of a fixed few; `code` is an HTTP
+  // status, or the name of a gRPC status.
   void CountRequest(const std::string& route, const std::string& code, double seconds);
 
-  // A file has been rewritten, or why it was not: "rewritten", "unchanged", "refused", "failed",
-  // "late", "cancelled".
+  // Counts a file by its outcome: "rewritten", "unchanged", "refused", "failed", "late",
+  // "cancelled".
   void CountFile(const std::string& outcome);
   void CountSaved(const v1::RewriteSummary& summary);
 
-  // A file has gone to a printer: as "optimised" or "original" (with the reason why), or it has
-  // not: "refused", "upstream_failed".
+  // Counts a file for a printer: sent "optimised", or "original" (with the reason); or not sent:
+  // "refused", "upstream_failed".
   void CountUpload(const std::string& printer, const std::string& outcome,
                    const std::string& reason);
 
-  // A file of an operator, "tokens", "certificate" or "log", could not be read anew.
+  // Counts an operator's file, "tokens", "certificate" or "log", that could not be reloaded.
   void CountReloadFailure(const std::string& what);
 
   // Gauges are read when the metrics are.

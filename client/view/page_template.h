@@ -1,4 +1,4 @@
-// The page of --report before a scene is put into it: web/bundle/page.html, as the build found it.
+// The page of --report before a scene is put into it: web/bundle/page.html, as built in.
 
 #ifndef TRAVERSE_CLIENT_VIEW_PAGE_TEMPLATE_H_
 #define TRAVERSE_CLIENT_VIEW_PAGE_TEMPLATE_H_

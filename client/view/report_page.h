@@ -1,7 +1,7 @@
 // The page of --report: one self-contained HTML file.
 //
-// The page itself is web/bundle/page.html, made of the sources in web/src and held by this program;
-// the scene goes into it as data:
+// The page itself is web/bundle/page.html, built from the sources in web/src and contained in this
+// program. The scene goes into it as data:
 //
 //   @SCENE@   one JSON object: titles, features with colors, figures by route and layer
 //   @LAYERS@  a script element `layer-I` for each layer with its LayerCode, deflated, in base64; it
@@ -17,8 +17,8 @@
 
 namespace traverse::view {
 
-// The file. `made` is the line at its foot that says by what it was made. Uses `threads` threads;
-// the same scene gives the same bytes on any number of them.
+// The file. `made` is the line at its foot that names the program that made it. Uses `threads`
+// threads; the same scene gives the same bytes on any number of them.
 std::string ReportPage(const Scene& scene, const std::string& made, int threads);
 
 }  // namespace traverse::view

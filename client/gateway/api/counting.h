@@ -1,4 +1,4 @@
-// Counts requests of HTTP by route and status, whoever answers them and when.
+// Counts HTTP requests by route and status, whoever answers them and when.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_API_COUNTING_H_
 #define TRAVERSE_CLIENT_GATEWAY_API_COUNTING_H_
@@ -10,8 +10,8 @@
 
 namespace traverse::gateway {
 
-// `decision` with what comes of it counted once under `route`, uploads that break off (as 400) and
-// clients that go (as 499) too. `metrics` outlives it.
+// `decision`, whose outcome is counted once under `route`, including uploads that break off (as
+// 400) and clients that leave (as 499). `metrics` must outlive it.
 HttpDecision Counted(HttpDecision decision, const std::string& route, GatewayMetrics& metrics);
 
 }  // namespace traverse::gateway

@@ -1,4 +1,4 @@
-// The paths that take files: /v1/gcode, /v1/inspect, /v1/verify.
+// The paths that accept files: /v1/gcode, /v1/inspect, /v1/verify.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_API_FILE_ROUTES_H_
 #define TRAVERSE_CLIENT_GATEWAY_API_FILE_ROUTES_H_
@@ -13,18 +13,18 @@
 
 namespace traverse::gateway {
 
-// POST /v1/gcode: the file with less travel. By Accept: the file (default), its summary as JSON, or
-// events as the work goes on, with the file among them.
+// POST /v1/gcode: the file with less travel. Depending on Accept: the file (default), its summary
+// as JSON, or events during the work, which include the file.
 HttpDecision RewriteRoute(const HttpRequest& request, const std::string& caller, Core& core);
 
-// POST /v1/inspect: what is in a file, as JSON.
+// POST /v1/inspect: describes a file, as JSON.
 HttpDecision InspectRoute(const HttpRequest& request, const std::string& caller, Core& core);
 
-// POST /v1/verify: a form with the files `original` and `optimised`; whether they print the same,
-// as JSON.
+// POST /v1/verify: a form with the files `original` and `optimised`; says as JSON whether they
+// print the same.
 HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, Core& core);
 
-// What the log and the metrics say of a file that was worked on.
+// What the log and the metrics say about a file.
 struct FileRecord {
   std::string route;
   std::string caller;
@@ -39,10 +39,10 @@ void RecordFile(Core& core, const FileRecord& record, const absl::Status& status
 // The summary as headers: Traverse-Policy, Traverse-Travel-Mm, ...
 std::vector<std::pair<std::string, std::string>> SummaryHeaders(const v1::RewriteSummary& summary);
 
-// A message of the API as JSON, with all of its fields, under their names in the .proto.
+// A message of the API as JSON, with all of its fields under their names in the .proto.
 std::string MessageJson(const google::protobuf::Message& message);
 
-// `attachment; filename=...` for a name that CheckFileName is content with.
+// `attachment; filename=...` for a name that CheckFileName accepts.
 std::string AttachmentHeader(const std::string& name);
 
 }  // namespace traverse::gateway

@@ -1,4 +1,4 @@
-// GET /openapi.json: what the gateway answers to, as OpenAPI 3.1.
+// GET /openapi.json: the gateway's API as OpenAPI 3.1.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_API_OPENAPI_H_
 #define TRAVERSE_CLIENT_GATEWAY_API_OPENAPI_H_

@@ -16,15 +16,15 @@ namespace traverse::gateway {
 
 using Parameters = std::vector<std::pair<std::string, std::string>>;
 
-// Those that there are: rows of the tables of the command line that name no file of this machine,
-// and `name` and `report`.
+// All parameters: the rows of the command line's tables that name no file of this machine, and
+// `name` and `report`.
 std::vector<cli::Flag> ParameterTable();
 
 // InvalidArgument, in one line, for a parameter that is unknown (with the nearest known one), given
-// twice, or whose value is wrong. finish_by is left open.
+// twice, or has a bad value. Does not set finish_by.
 absl::StatusOr<FileRequest> ParseParameters(const Parameters& parameters);
 
-// The same of the API's message.
+// The same for the API's message.
 absl::StatusOr<FileRequest> RequestOf(const v1::RewriteOptions& options);
 
 }  // namespace traverse::gateway

@@ -1,4 +1,4 @@
-// Which request is answered by whom.
+// Sends each request to the code that answers it.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_API_ROUTER_H_
 #define TRAVERSE_CLIENT_GATEWAY_API_ROUTER_H_
@@ -15,7 +15,7 @@ class PrinterApi;
 // Thread-safe.
 class Router {
  public:
-  // `printers` may be null: no printers are configured. Both outlive it.
+  // `printers` may be null: no printers are configured. Both must outlive the router.
   Router(Core& core, PrinterApi* printers) : core_(core), printers_(printers) {}
 
   HttpDecision Handle(const HttpRequest& request);
@@ -28,8 +28,8 @@ class Router {
   PrinterApi* const printers_;
 };
 
-// Who `request` is from: by its bearer token or X-Api-Key, its certificate, its address. Errors:
-// Unauthenticated, PermissionDenied.
+// The caller of `request`: by its bearer token or X-Api-Key, its certificate, or its address.
+// Errors: Unauthenticated, PermissionDenied.
 absl::StatusOr<std::string> CallerOf(const HttpRequest& request, Authenticator& authenticator);
 
 }  // namespace traverse::gateway

@@ -15,15 +15,15 @@
 
 namespace traverse::gateway {
 
-// All that came.
+// Everything that came.
 struct Upload {
   struct File {
-    std::string field;  // of the form; empty: it is the body itself
+    std::string field;  // of the form; empty: the file is the body itself
     std::string name;   // as sent, not checked; may be empty
     std::shared_ptr<SpoolFile> file;
   };
   std::vector<File> files;
-  std::vector<std::pair<std::string, std::string>> fields;  // of the form, without files
+  std::vector<std::pair<std::string, std::string>> fields;  // of the form, except files
 };
 
 struct UploadLimits {
@@ -33,9 +33,9 @@ struct UploadLimits {
 
 using UploadDone = std::function<void(Upload upload, std::shared_ptr<HttpReply> reply)>;
 
-// Takes the body of `request` into `spool`; `done` gets it when it is complete. A refusal at once
-// for what the head already tells: too long, an encoding or a type that is not known. `spool`
-// outlives what is returned.
+// Receives the body of `request` into `spool`; `done` gets it when it is complete. Refuses at once
+// what the head already shows: too long, an unknown encoding or type. `spool` must outlive the
+// result.
 HttpDecision TakeUpload(const HttpRequest& request, Spool& spool, const UploadLimits& limits,
                         UploadDone done);
 

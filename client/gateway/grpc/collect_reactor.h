@@ -1,4 +1,4 @@
-// A call that takes files in pieces and answers with one message.
+// A call that receives files in pieces and answers with one message.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_GRPC_COLLECT_REACTOR_H_
 #define TRAVERSE_CLIENT_GATEWAY_GRPC_COLLECT_REACTOR_H_
@@ -15,7 +15,7 @@
 
 namespace traverse::gateway {
 
-// What came.
+// The received files.
 struct Collected {
   std::string name;
   std::shared_ptr<SpoolFile> first;   // the file, or the original
@@ -26,9 +26,9 @@ struct Collected {
 template <typename Request>
 class CollectReactor : public grpc::ServerReadReactor<Request> {
  public:
-  // Puts a message where it belongs. Errors for the client.
+  // Stores a message where it belongs. Errors are for the client.
   using Take = std::function<absl::Status(const Request&, const FileCall&, Collected&)>;
-  // Whether all has come. Errors for the client.
+  // Whether everything has come. Errors are for the client.
   using Check = std::function<absl::Status(const Collected&)>;
   // Makes the answer.
   using Work = std::function<absl::Status(const Collected&)>;

@@ -17,26 +17,26 @@
 
 namespace traverse::gateway {
 
-// One call's beginnings. Not thread-safe.
+// The first steps of a call. Not thread-safe.
 class FileCall {
  public:
-  // `method` without the service's name.
+  // `method`: without the service's name.
   FileCall(Core& core, grpc::CallbackServerContext& context, const std::string& method);
 
-  // Whether it may go on: the caller is known and there is a place. Errors for the client.
+  // Whether it may go on: the caller is known and there is a place. Errors are for the client.
   const absl::Status& status() const { return status_; }
 
   const std::string& caller() const { return info_.caller; }
   const std::string& peer() const { return info_.peer; }
   std::shared_ptr<WorkQueue::Place> place() const { return place_; }
 
-  // When the file has to be ready, so that it can be sent before the call's deadline.
+  // When the file must be ready, so that it can be sent before the call's deadline.
   absl::Time FinishBy() const;
 
-  // Appends to `file`, which is made if it is null. ResourceExhausted, OutOfRange.
+  // Appends to `file`, which it creates if null. ResourceExhausted, OutOfRange.
   absl::Status Append(const std::string& bytes, std::shared_ptr<SpoolFile>& file) const;
 
-  // What the client is told, and counts the call.
+  // The status for the client. Counts the call.
   grpc::Status End(const absl::Status& status);
 
  private:

@@ -14,7 +14,7 @@ namespace traverse::gateway {
 // Thread-safe.
 class GcodeGrpcService : public v1::GcodeService::CallbackService {
  public:
-  // Calls whose client neither sends nor reads for `idle_time` are ended. `core` outlives it.
+  // Ends calls whose client neither sends nor reads for `idle_time`. `core` must outlive it.
   GcodeGrpcService(Core& core, absl::Duration idle_time) : core_(core), live_(idle_time) {}
 
   grpc::ServerBidiReactor<v1::RewriteRequest, v1::RewriteResponse>* Rewrite(

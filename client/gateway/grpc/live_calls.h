@@ -1,4 +1,4 @@
-// The calls of gRPC that wait for their client, so that one that has stopped is not waited for.
+// The gRPC calls that wait for their client, so that one that has stopped can be ended.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_GRPC_LIVE_CALLS_H_
 #define TRAVERSE_CLIENT_GATEWAY_GRPC_LIVE_CALLS_H_
@@ -21,13 +21,13 @@ class LiveCalls {
   explicit LiveCalls(absl::Duration idle_time)
       : idle_time_(idle_time), sweep_(std::chrono::seconds(1), [this] { Sweep(); }) {}
 
-  // From now on `context` waits for its client; again whenever the client has done something.
+  // From now on `context` waits for its client. Call it again whenever the client has acted.
   void Waits(grpc::CallbackServerContext* context) {
     MutexLock lock(mutex_);
     since_[context] = absl::Now();
   }
 
-  // It does not wait any more. To be called before the context goes.
+  // The call no longer waits. Call it before the context is destroyed.
   void Rests(grpc::CallbackServerContext* context) {
     MutexLock lock(mutex_);
     since_.erase(context);
@@ -45,7 +45,7 @@ class LiveCalls {
   const absl::Duration idle_time_;
   Mutex mutex_;
   std::map<grpc::CallbackServerContext*, absl::Time> since_ TRAVERSE_GUARDED_BY(mutex_);
-  Periodic sweep_;  // last: it uses the rest
+  Periodic sweep_;  // last: uses the other members
 };
 
 }  // namespace traverse::gateway

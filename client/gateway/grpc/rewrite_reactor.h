@@ -16,8 +16,8 @@
 
 namespace traverse::gateway {
 
-// Reads into the spool, has the work done, writes from the spool; deletes itself. The latest
-// progress alone waits for a client that does not read.
+// Reads into the spool, has the work done, writes from the spool; deletes itself. For a client that
+// does not read it keeps only the latest progress.
 class RewriteReactor : public grpc::ServerBidiReactor<v1::RewriteRequest, v1::RewriteResponse> {
  public:
   RewriteReactor(Core& core, LiveCalls& live, grpc::CallbackServerContext& context);
@@ -30,9 +30,9 @@ class RewriteReactor : public grpc::ServerBidiReactor<v1::RewriteRequest, v1::Re
  private:
   absl::Status TakeRequest();
   void Submit();
-  void Work(const absl::Status& may);  // Core::Submit's
+  void Work(const absl::Status& may);  // called by Core::Submit
 
-  // The call has come to its end; the status goes when no write is under way. REQUIRES: mutex_.
+  // The call has ended; the status is sent when no write is in progress. REQUIRES: mutex_.
   void End(const absl::Status& status) TRAVERSE_REQUIRES(mutex_);
 
   // Starts the next write, or finishes, if it is time. REQUIRES: mutex_.

@@ -1,4 +1,4 @@
-// Heads of requests and responses, from those of Boost.Beast and back.
+// Converts heads of requests and responses from and to those of Boost.Beast.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_HTTP_HEADS_H_
 #define TRAVERSE_CLIENT_GATEWAY_HTTP_HEADS_H_
@@ -12,24 +12,24 @@
 
 namespace traverse::gateway {
 
-// Of a request whose body is taken piece by piece.
+// For a request whose body is read piece by piece.
 using HeadParser = boost::beast::http::request_parser<boost::beast::http::buffer_body>;
 
-// Whether the body comes as it is or in chunks. Beast takes other codings for none at all: the body
-// would be the next request.
+// Whether the body comes plain or in chunks. Beast treats other codings as no body at all: the body
+// would become the next request.
 bool HasKnownCoding(const boost::beast::http::fields& head);
 
-// The request whose head `parser` has read, but for who sent it; or why it is refused.
+// The request whose head `parser` has read, without its sender; or why it is refused.
 std::variant<HttpResponse, HttpRequest> RequestOf(const HeadParser& parser);
 
-// Whether the body is so many bytes as they stand.
+// Whether the body's bytes come plain, with their length stated.
 bool IsPlain(const HeadParser& parser);
 
-// Whether there is nothing to come of a body of which so many bytes have.
+// Whether a body is complete of which `received` bytes have come.
 bool AllCame(const HeadParser& parser, uint64_t received);
 
-// The head of `response`; `version` is 10 or 11. `size` of the body; without it it comes in chunks,
-// or until the connection ends.
+// The head of `response`; `version` is 10 or 11. `size`: of the body; without it the body comes in
+// chunks, or until the connection ends.
 boost::beast::http::response<boost::beast::http::empty_body> HeadOf(const HttpResponse& response,
                                                                     unsigned version, bool keep,
                                                                     std::optional<uint64_t> size);

@@ -1,5 +1,5 @@
-// Requests and responses of HTTP, as handlers see them; which library brings them is http_server's
-// own affair.
+// Requests and responses of HTTP, as handlers see them; only http_server knows the library that
+// brings them.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_HTTP_MESSAGE_H_
 #define TRAVERSE_CLIENT_GATEWAY_HTTP_MESSAGE_H_
@@ -22,8 +22,8 @@ namespace traverse::gateway {
 // The head of a request.
 struct HttpRequest {
   std::string method;
-  std::string path;  // without the query; percent escapes undone, checked by ParseTarget
-  std::vector<std::pair<std::string, std::string>> query;    // escapes undone
+  std::string path;  // without the query, with percent escapes decoded; checked by ParseTarget
+  std::vector<std::pair<std::string, std::string>> query;    // decoded
   std::vector<std::pair<std::string, std::string>> headers;  // names in small letters
   std::string peer_host;                                     // "ipv4:10.0.0.7", as gRPC writes it
   std::vector<std::string> identities;                       // of a verified client certificate
@@ -38,47 +38,47 @@ using HttpBody = std::variant<std::string, std::shared_ptr<const SpoolFile>>;
 
 struct HttpResponse {
   int status = 200;
-  std::string content_type;  // empty: no body is expected
+  std::string content_type;  // empty: no body
   std::vector<std::pair<std::string, std::string>> headers;
   HttpBody body;
 };
 
-// The way back to who sent a request. Thread-safe; all calls return at once. If the client has
-// gone, they do nothing.
+// Sends the answer to a request. Thread-safe; all calls return at once. If the client has gone,
+// they do nothing.
 class HttpReply {
  public:
   virtual ~HttpReply() = default;
 
-  // The whole answer. Once, and not beside Begin.
+  // Sends the whole answer. Once, and not together with Begin.
   virtual void Send(HttpResponse response) = 0;
 
-  // An answer whose body is written piece by piece: its head; pieces; its end. A piece for which
-  // there is no room is dropped if it is `optional`: progress that nobody reads.
+  // An answer whose body is written piece by piece: its head, the pieces, its end. If there is no
+  // room for an `optional` piece, it is dropped: progress that nobody reads.
   virtual void Begin(HttpResponse head) = 0;
   virtual void Write(HttpBody piece, bool optional = false) = 0;
   virtual void End() = 0;
 
-  // `on_gone` is called, once, if the client goes before it has the answer.
+  // Calls `on_gone` once if the client leaves before it has the answer.
   virtual void OnGone(std::function<void()> on_gone) = 0;
 };
 
-// Takes the body of one request. Called by the thread of the connections: it must not wait for
-// anything but the disk. Destroyed without Done if the upload breaks off.
+// Receives the body of one request, on the thread of the connections: it must wait for nothing but
+// the disk. Destroyed without Done if the upload breaks off.
 class BodySink {
  public:
   virtual ~BodySink() = default;
 
-  // The next piece. A response ends the request: the rest of the body is not wanted.
+  // Receives the next piece. A response ends the request, without the rest of the body.
   virtual std::optional<HttpResponse> Take(std::string_view piece) = 0;
 
   // The body is complete.
   virtual void Done(std::shared_ptr<HttpReply> reply) = 0;
 };
 
-// A response at once, or who takes the body.
+// An immediate response, or the receiver of the body.
 using HttpDecision = std::variant<HttpResponse, std::unique_ptr<BodySink>>;
 
-// Decides when the head of a request is there, before any of its body is read.
+// Decides when the head of a request has come, before its body is read.
 using HttpHandler = std::function<HttpDecision(const HttpRequest& request)>;
 
 }  // namespace traverse::gateway

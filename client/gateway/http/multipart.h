@@ -12,13 +12,13 @@
 
 namespace traverse::gateway {
 
-// The head of one part. File names are as sent: whoever uses them checks them.
+// The head of one part. File names are as sent: their users must check them.
 struct PartHead {
   std::string name;
   std::optional<std::string> filename;
 };
 
-// Who gets the parts. A fault ends the reading and is what Feed returns.
+// Receives the parts. An error ends the reading, and Feed returns it.
 class PartSink {
  public:
   virtual ~PartSink() = default;
@@ -27,8 +27,8 @@ class PartSink {
   virtual absl::Status EndPart() = 0;
 };
 
-// The boundary in a Content-Type header of multipart/form-data. InvalidArgument if it has none or
-// one that RFC 2046 does not allow.
+// The boundary in a Content-Type header of multipart/form-data. InvalidArgument if there is none,
+// or one that RFC 2046 does not allow.
 absl::StatusOr<std::string> BoundaryOf(const std::string& content_type);
 
 class MultipartReader {
@@ -37,20 +37,20 @@ class MultipartReader {
   static constexpr size_t kMaxHeadBytes = 8192;
   static constexpr int kMaxParts = 32;
 
-  // `sink` outlives the reader.
+  // `sink` must outlive the reader.
   MultipartReader(const std::string& boundary, PartSink& sink);
 
-  // Takes the next bytes of the body. InvalidArgument for what is no such body, and the sink's
-  // faults.
+  // Reads the next bytes of the body. InvalidArgument if they are not such a body; errors of the
+  // sink.
   absl::Status Feed(std::string_view bytes);
 
-  // The body is over: InvalidArgument if it was cut short.
+  // The body has ended: InvalidArgument if it was truncated.
   absl::Status Finish() const;
 
  private:
   enum class State { kPreamble, kAfterBoundary, kHead, kBody, kEpilogue };
 
-  // Each takes what it can from buffered_; false if it needs more.
+  // Each consumes what it can from buffered_; false if it needs more.
   absl::StatusOr<bool> Step();
   absl::StatusOr<bool> StepAfterBoundary();
   absl::StatusOr<bool> StepHead();

@@ -13,14 +13,14 @@ namespace traverse::gateway {
 // A response of application/problem+json. `detail` is one sentence that says what is wrong.
 HttpResponse Problem(int status, const std::string& detail);
 
-// The same for a status of ours: INVALID_ARGUMENT is 400, FAILED_PRECONDITION (the file cannot be
-// rewritten) 422, and so on. What is full now is 503 with Retry-After.
+// The same for one of our statuses: INVALID_ARGUMENT is 400, FAILED_PRECONDITION (the file cannot
+// be rewritten) 422, and so on. If something is full now, it is 503 with Retry-After.
 HttpResponse ProblemOf(const absl::Status& status);
 
-// The body alone.
+// Only the body.
 std::string ProblemJson(int status, const std::string& detail);
 
-// The status of HTTP for a status of ours.
+// The HTTP status for one of our statuses.
 int HttpStatusOf(absl::StatusCode code);
 
 // "Bad Request".

@@ -1,4 +1,4 @@
-// What a client is answered whose request could not be read to its end.
+// The answer to a client whose request could not be read to its end.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_HTTP_READ_FAULTS_H_
 #define TRAVERSE_CLIENT_GATEWAY_HTTP_READ_FAULTS_H_
@@ -11,11 +11,11 @@
 
 namespace traverse::gateway {
 
-// The answer to a head on which Beast ended with `error`; nothing if nobody waits for one.
-// `timed_out`: its time was over; `begun`: some of it had come.
+// The answer to a head on which Beast ended with `error`; unset if nobody waits for one.
+// `timed_out`: its time was over; `begun`: part of it had come.
 std::optional<HttpResponse> HeadFault(boost::system::error_code error, bool timed_out, bool begun);
 
-// The same of a body of which `received` bytes had come.
+// The same for a body of which `received` bytes had come.
 HttpResponse BodyFault(boost::system::error_code error, bool timed_out, uint64_t received);
 
 }  // namespace traverse::gateway

@@ -1,4 +1,4 @@
-// What is on its way from a handler to a connection.
+// Carries answers from a handler to a connection.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_HTTP_REPLY_QUEUE_H_
 #define TRAVERSE_CLIENT_GATEWAY_HTTP_REPLY_QUEUE_H_
@@ -13,13 +13,13 @@
 
 namespace traverse::gateway {
 
-// Handlers put things in, from any thread; the connection takes them out. Thread-safe.
+// Handlers put things in, on any thread; the connection takes them out. Thread-safe.
 class ReplyQueue : public HttpReply {
  public:
-  // Text that waits for the connection, at most; optional pieces beyond it are dropped.
+  // Most text that may wait for the connection; optional pieces beyond it are dropped.
   static constexpr size_t kMaxOptionalBytes = 65536;
 
-  // `wake` is called, from any thread, when something was put in.
+  // Calls `wake`, on any thread, when something was put in.
   explicit ReplyQueue(std::function<void()> wake) : wake_(std::move(wake)) {}
 
   void Send(HttpResponse response) override;
@@ -28,7 +28,7 @@ class ReplyQueue : public HttpReply {
   void End() override;
   void OnGone(std::function<void()> on_gone) override;
 
-  // The head, once it is there; its body is the whole one unless streaming().
+  // The head, once it is there, with the whole body unless streaming().
   std::optional<HttpResponse> TakeHead();
   bool streaming() const;
 
@@ -40,7 +40,7 @@ class ReplyQueue : public HttpReply {
   void Gone();
 
  private:
-  // Whether there is anybody to tell more.
+  // Whether anybody waits for more.
   bool Open() const TRAVERSE_REQUIRES(mutex_) { return !gone_ && !ended_; }
 
   const std::function<void()> wake_;

@@ -43,20 +43,20 @@ namespace http = boost::beast::http;
 
 using TlsStream = net::ssl::stream<beast::tcp_stream>;
 
-// What the server knows of a connection.
+// The server's view of a connection.
 class AnySession {
  public:
   virtual ~AnySession() = default;
 
-  // Ends it if it waits for a request; else it ends after the one under way.
+  // Ends it if it waits for a request; otherwise it ends after the current one.
   virtual void Drain() = 0;
 };
 
-// REQUIRES: all of it runs in the one thread of `loop`.
+// REQUIRES: all of it runs on the one thread of `loop`.
 template <typename Stream>
 class Session : public AnySession, public std::enable_shared_from_this<Session<Stream>> {
  public:
-  // `context` is that of `stream`, or null.
+  // `context` belongs to `stream`, or is null.
   Session(std::shared_ptr<net::io_context> loop, Stream stream,
           std::shared_ptr<TlsContext::Context> context, const HttpLimits& limits,
           const HttpHandler& handler, std::string peer_host)
@@ -69,7 +69,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
         timer_(*loop),
         wake_(*loop) {}
 
-  // Until the connection ends.
+  // Runs until the connection ends.
   net::awaitable<void> Run() {
     assert(IsInLoop());
     const auto self = this->shared_from_this();
@@ -100,14 +100,14 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
   beast::tcp_stream& Lowest() { return beast::get_lowest_layer(stream_); }
 
   // From now on operations that take longer than `time` fail; the connection stays. Called for
-  // every piece of a body: a timer that is set and goes off too early is cheaper than one set anew.
+  // every piece of a body: a timer that fires too early is cheaper than one set again.
   void SetTimer(absl::Duration time) {
     timed_out_ = false;
     deadline_ = Clock::now() + absl::ToChronoMilliseconds(time);
     if (armed_until_ > deadline_) Arm();
   }
 
-  // A handler may take its time.
+  // A handler may take as long as it needs.
   void StopTimer() { deadline_ = Clock::time_point::max(); }
 
   void Arm() {
@@ -186,7 +186,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     return handler_(known);
   }
 
-  // Hands the body to `sink`. A response if it came to no good end.
+  // Passes the body to `sink`. Returns a response if it did not end well.
   net::awaitable<std::optional<HttpResponse>> ReadBody(HeadParser& parser, BodySink& sink) {
     boost::system::error_code error;
     const bool wait = parser.get()[http::field::expect] == "100-continue";
@@ -210,8 +210,8 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     co_return BodyFault(error, timed_out_, received);
   }
 
-  // The next bytes of a body of which `received` came, into `piece`. Most go by the parser, which
-  // would only copy them.
+  // Reads the next bytes of a body of which `received` came into `piece`. Most bypass the parser,
+  // which would only copy them.
   net::awaitable<size_t> ReadPiece(HeadParser& parser, uint64_t received, std::vector<char>& piece,
                                    boost::system::error_code& error) {
     if (IsPlain(parser) && buffer_.size() == 0) {
@@ -241,7 +241,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     };
   }
 
-  // Waits until the handler has put something in. False if the client has gone.
+  // Waits until the handler has put something in. Returns false if the client has gone.
   net::awaitable<bool> WaitForReply() {
     constexpr auto kLook = std::chrono::milliseconds(250);
     StopTimer();
@@ -254,7 +254,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     co_return !gone;
   }
 
-  // The answer of the handler. Returns whether another request may come.
+  // Writes the handler's answer. Returns whether another request may come.
   net::awaitable<bool> Answer(unsigned version, bool head_only, bool keep) {
     const std::shared_ptr<ReplyQueue> reply = reply_;
     std::optional<HttpResponse> head = reply->TakeHead();
@@ -290,7 +290,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     co_return keep;
   }
 
-  // `size` as of HeadOf.
+  // `size`: see HeadOf.
   net::awaitable<bool> WriteHead(const HttpResponse& response, unsigned version, bool keep,
                                  std::optional<uint64_t> size) {
     const http::response<http::empty_body> head = HeadOf(response, version, keep, size);
@@ -369,12 +369,12 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
   beast::flat_buffer buffer_{size_t{2} * kPiece};
   net::steady_timer timer_;
   Clock::time_point deadline_ = Clock::time_point::max();
-  Clock::time_point armed_until_ = Clock::time_point::max();  // the timer goes off
+  Clock::time_point armed_until_ = Clock::time_point::max();  // when the timer fires
   bool timed_out_ = false;
   net::steady_timer wake_;
-  std::shared_ptr<ReplyQueue> reply_;  // of the request under way
+  std::shared_ptr<ReplyQueue> reply_;  // for the current request
   bool idle_ = false;                  // waits for a request
-  bool unread_ = false;                // a part of a body is left
+  bool unread_ = false;                // part of a body is unread
   bool draining_ = false;
 };
 

@@ -1,4 +1,4 @@
-// What stands in the first line of a request: path and query.
+// The target in the first line of a request: path and query.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_HTTP_TARGET_H_
 #define TRAVERSE_CLIENT_GATEWAY_HTTP_TARGET_H_
@@ -18,13 +18,13 @@ struct Target {
   std::vector<std::pair<std::string, std::string>> query;
 };
 
-// Parses "/path?name=value&...", percent escapes undone, in the query `+` too. InvalidArgument for
-// what no client of ours sends: escapes that are none, control characters, a path that is not
-// absolute or has the segments `.` or `..`.
+// Parses "/path?name=value&...", decodes percent escapes, and in the query also `+`.
+// InvalidArgument for what no client of ours sends: invalid escapes, control characters, a path
+// that is not absolute or has the segments `.` or `..`.
 absl::StatusOr<Target> ParseTarget(std::string_view target);
 
-// OK if `name` is fit to be the name of a file: one segment of a path, without control characters
-// or slashes of either kind, not `.` or `..`, of UTF-8, no longer than 255 bytes.
+// OK if `name` can be a file name: one segment of a path, without control characters or slashes of
+// either kind, not `.` or `..`, in UTF-8, no longer than 255 bytes.
 absl::Status CheckFileName(std::string_view name);
 
 }  // namespace traverse::gateway

@@ -1,4 +1,4 @@
-// TLS for connections of HTTP: what the store of certificates has.
+// TLS for HTTP connections, with the contents of the store of certificates.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_HTTP_TLS_CONTEXT_H_
 #define TRAVERSE_CLIENT_GATEWAY_HTTP_TLS_CONTEXT_H_
@@ -20,21 +20,21 @@ class TlsContext {
  public:
   using Context = boost::asio::ssl::context;
 
-  // Unavailable if OpenSSL does not take what `store` has.
+  // Unavailable if OpenSSL does not accept the contents of `store`.
   static absl::StatusOr<std::unique_ptr<TlsContext>> Make(std::shared_ptr<CertificateStore> store);
 
-  // For the next connection: of what the store has then, if OpenSSL takes it.
+  // For the next connection: the store's current contents, if OpenSSL accepts them.
   std::shared_ptr<Context> Current();
 
  private:
   explicit TlsContext(std::shared_ptr<CertificateStore> store) : store_(std::move(store)) {}
 
   const std::shared_ptr<CertificateStore> store_;
-  std::shared_ptr<const CertificateSet> set_;  // that context_ is made of
+  std::shared_ptr<const CertificateSet> set_;  // from which context_ was made
   std::shared_ptr<Context> context_;
 };
 
-// The names in the verified certificate of a peer, as gRPC tells them: the alternative names, or
+// The names in the verified certificate of a peer, as gRPC reports them: the alternative names, or
 // without any the common name. Empty without a certificate.
 std::vector<std::string> PeerIdentities(SSL* ssl);
 

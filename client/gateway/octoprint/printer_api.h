@@ -1,11 +1,11 @@
-// OctoPrint's upload API before printers: slicers send a file here as if it were OctoPrint, and the
-// printer gets it with less travel.
+// OctoPrint's upload API in front of printers: slicers send a file here as if it were OctoPrint,
+// and the printer gets it with less travel.
 //
 //   /api/version, /api/files/local, /api/files/sdcard     the printer that is the default
 //   /printers/NAME/api/...                                the printer of that name
 //
-// No print is ever lost: where a file cannot be rewritten, or not before its deadline, the original
-// goes on as it came, and log, metrics and the header Traverse-Reason say why.
+// No print is ever lost: if a file cannot be rewritten, or not before its deadline, the original
+// goes on unchanged; log, metrics and the header Traverse-Reason say why.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_OCTOPRINT_PRINTER_API_H_
 #define TRAVERSE_CLIENT_GATEWAY_OCTOPRINT_PRINTER_API_H_
@@ -33,24 +33,24 @@ struct PrinterApiOptions {
 // Thread-safe.
 class PrinterApi {
  public:
-  // `core` outlives it.
+  // `core` must outlive it.
   PrinterApi(Core& core, PrinterApiOptions options) : core_(core), options_(std::move(options)) {}
 
-  // Waits for uploads under way.
+  // Waits for the running uploads.
   ~PrinterApi();
 
   // A request to one of the paths above.
   HttpDecision Handle(const HttpRequest& request, const std::string& caller);
 
  private:
-  // One upload on its way.
+  // One upload in progress.
   struct Delivery;
 
   HttpDecision HandleUpload(const HttpRequest& request, const std::string& caller,
                             const Printer& printer, const std::string& storage);
   HttpDecision HandleVersion(const HttpRequest& request, const std::string& caller,
                              const Printer& printer);
-  // What the printer's own server is shown: its key of the configuration, or else the caller's.
+  // The key for the printer's own server: that of the configuration, or else the caller's.
   std::string KeyFor(const Printer& printer, const HttpRequest& request);
 
   void Deliver(Delivery& delivery);

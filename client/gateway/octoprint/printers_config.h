@@ -1,4 +1,4 @@
-// The printers that uploads are passed on to: the file of --printers.
+// The printers to which uploads are passed: the file of --printers.
 //
 //   {"default": "mk3",
 //    "printers": [
@@ -22,12 +22,12 @@ enum class PrinterKind { kOctoPrint, kMoonraker, kPrusaLink };
 struct Printer {
   std::string name;  // letters, digits, '.', '_' and '-'
   PrinterKind kind = PrinterKind::kOctoPrint;
-  std::string url;                // http or https, without a path's last slash
+  std::string url;                // http or https, without the last slash of its path
   std::string tls_ca;             // a file; empty: the system's authorities
-  std::string api_key;            // empty: the caller's own goes on
+  std::string api_key;            // empty: the caller's own key is passed on
   std::string storage = "local";  // of a PrusaLink: "local", "usb", "sdcard"
   gcode::Policy policy = gcode::Policy::kSafe;
-  bool refuse_on_failure = false;  // else the original goes on
+  bool refuse_on_failure = false;  // otherwise the original goes on
 };
 
 struct PrintersConfig {
@@ -37,8 +37,8 @@ struct PrintersConfig {
   const Printer* Find(const std::string& name) const;
 };
 
-// InvalidArgument, in one line with the field's path, for what is wrong; Unavailable for a file, or
-// a file of a key, that cannot be read.
+// InvalidArgument, in one line with the field's path, for mistakes; Unavailable for a file, or a
+// key file, that cannot be read.
 absl::StatusOr<PrintersConfig> ParsePrinters(const std::string& json);
 absl::StatusOr<PrintersConfig> ReadPrinters(const std::string& path);
 

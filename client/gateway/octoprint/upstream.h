@@ -1,4 +1,4 @@
-// Sending files on to printers' own servers, by libcurl.
+// Sends files to printers' own servers, by libcurl.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_OCTOPRINT_UPSTREAM_H_
 #define TRAVERSE_CLIENT_GATEWAY_OCTOPRINT_UPSTREAM_H_
@@ -14,7 +14,7 @@
 
 namespace traverse::gateway {
 
-// What a printer's server answered.
+// The answer of a printer's server.
 struct UpstreamAnswer {
   int status = 0;
   std::string content_type;
@@ -22,12 +22,12 @@ struct UpstreamAnswer {
   std::string body;      // the first MiB
 };
 
-// A file for a printer, as OctoPrint's API has it.
+// A file for a printer, in the form of OctoPrint's API.
 struct PrinterUpload {
   std::string storage;  // "local" or "sdcard"
   std::string name;     // checked by CheckFileName
   bool print = false;
-  std::vector<std::pair<std::string, std::string>> fields;  // select, path and others, as they came
+  std::vector<std::pair<std::string, std::string>> fields;  // select, path and others, unchanged
 };
 
 struct UpstreamLimits {
@@ -35,15 +35,15 @@ struct UpstreamLimits {
   absl::Duration idle_time = absl::Seconds(60);  // without a byte, either way
 };
 
-// Sends `file` to `printer`, with `api_key` unless it is empty. The answer is the server's,
-// whatever its status; that of a Moonraker or a PrusaLink in the words of OctoPrint where it was
-// taken. Errors: Unavailable if the server cannot be reached or breaks off, DeadlineExceeded if it
-// is too slow. Waits; nothing is tried twice.
+// Sends `file` to `printer`, with `api_key` unless it is empty. Returns the server's answer,
+// whatever its status; if a Moonraker or a PrusaLink accepted the file, its answer in OctoPrint's
+// form. Errors: Unavailable if the server cannot be reached or breaks off, DeadlineExceeded if it
+// is too slow. Blocks; tries nothing twice.
 absl::StatusOr<UpstreamAnswer> SendToPrinter(const Printer& printer, const std::string& api_key,
                                              const PrinterUpload& upload, const SpoolFile& file,
                                              const UpstreamLimits& limits);
 
-// Asks which version the server has: OctoPrint's own answer, or one in its words.
+// Asks for the server's version: OctoPrint's own answer, or one in its form.
 absl::StatusOr<UpstreamAnswer> AskVersion(const Printer& printer, const std::string& api_key,
                                           const UpstreamLimits& limits);
 

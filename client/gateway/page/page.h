@@ -1,5 +1,5 @@
-// The page at GET /: a file dropped there comes back with less travel. page.html, as the build
-// found it; it asks nobody but this gateway for anything.
+// The page at GET /: a file dropped there comes back with less travel. It is page.html, as built
+// in; it loads nothing from any other server.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_PAGE_PAGE_H_
 #define TRAVERSE_CLIENT_GATEWAY_PAGE_PAGE_H_

@@ -1,7 +1,7 @@
-// Uploads and answers on disk, so that memory does not grow with who is slow.
+// Uploads and answers on disk, so that slow clients cost no memory.
 //
-// A spooled file has no name (O_TMPFILE, or unlinked as soon as it is there): when it is closed, or
-// the process is killed, the system takes it back. All files of a spool together are bounded.
+// A spooled file has no name (O_TMPFILE, or unlinked as soon as it exists): when it is closed, or
+// the process is killed, the system frees it. All files of a spool together are bounded.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_SPOOL_SPOOL_H_
 #define TRAVERSE_CLIENT_GATEWAY_SPOOL_SPOOL_H_
@@ -18,7 +18,7 @@ namespace traverse::gateway {
 
 class Spool;
 
-// One file. Not thread-safe for writing; once written it may be read by several threads.
+// One file. Writing is not thread-safe; once written, several threads may read it.
 class SpoolFile {
  public:
   ~SpoolFile();
@@ -30,7 +30,7 @@ class SpoolFile {
 
   uint64_t size() const { return size_; }
 
-  // Reads up to `size` bytes from `offset` on; fewer at the end alone.
+  // Reads up to `size` bytes from `offset` on; fewer only at the end.
   absl::StatusOr<size_t> ReadAt(uint64_t offset, char* out, size_t size) const;
 
   // All of it.
@@ -48,14 +48,14 @@ class SpoolFile {
 // Thread-safe.
 class Spool {
  public:
-  // Files in `folder`, `max_bytes` of them all together. Unavailable, with the folder's name, if
-  // files cannot be made there.
+  // Files in `folder`, at most `max_bytes` together. Unavailable, with the folder's name, if files
+  // cannot be created there.
   static absl::StatusOr<std::unique_ptr<Spool>> Open(const std::string& folder, uint64_t max_bytes);
 
-  // A new, empty file. The spool outlives it.
+  // A new, empty file. The spool must outlive it.
   absl::StatusOr<std::shared_ptr<SpoolFile>> NewFile();
 
-  // Bytes in its files now.
+  // Bytes in all files now.
   uint64_t used_bytes() const { return used_; }
   uint64_t max_bytes() const { return max_bytes_; }
 
@@ -66,7 +66,7 @@ class Spool {
 
   absl::StatusOr<int> OpenNameless() const;
 
-  // False if so many bytes more would be too many.
+  // False if this many bytes more would be too many.
   bool Take(uint64_t bytes);
 
   const std::string folder_;

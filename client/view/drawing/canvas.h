@@ -1,4 +1,4 @@
-// What pictures are drawn on: an SVG text, or the pixels of a PNG.
+// The canvas of a picture: an SVG text, or the pixels of a PNG.
 
 #ifndef TRAVERSE_CLIENT_VIEW_DRAWING_CANVAS_H_
 #define TRAVERSE_CLIENT_VIEW_DRAWING_CANVAS_H_
@@ -11,7 +11,7 @@
 
 namespace traverse::view {
 
-// A line of a picture; places and widths in its units, from the upper left corner.
+// A line of a picture. Positions and widths are in its units, from the upper left corner.
 struct Pen {
   std::string color;  // "#rrggbb"
   double width = 1;
@@ -32,20 +32,20 @@ class Canvas {
  public:
   virtual ~Canvas() = default;
 
-  // Lines with round ends and corners. Lines that share a pen are drawn in one go.
+  // Lines with round ends and corners. Lines that share a pen are drawn together.
   virtual void Lines(const std::vector<std::vector<Place>>& lines, const Pen& pen) = 0;
   virtual void Disc(Place center, double radius, const std::string& color) = 0;
   virtual void Rectangle(Place corner, double width, double height, const std::string& color) = 0;
   virtual void Text(Place at, const std::string& text, const Lettering& lettering) = 0;
 
-  // The file. To be called once, at the end.
+  // Returns the file. Call it once, at the end.
   virtual std::string Finish() = 0;
 };
 
 // A picture of `width` x `height` units on white.
 std::unique_ptr<Canvas> MakeSvgCanvas(double width, double height);
 
-// The same, two pixels a unit.
+// The same, with two pixels per unit.
 std::unique_ptr<Canvas> MakePngCanvas(double width, double height);
 
 }  // namespace traverse::view

@@ -8,11 +8,11 @@
 
 namespace traverse::view {
 
-// `text` as content or between quotes: &, <, >, " and ' are written as references. What is no valid
-// UTF-8 and control characters become U+FFFD, for names of files may be any bytes.
+// `text` as content or between quotes: &, <, >, " and ' become references. Invalid UTF-8 and
+// control characters become U+FFFD, because file names may have any bytes.
 std::string EscapeMarkup(std::string_view text);
 
-// `text` as valid UTF-8, what is not replaced by U+FFFD.
+// `text` as valid UTF-8, with invalid parts replaced by U+FFFD.
 std::string ValidUtf8(std::string_view text);
 
 }  // namespace traverse::view

@@ -1,4 +1,4 @@
-// Colors of features, for pictures and the report alike.
+// Colors of features, for both pictures and the report.
 
 #ifndef TRAVERSE_CLIENT_VIEW_DRAWING_PALETTE_H_
 #define TRAVERSE_CLIENT_VIEW_DRAWING_PALETTE_H_
@@ -13,11 +13,11 @@ struct FeatureColor {
   std::string dark;
 };
 
-// The color of the feature of that name (gcode::FeatureName, or FeatureNames of the view); gray for
-// others. What lies together differs in lightness too, for those who see few colors.
+// The color of the feature with that name (gcode::FeatureName, or FeatureNames of the view); gray
+// for others. Features that adjoin differ in lightness too, for people who see few colors.
 FeatureColor ColorOf(const std::string& feature);
 
-// Of travel, and of its ends, on a light ground.
+// For travel, and for its ends, on a light ground.
 inline constexpr char kTravelColor[] = "#111827";
 inline constexpr char kStartColor[] = "#15803d";
 inline constexpr char kEndColor[] = "#be123c";

@@ -13,12 +13,12 @@ namespace traverse::view {
 
 enum class PictureFormat { kSvg, kPng };
 
-// By the end of the name, .svg or .png in any case; nothing for others.
+// By the end of the name, .svg or .png in any case; unset for others.
 std::optional<PictureFormat> PictureFormatOf(const std::string& name);
 
-// Layer `layer` of the scene in the order given and in that of the route shown: what is deposited
-// thin and in the color of its feature, travel bold, start and end marked, and on the right faded
-// the moves that are no more. The figures of both stand above.
+// Layer `layer` of the scene in the given order and in that of the shown route: deposited paths
+// thin and in the color of their feature, travel bold, start and end marked; on the right, faded,
+// the moves that are gone. The figures of both stand above.
 std::string Picture(const Scene& scene, size_t layer, PictureFormat format);
 
 }  // namespace traverse::view

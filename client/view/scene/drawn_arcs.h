@@ -1,4 +1,4 @@
-// Paths of G-code as they are printed, arcs round.
+// Draws G-code paths as they are printed, with round arcs.
 
 #ifndef TRAVERSE_CLIENT_VIEW_SCENE_DRAWN_ARCS_H_
 #define TRAVERSE_CLIENT_VIEW_SCENE_DRAWN_ARCS_H_
@@ -8,8 +8,8 @@
 
 namespace traverse::view {
 
-// Puts points on the arcs of the layer's paths, which are straight between the ends of their
-// segments until then, and moves the entries of its routes along. The paths are the blocks of
+// Puts points on the arcs of the layer's paths, which until then are straight between the ends of
+// their segments, and shifts the entries of its routes accordingly. The paths are the blocks of
 // layer `layer` of `file`, in order.
 void DrawArcs(const GcodeFile& file, size_t layer, DrawnLayer& drawn);
 

@@ -14,20 +14,20 @@
 
 namespace traverse::view {
 
-// A run of the job, and what it is called.
+// A run of the job, and its name.
 struct NamedRun {
   std::string label;
   const report::JobRun* run = nullptr;
 };
 
-// The job with the routes of `runs`, all moves straight, as the service counts them. `given` is a
-// run of the strategy none. Job and runs outlive the scene.
-// REQUIRES: every run passed CheckVisits.
+// The job with the routes of `runs`, with straight moves, as the service counts them. `given` is a
+// run of the strategy none. Job and runs must outlive the scene. REQUIRES: every run passed
+// CheckVisits.
 Scene JobScene(const InputJob& job, const report::JobRun& given, const std::vector<NamedRun>& runs);
 
-// G-code before and after: travel, retractions and time of both files, with the ways that the head
-// takes in each. `rewrite` is what RewriteGcode made of the job with the orders of `runs`, at least
-// one; the job outlives the scene. Errors are those of reading the new text.
+// G-code before and after: travel, retractions and time of both files, with the actual moves of the
+// head in each. `rewrite` is what RewriteGcode made of the job with the orders of `runs`, at least
+// one. The job must outlive the scene. Errors are those of reading the new text.
 absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
                                  const std::vector<report::JobRun>& runs,
                                  const GcodeRewrite& rewrite);

@@ -1,4 +1,4 @@
-// The paths of a layer, to be drawn.
+// The paths of a layer, for drawing.
 
 #ifndef TRAVERSE_CLIENT_VIEW_SCENE_LAYER_PATHS_H_
 #define TRAVERSE_CLIENT_VIEW_SCENE_LAYER_PATHS_H_
@@ -12,11 +12,11 @@
 
 namespace traverse::view {
 
-// Names that DrawnPath::feature refers to: the job's own features, and behind them those of layers
+// The names to which DrawnPath::feature refers: the job's own features, followed by those of layers
 // of islands and of plans without notes.
 std::vector<std::string> FeatureNames(const InputJob& job);
 
-// The paths of layer `i`: of a plan in its order; of islands one island after the other, contours
+// The paths of layer `i`: of a plan in its order; of islands one island after another, contours
 // first.
 std::vector<DrawnPath> PathsOf(const InputJob& job, size_t i);
 

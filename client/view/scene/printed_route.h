@@ -1,4 +1,4 @@
-// The ways that the head takes in G-code.
+// The actual moves of the head in G-code.
 
 #ifndef TRAVERSE_CLIENT_VIEW_SCENE_PRINTED_ROUTE_H_
 #define TRAVERSE_CLIENT_VIEW_SCENE_PRINTED_ROUTE_H_
@@ -10,18 +10,18 @@
 
 namespace traverse::view {
 
-// A layer's paths, as they are in the file that was optimised.
+// A layer's paths, as they are in the original file.
 struct SlicedPaths {
   const std::vector<DrawnPath>& paths;
-  std::vector<double> lengths_mm;  // [path] of what is extruded
+  std::vector<double> lengths_mm;  // [path] extruded length
 };
 
-// Each path of a layer in its own order, begun where it is given.
+// Each path of a layer in its own order, entered where it is given.
 std::vector<DrawnVisit> InOrder(size_t paths);
 
 // The route through layer `layer` of `printed`, which has the paths in `order`, with the corners of
-// its travel. Read again, a path may be two blocks (a loop from another start, across the gap
-// between its ends), and two paths without a move between them one. Where the blocks do not fit the
+// its travel. When read again, a path may be two blocks (a loop from another start, across the gap
+// between its ends), and two paths without a move between them one. If the blocks do not fit the
 // order, its moves are straight.
 DrawnRoute PrintedRoute(const GcodeFile& printed, size_t layer, const SlicedPaths& sliced,
                         const std::vector<DrawnVisit>& order);
