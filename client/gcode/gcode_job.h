@@ -27,29 +27,29 @@ struct GcodeOptions {
   gcode::Allowance allow = {};
   double min_revisit_seconds = 0;  // see RewriteOptions
 
-  // What counts in place of what files state of their machine.
+  // Replaces what files state about their machine.
   std::optional<gcode::MachineLimits> machine = {};
 };
 
-// The job in `file`: a plan for each of its layers, the cost of travel as its own moves show it
-// (time), a strategy that searches short files for longer than long ones, and most of what
-// `inspect` prints. Path i of layer l is block layers[l].first_block + i of the file; labels count
+// The job in `file`: a plan for each of its layers, the cost of travel (a time) as the file's own
+// moves show it, a strategy that searches short files for longer than long ones, and most of what
+// `inspect` prints. Path i of layer l is block layers[l].first_block + i of the file. Labels count
 // the paths of a layer from 1.
 InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions& options);
 
-// Adds to the facts of a job from G-code what has to be measured for them: way, retractions,
-// visible walls crossed, print time.
+// Adds facts that must be measured to a job from G-code: travel, retractions, visible walls
+// crossed, print time.
 void AddMeasuredFacts(InputJob& job);
 
-// The layers of `job`, which is one of G-code, with plans of less latitude: a second way to look
-// for an order (policy.h). Crossings cost more where `found` has more of them than given, or is not
-// there, unless any are allowed; else, where it is longer, which Policy::kSafe does not allow, they
-// cost nothing, nor do retractions, but in files whose ways lead around walls.
+// The layers of `job`, which comes from G-code, with plans of less freedom: a second way to search
+// for an order (policy.h). If `found` has more crossings than given, or is missing, crossings cost
+// more, unless any are allowed. Otherwise, if it is longer, which Policy::kSafe forbids, crossings
+// and retractions cost nothing, except in files whose travel leads around walls.
 std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& options,
                                     absl::Span<const v1::LayerResult> found = {});
 
-// The order that an answer of the service gives layer `layer` of `file`.
-// REQUIRES: the answer was checked against the layer of the job.
+// The order of layer `layer` of `file` in an answer of the service. REQUIRES: the answer was
+// checked against the layer of the job.
 gcode::LayerOrder OrderOf(const GcodeFile& file, size_t layer, const v1::LayerResult& answer);
 
 // ReadGcode and MakeGcodeJob.

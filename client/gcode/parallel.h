@@ -1,4 +1,4 @@
-// A loop whose rounds are independent, on several threads.
+// A loop with independent rounds, on several threads.
 
 #ifndef TRAVERSE_CLIENT_GCODE_PARALLEL_H_
 #define TRAVERSE_CLIENT_GCODE_PARALLEL_H_
@@ -8,13 +8,13 @@
 
 namespace traverse::gcode {
 
-// Calls body(0) to body(n - 1), on `threads` threads at most; returns when all have returned.
+// Calls body(0) to body(n - 1) on at most `threads` threads. Returns when all have returned.
 void ParallelFor(size_t n, int threads, const std::function<void(size_t)>& body);
 
 // As many threads as the machine has processors.
 int DefaultThreads();
 
-// The same for work on a text of so many bytes; one for a text so short that it is done before
+// The same for work on a text of `bytes` bytes; one for a text so short that it is done before
 // another thread has begun.
 int ThreadsFor(size_t bytes);
 

@@ -19,19 +19,19 @@ struct GcodeRewrite {
   std::string text;  // of the new file; that of the old one if nothing was gained
   gcode::PrintTotals before;
   gcode::PrintTotals after;
-  gcode::PrintTotals first_before;  // of the first layer alone
+  gcode::PrintTotals first_before;  // of the first layer only
   gcode::PrintTotals first_after;
   gcode::FileOrder orders;  // [layer] as in `text`; empty for that of the old file
   int64_t layers = 0;
   int64_t layers_changed = 0;
 
-  // Layers that were left as they are because what was found for them breaks a rule of the
-  // verifier, and the first break that was found.
+  // Layers left unchanged because every order found for them breaks a rule of the verifier, and the
+  // first break.
   int64_t layers_unproven = 0;
   std::string unproven;
 
-  // Layers that were left as they are for a line of which nobody knows what a machine makes of it,
-  // and the first of these: "part.gcode:118: G2 without I, J or R".
+  // Layers left unchanged because of a line that machines interpret differently, and the first of
+  // these lines: "part.gcode:118: G2 without I, J or R".
   int64_t layers_unclear = 0;
   std::string unclear;
 };
@@ -40,20 +40,20 @@ struct RewriteOptions {
   gcode::Policy policy = gcode::Policy::kSafe;
   gcode::Crossings crossings = gcode::Crossings::kKeep;
   gcode::Allowance allow = {};     // is in that line too
-  double min_revisit_seconds = 0;  // no island is printed on sooner than it was, unless so late
-  std::string version;             // of this program, for the line that is added behind the head
+  double min_revisit_seconds = 0;  // prints no island again sooner, unless the original does
+  std::string version;             // of this program, for the line that it adds after the head
   int threads = 1;
 };
 
-// Writes `file` with each layer in one of the orders that `tries` have for it, or in its own,
-// whichever makes the quickest print by the estimate; under Policy::kSafe no layer's travel grows,
-// neither within the layer nor with the way to it, and walls are spared (layer_choice.h). The text
-// is verified by all rules of `policy` before it is returned (verify/verifier.h), and `after` is
-// measured on it. What breaks a rule is ruled out, layer by layer, and the file is written again.
+// Writes `file` with each layer in one of its orders in `tries`, or in its own, whichever makes the
+// fastest print by the estimate. Under Policy::kSafe no layer's travel grows, neither within the
+// layer nor with the move to it, and walls are spared (layer_choice.h). Verifies the text by all
+// rules of `policy` before returning it (verify/verifier.h), and measures `after` on it. What
+// breaks a rule is ruled out, layer by layer, and the file is written again.
 //
-// Each order is empty, or of paths of its layer. One that has a path twice, or that a plan of
-// `policy` does not allow, is found when the text is verified: its layer stays as it is.
-// An error if the new text cannot be read again: a fault of ours.
+// Each order is empty, or has paths of its layer. If one has a path twice, or a plan of `policy`
+// does not allow it, the verifier finds that and the layer stays unchanged. An error if the new
+// text cannot be read again: that is our bug.
 absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
                                           const std::vector<gcode::FileOrder>& tries,
                                           const RewriteOptions& options);

@@ -15,18 +15,18 @@ namespace traverse::gcode {
 double ArcLength(const Command& command, const Position& from, const Position& to, double unit_mm,
                  double directions[4] = nullptr);
 
-// Points on that arc between its ends, in mm and in order, so that the lines from one to the next
-// stay within `tolerance_mm` of it; none for an arc that is flatter than that. At most 719.
+// Points on that arc between its ends, in mm and in order, such that the lines between them stay
+// within `tolerance_mm` of it; none for a flatter arc. At most 719.
 std::vector<Vertex> ArcPoints(const Command& command, const Position& from, const Position& to,
                               double unit_mm, double tolerance_mm);
 
-// The points between its ends that part the arc into `lines` of one length, or 720 if that is less:
-// as firmware that knows no arcs does. `lines` is a whole number, at least 1.
+// The points between its ends that divide the arc into `lines` equal pieces, at most 720, as
+// firmware without true arcs does. `lines` is a whole number, at least 1.
 std::vector<Vertex> ArcChords(const Command& command, const Position& from, const Position& to,
                               double unit_mm, double lines);
 
-// An arc that ends beside its circle is no arc: what a machine makes of it depends on where it
-// begins. False if it ends farther off than rounding explains.
+// An arc that ends beside its circle is not a true arc: how a machine executes it depends on where
+// it begins. False if it ends farther off than rounding explains.
 bool EndsOnItsCircle(const Command& command, const Position& from, const Position& to,
                      double unit_mm);
 

@@ -1,4 +1,4 @@
-// What a path is part of: wall, infill, support.
+// The kind of thing that a path belongs to: wall, infill, support.
 
 #ifndef TRAVERSE_CLIENT_GCODE_MODEL_FEATURE_H_
 #define TRAVERSE_CLIENT_GCODE_MODEL_FEATURE_H_
@@ -11,8 +11,8 @@
 namespace traverse::gcode {
 
 enum class Feature : uint8_t {
-  kLoop,  // closed, of a file that does not name features
-  kLine,  // open, of such a file
+  kLoop,  // closed, in a file that does not name features
+  kLine,  // open, in such a file
   kOuterWall,
   kInnerWall,
   kOverhangWall,
@@ -23,7 +23,7 @@ enum class Feature : uint8_t {
   kTopInfill,
   kBridge,
   kIroning,
-  kSkirt,  // brim too: slicers do not always tell them apart
+  kSkirt,  // also brim: slicers do not always distinguish them
   kSupport,
   kSupportInterface,
   kTower,   // wipe or prime tower
@@ -34,11 +34,11 @@ enum class Feature : uint8_t {
 // For people: "outer wall".
 std::string_view FeatureName(Feature feature);
 
-// The feature that the text behind `;TYPE:` or `; FEATURE: ` names, in the words of PrusaSlicer,
-// SuperSlicer, OrcaSlicer and CuraEngine; kCount if it is none of theirs.
+// The feature that the text after `;TYPE:` or `; FEATURE: ` names, in the words of PrusaSlicer,
+// SuperSlicer, OrcaSlicer and CuraEngine; kCount if it is not one of theirs.
 Feature FeatureOfType(std::string_view type);
 
-// The feature that the type in force at `block` names; kCount if there is none that is known.
+// The feature named by the type in force at `block`; kCount if there is none, or it is unknown.
 Feature NamedFeature(const GcodeFile& file, const Block& block);
 
 // The feature of `block`: by its type, else by the comment on its first line (Slic3r with verbose

@@ -1,4 +1,4 @@
-// A sliced file, taken apart: its text, and where in it lie the paths and what is between them.
+// A sliced file, divided into its paths and the text between them.
 //
 //   head | link 0 | block 0 | link 1 | block 1 | ... | foot
 //
@@ -7,8 +7,8 @@
 // retraction, travel, and the lines that set the state for what follows. Nothing is copied; the
 // text stays as it was read.
 //
-// Memory: about 160 bytes a path and 16 bytes a segment beside the text. Sliced files have 190
-// bytes of text a path at the least, and mostly many times that; and 25 bytes a segment.
+// Memory beside the text: about 160 bytes per path and 16 bytes per segment. Sliced files have at
+// least 190 bytes of text per path, and mostly many times that; and 25 bytes per segment.
 
 #ifndef TRAVERSE_CLIENT_GCODE_MODEL_GCODE_FILE_H_
 #define TRAVERSE_CLIENT_GCODE_MODEL_GCODE_FILE_H_
@@ -30,18 +30,18 @@ namespace gcode {
 
 enum class Dialect : uint8_t { kOther, kPrusa, kSlic3r, kCura };
 
-// What a link is made of.
+// The parts of a link.
 enum LinkFlag : uint16_t {
   kLinkRetracts = 1 << 0,
   kLinkLifts = 1 << 1,
-  kLinkWipes = 1 << 2,     // pulls filament back while moving
-  kLinkDeparts = 1 << 3,   // begins with a short move inwards, before the travel proper
-  kLinkComments = 1 << 4,  // has comments that mean nothing here
-  kLinkSplits = 1 << 5,    // nothing crosses it, but its travel may be written anew
-  kLinkFixed = 1 << 6,     // stays byte by byte, and so do the paths on either side of it
+  kLinkWipes = 1 << 2,     // retracts while moving
+  kLinkDeparts = 1 << 3,   // begins with a short inward move, before the travel proper
+  kLinkComments = 1 << 4,  // has comments without meaning here
+  kLinkSplits = 1 << 5,    // nothing crosses it, but its travel may be written again
+  kLinkFixed = 1 << 6,     // stays byte by byte, and so do the paths on both sides of it
   kLinkNewLayer = 1 << 7,
-  // Begins with lines that stay byte by byte, and so does the path before it; what follows them is
-  // as in a link that splits.
+  // Begins with lines that stay byte by byte, and so does the path before it; the rest is as in a
+  // link that splits.
   kLinkFixedFrom = 1 << 8,
 };
 
@@ -50,31 +50,31 @@ enum BlockFlag : uint16_t {
   kBlockCoast = 1 << 1,     // that move completes the path with the pressure left in the nozzle
   kBlockFan = 1 << 2,       // the fan changes inside it
   kBlockType = 1 << 3,      // the feature changes inside it
-  kBlockComments = 1 << 4,  // has comments inside that mean nothing here
+  kBlockComments = 1 << 4,  // has comments inside without meaning here
   kBlockProgress = 1 << 5,  // has M73 inside
-  kBlockPinned = 1 << 6,    // printed while retracted, rising, or no true arc: stays as it is
+  kBlockPinned = 1 << 6,    // printed while retracted or rising, or no true arc: stays as it is
   kBlockState = 1 << 7,     // some slot changes inside it
   kBlockZero = 1 << 8,      // has a segment whose extrusion rounds to nothing
   kBlockScript = 1 << 9,    // before the first mark of a layer: a start script's
   kBlockCommand = 1 << 10,  // a command inside it sets a slot
-  kBlockGoesOn = 1 << 11,   // closed; a move without filament goes on along it behind its end
+  kBlockGoesOn = 1 << 11,   // closed; a move without filament continues along it after its end
   kBlockArcs = 1 << 12,     // has arcs
 };
 
 struct Block {
   Offset begin = 0;
   Offset end = 0;
-  uint32_t state_in = 0;   // StateTable: what holds for its first segment
-  uint32_t state_out = 0;  // and behind its end
+  uint32_t state_in = 0;   // StateTable: the state of its first segment
+  uint32_t state_out = 0;  // and the state after its end
   Decimal feed_in = 0;     // F of its first segment
-  Decimal feed_out = 0;    // F behind its end
+  Decimal feed_out = 0;    // F after its end
   Position first;          // where its first segment begins
-  Position last;           // where the head is behind its end, tail included
-  Decimal e_in = 0;        // the extruder's register before and behind
+  Position last;           // where the head is after its end, including its tail
+  Decimal e_in = 0;        // the extruder's register before and after
   Decimal e_out = 0;
   float length_mm = 0;     // of its extruding segments
-  float travel_mm = 0;     // of the link before it, as it is
-  Decimal lift = 0;        // of the link before it: how far it goes above both its ends
+  float travel_mm = 0;     // of the link before it, as in the file
+  Decimal lift = 0;        // of the link before it: how far it rises above both its ends
   uint32_t object = 0;     // SetterTable: the label in force; 0: none
   uint32_t first_end = 0;  // of its segments' ends in GcodeFile::ends
   uint32_t end_count = 0;
@@ -84,13 +84,13 @@ struct Block {
   uint16_t mode = 0;      // index into GcodeFile::modes
 };
 
-// A run of blocks at one height; a mark of the slicer's begins a new one in any case.
+// A run of blocks at one height. A mark of the slicer begins a new one in any case.
 struct Layer {
   uint32_t first_block = 0;
   uint32_t end_block = 0;
   Decimal z = 0;
   Offset fault_at = 0;          // if `fault`, its line
-  const char* fault = nullptr;  // of a line in it or on the way to or from it: it stays as it is
+  const char* fault = nullptr;  // of a line in it or on the travel to or from it: it stays as it is
 };
 
 }  // namespace gcode
@@ -114,9 +114,9 @@ struct GcodeFile {
   gcode::SetterTable setters;  // also holds labels of objects
   gcode::StateTable states;
 
-  // Behind the last line of the start script: the first mark of a layer, or in files without such
-  // marks the last line near the beginning that switches modes or waits for heat; 0 if there is
-  // none.
+  // After the last line of the start script: at the first mark of a layer or, in files without such
+  // marks, after the last line near the beginning that switches modes or waits for heat; 0 if there
+  // is none.
   gcode::Offset script_end = 0;
 
   // Begins of the M73 lines, ascending.

@@ -1,4 +1,4 @@
-// Which loops are visible walls, in files that do not name features.
+// Finds the loops that are visible walls, in files that do not name features.
 
 #ifndef TRAVERSE_CLIENT_GCODE_MODEL_LOOPS_H_
 #define TRAVERSE_CLIENT_GCODE_MODEL_LOOPS_H_
@@ -9,11 +9,11 @@
 
 namespace traverse::gcode {
 
-// The outlines of a layer. CuraEngine's ironing is told from the skin that it irons. Of loops
-// without a name (Feature::kLoop) those become inner walls that have another loop along most of
-// their outer side (two paths that make up a loop, as where one was begun elsewhere, count as one):
-// slicers print outlines counter-clockwise and holes clockwise, so that the outside is always on
-// the right.
+// The outlines of a layer. Distinguishes CuraEngine's ironing from the skin that it irons. A loop
+// without a name (Feature::kLoop) becomes an inner wall if another loop lies along most of its
+// outer side (two paths that make up a loop count as one, for example where one was started
+// elsewhere). Slicers print outlines counter-clockwise and holes clockwise, so the outside is
+// always on the right.
 std::vector<Outline> OutlinesOf(const GcodeFile& file, const Layer& layer);
 
 }  // namespace traverse::gcode

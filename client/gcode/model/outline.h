@@ -12,37 +12,37 @@
 namespace traverse::gcode {
 
 struct Outline {
-  // The ends of its extruding segments, in the order of the file: n + 1 for n segments. An arc is
-  // one segment.
+  // The ends of its extruding segments, in the file's order: n + 1 for n segments. An arc is one
+  // segment.
   std::vector<Vertex> points;
 
-  // The same with points on its arcs, so near to each other that lines will do; empty if it has
+  // The same with points on its arcs, near enough to replace them by lines; empty if it has
   // none.
   std::vector<Vertex> bent;
 
-  // What is printed: where it lies, not where it may begin.
+  // The printed shape, which does not say where the path may begin.
   const std::vector<Vertex>& shape() const { return bent.empty() ? points : bent; }
 
-  // It ends where it began, or less than kMaxLoopGapMm short of it.
+  // Ends where it began, or less than kMaxLoopGapMm short of it.
   bool closed = false;
 
-  // The same for its shape: of a circle in two arcs no point but the first is a start.
+  // The same for its shape: in a circle of two arcs only the first point is a start.
   bool is_loop = false;
 
   // points.front() == points.back().
   bool exactly_closed = false;
 
   Feature feature = Feature::kLine;
-  double width_mm = 0.45;  // of what is deposited, as the file says or as its E words imply
+  double width_mm = 0.45;  // of the deposited line, as the file says or its E words imply
 };
 
-// PrusaSlicer and Slic3r end loops 0.15 nozzle diameters short of their start; CuraEngine's
-// coasting leaves 0.09 mm.
+// PrusaSlicer and Slic3r end loops 0.15 nozzle diameters early; CuraEngine's coasting leaves 0.09
+// mm.
 inline constexpr double kMaxLoopGapMm = 0.13;
 
 Outline OutlineOf(const GcodeFile& file, const Block& block);
 
-// True if `inner` lies within the loop `outer`; of outlines that cross, whether it begins there.
+// True if `inner` lies within the loop `outer`; for crossing outlines, whether it begins there.
 bool LiesWithin(const Outline& inner, const Outline& outer);
 
 // The machine as it is when `block` begins.

@@ -1,4 +1,4 @@
-// The segments of one path, read again to be written in another order.
+// The segments of one path, read again so that it can be written in another order.
 
 #ifndef TRAVERSE_CLIENT_GCODE_MODEL_PATH_BODY_H_
 #define TRAVERSE_CLIENT_GCODE_MODEL_PATH_BODY_H_
@@ -17,9 +17,9 @@ struct BodySegment {
   Decimal feed = 0;
   uint32_t state = 0;    // index into PathBody::states
   uint8_t command = 1;   // 0 and 1: straight; 2, 3: an arc
-  Decimal center_i = 0;  // of arcs with I or J: the center relative to `from`
+  Decimal center_i = 0;  // for arcs with I or J: the center relative to `from`
   Decimal center_j = 0;
-  Decimal radius = 0;  // of arcs with R
+  Decimal radius = 0;  // for arcs with R
   bool by_radius = false;
   std::string_view comment;
 };
@@ -28,7 +28,7 @@ struct PathBody {
   std::vector<BodySegment> segments;
   std::vector<PrintState> states;
 
-  // The moves behind the last segment that extrude nothing, as one: where it leads.
+  // The moves after the last segment that extrude nothing, as one: where it leads.
   bool has_tail = false;
   Position tail_end;
 };

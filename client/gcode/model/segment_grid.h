@@ -1,4 +1,4 @@
-// The segments of a layer's paths in a grid of square cells, to find what is near what.
+// The segments of a layer's paths in a grid of square cells, which finds segments near each other.
 
 #ifndef TRAVERSE_CLIENT_GCODE_MODEL_SEGMENT_GRID_H_
 #define TRAVERSE_CLIENT_GCODE_MODEL_SEGMENT_GRID_H_
@@ -18,20 +18,20 @@ namespace traverse::gcode {
 struct Segment {
   Vertex a;
   Vertex b;
-  uint32_t path = 0;  // index of the outline that it is of
+  uint32_t path = 0;  // index of its outline
 };
 
-// Smallest distance between two segments in mm, squared; 0 if they cross.
+// Least distance between two segments in mm, squared; 0 if they cross.
 double SquaredDistance(const Segment& s, const Segment& t);
 
-// True if the insides of the segments cross at one point.
+// True if the interiors of the segments cross at one point.
 bool Cross(Vertex a, Vertex b, Vertex c, Vertex d);
 
 // Built once; O(total length of the segments / cell size + cells / 64) in time and memory.
 class SegmentGrid {
  public:
-  // Cells of `cell_mm`; a layer of huge extent gets larger ones, so that there are at most
-  // kMaxCells, and no more than pay for so few segments.
+  // Cells of `cell_mm`. A huge layer gets larger ones, so that there are at most kMaxCells, and no
+  // more than so few segments justify.
   static constexpr double kCellMm = 1;
   static constexpr size_t kMaxCells = size_t{1} << 22;
   static constexpr size_t kCellsPerSegment = 256;
@@ -40,21 +40,21 @@ class SegmentGrid {
 
   const std::vector<Segment>& segments() const { return segments_; }
 
-  // Calls visit(s, t), indices of two segments of different paths i and j, for all pairs that come
-  // as near to each other as reach(i, j), and for some that do not; for some more than once. It is
-  // asked anew, in mm and at most three quarters of a cell, for each two cells in which both paths
-  // are; what is negative is near to nothing. When visit returns false the next two paths or cells
-  // are looked at. Segments of one path follow one another in `segments`. Returns false, and calls
-  // nothing, if there are more than `most` pairs of paths to look at, each counted once in each two
-  // cells next to each other.
+  // Calls visit(s, t), indices of two segments of different paths i and j, for all pairs as near to
+  // each other as reach(i, j), and for some others; for some more than once. Asks reach again for
+  // each two cells that contain both paths. It is in mm, at most three quarters of a cell; negative
+  // means that nothing is near. When visit returns false, goes on with the next two paths or cells.
+  // Segments of one path follow one another in `segments`. Returns false, and calls nothing, if
+  // there are more than `most` pairs of paths to look at, counting each once per two adjacent
+  // cells.
   template <typename Reach, typename Visit>
   bool ForEachNearPair(Reach reach, Visit visit,
                        double most = std::numeric_limits<double>::infinity()) const;
 
-  // How many segments there are in all cells, one counted in each of its cells.
+  // The number of segments in all cells, each counted once per cell.
   size_t entry_count() const { return entries_.size(); }
 
-  // Calls visit(s) for all segments that the straight way from `a` to `b` may cross, until it
+  // Calls visit(s) for all segments that the straight move from `a` to `b` may cross, until it
   // returns false.
   template <typename Visit>
   void ForEachOnWay(Vertex a, Vertex b, Visit visit) const;
@@ -79,8 +79,8 @@ class SegmentGrid {
   template <typename Visit>
   void ForEachOccupied(Visit visit) const;
 
-  // Calls visit(number, number) for all pairs of occupied cells that are one or have a side or a
-  // corner in common, once for each.
+  // Calls visit(number, number) for all pairs of occupied cells that are equal or share a side or a
+  // corner, once for each.
   template <typename Visit>
   void ForEachTwoCells(Visit visit) const;
 
@@ -95,7 +95,7 @@ class SegmentGrid {
     uint32_t path = 0;
   };
 
-  // What holds something; in single precision, with more of slack than that loses.
+  // The bounds of something, in single precision, with more slack than that loses.
   struct Box {
     float min_x = 0;
     float min_y = 0;
@@ -104,7 +104,7 @@ class SegmentGrid {
 
     void Include(const Box& box);
 
-    // Along x or y: no more than the distance of what is in the two.
+    // Along x or y: no more than the distance of the contents of both.
     float Gap(const Box& box) const;
   };
 
@@ -116,7 +116,7 @@ class SegmentGrid {
   };
 
   struct Runs {
-    std::vector<Box> boxes;       // [entry] of what of the segment may be in the cell
+    std::vector<Box> boxes;       // [entry] bounds of the part of the segment in the cell
     std::vector<Run> runs;        // by cell
     std::vector<uint32_t> first;  // [number of the cell] where its runs begin; one more at the end
   };
@@ -138,9 +138,9 @@ class SegmentGrid {
   int columns_ = 0;
   int rows_ = 0;
 
-  // Most cells are empty; those that are not are numbered, row by row.
+  // Most cells are empty; the others are numbered, row by row.
   std::vector<uint64_t> occupied_;  // bit cell % 64 of [cell / 64]
-  std::vector<uint32_t> number_;    // [cell / 64] of the first occupied one of these
+  std::vector<uint32_t> number_;    // [cell / 64] number of the first occupied one of these
   std::vector<uint32_t> first_;     // [number] where its entries begin; one more at the end
   std::vector<Entry> entries_;      // by cell, then segment
 };
@@ -153,7 +153,7 @@ void SegmentGrid::ForEachCell(Vertex a, Vertex b, Visit visit) const {
   int last_row = Row(a.y);
   visit(last_column, last_row);
   if (last_column == end_column && last_row == end_row) return;
-  // Samples a quarter of a cell apart: a cell of which only a corner is touched may be missed, by
+  // Samples every quarter of a cell. A cell of which only a corner is touched may be missed, by
   // less than an eighth of its side.
   const int steps = static_cast<int>(Distance(a, b) * 4 * cells_per_mm_) + 1;
   for (int i = 1; i <= steps; ++i) {

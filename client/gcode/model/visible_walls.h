@@ -1,4 +1,4 @@
-// The walls of a layer that are seen on the print, and which ways lead across them.
+// The walls of a layer that are visible on the print, and the moves that cross them.
 
 #ifndef TRAVERSE_CLIENT_GCODE_MODEL_VISIBLE_WALLS_H_
 #define TRAVERSE_CLIENT_GCODE_MODEL_VISIBLE_WALLS_H_
@@ -13,25 +13,25 @@ namespace traverse::gcode {
 // Outer and overhanging walls, and loops without a name.
 bool IsVisibleWall(Feature feature);
 
-// Those among the outlines of one layer, as the search is told of them; `path` is the outline's
+// Those among the outlines of one layer, in the form sent to the search; `path` is the outline's
 // index.
 std::vector<Wall> VisibleWallsOf(const std::vector<Outline>& outlines);
 
 class VisibleWalls {
  public:
-  // At each end of a way so much of it is not looked at, but no more than a fifth: ways begin and
-  // end at the middle of a line, which may be a wall itself or lie against one.
+  // Ignored at each end of a move, but no more than a fifth of it: moves begin and end in the
+  // middle of a line, which may be a wall itself or touch one.
   static constexpr double kEndSlackMm = 0.25;
 
-  // Of the outlines of one layer.
+  // The walls among the outlines of one layer.
   explicit VisibleWalls(const std::vector<Outline>& outlines)
       : grid_(VisibleWallsOf(outlines), kEndSlackMm) {}
 
-  // True if the straight way from `a` to `b` crosses one. Ends that lie on a wall, or against it,
-  // do not. It is the function by which the search knows it.
+  // True if the straight move from `a` to `b` crosses one. Ends that lie on a wall, or touch it, do
+  // not count. The search uses the same function.
   bool Crossed(Vertex a, Vertex b) const { return grid_.Crosses({a.x, a.y}, {b.x, b.y}); }
 
-  // The same of a way with bends, near which it is looked at as well.
+  // The same for a move with bends, near which it is tested too.
   bool CrossedByWay(const std::vector<Vertex>& way) const;
 
   const WallGrid& grid() const { return grid_; }

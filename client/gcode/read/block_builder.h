@@ -1,4 +1,4 @@
-// Collects the lines of a file into blocks and links while an interpreter follows them.
+// Collects the lines of a file into blocks and links while an interpreter executes them.
 
 #ifndef TRAVERSE_CLIENT_GCODE_READ_BLOCK_BUILDER_H_
 #define TRAVERSE_CLIENT_GCODE_READ_BLOCK_BUILDER_H_
@@ -11,34 +11,34 @@ namespace traverse::gcode {
 
 class BlockBuilder {
  public:
-  // Fills `file`, whose text is set. `file` outlives the builder.
+  // Fills `file`, whose text is set and which must outlive the builder.
   explicit BlockBuilder(GcodeFile& file) : file_(file) {}
 
-  // Takes the step that `interpreter` has just made; `before` is the machine before it.
+  // Adds the step that `interpreter` has just made; `before` is the machine before it.
   void Take(const Step& step, const MachineState& before, const Interpreter& interpreter);
 
-  // The text is at its end.
+  // Ends the text.
   void Finish();
 
  private:
   enum class Where { kHead, kBody, kTail, kLink };
 
-  // A line of which nobody knows what a machine makes of it.
+  // A line that machines interpret differently.
   struct LineFault {
     Offset at = 0;
     const char* what = nullptr;
     size_t block = 0;  // the next one
   };
 
-  // What is known of the link that is being read.
+  // What is known about the link being read.
   struct OpenLink {
     uint16_t flags = 0;
     int xy_moves = 0;
     double first_move_mm = 0;
-    Position first_move_to;  // of a travel move without filament pulled back
+    Position first_move_to;  // of a travel move without a retraction
     bool open_first_move = false;
-    bool lost = false;             // a move that is not understood: where it led is not known
-    int travels_behind_fixed = 0;  // moves in XY behind the last line that has to stay
+    bool lost = false;             // a move that is not understood: its end is unknown
+    int travels_behind_fixed = 0;  // moves in XY after the last line that must stay
     double travel_mm = 0;
     Decimal top = -kDecimalMax;  // the highest Z of its moves in XY
   };
@@ -71,16 +71,16 @@ class BlockBuilder {
   uint32_t object_ = 0;
 
   std::vector<LineFault> faults_;
-  size_t scripted_ = 0;  // blocks of the start script, as far as is known
+  size_t scripted_ = 0;  // blocks of the start script, as far as known
   bool layers_marked_ = false;
 
   Where where_ = Where::kHead;
-  uint16_t pending_ = 0;  // BlockFlags of lines behind the last extruding one
+  uint16_t pending_ = 0;  // BlockFlags of lines after the last extruding one
   OpenLink link_;
 
-  // Set while the last block ends with a tail: what it was before, and the tail as part of a link.
+  // Set while the last block ends with a tail: its state without it, and the tail in a link.
   bool has_tail_ = false;
-  bool meets_tail_ = false;  // the block that begins does so where the tail ended
+  bool meets_tail_ = false;  // the next block begins where the tail ended
   Block before_tail_;
   OpenLink tail_;
 };

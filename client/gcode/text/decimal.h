@@ -1,8 +1,8 @@
 // Numbers of G-code, kept exactly.
 //
-// A file is text: an extrusion of 0.00001 mm that a rewriter's rounding loses is a segment lost. So
+// A file is text: if a rewriter's rounding loses an extrusion of 0.00001 mm, a segment is lost. So
 // numbers are integers in units of 1e-9 (of mm, inch, mm/min, whatever the word means), and
-// arithmetic on them is exact.
+// arithmetic with them is exact.
 
 #ifndef TRAVERSE_CLIENT_GCODE_TEXT_DECIMAL_H_
 #define TRAVERSE_CLIENT_GCODE_TEXT_DECIMAL_H_
@@ -20,28 +20,28 @@ using Decimal = int64_t;
 inline constexpr int kDecimalDigits = 9;
 inline constexpr Decimal kDecimalOne = 1'000'000'000;
 
-// Numbers beyond this are refused, so that sums and differences of a few cannot overflow.
+// Larger numbers are refused, so that sums and differences of a few cannot overflow.
 inline constexpr Decimal kDecimalMax = 1'000'000'000 * kDecimalOne;
 
 inline bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
 inline double ToDouble(Decimal value) { return static_cast<double>(value) * 1e-9; }
 
-// Reads a number as G-code writes it (`-.8`, `12`, `9000.000`, `+1.5`) at `*text` and moves `*text`
-// past it. Nothing if there is none, if it is beyond kDecimalMax, or if it has more than nine
-// decimals that are not zero: then it could not be kept exactly.
+// Reads a number as G-code writes it (`-.8`, `12`, `9000.000`, `+1.5`) at `*text`, and moves
+// `*text` past it. Unset if there is none, if it is beyond kDecimalMax, or if it has more than nine
+// decimals that are not zero and so could not be kept exactly.
 std::optional<Decimal> ParseDecimal(const char** text, const char* end);
 
 // How a file writes its numbers.
 struct NumberStyle {
-  // Decimals always written, as in `E1.00000`; -1: trailing zeros are left out.
+  // Number of decimals always written, as in `E1.00000`; -1: trailing zeros are dropped.
   int fixed_decimals = -1;
 
   // `0.8` and not `.8`.
   bool leading_zero = true;
 };
 
-// Appends `value`, never rounded: decimals beyond `fixed_decimals` are written if they are not
+// Appends `value`, never rounded: decimals beyond `fixed_decimals` are written unless they are
 // zero.
 void AppendDecimal(Decimal value, NumberStyle style, std::string& out);
 

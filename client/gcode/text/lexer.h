@@ -1,12 +1,12 @@
 // Lines and words of G-code, without copying.
 //
-// A line ends at LF; a CR before it belongs to the line end. What a line holds:
+// A line ends at LF; a CR before it belongs to the line end. A line contains:
 //
 //   G1 X121.016 Y109.474 E.03272 ; infill      command: letter, number, words, comment
 //   ;TYPE:Perimeter                            comment
 //   START_PRINT BED_TEMP=60                    text: anything else, not looked into
 //
-// Letters may be small; blanks between and before words are skipped, and may be missing (`G1X5Y2`).
+// Letters may be small. Blanks between and before words are skipped, and may be missing (`G1X5Y2`).
 
 #ifndef TRAVERSE_CLIENT_GCODE_TEXT_LEXER_H_
 #define TRAVERSE_CLIENT_GCODE_TEXT_LEXER_H_
@@ -19,10 +19,10 @@
 
 namespace traverse::gcode {
 
-// A place in a file. Files of 4 GiB and more are refused before they are looked at.
+// A position in a file. Files of 4 GiB and more are refused before they are read.
 using Offset = uint32_t;
 
-// One line of a text: [begin, end) without its line end, `next` behind it.
+// One line of a text: [begin, end) without its line end, which `next` follows.
 struct Line {
   Offset begin = 0;
   Offset end = 0;
@@ -37,7 +37,7 @@ Line LineAt(std::string_view text, Offset begin);
 
 enum class LineKind : uint8_t { kBlank, kComment, kCommand, kText };
 
-// What one line says.
+// The contents of one line.
 struct Command {
   LineKind kind = LineKind::kBlank;
   char letter = 0;           // kCommand: 'G', 'M' or 'T'
@@ -55,24 +55,24 @@ struct Command {
   }
 };
 
-// Reads the line `text` (without line end) into `command`. The words of G0 to G3 and of G92 are
-// read at once, and the line is kText if they cannot be: an unknown shape, a letter twice, a number
-// that ParseDecimal refuses. Those of other commands are read by ReadWords when they are needed.
+// Reads the line `text` (without line end) into `command`. Reads the words of G0 to G3 and of G92
+// at once; if they cannot be read (an unknown shape, a letter twice, a number that ParseDecimal
+// refuses), the line is kText. ReadWords reads those of other commands when they are needed.
 void LexLine(std::string_view text, Command& command);
 
-// Reads the words of `command.rest`. False, with `words` 0, if they cannot all be read. A letter
-// without a number counts as a word of value 0.
+// Reads the words of `command.rest`. Returns false, with `words` 0, if some cannot be read. A
+// letter without a number is a word of value 0.
 bool ReadWords(Command& command);
 
-// Goes through the words of a command line: `for (WordCursor c(line); c.Next();)`.
+// Iterates over the words of a command line: `for (WordCursor c(line); c.Next();)`.
 class WordCursor {
  public:
   explicit WordCursor(std::string_view line) : line_(line) {}
 
-  // The next word, command included; false at the end or at a comment.
+  // Moves to the next word, including the command; false at the end or at a comment.
   bool Next();
 
-  char letter() const { return letter_; }  // as a capital
+  char letter() const { return letter_; }  // in capitals
   size_t value_begin() const { return value_begin_; }
   size_t value_end() const { return value_end_; }
   std::string_view value() const { return line_.substr(value_begin_, value_end_ - value_begin_); }

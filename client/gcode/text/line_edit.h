@@ -1,5 +1,5 @@
-// Lines with some of their words changed. Everything else of a line stays: blanks, order of words,
-// comment, line end.
+// Changes some words of a line. Everything else stays: blanks, order of words, comment, line
+// end.
 
 #ifndef TRAVERSE_CLIENT_GCODE_TEXT_LINE_EDIT_H_
 #define TRAVERSE_CLIENT_GCODE_TEXT_LINE_EDIT_H_
@@ -12,8 +12,8 @@
 
 namespace traverse::gcode {
 
-// A word of a line: `value` in `style`, put in place of the one with this letter, or behind the
-// last word if there is none.
+// A new word of a line: `value` in `style` replaces the word with this letter, or follows the last
+// word if there is none.
 struct WordChange {
   char letter = 0;
   Decimal value = 0;
