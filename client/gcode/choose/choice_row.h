@@ -1,9 +1,9 @@
-// Which order each layer is done in, where a layer's end is where the way to the next one begins.
+// Chooses one order for each layer, where the end of a layer is the start of the travel to the
+// next.
 //
-// The choices are the columns of a graph whose edges are the ways between layers, measured; the
-// best row of them is a shortest path. What holds for each layer by itself forbids edges. What
-// holds for the whole file is priced: so high that the best row at that price keeps to it.
-// O(layers * choices^2) for each price that is tried.
+// The choices of a layer are a column of a graph; the edges are the measured travel moves between
+// layers, so the best row of choices is a shortest path. Rules for a layer forbid edges; rules for
+// the file become a price, so high that the best row obeys them. O(layers * choices^2) per price.
 
 #ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_CHOICE_ROW_H_
 #define TRAVERSE_CLIENT_GCODE_CHOOSE_CHOICE_ROW_H_
@@ -17,25 +17,25 @@
 
 namespace traverse::gcode {
 
-// The choices for one layer. Choice 0 is the order of the file, and always there.
+// The choices for one layer. Choice 0 is the file's own order, and always exists.
 struct ChoiceColumn {
-  std::vector<PrintTotals> inside;  // [choice] its paths and the ways between them
-  std::vector<PrintTotals> ways;    // [before * choices + choice] from the layer before
+  std::vector<PrintTotals> inside;  // [choice] its paths and the travel between them
+  std::vector<PrintTotals> ways;    // [before * choices + choice] travel from the layer before
 
-  // What is not to be chosen.
+  // What must not be chosen.
   std::vector<bool> no_choice;  // [choice]
   std::vector<bool> no_way;     // [as ways]
 
-  // With the way to it; `before` is of no meaning for the first layer, which has no ways.
+  // Including the travel to the layer. `before` is ignored for the first layer, which has none.
   PrintTotals Whole(size_t before, size_t choice) const;
 };
 
 // The row of choices with the least estimated time; under Crossings::kFewer a crossing counts as
-// time. Each layer, with the way to it, has no more and no longer open ways across visible walls
-// than in the file, and as much filament pushed beyond what was pulled back; under Policy::kSafe no
-// more travel. The whole file has at least `fewer` ways across visible walls fewer than it had, but
-// under Crossings::kAny; all as in the file if no row that was found has. It has no more retractions
-// than it had, unless each one more saves a second. REQUIRES: not empty.
+// time. No layer, with the move to it, has more or longer unretracted moves across visible walls
+// than in the file, or more filament pushed beyond what was retracted; under Policy::kSafe none has
+// more travel. Except under Crossings::kAny, the whole file has at least `fewer` fewer crossings of
+// visible walls than before; if no row does, the file's own orders are returned. The file has no
+// more retractions than before, unless each additional one saves a second. REQUIRES: not empty.
 std::vector<uint32_t> BestRow(const std::vector<const ChoiceColumn*>& columns, Policy policy,
                               Crossings crossings, int64_t fewer = 0);
 

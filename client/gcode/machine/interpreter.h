@@ -1,7 +1,7 @@
-// A machine that follows G-code line by line: what each line does, and where the machine is then.
+// A machine that executes G-code line by line: what each line does, and where the machine is then.
 //
-// It knows Marlin's and Klipper's commands as slicers use them. What it does not know is kUnknown,
-// which everything built on it treats as a fence.
+// It knows Marlin's and Klipper's commands as slicers use them. Anything else is kUnknown, and
+// everything built on it lets nothing cross such a line.
 
 #ifndef TRAVERSE_CLIENT_GCODE_MACHINE_INTERPRETER_H_
 #define TRAVERSE_CLIENT_GCODE_MACHINE_INTERPRETER_H_
@@ -26,16 +26,16 @@ struct Position {
   bool SameXy(const Position& other) const { return x == other.x && y == other.y; }
 };
 
-// A primed nozzle may lack this much of what was retracted: wipes round their parts.
+// A primed nozzle may lack this much of what was retracted, because wipes round their parts.
 inline constexpr Decimal kRetractionSlack = kDecimalOne / 10'000;
 
-// The modal state of the machine, but for what print_state.h holds.
+// The modal state of the machine, except what print_state.h has.
 struct MachineState {
   Position at;
-  Decimal e = 0;          // the extruder's register: what absolute E words count from
+  Decimal e = 0;          // the extruder's register, from which absolute E words count
   Decimal feed = 0;       // F, per minute; 0: not yet set
-  Decimal retracted = 0;  // filament pulled back by E words and not yet pushed again; at least 0
-  Decimal deepest = 0;    // the most that this was since it last was 0
+  Decimal retracted = 0;  // filament retracted by E words and not yet pushed back; at least 0
+  Decimal deepest = 0;    // the most of it since it was last 0
   bool firmware_retracted = false;  // between G10 and G11
   bool relative_xyz = false;        // G91
   bool relative_e = false;          // M83
@@ -54,7 +54,7 @@ struct MachineState {
     return {ToDouble(place.x) * UnitMm(), ToDouble(place.y) * UnitMm()};
   }
 
-  // The modes that a part of a file must share so that its lines can change places.
+  // The modes that two parts of a file must share so that their lines can change places.
   bool SameModes(const MachineState& other) const {
     return relative_xyz == other.relative_xyz && relative_e == other.relative_e &&
            inches == other.inches && plane_xy == other.plane_xy && tool == other.tool;
@@ -63,24 +63,24 @@ struct MachineState {
 
 enum class StepKind : uint8_t {
   kBlank,
-  kComment,    // one that means nothing here
+  kComment,    // one without meaning here
   kSlot,       // sets slots of the print state
   kWipeMark,   // ;WIPE_START, ;WIPE_END
-  kProgress,   // M73: means something only in the order of the file
+  kProgress,   // M73: has meaning only in the file's order
   kStay,       // known, and harmless where it is: M104, M140, M105, M117, G90 in absolute mode
   kPlane,      // G17 in the XY plane: goes with the lift behind it
   kLabel,      // begin or end of an object
   kLayerMark,  // ;LAYER_CHANGE, ;LAYER:7
   kUnknown,
-  kModeChange,   // G91, M82, G20 and the like, if they change something; T; G92 of X, Y, Z
+  kModeChange,   // G91, M82, G20 and the like, if they change anything; T; G92 of X, Y, Z
   kExtrude,      // XY motion that deposits
   kZeroExtrude,  // XY motion with an E word that pushes nothing
-  kTravel,       // XY motion without an E word, or longer than what may round to nothing
-  kWipe,         // XY motion that pulls filament back
-  kFilament,     // E alone
-  kLift,         // Z alone; also a spiral, G2 or G3 with Z that ends where it began
-  kFeed,         // F alone, or a motion of no length
-  kSetE,         // G92 of E alone
+  kTravel,       // XY motion without an E word, or too long for one that may round to nothing
+  kWipe,         // XY motion that retracts
+  kFilament,     // only E
+  kLift,         // only Z; also a spiral, G2 or G3 with Z that ends where it began
+  kFeed,         // only F, or a motion of no length
+  kSetE,         // G92 of only E
   kFirmwareRetract,
   kFirmwareUnretract,
 };
@@ -90,27 +90,27 @@ inline bool IsXyMotion(StepKind kind) {
          kind == StepKind::kTravel || kind == StepKind::kWipe;
 }
 
-// What one line did.
+// The effect of one line.
 struct Step {
   Line line;
   StepKind kind = StepKind::kBlank;
   bool arc = false;             // G2 or G3
-  Position from;                // before; the state has where it is now
-  bool retracted = false;       // before: filament is pulled back
-  Decimal pulled = 0;           // before: how much of it, by E words
-  Decimal filament = 0;         // pushed (above 0) or pulled back by this line
+  Position from;                // before the line; the state has the position after it
+  bool retracted = false;       // before the line: filament is retracted
+  Decimal pulled = 0;           // before the line: how much of it, by E words
+  Decimal filament = 0;         // pushed (above 0) or retracted by this line
   SlotMask slots = 0;           // kSlot
-  const char* fault = nullptr;  // why nobody knows what a machine makes of this line
+  const char* fault = nullptr;  // why machines interpret this line differently
   Command command;
 };
 
 class Interpreter {
  public:
-  // Follows `text` from `begin`, with the machine in `state`. `text` outlives the interpreter.
+  // Executes `text` from `begin`, with the machine in `state`. `text` must outlive the interpreter.
   explicit Interpreter(std::string_view text, Offset begin = 0, const MachineState& state = {})
       : text_(text), next_(begin), state_(state) {}
 
-  // Follows the next line; false at the end of the text.
+  // Executes the next line; false at the end of the text.
   bool Next(Step& step);
 
   const MachineState& state() const { return state_; }
@@ -133,7 +133,7 @@ class Interpreter {
   MachineState state_;
 };
 
-// The object that a kLabel line begins, as the text that names it; empty if it ends one.
+// The object that a kLabel line begins, as the text that names it; empty if the line ends one.
 std::string_view LabelledObject(std::string_view line);
 
 }  // namespace traverse::gcode

@@ -1,10 +1,10 @@
-// What holds while something is printed, beside where and how fast: feature, width, fan,
+// What applies while something is printed, besides position and speed: feature, width, fan,
 // acceleration.
 //
-// A slicer sets these by lines such as `;TYPE:Perimeter`, `;WIDTH:0.45`, `M106 S204`, `M204 P800`.
-// Each such line is a setter: it gives one or several slots a value. The value of a slot is the
-// setter itself, so that a writer can restore it by writing that line again, without knowing what
-// it means.
+// Slicers set these by lines such as `;TYPE:Perimeter`, `;WIDTH:0.45`, `M106 S204`, `M204 P800`.
+// Such a line is a setter: it gives one or several slots a value. The value of a slot is the
+// setter itself, so a writer can restore it by writing that line again, without knowing its
+// meaning.
 
 #ifndef TRAVERSE_CLIENT_GCODE_MACHINE_PRINT_STATE_H_
 #define TRAVERSE_CLIENT_GCODE_MACHINE_PRINT_STATE_H_
@@ -53,8 +53,8 @@ constexpr SlotMask SlotBit(Slot slot) { return SlotMask{1} << slot; }
 
 inline constexpr SlotMask kAllSlots = (SlotMask{1} << kSlotCount) - 1;
 
-// The slots of how the machine moves, as against what it deposits: they may differ between the
-// travel to a path and the path.
+// The slots for how the machine moves, not what it deposits. They may differ between the travel to
+// a path and the path.
 inline constexpr SlotMask kDynamicsSlots =
     SlotBit(kSlotPrintAccel) | SlotBit(kSlotTravelAccel) | SlotBit(kSlotRetractAccel) |
     SlotBit(kSlotJerkX) | SlotBit(kSlotJerkY) | SlotBit(kSlotMaxAccelX) | SlotBit(kSlotMaxAccelY) |
@@ -64,7 +64,7 @@ inline constexpr SlotMask kDynamicsSlots =
 inline constexpr SlotMask kFanSlots =
     SlotBit(kSlotFan) | SlotBit(kSlotFan1) | SlotBit(kSlotFan2) | SlotBit(kSlotFan3);
 
-// The slots that a line sets; 0 if it is no setter. Reads the words of commands that may be one.
+// The slots that a line sets; 0 if it is not a setter. Reads the words of commands that may be one.
 SlotMask CommentSlots(std::string_view comment);
 SlotMask CommandSlots(Command& command);
 SlotMask TextSlots(std::string_view line);
@@ -77,7 +77,7 @@ class SetterTable {
   // The number of the setter `line`, which sets `slots`.
   uint32_t Intern(std::string_view line, SlotMask slots);
 
-  // The number of a setter that is known; 0 for others.
+  // The number of a known setter; 0 for others.
   uint32_t Find(std::string_view line) const {
     const auto found = index_.find(line);
     return found == index_.end() ? 0 : found->second;
@@ -95,7 +95,7 @@ class SetterTable {
   absl::flat_hash_map<std::string_view, uint32_t> index_;
 };
 
-// [slot] the setter that holds.
+// [slot] the setter in force.
 using PrintState = std::array<uint32_t, kSlotCount>;
 
 inline void ApplySetter(PrintState& state, uint32_t setter, SlotMask slots) {
@@ -116,8 +116,8 @@ class StateTable {
   absl::flat_hash_map<PrintState, uint32_t> index_;
 };
 
-// The setters to write, in this order, so that the slots in `mask` go from `from` to `to`. `from`
-// is brought up to date.
+// The setters to write, in this order, so that the slots in `mask` change from `from` to `to`.
+// Updates `from`.
 std::vector<uint32_t> SettersBetween(PrintState& from, const PrintState& to, SlotMask mask,
                                      const SetterTable& setters);
 

@@ -1,4 +1,4 @@
-// Measures the layers of a sliced file, and others put in their places.
+// Measures the layers of a sliced file, and others that replace them.
 
 #ifndef TRAVERSE_CLIENT_GCODE_MEASURE_LAYER_METER_H_
 #define TRAVERSE_CLIENT_GCODE_MEASURE_LAYER_METER_H_
@@ -13,31 +13,31 @@
 
 namespace traverse::gcode {
 
-// Where a part of a file begins: the machine, and the state that holds.
+// The machine and the print state where a part of a file begins.
 struct PartStart {
   MachineState machine;
   PrintState state;
 };
 
-// What the lines `text` amount to, from standstill to standstill. Ways across `walls` are counted
-// unless those are null.
+// The totals of the lines `text`, from standstill to standstill. Counts travel moves across
+// `walls`, unless that is null.
 PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStart& start,
                     const VisibleWalls* walls = nullptr);
 
-// How the machine is behind block `block`.
+// The state of the machine after block `block`.
 PartStart StartBehind(const GcodeFile& file, const Block& block);
 
-// The paths of a layer as they are in the file, and the ways between them.
+// The paths of a layer as they are in the file, and the travel between them.
 PrintTotals MeasurePaths(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls);
 
-// The way to the first path of `layer`, from the end of the layer before; nothing for the first.
+// The travel to the first path of `layer` from the end of the layer before; empty for the first.
 PrintTotals MeasureWay(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls);
 
-// The link before block `block`, whichever it is, as it is in the file. REQUIRES: block > 0.
+// Any link before block `block`, as it is in the file. REQUIRES: block > 0.
 PrintTotals MeasureLink(const GcodeFile& file, uint32_t block, const VisibleWalls& walls);
 
-// [layer]: its paths and the way to it, with a standstill between the two. Uses `threads` threads;
-// the result does not depend on them.
+// [layer]: its paths and the travel to it, with a standstill between the two. Uses `threads`
+// threads; the result does not depend on their number.
 std::vector<PrintTotals> MeasureLayers(const GcodeFile& file, int threads = 1);
 
 PrintTotals Sum(const std::vector<PrintTotals>& totals);

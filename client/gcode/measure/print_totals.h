@@ -1,4 +1,4 @@
-// What a print, or a layer of one, amounts to.
+// The totals of a print, or of one of its layers.
 
 #ifndef TRAVERSE_CLIENT_GCODE_MEASURE_PRINT_TOTALS_H_
 #define TRAVERSE_CLIENT_GCODE_MEASURE_PRINT_TOTALS_H_
@@ -9,13 +9,13 @@
 namespace traverse::gcode {
 
 struct PrintTotals {
-  double extruded_mm = 0;      // way in XY while depositing
-  double travel_mm = 0;        // way in XY without depositing, wipes included
-  int64_t retractions = 0;     // times filament is pulled back, wipes with it counted once
-  int64_t crossings = 0;       // ways from path to path that lead across a visible wall
-  int64_t open_crossings = 0;  // of them, those with filament not pulled back
-  double longest_open_mm = 0;  // of the ways that these count
-  double extra_mm = 0;         // filament pushed at a standstill beyond what was pulled back
+  double extruded_mm = 0;      // length in XY with deposition
+  double travel_mm = 0;        // length in XY without deposition, wipes included
+  int64_t retractions = 0;     // retractions; those by wipes count once
+  int64_t crossings = 0;       // travel moves between paths that cross a visible wall
+  int64_t open_crossings = 0;  // of them, those without a retraction
+  double longest_open_mm = 0;  // the longest of these
+  double extra_mm = 0;         // filament pushed at a standstill beyond what was retracted
   double seconds = 0;          // see motion_planner.h for the model
 
   PrintTotals& operator+=(const PrintTotals& other) {

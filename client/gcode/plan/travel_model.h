@@ -1,4 +1,4 @@
-// What travel costs in a file, learnt from the travel that is in it.
+// The cost of travel in a file, learned from the file's own travel.
 
 #ifndef TRAVERSE_CLIENT_GCODE_PLAN_TRAVEL_MODEL_H_
 #define TRAVERSE_CLIENT_GCODE_PLAN_TRAVEL_MODEL_H_
@@ -15,24 +15,24 @@ namespace traverse::gcode {
 struct TravelModel {
   double speed_mm_s = 150;
   double accel_mm_s2 = 1250;
-  double retraction_seconds = 0;       // pulling back, lifting, wiping, coming down, priming
-  double retraction_threshold_mm = 0;  // moves longer than this are retracted
+  double retraction_seconds = 0;       // retracting, lifting, wiping, lowering, priming
+  double retraction_threshold_mm = 0;  // longer moves retract
 };
 
-// [layer]. Speed and acceleration are those at which most of the layer's travel is done, the time
-// is the mean over its retractions of what they add to the travel; a layer without such moves has
-// what the one before has. Retractions at marks, where tools may be changed, count only until there
-// are others. O(length of all links).
+// [layer]. Speed and acceleration are those of most of the layer's travel. The time is the mean
+// that the layer's retractions add to the travel; a layer without such moves has that of the layer
+// before. Retractions at marks, where tools may change, count only until there are others. O(length
+// of all links).
 std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm);
 
-// What the travel in the link before block `block` takes as it is in the file, from standstill to
-// standstill at the speed and the acceleration of `model`: with its bends, at each of which the
-// machine slows down, and without retraction, lift and wipe; nor with a short move inwards, with
-// which other ways from that path begin too, but under CuraEngine, whose bends may lie as near.
+// The time of the travel in the link before block `block`, as it is in the file, from standstill to
+// standstill at the speed and acceleration of `model`: with its bends, at each of which the machine
+// slows down, but without retraction, lift and wipe. Also without a short inward move, with which
+// other travel from that path begins too, except for CuraEngine, whose bends may be as near.
 // REQUIRES: there is a block before it.
 double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& model);
 
-// The same of a new way from the path `before`.
+// The same for a new travel move from the path `before`.
 double NewWaySeconds(const GcodeFile& file, uint32_t before, const TravelWay& way,
                      const TravelModel& model);
 

@@ -1,4 +1,4 @@
-// Whether the slicer would pull filament back for a way, learnt from where it did in the file.
+// Whether the slicer would retract for a travel move, learned from where it did in the file.
 
 #ifndef TRAVERSE_CLIENT_GCODE_PLAN_TRAVEL_RULES_H_
 #define TRAVERSE_CLIENT_GCODE_PLAN_TRAVEL_RULES_H_
@@ -15,75 +15,75 @@
 
 namespace traverse::gcode {
 
-// How often ways were retracted that were long enough for it and crossed no visible wall.
+// How often moves retracted that were long enough for it and crossed no visible wall.
 struct RetractionCount {
   int64_t retracted = 0;
   int64_t not_retracted = 0;
 
   int64_t total() const { return retracted + not_retracted; }
 
-  // To retract where the slicer would not costs time; not to where it would costs quality.
+  // An unneeded retraction costs time; a missing one costs quality.
   bool Mostly() const { return retracted * 2 >= not_retracted; }
 };
 
-// [feature of the path that is gone to]
+// [feature of the path at the end of the move]
 using RetractionCounts = std::array<RetractionCount, static_cast<size_t>(Feature::kCount)>;
 
-// What holds in a whole file.
+// What applies to a whole file.
 struct RetractionHabit {
   bool retracts = false;          // the file has retractions at all
-  double threshold_mm = 0;        // shorter ways are not retracted
-  bool crossing_matters = false;  // ways that cross no visible wall are often not retracted
+  double threshold_mm = 0;        // shorter moves do not retract
+  bool crossing_matters = false;  // moves that cross no visible wall often do not retract
   RetractionCounts inside;
 
-  // Travel is led around visible walls.
+  // Travel leads around visible walls.
   bool avoids_walls = false;
 
-  // Longer ways, beyond the threshold, are retracted whatever they cross: an open one that is much
-  // longer than all of the file would ooze.
+  // Moves longer than this, and than the threshold, retract whatever they cross: an unretracted one
+  // much longer than all in the file would ooze.
   double longest_open_mm = 1e9;
 
-  // Not learnt but asked for: for a new way across a visible wall filament is pulled back however
-  // short the way is, so that no layer has more such ways with an open nozzle than the file.
+  // Requested, not learned: a new move across a visible wall retracts however short it is, so that
+  // no layer has more unretracted crossings than the file.
   bool spares_walls = false;
 };
 
-// Looks at some two dozen layers spread over the file. The threshold is the slicer's setting if the
-// file holds it; else the shortest way that was retracted, but no more than the usual 1.5 mm if
-// straight ways across visible walls were retracted whenever they were longer than that.
+// Examines about two dozen layers spread over the file. The threshold is the slicer's setting if
+// the file has it. Otherwise it is the shortest move that retracted, but at most the usual 1.5 mm
+// if straight moves across visible walls retracted whenever they were longer than that.
 RetractionHabit LearnRetraction(const GcodeFile& file);
 
-// LearnRetraction, and what new ways have to keep to under every policy.
+// LearnRetraction, and what new moves must obey under every policy.
 RetractionHabit HabitOfNewWays(const GcodeFile& file);
 
-// A new way as it is written.
+// A new travel move as it is written.
 struct TravelWay {
   Vertex from;
   Vertex to;
   bool retracts = false;
-  bool crosses = false;     // a visible wall, and there is no way around
-  bool grazes = false;      // a visible wall with one of its bends
-  double mm = 0;            // bends included
-  std::vector<Vertex> via;  // the bends of the way around visible walls; empty: it is straight
+  bool crosses = false;     // a visible wall, and there is no detour
+  bool grazes = false;      // a visible wall, at one of its bends
+  double mm = 0;            // including bends
+  std::vector<Vertex> via;  // the bends of the detour around visible walls; empty: straight
 };
 
-// The same for one layer: top and bottom layers are often retracted where others are not.
+// The same for one layer: top and bottom layers often retract where others do not.
 class TravelRules {
  public:
-  // `outlines` and `walls` are those of `layer`; `habit` and `walls` outlive the rules.
+  // `outlines` and `walls` belong to `layer`; `habit` and `walls` must outlive the rules.
   TravelRules(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
               const std::vector<Outline>& outlines, const VisibleWalls& walls);
 
-  // Whether to pull back for the way from `a` to `b`, where a path of `feature` begins.
+  // Whether the move from `a` to `b`, where a path of `feature` begins, retracts.
   bool Retracts(Vertex a, Vertex b, Feature feature) const;
 
-  // How the way is written for which it says whether to retract.
+  // How to write the move about which Retracts decides.
   TravelWay WayOf(Vertex a, Vertex b, Feature feature) const;
 
-  // Whether the file shows that ways to paths of `feature` are retracted wherever they lead.
+  // Whether the file shows that moves to paths of `feature` always retract.
   bool AlwaysRetracts(Feature feature) const;
 
-  // Where new ways are led around visible walls; null if the file's are not.
+  // The detours of new moves around visible walls; null if the file's travel makes none.
   const Detours* detours() const { return detours_ ? &*detours_ : nullptr; }
 
  private:
@@ -91,7 +91,7 @@ class TravelRules {
 
   const RetractionHabit& habit_;
   const VisibleWalls& walls_;
-  const std::optional<Detours> detours_;  // if the file has any
+  const std::optional<Detours> detours_;  // if the file makes detours
   RetractionCounts inside_;
 };
 
