@@ -1,4 +1,4 @@
-// What the rules find in one layer: breaks, and what has to be compared with the whole print.
+// What the rules find in one layer: breaks, and observations to compare with the whole print.
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_FINDINGS_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_FINDINGS_H_
@@ -16,7 +16,7 @@
 
 namespace traverse::gcode {
 
-// A break as a rule states it; names of files and rule are added to it.
+// A break in a rule's words; names of files and rule are added later.
 struct Finding {
   VerifyRule rule = VerifyRule::kSamePrint;
   uint32_t original_line = 0;
@@ -25,20 +25,20 @@ struct Finding {
   std::string what;
 };
 
-// Where something was seen.
+// Where something was observed.
 struct Seen {
   uint32_t line = 0;
   int64_t layer = -1;
   int64_t count = 0;
-  float longest_mm = 0;  // of sideways moves, the longest
+  float longest_mm = 0;  // the longest of sideways moves
 };
 
-// Something at one speed, or under one acceleration.
+// Anything at one speed, or with one acceleration.
 using SpeedKey = uint64_t;
 
-// A way from path to path, as far as its height goes.
+// A travel move between paths, with its heights.
 struct WayProfile {
-  // Pieces of the way, [from, to] above the layer.
+  // Pieces of the travel move, [from, to] above the layer.
   struct Piece {
     float from_mm = 0;
     float to_mm = 0;
@@ -48,11 +48,11 @@ struct WayProfile {
   int64_t layer = -1;
   uint32_t first = 0;  // in LiftLog::pieces
   uint32_t end = 0;
-  uint64_t ends = 0;  // a digest of its two points
+  uint64_t ends = 0;  // a digest of its two end points
 };
 
-// The kinds of ways: with filament pulled back or not, between layers or within one, across outer
-// walls or not.
+// The kinds of travel moves: retracted or not, between layers or within one, across outer walls or
+// not.
 inline constexpr size_t kWayKinds = 8;
 
 struct LiftLog {
@@ -62,22 +62,22 @@ struct LiftLog {
   void Append(const LiftLog& other);
 };
 
-// How low a way leads beside the heights of what it connects.
+// How low a travel move goes compared with the heights that it connects.
 enum class WayRise : uint8_t { kLevel, kUp, kDown, kCount };
 
 struct LowestWay {
-  float above_mm = 0;  // the higher one of the two heights; less than 0: below it
+  float above_mm = 0;  // the higher of the two heights; less than 0: below it
   uint32_t line = 0;
   int64_t layer = -1;
   WayRise rise = WayRise::kLevel;
 };
 
-// How far a move leads sideways on its way down.
+// How far a move leads sideways while descending.
 struct Descent {
   float length_mm = 0;
   uint32_t line = 0;
   int64_t layer = -1;
-  WayRise rise = WayRise::kLevel;  // of the way that it is part of
+  WayRise rise = WayRise::kLevel;  // of the travel that it belongs to
 };
 
 // How often the head rises between two paths.
@@ -88,21 +88,21 @@ struct RepeatedLift {
   int64_t layer = -1;
 };
 
-// A way from path to path.
+// The travel between two paths.
 struct WayLength {
   float length_mm = 0;
-  float open_mm = 0;        // of it, with filament not pulled back
+  float open_mm = 0;        // the part of it without a retraction
   float excess_mm = 0;      // beyond the straight line
   bool turns_back = false;  // one of its moves leads back to where the one before began
-  bool to_layer = false;    // with an open nozzle, from one layer to the next
-  // With filament pulled back all the way, from one layer to the next.
+  bool to_layer = false;    // unretracted, from one layer to the next
+  // Retracted all the way, from one layer to the next.
   bool retracted_to_layer = false;
-  bool was_retracted = false;  // the original has filament pulled back on the way to this layer
+  bool was_retracted = false;  // the original retracts on the travel to this layer
   uint32_t line = 0;
   int64_t layer = -1;
 };
 
-// The height that a move states, and the slope on which it comes to it; 0: it does not rise.
+// The height that a move states, and the slope on which it reaches it; 0: it does not rise.
 struct StatedHeight {
   int64_t um = 0;
   int64_t slope = 0;  // um in 10 mm
@@ -110,30 +110,30 @@ struct StatedHeight {
   int64_t layer = -1;
 };
 
-// Filament pulled back, and what undoes it.
+// A retraction, and what undoes it.
 struct RetractionCycle {
   uint64_t tool = 0;
   Micro pulled = 0;
   Micro pushed = 0;
   bool firmware = false;
-  bool early = false;        // pushed before the way is done
-  bool in_parts = false;     // pushed bit by bit on the way
-  bool idle = false;         // no way between the two
-  float late_mm = 0;         // of the way, gone before it was pulled back
+  bool early = false;        // pushed before the travel is done
+  bool in_parts = false;     // pushed in several parts during the travel
+  bool idle = false;         // no travel between the two
+  float late_mm = 0;         // of the travel, before the retraction
   bool pushed_high = false;  // above what is printed on either side
   bool pulled_high = false;
-  bool known = false;     // all its moves are moves of the original
+  bool known = false;     // the original has all of its moves too
   uint64_t identity = 0;  // of all its moves
   uint32_t line = 0;
   int64_t layer = -1;
 };
 
 struct WipeDeviation {
-  float off_mm = 0;     // where its moves end
+  float off_mm = 0;     // at the ends of its moves
   float astray_mm = 0;  // halfway
-  float pull = 0;       // filament pulled back per mm of it
-  float steepest = 0;   // the same of its longer moves, one by one, the most
-  float uneven_mm = 0;  // filament pulled by some point of it more, or less, than evenly
+  float pull = 0;       // filament retracted per mm
+  float steepest = 0;   // the same for its longer moves, one by one; the most
+  float uneven_mm = 0;  // by how much, at some point, its filament is off an even rate
   float length_mm = 0;
   uint32_t line = 0;
   uint32_t original_line = 0;
@@ -150,7 +150,7 @@ struct Box {
   }
 };
 
-// A way under an acceleration that only shorter ones of its layer are under.
+// A travel move with an acceleration that only shorter ones of its layer have.
 struct LongWay {
   uint64_t acceleration = 0;
   float length_mm = 0;
@@ -158,39 +158,39 @@ struct LongWay {
   int64_t layer = -1;
 };
 
-// Where a layer's new moves lie farthest to one side.
+// Where a layer's new moves extend farthest to one side.
 struct FarPoint {
   Point at;
   uint32_t line = 0;
   int64_t layer = -1;
 };
 
-// How high a way leads, above the bed.
+// The greatest height of travel, above the bed.
 struct HighestPoint {
   double z_mm = 0;
-  uint32_t line = 0;  // 0: there is no such way
+  uint32_t line = 0;  // 0: there is no such move
   int64_t layer = -1;
 };
 
-// What one file shows in some of its layers.
+// What some layers of one file show.
 struct Observations {
   std::array<absl::flat_hash_map<uint64_t, Seen>, static_cast<size_t>(MoveKind::kCount) + 1> feeds;
   std::array<absl::flat_hash_map<uint64_t, Seen>, static_cast<size_t>(MoveKind::kCount) + 1>
       accelerations;
-  absl::flat_hash_map<uint64_t, Seen> tail_feeds;  // of what goes on along a path
+  absl::flat_hash_map<uint64_t, Seen> tail_feeds;  // of moves that continue along a path
   absl::flat_hash_map<uint64_t, Seen> signatures;
   absl::flat_hash_set<uint64_t> script_signatures;
   absl::flat_hash_map<int64_t, Seen> heights;  // um above the layer, of moves that state Z
-  absl::flat_hash_set<int64_t> slopes;       // um of rise in 10 mm, of moves that rise on their way
-  std::vector<StatedHeight> stated;          // what the other file's moves state
-  absl::flat_hash_map<int64_t, Seen> rises;  // the same of moves straight up
-  HighestPoint first_way;                    // of the way from the start script
-  std::vector<LowestWay> lowest;             // ways that lead lower than what they connect
+  absl::flat_hash_set<int64_t> slopes;       // um of rise in 10 mm, for moves that rise on the way
+  std::vector<StatedHeight> stated;          // by the other file's moves
+  absl::flat_hash_map<int64_t, Seen> rises;  // the same for moves straight up
+  HighestPoint first_way;                    // of the travel from the start script
+  std::vector<LowestWay> lowest;             // travel that goes lower than what it connects
   std::vector<LowestWay> deepest;            // moves straight down that do so
-  std::vector<Descent> descents;             // the longest of each way
+  std::vector<Descent> descents;             // the longest of each travel
   absl::flat_hash_map<int64_t, Seen> radii;  // um, of arcs that rise
   std::vector<RepeatedLift> lifts_of_links;  // links that rise more than once
-  absl::flat_hash_set<uint64_t> deposit_accelerations;  // of the whole file, as the box is
+  absl::flat_hash_set<uint64_t> deposit_accelerations;  // of the whole file, like the box
   std::vector<FarPoint> farthest;
   Box box;                             // of all points
   std::vector<WayLength> way_lengths;  // the greatest of each layer
@@ -205,8 +205,8 @@ struct Observations {
 
 struct LayerFindings {
   std::vector<Finding> breaks;
-  Observations was;  // all that the original does
-  Observations is;   // what the other file does otherwise
+  Observations was;  // everything that the original does
+  Observations is;   // what the other file does differently
 };
 
 }  // namespace traverse::gcode

@@ -1,4 +1,4 @@
-// Numbers and checksums of lines, for the verifier: are they such as a machine takes them?
+// Checks numbers and checksums of lines for the verifier: would a machine accept them?
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_LINE_NUMBERS_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_LINE_NUMBERS_H_
@@ -10,16 +10,16 @@
 
 namespace traverse::gcode {
 
-// A text whose lines were numbered: from a command on each has its number, equal steps apart, and
-// all have a checksum, which is right, or none has.
+// A text whose lines were numbered: from some command on each has its number, equal steps apart,
+// and all have a correct checksum, or none has one.
 struct Unnumbered {
-  std::string text;  // without them; each line is where it was
+  std::string text;  // without them; each line is at the same position
 
-  // Of where the numbers begin, the steps, and whether there are checksums: how they run on.
+  // A digest of where the numbers begin, their steps, and whether there are checksums.
   uint64_t form = 0;
 };
 
-// Nothing for a text that is not like that.
+// Unset for any other text.
 std::optional<Unnumbered> WithoutNumbers(std::string_view text);
 
 }  // namespace traverse::gcode

@@ -1,4 +1,4 @@
-// What a verification finds.
+// The findings of a verification.
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_REPORT_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_REPORT_H_
@@ -14,25 +14,25 @@
 
 namespace traverse {
 
-// What has to hold. kSamePrint is what the others stand on: a print that is another one is not
-// looked at any further.
+// The rules. kSamePrint is the basis of the others: a different print is not examined any
+// further.
 enum class VerifyRule : uint8_t {
   kSamePrint,    // the same deposits under the same conditions, and the same lines beside them
-  kWholePaths,   // what adjoins in a path stays adjoined; a loop may be cut once
-  kOrder,        // paths that lie side by side keep the order that the slicer has reasons for
+  kWholePaths,   // what adjoins in a path still adjoins; a loop may be cut once
+  kOrder,        // paths side by side keep the order that the slicer has reasons for
   kDirection,    // of open walls, overhanging and outer loops
   kSeam,         // where outer walls begin
   kOpenWays,     // across outer walls
-  kLifts,        // no way lies lower than such ways do
-  kRetractions,  // how far filament is pulled back, and what undoes it
-  kStandstill,   // filament pushed where the head stands still
-  kSpeeds,       // feed rate and acceleration of what is no deposit
+  kLifts,        // no travel is lower than such travel is
+  kRetractions,  // how far filament is retracted, and what undoes it
+  kStandstill,   // filament pushed while the head stands still
+  kSpeeds,       // feed rate and acceleration of everything but deposits
   kWipes,        // along the path that they follow, and after those that had them
-  kCommands,     // none within a path, none in vain
+  kCommands,     // none within a path, none without effect
   kProgress,     // M73
-  kScripts,      // nothing of them between paths
-  kPathEnds,     // moves that go on along a path
-  kBounds,       // the room that the moves lie in
+  kScripts,      // nothing from them between paths
+  kPathEnds,     // moves that continue along a path
+  kBounds,       // the area of all moves
   kCount,
 };
 
@@ -48,7 +48,7 @@ struct VerifyBreak {
   VerifyRule rule = VerifyRule::kSamePrint;
   size_t original_line = 0;   // 0: none
   size_t optimised_line = 0;  // 0: none
-  int64_t layer = -1;         // from 0, as the verifier counts them; -1: of no layer
+  int64_t layer = -1;         // from 0, as the verifier counts them; -1: in no layer
   std::string message;        // with both files and lines
 };
 
@@ -56,7 +56,7 @@ struct VerifyReport {
   VerifyPermissions permissions;
   std::array<int64_t, static_cast<size_t>(VerifyRule::kCount)> counts{};
 
-  // By rule, and then by line; of each rule the first kMostBreaks.
+  // By rule, and then by line; the first kMostBreaks of each rule.
   std::vector<VerifyBreak> breaks;
 
   static constexpr size_t kMostBreaks = 10'000;

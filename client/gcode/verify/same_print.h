@@ -1,4 +1,4 @@
-// The first of the rules: the same deposits under the same conditions, and the lines beside them.
+// The first rule: the same deposits under the same conditions, and the lines beside them.
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_SAME_PRINT_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_SAME_PRINT_H_
@@ -12,15 +12,15 @@
 
 namespace traverse::gcode {
 
-// One of the two files, as far as it has been cut.
+// One of the two files, as far as it has been cut into sections.
 struct Side {
   std::string_view text;
   const std::string& name;
   const Sections& cut;
 };
 
-// The first difference of the sections `first` to `end` - 1; nothing if there is none. `whole`: the
-// files end with section `end` - 1, and have as many.
+// The first difference in the sections `first` to `end` - 1; unset if there is none. `whole`: the
+// files end with section `end` - 1, and have equally many.
 std::optional<VerifyBreak> FirstDifference(const Side& original, const Side& optimised,
                                            size_t first, size_t end, bool whole);
 

@@ -12,8 +12,8 @@
 
 namespace traverse::gcode {
 
-// A multiset of digests: equal multisets have equal sums, and others have not, but for accidents of
-// probability 2^-64.
+// A digest of a multiset: equal multisets have equal sums, and others do not, except by accidents
+// of probability 2^-64.
 struct DigestSet {
   uint64_t count = 0;
   uint64_t sum = 0;
@@ -35,18 +35,18 @@ struct DigestSet {
 
 struct Section {
   size_t first_line = 0;
-  size_t last_line = 0;  // the one that ends it
+  size_t last_line = 0;  // the line that ends it
   DigestSet deposits;
   DigestSet notes;        // comments and M73, in lines of their own range:
   size_t first_note = 0;  // behind a change of height they are counted from the last deposit on
   size_t last_note = 0;
   Micro lowest = INT64_MAX;  // height of all moves in XY
-  uint64_t moves = 0;    // of what is no deposit, and what sets something, before the first deposit
-  bool command = false;  // it ends with a command
-  uint64_t header = 0;   // of the comments between the mark of a layer and the first way
+  uint64_t moves = 0;     // of everything but deposits, and of settings, before the first deposit
+  bool command = false;   // it ends with a command
+  uint64_t header = 0;    // of the comments between the mark of a layer and the first travel
   uint64_t sequence = 0;  // of all comments, in their order, before the first deposit
 
-  // Of the deposits and of the comments, in their order; notes say to which section these belong.
+  // Of deposits and comments, in their order; notes say to which section comments belong.
   uint64_t order = 0;
   uint64_t said = 0;
 
@@ -64,27 +64,27 @@ struct Section {
 
 struct Sections {
   std::vector<Section> sections;
-  size_t of_script = 0;  // the first ones, before the first mark of a layer
+  size_t of_script = 0;  // the first sections, before the first mark of a layer
 };
 
-// Cuts a text, line by line; comments before the first command that begin with `ignored` are left
-// out, but for those in pictures.
+// Cuts a text, line by line. Ignores comments before the first command that begin with `ignored`,
+// except those in pictures.
 class SectionCutter {
  public:
   // Which sections ended with a line.
   struct Cut {
-    bool before = false;  // one ended in front of it, with a change of height
+    bool before = false;  // one ended before it, with a change of height
     bool behind = false;  // one ends with it
   };
 
-  // `marked`: what stands before the first mark of a layer is a script.
+  // `marked`: the text before the first mark of a layer is a script.
   SectionCutter(std::string_view ignored, bool marked);
 
   // `mark`: the line is the mark of a layer.
   Cut Take(const VerifyLine& line, const VerifyMachine& machine, bool mark);
   void Finish(const VerifyMachine& machine);
 
-  // What follows is no start script.
+  // No start script follows.
   void EndScript() { in_script_ = false; }
 
   // Index of the section that the next line belongs to.
@@ -111,12 +111,12 @@ class SectionCutter {
   bool in_script_;
   Micro height_ = 0;
   bool has_height_ = false;
-  bool in_head_ = true;  // no command so far
+  bool in_head_ = true;  // no command yet
   bool in_picture_ = false;
-  bool in_header_ = false;  // no way and no command that ends a section since the mark of a layer
+  bool in_header_ = false;  // no travel, and no section has ended, since the mark of a layer
 };
 
-// The lines `first` to `last`, for a message: calls visit(line) for each of them.
+// For messages: calls visit(line) for the lines `first` to `last`.
 template <typename Visit>
 void ForEachLine(std::string_view text, size_t first, size_t last, Visit visit) {
   VerifyMachine machine(text);

@@ -1,4 +1,4 @@
-// Characters and digests for the verifier, which shares none of them with the reader.
+// Characters and digests for the verifier, which shares none of this with the reader.
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_TEXT_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_TEXT_H_
@@ -12,7 +12,7 @@ inline bool Begins(std::string_view text, std::string_view with) {
   return text.substr(0, with.size()) == with;
 }
 
-// Without blanks, tabs and the carriage return around it.
+// Without blanks, tabs and carriage returns at both ends.
 inline std::string_view TrimLine(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) {

@@ -1,21 +1,21 @@
-// Does one G-code print what another one prints, with nothing changed that is not allowed?
+// Checks that one G-code prints what another one prints, and that only allowed changes were made.
 //
-// Both are run on a machine of the verifier's own, which shares no code with the reader and the
-// writer whose work it checks, and cut into sections: a section ends at every line whose place
-// matters (marks of layers and objects, tool changes, temperatures, modes, whatever is not known),
-// and where what is printed changes its height. First (VerifyRule::kSamePrint),
+// Runs both on a machine of its own, which shares no code with the reader and the writer whose work
+// it checks, and cuts them into sections. A section ends at every line whose position matters
+// (marks of layers and objects, tool changes, temperatures, modes, anything unknown), and where the
+// height of what is printed changes. First (VerifyRule::kSamePrint),
 // - the lines that end sections are equal, in their order; so are where the head is and whether
 //   filament is pulled back at lines that are not known, and the fan at all of them;
 // - in each section the extruded segments are equal as a multiset: both ends, arc, filament, feed
 //   rate, feature, width, height, acceleration, jerk, fan, flow, tool, and whether filament was
 //   pulled back; and the comments and M73 lines as a multiset;
 // - no travel is lower than the section's lowest in the original.
-// Then each path is found again, and the rules of rules/rules.h look at the order of the paths, at
-// where they begin and in which direction, and at all that is done between them. A move that the
-// original has too, from the same point to the same point in the same layer, breaks no rule: what a
-// slicer does itself is never refused. All of it holds whether or not a machine does the lines that
-// begin with a slash. Where all lines of both files are numbered on and their checksums are right,
-// that is what is looked at of these (line_numbers.h).
+// Then it finds each path again. The rules of rules/rules.h check the order of the paths, where
+// they begin and in which direction, and everything between them. A move that the original has too,
+// from the same point to the same point in the same layer, breaks no rule: what a slicer does
+// itself is never refused. All of this must hold whether or not a machine executes the lines that
+// begin with a slash. If all lines of both files have consecutive numbers and correct checksums,
+// line_numbers.h checks those.
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_VERIFIER_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_VERIFIER_H_
@@ -32,15 +32,15 @@
 namespace traverse {
 
 struct VerifyOptions {
-  // What may have been changed. Unset: what the line at the head of the optimised file says, or
-  // `safe` if there is none.
+  // What may have changed. Unset: what the line at the head of the optimised file says, or `safe`
+  // if there is none.
   std::optional<VerifyPermissions> permissions;
 
-  // Bit (1 << rule) for each rule to check; kSamePrint always is.
+  // Bit (1 << rule) for each rule to check; kSamePrint is always checked.
   uint32_t rules = UINT32_MAX;
 };
 
-// Options to check no more than that the same is printed.
+// Options that only check that both print the same.
 inline VerifyOptions OnlySamePrint() {
   VerifyOptions options;
   options.rules = RuleBit(VerifyRule::kSamePrint);
@@ -48,13 +48,13 @@ inline VerifyOptions OnlySamePrint() {
 }
 
 // All breaks of the rules, with both lines of each: `b.gcode:118: WHAT (lifts; a.gcode:97)`. The
-// names are for messages. Uses two threads. Time linear in the texts; memory for some megabytes of
-// each, and some bytes for each section and each way between paths.
+// names are for messages. Uses two threads. Time is linear in the texts; memory holds some
+// megabytes of each, and some bytes per section and per travel between paths.
 VerifyReport CheckGcode(std::string_view original, const std::string& original_name,
                         std::string_view optimised, const std::string& optimised_name,
                         const VerifyOptions& options = {});
 
-// OK if there is no break; FailedPrecondition with the first one otherwise.
+// OK if there is no break; otherwise FailedPrecondition with the first one.
 absl::Status VerifyGcode(std::string_view original, const std::string& original_name,
                          std::string_view optimised, const std::string& optimised_name,
                          const VerifyOptions& options = {});

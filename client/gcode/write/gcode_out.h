@@ -1,4 +1,4 @@
-// Text under construction, and the machine as it is behind it.
+// Text under construction, and the state of the machine after it.
 
 #ifndef TRAVERSE_CLIENT_GCODE_WRITE_GCODE_OUT_H_
 #define TRAVERSE_CLIENT_GCODE_WRITE_GCODE_OUT_H_
@@ -18,57 +18,57 @@ std::string LineEndOf(std::string_view text);
 
 class GcodeOut {
  public:
-  // Appends to `text`, which outlives this object. `at` is the machine behind what `text` holds.
+  // Appends to `text`, which must outlive this object. `at` is the machine after the present text.
   GcodeOut(const GcodeFile& file, const PartStart& at, std::string& text);
 
-  // The machine behind the text, but for what Set() left to do.
+  // The machine after the text, without what Set() has yet to write.
   PartStart at;
 
   const GcodeFile& file() const { return file_; }
 
-  // Appends a part of the file as it is, but for the extruder's absolute positions, which go on
-  // from where they are here. `before` and `behind` are the machine around the part in the file.
-  // M73 lines are left out if `without_progress`.
+  // Appends a part of the file unchanged, except the extruder's absolute positions, which continue
+  // from here. `before` and `behind` are the machine around the part in the file. Leaves out M73
+  // lines if `without_progress`.
   void Copy(Offset begin, Offset end, const PartStart& before, const PartStart& behind,
             bool without_progress);
 
-  // Appends one line as it is. What it does to the machine is the caller's.
+  // Appends one line unchanged. The caller accounts for its effect on the machine.
   void Raw(std::string_view line) {
     Flush();
     text_.append(line);
   }
 
-  // Sees to it that the slots in `mask` are as in `state` when the next line is appended: nothing
-  // is set that is set to something else before anything was done.
+  // Ensures that the slots in `mask` are as in `state` when the next line is appended. Nothing is
+  // set that would be set again before anything is done.
   void Set(const PrintState& state, SlotMask mask);
 
-  // The line `setter`, which stands here in the file.
+  // Notes the line `setter`, which stands here in the file.
   void SetBy(std::string_view line, SlotMask slots);
 
   // Appends the setters that are still to be written.
   void Flush();
 
-  // Appends a line of a link that moves nothing in XY: an absolute E word goes on from here, and X
-  // and Y words, if it has any, say where the head is already.
+  // Appends a line of a link that moves nothing in XY: an absolute E word continues from here, and
+  // X and Y words, if any, state where the head already is.
   void LinkLine(const LinkStep& step);
 
-  // Appends a line of a link that moves to where it does in the file.
+  // Appends a line of a link that moves to the same position as in the file.
   void MoveLine(const LinkStep& step);
 
-  // The same of a line that moves Z, to `z` instead of where it leads in the file.
+  // The same for a line that moves Z, to `z` instead of its height in the file.
   void LiftLine(const LinkStep& step, Decimal z);
 
-  // Appends `line` as a move to (x, y) at `z` with `feed` in force: the words of the line are
-  // changed, and those that are needed and lacking added.
+  // Appends `line` as a move to (x, y) at `z` with `feed` in force: changes the words of the line,
+  // and adds needed words that it lacks.
   void Travel(std::string_view line, const Position& to, Decimal feed);
 
-  // A line of our own: `G1` with the words given, in the styles of the file.
+  // A line of our own: `G1` with the given words, in the styles of the file.
   void Feed(Decimal feed);
   void Lift(Decimal z, Decimal feed);
   void Pull(Decimal filament, Decimal feed);
 
-  // G1 (or another `command`) to `to`; with an E word if `extrudes`. `words` are put behind X and
-  // Y, `comment` at the end.
+  // G1 (or another `command`) to `to`; with an E word if `extrudes`. `words` follow X and Y,
+  // `comment` stands at the end.
   void Segment(std::string_view command, const Position& to, bool extrudes, Decimal filament,
                Decimal feed, std::string_view words, std::string_view comment);
 

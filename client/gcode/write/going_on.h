@@ -1,5 +1,5 @@
-// Moves that go on along a closed path, behind its end and without filament: CuraEngine wipes its
-// outer walls so. They are part of how a path ends, wherever it is made to end.
+// Moves that continue along a closed path after its end, without filament: CuraEngine wipes its
+// outer walls so. They belong to the end of a path, wherever that end is.
 
 #ifndef TRAVERSE_CLIENT_GCODE_WRITE_GOING_ON_H_
 #define TRAVERSE_CLIENT_GCODE_WRITE_GOING_ON_H_
@@ -12,7 +12,7 @@
 
 namespace traverse::gcode {
 
-// The move that goes on along block `block`, as the file has it; nothing for most.
+// The move that continues along block `block`, as in the file; unset for most blocks.
 std::optional<LinkStep> ReadGoingOn(const GcodeFile& file, uint32_t block);
 
 }  // namespace traverse::gcode

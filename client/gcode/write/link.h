@@ -1,4 +1,4 @@
-// A link, line by line: what stands between two paths.
+// A link, line by line: the text between two paths.
 
 #ifndef TRAVERSE_CLIENT_GCODE_WRITE_LINK_H_
 #define TRAVERSE_CLIENT_GCODE_WRITE_LINK_H_
@@ -17,44 +17,44 @@ struct LinkStep {
   Line line;
   Position from;
   Position to;
-  Decimal filament = 0;  // pushed or pulled back; of kSetE: what the register is set to
+  Decimal filament = 0;  // pushed or retracted; for kSetE the new value of the register
   Decimal feed = 0;      // in force for this line
   SlotMask slots = 0;    // kSlot
   uint32_t words = 0;    // of commands
-  double way_mm = 0;     // of motion in XY, along the arc if it is one
+  double way_mm = 0;     // length in XY, along the arc if it is one
   bool arc = false;      // G2 or G3
 };
 
 struct Link {
   std::vector<LinkStep> steps;
 
-  // Steps [0, fixed) stay as they are; `behind_fixed` is the machine behind them.
+  // Steps [0, fixed) stay unchanged; `behind_fixed` is the machine after them.
   size_t fixed = 0;
   PartStart behind_fixed;
 
-  // Index of the travel move that arrives at the next path: the last one in XY, or the last one
-  // with filament pulled back if there are such; not among the fixed ones. -1: none.
+  // Index of the travel move that arrives at the next path: the last one in XY, or the last
+  // retracted one if there are such; not among the fixed ones. -1: none.
   int arrival = -1;
   bool arrives_retracted = false;
 
-  // Filament pulled back before the arrival; 0 if none.
+  // Filament retracted before the arrival; 0 if none.
   Decimal pulled = 0;
 
-  // What holds during the arrival.
+  // The print state during the arrival.
   PrintState travel_state{};
 
-  // The height of what is printed on either side.
+  // The heights of what is printed before and after.
   Decimal z_before = 0;
   Decimal z_behind = 0;
 
-  // The arrival leads, or begins, this much above both of them.
+  // The arrival runs, or begins, this much above both of them.
   Decimal lift = 0;
 
-  // The arrival itself leads down to what follows, which lies lower than what was printed before.
+  // The arrival itself descends to the next path, which lies lower than the one before.
   bool sinks = false;
 
-  // Moves in XY that rise to there as well: how long they are, and whether the arrival, level,
-  // follows them. 0: it rises by moves of Z alone, or not at all.
+  // If moves in XY rise to that height: their length, and whether the level arrival follows them.
+  // 0: it rises only by moves of Z, or not at all.
   double ramp_mm = 0;
   bool ramp_ends = false;
 
@@ -68,11 +68,11 @@ struct Link {
 
   // True if step `i` stands before the arrival.
   bool Leaves(size_t i) const { return static_cast<int>(i) < arrival; }
-  bool firmware = false;  // retracts by G10
+  bool firmware = false;  // retracts with G10
   bool wipes = false;
   bool departs = false;  // steps before the arrival begin with a short move away from the path
 
-  // The height at which the arrival leads, or that of what follows if it leads lower.
+  // The height of the arrival, or that of the next path if the arrival is lower.
   Decimal top = 0;
 };
 

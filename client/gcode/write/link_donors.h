@@ -1,4 +1,4 @@
-// Links of a file that may serve as templates for ways that the file does not have.
+// Links of a file that may serve as templates for travel that the file does not have.
 
 #ifndef TRAVERSE_CLIENT_GCODE_WRITE_LINK_DONORS_H_
 #define TRAVERSE_CLIENT_GCODE_WRITE_LINK_DONORS_H_
@@ -17,30 +17,30 @@ class LinkDonors {
  public:
   explicit LinkDonors(const GcodeFile& file);
 
-  // A link that may be followed on the way to `block`: without marks, between two paths in the
-  // modes of `block` that do not meet and are printed for the part itself (no scripts, no towers),
-  // which retracts or not, and wipes if `wipes` and any does. Of those, the nearest in the layer of
-  // `block`, else the nearest before it, else the nearest behind it. Where the file lifts in most
-  // such links, one that lifts. Nothing if there is none.
+  // A link that may be the template for travel to `block`: without marks, in the modes of `block`,
+  // between two paths of the part itself that do not meet (no scripts, no towers), which retracts
+  // or not as asked, and wipes if `wipes` and any link does. Of those the nearest in the layer of
+  // `block`, else the nearest before it, else the nearest after it. If the file lifts in most such
+  // links, one that lifts. Unset if there is none.
   std::optional<uint32_t> Find(uint32_t block, bool retracts, bool wipes = false) const;
 
-  // How fast the ways of a layer are may be its own: the link of the layer of `block` that tells it
-  // where `link` is followed. One that retracts as `link` does, if there is any. Nothing if `link`
-  // is of that layer, or the layer has no way to learn from.
+  // A layer's travel may have speeds of its own: the link of the layer of `block` that shows them
+  // when `link` is the template. One that retracts as `link` does, if there is any. Unset if `link`
+  // is of that layer, or the layer has no travel to learn from.
   std::optional<uint32_t> PaceFor(uint32_t block, uint32_t link) const;
 
-  // Link `block` itself may be followed.
+  // Whether link `block` itself may be a template.
   bool MayFollow(uint32_t block) const;
 
-  // Most ways of the kind of link `block`, in its layer, are higher than what is printed, and it is
+  // Most links like link `block` in its layer rise above what is printed, but it does
   // not.
   bool LacksLift(uint32_t block) const;
 
-  // The highest lift of any of them, in the unit of the file.
+  // The highest lift of all links, in the unit of the file.
   Decimal highest_lift() const { return highest_lift_; }
 
  private:
-  // Of what kind a link is: its modes, and whether it retracts.
+  // The kind of a link: its modes, and whether it retracts.
   using Kind = std::pair<uint16_t, bool>;
 
   bool Travels(uint32_t block) const;

@@ -1,16 +1,16 @@
-// Writes the way from one path to the next, where it is not the way that the file has.
+// Writes the travel from one path to the next, if it is not the travel that the file has there.
 //
-// Nothing is made up: every such link follows one of the file's own, its template.
+// Nothing is invented: every such link follows one of the file's own, its template.
 //
 //   M204 S1000 | short move in, pull back, wipe, up | travel | down, prime | M204 S800, ;TYPE:
 //   `--------'   `-------------------------------'    `----'   `---------'   `---------------'
 //   state of     departure: from what was printed     to the   arrival:      state of the path
 //   the travel   before, where its own link has one   path     as it is
 //
-// The template is the link that leads to the path in the file, if it retracts or not as is needed,
-// and lifts where others there do; else the nearest one of that kind (link_donors.h). What it lifts
-// is written as a height above what is printed here, in the form that it has: a move of Z before
-// the way, a spiral, or a slope over the first stretch of the way.
+// The template is the link that leads to the path in the file, if it retracts or not as needed, and
+// lifts where others there do; otherwise the nearest link of that kind (link_donors.h). Its lift is
+// written as a height above what is printed here, in the form that it has: a move of Z before the
+// travel, a spiral, or a slope over the first stretch of the travel.
 
 #ifndef TRAVERSE_CLIENT_GCODE_WRITE_LINK_WRITER_H_
 #define TRAVERSE_CLIENT_GCODE_WRITE_LINK_WRITER_H_
@@ -32,20 +32,20 @@ struct LinkRequest {
   const PlacedPath* from = nullptr;
   const PlacedPath* to = nullptr;
 
-  // Filament has to be pulled back for the way.
+  // The travel must retract.
   bool retract = false;
 
   // The link with the marks of a boundary (a new layer, an object) that is due here; all its lines
-  // are written. It stands before block `boundary` in the file.
+  // are written. In the file it stands before block `boundary`.
   std::optional<uint32_t> boundary;
 
-  // Travel is led around visible walls, where there is such a way; null: it is straight.
+  // Detours around visible walls, if travel makes them; null: travel is straight.
   const Detours* detours = nullptr;
 
-  // The file wipes behind `from`.
+  // The file wipes after `from`.
   bool wipe = false;
 
-  // M73 lines are left out of what is copied as it is.
+  // Leave out M73 lines of what is copied unchanged.
   bool without_progress = false;
 };
 
@@ -54,8 +54,8 @@ class LinkWriter {
   LinkWriter(const GcodeFile& file, const LinkDonors& donors, GcodeOut& out)
       : file_(file), donors_(donors), out_(out) {}
 
-  // Appends the link, up to where `to` begins, its state and feed rate set. The output is behind
-  // `from`. The lines that mean nothing here and stand before `to` in the file come with it.
+  // Appends the link, up to where `to` begins, with its state and feed rate set. The output ends
+  // after `from`. Also appends the lines without meaning here that stand before `to` in the file.
   void Write(const LinkRequest& request);
 
  private:

@@ -1,4 +1,4 @@
-// One path as it is to be done: as given, the other way round, or from another start.
+// One path in the form in which it is printed: as given, reversed, or from another start.
 
 #ifndef TRAVERSE_CLIENT_GCODE_WRITE_PLACED_PATH_H_
 #define TRAVERSE_CLIENT_GCODE_WRITE_PLACED_PATH_H_
@@ -12,8 +12,8 @@
 
 namespace traverse::gcode {
 
-// A block with its entry: the vertex at which a closed path is begun; of an open path 0, or 1 for
-// the other way round. 0 is always as the file has it.
+// A block with its entry: for a closed path the vertex at which it begins; for an open path 0, or 1
+// if it is reversed. 0 is always as in the file.
 struct Placement {
   uint32_t block = 0;
   uint32_t entry = 0;
@@ -26,10 +26,10 @@ struct Placement {
 // The paths of a layer in the order to print them.
 using LayerOrder = std::vector<Placement>;
 
-// The other way round: the same segments from the last to the first, each with its own extrusion,
-// feed rate and state; arcs turn the other way; a wiping tail is made at the new end. From another
-// start: segments k to the last, the gap between end and start without extrusion if there is one,
-// and segments 0 to k - 1.
+// Reversed: the same segments from the last to the first, each with its own extrusion, feed rate
+// and state; arcs turn the other way; a wiping tail is made at the new end. From another start:
+// segments k to the last, then without extrusion the gap between end and start, if there is one,
+// then segments 0 to k - 1.
 class PlacedPath {
  public:
   PlacedPath(const GcodeFile& file, const Placement& placement);
@@ -41,25 +41,25 @@ class PlacedPath {
   bool as_given() const { return placement_.as_given(); }
   const Block& block() const { return file_->blocks[placement_.block]; }
 
-  // Where the head has to be to begin, and where it is at the end, tail included.
+  // Where the head must be to begin, and where it is at the end, after the tail.
   const Position& first() const { return first_; }
   const Position& last() const { return last_; }
 
-  // What holds for the first segment, and its feed rate.
+  // The print state of the first segment, and its feed rate.
   const PrintState& state() const { return *state_; }
   Decimal feed() const { return feed_; }
 
   // Its first line sets the feed rate itself.
   bool states_feed() const { return states_feed_; }
 
-  // What holds, and how fast, behind it.
+  // The state and the feed rate after it.
   PartStart Behind() const;
 
-  // Appends the path; `out` is where it begins, with its state and feed rate set. M73 lines are
-  // left out if `without_progress`, and always where the path is not as given.
+  // Appends the path; `out` is where it begins, with its state and feed rate set. Leaves out M73
+  // lines if `without_progress`, and always if the path is not as given.
   void Write(bool without_progress, GcodeOut& out) const;
 
-  // The way back over what was just printed, for a wipe: on from the start of a closed path, back
+  // Points back over what was just printed, for a wipe: on from the start of a closed path, back
   // along an open one. At most `length` mm, at least one point if the path has any length.
   std::vector<Position> WayBack(double length_mm) const;
 

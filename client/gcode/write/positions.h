@@ -9,7 +9,7 @@
 
 namespace traverse::gcode {
 
-// Positions of our own making are written in thousandths.
+// New positions are written in thousandths.
 inline Decimal RoundedWord(double value) {
   return static_cast<Decimal>(std::llround(value * 1000)) * (kDecimalOne / 1000);
 }
@@ -18,8 +18,8 @@ inline double LengthXy(const Position& from, const Position& to) {
   return std::hypot(ToDouble(to.x - from.x), ToDouble(to.y - from.y));
 }
 
-// The point `way` beyond `from` in the direction of `to`, at the height of `from`; not rounded up
-// to `to` itself.
+// The point `way` beyond `from` towards `to`, at the height of `from`; not rounded up to `to`
+// itself.
 inline Position Along(const Position& from, const Position& to, double way) {
   const double length = LengthXy(from, to);
   Position at = from;

@@ -1,4 +1,4 @@
-// What ways between paths come to before they are written: an estimate.
+// Estimated totals of travel between paths, before it is written.
 
 #ifndef TRAVERSE_CLIENT_GCODE_WRITE_WAY_TOTALS_H_
 #define TRAVERSE_CLIENT_GCODE_WRITE_WAY_TOTALS_H_
@@ -7,13 +7,13 @@
 
 namespace traverse::gcode {
 
-// Of one way from path to path, or of all ways of an order.
+// For the travel between two paths, or for all travel of an order.
 struct WayTotals {
   double seconds = 0;
   double mm = 0;
   int64_t crossings = 0;  // of visible walls
-  int64_t open = 0;       // of these, with filament not pulled back
-  int64_t too_long = 0;   // of these, longer than may be
+  int64_t open = 0;       // of these, those without a retraction
+  int64_t too_long = 0;   // of these, those longer than allowed
   int64_t retractions = 0;
 
   WayTotals& operator+=(const WayTotals& other) {

@@ -1,4 +1,4 @@
-// One layer of both files, with what the rules ask again and again.
+// One layer of both files, with facts that the rules need again and again.
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_LAYER_PAIR_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_LAYER_PAIR_H_
@@ -14,7 +14,7 @@
 
 namespace traverse::gcode {
 
-// What the slicer's settings at the end of the file say.
+// Settings that the slicer states at the end of the file.
 struct SlicerSettings {
   bool monotonic_top = true;
   bool monotonic_bottom = false;
@@ -49,7 +49,7 @@ class LayerPair {
     return is_.sections[is_.layers[layer_].first_section + section];
   }
 
-  // Of a path of the original: what it is; of an unnamed one by its shape, and ironing by its flow.
+  // The class of a path of the original: by name or else by shape; of ironing by its flow.
   PathClass ClassOf(uint32_t path) const { return facts_[path - first_path_].path_class; }
   bool IsWall(uint32_t path) const { return IsWallClass(ClassOf(path)); }
   bool Closed(uint32_t path) const { return facts_[path - first_path_].closed; }
@@ -60,24 +60,24 @@ class LayerPair {
   }
   const std::vector<Piece>& pieces() const { return pieces_; }
 
-  // The outer walls of the layer, and overhanging ones.
+  // The outer walls of the layer, including overhanging ones.
   const PieceGrid& outer_walls() const { return outer_walls_; }
 
   // True if the original has the same move, from the same point to the same point, in this layer.
   bool IsKnown(const TraceMove& move) const { return known_.contains(move.identity); }
 
-  // The moves at the beginning of link `path` + 1 that go on along the path, without filament and
-  // no faster than it was printed, unless at `any_speed`; `pieces` are those of the path.
+  // The moves at the beginning of link `path` + 1 that continue along the path, without filament
+  // and no faster than it was printed, unless `any_speed`. `pieces` belong to the path.
   static uint32_t TailMoves(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces,
                             bool any_speed = false);
 
-  // The length of the ways of `link` across outer walls that are open (or retracted); 0 if there is
-  // none. The ends of a way, which may lie on walls, do not count, nor do `skipped` moves before
-  // it.
+  // The length of the travel of `link` across outer walls without a retraction (`open`) or with
+  // one; 0 if there is none. The ends, which may lie on walls, do not count, nor do `skipped` moves
+  // before it.
   double CrossingLength(const TraceChunk& chunk, uint32_t link, bool open,
                         uint32_t skipped = 0) const;
 
-  // True if the straight way from `a` to `b` crosses an outer wall, its ends apart.
+  // True if the straight move from `a` to `b`, without its ends, crosses an outer wall.
   bool CrossesOuterWall(Point a, Point b) const;
 
  private:

@@ -1,4 +1,4 @@
-// Distances and crossings in the plane, and a grid to find what is near.
+// Distances and crossings in the plane, and a grid that finds near pieces.
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_PLANE_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_PLANE_H_
@@ -24,7 +24,7 @@ double DistanceToPiece(Point p, Point a, Point b);
 // Between two straight lines; 0 if they cross.
 double DistanceOfPieces(Point a, Point b, Point c, Point d);
 
-// True if the two cross, or touch other than in their ends.
+// True if the two cross, or touch elsewhere than at their ends.
 bool PiecesCross(Point a, Point b, Point c, Point d);
 
 // A straight piece of a path.
@@ -34,11 +34,11 @@ struct Piece {
   uint32_t path = 0;
 };
 
-// Appends the pieces of `path`: arcs become chords that lie within 0.01 mm of them, or nearly so.
+// Appends the pieces of `path`: arcs become chords that lie within about 0.01 mm of them.
 void AppendPieces(const TraceChunk& chunk, uint32_t path, std::vector<Piece>& pieces);
 
-// Finds pieces by where they are. Cells are as wide as asked for, or wider where the pieces lie far
-// apart. Memory: a few numbers a piece and cell that it meets.
+// Finds pieces by position. Cells have the requested width, or more if the pieces lie far apart.
+// Memory: a few numbers per piece and per cell that it meets.
 class PieceGrid {
  public:
   PieceGrid(std::vector<Piece> pieces, double cell_mm);
@@ -64,7 +64,7 @@ class PieceGrid {
     }
   }
 
-  // The same for the cells along the way from `a` to `b`.
+  // The same for the cells along the move from `a` to `b`.
   template <typename Visit>
   void ForEachAlong(Point a, Point b, Visit visit) const {
     if (empty()) return;
@@ -77,14 +77,14 @@ class PieceGrid {
   }
 
  private:
-  // Ways may lead farther than an int counts cells.
+  // Moves may lead farther than an int can count cells.
   static int Clamped(double cell, int count) {
     return static_cast<int>(std::clamp(cell, 0.0, static_cast<double>(count - 1)));
   }
   int CellX(double x) const { return Clamped((x - low_.x) / cell_mm_, columns_); }
   int CellY(double y) const { return Clamped((y - low_.y) / cell_mm_, rows_); }
 
-  // Row by row: the cells between where the way enters the row and where it leaves it.
+  // Row by row: the cells between where the move enters the row and where it leaves it.
   template <typename Visit>
   void ForEachCell(Point a, Point b, Visit visit) const {
     if (a.y > b.y) std::swap(a, b);

@@ -1,4 +1,4 @@
-// What moves along the end of a path without filament, and is no travel.
+// Moves along the end of a path without filament, which are not travel.
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_TAILS_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_TAILS_H_
@@ -13,14 +13,14 @@ namespace traverse::gcode {
 // The tails of the paths of one layer, in the original or in the other file.
 class Tails {
  public:
-  // At `any_speed`: but only what lies on the path, and does not go straight on beyond its end.
+  // With `any_speed`: only moves that lie on the path and do not go straight on beyond its end.
   Tails(const LayerPair& layer, bool original, bool any_speed = false) {
     const TraceChunk& chunk = original ? layer.was() : layer.is();
     const uint32_t first = original ? layer.first_path_was() : layer.first_path_is();
     const uint32_t end = original ? layer.end_path_was() : layer.end_path_is();
     first_link_ = first;
     moves_.assign(end - first + 1, 0);
-    // The way to the layer begins with what goes on along the last path of the one before.
+    // The travel to the layer begins with moves along the last path of the layer before.
     if (first > 0) {
       std::vector<Piece> pieces;
       AppendPieces(chunk, first - 1, pieces);

@@ -10,26 +10,26 @@
 
 namespace traverse::gcode {
 
-// One path of the original as the other file has it.
+// One path of the original, as it is in the other file.
 struct Visit {
   uint32_t path = 0;      // of the original
-  uint32_t entry = 0;     // the segment that it begins with, from 0 in the path
+  uint32_t entry = 0;     // the segment with which it begins, from 0 in the path
   uint32_t segments = 0;  // that follow one another
   bool forward = true;
   uint32_t first_path = 0;  // of the other file: where it begins,
-  uint32_t last_path = 0;   // and, being cut in two, where it ends
+  uint32_t last_path = 0;   // and, if it was cut in two, where it ends
   uint32_t first_segment = 0;
   uint32_t last_segment = 0;
 };
 
-// A loop that ends this short of its start is closed: slicers leave a gap of 0.15 nozzle diameters.
+// A loop that ends this close to its start is closed: slicers leave a gap of 0.15 nozzle diameters.
 inline constexpr double kLoopGapMm = 0.131;
 
 bool IsClosed(const TraceChunk& chunk, uint32_t path);
 
 // The visits of the section `was` of `original` in section `is` of `optimised`, in the order of the
-// latter. A loop that is begun elsewhere is one visit; a path that is cut in two is several, none
-// of which has all its segments. REQUIRES: the sections hold the same deposits.
+// latter. A loop that begins elsewhere is one visit. A path that was cut in two is several, none
+// with all its segments. REQUIRES: the sections have the same deposits.
 std::vector<Visit> FindVisits(const TraceChunk& original, const TraceSection& was,
                               const TraceChunk& optimised, const TraceSection& is);
 

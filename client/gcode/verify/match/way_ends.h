@@ -1,4 +1,4 @@
-// By which two points a way of the original and one of the other file are known to be the same.
+// Identifies a travel move of the original in the other file by its two end points.
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_WAY_ENDS_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_WAY_ENDS_H_
@@ -12,7 +12,7 @@
 
 namespace traverse::gcode {
 
-// A digest of the end of the path before and the start of the path behind, to the micrometre.
+// A digest of the end of the path before and the start of the path after, to the micrometre.
 // REQUIRES: link > 0.
 inline uint64_t EndsOf(const TraceChunk& chunk, uint32_t link) {
   assert(link > 0);

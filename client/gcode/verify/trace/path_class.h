@@ -1,4 +1,4 @@
-// What a path is part of, as the comments of many slicers name it.
+// The kind of thing that a path belongs to, as the comments of many slicers name it.
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_PATH_CLASS_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_PATH_CLASS_H_
@@ -14,10 +14,10 @@ enum class PathClass : uint8_t {
   kOuterWall,
   kInnerWall,
   kOverhang,  // a wall, outer or inner
-  kWall,      // a wall of which no more is known
+  kWall,      // a wall about which no more is known
   kInfill,
   kSkin,  // solid infill
-  kTop,   // the surface that is seen from above
+  kTop,   // the surface that is visible from above
   kBottom,
   kBridge,
   kIroning,
@@ -37,12 +37,12 @@ inline bool IsWallClass(PathClass path_class) {
          path_class == PathClass::kOverhang || path_class == PathClass::kWall;
 }
 
-// The class that a comment line sets for what follows: `;TYPE:External perimeter`,
-// `; FEATURE: Outer wall`, `; feature outer perimeter`, `; outer perimeter`, `; 'Perimeter Path',`,
-// `;shell`. Nothing for other comments; kUnnamed for a feature of a name that is not known.
+// The class that a comment line sets for the following paths: `;TYPE:External perimeter`, `;
+// FEATURE: Outer wall`, `; feature outer perimeter`, `; outer perimeter`, `; 'Perimeter Path',`,
+// `;shell`. Unset for other comments; kUnnamed for a feature of unknown name.
 std::optional<PathClass> ClassOfComment(std::string_view comment);
 
-// The same of a comment on a move, as Slic3r writes it: `; perimeter`.
+// The same for a comment on a move, as Slic3r writes it: `; perimeter`.
 std::optional<PathClass> ClassOfMoveComment(std::string_view comment);
 
 }  // namespace traverse::gcode

@@ -1,4 +1,4 @@
-// Reads one of the two files of a verification, some layers at a time.
+// Reads one of the two files of a verification, a few layers at a time.
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_SIDE_READER_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_SIDE_READER_H_
@@ -18,10 +18,10 @@ bool HasLayerMarks(std::string_view text);
 
 class SideReader {
  public:
-  // `ignored` begins comments that are left out.
+  // Ignores comments that begin with `ignored`.
   SideReader(std::string_view text, std::string_view ignored, bool marked);
 
-  // The next layers, of `bytes` of text or a little more.
+  // The next layers, with `bytes` of text or a little more.
   TraceChunk NextBytes(size_t bytes);
 
   // The next layers, as far as section `end_section`.
@@ -29,10 +29,10 @@ class SideReader {
 
   bool done() const { return done_; }
 
-  // VerifyMachine::line_ends of what has been read.
+  // VerifyMachine::line_ends of the text read so far.
   uint32_t line_ends() const { return machine_.line_ends(); }
 
-  // Of what has been read.
+  // The sections read so far.
   const Sections& cut() const { return cutter_.cut(); }
 
  private:

@@ -1,13 +1,13 @@
-// A print as the rules look at it: paths, what stands between them, sections and layers.
+// A print as the rules see it: paths, what stands between them, sections and layers.
 //
 //   layer    | section            | section | ...
 //   path     link path link path    link path
 //   segment       |||||     ||||         ||||
 //
-// A path is a run of deposits with no other move between them. Link i holds the moves and commands
-// before path i; the last link of a chunk stands behind its last path, and is the first one of the
-// chunk that follows. A section ends at a line whose place matters (sections.h). A layer is a run
-// of sections at one height, and of one mark of the slicer's.
+// A path is a run of deposits without any other move between them. Link i has the moves and
+// commands before path i; the last link of a chunk follows its last path, and is also the first
+// link of the next chunk. A section ends at a line whose position matters (sections.h). A layer is
+// a run of sections at one height, within one mark of the slicer.
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_TRACE_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_TRACE_H_
@@ -48,18 +48,18 @@ struct TracePath {
   Micro feed = 0;              // of its last segment
   uint64_t flow_settings = 0;  // VerifyMachine::FlowDigest at its first segment
   PathClass path_class = PathClass::kUnnamed;
-  bool overhangs = false;  // some of it is of class kOverhang
-  bool outer = false;      // some of it is of class kOuterWall
-  bool joined = false;     // begins where the path before it ends, without a move between
+  bool overhangs = false;  // part of it is of class kOverhang
+  bool outer = false;      // part of it is of class kOuterWall
+  bool joined = false;     // begins where the path before it ends, without a move in between
   uint32_t size() const { return end_segment - first_segment; }
 };
 
 enum class MoveKind : uint8_t {
   kTravel,  // sideways, no filament
-  kWipe,    // sideways, filament pulled back
+  kWipe,    // sideways, retracting
   kUp,
   kDown,
-  kRetraction,  // filament pulled back at a standstill
+  kRetraction,  // retracting at a standstill
   kPriming,     // filament pushed at a standstill
   kCount,
 };
@@ -68,7 +68,7 @@ std::string_view MoveKindName(MoveKind kind);
 
 struct TraceMove {
   uint64_t identity = 0;      // from, to, filament, speed, acceleration
-  uint64_t signature = 0;     // of the line but for its coordinates
+  uint64_t signature = 0;     // of the line without its coordinates
   uint64_t acceleration = 0;  // VerifyMachine::AccelerationDigest
   uint64_t tool = 0;
   Point from;
@@ -76,7 +76,7 @@ struct TraceMove {
   Point middle;  // of an arc, halfway along it
   double z_from_mm = 0;
   double z_to_mm = 0;
-  double radius_mm = 0;  // of an arc by its center
+  double radius_mm = 0;  // for an arc, by its center
   Micro filament = 0;
   Micro feed = 0;
   uint32_t line = 0;
@@ -96,8 +96,8 @@ struct TraceMove {
 struct TraceLink {
   uint32_t first_move = 0;
   uint32_t end_move = 0;
-  bool new_layer = false;  // a mark of a layer or a change of height lies in it
-  bool scripted = false;   // lines that are not known lie in it
+  bool new_layer = false;  // it contains a mark of a layer or a change of height
+  bool scripted = false;   // it contains unknown lines
 };
 
 // A command within a path, before segment `segment`.
@@ -107,28 +107,28 @@ struct TraceCommand {
   uint32_t line = 0;
 };
 
-// Filament pushed beyond what had been pulled back, by moves of its alone.
+// Filament pushed beyond what had been retracted, by moves of the extruder alone.
 struct Standstill {
   uint32_t section = 0;
   uint32_t line = 0;
   Micro amount = 0;
-  bool fresh = false;  // nothing had been pulled back
+  bool fresh = false;  // nothing had been retracted
   Point at;
 };
 
-// A setting that got the value back that it had at the last move.
+// A setting that returned to its value at the last move.
 struct SetBack {
   uint32_t section = 0;
   uint32_t line = 0;
 };
 
-// What may be wrong with the marks of a wipe's begin and end.
+// What may be wrong with the marks at the begin and end of a wipe.
 enum class MarkFaultKind : uint8_t {
-  kUnmarked,  // a wipe without them
+  kUnmarked,  // a wipe without marks
   kBeginsTwice,
   kEndsTwice,
-  kEmpty,    // nothing moves between the two
-  kDeposit,  // something is printed between the two
+  kEmpty,    // nothing moves between the marks
+  kDeposit,  // something is printed between the marks
 };
 
 struct MarkFault {
@@ -160,7 +160,7 @@ struct TraceChunk {
   std::vector<TracePath> paths;
   std::vector<TraceLink> links;  // one more than paths
   std::vector<TraceMove> moves;
-  std::vector<uint64_t> accelerations;  // that deposits are under, some of them more than once
+  std::vector<uint64_t> accelerations;  // of deposits, some of them more than once
   std::vector<TraceCommand> commands;   // by segment
   std::vector<Standstill> standstills;  // by line
   std::vector<SetBack> set_backs;       // by line
