@@ -33,34 +33,34 @@ namespace traverse {
 struct MilpOptions {
   double gap = 0.15;  // relative, at which a model counts as solved: thesis table 4.1
 
-  // One row more a position, which no route breaks: sum over p, q of link[p,q,k] = 1. The thesis
+  // Adds one row per position, which no route breaks: sum over p, q of link[p,q,k] = 1. The thesis
   // has it in step 3 (4.12) and step 4 (4.21), but not in step 2.
   bool strengthened = false;
 
-  // Columns and rows beyond which a model is not made at all, and there is no route of it.
+  // Beyond this many columns and rows no model is built, and so there is no route.
   double most_columns_and_rows = 200000;
 };
 
 struct MilpRoute {
   Route route;                  // empty if none was found
-  std::optional<double> start;  // value of the route it began with; unset: it began cold
+  std::optional<double> start;  // value of the route from which it started; unset: it started cold
   double value = 0;             // of the route in the model
   std::optional<double> bound;  // of the model's routes, by Cbc's word
   bool complete = false;        // the gap was reached, or there is no route
   int columns = 0;
   int rows = 0;
   int nodes = 0;
-  double seconds = 0;  // that the programme took
+  double seconds = 0;  // for the programme
   std::vector<MixedProgram::Incumbent> incumbents;
 };
 
-// Solves `program` from `known`, the values of a route that it begins with, or cold if they are
-// empty, and tells what came of it but for the route.
+// Solves `program` from `known`, the values of the route from which it starts, or cold if they are
+// empty. Describes the result, except its route.
 MilpRoute SolveAndDescribe(const MixedProgram& program, const std::vector<double>& known,
                            const MilpOptions& options, Budget& budget, std::vector<double>& values);
 
-// The best sequence of `problem`, any_order over contours, whose moves link neighbors alone: node i
-// of `linked` is path i, the last node the start. Moves of `known`, a route or empty, count as
+// The best sequence of `problem`, any_order over contours, with moves only between neighbors: node
+// i of `linked` is path i, the last node the start. Moves of `known`, a route or empty, count as
 // linked: the result is no worse.
 MilpRoute SolveContourMilp(const LayerProblem& problem, const SymmetricRelation& linked,
                            const Route& known, const MilpOptions& options, Budget& budget);

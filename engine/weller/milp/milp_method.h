@@ -11,15 +11,15 @@
 
 namespace traverse {
 
-// Each programme begins with the route that `first` finds for it, whose links count as neighbors:
-// so there always is a sequence. Without `first` it begins cold, as the thesis's did; where it ends
-// without a sequence the order given stands in. Where the budget has a deadline, step 2 may use
-// half of the time.
+// Each programme starts from the route that `first` finds for it, whose moves count as neighbors,
+// so that there always is a sequence. Without `first` it starts cold, as in the thesis; if it ends
+// without a sequence, the given order is used. If the budget has a deadline, step 2 may use half of
+// the time.
 class MilpMethod : public SequenceMethod {
  public:
   using FirstRoute = std::function<Route(const LayerProblem&, Budget&)>;
 
-  // `time_limit_seconds` of each programme.
+  // `time_limit_seconds`: for each programme.
   MilpMethod(const MilpOptions& options, double time_limit_seconds, FirstRoute first);
 
   std::vector<TabuElite> ArrangeContours(const LayerProblem& problem, const LinkRules& rules,
@@ -27,12 +27,12 @@ class MilpMethod : public SequenceMethod {
   std::vector<TabuElite> ArrangeRasters(const LayerProblem& problem, const LinkRules& rules,
                                         const Route& start, Budget& budget) override;
 
-  // Of the programmes solved: those of step 2, and those of step 4. One each in sequential
-  // deposition, in the order solved; of a layer's islands in interleaved deposition.
+  // The programmes solved: those of step 2, and those of step 4, in the order solved. One each in
+  // sequential deposition; one per island in interleaved deposition.
   const std::vector<MilpRoute>& contours() const { return contours_; }
   const std::vector<MilpRoute>& rasters() const { return rasters_; }
 
-  // Whether a limit of time ended one of them.
+  // Whether a time limit ended any of them.
   bool timed_out() const { return timed_out_; }
 
  private:

@@ -42,10 +42,10 @@ struct RasterGroups {
   const SymmetricRelation* linked = nullptr;  // of groups; null: all are neighbors
 };
 
-// The best route of `problem`, whose paths are open ones, that keeps groups together and moves
-// between neighbors alone. The plan's tree is not looked at. Moves of `known`, such a route or
-// empty, count as between neighbors: the result is no worse. Last costs the move to the problem's
-// finish, if it has one.
+// The best route of `problem`, which has only open paths, that keeps groups together and moves only
+// between neighbors. Ignores the plan's tree. Moves of `known`, such a route or empty, count as
+// between neighbors: the result is no worse. Last costs the move to the problem's finish, if it has
+// one.
 MilpRoute SolveRasterMilp(const LayerProblem& problem, const RasterGroups& groups,
                           const Route& known, const MilpOptions& options, Budget& budget);
 

@@ -1,4 +1,4 @@
-// The islands of a plan, and the plan's classical form, which the framework's four steps work on.
+// The islands of a plan, and the plan's classical form, on which the framework's four steps work.
 //
 // Source: thesis 3.1 (p. 55-57): a layer is built island by island in the data, contours first and
 // then rasters in the route. SPEC section 1.
@@ -16,9 +16,9 @@ namespace traverse {
 
 // One connected region of a layer. Members are indices into Plan::paths, in their order there.
 struct Island {
-  std::vector<int> contours;  // all of them, the outer one too
+  std::vector<int> contours;  // all of them, including the outer one
   std::vector<int> rasters;   // all open paths
-  int outer = -1;             // the contour around the island; -1 if it is not known
+  int outer = -1;             // the contour around the island; -1 if unknown
 };
 
 struct IslandLayout {
@@ -27,21 +27,21 @@ struct IslandLayout {
 };
 
 // The islands of `plan` by Path::island, in the order of their first paths. A path without an
-// island (Path::island < 0, as in plans that did not come from islands) is an island of its own,
-// without an outer contour: then no contour is suppressed in step 1, near raster points are unknown
-// (NearRasterPoints falls back to spaced points), and step 4 may order the rasters freely.
-// O(paths log paths). Others are let on through `budget`, which may be null.
+// island (Path::island < 0, as in plans that did not come from islands) is an island of its own
+// without an outer contour: then step 1 suppresses no contour, near raster points are unknown
+// (NearRasterPoints falls back to spaced points), and step 4 may order the rasters freely. O(paths
+// log paths). Yields to others through `budget`, which may be null.
 IslandLayout IslandsOf(const Plan& plan, Budget* budget = nullptr);
 
-// A layer in sequential deposition: in any order all contours, then in any order all open paths.
-// Indices into Plan::paths, in the order given.
+// A layer in sequential deposition: all contours in any order, then all open paths in any order.
+// Indices into Plan::paths, in the given order.
 struct ClassicalLayer {
   std::vector<int> contours;
   std::vector<int> rasters;
 };
 
-// Unset if `plan` is anything else than in_order(any_order(contours), any_order(open paths))
-// without `before` pairs. Either any_order may be empty or missing, and the in_order then too.
+// Unset unless `plan` is in_order(any_order(contours), any_order(open paths)) without
+// `before` pairs. Either any_order may be empty or missing, and then so may the in_order.
 // O(paths).
 std::optional<ClassicalLayer> AsClassicalLayer(const Plan& plan);
 

@@ -25,9 +25,9 @@ namespace traverse {
 // Node i is a contour (the header of each function says which), the last node the origin.
 using Neighborhood = SymmetricRelation;
 
-// What the circles are drawn around and what they meet.
+// A contour with the circle around it, and the points that other circles meet.
 struct CircledContour {
-  std::vector<Point> points;  // spaced points (SP) of the contour; the origin alone for the origin
+  std::vector<Point> points;  // spaced points (SP) of the contour; for the origin only itself
   Point center;               // of its bounding box (BBCP)
   double shorter_side_mm = 0;
 };
@@ -38,28 +38,28 @@ struct NeighborhoodOptions {
   double step_mm = 5;          // by which it grows, > 0
 };
 
-// A contour as the circles see it. `spacing_mm` is that of SP.
+// The circle of a contour. `spacing_mm` is that of SP.
 CircledContour CircleOf(const Path& contour, double spacing_mm);
 
 // The circles' neighbors: node i is contours[i], the last node is `origin`. A circle meets a
-// contour if a spaced point lies in it; it meets the origin never, but the origin has a circle of
+// contour if a spaced point lies in it. It never meets the origin, but the origin has a circle of
 // its own. It stops at the first radius, in steps, at which it meets enough contours (all that it
-// then meets are neighbors), or when it reaches the farthest corner of the box around everything:
-// the engine knows no build envelope. Reciprocal. Components are not linked yet. Unfinished if the
-// budget ends. About O(contours^2 + contours x points of the near ones).
+// then meets are neighbors), or when it reaches the farthest corner of the box around everything,
+// because the engine knows no build envelope. Reciprocal. Components are not linked yet. Incomplete
+// if the budget ends. About O(contours^2 + contours x points of the near ones).
 Neighborhood GrowCircles(const std::vector<CircledContour>& contours, Point origin,
                          const NeighborhoodOptions& options, Budget& budget);
 
-// Links the components: of each two of them the two nearest spaced points make their contours
-// neighbors (single linkage), as line 8a on p. 64 has it, "for all clusters there are". A tree of
-// the shortest links alone would leave three clusters in a row without a sequence that does not end
-// in the middle. More than 200 components get the tree. Unfinished if the budget ends. `contours`
+// Links the components: for each two of them, the two nearest spaced points make their contours
+// neighbors (single linkage), as line 8a on p. 64 says, "for all clusters there are". With a tree
+// of only the shortest links, three clusters in a row would have no sequence except ones that end
+// in the middle. More than 200 components get the tree. Incomplete if the budget ends. `contours`
 // and `origin` as in GrowCircles.
 void LinkClusters(const std::vector<CircledContour>& contours, Point origin,
                   Neighborhood& neighborhood, Budget& budget);
 
 // Step 4, p. 67: the neighborhood of step 2 between islands. Node i is island i of `layout`; two
-// are neighbors if any contours of theirs are. `contours[i]` is the path of node i of
+// are neighbors if any of their contours are. `contours[i]` is the path of node i of
 // `neighborhood`.
 Neighborhood IslandNeighborhood(const IslandLayout& layout, const std::vector<int>& contours,
                                 const Neighborhood& neighborhood);

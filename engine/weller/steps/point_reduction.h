@@ -28,30 +28,30 @@ struct IslandAnalysis {
       suppressed;  // outer contours of islands with inner ones; step 3 brings them back
 };
 
-// Step 1 (b), island analysis, p. 60: an island with inner contours is represented by these alone,
-// as the head has to cross the outer one to reach them. `contours` are those to arrange; an island
-// whose inner contours are not among them keeps its outer one. O(contours).
+// Step 1 (b), island analysis, p. 60: the inner contours of an island represent it alone, because
+// the head must cross the outer one to reach them. `contours` are those to arrange; an island whose
+// inner contours are not among them keeps its outer one. O(contours).
 IslandAnalysis AnalyzeIslands(const IslandLayout& layout, const std::vector<int>& contours);
 
 // The vertices at which `contour` may be entered: Path::allowed, or all of them.
 std::vector<int> EntryVertices(const Path& contour);
 
 // Step 1 (c), spaced points (SP), p. 61: walks along the entry vertices and drops those that are
-// nearer than `spacing_mm` (Dp) to the last one kept; the first one is always kept. Indices of
-// vertices in the order of EntryVertices. O(vertices).
+// nearer than `spacing_mm` (Dp) to the last one kept; always keeps the first. Indices of vertices
+// in the order of EntryVertices. O(vertices).
 std::vector<int> SpacedPoints(const Path& contour, double spacing_mm);
 
-// Step 1 (d), near raster points (NRP), p. 62: for each end of each raster of the contour's island
-// the entry vertex of `contour` that is nearest to it (the first of equally near ones). Indices of
-// vertices, rising, each once. An island without rasters has none: then the spaced points.
-// O(vertices x rasters).
+// Step 1 (d), near raster points (NRP), p. 62: for each end of each raster of the contour's
+// island, the nearest entry vertex of `contour` (the first of equally near ones). Indices of
+// vertices, rising, each once. For an island without rasters, the spaced points. O(vertices x
+// rasters).
 std::vector<int> NearRasterPoints(const Plan& plan, const IslandLayout& layout, int contour,
                                   double spacing_mm);
 
 // Step 1 (e), bounding box center point (BBCP), p. 62, of the entry vertices. O(vertices).
 Point BoxCenterPoint(const Path& contour);
 
-// The points that stand for `contour` (index into Plan::paths) in step 2: at least one.
+// The points that represent `contour` (index into Plan::paths) in step 2: at least one.
 std::vector<Point> RepresentativePoints(const Plan& plan, const IslandLayout& layout, int contour,
                                         Representation representation, double spacing_mm);
 

@@ -20,10 +20,10 @@
 
 namespace traverse {
 
-// The `keep` best sequences (by cost with the penalties for links) on the way from `from` to
-// `guide`, both excluded, best first; of equal ones the earlier. Fewer if the way is shorter or the
-// budget ends. O(steps x children) evaluations of swaps. REQUIRES: both are orders of the problem's
-// plan, an any_order of paths without `before` pairs.
+// The `keep` best sequences (by cost with penalties) between `from` and `guide`, without these two,
+// best first; of equal ones the earlier. Fewer if there are not so many, or the budget ends.
+// O(steps x children) evaluations of swaps. REQUIRES: both are orders of the problem's plan, an
+// any_order of paths without `before` pairs.
 std::vector<Route> RelinkPaths(const LayerProblem& problem, const LinkRules& rules,
                                const Route& from, const Route& guide, int keep, Budget& budget);
 

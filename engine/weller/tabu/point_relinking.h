@@ -1,4 +1,4 @@
-// Step 3 of the framework by path relinking: a point of each contour of a sequence that stays.
+// Step 3 of the framework by path relinking: a point for each contour of a fixed sequence.
 //
 //   from     a3 b1 c7 d2      random points of the visibility polygons
 //            a3 b5 c7 d2      each step takes over the guide's point that costs least; what is
@@ -30,9 +30,9 @@ struct SequencedPoints {
   Point start;
 };
 
-// The guide at first: the vertices nearest to `near` ([position]: what stood for the contour in the
+// The first guide: the vertices nearest to `near` ([position]: what represented the contour in the
 // preliminary sequence). Then `rounds` paths, each from random vertices to the guide. O(rounds
-// contours^2). A valid route of the contours, however soon the budget ends.
+// contours^2). Always a valid route of the contours, however soon the budget ends.
 Route RelinkPoints(const SequencedPoints& sequence, const std::vector<Point>& near,
                    const TravelCost& cost, int rounds, Rng& rng, Budget& budget);
 

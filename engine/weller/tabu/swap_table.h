@@ -1,12 +1,12 @@
 // The deltas of all swaps of the children of one node, kept up to date.
 //
-// Child x at position i and child y at position j > i + 1 change places at the cost of
+// Swapping child x at position i and child y at position j > i + 1 costs
 //
 //   placed[j][x] + placed[i][y] - present[i] - present[j]
 //
-// where placed[k][c] is what the two moves around position k cost with child c there, between the
-// entries that are around it now. A swap changes what is around four positions, so four rows are
-// computed anew, and evaluating all swaps of n children takes O(n) costs of moves instead of
+// where placed[k][c] is the cost of the two moves around position k with child c there, between the
+// entries that are around it now. A swap changes the surroundings of four positions, so four rows
+// are computed again, and evaluating all swaps of n children takes O(n) costs of moves instead of
 // O(n^2).
 
 #ifndef TRAVERSE_ENGINE_WELLER_TABU_SWAP_TABLE_H_
@@ -23,7 +23,7 @@ namespace traverse {
 // Memory: 8 n^2 bytes.
 class SwapTable {
  public:
-  // `sequence` outlives the table.
+  // `sequence` must outlive the table.
   SwapTable(const SwapSequence& sequence, int node);
 
   int node() const { return node_; }
@@ -36,8 +36,8 @@ class SwapTable {
     Update();
   }
 
-  // Calls `function(j, delta)` for all j > i, delta being SwapSequence::Evaluate(node, i, j).delta
-  // as of the last update.
+  // Calls `function(j, delta)` for all j > i, where delta is SwapSequence::Evaluate(node, i,
+  // j).delta as of the last update.
   template <typename Function>
   void ForRow(int row, const Function& function) const {
     const size_t i = Index(row);

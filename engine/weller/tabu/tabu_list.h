@@ -15,8 +15,8 @@
 
 namespace traverse {
 
-// A move is known by a key. At most `capacity` moves are forbidden at a time: a new one then takes
-// the place of the oldest. Memory: 16 bytes for each of the moves that were forbidden at a time.
+// A move has a key. At most `capacity` moves are forbidden at a time: a new one then replaces the
+// oldest. Memory: 16 bytes for each of the moves that were forbidden at a time.
 class TabuList {
  public:
   explicit TabuList(int capacity) : capacity_(static_cast<size_t>(capacity)) {}
@@ -27,7 +27,7 @@ class TabuList {
     next_ = 0;
   }
 
-  // Changes the capacity; where it falls, the oldest moves go. O(capacity) if it is another one.
+  // Changes the capacity; if it falls, the oldest moves go. O(capacity) if it changes.
   void Resize(int capacity) {
     const size_t wanted = static_cast<size_t>(capacity);
     if (wanted == capacity_) return;
@@ -40,7 +40,7 @@ class TabuList {
     next_ = kept == wanted ? 0 : kept;
   }
 
-  // Forbids `key` until iteration `until`, that one excluded.
+  // Forbids `key` until iteration `until`, exclusive.
   void Add(uint64_t key, int64_t until) {
     if (capacity_ == 0) return;
     if (entries_.size() < capacity_) {

@@ -15,7 +15,7 @@ namespace traverse {
 
 class TabuMethod : public SequenceMethod {
  public:
-  // `options` outlive the method.
+  // `options` must outlive the method.
   explicit TabuMethod(const TabuOptions& options) : options_(options) {}
 
   std::vector<TabuElite> ArrangeContours(const LayerProblem& problem, const LinkRules& rules,
@@ -27,7 +27,7 @@ class TabuMethod : public SequenceMethod {
     return Search(problem, rules, start, budget);
   }
 
-  // Of the searches so far: the evaluations of all, the diversifications of the shortest.
+  // Over all searches so far: the sum of their evaluations, the diversifications of the shortest.
   int64_t evaluations() const { return evaluations_; }
   int diversifications() const { return diversifications_.value_or(0); }
 

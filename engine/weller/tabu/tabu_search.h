@@ -30,7 +30,7 @@ struct TabuStep {
   int second = 0;
   int64_t iteration = 0;
   int64_t tabu_until = 0;            // iterations below this may not undo it
-  bool aspired = false;              // it was tabu, and taken all the same
+  bool aspired = false;              // it was tabu, but chosen nevertheless
   bool new_intensification = false;  // the list was cleared before it
   double cost = 0;                   // after it, with penalties for links
   double best = 0;                   // of all sequences before it; infinite at first
@@ -42,7 +42,7 @@ struct TabuOptions {
     kSwaps,   // the best sequence so far after random swaps
   };
 
-  int diversifications = 2500;  // >= 1; the first one is the sequence given
+  int diversifications = 2500;  // >= 1; the first one is the given sequence
   double list_size = 1.5;       // moves in the tabu list, per child of an any_order node
   double tenure = 0.1;          // iterations that a move is tabu, per diversification
   int patience = 3;             // moves without gain that end an intensification
@@ -50,19 +50,19 @@ struct TabuOptions {
   double swaps = 0.3;              // of kSwaps: swaps per child, at least 3
   double order_penalty_mm = 1000;  // for each violated pair, as much as a move of that length
 
-  // Reactive: a sequence met again makes the tenure a quarter longer, and one met for the third
-  // time ends the intensification; long without repetition it grows shorter again.
+  // Reactive: a sequence that is met again makes the tenure a quarter longer, and one met for the
+  // third time ends the intensification; long without repetition the tenure shrinks again.
   bool reactive = false;
 
-  // The search as the thesis prints it, without what is ours: the first sequence is random too, and
-  // so are its entries; no descent comes before the moves; the list is carried from one
-  // diversification to the next; there are as many of these as asked for, however few orders there
-  // are; entries change by moves alone, one of which swaps the two ends of a raster. `reactive`
-  // then makes the list longer, as on p. 31, and not the tenure.
+  // The search as the thesis prints it, without our additions: the first sequence is random, and so
+  // are its entries; no descent comes before the moves; the list is kept from one diversification
+  // to the next; there are as many of these as asked for, however few orders there are; entries
+  // change only by moves, one of which swaps the two ends of a raster. `reactive` then lengthens
+  // the list, as on p. 31, and not the tenure.
   bool published = false;
 
-  // Ends the search once so many swaps were evaluated: on large plans, 2500 diversifications would
-  // take minutes. 0: no limit.
+  // Swaps after which the search ends: on large plans, 2500 diversifications would take minutes. 0:
+  // no limit.
   int64_t evaluations = 0;
 
   int elite = 5;  // how many of the best sequences to return
@@ -78,17 +78,17 @@ struct TabuElite {
 };
 
 struct TabuResult {
-  // The best sequences, by cost with the penalties for links, best first, no two of the same cost.
-  // Empty only if no sequence without violated pairs was met, that given included.
+  // The best sequences, by cost with penalties, best first, no two of the same cost. Empty only if
+  // no sequence without violated pairs was met, including the given one.
   std::vector<TabuElite> elite;
   int diversifications = 0;  // done
   int64_t evaluations = 0;   // of swaps
   int64_t moves = 0;         // made
-  int64_t aspirations = 0;   // of these, although they were tabu
+  int64_t aspirations = 0;   // of these, those that were tabu
 };
 
-// Searches from `start`, which a published search does not look at (every path once, the paths of
-// each node together). Deterministic by `problem.seed` unless the budget ends it. A node with up to
+// Searches from `start` (every path once, the paths of each node together), which a published
+// search ignores. Deterministic by `problem.seed` unless the budget ends it. A node with up to
 // SwapCandidates::kAllSwaps children tries all swaps of two of them; one with more tries those of
 // SwapCandidates.
 TabuResult TabuSearch(const LayerProblem& problem, const LinkRules& rules, const Route& start,
