@@ -22,10 +22,10 @@ namespace {
 // What the process sends itself when its port is lost.
 constexpr int kPortLost = SIGUSR1;
 
-// gRPC prints its own view of every error; ours are on one line. Its variables bring it back.
+// gRPC prints its own text for every error; ours are on one line. Its variables bring gRPC's back.
 //
-// One of its errors matters: where a connection cannot be accepted, for want of file descriptors,
-// gRPC 1.51 gives up the port for good and goes on. Its log is the only place that says so.
+// One of its errors matters: if a connection cannot be accepted for lack of file descriptors, gRPC
+// 1.51 gives up the port for good and goes on. Only its log says so.
 void WatchGrpcLog() {
   static const bool print =
       std::getenv("GRPC_VERBOSITY") != nullptr || std::getenv("GRPC_TRACE") != nullptr;

@@ -37,7 +37,7 @@ void InitGrpcPlugins() {
   });
 }
 
-// Takes reflection out of the server being built, as the plugin is there for all servers.
+// Takes reflection out of the server being built, because the plugin applies to all servers.
 class NoReflection : public grpc::ServerBuilderOption {
  public:
   void UpdateArguments(grpc::ChannelArguments* /*arguments*/) override {}
@@ -82,28 +82,28 @@ void SetConnectionLimits(const ConnectionLimits& limits, grpc::ServerBuilder& bu
 // with at once when their streams end.
 constexpr int64_t kCallsOfStreams = 3;
 
-// gRPC has a thread for each open call of reflection, the one service here that blocks: whoever
-// left thousands of them open would have as many threads. Beyond these they are refused.
+// gRPC has a thread for each open call of reflection, the one blocking service here: thousands of
+// open calls would take as many threads. More than these are refused.
 int MaxBlockingThreads() {
   constexpr int kOpenReflections = 16;
   return 2 * static_cast<int>(std::thread::hardware_concurrency()) + kOpenReflections;
 }
 
-// How often files are looked at that operators may change.
+// How often to check the files that operators may change.
 constexpr auto kLookEvery = std::chrono::seconds(1);
 
-// How often it is looked how long calls wait, and how long they may before somebody has to go.
+// How often to check how long calls wait, and how long they may before somebody is turned away.
 constexpr auto kLagEvery = std::chrono::milliseconds(20);
 constexpr std::chrono::duration<double> kMostLag = std::chrono::milliseconds(50);
 
 // For calls that have ended to be done with, at the end of the server.
 constexpr absl::Duration kGrace = absl::Seconds(2);
 
-// For calls that were on their way when the port closed: they are refused as draining refuses them,
-// rather than cut off.
+// For calls that were on their way when the port closed: refuses them as draining does, rather than
+// cutting them off.
 constexpr absl::Duration kLastCalls = absl::Milliseconds(200);
 
-// Waits until `condition` holds, for `timeout` at most. Returns whether it does.
+// Waits until `condition` holds, at most for `timeout`. Returns whether it does.
 bool WaitFor(absl::Duration timeout, const std::function<bool()>& condition) {
   const auto end =
       std::chrono::steady_clock::now() + absl::ToChronoNanoseconds(std::min(timeout, kForever));
@@ -170,10 +170,10 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
 absl::Status Server::Build(const ServerOptions& options) {
   InitGrpcPlugins();
   grpc::ServerBuilder builder;
-  // gRPC looks at the size when it has all of the message. What may come is watched by Connections,
-  // and what has come is looked at by those who know what to say of it.
+  // gRPC checks the size when it has the whole message. Connections watches what may come, and the
+  // readers of a message check what has come and give the error.
   builder.SetMaxReceiveMessageSize(INT_MAX);
-  // A few bytes may unpack to any number, which nobody has counted.
+  // A few bytes may unpack to any number, which nothing has counted.
   for (const auto algorithm : {GRPC_COMPRESS_DEFLATE, GRPC_COMPRESS_GZIP}) {
     builder.SetCompressionAlgorithmSupportStatus(algorithm, false);
   }
@@ -226,7 +226,7 @@ absl::Status Server::AddPort(const ServerOptions& options, grpc::ServerBuilder& 
   }
   ConnectionRules rules;
   rules.max_connections = options.connections.max_connections;
-  // Twice as much as a message may have: one that has more is told so, where it comes to an end.
+  // Twice what a message may have: a longer one that comes to its end gets a proper error.
   rules.job_bytes = 2 * options.service.limits.max_message_bytes;
   rules.max_calls = static_cast<int>(
       std::min<int64_t>(INT_MAX, kCallsOfStreams * options.connections.max_streams));
@@ -265,7 +265,7 @@ bool Server::Drain(absl::Duration timeout) {
     core_.AbortAll(absl::UnavailableError(
         "the server is shutting down; ask another one for the layers that are missing"));
   }
-  // The last messages and statuses are on their way out; a caller who does not read them loses
+  // The last messages and statuses are on their way; a caller who does not read them loses
   // them.
   WaitFor(kGrace, [this] { return core_.calls() == 0; });
   Shutdown(kLastCalls);

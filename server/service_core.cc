@@ -19,16 +19,16 @@ namespace {
 constexpr absl::Duration kLeastWatch = absl::Milliseconds(10);
 constexpr absl::Duration kMostWatch = absl::Seconds(1);
 
-// After jobs of 100 MB the allocator keeps most of it, in case that such jobs come again. To give
-// it back takes some milliseconds, in which others who allocate wait.
+// After jobs of 100 MB the allocator keeps most of it for similar jobs. Returning it takes some
+// milliseconds, in which others who allocate wait.
 constexpr auto kIdleBeforeTrim = std::chrono::seconds(5);
 
-// How often memory is looked at, and from which share of what there may be no job is let in, and
+// How often to check memory, and the shares of the limit from which no job is admitted, and
 // connections are cut.
 constexpr auto kMemoryWatch = std::chrono::milliseconds(10);
 constexpr double kShortShare = 0.7;
 constexpr double kCutShare = 0.78;
-// What searches may hold that gave way to others, beside the layers that they work on.
+// What paused searches may hold in addition to the layers that they work on.
 constexpr double kSearchShare = 0.25;
 constexpr auto kTrimEvery = std::chrono::seconds(1);
 

@@ -73,7 +73,7 @@ absl::StatusOr<std::vector<TokenEntry>> ParseTokens(const std::string& text) {
     if (!(words >> name)) continue;
     words >> hash >> more;
     if (!IsName(name) || !IsHash(hash) || !more.empty()) {
-      // What stands there is not repeated: it may be a token, put in by mistake.
+      // Does not repeat the text: it may be a token, put there by mistake.
       return absl::InvalidArgumentError(
           absl::StrCat("line ", number, ": not a name and a SHA-256 of 64 hexadecimal digits"));
     }

@@ -43,11 +43,11 @@ std::vector<X509Ptr> ParseCertificates(const std::string& text) {
   while (X509* next = PEM_read_bio_X509(bio.get(), nullptr, nullptr, nullptr)) {
     certificates.emplace_back(next);
   }
-  ERR_clear_error();  // that there is none any more
+  ERR_clear_error();  // the error that no more follow
   return certificates;
 }
 
-// A passphrase is never asked for.
+// Never asks for a passphrase.
 int NoPassphrase(char* /*buffer*/, int /*size*/, int /*writing*/, void* /*data*/) { return 0; }
 
 KeyPtr ParseKey(const std::string& text) {

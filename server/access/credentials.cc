@@ -40,7 +40,7 @@ class StoredCredentials : public grpc::ServerCredentials {
     std::shared_ptr<const CertificateSet> now = credentials.store_->current();
     if (now == credentials.used_) return GRPC_SSL_CERTIFICATE_CONFIG_RELOAD_UNCHANGED;
     const grpc_ssl_pem_key_cert_pair pair = {now->key.c_str(), now->chain.c_str()};
-    // It insists on authorities, also where no client is asked for a certificate.
+    // gRPC insists on authorities, even if no client certificate is required.
     const std::string& authorities = now->client_ca.empty() ? now->chain : now->client_ca;
     *config = grpc_ssl_server_certificate_config_create(authorities.c_str(), &pair, 1);
     credentials.used_ = std::move(now);

@@ -9,15 +9,15 @@
 namespace traverse {
 namespace {
 
-// Bounds of the advice when to come back: not at once, as the queue has to change first; and not so
-// late that a caller gives up on a server that is free again.
+// Bounds of the advice when to come back: not at once, because the queue has to change first; and
+// not so late that a caller gives up on a server that is free again.
 constexpr absl::Duration kMinRetryDelay = absl::Milliseconds(100);
 constexpr absl::Duration kMaxRetryDelay = absl::Seconds(30);
 
 // Advice where the limit is on jobs, whose durations are not known.
 constexpr absl::Duration kJobsRetryDelay = absl::Seconds(1);
 
-// With each layer solved the earlier ones count by so much less.
+// With each solved layer, earlier ones lose this share of their weight.
 constexpr double kFading = 0.998;
 
 }  // namespace
@@ -196,7 +196,7 @@ std::optional<Admission::No> Admission::CheckBytes(const Caller& caller, int64_t
     const absl::Status status = absl::ResourceExhaustedError(
         absl::StrCat(whose, " memory is taken: ", held >> 20, " of ", limit >> 20,
                      " MiB, and this message comes to about ", bytes >> 20, "; try again"));
-    // What is too large for an empty server is so later too.
+    // What is too large for an empty server stays too large.
     return No{refusal, bytes > limit ? status : WithRetryDelay(status, kJobsRetryDelay)};
   };
   if (auto no = full(Refusal::kMemory, "the server's", bytes_, limits_.max_bytes); no) return no;
@@ -334,7 +334,7 @@ absl::Status Admission::Ticket::SetStrategy(const std::string& strategy) {
     MutexLock lock(admission_.mutex_);
     strategy_ = strategy;
     const int64_t points = points_;
-    Count(-points);  // not beside itself
+    Count(-points);  // this ticket does not count as another job
     if (points > 0) no = admission_.CheckWait(caller_->first, points, strategy);
     Count(points);
   }

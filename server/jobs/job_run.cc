@@ -5,9 +5,9 @@
 namespace traverse {
 namespace {
 
-// So many layers are let into the window whatever their size: a layer may be answered only when the
-// next one was solved, and if a cleaning is due after that, it is not solved before the engine
-// knows whether another one follows.
+// This many layers enter the window whatever their size. A layer may be answered only when the next
+// one was solved; and if a cleaning is due after that, it is not solved before the engine knows
+// whether another one follows.
 constexpr int64_t kLeastLayers = 3;
 
 }  // namespace
@@ -250,7 +250,7 @@ void JobRun::Pump(bool feed) {
     writing_ = std::move(out_.front());
     out_.pop_front();
     message = std::move(writing_->message);
-    // gRPC holds a first message back, with the headers, as long as it is told that more follows.
+    // gRPC holds back a first message, with the headers, as long as it expects more to follow.
     more_follows = begun_writing_ && (!out_.empty() || engine_done_);
     begun_writing_ = true;
   }
@@ -260,11 +260,11 @@ void JobRun::Pump(bool feed) {
   const bool room = !finished_ && !abort_ && room_wanted_ && HasRoom();
   if (room) {
     room_wanted_ = false;
-    ++holds_;  // else a cancel could end the job, and delete the port, before OnRoom is called
+    ++holds_;  // otherwise a cancel could end the job, and delete the port, before OnRoom is called
   }
   const absl::Status status = abort_.value_or(absl::OkStatus());
   lock.Unlock();
-  // A write that is under way keeps the port, but its completion may finish the job in another
+  // A write in progress keeps the port, but its completion may finish the job in another
   // thread.
   if (write) port_.StartWrite(std::move(message), more_follows);
   if (finish) port_.Finish(status);

@@ -28,7 +28,7 @@ WorkerPool::~WorkerPool() {
     MutexLock lock(mutex_);
     stopping_ = true;
     work_.NotifyAll();
-    // Others may still be added by what is left to do.
+    // The remaining tasks may still add others.
     while (under_way_ > 0 || waiting_ > 0) work_.Wait(mutex_);
     workers = std::move(workers_);
     std::move(retired_.begin(), retired_.end(), std::back_inserter(workers));
@@ -189,7 +189,7 @@ bool WorkerPool::Begin(QueueImpl& queue) {
   --waiting_;
   ++busy_;
   handed_out_.push_back(std::move(task));
-  // Nobody is woken for what a thread that is awake will take. Whoever ends the pool waits as well.
+  // Wakes nobody for a task that an awake thread will take. Whoever ends the pool waits as well.
   if (stopping_) {
     work_.NotifyAll();
   } else if (handed_out_.size() > looking_) {
@@ -198,7 +198,7 @@ bool WorkerPool::Begin(QueueImpl& queue) {
   return true;
 }
 
-// Those at work give way only if others wait that could go on.
+// Working tasks yield only if others wait that could continue.
 void WorkerPool::TellWorkers() {
   for (const auto& worker : workers_) {
     if (worker->works) worker->Want(!turns_.empty());

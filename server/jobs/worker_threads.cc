@@ -62,7 +62,7 @@ bool WorkerPool::Pause(Worker& worker) {
   return waits;
 }
 
-// For the turn, or until there is nothing left to do but to return what there is: that is quick,
+// Waits for its turn, or until nothing is left to do but to return what there is: that is quick,
 // and done beyond the permits.
 void WorkerPool::WaitForTurn(Worker& worker) {
   while (!worker.resumes) {
@@ -126,10 +126,10 @@ void WorkerPool::Run(Worker& worker) {
   try {
     worker.task.run();
   } catch (const std::bad_alloc&) {
-    worker.task.run = nullptr;  // frees what it holds
+    worker.task.run = nullptr;  // frees what the task holds
     if (worker.task.queue->on_no_memory) worker.task.queue->on_no_memory();
   }
-  worker.task.run = nullptr;  // what it holds is freed before the thread counts as idle
+  worker.task.run = nullptr;  // frees what the task holds before the thread counts as idle
 }
 
 void WorkerPool::RunTasks(Worker& worker) {

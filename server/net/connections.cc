@@ -17,43 +17,43 @@
 namespace traverse {
 namespace {
 
-// How often the connections are looked at: while much comes in, and else.
+// How often to look at the connections: while much comes in, and otherwise.
 constexpr int kBusyMilliseconds = 10;
 constexpr int kQuietMilliseconds = 100;
 constexpr uint64_t kMuchBytes = 1 << 20;
 
-// Pending bytes are halved in so many seconds. What is small and never ends, such as the frames of
-// health checks, does not add up; a message that takes minutes is given up by --idle_timeout.
+// Pending bytes halve in this many seconds. Small endless traffic, such as the frames of health
+// checks, does not add up; --idle_timeout ends a message that takes minutes.
 constexpr double kHalfLifeSeconds = 30;
 
 // What a message takes beside its bytes (headers, frames, TLS), and what a call may send before it
-// hears that it is refused: the first window of its stream, which the server keeps from growing.
+// learns of a refusal: the first window of its stream, which the server keeps from growing.
 constexpr double kFraming = 1.01;
 constexpr double kMessageOverhead = 1024;
 constexpr double kFirstWindow = 68'000;
 
-// What a message is taken to have beside its bytes, but has not, is no licence to send later.
+// Unused allowance of a message for its frames and headers is no licence to send more later.
 constexpr double kMostCredit = -(256 << 10);
 
 // A connection that says nothing for so long may be closed for a new one.
 constexpr auto kIdle = std::chrono::seconds(1);
 
-// Bytes that are pending where there is no job may be of calls that nobody has looked at yet, for
-// so long. A flood of calls to what is not the service's own, such as health checks, is seen by
-// them.
+// Bytes pending without a job may belong to calls that have not been processed yet,
+// for this long. This shows a flood of calls to other services, such as health
+// checks.
 constexpr auto kMoment = std::chrono::milliseconds(300);
 
-// What a caller goes on sending for a job that was ended has come by then.
+// By then everything has come that a caller still sends for a job that was ended.
 constexpr auto kOnItsWay = std::chrono::seconds(2);
 
 // Time for the end of a job to take effect before its connection is cut.
 constexpr auto kPatience = std::chrono::milliseconds(250);
 
-// The work that a connection makes beside its calls, counted in these: gRPC may have as many as a
-// connection may have streams to end when it goes.
+// The work that a connection causes in addition to its calls, counted in calls: when it goes, gRPC
+// may have as many to end as a connection may have streams.
 constexpr double kWorkOfConnection = 50;
 
-// What it is worth to cut a connection for, where memory is short.
+// With less pending, cutting a connection does not help when memory is short.
 constexpr double kWorthCutting = 64 << 10;
 
 }  // namespace
@@ -78,7 +78,7 @@ Connections::~Connections() {
 
 void Connections::Start() {
   hand_over_.emplace(kHands, [this](int socket, int hand) {
-    // Whoever has gone meanwhile costs no more.
+    // Connections that have gone meanwhile cost nothing more.
     if (InfoOf(socket).ended) {
       shutdown(socket, SHUT_RDWR);
       close(socket);
@@ -214,7 +214,7 @@ void Connections::CutPeer(const std::string& peer) {
 }
 
 Connections::Table::iterator Connections::Cut(Table::iterator connection) {
-  // gRPC, which has the socket too, is told of its end.
+  // gRPC, which also has the socket, learns that it ended.
   shutdown(connection->second.socket, SHUT_RDWR);
   close(connection->second.socket);
   ++cut_;
@@ -353,13 +353,13 @@ void Connections::OnJobDone(const std::string& peer, double pending_before, bool
   if (found == table_.end()) return;
   Connection& connection = found->second;
   if (!all_came) {
-    // What came since the last look counts as well. Which job it was for nobody knows.
+    // What came since the last look counts too. Which job it was for is unknown.
     if (const SocketInfo info = InfoOf(connection.socket); info.open) Update(connection, info);
     const double more = connection.pending - pending_before;
     if (more > 0) connection.pending -= more / std::max(1, connection.jobs);
   }
   connection.jobs = std::max(0, connection.jobs - 1);
-  // Of a job that the server has ended more may be on its way.
+  // More of a job that the server has ended may be on its way.
   if (!all_came) connection.loud_since = Clock::now() + kOnItsWay;
 }
 

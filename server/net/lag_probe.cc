@@ -18,7 +18,7 @@ std::chrono::duration<double> LagProbe::Look() {
   {
     MutexLock lock(mutex_);
     if (under_way_) return Clock::now() - call_->begun;
-    // A connection may have come to its greatest age.
+    // The connection may have reached its greatest age.
     if (failed_) stub_.reset();
     if (call_ != nullptr && !failed_) lag = ended_ - call_->begun;
   }

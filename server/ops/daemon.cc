@@ -11,7 +11,7 @@
 namespace traverse {
 namespace {
 
-// Each connection takes a file, and whatever else is under way may too.
+// Each connection takes a file, and other work may too.
 void RaiseFileLimit() {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;

@@ -57,7 +57,7 @@ std::string Escaped(const std::string& json) {
   return text;
 }
 
-// All of these characters are within strings, as nothing else of JSON is beyond ASCII.
+// All of these characters are inside strings, because only there JSON leaves ASCII.
 std::string Dump(const Json& json) {
   return Escaped(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }

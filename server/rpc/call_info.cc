@@ -36,7 +36,7 @@ std::optional<Budget::Clock::time_point> Deadline(const grpc::CallbackServerCont
   return now + std::chrono::seconds(left.tv_sec) + std::chrono::nanoseconds(left.tv_nsec);
 }
 
-// What a caller states; 0 if it is no number, or larger than any message.
+// The size that a caller declares; 0 if it is not a number, or larger than any message.
 uint64_t MessageBytes(const grpc::string_ref& text) {
   uint64_t bytes = 0;
   const auto [end, error] = std::from_chars(text.begin(), text.end(), bytes);

@@ -16,11 +16,11 @@ namespace {
 
 using Clock = Budget::Clock;
 
-// Messages up to this size are read in the thread of gRPC that brought them; a reaction has to be
+// Messages up to this size are read on gRPC's own thread; a reaction must be
 // quick.
 constexpr size_t kReadHereBytes = 32 << 10;
 
-// What is read at one go of a larger one: about a millisecond's work.
+// How much of a larger one is read at once: about a millisecond's work.
 constexpr int64_t kPieceBytes = 64 << 10;
 
 // Layers freed at one go, when a job ends early.
@@ -60,7 +60,7 @@ absl::Status JobStream::Admit(const absl::Status& authorized, int64_t points) {
       core_.admission.Admit(call_.caller, points);
   if (!ticket.ok()) return ticket.status();
   ticket_ = *std::move(ticket);
-  // What a header states may be a lie: it is looked at, and reserves nothing.
+  // A header may lie: it is checked, but reserves nothing.
   ticket_->Resize(0).IgnoreError();
   run_ = JobRun::Make(*this);
   queue_ = core_.pool.NewQueue(call_.caller, [run = run_] { run->Abort(NoMemory()); });
@@ -189,7 +189,7 @@ bool JobStream::ReadPiece(grpc::ByteBuffer& message) {
   return false;
 }
 
-// The bytes of the message are held until it is read; what it comes to, until that is solved.
+// The bytes of the message count until it is read; the memory that it needs, until that is solved.
 absl::Status JobStream::CheckMessage(int64_t bytes) {
   if (bytes > core_.limits.max_message_bytes) {
     core_.admission.CountRefusal(Refusal::kMessage);
@@ -216,7 +216,7 @@ absl::Status JobStream::OpenMessage(grpc::ByteBuffer& message) {
   faults_ = FaultList();
   if (absl::Status status = OnOptions(reader_); !status.ok()) {
     if (!FaultList::IsFault(status) || reader_.layers() == 0) return status;
-    faults_.Add(status);  // those of the layers are told as well
+    faults_.Add(status);  // also reports faults of the layers
   }
   if (absl::Status status = CheckLayerCount(reader_.layers()); !status.ok()) return status;
   return ticket_->Hold(reader_.footprint_bytes());
@@ -249,7 +249,7 @@ absl::Status JobStream::ReadLayers() {
     layers_received_ += layers.size() + faulty;
     return reader_.left() == 0 ? faults_.status() : absl::OkStatus();
   }
-  // By what was sent alone: neither the pieces nor what has arrived by now may change a route.
+  // Depends only on what was sent: pieces, and what has arrived, must not change a route.
   for (LabelledLayer& layer : layers) layer.layer.more_follows = true;
   if (reader_.left() == 0 && !layers.empty())
     layers.back().layer.more_follows = MoreFollowsMessage();
@@ -382,7 +382,7 @@ void JobStream::End(const absl::Status& status) {
   if (const Clock::time_point now = Clock::now(); search_end_ && now > *search_end_) {
     core_.return_lag.Record(call_.caller, now - *search_end_);
   }
-  // Before the caller hears of the end: his next job may need the place.
+  // Before the caller learns of the end: its next job may need the place.
   ticket_.reset();
   FinishCall(ToGrpcStatus(status));
 }

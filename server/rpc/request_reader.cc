@@ -27,7 +27,7 @@ constexpr uint32_t Tag(int field) {
 constexpr uint32_t kOptionsTag = Tag(Batch::kOptionsFieldNumber);
 constexpr uint32_t kLayersTag = Tag(Batch::kLayersFieldNumber);
 
-// What a layer counts as, beside its bytes: an empty one takes time too.
+// The weight of a layer in addition to its bytes: an empty one takes time too.
 constexpr int64_t kLayerBytes = 64;
 
 bool ReadLength(CodedInputStream& in, int& length) {
@@ -37,18 +37,18 @@ bool ReadLength(CodedInputStream& in, int& length) {
   return true;
 }
 
-// What is in a message: messages within it, and bytes of numbers and text.
+// The contents of a message: messages within it, and bytes of numbers and text.
 struct Content {
   int64_t parts = 0;
   int64_t bytes = 0;
 };
 
-// A part takes so much as a message and then in the engine; a point of two doubles stands in both.
+// The memory of a part as a message and then in the engine; a point of two doubles is in both.
 // Measured with contours of one point and with empty islands.
 constexpr int64_t kBytesOfPart = 320;
 constexpr int64_t kBytesOfByte = 3;
 
-// A packed number that has one byte here takes four in memory, or eight where its array grew.
+// A packed number of one byte takes four in memory, or eight where its array grew.
 constexpr int64_t kBytesOfPacked = 4;
 
 // A field that this version does not know is kept until it is refused, and may have two bytes.
@@ -63,8 +63,8 @@ bool IsPacked(const google::protobuf::FieldDescriptor& field) {
   return field.is_packed() && field.cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE;
 }
 
-// Counts what is in a message of `type`, up to the limit that `in` has. As deep as the types are.
-// Stops at `most` parts: to count on would take long.
+// Counts the contents of a message of `type`, up to the limit that `in` has. Recurses as deep as
+// the types. Stops at `most` parts, because counting on would take long.
 bool CountContent(CodedInputStream& in, const Descriptor& type, int64_t most, Content& content) {
   uint32_t tag = 0;
   while (content.parts <= most && (tag = in.ReadTag()) != 0) {

@@ -26,7 +26,7 @@ bool SliceStream::Next(const void** data, int* size) {
   stopped_ = stopped_ || (goes_on_ && !goes_on_());
   if (stopped_) return false;
   while (slice_ < slices_.size() && offset_ == slices_[slice_].size()) {
-    // Read to its end, and nobody backs up into it any more.
+    // It was read to its end, and nobody will back up into it.
     if (let_go_) slices_[slice_] = grpc::Slice();
     ++slice_;
     offset_ = 0;

@@ -14,11 +14,11 @@ using google::rpc::BadRequest;
 constexpr char kBadRequest[] = "type.googleapis.com/google.rpc.BadRequest";
 constexpr char kErrorInfo[] = "type.googleapis.com/google.rpc.ErrorInfo";
 
-// Trailers are limited to 8 KiB by default at the peers, and what is binary grows by a third.
+// Peers limit trailers to 8 KiB by default, and binary content grows by a third.
 constexpr size_t kMostBytes = 3000;
 constexpr size_t kMostTextBytes = 200;
 
-// The faults that a status carries; else the one that its message tells, as `field: description`.
+// The faults that a status carries; otherwise the one in its message, as `field: description`.
 BadRequest FaultsOf(const absl::Status& status) {
   BadRequest faults;
   const absl::optional<absl::Cord> payload = status.GetPayload(kBadRequest);

@@ -16,8 +16,8 @@ namespace {
 constexpr double kMostSeconds = 315'576'000'000;  // of google.protobuf.Duration
 constexpr double kNanosecond = 1e-9;
 
-// Figures of machines go far beyond any machine, and not so far that times lose their meaning. What
-// is not here is a label or a seed, of which any value will do.
+// The ranges go far beyond any machine, but not so far that times lose their meaning. Fields that
+// are not here are labels or seeds, for which any value will do.
 constexpr FieldRange kRanges[] = {
     {"Point.x_mm", -kMaxCoordinateMm, kMaxCoordinateMm},
     {"Point.y_mm", -kMaxCoordinateMm, kMaxCoordinateMm},

@@ -13,7 +13,7 @@ namespace traverse {
 namespace {
 
 constexpr size_t kMaxJobIdBytes = 256;
-// No name and no value of an option is longer; what is, would fill the log.
+// No name and no value of an option is longer. A longer one would fill the log.
 constexpr size_t kMaxNameBytes = 64;
 constexpr int64_t kMaxDurationSeconds = 315'576'000'000;  // of google.protobuf.Duration
 constexpr int32_t kNanosPerSecond = 1'000'000'000;

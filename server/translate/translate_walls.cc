@@ -51,7 +51,7 @@ absl::Status SetPaths(const google::protobuf::RepeatedField<uint32_t>& named, co
   paths.reserve(static_cast<size_t>(named.size()));
   for (int i = 0; i < named.size(); ++i) {
     rest();
-    // The place is written for a fault alone: there may be millions of these.
+    // The position is only written for a fault: there may be millions of these.
     if (named[i] > INT_MAX) {
       return Index(named[i], absl::StrCat(place.text(), ".", field, "[", i, "]")).status();
     }
@@ -65,7 +65,7 @@ absl::StatusOr<KnownMove> FromProto(const v1::KnownMove& message, const Place& p
   TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(message, place));
   if (message.from() > INT_MAX) return Index(message.from(), place.text() + ".from").status();
   if (message.to() > INT_MAX) return Index(message.to(), place.text() + ".to").status();
-  // What is not a number is in no range.
+  // NaN is in no range.
   if (!(message.seconds() >= range.least && message.seconds() <= range.greatest)) {
     return CheckRange(range, message.seconds(), place.text() + ".seconds");
   }
@@ -102,8 +102,8 @@ absl::Status SetWalls(const v1::Layer& message, const Place& place, Budget* budg
   Rest rest(budget);
   LayerWalls& walls = layer.walls;
   walls.walls.reserve(static_cast<size_t>(message.walls_size()));
-  // A few bytes name a contour of any size. Each may be named once; more often only as long as all
-  // that is copied so is no more than the layer has.
+  // A few bytes name a contour of any size. Each may be named once; more often only while all that
+  // is copied so is no more than the layer has.
   size_t may_copy = 0;
   for (const Path& path : layer.plan.paths) {
     rest();

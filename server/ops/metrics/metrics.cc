@@ -28,7 +28,7 @@ const prometheus::Histogram::BucketBoundaries& JobSecondsBounds() {
 }  // namespace
 
 Metrics::Metrics() {
-  // Reasons are there from the start, so that rates over them are.
+  // All reasons exist from the start, so that rates over them do.
   for (int r = 0; r <= static_cast<int>(Refusal::kPermission); ++r) {
     rejected_.Add({{"reason", RefusalName(static_cast<Refusal>(r))}});
   }

@@ -14,8 +14,8 @@
 namespace traverse {
 namespace {
 
-// More than that many and the oldest is closed. The limit is not reached, for it would keep new
-// ones out.
+// Beyond this many the oldest is closed. The library's own limit, which would keep new ones out, is
+// never reached.
 constexpr size_t kKeptConnections = 64;
 constexpr unsigned int kMaxConnections = 4 * kKeptConnections;
 
@@ -61,7 +61,7 @@ absl::StatusOr<std::unique_ptr<MetricsHttp>> MetricsHttp::Start(const std::strin
   if (!sockets.ok()) {
     return absl::UnavailableError(absl::StrCat("metrics: ", sockets.status().message()));
   }
-  // One is enough: whoever scrapes is told the address.
+  // One is enough: the scraper is configured with the address.
   for (size_t i = 1; i < sockets->size(); ++i) close((*sockets)[i]);
   const int listener = sockets->front();
   std::unique_ptr<MetricsHttp> http(new MetricsHttp(std::move(sources)));
@@ -85,7 +85,7 @@ MetricsHttp::~MetricsHttp() {
 
 void* MetricsHttp::OnOpened(int fd) {
   connections_.emplace(++opened_, fd);
-  // It is told of the end of the connection, then closes the socket and calls OnClosed.
+  // The library learns of the end of the connection, then closes the socket and calls OnClosed.
   if (connections_.size() > kKeptConnections) {
     const auto oldest = connections_.begin();
     shutdown(oldest->second, SHUT_RDWR);

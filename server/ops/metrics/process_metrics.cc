@@ -24,7 +24,7 @@ prometheus::MetricFamily Single(const std::string& name, const std::string& help
   return {name, help, type, {metric}};
 }
 
-// The fields of /proc/self/stat behind the command's name, which may contain anything; empty if
+// The fields of /proc/self/stat after the command's name, which may contain anything; empty if
 // unreadable. Field n of proc(5) is at n - 3.
 std::vector<std::string> StatFields() {
   std::ifstream file("/proc/self/stat");
