@@ -132,7 +132,7 @@ class BeforeCheck {
   const std::vector<Range>& ranges_;  // [node]
   std::vector<size_t> first_pair_;    // [child] the first of its pairs in second_
   std::vector<int> second_;           // the children that come after it
-  std::vector<int> waiting_for_;      // [child] pairs not yet looked at
+  std::vector<int> waiting_for_;      // [child] pairs not examined yet
   std::vector<int> end_before_;       // [child] the latest end of those that come before it
 };
 

@@ -1,4 +1,4 @@
-// The cost of a route among walls, computed anew: by another test of what crosses, on another index
+// The cost of a route among walls, computed again: by another test for crossings, on another index
 // of the walls, so that a fault of engine/cost shows.
 
 #include <algorithm>
@@ -18,10 +18,10 @@
 namespace traverse {
 namespace {
 
-// Within so much of touching, rounding decides.
+// Closer to touching than this, rounding decides.
 constexpr double kTouchMm = 1e-6;
 
-// The part of a way that is looked at: this much of it is left out at each end at the most.
+// The part of a move that is tested: at most this much is left out at each end.
 constexpr double kMostEnd = 0.2;
 
 struct Line {
@@ -63,7 +63,7 @@ class Stripes {
     }
   }
 
-  // Whether the way from `a` to `b` crosses a wall, `slack_mm` at each end apart.
+  // Whether the move from `a` to `b`, without `slack_mm` at each end, crosses a wall.
   Crossing Of(Point a, Point b, double slack_mm) const {
     const double length = Length(a, b);
     if (lines_.empty() || !(length > 0)) return Crossing::kNo;
@@ -88,7 +88,7 @@ class Stripes {
     return {stripe(std::min(y0, y1) - kTouchMm), stripe(std::max(y0, y1) + kTouchMm)};
   }
 
-  // In the frame of the way: `along` it and `across` it, in mm.
+  // In the frame of the move: `along` it and `across` it, in mm.
   static Crossing Of(Point a, Point b, double length, double end, const Line& line) {
     const double ux = (b.x - a.x) / length;
     const double uy = (b.y - a.y) / length;
@@ -103,13 +103,13 @@ class Stripes {
     const double d_at = along(line.b);
     const bool through = std::min(c, d) < -kTouchMm && std::max(c, d) > kTouchMm;
     if (!through) {
-      // It begins or ends on the way, or lies along it.
+      // It begins or ends on the move, or lies along it.
       const bool apart =
           std::min(c_at, d_at) > last + kTouchMm || std::max(c_at, d_at) < first - kTouchMm;
       return apart ? Crossing::kNo : Crossing::kPerhaps;
     }
     const double at = c_at + (d_at - c_at) * (c / (c - d));
-    // Where the two are nearly parallel, rounding moves the point along the way.
+    // If the two are nearly parallel, rounding shifts the point along the move.
     const double slack = kTouchMm * (1 + std::abs(d_at - c_at) / std::abs(c - d));
     if (at > first + slack && at < last - slack) return Crossing::kYes;
     return at < first - slack || at > last + slack ? Crossing::kNo : Crossing::kPerhaps;
@@ -237,8 +237,8 @@ class MoveCheck {
     retractions_.Add(retractions, retractions);
   }
 
-  // Time beyond that of the motion, and whether filament is pulled back. `pays`: the share of a
-  // retraction for walls.
+  // Time in addition to the motion, and whether it retracts. `pays`: the share of a retraction for
+  // walls.
   std::pair<double, bool> Of(double length, bool exposed, bool crosses, double pays) const {
     const bool far = length > spec_.retraction_threshold_mm;
     const bool retracts = far || (crosses && length > spec_.wall_retraction_threshold_mm) ||

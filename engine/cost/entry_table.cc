@@ -44,7 +44,7 @@ EntryTable::EntryTable(const Plan& plan, Budget* budget) {
 int EntryTable::EntryOf(const Visit& visit) const {
   const int begin = first(visit.path);
   const int end = first(visit.path + 1);
-  // All vertices allowed is the rule; then the entry is where it would be.
+  // Usually all vertices are allowed; then the entry is at its own index.
   if (visit.entry < end - begin &&
       visit_entry_[static_cast<size_t>(begin + visit.entry)] == visit.entry) {
     return begin + visit.entry;

@@ -239,7 +239,7 @@ class Search {
     members_.push_back(member);
   }
 
-  // Behind the last one there are only its copies.
+  // After the last one there are only copies of it.
   Point PointOf(int slot, size_t number) const {
     const absl::Span<const Point> group = groups_.of(member(slot).group);
     return group[std::min(number, group.size() - 1)];
@@ -252,7 +252,7 @@ class Search {
   std::vector<Box> boxes_;       // [slot] of the samples
   FloatGroups samples_;          // [slot]
   FloatGroups points_;           // [slot]
-  std::vector<int> stamps_;      // [slot] the one that looked at it last
+  std::vector<int> stamps_;      // [slot] the query that looked at it last
   std::vector<Piece> pieces_;
 };
 

@@ -11,22 +11,22 @@
 namespace traverse {
 namespace {
 
-// Moves remembered for each path, and at most; more of them where a way around walls has to be
-// looked for again if it was forgotten.
+// Moves remembered for each path, and at most; more of them if a forgotten move means searching for
+// a detour again.
 constexpr size_t kMovesPerPath = 64;
 constexpr size_t kMostMoves = size_t{1} << 15;
 constexpr size_t kDetoursPerPath = 512;
 constexpr size_t kMostDetours = size_t{1} << 16;
 
-// What a question takes whose answer is not known, in what one takes whose answer is; and what each
-// test does for a way around walls.
+// The cost of a question with an unknown answer, relative to one with a known answer, and the
+// additional cost of each test for a detour.
 constexpr int64_t kWorkOfCrossing = 5;
 constexpr int64_t kWorkOfTest = 4;
 
 // What Rest counts for one that is put into a table.
 constexpr size_t kStepsOfKnownMove = 32;
 
-// A point so many slacks away from the middle of a wall still lies on it.
+// A point this many slacks from the middle of a wall still lies on it.
 constexpr double kOnWall = 1.2;
 
 bool Less(Point a, Point b) { return std::pair(a.x, a.y) < std::pair(b.x, b.y); }

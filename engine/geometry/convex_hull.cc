@@ -8,8 +8,8 @@
 namespace traverse {
 namespace {
 
-// Appends the lower chain of `order`, which is sorted from left to right, but for its last point.
-// Given from right to left, it is the upper chain.
+// Appends the lower chain of `order`, which is sorted from left to right, without its last point.
+// Sorted from right to left, it gives the upper chain.
 template <typename Iterator>
 void AppendChain(absl::Span<const Point> points, Iterator begin, Iterator end,
                  std::vector<int>& hull) {

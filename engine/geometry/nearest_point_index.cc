@@ -22,8 +22,8 @@ uint32_t Spread(uint32_t x) {
   return x;
 }
 
-// Sorts by the upper 32 bits, and what is equal there as it comes: by digits, least first, as that
-// can be done bit by bit.
+// Sorts by the upper 32 bits and keeps the order of equal ones: a radix sort, because that can be
+// done piece by piece.
 void SortByUpperHalf(std::vector<uint64_t>& keys, Rest& rest) {
   constexpr int kDigitBits = 11;
   constexpr size_t kDigits = size_t{1} << kDigitBits;
@@ -110,7 +110,7 @@ int NearestPointIndex::Nearest(Point p) const {
     size_t node;
     double bound;
   };
-  // One sibling is put aside a level, and there are fewer than 64 levels.
+  // One sibling per level waits, and there are fewer than 64 levels.
   std::array<Open, 64> open;
   size_t opened = 0;
   double least = std::numeric_limits<double>::infinity();

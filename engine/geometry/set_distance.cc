@@ -13,7 +13,7 @@
 namespace traverse {
 namespace {
 
-// From so many pairs on an index is quicker.
+// From this many pairs on an index is faster.
 constexpr size_t kPairsForIndex = 1 << 15;
 
 double SquaredDistance(Point p, Point q) {

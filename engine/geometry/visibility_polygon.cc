@@ -10,8 +10,8 @@
 namespace traverse {
 namespace {
 
-// Rounding of an area, in mm^2, for coordinates of the order of 100 mm; else relative to the square
-// of a length.
+// Rounding of an area in mm^2, for coordinates of about 100 mm; otherwise relative to the square of
+// a length.
 constexpr double kAreaTolerance = 1e-9;
 constexpr double kAreaRounding = 1e-15;
 
@@ -54,7 +54,7 @@ std::optional<VisiblePoints> FindVisiblePoints(absl::Span<const Point> a,
   };
   const Chord a_chord{at(a, tangents->a_left), at(a, tangents->a_right)};
   const Chord b_chord{at(b, tangents->b_right), at(b, tangents->b_left)};
-  // A contour reaches behind the other one's chord only where their hulls overlap.
+  // A contour reaches beyond the other one's chord only if their hulls overlap.
   if (!AllOnLeft(a, b_chord) || !AllOnLeft(b, a_chord)) return std::nullopt;
   return VisiblePoints{OnLeft(a, a_chord), OnLeft(b, b_chord)};
 }

@@ -8,16 +8,16 @@
 namespace traverse {
 namespace {
 
-// What Rest counts for a bend beside a corner of a wall.
+// The steps that Rest counts for a bend beside a corner of a wall.
 constexpr size_t kStepsOfBend = 8;
 
 // Longer stretches of a wall are not followed.
 constexpr size_t kMostVertices = 500;
 
-// Ways that cross walls more often are not led around them: it would take the square of that.
+// Moves that cross walls more often get no detour: it would take the square of that number.
 constexpr size_t kMostHits = 500;
 
-// Ways around walls that stand in the way around another one.
+// Walls in the way of a detour around another wall.
 constexpr int kMostDepth = 2;
 
 double SideOf(const WallSegment& s, Point p) {
@@ -171,7 +171,7 @@ std::vector<Point> WallDetours::OneWay(Point a, Point b, int depth, int64_t& tes
   return {way.begin() + 1, way.end() - 1};
 }
 
-// Beside the corner between two segments, on the side given.
+// Beside the corner between two segments, on the given side.
 Point WallDetours::Beside(uint32_t before, uint32_t behind, Point at, double side) const {
   const Point one = left_[before];
   const Point other = left_[behind];
@@ -185,7 +185,7 @@ Point WallDetours::Beside(uint32_t before, uint32_t behind, Point at, double sid
   return {at.x + middle.x * reach, at.y + middle.y * reach};
 }
 
-// The way beside a wall, with the wall, from the bend of one segment to that of another.
+// The length beside a wall, and along it, from the bend of one segment to that of another.
 double WallDetours::BetweenBends(uint32_t wall, const Side& side, uint32_t from,
                                  uint32_t to) const {
   const double between = side.upto_mm[to] - side.upto_mm[from];
@@ -194,8 +194,8 @@ double WallDetours::BetweenBends(uint32_t wall, const Side& side, uint32_t from,
   return side.upto_mm[end - 1] + Distance(side.bends[end - 1], side.bends[first]) + between;
 }
 
-// Appends the shorter way along a wall from one hit to another, on one side of it. False if its
-// corners are too many.
+// Appends the shorter way along a wall from one hit to another, on one side of it. False if it has
+// too many corners.
 bool WallDetours::Follow(const Hit& first, const Hit& last, double side, Point a, Point b,
                          std::vector<Point>& way) const {
   const uint32_t wall = WallOf(first.segment);
@@ -238,8 +238,8 @@ bool WallDetours::Follow(const Hit& first, const Hit& last, double side, Point a
   return true;
 }
 
-// Leaves out the points that are not needed. False if a stretch crosses a wall, and there is no way
-// around that one.
+// Leaves out points that are not needed. False if a stretch crosses a wall around which there is no
+// detour.
 bool WallDetours::PullTaut(std::vector<Point>& way, int depth, int64_t& tests) const {
   std::vector<Point> taut = {way.front()};
   tests += static_cast<int64_t>(way.size());
@@ -261,9 +261,9 @@ bool WallDetours::PullTaut(std::vector<Point>& way, int depth, int64_t& tests) c
   return true;
 }
 
-// Leaves out bends that no wall is the reason of: behind a stretch that a wall is in the way of
-// there may be one that sees past it, and what leads around another wall does not fit what it is
-// put into.
+// Leaves out bends that no wall requires: beyond a stretch that a wall blocks there may be a point
+// that sees past the wall, and a detour around one wall may not fit the one into which it was
+// inserted.
 void WallDetours::Straighten(std::vector<Point>& way, int64_t& tests) const {
   if (way.size() < 3) return;
   std::vector<Point> straight = {way.front()};

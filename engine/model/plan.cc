@@ -16,7 +16,7 @@ absl::Status Fault(const std::string& place, const std::string& what) {
   return absl::InvalidArgumentError(absl::StrCat(place, ": ", what));
 }
 
-// The text of a place is put together for a fault alone: there may be millions of places.
+// The text of a position is built only for a fault: there may be millions of positions.
 std::string PathPlace(size_t index) { return absl::StrCat("paths[", index, "]"); }
 std::string NodePlace(int index, const PlanNode& node) {
   const char* kind = "";
@@ -188,7 +188,7 @@ class TreeCheck {
 // Appends nodes of a plan under construction.
 class PlanBuilder {
  public:
-  // Asks `budget`, if there is one, meanwhile. `islands` are going to be added: long arrays are not
+  // Asks `budget` regularly, if it is not null. `islands` will be added: then long arrays are not
   // moved while they grow.
   PlanBuilder(const std::vector<IslandPaths>& islands, Budget* budget) : rest_(budget) {
     size_t paths = 0;

@@ -127,8 +127,8 @@ void LayerChain::RunAnchor(const ChainLayerPtr& layer, const TrueStart& at) {
   MaybePrepare();
 }
 
-// The next layer's first stage, unless it is under way, or the layer's finish is not known yet, or
-// what is to be learned before it.
+// The next layer's first stage, unless it is running, or the layer's finish is still unknown, or
+// what must be learned before it.
 void LayerChain::MaybePrepare() {
   if (preparing_ || next_to_prepare_ == added_) return;
   const bool learns = next_to_prepare_ >= kLearnDelay;
@@ -147,7 +147,7 @@ void LayerChain::MaybePrepare() {
   Submit([this, layer] { RunPrepare(layer); }, layer->points);
 }
 
-// The first solution of a layer, once there is what it starts from.
+// The first solution of a layer, once there is a route to start from.
 void LayerChain::MaybeSolveFirst(const ChainLayerPtr& layer) {
   if (layer->precursor && !layer->precursor->ready) {
     layer->precursor->waiting.push_back(layer->index);
@@ -205,7 +205,7 @@ void LayerChain::MaybeAnchor(uint64_t index) {
   Submit([this, layer, at] { RunAnchor(layer, at); }, layer->points);
 }
 
-// Layers from the front that are done, but for the last of them: its end is the next one's start.
+// Layers from the front that are done, except the last of them: its end is the next one's start.
 void LayerChain::DropAnchored() {
   while (layers_.size() > 1 && layers_[0]->end && layers_[1]->anchoring) {
     layers_.pop_front();
@@ -224,7 +224,7 @@ void LayerChain::Submit(std::function<void()> stage, int64_t points) {
   if (cancel_.cancelled()) return;
   ++tasks_;
   auto run = [self = shared_from_this(), stage = std::move(stage)] {
-    // Also if the stage runs out of memory: whoever ran it can then cancel the job, which ends.
+    // Also if the stage runs out of memory: its caller can then cancel the job, which ends.
     const absl::Cleanup end = [&self] {
       MutexLock lock(self->mutex_);
       --self->tasks_;

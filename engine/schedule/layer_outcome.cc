@@ -17,7 +17,7 @@
 namespace traverse {
 namespace {
 
-// What the moves of `route` come to, the one to the cleaning point apart.
+// The totals of the moves of `route`, without the one to the cleaning point.
 struct Moves {
   MoveCounts counts;
   std::vector<Detour> detours;

@@ -20,7 +20,7 @@ RouteHistory::Shape& RouteHistory::OfShape(uint64_t shape) {
   return shapes_[shape];
 }
 
-// Returns the entry kLag before, or the first one that is left; null if there is none.
+// Returns the entry kLag before, or the first that remains; null if there is none.
 RouteHistory::Entry RouteHistory::Push(std::deque<Entry>& entries, const Entry& mine) {
   Entry model = entries.empty() ? nullptr : entries.front();
   entries.push_back(mine);

@@ -9,7 +9,7 @@ namespace {
 
 using Member = NeighborLists::Member;
 
-// Appends the ends of all leaves with which `item` can begin or end. Pairs are not looked at.
+// Appends the ends of all leaves with which `item` can begin or end. Ignores pairs.
 void AppendEnds(const OrderTree& tree, const PointGroups& groups, int item, int owner,
                 std::vector<Member>& members) {
   if (item < tree.leaf_count()) {

@@ -185,7 +185,7 @@ double LocalSearch::ChoosePair(int position) {
   return best.cost - old_cost;
 }
 
-// The entry that costs least for the visit behind `position`, reached from `from`.
+// The cheapest entry for the visit after `position`, reached from `from`.
 int LocalSearch::BestAfter(int position, Point from) const {
   const int after = state_.leaf_at(position + 2);
   const Point to = state_.in(after);

@@ -47,11 +47,11 @@ double MoveEvaluator::Evaluate(const SegmentMove& move, double most) {
   }
   complete_ = new_cost < limit;
   delta_ = new_cost - old_cost_;
-  // Where costs are large, the limit is rounded to beside itself, and the difference is less.
+  // At large costs the limit is subject to rounding, and the difference is smaller.
   return complete_ ? delta_ : std::max(delta_, most);
 }
 
-// The segment's ends are free. A long segment divides the stretch: what is inside stays.
+// The segment's ends are free. A long segment divides the stretch: its inside stays.
 void MoveEvaluator::AddSegment(const Segment& segment) {
   const int size = segment.size();
   for (int i = 0; i < size; ++i) {

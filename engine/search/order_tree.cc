@@ -11,8 +11,8 @@ namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;
 
-// Turns pairs of an item and what is listed for it into one array, with the place where each item's
-// part begins; in the order of the pairs.
+// Turns pairs of an item and its list entry into one array, with the index where each item's part
+// begins; in the order of the pairs.
 void Group(const Pairs& pairs, size_t items, Rest& rest, std::vector<int>& values,
            std::vector<int>& first) {
   first.assign(items + 2, 0);
@@ -79,7 +79,7 @@ class OrderTree::Compiler {
     return item;
   }
 
-  // Returns the item that stands for a node. REQUIRES: there are leaves below it.
+  // Returns the item that represents a node. REQUIRES: there are leaves below it.
   int Compile(int index) {
     const PlanNode& node = plan_.node(index);
     if (node.kind == PlanNode::Kind::kPath) return node.path;

@@ -122,7 +122,7 @@ bool SearchState::CanReverseWithin(int node, int first, int last) const {
   return true;
 }
 
-// Looks at the pairs of the shorter segment.
+// Checks the pairs of the shorter segment.
 bool SearchState::AllowsExchange(int node, const SegmentMove& move) const {
   const bool first_is_shorter = move.middle - move.first <= move.last - move.middle + 1;
   const int begin = first_is_shorter ? move.first : move.middle;

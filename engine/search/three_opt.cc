@@ -79,8 +79,8 @@ struct TimeCost {
   const TravelCost& cost;
 };
 
-// A length does not tell what lies in its way, but what the move costs at least; more is only asked
-// for where that does not rule a move out.
+// A length ignores walls, but gives the least that the move costs; the true cost is only asked for
+// if that does not rule the move out.
 struct WallsCost {
   static constexpr bool kHasWalls = true;
   double AtLeast(Point a, Point b) const { return cost.Base(a, b); }
@@ -113,8 +113,8 @@ bool ThreeOpt::RightOf(int group, int leaf) const {
   return (group % 2 == 1) == backwards;
 }
 
-// Whether `group` is what its leaf shows at this side of the cut: any vertex of a contour, but only
-// one end of an open path.
+// Whether `group` is the one that its leaf shows at this side of the cut: any vertex of a contour,
+// but only one end of an open path.
 bool ThreeOpt::IsEnd(int group, const End& end) const {
   return !state_.entries().open(end.leaf) || RightOf(group, end.leaf) == end.right;
 }
@@ -193,7 +193,7 @@ double ThreeOpt::LeastOf(const End& a, const End& b, const Cost& cost) const {
   return cost(a.point, b.point);
 }
 
-// t2 is joined with t3, for so much.
+// t2 is joined with t3, at this cost.
 template <typename Cost>
 void ThreeOpt::SearchSecond(const End& t3, double joined, const Cost& cost) {
   cut2_ = CutAt(t3);
@@ -246,7 +246,7 @@ void ThreeOpt::SetKinds(int left, int right) {
   }
 }
 
-// t4 is joined with t5, for `joined`, or for no less than that where there are walls.
+// t4 is joined with t5 at cost `joined`, or at least that if there are walls.
 template <typename Cost>
 void ThreeOpt::SearchThird(const End& t5, double joined, const Cost& cost) {
   const int at = state_.position(t5.leaf) - t5.right;
@@ -270,7 +270,7 @@ void ThreeOpt::SearchThird(const End& t5, double joined, const Cost& cost) {
   Offer({static_cast<Kind>(kind), first + 1, middle + 1, end}, last - gain, gain, t6.leaf, radii);
 }
 
-// Whether Offer() may want what gains so much before `from` is joined with `to`.
+// Whether Offer() may accept a move with this gain before `from` is joined with `to`.
 template <typename Cost>
 bool ThreeOpt::MayKeep(const End& from, const End& to, double gain, double radii,
                        const Cost& cost) const {

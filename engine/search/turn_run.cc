@@ -10,7 +10,7 @@ namespace {
 
 using Kind = SegmentMove::Kind;
 
-// Whether no child that has to come before `child` is at [first, last].
+// Whether no child that must come before `child` is at [first, last].
 bool MayComeFirst(const SearchState& state, int child, int first, int last) {
   const auto before = state.tree().before(child);
   return std::none_of(before.begin(), before.end(), [&](int other) {
@@ -47,8 +47,8 @@ bool TurnsOnly(const OrderTree& tree, int node) {
 void TurnRun(SearchState& state, int node, int first, int last) {
   const OrderTree& tree = state.tree();
   assert(tree.free_order(node) && IsUnionOfChildren(state, node, first, last));
-  // Of what is left, the last child that may come now goes to the front. There is always one: what
-  // comes first has nothing before it.
+  // Of the remaining children, moves the last that may come now to the front. There always is one:
+  // the first one has nothing before it.
   for (int begin = first; begin < last;) {
     int end = last;
     int child = tree.ChildHolding(node, state.leaf_at(end));

@@ -15,7 +15,7 @@ class NodeTwoOpt {
  public:
   explicit NodeTwoOpt(SearchRoute& route) : route_(route), line_(route.layer().cost) {}
 
-  // Looks at every pending node once. Returns the change of cost.
+  // Processes every pending node once. Returns the change of cost.
   double Sweep(Budget& budget) {
     const PlanTree& tree = route_.layer().tree;
     double change = 0;

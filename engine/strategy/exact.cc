@@ -39,8 +39,8 @@ std::unique_ptr<Strategy> MakeWith(const StrategyEntry& entry,
 
 std::unique_ptr<Strategy> MakeDefault(const StrategyEntry& entry) { return MakeWith(entry, {}); }
 
-// Of the time left, what the first route may use, and then the first bound: a proof needs the rest,
-// but route and bound are what there is when it is not found, or cannot be.
+// Shares of the remaining time that the first route may use, and then the first bound. A proof
+// needs the rest; but without one, route and bound are the result.
 constexpr double kRouteShare = 0.4;
 constexpr double kRouteShareWithoutProof = 0.7;
 constexpr double kBoundShare = 0.5;
@@ -179,8 +179,8 @@ class ExactFramework : public Strategy {
     return solution;
   }
 
-  // Sums over the programmes of a step: one, or one for each island. What they began with and what
-  // they came to are of those alone that found a route.
+  // Sums over the programmes of a step: one, or one per island. Start and end values count only for
+  // those that found a route.
   static void Describe(const std::string& step, const std::vector<MilpRoute>& programmes,
                        std::map<std::string, double>& statistics) {
     if (programmes.empty()) return;

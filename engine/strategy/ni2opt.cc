@@ -36,9 +36,9 @@ class Ni2opt : public Strategy {
   }
 
  private:
-  // Descends from `start`. Where that ends behind the baseline, the baseline takes its place:
-  // improved too, but without point release as it is, as this is then the NI2OPT of the sources.
-  // Never behind either.
+  // Descends from `start`. If that ends above the baseline, the baseline replaces it: improved too,
+  // but as it is if point release is off, which then is the NI2OPT of the sources. Never above
+  // either.
   Solution Best(const LayerView& layer, Route baseline, const Route& start, Budget& budget) const {
     Route route = Improve(layer, start, descent_, budget);
     if (RouteCost(layer.problem, baseline, &budget) < RouteCost(layer.problem, route, &budget)) {

@@ -23,14 +23,14 @@
 namespace traverse {
 namespace {
 
-// Of the time that is left once there is a first route, what the framework may use if it is to be
+// Share of the time left after the first route that the framework may use if its result is
 // polished.
 constexpr double kFrameworkShare = 0.3;
 
 // Numbers of polishing's random stream: the framework's are those of its steps.
 constexpr uint64_t kPolishStream = 5;
 
-// Layers of up to so many paths are polished as long as it helps; larger ones would take seconds.
+// Layers of up to this many paths are polished as long as it helps; larger ones would take seconds.
 constexpr double kFewPaths = 100;
 
 std::unique_ptr<const Strategy> DefaultNi2opt() {
@@ -121,14 +121,14 @@ class Tabu : public Strategy {
     if (cost < best.cost) best = {std::move(route), cost};
   }
 
-  // What is small enough for it is solved to optimality.
+  // Small enough layers are solved to optimality.
   static void FinishSmallParts(const LayerView& layer, Solution& solution, Budget& budget) {
     if (!SolveSmallParts(layer, SmallPartOptions(), solution.route, budget)) return;
     solution.stop = StopReason::kOptimal;
     solution.lower_bound = RouteCost(layer.problem, solution.route);
   }
 
-  // What there is at once, and no result is worse than.
+  // The route that exists at once; no result is worse.
   static Candidate Baseline(const LayerView& layer, Budget& budget) {
     Route route = BaselineRoute(layer, budget);
     const double cost = RouteCost(layer.problem, route);
@@ -149,13 +149,13 @@ class Tabu : public Strategy {
     return solution;
   }
 
-  // First what takes little time, so that there is a good route if time is short: greedy's,
-  // polished, and that of ni2opt. Then tabu search, and what it found is polished at length.
+  // First the quick parts, so that there is a good route if time is short: greedy's, polished, and
+  // that of ni2opt. Then tabu search, and a long polish of its result.
   Solution SolvePolished(const LayerView& layer, Budget& budget) const {
     Candidate best = Baseline(layer, budget);
     const Route start = best.route;
     Solution solution;
-    // Each of what follows takes a pass over the layer, and nobody waits for what was cancelled.
+    // Each of the next steps takes a pass over the layer, and nobody waits for a cancelled job.
     if (budget.cancelled()) return Ended(std::move(best), std::move(solution), budget);
     Polisher polisher(layer, budget);
     Take(layer, polisher.Descend(best.route, budget), best);

@@ -58,8 +58,8 @@ struct Tail {
   const float* tail;
 };
 
-// Entries are told apart in the low bits of their costs, so that the least one is found without a
-// branch: the bits of floats that are not negative are ordered as the floats.
+// The low bits of a cost hold the number of its entry, so that the least is found without a branch:
+// the bits of floats that are not negative are ordered as the floats.
 constexpr int kBlock = 64;
 
 template <typename Cost, typename Rest>
@@ -170,8 +170,8 @@ void FillBounds(const FloatEntries& entries, FloatPoint from, const FloatBox& bo
   const Move<Length> reach{from, {}};
   FillLeast(entries, reach, box, least_tail, bound);
   if (to == nullptr) return;
-  // Over a contour there is no shorter way than the straight one. By several moves without a
-  // retraction there may be a quicker one.
+  // No way over a contour is shorter than the straight one. Several moves without a retraction may
+  // be faster, though.
   const Move<Length> rest{*to, {}};
   for (int i = 0; i < entries.n; ++i) {
     const float straight =

@@ -110,8 +110,8 @@ int LeafEntries::Best(int leaf, Point from, const Point* to, const TravelCost& c
   return BestByLength(leaf, from, to);
 }
 
-// The best by its length mostly is the best: others are looked at where walls make it dearer, from
-// there on to either side, so that soon most need not be asked about.
+// The best by length mostly is the best. If walls make it more expensive, looks at others to either
+// side of it, so that soon most need no question.
 int LeafEntries::BestAmongWalls(int leaf, Point from, const Point* to,
                                 const TravelCost& cost) const {
   const auto base_behind = [&](int entry) {

@@ -97,7 +97,7 @@ Frontier::Found Frontier::Nearest(Point at) const {
   return found;
 }
 
-// Replaces `found` by what is nearer here.
+// Replaces `found` by a nearer entry of this frontier.
 void Frontier::SearchNearest(Point at, Found& found) const {
   if (const int id = index_.Nearest(at); id >= 0) {
     const auto [entry, slot] = entries_[static_cast<size_t>(id)];

@@ -23,7 +23,7 @@ class Greedy {
   }
 
  private:
-  // Nothing, once nobody wants the route any more.
+  // Returns nothing once nobody wants the route any more.
   void Complete(int node) {
     if (budget_.was_exhausted() && budget_.cancelled()) return;
     const absl::Span<const int> children = layer_.tree.children(node);
