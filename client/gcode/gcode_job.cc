@@ -16,7 +16,7 @@ namespace traverse {
 namespace gcode {
 namespace {
 
-// Paths and extruded way by feature, and what may move.
+// Paths and extruded length by feature, and what may move.
 struct Census {
   std::array<int64_t, static_cast<size_t>(Feature::kCount)> paths{};
   std::array<double, static_cast<size_t>(Feature::kCount)> way_mm{};
@@ -35,7 +35,7 @@ void SetCost(const TravelModel& model, v1::CostModel& cost) {
 // Rounding of sums of filament.
 constexpr double kLeastExtraMm = 1e-6;
 
-// Longer than any way.
+// Longer than any travel.
 constexpr double kNeverMm = 1e7;
 
 // The service knows no longer moves.
@@ -53,7 +53,7 @@ double CrossingSeconds(Crossings crossings) {
   return 0;
 }
 
-// The rules by which ways are written (travel_rules.h), for the search to know what each costs.
+// The rules by which travel is written (travel_rules.h), so that the search knows the cost of each.
 void SetWallCost(const RetractionHabit& habit, Crossings crossings, v1::TimeCost& time) {
   time.set_crossing_seconds(CrossingSeconds(crossings));
   time.set_wall_slack_mm(VisibleWalls::kEndSlackMm);
@@ -67,8 +67,8 @@ void SetWallCost(const RetractionHabit& habit, Crossings crossings, v1::TimeCost
   }
 }
 
-// Paths that the slicer wipes stay wiped, so that what follows them is retracted wherever it leads:
-// an order saves, or costs, the retractions behind the others alone.
+// Paths that the slicer wipes stay wiped, so travel after them always retracts: an order saves, or
+// costs, only the retractions after the other paths.
 double ShareWiped(const GcodeFile& file) {
   const auto blocks = static_cast<uint32_t>(file.blocks.size());
   size_t wiped = 0;
@@ -76,8 +76,8 @@ double ShareWiped(const GcodeFile& file) {
   return static_cast<double>(wiped) / blocks;
 }
 
-// Where a retraction is a matter of length it is told as one of exposed paths, which all of them
-// are then, for only of such a one what is wiped pays less.
+// If retraction depends on length, it is sent as one of exposed paths, and all paths are exposed:
+// only for these does travel after a wiped path pay less.
 void SetWiped(const GcodeFile& file, const Layer& of_file, bool crossing_matters,
               v1::Layer& layer) {
   for (uint32_t b = of_file.first_block; b < of_file.end_block; ++b) {
@@ -107,8 +107,8 @@ void SetWalls(const TravelRules& rules, const RetractionHabit& habit,
   }
 }
 
-// The ways of the file from one path to the next stay as they are where an order has them: some
-// have bends, and some no retraction where a new one would have it.
+// The file's travel between two paths stays as it is where an order has it: some has bends, and
+// some has no retraction where new travel would have one.
 void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const TravelModel& travel,
                    const TravelRules& rules, const std::vector<Outline>& outlines,
                    const VisibleWalls& walls, v1::Layer& layer) {
@@ -118,10 +118,10 @@ void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const TravelMode
     const TravelWay way = rules.WayOf(file.modes[before.mode].InMm(before.last),
                                       file.modes[block.mode].InMm(block.first),
                                       outlines[b - of_file.first_block].feature);
-    // Wipes are no part of a new way either.
+    // New travel does not include wipes either.
     const bool plain = (block.link & kLinkWipes) == 0;
     double seconds = plain ? WaySeconds(file, b, travel) : NewWaySeconds(file, b - 1, way, travel);
-    // What is pulled back because of a wipe is priced as for a new way, which begins with it too.
+    // A retraction because of a wipe has the price of new travel, which begins with it too.
     const double wiped = (file.WipedBehind(b - 1) ? 0.5 : 0) + (file.WipedBehind(b) ? 0.5 : 0);
     const bool retracts = (block.link & kLinkRetracts) != 0;
     const bool pays = file.WipedBehind(b - 1) ? way.retracts : retracts;
@@ -141,7 +141,7 @@ struct FileHabits {
   std::vector<TravelModel> travel;  // [layer]
 };
 
-// Fills layer `index` of `job`, for which there is room.
+// Fills layer `index` of `job`, which has room for it.
 void FillLayer(const GcodeFile& file, size_t index, const FileHabits& habits,
                const GcodeOptions& options, InputJob& job, Census& census) {
   const Layer& layer = file.layers[index];
@@ -187,8 +187,8 @@ Census FillLayers(const GcodeFile& file, const GcodeOptions& options, const File
   return all;
 }
 
-// Where each prime pushes more than was pulled back, the number of retractions in a layer is part
-// of what is printed, and hardly an order that is found has it: of a few layers, whether any does
+// If each prime pushes more than was retracted, the number of retractions in a layer is part of
+// what is printed, and hardly any order found has it. Looks at a few layers, whether any does
 // so.
 bool KeepsRetractions(const GcodeFile& file) {
   constexpr size_t kLayers = 3;
@@ -265,7 +265,7 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   habits.travel = gcode::LearnTravel(*file, habits.retraction.threshold_mm);
   const std::vector<gcode::TravelModel>& models = habits.travel;
   const gcode::Census census = gcode::FillLayers(*file, options, habits, job);
-  // The first path is pinned; how the start script comes to it is not ours.
+  // The first path is pinned; the travel to it from the start script is not ours.
   const gcode::Outline first = gcode::OutlineOf(*file, file->blocks.front());
   job.options.mutable_start()->set_x_mm(first.points.front().x);
   job.options.mutable_start()->set_y_mm(first.points.front().y);
@@ -323,7 +323,7 @@ std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& opt
     *layers[i].mutable_walls() = layer.walls();
     *layers[i].mutable_exposed_paths() = layer.exposed_paths();
     *layers[i].mutable_retracted_paths() = layer.retracted_paths();
-    // Where only length counts, that of the file's own ways is no other one.
+    // If only length counts, the file's own travel costs nothing else.
     const bool by_time = layers[i].cost().time().retraction_seconds() > 0;
     if (by_time) *layers[i].mutable_known_moves() = layer.known_moves();
     const gcode::Layer& of_file = job.gcode->layers[job.first_layer + i];

@@ -73,7 +73,7 @@ std::optional<std::string> ScaleNumber(std::string_view value, double factor) {
   return absl::StrFormat("%.*f", static_cast<int>(decimals), number * factor);
 }
 
-// `line` with `value`, which lies in it, scaled; the line itself if the value is no time.
+// `line` with `value`, a part of it, scaled; the line itself if the value is not a time.
 std::string WithScaled(std::string_view line, std::string_view value, double factor) {
   const std::optional<std::string> scaled = ScaleDuration(value, factor);
   if (!scaled) return std::string(line);
@@ -108,10 +108,10 @@ std::string RestateModelTime(std::string_view line, double factor) {
       FormatDuration(std::max<int64_t>(0, *total_seconds - *model_seconds + scaled)));
 }
 
-// Comments that state a time behind a word.
+// Comments that state a time after a keyword.
 struct Stated {
-  std::string_view begin;  // of the comment, behind ';' and blanks
-  char mark;               // the value is behind it
+  std::string_view begin;  // of the comment, after ';' and blanks
+  char mark;               // the value follows it
   bool first_layer;
 };
 constexpr std::array<Stated, 8> kStated = {{
@@ -151,7 +151,7 @@ std::string RestateProgress(std::string_view line, double factor) {
     while (end < words.size() && IsDigit(words[end])) ++end;
     int64_t number = 0;
     if (end == at || !absl::SimpleAtoi(AsAbsl(words.substr(at, end - at)), &number)) continue;
-    constexpr double kMiddle = 0.5;  // of the minute that the number stands for
+    constexpr double kMiddle = 0.5;  // of the minute for which the number stands
     out += absl::StrFormat("%d",
                            static_cast<int64_t>((static_cast<double>(number) + kMiddle) * factor));
     at = end;

@@ -24,13 +24,13 @@ constexpr double kFirstPrice = 0.02;
 constexpr int kDoublings = 16;
 constexpr int kHalvings = 6;
 
-// Seconds that each of them counts for, beside those that it takes.
+// The price of each of them in seconds, in addition to its time.
 struct Prices {
   double crossing = 0;
   double retraction = 0;
 };
 
-// What a file saves by one retraction more is no less than this, or it does without.
+// The seconds that each additional retraction must save, or the file does without it.
 constexpr double kMostRetractionSeconds = 1;
 
 struct Row {
@@ -111,7 +111,7 @@ class RowFinder {
         chosen.longest_open_mm > given.longest_open_mm + kSlackMm) {
       return false;
     }
-    // Where each prime pushes a little more than was pulled back, their number is what is printed.
+    // If primes push a little more than was retracted, their number is part of the print.
     if (std::abs(chosen.extra_mm - given.extra_mm) > kSlackMm) return false;
     return policy_ != Policy::kSafe || chosen.travel_mm <= given.travel_mm + kSlackMm;
   }
@@ -135,7 +135,7 @@ class RowFinder {
     return row;
   }
 
-  // [choice] the score of the best row up to `layer`, and in `from` where it comes from.
+  // [choice] the score of the best row up to `layer`; `from` has the choice before it.
   std::vector<double> Extend(size_t layer, const Prices& prices, const std::vector<double>& before,
                              std::vector<uint32_t>& from) const {
     const ChoiceColumn& column = *columns_[layer];

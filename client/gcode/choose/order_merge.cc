@@ -27,7 +27,7 @@ Source SourceOf(const LayerOrder& order, uint32_t first) {
   return source;
 }
 
-// One merge under way.
+// One merge in progress.
 class Merging {
  public:
   Merging(const OrderMerger& merger, const WayEstimate& estimate, LayerOrder begun)
@@ -94,7 +94,7 @@ class Merging {
   const OrderMerger& merger_;
   const WayEstimate& estimate_;
   LayerOrder order_;
-  std::vector<WayTotals> ways_;  // [place] the way to there
+  std::vector<WayTotals> ways_;  // [position] the travel to it
   WayTotals totals_;
   size_t asked_ = 0;
   LayerOrder run_;
@@ -117,7 +117,7 @@ double OrderMerger::Excess(const WayTotals& totals) const {
                   static_cast<double>(totals.too_long) +
                   beyond(totals.retractions, limits_.retractions);
   if (limits_.as_many_retractions) excess += beyond(limits_.retractions, totals.retractions);
-  // A millimetre is less than a crossing, but for long ways.
+  // A millimetre counts less than a crossing, except on long travel.
   if (totals.mm > limits_.mm + kGrain) excess += (totals.mm - limits_.mm) / 100;
   return excess;
 }

@@ -13,7 +13,7 @@
 namespace traverse::gcode {
 namespace {
 
-// What is no later than this is as soon.
+// Differences smaller than this do not count.
 constexpr double kSameSeconds = 1e-6;
 
 double LengthOf(const Outline& outline) {

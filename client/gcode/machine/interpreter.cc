@@ -65,13 +65,13 @@ bool Beyond(Decimal coordinate) {
   return coordinate > kMax || coordinate < -kMax;
 }
 
-// A kilometre at once; sums stay far from where they would overflow.
+// A kilometre at once; sums stay far below overflow.
 bool BeyondFilament(Decimal filament) {
   constexpr Decimal kMax = 1'000'000 * kDecimalOne;
   return filament > kMax || filament < -kMax;
 }
 
-// A push that leaves less than one part in so many of what was pulled back has primed the nozzle.
+// A push that leaves less than one part in this many of what was retracted has primed the nozzle.
 constexpr Decimal kPrimeShare = 30;
 
 // Longer moves with an E word that pushes nothing are travel (KISSlicer, Bambu Studio); shorter
@@ -149,7 +149,7 @@ void Interpreter::FollowG(Step& step) {
     case 17:
     case 18:
     case 19:
-      // Slicers write G17 before each spiral lift; where it changes nothing it is part of that.
+      // Slicers write G17 before each spiral lift; if it changes nothing, it is part of the lift.
       step.kind = SwitchMode(state_.plane_xy, step.command.number == 17);
       if (step.kind == StepKind::kStay) step.kind = StepKind::kPlane;
       return;
@@ -175,7 +175,7 @@ StepKind Interpreter::SwitchMode(bool& mode, bool value) {
   return changed ? StepKind::kModeChange : StepKind::kStay;
 }
 
-// The head stays where it is, and the register as well: words count in another unit from here on.
+// The head stays where it is, and so does the register: from here on words use another unit.
 void Interpreter::SwitchUnits() {
   const long double scale = state_.inches ? 1 / 25.4L : 25.4L;
   for (Decimal* value : {&state_.at.x, &state_.at.y, &state_.at.z, &state_.e, &state_.feed,
@@ -194,7 +194,7 @@ void Interpreter::FollowM(Step& step) {
     case 83:
       step.kind = SwitchMode(state_.relative_e, step.command.number == 83);
       return;
-    case 74:  // mass of what is printed so far
+    case 74:  // mass printed so far
     case 104:
     case 105:
     case 117:
@@ -219,13 +219,13 @@ void Interpreter::FollowM(Step& step) {
 void Interpreter::FollowFilament(Decimal filament, bool still) {
   if (filament < 0) state_.deepest = std::max(state_.deepest, state_.retracted - filament);
   state_.retracted -= filament;
-  // Simplify3D and others push a little less than they pulled back where they coast before.
+  // Simplify3D and others push a little less than they retracted where they coast before.
   if (still && filament > 0 && state_.retracted * kPrimeShare <= state_.deepest) {
     state_.retracted = 0;
   }
   if (state_.retracted <= 0) state_.deepest = 0;
-  // A prime may push more than was pulled back (restart extra); printing pushes always.
-  // Whatever was pulled back beyond reason only stays "retracted".
+  // A prime may push more than was retracted (restart extra); printing always pushes. Only an
+  // unreasonable rest of a retraction stays "retracted".
   state_.retracted = std::clamp(state_.retracted, Decimal{0}, kDecimalMax);
 }
 
@@ -285,7 +285,7 @@ void Interpreter::Arc(Step& step) {
     return;
   }
   if (!c.Has('I') && !c.Has('J') && !c.Has('R')) {
-    // Marlin takes the feed rate and says that this is no arc, Klipper ends the print.
+    // Marlin takes the feed rate and reports that this is not an arc; Klipper ends the print.
     if (c.Has('F')) state_.feed = c.Value('F');
     step.fault = step.command.number == 2 ? "G2 without I, J or R" : "G3 without I, J or R";
     step.kind = StepKind::kUnknown;

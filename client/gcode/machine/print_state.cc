@@ -9,7 +9,7 @@
 namespace traverse::gcode {
 namespace {
 
-// The words of `command` must all be among `allowed`; then the slots of those that are there.
+// The words of `command` must all be among `allowed`; then returns the slots of those present.
 struct WordSlots {
   char letter;
   SlotMask slots;
@@ -67,8 +67,8 @@ bool IsBareType(std::string_view comment) {
   return std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
 }
 
-// KISSlicer: `; 'Loop Path', 0.2 [feed mm/s], 5.2 [head mm/s]`; ways between paths have such lines
-// as well.
+// KISSlicer: `; 'Loop Path', 0.2 [feed mm/s], 5.2 [head mm/s]`; travel between paths has such lines
+// too.
 bool IsQuotedType(std::string_view comment) {
   if (!StartsWith(comment, "; '") || comment.find(" Path',") == std::string_view::npos)
     return false;

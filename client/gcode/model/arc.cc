@@ -10,7 +10,7 @@ namespace {
 // Of any arc: a file may ask for one of a kilometer's radius.
 constexpr double kMostLines = 720;
 
-// In the unit of the words; relative to where it begins.
+// In the unit of the words, relative to the arc's start.
 struct Circle {
   double i = 0;  // the center
   double j = 0;

@@ -125,7 +125,7 @@ Feature Find(const TypeName (&names)[n], std::string_view name) {
   return Feature::kCount;
 }
 
-// What a line that sets the type says behind its mark.
+// The text after the mark in a line that sets the type.
 std::string_view TypeName(std::string_view line) {
   if (const size_t colon = line.find(':'); colon != std::string_view::npos) {
     return line.substr(colon + 1);

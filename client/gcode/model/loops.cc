@@ -25,7 +25,7 @@ Segment ProbeAt(const Outline& outline, size_t k) {
   return {middle, {middle.x + (b.y - a.y) * reach, middle.y - (b.x - a.x) * reach}, 0};
 }
 
-// Of the places looked at, those with a neighbor and all.
+// Of the sampled points: those with a neighbor, and all.
 struct Probes {
   size_t hits = 0;
   size_t all = 0;
@@ -99,7 +99,7 @@ void TellWalls(const GcodeFile& file, const Layer& layer, std::vector<Outline>& 
   }
 }
 
-// Filament for each mm of way.
+// Filament per mm of length.
 double FlowOf(const Block& block) {
   if (!(block.length_mm > 0)) return 0;
   return ToDouble(block.e_out - block.e_in) / static_cast<double>(block.length_mm);

@@ -87,7 +87,7 @@ void SegmentGrid::Fill() {
     number_.push_back(count);
     count += static_cast<uint32_t>(std::popcount(word));
   }
-  // Counting sort: how many entries a cell has, then where they begin, then the entries.
+  // Counting sort: the number of entries per cell, then where they begin, then the entries.
   first_.assign(count + size_t{1}, 0);
   for (Place& place : places) {
     place.cell = static_cast<uint32_t>(NumberOf(place.cell));

@@ -43,8 +43,8 @@ std::vector<Vertex> ContourVertices(const Outline& outline) {
   return {outline.points.begin(), outline.points.end() - 1};
 }
 
-// What a path is to the order of others. That lines of different infills lie side by side is no
-// reason for an order; that they lie against a wall is.
+// The role of a path for the order of others. Lines of different infills may lie side by side in
+// any order, but not infill that lies against a wall.
 enum class Kind { kWall, kFill, kBridge, kIroning, kSupport, kOther };
 
 Kind KindOf(Feature feature) {
@@ -94,7 +94,7 @@ bool PathRules::IsPinned(size_t path) const {
          feature == Feature::kTower || feature == Feature::kCustom;
 }
 
-// Monotonic surfaces and ironing look the way they do because of the order of their lines.
+// Monotonic surfaces and ironing get their look from the order of their lines.
 bool PathRules::OrderIsQuality(Feature feature) const {
   if (policy_ == Policy::kFree) return false;
   if (feature == Feature::kIroning) return true;

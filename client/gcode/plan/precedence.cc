@@ -12,7 +12,7 @@ namespace {
 // Segments this many cells apart are found by the grid.
 constexpr double kNearInCells = 0.75;
 
-// What is known of the order of two paths.
+// What is known about the order of two paths.
 enum class Order : uint8_t { kNone, kIfTheyTouch, kKnown };
 
 std::vector<Segment> AllSegments(const std::vector<Outline>& outlines) {

@@ -34,8 +34,8 @@ void Count(const GcodeFile& file, const Layer& layer, const std::vector<Outline>
   });
 }
 
-// How much longer than the longest open way of the file a new one may be: less than what the
-// verifier allows.
+// By how much new unretracted travel may exceed the file's longest: less than the verifier
+// allows.
 constexpr double kLongestOpenFactor = 1.9;
 constexpr double kLongestOpenSlackMm = 0.95;
 
@@ -53,7 +53,7 @@ double LongestOpenMm(const GcodeFile& file) {
 // The usual setting of slicers.
 constexpr double kUsualThresholdMm = 1.5;
 
-// Straight ways across walls that were not retracted, for the shortest that was to be no accident.
+// Straight unretracted moves across walls that show the shortest retracted is no accident.
 constexpr int64_t kEnough = 3;
 
 double LearnThreshold(const GcodeFile& file, const std::vector<size_t>& sample) {
@@ -87,8 +87,8 @@ std::vector<size_t> SampledLayers(const GcodeFile& file) {
   return sample;
 }
 
-// By the slicer's setting if the file holds it; else if a good part of the ways that would cross a
-// visible wall have bends. Wipes and moves inwards look like bends, but CuraEngine makes neither.
+// By the slicer's setting if the file has it; else if a good part of the travel that would cross a
+// visible wall has bends. Wipes and inward moves look like bends, but CuraEngine makes neither.
 bool AvoidsWalls(const GcodeFile& file) {
   if (file.profile.avoid_crossing) return *file.profile.avoid_crossing;
   if (file.dialect != Dialect::kCura) return false;
@@ -177,7 +177,7 @@ TravelWay TravelRules::WayOf(Vertex a, Vertex b, Feature feature) const {
       bent.push_back(b);
       way.mm = 0;
       for (size_t i = 1; i < bent.size(); ++i) way.mm += Distance(bent[i - 1], bent[i]);
-      // A bend may lie within another wall where there is hardly room for one between the two.
+      // A bend may lie within another wall if there is hardly room between the two.
       way.grazes = walls_.CrossedByWay(bent);
     }
   }

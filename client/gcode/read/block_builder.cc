@@ -11,7 +11,7 @@
 namespace traverse::gcode {
 namespace {
 
-// A tail wipes a line's end or coasts to it; what is longer is travel.
+// A tail wipes the end of a line, or coasts to it; a longer move is travel.
 constexpr double kMaxTailMm = 2;
 
 // Slicers move in by about a line width before they leave a loop.
@@ -39,7 +39,7 @@ bool IsSpeck(const Step& step) {
          step.filament <= kMostFilament && (step.command.Has('X') || step.command.Has('Y'));
 }
 
-// A move whose words could not be read, or one like G28, that leads who knows where.
+// A move whose words could not be read, or one like G28, whose end is unknown.
 bool IsLostMove(const Step& step, const MachineState& after, std::string_view text) {
   if (step.kind != StepKind::kUnknown) return false;
   if (step.command.kind == LineKind::kCommand) {
@@ -209,7 +209,7 @@ void BlockBuilder::BeginBlock(const Step& step, const MachineState& before,
                               const MachineState& after) {
   const bool to_tail = has_tail_ && link_.xy_moves == 0;
   if (to_tail && !TailIsOwn()) UndoTail();
-  // A tail is all the way that such a path needs.
+  // Such a path needs no more travel than its tail.
   meets_tail_ = to_tail && link_.xy_moves == 0;
   has_tail_ = false;
   Block block;
@@ -308,8 +308,8 @@ void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
   if (block.segments < std::numeric_limits<uint16_t>::max()) ++block.segments;
 }
 
-// CuraEngine ends lines with a short move at print speed, and coasts at a little less. A travel
-// move is faster, or follows something else than the path.
+// CuraEngine ends lines with a short move at print speed, and coasts a little slower. A travel move
+// is faster, or follows something else than the path.
 bool BlockBuilder::IsTail(const Step& step, const MachineState& before,
                           const MachineState& after) const {
   return step.kind == StepKind::kTravel && !step.arc && before.at.z == after.at.z &&
@@ -352,14 +352,14 @@ bool BlockBuilder::TailIsOwn() const {
   return Distance(on, tail) <= kBesideMm;
 }
 
-// The next path begins where the tail ended: it was the way there.
+// The next path begins where the tail ended: the tail was the travel to it.
 void BlockBuilder::UndoTail() {
   Last() = before_tail_;
   tail_.flags |= link_.flags;
   link_ = tail_;
 }
 
-// Where the head is behind such a line is not known, nor what was printed on the way there.
+// After such a line it is unknown where the head is, and what was printed before.
 void BlockBuilder::KeepLayersWithFaults() {
   const auto keep = [this](const LineFault& fault, size_t block) {
     const auto behind = std::upper_bound(

@@ -141,8 +141,8 @@ absl::Status ReadBlocks(GcodeFile& file) {
   return absl::OkStatus();
 }
 
-// Takes the numbers of lines away, if all are as they have to be; else returns the first line of
-// which that is not so.
+// Removes the numbers of lines, if all of them are right; otherwise returns the first line that is
+// wrong.
 std::optional<Offset> TakeNumbers(GcodeFile& file) {
   std::optional<LineNumbers> numbers = LearnLineNumbers(file.text);
   if (!numbers) return std::nullopt;

@@ -20,7 +20,7 @@ const char* SkipBlanks(const char* p, const char* end) {
   return p;
 }
 
-// Reads words up to `end` or a semicolon; returns where it stopped, null if a word is unreadable.
+// Reads words up to `end` or a semicolon. Returns where it stopped; null if a word is unreadable.
 const char* ScanWords(const char* p, const char* end, Command& command) {
   command.words = 0;
   for (;;) {

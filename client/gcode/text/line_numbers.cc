@@ -9,7 +9,7 @@
 namespace traverse::gcode {
 namespace {
 
-// Numbers beyond this are none; so sums of them stay far from where they would overflow.
+// Larger numbers are invalid, so sums of them stay far below overflow.
 constexpr int64_t kMaxNumber = 1'000'000'000;
 
 // A line taken apart: number, blanks, command, checksum, rest.
@@ -18,7 +18,7 @@ struct NumberedLine {
   std::string_view blanks;
   std::string_view command;
   bool checksum = false;
-  std::string_view rest;  // behind the checksum: blanks and a comment
+  std::string_view rest;  // after the checksum: blanks and a comment
 };
 
 bool IsCommand(std::string_view line) {
@@ -32,7 +32,7 @@ size_t EndOfCode(std::string_view line) {
   return last == std::string_view::npos ? 0 : last + 1;
 }
 
-// Where the checksum is that ends at `end`; npos if there is none.
+// The position of the checksum that ends at `end`; npos if there is none.
 size_t ChecksumBefore(std::string_view line, size_t end) {
   const size_t last = line.substr(0, end).find_last_not_of("0123456789");
   const bool found = last != std::string_view::npos && line[last] == '*' && last + 1 < end;
@@ -85,7 +85,7 @@ bool TakesComment(const NumberedLine& parts, LineNumbers& numbers) {
 }  // namespace
 
 std::optional<LineNumbers> LearnLineNumbers(std::string_view text) {
-  // Most files have none: this is quick, and what follows looks at each line.
+  // Most files have none: this test is quick, while the next step looks at each line.
   if ((text.empty() || text[0] != 'N') && text.find("\nN") == std::string_view::npos) {
     return std::nullopt;
   }
@@ -169,7 +169,7 @@ std::string WithLineNumbers(std::string_view text, const LineNumbers& numbers) {
 std::optional<Offset> FirstOtherLine(std::string_view text, std::string_view other) {
   const auto [at, other_at] = std::mismatch(text.begin(), text.end(), other.begin(), other.end());
   if (at == text.end() && other_at == other.end()) return std::nullopt;
-  // What is behind the end of `text` is told by its last line.
+  // The last line shows what follows the end of `text`.
   size_t place = static_cast<size_t>(at - text.begin());
   if (place == text.size() && place > 0) --place;
   const size_t before = place == 0 ? std::string_view::npos : text.rfind('\n', place - 1);

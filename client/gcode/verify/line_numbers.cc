@@ -18,7 +18,7 @@ std::optional<int64_t> NumberOf(std::string_view line, size_t& used) {
   return number;
 }
 
-// Follows the lines of a text, and puts together what is left of them.
+// Reads the lines of a text, and collects what remains of them.
 class NumberReader {
  public:
   // False if the line, without its end, is not numbered as the others are.
@@ -54,7 +54,7 @@ class NumberReader {
   }
 
  private:
-  // What follows the number, with or without a checksum behind it or behind its comment.
+  // The text after the number, with or without a checksum after it or after its comment.
   bool TakeRest(std::string_view line, size_t begin) {
     const size_t star = line.rfind('*');
     int given = -1;

@@ -6,7 +6,7 @@
 namespace traverse::gcode {
 namespace {
 
-// Stands for a line that ends the last section: what holds there has to agree as well.
+// Stands for a line that ends the last section: the state there must agree too.
 constexpr uint64_t kEndOfText = 1;
 
 uint64_t DigestOf(const Motion& motion) {
@@ -20,7 +20,7 @@ uint64_t DigestOf(const Motion& motion) {
   return Mix(digest, static_cast<uint64_t>(motion.filament));
 }
 
-// Comments that slicers put behind the mark of a layer, and scripts look for there.
+// Comments that slicers put after the mark of a layer, where scripts look for them.
 bool SaysOfLayer(std::string_view text) {
   constexpr std::string_view kNotes[] = {
       ";Z:", ";HEIGHT:", "; Z_HEIGHT:", "; LAYER_HEIGHT:", "; layer num"};
@@ -35,7 +35,7 @@ SectionCutter::SectionCutter(std::string_view ignored, bool marked)
   section_.first_line = section_.first_note = 1;
 }
 
-// A line within a picture would spoil it, and one behind the head could be anything.
+// A line within a picture would spoil it, and one after the head could be anything.
 bool SectionCutter::Ignores(const VerifyLine& line) {
   if (line.text.empty()) return false;
   in_head_ = in_head_ && (line.text[0] == ';' || line.number == 1);
@@ -46,7 +46,7 @@ bool SectionCutter::Ignores(const VerifyLine& line) {
   return !in_picture_ && Begins(line.text, ignored_);
 }
 
-// Of comments that are about no path the order counts: settings, pictures, what is said of a layer.
+// Comments that belong to no path keep their order: settings, pictures, remarks about a layer.
 void SectionCutter::NoteOrder(const VerifyLine& line, bool mark) {
   const bool of_layer = !line.text.empty() && line.text[0] == ';' && SaysOfLayer(line.text);
   if (in_header_ && of_layer) section_.header = Mix(section_.header, DigestOf(line.text));
@@ -75,7 +75,7 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
   }
   last_line_ = line.number;
   NoteOrder(line, mark);
-  // Commands that nobody knows leave the head elsewhere, so that a move to where it was moves it.
+  // Unknown commands leave the head elsewhere, so a move to where it was does move it.
   if ((line.moves || line.stays) && (in_script_ || section_.deposits.count == 0)) {
     section_.moves = Mix(section_.moves, DigestOf(machine.motion()));
   } else if (line.sets && (in_script_ || section_.deposits.count == 0)) {
@@ -134,7 +134,7 @@ void SectionCutter::Close(const VerifyMachine& machine, size_t last_line, uint64
   TakeLoose();
   section_.fence = fence;
   section_.fixed = fixed;
-  // What stands behind the print may be all that leads away from it.
+  // What follows the print may be all that leads away from it.
   const bool end = fence == kEndOfText;
   if (fixed) {
     section_.x = machine.x();
@@ -142,7 +142,7 @@ void SectionCutter::Close(const VerifyMachine& machine, size_t last_line, uint64
     section_.z = machine.z();
     section_.settings = machine.SettingsDigest();
   }
-  // A change of height is no line: what holds there may still change before it prints.
+  // A change of height is not a line: the state there may still change before it prints.
   if (fence != 0) section_.fan = machine.fan();
   section_.label = label;
   if (end) section_.z = machine.z();

@@ -152,7 +152,7 @@ void GcodeOut::Travel(std::string_view line, const Position& to, Decimal feed) {
   if (command.Has('E') && !at.machine.RelativeE()) {
     changes[count++] = {'E', at.machine.e, file_.e_style};
   }
-  // A feed rate that is there and right stays as it is written.
+  // A correct feed rate stays as it is written.
   const bool right = command.Has('F') ? command.Value('F') == feed : feed == at.machine.feed;
   if (!right) changes[count++] = {'F', feed, NumberStyle{}};
   AppendEdited(line, {changes, count}, text_);

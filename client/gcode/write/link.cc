@@ -39,7 +39,7 @@ LinkStep StepOf(const Step& step, const MachineState& after) {
   return taken;
 }
 
-// How the way proper comes to its height.
+// How the travel proper comes to its height.
 void NoteLift(Link& link) {
   for (const LinkStep& step : link.steps) {
     if (step.kind == StepKind::kLift && step.feed > 0) link.lift_feed = step.feed;
@@ -84,7 +84,7 @@ Link ReadLink(const GcodeFile& file, size_t index) {
     if (added.kind == StepKind::kSlot) {
       ApplySetter(state, file.setters.Find(step.line.Text(file.text)), step.slots);
     }
-    // Where CuraEngine primes before the last stretch of the way, the way proper ends there.
+    // If CuraEngine primes before the last stretch of the travel, the travel proper ends there.
     const bool behind_prime = link.retracts() && !step.retracted;
     if (added.kind == StepKind::kTravel && (link.arrival < 0 || !behind_prime)) {
       link.arrival = static_cast<int>(link.steps.size());

@@ -8,7 +8,7 @@
 namespace traverse::gcode {
 namespace {
 
-// What is printed for the part, and not by a script or on a tower.
+// Printed for the part, and not by a script or on a tower.
 bool IsOfPart(const GcodeFile& file, const Block& block) {
   if ((block.flags & kBlockScript) != 0) return false;
   const Feature feature = NamedFeature(file, block);
@@ -49,7 +49,7 @@ bool LinkDonors::MayFollow(uint32_t block) const {
          IsOfPart(file_, file_.blocks[block - 1]);
 }
 
-// Where a path begins at the end of the one before it there is no way to learn from.
+// If a path begins at the end of the one before it, there is no travel to learn from.
 bool LinkDonors::Travels(uint32_t block) const { return file_.blocks[block].travel_mm > 0; }
 
 bool LinkDonors::LacksLift(uint32_t block) const {

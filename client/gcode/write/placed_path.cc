@@ -66,7 +66,7 @@ PlacedPath::PlacedPath(const GcodeFile& file, const Placement& placement)
   const BodySegment& first = body_.segments.front();
   state_ = &body_.states[first.state];
   feed_ = first.feed;
-  // Segments written anew state their feed rate where it changes.
+  // New segments state their feed rate where it changes.
   states_feed_ = true;
 }
 

@@ -10,7 +10,7 @@
 namespace traverse::gcode {
 namespace {
 
-// What lies behind the colon of a comment.
+// The text after the colon of a comment.
 uint64_t ValueOf(std::string_view comment) {
   return DigestOf(TrimLine(comment.substr(comment.find(':') + 1)));
 }

@@ -11,12 +11,12 @@ namespace traverse::gcode {
 namespace {
 
 constexpr double kCellMm = 1.0;
-constexpr double kEndSlackMm = 0.25;  // of a way, where it may touch the walls that it joins
+constexpr double kEndSlackMm = 0.25;  // of travel, where it may touch the walls that it joins
 constexpr double kOnPathMm = 0.05;    // a tail lies this near to its path
 constexpr double kLongestStraightMm = 1.0;
 constexpr double kStraightCosine = 0.996;  // of 5 degrees
-constexpr double kThinFlow = 0.4;          // of what is usual: ironing
-constexpr double kOverMm = 0.3;            // ironing lies this near to what it irons
+constexpr double kThinFlow = 0.4;          // share of the usual flow: ironing
+constexpr double kOverMm = 0.3;            // ironing lies this close to what it irons
 constexpr double kWallsApartMm = 0.9;      // walls of one outline lie no farther apart
 
 // The value of `; NAME = VALUE` in `text`.
@@ -125,7 +125,7 @@ void LayerPair::LearnFacts() {
   }
 }
 
-// A line out and back ends where it began, too.
+// A line out and back also ends where it began.
 bool LayerPair::IsLoopToName(uint32_t path) const {
   const Facts& facts = facts_[path - first_path_];
   const bool unsure =
@@ -152,7 +152,7 @@ void LayerPair::LearnShapes() {
   }
 }
 
-// True if at most places of the loop another one lies beside it, on its right.
+// True if at most points of the loop another one lies beside it, on its right.
 bool LayerPair::IsInside(uint32_t path, const PieceGrid& loops) const {
   constexpr size_t kPlaces = 24;
   const absl::Span<const Piece> pieces = PiecesOf(path);

@@ -11,7 +11,7 @@ namespace {
 constexpr uint32_t kNone = UINT32_MAX;
 constexpr double kSamePlaceMm = 1e-5;
 
-// So many segments that are alike are looked at, of more not all.
+// Most equal segments that are examined.
 constexpr uint32_t kMostAlike = 16;
 
 // Segments of a section by their digests; the same digest may be there several times.
@@ -71,7 +71,7 @@ class Matcher {
   bool Closed(uint32_t path) const { return closed_[path - first_path_]; }
   bool Unused(uint32_t s) const { return !used_[s - first_]; }
 
-  // The segment behind `s` of its path, or before it; kNone: none.
+  // The segment after `s` in its path, or before it; kNone: none.
   uint32_t Next(uint32_t s, bool forward) const {
     const uint32_t p = path_of_[s - first_];
     const TracePath& path = original_.paths[p];
@@ -105,8 +105,8 @@ class Matcher {
     return run;
   }
 
-  // The segment of the original that segment `at` is: of several the one that a path begun goes on
-  // with, else the one that goes on as it does for longest.
+  // The segment of the original for segment `at`: of several the one that continues the current
+  // path, otherwise the one that agrees for longest.
   uint32_t Find(const TracePath& path, uint32_t at) const {
     const uint64_t digest = optimised_.segments[at].digest;
     if (due_ != kNone && Unused(due_) && original_.segments[due_].digest == digest) return due_;

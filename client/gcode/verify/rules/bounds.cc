@@ -1,6 +1,6 @@
-// No way leads out of the box that all moves of the original lie in. A new way is straight, but for
-// bends that lead around an outer wall: without such a bend the way would cross one, and with it
-// does not. So no way overshoots what it leads to, and none is led along a wall.
+// No travel leaves the box of all moves of the original. New travel is straight, except for bends
+// that lead around an outer wall: without such a bend it would cross one, and with it does not. So
+// no travel overshoots its end, and none is led along a wall.
 
 #include <algorithm>
 #include <array>
@@ -13,16 +13,16 @@
 namespace traverse::gcode {
 namespace {
 
-// A way around a wall may lie beyond all walls.
+// Travel around a wall may lie beyond all walls.
 constexpr double kSlackMm = 2;
 
-// A move so short with which a way begins goes along a path's end, or away from it: path_ends.
+// A move this short at the beginning of travel goes along a path's end, or away from it: path_ends.
 constexpr double kDepartureMm = 1.0;
 
-// Rounded coordinates bend a way by less.
+// Rounded coordinates bend travel by less.
 constexpr double kLeastExcessMm = 0.05;
 
-// How much longer the way is for the bend between the two.
+// How much longer the travel is because of the bend between the two.
 double ExcessOf(const TraceMove& before, const TraceMove& behind) {
   return before.length_mm() + behind.length_mm() - DistanceOf(before.from, behind.to);
 }
@@ -118,7 +118,7 @@ void CompareBounds(const Observations& was, const Observations& is, std::vector<
 
 void CheckBends(const LayerPair& layer, LayerFindings& findings) {
   const Tails tails(layer, false);
-  // What goes along a path may be as fast as travel, if it is no longer than such of the original.
+  // Moves along a path may be as fast as travel, if no longer than such in the original.
   const Tails along(layer, false, true);
   const double longest = LongestAlong(layer);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {

@@ -10,7 +10,7 @@
 namespace traverse::gcode {
 namespace {
 
-// Where the commands within the paths of the original stand: the segment behind, and what they do.
+// Where the commands within the original's paths stand: the segment after them, and what they do.
 absl::flat_hash_set<uint64_t> Places(const LayerPair& layer) {
   const TraceChunk& was = layer.was();
   const uint32_t first = was.paths[layer.first_path_was()].first_segment;
@@ -46,7 +46,7 @@ void CheckCommands(const LayerPair& layer, LayerFindings& findings) {
   for (const TraceCommand& command : is.commands) {
     if (command.segment < first || command.segment >= end) continue;
     const Visit* visit = VisitOf(layer, command.segment);
-    // Where two paths of the original meet, or a loop that is begun elsewhere passes its old start.
+    // Where two paths of the original meet, or a loop that begins elsewhere passes its old start.
     if (visit == nullptr || command.segment == visit->first_segment) continue;
     const TracePath& path = was.paths[visit->path];
     const uint32_t n = path.size();

@@ -1,6 +1,6 @@
-// Lifts, by kind of way: where at least 99 % of the original's are lifted, every sideways move
-// outside wipes ends at the least such lift, and only a little of the way lies lower. Heights that
-// moves state are heights above the layer that the original knows.
+// Lifts, by kind of travel: if at least 99 % of the original's are lifted, every sideways move
+// outside wipes ends at the least such lift, and only a little of the travel is lower. Heights that
+// moves state are heights above the layer that the original has too.
 
 #include <algorithm>
 #include <cmath>
@@ -13,12 +13,12 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr float kLiftedMm = 0.03f;  // a way that comes so high is lifted
+constexpr float kLiftedMm = 0.03f;  // travel that rises this high is lifted
 constexpr float kHeightSlackMm = 0.003f;
 constexpr double kShareLifted = 0.99;
 constexpr float kLowMm = 0.5f;
 constexpr float kLowShare = 0.1f;
-constexpr double kUsualShare = 0.99;  // of the original's ways, for how low they may lie
+constexpr double kUsualShare = 0.99;  // of the original's travel, for how low it may be
 constexpr double kShortestMm = 0.05;
 constexpr int64_t kHeightSlackUm = 2;
 constexpr int64_t kSlopeSlackUm = 2;
@@ -37,7 +37,7 @@ Height HeightOf(const LiftLog& log, const WayProfile& way) {
   return height;
 }
 
-// The length of the way that lies lower than `lift`.
+// The length of the travel that is lower than `lift`.
 float LowLength(const LiftLog& log, const WayProfile& way, float lift) {
   float low = 0;
   for (uint32_t i = way.first; i < way.end; ++i) {
@@ -67,7 +67,7 @@ float Usual(std::vector<float> values) {
   return values[at];
 }
 
-// What the ways of one kind do.
+// What travel of one kind does.
 struct Habit {
   bool lifts = false;
   float least_mm = 0;
@@ -116,7 +116,7 @@ int64_t SlopeOf(const TraceMove& move) {
   return std::llround((move.z_to_mm - move.z_from_mm) * 10'000 / length);
 }
 
-// True if `map` has `key`, or one that is no more than `slack` from it.
+// True if `map` has `key`, or one within `slack` of it.
 template <typename Map>
 bool Knows(const Map& map, int64_t key, int64_t slack) {
   for (int64_t near = key - slack; near <= key + slack; ++near) {
@@ -125,13 +125,13 @@ bool Knows(const Map& map, int64_t key, int64_t slack) {
   return false;
 }
 
-// Appends the profile of the way in `link`, and the heights that it states. The kind of the way;
-// nothing if it goes nowhere.
+// Appends the profile of the travel in `link`, and the heights that it states. Returns its kind;
+// unset if it goes nowhere.
 void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool only_new,
              Observations& seen) {
   const TraceLink& traced = chunk.links[link];
-  // The way to the first path comes from nowhere, or from the start script: it tells nothing of
-  // ways between layers.
+  // The travel to the first path comes from nowhere, or from the start script: it shows nothing
+  // about travel between layers.
   const bool first =
       layer.index() == 0 && link == (only_new ? layer.first_path_is() : layer.first_path_was());
   if (first || (traced.first_move < traced.end_move && !chunk.moves[traced.first_move].in_print)) {
@@ -198,14 +198,14 @@ absl::Span<const WayProfile> OfLayer(const std::vector<WayProfile>& ways, int64_
   return absl::MakeSpan(&*first, static_cast<size_t>(end - first));
 }
 
-// Some slicers lift in some layers alone: above a height, or below it.
+// Some slicers lift only in some layers: above a height, or below it.
 Habit HabitOfLayer(const LiftLog& log, const std::vector<WayProfile>& ways, int64_t layer) {
   constexpr size_t kFewest = 4;
   const absl::Span<const WayProfile> own = OfLayer(ways, layer);
   return own.size() < kFewest ? Habit() : HabitOf(log, own);
 }
 
-// Whether the original has a way between the same two points of the layer that is as low.
+// Whether the original has equally low travel between the same two points of the layer.
 bool WasAsLow(const LiftLog& was, const LiftLog& is, const WayProfile& way, size_t kind,
               float lift) {
   const absl::Span<const WayProfile> ways = OfLayer(was.ways[kind], way.layer);
@@ -267,7 +267,7 @@ void CompareLifts(const Observations& was, const Observations& is, std::vector<F
   for (const auto& [um, seen] : was.heights) highest = std::max(highest, um);
   for (const StatedHeight& stated : is.stated) {
     bool known = Knows(was.heights, stated.um, kHeightSlackUm);
-    // On a slope of the original's, which ends with its way, a shorter way comes less high.
+    // On a slope that ends with its travel, shorter travel reaches less height.
     known |=
         stated.slope > 0 && stated.um <= highest && Knows(was.slopes, stated.slope, kSlopeSlackUm);
     if (known) continue;

@@ -1,5 +1,5 @@
-// A layer has no more ways with an open nozzle across outer walls than before, and none longer than
-// the longest before. The way to a layer is one of its ways.
+// A layer has no more unretracted travel across outer walls than before, and none longer than the
+// longest before. The travel to a layer belongs to it.
 
 #include <algorithm>
 
@@ -22,7 +22,7 @@ std::vector<OpenWay> OpenWays(const LayerPair& layer, bool original) {
   const TraceChunk& chunk = original ? layer.was() : layer.is();
   const uint32_t first = original ? layer.first_path_was() : layer.first_path_is();
   const uint32_t end = original ? layer.end_path_was() : layer.end_path_is();
-  // A way begins where the move along the path before it ends.
+  // Travel begins where the move along the path before it ends.
   const Tails tails(layer, original, true);
   std::vector<OpenWay> ways;
   for (uint32_t link = first; link < end; ++link) {

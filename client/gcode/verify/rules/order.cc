@@ -101,7 +101,7 @@ class OrderKeeper {
     return is(Group::kWall) && !permissions_.infill_order;
   }
 
-  // A skirt is seldom near to anything, but it is there to be printed first.
+  // A skirt is seldom near anything, but it must be printed first.
   void CheckSkirts(absl::Span<const Visit> visits, LayerFindings& findings) {
     uint32_t latest = 0;  // of those printed so far, the one that is the last in the original
     bool any = false;
@@ -131,8 +131,8 @@ class OrderKeeper {
     }
   }
 
-  // Fans, flow and pressure take time to come into force: where one of them changes, what is before
-  // stays before.
+  // Fans, flow and pressure take time to change: what comes before such a change stays before
+  // it.
   void CheckFans(absl::Span<const Visit> visits, LayerFindings& findings) {
     std::vector<uint32_t> changes(place_.size(), 0);  // [path - first_], so far
     for (size_t i = 1; i < changes.size(); ++i) {

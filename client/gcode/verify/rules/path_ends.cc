@@ -1,6 +1,6 @@
-// A move that goes on along a path's end without filament (the wipe of an outer wall, coasting)
-// stays with that end; where the seam moves or the path turns, there is one of the same length at
-// the new end.
+// A move that continues along a path's end without filament (the wipe of an outer wall, coasting)
+// stays with that end; if the seam moves or the path is reversed, there is one of the same length
+// at the new end.
 
 #include <cmath>
 
@@ -37,8 +37,8 @@ Tail TailOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
   return tail;
 }
 
-// True if all that follows the path leads to the next one: between lines of a zigzag there is such
-// a way where slicers round what is printed there to nothing.
+// True if everything after the path leads to the next one: there is such travel between lines of a
+// zigzag where slicers round the deposit to nothing.
 bool LeadsOn(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces) {
   if (path + 1 >= chunk.paths.size()) return false;
   const TraceLink& link = chunk.links[path + 1];

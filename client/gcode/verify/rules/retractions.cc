@@ -1,5 +1,5 @@
-// Retraction and what undoes it are a pair that the original has; never deeper, tool by tool; and
-// filament comes back where the way ends.
+// A retraction and its prime are a pair that the original has; never deeper, tool by tool; and the
+// prime comes where the travel ends.
 
 #include <algorithm>
 #include <cstdlib>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kSidewaysMm = 0.05;
 constexpr Micro kGrain = 100;       // pairs this near to each other are the same
-constexpr double kShareOdd = 0.01;  // so many of the original's do something: it does that
+constexpr double kShareOdd = 0.01;  // if this share of the original's do something, it is usual
 constexpr double kHighMm = 0.02;
 constexpr float kLateMm = 0.25f;
 constexpr Micro kOnce = 1'000'000;  // what G10 and G11 count for
@@ -30,7 +30,7 @@ class CycleReader {
     open_ = false;
     way_mm_ = 0;
     if (traced.first_move == traced.end_move) return;
-    // At the height of what is printed on either side.
+    // At the heights of what is printed before and after.
     double high = chunk.moves[traced.first_move].z_from_mm + kHighMm;
     if (link < chunk.paths.size()) high = std::max(high, chunk.paths[link].z_mm + kHighMm);
     const size_t first = cycles_.size();
@@ -57,7 +57,7 @@ class CycleReader {
       }
     }
     if (open_) cycles_.push_back(cycle_);
-    // Two paths that meet have no way between them, and may yet be parted.
+    // Two paths that meet have no travel between them, and may yet be separated.
     if (way_mm_ == 0 && cycles_.size() == first + 1) cycles_[first].idle = false;
     if (!traced.scripted) return;
     // Scripts push filament wherever they want to.
@@ -136,7 +136,7 @@ class PairTable {
     return false;
   }
 
-  // How far filament of the tool is pulled back at most, and in which line.
+  // The deepest retraction of the tool, and its line.
   std::pair<Micro, uint32_t> Deepest(uint64_t tool) const {
     const auto found = deepest_.find(tool);
     return found == deepest_.end() ? std::pair<Micro, uint32_t>() : found->second;
@@ -152,8 +152,8 @@ class PairTable {
   std::map<uint64_t, std::pair<Micro, uint32_t>> deepest_;
 };
 
-// Where a loop ends in the point that it began in, filament is pulled back and pushed in one place,
-// and yet there is a way between the two.
+// If a loop ends at the point where it began, retraction and prime are at one point, and still
+// there is travel between the two.
 void ForgetNewIdle(const std::vector<RetractionCycle>& was, std::vector<RetractionCycle>& is) {
   absl::flat_hash_set<uint64_t> idle;
   for (const RetractionCycle& cycle : was) {

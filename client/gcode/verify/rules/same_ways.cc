@@ -1,5 +1,5 @@
-// Ways between the same two points as in the original: not open where it pulls filament back,
-// whatever they cross; and where it pulls back and lifts, as high.
+// Travel between the same two points as in the original: it retracts where the original retracts,
+// whatever it crosses; and where that retracts and lifts, it rises as high.
 
 #include <algorithm>
 
@@ -11,12 +11,12 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr double kShortestWayMm = 0.5;  // shorter ways come out of rounding
+constexpr double kShortestWayMm = 0.5;  // shorter travel comes from rounding
 constexpr double kApexSlackMm = 0.003;
 
 enum class Nozzle : uint8_t { kNoWay, kOpen, kRetracted };
 
-// How the nozzle is on the way in `link`, from path to path; open if it is so on some of it.
+// Whether the travel in `link`, from path to path, is retracted; not if part of it is unretracted.
 Nozzle NozzleIn(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool new_ones) {
   const TraceLink& traced = chunk.links[link];
   if (link == 0 || traced.new_layer || traced.scripted) return Nozzle::kNoWay;
@@ -34,7 +34,7 @@ Nozzle NozzleIn(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, 
   return nozzle;
 }
 
-// How far above the paths that it connects the retracted way in `link` comes.
+// How far above the paths that it connects the retracted travel in `link` rises.
 double ApexOf(const TraceChunk& chunk, uint32_t link) {
   const double base = std::max(chunk.paths[link - 1].z_mm, chunk.paths[link].z_mm);
   double apex = 0;
@@ -50,7 +50,7 @@ uint32_t LineOf(const TraceChunk& chunk, uint32_t link) {
   return chunk.moves[chunk.links[link].first_move].line;
 }
 
-// The ways of the original that are retracted all along, by their ends: of several the lowest.
+// The original's travel that is retracted all along, by its ends: of several the lowest.
 absl::flat_hash_map<uint64_t, uint32_t> RetractedWays(const LayerPair& layer) {
   const TraceChunk& was = layer.was();
   absl::flat_hash_map<uint64_t, uint32_t> ways;

@@ -22,7 +22,7 @@ absl::Span<const TraceMove> Leaving(const TraceChunk& chunk) {
   return moves.subspan(static_cast<size_t>(first - moves.begin()));
 }
 
-// Where a way begins depends on the path that is the last one.
+// The start of a travel move depends on which path is the last one.
 bool DoTheSame(const TraceMove& was, const TraceMove& is) {
   if (was.kind != is.kind || was.filament != is.filament || was.z_to_mm != is.z_to_mm) return false;
   if (!was.sideways()) return true;

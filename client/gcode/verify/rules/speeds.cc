@@ -17,7 +17,7 @@ namespace {
 constexpr float kLengthFactor = 2.0f;
 constexpr float kLengthSlackMm = 1.0f;
 
-// Travel with an open nozzle is a kind of its own, behind those of MoveKind.
+// Unretracted travel is a kind of its own, after those of MoveKind.
 constexpr auto kOpenTravel = static_cast<size_t>(MoveKind::kCount);
 
 size_t KindOf(const TraceMove& move) {
@@ -38,8 +38,8 @@ void Note(absl::flat_hash_map<uint64_t, Seen>& map, uint64_t key, const TraceMov
   }
 }
 
-// What goes on along a path without filament, at another speed than the path. `only_new`: but for
-// what the original does in this layer.
+// Moves along a path without filament, at another speed than the path. `only_new`: except those of
+// the original in this layer.
 void ObserveTail(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, uint32_t moves,
                  bool only_new, Observations& seen) {
   if (link == 0) return;
@@ -89,8 +89,8 @@ LongestWays LongestOf(const LayerPair& layer) {
   return longest;
 }
 
-// Some slicers accelerate less on short ways: true if ways as long as `move` are under another
-// acceleration in this layer, and under its own there are but much shorter ones.
+// Some slicers accelerate less on short travel: true if the layer has travel as long as `move` with
+// another acceleration, and only much shorter travel with this one.
 bool IsTooLong(const TraceMove& move, const LongestWays& longest) {
   if (move.kind != MoveKind::kTravel) return false;
   const auto length = static_cast<float>(move.length_mm());
@@ -102,8 +102,8 @@ bool IsTooLong(const TraceMove& move, const LongestWays& longest) {
   });
 }
 
-// What the original does not do in this layer. The gap of a loop that is begun elsewhere belongs to
-// the loop.
+// Moves that the original does not have in this layer. The gap of a loop that begins elsewhere
+// belongs to the loop.
 bool IsNew(const LayerPair& layer, const TraceMove& move) {
   if (!move.in_print || layer.IsKnown(move)) return false;
   return move.kind != MoveKind::kTravel || !move.open || move.length_mm() > kLoopGapMm;
@@ -161,8 +161,8 @@ FeedsByKind FeedsOf(const LayerPair& layer) {
   return were;
 }
 
-// New moves are as fast as those of their kind in the layer. Where it has none of the kind, those
-// of the whole file tell.
+// New moves are as fast as those of their kind in the layer. If it has none of the kind, those of
+// the whole file count.
 void CheckLayerFeeds(const LayerPair& layer, LayerFindings& findings) {
   const FeedsByKind were = FeedsOf(layer);
   const TraceChunk& is = layer.is();
@@ -201,7 +201,7 @@ void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings) {
   CheckLayerFeeds(layer, findings);
 }
 
-// Behind the last path stand moves of the end script as well, which are no example for the print.
+// After the last path there are also moves of the end script, which are no example for the print.
 void ObserveLastSpeeds(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& was = layer.was();
   const TraceChunk& is = layer.is();
@@ -230,9 +230,9 @@ void ObserveLastSpeeds(const LayerPair& layer, LayerFindings& findings) {
 
 namespace {
 
-// Under which accelerations moves of `kind` may be. Ways that are open and ways that are not are
-// the same to a slicer; what else is done between paths goes with the path before it, or with the
-// travel.
+// The accelerations that moves of `kind` may have. Slicers treat retracted and
+// unretracted travel alike; other moves between paths have that of the path before, or
+// that of travel.
 bool IsKnownAcceleration(const Observations& was, size_t kind, uint64_t acceleration) {
   constexpr auto kTravel = static_cast<size_t>(MoveKind::kTravel);
   for (const size_t like : {kind, kTravel, kOpenTravel}) {
@@ -241,7 +241,7 @@ bool IsKnownAcceleration(const Observations& was, size_t kind, uint64_t accelera
   return kind != kTravel && kind != kOpenTravel && was.deposit_accelerations.contains(acceleration);
 }
 
-// The longest way under `acceleration`.
+// The longest travel with `acceleration`.
 float LongestUnder(const Observations& was, uint64_t acceleration) {
   float longest = 0;
   for (const size_t kind : {static_cast<size_t>(MoveKind::kTravel), kOpenTravel}) {
@@ -286,8 +286,8 @@ void CompareSpeeds(const Observations& was, const Observations& is, std::vector<
   CompareLengths(was, is, breaks);
   CompareTails(was, is, breaks);
   for (size_t kind = 0; kind < was.feeds.size(); ++kind) {
-    // Ways that are open and ways that are not are the same to a slicer: of a kind that the
-    // original has none of, the other one tells.
+    // Slicers treat retracted and unretracted travel alike: for a kind that the original does not
+    // have, the other one counts.
     size_t like = kind;
     constexpr auto kTravel = static_cast<size_t>(MoveKind::kTravel);
     if (was.feeds[kind].empty() && kind == kOpenTravel) like = kTravel;

@@ -1,5 +1,5 @@
-// Filament pushed at a standstill is the same multiset of section and amount; where nothing had
-// been pulled back, at the same X and Y.
+// Filament pushed at a standstill is the same multiset of section and amount; if nothing had been
+// retracted, at the same X and Y.
 
 #include <algorithm>
 #include <map>
@@ -11,7 +11,7 @@
 namespace traverse::gcode {
 namespace {
 
-// Section, amount and, if nothing had been pulled back, where.
+// Section, amount and, if nothing had been retracted, the position.
 using Key = std::tuple<uint32_t, Micro, bool, int64_t, int64_t>;
 
 Key KeyOf(const Standstill& event) {

@@ -1,6 +1,6 @@
-// No way with an open nozzle is much longer than the longest one of the original, whatever it
-// crosses, nor leads to another layer where none does, or where the original's way to that layer is
-// retracted as even shorter ones are; and none winds more than ways of the original do.
+// No unretracted travel is much longer than the longest of the original, whatever it crosses. None
+// leads to another layer if none does there, or if the original retracts on the travel to that
+// layer, and on even shorter travel. And none winds more than the original's travel.
 
 #include <algorithm>
 
@@ -11,7 +11,7 @@
 namespace traverse::gcode {
 namespace {
 
-// Where slicers retract by what a way crosses, ways that cross nothing may come out a little
+// If slicers retract by what travel crosses, travel that crosses nothing may become a little
 // longer.
 constexpr float kOpenSlackMm = 1.0f;
 constexpr float kOpenFactor = 2.0f;
@@ -21,7 +21,7 @@ constexpr double kSamePointMm = 0.01;
 constexpr float kWindingSlackMm = 2.0f;
 constexpr float kWindingFactor = 3.0f;
 
-// The way in `link`; of length 0 if there is none, or if only what is new counts and nothing is.
+// The travel in `link`; of length 0 if there is none, or if only new moves count and none is new.
 WayLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, uint32_t skipped,
                    bool only_new) {
   const TraceLink& traced = chunk.links[link];

@@ -9,7 +9,7 @@
 namespace traverse::gcode {
 namespace {
 
-// A path that goes on across a line whose place matters does so in both files.
+// A path that continues across a line whose position matters does so in both files.
 void CheckJoint(const LayerPair& layer, size_t section, LayerFindings& findings) {
   const uint32_t path = layer.SectionWas(section).first_path;
   if (!layer.was().paths[path].joined) return;

@@ -17,14 +17,14 @@ constexpr float kPullSlack = 1.02f;
 constexpr float kGentleShare = 0.5f;
 constexpr float kAsLong = 0.9f;
 constexpr float kUnevenSlackMm = 0.01f;
-constexpr float kTellingMm = 0.3f;  // rounding is nothing beside the filament of such a move
+constexpr float kTellingMm = 0.3f;  // rounding is nothing compared with the filament of such a move
 
 struct Wipe {
   float off_mm = 0;
   float astray_mm = 0;
   float length_mm = 0;
   float pulled_mm = 0;
-  float steepest = 0;  // filament pulled back per mm of one move
+  float steepest = 0;  // filament retracted per mm of one move
   float uneven_mm = 0;
   uint32_t line = 0;  // 0: none
   bool known = true;
@@ -39,8 +39,8 @@ double DistanceTo(Point p, absl::Span<const Piece> pieces) {
   return nearest;
 }
 
-// How much more or less filament than evenly some point of `wipe` has seen pulled back; its moves
-// are those of `link`.
+// By how much, at some point of `wipe`, the retracted filament is off an even rate; its moves are
+// those of `link`.
 float Unevenness(const TraceChunk& chunk, const TraceLink& link, const Wipe& wipe) {
   double pulled = 0;
   double length = 0;
@@ -56,7 +56,7 @@ float Unevenness(const TraceChunk& chunk, const TraceLink& link, const Wipe& wip
   return static_cast<float>(most);
 }
 
-// The wipe behind path `path` of `chunk`, whose pieces are `pieces`.
+// The wipe after path `path` of `chunk`, whose pieces are `pieces`.
 Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
                 absl::Span<const Piece> pieces, bool measure) {
   Wipe wipe;
@@ -80,7 +80,7 @@ Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
   return wipe;
 }
 
-// What the wipes of the original do not exceed, but for a few.
+// A bound that all but a few wipes of the original keep.
 float Limit(std::vector<float> values) {
   if (values.empty()) return kOnPathMm;
   const auto at = static_cast<std::ptrdiff_t>(kUsualShare * static_cast<double>(values.size() - 1));

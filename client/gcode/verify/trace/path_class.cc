@@ -91,7 +91,7 @@ constexpr Name kNames[] = {
     {"inner shell", PathClass::kInnerWall},
 };
 
-// Names that stand alone in a comment, of slicers that do not say that they are of features.
+// Names that stand alone in a comment, from slicers that do not mark them as features.
 constexpr std::string_view kBareNames[] = {"outer perimeter",
                                            "inner perimeter",
                                            "single extrusion",
