@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "engine/cost/route_cost.h"
 #include "engine/proof/bounds/programme_bound.h"
@@ -19,14 +20,20 @@ constexpr int kStepsPerRound = 40;
 constexpr int kMostEvaluations = 6;
 constexpr double kLeastGain = 1e-3;
 
-// Steps of the search that knows points, where it fits; fewer from multipliers that were found
-// before.
-constexpr int kVertexSteps = 400;
-constexpr int kVertexStepsAgain = 100;
+// Rounds of the search that knows points, where it fits, for an effort of up to 1, and beyond by
+// its root; fewer from multipliers that were found before.
+constexpr double kVertexRounds = 2;
+constexpr double kMostVertexRounds = 20;
+constexpr int kVertexRoundsAgain = 1;
 constexpr double kShareOfProgrammeAgain = 0.25;
 
 // Of the time that is left, what a search may use: the evaluation after it is what counts.
 constexpr double kSearchShare = 0.4;
+
+int VertexRounds(double effort) {
+  const double rounds = kVertexRounds * std::sqrt(std::max(1.0, effort));
+  return static_cast<int>(std::min(rounds, kMostVertexRounds));
+}
 
 Budget SearchBudget(const Budget& budget) {
   if (!budget.deadline()) return budget;
@@ -61,8 +68,8 @@ std::optional<double> BoundByTrees(const LayerProblem& problem, double target, T
   double bound = tree.lower_bound();
   if (bound < target && VertexBound::Fits(tree.graph())) {
     VertexBound vertices(problem, tree.graph(), tree.multipliers());
-    const int steps = known ? kVertexStepsAgain : kVertexSteps;
-    bound = std::max(bound, vertices.Search(target, steps, budget));
+    const int rounds = known ? kVertexRoundsAgain : VertexRounds(effort);
+    bound = std::max(bound, vertices.Search(target, rounds, budget));
   }
   if (bound < target && effort > 0) {
     if (known) effort *= kShareOfProgrammeAgain;

@@ -4,33 +4,40 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "engine/model/point.h"
+#include "engine/proof/bounds/set_finder.h"
 
 namespace traverse {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-// Beyond these, steps or the tree over all pairs take too long, or gain little: contours of many
+// Beyond these, steps or the tree over all moves take too long, or gain little: contours of many
 // points are next to each other at some of them.
 constexpr size_t kMostEnds = 500;
 constexpr size_t kMostPoints = 1500;
 constexpr size_t kMostPointsOfEnd = 64;
-constexpr size_t kMostMoves = 60'000;  // between points of known pairs
 
 // Near ends of each end that the ascent looks at.
 constexpr size_t kNeighbors = 8;
 
 // Of the ascent.
-constexpr double kFirstFactor = 0.5;
-constexpr double kDeflection = 0.95;  // share of the last direction that is kept
-constexpr double kShorter = 0.6;
-constexpr int kStepsWithoutGain = 12;
+constexpr double kWeight = 0.06;  // of a solution in the average
+constexpr double kStepLength = 0.15;
+constexpr double kShorter = 0.5;
+constexpr double kLonger = 1.1;
+constexpr int kStepsWithoutGain = 15;
 
-// After each round, pairs are known that were not.
-constexpr int kRounds = 2;
+// Sets are looked for in the average after some steps, and then every so many.
+constexpr int kStepsBeforeSets = 20;
+constexpr int kStepsBetweenSets = 15;
+constexpr double kViolation = 0.1;
+
+// After each round, moves are known that were not.
+constexpr int kStepsOfRound = 250;
 
 // What rounding can add up to in a sum over all moves, relative to the numbers summed up.
 constexpr double kRounding = 1e-12;
@@ -38,13 +45,6 @@ constexpr double kRounding = 1e-12;
 size_t At(int index) { return static_cast<size_t>(index); }
 
 }  // namespace
-
-void VertexBound::Values::Resize(size_t points, size_t of_pairs) {
-  point.resize(points);
-  start.resize(points);
-  finish.resize(points);
-  near.resize(of_pairs);
-}
 
 bool VertexBound::Fits(const EndGraph& graph) {
   size_t points = 0;
@@ -61,23 +61,17 @@ VertexBound::VertexBound(const LayerProblem& problem, const EndGraph& graph,
                          const std::vector<double>& multipliers)
     : graph_(graph),
       cost_(problem),
-      first_point_(1, 0),
-      first_side_(1, 0),
-      pairs_of_(graph.ends.size()),
+      moves_(graph, cost_),
+      sets_(moves_),
+      multipliers_(At(moves_.point_count())),
+      best_multipliers_(multipliers_),
+      direction_(multipliers_),
       chosen_(graph.ends.size()) {
   assert(Fits(graph));
-  for (const PathEnd& end : graph_.ends) {
-    first_point_.push_back(first_point_.back() + end.points.size());
-  }
-  for (const Junction& junction : graph_.junctions) {
-    first_side_.push_back(first_side_.back() + junction.sides);
-  }
-  const size_t points = first_point_.back();
-  multipliers_.Resize(points, 0);
-  for (size_t end = 0; end < graph_.ends.size(); ++end) {
-    std::fill(multipliers_.point.begin() + static_cast<ptrdiff_t>(first_point_[end]),
-              multipliers_.point.begin() + static_cast<ptrdiff_t>(first_point_[end + 1]),
-              multipliers[end]);
+  const size_t points = multipliers_.point.size();
+  average_.points.resize(points);
+  for (size_t v = 0; v < points; ++v) {
+    multipliers_.point[v] = multipliers[At(moves_.end_of(static_cast<int>(v)))];
   }
   start_costs_.assign(points, kFar);
   finish_costs_.assign(points, kFar);
@@ -87,7 +81,7 @@ VertexBound::VertexBound(const LayerProblem& problem, const EndGraph& graph,
       const PathEnd& it = graph_.ends[At(end)];
       if ((it.roles & role) == 0) continue;
       for (size_t i = 0; i < it.points.size(); ++i) {
-        costs[first_point_[At(end)] + i] = place ? cost_.Base(*place, it.points[i]) : 0;
+        costs[At(moves_.first(end)) + i] = place ? cost_.Base(*place, it.points[i]) : 0;
       }
     }
   };
@@ -95,39 +89,16 @@ VertexBound::VertexBound(const LayerProblem& problem, const EndGraph& graph,
   fill(graph_.last, PathEnd::kLeave, finish_costs_, problem.finish);
 }
 
-void VertexBound::AddPair(int junction, const Junction::Member& a, const Junction::Member& b) {
-  const auto& known = pairs_of_[At(a.end)];
-  if (std::any_of(known.begin(), known.end(), [&](const auto& it) { return it.first == b.end; })) {
-    return;
-  }
-  Pair pair;
-  pair.ends[0] = a.end;
-  pair.ends[1] = b.end;
-  pair.sides[0] = first_side_[At(junction)] + a.side;
-  pair.sides[1] = first_side_[At(junction)] + b.side;
-  for (const Point& from : graph_.ends[At(a.end)].points) {
-    for (const Point& to : graph_.ends[At(b.end)].points)
-      pair.costs.push_back(cost_.Base(from, to));
-  }
-  for (int k = 0; k < 2; ++k) {
-    pair.multipliers[k] = multipliers_.near.size();
-    multipliers_.near.resize(multipliers_.near.size() + Count(pair.ends[k]));
-  }
-  pairs_of_[At(a.end)].emplace_back(b.end, pairs_.size());
-  pairs_of_[At(b.end)].emplace_back(a.end, pairs_.size());
-  pairs_.push_back(std::move(pair));
-}
-
 // The cheapest moves from the start and to the finish.
 double VertexBound::AddFirstAndLast() {
   const auto least = [&](const std::vector<double>& costs, const std::vector<double>& multipliers,
-                         size_t& best) {
+                         int& best) {
     double sum = kFar;
     for (size_t v = 0; v < costs.size(); ++v) {
       const double cost = costs[v] - multipliers_.point[v] + multipliers[v];
       if (cost >= sum) continue;
       sum = cost;
-      best = v;
+      best = static_cast<int>(v);
     }
     return sum;
   };
@@ -137,123 +108,153 @@ double VertexBound::AddFirstAndLast() {
 
 // What is paid back at the cheapest point of each end.
 double VertexBound::ChoosePoints() {
-  paid_back_.assign(multipliers_.point.size(), 0);
-  for (const Pair& pair : pairs_) {
-    for (int k = 0; k < 2; ++k) {
-      double* paid = paid_back_.data() + first_point_[At(pair.ends[k])];
-      const double* of_pair = multipliers_.near.data() + pair.multipliers[k];
-      for (size_t i = 0; i < Count(pair.ends[k]); ++i) paid[i] += of_pair[i];
-    }
-  }
   double sum = 0;
   for (size_t end = 0; end < graph_.ends.size(); ++end) {
     double least = kFar;
-    for (size_t v = first_point_[end]; v < first_point_[end + 1]; ++v) {
-      const double cost = graph_.ends[end].moves * multipliers_.point[v] - paid_back_[v] -
-                          multipliers_.start[v] - multipliers_.finish[v];
+    const int behind = moves_.first(static_cast<int>(end) + 1);
+    for (int v = moves_.first(static_cast<int>(end)); v < behind; ++v) {
+      const size_t i = At(v);
+      const double cost = graph_.ends[end].moves * multipliers_.point[i] - paid_back_[i] -
+                          multipliers_.start[i] - multipliers_.finish[i];
       if (cost >= least) continue;
       least = cost;
-      chosen_[end] = v - first_point_[end];
+      chosen_[end] = v;
     }
     sum += least;
   }
   return sum;
 }
 
-VertexBound::Candidate VertexBound::CheapestOf(size_t index) const {
-  const Pair& pair = pairs_[index];
-  const double* of_a = multipliers_.point.data() + first_point_[At(pair.ends[0])];
-  const double* of_b = multipliers_.point.data() + first_point_[At(pair.ends[1])];
-  const double* near_a = multipliers_.near.data() + pair.multipliers[0];
-  const double* near_b = multipliers_.near.data() + pair.multipliers[1];
-  const size_t count = Count(pair.ends[1]);
-  Candidate best{kFar, index, {0, 0}};
-  for (size_t i = 0; i < Count(pair.ends[0]); ++i) {
-    const double* costs = pair.costs.data() + i * count;
-    const double from = near_a[i] - of_a[i];
-    for (size_t j = 0; j < count; ++j) {
-      const double cost = costs[j] + from + near_b[j] - of_b[j];
-      if (cost < best.cost) best = {cost, index, {i, j}};
-    }
+double VertexBound::Least(const NearMoves::Group& group) const {
+  double least = kFar;
+  for (size_t i = group.begin; i < group.end; ++i) {
+    const NearMoves::Move& move = moves_.moves()[i];
+    least = std::min(least, move.cost + penalties_[i] - multipliers_.point[At(move.points[0])] -
+                                multipliers_.point[At(move.points[1])]);
+  }
+  return least;
+}
+
+size_t VertexBound::CheapestOf(const NearMoves::Group& group) const {
+  double least = kFar;
+  size_t best = group.begin;
+  for (size_t i = group.begin; i < group.end; ++i) {
+    const NearMoves::Move& move = moves_.moves()[i];
+    const double cost = move.cost + penalties_[i] - multipliers_.point[At(move.points[0])] -
+                        multipliers_.point[At(move.points[1])];
+    if (cost >= least) continue;
+    least = cost;
+    best = i;
   }
   return best;
 }
 
-// Pairs that are not known have no multipliers of their own.
+// Moves that are not known have no penalties. `points`, if not null, becomes those of the move.
 VertexBound::AnyCandidate VertexBound::CheapestOfAny(int junction, const Junction::Member& a,
-                                                     const Junction::Member& b) const {
-  AnyCandidate best{kFar, junction, {&a, &b}};
-  for (const auto& [other, pair] : pairs_of_[At(a.end)]) {
-    if (other == b.end) best.cost = CheapestOf(pair).cost;
-  }
-  if (best.cost < kFar) return best;
+                                                     const Junction::Member& b,
+                                                     std::array<int, 2>* points) {
   const auto& from = graph_.ends[At(a.end)].points;
   const auto& to = graph_.ends[At(b.end)].points;
-  const double* of_a = multipliers_.point.data() + first_point_[At(a.end)];
-  const double* of_b = multipliers_.point.data() + first_point_[At(b.end)];
+  const double* of_a = multipliers_.point.data() + moves_.first(a.end);
+  const double* of_b = multipliers_.point.data() + moves_.first(b.end);
+  costs_.resize(from.size() * to.size());
   for (size_t i = 0; i < from.size(); ++i) {
     for (size_t j = 0; j < to.size(); ++j) {
-      best.cost = std::min(best.cost, cost_.Base(from[i], to[j]) - of_a[i] - of_b[j]);
+      costs_[i * to.size() + j] = cost_.Base(from[i], to[j]) - of_a[i] - of_b[j];
     }
   }
-  return best;
+  moves_.ForEachGroup(a.end, b.end, [&](const NearMoves::Group& group) {
+    for (size_t k = group.begin; k < group.end; ++k) {
+      const NearMoves::Move& move = moves_.moves()[k];
+      const bool same_way = moves_.end_of(move.points[0]) == a.end;
+      const int i = move.points[same_way ? 0 : 1] - moves_.first(a.end);
+      const int j = move.points[same_way ? 1 : 0] - moves_.first(b.end);
+      costs_[At(i) * to.size() + At(j)] += penalties_[k];
+    }
+  });
+  const auto least = std::min_element(costs_.begin(), costs_.end());
+  if (points != nullptr) {
+    const auto at = static_cast<int>(least - costs_.begin());
+    const auto width = static_cast<int>(to.size());
+    *points = {moves_.first(a.end) + at / width, moves_.first(b.end) + at % width};
+  }
+  return {*least, junction, {&a, &b}};
 }
 
-// Kruskal's algorithm over the known pairs, which connect the sides of each junction.
+// Kruskal's algorithm over the known moves, which connect the sides of each junction.
 double VertexBound::EvaluateNear() {
-  double sum = AddFirstAndLast() + ChoosePoints();
+  double sum = sets_.Weigh(penalties_, paid_back_);
+  sum += AddFirstAndLast() + ChoosePoints();
   candidates_.clear();
-  for (size_t pair = 0; pair < pairs_.size(); ++pair) candidates_.push_back(CheapestOf(pair));
+  for (size_t group = 0; group < moves_.groups().size(); ++group) {
+    candidates_.push_back({Least(moves_.groups()[group]), group});
+  }
   std::sort(candidates_.begin(), candidates_.end());
-  joined_.Reset(first_side_.back());
-  moves_.clear();
+  joined_.Reset(moves_.side_count());
+  tree_.clear();
   for (const Candidate& candidate : candidates_) {
-    const Pair& pair = pairs_[candidate.pair];
-    if (!joined_.Join(pair.sides[0], pair.sides[1])) continue;
+    const int* sides = moves_.groups()[candidate.group].sides;
+    if (!joined_.Join(sides[0], sides[1])) continue;
     sum += candidate.cost;
-    moves_.push_back(candidate);
+    tree_.push_back(candidate);
   }
   return sum;
 }
 
-// The same over all pairs, which is what bounds: 0 if the budget ended it. Makes the tree's pairs
-// known, and at first the nearest of each end.
-double VertexBound::EvaluateAll(Budget& budget) {
-  std::vector<AnyCandidate> all;
+// False if the budget ended it.
+bool VertexBound::ListAll(std::vector<AnyCandidate>& all, Budget& budget) {
   for (size_t j = 0; j < graph_.junctions.size(); ++j) {
     const auto& members = graph_.junctions[j].members;
     for (size_t a = 0; a < members.size(); ++a) {
-      if (budget.ExhaustedNow()) return 0;
+      if (budget.ExhaustedNow()) return false;
       for (size_t b = a + 1; b < members.size(); ++b) {
         if (members[a].side == members[b].side) continue;
         if ((members[a].roles & OppositeRoles(members[b].roles)) == 0) continue;
-        all.push_back(CheapestOfAny(static_cast<int>(j), members[a], members[b]));
+        all.push_back(CheapestOfAny(static_cast<int>(j), members[a], members[b], nullptr));
       }
     }
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const auto& a, const auto& b) { return a.cost < b.cost; });
-  double sum = AddFirstAndLast() + ChoosePoints();
-  double scale = std::abs(sum);
-  joined_.Reset(first_side_.back());
-  const bool is_first = pairs_.empty();
+  return true;
+}
+
+// The same over all moves, which is what bounds: 0 if the budget ended it. Makes the tree's moves
+// known, and at first those of the nearest of each end.
+double VertexBound::EvaluateAll(Budget& budget) {
+  double sum = sets_.Weigh(penalties_, paid_back_);
+  std::vector<AnyCandidate> all;
+  if (!ListAll(all, budget)) return 0;
+  sum += AddFirstAndLast() + ChoosePoints();
+  double scale = std::abs(sum) + sets_.Scale();
+  joined_.Reset(moves_.side_count());
+  const bool is_first = moves_.groups().empty();
+  std::vector<AnyCandidate> tree;
   for (const AnyCandidate& it : all) {
-    const int base = first_side_[At(it.junction)];
+    const int base = moves_.first_side(it.junction);
     if (!joined_.Join(base + it.members[0]->side, base + it.members[1]->side)) continue;
     sum += it.cost;
     scale += std::abs(it.cost);
-    AddPair(it.junction, *it.members[0], *it.members[1]);
+    tree.push_back(it);
+  }
+  for (const AnyCandidate& it : tree) {
+    std::array<int, 2> points;
+    CheapestOfAny(it.junction, *it.members[0], *it.members[1], &points);
+    moves_.AddPair(it.junction, *it.members[0], *it.members[1]);
+    moves_.AddMove(it.junction, *it.members[0], *it.members[1], points);
+    penalties_.resize(moves_.moves().size());
   }
   if (is_first) AddNearest(all);
-  for (const auto* values :
-       {&multipliers_.point, &multipliers_.start, &multipliers_.finish, &multipliers_.near}) {
+  average_.moves.resize(moves_.moves().size());
+  sets_.AddNewMoves();
+  for (const auto* values : {&multipliers_.point, &multipliers_.start, &multipliers_.finish}) {
     for (const double value : *values) scale += 2 * std::abs(value);
   }
   return sum - kRounding * scale;
 }
 
 // `candidates` are sorted by cost.
-void VertexBound::AddNearest(std::vector<AnyCandidate>& candidates) {
+void VertexBound::AddNearest(const std::vector<AnyCandidate>& candidates) {
   std::vector<size_t> known(graph_.ends.size(), 0);
   for (const AnyCandidate& it : candidates) {
     size_t& a = known[At(it.members[0]->end)];
@@ -261,99 +262,118 @@ void VertexBound::AddNearest(std::vector<AnyCandidate>& candidates) {
     if (a >= kNeighbors && b >= kNeighbors) continue;
     ++a;
     ++b;
-    AddPair(it.junction, *it.members[0], *it.members[1]);
+    moves_.AddPair(it.junction, *it.members[0], *it.members[1]);
   }
 }
 
-// Moves at each point beyond those that choosing it allows.
-VertexBound::Values VertexBound::Subgradient() const {
-  Values gradient;
-  gradient.Resize(multipliers_.point.size(), multipliers_.near.size());
-  for (const Candidate& move : moves_) {
-    const Pair& pair = pairs_[move.pair];
-    for (int k = 0; k < 2; ++k) {
-      gradient.point[first_point_[At(pair.ends[k])] + move.points[k]] -= 1;
-      gradient.near[pair.multipliers[k] + move.points[k]] += 1;
-    }
+// Puts the last solution into the averages. What a point has of moves beyond those that choosing it
+// allows is the direction of its multipliers.
+void VertexBound::Average() {
+  const double weight = std::max(kWeight, 1.0 / (steps_ + 1));
+  for (auto* values : {&average_.moves, &average_.points, &direction_.point, &direction_.start,
+                       &direction_.finish}) {
+    for (double& value : *values) value *= 1 - weight;
   }
-  gradient.point[first_] -= 1;
-  gradient.point[last_] -= 1;
-  gradient.start[first_] += 1;
-  gradient.finish[last_] += 1;
-  for (size_t end = 0; end < graph_.ends.size(); ++end) {
-    const size_t v = first_point_[end] + chosen_[end];
-    gradient.point[v] += graph_.ends[end].moves;
-    gradient.start[v] -= 1;
-    gradient.finish[v] -= 1;
+  tree_moves_.clear();
+  for (const Candidate& candidate : tree_) {
+    const size_t move = CheapestOf(moves_.groups()[candidate.group]);
+    tree_moves_.push_back(move);
+    average_.moves[move] += weight;
+    for (const int point : moves_.moves()[move].points) direction_.point[At(point)] -= weight;
   }
-  for (const Pair& pair : pairs_) {
-    for (int k = 0; k < 2; ++k) {
-      gradient.near[pair.multipliers[k] + chosen_[At(pair.ends[k])]] -= 1;
-    }
+  direction_.point[At(first_)] -= weight;
+  direction_.point[At(last_)] -= weight;
+  direction_.start[At(first_)] += weight;
+  direction_.finish[At(last_)] += weight;
+  for (size_t end = 0; end < chosen_.size(); ++end) {
+    const size_t point = At(chosen_[end]);
+    average_.points[point] += weight;
+    direction_.point[point] += weight * graph_.ends[end].moves;
+    direction_.start[point] -= weight;
+    direction_.finish[point] -= weight;
   }
-  return gradient;
+  sets_.Take(tree_moves_, chosen_, weight);
 }
 
-void VertexBound::Ascend(double target, int most_steps, Budget& budget) {
-  Values direction;
-  direction.Resize(multipliers_.point.size(), multipliers_.near.size());
-  Values best = multipliers_;
+void VertexBound::Cut(Budget& budget) {
+  bool found = false;
+  SetFinder(moves_, average_)
+      .Find(
+          kViolation,
+          [&](const std::vector<int>& points) {
+            if (budget.Exhausted()) return false;
+            const bool taken = sets_.Add(points, average_, kViolation);
+            found = found || taken;
+            return taken;
+          },
+          budget);
+  if (found) factor_ = std::min(1.0, kLonger * factor_);
+  sets_.DropIdle();
+}
+
+// Multipliers of inequalities are at least 0, and those that are 0 do not count where they would
+// become less.
+double VertexBound::SquareOfDirection() const {
+  double square = sets_.SquareOfDirection();
+  for (const double value : direction_.point) square += value * value;
+  const auto add = [&](const std::vector<double>& direction, const std::vector<double>& values) {
+    for (size_t v = 0; v < values.size(); ++v) {
+      if (values[v] > 0 || direction[v] > 0) square += direction[v] * direction[v];
+    }
+  };
+  add(direction_.start, multipliers_.start);
+  add(direction_.finish, multipliers_.finish);
+  return square;
+}
+
+void VertexBound::Step(double length) {
+  const auto move = [&](std::vector<double>& values, const std::vector<double>& by, double least) {
+    for (size_t v = 0; v < values.size(); ++v)
+      values[v] = std::max(least, values[v] + length * by[v]);
+  };
+  move(multipliers_.point, direction_.point, -kFar);
+  move(multipliers_.start, direction_.start, 0);
+  move(multipliers_.finish, direction_.finish, 0);
+  sets_.Step(length);
+}
+
+void VertexBound::Ascend(double target, Budget& budget) {
   double best_value = -kFar;
-  double factor = kFirstFactor;
   int without_gain = 0;
-  for (int step = 0; step < most_steps && !budget.ExhaustedNow(); ++step) {
+  best_multipliers_ = multipliers_;
+  sets_.Keep();
+  const auto go_back = [&] {
+    multipliers_ = best_multipliers_;
+    sets_.GoBack();
+  };
+  for (int step = 0; step < kStepsOfRound && !budget.ExhaustedNow(); ++step) {
     double value = EvaluateNear();
     if (value > best_value) {
       best_value = value;
-      best = multipliers_;
+      best_multipliers_ = multipliers_;
+      sets_.Keep();
       without_gain = 0;
     } else if (++without_gain == kStepsWithoutGain) {
       without_gain = 0;
-      factor *= kShorter;
-      multipliers_ = best;
+      factor_ *= kShorter;
+      go_back();
       value = EvaluateNear();
     }
     if (value >= target) break;
-    const Values gradient = Subgradient();
-    double square = 0;
-    // Multipliers of inequalities are at least 0, and those that are 0 do not count where they
-    // would become less.
-    const auto turn = [&](std::vector<double>& to, const std::vector<double>& by,
-                          const std::vector<double>* least_zero) {
-      for (size_t i = 0; i < to.size(); ++i) {
-        to[i] = kDeflection * to[i] + by[i];
-        if (least_zero != nullptr && (*least_zero)[i] <= 0) to[i] = std::max(to[i], 0.0);
-        square += to[i] * to[i];
-      }
-    };
-    turn(direction.point, gradient.point, nullptr);
-    turn(direction.start, gradient.start, &multipliers_.start);
-    turn(direction.finish, gradient.finish, &multipliers_.finish);
-    turn(direction.near, gradient.near, &multipliers_.near);
+    Average();
+    if (steps_ >= kStepsBeforeSets && steps_ % kStepsBetweenSets == 0) Cut(budget);
+    ++steps_;
+    const double square = SquareOfDirection();
     if (square == 0) break;
-    const double length = factor * (target - value) / square;
-    const auto move = [length](std::vector<double>& values, const std::vector<double>& by,
-                               bool at_least_zero) {
-      for (size_t i = 0; i < values.size(); ++i) {
-        values[i] += length * by[i];
-        if (at_least_zero) values[i] = std::max(values[i], 0.0);
-      }
-    };
-    move(multipliers_.point, direction.point, false);
-    move(multipliers_.start, direction.start, true);
-    move(multipliers_.finish, direction.finish, true);
-    move(multipliers_.near, direction.near, true);
+    Step(factor_ * kStepLength * (target - value) / square);
   }
-  multipliers_ = std::move(best);
+  go_back();
 }
 
-double VertexBound::Search(double target, int most_steps, Budget& budget) {
+double VertexBound::Search(double target, int most_rounds, Budget& budget) {
   double bound = std::max(0.0, EvaluateAll(budget));
-  size_t moves = 0;
-  for (const Pair& pair : pairs_) moves += pair.costs.size();
-  if (moves > kMostMoves) return bound;
-  for (int round = 0; round < kRounds && !budget.was_exhausted() && bound < target; ++round) {
-    Ascend(target, most_steps / kRounds, budget);
+  for (int round = 0; round < most_rounds && !budget.was_exhausted() && bound < target; ++round) {
+    Ascend(target, budget);
     bound = std::max(bound, EvaluateAll(budget));
   }
   return bound;

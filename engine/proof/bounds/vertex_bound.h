@@ -3,17 +3,19 @@
 // The trees of tree_bound.h join contours by their nearest points, whatever points their other
 // moves have. Here each point has a multiplier of its own, paid for each move there, and a contour
 // pays back for two moves at one of its points: the cheapest choice. What is left of the tree's
-// freedom, many moves to one neighbor at points that are not chosen, costs a second kind of
-// multipliers, of a point v and a near end B: no route has more moves between v and B than v is
-// chosen (generalised subtours of two, Fischetti, Salazar and Toth 1997). Any multipliers give a
-// bound; a deflected subgradient finds good ones.
+// freedom, moves that go around among points that are not chosen, costs multipliers of a second
+// kind: generalised subtours (subtour_sets.h), looked for in the average of the last solutions as
+// branch and cut does in those of a linear programme (relax and cut; Lucena 2005). Any multipliers
+// give a bound; a deflected subgradient, whose direction is what that average violates, finds good
+// ones.
 //
-// For plans whose contours have few points; the ascent looks at near pairs of ends alone, and what
-// bounds is a tree over all pairs.
+// For plans whose contours have few points; the ascent looks at near moves alone, and what bounds
+// is a tree over all.
 
 #ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_VERTEX_BOUND_H_
 #define TRAVERSE_ENGINE_PROOF_BOUNDS_VERTEX_BOUND_H_
 
+#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -23,6 +25,8 @@
 #include "engine/cost/travel_cost.h"
 #include "engine/model/layer_problem.h"
 #include "engine/proof/bounds/end_graph.h"
+#include "engine/proof/bounds/near_moves.h"
+#include "engine/proof/bounds/subtour_sets.h"
 
 namespace traverse {
 
@@ -36,79 +40,79 @@ class VertexBound {
   VertexBound(const LayerProblem& problem, const EndGraph& graph,
               const std::vector<double>& multipliers);
 
-  // Searches for multipliers towards `target`, the cost of a route, so many steps at most. Returns
-  // a bound, 0 if the budget ended before there was one. 0.05 to 0.2 ms a step for 50 to 220
-  // contours of five points.
-  double Search(double target, int most_steps, Budget& budget);
+  // Searches for multipliers towards `target`, the cost of a route, for so many rounds at most.
+  // Returns a bound, 0 if the budget ended before there was one; more rounds never give a lower
+  // one. A round takes 15 to 150 ms for 40 to 220 contours of five points.
+  double Search(double target, int most_rounds, Budget& budget);
 
  private:
-  // Two ends that a move may join.
-  struct Pair {
-    int ends[2] = {};
-    int sides[2] = {};           // among those of all junctions
-    size_t multipliers[2] = {};  // where those of each one's points begin in multipliers_.near
-    std::vector<double> costs;   // [i * points of ends[1] + j]
-  };
-
-  // The cheapest move between the ends of a pair: cost less multipliers, point of each end.
+  // The cheapest move between the sides of a group: cost less multipliers.
   struct Candidate {
     double cost = 0;
-    size_t pair = 0;
-    size_t points[2] = {};
+    size_t group = 0;
     bool operator<(const Candidate& other) const {
-      return cost != other.cost ? cost < other.cost : pair < other.pair;
+      return cost != other.cost ? cost < other.cost : group < other.group;
     }
   };
 
-  // The same of two ends that may be no pair yet.
+  // The same of two ends, any of their points.
   struct AnyCandidate {
     double cost = 0;
     int junction = 0;
     const Junction::Member* members[2] = {};
   };
 
-  // A value for each multiplier: of points; of points and the moves from the start and to the
-  // finish; of the points of pairs.
+  // A value for each multiplier of points, and of points and the moves from the start and to the
+  // finish.
   struct Values {
-    std::vector<double> point, start, finish, near;
-
-    void Resize(size_t points, size_t of_pairs);
+    std::vector<double> point, start, finish;
+    explicit Values(size_t points) : point(points), start(points), finish(points) {}
   };
 
-  size_t Count(int end) const { return graph_.ends[static_cast<size_t>(end)].points.size(); }
-  void AddPair(int junction, const Junction::Member& a, const Junction::Member& b);
   double AddFirstAndLast();
   double ChoosePoints();
-  Candidate CheapestOf(size_t pair) const;
-  AnyCandidate CheapestOfAny(int junction, const Junction::Member& a,
-                             const Junction::Member& b) const;
+  double Least(const NearMoves::Group& group) const;
+  size_t CheapestOf(const NearMoves::Group& group) const;
+  AnyCandidate CheapestOfAny(int junction, const Junction::Member& a, const Junction::Member& b,
+                             std::array<int, 2>* points);
+  bool ListAll(std::vector<AnyCandidate>& all, Budget& budget);
   double EvaluateNear();
   double EvaluateAll(Budget& budget);
-  void AddNearest(std::vector<AnyCandidate>& candidates);
-  void Ascend(double target, int most_steps, Budget& budget);
-  Values Subgradient() const;
+  void AddNearest(const std::vector<AnyCandidate>& candidates);
+  double Rounding() const;
+  void Average();
+  void Cut(Budget& budget);
+  double SquareOfDirection() const;
+  void Step(double length);
+  void Ascend(double target, Budget& budget);
 
   const EndGraph& graph_;
   const TravelCost cost_;
-  std::vector<size_t> first_point_;  // [end] among all points; one more
-  std::vector<int> first_side_;      // [junction] among all sides; one more
+  NearMoves moves_;
+  SubtourSets sets_;
   std::vector<double> start_costs_;  // [point], infinite where a route cannot begin
   std::vector<double> finish_costs_;
-  std::vector<Pair> pairs_;
-  std::vector<std::vector<std::pair<int, size_t>>> pairs_of_;  // [end] other end, pair
+  std::vector<double> penalties_;  // [move] by sets_
+  std::vector<double> paid_back_;  // [point] by sets_
 
   Values multipliers_;
+  Values best_multipliers_;
+  Values direction_;  // what average_ violates
+  AverageSolution average_;
+  double factor_ = 1;  // of steps
+  int steps_ = 0;
 
   // Of the last evaluation.
-  std::vector<size_t> chosen_;    // [end] among its points
-  std::vector<Candidate> moves_;  // of the tree, where pairs alone were looked at
-  size_t first_ = 0;  // points, among all, of the moves from the start and to the finish
-  size_t last_ = 0;
+  std::vector<int> chosen_;      // [end] point
+  std::vector<Candidate> tree_;  // where near moves alone were looked at
+  std::vector<size_t> tree_moves_;
+  int first_ = 0;  // points of the moves from the start and to the finish
+  int last_ = 0;
 
   // Scratch.
   std::vector<Candidate> candidates_;
-  std::vector<double> paid_back_;  // [point] by the multipliers of pairs
-  DisjointSets joined_;            // the sides of all junctions
+  std::vector<double> costs_;
+  DisjointSets joined_;  // the sides of all junctions
 };
 
 }  // namespace traverse
