@@ -116,7 +116,7 @@ void VerifyMachine::DoComment(VerifyLine& line) {
   const std::string_view text = line.text;
   if (settings_.SetByComment(text)) return;
   for (const std::string_view wipe : {";WIPE_START", ";WIPE_END", "; WIPE_START", "; WIPE_END"}) {
-    if (Begins(text, wipe)) return;
+    if (text == wipe) return;
   }
   for (const std::string_view mark :
        {";LAYER_CHANGE", ";LAYER:", ";LAYER ", "; CHANGE_LAYER", ";MESH:", "; printing object",

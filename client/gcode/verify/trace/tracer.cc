@@ -115,16 +115,16 @@ void Tracer::TakeWipeMark(bool begins, uint32_t line, uint32_t section) {
   }
   marks_wipes_ = true;
   wiping_ = begins;
-  wiped_ = false;
+  wiped_ = printed_ = false;
 }
 
 void Tracer::TakeComment(const VerifyLine& line, uint32_t section) {
   if (line.role == LineRole::kFence) return;
   const std::string_view text = line.text;
   const auto number = static_cast<uint32_t>(line.number);
-  if (Begins(text, ";WIPE_START") || Begins(text, "; WIPE_START")) {
+  if (text == ";WIPE_START" || text == "; WIPE_START") {
     TakeWipeMark(true, number, section);
-  } else if (Begins(text, ";WIPE_END") || Begins(text, "; WIPE_END")) {
+  } else if (text == ";WIPE_END" || text == "; WIPE_END") {
     TakeWipeMark(false, number, section);
   } else if (const std::optional<PathClass> path_class = ClassOfComment(text)) {
     named_ = path_class;
@@ -191,11 +191,12 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
     chunk_.paths.back().flow_settings = machine.FlowDigest();
   }
   in_path_ = true;
-  // What is printed within a wipe is a fault of its mark; one of it is enough.
-  if (wiping_ && wiped_)
+  // What is printed between the marks of a wipe is a fault of theirs; one of it is enough.
+  if (wiping_ && !printed_) {
     chunk_.mark_faults.push_back(
         {section, static_cast<uint32_t>(line.number), MarkFaultKind::kDeposit});
-  wiped_ &= !wiping_;
+  }
+  printed_ |= wiping_;
   TraceSegment segment;
   segment.digest = line.digest;
   segment.end = {static_cast<double>(motion.to[0]) * unit,

@@ -51,8 +51,9 @@ class Tracer {
   bool in_path_ = false;
   bool section_due_ = true;
   bool layer_due_ = true;
-  bool wiping_ = false;  // between the marks of a wipe
-  bool wiped_ = false;   // something moved sideways there
+  bool wiping_ = false;   // between the marks of a wipe
+  bool wiped_ = false;    // something moved sideways there
+  bool printed_ = false;  // something was printed there
   bool marks_wipes_ = false;
   bool in_print_;
   uint32_t layers_ = 0;

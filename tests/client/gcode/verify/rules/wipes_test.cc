@@ -88,6 +88,20 @@ TEST(VerifyWipes, KeepTheirMarks) {
   EXPECT_EQ(Broken(a, With(a, "G1 F1800\n", ";WIPE_START\n;WIPE_END\nG1 F1800\n")), "wipes");
 }
 
+// What is printed is no wipe, though nothing of the wipe has been done yet.
+TEST(VerifyWipes, MarksBeginBehindWhatIsPrinted) {
+  const std::string two = Wiped("X0 Y0", "X9 Y0", "X5 Y0") + Wiped("X0 Y5", "X9 Y5", "X5 Y5");
+  const std::string a = kHead + With(two, "G1 X9 Y5 E.3\n", "G1 X8 Y5 E.3\nG1 X9 Y5 E.1\n");
+  const std::string early =
+      With(With(a, "G1 X9 Y5 E.1\nG1 E-.5 F2100\n;WIPE_START\n", "G1 X9 Y5 E.1\nG1 E-.5 F2100\n"),
+           "G1 X9 Y5 E.1\n", ";WIPE_START\nG1 X9 Y5 E.1\n");
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, early), "wipes");
+  EXPECT_EQ(Broken(early, early), "");
+  // A mark of other words is none, but a comment.
+  EXPECT_EQ(Broken(a, With(a, ";WIPE_START", ";WIPE_START x")), "same_print");
+}
+
 TEST(VerifyWipes, PullAllAlong) {
   const std::string one = "G1 X7 Y5 E-.25\nG1 X5 Y5 E-.25\n";
   const std::string wiped = With(Wiped("X0 Y5", "X9 Y5", "X5 Y5"), "G1 X5 Y5 E-.5\n", one);
