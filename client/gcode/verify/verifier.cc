@@ -138,6 +138,7 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
   CheckOpenWays(layer, findings);
   CheckSameWays(layer, findings);
   CheckBends(layer, findings);
+  CheckSinking(layer, findings);
   ObserveLifts(layer, findings);
   ObserveHeights(layer, findings);
   ObserveRetractions(layer, findings);

@@ -66,6 +66,16 @@ bool IsDeparture(const Link& link, size_t i) {
   return link.Leaves(i);
 }
 
+// A travel move behind which the head sinks under what was printed before: it leads to where there
+// is nothing in the way, to the next object of a print one by one.
+bool LeadsAside(const Link& link, size_t i) {
+  for (size_t j = i + 1; j < link.steps.size() && static_cast<int>(j) < link.arrival; ++j) {
+    if (link.steps[j].kind == StepKind::kTravel) return false;
+    if (link.steps[j].kind == StepKind::kLift && link.steps[j].to.z < link.z_before) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void LinkWriter::Write(const LinkRequest& request) {
@@ -338,6 +348,7 @@ void LinkWriter::WriteBoundaryStep(const LinkRequest& request, const Link& link,
       request.from->as_given() && request.from->placement().block + 1 == *request.boundary;
   switch (step.kind) {
     case StepKind::kTravel:
+      if (LeadsAside(link, i)) return out_.Travel(raw, step.to, step.feed);
       if (given_from && IsDeparture(link, i)) out_.MoveLine(step);
       return;
     case StepKind::kWipe: {

@@ -33,6 +33,15 @@ bool LeadsAroundAWall(const LayerPair& layer, const TraceMove& before, const Tra
          !layer.CrossesOuterWall(behind.from, behind.to);
 }
 
+// The head sinks between the two, to a path that lies lower than the one before: where it may do so
+// is said elsewhere (way_heights.cc).
+bool SinksBetween(const TraceChunk& is, uint32_t link, const TraceMove& before,
+                  const TraceMove& behind) {
+  constexpr double kLevelMm = 1e-4;
+  const double printed = is.moves[is.links[link].first_move].z_from_mm;
+  return is.paths[link].z_mm < printed - kLevelMm && behind.z_from_mm < before.z_to_mm - kLevelMm;
+}
+
 void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped, LayerFindings& findings) {
   const TraceChunk& is = layer.is();
   const TraceLink& traced = is.links[link];
@@ -47,7 +56,7 @@ void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped, LayerFin
     const TraceMove* last = std::exchange(before, counts ? &move : nullptr);
     if (last == nullptr || before == nullptr) continue;
     if (layer.IsKnown(*last) || layer.IsKnown(move)) continue;
-    if (done <= kDepartureMm) continue;
+    if (done <= kDepartureMm || SinksBetween(is, link, *last, move)) continue;
     const double excess = ExcessOf(*last, move);
     if (excess <= kLeastExcessMm || LeadsAroundAWall(layer, *last, move)) continue;
     findings.breaks.push_back(

@@ -25,6 +25,7 @@ void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings
 void CheckBends(const LayerPair& layer, LayerFindings& findings);
 void CheckOpenWays(const LayerPair& layer, LayerFindings& findings);
 void CheckSameWays(const LayerPair& layer, LayerFindings& findings);
+void CheckSinking(const LayerPair& layer, LayerFindings& findings);
 void ObserveLifts(const LayerPair& layer, LayerFindings& findings);
 void ObserveHeights(const LayerPair& layer, LayerFindings& findings);
 void ObserveRetractions(const LayerPair& layer, LayerFindings& findings);

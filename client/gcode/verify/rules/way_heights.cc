@@ -146,7 +146,47 @@ void CompareFirstWay(const HighestPoint& was, const HighestPoint& is,
                                     is.z_mm, was.z_mm)});
 }
 
+// How the way to a path that lies lower than the one before gets there.
+struct Sinking {
+  bool sinks = false;
+  Point at;           // where it first is lower than the path before
+  double low_mm = 0;  // of the way, lower than that
+  uint32_t line = 0;
+};
+
+Sinking SinkingTo(const TraceChunk& chunk, uint32_t path) {
+  const TraceLink& link = chunk.links[path];
+  Sinking way;
+  if (link.first_move == link.end_move || !chunk.moves[link.first_move].in_print) return way;
+  const double level = chunk.moves[link.first_move].z_from_mm - kSlackMm;
+  if (chunk.paths[path].z_mm >= level) return way;
+  for (uint32_t m = link.first_move; m < link.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (move.z_to_mm >= level && move.z_from_mm >= level) continue;
+    if (!way.sinks) way = {true, move.from, 0, move.line};
+    way.low_mm += move.sideways() ? move.length_mm() : 0;
+  }
+  return way;
+}
+
 }  // namespace
+
+// What was printed before stands in the way of a head that sinks over it.
+void CheckSinking(const LayerPair& layer, LayerFindings& findings) {
+  for (size_t i = 0; i < layer.section_count(); ++i) {
+    const Sinking was = SinkingTo(layer.was(), layer.SectionWas(i).first_path);
+    const Sinking is = SinkingTo(layer.is(), layer.SectionIs(i).first_path);
+    if (!was.sinks || !is.sinks || DistanceOf(is.at, was.at) <= kShortestMm ||
+        is.low_mm <= was.low_mm + kDescentSlackMm) {
+      continue;
+    }
+    findings.breaks.push_back(
+        {VerifyRule::kLifts, was.line, is.line, layer.index(),
+         absl::StrFormat("the head sinks %.2f mm before the path that lies lower; there %.2f mm "
+                         "before it, and elsewhere",
+                         is.low_mm, was.low_mm)});
+  }
+}
 
 void ObserveHeights(const LayerPair& layer, LayerFindings& findings) {
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {

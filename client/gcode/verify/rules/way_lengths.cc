@@ -21,6 +21,20 @@ constexpr double kSamePointMm = 0.01;
 constexpr float kWindingSlackMm = 2.0f;
 constexpr float kWindingFactor = 3.0f;
 
+// The move with which the head goes down to a path that lies lower than the one before: it has to
+// do so where nothing stands in its way (way_heights.cc). Nothing if the path does not.
+const TraceMove* SinkOf(const TraceChunk& chunk, uint32_t link) {
+  constexpr double kLevelMm = 1e-4;
+  const TraceLink& traced = chunk.links[link];
+  if (traced.first_move == traced.end_move || link >= chunk.paths.size()) return nullptr;
+  const double printed = chunk.moves[traced.first_move].z_from_mm - kLevelMm;
+  if (chunk.paths[link].z_mm >= printed) return nullptr;
+  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
+    if (chunk.moves[m].z_to_mm < printed) return &chunk.moves[m];
+  }
+  return nullptr;
+}
+
 // The travel in `link`; of length 0 if there is none, or if only new moves count and none is new.
 WayLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, uint32_t skipped,
                    bool only_new) {
@@ -30,6 +44,7 @@ WayLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t lin
   bool known = true;
   const TraceMove* first = nullptr;
   const TraceMove* last = nullptr;
+  const TraceMove* sink = SinkOf(chunk, link);
   for (uint32_t m = traced.first_move + skipped; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (move.kind != MoveKind::kTravel || !move.in_print) continue;
@@ -48,7 +63,10 @@ WayLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t lin
   if (way.line == 0) way.line = first->line;
   way.to_layer = traced.new_layer && way.open_mm > 0;
   way.retracted_to_layer = traced.new_layer && way.length_mm > 0 && way.open_mm == 0;
-  way.excess_mm = way.length_mm - static_cast<float>(DistanceOf(first->from, last->to));
+  const double straight =
+      sink == nullptr ? DistanceOf(first->from, last->to)
+                      : DistanceOf(first->from, sink->from) + DistanceOf(sink->from, last->to);
+  way.excess_mm = way.length_mm - static_cast<float>(straight);
   return way;
 }
 

@@ -197,5 +197,24 @@ TEST(VerifyLifts, OfASpiralGoRoundTheSameCircle) {
   EXPECT_EQ(Broken(a, kHead + spiral("1", "1.2") + spiral("5", "9") + spiral("9", "1.2")), "lifts");
 }
 
+// One object after the other: over the first one the head does not go down to the next.
+TEST(VerifyLifts, TheHeadSinksWhereItSank) {
+  const std::string tower = kHead + kTwo + kNextLayer;
+  const std::string low = ";LAYER_CHANGE\nG1 Z.2 F9000\n";
+  const std::string end = ";TYPE:Internal infill\nG1 F1800\nG1 X70 Y0 E.3\n";
+  const std::string to = "G1 X61 Y0 F9000\nG1 E1 F2100\n";
+  const std::string aside = "G1 E-1 F2100\nG1 X60 Y0 F9000\n";
+  const std::string a = tower + kTwo + aside + low + to + end;
+  EXPECT_EQ(Broken(a, a), "");
+  const std::string turned =
+      Line("Internal infill", "X0 Y5", "X9 Y5") + Line("Internal infill", "X9 Y0", "X0 Y0");
+  EXPECT_EQ(Broken(a, tower + turned + aside + low + to + end), "");
+  EXPECT_EQ(Broken(a, tower + kTwo + "G1 E-1 F2100\n" + low + to + end), "lifts");
+  // Down at the path itself.
+  EXPECT_EQ(
+      Broken(a, tower + kTwo + "G1 E-1 F2100\nG1 X61 Y0 F9000\n" + low + "G1 E1 F2100\n" + end),
+      "");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
