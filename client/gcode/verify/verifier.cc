@@ -138,6 +138,8 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
   CheckOpenWays(layer, findings);
   CheckSameWays(layer, findings);
   CheckBends(layer, findings);
+  CheckSameSteps(layer, findings);
+  CheckScriptedWays(layer, findings);
   CheckSinking(layer, findings);
   ObserveLifts(layer, findings);
   ObserveHeights(layer, findings);

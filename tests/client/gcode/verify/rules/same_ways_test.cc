@@ -47,5 +47,39 @@ TEST(VerifySameWays, ALiftStaysWithItsWay) {
   EXPECT_EQ(Broken(a, turned, Policy::kFree), "");
 }
 
+// The layer has both speeds: which way goes at which does not change.
+TEST(VerifySameWays, SpeedsStayWithTheirWays) {
+  const auto line = [](const char* y, const char* speeds) {
+    return absl::StrCat("G1 X0 Y", y, speeds, "G1 X9 Y", y, " E.3\n");
+  };
+  const std::string slow = " F6000\n;TYPE:Internal infill\nG1 F1800\n";
+  const std::string fast = " F9000\n;TYPE:Internal infill\nG1 F1800\n";
+  const auto print = [&](const std::string& a, const std::string& b, const std::string& c) {
+    return kHead + line("0", fast.c_str()) + line("3", a.c_str()) + line("6", b.c_str()) +
+           line("9", c.c_str());
+  };
+  EXPECT_EQ(Broken(print(slow, fast, slow), print(slow, fast, slow)), "");
+  EXPECT_EQ(Broken(print(slow, fast, slow), print(slow, slow, slow)), "speeds");
+  // Another way may go at either speed.
+  const std::string a = print(slow, fast, slow);
+  EXPECT_EQ(Broken(a, kHead + line("0", fast.c_str()) + line("6", slow.c_str()) +
+                          line("3", fast.c_str()) + line("9", fast.c_str())),
+            "");
+  const std::string quick = With(a, "G1 X0 Y6", "M204 T500\nG1 X0 Y6");
+  EXPECT_EQ(Broken(quick, With(quick, "M204 T500\n", "")), "speeds");
+}
+
+// Of the ways that are not retracted too few are lifted to tell anything of others.
+TEST(VerifySameWays, LiftsOfOpenWaysStayWithThem) {
+  const std::string lifted = "G1 Z.6 F9000\nG1 X0 Y6 F9000\nG1 Z.2\n";
+  const auto line = [](const std::string& way, const char* y) {
+    return absl::StrCat(way, ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y", y, " E.3\n");
+  };
+  const std::string a = kHead + line("G1 X0 Y0 F9000\n", "0") + line("G1 X0 Y3 F9000\n", "3") +
+                        line(lifted, "6") + line("G1 X0 Y9 F9000\n", "9");
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, With(a, lifted, "G1 X0 Y6 F9000\n")), "lifts");
+}
+
 }  // namespace
 }  // namespace traverse::gcode

@@ -68,5 +68,24 @@ TEST(VerifyScripts, LeaveThePrintAsTheyDid) {
               HasSubstr("scripts"));
 }
 
+// A time-lapse stands between two layers or paths: what comes behind it goes as before.
+TEST(VerifyScripts, WaysBehindUnknownLinesGoAsTheyDid) {
+  const std::string script = "M971 S11 C10\n";
+  const auto line = [](const char* x) {
+    return Lifted(absl::StrCat(x, " Y5")) + ";TYPE:Internal infill\nG1 F1800\nG1 " + x +
+           " Y9 E.3\n";
+  };
+  const std::string a = kHead + kLifted + script + line("X0") + line("X1") + line("X2");
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, kHead + kLifted + script + line("X1") + line("X0") + line("X2")), "");
+  const std::string way = "G1 X0 Y5 F9000\nG1 Z.2\nG1 E1 F2100\n";
+  EXPECT_THAT(Broken(a, With(a, way, "G1 Z.2\nG1 X0 Y5 F9000\nG1 E1 F2100\n")),
+              HasSubstr("scripts"));
+  EXPECT_THAT(Broken(a, With(a, way, "G1 X0 Y5 F9000\nG1 E1 F2100\nG1 Z.2\n")),
+              HasSubstr("scripts"));
+  EXPECT_EQ(Broken(a, With(a, way, "G1 X0 Y5 F9000\nG1 X20 Y40\n" + way)), "bounds");
+  EXPECT_EQ(Broken(a, With(a, way, "G1 X10 Y40 F9000\n" + way)), "");
+}
+
 }  // namespace
 }  // namespace traverse::gcode

@@ -1,0 +1,198 @@
+// What a way does, step by step: it pulls back, rises, goes, sinks and pushes. A way between the
+// same two points as in the original comes as high, and with the same kinds of steps it is as fast,
+// under the same accelerations. Behind lines that are not known it does the same steps wherever it
+// leads to.
+
+#include <algorithm>
+#include <vector>
+
+#include "absl/container/flat_hash_map.h"
+#include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/way_ends.h"
+#include "client/gcode/verify/rules/rules.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kLevelMm = 0.003;
+constexpr double kShortestMm = 0.05;
+
+// One step, or several alike: all but where it leads to, and how much filament a wipe pulls.
+struct WayStep {
+  MoveKind kind = MoveKind::kTravel;
+  double z_mm = 0;
+  Micro filament = 0;
+  Micro feed = 0;
+  bool open = false;
+  uint64_t acceleration = 0;
+  uint32_t line = 0;
+  double top_mm = 0;  // of where it begins and ends, the higher one
+
+  bool Like(const WayStep& other) const {
+    return kind == other.kind && std::abs(z_mm - other.z_mm) <= kLevelMm && open == other.open &&
+           feed == other.feed && std::abs(filament - other.filament) <= VerifyMachine::kSlack;
+  }
+};
+
+bool IsNothing(const TraceMove& move) {
+  return !move.firmware && move.filament == 0 && move.z_from_mm == move.z_to_mm &&
+         move.length_mm() < kShortestMm;
+}
+
+// What the link to `path` does behind the line that ends the section before.
+std::vector<WayStep> StepsTo(const TraceChunk& chunk, uint32_t path, uint32_t section) {
+  std::vector<WayStep> steps;
+  const TraceLink& link = chunk.links[path];
+  for (uint32_t m = link.first_move; m < link.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (move.section < section || IsNothing(move)) continue;
+    const bool wipes = move.kind == MoveKind::kWipe;
+    const Micro filament = wipes ? 0 : move.filament;
+    const WayStep step{
+        move.kind, move.z_to_mm,      filament,  move.feed,
+        move.open, move.acceleration, move.line, std::max(move.z_from_mm, move.z_to_mm)};
+    // A way may have more bends than before.
+    const bool goes_on =
+        !steps.empty() && steps.back().Like(step) && steps.back().acceleration == step.acceleration;
+    if (move.sideways() && goes_on) continue;
+    steps.push_back(step);
+  }
+  return steps;
+}
+
+// How much farther the way leads than straight to its path.
+double ExcessTo(const TraceChunk& chunk, uint32_t path, uint32_t section, double& straight_mm) {
+  const TraceLink& link = chunk.links[path];
+  double length = 0;
+  const TraceMove* first = nullptr;
+  for (uint32_t m = link.first_move; m < link.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (move.section < section || !move.sideways()) continue;
+    if (first == nullptr) first = &move;
+    length += move.length_mm();
+  }
+  straight_mm = first == nullptr ? 0 : DistanceOf(first->from, chunk.paths[path].start);
+  return length - straight_mm;
+}
+
+// No farther than twice as far as straight, and as much as it winds there.
+bool Winds(const LayerPair& layer, const TraceSection& was, const TraceSection& is) {
+  constexpr double kSlackMm = 2;
+  double straight = 0;
+  const double had = ExcessTo(layer.was(), was.first_path, was.index, straight);
+  const double has = ExcessTo(layer.is(), is.first_path, is.index, straight);
+  return has > had + straight + kSlackMm;
+}
+
+bool IsTravel(const WayStep& step) { return step.kind == MoveKind::kTravel; }
+
+bool Goes(const std::vector<WayStep>& steps) {
+  return std::any_of(steps.begin(), steps.end(), IsTravel);
+}
+
+bool SameKinds(const std::vector<WayStep>& was, const std::vector<WayStep>& is) {
+  return std::equal(
+      was.begin(), was.end(), is.begin(), is.end(),
+      [](const WayStep& a, const WayStep& b) { return a.kind == b.kind && a.open == b.open; });
+}
+
+// The first step of `is` that is not as fast as in `was`; nothing if there is none. REQUIRES: they
+// are of the same kinds.
+const WayStep* OtherSpeed(const std::vector<WayStep>& was, const std::vector<WayStep>& is) {
+  const auto [one, other] =
+      std::mismatch(was.begin(), was.end(), is.begin(), [](const WayStep& a, const WayStep& b) {
+        return a.feed == b.feed && a.acceleration == b.acceleration;
+      });
+  return one == was.end() ? nullptr : &*other;
+}
+
+double ApexOf(const std::vector<WayStep>& steps) {
+  double apex = 0;
+  for (const WayStep& step : steps) {
+    if (IsTravel(step)) apex = std::max(apex, step.top_mm);
+  }
+  return apex;
+}
+
+}  // namespace
+
+void CheckScriptedWays(const LayerPair& layer, LayerFindings& findings) {
+  for (size_t i = 0; i < layer.section_count(); ++i) {
+    const TraceSection& was = layer.SectionWas(i);
+    const TraceSection& is = layer.SectionIs(i);
+    if (!layer.was().links[was.first_path].scripted) continue;
+    const uint32_t behind = layer.is().LineOf(layer.is().paths[is.first_path]);
+    if (Winds(layer, was, is)) {
+      findings.breaks.push_back({VerifyRule::kBounds, 0, behind, layer.index(),
+                                 "behind lines that are not known the way winds to this path"});
+    }
+    std::vector<WayStep> had = StepsTo(layer.was(), was.first_path, was.index);
+    std::vector<WayStep> has = StepsTo(layer.is(), is.first_path, is.index);
+    // To a path that begins where the head is, no way leads.
+    if (!Goes(had) || !Goes(has)) {
+      std::erase_if(had, IsTravel);
+      std::erase_if(has, IsTravel);
+    }
+    const auto [one, other] =
+        std::mismatch(had.begin(), had.end(), has.begin(), has.end(),
+                      [](const WayStep& a, const WayStep& b) { return a.Like(b); });
+    if (one == had.end() && other == has.end()) continue;
+    findings.breaks.push_back(
+        {VerifyRule::kScripts, one == had.end() ? 0 : one->line,
+         other == has.end() ? behind : other->line, layer.index(),
+         absl::StrFormat("behind lines that are not known: a %s, not a %s",
+                         other == has.end() ? "path" : MoveKindName(other->kind),
+                         one == had.end() ? "path" : MoveKindName(one->kind))});
+  }
+}
+
+namespace {
+
+// What a way between two points does that one of the original, or several, lead between as well.
+void CompareSteps(const LayerPair& layer, const std::vector<uint32_t>& links_was, uint32_t link_is,
+                  LayerFindings& findings) {
+  const std::vector<WayStep> has = StepsTo(layer.is(), link_is, 0);
+  if (has.empty()) return;
+  const WayStep* odd = nullptr;
+  double lowest = 1e9;
+  const uint32_t original = layer.was().LineOf(layer.was().paths[links_was.front()]);
+  for (const uint32_t link : links_was) {
+    const std::vector<WayStep> had = StepsTo(layer.was(), link, 0);
+    lowest = std::min(lowest, ApexOf(had));
+    if (!SameKinds(had, has)) continue;
+    odd = OtherSpeed(had, has);
+    if (odd == nullptr) break;
+  }
+  if (odd != nullptr) {
+    findings.breaks.push_back(
+        {VerifyRule::kSpeeds, original, odd->line, layer.index(),
+         absl::StrFormat("%s at F%g; between the same two points its speed or "
+                         "acceleration is another one there",
+                         MoveKindName(odd->kind), static_cast<double>(odd->feed) * 1e-6)});
+  }
+  if (ApexOf(has) > 0 && ApexOf(has) < lowest - kLevelMm) {
+    findings.breaks.push_back(
+        {VerifyRule::kLifts, original, has.front().line, layer.index(),
+         absl::StrFormat("a way at a height of %.3f mm leads between the same two points as one at "
+                         "%.3f mm there",
+                         ApexOf(has), lowest)});
+  }
+}
+
+}  // namespace
+
+void CheckSameSteps(const LayerPair& layer, LayerFindings& findings) {
+  const TraceChunk& was = layer.was();
+  const TraceChunk& is = layer.is();
+  absl::flat_hash_map<uint64_t, std::vector<uint32_t>> by_ends;
+  for (uint32_t link = layer.first_path_was() + 1; link < layer.end_path_was(); ++link) {
+    if (!was.links[link].scripted) by_ends[EndsOf(was, link)].push_back(link);
+  }
+  for (uint32_t link = layer.first_path_is() + 1; link < layer.end_path_is(); ++link) {
+    const auto found = by_ends.find(EndsOf(is, link));
+    if (is.links[link].scripted || found == by_ends.end()) continue;
+    CompareSteps(layer, found->second, link, findings);
+  }
+}
+
+}  // namespace traverse::gcode
