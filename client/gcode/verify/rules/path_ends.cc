@@ -82,6 +82,11 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
       report(had.line, has.line != 0 ? has.line : end_line,
              absl::StrFormat("goes on along the path for %.2f mm where it does for %.2f mm there",
                              has.length_mm, had.length_mm));
+    } else if (has.feed != had.feed) {
+      report(had.line, has.line,
+             absl::StrFormat("goes on along the path at F%g where it does at F%g there",
+                             static_cast<double>(has.feed) * 1e-6,
+                             static_cast<double>(had.feed) * 1e-6));
     } else if (same_end && DistanceOf(has.end, had.end) > kSlackMm) {
       report(had.line, has.line, "goes on from the path to another point than there");
     }

@@ -52,14 +52,17 @@ TEST(VerifyPathEnds, AreNoWaysAtTheEndOfALayer) {
   EXPECT_EQ(Broken(kHead + one + other + next, kHead + other + one + slow), "speeds");
 }
 
-// At the speed of their path, or at one that some of the original have.
+// Each at its own, whatever speeds there are beside it.
 TEST(VerifyPathEnds, KeepTheirSpeeds) {
   const std::string two =
       Tailed("X0 Y0", "X9 Y0", "X9.04 Y0") + Tailed("X0 Y5", "X9 Y5", "X9.04 Y5");
   const std::string turned =
       Tailed("X0 Y0", "X9 Y0", "X9.04 Y0") + Tailed("X9 Y5", "X0 Y5", "X-.04 Y5");
   const std::string slow = With(turned, "X-.04 Y5", "X-.04 Y5 F900");
-  EXPECT_EQ(Broken(kHead + two, kHead + slow), "speeds");
+  EXPECT_EQ(Broken(kHead + two, kHead + slow), "speeds path_ends");
+  const std::string third = Tailed("X0 Y9", "X9 Y9", "X9.04 Y9 F900");
+  const std::string last = Line("Internal infill", "X0 Y20", "X9 Y20");
+  EXPECT_EQ(Broken(kHead + third + two + last, kHead + third + slow + last), "path_ends");
   EXPECT_EQ(Broken(kHead + With(two, "X9.04 Y5", "X9.04 Y5 F900"), kHead + slow), "");
 }
 
