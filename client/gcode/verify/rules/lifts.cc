@@ -18,6 +18,8 @@ constexpr float kHeightSlackMm = 0.003f;
 constexpr double kShareLifted = 0.99;
 constexpr float kLowMm = 0.5f;
 constexpr float kLowShare = 0.1f;
+// A slope of two stretches becomes a straight one, which rises later.
+constexpr float kLowFactor = 1.25f;
 constexpr double kUsualShare = 0.99;  // of the original's travel, for how low it may be
 constexpr double kShortestMm = 0.05;
 constexpr int64_t kHeightSlackUm = 2;
@@ -103,7 +105,7 @@ Habit HabitOf(const LiftLog& log, absl::Span<const WayProfile> ways) {
   }
   habit.may_end_low =
       static_cast<double>(end_low) > (1 - kShareLifted) * static_cast<double>(lifted);
-  habit.low_mm = std::max(kLowMm, Usual(std::move(low_mm)) * 1.01f);
+  habit.low_mm = std::max(kLowMm, Usual(std::move(low_mm)) * kLowFactor);
   habit.low_share = std::max(kLowShare, Usual(std::move(low_share)) * 1.01f);
   return habit;
 }

@@ -216,5 +216,22 @@ TEST(VerifyLifts, TheHeadSinksWhereItSank) {
       "");
 }
 
+// A slope of two stretches comes out as a straight one, which rises a little later.
+TEST(VerifyLifts, ASlopeOfTwoStretchesMayBecomeOne) {
+  const auto way = [](const std::string& moves, const std::string& end) {
+    return absl::StrCat("G1 E-1 F2100\n", moves, "G1 Z.2\nG1 E1 F2100\n;TYPE:Internal infill\n",
+                        "G1 F1800\nG1 ", end, " E.3\n");
+  };
+  const std::string a = kHead + kOne + way("G1 X9 Y2.5 Z.244 F9000\n", "X0 Y2.5") +
+                        way("G1 X32 Y2.5 Z.76 F9000\nG1 X36 Y2.5 Z.8\nG1 X60 Y2.5\n", "X60 Y9");
+  const auto other = [&](const char* bend) {
+    return kHead + kOne + way(absl::StrCat("G1 ", bend, " Z.8 F9000\nG1 X60 Y2.5\n"), "X60 Y9") +
+           way("G1 X27.404 Y4.846 Z.8 F9000\nG1 X9 Y2.5\n", "X0 Y2.5");
+  };
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, other("X45.557 Y1.792")), "");
+  EXPECT_EQ(Broken(a, other("X59 Y2.451")), "lifts");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
