@@ -196,7 +196,7 @@ class Painter {
       canvas_->Lines({{at, {at.x + 22, at.y}}}, pen);
     };
     line("travel", {kTravelColor, kMoveWidth});
-    line("no more", {kTravelColor, kMoveWidth, kFaded});
+    line("removed", {kTravelColor, kMoveWidth, kFaded});
     Place at = next("start");
     canvas_->Disc({at.x + 11, at.y}, 5, kStartColor);
     at = next("end");

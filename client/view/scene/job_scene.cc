@@ -96,7 +96,7 @@ Scene EmptyScene(const InputJob& job) {
   Scene scene;
   scene.title = job.name == "-" ? DisplayName(job.name) : BaseName(job.name);
   scene.seconds_name = "idle time";
-  scene.moves_note = "Moves are straight, as the service counts them.";
+  scene.moves_note = "Travel moves are straight, as the service counts them.";
   scene.features = FeatureNames(job);
   scene.first_layer = job.first_layer;
   for (const v1::Layer& layer : job.layers) {
@@ -134,7 +134,7 @@ absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
                                  const GcodeRewrite& rewrite) {
   Scene scene = EmptyScene(job);
   scene.seconds_name = "print time";
-  scene.moves_note = "Moves are those of the two files, wipes included.";
+  scene.moves_note = "The moves are those of both files, including wipes.";
   std::shared_ptr<const GcodeFile> printed = job.gcode;
   if (rewrite.layers_changed > 0) {
     absl::StatusOr<std::shared_ptr<GcodeFile>> read = ReadGcode(rewrite.text, job.name);

@@ -40,7 +40,7 @@ export function headline(scene, shown) {
   if (after.gap !== null) {
     const proven = after.gap < 0.0005;
     cards.push(card("Gap to the optimum", proven ? "0 %" : `≤ ${format.percent(after.gap)}`,
-      proven ? "proven optimal" : "to a proven bound", proven ? "good" : ""));
+      proven ? "proven optimal" : "to a proven lower bound", proven ? "good" : ""));
   }
   document.getElementById("headline").replaceChildren(...cards);
 }
@@ -101,7 +101,7 @@ export function legend(scene, layer, theme) {
   };
   const used = [...new Set(layer.paths.map((path) => path.feature))].sort((a, b) => a - b);
   document.getElementById("legend").replaceChildren(
-    item("travel", ink.travel), item("vanished", ink.travel, "faded"), item("start", ink.start, "disc"),
+    item("travel", ink.travel), item("removed", ink.travel, "faded"), item("start", ink.start, "disc"),
     item("end", ink.end, "square"),
     ...used.map((feature) => item(scene.features[feature].name, scene.features[feature][theme])));
 }

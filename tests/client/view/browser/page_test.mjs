@@ -91,7 +91,7 @@ test("opens with its headline, both pictures, and the layer with the most saved"
       for (const color of [START, END, TRAVEL]) assert.ok(await count(page, id, color) > 30, `${id} ${color}`);
     }
     assert.notEqual(await pixels(page, "before"), await pixels(page, "after"));
-    assert.match(await text(page, "#legend"), /travel.*vanished.*start.*end.*outer wall/s);
+    assert.match(await text(page, "#legend"), /travel.*removed.*start.*end.*outer wall/s);
     await shoot(page, "gcode.png");
   }));
 
