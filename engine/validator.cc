@@ -71,7 +71,7 @@ absl::Status CheckInOrder(const PlanNode& node, size_t index, const std::vector<
     const Range& range = ranges[static_cast<size_t>(node.children[c])];
     if (range.empty()) continue;
     if (range.first < last) {
-      return Fault(absl::StrCat("nodes[", index, "].in_order: child ", c, " is done too early"));
+      return Fault(absl::StrCat("nodes[", index, "].in_order: child ", c, " comes too early"));
     }
     last = range.last;
   }
@@ -111,7 +111,7 @@ class BeforeCheck {
       const Range& range = RangeOf(child);
       if (range.first < end_before_[child]) {
         return Fault(absl::StrCat("nodes[", index, "].any_order: child ", child,
-                                  " is done before one that has to come before it"));
+                                  " comes before one that must precede it"));
       }
       const int end = range.empty() ? end_before_[child] : range.last;
       for (size_t pair = first_pair_[child]; pair < first_pair_[child + 1]; ++pair) {
@@ -150,7 +150,7 @@ absl::Status CheckTree(const Plan& plan, const std::vector<int>& position, Rest&
     }
     for (const int child : node.children) range.Add(ranges[static_cast<size_t>(child)]);
     if (!range.empty() && range.last - range.first + 1 != range.count) {
-      return Fault(absl::StrCat("nodes[", index, "]: its paths are not done in one go"));
+      return Fault(absl::StrCat("nodes[", index, "]: other paths come between its own"));
     }
     absl::Status status = node.kind == PlanNode::Kind::kInOrder
                               ? CheckInOrder(node, index, ranges)

@@ -172,7 +172,8 @@ class MoveCheck {
     const std::pair<double, double> other(to.x, to.y);
     if (const auto move = known_.find(std::minmax(one, other)); move != known_.end()) {
       if (detour != nullptr) {
-        return absl::FailedPreconditionError("it is known, and not led around walls");
+        return absl::FailedPreconditionError(
+            "it is a known move, so it does not lead around walls");
       }
       AddKnown(move->second, length);
       return absl::OkStatus();

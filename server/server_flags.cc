@@ -13,24 +13,26 @@
 #include "server/ops/flag_reader.h"
 #include "server/ops/memory.h"
 
-ABSL_FLAG(std::string, listen, "127.0.0.1:50051", "HOST:PORT of the service; port 0: a free one");
-ABSL_FLAG(std::string, metrics_listen, "127.0.0.1:9464",
-          "HOST:PORT of /metrics, /healthz and /readyz; port 0: a free one; empty: none");
-ABSL_FLAG(int32_t, threads, 0, "Worker threads; 0: one for each core");
-ABSL_FLAG(int32_t, worker_nice, 5,
-          "How much nicer the workers are than the threads that take calls in and send answers");
-ABSL_FLAG(bool, reflection, true, "Whether clients may ask for the service's description");
-ABSL_FLAG(absl::Duration, watchdog, absl::Seconds(60),
-          "a worker that gives no sign of life for so long makes /healthz fail and is logged; inf: "
-          "nothing is watched");
-ABSL_FLAG(absl::Duration, drain_timeout, absl::Seconds(30),
-          "How long jobs under way may go on after SIGTERM");
-ABSL_FLAG(std::string, log_file, "", "File to append the log to; empty: stderr");
-ABSL_FLAG(int64_t, max_message_bytes, int64_t{64} << 20, "Largest message accepted");
+ABSL_FLAG(std::string, listen, "127.0.0.1:50051",
+          "HOST:PORT of the service; port 0 takes a free port");
 ABSL_FLAG(
-    int64_t, max_memory, 0,
-    "Most memory of the process in bytes; 0: three quarters of what the container, or else the "
-    "machine, has");
+    std::string, metrics_listen, "127.0.0.1:9464",
+    "HOST:PORT of /metrics, /healthz and /readyz; port 0 takes a free port; empty: no such port");
+ABSL_FLAG(int32_t, threads, 0, "Worker threads; 0: one per core");
+ABSL_FLAG(
+    int32_t, worker_nice, 5,
+    "Added to the workers' nice value, so that threads that take calls and send answers go first");
+ABSL_FLAG(bool, reflection, true,
+          "Offer server reflection, which describes the service to clients");
+ABSL_FLAG(absl::Duration, watchdog, absl::Seconds(60),
+          "Log a worker that is silent for this long, and fail /healthz; inf: watch nothing");
+ABSL_FLAG(absl::Duration, drain_timeout, absl::Seconds(30),
+          "How long running jobs may continue after SIGTERM");
+ABSL_FLAG(std::string, log_file, "", "File to which the log is appended; empty: stderr");
+ABSL_FLAG(int64_t, max_message_bytes, int64_t{64} << 20, "Largest message accepted, in bytes");
+ABSL_FLAG(int64_t, max_memory, 0,
+          "Most memory of the process in bytes; 0: three quarters of the container's limit, or "
+          "else of the machine's memory");
 ABSL_FLAG(int64_t, max_memory_per_caller, 0,
           "Most memory for one caller's jobs in bytes; 0: half of that for all jobs");
 ABSL_FLAG(int64_t, max_layers_per_message, 100'000, "Most layers in one message");
@@ -38,39 +40,42 @@ ABSL_FLAG(int64_t, max_layers_per_job, 0, "Most layers in a job; 0: no limit");
 ABSL_FLAG(int64_t, max_points_per_job, 0, "Most points in a job; 0: no limit");
 ABSL_FLAG(int64_t, max_points_per_layer, 1'000'000, "Most points in a layer");
 ABSL_FLAG(int64_t, max_queued_points, 8'000'000,
-          "Most points of all jobs together that wait to be solved");
-ABSL_FLAG(int64_t, max_queued_points_per_caller, 4'000'000, "The same of one caller's jobs");
+          "Most points of all jobs together that wait for a worker");
+ABSL_FLAG(int64_t, max_queued_points_per_caller, 4'000'000, "The same for one caller's jobs");
 ABSL_FLAG(absl::Duration, max_wait, absl::Milliseconds(250),
-          "A job is refused that would take longer than this and than --max_slowdown allows");
-ABSL_FLAG(double, max_slowdown, 3, "How many times as long as alone a job may take");
+          "Refuse jobs expected to exceed both this and --max_slowdown");
+ABSL_FLAG(double, max_slowdown, 3,
+          "Longest expected time of a job, as a multiple of its time alone; see --max_wait");
 ABSL_FLAG(int32_t, max_jobs, 256, "Most jobs in flight");
-ABSL_FLAG(int32_t, max_jobs_per_caller, 64, "Most jobs in flight of one caller");
+ABSL_FLAG(int32_t, max_jobs_per_caller, 64, "Most jobs in flight for one caller");
 ABSL_FLAG(int64_t, window_layers, 256, "Most layers of a job between solver and reader");
 ABSL_FLAG(int64_t, window_points, 500'000, "Most points of a job between solver and reader");
 
 ABSL_FLAG(std::string, config, "",
-          "File of lines name=value that set flags; the command line wins");
-ABSL_FLAG(std::string, flagfile, "", "The same, but read at its place on the command line");
+          "File of flags, lines name=value; flags on the command line override it");
+ABSL_FLAG(std::string, flagfile, "", "The same, but read where it stands on the command line");
 ABSL_FLAG(bool, insecure, false, "Allow plaintext on addresses that other machines can reach");
 ABSL_FLAG(std::string, tls_certificate, "", "Certificate chain in PEM; reloaded when it changes");
 ABSL_FLAG(std::string, tls_key, "", "Private key of --tls_certificate in PEM");
 ABSL_FLAG(std::string, tls_client_ca, "",
-          "Authorities in PEM one of which every client's certificate has to be from");
+          "Authorities in PEM; every client must show a certificate from one of them");
 ABSL_FLAG(std::vector<std::string>, allowed_clients, {},
-          "Identities of client certificates that may call; empty: all of --tls_client_ca");
+          "Identities in client certificates that may call; empty: all from --tls_client_ca");
 ABSL_FLAG(std::string, token_file, "",
-          "File of lines NAME SHA256-OF-TOKEN; callers then need a bearer token. Reloaded");
+          "File of lines NAME SHA256-OF-TOKEN; callers then need a bearer token. Reloaded when it "
+          "changes");
 ABSL_FLAG(int32_t, max_streams_per_connection, 100, "Most calls at a time on one connection");
-ABSL_FLAG(int32_t, max_connections, 0, "Most connections; 0: as the limit of open files allows");
-ABSL_FLAG(int32_t, max_header_bytes, 16384, "Largest metadata of a call");
+ABSL_FLAG(int32_t, max_connections, 0,
+          "Most connections; 0: as many as the limit of open files allows");
+ABSL_FLAG(int32_t, max_header_bytes, 16384, "Largest metadata of a call, in bytes");
 ABSL_FLAG(absl::Duration, keepalive_time, absl::Seconds(30),
-          "Idle time of a connection after which the peer is asked whether it lives");
+          "Idle time after which the server pings a connection's peer");
 ABSL_FLAG(absl::Duration, keepalive_timeout, absl::Seconds(10),
-          "Time for that answer, then the connection and its jobs end");
+          "Time for the answer to that ping, then the connection and its jobs end");
 ABSL_FLAG(absl::Duration, idle_timeout, absl::Minutes(5),
-          "A job is given up whose caller neither sends nor reads anything for so long");
+          "End a job whose caller neither sends nor reads anything for this long");
 ABSL_FLAG(absl::Duration, max_connection_age, absl::InfiniteDuration(),
-          "Age at which clients are asked to connect anew, to spread them over new servers");
+          "Age at which the server asks clients to reconnect, which spreads them over new servers");
 
 namespace traverse {
 namespace {

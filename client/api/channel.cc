@@ -80,7 +80,8 @@ absl::StatusOr<std::string> ReadPem(const char* option, const std::string& path)
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
   if (!file) return absl::NotFoundError(absl::StrFormat("%s: cannot read %s", option, path));
   if (bytes.find("-----BEGIN ") == std::string::npos) {
-    return absl::InvalidArgumentError(absl::StrFormat("%s: %s has nothing in PEM", option, path));
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s: %s contains nothing in PEM format", option, path));
   }
   return bytes;
 }
@@ -100,7 +101,7 @@ absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> MakeCredentials(
     grpc::ChannelArguments& arguments) {
   if (!tls) return grpc::InsecureChannelCredentials();
   if (tls->certificate.empty() != tls->key.empty()) {
-    return absl::InvalidArgumentError("tls_certificate and tls_key go together");
+    return absl::InvalidArgumentError("tls_certificate and tls_key must be given together");
   }
   grpc::SslCredentialsOptions options;
   const struct {
@@ -118,7 +119,7 @@ absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> MakeCredentials(
   const std::string name = tls->name.empty() ? CommonHost(addresses) : tls->name;
   if (name.empty()) {
     return absl::InvalidArgumentError(
-        "tls_name: several servers need the name that their certificates have in common");
+        "tls_name: with several servers, give the name that their certificates share");
   }
   // gRPC would compare the certificate with the numeric address, where it was given one.
   arguments.SetSslTargetNameOverride(name);
@@ -159,7 +160,7 @@ absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectTo(const std::vector<std::
     for (const std::string& address : addresses) LookUp(address, known);
     if (known.empty()) {
       return absl::UnavailableError(
-          absl::StrFormat("no address is known for %s", absl::StrJoin(addresses, ",")));
+          absl::StrFormat("found no address for %s", absl::StrJoin(addresses, ",")));
     }
     target = absl::StrFormat("ipv6:%s", absl::StrJoin(known, ","));
   }

@@ -153,14 +153,14 @@ class Collector {
       return absl::OkStatus();  // the empty layer at the end of a run
     }
     if (!response.has_layer() || index >= layers_.size() || answered_[index]) {
-      return absl::InternalError("the server answered what was not asked");
+      return absl::InternalError("the server answered a layer that was not asked for");
     }
     v1::LayerResult& layer = result_.layers[index];
     layer = std::move(*response.mutable_layer());
     layer.set_index(index);
     if (const absl::Status status = CheckVisits(layers_[index], layer); !status.ok()) {
       return absl::InternalError(
-          absl::StrFormat("the server's answer to layers[%d] is no route: %s", index,
+          absl::StrFormat("the server's answer to layers[%d] is not a route: %s", index,
                           std::string(status.message())));
     }
     answered_[index] = true;

@@ -53,7 +53,7 @@ Outcome RunCommand(const Command& command, const std::vector<std::string>& argum
                                  command.name));
   }
   if (given > command.operands.size()) {
-    return usage(absl::StrFormat("\"%s\" is too much; see traverse %s --help",
+    return usage(absl::StrFormat("unexpected argument \"%s\"; see traverse %s --help",
                                  flags->operands()[command.operands.size()], command.name));
   }
   Outcome outcome = command.run(*flags);
@@ -62,7 +62,7 @@ Outcome RunCommand(const Command& command, const std::vector<std::string>& argum
 
 Outcome Run(const std::vector<std::string>& arguments) {
   if (arguments.empty()) {
-    return UsageFault("traverse: which command? See traverse --help");
+    return UsageFault("traverse: no command given; see traverse --help");
   }
   const std::string& first = arguments.front();
   if (first == "--help" || first == "-h" || first == "help") {

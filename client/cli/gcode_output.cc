@@ -34,8 +34,8 @@ std::optional<ContainerKind> AskedKind(const Flags& flags) {
 absl::Status CheckKind(const InputFile& input, ContainerKind kind) {
   if (kind == input.kind()) return absl::OkStatus();
   if (kind == ContainerKind::kGcode3mf || kind == ContainerKind::kUfp) {
-    return absl::InvalidArgumentError(
-        absl::StrFormat("no %s is made of %s", ContainerName(kind), ContainerName(input.kind())));
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "cannot make a %s from %s", ContainerName(kind), ContainerName(input.kind())));
   }
   return absl::OkStatus();
 }
@@ -46,17 +46,17 @@ std::vector<Flag> ContainerFlagTable() {
   std::vector<Flag> table = PlateFlagTable();
   table.insert(table.begin(), {"container",
                                "KIND",
-                               "of the output: text or bgcode (default: by OUTPUT, or as INPUT)",
+                               "text or bgcode (default: by OUTPUT, or as INPUT)",
                                {"text", "bgcode"},
                                false,
-                               "text or bgcode; one of several"});
+                               "text or bgcode; only this plate"});
   return table;
 }
 
 std::vector<Flag> PlateFlagTable() {
   return {
-      {"plate", "N", "of a .gcode.3mf, this one (default: all)"},
-      {"ignore_md5", "", "takes plates whose MD5 is wrong"},
+      {"plate", "N", "only this plate of a .gcode.3mf (default: all)"},
+      {"ignore_md5", "", "accept plates whose MD5 is wrong"},
   };
 }
 
@@ -108,19 +108,19 @@ absl::Status WriteGcode(const InputFile& input, const std::map<size_t, NewPart>&
 std::string GcodeSummary(const GcodeRewrite& rewrite) {
   std::string summary =
       rewrite.layers_changed == 0
-          ? absl::StrFormat("nothing to gain, the G-code stays as it is: %s\n",
+          ? absl::StrFormat("nothing to gain, the G-code stays unchanged: %s\n",
                             DescribeRewrite(rewrite))
           : absl::StrFormat("%d of %d layers rewritten: %s\n", rewrite.layers_changed,
                             rewrite.layers, DescribeRewrite(rewrite));
   if (rewrite.layers_unproven > 0) {
-    summary += absl::StrFormat(
-        "%d layers left as they are, for what was found for them breaks a rule: %s\n",
-        rewrite.layers_unproven, rewrite.unproven);
+    summary +=
+        absl::StrFormat("%d layers left unchanged, because each order found breaks a rule: %s\n",
+                        rewrite.layers_unproven, rewrite.unproven);
   }
   if (rewrite.layers_unclear > 0) {
-    summary += absl::StrFormat(
-        "%d layers left as they are, for machines differ in what they make of a line: %s\n",
-        rewrite.layers_unclear, rewrite.unclear);
+    summary +=
+        absl::StrFormat("%d layers left unchanged, because machines read a line differently: %s\n",
+                        rewrite.layers_unclear, rewrite.unclear);
   }
   return summary;
 }

@@ -21,16 +21,17 @@ std::string VersionLine() { return absl::StrFormat("traverse %s", TRAVERSE_VERSI
 
 std::string GeneralHelp() {
   std::string out =
-      "Shortens the travel of 3D printers: the moves on which nothing is deposited.\n\n"
+      "Shortens the travel moves of 3D printers, which deposit nothing.\n\n"
       "usage: traverse COMMAND ...\n\n";
   for (const Command& command : Commands()) {
     absl::StrAppendFormat(&out, "  %-10s  %s\n", command.name, command.summary);
   }
   out +=
-      "\n`traverse COMMAND --help` lists the flags of a command; `traverse --version`.\n"
-      "INPUT: DAMAT, sliced G-code (.gcode .bgcode .gcode.3mf .ufp), or the API's\n"
-      "layers as .json or .pb, or GTSPLIB (.gtsp); also .gz or .xz; - is standard\n"
-      "input. Without --server the service runs in the command.\n"
+      "\n"
+      "`traverse COMMAND --help` lists the flags of a command; `traverse --version`.\n"
+      "INPUT: DAMAT, sliced G-code (.gcode .bgcode .gcode.3mf .ufp), the API's layers\n"
+      "(.json .pb) or GTSPLIB (.gtsp), plain, .gz or .xz; - is standard input.\n"
+      "Without --server the optimiser runs inside the command.\n"
       "Exit codes: 0 done, 1 bad input, 2 usage, 3 server unreachable or refused.\n\n"
       "example: traverse compare part.damat --layers=1-5\n";
   return out;

@@ -70,7 +70,7 @@ Expected<Service> Service::Open(const Flags& flags) {
     std::shared_ptr<grpc::Channel> channel = (*embedded)->channel();
     return Service(*std::move(embedded), std::move(channel), "", "");
   }
-  if (*threads) return UsageFault("--threads is for the embedded service, not for --server");
+  if (*threads) return UsageFault("--threads works only without --server");
   const auto addresses = ParseAddresses(flags.Text("server"));
   if (!addresses.ok()) {
     return UsageFault(absl::StrFormat("--server: %s", std::string(addresses.status().message())));

@@ -90,7 +90,7 @@ absl::StatusOr<std::string> PackText(const std::string& text, ContainerKind kind
       return containers::MakeBgcode(text);
     default:
       return absl::InvalidArgumentError(
-          absl::StrFormat("no %s is made of G-code alone", ContainerName(kind)));
+          absl::StrFormat("cannot make a %s from G-code alone", ContainerName(kind)));
   }
 }
 

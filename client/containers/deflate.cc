@@ -76,15 +76,15 @@ absl::StatusOr<std::string> Inflate(std::string_view bytes, DeflateForm form, si
   inflateEnd(&stream);
   if (made > size) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("deflated data are more than the %d bytes announced", size));
+        absl::StrFormat("deflated data have more than the %d bytes stated", size));
   }
   if (code == Z_BUF_ERROR) return absl::InvalidArgumentError("deflated data end too early");
   if (code != Z_STREAM_END) return absl::InvalidArgumentError("deflated data are damaged");
   if (made < size) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("deflated data are %d bytes, and %d are announced", made, size));
+        absl::StrFormat("deflated data have %d bytes, but the file states %d", made, size));
   }
-  if (unused > 0) return absl::InvalidArgumentError("deflated data go on behind their end");
+  if (unused > 0) return absl::InvalidArgumentError("deflated data continue after their end");
   out.resize(size);
   return out;
 }

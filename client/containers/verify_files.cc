@@ -42,7 +42,7 @@ absl::StatusOr<std::vector<uint32_t>> Plates(const Side& original, const Side& o
   if (plates.size() == 1 && others.size() == 1) return plates;
   if (plates != others) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("%s and %s have not the same plates: choose one by --plate",
+        absl::StrFormat("%s and %s have different plates: choose one with --plate",
                         DisplayName(original.name), DisplayName(optimised.name)));
   }
   return plates;

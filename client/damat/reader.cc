@@ -152,7 +152,7 @@ absl::Status Reader::TakeThickness(std::string_view field) {
   if (thickness_mm_) return Fault("second thickness of a layer");
   thickness_mm_ = damat::ParseCoordinate(field);
   if (thickness_mm_ && *thickness_mm_ > 0) return absl::OkStatus();
-  return Fault(absl::StrFormat("%s is no thickness of a layer in mm, above 0 and up to 1e6",
+  return Fault(absl::StrFormat("%s is not a layer thickness in mm, above 0 and up to 1e6",
                                damat::Quoted(field)));
 }
 
@@ -238,10 +238,10 @@ absl::Status Reader::NoteSpelling(bool goes_on, bool is_long) {
   if (goes_on && first_going_on_ == 0) first_going_on_ = line_;
   if (is_long && first_long_ == 0) first_long_ = line_;
   if (first_going_on_ == 0 || first_long_ == 0) return absl::OkStatus();
-  return Fault(absl::StrFormat(
-      "two spellings in one file: line %d goes on with a contour, a vertex a line, line %d has all "
-      "vertices of one",
-      first_going_on_, first_long_));
+  return Fault(
+      absl::StrFormat("two spellings in one file: line %d continues a contour, one vertex a line, "
+                      "but line %d has all vertices of one",
+                      first_going_on_, first_long_));
 }
 
 // Drops the repeated closing vertex.
@@ -307,12 +307,12 @@ absl::Status Reader::ReadPoints(Fields& fields,
     const bool is_x = points.size() % 2 == 0;
     const std::string_view field = fields.Next();
     if (!field.starts_with(is_x ? 'X' : 'Y')) {
-      return Fault(absl::StrFormat("%s where %s is due", damat::Quoted(field),
+      return Fault(absl::StrFormat("%s found, but %s expected", damat::Quoted(field),
                                    is_x ? "X of a point" : "Y of a point"));
     }
     const std::optional<double> value = damat::ParseCoordinate(field.substr(1));
     if (!value) {
-      return Fault(absl::StrFormat("%s is no coordinate within +-1e6 mm", damat::Quoted(field)));
+      return Fault(absl::StrFormat("%s is not a coordinate within +-1e6 mm", damat::Quoted(field)));
     }
     points.Add(*value);
   }
@@ -348,7 +348,7 @@ absl::Status Reader::EndFile() {
 absl::Status Reader::CheckCount(const Announcement& a, const std::string& who,
                                 const char* what) const {
   if (a.announced == a.found) return absl::OkStatus();
-  return FaultAt(a.line, absl::StrFormat("%s announces %d %s, the file has %d", who, a.announced,
+  return FaultAt(a.line, absl::StrFormat("%s states %d %s, but the file has %d", who, a.announced,
                                          what, a.found));
 }
 

@@ -41,7 +41,7 @@ absl::Status CheckPromise(const std::string& name) {
     case ContainerKind::kText:
       return absl::OkStatus();
     case ContainerKind::kBgcode:
-      return Fault(name, "it does not begin as binary G-code does, with GCDE");
+      return Fault(name, "it does not begin with GCDE, as binary G-code does");
     default:
       return Fault(name, "it does not begin as a zip archive does");
   }
@@ -58,7 +58,7 @@ absl::StatusOr<InputFormat> FormatOf(const std::string& bytes, const std::string
   const std::optional<InputFormat> format = weak || !by_content ? by_extension : by_content;
   if (!format) {
     return Fault(name,
-                 "neither its content nor its name is DAMAT, G-code, JSON, protobuf or GTSPLIB");
+                 "neither its content nor its name says DAMAT, G-code, JSON, protobuf or GTSPLIB");
   }
   if (weak || !by_content) {
     if (absl::Status status = CheckPromise(name); !status.ok()) return status;
@@ -116,7 +116,7 @@ absl::StatusOr<InputFile> OpenInput(const std::string& name, const PlateOptions&
 absl::Status CheckOnePlate(const InputFile& file) {
   if (file.parts.size() == 1) return absl::OkStatus();
   return Fault(file.name,
-               absl::StrFormat("it has %d plates: choose one by --plate", file.parts.size()));
+               absl::StrFormat("it has %d plates: choose one with --plate", file.parts.size()));
 }
 
 absl::StatusOr<InputJob> ReadJob(InputFile& file, size_t index, const GcodeOptions& gcode) {

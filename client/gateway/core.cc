@@ -41,8 +41,8 @@ absl::StatusOr<int64_t> MemoryForAll(const std::vector<std::shared_ptr<const Spo
   }
   if (sum <= max_memory_bytes) return sum;
   return absl::OutOfRangeError(
-      absl::StrFormat("the work on it may take %d MiB of memory, and this gateway has %d",
-                      sum >> 20, max_memory_bytes >> 20));
+      absl::StrFormat("this file may need %d MiB of memory, but this gateway has %d", sum >> 20,
+                      max_memory_bytes >> 20));
 }
 
 }  // namespace

@@ -14,72 +14,74 @@
 #include "server/ops/memory.h"
 #include "server/server.h"
 
-ABSL_FLAG(std::string, listen_http, "127.0.0.1:8080", "HOST:PORT of HTTP; port 0: a free one");
+ABSL_FLAG(std::string, listen_http, "127.0.0.1:8080",
+          "HOST:PORT of HTTP; port 0 takes a free port");
 ABSL_FLAG(std::string, listen, "127.0.0.1:50061",
-          "HOST:PORT of gRPC; port 0: a free one; empty: none");
-ABSL_FLAG(
-    std::string, metrics_listen, "127.0.0.1:9465",
-    "HOST:PORT of /metrics, /healthz and /readyz for operators; port 0: a free one; empty: none");
+          "HOST:PORT of gRPC; port 0 takes a free port; empty: no gRPC");
+ABSL_FLAG(std::string, metrics_listen, "127.0.0.1:9465",
+          "HOST:PORT of /metrics, /healthz and /readyz for operators; port 0 takes a free port; "
+          "empty: no such port");
 ABSL_FLAG(std::string, server, "",
-          "HOST:PORT,... of the servers that search; empty: in this process");
+          "HOST:PORT,... of the servers that search; empty: search in this process");
 ABSL_FLAG(std::string, server_token_file, "", "File whose first line is the token for --server");
-ABSL_FLAG(bool, server_tls, false, "Whether calls to --server are encrypted");
+ABSL_FLAG(bool, server_tls, false, "Encrypt calls to --server");
 ABSL_FLAG(std::string, server_tls_ca, "",
           "Authorities of the certificates of --server, in PEM; implies --server_tls");
 ABSL_FLAG(std::string, server_tls_name, "",
-          "Name that the certificates of --server are for; implies --server_tls");
+          "Name in the certificates of --server; implies --server_tls");
 ABSL_FLAG(std::string, server_tls_certificate, "", "Certificate shown to --server, in PEM");
 ABSL_FLAG(std::string, server_tls_key, "", "Its private key, in PEM");
-ABSL_FLAG(int32_t, threads, 0, "Threads of the search in this process; 0: one for each core");
-ABSL_FLAG(int32_t, workers, 0, "Files worked on at a time; 0: one for each core, two at least");
-ABSL_FLAG(int32_t, max_requests, 256, "Files under way at a time, those that wait included");
-ABSL_FLAG(int32_t, max_requests_per_caller, 64, "The same of one caller");
-ABSL_FLAG(int64_t, max_file_bytes, int64_t{256} << 20, "Longest file, unpacked");
+ABSL_FLAG(int32_t, threads, 0, "Threads of the search in this process; 0: one per core");
+ABSL_FLAG(int32_t, workers, 0, "Files worked on at a time; 0: one per core, but at least two");
+ABSL_FLAG(int32_t, max_requests, 256, "Files under way at a time, including those that wait");
+ABSL_FLAG(int32_t, max_requests_per_caller, 64, "The same for one caller");
+ABSL_FLAG(int64_t, max_file_bytes, int64_t{256} << 20, "Longest file, unpacked, in bytes");
 ABSL_FLAG(int64_t, max_memory, 0,
-          "Bytes of memory for the files that are worked on, twelve for each of a file; 0: three "
-          "quarters of what the container, or else the machine, has");
+          "Memory for the files being worked on, in bytes: twelve for each byte of a file; 0: "
+          "three quarters of the container's limit, or else of the machine's memory");
 ABSL_FLAG(std::string, spool_dir, "",
-          "Folder for uploads and answers; empty: that of temporary files. No file there outlives "
-          "the process");
-ABSL_FLAG(int64_t, max_spool_bytes, int64_t{4} << 30, "Bytes of all files there together");
-ABSL_FLAG(absl::Duration, max_time, absl::Minutes(10), "Most time for one file");
+          "Folder for uploads and answers; empty: the folder for temporary files. No file there "
+          "outlives the process");
+ABSL_FLAG(int64_t, max_spool_bytes, int64_t{4} << 30, "Most bytes of all files there together");
+ABSL_FLAG(absl::Duration, max_time, absl::Minutes(10), "Longest time for one file");
 ABSL_FLAG(std::string, printers, "",
-          "File of JSON that names the printers uploads are passed on to; empty: none");
+          "JSON file that names the printers for uploads; empty: no printers");
 ABSL_FLAG(absl::Duration, upload_deadline, absl::Seconds(60),
-          "Time for the work on a file for a printer; then the original goes on");
+          "Longest time for a printer's file; after it the printer gets the original");
 ABSL_FLAG(absl::Duration, upstream_idle_timeout, absl::Seconds(60),
-          "A printer's server is given up that neither takes nor sends anything for so long");
-ABSL_FLAG(int32_t, max_connections, 512, "Connections of HTTP at a time");
+          "Give up a printer's server that neither accepts nor sends anything for this long");
+ABSL_FLAG(int32_t, max_connections, 512, "HTTP connections at a time");
 ABSL_FLAG(int32_t, max_connections_per_address, 384,
-          "The same from one address; behind a proxy all are from one");
-ABSL_FLAG(int32_t, max_header_bytes, 16384, "Longest head of a request");
+          "The same from one address; behind a proxy all share one address");
+ABSL_FLAG(int32_t, max_header_bytes, 16384, "Longest head of a request, in bytes");
 ABSL_FLAG(absl::Duration, header_timeout, absl::Seconds(20),
-          "Time for the head of a request, the wait for it included");
+          "Time for the head of a request, including the wait for it");
 ABSL_FLAG(absl::Duration, idle_timeout, absl::Seconds(30),
-          "A request is given up whose client neither sends nor reads anything for so long");
+          "End a request whose client neither sends nor reads anything for this long");
 ABSL_FLAG(int64_t, min_upload_rate, 4096,
-          "Bytes a second that an upload has to bring on the whole, and a client to take of an "
-          "answer, beyond --idle_timeout");
+          "Least mean rate in bytes per second, after --idle_timeout, at which a client must send "
+          "an upload and read an answer");
 ABSL_FLAG(absl::Duration, drain_timeout, absl::Seconds(30),
-          "How long requests under way may go on after SIGTERM");
-ABSL_FLAG(std::string, log_file, "", "File to append the log to; empty: stderr");
-ABSL_FLAG(
-    std::string, token_file, "",
-    "File of \"NAME SHA256\" lines; callers show the token as bearer or X-Api-Key; empty: none "
-    "is asked for");
+          "How long running requests may continue after SIGTERM");
+ABSL_FLAG(std::string, log_file, "", "File to which the log is appended; empty: stderr");
+ABSL_FLAG(std::string, token_file, "",
+          "File of \"NAME SHA256\" lines; callers then need the token, as bearer or X-Api-Key; "
+          "empty: no token needed");
 ABSL_FLAG(std::vector<std::string>, allowed_clients, {},
-          "Names in client certificates that may call; empty: all that are verified");
+          "Names in client certificates that may call; empty: all valid ones");
 ABSL_FLAG(std::vector<std::string>, allowed_hosts, {},
-          "Names besides this machine's own that requests of HTTP may be sent to, without port; *: "
-          "all. Only without TLS and tokens is anything refused unless this is set");
+          "Names, without port, to which HTTP requests may be sent besides this machine's own; *: "
+          "any. If unset, the gateway refuses other names only without TLS and tokens");
 ABSL_FLAG(std::string, tls_certificate, "", "Certificate chain in PEM; empty: no TLS");
 ABSL_FLAG(std::string, tls_key, "", "Its private key in PEM");
-ABSL_FLAG(
-    std::string, tls_client_ca, "",
-    "Authorities in PEM; clients have to show a certificate of theirs; empty: none is asked for");
-ABSL_FLAG(bool, insecure, false, "Whether plaintext is allowed on other addresses than loopback");
-ABSL_FLAG(std::string, config, "", "File with a flag a line, name=value; the command line wins");
-ABSL_FLAG(std::string, flagfile, "", "The same as --config, at its place on the command line");
+ABSL_FLAG(std::string, tls_client_ca, "",
+          "Authorities in PEM; clients must show a certificate from one of them; empty: no "
+          "certificate needed");
+ABSL_FLAG(bool, insecure, false, "Allow plaintext on addresses other than loopback");
+ABSL_FLAG(std::string, config, "",
+          "File of flags, lines name=value; flags on the command line override it");
+ABSL_FLAG(std::string, flagfile, "",
+          "The same as --config, but read where it stands on the command line");
 
 namespace traverse::gateway {
 namespace {
@@ -118,9 +120,9 @@ absl::Status CheckRanges() {
 
 FlagProgram Program() {
   return {"traverse-gateway", "client/gateway/gateway_flags.cc",
-          "Takes sliced files over HTTP and gRPC and gives them back with less travel; see "
-          "client/gateway/README.md.\n"
-          "\nusage: traverse-gateway [--listen_http=HOST:PORT] [--server=HOST:PORT,...] "
+          "Rewrites sliced files over HTTP and gRPC so that they print with less travel; see "
+          "client/gateway/README.md.\n\n"
+          "usage: traverse-gateway [--listen_http=HOST:PORT] [--server=HOST:PORT,...] "
           "[--name=value ...]\n"
           "       traverse-gateway --config=FILE\n"
           "       traverse-gateway --version | --help\n\n",
@@ -135,7 +137,7 @@ absl::Status SetServers(GatewayOptions& options) {
                    !tls.name.empty() || absl::GetFlag(FLAGS_server_tls);
   const std::string token_file = absl::GetFlag(FLAGS_server_token_file);
   if (absl::GetFlag(FLAGS_server).empty()) {
-    if (any || !token_file.empty()) return BadFlag("server", "missing, with flags that are for it");
+    if (any || !token_file.empty()) return BadFlag("server", "missing, but other flags need it");
     return absl::OkStatus();
   }
   absl::StatusOr<std::vector<std::string>> servers = ParseAddresses(absl::GetFlag(FLAGS_server));
@@ -146,7 +148,7 @@ absl::Status SetServers(GatewayOptions& options) {
   absl::StatusOr<std::string> text = ReadWholeFile(token_file, size_t{1} << 16);
   if (!text.ok()) return BadFlag("server_token_file", std::string(text.status().message()));
   options.token = std::string(absl::StripAsciiWhitespace(text->substr(0, text->find('\n'))));
-  if (options.token.empty()) return BadFlag("server_token_file", "has no token");
+  if (options.token.empty()) return BadFlag("server_token_file", "contains no token");
   const bool local = std::all_of(options.servers.begin(), options.servers.end(), IsLocal);
   if (!any && !local && !absl::GetFlag(FLAGS_insecure)) {
     return BadFlag("server_token_file",

@@ -19,29 +19,28 @@ GatewayMetrics::GatewayMetrics()
                                    "Requests ended, by route and status.")),
       request_seconds_(registry_.Histograms("traverse_gateway_request_seconds",
                                             "Time from a request's head to its answer.")),
-      files_(registry_.Counters("traverse_gateway_files_total",
-                                "Files worked on, by what became of them.")),
+      files_(registry_.Counters("traverse_gateway_files_total", "Files worked on, by outcome.")),
       uploads_(registry_.Counters("traverse_gateway_uploads_total",
-                                  "Files for printers, by what was passed on and why.")),
+                                  "Files for printers, by what was sent and why.")),
       reload_failures_(
           registry_.Counters("traverse_gateway_reload_failures_total",
-                             "Files of operators that could not be read anew, by what they hold.")),
+                             "Files of operators that could not be reloaded, by content.")),
       travel_given_mm_(registry_.Counter("traverse_gateway_travel_given_mm_total",
-                                         "Travel of the files rewritten, as they came.")),
+                                         "Travel of the rewritten files, before.")),
       travel_mm_(registry_.Counter("traverse_gateway_travel_mm_total",
-                                   "Travel of the files rewritten, as they went back.")),
+                                   "Travel of the rewritten files, after.")),
       print_seconds_saved_(registry_.Counter("traverse_gateway_print_seconds_saved_total",
                                              "Estimated print time saved.")),
       in_flight_(
           registry_.Gauge("traverse_gateway_requests_in_flight", "Requests with files under way.")),
-      waiting_(registry_.Gauge("traverse_gateway_requests_waiting",
-                               "Of them, those that wait for a worker.")),
+      waiting_(
+          registry_.Gauge("traverse_gateway_requests_waiting", "Requests that wait for a worker.")),
       running_(registry_.Gauge("traverse_gateway_workers_busy", "Workers that have a file.")),
-      work_bytes_(
-          registry_.Gauge("traverse_gateway_work_bytes", "Memory set aside for files worked on.")),
+      work_bytes_(registry_.Gauge("traverse_gateway_work_bytes",
+                                  "Memory reserved for files being worked on.")),
       spool_bytes_(registry_.Gauge("traverse_gateway_spool_bytes", "Bytes in the spool.")),
-      ready_(
-          registry_.Gauge("traverse_gateway_ready", "1 while files are taken, 0 while draining.")) {
+      ready_(registry_.Gauge("traverse_gateway_ready",
+                             "1 while the gateway accepts files, 0 while it drains.")) {
   for (const char* outcome : {"rewritten", "unchanged", "refused", "failed", "late", "cancelled"}) {
     files_.Add({{"outcome", outcome}});
   }

@@ -286,10 +286,10 @@ void AddMeasuredFacts(InputJob& job) {
   add("extruded", absl::StrFormat("%.2f m", totals.extruded_mm / 1000));
   add("travel", absl::StrFormat("%.2f m", totals.travel_mm / 1000));
   add("retractions", absl::StrFormat("%d", totals.retractions));
-  add("visible walls crossed", absl::StrFormat("%d times, %d of them with filament not pulled back",
+  add("visible walls crossed", absl::StrFormat("%d times, %d of them without a retraction",
                                                totals.crossings, totals.open_crossings));
-  add("estimated print time", gcode::Duration(totals.seconds) +
-                                  " (trapezoidal speeds with look-ahead, heating not counted)");
+  add("estimated print time",
+      gcode::Duration(totals.seconds) + " (trapezoidal speeds with look-ahead, without heating)");
 }
 
 std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& options,

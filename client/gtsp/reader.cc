@@ -153,26 +153,28 @@ absl::Status Reader::TakeValue(const std::string& key, std::string_view value) {
   if (key == "NAME" || key == "DISPLAY_DATA_TYPE") return absl::OkStatus();
   if (key == "TYPE") {
     if (value == "GTSP") return absl::OkStatus();
-    return Fault(absl::StrFormat("TYPE is %s: only GTSP is read", Quoted(value)));
+    return Fault(absl::StrFormat("TYPE is %s, but only GTSP is supported", Quoted(value)));
   }
   if (key == "EDGE_WEIGHT_TYPE") {
     if (value == "EUC_2D") return absl::OkStatus();
-    return Fault(absl::StrFormat("EDGE_WEIGHT_TYPE is %s: only EUC_2D is read", Quoted(value)));
+    return Fault(
+        absl::StrFormat("EDGE_WEIGHT_TYPE is %s, but only EUC_2D is supported", Quoted(value)));
   }
   if (key == "DIMENSION") return TakeNumber(key, value, dimension_);
   if (key == "GTSP_SETS") return TakeNumber(key, value, set_count_);
-  return Fault(absl::StrFormat("%s is no key of a GTSPLIB file that is read", Quoted(key)));
+  return Fault(absl::StrFormat("%s is not a supported key of a GTSPLIB file", Quoted(key)));
 }
 
 absl::Status Reader::TakeNumber(const std::string& key, std::string_view value,
                                 size_t& number) const {
   const std::optional<size_t> count = Parse<size_t>(value);
   if (!count || *count == 0) {
-    return Fault(absl::StrFormat("%s is %s: a whole number from 1 is due", key, Quoted(value)));
+    return Fault(
+        absl::StrFormat("%s is %s, but must be a whole number of at least 1", key, Quoted(value)));
   }
   // So that what a file announces takes no more memory than what it has.
   if (*count > text_size_) {
-    return Fault(absl::StrFormat("%s is %d, the file is too short for so many", key, *count));
+    return Fault(absl::StrFormat("%s is %d, but the file is too short for so many", key, *count));
   }
   number = *count;
   return absl::OkStatus();
@@ -197,7 +199,8 @@ absl::Status Reader::ReadPoint(std::string_view line) {
   const std::optional<int64_t> number = Parse<int64_t>(NextWord(line));
   const std::optional<double> x = Parse<double>(NextWord(line));
   const std::optional<double> y = Parse<double>(NextWord(line));
-  if (!number || !x || !y || !Trimmed(line).empty()) return Fault("a point has a number, x and y");
+  if (!number || !x || !y || !Trimmed(line).empty())
+    return Fault("a point needs a number, x and y");
   if (*number < 1 || *number > static_cast<int64_t>(dimension_)) {
     return Fault(absl::StrFormat("point %d is not among 1 to DIMENSION, %d", *number, dimension_));
   }
@@ -216,7 +219,7 @@ absl::Status Reader::ReadPoint(std::string_view line) {
 
 absl::Status Reader::ReadSetWord(std::string_view word) {
   const std::optional<int64_t> number = Parse<int64_t>(word);
-  if (!number) return Fault(absl::StrFormat("%s is no whole number", Quoted(word)));
+  if (!number) return Fault(absl::StrFormat("%s is not a whole number", Quoted(word)));
   if (open_set_ == 0) return BeginSet(*number);
   if (*number != -1) return AddToSet(*number);
   if (instance_.sets[open_set_ - 1].empty()) {

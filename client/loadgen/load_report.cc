@@ -93,13 +93,13 @@ std::string LoadTable(const LoadHeading& heading, const LoadResult& result) {
   out += OkTable(heading, result) + OtherTable(result);
   if (options.rate > 0) {
     absl::StrAppendFormat(&out,
-                          "\nLatency counts from when a job was meant to be sent; sent late by p99 "
-                          "%.2f, max %.2f ms.\n",
+                          "\nLatency counts from when a job was due to be sent; jobs were sent "
+                          "late by p99 %.2f, max %.2f ms.\n",
                           Ms(result.send_lag.Percentile(0.99)), Ms(result.send_lag.max()));
   }
   if (result.not_sent > 0) {
-    absl::StrAppendFormat(&out, "%d jobs were not sent: %d were in flight.\n", result.not_sent,
-                          options.max_in_flight);
+    absl::StrAppendFormat(&out, "%d jobs were not sent, because %d were in flight.\n",
+                          result.not_sent, options.max_in_flight);
   }
   return out;
 }

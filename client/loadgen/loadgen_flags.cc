@@ -38,7 +38,7 @@ absl::Status ReadDuration(const cli::Flags& flags, const char* name, absl::Durat
 
 absl::Status ReadLoad(const cli::Flags& flags, LoadOptions& load) {
   if (flags.Has("rate") == flags.Has("in_flight")) {
-    return Fault("say --rate=JOBS_PER_SECOND, or --in_flight=N for a closed loop");
+    return Fault("give --rate=JOBS_PER_SECOND, or --in_flight=N for a closed loop");
   }
   const auto rate = flags.Number("rate", 1e-3, kMaxRate);
   if (!rate.ok()) return rate.status();
@@ -67,7 +67,7 @@ absl::Status ReadJob(const cli::Flags& flags, LoadgenFlags& out) {
   out.mix = *mix;
   out.input = flags.Text("input");
   if (flags.Has("input") && flags.Has("islands")) {
-    return Fault("--islands is for layers made up, not for those of --input");
+    return Fault("--islands sets generated layers and cannot go with --input");
   }
   return ReadInteger(flags, "islands", 1, kMaxIslands, out.islands);
 }
@@ -79,19 +79,19 @@ const std::vector<cli::Flag>& LoadgenFlagTable() {
     std::vector<cli::Flag> rows = {
         {"target", "HOST:PORT,...", "the servers to load"},
         {"rate", "N", "jobs a second, sent at times fixed in advance"},
-        {"in_flight", "N", "instead: so many jobs at all times (closed loop)"},
-        {"duration", "TIME", "how long jobs are sent and counted (default 10s)"},
-        {"warm_up", "TIME", "before that: sent, not counted (default 1s)"},
+        {"in_flight", "N", "instead: keep this many in flight (closed loop)"},
+        {"duration", "TIME", "how long to send and count jobs (default 10s)"},
+        {"warm_up", "TIME", "before that: send, but do not count (default 1s)"},
         {"mix", "LAYERS:WEIGHT,...", "sizes of jobs (default 1), as 1:70,10:25,400:5"},
         {"strategy", "NAME", "default ni2opt; or NAME:OPTION=VALUE:..."},
-        {"input", "FILE", "has the layers that jobs have (default: made up)"},
-        {"islands", "N", "of a layer made up, 6 paths each (default 10)"},
+        {"input", "FILE", "take layers from this file (default: generated)"},
+        {"islands", "N", "per generated layer, 6 paths each (default 10)"},
         {"arrivals", "HOW", "even (default) or poisson", {"even", "poisson"}},
-        {"deadline", "TIME", "of each job (default 30s)"},
-        {"connections", "N", "jobs take turns on them (default 4)"},
-        {"max_in_flight", "N", "jobs beyond are not sent (default 10000)"},
-        {"seed", "N", "of sizes and arrivals (default 1)"},
-        {"json", "FILE", "writes the figures; - is standard output"},
+        {"deadline", "TIME", "deadline of each job (default 30s)"},
+        {"connections", "N", "connections that jobs share in turn (default 4)"},
+        {"max_in_flight", "N", "most jobs in flight; more are not sent (10000)"},
+        {"seed", "N", "seed of sizes and arrivals (default 1)"},
+        {"json", "FILE", "write the figures; - is standard output"},
     };
     for (cli::Flag& flag : cli::ConnectionFlagTable()) rows.push_back(std::move(flag));
     return rows;
@@ -100,8 +100,8 @@ const std::vector<cli::Flag>& LoadgenFlagTable() {
 }
 
 std::string LoadgenHelp() {
-  return "Sends jobs to servers and prints how long each took, from when it was meant\n"
-         "to be sent: a slow server makes it send nothing less or later.\n\n"
+  return "Sends jobs to servers and prints their latencies, counted from when each job\n"
+         "was due: a slow server neither delays nor reduces the load.\n\n"
          "usage: traverse-loadgen --target=HOST:PORT --rate=N [flags]\n\n" +
          cli::FlagHelp(LoadgenFlagTable()) +
          "\nexample: traverse-loadgen --target=127.0.0.1:50051 --rate=200 "
@@ -112,7 +112,7 @@ absl::StatusOr<LoadgenFlags> ParseLoadgenFlags(const std::vector<std::string>& a
   const absl::StatusOr<cli::Flags> flags = cli::Flags::Parse(LoadgenFlagTable(), arguments);
   if (!flags.ok()) return flags.status();
   if (!flags->operands().empty()) {
-    return Fault(absl::StrFormat("\"%s\" is too much", flags->operands().front()));
+    return Fault(absl::StrFormat("unexpected argument \"%s\"", flags->operands().front()));
   }
   if (!flags->Has("target")) return Fault("--target=HOST:PORT is missing");
   const auto addresses = ParseAddresses(flags->Text("target"));

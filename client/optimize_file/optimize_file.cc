@@ -118,7 +118,7 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
   if (!rewrite.ok()) {
     return FileFault{FileStage::kWrite,
                      absl::FailedPreconditionError(absl::StrFormat(
-                         "%s: left as it is, for the new file would not print the same: %s",
+                         "%s: left unchanged, because the new file would not print the same: %s",
                          DisplayName(job.name), std::string(rewrite.status().message())))};
   }
   if (options.cancel.stop_requested()) return SearchFault(absl::CancelledError("cancelled"));

@@ -67,7 +67,8 @@ std::string ReductionTable(const std::vector<ComparedStrategy>& strategies,
     table.AddFolded(std::move(row), kLabelWidth);
   }
   if (empty) return "";
-  return "\ncontour points of a layer, and what each reduction leaves of them (VP: of SP)\n" +
+  return "\n"
+         "contour points per layer, and those that each reduction leaves (VP: of SP)\n" +
          table.Text(style);
 }
 

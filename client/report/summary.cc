@@ -46,11 +46,11 @@ std::string OptimizeSummary(const InputJob& job, const JobRun& run) {
                           Duration(summary.cost()), Change(summary.cost_given(), summary.cost()));
   }
   if (job.gtsp != nullptr) {
-    absl::StrAppendFormat(&out, "tour     %d by rounded distances, as EUC_2D has them\n",
+    absl::StrAppendFormat(&out, "tour     %d by rounded distances (EUC_2D)\n",
                           gtsp::BestTour(*job.gtsp, run.result.layers).rounded_length);
   }
   if (summary.has_lower_bound()) {
-    absl::StrAppendFormat(&out, "gap      %s to a proven bound\n", GapText(summary));
+    absl::StrAppendFormat(&out, "gap      %s to a proven lower bound\n", GapText(summary));
   }
   if (summary.stops_size() > 0) absl::StrAppendFormat(&out, "ended    %s\n", Stops(summary));
   return out;

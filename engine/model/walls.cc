@@ -56,7 +56,7 @@ absl::Status CheckWalls(const LayerWalls& walls, const Plan& plan, Budget* budge
     return status;
   if (walls.known.size() > plan.paths.size()) {
     return absl::InvalidArgumentError(absl::StrCat("known_moves: ", walls.known.size(),
-                                                   " are more than there are paths, ", paths));
+                                                   " are more than the plan has paths, ", paths));
   }
   for (size_t i = 0; i < walls.known.size(); ++i) {
     rest();

@@ -282,7 +282,7 @@ class Auto : public PreparingStrategy {
 StrategyEntry AutoEntry() {
   return StrategyEntry{
       "auto",
-      "The best route for the time given: greedy, improved until nothing more is gained.",
+      "The best route for the given time: greedy, improved until it gains nothing more.",
       true,
       {OptionSpec{"effort",
                   OptionSpec::Type::kDouble,
@@ -290,23 +290,23 @@ StrategyEntry AutoEntry() {
                   0,
                   1e6,
                   {},
-                  "How long to go on without a gain, as a multiple of the default."},
+                  "How long to continue without a gain, as a multiple of the default."},
        OptionSpec{"least_gain_each",
                   OptionSpec::Type::kDouble,
                   "0",
                   0,
                   1e6,
                   {},
-                  "Cost in mm or s that an iteration must gain on the average for the search to go "
-                  "on; one takes some 20 microseconds, and questions to walls count as more."},
-       OptionSpec{"gain_window",
-                  OptionSpec::Type::kInt,
-                  "200",
-                  1,
-                  1e9,
-                  {},
-                  "Iterations over which least_gain_each is looked at, and that are done in any "
-                  "case."},
+                  "Mean gain in mm or s per iteration below which the search ends. An iteration "
+                  "takes about 20 microseconds; testing walls counts as more of them."},
+       OptionSpec{
+           "gain_window",
+           OptionSpec::Type::kInt,
+           "200",
+           1,
+           1e9,
+           {},
+           "Iterations over which least_gain_each is measured; the search always does that many."},
        BoundOption(true)},
       [](const StrategyOptions& options) -> std::unique_ptr<Strategy> {
         return std::make_unique<Auto>(

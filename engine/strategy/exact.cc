@@ -230,21 +230,22 @@ class ExactFramework : public Strategy {
 std::vector<OptionSpec> Options() {
   using Type = OptionSpec::Type;
   std::vector<OptionSpec> specs = {
-      OptionSpec{"model",
-                 Type::kChoice,
-                 "integrated",
-                 0,
-                 0,
-                 {"integrated", "framework"},
-                 "The whole layer at once, proven; or the four steps of the thesis with its mixed "
-                 "integer programmes (ni2opt where a plan has no islands, statistic framework 0)."},
+      OptionSpec{
+          "model",
+          Type::kChoice,
+          "integrated",
+          0,
+          0,
+          {"integrated", "framework"},
+          "integrated: the whole layer at once, proven. framework: the thesis's four steps with "
+          "its mixed integer programmes (ni2opt if a plan has no islands; statistic framework 0)."},
       OptionSpec{"time_limit",
                  Type::kDouble,
                  "7200",
                  0,
                  1e6,
                  {},
-                 "Longest time in s: for one layer, or for each programme of the framework."},
+                 "Longest time in s for one layer, or for each programme of the framework."},
       OptionSpec{"gap",
                  Type::kDouble,
                  "0.15",
@@ -258,15 +259,15 @@ std::vector<OptionSpec> Options() {
                  0,
                  0,
                  {},
-                 "Framework: one redundant row more for each position of a contour."},
+                 "Framework: add one redundant row for each position of a contour."},
       OptionSpec{"start",
                  Type::kChoice,
                  "ni2opt",
                  0,
                  0,
                  {"ni2opt", "none"},
-                 "Framework: what each programme begins with; none: cold, as the thesis's did, and "
-                 "no other route instead of a longer one."},
+                 "Framework: the route from which each programme starts. none: cold, as in the "
+                 "thesis, and never a shorter route of another method."},
       BoundOption(true)};
   const std::vector<OptionSpec> shared = FrameworkOptionSpecs("Framework: ");
   specs.insert(specs.end(), shared.begin(), shared.end());
@@ -288,7 +289,7 @@ std::unique_ptr<Strategy> MakeExact(const StrategyOptions& values) {
 
 StrategyEntry ExactEntry() {
   return StrategyEntry{
-      "exact", "Routes proven optimal; at the time limit the best one found and a lower bound.",
+      "exact", "A proven optimal route; at the time limit the best one found and a lower bound.",
       true, Options(), MakeExact};
 }
 

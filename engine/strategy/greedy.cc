@@ -26,10 +26,11 @@ class Greedy : public Strategy {
 StrategyEntry GreedyEntry() {
   return StrategyEntry{
       "greedy",
-      "Always the nearest point at which a path may be begun; the order given where that is no "
-      "longer.",
+      "Goes to the nearest point at which a path may be entered; returns the given order if that "
+      "is no longer.",
       false,
-      {PureOption("Metodo 1 as published: no other route takes the place of a longer one.")},
+      {PureOption(
+          "Metodo 1 as published: never replaces its route by a shorter one of another method.")},
       [](const StrategyOptions& options) -> std::unique_ptr<Strategy> {
         return std::make_unique<Greedy>(options.Bool("pure"));
       }};

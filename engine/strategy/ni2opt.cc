@@ -80,15 +80,15 @@ StrategyEntry Ni2optEntry() {
   point_release.name = "point_release";
   point_release.type = OptionSpec::Type::kBool;
   point_release.default_value = "true";
-  point_release.description = "Choose the entries again after 2-opt, in turn with it.";
+  point_release.description = "Alternate 2-opt with choosing the entries again.";
   return StrategyEntry{
       "ni2opt",
       "Nearest insertion, then 2-opt and point release until neither finds a gain.",
       false,
       {point_release,
-       PureOption("Metodo 3 as published, without point release Metodo 2: rasters after the "
-                  "contours' 2-opt, release once at the end, no other route instead of a longer "
-                  "one.")},
+       PureOption(
+           "Metodo 3 as published, or Metodo 2 without point release: rasters after the contours' "
+           "2-opt, release once at the end, never a shorter route of another method.")},
       [](const StrategyOptions& options) -> std::unique_ptr<Strategy> {
         const bool release = options.Bool("point_release");
         if (options.Bool("pure")) return std::make_unique<PublishedNi2opt>(release);

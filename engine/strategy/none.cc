@@ -19,7 +19,7 @@ class None : public Strategy {
 StrategyEntry NoneEntry() {
   return StrategyEntry{
       "none",
-      "The order and the entries as given: the baseline of every report.",
+      "Keeps the given order and entries: the baseline of every report.",
       false,
       {},
       [](const StrategyOptions&) -> std::unique_ptr<Strategy> { return std::make_unique<None>(); }};

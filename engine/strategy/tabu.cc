@@ -215,47 +215,45 @@ std::vector<OptionSpec> Options() {
   std::vector<OptionSpec> specs = FrameworkOptionSpecs("");
   const std::vector<OptionSpec> own = {
       NumberOption("neighbor_penalty", Type::kDouble, "100", 0, 1e6,
-                   "A link outside the neighborhoods counts as if it were so much longer, in mm."),
+                   "Added to the length of a move outside the neighborhoods, in mm."),
       NumberOption("order_penalty", Type::kDouble, "1000", 0, 1e6,
-                   "The same for an order that the plan rules out, in mm; no result has one."),
-      NumberOption(
-          "diversifications", Type::kInt, "2500", 1, 1000000,
-          "How often the search starts anew, in each of the steps for contours and rasters."),
+                   "The same for an order that the plan forbids, in mm; no result has one."),
+      NumberOption("diversifications", Type::kInt, "2500", 1, 1000000,
+                   "How often the search restarts, in each of the steps for contours and rasters."),
       OptionSpec{"diversification",
                  Type::kChoice,
                  "random",
                  0,
                  0,
                  {"random", "swaps"},
-                 "From what: a random sequence, or the best one after random swaps."},
+                 "Where it restarts: a random sequence, or the best one after random swaps."},
       NumberOption("swaps", Type::kDouble, "0.3", 0, 10,
-                   "How many random swaps for each contour or raster, three at least."),
+                   "Random swaps per contour or raster; at least three in all."),
       NumberOption("list_size", Type::kDouble, "1.5", 0, 100,
-                   "Moves in the tabu list for each contour or raster."),
+                   "Moves in the tabu list per contour or raster."),
       NumberOption("tenure", Type::kDouble, "0.1", 0, 100,
-                   "Iterations that a move is tabu, for each diversification."),
+                   "Iterations for which a move is tabu, per diversification."),
       NumberOption("patience", Type::kInt, "3", 0, 10000,
-                   "Moves without gain after which the search starts anew."),
+                   "Moves without gain after which the search restarts."),
       NumberOption("evaluations", Type::kInt, "20000000", 0, 1e12,
-                   "Swaps evaluated that end the search of each step, whatever number of "
-                   "diversifications is left; 0: no limit."),
+                   "Most swaps that each step evaluates, however many diversifications are left; "
+                   "0: no limit."),
       SwitchOption("reactive", "false",
-                   "Sequences that come again make the tenure longer, or start the search anew."),
+                   "Lengthen the tenure, or restart, when a sequence repeats."),
       NumberOption("elite", Type::kInt, "5", 1, 100,
                    "Preliminary sequences that the next step makes feasible and relinks."),
-      NumberOption(
-          "relinked", Type::kInt, "5", 0, 100,
-          "Sequences on the way from each of these to the best one that it tries as well."),
+      NumberOption("relinked", Type::kInt, "5", 0, 100,
+                   "Sequences between each of these and the best one that it also tries."),
       SwitchOption(
           "polish", "true",
           "Improve the route over all vertices of the contours, by iterated local search."),
       NumberOption("polish_rounds", Type::kDouble, "2", 0, 1000000,
-                   "Kicks in a row without gain that end the polishing, for each path; beyond 100 "
-                   "paths, for each ten."),
+                   "Kicks in a row without gain that end the polishing, per path; beyond 100 "
+                   "paths, per ten."),
       SwitchOption("thesis", "false",
-                   "The thesis's search as written, and nothing else: random first sequence, the "
-                   "list carried over, as many moves without gain as one is tabu, points by path "
-                   "relinking; no polish, no patience, elite, relinked, evaluations of ours."),
+                   "Only the thesis's search as written: random first sequence, the list kept over "
+                   "restarts, as many moves without gain as one is tabu, points by path relinking. "
+                   "Ignores polish, patience, elite, relinked and evaluations."),
       BoundOption(false)};
   specs.insert(specs.end(), own.begin(), own.end());
   return specs;
@@ -286,11 +284,10 @@ std::unique_ptr<Strategy> MakeTabu(const StrategyOptions& values) {
 }  // namespace
 
 StrategyEntry TabuEntry() {
-  return StrategyEntry{
-      "tabu",
-      "The framework of four steps with tabu search, polished; never behind ni2opt "
-      "unless polish is off.",
-      true, Options(), MakeTabu};
+  return StrategyEntry{"tabu",
+                       "The thesis's four steps with tabu search, polished; never longer than "
+                       "ni2opt unless polish is off.",
+                       true, Options(), MakeTabu};
 }
 
 }  // namespace traverse

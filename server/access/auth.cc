@@ -149,7 +149,7 @@ absl::StatusOr<std::string> Authenticator::Identify(const CallCredentials& crede
     }
     if (!allowed) {
       return absl::PermissionDeniedError(absl::StrCat(
-          "the certificate of ", credentials.identities[0], " is not among those that may call"));
+          "the certificate of ", credentials.identities[0], " is not one that may call"));
     }
   }
   if (!options_.token_file.empty()) {
@@ -159,7 +159,7 @@ absl::StatusOr<std::string> Authenticator::Identify(const CallCredentials& crede
     }
     const Tokens tokens = CurrentTokens();
     const TokenEntry* found = FindToken(*tokens, token);
-    if (found == nullptr) return absl::UnauthenticatedError("the bearer token is not known");
+    if (found == nullptr) return absl::UnauthenticatedError("the bearer token is unknown");
     return absl::StrCat("token:", found->name);
   }
   if (!credentials.identities.empty()) return absl::StrCat("cert:", credentials.identities[0]);

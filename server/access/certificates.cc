@@ -73,18 +73,20 @@ absl::Status ReadChain(const TlsOptions& tls, absl::Time now, CertificateSet& se
   absl::StatusOr<std::string> text = ReadTextFile(tls.certificate);
   if (!text.ok()) return Unusable(kWhat, tls.certificate, text.status().message());
   const std::vector<X509Ptr> chain = ParseCertificates(*text);
-  if (chain.empty()) return Unusable(kWhat, tls.certificate, "no certificate in PEM");
+  if (chain.empty())
+    return Unusable(kWhat, tls.certificate, "contains no certificate in PEM format");
   set.expiry = absl::InfiniteFuture();
   for (const X509Ptr& one : chain) set.expiry = std::min(set.expiry, Expiry(*one));
   if (set.expiry <= now) return Unusable(kWhat, tls.certificate, ExpiredAt(set.expiry));
   absl::StatusOr<std::string> key_text = ReadTextFile(tls.key);
   if (!key_text.ok()) return Unusable("private key", tls.key, key_text.status().message());
   const KeyPtr key = ParseKey(*key_text);
-  if (key == nullptr) return Unusable("private key", tls.key, "no unencrypted private key in PEM");
+  if (key == nullptr)
+    return Unusable("private key", tls.key, "contains no unencrypted private key in PEM format");
   if (X509_check_private_key(chain.front().get(), key.get()) != 1) {
     ERR_clear_error();
     return Unusable("private key", tls.key,
-                    absl::StrCat("it is not that of the certificate ", tls.certificate));
+                    absl::StrCat("it does not belong to the certificate ", tls.certificate));
   }
   set.chain = *std::move(text);
   set.key = *std::move(key_text);
@@ -96,7 +98,8 @@ absl::Status ReadAuthorities(const TlsOptions& tls, absl::Time now, CertificateS
   absl::StatusOr<std::string> text = ReadTextFile(tls.client_ca);
   if (!text.ok()) return Unusable(kWhat, tls.client_ca, text.status().message());
   const std::vector<X509Ptr> authorities = ParseCertificates(*text);
-  if (authorities.empty()) return Unusable(kWhat, tls.client_ca, "no certificate in PEM");
+  if (authorities.empty())
+    return Unusable(kWhat, tls.client_ca, "contains no certificate in PEM format");
   set.ca_expiry = absl::InfinitePast();
   for (const X509Ptr& one : authorities) set.ca_expiry = std::max(set.ca_expiry, Expiry(*one));
   if (set.ca_expiry <= now) return Unusable(kWhat, tls.client_ca, ExpiredAt(set.ca_expiry));

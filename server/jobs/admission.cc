@@ -136,7 +136,7 @@ std::optional<Admission::No> Admission::CheckQueues(const std::string& caller,
       no) {
     return no;
   }
-  return full(Refusal::kCallerQueue, "this caller's part of the queue", own,
+  return full(Refusal::kCallerQueue, "this caller's share of the queue", own,
               limits_.max_queued_points_per_caller);
 }
 
@@ -194,13 +194,13 @@ std::optional<Admission::No> Admission::CheckBytes(const Caller& caller, int64_t
                         int64_t limit) -> std::optional<No> {
     if (bytes <= limit - held) return std::nullopt;
     const absl::Status status = absl::ResourceExhaustedError(
-        absl::StrCat(whose, " memory is taken: ", held >> 20, " of ", limit >> 20,
-                     " MiB, and this message comes to about ", bytes >> 20, "; try again"));
+        absl::StrCat(whose, " memory is in use: ", held >> 20, " of ", limit >> 20,
+                     " MiB, and this message needs about ", bytes >> 20, "; try again"));
     // What is too large for an empty server stays too large.
     return No{refusal, bytes > limit ? status : WithRetryDelay(status, kJobsRetryDelay)};
   };
   if (auto no = full(Refusal::kMemory, "the server's", bytes_, limits_.max_bytes); no) return no;
-  return full(Refusal::kCallerMemory, "this caller's part of the", caller.bytes,
+  return full(Refusal::kCallerMemory, "this caller's share of the", caller.bytes,
               limits_.max_bytes_per_caller);
 }
 

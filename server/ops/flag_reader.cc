@@ -55,7 +55,7 @@ absl::StatusOr<GivenFlag> ReadFlag(const FlagProgram& program, const std::string
     if (flag != nullptr && flag->IsOfType<bool>()) return GivenFlag{flag, "false"};
   }
   return absl::InvalidArgumentError(
-      absl::StrCat("unknown flag --", name, "; --help lists those there are"));
+      absl::StrCat("unknown flag --", name, "; --help lists all flags"));
 }
 
 // The flags in the lines `name=value` or `--name=value` of a file; `#` begins a comment line.
@@ -77,7 +77,7 @@ absl::StatusOr<std::vector<GivenFlag>> FlagsOfFile(const FlagProgram& program,
       argument = absl::StrCat(text[0] == '-' ? "" : "--", absl::StripTrailingAsciiWhitespace(name),
                               "=", absl::StripLeadingAsciiWhitespace(value));
     } else if (text[0] != '-') {
-      return absl::InvalidArgumentError(place + "not of the form name=value");
+      return absl::InvalidArgumentError(place + "not name=value");
     }
     const std::string* none = nullptr;
     absl::StatusOr<GivenFlag> flag = ReadFlag(program, argument, none);
@@ -85,7 +85,8 @@ absl::StatusOr<std::vector<GivenFlag>> FlagsOfFile(const FlagProgram& program,
       return absl::InvalidArgumentError(absl::StrCat(place, flag.status().message()));
     }
     if (IsFile(*flag)) {
-      return absl::InvalidArgumentError(absl::StrCat(place, "a file within a file"));
+      return absl::InvalidArgumentError(
+          absl::StrCat(place, "a file of flags cannot name another one"));
     }
     flag->place = place;
     given.push_back(*std::move(flag));
@@ -168,7 +169,7 @@ absl::StatusOr<std::string> ReadProgramFlags(const FlagProgram& program,
     std::string error;  // says no more than that
     if (one.flag->ParseFrom(one.value, &error)) continue;
     return absl::InvalidArgumentError(
-        absl::StrCat(one.place, "\"", one.value, "\" is no value of --", one.flag->Name()));
+        absl::StrCat(one.place, "\"", one.value, "\" is not a value of --", one.flag->Name()));
   }
   if (absl::Status status = program.check(); !status.ok()) return status;
   return std::string();

@@ -28,7 +28,7 @@ void OperatorFiles::Reload(bool anyway) {
   if (anyway && !log->Reopen()) {
     on_failure_("log");
     log->Event(JobLog::Level::kError, "log_reopened",
-               {{"result", "the file cannot be opened; the one that was open stays"}});
+               {{"result", "the file cannot be opened; the one that was open stays in use"}});
   }
   auth->Look(anyway);
   if (certificates != nullptr) certificates->Look(anyway);

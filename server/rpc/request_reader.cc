@@ -153,7 +153,7 @@ absl::Status RequestReader::LookAtField(uint32_t tag, const RequestLimits& limit
   if (!WireFormatLite::SkipField(&in, tag)) return NotValid();
   return absl::UnimplementedError(
       absl::StrCat("field number ", WireFormatLite::GetTagFieldNumber(tag),
-                   " of the message is not known to this version of the server"));
+                   " of the message is unknown to this version of the server"));
 }
 
 absl::Status RequestReader::CountLayer(const RequestLimits& limits, CodedInputStream& in) {
@@ -174,8 +174,8 @@ absl::Status RequestReader::CountLayer(const RequestLimits& limits, CodedInputSt
   footprint_bytes_ += layer_bytes_.back();
   if (footprint_bytes_ > limits.footprint_bytes) {
     return absl::ResourceExhaustedError(
-        absl::StrCat("layers[", layers_ - 1, "]: up to here the message comes to more than ",
-                     limits.footprint_bytes >> 20, " MiB, which is all there is for jobs"));
+        absl::StrCat("layers[", layers_ - 1, "]: up to here the message needs more than ",
+                     limits.footprint_bytes >> 20, " MiB, which is all the memory for jobs"));
   }
   return absl::OkStatus();
 }

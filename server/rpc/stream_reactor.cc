@@ -26,7 +26,7 @@ absl::Status StreamReactor::OnRead(bool ok) {
 
 absl::Status StreamReactor::OnOptions(const RequestReader& message) {
   if (begun_ && message.has_options()) {
-    return absl::InvalidArgumentError("options: set in a message that is not the first one");
+    return absl::InvalidArgumentError("options: allowed only in the first message");
   }
   if (begun_) return absl::OkStatus();
   if (absl::Status status = Begin(message.options()); !status.ok()) return status;

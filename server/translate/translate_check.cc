@@ -9,7 +9,7 @@ absl::Status CheckKnown(const google::protobuf::Message& message, const std::str
   const auto& unknown = message.GetReflection()->GetUnknownFields(message);
   if (unknown.empty()) return absl::OkStatus();
   return absl::UnimplementedError(absl::StrCat(place, ": field number ", unknown.field(0).number(),
-                                               " is not known to this version of the server"));
+                                               " is unknown to this version of the server"));
 }
 
 absl::StatusOr<Point> PointFromProto(const v1::Point& point, const std::string& place) {

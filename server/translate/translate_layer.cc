@@ -164,7 +164,7 @@ absl::StatusOr<PlanNode> FromProto(const v1::PlanNode& message, const Place& pla
     case v1::PlanNode::KIND_NOT_SET:
       break;
   }
-  return Fault(place.text(), "none of path, in_order and any_order is set");
+  return Fault(place.text(), "set one of path, in_order and any_order");
 }
 
 absl::StatusOr<Path> FromProto(const v1::PlanPath& message, const Place& place) {
@@ -177,7 +177,7 @@ absl::StatusOr<Path> FromProto(const v1::PlanPath& message, const Place& place) 
     case v1::PlanPath::PATH_NOT_SET:
       break;
   }
-  return Fault(place.text(), "neither contour nor open_path is set");
+  return Fault(place.text(), "set contour or open_path");
 }
 
 absl::StatusOr<Plan> FromProto(const v1::Plan& message, const std::string& place, Budget* budget) {
@@ -237,7 +237,7 @@ absl::StatusOr<LabelledLayer> LayerFromProto(const v1::Layer& layer, uint64_t in
   const Place place(nullptr, "layers", index);
   TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(layer, place));
   if (layer.has_plan() && !layer.islands().empty()) {
-    return Fault(place.text(), "has both islands and a plan, of which it may have one");
+    return Fault(place.text(), "has both islands and a plan, but may have only one of them");
   }
   FaultList faults;
   faults.Add(CheckRange(RangeOf("Layer.z_mm"), layer.z_mm(), place.text() + ".z_mm"));

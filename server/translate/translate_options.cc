@@ -82,10 +82,10 @@ absl::Status SetStrategy(const v1::Strategy& strategy, JobSetup& setup) {
 
 absl::Status SetEnums(const v1::JobOptions& options, JobSetup& setup) {
   if (!v1::Deposition_IsValid(options.deposition())) {
-    return Fault("options.deposition", absl::StrCat(options.deposition(), " is no deposition"));
+    return Fault("options.deposition", absl::StrCat(options.deposition(), " is not a deposition"));
   }
   if (!v1::ResultOrder_IsValid(options.result_order())) {
-    return Fault("options.result_order", absl::StrCat(options.result_order(), " is no order"));
+    return Fault("options.result_order", absl::StrCat(options.result_order(), " is not an order"));
   }
   setup.interleaved = options.deposition() == v1::DEPOSITION_INTERLEAVED;
   setup.build_order = options.result_order() == v1::RESULT_ORDER_BUILD;

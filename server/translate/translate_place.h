@@ -51,7 +51,7 @@ inline absl::Status CheckCoordinates(const Coordinates& coordinates, const Field
                                      const Place& place) {
   if (coordinates.size() % 2 != 0) {
     return Fault(place.text() + ".points",
-                 absl::StrCat(coordinates.size(), " coordinates, which are no pairs of x and y"));
+                 absl::StrCat(coordinates.size(), " coordinates, which are not pairs of x and y"));
   }
   for (int i = 0; i < coordinates.size(); ++i) {
     // NaN is in no range.

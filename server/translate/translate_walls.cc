@@ -37,7 +37,7 @@ absl::StatusOr<Wall> FromProto(const v1::Wall& message, const Plan& plan, const 
   if (points > 0 || wall.path < 0 || wall.path >= static_cast<int>(plan.paths.size())) return wall;
   const Path& path = plan.paths[static_cast<size_t>(wall.path)];
   if (path.kind != Path::Kind::kContour) {
-    return Fault(place.text() + ".points", "none, and the path named is no contour");
+    return Fault(place.text() + ".points", "none, and the named path is not a contour");
   }
   wall.points = path.points;
   wall.closed = true;
@@ -82,7 +82,7 @@ absl::Status SetKnownMoves(const v1::Layer& message, const Place& place, Rest& r
                            JobLayer& layer) {
   if (static_cast<size_t>(message.known_moves_size()) > layer.plan.paths.size()) {
     return Fault(place.text() + ".known_moves",
-                 absl::StrCat(message.known_moves_size(), " are more than there are paths"));
+                 absl::StrCat(message.known_moves_size(), " are more than the plan has paths"));
   }
   layer.walls.known.reserve(static_cast<size_t>(message.known_moves_size()));
   for (int i = 0; i < message.known_moves_size(); ++i) {
@@ -117,7 +117,7 @@ absl::Status SetWalls(const v1::Layer& message, const Place& place, Budget* budg
     if (message.walls(w).points().empty()) {
       if (wall->points.size() > may_copy) {
         return Fault(absl::StrCat(place.text(), ".walls[", w, "].path"),
-                     "the walls up to here name contours that were named before");
+                     "the walls up to here name contours repeatedly");
       }
       may_copy -= wall->points.size();
     }

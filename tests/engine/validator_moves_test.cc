@@ -52,7 +52,7 @@ TEST_F(ValidateMovesTest, KnowsTheMovesThatAreKnown) {
   EXPECT_EQ(Validate({9, {0, 0}, {}}).message(), "crossings 0, computed anew 1 to 1");
   EXPECT_EQ(Validate({9, {1, 1}, {}}).message(), "retractions 1, computed anew 0 to 0");
   EXPECT_EQ(Validate({9, {1, 0}, {{2, {{1.5, 20}}}}}).message(),
-            "route[2]: it is known, and not led around walls");
+            "route[2]: it is a known move, so it does not lead around walls");
 }
 
 TEST_F(ValidateMovesTest, KnowsWhatIsRetractedInAnyCase) {

@@ -78,13 +78,13 @@ TEST(ValidateRoute, NamesTheNodeThatWasInterrupted) {
   const Plan plan = InterleavedPlan(SquareGrid(2, 1));
   const Route route = {{0, 0}, {2, 0}, {1, 0}, {3, 0}};
 
-  EXPECT_THAT(Reason(plan, route), HasSubstr("its paths are not done in one go"));
+  EXPECT_THAT(Reason(plan, route), HasSubstr("other paths come between its own"));
 }
 
 TEST(ValidateRoute, NamesTheChildThatIsTooEarly) {
   const Plan plan = SequentialPlan(SquareGrid(1, 1));
 
-  EXPECT_EQ(Reason(plan, {{1, 0}, {0, 0}}), "nodes[0].in_order: child 1 is done too early");
+  EXPECT_EQ(Reason(plan, {{1, 0}, {0, 0}}), "nodes[0].in_order: child 1 comes too early");
 }
 
 TEST(ValidateRoute, KeepsPairsThroughAChildWithoutPaths) {
@@ -96,7 +96,7 @@ TEST(ValidateRoute, KeepsPairsThroughAChildWithoutPaths) {
 
   EXPECT_OK(ValidateRoute(plan, {{1, 0}, {0, 0}}));
   EXPECT_EQ(Reason(plan, {{0, 0}, {1, 0}}),
-            "nodes[0].any_order: child 0 is done before one that has to come before it");
+            "nodes[0].any_order: child 0 comes before one that must precede it");
 }
 
 TEST(MeasureTravel, SplitsByTheKindOfMove) {

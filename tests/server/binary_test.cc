@@ -212,21 +212,21 @@ TEST(Binary, UsageErrorsExitWith2AndOneLine) {
     std::vector<std::string> arguments;
     std::string line;
   } cases[] = {
-      {{"--no_such_flag"}, "unknown flag --no_such_flag; --help lists those there are"},
-      {{"--no_such_flag=1"}, "unknown flag --no_such_flag; --help lists those there are"},
-      {{"--nothreads"}, "unknown flag --nothreads; --help lists those there are"},
+      {{"--no_such_flag"}, "unknown flag --no_such_flag; --help lists all flags"},
+      {{"--no_such_flag=1"}, "unknown flag --no_such_flag; --help lists all flags"},
+      {{"--nothreads"}, "unknown flag --nothreads; --help lists all flags"},
       {{"--flagfile=/no/such/file"}, "/no/such/file: cannot be read"},
       {{"file.gcode"}, "unexpected argument \"file.gcode\""},
       {{"--", "--insecure"}, "unexpected argument \"--\""},
-      {{"--threads=x"}, "\"x\" is no value of --threads"},
-      {{"--threads", "2x"}, "\"2x\" is no value of --threads"},
-      {{"--max_wait=5"}, "\"5\" is no value of --max_wait"},
-      {{"--insecure=perhaps"}, "\"perhaps\" is no value of --insecure"},
+      {{"--threads=x"}, "\"x\" is not a value of --threads"},
+      {{"--threads", "2x"}, "\"2x\" is not a value of --threads"},
+      {{"--max_wait=5"}, "\"5\" is not a value of --max_wait"},
+      {{"--insecure=perhaps"}, "\"perhaps\" is not a value of --insecure"},
       {{"--threads=-1"}, "--threads: -1 is below 0"},
       {{"--max_jobs"}, "--max_jobs: the value is missing"},
       {{"--config"}, "--config: the value is missing"},
       {{"--config=/no/such/file"}, "/no/such/file: cannot be read"},
-      {{"--config=" + config}, config + ":3: unknown flag --thread; --help lists those there are"},
+      {{"--config=" + config}, config + ":3: unknown flag --thread; --help lists all flags"},
   };
   for (const auto& bad : cases) {
     std::vector<std::string> line = {TRAVERSE_SERVER_BINARY};

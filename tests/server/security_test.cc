@@ -174,7 +174,7 @@ TEST(Security, BadCertificatesAreFoundAtTheStart) {
   EXPECT_EQ(wrong_key.Wait(), 2);
   EXPECT_EQ(wrong_key.Errors(),
             "traverse-server: cannot use the private key " + files.Path("client.key") +
-                ": it is not that of the certificate " + files.Path("server.pem") + "\n");
+                ": it does not belong to the certificate " + files.Path("server.pem") + "\n");
 
   ChildProcess missing({TRAVERSE_SERVER_BINARY, "--listen=127.0.0.1:0", "--metrics_listen=",
                         "--tls_certificate=/proc/none", "--tls_key=" + files.Path("server.key")});
@@ -281,7 +281,7 @@ TEST(Configuration, FileSetsFlagsAndTheCommandLineWins) {
   ChildProcess bad({TRAVERSE_SERVER_BINARY, "--config", path});
   EXPECT_EQ(bad.Wait(), 2);
   EXPECT_EQ(bad.Errors(), "traverse-server: " + path +
-                              ":2: unknown flag --thread; --help lists those there are\n");
+                              ":2: unknown flag --thread; --help lists all flags\n");
 }
 
 TEST(Configuration, ValuesOutOfRangeAreNamed) {

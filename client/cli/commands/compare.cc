@@ -144,9 +144,10 @@ Outcome RunCompare(const Flags& flags) {
     if (outcome.code != kDone) return outcome;
   }
   std::FILE* out = request->json == "-" ? stderr : stdout;
-  Print(out, absl::StrFormat("%s: %d layers; %% are travel saved against that row\n%s",
-                             DisplayName(job->name), job->layers.size(),
-                             report::CompareTable(compared, StyleFor(out))) +
+  Print(out, absl::StrFormat(
+                 "%s: %d layers; %% columns show the travel saved compared with that row\n%s",
+                 DisplayName(job->name), job->layers.size(),
+                 report::CompareTable(compared, StyleFor(out))) +
                  report::ReductionTable(compared, StyleFor(out)));
   return Done();
 }
@@ -156,12 +157,12 @@ Outcome RunCompare(const Flags& flags) {
 Command CompareCommand() {
   return {.name = "compare",
           .operands = {"INPUT"},
-          .summary = "Sets strategies side by side on one job.",
+          .summary = "Compares strategies on one job.",
           .flags = WithRunFlagTable(Joined(
               {
                   {"strategies", "NAME,...", "or NAME:OPTION=VALUE (default: all, 5s each)"},
-                  {"repeat", "N", "runs of each, seed after seed; means are shown"},
-                  {"quiet", "", "no progress", {}, false, "no progress; printer's limits"},
+                  {"repeat", "N", "runs of each, one per seed; shows the means"},
+                  {"quiet", "", "no progress", {}, false, "no progress; the printer's limits"},
                   MachineFlag(),
               },
               PlateFlagTable())),

@@ -95,12 +95,12 @@ Command ConvertCommand() {
           .summary = "Writes a job in another format.",
           .flags = Joined(
               {
-                  {"o", "OUTPUT", ".damat, .json, .pb; of G-code .gcode, .bgcode"},
+                  {"o", "OUTPUT", ".damat, .json, .pb; from G-code .gcode, .bgcode"},
                   {"to",
                    "FORMAT",
                    "damat, json, pb, gcode or bgcode",
                    {"damat", "json", "pb", "gcode", "bgcode"}},
-                  {"layers", "A-B", "only these, counted from 1"},
+                  {"layers", "A-B", "only these layers, counted from 1"},
                   PolicyFlag(),
                   AllowFlag(),
               },

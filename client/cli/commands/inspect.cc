@@ -70,10 +70,10 @@ Outcome RunInspect(const Flags& flags) {
 Command InspectCommand() {
   return {.name = "inspect",
           .operands = {"INPUT"},
-          .summary = "Says what is in a file.",
+          .summary = "Describes a file.",
           .flags = Joined(
               {
-                  {"layers", "A-B", "only these, counted from 1, one by one"},
+                  {"layers", "A-B", "list only these layers, counted from 1"},
                   {"travel_speed", "MM_S", "for the idle time (default: the file's, or 20.32)"},
                   PolicyFlag(),
                   AllowFlag(),

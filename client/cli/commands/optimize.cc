@@ -225,8 +225,8 @@ Command OptimizeCommand() {
           MachineFlag(),
       },
       ContainerFlagTable());
-  own.back().joint_help = "despite a wrong MD5; M73 and headers too";
-  own.push_back({"restate_times", "", "sets print times in M73, headers and metadata anew"});
+  own.back().joint_help = "accept a wrong MD5; renew stated print times";
+  own.push_back({"restate_times", "", "renew print times in M73, headers and metadata"});
   return {.name = "optimize",
           .operands = {"INPUT"},
           .summary = "Shortens the travel of a job.",

@@ -142,7 +142,8 @@ class Reproduction {
     absl::StatusOr<InputJob> job = ReadInput(name);
     if (!job.ok()) return InputFault(job.status());
     if (job->layers.empty()) {
-      return InputFault(absl::InvalidArgumentError(name + ": no layers to reproduce tables on"));
+      return InputFault(
+          absl::InvalidArgumentError(name + ": has no layers to reproduce the tables with"));
     }
     parts_.emplace(part, *std::move(job));
     return Done();
@@ -193,8 +194,8 @@ Outcome RunReproduce(const Flags& flags) {
   if (request->parts.empty()) request->parts = FindParts();
   if (request->parts.empty()) {
     return UsageFault(
-        "no parts beside the program or here: --parts=FOLDER says where they are, in the sources "
-        "tests/bench/instances");
+        "found no parts beside the program or here; name their folder with --parts=FOLDER (in the "
+        "source tree tests/bench/instances)");
   }
   Expected<Service> opened = Service::Open(flags);
   if (Outcome* outcome = std::get_if<Outcome>(&opened)) return *outcome;
@@ -211,18 +212,21 @@ Outcome RunReproduce(const Flags& flags) {
 
 Command ReproduceCommand() {
   return {.name = "reproduce",
-          .summary = "Prints the tables of the two sources, ours beside their own.",
+          .summary = "Prints the tables of both sources beside our own figures.",
           .flags = Joined(
               {
-                  {"source", "NAME", "Weller 2019 or Souza et al. 2017 alone", {"thesis", "paper"}},
-                  {"short", "", "three minutes of two cores, instead of a night"},
-                  {"layers", "N", "of each part (default: 5; paper 393)"},
+                  {"source",
+                   "NAME",
+                   "only Weller 2019, or only Souza et al. 2017",
+                   {"thesis", "paper"}},
+                  {"short", "", "takes three minutes on two cores, not a night"},
+                  {"layers", "N", "layers of each part (default: 5; paper 393)"},
                   {"seeds", "N", "runs of the tabu search (default: 5)"},
-                  {"diversifications", "N", "of the first tabu search (default: 2500)"},
-                  {"programme_limit", "DURATION", "for each integer programme (default: 2h)"},
+                  {"diversifications", "N", "restarts of the first tabu search (default: 2500)"},
+                  {"programme_limit", "DURATION", "limit of each integer programme (default: 2h)"},
                   {"parts", "FOLDER", "part1.damat and others (default: bundled)"},
-                  {"results", "FILE", "keeps every finished run, and goes on from there"},
-                  {"report", "FILE.html", "draws the sources' figures"},
+                  {"results", "FILE", "keep finished runs here, and resume from them"},
+                  {"report", "FILE.html", "draw the sources' figures"},
                   {"quiet", "", "no progress"},
               },
               ServiceFlagTable()),

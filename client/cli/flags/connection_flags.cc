@@ -21,8 +21,7 @@ absl::StatusOr<std::string> ReadToken(const Flags& flags) {
     const char* variable = std::getenv("TRAVERSE_TOKEN");
     const std::string token = variable == nullptr ? "" : variable;
     if (token.empty() || IsToken(token)) return token;
-    return absl::InvalidArgumentError(
-        "TRAVERSE_TOKEN: not a token: characters that are not printable");
+    return absl::InvalidArgumentError("TRAVERSE_TOKEN: not a token: it has unprintable characters");
   }
   const std::string path = flags.Text("token_file");
   std::ifstream file(path);
@@ -33,7 +32,7 @@ absl::StatusOr<std::string> ReadToken(const Flags& flags) {
   }
   absl::StripAsciiWhitespace(&line);
   if (!IsToken(line))
-    return absl::InvalidArgumentError(absl::StrFormat("--token_file=%s: has no token", path));
+    return absl::InvalidArgumentError(absl::StrFormat("--token_file=%s: contains no token", path));
   return line;
 }
 
@@ -41,12 +40,12 @@ absl::StatusOr<std::string> ReadToken(const Flags& flags) {
 
 std::vector<Flag> ConnectionFlagTable() {
   std::vector<Flag> table = {
-      {"tls", "", "encrypt; implied by the other flags of TLS"},
+      {"tls", "", "encrypt; every other TLS flag implies it"},
       {"tls_ca", "FILE", "authorities of the servers' certificates (default: the system's)"},
-      {"tls_certificate", "FILE", "of this client, for mutual TLS"},
-      {"tls_key", "FILE", "of --tls_certificate"},
-      {"tls_name", "NAME", "the servers' certificates are for this name (default: the host)"},
-      {"token_file", "FILE", "bearer token (default: TRAVERSE_TOKEN of the environment)"},
+      {"tls_certificate", "FILE", "this client's certificate, for mutual TLS"},
+      {"tls_key", "FILE", "private key of --tls_certificate"},
+      {"tls_name", "NAME", "name in the servers' certificates (default: the host)"},
+      {"token_file", "FILE", "bearer token (default: environment's TRAVERSE_TOKEN)"},
       {"insecure", "", "send the token unencrypted to other machines"},
   };
   for (Flag& flag : table) flag.brief = true;
@@ -61,7 +60,7 @@ absl::StatusOr<Connection> ParseConnectionFlags(const Flags& flags,
   const bool any = flags.Has("tls_ca") || flags.Has("tls_certificate") || flags.Has("tls_key") ||
                    flags.Has("tls_name");
   if (any && flags.Has("tls") && !flags.Switch("tls")) {
-    return absl::InvalidArgumentError("--tls=false with other flags of TLS");
+    return absl::InvalidArgumentError("--tls=false contradicts the other TLS flags");
   }
   if (any || flags.Switch("tls")) connection.options.tls = tls;
   absl::StatusOr<std::string> token = ReadToken(flags);
@@ -70,7 +69,7 @@ absl::StatusOr<Connection> ParseConnectionFlags(const Flags& flags,
   const bool local = std::all_of(addresses.begin(), addresses.end(), IsLocal);
   if (!connection.token.empty() && !connection.options.tls && !local && !flags.Switch("insecure")) {
     return absl::InvalidArgumentError(
-        "a token would go to another machine unencrypted: use --tls, or --insecure");
+        "the token would go to another machine unencrypted; use --tls, or --insecure");
   }
   return connection;
 }
@@ -78,7 +77,7 @@ absl::StatusOr<Connection> ParseConnectionFlags(const Flags& flags,
 absl::Status CheckNoConnectionFlags(const Flags& flags) {
   for (const Flag& flag : ConnectionFlagTable()) {
     if (flags.Has(flag.name))
-      return absl::InvalidArgumentError(absl::StrFormat("--%s is for --server", flag.name));
+      return absl::InvalidArgumentError(absl::StrFormat("--%s needs --server", flag.name));
   }
   return absl::OkStatus();
 }

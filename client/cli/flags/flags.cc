@@ -145,7 +145,7 @@ absl::StatusOr<std::optional<absl::Duration>> Flags::Duration(const std::string&
   if (!Has(name)) return std::nullopt;
   absl::Duration value;
   if (!absl::ParseDuration(Text(name), &value) || value < absl::Nanoseconds(1)) {
-    return BadValue(name, Text(name), "not a duration from 1ns on, such as 500ms, 30s or 5m");
+    return BadValue(name, Text(name), "not a duration of at least 1ns, such as 500ms, 30s or 5m");
   }
   return value;
 }

@@ -31,14 +31,15 @@ absl::StatusOr<std::optional<std::pair<uint64_t, uint64_t>>> ParseLayers(const F
   if (!digits || ends.size() > 2 || !absl::SimpleAtoi(ends.front(), &first) ||
       !absl::SimpleAtoi(ends.back(), &last) || first < 1 || last < first) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("--layers=%s: not A-B, two positions from 1", text));
+        absl::StrFormat("--layers=%s: not A-B, positions counted from 1", text));
   }
   return std::make_pair(first, last);
 }
 
 absl::StatusOr<std::optional<v1::Cleaning>> ParseCleaning(const Flags& flags) {
   if (flags.Has("cleaning_every") != flags.Has("cleaning_point")) {
-    return absl::InvalidArgumentError("--cleaning_every and --cleaning_point go together");
+    return absl::InvalidArgumentError(
+        "--cleaning_every and --cleaning_point must be given together");
   }
   const auto every = flags.Integer("cleaning_every", 1, std::numeric_limits<int32_t>::max());
   if (!every.ok()) return every.status();
@@ -108,12 +109,12 @@ Flag Joint(Flag flag, const std::string& help) {
 std::vector<Flag> JobFlagTable() {
   const std::vector<std::string> any;
   return {
-      {"option", "NAME=VALUE", "an option of the strategy; repeatable", any, /*repeatable=*/true,
-       "of the strategy; what else may move"},
+      {"option", "NAME=VALUE", "option of the strategy; repeatable", any, /*repeatable=*/true,
+       "strategy's option; what else may move"},
       AllowFlag(),
-      {"layers", "A-B", "only these, counted from 1", any, false,
-       "only these; least time between layers"},
-      {"min_revisit", "S", "G-code: least time before an island is printed on again"},
+      {"layers", "A-B", "only these layers, counted from 1", any, false,
+       "only these layers; G-code: rest of an island, s"},
+      {"min_revisit", "S", "G-code: least time between layers of an island, s"},
       {"deposition",
        "ORDER",
        "sequential (default) or interleaved",
@@ -121,12 +122,12 @@ std::vector<Flag> JobFlagTable() {
        false,
        "sequential or interleaved; length or time"},
       {"cost", "COST", "length, or time (default of G-code)", {"length", "time"}},
-      {"start", "X,Y", "where the head is at first, mm (default 0,0)", any, false,
-       "of the head, mm (0,0); of random choices (1)"},
-      {"seed", "N", "of all random choices (default 1)"},
+      {"start", "X,Y", "where the head starts, mm (default 0,0)", any, false,
+       "of the head, mm (0,0); of the search (1)"},
+      {"seed", "N", "seed of all random choices (default 1)"},
       {"cleaning_every", "N", "layers between two nozzle cleanings", any, false,
-       "nozzle cleaning, mm"},
-      {"cleaning_point", "X,Y", "where the nozzle is cleaned, mm"},
+       "layers between cleanings; point, mm"},
+      {"cleaning_point", "X,Y", "where to clean the nozzle, mm"},
       {"travel_speed", "MM_S", "travel speed (default: the file's; for time 130, idle time 20.32)",
        any, false, "(default: the file's, or 130, 1250)"},
       {"travel_accel", "MM_S2", "travel acceleration (default: the file's, or 1250)"},
@@ -135,9 +136,9 @@ std::vector<Flag> JobFlagTable() {
       {"retraction_threshold", "MM", "longer moves retract (default: the file's, or 2)"},
       Joint(PolicyFlag(), "safe, balanced, free; keep, fewer, any"),
       CrossingsFlag(),
-      {"deadline", "TIME", "the answer is due within it, such as 500ms, 30s or 5m", any, false,
-       "such as 500ms, 30s, 5m"},
-      {"layer_time_limit", "TIME", "most time for one layer"},
+      {"deadline", "TIME", "time for the whole job, such as 500ms, 30s or 5m", any, false,
+       "for all; for a layer (500ms, 30s, 5m)"},
+      {"layer_time_limit", "TIME", "time for each layer"},
   };
 }
 
@@ -145,11 +146,11 @@ std::vector<Flag> ServiceFlagTable() {
   std::vector<Flag> table = {
       {"server",
        "HOST:PORT,...",
-       "the servers to ask (default: embedded)",
+       "servers to call (default: embedded)",
        {},
        false,
        "(default: embedded, all cores)"},
-      {"threads", "N", "of the embedded service (default: all cores)"},
+      {"threads", "N", "threads of the embedded service (default: all cores)"},
   };
   for (Flag& flag : ConnectionFlagTable()) table.push_back(std::move(flag));
   return table;
@@ -167,7 +168,9 @@ Flag CrossingsFlag() {
           {"keep", "fewer", "any"}};
 }
 
-Flag AllowFlag() { return {"allow", "NAME,...", "besides: infill_order, wall_order, fan_order"}; }
+Flag AllowFlag() {
+  return {"allow", "NAME,...", "G-code: also infill_order, wall_order, fan_order"};
+}
 
 Flag MachineFlag() { return {"machine", "FILE", "printer's limits: klipper.cfg, or M201 to M205"}; }
 
@@ -177,7 +180,7 @@ absl::StatusOr<GcodeOptions> ParseGcodeOptions(const Flags& flags) {
   const std::optional<gcode::Allowance> allowed = gcode::AllowanceOfNames(allow);
   if (!allowed) {
     return absl::InvalidArgumentError(absl::StrFormat(
-        "--allow=%s: not infill_order, wall_order or fan_order, or several with commas between",
+        "--allow=%s: not infill_order, wall_order or fan_order, or several separated by commas",
         allow));
   }
   options.allow = *allowed;

@@ -7,11 +7,11 @@ namespace traverse::cli {
 std::vector<Flag> WithRunFlagTable(std::vector<Flag> own) {
   own.push_back({"json",
                  "FILE",
-                 "writes the routes; - is standard output",
+                 "write the routes; - is standard output",
                  {},
                  false,
-                 "routes; a page to look at"});
-  own.push_back({"report", "FILE.html", "writes a page to look at"});
+                 "routes; a page that shows the layers"});
+  own.push_back({"report", "FILE.html", "write a page that shows the layers"});
   return Joined(Joined(Joined(std::move(own), ViewFlagTable()), JobFlagTable()),
                 ServiceFlagTable());
 }

@@ -66,7 +66,7 @@ absl::StatusOr<std::vector<StrategySpec>> ParseStrategySpecs(const std::string& 
   for (const std::string& word : words) {
     const std::vector<std::string> parts = absl::StrSplit(word, ':');
     if (parts.front().empty())
-      return absl::InvalidArgumentError(absl::StrFormat("\"%s\" names no strategy", text));
+      return absl::InvalidArgumentError(absl::StrFormat("\"%s\" does not name a strategy", text));
     StrategySpec spec;
     spec.label = word;
     spec.strategy.set_name(parts.front());
@@ -105,7 +105,7 @@ absl::Status ResolveStrategies(const v1::ListStrategiesResponse& known,
   for (size_t i = 0; i < options.size(); ++i) {
     if (used[i]) continue;
     return absl::InvalidArgumentError(
-        absl::StrFormat("--option=%s: no strategy asked for has this option%s", options[i].first,
+        absl::StrFormat("--option=%s: none of the strategies has this option%s", options[i].first,
                         DidYouMean(options[i].first, all_names)));
   }
   return absl::OkStatus();

@@ -22,7 +22,7 @@ absl::Status CheckFolder(const std::string& flag, const std::string& name) {
   std::error_code error;
   if (folder.empty() || std::filesystem::is_directory(folder, error)) return absl::OkStatus();
   return absl::InvalidArgumentError(
-      absl::StrFormat("--%s=%s: there is no folder %s", flag, name, folder.string()));
+      absl::StrFormat("--%s=%s: no such folder: %s", flag, name, folder.string()));
 }
 
 }  // namespace
@@ -31,11 +31,11 @@ std::vector<Flag> ViewFlagTable() {
   return {
       {"picture",
        "FILE.svg|png",
-       "draws a layer before and after",
+       "draw a layer before and after",
        {},
        false,
        "a layer (default: most saved)"},
-      {"layer", "N", "the layer to draw, counted from 1 (default: the one with most saved)"},
+      {"layer", "N", "layer to draw, counted from 1 (default: most saved)"},
   };
 }
 
@@ -45,11 +45,11 @@ absl::StatusOr<ViewFlags> ParseViewFlags(const Flags& flags) {
   if (flags.Has("picture")) {
     if (!view::PictureFormatOf(out.picture)) {
       return absl::InvalidArgumentError(
-          absl::StrFormat("--picture=%s: ends neither in .svg nor in .png", out.picture));
+          absl::StrFormat("--picture=%s: does not end in .svg or .png", out.picture));
     }
     if (absl::Status status = CheckFolder("picture", out.picture); !status.ok()) return status;
   } else if (flags.Has("layer")) {
-    return absl::InvalidArgumentError("--layer is for --picture");
+    return absl::InvalidArgumentError("--layer needs --picture");
   }
   out.report = flags.Text("report");
   if (flags.Has("report")) {

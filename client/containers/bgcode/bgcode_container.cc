@@ -148,7 +148,7 @@ class BgcodeContainer : public Container {
   absl::Status ReadMetadata(const Block& block, size_t& left) {
     if (block.size > left) {
       return absl::ResourceExhaustedError(absl::StrFormat(
-          "it announces %d bytes, and %d are left of those for metadata", block.size, left));
+          "it states %d bytes, but only %d are left for metadata", block.size, left));
     }
     left -= block.size;
     absl::StatusOr<std::string> text = DecompressBlock(block);

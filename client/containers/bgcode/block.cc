@@ -69,8 +69,8 @@ class Parser {
     const size_t whole = header + parameters + stored + ChecksumBytes();
     if (whole > left) {
       return absl::InvalidArgumentError(
-          absl::StrFormat("%s announces %d bytes of %s, and the file has %d more", Place(), stored,
-                          BlockName(block.kind), left - header));
+          absl::StrFormat("%s states %d bytes of %s, but the file has only %d more", Place(),
+                          stored, BlockName(block.kind), left - header));
     }
     block.whole = file_.substr(next_, whole);
     block.data = block.whole.substr(header + parameters, stored);
@@ -105,7 +105,7 @@ class Parser {
     if (ChecksumBytes() == 0 || HasRightChecksum(block.whole)) return absl::OkStatus();
     const size_t end = block.whole.size() - kChecksumBytes;
     return absl::InvalidArgumentError(absl::StrFormat(
-        "%s (%s): its CRC32 is said to be %08x, but it is %08x", Place(), BlockName(block.kind),
+        "%s (%s): its CRC32 should be %08x, but is %08x", Place(), BlockName(block.kind),
         LoadU32(block.whole, end), Crc32(block.whole.substr(0, end))));
   }
 
@@ -159,12 +159,12 @@ absl::StatusOr<BgcodeBlocks> ParseBlocks(std::string_view file) {
   const uint32_t version = LoadU32(file, 4);
   if (version != kBgcodeVersion) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("binary G-code of version %d is not known, only 1", version));
+        absl::StrFormat("binary G-code version %d is unknown; only version 1 is", version));
   }
   const uint16_t checksum = LoadU16(file, 8);
   if (checksum > static_cast<uint16_t>(BgcodeChecksum::kCrc32)) {
     return absl::InvalidArgumentError(absl::StrFormat(
-        "checksums of kind %d are not known, only 0 (none) and 1 (CRC32)", checksum));
+        "checksum type %d is unknown; only 0 (none) and 1 (CRC32) are known", checksum));
   }
   BgcodeBlocks out;
   out.checksum = static_cast<BgcodeChecksum>(checksum);

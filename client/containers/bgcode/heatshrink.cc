@@ -187,12 +187,12 @@ absl::StatusOr<std::string> HeatshrinkDecompress(std::string_view bytes, Heatshr
     const size_t distance = bits.Take(window.window_bits) + 1;
     const size_t length = bits.Take(window.lookahead_bits) + 1;
     if (length > size - used) {
-      return absl::InvalidArgumentError("heatshrink data go on behind their end");
+      return absl::InvalidArgumentError("heatshrink data continue after their end");
     }
     Repeat(out, used, distance, length);
   }
   if (bits.BytesUsed() != bytes.size() && bits.BytesUsed() + 1 != bytes.size()) {
-    return absl::InvalidArgumentError("heatshrink data go on behind their end");
+    return absl::InvalidArgumentError("heatshrink data continue after their end");
   }
   return out;
 }

@@ -164,7 +164,7 @@ class Unpacker {
         break;
       default:
         return absl::InvalidArgumentError(
-            absl::StrFormat("MeatPack command %d is not known", command));
+            absl::StrFormat("MeatPack command %d is unknown", command));
     }
     return absl::OkStatus();
   }

@@ -26,7 +26,7 @@ absl::Status AppendBlockText(const Block& block, size_t max_bytes, std::string& 
   const auto encoding = static_cast<GcodeEncoding>(block.parameters[0]);
   if (encoding > GcodeEncoding::kMeatPackComments) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("encoding %d of G-code is not known", block.parameters[0]));
+        absl::StrFormat("encoding %d of G-code is unknown", block.parameters[0]));
   }
   absl::StatusOr<std::string> bytes = DecompressBlock(block);
   if (!bytes.ok()) return bytes.status();
@@ -70,7 +70,7 @@ absl::Status AppendBlockOf(std::string_view text, const GcodeForm& form, std::st
 
 absl::Status TooLong(const BgcodeBlocks& file, size_t index, size_t bytes, size_t max_bytes) {
   return absl::ResourceExhaustedError(
-      absl::StrFormat("%s: the G-code up to here would be %d MiB, and %d are allowed",
+      absl::StrFormat("%s: the G-code up to here has %d MiB, but only %d are allowed",
                       BlockPlace(file, index), bytes >> 20, max_bytes >> 20));
 }
 
@@ -102,7 +102,7 @@ absl::StatusOr<std::string> DecompressBlock(const Block& block) {
     case BlockCompression::kHeatshrink12:
       return HeatshrinkDecompress(block.data, WindowOf(block.compression), block.size);
   }
-  return absl::InvalidArgumentError(CompressionName(block.compression) + " is not known");
+  return absl::InvalidArgumentError(CompressionName(block.compression) + " is unknown");
 }
 
 absl::StatusOr<std::string> CompressBytes(std::string_view bytes, BlockCompression compression) {
@@ -115,7 +115,7 @@ absl::StatusOr<std::string> CompressBytes(std::string_view bytes, BlockCompressi
     case BlockCompression::kHeatshrink12:
       return HeatshrinkCompress(bytes, WindowOf(compression));
   }
-  return absl::InvalidArgumentError(CompressionName(compression) + " is not known");
+  return absl::InvalidArgumentError(CompressionName(compression) + " is unknown");
 }
 
 absl::StatusOr<std::string> GcodeText(const BgcodeBlocks& file, size_t max_bytes, int threads) {

@@ -75,7 +75,7 @@ absl::Status ParseRecord(std::string_view file, size_t at, size_t end, ZipEntry&
   constexpr uint16_t kHidden = kFlagEncrypted | kFlagStrongEncryption | kFlagMaskedHeaders;
   if ((entry.flags & kHidden) != 0) return EntryFault(entry.name, "it is encrypted");
   if (entry.compressed_size == kInZip64 || entry.size == kInZip64 || entry.begin == kInZip64) {
-    return EntryFault(entry.name, "it is a zip64 entry, which are not read");
+    return EntryFault(entry.name, "it is a zip64 entry, which is not supported");
   }
   if (LoadU16(file, at + kRecordDisk) != 0) {
     return EntryFault(entry.name, "it is in another part of the archive");
@@ -106,13 +106,13 @@ absl::StatusOr<size_t> EndOfDescriptor(std::string_view file, size_t limit, cons
     return data_end + 4 + kWideDescriptorBytes;
   }
   if (fits_wide(data_end)) return data_end + kWideDescriptorBytes;
-  return EntryFault(entry.name, "its data descriptor is not what the directory says");
+  return EntryFault(entry.name, "its data descriptor differs from the directory");
 }
 
 // Finds data and end of `entry`, which lie before `limit`.
 absl::Status LocateEntry(std::string_view file, size_t limit, ZipEntry& entry) {
   if (entry.begin > limit || limit - entry.begin < kLocalBytes) {
-    return EntryFault(entry.name, "it begins behind the end of the entries");
+    return EntryFault(entry.name, "it begins after the end of the entries");
   }
   const size_t at = entry.begin;
   const size_t name_bytes = LoadU16(file, at + kLocalNameBytes);
@@ -120,18 +120,18 @@ absl::Status LocateEntry(std::string_view file, size_t limit, ZipEntry& entry) {
   if (LoadU32(file, at) != kLocalSignature || limit - at < header ||
       file.substr(at + kLocalBytes, name_bytes) != entry.name ||
       LoadU16(file, at + kLocalMethod) != static_cast<uint16_t>(entry.method)) {
-    return EntryFault(entry.name, "its local header is not what the directory says");
+    return EntryFault(entry.name, "its local header differs from the directory");
   }
   entry.data = at + header;
   if (limit - entry.data < entry.compressed_size) {
-    return EntryFault(entry.name, absl::StrFormat("it announces %d bytes, and %d are left",
+    return EntryFault(entry.name, absl::StrFormat("it states %d bytes, but only %d are left",
                                                   entry.compressed_size, limit - entry.data));
   }
   entry.end = entry.data + entry.compressed_size;
   if ((LoadU16(file, at + kLocalFlags) & kFlagDescriptor) == 0) {
     const uint32_t stated = LoadU32(file, at + kLocalCompressedSize);
     if (stated != entry.compressed_size && stated != kInZip64) {
-      return EntryFault(entry.name, "its local header is not what the directory says");
+      return EntryFault(entry.name, "its local header differs from the directory");
     }
     return absl::OkStatus();
   }
@@ -154,13 +154,13 @@ absl::Status CheckTogether(const ZipArchive& archive) {
   std::set<std::string_view> names;
   for (const ZipEntry& entry : archive.entries) {
     if (!names.insert(entry.name).second) {
-      return EntryFault(entry.name, "there are two of that name");
+      return EntryFault(entry.name, "there are two with that name");
     }
   }
   size_t end = 0;
   for (const size_t i : ByOffset(archive)) {
     const ZipEntry& entry = archive.entries[i];
-    if (entry.begin < end) return EntryFault(entry.name, "it lies over another entry");
+    if (entry.begin < end) return EntryFault(entry.name, "it overlaps another entry");
     end = entry.end;
   }
   return absl::OkStatus();
@@ -266,7 +266,7 @@ absl::StatusOr<ZipArchive> ParseZip(std::string_view file) {
   if (!end) return absl::InvalidArgumentError("the zip archive is cut short: it has no directory");
   if (*end >= kZip64LocatorBytes &&
       LoadU32(file, *end - kZip64LocatorBytes) == kZip64LocatorSignature) {
-    return absl::InvalidArgumentError("it is a zip64 archive, which are not read");
+    return absl::InvalidArgumentError("it is a zip64 archive, which is not supported");
   }
   ZipArchive out;
   out.file = file;
@@ -278,7 +278,7 @@ absl::StatusOr<ZipArchive> ParseZip(std::string_view file) {
     return absl::InvalidArgumentError("it is one of several parts of an archive");
   }
   if (out.directory > *end || bytes > *end - out.directory) {
-    return absl::InvalidArgumentError("the zip archive's directory is not where it is said to be");
+    return absl::InvalidArgumentError("the zip archive's directory is not at its stated position");
   }
   out.directory_end = out.directory + bytes;
   size_t at = out.directory;
@@ -291,7 +291,7 @@ absl::StatusOr<ZipArchive> ParseZip(std::string_view file) {
     out.entries.push_back(entry);
   }
   if (at != out.directory_end)
-    return absl::InvalidArgumentError("the directory has more than the entries counted");
+    return absl::InvalidArgumentError("the directory has more entries than it states");
   if (absl::Status status = CheckTogether(out); !status.ok()) return status;
   return out;
 }
@@ -300,14 +300,14 @@ absl::StatusOr<std::string> ReadEntry(const ZipArchive& archive, const ZipEntry&
                                       size_t max_bytes) {
   if (entry.size > max_bytes) {
     return absl::ResourceExhaustedError(
-        absl::StrFormat("entry %s: it announces %d MiB, and %d are allowed",
+        absl::StrFormat("entry %s: it states %d MiB, but only %d are allowed",
                         std::string(entry.name), entry.size >> 20, max_bytes >> 20));
   }
   const std::string_view data = archive.file.substr(entry.data, entry.compressed_size);
   std::string content;
   if (entry.method == ZipMethod::kStored) {
     if (entry.compressed_size != entry.size) {
-      return EntryFault(entry.name, "it is stored in another size than it has");
+      return EntryFault(entry.name, "it is stored uncompressed, but its two sizes differ");
     }
     content = std::string(data);
   } else if (entry.method == ZipMethod::kDeflated) {
@@ -315,12 +315,12 @@ absl::StatusOr<std::string> ReadEntry(const ZipArchive& archive, const ZipEntry&
     if (!inflated.ok()) return EntryFault(entry.name, std::string(inflated.status().message()));
     content = *std::move(inflated);
   } else {
-    return EntryFault(
-        entry.name, absl::StrFormat("compression %d is not known", static_cast<int>(entry.method)));
+    return EntryFault(entry.name,
+                      absl::StrFormat("compression %d is unknown", static_cast<int>(entry.method)));
   }
   if (const uint32_t crc = Crc32(content); crc != entry.crc) {
-    return EntryFault(entry.name, absl::StrFormat("its CRC32 is said to be %08x, but it is %08x",
-                                                  entry.crc, crc));
+    return EntryFault(entry.name,
+                      absl::StrFormat("its CRC32 should be %08x, but is %08x", entry.crc, crc));
   }
   return content;
 }

@@ -116,7 +116,7 @@ class GcodeZip : public Container {
       const std::string_view name = archive_.entries[i].name;
       if (WithoutSlash(name) != kUfpModel) continue;
       if (!parts_.empty()) {
-        return absl::InvalidArgumentError("entry 3D/model.gcode: there are two of that name");
+        return absl::InvalidArgumentError("entry 3D/model.gcode: there are two with that name");
       }
       kind_ = ContainerKind::kUfp;
       parts_.push_back({std::string(name), 1});
@@ -147,10 +147,9 @@ class GcodeZip : public Container {
       const ZipEntry& entry = archive_.entries[i];
       sum += entry.size;
       if (sum <= most) continue;
-      return absl::ResourceExhaustedError(
-          absl::StrFormat("entry %s: it announces %d MiB, which makes %d MiB of G-code, and %d are "
-                          "allowed",
-                          std::string(entry.name), entry.size >> 20, sum >> 20, most >> 20));
+      return absl::ResourceExhaustedError(absl::StrFormat(
+          "entry %s: it states %d MiB, which makes %d MiB of G-code, but only %d are allowed",
+          std::string(entry.name), entry.size >> 20, sum >> 20, most >> 20));
     }
     return absl::OkStatus();
   }
@@ -176,15 +175,14 @@ class GcodeZip : public Container {
     if (!stated.ok()) return stated.status();
     const auto refuse = [&](const std::string& why) {
       return absl::InvalidArgumentError(
-          absl::StrFormat("entry %s: %s; --ignore_md5 takes the G-code all the same",
+          absl::StrFormat("entry %s: %s; --ignore_md5 accepts the G-code anyway",
                           absl::CHexEscape(std::string(digest->name)), why));
     };
     const std::optional<std::string> found = FindMd5(*stated);
-    if (!found) return refuse("it is no MD5");
+    if (!found) return refuse("it is not an MD5");
     const std::string is = Md5Hex(text);
     if (*found != is) {
-      return refuse(
-          absl::StrFormat("the MD5 of the G-code is said to be %s, but it is %s", *found, is));
+      return refuse(absl::StrFormat("the MD5 of the G-code should be %s, but is %s", *found, is));
     }
     return absl::OkStatus();
   }
@@ -214,7 +212,8 @@ absl::StatusOr<std::string> GcodeZip::WithParts(const std::map<size_t, NewPart>&
       const absl::StatusOr<std::string> stated = ReadEntry(archive_, *digest, kMaxSmallBytes);
       if (!stated.ok()) return Fault(stated.status());
       const std::string is = Md5Hex(part.text);
-      if (is.empty()) return Fault(absl::UnavailableError("OpenSSL here makes no MD5"));
+      if (is.empty())
+        return Fault(absl::UnavailableError("OpenSSL on this machine does not offer MD5"));
       replaced[IndexOf(*digest)] = FindMd5(*stated) ? WithMd5(*stated, is) : is;
     }
     if (part.times) slice_info = RestatePlate(slice_info, parts_[index].plate, *part.times);

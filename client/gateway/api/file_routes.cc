@@ -250,7 +250,7 @@ HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, 
       if (file.field == "optimised") optimised = file.file;
     }
     if (original == nullptr || optimised == nullptr || !upload.fields.empty()) {
-      return reply->Send(Problem(400, "a form with the files original and optimised is expected"));
+      return reply->Send(Problem(400, "send a form with the files original and optimised"));
     }
     core.Submit(
         place, {original, optimised}, [&core, original, optimised, reply](const absl::Status& may) {

@@ -56,10 +56,10 @@ Json JsonAnswer(const char* description, const char* schema) {
 }
 
 Json RewritePath() {
-  Json ok = {
-      {"description",
-       "The rewritten file; by Accept its summary alone, or events: progress, file and report "
-       "(base64, in pieces), summary; or problem. With report=true and no events: the page."}};
+  Json ok = {{"description",
+              "The rewritten file. Depending on Accept only its summary, or events: progress, file "
+              "and report (base64, in pieces), then summary or problem. With report=true and "
+              "without events: the page."}};
   ok["headers"] = {
       {"Traverse-Summary", {{"description", "One line"}, {"schema", {{"type", "string"}}}}},
       {"Traverse-Travel-Mm",
@@ -80,22 +80,22 @@ Json RewritePath() {
 }
 
 Json InspectPath() {
-  Json responses = {{"200", JsonAnswer("What is in the file.", "InspectResponse")}};
+  Json responses = {{"200", JsonAnswer("The contents of the file.", "InspectResponse")}};
   AddProblems(responses, {400, 401, 403, 408, 413, 415, 421, 429, 503, 507});
   return {{"post",
            {{"operationId", "inspect"},
-            {"summary", "What is in a file."},
+            {"summary", "Describes a file."},
             {"requestBody", {{"required", true}, {"content", FileContent()}}},
             {"responses", responses}}}};
 }
 
 Json VerifyPath() {
   const Json binary = {{"type", "string"}, {"contentMediaType", "application/octet-stream"}};
-  Json responses = {{"200", JsonAnswer("Whether they print the same.", "VerifyResponse")}};
+  Json responses = {{"200", JsonAnswer("Whether the files print the same.", "VerifyResponse")}};
   AddProblems(responses, {400, 401, 403, 408, 413, 421, 429, 503, 507});
   return {{"post",
            {{"operationId", "verify"},
-            {"summary", "Does the second file print exactly what the first one prints?"},
+            {"summary", "Checks that two files print exactly the same."},
             {"requestBody",
              {{"required", true},
               {"content",
@@ -163,7 +163,7 @@ std::string OpenApiJson() {
                 {"/v1/inspect", InspectPath()},
                 {"/v1/verify", VerifyPath()},
                 {"/healthz", TextPath("healthz", "The process lives.", "text/plain", true)},
-                {"/readyz", TextPath("readyz", "Files are taken.", "text/plain", true)},
+                {"/readyz", TextPath("readyz", "The gateway accepts files.", "text/plain", true)},
                 {"/openapi.json", TextPath("openapi", "This document.", "application/json", true)},
                 {"/metrics", TextPath("metrics", "Metrics for Prometheus.", "text/plain", false)}};
   const Json document = {
@@ -171,7 +171,7 @@ std::string OpenApiJson() {
       {"info",
        {{"title", "traverse-gateway"},
         {"version", kVersion},
-        {"summary", "Sliced files, printed the same with less travel."},
+        {"summary", "Rewrites sliced files so that they print the same with less travel."},
         {"license", {{"name", "Apache-2.0"}, {"identifier", "Apache-2.0"}}}}},
       {"servers", {{{"url", "/"}}}},
       {"security", {{{"bearer", Json::array()}}, {{"key", Json::array()}}, Json::object()}},

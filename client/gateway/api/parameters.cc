@@ -67,10 +67,10 @@ absl::Status SetStrategy(const cli::Flags& flags, FileRequest& request) {
 
 std::vector<cli::Flag> ParameterTable() {
   std::vector<cli::Flag> table = {
-      {"name", "FILE", "the file's name, for messages (default: that of the upload)"},
-      {"report", "", "with the page that shows each layer before and after"},
-      {"restate_times", "", "sets print times in M73, headers and metadata anew"},
-      {"strategy", "NAME", "NAME or NAME:OPTION=VALUE (default: what suits the file)"},
+      {"name", "FILE", "the file's name in messages (default: the upload's name)"},
+      {"report", "", "add the page that shows each layer before and after"},
+      {"restate_times", "", "renew print times in M73, headers and metadata"},
+      {"strategy", "NAME", "NAME or NAME:OPTION=VALUE (default: by the file's format)"},
   };
   for (const auto& rows : {cli::JobFlagTable(), cli::ContainerFlagTable()}) {
     for (const cli::Flag& flag : rows) {
@@ -122,7 +122,7 @@ absl::StatusOr<FileRequest> ParseParameters(const Parameters& parameters) {
 namespace {
 
 absl::Status NoneKnown(const std::string& field, int value) {
-  return Fault(absl::StrCat("options.", field, ": ", value, " is none that is known"));
+  return Fault(absl::StrCat("options.", field, ": ", value, " is unknown"));
 }
 
 absl::Status SetPolicy(const v1::RewriteOptions& options, GcodeOptions& gcode) {

@@ -53,7 +53,7 @@ bool IsForUs(const HttpRequest& request, const Core& core) {
 }
 
 HttpResponse NotAllowed(const std::string& allowed) {
-  HttpResponse response = Problem(405, absl::StrCat("only ", allowed, " is for this path"));
+  HttpResponse response = Problem(405, absl::StrCat("only ", allowed, " is allowed for this path"));
   response.headers.emplace_back("Allow", allowed);
   return response;
 }
@@ -94,10 +94,10 @@ HttpDecision Router::Open(const HttpRequest& request, std::string& route) {
                                    : Text(200, "text/plain", "ready\n");
   }
   if (!IsForUs(request, core_)) {
-    return Problem(421, "the Host of the request is no name of this gateway; see --allowed_hosts");
+    return Problem(421, "the request's Host is not a name of this gateway; see --allowed_hosts");
   }
   if (IsForeign(request)) {
-    return Problem(403, "a page of another site asks: that is not allowed here");
+    return Problem(403, "requests from pages of other sites are not allowed");
   }
   absl::StatusOr<std::string> caller = CallerOf(request, *core_.files.auth);
   if (!caller.ok()) return ProblemOf(caller.status());
@@ -122,7 +122,7 @@ HttpDecision Router::ForCaller(const HttpRequest& request, const std::string& ca
   if (absl::StartsWith(path, "/api/") || absl::StartsWith(path, "/printers/")) {
     route = "printers";
     if (printers_ != nullptr) return printers_->Handle(request, caller);
-    return Problem(404, "no printers are configured here; see --printers");
+    return Problem(404, "this gateway has no printers; see --printers");
   }
   return Problem(404, "there is nothing at this path; see /openapi.json");
 }

@@ -33,9 +33,8 @@ class UploadSink : public BodySink {
  protected:
   absl::Status BeginFile(std::string field, std::string name) {
     if (upload_.files.size() >= limits_.max_files) {
-      return absl::InvalidArgumentError(
-          absl::StrFormat("more than %d file%s", limits_.max_files,
-                          limits_.max_files == 1 ? ": one is expected" : "s"));
+      return absl::InvalidArgumentError(absl::StrFormat(
+          "more than %d file%s", limits_.max_files, limits_.max_files == 1 ? ": send one" : "s"));
     }
     absl::StatusOr<std::shared_ptr<SpoolFile>> file = spool_.NewFile();
     if (!file.ok()) return file.status();

@@ -15,7 +15,7 @@ absl::Status TakeInspect(const v1::InspectRequest& request, const FileCall& call
   if (request.has_data()) return call.Append(request.data(), collected.first);
   if (!request.has_name()) return absl::InvalidArgumentError("a message without data");
   if (!collected.name.empty() || collected.first != nullptr) {
-    return absl::InvalidArgumentError("name: in the first message alone");
+    return absl::InvalidArgumentError("name: allowed only in the first message");
   }
   collected.name = request.name();
   const absl::Status status = CheckFileName(collected.name);
@@ -40,7 +40,7 @@ grpc::ServerBidiReactor<v1::RewriteRequest, v1::RewriteResponse>* GcodeGrpcServi
 grpc::ServerReadReactor<v1::InspectRequest>* GcodeGrpcService::Inspect(
     grpc::CallbackServerContext* context, v1::InspectResponse* response) {
   const auto check = [](const Collected& collected) -> absl::Status {
-    if (collected.first == nullptr) return absl::InvalidArgumentError("data: there is no file");
+    if (collected.first == nullptr) return absl::InvalidArgumentError("data: the file is missing");
     return absl::OkStatus();
   };
   const auto work = [this, response](const Collected& collected) {

@@ -53,13 +53,13 @@ void RewriteReactor::OnReadDone(bool ok) {
 
 absl::Status RewriteReactor::TakeRequest() {
   if (request_.has_options()) {
-    if (wanted_) return absl::InvalidArgumentError("options: in the first message alone");
+    if (wanted_) return absl::InvalidArgumentError("options: allowed only in the first message");
     absl::StatusOr<FileRequest> wanted = RequestOf(request_.options());
     if (!wanted.ok()) return wanted.status();
     wanted_ = *std::move(wanted);
     return absl::OkStatus();
   }
-  if (!wanted_) return absl::InvalidArgumentError("options: missing, the first message has none");
+  if (!wanted_) return absl::InvalidArgumentError("options: missing from the first message");
   if (!request_.has_data()) return absl::InvalidArgumentError("a message without data");
   return call_.Append(request_.data(), upload_);
 }
@@ -68,8 +68,8 @@ void RewriteReactor::Submit() {
   live_.Rests(&context_);
   if (upload_ == nullptr) {
     MutexLock lock(mutex_);
-    return End(absl::InvalidArgumentError(
-        wanted_ ? "data: there is no file" : "options: missing, the first message has none"));
+    return End(absl::InvalidArgumentError(wanted_ ? "data: the file is missing"
+                                                  : "options: missing from the first message"));
   }
   wanted_->finish_by = call_.FinishBy();
   // From here on the task ends the call, so that it finds it alive.

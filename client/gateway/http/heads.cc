@@ -23,7 +23,7 @@ std::variant<HttpResponse, HttpRequest> RequestOf(const HeadParser& parser) {
   const auto text = [](beast::string_view view) { return std::string(view.data(), view.size()); };
   absl::StatusOr<Target> target = ParseTarget(text(head.target()));
   if (!target.ok()) return Problem(400, std::string(target.status().message()));
-  if (!HasKnownCoding(head)) return Problem(501, "no transfer encoding is known but chunked");
+  if (!HasKnownCoding(head)) return Problem(501, "the only transfer encoding supported is chunked");
   request.method = text(head.method_string());
   request.path = std::move(target->path);
   request.query = std::move(target->query);

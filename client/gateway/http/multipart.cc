@@ -106,7 +106,7 @@ absl::StatusOr<PartHead> ParsePartHead(std::string_view head) {
     disposition = ParseHeaderValue(line.substr(colon + 1));
     if (!disposition) return Fault("a part's disposition cannot be read");
   }
-  if (!disposition || disposition->value != "form-data") return Fault("a part is no form data");
+  if (!disposition || disposition->value != "form-data") return Fault("a part is not form data");
   const std::string* name = disposition->Find("name");
   if (name == nullptr) return Fault("a part has no name");
   PartHead out;
@@ -203,7 +203,7 @@ absl::StatusOr<bool> MultipartReader::StepHead() {
     return Fault(absl::StrFormat("the head of a part is longer than %d bytes", kMaxHeadBytes));
   }
   if (end == std::string::npos) return false;
-  if (end == 0) return Fault("a part is no form data");
+  if (end == 0) return Fault("a part is not form data");
   absl::StatusOr<PartHead> head = ParsePartHead(std::string_view(buffered_).substr(2, end - 2));
   if (!head.ok()) return head.status();
   if (absl::Status status = sink_.BeginPart(*head); !status.ok()) return status;

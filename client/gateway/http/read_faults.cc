@@ -26,12 +26,12 @@ std::optional<HttpResponse> HeadFault(boost::system::error_code error, bool time
   if (error == http::error::partial_message)
     return Problem(400, "the head of the request is cut short");
   if (!IsWrong(error)) return std::nullopt;
-  return Problem(400, absl::StrCat("the request is no HTTP/1.1: ", error.message()));
+  return Problem(400, absl::StrCat("the request is not HTTP/1.1: ", error.message()));
 }
 
 HttpResponse BodyFault(boost::system::error_code error, bool timed_out, uint64_t received) {
   if (timed_out) {
-    return Problem(408, absl::StrCat("the body came too slowly: ", received, " bytes until now"));
+    return Problem(408, absl::StrCat("the body came too slowly: ", received, " bytes so far"));
   }
   const char* what =
       IsWrong(error) ? "the body's chunks cannot be read after " : "the body was cut short after ";

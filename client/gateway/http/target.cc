@@ -101,7 +101,7 @@ absl::Status CheckFileName(std::string_view name) {
   constexpr size_t kMaxNameBytes = 255;
   if (name.empty()) return Fault("the file has no name");
   if (name.size() > kMaxNameBytes) return Fault("the file's name is longer than 255 bytes");
-  if (name == "." || name == "..") return Fault("the file's name is no name of a file");
+  if (name == "." || name == "..") return Fault("the file's name is . or ..");
   for (const char c : name) {
     if (IsControl(c)) return Fault("the file's name has a control character");
     if (c == '/' || c == '\\') return Fault("the file's name has a slash");

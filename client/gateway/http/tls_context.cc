@@ -31,7 +31,7 @@ absl::StatusOr<std::shared_ptr<TlsContext::Context>> ContextOf(const Certificate
   }
   if (error) {
     return absl::UnavailableError(
-        absl::StrCat("OpenSSL does not take the certificate with its key: ", error.message()));
+        absl::StrCat("OpenSSL does not accept the certificate with its key: ", error.message()));
   }
   return context;
 }

@@ -45,7 +45,7 @@ absl::Status CheckFolder(const std::string& folder) {
 
 absl::StatusOr<PrinterUpload> UploadOf(const Upload& upload, const std::string& storage) {
   if (upload.files.size() != 1 || upload.files[0].field != "file") {
-    return absl::InvalidArgumentError("a form with one file, named file, is expected");
+    return absl::InvalidArgumentError("send a form with one file, named file");
   }
   PrinterUpload out;
   out.storage = storage;
@@ -137,12 +137,13 @@ HttpDecision PrinterApi::Handle(const HttpRequest& request, const std::string& c
   const std::vector<std::string> rest(parts.begin() + (named ? 2 : 0), parts.end());
   if (rest == std::vector<std::string>{"api", "version"}) {
     if (request.method == "GET") return HandleVersion(request, caller, *printer);
-    return Problem(405, "only GET is for this path");
+    return Problem(405, "only GET is allowed for this path");
   }
   const bool files = rest.size() == 3 && rest[0] == "api" && rest[1] == "files" &&
                      (rest[2] == "local" || rest[2] == "sdcard");
-  if (!files) return Problem(404, "of OctoPrint's API there are version and the upload of files");
-  if (request.method != "POST") return Problem(405, "only POST is for this path");
+  if (!files)
+    return Problem(404, "of OctoPrint's API only version and the upload of files are supported");
+  if (request.method != "POST") return Problem(405, "only POST is allowed for this path");
   return HandleUpload(request, caller, *printer, rest[2]);
 }
 
@@ -244,7 +245,7 @@ void PrinterApi::Deliver(Delivery& delivery) {
     fields[3].second = "nothing";
     core_.files.log->Event(JobLog::Level::kWarning, "upload", fields);
     return delivery.reply->Send(
-        Problem(422, absl::StrCat("not sent to the printer, which takes optimised files alone: ",
+        Problem(422, absl::StrCat("not sent to the printer, which accepts only optimised files: ",
                                   why.message())));
   }
   const SpoolFile& file = why.ok() ? *delivery.made->file : *delivery.original;

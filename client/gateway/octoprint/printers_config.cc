@@ -59,7 +59,7 @@ absl::Status SetKey(const std::string& path, Printer& printer) {
   absl::StatusOr<std::string> text = ReadWholeFile(path, kMaxConfigBytes);
   if (!text.ok()) return absl::UnavailableError(text.status().message());
   printer.api_key = std::string(absl::StripAsciiWhitespace(text->substr(0, text->find('\n'))));
-  if (printer.api_key.empty()) return absl::InvalidArgumentError("the file has no key");
+  if (printer.api_key.empty()) return absl::InvalidArgumentError("the file contains no key");
   return absl::OkStatus();
 }
 
@@ -142,7 +142,7 @@ absl::StatusOr<PrintersConfig> ParsePrinters(const std::string& json) {
     config.default_name = config.printers[0].name;
   }
   if (!config.default_name.empty() && config.Find(config.default_name) == nullptr) {
-    return Fault("default", absl::StrCat("no printer has the name \"", config.default_name, "\""));
+    return Fault("default", absl::StrCat("no printer is named \"", config.default_name, "\""));
   }
   return config;
 }

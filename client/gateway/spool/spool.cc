@@ -69,7 +69,7 @@ absl::StatusOr<std::string> SpoolFile::ReadAll() const {
   std::string bytes(size_, '\0');
   absl::StatusOr<size_t> got = ReadAt(0, bytes.data(), bytes.size());
   if (!got.ok()) return got.status();
-  if (*got != bytes.size()) return absl::DataLossError("the spool has lost a part of a file");
+  if (*got != bytes.size()) return absl::DataLossError("part of a file is missing from the spool");
   return bytes;
 }
 
@@ -98,7 +98,7 @@ absl::StatusOr<int> Spool::OpenNameless() const {
       return file;
     }
   }
-  return absl::UnavailableError(absl::StrFormat("no file can be made in the spool folder %s: %s",
+  return absl::UnavailableError(absl::StrFormat("cannot create a file in the spool folder %s: %s",
                                                 folder_, std::strerror(errno)));
 }
 

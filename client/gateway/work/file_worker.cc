@@ -59,10 +59,10 @@ void AddPart(const InputJob& job, const OptimizedFile& made, const std::string& 
   out.set_verified(true);
   const int64_t left = rewrite.layers - rewrite.layers_changed;
   if (rewrite.layers_changed == 0) {
-    out.add_left(label + "Nothing to gain: no order that is allowed makes the print quicker.");
+    out.add_left(label + "Nothing to gain: no allowed order makes the print faster.");
   } else if (left > 0) {
-    out.add_left(absl::StrFormat("%s%d of %d layers stay: no order that is allowed is quicker.",
-                                 label, left, rewrite.layers));
+    out.add_left(absl::StrFormat("%s%d of %d layers stay: no allowed order is faster.", label, left,
+                                 rewrite.layers));
   }
   for (const auto& [name, value] : job.facts) {
     if (name.starts_with("movable")) {
@@ -70,7 +70,7 @@ void AddPart(const InputJob& job, const OptimizedFile& made, const std::string& 
     }
   }
   std::string text = rewrite.layers_changed == 0
-                         ? "nothing to gain, the file stays as it is: " + DescribeRewrite(rewrite)
+                         ? "nothing to gain, the file stays unchanged: " + DescribeRewrite(rewrite)
                          : absl::StrFormat("%d of %d layers rewritten: %s", rewrite.layers_changed,
                                            rewrite.layers, DescribeRewrite(rewrite));
   out.set_text(out.text() + (out.text().empty() ? "" : "; ") + label + text);
@@ -159,7 +159,7 @@ absl::StatusOr<InputFile> FileWorker::Open(const SpoolFile& upload,
     return absl::OutOfRangeError(file.status().message());
   }
   if (file.ok() && file->format != InputFormat::kGcode) {
-    return absl::UnimplementedError(absl::StrFormat("%s: a file of %s, and not of a slicer",
+    return absl::UnimplementedError(absl::StrFormat("%s: a file of %s, not of a slicer",
                                                     request.name, FormatName(file->format)));
   }
   return file;
@@ -272,7 +272,7 @@ absl::StatusOr<RewrittenFile> FileWorker::Rewrite(const SpoolFile& upload,
                                                   const std::stop_token& cancel) {
   const absl::Time began = absl::Now();
   if (began >= request.finish_by) {
-    return absl::DeadlineExceededError("the time was over before a worker was free");
+    return absl::DeadlineExceededError("the deadline passed before a worker was free");
   }
   if (cancel.stop_requested()) return absl::CancelledError("cancelled");
   return Guarded([&]() -> absl::StatusOr<RewrittenFile> {

@@ -59,11 +59,11 @@ bool Holds(Range range, double value) {
 const char* NameOf(Range range) {
   switch (range) {
     case Range::kAboveZero:
-      return "no number above 0, at most 1e9";
+      return "not a number above 0 and up to 1e9";
     case Range::kFromZero:
-      return "no number from 0 to 1e9";
+      return "not a number from 0 to 1e9";
     case Range::kRatio:
-      return "no number from 0 to below 1";
+      return "not a number from 0 to below 1";
   }
   return "";
 }

@@ -183,15 +183,15 @@ absl::StatusOr<std::shared_ptr<GcodeFile>> ReadGcode(std::string text, const std
   if (absl::Status status = gcode::ReadBlocks(*file); !status.ok()) return status;
   if (file->blocks.empty() && misnumbered) {
     return gcode::Fault(*file, *misnumbered,
-                        "its number or checksum is not what those of the other lines lead to");
+                        "its number or checksum does not follow from those of the other lines");
   }
   const bool returns_alone =
       file->text.find('\r') != std::string::npos && file->text.find('\n') == std::string::npos;
   if (file->blocks.empty() && returns_alone) {
     return absl::InvalidArgumentError(
         absl::StrCat(name,
-                     ": no extruding move: its lines end with carriage returns alone, and "
-                     "are read where they end with line feeds"));
+                     ": no extruding move: its lines end with carriage returns alone, but must end "
+                     "with line feeds"));
   }
   if (file->blocks.empty()) {
     return absl::InvalidArgumentError(absl::StrCat(name, ": no extruding move"));

@@ -13,27 +13,28 @@ std::vector<OptionSpec> FrameworkOptionSpecs(const char* of) {
     spec.description = absl::StrCat(of, spec.description);
     return spec;
   };
-  return {said(OptionSpec{
-              "representation",
-              Type::kChoice,
-              "bbcp",
-              0,
-              0,
-              {"sp", "nrp", "bbcp"},
-              "What stands for a contour in the preliminary sequence: spaced points, points near "
-              "the ends of the island's rasters, or the center of its bounding box."}),
-          said(NumberOption("spacing_mm", Type::kDouble, "2.5", 0, 1000,
-                            "Least distance of the spaced points of a contour (Dp), in mm.")),
-          said(NumberOption("neighbors", Type::kInt, "2", 1, 100,
-                            "Contours that the growing circle around one has to meet.")),
-          said(NumberOption(
-              "first_radius_mm", Type::kDouble, "0", 0, 1000,
-              "Radius of the circle at first, in mm; 0: the shorter side of the bounding box.")),
-          said(NumberOption("radius_step_mm", Type::kDouble, "5", 0.001, 1000,
-                            "How much the circle grows at a time, in mm.")),
-          said(SwitchOption("trace", "false",
-                            "Tell the neighborhoods, the preliminary sequence and the visible "
-                            "points as statistics trace_*, by the paths' numbers."))};
+  return {
+      said(OptionSpec{
+          "representation",
+          Type::kChoice,
+          "bbcp",
+          0,
+          0,
+          {"sp", "nrp", "bbcp"},
+          "The points of a contour in the preliminary sequence: spaced points (sp), points near "
+          "the ends of the island's rasters (nrp), or the center of its bounding box (bbcp)."}),
+      said(NumberOption("spacing_mm", Type::kDouble, "2.5", 0, 1000,
+                        "Least distance between spaced points of a contour (Dp), in mm.")),
+      said(NumberOption("neighbors", Type::kInt, "2", 1, 100,
+                        "Contours that the growing circle around a contour must meet.")),
+      said(NumberOption(
+          "first_radius_mm", Type::kDouble, "0", 0, 1000,
+          "First radius of that circle, in mm; 0: the shorter side of the bounding box.")),
+      said(NumberOption("radius_step_mm", Type::kDouble, "5", 0.001, 1000,
+                        "Step by which the circle grows, in mm.")),
+      said(SwitchOption("trace", "false",
+                        "Return the neighborhoods, the preliminary sequence and the visible points "
+                        "as statistics trace_*, by path number."))};
 }
 
 FrameworkOptions FrameworkOptionsFrom(const StrategyOptions& values) {

@@ -34,7 +34,7 @@ OptionSpec BoundOption(bool default_value) {
                     0,
                     0,
                     {},
-                    "Look for a lower bound too: how much better any route can be at most."};
+                    "Also compute a lower bound, which limits how much shorter any route can be."};
 }
 
 OptionSpec PureOption(const char* description) {

@@ -80,43 +80,44 @@ class Metrics {
       "traverse_rejected_total", "Jobs refused for a limit or a permission, by reason.");
   prometheus::Family<prometheus::Counter>& reload_failures_ = registry_.Counters(
       "traverse_reload_failures_total",
-      "Changed files of no use, by what they are of; what was good before stays.");
+      "Changed files that could not be used, by content; the last good one stays in use.");
   prometheus::Family<prometheus::Histogram>& layer_seconds_ =
       registry_.Histograms("traverse_layer_solve_seconds", "Time of work on one layer.");
   prometheus::Family<prometheus::Histogram>& job_seconds_ =
       registry_.Histograms("traverse_job_seconds", "Time from a job's first message to its last.");
   prometheus::Counter& travel_given_mm_ = registry_.Counter(
-      "traverse_travel_given_mm_total", "Travel of the orders given, cleaning included.");
+      "traverse_travel_given_mm_total", "Travel of the given orders, including cleaning.");
   prometheus::Counter& travel_mm_ = registry_.Counter(
-      "traverse_travel_mm_total", "Travel of the routes answered, cleaning included.");
+      "traverse_travel_mm_total", "Travel of the routes answered, including cleaning.");
   prometheus::Counter& idle_seconds_saved_ = registry_.Counter(
-      "traverse_idle_seconds_saved_total", "Idle time saved at the speeds stated by the jobs.");
+      "traverse_idle_seconds_saved_total", "Idle time saved at the speeds that the jobs state.");
   prometheus::Counter& invalid_routes_ = registry_.Counter(
       "traverse_invalid_routes_total", "Routes that failed the validator; each one is a bug.");
-  prometheus::Histogram& gap_ = registry_.Histogram(
-      "traverse_optimality_gap_ratio", "Gap of layers with a lower bound.", kGapBounds);
+  prometheus::Histogram& gap_ =
+      registry_.Histogram("traverse_optimality_gap_ratio",
+                          "Gap to the lower bound, for layers that have one.", kGapBounds);
   prometheus::Gauge& queue_layers_ =
-      registry_.Gauge("traverse_queue_layers", "Layers accepted and not yet solved.");
+      registry_.Gauge("traverse_queue_layers", "Layers accepted but not yet solved.");
   prometheus::Gauge& queue_points_ =
-      registry_.Gauge("traverse_queue_points", "Points accepted and not yet solved.");
+      registry_.Gauge("traverse_queue_points", "Points accepted but not yet solved.");
   prometheus::Gauge& jobs_in_flight_ =
-      registry_.Gauge("traverse_jobs_in_flight", "Jobs accepted and not ended.");
+      registry_.Gauge("traverse_jobs_in_flight", "Jobs accepted but not yet ended.");
   prometheus::Gauge& workers_busy_ =
-      registry_.Gauge("traverse_workers_busy", "Workers that run a task.");
-  prometheus::Gauge& workers_ = registry_.Gauge("traverse_workers", "Workers there are.");
+      registry_.Gauge("traverse_workers_busy", "Workers that are running a task.");
+  prometheus::Gauge& workers_ = registry_.Gauge("traverse_workers", "All workers.");
   prometheus::Gauge& workers_silent_ = registry_.Gauge(
-      "traverse_workers_silent", "Workers that gave no sign of life for the time of --watchdog.");
+      "traverse_workers_silent", "Workers that were silent for longer than --watchdog.");
   prometheus::Gauge& ready_ =
-      registry_.Gauge("traverse_ready", "1 if the server takes jobs, 0 if it drains.");
+      registry_.Gauge("traverse_ready", "1 while the server accepts jobs, 0 while it drains.");
   prometheus::Counter& log_lines_lost_ = registry_.Counter(
-      "traverse_log_lines_lost_total", "Lines of the log dropped or not written.");
+      "traverse_log_lines_lost_total", "Log lines that were dropped or not written.");
   prometheus::Family<prometheus::Gauge>& memory_ = registry_.Gauges(
-      "traverse_memory_bytes", "Memory that callers make the server hold, by kind.");
+      "traverse_memory_bytes", "Memory that the server holds for callers, by kind.");
   prometheus::Gauge& max_memory_ =
-      registry_.Gauge("traverse_memory_max_bytes", "Memory that the server may have.");
+      registry_.Gauge("traverse_memory_max_bytes", "Memory that the server may use.");
   prometheus::Gauge& connections_ = registry_.Gauge("traverse_connections", "Connections open.");
   prometheus::Counter& connections_cut_ = registry_.Counter(
-      "traverse_connections_cut_total", "Connections ended for what they sent, or to make room.");
+      "traverse_connections_cut_total", "Connections cut for what they sent, or to make room.");
   prometheus::Family<prometheus::Gauge>& certificate_expiry_ = registry_.Gauges(
       "traverse_certificate_expiry_seconds", "Time until the certificate in use expires, by file.");
 

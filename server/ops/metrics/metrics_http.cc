@@ -102,13 +102,13 @@ MetricsHttp::Answer MetricsHttp::AnswerTo(const std::string& method,
   if (path == "/metrics") return {MHD_HTTP_OK, sources_.metrics()};
   if (path == "/healthz") {
     return sources_.healthy() ? Answer{MHD_HTTP_OK, "ok\n"}
-                              : Answer{MHD_HTTP_SERVICE_UNAVAILABLE, "a worker does not answer\n"};
+                              : Answer{MHD_HTTP_SERVICE_UNAVAILABLE, "a worker does not respond\n"};
   }
   if (path == "/readyz") {
     return sources_.ready() ? Answer{MHD_HTTP_OK, "ready\n"}
                             : Answer{MHD_HTTP_SERVICE_UNAVAILABLE, "draining\n"};
   }
-  return {MHD_HTTP_NOT_FOUND, "there are /metrics, /healthz and /readyz\n"};
+  return {MHD_HTTP_NOT_FOUND, "use /metrics, /healthz or /readyz\n"};
 }
 
 }  // namespace traverse

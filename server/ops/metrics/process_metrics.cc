@@ -78,15 +78,16 @@ std::vector<prometheus::MetricFamily> ProcessMetrics() {
     families.push_back(Single("process_virtual_memory_bytes", "Virtual memory.", MetricType::Gauge,
                               field(kVirtualBytes)));
     families.push_back(Single("process_threads", "Threads.", MetricType::Gauge, field(kThreads)));
-    families.push_back(Single("process_start_time_seconds", "Start, in seconds since 1970.",
+    families.push_back(Single("process_start_time_seconds", "Start time, in seconds since 1970.",
                               MetricType::Gauge, BootTime() + field(kStartTicks) / ticks));
   }
   // Apart: memory that grows with use, and memory that the allocator keeps between jobs.
   const struct mallinfo2 heap = mallinfo2();
-  families.push_back(Single("process_heap_used_bytes", "Memory allocated and not freed.",
-                            MetricType::Gauge, static_cast<double>(heap.uordblks + heap.hblkhd)));
+  families.push_back(Single("process_heap_used_bytes",
+                            "Memory that is allocated and not yet freed.", MetricType::Gauge,
+                            static_cast<double>(heap.uordblks + heap.hblkhd)));
   families.push_back(Single("process_heap_free_bytes",
-                            "Memory freed that the allocator has not given back.",
+                            "Freed memory that the allocator has not returned to the system.",
                             MetricType::Gauge, static_cast<double>(heap.fordblks)));
   families.push_back(
       Single("process_open_fds", "Open file descriptors.", MetricType::Gauge, OpenFiles()));

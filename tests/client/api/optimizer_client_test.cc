@@ -156,15 +156,15 @@ TEST(OptimizerClient, AnswersThatAreNoneAreInternal) {
   };
 
   EXPECT_THAT(error([](const v1::Layer& layer, uint64_t) { return KeepOrder(layer, 0); }),
-              HasSubstr("what was not asked"));
+              HasSubstr("not asked for"));
   EXPECT_THAT(error([](const v1::Layer& layer, uint64_t) { return KeepOrder(layer, 2); }),
-              HasSubstr("what was not asked"));
+              HasSubstr("not asked for"));
   EXPECT_THAT(error([](const v1::Layer& layer, uint64_t index) {
                 v1::LayerResult result = KeepOrder(layer, index);
                 result.mutable_visits()->RemoveLast();
                 return result;
               }),
-              HasSubstr("layers[0] is no route: visits: 1 paths are missing"));
+              HasSubstr("layers[0] is not a route: visits: 1 paths are missing"));
   service.forget_summary = true;
   EXPECT_THAT(error(KeepOrder), HasSubstr("the server answered 2 of 2 layers"));
 }

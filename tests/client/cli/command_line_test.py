@@ -11,10 +11,10 @@ from command_line import INPUT, SMALL, USAGE, CommandLine, island, read
 class Usage(CommandLine):
     def test_each_fault_is_one_line_and_code_2(self):
         cases = [
-            ([], "traverse: which command? See traverse --help"),
+            ([], "traverse: no command given; see traverse --help"),
             (["optimise"], 'traverse: unknown command "optimise"; did you mean optimize?'),
             (["optimize"], "traverse optimize: INPUT is missing; see traverse optimize --help"),
-            (["optimize", "a", "b"], 'traverse optimize: "b" is too much; see traverse optimize --help'),
+            (["optimize", "a", "b"], 'traverse optimize: unexpected argument "b"; see traverse optimize --help'),
             (["optimize", SMALL, "--strateg=auto"],
              "traverse optimize: unknown flag --strateg; did you mean --strategy?"),
             (["optimize", SMALL, "--strategy=gredy"],
@@ -22,15 +22,15 @@ class Usage(CommandLine):
              "(`traverse strategies` lists them)"),
             (["optimize", SMALL, "--strategy=none,greedy"], "traverse optimize: --strategy takes one strategy"),
             (["optimize", SMALL, "--strategy=none", "--option=tenure=5"],
-             "traverse optimize: --option=tenure: no strategy asked for has this option"),
+             "traverse optimize: --option=tenure: none of the strategies has this option"),
             (["optimize", SMALL, "--option=tenure"], 'traverse optimize: option "tenure" is not NAME=VALUE'),
             (["optimize", SMALL, "--deadline=5"],
-             "traverse optimize: --deadline=5: not a duration from 1ns on, such as 500ms, 30s or 5m"),
-            (["optimize", SMALL, "--layers=0-1"], "traverse optimize: --layers=0-1: not A-B, two positions from 1"),
-            (["optimize", SMALL, "--layers=2-1"], "traverse optimize: --layers=2-1: not A-B, two positions from 1"),
+             "traverse optimize: --deadline=5: not a duration of at least 1ns, such as 500ms, 30s or 5m"),
+            (["optimize", SMALL, "--layers=0-1"], "traverse optimize: --layers=0-1: not A-B, positions counted from 1"),
+            (["optimize", SMALL, "--layers=2-1"], "traverse optimize: --layers=2-1: not A-B, positions counted from 1"),
             (["optimize", SMALL, "--layers=2-4"], "traverse optimize: --layers=2-4: the file has 3 layers"),
             (["optimize", SMALL, "--cleaning_every=5"],
-             "traverse optimize: --cleaning_every and --cleaning_point go together"),
+             "traverse optimize: --cleaning_every and --cleaning_point must be given together"),
             (["optimize", SMALL, "--cleaning_every=0", "--cleaning_point=0,0"],
              "traverse optimize: --cleaning_every=0: not a whole number from 1 to 2147483647"),
             (["optimize", SMALL, "--cleaning_every=1", "--cleaning_point=0"],
@@ -46,13 +46,13 @@ class Usage(CommandLine):
             (["optimize", SMALL, "--threads=0"], "traverse optimize: --threads=0: not a whole number from 1 to 1024"),
             (["optimize", SMALL, "--server=farm"], 'traverse optimize: --server: "farm" is not HOST:PORT'),
             (["optimize", SMALL, "--server=farm:1", "--threads=2"],
-             "traverse optimize: --threads is for the embedded service, not for --server"),
+             "traverse optimize: --threads works only without --server"),
             (["optimize", SMALL, "-o", "x.damat"],
              "traverse optimize: -o is for G-code; the routes of DAMAT go to --json=FILE"),
             (["optimize", SMALL, "--picture=x.gif"],
-             "traverse optimize: --picture=x.gif: ends neither in .svg nor in .png"),
+             "traverse optimize: --picture=x.gif: does not end in .svg or .png"),
             (["compare", SMALL, "--picture=no/such/x.svg"],
-             "traverse compare: --picture=no/such/x.svg: there is no folder no/such"),
+             "traverse compare: --picture=no/such/x.svg: no such folder: no/such"),
             (["optimize", SMALL, "--picture=x.svg", "--layer=4"],
              "traverse optimize: --layer=4: not one of the layers 1 to 3"),
             (["compare", SMALL, "--picture=x.svg", "--layers=2-3", "--layer=1"],
@@ -60,15 +60,15 @@ class Usage(CommandLine):
             (["optimize", SMALL, "--report=part.gcode"],
              "traverse optimize: --report=part.gcode: does not end in .html"),
             (["compare", SMALL, "--report=no/such/x.html"],
-             "traverse compare: --report=no/such/x.html: there is no folder no/such"),
-            (["optimize", SMALL, "--layer=1"], "traverse optimize: --layer is for --picture"),
+             "traverse compare: --report=no/such/x.html: no such folder: no/such"),
+            (["optimize", SMALL, "--layer=1"], "traverse optimize: --layer needs --picture"),
             (["compare", SMALL, "--strategies=none,,greedy"],
-             'traverse compare: "none,,greedy" names no strategy'),
+             'traverse compare: "none,,greedy" does not name a strategy'),
             (["compare", SMALL, "--repeat=0"], "traverse compare: --repeat=0: not a whole number from 1 to 1000"),
             (["convert", SMALL], "traverse convert: -o OUTPUT is missing"),
             (["convert", SMALL, "-o", "x.gcode"],
              "traverse convert: -o writes .damat, .json or .pb; see --to for other names"),
-            (["strategies", "x"], 'traverse strategies: "x" is too much; see traverse strategies --help'),
+            (["strategies", "x"], 'traverse strategies: unexpected argument "x"; see traverse strategies --help'),
         ]
         for arguments, line in cases:
             with self.subTest(arguments):
@@ -76,7 +76,7 @@ class Usage(CommandLine):
 
     def test_a_machine_is_read_from_a_file(self):
         for content, fault in [("[printer]\nmax_velocity: fast\n",
-                                ':2: max_velocity: "fast" is no number above 0, at most 1e9'),
+                                ':2: max_velocity: "fast" is not a number above 0 and up to 1e9'),
                                ("[printer]\nmax_accel: 5\n", ": [printer] has no max_velocity"),
                                ("fast\n", ": neither a Klipper configuration, with [printer], nor lines of M201 to M205")]:
             machine = self.put("printer.cfg", content)
@@ -189,7 +189,7 @@ class BadInput(CommandLine):
             ("spellings.damat", island("C1,X1,Y1\nC1,X2,Y1\nC2,X1,Y1,X2,Y2", 2), "6: two spellings in one file"),
             ("thickness.damat", "E,\nnF,0\n", "1: \"\" is no thickness"),
             ("outer.damat", island("C1,X0,Y0,X9,Y0,X9,Y9\nC2,X20,Y0,X29,Y0,X29,Y9", 2), "5: C2 and C1 (line 4) are two outer"),
-            ("count.damat", island("C1,X1,Y1", 3), "3: I1 announces 3 contours, the file has 1"),
+            ("count.damat", island("C1,X1,Y1", 3), "3: I1 states 3 contours, but the file has 1"),
             ("odd.json", '{"layers": [{"islands": [{"contours": [{"points": [1, 2, 3]}]}]}]}',
              "layers[0].islands[0].contours[0].points"),
             ("nan.json", '{"layers": [{"islands": [{"contours": [{"points": [1, "NaN"]}]}]}]}',
@@ -222,7 +222,7 @@ class BadInput(CommandLine):
     def test_standard_input_is_named(self):
         self.assertEqual(self.fail_with(INPUT, "inspect", "-", stdin=b""), "standard input: the file is empty")
         self.assertEqual(self.fail_with(INPUT, "inspect", "-", stdin=b"nF,1\n"),
-                         "standard input:1: nF announces 1 layers, the file has 0")
+                         "standard input:1: nF states 1 layers, but the file has 0")
 
     def test_an_output_that_cannot_be_written_is_a_fault(self):
         line = self.fail_with(INPUT, "optimize", SMALL, "--json=/no/such/folder/x.json")

@@ -234,7 +234,7 @@ class OtherCommands(CommandLine):
 
     def test_compare_prints_what_the_frameworks_reductions_leave(self):
         out = self.succeed("compare", PART1, "--strategies=greedy,tabu:diversifications=5", "--layers=1-2", "--quiet")
-        self.assertIn("contour points of a layer", out)
+        self.assertIn("contour points per layer", out)
         self.assertIn("309 (-35.2 %)", out)  # as in the thesis's table 5.1
 
     def test_compare_writes_every_runs_routes(self):

@@ -54,7 +54,7 @@ class Reproduce(unittest.TestCase):
             self.assertEqual(ask(sources / "engine").returncode, 0)
             lost = ask(folder)
             self.assertEqual(lost.returncode, 2)
-            self.assertIn("--parts=FOLDER says where they are, in the sources tests/bench/instances", lost.stderr)
+            self.assertIn("name their folder with --parts=FOLDER (in the source tree tests/bench/instances)", lost.stderr)
             self.assertEqual(ask(folder, f"--parts={sources}/tests/bench/instances").returncode, 0)
 
     def test_says_what_is_wrong(self):

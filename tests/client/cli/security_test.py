@@ -118,15 +118,15 @@ class Security(unittest.TestCase):
         ca, pem, missing = self.path("ca.pem"), self.path("token"), self.path("missing")
         cases = [
             (["--server=localhost:1", "--tls_ca=" + missing], f"--tls_ca: cannot read {missing}"),
-            (["--server=localhost:1", "--tls_ca=" + pem], f"--tls_ca: {pem} has nothing in PEM"),
-            (["--server=localhost:1", "--tls_certificate=" + ca], "--tls_certificate and tls_key go together"),
+            (["--server=localhost:1", "--tls_ca=" + pem], f"--tls_ca: {pem} contains nothing in PEM format"),
+            (["--server=localhost:1", "--tls_certificate=" + ca], "--tls_certificate and tls_key must be given together"),
             (["--server=a.test:1,b.test:1", "--tls_ca=" + ca],
-             "--tls_name: several servers need the name that their certificates have in common"),
+             "--tls_name: with several servers, give the name that their certificates share"),
             (["--server=localhost:1", "--token_file=" + missing], f"--token_file={missing}: cannot be read, or is empty"),
             (["--server=localhost:1", "--token_file=" + self.path("empty")],
              f"--token_file={self.path('empty')}: cannot be read, or is empty"),
-            (["--server=localhost:1", "--tls=false", "--tls_ca=" + ca], "--tls=false with other flags of TLS"),
-            (["--tls_ca=" + ca], "--tls_ca is for --server"),
+            (["--server=localhost:1", "--tls=false", "--tls_ca=" + ca], "--tls=false contradicts the other TLS flags"),
+            (["--tls_ca=" + ca], "--tls_ca needs --server"),
         ]
         for arguments, message in cases:
             with self.subTest(arguments):

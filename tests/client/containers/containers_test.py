@@ -187,7 +187,7 @@ class Bgcode(Containers):
         self.assertTrue(read(self.path("x.out")).startswith(b"GCDE"))
         self.assertIn("use -o OUTPUT",
                       self.fail_with(USAGE, "optimize", self.path("part.gcode"), "--container=bgcode"))
-        self.assertIn("no .gcode.3mf is made of",
+        self.assertIn("cannot make a .gcode.3mf from",
                       self.fail_with(USAGE, "optimize", self.path("part.gcode"), "-o", self.path("x.gcode.3mf")))
         self.assertEqual(sliced(), read(self.path("part.gcode")).decode())
 
@@ -240,15 +240,15 @@ class Bgcode(Containers):
         struct.pack_into("<I", bomb, gcode.offset + 4, 0xfffffff0)
         struct.pack_into("<I", bomb, len(bomb) - 4, zlib.crc32(bomb[gcode.offset:-4]))
         cases = {
-            "cut.bgcode": (good[:gcode.offset + 40], rf"block {number} at offset {gcode.offset} announces \d+ bytes of G-code"),
+            "cut.bgcode": (good[:gcode.offset + 40], rf"block {number} at offset {gcode.offset} states \d+ bytes of G-code"),
             "header.bgcode": (good[:gcode.offset + 5], rf"block {number} at offset {gcode.offset}: the file ends in its header"),
             "crc.bgcode": (good[:-20] + b"x" + good[-19:], rf"block {number} at offset {gcode.offset} \(G-code\): its CRC32"),
-            "huge.bgcode": (bytes(huge), r"block 3 at offset \d+ announces 4294967280 bytes of thumbnail"),
+            "huge.bgcode": (bytes(huge), r"block 3 at offset \d+ states 4294967280 bytes of thumbnail"),
             "bomb.bgcode": (bytes(bomb), rf"block {number} at offset {gcode.offset}: .* 409[56] MiB"),
-            "version.bgcode": (good[:4] + b"\2" + good[5:], "version 2 is not known"),
+            "version.bgcode": (good[:4] + b"\2" + good[5:], "version 2 is unknown"),
             "short.bgcode": (b"GCDE\1", "the header of binary G-code is cut short"),
             "empty.bgcode": (good[:file.blocks[5].offset], "no block of G-code"),
-            "other.bgcode": (b"\x7fELF\0\0\0", "does not begin as binary G-code"),
+            "other.bgcode": (b"\x7fELF\0\0\0", "does not begin with GCDE"),
         }
         for name, (content, message) in cases.items():
             with self.subTest(name):
@@ -305,9 +305,9 @@ class GcodeZip(Containers):
         self.assertEqual(self.content(out, "Metadata/plate_2.gcode"), read(self.path("plate.gcode")))
         self.succeed("verify", out, self.path("plate.gcode"), "--plate=2")
         self.assertIn("no plate 3, only 1, 2", self.fail_with(INPUT, "optimize", path, "--plate=3"))
-        self.assertIn("choose one by --plate",
+        self.assertIn("choose one with --plate",
                       self.fail_with(INPUT, "optimize", path, "-o", self.path("both.gcode")))
-        self.assertIn("choose one by --plate", self.fail_with(INPUT, "compare", path))
+        self.assertIn("choose one with --plate", self.fail_with(INPUT, "compare", path))
         self.assertIn("no plate 2, only 1", self.fail_with(INPUT, "optimize", self.put("a.gcode", sliced()), "--plate=2"))
         shown = self.succeed("inspect", path)
         self.assertIn("Metadata/plate_2.gcode, deflate", shown)
@@ -353,9 +353,9 @@ class GcodeZip(Containers):
         plate = ("Metadata/plate_1.gcode", sliced())
         made("up.3mf", "entry ../x: its name leads out of its folder", plate, ("../x", "x"))
         made("root.3mf", "entry /etc/passwd: its name is absolute", plate, ("/etc/passwd", "x"))
-        made("twice.3mf", "entry Metadata/plate_1.gcode: there are two of that name", plate, plate)
+        made("twice.3mf", "entry Metadata/plate_1.gcode: there are two with that name", plate, plate)
         made("none.3mf", "a zip archive without G-code", ("3D/3dmodel.model", "<model/>"))
-        made("bomb.3mf", "entry Metadata/plate_1.gcode: it announces 300 MiB", (plate[0], b"G" * (300 << 20)))
+        made("bomb.3mf", "entry Metadata/plate_1.gcode: it states 300 MiB", (plate[0], b"G" * (300 << 20)))
         made("text.3mf", "Metadata/plate_1.gcode", (plate[0], "nothing"))
         cases["cut.3mf"] = (good[:-30], "has no directory")
         cases["other.3mf"] = (b"\x7fELF\0\0\0", "does not begin as a zip archive")

@@ -37,7 +37,7 @@ TEST(ParseInput, ErrorsAreOneLineWithTheName) {
   EXPECT_EQ(error("", "a.damat"), "a.damat: the file is empty");
   EXPECT_EQ(error(" \r\n", "-"), "standard input: the file is empty");
   EXPECT_EQ(error("hello", "a"),
-            "a: neither its content nor its name is DAMAT, G-code, JSON, protobuf or GTSPLIB");
+            "a: neither its content nor its name says DAMAT, G-code, JSON, protobuf or GTSPLIB");
   EXPECT_EQ(error("hello", "a.damat"), "a.damat:1: not a DAMAT record: \"hello\"");
   EXPECT_EQ(error(std::string("\n\x00\x01", 3), "a.damat"),
             "a.damat:2: not a DAMAT record: \"??\"");

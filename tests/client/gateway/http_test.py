@@ -160,7 +160,7 @@ class Files(unittest.TestCase):
 
     def test_forms_that_are_wrong(self):
         two, headers = form([("file", "a.gcode", PART), ("file", "b.gcode", PART)])
-        self.refused(400, "one is expected", self.post("/v1/gcode", two, headers))
+        self.refused(400, "send one", self.post("/v1/gcode", two, headers))
         body, headers = form([("file", "a.gcode", PART), ("colour", "red")])
         self.refused(400, "colour", self.post("/v1/gcode", body, headers))
         body, headers = form([("policy", "safe")])

@@ -201,7 +201,7 @@ class Uploads(unittest.TestCase):
         gateway = self.start()
         status, _, body = self.send(gateway, b"solid a\n", path="/printers/strict/api/files/local")
         self.assertEqual(status, 422)
-        self.assertIn("optimised files alone", detail(body))
+        self.assertIn("only optimised files", detail(body))
         self.assertEqual(self.printer.uploads, [])
 
     def test_a_file_with_our_line_goes_on_as_it_is(self):

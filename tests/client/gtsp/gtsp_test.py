@@ -85,7 +85,7 @@ class Gtsp(unittest.TestCase):
                 text = file.read()
             for wrong, fault in [
                     (text.replace("3 6 7 -1", "3 6 7 1 -1"), f"{name}:22: point 1 is in set 1 and in set 3"),
-                    (text.replace("TYPE: GTSP", "TYPE: TSP"), f'{name}:2: TYPE is "TSP": only GTSP is read'),
+                    (text.replace("TYPE: GTSP", "TYPE: TSP"), f'{name}:2: TYPE is "TSP", but only GTSP is supported'),
                     (text[:text.index("4 8 9")], f"{name}:22: GTSP_SETS is 4, but there are 3 sets: is the file cut short?"),
                     ("", f"{name}: the file is empty")]:
                 with open(name, "w", encoding="utf-8") as file:

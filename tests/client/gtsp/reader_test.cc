@@ -87,24 +87,24 @@ TEST(GtspReader, OneSetIsATourOfOnePoint) {
 
 TEST(GtspReader, NamesTheLineOfEachFaultInTheHead) {
   EXPECT_EQ(ErrorWith("TYPE : GTSP", "TYPE : AGTSP"),
-            "a.gtsp:2: TYPE is \"AGTSP\": only GTSP is read");
+            "a.gtsp:2: TYPE is \"AGTSP\", but only GTSP is supported");
   EXPECT_EQ(ErrorWith("EUC_2D", "EXPLICIT"),
-            "a.gtsp:5: EDGE_WEIGHT_TYPE is \"EXPLICIT\": only EUC_2D is read");
+            "a.gtsp:5: EDGE_WEIGHT_TYPE is \"EXPLICIT\", but only EUC_2D is supported");
   EXPECT_EQ(ErrorWith("DIMENSION : 3", "DIMENSION : -3"),
-            "a.gtsp:3: DIMENSION is \"-3\": a whole number from 1 is due");
+            "a.gtsp:3: DIMENSION is \"-3\", but must be a whole number of at least 1");
   EXPECT_EQ(ErrorWith("DIMENSION : 3", "DIMENSION : 3000000000"),
-            "a.gtsp:3: DIMENSION is 3000000000, the file is too short for so many");
+            "a.gtsp:3: DIMENSION is 3000000000, but the file is too short for so many");
   EXPECT_EQ(ErrorWith("NAME : two\n", "NAME : two\nNAME : three\n"),
             "a.gtsp:2: second \"NAME\", after line 1");
   EXPECT_EQ(ErrorWith("GTSP_SETS : 2\n", ""), "a.gtsp:5: NODE_COORD_SECTION before GTSP_SETS");
   EXPECT_EQ(ErrorWith("NAME :", "EDGE_WEIGHT_SECTION"),
-            "a.gtsp:1: \"EDGE_WEIGHT_SECTION\" is no key of a GTSPLIB file that is read");
+            "a.gtsp:1: \"EDGE_WEIGHT_SECTION\" is not a supported key of a GTSPLIB file");
   EXPECT_EQ(ErrorWith("NAME : two", "1 2 3"), "a.gtsp:1: a number outside a section");
 }
 
 TEST(GtspReader, NamesTheLineOfEachFaultInThePoints) {
-  EXPECT_EQ(ErrorWith("2 3 4\n", "2 3\n"), "a.gtsp:8: a point has a number, x and y");
-  EXPECT_EQ(ErrorWith("2 3 4\n", "2 3 4 5\n"), "a.gtsp:8: a point has a number, x and y");
+  EXPECT_EQ(ErrorWith("2 3 4\n", "2 3\n"), "a.gtsp:8: a point needs a number, x and y");
+  EXPECT_EQ(ErrorWith("2 3 4\n", "2 3 4 5\n"), "a.gtsp:8: a point needs a number, x and y");
   EXPECT_EQ(ErrorWith("2 3 4\n", "1 3 4\n"), "a.gtsp:8: second point 1");
   EXPECT_EQ(ErrorWith("2 3 4\n", "4 3 4\n"), "a.gtsp:8: point 4 is not among 1 to DIMENSION, 3");
   EXPECT_EQ(ErrorWith("2 3 4\n", "2 nan 4\n"), "a.gtsp:8: point 2 is not within +-1e6");
@@ -123,7 +123,7 @@ TEST(GtspReader, NamesTheLineOfEachFaultInTheSets) {
   EXPECT_EQ(ErrorWith("2 2 3 -1", "2 -1"), "a.gtsp:12: set 2 has no point");
   EXPECT_EQ(ErrorWith("2 2 3 -1", "2 2 4 -1"),
             "a.gtsp:12: point 4 of set 2 is not among 1 to DIMENSION, 3");
-  EXPECT_EQ(ErrorWith("2 2 3 -1", "2 2 3.5 -1"), "a.gtsp:12: \"3.5\" is no whole number");
+  EXPECT_EQ(ErrorWith("2 2 3 -1", "2 2 3.5 -1"), "a.gtsp:12: \"3.5\" is not a whole number");
   EXPECT_EQ(ErrorWith("2 2 3 -1", "2 2 3"), "a.gtsp:13: set 2 does not end with -1");
 }
 

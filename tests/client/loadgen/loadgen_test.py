@@ -36,14 +36,14 @@ class Loadgen(unittest.TestCase):
         cases = [
             (["--rate=1"], "traverse-loadgen: --target=HOST:PORT is missing"),
             (["--target=x", "--rate=1"], "traverse-loadgen: --target: \"x\" is not HOST:PORT"),
-            ([self.target], "traverse-loadgen: say --rate=JOBS_PER_SECOND, or --in_flight=N for a closed loop"),
+            ([self.target], "traverse-loadgen: give --rate=JOBS_PER_SECOND, or --in_flight=N for a closed loop"),
             ([self.target, "--rate=0"], "traverse-loadgen: --rate=0: not a number from 0.001 to 100000"),
             ([self.target, "--rat=1"], "traverse-loadgen: unknown flag --rat; did you mean --rate?"),
             ([self.target, "--rate=1", "--mix=1:x"],
              "traverse-loadgen: --mix: \"1:x\" is not LAYERS:WEIGHT, such as 10:25"),
             ([self.target, "--rate=1", "--arrivals=odd"],
              "traverse-loadgen: --arrivals=odd: not one of even, poisson"),
-            ([self.target, "--rate=1", "more"], "traverse-loadgen: \"more\" is too much"),
+            ([self.target, "--rate=1", "more"], "traverse-loadgen: unexpected argument \"more\""),
         ]
         for arguments, message in cases:
             with self.subTest(arguments):
@@ -58,7 +58,7 @@ class Loadgen(unittest.TestCase):
         code, out, err = run(self.target, *example[1:], "--duration=300ms", "--warm_up=1ms")
         self.assertEqual((code, err), (DONE, ""))
         self.assertRegex(out, r"\n1 +\d+ +\d+")
-        self.assertIn("Latency counts from when a job was meant to be sent", out)
+        self.assertIn("Latency counts from when a job was due to be sent", out)
 
     def test_document(self):
         with tempfile.TemporaryDirectory() as folder:

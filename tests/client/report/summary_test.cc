@@ -19,7 +19,7 @@ TEST(OptimizeSummary, SaysWhatWasGained) {
 
   EXPECT_THAT(text, HasSubstr("2 layers, exact, 1.5 s\n"));
   EXPECT_THAT(text, HasSubstr("travel   220.0 mm -> 160.0 mm  (27.3 % less)\n"));
-  EXPECT_THAT(text, HasSubstr("gap      20.0 % to a proven bound\n"));
+  EXPECT_THAT(text, HasSubstr("gap      20.0 % to a proven lower bound\n"));
   EXPECT_THAT(text, HasSubstr("ended    OPTIMAL 1\n"));
 }
 

@@ -54,7 +54,7 @@ TEST(CheckPlan, NamesBadEntries) {
 TEST(CheckPlan, NamesTheNodeOutsideTheTree) {
   Plan plan = TwoLeaves();
   plan.nodes[0].children = {1};
-  EXPECT_EQ(Fault(plan), "nodes[2]: is no node's child");
+  EXPECT_EQ(Fault(plan), "nodes[2]: is not the child of any node");
 
   plan.nodes[0].children = {1, 1};
   EXPECT_EQ(Fault(plan), "nodes[0].any_order.children[1]: nodes[1] already has a parent");
@@ -70,10 +70,10 @@ TEST(CheckPlan, NamesThePathUsedTwiceOrNever) {
 
   plan = TwoLeaves();
   plan.paths.push_back(MakeContour({{0, 0}}));
-  EXPECT_EQ(Fault(plan), "paths[2]: is no node's path");
+  EXPECT_EQ(Fault(plan), "paths[2]: is not the path of any node");
 
   plan.nodes.clear();
-  EXPECT_EQ(Fault(plan), "nodes: empty, although there are paths");
+  EXPECT_EQ(Fault(plan), "nodes: empty, but there are paths");
 }
 
 TEST(CheckPlan, NamesTheCycle) {

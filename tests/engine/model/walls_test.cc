@@ -34,7 +34,7 @@ TEST(CheckWalls, NamesThePlaceOfAFault) {
   EXPECT_EQ(fault({{}, {}, {}, {{0, 2, 1}}}), "known_moves[0]: there is no path 2");
   EXPECT_EQ(fault({{}, {}, {}, {{0, 1, 1}, {0, 1, NAN}}}), "known_moves[1].seconds: not a time");
   EXPECT_EQ(fault({{}, {}, {}, {{0, 1, 1}, {1, 0, 1}, {0, 1, 1}}}),
-            "known_moves: 3 are more than there are paths, 2");
+            "known_moves: 3 are more than the plan has paths, 2");
 }
 
 }  // namespace

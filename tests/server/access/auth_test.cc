@@ -123,7 +123,7 @@ TEST(Authenticator, FileIsReadAgainWhenItChanges) {
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));
   EXPECT_OK(auth->Identify(Bearer("new")));
   EXPECT_THAT(auth->Identify(Bearer("old")),
-              StatusIs(absl::StatusCode::kUnauthenticated, HasSubstr("not known")));
+              StatusIs(absl::StatusCode::kUnauthenticated, HasSubstr("unknown")));
 
   file.Write("not a token file\n");
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));
@@ -150,7 +150,7 @@ TEST(Authenticator, CertificatesNameTheCallerAndMayBeRestricted) {
               StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("other.example")));
   for (const char* similar : {"farm", "farm.example.org", "a.farm.example", "FARM.example", ""}) {
     EXPECT_THAT(some->Identify({"", {similar}, "h"}),
-                StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("not among")))
+                StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("not one that may call")))
         << similar;
   }
   EXPECT_THAT(some->Identify({"", {}, "h"}),

@@ -100,7 +100,7 @@ TEST_F(AdmissionTest, NoCallerFillsTheWholeQueue) {
   auto first = admission.Admit("a", 60);
 
   EXPECT_THAT(admission.Admit("a", 60),
-              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("this caller's part")));
+              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("this caller's share")));
   EXPECT_OK(admission.Admit("b", 60));
   EXPECT_THAT(refusals_, ElementsAre("caller_queue"));
 

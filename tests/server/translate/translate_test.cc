@@ -325,7 +325,7 @@ TEST(TranslateLayer, FaultsOfWallsAreNamedByTheirPlace) {
       {"walls { points: [1, 2, 3, 1e7] }", "layers[3].walls[0].points[1].y: 1e+07 is not from"},
       {"walls { path: 2 }", "layers[3].walls[0].path: there is no path 2"},
       {"walls { path: 4000000000 }", "layers[3].walls[0].path: 4"},
-      {"walls { path: 1 }", "layers[3].walls[0].points: none, and the path named is no contour"},
+      {"walls { path: 1 }", "layers[3].walls[0].points: none, and the named path is not a contour"},
       {"exposed_paths: [0, 2]", "layers[3].exposed_paths[1]: there is no path 2"},
       {"retracted_paths: [2]", "layers[3].retracted_paths[0]: there is no path 2"},
       {"retracted_paths: [4000000000]", "layers[3].retracted_paths[0]: 4"},
@@ -334,7 +334,7 @@ TEST(TranslateLayer, FaultsOfWallsAreNamedByTheirPlace) {
       {"known_moves { seconds: -1 }", "layers[3].known_moves[0].seconds: -1 is not from 0 to 1"},
       {"known_moves { seconds: nan }", "layers[3].known_moves[0].seconds: not finite"},
       {"known_moves {} known_moves {} known_moves {}",
-       "layers[3].known_moves: 3 are more than there are paths"},
+       "layers[3].known_moves: 3 are more than the plan has paths"},
   };
   for (const BadCase& bad : cases) {
     const std::string layer = absl::StrCat(

@@ -71,16 +71,16 @@ TEST(StrategySpec, OptionsGoToWhomTheyFitButOverrideNothing) {
 TEST(StrategySpec, ErrorsSayWhatWasMeant) {
   EXPECT_EQ(ErrorOf("tabo"),
             "unknown strategy \"tabo\"; did you mean tabu? (`traverse strategies` lists them)");
-  EXPECT_EQ(ErrorOf(""), "\"\" names no strategy");
-  EXPECT_EQ(ErrorOf("none,,tabu"), "\"none,,tabu\" names no strategy");
+  EXPECT_EQ(ErrorOf(""), "\"\" does not name a strategy");
+  EXPECT_EQ(ErrorOf("none,,tabu"), "\"none,,tabu\" does not name a strategy");
   EXPECT_EQ(ErrorOf("tabu:"), "option \"\" is not NAME=VALUE");
   EXPECT_EQ(ErrorOf("tabu:polsh"), "tabu has no option \"polsh\"; did you mean polish?");
   EXPECT_EQ(ErrorOf("tabu:=1"), "option \"=1\" is not NAME=VALUE");
   EXPECT_EQ(ErrorOf("tabu:polsh=1"), "tabu has no option \"polsh\"; did you mean polish?");
   EXPECT_EQ(ErrorOf("none", {{"tenure", "5"}}),
-            "--option=tenure: no strategy asked for has this option");
+            "--option=tenure: none of the strategies has this option");
   EXPECT_EQ(ErrorOf("none,tabu", {{"tenur", "5"}}),
-            "--option=tenur: no strategy asked for has this option; did you mean tenure?");
+            "--option=tenur: none of the strategies has this option; did you mean tenure?");
 }
 
 }  // namespace

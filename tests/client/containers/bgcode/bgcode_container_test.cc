@@ -258,17 +258,17 @@ TEST(Bgcode, SaysWhichBlockIsAtFault) {
   const size_t gcode = MakeFile(plain, "").size();
   const std::string at = "block 6 at offset " + std::to_string(gcode) + ": ";
   const std::vector<BadFile> cases = {
-      {"version", WithU32(bytes, 4, 2), "version 2 is not known"},
-      {"checksum kind", WithU16(bytes, 8, 7), "checksums of kind 7 are not known"},
+      {"version", WithU32(bytes, 4, 2), "version 2 is unknown"},
+      {"checksum kind", WithU16(bytes, 8, 7), "checksum type 7 is unknown"},
       {"announced", WithU32(bytes, 14, 0xffffffff),
-       "block 1 at offset 10 announces 4294967295 bytes"},
+       "block 1 at offset 10 states 4294967295 bytes"},
       {"announced G-code", WithU32(bytes, gcode + 4, 0xfffffff0),
-       "announces 4294967280 bytes of G-code"},
-      {"compression", WithU16(MakeFile(shrunk), gcode + 2, 9), "compression 9 is not known"},
-      {"encoding", WithU16(bytes, gcode + 8, 3), "encoding 3 of G-code is not known"},
+       "states 4294967280 bytes of G-code"},
+      {"compression", WithU16(MakeFile(shrunk), gcode + 2, 9), "compression 9 is unknown"},
+      {"encoding", WithU16(bytes, gcode + 8, 3), "encoding 3 of G-code is unknown"},
       {"size of heatshrink", WithU32(MakeFile(shrunk), gcode + 4, 0x10000),
        "cannot be 65536 bytes"},
-      {"size of deflate", WithU32(MakeFile(deflated), gcode + 4, 500), "and 500 are announced"},
+      {"size of deflate", WithU32(MakeFile(deflated), gcode + 4, 500), "but the file states 500"},
       {"trailing bytes", bytes + "tail", "block 7 at offset"},
   };
   for (const BadFile& bad : cases) {

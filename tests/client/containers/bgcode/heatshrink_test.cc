@@ -66,7 +66,7 @@ TEST(Heatshrink, RefusesDataThatEndEarlyOrGoOn) {
   EXPECT_THAT(HeatshrinkDecompress(packed.substr(0, 20), {12, 4}, 37),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("too early")));
   EXPECT_THAT(HeatshrinkDecompress(packed + "more", {12, 4}, 37),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("behind their end")));
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("after their end")));
 }
 
 TEST(Heatshrink, TakesNoMemoryForASizeThatCannotBe) {

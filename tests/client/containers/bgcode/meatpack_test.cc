@@ -88,7 +88,7 @@ TEST(MeatPack, RefusesWhatEndsEarlyOrIsNotKnown) {
   EXPECT_THAT(MeatUnpack("\xff\xff"s, kPlenty, out),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("too early")));
   EXPECT_THAT(MeatUnpack("\xff\xff\x10"s, kPlenty, out),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("command 16 is not known")));
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("command 16 is unknown")));
   EXPECT_THAT(MeatUnpack("plain text", 5, out),
               StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("too much")));
 }

@@ -38,7 +38,7 @@ TEST(Zip, RefusesTwoEntriesOfOneName) {
   entries.push_back({.name = "Metadata/plate_1.gcode", .content = "G28\n"});
   EXPECT_THAT(Open(MakeZip(entries).bytes),
               StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("entry Metadata/plate_1.gcode: there are two of that name")));
+                       HasSubstr("entry Metadata/plate_1.gcode: there are two with that name")));
 }
 
 TEST(Zip, RefusesEncryptedEntries) {
@@ -56,7 +56,7 @@ TEST(Zip, RefusesUnknownCompression) {
   ASSERT_OK(container);
   EXPECT_THAT((*container)->Text(0),
               StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("entry Metadata/plate_1.gcode: compression 93 is not known")));
+                       HasSubstr("entry Metadata/plate_1.gcode: compression 93 is unknown")));
 }
 
 TEST(Zip, RefusesZip64) {
@@ -81,9 +81,9 @@ TEST(Zip, RefusesSizesThatLie) {
   };
   EXPECT_THAT(Open(lies(20, 18, 0xf0000000)),
               StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("entry Metadata/plate_1.gcode: it announces 4026531840 bytes")));
+                       HasSubstr("entry Metadata/plate_1.gcode: it states 4026531840 bytes")));
   EXPECT_THAT(Open(lies(24, 22, 0xf0000000)),
-              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("it announces 3840 MiB")));
+              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("it states 3840 MiB")));
   const auto large = Open(lies(24, 22, 0x2000000));
   ASSERT_OK(large);
   EXPECT_THAT((*large)->Text(0),
@@ -95,7 +95,7 @@ TEST(Zip, RefusesABomb) {
   const std::string bytes = MakeZip({{.name = "Metadata/plate_1.gcode", .content = zeros}}).bytes;
   ASSERT_LT(bytes.size(), size_t{1} << 18);
   EXPECT_THAT(Open(bytes), StatusIs(absl::StatusCode::kResourceExhausted,
-                                    HasSubstr("announces 100 MiB, which makes 100 MiB of G-code")));
+                                    HasSubstr("states 100 MiB, which makes 100 MiB of G-code")));
 }
 
 TEST(Zip, RefusesEntriesThatLieOverEachOther) {
@@ -105,7 +105,7 @@ TEST(Zip, RefusesEntriesThatLieOverEachOther) {
   // The second record's data are the first one's.
   StoreU32(bytes, zip.record[1] + 42, static_cast<uint32_t>(zip.local[0]));
   EXPECT_THAT(Open(bytes), StatusIs(absl::StatusCode::kInvalidArgument,
-                                    HasSubstr("its local header is not what the directory says")));
+                                    HasSubstr("its local header differs from the directory")));
 }
 
 TEST(Zip, RefusesAFileThatIsCutShortAnywhere) {

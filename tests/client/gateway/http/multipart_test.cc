@@ -71,9 +71,9 @@ TEST(Multipart, SaysWhatIsWrong) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {Part("name=a", "1"), "cut short"},
       {"", "cut short"},
-      {"--b\r\n\r\nx\r\n--b--", "no form data"},
-      {"--b\r\nContent-Type: text/plain\r\n\r\nx\r\n--b--", "no form data"},
-      {"--b\r\nContent-Disposition: attachment; name=a\r\n\r\nx\r\n--b--", "no form data"},
+      {"--b\r\n\r\nx\r\n--b--", "not form data"},
+      {"--b\r\nContent-Type: text/plain\r\n\r\nx\r\n--b--", "not form data"},
+      {"--b\r\nContent-Disposition: attachment; name=a\r\n\r\nx\r\n--b--", "not form data"},
       {"--b\r\nContent-Disposition: form-data\r\n\r\nx\r\n--b--", "has no name"},
       {"--b\r\nContent-Disposition: form-data; name=\"a\r\n\r\nx\r\n--b--", "cannot be read"},
       {"--b\r\nContent-Disposition: form-data; name=a; name=b\r\n\r\nx\r\n--b--", "cannot be read"},

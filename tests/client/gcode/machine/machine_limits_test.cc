@@ -82,13 +82,13 @@ TEST(MachineLimits, OfKlipperBeforeThereWasACruiseRatio) {
 
 TEST(MachineLimits, FaultsOfKlipperNameTheLine) {
   EXPECT_EQ(FaultOf("[printer]\nmax_velocity: fast\nmax_accel: 1\n"),
-            "printer.cfg:2: max_velocity: \"fast\" is no number above 0, at most 1e9");
+            "printer.cfg:2: max_velocity: \"fast\" is not a number above 0 and up to 1e9");
   for (const char* bad : {"0", "-1", "nan", "inf", "1e10", "", "300 mm"}) {
     const std::string text = absl::StrFormat("[printer]\nmax_velocity: 3\nmax_accel: %s\n", bad);
     EXPECT_EQ(FaultOf(text).find("printer.cfg:3: max_accel: "), 0u) << bad;
   }
   EXPECT_EQ(FaultOf(std::string(kPrinter) + "minimum_cruise_ratio: 1\n"),
-            "printer.cfg:8: minimum_cruise_ratio: \"1\" is no number from 0 to below 1");
+            "printer.cfg:8: minimum_cruise_ratio: \"1\" is not a number from 0 to below 1");
   EXPECT_EQ(FaultOf("[printer\n"), "printer.cfg:1: a section without a ]");
   EXPECT_EQ(FaultOf("[printer]\nmax_accel: 1\n"), "printer.cfg: [printer] has no max_velocity");
   EXPECT_EQ(FaultOf("[include machine.cfg]\n[printer]\nmax_velocity: 1\n"),
@@ -122,7 +122,7 @@ TEST(MachineLimits, OfMarlin) {
 
 TEST(MachineLimits, FaultsOfMarlin) {
   EXPECT_EQ(FaultOf("M203 X200\nM201 X0\n"),
-            "printer.cfg:2: M201 X: no number above 0, at most 1e9");
+            "printer.cfg:2: M201 X: not a number above 0 and up to 1e9");
   EXPECT_EQ(FaultOf("M204 P1000 P2000\n"), "printer.cfg:1: M204: its words cannot be read");
   EXPECT_EQ(FaultOf("M203 X200\nfast\n"), "printer.cfg:2: neither a command nor a comment");
   const char* neither =

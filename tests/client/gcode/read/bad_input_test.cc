@@ -63,7 +63,7 @@ TEST(BadInput, UnknownCommandsAndMacrosAreFences) {
     ExpectEquivalent(text);
     const auto file = *ReadGcode(text, "odd");
     const LayerPlan planned = MakeLayerPlan(*file, file->layers[0], Policy::kFree);
-    // Where the head is behind `G28 X` is not known; behind the others travel sets two paths free.
+    // Where the head is behind `G28 X` is unknown; behind the others travel sets two paths free.
     EXPECT_EQ(planned.movable, odd[0] == 'G' ? 0 : 2) << odd;
   }
 }

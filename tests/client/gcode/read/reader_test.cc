@@ -93,9 +93,9 @@ TEST(ReadGcode, NamesThePlaceOfAFault) {
   EXPECT_THAT(Fault("M83\rG1 X5 E1\r"), HasSubstr("carriage returns alone"));
   EXPECT_EQ(Fault("G28\r\nG1 X5\r\n"), "part.gcode: no extruding move");
   EXPECT_EQ(Fault("N1 G28*18\nN2 G1 X5 E1*3\n"),
-            "part.gcode:2: its number or checksum is not what those of the other lines lead to");
+            "part.gcode:2: its number or checksum does not follow from those of the other lines");
   EXPECT_EQ(Fault("G28\nN1 G1 X5 E1\nN2 G1 X6 E1\nN4 G1 X7 E1\n"),
-            "part.gcode:4: its number or checksum is not what those of the other lines lead to");
+            "part.gcode:4: its number or checksum does not follow from those of the other lines");
 }
 
 TEST(ReadGcode, NumberedLinesAreReadWithoutTheirNumbers) {
