@@ -78,7 +78,7 @@ Outcome RunVerify(const Flags& flags) {
   if (!report->ok()) return InputFault(FaultOf(*report));
   if (!flags.Switch("quiet")) {
     Print(json == "-" ? stderr : stdout,
-          absl::StrFormat("%s prints what %s prints (policy %s)\n", shown_optimised, shown_original,
+          absl::StrFormat("%s prints the same as %s (policy %s)\n", shown_optimised, shown_original,
                           DescribePermissions(report->permissions)));
   }
   return Done();

@@ -12,21 +12,21 @@ struct RuleWords {
 
 constexpr RuleWords kRules[] = {
     {"same_print", "the same is printed under the same conditions"},
-    {"whole_paths", "what adjoins in a path stays adjoined"},
+    {"whole_paths", "adjoining segments of a path stay together"},
     {"order", "paths side by side keep their order"},
     {"direction", "visible walls keep their direction"},
     {"seam", "outer walls keep their seam"},
-    {"open_ways", "no more or longer open ways across outer walls"},
-    {"lifts", "ways are lifted as such ways are"},
-    {"retractions", "filament is pulled back and returned as in the original"},
-    {"standstill", "filament pushed at a standstill is the same"},
-    {"speeds", "speed and acceleration are those of such moves"},
-    {"wipes", "a wipe lies on its path, and no wipe is lost"},
-    {"commands", "no command comes into a path, and none is in vain"},
+    {"open_ways", "no more, and no longer, travel across outer walls without a retraction"},
+    {"lifts", "travel is lifted as such travel is in the original"},
+    {"retractions", "retractions and primes are those of the original"},
+    {"standstill", "extra filament pushed at a standstill is the same"},
+    {"speeds", "moves have the speeds and accelerations of their kind"},
+    {"wipes", "wipes lie on their paths, and none is lost"},
+    {"commands", "no command moves into a path, and none is without effect"},
     {"progress", "the sequence of M73 is the same"},
-    {"scripts", "nothing of the scripts comes between paths"},
-    {"path_ends", "what goes on along the end of a path stays with it"},
-    {"bounds", "no way leads out of the room that the original moves in"},
+    {"scripts", "nothing from the scripts comes between paths"},
+    {"path_ends", "moves that continue along a path stay with its end"},
+    {"bounds", "no travel leaves the area in which the original moves"},
 };
 static_assert(std::size(kRules) == static_cast<size_t>(VerifyRule::kCount));
 

@@ -39,7 +39,7 @@ std::optional<Odd> FirstOdd(const Side& a, const Side& b, size_t index, bool dep
 
 VerifyBreak MultisetDifference(const Side& original, const Side& optimised, size_t index,
                                bool deposits) {
-  const char* what = deposits ? "prints" : "has";
+  const char* what = deposits ? "print" : "have";
   const char* under = deposits ? " under the same conditions" : "";
   const auto differ = [&](const Side& a, const Side& b, const Odd& odd) {
     const Section& section = b.cut.sections[index];
@@ -47,9 +47,9 @@ VerifyBreak MultisetDifference(const Side& original, const Side& optimised, size
     const bool is = &a == &optimised;
     return VerifyBreak{
         VerifyRule::kSamePrint, is ? first : odd.number, is ? odd.number : first, -1,
-        absl::StrFormat("%s:%d: `%s` %s what lines %d to %d of %s do not%s", a.name, odd.number,
-                        odd.text, what, first, deposits ? section.last_line : section.last_note,
-                        b.name, under)};
+        absl::StrFormat("%s:%d: lines %d to %d of %s do not %s `%s`%s", a.name, odd.number, first,
+                        deposits ? section.last_line : section.last_note, b.name, what, odd.text,
+                        under)};
   };
   if (const std::optional<Odd> odd = FirstOdd(optimised, original, index, deposits)) {
     return differ(optimised, original, *odd);
@@ -67,11 +67,13 @@ std::optional<VerifyBreak> CompareEnds(const Side& original, const Side& optimis
                        absl::StrFormat("%s:%d: %s at %s:%d", optimised.name, is.last_line, what,
                                        original.name, was.last_line)};
   };
-  if (was.fence != is.fence || was.fixed != is.fixed) return differ("not the line that stands");
-  if (was.fan != is.fan) return differ("the fan is not as");
-  if (was.settings != is.settings) return differ("other settings hold than");
-  if (was.x != is.x || was.y != is.y || was.z != is.z) return differ("the head is not where it is");
-  if (!was.label && was.retracted != is.retracted) return differ("filament is not pulled back as");
+  if (was.fence != is.fence || was.fixed != is.fixed)
+    return differ("a different line from the one");
+  if (was.fan != is.fan) return differ("the fan differs from that");
+  if (was.settings != is.settings) return differ("the settings differ from those");
+  if (was.x != is.x || was.y != is.y || was.z != is.z) return differ("the head is elsewhere than");
+  if (!was.label && was.retracted != is.retracted)
+    return differ("the retraction differs from that");
   return std::nullopt;
 }
 
@@ -110,27 +112,27 @@ std::optional<VerifyBreak> FirstDifference(const Side& original, const Side& opt
     if (was.header != is.header) {
       return VerifyBreak{
           VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
-          absl::StrFormat("%s:%d: other comments stand behind the mark of the layer "
-                          "than at %s:%d",
-                          optimised.name, is.first_line, original.name, was.first_line)};
+          absl::StrFormat(
+              "%s:%d: the comments after the mark of the layer differ from those at %s:%d",
+              optimised.name, is.first_line, original.name, was.first_line)};
     }
     // Where paths change places, what is said of them does so too.
     const bool ordered = was.deposits.count == 0 || i < original.cut.of_script;
     if ((was.sequence != is.sequence && ordered) ||
         (was.order == is.order && was.said != is.said)) {
-      return VerifyBreak{VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
-                         absl::StrFormat("%s:%d: the comments of lines %d to %d stand in another "
-                                         "order in %s",
-                                         optimised.name, is.first_line, was.first_line,
-                                         was.last_line, original.name)};
+      return VerifyBreak{
+          VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
+          absl::StrFormat("%s:%d: the order of the comments differs from lines %d to %d of %s",
+                          optimised.name, is.first_line, was.first_line, was.last_line,
+                          original.name)};
     }
     if (was.moves != is.moves && IsScript(original.cut, i, end_of_print)) {
       return VerifyBreak{
           VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
-          absl::StrFormat("%s:%d: lines %d to %d, which are of a script, move otherwise than lines "
-                          "%d to %d of %s",
-                          optimised.name, is.first_line, is.first_line, is.last_line,
-                          was.first_line, was.last_line, original.name)};
+          absl::StrFormat(
+              "%s:%d: lines %d to %d of a script move differently from lines %d to %d of %s",
+              optimised.name, is.first_line, is.first_line, is.last_line, was.first_line,
+              was.last_line, original.name)};
     }
     if (is.lowest < was.lowest) {
       return VerifyBreak{
@@ -145,7 +147,7 @@ std::optional<VerifyBreak> FirstDifference(const Side& original, const Side& opt
   const size_t line = longer.cut.sections[common].first_line;
   return VerifyBreak{
       VerifyRule::kSamePrint, &longer == &original ? line : 0, &longer == &optimised ? line : 0, -1,
-      absl::StrFormat("%s:%d: goes on where %s ends", longer.name, line, shorter.name)};
+      absl::StrFormat("%s:%d: continues where %s ends", longer.name, line, shorter.name)};
 }
 
 }  // namespace traverse::gcode

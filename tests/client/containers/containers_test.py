@@ -157,7 +157,7 @@ class Bgcode(Containers):
                                  sorted(line for line in commands(after.text()) if line.startswith("M")))
                 self.optimize(self.path("original.bgcode"), "-o", self.path("text.gcode"))
                 self.assertEqual(commands(read(self.path("text.gcode")).decode()), commands(after.text()))
-                self.assertIn("prints what", self.succeed("verify", path, self.path("text.gcode")))
+                self.assertIn("prints the same as", self.succeed("verify", path, self.path("text.gcode")))
 
     def test_text_and_binary_are_the_same_print(self):
         text = self.put("part.gcode", sliced())

@@ -61,8 +61,9 @@ void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped, LayerFin
     if (excess <= kLeastExcessMm || LeadsAroundAWall(layer, *last, move)) continue;
     findings.breaks.push_back(
         {VerifyRule::kBounds, 0, last->line, layer.index(),
-         absl::StrFormat("a way is %.2f mm longer for a bend that leads around no outer wall",
-                         excess)});
+         absl::StrFormat(
+             "travel is %.2f mm longer because of a bend that leads around no outer wall",
+             excess)});
   }
 }
 
@@ -121,7 +122,7 @@ void CompareBounds(const Observations& was, const Observations& is, std::vector<
     if (off <= kSlackMm) continue;
     breaks.push_back(
         {VerifyRule::kBounds, 0, far.line, far.layer,
-         absl::StrFormat("leads %.2f mm out of the room that the original moves in", off)});
+         absl::StrFormat("leads %.2f mm out of the area in which the original moves", off)});
   }
 }
 

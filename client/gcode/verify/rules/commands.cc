@@ -58,9 +58,9 @@ void CheckCommands(const LayerPair& layer, LayerFindings& findings) {
     learnt = true;
     const uint32_t segment = path.first_segment + behind;
     if (places.contains(Mix(command.name, segment))) continue;
-    findings.breaks.push_back({VerifyRule::kCommands, was.segments[segment].line, command.line,
-                               layer.index(),
-                               "a command within a path, between segments that have none"});
+    findings.breaks.push_back(
+        {VerifyRule::kCommands, was.segments[segment].line, command.line, layer.index(),
+         "a command between two segments of a path that have none between them in the original"});
   }
 }
 
@@ -74,7 +74,7 @@ void CheckSetBacks(const TraceChunk& was, const TraceChunk& is, std::vector<Find
     auto& [count, line] = had[event.section];
     if (count-- > 0) continue;
     breaks.push_back({VerifyRule::kCommands, line, event.line, -1,
-                      "a value is set and set back without a move between"});
+                      "a value is set and reset without a move in between"});
   }
 }
 

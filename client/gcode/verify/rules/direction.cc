@@ -20,7 +20,7 @@ void CheckDirection(const LayerPair& layer, const RuleContext& context, LayerFin
     if (layer.Closed(visit.path) && may_turn) continue;
     findings.breaks.push_back({VerifyRule::kDirection, layer.was().LineOf(path),
                                layer.is().segments[visit.first_segment].line, layer.index(),
-                               absl::StrFormat("this %s is printed the other way round",
+                               absl::StrFormat("this %s is printed in the opposite direction",
                                                std::string(PathClassName(path_class)))});
   }
 }

@@ -244,11 +244,10 @@ void CompareKind(const Observations& was, const Observations& is, size_t kind,
     const bool never = height.apex_mm < habit.least_mm - kHeightSlackMm;
     if (!ends_low && !lies_low && !never) continue;
     if (WasAsLow(was.lifts, is.lifts, way, kind, habit.least_mm)) continue;
-    breaks.push_back(
-        {VerifyRule::kLifts, habit.least_line, way.line, way.layer,
-         absl::StrFormat("%.2f of %.2f mm of this way lie lower than %.2f mm above the "
-                         "layer, the least lift of %s",
-                         low, height.length_mm, habit.least_mm, KindText(kind))});
+    breaks.push_back({VerifyRule::kLifts, habit.least_line, way.line, way.layer,
+                      absl::StrFormat("%.2f of %.2f mm of this travel lie lower than %.2f mm above "
+                                      "the layer, the least lift of %s",
+                                      low, height.length_mm, habit.least_mm, KindText(kind))});
   }
 }
 
@@ -273,9 +272,10 @@ void CompareLifts(const Observations& was, const Observations& is, std::vector<F
     known |=
         stated.slope > 0 && stated.um <= highest && Knows(was.slopes, stated.slope, kSlopeSlackUm);
     if (known) continue;
-    breaks.push_back({VerifyRule::kLifts, 0, stated.line, stated.layer,
-                      absl::StrFormat("a way goes %.3f mm above the layer, as none of the original",
-                                      static_cast<double>(stated.um) / 1000)});
+    breaks.push_back(
+        {VerifyRule::kLifts, 0, stated.line, stated.layer,
+         absl::StrFormat("travel rises %.3f mm above the layer, as none does in the original",
+                         static_cast<double>(stated.um) / 1000)});
   }
 }
 

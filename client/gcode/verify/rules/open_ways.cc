@@ -59,15 +59,15 @@ void CheckOpenWays(const LayerPair& layer, LayerFindings& findings) {
     if (longest != was.end() && way.length_mm > longest->length_mm + kSlackMm) {
       findings.breaks.push_back(
           {VerifyRule::kOpenWays, longest->line, way.line, layer.index(),
-           absl::StrFormat("an open way of %.2f mm crosses an outer wall; the longest such one of "
-                           "the layer has %.2f mm",
+           absl::StrFormat("travel of %.2f mm crosses an outer wall without a retraction; the "
+                           "longest such travel of the layer has %.2f mm",
                            way.length_mm, longest->length_mm)});
     } else if (more > 0) {
       --more;
-      findings.breaks.push_back(
-          {VerifyRule::kOpenWays, of_layer, way.line, layer.index(),
-           absl::StrFormat("an open way crosses an outer wall, one of %d in a layer that has %d",
-                           is.size(), was.size())});
+      findings.breaks.push_back({VerifyRule::kOpenWays, of_layer, way.line, layer.index(),
+                                 absl::StrFormat("travel crosses an outer wall without a "
+                                                 "retraction, one of %d in a layer that had %d",
+                                                 is.size(), was.size())});
     }
   }
 }

@@ -179,14 +179,13 @@ class OrderKeeper {
     const TraceChunk& was = layer_.was();
     const TraceChunk& is = layer_.is();
     const Visit& visit = visits[PlaceOf(later)];
-    findings.breaks.push_back(
-        {VerifyRule::kOrder, was.LineOf(was.paths[later]), is.segments[visit.first_segment].line,
-         layer_.index(),
-         absl::StrFormat("this %s is printed before the %s of line %d in the original, which it "
-                         "comes after there",
-                         std::string(PathClassName(layer_.ClassOf(later))),
-                         std::string(PathClassName(layer_.ClassOf(earlier))),
-                         was.LineOf(was.paths[earlier]))});
+    findings.breaks.push_back({VerifyRule::kOrder, was.LineOf(was.paths[later]),
+                               is.segments[visit.first_segment].line, layer_.index(),
+                               absl::StrFormat("this %s is printed before the %s of line %d of the "
+                                               "original, but there it comes after it",
+                                               std::string(PathClassName(layer_.ClassOf(later))),
+                                               std::string(PathClassName(layer_.ClassOf(earlier))),
+                                               was.LineOf(was.paths[earlier]))});
   }
 
   const LayerPair& layer_;

@@ -67,7 +67,7 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
                             !LeadsOn(is, visit.last_path, pieces);
       if (new_tail) {
         report(was.segments[path.end_segment - 1].line, has.line,
-               absl::StrFormat("goes on along the path for %.2f mm, as it does not there",
+               absl::StrFormat("continues along the path for %.2f mm, but not in the original",
                                has.length_mm));
       }
       continue;
@@ -79,16 +79,17 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
     const bool same_end = visit.forward && visit.entry == 0;
     const double slack = std::max(kSlackMm, 0.02 * had.length_mm);
     if (std::abs(has.length_mm - had.length_mm) > slack) {
-      report(had.line, has.line != 0 ? has.line : end_line,
-             absl::StrFormat("goes on along the path for %.2f mm where it does for %.2f mm there",
-                             has.length_mm, had.length_mm));
+      report(
+          had.line, has.line != 0 ? has.line : end_line,
+          absl::StrFormat("continues along the path for %.2f mm, but for %.2f mm in the original",
+                          has.length_mm, had.length_mm));
     } else if (has.feed != had.feed) {
       report(had.line, has.line,
-             absl::StrFormat("goes on along the path at F%g where it does at F%g there",
+             absl::StrFormat("continues along the path at F%g, but at F%g in the original",
                              static_cast<double>(has.feed) * 1e-6,
                              static_cast<double>(had.feed) * 1e-6));
     } else if (same_end && DistanceOf(has.end, had.end) > kSlackMm) {
-      report(had.line, has.line, "goes on from the path to another point than there");
+      report(had.line, has.line, "continues from the path to a different point from the original");
     }
   }
 }

@@ -13,8 +13,7 @@ void CompareProgress(const std::vector<Progress>& was, const std::vector<Progres
   while (i < common && was[i].digest == is[i].digest) ++i;
   if (i == was.size() && i == is.size()) return;
   breaks.push_back({VerifyRule::kProgress, i < was.size() ? was[i].line : 0,
-                    i < is.size() ? is[i].line : 0, -1,
-                    "M73 that does not come in this place of their sequence"});
+                    i < is.size() ? is[i].line : 0, -1, "this M73 is out of sequence"});
 }
 
 }  // namespace traverse::gcode

@@ -211,28 +211,27 @@ void CompareRetractions(const Observations& was, const Observations& is,
           {VerifyRule::kRetractions, was_line, cycle.line, cycle.layer, std::move(what)});
     };
     if (!cycle.firmware && cycle.pulled > deepest + kGrain) {
-      report(absl::StrFormat("pulls %.4f mm back; the most for this tool is %.4f mm",
+      report(absl::StrFormat("retracts %.4f mm; the most for this tool is %.4f mm",
                              static_cast<double>(cycle.pulled) * 1e-6,
                              static_cast<double>(deepest) * 1e-6));
     } else if (!pairs.Has(cycle)) {
-      report(absl::StrFormat("pulls %.4f mm back and pushes %.4f mm, a pair that there is not",
-                             static_cast<double>(cycle.pulled) * 1e-6,
-                             static_cast<double>(cycle.pushed) * 1e-6));
+      report(absl::StrFormat(
+          "retracts %.4f mm and primes %.4f mm, a pair that the original does not have",
+          static_cast<double>(cycle.pulled) * 1e-6, static_cast<double>(cycle.pushed) * 1e-6));
     } else if (cycle.late_mm > latest_mm + kLateMm) {
-      report(
-          absl::StrFormat("filament is pulled back when %.2f mm of the way are done; the most "
-                          "of the original is %.2f mm",
-                          cycle.late_mm, latest_mm));
+      report(absl::StrFormat(
+          "retracts after %.2f mm of the travel; the most in the original is %.2f mm",
+          cycle.late_mm, latest_mm));
     } else if (cycle.idle && !may_be_idle) {
-      report("filament is pulled back for no way");
+      report("retracts without travel");
     } else if (cycle.in_parts && !may_be_in_parts) {
-      report("filament comes back bit by bit on the way");
+      report("primes in several parts during the travel");
     } else if (cycle.early && !may_be_early) {
-      report("filament comes back before the way is done");
+      report("primes before the travel ends");
     } else if (cycle.pushed_high && !may_push_high) {
-      report("filament comes back above the layer");
+      report("primes above the layer");
     } else if (cycle.pulled_high && !may_pull_high) {
-      report("filament is pulled back above the layer");
+      report("retracts above the layer");
     }
   }
 }

@@ -81,7 +81,7 @@ void CheckSameWays(const LayerPair& layer, LayerFindings& findings) {
           {rule, LineOf(was, same->second), LineOf(is, link), layer.index(), std::move(what)});
     };
     if (NozzleIn(layer, is, link, true) == Nozzle::kOpen) {
-      report(VerifyRule::kOpenWays, "an open way for which the original pulls filament back");
+      report(VerifyRule::kOpenWays, "travel without a retraction where the original retracts");
       continue;
     }
     const double lift = ApexOf(was, same->second);
@@ -89,7 +89,7 @@ void CheckSameWays(const LayerPair& layer, LayerFindings& findings) {
     if (apex >= lift - kApexSlackMm) continue;
     report(
         VerifyRule::kLifts,
-        absl::StrFormat("a way %.3f mm above the layer that is lifted by %.3f mm in the original",
+        absl::StrFormat("travel %.3f mm above the layer that is lifted by %.3f mm in the original",
                         apex, lift));
   }
 }

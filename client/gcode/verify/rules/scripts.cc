@@ -40,14 +40,14 @@ void CheckLeaving(const TraceChunk& was, const TraceChunk& is, std::vector<Findi
   if (a == moves.end() && b == others.end()) return;
   breaks.push_back({VerifyRule::kScripts, a == moves.end() ? 0 : a->line,
                     b == others.end() ? 0 : b->line, -1,
-                    "leaves the print otherwise than the original"});
+                    "leaves the print differently from the original"});
 }
 
 void CompareScripts(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   for (const auto& [signature, seen] : is.signatures) {
     if (was.signatures.contains(signature) || !was.script_signatures.contains(signature)) continue;
     breaks.push_back({VerifyRule::kScripts, 0, seen.line, seen.layer,
-                      "moves filament as nothing but a script of the original does"});
+                      "moves filament as only a script of the original does"});
   }
 }
 

@@ -46,7 +46,7 @@ void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings
          absl::StrFormat("the seam of this %s is %.2f mm from where it was%s",
                          std::string(PathClassName(layer.ClassOf(visit.path))),
                          DistanceOf(seam, path.start),
-                         balanced ? ", and at no sharp corner" : "")});
+                         balanced ? ", and not at a sharp corner" : "")});
   }
 }
 

@@ -178,7 +178,7 @@ void CheckLayerFeeds(const LayerPair& layer, LayerFindings& findings) {
       }
       findings.breaks.push_back(
           {VerifyRule::kSpeeds, of_kind.line, move.line, layer.index(),
-           absl::StrFormat("%s at F%g, as none of its layer in the original",
+           absl::StrFormat("%s at F%g, as none of this layer in the original",
                            MoveKindName(move.kind), static_cast<double>(move.feed) * 1e-6)});
       return;
     }
@@ -257,11 +257,10 @@ void CompareLengths(const Observations& was, const Observations& is, std::vector
   for (const LongWay& way : is.long_ways) {
     const float longest = LongestUnder(was, way.acceleration);
     if (longest <= 0 || way.length_mm <= longest * kLengthFactor + kLengthSlackMm) continue;
-    breaks.push_back(
-        {VerifyRule::kSpeeds, 0, way.line, way.layer,
-         absl::StrFormat("travel of %.2f mm under an acceleration that none of the original longer "
-                         "than %.2f mm has",
-                         way.length_mm, longest)});
+    breaks.push_back({VerifyRule::kSpeeds, 0, way.line, way.layer,
+                      absl::StrFormat("travel of %.2f mm with an acceleration that the original "
+                                      "does not use for travel longer than %.2f mm",
+                                      way.length_mm, longest)});
   }
 }
 
@@ -275,7 +274,7 @@ void CompareTails(const Observations& was, const Observations& is, std::vector<F
       continue;
     }
     breaks.push_back({VerifyRule::kSpeeds, 0, seen.line, seen.layer,
-                      absl::StrFormat("goes on along a path at F%g, as nothing of the original",
+                      absl::StrFormat("continues along a path at F%g, as nothing in the original",
                                       static_cast<double>(static_cast<Micro>(feed)) * 1e-6)});
   }
 }
@@ -295,14 +294,15 @@ void CompareSpeeds(const Observations& was, const Observations& is, std::vector<
     for (const auto& [feed, seen] : is.feeds[kind]) {
       if (was.feeds[like].contains(feed)) continue;
       breaks.push_back({VerifyRule::kSpeeds, AnyLine(was.feeds[like]), seen.line, seen.layer,
-                        absl::StrFormat("%s at F%g, as none of the original", KindName(kind),
+                        absl::StrFormat("%s at F%g, as none in the original", KindName(kind),
                                         static_cast<double>(static_cast<Micro>(feed)) * 1e-6)});
     }
     for (const auto& [acceleration, seen] : is.accelerations[kind]) {
       if (IsKnownAcceleration(was, kind, acceleration)) continue;
-      breaks.push_back(
-          {VerifyRule::kSpeeds, AnyLine(was.accelerations[like]), seen.line, seen.layer,
-           absl::StrFormat("%s under an acceleration as none of the original", KindName(kind))});
+      breaks.push_back({VerifyRule::kSpeeds, AnyLine(was.accelerations[like]), seen.line,
+                        seen.layer,
+                        absl::StrFormat("%s with an acceleration that none in the original has",
+                                        KindName(kind))});
     }
   }
 }

@@ -34,15 +34,15 @@ void CheckStandstill(const TraceChunk& was, const TraceChunk& is, std::vector<Fi
     }
     breaks.push_back(
         {VerifyRule::kStandstill, 0, event.line, -1,
-         absl::StrFormat("pushes %.4f mm more than was pulled back, which the original does not %s",
+         absl::StrFormat("pushes %.4f mm more than was retracted, which the original does not %s",
                          static_cast<double>(event.amount) * 1e-6,
-                         event.fresh ? "in this place" : "so often in this part of the print")});
+                         event.fresh ? "here" : "so often in this part of the print")});
   }
   for (const auto& [key, left] : lines) {
     for (const uint32_t line : left) {
       breaks.push_back(
           {VerifyRule::kStandstill, line, 0, -1,
-           absl::StrFormat("pushes %.4f mm more than was pulled back, which is missing",
+           absl::StrFormat("the original pushes %.4f mm more than was retracted, which is missing",
                            static_cast<double>(std::get<1>(key) * VerifyMachine::kSlack) * 1e-6)});
     }
   }

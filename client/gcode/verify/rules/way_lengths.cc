@@ -111,12 +111,12 @@ void CompareWaysToLayers(const Observations& was, const Observations& is,
   for (const WayLength& way : is.ways_to_layers) {
     if (way.open_mm > kShortestMm && !any_open) {
       breaks.push_back({VerifyRule::kOpenWays, 0, way.line, way.layer,
-                        "an open way to another layer, as the original has none"});
+                        "travel to another layer without a retraction, as the original has none"});
     } else if (way.was_retracted && way.open_mm > shortest_retracted - kToLayerSlackMm &&
                way.open_mm > kToLayerSlackMm) {
       breaks.push_back({VerifyRule::kOpenWays, 0, way.line, way.layer,
-                        absl::StrFormat("an open way of %.2f mm to this layer; the original's is "
-                                        "retracted, as shorter ones are",
+                        absl::StrFormat("travel of %.2f mm to this layer without a retraction; the "
+                                        "original retracts there, and on shorter travel",
                                         way.open_mm)});
     }
   }
@@ -146,20 +146,21 @@ void CompareWayLengths(const Observations& was, const Observations& is,
   for (const WayLength& way : is.way_lengths) {
     if (way.turns_back && !turn_back) {
       breaks.push_back({VerifyRule::kBounds, 0, way.line, way.layer,
-                        "a way leads back to where it was, as none of the original"});
+                        "travel returns to where it was, as none does in the original"});
       continue;
     }
     if (way.open_mm > open.open_mm * kOpenFactor + kOpenSlackMm) {
       breaks.push_back({VerifyRule::kOpenWays, open.line, way.line, way.layer,
-                        absl::StrFormat("an open way of %.2f mm; the longest of the original has "
-                                        "%.2f mm",
+                        absl::StrFormat("travel of %.2f mm without a retraction; the longest such "
+                                        "travel in the original has %.2f mm",
                                         way.open_mm, open.open_mm)});
     }
     if (way.excess_mm > winding.excess_mm * kWindingFactor + kWindingSlackMm) {
-      breaks.push_back({VerifyRule::kBounds, winding.line, way.line, way.layer,
-                        absl::StrFormat("a way leads %.2f mm farther than straight; the most of "
-                                        "the original is %.2f mm",
-                                        way.excess_mm, winding.excess_mm)});
+      breaks.push_back(
+          {VerifyRule::kBounds, winding.line, way.line, way.layer,
+           absl::StrFormat(
+               "travel is %.2f mm longer than a straight move; the most in the original is %.2f mm",
+               way.excess_mm, winding.excess_mm)});
     }
   }
 }

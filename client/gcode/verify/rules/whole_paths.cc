@@ -20,7 +20,7 @@ void CheckJoint(const LayerPair& layer, size_t section, LayerFindings& findings)
   if (joined) return;
   findings.breaks.push_back({VerifyRule::kWholePaths, layer.was().LineOf(layer.was().paths[path]),
                              layer.is().LineOf(layer.is().paths[begins]), layer.index(),
-                             "does not go on from what is printed before it"});
+                             "does not continue from the segment before it"});
 }
 
 }  // namespace
@@ -37,8 +37,9 @@ void CheckWholePaths(const LayerPair& layer, LayerFindings& findings) {
     findings.breaks.push_back(
         {VerifyRule::kWholePaths, was.segments[path.first_segment + visit.entry].line,
          layer.is().segments[visit.first_segment].line, layer.index(),
-         absl::StrFormat("begins with %d of the %d segments of a path that is printed in one go",
-                         visit.segments, path.size())});
+         absl::StrFormat(
+             "begins with %d of the %d segments of a path that is printed without interruption",
+             visit.segments, path.size())});
   }
 }
 

@@ -155,7 +155,7 @@ void CheckWipes(const LayerPair& layer, LayerFindings& findings) {
     if (had.line != 0 && wipe.line == 0) {
       findings.breaks.push_back({VerifyRule::kWipes, had.line,
                                  layer.is().segments[visit.last_segment].line, layer.index(),
-                                 "the wipe behind this path is gone"});
+                                 "the wipe after this path is missing"});
     }
     if (wipe.line == 0 || wipe.known) continue;
     wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), true);
@@ -177,7 +177,7 @@ void CheckWipeMarks(const TraceChunk& was, const TraceChunk& is, std::vector<Fin
     if (count-- > 0) continue;
     breaks.push_back({VerifyRule::kWipes, line, fault.line, -1,
                       fault.kind == MarkFaultKind::kUnmarked
-                          ? "a wipe without the marks that wipes have"
+                          ? "a wipe without the marks of wipes"
                           : "a mark of a wipe's begin or end is out of place"});
   }
 }
@@ -195,14 +195,14 @@ void CompareWipes(const Observations& was, const Observations& is, std::vector<F
   for (const WipeDeviation& wipe : is.wipes) {
     if (!pulls.fastest.empty() && pulls.Unlike(wipe)) {
       breaks.push_back({VerifyRule::kWipes, pulls.fastest.back()->line, wipe.line, wipe.layer,
-                        "a wipe pulls filament back unlike those of the original"});
+                        "a wipe retracts unlike those of the original"});
     }
     const WipeDeviation* most =
         pulls.fastest.empty() ? nullptr : &pulls.FastestOfLength(wipe.length_mm);
     if (most != nullptr && wipe.pull > most->pull * kPullSlack) {
       breaks.push_back(
           {VerifyRule::kWipes, most->line, wipe.line, wipe.layer,
-           absl::StrFormat("a wipe pulls %.3f mm a mm back; the most of the original is %.3f mm",
+           absl::StrFormat("a wipe retracts %.3f mm per mm; the most in the original is %.3f mm",
                            wipe.pull, most->pull)});
     }
     if (wipe.off_mm <= off_limit && wipe.astray_mm <= astray_limit) continue;

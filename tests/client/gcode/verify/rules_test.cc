@@ -15,7 +15,7 @@ using namespace testing;  // NOLINT: the small prints
 
 TEST(VerifyRules, NamesRuleFileAndBothLines) {
   EXPECT_EQ(FirstMessage(kHead + kSquare, kHead + kSquareTurned),
-            "b:9: this outer wall is printed the other way round (direction; a:9)");
+            "b:9: this outer wall is printed in the opposite direction (direction; a:9)");
 }
 
 // Whichever rule: what a slicer does itself is never refused.

@@ -1,11 +1,12 @@
 // Verifying: client/gcode/verify.
 
+#include "client/gcode/verify/verifier.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "absl/strings/str_replace.h"
 #include "client/gcode/read/reader.h"
-#include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/support/corpus.h"
 #include "tests/client/gcode/support/mutation.h"
 #include "tests/client/gcode/support/random_order.h"
@@ -72,9 +73,8 @@ TEST(VerifyGcode, RegistersCountOnInOtherUnits) {
 TEST(VerifyGcode, NamesBothLines) {
   const std::string changed = With(kPrusa, "G1 X40 Y30 E.4", "G1 X40 Y30 E.5");
 
-  EXPECT_EQ(
-      Difference(kPrusa, changed),
-      "b:34: `G1 X40 Y30 E.5` prints what lines 6 to 42 of a do not under the same conditions");
+  EXPECT_EQ(Difference(kPrusa, changed),
+            "b:34: lines 6 to 42 of a do not print `G1 X40 Y30 E.5` under the same conditions");
 }
 
 TEST(VerifyGcode, DirectionAndOrderWithinASectionAreFree) {
@@ -108,7 +108,7 @@ TEST(VerifyGcode, NothingCrossesALineThatIsNotKnown) {
   const std::string a = "M83\nG1 F600 X1 E1\nM600\nG1 X5\nG1 X6 E1\n";
   const std::string b = "M83\nG1 F600\nG0 X5\nG1 X6 E1\nM600\nG0 X0\nG1 X1 E1\n";
 
-  EXPECT_THAT(Difference(a, b), HasSubstr("b:4: `G1 X6 E1` prints what lines 2 to 3 of a do not"));
+  EXPECT_THAT(Difference(a, b), HasSubstr("b:4: lines 2 to 3 of a do not print `G1 X6 E1`"));
 }
 
 TEST(VerifyGcode, AtALineThatIsNotKnownTheHeadIsWhereItWas) {
@@ -116,7 +116,7 @@ TEST(VerifyGcode, AtALineThatIsNotKnownTheHeadIsWhereItWas) {
 
   EXPECT_THAT(Difference(a, With(a, "G0 X5", "G0 X6")), HasSubstr("b:4: the head is not where"));
   EXPECT_THAT(Difference(a, With(a, "PARK", "G1 E-1\nPARK\nG1 E1")),
-              HasSubstr("b:5: filament is not pulled back as at a:4"));
+              HasSubstr("b:5: the retraction differs from that at a:4"));
 }
 
 TEST(VerifyGcode, FencesKeepTheirOrderAndCommentsTheirSection) {
@@ -124,7 +124,7 @@ TEST(VerifyGcode, FencesKeepTheirOrderAndCommentsTheirSection) {
 
   EXPECT_THAT(Difference(a, With(a, "M104 S210\n", "")), HasSubstr("a"));
   EXPECT_THAT(Difference(a, With(a, "S210", "S211")),
-              HasSubstr("b:5: not the line that stands at a:5"));
+              HasSubstr("b:5: a different line from the one at a:5"));
   EXPECT_THAT(Difference(a, With(a, "; note\nM104 S210\n", "M104 S210\n; note\n")),
               HasSubstr("`; note`"));
 }
@@ -138,7 +138,7 @@ TEST(VerifyGcode, CommentsAtAChangeOfHeightBelongToWhatComesAfterIt) {
   EXPECT_EQ(Difference(a, b), "");
   EXPECT_EQ(Difference(b, a), "");
   EXPECT_THAT(Difference(b, With(With(b, "; note\n", ""), "G0 X2\n", "; note\nG0 X2\n")),
-              HasSubstr("b:3: `; note` has what lines 2 to 4 of a do not"));
+              HasSubstr("b:3: lines 2 to 4 of a do not have `; note`"));
 }
 
 TEST(VerifyGcode, NothingIsPrintedWhileRetracted) {
@@ -157,7 +157,7 @@ TEST(VerifyGcode, TravelMayNotBeLower) {
 
 TEST(VerifyGcode, TheFanHasToBeAsItWasAtTheEnd) {
   const std::string a = "M83\nM106 S9\nG1 F600 X1 E1\nM107\n";
-  EXPECT_THAT(Difference(a, With(a, "M107\n", "")), HasSubstr("the fan is not as"));
+  EXPECT_THAT(Difference(a, With(a, "M107\n", "")), HasSubstr("the fan differs from that"));
 }
 
 TEST(VerifyGcode, TheMarkOfAnEarlierRunDoesNotCount) {
