@@ -10,16 +10,16 @@
 #include "absl/strings/str_cat.h"
 #include "engine/base/rest.h"
 #include "server/translate/fault_list.h"
+#include "server/translate/field_path.h"
 #include "server/translate/field_ranges.h"
 #include "server/translate/translate.h"
 #include "server/translate/translate_check.h"
-#include "server/translate/translate_place.h"
 #include "server/translate/translate_walls.h"
 
 namespace traverse {
 namespace {
 
-absl::StatusOr<Path> FromProto(const v1::Contour& contour, const Place& place) {
+absl::StatusOr<Path> FromProto(const v1::Contour& contour, const FieldPath& place) {
   static const FieldRange& range = RangeOf("Contour.points");
   TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(contour, place));
   TRAVERSE_RETURN_IF_ERROR(CheckCoordinates(contour.points(), range, place));
@@ -47,7 +47,7 @@ absl::StatusOr<Path> FromProto(const v1::Contour& contour, const Place& place) {
   return path;
 }
 
-absl::StatusOr<Path> FromProto(const v1::OpenPath& open, const Place& place) {
+absl::StatusOr<Path> FromProto(const v1::OpenPath& open, const FieldPath& place) {
   static const FieldRange& range = RangeOf("OpenPath.points");
   TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(open, place));
   TRAVERSE_RETURN_IF_ERROR(CheckCoordinates(open.points(), range, place));
@@ -69,21 +69,21 @@ size_t StepsOf(const v1::OpenPath& open) { return static_cast<size_t>(open.point
 // Translates a list of contours or open paths and appends them to `paths`.
 template <typename Message>
 absl::Status AppendPaths(const google::protobuf::RepeatedPtrField<Message>& messages,
-                         const char* field, const Place& parent, Rest& rest,
+                         const char* field, const FieldPath& parent, Rest& rest,
                          std::vector<Path>& paths) {
   FaultList faults;
   paths.reserve(static_cast<size_t>(messages.size()));
   for (int i = 0; i < messages.size() && !faults.full(); ++i) {
     rest(kStepsOfMessage + StepsOf(messages[i]));
     absl::StatusOr<Path> path =
-        FromProto(messages[i], Place(&parent, field, static_cast<uint64_t>(i)));
+        FromProto(messages[i], FieldPath(&parent, field, static_cast<uint64_t>(i)));
     faults.Add(path.status());
     if (path.ok()) paths.push_back(*std::move(path));
   }
   return faults.status();
 }
 
-absl::StatusOr<Plan> FromIslands(const v1::Layer& layer, const Place& place, bool interleaved,
+absl::StatusOr<Plan> FromIslands(const v1::Layer& layer, const FieldPath& place, bool interleaved,
                                  Budget* budget) {
   Rest rest(budget);
   std::vector<IslandPaths> islands;
@@ -92,7 +92,7 @@ absl::StatusOr<Plan> FromIslands(const v1::Layer& layer, const Place& place, boo
   for (int i = 0; i < layer.islands_size() && !faults.full(); ++i) {
     const v1::Island& island = layer.islands(i);
     rest(kStepsOfMessage);
-    const Place at(&place, "islands", static_cast<uint64_t>(i));
+    const FieldPath at(&place, "islands", static_cast<uint64_t>(i));
     IslandPaths& paths = islands.emplace_back();
     faults.Add(CheckKnownAt(island, at));
     faults.Add(AppendPaths(island.contours(), "contours", at, rest, paths.contours));
@@ -104,7 +104,7 @@ absl::StatusOr<Plan> FromIslands(const v1::Layer& layer, const Place& place, boo
 }
 
 absl::Status SetChildren(const google::protobuf::RepeatedField<uint32_t>& children,
-                         const char* field, const Place& place, Rest& rest, PlanNode& node) {
+                         const char* field, const FieldPath& place, Rest& rest, PlanNode& node) {
   node.children.reserve(static_cast<size_t>(children.size()));
   for (int c = 0; c < children.size(); ++c) {
     rest();
@@ -116,14 +116,14 @@ absl::Status SetChildren(const google::protobuf::RepeatedField<uint32_t>& childr
   return absl::OkStatus();
 }
 
-absl::Status SetBefore(const v1::AnyOrder& any_order, const Place& place, Rest& rest,
+absl::Status SetBefore(const v1::AnyOrder& any_order, const FieldPath& place, Rest& rest,
                        PlanNode& node) {
   node.before.reserve(static_cast<size_t>(any_order.before_size()));
   const std::string field = place.text() + ".any_order.before";
   for (int i = 0; i < any_order.before_size(); ++i) {
     rest(kStepsOfMessage);
     const v1::Precedence& pair = any_order.before(i);
-    const Place at(nullptr, field.c_str(), static_cast<uint64_t>(i));
+    const FieldPath at(nullptr, field.c_str(), static_cast<uint64_t>(i));
     TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(pair, at));
     for (const bool is_first : {true, false}) {
       const uint32_t value = is_first ? pair.first() : pair.second();
@@ -135,7 +135,8 @@ absl::Status SetBefore(const v1::AnyOrder& any_order, const Place& place, Rest& 
   return absl::OkStatus();
 }
 
-absl::StatusOr<PlanNode> FromProto(const v1::PlanNode& message, const Place& place, Rest& rest) {
+absl::StatusOr<PlanNode> FromProto(const v1::PlanNode& message, const FieldPath& place,
+                                   Rest& rest) {
   TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(message, place));
   PlanNode node;
   switch (message.kind_case()) {
@@ -167,7 +168,7 @@ absl::StatusOr<PlanNode> FromProto(const v1::PlanNode& message, const Place& pla
   return Fault(place.text(), "set one of path, in_order and any_order");
 }
 
-absl::StatusOr<Path> FromProto(const v1::PlanPath& message, const Place& place) {
+absl::StatusOr<Path> FromProto(const v1::PlanPath& message, const FieldPath& place) {
   TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(message, place));
   switch (message.path_case()) {
     case v1::PlanPath::kContour:
@@ -191,8 +192,8 @@ absl::StatusOr<Plan> FromProto(const v1::Plan& message, const std::string& place
   for (int p = 0; p < message.paths_size() && !faults.full(); ++p) {
     rest(kStepsOfMessage + StepsOf(message.paths(p).contour()) +
          StepsOf(message.paths(p).open_path()));
-    absl::StatusOr<Path> path =
-        FromProto(message.paths(p), Place(nullptr, paths_field.c_str(), static_cast<uint64_t>(p)));
+    absl::StatusOr<Path> path = FromProto(
+        message.paths(p), FieldPath(nullptr, paths_field.c_str(), static_cast<uint64_t>(p)));
     faults.Add(path.status());
     if (path.ok()) plan.paths.push_back(*std::move(path));
   }
@@ -200,7 +201,7 @@ absl::StatusOr<Plan> FromProto(const v1::Plan& message, const std::string& place
   for (int n = 0; n < message.nodes_size() && !faults.full(); ++n) {
     rest(kStepsOfMessage);
     absl::StatusOr<PlanNode> node = FromProto(
-        message.nodes(n), Place(nullptr, nodes_field.c_str(), static_cast<uint64_t>(n)), rest);
+        message.nodes(n), FieldPath(nullptr, nodes_field.c_str(), static_cast<uint64_t>(n)), rest);
     faults.Add(node.status());
     if (node.ok()) plan.nodes.push_back(*std::move(node));
   }
@@ -234,7 +235,7 @@ int64_t CountPoints(const v1::Layer& layer, Budget* budget) {
 
 absl::StatusOr<LabelledLayer> LayerFromProto(const v1::Layer& layer, uint64_t index,
                                              bool interleaved, Budget* budget) {
-  const Place place(nullptr, "layers", index);
+  const FieldPath place(nullptr, "layers", index);
   TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(layer, place));
   if (layer.has_plan() && !layer.islands().empty()) {
     return Fault(place.text(), "has both islands and a plan, but may have only one of them");

@@ -21,7 +21,7 @@
 namespace traverse {
 namespace {
 
-absl::StatusOr<Wall> FromProto(const v1::Wall& message, const Plan& plan, const Place& place) {
+absl::StatusOr<Wall> FromProto(const v1::Wall& message, const Plan& plan, const FieldPath& place) {
   TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(message, place));
   TRAVERSE_RETURN_IF_ERROR(CheckCoordinates(message.points(), RangeOf("Wall.points"), place));
   Wall wall;
@@ -46,8 +46,9 @@ absl::StatusOr<Wall> FromProto(const v1::Wall& message, const Plan& plan, const 
   return wall;
 }
 
-absl::Status SetPaths(const google::protobuf::RepeatedField<uint32_t>& named, const Place& place,
-                      const char* field, Rest& rest, std::vector<int>& paths) {
+absl::Status SetPaths(const google::protobuf::RepeatedField<uint32_t>& named,
+                      const FieldPath& place, const char* field, Rest& rest,
+                      std::vector<int>& paths) {
   paths.reserve(static_cast<size_t>(named.size()));
   for (int i = 0; i < named.size(); ++i) {
     rest();
@@ -60,7 +61,7 @@ absl::Status SetPaths(const google::protobuf::RepeatedField<uint32_t>& named, co
   return absl::OkStatus();
 }
 
-absl::StatusOr<KnownMove> FromProto(const v1::KnownMove& message, const Place& place) {
+absl::StatusOr<KnownMove> FromProto(const v1::KnownMove& message, const FieldPath& place) {
   static const FieldRange& range = RangeOf("KnownMove.seconds");
   TRAVERSE_RETURN_IF_ERROR(CheckKnownAt(message, place));
   if (message.from() > INT_MAX) return Index(message.from(), place.text() + ".from").status();
@@ -78,7 +79,7 @@ absl::StatusOr<KnownMove> FromProto(const v1::KnownMove& message, const Place& p
   return move;
 }
 
-absl::Status SetKnownMoves(const v1::Layer& message, const Place& place, Rest& rest,
+absl::Status SetKnownMoves(const v1::Layer& message, const FieldPath& place, Rest& rest,
                            JobLayer& layer) {
   if (static_cast<size_t>(message.known_moves_size()) > layer.plan.paths.size()) {
     return Fault(place.text() + ".known_moves",
@@ -87,8 +88,8 @@ absl::Status SetKnownMoves(const v1::Layer& message, const Place& place, Rest& r
   layer.walls.known.reserve(static_cast<size_t>(message.known_moves_size()));
   for (int i = 0; i < message.known_moves_size(); ++i) {
     rest(kStepsOfMessage);
-    absl::StatusOr<KnownMove> move =
-        FromProto(message.known_moves(i), Place(&place, "known_moves", static_cast<uint64_t>(i)));
+    absl::StatusOr<KnownMove> move = FromProto(
+        message.known_moves(i), FieldPath(&place, "known_moves", static_cast<uint64_t>(i)));
     if (!move.ok()) return move.status();
     layer.walls.known.push_back(*move);
   }
@@ -97,7 +98,7 @@ absl::Status SetKnownMoves(const v1::Layer& message, const Place& place, Rest& r
 
 }  // namespace
 
-absl::Status SetWalls(const v1::Layer& message, const Place& place, Budget* budget,
+absl::Status SetWalls(const v1::Layer& message, const FieldPath& place, Budget* budget,
                       JobLayer& layer) {
   Rest rest(budget);
   LayerWalls& walls = layer.walls;
@@ -111,8 +112,8 @@ absl::Status SetWalls(const v1::Layer& message, const Place& place, Budget* budg
   }
   for (int w = 0; w < message.walls_size(); ++w) {
     rest(kStepsOfMessage + static_cast<size_t>(message.walls(w).points_size()));
-    absl::StatusOr<Wall> wall =
-        FromProto(message.walls(w), layer.plan, Place(&place, "walls", static_cast<uint64_t>(w)));
+    absl::StatusOr<Wall> wall = FromProto(message.walls(w), layer.plan,
+                                          FieldPath(&place, "walls", static_cast<uint64_t>(w)));
     if (!wall.ok()) return wall.status();
     if (message.walls(w).points().empty()) {
       if (wall->points.size() > may_copy) {

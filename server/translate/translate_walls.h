@@ -6,13 +6,13 @@
 #include "absl/status/status.h"
 #include "engine/base/budget.h"
 #include "engine/engine.h"
-#include "server/translate/translate_place.h"
+#include "server/translate/field_path.h"
 #include "traverse/v1/plan.pb.h"
 
 namespace traverse {
 
 // Sets `layer.walls`; `layer.plan` is set. InvalidArgument says where.
-absl::Status SetWalls(const v1::Layer& message, const Place& place, Budget* budget,
+absl::Status SetWalls(const v1::Layer& message, const FieldPath& place, Budget* budget,
                       JobLayer& layer);
 
 }  // namespace traverse

@@ -33,10 +33,11 @@ class Canvas {
   virtual ~Canvas() = default;
 
   // Lines with round ends and corners. Lines that share a pen are drawn together.
-  virtual void Lines(const std::vector<std::vector<Place>>& lines, const Pen& pen) = 0;
-  virtual void Disc(Place center, double radius, const std::string& color) = 0;
-  virtual void Rectangle(Place corner, double width, double height, const std::string& color) = 0;
-  virtual void Text(Place at, const std::string& text, const Lettering& lettering) = 0;
+  virtual void Lines(const std::vector<std::vector<DrawnPoint>>& lines, const Pen& pen) = 0;
+  virtual void Disc(DrawnPoint center, double radius, const std::string& color) = 0;
+  virtual void Rectangle(DrawnPoint corner, double width, double height,
+                         const std::string& color) = 0;
+  virtual void Text(DrawnPoint at, const std::string& text, const Lettering& lettering) = 0;
 
   // Returns the file. Call it once, at the end.
   virtual std::string Finish() = 0;

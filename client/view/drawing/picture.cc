@@ -34,11 +34,11 @@ struct Box {
   double x1 = -std::numeric_limits<double>::infinity();
   double y1 = -std::numeric_limits<double>::infinity();
 
-  void Add(const Place& place) {
-    x0 = std::min(x0, place.x);
-    y0 = std::min(y0, place.y);
-    x1 = std::max(x1, place.x);
-    y1 = std::max(y1, place.y);
+  void Add(const DrawnPoint& point) {
+    x0 = std::min(x0, point.x);
+    y0 = std::min(y0, point.y);
+    x1 = std::max(x1, point.x);
+    y1 = std::max(y1, point.y);
   }
 };
 
@@ -46,11 +46,11 @@ Box BoxOf(const DrawnLayer& layer, const std::array<std::vector<DrawnMove>, 2>& 
   Box box;
   for (const DrawnRoute& route : layer.routes) box.Add(route.start);
   for (const DrawnPath& path : layer.paths) {
-    for (const Place& place : path.points) box.Add(place);
+    for (const DrawnPoint& point : path.points) box.Add(point);
   }
   for (const auto& list : moves) {
     for (const DrawnMove& move : list) {
-      for (const Place& place : move) box.Add(place);
+      for (const DrawnPoint& point : move) box.Add(point);
     }
   }
   return box;
@@ -71,14 +71,14 @@ class Projection {
 
   double height() const { return height_; }
 
-  Place operator()(const Place& place, double panel_x) const {
-    return {panel_x + left_ + (place.x - box_.x0) * scale_,
-            kHeaderHeight + top_ + (box_.y1 - place.y) * scale_};
+  DrawnPoint operator()(const DrawnPoint& point, double panel_x) const {
+    return {panel_x + left_ + (point.x - box_.x0) * scale_,
+            kHeaderHeight + top_ + (box_.y1 - point.y) * scale_};
   }
-  std::vector<Place> operator()(const std::vector<Place>& line, double panel_x) const {
-    std::vector<Place> out;
+  std::vector<DrawnPoint> operator()(const std::vector<DrawnPoint>& line, double panel_x) const {
+    std::vector<DrawnPoint> out;
     out.reserve(line.size());
-    for (const Place& place : line) out.push_back((*this)(place, panel_x));
+    for (const DrawnPoint& point : line) out.push_back((*this)(point, panel_x));
     return out;
   }
 
@@ -149,7 +149,7 @@ class Painter {
     const double x = PanelX(side);
     for (const auto& [feature, used] : used_) {
       for (const bool closed : {true, false}) {
-        std::vector<std::vector<Place>> lines;
+        std::vector<std::vector<DrawnPoint>> lines;
         for (const DrawnPath& path : layer_.paths) {
           if (path.feature == feature && path.closed == closed) {
             lines.push_back((*projection_)(path.points, x));
@@ -161,14 +161,14 @@ class Painter {
     if (side == 1) Moves(Vanished(moves_[0], moves_[1]), x, kFaded);
     Moves(moves_[side], x, 1);
     const DrawnRoute& route = layer_.routes[side];
-    const Place end = (*projection_)(EndOf(layer_, route), x);
+    const DrawnPoint end = (*projection_)(EndOf(layer_, route), x);
     constexpr double kHalf = 5;
     canvas_->Rectangle({end.x - kHalf, end.y - kHalf}, 2 * kHalf, 2 * kHalf, kEndColor);
     canvas_->Disc((*projection_)(route.start, x), kHalf, kStartColor);
   }
 
   void Moves(const std::vector<DrawnMove>& moves, double x, double opacity) {
-    std::vector<std::vector<Place>> lines;
+    std::vector<std::vector<DrawnPoint>> lines;
     for (const DrawnMove& move : moves) lines.push_back((*projection_)(move, x));
     canvas_->Lines(lines, {kTravelColor, kMoveWidth, opacity, false});
   }
@@ -185,19 +185,19 @@ class Painter {
     const double top = kHeaderHeight + projection_->height() + kMargin + kLegendRow / 2;
     const double step = (2 * kPanelWidth + kMargin) / kItemsPerRow;
     const auto next = [&](const std::string& name) {
-      const Place at = {kMargin + step * (item % kItemsPerRow),
-                        top + kLegendRow * (item / kItemsPerRow)};
+      const DrawnPoint at = {kMargin + step * (item % kItemsPerRow),
+                             top + kLegendRow * (item / kItemsPerRow)};
       ++item;
       canvas_->Text({at.x + 30, at.y + 4}, name, {12, kPale});
       return at;
     };
     const auto line = [&](const std::string& name, const Pen& pen) {
-      const Place at = next(name);
+      const DrawnPoint at = next(name);
       canvas_->Lines({{at, {at.x + 22, at.y}}}, pen);
     };
     line("travel", {kTravelColor, kMoveWidth});
     line("removed", {kTravelColor, kMoveWidth, kFaded});
-    Place at = next("start");
+    DrawnPoint at = next("start");
     canvas_->Disc({at.x + 11, at.y}, 5, kStartColor);
     at = next("end");
     canvas_->Rectangle({at.x + 6, at.y - 5}, 10, 10, kEndColor);

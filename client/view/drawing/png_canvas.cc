@@ -37,11 +37,11 @@ class PngCanvas : public Canvas {
   PngCanvas(const PngCanvas&) = delete;
   PngCanvas& operator=(const PngCanvas&) = delete;
 
-  void Lines(const std::vector<std::vector<Place>>& lines, const Pen& pen) override {
+  void Lines(const std::vector<std::vector<DrawnPoint>>& lines, const Pen& pen) override {
     SetColor(pen.color, pen.opacity);
     cairo_set_line_width(cairo_, pen.width);
-    for (const std::vector<Place>& line : lines) {
-      for (const Place& place : line) cairo_line_to(cairo_, place.x, place.y);
+    for (const std::vector<DrawnPoint>& line : lines) {
+      for (const DrawnPoint& point : line) cairo_line_to(cairo_, point.x, point.y);
       if (pen.closed || line.size() == 1) cairo_close_path(cairo_);
       cairo_new_sub_path(cairo_);
       // One by one where nothing shines through: cairo's time grows with the crossings in a path.
@@ -50,18 +50,19 @@ class PngCanvas : public Canvas {
     cairo_stroke(cairo_);
   }
 
-  void Disc(Place center, double radius, const std::string& color) override {
+  void Disc(DrawnPoint center, double radius, const std::string& color) override {
     cairo_new_path(cairo_);
     cairo_arc(cairo_, center.x, center.y, radius, 0, 2 * std::acos(-1.0));
     FillWithRim(color);
   }
 
-  void Rectangle(Place corner, double width, double height, const std::string& color) override {
+  void Rectangle(DrawnPoint corner, double width, double height,
+                 const std::string& color) override {
     cairo_rectangle(cairo_, corner.x, corner.y, width, height);
     FillWithRim(color);
   }
 
-  void Text(Place at, const std::string& text, const Lettering& lettering) override {
+  void Text(DrawnPoint at, const std::string& text, const Lettering& lettering) override {
     const std::string valid = ValidUtf8(text);
     cairo_select_font_face(cairo_, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
                            lettering.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);

@@ -30,9 +30,9 @@ class SvgCanvas : public Canvas {
         width, height, width, height);
   }
 
-  void Lines(const std::vector<std::vector<Place>>& lines, const Pen& pen) override {
+  void Lines(const std::vector<std::vector<DrawnPoint>>& lines, const Pen& pen) override {
     std::string data;
-    for (const std::vector<Place>& line : lines) AppendLine(line, pen.closed, data);
+    for (const std::vector<DrawnPoint>& line : lines) AppendLine(line, pen.closed, data);
     if (data.empty()) return;
     absl::StrAppendFormat(&svg_,
                           "<path fill=\"none\" stroke=\"%s\" stroke-width=\"%g\" "
@@ -42,21 +42,22 @@ class SvgCanvas : public Canvas {
     absl::StrAppendFormat(&svg_, " d=\"%s\"/>\n", data);
   }
 
-  void Disc(Place center, double radius, const std::string& color) override {
+  void Disc(DrawnPoint center, double radius, const std::string& color) override {
     absl::StrAppendFormat(&svg_,
                           "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"%g\" fill=\"%s\" "
                           "stroke=\"#ffffff\"/>\n",
                           center.x, center.y, radius, color);
   }
 
-  void Rectangle(Place corner, double width, double height, const std::string& color) override {
+  void Rectangle(DrawnPoint corner, double width, double height,
+                 const std::string& color) override {
     absl::StrAppendFormat(&svg_,
                           "<rect x=\"%.2f\" y=\"%.2f\" width=\"%g\" height=\"%g\" fill=\"%s\" "
                           "stroke=\"#ffffff\"/>\n",
                           corner.x, corner.y, width, height, color);
   }
 
-  void Text(Place at, const std::string& text, const Lettering& lettering) override {
+  void Text(DrawnPoint at, const std::string& text, const Lettering& lettering) override {
     const char* anchors[] = {"start", "middle", "end"};
     absl::StrAppendFormat(&svg_,
                           "<text x=\"%.2f\" y=\"%.2f\" font-size=\"%g\" fill=\"%s\" "
@@ -70,7 +71,7 @@ class SvgCanvas : public Canvas {
 
  private:
   // "M3 4l1 0 2.5-1z": relative moves, as whole steps of the grid, so that errors do not add up.
-  static void AppendLine(const std::vector<Place>& line, bool closed, std::string& data) {
+  static void AppendLine(const std::vector<DrawnPoint>& line, bool closed, std::string& data) {
     int64_t x = 0;
     int64_t y = 0;
     for (size_t i = 0; i < line.size(); ++i) {

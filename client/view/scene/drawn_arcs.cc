@@ -36,7 +36,7 @@ std::vector<std::vector<gcode::Vertex>> PointsOnArcs(const GcodeFile& file,
 
 // Puts the points into the path. Returns where its vertices are then.
 std::vector<size_t> Bend(const std::vector<std::vector<gcode::Vertex>>& on_arcs, DrawnPath& path) {
-  std::vector<Place> bent;
+  std::vector<DrawnPoint> bent;
   std::vector<size_t> moved_to;
   for (size_t i = 0; i < path.points.size(); ++i) {
     moved_to.push_back(bent.size());

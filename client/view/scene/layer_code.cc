@@ -23,13 +23,13 @@ class NumberWriter {
   }
 
   // The difference to the place before.
-  void AddPlace(const Place& place) {
+  void AddPoint(const DrawnPoint& place) {
     Bend(0, 0);
     AddNext(place);
   }
 
   // The difference to where the last two places point.
-  void AddNext(const Place& place) {
+  void AddNext(const DrawnPoint& place) {
     const int64_t x = std::llround(place.x / kGridMm);
     const int64_t y = std::llround(place.y / kGridMm);
     AddSigned(x - x_ - dx_);
@@ -40,7 +40,7 @@ class NumberWriter {
   }
 
   // Nothing is written for it: the reader knows it too.
-  void Skip(const Place& place) {
+  void Skip(const DrawnPoint& place) {
     x_ = std::llround(place.x / kGridMm);
     y_ = std::llround(place.y / kGridMm);
   }
@@ -65,7 +65,7 @@ void AddPath(const DrawnPath& path, NumberWriter& out) {
   out.Add(path.points.size());
   for (size_t i = 0; i < path.points.size(); ++i) {
     if (i < 2) {
-      out.AddPlace(path.points[i]);
+      out.AddPoint(path.points[i]);
     } else {
       out.AddNext(path.points[i]);
     }
@@ -74,14 +74,14 @@ void AddPath(const DrawnPath& path, NumberWriter& out) {
 
 void AddRoute(const DrawnLayer& layer, const DrawnRoute& route, NumberWriter& out) {
   out.Skip({0, 0});
-  out.AddPlace(route.start);
+  out.AddPoint(route.start);
   size_t next = 0;
   for (const DrawnVisit& visit : route.visits) {
     out.AddSigned(static_cast<int64_t>(visit.path) - static_cast<int64_t>(next));
     next = visit.path + 1;
     out.Add(2 * visit.entry + (visit.via.empty() ? 0 : 1));
     if (!visit.via.empty()) out.Add(visit.via.size());
-    for (const Place& corner : visit.via) out.AddPlace(corner);
+    for (const DrawnPoint& corner : visit.via) out.AddPoint(corner);
     out.Skip(ExitOf(layer.paths[visit.path], visit));
   }
 }

@@ -12,7 +12,7 @@ namespace {
 constexpr double kSameMm = 1e-3;
 constexpr double kSameLengthMm = 5e-3;  // blocks keep their lengths as float
 
-bool Same(const Place& a, const Place& b) {
+bool Same(const DrawnPoint& a, const DrawnPoint& b) {
   return std::abs(a.x - b.x) < kSameMm && std::abs(a.y - b.y) < kSameMm;
 }
 
@@ -26,18 +26,18 @@ class BlockWalk {
         unit_(file.modes[file.blocks[next_].mode].UnitMm()) {}
 
   bool AtEnd() const { return next_ == end_; }
-  Place First() const { return PlaceOf(file_.blocks[next_].first); }
+  DrawnPoint First() const { return PointOf(file_.blocks[next_].first); }
 
   // Where the head is before the layer. How the start script comes to the first path of all is not
   // drawn.
-  Place Start() const { return next_ > 0 ? PlaceOf(file_.blocks[next_ - 1].last) : First(); }
+  DrawnPoint Start() const { return next_ > 0 ? PointOf(file_.blocks[next_ - 1].last) : First(); }
 
   // Where the head comes by from the block before to this one, the ends of both included.
-  std::vector<Place> Corners() const {
+  std::vector<DrawnPoint> Corners() const {
     if (next_ == 0) return {};
-    std::vector<Place> corners = {PlaceOf(file_.blocks[next_ - 1].last)};
+    std::vector<DrawnPoint> corners = {PointOf(file_.blocks[next_ - 1].last)};
     for (const gcode::LinkStep& step : gcode::ReadLink(file_, next_).steps) {
-      if (gcode::IsXyMotion(step.kind)) corners.push_back(PlaceOf(step.to));
+      if (gcode::IsXyMotion(step.kind)) corners.push_back(PointOf(step.to));
     }
     return corners;
   }
@@ -46,7 +46,7 @@ class BlockWalk {
   double Take() { return static_cast<double>(file_.blocks[next_++].length_mm); }
 
  private:
-  Place PlaceOf(const gcode::Position& at) const {
+  DrawnPoint PointOf(const gcode::Position& at) const {
     return {gcode::ToDouble(at.x) * unit_, gcode::ToDouble(at.y) * unit_};
   }
 
@@ -57,7 +57,8 @@ class BlockWalk {
 };
 
 // `corners` without those that are the ends of the move itself.
-std::vector<Place> Between(std::vector<Place> corners, const Place& from, const Place& to) {
+std::vector<DrawnPoint> Between(std::vector<DrawnPoint> corners, const DrawnPoint& from,
+                                const DrawnPoint& to) {
   if (!corners.empty() && Same(corners.back(), to)) corners.pop_back();
   if (!corners.empty() && Same(corners.front(), from)) corners.erase(corners.begin());
   return corners;
@@ -68,11 +69,11 @@ std::optional<std::vector<DrawnVisit>> WithCorners(const GcodeFile& printed, siz
                                                    const SlicedPaths& sliced,
                                                    std::vector<DrawnVisit> order) {
   BlockWalk walk(printed, layer);
-  Place at = walk.Start();
+  DrawnPoint at = walk.Start();
   double ahead = 0;  // what the blocks taken extrude beyond the paths taken
   for (DrawnVisit& visit : order) {
     const DrawnPath& path = sliced.paths[visit.path];
-    const Place entry = EntryOf(path, visit);
+    const DrawnPoint entry = EntryOf(path, visit);
     if (ahead < kSameLengthMm) {
       if (walk.AtEnd() || !Same(walk.First(), entry)) return std::nullopt;
       visit.via = Between(walk.Corners(), at, entry);

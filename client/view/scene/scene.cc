@@ -13,8 +13,8 @@ constexpr double kSameMm = 1e-3;
 
 using Key = std::pair<std::pair<int64_t, int64_t>, std::pair<int64_t, int64_t>>;
 
-std::pair<int64_t, int64_t> Rounded(const Place& place) {
-  return {std::llround(place.x / kSameMm), std::llround(place.y / kSameMm)};
+std::pair<int64_t, int64_t> Rounded(const DrawnPoint& point) {
+  return {std::llround(point.x / kSameMm), std::llround(point.y / kSameMm)};
 }
 
 // The ends of a move, the same for both directions.
@@ -25,33 +25,34 @@ Key EndsOf(const DrawnMove& move) {
 
 }  // namespace
 
-Place EntryOf(const DrawnPath& path, const DrawnVisit& visit) {
+DrawnPoint EntryOf(const DrawnPath& path, const DrawnVisit& visit) {
   if (path.closed) return path.points[visit.entry];
   return visit.entry == 0 ? path.points.front() : path.points.back();
 }
 
-Place ExitOf(const DrawnPath& path, const DrawnVisit& visit) {
+DrawnPoint ExitOf(const DrawnPath& path, const DrawnVisit& visit) {
   if (path.closed) return path.points[visit.entry];
   return visit.entry == 0 ? path.points.back() : path.points.front();
 }
 
 std::vector<DrawnMove> MovesOf(const DrawnLayer& layer, const DrawnRoute& route) {
   std::vector<DrawnMove> moves;
-  Place at = route.start;
+  DrawnPoint at = route.start;
   for (const DrawnVisit& visit : route.visits) {
     const DrawnPath& path = layer.paths[visit.path];
     DrawnMove move = {at};
-    for (const Place& corner : visit.via) {
+    for (const DrawnPoint& corner : visit.via) {
       if (!(corner == move.back())) move.push_back(corner);
     }
-    if (const Place entry = EntryOf(path, visit); !(entry == move.back())) move.push_back(entry);
+    if (const DrawnPoint entry = EntryOf(path, visit); !(entry == move.back()))
+      move.push_back(entry);
     if (move.size() > 1) moves.push_back(std::move(move));
     at = ExitOf(path, visit);
   }
   return moves;
 }
 
-Place EndOf(const DrawnLayer& layer, const DrawnRoute& route) {
+DrawnPoint EndOf(const DrawnLayer& layer, const DrawnRoute& route) {
   if (route.visits.empty()) return route.start;
   return ExitOf(layer.paths[route.visits.back().path], route.visits.back());
 }

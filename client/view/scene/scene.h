@@ -15,30 +15,30 @@
 namespace traverse::view {
 
 // In mm.
-struct Place {
+struct DrawnPoint {
   double x = 0;
   double y = 0;
 
-  friend bool operator==(const Place&, const Place&) = default;
+  friend bool operator==(const DrawnPoint&, const DrawnPoint&) = default;
 };
 
 // A path that is deposited without interruption.
 struct DrawnPath {
   size_t feature = 0;   // index into Scene::features
   bool closed = false;  // its last point is joined to its first
-  std::vector<Place> points;
+  std::vector<DrawnPoint> points;
 };
 
 // One path of a route.
 struct DrawnVisit {
-  size_t path = 0;         // index into DrawnLayer::paths
-  size_t entry = 0;        // vertex where a closed path begins; else 0, or 1 for its other end
-  std::vector<Place> via;  // corners of the travel to it; empty: straight
+  size_t path = 0;              // index into DrawnLayer::paths
+  size_t entry = 0;             // vertex where a closed path begins; else 0, or 1 for its other end
+  std::vector<DrawnPoint> via;  // corners of the travel to it; empty: straight
 };
 
 // A route through a layer.
 struct DrawnRoute {
-  Place start;
+  DrawnPoint start;
   std::vector<DrawnVisit> visits;
 };
 
@@ -83,17 +83,17 @@ struct Scene {
 };
 
 // Where `visit` begins and ends depositing.
-Place EntryOf(const DrawnPath& path, const DrawnVisit& visit);
-Place ExitOf(const DrawnPath& path, const DrawnVisit& visit);
+DrawnPoint EntryOf(const DrawnPath& path, const DrawnVisit& visit);
+DrawnPoint ExitOf(const DrawnPath& path, const DrawnVisit& visit);
 
 // One travel move, corner by corner; at least two positions.
-using DrawnMove = std::vector<Place>;
+using DrawnMove = std::vector<DrawnPoint>;
 
 // The moves of `route` in its order, without those of length zero.
 std::vector<DrawnMove> MovesOf(const DrawnLayer& layer, const DrawnRoute& route);
 
 // Where the route ends.
-Place EndOf(const DrawnLayer& layer, const DrawnRoute& route);
+DrawnPoint EndOf(const DrawnLayer& layer, const DrawnRoute& route);
 
 // The moves that are in `before` but not in `after`, in either direction.
 std::vector<DrawnMove> Vanished(const std::vector<DrawnMove>& before,

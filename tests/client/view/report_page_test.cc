@@ -59,9 +59,9 @@ struct Pen {
     x += dx;
     y += dy;
   }
-  void ExpectAt(const Place& place) const {
-    EXPECT_EQ(x, Steps(place.x));
-    EXPECT_EQ(y, Steps(place.y));
+  void ExpectAt(const DrawnPoint& point) const {
+    EXPECT_EQ(x, Steps(point.x));
+    EXPECT_EQ(y, Steps(point.y));
   }
 };
 
@@ -76,17 +76,17 @@ void ExpectRoute(const DrawnLayer& layer, const DrawnRoute& route, Reader& reade
     const size_t token = reader.Next();
     EXPECT_EQ(token / 2, visit.entry);
     ASSERT_EQ(token % 2 == 1 ? reader.Next() : 0, visit.via.size());
-    for (const Place& corner : visit.via) {
+    for (const DrawnPoint& corner : visit.via) {
       pen.Move(reader, false);
       pen.ExpectAt(corner);
     }
-    const Place exit = ExitOf(layer.paths[visit.path], visit);
+    const DrawnPoint exit = ExitOf(layer.paths[visit.path], visit);
     pen.x = Steps(exit.x);
     pen.y = Steps(exit.y);
   }
 }
 
-Place RandomPlace(Rng& rng) {
+DrawnPoint RandomPoint(Rng& rng) {
   const auto coordinate = [&] { return static_cast<double>(rng.Below(4'000'000)) / 1000 - 2000; };
   const double x = coordinate();
   return {x, coordinate()};
@@ -100,17 +100,17 @@ DrawnLayer RandomLayer(Rng& rng) {
     path.feature = rng.Below(90);
     path.closed = rng.Below(2) == 0;
     const size_t points = (path.closed ? 1 : 2) + rng.Below(200);
-    for (size_t j = 0; j < points; ++j) path.points.push_back(RandomPlace(rng));
+    for (size_t j = 0; j < points; ++j) path.points.push_back(RandomPoint(rng));
   }
   for (DrawnRoute& route : (layer.routes = std::vector<DrawnRoute>(1 + rng.Below(3)))) {
-    route.start = RandomPlace(rng);
+    route.start = RandomPoint(rng);
     for (size_t i = 0; i < paths; ++i) {
       DrawnVisit& visit = route.visits.emplace_back();
       visit.path = paths - 1 - i;
       const DrawnPath& path = layer.paths[visit.path];
       visit.entry = rng.Below(path.closed ? static_cast<uint32_t>(path.points.size()) : 2);
       visit.via.resize(rng.Below(3));
-      for (Place& corner : visit.via) corner = RandomPlace(rng);
+      for (DrawnPoint& corner : visit.via) corner = RandomPoint(rng);
     }
   }
   return layer;

@@ -84,7 +84,7 @@ TEST(PictureFormatOf, IsTheEndOfTheName) {
 }
 
 TEST(Canvas, LinesOfAnSvgKeepTheirPlacesHoweverManySteps) {
-  std::vector<Place> line;
+  std::vector<DrawnPoint> line;
   for (int i = 0; i <= 1000; ++i) line.push_back({i * 0.0149, 0});
   const std::unique_ptr<Canvas> canvas = MakeSvgCanvas(10, 10);
   canvas->Lines({line}, {"#000000"});

@@ -105,13 +105,13 @@ TEST(DrawnGcode, ArcsAreRound) {
   DrawnMove outline = loop.points;
   outline.push_back(loop.points.front());
   EXPECT_NEAR(LengthOf({outline}), 8 + 10 * std::numbers::pi, 0.1);
-  for (const Place& at : loop.points) {
+  for (const DrawnPoint& at : loop.points) {
     const double beyond = at.y < 10 ? 10 - at.y : std::max(at.y - 14, 0.0);
     EXPECT_NEAR(std::hypot(at.x - 15, beyond), 5, 0.001) << at.x << ", " << at.y;
   }
   // Routes begin it at the same corners as before it was bent.
-  EXPECT_EQ(EntryOf(loop, layer.routes[0].visits[1]), (Place{10, 10}));
-  EXPECT_EQ(EntryOf(loop, layer.routes[1].visits[1]), (Place{20, 14}));
+  EXPECT_EQ(EntryOf(loop, layer.routes[0].visits[1]), (DrawnPoint{10, 10}));
+  EXPECT_EQ(EntryOf(loop, layer.routes[1].visits[1]), (DrawnPoint{20, 14}));
 }
 
 INSTANTIATE_TEST_SUITE_P(Kept, DrawnGcode, ::testing::ValuesIn(gcode::testing::KeptFiles()),

@@ -23,7 +23,7 @@ DrawnLayer SquareAndLine() {
   return layer;
 }
 
-DrawnVisit Visit(size_t path, size_t entry, std::vector<Place> via = {}) {
+DrawnVisit Visit(size_t path, size_t entry, std::vector<DrawnPoint> via = {}) {
   DrawnVisit visit;
   visit.path = path;
   visit.entry = entry;
@@ -38,12 +38,12 @@ TEST(MovesOf, LeadFromExitToEntryOverTheCornersAndLeaveOutThoseOfNoLength) {
 
   const DrawnMove over_a_corner = {{0, 0}, {12, 5}, {10, 20}};
   EXPECT_THAT(MovesOf(layer, route), ElementsAre(over_a_corner));
-  EXPECT_EQ(EndOf(layer, route), (Place{0, 20}));
+  EXPECT_EQ(EndOf(layer, route), (DrawnPoint{0, 20}));
 }
 
 TEST(MovesOf, RouteWithoutPathsEndsWhereItStarts) {
   EXPECT_TRUE(MovesOf({}, {{3, 4}, {}}).empty());
-  EXPECT_EQ(EndOf({}, {{3, 4}, {}}), (Place{3, 4}));
+  EXPECT_EQ(EndOf({}, {{3, 4}, {}}), (DrawnPoint{3, 4}));
 }
 
 TEST(Vanished, CountsAMoveForBothDirectionsAndAsOftenAsItIsThere) {

@@ -1,7 +1,7 @@
 // Positions in a layer of a request, and the checks made at many of them.
 
-#ifndef TRAVERSE_SERVER_TRANSLATE_TRANSLATE_PLACE_H_
-#define TRAVERSE_SERVER_TRANSLATE_TRANSLATE_PLACE_H_
+#ifndef TRAVERSE_SERVER_TRANSLATE_FIELD_PATH_H_
+#define TRAVERSE_SERVER_TRANSLATE_FIELD_PATH_H_
 
 #include <climits>
 #include <cstddef>
@@ -22,9 +22,9 @@ namespace traverse {
 inline constexpr size_t kStepsOfMessage = 64;
 
 // A position in the request, whose text is only built when there is a fault.
-class Place {
+class FieldPath {
  public:
-  Place(const Place* parent, const char* field, uint64_t index)
+  FieldPath(const FieldPath* parent, const char* field, uint64_t index)
       : parent_(parent), field_(field), index_(index) {}
 
   std::string text() const {
@@ -33,14 +33,14 @@ class Place {
   }
 
  private:
-  const Place* parent_;
+  const FieldPath* parent_;
   const char* field_;
   uint64_t index_;
 };
 
 // Like CheckKnown, but without building the text of the position; for frequent messages.
 template <typename Message>
-absl::Status CheckKnownAt(const Message& message, const Place& place) {
+absl::Status CheckKnownAt(const Message& message, const FieldPath& place) {
   if (message.GetReflection()->GetUnknownFields(message).empty()) return absl::OkStatus();
   return CheckKnown(message, place.text());
 }
@@ -48,7 +48,7 @@ absl::Status CheckKnownAt(const Message& message, const Place& place) {
 using Coordinates = google::protobuf::RepeatedField<double>;
 
 inline absl::Status CheckCoordinates(const Coordinates& coordinates, const FieldRange& range,
-                                     const Place& place) {
+                                     const FieldPath& place) {
   if (coordinates.size() % 2 != 0) {
     return Fault(place.text() + ".points",
                  absl::StrCat(coordinates.size(), " coordinates, which are not pairs of x and y"));
@@ -74,4 +74,4 @@ inline absl::StatusOr<int> Index(uint32_t value, const std::string& place) {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_SERVER_TRANSLATE_TRANSLATE_PLACE_H_
+#endif  // TRAVERSE_SERVER_TRANSLATE_FIELD_PATH_H_
