@@ -12,7 +12,7 @@ namespace traverse::report {
 // What a verification found, rule by rule, a line each:
 //   {"original": "...", "optimised": "...", "same": false, "policy": "safe",
 //    "allow": ["wall_order"],
-//    "rules": [{"rule": "lifts", "states": "ways are lifted as such ways are", "breaks": 3,
+//    "rules": [{"rule": "lifts", "states": "...", "breaks": 3,
 //               "layers": [4, 7],
 //               "first": {"original_line": 97, "optimised_line": 118, "layer": 4,
 //                         "message": "..."}}]}

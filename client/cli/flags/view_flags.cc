@@ -34,7 +34,7 @@ std::vector<Flag> ViewFlagTable() {
        "draw a layer before and after",
        {},
        false,
-       "a layer (default: most saved)"},
+       "draws one layer (default: most saved)"},
       {"layer", "N", "layer to draw, counted from 1 (default: most saved)"},
   };
 }
