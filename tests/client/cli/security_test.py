@@ -111,7 +111,7 @@ class Security(unittest.TestCase):
     def test_a_token_goes_to_other_machines_encrypted(self):
         server = "--server=192.0.2.1:9"
         code, _, err = self.strategies(server, env={"TRAVERSE_TOKEN": TOKEN})
-        self.assertEqual((code, err), (USAGE, "traverse strategies: a token would go to another machine unencrypted: "
+        self.assertEqual((code, err), (USAGE, "traverse strategies: the token would go to another machine unencrypted; "
                                               "use --tls, or --insecure\n"))
 
     def test_faults_are_named(self):

@@ -67,7 +67,7 @@ class Gtsp(unittest.TestCase):
     def test_the_summary_has_the_tour(self):
         code, out, err = self.run_traverse("optimize", SMALL)
         self.assertEqual((code, err), (0, ""))
-        self.assertRegex(out, r"(?m)^tour +\d+ by rounded distances, as EUC_2D has them$")
+        self.assertRegex(out, r"(?m)^tour +\d+ by rounded distances \(EUC_2D\)$")
 
     def test_inspect_and_compare_read_it(self):
         code, out, _ = self.run_traverse("inspect", SMALL)
