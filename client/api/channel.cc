@@ -25,10 +25,10 @@ namespace {
 // One attempt to connect may take this long; gRPC's default of 20 s is long for a person who waits.
 constexpr int kConnectTimeoutMs = 5000;
 
-// A server that was replaced is found again within a rollout's pace; gRPC would wait for a second.
+// Finds a replaced server again as fast as a rollout replaces it; gRPC would wait for a second.
 constexpr int kFirstReconnectMs = 200;
 
-// Servers whose health says that they take no jobs, as those that drain, are left out.
+// Leaves out servers whose health check says that they take no jobs, such as those that drain.
 constexpr char kServiceConfig[] = R"({"loadBalancingConfig": [{"round_robin": {}}],
     "healthCheckConfig": {"serviceName": "traverse.v1.RouteOptimizerService"}})";
 
@@ -53,8 +53,8 @@ HostAndPort Split(const std::string& address) {
   return {std::move(host), digits};
 }
 
-// Adds the numeric addresses of `address` as gRPC's ipv6 scheme has them; IPv4 ones are mapped, for
-// one target has one scheme. False if the name is unknown.
+// Adds the numeric addresses of `address` in gRPC's ipv6 scheme. IPv4 addresses are mapped, because
+// a target has only one scheme. False if the name is unknown.
 bool LookUp(const std::string& address, std::vector<std::string>& out) {
   const HostAndPort place = Split(address);
   addrinfo hints{};
@@ -86,7 +86,7 @@ absl::StatusOr<std::string> ReadPem(const char* option, const std::string& path)
   return bytes;
 }
 
-// The host that all addresses have; empty if there are several.
+// The host that all addresses share; empty if there are several.
 std::string CommonHost(const std::vector<std::string>& addresses) {
   const std::string host = Split(addresses.front()).host;
   const bool all = std::all_of(addresses.begin(), addresses.end(), [&](const std::string& address) {
@@ -95,7 +95,7 @@ std::string CommonHost(const std::vector<std::string>& addresses) {
   return all ? host : "";
 }
 
-// Sets up encryption; adds what it needs to `arguments`.
+// Sets up encryption and adds the arguments that it needs to `arguments`.
 absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> MakeCredentials(
     const std::vector<std::string>& addresses, const std::optional<ChannelTls>& tls,
     grpc::ChannelArguments& arguments) {
@@ -121,7 +121,7 @@ absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> MakeCredentials(
     return absl::InvalidArgumentError(
         "tls_name: with several servers, give the name that their certificates share");
   }
-  // gRPC would compare the certificate with the numeric address, where it was given one.
+  // Without this gRPC compares the certificate with the numeric address, if it was given one.
   arguments.SetSslTargetNameOverride(name);
   return grpc::SslCredentials(options);
 }

@@ -24,7 +24,7 @@ class Register {
     left_ += plan_.size();
   }
 
-  // Null, or what is wrong with the visit.
+  // Null, or the reason why the visit is wrong.
   const char* Tick(const v1::Visit& visit) {
     if (visit.path_case() == v1::Visit::kPlanPath) {
       if (visit.plan_path() >= plan_.size()) return "no such path";

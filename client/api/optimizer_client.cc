@@ -24,8 +24,8 @@ namespace {
 
 using Stream = grpc::ClientReaderWriter<v1::OptimizeRequest, v1::OptimizeResponse>;
 
-// Layers are sent together up to this size: small ones cost less so, and the first answers still
-// come early.
+// Sends layers together up to this size: this costs less for small ones, and the first answers
+// still come early.
 constexpr size_t kMessageBytes = size_t{32} << 10;
 
 absl::Status FromGrpc(const grpc::Status& status) {
@@ -38,10 +38,10 @@ void SetDeadline(grpc::ClientContext& context, absl::Duration deadline) {
   context.set_deadline(absl::ToChronoTime(absl::Now() + deadline));
 }
 
-// Leaves an open path its ends.
+// Keeps only the two ends of an open path.
 void Strip(v1::OpenPath& path) {
   const int n = path.points_size();
-  if (n <= 4 || n % 2 != 0) return;  // an odd number is the service's to refuse
+  if (n <= 4 || n % 2 != 0) return;  // the service refuses odd numbers
   auto& points = *path.mutable_points();
   points[2] = points[n - 2];
   points[3] = points[n - 1];
@@ -66,7 +66,7 @@ void Send(const v1::JobOptions& options, absl::Span<const v1::Layer> layers, boo
           Stream& stream) {
   v1::OptimizeRequest request;
   *request.mutable_options() = options;
-  request.mutable_options()->set_look_ahead(true);  // answers are read while this sends on
+  request.mutable_options()->set_look_ahead(true);  // reads answers while it still sends
   size_t bytes = 0;
   for (const v1::Layer& layer : layers) {
     v1::Layer& sent = *request.add_layers();
@@ -84,7 +84,7 @@ void Send(const v1::JobOptions& options, absl::Span<const v1::Layer> layers, boo
   stream.WritesDone();
 }
 
-// The server's advice when to try again, if it gave one.
+// How long the server advises to wait before the next attempt, if it does.
 std::optional<absl::Duration> RetryDelay(const grpc::Status& status) {
   google::rpc::Status details;
   if (!details.ParseFromString(status.error_details())) return std::nullopt;
@@ -98,10 +98,10 @@ std::optional<absl::Duration> RetryDelay(const grpc::Status& status) {
   return std::nullopt;
 }
 
-// Whether the call was lost on the way. Most such losses are UNAVAILABLE, but a connection that
-// goes at the wrong moment is also told as CANCELLED (which we never do while we wait for an
-// answer), as UNKNOWN by gRPC itself, or as INTERNAL by what lies between. The service sends none
-// of these.
+// Whether the call was lost on the way. Most losses are UNAVAILABLE. A connection that breaks at
+// the wrong moment is also reported as CANCELLED (we never cancel while we wait for an answer),
+// by gRPC itself as UNKNOWN, or by proxies in between as INTERNAL. The service sends none of
+// these.
 bool WasLost(const grpc::Status& status) {
   const auto begins = [&](const char* text) { return status.error_message().rfind(text, 0) == 0; };
   switch (status.error_code()) {
@@ -117,7 +117,7 @@ bool WasLost(const grpc::Status& status) {
   }
 }
 
-// When to try again after `attempts` attempts in vain, or nothing if that makes no sense.
+// How long to wait after `attempts` failed attempts, or nothing if another one makes no sense.
 std::optional<absl::Duration> DelayAfter(const grpc::Status& status, const RetryPolicy& policy,
                                          int attempts) {
   const std::optional<absl::Duration> advice = RetryDelay(status);
@@ -127,7 +127,7 @@ std::optional<absl::Duration> DelayAfter(const grpc::Status& status, const Retry
   absl::Duration delay = policy.first_delay;
   for (int i = 1; i < attempts; ++i) delay = std::min(delay * 2, policy.max_delay);
   delay = std::max(delay, advice.value_or(absl::ZeroDuration()));
-  // Callers that were refused together do not come back together.
+  // So that callers that were refused together do not come back together.
   thread_local std::minstd_rand random(std::random_device{}());
   return delay * std::uniform_real_distribution<double>(1.0, 1.25)(random);
 }
@@ -190,7 +190,7 @@ class Collector {
   bool summary_ = false;
 };
 
-// One call for the layers of `run`. `fault` is set if an answer is no answer.
+// Makes one call for the layers of `run`. Sets `fault` if an answer is malformed.
 grpc::Status CallOnce(v1::RouteOptimizerService::Stub& stub, grpc::ClientContext& context,
                       const std::stop_token& cancel, const v1::JobOptions& options,
                       absl::Span<const v1::Layer> layers, const MissingRun& run,

@@ -91,9 +91,9 @@ const std::vector<Command>& Commands() {
 }
 
 int Main(const std::vector<std::string>& arguments) {
-  // protobuf prints parse errors by itself; ours say the same with the file's name.
+  // protobuf prints parse errors itself; our messages say the same and name the file.
   google::protobuf::SetLogHandler(nullptr);
-  // So does gRPC; whoever wants to see it sets this variable.
+  // gRPC prints errors too; set this variable to see them.
   setenv("GRPC_VERBOSITY", "NONE", /*overwrite=*/0);
   const Outcome outcome = Run(arguments);
   if (!outcome.message.empty()) Print(stderr, outcome.message + "\n");

@@ -21,7 +21,7 @@ bool IsCompressed(const std::string& name) {
   return DetectCompression(first) != Compression::kNone;
 }
 
-// The kind of file that is asked for; nothing if that is left to the input.
+// The kind of file that the flags ask for; nothing if the input decides.
 std::optional<ContainerKind> AskedKind(const Flags& flags) {
   if (flags.Has("container")) {
     return flags.Text("container") == "text" ? ContainerKind::kText : ContainerKind::kBgcode;
@@ -30,7 +30,7 @@ std::optional<ContainerKind> AskedKind(const Flags& flags) {
   return ContainerByExtension(flags.Text("o"));
 }
 
-// A fault if no file of `kind` can be made of `input`.
+// Fails if `input` cannot be written as a file of `kind`.
 absl::Status CheckKind(const InputFile& input, ContainerKind kind) {
   if (kind == input.kind()) return absl::OkStatus();
   if (kind == ContainerKind::kGcode3mf || kind == ContainerKind::kUfp) {
@@ -91,7 +91,7 @@ absl::Status WriteGcode(const InputFile& input, const std::map<size_t, NewPart>&
                         bool changed, const GcodeTarget& target) {
   if (!changed && target.name == input.name && target.name != "-") return absl::OkStatus();
   if (target.kind != input.kind()) {
-    // Of one part: CheckOnePlate.
+    // There is one part: see CheckOnePlate.
     const absl::StatusOr<std::string> packed = PackText(parts.begin()->second.text, target.kind);
     if (!packed.ok()) {
       return absl::Status(packed.status().code(),

@@ -15,7 +15,7 @@ namespace {
 constexpr absl::Duration kBarInterval = absl::Milliseconds(100);
 constexpr absl::Duration kLineInterval = absl::Seconds(5);
 
-// Back to the first column, and the line cleared.
+// Returns to the first column and clears the line.
 constexpr char kClearLine[] = "\r\x1b[K";
 
 }  // namespace

@@ -18,8 +18,8 @@ namespace {
 
 constexpr uint64_t kMaxThreads = 1024;
 
-// The server's text without line breaks, and of a connection that failed the part that says why:
-// gRPC packs it into "connections to all backends failing; last error: UNKNOWN: ipv4:...".
+// The server's text without line breaks. If a connection failed, only the part that says why: gRPC
+// packs it into "connections to all backends failing; last error: UNKNOWN: ipv4:...".
 std::string OneLine(std::string text) {
   for (char& c : text) {
     if (c == '\n' || c == '\r') c = ' ';
@@ -31,11 +31,11 @@ std::string OneLine(std::string text) {
   return text;
 }
 
-// Which part of the command line an INVALID_ARGUMENT is about: options come from flags, layers from
-// the file.
+// Whether INVALID_ARGUMENT is about options, which come from flags, and not about layers, which
+// come from the file.
 bool IsAboutOptions(const std::string& message) { return message.starts_with("options"); }
 
-// As the command line has it. Progress is in `shown` while a search is under way.
+// The options that the command line asks for. `shown` shows progress while a search runs.
 SearchOptions SearchOptionsFor(const StrategySpec* strategy, const JobFlags& flags, bool quiet,
                                std::optional<Progress>& shown) {
   SearchOptions options;

@@ -11,7 +11,7 @@
 namespace traverse::cli {
 namespace {
 
-// Whether the user's locale is of UTF-8, as POSIX finds it.
+// Whether the user's locale uses UTF-8, by POSIX's rules.
 bool SpeaksUtf8() {
   for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
     const char* value = std::getenv(name);

@@ -13,7 +13,7 @@
 namespace traverse {
 namespace {
 
-// G-code in no container.
+// G-code without a container.
 class PlainText : public Container {
  public:
   explicit PlainText(std::string text) : text_(std::move(text)), parts_(1) {}
@@ -51,7 +51,7 @@ const char* ContainerName(ContainerKind kind) {
 ContainerKind DetectContainer(std::string_view bytes) {
   using namespace std::string_view_literals;
   if (bytes.starts_with(containers::kBgcodeMagic)) return ContainerKind::kBgcode;
-  // The first entry, or the end of an archive without any.
+  // The first entry, or the end of an archive without entries.
   const bool zip = bytes.starts_with("PK\x03\x04"sv) || bytes.starts_with("PK\x05\x06"sv);
   return zip ? ContainerKind::kGcode3mf : ContainerKind::kText;
 }

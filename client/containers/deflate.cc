@@ -22,8 +22,8 @@ Bytef* Input(std::string_view bytes) {
   return reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
 }
 
-// Deflates the piece that begins at `begin`, as if all before it had been deflated by the same
-// stream, up to a byte's end; the last piece ends the stream. Empty if there is no memory for it.
+// Deflates the piece that begins at `begin` as a continuation of the same stream, up to a byte
+// boundary; the last piece ends the stream. Empty if memory runs out.
 std::string DeflatePiece(std::string_view bytes, size_t begin, int level) {
   const std::string_view piece = bytes.substr(begin, kPieceBytes);
   z_stream stream{};
@@ -64,7 +64,7 @@ absl::StatusOr<std::string> Inflate(std::string_view bytes, DeflateForm form, si
   if (inflateInit2(&stream, form == DeflateForm::kRaw ? -MAX_WBITS : MAX_WBITS) != Z_OK) {
     return absl::ResourceExhaustedError("no memory to inflate");
   }
-  // One byte more than is due: what goes on is seen.
+  // One byte more than expected, to notice data that goes on.
   std::string out(size + 1, '\0');
   stream.next_in = Input(bytes);
   stream.avail_in = static_cast<uInt>(bytes.size());

@@ -10,10 +10,10 @@ namespace {
 
 using Points = google::protobuf::RepeatedField<double>;
 
-// Edges looked at for one island.
+// Limit of the edges examined for one island.
 constexpr int64_t kMostEdges = 50'000'000;
 
-// A vertex so near to the outer contour is not outside it.
+// A vertex this close to the outer contour is not outside it.
 constexpr double kTouchingMm = 1e-6;
 
 double Area(const Points& points) {
@@ -21,7 +21,7 @@ double Area(const Points& points) {
   const int n = points.size() / 2;
   for (int i = 0; i < n; ++i) {
     const int j = i + 1 < n ? i + 1 : 0;
-    // From the first vertex, so that large coordinates leave digits for small areas.
+    // Relative to the first vertex, so that large coordinates leave digits for small areas.
     twice += (points[2 * i] - points[0]) * (points[2 * j + 1] - points[1]) -
              (points[2 * j] - points[0]) * (points[2 * i + 1] - points[1]);
   }

@@ -54,12 +54,12 @@ class Reader {
   // Reads the fields `X<x>,Y<y>` of one point after another to the end of the record, packed.
   absl::Status ReadPoints(Fields& fields, google::protobuf::RepeatedField<double>& points) const;
 
-  // Ends what is open, checking its counts.
+  // Closes the open island and checks its counts.
   absl::Status EndIsland();
   absl::Status EndLayer();
   absl::Status EndFile();
 
-  // A fault on the present line, or on `line`.
+  // An error on the current line, or on `line`.
   absl::Status Fault(const std::string& what) const { return FaultAt(line_, what); }
   absl::Status FaultAt(int line, const std::string& what) const {
     return absl::InvalidArgumentError(
@@ -77,8 +77,8 @@ class Reader {
   Announcement rasters_;
   std::optional<double> thickness_mm_;
 
-  // The contour of the last record, if that was one, and the line that each of the island's begins
-  // on; the first lines on which a contour goes on, and on which one has several vertices.
+  // The contour of the last record, if that was one, and the first line of each contour of the
+  // island; the first line where a contour continues, and the first with several vertices.
   v1::Contour* contour_ = nullptr;
   std::vector<int> contour_lines_;
   bool goes_on_ = false;
@@ -233,7 +233,7 @@ absl::Status Reader::ReadContour(uint64_t id, Fields fields) {
   return absl::OkStatus();
 }
 
-// A file whose contours go on over several lines has none on one line, and the other way round.
+// A file either continues contours over several lines or has each on one line, never both.
 absl::Status Reader::NoteSpelling(bool goes_on, bool is_long) {
   if (goes_on && first_going_on_ == 0) first_going_on_ = line_;
   if (is_long && first_long_ == 0) first_long_ = line_;
@@ -254,7 +254,7 @@ void Reader::EndContour() {
   goes_on_ = false;
 }
 
-// Brings the outer contour to the front, as the API has it.
+// Moves the outer contour to the front, where the API expects it.
 absl::Status Reader::PlaceOuterContour() {
   if (island_->contours_size() < 2) return absl::OkStatus();
   const damat::OuterContour outer = damat::FindOuterContour(*island_);

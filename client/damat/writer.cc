@@ -39,7 +39,7 @@ absl::Status CheckPoints(const Points& points, int least, const std::string& whe
       "%s.points: %d numbers, not pairs of at least %d points", where, points.size(), least));
 }
 
-// Inserts an id; an error if it is there already.
+// Inserts an id; fails if it is already there.
 absl::Status Claim(absl::flat_hash_set<uint64_t>& ids, uint64_t id, const std::string& where) {
   return ids.insert(id).second ? absl::OkStatus() : Refusal(where, "the same id twice");
 }
@@ -51,7 +51,7 @@ absl::Status AppendContour(const v1::Contour& contour, const std::string& where,
   const Points& points = contour.points();
   const int n = points.size() / 2;
   for (int i = 0; i < n; ++i) AppendPoint(points, i, out);
-  // A reader drops a repeated closing vertex: one that is meant to be there is written twice.
+  // Readers drop a repeated closing vertex: a vertex meant to be there is written twice.
   if (n > 1 && points[0] == points[2 * n - 2] && points[1] == points[2 * n - 1]) {
     AppendPoint(points, 0, out);
   }
@@ -69,8 +69,8 @@ absl::Status AppendRaster(const v1::OpenPath& raster, const std::string& where, 
   return absl::OkStatus();
 }
 
-// An outer contour at the front, where the API has it, and the others within: else reading would
-// change it, or refuse it.
+// The outer contour must be in front, where the API expects it, and the others inside it: otherwise
+// reading would change the island, or refuse it.
 absl::Status CheckOuter(const v1::Island& island, const std::string& where) {
   if (island.contours_size() < 2) return absl::OkStatus();
   const damat::OuterContour outer = damat::FindOuterContour(island);
@@ -114,7 +114,7 @@ absl::Status AppendLayer(const v1::Layer& layer, const std::string& where, std::
   return absl::OkStatus();
 }
 
-// Widens `corner` so that `points` lie within.
+// Widens `corner` so that it encloses `points`.
 void Widen(const Points& points, v1::Point& corner) {
   for (int i = 0; i + 1 < points.size(); i += 2) {
     corner.set_x_mm(std::max(corner.x_mm(), points[i]));
@@ -134,7 +134,7 @@ v1::Point Envelope(const InputJob& job) {
   return corner;
 }
 
-// The thickness of all layers, if they are as thick as each other and the first one lies on the
+// The thickness of all layers, if they are equally thick and the first one lies on the
 // bed.
 std::optional<double> ThicknessOf(const InputJob& job) {
   const double first = job.layers.empty() ? 0 : job.layers.front().z_mm();

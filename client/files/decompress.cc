@@ -16,22 +16,22 @@ namespace {
 
 constexpr size_t kFirstBuffer = size_t{1} << 16;
 
-// Window, dictionary and so on of an xz stream; `xz -9` needs 65 MiB.
+// For the window, the dictionary and the rest of an xz stream; `xz -9` needs 65 MiB.
 constexpr uint64_t kXzMemoryLimit = uint64_t{512} << 20;
 
-// What comes out: kept, or counted alone.
+// The output: kept, or only counted.
 class Output {
  public:
   static constexpr size_t kFirst = 16;
 
-  // Keeps it in `kept` unless that is null.
+  // Keeps the output in `kept` unless that is null.
   Output(std::string* kept, size_t max_bytes) : kept_(kept), max_bytes_(max_bytes) {}
 
   size_t size() const { return size_; }
   bool too_long() const { return size_ > max_bytes_; }
 
-  // Where the next bytes go. What is kept grows twofold, within the limit by one byte, which tells
-  // a result of exactly that length from a longer one.
+  // Room for the next bytes. Kept output doubles its room, up to one byte beyond the limit, which
+  // tells a result of exactly that length from a longer one.
   std::span<char> Room() {
     if (kept_ == nullptr) {
       if (scratch_.empty()) scratch_.resize(kFirstBuffer);
@@ -43,13 +43,13 @@ class Output {
     return {kept_->data() + size_, kept_->size() - size_};
   }
 
-  // So many bytes of the room are taken.
+  // Adds `bytes` bytes that were written into the room.
   void Add(size_t bytes) {
     if (kept_ == nullptr) first_.append(scratch_, 0, std::min(bytes, kFirst - first_.size()));
     size_ += bytes;
   }
 
-  // The first bytes of what is not kept.
+  // The first bytes of output that is not kept.
   const std::string& first() const { return first_; }
 
   void Trim() {
@@ -72,7 +72,7 @@ absl::Status Gunzip(std::string_view bytes, Output& out) {
   size_t consumed = 0;
   int code = Z_OK;
   while (!out.too_long()) {
-    // zlib counts in unsigned int: both sides go in pieces.
+    // zlib counts in unsigned int: input and output go in pieces.
     constexpr size_t kPiece = std::numeric_limits<int>::max();
     const std::span<char> room = out.Room();
     const size_t in = std::min(bytes.size() - consumed, kPiece);
@@ -86,7 +86,7 @@ absl::Status Gunzip(std::string_view bytes, Output& out) {
     consumed += in - stream.avail_in;
     out.Add(space - stream.avail_out);
     if (code == Z_STREAM_END) {
-      // Another member may follow; anything else after the last one is padding.
+      // Another member may follow; anything else after the last member is padding.
       if (DetectCompression(bytes.substr(consumed)) != Compression::kGzip) break;
       inflateReset(&stream);
     } else if (code != Z_OK && !(code == Z_BUF_ERROR && stream.avail_out == 0)) {
@@ -95,7 +95,7 @@ absl::Status Gunzip(std::string_view bytes, Output& out) {
   }
   inflateEnd(&stream);
 
-  if (out.too_long()) return absl::OkStatus();  // as the caller sees
+  if (out.too_long()) return absl::OkStatus();  // the caller sees that it is too long
   if (code == Z_BUF_ERROR) return absl::InvalidArgumentError("gzip data end too early");
   if (code != Z_STREAM_END) return absl::InvalidArgumentError("gzip data are damaged");
   return absl::OkStatus();
@@ -118,7 +118,7 @@ absl::Status Unxz(std::string_view bytes, Output& out) {
   }
   lzma_end(&stream);
 
-  if (out.too_long()) return absl::OkStatus();  // as the caller sees
+  if (out.too_long()) return absl::OkStatus();  // the caller sees that it is too long
   if (code == LZMA_MEMLIMIT_ERROR || code == LZMA_MEM_ERROR) {
     return absl::ResourceExhaustedError("xz data need too much memory");
   }

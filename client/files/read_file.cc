@@ -23,7 +23,7 @@ absl::Status Fault(const std::string& name, const absl::Status& status) {
                       absl::StrFormat("%s: %s", DisplayName(name), status.message()));
 }
 
-// All bytes of an open file; the size that stat states is a hint alone, for pipes have none.
+// All bytes of an open file. The size that stat states is only a hint, because pipes have none.
 absl::StatusOr<std::string> ReadAll(const std::string& name, int file, size_t max_bytes) {
   struct stat info {};
   if (fstat(file, &info) != 0) return FileError(DisplayName(name), errno);

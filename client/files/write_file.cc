@@ -30,7 +30,7 @@ int WriteAll(int file, std::string_view bytes) {
   return 0;
 }
 
-// Where `name` leads through symbolic links, also if the last one's target does not exist yet.
+// Where `name` leads through symbolic links, even if the last link's target does not exist yet.
 absl::StatusOr<std::filesystem::path> Target(const std::string& name) {
   constexpr int kMaxLinks = 40;
   std::filesystem::path path = name;
@@ -44,8 +44,8 @@ absl::StatusOr<std::filesystem::path> Target(const std::string& name) {
   return FileError(name, ELOOP);
 }
 
-// A new file beside `target`, which has `path` then; -1 with errno if there is none. open() and not
-// mkstemp(), for the permissions that the process's mask leaves to a new file.
+// Opens a new file next to `target` and sets `path` to its name; -1 with errno on failure. It uses
+// open() rather than mkstemp() to get the permissions that the process's mask allows.
 int OpenBeside(const std::string& target, std::string& path) {
   constexpr int kAttempts = 100;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -56,10 +56,10 @@ int OpenBeside(const std::string& target, std::string& path) {
   return -1;
 }
 
-// Fills the temporary file and gives it the permissions of `old`. 0, or an errno.
+// Fills the temporary file and gives it the permissions of `old`. Returns 0 or an errno.
 int Fill(int file, std::string_view bytes, const std::optional<struct stat>& old) {
   if (old) {
-    // Keeping the owner needs rights that most callers lack; their own file is theirs anyway.
+    // Keeping the owner needs rights that most callers lack; their own files stay theirs anyway.
     if (fchown(file, old->st_uid, old->st_gid) != 0 && errno != EPERM) return errno;
     if (fchmod(file, old->st_mode & 07777) != 0) return errno;
   }
@@ -89,7 +89,7 @@ absl::Status WriteWholeFile(const std::string& name, std::string_view bytes) {
     close(file);
     return status;
   }
-  // A file that the caller may not write is not replaced through its folder either.
+  // Does not use the folder to replace a file that the caller may not write.
   if (old && access(target->c_str(), W_OK) != 0) return FileError(name, errno);
 
   std::string temporary;

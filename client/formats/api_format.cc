@@ -42,7 +42,7 @@ absl::StatusOr<v1::OptimizeBatchRequest> ToRequest(const InputJob& job) {
   return request;
 }
 
-// protobuf's text of a JSON error has the fault, a line of the input and a caret below it.
+// protobuf's text of a JSON error holds the error, a line of the input and a caret below it.
 std::string OneLine(std::string_view message) {
   std::string out;
   for (const char c : message) {

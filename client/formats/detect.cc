@@ -47,7 +47,7 @@ bool LooksLikeGtsp(std::string_view line) {
   return false;
 }
 
-// True if `bytes` hold a control character that no text has.
+// True if `bytes` contain a control character that no text has.
 bool IsBinary(std::string_view bytes) {
   return std::any_of(bytes.begin(), bytes.end(), [](char c) {
     return (c >= '\0' && c < '\t') || (c > '\r' && c < ' ' && c != '\x1b') || c == '\x7f';
@@ -69,7 +69,7 @@ std::optional<InputFormat> DetectText(std::string_view text) {
     gcode += LooksLikeGcode(line);
     gtsp += LooksLikeGtsp(line);
   }
-  // Its keys look like macros, but no file of macros has two of them.
+  // GTSPLIB's keys look like macros, but no file of macros has two of them.
   if (gtsp > 1) return InputFormat::kGtsp;
   if (damat == 0 && gcode == 0) return std::nullopt;
   return damat >= gcode ? InputFormat::kDamat : InputFormat::kGcode;

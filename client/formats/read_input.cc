@@ -35,7 +35,7 @@ absl::StatusOr<InputJob> ReadAs(InputFormat format, std::string bytes, const std
   return ReadGcodeJob(std::move(bytes), name, gcode);
 }
 
-// A name that promises a container keeps its promise, unless the content is a format of its own.
+// A name that promises a container must hold one, unless the content is another known format.
 absl::Status CheckPromise(const std::string& name) {
   switch (ContainerByExtension(name).value_or(ContainerKind::kText)) {
     case ContainerKind::kText:
@@ -53,7 +53,7 @@ absl::StatusOr<InputFormat> FormatOf(const std::string& bytes, const std::string
   }
   const std::optional<InputFormat> by_content = DetectByContent(bytes);
   const std::optional<InputFormat> by_extension = DetectByExtension(name);
-  // Of binary data only the first byte speaks: against an extension that is not enough.
+  // Binary data show only by their first byte: that is too little against an extension.
   const bool weak = by_content == InputFormat::kProto && by_extension;
   const std::optional<InputFormat> format = weak || !by_content ? by_extension : by_content;
   if (!format) {

@@ -58,7 +58,7 @@ void Core::Submit(std::shared_ptr<WorkQueue::Place> place,
     queue->Submit(place, *memory, [work] { work(absl::OkStatus()); });
   };
   if (!packed) return submit();
-  // Going through packed files is work as well, and those who call have no time for it.
+  // Decompressing files to measure them takes time, and callers must not wait for it.
   int64_t to_measure = 0;
   for (const auto& file : files) to_measure += MemoryToMeasure(*file);
   queue->Submit(place, std::min(to_measure, queue->max_memory_bytes()), std::move(submit));

@@ -15,10 +15,10 @@ namespace traverse::gateway {
 namespace {
 
 constexpr char kServiceName[] = "traverse.v1.GcodeService";
-// How often files are looked at that operators may change.
+// How often the gateway checks files that operators may change.
 constexpr auto kLookEvery = std::chrono::seconds(1);
 
-constexpr int kMaxMessageBytes = 5 << 20;  // a piece of a file, which is 4 MB at most
+constexpr int kMaxMessageBytes = 5 << 20;  // a piece of a file has at most 4 MB
 
 }  // namespace
 

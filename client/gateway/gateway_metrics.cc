@@ -5,7 +5,7 @@
 namespace traverse::gateway {
 namespace {
 
-// In s: from a health check to the longest file.
+// In seconds: from a health check to the longest file.
 const prometheus::Histogram::BucketBoundaries& SecondsBounds() {
   static const auto& bounds = *new prometheus::Histogram::BucketBoundaries{
       0.001, 0.005, 0.01, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 10, 30, 60, 120, 300, 600};

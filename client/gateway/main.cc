@@ -1,4 +1,4 @@
-// traverse-gateway: flags, signals, exit code; nothing else.
+// traverse-gateway: only flags, signals and the exit code.
 
 #include <google/protobuf/stubs/logging.h>
 
@@ -17,7 +17,7 @@ namespace traverse::gateway {
 namespace {
 
 int Run(const Daemon& daemon) {
-  // Both print what our own messages say.
+  // Both print what our own messages already say.
   google::protobuf::SetLogHandler(nullptr);
   setenv("GRPC_VERBOSITY", "NONE", /*overwrite=*/0);
   const absl::StatusOr<GatewayOptions> options = OptionsFromFlags();
@@ -41,7 +41,7 @@ int Run(const Daemon& daemon) {
             {{"requests_cut_off", all_done ? "no" : "yes"}});
   if (!all_done) {
     std::fflush(nullptr);
-    std::_Exit(0);  // nothing is left behind: the spool has no names
+    std::_Exit(0);  // leaves nothing behind: the spool's files have no names
   }
   return 0;
 }

@@ -21,7 +21,7 @@ namespace {
 constexpr double kMaxCoordinateMm = 1e6;  // the service refuses more
 constexpr std::string_view kBlanks = " \t\r";
 
-// The rest of the text behind blanks, and its first word.
+// Skips blanks in the rest of the text and takes its next word.
 std::string_view NextWord(std::string_view& rest) {
   rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
   const std::string_view word = rest.substr(0, rest.find_first_of(kBlanks));
@@ -87,9 +87,9 @@ class Reader {
   gtsp::Instance instance_;
   std::vector<bool> has_point_;
   size_t points_found_ = 0;
-  std::vector<uint32_t> set_of_;  // by point: number of its set, from 1; 0 if it is in none yet
+  std::vector<uint32_t> set_of_;  // by point: the number of its set, from 1; 0 if it is in none yet
   size_t sets_found_ = 0;
-  uint32_t open_set_ = 0;  // the set that is being read, from 1; 0 between two
+  uint32_t open_set_ = 0;  // the set that is being read, from 1; 0 between two sets
 };
 
 absl::StatusOr<gtsp::Instance> Reader::Read(std::string_view text) {
@@ -172,7 +172,7 @@ absl::Status Reader::TakeNumber(const std::string& key, std::string_view value,
     return Fault(
         absl::StrFormat("%s is %s, but must be a whole number of at least 1", key, Quoted(value)));
   }
-  // So that what a file announces takes no more memory than what it has.
+  // So that a file cannot claim more memory than its own size justifies.
   if (*count > text_size_) {
     return Fault(absl::StrFormat("%s is %d, but the file is too short for so many", key, *count));
   }
@@ -301,7 +301,7 @@ v1::Layer LayerFrom(const gtsp::Instance& instance, uint32_t first) {
     if (s != instance.first_set) AddContour(instance, instance.sets[s], s, plan);
   }
   AddContour(instance, {first}, instance.first_set, plan);
-  // In order: the other sets, in any order, and then the end.
+  // The layer's order: the other sets, in any order, then the end.
   const auto sets = static_cast<uint32_t>(instance.sets.size());
   if (sets == 1) {
     plan.add_nodes()->set_path(0);

@@ -11,14 +11,14 @@ namespace {
 
 using Set = std::vector<uint32_t>;
 
-// The shortest closed tour through `sets` in this order from the point `first`, in place of
-// sets[0].
+// The shortest closed tour through `sets` in this order. It starts at the point `first`, which
+// stands for sets[0].
 Tour TourFrom(const Instance& instance, absl::Span<const Set* const> sets, uint32_t first) {
   const Set begin = {first};
   const Set* before = &begin;
   std::vector<int64_t> length = {0};
   std::vector<std::vector<uint32_t>> from(
-      sets.size());  // by set and place in it: place in the set before
+      sets.size());  // by set and point: index of the point before
   const auto step = [&](uint32_t to, uint32_t& place) {
     int64_t least = std::numeric_limits<int64_t>::max();
     for (size_t i = 0; i < before->size(); ++i) {
@@ -61,7 +61,7 @@ Tour BestTour(const Instance& instance, absl::Span<const v1::LayerResult> layers
   const auto& layer = *std::min_element(
       layers.begin(), layers.end(),
       [](const auto& a, const auto& b) { return a.travel().total_mm() < b.travel().total_mm(); });
-  // Paths are the other sets in their order, and last the point where the layer began.
+  // The paths are the other sets in their order, and last the point where the layer began.
   std::vector<const Set*> order = {&instance.sets[instance.first_set]};
   for (const v1::Visit& visit : layer.visits()) {
     const uint32_t path = visit.plan_path();

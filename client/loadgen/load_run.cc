@@ -53,7 +53,7 @@ class Run {
            const grpc::Status& status, bool complete, bool counted) {
     MutexLock lock(mutex_);
     --in_flight_;
-    // Within the lock: the run may be gone as soon as the last job is counted.
+    // Within the lock: the run may be destroyed as soon as the last job is counted.
     changed_.NotifyAll();
     if (!counted) return;
     if (status.ok() && complete) {
@@ -122,8 +122,8 @@ class Job : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
     const bool complete = answers_left_ == 0;
     const bool counted = counted_;
     // Before the job is counted: the context holds the channel, and once the last job is counted
-    // the caller may let its channel go. The last owner would then be this thread, one of the
-    // channel's own, and gRPC aborts when it closes its queue from there.
+    // the caller may release its channel. This thread, one of the channel's own, would then be the
+    // last owner, and gRPC aborts when it closes its queue from there.
     delete this;
     run.End(position, latency, from_sent, status, complete, counted);
   }
@@ -140,7 +140,7 @@ class Job : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
   grpc::ByteBuffer answer_;
 };
 
-// Starts jobs, of sizes chosen in turn, over channels taken in turn.
+// Starts jobs, whose sizes and channels it chooses in turn.
 class Starter {
  public:
   Starter(Run& run, const std::vector<JobKind>& kinds,

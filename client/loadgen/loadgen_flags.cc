@@ -13,7 +13,7 @@
 namespace traverse::loadgen {
 namespace {
 
-// As many jobs as these would fill the generator's memory before the server's queue.
+// A higher rate would fill the generator's memory before the server's queue.
 constexpr double kMaxRate = 1e5;
 constexpr uint64_t kMaxInFlight = 100'000;
 constexpr uint64_t kMaxConnections = 1000;
@@ -21,7 +21,7 @@ constexpr uint64_t kMaxIslands = 10'000;
 
 absl::Status Fault(std::string message) { return absl::InvalidArgumentError(std::move(message)); }
 
-// Sets `value` to that of an integer flag, if it is given.
+// Sets `value` from an integer flag, if it is given.
 template <typename T>
 absl::Status ReadInteger(const cli::Flags& flags, const char* name, uint64_t least, uint64_t most,
                          T& value) {

@@ -1,4 +1,4 @@
-// traverse-loadgen: load on servers, and how they bear it.
+// traverse-loadgen: puts load on servers and measures how they handle it.
 
 #include <algorithm>
 #include <cstdio>
@@ -26,7 +26,7 @@ namespace {
 
 using cli::Outcome;
 
-// Layers made up differ, but need not all do.
+// Number of different layers that are made up; larger jobs repeat them.
 constexpr uint64_t kMadeUpLayers = 50;
 
 absl::StatusOr<std::vector<JobKind>> MakeKinds(const LoadgenFlags& flags) {

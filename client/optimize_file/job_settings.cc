@@ -7,13 +7,13 @@
 namespace traverse {
 namespace {
 
-// A fast desktop printer of our days.
+// A fast desktop printer of today.
 constexpr double kDefaultSpeedMmS = 130;
 constexpr double kDefaultAccelMmS2 = 1250;
 constexpr double kDefaultRetractionSeconds = 0.1;
 constexpr double kDefaultRetractionThresholdMm = 2;
 
-// Overrides `model` by the settings. A time model that the file does not state begins with the
+// Overrides `model` with the settings. A time model that the file does not state begins with the
 // defaults.
 void ApplyCost(const CostSettings& settings, v1::CostModel& model) {
   const bool by_time = settings.by_time.value_or(model.has_time());
@@ -37,7 +37,7 @@ void ApplyCost(const CostSettings& settings, v1::CostModel& model) {
   }
 }
 
-// Idle time is stated at the speed that the cost counts with, if there is one.
+// States idle time at the speed that the cost uses, if there is one.
 void ApplyIdleSpeed(const CostSettings& settings, v1::JobOptions& options) {
   if (settings.speed_mm_s) {
     options.set_idle_speed_mm_s(*settings.speed_mm_s);

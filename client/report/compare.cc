@@ -15,7 +15,7 @@ namespace {
 constexpr int kLeastBar = 10;
 constexpr int kMostBar = 30;
 
-// Columns of a label where there is room, and where there is not.
+// Columns of a label where there is room, and where there is none.
 constexpr size_t kWholeLabel = 1000;
 constexpr size_t kFoldedLabel = 20;
 
@@ -44,7 +44,7 @@ double TravelDeviation(const ComparedStrategy& strategy) {
   return n > 1 ? std::sqrt(sum / static_cast<double>(n - 1)) : 0;
 }
 
-// Percent, if every run has a bound.
+// In percent, if every run has a bound.
 std::string Gap(const ComparedStrategy& strategy) {
   double sum = 0;
   for (const JobRun& run : strategy.runs) {
@@ -55,14 +55,14 @@ std::string Gap(const ComparedStrategy& strategy) {
   return absl::StrFormat("%.1f", sum / static_cast<double>(strategy.runs.size()));
 }
 
-// One column. Those with the highest `rank` go first where there is no room.
+// One column. Columns with the highest `rank` are dropped first if there is no room.
 struct Column {
   std::string title;
   int rank = 0;
   std::function<Cell(const ComparedStrategy&)> cell;
 };
 
-// The columns for `strategies`; the bar is not among them.
+// The columns for `strategies`, without the bar.
 class Columns {
  public:
   explicit Columns(const std::vector<ComparedStrategy>& strategies) : strategies_(strategies) {
@@ -86,7 +86,7 @@ class Columns {
 
   Columns(const Columns&) = delete;
 
-  // Folds labels and leaves out columns, the highest ranks first, until all take at most `width`.
+  // Folds labels and drops columns, the highest ranks first, until the rest takes at most `width`.
   void Fit(int width) {
     if (Width() > width) label_width_ = kFoldedLabel;
     for (int rank = 3; rank > 0 && Width() > width; --rank) {
@@ -150,7 +150,7 @@ class Columns {
          }});
   }
 
-  // The gain over a length that each row has its own of, or over the mean of another row.
+  // The gain over a length that each row has of its own, or over the mean of another row.
   void AddGain(std::string title, const Value& before) {
     columns_.push_back(
         {std::move(title), 0, [before](const ComparedStrategy& s) {

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The path's label and entry: what all kinds of layers share.
+// The path's label and entry, for all kinds of layers.
 Json EntryJson(const v1::Contour& contour, const v1::Visit& visit) {
   return {{"id", contour.id()}, {"entry", visit.vertex()}};
 }
@@ -64,7 +64,7 @@ Json LayerJson(const InputJob& job, size_t i, const v1::LayerResult& result) {
               {"lower_bound_mm", BoundJson(job, layer, result)},
               {"stop", StopName(result.stop_reason())},
               {"solve_seconds", result.solve_seconds()}};
-  // What the search tells of itself, if it does; sorted, as a proto map has no order.
+  // The statistics of the search, if it has any; sorted, because a proto map has no order.
   for (const auto& [name, value] :
        std::map<std::string, double>(result.statistics().begin(), result.statistics().end())) {
     out["statistics"][name] = value;
@@ -108,7 +108,7 @@ Json RewriteJson(const GcodeRewrite& rewrite) {
           {"written", GcodeTotalsJson(rewrite.after)}};
 }
 
-// Numbers as in the file, from 1.
+// Point numbers as in the file, from 1.
 Json TourJson(const gtsp::Instance& instance, const JobResult& result) {
   const gtsp::Tour tour = gtsp::BestTour(instance, result.layers);
   Json points = Json::array();
@@ -116,7 +116,7 @@ Json TourJson(const gtsp::Instance& instance, const JobResult& result) {
   return {{"rounded_length", tour.rounded_length}, {"points", std::move(points)}};
 }
 
-// Names of files may be any bytes; JSON is UTF-8.
+// File names may be any bytes; JSON is UTF-8.
 std::string Dump(const Json& json) {
   return json.dump(-1, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace);
 }
@@ -141,7 +141,7 @@ std::string RoutesJson(const InputJob& job, const JobRun& run, const GcodeRewrit
     absl::StrAppendFormat(&out, " \"tour\": %s,\n", Dump(TourJson(*job.gtsp, run.result)));
   }
   out += " \"layers\": [";
-  // Layer by layer: as one tree of values a large job would need many times its text's memory.
+  // Layer by layer: a large job as one tree of values would need many times its text's memory.
   for (size_t i = 0; i < job.layers.size(); ++i) {
     out += i == 0 ? "\n  " : ",\n  ";
     out += Dump(LayerJson(job, i, run.result.layers[i]));

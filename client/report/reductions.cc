@@ -13,7 +13,7 @@ constexpr size_t kLabelWidth = 20;
 
 constexpr char kAllPoints[] = "points_entries";
 
-// A column: what layers call it in their statistics, and what it reduces.
+// A column: the name of the statistic, and what it reduces.
 struct Reduction {
   const char* title;
   const char* name;
@@ -25,7 +25,7 @@ constexpr Reduction kReductions[] = {{"island analysis", "points_island_analysis
                                      {"BBCP", "points_bbcp", kAllPoints},
                                      {"VP", "points_vp", "points_sp"}};
 
-// Mean over the layers that tell of it; unset if there are none.
+// The mean over the layers that have the statistic; unset if there are none.
 std::optional<double> MeanStatistic(const ComparedStrategy& strategy, const char* name) {
   double sum = 0;
   int layers = 0;

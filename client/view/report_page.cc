@@ -24,10 +24,10 @@ Json OrNull(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-// Three digits are as many as files state.
+// Files state three digits, so three are enough.
 double Rounded(double value) { return std::round(value * 1000) / 1000; }
 
-// [layer] of a figure that a file tells; null unless it tells it of all layers.
+// [layer] of a figure that a file states; null unless the file states it for all layers.
 Json LayersJson(const RouteNotes& route, std::optional<int64_t> Figures::*figure) {
   Json values = Json::array();
   for (const Figures& layer : route.layers) {
@@ -77,7 +77,7 @@ Json SceneJson(const Scene& scene, const std::string& made, size_t paths) {
           {"layers", {{"id", scene.layer_ids}, {"z", std::move(heights)}}}};
 }
 
-// JSON that ends no script element and begins no comment in one, whatever its texts are.
+// JSON that neither ends a script element nor begins a comment in one, whatever its texts are.
 std::string ScriptSafe(const Json& json) {
   std::string out;
   for (const char c : json.dump()) {

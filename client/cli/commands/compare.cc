@@ -24,13 +24,13 @@ namespace {
 
 constexpr uint64_t kMaxRepeats = 1000;
 
-// A table of all strategies should not wait two hours for the proof that one of them looks for. No
-// deadline: on a busy machine a late answer is better than none.
+// A table of all strategies should not wait two hours for the proof that one of them looks for.
+// There is no deadline: on a busy machine a late answer is better than none.
 constexpr absl::Duration kDefaultTimeLimit = absl::Seconds(5);
 constexpr absl::Duration kDefaultLayerLimit = absl::Milliseconds(500);
 
 struct Request : RunFlags {
-  std::vector<StrategySpec> strategies;  // empty: all that the service has
+  std::vector<StrategySpec> strategies;  // empty: all strategies of the service
   uint64_t repeats = 1;
   GcodeOptions gcode;
   PlateOptions plates;
@@ -43,7 +43,7 @@ absl::StatusOr<Request> ParseRequest(const Flags& flags) {
   static_cast<RunFlags&>(request) = *std::move(run);
   if (!flags.Has("deadline") && !flags.Has("strategies")) {
     request.job.time_limit = kDefaultTimeLimit;
-    // Or the first layers would use it up, and the others come back in the order given.
+    // Otherwise the first layers use up the time, and the others come back in their given order.
     if (!request.job.layer_time_limit) request.job.layer_time_limit = kDefaultLayerLimit;
   }
   if (flags.Has("strategies")) {
@@ -63,7 +63,7 @@ absl::StatusOr<Request> ParseRequest(const Flags& flags) {
   return request;
 }
 
-// Fills in what the service has if the user named no strategies.
+// Lists the service's strategies if the user named none.
 Outcome ListAll(Service& service, std::vector<StrategySpec>& specs) {
   if (!specs.empty()) return Done();
   Expected<v1::ListStrategiesResponse> listed = service.ListStrategies();
@@ -93,8 +93,8 @@ Outcome RunAll(Service& service, const Request& request, InputJob& job,
   return Done();
 }
 
-// Draws and describes the strategies' first runs, foremost the one with the shortest travel. A run
-// of none among others is what they are set against, and no row of its own.
+// Draws and describes the first run of each strategy, with the shortest travel in front. If one of
+// them is `none`, the others are compared with it and it has no row of its own.
 Outcome ShowViews(Service& service, const Request& request, const InputJob& job,
                   const std::vector<report::ComparedStrategy>& compared) {
   const Expected<report::JobRun> given = RunAsGiven(service, request.job, job);

@@ -30,7 +30,7 @@ std::string FlagWords(const Command& command) {
   return out + "--help";
 }
 
-// bash: words by command; values of flags with choices; files for all else.
+// bash: words by command, values of flags with choices, and files for everything else.
 std::string Bash() {
   std::string out =
       "# bash completion for traverse. Load it: eval \"$(traverse completion bash)\"\n"
@@ -71,7 +71,7 @@ std::string Bash() {
   return out;
 }
 
-// Text between single quotes of zsh's _arguments, where [ ] and : have a meaning.
+// Text between single quotes of zsh's _arguments, where [ ] and : are special.
 std::string ZshText(const std::string& text) {
   return absl::StrReplaceAll(text, {{"'", "'\\''"}, {"[", "\\["}, {"]", "\\]"}, {":", "\\:"}});
 }

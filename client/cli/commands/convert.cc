@@ -24,7 +24,7 @@ absl::StatusOr<std::string> WriteAs(InputFormat format, const InputJob& job) {
   }
 }
 
-// The format asked for by --to, or by the name of the output; of G-code, in which container.
+// The format that --to or the output's name asks for and, for G-code, the container.
 struct Output {
   std::optional<InputFormat> format;
   ContainerKind kind = ContainerKind::kText;
@@ -40,7 +40,7 @@ Output OutputOf(const Flags& flags) {
   return {format, kind};
 }
 
-// The G-code of `input`, as it is, in another container or in none.
+// The G-code of `input` unchanged, in another container or in none.
 absl::StatusOr<std::string> Repacked(InputFile& input, ContainerKind kind) {
   if (absl::Status status = CheckOnePlate(input); !status.ok()) return status;
   absl::StatusOr<std::string> text = std::move(input.bytes);

@@ -16,10 +16,10 @@
 namespace traverse::cli {
 namespace {
 
-// Layers listed one by one unless --layers asks for more.
+// Number of layers listed one by one unless --layers asks for more.
 constexpr size_t kRows = 20;
 
-// Appends what is in one part of the input.
+// Appends the contents of one part of the input.
 Outcome InspectPart(Service& service, const Flags& flags, const JobFlags& job_flags,
                     InputFile& input, size_t index, std::string& text) {
   const absl::StatusOr<GcodeOptions> gcode = ParseGcodeOptions(flags);
@@ -30,7 +30,7 @@ Outcome InspectPart(Service& service, const Flags& flags, const JobFlags& job_fl
     return UsageFault(status);
   }
   if (job->gcode != nullptr) AddMeasuredFacts(*job);
-  // The travel of the order given comes from the service too, so that there is one way to count it.
+  // The service also computes the travel of the given order, so that only one place computes it.
   StrategySpec none{"none", {}};
   none.strategy.set_name("none");
   Expected<report::JobRun> ran = service.Optimize(*job, &none, job_flags, /*quiet=*/true);

@@ -13,7 +13,7 @@
 namespace traverse::cli {
 namespace {
 
-// Text for roff: backslashes and dashes as they are typed, no line that begins like a request.
+// Text for roff: escapes backslashes and dashes, and lines that begin like a request.
 std::string Roff(const std::string& text) {
   std::string out = absl::StrReplaceAll(text, {{"\\", "\\e"}, {"-", "\\-"}});
   if (out.starts_with('.') || out.starts_with('\'')) out.insert(0, "\\&");

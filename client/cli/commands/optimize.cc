@@ -25,7 +25,7 @@ namespace {
 
 // What the command line asks for; checked before the file is read.
 struct Request : RunFlags {
-  std::vector<StrategySpec> strategy;  // one or, for the service's default, none
+  std::vector<StrategySpec> strategy;  // one strategy, or none for the service's default
   RewriteFlags rewrite;
   PlateOptions plates;
 };
@@ -50,7 +50,7 @@ absl::StatusOr<Request> ParseRequest(const Flags& flags) {
   return request;
 }
 
-// Where the G-code goes. A fault for outputs that the format cannot have.
+// Where the G-code goes. Fails for outputs that the format cannot have.
 absl::StatusOr<GcodeTarget> TargetOf(const Flags& flags, const InputFile& input) {
   if (input.format == InputFormat::kGcode) return FindGcodeTarget(flags, input);
   for (const char* flag : {"o", "container"}) {
@@ -62,7 +62,7 @@ absl::StatusOr<GcodeTarget> TargetOf(const Flags& flags, const InputFile& input)
   return GcodeTarget{};
 }
 
-// What became of the job: the runs of it and, where the file is written or drawn, the new text.
+// The results of the job: its runs and, if the file is written or drawn, the new text.
 struct Optimized {
   std::vector<report::JobRun> runs;
   std::optional<GcodeRewrite> rewrite;
@@ -87,7 +87,7 @@ Expected<Optimized> Optimize(Service& service, const Request& request, const Inp
   return made;
 }
 
-// Draws and describes what became of the job. `rewrite` is null if it is no G-code.
+// Draws and describes the results of the job. `rewrite` is null if it is not G-code.
 Outcome ShowViews(Service& service, const Request& request, const InputJob& job,
                   const std::vector<report::JobRun>& runs, const GcodeRewrite* rewrite) {
   const view::NamedRun named = {runs[0].result.summary.strategy(), &runs[0]};
@@ -104,7 +104,7 @@ Outcome ShowViews(Service& service, const Request& request, const InputJob& job,
   return status.ok() ? Done() : InputFault(status);
 }
 
-// Writes what is asked for beside the G-code itself.
+// Writes the documents that are asked for besides the G-code.
 Outcome WriteDocuments(Service& service, const Request& request, const InputJob& job,
                        const Optimized& made) {
   const GcodeRewrite* rewrite = made.rewrite ? &*made.rewrite : nullptr;
@@ -116,14 +116,14 @@ Outcome WriteDocuments(Service& service, const Request& request, const InputJob&
   return request.views.any() ? ShowViews(service, request, job, made.runs, rewrite) : Done();
 }
 
-// What became of one part of the input.
+// The results of one part of the input.
 struct DonePart {
   std::string summary;
   NewPart part;
   bool changed = false;
 };
 
-// `request` is a copy, for the strategy is made up for each job.
+// `request` is a copy because this sets the strategy for each job.
 Expected<DonePart> OptimizePart(Service& service, Request request, InputFile& input, size_t index,
                                 bool written) {
   absl::StatusOr<InputJob> job = ReadJob(input, index, request.rewrite.gcode);
@@ -158,7 +158,7 @@ Expected<DonePart> OptimizePart(Service& service, Request request, InputFile& in
   return done;
 }
 
-// All parts of the input, then the file with them.
+// Optimises all parts of the input, then makes the file from them.
 Expected<std::string> OptimizeParts(Service& service, const Request& request, InputFile& input,
                                     const GcodeTarget& target) {
   const bool kept = input.container && target.kind == input.kind();
@@ -171,7 +171,7 @@ Expected<std::string> OptimizeParts(Service& service, const Request& request, In
     DonePart& done = std::get<DonePart>(part);
     summary += done.summary;
     changed = changed || done.changed;
-    // In a container that is kept, a text without gain is left as it is.
+    // A container that is kept keeps the old text of a part without gain.
     if (done.changed || !kept) parts[input.parts[i]] = std::move(done.part);
   }
   if (target.name.empty()) return summary;
@@ -197,7 +197,7 @@ Outcome RunOptimize(const Flags& flags) {
       OptimizeParts(std::get<Service>(opened), *request, *input, *target);
   if (const Outcome* outcome = std::get_if<Outcome>(&done)) return *outcome;
   if (!request->quiet) {
-    // Standard output is the document's or the G-code's where that was asked for there.
+    // Messages leave standard output to the document or the G-code if one goes there.
     Print(request->json == "-" || target->name == "-" ? stderr : stdout,
           std::get<std::string>(done));
   }

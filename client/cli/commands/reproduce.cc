@@ -64,7 +64,7 @@ absl::StatusOr<Request> ParseRequest(const Flags& flags) {
   return request;
 }
 
-// The parts in `folder` or above it: in the source tree, or installed. Empty if there are none.
+// The parts in or above `folder`: in the source tree, or installed. Empty if there are none.
 std::string FindPartsAbove(std::filesystem::path folder) {
   namespace fs = std::filesystem;
   std::error_code ignored;
@@ -78,8 +78,8 @@ std::string FindPartsAbove(std::filesystem::path folder) {
   return "";
 }
 
-// The parts that come with the program; of one that was copied elsewhere, those of the source tree
-// that it is called in.
+// The parts that come with the program. If the program was copied elsewhere, the parts of the
+// source tree that it runs in.
 std::string FindParts() {
   std::error_code ignored;
   std::string found =
@@ -87,7 +87,7 @@ std::string FindParts() {
   return found.empty() ? FindPartsAbove(std::filesystem::current_path(ignored)) : found;
 }
 
-// Reads the parts and runs what is planned.
+// Reads the parts and runs the plan.
 class Reproduction {
  public:
   Reproduction(Service& service, const Request& request, report::OutcomeFile file)
@@ -110,7 +110,7 @@ class Reproduction {
     return Done();
   }
 
-  // The tables of what was run.
+  // The tables of the finished runs.
   std::string Tables() const {
     std::string text;
     if (request_.thesis) text += report::ThesisTables(request_.form, Finder());
@@ -149,7 +149,7 @@ class Reproduction {
     return Done();
   }
 
-  // The part's layers over and over, as many as wanted.
+  // The part's layers, repeated as often as the run needs.
   static InputJob Repeated(const InputJob& part, const report::PlannedRun& run) {
     InputJob job = part;
     job.layers.clear();

@@ -11,7 +11,7 @@
 namespace traverse::cli {
 namespace {
 
-// A header takes printable ASCII alone.
+// A header holds only printable ASCII.
 bool IsToken(const std::string& text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), absl::ascii_isgraph);
 }

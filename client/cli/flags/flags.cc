@@ -18,7 +18,7 @@ absl::Status BadValue(const std::string& name, const std::string& value, const s
 
 std::string Dashed(const std::string& name) { return (name.size() == 1 ? "-" : "--") + name; }
 
-// Nothing if `text` is not all of a number.
+// Nothing if `text` is not entirely a number.
 template <typename T>
 std::optional<T> ParseNumber(std::string_view text) {
   T value{};
@@ -33,7 +33,7 @@ const Flag* Find(absl::Span<const Flag> table, const std::string& name) {
   return flag == table.end() ? nullptr : &*flag;
 }
 
-// `typed` has the dashes that were given, which may be all that is wrong.
+// `typed` includes the dashes that were given, which may be the only mistake.
 absl::Status Unknown(absl::Span<const Flag> table, const std::string& typed,
                      const std::string& name) {
   if (Find(table, name) != nullptr) {
@@ -95,7 +95,7 @@ absl::StatusOr<Flags> Flags::Parse(absl::Span<const Flag> table,
     if (equals != std::string::npos) {
       value = argument.substr(equals + 1);
     } else if (!flag->value.empty()) {
-      // A flag in its place is no value: else --json --quiet writes a file named --quiet.
+      // The next flag is not a value: otherwise --json --quiet writes a file named --quiet.
       if (++i == arguments.size() || arguments[i].starts_with("--")) {
         return absl::InvalidArgumentError(
             absl::StrFormat("%s needs a value: %s", Dashed(name), flag->value));

@@ -52,7 +52,7 @@ absl::StatusOr<std::optional<v1::Cleaning>> ParseCleaning(const Flags& flags) {
   return cleaning;
 }
 
-// Least acceleration that the service takes; 0 stands for none.
+// The least acceleration that the service takes; 0 stands for unlimited.
 constexpr double kLeastAccelMmS2 = 1e-3;
 
 absl::StatusOr<CostSettings> ParseCost(const Flags& flags) {
@@ -77,7 +77,7 @@ absl::StatusOr<CostSettings> ParseCost(const Flags& flags) {
   return cost;
 }
 
-// `fault` begins with a setting's name, which is the flag's.
+// `fault` begins with the name of a setting, which is also the name of the flag.
 absl::Status AsFlagFault(const absl::Status& fault) {
   return fault.ok() ? fault : absl::InvalidArgumentError(absl::StrCat("--", fault.message()));
 }
@@ -86,7 +86,7 @@ absl::Status AsFlagFault(const absl::Status& fault) {
 
 namespace {
 
-// The limits in the file `name`. Faults begin with the name.
+// Reads the limits in the file `name`. Errors begin with the name.
 absl::StatusOr<gcode::MachineLimits> ReadMachine(const std::string& name) {
   constexpr size_t kMostBytes = size_t{16} << 20;
   const absl::StatusOr<std::string> text = ReadWholeFile(name, kMostBytes);
@@ -98,7 +98,7 @@ absl::StatusOr<gcode::MachineLimits> ReadMachine(const std::string& name) {
   return limits;
 }
 
-// `flag` and the one behind it on one line of the help.
+// Puts `flag` and the next flag on one line of the help.
 Flag Joint(Flag flag, const std::string& help) {
   flag.joint_help = help;
   return flag;
@@ -192,7 +192,7 @@ absl::StatusOr<GcodeOptions> ParseGcodeOptions(const Flags& flags) {
     if (!machine.ok()) return machine.status();
     options.machine = *std::move(machine);
   }
-  // The flag's own choices leave no other text.
+  // The flag's choices allow no other text.
   options.policy = gcode::PolicyOfName(flags.Text("policy", "safe")).value_or(options.policy);
   options.crossings =
       gcode::CrossingsOfName(flags.Text("crossings", "keep")).value_or(options.crossings);

@@ -9,11 +9,11 @@
 namespace traverse::cli {
 namespace {
 
-// The least number of letters inserted, removed, replaced or swapped with their neighbor that makes
-// `b` of `a` (optimal string alignment).
+// The least number of letters to insert, remove, replace or swap with their neighbor to turn `a`
+// into `b` (optimal string alignment).
 size_t EditDistance(const std::string& a, const std::string& b) {
   const size_t width = b.size() + 1;
-  // distance[i * width + j]: of the first i letters of a and the first j of b.
+  // distance[i * width + j]: between the first i letters of a and the first j of b.
   std::vector<size_t> distance((a.size() + 1) * width);
   std::iota(distance.begin(), distance.begin() + static_cast<std::ptrdiff_t>(width), size_t{0});
   for (size_t i = 1; i <= a.size(); ++i) {
@@ -39,7 +39,7 @@ std::string Nearest(const std::string& word, absl::Span<const std::string> known
   std::string nearest;
   size_t least = std::max<size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : known) {
-    // A word that was not finished is as near as one with a slip.
+    // An unfinished word counts like a word with one typing error.
     const bool begun = word.size() >= 3 && candidate.starts_with(word);
     const size_t distance = begun ? 1 : EditDistance(word, candidate);
     if (distance < least && distance < candidate.size()) {

@@ -71,7 +71,7 @@ absl::StatusOr<std::vector<StrategySpec>> ParseStrategySpecs(const std::string& 
     spec.label = word;
     spec.strategy.set_name(parts.front());
     for (size_t i = 1; i < parts.size(); ++i) {
-      // The name of a switch alone turns it on.
+      // A switch named without a value is turned on.
       const bool has_value = parts[i].empty() || absl::StrContains(parts[i], '=');
       const auto option = ParseOption(has_value ? parts[i] : absl::StrCat(parts[i], "=true"));
       if (!option.ok()) return option.status();

@@ -16,7 +16,7 @@
 namespace traverse::cli {
 namespace {
 
-// A file can be made under `name`, as far as its folder goes.
+// OK if the folder of `name` exists, so that a file can be made there.
 absl::Status CheckFolder(const std::string& flag, const std::string& name) {
   const std::filesystem::path folder = std::filesystem::path(name).parent_path();
   std::error_code error;
@@ -53,7 +53,7 @@ absl::StatusOr<ViewFlags> ParseViewFlags(const Flags& flags) {
   }
   out.report = flags.Text("report");
   if (flags.Has("report")) {
-    // Another name may well be that of the input.
+    // Another name may well be the input's, which the report would replace.
     const std::string lower = absl::AsciiStrToLower(out.report);
     if (!lower.ends_with(".html") && !lower.ends_with(".htm")) {
       return absl::InvalidArgumentError(

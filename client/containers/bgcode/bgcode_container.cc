@@ -19,8 +19,8 @@ namespace {
 
 using gcode::TimeScale;
 
-// Of all entries of metadata together: a slicer's settings are some ten thousand bytes. An entry of
-// three bytes takes twenty times as much once it is read.
+// Limit for all metadata entries together: a slicer's settings are some ten thousand bytes. An
+// entry of three bytes takes twenty times as much memory once it is read.
 constexpr size_t kMaxMetadataBytes = size_t{4} << 20;
 
 bool HasMetadata(BlockKind kind) {
@@ -28,7 +28,7 @@ bool HasMetadata(BlockKind kind) {
          kind == BlockKind::kPrinterMetadata || kind == BlockKind::kPrintMetadata;
 }
 
-// The place of the entries of a block of `kind`.
+// Where the entries of a block of `kind` belong.
 Metadata& EntriesOf(BlockKind kind, BgcodeMetadata& metadata) {
   switch (kind) {
     case BlockKind::kFileMetadata:
@@ -42,7 +42,7 @@ Metadata& EntriesOf(BlockKind kind, BgcodeMetadata& metadata) {
   }
 }
 
-// Block `index`, whose entries state print times, written anew; empty if it states none.
+// Block `index`, whose entries state print times, with new times; empty if it states none.
 absl::StatusOr<std::string> RestatedBlock(const BgcodeBlocks& file, const Block& block,
                                           const TimeScale& scale) {
   const absl::StatusOr<std::string> text = DecompressBlock(block);
@@ -75,7 +75,7 @@ class BgcodeContainer : public Container {
   BgcodeContainer(std::string bytes, std::string name, const ContainerOptions& options)
       : bytes_(std::move(bytes)), name_(std::move(name)), options_(options), parts_(1) {}
 
-  // REQUIRES: called once, before all else.
+  // REQUIRES: called once, before all other functions.
   absl::Status Open() {
     absl::StatusOr<BgcodeBlocks> file = ParseBlocks(bytes_);
     if (!file.ok()) return Fault(file.status());
@@ -154,13 +154,13 @@ class BgcodeContainer : public Container {
     absl::StatusOr<std::string> text = DecompressBlock(block);
     if (!text.ok()) return text.status();
     constexpr uint16_t kIni = 0;
-    if (block.parameters[0] != kIni) return absl::OkStatus();  // kept, and not understood
+    if (block.parameters[0] != kIni) return absl::OkStatus();  // kept, but not parsed
     Metadata& entries = EntriesOf(block.kind, metadata_);
     for (auto& entry : ParseMetadata(*text)) entries.push_back(std::move(entry));
     return absl::OkStatus();
   }
 
-  // Thumbnails are not compressed; one that is stays what it is.
+  // Thumbnails are normally not compressed; a compressed one is kept as it is.
   void ReadThumbnail(const Block& block) {
     if (block.compression != BlockCompression::kNone) return;
     metadata_.thumbnails.push_back(
@@ -192,8 +192,8 @@ absl::StatusOr<std::string> BgcodeContainer::BodyOf(const NewPart& part) const {
     head = gcode::RestateTimes(head, *part.times);
     tail = gcode::RestateTimes(tail, *part.times);
   }
-  // The line that Traverse adds behind the comments of the head may stand within our own: it goes
-  // into the G-code.
+  // The line that Traverse adds after the head's comments may come before our own comments: then it
+  // goes into the G-code.
   std::string body = part.text;
   const size_t mark = gcode::FindMark(body);
   std::string line;
@@ -235,7 +235,7 @@ absl::StatusOr<std::string> BgcodeContainer::WithParts(
     }
     out += restated.empty() ? block.whole : std::string_view(restated);
   }
-  // What was written is what is read: the codecs are checked on every file.
+  // Reads back what was written: this checks the codecs on every file.
   const absl::StatusOr<BgcodeBlocks> again = ParseBlocks(out);
   if (!again.ok()) return Fault(again.status());
   const absl::StatusOr<std::string> text = GcodeText(*again, options_.max_text_bytes, threads);
@@ -258,7 +258,7 @@ std::vector<std::pair<std::string, std::string>> BgcodeContainer::Facts() const 
     size_t end = i + 1;
     size_t stored = block.data.size();
     size_t size = block.size;
-    // G-code blocks of one kind in a row are one line.
+    // Lists consecutive G-code blocks of one kind on one line.
     while (block.is_gcode() && end < file_.blocks.size() && file_.blocks[end].is_gcode() &&
            file_.blocks[end].compression == block.compression &&
            file_.blocks[end].parameters == block.parameters) {

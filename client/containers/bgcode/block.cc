@@ -15,8 +15,8 @@ constexpr size_t kShortHeaderBytes = 8;
 constexpr size_t kLongHeaderBytes = 12;
 constexpr size_t kChecksumBytes = 4;
 
-// Far beyond what slicers write, 16 GiB of text in blocks of 64 KiB; a block takes 64 bytes of
-// memory here, and of a file made for that only 8.
+// Far more than slicers write: 16 GiB of text in blocks of 64 KiB. A block takes 64 bytes of memory
+// here but only 8 bytes of a file made to attack.
 constexpr size_t kMaxBlocks = size_t{1} << 18;
 
 bool IsKnown(BlockKind kind) { return kind <= BlockKind::kThumbnail; }
@@ -83,7 +83,7 @@ class Parser {
     return absl::OkStatus();
   }
 
-  // Parameters of kinds to come have a length that nothing states: the checksum does.
+  // Nothing states the length of the parameters of future kinds of block: the checksum tells it.
   size_t FindParameterBytes(const Block& block, size_t header, uint32_t stored) const {
     const size_t usual = ParameterBytes(block.kind);
     if (IsKnown(block.kind) || ChecksumBytes() == 0) return usual;

@@ -76,7 +76,7 @@ class Matcher {
         heads_(kHeads, kNone),
         before_(reach_, kNone) {}
 
-  // The longest earlier occurrence of what stands at `at` that a few tries find.
+  // The longest earlier occurrence of the text at `at` that a few tries find.
   Match Find(size_t at) const {
     Match best;
     if (at + kHashed > bytes_.size()) return best;
@@ -88,7 +88,7 @@ class Matcher {
       if (length > best.length) best = {length, at - from};
       if (length == longest) break;
       const uint32_t older = before_[from % reach_];
-      if (older >= from) break;  // the ring has moved on
+      if (older >= from) break;  // the ring has overwritten it
       from = older;
     }
     return best;
@@ -124,7 +124,7 @@ class Matcher {
   std::vector<uint32_t> before_;  // before_[i % reach_]: the position of the same hash before i
 };
 
-// Appends `length` bytes from `distance` back; zeros where that is before the beginning.
+// Appends `length` bytes from `distance` back; zeros for positions before the beginning.
 void Repeat(std::string& out, size_t& used, size_t distance, size_t length) {
   char* to = out.data() + used;
   used += length;
@@ -169,7 +169,7 @@ absl::StatusOr<std::string> HeatshrinkDecompress(std::string_view bytes, Heatshr
                                                  size_t size) {
   const size_t repeat_bits = static_cast<size_t>(1 + window.window_bits + window.lookahead_bits);
   const size_t longest = size_t{1} << window.lookahead_bits;
-  // Before memory is taken for it: so many bytes cannot come of so few.
+  // Checks before memory is allocated: so few bytes cannot expand to so many.
   if (size > (bytes.size() * 8 / repeat_bits + 1) * longest) {
     return absl::InvalidArgumentError(
         absl::StrFormat("%d bytes of heatshrink cannot be %d bytes", bytes.size(), size));

@@ -36,8 +36,8 @@ constexpr std::array<uint8_t, 256> kCodes = MakeCodes();
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 bool IsLetter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 
-// The stretch of a line whose spaces are left out: its words, if it is a line of G. A line with a
-// checksum is none, for that counts the spaces.
+// The part of a line that is written without spaces: the words of a line of G. A line with a
+// checksum has no such part, because the checksum counts the spaces.
 std::string_view SpacelessPart(std::string_view line) {
   if (line.size() < 2 || line[0] != 'G' || !IsDigit(line[1])) return {};
   const std::string_view part = line.substr(0, line.find(';'));
@@ -74,7 +74,7 @@ class LinePacker {
       if (c != ' ') Put(c);
     }
   }
-  // A line end alone in its byte is doubled.
+  // A line end that is alone in its byte is written twice.
   void Finish() {
     if (held_) AppendPair(first_, '\n', out_);
     held_ = false;
@@ -104,7 +104,7 @@ void PutSpacesBack(std::string& text, size_t begin) {
   size_t from = text.size();
   text.resize(text.size() + letters);
   const size_t end = begin + part.size();
-  // From behind: what is in a comment moves as it is.
+  // Works from the end: the text of a comment moves unchanged.
   for (size_t to = text.size(); to > from;) {
     const char c = text[--from];
     text[--to] = c;

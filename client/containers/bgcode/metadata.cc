@@ -22,7 +22,7 @@ constexpr size_t kBase64Columns = 78;
 constexpr std::array<std::string_view, 3> kThumbnailWords = {"thumbnail", "thumbnail_JPG",
                                                              "thumbnail_QOI"};
 
-// What PrusaSlicer puts into the printer's metadata.
+// The keys that PrusaSlicer puts into the printer's metadata.
 constexpr std::array<std::string_view, 24> kPrinterKeys = {
     "printer_model",
     "filament_type",
@@ -92,7 +92,7 @@ void AppendThumbnail(const Thumbnail& thumbnail, std::string& out) {
   absl::StrAppendFormat(&out, "; %s end\n;\n", word);
 }
 
-// `; thumbnail_QOI begin 16x16 368`: format, size and length of the base64 behind it.
+// `; thumbnail_QOI begin 16x16 368`: the format, the size and the length of the base64 after it.
 std::optional<std::pair<Thumbnail, size_t>> ParseThumbnailBegin(std::string_view line) {
   for (size_t format = 0; format < kThumbnailWords.size(); ++format) {
     const std::string begin = "; " + std::string(kThumbnailWords[format]) + " begin ";
@@ -116,7 +116,7 @@ std::optional<std::pair<Thumbnail, size_t>> ParseThumbnailBegin(std::string_view
   return std::nullopt;
 }
 
-// Takes text apart, line by line.
+// Splits the text line by line.
 class Splitter {
  public:
   explicit Splitter(std::string_view text) : rest_(text), foot_(FootBytes(text)) {}
@@ -127,7 +127,7 @@ class Splitter {
       const std::string_view line = TakeLine(rest_);
       if (!line.starts_with(';')) {
         const std::string_view content = WithoutEnd(line);
-        // Blank lines between what is taken out are its own.
+        // Drops the blank lines that the extracted blocks leave.
         if (content.empty() && (!began_ || rest_.size() < foot_)) continue;
         if (!content.empty()) began_ = true;
         out_.body += line;
@@ -167,7 +167,7 @@ class Splitter {
       const std::string_view content = WithoutEnd(TakeLine(rest));
       if (content == end) {
         if (base64.size() != length || !absl::Base64Unescape(base64, &thumbnail.data)) return false;
-        // The empty comments around it go with it.
+        // Also removes the empty comments around it.
         if (out_.body.ends_with(";\n")) out_.body.resize(out_.body.size() - 2);
         if (rest.starts_with(";\n")) rest.remove_prefix(2);
         rest_ = rest;
@@ -194,13 +194,13 @@ class Splitter {
       if (!entry) break;
       config.push_back(*std::move(entry));
     }
-    rest_ = before;  // no end: it stays where it is
+    rest_ = before;  // without an end the block stays where it is
     TakeLine(rest_);
     config_done_ = true;
     return false;
   }
 
-  // Before the first command they are the printer's, behind the last one the print's.
+  // Entries before the first command are the printer's; those after the last one the print's.
   bool TakeEntry(std::string_view line) {
     if (out_.metadata.file.empty()) return false;
     const bool behind = rest_.size() < foot_;
@@ -212,14 +212,14 @@ class Splitter {
       out_.metadata.print.push_back(*std::move(entry));
       return true;
     }
-    // Other entries of the head are the printer's if our own writer put them there.
+    // Other entries of the head are the printer's only if our own writer put them there.
     const bool known = std::count(kPrinterKeys.begin(), kPrinterKeys.end(), entry->first) > 0;
     if (!known && Find(printer, kPrinterKeys[0]).empty()) return false;
     printer.push_back(*std::move(entry));
     return true;
   }
 
-  // Bytes behind the last line of `text` that is neither blank nor a comment.
+  // Bytes after the last line of `text` that is neither blank nor a comment.
   static size_t FootBytes(std::string_view text) {
     const size_t size = text.size();
     while (!text.empty()) {
@@ -232,7 +232,7 @@ class Splitter {
     return size - text.size();
   }
 
-  // What the printer wants to know is said of the print and by the slicer.
+  // Copies what the printer wants to know from the print's and the slicer's entries.
   void FillPrinter() {
     BgcodeMetadata& metadata = out_.metadata;
     if (!Find(metadata.printer, kPrinterKeys[0]).empty()) return;
@@ -246,8 +246,8 @@ class Splitter {
 
   std::string_view rest_;
   SplitText out_;
-  bool began_ = false;        // commands have
-  bool config_done_ = false;  // the slicer's metadata were found
+  bool began_ = false;        // the commands have begun
+  bool config_done_ = false;  // the slicer's metadata have been found
   size_t foot_;
 };
 

@@ -13,7 +13,7 @@
 namespace traverse::containers {
 namespace {
 
-// Blocks that are decoded or encoded at the same time: what they take is small beside the text.
+// Blocks decoded or encoded at the same time: they take little memory beside the text.
 constexpr size_t kBatch = 64;
 
 constexpr int kDeflateLevel = 6;
@@ -35,7 +35,7 @@ absl::Status AppendBlockText(const Block& block, size_t max_bytes, std::string& 
   return absl::OkStatus();
 }
 
-// The next lines that make a block, cut off `text`.
+// Cuts the next lines that make a block off `text`.
 std::string_view TakeBlockText(std::string_view& text) {
   size_t end = std::min(text.size(), kMaxBlockText);
   if (end < text.size()) {
@@ -48,7 +48,7 @@ std::string_view TakeBlockText(std::string_view& text) {
   return block;
 }
 
-// MeatPack makes some lines longer: then each half makes a block.
+// MeatPack makes some lines longer: then each half becomes a block.
 absl::Status AppendBlockOf(std::string_view text, const GcodeForm& form, std::string& out) {
   const bool packs = form.encoding != GcodeEncoding::kNone && CanMeatPack(text);
   std::string packed;
@@ -74,7 +74,7 @@ absl::Status TooLong(const BgcodeBlocks& file, size_t index, size_t bytes, size_
                       BlockPlace(file, index), bytes >> 20, max_bytes >> 20));
 }
 
-// Makes pieces 0 to n - 1, a batch at a time, and appends them in their order.
+// Makes pieces 0 to n - 1, a batch at a time, and appends them in order.
 template <typename Make>
 absl::Status AppendInBatches(size_t n, int threads, std::string& out, Make make) {
   for (size_t first = 0; first < n; first += kBatch) {

@@ -22,10 +22,10 @@ constexpr std::string_view kGcodeEnd = ".gcode";
 constexpr std::string_view kSliceInfo = "Metadata/slice_info.config";
 constexpr std::string_view kUfpModel = "3D/model.gcode";
 
-// Entries besides G-code that are read at all: digests and slice_info.
+// Limit for the entries read besides G-code: digests and slice_info.
 constexpr size_t kMaxSmallBytes = size_t{4} << 20;
 
-// Plates of one archive: slicers have some dozens at most.
+// Plates of one archive: slicers write a few dozen at most.
 constexpr size_t kMaxPlates = 1000;
 
 std::string_view WithoutSlash(std::string_view name) {
@@ -49,7 +49,7 @@ class GcodeZip : public Container {
   GcodeZip(std::string bytes, std::string name, const ContainerOptions& options)
       : bytes_(std::move(bytes)), name_(std::move(name)), options_(options) {}
 
-  // REQUIRES: called once, before all else.
+  // REQUIRES: called once, before all other functions.
   absl::Status Open() {
     absl::StatusOr<ZipArchive> archive = ParseZip(bytes_);
     if (!archive.ok()) return Fault(archive.status());
@@ -102,7 +102,7 @@ class GcodeZip : public Container {
       }
     }
     if (parts_.empty()) return FindUfpModel();
-    // Archives list them in any order.
+    // Archives list both in any order.
     std::vector<std::pair<GcodePart, size_t>> both;
     for (size_t i = 0; i < parts_.size(); ++i) both.emplace_back(parts_[i], entries_[i]);
     std::sort(both.begin(), both.end(),
@@ -128,7 +128,7 @@ class GcodeZip : public Container {
         "was the project sliced before it was saved?");
   }
 
-  // Packages of UltiMaker begin their names with a slash, as the Open Packaging Conventions do.
+  // UltiMaker's packages begin their names with a slash, as the Open Packaging Conventions do.
   absl::Status CheckNames() const {
     const bool slashes = kind_ == ContainerKind::kUfp && parts_[0].name.starts_with('/');
     for (const ZipEntry& entry : archive_.entries) {
@@ -139,7 +139,7 @@ class GcodeZip : public Container {
     return absl::OkStatus();
   }
 
-  // All plates may be in memory at a time.
+  // All plates may be in memory at the same time.
   absl::Status CheckSizes() const {
     const size_t most = MaxTextBytes(bytes_.size(), options_.max_text_bytes);
     size_t sum = 0;
@@ -167,7 +167,7 @@ class GcodeZip : public Container {
     return archive_.Find(std::string(entry.name) + ".md5");
   }
 
-  // OK if the digest beside `entry` is that of `text`, or there is none, or it does not matter.
+  // OK if the digest next to `entry` matches `text`, is missing, or is not checked.
   absl::Status CheckDigest(const ZipEntry& entry, std::string_view text) const {
     const ZipEntry* digest = DigestEntry(entry);
     if (digest == nullptr || options_.ignore_md5) return absl::OkStatus();
@@ -197,7 +197,7 @@ class GcodeZip : public Container {
   ContainerKind kind_ = ContainerKind::kGcode3mf;
   ZipArchive archive_;
   std::vector<GcodePart> parts_;
-  std::vector<size_t> entries_;  // of the archive, one for each part
+  std::vector<size_t> entries_;  // index in the archive, for each part
   std::string slice_info_;       // empty if there is none
 };
 
@@ -221,7 +221,7 @@ absl::StatusOr<std::string> GcodeZip::WithParts(const std::map<size_t, NewPart>&
   if (slice_info != slice_info_) replaced[IndexOf(*archive_.Find(kSliceInfo))] = slice_info;
   absl::StatusOr<std::string> out = WriteZip(archive_, replaced, gcode::ThreadsFor(bytes_.size()));
   if (!out.ok()) return Fault(out.status());
-  // What was written is what is read.
+  // Reads back what was written.
   const absl::StatusOr<ZipArchive> again = ParseZip(*out);
   if (!again.ok()) return Fault(again.status());
   for (const auto& [index, content] : replaced) {

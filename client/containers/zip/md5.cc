@@ -12,7 +12,7 @@ namespace traverse::containers {
 namespace {
 
 constexpr size_t kDigits = 32;
-constexpr size_t kMaxBytes = 1024;  // of a file that states one
+constexpr size_t kMaxBytes = 1024;  // a larger file holds no digest
 
 // Where the only run of 32 hexadecimal digits begins.
 std::optional<size_t> FindDigits(std::string_view stated) {

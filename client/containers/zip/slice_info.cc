@@ -11,7 +11,7 @@ namespace {
 constexpr std::string_view kPlate = "<plate";
 constexpr std::string_view kPlateEnd = "</plate>";
 
-// The value of attribute `name` of the tag `tag`, as it stands there.
+// The value of attribute `name` of the tag `tag`, with its escapes.
 std::optional<std::string_view> Attribute(std::string_view tag, std::string_view name) {
   const std::string begin = absl::StrFormat(" %s=", std::string(name));
   size_t at = tag.find(begin);
@@ -23,7 +23,7 @@ std::optional<std::string_view> Attribute(std::string_view tag, std::string_view
   return tag.substr(at + 1, end - at - 1);
 }
 
-// The value of the metadata `key` in `text`, which is of one plate.
+// The value of the metadata `key` in `text`, which covers one plate.
 std::optional<std::string_view> Value(std::string_view text, std::string_view key) {
   constexpr std::string_view kMetadata = "<metadata";
   for (size_t at = text.find(kMetadata); at != std::string_view::npos;) {
@@ -36,7 +36,7 @@ std::optional<std::string_view> Value(std::string_view text, std::string_view ke
   return std::nullopt;
 }
 
-// The part of `text` between the tags of plate `plate`; empty if there is none.
+// The part of `text` that describes plate `plate`; empty if there is none.
 std::string_view PlatePart(std::string_view text, uint32_t plate) {
   const std::string index = absl::StrFormat("%d", plate);
   for (size_t at = text.find(kPlate); at != std::string_view::npos;) {

@@ -10,7 +10,7 @@
 namespace traverse::gateway {
 namespace {
 
-// Counts once, at the latest when it goes.
+// Counts once, at the latest when it is destroyed.
 class Count {
  public:
   Count(std::string route, GatewayMetrics& metrics)

@@ -1,4 +1,4 @@
-// What is said of a file: in the log, the metrics, headers and JSON.
+// Describes a file's result in the log, the metrics, headers and JSON.
 
 #include <google/protobuf/util/json_util.h>
 

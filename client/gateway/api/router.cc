@@ -25,7 +25,7 @@ HttpResponse Text(int status, const std::string& type, std::string text) {
 
 HttpResponse Page() {
   HttpResponse response = Text(200, "text/html; charset=utf-8", std::string(GatewayPage()));
-  // The page, and the report that it shows, have all they need in them.
+  // The page and the report that it shows load nothing from outside.
   response.headers.emplace_back(
       "Content-Security-Policy",
       "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; "
@@ -35,7 +35,7 @@ HttpResponse Page() {
   return response;
 }
 
-// Whether a page of somebody else's makes the browser send this: CORS is off.
+// Whether another site's page makes the browser send this request: CORS is off.
 bool IsForeign(const HttpRequest& request) {
   const std::string site = request.Header("sec-fetch-site");
   if (site == "cross-site" || site == "same-site") return true;
@@ -45,7 +45,7 @@ bool IsForeign(const HttpRequest& request) {
   return host == std::string::npos || origin.substr(host + 3) != request.Header("host");
 }
 
-// Where a token or a certificate is asked for, a page with a name of its own for us has neither.
+// A page of another site that resolves its name to our address has no token or certificate.
 bool IsForUs(const HttpRequest& request, const Core& core) {
   const std::vector<std::string>& allowed = core.options.allowed_hosts;
   const bool guarded = core.files.certificates != nullptr || !core.options.auth.token_file.empty();

@@ -12,19 +12,19 @@ namespace traverse::gateway {
 namespace {
 
 constexpr size_t kMaxFieldBytes = 4096;
-constexpr uint64_t kMaxFormBytes = 65536;  // of a form, beside its files
+constexpr uint64_t kMaxFormBytes = 65536;  // of a form, besides its files
 
 HttpResponse TooLong(uint64_t max_bytes) {
   return Problem(413, absl::StrFormat("the file is longer than %d bytes", max_bytes));
 }
 
-// The status says whether the spool is full or somebody's form is wrong.
+// The status tells a full spool from a malformed form.
 HttpResponse FaultOf(const absl::Status& status) {
   if (absl::IsResourceExhausted(status)) return Problem(507, std::string(status.message()));
   return ProblemOf(status);
 }
 
-// What both kinds of body share: files in the spool.
+// The base of both kinds of body, which puts files into the spool.
 class UploadSink : public BodySink {
  public:
   UploadSink(Spool& spool, const UploadLimits& limits, UploadDone done)
@@ -84,7 +84,7 @@ class FormSink : public UploadSink, private PartSink {
   std::optional<HttpResponse> Take(std::string_view piece) override {
     received_ += piece.size();
     if (absl::Status status = reader_.Feed(piece); !status.ok()) return FaultOf(status);
-    // What stands between parts is bounded too.
+    // Limits the bytes between the parts too.
     if (received_ > limits_.max_files * limits_.max_file_bytes + kMaxFormBytes) {
       return TooLong(limits_.max_file_bytes);
     }

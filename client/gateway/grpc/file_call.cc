@@ -14,10 +14,10 @@ namespace {
 
 constexpr absl::Duration kRetryDelay = absl::Seconds(5);
 
-// For the status, or the first pieces of the file, to be on their way before the deadline.
+// Lets the status, or the first pieces of the file, leave before the deadline.
 constexpr absl::Duration kMargin = absl::Milliseconds(300);
 
-// In the words of gcode_service.proto.
+// Uses the words of gcode_service.proto.
 absl::Status ForClient(const absl::Status& status) {
   switch (status.code()) {
     case absl::StatusCode::kDeadlineExceeded:

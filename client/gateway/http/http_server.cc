@@ -19,7 +19,7 @@ namespace {
 
 using net::ip::tcp;
 
-// HOST:PORT, or [HOST]:PORT, as a host for the resolver and a port.
+// Splits HOST:PORT or [HOST]:PORT into a host for the resolver and a port.
 absl::StatusOr<std::pair<std::string, std::string>> SplitAddress(const std::string& address) {
   const size_t colon = address.rfind(':');
   if (colon == std::string::npos || colon + 1 == address.size()) {
@@ -32,7 +32,7 @@ absl::StatusOr<std::pair<std::string, std::string>> SplitAddress(const std::stri
   return std::make_pair(host.empty() ? std::string("0.0.0.0") : host, address.substr(colon + 1));
 }
 
-// As gRPC writes a peer, without its port.
+// The peer's address as gRPC writes it, without the port.
 std::string PeerHostOf(const tcp::endpoint& peer) {
   return absl::StrCat(peer.address().is_v4() ? "ipv4:" : "ipv6:", peer.address().to_string());
 }
@@ -141,7 +141,7 @@ class BeastServer : public HttpServer {
           address);
   }
 
-  // Says so where that does not need to wait.
+  // Sends the reason if that needs no waiting.
   void Refuse(tcp::socket socket, const std::string& why) {
     if (tls_ != nullptr) return;
     const std::string body = ProblemJson(503, why);

@@ -11,15 +11,15 @@ namespace traverse::gateway {
 namespace {
 
 constexpr size_t kMaxBoundary = 70;  // RFC 2046
-constexpr size_t kMaxPadding = 256;  // blanks behind a boundary
+constexpr size_t kMaxPadding = 256;  // blanks after a boundary
 
 absl::Status Fault(std::string what) {
   return absl::InvalidArgumentError("multipart body: " + std::move(what));
 }
 
-// Parameters of a header: `form-data; name="a"; filename="b"`. Names in small letters, quotes and
-// backslashes before quotes undone (browsers escape quotes as %22 instead and leave backslashes of
-// Windows alone).
+// Parameters of a header: `form-data; name="a"; filename="b"`. Names are in small letters.
+// Backslashes before quotes are removed; others stay, because browsers escape quotes as %22 and
+// leave the backslashes of Windows alone.
 struct HeaderValue {
   std::string value;  // before the first semicolon, in small letters
   std::vector<std::pair<std::string, std::string>> parameters;
@@ -32,7 +32,7 @@ struct HeaderValue {
   }
 };
 
-// The quoted string that begins at `at`, behind which `at` is left. Nothing if it does not end.
+// The quoted string that begins at `at`; moves `at` past it. Nothing if the string does not end.
 std::optional<std::string> Quoted(std::string_view text, size_t& at) {
   std::string out;
   for (++at; at < text.size(); ++at) {
@@ -80,7 +80,7 @@ std::optional<HeaderValue> ParseHeaderValue(std::string_view text) {
       value = Trimmed(text.substr(at, stop - at));
       at = stop;
     }
-    if (out.Find(name) != nullptr) return std::nullopt;  // which of the two would count?
+    if (out.Find(name) != nullptr) return std::nullopt;  // nobody knows which of the two counts
     out.parameters.emplace_back(name, std::move(value));
   }
   return out;
@@ -132,7 +132,7 @@ absl::StatusOr<std::string> BoundaryOf(const std::string& content_type) {
   return *boundary;
 }
 
-// The first boundary may stand at the very beginning: as if a line break came before it.
+// The first boundary may be at the very beginning: pretends that a line break came before it.
 MultipartReader::MultipartReader(const std::string& boundary, PartSink& sink)
     : boundary_("\r\n--" + boundary), sink_(sink), buffered_("\r\n") {}
 
@@ -176,7 +176,7 @@ absl::StatusOr<bool> MultipartReader::Step() {
   return false;
 }
 
-// "--" ends the body; blanks and a line break, and a part begins.
+// "--" ends the body; blanks and a line break begin a part.
 absl::StatusOr<bool> MultipartReader::StepAfterBoundary() {
   if (buffered_.size() < 2) return false;
   if (buffered_.compare(0, 2, "--") == 0) {
@@ -215,7 +215,7 @@ absl::StatusOr<bool> MultipartReader::StepHead() {
 absl::StatusOr<bool> MultipartReader::StepBody() {
   const size_t at = buffered_.find(boundary_);
   if (at == std::string::npos) {
-    // What may be the beginning of a boundary stays.
+    // Keeps the bytes that may begin a boundary.
     const size_t keep = boundary_.size() - 1;
     if (buffered_.size() <= keep) return false;
     const size_t sure = buffered_.size() - keep;

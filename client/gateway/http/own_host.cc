@@ -12,7 +12,7 @@
 namespace traverse::gateway {
 namespace {
 
-// Without the port and the dot behind a name that is absolute.
+// Without the port and without the dot that ends an absolute name.
 std::string NameOf(std::string_view host) {
   if (host.starts_with('[')) return std::string(host.substr(1, host.find(']') - 1));
   std::string name = absl::AsciiStrToLower(std::string(host.substr(0, host.find(':'))));

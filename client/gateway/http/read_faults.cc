@@ -10,7 +10,7 @@ namespace {
 
 namespace http = boost::beast::http;
 
-// Whether the text is wrong, and not its end or the connection.
+// Whether the text is malformed, rather than cut off or the connection broken.
 bool IsWrong(boost::system::error_code error) {
   return error.category() == http::make_error_code(http::error::bad_method).category() &&
          error != http::error::end_of_stream && error != http::error::partial_message;

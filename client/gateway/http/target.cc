@@ -21,7 +21,7 @@ int HexDigit(char c) {
 
 bool IsControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
-// Nothing if an escape is none, or stands for a control character and those are not wanted.
+// Nothing if an escape is malformed, or stands for a control character and `controls` is false.
 std::optional<std::string> Unescaped(std::string_view text, bool plus, bool controls) {
   std::string out;
   for (size_t i = 0; i < text.size(); ++i) {

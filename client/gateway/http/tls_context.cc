@@ -25,7 +25,7 @@ absl::StatusOr<std::shared_ptr<TlsContext::Context>> ContextOf(const Certificate
       context->set_verify_mode(
           boost::asio::ssl::verify_peer | boost::asio::ssl::verify_fail_if_no_peer_cert, error);
     }
-    // Without it a session that is taken up again fails where clients are verified.
+    // Without it, resuming a session fails where clients are verified.
     SSL_CTX_set_session_id_context(context->native_handle(),
                                    reinterpret_cast<const unsigned char*>("traverse"), 8);
   }

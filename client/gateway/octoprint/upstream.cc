@@ -42,14 +42,14 @@ class Call {
        const UpstreamLimits& limits)
       : curl_((InitCurl(), curl_easy_init())), idle_{limits.idle_time} {
     Set(CURLOPT_URL, absl::StrCat(printer.url, path).c_str());
-    // Nobody leads us elsewhere, and only where the configuration says.
+    // Follows no redirects and connects only where the configuration says.
     Set(CURLOPT_PROTOCOLS_STR, "http,https");
     Set(CURLOPT_FOLLOWLOCATION, 0L);
     Set(CURLOPT_PROXY, "");
     Set(CURLOPT_NOSIGNAL, 1L);
     Set(CURLOPT_CONNECTTIMEOUT_MS,
         static_cast<long>(absl::ToInt64Milliseconds(limits.connect_time)));
-    // libcurl's own limit of speed is an average, which a large file just sent keeps high.
+    // libcurl's own speed limit uses an average, which stays high after a large file was sent.
     Set(CURLOPT_NOPROGRESS, 0L);
     Set(CURLOPT_XFERINFOFUNCTION, &Watch);
     Set(CURLOPT_XFERINFODATA, &idle_);
@@ -92,14 +92,14 @@ class Call {
   }
 
  private:
-  // When the last byte went either way.
+  // When the last byte was sent or received.
   struct Idle {
     absl::Duration most;
     curl_off_t bytes = 0;
     absl::Time since = absl::Now();
   };
 
-  // Called about once a second; not 0 ends the call.
+  // Called about once a second; a result other than 0 ends the call.
   static int Watch(void* self, curl_off_t, curl_off_t received, curl_off_t, curl_off_t sent) {
     Idle& idle = *static_cast<Idle*>(self);
     const absl::Time now = absl::Now();
@@ -151,9 +151,9 @@ struct Reading {
   }
 };
 
-// Whether a field of the caller's form goes on: those of OctoPrint's documentation. Others are
-// words of the servers' own, such as the path of a file that OctoPrint has stored, the root of a
-// Moonraker, or the checksum of the file as it came.
+// Whether to pass on a field of the caller's form: only those that OctoPrint documents. Other
+// fields are the servers' own, such as the path of a file that OctoPrint has stored, the root of a
+// Moonraker, or the checksum of the file as it arrived.
 bool GoesOn(const std::string& field, PrinterKind kind) {
   if (field == "path") return true;
   return kind == PrinterKind::kOctoPrint && (field == "select" || field == "userdata" ||
@@ -224,8 +224,8 @@ absl::StatusOr<UpstreamAnswer> PutFile(const Printer& printer, const std::string
   return call.Run(printer);
 }
 
-// Whether the print that `upload` asks for has begun. A Moonraker says so, and takes files while
-// its printer is away or busy; a PrusaLink does not say.
+// Whether the print that `upload` asks for has begun. A Moonraker says so, and accepts files while
+// its printer is offline or busy; a PrusaLink does not say.
 bool PrintBegan(const PrinterUpload& upload, const UpstreamAnswer& answer) {
   const Json said = Json::parse(answer.body, nullptr, false);
   if (!said.is_object()) return upload.print;

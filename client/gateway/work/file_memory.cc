@@ -36,7 +36,7 @@ absl::StatusOr<size_t> TextBytes(std::string packed, size_t max_bytes) {
   }
   const absl::StatusOr<DecompressedSize> size = MeasureDecompressed(packed, compression, max_bytes);
   if (!size.ok()) return size.status();
-  // A container in it: by its length alone.
+  // A container inside is measured by its length only.
   const bool text = DetectContainer(size->first) == ContainerKind::kText;
   return text ? size->bytes : containers::MaxTextBytes(size->bytes, max_bytes);
 }
@@ -62,7 +62,7 @@ absl::StatusOr<int64_t> MemoryFor(const SpoolFile& upload, uint64_t max_file_byt
     if (absl::IsResourceExhausted(text.status())) {
       return absl::OutOfRangeError(text.status().message());
     }
-    // A damaged file is refused by whoever reads it, with better words.
+    // Whoever reads a damaged file refuses it with a better message.
     bytes = std::max<uint64_t>(bytes, text.value_or(0));
   }
   return kLeast + kPerByte * static_cast<int64_t>(bytes);

@@ -27,7 +27,7 @@ WorkQueue::~WorkQueue() {
   }
   changed_.NotifyAll();
   for (std::thread& worker : workers_) worker.join();
-  // Places lock the mutex when they go.
+  // Destroyed after the lock is released: places lock the mutex in their destructors.
   std::map<std::string, std::deque<Task>> dropped;
   {
     MutexLock lock(mutex_);
@@ -94,8 +94,8 @@ int64_t WorkQueue::memory_bytes() const {
   return memory_bytes_;
 }
 
-// Strictly by turns, also where a small task would fit and the large one whose turn it is does not:
-// else it would never come.
+// Strictly takes turns, even if a small task would fit and the large one whose turn it is would
+// not: otherwise the large one would never start.
 bool WorkQueue::TakeNext(Task& task) {
   if (waiting_.empty()) return false;
   auto next = waiting_.upper_bound(last_caller_);

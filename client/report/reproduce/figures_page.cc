@@ -54,7 +54,7 @@ std::string BarChart(const std::string& caption, const std::vector<Bar>& bars,
   return Figure(caption, svg, row * static_cast<double>(bars.size()) + 4);
 }
 
-// Where a layer's points are on the drawing.
+// Maps a layer's points to the drawing.
 class Frame {
  public:
   explicit Frame(const v1::Layer& layer) {
@@ -107,7 +107,7 @@ std::string Line(const Frame& frame, const char* kind, double x1, double y1, dou
                          kind, frame.x(x1), frame.y(y1), frame.x(x2), frame.y(y2));
 }
 
-// The paths' numbers as `trace` has them: island by island its contours, then its rasters.
+// The paths in the numbering of `trace`: island by island, first contours, then rasters.
 std::vector<const google::protobuf::RepeatedField<double>*> NumberedPaths(const v1::Layer& layer) {
   std::vector<const google::protobuf::RepeatedField<double>*> paths;
   for (const v1::Island& island : layer.islands()) {

@@ -123,7 +123,7 @@ absl::StatusOr<OutcomeFile> OutcomeFile::Open(const std::string& name) {
                       json.contains("values") && json["values"].is_object() &&
                       json.contains("moves") && json["moves"].is_array();
     if (!fits) {
-      if (i + 1 == lines.size()) break;  // cut short as it was written
+      if (i + 1 == lines.size()) break;  // writing was interrupted
       return absl::InvalidArgumentError(absl::StrFormat("%s:%d: no outcome of a run", name, i + 1));
     }
     file.outcomes_[json["run"].get<std::string>()] = FromJson(json);

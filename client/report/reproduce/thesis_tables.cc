@@ -32,7 +32,7 @@ class Tables {
  private:
   using Value = double (*)(const RunOutcome&);
 
-  // Of one part: a value of each run of a column; empty if it was not run, or has no route.
+  // For one part: a column's value in each run; empty if the column was not run or has no route.
   std::vector<double> Values(int part, const ThesisColumn& column, const Value& value) const {
     std::vector<double> values;
     for (int seed = 1; seed <= (column.samples ? form_.seeds : 1); ++seed) {
@@ -307,7 +307,7 @@ class Tables {
         [which](int part, size_t k) { return thesis::kTabuSeconds[which][part][k]; });
   }
 
-  // What the thesis does not print: what the programmes did, begun cold and begun with ni2opt's
+  // The thesis does not print this: the programmes' results, with a cold start and with ni2opt's
   // route.
   std::string Programmes() const {
     Table table({"peça, modelo", "início", "achou", "valor", "ganho (%)", "limite", "nós", "s"});

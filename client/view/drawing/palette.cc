@@ -9,7 +9,7 @@ struct Row {
   const char* dark;
 };
 
-// Walls warm, fillings cool, what is thrown away green and gray.
+// Walls are warm, fillings cool, discarded material green and gray.
 constexpr Row kRows[] = {
     {"outer wall", "#e8590c", "#ff8a47"},    {"outer contour", "#e8590c", "#ff8a47"},
     {"inner wall", "#f0a430", "#ffc75f"},    {"inner contour", "#f0a430", "#ffc75f"},

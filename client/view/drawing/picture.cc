@@ -56,7 +56,7 @@ Box BoxOf(const DrawnLayer& layer, const std::array<std::vector<DrawnMove>, 2>& 
   return box;
 }
 
-// From mm, y upwards, to units of the picture.
+// From mm, with y upwards, to units of the picture.
 class Projection {
  public:
   explicit Projection(const Box& box) : box_(box) {
@@ -173,7 +173,7 @@ class Painter {
     canvas_->Lines(lines, {kTravelColor, kMoveWidth, opacity, false});
   }
 
-  // The features used, and in front of them travel, vanished moves, start and end.
+  // The features in use, and before them travel, removed moves, start and end.
   static constexpr int kOwnItems = 4;
   static constexpr int kItemsPerRow = 7;
   int LegendRows() const {

@@ -10,7 +10,7 @@
 namespace traverse::view {
 namespace {
 
-constexpr double kPixels = 2;  // a unit
+constexpr double kPixels = 2;  // pixels per unit
 
 cairo_status_t Append(void* out, const unsigned char* bytes, unsigned int count) {
   static_cast<std::string*>(out)->append(reinterpret_cast<const char*>(bytes), count);
@@ -44,7 +44,7 @@ class PngCanvas : public Canvas {
       for (const DrawnPoint& point : line) cairo_line_to(cairo_, point.x, point.y);
       if (pen.closed || line.size() == 1) cairo_close_path(cairo_);
       cairo_new_sub_path(cairo_);
-      // One by one where nothing shines through: cairo's time grows with the crossings in a path.
+      // Strokes opaque lines one by one: cairo's time grows with the crossings in a path.
       if (pen.opacity == 1) cairo_stroke(cairo_);
     }
     cairo_stroke(cairo_);

@@ -9,7 +9,7 @@
 namespace traverse::view {
 namespace {
 
-// Coordinates are whole hundredths of a unit: small files, and finer than any screen.
+// Coordinates are whole hundredths of a unit: the files are small, and no screen is finer.
 constexpr double kGrid = 100;
 
 std::string Hundredths(int64_t value) {

@@ -34,7 +34,7 @@ std::vector<std::vector<gcode::Vertex>> PointsOnArcs(const GcodeFile& file,
   return on_arcs;
 }
 
-// Puts the points into the path. Returns where its vertices are then.
+// Inserts the points into the path. Returns the new positions of its vertices.
 std::vector<size_t> Bend(const std::vector<std::vector<gcode::Vertex>>& on_arcs, DrawnPath& path) {
   std::vector<DrawnPoint> bent;
   std::vector<size_t> moved_to;

@@ -23,13 +23,13 @@ DrawnRoute RouteOf(const VisitReader& reader, const v1::LayerResult& result) {
   return route;
 }
 
-// Seconds of `travel_mm` at the speed that the summary counts idle time with.
+// Seconds of `travel_mm` at the speed that the summary uses for idle time.
 double IdleSeconds(const v1::JobSummary& summary, double travel_mm) {
   const double all = summary.travel().total_mm() + summary.cleaning_mm();
   return all > 0 ? summary.idle_seconds() * travel_mm / all : 0;
 }
 
-// All but the figures.
+// The notes without the figures.
 RouteNotes NotesWithoutFigures(const NamedRun& named) {
   const v1::JobSummary& summary = named.run->result.summary;
   RouteNotes notes;
@@ -58,7 +58,7 @@ Figures FiguresOf(const gcode::PrintTotals& totals) {
   return {totals.travel_mm, totals.seconds, totals.retractions, totals.crossings};
 }
 
-// What the layers of `file` from `first` on come to.
+// The figures of the layers of `file` from `first` on.
 std::vector<Figures> LayerFigures(const GcodeFile& file, size_t first, size_t count) {
   const std::vector<gcode::PrintTotals> totals =
       gcode::MeasureLayers(file, gcode::DefaultThreads());
@@ -67,7 +67,7 @@ std::vector<Figures> LayerFigures(const GcodeFile& file, size_t first, size_t co
   return figures;
 }
 
-// [path] What the paths of a layer extrude.
+// [path] The length that each path of a layer extrudes.
 std::vector<double> LengthsOf(const GcodeFile& file, size_t layer) {
   std::vector<double> lengths;
   for (uint32_t i = file.layers[layer].first_block; i < file.layers[layer].end_block; ++i) {
@@ -76,7 +76,7 @@ std::vector<double> LengthsOf(const GcodeFile& file, size_t layer) {
   return lengths;
 }
 
-// An order of layer `layer` of `file`, which is not empty.
+// The visits of an order of layer `layer` of `file`, which is not empty.
 std::vector<DrawnVisit> VisitsOf(const GcodeFile& file, size_t layer,
                                  const gcode::LayerOrder& order) {
   std::vector<DrawnVisit> visits;
@@ -86,12 +86,12 @@ std::vector<DrawnVisit> VisitsOf(const GcodeFile& file, size_t layer,
   return visits;
 }
 
-// The name without its folders: what is shown may be passed on.
+// The name without its folders, because people may pass the report on.
 std::string BaseName(const std::string& name) {
   return std::filesystem::path(name).filename().string();
 }
 
-// What all scenes of a job have.
+// The fields that all scenes of a job share.
 Scene EmptyScene(const InputJob& job) {
   Scene scene;
   scene.title = job.name == "-" ? DisplayName(job.name) : BaseName(job.name);
@@ -147,7 +147,7 @@ absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
   given.total = FiguresOf(rewrite.before);
   given.layers = LayerFigures(*job.gcode, job.first_layer, job.layers.size());
   RouteNotes after = NotesWithoutFigures({label, &runs[0]});
-  // It is that of the routes found; layers may have kept their order, and links are not straight.
+  // The gap belongs to the routes found; the file may keep some layers' order and bend moves.
   after.gap.reset();
   after.total = FiguresOf(rewrite.after);
   after.layers = LayerFigures(*printed, job.first_layer, job.layers.size());

@@ -22,13 +22,13 @@ class NumberWriter {
                    : 2 * static_cast<uint64_t>(-(value + 1)) + 1);
   }
 
-  // The difference to the place before.
+  // Appends the difference to the last point.
   void AddPoint(const DrawnPoint& place) {
     Bend(0, 0);
     AddNext(place);
   }
 
-  // The difference to where the last two places point.
+  // Appends the difference to the point that the last two points predict.
   void AddNext(const DrawnPoint& place) {
     const int64_t x = std::llround(place.x / kGridMm);
     const int64_t y = std::llround(place.y / kGridMm);
@@ -39,7 +39,7 @@ class NumberWriter {
     y_ = y;
   }
 
-  // Nothing is written for it: the reader knows it too.
+  // Appends nothing: the reader knows the point too.
   void Skip(const DrawnPoint& place) {
     x_ = std::llround(place.x / kGridMm);
     y_ = std::llround(place.y / kGridMm);
@@ -99,7 +99,7 @@ std::string LayerCode(const DrawnLayer& layer) {
 std::string DeflatedBase64(std::string_view bytes) {
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));
   std::string deflated(size, '\0');
-  // With room for the worst case it cannot fail but for want of memory.
+  // With room for the worst case it can fail only for lack of memory.
   const int status = compress2(reinterpret_cast<Bytef*>(deflated.data()), &size,
                                reinterpret_cast<const Bytef*>(bytes.data()),
                                static_cast<uLong>(bytes.size()), Z_DEFAULT_COMPRESSION);

@@ -3,7 +3,7 @@
 namespace traverse::view {
 namespace {
 
-// Positions of these names behind the job's own.
+// Numbers of these features, after the job's own.
 enum OwnFeature { kOuterContour, kInnerContour, kRaster, kContour, kLine };
 
 template <typename Path>

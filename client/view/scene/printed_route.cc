@@ -28,11 +28,11 @@ class BlockWalk {
   bool AtEnd() const { return next_ == end_; }
   DrawnPoint First() const { return PointOf(file_.blocks[next_].first); }
 
-  // Where the head is before the layer. How the start script comes to the first path of all is not
+  // Where the head is before the layer. The start script's approach to the very first path is not
   // drawn.
   DrawnPoint Start() const { return next_ > 0 ? PointOf(file_.blocks[next_ - 1].last) : First(); }
 
-  // Where the head comes by from the block before to this one, the ends of both included.
+  // The points that the head passes from the last block to this one, including the ends of both.
   std::vector<DrawnPoint> Corners() const {
     if (next_ == 0) return {};
     std::vector<DrawnPoint> corners = {PointOf(file_.blocks[next_ - 1].last)};
@@ -42,7 +42,7 @@ class BlockWalk {
     return corners;
   }
 
-  // What the block extrudes; goes on to the next one.
+  // The length that the block extrudes; moves on to the next block.
   double Take() { return static_cast<double>(file_.blocks[next_++].length_mm); }
 
  private:
@@ -64,13 +64,13 @@ std::vector<DrawnPoint> Between(std::vector<DrawnPoint> corners, const DrawnPoin
   return corners;
 }
 
-// `order` with the corners of `printed`; nothing if that is not the order of its blocks.
+// `order` with the corners of `printed`; nothing if its blocks have another order.
 std::optional<std::vector<DrawnVisit>> WithCorners(const GcodeFile& printed, size_t layer,
                                                    const SlicedPaths& sliced,
                                                    std::vector<DrawnVisit> order) {
   BlockWalk walk(printed, layer);
   DrawnPoint at = walk.Start();
-  double ahead = 0;  // what the blocks taken extrude beyond the paths taken
+  double ahead = 0;  // how much more the blocks so far extrude than the paths so far
   for (DrawnVisit& visit : order) {
     const DrawnPath& path = sliced.paths[visit.path];
     const DrawnPoint entry = EntryOf(path, visit);

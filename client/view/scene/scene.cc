@@ -8,7 +8,7 @@
 namespace traverse::view {
 namespace {
 
-// Moves closer than this are one and the same; files state three digits.
+// Moves closer than this are the same; files state three digits.
 constexpr double kSameMm = 1e-3;
 
 using Key = std::pair<std::pair<int64_t, int64_t>, std::pair<int64_t, int64_t>>;
@@ -17,7 +17,7 @@ std::pair<int64_t, int64_t> Rounded(const DrawnPoint& point) {
   return {std::llround(point.x / kSameMm), std::llround(point.y / kSameMm)};
 }
 
-// The ends of a move, the same for both directions.
+// The ends of a move, equal for both directions.
 Key EndsOf(const DrawnMove& move) {
   const auto ends = std::minmax({Rounded(move.front()), Rounded(move.back())});
   return {ends.first, ends.second};
