@@ -7,6 +7,7 @@
 #include "client/report/json.h"
 #include "client/report/numbers.h"
 #include "client/report/summary.h"
+#include "client/report/table.h"
 #include "tests/support/golden.h"
 
 namespace traverse::report {
