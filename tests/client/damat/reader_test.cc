@@ -187,18 +187,15 @@ INSTANTIATE_TEST_SUITE_P(
                 "part.damat:5: second contour with id 1 in island 1"},
         BadFile{"ContourComesAgain", Island(3, 0, "C1,X1,Y1\nC2,X1,Y1\nC1,X2,Y2\n"),
                 "part.damat:6: second contour with id 1 in island 1"},
-        BadFile{
-            "LongAfterVertexALine", Island(2, 0, "C1,X1,Y1\nC1,X2,Y2\nC2,X1,Y1,X2,Y2\n"),
-            "part.damat:6: two spellings in one file: line 5 goes on with a contour, a vertex a "
-            "line, line 6 has all vertices of one"},
-        BadFile{
-            "VertexALineAfterLong", Island(2, 0, "C1,X1,Y1,X2,Y2\nC2,X1,Y1\nC2,X2,Y2\n"),
-            "part.damat:6: two spellings in one file: line 6 goes on with a contour, a vertex a "
-            "line, line 4 has all vertices of one"},
-        BadFile{
-            "LongGoesOn", Island(1, 0, "C1,X1,Y1\nC1,X2,Y2,X3,Y3\n"),
-            "part.damat:5: two spellings in one file: line 5 goes on with a contour, a vertex a "
-            "line, line 5 has all vertices of one"},
+        BadFile{"LongAfterVertexALine", Island(2, 0, "C1,X1,Y1\nC1,X2,Y2\nC2,X1,Y1,X2,Y2\n"),
+                "part.damat:6: two spellings in one file: line 5 continues a contour, one vertex a "
+                "line, but line 6 has all vertices of one"},
+        BadFile{"VertexALineAfterLong", Island(2, 0, "C1,X1,Y1,X2,Y2\nC2,X1,Y1\nC2,X2,Y2\n"),
+                "part.damat:6: two spellings in one file: line 6 continues a contour, one vertex a "
+                "line, but line 4 has all vertices of one"},
+        BadFile{"LongGoesOn", Island(1, 0, "C1,X1,Y1\nC1,X2,Y2,X3,Y3\n"),
+                "part.damat:5: two spellings in one file: line 5 continues a contour, one vertex a "
+                "line, but line 5 has all vertices of one"},
         BadFile{"VertexALineCounted", Island(2, 0, "C1,X1,Y1\nC1,X2,Y2\n"),
                 "part.damat:3: I1 states 2 contours, but the file has 1"},
         BadFile{"ThicknessMissing", "E\nnF,0\n",
