@@ -7,7 +7,7 @@
 
 namespace traverse {
 
-// The cost of a state that cannot be reached, or need not be.
+// The cost of a state that cannot, or need not, be reached.
 inline constexpr double kUnreached = std::numeric_limits<double>::infinity();
 
 // to[v] = min(to[v], from[u] + offset + moves[u * to_count + v]) over all u and v.

@@ -1,9 +1,9 @@
-// The ends of a plan's paths and which of them a move may join: every route is a tree of these.
+// The ends of a plan's paths and the moves that may join them: every route is a tree of these.
 //
 // A path has one end (a contour, which is left where it is entered) or two (an open path). The
-// moves within a node of the plan join its children to a tree: for each any_order node and each
-// pair of neighboring children of an in_order node there is a junction, of which a route uses one
-// move less than it has sides.
+// moves within a node of the plan join its children to a tree. Each any_order node is a junction,
+// and so is each pair of neighboring children of an in_order node; a route uses one move less in a
+// junction than the junction has sides.
 //
 //   any_order(a, b, c)       one junction of three sides: two moves
 //   in_order(A, B)           a junction of two sides: one move, from an end that may be the last
@@ -28,39 +28,39 @@ struct PathEnd {
   static constexpr uint8_t kEnter = 1;
   static constexpr uint8_t kLeave = 2;
 
-  absl::InlinedVector<Point, 1> points;  // at which the head may be here
+  absl::InlinedVector<Point, 1> points;  // where the head may be at this end
   BoundingBox box;                       // around them
-  uint8_t roles = 0;                     // whether the path may be entered here, and left
-  int moves = 1;                         // of a route here: 2 for a contour
+  uint8_t roles = 0;                     // whether the path may be entered, or left, at this end
+  int moves = 1;                         // of a route at this end: 2 for a contour
 };
 
-// The roles that the other end of a move has to have one of.
+// The roles of which the other end of a move must have one.
 inline int OppositeRoles(int roles) { return (roles >> 1 & 1) | (roles << 1 & 2); }
 
 struct Junction {
   struct Member {
     int end = 0;
     int side = 0;
-    uint8_t roles = 0;  // whether this side may be entered here, and left
+    uint8_t roles = 0;  // whether this side may be entered, or left, at this end
   };
   absl::InlinedVector<Member, 4> members;  // by sides
   int sides = 0;
 };
 
-// Lists of one point or of two paths are within what holds them: there are millions of these in
-// large layers. Immutable but for its end. Memory: proportional to the points and to the sum over
-// nodes of the ends below.
+// Lists of one point or of two paths are stored inline, because large layers have millions of them.
+// Only Clear changes a graph. Memory: proportional to the points and to the sum over nodes of the
+// ends below.
 struct EndGraph {
-  // Others are let on through `budget`, which may be null.
+  // Gives other threads their turn through `budget`, which may be null.
   explicit EndGraph(const PlanTree& tree, Budget* budget = nullptr);
 
-  // Frees all that is held, which takes long where it is much, and lets others on meanwhile.
+  // Frees everything, which takes long for a large graph, and gives others their turn meanwhile.
   void Clear(Budget* budget);
 
   std::vector<PathEnd> ends;
   std::vector<Junction> junctions;
-  std::vector<int> first;  // ends that a route may begin with
-  std::vector<int> last;   // ends that it may end with
+  std::vector<int> first;  // ends where a route may begin
+  std::vector<int> last;   // ends where a route may end
 };
 
 }  // namespace traverse

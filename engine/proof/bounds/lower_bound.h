@@ -1,4 +1,4 @@
-// A lower bound of what any route of a layer costs: cheap, always valid, for every plan.
+// A lower bound of the cost of every route of a layer: cheap, always valid, for every plan.
 
 #ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_LOWER_BOUND_H_
 #define TRAVERSE_ENGINE_PROOF_BOUNDS_LOWER_BOUND_H_
@@ -11,20 +11,20 @@
 
 namespace traverse {
 
-// What a search for a bound found out, for the same plan with another start.
+// The result of a search for a bound, reusable for the same plan with another start.
 using BoundMultipliers = std::vector<double>;
 
-// In the unit of the problem's cost, `finish` included; never above `target`, the cost of a route.
+// In the unit of the problem's cost, including `finish`; never above `target`, the cost of a route.
 // Unset if the budget ends before there is a bound. Deterministic unless the budget ends it.
 //
-// `multipliers`, if not null, are used instead of searching for better ones, unless they are of
-// another number of paths: then they become what was found. The same plan at a neighboring start
-// has nearly as good a bound by them, at a small part of the time. Any are valid.
+// If `multipliers` is not null, they are used and no better ones are searched for. If they are for
+// another number of paths, a search replaces them with its own. They give the same plan at a
+// neighboring start nearly as good a bound in a small part of the time. Any values are valid.
 //
-// `effort` is that of linear programmes (programme_bound.h), beyond trees.
+// `effort` is the effort of linear programmes (programme_bound.h), which follow the trees.
 //
-// Linear memory but for these. Bounds by trees (tree_bound.h): 4 ms for 26 contours and 26 rasters,
-// 0.3 s for 500 and 500.
+// Linear memory, except for these. Bounds by trees (tree_bound.h): 4 ms for 26 contours and 26
+// rasters, 0.3 s for 500 and 500.
 std::optional<double> LowerBound(const LayerProblem& problem, double target,
                                  BoundMultipliers* multipliers, double effort, Budget& budget);
 

@@ -14,15 +14,15 @@ class MultiplierSearch {
  public:
   explicit MultiplierSearch(size_t clusters) : best_(clusters), direction_(clusters) {}
 
-  // Takes in that the lowest walk at `multipliers` costs `value`. True if no value was higher.
+  // Records that the lowest walk at `multipliers` costs `value`. True if no value was higher.
   bool Take(const std::vector<double>& multipliers, double value);
 
   // The multipliers to try after `multipliers`, whose lowest walk costs `value` and visits each
-  // cluster visits[cluster] times. `target` is what a value can at most become.
+  // cluster visits[cluster] times. `target` is the highest value possible.
   std::vector<double> Next(const std::vector<double>& multipliers, double value, double target,
                            const std::vector<int>& visits);
 
-  // Steps become shorter when they lead nowhere, longer when the relaxation became stronger.
+  // Make steps shorter when they lead nowhere, longer when the relaxation has become stronger.
   void Shorten() { factor_ *= 0.7; }
   void Lengthen() { factor_ = factor_ < 0.5 ? 2 * factor_ : 1; }
 
@@ -30,7 +30,7 @@ class MultiplierSearch {
   double best_value() const { return best_value_; }
 
  private:
-  static constexpr double kDeflection = 0.7;  // share of the last direction that is kept
+  static constexpr double kDeflection = 0.7;  // share of the last direction that stays
 
   std::vector<double> best_;       // [cluster]
   std::vector<double> direction_;  // [cluster]

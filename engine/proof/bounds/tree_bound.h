@@ -29,18 +29,18 @@ namespace traverse {
 
 class TreeBound {
  public:
-  // `problem` has a path; its plan outlives this. When the budget ends, ascents become blind.
+  // `problem` has a path; its plan outlives this. If the budget ends here, ascents gain nothing.
   TreeBound(const LayerProblem& problem, Budget& budget);
 
-  // Ends this bound: frees what takes long to free, letting others on meanwhile. Nothing may be
-  // asked afterwards but the bound and its multipliers.
+  // Ends this bound: frees what takes long to free and gives others their turn meanwhile.
+  // Afterwards only the bound and its multipliers may be asked for.
   void Clear(Budget& budget);
 
-  // Evaluates all pairs at the current multipliers and remembers the highest bound so far.
-  // False if the budget ended it. O(ends^2) time.
+  // Evaluates all pairs at the current multipliers and remembers the highest bound so far. False if
+  // the budget ended it. O(ends^2) time.
   bool Evaluate(Budget& budget);
 
-  // Searches for better multipliers, at most so many steps, towards `target`, the cost of a route.
+  // Takes at most `most_steps` steps to better multipliers, towards `target`, the cost of a route.
   void Ascend(double target, int most_steps, Budget& budget);
 
   // No route costs less. 0 before the first evaluation.
@@ -48,7 +48,7 @@ class TreeBound {
 
   const EndGraph& graph() const { return graph_; }
 
-  // Those of the bound, [end], in an order that is the same for equal plans.
+  // The multipliers of the bound, [end], in the same order for equal plans.
   const std::vector<double>& multipliers() const { return best_multipliers_; }
   void SetMultipliers(const std::vector<double>& multipliers) { multipliers_ = multipliers; }
 
@@ -61,7 +61,7 @@ class TreeBound {
     double cost = 0;
   };
 
-  // What remains to be joined in one junction, in arrays for the inner loop.
+  // The sides of one junction that are not joined yet, in arrays for the inner loop.
   struct Pool;
 
   double Cost(int a, int b, Budget& budget) const;
@@ -79,21 +79,21 @@ class TreeBound {
   const TravelCost cost_;
   std::vector<double> start_costs_;   // [graph_.first] from the start
   std::vector<double> finish_costs_;  // [graph_.last] to the finish, 0 if there is none
-  std::vector<int> first_side_;       // [junction] where its sides begin among all; one more
+  std::vector<int> first_side_;       // [junction] its first side among all; one more
 
   std::vector<double> multipliers_;       // [end]
   std::vector<double> best_multipliers_;  // [end] of the bound
   double lower_bound_ = 0;
 
-  std::vector<Pair> pairs_;  // the near ones
+  std::vector<Pair> pairs_;  // of ends near each other
   std::vector<absl::InlinedVector<std::pair<int, double>, 4>>
-      near_;  // [end] others and costs of pairs_
+      near_;  // [end] the other ends and costs of pairs_
 
   // Scratch.
   std::vector<int> moves_;                      // [end] of the last tree
   std::vector<std::pair<double, int>> sorted_;  // costs less multipliers, pairs
   DisjointSets joined_;                         // the sides of all junctions
-  std::vector<int> member_of_;                  // [end] in the junction at hand, else -1
+  std::vector<int> member_of_;                  // [end] in the current junction, else -1
 };
 
 }  // namespace traverse

@@ -1,5 +1,5 @@
-// A linear programme that grows and is solved again and again: what the branch and cut needs of
-// Clp, and nothing of Clp in a header.
+// A linear programme that grows and is solved again and again: the part of Clp that branch and cut
+// needs, with nothing of Clp in a header.
 
 #ifndef TRAVERSE_ENGINE_PROOF_PROGRAMS_LINEAR_PROGRAM_H_
 #define TRAVERSE_ENGINE_PROOF_PROGRAMS_LINEAR_PROGRAM_H_
@@ -22,7 +22,7 @@ class LinearProgram {
   enum class Status {
     kOptimal,
     kInfeasible,
-    kStopped,  // the budget or the iterations ran out, or the numbers went wrong
+    kStopped,  // budget or iterations ran out, or the numbers became unreliable
   };
 
   // Coefficients of one row or column.
@@ -43,11 +43,11 @@ class LinearProgram {
   int row_count() const;
   int column_count() const;
 
-  // Return the new one's index.
+  // Return the index of the new row or column.
   int AddRow(double lower, double upper, const Entries& columns);
   int AddColumn(double cost, double lower, double upper, const Entries& rows);
 
-  // Several at once, which is quicker: each call copies the matrix.
+  // Adds several at once, which is quicker: each call copies the matrix.
   struct Column {
     double cost = 0;
     double lower = 0;
@@ -65,7 +65,7 @@ class LinearProgram {
   void SetColumnBounds(int column, double lower, double upper);
   void SetCost(int column, double cost);
 
-  // What comes after a deleted one moves up. The arguments ascend.
+  // The entries after a deleted one move up. The arguments ascend.
   void DeleteRows(const std::vector<int>& rows);
   void DeleteColumns(const std::vector<int>& columns);
 
@@ -74,14 +74,14 @@ class LinearProgram {
   Status SolveDual(Budget& budget, int most_iterations = kNoLimit);
   Status SolvePrimal(Budget& budget);
 
-  // Starts from no basis: where a solve ended without an answer and there is still time, this one
-  // may have it, as errors of rounding had added up in the basis.
+  // Starts without a basis. If a solve ended without an answer because rounding errors had added up
+  // in its basis, this one may still find the answer.
   Status SolveAfresh(Budget& budget);
 
-  // What all solves took: iterations times rows, which their time is about proportional to.
+  // What all solves took: the sum of iterations times rows, to which time is about proportional.
   double work() const;
 
-  // Of the last solution.
+  // The value of the last solution.
   double value() const;
   double Primal(int column) const;
   double Dual(int row) const;
@@ -94,10 +94,10 @@ class LinearProgram {
   // a relative 1e-12. REQUIRES: all columns are bounded.
   double SafeBound() const;
 
-  // Whether the last solution's ray shows, in the same way, that there is no feasible point.
+  // Whether the last solution's ray proves, in the same way, that there is no feasible point.
   bool IsSurelyInfeasible() const;
 
-  // The basis, good for the same rows and columns.
+  // The basis, usable for the same rows and columns.
   std::vector<unsigned char> Basis() const;
   void SetBasis(const std::vector<unsigned char>& basis);
 

@@ -1,5 +1,5 @@
-// A mixed integer linear programme of binaries, solved by Cbc: what the models of the thesis need
-// of it, and nothing of Cbc in a header.
+// A mixed integer linear programme of binaries, solved by Cbc: the part that the models of the
+// thesis need, with nothing of Cbc in a header.
 
 #ifndef TRAVERSE_ENGINE_PROOF_PROGRAMS_MIXED_PROGRAM_H_
 #define TRAVERSE_ENGINE_PROOF_PROGRAMS_MIXED_PROGRAM_H_
@@ -21,10 +21,10 @@ class MixedProgram {
   static constexpr double kInfinity = LinearProgram::kInfinity;
 
   struct Options {
-    double gap = 0;  // relative, at which the search ends
+    double gap = 0;  // relative gap at which the search ends
   };
 
-  // A solution better than those before it, and when it was found.
+  // A solution better than all before it, and when it was found.
   struct Incumbent {
     double seconds = 0;  // since Solve began
     double value = 0;
@@ -32,12 +32,12 @@ class MixedProgram {
 
   struct Result {
     std::vector<double> values;  // [column] of the best solution, 0 or 1; empty if there is none
-    double value = 0;            // of it
+    double value = 0;            // of the best solution
     int nodes = 0;               // of branch and bound
 
-    std::vector<Incumbent> incumbents;  // that Cbc found, `known` not among them
+    std::vector<Incumbent> incumbents;  // that Cbc found, without `known`
 
-    // No solution costs less, by Cbc's word (its tolerances are about 1e-7). Unset: not known.
+    // No solution costs less, according to Cbc (its tolerances are about 1e-7). Unset: unknown.
     std::optional<double> bound;
 
     // The gap was reached, or it is certain that there is no solution.
@@ -49,7 +49,7 @@ class MixedProgram {
   MixedProgram(const MixedProgram&) = delete;
   MixedProgram& operator=(const MixedProgram&) = delete;
 
-  // Return the new one's index. A column may be fixed at 1.
+  // Return the index of the new column or row. A column may be fixed at 1.
   int AddBinary(double cost, bool fixed_at_one = false);
   int AddRow(double lower, double upper, const Entries& columns);
 
@@ -58,12 +58,12 @@ class MixedProgram {
 
   double ValueOf(const std::vector<double>& values) const;
 
-  // Whether `values` keeps all rows.
+  // Whether `values` satisfies all rows.
   bool IsSolution(const std::vector<double>& values) const;
 
-  // `known`, if not empty, is a solution to begin with: the result is no worse. Deterministic
-  // unless the budget ends it. Cbc looks at the budget between two nodes and two cut generators,
-  // Clp after every iteration within them; a factorization or one generator ends when it ends.
+  // `known`, if not empty, is a solution to start from: the result is no worse. Deterministic
+  // unless the budget ends it. Cbc checks the budget between two nodes and two cut generators, Clp
+  // after every iteration within them; a factorization or a generator always runs to its end.
   Result Solve(const Options& options, const std::vector<double>& known, Budget& budget) const;
 
  private:

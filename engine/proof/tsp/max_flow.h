@@ -9,25 +9,25 @@
 
 namespace traverse {
 
-// Prepared once, asked for many pairs. Ford and Fulkerson (1956) with shortest augmenting paths
+// Prepared once and used for many pairs. Ford and Fulkerson (1956) with shortest augmenting paths
 // (Edmonds and Karp 1972): graphs of fractional solutions have few edges, and flows of at most 2.
 class MaxFlow {
  public:
-  // Weights are capacities, both ways.
+  // Weights are capacities in both directions.
   explicit MaxFlow(const SupportGraph& graph);
 
-  // Sends as much as it can from `sources` to `sink`, up to `most`. Returns what went through; if
+  // Sends as much as possible from `sources` to `sink`, up to `most`. Returns the amount sent; if
   // that is less than `most`, source_side() is one side of the smallest cut. REQUIRES: `sink` is no
   // source, and there is a source.
   double Send(const std::vector<int>& sources, int sink, double most);
 
-  // [node] 1 for nodes that the last Send could still reach: the fewest that a smallest cut has.
+  // [node] 1 for nodes that the last Send could still reach: the smallest side of a smallest cut.
   const std::vector<char>& source_side() const { return reached_; }
 
  private:
   struct Arc {
     int to = 0;
-    int back = 0;  // index of the arc the other way
+    int back = 0;  // index of the arc in the other direction
     double capacity = 0;
   };
 

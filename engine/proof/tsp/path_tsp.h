@@ -35,23 +35,23 @@ namespace traverse {
 
 struct PathTsp {
   int ports = 0;
-  std::vector<int> item;       // [port] from 0; the ports of an item follow each other
-  std::vector<int> mate;       // [port] where its item is left if it is entered there
+  std::vector<int> item;       // [port] from 0; the ports of an item are consecutive
+  std::vector<int> mate;       // [port] where its item is left if it is entered here
   std::vector<double> cost;    // [p * ports + q] of moves, symmetric, not negative
-  std::vector<double> finish;  // [port] cost of ending there
+  std::vector<double> finish;  // [port] cost of ending here
 
   double Cost(int p, int q) const {
     return cost[static_cast<size_t>(p) * static_cast<size_t>(ports) + static_cast<size_t>(q)];
   }
 };
 
-// Solves one problem for several start costs, keeping what it learns.
+// Solves one problem for several start costs and keeps what it learns.
 class PathTspSolver {
  public:
   static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
   struct Result {
-    // No path costs less; at least `cutoff` if there is none below it.
+    // No path costs less; at least `cutoff` if no path costs less than that.
     double lower_bound = 0;
     // Where a path cheaper than `cutoff` enters each item, in order; empty if none was found.
     std::vector<int> path;
@@ -64,7 +64,7 @@ class PathTspSolver {
   ~PathTspSolver();
 
   // `start`: cost of beginning at each port, kUnreached if that is not possible. `known`: a path in
-  // the form of Result::path, to begin with.
+  // the form of Result::path to start from.
   Result Solve(const std::vector<double>& start, double cutoff, const std::vector<int>& known,
                Budget& budget);
 

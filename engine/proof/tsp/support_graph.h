@@ -1,4 +1,4 @@
-// A fractional solution as a graph, and the cuts that are too small in it.
+// A fractional solution as a graph, and its cuts that are too small.
 
 #ifndef TRAVERSE_ENGINE_PROOF_TSP_SUPPORT_GRAPH_H_
 #define TRAVERSE_ENGINE_PROOF_TSP_SUPPORT_GRAPH_H_

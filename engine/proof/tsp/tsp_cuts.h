@@ -30,13 +30,13 @@ struct TspCut {
   double Coefficient(const TspNodes& nodes, const TspMove& move) const;
 };
 
-// Values of the moves and ports that are not 0.
+// The moves and ports whose values are not 0.
 struct TspSolution {
   std::vector<std::pair<TspMove, double>> moves;
   std::vector<double> ports;  // [port] 1 without a choice
 };
 
-// Cuts that are violated by more than `violation`, about `most`; fewer if the budget ends.
+// About `most` cuts that are violated by more than `violation`; fewer if the budget ends.
 std::vector<TspCut> ViolatedCuts(const TspNodes& nodes, const TspSolution& solution,
                                  double violation, int most, Budget& budget);
 

@@ -1,4 +1,4 @@
-// How the nodes of a path TSP (path_tsp.h) are numbered, and which belong together.
+// Numbers the nodes of a path TSP (path_tsp.h) and says which belong together.
 
 #ifndef TRAVERSE_ENGINE_PROOF_TSP_TSP_NODES_H_
 #define TRAVERSE_ENGINE_PROOF_TSP_TSP_NODES_H_
@@ -11,8 +11,8 @@
 
 namespace traverse {
 
-// Nodes are the ports, then the start, then the finish. Items are numbered from 1; 0 is that of the
-// start and the finish.
+// Nodes are the ports, then the start, then the finish. Items are numbered from 1; the start and
+// the finish belong to item 0.
 class TspNodes {
  public:
   explicit TspNodes(const PathTsp& problem);
@@ -31,10 +31,10 @@ class TspNodes {
   }
   int size(int item) const { return first_[Index(item) + 1] - first(item); }
 
-  // Where a path goes on from `node`, after a fixed edge or at once.
+  // Where a path continues from `node`: at once, or after a fixed edge.
   int mate(int node) const { return mate_[Index(node)]; }
 
-  // Whether one of the ports of `item` is chosen, and whether `node` is such a port.
+  // Whether one of the ports of `item` must be chosen, and whether `node` is such a port.
   bool HasChoice(int item) const { return has_choice_[Index(item)] != 0; }
   bool IsChoice(int node) const { return HasChoice(item(node)); }
 

@@ -21,43 +21,43 @@ class TspRelaxation {
 
   const TspNodes& nodes() const { return nodes_; }
 
-  // Moves from the start to a port with cost kUnreached cost `forbidden` instead.
+  // Moves from the start to a port with cost kUnreached get the cost `forbidden` instead.
   void SetStart(const std::vector<double>& start, double forbidden);
 
   double MoveCost(const Move& move) const;
 
-  // Brings moves in, but those that are in.
+  // Adds the moves that are not in the programme yet.
   void AddMoves(const std::vector<Move>& moves);
 
-  // What follows looks at all moves; where the budget ends it, what it says is worth nothing.
+  // The next functions look at all moves; their answers are worthless if the budget ends.
 
-  // Brings in moves with negative reduced cost, the lowest first. The sum of all negative reduced
-  // costs of moves that are not in the programme goes to `missing`. Returns how many were added.
+  // Adds moves with negative reduced cost, the lowest first. The sum of all negative reduced costs
+  // of moves outside the programme goes to `missing`. Returns how many were added.
   int Price(int most, double& missing, Budget& budget);
 
-  // Leaves out ports and moves whose reduced cost is above `gap`: no path has them that costs less
-  // than the last bound and `gap` together.
+  // Excludes ports and moves whose reduced cost is above `gap`: no path that costs less than the
+  // last bound plus `gap` uses them.
   void LeaveOutDear(double gap, Budget& budget);
 
-  // Brings in all moves that were not left out, so that none has to be priced any more. False, with
-  // nothing changed, if that would be more than `most`.
+  // Adds all moves that are not excluded, so that none needs pricing any more. False, with nothing
+  // changed, if these are more than `most`.
   bool Complete(int most);
 
   // Allows all ports and moves again.
   void AllowAll();
 
-  // Columns, of ports and moves, that are 0 or 1 in every path: what can be branched on.
+  // Columns of ports and moves, which are 0 or 1 in every path: branching uses them.
   int column_count() const { return lp_.column_count(); }
   void Fix(int column, bool in) { lp_.SetColumnBounds(column, in ? 1 : 0, in ? 1 : 0); }
   void Free(int column) { lp_.SetColumnBounds(column, 0, 1); }
 
-  // Adds cuts that the last solution violates, about `most`; returns how many.
+  // Adds about `most` cuts that the last solution violates; returns how many.
   int Separate(double violation, int most, Budget& budget);
 
   // Deletes cuts that have not been tight for a while.
   void DropIdleCuts();
 
-  // The path of the last solution if that is one, else empty.
+  // The path of the last solution if it is a path, else empty.
   std::vector<int> IntegralPath() const;
 
   LinearProgram& lp() { return lp_; }
@@ -67,7 +67,7 @@ class TspRelaxation {
   struct RowOfCut {
     TspCut cut;
     int row = 0;
-    int idle = 0;  // rounds without being tight
+    int idle = 0;  // rounds in which it was not tight
   };
 
   void AddRowsOfNodes();
@@ -98,7 +98,7 @@ class TspRelaxation {
   std::vector<char> left_out_;    // [node] by LeaveOutDear: ports that no better path visits
   std::vector<Move> moves_;       // [column - first_move_]
   std::vector<char> has_;         // [Key(move)]
-  std::vector<char> is_dear_;     // [Key(move)] left out
+  std::vector<char> is_dear_;     // excluded
   std::vector<RowOfCut> cuts_;
   int total_cuts_ = 0;
 };

@@ -13,11 +13,11 @@
 namespace traverse {
 
 // Whether all clusters of `stage` are open paths that may be done both ways or clusters with one
-// point, in any order: what path_tsp.h can do.
+// point, in any order: the kind that path_tsp.h can solve.
 bool IsItemStage(const StageModel& model, int stage);
 
-// The same where contours of few points are among them, and not too many points in all: then
-// path_tsp.h is better at it than walks.
+// The same if contours of few points are among them, and not too many points in all: for these
+// path_tsp.h is better than walks.
 bool IsPortStage(const StageModel& model, int stage);
 
 class ItemStage {
@@ -33,8 +33,8 @@ class ItemStage {
   // that follow.
   ItemStage(const StageModel& model, int stage);
 
-  // Whether the first stage can be one of these and is all there is, but for a cluster that has to
-  // come last.
+  // Whether the first stage is one of these and the only one, except for a cluster that must be
+  // last.
   static bool IsAll(const StageModel& model);
 
   // States of the stage are numbered from 0.
@@ -46,12 +46,12 @@ class ItemStage {
   // The model's start costs, for a model of one stage.
   std::vector<double> StartOfModel() const;
 
-  // The cheapest walk of the stage, if it is cheaper than `limit`; `start`: cost of beginning in
-  // each state. `known`: a route of the model to begin with.
+  // The cheapest walk of the stage, if it is cheaper than `limit`. `start`: cost of beginning in
+  // each state. `known`: a route of the model to start from.
   Best Solve(const std::vector<double>& start, double limit, const std::vector<ClusterState>& known,
              Budget& budget);
 
-  // A lower bound of what Solve finds, quicker.
+  // A lower bound of the cost of Solve's walk; quicker.
   double Bound(const std::vector<double>& start, double limit, Budget& budget,
                double most_work = PathTspSolver::kUnlimited) {
     return solver_.RootBound(start, limit, budget, most_work);

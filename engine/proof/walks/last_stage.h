@@ -1,5 +1,5 @@
-// What a last stage of items costs, as far as it is known: lower bounds by the state in which it is
-// begun, and the moves that lead there from the stage before.
+// The known costs of a last stage of items: lower bounds by the state in which it begins, and the
+// moves that lead there from the stage before.
 
 #ifndef TRAVERSE_ENGINE_PROOF_WALKS_LAST_STAGE_H_
 #define TRAVERSE_ENGINE_PROOF_WALKS_LAST_STAGE_H_
@@ -21,18 +21,18 @@ class LastStage {
   // REQUIRES: the model has two stages or more, the last with two clusters or more, IsItemStage.
   explicit LastStage(const StageModel& model);
 
-  // Start costs of the last stage: after a route of the other stages that ends in `from` and cost
-  // `cost`; or the least after any end, kUnreached where all of `ends` are.
+  // Start costs of the last stage after a route of the other stages that ends in `from` and costs
+  // `cost`; or the least costs after any end, kUnreached where all of `ends` are.
   std::vector<double> StartAfter(ClusterState from, double cost) const;
   std::vector<double> StartAfter(const EndCosts& ends) const;
 
-  // Least cost of all that follows each end, the move to the last stage included, as far as known.
-  // Never falls.
+  // The least known cost of all that follows each end, including the move to the last stage. Never
+  // falls.
   EndCosts Finish() const;
 
-  // Solves the stage for `start` (ItemStage::Solve) and learns from the result: if no path through
-  // it costs less than w, then none that begins in e costs less than w - start[e] without the
-  // start.
+  // Solves the stage for `start` (ItemStage::Solve) and learns from the result: if no path
+  // through it costs less than w, then none that begins in e costs less than w - start[e], start
+  // excluded.
   ItemStage::Best Solve(const std::vector<double>& start, double limit,
                         const std::vector<ClusterState>& known, Budget& budget);
 
@@ -49,7 +49,7 @@ class LastStage {
   const StageModel& model_;
   const int stage_;  // the one before the last
   ItemStage items_;
-  std::vector<double> least_;  // [state index of items_] no path that begins there costs less
+  std::vector<double> least_;  // [state index of items_] no path that begins here costs less
 };
 
 }  // namespace traverse

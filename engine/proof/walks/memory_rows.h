@@ -1,4 +1,4 @@
-// One cell of a dynamic programme over walks: costs by what a walk remembers and by its state.
+// One cell of a dynamic programme over walks: costs by a walk's memory and state.
 
 #ifndef TRAVERSE_ENGINE_PROOF_WALKS_MEMORY_ROWS_H_
 #define TRAVERSE_ENGINE_PROOF_WALKS_MEMORY_ROWS_H_
@@ -13,7 +13,7 @@
 
 namespace traverse {
 
-// A row of costs, one a state, for each of some different memories.
+// Rows for different memories, each with one cost per state.
 template <int kWords>
 class MemoryRows {
  public:
@@ -38,7 +38,7 @@ class MemoryRows {
     costs_.resize(Offset(size()), kUnreached);
   }
 
-  // Keeps the rows with a cost that is reached.
+  // Keeps only the rows with a cost that is reached.
   void DropUnreached() {
     int kept = 0;
     for (int row = 0; row < size(); ++row) {
@@ -64,7 +64,7 @@ class MemoryRows {
   std::vector<double> costs_;  // [row * states_ + state]
 };
 
-// Makes rows, finding those that are there already. Keeps its memory from one cell to the next.
+// Makes rows, or finds them if they exist. Keeps its memory from one cell to the next.
 template <int kWords>
 class MemoryRowsBuilder {
  public:
@@ -75,7 +75,7 @@ class MemoryRowsBuilder {
     index_.clear();
   }
 
-  // The costs of `memory`, unreached if new. The pointer is good until the next call.
+  // The costs of `memory`, unreached if it is new. The pointer is valid until the next call.
   double* CostsOf(const Memory& memory) {
     if (rows_.size() < kScanned) {
       for (int row = 0; row < rows_.size(); ++row) {
@@ -95,7 +95,7 @@ class MemoryRowsBuilder {
   MemoryRows<kWords>& rows() { return rows_; }
 
  private:
-  static constexpr int kScanned = 16;  // hashing pays off above
+  static constexpr int kScanned = 16;  // hashing pays off above this
 
   MemoryRows<kWords> rows_;
   absl::flat_hash_map<Memory, int> index_;  // of all rows, once there are kScanned

@@ -1,4 +1,4 @@
-// A small set of the clusters of one stage: what a walk remembers to have visited.
+// A small set of the clusters of one stage: those that a walk remembers to have visited.
 
 #ifndef TRAVERSE_ENGINE_PROOF_WALKS_MEMORY_SET_H_
 #define TRAVERSE_ENGINE_PROOF_WALKS_MEMORY_SET_H_

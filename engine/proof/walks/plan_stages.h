@@ -34,7 +34,7 @@ namespace traverse {
 struct PlanStage {
   static constexpr int kGate = -1;
 
-  // A block has its items in [first, last), and its gate at `item`.
+  // A block has its items in [first, last) and its gate at `item`.
   struct Gate {
     int item = 0;
     int first = 0;
@@ -46,7 +46,7 @@ struct PlanStage {
     return follows[static_cast<size_t>(i) * paths.size() + static_cast<size_t>(j)] != 0;
   }
 
-  // Those of a stage of one path are without lists elsewhere: a plan may have a million of these.
+  // Stored inline for a stage of one path: a plan may have a million of these.
   absl::InlinedVector<int, 1> paths;        // [item] index into Plan::paths, or kGate
   std::vector<std::pair<int, int>> before;  // items; transitively closed
   absl::InlinedVector<char, 8> follows;     // [i * size() + j] whether j may follow i directly
@@ -55,10 +55,10 @@ struct PlanStage {
   std::vector<Gate> gates;                  // inner ones first
 };
 
-// The stages of `plan`, done one after the other, or nothing if one has more than `most_items`, or
-// if `budget` (may be null) ends.
-// Nested in_orders outside of any_orders are flattened; nodes without paths vanish, but the
-// precedences that go through them are kept. O(nodes + most_items (pairs + most_items^2)).
+// The stages of `plan` in order, or nothing if one has more than `most_items` or `budget` (may
+// be null) ends. Nested in_orders outside any_orders are flattened; nodes without paths
+// disappear, but the precedences that go through them stay. O(nodes + most_items (pairs +
+// most_items^2)).
 std::optional<std::deque<PlanStage>> StagesOf(const Plan& plan, size_t most_items,
                                               Budget* budget = nullptr);
 

@@ -27,16 +27,16 @@ namespace traverse {
 
 struct StageProofOptions {
   WalkProver::Options walks;
-  int least_items_to_branch = 8;  // smaller last stages are left to the walks
+  int least_items_to_branch = 8;  // walks solve smaller last stages
 };
 
 struct StageProof {
-  std::vector<ClusterState> walk;  // the best route: the one given, or a better one
-  double cost = 0;                 // of it
+  std::vector<ClusterState> walk;  // the best route: the given one or a better one
+  double cost = 0;                 // of the best route
   double lower_bound = 0;          // of any route, to a relative 1e-9
-  bool proven = false;             // lower_bound is cost
+  bool proven = false;             // lower_bound equals cost
 
-  // What it took.
+  // The effort it took.
   int passes = 0;  // of dynamic programming
   int nodes = 0;   // of branch and cut
   int cuts = 0;

@@ -43,23 +43,23 @@ class WalkDp {
   enum class Outcome {
     kDone,     // the table is complete
     kStopped,  // the budget ran out
-    kTooBig,   // more than the operations allowed
+    kTooBig,   // it would take more operations than allowed
   };
 
-  // For stages [0, stages) of `model`, which outlives this. What follows costs nothing, unless
-  // these are all its stages. REQUIRES: no stage has more than Memory::kCapacity clusters.
+  // For stages [0, stages) of `model`, which outlives this. Later costs are 0, or the model's finish
+  // if these are all its stages. REQUIRES: no stage has more than Memory::kCapacity clusters.
   WalkDp(const StageModel& model, int stages);
 
   int positions() const { return static_cast<int>(stage_at_.size()); }
 
-  // Tables made before a change of multipliers or finish are no longer for pruning.
+  // Tables made before a change of multipliers or finish no longer serve to prune.
   void SetMultipliers(const std::vector<double>& multipliers);  // [cluster]
 
   // Costs after the last stage, [cluster - first of that stage][state].
   void SetFinish(std::vector<std::vector<double>> finish);
   const std::vector<std::vector<double>>& finish() const { return finish_; }
 
-  // Makes `cluster` remember `other`. True if that is new. REQUIRES: they are of one stage.
+  // Makes `cluster` remember `other`. True if that is new. REQUIRES: both are in one stage.
   bool Remember(int cluster, int other);
   bool Remembers(int cluster, int other) const;
 
@@ -77,19 +77,19 @@ class WalkDp {
   // stage: [cluster - first of that stage][state].
   std::vector<std::vector<double>> LowestByEnd() const;
 
-  // Drops for good what both tables show to cost more than `most_cost`. REQUIRES: both tables are
-  // complete and made with the current multipliers.
-  // Ends early, with less dropped, when the budget runs out.
+  // Drops for good the cells that both tables show to cost more than `most_cost`. REQUIRES: both
+  // tables are complete and made with the current multipliers. Ends early, with less dropped, when
+  // the budget runs out.
   void Eliminate(double most_cost, Budget& budget);
 
-  // (position, cluster, state) that were not dropped for good.
+  // The number of (position, cluster, state) that were not dropped for good.
   int64_t alive_states() const;
 
  private:
   using Rows = MemoryRows<kWords>;
   using Table = std::vector<std::vector<Rows>>;  // [position][cluster - first of its stage]
 
-  // Where a row of a table came from.
+  // The origin of a row of a table.
   struct Origin {
     int cluster = 0;
     int row = 0;

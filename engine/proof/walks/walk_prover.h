@@ -21,7 +21,7 @@ namespace traverse {
 class WalkProver {
  public:
   struct Options {
-    int first_memory = 5;          // clusters that each remembers at first, itself included
+    int first_memory = 5;          // clusters that each one remembers at first, including itself
     double most_operations = 4e9;  // multiply-adds of one pass; memory grows with it
   };
 
@@ -38,8 +38,8 @@ class WalkProver {
 
   virtual ~WalkProver() = default;
 
-  // Costs of what follows the last of the stages: [cluster - first of that stage][state]. At first
-  // the model's, or 0 if stages follow. REQUIRES: no cost is less than before.
+  // Costs of all that follows the last of the stages: [cluster - first of that stage][state]. At
+  // first the model's costs, or 0 if stages follow. REQUIRES: no cost is less than before.
   virtual void SetFinish(std::vector<std::vector<double>> finish) = 0;
 
   // Improves the bound for at most `most_passes`. REQUIRES: `limit` is not more than before.
@@ -51,8 +51,8 @@ class WalkProver {
   // The lowest walk of the last pass.
   virtual const std::vector<ClusterState>& lowest() const = 0;
 
-  // For each state of each cluster of the last stage: no route that ends there, and that the last
-  // limit leaves, costs less without the finish. Empty if the budget runs out.
+  // For each state of each cluster of the last stage: no route that ends there and survives the
+  // last limit costs less without the finish. Empty if the budget runs out.
   virtual std::vector<std::vector<double>> EndBounds(Budget& budget) = 0;
 
   virtual int passes() const = 0;
