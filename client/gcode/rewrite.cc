@@ -167,9 +167,9 @@ class Rewriter {
            const RewriteOptions& options)
       : file_(file),
         options_(options),
-        chooser_(
-            file, tries,
-            {options.policy, options.crossings, options.threads, options.min_revisit_seconds}) {}
+        chooser_(file, tries,
+                 {options.policy, options.crossings, options.allow, options.threads,
+                  options.min_revisit_seconds, options.polish}) {}
 
   absl::StatusOr<GcodeRewrite> Rewrite() {
     for (int round = 0;; ++round) {

@@ -4,6 +4,7 @@
 #define TRAVERSE_CLIENT_GCODE_REWRITE_H_
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,10 @@ struct RewriteOptions {
   double min_revisit_seconds = 0;  // prints no island again sooner, unless the original does
   std::string version;             // of this program, for the line that it adds after the head
   int threads = 1;
+
+  // Set: orders are made better by small changes before they are chosen from, for so long, which
+  // takes about as long as a search of the service. What ends it early ends nothing else.
+  std::optional<gcode::PolishLimit> polish = {};
 };
 
 // Writes `file` with each layer in one of its orders in `tries`, or in its own, whichever makes the

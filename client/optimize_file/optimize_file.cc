@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_format.h"
@@ -47,7 +48,8 @@ InputJob NarrowJob(const InputJob& job, const GcodeOptions& options, const JobRe
 // layers that were selected in `job`; the others stay as they are.
 absl::StatusOr<GcodeRewrite> RewriteByRuns(const InputJob& job,
                                            const std::vector<report::JobRun>& runs,
-                                           const GcodeOptions& options) {
+                                           const GcodeOptions& options,
+                                           std::optional<gcode::PolishLimit> polish) {
   std::vector<gcode::FileOrder> tries;
   for (const report::JobRun& run : runs) {
     gcode::FileOrder& orders = tries.emplace_back(job.gcode->layers.size());
@@ -63,6 +65,7 @@ absl::StatusOr<GcodeRewrite> RewriteByRuns(const InputJob& job,
   rewrite.min_revisit_seconds = options.min_revisit_seconds;
   rewrite.version = TRAVERSE_VERSION;
   rewrite.threads = gcode::ThreadsFor(job.gcode->text.size());
+  rewrite.polish = std::move(polish);
   return RewriteGcode(*job.gcode, tries, rewrite);
 }
 
@@ -114,7 +117,11 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
     if (!second.ok() && !late) return SearchFault(second.status());
     if (second.ok()) made.runs.push_back(*std::move(second));
   }
-  absl::StatusOr<GcodeRewrite> rewrite = RewriteByRuns(job, made.runs, options.gcode);
+  // Who names a quicker strategy, or a deadline, wants no more time to be taken than that.
+  std::optional<gcode::PolishLimit> polish;
+  if (IsAskedTwice(job, options)) polish = {search.finish_by, options.cancel};
+  absl::StatusOr<GcodeRewrite> rewrite =
+      RewriteByRuns(job, made.runs, options.gcode, std::move(polish));
   if (!rewrite.ok()) {
     return FileFault{FileStage::kWrite,
                      absl::FailedPreconditionError(absl::StrFormat(

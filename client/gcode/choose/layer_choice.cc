@@ -51,6 +51,8 @@ class LayerChooser::Impl {
         tries_(tries),
         policy_(choice.policy),
         crossings_(choice.crossings),
+        allow_(choice.allow),
+        polish_(choice.polish),
         threads_(choice.threads),
         habit_(HabitOfNewWays(file)),
         plain_habit_(Plain(habit_)),
@@ -159,7 +161,16 @@ class LayerChooser::Impl {
       if (!known) found.push_back(order[layer]);
     }
     if (found.empty()) return;
-    MergeRules rules{policy_, crossings_, column.totals.inside[0].extra_mm > kSlackMm, {}};
+    LayerFreedom freedom;
+    MergeRules rules;
+    rules.policy = policy_;
+    rules.crossings = crossings_;
+    rules.as_many_retractions = column.totals.inside[0].extra_mm > kSlackMm;
+    if (polish_) {
+      freedom = FreedomOf(file_, file_.layers[layer], policy_, allow_);
+      rules.freedom = &freedom;
+      rules.polish = &*polish_;
+    }
     for (uint32_t b = file_.layers[layer].first_block; b < file_.layers[layer].end_block; ++b) {
       rules.boundaries.push_back((file_.blocks[b].link & (kLinkSplits | kLinkFixed)) != 0);
     }
@@ -300,6 +311,8 @@ class LayerChooser::Impl {
   const std::vector<FileOrder>& tries_;
   const Policy policy_;
   const Crossings crossings_;
+  const Allowance allow_;
+  const std::optional<PolishLimit> polish_;
   const int threads_;
   const RetractionHabit habit_;
   const RetractionHabit plain_habit_;

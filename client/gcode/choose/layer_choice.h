@@ -12,9 +12,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "client/gcode/choose/order_polish.h"
 #include "client/gcode/measure/print_totals.h"
 #include "client/gcode/plan/policy.h"
 #include "client/gcode/write/layer_writer.h"
@@ -46,8 +48,12 @@ struct ChosenLayers {
 struct ChoiceOptions {
   Policy policy = Policy::kSafe;
   Crossings crossings = Crossings::kKeep;
+  Allowance allow = {};
   int threads = 1;
   double min_revisit_seconds = 0;  // see revisits.h
+
+  // Set: what is found is made better by small changes, for so long.
+  std::optional<PolishLimit> polish = {};
 };
 
 // Chooses among the order of the file and those of `tries`, each made better by runs of the others

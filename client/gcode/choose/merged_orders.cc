@@ -1,9 +1,9 @@
 #include "client/gcode/choose/merged_orders.h"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "absl/container/flat_hash_map.h"
@@ -51,26 +51,40 @@ class KnownWays {
     const LayerOrder given = writer.GivenOrder();
     for (size_t i = 1; i < given.size(); ++i) {
       const WayTotals way = writer.EstimateWay(i, given[i - 1], given[i], travel);
-      if (way.open > 0) longest_open_mm_ = std::max(longest_open_mm_, way.mm);
+      longest_open_mm_ = std::max(longest_open_mm_, way.open_mm);
     }
   }
 
   WayTotals operator()(size_t place, const Placement& from, const Placement& to) {
-    const std::array<size_t, 5> key = {from.block, from.entry, to.block, to.entry,
-                                       rules_.boundaries[place] ? place : 0};
-    const auto [found, added] = known_.try_emplace(key);
-    if (!added) return found->second;
-    WayTotals way = writer_.EstimateWay(place, from, to, travel_);
-    if (way.open > 0 && way.mm > longest_open_mm_ + kSlackMm) way.too_long = 1;
-    return found->second = way;
+    // Where something stands in the file, the way depends on what that is.
+    if (rules_.boundaries[place]) return Estimate(place, from, to);
+    if (known_.size() >= kMostKnown) known_.clear();
+    const auto [found, added] = known_.try_emplace(Key{KeyOf(from), KeyOf(to)});
+    if (added) found->second = Estimate(place, from, to);
+    return found->second;
   }
 
  private:
+  using Key = std::pair<uint64_t, uint64_t>;
+
+  // Of 80 bytes each.
+  static constexpr size_t kMostKnown = 250'000;
+
+  static uint64_t KeyOf(const Placement& placement) {
+    return uint64_t{placement.block} << 32 | placement.entry;
+  }
+
+  WayTotals Estimate(size_t place, const Placement& from, const Placement& to) const {
+    WayTotals way = writer_.EstimateWay(place, from, to, travel_);
+    if (way.open_mm > longest_open_mm_ + kSlackMm) way.too_long = 1;
+    return way;
+  }
+
   const LayerWriter& writer_;
   const TravelModel& travel_;
   const MergeRules& rules_;
   double longest_open_mm_ = 0;  // as the layer was given
-  absl::flat_hash_map<std::array<size_t, 5>, WayTotals> known_;
+  absl::flat_hash_map<Key, WayTotals> known_;
 };
 
 bool EndsAlike(const LayerOrder& a, const LayerOrder& b) {
@@ -85,6 +99,101 @@ LayerOrder InGivenOrder(LayerOrder order) {
   return order;
 }
 
+// Of what begins or ends elsewhere only the whole file tells whether it crosses too many walls, and
+// only the way to it whether it is too long.
+MergeLimits AnyLength(MergeLimits limits) {
+  limits.mm = std::numeric_limits<double>::infinity();
+  return limits;
+}
+
+MergeLimits AnyCrossings(MergeLimits limits) {
+  limits.crossings = std::numeric_limits<int64_t>::max();
+  limits.crossing_seconds = std::max(limits.crossing_seconds, kSparingCrossingSeconds);
+  return AnyLength(limits);
+}
+
+// One layer whose orders are merged.
+class LayerMerge {
+ public:
+  using Effort = OrderPolisher::Effort;
+
+  LayerMerge(const LayerWriter& writer, const TravelModel& travel,
+             const std::vector<LayerOrder>& found, const MergeRules& rules)
+      : rules_(rules),
+        given_(writer.GivenOrder()),
+        found_(found),
+        ways_(writer, travel, rules),
+        were_(OrderMerger(estimate_, {}).TotalsOf(given_)),
+        strict_(estimate_, LimitsOf(were_, rules)),
+        few_(estimate_, AnyLength(LimitsOf(were_, rules))),
+        quick_(estimate_, AnyCrossings(LimitsOf(were_, rules))) {
+    all_ = found;
+    all_.push_back(given_);
+    if (rules.freedom == nullptr) return;
+    polisher_.emplace(given_.front().block, writer.outlines(), *rules.freedom, estimate_,
+                      *rules.polish);
+  }
+
+  std::vector<LayerOrder> Merge() {
+    std::vector<LayerOrder> begun = found_;
+    if (rules_.policy == Policy::kFree) {
+      for (const LayerOrder& order : found_) begun.push_back(InGivenOrder(order));
+    }
+    LayerOrder best_between = Better(strict_, given_, found_, Effort::kSettle);
+    std::vector<LayerOrder> merged;
+    for (const LayerOrder& order : begun) {
+      merged.push_back(Better(quick_, order, all_, Effort::kSettle));
+      if (!EndsAlike(order, given_)) {
+        merged.push_back(Better(few_, order, all_, Effort::kKick));
+        continue;
+      }
+      LayerOrder better = Better(strict_, order, all_, Effort::kSettle);
+      if (Rank(better) < Rank(best_between)) best_between = std::move(better);
+    }
+    best_between = Better(strict_, best_between, {}, Effort::kKick);
+    if (best_between != given_) merged.push_back(std::move(best_between));
+    AddSparing(merged);
+    return merged;
+  }
+
+ private:
+  // Kicks take long: only the orders that are the likeliest to be chosen are worth them.
+  LayerOrder Better(const OrderMerger& judge, const LayerOrder& order,
+                    const std::vector<LayerOrder>& others, Effort effort) const {
+    const LayerOrder merged = others.empty() ? order : judge.Merge(order, others);
+    return polisher_ ? polisher_->Polish(merged, judge, effort) : merged;
+  }
+
+  std::pair<double, double> Rank(const LayerOrder& order) const {
+    const WayTotals totals = strict_.TotalsOf(order);
+    return {strict_.Excess(totals), strict_.Score(totals)};
+  }
+
+  // The file may have no retractions to spare.
+  void AddSparing(std::vector<LayerOrder>& merged) const {
+    const bool all_retract_more = std::all_of(merged.begin(), merged.end(), [&](const auto& order) {
+      return strict_.TotalsOf(order).retractions > were_.retractions;
+    });
+    if (!all_retract_more || rules_.as_many_retractions) return;
+    MergeLimits sparing = LimitsOf(were_, rules_);
+    sparing.retractions = were_.retractions;
+    LayerOrder order = Better(OrderMerger(estimate_, sparing), given_, found_, Effort::kKick);
+    if (order != given_) merged.push_back(std::move(order));
+  }
+
+  const MergeRules& rules_;
+  const LayerOrder given_;
+  const std::vector<LayerOrder>& found_;
+  std::vector<LayerOrder> all_;  // of them and given
+  KnownWays ways_;
+  const WayEstimate estimate_ = std::ref(ways_);
+  const WayTotals were_;
+  const OrderMerger strict_;  // keeps to what holds for the layer
+  const OrderMerger few_;     // but for its length
+  const OrderMerger quick_;   // and for its crossings
+  std::optional<OrderPolisher> polisher_;
+};
+
 }  // namespace
 
 std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelModel& travel,
@@ -94,52 +203,7 @@ std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelMode
   for (const LayerOrder& order : found) {
     if (!IsWhole(order, given)) return found;
   }
-  KnownWays ways(writer, travel, rules);
-  const WayEstimate estimate = std::ref(ways);
-  const WayTotals were = OrderMerger(estimate, {}).TotalsOf(given);
-  MergeLimits limits = LimitsOf(were, rules);
-  const OrderMerger strict(estimate, limits);
-  const auto rank = [&strict](const LayerOrder& order) {
-    const WayTotals totals = strict.TotalsOf(order);
-    return std::pair(strict.Excess(totals), strict.Score(totals));
-  };
-  // Of what begins or ends elsewhere only the whole file tells whether it crosses too many walls,
-  // and only the way to it whether it is too long.
-  limits.mm = std::numeric_limits<double>::infinity();
-  const OrderMerger few(estimate, limits);
-  limits.crossings = std::numeric_limits<int64_t>::max();
-  limits.crossing_seconds = std::max(limits.crossing_seconds, kSparingCrossingSeconds);
-  const OrderMerger quick(estimate, limits);
-  std::vector<LayerOrder> all = found;
-  all.push_back(given);
-  std::vector<LayerOrder> merged;
-  LayerOrder best_between = strict.Merge(given, found);
-  std::vector<LayerOrder> begun = found;
-  if (rules.policy == Policy::kFree) {
-    for (const LayerOrder& order : found) begun.push_back(InGivenOrder(order));
-  }
-  for (const LayerOrder& order : begun) {
-    if (!EndsAlike(order, given)) {
-      merged.push_back(quick.Merge(order, all));
-      merged.push_back(few.Merge(order, all));
-      continue;
-    }
-    LayerOrder better = strict.Merge(order, all);
-    if (rank(better) < rank(best_between)) best_between = std::move(better);
-    merged.push_back(quick.Merge(order, all));
-  }
-  if (best_between != given) merged.push_back(std::move(best_between));
-  // The file may have no retractions to spare.
-  const bool all_retract_more = std::all_of(merged.begin(), merged.end(), [&](const auto& order) {
-    return strict.TotalsOf(order).retractions > were.retractions;
-  });
-  if (all_retract_more && !rules.as_many_retractions) {
-    MergeLimits sparing = LimitsOf(were, rules);
-    sparing.retractions = were.retractions;
-    LayerOrder order = OrderMerger(estimate, sparing).Merge(given, found);
-    if (order != given) merged.push_back(std::move(order));
-  }
-  return merged;
+  return LayerMerge(writer, travel, found, rules).Merge();
 }
 
 }  // namespace traverse::gcode

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "client/gcode/choose/order_merge.h"
+#include "client/gcode/choose/order_polish.h"
+#include "client/gcode/plan/layer_freedom.h"
 #include "client/gcode/plan/policy.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/write/layer_writer.h"
@@ -20,6 +22,11 @@ struct MergeRules {
 
   // [place] something stands there in the file that nothing crosses.
   std::vector<bool> boundaries;
+
+  // Orders are made better by small changes too (order_polish.h): what may change in the layer, and
+  // for how long; null: they are not.
+  const LayerFreedom* freedom = nullptr;
+  const PolishLimit* polish = nullptr;
 };
 
 // The orders of `found`, each made better by runs of the others and of the file's own order, and

@@ -76,19 +76,12 @@ class Merging {
       at = &to;
     }
     asked_ += new_ways_.size();
-    if (!IsBetter(totals)) return false;
+    if (!merger_.IsBetter(totals, totals_)) return false;
     totals_ = totals;
     std::copy(run_.begin(), run_.end(), order_.begin() + static_cast<std::ptrdiff_t>(begin));
     std::copy(new_ways_.begin(), new_ways_.end(),
               ways_.begin() + static_cast<std::ptrdiff_t>(begin));
     return true;
-  }
-
-  bool IsBetter(const WayTotals& totals) const {
-    const double excess = merger_.Excess(totals);
-    const double excess_now = merger_.Excess(totals_);
-    if (std::abs(excess - excess_now) > kGrain) return excess < excess_now;
-    return merger_.Score(totals) < merger_.Score(totals_) - kGrain;
   }
 
   const OrderMerger& merger_;
@@ -124,6 +117,13 @@ double OrderMerger::Excess(const WayTotals& totals) const {
 
 double OrderMerger::Score(const WayTotals& totals) const {
   return totals.seconds + limits_.crossing_seconds * static_cast<double>(totals.crossings);
+}
+
+bool OrderMerger::IsBetter(const WayTotals& totals, const WayTotals& others) const {
+  const double excess = Excess(totals);
+  const double excess_of_others = Excess(others);
+  if (std::abs(excess - excess_of_others) > kGrain) return excess < excess_of_others;
+  return Score(totals) < Score(others) - kGrain;
 }
 
 LayerOrder OrderMerger::Merge(const LayerOrder& begun,

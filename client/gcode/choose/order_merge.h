@@ -51,6 +51,9 @@ class OrderMerger {
   // Estimated seconds, including the cost of crossings.
   double Score(const WayTotals& totals) const;
 
+  // True if `totals` exceed the limits by less than `others` do, or by the same and score lower.
+  bool IsBetter(const WayTotals& totals, const WayTotals& others) const;
+
   // `begun`, improved by runs of `others`: first less beyond the limits, then faster. All have the
   // same paths. Asks for at most kMostWays estimates, or one per path if that is more.
   LayerOrder Merge(const LayerOrder& begun, const std::vector<LayerOrder>& others) const;

@@ -9,16 +9,10 @@
 
 #include "client/gcode/model/gcode_file.h"
 #include "client/gcode/model/outline.h"
+#include "client/gcode/plan/layer_freedom.h"
 #include "client/gcode/plan/policy.h"
 
 namespace traverse::gcode {
-
-struct PathRule {
-  bool pinned = false;   // stays where and as it is
-  bool contour = false;  // closed; else an open path
-  bool one_way = false;
-  std::vector<uint32_t> entries;  // contour: where it may begin; empty for anywhere
-};
 
 // What may change, and how far from the file's own order.
 struct PathPermissions {

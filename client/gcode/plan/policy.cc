@@ -31,7 +31,11 @@ class LayerPlanner {
   Feature FeatureOf(size_t path) const { return paths_->FeatureOf(path); }
   size_t size() const { return result_.outlines.size(); }
 
+  const std::vector<PathRule>& rules() const { return result_.freedom.rules; }
+
   bool BeginsGroup(size_t path) const;
+
+  bool ByIslands() const { return policy_ == Policy::kBalanced || latitude_ == Latitude::kIslands; }
 
   void AddPath(size_t path);
   uint32_t AddNode(uint32_t parent);
@@ -46,7 +50,6 @@ class LayerPlanner {
   const Policy policy_;
   const Latitude latitude_;
   const bool fan_order_;
-  std::vector<PathRule> rules_;
   Contacts contacts_;
   std::vector<uint32_t> position_;  // [path] among the children of its any_order
   LayerPlan result_;
@@ -54,7 +57,7 @@ class LayerPlanner {
 };
 
 bool LayerPlanner::BeginsGroup(size_t path) const {
-  if (path == 0 || rules_[path].pinned || rules_[path - 1].pinned) return true;
+  if (path == 0 || rules()[path].pinned || rules()[path - 1].pinned) return true;
   if ((BlockOf(path).link & (kLinkSplits | kLinkFixed)) != 0) return true;
   if ((FeatureOf(path) == Feature::kSkirt) != (FeatureOf(path - 1) == Feature::kSkirt)) return true;
   if (policy_ == Policy::kFree || fan_order_) return false;
@@ -68,7 +71,7 @@ bool LayerPlanner::BeginsGroup(size_t path) const {
 
 void LayerPlanner::AddPath(size_t path) {
   const Outline& outline = result_.outlines[path];
-  const PathRule& rule = rules_[path];
+  const PathRule& rule = rules()[path];
   v1::PlanPath& added = *result_.plan.add_paths();
   const auto add_points = [&outline](size_t count, auto& message) {
     message.mutable_points()->Reserve(static_cast<int>(2 * count));
@@ -135,13 +138,15 @@ void LayerPlanner::AddGroup(size_t begin, size_t end) {
   }
   result_.movable += static_cast<int64_t>(end - begin);
   result_.plan.mutable_nodes(static_cast<int>(group))->mutable_any_order();
-  if (policy_ == Policy::kBalanced || latitude_ == Latitude::kIslands) {
+  if (ByIslands()) {
     return AddGroupByIslands(group, begin, end);
   }
   uint32_t units = 0;
   for (size_t path = begin; path < end;) {
     size_t behind = path + 1;
-    while (behind < end && GoesWithBefore(behind)) ++behind;
+    for (; behind < end && GoesWithBefore(behind); ++behind) {
+      result_.freedom.goes_on[behind] = true;
+    }
     uint32_t parent = group;
     if (behind - path > 1) {
       parent = AddNode(group);
@@ -200,16 +205,23 @@ void LayerPlanner::AddGroupByIslands(uint32_t group, size_t begin, size_t end) {
 
 LayerPlan LayerPlanner::Make() {
   position_.resize(size());
-  rules_.reserve(size());
-  for (size_t path = 0; path < size(); ++path) rules_.push_back(paths_->RuleOf(path));
+  LayerFreedom& freedom = result_.freedom;
+  freedom.rules.reserve(size());
+  for (size_t path = 0; path < size(); ++path) freedom.rules.push_back(paths_->RuleOf(path));
   contacts_ = FindContacts(result_.outlines,
                            [this](uint32_t i, uint32_t j) { return paths_->KeepsOrder(i, j); });
   result_.island = contacts_.island;
+  freedom.ordered = contacts_.ordered;
+  freedom.unit.assign(size(), 0);
+  if (ByIslands()) freedom.unit = contacts_.island;
+  freedom.goes_on.assign(size(), false);
+  freedom.group.reserve(size());
   result_.plan.add_nodes()->mutable_in_order();
   for (size_t path = 0; path < size(); ++path) AddPath(path);
   for (size_t begin = 0; begin < size();) {
     size_t end = begin + 1;
     while (end < size() && contacts_.complete && !BeginsGroup(end)) ++end;
+    freedom.group.resize(end, static_cast<uint32_t>(begin));
     AddGroup(begin, end);
     begin = end;
   }
@@ -298,6 +310,11 @@ std::string_view CrossingsName(Crossings crossings) {
 LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy, Latitude latitude,
                         const Allowance& allow) {
   return LayerPlanner(file, layer, policy, latitude, allow).Make();
+}
+
+LayerFreedom FreedomOf(const GcodeFile& file, const Layer& layer, Policy policy,
+                       const Allowance& allow) {
+  return std::move(MakeLayerPlan(file, layer, policy, Latitude::kFull, allow).freedom);
 }
 
 }  // namespace traverse::gcode

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "client/gcode/model/outline.h"
+#include "client/gcode/plan/layer_freedom.h"
 #include "traverse/v1/plan.pb.h"
 
 namespace traverse::gcode {
@@ -71,6 +72,7 @@ struct LayerPlan {
   std::vector<Outline> outlines;  // [path]
   std::vector<uint32_t> island;   // [path] which connected region of the layer it lies in
   int64_t movable = 0;            // paths that may change places with another one
+  LayerFreedom freedom;           // what the plan says
 };
 
 // Ways to look for an order among those that a policy allows. The narrower the choice, the further
@@ -87,6 +89,10 @@ enum class Latitude : uint8_t {
 
 LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy,
                         Latitude latitude = Latitude::kFull, const Allowance& allow = {});
+
+// What the plan of a layer says, without the plan.
+LayerFreedom FreedomOf(const GcodeFile& file, const Layer& layer, Policy policy,
+                       const Allowance& allow);
 
 }  // namespace traverse::gcode
 

@@ -140,7 +140,9 @@ double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& mode
 
 double NewWaySeconds(const GcodeFile& file, uint32_t before, const TravelWay& way,
                      const TravelModel& model) {
-  if (way.via.empty()) return StopToStopSeconds(way.mm, model.speed_mm_s, model.accel_mm_s2);
+  if (way.via.empty()) {
+    return StopToStopSeconds(Distance(way.from, way.to), model.speed_mm_s, model.accel_mm_s2);
+  }
   const Dynamics dynamics =
       DynamicsOf(file.profile, file.states[file.blocks[before].state_out], file.setters);
   MotionPlanner planner({file.profile.klipper, dynamics.cruise_ratio()});

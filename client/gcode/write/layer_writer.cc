@@ -58,9 +58,7 @@ LayerWriter::LayerWriter(const GcodeFile& file, const Layer& layer, const Retrac
       walls_(outlines_),
       rules_(file, layer, habit, outlines_, walls_),
       spares_walls_(habit.retracts && habit.spares_walls) {
-  for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
-    if (const std::optional<LinkStep> step = ReadGoingOn(file, b)) goes_on_.emplace(b, *step);
-  }
+  for (uint32_t b = layer.first_block; b < layer.end_block; ++b) NoteLeaving(b);
 }
 
 LayerOrder LayerWriter::GivenOrder() const {
@@ -143,27 +141,70 @@ Vertex LayerWriter::End(const Placement& placement) const {
   return placement.closed ? points[placement.entry] : points.front();
 }
 
-bool LayerWriter::GoesOnAcross(const Placement& from, Vertex to, Feature feature) const {
-  if (!spares_walls_) return false;
-  const auto found = goes_on_.find(from.block);
-  if (found == goes_on_.end()) return false;
-  const LinkStep& step = found->second;
-  Vertex at = file_.modes[file_.blocks[from.block].mode].InMm(step.to);
-  if (!from.as_given()) {
-    const std::vector<Vertex>& points = outlines_[from.block - layer_.first_block].points;
-    at = points[from.entry];
-    double left = step.way_mm;
-    // The last point is the first one.
-    for (size_t i = 1; i < points.size() && left > 0; ++i) {
-      const Vertex next = points[(from.entry + i) % (points.size() - 1)];
-      const double length = Distance(at, next);
-      const double share = length > left ? left / length : 1;
-      at = {at.x + (next.x - at.x) * share, at.y + (next.y - at.y) * share};
-      left -= length;
-    }
+void LayerWriter::NoteLeaving(uint32_t block) {
+  const MachineState& mode = file_.modes[file_.blocks[block].mode];
+  if (const std::optional<LinkStep> step = ReadGoingOn(file_, block)) {
+    leaving_[block] = {step->way_mm * mode.UnitMm(), mode.InMm(step->to), false};
+    return;
   }
+  if (!file_.WipedBehind(block)) return;
+  Leaving leaving;
+  leaving.wipes = true;
+  for (const LinkStep& step : ReadLink(file_, block + 1).steps) {
+    if (step.kind != StepKind::kWipe) continue;
+    leaving.mm += step.way_mm * mode.UnitMm();
+    leaving.as_given = mode.InMm(step.to);
+  }
+  if (leaving.mm > 0) leaving_[block] = leaving;
+}
+
+const LayerWriter::Leaving* LayerWriter::LeavingOf(const Placement& from) const {
+  const auto found = leaving_.find(from.block);
+  return found != leaving_.end() ? &found->second : nullptr;
+}
+
+Vertex LayerWriter::BackOver(const Placement& from, double mm) const {
+  const std::vector<Vertex>& points = outlines_[from.block - layer_.first_block].points;
+  const size_t n = points.size();
+  Vertex at = End(from);
+  const auto go_to = [&](Vertex next) {
+    const double length = Distance(at, next);
+    const double share = length > mm ? mm / length : 1;
+    at = {at.x + (next.x - at.x) * share, at.y + (next.y - at.y) * share};
+    mm -= length;
+  };
+  if (from.closed) {
+    // The last point is the first one, or so near to it that the loop has a gap there.
+    if (from.as_given()) go_to(points.front());
+    for (size_t i = 1; i < n && mm > 0; ++i) go_to(points[(from.entry + i) % (n - 1)]);
+  } else {
+    for (size_t i = 0; i < n && mm > 0; ++i) go_to(points[from.as_given() ? n - 1 - i : i]);
+  }
+  return at;
+}
+
+bool LayerWriter::GoesOnAcross(const Placement& from, Vertex to, Feature feature) const {
+  const Leaving* leaving = LeavingOf(from);
+  if (!spares_walls_ || leaving == nullptr || leaving->wipes) return false;
+  const Vertex at = from.as_given() ? leaving->as_given : BackOver(from, leaving->mm);
   const TravelWay way = rules_.WayOf(at, to, feature);
   return way.crosses || way.grazes;
+}
+
+TravelWay LayerWriter::NewWay(const Placement& from, const Placement& to) const {
+  const Feature feature = outlines_[to.block - layer_.first_block].feature;
+  const Leaving* leaving = LeavingOf(from);
+  if (leaving == nullptr) return rules_.WayOf(End(from), Begin(to), feature);
+  const Vertex at = from.as_given() ? leaving->as_given : BackOver(from, leaving->mm);
+  TravelWay way = rules_.WayOf(at, Begin(to), feature);
+  way.mm += leaving->mm;
+  if (!leaving->wipes) {
+    // A retraction would come before it goes on.
+    way.retracts = way.retracts || rules_.Retracts(End(from), Begin(to), feature);
+    way.from = End(from);
+    way.via.insert(way.via.begin(), at);
+  }
+  return way;
 }
 
 WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Placement& to,
@@ -174,17 +215,24 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
   const bool as_given = from.block + 1 == to.block && from.as_given() && to.as_given() &&
                         (!boundary || to.block == layer_.first_block + place);
   const Feature feature = outlines_[to.block - layer_.first_block].feature;
-  TravelWay way = rules_.WayOf(End(from), Begin(to), feature);
+  TravelWay way;
   double way_seconds = 0;
-  // Wipes are no part of a way of our own either.
-  const bool plain = (next.link & kLinkWipes) == 0;
-  if (as_given && plain) {
+  if (as_given) {
+    way.to = Begin(to);
     way.mm = static_cast<double>(next.travel_mm);
     way_seconds = WaySeconds(file_, to.block, model);
   } else {
+    way = NewWay(from, to);
     way_seconds = NewWaySeconds(file_, from.block, way, model);
   }
-  if (as_given) way.crosses = MeasureLink(file_, to.block, walls_).crossings > 0;
+  double across_mm = way.mm;
+  if (as_given) {
+    const PrintTotals measured = MeasureLink(file_, to.block, walls_);
+    way.crosses = measured.crossings > 0;
+    across_mm = measured.longest_open_mm;
+  } else if (const Leaving* leaving = LeavingOf(from)) {
+    across_mm -= leaving->mm;
+  }
   way.retracts = as_given ? (next.link & kLinkRetracts) != 0
                           : way.retracts || file_.WipedBehind(from.block) ||
                                 (boundary && (here.link & kLinkRetracts) != 0) ||
@@ -195,6 +243,7 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
   totals.retractions = way.retracts ? 1 : 0;
   totals.crossings = way.crosses ? 1 : 0;
   totals.open = way.crosses && !way.retracts ? 1 : 0;
+  if (totals.open > 0) totals.open_mm = across_mm;
   return totals;
 }
 

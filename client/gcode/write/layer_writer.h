@@ -34,6 +34,7 @@ class LayerWriter {
               const LinkDonors& donors);
 
   const VisibleWalls& walls() const { return walls_; }
+  const std::vector<Outline>& outlines() const { return outlines_; }
 
   // The order of the file.
   LayerOrder GivenOrder() const;
@@ -55,6 +56,25 @@ class LayerWriter {
   Vertex Begin(const Placement& placement) const;
   Vertex End(const Placement& placement) const;
 
+  // What the head does behind a path before it leaves for the next one.
+  struct Leaving {
+    double mm = 0;
+    Vertex as_given;     // where that ends behind the path as it is given
+    bool wipes = false;  // filament is pulled back meanwhile; else it goes on along the path
+  };
+
+  // Nothing where the way begins at the end of the path.
+  const Leaving* LeavingOf(const Placement& from) const;
+
+  // Where the head is `mm` behind the end of `from`, on the way over what was just printed.
+  Vertex BackOver(const Placement& from, double mm) const;
+
+  void NoteLeaving(uint32_t block);
+
+  // The way from `from` to `to` where the file has none, with what is done behind `from`; a wipe
+  // counts for its length alone, for it is the same wherever the way leads.
+  TravelWay NewWay(const Placement& from, const Placement& to) const;
+
   // The way that goes on behind the end of `from` leads the nozzle to where a visible wall is
   // between it and `to`, which has to be spared.
   bool GoesOnAcross(const Placement& from, Vertex to, Feature feature) const;
@@ -69,7 +89,7 @@ class LayerWriter {
   const VisibleWalls walls_;
   const TravelRules rules_;
   const bool spares_walls_;
-  absl::flat_hash_map<uint32_t, LinkStep> goes_on_;  // behind blocks that have such a move
+  absl::flat_hash_map<uint32_t, Leaving> leaving_;  // behind blocks that are left so
 };
 
 }  // namespace traverse::gcode

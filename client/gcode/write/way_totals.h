@@ -16,6 +16,9 @@ struct WayTotals {
   int64_t too_long = 0;   // of these, those longer than allowed
   int64_t retractions = 0;
 
+  // Of one way alone: how long it is if it counts as open, without what goes on along a path.
+  double open_mm = 0;
+
   WayTotals& operator+=(const WayTotals& other) {
     seconds += other.seconds;
     mm += other.mm;

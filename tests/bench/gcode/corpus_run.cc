@@ -122,6 +122,7 @@ absl::StatusOr<CorpusRun> RunFile(const std::string& path, gcode::Policy policy,
   rewriting.policy = policy;
   rewriting.crossings = options.crossings;
   rewriting.threads = gcode::DefaultThreads();
+  if (strategy == "auto") rewriting.polish = gcode::PolishLimit();
   const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(file, tries, rewriting);
   run.cpu_seconds = CpuSeconds() - began;
   if (!rewrite.ok()) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -127,6 +128,41 @@ TEST_F(MergedOrdersTest, TakeFromAnOrderWhatNeedsNoMoreCrossings) {
   rules.crossings = Crossings::kAny;
   EXPECT_FALSE(has(sparing));
   EXPECT_TRUE(has(found));
+}
+
+// Neither the file nor what was found has the lines in their order.
+TEST_F(MergedOrdersTest, AreMadeBetterBySmallChangesWhereThoseAreAskedFor) {
+  Sketch sketch;
+  sketch.Square(0, 0, 100);
+  for (const double x : {10.0, 50.0, 30.0, 70.0, 20.0, 60.0, 40.0, 90.0}) {
+    sketch.GoRetracted(x, 10).Infill(x, 20);
+  }
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+  const RetractionHabit habit = LearnRetraction(*file);
+  const LinkDonors donors(*file);
+  const LayerWriter writer(*file, file->layers[0], habit, donors);
+  const LayerOrder found = OrderOf({0, 1, 3, 2, 5, 6, 7, 4, 8});
+  const LayerFreedom freedom = FreedomOf(*file, file->layers[0], Policy::kSafe, {});
+  const PolishLimit limit;
+  MergeRules rules;
+  rules.boundaries.assign(found.size(), false);
+  const auto shortest = [&] {
+    double mm = std::numeric_limits<double>::infinity();
+    for (const LayerOrder& order : MergedOrders(writer, kTravel, {found}, rules)) {
+      WayTotals totals;
+      for (size_t i = 1; i < order.size(); ++i) {
+        totals += writer.EstimateWay(i, order[i - 1], order[i], kTravel);
+      }
+      mm = std::min(mm, totals.mm);
+    }
+    return mm;
+  };
+
+  const double merged = shortest();
+  rules.freedom = &freedom;
+  rules.polish = &limit;
+
+  EXPECT_LT(shortest(), merged - 20);
 }
 
 TEST_F(MergedOrdersTest, WaysOfTheFileTakeWhatTheirBendsTake) {

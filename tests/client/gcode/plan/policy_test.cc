@@ -24,6 +24,30 @@ TEST(Policy, PathsOfAGroupMayChangePlacesAndTheEndsMayNot) {
   EXPECT_EQ(plan.movable, 2);
 }
 
+// What the plan says as a tree, for whoever changes an order bit by bit.
+TEST(Policy, TheFreedomOfALayerIsThatOfItsPlan) {
+  Sheet sheet;
+  sheet.Square(kOuter, 0, 0, 10).Line(kInfill, 0.4, 5, 9.6, 5).Line(kInfill, 30, 0, 39, 0);
+  const LayerFreedom freedom = sheet.Plan(Policy::kBalanced).freedom;
+
+  ASSERT_EQ(freedom.rules.size(), 5u);
+  EXPECT_TRUE(freedom.rules[0].pinned);
+  EXPECT_TRUE(freedom.rules[1].contour);
+  EXPECT_FALSE(freedom.rules[2].one_way);
+  EXPECT_THAT(freedom.group, ElementsAre(0, 1, 1, 1, 4));
+  EXPECT_THAT(freedom.ordered, ElementsAre(Pair(1, 2)));
+  EXPECT_EQ(freedom.unit[1], freedom.unit[2]);
+  EXPECT_NE(freedom.unit[1], freedom.unit[3]);
+  EXPECT_THAT(freedom.goes_on, ElementsAre(false, false, false, false, false));
+
+  Sheet safe;
+  safe.Line(kInfill, 0, 0, 9, 0).Line(kInfill, 30, 0, 39, 0);
+  EXPECT_THAT(safe.Plan().freedom.unit, ElementsAre(0, 0, 0, 0));
+  Sheet ironing;
+  ironing.Line(";TYPE:Ironing", 0, 0, 9, 0).Line(";TYPE:Ironing", 0, 5, 9, 5);
+  EXPECT_THAT(ironing.Plan().freedom.goes_on, ElementsAre(false, false, true, false));
+}
+
 TEST(Policy, SafeKeepsTheStartOfVisibleWallsAlone) {
   Sheet sheet;
   sheet.Square(kInner, 0, 0, 10).Square(kOuter, 30, 0, 10);

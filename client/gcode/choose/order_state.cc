@@ -1,0 +1,179 @@
+#include "client/gcode/choose/order_state.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace traverse::gcode {
+PathPairs::PathPairs(const LayerFreedom& freedom)
+    : earlier(freedom.rules.size()), later(freedom.rules.size()) {
+  for (const auto& [first, second] : freedom.ordered) {
+    later[first].push_back(second);
+    earlier[second].push_back(first);
+  }
+}
+
+OrderState::OrderState(LayerOrder begun, uint32_t first_block, const LayerFreedom& freedom,
+                       const PathPairs& pairs, const WayEstimate& estimate,
+                       const OrderMerger& judge)
+    : first_block_(first_block),
+      freedom_(freedom),
+      pairs_(pairs),
+      estimate_(estimate),
+      judge_(judge),
+      order_(std::move(begun)),
+      ways_(order_.size()),
+      place_(order_.size()) {
+  assert(order_.size() == freedom.rules.size());
+  for (size_t i = 0; i < order_.size(); ++i) {
+    place_[PathAt(i)] = i;
+    if (i == 0) continue;
+    ways_[i] = Ask(i, order_[i - 1], order_[i]);
+    totals_ += ways_[i];
+  }
+  kept_order_ = order_;
+  kept_ways_ = ways_;
+  kept_totals_ = totals_;
+  changed_begin_ = order_.size();
+}
+
+WayTotals OrderState::Ask(size_t place, const Placement& from, const Placement& to) {
+  ++asked_;
+  return estimate_(place, from, to);
+}
+
+Placement OrderState::Turned(Placement placement) {
+  if (!placement.closed) placement.entry = 1 - placement.entry;
+  return placement;
+}
+
+// Whether other paths may come between the one at `place` and the one before it.
+bool OrderState::MayCut(size_t place) const { return !freedom_.goes_on[PathAt(place)]; }
+
+bool OrderState::UnitEnds(size_t place) const {
+  const uint32_t a = PathAt(place - 1);
+  const uint32_t b = PathAt(place);
+  return freedom_.unit[a] != freedom_.unit[b] || freedom_.group[a] != freedom_.group[b];
+}
+
+bool OrderState::SameUnit(size_t begin, size_t end) const {
+  const uint32_t unit = freedom_.unit[PathAt(begin)];
+  for (size_t i = begin + 1; i < end; ++i) {
+    if (freedom_.unit[PathAt(i)] != unit) return false;
+  }
+  return true;
+}
+
+// Whether any of `paths` stands at [begin, end).
+bool OrderState::AnyBetween(const std::vector<uint32_t>& paths, size_t begin, size_t end) const {
+  return std::any_of(paths.begin(), paths.end(),
+                     [&](uint32_t path) { return begin <= place_[path] && place_[path] < end; });
+}
+
+bool OrderState::MayExchange(size_t begin, size_t middle, size_t end) const {
+  if (begin == 0 || end >= size()) return false;
+  // Groups come one after the other.
+  if (freedom_.group[PathAt(begin)] != freedom_.group[PathAt(end - 1)]) return false;
+  if (!MayCut(begin) || !MayCut(middle) || !MayCut(end)) return false;
+  const bool whole_units = UnitEnds(begin) && UnitEnds(middle) && UnitEnds(end);
+  if (!whole_units && !SameUnit(begin, end)) return false;
+  if (middle - begin <= end - middle) {
+    for (size_t i = begin; i < middle; ++i) {
+      if (AnyBetween(pairs_.later[PathAt(i)], middle, end)) return false;
+    }
+  } else {
+    for (size_t i = middle; i < end; ++i) {
+      if (AnyBetween(pairs_.earlier[PathAt(i)], begin, middle)) return false;
+    }
+  }
+  return true;
+}
+
+bool OrderState::MayTurn(size_t begin, size_t end) const {
+  if (begin == 0 || end >= size()) return false;
+  if (freedom_.group[PathAt(begin)] != freedom_.group[PathAt(end - 1)]) return false;
+  if (!MayCut(end)) return false;
+  if (!(UnitEnds(begin) && UnitEnds(end)) && !SameUnit(begin, end)) return false;
+  for (size_t i = begin; i < end; ++i) {
+    const PathRule& rule = RuleAt(i);
+    if (!MayCut(i) || (!rule.contour && rule.one_way)) return false;
+    if (AnyBetween(pairs_.later[PathAt(i)], begin, end)) return false;
+  }
+  return true;
+}
+
+// What the order comes to with `runs`; leaves them, and the ways to them, in the scratch. Ways
+// within a run that is not turned stay.
+WayTotals OrderState::TotalsWith(size_t begin, size_t end, const PlaceRuns& runs) {
+  run_.clear();
+  new_ways_.clear();
+  WayTotals totals = totals_;
+  for (const PlaceRun& run : runs) {
+    for (size_t k = 0; k < run.size(); ++k) {
+      Placement placement = order_[run.turned ? run.end - 1 - k : run.begin + k];
+      if (run.turned) placement = Turned(placement);
+      if (run.entry) placement.entry = *run.entry;
+      const Placement& before = run_.empty() ? order_[begin - 1] : run_.back();
+      totals -= k == 0 || run.turned ? ways_[run.begin + k] : WayTotals();
+      if (k > 0 && !run.turned) {
+        new_ways_.push_back(ways_[run.begin + k]);
+      } else {
+        new_ways_.push_back(Ask(begin + run_.size(), before, placement));
+        totals += new_ways_.back();
+      }
+      run_.push_back(placement);
+    }
+  }
+  assert(run_.size() == end - begin);
+  new_ways_.push_back(Ask(end, run_.back(), order_[end]));
+  totals -= ways_[end];
+  totals += new_ways_.back();
+  return totals;
+}
+
+bool OrderState::DoIfBetter(size_t begin, size_t end, const PlaceRuns& runs) {
+  const WayTotals totals = TotalsWith(begin, end, runs);
+  if (!judge_.IsBetter(totals, totals_)) return false;
+  Take(begin, end, begin + runs[0].size(), totals);
+  return true;
+}
+
+void OrderState::Do(size_t begin, size_t end, const PlaceRuns& runs) {
+  const WayTotals totals = TotalsWith(begin, end, runs);
+  Take(begin, end, begin + runs[0].size(), totals);
+}
+
+void OrderState::Take(size_t begin, size_t end, size_t middle, const WayTotals& totals) {
+  totals_ = totals;
+  const auto at = static_cast<std::ptrdiff_t>(begin);
+  std::copy(run_.begin(), run_.end(), order_.begin() + at);
+  std::copy(new_ways_.begin(), new_ways_.end(), ways_.begin() + at);
+  for (size_t i = begin; i < end; ++i) place_[PathAt(i)] = i;
+  changed_begin_ = std::min(changed_begin_, begin);
+  changed_end_ = std::max(changed_end_, end + 1);
+  for (const size_t i : {begin - 1, begin, middle - 1, middle, end - 1, end}) {
+    touched_.push_back(PathAt(i));
+  }
+}
+
+std::vector<uint32_t> OrderState::TakeTouched() { return std::exchange(touched_, {}); }
+
+bool OrderState::KeepIfBetter() {
+  const bool better = judge_.IsBetter(totals_, kept_totals_);
+  for (size_t i = changed_begin_; i < changed_end_; ++i) {
+    if (better) {
+      kept_order_[i] = order_[i];
+      kept_ways_[i] = ways_[i];
+    } else {
+      order_[i] = kept_order_[i];
+      ways_[i] = kept_ways_[i];
+      place_[PathAt(i)] = i;
+    }
+  }
+  (better ? kept_totals_ : totals_) = better ? totals_ : kept_totals_;
+  changed_begin_ = size();
+  changed_end_ = 0;
+  return better;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,29 @@
+// What may change in a layer, path by path and pair by pair: what its plan says as a tree.
+
+#ifndef TRAVERSE_CLIENT_GCODE_PLAN_LAYER_FREEDOM_H_
+#define TRAVERSE_CLIENT_GCODE_PLAN_LAYER_FREEDOM_H_
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace traverse::gcode {
+
+struct PathRule {
+  bool pinned = false;   // stays where and as it is
+  bool contour = false;  // closed; else an open path
+  bool one_way = false;
+  std::vector<uint32_t> entries;  // contour: where it may begin; empty for anywhere
+};
+
+struct LayerFreedom {
+  std::vector<PathRule> rules;  // [path]
+  std::vector<uint32_t> group;  // [path] which it does not leave; they ascend
+  std::vector<uint32_t> unit;   // [path] each is done in one go; the same for all if none has to be
+  std::vector<bool> goes_on;    // [path] comes directly behind the path before it
+  std::vector<std::pair<uint32_t, uint32_t>> ordered;  // the first of them comes before the second
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_PLAN_LAYER_FREEDOM_H_
