@@ -98,7 +98,7 @@ class TspRelaxation {
   std::vector<char> left_out_;    // [node] by LeaveOutDear: ports that no better path visits
   std::vector<Move> moves_;       // [column - first_move_]
   std::vector<char> has_;         // [Key(move)]
-  std::vector<char> is_dear_;     // excluded
+  std::vector<char> is_dear_;     // [Key(move)] whether it is excluded
   std::vector<RowOfCut> cuts_;
   int total_cuts_ = 0;
 };

@@ -46,8 +46,8 @@ class WalkDp {
     kTooBig,   // it would take more operations than allowed
   };
 
-  // For stages [0, stages) of `model`, which outlives this. Later costs are 0, or the model's finish
-  // if these are all its stages. REQUIRES: no stage has more than Memory::kCapacity clusters.
+  // For stages [0, stages) of `model`, which outlives this. Later costs are 0, or the finish of the
+  // model if these are all its stages. REQUIRES: no stage has more than Memory::kCapacity clusters.
   WalkDp(const StageModel& model, int stages);
 
   int positions() const { return static_cast<int>(stage_at_.size()); }
