@@ -127,11 +127,15 @@ class TreeCheck {
     if (!plan_.nodes.empty()) depth_[0] = 1;
     for (size_t i = 0; i < plan_.nodes.size(); ++i) {
       rest_(8);
-      if (depth_[i] == 0) return Fault(absl::StrCat("nodes[", i, "]"), "is not the child of any node");
+      if (depth_[i] == 0) {
+        return Fault(absl::StrCat("nodes[", i, "]"), "is not the child of any node");
+      }
       if (absl::Status status = CheckNode(static_cast<int>(i)); !status.ok()) return status;
     }
     for (size_t p = 0; p < leaf_of_.size(); ++p) {
-      if (leaf_of_[p] < 0) return Fault(absl::StrCat("paths[", p, "]"), "is not the path of any node");
+      if (leaf_of_[p] < 0) {
+        return Fault(absl::StrCat("paths[", p, "]"), "is not the path of any node");
+      }
     }
     return absl::OkStatus();
   }

@@ -280,8 +280,8 @@ TEST(Configuration, FileSetsFlagsAndTheCommandLineWins) {
   std::ofstream(path) << "threads=2\nthread=3\n";
   ChildProcess bad({TRAVERSE_SERVER_BINARY, "--config", path});
   EXPECT_EQ(bad.Wait(), 2);
-  EXPECT_EQ(bad.Errors(), "traverse-server: " + path +
-                              ":2: unknown flag --thread; --help lists all flags\n");
+  EXPECT_EQ(bad.Errors(),
+            "traverse-server: " + path + ":2: unknown flag --thread; --help lists all flags\n");
 }
 
 TEST(Configuration, ValuesOutOfRangeAreNamed) {

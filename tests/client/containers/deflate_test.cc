@@ -47,7 +47,8 @@ TEST(Inflate, RefusesAnotherSizeThanIsAnnounced) {
   EXPECT_THAT(Inflate(*bytes, DeflateForm::kRaw, 8),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("more than the 8 bytes")));
   EXPECT_THAT(Inflate(*bytes, DeflateForm::kRaw, 10),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("have 9 bytes, but the file states 10")));
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("have 9 bytes, but the file states 10")));
   EXPECT_THAT(Inflate(*bytes + "x", DeflateForm::kRaw, 9),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("after their end")));
   EXPECT_THAT(Inflate(bytes->substr(0, 5), DeflateForm::kRaw, 9),

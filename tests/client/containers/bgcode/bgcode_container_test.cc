@@ -260,8 +260,7 @@ TEST(Bgcode, SaysWhichBlockIsAtFault) {
   const std::vector<BadFile> cases = {
       {"version", WithU32(bytes, 4, 2), "version 2 is unknown"},
       {"checksum kind", WithU16(bytes, 8, 7), "checksum type 7 is unknown"},
-      {"announced", WithU32(bytes, 14, 0xffffffff),
-       "block 1 at offset 10 states 4294967295 bytes"},
+      {"announced", WithU32(bytes, 14, 0xffffffff), "block 1 at offset 10 states 4294967295 bytes"},
       {"announced G-code", WithU32(bytes, gcode + 4, 0xfffffff0),
        "states 4294967280 bytes of G-code"},
       {"compression", WithU16(MakeFile(shrunk), gcode + 2, 9), "compression 9 is unknown"},

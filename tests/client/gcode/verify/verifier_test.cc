@@ -144,7 +144,8 @@ TEST(VerifyGcode, CommentsAtAChangeOfHeightBelongToWhatComesAfterIt) {
 TEST(VerifyGcode, NothingIsPrintedWhileRetracted) {
   const std::string a = "M83\nG1 F600 X1 E1\nG1 E-1\nG0 X5\nG1 E1\nG1 X6 E1\n";
 
-  EXPECT_THAT(Difference(a, With(a, "G1 E1\n", "")), HasSubstr("b:5: lines 2 to 6 of a do not print `G1 X6 E1`"));
+  EXPECT_THAT(Difference(a, With(a, "G1 E1\n", "")),
+              HasSubstr("b:5: lines 2 to 6 of a do not print `G1 X6 E1`"));
   // Whether to retract at all is travel's own affair.
   EXPECT_EQ(Difference(a, "M83\nG1 F600 X1 E1\nG0 X5\nG1 X6 E1\n"), "");
 }
