@@ -37,6 +37,14 @@ Tail TailOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
   return tail;
 }
 
+// Whether the tail goes on beyond the end of the path, not back along it.
+bool GoesBeyond(const TraceChunk& chunk, uint32_t path, const Tail& tail) {
+  const TracePath& traced = chunk.paths[path];
+  const Point end = chunk.EndOf(traced);
+  const Point before = chunk.StartOf(traced, traced.end_segment - 1);
+  return (tail.end.x - end.x) * (end.x - before.x) + (tail.end.y - end.y) * (end.y - before.y) > 0;
+}
+
 // True if everything after the path leads to the next one: there is such travel between lines of a
 // zigzag where slicers round the deposit to nothing.
 bool LeadsOn(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces) {
@@ -88,6 +96,9 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
              absl::StrFormat("continues along the path at F%g, but at F%g in the original",
                              static_cast<double>(has.feed) * 1e-6,
                              static_cast<double>(had.feed) * 1e-6));
+    } else if (!layer.Closed(visit.path) && !LeadsOn(was, visit.path, pieces) &&
+               GoesBeyond(was, visit.path, had) != GoesBeyond(is, visit.last_path, has)) {
+      report(had.line, has.line, "goes on from the path to the other side than there");
     } else if (same_end && DistanceOf(has.end, had.end) > kSlackMm) {
       report(had.line, has.line, "continues from the path to a different point from the original");
     }

@@ -162,6 +162,11 @@ void ForgetNewIdle(const std::vector<RetractionCycle>& was, std::vector<Retracti
   for (RetractionCycle& cycle : is) cycle.known &= !cycle.idle || idle.contains(cycle.identity);
 }
 
+int64_t CountIdle(const std::vector<RetractionCycle>& cycles) {
+  return std::count_if(cycles.begin(), cycles.end(),
+                       [](const RetractionCycle& cycle) { return cycle.idle; });
+}
+
 }  // namespace
 
 void ObserveRetractions(const LayerPair& layer, LayerFindings& findings) {
@@ -196,7 +201,8 @@ void CompareRetractions(const Observations& was, const Observations& is,
   const bool may_push_high = is_usual(&RetractionCycle::pushed_high);
   const bool may_pull_high = is_usual(&RetractionCycle::pulled_high);
   const bool may_be_in_parts = is_usual(&RetractionCycle::in_parts);
-  const bool may_be_idle = is_usual(&RetractionCycle::idle);
+  const bool may_be_idle =
+      is_usual(&RetractionCycle::idle) && CountIdle(is.cycles) <= CountIdle(was.cycles);
   // Of moves that the original has one may be missing.
   absl::flat_hash_set<uint64_t> whole;
   for (const RetractionCycle& cycle : was.cycles) whole.insert(cycle.identity);

@@ -30,6 +30,7 @@ TEST(VerifyPathEnds, TurnWithTheirPaths) {
   const std::string turned =
       Tailed("X0 Y0", "X9 Y0", "X9.04 Y0") + Tailed("X9 Y5", "X0 Y5", "X-.04 Y5");
   EXPECT_EQ(Broken(kHead + two, kHead + turned), "");
+  EXPECT_EQ(Broken(kHead + two, kHead + With(turned, "X-.04 Y5", "X.04 Y5")), "path_ends");
 }
 
 // The way from line to line of a zigzag, of which nothing is left to print, lies along the line.

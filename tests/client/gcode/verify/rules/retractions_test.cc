@@ -100,6 +100,11 @@ TEST(VerifyRetractions, AreDoneBeforeTheWayAndUndoneBehindIt) {
 TEST(VerifyRetractions, AreForAWayAlone) {
   const std::string idle = Way("X0 Y5") + "G1 E-1 F2100\nG1 E1 F2100\n";
   EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, Way("X0 Y5"), idle)), "retractions");
+  // Nor more often than there, where the original has such ones.
+  const std::string one_idle = With(kTwo, Way("X0 Y5"), idle);
+  const std::string two_idle = With(one_idle, Way("X0 Y0"), With(idle, "X0 Y5", "X0 Y0"));
+  EXPECT_EQ(Broken(kHead + one_idle, kHead + one_idle), "");
+  EXPECT_EQ(Broken(kHead + one_idle, kHead + two_idle), "retractions");
 }
 
 TEST(VerifyRetractions, FilamentIsPulledBackOnTheSameSideOfALabel) {
