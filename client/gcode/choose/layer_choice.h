@@ -1,10 +1,10 @@
-// Decides in which order each layer of a file is done, and puts the file together.
+// Chooses the order of each layer of a file and puts the file together.
 //
-// For each layer there are a few orders to choose from, that of the file among them. Where a layer
-// ends is where the way to the next one begins, so that the choices hang together: the best row of
-// them is taken (choice_row.h).
+// Each layer has a few orders to choose from, among them the file's own. The travel to the next
+// layer starts where a layer ends, so the choices depend on each other: the best sequence of them
+// is taken (choice_row.h).
 //
-// O(layers * tries^2) ways between layers and O(layers * tries) layers are written and measured.
+// Writes and measures O(layers * tries^2) travel moves between layers and O(layers * tries) layers.
 
 #ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_LAYER_CHOICE_H_
 #define TRAVERSE_CLIENT_GCODE_CHOOSE_LAYER_CHOICE_H_
@@ -23,21 +23,21 @@
 
 namespace traverse::gcode {
 
-// One order for each layer of a file; empty for that of the file.
+// One order for each layer of a file; empty for the file's own order.
 using FileOrder = std::vector<LayerOrder>;
 
-// A layer as it was written. `paths` is empty if they are as in the file.
+// A layer as written. `paths` is empty if the paths are as in the file.
 struct LayerText {
   std::string way;
   std::string paths;
 };
 
-// The layers of a file, each in the order chosen for it.
+// The layers of a file, each in its chosen order.
 struct ChosenLayers {
-  std::vector<LayerText> texts;     // [layer]
-  FileOrder orders;                 // [layer], empty for that of the file
-  PartStart behind;                 // the machine behind the last one
-  std::vector<PrintTotals> given;   // [layer], with the way to it, in the file's order
+  std::vector<LayerText> texts;     // [layer], empty for the file's own order
+  FileOrder orders;                 // [layer], empty for the file's own order
+  PartStart behind;                 // the machine after the last layer
+  std::vector<PrintTotals> given;   // [layer], with the travel to it, in the file's order
   std::vector<PrintTotals> totals;  // [layer], as chosen
   int64_t changed = 0;              // layers in another order than the file's
 
@@ -52,36 +52,36 @@ struct ChoiceOptions {
   int threads = 1;
   double min_revisit_seconds = 0;  // see revisits.h
 
-  // Set: what is found is made better by small changes, for so long.
+  // If set, small changes improve the orders found, within this limit.
   std::optional<PolishLimit> polish = {};
 };
 
-// Chooses among the order of the file and those of `tries`, each made better by runs of the others
-// (merged_orders.h), by the rules of choice_row.h: for the least estimated time, with no more ways
+// Chooses among the file's order and those of `tries`, each improved with runs of the others
+// (merged_orders.h), by the rules of choice_row.h: the least estimated time with no more travel
 // across visible walls.
 //
 // The result does not depend on the number of threads.
 class LayerChooser {
  public:
-  // Writes and measures what there is to choose from. `file` and `tries` outlive the chooser.
+  // Writes and measures the orders to choose from. `file` and `tries` outlive the chooser.
   LayerChooser(const GcodeFile& file, const std::vector<FileOrder>& tries,
                const ChoiceOptions& options);
   ~LayerChooser();
 
-  // The best of what is not ruled out.
+  // The best choice that is not ruled out.
   ChosenLayers Choose();
 
-  // What was chosen last for the paths of `layer` is not chosen again, nor, if `way`, its way from
-  // the layer before; false if that is how the file has it, which is always there to be chosen.
+  // Rules out the last choice for the paths of `layer` or, if `way`, for the travel to it from the
+  // layer before. False if that is the file's own choice, which always stays possible.
   bool RuleOut(size_t layer, bool way);
 
-  // Of layer `layer` nothing but the order of the file is chosen from now on; false if it was.
+  // Rules out all orders of layer `layer` but the file's; false if that was chosen last.
   bool RuleOutAll(size_t layer);
 
-  // From now on the whole file has `crossings` ways across visible walls fewer than it may have.
+  // From now on the whole file must have `crossings` fewer moves across visible walls.
   void Tighten(int64_t crossings);
 
-  // Something that was found for `layer` is ruled out, and the order of the file was chosen last.
+  // True if an order found for `layer` is ruled out and the last choice was the file's order.
   bool IsGivenUp(size_t layer) const;
 
  private:

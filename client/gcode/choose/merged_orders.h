@@ -1,4 +1,4 @@
-// What is worth writing of the orders that a search found for a layer.
+// Selects and improves the orders that a search found for a layer, before they are written.
 
 #ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_MERGED_ORDERS_H_
 #define TRAVERSE_CLIENT_GCODE_CHOOSE_MERGED_ORDERS_H_
@@ -14,25 +14,25 @@
 
 namespace traverse::gcode {
 
-// What an order has to keep to beside the file's own.
+// Rules for an order besides the file's own.
 struct MergeRules {
   Policy policy = Policy::kSafe;
   Crossings crossings = Crossings::kKeep;
-  bool as_many_retractions = false;  // each of them pushes a little more than it pulls
+  bool as_many_retractions = false;  // each pushes a little more than it pulls
 
-  // [place] something stands there in the file that nothing crosses.
+  // [place] the file has something here that nothing may cross.
   std::vector<bool> boundaries;
 
-  // Orders are made better by small changes too (order_polish.h): what may change in the layer, and
-  // for how long; null: they are not.
+  // If not null, small changes improve the orders too (order_polish.h): what may change in the
+  // layer, and for how long.
   const LayerFreedom* freedom = nullptr;
   const PolishLimit* polish = nullptr;
 };
 
-// The orders of `found`, each made better by runs of the others and of the file's own order, and
-// brought within the limits of `rules` as far as estimates go (order_merge.h). Of those that begin
-// and end with the paths that the file does only the best one. Under Policy::kFree each is also
-// tried with its paths in the order of the file.
+// The orders of `found`, each improved with runs of the others and of the file's own order, and
+// brought within the limits of `rules` as far as estimates tell (order_merge.h). Of those that
+// begin and end with the same paths as the file only the best stays. Under Policy::kFree each is
+// also tried with its paths in the order of the file.
 std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelModel& travel,
                                      const std::vector<LayerOrder>& found, const MergeRules& rules);
 

@@ -1,14 +1,14 @@
-// An order of a layer made better by small changes (order_state.h), judged by what its ways come to
-// when they are written.
+// Improves an order of a layer by small changes (order_state.h), judged by the cost of its travel
+// moves as written.
 //
-// The search of the service knows a way by its two ends, and takes it to cost the same in either
-// direction. What is written is not so: behind a wipe the way begins where that ends, the path that
-// is left pays for a retraction, and what may not be more than in the file is not priced but
-// forbidden. Where the two differ there are quicker orders than the one found, and near to it.
+// The service's search knows a move by its two ends and assumes the same cost in both directions.
+// The written move differs: after a wipe it starts where the wipe ends, the path before it pays for
+// a retraction, and limits of the file forbid what the search only prices. Where the two differ,
+// there are faster orders close to the one that the search found.
 //
-// Local search with kicks (Martin, Otto and Felten 1991): two short runs change places whatever it
-// costs, what lies around is made better again, and if it is not better than before all of that is
-// taken back.
+// Local search with kicks (Martin, Otto and Felten 1991): two short runs change places at any cost,
+// then the search improves what lies around them, and undoes all of it if the order has not become
+// better.
 
 #ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_POLISH_H_
 #define TRAVERSE_CLIENT_GCODE_CHOOSE_ORDER_POLISH_H_
@@ -28,7 +28,7 @@
 
 namespace traverse::gcode {
 
-// How long orders may be made better; from several threads.
+// How long orders may be improved; shared by several threads.
 struct PolishLimit {
   absl::Time until = absl::InfiniteFuture();
   std::stop_token cancel = {};
@@ -41,20 +41,20 @@ struct PolishLimit {
 class OrderPolisher {
  public:
   enum class Effort : uint8_t {
-    kSettle,  // until no change makes it better
-    kKick,    // and then with kicks
+    kSettle,  // until no change is an improvement
+    kKick,    // then also with kicks
   };
 
-  // Of the layer with the paths `outlines`, from block `first_block` on. All outlive the polisher.
+  // For the layer with the paths `outlines`, from block `first_block` on. All outlive the polisher.
   OrderPolisher(uint32_t first_block, const std::vector<Outline>& outlines,
                 const LayerFreedom& freedom, const WayEstimate& estimate, const PolishLimit& limit);
 
-  // `begun` made better as OrderMerger::Merge does: first less beyond the limits of `judge`, then
-  // quicker. Its first and its last path stay. Nothing is done that the layer's freedom does not
-  // include; where `begun` is beyond that, it may stay so. It ends where a second of computing
-  // saves less than a second of printing, and asks for hardly more than kMostWaysEach ways a path;
-  // or at the limit.
-  // REQUIRES: `begun` has each path of the layer once, or none.
+  // `begun`, improved as OrderMerger::Merge does: first less beyond the limits of `judge`,
+  // then faster. Its first and last paths stay. It makes no change beyond the layer's
+  // freedom, but does not repair a `begun` that is beyond it. It stops when a second of
+  // computing saves less than a second of printing, when it has asked for about kMostWaysEach
+  // estimates per path, or at the limit. REQUIRES: `begun` has each path of the layer once,
+  // or none.
   LayerOrder Polish(const LayerOrder& begun, const OrderMerger& judge, Effort effort) const;
 
   static constexpr size_t kMostWaysEach = 5000;

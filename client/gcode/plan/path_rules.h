@@ -1,4 +1,4 @@
-// How each path of a layer may be done, and which pairs of paths keep their order.
+// How each path of a layer may be printed, and which pairs of paths keep their order.
 
 #ifndef TRAVERSE_CLIENT_GCODE_PLAN_PATH_RULES_H_
 #define TRAVERSE_CLIENT_GCODE_PLAN_PATH_RULES_H_
@@ -21,16 +21,16 @@ struct PathPermissions {
   Allowance allow = {};
 };
 
-// The paths of one layer, by their index in it.
+// The paths of one layer, by their index in the layer.
 class PathRules {
  public:
-  // `file` and `outlines`, those of the paths of `layer`, outlive the rules.
+  // `file` and `outlines`, which belong to the paths of `layer`, outlive the rules.
   PathRules(const GcodeFile& file, const Layer& layer, const PathPermissions& permissions,
             const std::vector<Outline>& outlines);
 
   PathRule RuleOf(size_t path) const;
 
-  // True if paths `i` and `j`, which touch, stay in the order sliced.
+  // True if paths `i` and `j`, which touch, keep their sliced order.
   bool KeepsOrder(size_t i, size_t j) const;
 
   Feature FeatureOf(size_t path) const { return outlines_[path].feature; }

@@ -1,4 +1,4 @@
-// What of a layer may change places.
+// Which paths of a layer may change places.
 //
 //   in_order                          groups: nothing crosses a fence, a label, a skirt's end, or
 //    |                                (unless it is allowed, as it is under `free`) a change of the
@@ -24,7 +24,7 @@ namespace traverse::gcode {
 
 enum class Policy : uint8_t {
   kSafe,      // nothing that a slicer chose for quality changes
-  kBalanced,  // also walls begin at sharp corners of their own, and islands are done one by one
+  kBalanced,  // also walls may begin at their sharp corners, and islands are done one by one
   kFree,      // any start and direction; only what touches keeps the order of its features
 };
 
@@ -32,31 +32,31 @@ enum class Policy : uint8_t {
 std::optional<Policy> PolicyOfName(std::string_view name);
 std::string_view PolicyName(Policy policy);
 
-// What a user allows beyond any policy, each by its name.
+// What a user allows beyond any policy; each has a name.
 struct Allowance {
   bool infill_order = false;  // walls and the infill that touches them may change places
-  bool wall_order = false;    // walls that touch one another may
+  bool wall_order = false;    // walls that touch each other may
   bool fan_order = false;     // paths may across a change of the fan, of pressure advance or flow
 
   bool operator==(const Allowance&) const = default;
 };
 
-// From names with commas between them, such as "infill_order,wall_order"; nothing for other text.
+// Parses names separated by commas, such as "infill_order,wall_order"; nothing for other text.
 std::optional<Allowance> AllowanceOfNames(std::string_view names);
 
 // "infill_order+wall_order"; empty if nothing is allowed.
 std::string AllowanceNames(const Allowance& allow);
 
-// What is done about visible walls in the way of travel.
+// How travel treats visible walls.
 enum class Crossings : uint8_t {
-  kKeep,   // the file crosses them no more often than it did
+  kKeep,   // the file crosses them no more often than before
   kFewer,  // and each crossing saved is worth kFewerCrossingSeconds
-  kAny,    // as time says
+  kAny,    // only time counts
 };
 
-// Prices of a crossing in a search. The small one is for orders that are as quick with fewer, the
-// large one for a second search of what was found to cross more, so that there are orders with
-// hardly any to choose from.
+// Prices of a crossing in a search. The small one prefers orders that are as fast with fewer
+// crossings. The large one is for a second search of layers that cross more, so that there are
+// orders with hardly any crossings to choose from.
 inline constexpr double kKeepCrossingSeconds = 0.03;
 inline constexpr double kFewerCrossingSeconds = 0.5;
 inline constexpr double kDearCrossingSeconds = 1;
@@ -70,27 +70,27 @@ std::string_view CrossingsName(Crossings crossings);
 struct LayerPlan {
   v1::Plan plan;
   std::vector<Outline> outlines;  // [path]
-  std::vector<uint32_t> island;   // [path] which connected region of the layer it lies in
+  std::vector<uint32_t> island;   // [path] the connected region of the layer that it lies in
   int64_t movable = 0;            // paths that may change places with another one
-  LayerFreedom freedom;           // what the plan says
+  LayerFreedom freedom;           // what the plan allows
 };
 
-// Ways to look for an order among those that a policy allows. The narrower the choice, the further
-// a search comes in it.
+// How widely to search among the orders that a policy allows. The narrower the latitude, the closer
+// a search gets to its optimum.
 enum class Latitude : uint8_t {
   kFull,
-  // The layer begins and ends with the path that it does in the file, so that nothing changes for
-  // the layers around it; walls that touch and follow one another in the file stay together.
+  // The layer begins and ends with the same paths as in the file, so that nothing changes for the
+  // layers around it; walls that touch and are consecutive in the file stay together.
   kNarrow,
-  // Begins and ends as kNarrow does, and islands are done one by one under any policy: so walls are
-  // crossed no more often than need be.
+  // Begins and ends like kNarrow, and islands are printed one by one under any policy, so that
+  // travel crosses walls no more often than necessary.
   kIslands,
 };
 
 LayerPlan MakeLayerPlan(const GcodeFile& file, const Layer& layer, Policy policy,
                         Latitude latitude = Latitude::kFull, const Allowance& allow = {});
 
-// What the plan of a layer says, without the plan.
+// What the plan of a layer allows, without the plan.
 LayerFreedom FreedomOf(const GcodeFile& file, const Layer& layer, Policy policy,
                        const Allowance& allow);
 

@@ -19,14 +19,14 @@
 
 namespace traverse::gcode {
 
-// Where the paths of an order begin, with everything set as its first path needs it. The extruder's
-// register is as it is there in the file.
+// The state where the paths of an order begin, set as its first path needs it. The extruder's
+// register is as in the file.
 PartStart StartOfPaths(const GcodeFile& file, const Placement& first);
 
-// Behind `last`; the same holds for the extruder's register.
+// The state after `last`; the extruder's register is again as in the file.
 PartStart StartBehindPath(const GcodeFile& file, const Placement& last);
 
-// One layer. What writes appends to `text` and returns the machine behind that. Thread-safe.
+// One layer. What writes appends to `text` and returns the machine's state after it. Thread-safe.
 class LayerWriter {
  public:
   // `file`, `habit` and `donors` outlive the writer.
@@ -36,19 +36,19 @@ class LayerWriter {
   const VisibleWalls& walls() const { return walls_; }
   const std::vector<Outline>& outlines() const { return outlines_; }
 
-  // The order of the file.
+  // The file's own order.
   LayerOrder GivenOrder() const;
 
-  // The way to the path `first` from `before`, the last path of the layer before, with the marks of
-  // the new layer. `start` is the machine behind `before`.
+  // Writes the travel to the path `first` from `before`, the last path of the layer before, with
+  // the marks of the new layer. `start` is the state of the machine after `before`.
   PartStart WriteWay(const Placement& before, const Placement& first, const PartStart& start,
                      std::string& text) const;
 
-  // The paths in `order` and the ways between them. `start` is the machine where the first begins.
+  // Writes the paths in `order` and the travel between them. `start` is the state at the first.
   PartStart WritePaths(const LayerOrder& order, const PartStart& start, std::string& text) const;
 
-  // About what the way to place `place` of the layer, from 1, comes to if `to` follows `from`
-  // there. Walls are crossed, and filament is pulled back, as it is written.
+  // Estimates the travel to place `place` of the layer, from 1, if `to` follows `from` there, with
+  // the crossings and the retraction that would be written.
   WayTotals EstimateWay(size_t place, const Placement& from, const Placement& to,
                         const TravelModel& model) const;
 
@@ -56,27 +56,27 @@ class LayerWriter {
   Vertex Begin(const Placement& placement) const;
   Vertex End(const Placement& placement) const;
 
-  // What the head does behind a path before it leaves for the next one.
+  // What the head does after a path before it leaves for the next one.
   struct Leaving {
     double mm = 0;
-    Vertex as_given;     // where that ends behind the path as it is given
-    bool wipes = false;  // filament is pulled back meanwhile; else it goes on along the path
+    Vertex as_given;     // where that ends after the path as sliced
+    bool wipes = false;  // pulls filament back meanwhile; else continues along the path
   };
 
-  // Nothing where the way begins at the end of the path.
+  // Null if the travel begins at the end of the path.
   const Leaving* LeavingOf(const Placement& from) const;
 
-  // Where the head is `mm` behind the end of `from`, on the way over what was just printed.
+  // The position of the head `mm` after the end of `from`, on the way back along the path.
   Vertex BackOver(const Placement& from, double mm) const;
 
   void NoteLeaving(uint32_t block);
 
-  // The way from `from` to `to` where the file has none, with what is done behind `from`; a wipe
-  // counts for its length alone, for it is the same wherever the way leads.
+  // The travel from `from` to `to` that the file does not have, with what happens after `from`. Of
+  // a wipe only the length counts, because it is the same wherever the travel leads.
   TravelWay NewWay(const Placement& from, const Placement& to) const;
 
-  // The way that goes on behind the end of `from` leads the nozzle to where a visible wall is
-  // between it and `to`, which has to be spared.
+  // True if continuing after the end of `from` puts a visible wall between the nozzle and `to`,
+  // which must be avoided.
   bool GoesOnAcross(const Placement& from, Vertex to, Feature feature) const;
   bool IsGiven(const LayerOrder& order, const PartStart& start) const;
   void WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place, GcodeOut& out) const;
@@ -89,7 +89,7 @@ class LayerWriter {
   const VisibleWalls walls_;
   const TravelRules rules_;
   const bool spares_walls_;
-  absl::flat_hash_map<uint32_t, Leaving> leaving_;  // behind blocks that are left so
+  absl::flat_hash_map<uint32_t, Leaving> leaving_;  // by block, if it is left this way
 };
 
 }  // namespace traverse::gcode

@@ -11,12 +11,12 @@ namespace traverse::gcode {
 struct WayTotals {
   double seconds = 0;
   double mm = 0;
-  int64_t crossings = 0;  // of visible walls
-  int64_t open = 0;       // of these, those without a retraction
-  int64_t too_long = 0;   // of these, those longer than allowed
+  int64_t crossings = 0;  // across visible walls
+  int64_t open = 0;       // crossings without a retraction
+  int64_t too_long = 0;   // open ones that are longer than allowed
   int64_t retractions = 0;
 
-  // Of one way alone: how long it is if it counts as open, without what goes on along a path.
+  // For a single move: its length if it counts as open, without what continues along a path.
   double open_mm = 0;
 
   WayTotals& operator+=(const WayTotals& other) {
