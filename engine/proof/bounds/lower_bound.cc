@@ -22,9 +22,9 @@ constexpr double kLeastGain = 1e-3;
 
 // Rounds of the search that knows points, where it fits, for an effort of up to 1, and beyond by
 // its root; fewer from multipliers that were found before.
-constexpr double kVertexRounds = 2;
-constexpr double kMostVertexRounds = 20;
-constexpr int kVertexRoundsAgain = 1;
+constexpr double kVertexRounds = 4;
+constexpr double kMostVertexRounds = 40;
+constexpr int kVertexRoundsAgain = 2;
 constexpr double kShareOfProgrammeAgain = 0.25;
 
 // Of the time that is left, what a search may use: the evaluation after it is what counts.

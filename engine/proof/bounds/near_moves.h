@@ -4,7 +4,7 @@
 #ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_NEAR_MOVES_H_
 #define TRAVERSE_ENGINE_PROOF_BOUNDS_NEAR_MOVES_H_
 
-#include <array>
+#include <cassert>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -22,7 +22,7 @@ class NearMoves {
     double cost = 0;
   };
 
-  // Moves in a row that join the same two sides.
+  // The moves between two ends, in a row.
   struct Group {
     int sides[2] = {};  // among those of all junctions
     size_t begin = 0;   // moves
@@ -43,29 +43,26 @@ class NearMoves {
   // The first side of `junction` among those of all.
   int first_side(int junction) const { return first_side_[static_cast<size_t>(junction)]; }
 
-  // Brings the moves between two members in: all, or of many points those to the nearest ones.
-  // Nothing if some are in.
+  // Brings all moves between two members in, as one group, unless they are.
   void AddPair(int junction, const Junction::Member& a, const Junction::Member& b);
-
-  // Brings one move in, between points of two members, if it is not.
-  void AddMove(int junction, const Junction::Member& a, const Junction::Member& b,
-               std::array<int, 2> points);
 
   const std::vector<Move>& moves() const { return moves_; }
   const std::vector<Group>& groups() const { return groups_; }
 
-  // The groups between two ends.
-  template <typename Visit>
-  void ForEachGroup(int a, int b, const Visit& visit) const {
-    for (const auto& [other, group] : groups_of_[static_cast<size_t>(a)]) {
-      if (other == b) visit(groups_[group]);
-    }
+  // The group between two ends; null if their moves are not in. It may move when pairs come in.
+  const Group* Find(int a, int b) const;
+
+  // The move between two points. REQUIRES: it is in `group`.
+  size_t IndexOf(const Group& group, int a, int b) const {
+    if (end_of(moves_[group.begin].points[0]) != end_of(a)) std::swap(a, b);
+    const int from = a - first(end_of(a));
+    const int to = b - first(end_of(b));
+    const size_t index = group.begin + static_cast<size_t>(from * size(end_of(b)) + to);
+    assert(index < group.end && moves_[index].points[0] == a && moves_[index].points[1] == b);
+    return index;
   }
 
  private:
-  void BeginGroup(int junction, const Junction::Member& a, const Junction::Member& b);
-  void Add(int from, int to, double cost);
-
   const EndGraph& graph_;
   const TravelCost& cost_;
   std::vector<int> first_;       // [end]; one more

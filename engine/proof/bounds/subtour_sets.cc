@@ -13,22 +13,24 @@ size_t At(int index) { return static_cast<size_t>(index); }
 
 }  // namespace
 
+// Of the pairs whose moves came in from `first_move` on.
 void SubtourSets::FindMoves(Set& set, size_t first_move) const {
-  const auto has = [&](int point) {
-    return std::binary_search(set.points.begin(), set.points.end(), point);
+  const std::vector<int>& points = set.points;
+  const auto behind = [&](size_t p) {  // the points of the same end
+    const int end = moves_.end_of(points[p]);
+    while (p < points.size() && moves_.end_of(points[p]) == end) ++p;
+    return p;
   };
-  for (size_t p = 0; p < set.points.size(); ++p) {
-    const int a = moves_.end_of(set.points[p]);
-    if (p > 0 && moves_.end_of(set.points[p - 1]) == a) continue;
-    for (size_t q = p + 1; q < set.points.size(); ++q) {
-      const int b = moves_.end_of(set.points[q]);
-      if (b == a || moves_.end_of(set.points[q - 1]) == b) continue;
-      moves_.ForEachGroup(a, b, [&](const NearMoves::Group& group) {
-        for (size_t i = std::max(group.begin, first_move); i < group.end; ++i) {
-          const NearMoves::Move& move = moves_.moves()[i];
-          if (has(move.points[0]) && has(move.points[1])) set.within.push_back(i);
+  for (size_t a = 0; a < points.size(); a = behind(a)) {
+    for (size_t b = behind(a); b < points.size(); b = behind(b)) {
+      const int ends[2] = {moves_.end_of(points[a]), moves_.end_of(points[b])};
+      const NearMoves::Group* group = moves_.Find(ends[0], ends[1]);
+      if (group == nullptr || group->begin < first_move) continue;
+      for (size_t p = a; p < behind(a); ++p) {
+        for (size_t q = b; q < behind(b); ++q) {
+          set.within.push_back(moves_.IndexOf(*group, points[p], points[q]));
         }
-      });
+      }
     }
   }
 }
@@ -69,7 +71,36 @@ bool SubtourSets::Add(std::vector<int> points, const AverageSolution& average, d
   return true;
 }
 
+void SubtourSets::AddNear(const NearMoves::Group& group) {
+  const int* first = moves_.moves()[group.begin].points;
+  const int ends[2] = {moves_.end_of(first[0]), moves_.end_of(first[1])};
+  size_t of_end[2] = {};  // sets
+  for (int k = 0; k < 2; ++k) {
+    of_end[k] = sets_.size();
+    const int other = ends[1 - k];
+    for (int p = moves_.first(ends[k]); moves_.size(ends[k]) > 1 && p < moves_.first(ends[k] + 1);
+         ++p) {
+      Set set;
+      for (int q = moves_.first(other); q < moves_.first(other + 1); ++q) set.points.push_back(q);
+      set.points.insert(std::lower_bound(set.points.begin(), set.points.end(), p), p);
+      set.subtracted.push_back(p);
+      known_.insert(set.points);
+      sets_.push_back(std::move(set));
+    }
+  }
+  for (size_t i = group.begin; i < group.end; ++i) {
+    for (int k = 0; k < 2; ++k) {
+      if (moves_.size(ends[k]) == 1) continue;
+      const int point = moves_.moves()[i].points[k];
+      sets_[of_end[k] + At(point - moves_.first(ends[k]))].within.push_back(i);
+    }
+  }
+  moves_seen_ = moves_.moves().size();
+  has_lists_ = false;
+}
+
 void SubtourSets::AddNewMoves() {
+  if (moves_seen_ == moves_.moves().size()) return;
   for (Set& set : sets_) FindMoves(set, moves_seen_);
   moves_seen_ = moves_.moves().size();
   has_lists_ = false;

@@ -37,6 +37,10 @@ class SubtourSets {
   // more; with multiplier 0. Whether it was taken.
   bool Add(std::vector<int> points, const AverageSolution& average, double least);
 
+  // Takes the sets of one point and all points of another end, for all moves of `group` between
+  // ends of which the point's has several; with multiplier 0. Nothing may have been known of them.
+  void AddNear(const NearMoves::Group& group);
+
   // Looks for moves within the sets among those that came in since the last call.
   void AddNewMoves();
 

@@ -37,7 +37,7 @@ constexpr int kStepsBetweenSets = 15;
 constexpr double kViolation = 0.1;
 
 // After each round, moves are known that were not.
-constexpr int kStepsOfRound = 250;
+constexpr int kStepsOfRound = 125;
 
 // What rounding can add up to in a sum over all moves, relative to the numbers summed up.
 constexpr double kRounding = 1e-12;
@@ -149,36 +149,23 @@ size_t VertexBound::CheapestOf(const NearMoves::Group& group) const {
   return best;
 }
 
-// Moves that are not known have no penalties. `points`, if not null, becomes those of the move.
+// Moves that are not known have no penalties.
 VertexBound::AnyCandidate VertexBound::CheapestOfAny(int junction, const Junction::Member& a,
-                                                     const Junction::Member& b,
-                                                     std::array<int, 2>* points) {
+                                                     const Junction::Member& b) const {
+  if (const NearMoves::Group* group = moves_.Find(a.end, b.end)) {
+    return {Least(*group), junction, {&a, &b}};
+  }
   const auto& from = graph_.ends[At(a.end)].points;
   const auto& to = graph_.ends[At(b.end)].points;
   const double* of_a = multipliers_.point.data() + moves_.first(a.end);
   const double* of_b = multipliers_.point.data() + moves_.first(b.end);
-  costs_.resize(from.size() * to.size());
+  double least = kFar;
   for (size_t i = 0; i < from.size(); ++i) {
     for (size_t j = 0; j < to.size(); ++j) {
-      costs_[i * to.size() + j] = cost_.Base(from[i], to[j]) - of_a[i] - of_b[j];
+      least = std::min(least, cost_.Base(from[i], to[j]) - of_a[i] - of_b[j]);
     }
   }
-  moves_.ForEachGroup(a.end, b.end, [&](const NearMoves::Group& group) {
-    for (size_t k = group.begin; k < group.end; ++k) {
-      const NearMoves::Move& move = moves_.moves()[k];
-      const bool same_way = moves_.end_of(move.points[0]) == a.end;
-      const int i = move.points[same_way ? 0 : 1] - moves_.first(a.end);
-      const int j = move.points[same_way ? 1 : 0] - moves_.first(b.end);
-      costs_[At(i) * to.size() + At(j)] += penalties_[k];
-    }
-  });
-  const auto least = std::min_element(costs_.begin(), costs_.end());
-  if (points != nullptr) {
-    const auto at = static_cast<int>(least - costs_.begin());
-    const auto width = static_cast<int>(to.size());
-    *points = {moves_.first(a.end) + at / width, moves_.first(b.end) + at % width};
-  }
-  return {*least, junction, {&a, &b}};
+  return {least, junction, {&a, &b}};
 }
 
 // Kruskal's algorithm over the known moves, which connect the sides of each junction.
@@ -210,7 +197,7 @@ bool VertexBound::ListAll(std::vector<AnyCandidate>& all, Budget& budget) {
       for (size_t b = a + 1; b < members.size(); ++b) {
         if (members[a].side == members[b].side) continue;
         if ((members[a].roles & OppositeRoles(members[b].roles)) == 0) continue;
-        all.push_back(CheapestOfAny(static_cast<int>(j), members[a], members[b], nullptr));
+        all.push_back(CheapestOfAny(static_cast<int>(j), members[a], members[b]));
       }
     }
   }
@@ -238,13 +225,12 @@ double VertexBound::EvaluateAll(Budget& budget) {
     tree.push_back(it);
   }
   for (const AnyCandidate& it : tree) {
-    std::array<int, 2> points;
-    CheapestOfAny(it.junction, *it.members[0], *it.members[1], &points);
     moves_.AddPair(it.junction, *it.members[0], *it.members[1]);
-    moves_.AddMove(it.junction, *it.members[0], *it.members[1], points);
-    penalties_.resize(moves_.moves().size());
   }
-  if (is_first) AddNearest(all);
+  if (is_first) {
+    AddNearest(all);
+    for (const NearMoves::Group& group : moves_.groups()) sets_.AddNear(group);
+  }
   average_.moves.resize(moves_.moves().size());
   sets_.AddNewMoves();
   for (const auto* values : {&multipliers_.point, &multipliers_.start, &multipliers_.finish}) {

@@ -15,7 +15,6 @@
 #ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_VERTEX_BOUND_H_
 #define TRAVERSE_ENGINE_PROOF_BOUNDS_VERTEX_BOUND_H_
 
-#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -73,8 +72,8 @@ class VertexBound {
   double ChoosePoints();
   double Least(const NearMoves::Group& group) const;
   size_t CheapestOf(const NearMoves::Group& group) const;
-  AnyCandidate CheapestOfAny(int junction, const Junction::Member& a, const Junction::Member& b,
-                             std::array<int, 2>* points);
+  AnyCandidate CheapestOfAny(int junction, const Junction::Member& a,
+                             const Junction::Member& b) const;
   bool ListAll(std::vector<AnyCandidate>& all, Budget& budget);
   double EvaluateNear();
   double EvaluateAll(Budget& budget);
@@ -111,7 +110,6 @@ class VertexBound {
 
   // Scratch.
   std::vector<Candidate> candidates_;
-  std::vector<double> costs_;
   DisjointSets joined_;  // the sides of all junctions
 };
 

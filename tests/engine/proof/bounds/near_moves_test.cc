@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -14,19 +12,19 @@
 namespace traverse {
 namespace {
 
-// Two contours of `points` points each, on two lines 10 apart.
-testing::OwnedProblem TwoLines(int points) {
+// Two contours of so many points, on two lines 10 apart.
+testing::OwnedProblem TwoLines(int first, int second) {
   std::vector<Path> paths;
   for (const double y : {0.0, 10.0}) {
     std::vector<Point> line;
-    for (int i = 0; i < points; ++i) line.push_back({static_cast<double>(i), y});
+    for (int i = 0; i < (y == 0 ? first : second); ++i) line.push_back({static_cast<double>(i), y});
     paths.push_back(MakeContour(std::move(line)));
   }
   return testing::OwnedProblem(testing::AnyOrderPlan(std::move(paths)));
 }
 
 TEST(NearMoves, APairHasAllMovesAndEachOnce) {
-  const testing::OwnedProblem owned = TwoLines(3);
+  const testing::OwnedProblem owned = TwoLines(3, 4);
   const EndGraph graph{PlanTree(owned.plan())};
   const TravelCost cost(owned.problem);
   NearMoves moves(graph, cost);
@@ -34,44 +32,24 @@ TEST(NearMoves, APairHasAllMovesAndEachOnce) {
 
   moves.AddPair(0, members[0], members[1]);
   moves.AddPair(0, members[1], members[0]);
-  moves.AddMove(0, members[1], members[0],
-                {moves.first(members[1].end), moves.first(members[0].end)});
 
-  EXPECT_EQ(moves.groups().size(), 1u);
-  EXPECT_EQ(moves.moves().size(), 9u);
+  ASSERT_EQ(moves.groups().size(), 1u);
+  EXPECT_EQ(moves.Find(0, 1), &moves.groups()[0]);
+  EXPECT_EQ(moves.Find(1, 0), &moves.groups()[0]);
+  EXPECT_EQ(moves.Find(0, 0), nullptr);
+  EXPECT_EQ(moves.moves().size(), 12u);
   for (const NearMoves::Move& move : moves.moves()) {
     const auto place = [&](int point) {
       const int end = moves.end_of(point);
       return graph.ends[static_cast<size_t>(end)]
           .points[static_cast<size_t>(point - moves.first(end))];
     };
+    for (const int k : {0, 1}) {
+      const size_t index = moves.IndexOf(moves.groups()[0], move.points[k], move.points[1 - k]);
+      EXPECT_EQ(&moves.moves()[index], &move);
+    }
     EXPECT_DOUBLE_EQ(move.cost, cost.Base(place(move.points[0]), place(move.points[1])));
   }
-}
-
-TEST(NearMoves, OfManyPointsEachHasItsNearestMoves) {
-  const testing::OwnedProblem owned = TwoLines(60);
-  const EndGraph graph{PlanTree(owned.plan())};
-  const TravelCost cost(owned.problem);
-  NearMoves moves(graph, cost);
-  const auto& members = graph.junctions[0].members;
-
-  moves.AddPair(0, members[0], members[1]);
-
-  std::set<std::pair<int, int>> known;
-  for (const NearMoves::Move& move : moves.moves()) {
-    known.insert(std::minmax(move.points[0], move.points[1]));
-  }
-  EXPECT_EQ(known.size(), moves.moves().size());
-  EXPECT_LT(known.size(), 60u * 8);
-  for (int i = 0; i < 60; ++i) EXPECT_TRUE(known.contains({i, 60 + i})) << i;
-  EXPECT_FALSE(known.contains({0, 119}) || known.contains({59, 60}));
-
-  moves.AddMove(0, members[0], members[1],
-                {moves.first(members[0].end), moves.first(members[1].end) + 59});
-
-  EXPECT_EQ(moves.groups().size(), 2u);
-  EXPECT_EQ(moves.moves().size(), known.size() + 1);
 }
 
 }  // namespace
