@@ -27,7 +27,7 @@ TEST(VerifySpeeds, WaysAreAsFastAsThoseOfTheirLayer) {
   EXPECT_EQ(Broken(a, kHead + slow + kNextLayer + kOneTurned), "");
   const std::string b = kHead + slow + kNextLayer + With(kOneTurned, "X9 Y0 F9000", "X9 Y0 F3000");
   EXPECT_EQ(Broken(a, b), "speeds");
-  EXPECT_NE(FirstMessage(a, b).find("travel at F3000, as none of its layer"), std::string::npos)
+  EXPECT_NE(FirstMessage(a, b).find("travel at F3000, as none of this layer"), std::string::npos)
       << FirstMessage(a, b);
 }
 
@@ -44,7 +44,7 @@ TEST(VerifySpeeds, RetractionsAreAsFastAsThoseOfTheirLayer) {
   EXPECT_EQ(Broken(a, kHead + fast + kNextLayer + kOneTurned), "");
   const std::string pulled = kHead + fast + kNextLayer + pulled_as_fast_as_travel(kOneTurned);
   EXPECT_EQ(Broken(a, pulled), "speeds");
-  EXPECT_NE(FirstMessage(a, pulled).find("retraction at F9000, as none of its layer"),
+  EXPECT_NE(FirstMessage(a, pulled).find("retraction at F9000, as none of this layer"),
             std::string::npos)
       << FirstMessage(a, pulled);
   EXPECT_EQ(Broken(a, kHead + fast + kNextLayer + pushed_as_fast_as_travel(kOneTurned)), "speeds");
