@@ -155,6 +155,38 @@ def down_before_way(file, rng):
     return pick(rng, range(len(file.paths) - 1), len(file.paths), make)
 
 
+def sinks_over_object(file, rng):
+    """Between objects printed one after the other: the way aside, before the head goes down, is gone."""
+
+    def make(k):
+        link = list(file.link(k))
+        downs = [i for i in link if file.lines[i].kind == "z" and file.lines[i].end[2] < file.lines[i].start[2]]
+        falls = file.paths[k].start[2] - file.paths[k + 1].start[2]
+        if falls < 0.5 or not downs:
+            return None
+        aside = [i for i in link if file.lines[i].kind == "travel" and i < downs[-1]]
+        behind = [i for i in link if file.lines[i].kind == "travel" and i > downs[-1]]
+        return edited(file, {i: [] for i in aside}) if aside and behind else None
+
+    return pick(rng, range(len(file.paths) - 1), len(file.paths), make)
+
+
+def down_first_behind_script(file, rng):
+    """Behind lines that nobody knows: down before the way in place of behind it."""
+
+    def make(k):
+        link = list(file.link(k))
+        scripts = [i for i in link if file.lines[i].kind == "command" and file.lines[i].text.startswith(("M6", "M97"))]
+        behind = [i for i in link if scripts and i > scripts[-1]]
+        ways = [i for i in behind if file.lines[i].kind == "travel"]
+        downs = [i for i in behind if file.lines[i].kind == "z" and file.lines[i].end[2] < file.lines[i].start[2]]
+        if not ways or not downs or downs[-1] < ways[-1] or "Z" in file.lines[ways[-1]].text:
+            return None
+        return edited(file, {downs[-1]: [], ways[0]: [file.lines[downs[-1]].text, file.lines[ways[0]].text]})
+
+    return pick(rng, range(len(file.paths) - 1), len(file.paths), make)
+
+
 def of_all(kind, change):
     """The same change to all moves of a kind."""
 
@@ -255,6 +287,8 @@ DEFECTS = (
     ("lift dropped in a layer that has them", "lifts", lift_dropped_in_layer, "free"),
     ("rises where the way to the layer ends", "lifts", low_to_next_layer, "free"),
     ("down before the way to the next object", "lifts", down_before_way, "free"),
+    ("no way aside before the next object", "lifts", sinks_over_object, "free"),
+    ("down before the way behind a script", "scripts", down_first_behind_script, "free"),
     ("all ways a tenth faster", "speeds", of_all("travel", lambda line: with_word(
         line.text, "F", lambda f: f * 1.1)), "free"),
     ("all lifts 0.05 mm lower", "lifts", of_all("z", lift_lower_by(50)), "free"),

@@ -160,6 +160,23 @@ def as_fast_as_travel(kind, place):
     return defect
 
 
+def tail_at_half_speed(file, rng):
+    """What goes on along a path without filament is half as fast."""
+
+    def make(k):
+        link = list(file.link(k))
+        ways = [i for i in link if file.lines[i].kind == "travel"]
+        printed = file.lines[file.paths[k].last].feed
+        if len(ways) < 2 or ways[0] != link[0] or file.lines[ways[0]].length() < 0.02:
+            return None
+        if file.lines[ways[0]].feed != printed or file.lines[ways[1]].feed <= printed:
+            return None
+        return edited(file, {ways[0]: [with_f(file.lines[ways[0]].text, printed / 2)],
+                             ways[1]: [with_f(file.lines[ways[1]].text, file.lines[ways[1]].feed)]})
+
+    return pick(rng, range(len(file.paths) - 1), 400, make)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("travel at another speed", "speeds", travel_slow, "free"),
@@ -173,5 +190,6 @@ DEFECTS = (
     ("way at the speed of another layer", "speeds", way_of_other_layer, "free"),
     ("retraction as fast as travel", "speeds", as_fast_as_travel("retract", 1), "free"),
     ("priming as fast as travel", "speeds", as_fast_as_travel("prime", 3), "free"),
+    ("along a path's end at half its speed", "path_ends", tail_at_half_speed, "free"),
     ("way a tenth faster", "speeds", way_faster, "free"),
 )

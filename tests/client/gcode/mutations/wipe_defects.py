@@ -124,6 +124,21 @@ def wipe_of_other_path(file, rng):
     return pick(rng, links(file), 20, make)
 
 
+def wipe_mark_early(file, rng):
+    """The mark of a wipe stands before the last segment of its path."""
+
+    def make(k):
+        link = list(file.link(k))
+        begins = [i for i in link if "WIPE_START" in file.lines[i].text]
+        path = file.paths[k]
+        if not begins or len(path.deposits) < 2:
+            return None
+        last = path.deposits[-1]
+        return edited(file, {begins[0]: [], last: [file.lines[begins[0]].text, file.lines[last].text]})
+
+    return pick(rng, range(len(file.paths) - 1), 200, make)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("wipe dropped", "wipes", wipe_dropped, "free"),
@@ -134,5 +149,6 @@ DEFECTS = (
     ("wipe at another speed", "speeds", wipe_slow, "free"),
     ("wipe pulls all at once", "wipes", wipe_pulls_at_once, "free"),
     ("wipe's filament pulled before it", "wipes", wipe_without_filament, "free"),
+    ("mark of a wipe before its path ends", "wipes", wipe_mark_early, "free"),
     ("wipe beside a path that had none", "wipes", wipe_of_other_path, "free"),
 )
