@@ -228,8 +228,11 @@ double VertexBound::EvaluateAll(Budget& budget) {
     moves_.AddPair(it.junction, *it.members[0], *it.members[1]);
   }
   if (is_first) {
-    AddNearest(all);
-    for (const NearMoves::Group& group : moves_.groups()) sets_.AddNear(group);
+    AddNearest(all, budget);
+    for (const NearMoves::Group& group : moves_.groups()) {
+      if (budget.Exhausted()) return 0;
+      sets_.AddNear(group);
+    }
   }
   average_.moves.resize(moves_.moves().size());
   sets_.AddNewMoves();
@@ -240,12 +243,13 @@ double VertexBound::EvaluateAll(Budget& budget) {
 }
 
 // `candidates` are sorted by cost.
-void VertexBound::AddNearest(const std::vector<AnyCandidate>& candidates) {
+void VertexBound::AddNearest(const std::vector<AnyCandidate>& candidates, Budget& budget) {
   std::vector<size_t> known(graph_.ends.size(), 0);
   for (const AnyCandidate& it : candidates) {
     size_t& a = known[At(it.members[0]->end)];
     size_t& b = known[At(it.members[1]->end)];
     if (a >= kNeighbors && b >= kNeighbors) continue;
+    if (budget.Exhausted()) return;
     ++a;
     ++b;
     moves_.AddPair(it.junction, *it.members[0], *it.members[1]);

@@ -77,7 +77,7 @@ class VertexBound {
   bool ListAll(std::vector<AnyCandidate>& all, Budget& budget);
   double EvaluateNear();
   double EvaluateAll(Budget& budget);
-  void AddNearest(const std::vector<AnyCandidate>& candidates);
+  void AddNearest(const std::vector<AnyCandidate>& candidates, Budget& budget);
   double Rounding() const;
   void Average();
   void Cut(Budget& budget);
