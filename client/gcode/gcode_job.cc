@@ -219,6 +219,8 @@ void SetStrategy(const GcodeFile& file, v1::Strategy& strategy) {
   constexpr double kMostWiped = 0.5;
   const double effort = std::clamp(kRounds / paths, 1.0, kMaxEffort);
   strategy.set_name("auto");
+  // A bound takes up to three times as long as the search, and the print gains nothing by it.
+  (*strategy.mutable_options())["bound"] = "false";
   (*strategy.mutable_options())["effort"] = absl::StrFormat("%.3g", effort);
   const double wiped = std::min(ShareWiped(file), kMostWiped);
   const double little = 1 + (kOfLittleUseAmongWiped - 1) * wiped;

@@ -38,8 +38,6 @@ InputJob NarrowJob(const InputJob& job, const GcodeOptions& options, const JobRe
   InputJob narrow;
   narrow.name = job.name;
   narrow.options = job.options;
-  // Nobody asks how good the second search is by itself.
-  (*narrow.options.mutable_strategy()->mutable_options())["bound"] = "false";
   narrow.layers = NarrowLayers(job, options, found.layers);
   return narrow;
 }
