@@ -13,7 +13,7 @@ namespace {
 // Longest moves that cost so much are ordinary: 13 cm or 0.13 s at least. Sums of the greatest
 // are rounded by less than a hundredth of kImprovementTolerance.
 constexpr double kLeastOrdinary = 0.125;
-constexpr double kMostOrdinary = 16384;
+constexpr double kMostOrdinary = 32768;
 
 // What others are brought to.
 constexpr double kUsual = 128;
