@@ -24,7 +24,7 @@ constexpr int kMostDoublings = 60;
 
 }  // namespace
 
-double CostUnit(const CostSpec& spec, std::initializer_list<const LayerProblem*> problems) {
+double CostUnit(const CostSpec& spec, absl::Span<const LayerProblem* const> problems) {
   BoundingBox box;
   for (const LayerProblem* problem : problems) {
     box.Add(problem->start);

@@ -8,8 +8,7 @@
 #ifndef TRAVERSE_ENGINE_COST_COST_UNIT_H_
 #define TRAVERSE_ENGINE_COST_COST_UNIT_H_
 
-#include <initializer_list>
-
+#include "absl/types/span.h"
 #include "engine/model/cost_spec.h"
 #include "engine/model/layer_problem.h"
 
@@ -17,7 +16,7 @@ namespace traverse {
 
 // The factor by which to multiply the costs of some problems that share `spec`: 1 if a move across
 // all of them costs about as much as on ordinary parts. O(points).
-double CostUnit(const CostSpec& spec, std::initializer_list<const LayerProblem*> problems);
+double CostUnit(const CostSpec& spec, absl::Span<const LayerProblem* const> problems);
 
 // The same costs as `spec`, multiplied by `unit`. REQUIRES: `unit` comes from CostUnit(spec, ...).
 CostSpec InUnit(const CostSpec& spec, double unit);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <unordered_map>
+#include <vector>
 
 #include "engine/base/budget.h"
 #include "engine/cost/wall_cost.h"
@@ -76,10 +77,13 @@ struct ChainLayer {
 };
 using ChainLayerPtr = std::shared_ptr<ChainLayer>;
 
-// A layer's true start, and the next layer if the end is chosen for its sake.
+// The layers behind one that ends with them in view, in build order.
+using LayersInView = std::vector<ChainLayerPtr>;
+
+// A layer's true start, and the layers for whose sake its end is chosen.
 struct TrueStart {
   Point start;
-  ChainLayerPtr next;
+  LayersInView view;
 };
 
 }  // namespace traverse

@@ -37,15 +37,15 @@ void LayerChain::Add(JobLayer given) {
   layers_.push_back(std::move(layer));
   ++pending_;
   MaybePrepare();
-  // It may be one that the layer before need not look at.
-  if (added_ > 1) MaybeAnchor(added_ - 2);
+  // It may be one that the layers before need not look at.
+  MaybeAnchorBefore(added_ - 1);
 }
 
 void LayerChain::Close() {
   MutexLock lock(mutex_);
   closed_ = true;
   MaybePrepare();
-  if (added_ > 0) MaybeAnchor(added_ - 1);
+  MaybeAnchorBefore(added_);
   MaybeFinish();
 }
 
@@ -98,7 +98,7 @@ void LayerChain::RunSolveFirst(const ChainLayerPtr& layer) {
   HandOn(*layer);
   MaybeSolveSecond(layer->index);
   MaybeSolveSecond(layer->index + 1);
-  if (layer->index > 0) MaybeAnchor(layer->index - 1);
+  MaybeAnchorBefore(layer->index);
 }
 
 void LayerChain::RunSolveSecond(const ChainLayerPtr& layer) {
@@ -184,8 +184,31 @@ void LayerChain::MaybeSolveSecond(uint64_t index) {
   MaybeAnchor(index);
 }
 
-// The last stage of layer `index`, if it is solved, its start is known, and so is whatever it is to
-// look at of the next one.
+// The layers that layer `index` is ended in view of; unset while one of them is missing.
+std::optional<LayersInView> LayerChain::ViewFrom(uint64_t index) const {
+  const ChainLayer& layer = *LayerAt(index);
+  LayersInView view;
+  while (solver_.MayLookAhead(layer, view)) {
+    const uint64_t next = index + view.size() + 1;
+    if (next == added_) {
+      if (!closed_) return std::nullopt;
+      break;
+    }
+    if (!solver_.LooksAheadAt(layer, view, *LayerAt(next))) break;
+    if (!LayerAt(next)->first_end) return std::nullopt;
+    view.push_back(LayerAt(next));
+  }
+  return view;
+}
+
+// The last stage of the layers that may have waited for layer `index`.
+void LayerChain::MaybeAnchorBefore(uint64_t index) {
+  for (uint64_t back = 1; back <= LayerSolver::kMostInView + 1 && back <= index; ++back) {
+    MaybeAnchor(index - back);
+  }
+}
+
+// The last stage of layer `index`, if it is solved, and its start and its view are known.
 void LayerChain::MaybeAnchor(uint64_t index) {
   if (index < first_index_ || index >= added_) return;
   const ChainLayerPtr layer = LayerAt(index);
@@ -193,15 +216,10 @@ void LayerChain::MaybeAnchor(uint64_t index) {
   std::optional<Point> start = solver_.FixedStart(*layer);
   if (!start) start = LayerAt(index - 1)->end;
   if (!start) return;
-  TrueStart at{*start, nullptr};
-  if (solver_.MayLookAhead(*layer)) {
-    const bool is_last_known = index + 1 == added_;
-    if (is_last_known && !closed_) return;
-    if (!is_last_known && solver_.LooksAheadAt(*layer, *LayerAt(index + 1)))
-      at.next = LayerAt(index + 1);
-    if (at.next && !at.next->first_end) return;
-  }
+  std::optional<LayersInView> view = ViewFrom(index);
+  if (!view) return;
   layer->anchoring = true;
+  const TrueStart at{*start, *std::move(view)};
   Submit([this, layer, at] { RunAnchor(layer, at); }, layer->points);
 }
 

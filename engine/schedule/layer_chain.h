@@ -13,13 +13,13 @@
 //             the route of an equal layer that began there, or let the strategy resume its route
 //             from there; validate and deliver the route
 //
-// Strategies that look ahead anchor a layer together with the next one, so that it ends where the
-// next one is cheap to begin: first the layer alone, then the next one from its end, then both from
-// these, which is never longer. The anchoring of the next layer starts from its part of the result,
-// so that no work is lost. The caller says whether another layer follows (JobLayer::more_follows).
-// If so, the chain waits for that layer; if not, it ignores the next layer even if that is there.
-// Looking ahead is useless where the next layer begins at a given point or at the cleaning point;
-// the move to that point counts in any case.
+// Strategies that look ahead anchor a layer with the next ones in view, so that it ends where they
+// are cheap to begin: first the layer alone, then each of the next ones from the end of the one
+// before, then all from these, which is never longer. The anchoring of the next layers starts from
+// their parts of the result, so that no work is lost. The caller says whether another layer follows
+// (JobLayer::more_follows). If so, the chain waits for that layer; if not, it ignores the next
+// layer even if that is there. Looking ahead is useless where the next layer begins at a given
+// point or at the cleaning point; the move to that point counts in any case.
 //
 // What a stage does depends only on the job and the seed, never on timing, so the routes are the
 // same on any number of threads. Every stage of a layer is a separate task: the executor can share
@@ -33,6 +33,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "engine/base/mutex.h"
 #include "engine/engine.h"
@@ -74,6 +75,8 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   void MaybeSolveFirst(const ChainLayerPtr& layer) TRAVERSE_REQUIRES(mutex_);
   void HandOn(const ChainLayer& layer) TRAVERSE_REQUIRES(mutex_);
   void MaybeSolveSecond(uint64_t index) TRAVERSE_REQUIRES(mutex_);
+  std::optional<LayersInView> ViewFrom(uint64_t index) const TRAVERSE_REQUIRES(mutex_);
+  void MaybeAnchorBefore(uint64_t index) TRAVERSE_REQUIRES(mutex_);
   void MaybeAnchor(uint64_t index) TRAVERSE_REQUIRES(mutex_);
   void MaybeFinish() TRAVERSE_REQUIRES(mutex_);
   void Submit(std::function<void()> stage, int64_t points) TRAVERSE_REQUIRES(mutex_);

@@ -1,7 +1,6 @@
 #include "engine/schedule/layer_solver.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "absl/status/status.h"
@@ -22,6 +21,9 @@ namespace {
 constexpr double kMostAnchorShare = 0.5;
 constexpr double kLeastAnchorShare = 0.1;
 constexpr double kThreadsWorthOfAnchor = 0.8;
+
+// Of that, what the layer alone may use, if it is then ended with the next ones in view.
+constexpr double kAloneShare = 0.4;
 
 // What predicting an end, or comparing with greedy, may use, and a search for a bound.
 constexpr double kSideShare = 0.15;
@@ -60,7 +62,7 @@ double LayerSolver::AnchorShare() const {
 
 // Nothing is left for anchor to do where the start is certain and the next layer is not looked at.
 double LayerSolver::SolveShare(const ChainLayer& layer) const {
-  return FixedStart(layer) && !MayLookAhead(layer) ? 1 : 1 - AnchorShare();
+  return FixedStart(layer) && !MayLookAhead(layer, {}) ? 1 : 1 - AnchorShare();
 }
 
 // Whether there is no time but to answer with what there is.
@@ -85,20 +87,6 @@ std::optional<Point> LayerSolver::FixedStart(const ChainLayer& layer) const {
   if (layer.index == 0) return spec_.start;
   if (CleaningDueAfter(layer.index - 1)) return spec_.cleaning->point;
   return std::nullopt;
-}
-
-// Whether the layer's end is worth a look at the next layer, if there will be one.
-bool LayerSolver::MayLookAhead(const ChainLayer& layer) const {
-  const size_t paths = layer.given.plan.paths.size();
-  return layer.given.more_follows && !CleaningDueAfter(layer.index) && paths > 0 &&
-         paths < strategy_->traits().look_ahead_paths;
-}
-
-// Whether it is worth a look at `next`.
-bool LayerSolver::LooksAheadAt(const ChainLayer& layer, const ChainLayer& next) const {
-  if (FixedStart(next) || next.cost != layer.cost) return false;
-  const size_t paths = next.given.plan.paths.size();
-  return paths > 0 && layer.given.plan.paths.size() + paths <= strategy_->traits().look_ahead_paths;
 }
 
 void LayerSolver::SolveFirst(ChainLayer& layer) const {
@@ -193,26 +181,14 @@ void LayerSolver::SolveSecond(ChainLayer& layer) const {
   layer.outcome.solve_seconds += watch.Seconds();
 }
 
-// In view of the next layer, if there is one: with what its best known route would cost from the
-// end of this one.
-double LayerSolver::CostInView(const LayerProblem& problem, const Route& route,
-                               const ChainLayer* next) const {
-  Budget turns = Turns();
-  const double cost = RouteCost(problem, route, &turns);
-  if (next == nullptr) return cost;
-  const Point end = RouteEnd(*problem.plan, route, problem.start);
-  const Route& known = next->foreseen.empty() ? next->first.route : next->foreseen;
-  return cost + RouteCost(Problem(*next, end), known);
-}
-
 // An equal layer's from the same start may be better than that found from a predicted one, and so
 // may what the layer before saw ahead.
 const Route& LayerSolver::BestToGoOnFrom(const LayerProblem& problem, const ChainLayer& layer,
-                                         const KnownRoute* known, const ChainLayer* next) const {
+                                         const KnownRoute* known) const {
   const Route* best = &layer.first.route;
-  double least = CostInView(problem, *best, next);
+  double least = RouteCost(problem, *best);
   const auto offer = [&](const Route& route) {
-    const double cost = CostInView(problem, route, next);
+    const double cost = RouteCost(problem, route);
     if (cost >= least) return;
     least = cost;
     best = &route;
@@ -222,11 +198,8 @@ const Route& LayerSolver::BestToGoOnFrom(const LayerProblem& problem, const Chai
   return *best;
 }
 
-// `next` is null afterwards if the layer was better not ended with a view to it; `greedy` is set if
-// that was to be compared with.
 Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, ChainLayer& layer,
-                                         const KnownRoute* known, ChainLayer*& next,
-                                         Route& greedy) const {
+                                         const KnownRoute* known, const LayersInView& view) const {
   if (strategy_->traits().serial) {
     Budget budget = LayerBudget(layer, 1);
     return Prepared(layer).Solve(problem, budget);
@@ -234,8 +207,8 @@ Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, ChainLayer
   const bool as_predicted = problem.start == layer.predicted_start;
   if (layer.second_start && problem.start == *layer.second_start) return layer.second;
   // What the layer was to use for a look ahead is not left unused where there is nothing to see.
-  const bool has_time_left = layer.first.stop == StopReason::kTimeLimit && MayLookAhead(layer);
-  if (as_predicted && next == nullptr && !has_time_left) return layer.first;
+  const bool has_time_left = layer.first.stop == StopReason::kTimeLimit && MayLookAhead(layer, {});
+  if (as_predicted && view.empty() && !has_time_left) return layer.first;
   Solution solution;
   if (known != nullptr && TakeOver(*known, problem, layer, solution)) return solution;
   if (Expired()) {
@@ -245,43 +218,21 @@ Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, ChainLayer
     return solution;
   }
   Budget budget = LayerBudget(layer, AnchorShare());
-  if (as_predicted && next != nullptr) {
+  if (as_predicted && !view.empty()) {
     solution = layer.first;
   } else {
-    const Route& from = BestToGoOnFrom(problem, layer, known, nullptr);
-    solution = strategy_->traits().quick ? Prepared(layer).Solve(problem, budget)
-                                         : Prepared(layer).Resume(problem, from, budget);
+    Budget alone = view.empty() ? budget : Part(budget, kAloneShare);
+    const Route& from = BestToGoOnFrom(problem, layer, known);
+    solution = strategy_->traits().quick ? Prepared(layer).Solve(problem, alone)
+                                         : Prepared(layer).Resume(problem, from, alone);
   }
-  if (next != nullptr) SolveWithNext(problem, layer, next, greedy, budget, solution);
+  if (!view.empty()) SolveInView(problem, layer, view, budget, solution);
   if (as_predicted && !solution.lower_bound) solution.lower_bound = layer.first.lower_bound;
   // What resuming does not tell of itself is as it was.
   solution.statistics.insert(layer.first.statistics.begin(), layer.first.statistics.end());
   // A search that the clock cut short stays so, whatever the polishing came to.
   if (layer.first.stop == StopReason::kTimeLimit) solution.stop = StopReason::kTimeLimit;
   return solution;
-}
-
-// Ends the layer with a view to the next one. `solution` regards the layer alone: from its end the
-// next one is solved first, as it would be without a look ahead, and what is found for both
-// together is never longer than that. `next` and `greedy` as in SolveFromTrueStart.
-void LayerSolver::SolveWithNext(const LayerProblem& problem, ChainLayer& layer, ChainLayer*& next,
-                                Route& greedy, Budget& budget, Solution& solution) const {
-  const Point end = RouteEnd(layer.given.plan, solution.route, problem.start);
-  const LayerProblem follows = Problem(*next, end);
-  next->foreseen = next->first.route;
-  if (end != next->predicted_start) {
-    next->foreseen = Prepared(*next).Resume(follows, next->foreseen, budget).route;
-  }
-  Route foreseen = next->foreseen;
-  Solution seeing =
-      Prepared(layer).ResumeWithNext(problem, solution.route, follows, foreseen, budget);
-  greedy = GreedyRoute(problem, layer);
-  if (RouteCost(problem, seeing.route) > RouteCost(problem, greedy) * (1 + kSameCost)) {
-    next = nullptr;
-    return;
-  }
-  solution = std::move(seeing);
-  next->foreseen = std::move(foreseen);
 }
 
 Route LayerSolver::GreedyRoute(const LayerProblem& problem, const ChainLayer& layer) const {
@@ -291,36 +242,25 @@ Route LayerSolver::GreedyRoute(const LayerProblem& problem, const ChainLayer& la
 
 // Other routes may be better from the true start: an equal layer's from the same start; what the
 // layer before saw ahead; those found for another start, where the clock cut the last search short;
-// greedy's, which a resumed route need not beat; the order given. All in view of the next layer,
-// for whose sake a layer's own travel may grow up to greedy's, and no further. `greedy`: its route,
-// or none if nobody asked for it yet.
+// greedy's, which a resumed route need not beat; the order given. All with the next layers in view:
+// for their sake a layer's own travel may grow.
 void LayerSolver::KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer,
-                                const KnownRoute* known, const ChainLayer* next, Route greedy,
+                                const KnownRoute* known, const LayersInView& view,
                                 Solution& solution) const {
-  if (greedy.empty() && GreedyMayBeBetter(problem, layer, known, next)) {
-    greedy = GreedyRoute(problem, layer);
-  }
-  constexpr double kAny = std::numeric_limits<double>::infinity();
-  Budget turns = Turns();
-  const bool has_limit = next != nullptr && greedy.size() == solution.route.size();
-  const double limit = has_limit ? RouteCost(problem, greedy) * (1 + kSameCost) : kAny;
-  const auto is_over = [&](const Route& route) {
-    return has_limit && RouteCost(problem, route, &turns) > limit;
-  };
-  double best = is_over(solution.route) ? kAny : CostInView(problem, solution.route, next);
+  double best = CostInView(problem, solution.route, view);
   bool was_replaced = false;
   const auto offer = [&](const Route& route) {
     if (route.size() != solution.route.size()) return;  // there was no such search
-    const double cost = CostInView(problem, route, next);
-    if (cost >= best || is_over(route)) return;
+    const double cost = CostInView(problem, route, view);
+    if (cost >= best) return;
     best = cost;
     solution.route = route;
     was_replaced = true;
   };
   if (known != nullptr) offer(known->solution.route);
   offer(layer.foreseen);
-  offer(greedy);
-  if (solution.stop == StopReason::kTimeLimit || has_limit) {
+  if (GreedyMayBeBetter(problem, layer, known)) offer(GreedyRoute(problem, layer));
+  if (solution.stop == StopReason::kTimeLimit) {
     offer(layer.first.route);
     offer(layer.second.route);
   }
@@ -336,12 +276,11 @@ void LayerSolver::KeepBestRoute(const LayerProblem& problem, const ChainLayer& l
 // Whether greedy's route was not beaten yet: not if the strategy began at this very start, or if an
 // equal layer's route was taken over.
 bool LayerSolver::GreedyMayBeBetter(const LayerProblem& problem, const ChainLayer& layer,
-                                    const KnownRoute* known, const ChainLayer* next) const {
+                                    const KnownRoute* known) const {
   if (strategy_->traits().serial || strategy_->traits().quick || Expired()) return false;
   const bool is_compared =
       known != nullptr && known->exact == layer.fingerprint.exact && known->start == problem.start;
-  return !is_compared &&
-         (next != nullptr || layer.precursor || problem.start != layer.predicted_start);
+  return !is_compared && (layer.precursor || problem.start != layer.predicted_start);
 }
 
 // Looks for a lower bound of a solution, if the strategy wants one. The search for it is done with
@@ -358,30 +297,29 @@ void LayerSolver::Bound(const LayerProblem& problem, ChainLayer& layer, Solution
 
 // What the layer's route depends on, for equal layers to share it.
 uint64_t LayerSolver::KeyAt(const ChainLayer& layer, const TrueStart& at) const {
-  const uint64_t key = ProblemKey(layer.fingerprint.shape, layer.origin, at.start, layer.finish);
-  if (!at.next) return key;
-  const ChainLayer& next = *at.next;
-  return ProblemKeyBefore(key, layer.origin, next.fingerprint.shape, next.origin, next.finish);
+  uint64_t key = ProblemKey(layer.fingerprint.shape, layer.origin, at.start, layer.finish);
+  for (const ChainLayerPtr& next : at.view) {
+    key = ProblemKeyBefore(key, layer.origin, next->fingerprint.shape, next->origin, next->finish);
+  }
+  return key;
 }
 
 LayerOutcome LayerSolver::Anchor(ChainLayer& layer, const TrueStart& at) const {
   const Stopwatch watch;
   const Point start = at.start;
-  ChainLayer* next = at.next.get();
   const LayerProblem problem = Problem(layer, start);
   const uint64_t key = KeyAt(layer, at);
   const KnownRoute* known = FindAnchored(layer, key);
   Budget turns = Turns();
   if (!ValidateRoute(layer.given.plan, layer.foreseen, &turns).ok()) layer.foreseen.clear();
-  Route greedy;
-  Solution solution = SolveFromTrueStart(problem, layer, known, next, greedy);
+  Solution solution = SolveFromTrueStart(problem, layer, known, at.view);
   LayerOutcome outcome = std::move(layer.outcome);
   if (turns.ExhaustedNow()) return outcome;  // it was cancelled: nobody will look
   if (absl::Status status = ValidateRoute(layer.given.plan, solution.route, &turns); !status.ok()) {
     outcome.invalid_route = std::string(status.message());
     solution = Solution{layer.given_route, StopReason::kLocalOptimum, std::nullopt};
   } else if (!strategy_->traits().pure) {
-    KeepBestRoute(problem, layer, known, next, std::move(greedy), solution);
+    KeepBestRoute(problem, layer, known, at.view, solution);
   }
   if (!solution.lower_bound) Bound(problem, layer, solution);
   if (layer.anchored) (*layer.anchored)[key] = layer.known = Known(problem, layer, solution);

@@ -3,9 +3,11 @@
 #ifndef TRAVERSE_ENGINE_SCHEDULE_LAYER_SOLVER_H_
 #define TRAVERSE_ENGINE_SCHEDULE_LAYER_SOLVER_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "engine/base/budget.h"
 #include "engine/engine.h"
@@ -30,11 +32,15 @@ class LayerSolver {
   // The start, if it does not depend on the layer before.
   std::optional<Point> FixedStart(const ChainLayer& layer) const;
 
-  // Whether it may pay to choose the layer's end for the next layer's sake, if there is one.
-  bool MayLookAhead(const ChainLayer& layer) const;
+  // Most layers behind a layer that it is ended in view of.
+  static constexpr size_t kMostInView = 4;
 
-  // Whether it pays to do so for `next`.
-  bool LooksAheadAt(const ChainLayer& layer, const ChainLayer& next) const;
+  // Whether it may pay to have one more layer in view than `view`, if there is one.
+  bool MayLookAhead(const ChainLayer& layer, const LayersInView& view) const;
+
+  // Whether that may be `next`, the layer behind those.
+  bool LooksAheadAt(const ChainLayer& layer, const LayersInView& view,
+                    const ChainLayer& next) const;
 
   // True if time is up, so that the layer must be answered with what there is.
   bool Expired() const;
@@ -69,19 +75,39 @@ class LayerSolver {
   bool TakeOver(const KnownRoute& known, const LayerProblem& problem, const ChainLayer& layer,
                 Solution& solution) const;
   uint64_t KeyAt(const ChainLayer& layer, const TrueStart& at) const;
-  double CostInView(const LayerProblem& problem, const Route& route, const ChainLayer* next) const;
   const Route& BestToGoOnFrom(const LayerProblem& problem, const ChainLayer& layer,
-                              const KnownRoute* known, const ChainLayer* next) const;
+                              const KnownRoute* known) const;
   Solution SolveFromTrueStart(const LayerProblem& problem, ChainLayer& layer,
-                              const KnownRoute* known, ChainLayer*& next, Route& greedy) const;
-  void SolveWithNext(const LayerProblem& problem, ChainLayer& layer, ChainLayer*& next,
-                     Route& greedy, Budget& budget, Solution& solution) const;
+                              const KnownRoute* known, const LayersInView& view) const;
   bool GreedyMayBeBetter(const LayerProblem& problem, const ChainLayer& layer,
-                         const KnownRoute* known, const ChainLayer* next) const;
+                         const KnownRoute* known) const;
   void KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer, const KnownRoute* known,
-                     const ChainLayer* next, Route greedy, Solution& solution) const;
+                     const LayersInView& view, Solution& solution) const;
   const KnownRoute* FindAnchored(const ChainLayer& layer, uint64_t key) const;
   void Bound(const LayerProblem& problem, ChainLayer& layer, Solution& solution) const;
+
+  // In layer_solver_ahead.cc: a layer and those in view, as they are done one after the other.
+  struct RoutesInView {
+    Route route;
+    std::vector<NextLayer> next;
+    double cost = 0;  // of all
+  };
+  static void Connect(const LayerProblem& problem, RoutesInView& routes);
+  static Budget Part(const Budget& budget, double share);  // of the time that is left
+  size_t MostPathsInView(const LayersInView& view) const;
+  RoutesInView OneAfterTheOther(const LayerProblem& problem, const Route& route,
+                                const LayersInView& view, Budget& budget) const;
+  RoutesInView AsForeseen(const LayerProblem& problem, const ChainLayer& layer,
+                          const LayersInView& view, Budget& budget) const;
+  RoutesInView AsGreedyDoes(const LayerProblem& problem, const ChainLayer& layer,
+                            const LayersInView& view) const;
+  void SolveInView(const LayerProblem& problem, ChainLayer& layer, const LayersInView& view,
+                   Budget& budget, Solution& solution) const;
+
+  // The cost of the route, and of what is foreseen of the next layer, if one is in view, from its
+  // end.
+  double CostInView(const LayerProblem& problem, const Route& route,
+                    const LayersInView& view) const;
 
   const JobSpec spec_;
   const std::unique_ptr<Strategy> strategy_;

@@ -103,9 +103,8 @@ bool IteratedSearch::Kick(Rng& rng, double& delta) {
 }
 
 bool IteratedSearch::BridgeKick(Rng& rng, double& delta) {
-  const int paths = state_.tree().path_count();
   for (int i = 0; i < kTries; ++i) {
-    const int node = ChooseNode(rng, static_cast<int>(rng.Below(static_cast<uint32_t>(paths))));
+    const int node = ChooseNode(rng, ChooseLeaf(rng));
     int cuts[4];
     if (node < 0 || !ChooseCuts(rng, node, cuts)) continue;
     // A | B | C | D -> A | D | C | B in two exchanges: B with C D, then C with D.
@@ -139,7 +138,7 @@ bool IteratedSearch::BridgeKick(Rng& rng, double& delta) {
 bool IteratedSearch::TurnKick(Rng& rng, double& delta) {
   const OrderTree& tree = state_.tree();
   for (int i = 0; i < kTries; ++i) {
-    const int leaf = static_cast<int>(rng.Below(static_cast<uint32_t>(tree.path_count())));
+    const int leaf = ChooseLeaf(rng);
     const int node = ChooseNode(rng, leaf);
     if (node < 0 || !TurnsOnly(tree, node)) continue;
     const int first = state_.position(tree.ChildHolding(node, leaf));
@@ -186,6 +185,15 @@ int IteratedSearch::ChooseRunEnd(Rng& rng, int node, int first) const {
   return at >= second && at < node_end ? past_child(leaf) - 1 : -1;
 }
 
+int IteratedSearch::ChooseLeaf(Rng& rng) const {
+  const int first = options_.first_kicked;
+  const int last = std::min(options_.last_kicked, state_.last_position() - 1);
+  if (first > 1 || last < state_.last_position() - 1) {
+    return state_.leaf_at(rng.Between(first, last));
+  }
+  return static_cast<int>(rng.Below(static_cast<uint32_t>(state_.tree().path_count())));
+}
+
 // One of the nodes of free order around a leaf; -1 if there is none.
 int IteratedSearch::ChooseNode(Rng& rng, int leaf) const {
   const OrderTree& tree = state_.tree();
@@ -205,12 +213,14 @@ int IteratedSearch::ChooseSpan(Rng& rng) const {
 
 bool IteratedSearch::ChooseCuts(Rng& rng, int node, int (&cuts)[4]) const {
   const OrderTree& tree = state_.tree();
-  const int size = tree.size(node);
+  const int first = std::max(state_.position(node), options_.first_kicked);
+  const int past_node = state_.position(node) + tree.size(node);
+  const int size = std::min(past_node - 1, options_.last_kicked) + 1 - first;
   const int span = std::min(size, ChooseSpan(rng));
-  const int begin = state_.position(node) + rng.Between(0, size - span);
+  const int begin = first + rng.Between(0, size - span);
   for (int& cut : cuts) {
     cut = begin + rng.Between(0, span);
-    if (cut < state_.position(node) + size) {
+    if (cut < past_node) {
       cut = state_.position(tree.ChildHolding(node, state_.leaf_at(cut)));
     }
   }

@@ -50,6 +50,10 @@ struct IteratedSearchOptions {
   // How much worse a route may be to stay with a chance of 1/e, in mean moves of the route.
   double temperature = 0.2;
 
+  // Kicks cut only next to positions from the first to the last of these. Repairs go beyond them.
+  int first_kicked = 1;
+  int last_kicked = std::numeric_limits<int>::max();
+
   // Leaves between the first and the last cut of a kick: least and most, with as many kicks of one
   // order of magnitude as of another. Wide kicks find more on small layers, but their repair costs
   // too much on large ones. A turned run has at most the largest span.
@@ -89,6 +93,7 @@ class IteratedSearch {
   bool TurnKick(Rng& rng, double& delta);
   int ChooseRunEnd(Rng& rng, int node, int first) const;
   int ChooseNode(Rng& rng, int leaf) const;
+  int ChooseLeaf(Rng& rng) const;
   bool ChooseCuts(Rng& rng, int node, int (&cuts)[4]) const;
   int ChooseSpan(Rng& rng) const;
   void KeepBest(double cost);

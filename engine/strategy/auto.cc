@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -15,7 +16,7 @@
 #include "engine/cost/route_cost.h"
 #include "engine/cost/route_entries.h"
 #include "engine/cost/wall_cost.h"
-#include "engine/model/two_layers.h"
+#include "engine/model/layers_in_order.h"
 #include "engine/proof/small_parts/small_parts.h"
 #include "engine/search/end_groups.h"
 #include "engine/search/entries/leaf_entries.h"
@@ -52,10 +53,17 @@ constexpr double kResumeShare = 0.4;
 // of less effort so much more.
 constexpr double kEarned = 12;
 
-// Of more paths, two layers take longer to search together than a good end is worth; of fewer where
-// the caller wants so much of each iteration that there is no time for it.
-constexpr size_t kLookAheadPaths = 400;
+// Layers of so many paths together are searched ahead; of fewer where the caller wants so much of
+// each iteration that there is no time for it.
+constexpr size_t kLookAheadPaths = 20'000;
 constexpr size_t kLookAheadPathsInHaste = 64;
+constexpr size_t kLookFurtherPaths = 150;
+
+// Of more paths together, only those near the border are kicked: so many of each layer. Of fewer,
+// searches take so little time that more effort is well worth it, up to so many times as much.
+constexpr size_t kPathsSearchedTogether = 400;
+constexpr int kKickedAtBorder = 50;
+constexpr double kMostEffortOnFew = 4;
 
 // Layers of more paths are searched wider and deeper: each kick costs more, and gains more.
 constexpr int kFewPaths = 150;
@@ -130,26 +138,33 @@ class AutoLayer : public PreparedLayer {
     return Search(LayerView(problem, &budget), start, {effort, effort, effort >= 1}, budget);
   }
 
-  Solution ResumeWithNext(const LayerProblem& problem, const Route& start, const LayerProblem& next,
-                          Route& next_start, Budget& budget) override {
-    const int paths = static_cast<int>(problem.plan->paths.size());
-    const bool has_walls = problem.walls != nullptr || next.walls != nullptr;
+  Solution ResumeWithNext(const LayerProblem& problem, const Route& start,
+                          std::vector<NextLayer>& next, Budget& budget) override {
+    assert(!next.empty());
+    const bool has_walls = problem.walls != nullptr || next.front().problem.walls != nullptr;
+    assert(!has_walls || next.size() == 1);
     if (has_walls && problem.walls_unit != 1) return Resume(problem, start, budget);
     PointPairs second_points;
-    const Plan plan =
-        PlanOfBoth(*problem.plan, has_walls ? SetApart(*next.plan, second_points) : *next.plan);
-    const WallCost walls(problem.walls, next.walls, second_points, problem.cost);
-    LayerProblem both = problem;
-    both.plan = &plan;
-    both.walls = has_walls ? &walls : nullptr;
-    both.finish = next.finish;
-    const double effort = options_.effort * kResumeShare;
+    const Plan second_apart =
+        has_walls ? SetApart(*next.front().problem.plan, second_points) : Plan();
+    std::vector<const Plan*> plans = {problem.plan};
+    std::vector<const Route*> routes = {&start};
+    for (const NextLayer& layer : next) {
+      plans.push_back(has_walls ? &second_apart : layer.problem.plan);
+      routes.push_back(&layer.route);
+    }
+    const Plan plan = PlanInOrder(plans);
+    const WallCost walls(problem.walls, next.front().problem.walls, second_points, problem.cost);
+    LayerProblem all = problem;
+    all.plan = &plan;
+    all.walls = has_walls ? &walls : nullptr;
+    all.finish = next.back().problem.finish;
     AutoLayer joined(options_, plan);
-    Solution solution =
-        joined.Search(LayerView(both, &budget), RouteOfBoth(start, next_start, paths),
-                      {effort, 2 * effort}, budget);
-    next_start = RouteOfSecond(solution.route, paths);
-    solution.route = RouteOfFirst(solution.route, paths);
+    Solution solution = joined.Search(LayerView(all, &budget), RouteInOrder(routes),
+                                      EffortOnAll(problem, plan), budget);
+    std::vector<Route> found = RoutesOfEach(plans, solution.route);
+    for (size_t i = 0; i < next.size(); ++i) next[i].route = std::move(found[i + 1]);
+    solution.route = std::move(found.front());
     ProveIfSmall(problem, solution, budget);
     return solution;
   }
@@ -159,7 +174,27 @@ class AutoLayer : public PreparedLayer {
     double kicks;
     double small_parts;
     bool detours = true;  // whether worse routes are walked through: too far for a short search
+
+    // Positions near which kicks are.
+    int first_kicked = 1;
+    int last_kicked = std::numeric_limits<int>::max();
   };
+
+  // On a layer and those behind it. What large layers are on their own they are already: there only
+  // what is near the border is worth a search.
+  Effort EffortOnAll(const LayerProblem& problem, const Plan& all) const {
+    const double share =
+        static_cast<double>(kPathsSearchedTogether) / static_cast<double>(all.paths.size());
+    const bool in_haste = options_.least_gain_each > 0;
+    Effort effort{
+        options_.effort * (in_haste ? kResumeShare : std::clamp(share, 1.0, kMostEffortOnFew)),
+        options_.effort * 2 * kResumeShare};
+    if (share >= 1) return effort;
+    const int border = static_cast<int>(problem.plan->paths.size());  // its last path's position
+    effort.first_kicked = std::max(1, border + 1 - kKickedAtBorder);
+    effort.last_kicked = border + kKickedAtBorder;
+    return effort;
+  }
 
   // REQUIRES: the layer's plan is the one that was prepared.
   Solution Search(const LayerView& layer, Route route, const Effort& effort, Budget& budget) {
@@ -186,8 +221,11 @@ class AutoLayer : public PreparedLayer {
     options.descent_depth = 1;  // kicks find sooner what trials would
     const int paths = tree.path_count();
     const double patience = paths > kFewPaths ? kPatience : kPatienceOfFew;
+    options.first_kicked = effort.first_kicked;
+    options.last_kicked = std::min(effort.last_kicked, paths);
+    const int kicked = options.last_kicked - options.first_kicked + 1;
     options.patience = static_cast<int64_t>(std::min(effort.kicks, 1.0) * kLeastPatience +
-                                            effort.kicks * patience * paths);
+                                            effort.kicks * patience * kicked);
     options.least_gain = kLeastGain;
     options.least_gain_each = options_.least_gain_each;
     options.window = static_cast<double>(options_.gain_window);
@@ -263,10 +301,12 @@ class AutoLayer : public PreparedLayer {
 class Auto : public PreparingStrategy {
  public:
   Auto(const AutoOptions& options, bool bound)
-      : PreparingStrategy({.reuses_routes = true,
-                           .bound_effort = bound ? options.effort : 0,
-                           .look_ahead_paths = options.least_gain_each > 0 ? kLookAheadPathsInHaste
-                                                                           : kLookAheadPaths}),
+      : PreparingStrategy(
+            {.reuses_routes = true,
+             .bound_effort = bound ? options.effort : 0,
+             .look_ahead_paths =
+                 options.least_gain_each > 0 ? kLookAheadPathsInHaste : kLookAheadPaths,
+             .look_further_paths = options.least_gain_each > 0 ? 0 : kLookFurtherPaths}),
         options_(options) {}
 
   std::unique_ptr<PreparedLayer> Prepare(const Plan& plan) const override {

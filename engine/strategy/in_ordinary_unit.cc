@@ -1,7 +1,9 @@
 #include "engine/strategy/in_ordinary_unit.h"
 
+#include <cstddef>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/match.h"
 #include "engine/cost/cost_unit.h"
@@ -45,12 +47,18 @@ class LayerInOrdinaryUnit : public PreparedLayer {
     return FromUnit(layer_->Resume(InUnit(problem, unit), start, budget), unit);
   }
 
-  Solution ResumeWithNext(const LayerProblem& problem, const Route& start, const LayerProblem& next,
-                          Route& next_start, Budget& budget) override {
-    const double unit = CostUnit(problem.cost, {&problem, &next});
-    return FromUnit(layer_->ResumeWithNext(InUnit(problem, unit), start, InUnit(next, unit),
-                                           next_start, budget),
-                    unit);
+  Solution ResumeWithNext(const LayerProblem& problem, const Route& start,
+                          std::vector<NextLayer>& next, Budget& budget) override {
+    std::vector<const LayerProblem*> problems = {&problem};
+    for (const NextLayer& layer : next) problems.push_back(&layer.problem);
+    const double unit = CostUnit(problem.cost, problems);
+    std::vector<NextLayer> scaled;
+    for (NextLayer& layer : next) {
+      scaled.push_back({InUnit(layer.problem, unit), std::move(layer.route)});
+    }
+    Solution solution = layer_->ResumeWithNext(InUnit(problem, unit), start, scaled, budget);
+    for (size_t i = 0; i < next.size(); ++i) next[i].route = std::move(scaled[i].route);
+    return FromUnit(std::move(solution), unit);
   }
 
  private:

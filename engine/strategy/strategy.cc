@@ -23,10 +23,10 @@ class Unprepared : public PreparedLayer {
     return strategy_.Resume(problem, start, budget);
   }
 
-  Solution ResumeWithNext(const LayerProblem& problem, const Route& start, const LayerProblem& next,
-                          Route& next_start, Budget& budget) override {
+  Solution ResumeWithNext(const LayerProblem& problem, const Route& start,
+                          std::vector<NextLayer>& next, Budget& budget) override {
     assert(problem.plan == &plan_);
-    return strategy_.ResumeWithNext(problem, start, next, next_start, budget);
+    return strategy_.ResumeWithNext(problem, start, next, budget);
   }
 
  private:
@@ -43,9 +43,9 @@ Solution Strategy::Resume(const LayerProblem& problem, const Route& start, Budge
 }
 
 Solution Strategy::ResumeWithNext(const LayerProblem& problem, const Route& start,
-                                  [[maybe_unused]] const LayerProblem& next, Route& /*next_start*/,
+                                  [[maybe_unused]] std::vector<NextLayer>& next,
                                   Budget& budget) const {
-  assert(problem.cost == next.cost && !problem.finish);
+  assert(!next.empty() && problem.cost == next.front().problem.cost && !problem.finish);
   return Resume(problem, start, budget);
 }
 
@@ -63,9 +63,8 @@ Solution PreparingStrategy::Resume(const LayerProblem& problem, const Route& sta
 }
 
 Solution PreparingStrategy::ResumeWithNext(const LayerProblem& problem, const Route& start,
-                                           const LayerProblem& next, Route& next_start,
-                                           Budget& budget) const {
-  return Prepare(*problem.plan)->ResumeWithNext(problem, start, next, next_start, budget);
+                                           std::vector<NextLayer>& next, Budget& budget) const {
+  return Prepare(*problem.plan)->ResumeWithNext(problem, start, next, budget);
 }
 
 }  // namespace traverse

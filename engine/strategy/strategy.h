@@ -30,6 +30,13 @@ struct Solution {
   std::map<std::string, double> statistics = {};
 };
 
+// A layer that is done after others: it begins where the one before it ends, so `problem.start` is
+// ignored.
+struct NextLayer {
+  LayerProblem problem;
+  Route route;  // of the problem
+};
+
 // What the chain of layers must know to call a strategy properly.
 struct StrategyTraits {
   // Solve layers one after another, each only from its true start: because Solve is no slower than
@@ -55,6 +62,9 @@ struct StrategyTraits {
   // Two layers with at most this many paths together are worth ResumeWithNext, which the chain
   // calls if it knows the next layer. 0: it does no more than Resume.
   size_t look_ahead_paths = 0;
+
+  // More than two layers are worth it with at most this many paths together.
+  size_t look_further_paths = 0;
 };
 
 // A strategy set up for one plan. It keeps what it derives from the plan between calls, so solving
@@ -68,7 +78,7 @@ class PreparedLayer {
   virtual Solution Solve(const LayerProblem& problem, Budget& budget) = 0;
   virtual Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) = 0;
   virtual Solution ResumeWithNext(const LayerProblem& problem, const Route& start,
-                                  const LayerProblem& next, Route& next_start, Budget& budget) = 0;
+                                  std::vector<NextLayer>& next, Budget& budget) = 0;
 };
 
 // One method with the options of one job. Immutable after construction, so that several threads may
@@ -91,14 +101,14 @@ class Strategy {
   // solves again.
   virtual Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const;
 
-  // Improves `start` together with `next_start`, a route of `next`, the layer after this one, which
-  // begins where this one ends; its own start is ignored. The two together never get worse. The
-  // solution, and so its bound, is that of `problem` alone: a route that ends elsewhere for the
-  // sake of the next layer is not optimal. By default it leaves `next_start` as it is and resumes.
-  // REQUIRES: both have the same cost; problem.finish is unset.
+  // Improves `start` together with the routes of `next`, the layers after this one. All of them
+  // together never get worse. The solution, and so its bound, is that of `problem` alone: a route
+  // that ends elsewhere for the sake of the next layers is not optimal. By default it leaves `next`
+  // as it is and resumes.
+  // REQUIRES: `next` is not empty; all have the same cost; only the last may have a finish; where
+  // there are walls, `next` is one layer.
   virtual Solution ResumeWithNext(const LayerProblem& problem, const Route& start,
-                                  const LayerProblem& next, Route& next_start,
-                                  Budget& budget) const;
+                                  std::vector<NextLayer>& next, Budget& budget) const;
 
   // For a plan that is solved more than once. The plan and this strategy must outlive the result.
   // By default it keeps nothing of the plan.
@@ -117,8 +127,8 @@ class PreparingStrategy : public Strategy {
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const final;
   Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const final;
-  Solution ResumeWithNext(const LayerProblem& problem, const Route& start, const LayerProblem& next,
-                          Route& next_start, Budget& budget) const final;
+  Solution ResumeWithNext(const LayerProblem& problem, const Route& start,
+                          std::vector<NextLayer>& next, Budget& budget) const final;
 };
 
 // A row of the registry: what can be known about a strategy without running it.

@@ -5,10 +5,10 @@
 namespace traverse {
 namespace {
 
-// This many layers enter the window whatever their size. A layer may be answered only when the next
-// one was solved; and if a cleaning is due after that, it is not solved before the engine knows
-// whether another one follows.
-constexpr int64_t kLeastLayers = 3;
+// The window always takes this many layers, whatever their size: a layer may be answered only when
+// the four behind it are solved, and if a cleaning is due after the last of these, the engine
+// solves it only when it knows whether another one follows.
+constexpr int64_t kLeastLayers = 6;
 
 }  // namespace
 

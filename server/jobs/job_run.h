@@ -82,7 +82,7 @@ class JobPort {
 // How much of a job may be in progress: given to the engine and not yet written.
 struct JobWindow {
   int64_t layers = 256;
-  int64_t points = 500'000;  // three layers may exceed it
+  int64_t points = 500'000;  // six layers may exceed it
 };
 
 // Thread-safe, except as stated below.

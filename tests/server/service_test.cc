@@ -191,10 +191,15 @@ TEST(Service, AWindowOfOneLayerStillLooksAheadAndCleans) {
   request.mutable_options()->set_look_ahead(true);
   v1::Cleaning& cleaning = *request.mutable_options()->mutable_cleaning();
   cleaning.mutable_point();
-  cleaning.set_every_layers(2);
 
-  EXPECT_EQ(service.Batch(request).layers.size(), 30u);
-  EXPECT_EQ(service.Stream(request).layers.size(), 30u);
+  // With 5, the last layer in view of the first one is the last before a cleaning.
+  for (const int every_layers : {2, 5, 7}) {
+    SCOPED_TRACE(every_layers);
+    cleaning.set_every_layers(every_layers);
+
+    EXPECT_EQ(service.Batch(request).layers.size(), 30u);
+    EXPECT_EQ(service.Stream(request).layers.size(), 30u);
+  }
 }
 
 TEST(Service, JobsWithoutLayersHaveASummary) {

@@ -46,8 +46,8 @@ class NotingLayer : public PreparedLayer {
     ++(solved_ ? calls_.resumed_after_solve : calls_.resumed_without_solve);
     return Solution{start, StopReason::kLocalOptimum, std::nullopt};
   }
-  Solution ResumeWithNext(const LayerProblem& problem, const Route& start, const LayerProblem&,
-                          Route&, Budget& budget) override {
+  Solution ResumeWithNext(const LayerProblem& problem, const Route& start, std::vector<NextLayer>&,
+                          Budget& budget) override {
     return Resume(problem, start, budget);
   }
 

@@ -7,12 +7,14 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "engine/cost/route_cost.h"
+#include "engine/model/layers_in_order.h"
 #include "engine/schedule/layer_chain.h"
 #include "engine/strategy/registry.h"
 #include "tests/support/problems/brute_force.h"
@@ -41,6 +43,7 @@ Plan RightSide() { return PointsOnALine({12, 20, 30}); }
 struct Options {
   JobSpec spec = {};
   bool more_follows = true;
+  std::string strategy = "auto";
   int threads = 4;
   TestExecutor::Order order = TestExecutor::Order::kOldestFirst;
   std::chrono::milliseconds pause{0};  // before each layer and the end
@@ -50,7 +53,7 @@ std::map<uint64_t, LayerOutcome> RunJob(const std::vector<JobLayer>& layers,
                                         const Options& options) {
   RecordingSink sink;
   TestExecutor executor(options.threads, options.order);
-  auto job = Job::Start(options.spec, *MakeStrategy("auto", {}), executor, sink);
+  auto job = Job::Start(options.spec, *MakeStrategy(options.strategy, {}), executor, sink);
   for (JobLayer layer : layers) {
     layer.more_follows = options.more_follows;
     std::this_thread::sleep_for(options.pause);
@@ -123,19 +126,55 @@ TEST(LookAhead, BoundsAndProofsHoldForEachLayerAlone) {
   }
 }
 
-TEST(LookAhead, MakesNoLayerDearerThanGreedyDoes) {
+// Of jobs whose layers are all in view of the first one.
+TEST(LookAhead, MakesNoJobLongerThanGreedyOrThanOneLayerAfterTheOther) {
   int dearer_than_need_be = 0;
-  for (uint64_t seed = 1; seed <= 30; ++seed) {
+  int shorter = 0;
+  for (uint64_t seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
-    for (const auto& [index, outcome] : RunJob(RandomLayers(seed, 12), {})) {
-      const LayerProblem problem{&outcome.plan, outcome.start, std::nullopt, CostSpec(), 1};
-      Budget budget;
-      const Solution greedy = (*MakeStrategy("greedy", {}))->Solve(problem, budget);
-      EXPECT_LE(outcome.cost, RouteCost(problem, greedy.route) + 1e-6) << "layer " << index;
+    std::vector<JobLayer> layers;
+    for (uint64_t i = 0; i < 5; ++i) {
+      layers.push_back({RandomPlan(10 * seed + i, {.max_paths = 9}), {}, {}});
+    }
+
+    const auto outcomes = RunJob(layers, {});
+    const double seeing = Total(outcomes);
+    const double blind = Total(RunJob(layers, {.more_follows = false}));
+
+    EXPECT_LE(seeing, Total(RunJob(layers, {.strategy = "greedy"})) + 1e-6);
+    EXPECT_LE(seeing, blind + 1e-6);
+    shorter += seeing < blind - 1e-3 ? 1 : 0;
+    for (const auto& [index, outcome] : outcomes) {
       dearer_than_need_be += outcome.lower_bound.value_or(outcome.cost) < outcome.cost - 1e-3;
     }
   }
+  EXPECT_GT(shorter, 20);
   EXPECT_GT(dearer_than_need_be, 10);
+}
+
+// From 0, greedy does 1 and then -2, for 4, and the next layer is 42 from there. The other way
+// round the first layer costs 5, and the next one 39.
+TEST(LookAhead, LetsALayerCostMoreThanGreedyDoesForTheSakeOfTheNext) {
+  const auto outcomes =
+      RunJob({{PointsOnALine({1, -2}), {}, {}}, {PointsOnALine({2, 40}), {}, {}}}, {});
+
+  EXPECT_DOUBLE_EQ(outcomes.at(0).cost, 5);
+  EXPECT_DOUBLE_EQ(Total(outcomes), 5 + 39);
+}
+
+// What is best for the second layer alone is dear for the third one.
+TEST(LookAhead, SeesMoreThanTheNextLayer) {
+  std::vector<JobLayer> layers;
+  for (const std::vector<double>& places :
+       {std::vector<double>{1, -1}, {2, -2.1}, {3, -3.2}, {4, -4.3}, {30, 40}}) {
+    layers.push_back({PointsOnALine(places), {}, {}});
+  }
+  std::vector<const Plan*> all;
+  for (const JobLayer& layer : layers) all.push_back(&layer.plan);
+  const Plan joined = PlanInOrder(all);
+  const LayerProblem together{&joined, {0, 0}, std::nullopt, CostSpec(), 1};
+
+  EXPECT_NEAR(Total(RunJob(layers, {})), BruteForce(together).cost, 1e-9);
 }
 
 // Octagons on a grid, every second column moved by half a step.
@@ -234,13 +273,30 @@ TEST(LookAhead, ALayerWaitsForWhatIsSaidToFollow) {
   EXPECT_EQ(job->pending(), 1);
 
   job->Add({RightSide(), {}, {}, true});
-  ASSERT_TRUE(sink.WaitForAnswers(1));
   std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  EXPECT_EQ(job->pending(), 1);
+  EXPECT_EQ(job->pending(), 2);
 
   job->Close();
   sink.Wait();
   EXPECT_EQ(sink.ByIndex().at(0).end, (Point{10, 0}));
+}
+
+TEST(LookAhead, ALayerWaitsForNoMoreThanItsView) {
+  RecordingSink sink;
+  TestExecutor executor(2);
+  auto job = Job::Start(JobSpec(), *MakeStrategy("auto", {}), executor, sink);
+  job->Add({BothSides(), {}, {}, true});
+  for (size_t i = 0; i < LayerSolver::kMostInView; ++i) job->Add({RightSide(), {}, {}, true});
+  ASSERT_TRUE(sink.WaitForAnswers(1));
+  std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(job->pending(), static_cast<int64_t>(LayerSolver::kMostInView));
+
+  // Of this layer and the one before it there are more paths than more than two may have.
+  job->Add({PointsOnALine(std::vector<double>(140, 1)), {}, {}, true});
+  for (size_t i = 0; i < LayerSolver::kMostInView; ++i) job->Add({RightSide(), {}, {}, true});
+  ASSERT_TRUE(sink.WaitForAnswers(1 + LayerSolver::kMostInView));
+  job->Cancel();
+  sink.Wait();
 }
 
 TEST(LookAhead, DoesNotWaitWhereTheNextLayerDoesNotMatter) {

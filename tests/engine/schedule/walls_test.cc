@@ -101,9 +101,10 @@ TEST(Auto, EndsALayerInViewOfTheNextOneAmongItsOwnWalls) {
       next.start = RouteEnd(*problem.plan, route, problem.start);
       return RouteCost(problem, route) + RouteCost(next, behind);
     };
-    Route next_route = known;
+    std::vector<NextLayer> seen = {{next, known}};
 
-    const Solution solution = strategy->ResumeWithNext(problem, start, next, next_route, budget);
+    const Solution solution = strategy->ResumeWithNext(problem, start, seen, budget);
+    const Route& next_route = seen[0].route;
 
     ASSERT_OK(ValidateRoute(*problem.plan, solution.route));
     ASSERT_OK(ValidateRoute(*problem.plan, next_route));

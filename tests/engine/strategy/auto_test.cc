@@ -4,10 +4,12 @@
 
 #include <chrono>
 #include <memory>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "engine/base/tolerances.h"
 #include "engine/cost/route_cost.h"
+#include "engine/model/layers_in_order.h"
 #include "engine/strategy/registry.h"
 #include "engine/validator.h"
 #include "tests/support/counting_turn.h"
@@ -116,16 +118,15 @@ TEST(Auto, TwoLayersNeverGetWorseTogetherAndWhatIsProvenHoldsForTheFirst) {
       after.start = RouteEnd(*first.problem.plan, route, first.problem.start);
       return RouteCost(first.problem, route) + RouteCost(after, next);
     };
-    Route next = GivenRoute(*second.problem.plan);
-    const double before = total(start, next);
+    std::vector<NextLayer> next = {{second.problem, GivenRoute(*second.problem.plan)}};
+    const double before = total(start, next[0].route);
     Budget budget;
 
-    const Solution solution =
-        strategy->ResumeWithNext(first.problem, start, second.problem, next, budget);
+    const Solution solution = strategy->ResumeWithNext(first.problem, start, next, budget);
 
     ASSERT_TRUE(ValidateRoute(*first.problem.plan, solution.route).ok());
-    ASSERT_TRUE(ValidateRoute(*second.problem.plan, next).ok());
-    EXPECT_LE(total(solution.route, next), before + kCostTolerance);
+    ASSERT_TRUE(ValidateRoute(*second.problem.plan, next[0].route).ok());
+    EXPECT_LE(total(solution.route, next[0].route), before + kCostTolerance);
     const double least = BruteForce(first.problem).cost;
     EXPECT_LE(solution.lower_bound.value_or(0), least + kCostTolerance);
     if (solution.stop == StopReason::kOptimal) {
@@ -134,12 +135,53 @@ TEST(Auto, TwoLayersNeverGetWorseTogetherAndWhatIsProvenHoldsForTheFirst) {
   }
 }
 
+TEST(Auto, MoreLayersNeverGetWorseTogetherAndSmallOnesAreBestTogether) {
+  const auto strategy = *MakeStrategy("auto", {});
+  int best = 0;
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    OwnedProblem first = RandomProblem(seed, {.max_paths = 3});
+    first.problem.finish.reset();
+    std::vector<Plan> plans;
+    for (uint64_t i = 1; i <= 2; ++i)
+      plans.push_back(RandomPlan(seed + 1000 * i, {.max_paths = 3}));
+    std::vector<NextLayer> next;
+    std::vector<const Plan*> all = {first.problem.plan};
+    for (const Plan& plan : plans) {
+      LayerProblem problem = first.problem;
+      problem.plan = &plan;
+      next.push_back({problem, GivenRoute(plan)});
+      all.push_back(&plan);
+    }
+    const Plan joined = PlanInOrder(all);
+    LayerProblem together = first.problem;
+    together.plan = &joined;
+    const auto total = [&](const Route& route) {
+      return RouteCost(together, RouteInOrder({&route, &next[0].route, &next[1].route}));
+    };
+    const Route start = GivenRoute(*first.problem.plan);
+    const double before = total(start);
+    Budget budget;
+
+    const Solution solution = strategy->ResumeWithNext(first.problem, start, next, budget);
+
+    ASSERT_TRUE(ValidateRoute(*first.problem.plan, solution.route).ok());
+    for (size_t i = 0; i < 2; ++i) ASSERT_TRUE(ValidateRoute(plans[i], next[i].route).ok());
+    const double after = total(solution.route);
+    EXPECT_LE(after, before + kCostTolerance);
+    best += after <= BruteForce(together).cost + kCostTolerance ? 1 : 0;
+  }
+  EXPECT_GE(best, 58);
+}
+
 TEST(Auto, LooksAheadFromLargerLayersWhereNoIterationHasToPay) {
   const auto patient = *MakeStrategy("auto", {});
   const auto hasty = *MakeStrategy("auto", {{"least_gain_each", "1e-4"}});
 
-  EXPECT_EQ(patient->traits().look_ahead_paths, 400u);
+  EXPECT_EQ(patient->traits().look_ahead_paths, 20'000u);
+  EXPECT_EQ(patient->traits().look_further_paths, 150u);
   EXPECT_EQ(hasty->traits().look_ahead_paths, 64u);
+  EXPECT_EQ(hasty->traits().look_further_paths, 0u);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "engine/base/tolerances.h"
@@ -142,19 +143,17 @@ TEST_P(EveryStrategy, AnswersTheSameWhereItPreparedThePlan) {
 
     const Solution solved = prepared->Solve(owned.problem, budget);
     const Solution resumed = prepared->Resume(elsewhere, solved.route, budget);
-    Route next_route = GivenRoute(next.plan());
-    const Solution seeing =
-        prepared->ResumeWithNext(elsewhere, resumed.route, next.problem, next_route, budget);
+    std::vector<NextLayer> seen = {{next.problem, GivenRoute(next.plan())}};
+    const Solution seeing = prepared->ResumeWithNext(elsewhere, resumed.route, seen, budget);
 
     EXPECT_EQ(solved.route, strategy_->Solve(owned.problem, budget).route);
     const Solution resumed_alone = strategy_->Resume(elsewhere, solved.route, budget);
     EXPECT_EQ(resumed.route, resumed_alone.route);
     EXPECT_EQ(resumed.lower_bound, resumed_alone.lower_bound);
-    Route next_alone = GivenRoute(next.plan());
+    std::vector<NextLayer> seen_alone = {{next.problem, GivenRoute(next.plan())}};
     EXPECT_EQ(seeing.route,
-              strategy_->ResumeWithNext(elsewhere, resumed.route, next.problem, next_alone, budget)
-                  .route);
-    EXPECT_EQ(next_route, next_alone);
+              strategy_->ResumeWithNext(elsewhere, resumed.route, seen_alone, budget).route);
+    EXPECT_EQ(seen[0].route, seen_alone[0].route);
   }
 }
 
