@@ -71,6 +71,12 @@ class Reader {
   absl::Status AddToSet(int64_t number);
   absl::Status EndFile();
 
+  // Where a -1 may be missing, the fault shows lines behind it.
+  std::string SinceBeginning() const {
+    if (open_since_ == line_) return "";
+    return absl::StrFormat(" (line %d has no -1)", open_since_);
+  }
+
   absl::Status Fault(const std::string& what) const {
     return absl::InvalidArgumentError(
         absl::StrFormat("%s:%d: %s", DisplayName(name_), line_, what));
@@ -90,6 +96,7 @@ class Reader {
   std::vector<uint32_t> set_of_;  // by point: the number of its set, from 1; 0 if it is in none yet
   size_t sets_found_ = 0;
   uint32_t open_set_ = 0;  // the set that is being read, from 1; 0 between two sets
+  int open_since_ = 0;     // the line in which it begins
 };
 
 absl::StatusOr<gtsp::Instance> Reader::Read(std::string_view text) {
@@ -159,6 +166,11 @@ absl::Status Reader::TakeValue(const std::string& key, std::string_view value) {
     if (value == "EUC_2D") return absl::OkStatus();
     return Fault(
         absl::StrFormat("EDGE_WEIGHT_TYPE is %s, but only EUC_2D is supported", Quoted(value)));
+  }
+  if (key == "NODE_COORD_TYPE") {
+    if (value == "TWOD_COORDS") return absl::OkStatus();
+    return Fault(
+        absl::StrFormat("NODE_COORD_TYPE is %s, but only TWOD_COORDS is supported", Quoted(value)));
   }
   if (key == "DIMENSION") return TakeNumber(key, value, dimension_);
   if (key == "GTSP_SETS") return TakeNumber(key, value, set_count_);
@@ -238,6 +250,7 @@ absl::Status Reader::BeginSet(int64_t number) {
     return Fault(absl::StrFormat("second set %d", number));
   }
   open_set_ = static_cast<uint32_t>(number);
+  open_since_ = line_;
   return absl::OkStatus();
 }
 
@@ -248,11 +261,12 @@ absl::Status Reader::AddToSet(int64_t number) {
   }
   const size_t i = static_cast<size_t>(number) - 1;
   if (set_of_[i] == open_set_) {
-    return Fault(absl::StrFormat("point %d is in set %d twice", number, open_set_));
+    return Fault(
+        absl::StrFormat("point %d is in set %d twice%s", number, open_set_, SinceBeginning()));
   }
   if (set_of_[i] != 0) {
-    return Fault(
-        absl::StrFormat("point %d is in set %d and in set %d", number, set_of_[i], open_set_));
+    return Fault(absl::StrFormat("point %d is in set %d and in set %d%s", number, set_of_[i],
+                                 open_set_, SinceBeginning()));
   }
   set_of_[i] = open_set_;
   instance_.sets[open_set_ - 1].push_back(static_cast<uint32_t>(i));

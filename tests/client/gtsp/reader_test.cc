@@ -73,6 +73,12 @@ TEST(GtspReader, TakesSpacesBeforeColonsAndCrlfAndIgnoresWhatFollowsTheEnd) {
   EXPECT_EQ(job->gtsp->points[1].y, 4);
 }
 
+TEST(GtspReader, TakesPointsInThePlaneAndNoOthers) {
+  EXPECT_TRUE(ReadGtsp("NODE_COORD_TYPE: TWOD_COORDS\n" + SmallText(), "a.gtsp").ok());
+  EXPECT_EQ(ErrorOf("NODE_COORD_TYPE: THREED_COORDS\n" + SmallText()),
+            "a.gtsp:1: NODE_COORD_TYPE is \"THREED_COORDS\", but only TWOD_COORDS is supported");
+}
+
 TEST(GtspReader, OneSetIsATourOfOnePoint) {
   const absl::StatusOr<InputJob> job = ReadGtsp(
       "TYPE: GTSP\nDIMENSION: 1\nGTSP_SETS: 1\nEDGE_WEIGHT_TYPE: EUC_2D\nNODE_COORD_SECTION\n1 2 "
@@ -125,6 +131,8 @@ TEST(GtspReader, NamesTheLineOfEachFaultInTheSets) {
             "a.gtsp:12: point 4 of set 2 is not among 1 to DIMENSION, 3");
   EXPECT_EQ(ErrorWith("2 2 3 -1", "2 2 3.5 -1"), "a.gtsp:12: \"3.5\" is not a whole number");
   EXPECT_EQ(ErrorWith("2 2 3 -1", "2 2 3"), "a.gtsp:13: set 2 does not end with -1");
+  EXPECT_EQ(ErrorWith("1 1 -1\n", "1 1\n"),
+            "a.gtsp:12: point 2 is in set 1 twice (line 11 has no -1)");
 }
 
 TEST(GtspReader, RefusesEveryCutOfWhatIsNeeded) {
