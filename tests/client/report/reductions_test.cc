@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 
+#include "client/report/compare.h"
 #include "client/report/json.h"
 #include "client/report/table.h"
 #include "tests/client/report/small_run.h"
