@@ -10,6 +10,7 @@
 #include "client/files/read_file.h"
 #include "client/gcode/stated_times.h"
 #include "client/gcode/verify/permissions.h"
+#include "client/gcode/verify/verifier.h"
 
 namespace traverse {
 namespace {
@@ -53,18 +54,12 @@ absl::StatusOr<size_t> PartOf(const Side& side, uint32_t plate, bool any) {
   return FindPlate(*side.container, plate, side.name);
 }
 
-absl::StatusOr<VerifyReport> CheckTexts(std::string original, const std::string& original_name,
-                                        std::string optimised, const std::string& optimised_name,
-                                        std::optional<CommentsKept> kept,
-                                        const VerifyFilesOptions& options) {
-  VerifyOptions rules;
-  if (options.rules) {
-    const absl::StatusOr<VerifyOptions> given = options.rules(optimised);
-    if (!given.ok()) return given.status();
-    rules = *given;
-  }
+VerifyReport CheckTexts(std::string original, const std::string& original_name,
+                        std::string optimised, const std::string& optimised_name,
+                        std::optional<CommentsKept> kept, const VerifyFilesOptions& options) {
   // Before comments are taken away, and the line at the head with them.
-  if (!rules.permissions) rules.permissions = PermissionsInHead(optimised);
+  VerifyOptions rules;
+  rules.permissions = PermissionsFor(options.permissions, optimised);
   const std::optional<gcode::TimeScale> scale = gcode::StatedScale(optimised);
   if (scale && scale != gcode::StatedScale(original)) {
     original = gcode::RestateTimes(original, *scale);
@@ -110,11 +105,10 @@ absl::StatusOr<VerifyReport> VerifyFiles(std::string original, const std::string
     if (!given.ok()) return given.status();
     absl::StatusOr<std::string> made = after.container->Text(*second);
     if (!made.ok()) return made.status();
-    absl::StatusOr<VerifyReport> report = CheckTexts(
-        *std::move(given), PartName(before, before.container->parts()[*first]), *std::move(made),
-        PartName(after, after.container->parts()[*second]), kept, options);
-    if (!report.ok()) return report.status();
-    Add(*std::move(report), sum);
+    Add(CheckTexts(*std::move(given), PartName(before, before.container->parts()[*first]),
+                   *std::move(made), PartName(after, after.container->parts()[*second]), kept,
+                   options),
+        sum);
   }
   return sum;
 }

@@ -4,14 +4,13 @@
 #define TRAVERSE_CLIENT_CONTAINERS_VERIFY_FILES_H_
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "absl/status/statusor.h"
 #include "client/containers/container.h"
-#include "client/gcode/verify/verifier.h"
+#include "client/gcode/verify/permissions.h"
+#include "client/gcode/verify/report.h"
 
 namespace traverse {
 
@@ -19,9 +18,8 @@ struct VerifyFilesOptions {
   ContainerOptions container;
   std::optional<uint32_t> plate;  // unset: all of them
 
-  // What may have changed in one text, derived from the optimised one. Empty: what the line at its
-  // head says, or safe.
-  std::function<absl::StatusOr<VerifyOptions>(std::string_view optimised)> rules;
+  // What may have changed. Unset: what the line at the head of each optimised text says, or safe.
+  std::optional<GivenPermissions> permissions;
 };
 
 // The findings of CheckGcode between each text of `optimised` and the text of the same plate of
@@ -32,8 +30,7 @@ struct VerifyFilesOptions {
 // as a printer reads them, without these. If the optimised file says that it restated times, they
 // are restated in the original first.
 //
-// Errors: those of OpenContainer and of `rules`; InvalidArgument if the files have different
-// plates.
+// Errors: those of OpenContainer; InvalidArgument if the files have different plates.
 absl::StatusOr<VerifyReport> VerifyFiles(std::string original, const std::string& original_name,
                                          std::string optimised, const std::string& optimised_name,
                                          const VerifyFilesOptions& options);

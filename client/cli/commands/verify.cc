@@ -3,13 +3,13 @@
 
 #include "absl/strings/str_format.h"
 #include "client/cli/command.h"
-#include "client/cli/flags/job_flags.h"
+#include "client/cli/flags/verify_flags.h"
 #include "client/cli/gcode_output.h"
 #include "client/cli/terminal.h"
 #include "client/containers/verify_files.h"
 #include "client/files/read_file.h"
 #include "client/files/write_file.h"
-#include "client/gcode/verify/verifier.h"
+#include "client/gcode/verify/report.h"
 #include "client/report/verify_json.h"
 
 namespace traverse::cli {
@@ -17,19 +17,6 @@ namespace {
 
 // How many breaks are told; --json has the first of each rule.
 constexpr size_t kMostTold = 10;
-
-// --policy and --allow, in place of what the optimised file says of itself.
-absl::StatusOr<VerifyOptions> ParseOptions(const Flags& flags, std::string_view optimised) {
-  VerifyOptions options;
-  if (!flags.Has("policy") && !flags.Has("allow")) return options;
-  const VerifyPermissions stated = PermissionsInHead(optimised).value_or(VerifyPermissions{});
-  const absl::StatusOr<VerifyPermissions> given =
-      ParsePermissions(flags.Text("policy", "safe"), flags.Text("allow"));
-  if (!given.ok()) return given.status();
-  options.permissions = *given;
-  if (!flags.Has("policy")) options.permissions->policy = stated.policy;
-  return options;
-}
 
 // All breaks in one text: the first ones, and how many there are by rule.
 absl::Status FaultOf(const VerifyReport& report) {
@@ -57,15 +44,14 @@ Outcome RunVerify(const Flags& flags) {
   }
   const absl::StatusOr<PlateOptions> plates = ParsePlateOptions(flags);
   if (!plates.ok()) return UsageFault(plates.status());
-  if (const auto rules = ParseOptions(flags, ""); !rules.ok()) return UsageFault(rules.status());
+  const auto permissions = ParseGivenPermissions(flags);
+  if (!permissions.ok()) return UsageFault(permissions.status());
   absl::StatusOr<std::string> original = ReadWholeFile(original_name);
   if (!original.ok()) return InputFault(original.status());
   absl::StatusOr<std::string> optimised = ReadWholeFile(optimised_name);
   if (!optimised.ok()) return InputFault(optimised.status());
-  const auto report =
-      VerifyFiles(*std::move(original), original_name, *std::move(optimised), optimised_name,
-                  {plates->container, plates->plate,
-                   [&](std::string_view text) { return ParseOptions(flags, text); }});
+  const auto report = VerifyFiles(*std::move(original), original_name, *std::move(optimised),
+                                  optimised_name, {plates->container, plates->plate, *permissions});
   if (!report.ok()) return InputFault(report.status());
   const std::string shown_original = DisplayName(original_name);
   const std::string shown_optimised = DisplayName(optimised_name);
@@ -90,14 +76,10 @@ Command VerifyCommand() {
   return {.name = "verify",
           .operands = {"ORIGINAL", "OPTIMISED"},
           .summary = "Checks that two G-code files print exactly the same.",
-          .flags = Joined({{"policy",
-                            "POLICY",
-                            "safe, balanced, free (default: as the file says)",
-                            {"safe", "balanced", "free"}},
-                           {"allow", "NAME,...", "also allow infill_order, wall_order, fan_order"},
-                           {"json", "FILE", "write the findings, rule by rule"},
-                           {"quiet", "", "print nothing if they do"}},
-                          PlateFlagTable()),
+          .flags = Joined(VerifyFlagTable(),
+                          Joined({{"json", "FILE", "write the findings, rule by rule"},
+                                  {"quiet", "", "print nothing if they do"}},
+                                 PlateFlagTable())),
           .example = "traverse verify part.gcode part.optimised.gcode",
           .run = RunVerify};
 }

@@ -242,20 +242,28 @@ HttpDecision InspectRoute(const HttpRequest& request, const std::string& caller,
 }
 
 HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, Core& core) {
-  if (!request.query.empty()) return Problem(400, "this path has no parameters");
-  const auto start = [&core](const PlacePtr& place, Upload upload, const ReplyPtr& reply) {
+  if (auto query = ParseVerifyParameters(request.query); !query.ok()) {
+    return ProblemOf(query.status());
+  }
+  const auto start = [&core, request](const PlacePtr& place, Upload upload, const ReplyPtr& reply) {
+    Parameters parameters = request.query;
+    parameters.insert(parameters.end(), upload.fields.begin(), upload.fields.end());
+    const auto permissions = ParseVerifyParameters(parameters);
+    if (!permissions.ok()) return reply->Send(ProblemOf(permissions.status()));
     FilePtr original, optimised;
     for (Upload::File& file : upload.files) {
       if (file.field == "original") original = file.file;
       if (file.field == "optimised") optimised = file.file;
     }
-    if (original == nullptr || optimised == nullptr || !upload.fields.empty()) {
+    if (original == nullptr || optimised == nullptr) {
       return reply->Send(Problem(400, "send a form with the files original and optimised"));
     }
     core.Submit(
-        place, {original, optimised}, [&core, original, optimised, reply](const absl::Status& may) {
+        place, {original, optimised},
+        [&core, original, optimised, permissions = *permissions, reply](const absl::Status& may) {
           if (!may.ok()) return reply->Send(RefusalOf(may));
-          absl::StatusOr<v1::VerifyResponse> found = core.worker->Verify(*original, *optimised);
+          absl::StatusOr<v1::VerifyResponse> found =
+              core.worker->Verify(*original, *optimised, permissions);
           reply->Send(found.ok() ? JsonResponse(MessageJson(*found) + "\n")
                                  : RefusalOf(found.status()));
         });

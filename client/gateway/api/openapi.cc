@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "client/cli/flags/flags.h"
+#include "client/cli/flags/verify_flags.h"
 #include "client/gateway/api/parameters.h"
 #include "client/gateway/http/problem.h"
 #include "server/version.h"
@@ -26,9 +27,9 @@ Json ParameterJson(const cli::Flag& flag) {
   return out;
 }
 
-Json ParametersJson() {
+Json ParametersJson(const std::vector<cli::Flag>& table) {
   Json out = Json::array();
-  for (const cli::Flag& flag : ParameterTable()) out.push_back(ParameterJson(flag));
+  for (const cli::Flag& flag : table) out.push_back(ParameterJson(flag));
   return out;
 }
 
@@ -74,7 +75,7 @@ Json RewritePath() {
   return {{"post",
            {{"operationId", "rewrite"},
             {"summary", "The same print with less travel."},
-            {"parameters", ParametersJson()},
+            {"parameters", ParametersJson(ParameterTable())},
             {"requestBody", {{"required", true}, {"content", FileContent()}}},
             {"responses", responses}}}};
 }
@@ -96,6 +97,7 @@ Json VerifyPath() {
   return {{"post",
            {{"operationId", "verify"},
             {"summary", "Checks that two files print exactly the same."},
+            {"parameters", ParametersJson(cli::VerifyFlagTable())},
             {"requestBody",
              {{"required", true},
               {"content",
@@ -132,28 +134,36 @@ Json Schemas() {
   summary["verified"] = {{"type", "boolean"}};
   summary["left"] = {{"type", "array"}, {"items", {{"type", "string"}}}};
   summary["wall_seconds"] = {{"type", "number"}};
+  Json broken = Numbers({"original_line", "optimised_line", "layer"}, "integer");
+  broken["message"] = {{"type", "string"}};
+  Json rule = Numbers({"name", "states"}, "string");
+  rule["breaks"] = {{"type", "integer"}};
+  rule["first"] = Reference("VerifyBreak");
+  Json verdict = Numbers({"difference", "policy"}, "string");
+  verdict["same"] = {{"type", "boolean"}};
+  verdict["allow"] = {{"type", "array"}, {"items", {{"type", "string"}}}};
+  verdict["rules"] = {{"type", "array"}, {"items", Reference("VerifyRule")}};
   const Json fact = {{"type", "object"}, {"properties", Numbers({"name", "value"}, "string")}};
-  return {
-      {"Problem",
-       {{"type", "object"},
-        {"description", "RFC 9457"},
-        {"properties",
-         {{"type", {{"type", "string"}}},
-          {"title", {{"type", "string"}}},
-          {"status", {{"type", "integer"}}},
-          {"detail", {{"type", "string"}}}}}}},
-      {"PrintTotals", {{"type", "object"}, {"properties", totals}}},
-      {"RewriteSummary", {{"type", "object"}, {"properties", summary}}},
-      {"InspectResponse",
-       {{"type", "object"},
-        {"properties",
-         {{"format", {{"type", "string"}}},
-          {"layers", {{"type", "integer"}}},
-          {"facts", {{"type", "array"}, {"items", fact}}},
-          {"totals", Reference("PrintTotals")}}}}},
-      {"VerifyResponse",
-       {{"type", "object"},
-        {"properties", {{"same", {{"type", "boolean"}}}, {"difference", {{"type", "string"}}}}}}}};
+  return {{"Problem",
+           {{"type", "object"},
+            {"description", "RFC 9457"},
+            {"properties",
+             {{"type", {{"type", "string"}}},
+              {"title", {{"type", "string"}}},
+              {"status", {{"type", "integer"}}},
+              {"detail", {{"type", "string"}}}}}}},
+          {"PrintTotals", {{"type", "object"}, {"properties", totals}}},
+          {"RewriteSummary", {{"type", "object"}, {"properties", summary}}},
+          {"InspectResponse",
+           {{"type", "object"},
+            {"properties",
+             {{"format", {{"type", "string"}}},
+              {"layers", {{"type", "integer"}}},
+              {"facts", {{"type", "array"}, {"items", fact}}},
+              {"totals", Reference("PrintTotals")}}}}},
+          {"VerifyBreak", {{"type", "object"}, {"properties", broken}}},
+          {"VerifyRule", {{"type", "object"}, {"properties", rule}}},
+          {"VerifyResponse", {{"type", "object"}, {"properties", verdict}}}};
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "absl/strings/str_replace.h"
 #include "client/cli/flags/job_flags.h"
 #include "client/cli/flags/strategy_spec.h"
+#include "client/cli/flags/verify_flags.h"
 #include "client/cli/gcode_output.h"
 #include "client/gateway/http/target.h"
 
@@ -80,7 +81,10 @@ std::vector<cli::Flag> ParameterTable() {
   return table;
 }
 
-absl::StatusOr<FileRequest> ParseParameters(const Parameters& parameters) {
+namespace {
+
+absl::StatusOr<cli::Flags> FlagsOf(const std::vector<cli::Flag>& table,
+                                   const Parameters& parameters) {
   std::vector<std::string> arguments;
   std::set<std::string> seen;
   for (const auto& [name, value] : parameters) {
@@ -90,8 +94,16 @@ absl::StatusOr<FileRequest> ParseParameters(const Parameters& parameters) {
     }
     arguments.push_back(absl::StrCat("--", name, "=", value));
   }
-  const absl::StatusOr<cli::Flags> flags = cli::Flags::Parse(ParameterTable(), arguments);
+  absl::StatusOr<cli::Flags> flags = cli::Flags::Parse(table, arguments);
   if (!flags.ok()) return InTheseWords(flags.status());
+  return flags;
+}
+
+}  // namespace
+
+absl::StatusOr<FileRequest> ParseParameters(const Parameters& parameters) {
+  const absl::StatusOr<cli::Flags> flags = FlagsOf(ParameterTable(), parameters);
+  if (!flags.ok()) return flags.status();
   absl::StatusOr<cli::JobFlags> job = cli::ParseJobFlags(*flags);
   if (!job.ok()) return InTheseWords(job.status());
 
@@ -117,6 +129,15 @@ absl::StatusOr<FileRequest> ParseParameters(const Parameters& parameters) {
     if (absl::Status status = CheckFileName(request.name); !status.ok()) return status;
   }
   return request;
+}
+
+absl::StatusOr<std::optional<GivenPermissions>> ParseVerifyParameters(
+    const Parameters& parameters) {
+  const absl::StatusOr<cli::Flags> flags = FlagsOf(cli::VerifyFlagTable(), parameters);
+  if (!flags.ok()) return flags.status();
+  auto permissions = cli::ParseGivenPermissions(*flags);
+  if (!permissions.ok()) return InTheseWords(permissions.status());
+  return permissions;
 }
 
 namespace {
@@ -157,7 +178,9 @@ absl::Status SetCrossings(const v1::RewriteOptions& options, GcodeOptions& gcode
   }
 }
 
-absl::Status SetAllowances(const v1::RewriteOptions& options, gcode::Allowance& allow) {
+// For both messages with a field `allow`, and both structs with a member for each value.
+template <typename Options, typename Allowed>
+absl::Status SetAllowances(const Options& options, Allowed& allow) {
   constexpr int kMost = 16;
   if (options.allow_size() > kMost) {
     return Fault(absl::StrCat("options.allow: ", options.allow_size(), " values, more than 16"));
@@ -223,6 +246,28 @@ absl::StatusOr<FileRequest> RequestOf(const v1::RewriteOptions& options) {
   }
   request.report = options.report();
   return request;
+}
+
+absl::StatusOr<std::optional<GivenPermissions>> PermissionsOf(const v1::VerifyOptions& options) {
+  if (options.policy() == v1::POLICY_UNSPECIFIED && options.allow().empty()) return std::nullopt;
+  GivenPermissions given;
+  switch (options.policy()) {
+    case v1::POLICY_UNSPECIFIED:
+      given.policy_as_stated = true;
+      break;
+    case v1::POLICY_SAFE:
+      break;
+    case v1::POLICY_BALANCED:
+      given.permissions.policy = VerifyPermissions::Policy::kBalanced;
+      break;
+    case v1::POLICY_FREE:
+      given.permissions.policy = VerifyPermissions::Policy::kFree;
+      break;
+    default:
+      return NoneKnown("policy", options.policy());
+  }
+  if (absl::Status status = SetAllowances(options, given.permissions); !status.ok()) return status;
+  return given;
 }
 
 }  // namespace traverse::gateway

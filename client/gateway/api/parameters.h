@@ -4,6 +4,7 @@
 #ifndef TRAVERSE_CLIENT_GATEWAY_API_PARAMETERS_H_
 #define TRAVERSE_CLIENT_GATEWAY_API_PARAMETERS_H_
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "absl/status/statusor.h"
 #include "client/cli/flags/flags.h"
 #include "client/gateway/work/file_worker.h"
+#include "client/gcode/verify/permissions.h"
 
 namespace traverse::gateway {
 
@@ -26,6 +28,13 @@ absl::StatusOr<FileRequest> ParseParameters(const Parameters& parameters);
 
 // The same for the API's message.
 absl::StatusOr<FileRequest> RequestOf(const v1::RewriteOptions& options);
+
+// What may differ between two files that are compared: the parameters are the flags of
+// `traverse verify` of cli::VerifyFlagTable. Nothing if neither is given. Errors as above.
+absl::StatusOr<std::optional<GivenPermissions>> ParseVerifyParameters(const Parameters& parameters);
+
+// The same of the API's message.
+absl::StatusOr<std::optional<GivenPermissions>> PermissionsOf(const v1::VerifyOptions& options);
 
 }  // namespace traverse::gateway
 

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "client/gateway/core.h"
 #include "client/gateway/grpc/file_call.h"
 #include "client/gateway/grpc/live_calls.h"
+#include "client/gcode/verify/permissions.h"
 
 namespace traverse::gateway {
 
@@ -20,6 +22,8 @@ struct Collected {
   std::string name;
   std::shared_ptr<SpoolFile> first;   // the file, or the original
   std::shared_ptr<SpoolFile> second;  // the optimised one
+  bool has_options = false;
+  std::optional<GivenPermissions> permissions;  // of Verify's options
 };
 
 // Deletes itself.

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "client/gateway/api/parameters.h"
 #include "client/gateway/grpc/collect_reactor.h"
 #include "client/gateway/grpc/rewrite_reactor.h"
 #include "client/gateway/http/target.h"
@@ -27,7 +28,14 @@ absl::Status TakeVerify(const v1::VerifyRequest& request, const FileCall& call,
                         Collected& collected) {
   if (request.has_original()) return call.Append(request.original(), collected.first);
   if (request.has_optimised()) return call.Append(request.optimised(), collected.second);
-  return absl::InvalidArgumentError("a message without data");
+  if (!request.has_options()) return absl::InvalidArgumentError("a message without data");
+  if (collected.has_options || collected.first != nullptr || collected.second != nullptr) {
+    return absl::InvalidArgumentError("options: in the first message alone");
+  }
+  collected.has_options = true;
+  absl::StatusOr<std::optional<GivenPermissions>> permissions = PermissionsOf(request.options());
+  if (permissions.ok()) collected.permissions = *permissions;
+  return permissions.status();
 }
 
 }  // namespace
@@ -63,7 +71,7 @@ grpc::ServerReadReactor<v1::VerifyRequest>* GcodeGrpcService::Verify(
   };
   const auto work = [this, response](const Collected& collected) {
     absl::StatusOr<v1::VerifyResponse> found =
-        core_.worker->Verify(*collected.first, *collected.second);
+        core_.worker->Verify(*collected.first, *collected.second, collected.permissions);
     if (found.ok()) *response = *std::move(found);
     return found.status();
   };

@@ -13,6 +13,7 @@
 #include "client/formats/detect.h"
 #include "client/formats/read_input.h"
 #include "client/gateway/work/guarded.h"
+#include "client/gateway/work/verify_answer.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/measure/print_totals.h"
 #include "client/gcode/parallel.h"
@@ -307,22 +308,21 @@ absl::StatusOr<v1::InspectResponse> FileWorker::Inspect(const SpoolFile& upload,
   });
 }
 
-absl::StatusOr<v1::VerifyResponse> FileWorker::Verify(const SpoolFile& original,
-                                                      const SpoolFile& optimised) {
+absl::StatusOr<v1::VerifyResponse> FileWorker::Verify(
+    const SpoolFile& original, const SpoolFile& optimised,
+    const std::optional<GivenPermissions>& permissions) {
   return Guarded([&]() -> absl::StatusOr<v1::VerifyResponse> {
     absl::StatusOr<std::string> one = Unpacked(original, "original");
     if (!one.ok()) return one.status();
     absl::StatusOr<std::string> other = Unpacked(optimised, "optimised");
     if (!other.ok()) return other.status();
     VerifyFilesOptions options;
+    options.permissions = permissions;
     options.container.max_text_bytes = max_file_bytes_;
     const absl::StatusOr<VerifyReport> report =
         VerifyFiles(*std::move(one), "original", *std::move(other), "optimised", options);
     if (!report.ok()) return report.status();
-    v1::VerifyResponse out;
-    out.set_same(report->ok());
-    if (!report->ok()) out.set_difference(report->breaks[0].message);
-    return out;
+    return VerifyAnswer(*report);
   });
 }
 

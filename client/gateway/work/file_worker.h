@@ -19,6 +19,7 @@
 #include "client/formats/read_input.h"
 #include "client/gateway/spool/spool.h"
 #include "client/gcode/gcode_job.h"
+#include "client/gcode/verify/permissions.h"
 #include "client/input/input_job.h"
 #include "client/optimize_file/job_settings.h"
 #include "traverse/v1/gcode_service.pb.h"
@@ -67,7 +68,9 @@ class FileWorker {
 
   absl::StatusOr<v1::InspectResponse> Inspect(const SpoolFile& upload, const FileRequest& request);
 
-  absl::StatusOr<v1::VerifyResponse> Verify(const SpoolFile& original, const SpoolFile& optimised);
+  // `permissions`: what may differ; unset: as the optimised file states.
+  absl::StatusOr<v1::VerifyResponse> Verify(const SpoolFile& original, const SpoolFile& optimised,
+                                            const std::optional<GivenPermissions>& permissions);
 
  private:
   // All that is done about one file: its parts, one after another.

@@ -79,6 +79,16 @@ std::optional<VerifyPermissions> PermissionsInHead(std::string_view text) {
   return std::nullopt;
 }
 
+VerifyPermissions PermissionsFor(const std::optional<GivenPermissions>& given,
+                                 std::string_view optimised) {
+  if (given && !given->policy_as_stated) return given->permissions;
+  const VerifyPermissions stated = PermissionsInHead(optimised).value_or(VerifyPermissions{});
+  if (!given) return stated;
+  VerifyPermissions permissions = given->permissions;
+  permissions.policy = stated.policy;
+  return permissions;
+}
+
 std::string DescribePermissions(const VerifyPermissions& permissions) {
   std::string text(kPolicyNames[static_cast<size_t>(permissions.policy)]);
   for (const Permission& permission : kPermissions) {

@@ -36,6 +36,16 @@ absl::StatusOr<VerifyPermissions> ParsePermissions(std::string_view policy, std:
 // Nothing if there is no such line before the first command, or it names no policy.
 std::optional<VerifyPermissions> PermissionsInHead(std::string_view text);
 
+// Permissions that a caller gives, in place of those that the optimised file states.
+struct GivenPermissions {
+  VerifyPermissions permissions;
+  bool policy_as_stated = false;  // the policy is the file's, or safe if it states none
+};
+
+// What may have changed in `optimised`: what is given, else what its head says, else `safe`.
+VerifyPermissions PermissionsFor(const std::optional<GivenPermissions>& given,
+                                 std::string_view optimised);
+
 // "balanced, wall_order, fan_order".
 std::string DescribePermissions(const VerifyPermissions& permissions);
 

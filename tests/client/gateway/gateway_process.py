@@ -24,6 +24,15 @@ def lines_of_infill(layers):
     return ("\n".join(out + ["M107", ""])).encode()
 
 
+def square_wall(first):
+    """Sliced text of one outer wall, a square begun at corner `first`: its seam, which `safe` and `balanced` keep."""
+    corners = [(10, 10), (20, 10), (20, 20), (10, 20)]
+    corners = corners[first:] + corners[:first + 1]
+    out = ["M83", ";LAYER_CHANGE", "G1 Z.2 F9000", "G1 E-1 F2100", "G1 X{} Y{} F9000".format(*corners[0]), "G1 E1 F2100",
+           ";TYPE:External perimeter", "G1 F1200"]
+    return "\n".join(out + ["G1 X{} Y{} E.4".format(*corner) for corner in corners[1:]] + [""]).encode()
+
+
 class Gateway:
     """A running gateway; ended by close()."""
 

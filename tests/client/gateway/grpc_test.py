@@ -11,7 +11,7 @@ import time
 import unittest
 
 sys.path.append(os.path.dirname(os.path.abspath(__file__)))
-from gateway_process import TESTS, Gateway, lines_of_infill, optimised_by_command
+from gateway_process import TESTS, Gateway, lines_of_infill, optimised_by_command, square_wall
 
 PROTO = os.path.join(os.path.dirname(TESTS), "proto")
 PART = lines_of_infill(3)
@@ -36,8 +36,8 @@ def messages():
     for one in files.file:
         pool.Add(one)
     made = message_factory.MessageFactory(pool)
-    names = ["RewriteRequest", "RewriteResponse", "RewriteOptions", "InspectRequest", "InspectResponse", "VerifyRequest",
-             "VerifyResponse"]
+    names = ["RewriteRequest", "RewriteResponse", "RewriteOptions", "InspectRequest", "InspectResponse", "VerifyOptions",
+             "VerifyRequest", "VerifyResponse"]
     return {name: made.GetPrototype(pool.FindMessageTypeByName("traverse.v1." + name)) for name in names}
 
 
@@ -135,6 +135,30 @@ class Calls(unittest.TestCase):
             iter([request(original=PART), request(optimised=made.replace(b"E.5", b"E.6"))]), timeout=60)
         self.assertFalse(other.same)
         self.assertIn("optimised:", other.difference)
+        self.assertEqual((other.rules[0].name, other.rules[0].breaks > 0), ("same_print", True))
+        self.assertEqual(other.rules[0].first.message, other.difference)
+
+    def test_verify_holds_a_file_to_the_policy_of_the_request(self):
+        request, options = MESSAGES["VerifyRequest"], MESSAGES["VerifyOptions"]
+        stated = b"; optimised by Traverse 0.1.0, policy free: travel 1 -> 1 mm\n"
+        files = [request(original=square_wall(0)), request(optimised=stated + square_wall(2))]
+        safe, balanced, free, none = 1, 2, 3, 0
+        for policy, same, held in [(none, True, free), (safe, False, safe), (free, True, free)]:
+            answer = self.method("Verify", "stream_unary")(
+                iter([request(options=options(policy=policy))] + files), timeout=60)
+            self.assertEqual((answer.same, answer.policy), (same, held))
+        broken = {rule.name for rule in self.method("Verify", "stream_unary")(
+            iter([request(options=options(policy=safe))] + files), timeout=60).rules if rule.breaks}
+        self.assertIn("seam", broken)
+        answer = self.method("Verify", "stream_unary")(
+            iter([request(options=options(policy=balanced, allow=[1, 3]))] + files), timeout=60)
+        self.assertEqual((answer.policy, list(answer.allow)), (balanced, [1, 3]))
+        bad = grpc.StatusCode.INVALID_ARGUMENT
+        for wrong, words in [([request(options=options(policy=9))], "options.policy"),
+                             ([request(options=options(allow=[0]))], "options.allow[0]"),
+                             ([request(options=options())] * 2, "first message alone"),
+                             ([files[0], request(options=options())], "first message alone")]:
+            self.refused(bad, words, wrong, "Verify", "stream_unary")
 
     def test_what_is_wrong(self):
         request, options = MESSAGES["RewriteRequest"], MESSAGES["RewriteOptions"]

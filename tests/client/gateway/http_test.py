@@ -14,7 +14,7 @@ import time
 import unittest
 
 sys.path.append(os.path.dirname(os.path.abspath(__file__)))
-from gateway_process import SAMPLE, TESTS, Gateway, detail, events, form, lines_of_infill, optimised_by_command
+from gateway_process import SAMPLE, TESTS, Gateway, detail, events, form, lines_of_infill, optimised_by_command, square_wall
 
 PART = lines_of_infill(3)
 
@@ -129,13 +129,28 @@ class Files(unittest.TestCase):
     def test_whether_two_files_print_the_same(self):
         made = optimised_by_command(PART)
         body, headers = form([("original", "a.gcode", PART), ("optimised", "b.gcode", made)])
-        self.assertEqual(json.loads(self.post("/v1/verify", body, headers)[2]), {"same": True, "difference": ""})
+        answer = json.loads(self.post("/v1/verify", body, headers)[2])
+        self.assertEqual((answer["same"], answer["difference"], answer["policy"]), (True, "", "POLICY_SAFE"))
+        self.assertEqual((answer["rules"][0]["name"], {rule["breaks"] for rule in answer["rules"]}), ("same_print", {0}))
         body, headers = form([("optimised", "b.gcode", made.replace(b"E.5", b"E.6", 1)), ("original", "a.gcode", PART)])
         answer = json.loads(self.post("/v1/verify", body, headers)[2])
         self.assertFalse(answer["same"])
         self.assertIn("optimised:", answer["difference"])
         body, headers = form([("original", "a.gcode", PART)])
         self.refused(400, "original and optimised", self.post("/v1/verify", body, headers))
+
+    def test_a_file_is_held_to_the_policy_of_the_request_whatever_it_states(self):
+        stated = b"; optimised by Traverse 0.1.0, policy free: travel 1 -> 1 mm\n"
+        body, headers = form([("original", "a.gcode", square_wall(0)),
+                              ("optimised", "b.gcode", stated + square_wall(2))])
+        self.assertTrue(json.loads(self.post("/v1/verify", body, headers)[2])["same"])
+        answer = json.loads(self.post("/v1/verify?policy=safe", body, headers)[2])
+        broken = [rule for rule in answer["rules"] if rule["breaks"]]
+        self.assertEqual((answer["same"], answer["policy"]), (False, "POLICY_SAFE"))
+        self.assertIn("seam", [rule["name"] for rule in broken])
+        self.assertGreater(broken[0]["first"]["optimised_line"], 0)
+        for wrong in ["policy=wild", "allow=walls", "seed=1", "policy=safe&policy=free"]:
+            self.refused(400, wrong.split("=")[0], self.post("/v1/verify?" + wrong, body, headers))
 
     def test_parameters_that_are_wrong_are_said_before_the_file_is_sent(self):
         for query, words in [("polcy=safe", "polcy"), ("policy=wild", "wild"), ("policy=safe&policy=free", "twice"),

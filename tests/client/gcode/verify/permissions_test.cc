@@ -36,6 +36,21 @@ TEST(PermissionsInHead, WhatIsAllowedIsReadFromTheLineToo) {
   EXPECT_FALSE(ParsePermissions("safe", "anything").ok());
 }
 
+TEST(PermissionsFor, WhatIsGivenComesBeforeWhatTheFileStates) {
+  const std::string_view stated = "; optimised by Traverse 1.0, policy free, allow wall_order: x\n";
+  const auto described = [](const std::optional<GivenPermissions>& given, std::string_view text) {
+    return DescribePermissions(PermissionsFor(given, text));
+  };
+  EXPECT_EQ(described(std::nullopt, stated), "free, wall_order");
+  EXPECT_EQ(described(std::nullopt, "G1 X1\n"), "safe");
+  EXPECT_EQ(described(GivenPermissions{}, stated), "safe");
+  EXPECT_EQ(described(GivenPermissions{{}, /*policy_as_stated=*/true}, stated), "free");
+  VerifyPermissions allowed;
+  allowed.infill_order = true;
+  EXPECT_EQ(described(GivenPermissions{allowed, true}, stated), "free, infill_order");
+  EXPECT_EQ(described(GivenPermissions{allowed, true}, "G1 X1\n"), "safe, infill_order");
+}
+
 TEST(PermissionsInHead, TheLineOfTheWriterIsInTheHeadAndNotInAPicture) {
   const std::string says = "; optimised by Traverse 1.0, policy safe: x\n";
   const std::string picture = "; thumbnail begin 16x16 8\n; abcd\n; thumbnail end\n";

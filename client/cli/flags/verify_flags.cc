@@ -1,0 +1,21 @@
+#include "client/cli/flags/verify_flags.h"
+
+namespace traverse::cli {
+
+std::vector<Flag> VerifyFlagTable() {
+  return {{"policy",
+           "POLICY",
+           "safe, balanced, free (default: as the file says)",
+           {"safe", "balanced", "free"}},
+          {"allow", "NAME,...", "also allow infill_order, wall_order, fan_order"}};
+}
+
+absl::StatusOr<std::optional<GivenPermissions>> ParseGivenPermissions(const Flags& flags) {
+  if (!flags.Has("policy") && !flags.Has("allow")) return std::nullopt;
+  const absl::StatusOr<VerifyPermissions> permissions =
+      ParsePermissions(flags.Text("policy", "safe"), flags.Text("allow"));
+  if (!permissions.ok()) return permissions.status();
+  return GivenPermissions{*permissions, /*policy_as_stated=*/!flags.Has("policy")};
+}
+
+}  // namespace traverse::cli
