@@ -11,6 +11,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
+#include "client/gateway/api/machine_text.h"
 #include "client/gateway/api/parameters.h"
 #include "client/gateway/api/upload.h"
 #include "client/gateway/http/problem.h"
@@ -41,14 +42,18 @@ HttpResponse JsonResponse(std::string json) {
 }
 
 // The parameters in the query and in the form together.
-absl::StatusOr<FileRequest> WholeRequest(const HttpRequest& request, const Upload& upload) {
+absl::StatusOr<FileRequest> WholeRequest(const HttpRequest& request, Upload& upload) {
   Parameters parameters = request.query;
   parameters.insert(parameters.end(), upload.fields.begin(), upload.fields.end());
   absl::StatusOr<FileRequest> parsed = ParseParameters(parameters);
   if (!parsed.ok()) return parsed;
   const bool named = std::any_of(parameters.begin(), parameters.end(),
                                  [](const auto& pair) { return pair.first == "name"; });
+  auto machine = TakeMachine(upload);
+  if (!machine.ok()) return machine.status();
+  parsed->gcode.machine = *std::move(machine);
   if (upload.files.empty()) return absl::InvalidArgumentError("there is no file in the request");
+  if (upload.files.size() > 1) return absl::InvalidArgumentError("two files: one is expected");
   if (!named && !upload.files[0].name.empty()) {
     if (absl::Status status = CheckFileName(upload.files[0].name); !status.ok()) return status;
     parsed->name = upload.files[0].name;
@@ -200,7 +205,8 @@ HttpDecision TakeFile(const HttpRequest& request, const std::string& caller, Cor
   if (absl::StatusOr<FileRequest> query = ParseParameters(request.query); !query.ok()) {
     return ProblemOf(query.status());
   }
-  return TakeFiles(request, caller, 1, core,
+  constexpr size_t kMostFiles = 2;  // `machine` is the other one
+  return TakeFiles(request, caller, kMostFiles, core,
                    [request, start = std::move(start)](const PlacePtr& place, Upload upload,
                                                        const ReplyPtr& reply) {
                      absl::StatusOr<FileRequest> wanted = WholeRequest(request, upload);

@@ -39,7 +39,9 @@ Json FileContent() {
           {"text/x.gcode", {{"schema", binary}}},
           {"multipart/form-data",
            {{"schema",
-             {{"type", "object"}, {"required", {"file"}}, {"properties", {{"file", binary}}}}}}}};
+             {{"type", "object"},
+              {"required", {"file"}},
+              {"properties", {{"file", binary}, {"machine", binary}}}}}}}};
 }
 
 Json ProblemResponse(int status) {

@@ -33,9 +33,6 @@ absl::StatusOr<FileRequest> RequestOf(const v1::RewriteOptions& options);
 // `traverse verify` of cli::VerifyFlagTable. Nothing if neither is given. Errors as above.
 absl::StatusOr<std::optional<GivenPermissions>> ParseVerifyParameters(const Parameters& parameters);
 
-// The same of the API's message.
-absl::StatusOr<std::optional<GivenPermissions>> PermissionsOf(const v1::VerifyOptions& options);
-
 }  // namespace traverse::gateway
 
 #endif  // TRAVERSE_CLIENT_GATEWAY_API_PARAMETERS_H_

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "client/gateway/api/parameters.h"
+#include "client/gateway/api/rewrite_options.h"
 #include "client/gateway/grpc/collect_reactor.h"
 #include "client/gateway/grpc/rewrite_reactor.h"
 #include "client/gateway/http/target.h"

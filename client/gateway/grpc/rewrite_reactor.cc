@@ -5,7 +5,7 @@
 
 #include "absl/time/clock.h"
 #include "client/gateway/api/file_routes.h"
-#include "client/gateway/api/parameters.h"
+#include "client/gateway/api/rewrite_options.h"
 
 namespace traverse::gateway {
 namespace {

@@ -202,6 +202,7 @@ void PrinterApi::Optimise(Delivery& delivery) {
   FileRequest request;
   request.name = delivery.upload.name;
   request.gcode.policy = delivery.printer.policy;
+  request.gcode.machine = delivery.printer.machine;
   request.only_new = true;
   request.finish_by = absl::Now() + options_.upload_deadline;
   auto result = std::make_shared<std::promise<absl::StatusOr<RewrittenFile>>>();

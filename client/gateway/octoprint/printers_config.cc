@@ -9,6 +9,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "client/files/read_file.h"
+#include "client/gateway/api/machine_text.h"
 
 namespace traverse::gateway {
 namespace {
@@ -63,6 +64,15 @@ absl::Status SetKey(const std::string& path, Printer& printer) {
   return absl::OkStatus();
 }
 
+absl::Status SetMachine(const std::string& path, Printer& printer) {
+  const absl::StatusOr<std::string> text = ReadWholeFile(path, kMostMachineBytes);
+  if (!text.ok()) return absl::UnavailableError(text.status().message());
+  absl::StatusOr<gcode::MachineLimits> machine = ParseMachine(*text, path);
+  if (!machine.ok()) return machine.status();
+  printer.machine = *std::move(machine);
+  return absl::OkStatus();
+}
+
 absl::Status SetField(const std::string& key, const std::string& text, Printer& printer) {
   if (key == "name") {
     printer.name = text;
@@ -72,6 +82,7 @@ absl::Status SetField(const std::string& key, const std::string& text, Printer& 
   if (key == "kind") return SetKind(text, printer);
   if (key == "url") return SetUrl(text, printer);
   if (key == "api_key_file") return SetKey(text, printer);
+  if (key == "machine") return SetMachine(text, printer);
   if (key == "tls_ca") {
     printer.tls_ca = text;
   } else if (key == "storage") {

@@ -9,10 +9,12 @@
 #ifndef TRAVERSE_CLIENT_GATEWAY_OCTOPRINT_PRINTERS_CONFIG_H_
 #define TRAVERSE_CLIENT_GATEWAY_OCTOPRINT_PRINTERS_CONFIG_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "client/gcode/machine/machine_limits.h"
 #include "client/gcode/plan/policy.h"
 
 namespace traverse::gateway {
@@ -27,7 +29,8 @@ struct Printer {
   std::string api_key;            // empty: the caller's own key is passed on
   std::string storage = "local";  // of a PrusaLink: "local", "usb", "sdcard"
   gcode::Policy policy = gcode::Policy::kSafe;
-  bool refuse_on_failure = false;  // otherwise the original goes on
+  std::optional<gcode::MachineLimits> machine;  // unset: as files state
+  bool refuse_on_failure = false;               // otherwise the original goes on
 };
 
 struct PrintersConfig {

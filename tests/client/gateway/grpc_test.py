@@ -108,6 +108,26 @@ class Calls(unittest.TestCase):
             least = self.assertLessEqual if "min_revisit_s" in options else self.assertLess
             least(summary.written.travel_mm, summary.given.travel_mm)
 
+    def test_the_machine_and_the_container_are_those_of_the_command(self):
+        printer = "[printer]\nmax_velocity: 300\nmax_accel: 150\n"
+        with tempfile.TemporaryDirectory() as folder:
+            config, text, packed, made = (os.path.join(folder, name) for name in ("p.cfg", "a.gcode", "a.bgcode", "b.bgcode"))
+            for path, content in [(config, printer.encode()), (text, PART)]:
+                with open(path, "wb") as file:
+                    file.write(content)
+            file, _, slow, _ = self.rewrite(PART, name="a.gcode", machine=printer)
+            self.assertEqual(file, optimised_by_command(PART, "--machine=" + config))
+            self.assertGreater(slow.given.print_seconds, self.rewrite(PART, name="a.gcode")[2].given.print_seconds)
+            command = [os.environ["TRAVERSE"], "optimize", "--quiet"]
+            subprocess.run([*command, text, "-o", packed, "--container=bgcode", "--strategy=none"], check=True)
+            subprocess.run([*command, packed, "-o", made, "--restate_times"], check=True)
+            with open(packed, "rb") as file:
+                content = file.read()
+            with open(made, "rb") as file:
+                self.assertEqual(self.rewrite(content, name="a.bgcode", restate_times=True)[0], file.read())
+            back = self.rewrite(content, name="a.bgcode", container=1)[0]
+            self.assertIn(b"\nG1 X10 Y", back.replace(b"X0", b"X10"))
+
     def test_report_and_progress(self):
         _, report, summary, stages = self.rewrite(lines_of_infill(50), report=True)
         self.assertIn(b"</html>", report)
@@ -173,6 +193,10 @@ class Calls(unittest.TestCase):
         self.refused(bad, "options.crossings", [request(options=options(crossings=9))])
         self.refused(bad, "options.allow[1]", [request(options=options(allow=[1, 0]))])
         self.refused(bad, "options.allow", [request(options=options(allow=[1] * 17))])
+        self.refused(bad, "options.container", [request(options=options(container=9))])
+        self.refused(bad, "options.machine:2", [request(options=options(machine="[printer]\nmax_accel: fast\n"))])
+        self.refused(bad, "options.machine", [request(options=options(machine=" " * ((1 << 20) + 1)))])
+        self.refused(bad, "plate", self.requests(PART, plate=2))
         for seconds in (-1, 3601, float("nan"), float("inf")):
             self.refused(bad, "options.min_revisit_s", [request(options=options(min_revisit_s=seconds))])
         self.refused(bad, "options.last_layer", [request(options=options(first_layer=3, last_layer=2))])

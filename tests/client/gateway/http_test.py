@@ -152,6 +152,22 @@ class Files(unittest.TestCase):
         for wrong in ["policy=wild", "allow=walls", "seed=1", "policy=safe&policy=free"]:
             self.refused(400, wrong.split("=")[0], self.post("/v1/verify?" + wrong, body, headers))
 
+    def test_the_limits_of_the_machine_come_with_the_file(self):
+        seconds = []
+        for accel in [100, 10000]:
+            printer = f"[printer]\nmax_velocity: 300\nmax_accel: {accel}\n".encode()
+            body, headers = form([("machine", "printer.cfg", printer), ("file", "a.gcode", PART)])
+            seconds.append(json.loads(self.post("/v1/inspect", body, headers)[2])["totals"]["print_seconds"])
+            with tempfile.NamedTemporaryFile(suffix=".cfg") as file:
+                file.write(printer)
+                file.flush()
+                made = optimised_by_command(PART, "--machine=" + file.name)
+            self.assertEqual(self.post("/v1/gcode", body, headers)[2], made)
+        self.assertGreater(seconds[0], 2 * seconds[1])
+        for printer, words in [(b"[printer]\nmax_accel: fast\n", "printer.cfg:2"), (b" " * (2 << 20), "1048576"), (b"", "printer.cfg")]:
+            body, headers = form([("file", "a.gcode", PART), ("machine", "printer.cfg", printer)])
+            self.refused(400, words, self.post("/v1/gcode", body, headers))
+
     def test_parameters_that_are_wrong_are_said_before_the_file_is_sent(self):
         for query, words in [("polcy=safe", "polcy"), ("policy=wild", "wild"), ("policy=safe&policy=free", "twice"),
                              ("layers=9-1", "layers"), ("seed=-1", "seed"), ("seed=1.5", "seed"), ("deadline=soon", "deadline"),

@@ -7,6 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "absl/status/status.h"
+#include "client/files/write_file.h"
+#include "tests/support/scratch_folder.h"
+
 namespace traverse::gateway {
 namespace {
 
@@ -27,6 +31,24 @@ TEST(PrintersConfig, ReadsAllFields) {
   EXPECT_EQ(config->printers[1].policy, gcode::Policy::kFree);
   EXPECT_TRUE(config->printers[1].refuse_on_failure);
   EXPECT_EQ(config->printers[1].storage, "usb");
+}
+
+TEST(PrintersConfig, ReadsTheLimitsOfAMachine) {
+  const testing::ScratchFolder folder;
+  const std::string path = folder.Path("printer.cfg");
+  const std::string json =
+      R"({"printers": [{"name": "a", "url": "http://a", "machine": ")" + path + "\"}]}";
+  EXPECT_TRUE(absl::IsUnavailable(ParsePrinters(json).status()));
+
+  ASSERT_TRUE(WriteWholeFile(path, "[printer]\nmax_velocity: 200\nmax_accel: 1234\n").ok());
+  const auto config = ParsePrinters(json);
+  ASSERT_TRUE(config.ok()) << config.status();
+  ASSERT_TRUE(config->printers[0].machine.has_value());
+  EXPECT_EQ(config->printers[0].machine->max_accel, 1234);
+
+  ASSERT_TRUE(WriteWholeFile(path, "[printer]\nmax_velocity: 200\nmax_accel: fast\n").ok());
+  EXPECT_THAT(std::string(ParsePrinters(json).status().message()),
+              HasSubstr("printers[0].machine: " + path + ":3"));
 }
 
 TEST(PrintersConfig, OnePrinterIsTheDefault) {
