@@ -15,7 +15,7 @@ namespace traverse::gcode {
 namespace {
 
 constexpr double kLevelMm = 0.003;
-constexpr double kShortestMm = 0.05;
+constexpr double kShortestStepMm = 0.05;
 
 // One step, or several alike: all but where it leads to, and how much filament a wipe pulls.
 struct WayStep {
@@ -36,7 +36,7 @@ struct WayStep {
 
 bool IsNothing(const TraceMove& move) {
   return !move.firmware && move.filament == 0 && move.z_from_mm == move.z_to_mm &&
-         move.length_mm() < kShortestMm;
+         move.length_mm() < kShortestStepMm;
 }
 
 // What the link to `path` does behind the line that ends the section before.
