@@ -76,6 +76,7 @@ struct Setting {
   std::string_view key;
   Field field;
   Range range = Range::kAboveZero;
+  bool lowers = false;  // the field may also be set by others; the least value counts
 };
 
 constexpr Setting kSettings[] = {
@@ -85,6 +86,11 @@ constexpr Setting kSettings[] = {
     {"printer", "minimum_cruise_ratio", &MachineLimits::cruise_ratio, Range::kRatio},
     {"printer", "max_z_velocity", &MachineLimits::max_z_speed},
     {"printer", "max_z_accel", &MachineLimits::z_accel},
+    // Of kinematics that limit each axis. Moves lead anywhere: the slower axis counts.
+    {"printer", "max_x_velocity", &MachineLimits::max_speed, Range::kAboveZero, true},
+    {"printer", "max_y_velocity", &MachineLimits::max_speed, Range::kAboveZero, true},
+    {"printer", "max_x_accel", &MachineLimits::max_accel, Range::kAboveZero, true},
+    {"printer", "max_y_accel", &MachineLimits::max_accel, Range::kAboveZero, true},
     {"extruder", "nozzle_diameter", &MachineLimits::nozzle_diameter},
     {"extruder", "filament_diameter", &MachineLimits::filament_diameter},
     {"extruder", "max_extrude_only_velocity", &MachineLimits::max_e_speed},
@@ -95,6 +101,8 @@ constexpr Setting kSettings[] = {
      Range::kFromZero},
     {"firmware_retraction", "retract_speed", &MachineLimits::firmware_retract_speed},
     {"firmware_retraction", "unretract_speed", &MachineLimits::firmware_prime_speed},
+    {"firmware_retraction", "unretract_extra_length", &MachineLimits::firmware_prime_extra,
+     Range::kFromZero},
     {"gcode_arcs", "resolution", &MachineLimits::arc_chord},
 };
 
@@ -106,12 +114,11 @@ class KlipperReader {
     const absl::Status status =
         ForEachLine(text, [this](std::string_view line, int number) { return Take(line, number); });
     if (!status.ok()) return status;
+    const char* unread = includes_ ? "; files that it includes are not read" : "";
+    if (!has_printer_) return Fault(name_, absl::StrCat("it has no [printer]", unread));
     for (const auto& [field, key] : {std::pair(limits_.max_speed, "max_velocity"),
                                      std::pair(limits_.max_accel, "max_accel")}) {
-      if (field) continue;
-      return Fault(name_,
-                   absl::StrFormat("%s has no %s%s", has_printer_ ? "[printer]" : "it", key,
-                                   includes_ ? "; files that it includes are not read" : ""));
+      if (!field) return Fault(name_, absl::StrFormat("[printer] has no %s%s", key, unread));
     }
     FillDefaults();
     return limits_;
@@ -135,7 +142,12 @@ class KlipperReader {
     }
     for (const Setting& setting : kSettings) {
       if (section_ != setting.section || key != setting.key) continue;
-      return Set(value, key, number, setting.range, limits_.*setting.field);
+      std::optional<double> read;
+      const absl::Status status = Set(value, key, number, setting.range, read);
+      MachineLimits& into = setting.lowers ? of_axes_ : limits_;
+      std::optional<double>& field = into.*setting.field;
+      field = setting.lowers && field && read ? std::min(*field, *read) : read;
+      return status;
     }
     return absl::OkStatus();
   }
@@ -145,6 +157,7 @@ class KlipperReader {
     if (end == std::string_view::npos) return Fault(At(name_, number), "a section without a ]");
     section_ = std::string(TrimBlanks(line.substr(1, end - 1)));
     has_printer_ = has_printer_ || section_ == "printer";
+    retracts_ = retracts_ || section_ == "firmware_retraction";
     includes_ = includes_ || StartsWith(section_, "include");
     return absl::OkStatus();
   }
@@ -164,8 +177,13 @@ class KlipperReader {
     const auto fill = [](std::optional<double>& field, double value) {
       if (!field) field = value;
     };
+    const auto lower = [](std::optional<double>& field, const std::optional<double>& most) {
+      if (most) field = std::min(*field, *most);
+    };
     fill(limits_.max_z_speed, *limits_.max_speed);
     fill(limits_.z_accel, *limits_.max_accel);
+    lower(limits_.max_speed, of_axes_.max_speed);
+    lower(limits_.max_accel, of_axes_.max_accel);
     fill(limits_.corner_speed, 5);
     // The setting of before 2024, which counts with the acceleration of the configuration.
     if (accel_to_decel_) {
@@ -174,14 +192,56 @@ class KlipperReader {
     fill(limits_.cruise_ratio, 0.5);
     fill(limits_.extruder_corner_speed, 1);
     fill(limits_.arc_chord, 1);
+    if (!retracts_) return;  // G10 and G11 are macros, if anything
+    fill(limits_.firmware_retract_length, 0);
+    fill(limits_.firmware_retract_speed, 20);
+    fill(limits_.firmware_prime_speed, 10);
+    fill(limits_.firmware_prime_extra, 0);
   }
 
   const std::string& name_;
   std::string section_;
   bool has_printer_ = false;
   bool includes_ = false;
+  bool retracts_ = false;
   std::optional<double> accel_to_decel_;
+  MachineLimits of_axes_;  // what one of X and Y may at most
   MachineLimits limits_;
+};
+
+// One word of Marlin that is read, in the order in which they count.
+struct Word {
+  int number;
+  char letter;
+  Field field;
+  Range range = Range::kAboveZero;
+  double per_second = 1;  // 60 where it counts mm/min
+};
+constexpr Word kWords[] = {
+    {201, 'X', &MachineLimits::max_accel},
+    {201, 'Y', &MachineLimits::max_accel},
+    {201, 'Z', &MachineLimits::z_accel},
+    {201, 'E', &MachineLimits::retract_accel},
+    {202, 'X', &MachineLimits::travel_accel},
+    {202, 'Y', &MachineLimits::travel_accel},
+    {203, 'X', &MachineLimits::max_speed},
+    {203, 'Y', &MachineLimits::max_speed},
+    {203, 'Z', &MachineLimits::max_z_speed},
+    {203, 'E', &MachineLimits::max_e_speed},
+    {204, 'S', &MachineLimits::print_accel},
+    {204, 'S', &MachineLimits::travel_accel},
+    {204, 'P', &MachineLimits::print_accel},
+    {204, 'T', &MachineLimits::travel_accel},
+    {204, 'R', &MachineLimits::retract_accel},
+    {205, 'X', &MachineLimits::corner_speed},
+    {205, 'Y', &MachineLimits::corner_speed},
+    {205, 'J', &MachineLimits::junction_deviation},
+    {207, 'S', &MachineLimits::firmware_retract_length, Range::kFromZero},
+    {207, 'F', &MachineLimits::firmware_retract_speed, Range::kAboveZero, 60},
+    {208, 'S', &MachineLimits::firmware_prime_extra, Range::kFromZero},
+    {208, 'F', &MachineLimits::firmware_prime_speed, Range::kAboveZero, 60},
+    {566, 'X', &MachineLimits::corner_speed, Range::kAboveZero, 60},
+    {566, 'Y', &MachineLimits::corner_speed, Range::kAboveZero, 60},
 };
 
 class MarlinReader {
@@ -189,6 +249,7 @@ class MarlinReader {
   explicit MarlinReader(const std::string& name) : name_(name) {}
 
   absl::StatusOr<MachineLimits> Read(std::string_view text) {
+    duet_ = text.find("M566") != std::string_view::npos;
     const absl::Status status =
         ForEachLine(text, [this](std::string_view line, int number) { return Take(line, number); });
     if (!status.ok()) return status;
@@ -198,62 +259,63 @@ class MarlinReader {
 
  private:
   absl::Status Take(std::string_view line, int number) {
-    constexpr std::string_view kEcho = "echo:";
-    line = TrimBlanks(line);
-    const bool echoed = StartsWith(line, kEcho);
-    if (echoed) line = TrimBlanks(line.substr(kEcho.size()));
+    bool said = false;  // by the firmware: it need not be a command
+    line = WithoutMarks(line, said);
     Command command;
     LexLine(line, command);
-    if (command.kind == LineKind::kText && !echoed) {
+    if (command.kind == LineKind::kText && !said) {
       return Fault(any_ ? At(name_, number) : name_,
                    any_ ? "neither a command nor a comment" : kNeither);
     }
+    if (command.Is('G', 20) || command.Is('G', 21)) unit_mm_ = command.number == 20 ? 25.4 : 1;
     const bool ours = command.kind == LineKind::kCommand && command.letter == 'M' &&
-                      command.number >= 201 && command.number <= 205;
-    if (!ours) return absl::OkStatus();
+                      std::any_of(std::begin(kWords), std::end(kWords),
+                                  [&](const Word& word) { return word.number == command.number; });
+    // There M208 says how far the axes reach.
+    if (!ours || (duet_ && command.number == 208)) return absl::OkStatus();
     if (!ReadWords(command)) {
       return Fault(At(name_, number),
                    absl::StrFormat("M%d: its words cannot be read", command.number));
     }
-    any_ = true;
+    any_ = any_ || command.number <= 205;
     return Follow(command, number);
+  }
+
+  // Terminals show who said a line, firmware begins what is no answer with `echo:`.
+  static std::string_view WithoutMarks(std::string_view line, bool& said) {
+    line = TrimBlanks(line);
+    for (const std::string_view mark : {"Recv:", "<<<", "<", "Send:", "SENDING:", ">>>", ">"}) {
+      if (StartsWith(line, mark)) {
+        line = TrimBlanks(line.substr(mark.size()));
+        break;
+      }
+    }
+    constexpr std::string_view kEcho = "echo:";
+    said = StartsWith(line, kEcho) || line == "ok" || line == "wait" || line == "start";
+    return StartsWith(line, kEcho) ? TrimBlanks(line.substr(kEcho.size())) : line;
   }
 
   absl::Status Follow(const Command& command, int number) {
     for (const Word& word : kWords) {
       if (command.number != word.number || !command.Has(word.letter)) continue;
       const double value = ToDouble(command.Value(word.letter));
-      if (!Holds(Range::kAboveZero, value)) {
-        return Fault(At(name_, number), absl::StrFormat("M%d %c: %s", word.number, word.letter,
-                                                        NameOf(Range::kAboveZero)));
+      if (!Holds(word.range, value)) {
+        return Fault(At(name_, number),
+                     absl::StrFormat("M%d %c: %s", word.number, word.letter, NameOf(word.range)));
       }
       std::optional<double>& field = limits_.*word.field;
+      const double per_second = duet_ && command.number == 203 ? 60 : word.per_second;
+      const double mm = value * unit_mm_ / per_second;
       // Moves lead anywhere: of X and Y the slower one counts.
       const bool slower = word.letter == 'Y' && command.Has('X') && field;
-      field = slower ? std::min(*field, value) : value;
+      field = slower ? std::min(*field, mm) : mm;
     }
     return absl::OkStatus();
   }
 
-  // One word that is read, in the order in which they count.
-  struct Word {
-    int number;
-    char letter;
-    Field field;
-  };
-  static constexpr Word kWords[] = {
-      {201, 'X', &MachineLimits::max_accel},     {201, 'Y', &MachineLimits::max_accel},
-      {201, 'Z', &MachineLimits::z_accel},       {201, 'E', &MachineLimits::retract_accel},
-      {202, 'X', &MachineLimits::travel_accel},  {202, 'Y', &MachineLimits::travel_accel},
-      {203, 'X', &MachineLimits::max_speed},     {203, 'Y', &MachineLimits::max_speed},
-      {203, 'Z', &MachineLimits::max_z_speed},   {203, 'E', &MachineLimits::max_e_speed},
-      {204, 'S', &MachineLimits::print_accel},   {204, 'S', &MachineLimits::travel_accel},
-      {204, 'P', &MachineLimits::print_accel},   {204, 'T', &MachineLimits::travel_accel},
-      {204, 'R', &MachineLimits::retract_accel}, {205, 'X', &MachineLimits::corner_speed},
-      {205, 'Y', &MachineLimits::corner_speed},  {205, 'J', &MachineLimits::junction_deviation},
-  };
-
   const std::string& name_;
+  bool duet_ = false;  // RepRapFirmware
+  double unit_mm_ = 1;
   bool any_ = false;
   MachineLimits limits_;
 };
@@ -271,6 +333,8 @@ bool LooksLikeKlipper(std::string_view text) {
 }  // namespace
 
 absl::StatusOr<MachineLimits> ReadMachineLimits(std::string_view text, const std::string& name) {
+  constexpr std::string_view kMarkOfUtf8 = "\xEF\xBB\xBF";
+  if (StartsWith(text, kMarkOfUtf8)) text.remove_prefix(kMarkOfUtf8.size());
   if (LooksLikeKlipper(text)) return KlipperReader(name).Read(text);
   return MarlinReader(name).Read(text);
 }
@@ -289,6 +353,7 @@ void ApplyLimits(const MachineLimits& limits, MachineProfile& profile) {
   set(profile.firmware_retract_speed, limits.firmware_retract_speed);
   profile.firmware_prime_speed = profile.firmware_retract_speed;
   set(profile.firmware_prime_speed, limits.firmware_prime_speed);
+  set(profile.firmware_prime_extra, limits.firmware_prime_extra);
   profile.klipper = limits.klipper;
   if (limits.klipper) {
     // One acceleration for all moves, and by default what extruding needs at most for filament.

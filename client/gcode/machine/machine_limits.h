@@ -2,8 +2,10 @@
 //
 //   a Klipper configuration   [printer], [extruder], [firmware_retraction] and [gcode_arcs] of it;
 //                             files that it includes are not read
-//   lines of Marlin           M201 to M205, as in a start script or as M503 lists them (echo:);
-//                             other commands mean nothing here
+//   lines of Marlin           M201 to M205, M207 and M208, as in a start script or as M503 lists
+//                             them (echo:), in mm or, behind G20, in inches; a terminal's marks
+//                             (Recv:, ok) and other commands mean nothing here
+//   of RepRapFirmware         the same, known by M566: its speeds are in mm/min
 
 #ifndef TRAVERSE_CLIENT_GCODE_MACHINE_MACHINE_LIMITS_H_
 #define TRAVERSE_CLIENT_GCODE_MACHINE_MACHINE_LIMITS_H_
@@ -39,6 +41,7 @@ struct MachineLimits {
   std::optional<double> firmware_retract_length;
   std::optional<double> firmware_retract_speed;
   std::optional<double> firmware_prime_speed;
+  std::optional<double> firmware_prime_extra;  // pushed beyond what was pulled back
 };
 
 // Reads the text of such a file, whose name errors begin with: `printer.cfg:12: max_accel: ...`.

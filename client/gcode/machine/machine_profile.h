@@ -35,6 +35,7 @@ struct MachineProfile {
   double firmware_retract_length = 1;
   double firmware_retract_speed = 40;
   double firmware_prime_speed = 40;
+  double firmware_prime_extra = 0;  // pushed beyond what was pulled back
 
   // The slicer's own rules, where its configuration is in the file.
   std::optional<double> retract_before_travel;

@@ -1,6 +1,7 @@
 #include "client/gcode/machine/motion_planner.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -31,53 +32,72 @@ double StopToStopSeconds(double length, double speed, double accel) {
   return TrapezoidSeconds(length, 0, 0, speed * speed, accel);
 }
 
-void MotionPlanner::Move(double dx, double dy, double speed, double accel, double corner,
-                         double filament) {
+void MotionPlanner::Move(double dx, double dy, double speed, double accel, double corner) {
+  if (rules_.klipper) {
+    MoveInSpace move{.dx = dx, .dy = dy, .speed = speed, .accel = accel};
+    move.machine_accel = accel;
+    move.corner = corner;
+    return Move(move);
+  }
   const double length = std::sqrt(dx * dx + dy * dy);
   if (!(length > 0)) return;
   const double x = dx / length;
   const double y = dy / length;
-  Arc(length, x, y, x, y, speed, accel, corner, filament);
+  Arc(length, x, y, x, y, speed, accel, corner);
+}
+
+void MotionPlanner::Move(const MoveInSpace& move) {
+  assert(rules_.klipper);
+  const double length = std::hypot(move.dx, move.dy, move.dz);
+  if (!(length > 0) || !(move.speed > 0)) return;
+  const Direction along{move.dx / length, move.dy / length, move.dz / length};
+  Segment segment{length, move.speed * move.speed, move.accel};
+  const double slow_accel = std::min(move.accel, (1 - rules_.cruise_ratio) * move.machine_accel);
+  segment.slow_gain2 = 2 * slow_accel * length;
+  // What a right angle at the corner speed misses it by.
+  segment.missing2 =
+      (std::numbers::sqrt2 - 1) * move.corner * move.corner * move.accel / move.machine_accel;
+  const double limit2 = queue_.empty() ? 0 : KlipperLimit2(along, segment, move.filament);
+  last_filament_ = move.filament;
+  Queue(segment, limit2, along);
 }
 
 void MotionPlanner::Arc(double length_mm, double bx, double by, double ex, double ey, double speed,
-                        double accel, double corner, double filament) {
+                        double accel, double corner) {
   if (!(length_mm > 0) || !(speed > 0)) return;
-  Segment segment{
-      length_mm, speed * speed, accel, 0, 0, 2 * (1 - rules_.cruise_ratio) * accel * length_mm};
+  const double limit2 = queue_.empty() ? 0 : CornerLimit2(bx, by, corner);
+  Queue({length_mm, speed * speed, accel}, limit2, {ex, ey});
+}
+
+void MotionPlanner::Queue(Segment segment, double limit2, const Direction& end) {
   if (!queue_.empty()) {
-    const double limit2 = rules_.klipper ? KlipperLimit2(bx, by, corner, segment, filament)
-                                         : CornerLimit2(bx, by, corner);
     segment.limit2 = std::min({limit2, segment.speed2, queue_.back().speed2});
     segment.entry2 = segment.limit2;
   }
   queue_.push_back(segment);
-  last_x_ = ex;
-  last_y_ = ey;
-  last_filament_ = filament;
+  last_ = end;
   if (queue_.size() >= kWindow) Plan(0, kWindow / 2);
 }
 
 double MotionPlanner::CornerLimit2(double bx, double by, double corner) const {
   // 2 sin(t / 2) squared is 2 - 2 cos t.
-  const double turn2 = std::max(2 - 2 * (last_x_ * bx + last_y_ * by), 1e-9);
+  const double turn2 = std::max(2 - 2 * (last_.x * bx + last_.y * by), 1e-9);
   return 2 * corner * corner / turn2;
 }
 
-double MotionPlanner::KlipperLimit2(double bx, double by, double corner, const Segment& next,
+double MotionPlanner::KlipperLimit2(const Direction& begin, const Segment& next,
                                     double filament) const {
   const Segment& last = queue_.back();
-  const double cosine = last_x_ * bx + last_y_ * by;
+  const double cosine = last_.x * begin.x + last_.y * begin.y + last_.z * begin.z;
   const double half_cos = std::sqrt(std::max((1 + cosine) / 2, 0.0));
   const double half_sin = std::sqrt(std::max((1 - cosine) / 2, 0.0));
   double limit2 = kNoLimit;
   if (half_sin > kStraight) {
-    // On a circle that misses the corner by d the radius is d cos / (1 - cos), of half the angle,
-    // and d at a right angle is what the corner speed says.
-    const double missing = corner * corner * (std::numbers::sqrt2 - 1);
+    // On a circle that misses the corner by d the radius is d cos / (1 - cos), of half the angle.
+    const double radius = half_cos / (1 - half_cos);
     const double middle = half_cos / half_sin / 2;
-    limit2 = std::min({half_cos / (1 - half_cos) * missing, middle * next.accel * next.length,
-                       middle * last.accel * last.length});
+    limit2 = std::min({radius * next.missing2, radius * last.missing2,
+                       middle * next.accel * next.length, middle * last.accel * last.length});
   }
   const double change = std::abs(filament - last_filament_);
   if (change > 0) {

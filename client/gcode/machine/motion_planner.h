@@ -11,6 +11,8 @@
 // Told that the machine runs Klipper, it plans as that does (its document Kinematics.md):
 // - a corner is taken on the circle that misses it by as much as a right angle at the corner speed
 //   would, and that touches both moves no farther away than in their middle;
+// - Z is an axis like the others, so a lift and the way behind it make a corner too; a slow axis
+//   slows the corners that it takes part in;
 // - the extruder's speed changes at once by no more than its own corner speed;
 // - of a way that goes up to a speed and down again, a share is at constant speed: the peak is the
 //   one that is reached with the acceleration less that share.
@@ -34,6 +36,20 @@ struct PlannerRules {
   double extruder_corner_speed = 0;  // mm/s of filament
 };
 
+// A straight move, by mm along each axis.
+struct MoveInSpace {
+  double dx = 0;
+  double dy = 0;
+  double dz = 0;
+  double speed = 0;  // mm/s, at most
+  double accel = 0;  // mm/s^2, as far as its axes allow
+  // What the machine is set to. The share at constant speed is one of this, and the corner speed is
+  // that of a move with this acceleration; a slower one takes corners more slowly.
+  double machine_accel = 0;
+  double corner = 0;    // mm/s, from 0, to the move before it and behind it
+  double filament = 0;  // mm of it for each mm
+};
+
 class MotionPlanner {
  public:
   explicit MotionPlanner(const PlannerRules& rules = {}) : rules_(rules) {}
@@ -42,13 +58,16 @@ class MotionPlanner {
   void set_cruise_ratio(double ratio) { rules_.cruise_ratio = ratio; }
 
   // A move by (dx, dy) mm at most `speed` mm/s with `accel` mm/s^2. `corner` mm/s is the corner
-  // speed to the move before it; `filament` mm of it are pushed for each mm.
-  void Move(double dx, double dy, double speed, double accel, double corner, double filament = 0);
+  // speed to the move before it.
+  void Move(double dx, double dy, double speed, double accel, double corner);
+
+  // By Klipper's rules, with Z and the extruder. REQUIRES: the planner has them.
+  void Move(const MoveInSpace& move);
 
   // A move along an arc of `length_mm` that begins in direction (bx, by) and ends in direction
   // (ex, ey), both of length 1.
   void Arc(double length_mm, double bx, double by, double ex, double ey, double speed, double accel,
-           double corner, double filament = 0);
+           double corner);
 
   // The machine stops, and stands for `seconds`.
   void Stop(double seconds = 0);
@@ -57,19 +76,31 @@ class MotionPlanner {
   double seconds() const { return seconds_; }
 
  private:
+  struct Direction {
+    double x = 0;
+    double y = 0;
+    double z = 0;
+  };
+
   struct Segment {
     double length;
     double speed2;  // squares of speeds, (mm/s)^2
     double accel;
-    double limit2;      // of the corner before it
-    double entry2;      // planned: at most limit2, and low enough to brake for what follows
-    double slow_gain2;  // of speed^2, with the acceleration less the share of cruising
+    double limit2 = 0;  // of the corner before it
+    double entry2 = 0;  // planned: at most limit2, and low enough to brake for what follows
+
+    // By Klipper's rules: how much speed^2 grows with the acceleration less the share of cruising,
+    // and how far a corner may be missed, times the acceleration.
+    double slow_gain2 = 0;
+    double missing2 = 0;
   };
 
-  // The corner between the last queued move and one that begins in direction (bx, by).
+  // The corner between the last queued move and one that begins in direction (bx, by) or `begin`.
   double CornerLimit2(double bx, double by, double corner) const;
-  double KlipperLimit2(double bx, double by, double corner, const Segment& next,
-                       double filament) const;
+  double KlipperLimit2(const Direction& begin, const Segment& next, double filament) const;
+
+  // Queues a move that ends in direction `end`, behind a corner taken at the root of `limit2`.
+  void Queue(Segment segment, double limit2, const Direction& end);
 
   // Fills slow2_ and peaks2_, so that each way up to a speed and down again has its cruise.
   void FindPeaks();
@@ -83,8 +114,7 @@ class MotionPlanner {
 
   PlannerRules rules_;
   std::vector<Segment> queue_;
-  double last_x_ = 0;  // direction in which the last queued move ends
-  double last_y_ = 0;
+  Direction last_;  // in which the last queued move ends
   double last_filament_ = 0;
   double entry2_ = 0;  // speed at which the first queued segment is entered
 

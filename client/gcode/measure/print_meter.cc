@@ -21,33 +21,34 @@ PlannerRules RulesOf(const MachineProfile& profile) {
   return {profile.klipper, profile.cruise_ratio, profile.extruder_corner_speed};
 }
 
-}  // namespace
+// A move of one axis alone, Z or the extruder.
+struct AxisMove {
+  double length = 0;  // mm
+  double speed = 0;
+  double accel = 0;
+};
 
-double StandstillSeconds(const Step& step, const MachineState& state,
-                         const MachineProfile& profile) {
+// `step` is filament alone, a lift, G10 or G11; `state` is how the machine is behind it.
+AxisMove AxisMoveOf(const Step& step, const MachineState& state, const MachineProfile& profile) {
   const double feed = ToDouble(state.feed) / 60;
-  const auto seconds = [](double length, double speed, double accel) {
-    return speed > 0 ? StopToStopSeconds(length, speed, accel) : 0;
+  const auto of_extruder = [&profile](double length, double speed) {
+    return AxisMove{length, std::min(speed, profile.max_e_speed), profile.retract_accel};
   };
   switch (step.kind) {
-    case StepKind::kFilament:
-      return seconds(std::abs(ToDouble(step.filament)), std::min(feed, profile.max_e_speed),
-                     profile.retract_accel);
-    case StepKind::kLift:
-      return seconds(std::abs(ToDouble(state.at.z - step.from.z)) * state.UnitMm(),
-                     std::min(feed * state.UnitMm(), profile.max_z_speed), profile.z_accel);
     case StepKind::kFirmwareRetract:
-      return seconds(profile.firmware_retract_length,
-                     std::min(profile.firmware_retract_speed, profile.max_e_speed),
-                     profile.retract_accel);
+      return of_extruder(profile.firmware_retract_length, profile.firmware_retract_speed);
     case StepKind::kFirmwareUnretract:
-      return seconds(profile.firmware_retract_length,
-                     std::min(profile.firmware_prime_speed, profile.max_e_speed),
-                     profile.retract_accel);
+      return of_extruder(profile.firmware_retract_length + profile.firmware_prime_extra,
+                         profile.firmware_prime_speed);
+    case StepKind::kLift:
+      return {std::abs(ToDouble(state.at.z - step.from.z)) * state.UnitMm(),
+              std::min(feed * state.UnitMm(), profile.max_z_speed), profile.z_accel};
     default:
-      return 0;
+      return of_extruder(std::abs(ToDouble(step.filament)), feed);
   }
 }
+
+}  // namespace
 
 PrintMeter::PrintMeter(const MachineProfile& profile, const Dynamics& dynamics,
                        const VisibleWalls* walls)
@@ -67,14 +68,19 @@ void PrintMeter::Follow(const Step& step, const Interpreter& interpreter) {
       if (step.filament > step.pulled + (step.pulled > 0 ? kRounding : 0)) {
         totals_.extra_mm += ToDouble(step.filament - step.pulled);
       }
-      return planner_.Stop(StandstillSeconds(step, state, profile_));
+      return Stand(step, state);
     }
     case StepKind::kFirmwareRetract:
       if (!step.retracted) ++totals_.retractions;
       [[fallthrough]];
     case StepKind::kFirmwareUnretract:
+      return Stand(step, state);
     case StepKind::kLift:
-      return planner_.Stop(StandstillSeconds(step, state, profile_));
+      if (profile_.klipper) {
+        MoveKlipper(step, state);
+        return;
+      }
+      return Stand(step, state);
     case StepKind::kSlot:
       if ((step.slots & kDynamicsSlots) != 0) {
         dynamics_.Follow(step.line.Text(interpreter.text()));
@@ -106,34 +112,52 @@ double PrintMeter::MoveKlipper(const Step& step, const MachineState& state) {
   const double unit = state.UnitMm();
   const double flat = step.arc ? ArcLength(step.command, step.from, state.at, unit)
                                : LengthXy(step.from, state.at) * unit;
-  if (!(flat > 0)) return 0;
-  const double rise = std::abs(ToDouble(state.at.z - step.from.z)) * unit;
+  const double rise = ToDouble(state.at.z - step.from.z) * unit;
   const double length = std::hypot(flat, rise);
-  const double filament = ToDouble(step.filament) / length;
-  double speed = std::min(ToDouble(state.feed) / 60 * unit, dynamics_.max_speed());
-  double accel = dynamics_.travel_accel();
+  if (!(length > 0)) return 0;
+  MoveInSpace move;
+  move.speed = std::min(ToDouble(state.feed) / 60 * unit, dynamics_.max_speed());
+  move.accel = move.machine_accel = dynamics_.travel_accel();
+  move.corner = dynamics_.corner_speed();
+  move.filament = ToDouble(step.filament) / length;
   // What one axis may is the more along a way on which it moves less.
-  const auto limit = [&](double share, double most_speed, double most_accel) {
-    speed = std::min(speed, most_speed / share);
-    accel = std::min(accel, most_accel / share);
+  const auto limit = [&move](double share, double most_speed, double most_accel) {
+    move.speed = std::min(move.speed, most_speed / share);
+    move.accel = std::min(move.accel, most_accel / share);
   };
-  if (rise > 0) limit(rise / length, profile_.max_z_speed, profile_.z_accel);
-  if (filament < 0) limit(-filament, profile_.max_e_speed, profile_.retract_accel);
+  if (rise != 0) limit(std::abs(rise) / length, profile_.max_z_speed, profile_.z_accel);
+  if (move.filament < 0) limit(-move.filament, profile_.max_e_speed, profile_.retract_accel);
   std::vector<Vertex> points = {state.InMm(step.from)};
   if (step.arc) {
-    const double chords = std::max(std::floor(flat / profile_.arc_chord), 1.0);
+    const double chords = std::max(std::floor(length / profile_.arc_chord), 1.0);
     for (const Vertex& point : ArcChords(step.command, step.from, state.at, unit, chords)) {
       points.push_back(point);
     }
   }
   points.push_back(state.InMm(state.at));
   planner_.set_cruise_ratio(dynamics_.cruise_ratio());
+  move.dz = rise / static_cast<double>(points.size() - 1);
   for (size_t i = 1; i < points.size(); ++i) {
-    planner_.Move((points[i].x - points[i - 1].x) * length / flat,
-                  (points[i].y - points[i - 1].y) * length / flat, speed, accel,
-                  dynamics_.corner_speed(), filament);
+    move.dx = points[i].x - points[i - 1].x;
+    move.dy = points[i].y - points[i - 1].y;
+    planner_.Move(move);
   }
   return flat;
+}
+
+void PrintMeter::Stand(const Step& step, const MachineState& state) {
+  const AxisMove move = AxisMoveOf(step, state, profile_);
+  planner_.Stop();
+  if (!(move.speed > 0)) return;
+  if (!profile_.klipper) {
+    return planner_.Stop(StopToStopSeconds(move.length, move.speed, move.accel));
+  }
+  planner_.set_cruise_ratio(dynamics_.cruise_ratio());
+  planner_.Move({.dx = move.length,
+                 .speed = move.speed,
+                 .accel = move.accel,
+                 .machine_accel = dynamics_.travel_accel()});
+  planner_.Stop();
 }
 
 void PrintMeter::FollowXy(const Step& step, const MachineState& state) {

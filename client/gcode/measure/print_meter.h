@@ -13,11 +13,6 @@
 
 namespace traverse::gcode {
 
-// Seconds for which `step` keeps the machine in its place: filament alone, a lift, G10 and G11.
-// `state` is how it is behind the step.
-double StandstillSeconds(const Step& step, const MachineState& state,
-                         const MachineProfile& profile);
-
 class PrintMeter {
  public:
   // `profile` and `walls` outlive the meter; `dynamics` are those in force at the beginning.
@@ -33,9 +28,12 @@ class PrintMeter {
  private:
   void FollowXy(const Step& step, const MachineState& state);
 
-  // Queues the move in the plane, for a machine with Klipper or another one; its length in mm.
+  // Queues the move, for a machine with Klipper or another one; its length in the plane in mm.
   double MoveXy(const Step& step, const MachineState& state);
   double MoveKlipper(const Step& step, const MachineState& state);
+
+  // Queues filament alone or a lift, before and after which the machine stands.
+  void Stand(const Step& step, const MachineState& state);
   void NoteCrossing(const Step& step, const MachineState& state);
 
   const MachineProfile& profile_;

@@ -93,7 +93,112 @@ TEST(MachineLimits, FaultsOfKlipperNameTheLine) {
   EXPECT_EQ(FaultOf("[printer]\nmax_accel: 1\n"), "printer.cfg: [printer] has no max_velocity");
   EXPECT_EQ(FaultOf("[include machine.cfg]\n[printer]\nmax_velocity: 1\n"),
             "printer.cfg: [printer] has no max_accel; files that it includes are not read");
-  EXPECT_EQ(FaultOf("[extruder]\n"), "printer.cfg: it has no max_velocity");
+  EXPECT_EQ(FaultOf("[extruder]\n"), "printer.cfg: it has no [printer]");
+  EXPECT_EQ(FaultOf("[PRINTER]\nmax_velocity: 1\nmax_accel: 1\n"),
+            "printer.cfg: it has no [printer]");
+  EXPECT_EQ(FaultOf("[include *.cfg]\n"),
+            "printer.cfg: it has no [printer]; files that it includes are not read");
+}
+
+// As it leaves a printer: a mark of UTF-8, odd blanks, a block that the machine saved, a delta.
+TEST(MachineLimits, OfKlipperAsPeopleWriteIt) {
+  const MachineLimits limits = Read(
+      "\xEF\xBB\xBF[ printer ]  # mine\r\n"
+      "kinematics:delta\r\n"
+      "max_velocity   =   250.5\r\n"
+      "MAX_ACCEL:1e3 # was 3000\r\n"
+      "max_z_velocity : 150\t; of all towers\r\n"
+      "delta_radius: 174.75\r\n"
+      "[gcode_macro HELLO]\r\n"
+      "gcode:\r\n"
+      "    {% set max_velocity = 1 %}\r\n"
+      "  [printer]\r\n"
+      "[printer]\r\n"
+      "square_corner_velocity=8\r\n"
+      "#*# <---------------------- SAVE_CONFIG ---------------------->\r\n"
+      "#*# DO NOT EDIT THIS BLOCK OR BELOW. The contents are auto-generated.\r\n"
+      "#*# [extruder]\r\n"
+      "#*# control = pid\r\n"
+      "#*# [printer]\r\n"
+      "#*# delta_radius = 173.1\r\n");
+
+  EXPECT_EQ(limits.max_speed, 250.5);
+  EXPECT_EQ(limits.max_accel, 1000);
+  EXPECT_EQ(limits.max_z_speed, 150);
+  EXPECT_EQ(limits.corner_speed, 8);
+}
+
+TEST(MachineLimits, OfKlipperWhereEachAxisHasItsOwnTheSlowerCounts) {
+  const MachineLimits limits = Read(
+      "[printer]\nkinematics: limited_cartesian\nmax_x_velocity: 400\nmax_y_velocity: 300\n"
+      "max_x_accel: 9000\nmax_y_accel: 12000\nmax_velocity: 500\nmax_accel: 15000\n");
+
+  EXPECT_EQ(limits.max_speed, 300);
+  EXPECT_EQ(limits.max_accel, 9000);
+  EXPECT_EQ(Read("[printer]\nmax_x_velocity: 400\nmax_velocity: 200\nmax_accel: 1\n").max_speed,
+            200);
+}
+
+// Klipper's own defaults, not those of a file that says nothing.
+TEST(MachineLimits, FirmwareRetractionHasKlippersDefaults) {
+  const MachineLimits limits = Read(std::string(kPrinter) +
+                                    "[firmware_retraction]\n"
+                                    "unretract_extra_length: 0.05\n");
+
+  EXPECT_EQ(limits.firmware_retract_length, 0);
+  EXPECT_EQ(limits.firmware_retract_speed, 20);
+  EXPECT_EQ(limits.firmware_prime_speed, 10);
+  EXPECT_EQ(limits.firmware_prime_extra, 0.05);
+  EXPECT_FALSE(Read(kPrinter).firmware_retract_length.has_value());
+}
+
+// What terminals save of M503: who said each line, answers, the newer and the older comments.
+TEST(MachineLimits, OfMarlinAsTerminalsShowIt) {
+  const MachineLimits limits = Read(
+      ">>> M503\n"
+      "Recv: echo:  G21    ; Units in mm (mm)\n"
+      "Recv: echo:; Maximum feedrates (units/s):\n"
+      "Recv: echo:  M203 X300.00 Y300.00 Z40.00 E100.00\n"
+      "Recv: echo:Maximum Acceleration (mm/s2):\n"
+      "echo:  M201 X 3000.00 Y 2500.00 Z100.00 E5000.00\n"
+      "  M204 P1500.00 R1250.00 T1600.00\n"
+      "echo:; Advanced (B<min_segment_time_us> S<min_feedrate> T<min_travel_feedrate> "
+      "J<junc_dev>):\n"
+      "echo:  M205 B20000.00 S0.00 T0.00 J0.01\n"
+      "echo:  M207 S2.50 F2700.00 Z0.00\n"
+      "echo:  M208 S0.10 F480.00\n"
+      "echo:  M301 P22.20 I1.08 D114.00\n"
+      "ok\n");
+
+  EXPECT_EQ(limits.max_speed, 300);
+  EXPECT_EQ(limits.max_accel, 2500);
+  EXPECT_EQ(limits.travel_accel, 1600);
+  EXPECT_DOUBLE_EQ(limits.junction_deviation.value_or(0), 0.01);
+  EXPECT_DOUBLE_EQ(limits.firmware_retract_length.value_or(0), 2.5);
+  EXPECT_DOUBLE_EQ(limits.firmware_retract_speed.value_or(0), 45);
+  EXPECT_DOUBLE_EQ(limits.firmware_prime_extra.value_or(0), 0.1);
+  EXPECT_DOUBLE_EQ(limits.firmware_prime_speed.value_or(0), 8);
+}
+
+TEST(MachineLimits, OfMarlinInInches) {
+  const MachineLimits limits = Read("echo:  G20 ; Units in inches\nM203 X10\nM201 X100\n");
+
+  EXPECT_DOUBLE_EQ(limits.max_speed.value_or(0), 254);
+  EXPECT_DOUBLE_EQ(limits.max_accel.value_or(0), 2540);
+}
+
+TEST(MachineLimits, OfRepRapFirmwareInMillimetersPerMinute) {
+  const MachineLimits limits = Read(
+      "M208 X0 Y0 Z0 S1 ; the least that axes reach\n"
+      "M566 X900.00 Y600.00 Z60.00 E120.00\n"
+      "M203 X18000 Y12000 Z900 E3600\n"
+      "M201 X500 Y400 Z20 E250\n");
+
+  EXPECT_DOUBLE_EQ(limits.corner_speed.value_or(0), 10);
+  EXPECT_DOUBLE_EQ(limits.max_speed.value_or(0), 200);
+  EXPECT_DOUBLE_EQ(limits.max_z_speed.value_or(0), 15);
+  EXPECT_DOUBLE_EQ(limits.max_accel.value_or(0), 400);
+  EXPECT_FALSE(limits.firmware_prime_extra.has_value());
 }
 
 TEST(MachineLimits, OfMarlin) {
@@ -168,7 +273,7 @@ TEST(MachineLimits, FirmwareRetractsAndPrimesAsTheyState) {
 
   EXPECT_EQ(profile.firmware_retract_length, 0.8);
   EXPECT_EQ(profile.firmware_retract_speed, 35);
-  EXPECT_EQ(profile.firmware_prime_speed, 35);
+  EXPECT_EQ(profile.firmware_prime_speed, 10);
   ApplyLimits(Read(retraction + "unretract_speed: 20\n"), profile);
   EXPECT_EQ(profile.firmware_retract_speed, 35);
   EXPECT_EQ(profile.firmware_prime_speed, 20);

@@ -105,13 +105,47 @@ TEST(MotionPlannerOfKlipper, ShortMovesTakeCornersOnCirclesThatTouchTheirMiddles
 
 TEST(MotionPlannerOfKlipper, TheExtruderHasItsOwnCornerSpeed) {
   MotionPlanner planner({true, 0, 1});
-  planner.Move(50, 0, 100, 1000, 5, 0);
-  planner.Move(50, 0, 100, 1000, 5, 0.05);
+  MoveInSpace move{.dx = 50, .speed = 100, .accel = 1000, .machine_accel = 1000, .corner = 5};
+  planner.Move(move);
+  move.filament = 0.05;
+  planner.Move(move);
 
   // From no filament to 0.05 mm a mm at once: 20 mm/s.
   const double ramps = (100 + 80) / 1000.0;
   const double way = 50 - 5 - (100.0 * 100 - 400) / 2000;
   EXPECT_NEAR(Seconds(planner), 2 * (ramps + way / 100), 1e-9);
+}
+
+// Z may accelerate by a tenth of what the machine does, and so takes the corner more slowly.
+TEST(MotionPlannerOfKlipper, ALiftTakesTheCornerToTheWayBehindItAsItsAxisAllows) {
+  MotionPlanner planner(kKlipper);
+  planner.Move({.dz = 0.5, .speed = 10, .accel = 100, .machine_accel = 1000, .corner = 5});
+  planner.Move({.dx = 50, .speed = 100, .accel = 1000, .machine_accel = 1000, .corner = 5});
+
+  // At the root of 5^2 / 10; the lift peaks at the root of 100 * 0.5 + 2.5 / 2.
+  const double corner = std::sqrt(2.5);
+  const double lift = (2 * std::sqrt(51.25) - corner) / 100;
+  const double way = (200 - corner) / 1000 + (50 - 5 - (10000 - 2.5) / 2000) / 100;
+  EXPECT_NEAR(Seconds(planner), lift + way, 1e-9);
+}
+
+TEST(MotionPlannerOfKlipper, LiftsInTheSameDirectionAreOne) {
+  MotionPlanner one(kKlipper);
+  one.Move({.dz = 2, .speed = 10, .accel = 100, .machine_accel = 1000, .corner = 5});
+  MotionPlanner two(kKlipper);
+  for (int i = 0; i < 2; ++i) {
+    two.Move({.dz = 1, .speed = 10, .accel = 100, .machine_accel = 1000, .corner = 5});
+  }
+
+  EXPECT_NEAR(Seconds(two), Seconds(one), 1e-9);
+}
+
+// The share is one of the machine's acceleration: half of 1000 is more than the axis may anyway.
+TEST(MotionPlannerOfKlipper, AnAxisThatIsSlowAnywayNeedsNoShareOfCruising) {
+  MotionPlanner planner({true, 0.5, 1e9});
+  planner.Move({.dz = 0.5, .speed = 100, .accel = 100, .machine_accel = 1000, .corner = 5});
+
+  EXPECT_NEAR(Seconds(planner), StopToStopSeconds(0.5, 100, 100), 1e-9);
 }
 
 TEST(MotionPlannerOfKlipper, AShareOfAWayIsCruising) {
