@@ -10,21 +10,7 @@ constexpr double kMostEnd = 0.2;
 constexpr double kCellsPerSegment = 4;
 constexpr double kLeastCells = 64;
 
-double TurnAt(Point a, Point b, Point c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
 }  // namespace
-
-bool SegmentsCross(Point a, Point b, Point c, Point d) {
-  // What is so near to the line lies on it: a way along a wall does not cross it.
-  constexpr double kTouchMm = 1e-7;
-  const double touch = kTouchMm * (std::abs(b.x - a.x) + std::abs(b.y - a.y));
-  if ((TurnAt(a, b, c) < -touch) == (TurnAt(a, b, d) < -touch)) return false;
-  const double of_a = TurnAt(c, d, a);
-  const double of_b = TurnAt(c, d, b);
-  return (of_a < 0 && of_b > 0) || (of_a > 0 && of_b < 0);
-}
 
 WallGrid::WallGrid(absl::Span<const Wall> walls, double slack_mm, Budget* budget)
     : slack_mm_(slack_mm) {
@@ -63,12 +49,12 @@ void WallGrid::SizeCells(Rest& rest) {
   const double most = kCellsPerSegment * n + kLeastCells;
   const double width = box_.width();
   const double height = box_.height();
-  double cell_mm = std::max({length_mm / n, std::sqrt(width * height / most), 1e-3});
-  while ((std::floor(width / cell_mm) + 1) * (std::floor(height / cell_mm) + 1) > most) {
-    cell_mm *= 1.5;
+  cell_mm_ = std::max({length_mm / n, std::sqrt(width * height / most), 1e-3});
+  while ((std::floor(width / cell_mm_) + 1) * (std::floor(height / cell_mm_) + 1) > most) {
+    cell_mm_ *= 1.5;
   }
   low_ = box_.low();
-  per_mm_ = 1 / cell_mm;
+  per_mm_ = 1 / cell_mm_;
   columns_ = static_cast<int>(width * per_mm_) + 1;
   rows_ = static_cast<int>(height * per_mm_) + 1;
 }

@@ -31,7 +31,18 @@ struct WallSegment {
 
 // True if the segments ab and cd cross at one point inside ab. If a line from a to b passes a point
 // where two other segments meet from either side of it, it crosses one of these.
-bool SegmentsCross(Point a, Point b, Point c, Point d);
+inline bool SegmentsCross(Point a, Point b, Point c, Point d) {
+  const auto turn_at = [](Point p, Point q, Point r) {
+    return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+  };
+  // What is so near to the line lies on it: a way along a wall does not cross it.
+  constexpr double kTouchMm = 1e-7;
+  const double touch = kTouchMm * (std::abs(b.x - a.x) + std::abs(b.y - a.y));
+  if ((turn_at(a, b, c) < -touch) == (turn_at(a, b, d) < -touch)) return false;
+  const double of_a = turn_at(c, d, a);
+  const double of_b = turn_at(c, d, b);
+  return (of_a < 0 && of_b > 0) || (of_a > 0 && of_b < 0);
+}
 
 // Immutable. The segments of a wall follow one another, without those of length zero.
 class WallGrid {
@@ -78,7 +89,8 @@ class WallGrid {
   std::vector<uint32_t> first_of_wall_;  // [wall]; one more
   BoundingBox box_;
   Point low_;
-  double per_mm_ = 1;
+  double cell_mm_ = 1;
+  double per_mm_ = 1;  // 1 / cell_mm_
   int columns_ = 0;
   int rows_ = 0;
   std::vector<uint32_t> first_;    // [row * columns_ + column] in entries_; one more
@@ -97,8 +109,8 @@ void WallGrid::ForEachRow(Point a, Point b, Visit visit) const {
     double x0 = a.x;
     double x1 = b.x;
     if (first != last && b.y - a.y > kSlack) {
-      const double top = low_.y + (row + 1) / per_mm_ + kSlack;
-      const double bottom = low_.y + row / per_mm_ - kSlack;
+      const double top = low_.y + (row + 1) * cell_mm_ + kSlack;
+      const double bottom = low_.y + row * cell_mm_ - kSlack;
       if (row > first) x0 = a.x + slope * std::clamp(bottom - a.y, 0.0, b.y - a.y);
       if (row < last) x1 = a.x + slope * std::clamp(top - a.y, 0.0, b.y - a.y);
     }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/tolerances.h"
+#include "engine/cost/two_moves.h"
 
 namespace traverse {
 
@@ -71,11 +72,16 @@ void BlockLine::UpdateLastBefore() {
 }
 
 double BlockLine::ReversalDelta(int first, int last) const {
+  return ReversalDelta(first, last, std::numeric_limits<double>::infinity());
+}
+
+double BlockLine::ReversalDelta(int first, int last, double most) const {
   assert(0 <= first && first <= last && last < size());
   const size_t i = static_cast<size_t>(first);
   const size_t j = static_cast<size_t>(last);
-  return cost_(LeftBefore(first), back_enter_[j]) + MoveAfter(back_exit_[i], last + 1) - move_[i] -
-         move_[j + 1] + detour_[j] - detour_[i];
+  TwoMoves moves{LeftBefore(first), back_enter_[j], back_exit_[i], to_};
+  if (last + 1 < size()) moves.d = enter_[j + 1];
+  return moves.UpTo(most, cost_) - move_[i] - move_[j + 1] + detour_[j] - detour_[i];
 }
 
 BlockLine::Reversal BlockLine::BestReversalFrom(int first, double delta) const {
@@ -96,7 +102,7 @@ BlockLine::Reversal BlockLine::BestReversalFrom(int first, double delta) const {
     const double dy = back_enter_[j].y - from.y;
     if (dx * dx + dy * dy > reach * reach) continue;
     const int last = static_cast<int>(j);
-    if (const double change = ReversalDelta(first, last); change < best.delta)
+    if (const double change = ReversalDelta(first, last, limit); change < best.delta)
       best = {last, change};
   }
   return best;

@@ -73,6 +73,9 @@ class BlockLine {
     return position > 0 ? exit_[static_cast<size_t>(position) - 1] : from_;
   }
   double MoveAfter(Point exit, int position) const;
+
+  // The same as ReversalDelta, if the two new moves cost at most `most`; otherwise something above.
+  double ReversalDelta(int first, int last, double most) const;
   void UpdateMoves(int first, int last);
   void UpdateDetours(int first);
   void UpdateLastBefore();

@@ -1,6 +1,7 @@
 #include "engine/souza/nearest_insertion.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include "engine/base/rest.h"
 #include "engine/cost/first_entries.h"
+#include "engine/cost/two_moves.h"
 #include "engine/geometry/bounding_box.h"
 
 namespace traverse {
@@ -190,10 +192,31 @@ class NodeRoute {
   Place BestPlace(int slot) {
     const size_t first = precedence_.empty() ? 0 : BehindSlot(awaited_[static_cast<size_t>(slot)]);
     Place best;
-    if (layer_.cost.has_walls()) best.cost = LimitAmongWalls(slot, first);
+    if (layer_.cost.has_walls()) return BestPlaceAmongWalls(slot, first);
     for (size_t index = first; index <= order_.size(); ++index) {
-      Try(slot, index, best, [&](Point from, const Way& way, const std::optional<Point>& to) {
-        return Around(from, way, to, move_[index], best.cost) - move_[index];
+      if (BoundOf(slot, index, best.cost) >= best.cost) continue;
+      Try(slot, index, best, [&](const TwoMoves& moves) { return moves.Least(layer_.cost); });
+    }
+    return best;
+  }
+
+  // Asks first for the places that cost least if no wall is in the way, so that few others are
+  // worth asking for.
+  Place BestPlaceAmongWalls(int slot, size_t first) {
+    Place best;
+    best.cost = LimitAmongWalls(slot, first);
+    by_bound_.clear();
+    for (size_t index = first; index <= order_.size(); ++index) {
+      const double bound = BoundOf(slot, index, best.cost);
+      if (bound < best.cost) by_bound_.emplace_back(bound, index);
+    }
+    std::sort(by_bound_.begin(), by_bound_.end());
+    for (const auto& [bound, index] : by_bound_) {
+      if (bound > best.cost + kSlackOfBounds * (1 + std::abs(best.cost))) break;
+      const double present = move_[index];
+      Try(slot, index, best, [&](const TwoMoves& moves) {
+        return moves.UpTo(best.cost + present, layer_.cost,
+                          [this] { rest_(kStepsOfWayAmongWalls); });
       });
     }
     return best;
@@ -204,9 +227,8 @@ class NodeRoute {
   double LimitAmongWalls(int slot, size_t first) {
     Place best;
     for (size_t index = first; index <= order_.size(); ++index) {
-      Try(slot, index, best, [&](Point from, const Way& way, const std::optional<Point>& to) {
-        return LeastAround(from, way, to) - move_[index];
-      });
+      if (BoundOf(slot, index, best.cost) >= best.cost) continue;
+      Try(slot, index, best, [&](const TwoMoves& moves) { return moves.Least(layer_.cost); });
     }
     if (best.way < 0) return kInfinity;
     const Way& way = ways_[static_cast<size_t>(best.way)];
@@ -229,49 +251,36 @@ class NodeRoute {
     if (BehindSlot(slot) > BehindSlot(latest)) latest = slot;
   }
 
-  // Replaces `best` if some way of `slot` costs less at the place `index`: added(from, way, to)
-  // more.
-  template <typename Added>
-  void Try(int slot, size_t index, Place& best, Added added) {
+  // What any way of `slot` costs at least at the place `index`; no less than `most` if it is told
+  // by one side alone that it is.
+  double BoundOf(int slot, size_t index, double most) const {
     const Point from = ExitBefore(index);
-    const std::optional<Point> to = EnterAt(index);
     const BoundingBox& box = boxes_[static_cast<size_t>(slot)];
     const double present = move_[index];
     // Most places are too far away on one side alone.
-    const double reach = layer_.cost.LongestWithin(best.cost + present);
-    if (box.SquaredDistanceTo(from) > reach * reach) return;
-    double bound = layer_.cost.OfLength(box.DistanceTo(from)) - present;
-    if (to) bound += layer_.cost.OfLength(box.DistanceTo(*to));
-    if (bound >= best.cost) return;
+    const double reach = layer_.cost.LongestWithin(most + present);
+    if (box.SquaredDistanceTo(from) > reach * reach) return kInfinity;
+    const double bound = layer_.cost.OfLength(box.DistanceTo(from)) - present;
+    const std::optional<Point> to = EnterAt(index);
+    return to ? bound + layer_.cost.OfLength(box.DistanceTo(*to)) : bound;
+  }
+
+  // Replaces `best` if the two moves of some way of `slot` cost less at the place `index`, or as
+  // much at an earlier one: cost_of(moves).
+  template <typename CostOf>
+  void Try(int slot, size_t index, Place& best, CostOf cost_of) {
+    const Point from = ExitBefore(index);
+    const std::optional<Point> to = EnterAt(index);
     const absl::Span<const Way> ways = WaysOf(slot);
     ForEachWay(slot, [&](size_t w) {
-      const double cost = added(from, ways[w], to);
-      if (cost >= best.cost) return;
+      const double cost = cost_of(TwoMoves{from, ways[w].enter, ways[w].exit, to}) - move_[index];
+      if (cost > best.cost || (cost == best.cost && !(index < best.index))) return;
       best = Place{index, first_way_[static_cast<size_t>(slot)] + static_cast<int>(w), cost};
     });
   }
 
   double Move(Point from, const std::optional<Point>& to) const {
     return to ? layer_.cost(from, *to) : 0;
-  }
-
-  // What the moves to and from `way` cost at least: with walls as if there were none.
-  double LeastAround(Point from, const Way& way, const std::optional<Point>& to) const {
-    return layer_.cost.Base(from, way.enter) + (to ? layer_.cost.Base(way.exit, *to) : 0);
-  }
-
-  // The moves to and from `way`, which take the place of one of cost `present`. Where walls may be
-  // in the way, each of the two is asked for only if it may cost less than `most` more than that:
-  // else what they cost at least.
-  double Around(Point from, const Way& way, const std::optional<Point>& to, double present,
-                double most) {
-    if (!layer_.cost.has_walls()) return layer_.cost(from, way.enter) + Move(way.exit, to);
-    const double least = LeastAround(from, way, to);
-    if (least - present >= most) return least;
-    rest_(kStepsOfWayAmongWalls);
-    const double arrival = layer_.cost(from, way.enter);
-    const double either = arrival + (to ? layer_.cost.Base(way.exit, *to) : 0);
-    return either - present >= most ? either : arrival + Move(way.exit, to);
   }
 
   const LayerView& layer_;
@@ -295,6 +304,8 @@ class NodeRoute {
   std::vector<Point> enter_;
   std::vector<Point> exit_;
   std::vector<double> move_;  // cost of the move to each; one more, of the move to to_
+
+  std::vector<std::pair<double, size_t>> by_bound_;  // places for one slot
 
   // [item of the precedence] the last slot in the route that has to come before it; -1 if none
   std::vector<int> awaited_;

@@ -2,16 +2,20 @@
 
 #include <cassert>
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 #include "engine/base/tolerances.h"
+#include "engine/cost/two_moves.h"
 
 namespace traverse {
 namespace {
 
-double MovesAround(const LayerView& layer, Point from, int entry, const std::optional<Point>& to) {
-  const double arrival = layer.cost(from, layer.table.enter(entry));
-  return to ? arrival + layer.cost(layer.table.exit(entry), *to) : arrival;
+// The moves to and from `entry`, if they cost at most `most`; otherwise something above.
+double MovesAround(const LayerView& layer, Point from, int entry, const std::optional<Point>& to,
+                   double most = std::numeric_limits<double>::infinity()) {
+  const TwoMoves moves{from, layer.table.enter(entry), layer.table.exit(entry), to};
+  return moves.UpTo(most, layer.cost);
 }
 
 // Returns the change of cost.
@@ -25,7 +29,7 @@ double ReleasePoint(SearchRoute& route, int position) {
   int best = present;
   double least = before - kImprovementTolerance;
   for (int e = layer.table.first(path); e < layer.table.first(path + 1); ++e) {
-    if (const double moves = MovesAround(layer, from, e, to); moves < least) {
+    if (const double moves = MovesAround(layer, from, e, to, least); moves < least) {
       least = moves;
       best = e;
     }

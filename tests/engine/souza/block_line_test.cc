@@ -12,6 +12,7 @@
 #include "engine/base/tolerances.h"
 #include "engine/model/route.h"
 #include "tests/support/problems/random_plan.h"
+#include "tests/support/problems/walled_problem.h"
 
 namespace traverse {
 namespace {
@@ -124,29 +125,44 @@ bool Keeps(const std::vector<std::pair<int, int>>& before, absl::Span<const int>
   });
 }
 
+// From each block on, and carried out one after the other.
+void ExpectTheBestReversals(const RandomLine& random, const TravelCost& cost) {
+  const PlanTree tree(random.plan);
+  const auto& before = random.plan.nodes[0].before;
+  BlockLine line(cost);
+  line.Load(random.from, random.to, random.blocks, tree.precedence(0));
+
+  for (int first = 0; first < line.size(); ++first) {
+    double least = -line.tolerance();
+    for (int last = first; last < line.size(); ++last) {
+      std::vector<int> slots(line.slots().begin(), line.slots().end());
+      std::reverse(slots.begin() + first, slots.begin() + last + 1);
+      if (Keeps(before, slots)) least = std::min(least, line.ReversalDelta(first, last));
+    }
+    const BlockLine::Reversal best = line.BestReversalFrom(first, -line.tolerance());
+    EXPECT_EQ(best.delta, least);
+    if (best.last < 0) continue;
+    EXPECT_EQ(line.ReversalDelta(first, best.last), least);
+    line.Reverse(first, best.last);
+    EXPECT_TRUE(Keeps(before, line.slots()));
+  }
+}
+
 TEST(BlockLine, FindsTheBestReversalThatKeepsThePairs) {
   for (uint64_t seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     const RandomLine random = MakeRandomLine(seed, true);
-    const PlanTree tree(random.plan);
-    const auto& before = random.plan.nodes[0].before;
-    BlockLine line(random.cost);
-    line.Load(random.from, random.to, random.blocks, tree.precedence(0));
 
-    for (int first = 0; first < line.size(); ++first) {
-      double least = -line.tolerance();
-      for (int last = first; last < line.size(); ++last) {
-        std::vector<int> slots(line.slots().begin(), line.slots().end());
-        std::reverse(slots.begin() + first, slots.begin() + last + 1);
-        if (Keeps(before, slots)) least = std::min(least, line.ReversalDelta(first, last));
-      }
-      const BlockLine::Reversal best = line.BestReversalFrom(first, -line.tolerance());
-      EXPECT_EQ(best.delta, least);
-      if (best.last < 0) continue;
-      EXPECT_EQ(line.ReversalDelta(first, best.last), least);
-      line.Reverse(first, best.last);
-      EXPECT_TRUE(Keeps(before, line.slots()));
-    }
+    ExpectTheBestReversals(random, random.cost);
+  }
+}
+
+TEST(BlockLine, FindsTheBestReversalAmongWalls) {
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const WalledProblem walled = RandomWalledProblem(seed, {.max_paths = 8}, seed % 2 == 0);
+
+    ExpectTheBestReversals(MakeRandomLine(seed, true), TravelCost(walled.problem()));
   }
 }
 

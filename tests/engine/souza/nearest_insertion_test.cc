@@ -2,6 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
 #include "absl/strings/str_cat.h"
 #include "engine/base/tolerances.h"
 #include "engine/cost/route_cost.h"
@@ -11,6 +18,7 @@
 #include "tests/support/problems/brute_force.h"
 #include "tests/support/problems/instances.h"
 #include "tests/support/problems/random_plan.h"
+#include "tests/support/problems/walled_problem.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {
@@ -103,6 +111,68 @@ TEST(NearestInsertion, WallsThatNoMoveComesNearChangeNothing) {
     among.walls = &cost;
 
     EXPECT_EQ(Inserted(among), Inserted(owned.problem));
+  }
+}
+
+// The paths of `problem`, all in any order, one after the other as the paper says: the nearest to
+// the route next, where two of its moves cost least. Each place and each entry is looked at.
+Route InsertedByBruteForce(const LayerProblem& problem) {
+  const LayerView layer(problem);
+  const EntryTable& table = layer.table;
+  std::vector<int> entries;
+  std::vector<Point> route_points = {problem.start};
+  if (problem.finish) route_points.push_back(*problem.finish);
+  std::vector<int> open(layer.plan().paths.size());
+  std::iota(open.begin(), open.end(), 0);
+  while (!open.empty()) {
+    const auto distance = [&](int path) {
+      double least = 1e18;
+      for (int e = table.first(path); e < table.first(path + 1); ++e) {
+        for (const Point p : route_points) {
+          least = std::min({least, Distance(p, table.enter(e)), Distance(p, table.exit(e))});
+        }
+      }
+      return least;
+    };
+    const auto next = std::min_element(open.begin(), open.end(), [&](int one, int other) {
+      return distance(one) < distance(other);
+    });
+    const int path = *next;
+    open.erase(next);
+    double best = 1e18;
+    std::pair<size_t, int> place;
+    for (size_t at = 0; at <= entries.size(); ++at) {
+      const Point from = at > 0 ? table.exit(entries[at - 1]) : problem.start;
+      std::optional<Point> to = problem.finish;
+      if (at < entries.size()) to = table.enter(entries[at]);
+      const double present = to ? layer.cost(from, *to) : 0;
+      for (int e = table.first(path); e < table.first(path + 1); ++e) {
+        const double moves =
+            layer.cost(from, table.enter(e)) + (to ? layer.cost(table.exit(e), *to) : 0);
+        if (moves - present >= best) continue;
+        best = moves - present;
+        place = {at, e};
+      }
+    }
+    entries.insert(entries.begin() + static_cast<std::ptrdiff_t>(place.first), place.second);
+    route_points.push_back(table.enter(place.second));
+    route_points.push_back(table.exit(place.second));
+  }
+  Route route;
+  for (const int entry : entries) route.push_back(table.VisitOf(entry));
+  return route;
+}
+
+TEST(NearestInsertion, AmongWallsInsertsWhereItCostsLeastToo) {
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const WalledProblem walled = RandomWalledProblem(seed, {.max_paths = 25}, seed % 2 == 0);
+    OwnedProblem flat(AnyOrderPlan(walled.owned.plan().paths));
+    const WallCost cost(walled.walls, flat.plan(), walled.problem().cost);
+    flat.problem.cost = walled.problem().cost;
+    flat.problem.walls = &cost;
+
+    EXPECT_EQ(Inserted(flat.problem), InsertedByBruteForce(flat.problem));
   }
 }
 
