@@ -174,9 +174,16 @@ class LayerChooser::Impl {
     for (uint32_t b = file_.layers[layer].first_block; b < file_.layers[layer].end_block; ++b) {
       rules.boundaries.push_back((file_.blocks[b].link & (kLinkSplits | kLinkFixed)) != 0);
     }
-    for (const LayerOrder& order : MergedOrders(*column.writer, travel_[layer], found, rules)) {
-      AddChoices(order, layer, column);
-    }
+    const auto add_merged = [&] {
+      for (const LayerOrder& order : MergedOrders(*column.writer, travel_[layer], found, rules)) {
+        AddChoices(order, layer, column);
+      }
+    };
+    add_merged();
+    if (crossings_ != Crossings::kFewer) return;
+    // What is made of them at that price is often too long; these are shorter.
+    rules.crossings = Crossings::kKeep;
+    add_merged();
   }
 
   void FillWays(size_t layer) {

@@ -15,6 +15,7 @@
 #include "client/formats/read_input.h"
 #include "client/gcode/verify/verifier.h"
 #include "client/optimize_file/job_settings.h"
+#include "tests/support/source_dir.h"
 
 namespace traverse {
 namespace {
@@ -73,6 +74,39 @@ TEST_F(OptimizeFileTest, TellsOfEachSearchAndItsLayers) {
   OptimizeFile(client_, job, options);
 
   EXPECT_THAT(told, ::testing::ElementsAre(300, 1, 1, 1, 300, 1, 1, 1));
+}
+
+TEST_F(OptimizeFileTest, ForFewerCrossingsItSearchesOnceMoreAtTheUsualPrice) {
+  const InputJob job = Job(2);
+  OptimizeFileOptions options;
+  options.gcode.crossings = gcode::Crossings::kFewer;
+
+  const FileResult<OptimizedFile> made = OptimizeFile(client_, job, options);
+
+  ASSERT_TRUE(std::holds_alternative<OptimizedFile>(made));
+  EXPECT_EQ(std::get<OptimizedFile>(made).runs.size(), 3u);
+}
+
+// What `keep` finds is among what `fewer` chooses from.
+TEST_F(OptimizeFileTest, FewerCrossingsAreWorthNoLessThanKeepingThem) {
+  const auto totals = [this](gcode::Crossings crossings) {
+    OptimizeFileOptions options;
+    options.gcode.crossings = crossings;
+    const absl::StatusOr<InputJob> job = ReadInput(
+        TRAVERSE_SOURCE_DIR "/tests/data/gcode/sl_nameplate_2tool.gcode.xz", options.gcode);
+    EXPECT_TRUE(job.ok()) << job.status();
+    const FileResult<OptimizedFile> made = OptimizeFile(client_, *job, options);
+    EXPECT_TRUE(std::holds_alternative<OptimizedFile>(made));
+    return std::get<OptimizedFile>(made).rewrite.after;
+  };
+  const gcode::PrintTotals keep = totals(gcode::Crossings::kKeep);
+  const gcode::PrintTotals fewer = totals(gcode::Crossings::kFewer);
+
+  const auto score = [](const gcode::PrintTotals& print) {
+    return print.seconds + gcode::kFewerCrossingSeconds * static_cast<double>(print.crossings);
+  };
+  EXPECT_LT(fewer.crossings, keep.crossings);
+  EXPECT_LT(score(fewer), score(keep));
 }
 
 TEST_F(OptimizeFileTest, WithADeadlineForEachSearchItSearchesOnce) {
