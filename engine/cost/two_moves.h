@@ -26,7 +26,7 @@ struct TwoMoves {
   // What they cost, if that is at most `most`; otherwise some bound that is above `most` too.
   // `on_ask()` is called before walls are asked for.
   template <typename OnAsk>
-  double UpTo(double most, const TravelCost& cost, OnAsk on_ask) const {
+  double CostWithin(double most, const TravelCost& cost, OnAsk on_ask) const {
     if (!cost.has_walls()) return Least(cost);
     // Rounding may take a bound above the cost itself.
     constexpr double kSlackOfBounds = 1e-6;
@@ -40,8 +40,8 @@ struct TwoMoves {
     return first + cost(c, *d);
   }
 
-  double UpTo(double most, const TravelCost& cost) const {
-    return UpTo(most, cost, [] {});
+  double CostWithin(double most, const TravelCost& cost) const {
+    return CostWithin(most, cost, [] {});
   }
 };
 

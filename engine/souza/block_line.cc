@@ -81,7 +81,7 @@ double BlockLine::ReversalDelta(int first, int last, double most) const {
   const size_t j = static_cast<size_t>(last);
   TwoMoves moves{LeftBefore(first), back_enter_[j], back_exit_[i], to_};
   if (last + 1 < size()) moves.d = enter_[j + 1];
-  return moves.UpTo(most, cost_) - move_[i] - move_[j + 1] + detour_[j] - detour_[i];
+  return moves.CostWithin(most, cost_) - move_[i] - move_[j + 1] + detour_[j] - detour_[i];
 }
 
 BlockLine::Reversal BlockLine::BestReversalFrom(int first, double delta) const {

@@ -215,8 +215,8 @@ class NodeRoute {
       if (bound > best.cost + kSlackOfBounds * (1 + std::abs(best.cost))) break;
       const double present = move_[index];
       Try(slot, index, best, [&](const TwoMoves& moves) {
-        return moves.UpTo(best.cost + present, layer_.cost,
-                          [this] { rest_(kStepsOfWayAmongWalls); });
+        return moves.CostWithin(best.cost + present, layer_.cost,
+                                [this] { rest_(kStepsOfWayAmongWalls); });
       });
     }
     return best;

@@ -15,7 +15,7 @@ namespace {
 double MovesAround(const LayerView& layer, Point from, int entry, const std::optional<Point>& to,
                    double most = std::numeric_limits<double>::infinity()) {
   const TwoMoves moves{from, layer.table.enter(entry), layer.table.exit(entry), to};
-  return moves.UpTo(most, layer.cost);
+  return moves.CostWithin(most, layer.cost);
 }
 
 // Returns the change of cost.

@@ -36,10 +36,10 @@ TEST(TwoMoves, CostWhatTheyCostAsLongAsThatIsAskedFor) {
       const TwoMoves moves = RandomMoves(rng);
       const double whole = WholeCost(moves, cost);
 
-      EXPECT_EQ(moves.UpTo(std::numeric_limits<double>::infinity(), cost), whole);
-      EXPECT_EQ(moves.UpTo(whole, cost), whole);
+      EXPECT_EQ(moves.CostWithin(std::numeric_limits<double>::infinity(), cost), whole);
+      EXPECT_EQ(moves.CostWithin(whole, cost), whole);
       const double most = 2 * rng.Unit() * whole;
-      const double answer = moves.UpTo(most, cost);
+      const double answer = moves.CostWithin(most, cost);
       if (whole <= most) {
         EXPECT_EQ(answer, whole);
       } else {
@@ -56,7 +56,7 @@ TEST(TwoMoves, AskNoWallsForWhatIsTooDearWithoutThem) {
   const TwoMoves moves{{0, 0}, {90, 90}, {5, 90}, Point{90, 5}};
   const double least = moves.Least(cost);
 
-  EXPECT_EQ(moves.UpTo(least / 2, cost), least);
+  EXPECT_EQ(moves.CostWithin(least / 2, cost), least);
 
   EXPECT_EQ(walled.cost->work(), 0);
 }
