@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/text/decimal.h"
 #include "client/gcode/verify/verifier.h"
@@ -174,7 +175,8 @@ std::string DescribeScale(const TimeScale& scale) {
 }
 
 TimeScale RoundScale(const TimeScale& scale) {
-  return StatedScale(std::string(kOptimisedMark) + " " + DescribeScale(scale)).value_or(scale);
+  return StatedScale(absl::StrCat(AsAbsl(kOptimisedMark), " ", DescribeScale(scale)))
+      .value_or(scale);
 }
 
 std::optional<TimeScale> StatedScale(std::string_view text) {
