@@ -53,7 +53,7 @@ absl::StatusOr<FileRequest> WholeRequest(const HttpRequest& request, Upload& upl
   if (!machine.ok()) return machine.status();
   parsed->gcode.machine = *std::move(machine);
   if (upload.files.empty()) return absl::InvalidArgumentError("there is no file in the request");
-  if (upload.files.size() > 1) return absl::InvalidArgumentError("two files: one is expected");
+  if (upload.files.size() > 1) return absl::InvalidArgumentError("more than 1 file: send one");
   if (!named && !upload.files[0].name.empty()) {
     if (absl::Status status = CheckFileName(upload.files[0].name); !status.ok()) return status;
     parsed->name = upload.files[0].name;

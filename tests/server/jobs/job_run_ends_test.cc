@@ -204,9 +204,9 @@ TEST_F(JobRunTest, ACancelWaitsForOnRoom) {
   };
   // So slow that nothing is there to be written when the first layer is out: a write keeps the
   // port.
-  port_.run().Start({.window = {.layers = 3, .points = 100}, .build_order = false}, {}, Slow(100),
+  port_.run().Start({.window = {.layers = 6, .points = 100}, .build_order = false}, {}, Slow(100),
                     *queue_);
-  for (uint64_t i = 0; i < 3; ++i) port_.run().Add(Layer(i));
+  for (uint64_t i = 0; i < 6; ++i) port_.run().Add(Layer(i));
   port_.run().Push();
   EXPECT_FALSE(port_.run().AskForRoom());
 

@@ -76,13 +76,13 @@ TEST_F(JobRunTest, StalledReaderHoldsUpItsJobInABoundedWindow) {
 
 TEST_F(JobRunTest, WindowCountsPoints) {
   port_.Stall(true);
-  port_.run().Start({.window = {.layers = 100, .points = 10}, .build_order = false}, {}, Slow(0),
+  port_.run().Start({.window = {.layers = 100, .points = 20}, .build_order = false}, {}, Slow(0),
                     *queue_);
   for (uint64_t i = 0; i < 20; ++i) port_.run().Add(Layer(i));
   port_.run().Push();
 
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  EXPECT_EQ(port_.encoded(), 5);
+  EXPECT_EQ(port_.encoded(), 10);
 
   port_.Stall(false);
   port_.run().Close();
