@@ -56,7 +56,7 @@ def row(load, found):
     refused = found["codes"].get("RESOURCE_EXHAUSTED", {"jobs": 0, "latency_ms": None, "from_sent_ms": None})
     return "| " + " | ".join([
         f"{load:.0%}, {found['rate']:.1f}", f"{found['ok_per_second']:.1f}", "; ".join(accepted),
-        f"{found['send_lag_ms']['p99']:.1f}", f"{refused['jobs']} of {found['sent']}",
+        milliseconds(found["send_lag_ms"], ("p99",)), f"{refused['jobs']} of {found['sent']}",
         milliseconds(refused["latency_ms"], ("p99",)), milliseconds(refused["from_sent_ms"], ("p50", "p99")),
         f"{found['resident_mb']:.0f}"]) + " |"
 
