@@ -41,10 +41,15 @@ HttpResponse JsonResponse(std::string json) {
   return response;
 }
 
-// The parameters in the query and in the form together.
-absl::StatusOr<FileRequest> WholeRequest(const HttpRequest& request, Upload& upload) {
+// Of the query and of the form.
+Parameters AllParameters(const HttpRequest& request, const Upload& upload) {
   Parameters parameters = request.query;
   parameters.insert(parameters.end(), upload.fields.begin(), upload.fields.end());
+  return parameters;
+}
+
+absl::StatusOr<FileRequest> WholeRequest(const HttpRequest& request, Upload& upload) {
+  const Parameters parameters = AllParameters(request, upload);
   absl::StatusOr<FileRequest> parsed = ParseParameters(parameters);
   if (!parsed.ok()) return parsed;
   const bool named = std::any_of(parameters.begin(), parameters.end(),
@@ -53,7 +58,6 @@ absl::StatusOr<FileRequest> WholeRequest(const HttpRequest& request, Upload& upl
   if (!machine.ok()) return machine.status();
   parsed->gcode.machine = *std::move(machine);
   if (upload.files.empty()) return absl::InvalidArgumentError("there is no file in the request");
-  if (upload.files.size() > 1) return absl::InvalidArgumentError("more than 1 file: send one");
   if (!named && !upload.files[0].name.empty()) {
     if (absl::Status status = CheckFileName(upload.files[0].name); !status.ok()) return status;
     parsed->name = upload.files[0].name;
@@ -180,15 +184,12 @@ FileRecord RecordOf(const HttpRequest& request, const std::string& caller,
 using PlacePtr = std::shared_ptr<WorkQueue::Place>;
 using ReplyPtr = std::shared_ptr<HttpReply>;
 
-// Lets `caller` wait in line, and takes up to `max_files` of his; `start` is called when they are
-// there.
-HttpDecision TakeFiles(const HttpRequest& request, const std::string& caller, size_t max_files,
-                       Core& core,
+// Lets `caller` wait in line, and takes his files; `start` is called when they are there.
+HttpDecision TakeFiles(const HttpRequest& request, const std::string& caller,
+                       const UploadLimits& limits, Core& core,
                        std::function<void(const PlacePtr&, Upload, const ReplyPtr&)> start) {
   auto entered = EnterQueue(caller, core);
   if (auto* refusal = std::get_if<HttpResponse>(&entered)) return std::move(*refusal);
-  const UploadLimits limits = {.max_file_bytes = core.options.max_file_bytes,
-                               .max_files = max_files};
   return TakeUpload(
       request, *core.spool, limits,
       [place = std::get<PlacePtr>(std::move(entered)), start = std::move(start)](
@@ -205,8 +206,9 @@ HttpDecision TakeFile(const HttpRequest& request, const std::string& caller, Cor
   if (absl::StatusOr<FileRequest> query = ParseParameters(request.query); !query.ok()) {
     return ProblemOf(query.status());
   }
-  constexpr size_t kMostFiles = 2;  // `machine` is the other one
-  return TakeFiles(request, caller, kMostFiles, core,
+  const UploadLimits limits = {.max_file_bytes = core.options.max_file_bytes,
+                               .small_files = {{"machine", kMostMachineBytes}}};
+  return TakeFiles(request, caller, limits, core,
                    [request, start = std::move(start)](const PlacePtr& place, Upload upload,
                                                        const ReplyPtr& reply) {
                      absl::StatusOr<FileRequest> wanted = WholeRequest(request, upload);
@@ -252,9 +254,7 @@ HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, 
     return ProblemOf(query.status());
   }
   const auto start = [&core, request](const PlacePtr& place, Upload upload, const ReplyPtr& reply) {
-    Parameters parameters = request.query;
-    parameters.insert(parameters.end(), upload.fields.begin(), upload.fields.end());
-    const auto permissions = ParseVerifyParameters(parameters);
+    const auto permissions = ParseVerifyParameters(AllParameters(request, upload));
     if (!permissions.ok()) return reply->Send(ProblemOf(permissions.status()));
     FilePtr original, optimised;
     for (Upload::File& file : upload.files) {
@@ -274,7 +274,9 @@ HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, 
                                  : RefusalOf(found.status()));
         });
   };
-  return TakeFiles(request, caller, 2, core, start);
+  const UploadLimits limits = {
+      .max_file_bytes = core.options.max_file_bytes, .max_files = 2, .small_files = {}};
+  return TakeFiles(request, caller, limits, core, start);
 }
 
 }  // namespace traverse::gateway

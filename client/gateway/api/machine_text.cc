@@ -1,7 +1,7 @@
 #include "client/gateway/api/machine_text.h"
 
 #include <algorithm>
-#include <cstdint>
+#include <cassert>
 #include <utility>
 
 #include "absl/strings/str_format.h"
@@ -23,8 +23,8 @@ absl::StatusOr<std::optional<gcode::MachineLimits>> TakeMachine(Upload& upload) 
   if (part == upload.files.end()) return std::nullopt;
   const Upload::File machine = std::move(*part);
   upload.files.erase(part);
-  // One byte more than are taken shows that there are too many.
-  std::string text(std::min<uint64_t>(machine.file->size(), kMostMachineBytes + 1), '\0');
+  assert(machine.file->size() <= kMostMachineBytes);  // as the upload's limits say
+  std::string text(machine.file->size(), '\0');
   const absl::StatusOr<size_t> got = machine.file->ReadAt(0, text.data(), text.size());
   if (!got.ok()) return got.status();
   absl::StatusOr<gcode::MachineLimits> limits =

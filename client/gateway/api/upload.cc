@@ -1,5 +1,6 @@
 #include "client/gateway/api/upload.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "absl/strings/ascii.h"
@@ -32,10 +33,7 @@ class UploadSink : public BodySink {
 
  protected:
   absl::Status BeginFile(std::string field, std::string name) {
-    if (upload_.files.size() >= limits_.max_files) {
-      return absl::InvalidArgumentError(absl::StrFormat(
-          "more than %d file%s", limits_.max_files, limits_.max_files == 1 ? ": send one" : "s"));
-    }
+    if (absl::Status status = CountFile(field); !status.ok()) return status;
     absl::StatusOr<std::shared_ptr<SpoolFile>> file = spool_.NewFile();
     if (!file.ok()) return file.status();
     upload_.files.push_back({std::move(field), std::move(name), *std::move(file)});
@@ -43,19 +41,47 @@ class UploadSink : public BodySink {
   }
 
   absl::Status Append(std::string_view bytes) {
-    SpoolFile& file = *upload_.files.back().file;
-    if (file.size() + bytes.size() > limits_.max_file_bytes) {
+    const Upload::File& upload = upload_.files.back();
+    const uint64_t size = upload.file->size() + bytes.size();
+    const auto small = limits_.small_files.find(upload.field);
+    if (small != limits_.small_files.end()) {
+      if (size > small->second) {
+        return absl::InvalidArgumentError(
+            absl::StrFormat("%s: longer than %d bytes", upload.field, small->second));
+      }
+    } else if (size > limits_.max_file_bytes) {
       return absl::OutOfRangeError(
           absl::StrFormat("the file is longer than %d bytes", limits_.max_file_bytes));
     }
-    return file.Append(bytes);
+    return upload.file->Append(bytes);
   }
 
   Spool& spool_;
   const UploadLimits limits_;
   const UploadDone done_;
   Upload upload_;
+
+ private:
+  absl::Status CountFile(const std::string& field) {
+    if (limits_.small_files.contains(field)) {
+      const bool twice = std::any_of(upload_.files.begin(), upload_.files.end(),
+                                     [&](const Upload::File& file) { return file.field == field; });
+      return twice ? absl::InvalidArgumentError(absl::StrFormat("%s: given twice", field))
+                   : absl::OkStatus();
+    }
+    if (++large_files_ <= limits_.max_files) return absl::OkStatus();
+    return absl::InvalidArgumentError(absl::StrFormat("more than %d file%s", limits_.max_files,
+                                                      limits_.max_files == 1 ? ": send one" : "s"));
+  }
+
+  size_t large_files_ = 0;
 };
+
+uint64_t MaxFormBytes(const UploadLimits& limits) {
+  uint64_t most = limits.max_files * limits.max_file_bytes + kMaxFormBytes;
+  for (const auto& [field, bytes] : limits.small_files) most += bytes;
+  return most;
+}
 
 // The body is the file.
 class RawSink : public UploadSink {
@@ -85,7 +111,7 @@ class FormSink : public UploadSink, private PartSink {
     received_ += piece.size();
     if (absl::Status status = reader_.Feed(piece); !status.ok()) return FaultOf(status);
     // Limits the bytes between the parts too.
-    if (received_ > limits_.max_files * limits_.max_file_bytes + kMaxFormBytes) {
+    if (received_ > MaxFormBytes(limits_)) {
       return TooLong(limits_.max_file_bytes);
     }
     return std::nullopt;
@@ -140,8 +166,7 @@ HttpDecision TakeUpload(const HttpRequest& request, Spool& spool, const UploadLi
   if (form && !encoding.empty() && encoding != "identity") {
     return Problem(415, "a form may not be encoded as a whole; a file in it may be gzip");
   }
-  const uint64_t most =
-      form ? limits.max_files * limits.max_file_bytes + kMaxFormBytes : limits.max_file_bytes;
+  const uint64_t most = form ? MaxFormBytes(limits) : limits.max_file_bytes;
   if (request.content_length && *request.content_length > most) {
     return TooLong(limits.max_file_bytes);
   }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -29,6 +30,9 @@ struct Upload {
 struct UploadLimits {
   uint64_t max_file_bytes = uint64_t{256} << 20;
   size_t max_files = 1;
+
+  // Files of a form that may come once each besides: [field] their most bytes.
+  std::map<std::string, uint64_t> small_files = {};
 };
 
 using UploadDone = std::function<void(Upload upload, std::shared_ptr<HttpReply> reply)>;

@@ -181,7 +181,7 @@ HttpDecision PrinterApi::HandleUpload(const HttpRequest& request, const std::str
                                       const Printer& printer, const std::string& storage) {
   absl::StatusOr<std::shared_ptr<WorkQueue::Place>> place = core_.queue->Enter(caller);
   if (!place.ok()) return Problem(503, std::string(place.status().message()));
-  const UploadLimits limits = {.max_file_bytes = core_.options.max_file_bytes, .max_files = 1};
+  const UploadLimits limits = {.max_file_bytes = core_.options.max_file_bytes, .small_files = {}};
   const std::string key = KeyFor(printer, request);
   const auto start = [this, &printer, storage, key, caller, peer = request.peer_host,
                       place = *place](Upload upload, std::shared_ptr<HttpReply> reply) {

@@ -192,6 +192,12 @@ class Files(unittest.TestCase):
     def test_forms_that_are_wrong(self):
         two, headers = form([("file", "a.gcode", PART), ("file", "b.gcode", PART)])
         self.refused(400, "send one", self.post("/v1/gcode", two, headers))
+        # Refused where the second file begins: the rest of the body does not matter.
+        self.refused(400, "send one", self.post("/v1/gcode", two[:-10], headers))
+        long, headers = form([("file", "a.gcode", PART), ("machine", "a.cfg", b" " * (2 << 20))])
+        self.refused(400, "machine: longer than 1048576", self.post("/v1/gcode", long[:-10], headers))
+        body, headers = form([("machine", "a.cfg", b"M204 P1000"), ("file", "a.gcode", PART), ("machine", "b.cfg", b"x")])
+        self.refused(400, "machine: given twice", self.post("/v1/gcode", body, headers))
         body, headers = form([("file", "a.gcode", PART), ("colour", "red")])
         self.refused(400, "colour", self.post("/v1/gcode", body, headers))
         body, headers = form([("policy", "safe")])
