@@ -1,12 +1,14 @@
 #include "client/gateway/api/rewrite_options.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "client/gateway/api/machine_text.h"
 #include "client/gateway/http/target.h"
+#include "client/gateway/work/permissions.h"
 
 namespace traverse::gateway {
 namespace {
@@ -19,20 +21,14 @@ absl::Status NoneKnown(const std::string& field, int value) {
   return FieldFault(absl::StrCat("options.", field, ": ", value, " is unknown"));
 }
 
-absl::Status SetPolicy(const v1::RewriteOptions& options, GcodeOptions& gcode) {
-  switch (options.policy()) {
-    case v1::POLICY_UNSPECIFIED:
-    case v1::POLICY_SAFE:
-      return absl::OkStatus();
-    case v1::POLICY_BALANCED:
-      gcode.policy = gcode::Policy::kBalanced;
-      return absl::OkStatus();
-    case v1::POLICY_FREE:
-      gcode.policy = gcode::Policy::kFree;
-      return absl::OkStatus();
-    default:
-      return NoneKnown("policy", options.policy());
-  }
+// This and SetAllowances are for both messages that have the field.
+template <typename Options, typename Policy>
+absl::Status SetPolicy(const Options& options, Policy& policy) {
+  if (options.policy() == v1::POLICY_UNSPECIFIED) return absl::OkStatus();
+  const std::optional<Policy> known = PolicyFrom<Policy>(options.policy());
+  if (!known) return NoneKnown("policy", options.policy());
+  policy = *known;
+  return absl::OkStatus();
 }
 
 absl::Status SetCrossings(const v1::RewriteOptions& options, GcodeOptions& gcode) {
@@ -51,7 +47,6 @@ absl::Status SetCrossings(const v1::RewriteOptions& options, GcodeOptions& gcode
   }
 }
 
-// For both messages with a field `allow`, and both structs with a member for each value.
 template <typename Options, typename Allowed>
 absl::Status SetAllowances(const Options& options, Allowed& allow) {
   constexpr int kMost = 16;
@@ -60,25 +55,14 @@ absl::Status SetAllowances(const Options& options, Allowed& allow) {
         absl::StrCat("options.allow: ", options.allow_size(), " values, more than 16"));
   }
   for (int i = 0; i < options.allow_size(); ++i) {
-    switch (options.allow(i)) {
-      case v1::ALLOWANCE_INFILL_ORDER:
-        allow.infill_order = true;
-        break;
-      case v1::ALLOWANCE_WALL_ORDER:
-        allow.wall_order = true;
-        break;
-      case v1::ALLOWANCE_FAN_ORDER:
-        allow.fan_order = true;
-        break;
-      default:
-        return NoneKnown(absl::StrCat("allow[", i, "]"), options.allow(i));
-    }
+    const auto allowance = static_cast<v1::Allowance>(options.allow(i));
+    if (!Allow(allowance, allow)) return NoneKnown(absl::StrCat("allow[", i, "]"), allowance);
   }
   return absl::OkStatus();
 }
 
 absl::Status SetWhatMayMove(const v1::RewriteOptions& options, GcodeOptions& gcode) {
-  if (absl::Status status = SetPolicy(options, gcode); !status.ok()) return status;
+  if (absl::Status status = SetPolicy(options, gcode.policy); !status.ok()) return status;
   if (absl::Status status = SetCrossings(options, gcode); !status.ok()) return status;
   if (absl::Status status = SetAllowances(options, gcode.allow); !status.ok()) return status;
   // Written so that NaN is refused.
@@ -153,20 +137,9 @@ absl::StatusOr<FileRequest> RequestOf(const v1::RewriteOptions& options) {
 absl::StatusOr<std::optional<GivenPermissions>> PermissionsOf(const v1::VerifyOptions& options) {
   if (options.policy() == v1::POLICY_UNSPECIFIED && options.allow().empty()) return std::nullopt;
   GivenPermissions given;
-  switch (options.policy()) {
-    case v1::POLICY_UNSPECIFIED:
-      given.policy_as_stated = true;
-      break;
-    case v1::POLICY_SAFE:
-      break;
-    case v1::POLICY_BALANCED:
-      given.permissions.policy = VerifyPermissions::Policy::kBalanced;
-      break;
-    case v1::POLICY_FREE:
-      given.permissions.policy = VerifyPermissions::Policy::kFree;
-      break;
-    default:
-      return NoneKnown("policy", options.policy());
+  given.policy_as_stated = options.policy() == v1::POLICY_UNSPECIFIED;
+  if (absl::Status status = SetPolicy(options, given.permissions.policy); !status.ok()) {
+    return status;
   }
   if (absl::Status status = SetAllowances(options, given.permissions); !status.ok()) return status;
   return given;

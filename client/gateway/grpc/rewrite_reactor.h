@@ -32,10 +32,10 @@ class RewriteReactor : public grpc::ServerBidiReactor<v1::RewriteRequest, v1::Re
   void Submit();
   void Work(const absl::Status& may);  // called by Core::Submit
 
-  // The call has ended; the status is sent when no write is in progress. REQUIRES: mutex_.
+  // The call has ended; the status is sent when no write is in progress.
   void End(const absl::Status& status) TRAVERSE_REQUIRES(mutex_);
 
-  // Starts the next write, or finishes, if it is time. REQUIRES: mutex_.
+  // Starts the next write, or finishes, if it is time.
   void Next() TRAVERSE_REQUIRES(mutex_);
   bool NextPiece() TRAVERSE_REQUIRES(mutex_);
 

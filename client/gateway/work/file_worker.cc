@@ -13,6 +13,7 @@
 #include "client/formats/detect.h"
 #include "client/formats/read_input.h"
 #include "client/gateway/work/guarded.h"
+#include "client/gateway/work/permissions.h"
 #include "client/gateway/work/verify_answer.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/measure/print_totals.h"
@@ -25,18 +26,6 @@
 
 namespace traverse::gateway {
 namespace {
-
-v1::Policy PolicyOf(gcode::Policy policy) {
-  switch (policy) {
-    case gcode::Policy::kSafe:
-      return v1::POLICY_SAFE;
-    case gcode::Policy::kBalanced:
-      return v1::POLICY_BALANCED;
-    case gcode::Policy::kFree:
-      return v1::POLICY_FREE;
-  }
-  return v1::POLICY_UNSPECIFIED;
-}
 
 void Add(const gcode::PrintTotals& totals, v1::PrintTotals& sum) {
   sum.set_extruded_mm(sum.extruded_mm() + totals.extruded_mm);
@@ -257,7 +246,7 @@ absl::StatusOr<RewrittenFile> FileWorker::RewriteParts(const SpoolFile& upload,
   work.options.progress = work.teller.ForSearch();
   work.options.gcode = request.gcode;
   work.options.restate_times = request.restate_times;
-  work.out.summary.set_policy(PolicyOf(request.gcode.policy));
+  work.out.summary.set_policy(PolicyMessage(request.gcode.policy));
   for (size_t i = 0; i < work.input.parts.size(); ++i) {
     if (absl::Status status = RewritePart(work, i); !status.ok()) return status;
   }

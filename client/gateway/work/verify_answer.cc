@@ -3,20 +3,10 @@
 #include <algorithm>
 #include <string>
 
+#include "client/gateway/work/permissions.h"
+
 namespace traverse::gateway {
 namespace {
-
-v1::Policy PolicyOf(VerifyPermissions::Policy policy) {
-  switch (policy) {
-    case VerifyPermissions::Policy::kSafe:
-      return v1::POLICY_SAFE;
-    case VerifyPermissions::Policy::kBalanced:
-      return v1::POLICY_BALANCED;
-    case VerifyPermissions::Policy::kFree:
-      return v1::POLICY_FREE;
-  }
-  return v1::POLICY_UNSPECIFIED;
-}
 
 void SetBreak(const VerifyBreak& found, v1::VerifyBreak& out) {
   out.set_original_line(static_cast<uint32_t>(found.original_line));
@@ -32,10 +22,10 @@ v1::VerifyResponse VerifyAnswer(const VerifyReport& report) {
   out.set_same(report.ok());
   if (!report.ok()) out.set_difference(report.breaks[0].message);
   const VerifyPermissions& permissions = report.permissions;
-  out.set_policy(PolicyOf(permissions.policy));
-  if (permissions.infill_order) out.add_allow(v1::ALLOWANCE_INFILL_ORDER);
-  if (permissions.wall_order) out.add_allow(v1::ALLOWANCE_WALL_ORDER);
-  if (permissions.fan_order) out.add_allow(v1::ALLOWANCE_FAN_ORDER);
+  out.set_policy(PolicyMessage(permissions.policy));
+  for (const auto& [message, member] : kAllowances<VerifyPermissions>) {
+    if (permissions.*member) out.add_allow(message);
+  }
   for (size_t i = 0; i < report.counts.size(); ++i) {
     const VerifyRule rule = static_cast<VerifyRule>(i);
     v1::VerifyRule& row = *out.add_rules();
