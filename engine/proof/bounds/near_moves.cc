@@ -1,11 +1,8 @@
 #include "engine/proof/bounds/near_moves.h"
 
+#include "engine/base/at.h"
+
 namespace traverse {
-namespace {
-
-size_t At(int index) { return static_cast<size_t>(index); }
-
-}  // namespace
 
 NearMoves::NearMoves(const EndGraph& graph, const TravelCost& cost)
     : graph_(graph), cost_(cost), first_(1, 0), first_side_(1, 0), groups_of_(graph.ends.size()) {

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <map>
 
+#include "engine/base/at.h"
+
 namespace traverse {
 namespace {
 
@@ -13,13 +15,11 @@ constexpr double kFirstWeight = 0.1;   // of one that a set begins with
 
 // A set stops growing where that takes so much away, or when it is so large.
 constexpr double kMostLoss = 0.1;
-constexpr size_t kMostPoints = 14;
-constexpr size_t kMostPointsWithWhole = 24;
+constexpr size_t kMostOfSet = 14;
+constexpr size_t kMostOfSetWithWhole = 24;
 
 // Sets that share most of their points with so many others are left out.
 constexpr int kMostCovers = 2;
-
-size_t At(int index) { return static_cast<size_t>(index); }
 
 }  // namespace
 
@@ -71,7 +71,7 @@ void SetFinder::Grow(const std::vector<int>& first, double violation, bool has_w
   }
   size_t best_size = violation >= least ? points_.size() : 0;
   double best = std::max(violation, least);
-  const size_t most = has_whole ? kMostPointsWithWhole : kMostPoints;
+  const size_t most = has_whole ? kMostOfSetWithWhole : kMostOfSet;
   while (points_.size() < most) {
     double gain = 0;
     const int point = BestNeighbor(has_whole, most_visited, gain);

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/at.h"
+
 namespace traverse {
 namespace {
 
 constexpr int kMostIdleCalls = 3;
-
-size_t At(int index) { return static_cast<size_t>(index); }
 
 }  // namespace
 

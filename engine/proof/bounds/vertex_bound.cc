@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "engine/base/at.h"
 #include "engine/model/point.h"
 #include "engine/proof/bounds/set_finder.h"
 
@@ -41,8 +42,6 @@ constexpr int kStepsOfRound = 125;
 
 // What rounding can add up to in a sum over all moves, relative to the numbers summed up.
 constexpr double kRounding = 1e-12;
-
-size_t At(int index) { return static_cast<size_t>(index); }
 
 }  // namespace
 

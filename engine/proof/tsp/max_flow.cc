@@ -4,12 +4,12 @@
 #include <cassert>
 #include <cstddef>
 
+#include "engine/base/at.h"
+
 namespace traverse {
 namespace {
 
 constexpr double kTiny = 1e-9;  // less left counts as nothing
-
-size_t At(int index) { return static_cast<size_t>(index); }
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "engine/base/at.h"
 #include "engine/proof/programs/linear_program.h"
 #include "engine/proof/tsp/max_flow.h"
 
@@ -16,8 +17,6 @@ namespace {
 constexpr size_t kFewCuts = 25;
 
 constexpr double kTiny = 1e-9;
-
-size_t At(int index) { return static_cast<size_t>(index); }
 
 // A set of whole items: x(moves within S) <= |S| - 1, for the smaller side; the depot's side counts
 // the depot's edge.
