@@ -165,6 +165,7 @@ double Length(Point from, Point to) { return std::hypot(to.x - from.x, to.y - fr
 }  // namespace
 
 absl::Status ValidateRoute(const Plan& plan, const Route& route, Budget* budget) {
+  assert(CheckPlan(plan).ok());
   Rest rest(budget);
   std::vector<int> position;
   if (absl::Status status = CheckVisits(plan, route, rest, position); !status.ok()) return status;

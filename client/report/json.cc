@@ -1,11 +1,13 @@
 #include "client/report/json.h"
 
+#include <cassert>
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "absl/strings/str_format.h"
+#include "client/api/job_result.h"
 #include "client/gtsp/tour.h"
 
 namespace traverse::report {
@@ -51,6 +53,7 @@ Json BoundJson(const InputJob& job, const v1::Layer& layer, const v1::LayerResul
 
 Json LayerJson(const InputJob& job, size_t i, const v1::LayerResult& result) {
   const v1::Layer& layer = job.layers[i];
+  assert(CheckVisits(layer, result).ok());
   const PathNotes* notes = i < job.notes.size() ? &job.notes[i] : nullptr;
   Json route = Json::array();
   for (const v1::Visit& visit : result.visits()) {

@@ -55,10 +55,14 @@ std::vector<Route> RoutesOfEach(absl::Span<const Plan* const> layers, const Rout
     const int paths = static_cast<int>(layer->paths.size());
     assert(paths <= route.end() - begin);
     Route& own = routes.emplace_back(begin, begin + paths);
-    for (Visit& visit : own) visit.path -= first_path;
+    for (Visit& visit : own) {
+      visit.path -= first_path;
+      assert(visit.path >= 0 && visit.path < paths);
+    }
     begin += paths;
     first_path += paths;
   }
+  assert(begin == route.end());
   return routes;
 }
 

@@ -15,7 +15,7 @@ namespace traverse {
 Plan PlanInOrder(absl::Span<const Plan* const> layers);
 
 // A route of PlanInOrder(layers) from a route of each layer, and back.
-// REQUIRES: there are as many routes as layers, each with all paths of its layer.
+// REQUIRES: `route` has as many visits as `layers` have paths, those of each layer together.
 Route RouteInOrder(absl::Span<const Route* const> routes);
 std::vector<Route> RoutesOfEach(absl::Span<const Plan* const> layers, const Route& route);
 

@@ -140,7 +140,7 @@ class AutoLayer : public PreparedLayer {
 
   Solution ResumeWithNext(const LayerProblem& problem, const Route& start,
                           std::vector<NextLayer>& next, Budget& budget) override {
-    assert(!next.empty());
+    assert(problem.plan == &plan_ && !next.empty());
     const bool has_walls = problem.walls != nullptr || next.front().problem.walls != nullptr;
     assert(!has_walls || next.size() == 1);
     if (has_walls && problem.walls_unit != 1) return Resume(problem, start, budget);

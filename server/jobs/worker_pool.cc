@@ -35,6 +35,8 @@ WorkerPool::~WorkerPool() {
     work_.NotifyAll();
   }
   for (const auto& worker : workers) worker->thread.join();
+  MutexLock lock(mutex_);
+  assert(under_way_ == 0 && waiting_ == 0);
 }
 
 std::shared_ptr<WorkerPool::Queue> WorkerPool::NewQueue(const std::string& caller,

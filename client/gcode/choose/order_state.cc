@@ -132,6 +132,7 @@ WayTotals OrderState::TotalsWith(size_t begin, size_t end, const PlaceRuns& runs
 }
 
 bool OrderState::DoIfBetter(size_t begin, size_t end, const PlaceRuns& runs) {
+  assert(0 < begin && begin < end && end < size());
   const WayTotals totals = TotalsWith(begin, end, runs);
   if (!judge_.IsBetter(totals, totals_)) return false;
   Take(begin, end, begin + runs[0].size(), totals);
@@ -139,6 +140,7 @@ bool OrderState::DoIfBetter(size_t begin, size_t end, const PlaceRuns& runs) {
 }
 
 void OrderState::Do(size_t begin, size_t end, const PlaceRuns& runs) {
+  assert(0 < begin && begin < end && end < size());
   const WayTotals totals = TotalsWith(begin, end, runs);
   Take(begin, end, begin + runs[0].size(), totals);
 }

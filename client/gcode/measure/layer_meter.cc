@@ -1,5 +1,7 @@
 #include "client/gcode/measure/layer_meter.h"
 
+#include <cassert>
+
 #include "client/gcode/measure/print_meter.h"
 #include "client/gcode/model/loops.h"
 #include "client/gcode/model/outline.h"
@@ -34,6 +36,7 @@ PrintTotals MeasureWay(const GcodeFile& file, const Layer& layer, const VisibleW
 }
 
 PrintTotals MeasureLink(const GcodeFile& file, uint32_t block, const VisibleWalls& walls) {
+  assert(block > 0);
   const PartStart start = StartBehind(file, file.blocks[block - 1]);
   return Measure(file, file.LinkText(block), start, &walls);
 }

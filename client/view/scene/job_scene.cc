@@ -1,9 +1,11 @@
 #include "client/view/scene/job_scene.h"
 
+#include <cassert>
 #include <filesystem>
 #include <memory>
 #include <utility>
 
+#include "client/api/job_result.h"
 #include "client/files/read_file.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/parallel.h"
@@ -122,6 +124,7 @@ Scene JobScene(const InputJob& job, const report::JobRun& given,
     layer.paths = PathsOf(job, i);
     const VisitReader reader(job.layers[i]);
     for (const report::JobRun* run : results) {
+      assert(CheckVisits(job.layers[i], run->result.layers[i]).ok());
       layer.routes.push_back(RouteOf(reader, run->result.layers[i]));
     }
     return layer;
