@@ -15,6 +15,15 @@ void AppendSeen(const Map& other, Map& map) {
 
 }  // namespace
 
+bool LiftHeights::Have(int64_t um, bool is_level) const {
+  constexpr int64_t kSlackUm = 2;
+  for (int64_t near = um - kSlackUm; near <= um + kSlackUm; ++near) {
+    if (level.contains(near)) return true;
+    if ((!is_level || level.empty()) && other.contains(near)) return true;
+  }
+  return false;
+}
+
 void LiftLog::Append(const LiftLog& other) {
   const auto shift = static_cast<uint32_t>(pieces.size());
   pieces.insert(pieces.end(), other.pieces.begin(), other.pieces.end());
@@ -34,15 +43,17 @@ void Observations::Append(const Observations& other) {
   }
   AppendSeen(other.tail_feeds, tail_feeds);
   AppendSeen(other.signatures, signatures);
-  AppendSeen(other.heights, heights);
-  AppendSeen(other.rises, rises);
+  AppendSeen(other.heights.level, heights.level);
+  AppendSeen(other.heights.other, heights.other);
+  AppendSeen(other.rises.level, rises.level);
+  AppendSeen(other.rises.other, rises.other);
   slopes.insert(other.slopes.begin(), other.slopes.end());
   stated.insert(stated.end(), other.stated.begin(), other.stated.end());
   if (other.first_way.line != 0) first_way = other.first_way;
   lowest.insert(lowest.end(), other.lowest.begin(), other.lowest.end());
   deepest.insert(deepest.end(), other.deepest.begin(), other.deepest.end());
   descents.insert(descents.end(), other.descents.begin(), other.descents.end());
-  AppendSeen(other.radii, radii);
+  AppendSeen(other.spirals, spirals);
   lifts_of_links.insert(lifts_of_links.end(), other.lifts_of_links.begin(),
                         other.lifts_of_links.end());
   way_lengths.insert(way_lengths.end(), other.way_lengths.begin(), other.way_lengths.end());

@@ -33,6 +33,16 @@ struct Seen {
   float longest_mm = 0;  // the longest of sideways moves
 };
 
+// The first line of all of `map`; 0 if it is empty.
+template <typename Map>
+uint32_t FirstLineOf(const Map& map) {
+  uint32_t line = 0;
+  for (const auto& [key, seen] : map) {
+    if (line == 0 || seen.line < line) line = seen.line;
+  }
+  return line;
+}
+
 // Anything at one speed, or with one acceleration.
 using SpeedKey = uint64_t;
 
@@ -102,10 +112,23 @@ struct WayLength {
   int64_t layer = -1;
 };
 
+// Heights above the layer in um, of one kind of lift.
+struct LiftHeights {
+  absl::flat_hash_map<int64_t, Seen> level;  // between two paths of one height
+  absl::flat_hash_map<int64_t, Seen> other;
+
+  absl::flat_hash_map<int64_t, Seen>& Of(bool is_level) { return is_level ? level : other; }
+
+  // Whether one of them is `um`. Lifts between paths of one height are compared with their like, if
+  // there are any.
+  bool Have(int64_t um, bool is_level) const;
+};
+
 // The height that a move states, and the slope on which it reaches it; 0: it does not rise.
 struct StatedHeight {
   int64_t um = 0;
   int64_t slope = 0;  // um in 10 mm
+  bool level = false;
   uint32_t line = 0;
   int64_t layer = -1;
 };
@@ -180,16 +203,16 @@ struct Observations {
   absl::flat_hash_map<uint64_t, Seen> tail_feeds;  // of moves that continue along a path
   absl::flat_hash_map<uint64_t, Seen> signatures;
   absl::flat_hash_set<uint64_t> script_signatures;
-  absl::flat_hash_map<int64_t, Seen> heights;  // um above the layer, of moves that state Z
-  absl::flat_hash_set<int64_t> slopes;       // um of rise in 10 mm, for moves that rise on the way
-  std::vector<StatedHeight> stated;          // by the other file's moves
-  absl::flat_hash_map<int64_t, Seen> rises;  // the same for moves straight up
-  HighestPoint first_way;                    // of the travel from the start script
-  std::vector<LowestWay> lowest;             // travel that goes lower than what it connects
-  std::vector<LowestWay> deepest;            // moves straight down that do so
-  std::vector<Descent> descents;             // the longest of each travel
-  absl::flat_hash_map<int64_t, Seen> radii;  // um, of arcs that rise
-  std::vector<RepeatedLift> lifts_of_links;  // links that rise more than once
+  LiftHeights heights;                  // of moves that state Z
+  absl::flat_hash_set<int64_t> slopes;  // um of rise in 10 mm, for moves that rise on the way
+  std::vector<StatedHeight> stated;     // by the other file's moves
+  LiftHeights rises;                    // of moves straight up
+  HighestPoint first_way;               // of the travel from the start script
+  std::vector<LowestWay> lowest;        // travel that goes lower than what it connects
+  std::vector<LowestWay> deepest;       // moves straight down that do so
+  std::vector<Descent> descents;        // the longest of each travel
+  absl::flat_hash_map<uint64_t, Seen> spirals;          // by TraceMove::spiral
+  std::vector<RepeatedLift> lifts_of_links;             // links that rise more than once
   absl::flat_hash_set<uint64_t> deposit_accelerations;  // of the whole file, like the box
   std::vector<FarPoint> farthest;
   Box box;                             // of all points

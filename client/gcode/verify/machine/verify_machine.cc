@@ -44,7 +44,7 @@ bool FallsAsOftenAsItRises(std::string_view text) {
 
 void VerifyMachine::NoteMotion(int number, uint32_t words, const std::array<Micro, 3>& from,
                                Micro filament) {
-  motion_ = Motion{from, at_, filament, pulled_, feed_, number, words, retracted(), false, 0, 0};
+  motion_ = Motion{from, at_, filament, pulled_, feed_, number, words, retracted(), false, 0, 0, 0};
   moved_at_ = number_;
 }
 
@@ -224,6 +224,7 @@ void VerifyMachine::Move(int number, const CommandWords& words, VerifyLine& line
     motion_.has_center = number >= 2 && (words.Has('I') || words.Has('J'));
     motion_.center_x = from[0] + words.ValueOr('I', 0);
     motion_.center_y = from[1] + words.ValueOr('J', 0);
+    motion_.turns = number >= 2 ? words.ValueOr('P', 0) : 0;
   }
   if ((moves || number >= 2) && filament > 0) {
     Deposit(number, words, from, filament, line);

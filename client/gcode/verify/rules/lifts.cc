@@ -22,7 +22,7 @@ constexpr float kLowShare = 0.1f;
 constexpr float kLowFactor = 1.25f;
 constexpr double kUsualShare = 0.99;  // of the original's travel, for how low it may be
 constexpr double kShortestMm = 0.05;
-constexpr int64_t kHeightSlackUm = 2;
+constexpr double kOneHeightMm = 1e-4;
 constexpr int64_t kSlopeSlackUm = 2;
 
 struct Height {
@@ -168,10 +168,11 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
     if (!move.states_z || (only_new && layer.IsKnown(move))) continue;
     const int64_t um = std::llround((move.z_to_mm - to.z_mm) * 1000);
     const int64_t slope = SlopeOf(move);
+    const bool level = std::abs(z_before - to.z_mm) <= kOneHeightMm;
     if (only_new) {
-      seen.stated.push_back({um, slope, move.line, layer.index()});
+      seen.stated.push_back({um, slope, level, move.line, layer.index()});
     } else {
-      seen.heights.try_emplace(um, Seen{move.line, layer.index(), 0}).first->second.count++;
+      seen.heights.Of(level).try_emplace(um, Seen{move.line, layer.index(), 0});
       if (slope > 0) seen.slopes.insert(slope);
     }
   }
@@ -180,7 +181,7 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
     return;
   }
   way.end = static_cast<uint32_t>(seen.lifts.pieces.size());
-  const bool between = traced.new_layer || std::abs(z_before - to.z_mm) > 1e-4;
+  const bool between = traced.new_layer || std::abs(z_before - to.z_mm) > kOneHeightMm;
   const bool crossing = layer.CrossingLength(chunk, link, !retracted) > 0;
   seen.lifts.ways[(retracted ? 4u : 0u) + (between ? 2u : 0u) + (crossing ? 1u : 0u)].push_back(
       way);
@@ -265,9 +266,11 @@ void ObserveLifts(const LayerPair& layer, LayerFindings& findings) {
 void CompareLifts(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   for (size_t kind = 0; kind < kWayKinds; ++kind) CompareKind(was, is, kind, breaks);
   int64_t highest = 0;
-  for (const auto& [um, seen] : was.heights) highest = std::max(highest, um);
+  for (const auto* map : {&was.heights.level, &was.heights.other}) {
+    for (const auto& [um, seen] : *map) highest = std::max(highest, um);
+  }
   for (const StatedHeight& stated : is.stated) {
-    bool known = Knows(was.heights, stated.um, kHeightSlackUm);
+    bool known = was.heights.Have(stated.um, stated.level);
     // On a slope that ends with its travel, shorter travel reaches less height.
     known |=
         stated.slope > 0 && stated.um <= highest && Knows(was.slopes, stated.slope, kSlopeSlackUm);

@@ -185,14 +185,6 @@ void CheckLayerFeeds(const LayerPair& layer, LayerFindings& findings) {
   }
 }
 
-uint32_t AnyLine(const absl::flat_hash_map<uint64_t, Seen>& map) {
-  uint32_t line = 0;
-  for (const auto& [key, seen] : map) {
-    if (line == 0 || seen.line < line) line = seen.line;
-  }
-  return line;
-}
-
 }  // namespace
 
 void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings) {
@@ -293,13 +285,13 @@ void CompareSpeeds(const Observations& was, const Observations& is, std::vector<
     if (was.feeds[kind].empty() && kind == kTravel) like = kOpenTravel;
     for (const auto& [feed, seen] : is.feeds[kind]) {
       if (was.feeds[like].contains(feed)) continue;
-      breaks.push_back({VerifyRule::kSpeeds, AnyLine(was.feeds[like]), seen.line, seen.layer,
+      breaks.push_back({VerifyRule::kSpeeds, FirstLineOf(was.feeds[like]), seen.line, seen.layer,
                         absl::StrFormat("%s at F%g, as none in the original", KindName(kind),
                                         static_cast<double>(static_cast<Micro>(feed)) * 1e-6)});
     }
     for (const auto& [acceleration, seen] : is.accelerations[kind]) {
       if (IsKnownAcceleration(was, kind, acceleration)) continue;
-      breaks.push_back({VerifyRule::kSpeeds, AnyLine(was.accelerations[like]), seen.line,
+      breaks.push_back({VerifyRule::kSpeeds, FirstLineOf(was.accelerations[like]), seen.line,
                         seen.layer,
                         absl::StrFormat("%s with an acceleration that none in the original has",
                                         KindName(kind))});

@@ -56,15 +56,16 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
     }
     if (only_new && layer.IsKnown(move)) continue;
     const auto note_rise = [&](double base) {
-      seen.rises.try_emplace(Um(move.z_to_mm - base), Seen{move.line, layer.index(), 0});
+      seen.rises.Of(lowest.rise == WayRise::kLevel)
+          .try_emplace(Um(move.z_to_mm - base), Seen{move.line, layer.index(), 0});
     };
     // A slope among known lines is compared with the heights of all ways: lifts.
     const bool rises = move.kind == MoveKind::kUp || (traced.scripted && move.sideways());
     if (rises && move.z_to_mm > move.z_from_mm) {
       note_rise(to);
       if (!only_new) note_rise(from);
-      if (move.radius_mm > 0) {
-        seen.radii.try_emplace(Um(move.radius_mm), Seen{move.line, layer.index(), 0});
+      if (move.spiral != 0) {
+        seen.spirals.try_emplace(move.spiral, Seen{move.line, layer.index(), 0});
       }
     }
     if (move.kind == MoveKind::kDown) {
@@ -110,14 +111,10 @@ void CompareMoves(const Observations& was, const Observations& is, std::vector<F
     breaks.push_back({VerifyRule::kLifts, 0, lifts.line, lifts.layer,
                       absl::StrFormat("the head rises %d times between two paths", lifts.times)});
   }
-  for (const auto& [um, seen] : is.radii) {
-    bool known = false;
-    for (int64_t near = um - 5; near <= um + 5; ++near) known |= was.radii.contains(near);
-    if (known) continue;
-    breaks.push_back(
-        {VerifyRule::kLifts, 0, seen.line, seen.layer,
-         absl::StrFormat("rises along an arc of radius %.3f mm, as none of the original",
-                         static_cast<double>(um) / 1000)});
+  for (const auto& [spiral, seen] : is.spirals) {
+    if (was.spirals.contains(spiral)) continue;
+    breaks.push_back({VerifyRule::kLifts, FirstLineOf(was.spirals), seen.line, seen.layer,
+                      "no spiral lift of the original has this center and direction"});
   }
 }
 
@@ -144,6 +141,19 @@ void CompareFirstWay(const HighestPoint& was, const HighestPoint& is,
   breaks.push_back({VerifyRule::kLifts, was.line, is.line, is.layer,
                     absl::StrFormat("the way from the start script rises to %.3f mm, not %.3f mm",
                                     is.z_mm, was.z_mm)});
+}
+
+void CompareRises(const Observations& was, const Observations& is, bool level,
+                  std::vector<Finding>& breaks) {
+  for (const auto& [um, seen] : level ? is.rises.level : is.rises.other) {
+    if (was.rises.Have(um, level) || was.heights.Have(um, level)) continue;
+    breaks.push_back(
+        {VerifyRule::kLifts,
+         FirstLineOf(was.rises.level.empty() ? was.rises.other : was.rises.level), seen.line,
+         seen.layer,
+         absl::StrFormat("rises to %.3f mm above the layer; no such move of the original does",
+                         static_cast<double>(um) / 1000)});
+  }
 }
 
 // How the way to a path that lies lower than the one before gets there.
@@ -215,16 +225,8 @@ void CompareHeights(const Observations& was, const Observations& is, std::vector
                          "more than %.3f mm",
                          -way.above_mm, -lowest.above_mm)});
   }
-  for (const auto& [um, seen] : is.rises) {
-    bool found = false;
-    for (int64_t near = um - 2; near <= um + 2; ++near) {
-      found |= was.rises.contains(near) || was.heights.contains(near);
-    }
-    if (found) continue;
-    breaks.push_back({VerifyRule::kLifts, 0, seen.line, seen.layer,
-                      absl::StrFormat("rises to %.3f mm above the layer, as none of the original",
-                                      static_cast<double>(um) / 1000)});
-  }
+  CompareRises(was, is, true, breaks);
+  CompareRises(was, is, false, breaks);
 }
 
 }  // namespace traverse::gcode

@@ -1,9 +1,11 @@
-// What a way does, step by step: it pulls back, rises, goes, sinks and pushes. A way between the
-// same two points as in the original comes as high, and with the same kinds of steps it is as fast,
-// under the same accelerations. Behind lines that are not known it does the same steps wherever it
-// leads to.
+// What travel does, step by step: it retracts, rises, moves sideways, goes down and primes. Between
+// the same two points as in the original it rises no less; with the same kinds of steps it rises as
+// high, along the same spiral, with the same speeds and accelerations. Behind unknown lines it does
+// the same steps wherever it leads to.
 
 #include <algorithm>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/container/flat_hash_map.h"
@@ -26,11 +28,13 @@ struct WayStep {
   bool open = false;
   uint64_t acceleration = 0;
   uint32_t line = 0;
-  double top_mm = 0;  // of where it begins and ends, the higher one
+  double top_mm = 0;    // of where it begins and ends, the higher one
+  uint64_t spiral = 0;  // TraceMove::spiral
 
   bool Like(const WayStep& other) const {
     return kind == other.kind && std::abs(z_mm - other.z_mm) <= kLevelMm && open == other.open &&
-           feed == other.feed && std::abs(filament - other.filament) <= VerifyMachine::kSlack;
+           feed == other.feed && spiral == other.spiral &&
+           std::abs(filament - other.filament) <= VerifyMachine::kSlack;
   }
 };
 
@@ -49,8 +53,9 @@ std::vector<WayStep> StepsTo(const TraceChunk& chunk, uint32_t path, uint32_t se
     const bool wipes = move.kind == MoveKind::kWipe;
     const Micro filament = wipes ? 0 : move.filament;
     const WayStep step{
-        move.kind, move.z_to_mm,      filament,  move.feed,
-        move.open, move.acceleration, move.line, std::max(move.z_from_mm, move.z_to_mm)};
+        move.kind,  move.z_to_mm,      filament,  move.feed,
+        move.open,  move.acceleration, move.line, std::max(move.z_from_mm, move.z_to_mm),
+        move.spiral};
     // A way may have more bends than before.
     const bool goes_on =
         !steps.empty() && steps.back().Like(step) && steps.back().acceleration == step.acceleration;
@@ -106,6 +111,14 @@ const WayStep* OtherSpeed(const std::vector<WayStep>& was, const std::vector<Way
   return one == was.end() ? nullptr : &*other;
 }
 
+// The same for spiral lifts.
+const WayStep* OtherSpiral(const std::vector<WayStep>& was, const std::vector<WayStep>& is) {
+  const auto [one, other] =
+      std::mismatch(was.begin(), was.end(), is.begin(),
+                    [](const WayStep& a, const WayStep& b) { return a.spiral == b.spiral; });
+  return one == was.end() ? nullptr : &*other;
+}
+
 double ApexOf(const std::vector<WayStep>& steps) {
   double apex = 0;
   for (const WayStep& step : steps) {
@@ -148,35 +161,63 @@ void CheckScriptedWays(const LayerPair& layer, LayerFindings& findings) {
 
 namespace {
 
-// What a way between two points does that one of the original, or several, lead between as well.
+// What travel between two points does in the original, in the links that lead between the same two.
+struct SameEnds {
+  double lowest_mm = 1e9;           // of their apexes
+  double highest_mm = -1;           // of those with the same kinds of steps; -1: there are none
+  const WayStep* speed = nullptr;   // a step that has another speed in all of these
+  const WayStep* spiral = nullptr;  // and one that is another spiral
+};
+
+SameEnds CompareWith(const TraceChunk& was, const std::vector<uint32_t>& links,
+                     const std::vector<WayStep>& has) {
+  SameEnds same;
+  bool has_speed = false;
+  bool has_spiral = false;
+  for (const uint32_t link : links) {
+    const std::vector<WayStep> had = StepsTo(was, link, 0);
+    same.lowest_mm = std::min(same.lowest_mm, ApexOf(had));
+    if (!SameKinds(had, has)) continue;
+    same.highest_mm = std::max(same.highest_mm, ApexOf(had));
+    same.speed = OtherSpeed(had, has);
+    same.spiral = OtherSpiral(had, has);
+    has_speed |= same.speed == nullptr;
+    has_spiral |= same.spiral == nullptr;
+  }
+  if (has_speed) same.speed = nullptr;
+  if (has_spiral) same.spiral = nullptr;
+  return same;
+}
+
 void CompareSteps(const LayerPair& layer, const std::vector<uint32_t>& links_was, uint32_t link_is,
                   LayerFindings& findings) {
   const std::vector<WayStep> has = StepsTo(layer.is(), link_is, 0);
   if (has.empty()) return;
-  const WayStep* odd = nullptr;
-  double lowest = 1e9;
-  const uint32_t original = layer.was().LineOf(layer.was().paths[links_was.front()]);
-  for (const uint32_t link : links_was) {
-    const std::vector<WayStep> had = StepsTo(layer.was(), link, 0);
-    lowest = std::min(lowest, ApexOf(had));
-    if (!SameKinds(had, has)) continue;
-    odd = OtherSpeed(had, has);
-    if (odd == nullptr) break;
+  const SameEnds same = CompareWith(layer.was(), links_was, has);
+  const auto report = [&](VerifyRule rule, uint32_t line, std::string what) {
+    findings.breaks.push_back({rule, layer.was().LineOf(layer.was().paths[links_was.front()]), line,
+                               layer.index(), std::move(what)});
+  };
+  if (same.speed != nullptr) {
+    report(VerifyRule::kSpeeds, same.speed->line,
+           absl::StrFormat("%s at F%g; between the same two points the original has another speed "
+                           "or acceleration",
+                           MoveKindName(same.speed->kind),
+                           static_cast<double>(same.speed->feed) * 1e-6));
   }
-  if (odd != nullptr) {
-    findings.breaks.push_back(
-        {VerifyRule::kSpeeds, original, odd->line, layer.index(),
-         absl::StrFormat("%s at F%g; between the same two points its speed or "
-                         "acceleration is another one there",
-                         MoveKindName(odd->kind), static_cast<double>(odd->feed) * 1e-6)});
+  if (same.spiral != nullptr) {
+    report(VerifyRule::kLifts, same.spiral->line,
+           "the spiral lift between these two points has another center or direction in the "
+           "original");
   }
-  if (ApexOf(has) > 0 && ApexOf(has) < lowest - kLevelMm) {
-    findings.breaks.push_back(
-        {VerifyRule::kLifts, original, has.front().line, layer.index(),
-         absl::StrFormat("a way at a height of %.3f mm leads between the same two points as one at "
-                         "%.3f mm there",
-                         ApexOf(has), lowest)});
-  }
+  const double apex = ApexOf(has);
+  if (apex <= 0) return;
+  const bool high = same.highest_mm >= 0 && apex > same.highest_mm + kLevelMm;
+  if (!high && apex >= same.lowest_mm - kLevelMm) return;
+  report(VerifyRule::kLifts, has.front().line,
+         absl::StrFormat("travel at a height of %.3f mm; between the same two points the original "
+                         "is at %.3f mm",
+                         apex, high ? same.highest_mm : same.lowest_mm));
 }
 
 }  // namespace
@@ -185,13 +226,13 @@ void CheckSameSteps(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& was = layer.was();
   const TraceChunk& is = layer.is();
   absl::flat_hash_map<uint64_t, std::vector<uint32_t>> by_ends;
-  for (uint32_t link = layer.first_path_was() + 1; link < layer.end_path_was(); ++link) {
-    if (!was.links[link].scripted) by_ends[EndsOf(was, link)].push_back(link);
+  // The first link of a chunk follows a path of the chunk before.
+  for (uint32_t link = std::max(layer.first_path_was(), 1u); link < layer.end_path_was(); ++link) {
+    by_ends[EndsOf(was, link)].push_back(link);
   }
-  for (uint32_t link = layer.first_path_is() + 1; link < layer.end_path_is(); ++link) {
+  for (uint32_t link = std::max(layer.first_path_is(), 1u); link < layer.end_path_is(); ++link) {
     const auto found = by_ends.find(EndsOf(is, link));
-    if (is.links[link].scripted || found == by_ends.end()) continue;
-    CompareSteps(layer, found->second, link, findings);
+    if (found != by_ends.end()) CompareSteps(layer, found->second, link, findings);
   }
 }
 

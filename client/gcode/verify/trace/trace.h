@@ -76,7 +76,7 @@ struct TraceMove {
   Point middle;  // of an arc, halfway along it
   double z_from_mm = 0;
   double z_to_mm = 0;
-  double radius_mm = 0;  // for an arc, by its center
+  uint64_t spiral = 0;  // of an arc that rises: its direction, center from where it begins, turns
   Micro filament = 0;
   Micro feed = 0;
   uint32_t line = 0;

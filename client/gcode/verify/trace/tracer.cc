@@ -47,6 +47,7 @@ uint64_t IdentityOf(const Motion& motion, uint64_t acceleration, bool wiping) {
   if (motion.has_center) {
     digest = Mix(digest, static_cast<uint64_t>(motion.center_x));
     digest = Mix(digest, static_cast<uint64_t>(motion.center_y));
+    digest = Mix(digest, static_cast<uint64_t>(motion.turns));
   }
   // G0 and G1 are the same to what prints nothing.
   const auto number = static_cast<uint64_t>(std::max(motion.number, 1));
@@ -62,6 +63,17 @@ Point MiddleOfArc(Point from, Point to, Point center, bool clockwise) {
   const double radius = std::hypot(from.x - center.x, from.y - center.y);
   const double angle = begin + (clockwise ? -sweep : sweep) / 2;
   return {center.x + radius * std::cos(angle), center.y + radius * std::sin(angle)};
+}
+
+// To the micrometre: of a spiral lift that begins elsewhere.
+uint64_t SpiralOf(const Motion& motion, double unit) {
+  if (!motion.has_center || motion.to[2] <= motion.from[2]) return 0;
+  const auto um = [unit](Micro from, Micro to) {
+    return static_cast<uint64_t>(std::llround(static_cast<double>(to - from) * unit * 1000));
+  };
+  uint64_t digest = Mix(static_cast<uint64_t>(motion.number), static_cast<uint64_t>(motion.turns));
+  digest = Mix(digest, um(motion.from[0], motion.center_x));
+  return Mix(digest, um(motion.from[1], motion.center_y));
 }
 
 uint64_t SignatureOf(const Motion& motion) {
@@ -250,8 +262,8 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
     const Point center{static_cast<double>(motion.center_x) * unit,
                        static_cast<double>(motion.center_y) * unit};
     move.middle = MiddleOfArc(move.from, move.to, center, motion.number == 2);
-    move.radius_mm = std::hypot(center.x - move.from.x, center.y - move.from.y);
   }
+  move.spiral = SpiralOf(motion, unit);
   move.z_from_mm = static_cast<double>(motion.from[2]) * unit;
   move.z_to_mm = static_cast<double>(motion.to[2]) * unit;
   move.filament = machine.inches() ? InMm(motion.filament) : motion.filament;

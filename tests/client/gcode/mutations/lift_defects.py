@@ -275,6 +275,46 @@ def spiral_wider(file, rng):
         file, {i: [with_word(file.lines[i].text, "I", lambda v: v * 3 + 2)]}))
 
 
+def spiral_changed(change):
+    """A spiral lift sweeps elsewhere: the other way round, or around another center."""
+
+    def defect(file, rng):
+        found = [i for i, line in enumerate(file.lines) if line.kind == "z" and re.match(r"G[23] .*I", line.text)
+                 and file.paths[0].first < i < file.paths[-1].first]
+        return pick(rng, found, 1, lambda i: edited(file, {i: [change(file.lines[i].text)]}))
+
+    return defect
+
+
+def other_way_round(text):
+    return ("G2" if text.startswith("G3") else "G3") + text[2:]
+
+
+def mirrored(text):
+    return with_word(with_word(text, "I", lambda v: -v), "J", lambda v: -v)
+
+
+def lifts_of_layer(higher_by):
+    """All lifts of one layer lead to another height."""
+
+    def defect(file, rng):
+        layers = {}
+        for found in lifted(file):
+            layers.setdefault(file.paths[found[0] + 1].start[2], []).append(found)
+
+        def make(ways):
+            changes = {}
+            for way in ways:
+                index, z = way_of(file, way)
+                changes.update({i: [with_z(file.lines[i].text, file.lines[i].end[2] + higher_by)] for i in index
+                                if "Z" in file.lines[i].text and file.lines[i].end[2] > z + 0.06})
+            return edited(file, changes) if changes else None
+
+        return pick(rng, list(layers.values()), 3, make)
+
+    return defect
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("lift dropped", "lifts", lift_dropped, "free"),
@@ -300,4 +340,8 @@ DEFECTS = (
     ("lift across a wall dropped", "lifts", some_lift(crosses_wall, 0), "free"),
     ("down halfway", "lifts", descends_on_way, "free"),
     ("spiral lift wider", "lifts", spiral_wider, "free"),
+    ("spiral lift the other way round", "lifts", spiral_changed(other_way_round), "free"),
+    ("spiral lift on the other side", "lifts", spiral_changed(mirrored), "free"),
+    ("lifts of a layer higher", "lifts", lifts_of_layer(0.05), "free"),
+    ("lifts of a layer lower", "lifts", lifts_of_layer(-0.05), "free"),
 )

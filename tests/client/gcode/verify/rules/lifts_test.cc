@@ -186,15 +186,55 @@ TEST(VerifyLifts, AreDoneOnce) {
   EXPECT_EQ(Broken(kHead + twice, kHead + twice), "");
 }
 
-TEST(VerifyLifts, OfASpiralGoRoundTheSameCircle) {
-  const auto spiral = [](const char* x, const char* i) {
-    return absl::StrCat("G1 E-1 F2100\nG17\nG3 Z.6 I", i, " J0 F9000\nG1 X", x,
-                        " Y9 F9000\nG1 Z.2\nG1 E1 F2100\nG1 F1800\nG1 X", x, " Y20 E.3\n");
+// A line of infill at `x`, to which a spiral leads around a center beside where it begins.
+std::string SpiralLine(const std::string& x, const std::string& spiral) {
+  return absl::StrCat("G1 E-1 F2100\nG17\n", spiral, " F9000\nG1 X", x,
+                      " Y9 F9000\nG1 Z.2\nG1 E1 F2100\nG1 F1800\nG1 X", x, " Y20 E.3\n");
+}
+
+TEST(VerifyLifts, OfASpiralHaveACenterAndADirectionOfTheOriginal) {
+  const std::string right = "G3 Z.6 I1.2 J0 P1";
+  const std::string up = "G3 Z.6 I0 J1.2 P1";
+  const std::string first = kHead + kOne;
+  const std::string a = first + SpiralLine("1", right) + SpiralLine("5", up) + SpiralLine("9", up);
+  EXPECT_EQ(Broken(a, a), "");
+  // Other travel, with the spirals of the original.
+  EXPECT_EQ(Broken(a, first + SpiralLine("9", up) + SpiralLine("1", right) + SpiralLine("5", up)),
+            "");
+  for (const char* other : {"G2 Z.6 I0 J1.2 P1", "G3 Z.6 I0 J-1.2 P1", "G3 Z.6 I0 J9 P1",
+                            "G3 Z.6 I.8 J.9 P1", "G3 Z.6 I0 J1.2 P3"}) {
+    const std::string moved =
+        first + SpiralLine("9", up) + SpiralLine("1", right) + SpiralLine("5", other);
+    EXPECT_EQ(Broken(a, moved), "lifts") << other;
+    EXPECT_EQ(Broken(a, With(a, up, other)), "lifts") << other;
+  }
+}
+
+TEST(VerifyLifts, BetweenTheSameTwoPointsTheSpiralIsTheSame) {
+  const std::string right = "G3 Z.6 I1.2 J0 P1";
+  const std::string up = "G3 Z.6 I0 J1.2 P1";
+  const std::string a = kHead + kOne + SpiralLine("1", right) + SpiralLine("5", up);
+  EXPECT_EQ(Broken(a, kHead + kOne + SpiralLine("1", up) + SpiralLine("5", up)), "lifts");
+  EXPECT_THAT(FirstMessage(a, kHead + kOne + SpiralLine("1", up) + SpiralLine("5", up)),
+              HasSubstr("b:12: the spiral lift between these two points has another center"));
+}
+
+// A lift of 0.4 mm to the next layer is one of 0.2 mm above it, but no lift within a layer is.
+TEST(VerifyLifts, WithinALayerAreNotThoseBetweenLayers) {
+  const auto line = [](const char* z, const char* back, const char* from, const char* to) {
+    return absl::StrCat("G1 E-1 F2100\nG1 Z", z, " F9000\nG1 ", from, " F9000\nG1 Z", back,
+                        "\nG1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 ", to, " E.3\n");
   };
-  const std::string a = kHead + spiral("1", "1.2") + spiral("5", "1.2") + spiral("9", "1.2");
-  const std::string moved = kHead + spiral("1", "1.2") + spiral("9", "1.2") + spiral("5", "1.2");
-  EXPECT_EQ(Broken(a, moved), "");
-  EXPECT_EQ(Broken(a, kHead + spiral("1", "1.2") + spiral("5", "9") + spiral("9", "1.2")), "lifts");
+  const std::string layer = line(".5", ".2", "X10 Y10", "X20 Y10") +
+                            line(".5", ".2", "X20 Y20", "X10 Y20") + ";LAYER_CHANGE\n" +
+                            line(".6", ".4", "X10 Y40", "X20 Y40");
+  const std::string a = kHead + kOne + layer;
+  const std::string low = line(".4", ".2", "X20 Y20", "X10 Y20");
+  EXPECT_EQ(Broken(a, a), "");
+  // As low as the lift between the layers, in place and between two other points.
+  EXPECT_EQ(Broken(a, With(a, line(".5", ".2", "X20 Y20", "X10 Y20"), low)), "lifts");
+  const std::string high = line(".6", ".2", "X20 Y20", "X10 Y20");
+  EXPECT_EQ(Broken(a, With(a, line(".5", ".2", "X20 Y20", "X10 Y20"), high)), "lifts");
 }
 
 // One object after the other: over the first one the head does not go down to the next.
