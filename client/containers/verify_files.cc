@@ -22,7 +22,7 @@ struct Side {
   const std::string& name;
 };
 
-// What a part is called in messages.
+// The name of a part in messages.
 std::string PartName(const Side& side, const GcodePart& part) {
   const std::string shown = DisplayName(side.name);
   return part.name.empty() ? shown : absl::StrFormat("%s: %s", shown, part.name);
@@ -39,7 +39,7 @@ absl::StatusOr<std::vector<uint32_t>> Plates(const Side& original, const Side& o
   for (const GcodePart& part : original.container->parts()) plates.push_back(part.plate);
   std::vector<uint32_t> others;
   for (const GcodePart& part : optimised.container->parts()) others.push_back(part.plate);
-  // The one plate of an archive may be its fifth, which another file has alone.
+  // The only plate of one archive may be the fifth of the other.
   if (plates.size() == 1 && others.size() == 1) return plates;
   if (plates != others) {
     return absl::InvalidArgumentError(
@@ -57,7 +57,7 @@ absl::StatusOr<size_t> PartOf(const Side& side, uint32_t plate, bool any) {
 VerifyReport CheckTexts(std::string original, const std::string& original_name,
                         std::string optimised, const std::string& optimised_name,
                         std::optional<CommentsKept> kept, const VerifyFilesOptions& options) {
-  // Before comments are taken away, and the line at the head with them.
+  // Before comments are removed, and the line at the head with them.
   VerifyOptions rules;
   rules.permissions = PermissionsFor(options.permissions, optimised);
   const std::optional<gcode::TimeScale> scale = gcode::StatedScale(optimised);

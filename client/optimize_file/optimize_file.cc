@@ -13,8 +13,8 @@
 namespace traverse {
 namespace {
 
-// The strategy to search with. Of one that the file comes with, by its name, it keeps what the file
-// sets of its options, but for those that are named too.
+// The strategy to search with. If the caller names the strategy that the file states, the options
+// that the file sets remain, except those that the caller sets.
 v1::Strategy StrategyFor(const InputJob& job, const SearchOptions& options) {
   const v1::Strategy& own = job.options.strategy();
   if (!options.strategy || options.strategy->name() != own.name()) {
@@ -27,13 +27,13 @@ v1::Strategy StrategyFor(const InputJob& job, const SearchOptions& options) {
   return both;
 }
 
-// `auto` looks at a file of G-code twice, the second time with less latitude.
+// `auto` searches a file of G-code twice, the second time with less freedom.
 bool IsAskedTwice(const InputJob& job, const SearchOptions& options) {
   const v1::Strategy& named = options.strategy ? *options.strategy : job.options.strategy();
   return named.name() == "auto" && options.deadline == absl::InfiniteDuration();
 }
 
-// The layers of `job` once more, with plans of less latitude.
+// The layers of `job` again, with plans of less freedom.
 InputJob NarrowJob(const InputJob& job, const GcodeOptions& options, const JobResult& found) {
   InputJob narrow;
   narrow.name = job.name;
@@ -42,8 +42,8 @@ InputJob NarrowJob(const InputJob& job, const GcodeOptions& options, const JobRe
   return narrow;
 }
 
-// The layers of `job` with crossings at the price of Crossings::kKeep: where they are dear, orders
-// that cross few walls lead a long way, which Policy::kSafe forbids.
+// The layers of `job` with crossings at the price of Crossings::kKeep. At a higher price, orders
+// that cross few walls make long detours, which Policy::kSafe forbids.
 InputJob JobWithUsualCrossings(const InputJob& job) {
   InputJob usual;
   usual.name = job.name;
@@ -57,8 +57,8 @@ InputJob JobWithUsualCrossings(const InputJob& job) {
   return usual;
 }
 
-// Adds a search of `job` to those made, unless its time is over: then what was found is good
-// enough.
+// Adds a search of `job` to those made, unless its time is over: then the earlier results have to
+// do.
 absl::Status SearchAgain(OptimizerClient& client, const InputJob& job, const SearchOptions& search,
                          bool may_be_late, std::vector<report::JobRun>& runs) {
   if (absl::Now() >= search.finish_by) return absl::OkStatus();
@@ -69,8 +69,8 @@ absl::Status SearchAgain(OptimizerClient& client, const InputJob& job, const Sea
   return absl::OkStatus();
 }
 
-// The file of `job` rewritten by the best of what `runs` have for each layer. They answer the
-// layers that were selected in `job`; the others stay as they are.
+// The file of `job`, each layer rewritten by the best of `runs`. They answer the layers selected in
+// `job`; the others stay as they are.
 absl::StatusOr<GcodeRewrite> RewriteByRuns(const InputJob& job,
                                            const std::vector<report::JobRun>& runs,
                                            const GcodeOptions& options,
@@ -142,7 +142,7 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
     }
     if (!again.ok()) return SearchFault(again);
   }
-  // Who names a quicker strategy, or a deadline, wants no more time to be taken than that.
+  // A caller who names a quicker strategy or a deadline does not want further searches.
   std::optional<gcode::PolishLimit> polish;
   if (IsAskedTwice(job, options)) polish = {search.finish_by, options.cancel};
   absl::StatusOr<GcodeRewrite> rewrite =

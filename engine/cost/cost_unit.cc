@@ -10,16 +10,16 @@
 namespace traverse {
 namespace {
 
-// Longest moves that cost so much are ordinary: 13 cm or 0.13 s at least. Sums of the greatest
-// are rounded by less than a hundredth of kImprovementTolerance.
+// Costs need no other unit while the longest move costs between these: 13 cm or 0.13 s at least.
+// Sums of the greatest costs are rounded by less than a hundredth of kImprovementTolerance.
 constexpr double kLeastOrdinary = 0.125;
 constexpr double kMostOrdinary = 32768;
 
-// What others are brought to.
+// The cost that other longest moves are scaled to.
 constexpr double kUsual = 128;
 
-// Keeps speeds and accelerations far from the ends of a double's range. Points that are nearer to
-// each other than a millionth of an atom are one point.
+// Keeps speeds and accelerations far from the limits of a double. Points nearer to each other than
+// a millionth of an atom are one point.
 constexpr int kMostDoublings = 60;
 
 }  // namespace
@@ -48,7 +48,7 @@ CostSpec InUnit(const CostSpec& spec, double unit) {
   CostSpec scaled;
   scaled.kind = CostSpec::Kind::kTime;
   if (spec.kind == CostSpec::Kind::kLength) {
-    // A length is the time at a speed of 1 mm in each of a unit.
+    // A length is the time at a speed of 1 mm per unit.
     scaled.speed_mm_s = 1 / unit;
     return scaled;
   }

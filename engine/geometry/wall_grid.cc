@@ -3,10 +3,10 @@
 namespace traverse {
 namespace {
 
-// Of a way that is shorter than its slack, so much at each end is not looked at.
+// This share at each end of a way that is shorter than its slack is not examined.
 constexpr double kMostEnd = 0.2;
 
-// Cells for each segment, at most; and cells of any grid.
+// Most cells per segment, and most cells of any grid.
 constexpr double kCellsPerSegment = 4;
 constexpr double kLeastCells = 64;
 

@@ -16,20 +16,20 @@
 namespace traverse {
 namespace {
 
-// Of a layer's time limit, what anchor may use at most and at least. It knows the true start; but
-// it is done one layer after another, so on many threads they would wait for it.
+// The most and the least share of a layer's time limit for anchor. Anchor knows the true start, but
+// runs one layer after another, so many threads would wait for it.
 constexpr double kMostAnchorShare = 0.5;
 constexpr double kLeastAnchorShare = 0.1;
 constexpr double kThreadsWorthOfAnchor = 0.8;
 
-// Of that, what the layer alone may use, if it is then ended with the next ones in view.
+// The share of that for the layer alone, if the search then goes on with the next ones in view.
 constexpr double kAloneShare = 0.4;
 
-// What predicting an end, or comparing with greedy, may use, and a search for a bound.
+// The share for predicting an end or comparing with greedy, and for a search for a bound.
 constexpr double kSideShare = 0.15;
 
-// Layers of one problem key may differ by so much in the length of a move: its ends are the same to
-// 1e-4 mm in either direction, relative to origins that are the same to as much.
+// Lengths of moves may differ by this between layers of one problem key: the ends are equal to 1e-4
+// mm in each direction, relative to origins that are equal to 1e-4 mm.
 constexpr double kSameMoveMm = 6e-4;
 
 }  // namespace
@@ -42,7 +42,7 @@ LayerSolver::LayerSolver(const JobSpec& spec, std::unique_ptr<Strategy> strategy
       executor_(executor),
       cancel_(cancel) {}
 
-// `share` of the layer's time, which is limited by itself and by its part of the job's.
+// `share` of the layer's time: the smaller of its own limit and its part of the job's.
 Budget LayerSolver::LayerBudget(const ChainLayer& layer, double share) const {
   using Duration = Budget::Clock::duration;
   const Budget whole(&cancel_, spec_.deadline, executor_.turn());
@@ -60,12 +60,12 @@ double LayerSolver::AnchorShare() const {
                     kMostAnchorShare);
 }
 
-// Nothing is left for anchor to do where the start is certain and the next layer is not looked at.
+// Whether anchor has nothing to do: the start is certain and the next layer is not in view.
 double LayerSolver::SolveShare(const ChainLayer& layer) const {
   return FixedStart(layer) && !MayLookAhead(layer, {}) ? 1 : 1 - AnchorShare();
 }
 
-// Whether there is no time but to answer with what there is.
+// Whether only enough time is left to answer with what there is.
 bool LayerSolver::Expired() const { return Budget(&cancel_, spec_.deadline).ExhaustedNow(); }
 
 LayerProblem LayerSolver::Problem(const ChainLayer& layer, Point start) const {
@@ -81,7 +81,7 @@ bool LayerSolver::CleaningDueAfter(uint64_t index) const {
   return done % static_cast<uint64_t>(spec_.cleaning->every_layers) == 0;
 }
 
-// The start, where it does not depend on the layer before.
+// The start if it does not depend on the layer before.
 std::optional<Point> LayerSolver::FixedStart(const ChainLayer& layer) const {
   if (layer.given.start) return layer.given.start;
   if (layer.index == 0) return spec_.start;
@@ -97,7 +97,7 @@ void LayerSolver::SolveFirst(ChainLayer& layer) const {
   }
   Budget budget = LayerBudget(layer, SolveShare(layer));
   const LayerProblem problem = Problem(layer, layer.predicted_start);
-  // Different layers that share a fingerprint are unheard of, not impossible.
+  // It is extremely unlikely, but possible, that different layers share a fingerprint.
   const bool resumes =
       layer.precursor &&
       ValidateRoute(layer.given.plan, layer.precursor->best->solution.route, &budget).ok();
@@ -110,7 +110,7 @@ void LayerSolver::SolveFirst(ChainLayer& layer) const {
   layer.outcome.solve_seconds = watch.Seconds();
 }
 
-// Goes on from the route of an equal layer, unless searching it has long been in vain.
+// Continues from the route of an equal layer, unless earlier searches from it gained nothing.
 void LayerSolver::ResumeFromPrecursor(const LayerProblem& problem, ChainLayer& layer,
                                       Budget& budget) const {
   const PendingRoute& precursor = *layer.precursor;
@@ -127,8 +127,8 @@ void LayerSolver::ResumeFromPrecursor(const LayerProblem& problem, ChainLayer& l
   layer.searched_in_vain = same && !gained && layer.first.stop != StopReason::kTimeLimit;
 }
 
-// Answers with the route of a layer of the same problem key, as long as what was said of it holds
-// here.
+// Answers with the route of a layer of the same problem key, if what is known about that route
+// holds here too.
 bool LayerSolver::TakeOver(const KnownRoute& known, const LayerProblem& problem,
                            const ChainLayer& layer, Solution& solution) const {
   const bool very_same = known.exact == layer.fingerprint.exact && known.start == problem.start &&
@@ -181,8 +181,8 @@ void LayerSolver::SolveSecond(ChainLayer& layer) const {
   layer.outcome.solve_seconds += watch.Seconds();
 }
 
-// An equal layer's from the same start may be better than that found from a predicted one, and so
-// may what the layer before saw ahead.
+// The route of an equal layer from the same start may be better than the one found from a predicted
+// start, and so may the one that the layer before found ahead.
 const Route& LayerSolver::BestToGoOnFrom(const LayerProblem& problem, const ChainLayer& layer,
                                          const KnownRoute* known) const {
   const Route* best = &layer.first.route;
@@ -206,7 +206,7 @@ Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, ChainLayer
   }
   const bool as_predicted = problem.start == layer.predicted_start;
   if (layer.second_start && problem.start == *layer.second_start) return layer.second;
-  // What the layer was to use for a look ahead is not left unused where there is nothing to see.
+  // Without a next layer, the time meant for looking ahead is used for the layer itself.
   const bool has_time_left = layer.first.stop == StopReason::kTimeLimit && MayLookAhead(layer, {});
   if (as_predicted && view.empty() && !has_time_left) return layer.first;
   Solution solution;
@@ -214,7 +214,7 @@ Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, ChainLayer
   if (Expired()) {
     solution = layer.first;
     solution.stop = StopReason::kTimeLimit;
-    if (!as_predicted) solution.lower_bound.reset();  // it was for another start
+    if (!as_predicted) solution.lower_bound.reset();  // it held for another start
     return solution;
   }
   Budget budget = LayerBudget(layer, AnchorShare());
@@ -228,9 +228,9 @@ Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, ChainLayer
   }
   if (!view.empty()) SolveInView(problem, layer, view, budget, solution);
   if (as_predicted && !solution.lower_bound) solution.lower_bound = layer.first.lower_bound;
-  // What resuming does not tell of itself is as it was.
+  // Statistics that resuming does not report stay as they were.
   solution.statistics.insert(layer.first.statistics.begin(), layer.first.statistics.end());
-  // A search that the clock cut short stays so, whatever the polishing came to.
+  // A search that the clock cut short still counts as cut short after polishing.
   if (layer.first.stop == StopReason::kTimeLimit) solution.stop = StopReason::kTimeLimit;
   return solution;
 }
@@ -273,8 +273,8 @@ void LayerSolver::KeepBestRoute(const LayerProblem& problem, const ChainLayer& l
   }
 }
 
-// Whether greedy's route was not beaten yet: not if the strategy began at this very start, or if an
-// equal layer's route was taken over.
+// Whether greedy's route may still be better: it cannot be if the strategy began at this very
+// start, or if an equal layer's route was taken over.
 bool LayerSolver::GreedyMayBeBetter(const LayerProblem& problem, const ChainLayer& layer,
                                     const KnownRoute* known) const {
   if (strategy_->traits().serial || strategy_->traits().quick || Expired()) return false;
@@ -283,9 +283,8 @@ bool LayerSolver::GreedyMayBeBetter(const LayerProblem& problem, const ChainLaye
   return !is_compared && (layer.precursor || problem.start != layer.predicted_start);
 }
 
-// Looks for a lower bound of a solution, if the strategy wants one. The search for it is done with
-// the first solution, in parallel, or was done for an equal layer; from another start its result is
-// used again.
+// Adds a lower bound to a solution if the strategy provides one. It is computed with the first
+// solution, in parallel, or was computed for an equal layer; other starts reuse the result.
 void LayerSolver::Bound(const LayerProblem& problem, ChainLayer& layer, Solution& solution) const {
   const double effort = strategy_->traits().bound_effort;
   if (effort == 0 || cancel_.cancelled()) return;
@@ -295,7 +294,7 @@ void LayerSolver::Bound(const LayerProblem& problem, ChainLayer& layer, Solution
   if (solution.lower_bound == cost) solution.stop = StopReason::kOptimal;
 }
 
-// What the layer's route depends on, for equal layers to share it.
+// Everything the layer's route depends on, so that equal layers share it.
 uint64_t LayerSolver::KeyAt(const ChainLayer& layer, const TrueStart& at) const {
   uint64_t key = ProblemKey(layer.fingerprint.shape, layer.origin, at.start, layer.finish);
   for (const ChainLayerPtr& next : at.view) {
@@ -314,7 +313,7 @@ LayerOutcome LayerSolver::Anchor(ChainLayer& layer, const TrueStart& at) const {
   if (!ValidateRoute(layer.given.plan, layer.foreseen, &turns).ok()) layer.foreseen.clear();
   Solution solution = SolveFromTrueStart(problem, layer, known, at.view);
   LayerOutcome outcome = std::move(layer.outcome);
-  if (turns.ExhaustedNow()) return outcome;  // it was cancelled: nobody will look
+  if (turns.ExhaustedNow()) return outcome;  // cancelled: nobody reads it
   if (absl::Status status = ValidateRoute(layer.given.plan, solution.route, &turns); !status.ok()) {
     outcome.invalid_route = std::string(status.message());
     solution = Solution{layer.given_route, StopReason::kLocalOptimum, std::nullopt};

@@ -10,7 +10,7 @@
 namespace traverse {
 namespace {
 
-// Places tried for a kick before an iteration goes by without one.
+// Positions tried for a kick before an iteration passes without one.
 constexpr int kTries = 20;
 
 }  // namespace
@@ -158,8 +158,8 @@ bool IteratedSearch::TurnKick(Rng& rng, double& delta) {
   return false;
 }
 
-// The last position of a run of children of `node` that begins at `first`: with a block near to
-// what comes before the run, or some blocks on. -1 if that is no run.
+// The last position of a run of children of `node` that begins at `first`: it ends with a block
+// near the path before the run, or some blocks on. -1 if there is no such run.
 int IteratedSearch::ChooseRunEnd(Rng& rng, int node, int first) const {
   const OrderTree& tree = state_.tree();
   const int node_end = state_.position(node) + tree.size(node);

@@ -39,7 +39,7 @@ void BlockLine::Load(Point from, const std::optional<Point>& to, const std::vect
   UpdateLastBefore();
 }
 
-// Cost of the move from `exit` to the block at `position`, or beyond the last one, to `to`.
+// Cost of the move from `exit` to the block at `position`, or to `to` after the last block.
 double BlockLine::MoveAfter(Point exit, int position) const {
   if (position < size()) return cost_(exit, enter_[static_cast<size_t>(position)]);
   return to_ ? cost_(exit, *to_) : 0;
@@ -91,10 +91,10 @@ BlockLine::Reversal BlockLine::BestReversalFrom(int first, double delta) const {
   const double gone = move_[i] + detour_[i];
   Reversal best{-1, delta};
   for (size_t j = i; j < enter_.size(); ++j) {
-    // A block that waits for one of [first, j] cannot come before it, nor can any longer stretch.
+    // A block that waits for one of [first, j] cannot come before it; longer stretches fail too.
     if (j > i && last_before_[j] >= first) break;
-    // The two new moves together have to cost less than `limit`, so the first one alone has to:
-    // most pairs end here, without a square root.
+    // The two new moves together must cost less than `limit`, so the first one alone must: most
+    // pairs end here, without a square root.
     const double limit = gone + move_[j + 1] - detour_[j] + best.delta;
     if (limit <= 0) continue;
     const double reach = cost_.LongestWithin(limit);

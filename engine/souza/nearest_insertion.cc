@@ -16,14 +16,14 @@
 namespace traverse {
 namespace {
 
-// Of so many points of a child that begins with an any_order node its distance is taken. All of
-// them would take memory again at each level of nested nodes.
+// The distance of a child that begins with an any_order node is that of this many of its points at
+// most. All points would take memory again at each level of nested nodes.
 constexpr size_t kFirstPoints = 64;
 
-// More than rounding makes of a bound on the cost of two moves, relative to that.
+// More than the relative rounding error of a bound on the cost of two moves.
 constexpr double kSlackOfBounds = 1e-6;
 
-// What one question for a way around walls takes, in steps of Rest.
+// The steps of Rest that one query for a way around walls counts for.
 constexpr size_t kStepsOfWayAmongWalls = 256;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -34,8 +34,8 @@ using Entries = std::vector<int>;
 Entries Build(const LayerView& layer, int node, Point from, const std::optional<Point>& to,
               Budget& budget);
 
-// A way to go through a child that is not in the route yet: a leaf's entry, or a point at which a
-// child with paths of its own may be begun, taken for its end as well.
+// A way to visit a child that is not in the route yet: an entry of a leaf, or a point at which a
+// child with paths of its own may begin, which stands for its end too.
 struct Way {
   Point enter;
   Point exit;
@@ -84,14 +84,14 @@ class NodeRoute {
   }
 
  private:
-  // A place in the route: behind `index` blocks.
+  // A position in the route: after `index` blocks.
   struct Place {
     size_t index = 0;
     int way = -1;
     double cost = kInfinity;
   };
 
-  // Those of the children so far, if the budget ran out.
+  // Those of the children inserted so far if the budget ran out.
   void ListWays() {
     for (size_t s = 0; s < children_.size(); ++s) {
       if (!rest_(8)) return;
@@ -126,7 +126,7 @@ class NodeRoute {
     }
   }
 
-  // The route has a point at `p`: brings the distances of all children up to date.
+  // Updates the distances of all children: the route has a point at `p` now.
   void Approach(Point p) {
     for (size_t s = 0; s < children_.size(); ++s) {
       double& nearest = nearest_[s];
@@ -140,7 +140,7 @@ class NodeRoute {
 
   bool in_route(size_t slot) const { return !built_[slot].empty(); }
 
-  // Takes out of open_ the slot nearest to the route, the lowest of several.
+  // Removes from open_ the slot nearest to the route, the lowest of several, and returns it.
   int TakeNearest() {
     size_t next = 0;
     for (size_t i = 1; i < open_.size(); ++i) {
@@ -200,8 +200,8 @@ class NodeRoute {
     return best;
   }
 
-  // Asks first for the places that cost least if no wall is in the way, so that few others are
-  // worth asking for.
+  // Tries first the places that would cost least without walls, so that few others need to be
+  // tried.
   Place BestPlaceAmongWalls(int slot, size_t first) {
     Place best;
     best.cost = LimitAmongWalls(slot, first);
@@ -222,8 +222,8 @@ class NodeRoute {
     return best;
   }
 
-  // A little more than what the place costs that would be the best if there were no walls: what
-  // costs more is not worth asking for.
+  // A little more than the cost of the place that would be best without walls. Places whose bound
+  // is above it need not be tried.
   double LimitAmongWalls(int slot, size_t first) {
     Place best;
     for (size_t index = first; index <= order_.size(); ++index) {
@@ -237,13 +237,13 @@ class NodeRoute {
     return cost - move_[best.index] + kSlackOfBounds * (1 + cost);
   }
 
-  // The first place behind a block of the route; the very first for -1.
+  // The first place after a block of the route; for -1 the very first.
   size_t BehindSlot(int slot) const {
     return slot < 0 ? 0 : position_[static_cast<size_t>(slot)] + 1;
   }
 
-  // The item `second` has to come behind `first`, or behind what `first` waited for if that has no
-  // paths. The order of two blocks in the route never changes, so the later one may stand for both.
+  // The item `second` has to come after `first`, or after those that `first` waited for if it has
+  // no paths. Two blocks of the route never change their order, so the later one stands for both.
   void Await(int first, int second) {
     const bool has_paths = first < static_cast<int>(children_.size());
     const int slot = has_paths ? first : awaited_[static_cast<size_t>(first)];
@@ -251,8 +251,8 @@ class NodeRoute {
     if (BehindSlot(slot) > BehindSlot(latest)) latest = slot;
   }
 
-  // What any way of `slot` costs at least at the place `index`; no less than `most` if it is told
-  // by one side alone that it is.
+  // A lower bound of the cost of any way of `slot` at the place `index`. Stops early, with a value
+  // not below `most`, if one side alone shows that.
   double BoundOf(int slot, size_t index, double most) const {
     const Point from = ExitBefore(index);
     const BoundingBox& box = boxes_[static_cast<size_t>(slot)];
@@ -265,8 +265,8 @@ class NodeRoute {
     return to ? bound + layer_.cost.OfLength(box.DistanceTo(*to)) : bound;
   }
 
-  // Replaces `best` if the two moves of some way of `slot` cost less at the place `index`, or as
-  // much at an earlier one: cost_of(moves).
+  // Replaces `best` if some way of `slot` at the place `index` costs less, by cost_of(its two
+  // moves), or as much at an earlier place.
   template <typename CostOf>
   void Try(int slot, size_t index, Place& best, CostOf cost_of) {
     const Point from = ExitBefore(index);
@@ -307,7 +307,7 @@ class NodeRoute {
 
   std::vector<std::pair<double, size_t>> by_bound_;  // places for one slot
 
-  // [item of the precedence] the last slot in the route that has to come before it; -1 if none
+  // [item of the precedence] the last slot in the route that must come before it; -1 if none
   std::vector<int> awaited_;
 };
 

@@ -15,10 +15,10 @@
 namespace traverse::cli {
 namespace {
 
-// How many breaks are told; --json has the first of each rule.
+// Most breaks that are printed; --json has the first of each rule.
 constexpr size_t kMostTold = 10;
 
-// All breaks in one text: the first ones, and how many there are by rule.
+// The first breaks, and their number by rule, in one text.
 absl::Status FaultOf(const VerifyReport& report) {
   std::string text;
   const size_t told = std::min(kMostTold, report.breaks.size());

@@ -17,7 +17,7 @@
 namespace traverse::gateway {
 namespace {
 
-// By name: a flag that names a file would name one of the gateway's machine.
+// Listed by name: a flag that names a file would name one on the gateway's machine.
 constexpr std::array kAllowed = {
     "option",
     "layers",
@@ -49,7 +49,7 @@ bool IsName(const std::string& name) {
 
 absl::Status Fault(std::string message) { return absl::InvalidArgumentError(std::move(message)); }
 
-// Messages of the command line, in the words of a request.
+// Rewords messages of the command line for a request.
 absl::Status InTheseWords(const absl::Status& status) {
   return Fault(
       absl::StrReplaceAll(std::string(status.message()), {{"flag --", "parameter "}, {"--", ""}}));

@@ -72,7 +72,7 @@ void RewriteReactor::Submit() {
                                                   : "options: missing from the first message"));
   }
   wanted_->finish_by = call_.FinishBy();
-  // From here on the task ends the call, so that it finds it alive.
+  // From now on the task ends the call, so the call outlives it.
   core_.Submit(call_.place(), {upload_}, [this](const absl::Status& may) { Work(may); });
 }
 
@@ -105,7 +105,7 @@ void RewriteReactor::End(const absl::Status& status) {
   Next();
 }
 
-// Sets response_ to the next thing to be sent; false if there is none now.
+// Sets response_ to the next message to send; false if there is none now.
 bool RewriteReactor::NextPiece() {
   response_.Clear();
   if (progress_) {
@@ -151,7 +151,7 @@ void RewriteReactor::OnWriteDone(bool ok) {
   writing_ = false;
   if (ok) return Next();
   stop_.request_stop();
-  // A task that is under way ends the call itself.
+  // A running task ends the call itself.
   if (made_) End(absl::CancelledError("the client does not read"));
 }
 
@@ -163,7 +163,7 @@ void RewriteReactor::OnCancel() {
 
 void RewriteReactor::OnDone() {
   live_.Rests(&context_);
-  // Whoever called Finish may still hold it.
+  // The caller of Finish may still hold the mutex.
   { MutexLock lock(mutex_); }
   delete this;
 }

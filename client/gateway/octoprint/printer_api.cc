@@ -83,7 +83,7 @@ std::string ReasonKind(const absl::Status& status) {
   }
 }
 
-// One line of printable ASCII, as a header takes it.
+// One line of printable ASCII, as a header allows.
 std::string HeaderText(const std::string& text) {
   constexpr size_t kMost = 500;
   std::string out = text.substr(0, kMost);
@@ -102,7 +102,7 @@ struct PrinterApi::Delivery {
   FileRecord record;
   std::shared_ptr<WorkQueue::Place> place;
   std::shared_ptr<HttpReply> reply;
-  absl::Status optimised = absl::UnknownError("");  // OK, or why the original goes on
+  absl::Status optimised = absl::UnknownError("");  // OK, or why the original is passed on
   std::optional<RewrittenFile> made = std::nullopt;
 };
 

@@ -36,7 +36,7 @@ void Add(const gcode::PrintTotals& totals, v1::PrintTotals& sum) {
   sum.set_print_seconds(sum.print_seconds() + totals.seconds);
 }
 
-// Adds what became of one part, which messages call `label` ("plate 2: ") where there are several.
+// Adds the result of one part. `label` ("plate 2: ") precedes its messages if there are several.
 void AddPart(const InputJob& job, const OptimizedFile& made, const std::string& label,
              v1::RewriteSummary& out) {
   const GcodeRewrite& rewrite = made.rewrite;
@@ -66,7 +66,7 @@ void AddPart(const InputJob& job, const OptimizedFile& made, const std::string& 
   out.set_text(out.text() + (out.text().empty() ? "" : "; ") + label + text);
 }
 
-// Tells `sink` of the stages, and of layers a few times a second.
+// Reports stages to `sink`, and layers a few times a second.
 class ProgressTeller {
  public:
   explicit ProgressTeller(const ProgressSink& sink) : sink_(sink) {}
@@ -165,7 +165,7 @@ struct FileWorker::Work {
   InputFile input;
   std::map<size_t, NewPart> parts;
   bool changed = false;
-  int ours = 0;  // parts that Traverse has optimised before
+  int ours = 0;  // parts that Traverse has already optimised
   RewrittenFile out;
 
   ContainerKind kind() const { return request.container.value_or(input.kind()); }
@@ -205,7 +205,7 @@ absl::Status FileWorker::RewritePart(Work& work, size_t index) {
   }
   const bool changed = made.rewrite.layers_changed > 0;
   work.changed = work.changed || changed;
-  // In a container that is kept, a text without gain is left as it is.
+  // If the container is kept, a text without gain stays as it is.
   if (changed || !work.kept()) {
     work.parts[work.input.parts[index]] = {std::move(made.rewrite.text), made.times};
   }

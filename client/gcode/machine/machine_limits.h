@@ -1,11 +1,11 @@
-// What the user says of the machine (--machine), in the words of its firmware:
+// The machine as the user describes it (--machine), in the terms of its firmware:
 //
-//   a Klipper configuration   [printer], [extruder], [firmware_retraction] and [gcode_arcs] of it;
-//                             files that it includes are not read
-//   lines of Marlin           M201 to M205, M207 and M208, as in a start script or as M503 lists
-//                             them (echo:), in mm or, behind G20, in inches; a terminal's marks
-//                             (Recv:, ok) and other commands mean nothing here
-//   of RepRapFirmware         the same, known by M566: its speeds are in mm/min
+//   a Klipper configuration   its sections [printer], [extruder], [firmware_retraction] and
+//                             [gcode_arcs]; files that it includes are not read
+//   lines of Marlin           M201 to M205, M207 and M208, as in a start script or as M503 prints
+//                             them (echo:), in mm or, after G20, in inches; the marks of a
+//                             terminal (Recv:, ok) and other commands are ignored
+//   of RepRapFirmware         the same, recognised by M566: its speeds are in mm/min
 
 #ifndef TRAVERSE_CLIENT_GCODE_MACHINE_MACHINE_LIMITS_H_
 #define TRAVERSE_CLIENT_GCODE_MACHINE_MACHINE_LIMITS_H_
@@ -19,9 +19,9 @@
 
 namespace traverse::gcode {
 
-// Lengths in mm, speeds in mm/s, accelerations in mm/s^2. Unset: not said.
+// Lengths in mm, speeds in mm/s, accelerations in mm/s^2. Unset: not stated.
 struct MachineLimits {
-  bool klipper = false;  // else Marlin
+  bool klipper = false;  // otherwise Marlin
 
   std::optional<double> max_speed;
   std::optional<double> max_accel;
@@ -32,7 +32,7 @@ struct MachineLimits {
   std::optional<double> z_accel;
   std::optional<double> max_e_speed;
   std::optional<double> corner_speed;
-  std::optional<double> junction_deviation;  // in place of a corner speed
+  std::optional<double> junction_deviation;  // instead of a corner speed
   std::optional<double> cruise_ratio;
   std::optional<double> extruder_corner_speed;
   std::optional<double> arc_chord;
@@ -44,11 +44,11 @@ struct MachineLimits {
   std::optional<double> firmware_prime_extra;  // pushed beyond what was pulled back
 };
 
-// Reads the text of such a file, whose name errors begin with: `printer.cfg:12: max_accel: ...`.
-// What Klipper has a default for has that one.
+// Reads the text of such a file. Errors begin with its name and line: `printer.cfg:12: max_accel:
+// ...`. Values that the file omits and Klipper has a default for get that default.
 absl::StatusOr<MachineLimits> ReadMachineLimits(std::string_view text, const std::string& name);
 
-// `profile`, which is what a sliced file states, with what `limits` say in place of that.
+// `profile`, as a sliced file states it, overridden by `limits`.
 void ApplyLimits(const MachineLimits& limits, MachineProfile& profile);
 
 }  // namespace traverse::gcode

@@ -1,4 +1,4 @@
-// What a file says of the machine and of the slicer's settings, beside what its moves show.
+// What a file states about the machine and the slicer's settings, apart from its moves.
 
 #ifndef TRAVERSE_CLIENT_GCODE_MACHINE_MACHINE_PROFILE_H_
 #define TRAVERSE_CLIENT_GCODE_MACHINE_MACHINE_PROFILE_H_
@@ -22,10 +22,10 @@ struct MachineProfile {
   double max_e_speed = 1e9;
   double corner_speed = 5;
   double max_speed = 1e9;  // of moves in the plane
-  double max_accel = 1e9;  // of them too, whatever they ask for
+  double max_accel = 1e9;  // of them too, whatever the file sets
 
-  // Klipper plans otherwise than others do (motion_planner.h), has one acceleration for all moves,
-  // and limits all axes together. What follows is of no meaning elsewhere.
+  // Klipper plans differently (motion_planner.h), has one acceleration for all moves, and limits
+  // all axes together. The members below apply to Klipper only.
   bool klipper = false;
   double cruise_ratio = 0;
   double extruder_corner_speed = 0;

@@ -1,6 +1,6 @@
 // Estimates how long a machine takes for its moves.
 //
-// The model, in the way of Marlin's and Klipper's planners:
+// The model follows the planners of Marlin and Klipper:
 // - each move has a trapezoidal speed: its feed rate, its acceleration, entry and exit speed;
 // - between two moves in the plane, at an angle t to each other, the speed is at most
 //   c * sqrt(2) / (2 sin(t / 2)): the corner speed c at a right angle, no limit straight on;
@@ -8,14 +8,14 @@
 // - the machine stands still before and after moves of Z or of the extruder alone.
 // Left out: heating, the extruder's own limits while printing, steps and pressure advance.
 //
-// Told that the machine runs Klipper, it plans as that does (its document Kinematics.md):
-// - a corner is taken on the circle that misses it by as much as a right angle at the corner speed
-//   would, and that touches both moves no farther away than in their middle;
-// - Z is an axis like the others, so a lift and the way behind it make a corner too; a slow axis
+// For a machine that runs Klipper it plans as Klipper does (Klipper's Kinematics.md):
+// - a corner is rounded on the circle that misses it by as much as a right angle at the corner
+//   speed would, and that touches both moves no farther away than their midpoints;
+// - Z is an axis like the others, so a lift and the way after it form a corner too; a slow axis
 //   slows the corners that it takes part in;
 // - the extruder's speed changes at once by no more than its own corner speed;
-// - of a way that goes up to a speed and down again, a share is at constant speed: the peak is the
-//   one that is reached with the acceleration less that share.
+// - a share of each way up to a speed and down again is at constant speed: the peak is the speed
+//   reached with the acceleration reduced by that share.
 
 #ifndef TRAVERSE_CLIENT_GCODE_MACHINE_MOTION_PLANNER_H_
 #define TRAVERSE_CLIENT_GCODE_MACHINE_MOTION_PLANNER_H_
@@ -43,8 +43,8 @@ struct MoveInSpace {
   double dz = 0;
   double speed = 0;  // mm/s, at most
   double accel = 0;  // mm/s^2, as far as its axes allow
-  // What the machine is set to. The share at constant speed is one of this, and the corner speed is
-  // that of a move with this acceleration; a slower one takes corners more slowly.
+  // The acceleration that the machine is set to. The share at constant speed refers to it, and the
+  // corner speed to a move with it; a slower move takes corners more slowly.
   double machine_accel = 0;
   double corner = 0;    // mm/s, from 0, to the move before it and behind it
   double filament = 0;  // mm of it for each mm
@@ -54,7 +54,7 @@ class MotionPlanner {
  public:
   explicit MotionPlanner(const PlannerRules& rules = {}) : rules_(rules) {}
 
-  // For the moves from here on; from 0 to below 1.
+  // For the moves from now on; in [0, 1).
   void set_cruise_ratio(double ratio) { rules_.cruise_ratio = ratio; }
 
   // A move by (dx, dy) mm at most `speed` mm/s with `accel` mm/s^2. `corner` mm/s is the corner
@@ -72,7 +72,7 @@ class MotionPlanner {
   // The machine stops, and stands for `seconds`.
   void Stop(double seconds = 0);
 
-  // Seconds of everything up to the last stop.
+  // Seconds up to the last stop.
   double seconds() const { return seconds_; }
 
  private:

@@ -1,4 +1,4 @@
-// Measures a print while an interpreter follows it: way, retractions, time.
+// Measures a print while an interpreter follows it: travel, retractions, time.
 
 #ifndef TRAVERSE_CLIENT_GCODE_MEASURE_PRINT_METER_H_
 #define TRAVERSE_CLIENT_GCODE_MEASURE_PRINT_METER_H_
@@ -22,24 +22,25 @@ class PrintMeter {
   // Follows one step of `interpreter`, which has just made it.
   void Follow(const Step& step, const Interpreter& interpreter);
 
-  // What was followed so far; the machine comes to a standstill.
+  // The totals so far; the machine comes to a standstill.
   PrintTotals Finish();
 
  private:
   void FollowXy(const Step& step, const MachineState& state);
 
-  // Queues the move, for a machine with Klipper or another one; its length in the plane in mm.
+  // Queues the move, by the rules of Klipper or of other firmware. Returns its length in the plane
+  // in mm.
   double MoveXy(const Step& step, const MachineState& state);
   double MoveKlipper(const Step& step, const MachineState& state);
 
-  // Queues filament alone or a lift, before and after which the machine stands.
+  // Queues a move of filament alone or a lift; the machine stands still before and after it.
   void Stand(const Step& step, const MachineState& state);
   void NoteCrossing(const Step& step, const MachineState& state);
 
   const MachineProfile& profile_;
   Dynamics dynamics_;
   const VisibleWalls* walls_;
-  bool crosses_ = false;  // the way since the last extrusion
+  bool crosses_ = false;  // on the way since the last extrusion
   MotionPlanner planner_;
   PrintTotals totals_;
 };

@@ -12,11 +12,11 @@
 
 namespace traverse {
 
-// A comment that begins with this may be added to, or be missing from, either text.
+// Either text may have or lack comments that begin with this.
 inline constexpr std::string_view kOptimisedMark = "; optimised by Traverse";
 
 struct VerifyPermissions {
-  // Ordered: what one policy allows, those behind it allow too.
+  // In order: each policy allows what those before it allow.
   enum class Policy : uint8_t { kSafe, kBalanced, kFree };
 
   Policy policy = Policy::kSafe;
@@ -25,24 +25,24 @@ struct VerifyPermissions {
   bool fan_order = false;     // paths may change places across a change of the fan
 };
 
-// From the words of the command line: "safe", "balanced" or "free"; and a list such as
+// Parses the values of the command line: "safe", "balanced" or "free", and a list such as
 // "infill_order,wall_order", which may be empty. InvalidArgument for other words.
 absl::StatusOr<VerifyPermissions> ParsePermissions(std::string_view policy, std::string_view allow);
 
-// What the line of the writer at the head of `text` says:
+// Reads the writer's line at the head of `text`:
 //
 //   ; optimised by Traverse 1.2.0, policy balanced, allow wall_order+fan_order: travel ...
 //
 // Nothing if there is no such line before the first command, or it names no policy.
 std::optional<VerifyPermissions> PermissionsInHead(std::string_view text);
 
-// Permissions that a caller gives, in place of those that the optimised file states.
+// Permissions that a caller gives instead of those that the optimised file states.
 struct GivenPermissions {
   VerifyPermissions permissions;
   bool policy_as_stated = false;  // the policy is the file's, or safe if it states none
 };
 
-// What may have changed in `optimised`: what is given, else what its head says, else `safe`.
+// What may have changed in `optimised`: as given, else as its head states, else `safe`.
 VerifyPermissions PermissionsFor(const std::optional<GivenPermissions>& given,
                                  std::string_view optimised);
 
