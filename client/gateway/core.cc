@@ -47,21 +47,21 @@ absl::StatusOr<int64_t> MemoryForAll(const std::vector<std::shared_ptr<const Spo
 
 }  // namespace
 
-void Core::Submit(std::shared_ptr<WorkQueue::Place> place,
+void Core::Submit(std::shared_ptr<WorkQueue::Ticket> ticket,
                   std::vector<std::shared_ptr<const SpoolFile>> files, Task work) {
   const bool packed =
       std::any_of(files.begin(), files.end(), [](const auto& file) { return IsPacked(*file); });
-  auto submit = [this, place, files, work = std::move(work)] {
+  auto submit = [this, ticket, files, work = std::move(work)] {
     const absl::StatusOr<int64_t> memory = Guarded(
         [&] { return MemoryForAll(files, options.max_file_bytes, queue->max_memory_bytes()); });
     if (!memory.ok()) return work(memory.status());
-    queue->Submit(place, *memory, [work] { work(absl::OkStatus()); });
+    queue->Submit(ticket, *memory, [work] { work(absl::OkStatus()); });
   };
   if (!packed) return submit();
   // Decompressing files to measure them takes time, and callers must not wait for it.
   int64_t to_measure = 0;
   for (const auto& file : files) to_measure += MemoryToMeasure(*file);
-  queue->Submit(place, std::min(to_measure, queue->max_memory_bytes()), std::move(submit));
+  queue->Submit(ticket, std::min(to_measure, queue->max_memory_bytes()), std::move(submit));
 }
 
 std::string Core::MetricsText() {

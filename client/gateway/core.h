@@ -43,10 +43,10 @@ struct Core {
                                                     std::string token);
 
   // Calls `work` when there are a worker and the memory that work on `files` may take. Calls it
-  // with an error if they need more than there is at all (OutOfRange), or cannot be read. `place`
+  // with an error if they need more than there is at all (OutOfRange), or cannot be read. `ticket`
   // and the files live until then.
   using Task = std::function<void(const absl::Status&)>;
-  void Submit(std::shared_ptr<WorkQueue::Place> place,
+  void Submit(std::shared_ptr<WorkQueue::Ticket> ticket,
               std::vector<std::shared_ptr<const SpoolFile>> files, Task work);
 
   // The text of /metrics.

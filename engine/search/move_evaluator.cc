@@ -25,25 +25,25 @@ double MoveEvaluator::Evaluate(const SegmentMove& move, double most) {
 
   if (move.first >= 2) {
     old_cost_ += state_.StepCost(move.first - 2);
-    AddPlace(move.first - 2, false, false);
+    AddVisit(move.first - 2, false, false);
   }
-  AddPlace(move.first - 1, false, true);
+  AddVisit(move.first - 1, false, true);
   const std::array<Segment, 2> order = move.NewOrder();
   for (int s = 0; s < move.segment_count(); ++s) AddSegment(order[static_cast<size_t>(s)]);
-  AddPlace(move.last + 1, false, true);
+  AddVisit(move.last + 1, false, true);
   if (move.last + 2 <= state_.last_position()) {
     old_cost_ += state_.StepCost(move.last + 1);
-    AddPlace(move.last + 2, false, false);
+    AddVisit(move.last + 2, false, false);
   }
 
   complete_ = true;
   const double limit = old_cost_ + most;
   double new_cost = 0;
   for (size_t i = 1; i < count_ && new_cost < limit; ++i) {
-    const Place& place = places_[i];
-    if (place.begins) continue;
-    if (place.free) Choose(i);
-    new_cost += state_.MoveCost(places_[i - 1].out, place.leaf, place.in);
+    const NearVisit& visit = visits_[i];
+    if (visit.begins) continue;
+    if (visit.free) Choose(i);
+    new_cost += state_.MoveCost(visits_[i - 1].out, visit.leaf, visit.in);
   }
   complete_ = new_cost < limit;
   delta_ = new_cost - old_cost_;
@@ -60,33 +60,33 @@ void MoveEvaluator::AddSegment(const Segment& segment) {
       i = size - 2;
     }
     const bool continues = i > 0 && !begins_;
-    AddPlace(segment.At(i), segment.reversed, i == 0 || i == size - 1);
+    AddVisit(segment.At(i), segment.reversed, i == 0 || i == size - 1);
     if (!continues) continue;
     const int position = segment.reversed ? segment.At(i) : segment.At(i - 1);
     old_cost_ += state_.StepCost(position);
   }
 }
 
-void MoveEvaluator::AddPlace(int position, bool reversed, bool free) {
-  assert(count_ < places_.size());
+void MoveEvaluator::AddVisit(int position, bool reversed, bool free) {
+  assert(count_ < visits_.size());
   const int leaf = state_.leaf_at(position);
   const Point in = state_.in(leaf);
   const Point out = state_.out(leaf);
   const bool has_choice = state_.entries().count(leaf) > 1;
-  places_[count_++] =
-      Place{leaf, reversed ? out : in, reversed ? in : out, free && has_choice, begins_, -1};
+  visits_[count_++] =
+      NearVisit{leaf, reversed ? out : in, reversed ? in : out, free && has_choice, begins_, -1};
   begins_ = false;
 }
 
-// Chooses the entry of a free place, which has others of its stretch on both sides.
+// Chooses the entry of a free visit, which has others of its stretch on both sides.
 void MoveEvaluator::Choose(size_t i) {
   const LeafEntries& entries = state_.entries();
-  Place& place = places_[i];
-  const Place& next = places_[i + 1];
-  place.entry = entries.Best(place.leaf, places_[i - 1].out,
+  NearVisit& visit = visits_[i];
+  const NearVisit& next = visits_[i + 1];
+  visit.entry = entries.Best(visit.leaf, visits_[i - 1].out,
                              state_.IsFree(next.leaf) ? nullptr : &next.in, state_.cost());
-  place.in = entries.enter(place.entry);
-  place.out = entries.exit(place.entry);
+  visit.in = entries.enter(visit.entry);
+  visit.out = entries.exit(visit.entry);
 }
 
 void MoveEvaluator::Apply(const SegmentMove& move) {
@@ -96,7 +96,7 @@ void MoveEvaluator::Apply(const SegmentMove& move) {
 #endif
   state_.Apply(move);
   for (size_t i = 0; i < count_; ++i) {
-    if (places_[i].entry >= 0) state_.SetEntry(places_[i].leaf, places_[i].entry);
+    if (visits_[i].entry >= 0) state_.SetEntry(visits_[i].leaf, visits_[i].entry);
   }
   assert(std::abs(state_.TotalCost() - (before + delta_)) <=
          kCostTolerance + kDeltaRounding * before);

@@ -36,7 +36,7 @@ class MoveEvaluator {
 
  private:
   // A visit near a cut, as it is traversed after the move.
-  struct Place {
+  struct NearVisit {
     int leaf;
     Point in;
     Point out;
@@ -45,12 +45,12 @@ class MoveEvaluator {
     int entry;    // chosen; -1: unchanged
   };
 
-  void AddPlace(int position, bool reversed, bool free);
+  void AddVisit(int position, bool reversed, bool free);
   void AddSegment(const Segment& segment);
   void Choose(size_t i);
 
   SearchState& state_;
-  std::array<Place, 16> places_;
+  std::array<NearVisit, 16> visits_;
   size_t count_ = 0;
   bool begins_ = true;  // the place added next
   double old_cost_ = 0;

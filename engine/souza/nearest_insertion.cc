@@ -85,7 +85,7 @@ class NodeRoute {
 
  private:
   // A position in the route: after `index` blocks.
-  struct Place {
+  struct Insertion {
     size_t index = 0;
     int way = -1;
     double cost = kInfinity;
@@ -156,28 +156,28 @@ class NodeRoute {
 
   // False if the budget ran out.
   bool Insert(int slot) {
-    const Place place = BestPlace(slot);
+    const Insertion found = BestInsertion(slot);
     if (budget_.was_exhausted()) return false;
-    const Point from = ExitBefore(place.index);
-    const std::optional<Point> to = EnterAt(place.index);
+    const Point from = ExitBefore(found.index);
+    const std::optional<Point> to = EnterAt(found.index);
     const int child = children_[static_cast<size_t>(slot)];
     Entries& entries = built_[static_cast<size_t>(slot)];
     if (layer_.tree.is_leaf(child)) {
-      entries = {ways_[static_cast<size_t>(place.way)].entry};
+      entries = {ways_[static_cast<size_t>(found.way)].entry};
     } else {
       entries = Build(layer_, child, from, to, budget_);
       if (budget_.was_exhausted()) return false;
     }
-    const auto at = static_cast<std::ptrdiff_t>(place.index);
+    const auto at = static_cast<std::ptrdiff_t>(found.index);
     const Point enter = layer_.table.enter(entries.front());
     const Point exit = layer_.table.exit(entries.back());
     order_.insert(order_.begin() + at, slot);
     enter_.insert(enter_.begin() + at, enter);
     exit_.insert(exit_.begin() + at, exit);
-    for (size_t k = place.index; k < order_.size(); ++k) {
+    for (size_t k = found.index; k < order_.size(); ++k) {
       position_[static_cast<size_t>(order_[k])] = k;
     }
-    move_[place.index] = Move(exit, to);
+    move_[found.index] = Move(exit, to);
     move_.insert(move_.begin() + at, layer_.cost(from, enter));
     Approach(enter);
     if (!(exit == enter)) Approach(exit);
@@ -189,10 +189,10 @@ class NodeRoute {
     return index < order_.size() ? enter_[index] : to_;
   }
 
-  Place BestPlace(int slot) {
+  Insertion BestInsertion(int slot) {
     const size_t first = precedence_.empty() ? 0 : BehindSlot(awaited_[static_cast<size_t>(slot)]);
-    Place best;
-    if (layer_.cost.has_walls()) return BestPlaceAmongWalls(slot, first);
+    Insertion best;
+    if (layer_.cost.has_walls()) return BestInsertionAmongWalls(slot, first);
     for (size_t index = first; index <= order_.size(); ++index) {
       if (BoundOf(slot, index, best.cost) >= best.cost) continue;
       Try(slot, index, best, [&](const TwoMoves& moves) { return moves.Least(layer_.cost); });
@@ -202,8 +202,8 @@ class NodeRoute {
 
   // Tries first the places that would cost least without walls, so that few others need to be
   // tried.
-  Place BestPlaceAmongWalls(int slot, size_t first) {
-    Place best;
+  Insertion BestInsertionAmongWalls(int slot, size_t first) {
+    Insertion best;
     best.cost = LimitAmongWalls(slot, first);
     by_bound_.clear();
     for (size_t index = first; index <= order_.size(); ++index) {
@@ -225,7 +225,7 @@ class NodeRoute {
   // A little more than the cost of the place that would be best without walls. Places whose bound
   // is above it need not be tried.
   double LimitAmongWalls(int slot, size_t first) {
-    Place best;
+    Insertion best;
     for (size_t index = first; index <= order_.size(); ++index) {
       if (BoundOf(slot, index, best.cost) >= best.cost) continue;
       Try(slot, index, best, [&](const TwoMoves& moves) { return moves.Least(layer_.cost); });
@@ -268,14 +268,14 @@ class NodeRoute {
   // Replaces `best` if some way of `slot` at the place `index` costs less, by cost_of(its two
   // moves), or as much at an earlier place.
   template <typename CostOf>
-  void Try(int slot, size_t index, Place& best, CostOf cost_of) {
+  void Try(int slot, size_t index, Insertion& best, CostOf cost_of) {
     const Point from = ExitBefore(index);
     const std::optional<Point> to = EnterAt(index);
     const absl::Span<const Way> ways = WaysOf(slot);
     ForEachWay(slot, [&](size_t w) {
       const double cost = cost_of(TwoMoves{from, ways[w].enter, ways[w].exit, to}) - move_[index];
       if (cost > best.cost || (cost == best.cost && !(index < best.index))) return;
-      best = Place{index, first_way_[static_cast<size_t>(slot)] + static_cast<int>(w), cost};
+      best = Insertion{index, first_way_[static_cast<size_t>(slot)] + static_cast<int>(w), cost};
     });
   }
 

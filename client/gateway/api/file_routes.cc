@@ -21,12 +21,12 @@ namespace traverse::gateway {
 namespace {
 
 // A place in the queue, or the refusal.
-std::variant<HttpResponse, std::shared_ptr<WorkQueue::Place>> EnterQueue(const std::string& caller,
-                                                                         Core& core) {
-  absl::StatusOr<std::shared_ptr<WorkQueue::Place>> place = core.queue->Enter(caller);
-  if (place.ok()) return *std::move(place);
-  const int status = absl::IsResourceExhausted(place.status()) ? 429 : 503;
-  return Problem(status, std::string(place.status().message()));
+std::variant<HttpResponse, std::shared_ptr<WorkQueue::Ticket>> EnterQueue(const std::string& caller,
+                                                                          Core& core) {
+  absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> ticket = core.queue->Enter(caller);
+  if (ticket.ok()) return *std::move(ticket);
+  const int status = absl::IsResourceExhausted(ticket.status()) ? 429 : 503;
+  return Problem(status, std::string(ticket.status().message()));
 }
 
 HttpResponse RefusalOf(const absl::Status& status) {
@@ -181,23 +181,23 @@ FileRecord RecordOf(const HttpRequest& request, const std::string& caller,
   return {request.path, caller, request.peer_host, wanted.name, upload.size()};
 }
 
-using PlacePtr = std::shared_ptr<WorkQueue::Place>;
+using TicketPtr = std::shared_ptr<WorkQueue::Ticket>;
 using ReplyPtr = std::shared_ptr<HttpReply>;
 
 // Lets `caller` wait in line, and takes his files; `start` is called when they are there.
 HttpDecision TakeFiles(const HttpRequest& request, const std::string& caller,
                        const UploadLimits& limits, Core& core,
-                       std::function<void(const PlacePtr&, Upload, const ReplyPtr&)> start) {
+                       std::function<void(const TicketPtr&, Upload, const ReplyPtr&)> start) {
   auto entered = EnterQueue(caller, core);
   if (auto* refusal = std::get_if<HttpResponse>(&entered)) return std::move(*refusal);
   return TakeUpload(
       request, *core.spool, limits,
-      [place = std::get<PlacePtr>(std::move(entered)), start = std::move(start)](
-          Upload upload, const ReplyPtr& reply) { start(place, std::move(upload), reply); });
+      [ticket = std::get<TicketPtr>(std::move(entered)), start = std::move(start)](
+          Upload upload, const ReplyPtr& reply) { start(ticket, std::move(upload), reply); });
 }
 
 using FilePtr = std::shared_ptr<SpoolFile>;
-using Work = std::function<void(const PlacePtr&, FileRequest, const FilePtr&, const ReplyPtr&)>;
+using Work = std::function<void(const TicketPtr&, FileRequest, const FilePtr&, const ReplyPtr&)>;
 
 // The same for one file and what is asked of it.
 HttpDecision TakeFile(const HttpRequest& request, const std::string& caller, Core& core,
@@ -209,18 +209,18 @@ HttpDecision TakeFile(const HttpRequest& request, const std::string& caller, Cor
   const UploadLimits limits = {.max_file_bytes = core.options.max_file_bytes,
                                .small_files = {{"machine", kMostMachineBytes}}};
   return TakeFiles(request, caller, limits, core,
-                   [request, start = std::move(start)](const PlacePtr& place, Upload upload,
+                   [request, start = std::move(start)](const TicketPtr& ticket, Upload upload,
                                                        const ReplyPtr& reply) {
                      absl::StatusOr<FileRequest> wanted = WholeRequest(request, upload);
                      if (!wanted.ok()) return reply->Send(ProblemOf(wanted.status()));
-                     start(place, *std::move(wanted), upload.files[0].file, reply);
+                     start(ticket, *std::move(wanted), upload.files[0].file, reply);
                    });
 }
 
 }  // namespace
 
 HttpDecision RewriteRoute(const HttpRequest& request, const std::string& caller, Core& core) {
-  const auto start = [&core, request, caller](const PlacePtr& place, FileRequest wanted,
+  const auto start = [&core, request, caller](const TicketPtr& ticket, FileRequest wanted,
                                               const FilePtr& file, const ReplyPtr& reply) {
     wanted.finish_by = absl::Now() + std::min(wanted.deadline, core.options.max_time);
     const AnswerKind kind = KindOf(request);
@@ -228,7 +228,7 @@ HttpDecision RewriteRoute(const HttpRequest& request, const std::string& caller,
     std::stop_source stop;
     reply->OnGone([stop]() mutable { stop.request_stop(); });
     if (kind == AnswerKind::kEvents) BeginEvents(*reply);
-    core.Submit(place, {file},
+    core.Submit(ticket, {file},
                 [&core, wanted, record, kind, file, reply, stop](const absl::Status& may) {
                   RunRewrite(core, may, wanted, record, kind, *file, *reply, stop.get_token());
                 });
@@ -237,9 +237,9 @@ HttpDecision RewriteRoute(const HttpRequest& request, const std::string& caller,
 }
 
 HttpDecision InspectRoute(const HttpRequest& request, const std::string& caller, Core& core) {
-  const auto start = [&core](const PlacePtr& place, const FileRequest& wanted, const FilePtr& file,
-                             const ReplyPtr& reply) {
-    core.Submit(place, {file}, [&core, wanted, file, reply](const absl::Status& may) {
+  const auto start = [&core](const TicketPtr& ticket, const FileRequest& wanted,
+                             const FilePtr& file, const ReplyPtr& reply) {
+    core.Submit(ticket, {file}, [&core, wanted, file, reply](const absl::Status& may) {
       if (!may.ok()) return reply->Send(RefusalOf(may));
       absl::StatusOr<v1::InspectResponse> found = core.worker->Inspect(*file, wanted);
       reply->Send(found.ok() ? JsonResponse(MessageJson(*found) + "\n")
@@ -253,7 +253,8 @@ HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, 
   if (auto query = ParseVerifyParameters(request.query); !query.ok()) {
     return ProblemOf(query.status());
   }
-  const auto start = [&core, request](const PlacePtr& place, Upload upload, const ReplyPtr& reply) {
+  const auto start = [&core, request](const TicketPtr& ticket, Upload upload,
+                                      const ReplyPtr& reply) {
     const auto permissions = ParseVerifyParameters(AllParameters(request, upload));
     if (!permissions.ok()) return reply->Send(ProblemOf(permissions.status()));
     FilePtr original, optimised;
@@ -265,7 +266,7 @@ HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, 
       return reply->Send(Problem(400, "send a form with the files original and optimised"));
     }
     core.Submit(
-        place, {original, optimised},
+        ticket, {original, optimised},
         [&core, original, optimised, permissions = *permissions, reply](const absl::Status& may) {
           if (!may.ok()) return reply->Send(RefusalOf(may));
           absl::StatusOr<v1::VerifyResponse> found =

@@ -73,7 +73,7 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
     if (absl::Status status = check_(collected_); !status.ok()) return End(status);
     std::vector<std::shared_ptr<const SpoolFile>> files = {collected_.first};
     if (collected_.second != nullptr) files.push_back(collected_.second);
-    core_.Submit(call_.place(), std::move(files), [this](const absl::Status& may) {
+    core_.Submit(call_.ticket(), std::move(files), [this](const absl::Status& may) {
       if (!may.ok()) return End(may);
       if (context_.IsCancelled()) return End(absl::CancelledError("cancelled"));
       End(work_(collected_));

@@ -41,9 +41,9 @@ FileCall::FileCall(Core& core, grpc::CallbackServerContext& context, const std::
   }
   status_ = Authorize(context, *core_.files.auth, info_);
   if (!status_.ok()) return;
-  absl::StatusOr<std::shared_ptr<WorkQueue::Place>> place = core_.queue->Enter(info_.caller);
-  status_ = place.status();
-  if (place.ok()) place_ = *std::move(place);
+  absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> ticket = core_.queue->Enter(info_.caller);
+  status_ = ticket.status();
+  if (ticket.ok()) ticket_ = *std::move(ticket);
 }
 
 absl::Time FileCall::FinishBy() const {
@@ -68,7 +68,7 @@ grpc::Status FileCall::End(const absl::Status& status) {
   core_.metrics.CountRequest(absl::StrCat("grpc/", info_.method),
                              absl::StatusCodeToString(told.code()),
                              absl::ToDoubleSeconds(absl::Now() - began_));
-  place_ = nullptr;
+  ticket_ = nullptr;
   return ToGrpcStatus(told);
 }
 

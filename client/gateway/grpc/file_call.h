@@ -28,7 +28,7 @@ class FileCall {
 
   const std::string& caller() const { return info_.caller; }
   const std::string& peer() const { return info_.peer; }
-  std::shared_ptr<WorkQueue::Place> place() const { return place_; }
+  std::shared_ptr<WorkQueue::Ticket> ticket() const { return ticket_; }
 
   // When the file must be ready, so that it can be sent before the call's deadline.
   absl::Time FinishBy() const;
@@ -45,7 +45,7 @@ class FileCall {
   const absl::Time began_;
   absl::Time deadline_ = absl::InfiniteFuture();
   absl::Status status_;
-  std::shared_ptr<WorkQueue::Place> place_;
+  std::shared_ptr<WorkQueue::Ticket> ticket_;
 };
 
 }  // namespace traverse::gateway

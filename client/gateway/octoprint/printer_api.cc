@@ -100,7 +100,7 @@ struct PrinterApi::Delivery {
   std::string api_key;
   std::shared_ptr<SpoolFile> original;
   FileRecord record;
-  std::shared_ptr<WorkQueue::Place> place;
+  std::shared_ptr<WorkQueue::Ticket> ticket;
   std::shared_ptr<HttpReply> reply;
   absl::Status optimised = absl::UnknownError("");  // OK, or why the original is passed on
   std::optional<RewrittenFile> made = std::nullopt;
@@ -156,12 +156,12 @@ std::string PrinterApi::KeyFor(const Printer& printer, const HttpRequest& reques
 
 HttpDecision PrinterApi::HandleVersion(const HttpRequest& request, const std::string& caller,
                                        const Printer& printer) {
-  absl::StatusOr<std::shared_ptr<WorkQueue::Place>> place = core_.queue->Enter(caller);
-  if (!place.ok()) return Problem(503, std::string(place.status().message()));
+  absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> ticket = core_.queue->Enter(caller);
+  if (!ticket.ok()) return Problem(503, std::string(ticket.status().message()));
   const std::string key = KeyFor(printer, request);
   return std::make_unique<NoBody>(
-      [this, &printer, key, place = *place](std::shared_ptr<HttpReply> reply) {
-        Spawn([this, &printer, key, place, reply = std::move(reply)] {
+      [this, &printer, key, ticket = *ticket](std::shared_ptr<HttpReply> reply) {
+        Spawn([this, &printer, key, ticket, reply = std::move(reply)] {
           const absl::StatusOr<UpstreamAnswer> answer = AskVersion(printer, key, options_.upstream);
           if (!answer.ok()) {
             reply->Send(Problem(absl::IsDeadlineExceeded(answer.status()) ? 504 : 502,
@@ -179,18 +179,18 @@ HttpDecision PrinterApi::HandleVersion(const HttpRequest& request, const std::st
 
 HttpDecision PrinterApi::HandleUpload(const HttpRequest& request, const std::string& caller,
                                       const Printer& printer, const std::string& storage) {
-  absl::StatusOr<std::shared_ptr<WorkQueue::Place>> place = core_.queue->Enter(caller);
-  if (!place.ok()) return Problem(503, std::string(place.status().message()));
+  absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> ticket = core_.queue->Enter(caller);
+  if (!ticket.ok()) return Problem(503, std::string(ticket.status().message()));
   const UploadLimits limits = {.max_file_bytes = core_.options.max_file_bytes, .small_files = {}};
   const std::string key = KeyFor(printer, request);
   const auto start = [this, &printer, storage, key, caller, peer = request.peer_host,
-                      place = *place](Upload upload, std::shared_ptr<HttpReply> reply) {
+                      ticket = *ticket](Upload upload, std::shared_ptr<HttpReply> reply) {
     absl::StatusOr<PrinterUpload> wanted = UploadOf(upload, storage);
     if (!wanted.ok()) return reply->Send(ProblemOf(wanted.status()));
     const std::shared_ptr<SpoolFile> file = upload.files[0].file;
     const FileRecord record = {"printers", caller, peer, wanted->name, file->size()};
     auto delivery = std::make_shared<Delivery>(
-        Delivery{printer, *std::move(wanted), key, file, record, place, std::move(reply)});
+        Delivery{printer, *std::move(wanted), key, file, record, ticket, std::move(reply)});
     Spawn([this, delivery] { Deliver(*delivery); });
   };
   return TakeUpload(request, *core_.spool, limits, start);
@@ -208,7 +208,7 @@ void PrinterApi::Optimise(Delivery& delivery) {
   auto result = std::make_shared<std::promise<absl::StatusOr<RewrittenFile>>>();
   std::future<absl::StatusOr<RewrittenFile>> future = result->get_future();
   std::stop_source stop;
-  core_.Submit(delivery.place, {delivery.original},
+  core_.Submit(delivery.ticket, {delivery.original},
                [this, result, request, original = delivery.original, record = delivery.record,
                 stop](const absl::Status& may) {
                  const absl::Time began = absl::Now();

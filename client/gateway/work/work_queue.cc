@@ -9,7 +9,7 @@
 
 namespace traverse::gateway {
 
-WorkQueue::Place::~Place() {
+WorkQueue::Ticket::~Ticket() {
   MutexLock lock(queue_.mutex_);
   --queue_.requests_;
   const auto of_caller = queue_.places_.find(caller_);
@@ -35,7 +35,7 @@ WorkQueue::~WorkQueue() {
   }
 }
 
-absl::StatusOr<std::shared_ptr<WorkQueue::Place>> WorkQueue::Enter(const std::string& caller) {
+absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> WorkQueue::Enter(const std::string& caller) {
   MutexLock lock(mutex_);
   if (draining_) return absl::UnavailableError("the gateway is shutting down; ask another one");
   if (requests_ >= limits_.max_requests) {
@@ -49,17 +49,17 @@ absl::StatusOr<std::shared_ptr<WorkQueue::Place>> WorkQueue::Enter(const std::st
   }
   ++requests_;
   ++places_[caller];
-  return std::shared_ptr<Place>(new Place(*this, caller));
+  return std::shared_ptr<Ticket>(new Ticket(*this, caller));
 }
 
-void WorkQueue::Submit(std::shared_ptr<Place> place, int64_t memory_bytes,
+void WorkQueue::Submit(std::shared_ptr<Ticket> ticket, int64_t memory_bytes,
                        std::function<void()> task) {
   assert(memory_bytes <= limits_.max_memory_bytes);
-  const std::string caller = place->caller();
+  const std::string caller = ticket->caller();
   {
     MutexLock lock(mutex_);
     ++waiting_count_;
-    waiting_[caller].push_back({std::move(place), memory_bytes, std::move(task)});
+    waiting_[caller].push_back({std::move(ticket), memory_bytes, std::move(task)});
   }
   changed_.NotifyOne();
 }

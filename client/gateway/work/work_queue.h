@@ -27,18 +27,18 @@ struct WorkLimits {
 // Thread-safe.
 class WorkQueue {
  public:
-  // A request's place: it counts from Enter on, until it is destroyed.
-  class Place {
+  // A request's place in the queue, from Enter until the ticket is destroyed.
+  class Ticket {
    public:
-    ~Place();
-    Place(const Place&) = delete;
-    Place& operator=(const Place&) = delete;
+    ~Ticket();
+    Ticket(const Ticket&) = delete;
+    Ticket& operator=(const Ticket&) = delete;
 
     const std::string& caller() const { return caller_; }
 
    private:
     friend class WorkQueue;
-    Place(WorkQueue& queue, std::string caller) : queue_(queue), caller_(std::move(caller)) {}
+    Ticket(WorkQueue& queue, std::string caller) : queue_(queue), caller_(std::move(caller)) {}
 
     WorkQueue& queue_;
     const std::string caller_;
@@ -49,13 +49,13 @@ class WorkQueue {
   // Waits for tasks that run; those that wait are dropped.
   ~WorkQueue();
 
-  // A place for a request of `caller`. ResourceExhausted if there is none; Unavailable when
+  // A ticket for a request of `caller`. ResourceExhausted if the queue is full; Unavailable when
   // draining. The queue outlives it.
-  absl::StatusOr<std::shared_ptr<Place>> Enter(const std::string& caller);
+  absl::StatusOr<std::shared_ptr<Ticket>> Enter(const std::string& caller);
 
   // Runs `task` as soon as a worker is free and `memory_bytes` are, callers taking turns.
   // REQUIRES: no more than max_memory_bytes().
-  void Submit(std::shared_ptr<Place> place, int64_t memory_bytes, std::function<void()> task);
+  void Submit(std::shared_ptr<Ticket> ticket, int64_t memory_bytes, std::function<void()> task);
 
   // No more places from now on.
   void StartDraining();
@@ -69,7 +69,7 @@ class WorkQueue {
 
  private:
   struct Task {
-    std::shared_ptr<Place> place;
+    std::shared_ptr<Ticket> ticket;
     int64_t memory_bytes;
     std::function<void()> run;
   };

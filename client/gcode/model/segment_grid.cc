@@ -67,18 +67,18 @@ int SegmentGrid::Row(double y) const {
 }
 
 void SegmentGrid::Fill() {
-  struct Place {
+  struct Occupancy {
     uint32_t cell = 0;
     uint32_t segment = 0;
   };
-  std::vector<Place> places;
-  places.reserve(segments_.size() * 2);
+  std::vector<Occupancy> occupancies;
+  occupancies.reserve(segments_.size() * 2);
   occupied_.assign(static_cast<size_t>(columns_) * static_cast<size_t>(rows_) / 64 + 1, 0);
   for (size_t s = 0; s < segments_.size(); ++s) {
     ForEachCell(segments_[s].a, segments_[s].b, [&, this](int column, int row) {
       const size_t cell = Cell(column, row);
       occupied_[cell / 64] |= uint64_t{1} << (cell % 64);
-      places.push_back({static_cast<uint32_t>(cell), static_cast<uint32_t>(s)});
+      occupancies.push_back({static_cast<uint32_t>(cell), static_cast<uint32_t>(s)});
     });
   }
   uint32_t count = 0;
@@ -89,15 +89,15 @@ void SegmentGrid::Fill() {
   }
   // Counting sort: the number of entries per cell, then where they begin, then the entries.
   first_.assign(count + size_t{1}, 0);
-  for (Place& place : places) {
-    place.cell = static_cast<uint32_t>(NumberOf(place.cell));
-    ++first_[place.cell + 1];
+  for (Occupancy& it : occupancies) {
+    it.cell = static_cast<uint32_t>(NumberOf(it.cell));
+    ++first_[it.cell + 1];
   }
   for (size_t cell = 1; cell < first_.size(); ++cell) first_[cell] += first_[cell - 1];
-  entries_.resize(places.size());
+  entries_.resize(occupancies.size());
   std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
-  for (const Place& place : places) {
-    entries_[next[place.cell]++] = {place.segment, segments_[place.segment].path};
+  for (const Occupancy& it : occupancies) {
+    entries_[next[it.cell]++] = {it.segment, segments_[it.segment].path};
   }
 }
 
