@@ -90,5 +90,26 @@ TEST_F(JobRunTest, WindowCountsPoints) {
   EXPECT_EQ(port_.encoded(), 20);
 }
 
+TEST_F(JobRunTest, WrittenLayersLeaveTheWindow) {
+  port_.run().Start({.window = {.layers = 100, .points = 20}, .build_order = false}, {}, Slow(0),
+                    *queue_);
+  for (uint64_t i = 0; i < 20; ++i) port_.run().Add(Layer(i));
+  port_.run().Push();
+  for (int i = 0; i < 500 && port_.messages().size() < 20; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  ASSERT_EQ(port_.messages().size(), 20u);
+
+  port_.Stall(true);
+  for (uint64_t i = 20; i < 40; ++i) port_.run().Add(Layer(i));
+  port_.run().Push();
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(port_.encoded(), 30);
+
+  port_.Stall(false);
+  port_.run().Close();
+  ASSERT_TRUE(port_.WaitForFinish());
+}
+
 }  // namespace
 }  // namespace traverse

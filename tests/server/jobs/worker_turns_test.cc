@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <ctime>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -195,6 +196,42 @@ TEST(WorkerTurns, ThreadsThatManyPausesNeededAreGivenBack) {
     WaitFor([&] { return endless.ended == 30 && pool.waiting() == 0 && pool.busy() == 0; });
   }
   EXPECT_LE(pool.thread_count(), 3u);
+}
+
+// Each holds a thread, also while it waits.
+TEST(WorkerTurns, TasksUnderWayAreBounded) {
+  Endless endless;
+  WorkerPool pool(1);
+  std::vector<std::shared_ptr<WorkerPool::Queue>> queues;
+  for (size_t i = 0; i < WorkerPool::kMostUnderWay + 20; ++i) {
+    queues.push_back(pool.NewQueue("caller " + std::to_string(i)));
+    queues.back()->Submit(endless.On(queues.back()));
+  }
+  WaitFor([&] { return endless.begun >= static_cast<int>(WorkerPool::kMostUnderWay); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+
+  EXPECT_EQ(endless.begun, static_cast<int>(WorkerPool::kMostUnderWay));
+  endless.cancel.Cancel();
+  WaitFor([&] { return endless.ended == static_cast<int>(queues.size()); });
+}
+
+TEST(WorkerTurns, APausedTaskTakesNoProcessorTime) {
+  Endless paused;
+  WorkerPool pool(1);
+  const auto queue = pool.NewQueue("paused");
+  queue->Submit(paused.On(queue));
+  WaitFor([&] { return paused.begun == 1; });
+  std::atomic<double> used{-1};
+  const auto other = pool.NewQueue("other");
+  other->Submit([&used] {
+    const std::clock_t before = std::clock();
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    used = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+  });
+  WaitFor([&] { return used >= 0; });
+
+  EXPECT_LT(used, 0.05);
+  paused.cancel.Cancel();
 }
 
 TEST(WorkerTurns, SilentTasksAreNamedAndOthersAreNot) {
