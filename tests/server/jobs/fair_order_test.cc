@@ -50,7 +50,7 @@ TEST(FairOrder, TimeIsSharedNotTurns) {
 
 TEST(FairOrder, WhoComesNewIsServedFirstForItsHeadStart) {
   FairOrder order;
-  Named a('a', 1), b('b', 1);
+  Named a('a', FairOrder::kHeadStart / 10), b('b', FairOrder::kHeadStart / 10);
   Come(order, a);
   Come(order, b);
   Serve(order, 100);
