@@ -61,7 +61,9 @@ void SectionCutter::NoteOrder(const VerifyLine& line, bool mark) {
 void SectionCutter::TakeLoose() {
   section_.notes += loose_notes_;
   loose_notes_ = {};
-  for (const uint64_t digest : loose_said_) section_.said = Mix(section_.said, digest);
+  for (const uint64_t digest : loose_said_) {
+    section_.said = Mix(section_.said, Mix(digest, section_.deposits.count));
+  }
   loose_said_.clear();
 }
 

@@ -46,7 +46,8 @@ struct Section {
   uint64_t header = 0;    // of the comments between the mark of a layer and the first travel
   uint64_t sequence = 0;  // of all comments, in their order, before the first deposit
 
-  // Of deposits and comments, in their order; notes say to which section comments belong.
+  // Of deposits, and of comments with their place among these, in their order; notes say to which
+  // section comments belong.
   uint64_t order = 0;
   uint64_t said = 0;
 

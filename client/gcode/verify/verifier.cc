@@ -139,6 +139,7 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
   CheckSameWays(layer, findings);
   CheckBends(layer, findings);
   CheckSameSteps(layer, findings);
+  CheckFixedMoves(layer, findings);
   CheckScriptedWays(layer, findings);
   CheckSinking(layer, findings);
   ObserveLifts(layer, findings);

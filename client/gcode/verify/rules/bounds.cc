@@ -1,6 +1,6 @@
 // No travel leaves the box of all moves of the original. New travel is straight, except for bends
 // that lead around an outer wall: without such a bend it would cross one, and with it does not. So
-// no travel overshoots its end, and none is led along a wall.
+// no travel overshoots its end, and none is led along a wall. None goes along an arc of its own.
 
 #include <algorithm>
 #include <array>
@@ -51,6 +51,11 @@ void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped, LayerFin
   for (uint32_t m = traced.first_move + skipped; m < traced.end_move; ++m) {
     const TraceMove& move = is.moves[m];
     if (!move.sideways()) continue;
+    if (move.kind == MoveKind::kTravel && move.in_print && move.arc && !layer.IsKnown(move)) {
+      findings.breaks.push_back(
+          {VerifyRule::kBounds, 0, move.line, layer.index(),
+           "travel along an arc that the original does not have in this layer"});
+    }
     const bool counts = move.kind == MoveKind::kTravel && move.in_print && !move.arc;
     const double done = std::exchange(length, length + move.length_mm());
     const TraceMove* last = std::exchange(before, counts ? &move : nullptr);

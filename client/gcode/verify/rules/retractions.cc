@@ -167,6 +167,40 @@ int64_t CountIdle(const std::vector<RetractionCycle>& cycles) {
                        [](const RetractionCycle& cycle) { return cycle.idle; });
 }
 
+// Primings that return all but what rounding takes or adds.
+constexpr Micro kRounding = 1'000;
+
+// What these prime more than was retracted, all in all.
+struct Balance {
+  Micro primed = 0;
+  int64_t cycles = 0;
+};
+
+Balance BalanceOf(const std::vector<RetractionCycle>& cycles) {
+  Balance balance;
+  for (const RetractionCycle& cycle : cycles) {
+    const Micro surplus = cycle.pushed - cycle.pulled;
+    if (cycle.firmware || std::abs(surplus) > kRounding) continue;
+    balance.primed += surplus;
+    ++balance.cycles;
+  }
+  return balance;
+}
+
+// Differences that are too small for a pair add up.
+void CompareBalance(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
+  constexpr Micro kOfEach = 20;
+  const Balance had = BalanceOf(was.cycles);
+  const Balance has = BalanceOf(is.cycles);
+  const Micro off = has.primed - had.primed;
+  const Micro slack = kRounding * (1 + std::abs(has.cycles - had.cycles)) + kOfEach * has.cycles;
+  if (std::abs(off) <= slack) return;
+  breaks.push_back(
+      {VerifyRule::kRetractions, 0, 0, -1,
+       absl::StrFormat("primes %.4f mm %s than the original, all in all",
+                       static_cast<double>(std::abs(off)) * 1e-6, off > 0 ? "more" : "less")});
+}
+
 }  // namespace
 
 void ObserveRetractions(const LayerPair& layer, LayerFindings& findings) {
@@ -190,6 +224,7 @@ void ObserveLastRetraction(const LayerPair& layer, LayerFindings& findings) {
 
 void CompareRetractions(const Observations& was, const Observations& is,
                         std::vector<Finding>& breaks) {
+  CompareBalance(was, is, breaks);
   PairTable pairs;
   for (const RetractionCycle& cycle : was.cycles) pairs.Add(cycle);
   const auto is_usual = [&was](bool RetractionCycle::*odd) {

@@ -27,6 +27,7 @@ void CheckOpenWays(const LayerPair& layer, LayerFindings& findings);
 void CheckSameWays(const LayerPair& layer, LayerFindings& findings);
 void CheckSinking(const LayerPair& layer, LayerFindings& findings);
 void CheckSameSteps(const LayerPair& layer, LayerFindings& findings);
+void CheckFixedMoves(const LayerPair& layer, LayerFindings& findings);
 void CheckScriptedWays(const LayerPair& layer, LayerFindings& findings);
 void ObserveLifts(const LayerPair& layer, LayerFindings& findings);
 void ObserveHeights(const LayerPair& layer, LayerFindings& findings);

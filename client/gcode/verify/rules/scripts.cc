@@ -1,5 +1,6 @@
 // No move between paths comes from the start or the end script, nor from those at tool changes and
-// changes of layers; and the head leaves the print as it did.
+// changes of layers; moves before a line that is not known are as they were, and so is how the head
+// leaves the print.
 
 #include <algorithm>
 
@@ -30,6 +31,16 @@ bool DoTheSame(const TraceMove& was, const TraceMove& is) {
   return !same_begin || was.identity == is.identity;
 }
 
+// The moves between a path and a line that is not known, before which the path stays as it is.
+absl::Span<const TraceMove> FixedMoves(const TraceChunk& chunk, uint32_t path) {
+  const TraceLink& link = chunk.links[path];
+  return absl::MakeConstSpan(chunk.moves).subspan(link.first_move, link.fixed);
+}
+
+bool AreEqual(const TraceMove& one, const TraceMove& other) {
+  return one.identity == other.identity;
+}
+
 }  // namespace
 
 void CheckLeaving(const TraceChunk& was, const TraceChunk& is, std::vector<Finding>& breaks) {
@@ -41,6 +52,21 @@ void CheckLeaving(const TraceChunk& was, const TraceChunk& is, std::vector<Findi
   breaks.push_back({VerifyRule::kScripts, a == moves.end() ? 0 : a->line,
                     b == others.end() ? 0 : b->line, -1,
                     "leaves the print differently from the original"});
+}
+
+void CheckFixedMoves(const LayerPair& layer, LayerFindings& findings) {
+  for (size_t i = 0; i < layer.section_count(); ++i) {
+    const absl::Span<const TraceMove> moves =
+        FixedMoves(layer.was(), layer.SectionWas(i).first_path);
+    const absl::Span<const TraceMove> others =
+        FixedMoves(layer.is(), layer.SectionIs(i).first_path);
+    const auto [a, b] =
+        std::mismatch(moves.begin(), moves.end(), others.begin(), others.end(), AreEqual);
+    if (a == moves.end() && b == others.end()) continue;
+    findings.breaks.push_back({VerifyRule::kScripts, a == moves.end() ? 0 : a->line,
+                               b == others.end() ? 0 : b->line, layer.index(),
+                               "moves differently before a line that is not known"});
+  }
 }
 
 void CompareScripts(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {

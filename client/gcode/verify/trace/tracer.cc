@@ -115,7 +115,10 @@ void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t secti
   if (line.role == LineRole::kProgress) chunk_.progress.push_back({line.digest, number});
   if (line.sets_back) chunk_.set_backs.push_back({section, number});
   if (line.command != 0) pending_commands_.push_back({line.command, 0, number});
-  if (line.role == LineRole::kFixed) link_.scripted = true;
+  if (line.role == LineRole::kFixed) {
+    link_.scripted = true;
+    link_.fixed = static_cast<uint32_t>(pending_.size());
+  }
 }
 
 void Tracer::TakeWipeMark(bool begins, uint32_t line, uint32_t section) {
@@ -298,7 +301,10 @@ void Tracer::EndSection(bool layer, bool mark) {
 
 void Tracer::Mark() {
   // Lines of the start script say nothing of the way to the first path.
-  if (!in_print_) link_.scripted = false;
+  if (!in_print_) {
+    link_.scripted = false;
+    link_.fixed = 0;
+  }
   in_print_ = true;
 }
 

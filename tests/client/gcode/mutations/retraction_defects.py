@@ -239,6 +239,13 @@ def label_before_retraction(file, rng):
     return pick(rng, lines_of(file, labels, file.paths[0].first), 50, make)
 
 
+def all_primed_more(file, _):
+    """By too little for each to be told from the pair that it was."""
+    changes = {i: [with_e(line.text, lambda e: e + 0.0001)] for i, line in enumerate(file.lines)
+               if line.kind == "prime" and "E" in line.text and file.paths[0].first < i < file.paths[-1].first}
+    return edited(file, changes) if len(changes) > 20 else None
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("retraction dropped across a wall", "open_ways", retraction_dropped, "free"),
@@ -258,5 +265,6 @@ DEFECTS = (
     ("retraction dropped, and not its priming", "standstill", only_pulled(("pull", 0)), "free"),
     ("retraction done twice", "same_print", only_pulled(("pull", 2)), "free"),
     ("priming done twice", "standstill", only_pulled(("push", 2)), "free"),
+    ("all primings 0.1 um longer", "retractions", all_primed_more, "free"),
     ("retraction moved across a label", "retractions", label_before_retraction, "free"),
 )

@@ -125,6 +125,20 @@ def comments_exchanged(file, rng):
                                                           pair[1]: [file.lines[pair[0]].text]}))
 
 
+def comment_past_path(file, rng):
+    """What a plugin of the printer may look for stands behind the path that it stood before."""
+    notes = re.compile(r"; ?(?:INIT|CP |FLUSH|WIPE_TOWER|PURGE|BRIDGE|move to|BEFORE|AFTER)")
+    found = lines_of(file, notes, file.paths[0].first, file.paths[-1].first)
+
+    def make(i):
+        path = next_path(file, i)
+        fence = any(file.lines[k].kind == "command" and not SETTERS.match(file.lines[k].text)
+                    for k in range(i, path.last))
+        return None if fence else moved_behind(file, i, path.last)
+
+    return pick(rng, found, 30, make)
+
+
 def byte_order_mark(file, _):
     return "\xef\xbb\xbf" + file.text()
 
@@ -175,6 +189,7 @@ DEFECTS = (
     ("comment on a move dropped", "same_print", move_comment_dropped, "free"),
     ("comment on a move renamed", "same_print", move_comment_renamed, "free"),
     ("comments exchanged", "same_print", comments_exchanged, "free"),
+    ("comment behind its path", "same_print", comment_past_path, "free"),
     ("mark of UTF-8 inserted", "same_print", byte_order_mark, "free"),
     ("command behind a carriage return", "same_print", second_mark, "free"),
     ("command behind a comment on a move", "same_print", hidden_command, "free"),

@@ -162,6 +162,20 @@ def way_along_wall(file, rng):
     return pick(rng, open_ways(file), 200, make)
 
 
+def way_on_arc(file, rng):
+    """A way sweeps along half a circle."""
+
+    def make(found):
+        line = file.lines[found[2][-1]]
+        if line.length() < 4 or line.start[2] != line.end[2] or not line.text.startswith(("G0 ", "G1 ")):
+            return None
+        center = [number((line.end[a] - line.start[a]) / 2) for a in (0, 1)]
+        text = f"G2{line.text.split(';')[0].rstrip()[2:]} I{center[0]} J{center[1]}"
+        return edited(file, {found[2][-1]: [text]})
+
+    return pick(rng, links(file), 60, make)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("way to far away", "speeds", way_far, "free"),
@@ -171,5 +185,6 @@ DEFECTS = (
     ("way there, back and there", "bounds", way_twice, "free"),
     ("way beyond its end and back", "bounds", way_beyond, "free"),
     ("open way along a wall", "bounds", way_along_wall, "free"),
+    ("way along an arc", "bounds", way_on_arc, "free"),
     ("open way at another speed", "speeds", open_way_slow, "free"),
 )

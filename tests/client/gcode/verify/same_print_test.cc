@@ -35,6 +35,13 @@ TEST(SamePrint, CommentsBetweenPathsThatStayKeepTheirOrder) {
   EXPECT_EQ(Broken(a, kHead + "; there\n" + kOther + "; here\n" + kOne), "");
 }
 
+// `; stop printing` may be a line that a plugin of the printer looks for.
+TEST(SamePrint, CommentsStayBetweenThePathsBetweenWhichTheyStand) {
+  const std::string a = kHead + kOne + "; stop printing\n" + kOther;
+  EXPECT_EQ(Broken(a, kHead + "; stop printing\n" + kOne + kOther), "same_print");
+  EXPECT_EQ(Broken(a, kHead + kOther + "; stop printing\n" + kOne), "");
+}
+
 TEST(SamePrint, TheHeadLeavesThePrintThoughNoScriptFollows) {
   const std::string end = "G1 E-1 F2100\nG1 Z10 F9000\n";
   const std::string a = kHead + kTwo + end;

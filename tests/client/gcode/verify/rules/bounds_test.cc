@@ -51,6 +51,14 @@ TEST(VerifyBounds, NoWayIsLedAlongAWall) {
   EXPECT_EQ(Broken(a, along, Policy::kFree), "open_ways bounds");
 }
 
+TEST(VerifyBounds, NoWaySweepsAlongAnArcOfItsOwn) {
+  const std::string a = kHead + kTwo;
+  const std::string arc = With(a, kTo, "G2 X0 Y5 I-4.5 J2.5 F9000\n");
+  EXPECT_EQ(Broken(a, arc), "bounds");
+  EXPECT_EQ(Broken(arc, arc), "");
+  EXPECT_EQ(Broken(arc, a), "");
+}
+
 TEST(VerifyBounds, NoWayLeadsFarAway) {
   const std::string far = With(kTwo, "G1 X0 Y5 F9000\n", "G1 X-90 Y5 F9000\nG1 X0 Y5 F9000\n");
   EXPECT_EQ(Broken(kHead + kTwo, kHead + far), "bounds");

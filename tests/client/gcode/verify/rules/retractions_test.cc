@@ -30,6 +30,22 @@ TEST(VerifyRetractions, NoPartOfOneIsMissing) {
   EXPECT_NE(Broken(a, With(a, "G1 E2 F2000\n", ""), Policy::kFree), "");
 }
 
+// 0.1 um each: the pair passes for the same one.
+TEST(VerifyRetractions, PrimeNoMoreAllInAll) {
+  std::string a = kHead;
+  std::string more = kHead;
+  for (int y = 0; y < 200; ++y) {
+    const std::string line =
+        Line("Internal infill", absl::StrCat("X0 Y", y), absl::StrCat("X9 Y", y));
+    a += line;
+    more += With(line, "G1 E1 F2100\n", "G1 E1.0001 F2100\n");
+  }
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, With(a, "G1 E1 F2100\n", "G1 E1.0001 F2100\n")), "");
+  EXPECT_EQ(Broken(a, more), "retractions");
+  EXPECT_EQ(Broken(more, a), "retractions");
+}
+
 TEST(VerifyRetractions, MayBeMoreOrFewer) {
   const std::string fewer = With(kOneTurned, Way("X0 Y5"), "G1 X0 Y5 F9000\n");
   const std::string third = "G1 X0 Y6 F9000\nG1 F1800\nG1 X9 Y6 E.3\n";
