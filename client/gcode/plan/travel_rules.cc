@@ -1,6 +1,7 @@
 #include "client/gcode/plan/travel_rules.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "client/gcode/model/loops.h"
@@ -153,7 +154,7 @@ const RetractionCount& TravelRules::CountOf(Feature feature) const {
 }
 
 bool TravelRules::AlwaysRetracts(Feature feature) const {
-  if (!habit_.retracts || !habit_.crossing_matters) return habit_.retracts;
+  assert(habit_.crossing_matters);
   const RetractionCount& count = CountOf(feature);
   return count.total() > 0 && count.Mostly();
 }

@@ -80,7 +80,8 @@ class TravelRules {
   // How to write the move about which Retracts decides.
   TravelWay WayOf(Vertex a, Vertex b, Feature feature) const;
 
-  // Whether the file shows that moves to paths of `feature` always retract.
+  // Whether moves to paths of `feature` always retract, as far as the file shows.
+  // REQUIRES: habit.crossing_matters, as otherwise all of them do, or none.
   bool AlwaysRetracts(Feature feature) const;
 
   // The detours of new moves around visible walls; null if the file's travel makes none.
