@@ -56,6 +56,18 @@ TEST(NearestInsertion, TakesTheEntryThatCostsLeastThere) {
   EXPECT_EQ(Inserted(owned.problem), (Route{{1, 1}, {0, 0}, {2, 1}}));
 }
 
+// The last one also with regard to the finish.
+TEST(NearestInsertion, PathsInOrderAreEnteredWhereItCostsLeast) {
+  Plan plan = AnyOrderPlan({MakeContour({{9, 9}, {3, 0}, {8, 0}}),
+                            MakeContour({{4, 5}, {5, 0}, {6, 0}}), MakeOpenPath({9, 0}, {7, 0})});
+  plan.nodes[0].kind = PlanNode::Kind::kInOrder;
+  OwnedProblem owned(std::move(plan));
+
+  EXPECT_EQ(Inserted(owned.problem), (Route{{0, 1}, {1, 1}, {2, 1}}));
+  owned.problem.finish = Point{0, 0};
+  EXPECT_EQ(Inserted(owned.problem), (Route{{0, 1}, {1, 1}, {2, 0}}));
+}
+
 TEST(NearestInsertion, InsertsBehindWhatComesBefore) {
   Plan plan = FlatPlan(3);
   plan.nodes[0].before = {{2, 0}};
