@@ -116,7 +116,8 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm)
   return models;
 }
 
-double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& model) {
+double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& model,
+                  bool with_departure) {
   assert(0 < block && block < file.blocks.size());
   const Block& before = file.blocks[block - 1];
   const Dynamics dynamics = DynamicsOf(file.profile, file.states[before.state_out], file.setters);
@@ -126,7 +127,8 @@ double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& mode
   state.e = before.e_out;
   state.feed = before.feed_out;
   Interpreter interpreter(file.LinkText(block), 0, state);
-  bool departs = file.dialect != Dialect::kCura && (file.blocks[block].link & kLinkDeparts) != 0;
+  bool departs = !with_departure && file.dialect != Dialect::kCura &&
+                 (file.blocks[block].link & kLinkDeparts) != 0;
   for (Step step; interpreter.Next(step);) {
     if (step.kind != StepKind::kTravel || std::exchange(departs, false)) continue;
     const MachineState& at = interpreter.state();

@@ -27,10 +27,11 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm)
 
 // The time of the travel in the link before block `block`, as it is in the file, from standstill to
 // standstill at the speed and acceleration of `model`: with its bends, at each of which the machine
-// slows down, but without retraction, lift and wipe. Also without a short inward move, with which
-// other travel from that path begins too, except for CuraEngine, whose bends may be as near.
-// REQUIRES: there is a block before it.
-double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& model);
+// slows down, but without retraction, lift and wipe. Unless `with_departure` also without a short
+// inward move, with which other travel from that path begins too, except for CuraEngine, whose
+// bends may be as near. REQUIRES: there is a block before it.
+double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& model,
+                  bool with_departure = false);
 
 // The same for a new travel move from the path `before`.
 double NewWaySeconds(const GcodeFile& file, uint32_t before, const TravelWay& way,

@@ -123,6 +123,9 @@ void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32
   // Paths that the slicer wipes stay wiped, so that all ways from them are retracted.
   request.wipe = file_.WipedBehind(from.placement().block);
   request.retract = request.wipe || Retracts(from, to);
+  request.departs =
+      Departs(from.placement(), file_.modes[to.block().mode].InMm(to.first()),
+              outlines_[to.placement().block - layer_.first_block].feature);
   request.detours = rules_.detours();
   LinkWriter(file_, donors_, out).Write(request);
 }
@@ -147,8 +150,18 @@ void LayerWriter::NoteLeaving(uint32_t block) {
     leaving_[block] = {step->way_mm * mode.UnitMm(), mode.InMm(step->to), false};
     return;
   }
-  if (!file_.WipedBehind(block)) return;
   Leaving leaving;
+  if (!file_.WipedBehind(block)) {
+    if (block + 1 >= file_.blocks.size() || !donors_.MayFollow(block + 1)) return;
+    const Link link = ReadLink(file_, block + 1);
+    const LinkStep* departure = DepartureOf(link);
+    if (departure == nullptr) return;
+    leaving_[block] = {.mm = departure->way_mm * mode.UnitMm(),
+                       .as_given = mode.InMm(departure->to),
+                       .departs = true,
+                       .retracts = link.retracts()};
+    return;
+  }
   leaving.wipes = true;
   for (const LinkStep& step : ReadLink(file_, block + 1).steps) {
     if (step.kind != StepKind::kWipe) continue;
@@ -160,7 +173,8 @@ void LayerWriter::NoteLeaving(uint32_t block) {
 
 const LayerWriter::Leaving* LayerWriter::LeavingOf(const Placement& from) const {
   const auto found = leaving_.find(from.block);
-  return found != leaving_.end() ? &found->second : nullptr;
+  if (found == leaving_.end()) return nullptr;
+  return found->second.departs && !from.as_given() ? nullptr : &found->second;
 }
 
 Vertex LayerWriter::BackOver(const Placement& from, double mm) const {
@@ -185,24 +199,39 @@ Vertex LayerWriter::BackOver(const Placement& from, double mm) const {
 
 bool LayerWriter::GoesOnAcross(const Placement& from, Vertex to, Feature feature) const {
   const Leaving* leaving = LeavingOf(from);
-  if (!spares_walls_ || leaving == nullptr || leaving->wipes) return false;
+  if (!spares_walls_ || leaving == nullptr || leaving->wipes || leaving->departs) return false;
   const Vertex at = from.as_given() ? leaving->as_given : BackOver(from, leaving->mm);
   const TravelWay way = rules_.WayOf(at, to, feature);
   return way.crosses || way.grazes;
 }
 
+bool LayerWriter::Departs(const Placement& from, Vertex to, Feature feature) const {
+  const Leaving* leaving = LeavingOf(from);
+  if (leaving == nullptr || !leaving->departs) return false;
+  const TravelWay way = rules_.WayOf(End(from), to, feature);
+  if (way.retracts != leaving->retracts) return false;
+  if (way.retracts) return true;
+  const TravelWay behind = rules_.WayOf(leaving->as_given, to, feature);
+  return way.crosses || way.grazes || !(behind.crosses || behind.grazes);
+}
+
 TravelWay LayerWriter::NewWay(const Placement& from, const Placement& to) const {
   const Feature feature = outlines_[to.block - layer_.first_block].feature;
   const Leaving* leaving = LeavingOf(from);
-  if (leaving == nullptr) return rules_.WayOf(End(from), Begin(to), feature);
+  if (leaving == nullptr || (leaving->departs && !Departs(from, Begin(to), feature))) {
+    return rules_.WayOf(End(from), Begin(to), feature);
+  }
   const Vertex at = from.as_given() ? leaving->as_given : BackOver(from, leaving->mm);
   TravelWay way = rules_.WayOf(at, Begin(to), feature);
   way.mm += leaving->mm;
-  if (!leaving->wipes) {
+  if (leaving->wipes) return way;
+  way.from = End(from);
+  way.via.insert(way.via.begin(), at);
+  if (leaving->departs) {
+    way.retracts = leaving->retracts;
+  } else {
     // A retraction would come before it goes on.
     way.retracts = way.retracts || rules_.Retracts(End(from), Begin(to), feature);
-    way.from = End(from);
-    way.via.insert(way.via.begin(), at);
   }
   return way;
 }
@@ -220,7 +249,7 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
   if (as_given) {
     way.to = Begin(to);
     way.mm = static_cast<double>(next.travel_mm);
-    way_seconds = WaySeconds(file_, to.block, model);
+    way_seconds = WaySeconds(file_, to.block, model, true);
   } else {
     way = NewWay(from, to);
     way_seconds = NewWaySeconds(file_, from.block, way, model);

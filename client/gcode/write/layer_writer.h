@@ -61,6 +61,11 @@ class LayerWriter {
     double mm = 0;
     Vertex as_given;     // where that ends after the path as sliced
     bool wipes = false;  // pulls filament back meanwhile; else continues along the path
+
+    // A short move away from the path, which is made only where the path ends as sliced and what
+    // follows retracts, or does not, as in the file.
+    bool departs = false;
+    bool retracts = false;
   };
 
   // Null if the travel begins at the end of the path.
@@ -70,6 +75,11 @@ class LayerWriter {
   Vertex BackOver(const Placement& from, double mm) const;
 
   void NoteLeaving(uint32_t block);
+
+  // Whether travel from `from` to `to` that the file does not have begins with the short move that
+  // leads away from `from` in the file. It does not where nothing is retracted and that move would
+  // put a visible wall between the nozzle and `to`.
+  bool Departs(const Placement& from, Vertex to, Feature feature) const;
 
   // The travel from `from` to `to` that the file does not have, with what happens after `from`. Of
   // a wipe only the length counts, because it is the same wherever the travel leads.

@@ -103,4 +103,13 @@ Link ReadLink(const GcodeFile& file, size_t index) {
   return link;
 }
 
+const LinkStep* DepartureOf(const Link& link) {
+  if (!link.departs) return nullptr;
+  const auto first = std::find_if(link.steps.begin(), link.steps.end(),
+                                  [](const LinkStep& step) { return IsXyMotion(step.kind); });
+  const auto place = static_cast<size_t>(first - link.steps.begin());
+  const bool departs = first != link.steps.end() && first->kind == StepKind::kTravel;
+  return departs && link.Leaves(place) ? &*first : nullptr;
+}
+
 }  // namespace traverse::gcode

@@ -76,6 +76,9 @@ struct Link {
   Decimal top = 0;
 };
 
+// The step of the short move with which `link` begins; null if it begins with none.
+const LinkStep* DepartureOf(const Link& link);
+
 // Link `index` of the file; 0 < index < file.blocks.size().
 Link ReadLink(const GcodeFile& file, size_t index);
 

@@ -57,14 +57,7 @@ void Slope(const Position& from, const Link& rise, std::vector<Position>& way) {
   way.insert(way.begin(), end);
 }
 
-// The step of the short move with which the link begins.
-bool IsDeparture(const Link& link, size_t i) {
-  if (!link.departs || link.steps[i].kind != StepKind::kTravel) return false;
-  for (size_t before = 0; before < i; ++before) {
-    if (IsXyMotion(link.steps[before].kind)) return false;
-  }
-  return link.Leaves(i);
-}
+bool IsDeparture(const Link& link, size_t i) { return DepartureOf(link) == &link.steps[i]; }
 
 // A travel move behind which the head sinks under what was printed before: it leads to where there
 // is nothing in the way, to the next object of a print one by one.
@@ -166,7 +159,8 @@ Link LinkWriter::WriteDeparture(const LinkRequest& request, const Link& form) {
   for (size_t i = 0; link.Leaves(i); ++i) {
     const LinkStep& step = link.steps[i];
     if (IsXyMotion(step.kind)) {
-      if (exact && (step.kind == StepKind::kWipe || IsDeparture(link, i))) {
+      const bool departs = request.departs && IsDeparture(link, i);
+      if (exact && (step.kind == StepKind::kWipe || departs)) {
         out_.MoveLine(step);
       } else if (step.kind == StepKind::kWipe && !wiped) {
         wiped = true;

@@ -45,6 +45,9 @@ struct LinkRequest {
   // The file wipes after `from`.
   bool wipe = false;
 
+  // New travel may begin with the short move away from `from` with which the file's does.
+  bool departs = true;
+
   // Leave out M73 lines of what is copied unchanged.
   bool without_progress = false;
 };

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "client/gcode/machine/motion_planner.h"
@@ -40,6 +41,70 @@ TEST(LayerWriter, RetractsForAWayThatCrossesAWallFromWhereThePathGoesOnTo) {
   EXPECT_EQ(FromSquareToLine(false).retractions, 0);
   EXPECT_EQ(FromSquareToLine(true).retractions, 1);
   EXPECT_EQ(FromSquareToLine(true).open, 0);
+}
+
+// A wall from whose end the file goes a little inwards before it leaves, two lines within it, and
+// two beside it. Ways that cross no wall are not retracted.
+class LayerWriterDepartures : public ::testing::Test {
+ protected:
+  LayerWriterDepartures() {
+    Sketch sketch;
+    sketch.Square(0, 0, 10).Go(.4, .4).Go(3, 3).Infill(3, 7).Go(5, 7).Infill(5, 3);
+    sketch.GoRetracted(-2, -2).Infill(-2, -6).Go(-4, -6).Infill(-4, -2);
+    file_ = sketch.Read();
+    habit_ = HabitOfNewWays(*file_);
+    donors_.emplace(*file_);
+    writer_.emplace(*file_, file_->layers[0], habit_, *donors_);
+    given_ = writer_->GivenOrder();
+  }
+
+  // What the ways of `order` are estimated at, and what they come to.
+  WayTotals Estimated(const LayerOrder& order) const {
+    WayTotals sum;
+    for (size_t i = 1; i < order.size(); ++i) {
+      sum += writer_->EstimateWay(i, order[i - 1], order[i], TravelModel());
+    }
+    return sum;
+  }
+  PrintTotals Written(const LayerOrder& order) const {
+    std::string text;
+    const PartStart start = StartOfPaths(*file_, order.front());
+    writer_->WritePaths(order, start, text);
+    return Measure(*file_, text, start, &writer_->walls());
+  }
+
+  std::shared_ptr<GcodeFile> file_;
+  RetractionHabit habit_;
+  std::optional<LinkDonors> donors_;
+  std::optional<LayerWriter> writer_;
+  LayerOrder given_;
+};
+
+TEST_F(LayerWriterDepartures, AreNotMadeToTheOtherSideOfAWall) {
+  ASSERT_NE(file_->blocks[1].link & kLinkDeparts, 0);
+  // From the corner at which the wall ends straight to the lines beside it.
+  const LayerOrder order = {given_[0], given_[3], given_[4], given_[1], given_[2]};
+
+  EXPECT_EQ(Written(order).open_crossings, 0);
+  EXPECT_EQ(Estimated(order).open, 0);
+  EXPECT_NEAR(Estimated(order).mm, Written(order).travel_mm, .01);
+}
+
+TEST_F(LayerWriterDepartures, AreMadeWhereTheyAreOfUse) {
+  const LayerOrder order = {given_[0], given_[2], given_[1], given_[3], given_[4]};
+
+  EXPECT_NEAR(Written(order).travel_mm - Estimated(order).mm, 0, .01);
+  const double straight = std::hypot(5, 7);
+  const double bent = std::hypot(.4, .4) + std::hypot(4.6, 6.6);
+  EXPECT_NEAR(writer_->EstimateWay(1, given_[0], given_[2], TravelModel()).mm, bent, .001);
+  EXPECT_GT(writer_->EstimateWay(1, given_[0], given_[2], TravelModel()).seconds,
+            StopToStopSeconds(straight, 150, 1250));
+}
+
+TEST_F(LayerWriterDepartures, TakeTimeInTheFileToo) {
+  const double straight = std::hypot(.4, .4) + std::hypot(2.6, 2.6);
+  EXPECT_NEAR(writer_->EstimateWay(1, given_[0], given_[1], TravelModel()).seconds,
+              StopToStopSeconds(straight, 150, 1250), 1e-6);
 }
 
 // A line that is wiped behind its end, back over 2 of its 10 mm, and one that is not.
