@@ -212,7 +212,10 @@ bool LayerWriter::Departs(const Placement& from, Vertex to, Feature feature) con
   if (way.retracts != leaving->retracts) return false;
   if (way.retracts) return true;
   const TravelWay behind = rules_.WayOf(leaving->as_given, to, feature);
-  return way.crosses || way.grazes || !(behind.crosses || behind.grazes);
+  std::vector<Vertex> bent = {End(from), leaving->as_given};
+  bent.insert(bent.end(), behind.via.begin(), behind.via.end());
+  bent.push_back(to);
+  return way.crosses || way.grazes || !(behind.crosses || walls_.CrossedByWay(bent));
 }
 
 TravelWay LayerWriter::NewWay(const Placement& from, const Placement& to) const {

@@ -47,9 +47,12 @@ TEST(LayerWriter, RetractsForAWayThatCrossesAWallFromWhereThePathGoesOnTo) {
 // two beside it. Ways that cross no wall are not retracted.
 class LayerWriterDepartures : public ::testing::Test {
  protected:
-  LayerWriterDepartures() {
+  LayerWriterDepartures() { Draw(.4, .4); }
+
+  // With the end of the short move.
+  void Draw(double x, double y) {
     Sketch sketch;
-    sketch.Square(0, 0, 10).Go(.4, .4).Go(3, 3).Infill(3, 7).Go(5, 7).Infill(5, 3);
+    sketch.Square(0, 0, 10).Go(x, y).Go(3, 3).Infill(3, 7).Go(5, 7).Infill(5, 3);
     sketch.GoRetracted(-2, -2).Infill(-2, -6).Go(-4, -6).Infill(-4, -2);
     file_ = sketch.Read();
     habit_ = HabitOfNewWays(*file_);
@@ -87,6 +90,15 @@ TEST_F(LayerWriterDepartures, AreNotMadeToTheOtherSideOfAWall) {
 
   EXPECT_EQ(Written(order).open_crossings, 0);
   EXPECT_EQ(Estimated(order).open, 0);
+  EXPECT_NEAR(Estimated(order).mm, Written(order).travel_mm, .01);
+}
+
+// The end of a way lies too near to a wall to count; a bend of it may lie nearer.
+TEST_F(LayerWriterDepartures, ThatEndNearAWallAreNotMadeAcrossIt) {
+  Draw(.1, .3);
+  const LayerOrder order = {given_[0], given_[3], given_[4], given_[1], given_[2]};
+
+  EXPECT_NEAR(writer_->EstimateWay(1, order[0], order[1], TravelModel()).mm, std::hypot(2, 2), .01);
   EXPECT_NEAR(Estimated(order).mm, Written(order).travel_mm, .01);
 }
 
