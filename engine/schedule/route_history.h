@@ -13,7 +13,6 @@
 
 #include "engine/model/point.h"
 #include "engine/model/route.h"
-#include "engine/proof/bounds/lower_bound.h"
 #include "engine/strategy/strategy.h"
 
 namespace traverse {
@@ -28,7 +27,7 @@ struct KnownRoute {
   Point start;
   std::optional<Point> finish;
 
-  BoundMultipliers multipliers;  // from the search for its lower bound
+  std::vector<double> multipliers;  // from the search for its lower bound
 };
 using KnownRoutePtr = std::shared_ptr<const KnownRoute>;
 

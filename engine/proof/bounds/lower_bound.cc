@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
+#include <optional>
 
 #include "engine/cost/route_cost.h"
 #include "engine/proof/bounds/programme_bound.h"
@@ -21,18 +23,18 @@ constexpr int kMostEvaluations = 6;
 constexpr double kLeastGain = 1e-3;
 
 // Rounds of the search that knows points, where it fits, for an effort of up to 1, and beyond by
-// its root; fewer from multipliers that were found before.
-constexpr double kVertexRounds = 4;
+// its root; fewer from multipliers that were found before, and where a search goes on.
+constexpr double kVertexRounds = 8;
 constexpr double kMostVertexRounds = 40;
-constexpr int kVertexRoundsAgain = 2;
+constexpr double kShareOfRoundsAgain = 0.5;
+constexpr double kShareOfRoundsOnward = 0.25;
 constexpr double kShareOfProgrammeAgain = 0.25;
 
 // Of the time that is left, what a search may use: the evaluation after it is what counts.
 constexpr double kSearchShare = 0.4;
 
-int VertexRounds(double effort) {
-  const double rounds = kVertexRounds * std::sqrt(std::max(1.0, effort));
-  return static_cast<int>(std::min(rounds, kMostVertexRounds));
+double VertexRounds(double effort) {
+  return std::min(kVertexRounds * std::sqrt(std::max(1.0, effort)), kMostVertexRounds);
 }
 
 Budget SearchBudget(const Budget& budget) {
@@ -50,45 +52,73 @@ void EvaluateAgain(TreeBound& tree, Budget& budget) {
   }
 }
 
-// The bound of `tree`, made better with `multipliers` of before if they fit, which become those of
-// the bound.
-std::optional<double> BoundByTrees(const LayerProblem& problem, double target, TreeBound& tree,
-                                   BoundMultipliers* multipliers, double effort, Budget& budget) {
+// The bound of `tree`, made better; `search` as that of LowerBound.
+std::optional<double> BoundByTrees(double target, TreeBound& tree, BoundSearch& search,
+                                   Budget& budget) {
   if (budget.ExhaustedNow()) return std::nullopt;
-  const bool known = multipliers != nullptr && multipliers->size() == tree.multipliers().size();
-  if (known) tree.SetMultipliers(*multipliers);
+  const bool known = search.multipliers.size() == tree.multipliers().size();
+  if (known) tree.SetMultipliers(search.multipliers);
   if (!tree.Evaluate(budget)) return std::nullopt;
   for (int round = 0; round < kRounds && !known && tree.lower_bound() < target; ++round) {
-    Budget search = SearchBudget(budget);
-    tree.Ascend(target, kStepsPerRound, search);
+    Budget part = SearchBudget(budget);
+    tree.Ascend(target, kStepsPerRound, part);
     if (!tree.Evaluate(budget)) break;
   }
   EvaluateAgain(tree, budget);
-  if (multipliers != nullptr) *multipliers = tree.multipliers();
-  double bound = tree.lower_bound();
-  if (bound < target && VertexBound::Fits(tree.graph())) {
-    VertexBound vertices(problem, tree.graph(), tree.multipliers());
-    const int rounds = known ? kVertexRoundsAgain : VertexRounds(effort);
-    bound = std::max(bound, vertices.Search(target, rounds, budget));
+  search.multipliers = tree.multipliers();
+  return tree.lower_bound();
+}
+
+std::optional<double> BoundFromNothing(const LayerProblem& problem, double target,
+                                       BoundSearch& search, int rounds, Budget& budget) {
+  TreeBound tree(problem, budget);
+  std::optional<double> bound = BoundByTrees(target, tree, search, budget);
+  if (bound && *bound < target && VertexBound::Fits(tree.graph())) {
+    search.points = std::make_unique<VertexBound>(problem, tree);
+    bound = std::max(*bound, search.points->Search(target, rounds, budget));
   }
-  if (bound < target && effort > 0) {
-    if (known) effort *= kShareOfProgrammeAgain;
-    bound = std::max(bound, ProgrammeBound(problem, target, effort, budget).value_or(0));
-  }
-  return std::min(bound, target);
+  tree.Clear(budget);
+  return bound;
 }
 
 }  // namespace
 
-std::optional<double> LowerBound(const LayerProblem& problem, double target,
-                                 BoundMultipliers* multipliers, double effort, Budget& budget) {
+BoundSearch::BoundSearch() = default;
+BoundSearch::~BoundSearch() = default;
+BoundSearch::BoundSearch(BoundSearch&&) noexcept = default;
+BoundSearch& BoundSearch::operator=(BoundSearch&&) noexcept = default;
+
+void BoundSearch::Clear(Budget& budget) {
+  if (points) points->Clear(budget);
+  points.reset();
+}
+
+std::optional<double> LowerBound(const LayerProblem& problem, double target, BoundSearch* search,
+                                 double effort, Budget& budget) {
   if (problem.plan->paths.empty()) return RouteCost(problem, {});
   if (budget.ExhaustedNow()) return std::nullopt;
-  TreeBound tree(problem, budget);
-  const std::optional<double> bound =
-      BoundByTrees(problem, target, tree, multipliers, effort, budget);
-  tree.Clear(budget);
-  return bound;
+  BoundSearch own;
+  BoundSearch& it = search != nullptr ? *search : own;
+  const bool goes_on = it.points != nullptr;
+  const bool known = goes_on || !it.multipliers.empty();
+  const double rounds = VertexRounds(effort);
+  std::optional<double> bound;
+  if (goes_on) {
+    it.points->SetStartAndFinish(problem.start, problem.finish);
+    bound = it.points->Search(target, static_cast<int>(kShareOfRoundsOnward * rounds), budget);
+    if (budget.was_exhausted() && *bound == 0) return std::nullopt;
+  } else {
+    bound =
+        BoundFromNothing(problem, target, it,
+                         static_cast<int>(known ? kShareOfRoundsAgain * rounds : rounds), budget);
+  }
+  own.Clear(budget);
+  if (!bound) return std::nullopt;
+  if (*bound < target && effort > 0) {
+    if (known) effort *= kShareOfProgrammeAgain;
+    bound = std::max(*bound, ProgrammeBound(problem, target, effort, budget).value_or(0));
+  }
+  return std::min(*bound, target);
 }
 
 }  // namespace traverse

@@ -1,4 +1,4 @@
-// The points of a plan's ends, and those moves between them that an ascent looks at
+// The places of a plan's ends, and those moves between them that an ascent looks at
 // (vertex_bound.h).
 
 #ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_NEAR_MOVES_H_
@@ -11,10 +11,12 @@
 
 #include "engine/cost/travel_cost.h"
 #include "engine/proof/bounds/end_graph.h"
+#include "engine/proof/bounds/places.h"
 
 namespace traverse {
 
-// Points are numbered through all ends, moves in the order in which they came in. Grows only.
+// What is called a point here is a place (places.h): one point of an end, or neighboring ones taken
+// together. Moves are numbered in the order in which they came in, and none goes out again.
 class NearMoves {
  public:
   struct Move {
@@ -24,27 +26,47 @@ class NearMoves {
 
   // The moves between two ends, in a row.
   struct Group {
+    int junction = 0;
+    int ends[2] = {};
     int sides[2] = {};  // among those of all junctions
-    size_t begin = 0;   // moves
+    size_t begin = 0;   // moves, sorted by the first point, then by the second
     size_t end = 0;
+    size_t line = 0;  // the first of its lines
   };
 
-  // Both arguments outlive this.
-  NearMoves(const EndGraph& graph, const TravelCost& cost);
+  // At most so many places of an end to begin with. Both other arguments outlive this.
+  NearMoves(const EndGraph& graph, const TravelCost& cost, size_t most_of_end);
 
-  int point_count() const { return static_cast<int>(end_of_.size()); }
+  const Places& places() const { return places_; }
+  int point_count() const { return places_.count(); }
   int side_count() const { return first_side_.back(); }
-  int end_of(int point) const { return end_of_[static_cast<size_t>(point)]; }
+  int end_of(int point) const { return places_.end_of(point); }
 
   // The points of `end` are [first(end), first(end + 1)).
-  int first(int end) const { return first_[static_cast<size_t>(end)]; }
-  int size(int end) const { return first(end + 1) - first(end); }
+  int first(int end) const { return places_.first(end); }
+  int size(int end) const { return places_.size(end); }
 
   // The first side of `junction` among those of all.
   int first_side(int junction) const { return first_side_[static_cast<size_t>(junction)]; }
 
+  // The move between two points costs no less.
+  double Cost(int a, int b) const { return cost_.OfLength(places_.LeastDistance(a, b)); }
+
+  // A line has the moves of a group at one point. Those of a group are numbered in a row: of the
+  // points of the one end, then of the other.
+  size_t line_count() const { return line_count_; }
+  size_t LineOf(const Group& group, int point) const {
+    const int end = end_of(point);
+    const int before = end == group.ends[0] ? 0 : size(group.ends[0]);
+    return group.line + static_cast<size_t>(before + point - first(end));
+  }
+
   // Brings all moves between two members in, as one group, unless they are.
   void AddPair(int junction, const Junction::Member& a, const Junction::Member& b);
+
+  // Splits points, as Places::Split does, and so their moves. Returns what became of the points;
+  // `parents` becomes [move] what it is a part of.
+  std::vector<int> Split(const std::vector<char>& marked, std::vector<size_t>& parents);
 
   const std::vector<Move>& moves() const { return moves_; }
   const std::vector<Group>& groups() const { return groups_; }
@@ -54,7 +76,7 @@ class NearMoves {
 
   // The move between two points. REQUIRES: it is in `group`.
   size_t IndexOf(const Group& group, int a, int b) const {
-    if (end_of(moves_[group.begin].points[0]) != end_of(a)) std::swap(a, b);
+    if (group.ends[0] != end_of(a)) std::swap(a, b);
     const int from = a - first(end_of(a));
     const int to = b - first(end_of(b));
     const size_t index = group.begin + static_cast<size_t>(from * size(end_of(b)) + to);
@@ -63,13 +85,12 @@ class NearMoves {
   }
 
  private:
-  const EndGraph& graph_;
   const TravelCost& cost_;
-  std::vector<int> first_;       // [end]; one more
-  std::vector<int> end_of_;      // [point]
+  Places places_;
   std::vector<int> first_side_;  // [junction]; one more
   std::vector<Move> moves_;
   std::vector<Group> groups_;
+  size_t line_count_ = 0;
   std::vector<std::vector<std::pair<int, size_t>>> groups_of_;  // [end] other end, group
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <map>
 
 #include "engine/base/at.h"
 
@@ -91,20 +90,6 @@ void SetFinder::Grow(const std::vector<int>& first, double violation, bool has_w
   points_.clear();
 }
 
-// The point and all of another end: no more moves between them than the point is visited.
-void SetFinder::AddNear(int point, double least) {
-  std::map<int, double> moves;  // by end
-  for (const Neighbor& neighbor : neighbors_[At(point)]) {
-    moves[moves_.end_of(neighbor.point)] += neighbor.weight;
-  }
-  for (const auto& [end, weight] : moves) {
-    if (weight < Visited(point) + least) continue;
-    std::vector<int> points{point};
-    for (int p = moves_.first(end); p < moves_.first(end + 1); ++p) points.push_back(p);
-    Add(std::move(points), weight - Visited(point));
-  }
-}
-
 void SetFinder::Add(std::vector<int> points, double violation) {
   const double score = violation / static_cast<double>(points.size());
   found_.push_back({score, std::move(points)});
@@ -133,7 +118,6 @@ void SetFinder::Find(double least, const Take& take, Budget& budget) {
       Grow(first, 0, true, least);
       first.clear();
     }
-    AddNear(point, least);
     for (const Neighbor& neighbor : neighbors_[At(point)]) {
       if (neighbor.point < point || neighbor.weight < kFirstWeight) continue;
       Grow({point, neighbor.point},

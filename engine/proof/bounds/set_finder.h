@@ -38,7 +38,6 @@ class SetFinder {
   void TakeIn(int point);
   int BestNeighbor(bool has_whole, double most_visited, double& gain) const;
   void Grow(const std::vector<int>& first, double violation, bool has_whole, double least);
-  void AddNear(int point, double least);
   void Add(std::vector<int> points, double violation);
   void Offer(const Take& take);
 

@@ -13,26 +13,67 @@ constexpr int kMostIdleCalls = 3;
 
 }  // namespace
 
-// Of the pairs whose moves came in from `first_move` on.
-void SubtourSets::FindMoves(Set& set, size_t first_move) const {
-  const std::vector<int>& points = set.points;
-  const auto behind = [&](size_t p) {  // the points of the same end
-    const int end = moves_.end_of(points[p]);
-    while (p < points.size() && moves_.end_of(points[p]) == end) ++p;
-    return p;
+// Of the groups from `first_group` on.
+void SubtourSets::FindMoves(Set& set, size_t first_group) const {
+  struct OfEnd {
+    int end = 0;
+    const int* begin = nullptr;  // points
+    const int* behind = nullptr;
+    bool is_whole = false;
   };
-  for (size_t a = 0; a < points.size(); a = behind(a)) {
-    for (size_t b = behind(a); b < points.size(); b = behind(b)) {
-      const int ends[2] = {moves_.end_of(points[a]), moves_.end_of(points[b])};
-      const NearMoves::Group* group = moves_.Find(ends[0], ends[1]);
-      if (group == nullptr || group->begin < first_move) continue;
-      for (size_t p = a; p < behind(a); ++p) {
-        for (size_t q = b; q < behind(b); ++q) {
-          set.within.push_back(moves_.IndexOf(*group, points[p], points[q]));
+  std::vector<OfEnd> ends;
+  for (const int& point : set.points) {
+    const int end = moves_.end_of(point);
+    if (ends.empty() || ends.back().end != end) ends.push_back({end, &point, &point, false});
+    ends.back().behind = &point + 1;
+  }
+  for (OfEnd& it : ends) it.is_whole = it.behind - it.begin == moves_.size(it.end);
+  for (size_t i = 0; i < ends.size(); ++i) {
+    for (size_t j = i + 1; j < ends.size(); ++j) {
+      const NearMoves::Group* group = moves_.Find(ends[i].end, ends[j].end);
+      if (group == nullptr || group < &moves_.groups()[0] + first_group) continue;
+      const OfEnd& a = ends[i].is_whole ? ends[j] : ends[i];
+      const OfEnd& b = ends[i].is_whole ? ends[i] : ends[j];
+      if (a.is_whole) {
+        set.groups.push_back(static_cast<size_t>(group - moves_.groups().data()));
+        continue;
+      }
+      for (const int* p = a.begin; p != a.behind; ++p) {
+        if (b.is_whole) {
+          set.lines.push_back(moves_.LineOf(*group, *p));
+          continue;
+        }
+        for (const int* q = b.begin; q != b.behind; ++q) {
+          set.moves.push_back(moves_.IndexOf(*group, *p, *q));
         }
       }
     }
   }
+}
+
+// The moves that the average has within the set.
+double SubtourSets::Within(const Set& set, const AverageSolution& average) const {
+  double sum = 0;
+  for (const size_t i : set.moves) sum += average.moves[i];
+  for (const size_t g : set.groups) {
+    const NearMoves::Group& group = moves_.groups()[g];
+    for (size_t i = group.begin; i < group.end; ++i) sum += average.moves[i];
+  }
+  for (const size_t line : set.lines) {
+    const auto after =
+        std::upper_bound(moves_.groups().begin(), moves_.groups().end(), line,
+                         [](size_t of, const NearMoves::Group& group) { return of < group.line; });
+    const NearMoves::Group& group = *(after - 1);
+    const size_t columns = At(moves_.size(group.ends[1]));
+    const size_t rows = At(moves_.size(group.ends[0]));
+    const size_t index = line - group.line;
+    const bool is_row = index < rows;
+    size_t i = group.begin + (is_row ? index * columns : index - rows);
+    for (size_t k = 0; k < (is_row ? columns : rows); ++k, i += is_row ? 1 : columns) {
+      sum += average.moves[i];
+    }
+  }
+  return sum;
 }
 
 bool SubtourSets::Add(std::vector<int> points, const AverageSolution& average, double least) {
@@ -58,62 +99,60 @@ bool SubtourSets::Add(std::vector<int> points, const AverageSolution& average, d
     }
   }
   set.constant = std::max(0, whole - 1);
-  if (whole == 0) std::erase(set.subtracted, most_visited);
+  if (whole == 0 && most_visited >= 0) {
+    const int end = moves_.end_of(most_visited);
+    std::erase_if(set.subtracted, [&](int point) { return moves_.end_of(point) == end; });
+  }
   FindMoves(set, 0);
-  set.direction = -set.constant;
-  for (const size_t i : set.within) set.direction += average.moves[i];
+  set.direction = Within(set, average) - set.constant;
   for (const int point : set.subtracted) set.direction -= average.points[At(point)];
   if (set.direction < least) return false;
   known_.insert(set.points);
   sets_.push_back(std::move(set));
-  moves_seen_ = moves_.moves().size();
+  groups_seen_ = moves_.groups().size();
   has_lists_ = false;
   return true;
 }
 
-void SubtourSets::AddNear(const NearMoves::Group& group) {
-  const int* first = moves_.moves()[group.begin].points;
-  const int ends[2] = {moves_.end_of(first[0]), moves_.end_of(first[1])};
-  size_t of_end[2] = {};  // sets
-  for (int k = 0; k < 2; ++k) {
-    of_end[k] = sets_.size();
-    const int other = ends[1 - k];
-    for (int p = moves_.first(ends[k]); moves_.size(ends[k]) > 1 && p < moves_.first(ends[k] + 1);
-         ++p) {
-      Set set;
-      for (int q = moves_.first(other); q < moves_.first(other + 1); ++q) set.points.push_back(q);
-      set.points.insert(std::lower_bound(set.points.begin(), set.points.end(), p), p);
-      set.subtracted.push_back(p);
-      known_.insert(set.points);
-      sets_.push_back(std::move(set));
-    }
-  }
-  for (size_t i = group.begin; i < group.end; ++i) {
-    for (int k = 0; k < 2; ++k) {
-      if (moves_.size(ends[k]) == 1) continue;
-      const int point = moves_.moves()[i].points[k];
-      sets_[of_end[k] + At(point - moves_.first(ends[k]))].within.push_back(i);
-    }
-  }
-  moves_seen_ = moves_.moves().size();
-  has_lists_ = false;
-}
-
 void SubtourSets::AddNewMoves() {
-  if (moves_seen_ == moves_.moves().size()) return;
-  for (Set& set : sets_) FindMoves(set, moves_seen_);
-  moves_seen_ = moves_.moves().size();
+  if (groups_seen_ == moves_.groups().size()) return;
+  for (Set& set : sets_) FindMoves(set, groups_seen_);
+  groups_seen_ = moves_.groups().size();
   has_lists_ = false;
 }
 
-double SubtourSets::Weigh(std::vector<double>& penalties, std::vector<double>& paid_back) const {
-  penalties.assign(moves_.moves().size(), 0);
+void SubtourSets::Split(const std::vector<int>& became) {
+  const auto parts = [&](const std::vector<int>& points) {
+    std::vector<int> all;
+    for (const int p : points) {
+      for (int part = became[At(p)]; part < became[At(p) + 1]; ++part) all.push_back(part);
+    }
+    return all;
+  };
+  known_.clear();
+  for (Set& set : sets_) {
+    set.points = parts(set.points);
+    set.subtracted = parts(set.subtracted);
+    for (auto* list : {&set.groups, &set.lines, &set.moves}) list->clear();
+    FindMoves(set, 0);
+    known_.insert(set.points);
+  }
+  groups_seen_ = moves_.groups().size();
+  has_lists_ = false;
+}
+
+double SubtourSets::Weigh(Penalties& penalties, std::vector<double>& paid_back) const {
+  penalties.groups.assign(moves_.groups().size(), 0);
+  penalties.lines.assign(moves_.line_count(), 0);
+  penalties.moves.assign(moves_.moves().size(), 0);
   paid_back.assign(At(moves_.point_count()), 0);
   double sum = 0;
   for (const Set& set : sets_) {
     if (set.multiplier <= 0) continue;
     sum -= set.multiplier * set.constant;
-    for (const size_t i : set.within) penalties[i] += set.multiplier;
+    for (const size_t i : set.groups) penalties.groups[i] += set.multiplier;
+    for (const size_t i : set.lines) penalties.lines[i] += set.multiplier;
+    for (const size_t i : set.moves) penalties.moves[i] += set.multiplier;
     for (const int point : set.subtracted) paid_back[At(point)] += set.multiplier;
   }
   return sum;
@@ -138,14 +177,18 @@ SubtourSets::Lists SubtourSets::ListsOf(size_t count, const Of& of) const {
 }
 
 void SubtourSets::ListSets() {
+  of_groups_ = ListsOf(
+      moves_.groups().size(), [](const Set& set) -> const auto& { return set.groups; });
+  of_lines_ = ListsOf(
+      moves_.line_count(), [](const Set& set) -> const auto& { return set.lines; });
   of_moves_ = ListsOf(
-      moves_.moves().size(), [](const Set& set) -> const auto& { return set.within; });
+      moves_.moves().size(), [](const Set& set) -> const auto& { return set.moves; });
   of_points_ = ListsOf(
       At(moves_.point_count()), [](const Set& set) -> const auto& { return set.subtracted; });
   has_lists_ = true;
 }
 
-void SubtourSets::Take(const std::vector<size_t>& moves, const std::vector<int>& points,
+void SubtourSets::Take(const std::vector<Taken>& moves, const std::vector<int>& points,
                        double weight) {
   if (!has_lists_) ListSets();
   for (Set& set : sets_) set.direction = (1 - weight) * set.direction - weight * set.constant;
@@ -154,7 +197,14 @@ void SubtourSets::Take(const std::vector<size_t>& moves, const std::vector<int>&
       sets_[lists.sets[k]].direction += by;
     }
   };
-  for (const size_t i : moves) add(of_moves_, i, weight);
+  for (const Taken& it : moves) {
+    const NearMoves::Group& group = moves_.groups()[it.group];
+    add(of_groups_, it.group, weight);
+    add(of_moves_, it.move, weight);
+    for (const int point : moves_.moves()[it.move].points) {
+      add(of_lines_, moves_.LineOf(group, point), weight);
+    }
+  }
   for (const int point : points) add(of_points_, At(point), -weight);
 }
 
@@ -196,7 +246,8 @@ double SubtourSets::Scale() const {
   double scale = 0;
   for (const Set& set : sets_) {
     scale += set.multiplier *
-             (set.constant + static_cast<double>(set.subtracted.size() + set.within.size()));
+             (set.constant + static_cast<double>(set.subtracted.size() + set.groups.size() +
+                                                 set.lines.size() + set.moves.size()));
   }
   return scale;
 }

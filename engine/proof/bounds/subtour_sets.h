@@ -26,6 +26,12 @@ struct AverageSolution {
   std::vector<double> points;  // [point] visited
 };
 
+// What moves cost because of multipliers: each has that of its group, its two lines (near_moves.h)
+// and its own.
+struct Penalties {
+  std::vector<double> groups, lines, moves;
+};
+
 class SubtourSets {
  public:
   // `moves` outlives this.
@@ -37,20 +43,24 @@ class SubtourSets {
   // more; with multiplier 0. Whether it was taken.
   bool Add(std::vector<int> points, const AverageSolution& average, double least);
 
-  // Takes the sets of one point and all points of another end, for all moves of `group` between
-  // ends of which the point's has several; with multiplier 0. Nothing may have been known of them.
-  void AddNear(const NearMoves::Group& group);
-
   // Looks for moves within the sets among those that came in since the last call.
   void AddNewMoves();
 
+  // After points were split (NearMoves::Split): what point p was is [became[p], became[p + 1]). The
+  // sets have these points instead.
+  void Split(const std::vector<int>& became);
+
   // What the multipliers add to each move's cost, and what they pay back for visiting a point.
   // Returns the constant that is left.
-  double Weigh(std::vector<double>& penalties, std::vector<double>& paid_back) const;
+  double Weigh(Penalties& penalties, std::vector<double>& paid_back) const;
 
-  // Puts a solution, its moves and the points it visits, into the directions, with `weight` against
-  // that of those before.
-  void Take(const std::vector<size_t>& moves, const std::vector<int>& points, double weight);
+  // Puts a solution, its moves with their groups and the points it visits, into the directions,
+  // with `weight` against that of those before.
+  struct Taken {
+    size_t group = 0;
+    size_t move = 0;
+  };
+  void Take(const std::vector<Taken>& moves, const std::vector<int>& points, double weight);
 
   // Square of the length of the directions, but for those that would make a multiplier negative.
   double SquareOfDirection() const;
@@ -71,9 +81,11 @@ class SubtourSets {
  private:
   struct Set {
     std::vector<int> points;      // ascending
-    std::vector<size_t> within;   // moves
+    std::vector<size_t> groups;   // of which all moves are within the set
+    std::vector<size_t> lines;    // the same, of other groups
+    std::vector<size_t> moves;    // the same, of other lines
     std::vector<int> subtracted;  // points whose visits count on the other side
-    double constant = 0;          // x(within) - y(subtracted) <= constant
+    double constant = 0;          // x(moves within) - y(subtracted) <= constant
     double multiplier = 0;
     double best_multiplier = 0;
     double direction = 0;
@@ -86,7 +98,8 @@ class SubtourSets {
     std::vector<uint32_t> sets;
   };
 
-  void FindMoves(Set& set, size_t first_move) const;
+  void FindMoves(Set& set, size_t first_group) const;
+  double Within(const Set& set, const AverageSolution& average) const;
   void ListSets();
   template <typename Of>
   Lists ListsOf(size_t count, const Of& of) const;
@@ -94,9 +107,11 @@ class SubtourSets {
   const NearMoves& moves_;
   std::vector<Set> sets_;
   std::set<std::vector<int>> known_;  // their points
-  size_t moves_seen_ = 0;
+  size_t groups_seen_ = 0;
   bool has_lists_ = false;
-  Lists of_moves_;   // [move] sets that it is within
+  Lists of_groups_;  // [group] sets that it is within
+  Lists of_lines_;
+  Lists of_moves_;
   Lists of_points_;  // [point] sets that subtract it
 };
 

@@ -29,6 +29,14 @@ namespace traverse {
 
 class TreeBound {
  public:
+  // A pair of ends in `junction`, members of `sides`, and the cost of the move between them.
+  struct Pair {
+    int junction = 0;
+    int ends[2] = {};
+    int sides[2] = {};
+    double cost = 0;
+  };
+
   // `problem` has a path; its plan outlives this. If the budget ends here, ascents gain nothing.
   TreeBound(const LayerProblem& problem, Budget& budget);
 
@@ -48,19 +56,17 @@ class TreeBound {
 
   const EndGraph& graph() const { return graph_; }
 
+  // Gives the graph away. Afterwards this has only its bound, multipliers and pairs.
+  EndGraph TakeGraph() { return std::move(graph_); }
+
+  // Pairs near each other, and all that trees had so far.
+  const std::vector<Pair>& pairs() const { return pairs_; }
+
   // The multipliers of the bound, [end], in the same order for equal plans.
   const std::vector<double>& multipliers() const { return best_multipliers_; }
   void SetMultipliers(const std::vector<double>& multipliers) { multipliers_ = multipliers; }
 
  private:
-  // A pair of ends in `junction`, members of `sides`, and the cost of the move between them.
-  struct Pair {
-    int junction = 0;
-    int ends[2] = {};
-    int sides[2] = {};
-    double cost = 0;
-  };
-
   // The sides of one junction that are not joined yet, in arrays for the inner loop.
   struct Pool;
 

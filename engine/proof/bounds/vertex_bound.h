@@ -9,13 +9,15 @@
 // give a bound; a deflected subgradient, whose direction is what that average violates, finds good
 // ones.
 //
-// For plans whose contours have few points; the ascent looks at near moves alone, and what bounds
-// is a tree over all.
+// Of a contour of many points, neighboring ones are taken together as one place, and split where
+// solutions visit it (places.h). The ascent looks at near moves alone; what bounds is a tree over
+// all.
 
 #ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_VERTEX_BOUND_H_
 #define TRAVERSE_ENGINE_PROOF_BOUNDS_VERTEX_BOUND_H_
 
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,26 +25,37 @@
 #include "engine/base/disjoint_sets.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/model/layer_problem.h"
+#include "engine/model/point.h"
 #include "engine/proof/bounds/end_graph.h"
 #include "engine/proof/bounds/near_moves.h"
+#include "engine/proof/bounds/near_sets.h"
 #include "engine/proof/bounds/subtour_sets.h"
+#include "engine/proof/bounds/tree_bound.h"
 
 namespace traverse {
 
 class VertexBound {
  public:
-  // Whether the plan has contours with a choice of points, and few enough points in all.
+  // Whether the plan has contours with a choice of points, and few enough ends.
   static bool Fits(const EndGraph& graph);
 
-  // Begins with `multipliers`, [end], those of TreeBound. All arguments outlive this. REQUIRES:
-  // Fits.
-  VertexBound(const LayerProblem& problem, const EndGraph& graph,
-              const std::vector<double>& multipliers);
+  // Begins with the multipliers and the pairs of `tree`, and takes its graph over. `problem` need
+  // not outlive this, but its plan does. REQUIRES: Fits.
+  VertexBound(const LayerProblem& problem, TreeBound& tree);
+  VertexBound(const VertexBound&) = delete;
+  VertexBound& operator=(const VertexBound&) = delete;
+
+  // Goes on with other ends of the route, which take a few more rounds.
+  void SetStartAndFinish(Point start, std::optional<Point> finish);
 
   // Searches for multipliers towards `target`, the cost of a route, for so many rounds at most.
   // Returns a bound, 0 if the budget ended before there was one; more rounds never give a lower
-  // one. A round takes 15 to 150 ms for 40 to 220 contours of five points.
+  // one. A round takes 6 to 60 ms for 40 to 320 paths.
   double Search(double target, int most_rounds, Budget& budget);
+
+  // Frees what takes long to free and gives others their turn meanwhile. Afterwards this can only
+  // be destroyed.
+  void Clear(Budget& budget) { graph_.Clear(&budget); }
 
  private:
   // The cheapest move between the sides of a group: cost less multipliers.
@@ -54,8 +67,8 @@ class VertexBound {
     }
   };
 
-  // The same of two ends, any of their points.
-  struct AnyCandidate {
+  // Two ends whose moves are not known, and the cheapest of them: cost less multipliers.
+  struct Extra {
     double cost = 0;
     int junction = 0;
     const Junction::Member* members[2] = {};
@@ -68,31 +81,37 @@ class VertexBound {
     explicit Values(size_t points) : point(points), start(points), finish(points) {}
   };
 
+  void FindCostsOfFirstAndLast();
   double AddFirstAndLast();
   double ChoosePoints();
-  double Least(const NearMoves::Group& group) const;
-  size_t CheapestOf(const NearMoves::Group& group) const;
-  AnyCandidate CheapestOfAny(int junction, const Junction::Member& a,
-                             const Junction::Member& b) const;
-  bool ListAll(std::vector<AnyCandidate>& all, Budget& budget);
+  double Weigh();
+  double Least(size_t group) const;
+  size_t CheapestOf(size_t group) const;
+  double LeastOfUnknown(const Junction::Member& a, const Junction::Member& b, double most) const;
+  double JoinKnown(const std::vector<Extra>& extras);
+  void Keep(std::vector<Extra>& extras) const;
+  bool FindExtras(std::vector<Extra>& extras, Budget& budget);
   double EvaluateNear();
   double EvaluateAll(Budget& budget);
-  void AddNearest(const std::vector<AnyCandidate>& candidates, Budget& budget);
-  double Rounding() const;
+  void AddPairs(const TreeBound& tree);
+  void Refine();
   void Average();
   void Cut(Budget& budget);
   double SquareOfDirection() const;
   void Step(double length);
   void Ascend(double target, Budget& budget);
 
-  const EndGraph& graph_;
+  EndGraph graph_;
   const TravelCost cost_;
+  Point start_;
+  std::optional<Point> finish_;
   NearMoves moves_;
+  NearSets near_;
   SubtourSets sets_;
   std::vector<double> start_costs_;  // [point], infinite where a route cannot begin
   std::vector<double> finish_costs_;
-  std::vector<double> penalties_;  // [move] by sets_
-  std::vector<double> paid_back_;  // [point] by sets_
+  Penalties penalties_;            // by all sets
+  std::vector<double> paid_back_;  // [point] by all sets
 
   Values multipliers_;
   Values best_multipliers_;
@@ -100,17 +119,20 @@ class VertexBound {
   AverageSolution average_;
   double factor_ = 1;  // of steps
   int steps_ = 0;
+  int rounds_ = 0;
+  double mean_move_ = 0;  // of a route that costs as much as the target
 
   // Of the last evaluation.
-  std::vector<int> chosen_;      // [end] point
-  std::vector<Candidate> tree_;  // where near moves alone were looked at
-  std::vector<size_t> tree_moves_;
-  int first_ = 0;  // points of the moves from the start and to the finish
+  std::vector<int> chosen_;                // [end] point
+  std::vector<Candidate> tree_;            // where near moves alone were looked at
+  std::vector<SubtourSets::Taken> taken_;  // its moves
+  int first_ = 0;                          // points of the moves from the start and to the finish
   int last_ = 0;
 
   // Scratch.
   std::vector<Candidate> candidates_;
-  DisjointSets joined_;  // the sides of all junctions
+  DisjointSets joined_;       // the sides of all junctions
+  std::vector<double> most_;  // [junction] cost of a move that a tree over known ones has
 };
 
 }  // namespace traverse

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -149,18 +151,62 @@ TEST(LowerBound, KnowsThatAContourIsLeftWhereItIsEntered) {
   EXPECT_GT(bound, 0.9 * cost) << bound / cost;
 }
 
+// Contours of many points: which of them count is found out.
+TEST(LowerBound, IsNearTheRouteAroundContoursOfManyPoints) {
+  Rng rng(11);
+  std::vector<Path> paths;
+  for (int i = 0; i < 40; ++i) {
+    const Point middle{100 * rng.Unit(), 100 * rng.Unit()};
+    std::vector<Point> circle;
+    for (int k = 0; k < 200; ++k) {
+      const double angle = k * std::numbers::pi / 100;
+      circle.push_back({middle.x + 3 * std::cos(angle), middle.y + 3 * std::sin(angle)});
+    }
+    paths.push_back(MakeContour(std::move(circle)));
+  }
+  const OwnedProblem owned(testing::AnyOrderPlan(std::move(paths)));
+  Budget budget;
+  const Solution found = (*MakeStrategy("auto", {}))->Solve(owned.problem, budget);
+  const double cost = RouteCost(owned.problem, found.route);
+
+  const double bound = *LowerBound(owned.problem, cost, nullptr, 1, budget);
+
+  EXPECT_LE(bound, cost);
+  EXPECT_GT(bound, 0.85 * cost) << bound / cost;
+}
+
+// From another start of the same plan a search goes on where it was.
+TEST(LowerBound, IsNearlyAsGoodFromAnotherStart) {
+  OwnedProblem owned(testing::ClusterPlan(40));
+  Budget budget;
+  const auto cost = [&] {
+    return RouteCost(owned.problem,
+                     (*MakeStrategy("auto", {}))->Solve(owned.problem, budget).route);
+  };
+  BoundSearch search;
+  LowerBound(owned.problem, cost(), &search, 1, budget);
+  owned.problem.start = Point{-20, 10};
+  const double target = cost();
+
+  const double afresh = *LowerBound(owned.problem, target, nullptr, 1, budget);
+  const double onward = *LowerBound(owned.problem, target, &search, 1, budget);
+
+  EXPECT_GT(onward, 0.98 * afresh);
+}
+
 // What was found for one start bounds the routes from another one.
 TEST(LowerBound, IsValidWithMultipliersOfAnotherStart) {
   for (uint64_t seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     OwnedProblem owned = testing::RandomProblem(seed, {.max_paths = 6});
     Budget budget;
-    BoundMultipliers multipliers;
-    LowerBound(owned.problem, 1e6, &multipliers, 1, budget);
+    BoundSearch search;
+    LowerBound(owned.problem, 1e6, &search, 1, budget);
+    if (seed % 2 == 0) search.Clear(budget);  // its multipliers alone remain
     owned.problem.start = Point{-50, 20};
     const double best = testing::BruteForce(owned.problem).cost;
 
-    const std::optional<double> bound = LowerBound(owned.problem, 1e6, &multipliers, 1, budget);
+    const std::optional<double> bound = LowerBound(owned.problem, 1e6, &search, 1, budget);
 
     ASSERT_TRUE(bound.has_value());
     EXPECT_LE(*bound, best + 1e-9 * (1 + best));

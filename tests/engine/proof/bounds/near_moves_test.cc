@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -27,7 +28,7 @@ TEST(NearMoves, APairHasAllMovesAndEachOnce) {
   const testing::OwnedProblem owned = TwoLines(3, 4);
   const EndGraph graph{PlanTree(owned.plan())};
   const TravelCost cost(owned.problem);
-  NearMoves moves(graph, cost);
+  NearMoves moves(graph, cost, 1000);
   const auto& members = graph.junctions[0].members;
 
   moves.AddPair(0, members[0], members[1]);
@@ -49,6 +50,35 @@ TEST(NearMoves, APairHasAllMovesAndEachOnce) {
       EXPECT_EQ(&moves.moves()[index], &move);
     }
     EXPECT_DOUBLE_EQ(move.cost, cost.Base(place(move.points[0]), place(move.points[1])));
+  }
+}
+
+TEST(NearMoves, OfPlacesCostAsMuchAsTheirNearestPoints) {
+  const testing::OwnedProblem owned = TwoLines(8, 8);
+  const EndGraph graph{PlanTree(owned.plan())};
+  const TravelCost cost(owned.problem);
+  NearMoves moves(graph, cost, 2);
+  const auto& members = graph.junctions[0].members;
+  moves.AddPair(0, members[0], members[1]);
+  ASSERT_EQ(moves.point_count(), 4);
+  ASSERT_EQ(moves.moves().size(), 4u);
+
+  std::vector<size_t> parents;
+  const std::vector<int> became = moves.Split({1, 0, 0, 1}, parents);
+
+  EXPECT_EQ(became, (std::vector<int>{0, 2, 3, 4, 6}));
+  ASSERT_EQ(moves.moves().size(), 9u);
+  // The second end is the first of the group.
+  EXPECT_EQ(parents, (std::vector<size_t>{0, 0, 1, 2, 2, 3, 2, 2, 3}));
+  EXPECT_EQ(moves.line_count(), 6u);
+  for (const NearMoves::Move& move : moves.moves()) {
+    const auto from = moves.places().points(move.points[0]);
+    const auto to = moves.places().points(move.points[1]);
+    double least = 1e9;
+    for (const Point& p : from) {
+      for (const Point& q : to) least = std::min(least, cost.Base(p, q));
+    }
+    EXPECT_DOUBLE_EQ(move.cost, least);
   }
 }
 

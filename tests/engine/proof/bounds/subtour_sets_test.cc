@@ -70,7 +70,7 @@ class SubtourSetsTest : public ::testing::Test {
   testing::OwnedProblem owned_;
   const EndGraph graph_;
   const TravelCost cost_;
-  NearMoves moves_{graph_, cost_};
+  NearMoves moves_{graph_, cost_, 1000};
   AverageSolution average_;
 };
 
@@ -121,12 +121,12 @@ TEST_F(SubtourSetsTest, AWayAroundSomePointsOfContoursIsFoundAndPaysForIt) {
   ASSERT_TRUE(sets.Add(found[0], average_, 0.1));
   EXPECT_FALSE(sets.Add({c, b, a}, average_, 0.1)) << "it is known";
   sets.Step(2);
-  std::vector<double> penalties;
+  Penalties penalties;
   std::vector<double> paid_back;
   EXPECT_EQ(sets.Weigh(penalties, paid_back), 0);
 
   // 1.5 moves where 1.5 visits less the 0.5 of one are allowed: 0.5 too many, times 2.
-  EXPECT_EQ(std::count(penalties.begin(), penalties.end(), 1.0), 3);
+  EXPECT_EQ(std::count(penalties.moves.begin(), penalties.moves.end(), 1.0), 3);
   EXPECT_EQ(std::count(paid_back.begin(), paid_back.end(), 1.0), 2);
 }
 
