@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -106,6 +107,40 @@ TEST(LinkClusters, LinksEachTwoClusters) {
   EXPECT_TRUE(found.Linked(2, 6));  // left to top
   EXPECT_TRUE(found.Linked(5, 7));  // right to top
   EXPECT_EQ(found.of(4).size(), 2u);
+}
+
+TEST(LinkClusters, LinksAnyTwoClustersWhereTheyAreNearest) {
+  constexpr int kClusters = 4;
+  for (uint64_t seed = 1; seed <= 50; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    Rng rng(seed);
+    std::vector<Point> points;
+    std::vector<CircledContour> contours;
+    for (int i = 0; i < 15; ++i) {
+      points.push_back({100 * rng.Unit(), 100 * rng.Unit()});
+      contours.push_back({{points.back()}, points.back(), 0});
+    }
+    points.push_back({0, 0});  // the origin
+    Neighborhood found(static_cast<int>(points.size()));
+    for (int i = kClusters; i < found.node_count(); ++i) found.Link(i - kClusters, i);
+    Budget budget;
+
+    LinkClusters(contours, points.back(), found, budget);
+
+    for (int a = 0; a < kClusters; ++a) {
+      for (int b = a + 1; b < kClusters; ++b) {
+        std::tuple<double, int, int> nearest{std::numeric_limits<double>::infinity(), 0, 0};
+        for (int i = a; i < found.node_count(); i += kClusters) {
+          for (int j = b; j < found.node_count(); j += kClusters) {
+            const double distance =
+                Distance(points[static_cast<size_t>(i)], points[static_cast<size_t>(j)]);
+            nearest = std::min(nearest, {distance, i, j});
+          }
+        }
+        EXPECT_TRUE(found.Linked(std::get<1>(nearest), std::get<2>(nearest)));
+      }
+    }
+  }
 }
 
 // More clusters than are linked two by two: pairs of contours far from each other.
