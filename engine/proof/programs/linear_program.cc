@@ -181,8 +181,8 @@ LinearProgram::Status LinearProgram::SolvePrimal(Budget& budget) {
   return impl_->Solve(budget, kNoLimit, [](ClpSimplex& simplex) { simplex.primal(); });
 }
 
-LinearProgram::Status LinearProgram::SolveAfresh(Budget& budget) {
-  return impl_->Solve(budget, kNoLimit, [](ClpSimplex& simplex) {
+LinearProgram::Status LinearProgram::SolveAfresh(Budget& budget, int most_iterations) {
+  return impl_->Solve(budget, most_iterations, [](ClpSimplex& simplex) {
     simplex.allSlackBasis(/*resetSolution=*/true);
     simplex.dual();
   });

@@ -76,7 +76,7 @@ class LinearProgram {
 
   // Starts without a basis. If a solve ended without an answer because rounding errors had added up
   // in its basis, this one may still find the answer.
-  Status SolveAfresh(Budget& budget);
+  Status SolveAfresh(Budget& budget, int most_iterations = kNoLimit);
 
   // What all solves took: the sum of iterations times rows, to which time is about proportional.
   double work() const;

@@ -35,7 +35,8 @@ constexpr double kFractional = 1e-6;
 
 class PathTspSolver::Search {
  public:
-  explicit Search(PathTsp problem) : problem_(std::move(problem)), relaxation_(problem_) {
+  Search(PathTsp problem, int most_iterations)
+      : problem_(std::move(problem)), relaxation_(problem_), most_iterations_(most_iterations) {
     std::vector<TspMove> moves;
     for (int p = 0; p < problem_.ports; ++p) {
       AddNearest(p, moves);
@@ -72,11 +73,15 @@ class PathTspSolver::Search {
       }
     }
     double bound = std::min(best_, least_integral_);
-    if (stopped_) {
-      if (open_.empty()) bound = std::min(bound, root);
-      for (const Node& node : open_) bound = std::min(bound, node.bound);
+    if (stopped_ && open_.empty()) bound = std::min(bound, root);
+    for (const auto* nodes : {&open_, &failed_}) {
+      for (const Node& node : *nodes) {
+        if (node.bound < best_) stopped_ = true;
+        bound = std::min(bound, node.bound);
+      }
     }
     open_.clear();
+    failed_.clear();
     result_.lower_bound = bound;
     result_.complete = !stopped_;
     return result_;
@@ -166,11 +171,11 @@ class PathTspSolver::Search {
   }
 
   // Tries again without the basis unless there is an optimum, or surely no point.
-  Status SolveSurely() {
-    const Status status = lp().SolveDual(*budget_);
+  Status SolveSurely(int most_iterations = LinearProgram::kNoLimit) {
+    const Status status = lp().SolveDual(*budget_, most_iterations);
     if (status == Status::kOptimal) return status;
     if (status == Status::kInfeasible && lp().IsSurelyInfeasible()) return status;
-    return lp().SolveAfresh(*budget_);
+    return lp().SolveAfresh(*budget_, most_iterations);
   }
 
   // Brings in all the moves that the relaxation wants.
@@ -203,20 +208,37 @@ class PathTspSolver::Search {
     return true;
   }
 
+  // Nodes that failed are tried again, among other cuts.
   void Explore() {
+    ExploreOpen();
+    if (stopped_) return;
+    open_ = std::exchange(failed_, {});
+    ExploreOpen();
+  }
+
+  void ExploreOpen() {
     while (!open_.empty()) {
-      Node node = open_.back();
-      if (node.bound >= best_) {
+      if (open_.back().bound >= best_) {
         open_.pop_back();
+        TakeLowest();
         continue;
       }
+      Node node = open_.back();
       Apply(node);
       ++nodes_;
-      const bool pruned = Process(node);
+      const bool done = Process(node);
       if (stopped_) return;
       open_.pop_back();
-      if (!pruned) Branch(node);
+      if (done || !Branch(node)) TakeLowest();
     }
+  }
+
+  // Puts the node of the lowest bound on top.
+  void TakeLowest() {
+    if (open_.empty()) return;
+    const auto lowest = std::min_element(
+        open_.begin(), open_.end(), [](const Node& a, const Node& b) { return a.bound < b.bound; });
+    std::swap(*lowest, open_.back());
   }
 
   void ReleaseAll() {
@@ -230,15 +252,16 @@ class PathTspSolver::Search {
     for (const auto& [column, in] : applied_) relaxation_.Fix(column, in);
   }
 
-  // Solves and cuts; true if nothing better than best_ can be left in the node.
+  // Solves and cuts; true if nothing better than best_ can be left in the node, or it failed.
   bool Process(Node& node) {
     int without_gain = 0;
     while (true) {
-      const Status status = SolveSurely();
+      const Status status = SolveSurely(most_iterations_);
       if (status == Status::kInfeasible && lp().IsSurelyInfeasible()) return true;
       if (status != Status::kOptimal) {
-        stopped_ = true;
-        return false;
+        stopped_ = budget_->ExhaustedNow();
+        if (!stopped_) failed_.push_back(node);
+        return true;
       }
       const double bound = lp().SafeBound();
       without_gain = bound > node.bound + kGain * (best_ - bound) ? 0 : without_gain + 1;
@@ -253,17 +276,18 @@ class PathTspSolver::Search {
     return true;
   }
 
-  // Both ways of the move that promises the most, the better one on top.
-  void Branch(const Node& node) {
+  // Both ways of the move that promises the most, the better one on top. False if there is none, so
+  // that the node failed.
+  bool Branch(const Node& node) {
     std::vector<std::pair<double, int>> fractional;
     for (int j = 0; j < relaxation_.column_count(); ++j) {
       const double x = lp().Primal(j);
       if (x > kFractional && x < 1 - kFractional) fractional.emplace_back(std::abs(x - 0.5), j);
     }
     if (fractional.empty()) {
-      // Integral but no path, and no cut found at this violation: rounding. Give the node up.
-      stopped_ = true;
-      return;
+      // Integral but no path, and no cut found at this violation: rounding.
+      failed_.push_back(node);
+      return false;
     }
     std::sort(fractional.begin(), fractional.end());
     if (fractional.size() > kStrongCandidates) fractional.resize(kStrongCandidates);
@@ -295,6 +319,7 @@ class PathTspSolver::Search {
       child.fixed.emplace_back(chosen, in);
       open_.push_back(std::move(child));
     }
+    return true;
   }
 
   const PathTsp problem_;
@@ -305,14 +330,16 @@ class PathTspSolver::Search {
   double best_ = 0;                // nothing from here up is of interest
   double most_work_ = kUnlimited;  // of the programmes, where the root alone is solved
   double bound_now_ = 0;           // of the last solution at the root
+  const int most_iterations_;
   std::vector<Node> open_;
+  std::vector<Node> failed_;  // whose programmes could not be solved
   std::vector<std::pair<int, bool>> applied_;
   bool stopped_ = false;
   int nodes_ = 0;
 };
 
-PathTspSolver::PathTspSolver(PathTsp problem)
-    : search_(std::make_unique<Search>(std::move(problem))) {
+PathTspSolver::PathTspSolver(PathTsp problem, int most_iterations)
+    : search_(std::make_unique<Search>(std::move(problem), most_iterations)) {
   assert(search_->port_count() >= 2);
 }
 PathTspSolver::~PathTspSolver() = default;

@@ -59,8 +59,12 @@ class PathTspSolver {
     bool complete = false;  // lower_bound is the least cost, or at least `cutoff`
   };
 
+  // Programmes of a node, but for the root's, that take more iterations of the simplex method leave
+  // it open, as do those that rounding spoils. It is tried once more when all others are done.
+  static constexpr int kMostIterations = 100'000;
+
   // REQUIRES: there are at least two items.
-  explicit PathTspSolver(PathTsp problem);
+  explicit PathTspSolver(PathTsp problem, int most_iterations = kMostIterations);
   ~PathTspSolver();
 
   // `start`: cost of beginning at each port, kUnreached if that is not possible. `known`: a path in

@@ -72,14 +72,13 @@ TEST(PathTspSolver, IsAskedAgainWithOtherStarts) {
   }
 }
 
-// Clusters of five points in the plane, as GTSPLIB has them, are within reach at once; walks of
-// half as much at each of two points of a cluster are what generalised subtours forbid.
-TEST(PathTspSolver, ProvesClustersOfPoints) {
+// Clusters of five points in the plane, as GTSPLIB has them.
+SmallTsp Clusters(int count) {
   Rng rng(5);
   SmallTsp instance;
   PathTsp& tsp = instance.tsp;
   std::vector<Point> points;
-  for (int item = 0; item < 30; ++item) {
+  for (int item = 0; item < count; ++item) {
     const Point middle{100 * rng.Unit(), 100 * rng.Unit()};
     for (int i = 0; i < 5; ++i) {
       tsp.item.push_back(item);
@@ -93,17 +92,54 @@ TEST(PathTspSolver, ProvesClustersOfPoints) {
     tsp.finish.push_back(0);
     instance.start.push_back(Distance(p, {0, 0}));
   }
-  const double given = TspCostOf(instance, FirstPorts(tsp));
-  PathTspSolver solver(tsp);
+  return instance;
+}
+
+// They are within reach at once; walks of half as much at each of two points of a cluster are what
+// generalised subtours forbid.
+TEST(PathTspSolver, ProvesClustersOfPoints) {
+  const SmallTsp instance = Clusters(30);
+  const double given = TspCostOf(instance, FirstPorts(instance.tsp));
+  PathTspSolver solver(instance.tsp);
   Budget budget;
 
   const PathTspSolver::Result result = solver.Solve(instance.start, given, {}, budget);
-  const double root = PathTspSolver(tsp).RootBound(instance.start, given, budget);
+  const double root = PathTspSolver(instance.tsp).RootBound(instance.start, given, budget);
 
   EXPECT_TRUE(result.complete);
   EXPECT_NEAR(result.lower_bound, result.cost, 1e-6 * result.cost);
   EXPECT_NEAR(TspCostOf(instance, result.path), result.cost, 1e-9 * result.cost);
   EXPECT_GT(root, 0.97 * result.cost);
+}
+
+// A node whose programme is not solved stays open, and the others are done all the same.
+TEST(PathTspSolver, GoesOnAfterANodeThatFails) {
+  int failed = 0;
+  for (const int items : {20, 24, 28}) {
+    SCOPED_TRACE(items);
+    const SmallTsp instance = Clusters(items);
+    const double given = TspCostOf(instance, FirstPorts(instance.tsp));
+    Budget budget;
+    const PathTspSolver::Result best =
+        PathTspSolver(instance.tsp).Solve(instance.start, given, {}, budget);
+    ASSERT_TRUE(best.complete);
+    for (const int most_iterations : {1, 25}) {
+      SCOPED_TRACE(most_iterations);
+      PathTspSolver solver(instance.tsp, most_iterations);
+      const PathTspSolver::Result result =
+          solver.Solve(instance.start, best.cost * 1.01, {}, budget);
+      const double root =
+          PathTspSolver(instance.tsp).RootBound(instance.start, best.cost * 1.01, budget);
+
+      EXPECT_LE(result.lower_bound, best.cost * (1 + 1e-9));
+      EXPECT_GE(result.lower_bound, root * (1 - 1e-9));
+      if (result.complete) {
+        EXPECT_GE(result.lower_bound, best.cost * (1 - 1e-9));
+      }
+      if (!result.complete && solver.nodes() > 4) ++failed;
+    }
+  }
+  EXPECT_GT(failed, 0);
 }
 
 TEST(PathTspSolver, BoundsWhatItCannotSolveInTime) {
