@@ -55,7 +55,7 @@ double UsualFlow(const TraceChunk& chunk, const std::vector<uint32_t>& skins) {
 bool GoesStraightOn(const TraceMove& move, const Piece& last) {
   const double length = move.length_mm();
   const double before = DistanceOf(last.a, last.b);
-  if (length > kLongestStraightMm || length <= 0 || before <= 0) return false;
+  if (move.arc || length > kLongestStraightMm || length <= 0 || before <= 0) return false;
   const double dot = (move.to.x - move.from.x) * (last.b.x - last.a.x) +
                      (move.to.y - move.from.y) * (last.b.y - last.a.y);
   return dot >= kStraightCosine * length * before;
@@ -244,9 +244,7 @@ uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
     if (move.feed > traced.feed && !any_speed) break;
     if (move.z_to_mm != move.z_from_mm) break;
     const bool straight = m == link.first_move && !any_speed && GoesStraightOn(move, last);
-    const bool along =
-        LiesOn(move.to, pieces) &&
-        LiesOn({(move.from.x + move.to.x) / 2, (move.from.y + move.to.y) / 2}, pieces);
+    const bool along = LiesOn(move.to, pieces) && LiesOn(move.middle, pieces);
     if (!straight && !along) break;
   }
   return m - link.first_move;

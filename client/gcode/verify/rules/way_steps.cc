@@ -43,13 +43,13 @@ bool IsNothing(const TraceMove& move) {
          move.length_mm() < kShortestStepMm;
 }
 
-// What the link to `path` does behind the line that ends the section before.
-std::vector<WayStep> StepsTo(const TraceChunk& chunk, uint32_t path, uint32_t section) {
+// What the link to `path` does, without its first `skipped` moves.
+std::vector<WayStep> StepsTo(const TraceChunk& chunk, uint32_t path, uint32_t skipped) {
   std::vector<WayStep> steps;
   const TraceLink& link = chunk.links[path];
-  for (uint32_t m = link.first_move; m < link.end_move; ++m) {
+  for (uint32_t m = link.first_move + skipped; m < link.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
-    if (move.section < section || IsNothing(move)) continue;
+    if (IsNothing(move)) continue;
     const bool wipes = move.kind == MoveKind::kWipe;
     const Micro filament = wipes ? 0 : move.filament;
     const WayStep step{
@@ -65,14 +65,14 @@ std::vector<WayStep> StepsTo(const TraceChunk& chunk, uint32_t path, uint32_t se
   return steps;
 }
 
-// How much farther the way leads than straight to its path.
-double ExcessTo(const TraceChunk& chunk, uint32_t path, uint32_t section, double& straight_mm) {
+// How much farther the way behind unknown lines leads than straight to its path.
+double ExcessTo(const TraceChunk& chunk, uint32_t path, double& straight_mm) {
   const TraceLink& link = chunk.links[path];
   double length = 0;
   const TraceMove* first = nullptr;
-  for (uint32_t m = link.first_move; m < link.end_move; ++m) {
+  for (uint32_t m = link.first_move + link.fixed; m < link.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
-    if (move.section < section || !move.sideways()) continue;
+    if (!move.sideways()) continue;
     if (first == nullptr) first = &move;
     length += move.length_mm();
   }
@@ -81,11 +81,11 @@ double ExcessTo(const TraceChunk& chunk, uint32_t path, uint32_t section, double
 }
 
 // No farther than twice as far as straight, and as much as it winds there.
-bool Winds(const LayerPair& layer, const TraceSection& was, const TraceSection& is) {
+bool Winds(const LayerPair& layer, uint32_t path_was, uint32_t path_is) {
   constexpr double kSlackMm = 2;
   double straight = 0;
-  const double had = ExcessTo(layer.was(), was.first_path, was.index, straight);
-  const double has = ExcessTo(layer.is(), is.first_path, is.index, straight);
+  const double had = ExcessTo(layer.was(), path_was, straight);
+  const double has = ExcessTo(layer.is(), path_is, straight);
   return has > had + straight + kSlackMm;
 }
 
@@ -131,16 +131,17 @@ double ApexOf(const std::vector<WayStep>& steps) {
 
 void CheckScriptedWays(const LayerPair& layer, LayerFindings& findings) {
   for (size_t i = 0; i < layer.section_count(); ++i) {
-    const TraceSection& was = layer.SectionWas(i);
-    const TraceSection& is = layer.SectionIs(i);
-    if (!layer.was().links[was.first_path].scripted) continue;
-    const uint32_t behind = layer.is().LineOf(layer.is().paths[is.first_path]);
+    const uint32_t was = layer.SectionWas(i).first_path;
+    const uint32_t is = layer.SectionIs(i).first_path;
+    if (!layer.was().links[was].scripted) continue;
+    const uint32_t before = layer.was().LineOf(layer.was().paths[was]);
+    const uint32_t behind = layer.is().LineOf(layer.is().paths[is]);
     if (Winds(layer, was, is)) {
-      findings.breaks.push_back({VerifyRule::kBounds, 0, behind, layer.index(),
-                                 "behind lines that are not known the way winds to this path"});
+      findings.breaks.push_back({VerifyRule::kBounds, before, behind, layer.index(),
+                                 "the travel behind unknown lines winds to this path"});
     }
-    std::vector<WayStep> had = StepsTo(layer.was(), was.first_path, was.index);
-    std::vector<WayStep> has = StepsTo(layer.is(), is.first_path, is.index);
+    std::vector<WayStep> had = StepsTo(layer.was(), was, layer.was().links[was].fixed);
+    std::vector<WayStep> has = StepsTo(layer.is(), is, layer.is().links[is].fixed);
     // To a path that begins where the head is, no way leads.
     if (!Goes(had) || !Goes(has)) {
       std::erase_if(had, IsTravel);
@@ -151,9 +152,9 @@ void CheckScriptedWays(const LayerPair& layer, LayerFindings& findings) {
                       [](const WayStep& a, const WayStep& b) { return a.Like(b); });
     if (one == had.end() && other == has.end()) continue;
     findings.breaks.push_back(
-        {VerifyRule::kScripts, one == had.end() ? 0 : one->line,
+        {VerifyRule::kScripts, one == had.end() ? before : one->line,
          other == has.end() ? behind : other->line, layer.index(),
-         absl::StrFormat("behind lines that are not known: a %s, not a %s",
+         absl::StrFormat("a %s behind unknown lines; the original has another %s there",
                          other == has.end() ? "path" : MoveKindName(other->kind),
                          one == had.end() ? "path" : MoveKindName(one->kind))});
   }

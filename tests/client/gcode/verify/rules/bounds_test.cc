@@ -57,6 +57,11 @@ TEST(VerifyBounds, NoWaySweepsAlongAnArcOfItsOwn) {
   EXPECT_EQ(Broken(a, arc), "bounds");
   EXPECT_EQ(Broken(arc, arc), "");
   EXPECT_EQ(Broken(arc, a), "");
+  // Nor from one point of the path before to another one.
+  const std::string along = kHead + With(kSquare, "G1 X10 Y10 E.4\n", "G1 X10 Y10.5 E.4\n") +
+                            "G1 X10 Y14 F1200\nG1 X50 Y50 F9000\n" + kWall + "G1 X60 Y50 E.4\n";
+  EXPECT_EQ(Broken(along, along), "");
+  EXPECT_NE(Broken(along, With(along, "G1 X10 Y14 F1200", "G3 X10 Y14 I0 J1.75 F1200")), "");
 }
 
 TEST(VerifyBounds, NoWayLeadsFarAway) {

@@ -68,6 +68,17 @@ TEST(VerifyScripts, LeaveThePrintAsTheyDid) {
               HasSubstr("scripts"));
 }
 
+// Also where the next path has another height.
+TEST(VerifyScripts, WaysBehindUnknownLinesToALayerGoAsTheyDid) {
+  const std::string way = "G1 X0 Y6 F9000\nG1 E1 F2100\n";
+  const std::string a = kHead + kTwo + "G1 E-1 F2100\nG1 Z.4 F9000\nM971 S11\n" + way +
+                        ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y6 E.3\n" +
+                        Line("Internal infill", "X9 Y8", "X0 Y8");
+  EXPECT_EQ(Broken(a, a), "");
+  const std::string early = "G1 E.5 F2100\nG1 X0 Y6 F9000\nG1 E.5 F2100\n";
+  EXPECT_THAT(Broken(a, With(a, way, early), Policy::kFree), HasSubstr("scripts"));
+}
+
 // A tower's filament is pushed back where the head stood, not where it goes on.
 TEST(VerifyScripts, WaysToUnknownLinesGoAsTheyDid) {
   const std::string way = "G1 E-5 F2100\nG1 E2 F2000\nG1 X9 Y7 F2400\n";
