@@ -20,6 +20,12 @@ uint64_t DigestOf(const Motion& motion) {
   return Mix(digest, static_cast<uint64_t>(motion.filament));
 }
 
+// A comment that says of what the next paths are, or a mark of a wipe: what it leads to is
+// compared, and in a script also the line.
+bool IsStateComment(const VerifyLine& line) {
+  return line.role == LineRole::kNothing && !line.text.empty() && line.text[0] == ';';
+}
+
 // Comments that slicers put after the mark of a layer, where scripts look for them.
 bool SaysOfLayer(std::string_view text) {
   constexpr std::string_view kNotes[] = {
@@ -80,7 +86,7 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
   // Unknown commands leave the head elsewhere, so a move to where it was does move it.
   if ((line.moves || line.stays) && (in_script_ || section_.deposits.count == 0)) {
     section_.moves = Mix(section_.moves, DigestOf(machine.motion()));
-  } else if (line.sets && (in_script_ || section_.deposits.count == 0)) {
+  } else if ((line.sets || IsStateComment(line)) && (in_script_ || section_.deposits.count == 0)) {
     section_.moves = Mix(section_.moves, DigestOf(line.text));
   }
   if (line.travels) section_.lowest = std::min(section_.lowest, machine.z());

@@ -45,10 +45,10 @@ bool SinksBetween(const TraceChunk& is, uint32_t link, const TraceMove& before,
 void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped, LayerFindings& findings) {
   const TraceChunk& is = layer.is();
   const TraceLink& traced = is.links[link];
-  if (traced.scripted) return;
   double length = 0;
   const TraceMove* before = nullptr;
-  for (uint32_t m = traced.first_move + skipped; m < traced.end_move; ++m) {
+  // Up to an unknown line nothing changes: scripts.
+  for (uint32_t m = traced.first_move + std::max(skipped, traced.fixed); m < traced.end_move; ++m) {
     const TraceMove& move = is.moves[m];
     if (!move.sideways()) continue;
     if (move.kind == MoveKind::kTravel && move.in_print && move.arc && !layer.IsKnown(move)) {

@@ -67,6 +67,16 @@ TEST(SamePrint, CommentsThatAreAboutNoPathKeepTheirOrder) {
   EXPECT_EQ(Broken(picture + kHead + kTwo, spoilt + kHead + kTwo), "same_print");
 }
 
+TEST(SamePrint, CommentsOfScriptsStay) {
+  const std::string start = "; start\nG28\n;TYPE:Custom\nM83\n; end\n";
+  const std::string end = "M104 S0\n;TYPE:Custom\nG1 Z10 F9000\nM84\n";
+  const std::string a = start + ";LAYER_CHANGE\nG1 Z.2 F9000\n" + kTwo + end;
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, With(a, "; start\n", "; start\n;TYPE:x\n")), "same_print");
+  EXPECT_EQ(Broken(a, With(a, "G28\n;TYPE:Custom\n", "G28\n")), "same_print");
+  EXPECT_EQ(Broken(a, With(a, "S0\n;TYPE:Custom\n", "S0\n")), "same_print");
+}
+
 TEST(SamePrint, WhatIsSaidOfALayerStandsBehindItsMark) {
   const std::string mark = ";LAYER_CHANGE\n;Z:.2\n;HEIGHT:.2\n";
   const std::string layer = "G1 Z.2 F9000\n" + kTwo;

@@ -105,7 +105,9 @@ TEST(VerifyScripts, WaysBehindUnknownLinesGoAsTheyDid) {
   EXPECT_THAT(Broken(a, With(a, way, "G1 X0 Y5 F9000\nG1 E1 F2100\nG1 Z.2\n")),
               HasSubstr("scripts"));
   EXPECT_EQ(Broken(a, With(a, way, "G1 X0 Y5 F9000\nG1 X20 Y40\n" + way)), "bounds");
-  EXPECT_EQ(Broken(a, With(a, way, "G1 X10 Y40 F9000\n" + way)), "");
+  EXPECT_EQ(Broken(a, With(a, way, "G1 X10 Y40 F9000\n" + way)), "bounds");
+  EXPECT_EQ(Broken(a, With(a, way, "G1 X10 Y22.5 F9000\n" + way)), "");
+  EXPECT_EQ(Broken(a, With(a, way, "G1 X0 Y5 F9000\nG1 X3 Y5\n" + way)), "bounds");
 }
 
 }  // namespace
