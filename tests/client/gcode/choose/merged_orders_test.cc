@@ -125,6 +125,7 @@ TEST_F(MergedOrdersTest, TakeFromAnOrderWhatNeedsNoMoreCrossings) {
   const LayerOrder sparing = OrderOf({0, 1, 3, 2, 4, 5, 6, 7, 8});
 
   EXPECT_TRUE(has(sparing));
+  EXPECT_TRUE(has(found));
   rules.crossings = Crossings::kAny;
   EXPECT_FALSE(has(sparing));
   EXPECT_TRUE(has(found));
