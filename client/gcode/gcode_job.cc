@@ -205,8 +205,8 @@ bool KeepsRetractions(const GcodeFile& file) {
 // searched as long as it pays, long ones as others are. And it ends where a second of computing
 // saves less than a second of printing, or has saved less than twelve on the average: a layer is
 // searched some six times. What is done in any case is shared by the layers. Of what is found among
-// wiped paths little is had: a third of it where half of them are, for a way begins where the wipe
-// ends, and a retraction more is no less for those that are made anyway.
+// wiped paths less is had, for a way begins where the wipe ends, and a retraction more is no less
+// for those that are made anyway.
 void SetStrategy(const GcodeFile& file, v1::Strategy& strategy) {
   const auto paths = static_cast<double>(file.blocks.size());
   constexpr double kRounds = 20000;
@@ -215,7 +215,7 @@ void SetStrategy(const GcodeFile& file, v1::Strategy& strategy) {
   constexpr double kFreeRounds = 2500;
   constexpr double kLeastFreeRounds = 50;
   constexpr double kOfLittleUse = 4;
-  constexpr double kOfLittleUseAmongWiped = 16;
+  constexpr double kOfLittleUseAmongWiped = 4;
   constexpr double kMostWiped = 0.5;
   const double effort = std::clamp(kRounds / paths, 1.0, kMaxEffort);
   strategy.set_name("auto");
