@@ -69,6 +69,18 @@ bool LeadsAside(const Link& link, size_t i) {
   return false;
 }
 
+// The slots that the link itself sets before its first mark.
+SlotMask SetBeforeMarks(const Link& link) {
+  SlotMask slots = 0;
+  for (const LinkStep& step : link.steps) {
+    const bool mark = step.kind == StepKind::kLayerMark || step.kind == StepKind::kLabel ||
+                      step.kind == StepKind::kStay;
+    if (mark) break;
+    slots |= step.slots;
+  }
+  return slots;
+}
+
 }  // namespace
 
 void LinkWriter::Write(const LinkRequest& request) {
@@ -307,7 +319,7 @@ void LinkWriter::WriteBoundary(const LinkRequest& request) {
               link.behind_fixed, false);
   } else {
     // Whatever was printed last: at its marks the fan is as in the file.
-    out_.Set(file_.states[before.state_out], kFanSlots);
+    out_.Set(file_.states[before.state_out], kFanSlots & ~SetBeforeMarks(link));
   }
   out_.Set(link.travel_state, kDynamicsSlots);
   const bool given_from =
