@@ -11,6 +11,9 @@ namespace {
 // Of what is pulled back in several moves, rounding may lose so much.
 constexpr Decimal kRounding = kDecimalOne / 10'000;
 
+// Slicers move in by about a line width before they leave a path.
+constexpr double kMaxDepartureMm = 1;
+
 double LengthXy(const Position& from, const Position& to) {
   const double dx = ToDouble(to.x - from.x);
   const double dy = ToDouble(to.y - from.y);
@@ -164,21 +167,37 @@ void PrintMeter::FollowXy(const Step& step, const MachineState& state) {
   const bool extrudes = step.kind == StepKind::kExtrude;
   const double length = profile_.klipper ? MoveKlipper(step, state) : MoveXy(step, state);
   (extrudes ? totals_.extruded_mm : totals_.travel_mm) += length;
-  if (extrudes) crosses_ = false;
-  if (step.kind == StepKind::kTravel && walls_ != nullptr && !crosses_) NoteCrossing(step, state);
+  if (extrudes) EndWay();
+  if (step.kind != StepKind::kTravel || walls_ == nullptr) return;
+  const TravelLine move{state.InMm(step.from), state.InMm(state.at)};
+  if (!crosses_ && walls_->Crossed(move.from, move.to)) {
+    crosses_ = true;
+    crosses_open_ = !step.retracted;
+  }
+  if (step.retracted) return;
+  departs_ = open_moves_.empty() ? length <= kMaxDepartureMm && !walls_->IsOnOne(move.to)
+                                 : departs_ && (open_moves_.size() > 1 || state.feed == feed_);
+  feed_ = state.feed;
+  open_moves_.push_back(move);
+  open_mm_ += length;
 }
 
-void PrintMeter::NoteCrossing(const Step& step, const MachineState& state) {
-  crosses_ = walls_->Crossed(state.InMm(step.from), state.InMm(state.at));
-  if (!crosses_) return;
-  ++totals_.crossings;
-  if (step.retracted) return;
-  ++totals_.open_crossings;
-  totals_.longest_open_mm =
-      std::max(totals_.longest_open_mm, LengthXy(step.from, state.at) * state.UnitMm());
+// Of a way that begins with a short move inwards, the walls near its bend count, too.
+void PrintMeter::EndWay() {
+  const bool bends = departs_ && open_moves_.size() > 1;
+  if (!crosses_ && bends) crosses_ = crosses_open_ = walls_->CrossedByMoves(open_moves_);
+  totals_.crossings += crosses_ ? 1 : 0;
+  if (crosses_open_) {
+    ++totals_.open_crossings;
+    totals_.longest_open_mm = std::max(totals_.longest_open_mm, open_mm_);
+  }
+  crosses_ = crosses_open_ = departs_ = false;
+  open_moves_.clear();
+  open_mm_ = 0;
 }
 
 PrintTotals PrintMeter::Finish() {
+  EndWay();
   planner_.Stop();
   totals_.seconds = planner_.seconds();
   return totals_;

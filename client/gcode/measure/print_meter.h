@@ -4,6 +4,7 @@
 #define TRAVERSE_CLIENT_GCODE_MEASURE_PRINT_METER_H_
 
 #include <string_view>
+#include <vector>
 
 #include "client/gcode/machine/interpreter.h"
 #include "client/gcode/machine/machine_profile.h"
@@ -35,12 +36,20 @@ class PrintMeter {
 
   // Queues a move of filament alone or a lift; the machine stands still before and after it.
   void Stand(const Step& step, const MachineState& state);
-  void NoteCrossing(const Step& step, const MachineState& state);
+  void EndWay();
 
   const MachineProfile& profile_;
   Dynamics dynamics_;
   const VisibleWalls* walls_;
-  bool crosses_ = false;  // on the way since the last extrusion
+
+  // The way since the last extrusion.
+  bool crosses_ = false;
+  bool crosses_open_ = false;
+  std::vector<TravelLine> open_moves_;  // without a retraction
+  double open_mm_ = 0;
+  bool departs_ = false;  // begins with a short move, as fast as the next one, away from walls
+  Decimal feed_ = 0;      // of the last of them
+
   MotionPlanner planner_;
   PrintTotals totals_;
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "client/gcode/model/segment_grid.h"
+
 namespace traverse::gcode {
 
 bool IsVisibleWall(Feature feature) {
@@ -23,21 +25,45 @@ std::vector<Wall> VisibleWallsOf(const std::vector<Outline>& outlines) {
   return walls;
 }
 
+bool VisibleWalls::IsOnOne(Vertex point) const {
+  constexpr double kBesideMm = 0.05;
+  const Segment at{point, point, 0};
+  bool found = false;
+  const auto visit = [&](uint32_t s) {
+    const WallSegment& wall = grid_.segments()[s];
+    const Segment segment{{wall.a.x, wall.a.y}, {wall.b.x, wall.b.y}, 0};
+    found = found || SquaredDistance(at, segment) <= kBesideMm * kBesideMm;
+    return !found;
+  };
+  for (const double side : {-kBesideMm, kBesideMm}) {
+    grid_.ForEachOnLine({point.x - kBesideMm, point.y + side},
+                        {point.x + kBesideMm, point.y + side}, visit);
+  }
+  return found;
+}
+
 bool VisibleWalls::CrossedByWay(const std::vector<Vertex>& way) const {
+  std::vector<TravelLine> moves;
+  for (size_t i = 1; i < way.size(); ++i) moves.push_back({way[i - 1], way[i]});
+  return CrossedByMoves(moves);
+}
+
+bool VisibleWalls::CrossedByMoves(const std::vector<TravelLine>& moves) const {
+  if (moves.size() == 1) return Crossed(moves[0].from, moves[0].to);
   double length = 0;
-  for (size_t i = 1; i < way.size(); ++i) length += Distance(way[i - 1], way[i]);
+  for (const TravelLine& move : moves) length += Distance(move.from, move.to);
   const double slack = std::min(kEndSlackMm, 0.2 * length);
   bool crosses = false;
   double at = 0;
-  for (size_t i = 1; i < way.size() && !crosses; ++i) {
-    const double own = Distance(way[i - 1], way[i]);
+  for (size_t i = 0; i < moves.size() && !crosses; ++i) {
+    const auto& [begin, end] = moves[i];
+    const double own = Distance(begin, end);
     const double from = std::clamp(slack - at, 0.0, own);
     const double to = std::clamp(length - slack - at, 0.0, own);
     at += own;
     if (to <= from) continue;
-    const auto point = [&](double mm) -> Point {
-      return {way[i - 1].x + (way[i].x - way[i - 1].x) * mm / own,
-              way[i - 1].y + (way[i].y - way[i - 1].y) * mm / own};
+    const auto point = [&, a = begin, b = end](double mm) -> Point {
+      return {a.x + (b.x - a.x) * mm / own, a.y + (b.y - a.y) * mm / own};
     };
     const Point a = point(from);
     const Point b = point(to);

@@ -17,6 +17,12 @@ bool IsVisibleWall(Feature feature);
 // index.
 std::vector<Wall> VisibleWallsOf(const std::vector<Outline>& outlines);
 
+// A straight travel move.
+struct TravelLine {
+  Vertex from;
+  Vertex to;
+};
+
 class VisibleWalls {
  public:
   // Ignored at each end of a move, but no more than a fifth of it: moves begin and end in the
@@ -33,6 +39,12 @@ class VisibleWalls {
 
   // The same for a move with bends, near which it is tested too.
   bool CrossedByWay(const std::vector<Vertex>& way) const;
+
+  // The same for the moves of a way, of which some may be left out.
+  bool CrossedByMoves(const std::vector<TravelLine>& moves) const;
+
+  // True if `point` lies in the middle of one.
+  bool IsOnOne(Vertex point) const;
 
   const WallGrid& grid() const { return grid_; }
 

@@ -10,6 +10,7 @@
 #include "tests/client/gcode/support/read_text.h"
 #include "tests/client/gcode/support/samples.h"
 #include "tests/client/gcode/support/scattered_lines.h"
+#include "tests/client/gcode/support/sketch.h"
 
 namespace traverse::gcode {
 namespace {
@@ -100,6 +101,29 @@ TEST(MeasureLayers, CountsTravelFromTheFirstToTheLastExtrusion) {
   EXPECT_NEAR(totals.extruded_mm, 39.94 + 20, 1e-6);
   EXPECT_EQ(totals.retractions, 1);
   EXPECT_GT(totals.seconds, 0);
+}
+
+// The nozzle drips on a short move inwards, too, and on the stretch behind a wall.
+TEST(MeasureLayers, AnOpenWayIsAsLongAsAllItsMoves) {
+  Sketch sketch;
+  sketch.Square(0, 0, 10).Square(20, 0, 10).Go(20.5, 0.5).Go(20.5, -3).Go(25, -3);
+  sketch.Infill(26, -3).Go(26, -5).Infill(28, -5);
+
+  const PrintTotals totals = Sum(MeasureLayers(*sketch.Read()));
+
+  EXPECT_EQ(totals.open_crossings, 1);
+  EXPECT_NEAR(totals.longest_open_mm, std::sqrt(0.5) + 3.5 + 4.5, 1e-6);
+}
+
+// A short move inwards ends beside a wall that the next one crosses where it begins.
+TEST(MeasureLayers, AWayCrossesAWallNearItsBends) {
+  Sketch sketch;
+  sketch.Square(0, 0, 10).Go(4, 0.5).Infill(5, 0.5).Go(5, 0.2).Go(5, -1).Infill(6, -1);
+
+  const PrintTotals totals = Sum(MeasureLayers(*sketch.Read()));
+
+  EXPECT_EQ(totals.crossings, 1);
+  EXPECT_EQ(totals.open_crossings, 1);
 }
 
 }  // namespace
