@@ -65,6 +65,12 @@ std::vector<Vertex> BentShape(const GcodeFile& file, const Block& block) {
   return shape;
 }
 
+double LengthOf(const std::vector<Vertex>& points) {
+  double length = 0;
+  for (size_t k = 1; k < points.size(); ++k) length += Distance(points[k - 1], points[k]);
+  return length;
+}
+
 }  // namespace
 
 MachineState StateAt(const GcodeFile& file, const Block& block) {
@@ -88,7 +94,8 @@ Outline OutlineOf(const GcodeFile& file, const Block& block) {
   outline.is_loop = outline.shape().size() > 3 &&
                     Distance(outline.points.front(), outline.points.back()) <= kMaxLoopGapMm &&
                     static_cast<double>(block.length_mm) > 8 * kMaxLoopGapMm;
-  outline.closed = outline.is_loop && outline.points.size() > 3;
+  outline.closed = outline.is_loop && outline.points.size() > 3 &&
+                   (outline.bent.empty() || LengthOf(outline.points) > 8 * kMaxLoopGapMm);
   outline.feature = FeatureOf(file, block, outline.is_loop);
   outline.width_mm = WidthOf(file, block);
   return outline;

@@ -23,10 +23,12 @@ struct Outline {
   // The printed shape, which does not say where the path may begin.
   const std::vector<Vertex>& shape() const { return bent.empty() ? points : bent; }
 
-  // Ends where it began, or less than kMaxLoopGapMm short of it.
+  // Ends where it began, or less than kMaxLoopGapMm short of it, and may begin at any of its
+  // points.
   bool closed = false;
 
-  // The same for its shape: in a circle of two arcs only the first point is a start.
+  // The same for its shape: in a circle of two arcs, or a tiny one, only the first point is a
+  // start.
   bool is_loop = false;
 
   // points.front() == points.back().

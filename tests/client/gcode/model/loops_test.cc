@@ -41,6 +41,18 @@ TEST(Outline, ACircleOfTwoArcsIsALoopThatBeginsWhereItDoes) {
   EXPECT_GT(circle.shape().size(), 40u);
 }
 
+// Nobody can tell that one of 0.2 mm between its arcs' ends is closed.
+TEST(Outline, ATinyLoopOfArcsBeginsWhereItDoes) {
+  const auto file = Read(
+      "M83\nG1 Z.2 F9000\n;TYPE:External perimeter\nG1 X.2 Y0\nG3 X.1 Y-.1732 I-.2 J0 E1\n"
+      "G1 X.17 Y-.1 E.1\nG1 X.2 Y0 E.1\nG1 X30 Y10 F9000\n");
+
+  const Outline loop = OutlinesOf(*file).front();
+
+  EXPECT_TRUE(loop.is_loop);
+  EXPECT_FALSE(loop.closed);
+}
+
 TEST(Outline, ACircleWithoutANameIsAVisibleWall) {
   const auto file =
       Read("M83\nG1 Z.2 F9000\nG1 X20 Y10\nG3 X0 Y10 I-10 J0 E1\nG3 X20 Y10 I10 J0 E1\n");
