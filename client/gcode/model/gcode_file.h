@@ -43,6 +43,7 @@ enum LinkFlag : uint16_t {
   // Begins with lines that stay byte by byte, and so does the path before it; the rest is as in a
   // link that splits.
   kLinkFixedFrom = 1 << 8,
+  kLinkRetractsAgain = 1 << 9,  // after a prime: no example for other links
 };
 
 enum BlockFlag : uint16_t {

@@ -134,6 +134,9 @@ void BlockBuilder::NoteInLink(const Step& step, const MachineState& before,
   link_.lost = link_.lost || IsLostMove(step, after, file_.text);
   if (step.kind == StepKind::kTravel) ++link_.travels_behind_fixed;
   if (step.kind == StepKind::kFilament && step.filament < 0) link_.flags |= kLinkRetracts;
+  const bool pulls = step.filament < 0 || step.kind == StepKind::kFirmwareRetract;
+  if (pulls && !step.retracted && link_.retracted) link_.flags |= kLinkRetractsAgain;
+  link_.retracted = link_.retracted || step.retracted;
   if (IsXyMotion(step.kind)) {
     const double mm = StepMm(step, after);
     link_.travel_mm += mm;

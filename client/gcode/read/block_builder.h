@@ -37,6 +37,7 @@ class BlockBuilder {
     double first_move_mm = 0;
     Position first_move_to;  // of a travel move without a retraction
     bool open_first_move = false;
+    bool retracted = false;        // before one of its lines
     bool lost = false;             // a move that is not understood: its end is unknown
     int travels_behind_fixed = 0;  // moves in XY after the last line that must stay
     double travel_mm = 0;

@@ -45,7 +45,8 @@ void LinkDonors::CountLifts(uint32_t link) {
 
 bool LinkDonors::MayFollow(uint32_t block) const {
   const Block& to = file_.blocks[block];
-  return block > 0 && (to.link & (kLinkSplits | kLinkFixed)) == 0 && IsOfPart(file_, to) &&
+  constexpr int kNoExample = kLinkSplits | kLinkFixed | kLinkRetractsAgain;
+  return block > 0 && (to.link & kNoExample) == 0 && IsOfPart(file_, to) &&
          IsOfPart(file_, file_.blocks[block - 1]);
 }
 

@@ -30,6 +30,23 @@ TEST(LinkDonors, WherePathsMeetThereIsNoWayToFollow) {
   EXPECT_GE(ReadLink(*file, *donors.Find(2, false)).arrival, 0);
 }
 
+// CuraEngine sometimes retracts and primes once more where a way has arrived. That costs time, and
+// no other way needs it.
+TEST(LinkDonors, WaysThatRetractAgainAreNoExample) {
+  Sketch sketch;
+  sketch.Infill(10, 0).GoRetracted(0, 2).Add("G1 E-.8 F2100").Add("G1 E.8").Infill(10, 2);
+  sketch.GoRetracted(0, 4).Infill(10, 4).Add("G1 E-.4 F2100").Add("G1 E-.4").Go(0, 6);
+  sketch.Add("G1 E.4").Add("G1 E.4").Infill(10, 6);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+  ASSERT_EQ(file->blocks.size(), 4u);
+  const LinkDonors donors(*file);
+
+  EXPECT_FALSE(donors.MayFollow(1));
+  EXPECT_TRUE(donors.MayFollow(2));
+  EXPECT_TRUE(donors.MayFollow(3)) << "pulled back in two parts";
+  EXPECT_EQ(donors.Find(1, true), 2u);
+}
+
 // Where the way to follow is of another layer, one of the own layer tells how fast ways are.
 TEST(LinkDonors, TheLayerTellsHowFastItsWaysAre) {
   Sketch sketch;
