@@ -1,7 +1,11 @@
 #include "client/gcode/write/link.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <cstdlib>
+#include <iterator>
+#include <utility>
 
 #include "client/gcode/model/arc.h"
 
@@ -57,7 +61,50 @@ void NoteLift(Link& link) {
   link.ramp_ends = link.ramp_mm > 0 && arrival.to.z == arrival.from.z;
 }
 
+// What the link does to pull filament back, up to its first mark, lift or way.
+std::vector<LinkStep> PullOf(const Link& link) {
+  std::vector<LinkStep> steps;
+  for (const LinkStep& step : link.steps) {
+    const bool filament = step.kind == StepKind::kFilament && step.filament < 0;
+    if (filament || step.kind == StepKind::kWipe || step.kind == StepKind::kWipeMark ||
+        step.kind == StepKind::kFeed) {
+      steps.push_back(step);
+    } else if (step.kind != StepKind::kBlank && step.kind != StepKind::kComment &&
+               step.kind != StepKind::kSlot && step.kind != StepKind::kProgress) {
+      break;
+    }
+  }
+  return steps;
+}
+
+bool StaysWithTravel(const LinkStep& step) {
+  return step.kind == StepKind::kLift || step.kind == StepKind::kPlane ||
+         step.kind == StepKind::kSetE;
+}
+
 }  // namespace
+
+std::optional<Link> WithWipeOf(Link form, const Link& own) {
+  assert(form.arrival >= 0);
+  std::vector<LinkStep> steps = PullOf(own);
+  Decimal pulled = 0;
+  bool wipes = false;
+  for (const LinkStep& step : steps) {
+    pulled -= step.filament;
+    wipes = wipes || step.kind == StepKind::kWipe;
+  }
+  if (!wipes || form.fixed > 0 || std::abs(pulled - form.pulled) > kRetractionSlack) {
+    return std::nullopt;
+  }
+  const auto arrival = form.steps.begin() + form.arrival;
+  std::copy_if(form.steps.begin(), arrival, std::back_inserter(steps), StaysWithTravel);
+  form.arrival = static_cast<int>(steps.size());
+  steps.insert(steps.end(), arrival, form.steps.end());
+  form.steps = std::move(steps);
+  form.wipes = true;
+  form.departs = false;
+  return form;
+}
 
 Link ReadLink(const GcodeFile& file, size_t index) {
   const Block& before = file.blocks[index - 1];

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdlib>
+#include <optional>
 #include <vector>
 
 #include "client/gcode/measure/layer_meter.h"
@@ -63,7 +65,7 @@ struct Link {
 
   bool retracts() const { return pulled > 0 || firmware; }
   bool SameRetraction(const Link& other) const {
-    return pulled == other.pulled && firmware == other.firmware;
+    return std::abs(pulled - other.pulled) <= kRetractionSlack && firmware == other.firmware;
   }
 
   // True if step `i` stands before the arrival.
@@ -78,6 +80,10 @@ struct Link {
 
 // The step of the short move with which `link` begins; null if it begins with none.
 const LinkStep* DepartureOf(const Link& link);
+
+// `form`, which pulls filament back as `own` does before its first mark; nothing if `own` pulls
+// back another amount there, or does not wipe. REQUIRES: form.arrival >= 0.
+std::optional<Link> WithWipeOf(Link form, const Link& own);
 
 // Link `index` of the file; 0 < index < file.blocks.size().
 Link ReadLink(const GcodeFile& file, size_t index);

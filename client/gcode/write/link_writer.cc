@@ -154,8 +154,12 @@ void LinkWriter::SetTravelState(const PlacedPath& to, const Link& form) {
 // The link that leads away from the path in the file, if what it does there fits here.
 std::optional<Link> LinkWriter::OwnDeparture(const LinkRequest& request, const Link& form) const {
   const uint32_t next = request.from->placement().block + 1;
-  if (next >= file_.blocks.size() || !donors_.MayFollow(next)) return std::nullopt;
+  if (next >= file_.blocks.size()) return std::nullopt;
   Link own = ReadLink(file_, next);
+  if (!donors_.MayFollow(next)) {
+    // At marks the wipe alone is of the path.
+    return request.wipe && form.arrival >= 0 ? WithWipeOf(form, own) : std::nullopt;
+  }
   if (own.arrival < 0 || !own.SameRetraction(form)) return std::nullopt;
   return own;
 }
@@ -279,7 +283,8 @@ void LinkWriter::WriteTravel(const LinkRequest& request, const Link& form, Decim
     return;
   }
   const LinkStep& step = form.steps[static_cast<size_t>(form.arrival)];
-  if (to.SameXy(out_.at.machine.at) && z == to.z) return;
+  // Behind a line that is not understood the head may be elsewhere.
+  if (to.SameXy(out_.at.machine.at) && z == to.z && form.fixed == 0) return;
   top = std::max(top, z);
   std::vector<Position> way = WayTo(request);
   for (Position& at : way) at.z = top;
