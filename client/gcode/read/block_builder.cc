@@ -131,7 +131,7 @@ void BlockBuilder::NoteInLink(const Step& step, const MachineState& before,
                               const MachineState& after) {
   link_.flags |= LinkFlagsOf(step.kind);
   if ((LinkFlagsOf(step.kind) & kLinkFixed) != 0) link_.travels_behind_fixed = 0;
-  link_.lost = link_.lost || IsLostMove(step, after, file_.text);
+  NotePlace(step, after);
   if (step.kind == StepKind::kTravel) ++link_.travels_behind_fixed;
   if (step.kind == StepKind::kFilament && step.filament < 0) link_.flags |= kLinkRetracts;
   const bool pulls = step.filament < 0 || step.kind == StepKind::kFirmwareRetract;
@@ -147,6 +147,19 @@ void BlockBuilder::NoteInLink(const Step& step, const MachineState& before,
     }
     if (after.at.z != before.at.z) link_.flags |= kLinkLifts;
     if (step.kind == StepKind::kTravel) link_.top = std::max(link_.top, after.at.z);
+  }
+}
+
+// Wherever the head was led to, it is known again behind moves that state all axes.
+void BlockBuilder::NotePlace(const Step& step, const MachineState& after) {
+  constexpr uint32_t kAxes = Command::Bit('X') | Command::Bit('Y') | Command::Bit('Z');
+  if (IsLostMove(step, after, file_.text)) {
+    link_.lost = true;
+    link_.found = 0;
+  } else if (link_.lost && !after.relative_xyz &&
+             (step.command.Is('G', 0) || step.command.Is('G', 1))) {
+    link_.found |= step.command.words & kAxes;
+    link_.lost = link_.found != kAxes;
   }
 }
 
@@ -317,49 +330,6 @@ bool BlockBuilder::IsTail(const Step& step, const MachineState& before,
                           const MachineState& after) const {
   return step.kind == StepKind::kTravel && !step.arc && before.at.z == after.at.z &&
          after.feed <= Last().feed_out && StepMm(step, after) <= kMaxTailMm;
-}
-
-void BlockBuilder::TakeTail(const Step& step, const MachineState& before,
-                            const MachineState& after) {
-  if (!has_tail_) {
-    before_tail_ = Last();
-    has_tail_ = true;
-  }
-  NoteInLink(step, before, after);
-  tail_ = link_;
-  Block& block = Last();
-  block.end = step.line.next;
-  block.last = after.at;
-  block.feed_out = after.feed;
-  block.state_out = CurrentState();
-  block.flags |= kBlockTail | pending_;
-  if (after.feed < before_tail_.feed_out) block.flags |= kBlockCoast;
-  pending_ = 0;
-  link_ = OpenLink{};
-}
-
-// The tail leads straight on from the path, or back to where that began.
-bool BlockBuilder::TailIsOwn() const {
-  constexpr double kBesideMm = 0.05;
-  const Block& path = before_tail_;
-  const MachineState& mode = file_.modes[path.mode];
-  const Vertex tail = mode.InMm(Last().last);
-  if (Distance(tail, mode.InMm(path.first)) <= kBesideMm) return true;
-  const Vertex end = mode.InMm(path.last);
-  const Vertex before =
-      path.end_count > 1 ? file_.ends[path.first_end + path.end_count - 2] : mode.InMm(path.first);
-  const double length = Distance(before, end);
-  if (!(length > 0)) return false;
-  const double reach = Distance(end, tail) / length;
-  const Vertex on{end.x + (end.x - before.x) * reach, end.y + (end.y - before.y) * reach};
-  return Distance(on, tail) <= kBesideMm;
-}
-
-// The next path begins where the tail ended: the tail was the travel to it.
-void BlockBuilder::UndoTail() {
-  Last() = before_tail_;
-  tail_.flags |= link_.flags;
-  link_ = tail_;
 }
 
 // After such a line it is unknown where the head is, and what was printed before.

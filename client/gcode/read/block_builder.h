@@ -39,6 +39,7 @@ class BlockBuilder {
     bool open_first_move = false;
     bool retracted = false;        // before one of its lines
     bool lost = false;             // a move that is not understood: its end is unknown
+    uint32_t found = 0;            // axes that a move behind it states
     int travels_behind_fixed = 0;  // moves in XY after the last line that must stay
     double travel_mm = 0;
     Decimal top = -kDecimalMax;  // the highest Z of its moves in XY
@@ -49,6 +50,7 @@ class BlockBuilder {
   void TakeSlot(const Step& step);
   void TakeLabel(const Step& step);
   void NoteScript(const Step& step);
+  void NotePlace(const Step& step, const MachineState& after);
   void NoteInLink(const Step& step, const MachineState& before, const MachineState& after);
   bool IsTail(const Step& step, const MachineState& before, const MachineState& after) const;
   void TakeTail(const Step& step, const MachineState& before, const MachineState& after);

@@ -62,6 +62,25 @@ TEST(BlockBuilder, TravelBehindWhatItDoesNotKnowSetsThePathBehindItFree) {
   }
 }
 
+// Scripts lead the head away by commands of one printer alone, and back by moves that state all
+// axes: then it is known again where it is.
+TEST(BlockBuilder, AHeadThatWasLostIsFoundWhereAllAxesAreStated) {
+  const auto link = [](const std::string& lines) {
+    const auto file = Read("M83\nG1 X1 Z.2 E1\n" + lines + "G1 X6 E9\n");
+    return file->blocks.back().link & (kLinkFixed | kLinkFixedFrom);
+  };
+  const int found = kLinkFixedFrom;
+
+  EXPECT_EQ(link("G39.3 S1\nG392 S0\nG1 Z2\nG1 X5 Y5\nG1 Z.2\n"), found);
+  EXPECT_EQ(link("G28 X\nG1 X5 Y5 Z.2\n"), found);
+  EXPECT_EQ(link("G28\nG1 Z.2\nG1 X5 Y5\n"), found) << "stated where it seems to be";
+  EXPECT_EQ(link("G28\nG1 Z2\nG1 X5\nG1 Z.2\n"), kLinkFixed) << "no Y";
+  EXPECT_EQ(link("G28\nG1 X5 Y5\n"), kLinkFixed) << "no Z";
+  EXPECT_EQ(link("G28\nG1 X5 Y5 Z.2\nG392 S1\nG1 X4 Y4\n"), kLinkFixed) << "lost again";
+  EXPECT_EQ(link("G28\nG2 X5 Y5 Z.2 I1\nG1 X4\n"), kLinkFixed) << "along an arc from somewhere";
+  EXPECT_EQ(link("G28\nG91\nG1 X5 Y5 Z1\nG90\nG1 X4\n"), kLinkFixed) << "by as much";
+}
+
 TEST(BlockBuilder, KnownLinesSplitWithoutFixing) {
   for (const char* line : {"M104 S200", "M117 hello", "; printing object a id:0 copy 0", "M486 S1",
                            "EXCLUDE_OBJECT_START NAME=a", ";MESH:a.stl"}) {
