@@ -120,6 +120,8 @@ void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
       if (!IsNew(layer, move)) continue;
       if (!move.firmware) {
         Note(seen.feeds[KindOf(move)], static_cast<uint64_t>(move.feed), move, layer.index());
+        // Behind unknown lines it is that of the original there: see CheckScriptedWays.
+        if (traced.scripted) continue;
         Note(seen.accelerations[KindOf(move)], move.acceleration, move, layer.index());
         if (IsTooLong(move, longest)) {
           seen.long_ways.push_back(

@@ -119,6 +119,12 @@ const WayStep* OtherSpiral(const std::vector<WayStep>& was, const std::vector<Wa
   return one == was.end() ? nullptr : &*other;
 }
 
+// Where filament moves alone, its acceleration is that of the path or of the travel.
+bool AreAlikeBehindScripts(const WayStep& a, const WayStep& b) {
+  const bool still = a.kind == MoveKind::kPriming || a.kind == MoveKind::kRetraction;
+  return a.Like(b) && (still || a.acceleration == b.acceleration);
+}
+
 double ApexOf(const std::vector<WayStep>& steps) {
   double apex = 0;
   for (const WayStep& step : steps) {
@@ -148,8 +154,7 @@ void CheckScriptedWays(const LayerPair& layer, LayerFindings& findings) {
       std::erase_if(has, IsTravel);
     }
     const auto [one, other] =
-        std::mismatch(had.begin(), had.end(), has.begin(), has.end(),
-                      [](const WayStep& a, const WayStep& b) { return a.Like(b); });
+        std::mismatch(had.begin(), had.end(), has.begin(), has.end(), AreAlikeBehindScripts);
     if (one == had.end() && other == has.end()) continue;
     findings.breaks.push_back(
         {VerifyRule::kScripts, one == had.end() ? before : one->line,

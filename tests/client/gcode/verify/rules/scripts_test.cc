@@ -110,5 +110,21 @@ TEST(VerifyScripts, WaysBehindUnknownLinesGoAsTheyDid) {
   EXPECT_EQ(Broken(a, With(a, way, "G1 X0 Y5 F9000\nG1 X3 Y5\n" + way)), "bounds");
 }
 
+// A script leaves its own acceleration behind, and the travel to the next path keeps it.
+TEST(VerifyScripts, WaysBehindUnknownLinesAccelerateAsTheyDid) {
+  const std::string script = "M204 S500\nM971 S11 C10\n";
+  const auto line = [](const char* x, const char* set = "") {
+    return Lifted(absl::StrCat(x, " Y5")) + set + ";TYPE:Internal infill\nG1 F1800\nG1 " + x +
+           " Y9 E.3\n";
+  };
+  const char* set = "M204 S1000\n";
+  const std::string a = kHead + set + kLifted + script + line("X0", set) + line("X1") + line("X2");
+  EXPECT_EQ(Broken(a, kHead + set + kLifted + script + line("X1", set) + line("X0") + line("X2")),
+            "");
+  EXPECT_THAT(
+      Broken(a, kHead + set + kLifted + script + set + line("X1") + line("X0") + line("X2")),
+      HasSubstr("scripts"));
+}
+
 }  // namespace
 }  // namespace traverse::gcode
