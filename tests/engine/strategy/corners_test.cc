@@ -55,10 +55,11 @@ constexpr Placement kPlacements[] = {{1, 0},      {1e4, 0},  {2e4, -1e6}, {1e-6,
                                      {1e-6, 1e6}, {1e-9, 0}, {1, 999900}, {0, 1e6}};
 
 OwnedProblem Placed(const OwnedProblem& owned, const Placement& placement) {
-  const auto place = [&](Point p) {
-    return Point{p.x * placement.factor + placement.shift,
-                 p.y * placement.factor + placement.shift};
+  const auto within = [&](double coordinate) {
+    return std::clamp(coordinate * placement.factor + placement.shift, -kMaxCoordinateMm,
+                      kMaxCoordinateMm);
   };
+  const auto place = [&](Point p) { return Point{within(p.x), within(p.y)}; };
   Plan plan = owned.plan();
   for (Path& path : plan.paths) {
     for (Point& point : path.points) point = place(point);
