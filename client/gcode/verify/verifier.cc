@@ -18,8 +18,8 @@ namespace traverse {
 namespace gcode {
 namespace {
 
-// So much of the original is looked at in one go: enough for all threads, but little of a file, for
-// the paths in it take four times the memory of their text, thrice.
+// How much of the original is checked at once: enough to keep all threads busy, but a small part of
+// the file, because its paths take up to twelve times the memory of their text.
 constexpr size_t kLeastChunkBytes = 1 << 20;
 constexpr size_t kMostChunkBytes = 4 << 20;
 constexpr size_t kChunksOfAFile = 32;
@@ -83,7 +83,8 @@ class Verifier {
   VerifyReport report_;
 };
 
-// The next layers of the one file, and those of the other file that were the next ones before.
+// Reads the next layers of the original, and the layers of the other file that match those read
+// before.
 void Verifier::ReadNext() {
   chunk_was_ = std::exchange(next_was_, TraceChunk{});
   const bool last = was_.done();
@@ -105,7 +106,7 @@ bool Verifier::SamePrint() {
   if (!difference) CheckLabels(sections_, chunk_was_.end_section);
   sections_ = chunk_was_.end_section;
   if (!difference && chunk_is_.end_section != chunk_was_.end_section) {
-    // Some line ends a section in one of the two alone; the next ones tell which.
+    // A line ends a section in only one of the files; comparing further sections shows which.
     difference = FirstDifference(was, is, 0, UINT32_MAX, true);
   }
   if (!difference) return true;
@@ -114,8 +115,8 @@ bool Verifier::SamePrint() {
   return false;
 }
 
-// A printer may be told to leave an object out, with all that is between its labels: what was
-// pulled back in there is not to be pushed out there.
+// A printer may be told to skip an object, with everything between its labels: a retraction and its
+// prime must be on the same side of a label.
 void Verifier::CheckLabels(size_t first, size_t end) {
   const std::vector<Section>& was = was_.cut().sections;
   const std::vector<Section>& is = is_.cut().sections;
@@ -125,8 +126,8 @@ void Verifier::CheckLabels(size_t first, size_t end) {
     findings_.push_back({VerifyRule::kRetractions, static_cast<uint32_t>(was[i].last_line),
                          static_cast<uint32_t>(is[i].last_line), -1,
                          is[i].retracted
-                             ? "filament is pulled back at this label of an object"
-                             : "filament is not pulled back at this label of an object"});
+                             ? "retracted at this label of an object, unlike the original"
+                             : "not retracted at this label of an object, unlike the original"});
   }
 }
 
@@ -222,19 +223,19 @@ void Verifier::Add(Finding finding) {
                        place(original_name_, finding.original_line))});
 }
 
-// What is no line of G-code, and yet part of the file.
+// What no line of G-code shows: the byte order mark and the line ends.
 void Verifier::CheckText() {
   constexpr std::string_view kMarkOfUtf8 = "\xEF\xBB\xBF";
   if (Begins(original_, kMarkOfUtf8) != Begins(optimised_, kMarkOfUtf8)) {
     findings_.push_back({VerifyRule::kSamePrint, 1, 1, -1,
-                         "one of the two begins with the mark of UTF-8, the other one does not"});
+                         "only one of the files begins with a byte order mark of UTF-8"});
   }
-  // All of them may have become others on the way, but not some.
+  // A file transfer may convert all line ends, but not some of them.
   const uint32_t ends = is_.line_ends();
   const bool one_kind = (ends & (ends - 1)) == 0 && (ends & VerifyMachine::kLoneReturn) == 0;
   if ((ends & ~was_.line_ends()) != 0 && !one_kind) {
     findings_.push_back({VerifyRule::kSamePrint, 0, 0, -1,
-                         "some lines end otherwise than any line of the original"});
+                         "some lines have line ends that no line of the original has"});
   }
 }
 
@@ -258,7 +259,7 @@ VerifyReport Verifier::Verify() {
   return std::move(report_);
 }
 
-// Where the next line begins, behind blanks, with a slash: machines may do it or leave it out.
+// The next slash with which a line begins, after blanks: machines execute such lines or skip them.
 size_t NextOptional(std::string_view text, size_t from) {
   for (size_t at = text.find('/', from); at != std::string_view::npos;
        at = text.find('/', at + 1)) {
@@ -269,7 +270,7 @@ size_t NextOptional(std::string_view text, size_t from) {
   return std::string_view::npos;
 }
 
-// The text to a machine that does such lines.
+// The text as a machine reads it that executes such lines.
 std::string WithOptionalLines(std::string_view text) {
   std::string done(text);
   for (size_t at = NextOptional(done, 0); at != std::string::npos;

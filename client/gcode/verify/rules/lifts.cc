@@ -188,7 +188,7 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
 }
 
 std::string KindText(size_t kind) {
-  return absl::StrFormat("%s ways %s%s", (kind & 4) != 0 ? "retracted" : "open",
+  return absl::StrFormat("%s travel %s%s", (kind & 4) != 0 ? "retracted" : "unretracted",
                          (kind & 2) != 0 ? "between layers" : "within a layer",
                          (kind & 1) != 0 ? " across outer walls" : "");
 }
@@ -246,7 +246,7 @@ void CompareKind(const Observations& was, const Observations& is, size_t kind,
     if (!ends_low && !lies_low && !never) continue;
     if (WasAsLow(was.lifts, is.lifts, way, kind, habit.least_mm)) continue;
     breaks.push_back({VerifyRule::kLifts, habit.least_line, way.line, way.layer,
-                      absl::StrFormat("%.2f of %.2f mm of this travel lie lower than %.2f mm above "
+                      absl::StrFormat("%.2f of %.2f mm of this travel are less than %.2f mm above "
                                       "the layer, the least lift of %s",
                                       low, height.length_mm, habit.least_mm, KindText(kind))});
   }
@@ -276,8 +276,10 @@ void CompareLifts(const Observations& was, const Observations& is, std::vector<F
         stated.slope > 0 && stated.um <= highest && Knows(was.slopes, stated.slope, kSlopeSlackUm);
     if (known) continue;
     breaks.push_back(
-        {VerifyRule::kLifts, 0, stated.line, stated.layer,
-         absl::StrFormat("travel rises %.3f mm above the layer, as none does in the original",
+        {VerifyRule::kLifts,
+         FirstLineOf(was.heights.level.empty() ? was.heights.other : was.heights.level),
+         stated.line, stated.layer,
+         absl::StrFormat("travel rises to %.3f mm above the layer; none of the original does",
                          static_cast<double>(stated.um) / 1000)});
   }
 }

@@ -98,7 +98,7 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
                              static_cast<double>(had.feed) * 1e-6));
     } else if (!layer.Closed(visit.path) && !LeadsOn(was, visit.path, pieces) &&
                GoesBeyond(was, visit.path, had) != GoesBeyond(is, visit.last_path, has)) {
-      report(had.line, has.line, "goes on from the path to the other side than there");
+      report(had.line, has.line, "continues from the path to the other side, unlike the original");
     } else if (same_end && DistanceOf(has.end, had.end) > kSlackMm) {
       report(had.line, has.line, "continues from the path to a different point from the original");
     }

@@ -65,7 +65,7 @@ void CheckFixedMoves(const LayerPair& layer, LayerFindings& findings) {
     if (a == moves.end() && b == others.end()) continue;
     findings.breaks.push_back({VerifyRule::kScripts, a == moves.end() ? 0 : a->line,
                                b == others.end() ? 0 : b->line, layer.index(),
-                               "moves differently before a line that is not known"});
+                               "the moves before an unknown line differ from the original's"});
   }
 }
 

@@ -25,7 +25,7 @@ size_t KindOf(const TraceMove& move) {
 }
 
 std::string KindName(size_t kind) {
-  return std::string(kind == kOpenTravel ? "open travel"
+  return std::string(kind == kOpenTravel ? "unretracted travel"
                                          : MoveKindName(static_cast<MoveKind>(kind)));
 }
 

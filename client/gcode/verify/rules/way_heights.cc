@@ -1,7 +1,7 @@
-// How high ways may lead, whether or not their kind is lifted: none lies lower than the higher of
-// the two paths that it connects, unless such ways of the original do; none sinks over a longer
-// stretch; and a move straight up, or up in any way beside a line that is not known, leads to a
-// height above the layer that the original knows.
+// The heights of travel, whether or not travel of its kind is lifted. None is lower than the higher
+// of the two paths that it connects, unless such travel of the original is; none descends over a
+// longer stretch; and lifts, and all that rises near an unknown line, have heights above the layer
+// that lifts of the original have.
 
 #include <algorithm>
 #include <array>
@@ -25,7 +25,7 @@ WayRise RiseOf(double from, double to) {
 
 int64_t Um(double mm) { return std::llround(mm * 1000); }
 
-// The way from the start script tells nothing of others: it is only no higher than it was.
+// Travel from the start script is no example for other travel: it is only no higher than it was.
 void ObserveFirstWay(const LayerPair& layer, const TraceChunk& chunk, const TraceLink& traced,
                      HighestPoint& highest) {
   for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
@@ -92,24 +92,31 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
   if (lifts.line != 0) seen.lifts_of_links.push_back(lifts);
 }
 
-// Moves straight down lead no deeper than such of the original; nothing rises again and again.
+// The head descends no deeper than in the original, and does not rise more often between two paths.
 void CompareMoves(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
-  float deepest = 0;
-  for (const LowestWay& move : was.deepest) deepest = std::min(deepest, move.above_mm);
-  for (const LowestWay& move : is.deepest) {
-    if (move.above_mm >= deepest - kSlackMm) continue;
-    breaks.push_back(
-        {VerifyRule::kLifts, 0, move.line, move.layer,
-         absl::StrFormat("the head goes down to %.3f mm below what is printed", -move.above_mm)});
+  LowestWay deepest;
+  for (const LowestWay& move : was.deepest) {
+    if (move.above_mm < deepest.above_mm) deepest = move;
   }
-  std::array<uint32_t, 2> most{1, 1};
+  for (const LowestWay& move : is.deepest) {
+    if (move.above_mm >= deepest.above_mm - kSlackMm) continue;
+    breaks.push_back({VerifyRule::kLifts, deepest.line, move.line, move.layer,
+                      absl::StrFormat("the head descends %.3f mm below the layer; in the original "
+                                      "%.3f mm at most",
+                                      -move.above_mm, -deepest.above_mm)});
+  }
+  std::array<RepeatedLift, 2> most;
   for (const RepeatedLift& lifts : was.lifts_of_links) {
-    most[lifts.level] = std::max(most[lifts.level], lifts.times);
+    if (lifts.times > most[lifts.level].times) most[lifts.level] = lifts;
   }
   for (const RepeatedLift& lifts : is.lifts_of_links) {
-    if (lifts.times <= most[lifts.level]) continue;
-    breaks.push_back({VerifyRule::kLifts, 0, lifts.line, lifts.layer,
-                      absl::StrFormat("the head rises %d times between two paths", lifts.times)});
+    const RepeatedLift& usual = most[lifts.level];
+    const uint32_t times = std::max(usual.times, 1u);
+    if (lifts.times <= times) continue;
+    breaks.push_back({VerifyRule::kLifts, usual.line, lifts.line, lifts.layer,
+                      absl::StrFormat("the head rises %d times between two paths; in the original "
+                                      "%d times at most",
+                                      lifts.times, times)});
   }
   for (const auto& [spiral, seen] : is.spirals) {
     if (was.spirals.contains(spiral)) continue;
@@ -128,19 +135,22 @@ void CompareDescents(const Observations& was, const Observations& is,
   for (const Descent& descent : is.descents) {
     const Descent& longest = known[static_cast<size_t>(descent.rise)];
     if (descent.length_mm <= longest.length_mm + kDescentSlackMm) continue;
-    breaks.push_back({VerifyRule::kLifts, longest.line, descent.line, descent.layer,
-                      absl::StrFormat("sinks over %.2f mm of the way; none of the original does so "
-                                      "over more than %.2f mm",
-                                      descent.length_mm, longest.length_mm)});
+    breaks.push_back(
+        {VerifyRule::kLifts, longest.line, descent.line, descent.layer,
+         absl::StrFormat("the head descends over %.2f mm of travel; in the original over "
+                         "%.2f mm at most",
+                         descent.length_mm, longest.length_mm)});
   }
 }
 
 void CompareFirstWay(const HighestPoint& was, const HighestPoint& is,
                      std::vector<Finding>& breaks) {
   if (was.line == 0 || is.line == 0 || is.z_mm <= was.z_mm + kSlackMm) return;
-  breaks.push_back({VerifyRule::kLifts, was.line, is.line, is.layer,
-                    absl::StrFormat("the way from the start script rises to %.3f mm, not %.3f mm",
-                                    is.z_mm, was.z_mm)});
+  breaks.push_back(
+      {VerifyRule::kLifts, was.line, is.line, is.layer,
+       absl::StrFormat("travel from the start script rises to Z%.3f; in the original to "
+                       "Z%.3f",
+                       is.z_mm, was.z_mm)});
 }
 
 void CompareRises(const Observations& was, const Observations& is, bool level,
@@ -151,16 +161,17 @@ void CompareRises(const Observations& was, const Observations& is, bool level,
         {VerifyRule::kLifts,
          FirstLineOf(was.rises.level.empty() ? was.rises.other : was.rises.level), seen.line,
          seen.layer,
-         absl::StrFormat("rises to %.3f mm above the layer; no such move of the original does",
+         absl::StrFormat("a lift of %.3f mm above the layer; no such lift of the original has this "
+                         "height",
                          static_cast<double>(um) / 1000)});
   }
 }
 
-// How the way to a path that lies lower than the one before gets there.
+// How travel to a path that is lower than the one before gets there.
 struct Sinking {
   bool sinks = false;
   Point at;           // where it first is lower than the path before
-  double low_mm = 0;  // of the way, lower than that
+  double low_mm = 0;  // the length of the travel that is lower than that
   uint32_t line = 0;
 };
 
@@ -181,7 +192,7 @@ Sinking SinkingTo(const TraceChunk& chunk, uint32_t path) {
 
 }  // namespace
 
-// What was printed before stands in the way of a head that sinks over it.
+// A head that descends too early hits what was printed before.
 void CheckSinking(const LayerPair& layer, LayerFindings& findings) {
   for (size_t i = 0; i < layer.section_count(); ++i) {
     const Sinking was = SinkingTo(layer.was(), layer.SectionWas(i).first_path);
@@ -192,8 +203,8 @@ void CheckSinking(const LayerPair& layer, LayerFindings& findings) {
     }
     findings.breaks.push_back(
         {VerifyRule::kLifts, was.line, is.line, layer.index(),
-         absl::StrFormat("the head sinks %.2f mm before the path that lies lower; there %.2f mm "
-                         "before it, and elsewhere",
+         absl::StrFormat("the head descends %.2f mm before a lower path; in the original %.2f mm "
+                         "before it, at another point",
                          is.low_mm, was.low_mm)});
   }
 }
@@ -221,8 +232,8 @@ void CompareHeights(const Observations& was, const Observations& is, std::vector
     if (way.above_mm >= lowest.above_mm - kSlackMm) continue;
     breaks.push_back(
         {VerifyRule::kLifts, lowest.line, way.line, way.layer,
-         absl::StrFormat("leads %.3f mm below what it connects; none of the original does so by "
-                         "more than %.3f mm",
+         absl::StrFormat("travel is %.3f mm below the paths that it connects; in the original "
+                         "%.3f mm at most",
                          -way.above_mm, -lowest.above_mm)});
   }
   CompareRises(was, is, true, breaks);
