@@ -101,6 +101,92 @@ TEST(BadInput, TheRegisterResetAnywhere) {
   }
 }
 
+// Rewrites it under `free`, in random orders: what comes out keeps all rules, or there is a reason
+// why nothing does. Returns how often something did.
+int RewrittenByTheRules(const std::string& text) {
+  const auto file = ReadGcode(text, "odd");
+  if (!file.ok()) {
+    ADD_FAILURE() << file.status();
+    return 0;
+  }
+  int rewritten = 0;
+  RewriteOptions options;
+  options.version = "1.2.3";
+  options.policy = Policy::kFree;
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    Rng rng(seed);
+    std::vector<LayerOrder> orders;
+    for (const Layer& layer : (*file)->layers) {
+      const LayerPlan planned = MakeLayerPlan(**file, layer, Policy::kFree);
+      orders.push_back(testing::RandomOrder(layer, planned.plan, rng));
+    }
+    const auto rewrite = RewriteGcode(**file, {orders}, options);
+    if (!rewrite.ok()) {
+      EXPECT_EQ(rewrite.status().code(), absl::StatusCode::kFailedPrecondition);
+      EXPECT_FALSE(rewrite.status().message().empty());
+      continue;
+    }
+    ++rewritten;
+    EXPECT_EQ(VerifyGcode(text, "odd", rewrite->text, "rewritten").message(), "") << text;
+  }
+  return rewritten;
+}
+
+// Marks of a wipe, a layer or an object that do not fit each other, or to what is printed.
+TEST(BadInput, MarksThatLie) {
+  int rewritten = 0;
+  for (const char* odd : {
+           // Of objects: opened and never closed, closed and never opened, twice.
+           "; printing object a id:0 copy 0\n",
+           "; stop printing object a id:0 copy 0\n",
+           "; printing object a id:0 copy 0\n; printing object b id:1 copy 0\n",
+           "M486 S0\n",
+           "M486 S-1\n",
+           "EXCLUDE_OBJECT_START NAME=a\n",
+           "EXCLUDE_OBJECT_END NAME=a\n",
+           "M624 AQAAAAAAAAA=\n",
+           "M625\n",
+           "M624 AQAAAAAAAAA=\nM624 AgAAAAAAAAA=\n",
+           // Of layers.
+           ";LAYER_CHANGE\n;LAYER_CHANGE\n",
+           ";LAYER:1\n;LAYER:1\n",
+           ";LAYER_CHANGE\n;Z:7\n;HEIGHT:3\n",
+           "; END_LAYER_OBJECT z=1\n",
+           "; </layer>\n",
+           // Of wipes.
+           ";WIPE_END\n",
+           ";WIPE_START\n",
+           ";WIPE_START\n;WIPE_START\n;WIPE_END\n",
+           "; WIPE_END\n; WIPE_START\n",
+           // Of features, and blocks of comments.
+           ";TYPE:\n",
+           ";TYPE:Ironing\n;TYPE:Ironing\n",
+           ";WIDTH:wide\n;HEIGHT:-1\n",
+           "; FLUSH_END\n",
+           "; WIPE_TOWER_START\n",
+           "; EXECUTABLE_BLOCK_END\n",
+           "; thumbnail end\n",
+           // Of two slicers and more.
+           ";LAYER:1\n;TYPE:WALL-OUTER\n; CHANGE_LAYER\n; FEATURE: Inner wall\n;LAYER_CHANGE\n",
+           "; layer 2, Z = 0.4\n; outer perimeter\n;TYPE:Internal infill\n; 'Loop Path', "
+           "1\n;shell\n",
+       }) {
+    ExpectEquivalent(WithOddity(odd));
+    rewritten += RewrittenByTheRules(WithOddity(odd));
+  }
+  EXPECT_GT(rewritten, 100);
+}
+
+// Down and up again, with a mark of a layer and without.
+TEST(BadInput, HeightsThatGoDown) {
+  for (const char* odd :
+       {"G1 Z.1 F9000\n", ";LAYER_CHANGE\n;Z:.1\nG1 Z.1 F9000\n",
+        "G1 Z.1 F9000\nG1 X50 Y0\nG1 X50 Y9 E.5\nG1 Z.2 F9000\n", "G1 Z-.1 F9000\nG1 Z.2\n"}) {
+    ExpectEquivalent(WithOddity(odd));
+    RewrittenByTheRules(WithOddity(odd));
+  }
+}
+
 TEST(BadInput, APathThatVisitsItselfAgain) {
   ExpectEquivalent(WithOddity(
       "G1 X0 Y50\nG1 X5 Y50 E.1\nG1 X5 Y55 E.1\nG1 X5 Y50 E.1\nG1 X0 Y50 E.1\nG1 X5 Y50 E.1\n"));
