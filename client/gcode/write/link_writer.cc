@@ -59,6 +59,17 @@ void Slope(const Position& from, const Link& rise, std::vector<Position>& way) {
 
 bool IsDeparture(const Link& link, size_t i) { return DepartureOf(link) == &link.steps[i]; }
 
+// The label of an object stands before the travel, at the height of the path before it.
+bool LabelsBeforeTravel(const Link& link) {
+  bool labels = false;
+  for (size_t i = link.fixed; link.Leaves(i); ++i) {
+    const StepKind kind = link.steps[i].kind;
+    if (kind == StepKind::kLift || kind == StepKind::kLayerMark) return false;
+    labels = labels || kind == StepKind::kLabel;
+  }
+  return labels;
+}
+
 // A travel move behind which the head sinks under what was printed before: it leads to where there
 // is nothing in the way, to the next object of a print one by one.
 bool LeadsAside(const Link& link, size_t i) {
@@ -332,15 +343,18 @@ void LinkWriter::WriteBoundary(const LinkRequest& request) {
   // Pulled back at once, so that it is at the height of what was printed.
   std::optional<Link> form;
   if (request.retract && !link.arrives_retracted && link.arrival >= 0) form = TemplateFor(request);
-  if (form) {
+  // But not before the label of an object, if it comes at the same height.
+  const bool behind_label = form && LabelsBeforeTravel(link);
+  if (form && !behind_label) {
     WriteDeparture(request, *form);
-  } else if (link.fixed == 0 && !(given_from && link.departs)) {
+  } else if (!form && link.fixed == 0 && !(given_from && link.departs)) {
     WriteGoingOn(request);
   }
   for (size_t i = link.fixed; i < link.steps.size(); ++i) {
     if (static_cast<int>(i) != link.arrival) {
       WriteBoundaryStep(request, link, i);
     } else if (form) {
+      if (behind_label) WriteDeparture(request, *form);
       WriteTravel(request, link, std::max(link.top, request.to->first().z + form->lift), *form);
       WriteArrival(request, *form);
     } else {
