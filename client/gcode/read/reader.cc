@@ -102,13 +102,23 @@ absl::Status Fault(const GcodeFile& file, Offset at, std::string_view what) {
 // The fewest bytes of most lines that extrude.
 constexpr size_t kBytesPerSegment = 25;
 
+// A line is M82 or M83, in large or small letters.
+bool SaysHowECounts(std::string_view text) {
+  for (const std::string_view mode : {"M82", "M83", "m82", "m83"}) {
+    for (size_t at = text.find(mode); at != std::string_view::npos; at = text.find(mode, at + 1)) {
+      const size_t before = text.substr(0, at).find_last_not_of(" \t");
+      if (before == std::string_view::npos || text[before] == '\n') return true;
+    }
+  }
+  return false;
+}
+
 // Some slicers count E from the move before without saying so: then its words fall as often as they
 // rise, where those that count from a register hardly ever fall.
 bool CountsFromMoveBefore(std::string_view text) {
   constexpr int kMoves = 200;
   constexpr int kFallsInTen = 2;
-  if (text.find("\nM82") != std::string_view::npos || StartsWith(text, "M82")) return false;
-  if (text.find("\nM83") != std::string_view::npos || StartsWith(text, "M83")) return false;
+  if (SaysHowECounts(text)) return false;
   Interpreter interpreter(text);
   Decimal before = 0;
   int moves = 0;

@@ -13,9 +13,11 @@ namespace {
 // True if the E words of the first moves in the plane hardly add up to a register, and no line says
 // how they count: then they count from the move before.
 bool FallsAsOftenAsItRises(std::string_view text) {
-  for (const std::string_view mode : {"M82", "M83"}) {
+  for (const std::string_view mode : {"M82", "M83", "m82", "m83"}) {
     for (size_t at = text.find(mode); at != std::string_view::npos; at = text.find(mode, at + 1)) {
-      if (at == 0 || text[at - 1] == '\n') return false;
+      size_t begin = at;
+      while (begin > 0 && (text[begin - 1] == ' ' || text[begin - 1] == '\t')) --begin;
+      if (begin == 0 || text[begin - 1] == '\n') return false;
     }
   }
   double last = 0;
@@ -24,16 +26,13 @@ bool FallsAsOftenAsItRises(std::string_view text) {
   while (!text.empty() && rises + falls < 200) {
     std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(line.size() + 1, text.size()));
-    line = line.substr(0, line.find(';'));
-    const size_t e = line.find('E');
-    if (e == std::string_view::npos || line[0] != 'G') continue;
+    line = TrimLine(line.substr(0, line.find(';')));
+    const size_t e = line.find_first_of("Ee");
+    if (e == std::string_view::npos || UpperCase(line[0]) != 'G') continue;
     double value = 0;
     std::from_chars(line.data() + e + 1, line.data() + line.size(), value);
-    const bool sets = Begins(line, "G92");
-    if (!sets && line.find('X') == std::string_view::npos &&
-        line.find('Y') == std::string_view::npos) {
-      continue;
-    }
+    const bool sets = line.substr(1, 2) == "92";
+    if (!sets && line.find_first_of("XxYy") == std::string_view::npos) continue;
     if (!sets) ++(value <= last ? falls : rises);
     last = value;
   }

@@ -10,6 +10,7 @@
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/model/feature.h"
 #include "client/gcode/model/outline.h"
+#include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/read/block_text.h"
 #include "tests/client/gcode/support/read_text.h"
 #include "tests/client/gcode/support/samples.h"
@@ -75,6 +76,19 @@ TEST(ReadGcode, WhatCountsFromTheMoveBeforeNeedNotSaySo) {
   EXPECT_TRUE(relative->modes[0].relative_e);
   EXPECT_EQ(relative->blocks[0].segments, 3);
   EXPECT_FALSE(absolute->modes[0].relative_e);
+}
+
+// In whatever letters: nothing is guessed then, which other orders of its words might change.
+TEST(ReadGcode, AFileMaySayHowItCountsInSmallLetters) {
+  const std::string words = "g1 x1 e.3\ng1 x2 e.3\ng1 x3 e.2\ng0 x9\ng1 x10 e.3\n";
+  for (const std::string mode : {"m82\n", "  M82\n", "\tm82 ; absolute\n"}) {
+    const auto file = Read("g21\n" + mode + words);
+    EXPECT_FALSE(file->modes[0].relative_e) << mode;
+    EXPECT_EQ(file->blocks[0].link & kLinkFixed, kLinkFixed);
+    const std::string relative = "g21\nm83\n" + words;
+    EXPECT_EQ(VerifyGcode(relative, "a", relative, "b").message(), "");
+  }
+  EXPECT_TRUE(Read("; m82\n" + words)->modes[0].relative_e);
 }
 
 TEST(ReadGcode, LineEndsDoNotMatter) {

@@ -43,6 +43,15 @@ LineRole LastRole(const std::string& text) {
   return line.role;
 }
 
+// How E counts is guessed where nothing says so, and the guess depends on the order of the lines.
+TEST(VerifyMachine, SmallLettersSayHowFilamentCountsToo) {
+  VerifyMachine machine(
+      "g21\n m83\ng1 x1 y0 e1\ng1 x2 y0 e.5\ng0 x0 y9 f9000\ng1 x1 y9 e.6\ng1 x2 y9 e.7\n");
+  std::vector<LineRole> roles;
+  for (VerifyLine line; machine.Next(line);) roles.push_back(line.role);
+  EXPECT_EQ(roles[1], LineRole::kFixed) << "it counted in the other way before";
+}
+
 TEST(VerifyMachine, G92OfTheFilamentAloneIsNoFence) {
   EXPECT_EQ(LastRole("M82\nG92 E0\n"), LineRole::kNothing);
   EXPECT_EQ(LastRole("M82\nG92 X0 E0\n"), LineRole::kFixed);
