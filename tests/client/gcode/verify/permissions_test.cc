@@ -22,6 +22,8 @@ TEST(PermissionsInHead, ThePolicyIsThatOfTheFlagsOrOfTheLineAtTheHead) {
   EXPECT_THAT(FirstMessage(a, b), HasSubstr("seam"));
   EXPECT_EQ(Broken(a, says + b, Policy::kSafe), "seam");
   EXPECT_EQ(Broken(a, b, Policy::kFree), "");
+  const std::string mark = "\xEF\xBB\xBF; of UTF-8\n";
+  EXPECT_EQ(FirstMessage(mark + a, mark + says + b), "");
   // Behind a command it is not at the head.
   EXPECT_THAT(FirstMessage(a, With(b, "M83\n", "M83\n" + says)), HasSubstr("seam"));
 }
