@@ -185,6 +185,17 @@ TEST(ResumedOptions, GoOnWhereTheJobBrokeOff) {
   EXPECT_EQ(fourth.time_limit().nanos(), 1'000'000);
 }
 
+// A job of which nothing came back is as good as one that was never begun.
+TEST(ResumedOptions, BeforeTheFirstLayerAreThoseOfTheJob) {
+  v1::JobOptions options;
+  options.mutable_time_limit()->set_seconds(10);
+
+  const v1::JobOptions again = ResumedOptions(options, 0, nullptr, absl::Milliseconds(2500));
+
+  EXPECT_EQ(again.time_limit().seconds(), 10);
+  EXPECT_EQ(again.time_limit().nanos(), 0);
+}
+
 v1::LayerResult Result(double given_mm, double travel_mm, v1::StopReason stop) {
   v1::LayerResult result;
   for (v1::Travel* travel : {result.mutable_given(), result.mutable_travel()}) {

@@ -112,11 +112,16 @@ TEST(VerifyGcode, NothingCrossesALineThatIsNotKnown) {
 }
 
 TEST(VerifyGcode, AtALineThatIsNotKnownTheHeadIsWhereItWas) {
-  const std::string a = "M83\nG1 F600 X1 E1\nG0 X5\nPARK\nG0 X7\nG1 X8 E1\n";
+  const std::string a =
+      "M83\nG1 F600 X1 Y0 E1\nG0 X5 Y5\nG1 Z5\nPARK\nG1 Z0\nG0 X7 Y0\nG1 X8 E1\n";
 
-  EXPECT_THAT(Difference(a, With(a, "G0 X5", "G0 X6")), HasSubstr("b:4: the head is elsewhere"));
+  for (const auto& [there, elsewhere] :
+       {std::pair("X5 Y5", "X6 Y5"), std::pair("X5 Y5", "X5 Y6"), std::pair("Z5", "Z6")}) {
+    EXPECT_THAT(Difference(a, With(a, there, elsewhere)), HasSubstr("b:5: the head is elsewhere"))
+        << elsewhere;
+  }
   EXPECT_THAT(Difference(a, With(a, "PARK", "G1 E-1\nPARK\nG1 E1")),
-              HasSubstr("b:5: the retraction differs from that at a:4"));
+              HasSubstr("b:6: the retraction differs from that at a:5"));
 }
 
 TEST(VerifyGcode, FencesKeepTheirOrderAndCommentsTheirSection) {
