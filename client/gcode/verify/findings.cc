@@ -49,7 +49,8 @@ void Observations::Append(const Observations& other) {
   AppendSeen(other.rises.other, rises.other);
   slopes.insert(other.slopes.begin(), other.slopes.end());
   stated.insert(stated.end(), other.stated.begin(), other.stated.end());
-  if (other.first_way.line != 0) first_way = other.first_way;
+  if (other.first_highest.line != 0) first_highest = other.first_highest;
+  if (other.first_lowest.line != 0) first_lowest = other.first_lowest;
   lowest.insert(lowest.end(), other.lowest.begin(), other.lowest.end());
   deepest.insert(deepest.end(), other.deepest.begin(), other.deepest.end());
   descents.insert(descents.end(), other.descents.begin(), other.descents.end());

@@ -188,8 +188,8 @@ struct FarPoint {
   int64_t layer = -1;
 };
 
-// The greatest height of travel, above the bed.
-struct HighestPoint {
+// The highest or the lowest point of moves, above the bed.
+struct ExtremePoint {
   double z_mm = 0;
   uint32_t line = 0;  // 0: there is no such move
   int64_t layer = -1;
@@ -207,12 +207,13 @@ struct Observations {
   absl::flat_hash_set<int64_t> slopes;  // um of rise in 10 mm, for moves that rise on the way
   std::vector<StatedHeight> stated;     // by the other file's moves
   LiftHeights rises;                    // of moves straight up
-  HighestPoint first_way;               // of the travel from the start script
-  std::vector<LowestWay> lowest;        // travel that goes lower than what it connects
-  std::vector<LowestWay> deepest;       // moves straight down that do so
-  std::vector<Descent> descents;        // the longest of each travel
-  absl::flat_hash_map<uint64_t, Seen> spirals;          // by TraceMove::spiral
-  std::vector<RepeatedLift> lifts_of_links;             // links that rise more than once
+  ExtremePoint first_highest;           // of the travel from the start script
+  ExtremePoint first_lowest;
+  std::vector<LowestWay> lowest;                // travel that goes lower than what it connects
+  std::vector<LowestWay> deepest;               // moves straight down that do so
+  std::vector<Descent> descents;                // the longest of each travel
+  absl::flat_hash_map<uint64_t, Seen> spirals;  // by TraceMove::spiral
+  std::vector<RepeatedLift> lifts_of_links;     // links that rise more than once
   absl::flat_hash_set<uint64_t> deposit_accelerations;  // of the whole file, like the box
   std::vector<FarPoint> farthest;
   Box box;                             // of all points

@@ -72,6 +72,36 @@ class Views(CommandLine):
         self.assertIn("(order; ", err)
         self.assertIn("--allow=doors", self.fail_with(2, "optimize", plain, "-o", made, "--allow=doors"))
 
+    def test_verify_answers_by_exit_code_and_rule_by_rule(self):
+        line = "G1 E-1 F2100\nG1 X0 Y{0} F9000\nG1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 X9 Y{0} E.3\n"
+        text = "M83\n;LAYER_CHANGE\nG1 Z.2 F9000\n" + "".join(line.format(y) for y in (0, 5, 10))
+        plain = self.put("plain.gcode", text)
+        deeper = self.put("deeper.gcode", text.replace("E-1 F2100\nG1 X0 Y10 F9000\nG1 E1 ",
+                                                       "E-1.8 F2100\nG1 X0 Y10 F9000\nG1 E1.8 "))
+        findings = self.path("findings.json")
+        self.assertEqual(self.succeed("verify", plain, plain, "--quiet", f"--json={findings}"), "")
+        same = json.loads(read(findings))
+        self.assertTrue(same["same"])
+        self.assertEqual((same["policy"], same["allow"]), ("safe", []))
+        self.assertTrue(all(rule["breaks"] == 0 and rule["first"] is None for rule in same["rules"]))
+
+        code, out, err = self.run_traverse("verify", plain, deeper, f"--json={findings}", "--policy=free")
+        self.assertEqual((code, out), (1, ""))
+        self.assertRegex(err, r"deeper.gcode:16: retracts 1.8000 mm; .* \(retractions; .*plain.gcode:\d+\)")
+        other = json.loads(read(findings))
+        self.assertFalse(other["same"])
+        self.assertEqual(other["policy"], "free")
+        self.assertEqual([rule["rule"] for rule in other["rules"]], [rule["rule"] for rule in same["rules"]])
+        broken = [rule for rule in other["rules"] if rule["breaks"]]
+        self.assertEqual([rule["rule"] for rule in broken], ["retractions"])
+        self.assertEqual(broken[0]["breaks"], 1)
+        self.assertEqual(broken[0]["first"]["optimised_line"], 16)
+        self.assertIn(broken[0]["first"]["message"], err)
+
+        self.assertIn("No such file", self.fail_with(INPUT, "verify", plain, self.path("none.gcode")))
+        self.assertIn("--policy=wild", self.fail_with(2, "verify", plain, plain, "--policy=wild"))
+        self.assertIn("OPTIMISED is missing", self.fail_with(2, "verify", plain))
+
     def test_reports_of_gcode_state_what_the_files_amount_to(self):
         gcode = os.path.join(TESTS, os.pardir, "deploy", "samples", "clusters13.gcode")
         page = self.path("page.html")

@@ -25,14 +25,18 @@ WayRise RiseOf(double from, double to) {
 
 int64_t Um(double mm) { return std::llround(mm * 1000); }
 
-// Travel from the start script is no example for other travel: it is only no higher than it was.
+// Travel from the start script is no example for other travel: it is only no higher, and no lower,
+// than it was.
 void ObserveFirstWay(const LayerPair& layer, const TraceChunk& chunk, const TraceLink& traced,
-                     HighestPoint& highest) {
+                     Observations& seen) {
   for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (!move.in_print) continue;
-    if (highest.line != 0 && move.z_to_mm <= highest.z_mm) continue;
-    highest = {move.z_to_mm, move.line, layer.index()};
+    const ExtremePoint point{move.z_to_mm, move.line, layer.index()};
+    ExtremePoint& highest = seen.first_highest;
+    if (highest.line == 0 || point.z_mm > highest.z_mm) highest = point;
+    ExtremePoint& lowest = seen.first_lowest;
+    if (lowest.line == 0 || point.z_mm < lowest.z_mm) lowest = point;
   }
 }
 
@@ -41,7 +45,7 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
   const TraceLink& traced = chunk.links[link];
   if (traced.first_move == traced.end_move) return;
   if (!chunk.moves[traced.first_move].in_print) {
-    return ObserveFirstWay(layer, chunk, traced, seen.first_way);
+    return ObserveFirstWay(layer, chunk, traced, seen);
   }
   const double to = chunk.paths[link].z_mm;
   const double from = chunk.moves[traced.first_move].z_from_mm;
@@ -143,14 +147,18 @@ void CompareDescents(const Observations& was, const Observations& is,
   }
 }
 
-void CompareFirstWay(const HighestPoint& was, const HighestPoint& is,
+void CompareFirstWay(const Observations& was, const Observations& is,
                      std::vector<Finding>& breaks) {
-  if (was.line == 0 || is.line == 0 || is.z_mm <= was.z_mm + kSlackMm) return;
-  breaks.push_back(
-      {VerifyRule::kLifts, was.line, is.line, is.layer,
-       absl::StrFormat("travel from the start script rises to Z%.3f; in the original to "
-                       "Z%.3f",
-                       is.z_mm, was.z_mm)});
+  const auto compare = [&breaks](const ExtremePoint& had, const ExtremePoint& has, double side,
+                                 const char* leads) {
+    if (had.line == 0 || has.line == 0 || side * (has.z_mm - had.z_mm) <= kSlackMm) return;
+    breaks.push_back({VerifyRule::kLifts, had.line, has.line, has.layer,
+                      absl::StrFormat("travel from the start script %s to Z%.3f; in the original "
+                                      "to Z%.3f",
+                                      leads, has.z_mm, had.z_mm)});
+  };
+  compare(was.first_highest, is.first_highest, 1, "rises");
+  compare(was.first_lowest, is.first_lowest, -1, "descends");
 }
 
 void CompareRises(const Observations& was, const Observations& is, bool level,
@@ -220,7 +228,7 @@ void ObserveHeights(const LayerPair& layer, LayerFindings& findings) {
 
 void CompareHeights(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   CompareMoves(was, is, breaks);
-  CompareFirstWay(was.first_way, is.first_way, breaks);
+  CompareFirstWay(was, is, breaks);
   CompareDescents(was, is, breaks);
   std::array<LowestWay, static_cast<size_t>(WayRise::kCount)> known;
   for (const LowestWay& way : was.lowest) {

@@ -164,12 +164,13 @@ TEST(VerifyLifts, HeightsBesideUnknownLinesAreThoseOfTheOriginal) {
             std::string::npos);
 }
 
-TEST(VerifyLifts, TheWayFromTheStartScriptRisesNoHigher) {
+TEST(VerifyLifts, TheWayFromTheStartScriptRisesNoHigherAndDescendsNoDeeper) {
   const std::string purge = "M83\nG1 X20 Y0 Z.2 F9000\nG1 X60 E9 F1000\nG1 X62 F9000\n";
   const std::string way = ";LAYER_CHANGE\nG1 X10 Y10 Z.6 F9000\nG1 Z.2\n";
   const std::string a = purge + way + kTwo;
   EXPECT_EQ(Broken(a, purge + way + kOneTurned), "");
   EXPECT_EQ(Broken(a, With(a, "Z.6", "Z30")), "lifts");
+  EXPECT_THAT(Broken(a, With(a, "G1 Z.2\n", "G1 Z.1\nG1 Z.2\n")), HasSubstr("lifts"));
 }
 
 TEST(VerifyLifts, TheHeadDoesNotGoDownIntoWhatIsPrinted) {
