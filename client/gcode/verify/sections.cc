@@ -64,11 +64,11 @@ void SectionCutter::NoteOrder(const VerifyLine& line, bool mark) {
   }
 }
 
-void SectionCutter::TakeLoose() {
+void SectionCutter::TakeLoose(uint64_t position) {
   section_.notes += loose_notes_;
   loose_notes_ = {};
   for (const uint64_t digest : loose_said_) {
-    section_.said = Mix(section_.said, Mix(digest, section_.deposits.count));
+    section_.said = Mix(section_.said, Mix(digest, position));
   }
   loose_said_.clear();
 }
@@ -98,7 +98,7 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
       section_.deposits.Add(line.digest);
       section_.order = Mix(section_.order, line.digest);
       last_deposit_ = line.number;
-      TakeLoose();
+      TakeLoose(section_.deposits.count);
       break;
     case LineRole::kComment:
       loose_said_.push_back(line.digest);
@@ -139,7 +139,7 @@ void SectionCutter::CutAtHeight(const VerifyMachine& machine) {
 void SectionCutter::Close(const VerifyMachine& machine, size_t last_line, uint64_t fence,
                           bool fixed, bool label) {
   section_.last_line = section_.last_note = last_line;
-  TakeLoose();
+  TakeLoose(section_.deposits.count + 1);
   section_.fence = fence;
   section_.fixed = fixed;
   // What follows the print may be all that leads away from it.

@@ -99,7 +99,7 @@ class SectionCutter {
   void Close(const VerifyMachine& machine, size_t last_line, uint64_t fence, bool fixed,
              bool label = false);
   bool Ignores(const VerifyLine& line);
-  void TakeLoose();
+  void TakeLoose(uint64_t position);  // among the deposits of the section
   void NoteOrder(const VerifyLine& line, bool mark);
 
   const std::string_view ignored_;

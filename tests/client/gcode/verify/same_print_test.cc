@@ -39,6 +39,7 @@ TEST(SamePrint, CommentsBetweenPathsThatStayKeepTheirOrder) {
 TEST(SamePrint, CommentsStayBetweenThePathsBetweenWhichTheyStand) {
   const std::string a = kHead + kOne + "; stop printing\n" + kOther;
   EXPECT_EQ(Broken(a, kHead + "; stop printing\n" + kOne + kOther), "same_print");
+  EXPECT_EQ(Broken(a, kHead + kOne + kOther + "; stop printing\n"), "same_print");
   EXPECT_EQ(Broken(a, kHead + kOther + "; stop printing\n" + kOne), "");
 }
 
