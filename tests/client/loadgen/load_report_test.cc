@@ -47,6 +47,20 @@ TEST(LoadReport, EachColumnIsItsOwnPercentile) {
   EXPECT_NEAR(json["ok_per_second"], 100, 1e-9);
 }
 
+TEST(LoadReport, StatesTheRateOrTheJobsInFlight) {
+  LoadHeading heading = Heading();
+  heading.options.rate = 25;
+  const auto open = nlohmann::json::parse(LoadJson(heading, Thousand()));
+  heading.options.rate = 0;
+  heading.options.in_flight = 7;
+  const auto closed = nlohmann::json::parse(LoadJson(heading, Thousand()));
+
+  EXPECT_EQ(open["rate"], 25);
+  EXPECT_TRUE(open["in_flight"].is_null());
+  EXPECT_TRUE(closed["rate"].is_null());
+  EXPECT_EQ(closed["in_flight"], 7);
+}
+
 TEST(LoadReport, TheTableHasTheSameFigures) {
   const std::string table = LoadTable(Heading(), Thousand());
 

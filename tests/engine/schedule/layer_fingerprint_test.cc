@@ -94,6 +94,7 @@ TEST(ProblemKey, DependsOnStartAndFinishFromTheOrigin) {
   EXPECT_NE(ProblemKey(2, {0, 0}, {5, 5}, std::nullopt), key);
   EXPECT_NE(ProblemKey(1, {0, 0}, {5, 6}, std::nullopt), key);
   EXPECT_NE(ProblemKey(1, {0, 0}, {5, 5}, Point{0, 0}), key);
+  EXPECT_EQ(ProblemKey(1, {0, 0}, {5, 5}, Point{3, 4}), ProblemKey(1, {1, 2}, {6, 7}, Point{4, 6}));
   EXPECT_NE(ProblemKey(1, {0, 0}, {5, 5}, Point{0, 0}), ProblemKey(1, {0, 0}, {5, 5}, Point{0, 1}));
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "client/gcode/read/reader.h"
@@ -43,6 +44,25 @@ TEST_F(PlacedPathTest, TheMachineIsBehindThePathAsItIsPlaced) {
   EXPECT_TRUE(behind.machine.at.SameXy(file.machine.at));
   EXPECT_EQ(behind.machine.feed, file.machine.feed);
   EXPECT_EQ(behind.machine.e, file.machine.e);
+}
+
+TEST_F(PlacedPathTest, TheWayBackIsAtMostAsLongAsThePath) {
+  for (const uint32_t block : {0u, 1u}) {
+    const PlacedPath path = Placed(block, 0);
+    const auto length = [&path](double most_mm) {
+      double mm = 0;
+      Position at = path.last();
+      for (const Position& next : path.WayBack(most_mm))
+        mm += LengthXy(std::exchange(at, next), next);
+      return mm;
+    };
+    const double whole = length(1e6);
+
+    EXPECT_GT(whole, 1);
+    EXPECT_LT(whole, 1e3);
+    EXPECT_TRUE(path.WayBack(1e6).back().SameXy(block == 0 ? path.last() : path.first()));
+    EXPECT_NEAR(length(whole / 2), whole / 2, 1e-3);
+  }
 }
 
 // Half a circle from (0, 0) around (10, 0): a wipe goes back along it, and not across.
