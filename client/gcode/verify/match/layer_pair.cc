@@ -231,6 +231,14 @@ void LayerPair::Match() {
   }
 }
 
+uint32_t LayerPair::OriginalLine(uint32_t path) const {
+  const auto behind =
+      std::upper_bound(visits_.begin(), visits_.end(), path,
+                       [](uint32_t p, const Visit& visit) { return p < visit.first_path; });
+  assert(behind != visits_.begin());
+  return was_.LineOf(was_.paths[(behind - 1)->path]);
+}
+
 uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
                               absl::Span<const Piece> pieces, bool any_speed) {
   const TraceLink& link = chunk.links[path + 1];

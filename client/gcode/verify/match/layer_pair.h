@@ -66,6 +66,10 @@ class LayerPair {
   // True if the original has the same move, from the same point to the same point, in this layer.
   bool IsKnown(const TraceMove& move) const { return known_.contains(move.identity); }
 
+  // The line of the original with which the path begins that path `path` of the other file is a
+  // part of.
+  uint32_t OriginalLine(uint32_t path) const;
+
   // The moves at the beginning of link `path` + 1 that continue along the path, without filament
   // and no faster than it was printed, unless `any_speed`. `pieces` belong to the path.
   static uint32_t TailMoves(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces,

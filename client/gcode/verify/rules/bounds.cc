@@ -53,7 +53,7 @@ void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped, LayerFin
     if (!move.sideways()) continue;
     if (move.kind == MoveKind::kTravel && move.in_print && move.arc && !layer.IsKnown(move)) {
       findings.breaks.push_back(
-          {VerifyRule::kBounds, 0, move.line, layer.index(),
+          {VerifyRule::kBounds, layer.OriginalLine(link), move.line, layer.index(),
            "travel along an arc that the original does not have in this layer"});
     }
     const bool counts = move.kind == MoveKind::kTravel && move.in_print && !move.arc;
@@ -65,7 +65,7 @@ void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped, LayerFin
     const double excess = ExcessOf(*last, move);
     if (excess <= kLeastExcessMm || LeadsAroundAWall(layer, *last, move)) continue;
     findings.breaks.push_back(
-        {VerifyRule::kBounds, 0, last->line, layer.index(),
+        {VerifyRule::kBounds, layer.OriginalLine(link), last->line, layer.index(),
          absl::StrFormat(
              "travel is %.2f mm longer because of a bend that leads around no outer wall",
              excess)});

@@ -57,6 +57,9 @@ TEST(VerifyBounds, NoWaySweepsAlongAnArcOfItsOwn) {
   EXPECT_EQ(Broken(a, arc), "bounds");
   EXPECT_EQ(Broken(arc, arc), "");
   EXPECT_EQ(Broken(arc, a), "");
+  // Of the original, the line of the path that the travel leads to.
+  EXPECT_NE(FirstMessage(a, arc).find("b:11: travel along an arc"), std::string::npos);
+  EXPECT_NE(FirstMessage(a, arc).find("(bounds; a:15)"), std::string::npos) << FirstMessage(a, arc);
   // Nor from one point of the path before to another one.
   const std::string along = kHead + With(kSquare, "G1 X10 Y10 E.4\n", "G1 X10 Y10.5 E.4\n") +
                             "G1 X10 Y14 F1200\nG1 X50 Y50 F9000\n" + kWall + "G1 X60 Y50 E.4\n";
