@@ -211,15 +211,26 @@ int IteratedSearch::ChooseSpan(Rng& rng) const {
   return static_cast<int>(options_.least_span * std::pow(ratio, rng.Unit()));
 }
 
+// The position behind the longest of `tries` moves.
+int IteratedSearch::ChooseCut(Rng& rng, int begin, int span, int tries) const {
+  int cut = begin + rng.Between(0, span);
+  for (int i = 1; i < tries; ++i) {
+    const int other = begin + rng.Between(0, span);
+    if (state_.StepCost(other - 1) > state_.StepCost(cut - 1)) cut = other;
+  }
+  return cut;
+}
+
 bool IteratedSearch::ChooseCuts(Rng& rng, int node, int (&cuts)[4]) const {
   const OrderTree& tree = state_.tree();
   const int first = std::max(state_.position(node), options_.first_kicked);
   const int past_node = state_.position(node) + tree.size(node);
   const int size = std::min(past_node - 1, options_.last_kicked) + 1 - first;
-  const int span = std::min(size, ChooseSpan(rng));
+  const bool at_long_moves = options_.long_share > 0 && rng.Unit() < options_.long_share;
+  const int span = std::min(size, at_long_moves ? options_.most_span : ChooseSpan(rng));
   const int begin = first + rng.Between(0, size - span);
   for (int& cut : cuts) {
-    cut = begin + rng.Between(0, span);
+    cut = ChooseCut(rng, begin, span, at_long_moves ? options_.long_of : 1);
     if (cut < past_node) {
       cut = state_.position(tree.ChildHolding(node, state_.leaf_at(cut)));
     }

@@ -60,6 +60,12 @@ struct IteratedSearchOptions {
   int least_span = 30;
   int most_span = 400;
 
+  // The share of kicks that have the largest span and each cut at the longest of so many moves
+  // chosen at random. Between groups of paths far apart, such as holes that are drilled here and
+  // there, moves are few and long, and neighbors do not lead from group to group.
+  double long_share = 0;
+  int long_of = 12;
+
   // For kicks that turn a run, where those exist: their share of all kicks, the most blocks in a
   // run, and the share of the runs that end near where they begin.
   double turn_share = 0.5;
@@ -96,6 +102,7 @@ class IteratedSearch {
   int ChooseLeaf(Rng& rng) const;
   bool ChooseCuts(Rng& rng, int node, int (&cuts)[4]) const;
   int ChooseSpan(Rng& rng) const;
+  int ChooseCut(Rng& rng, int begin, int span, int tries) const;
   void KeepBest(double cost);
 
   // The work so far, in iterations without walls.

@@ -41,6 +41,10 @@ constexpr int kWidestKicks = 200'000;
 constexpr int kMostSpan = 400;
 constexpr int kLeastMostSpan = 50;
 
+// Of kicks, where the caller does not want so much of each iteration that there is no time for
+// them: sliced files gain nothing by them.
+constexpr double kLongShare = 0.3;
+
 // Operations of dynamic programmes on small parts, by the way of 2 ns each; where walls are asked
 // about, of ten times as much.
 constexpr double kSmallPartOperations = 3e6;
@@ -229,6 +233,7 @@ class AutoLayer : public PreparedLayer {
     options.least_gain = kLeastGain;
     options.least_gain_each = options_.least_gain_each;
     options.window = static_cast<double>(options_.gain_window);
+    if (options_.least_gain_each == 0) options.long_share = kLongShare;
     if (options_.least_gain_each > 0) {
       options.earned = effort.kicks > 0 ? kEarned * options_.effort / effort.kicks : kEarned;
       const Route given = GivenRoute(*layer.problem.plan, &budget);

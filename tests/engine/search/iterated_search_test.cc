@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "absl/strings/str_cat.h"
 #include "engine/base/tolerances.h"
 #include "engine/validator.h"
 #include "tests/engine/search/searched.h"
 #include "tests/support/problems/brute_force.h"
+#include "tests/support/problems/instances.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {
@@ -102,6 +106,37 @@ TEST(IteratedSearch, FindsTheOptimumOfSmallProblems) {
     optimal += s.state.TotalCost() <= BruteForce(s.owned.problem).cost + kCostTolerance;
   }
   EXPECT_GE(optimal, 180);
+}
+
+// 30 groups of as many points, far apart and in a random order: few moves are between groups, and
+// the neighbors of a point are all in its group.
+double CostOfGroups(uint64_t seed, double long_share) {
+  Rng rng(seed);
+  std::vector<Path> paths;
+  for (int group = 0; group < 30; ++group) {
+    const Point middle{1000 * rng.Unit(), 1000 * rng.Unit()};
+    for (int i = 0; i < 30; ++i) {
+      paths.push_back(MakeContour({{middle.x + 10 * rng.Unit(), middle.y + 10 * rng.Unit()}}));
+    }
+  }
+  Searched s{OwnedProblem(AnyOrderPlan(std::move(paths)))};
+  IteratedSearchOptions options;
+  options.patience = 150;
+  options.long_share = long_share;
+  IteratedSearch search(s.state, s.neighbors, options);
+  search.Descend(s.budget);
+  search.Run(rng, s.budget);
+  return s.state.TotalCost();
+}
+
+TEST(IteratedSearch, FindsTheOrderOfGroupsFarApartByCutsAtLongMoves) {
+  double without = 0;
+  double with = 0;
+  for (uint64_t seed = 1; seed <= 8; ++seed) {
+    without += CostOfGroups(seed, 0);
+    with += CostOfGroups(seed, 0.3);
+  }
+  EXPECT_LT(with, 0.995 * without) << with / without;
 }
 
 double SearchedCost(uint64_t seed, PlanShape shape, const IteratedSearchOptions& options) {

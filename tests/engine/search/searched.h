@@ -3,6 +3,8 @@
 #ifndef TRAVERSE_TESTS_ENGINE_SEARCH_SEARCHED_H_
 #define TRAVERSE_TESTS_ENGINE_SEARCH_SEARCHED_H_
 
+#include <utility>
+
 #include "engine/base/rng.h"
 #include "engine/model/route.h"
 #include "engine/search/end_groups.h"
@@ -15,7 +17,10 @@ namespace traverse::testing {
 struct Searched {
   explicit Searched(uint64_t seed,
                     const RandomPlanOptions& options = {.min_paths = 3, .max_paths = 12})
-      : owned(RandomProblem(seed, options)),
+      : Searched(RandomProblem(seed, options)) {}
+
+  explicit Searched(OwnedProblem problem)
+      : owned(std::move(problem)),
         tree(owned.plan()),
         entries(owned.problem),
         state(owned.problem, tree, entries),
