@@ -207,7 +207,8 @@ bool LayerWriter::GoesOnAcross(const Placement& from, Vertex to, Feature feature
 
 bool LayerWriter::Departs(const Placement& from, Vertex to, Feature feature) const {
   const Leaving* leaving = LeavingOf(from);
-  if (leaving == nullptr || !leaving->departs) return false;
+  // What goes on along a path, or comes before its wipe, stays with the path.
+  if (leaving == nullptr || !leaving->departs) return true;
   const TravelWay way = rules_.WayOf(End(from), to, feature);
   if (way.retracts != leaving->retracts) return false;
   if (way.retracts) return true;
