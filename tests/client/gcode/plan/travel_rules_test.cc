@@ -328,8 +328,8 @@ TEST(MakeGcodeJob, WhereWipesLeaveLittleToGainTheSearchEndsSooner) {
     return std::stod(WipedLines(wiped).options.strategy().options().at(option));
   };
 
-  EXPECT_GT(number(1, "least_gain_each"), 3 * number(0, "least_gain_each"));
-  EXPECT_GT(number(3, "least_gain_each"), 1.5 * number(1, "least_gain_each"));
+  EXPECT_GT(number(1, "least_gain_each"), 1.5 * number(0, "least_gain_each"));
+  EXPECT_GT(number(3, "least_gain_each"), 1.25 * number(1, "least_gain_each"));
   EXPECT_LT(number(3, "gain_window"), number(0, "gain_window"));
 }
 
