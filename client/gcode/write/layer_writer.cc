@@ -123,9 +123,8 @@ void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32
   // Paths that the slicer wipes stay wiped, so that all ways from them are retracted.
   request.wipe = file_.WipedBehind(from.placement().block);
   request.retract = request.wipe || Retracts(from, to);
-  request.departs =
-      Departs(from.placement(), file_.modes[to.block().mode].InMm(to.first()),
-              outlines_[to.placement().block - layer_.first_block].feature);
+  request.departs = Departs(from.placement(), file_.modes[to.block().mode].InMm(to.first()),
+                            outlines_[to.placement().block - layer_.first_block].feature);
   request.detours = rules_.detours();
   LinkWriter(file_, donors_, out).Write(request);
 }
@@ -207,8 +206,8 @@ bool LayerWriter::GoesOnAcross(const Placement& from, Vertex to, Feature feature
 
 bool LayerWriter::Departs(const Placement& from, Vertex to, Feature feature) const {
   const Leaving* leaving = LeavingOf(from);
-  // What goes on along a path, or comes before its wipe, stays with the path.
-  if (leaving == nullptr || !leaving->departs) return true;
+  // What goes on along a path stays with it; before a wipe there need be nothing.
+  if (leaving == nullptr || !leaving->departs) return leaving != nullptr && !leaving->wipes;
   const TravelWay way = rules_.WayOf(End(from), to, feature);
   if (way.retracts != leaving->retracts) return false;
   if (way.retracts) return true;
