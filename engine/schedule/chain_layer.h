@@ -59,7 +59,7 @@ struct ChainLayer {
   // Set by solve and second.
   Solution first;
   bool searched_in_vain = false;  // see PendingRoute
-  BoundSearch bound;
+  BoundMultipliers bound_multipliers;
   std::optional<Point> second_start;
   Solution second;
 

@@ -114,7 +114,7 @@ void LayerSolver::SolveFirst(ChainLayer& layer) const {
 void LayerSolver::ResumeFromPrecursor(const LayerProblem& problem, ChainLayer& layer,
                                       Budget& budget) const {
   const PendingRoute& precursor = *layer.precursor;
-  layer.bound.multipliers = precursor.best->multipliers;
+  layer.bound_multipliers = precursor.best->multipliers;
   const bool same = precursor.key == layer.key;
   if (same && precursor.idle >= RouteHistory::kMostIdle &&
       TakeOver(*precursor.best, problem, layer, layer.first)) {
@@ -156,7 +156,7 @@ KnownRoutePtr LayerSolver::Known(const LayerProblem& problem, const ChainLayer& 
   known->exact = layer.fingerprint.exact;
   known->start = problem.start;
   known->finish = problem.finish;
-  known->multipliers = layer.bound.multipliers;
+  known->multipliers = layer.bound_multipliers;
   return known;
 }
 
@@ -290,7 +290,7 @@ void LayerSolver::Bound(const LayerProblem& problem, ChainLayer& layer, Solution
   if (effort == 0 || cancel_.cancelled()) return;
   Budget budget = LayerBudget(layer, kSideShare);
   const double cost = RouteCost(problem, solution.route, &budget);
-  solution.lower_bound = LowerBound(problem, cost, &layer.bound, effort, budget);
+  solution.lower_bound = LowerBound(problem, cost, &layer.bound_multipliers, effort, budget);
   if (solution.lower_bound == cost) solution.stop = StopReason::kOptimal;
 }
 
@@ -326,7 +326,6 @@ LayerOutcome LayerSolver::Anchor(ChainLayer& layer, const TrueStart& at) const {
   TellFound(problem, std::move(solution), layer.given, turns, outcome);
   layer.prepared.reset();
   layer.walls.reset();
-  layer.bound.Clear(turns);
   outcome.solve_seconds += watch.Seconds();
   return outcome;
 }

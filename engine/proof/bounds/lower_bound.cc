@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <memory>
 #include <optional>
 
 #include "engine/cost/route_cost.h"
@@ -23,18 +22,20 @@ constexpr int kMostEvaluations = 6;
 constexpr double kLeastGain = 1e-3;
 
 // Rounds of the search that knows points, where it fits, for an effort of up to 1, and beyond by
-// its root; fewer from multipliers that were found before, and where a search goes on.
+// its root; fewer from multipliers that were found before. A search itself is not kept for other
+// starts: it takes some 28 KB for each end of a path, and a job's layers may wait by the hundred.
 constexpr double kVertexRounds = 8;
 constexpr double kMostVertexRounds = 40;
 constexpr double kShareOfRoundsAgain = 0.5;
-constexpr double kShareOfRoundsOnward = 0.25;
 constexpr double kShareOfProgrammeAgain = 0.25;
 
 // Of the time that is left, what a search may use: the evaluation after it is what counts.
 constexpr double kSearchShare = 0.4;
 
-double VertexRounds(double effort) {
-  return std::min(kVertexRounds * std::sqrt(std::max(1.0, effort)), kMostVertexRounds);
+int VertexRounds(double effort, bool known) {
+  const double rounds =
+      std::min(kVertexRounds * std::sqrt(std::max(1.0, effort)), kMostVertexRounds);
+  return static_cast<int>(known ? kShareOfRoundsAgain * rounds : rounds);
 }
 
 Budget SearchBudget(const Budget& budget) {
@@ -52,12 +53,12 @@ void EvaluateAgain(TreeBound& tree, Budget& budget) {
   }
 }
 
-// The bound of `tree`, made better; `search` as that of LowerBound.
-std::optional<double> BoundByTrees(double target, TreeBound& tree, BoundSearch& search,
+// The bound of `tree`, made better; `multipliers` as those of LowerBound.
+std::optional<double> BoundByTrees(double target, TreeBound& tree, BoundMultipliers& multipliers,
                                    Budget& budget) {
   if (budget.ExhaustedNow()) return std::nullopt;
-  const bool known = search.multipliers.size() == tree.multipliers().size();
-  if (known) tree.SetMultipliers(search.multipliers);
+  const bool known = multipliers.size() == tree.multipliers().size();
+  if (known) tree.SetMultipliers(multipliers);
   if (!tree.Evaluate(budget)) return std::nullopt;
   for (int round = 0; round < kRounds && !known && tree.lower_bound() < target; ++round) {
     Budget part = SearchBudget(budget);
@@ -65,17 +66,19 @@ std::optional<double> BoundByTrees(double target, TreeBound& tree, BoundSearch& 
     if (!tree.Evaluate(budget)) break;
   }
   EvaluateAgain(tree, budget);
-  search.multipliers = tree.multipliers();
+  multipliers = tree.multipliers();
   return tree.lower_bound();
 }
 
-std::optional<double> BoundFromNothing(const LayerProblem& problem, double target,
-                                       BoundSearch& search, int rounds, Budget& budget) {
+std::optional<double> BoundByMultipliers(const LayerProblem& problem, double target,
+                                         BoundMultipliers& multipliers, int rounds,
+                                         Budget& budget) {
   TreeBound tree(problem, budget);
-  std::optional<double> bound = BoundByTrees(target, tree, search, budget);
+  std::optional<double> bound = BoundByTrees(target, tree, multipliers, budget);
   if (bound && *bound < target && VertexBound::Fits(tree.graph())) {
-    search.points = std::make_unique<VertexBound>(problem, tree);
-    bound = std::max(*bound, search.points->Search(target, rounds, budget));
+    VertexBound points(problem, tree);
+    bound = std::max(*bound, points.Search(target, rounds, budget));
+    points.Clear(budget);
   }
   tree.Clear(budget);
   return bound;
@@ -83,36 +86,15 @@ std::optional<double> BoundFromNothing(const LayerProblem& problem, double targe
 
 }  // namespace
 
-BoundSearch::BoundSearch() = default;
-BoundSearch::~BoundSearch() = default;
-BoundSearch::BoundSearch(BoundSearch&&) noexcept = default;
-BoundSearch& BoundSearch::operator=(BoundSearch&&) noexcept = default;
-
-void BoundSearch::Clear(Budget& budget) {
-  if (points) points->Clear(budget);
-  points.reset();
-}
-
-std::optional<double> LowerBound(const LayerProblem& problem, double target, BoundSearch* search,
-                                 double effort, Budget& budget) {
+std::optional<double> LowerBound(const LayerProblem& problem, double target,
+                                 BoundMultipliers* multipliers, double effort, Budget& budget) {
   if (problem.plan->paths.empty()) return RouteCost(problem, {});
   if (budget.ExhaustedNow()) return std::nullopt;
-  BoundSearch own;
-  BoundSearch& it = search != nullptr ? *search : own;
-  const bool goes_on = it.points != nullptr;
-  const bool known = goes_on || !it.multipliers.empty();
-  const double rounds = VertexRounds(effort);
-  std::optional<double> bound;
-  if (goes_on) {
-    it.points->SetStartAndFinish(problem.start, problem.finish);
-    bound = it.points->Search(target, static_cast<int>(kShareOfRoundsOnward * rounds), budget);
-    if (budget.was_exhausted() && *bound == 0) return std::nullopt;
-  } else {
-    bound =
-        BoundFromNothing(problem, target, it,
-                         static_cast<int>(known ? kShareOfRoundsAgain * rounds : rounds), budget);
-  }
-  own.Clear(budget);
+  BoundMultipliers own;
+  BoundMultipliers& shared = multipliers != nullptr ? *multipliers : own;
+  const bool known = !shared.empty();
+  std::optional<double> bound =
+      BoundByMultipliers(problem, target, shared, VertexRounds(effort, known), budget);
   if (!bound) return std::nullopt;
   if (*bound < target && effort > 0) {
     if (known) effort *= kShareOfProgrammeAgain;

@@ -3,7 +3,6 @@
 #ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_LOWER_BOUND_H_
 #define TRAVERSE_ENGINE_PROOF_BOUNDS_LOWER_BOUND_H_
 
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -12,37 +11,23 @@
 
 namespace traverse {
 
-class VertexBound;
-
-// What a search for a bound found, for the next one on the same plan with another start. Any
-// multipliers are valid.
-struct BoundSearch {
-  BoundSearch();
-  ~BoundSearch();
-  BoundSearch(BoundSearch&&) noexcept;
-  BoundSearch& operator=(BoundSearch&&) noexcept;
-
-  // Lets the search go, all but the multipliers, and gives others their turn meanwhile.
-  void Clear(Budget& budget);
-
-  std::vector<double> multipliers;      // [end of a path]: little, of use for an equal plan too
-  std::unique_ptr<VertexBound> points;  // for the very plan
-};
+// The result of a search for a bound, reusable for the same plan with another start: [end of a
+// path]. Any values are valid.
+using BoundMultipliers = std::vector<double>;
 
 // In the unit of the problem's cost, including `finish`; never above `target`, the cost of a route.
 // Unset if the budget ends before there is a bound. Deterministic unless the budget ends it.
 //
-// If `search` is not null, this goes on from it, or begins with its multipliers, and leaves in it
-// what was found: the same plan at a neighboring start then has nearly as good a bound in a small
-// part of the time. Multipliers for another number of paths are replaced. REQUIRES: search->points
-// is null, or of this very plan, which outlives it.
+// If `multipliers` is not null, the search begins with them and leaves its own there: the same plan
+// at a neighboring start then has nearly as good a bound in less time. Those for another number of
+// paths are replaced.
 //
 // `effort` is the effort of linear programmes (programme_bound.h), which follow the trees.
 //
 // Linear memory, except for these. Bounds by trees (tree_bound.h): 4 ms for 26 contours and 26
 // rasters, 0.3 s for 500 and 500.
-std::optional<double> LowerBound(const LayerProblem& problem, double target, BoundSearch* search,
-                                 double effort, Budget& budget);
+std::optional<double> LowerBound(const LayerProblem& problem, double target,
+                                 BoundMultipliers* multipliers, double effort, Budget& budget);
 
 }  // namespace traverse
 

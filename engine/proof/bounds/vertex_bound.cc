@@ -21,8 +21,13 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr size_t kFirstPlaces = 5;
 constexpr double kWidthWorthSplitting = 0.03;
 
-// Beyond these, steps take too long.
-constexpr size_t kMostEnds = 4000;
+// Nothing is split where there are so many moves for each point of the plan: each takes some 240
+// bytes.
+constexpr size_t kMostMovesOfPoint = 25;
+
+// Beyond these, steps take too long, and a search takes more memory than a layer may: some 28 KB
+// for each end.
+constexpr size_t kMostEnds = 1000;
 
 // Near ends of each end that the ascent looks at.
 constexpr size_t kNeighbors = 8;
@@ -69,6 +74,7 @@ VertexBound::VertexBound(const LayerProblem& problem, TreeBound& tree)
       direction_(multipliers_),
       chosen_(graph_.ends.size()) {
   assert(Fits(graph_));
+  for (const PathEnd& end : graph_.ends) points_of_plan_ += end.points.size();
   const size_t points = multipliers_.point.size();
   average_.points.resize(points);
   for (size_t v = 0; v < points; ++v) {
@@ -96,12 +102,6 @@ void VertexBound::FindCostsOfFirstAndLast() {
   };
   fill(graph_.first, PathEnd::kEnter, start_costs_, start_);
   fill(graph_.last, PathEnd::kLeave, finish_costs_, finish_);
-}
-
-void VertexBound::SetStartAndFinish(Point start, std::optional<Point> finish) {
-  start_ = start;
-  finish_ = finish;
-  FindCostsOfFirstAndLast();
 }
 
 // The pairs that are nearest by the tree's multipliers.
@@ -363,6 +363,7 @@ double VertexBound::EvaluateAll(Budget& budget) {
 
 // Splits the places that solutions visit. Multipliers, and so the bound, stay as they are.
 void VertexBound::Refine() {
+  if (moves_.moves().size() > kMostMovesOfPoint * points_of_plan_) return;
   const double least = kWidthWorthSplitting * mean_move_;
   std::vector<char> marked(average_.points.size());
   for (size_t v = 0; v < marked.size(); ++v) {

@@ -45,9 +45,6 @@ class VertexBound {
   VertexBound(const VertexBound&) = delete;
   VertexBound& operator=(const VertexBound&) = delete;
 
-  // Goes on with other ends of the route, which take a few more rounds.
-  void SetStartAndFinish(Point start, std::optional<Point> finish);
-
   // Searches for multipliers towards `target`, the cost of a route, for so many rounds at most.
   // Returns a bound, 0 if the budget ended before there was one; more rounds never give a lower
   // one. A round takes 6 to 60 ms for 40 to 320 paths.
@@ -102,6 +99,7 @@ class VertexBound {
   void Ascend(double target, Budget& budget);
 
   EndGraph graph_;
+  size_t points_of_plan_ = 0;  // as often as ends have them
   const TravelCost cost_;
   Point start_;
   std::optional<Point> finish_;

@@ -175,7 +175,7 @@ TEST(LowerBound, IsNearTheRouteAroundContoursOfManyPoints) {
   EXPECT_GT(bound, 0.85 * cost) << bound / cost;
 }
 
-// From another start of the same plan a search goes on where it was.
+// What was found for one start is a good beginning for another one.
 TEST(LowerBound, IsNearlyAsGoodFromAnotherStart) {
   OwnedProblem owned(testing::ClusterPlan(40));
   Budget budget;
@@ -183,15 +183,15 @@ TEST(LowerBound, IsNearlyAsGoodFromAnotherStart) {
     return RouteCost(owned.problem,
                      (*MakeStrategy("auto", {}))->Solve(owned.problem, budget).route);
   };
-  BoundSearch search;
-  LowerBound(owned.problem, cost(), &search, 1, budget);
+  BoundMultipliers multipliers;
+  LowerBound(owned.problem, cost(), &multipliers, 1, budget);
   owned.problem.start = Point{-20, 10};
   const double target = cost();
 
   const double afresh = *LowerBound(owned.problem, target, nullptr, 1, budget);
-  const double onward = *LowerBound(owned.problem, target, &search, 1, budget);
+  const double onward = *LowerBound(owned.problem, target, &multipliers, 1, budget);
 
-  EXPECT_GT(onward, 0.98 * afresh);
+  EXPECT_GT(onward, 0.97 * afresh);
 }
 
 // What was found for one start bounds the routes from another one.
@@ -200,13 +200,12 @@ TEST(LowerBound, IsValidWithMultipliersOfAnotherStart) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
     OwnedProblem owned = testing::RandomProblem(seed, {.max_paths = 6});
     Budget budget;
-    BoundSearch search;
-    LowerBound(owned.problem, 1e6, &search, 1, budget);
-    if (seed % 2 == 0) search.Clear(budget);  // its multipliers alone remain
+    BoundMultipliers multipliers;
+    LowerBound(owned.problem, 1e6, &multipliers, 1, budget);
     owned.problem.start = Point{-50, 20};
     const double best = testing::BruteForce(owned.problem).cost;
 
-    const std::optional<double> bound = LowerBound(owned.problem, 1e6, &search, 1, budget);
+    const std::optional<double> bound = LowerBound(owned.problem, 1e6, &multipliers, 1, budget);
 
     ASSERT_TRUE(bound.has_value());
     EXPECT_LE(*bound, best + 1e-9 * (1 + best));
