@@ -79,14 +79,14 @@ class WorkerPool {
   // be in progress with at most this many points, or fewer after LimitMemory. In any case as many
   // tasks as there are permits may be in progress.
   static constexpr size_t kMostUnderWay = 512;
-  static constexpr int64_t kSmallPoints = 1000;
+  static constexpr int64_t kSmallPoints = 250;
   static constexpr int64_t kLargePoints = 20'000;
   static constexpr int64_t kMostPoints = 4'000'000;
 
   // Memory that a search may hold per point, in bytes, in addition to the layer. Measured on 20,000
-  // contours of one point: tabu 3,000, `exact` 900, `auto` 800; a bound on 400 contours of five
-  // points 6,000.
-  static constexpr int64_t kBytesOfPoint = 6400;
+  // contours of one point: tabu 3,000, `exact` 900, `auto` 800. The bound of `auto` takes most: on
+  // 80 contours of 12 points 16,000.
+  static constexpr int64_t kBytesOfPoint = 16'000;
 
   // `permits` tasks work at a time, at least one. `clock` measures what they are charged. Adds
   // `nice` to the workers' nice value, relative to the calling thread.

@@ -145,7 +145,8 @@ TEST(WorkerTurns, TasksUnderWayHaveNoMorePointsThanMemoryAllows) {
   }
   std::atomic<int> small{0};
   for (int i = 0; i < 30; ++i) {
-    pool.NewQueue("small " + std::to_string(i))->SubmitLarge([&] { ++small; }, 1000);
+    pool.NewQueue("small " + std::to_string(i))
+        ->SubmitLarge([&] { ++small; }, WorkerPool::kSmallPoints);
   }
   WaitFor([&] { return small == 30 && large.begun == 2 && middle.begun == 5; });
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
