@@ -32,6 +32,7 @@ class LayerWriter {
   // `file`, `habit` and `donors` outlive the writer.
   LayerWriter(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
               const LinkDonors& donors);
+  LayerWriter(const GcodeFile&, const Layer&, RetractionHabit&&, const LinkDonors&) = delete;
 
   const VisibleWalls& walls() const { return walls_; }
   const std::vector<Outline>& outlines() const { return outlines_; }

@@ -109,7 +109,8 @@ TEST(LayerWriter, BehindAHeadThatWasLostTheWayIsWritten) {
   const LayerOrder better = {{0, 0, false}, {2, 0, false}, {3, 0, false},
                              {4, 0, false}, {1, 0, false}, {5, 0, false}};
   const LinkDonors donors(*file);
-  const LayerWriter writer(*file, file->layers[0], HabitOfNewWays(*file), donors);
+  const RetractionHabit habit = HabitOfNewWays(*file);
+  const LayerWriter writer(*file, file->layers[0], habit, donors);
   LayerOrder order = writer.GivenOrder();
   std::swap(order[1], order[5]);
   std::string written;

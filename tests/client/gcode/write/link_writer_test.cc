@@ -277,7 +277,8 @@ TEST(LinkWriter, FilamentIsPulledBackBehindALabelThatItPasses) {
   text += "M107\n";
   const auto file = Read(text);
   const LinkDonors donors(*file);
-  const LayerWriter writer(*file, file->layers[0], HabitOfNewWays(*file), donors);
+  const RetractionHabit habit = HabitOfNewWays(*file);
+  const LayerWriter writer(*file, file->layers[0], habit, donors);
   LayerOrder order = writer.GivenOrder();
   std::swap(order[4], order[6]);
   std::string written = text.substr(0, file->blocks[0].begin);
