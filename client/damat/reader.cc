@@ -15,6 +15,7 @@
 #include "client/damat/format.h"
 #include "client/damat/outer_contour.h"
 #include "client/files/read_file.h"
+#include "client/files/utf8_mark.h"
 
 namespace traverse {
 namespace {
@@ -89,7 +90,7 @@ class Reader {
 
 absl::StatusOr<InputJob> Reader::Read(std::string_view text) {
   job_.format = InputFormat::kDamat;
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  text = WithoutUtf8Mark(text);
   while (!text.empty()) {
     ++line_;
     const size_t end = text.find('\n');

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "client/containers/container.h"
+#include "client/files/utf8_mark.h"
 
 namespace traverse {
 namespace {
@@ -79,7 +80,7 @@ std::optional<InputFormat> DetectText(std::string_view text) {
 
 std::optional<InputFormat> DetectByContent(std::string_view bytes) {
   if (DetectContainer(bytes) != ContainerKind::kText) return InputFormat::kGcode;
-  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+  bytes = WithoutUtf8Mark(bytes);
   const std::string_view head = bytes.substr(0, kBytesAsked);
   if (IsBinary(head)) {
     // Tags of OptimizeBatchRequest.options and .layers.

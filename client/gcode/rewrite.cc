@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
+#include "client/files/utf8_mark.h"
 #include "client/gcode/choose/layer_choice.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/read/reader.h"
@@ -37,7 +38,7 @@ double Percent(double before, double after) {
 // picture that something else stands in. The mark of UTF-8 stays in front of whatever it stands in
 // front of.
 Offset EndOfHead(std::string_view text) {
-  Offset end = StartsWith(text, "\xEF\xBB\xBF") ? LineAt(text, 0).next : 0;
+  Offset end = StartsWith(text, kUtf8Mark) ? LineAt(text, 0).next : 0;
   std::optional<Offset> picture;
   for (Offset next = end; next < text.size();) {
     const Line line = LineAt(text, next);

@@ -13,6 +13,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_format.h"
 #include "client/files/read_file.h"
+#include "client/files/utf8_mark.h"
 #include "client/gtsp/instance.h"
 
 namespace traverse {
@@ -100,7 +101,7 @@ class Reader {
 };
 
 absl::StatusOr<gtsp::Instance> Reader::Read(std::string_view text) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  text = WithoutUtf8Mark(text);
   text_size_ = text.size();
   while (!text.empty() && section_ != Section::kEnd) {
     ++line_;

@@ -10,6 +10,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/files/utf8_mark.h"
 #include "client/gcode/text/lexer.h"
 #include "client/gcode/text/text.h"
 
@@ -333,8 +334,7 @@ bool LooksLikeKlipper(std::string_view text) {
 }  // namespace
 
 absl::StatusOr<MachineLimits> ReadMachineLimits(std::string_view text, const std::string& name) {
-  constexpr std::string_view kMarkOfUtf8 = "\xEF\xBB\xBF";
-  if (StartsWith(text, kMarkOfUtf8)) text.remove_prefix(kMarkOfUtf8.size());
+  text = WithoutUtf8Mark(text);
   if (LooksLikeKlipper(text)) return KlipperReader(name).Read(text);
   return MarlinReader(name).Read(text);
 }

@@ -59,8 +59,7 @@ absl::StatusOr<VerifyPermissions> ParsePermissions(std::string_view policy,
 std::optional<VerifyPermissions> PermissionsInHead(std::string_view text) {
   constexpr std::string_view kPolicy = ", policy ";
   constexpr std::string_view kAllow = " allow ";
-  constexpr std::string_view kMarkOfUtf8 = "\xEF\xBB\xBF";
-  if (gcode::Begins(text, kMarkOfUtf8)) text.remove_prefix(kMarkOfUtf8.size());
+  if (gcode::Begins(text, gcode::kMarkOfUtf8)) text.remove_prefix(gcode::kMarkOfUtf8.size());
   while (!text.empty()) {
     std::string_view line = TakeWord(text, "\n");
     line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size()));

@@ -12,6 +12,9 @@ inline bool Begins(std::string_view text, std::string_view with) {
   return text.substr(0, with.size()) == with;
 }
 
+// The byte order mark of UTF-8, with which some editors begin a text.
+inline constexpr std::string_view kMarkOfUtf8 = "\xEF\xBB\xBF";
+
 // Without blanks, tabs and carriage returns at both ends.
 inline std::string_view TrimLine(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);

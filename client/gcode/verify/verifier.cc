@@ -225,7 +225,6 @@ void Verifier::Add(Finding finding) {
 
 // What no line of G-code shows: the byte order mark and the line ends.
 void Verifier::CheckText() {
-  constexpr std::string_view kMarkOfUtf8 = "\xEF\xBB\xBF";
   if (Begins(original_, kMarkOfUtf8) != Begins(optimised_, kMarkOfUtf8)) {
     findings_.push_back({VerifyRule::kSamePrint, 1, 1, -1,
                          "only one of the files begins with a byte order mark of UTF-8"});
