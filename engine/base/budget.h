@@ -65,6 +65,12 @@ class Budget {
     return Budget(cancel_, deadline_ && *deadline_ < end ? *deadline_ : end, turn_);
   }
 
+  // A budget with that share of the time that is left; this one if it has no deadline.
+  Budget WithShare(double share) const {
+    if (!deadline_) return *this;
+    return Within(std::chrono::duration_cast<Clock::duration>((*deadline_ - Clock::now()) * share));
+  }
+
  private:
   // Yields, so that cancelled work that must still finish delays nobody. Returns true.
   bool LeaveTurn() {

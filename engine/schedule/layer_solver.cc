@@ -221,7 +221,7 @@ Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, ChainLayer
   if (as_predicted && !view.empty()) {
     solution = layer.first;
   } else {
-    Budget alone = view.empty() ? budget : Part(budget, kAloneShare);
+    Budget alone = view.empty() ? budget : budget.WithShare(kAloneShare);
     const Route& from = BestToGoOnFrom(problem, layer, known);
     solution = strategy_->traits().quick ? Prepared(layer).Solve(problem, alone)
                                          : Prepared(layer).Resume(problem, from, alone);

@@ -46,12 +46,6 @@ constexpr double kRouteShareWithoutProof = 0.7;
 constexpr double kBoundShare = 0.5;
 constexpr double kBoundShareWithoutProof = 0.8;
 
-Budget Share(const Budget& budget, double share) {
-  if (!budget.deadline()) return budget;
-  const auto left = *budget.deadline() - Budget::Clock::now();
-  return budget.Within(std::chrono::duration_cast<Budget::Clock::duration>(left * share));
-}
-
 class Exact : public Strategy {
  public:
   explicit Exact(double time_limit_seconds)
@@ -74,7 +68,7 @@ class Exact : public Strategy {
  private:
   Solution FirstRoute(const LayerProblem& problem, Budget& budget) const {
     const bool provable = StageModel::Fits(*problem.plan, kMostModelEntries, &budget);
-    Budget share = Share(budget, provable ? kRouteShare : kRouteShareWithoutProof);
+    Budget share = budget.WithShare(provable ? kRouteShare : kRouteShareWithoutProof);
     Solution solution = (provable ? long_heuristic_ : heuristic_)->Solve(problem, share);
     solution.statistics["provable"] = provable ? 1 : 0;
     return solution;
@@ -89,7 +83,7 @@ class Exact : public Strategy {
     Budget limited = budget.Within(std::chrono::duration_cast<Budget::Clock::duration>(
         std::chrono::duration<double>(time_limit_seconds_)));
     const bool provable = solution.statistics["provable"] > 0;
-    Budget share = Share(limited, provable ? kBoundShare : kBoundShareWithoutProof);
+    Budget share = limited.WithShare(provable ? kBoundShare : kBoundShareWithoutProof);
     solution.lower_bound = LowerBound(problem, cost, nullptr, /*effort=*/0, share);
     if (solution.lower_bound == cost) {
       solution.stop = StopReason::kOptimal;

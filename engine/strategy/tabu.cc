@@ -1,7 +1,6 @@
 #include "engine/strategy/tabu.h"
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -162,7 +161,7 @@ class Tabu : public Strategy {
     if (budget.cancelled()) return Ended(std::move(best), std::move(solution), budget);
     Take(layer, ni2opt_->Solve(layer.problem, budget).route, best);
     if (budget.cancelled()) return Ended(std::move(best), std::move(solution), budget);
-    Budget share = FrameworkBudget(budget);
+    Budget share = budget.WithShare(kFrameworkShare);
     Route found = Search(layer, start, options_, share, solution.statistics);
     if (budget.cancelled()) return Ended(std::move(best), std::move(solution), budget);
     Rng rng(StreamSeed(layer.problem.seed, kPolishStream));
@@ -180,13 +179,6 @@ class Tabu : public Strategy {
     const double paths = static_cast<double>(layer.plan().paths.size());
     return static_cast<int64_t>(
         polish_rounds_ * (paths < kFewPaths ? paths : kFewPaths + 0.1 * (paths - kFewPaths)));
-  }
-
-  Budget FrameworkBudget(const Budget& budget) const {
-    if (!budget.deadline()) return budget;
-    const auto left = *budget.deadline() - Budget::Clock::now();
-    return budget.Within(
-        std::chrono::duration_cast<Budget::Clock::duration>(left * kFrameworkShare));
   }
 
   FrameworkOptions options_;

@@ -140,10 +140,7 @@ class Proof {
   }
 
   // Where there is a deadline, half of what is left: the other stages need some too.
-  Budget Share() const {
-    if (!budget_.deadline()) return budget_;
-    return budget_.Within((*budget_.deadline() - Budget::Clock::now()) / 2);
-  }
+  Budget Share() const { return budget_.WithShare(0.5); }
 
   // Something else than time may have ended a search: after the same route it would end again.
   bool GoesOn(const ItemStage::Best& best, const Budget& share) {
