@@ -92,15 +92,10 @@ class LayerSolver {
     std::vector<NextLayer> next;
     double cost = 0;  // of all
   };
-  static void Connect(const LayerProblem& problem, RoutesInView& routes);
-  static Budget Part(const Budget& budget, double share);  // of the time that is left
   size_t MostPathsInView(const LayersInView& view) const;
-  RoutesInView OneAfterTheOther(const LayerProblem& problem, const Route& route,
-                                const LayersInView& view, Budget& budget) const;
-  RoutesInView AsForeseen(const LayerProblem& problem, const ChainLayer& layer,
-                          const LayersInView& view, Budget& budget) const;
-  RoutesInView AsGreedyDoes(const LayerProblem& problem, const ChainLayer& layer,
-                            const LayersInView& view) const;
+  template <typename RouteOf>
+  RoutesInView InView(const LayerProblem& problem, const Route& route, const LayersInView& view,
+                      const RouteOf& route_of) const;
   void SolveInView(const LayerProblem& problem, ChainLayer& layer, const LayersInView& view,
                    Budget& budget, Solution& solution) const;
 

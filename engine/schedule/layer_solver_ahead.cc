@@ -1,7 +1,5 @@
 // How LayerSolver ends a layer with the next ones in view.
 
-#include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -25,12 +23,6 @@ size_t PathsOf(const ChainLayer& layer, const LayersInView& view) {
 }
 
 }  // namespace
-
-Budget LayerSolver::Part(const Budget& budget, double share) {
-  if (!budget.deadline()) return budget;
-  const Budget::Clock::duration left = *budget.deadline() - Budget::Clock::now();
-  return budget.Within(std::chrono::duration_cast<Budget::Clock::duration>(share * left));
-}
 
 size_t LayerSolver::MostPathsInView(const LayersInView& view) const {
   const StrategyTraits& traits = strategy_->traits();
@@ -64,79 +56,47 @@ double LayerSolver::CostInView(const LayerProblem& problem, const Route& route,
   return cost + RouteCost(Problem(next, end), known);
 }
 
-// Sets the starts of `next`, each where the layer before it ends, and the cost of all.
-void LayerSolver::Connect(const LayerProblem& problem, RoutesInView& routes) {
-  routes.cost = RouteCost(problem, routes.route);
-  Point at = RouteEnd(*problem.plan, routes.route, problem.start);
-  for (NextLayer& next : routes.next) {
-    next.problem.start = at;
+// Each layer from where the one before it ends: the first one by `route`, those in view by
+// route_of(layer, its problem).
+template <typename RouteOf>
+LayerSolver::RoutesInView LayerSolver::InView(const LayerProblem& problem, const Route& route,
+                                              const LayersInView& view,
+                                              const RouteOf& route_of) const {
+  RoutesInView routes{route, {}, RouteCost(problem, route)};
+  Point at = RouteEnd(*problem.plan, route, problem.start);
+  for (const ChainLayerPtr& layer : view) {
+    NextLayer& next = routes.next.emplace_back(NextLayer{Problem(*layer, at), {}});
+    next.route = route_of(*layer, next.problem);
     routes.cost += RouteCost(next.problem, next.route);
     at = RouteEnd(*next.problem.plan, next.route, at);
   }
-}
-
-// Each layer solved from where the one before it ends, as without a view.
-LayerSolver::RoutesInView LayerSolver::OneAfterTheOther(const LayerProblem& problem,
-                                                        const Route& route,
-                                                        const LayersInView& view,
-                                                        Budget& budget) const {
-  RoutesInView routes{route, {}, 0};
-  Point at = RouteEnd(*problem.plan, route, problem.start);
-  for (const ChainLayerPtr& next : view) {
-    NextLayer& found = routes.next.emplace_back(NextLayer{Problem(*next, at), next->first.route});
-    if (at != next->predicted_start) {
-      found.route = Prepared(*next).Resume(found.problem, found.route, budget).route;
-    }
-    at = RouteEnd(*found.problem.plan, found.route, at);
-  }
-  Connect(problem, routes);
-  return routes;
-}
-
-// What the layer before saw of this one and the next ones, as far as that goes, and the rest from
-// there on.
-LayerSolver::RoutesInView LayerSolver::AsForeseen(const LayerProblem& problem,
-                                                  const ChainLayer& layer, const LayersInView& view,
-                                                  Budget& budget) const {
-  RoutesInView routes{layer.foreseen, {}, 0};
-  Point at = RouteEnd(*problem.plan, layer.foreseen, problem.start);
-  for (const ChainLayerPtr& next : view) {
-    NextLayer& found = routes.next.emplace_back(NextLayer{Problem(*next, at), next->foreseen});
-    if (next->foreseen.empty()) {
-      found.route = Prepared(*next).Resume(found.problem, next->first.route, budget).route;
-    }
-    at = RouteEnd(*found.problem.plan, found.route, at);
-  }
-  Connect(problem, routes);
-  return routes;
-}
-
-LayerSolver::RoutesInView LayerSolver::AsGreedyDoes(const LayerProblem& problem,
-                                                    const ChainLayer& layer,
-                                                    const LayersInView& view) const {
-  RoutesInView routes{GreedyRoute(problem, layer), {}, 0};
-  Point at = RouteEnd(*problem.plan, routes.route, problem.start);
-  for (const ChainLayerPtr& next : view) {
-    const LayerProblem follows = Problem(*next, at);
-    routes.next.push_back({follows, GreedyRoute(follows, *next)});
-    at = RouteEnd(*follows.plan, routes.next.back().route, at);
-  }
-  Connect(problem, routes);
   return routes;
 }
 
 // Ends the layer with the next ones in view. `solution` is of the layer alone. What is found is
 // never longer, for all these layers together, than one after the other from there, or than what
-// was foreseen, or than greedy.
+// the layer before foresaw of them, or than greedy.
 void LayerSolver::SolveInView(const LayerProblem& problem, ChainLayer& layer,
                               const LayersInView& view, Budget& budget, Solution& solution) const {
-  Budget beginnings = Part(budget, kBeginningsShare);
-  RoutesInView best = OneAfterTheOther(problem, solution.route, view, beginnings);
+  Budget beginnings = budget.WithShare(kBeginningsShare);
+  const auto resumed = [&](ChainLayer& next, const LayerProblem& from) {
+    return Prepared(next).Resume(from, next.first.route, beginnings).route;
+  };
+  const auto alone = [&](ChainLayer& next, const LayerProblem& from) {
+    return from.start == next.predicted_start ? next.first.route : resumed(next, from);
+  };
+  const auto foreseen = [&](ChainLayer& next, const LayerProblem& from) {
+    return next.foreseen.empty() ? resumed(next, from) : next.foreseen;
+  };
+  const auto greedy = [&](const ChainLayer& next, const LayerProblem& from) {
+    return GreedyRoute(from, next);
+  };
+  RoutesInView best = InView(problem, solution.route, view, alone);
   const auto offer = [&best](RoutesInView routes) {
     if (routes.cost < best.cost) best = std::move(routes);
   };
-  if (!layer.foreseen.empty()) offer(AsForeseen(problem, layer, view, beginnings));
-  offer(AsGreedyDoes(problem, layer, view));
+  if (!layer.foreseen.empty()) offer(InView(problem, layer.foreseen, view, foreseen));
+  offer(InView(problem, GreedyRoute(problem, layer), view, greedy));
   solution = Prepared(layer).ResumeWithNext(problem, best.route, best.next, budget);
   for (size_t i = 0; i < view.size(); ++i) view[i]->foreseen = std::move(best.next[i].route);
 }
