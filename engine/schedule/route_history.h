@@ -13,6 +13,7 @@
 
 #include "engine/model/point.h"
 #include "engine/model/route.h"
+#include "engine/proof/bounds/lower_bound.h"
 #include "engine/strategy/strategy.h"
 
 namespace traverse {
@@ -27,7 +28,7 @@ struct KnownRoute {
   Point start;
   std::optional<Point> finish;
 
-  std::vector<double> multipliers;  // from the search for its lower bound
+  BoundMultipliers multipliers;  // from the search for its lower bound
 };
 using KnownRoutePtr = std::shared_ptr<const KnownRoute>;
 

@@ -1,7 +1,6 @@
 #include "engine/proof/bounds/lower_bound.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 
@@ -38,12 +37,6 @@ int VertexRounds(double effort, bool known) {
   return static_cast<int>(known ? kShareOfRoundsAgain * rounds : rounds);
 }
 
-Budget SearchBudget(const Budget& budget) {
-  if (!budget.deadline()) return budget;
-  const auto left = *budget.deadline() - Budget::Clock::now();
-  return budget.Within(std::chrono::duration_cast<Budget::Clock::duration>(left * kSearchShare));
-}
-
 // Each evaluation makes the true costs of its trees' moves known where boxes stood for contours.
 void EvaluateAgain(TreeBound& tree, Budget& budget) {
   for (int times = 0; times < kMostEvaluations; ++times) {
@@ -61,7 +54,7 @@ std::optional<double> BoundByTrees(double target, TreeBound& tree, BoundMultipli
   if (known) tree.SetMultipliers(multipliers);
   if (!tree.Evaluate(budget)) return std::nullopt;
   for (int round = 0; round < kRounds && !known && tree.lower_bound() < target; ++round) {
-    Budget part = SearchBudget(budget);
+    Budget part = budget.WithShare(kSearchShare);
     tree.Ascend(target, kStepsPerRound, part);
     if (!tree.Evaluate(budget)) break;
   }
@@ -78,7 +71,6 @@ std::optional<double> BoundByMultipliers(const LayerProblem& problem, double tar
   if (bound && *bound < target && VertexBound::Fits(tree.graph())) {
     VertexBound points(problem, tree);
     bound = std::max(*bound, points.Search(target, rounds, budget));
-    points.Clear(budget);
   }
   tree.Clear(budget);
   return bound;

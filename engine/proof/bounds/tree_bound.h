@@ -56,9 +56,6 @@ class TreeBound {
 
   const EndGraph& graph() const { return graph_; }
 
-  // Gives the graph away. Afterwards this has only its bound, multipliers and pairs.
-  EndGraph TakeGraph() { return std::move(graph_); }
-
   // Pairs near each other, and all that trees had so far.
   const std::vector<Pair>& pairs() const { return pairs_; }
 

@@ -61,8 +61,8 @@ bool VertexBound::Fits(const EndGraph& graph) {
                      [](const PathEnd& end) { return end.points.size() > 1; });
 }
 
-VertexBound::VertexBound(const LayerProblem& problem, TreeBound& tree)
-    : graph_(tree.TakeGraph()),
+VertexBound::VertexBound(const LayerProblem& problem, const TreeBound& tree)
+    : graph_(tree.graph()),
       cost_(problem.cost),
       start_(problem.start),
       finish_(problem.finish),

@@ -18,7 +18,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "engine/base/budget.h"
@@ -39,9 +38,8 @@ class VertexBound {
   // Whether the plan has contours with a choice of points, and few enough ends.
   static bool Fits(const EndGraph& graph);
 
-  // Begins with the multipliers and the pairs of `tree`, and takes its graph over. `problem` need
-  // not outlive this, but its plan does. REQUIRES: Fits.
-  VertexBound(const LayerProblem& problem, TreeBound& tree);
+  // Begins with the multipliers and the pairs of `tree`, which outlives this. REQUIRES: Fits.
+  VertexBound(const LayerProblem& problem, const TreeBound& tree);
   VertexBound(const VertexBound&) = delete;
   VertexBound& operator=(const VertexBound&) = delete;
 
@@ -49,10 +47,6 @@ class VertexBound {
   // Returns a bound, 0 if the budget ended before there was one; more rounds never give a lower
   // one. A round takes 6 to 60 ms for 40 to 320 paths.
   double Search(double target, int most_rounds, Budget& budget);
-
-  // Frees what takes long to free and gives others their turn meanwhile. Afterwards this can only
-  // be destroyed.
-  void Clear(Budget& budget) { graph_.Clear(&budget); }
 
  private:
   // The cheapest move between the sides of a group: cost less multipliers.
@@ -98,7 +92,7 @@ class VertexBound {
   void Step(double length);
   void Ascend(double target, Budget& budget);
 
-  EndGraph graph_;
+  const EndGraph& graph_;
   size_t points_of_plan_ = 0;  // as often as ends have them
   const TravelCost cost_;
   Point start_;
