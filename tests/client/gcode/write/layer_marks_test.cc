@@ -18,6 +18,21 @@ namespace {
 using ::testing::HasSubstr;
 using testing::Read;
 
+// That the first of two layers, and no other, is written in the order `better`.
+void ExpectRewritten(const std::string& text, const LayerOrder& better) {
+  const auto file = Read(text);
+  ASSERT_EQ(file->layers.size(), 2u);
+  RewriteOptions options;
+  options.policy = Policy::kFree;
+
+  const auto rewrite = RewriteGcode(*file, {{better, {}}}, options);
+
+  ASSERT_TRUE(rewrite.ok()) << rewrite.status();
+  EXPECT_EQ(rewrite->unproven, "");
+  ASSERT_EQ(rewrite->layers_changed, 1);
+  EXPECT_EQ(rewrite->orders[0].back(), better.back());
+}
+
 // The fan runs for one line alone. In the better order it comes last, before the layer that begins
 // near it: at the marks of that layer the fan stands still, as in the file.
 TEST(LayerWriter, AtTheMarksOfALayerTheFanIsAsInTheFile) {
@@ -32,19 +47,9 @@ TEST(LayerWriter, AtTheMarksOfALayerTheFanIsAsInTheFile) {
   text += ";LAYER_CHANGE\nG1 Z.4 F9000\n";
   for (const char* y : {"41", "42", "43"}) line(y);
   text += "M107\n";
-  const auto file = Read(text);
-  ASSERT_EQ(file->layers.size(), 2u);
-  const LayerOrder better = {
-      {0, 0, false}, {2, 0, false}, {3, 0, false}, {4, 0, false}, {1, 0, false}};
-  RewriteOptions options;
-  options.policy = Policy::kFree;
 
-  const auto rewrite = RewriteGcode(*file, {{better, {}}}, options);
-
-  ASSERT_TRUE(rewrite.ok()) << rewrite.status();
-  EXPECT_EQ(rewrite->unproven, "");
-  ASSERT_EQ(rewrite->layers_changed, 1);
-  EXPECT_EQ(rewrite->orders[0].back(), better.back());
+  ExpectRewritten(text,
+                  {{0, 0, false}, {2, 0, false}, {3, 0, false}, {4, 0, false}, {1, 0, false}});
 }
 
 // The fan runs for the last line, and stops at the marks of the next layer, before them. Another
@@ -61,19 +66,9 @@ TEST(LayerWriter, WhereTheMarksOfALayerSetTheFanItIsSetOnce) {
   text += "M106 S0\n;LAYER_CHANGE\nG1 Z.4 F9000\n";
   for (const char* y : {"41", "42", "43"}) line(y);
   text += "M107\n";
-  const auto file = Read(text);
-  ASSERT_EQ(file->layers.size(), 2u);
-  const LayerOrder better = {
-      {0, 0, false}, {1, 0, false}, {3, 0, false}, {4, 0, false}, {2, 0, false}};
-  RewriteOptions options;
-  options.policy = Policy::kFree;
 
-  const auto rewrite = RewriteGcode(*file, {{better, {}}}, options);
-
-  ASSERT_TRUE(rewrite.ok()) << rewrite.status();
-  EXPECT_EQ(rewrite->unproven, "");
-  ASSERT_EQ(rewrite->layers_changed, 1);
-  EXPECT_EQ(rewrite->orders[0].back(), better.back());
+  ExpectRewritten(text,
+                  {{0, 0, false}, {1, 0, false}, {3, 0, false}, {4, 0, false}, {2, 0, false}});
 }
 
 TEST(LayerWriter, WhatTheStartScriptDoesBehindItsPurgeLineStays) {

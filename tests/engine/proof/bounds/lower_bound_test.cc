@@ -127,6 +127,23 @@ TEST(LowerBound, IsMonotoneInTheEffort) {
   }
 }
 
+// Of the route of `auto`.
+double CostFound(const LayerProblem& problem) {
+  Budget budget;
+  return RouteCost(problem, (*MakeStrategy("auto", {}))->Solve(problem, budget).route);
+}
+
+// That the bound is below the route of `auto`, and above `share` of it.
+void ExpectBoundNear(const OwnedProblem& owned, double share) {
+  const double cost = CostFound(owned.problem);
+  Budget budget;
+
+  const double bound = *LowerBound(owned.problem, cost, nullptr, 1, budget);
+
+  EXPECT_LE(bound, cost);
+  EXPECT_GT(bound, share * cost) << bound / cost;
+}
+
 // Contours far wider than the ways between them: trees that join the nearest points of each two
 // are at 0.52 of the shortest route here.
 TEST(LowerBound, KnowsThatAContourIsLeftWhereItIsEntered) {
@@ -140,15 +157,8 @@ TEST(LowerBound, KnowsThatAContourIsLeftWhereItIsEntered) {
     }
     paths.push_back(MakeContour(std::move(vertices)));
   }
-  const OwnedProblem owned(testing::AnyOrderPlan(std::move(paths)));
-  Budget budget;
-  const Solution found = (*MakeStrategy("auto", {}))->Solve(owned.problem, budget);
-  const double cost = RouteCost(owned.problem, found.route);
 
-  const double bound = *LowerBound(owned.problem, cost, nullptr, 1, budget);
-
-  EXPECT_LE(bound, cost);
-  EXPECT_GT(bound, 0.9 * cost) << bound / cost;
+  ExpectBoundNear(OwnedProblem(testing::AnyOrderPlan(std::move(paths))), 0.9);
 }
 
 // Contours of many points: which of them count is found out.
@@ -164,29 +174,18 @@ TEST(LowerBound, IsNearTheRouteAroundContoursOfManyPoints) {
     }
     paths.push_back(MakeContour(std::move(circle)));
   }
-  const OwnedProblem owned(testing::AnyOrderPlan(std::move(paths)));
-  Budget budget;
-  const Solution found = (*MakeStrategy("auto", {}))->Solve(owned.problem, budget);
-  const double cost = RouteCost(owned.problem, found.route);
 
-  const double bound = *LowerBound(owned.problem, cost, nullptr, 1, budget);
-
-  EXPECT_LE(bound, cost);
-  EXPECT_GT(bound, 0.85 * cost) << bound / cost;
+  ExpectBoundNear(OwnedProblem(testing::AnyOrderPlan(std::move(paths))), 0.85);
 }
 
 // What was found for one start is a good beginning for another one.
 TEST(LowerBound, IsNearlyAsGoodFromAnotherStart) {
   OwnedProblem owned(testing::ClusterPlan(40));
   Budget budget;
-  const auto cost = [&] {
-    return RouteCost(owned.problem,
-                     (*MakeStrategy("auto", {}))->Solve(owned.problem, budget).route);
-  };
   BoundMultipliers multipliers;
-  LowerBound(owned.problem, cost(), &multipliers, 1, budget);
+  LowerBound(owned.problem, CostFound(owned.problem), &multipliers, 1, budget);
   owned.problem.start = Point{-20, 10};
-  const double target = cost();
+  const double target = CostFound(owned.problem);
 
   const double afresh = *LowerBound(owned.problem, target, nullptr, 1, budget);
   const double onward = *LowerBound(owned.problem, target, &multipliers, 1, budget);
