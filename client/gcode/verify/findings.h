@@ -118,10 +118,16 @@ struct LiftHeights {
   absl::flat_hash_map<int64_t, Seen> other;
 
   absl::flat_hash_map<int64_t, Seen>& Of(bool is_level) { return is_level ? level : other; }
+  const absl::flat_hash_map<int64_t, Seen>& Of(bool is_level) const {
+    return is_level ? level : other;
+  }
 
   // Whether one of them is `um`. Lifts between paths of one height are compared with their like, if
   // there are any.
   bool Have(int64_t um, bool is_level) const;
+
+  // Where the first of them is that others are compared with; 0 if there is none.
+  uint32_t FirstLine() const { return FirstLineOf(Of(!level.empty())); }
 };
 
 // The height that a move states, and the slope on which it reaches it; 0: it does not rise.

@@ -154,12 +154,13 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
   if (link > 0) way.ends = EndsOf(chunk, link);
   way.first = static_cast<uint32_t>(seen.lifts.pieces.size());
   double length = 0;
-  double z_before = to.z_mm;
+  const bool goes = traced.first_move < traced.end_move;
+  const double z_before = goes ? chunk.moves[traced.first_move].z_from_mm : to.z_mm;
+  const double base = std::max(to.z_mm, z_before);
+  const bool level = std::abs(z_before - to.z_mm) <= kOneHeightMm;
   for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
-    if (m == traced.first_move) z_before = move.z_from_mm;
     if (move.kind != MoveKind::kTravel || !move.in_print || move.open == retracted) continue;
-    const double base = std::max(to.z_mm, z_before);
     way.line = way.line == 0 ? move.line : way.line;
     length += move.length_mm();
     seen.lifts.pieces.push_back({static_cast<float>(move.z_from_mm - base),
@@ -168,7 +169,6 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
     if (!move.states_z || (only_new && layer.IsKnown(move))) continue;
     const int64_t um = std::llround((move.z_to_mm - to.z_mm) * 1000);
     const int64_t slope = SlopeOf(move);
-    const bool level = std::abs(z_before - to.z_mm) <= kOneHeightMm;
     if (only_new) {
       seen.stated.push_back({um, slope, level, move.line, layer.index()});
     } else {
@@ -181,7 +181,7 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
     return;
   }
   way.end = static_cast<uint32_t>(seen.lifts.pieces.size());
-  const bool between = traced.new_layer || std::abs(z_before - to.z_mm) > kOneHeightMm;
+  const bool between = traced.new_layer || !level;
   const bool crossing = layer.CrossingLength(chunk, link, !retracted) > 0;
   seen.lifts.ways[(retracted ? 4u : 0u) + (between ? 2u : 0u) + (crossing ? 1u : 0u)].push_back(
       way);
@@ -276,9 +276,7 @@ void CompareLifts(const Observations& was, const Observations& is, std::vector<F
         stated.slope > 0 && stated.um <= highest && Knows(was.slopes, stated.slope, kSlopeSlackUm);
     if (known) continue;
     breaks.push_back(
-        {VerifyRule::kLifts,
-         FirstLineOf(was.heights.level.empty() ? was.heights.other : was.heights.level),
-         stated.line, stated.layer,
+        {VerifyRule::kLifts, was.heights.FirstLine(), stated.line, stated.layer,
          absl::StrFormat("travel rises to %.3f mm above the layer; none of the original does",
                          static_cast<double>(stated.um) / 1000)});
   }

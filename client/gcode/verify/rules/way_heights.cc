@@ -163,12 +163,10 @@ void CompareFirstWay(const Observations& was, const Observations& is,
 
 void CompareRises(const Observations& was, const Observations& is, bool level,
                   std::vector<Finding>& breaks) {
-  for (const auto& [um, seen] : level ? is.rises.level : is.rises.other) {
+  for (const auto& [um, seen] : is.rises.Of(level)) {
     if (was.rises.Have(um, level) || was.heights.Have(um, level)) continue;
     breaks.push_back(
-        {VerifyRule::kLifts,
-         FirstLineOf(was.rises.level.empty() ? was.rises.other : was.rises.level), seen.line,
-         seen.layer,
+        {VerifyRule::kLifts, was.rises.FirstLine(), seen.line, seen.layer,
          absl::StrFormat("a lift of %.3f mm above the layer; no such lift of the original has this "
                          "height",
                          static_cast<double>(um) / 1000)});
