@@ -6,8 +6,8 @@
 
 #include "engine/cost/route_cost.h"
 #include "engine/proof/bounds/programme_bound.h"
-#include "engine/proof/bounds/tree_bound.h"
-#include "engine/proof/bounds/vertex_bound.h"
+#include "engine/proof/trees/tree_bound.h"
+#include "engine/proof/vertices/vertex_bound.h"
 
 namespace traverse {
 namespace {

@@ -7,8 +7,8 @@
 #include <iterator>
 #include <utility>
 
-#include "engine/proof/bounds/multiplier_search.h"
 #include "engine/proof/min_plus.h"
+#include "engine/proof/walks/multiplier_search.h"
 #include "engine/proof/walks/walk_conflicts.h"
 #include "engine/proof/walks/walk_dp.h"
 

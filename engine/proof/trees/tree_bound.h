@@ -11,8 +11,8 @@
 // Two evaluations: over all pairs of ends (Prim; linear memory, pairs of far contours bounded by
 // their boxes), which is what bounds, and over a few near ones (Kruskal), which finds multipliers.
 
-#ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_TREE_BOUND_H_
-#define TRAVERSE_ENGINE_PROOF_BOUNDS_TREE_BOUND_H_
+#ifndef TRAVERSE_ENGINE_PROOF_TREES_TREE_BOUND_H_
+#define TRAVERSE_ENGINE_PROOF_TREES_TREE_BOUND_H_
 
 #include <cstdint>
 #include <utility>
@@ -23,7 +23,7 @@
 #include "engine/base/disjoint_sets.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/model/layer_problem.h"
-#include "engine/proof/bounds/end_graph.h"
+#include "engine/proof/trees/end_graph.h"
 
 namespace traverse {
 
@@ -101,4 +101,4 @@ class TreeBound {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_ENGINE_PROOF_BOUNDS_TREE_BOUND_H_
+#endif  // TRAVERSE_ENGINE_PROOF_TREES_TREE_BOUND_H_

@@ -1,4 +1,4 @@
-#include "engine/proof/bounds/near_moves.h"
+#include "engine/proof/vertices/near_moves.h"
 
 #include <gtest/gtest.h>
 

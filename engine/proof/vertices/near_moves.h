@@ -1,8 +1,8 @@
 // The places of a plan's ends, and those moves between them that an ascent looks at
 // (vertex_bound.h).
 
-#ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_NEAR_MOVES_H_
-#define TRAVERSE_ENGINE_PROOF_BOUNDS_NEAR_MOVES_H_
+#ifndef TRAVERSE_ENGINE_PROOF_VERTICES_NEAR_MOVES_H_
+#define TRAVERSE_ENGINE_PROOF_VERTICES_NEAR_MOVES_H_
 
 #include <cassert>
 #include <cstddef>
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "engine/cost/travel_cost.h"
-#include "engine/proof/bounds/end_graph.h"
-#include "engine/proof/bounds/places.h"
+#include "engine/proof/trees/end_graph.h"
+#include "engine/proof/vertices/places.h"
 
 namespace traverse {
 
@@ -96,4 +96,4 @@ class NearMoves {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_ENGINE_PROOF_BOUNDS_NEAR_MOVES_H_
+#endif  // TRAVERSE_ENGINE_PROOF_VERTICES_NEAR_MOVES_H_

@@ -1,4 +1,4 @@
-#include "engine/proof/bounds/subtour_sets.h"
+#include "engine/proof/vertices/subtour_sets.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "engine/base/rng.h"
 #include "engine/model/tree/plan_tree.h"
-#include "engine/proof/bounds/set_finder.h"
+#include "engine/proof/vertices/set_finder.h"
 #include "tests/support/problems/instances.h"
 #include "tests/support/problems/owned_problem.h"
 
@@ -57,7 +57,8 @@ class SubtourSetsTest : public ::testing::Test {
   void AddRoute(Rng& rng, double weight) {
     std::vector<int> order(kEnds);
     std::iota(order.begin(), order.end(), 0);
-    for (size_t i = order.size(); i-- > 1;) std::swap(order[i], order[rng.Below(static_cast<uint32_t>(i) + 1)]);
+    for (size_t i = order.size(); i-- > 1;)
+      std::swap(order[i], order[rng.Below(static_cast<uint32_t>(i) + 1)]);
     int last = -1;
     for (const int end : order) {
       const int point = moves_.first(end) + static_cast<int>(rng.Below(kPointsOfEnd));

@@ -4,8 +4,8 @@
 // the distance of their nearest points counts. Where a solution passes through a place of several
 // points, splitting it makes the bound better (vertex_bound.h); elsewhere a few large places do.
 
-#ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_PLACES_H_
-#define TRAVERSE_ENGINE_PROOF_BOUNDS_PLACES_H_
+#ifndef TRAVERSE_ENGINE_PROOF_VERTICES_PLACES_H_
+#define TRAVERSE_ENGINE_PROOF_VERTICES_PLACES_H_
 
 #include <cstddef>
 #include <vector>
@@ -13,7 +13,7 @@
 #include "absl/types/span.h"
 #include "engine/geometry/bounding_box.h"
 #include "engine/model/point.h"
-#include "engine/proof/bounds/end_graph.h"
+#include "engine/proof/trees/end_graph.h"
 
 namespace traverse {
 
@@ -66,4 +66,4 @@ class Places {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_ENGINE_PROOF_BOUNDS_PLACES_H_
+#endif  // TRAVERSE_ENGINE_PROOF_VERTICES_PLACES_H_

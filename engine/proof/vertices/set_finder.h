@@ -1,14 +1,14 @@
 // Sets of points within which solutions make too many moves (subtour_sets.h), by growing them.
 
-#ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_SET_FINDER_H_
-#define TRAVERSE_ENGINE_PROOF_BOUNDS_SET_FINDER_H_
+#ifndef TRAVERSE_ENGINE_PROOF_VERTICES_SET_FINDER_H_
+#define TRAVERSE_ENGINE_PROOF_VERTICES_SET_FINDER_H_
 
 #include <functional>
 #include <vector>
 
 #include "engine/base/budget.h"
-#include "engine/proof/bounds/near_moves.h"
-#include "engine/proof/bounds/subtour_sets.h"
+#include "engine/proof/vertices/near_moves.h"
+#include "engine/proof/vertices/subtour_sets.h"
 
 namespace traverse {
 
@@ -55,4 +55,4 @@ class SetFinder {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_ENGINE_PROOF_BOUNDS_SET_FINDER_H_
+#endif  // TRAVERSE_ENGINE_PROOF_VERTICES_SET_FINDER_H_

@@ -9,8 +9,8 @@
 //   in_order(A, B)           a junction of two sides: one move, from an end that may be the last
 //                            of A to one that may be the first of B
 
-#ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_END_GRAPH_H_
-#define TRAVERSE_ENGINE_PROOF_BOUNDS_END_GRAPH_H_
+#ifndef TRAVERSE_ENGINE_PROOF_TREES_END_GRAPH_H_
+#define TRAVERSE_ENGINE_PROOF_TREES_END_GRAPH_H_
 
 #include <cstdint>
 #include <vector>
@@ -65,4 +65,4 @@ struct EndGraph {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_ENGINE_PROOF_BOUNDS_END_GRAPH_H_
+#endif  // TRAVERSE_ENGINE_PROOF_TREES_END_GRAPH_H_

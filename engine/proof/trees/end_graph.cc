@@ -1,4 +1,4 @@
-#include "engine/proof/bounds/end_graph.h"
+#include "engine/proof/trees/end_graph.h"
 
 #include <cstddef>
 #include <utility>

@@ -1,7 +1,7 @@
 // The search for good multipliers of a Lagrangian relaxation.
 
-#ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_MULTIPLIER_SEARCH_H_
-#define TRAVERSE_ENGINE_PROOF_BOUNDS_MULTIPLIER_SEARCH_H_
+#ifndef TRAVERSE_ENGINE_PROOF_WALKS_MULTIPLIER_SEARCH_H_
+#define TRAVERSE_ENGINE_PROOF_WALKS_MULTIPLIER_SEARCH_H_
 
 #include <cstddef>
 #include <vector>
@@ -40,4 +40,4 @@ class MultiplierSearch {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_ENGINE_PROOF_BOUNDS_MULTIPLIER_SEARCH_H_
+#endif  // TRAVERSE_ENGINE_PROOF_WALKS_MULTIPLIER_SEARCH_H_

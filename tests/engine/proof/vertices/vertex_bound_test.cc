@@ -1,4 +1,4 @@
-#include "engine/proof/bounds/vertex_bound.h"
+#include "engine/proof/vertices/vertex_bound.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "engine/cost/route_cost.h"
-#include "engine/proof/bounds/tree_bound.h"
+#include "engine/proof/trees/tree_bound.h"
 #include "tests/support/problems/brute_force.h"
 #include "tests/support/problems/instances.h"
 #include "tests/support/problems/random_plan.h"

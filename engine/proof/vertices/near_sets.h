@@ -2,13 +2,13 @@
 // the point is visited (subtour_sets.h). There is one for each line (near_moves.h) of each known
 // pair.
 
-#ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_NEAR_SETS_H_
-#define TRAVERSE_ENGINE_PROOF_BOUNDS_NEAR_SETS_H_
+#ifndef TRAVERSE_ENGINE_PROOF_VERTICES_NEAR_SETS_H_
+#define TRAVERSE_ENGINE_PROOF_VERTICES_NEAR_SETS_H_
 
 #include <cstddef>
 #include <vector>
 
-#include "engine/proof/bounds/near_moves.h"
+#include "engine/proof/vertices/near_moves.h"
 
 namespace traverse {
 
@@ -56,4 +56,4 @@ class NearSets {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_ENGINE_PROOF_BOUNDS_NEAR_SETS_H_
+#endif  // TRAVERSE_ENGINE_PROOF_VERTICES_NEAR_SETS_H_

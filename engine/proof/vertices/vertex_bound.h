@@ -13,10 +13,11 @@
 // solutions visit it (places.h). The ascent looks at near moves alone; what bounds is a tree over
 // all.
 
-#ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_VERTEX_BOUND_H_
-#define TRAVERSE_ENGINE_PROOF_BOUNDS_VERTEX_BOUND_H_
+#ifndef TRAVERSE_ENGINE_PROOF_VERTICES_VERTEX_BOUND_H_
+#define TRAVERSE_ENGINE_PROOF_VERTICES_VERTEX_BOUND_H_
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -25,11 +26,11 @@
 #include "engine/cost/travel_cost.h"
 #include "engine/model/layer_problem.h"
 #include "engine/model/point.h"
-#include "engine/proof/bounds/end_graph.h"
-#include "engine/proof/bounds/near_moves.h"
-#include "engine/proof/bounds/near_sets.h"
-#include "engine/proof/bounds/subtour_sets.h"
-#include "engine/proof/bounds/tree_bound.h"
+#include "engine/proof/trees/end_graph.h"
+#include "engine/proof/trees/tree_bound.h"
+#include "engine/proof/vertices/near_moves.h"
+#include "engine/proof/vertices/near_sets.h"
+#include "engine/proof/vertices/subtour_sets.h"
 
 namespace traverse {
 
@@ -49,6 +50,8 @@ class VertexBound {
   double Search(double target, int most_rounds, Budget& budget);
 
  private:
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+
   // The cheapest move between the sides of a group: cost less multipliers.
   struct Candidate {
     double cost = 0;
@@ -73,6 +76,9 @@ class VertexBound {
   };
 
   void FindCostsOfFirstAndLast();
+  void AddPairs(const TreeBound& tree);
+
+  // In vertex_trees.cc.
   double AddFirstAndLast();
   double ChoosePoints();
   double Weigh();
@@ -84,7 +90,7 @@ class VertexBound {
   bool FindExtras(std::vector<Extra>& extras, Budget& budget);
   double EvaluateNear();
   double EvaluateAll(Budget& budget);
-  void AddPairs(const TreeBound& tree);
+
   void Refine();
   void Average();
   void Cut(Budget& budget);
@@ -129,4 +135,4 @@ class VertexBound {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_ENGINE_PROOF_BOUNDS_VERTEX_BOUND_H_
+#endif  // TRAVERSE_ENGINE_PROOF_VERTICES_VERTEX_BOUND_H_

@@ -1,4 +1,4 @@
-#include "engine/proof/bounds/multiplier_search.h"
+#include "engine/proof/walks/multiplier_search.h"
 
 namespace traverse {
 

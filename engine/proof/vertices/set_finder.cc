@@ -1,4 +1,4 @@
-#include "engine/proof/bounds/set_finder.h"
+#include "engine/proof/vertices/set_finder.h"
 
 #include <algorithm>
 #include <cmath>

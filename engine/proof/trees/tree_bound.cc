@@ -1,4 +1,4 @@
-#include "engine/proof/bounds/tree_bound.h"
+#include "engine/proof/trees/tree_bound.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "engine/proof/bounds/near_sets.h"
+#include "engine/proof/vertices/near_sets.h"
 
 #include <algorithm>
 #include <numeric>

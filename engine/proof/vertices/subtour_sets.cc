@@ -1,4 +1,4 @@
-#include "engine/proof/bounds/subtour_sets.h"
+#include "engine/proof/vertices/subtour_sets.h"
 
 #include <algorithm>
 #include <cmath>

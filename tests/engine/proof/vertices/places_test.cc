@@ -1,4 +1,4 @@
-#include "engine/proof/bounds/places.h"
+#include "engine/proof/vertices/places.h"
 
 #include <gtest/gtest.h>
 

@@ -8,15 +8,15 @@
 // The moves that a route makes within S are parts of a path through the points of S that it visits
 // (Fischetti, Salazar and Toth 1997). An end that has all its points in S counts as one visited.
 
-#ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_SUBTOUR_SETS_H_
-#define TRAVERSE_ENGINE_PROOF_BOUNDS_SUBTOUR_SETS_H_
+#ifndef TRAVERSE_ENGINE_PROOF_VERTICES_SUBTOUR_SETS_H_
+#define TRAVERSE_ENGINE_PROOF_VERTICES_SUBTOUR_SETS_H_
 
 #include <cstddef>
 #include <cstdint>
 #include <set>
 #include <vector>
 
-#include "engine/proof/bounds/near_moves.h"
+#include "engine/proof/vertices/near_moves.h"
 
 namespace traverse {
 
@@ -117,4 +117,4 @@ class SubtourSets {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_ENGINE_PROOF_BOUNDS_SUBTOUR_SETS_H_
+#endif  // TRAVERSE_ENGINE_PROOF_VERTICES_SUBTOUR_SETS_H_
