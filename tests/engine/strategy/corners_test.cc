@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "engine/base/tolerances.h"
 #include "engine/cost/route_cost.h"
 #include "engine/strategy/registry.h"
 #include "engine/validator.h"
