@@ -55,8 +55,11 @@ ATTACKS = {
     "barriers": callers.batches([requests.barrier("auto"), requests.barrier("tabu"), requests.barrier("exact")], seconds=1),
     "fixed_order": callers.batches([requests.fixed_order], seconds=1),
     "two_clouds": callers.batches([requests.two_clouds("auto"), requests.two_clouds("tabu"), requests.two_clouds("exact")], seconds=1),
-    "paused_searches": callers.paused_searches,
-    "unread_answers": callers.unread_answers,
+    # Layers of 19,000 paths: each is searched for a moment, and then waits for its turn.
+    "paused_searches": callers.open_jobs(requests.large_layers("auto")),
+    # Layers of some dozen contours of many points: all searches under way hold what their bounds need.
+    "many_bounds": callers.open_jobs(lambda: requests.options("auto") + requests.layer(80, corners=12) * 6),
+    "unread_answers": callers.open_jobs(lambda: requests.options("none") + requests.layer(20_000) * 4, window=0),
     "corners": callers.corners,
     "many_channels": transport.many_channels,
     "watches": transport.left_open(transport.WATCH),

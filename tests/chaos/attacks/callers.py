@@ -3,7 +3,7 @@ import random
 import struct
 import time
 
-from attacks.requests import large_layers, layer, number, options
+from attacks.requests import layer, number, options
 from attacks.transport import until
 from http2_client import DATA, END_STREAM, RST_STREAM, SERVICE, Connection, Window, field, frame, message, varint
 
@@ -122,38 +122,24 @@ def batches(bodies, extra=(), seconds=0.3, window=None):
     return attack
 
 
-def paused_searches(server, end):
-    """Layers of 19,000 paths by the dozen: each is searched for a moment, and then waits for its turn."""
-    body = message(large_layers("auto")())
-    held = []
+def open_jobs(body, window=None):
+    """Jobs by the dozen whose connections stay open to the end; with a window of 0 nobody reads their answers."""
+    def attack(server, end):
+        made = message(body())
+        held = []
 
-    def step():
-        if len(held) < 60:
-            connection = Connection(server.port)
-            Window(connection).send(connection.call(SERVICE + "OptimizeBatch"), body, patience=0.3)
-            held.append(connection)
-        time.sleep(0.05)
+        def step():
+            if len(held) < 60:
+                connection = Connection(server.port, window)
+                Window(connection).send(connection.call(SERVICE + "OptimizeBatch"), made, patience=0.3)
+                held.append(connection)
+            time.sleep(0.05)
 
-    until(end, step)
-    for connection in held:
-        connection.close()
+        until(end, step)
+        for connection in held:
+            connection.close()
 
-
-def unread_answers(server, end):
-    """Large answers by the dozen that nobody reads."""
-    body = message(options("none") + layer(20_000) * 4)
-    held = []
-
-    def step():
-        if len(held) < 60:
-            connection = Connection(server.port, window=0)
-            Window(connection).send(connection.call(SERVICE + "OptimizeBatch"), body, patience=0.3)
-            held.append(connection)
-        time.sleep(0.05)
-
-    until(end, step)
-    for connection in held:
-        connection.close()
+    return attack
 
 
 def corners(server, end):

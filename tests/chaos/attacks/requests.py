@@ -13,9 +13,9 @@ def number(field_number, value):
     return varint(field_number << 3 | 1) + struct.pack("<d", value)
 
 
-def layer(paths=20, random_points=None):
+def layer(paths=20, random_points=None, corners=4):
     point = random_points or (lambda: random.uniform(0, 200))
-    contours = b"".join(field(2, field(2, packed([point() for _ in range(8)]))) for _ in range(paths))
+    contours = b"".join(field(2, field(2, packed([point() for _ in range(2 * corners)]))) for _ in range(paths))
     return field(2, field(3, contours))
 
 
