@@ -40,8 +40,11 @@ Circle CircleOf(const Command& command, double dx, double dy) {
   CenterOffset(command, dx, dy, circle.i, circle.j);
   circle.radius = std::hypot(circle.i, circle.j);
   circle.turn = command.number == 2 ? -1 : 1;
-  circle.angle =
-      circle.turn * (std::atan2(dy - circle.j, dx - circle.i) - std::atan2(-circle.j, -circle.i));
+  // From the radius of the start to that of the end. Of two angles of their own one could be pi and
+  // the other -pi.
+  const double cross = circle.j * (dx - circle.i) - circle.i * (dy - circle.j);
+  const double dot = -circle.i * (dx - circle.i) - circle.j * (dy - circle.j);
+  circle.angle = circle.turn * std::atan2(cross, dot);
   if (circle.angle <= 1e-9) circle.angle += 2 * std::numbers::pi;
   return circle;
 }

@@ -58,6 +58,10 @@ INSTANTIATE_TEST_SUITE_P(Circles, ArcPointsOf,
                                            Sample{"G3 X5 Y5 I0 J5 E1", {0, 5}, 5, 0.25},
                                            Sample{"G2 X5 Y5 I0 J5 E1", {0, 5}, 5, -0.75},
                                            Sample{"G3 X0 Y0 I5 J0 E1", {5, 0}, 5, 1},
+                                           Sample{"G2 X0 Y0 I5 J0 E1", {5, 0}, 5, -1},
+                                           Sample{"G2 X0 Y0 I-5 E1", {-5, 0}, 5, -1},
+                                           Sample{"G3 X0 Y0 I-5 J0 E1", {-5, 0}, 5, 1},
+                                           Sample{"G2 X0 Y0 J5 E1", {0, 5}, 5, -1},
                                            Sample{"G3 X5 Y5 R5 E1", {0, 5}, 5, 0.25},
                                            Sample{"G3 X5 Y5 R-5 E1", {5, 0}, 5, 0.75}));
 
