@@ -43,7 +43,8 @@ bool FallsAsOftenAsItRises(std::string_view text) {
 
 void VerifyMachine::NoteMotion(int number, uint32_t words, const std::array<Micro, 3>& from,
                                Micro filament) {
-  motion_ = Motion{from, at_, filament, pulled_, feed_, number, words, retracted(), false, 0, 0, 0};
+  motion_ =
+      Motion{from, at_, filament, pulled_, feed_, number, words, retracted(), false, 0, 0, 0, 0};
   moved_at_ = number_;
 }
 
@@ -223,6 +224,7 @@ void VerifyMachine::Move(int number, const CommandWords& words, VerifyLine& line
     motion_.has_center = number >= 2 && (words.Has('I') || words.Has('J'));
     motion_.center_x = from[0] + words.ValueOr('I', 0);
     motion_.center_y = from[1] + words.ValueOr('J', 0);
+    motion_.radius = number >= 2 && !motion_.has_center ? words.ValueOr('R', 0) : 0;
     motion_.turns = number >= 2 ? words.ValueOr('P', 0) : 0;
   }
   if ((moves || number >= 2) && filament > 0) {

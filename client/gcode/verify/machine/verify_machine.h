@@ -58,6 +58,7 @@ struct Motion {
   bool has_center = false;  // of an arc
   Micro center_x = 0;
   Micro center_y = 0;
+  Micro radius = 0;  // of an arc without a center: its R word
   Micro turns = 0;  // of an arc: its P word
 };
 

@@ -26,6 +26,26 @@ double LengthOf(const Motion& motion) {
   return std::sqrt(dx * dx + dy * dy) * kMicro;
 }
 
+// In mm; of an arc. With a positive radius it takes the short way round: the center then lies on
+// the right of the chord where it turns clockwise.
+Point CenterOf(const Motion& motion, double unit) {
+  if (motion.has_center) {
+    return {static_cast<double>(motion.center_x) * unit,
+            static_cast<double>(motion.center_y) * unit};
+  }
+  const Point from{static_cast<double>(motion.from[0]) * unit,
+                   static_cast<double>(motion.from[1]) * unit};
+  const Point to{static_cast<double>(motion.to[0]) * unit,
+                 static_cast<double>(motion.to[1]) * unit};
+  const double half = std::hypot(to.x - from.x, to.y - from.y) / 2;
+  const double radius = static_cast<double>(motion.radius) * unit;
+  const double off = std::sqrt(std::max(radius * radius - half * half, 0.0));
+  const double right = (motion.number == 2) == (radius > 0) ? 1 : -1;
+  const double share = half > 0 ? right * off / (2 * half) : 0;
+  return {(from.x + to.x) / 2 + share * (to.y - from.y),
+          (from.y + to.y) / 2 - share * (to.x - from.x)};
+}
+
 MoveKind KindOf(const Motion& motion) {
   const bool sideways = motion.from[0] != motion.to[0] || motion.from[1] != motion.to[1];
   if (motion.number == 10) return MoveKind::kRetraction;
@@ -217,11 +237,9 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
   segment.end = {static_cast<double>(motion.to[0]) * unit,
                  static_cast<double>(motion.to[1]) * unit};
   segment.line = static_cast<uint32_t>(line.number);
-  if (motion.has_center) {
+  if (motion.has_center || motion.radius != 0) {
     segment.arc = static_cast<int32_t>(chunk_.arcs.size());
-    chunk_.arcs.push_back(
-        {{static_cast<double>(motion.center_x) * unit, static_cast<double>(motion.center_y) * unit},
-         motion.number == 2});
+    chunk_.arcs.push_back({CenterOf(motion, unit), motion.number == 2});
   }
   chunk_.segments.push_back(segment);
   const uint64_t acceleration = machine.AccelerationDigest();
@@ -262,9 +280,7 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
   move.to = {static_cast<double>(motion.to[0]) * unit, static_cast<double>(motion.to[1]) * unit};
   move.middle = {(move.from.x + move.to.x) / 2, (move.from.y + move.to.y) / 2};
   if (motion.has_center) {
-    const Point center{static_cast<double>(motion.center_x) * unit,
-                       static_cast<double>(motion.center_y) * unit};
-    move.middle = MiddleOfArc(move.from, move.to, center, motion.number == 2);
+    move.middle = MiddleOfArc(move.from, move.to, CenterOf(motion, unit), motion.number == 2);
   }
   move.spiral = SpiralOf(motion, unit);
   move.z_from_mm = static_cast<double>(motion.from[2]) * unit;

@@ -21,6 +21,21 @@ TEST(VerifyOpenWays, NoRetractionIsLostAcrossAnOuterWall) {
   EXPECT_EQ(Broken(kHead + kAcross, kHead + early), "open_ways retractions");
 }
 
+// Between their ends such arcs lie far from the line that joins these.
+TEST(VerifyOpenWays, NoRetractionIsLostAcrossACircleOfArcsByRadius) {
+  const std::string circle = Way("X10 Y15") + kWall + "G3 X20 Y15 R5 E.6\nG3 X10 Y15 R5 E.6\n";
+  const std::string a = circle + Line("Internal infill", "X14 Y17", "X15 Y17") +
+                        Line("Internal infill", "X15 Y30", "X16 Y30");
+  const std::string open = With(a, Way("X15 Y30"), "G1 X15 Y30 F9000\n");
+  EXPECT_EQ(Broken(kHead + a, kHead + open), "open_ways");
+  // The long way round.
+  const std::string large = Way("X10 Y15") + kWall + "G2 X10 Y16 R-5 E3\nG1 X10 Y15 E.1\n";
+  const std::string into = large + Line("Internal infill", "X5 Y40", "X6 Y40") +
+                           Line("Internal infill", "X5 Y17", "X6 Y17");
+  EXPECT_EQ(Broken(kHead + into, kHead + With(into, Way("X5 Y17"), "G1 X5 Y17 F9000\n")),
+            "open_ways");
+}
+
 TEST(VerifyOpenWays, WithinTheWallAreFree) {
   const std::string within = kSquare + Line("Internal infill", "X15 Y15", "X16 Y15") +
                              Line("Internal infill", "X12 Y18", "X13 Y18") +
