@@ -151,6 +151,35 @@ absl::Status ReadBlocks(GcodeFile& file) {
   return absl::OkStatus();
 }
 
+// A line that would print if its words could be read.
+bool MayBePrinting(const Step& step, std::string_view text) {
+  if (step.command.kind != LineKind::kText) return false;
+  const std::string_view line = TrimBlanks(step.line.Text(text));
+  const std::string_view words = line.substr(0, line.find(';'));
+  const bool moves = words.size() > 2 && (words[0] == 'G' || words[0] == 'g') && words[1] >= '0' &&
+                     words[1] <= '3' && !IsDigit(words[2]);
+  return moves && words.find_first_of("Ee") != std::string_view::npos;
+}
+
+// Why there is no path in `file`: the first line that prints and is not followed, if there is one.
+absl::Status NoPath(const GcodeFile& file) {
+  Interpreter interpreter(file.text);
+  for (Step step; interpreter.Next(step);) {
+    const MachineState& state = interpreter.state();
+    if (MayBePrinting(step, file.text)) {
+      return Fault(file, step.line.begin,
+                   "no extruding move that can be read; in this one a word is no number, is there "
+                   "twice, has more than 9 decimals or is too large");
+    }
+    if (state.relative_xyz && step.filament > 0 && !state.at.SameXy(step.from)) {
+      return Fault(file, step.line.begin,
+                   "no extruding move with absolute coordinates (G90); from here on the moves that "
+                   "print are relative (G91), and none of these may change places");
+    }
+  }
+  return absl::InvalidArgumentError(absl::StrCat(file.name, ": no extruding move"));
+}
+
 // Removes the numbers of lines, if all of them are right; otherwise returns the first line that is
 // wrong.
 std::optional<Offset> TakeNumbers(GcodeFile& file) {
@@ -203,9 +232,7 @@ absl::StatusOr<std::shared_ptr<GcodeFile>> ReadGcode(std::string text, const std
                      ": no extruding move: its lines end with carriage returns alone, but must end "
                      "with line feeds"));
   }
-  if (file->blocks.empty()) {
-    return absl::InvalidArgumentError(absl::StrCat(name, ": no extruding move"));
-  }
+  if (file->blocks.empty()) return gcode::NoPath(*file);
   return file;
 }
 

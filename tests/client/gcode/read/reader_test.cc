@@ -19,6 +19,7 @@ namespace traverse::gcode {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 using testing::Read;
 
 std::string Fault(const std::string& text) {
@@ -110,6 +111,17 @@ TEST(ReadGcode, NamesThePlaceOfAFault) {
             "part.gcode:2: its number or checksum does not follow from those of the other lines");
   EXPECT_EQ(Fault("G28\nN1 G1 X5 E1\nN2 G1 X6 E1\nN4 G1 X7 E1\n"),
             "part.gcode:4: its number or checksum does not follow from those of the other lines");
+}
+
+TEST(ReadGcode, SaysWhichMoveItDoesNotFollowWhereItFollowsNone) {
+  EXPECT_THAT(Fault("M83\nG90\nG1 Z.2\nG91\nG1 X5\nG1 E-.5\nG1 X10 E.5\nG1 Y10 E.5\n"),
+              StartsWith("part.gcode:7: no extruding move with absolute coordinates (G90)"));
+  EXPECT_THAT(Fault("M83\nG1 X5\nG1 X10." + std::string(399, '0') + "1 E.5\n"),
+              StartsWith("part.gcode:3: no extruding move that can be read"));
+  EXPECT_THAT(Fault("M83\ng1 X5 X5 E.5\n"), StartsWith("part.gcode:2: no extruding move that can"));
+  // These print nothing, however they are read.
+  EXPECT_EQ(Fault("G91\nG1 X5\nG1 E1\nG1 X5 X5\nG28 E1\n; G1 X1 X1 E1\n"),
+            "part.gcode: no extruding move");
 }
 
 TEST(ReadGcode, NumberedLinesAreReadWithoutTheirNumbers) {
