@@ -94,8 +94,10 @@ Outline OutlineOf(const GcodeFile& file, const Block& block) {
   outline.is_loop = outline.shape().size() > 3 &&
                     Distance(outline.points.front(), outline.points.back()) <= kMaxLoopGapMm &&
                     static_cast<double>(block.length_mm) > 8 * kMaxLoopGapMm;
-  outline.closed = outline.is_loop && outline.points.size() > 3 &&
-                   (outline.bent.empty() || LengthOf(outline.points) > 8 * kMaxLoopGapMm);
+  const bool many_starts = outline.points.size() > 3 &&
+                           (outline.bent.empty() || LengthOf(outline.points) > 8 * kMaxLoopGapMm);
+  outline.closed = outline.is_loop && (many_starts || outline.exactly_closed);
+  outline.one_start = outline.closed && !many_starts;
   outline.feature = FeatureOf(file, block, outline.is_loop);
   outline.width_mm = WidthOf(file, block);
   return outline;

@@ -23,13 +23,13 @@ struct Outline {
   // The printed shape, which does not say where the path may begin.
   const std::vector<Vertex>& shape() const { return bent.empty() ? points : bent; }
 
-  // Ends where it began, or less than kMaxLoopGapMm short of it, and may begin at any of its
-  // points.
-  bool closed = false;
-
-  // The same for its shape: in a circle of two arcs, or a tiny one, only the first point is a
-  // start.
+  // Its shape ends where it began, or less than kMaxLoopGapMm short of it.
   bool is_loop = false;
+
+  // A loop that is printed as one. It may begin at any of its points, or only at the first one: so
+  // does a circle of one or two arcs, or a tiny one.
+  bool closed = false;
+  bool one_start = false;
 
   // points.front() == points.back().
   bool exactly_closed = false;

@@ -119,7 +119,15 @@ bool PathRules::MayTurnRound(size_t path) const {
       kBlockCoast | kBlockCommand | kBlockType | kBlockComments | kBlockPinned;
   const Feature feature = FeatureOf(path);
   if ((BlockOf(path).flags & kFixing) != 0 || OrderIsQuality(feature)) return false;
+  if (HasFullCircle(path)) return false;
   return policy_ == Policy::kFree || !IsWall(feature);
+}
+
+// Its direction is all that says which way round such an arc goes, as both its ends are one point.
+bool PathRules::HasFullCircle(size_t path) const {
+  if ((BlockOf(path).flags & kBlockArcs) == 0) return false;
+  const std::vector<Vertex>& points = outlines_[path].points;
+  return std::adjacent_find(points.begin(), points.end()) != points.end();
 }
 
 PathRule PathRules::RuleOf(size_t path) const {
@@ -129,7 +137,7 @@ PathRule PathRules::RuleOf(size_t path) const {
   rule.contour = outline.closed;
   if (!rule.contour) {
     rule.one_way = rule.pinned || !MayTurnRound(path);
-  } else if (rule.pinned || !MayBeginAnywhere(path)) {
+  } else if (rule.pinned || outline.one_start || !MayBeginAnywhere(path)) {
     rule.entries = {0};
   } else if (policy_ == Policy::kBalanced && outline.feature != Feature::kInnerWall &&
              IsWall(outline.feature)) {

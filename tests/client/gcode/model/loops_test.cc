@@ -33,8 +33,8 @@ TEST(Outline, ACircleOfTwoArcsIsALoopThatBeginsWhereItDoes) {
   const Outline circle = OutlinesOf(*file).front();
 
   EXPECT_EQ(circle.points.size(), 3u);
-  EXPECT_TRUE(circle.is_loop);
-  EXPECT_FALSE(circle.closed);
+  EXPECT_TRUE(circle.closed);
+  EXPECT_TRUE(circle.one_start);
   for (const Vertex& point : circle.shape()) {
     EXPECT_NEAR(Distance(point, {10, 10}), 10, 1e-6);
   }
@@ -49,8 +49,8 @@ TEST(Outline, ATinyLoopOfArcsBeginsWhereItDoes) {
 
   const Outline loop = OutlinesOf(*file).front();
 
-  EXPECT_TRUE(loop.is_loop);
-  EXPECT_FALSE(loop.closed);
+  EXPECT_TRUE(loop.closed);
+  EXPECT_TRUE(loop.one_start);
 }
 
 TEST(Outline, ACircleWithoutANameIsAVisibleWall) {

@@ -70,6 +70,31 @@ TEST(Policy, SafeKeepsTheStartOfOverhangsToo) {
   EXPECT_THAT(same.Plan(Policy::kFree).plan.paths(1).contour().entries(), IsEmpty());
 }
 
+// Turned round it would end where it did: nothing is gained.
+TEST(Policy, ACircleOfOneOrTwoArcsIsAContourWithOneEntryUnderAnyPolicy) {
+  for (const Policy policy : {Policy::kSafe, Policy::kBalanced, Policy::kFree}) {
+    Sheet sheet;
+    sheet.Add("G0 X20 Y10").Add(kInner).Add("G2 X20 Y10 I-5 E1");
+    sheet.Add("G0 X60 Y10").Add("G3 X40 Y10 R10 E1").Add("G3 X60 Y10 R10 E1");
+
+    const LayerPlan plan = sheet.Plan(policy);
+
+    EXPECT_THAT(plan.plan.paths(1).contour().entries(), ElementsAre(0));
+    EXPECT_THAT(plan.plan.paths(2).contour().entries(), ElementsAre(0));
+  }
+}
+
+TEST(Policy, AFullCircleWithinAPathKeepsItsDirection) {
+  Sheet sheet;
+  sheet.Add("G0 X20 Y10").Add(kInfill).Add("G1 X30 Y10 E1").Add("G2 X30 Y10 I5 E1");
+  sheet.Add("G1 X40 Y12 E1").Line(kInfill, 60, 0, 69, 0);
+
+  const LayerPlan plan = sheet.Plan(Policy::kFree);
+
+  EXPECT_TRUE(plan.plan.paths(1).open_path().one_way());
+  EXPECT_FALSE(plan.plan.paths(2).open_path().one_way());
+}
+
 TEST(Policy, BalancedStartsVisibleWallsAtTheirCorners) {
   Sheet sheet;
   sheet.Path(kOuter, {{5, 0}, {10, 0}, {10, 10}, {5, 10.3}, {0, 10}, {0, 0}, {5, 0}});
