@@ -117,9 +117,7 @@ std::optional<VerifyBreak> FirstDifference(const Side& original, const Side& opt
               optimised.name, is.first_line, original.name, was.first_line)};
     }
     // Where paths change places, what is said of them does so too.
-    const bool ordered = was.deposits.count == 0 || i < original.cut.of_script;
-    if ((was.sequence != is.sequence && ordered) ||
-        (was.order == is.order && was.said != is.said)) {
+    if (was.order == is.order && was.said != is.said) {
       return VerifyBreak{
           VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
           absl::StrFormat("%s:%d: the order of the comments differs from lines %d to %d of %s",

@@ -52,16 +52,13 @@ bool SectionCutter::Ignores(const VerifyLine& line) {
   return !in_picture_ && Begins(line.text, ignored_);
 }
 
-// Comments that belong to no path keep their order: settings, pictures, remarks about a layer.
-void SectionCutter::NoteOrder(const VerifyLine& line, bool mark) {
+// What is said of a layer stands behind its mark.
+void SectionCutter::NoteHeader(const VerifyLine& line, bool mark) {
   const bool of_layer = !line.text.empty() && line.text[0] == ';' && SaysOfLayer(line.text);
   if (in_header_ && of_layer) section_.header = Mix(section_.header, DigestOf(line.text));
   const bool ends = line.travels || line.role == LineRole::kDeposit ||
                     line.role == LineRole::kFence || line.role == LineRole::kFixed;
   in_header_ = mark || (in_header_ && !ends);
-  if (line.role == LineRole::kComment && section_.deposits.count == 0) {
-    section_.sequence = Mix(section_.sequence, line.digest);
-  }
 }
 
 void SectionCutter::TakeLoose(uint64_t position) {
@@ -82,7 +79,7 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
     cut.before = true;
   }
   last_line_ = line.number;
-  NoteOrder(line, mark);
+  NoteHeader(line, mark);
   // Unknown commands leave the head elsewhere, so a move to where it was does move it.
   if ((line.moves || line.stays) && (in_script_ || section_.deposits.count == 0)) {
     section_.moves = Mix(section_.moves, DigestOf(machine.motion()));
@@ -130,7 +127,6 @@ void SectionCutter::CutAtHeight(const VerifyMachine& machine) {
   std::vector<uint64_t> said = std::exchange(loose_said_, {});
   Close(machine, last_line_, 0, false);
   cut_.sections.back().last_note = first_note - 1;
-  if (!in_script_) cut_.sections.back().sequence = 0;
   section_.first_note = first_note;
   loose_notes_ = notes;
   loose_said_ = std::move(said);

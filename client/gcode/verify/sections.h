@@ -44,7 +44,6 @@ struct Section {
   uint64_t moves = 0;     // of everything but deposits, and of settings, before the first deposit
   bool command = false;   // it ends with a command
   uint64_t header = 0;    // of the comments between the mark of a layer and the first travel
-  uint64_t sequence = 0;  // of all comments, in their order, before the first deposit
 
   // Of deposits, and of comments with their place among these, in their order; notes say to which
   // section comments belong.
@@ -100,7 +99,7 @@ class SectionCutter {
              bool label = false);
   bool Ignores(const VerifyLine& line);
   void TakeLoose(uint64_t position);  // among the deposits of the section
-  void NoteOrder(const VerifyLine& line, bool mark);
+  void NoteHeader(const VerifyLine& line, bool mark);
 
   const std::string_view ignored_;
   Sections cut_;

@@ -38,6 +38,19 @@ TEST(OrderMerger, TakesTheRunsThatAreBetter) {
   EXPECT_EQ(merger.Merge(right, {left}), OrderOf({0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
 }
 
+TEST(OrderMerger, EndsOnceNoRunIsBetter) {
+  size_t asked = 0;
+  const WayEstimate estimate = [&](size_t position, const Placement& from, const Placement& to) {
+    ++asked;
+    return OnALine(position, from, to);
+  };
+  const OrderMerger merger(estimate, {});
+  const LayerOrder best = OrderOf({0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
+
+  EXPECT_EQ(merger.Merge(best, {OrderOf({0, 3, 1, 4, 2, 5, 6, 7, 8, 9})}), best);
+  EXPECT_LT(asked, 200);  // of 20,000
+}
+
 TEST(OrderMerger, OfAnOrderThatMayNotBeItTakesWhatMay) {
   const WayEstimate estimate = OnALine;
   MergeLimits limits;

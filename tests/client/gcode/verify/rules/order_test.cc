@@ -56,6 +56,8 @@ TEST(VerifyOrder, BridgesSupportAndSkirtsKeepTheirs) {
   const std::string skirt = Line("Skirt/Brim", "X0 Y0", "X9 Y0");
   EXPECT_EQ(Broken(kHead + skirt + kSquare, kHead + kSquare + skirt, Policy::kFree), "order");
   EXPECT_EQ(Broken(kHead + kTwo + skirt, kHead + kOneTurned + skirt), "") << "last, as it was";
+  const std::string away = Line("Skirt/Brim", "X30 Y0", "X39 Y0");
+  EXPECT_EQ(Broken(kHead + kTwo + away, kHead + kOther + kOne + away, Policy::kFree), "");
 }
 
 TEST(VerifyOrder, MonotonicSurfacesKeepTheirs) {
