@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "engine/base/rest.h"
-#include "engine/base/resting_sort.h"
 
 namespace traverse {
 namespace {
@@ -23,7 +22,8 @@ constexpr size_t kMostDetours = size_t{1} << 16;
 constexpr int64_t kWorkOfCrossing = 5;
 constexpr int64_t kWorkOfTest = 4;
 
-// What Rest counts for one that is put into a table.
+// What Rest counts for a point and a move that are put into a table.
+constexpr size_t kStepsOfPoint = 8;
 constexpr size_t kStepsOfKnownMove = 32;
 
 // A point this many slacks from the middle of a wall still lies on it.
@@ -33,21 +33,6 @@ bool Less(Point a, Point b) { return std::pair(a.x, a.y) < std::pair(b.x, b.y); 
 
 uint64_t Mix(uint64_t state, double value) {
   return (std::rotl(state, 23) ^ std::bit_cast<uint64_t>(value)) * 0x9e3779b97f4a7c15u;
-}
-
-std::vector<Point> SortedPoints(const Plan& plan, const std::vector<int>& paths, Rest& rest) {
-  std::vector<Point> sorted;
-  for (const int path : paths) {
-    const std::vector<Point>& points = plan.paths[static_cast<size_t>(path)].points;
-    rest(points.size() + 1);
-    sorted.insert(sorted.end(), points.begin(), points.end());
-  }
-  RestingSort(sorted, rest, Less);
-  return sorted;
-}
-
-bool IsAmong(const std::vector<Point>& sorted, Point point) {
-  return std::binary_search(sorted.begin(), sorted.end(), point, Less);
 }
 
 std::array<double, 4> KeyOf(Point a, Point b) {
@@ -76,14 +61,29 @@ WallCost::WallCost(const LayerWalls& walls, const Plan& plan, const CostSpec& sp
                    : std::nullopt),
       places_(PlacesFor(plan.paths.size(), detours_.has_value())) {
   assert(spec.kind == CostSpec::Kind::kTime && CheckWalls(walls, plan).ok());
+  NotePoints(walls, plan, budget);
+}
+
+void WallCost::NotePoints(const LayerWalls& walls, const Plan& plan, Budget* budget) {
   Rest rest(budget);
-  exposed_ = SortedPoints(plan, walls.exposed, rest);
-  retracted_ = SortedPoints(plan, walls.retracted, rest);
+  const auto note = [this](Point point) -> PointFacts& { return points_[{point.x, point.y}]; };
+  const auto note_all = [&](const std::vector<int>& paths, bool PointFacts::*fact) {
+    for (const int path : paths) {
+      const std::vector<Point>& points = plan.paths[static_cast<size_t>(path)].points;
+      rest(kStepsOfPoint * points.size() + 1);
+      for (const Point& point : points) note(point).*fact = true;
+    }
+  };
+  note_all(walls.exposed, &PointFacts::exposed);
+  note_all(walls.retracted, &PointFacts::retracted);
   for (const KnownMove& move : walls.known) {
     rest(kStepsOfKnownMove);
     const Path& from = plan.paths[static_cast<size_t>(move.from)];
     const Point a = from.points[from.kind == Path::Kind::kOpen ? 1 : 0];
-    moves_.emplace(KeyOf(a, plan.paths[static_cast<size_t>(move.to)].points[0]), move);
+    const Point b = plan.paths[static_cast<size_t>(move.to)].points[0];
+    note(a).known = true;
+    note(b).known = true;
+    moves_.emplace(KeyOf(a, b), move);
   }
 }
 
@@ -113,17 +113,13 @@ double WallCost::OfTwoLayers(Point a, Point b) const {
   return cost != nullptr ? (*cost)(a, b) : base_(a, b);
 }
 
-bool WallCost::IsExposed(Point a, Point b) const {
-  return IsAmong(exposed_, a) || IsAmong(exposed_, b);
+WallCost::PointFacts WallCost::FactsOf(Point point) const {
+  const auto found = points_.find({point.x, point.y});
+  return found != points_.end() ? found->second : PointFacts();
 }
 
-// Of what a retraction costs for which walls are the reason.
-double WallCost::ShareOfRetraction(Point a, Point b) const {
-  return 1 - (IsAmong(retracted_, a) ? 0.5 : 0) - (IsAmong(retracted_, b) ? 0.5 : 0);
-}
-
-const KnownMove* WallCost::FindKnown(Point a, Point b) const {
-  if (moves_.empty()) return nullptr;
+const KnownMove* WallCost::FindKnown(Point a, Point b, const EndFacts& ends) const {
+  if (!ends.a.known || !ends.b.known) return nullptr;
   const auto found = moves_.find(KeyOf(a, b));
   return found != moves_.end() ? &found->second : nullptr;
 }
@@ -138,7 +134,7 @@ WallMove WallCost::Done(const KnownMove& known, Point a, Point b) const {
   return move;
 }
 
-WallMove WallCost::Straight(Point a, Point b, bool crosses) const {
+WallMove WallCost::Straight(Point a, Point b, const EndFacts& ends, bool crosses) const {
   WallMove move;
   move.crosses = crosses;
   move.length_mm = Distance(a, b);
@@ -146,17 +142,18 @@ WallMove WallCost::Straight(Point a, Point b, bool crosses) const {
   move.retracts = move.length_mm > spec_.retraction_threshold_mm;
   if (!move.retracts &&
       ((crosses && move.length_mm > spec_.wall_retraction_threshold_mm) ||
-       (move.length_mm > spec_.exposed_retraction_threshold_mm && IsExposed(a, b)))) {
+       (move.length_mm > spec_.exposed_retraction_threshold_mm && ends.exposed()))) {
     move.retracts = true;
-    move.cost += spec_.retraction_seconds * ShareOfRetraction(a, b);
+    move.cost += spec_.retraction_seconds * ends.share_of_retraction();
   }
   if (crosses) move.cost += spec_.crossing_seconds + (move.retracts ? spec_.lift_seconds : 0);
   return move;
 }
 
 WallMove WallCost::MoveOf(Point a, Point b) const {
-  if (const KnownMove* known = FindKnown(a, b)) return Done(*known, a, b);
-  WallMove straight = Straight(a, b, grid_.Crosses(a, b));
+  const EndFacts ends = FactsOf(a, b);
+  if (const KnownMove* known = FindKnown(a, b, ends)) return Done(*known, a, b);
+  WallMove straight = Straight(a, b, ends, grid_.Crosses(a, b));
   if (!straight.crosses || !detours_) return straight;
   const bool swapped = Less(b, a);
   if (swapped) std::swap(a, b);
@@ -176,9 +173,9 @@ WallMove WallCost::MoveOf(Point a, Point b) const {
   around.retracts = around.length_mm > spec_.retraction_threshold_mm;
   if (around.retracts) {
     around.cost += spec_.retraction_seconds;
-  } else if (around.length_mm > spec_.exposed_retraction_threshold_mm && IsExposed(a, b)) {
+  } else if (around.length_mm > spec_.exposed_retraction_threshold_mm && ends.exposed()) {
     around.retracts = true;
-    around.cost += spec_.retraction_seconds * ShareOfRetraction(a, b);
+    around.cost += spec_.retraction_seconds * ends.share_of_retraction();
   }
   if (around.cost >= straight.cost) return straight;
   if (swapped) std::reverse(via.begin(), via.end());
@@ -188,7 +185,7 @@ WallMove WallCost::MoveOf(Point a, Point b) const {
 
 double WallCost::PriceOf(Point a, Point b) const {
   if (two_layers_ || detours_) return 0;
-  const KnownMove* const known = FindKnown(a, b);
+  const KnownMove* const known = FindKnown(a, b, FactsOf(a, b));
   const bool crosses = known != nullptr ? known->crosses : grid_.Crosses(a, b);
   return crosses ? spec_.crossing_seconds : 0;
 }
@@ -201,8 +198,9 @@ int64_t WallCost::work() const {
 double WallCost::Compute(Point a, Point b) const {
   work_ += kWorkOfCrossing;
   if (detours_) return MoveOf(a, b).cost;
-  if (const KnownMove* known = FindKnown(a, b)) return Done(*known, a, b).cost;
-  return Straight(a, b, grid_.Crosses(a, b)).cost;
+  const EndFacts ends = FactsOf(a, b);
+  if (const KnownMove* known = FindKnown(a, b, ends)) return Done(*known, a, b).cost;
+  return Straight(a, b, ends, grid_.Crosses(a, b)).cost;
 }
 
 double WallCost::operator()(Point a, Point b) const {

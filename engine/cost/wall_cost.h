@@ -40,8 +40,8 @@ struct WallMove {
 // of up to 32,768 moves, or 65,536 with detours, from the first question on.
 class WallCost {
  public:
-  // REQUIRES: `spec` is a time; `walls` passes CheckWalls for `plan`. O(points), and sorting those
-  // of exposed and retracted paths. Asks `budget` regularly, if it is not null.
+  // REQUIRES: `spec` is a time; `walls` passes CheckWalls for `plan`. O(points). Asks `budget`
+  // regularly, if it is not null.
   WallCost(const LayerWalls& walls, const Plan& plan, const CostSpec& spec,
            Budget* budget = nullptr);
 
@@ -75,11 +75,31 @@ class WallCost {
     double cost = -1;  // negative: unknown
   };
 
-  bool IsExposed(Point a, Point b) const;
-  double ShareOfRetraction(Point a, Point b) const;
-  const KnownMove* FindKnown(Point a, Point b) const;
+  // What is special about a point.
+  struct PointFacts {
+    bool exposed = false;
+    bool retracted = false;
+    bool known = false;  // a known move begins or ends there
+  };
+
+  // The same of both ends of a move.
+  struct EndFacts {
+    PointFacts a, b;
+
+    bool exposed() const { return a.exposed || b.exposed; }
+
+    // Of what a retraction costs for which walls are the reason.
+    double share_of_retraction() const {
+      return 1 - (a.retracted ? 0.5 : 0) - (b.retracted ? 0.5 : 0);
+    }
+  };
+
+  void NotePoints(const LayerWalls& walls, const Plan& plan, Budget* budget);
+  PointFacts FactsOf(Point point) const;
+  EndFacts FactsOf(Point a, Point b) const { return {FactsOf(a), FactsOf(b)}; }
+  const KnownMove* FindKnown(Point a, Point b, const EndFacts& ends) const;
   WallMove Done(const KnownMove& known, Point a, Point b) const;
-  WallMove Straight(Point a, Point b, bool crosses) const;
+  WallMove Straight(Point a, Point b, const EndFacts& ends, bool crosses) const;
   double Compute(Point a, Point b) const;
   double OfTwoLayers(Point a, Point b) const;
 
@@ -87,9 +107,8 @@ class WallCost {
   const TravelCost base_;
   const WallGrid grid_;
   const std::optional<WallDetours> detours_;
-  std::vector<Point> exposed_;                                   // sorted
-  std::vector<Point> retracted_;                                 // the same
-  absl::flat_hash_map<std::array<double, 4>, KnownMove> moves_;  // by their ends in order
+  absl::flat_hash_map<std::pair<double, double>, PointFacts> points_;  // nothing of other points
+  absl::flat_hash_map<std::array<double, 4>, KnownMove> moves_;        // by their ends in order
 
   const bool two_layers_ = false;
   const WallCost* first_ = nullptr;
