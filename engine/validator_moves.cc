@@ -6,11 +6,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <map>
-#include <set>
 #include <utility>
 #include <vector>
 
+#include "absl/container/flat_hash_map.h"
+#include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_cat.h"
 #include "engine/base/tolerances.h"
 #include "engine/validator.h"
@@ -143,6 +143,8 @@ double MotionSeconds(const CostSpec& spec, double length) {
   return length / spec.speed_mm_s + spec.speed_mm_s / spec.accel_mm_s2;
 }
 
+using Position = std::pair<double, double>;
+
 class MoveCheck {
  public:
   MoveCheck(const Plan& plan, const LayerWalls& walls, const CostSpec& spec)
@@ -159,8 +161,8 @@ class MoveCheck {
       const Path& from = plan.paths[static_cast<size_t>(move.from)];
       const Point a = from.kind == Path::Kind::kOpen ? from.points[1] : from.points[0];
       const Point b = plan.paths[static_cast<size_t>(move.to)].points[0];
-      const std::pair<double, double> one(a.x, a.y);
-      const std::pair<double, double> other(b.x, b.y);
+      const Position one(a.x, a.y);
+      const Position other(b.x, b.y);
       known_.emplace(std::minmax(one, other), move);
     }
   }
@@ -168,8 +170,8 @@ class MoveCheck {
   // Of a straight move or, with `detour`, one over its points.
   absl::Status Add(Point from, Point to, const Detour* detour) {
     double length = Length(from, to);
-    const std::pair<double, double> one(from.x, from.y);
-    const std::pair<double, double> other(to.x, to.y);
+    const Position one(from.x, from.y);
+    const Position other(to.x, to.y);
     if (const auto move = known_.find(std::minmax(one, other)); move != known_.end()) {
       if (detour != nullptr) {
         return absl::FailedPreconditionError(
@@ -196,9 +198,9 @@ class MoveCheck {
         at = next;
       }
     }
-    const bool exposed = exposed_.count({from.x, from.y}) > 0 || exposed_.count({to.x, to.y}) > 0;
-    const double pays = 1 - 0.5 * static_cast<double>(retracted_.count(one)) -
-                        0.5 * static_cast<double>(retracted_.count(other));
+    const bool exposed = exposed_.contains(one) || exposed_.contains(other);
+    const double pays =
+        1 - (retracted_.contains(one) ? 0.5 : 0) - (retracted_.contains(other) ? 0.5 : 0);
     const auto [added_low, low_retracts] = Of(length, exposed, false, pays);
     const auto [added_high, high_retracts] = Of(length, exposed, true, pays);
     const double low = motion + added_low;
@@ -253,9 +255,9 @@ class MoveCheck {
 
   const CostSpec& spec_;
   const Stripes stripes_;
-  std::set<std::pair<double, double>> exposed_;
-  std::set<std::pair<double, double>> retracted_;
-  std::map<std::pair<std::pair<double, double>, std::pair<double, double>>, KnownMove> known_;
+  absl::flat_hash_set<Position> exposed_;
+  absl::flat_hash_set<Position> retracted_;
+  absl::flat_hash_map<std::pair<Position, Position>, KnownMove> known_;  // by their ends in order
   Range cost_;
   Range crossings_;
   Range retractions_;
