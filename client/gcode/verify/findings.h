@@ -160,6 +160,7 @@ struct RetractionCycle {
 struct WipeDeviation {
   float off_mm = 0;     // at the ends of its moves
   float astray_mm = 0;  // halfway
+  float turned_mm = 0;  // by how much an arc of it would lie nearer the other way
   float pull = 0;       // filament retracted per mm
   float steepest = 0;   // the same for its longer moves, one by one; the most
   float uneven_mm = 0;  // by how much, at some point, its filament is off an even rate

@@ -12,6 +12,7 @@ namespace traverse::gcode {
 namespace {
 
 constexpr float kOnPathMm = 0.05f;
+constexpr float kTurnedMm = 0.012f;  // rounded arcs lie this much nearer to one side
 constexpr double kUsualShare = 0.99;
 constexpr float kPullSlack = 1.02f;
 constexpr float kGentleShare = 0.5f;
@@ -22,6 +23,7 @@ constexpr float kTellingMm = 0.3f;  // rounding is nothing compared with the fil
 struct Wipe {
   float off_mm = 0;
   float astray_mm = 0;
+  float turned_mm = 0;  // by how much an arc of it would lie nearer to the path the other way
   float length_mm = 0;
   float pulled_mm = 0;
   float steepest = 0;  // filament retracted per mm of one move
@@ -30,13 +32,29 @@ struct Wipe {
   bool known = true;
 };
 
-double DistanceTo(Point p, absl::Span<const Piece> pieces) {
+// A distance of up to `enough_mm` may be a larger one.
+double DistanceTo(Point p, absl::Span<const Piece> pieces, double enough_mm = kOnPathMm) {
   double nearest = 1e9;
   for (const Piece& piece : pieces) {
     nearest = std::min(nearest, DistanceToPiece(p, piece.a, piece.b));
-    if (nearest <= kOnPathMm) break;
+    if (nearest <= enough_mm) break;
   }
   return nearest;
+}
+
+// By how much the arc would lie nearer to the path if it went the other way: mirrored, or round the
+// rest of its circle. Arcs of wipes may be so short that they nowhere lie far from their path.
+double TurnedMm(const TraceMove& arc, absl::Span<const Piece> pieces) {
+  const Point chord{(arc.from.x + arc.to.x) / 2, (arc.from.y + arc.to.y) / 2};
+  const Point rise{arc.middle.x - chord.x, arc.middle.y - chord.y};
+  const double height = std::hypot(rise.x, rise.y);
+  if (height <= 0) return 0;
+  const double half = arc.length_mm() / 2;
+  const double rest = half * half / (height * height);
+  const Point mirrored{chord.x - rise.x, chord.y - rise.y};
+  const Point round{chord.x - rest * rise.x, chord.y - rest * rise.y};
+  const auto distance = [pieces](Point p) { return DistanceTo(p, pieces, 0); };
+  return distance(arc.middle) - std::min(distance(mirrored), distance(round));
 }
 
 // By how much, at some point of `wipe`, the retracted filament is off an even rate; its moves are
@@ -75,17 +93,19 @@ Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
     wipe.off_mm = std::max(wipe.off_mm, static_cast<float>(DistanceTo(move.to, pieces)));
     // A chord of the path has both its ends on it.
     wipe.astray_mm = std::max(wipe.astray_mm, static_cast<float>(DistanceTo(move.middle, pieces)));
+    if (!move.arc) continue;
+    wipe.turned_mm = std::max(wipe.turned_mm, static_cast<float>(TurnedMm(move, pieces)));
   }
   if (measure && wipe.line != 0) wipe.uneven_mm = Unevenness(chunk, link, wipe);
   return wipe;
 }
 
-// A bound that all but a few wipes of the original keep.
-float Limit(std::vector<float> values) {
-  if (values.empty()) return kOnPathMm;
+// A bound that all but a few wipes of the original keep, but at least `least`.
+float Limit(std::vector<float> values, float least) {
+  if (values.empty()) return least;
   const auto at = static_cast<std::ptrdiff_t>(kUsualShare * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + at, values.end());
-  return std::max(kOnPathMm, values[static_cast<size_t>(at)] + 0.002f) + 1e-4f;
+  return std::max(least, values[static_cast<size_t>(at)] + 0.002f) + 1e-4f;
 }
 
 // How wipes pull filament back.
@@ -141,7 +161,7 @@ void CheckWipes(const LayerPair& layer, LayerFindings& findings) {
     if (wipe.line == 0) continue;
     any = true;
     if (was.links[path + 1].scripted) continue;
-    findings.was.wipes.push_back({wipe.off_mm, wipe.astray_mm, wipe.pulled_mm / wipe.length_mm,
+    findings.was.wipes.push_back({wipe.off_mm, wipe.astray_mm, wipe.turned_mm, wipe.pulled_mm / wipe.length_mm,
                                   wipe.steepest, wipe.uneven_mm, wipe.length_mm, wipe.line,
                                   wipe.line, layer.index()});
   }
@@ -159,7 +179,7 @@ void CheckWipes(const LayerPair& layer, LayerFindings& findings) {
     }
     if (wipe.line == 0 || wipe.known) continue;
     wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), true);
-    findings.is.wipes.push_back({wipe.off_mm, wipe.astray_mm, wipe.pulled_mm / wipe.length_mm,
+    findings.is.wipes.push_back({wipe.off_mm, wipe.astray_mm, wipe.turned_mm, wipe.pulled_mm / wipe.length_mm,
                                  wipe.steepest, wipe.uneven_mm, wipe.length_mm, wipe.line,
                                  was.LineOf(was.paths[visit.path]), layer.index()});
   }
@@ -185,12 +205,15 @@ void CheckWipeMarks(const TraceChunk& was, const TraceChunk& is, std::vector<Fin
 void CompareWipes(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   std::vector<float> off;
   std::vector<float> astray;
+  std::vector<float> turned;
   for (const WipeDeviation& wipe : was.wipes) {
     off.push_back(wipe.off_mm);
     astray.push_back(wipe.astray_mm);
+    turned.push_back(wipe.turned_mm);
   }
-  const float off_limit = Limit(std::move(off));
-  const float astray_limit = Limit(std::move(astray));
+  const float off_limit = Limit(std::move(off), kOnPathMm);
+  const float astray_limit = Limit(std::move(astray), kOnPathMm);
+  const float turned_limit = Limit(std::move(turned), kTurnedMm);
   const Pulls pulls = PullsOf(was.wipes);
   for (const WipeDeviation& wipe : is.wipes) {
     if (!pulls.fastest.empty() && pulls.Unlike(wipe)) {
@@ -204,6 +227,11 @@ void CompareWipes(const Observations& was, const Observations& is, std::vector<F
           {VerifyRule::kWipes, most->line, wipe.line, wipe.layer,
            absl::StrFormat("a wipe retracts %.3f mm per mm; the most in the original is %.3f mm",
                            wipe.pull, most->pull)});
+    }
+    if (wipe.turned_mm > turned_limit) {
+      breaks.push_back({VerifyRule::kWipes, wipe.original_line, wipe.line, wipe.layer,
+                        "an arc of a wipe turns away from the path that it follows"});
+      continue;
     }
     if (wipe.off_mm <= off_limit && wipe.astray_mm <= astray_limit) continue;
     breaks.push_back({VerifyRule::kWipes, wipe.original_line, wipe.line, wipe.layer,

@@ -111,5 +111,21 @@ TEST(VerifyWipes, PullAllAlong) {
   EXPECT_EQ(Broken(a, other("G1 X7 Y5 E-.5\nG1 X5 Y5\n")), "wipes");
 }
 
+// An arc this short lies near its path even if it turns the other way, or goes round its circle.
+TEST(VerifyWipes, ArcsTurnAsTheirPathDoes) {
+  const auto wiped = [](const char* back) {
+    return absl::StrCat("G1 X0 Y5 F9000\nG1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\n",
+                        "G1 X5 Y5 E.3\nG2 X5.04 Y5 I.02 J0 E.01\n;WIPE_START\nG1 F7200\n", back,
+                        " E-.1\nG1 X1 Y5 E-.9\n;WIPE_END\n");
+  };
+  const std::string head = kHead + "G1 E-1 F2100\n";
+  const std::string back = "G3 X5 Y5 I-.02 J0";
+  const std::string a = head + wiped(back.c_str());
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, head + wiped("G3 X5 Y5 I-.02 J.0005")), "");
+  EXPECT_EQ(Broken(a, head + wiped("G2 X5 Y5 I-.02 J0")), "wipes");
+  EXPECT_EQ(Broken(head + wiped("G2 X5 Y5 I-.02 J0"), head + wiped("G2 X5 Y5 I-.02 J0")), "");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
