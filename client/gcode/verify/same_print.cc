@@ -143,9 +143,11 @@ std::optional<VerifyBreak> FirstDifference(const Side& original, const Side& opt
   const Side& longer = sections_was.size() > sections_is.size() ? original : optimised;
   const Side& shorter = &longer == &original ? optimised : original;
   const size_t line = longer.cut.sections[common].first_line;
-  return VerifyBreak{
-      VerifyRule::kSamePrint, &longer == &original ? line : 0, &longer == &optimised ? line : 0, -1,
-      absl::StrFormat("%s:%d: continues where %s ends", longer.name, line, shorter.name)};
+  const size_t last = common > 0 ? shorter.cut.sections[common - 1].last_line : 0;
+  const bool lacks = &longer == &original;
+  return VerifyBreak{VerifyRule::kSamePrint, lacks ? line : last, lacks ? last : line, -1,
+                     absl::StrFormat("%s:%d: continues where %s ends, with line %d", longer.name,
+                                     line, shorter.name, last)};
 }
 
 }  // namespace traverse::gcode

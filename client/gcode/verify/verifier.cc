@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/verify/line_numbers.h"
+#include "client/gcode/verify/match/path_lines.h"
 #include "client/gcode/verify/rules/rules.h"
 #include "client/gcode/verify/same_print.h"
 #include "client/gcode/verify/text.h"
@@ -79,6 +80,7 @@ class Verifier {
   std::vector<Progress> progress_was_;
   std::vector<Progress> progress_is_;
   std::vector<Finding> findings_;
+  PathLines path_lines_;
   std::vector<uint32_t> layer_lines_;  // where the layers of the optimised file begin
   VerifyReport report_;
 };
@@ -157,8 +159,10 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
 void Verifier::CheckChunk() {
   const size_t layers = std::min(chunk_was_.layers.size(), chunk_is_.layers.size());
   std::vector<LayerFindings> found(layers);
+  std::vector<PathLines> lines(layers);
   ParallelFor(layers, threads_, [&](size_t i) {
     const LayerPair layer(chunk_was_, chunk_is_, i);
+    lines[i].Add(layer);
     CheckLayer(layer, found[i]);
     if (more_ || i + 1 < layers) return;
     ObserveLastRetraction(layer, found[i]);
@@ -167,6 +171,7 @@ void Verifier::CheckChunk() {
   for (size_t i = 0; i < layers; ++i) {
     const TraceSection& section = chunk_is_.sections[chunk_is_.layers[i].first_section];
     layer_lines_.push_back(chunk_is_.LineOf(chunk_is_.paths[section.first_path]));
+    path_lines_.Append(lines[i]);
     seen_was_.Append(found[i].was);
     seen_is_.Append(found[i].is);
     findings_.insert(findings_.end(), found[i].breaks.begin(), found[i].breaks.end());
@@ -210,6 +215,12 @@ void Verifier::Add(Finding finding) {
   const auto rule = static_cast<size_t>(finding.rule);
   if (((rules_ >> rule) & 1u) == 0) return;
   if (report_.counts[rule]++ >= static_cast<int64_t>(VerifyReport::kMostBreaks)) return;
+  // What one file lacks was to be done on the way to the same path.
+  if (finding.original_line == 0 && finding.optimised_line > 0) {
+    finding.original_line = path_lines_.OriginalOf(finding.optimised_line);
+  } else if (finding.optimised_line == 0 && finding.original_line > 0) {
+    finding.optimised_line = path_lines_.OptimisedOf(finding.original_line);
+  }
   if (finding.layer < 0 && finding.optimised_line > 0) {
     finding.layer = LayerOf(finding.optimised_line);
   }
@@ -232,8 +243,8 @@ void Verifier::CheckText() {
   // A file transfer may convert all line ends, but not some of them.
   const uint32_t ends = is_.line_ends();
   const bool one_kind = (ends & (ends - 1)) == 0 && (ends & VerifyMachine::kLoneReturn) == 0;
-  if ((ends & ~was_.line_ends()) != 0 && !one_kind) {
-    findings_.push_back({VerifyRule::kSamePrint, 0, 0, -1,
+  if (const uint32_t odd = ends & ~was_.line_ends(); odd != 0 && !one_kind) {
+    findings_.push_back({VerifyRule::kSamePrint, 0, is_.FirstLineWithEnds(odd), -1,
                          "some lines have line ends that no line of the original has"});
   }
 }

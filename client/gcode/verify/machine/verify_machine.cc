@@ -73,13 +73,27 @@ std::string_view VerifyMachine::TakeLine() {
   while (returns < line.size() && line[line.size() - 1 - returns] == '\r') ++returns;
   const size_t inside = line.substr(0, line.size() - returns).find('\r');
   if (inside != std::string_view::npos) {
-    line_ends_ |= kLoneReturn;
+    NoteEnd(kMostReturns + 1);
     rest_.remove_prefix(inside + 1);
     return line.substr(0, inside);
   }
-  if (end < rest_.size()) line_ends_ |= 1u << std::min(returns, kMostReturns);
+  if (end < rest_.size()) NoteEnd(std::min(returns, kMostReturns));
   rest_.remove_prefix(std::min(end + 1, rest_.size()));
   return line;
+}
+
+void VerifyMachine::NoteEnd(size_t bit) {
+  if ((line_ends_ >> bit & 1u) == 0) first_with_end_[bit] = static_cast<uint32_t>(number_);
+  line_ends_ |= 1u << bit;
+}
+
+uint32_t VerifyMachine::FirstLineWithEnds(uint32_t ends) const {
+  uint32_t first = 0;
+  for (size_t bit = 0; bit < first_with_end_.size(); ++bit) {
+    if ((ends & line_ends_ & 1u << bit) == 0) continue;
+    if (first == 0 || first_with_end_[bit] < first) first = first_with_end_[bit];
+  }
+  return first;
 }
 
 void VerifyMachine::Fence(VerifyLine& line, LineRole role) {

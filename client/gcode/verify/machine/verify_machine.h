@@ -94,12 +94,16 @@ class VerifyMachine {
   // Which line ends there were so far: bit n for LF behind n carriage returns, and kLoneReturn.
   uint32_t line_ends() const { return line_ends_; }
   static constexpr size_t kMostReturns = 3;
+
+  // The first line that ends in one of these ways; 0 if there is none.
+  uint32_t FirstLineWithEnds(uint32_t ends) const;
   static constexpr uint32_t kLoneReturn = 1u << (kMostReturns + 1);
 
   static constexpr Micro kSlack = 100;  // of filament that rounding may lose
 
  private:
   std::string_view TakeLine();
+  void NoteEnd(size_t bit);
   void Do(VerifyLine& line);
   void DoComment(VerifyLine& line);
   void DoG(int number, VerifyLine& line);
@@ -120,6 +124,7 @@ class VerifyMachine {
   size_t number_ = 0;
   size_t moved_at_ = 0;  // the line of motion_
   uint32_t line_ends_ = 0;
+  std::array<uint32_t, kMostReturns + 2> first_with_end_{};  // [bit of line_ends_]
   std::array<Micro, 3> at_{};
   Micro e_ = 0;
   Micro feed_ = 0;

@@ -176,12 +176,17 @@ struct Balance {
   int64_t cycles = 0;
 };
 
+Micro SurplusOf(const RetractionCycle& cycle) { return cycle.pushed - cycle.pulled; }
+
+bool Returns(const RetractionCycle& cycle) {
+  return !cycle.firmware && std::abs(SurplusOf(cycle)) <= kRounding;
+}
+
 Balance BalanceOf(const std::vector<RetractionCycle>& cycles) {
   Balance balance;
   for (const RetractionCycle& cycle : cycles) {
-    const Micro surplus = cycle.pushed - cycle.pulled;
-    if (cycle.firmware || std::abs(surplus) > kRounding) continue;
-    balance.primed += surplus;
+    if (!Returns(cycle)) continue;
+    balance.primed += SurplusOf(cycle);
     ++balance.cycles;
   }
   return balance;
@@ -195,8 +200,14 @@ void CompareBalance(const Observations& was, const Observations& is, std::vector
   const Micro off = has.primed - had.primed;
   const Micro slack = kRounding * (1 + std::abs(has.cycles - had.cycles)) + kOfEach * has.cycles;
   if (std::abs(off) <= slack) return;
+  const RetractionCycle* odd = nullptr;  // the one that is off by most
+  for (const RetractionCycle& cycle : is.cycles) {
+    if (!Returns(cycle)) continue;
+    const Micro more = odd == nullptr ? 0 : SurplusOf(cycle) - SurplusOf(*odd);
+    if (odd == nullptr || (off > 0 ? more > 0 : more < 0)) odd = &cycle;
+  }
   breaks.push_back(
-      {VerifyRule::kRetractions, 0, 0, -1,
+      {VerifyRule::kRetractions, 0, odd == nullptr ? 0 : odd->line, -1,
        absl::StrFormat("primes %.4f mm %s than the original, all in all",
                        static_cast<double>(std::abs(off)) * 1e-6, off > 0 ? "more" : "less")});
 }

@@ -31,6 +31,7 @@ class SideReader {
 
   // VerifyMachine::line_ends of the text read so far.
   uint32_t line_ends() const { return machine_.line_ends(); }
+  uint32_t FirstLineWithEnds(uint32_t ends) const { return machine_.FirstLineWithEnds(ends); }
 
   // The sections read so far.
   const Sections& cut() const { return cutter_.cut(); }

@@ -1,6 +1,7 @@
 // What all rules have in common, and lines that machines may leave out:
 // client/gcode/verify/verifier.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -12,10 +13,29 @@ namespace traverse::gcode {
 namespace {
 
 using namespace testing;  // NOLINT: the small prints
+using ::testing::AllOf;
+using ::testing::EndsWith;
+using ::testing::StartsWith;
 
 TEST(VerifyRules, NamesRuleFileAndBothLines) {
   EXPECT_EQ(FirstMessage(kHead + kSquare, kHead + kSquareTurned),
             "b:9: this outer wall is printed in the opposite direction (direction; a:9)");
+}
+
+// Broken asserts that each break of every test names both.
+TEST(VerifyRules, NamesThePathThatLeadsOnWhereTheOtherFileHasNoSuchLine) {
+  // Filament that only one of the files pushes, before the second line of infill.
+  const std::string bare = kHead + kOne + "G1 X9 Y2 F9000\nG1 F1800\nG1 X0 Y2 E.3\n";
+  const std::string pushed = With(bare, "Y2 F9000\n", "Y2 F9000\nG1 E.2 F2100\n");
+  EXPECT_THAT(FirstMessage(bare, pushed), StartsWith("b:11: pushes"));
+  EXPECT_THAT(FirstMessage(bare, pushed), EndsWith("(standstill; a:12)"));
+  EXPECT_THAT(FirstMessage(pushed, bare), StartsWith("b:12: the original pushes"));
+  EXPECT_THAT(FirstMessage(pushed, bare), EndsWith("(standstill; a:11)"));
+  // A line end, and lines behind the end of the other file.
+  EXPECT_THAT(FirstMessage(kHead + kTwo, kHead + With(kTwo, "X0 Y5 F9000\n", "X0 Y5 F9000\r\n")),
+              AllOf(StartsWith("b:11: "), EndsWith("(same_print; a:15)")));
+  EXPECT_EQ(FirstMessage(kHead + kTwo, kHead + kTwo + "M84\n"),
+            "b:16: a different line from the one at a:15");
 }
 
 // Whichever rule: what a slicer does itself is never refused.

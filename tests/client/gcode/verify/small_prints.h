@@ -14,12 +14,15 @@ namespace traverse::gcode::testing {
 
 using Policy = VerifyPermissions::Policy;
 
-// "lifts" or "order seam": the rules that are broken.
+// "lifts" or "order seam": the rules that are broken. Each break names a line of both prints.
 inline std::string Broken(const std::string& original, const std::string& optimised,
                           VerifyPermissions permissions = {}) {
   VerifyOptions options;
   options.permissions = permissions;
   const VerifyReport report = CheckGcode(original, "a", optimised, "b", options);
+  for (const VerifyBreak& found : report.breaks) {
+    EXPECT_TRUE(found.original_line > 0 && found.optimised_line > 0) << found.message;
+  }
   std::string names;
   for (size_t rule = 0; rule < report.counts.size(); ++rule) {
     if (report.counts[rule] == 0) continue;
