@@ -60,6 +60,14 @@ void Observations::Append(const Observations& other) {
   way_lengths.insert(way_lengths.end(), other.way_lengths.begin(), other.way_lengths.end());
   ways_to_layers.insert(ways_to_layers.end(), other.ways_to_layers.begin(),
                         other.ways_to_layers.end());
+  for (const auto& [key, habit] : other.open_habits) {
+    OpenHabit& own = open_habits[key];
+    own.retracted += habit.retracted;
+    own.open += habit.open;
+    own.bent += habit.bent;
+    if (own.line == 0) own.line = habit.line;
+  }
+  new_open_ways.insert(new_open_ways.end(), other.new_open_ways.begin(), other.new_open_ways.end());
   long_ways.insert(long_ways.end(), other.long_ways.begin(), other.long_ways.end());
   farthest.insert(farthest.end(), other.farthest.begin(), other.farthest.end());
   script_signatures.insert(other.script_signatures.begin(), other.script_signatures.end());

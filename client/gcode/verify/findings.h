@@ -202,6 +202,25 @@ struct ExtremePoint {
   int64_t layer = -1;
 };
 
+// How often travel of one kind and about one length retracts, and does not.
+struct OpenHabit {
+  int64_t retracted = 0;
+  int64_t open = 0;
+  int64_t bent = 0;   // of those that stay open
+  uint32_t line = 0;  // of the first one that retracts
+};
+
+// Unretracted travel that the original does not have, and what its layer has of this kind.
+struct NewOpenWay {
+  uint32_t kind = 0;
+  float length_mm = 0;
+  uint32_t line = 0;
+  int64_t layer = -1;
+  int64_t retracted_in_layer = 0;
+  float longest_in_layer_mm = 0;  // unretracted
+  uint32_t line_in_layer = 0;     // of a retracted one
+};
+
 // What some layers of one file show.
 struct Observations {
   std::array<absl::flat_hash_map<uint64_t, Seen>, static_cast<size_t>(MoveKind::kCount) + 1> feeds;
@@ -226,6 +245,8 @@ struct Observations {
   Box box;                             // of all points
   std::vector<WayLength> way_lengths;  // the greatest of each layer
   std::vector<WayLength> ways_to_layers;
+  absl::flat_hash_map<uint32_t, OpenHabit> open_habits;  // by kind and length
+  std::vector<NewOpenWay> new_open_ways;
   std::vector<LongWay> long_ways;
   LiftLog lifts;
   std::vector<RetractionCycle> cycles;

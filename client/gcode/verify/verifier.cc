@@ -139,6 +139,7 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
   CheckDirection(layer, context_, findings);
   CheckSeam(layer, context_, findings);
   CheckOpenWays(layer, findings);
+  ObserveOpenHabits(layer, findings);
   CheckSameWays(layer, findings);
   CheckBends(layer, findings);
   CheckSameSteps(layer, findings);
@@ -200,6 +201,7 @@ void Verifier::Compare(std::vector<Finding>& breaks) const {
   CompareHeights(seen_was_, seen_is_, breaks);
   CompareBounds(seen_was_, seen_is_, breaks);
   CompareWayLengths(seen_was_, seen_is_, breaks);
+  CompareOpenHabits(seen_was_, seen_is_, context_, breaks);
   CompareRetractions(seen_was_, seen_is_, breaks);
   CompareSpeeds(seen_was_, seen_is_, breaks);
   CompareWipes(seen_was_, seen_is_, breaks);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -67,6 +68,19 @@ bool LiesOn(Point p, absl::Span<const Piece> pieces) {
   });
 }
 
+// The greatest of `1.5,2,1.5`; 0 if there is no number.
+double GreatestOf(std::string_view list) {
+  double greatest = 0;
+  while (!list.empty()) {
+    const std::string_view one = list.substr(0, list.find_first_of(",;"));
+    double value = 0;
+    std::from_chars(one.data(), one.data() + one.size(), value);
+    if (value > greatest) greatest = value;
+    list.remove_prefix(std::min(one.size() + 1, list.size()));
+  }
+  return greatest;
+}
+
 }  // namespace
 
 SlicerSettings ReadSettings(std::string_view text) {
@@ -86,6 +100,8 @@ SlicerSettings ReadSettings(std::string_view text) {
   const std::string_view bottom = first_of("bottom_fill_pattern", "bottom_surface_pattern");
   settings.monotonic_top = top.empty() || Begins(top, "monotonic");
   settings.monotonic_bottom = Begins(bottom, "monotonic");
+  settings.retract_before_mm =
+      GreatestOf(first_of("retract_before_travel", "retraction_minimum_travel"));
   return settings;
 }
 

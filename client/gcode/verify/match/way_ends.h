@@ -12,14 +12,17 @@
 
 namespace traverse::gcode {
 
+// A digest of two points, to the micrometre.
+inline uint64_t DigestOfEnds(Point from, Point to) {
+  const auto um = [](double mm) { return static_cast<uint64_t>(std::llround(mm * 1000)); };
+  return Mix(Mix(um(from.x), um(from.y)), Mix(um(to.x), um(to.y)));
+}
+
 // A digest of the end of the path before and the start of the path after, to the micrometre.
 // REQUIRES: link > 0.
 inline uint64_t EndsOf(const TraceChunk& chunk, uint32_t link) {
   assert(link > 0);
-  const auto um = [](double mm) { return static_cast<uint64_t>(std::llround(mm * 1000)); };
-  const Point from = chunk.EndOf(chunk.paths[link - 1]);
-  const Point to = chunk.paths[link].start;
-  return Mix(Mix(um(from.x), um(from.y)), Mix(um(to.x), um(to.y)));
+  return DigestOfEnds(chunk.EndOf(chunk.paths[link - 1]), chunk.paths[link].start);
 }
 
 }  // namespace traverse::gcode

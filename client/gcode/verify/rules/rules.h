@@ -24,6 +24,7 @@ void CheckDirection(const LayerPair& layer, const RuleContext& context, LayerFin
 void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings& findings);
 void CheckBends(const LayerPair& layer, LayerFindings& findings);
 void CheckOpenWays(const LayerPair& layer, LayerFindings& findings);
+void ObserveOpenHabits(const LayerPair& layer, LayerFindings& findings);
 void CheckSameWays(const LayerPair& layer, LayerFindings& findings);
 void CheckSinking(const LayerPair& layer, LayerFindings& findings);
 void CheckSameSteps(const LayerPair& layer, LayerFindings& findings);
@@ -64,6 +65,8 @@ void CompareLifts(const Observations& was, const Observations& is, std::vector<F
 void CompareHeights(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void CompareBounds(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void CompareWayLengths(const Observations& was, const Observations& is,
+                       std::vector<Finding>& breaks);
+void CompareOpenHabits(const Observations& was, const Observations& is, const RuleContext& context,
                        std::vector<Finding>& breaks);
 void CompareRetractions(const Observations& was, const Observations& is,
                         std::vector<Finding>& breaks);

@@ -1,0 +1,189 @@
+// Which travel retracts, by the original's own habit. Travel of some kinds (to paths of one class,
+// across outer walls or not) always retracts if it is longer than the slicer's threshold, in the
+// whole print or in this layer. So does new travel of such a kind.
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "absl/container/flat_hash_map.h"
+#include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/way_ends.h"
+#include "client/gcode/verify/rules/rules.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kShortestWayMm = 0.5;
+constexpr double kBentMm = 0.2;
+constexpr int64_t kManyBent = 20;  // one in
+constexpr double kBinMm = 0.1;
+constexpr uint32_t kBins = 1000;
+
+// So many retracted ones make a habit.
+constexpr int64_t kEnoughOfLayer = 4;
+constexpr int64_t kEnoughOfPrint = 20;
+constexpr int64_t kOneIn = 100;  // what is as rare as this is no habit
+constexpr double kUsualThresholdMm = 1.5;
+
+struct Way {
+  uint32_t kind = 0;
+  double length_mm = 0;
+  bool retracts = false;
+  bool bent = false;
+  uint32_t line = 0;
+  uint64_t ends = 0;
+  uint64_t ends_back = 0;
+};
+
+// The travel in `link`, from path to path; of length 0 if there is none within the layer.
+Way WayIn(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, PathClass to,
+          bool only_new) {
+  const TraceLink& traced = chunk.links[link];
+  if (link == 0 || traced.new_layer || traced.scripted) return {};
+  Way way;
+  bool known = true;
+  double length = 0;
+  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (move.kind != MoveKind::kTravel) continue;
+    way.retracts |= !move.open;
+    known &= layer.IsKnown(move);
+    length += move.length_mm();
+    if (way.line == 0) way.line = move.line;
+  }
+  if (way.line == 0 || (only_new && (known || way.retracts))) return {};
+  const Point from = chunk.EndOf(chunk.paths[link - 1]);
+  const Point start = chunk.paths[link].start;
+  way.length_mm = DistanceOf(from, start);
+  if (way.length_mm < kShortestWayMm) return {};
+  const bool crosses = layer.CrossesOuterWall(from, start);
+  way.bent = length > way.length_mm + kBentMm;
+  way.kind = 2 * static_cast<uint32_t>(to) + (crosses ? 1u : 0u);
+  way.ends = EndsOf(chunk, link);
+  way.ends_back = DigestOfEnds(start, from);
+  return way;
+}
+
+std::vector<Way> WaysOf(const LayerPair& layer) {
+  std::vector<Way> ways;
+  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
+    const Way way = WayIn(layer, layer.was(), link, layer.ClassOf(link), false);
+    if (way.length_mm > 0) ways.push_back(way);
+  }
+  return ways;
+}
+
+uint32_t BinOf(double length_mm) {
+  return static_cast<uint32_t>(std::min<double>(length_mm / kBinMm, kBins - 1));
+}
+
+uint32_t KeyOf(uint32_t kind, uint32_t bin) { return kind * kBins + bin; }
+
+// What the layer's travel of this kind does.
+void NoteLayer(const std::vector<Way>& ways, NewOpenWay& open) {
+  for (const Way& other : ways) {
+    if (other.kind != open.kind) continue;
+    if (other.retracts) {
+      ++open.retracted_in_layer;
+      open.line_in_layer = other.line;
+    } else {
+      open.longest_in_layer_mm =
+          std::max(open.longest_in_layer_mm, static_cast<float>(other.length_mm));
+    }
+  }
+}
+
+// The length from which on travel retracts if nothing else matters: as the slicer states it, or
+// else the shortest that retracts, but for exceptions.
+uint32_t ThresholdBin(const Observations& was, const SlicerSettings& settings) {
+  if (settings.retract_before_mm > 0) return BinOf(settings.retract_before_mm);
+  std::array<int64_t, kBins> retracted{};
+  int64_t all = 0;
+  for (const auto& [key, habit] : was.open_habits) {
+    retracted[key % kBins] += habit.retracted;
+    all += habit.retracted;
+  }
+  uint32_t bin = 0;
+  for (int64_t shorter = 0; bin + 1 < kBins; ++bin) {
+    shorter += retracted[bin];
+    if (shorter * kOneIn > all) break;
+  }
+  return std::max(bin, BinOf(kUsualThresholdMm));
+}
+
+// Where slicers lead unretracted travel around walls, what travel would cross if it were straight
+// tells nothing.
+bool LeadsAround(const Observations& was) {
+  int64_t open = 0;
+  int64_t bent = 0;
+  for (const auto& [key, habit] : was.open_habits) {
+    open += habit.open;
+    bent += habit.bent;
+  }
+  return bent > 0 && bent * kManyBent >= open;
+}
+
+// What travel of one kind does that is longer than the threshold.
+OpenHabit HabitBeyond(const Observations& was, uint32_t kind, uint32_t threshold) {
+  OpenHabit beyond;
+  for (uint32_t bin = threshold + 1; bin < kBins; ++bin) {
+    const auto found = was.open_habits.find(KeyOf(kind, bin));
+    if (found == was.open_habits.end()) continue;
+    beyond.retracted += found->second.retracted;
+    beyond.open += found->second.open;
+    if (beyond.line == 0) beyond.line = found->second.line;
+  }
+  return beyond;
+}
+
+}  // namespace
+
+void ObserveOpenHabits(const LayerPair& layer, LayerFindings& findings) {
+  const std::vector<Way> ways = WaysOf(layer);
+  for (const Way& way : ways) {
+    OpenHabit& habit = findings.was.open_habits[KeyOf(way.kind, BinOf(way.length_mm))];
+    ++(way.retracts ? habit.retracted : habit.open);
+    habit.bent += way.bent && !way.retracts ? 1 : 0;
+    if (way.retracts && habit.line == 0) habit.line = way.line;
+  }
+  for (const Visit& visit : layer.visits()) {
+    const Way way = WayIn(layer, layer.is(), visit.first_path, layer.ClassOf(visit.path), true);
+    if (way.length_mm <= 0) continue;
+    const bool was_open = std::any_of(ways.begin(), ways.end(), [&](const Way& other) {
+      return !other.retracts && (other.ends == way.ends || other.ends == way.ends_back);
+    });
+    if (was_open) continue;
+    NewOpenWay open{.kind = way.kind,
+                    .length_mm = static_cast<float>(way.length_mm),
+                    .line = way.line,
+                    .layer = layer.index()};
+    NoteLayer(ways, open);
+    findings.is.new_open_ways.push_back(open);
+  }
+}
+
+void CompareOpenHabits(const Observations& was, const Observations& is, const RuleContext& context,
+                       std::vector<Finding>& breaks) {
+  if (is.new_open_ways.empty() || LeadsAround(was)) return;
+  const uint32_t threshold = ThresholdBin(was, context.settings);
+  absl::flat_hash_map<uint32_t, OpenHabit> habits;  // by kind
+  for (const NewOpenWay& way : is.new_open_ways) {
+    if (BinOf(way.length_mm) <= threshold) continue;
+    const auto [known, added] = habits.try_emplace(way.kind);
+    OpenHabit& habit = known->second;
+    if (added) habit = HabitBeyond(was, way.kind, threshold);
+    const bool of_print =
+        habit.retracted >= kEnoughOfPrint && habit.open * kOneIn <= habit.retracted;
+    const bool of_layer = way.retracted_in_layer >= kEnoughOfLayer &&
+                          BinOf(way.longest_in_layer_mm) <= threshold;
+    if (!of_print && !of_layer) continue;
+    breaks.push_back({VerifyRule::kOpenWays, of_layer ? way.line_in_layer : habit.line, way.line,
+                      way.layer,
+                      absl::StrFormat("travel of %.2f mm without a retraction; longer than %.1f mm, "
+                                      "this kind retracts in the original",
+                                      way.length_mm, threshold * kBinMm)});
+  }
+}
+
+}  // namespace traverse::gcode
