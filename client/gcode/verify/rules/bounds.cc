@@ -16,7 +16,8 @@ namespace {
 // Travel around a wall may lie beyond all walls.
 constexpr double kSlackMm = 2;
 
-// A move this short at the beginning of travel goes along a path's end, or away from it: path_ends.
+// Where the original has such, a move this short at the beginning of travel leads along a path's
+// end, or away from it: path_ends.
 constexpr double kDepartureMm = 1.0;
 
 // Rounded coordinates bend travel by less.
@@ -42,7 +43,28 @@ bool SinksBetween(const TraceChunk& is, uint32_t link, const TraceMove& before,
   return is.paths[link].z_mm < printed - kLevelMm && behind.z_from_mm < before.z_to_mm - kLevelMm;
 }
 
-void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped, LayerFindings& findings) {
+// Whether some travel of the original's layer leaves its path by a short move, and bends then.
+bool HasDepartures(const LayerPair& layer) {
+  const TraceChunk& was = layer.was();
+  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
+    const TraceLink& traced = was.links[link];
+    const TraceMove* first = nullptr;
+    for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
+      const TraceMove& move = was.moves[m];
+      if (!move.sideways()) continue;
+      if (first == nullptr) {
+        first = &move;
+        continue;
+      }
+      if (first->length_mm() <= kDepartureMm && ExcessOf(*first, move) > kLeastExcessMm) return true;
+      break;
+    }
+  }
+  return false;
+}
+
+void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped, double departure_mm,
+               LayerFindings& findings) {
   const TraceChunk& is = layer.is();
   const TraceLink& traced = is.links[link];
   double length = 0;
@@ -61,7 +83,7 @@ void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped, LayerFin
     const TraceMove* last = std::exchange(before, counts ? &move : nullptr);
     if (last == nullptr || before == nullptr) continue;
     if (layer.IsKnown(*last) || layer.IsKnown(move)) continue;
-    if (done <= kDepartureMm || SinksBetween(is, link, *last, move)) continue;
+    if (done <= departure_mm || SinksBetween(is, link, *last, move)) continue;
     const double excess = ExcessOf(*last, move);
     if (excess <= kLeastExcessMm || LeadsAroundAWall(layer, *last, move)) continue;
     findings.breaks.push_back(
@@ -136,10 +158,14 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
   // Moves along a path may be as fast as travel, if no longer than such in the original.
   const Tails along(layer, false, true);
   const double longest = LongestAlong(layer);
+  const double departure_mm = HasDepartures(layer) ? kDepartureMm : 0;
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
+    // Travel to the layer leaves a path of another one.
+    const bool leaves_other = link == layer.first_path_is() && layer.index() > 0;
     const uint32_t moves = along.At(link);
     const bool is_known = LengthOf(layer.is(), link, moves) <= longest + kLeastExcessMm;
-    CheckLink(layer, link, std::max(tails.At(link), is_known ? moves : 0), findings);
+    CheckLink(layer, link, std::max(tails.At(link), is_known ? moves : 0), 
+              leaves_other ? kDepartureMm : departure_mm, findings);
   }
 }
 

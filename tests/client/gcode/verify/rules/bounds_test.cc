@@ -95,5 +95,28 @@ TEST(VerifyBounds, NoWayGoesAlongAFinishedLoopUnlessTheOriginalDoes) {
   EXPECT_EQ(Broken(kHead + kSquare + along + rest, kHead + kSquare + along + rest), "");
 }
 
+// Some slicers leave paths by a short move; for others it is a detour like any.
+TEST(VerifyBounds, ShortDetoursAreThoseOfTheFile) {
+  const std::string way = "G1 X0 Y5 F9000\n";
+  const std::string a = kHead + kTwo + kNextLayer + kTwo;
+  const std::string aside = "G1 X9 Y.7 F9000\n" + way;
+  EXPECT_EQ(Broken(a, With(a, way, aside)), "bounds");
+  const std::string departs = With(kHead + kZigzag + kTwo, "G1 X0 Y0 F9000\n",
+                                   "G1 X10 Y10.3 F9000\nG1 X0 Y0\n");
+  EXPECT_EQ(Broken(departs, departs), "");
+  EXPECT_EQ(Broken(departs, With(departs, way, aside)), "");
+}
+
+// What stands behind unknown lines at the first layer is no script, but travel to its first path.
+TEST(VerifyBounds, TheFirstTravelOfAllGoesStraight) {
+  const std::string start = "M83\nG28\nG1 X.4 Y9 Z.2 F9000\n;LAYER_CHANGE\nM971 S11\n";
+  const std::string way = "G1 X0 Y0 F9000\n";
+  const std::string a =
+      start + way + ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y0 E.3\n" + kOther;
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, With(a, way, "G1 X0 F9000\nG1 Y0\n")), "bounds");
+  EXPECT_EQ(Broken(a, With(a, way, "G1 Y0 F9000\nG1 X0\n")), "bounds");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
