@@ -148,6 +148,8 @@ struct RetractionCycle {
   bool early = false;        // pushed before the travel is done
   bool in_parts = false;     // pushed in several parts during the travel
   bool idle = false;         // no travel between the two
+  uint32_t pulls = 0;        // how many moves pull, unless one of them is a wipe
+  uint32_t pushes = 0;       // and how many push
   float late_mm = 0;         // of the travel, before the retraction
   bool pushed_high = false;  // above what is printed on either side
   bool pulled_high = false;

@@ -79,6 +79,8 @@ class CycleReader {
     cycle_.pulled += move.firmware ? kOnce : -move.filament;
     cycle_.late_mm = static_cast<float>(way_mm_);
     cycle_.idle &= !move.sideways();
+    wipes_ |= move.sideways();
+    cycle_.pulls = wipes_ ? 0 : cycle_.pulls + 1;
     Note(move);
   }
 
@@ -88,6 +90,7 @@ class CycleReader {
   }
 
   void Begin(const TraceMove& move) {
+    wipes_ = false;
     cycle_ = RetractionCycle{};
     cycle_.tool = move.tool;
     cycle_.firmware = move.firmware;
@@ -98,6 +101,7 @@ class CycleReader {
   }
 
   void Push(const TraceMove& move) {
+    ++cycle_.pushes;
     cycle_.pushed += move.firmware ? kOnce : move.filament;
     Note(move);
     if (!move.firmware && cycle_.pushed < cycle_.pulled - VerifyMachine::kSlack) return;
@@ -109,6 +113,7 @@ class CycleReader {
   std::vector<RetractionCycle>& cycles_;
   RetractionCycle cycle_;
   bool open_ = false;
+  bool wipes_ = false;
   double way_mm_ = 0;  // gone in this link without filament
 };
 
@@ -253,7 +258,13 @@ void CompareRetractions(const Observations& was, const Observations& is,
   absl::flat_hash_set<uint64_t> whole;
   for (const RetractionCycle& cycle : was.cycles) whole.insert(cycle.identity);
   float latest_mm = 0;
-  for (const RetractionCycle& cycle : was.cycles) latest_mm = std::max(latest_mm, cycle.late_mm);
+  uint32_t most_pulls = 1;
+  uint32_t most_pushes = 1;
+  for (const RetractionCycle& cycle : was.cycles) {
+    latest_mm = std::max(latest_mm, cycle.late_mm);
+    most_pulls = std::max(most_pulls, cycle.pulls);
+    most_pushes = std::max(most_pushes, cycle.pushes);
+  }
   for (const RetractionCycle& cycle : is.cycles) {
     if (cycle.known && whole.contains(cycle.identity)) continue;
     const auto [deepest, line] = pairs.Deepest(cycle.tool);
@@ -274,6 +285,8 @@ void CompareRetractions(const Observations& was, const Observations& is,
       report(absl::StrFormat(
           "retracts after %.2f mm of the travel; the most in the original is %.2f mm",
           cycle.late_mm, latest_mm));
+    } else if (cycle.pulls > most_pulls || cycle.pushes > most_pushes) {
+      report("retracts or primes in more parts than the original ever does");
     } else if (cycle.idle && !may_be_idle) {
       report("retracts without travel");
     } else if (cycle.in_parts && !may_be_in_parts) {

@@ -135,5 +135,17 @@ TEST(VerifyRetractions, FilamentIsPulledBackOnTheSameSideOfALabel) {
   EXPECT_EQ(Broken(b, a), "retractions");
 }
 
+TEST(VerifyRetractions, AreNotDoneInMoreParts) {
+  const std::string pull = "G1 E-1 F2100\nG1 X0 Y5 F9000\n";
+  const std::string halves = "G1 E-.5 F2100\nG1 E-.5\nG1 X0 Y5 F9000\n";
+  const std::string push = "G1 X0 Y5 F9000\nG1 E1 F2100\n";
+  const std::string a = kHead + kTwo;
+  const std::string in_parts = With(a, pull, halves);
+  EXPECT_EQ(Broken(a, in_parts), "retractions");
+  EXPECT_EQ(Broken(a, With(a, push, "G1 X0 Y5 F9000\nG1 E.5 F2100\nG1 E.5\n")), "retractions");
+  EXPECT_EQ(Broken(in_parts, in_parts), "");
+  EXPECT_EQ(Broken(in_parts, a), "");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
