@@ -68,6 +68,7 @@ void Observations::Append(const Observations& other) {
     if (own.line == 0) own.line = habit.line;
   }
   new_open_ways.insert(new_open_ways.end(), other.new_open_ways.begin(), other.new_open_ways.end());
+  detours.insert(detours.end(), other.detours.begin(), other.detours.end());
   long_ways.insert(long_ways.end(), other.long_ways.begin(), other.long_ways.end());
   farthest.insert(farthest.end(), other.farthest.begin(), other.farthest.end());
   script_signatures.insert(other.script_signatures.begin(), other.script_signatures.end());

@@ -212,6 +212,13 @@ struct OpenHabit {
   uint32_t line = 0;  // of the first one that retracts
 };
 
+// A bend of travel that leads around an outer wall.
+struct Detour {
+  uint32_t line = 0;
+  int64_t layer = -1;
+  float excess_mm = 0;
+};
+
 // Unretracted travel that the original does not have, and what its layer has of this kind.
 struct NewOpenWay {
   uint32_t kind = 0;
@@ -250,6 +257,7 @@ struct Observations {
   absl::flat_hash_map<uint32_t, OpenHabit> open_habits;  // by kind and length
   std::vector<NewOpenWay> new_open_ways;
   std::vector<LongWay> long_ways;
+  std::vector<Detour> detours;  // of the original one for each layer
   LiftLog lifts;
   std::vector<RetractionCycle> cycles;
   std::vector<WipeDeviation> wipes;

@@ -199,7 +199,7 @@ void Verifier::Compare(std::vector<Finding>& breaks) const {
   CompareProgress(progress_was_, progress_is_, breaks);
   CompareLifts(seen_was_, seen_is_, breaks);
   CompareHeights(seen_was_, seen_is_, breaks);
-  CompareBounds(seen_was_, seen_is_, breaks);
+  CompareBounds(seen_was_, seen_is_, context_, breaks);
   CompareWayLengths(seen_was_, seen_is_, breaks);
   CompareOpenHabits(seen_was_, seen_is_, context_, breaks);
   CompareRetractions(seen_was_, seen_is_, breaks);

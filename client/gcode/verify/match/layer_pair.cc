@@ -100,6 +100,8 @@ SlicerSettings ReadSettings(std::string_view text) {
   const std::string_view bottom = first_of("bottom_fill_pattern", "bottom_surface_pattern");
   settings.monotonic_top = top.empty() || Begins(top, "monotonic");
   settings.monotonic_bottom = Begins(bottom, "monotonic");
+  settings.leads_around_walls =
+      first_of("avoid_crossing_perimeters", "reduce_crossing_wall") == "1";
   settings.retract_before_mm =
       GreatestOf(first_of("retract_before_travel", "retraction_minimum_travel"));
   return settings;

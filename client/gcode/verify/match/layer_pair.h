@@ -18,6 +18,7 @@ namespace traverse::gcode {
 struct SlicerSettings {
   bool monotonic_top = true;
   bool monotonic_bottom = false;
+  bool leads_around_walls = false;  // leads travel around walls
   double retract_before_mm = 0;  // longer travel retracts; the greatest of all tools; 0: not stated
 };
 

@@ -85,12 +85,32 @@ void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped, double d
     if (layer.IsKnown(*last) || layer.IsKnown(move)) continue;
     if (done <= departure_mm || SinksBetween(is, link, *last, move)) continue;
     const double excess = ExcessOf(*last, move);
-    if (excess <= kLeastExcessMm || LeadsAroundAWall(layer, *last, move)) continue;
+    if (excess <= kLeastExcessMm) continue;
+    if (LeadsAroundAWall(layer, *last, move)) {
+      findings.is.detours.push_back({last->line, layer.index(), static_cast<float>(excess)});
+      continue;
+    }
     findings.breaks.push_back(
         {VerifyRule::kBounds, layer.OriginalLine(link), last->line, layer.index(),
          absl::StrFormat(
              "travel is %.2f mm longer because of a bend that leads around no outer wall",
              excess)});
+  }
+}
+
+// Travel of the original's layer that bends around an outer wall: one is enough.
+void ObserveDetour(const LayerPair& layer, Observations& seen) {
+  const TraceChunk& was = layer.was();
+  const uint32_t first = was.links[layer.first_path_was()].first_move;
+  const uint32_t end = was.links[layer.end_path_was()].first_move;
+  for (uint32_t m = first + 1; m < end; ++m) {
+    const TraceMove& before = was.moves[m - 1];
+    const TraceMove& move = was.moves[m];
+    if (!before.sideways() || !move.sideways() || !before.in_print) continue;
+    const double excess = ExcessOf(before, move);
+    if (excess <= kLeastExcessMm || !LeadsAroundAWall(layer, before, move)) continue;
+    seen.detours.push_back({before.line, layer.index(), static_cast<float>(excess)});
+    return;
   }
 }
 
@@ -141,7 +161,15 @@ void ObserveFarMoves(const LayerPair& layer, LayerFindings& findings) {
   }
 }
 
-void CompareBounds(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
+void CompareBounds(const Observations& was, const Observations& is, const RuleContext& context,
+                   std::vector<Finding>& breaks) {
+  for (const Detour& detour : is.detours) {
+    if (!was.detours.empty() || context.settings.leads_around_walls) break;
+    breaks.push_back({VerifyRule::kBounds, 0, detour.line, detour.layer,
+                      absl::StrFormat("travel is %.2f mm longer because of a bend around an outer "
+                                      "wall; the original leads no travel around walls",
+                                      detour.excess_mm)});
+  }
   for (const FarPoint& far : is.farthest) {
     const Point p = far.at;
     const double off = std::max(
@@ -154,6 +182,7 @@ void CompareBounds(const Observations& was, const Observations& is, std::vector<
 }
 
 void CheckBends(const LayerPair& layer, LayerFindings& findings) {
+  ObserveDetour(layer, findings.was);
   const Tails tails(layer, false);
   // Moves along a path may be as fast as travel, if no longer than such in the original.
   const Tails along(layer, false, true);
@@ -161,11 +190,12 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
   const double departure_mm = HasDepartures(layer) ? kDepartureMm : 0;
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
     // Travel to the layer leaves a path of another one.
-    const bool leaves_other = link == layer.first_path_is() && layer.index() > 0;
+    const bool first = link == layer.first_path_is();
+    const double of_first_mm = layer.index() > 0 ? kDepartureMm : 0;
     const uint32_t moves = along.At(link);
     const bool is_known = LengthOf(layer.is(), link, moves) <= longest + kLeastExcessMm;
     CheckLink(layer, link, std::max(tails.At(link), is_known ? moves : 0), 
-              leaves_other ? kDepartureMm : departure_mm, findings);
+              first ? of_first_mm : departure_mm, findings);
   }
 }
 

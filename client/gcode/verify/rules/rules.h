@@ -63,7 +63,8 @@ void CompareProgress(const std::vector<Progress>& was, const std::vector<Progres
                      std::vector<Finding>& breaks);
 void CompareLifts(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void CompareHeights(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
-void CompareBounds(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
+void CompareBounds(const Observations& was, const Observations& is, const RuleContext& context,
+                   std::vector<Finding>& breaks);
 void CompareWayLengths(const Observations& was, const Observations& is,
                        std::vector<Finding>& breaks);
 void CompareOpenHabits(const Observations& was, const Observations& is, const RuleContext& context,

@@ -28,19 +28,30 @@ TEST(VerifyBounds, NoWayBendsThoughOthersDo) {
   EXPECT_EQ(Broken(kHead + around + bent, kHead + around + bent, Policy::kFree), "");
 }
 
-// A hole in the way.
-TEST(VerifyBounds, WaysMayBendAroundAWall) {
+// A hole in the way, and a slicer that leads travel around walls: by its settings, or as one sees.
+TEST(VerifyBounds, WaysMayBendAroundAWallWhereTheFileDoes) {
   const std::string hole = kSquare + Line("Internal infill", "X5 Y10.6", "X8 Y10.6");
   const std::string straight = "G1 X24 Y10.6 F9000\n";
   const std::string behind =
       Way("X24 Y10.6") + ";TYPE:Internal infill\nG1 F1800\nG1 X28 Y10.6 E.3\n";
-  const std::string a = kHead + hole + behind;
+  const std::string plain = kHead + hole + behind;
+  const std::string a = plain + "; avoid_crossing_perimeters = 1\n";
   const auto bent = [&](const std::string& bends) {
     return Broken(a, With(a, straight, bends + straight), Policy::kFree);
   };
   EXPECT_EQ(bent("G1 X9.6 Y9.6 F9000\nG1 X20.4 Y9.6\n"), "");
   EXPECT_EQ(bent("G1 X9.6 Y9.6 F9000\n"), "bounds");
   EXPECT_EQ(bent("G1 X9.6 Y9.6 F9000\nG1 X20.4 Y9.6\nG1 X25 Y10.6\n"), "bounds");
+  const std::string around = "G1 X9.6 Y9.6 F9000\nG1 X20.4 Y9.6\n" + straight;
+  EXPECT_EQ(Broken(plain, With(plain, straight, around), Policy::kFree), "bounds");
+  // One that leads the other way, in another layer.
+  const std::string back = With(Line("Internal infill", "X5 Y10.6", "X4 Y10.6"),
+                                "G1 X5 Y10.6 F9000\n",
+                                "G1 X20.4 Y9.6 F9000\nG1 X9.6 Y9.6\nG1 X5 Y10.6\n");
+  const std::string own =
+      plain + kNextLayer + kSquare + Line("Internal infill", "X24 Y10.6", "X28 Y10.6") + back;
+  EXPECT_EQ(Broken(own, own), "");
+  EXPECT_EQ(Broken(own, With(own, straight, around), Policy::kFree), "");
 }
 
 // Along the wall, with an open nozzle, to one that lies beside it.
@@ -116,6 +127,9 @@ TEST(VerifyBounds, TheFirstTravelOfAllGoesStraight) {
   EXPECT_EQ(Broken(a, a), "");
   EXPECT_EQ(Broken(a, With(a, way, "G1 X0 F9000\nG1 Y0\n")), "bounds");
   EXPECT_EQ(Broken(a, With(a, way, "G1 Y0 F9000\nG1 X0\n")), "bounds");
+  // Though other travel leaves its path by a short move.
+  const std::string departs = With(a, "G1 X0 Y5 F9000\n", "G1 X9 Y.7 F9000\nG1 X0 Y5\n");
+  EXPECT_EQ(Broken(departs, With(departs, way, "G1 X0 F9000\nG1 Y0\n")), "bounds");
 }
 
 }  // namespace
