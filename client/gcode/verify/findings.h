@@ -94,6 +94,7 @@ struct Descent {
 struct RepeatedLift {
   bool level = false;  // both paths have the same height
   uint32_t times = 0;
+  uint32_t dips = 0;  // how often it rises again behind a descent, if the paths have one height
   uint32_t line = 0;
   int64_t layer = -1;
 };

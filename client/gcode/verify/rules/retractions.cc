@@ -65,6 +65,7 @@ class CycleReader {
       RetractionCycle& cycle = cycles_[i];
       cycle.early = cycle.in_parts = cycle.idle = cycle.pulled_high = cycle.pushed_high = false;
       cycle.late_mm = 0;
+      cycle.pulls = cycle.pushes = 0;
     }
   }
 

@@ -52,10 +52,17 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
   LowestWay lowest{0, 0, layer.index(), RiseOf(from, to)};
   LowestWay deepest = lowest;
   Descent descent{0, 0, layer.index(), lowest.rise};
-  RepeatedLift lifts{lowest.rise == WayRise::kLevel, 0, 0, layer.index()};
+  RepeatedLift lifts{lowest.rise == WayRise::kLevel, 0, 0, 0, layer.index()};
+  bool sinks = false;
   for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (move.kind == MoveKind::kUp && move.z_to_mm > move.z_from_mm && ++lifts.times > 1) {
+      lifts.line = move.line;
+    }
+    sinks |= move.z_to_mm < move.z_from_mm - kSlackMm;
+    if (lifts.level && sinks && move.z_to_mm > move.z_from_mm + kSlackMm) {
+      sinks = false;
+      ++lifts.dips;
       lifts.line = move.line;
     }
     if (only_new && layer.IsKnown(move)) continue;
@@ -110,12 +117,20 @@ void CompareMoves(const Observations& was, const Observations& is, std::vector<F
                                       -move.above_mm, -deepest.above_mm)});
   }
   std::array<RepeatedLift, 2> most;
+  RepeatedLift dipping;
   for (const RepeatedLift& lifts : was.lifts_of_links) {
     if (lifts.times > most[lifts.level].times) most[lifts.level] = lifts;
+    if (lifts.dips > dipping.dips) dipping = lifts;
   }
   for (const RepeatedLift& lifts : is.lifts_of_links) {
     const RepeatedLift& usual = most[lifts.level];
     const uint32_t times = std::max(usual.times, 1u);
+    if (lifts.dips > dipping.dips) {
+      breaks.push_back({VerifyRule::kLifts, dipping.line, lifts.line, lifts.layer,
+                        "the head descends and rises again between two paths, unlike in the "
+                        "original"});
+      continue;
+    }
     if (lifts.times <= times) continue;
     breaks.push_back({VerifyRule::kLifts, usual.line, lifts.line, lifts.layer,
                       absl::StrFormat("the head rises %d times between two paths; in the original "

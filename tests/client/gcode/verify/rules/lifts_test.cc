@@ -187,6 +187,20 @@ TEST(VerifyLifts, AreDoneOnce) {
   EXPECT_EQ(Broken(kHead + twice, kHead + twice), "");
 }
 
+// On a slope no move rises alone, so that one which does is the first of its kind.
+TEST(VerifyLifts, AreNotDoneAgainBehindADescent) {
+  const auto line = [](const char* from, const char* to, const char* again) {
+    return absl::StrCat("G1 E-1 F2100\nG1 ", from, " Z.6 F9000\nG1 Z.2\n", again, "G1 E1 F2100\n",
+                        ";TYPE:Internal infill\nG1 F1800\nG1 ", to, " E.3\n");
+  };
+  const auto two = [&](const char* again) {
+    return kHead + kOne + line("X0 Y20", "X9 Y20", "") + line("X0 Y40", "X9 Y40", again);
+  };
+  const char* again = "G1 Z.6 F9000\nG1 Z.2\n";
+  EXPECT_EQ(Broken(two(""), two(again)), "lifts");
+  EXPECT_EQ(Broken(two(again), two(again)), "");
+}
+
 // A line of infill at `x`, to which a spiral leads around a center beside where it begins.
 std::string SpiralLine(const std::string& x, const std::string& spiral) {
   return absl::StrCat("G1 E-1 F2100\nG17\n", spiral, " F9000\nG1 X", x,

@@ -145,6 +145,9 @@ TEST(VerifyRetractions, AreNotDoneInMoreParts) {
   EXPECT_EQ(Broken(a, With(a, push, "G1 X0 Y5 F9000\nG1 E.5 F2100\nG1 E.5\n")), "retractions");
   EXPECT_EQ(Broken(in_parts, in_parts), "");
   EXPECT_EQ(Broken(in_parts, a), "");
+  // Scripts tell nothing of other travel.
+  const std::string script = "M971\nG1 E-.5 F2100\nG1 E-.5\nG1 E1\n";
+  EXPECT_THAT(Broken(a + script + kTwo, in_parts + script + kTwo), HasSubstr("retractions"));
 }
 
 }  // namespace
