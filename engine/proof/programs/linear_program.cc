@@ -9,6 +9,7 @@
 #include <coin/CoinError.hpp>
 #include <cstddef>
 #include <cstring>
+#include <utility>
 
 namespace traverse {
 namespace {
@@ -100,7 +101,7 @@ class LinearProgram::Impl {
     return sum;
   }
 
-  bool ContradictsWith(const double* ray, double sign) const {
+  std::optional<Contradiction> ContradictionOf(const double* ray, double sign) const {
     std::vector<double> multipliers(static_cast<size_t>(simplex_.numberRows()));
     for (size_t i = 0; i < multipliers.size(); ++i) multipliers[i] = sign * ray[i];
     const double needed = Clip(multipliers);
@@ -112,7 +113,9 @@ class LinearProgram::Impl {
       most += term;
       scale += std::abs(term);
     }
-    return most < needed - 1e-7 * std::max(1.0, scale);
+    const double margin = needed - 1e-7 * std::max(1.0, scale) - most;
+    if (margin <= 0) return std::nullopt;
+    return Contradiction{std::move(multipliers), margin};
   }
 
   static constexpr double kHuge = 1e29;
@@ -216,10 +219,11 @@ double LinearProgram::SafeBound() const {
   return bound;
 }
 
-bool LinearProgram::IsSurelyInfeasible() const {
+std::optional<LinearProgram::Contradiction> LinearProgram::FindContradiction() const {
   const std::unique_ptr<double[]> ray(impl_->simplex_.infeasibilityRay());
-  if (ray == nullptr) return false;
-  return impl_->ContradictsWith(ray.get(), 1) || impl_->ContradictsWith(ray.get(), -1);
+  if (ray == nullptr) return std::nullopt;
+  std::optional<Contradiction> found = impl_->ContradictionOf(ray.get(), 1);
+  return found ? std::move(found) : impl_->ContradictionOf(ray.get(), -1);
 }
 
 std::vector<unsigned char> LinearProgram::Basis() const {

@@ -6,6 +6,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/base/budget.h"
@@ -94,8 +95,16 @@ class LinearProgram {
   // a relative 1e-12. REQUIRES: all columns are bounded.
   double SafeBound() const;
 
-  // Whether the last solution's ray proves, in the same way, that there is no feasible point.
-  bool IsSurelyInfeasible() const;
+  // Multipliers of rows that show, in the same way, that there is no feasible point: with them the
+  // rows ask for more than the columns can give, by `margin` beyond what rounding may hide.
+  struct Contradiction {
+    std::vector<double> multipliers;
+    double margin = 0;
+  };
+
+  // From the last solution's ray. Unset if that proves nothing.
+  std::optional<Contradiction> FindContradiction() const;
+  bool IsSurelyInfeasible() const { return FindContradiction().has_value(); }
 
   // The basis, usable for the same rows and columns.
   std::vector<unsigned char> Basis() const;

@@ -14,7 +14,6 @@ namespace {
 
 constexpr size_t kFirstNeighbors = 4;  // moves of a port that the first programme has
 constexpr int kMovesPerPricing = 500;
-constexpr int kMostNewMoves = 20'000;  // before branching
 constexpr int kCutsPerRound = 100;
 constexpr double kViolation = 0.01;
 constexpr int kRoundsWithoutGain = 3;
@@ -65,12 +64,9 @@ class PathTspSolver::Search {
     relaxation_.AddMoves(moves);
     const double root = Root();
     if (!stopped_ && root < best_) {
-      if (CompleteMoves()) {
-        open_.push_back(Node{{}, root});
-        Explore();
-      } else {
-        stopped_ = true;
-      }
+      relaxation_.LeaveOutDear(Gap(), *budget_);
+      open_.push_back(Node{{}, root});
+      Explore();
     }
     double bound = std::min(best_, least_integral_);
     if (stopped_ && open_.empty()) bound = std::min(bound, root);
@@ -134,12 +130,6 @@ class PathTspSolver::Search {
   // What a better path may cost above the bound of the duals that there are, and a little more.
   double Gap() const { return best_ - bound_now_ + kRounding * std::max(1.0, std::abs(best_)); }
 
-  // False if there are too many moves to branch among, or a limit ended it.
-  bool CompleteMoves() {
-    relaxation_.LeaveOutDear(Gap(), *budget_);
-    return !budget_->was_exhausted() && relaxation_.Complete(kMostNewMoves);
-  }
-
   // The bound of the relaxation without branching.
   double Root() {
     double bound = 0;
@@ -147,13 +137,9 @@ class PathTspSolver::Search {
     double gap = kWidestGap * best_;  // when moves were left out
     int without_gain = 0;
     while (true) {
-      Status status = SolveAndPrice();
-      if (status == Status::kInfeasible && relaxation_.Complete(kMostNewMoves)) {
-        status = SolveSurely();
-        if (status == Status::kInfeasible && lp().IsSurelyInfeasible()) return best_;
-        if (status == Status::kOptimal) status = SolveAndPrice();
-      }
-      stopped_ = status != Status::kOptimal || budget_->was_exhausted();
+      const Status status = SolveAndPrice(LinearProgram::kNoLimit);
+      if (status == Status::kInfeasible) return best_;
+      stopped_ = status != Status::kOptimal;
       if (stopped_) return bound;
       bound = std::max(bound, bound_now_);
       if (bound >= best_) return bound;
@@ -171,24 +157,35 @@ class PathTspSolver::Search {
   }
 
   // Tries again without the basis unless there is an optimum, or surely no point.
-  Status SolveSurely(int most_iterations = LinearProgram::kNoLimit) {
+  Status SolveSurely(int most_iterations) {
     const Status status = lp().SolveDual(*budget_, most_iterations);
     if (status == Status::kOptimal) return status;
     if (status == Status::kInfeasible && lp().IsSurelyInfeasible()) return status;
     return lp().SolveAfresh(*budget_, most_iterations);
   }
 
-  // Brings in all the moves that the relaxation wants.
-  Status SolveAndPrice() {
-    double missing = 0;
-    Status status = SolveSurely();
-    while (status == Status::kOptimal &&
-           relaxation_.Price(kMovesPerPricing, missing, *budget_) > 0) {
+  // Solves with all the moves that the relaxation wants, or until its bound is high enough. What it
+  // says, and bound_now_, hold for all moves that are not excluded.
+  Status SolveAndPrice(int most_iterations) {
+    Status status = SolveSurely(most_iterations);
+    while (true) {
+      if (status == Status::kInfeasible) {
+        const int added = relaxation_.PriceInfeasible(kMovesPerPricing, *budget_);
+        if (added < 0 || budget_->was_exhausted()) return Status::kStopped;
+        if (added == 0) return Status::kInfeasible;
+        status = SolveSurely(most_iterations);
+        continue;
+      }
+      if (status != Status::kOptimal) return status;
+      double missing = 0;
+      const double bound = lp().SafeBound();
+      const int added = relaxation_.Price(kMovesPerPricing, missing, *budget_);
+      if (budget_->was_exhausted()) return Status::kStopped;
+      bound_now_ = bound + missing;
+      if (added == 0 || bound_now_ >= best_) return Status::kOptimal;
       status = lp().SolvePrimal(*budget_);
-      if (status != Status::kOptimal) status = lp().SolveAfresh(*budget_);
+      if (status != Status::kOptimal) status = lp().SolveAfresh(*budget_, most_iterations);
     }
-    if (status == Status::kOptimal) bound_now_ = lp().SafeBound() + missing;
-    return status;
   }
 
   // True if the last solution is a path: the best one there is within its node.
@@ -256,14 +253,14 @@ class PathTspSolver::Search {
   bool Process(Node& node) {
     int without_gain = 0;
     while (true) {
-      const Status status = SolveSurely(most_iterations_);
-      if (status == Status::kInfeasible && lp().IsSurelyInfeasible()) return true;
+      const Status status = SolveAndPrice(most_iterations_);
+      if (status == Status::kInfeasible) return true;
       if (status != Status::kOptimal) {
         stopped_ = budget_->ExhaustedNow();
         if (!stopped_) failed_.push_back(node);
         return true;
       }
-      const double bound = lp().SafeBound();
+      const double bound = bound_now_;
       without_gain = bound > node.bound + kGain * (best_ - bound) ? 0 : without_gain + 1;
       node.bound = std::max(node.bound, bound);
       if (node.bound >= best_) return true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "engine/proof/min_plus.h"
@@ -88,17 +89,23 @@ void TspRelaxation::AddMoves(const std::vector<Move>& moves) {
   lp_.AddColumns(columns);
 }
 
+std::vector<double> TspRelaxation::Duals() const {
+  std::vector<double> duals;
+  for (int row = 0; row < lp_.row_count(); ++row) duals.push_back(lp_.Dual(row));
+  return duals;
+}
+
 // Calls visit(move, reduced cost) for the moves, in the programme or not, whose reduced cost is at
 // most `most`. A cut's multiplier goes to the nodes on its side, so that what is left for pairs of
 // nodes only adds to the reduced cost: most pairs need one comparison.
-template <typename Visit>
-void TspRelaxation::ForEachCheapMove(double most, Budget& budget, const Visit& visit) const {
+template <typename Cost, typename Visit>
+void TspRelaxation::ForEachCheapMove(const std::vector<double>& duals, const Cost& cost,
+                                     double most, Budget& budget, const Visit& visit) const {
   const int n = nodes_.count();
-  std::vector<double> potential(static_cast<size_t>(n));
-  for (int v = 0; v < n; ++v) potential[static_cast<size_t>(v)] = lp_.Dual(v);
+  std::vector<double> potential(duals.begin(), duals.begin() + n);
   std::vector<std::pair<const TspCut*, double>> active;  // with what both ends inside cost
   for (const RowOfCut& it : cuts_) {
-    const double dual = lp_.Dual(it.row);
+    const double dual = duals[static_cast<size_t>(it.row)];
     if (!it.cut.is_blossom) {
       if (dual < 0) active.emplace_back(&it.cut, -dual);
     } else if (dual > 0) {
@@ -116,7 +123,7 @@ void TspRelaxation::ForEachCheapMove(double most, Budget& budget, const Visit& v
       const Move move{a, b};
       if (is_dear_[Key(move)] != 0) continue;
       double reduced =
-          MoveCost(move) - potential[static_cast<size_t>(a)] - potential[static_cast<size_t>(b)];
+          cost(move) - potential[static_cast<size_t>(a)] - potential[static_cast<size_t>(b)];
       for (size_t k = 0; k < active.size() && reduced <= most; ++k) {
         const CutSide& side = active[k].first->side;
         if (side[static_cast<size_t>(a)] != 0 && side[static_cast<size_t>(b)] != 0) {
@@ -128,28 +135,51 @@ void TspRelaxation::ForEachCheapMove(double most, Budget& budget, const Visit& v
   }
 }
 
+void TspRelaxation::AddLowest(std::vector<std::pair<double, Move>>& reduced, int most) {
+  std::sort(reduced.begin(), reduced.end(),
+            [](const auto& x, const auto& y) { return x.first < y.first; });
+  if (reduced.size() > static_cast<size_t>(most)) reduced.resize(static_cast<size_t>(most));
+  std::vector<Move> moves;
+  for (const auto& [cost, move] : reduced) moves.push_back(move);
+  AddMoves(moves);
+}
+
 int TspRelaxation::Price(int most, double& missing, Budget& budget) {
   std::vector<std::pair<double, Move>> negative;
   missing = 0;
-  ForEachCheapMove(0, budget, [&](const Move& move, double reduced) {
+  const auto cost = [this](const Move& move) { return MoveCost(move); };
+  ForEachCheapMove(Duals(), cost, 0, budget, [&](const Move& move, double reduced) {
     if (Has(move)) return;
     missing += reduced;
     if (reduced < -kPriceTolerance) negative.emplace_back(reduced, move);
   });
-  std::sort(negative.begin(), negative.end(),
-            [](const auto& x, const auto& y) { return x.first < y.first; });
-  const int count = std::min(most, static_cast<int>(negative.size()));
-  std::vector<Move> moves;
-  for (int i = 0; i < count; ++i) moves.push_back(negative[static_cast<size_t>(i)].second);
-  AddMoves(moves);
-  return count;
+  AddLowest(negative, most);
+  return static_cast<int>(negative.size());
+}
+
+int TspRelaxation::PriceInfeasible(int most, Budget& budget) {
+  const std::optional<LinearProgram::Contradiction> proof = lp_.FindContradiction();
+  if (!proof) return -1;
+  std::vector<std::pair<double, Move>> helpful;
+  double help = 0;  // what the rows get of all moves outside
+  const auto no_cost = [](const Move&) { return 0.0; };
+  ForEachCheapMove(proof->multipliers, no_cost, 0, budget, [&](const Move& move, double reduced) {
+    if (Has(move) || reduced == 0) return;
+    help -= reduced;
+    helpful.emplace_back(reduced, move);
+  });
+  if (help < proof->margin) return 0;
+  AddLowest(helpful, most);
+  return static_cast<int>(helpful.size());
 }
 
 void TspRelaxation::LeaveOutDear(double gap, Budget& budget) {
   // The reduced cost of a move of some blossom's F is higher than what is computed here, so it may
   // stay in for nothing; none is out that should not be.
   std::vector<char> is_dear(has_.size(), 1);
-  ForEachCheapMove(gap, budget, [&](const Move& move, double) { is_dear[Key(move)] = 0; });
+  const auto cost = [this](const Move& move) { return MoveCost(move); };
+  ForEachCheapMove(Duals(), cost, gap, budget,
+                   [&](const Move& move, double) { is_dear[Key(move)] = 0; });
   if (budget.was_exhausted()) return;
   is_dear_ = std::move(is_dear);
   for (size_t p = 0; p < port_column_.size(); ++p) {
@@ -169,19 +199,6 @@ void TspRelaxation::LeaveOutDear(double gap, Budget& budget) {
   }
   moves_ = std::move(kept);
   lp_.DeleteColumns(columns);
-}
-
-bool TspRelaxation::Complete(int most) {
-  std::vector<Move> added;
-  for (int a = 0; a < nodes_.count(); ++a) {
-    for (int b = a + 1; b < nodes_.count(); ++b) {
-      const Move move{a, b};
-      if (nodes_.CanJoin(a, b) && IsAllowed(move) && !Has(move)) added.push_back(move);
-    }
-    if (added.size() > static_cast<size_t>(most)) return false;
-  }
-  AddMoves(added);
-  return true;
 }
 
 void TspRelaxation::AllowAll() {

@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_ENGINE_PROOF_TSP_TSP_RELAXATION_H_
 #define TRAVERSE_ENGINE_PROOF_TSP_TSP_RELAXATION_H_
 
+#include <utility>
 #include <vector>
 
 #include "engine/base/budget.h"
@@ -35,13 +36,14 @@ class TspRelaxation {
   // of moves outside the programme goes to `missing`. Returns how many were added.
   int Price(int most, double& missing, Budget& budget);
 
+  // The same for an infeasible programme: adds moves that may make it feasible, those first that do
+  // the most for that. Returns how many; 0 if it is infeasible with all moves that are not
+  // excluded; -1 if that is not sure.
+  int PriceInfeasible(int most, Budget& budget);
+
   // Excludes ports and moves whose reduced cost is above `gap`: no path that costs less than the
   // last bound plus `gap` uses them.
   void LeaveOutDear(double gap, Budget& budget);
-
-  // Adds all moves that are not excluded, so that none needs pricing any more. False, with nothing
-  // changed, if these are more than `most`.
-  bool Complete(int most);
 
   // Allows all ports and moves again.
   void AllowAll();
@@ -84,8 +86,11 @@ class TspRelaxation {
     return static_cast<size_t>(move.a) * static_cast<size_t>(nodes_.count()) +
            static_cast<size_t>(move.b);
   }
-  template <typename Visit>
-  void ForEachCheapMove(double most, Budget& budget, const Visit& visit) const;
+  std::vector<double> Duals() const;
+  void AddLowest(std::vector<std::pair<double, Move>>& reduced, int most);
+  template <typename Cost, typename Visit>
+  void ForEachCheapMove(const std::vector<double>& duals, const Cost& cost, double most,
+                        Budget& budget, const Visit& visit) const;
   TspSolution Solution() const;
   LinearProgram::Row RowOf(const TspCut& cut) const;
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -51,6 +52,11 @@ TEST(LinearProgram, ShowsThatThereIsNoPoint) {
 
   EXPECT_EQ(lp.SolveDual(budget), Status::kInfeasible);
   EXPECT_TRUE(lp.IsSurelyInfeasible());
+  // One column is missing: it is worth as much as its entry times the multiplier.
+  const auto contradiction = lp.FindContradiction();
+  ASSERT_TRUE(contradiction.has_value());
+  ASSERT_EQ(contradiction->multipliers.size(), 1u);
+  EXPECT_NEAR(contradiction->margin, std::abs(contradiction->multipliers[0]), 1e-5);
 }
 
 // Covering problems: whatever the number of iterations, the bound is below every feasible value.

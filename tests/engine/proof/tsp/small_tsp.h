@@ -10,6 +10,8 @@
 #include "engine/model/point.h"
 #include "engine/proof/min_plus.h"
 #include "engine/proof/tsp/path_tsp.h"
+#include "engine/proof/tsp/tsp_cuts.h"
+#include "engine/proof/tsp/tsp_nodes.h"
 
 namespace traverse {
 
@@ -55,6 +57,17 @@ inline double TspCostOf(const SmallTsp& instance, const std::vector<int>& path) 
     cost += instance.tsp.Cost(exit(path[i]), path[i + 1]);
   }
   return cost + instance.tsp.finish[static_cast<size_t>(exit(path.back()))];
+}
+
+// All moves of the nodes of a problem.
+inline std::vector<TspMove> AllMoves(const TspNodes& nodes) {
+  std::vector<TspMove> moves;
+  for (int a = 0; a < nodes.count(); ++a) {
+    for (int b = a + 1; b < nodes.count(); ++b) {
+      if (nodes.CanJoin(a, b)) moves.push_back({a, b});
+    }
+  }
+  return moves;
 }
 
 // The first port of each item, in the order given.

@@ -36,7 +36,7 @@ TEST(TspRelaxation, IsNeverAboveTheBestPathAndRisesWithCuts) {
     Budget budget;
     TspRelaxation relaxation(small.tsp);
     relaxation.SetStart(small.start, kForbidden);
-    ASSERT_TRUE(relaxation.Complete(1'000'000));
+    relaxation.AddMoves(AllMoves(relaxation.nodes()));
 
     const std::vector<double> values = SolveWithCuts(relaxation, budget);
 
@@ -63,7 +63,7 @@ TEST(TspRelaxation, PricingBringsInWhatIsMissing) {
     Budget budget;
     TspRelaxation whole(small.tsp);
     whole.SetStart(small.start, kForbidden);
-    ASSERT_TRUE(whole.Complete(1'000'000));
+    whole.AddMoves(AllMoves(whole.nodes()));
     ASSERT_EQ(whole.lp().SolveDual(budget), Status::kOptimal);
     double missing = 0;
     EXPECT_EQ(whole.Price(1000, missing, budget), 0);
@@ -91,6 +91,56 @@ TEST(TspRelaxation, PricingBringsInWhatIsMissing) {
   EXPECT_GT(priced, 10);
 }
 
+// Every fifth move, so that there may be no path.
+std::vector<TspMove> SomeMoves(const TspNodes& nodes) {
+  const std::vector<TspMove> all = AllMoves(nodes);
+  std::vector<TspMove> some;
+  for (size_t i = 0; i < all.size(); i += 5) some.push_back(all[i]);
+  return some;
+}
+
+// Brings moves in as long as there is no point and they may make one. Returns how often.
+int MakeFeasible(TspRelaxation& relaxation, Budget& budget, Status& status) {
+  int times = 0;
+  status = relaxation.lp().SolveDual(budget);
+  while (status == Status::kInfeasible) {
+    const int added = relaxation.PriceInfeasible(5, budget);
+    EXPECT_GE(added, 0);
+    if (added <= 0) break;
+    ++times;
+    status = relaxation.lp().SolveDual(budget);
+  }
+  return times;
+}
+
+TEST(TspRelaxation, PricingMakesItFeasibleIfItCanBe) {
+  int priced = 0;
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    const SmallTsp small = RandomTsp(seed, 6);
+    Budget budget;
+    Status status = Status::kStopped;
+    TspRelaxation can(small.tsp);
+    can.SetStart(small.start, kForbidden);
+    can.AddMoves(SomeMoves(can.nodes()));
+    priced += MakeFeasible(can, budget, status);
+    EXPECT_EQ(status, Status::kOptimal);
+
+    // No move may lead to the finish.
+    TspRelaxation cannot(small.tsp);
+    cannot.SetStart(small.start, kForbidden);
+    const int first = cannot.column_count();
+    for (int port = 0; port < cannot.nodes().start(); ++port) {
+      cannot.AddMoves({{port, cannot.nodes().finish()}});
+    }
+    for (int column = first; column < cannot.column_count(); ++column) cannot.Fix(column, false);
+    cannot.AddMoves(SomeMoves(cannot.nodes()));
+    MakeFeasible(cannot, budget, status);
+    EXPECT_EQ(status, Status::kInfeasible);
+  }
+  EXPECT_GT(priced, 10);
+}
+
 TEST(TspRelaxation, WhatIsLeftOutIsOfNoPathWithinTheGap) {
   for (uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
@@ -99,7 +149,7 @@ TEST(TspRelaxation, WhatIsLeftOutIsOfNoPathWithinTheGap) {
     Budget budget;
     TspRelaxation relaxation(small.tsp);
     relaxation.SetStart(small.start, kForbidden);
-    ASSERT_TRUE(relaxation.Complete(1'000'000));
+    relaxation.AddMoves(AllMoves(relaxation.nodes()));
     const double bound = SolveWithCuts(relaxation, budget).back();
 
     relaxation.LeaveOutDear(best - bound + kRounding * (1 + best), budget);
