@@ -1,6 +1,7 @@
 #include "engine/proof/tsp/tsp_cuts.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -146,6 +147,7 @@ class Separation {
     cut.side = side;
     cut.lower = -LinearProgram::kInfinity;
     cut.upper = chosen < 0 ? -1 : 0;
+    cut.least_visited = chosen;
     for (int item = 1; item < nodes_.item_count(); ++item) {
       const int first = nodes_.first(item);
       const int end = nodes_.first(item + 1);
@@ -187,7 +189,7 @@ class Separation {
         if (At(edge) < pairs.size()) cut.odd.push_back(pairs[At(edge)]);
       }
       for (int v = 0; v < nodes_.count(); ++v) side[At(v)] = side[At(nodes_.group(v))];
-      cut.is_blossom = true;
+      cut.crosses = true;
       cut.side = std::move(side);
       cut.lower = 1 - static_cast<double>(cut.odd.size());
       cut.upper = LinearProgram::kInfinity;
@@ -209,10 +211,20 @@ class Separation {
 double TspCut::Coefficient(const TspNodes& nodes, const TspMove& move) const {
   const bool a = side[At(move.a)] != 0;
   const bool b = side[At(move.b)] != 0;
-  if (!is_blossom) return a && b ? 1 : 0;
+  if (!crosses) return a && b ? 1 : 0;
   if (a == b) return 0;
   const std::pair<int, int> pair = std::minmax(nodes.group(move.a), nodes.group(move.b));
   return std::find(odd.begin(), odd.end(), pair) != odd.end() ? -1 : 1;
+}
+
+TspCut ByMovesOut(TspCut cut) {
+  assert(!cut.crosses);
+  cut.crosses = true;
+  cut.ports.clear();
+  if (cut.least_visited >= 0) cut.ports.emplace_back(cut.least_visited, -2);
+  cut.lower = cut.least_visited < 0 ? 2 : 0;
+  cut.upper = LinearProgram::kInfinity;
+  return cut;
 }
 
 std::vector<TspCut> ViolatedCuts(const TspNodes& nodes, const TspSolution& solution,

@@ -20,15 +20,21 @@ struct TspMove {
 
 // lower <= sum of x over moves, each with its coefficient, + sum over ports <= upper.
 struct TspCut {
-  bool is_blossom = false;
+  bool crosses = false;                       // counts moves out of `side`, else those within it
   CutSide side;                               // [node] S or H
   std::vector<std::pair<int, int>> odd;       // of a blossom, groups of F's moves: first < second
   std::vector<std::pair<int, double>> ports;  // with a choice, and their coefficients
   double lower = 0;
   double upper = 0;
+  int least_visited = -1;  // the p of a subtour, or -1 if S has all of an item
 
   double Coefficient(const TspNodes& nodes, const TspMove& move) const;
 };
+
+// The same subtour by the moves out of S, which are fewer if S is large:
+//   x(moves out of S) >= 2 or 2 y_p
+// Equal where the moves of each node add up. REQUIRES: `cut` is a subtour by the moves within S.
+TspCut ByMovesOut(TspCut cut);
 
 // The moves and ports whose values are not 0.
 struct TspSolution {

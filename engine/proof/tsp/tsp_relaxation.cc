@@ -106,7 +106,7 @@ void TspRelaxation::ForEachCheapMove(const std::vector<double>& duals, const Cos
   std::vector<std::pair<const TspCut*, double>> active;  // with what both ends inside cost
   for (const RowOfCut& it : cuts_) {
     const double dual = duals[static_cast<size_t>(it.row)];
-    if (!it.cut.is_blossom) {
+    if (!it.cut.crosses) {
       if (dual < 0) active.emplace_back(&it.cut, -dual);
     } else if (dual > 0) {
       active.emplace_back(&it.cut, 2 * dual);
@@ -225,6 +225,14 @@ int TspRelaxation::Separate(double violation, int most, Budget& budget) {
   int row = lp_.row_count();
   for (TspCut& cut : cuts) {
     rows.push_back(RowOf(cut));
+    if (!cut.crosses) {
+      TspCut other = ByMovesOut(cut);
+      LinearProgram::Row row_of_other = RowOf(other);
+      if (row_of_other.columns.indices.size() < rows.back().columns.indices.size()) {
+        cut = std::move(other);
+        rows.back() = std::move(row_of_other);
+      }
+    }
     cuts_.push_back({std::move(cut), row++});
   }
   lp_.AddRows(rows);

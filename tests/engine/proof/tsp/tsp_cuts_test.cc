@@ -97,7 +97,7 @@ TEST(ViolatedCuts, HoldForEveryPath) {
 
     for (const TspCut& cut : ViolatedCuts(nodes, solution, 0.01, 100, budget)) {
       ++found;
-      blossoms += cut.is_blossom ? 1 : 0;
+      blossoms += cut.crosses ? 1 : 0;
       for (int path = 0; path < 200; ++path) {
         const double value = Value(cut, nodes, RandomPath(nodes, rng));
         ASSERT_GE(value, cut.lower);
@@ -107,6 +107,32 @@ TEST(ViolatedCuts, HoldForEveryPath) {
   }
   EXPECT_GT(found, 500);
   EXPECT_GT(blossoms, 5);
+}
+
+// Where the moves of each node add up, as in mixes of paths, a subtour says the same by the moves
+// out of its side: what is missing there is twice what is too much within.
+TEST(ByMovesOut, SaysTheSame) {
+  int subtours = 0;
+  for (uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    Rng rng(seed);
+    const PathTsp problem = RandomItems(rng, rng.Between(4, 9));
+    const TspNodes nodes(problem);
+    TspSolution solution = RandomPath(nodes, rng);
+    for (auto& [move, x] : solution.moves) x = rng.Below(2) == 0 ? 1 : 0.5;
+    TspSolution mix;
+    for (int path = 0; path < 4; ++path) Add(RandomPath(nodes, rng), 0.25, mix);
+    Budget budget;
+
+    for (const TspCut& cut : ViolatedCuts(nodes, solution, 0.01, 100, budget)) {
+      if (cut.crosses) continue;
+      ++subtours;
+      const TspCut out = ByMovesOut(cut);
+      EXPECT_NEAR(Value(out, nodes, mix) - out.lower, 2 * (cut.upper - Value(cut, nodes, mix)),
+                  1e-9);
+    }
+  }
+  EXPECT_GT(subtours, 100);
 }
 
 TEST(ViolatedCuts, NeverForbidMixesOfPaths) {
