@@ -31,6 +31,7 @@ std::optional<Odd> FirstOdd(const Side& a, const Side& b, size_t index, bool dep
   std::optional<Odd> odd;
   for_each_line(a, [&](const VerifyLine& line) {
     if (!wanted(line) || odd || --known[line.digest] >= 0) return;
+    if (deposits && a.other_gaps.contains(line.digest)) return;
     if (!deposits && line.text.substr(0, kOptimisedMark.size()) == kOptimisedMark) return;
     odd = Odd{line.number, std::string(line.text)};
   });

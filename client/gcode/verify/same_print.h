@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "absl/container/flat_hash_set.h"
 #include "client/gcode/verify/report.h"
 #include "client/gcode/verify/sections.h"
 
@@ -17,6 +18,7 @@ struct Side {
   std::string_view text;
   const std::string& name;
   const Sections& cut;
+  const absl::flat_hash_set<uint64_t>& other_gaps;  // digests of deposits with a moved gap
 };
 
 // The first difference in the sections `first` to `end` - 1; unset if there is none. `whole`: the

@@ -115,6 +115,13 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
   return cut;
 }
 
+void SectionCutter::Count(uint32_t section, std::pair<uint64_t, uint64_t> printed, uint64_t as) {
+  DigestSet& deposits = cut_.sections[section].deposits;
+  deposits.Remove(printed.first);
+  deposits.Remove(printed.second);
+  deposits.Add(as);
+}
+
 void SectionCutter::Finish(const VerifyMachine& machine) {
   Close(machine, last_line_, kEndOfText, false);
 }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "client/gcode/verify/machine/verify_machine.h"
@@ -22,7 +23,12 @@ struct DigestSet {
   void Add(uint64_t digest) {
     ++count;
     sum += digest;
-    mixed += Mix(0x7261767472617665u, digest);
+    mixed += Mix(kSeed, digest);
+  }
+  void Remove(uint64_t digest) {
+    --count;
+    sum -= digest;
+    mixed -= Mix(kSeed, digest);
   }
   DigestSet& operator+=(const DigestSet& other) {
     count += other.count;
@@ -31,6 +37,9 @@ struct DigestSet {
     return *this;
   }
   friend bool operator==(const DigestSet&, const DigestSet&) = default;
+
+ private:
+  static constexpr uint64_t kSeed = 0x7261767472617665u;
 };
 
 struct Section {
@@ -92,6 +101,9 @@ class SectionCutter {
 
   // Those that have ended.
   const Sections& cut() const { return cut_; }
+
+  // Counts the deposits `printed` of a section that has ended as the one `as`.
+  void Count(uint32_t section, std::pair<uint64_t, uint64_t> printed, uint64_t as);
 
  private:
   void CutAtHeight(const VerifyMachine& machine);

@@ -5,10 +5,12 @@
 #include <utility>
 #include <vector>
 
+#include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/verify/line_numbers.h"
+#include "client/gcode/verify/match/moved_gaps.h"
 #include "client/gcode/verify/match/path_lines.h"
 #include "client/gcode/verify/rules/rules.h"
 #include "client/gcode/verify/same_print.h"
@@ -51,6 +53,7 @@ class Verifier {
 
  private:
   void ReadNext();
+  void TakeBackGaps();
   bool SamePrint();
   void CheckChunk();
   void CheckLayer(const LayerPair& layer, LayerFindings& findings) const;
@@ -73,6 +76,8 @@ class Verifier {
   TraceChunk next_was_;  // the one after chunk_was_
   TraceChunk chunk_was_;
   TraceChunk chunk_is_;
+  absl::flat_hash_set<uint64_t> gaps_was_;  // digests of deposits that a moved gap is about
+  absl::flat_hash_set<uint64_t> gaps_is_;
   bool more_ = true;       // next_was_ is not empty
   uint32_t sections_ = 0;  // that were compared
   Observations seen_was_;
@@ -100,9 +105,18 @@ void Verifier::ReadNext() {
   more_ = !last;
 }
 
+// Loops may take their gap along, so that some deposits differ; the rest is compared without them.
+void Verifier::TakeBackGaps() {
+  for (const MovedGap& gap : TakeBackMovedGaps(chunk_was_, chunk_is_, findings_)) {
+    is_.Count(gap.section, gap.printed, gap.as);
+    gaps_is_.insert({gap.printed.first, gap.printed.second});
+    gaps_was_.insert(gap.as);
+  }
+}
+
 bool Verifier::SamePrint() {
-  const Side was{original_, original_name_, was_.cut()};
-  const Side is{optimised_, optimised_name_, is_.cut()};
+  const Side was{original_, original_name_, was_.cut(), gaps_was_};
+  const Side is{optimised_, optimised_name_, is_.cut(), gaps_is_};
   std::optional<VerifyBreak> difference =
       FirstDifference(was, is, sections_, chunk_was_.end_section, !more_);
   if (!difference) CheckLabels(sections_, chunk_was_.end_section);
@@ -264,6 +278,7 @@ VerifyReport Verifier::Verify() {
   next_was_ = was_.NextBytes(ChunkBytes(original_.size()));
   while (more_) {
     ReadNext();
+    TakeBackGaps();
     if (!SamePrint()) return std::move(report_);
     CheckChunk();
   }

@@ -283,25 +283,29 @@ void VerifyMachine::Deposit(int number, const CommandWords& words, const std::ar
   std::array<Micro, 3> begin = from;
   std::array<Micro, 3> end = at_;
   // An arc by its center, or its radius, and the way round when gone from its smaller end.
-  bool clockwise = number == 2;
   if (begin > end && (number < 2 || IsCircular(words, from))) {
     std::swap(begin, end);
-    clockwise = number == 3;
+    if (number >= 2) number = 5 - number;
   }
   // Each value is mixed with its place, and the sum taken: no value waits for the one before it.
   uint64_t sum = 0;
   uint64_t place = 0;
   const auto add = [&sum, &place](uint64_t value) { sum += Mix(++place, value); };
-  add(number >= 2 ? (clockwise ? 2 : 3) : static_cast<uint64_t>(number));
-  for (size_t axis = 0; axis < 3; ++axis) {
-    add(static_cast<uint64_t>(begin[axis]));
-    add(static_cast<uint64_t>(end[axis]));
-  }
-  add(static_cast<uint64_t>(filament));
+  add(static_cast<uint64_t>(number));
+  add(static_cast<uint64_t>(begin[2]));
+  add(static_cast<uint64_t>(end[2]));
   add(static_cast<uint64_t>(feed_));
   add(tool_);
   add((retracted() ? 1u : 0u) + (inches_ ? 2u : 0u));
   add(settings_.Digest());
+  const size_t note = line.text.find(';');
+  add(note == std::string_view::npos ? 0 : DigestOf(TrimLine(line.text.substr(note + 1))));
+  line.conditions = sum;
+  for (size_t axis = 0; axis < 2; ++axis) {
+    add(static_cast<uint64_t>(begin[axis]));
+    add(static_cast<uint64_t>(end[axis]));
+  }
+  add(static_cast<uint64_t>(filament));
   if (number >= 2 && (words.Has('I') || words.Has('J'))) {
     add(static_cast<uint64_t>(from[0] + words.ValueOr('I', 0)));
     add(static_cast<uint64_t>(from[1] + words.ValueOr('J', 0)));
@@ -309,9 +313,6 @@ void VerifyMachine::Deposit(int number, const CommandWords& words, const std::ar
     add(static_cast<uint64_t>(words.ValueOr('R', 0)));
   }
   if (number >= 2) add(static_cast<uint64_t>(words.ValueOr('P', 0)));
-  if (const size_t note = line.text.find(';'); note != std::string_view::npos) {
-    add(DigestOf(TrimLine(line.text.substr(note + 1))));
-  }
   line.role = LineRole::kDeposit;
   line.digest = Mix(0, sum);
   line.z = at_[2];

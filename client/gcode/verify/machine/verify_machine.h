@@ -32,8 +32,9 @@ struct VerifyLine {
   size_t number = 0;  // from 1
   std::string_view text;
   LineRole role = LineRole::kNothing;
-  uint64_t digest = 0;   // kDeposit: of geometry, extrusion, speed and state; else of the text
-  Micro z = 0;           // kDeposit: where it ends
+  uint64_t digest = 0;      // kDeposit: of geometry, extrusion, speed and state; else of the text
+  uint64_t conditions = 0;  // kDeposit: the same without where and how much
+  Micro z = 0;              // kDeposit: where it ends
   Micro surplus = 0;     // filament pushed beyond what had been pulled back, by a move of its alone
   bool primes = false;   // such a move ended here
   bool travels = false;  // moves in XY without depositing
@@ -59,7 +60,7 @@ struct Motion {
   Micro center_x = 0;
   Micro center_y = 0;
   Micro radius = 0;  // of an arc without a center: its R word
-  Micro turns = 0;  // of an arc: its P word
+  Micro turns = 0;   // of an arc: its P word
 };
 
 class VerifyMachine {

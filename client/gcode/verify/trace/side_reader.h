@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "client/gcode/verify/sections.h"
 #include "client/gcode/verify/trace/trace.h"
@@ -35,6 +36,11 @@ class SideReader {
 
   // The sections read so far.
   const Sections& cut() const { return cutter_.cut(); }
+
+  // Counts the deposits `printed` of a section as the one `as`.
+  void Count(uint32_t section, std::pair<uint64_t, uint64_t> printed, uint64_t as) {
+    cutter_.Count(section, printed, as);
+  }
 
  private:
   template <typename Enough>

@@ -27,8 +27,10 @@ struct Point {
 };
 
 struct TraceSegment {
-  uint64_t digest = 0;  // of a deposit: VerifyLine
+  uint64_t digest = 0;      // of a deposit: VerifyLine
+  uint64_t conditions = 0;  // the same
   Point end;
+  double filament_mm = 0;
   uint32_t line = 0;
   int32_t arc = -1;  // index in TraceChunk::arcs
 };

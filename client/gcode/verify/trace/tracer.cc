@@ -234,6 +234,8 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
   printed_ |= wiping_;
   TraceSegment segment;
   segment.digest = line.digest;
+  segment.conditions = line.conditions;
+  segment.filament_mm = static_cast<double>(motion.filament) * unit;
   segment.end = {static_cast<double>(motion.to[0]) * unit,
                  static_cast<double>(motion.to[1]) * unit};
   segment.line = static_cast<uint32_t>(line.number);
@@ -250,7 +252,7 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
   path.end_segment = static_cast<uint32_t>(chunk_.segments.size());
   const auto length = static_cast<float>(LengthOf(motion) * unit / kMicro);
   path.length_mm += length;
-  path.filament_mm += static_cast<float>(static_cast<double>(motion.filament) * unit);
+  path.filament_mm += static_cast<float>(segment.filament_mm);
   path.feed = motion.feed;
   const PathClass path_class = ClassNow(line);
   path.overhangs |= path_class == PathClass::kOverhang;

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/client/gcode/verify/small_prints.h"
 
@@ -31,6 +33,78 @@ TEST(VerifyWholePaths, APathMayBeTurnedAndALoopBegunElsewhere) {
                                 ";TYPE:Perimeter\nG1 F1200\nG1 X20 Y20 E.4\nG1 X10 Y20 E.4\n"
                                 "G1 X10 Y10.06 E.4\nG1 X10 Y10\nG1 X20 Y10 E.4\n";
   EXPECT_EQ(Broken(kHead + gap, kHead + elsewhere), "");
+}
+
+// A square of inner wall that ends 0.1 mm short of its start, and the same begun at its second
+// corner with that gap before it.
+const std::string kClipped = Way("X10 Y10") +
+                             ";TYPE:Perimeter\nG1 F1200\nG1 X20 Y10 E.4\nG1 X20 Y20 E.4\n"
+                             "G1 X10 Y20 E.4\nG1 X10 Y10.1 E.396\n";
+const std::string kGapMoved = Way("X20 Y10") +
+                              ";TYPE:Perimeter\nG1 F1200\nG1 X20 Y20 E.4\nG1 X10 Y20 E.4\n"
+                              "G1 X10 Y10.1 E.396\nG1 X10 Y10 E.004\nG1 X19.9 Y10 E.396\n";
+
+std::string WithGap(const std::string& from, const std::string& to) {
+  return kHead + With(kGapMoved, from, to);
+}
+
+TEST(VerifyWholePaths, ALoopMayTakeItsGapAlong) {
+  const std::string next = Line("Internal infill", "X12 Y15", "X18 Y15");
+
+  EXPECT_EQ(Broken(kHead + kClipped + next, kHead + next + kGapMoved), "");
+  EXPECT_EQ(Broken(kHead + kClipped + kClipped, kHead + kGapMoved + kClipped), "");
+  // An outer one no more than it may begin elsewhere.
+  const std::string outer = With(kClipped, "Perimeter", "External perimeter");
+  const std::string moved = With(kGapMoved, "Perimeter", "External perimeter");
+  EXPECT_EQ(Broken(kHead + outer, kHead + moved), "seam");
+  EXPECT_EQ(Broken(kHead + outer, kHead + moved, Policy::kFree), "");
+}
+
+TEST(VerifyWholePaths, AMovedGapHasTheSameLengthAndFilament) {
+  const std::string a = kHead + kClipped;
+  for (const auto& [b, what] : std::vector<std::pair<std::string, std::string>>{
+           // More filament than before, and less.
+           {WithGap("E.004", "E.0042"), "0.00420 mm of filament close the gap of this loop, and "},
+           {WithGap("X19.9 Y10 E.396", "X19.9 Y10 E.394"), "and its end has 0.00600 mm less"},
+           // As much, but not on this length.
+           {With(WithGap("E.004", "E.006"), "X19.9 Y10 E.396", "X19.9 Y10 E.394"),
+            "where its other segments would have 0.00400 mm"},
+           {WithGap("X19.9", "X19.95"), "ends 0.050 mm from its start"},
+           {WithGap("X19.9", "X20"), "ends 0.000 mm from its start"},
+           {WithGap("X19.9 Y10 ", "X19.9 Y10.03 "), "0.030 mm beside its last segment"}}) {
+    EXPECT_EQ(Broken(a, b), "same_print");
+    EXPECT_THAT(FirstMessage(a, b), HasSubstr(what));
+  }
+}
+
+TEST(VerifyWholePaths, AMovedGapIsClosedInOneAndTheSameLoop) {
+  const std::string a = kHead + kClipped;
+  for (const std::string& b :
+       {// At another speed, under another name, by an arc, beside the gap, and not at all.
+        WithGap("G1 X10 Y10 E.004", "G1 X10 Y10 E.004 F1800"),
+        WithGap("G1 X10 Y10 E.004", ";TYPE:Internal infill\nG1 X10 Y10 E.004\n;TYPE:Perimeter"),
+        WithGap("G1 X10 Y10 E.004", "G2 X10 Y10 I0 J-.05 E.004"),
+        WithGap("G1 X10 Y10 E.004", "G1 X10.01 Y10 E.004"),
+        WithGap("G1 X10 Y10 E.004", "G1 X10 Y10"),
+        // Its end at another speed.
+        WithGap("G1 X19.9", "G1 F1300\nG1 X19.9"),
+        // A travel move on the way.
+        WithGap("G1 X10 Y10 E.004\n", "G1 X10 Y10 E.004\nG1 X11 Y10\nG1 X10 Y10\n"),
+        // Closed, and not opened.
+        kHead + With(kClipped, "Y10.1 E.396\n", "Y10.1 E.396\nG1 X10 Y10 E.004\n")}) {
+    EXPECT_EQ(Broken(a, b), "same_print") << b;
+  }
+  // A loop without a gap does not get one.
+  const std::string closed = With(kClipped, "Y10.1 E.396", "Y10 E.4");
+  const std::string opened = With(kGapMoved, "Y10.1 E.396\nG1 X10 Y10 E.004\n", "Y10 E.4\n");
+  EXPECT_EQ(Broken(kHead + closed, kHead + opened), "same_print");
+}
+
+TEST(VerifyWholePaths, TheDepositThatDiffersIsNotThatOfAMovedGap) {
+  const std::string infill = Line("Internal infill", "X12 Y15", "X18 Y15");
+  EXPECT_THAT(FirstMessage(kHead + kClipped + infill,
+                           kHead + kGapMoved + With(infill, "X18 Y15", "X17 Y15")),
+              HasSubstr("`G1 X17 Y15 E.3`"));
 }
 
 TEST(VerifyWholePaths, ASecondCutOfALoopIsNone) {

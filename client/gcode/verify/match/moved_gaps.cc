@@ -1,0 +1,218 @@
+#include "client/gcode/verify/match/moved_gaps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <tuple>
+
+#include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/plane.h"
+#include "client/gcode/verify/match/visits.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kSameSpotMm = 1e-5;
+
+// Most loops with an equal segment that are examined.
+constexpr int kMostEqual = 16;
+
+// Coordinates in thousandths, and filament in hundred-thousandths, are rounded by less.
+constexpr double kRoundedMm = 0.002;
+constexpr double kRoundedFilamentMm = 2e-5;
+constexpr double kRoundedFilamentShare = 0.02;
+
+// Both sides are sums of integers of 1e-6.
+constexpr double kSameFilamentMm = 1.5e-6;
+
+uint32_t DepositsOf(const TraceChunk& chunk, const TraceSection& section) {
+  return chunk.paths[section.end_path - 1].end_segment -
+         chunk.paths[section.first_path].first_segment;
+}
+
+// A loop of the original, and the path of the other file that prints it with its gap moved.
+struct MovedLoop {
+  uint32_t path = 0;
+  uint32_t entry = 0;  // the segment with which the other begins
+  uint32_t other = 0;
+};
+
+class SectionGaps {
+ public:
+  SectionGaps(const TraceChunk& original, const TraceSection& was, const TraceChunk& optimised)
+      : original_(original),
+        optimised_(optimised),
+        first_path_(was.first_path),
+        found_(was.end_path - was.first_path, false) {
+    for (uint32_t p = was.first_path; p < was.end_path; ++p) {
+      const TracePath& path = original.paths[p];
+      const bool gap = DistanceOf(path.start, original.EndOf(path)) > kSameSpotMm;
+      if (!gap || !IsClosed(original, p)) continue;
+      for (uint32_t s = path.first_segment + 1; s < path.end_segment; ++s) {
+        starts_.push_back({original.segments[s].digest, p, s - path.first_segment});
+      }
+    }
+    std::sort(starts_.begin(), starts_.end(), [](const Start& a, const Start& b) {
+      return std::tuple(a.digest, a.path, a.entry) < std::tuple(b.digest, b.path, b.entry);
+    });
+  }
+
+  // The loop that path `other` prints, if it is one that takes its gap along. Each is found once.
+  std::optional<MovedLoop> Find(uint32_t other) {
+    const uint64_t digest = optimised_.segments[optimised_.paths[other].first_segment].digest;
+    auto start = std::lower_bound(starts_.begin(), starts_.end(), digest,
+                                  [](const Start& a, uint64_t value) { return a.digest < value; });
+    int left = kMostEqual;
+    for (; start != starts_.end() && start->digest == digest && left > 0; ++start) {
+      const MovedLoop loop{start->path, start->entry, other};
+      if (found_[loop.path - first_path_]) continue;
+      --left;
+      if (!IsMoved(loop)) continue;
+      found_[loop.path - first_path_] = true;
+      return loop;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  struct Start {
+    uint64_t digest = 0;
+    uint32_t path = 0;
+    uint32_t entry = 0;
+  };
+
+  bool IsMoved(const MovedLoop& loop) const {
+    const TracePath& was = original_.paths[loop.path];
+    const TracePath& is = optimised_.paths[loop.other];
+    const uint32_t n = was.size();
+    if (is.joined || is.size() != n + 1) return false;
+    const uint32_t gap = n - loop.entry;  // the segment that closes it
+    const auto same_place = [](Point a, Point b) { return DistanceOf(a, b) <= kSameSpotMm; };
+    if (!same_place(is.start, original_.StartOf(was, was.first_segment + loop.entry))) return false;
+    for (uint32_t i = 0; i < n; ++i) {
+      if (i == gap) continue;
+      const uint32_t s = was.first_segment + (i < gap ? loop.entry + i : i - gap - 1);
+      if (original_.segments[s].digest != optimised_.segments[is.first_segment + i].digest) {
+        return false;
+      }
+    }
+    const uint32_t closing = is.first_segment + gap;
+    const uint32_t shorter = was.first_segment + loop.entry - 1;
+    return same_place(optimised_.StartOf(is, closing), original_.EndOf(was)) &&
+           same_place(optimised_.segments[closing].end, was.start) &&
+           same_place(optimised_.StartOf(is, is.end_segment - 1),
+                      original_.StartOf(was, shorter)) &&
+           Alike(was.end_segment - 1, closing) && Alike(shorter, is.end_segment - 1);
+  }
+
+  // Both are straight, and printed alike.
+  bool Alike(uint32_t was, uint32_t is) const {
+    return original_.segments[was].arc < 0 && optimised_.segments[is].arc < 0 &&
+           original_.segments[was].conditions == optimised_.segments[is].conditions;
+  }
+
+  const TraceChunk& original_;
+  const TraceChunk& optimised_;
+  const uint32_t first_path_;
+  std::vector<Start> starts_;  // by digest
+  std::vector<bool> found_;    // [path of the original - first_path_]
+};
+
+// What is wrong with the filament or the length of `loop`; empty if nothing is.
+std::string FaultOf(const TraceChunk& original, const TraceChunk& optimised,
+                    const MovedLoop& loop) {
+  const TracePath& was = original.paths[loop.path];
+  const TracePath& is = optimised.paths[loop.other];
+  const auto rate = [&](uint32_t segment) {
+    return original.segments[segment].filament_mm /
+           DistanceOf(original.StartOf(was, segment), original.segments[segment].end);
+  };
+  const uint32_t shorter = was.first_segment + loop.entry - 1;
+  const TraceSegment& whole = original.segments[shorter];
+  const TraceSegment& cut = optimised.segments[is.end_segment - 1];
+  const double gap = DistanceOf(original.EndOf(was), was.start);
+  const double left = DistanceOf(cut.end, whole.end);
+  const double off = DistanceToPiece(cut.end, original.StartOf(was, shorter), whole.end);
+  if (off > kRoundedMm || std::abs(left - gap) > kRoundedMm) {
+    return absl::StrFormat(
+        "this loop ends %.3f mm from its start, %.3f mm beside its last segment; in the original "
+        "it ends %.3f mm short of its start",
+        left, off, gap);
+  }
+  const double closing = optimised.segments[is.first_segment + was.size() - loop.entry].filament_mm;
+  const double saved = whole.filament_mm - cut.filament_mm;
+  if (std::abs(closing - saved) > kSameFilamentMm) {
+    return absl::StrFormat(
+        "%.5f mm of filament close the gap of this loop, and its end has %.5f mm less", closing,
+        saved);
+  }
+  for (const double due : {rate(was.end_segment - 1) * gap, rate(shorter) * gap}) {
+    if (std::abs(closing - due) <= kRoundedFilamentMm + kRoundedFilamentShare * due) continue;
+    return absl::StrFormat(
+        "%.5f mm of filament close the gap of this loop, where its other segments would have %.5f "
+        "mm on that length",
+        closing, due);
+  }
+  return "";
+}
+
+// Removes the segments `removed`, ascending; each is within a path, and the segment before it ends
+// where it did.
+void Remove(const std::vector<uint32_t>& removed, TraceChunk& chunk) {
+  for (const uint32_t segment : removed) {
+    chunk.segments[segment - 1].end = chunk.segments[segment].end;
+  }
+  const auto now = [&removed](uint32_t segment) {
+    const auto before = std::lower_bound(removed.begin(), removed.end(), segment);
+    return segment - static_cast<uint32_t>(before - removed.begin());
+  };
+  for (TracePath& path : chunk.paths) {
+    path.first_segment = now(path.first_segment);
+    path.end_segment = now(path.end_segment);
+  }
+  for (TraceCommand& command : chunk.commands) command.segment = now(command.segment);
+  size_t kept = 0;
+  auto next = removed.begin();
+  for (uint32_t s = 0; s < chunk.segments.size(); ++s) {
+    if (next != removed.end() && *next == s) {
+      ++next;
+    } else {
+      chunk.segments[kept++] = chunk.segments[s];
+    }
+  }
+  chunk.segments.resize(kept);
+}
+
+}  // namespace
+
+std::vector<MovedGap> TakeBackMovedGaps(const TraceChunk& original, TraceChunk& optimised,
+                                        std::vector<Finding>& findings) {
+  std::vector<MovedGap> gaps;
+  std::vector<uint32_t> removed;
+  const size_t sections = std::min(original.sections.size(), optimised.sections.size());
+  for (size_t i = 0; i < sections; ++i) {
+    const TraceSection& was = original.sections[i];
+    const TraceSection& is = optimised.sections[i];
+    if (was.index != is.index || DepositsOf(optimised, is) <= DepositsOf(original, was)) continue;
+    SectionGaps of_section(original, was, optimised);
+    for (uint32_t p = is.first_path; p < is.end_path; ++p) {
+      const std::optional<MovedLoop> loop = of_section.Find(p);
+      if (!loop) continue;
+      const TracePath& path = original.paths[loop->path];
+      TraceSegment& last = optimised.segments[optimised.paths[p].end_segment - 1];
+      if (std::string fault = FaultOf(original, optimised, *loop); !fault.empty()) {
+        findings.push_back(
+            {VerifyRule::kSamePrint, original.LineOf(path), last.line, -1, std::move(fault)});
+      }
+      removed.push_back(optimised.paths[p].first_segment + path.size() - loop->entry);
+      const uint64_t whole = original.segments[path.first_segment + loop->entry - 1].digest;
+      gaps.push_back({is.index, {optimised.segments[removed.back()].digest, last.digest}, whole});
+      last.digest = whole;
+    }
+  }
+  if (!removed.empty()) Remove(removed, optimised);
+  return gaps;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,38 @@
+// Loops that take their gap along.
+//
+// Slicers end loops a little short of their start. A loop that begins elsewhere may close that gap
+// and leave the same one before its new start:
+//
+//   original    0 1 2 3 .      . the gap, | a shorter segment
+//   the other   2 3 G 0 |      G what closes the gap
+//
+// The same filament is printed on the same length: as much per mm as the segment before the gap
+// has, and as much as the shorter segment has less.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_MOVED_GAPS_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_MOVED_GAPS_H_
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "client/gcode/verify/findings.h"
+#include "client/gcode/verify/trace/trace.h"
+
+namespace traverse::gcode {
+
+struct MovedGap {
+  uint32_t section = 0;                   // from the beginning of the file
+  std::pair<uint64_t, uint64_t> printed;  // digests: what closes the gap, the shorter segment
+  uint64_t as = 0;                        // that of the original's segment
+};
+
+// Finds these loops and takes their gaps back: in `optimised` nothing closes the gap afterwards,
+// and the shorter segment has the digest of the whole one. Adds a finding for each that does not
+// print the same filament on the same length: that is not the same print.
+std::vector<MovedGap> TakeBackMovedGaps(const TraceChunk& original, TraceChunk& optimised,
+                                        std::vector<Finding>& findings);
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_MOVED_GAPS_H_
