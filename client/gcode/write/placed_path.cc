@@ -8,6 +8,7 @@
 #include "client/gcode/model/arc.h"
 #include "client/gcode/model/outline.h"
 #include "client/gcode/write/positions.h"
+#include "client/gcode/write/seam_gap.h"
 
 namespace traverse::gcode {
 namespace {
@@ -98,8 +99,13 @@ void PlacedPath::PlaceReversed() {
 
 void PlacedPath::PlaceRotated() {
   std::vector<BodySegment>& segments = body_.segments;
+  // In inches, thousandths are too coarse for a gap; and a segment whose filament was rounded to
+  // nothing may be what stands beside it.
+  const bool exact = !file_->modes[block().mode].inches && (block().flags & kBlockZero) == 0;
+  if (exact) MoveGap(placement_.entry, segments);
   std::rotate(segments.begin(), segments.begin() + placement_.entry, segments.end());
-  first_ = last_ = segments.front().from;
+  first_ = segments.front().from;
+  last_ = segments.back().to;
 }
 
 PartStart PlacedPath::Behind() const {

@@ -28,8 +28,8 @@ using LayerOrder = std::vector<Placement>;
 
 // Reversed: the same segments from the last to the first, each with its own extrusion, feed rate
 // and state; arcs turn the other way; a wiping tail is made at the new end. From another start:
-// segments k to the last, then without extrusion the gap between end and start, if there is one,
-// then segments 0 to k - 1.
+// segments k to the last, then segments 0 to k - 1. If the loop ends short of its start, it does
+// so at the new start (seam_gap.h); where it cannot, the head crosses that gap without extrusion.
 class PlacedPath {
  public:
   PlacedPath(const GcodeFile& file, const Placement& placement);

@@ -1,0 +1,53 @@
+#include "client/gcode/write/seam_gap.h"
+
+#include <cassert>
+#include <cmath>
+
+#include "client/gcode/write/positions.h"
+
+namespace traverse::gcode {
+namespace {
+
+// Smaller ones come from rounding.
+constexpr double kLeastGapMm = 0.02;
+
+// Both segments print as wide a line, but for the rounding of their filament.
+constexpr double kSameRateShare = 0.01;
+
+// What is left of the segment that ends earlier, in gaps.
+constexpr double kLeastLeft = 1;
+
+// As slicers write filament.
+constexpr Decimal kFilamentStep = kDecimalOne / 100'000;
+
+// Filament per mm; 0 for arcs, and for what has no length.
+double RateOf(const BodySegment& segment) {
+  const double length = LengthXy(segment.from, segment.to);
+  return segment.command < 2 && length > 0 ? ToDouble(segment.filament) / length : 0;
+}
+
+}  // namespace
+
+bool MoveGap(uint32_t entry, std::vector<BodySegment>& segments) {
+  assert(entry > 0 && entry < segments.size());
+  BodySegment& end = segments[entry - 1];
+  BodySegment closing = segments.back();
+  closing.from = segments.back().to;
+  closing.to = segments.front().from;
+  const double gap = LengthXy(closing.from, closing.to);
+  const double length = LengthXy(end.from, end.to);
+  if (gap < kLeastGapMm || length < (1 + kLeastLeft) * gap) return false;
+  const double rate = RateOf(segments.back());
+  const double rate_at_end = RateOf(end);
+  if (!(rate > 0) || !(std::abs(rate - rate_at_end) <= kSameRateShare * rate)) return false;
+  const double steps = (rate + rate_at_end) / 2 * gap * static_cast<double>(kDecimalOne) /
+                       static_cast<double>(kFilamentStep);
+  closing.filament = std::llround(steps) * kFilamentStep;
+  if (closing.filament <= 0) return false;
+  end.filament -= closing.filament;
+  end.to = Along(end.from, end.to, length - gap);
+  segments.push_back(closing);
+  return true;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,22 @@
+// The gap that slicers leave between the end of a loop and its start, so that no blob forms there.
+
+#ifndef TRAVERSE_CLIENT_GCODE_WRITE_SEAM_GAP_H_
+#define TRAVERSE_CLIENT_GCODE_WRITE_SEAM_GAP_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "client/gcode/model/path_body.h"
+
+namespace traverse::gcode {
+
+// Moves the gap of a loop along to another start: appends a segment that closes it, and ends the
+// segment before the new start, `segments[entry - 1]`, as much earlier, with as much less filament.
+// False, and nothing changes, if there is hardly a gap, or if one of the segments beside the two
+// places is an arc, or is too short, or if they differ in filament per mm. `segments` are those of
+// a closed path in the file's order and in mm. REQUIRES: 0 < entry < segments.size().
+bool MoveGap(uint32_t entry, std::vector<BodySegment>& segments);
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_WRITE_SEAM_GAP_H_
