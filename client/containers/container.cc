@@ -59,7 +59,7 @@ ContainerKind DetectContainer(std::string_view bytes) {
 std::optional<ContainerKind> ContainerByExtension(std::string_view name) {
   std::string lower(name);
   absl::AsciiStrToLower(&lower);
-  for (const char* end : {".gcode", ".gco", ".g"}) {
+  for (const char* end : {".gcode", ".gco", ".g", ".nc"}) {
     if (lower.ends_with(end)) return ContainerKind::kText;
   }
   if (lower.ends_with(".bgcode") || lower.ends_with(".bgc")) return ContainerKind::kBgcode;

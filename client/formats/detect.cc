@@ -102,10 +102,7 @@ std::optional<InputFormat> DetectByExtension(const std::string& name) {
   if (path.extension() == ".gz" || path.extension() == ".xz") path = path.stem();
   const std::string extension = path.extension().string();
   if (extension == ".damat" || extension == ".txt") return InputFormat::kDamat;
-  if (extension == ".gcode" || extension == ".gco" || extension == ".g") return InputFormat::kGcode;
-  if (ContainerByExtension(path.string()).value_or(ContainerKind::kText) != ContainerKind::kText) {
-    return InputFormat::kGcode;
-  }
+  if (ContainerByExtension(path.string())) return InputFormat::kGcode;
   if (extension == ".json") return InputFormat::kJson;
   if (extension == ".pb") return InputFormat::kProto;
   if (extension == ".gtsp") return InputFormat::kGtsp;

@@ -16,6 +16,7 @@ TEST(DetectContainer, LooksAtTheFirstBytes) {
   EXPECT_EQ(ContainerByExtension("a/B.BGCODE"), ContainerKind::kBgcode);
   EXPECT_EQ(ContainerByExtension("part.gcode.3mf"), ContainerKind::kGcode3mf);
   EXPECT_EQ(ContainerByExtension("part.gcode"), ContainerKind::kText);
+  EXPECT_EQ(ContainerByExtension("part.nc"), ContainerKind::kText);
   EXPECT_EQ(ContainerByExtension("part.json"), std::nullopt);
 }
 

@@ -42,6 +42,8 @@ TEST(DetectByExtension, IgnoresCaseAndCompression) {
   EXPECT_THAT(DetectByExtension("a.gcode.xz"), Optional(InputFormat::kGcode));
   EXPECT_THAT(DetectByExtension("a.gco"), Optional(InputFormat::kGcode));
   EXPECT_THAT(DetectByExtension("a.g"), Optional(InputFormat::kGcode));
+  EXPECT_THAT(DetectByExtension("a.NC"), Optional(InputFormat::kGcode));
+  EXPECT_THAT(DetectByExtension("a.bgcode"), Optional(InputFormat::kGcode));
   EXPECT_THAT(DetectByExtension("a.json.gz"), Optional(InputFormat::kJson));
   EXPECT_THAT(DetectByExtension("a.pb"), Optional(InputFormat::kProto));
   EXPECT_THAT(DetectByExtension("a.GTSP.gz"), Optional(InputFormat::kGtsp));
