@@ -12,7 +12,7 @@
 #include "absl/strings/match.h"
 #include "client/containers/container.h"
 #include "client/containers/zip/archive.h"
-#include "client/containers/zip/md5.h"
+#include "client/files/md5.h"
 #include "tests/client/containers/zip_maker.h"
 #include "tests/fuzz/support/byte_changes.h"
 #include "tests/fuzz/support/check.h"
@@ -47,7 +47,7 @@ std::string FreshArchive(std::mt19937& random) {
   for (size_t plate = 1 + random() % 2; plate > 0 && !ufp; --plate) {
     const std::string name = "Metadata/plate_" + std::to_string(plate) + ".gcode";
     add(name, gcode);
-    if (random() % 2 == 0) add(name + ".md5", containers::Md5Hex(gcode) + "\n");
+    if (random() % 2 == 0) add(name + ".md5", Md5Hex(gcode) + "\n");
   }
   if (!ufp) {
     add("Metadata/slice_info.config",

@@ -9,8 +9,8 @@
 #include "absl/strings/str_format.h"
 #include "client/containers/limits.h"
 #include "client/containers/zip/archive.h"
-#include "client/containers/zip/md5.h"
 #include "client/containers/zip/slice_info.h"
+#include "client/files/md5.h"
 #include "client/files/read_file.h"
 #include "client/gcode/parallel.h"
 

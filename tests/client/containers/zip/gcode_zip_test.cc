@@ -8,8 +8,8 @@
 
 #include "client/containers/container.h"
 #include "client/containers/zip/archive.h"
-#include "client/containers/zip/md5.h"
 #include "client/containers/zip/slice_info.h"
+#include "client/files/md5.h"
 #include "tests/client/containers/zip/plates.h"
 #include "tests/client/containers/zip_maker.h"
 #include "tests/support/status_matchers.h"

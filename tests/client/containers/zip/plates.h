@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "client/containers/container.h"
-#include "client/containers/zip/md5.h"
+#include "client/files/md5.h"
 #include "tests/client/containers/zip_maker.h"
 
 namespace traverse::containers {

@@ -1,13 +1,13 @@
-// Digests of plates: client/containers/zip/md5.
+// Digests of plates: client/files/md5.
 
-#include "client/containers/zip/md5.h"
+#include "client/files/md5.h"
 
 #include <gtest/gtest.h>
 
 #include <optional>
 #include <string>
 
-namespace traverse::containers {
+namespace traverse {
 namespace {
 
 TEST(Md5, IsThatOfItsStandard) {
@@ -26,4 +26,4 @@ TEST(Md5, IsWrittenAsTheOneBefore) {
 }
 
 }  // namespace
-}  // namespace traverse::containers
+}  // namespace traverse

@@ -1,13 +1,13 @@
-// MD5 in the form in which files beside G-code state it, by OpenSSL.
+// MD5 in the form in which G-code and files beside it state it, by OpenSSL.
 
-#ifndef TRAVERSE_CLIENT_CONTAINERS_ZIP_MD5_H_
-#define TRAVERSE_CLIENT_CONTAINERS_ZIP_MD5_H_
+#ifndef TRAVERSE_CLIENT_FILES_MD5_H_
+#define TRAVERSE_CLIENT_FILES_MD5_H_
 
 #include <optional>
 #include <string>
 #include <string_view>
 
-namespace traverse::containers {
+namespace traverse {
 
 // 32 digits in capitals. Empty if the system's OpenSSL refuses MD5.
 std::string Md5Hex(std::string_view bytes);
@@ -19,6 +19,6 @@ std::optional<std::string> FindMd5(std::string_view stated);
 // REQUIRES: FindMd5(stated).
 std::string WithMd5(std::string_view stated, const std::string& digest);
 
-}  // namespace traverse::containers
+}  // namespace traverse
 
-#endif  // TRAVERSE_CLIENT_CONTAINERS_ZIP_MD5_H_
+#endif  // TRAVERSE_CLIENT_FILES_MD5_H_

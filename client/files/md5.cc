@@ -1,4 +1,4 @@
-#include "client/containers/zip/md5.h"
+#include "client/files/md5.h"
 
 #include <openssl/evp.h>
 
@@ -8,7 +8,7 @@
 
 #include "absl/strings/ascii.h"
 
-namespace traverse::containers {
+namespace traverse {
 namespace {
 
 constexpr size_t kDigits = 32;
@@ -66,4 +66,4 @@ std::string WithMd5(std::string_view stated, const std::string& digest) {
   return out.replace(*at, kDigits, small ? absl::AsciiStrToLower(digest) : digest);
 }
 
-}  // namespace traverse::containers
+}  // namespace traverse
