@@ -11,6 +11,7 @@
 #include "client/gcode/choose/layer_choice.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/read/reader.h"
+#include "client/gcode/text/digest_line.h"
 #include "client/gcode/text/text.h"
 #include "client/gcode/verify/verifier.h"
 #include "client/gcode/write/gcode_out.h"
@@ -168,6 +169,7 @@ class Rewriter {
            const RewriteOptions& options)
       : file_(file),
         options_(options),
+        states_digest_(StatesItsDigest(file.text)),
         chooser_(file, tries,
                  {options.policy, options.crossings, options.allow, options.threads,
                   options.min_revisit_seconds, options.polish}) {}
@@ -182,6 +184,7 @@ class Rewriter {
       }
       const std::string head = HeadWithLine(file_, AddedLine(rewrite, options_));
       rewrite.text = NewText(file_, chosen, head);
+      if (states_digest_) RenewDigest(rewrite.text);
       const LayerLines lines(file_, chosen, head);
       chosen.texts = {};  // they are in there
       const VerifyReport report = CheckGcode(file_.text, file_.name, rewrite.text,
@@ -240,6 +243,7 @@ class Rewriter {
     if (rewrite.after.seconds > rewrite.before.seconds) return AsItIs(file_, std::move(rewrite));
     rewrite.text.replace(0, head.size(), HeadWithLine(file_, AddedLine(rewrite, options_)));
     rewrite.text = Numbered(file_, std::move(rewrite.text));
+    if (states_digest_) RenewDigest(rewrite.text);
     return rewrite;
   }
 
@@ -282,6 +286,7 @@ class Rewriter {
 
   const GcodeFile& file_;
   const RewriteOptions& options_;
+  const bool states_digest_;
   LayerChooser chooser_;
   std::string unproven_;  // what was found first
 };

@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/text/decimal.h"
+#include "client/gcode/text/digest_line.h"
 #include "client/gcode/verify/verifier.h"
 
 namespace traverse::gcode {
@@ -207,6 +208,7 @@ std::optional<std::string> ScaleDuration(std::string_view value, double factor) 
 }
 
 std::string RestateTimes(std::string_view text, const TimeScale& scale) {
+  const bool states_digest = StatesItsDigest(text);
   std::string out;
   out.reserve(text.size());
   while (!text.empty()) {
@@ -222,6 +224,7 @@ std::string RestateTimes(std::string_view text, const TimeScale& scale) {
     if (end < text.size()) out += '\n';
     text.remove_prefix(std::min(end + 1, text.size()));
   }
+  if (states_digest) RenewDigest(out);
   return out;
 }
 
@@ -231,7 +234,10 @@ std::string RestateOptimised(std::string_view text, const TimeScale& scale) {
   if (mark == std::string::npos) return out;
   size_t end = std::min(out.find('\n', mark), out.size());
   if (end > 0 && out[end - 1] == '\r') --end;
-  return out.insert(end, ", " + DescribeScale(scale));
+  const bool states_digest = StatesItsDigest(out);
+  out.insert(end, ", " + DescribeScale(scale));
+  if (states_digest) RenewDigest(out);
+  return out;
 }
 
 std::optional<std::string> RestateEntry(std::string_view key, std::string_view value,

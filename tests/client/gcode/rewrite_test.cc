@@ -12,6 +12,8 @@
 #include "client/gcode/gcode_job.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/read/reader.h"
+#include "client/gcode/stated_times.h"
+#include "client/gcode/text/digest_line.h"
 #include "client/gcode/verify/verifier.h"
 #include "engine/base/rng.h"
 #include "tests/client/gcode/support/random_order.h"
@@ -55,6 +57,36 @@ TEST(RewriteGcode, SaysWhatOneSeesWhoMeasuresWhatItWrote) {
   EXPECT_DOUBLE_EQ(seen.seconds, rewrite->after.seconds);
   EXPECT_EQ(seen.retractions, rewrite->after.retractions);
   EXPECT_EQ(seen.crossings, rewrite->after.crossings);
+}
+
+// A printer that looks for the digest deletes a file that has another one.
+TEST(RewriteGcode, RenewsTheDigestThatTheFirstLineStates) {
+  std::string original = std::string("; MD5:d41d8cd98f00b204e9800998ecf8427e\n") + kScattered;
+  RenewDigest(original);
+  const auto file = Read(original);
+
+  const absl::StatusOr<GcodeRewrite> rewrite =
+      RewriteGcode(*file, {{kBetterOrder}}, OptionsWithVersion());
+
+  ASSERT_TRUE(rewrite.ok()) << rewrite.status();
+  EXPECT_EQ(rewrite->layers_changed, 1);
+  EXPECT_NE(rewrite->text.substr(0, 39), original.substr(0, 39));
+  EXPECT_TRUE(StatesItsDigest(rewrite->text));
+  EXPECT_EQ(VerifyGcode(original, "a", rewrite->text, "b").message(), "");
+  EXPECT_TRUE(StatesItsDigest(RestateOptimised(rewrite->text, {0.5, 0.5})));
+}
+
+// Only what the file states rightly is stated again: the printer is to find out.
+TEST(RewriteGcode, LeavesAWrongDigest) {
+  const std::string line = "; MD5:d41d8cd98f00b204e9800998ecf8427e\n";
+  const auto file = Read(line + kScattered);
+
+  const absl::StatusOr<GcodeRewrite> rewrite =
+      RewriteGcode(*file, {{kBetterOrder}}, OptionsWithVersion());
+
+  ASSERT_TRUE(rewrite.ok()) << rewrite.status();
+  EXPECT_EQ(rewrite->layers_changed, 1);
+  EXPECT_THAT(rewrite->text, StartsWith(line));
 }
 
 TEST(RewriteGcode, ASecondRunReplacesTheLine) {

@@ -2,12 +2,17 @@
 
 #include <algorithm>
 
+#include "client/gcode/verify/stated_digest.h"
+
 namespace traverse::gcode {
 namespace {
 
 constexpr std::string_view kLayerMarks[] = {";LAYER_CHANGE", ";LAYER:", "; CHANGE_LAYER",
                                             "; layer ",      ";layer:", "; BEGIN_LAYER_OBJECT",
                                             "; <layer>",     ";LAYER "};
+
+// Stands for a first line that states the digest of its text.
+constexpr uint64_t kRightMd5 = 2;
 
 // Marks beyond this much of a file are not its first ones.
 constexpr size_t kHead = 1 << 20;
@@ -31,7 +36,10 @@ bool HasLayerMarks(std::string_view text) {
 }
 
 SideReader::SideReader(std::string_view text, std::string_view ignored, bool marked)
-    : machine_(text), cutter_(ignored, marked), tracer_(marked) {}
+    : machine_(text),
+      cutter_(ignored, marked),
+      tracer_(marked),
+      has_right_md5_(HasRightMd5(text)) {}
 
 void SideReader::TakeHeld() {
   held_ = false;
@@ -45,6 +53,7 @@ TraceChunk SideReader::ReadUntil(Enough enough) {
   if (held_) TakeHeld();
   while (machine_.Next(line_)) {
     bytes_ += line_.text.size() + 1;
+    if (has_right_md5_ && line_.number == 1) line_.digest = kRightMd5;
     const uint32_t section = cutter_.open_section();
     const bool mark = line_.text.size() > 1 && line_.text[0] == ';' && IsLayerMark(line_.text);
     const SectionCutter::Cut cut = cutter_.Take(line_, machine_, mark);

@@ -51,6 +51,7 @@ class SideReader {
   SectionCutter cutter_;
   Tracer tracer_;
   VerifyLine line_;
+  const bool has_right_md5_;
   bool held_ = false;  // line_ begins the next chunk
   bool done_ = false;
   size_t bytes_ = 0;

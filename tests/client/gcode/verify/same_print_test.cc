@@ -5,6 +5,7 @@
 #include <string>
 
 #include "absl/strings/str_replace.h"
+#include "client/files/md5.h"
 #include "tests/client/gcode/verify/small_prints.h"
 
 namespace traverse::gcode {
@@ -50,6 +51,22 @@ TEST(SamePrint, TheHeadLeavesThePrintThoughNoScriptFollows) {
   EXPECT_EQ(Broken(a, kHead + kTwo + "G1 Z10 F9000\n"), "same_print");
   EXPECT_EQ(Broken(a, kHead + kTwo + "G1 E-1 F2100\n"), "same_print");
   EXPECT_EQ(Broken(a, kHead + kOther + kOne + end), "");
+}
+
+// Printers look at it before they print, so it is right in both files or the same in both.
+TEST(SamePrint, AFirstLineMayStateTheDigestOfItsFile) {
+  const auto with_md5 = [](const std::string& text) { return "; MD5:" + Md5Hex(text) + "\n" + text; };
+  const std::string a = kHead + kTwo;
+  const std::string b = kHead + kOther + kOne;
+  const std::string right = with_md5(a);
+  EXPECT_EQ(Broken(right, with_md5(b)), "");
+  EXPECT_EQ(Broken(right, right.substr(0, 39) + b), "same_print");
+  EXPECT_EQ(Broken(right, b), "same_print");
+  EXPECT_EQ(Broken(a, with_md5(b)), "same_print");
+  const std::string wrong = right.substr(0, 39) + With(a, "M83\n", "M83 ; x\n");
+  EXPECT_EQ(Broken(wrong, wrong), "");
+  EXPECT_EQ(Broken(wrong, with_md5(wrong.substr(39))), "same_print");
+  EXPECT_EQ(Broken(right, with_md5(kHead + kOne)), "same_print");
 }
 
 TEST(SamePrint, TravelMayBeByG0) {
