@@ -91,6 +91,13 @@ class NodeRoute {
     double cost = kInfinity;
   };
 
+  // A child that is not in the route, with what Approach looks at.
+  struct Waiting {
+    BoundingBox box;
+    double nearest = 0;  // as in nearest_
+    int slot = 0;
+  };
+
   // Those of the children inserted so far if the budget ran out.
   void ListWays() {
     for (size_t s = 0; s < children_.size(); ++s) {
@@ -104,6 +111,8 @@ class NodeRoute {
         boxes_[s].Add(ways_.back().exit);
         rest_(4);
       });
+      waiting_at_.push_back(waiting_.size());
+      waiting_.push_back({boxes_[s], kInfinity, static_cast<int>(s)});
     }
     first_way_.push_back(static_cast<int>(ways_.size()));
   }
@@ -126,19 +135,26 @@ class NodeRoute {
     }
   }
 
-  // Updates the distances of all children: the route has a point at `p` now.
+  // Updates the distances of the children that are not in the route: it has a point at `p` now.
   void Approach(Point p) {
-    for (size_t s = 0; s < children_.size(); ++s) {
-      double& nearest = nearest_[s];
-      if (in_route(s) || boxes_[s].SquaredDistanceTo(p) >= nearest * nearest) continue;
-      const absl::Span<const Way> ways = WaysOf(static_cast<int>(s));
-      ForEachWay(static_cast<int>(s), [&](size_t w) {
+    for (Waiting& waiting : waiting_) {
+      if (waiting.box.SquaredDistanceTo(p) >= waiting.nearest * waiting.nearest) continue;
+      double& nearest = nearest_[static_cast<size_t>(waiting.slot)];
+      const absl::Span<const Way> ways = WaysOf(waiting.slot);
+      ForEachWay(waiting.slot, [&](size_t w) {
         nearest = std::min({nearest, Distance(p, ways[w].enter), Distance(p, ways[w].exit)});
       });
+      waiting.nearest = nearest;
     }
   }
 
-  bool in_route(size_t slot) const { return !built_[slot].empty(); }
+  // `slot` is in the route now.
+  void StopWaiting(int slot) {
+    const size_t at = waiting_at_[static_cast<size_t>(slot)];
+    waiting_[at] = waiting_.back();
+    waiting_at_[static_cast<size_t>(waiting_[at].slot)] = at;
+    waiting_.pop_back();
+  }
 
   // Removes from open_ the slot nearest to the route, the lowest of several, and returns it.
   int TakeNearest() {
@@ -168,6 +184,7 @@ class NodeRoute {
       entries = Build(layer_, child, from, to, budget_);
       if (budget_.was_exhausted()) return false;
     }
+    StopWaiting(slot);
     const auto at = static_cast<std::ptrdiff_t>(found.index);
     const Point enter = layer_.table.enter(entries.front());
     const Point exit = layer_.table.exit(entries.back());
@@ -295,6 +312,8 @@ class NodeRoute {
   std::vector<int> first_way_;      // [slot] where its ways begin in ways_; one more
   std::vector<double> nearest_;     // [slot] distance in mm of its points to the route's
   std::vector<BoundingBox> boxes_;  // [slot] of its ways
+  std::vector<Waiting> waiting_;    // in any order
+  std::vector<size_t> waiting_at_;  // [slot] its index in waiting_, if it is there
   std::vector<Entries> built_;      // [slot] empty until it is in the route
   std::vector<int> open_;           // slots that may be inserted
 
