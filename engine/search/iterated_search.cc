@@ -69,6 +69,13 @@ void IteratedSearch::Run(Rng& rng, Budget& budget) {
   if (cost > best_cost_ + kImprovementTolerance) state_.Load(best_);
 }
 
+void IteratedSearch::Shake(int kicks, Rng& rng, Budget& budget) {
+  double unused = 0;
+  for (int i = 0; i < kicks && !budget.Exhausted(); ++i) Kick(rng, unused);
+  local_search_.Run(budget);
+  state_.Commit();
+}
+
 double IteratedSearch::Work() const {
   const double walls = options_.walls != nullptr ? static_cast<double>(options_.walls->work()) : 0;
   return static_cast<double>(iterations_) + walls / kWallWorkOfIteration;

@@ -85,6 +85,9 @@ class IteratedSearch {
   // Kicks and repairs the route. Afterwards it is the best one found, never worse than before.
   void Run(Rng& rng, Budget& budget);
 
+  // Kicks the route so many times and repairs it once. It may be worse afterwards.
+  void Shake(int kicks, Rng& rng, Budget& budget);
+
   int64_t iterations() const { return iterations_; }
 
   // The WallCost::work() that takes as long as an iteration without walls: about 20 us.

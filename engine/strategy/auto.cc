@@ -22,6 +22,7 @@
 #include "engine/search/entries/leaf_entries.h"
 #include "engine/search/greedy/greedy.h"
 #include "engine/search/iterated_search.h"
+#include "engine/search/long/long_search.h"
 #include "engine/search/order_tree.h"
 #include "engine/search/search_state.h"
 #include "engine/strategy/stop.h"
@@ -35,6 +36,12 @@ constexpr double kLeastPatience = 150;
 constexpr double kPatience = 4;
 constexpr double kPatienceOfFew = 6;
 constexpr double kLeastGain = 2e-4;
+
+// A search of more effort is divided into walks: the first one is of so much effort, the others end
+// after so many iterations a path.
+constexpr double kLongEffort = 4;
+constexpr double kFirstWalkEffort = 1;
+constexpr double kWalkPatience = 0.6;
 
 // Paths times leaves between the cuts of the widest kicks.
 constexpr int kWidestKicks = 200'000;
@@ -224,12 +231,11 @@ class AutoLayer : public PreparedLayer {
     options.local_search = derived_->options;
     options.descent_depth = 1;  // kicks find sooner what trials would
     const int paths = tree.path_count();
-    const double patience = paths > kFewPaths ? kPatience : kPatienceOfFew;
     options.first_kicked = effort.first_kicked;
     options.last_kicked = std::min(effort.last_kicked, paths);
     const int kicked = options.last_kicked - options.first_kicked + 1;
-    options.patience = static_cast<int64_t>(std::min(effort.kicks, 1.0) * kLeastPatience +
-                                            effort.kicks * patience * kicked);
+    const bool is_long = effort.kicks > kLongEffort && options_.least_gain_each == 0;
+    options.patience = Patience(is_long ? kFirstWalkEffort : effort.kicks, kicked, paths);
     options.least_gain = kLeastGain;
     options.least_gain_each = options_.least_gain_each;
     options.window = static_cast<double>(options_.gain_window);
@@ -248,17 +254,29 @@ class AutoLayer : public PreparedLayer {
     search.Descend(budget);
     Rng rng(layer.problem.seed);
     search.Run(rng, budget);
+    int64_t iterations = search.iterations();
+    if (is_long) {
+      LongSearchOptions walks{options, Patience(effort.kicks, kicked, paths), kLeastGain};
+      walks.walk.patience = static_cast<int64_t>(kLeastPatience + kWalkPatience * kicked);
+      iterations += SearchLong(layer.problem, state, *derived_->neighbors, walks, rng, budget);
+    }
     Route improved = state.Unload();
     ChooseEntries(layer, improved, budget);
     const bool optimal =
         !budget.was_exhausted() &&
         SolveSmallParts(layer, SmallParts(layer.problem, effort.small_parts), improved, budget);
-    Solution solution = Finish(std::move(improved), search.iterations(), budget);
+    Solution solution = Finish(std::move(improved), iterations, budget);
     if (optimal) {
       solution.stop = StopReason::kOptimal;
       solution.lower_bound = RouteCost(layer.problem, solution.route);
     }
     return solution;
+  }
+
+  // Iterations without a gain that end a search of such effort, which kicks so many of the paths.
+  static int64_t Patience(double effort, int kicked, int paths) {
+    const double each = paths > kFewPaths ? kPatience : kPatienceOfFew;
+    return static_cast<int64_t>(std::min(effort, 1.0) * kLeastPatience + effort * each * kicked);
   }
 
   static SmallPartOptions SmallParts(const LayerProblem& problem, double effort) {

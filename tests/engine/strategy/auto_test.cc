@@ -66,6 +66,25 @@ TEST(Auto, IsFarBetterThanGreedyOnAGrid) {
   EXPECT_GT(solution.statistics.at("iterations"), 0);
 }
 
+// Little more effort than a single walk has is worth more when it is spent on walks of their own.
+TEST(Auto, SpendsMuchEffortOnManyWalks) {
+  double by_one = 0;
+  double by_many = 0;
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
+    OwnedProblem owned =
+        RandomProblem(seed, {.shape = PlanShape::kFlatContours, .min_paths = 80, .max_paths = 80});
+    const auto cost = [&owned](const char* effort) {
+      Budget budget;
+      const Solution solution =
+          (*MakeStrategy("auto", {{"effort", effort}}))->Solve(owned.problem, budget);
+      return RouteCost(owned.problem, solution.route);
+    };
+    by_one += cost("4");
+    by_many += cost("4.1");
+  }
+  EXPECT_LT(by_many, 0.998 * by_one);
+}
+
 TEST(Auto, DoesMoreWithMoreEffort) {
   const OwnedProblem owned(SequentialPlan(SquareGrid(6, 6)));
   Budget budget;
