@@ -105,6 +105,11 @@ class JobSink {
   // layers.
   virtual void OnLayer(LayerOutcome outcome) = 0;
 
+  // No routes of all layers together cost less than this, in the unit of their costs, without moves
+  // to the cleaning point as in LayerOutcome::lower_bound. Comes at most once, after all layers, if
+  // the strategy bounds the chain.
+  virtual void OnChainBound(double /*lower_bound*/) {}
+
   // The last call: all layers of a closed job were delivered, or the job was cancelled.
   virtual void OnDone() = 0;
 };

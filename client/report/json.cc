@@ -1,5 +1,6 @@
 #include "client/report/json.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cstdint>
 #include <map>
@@ -87,16 +88,26 @@ Json TotalBoundJson(const InputJob& job, const JobResult& result) {
   return sum;
 }
 
+bool AllCostsAreLengths(const InputJob& job) {
+  return std::none_of(job.layers.begin(), job.layers.end(), [&](const v1::Layer& layer) {
+    return (layer.has_cost() ? layer.cost() : job.options.cost()).has_time();
+  });
+}
+
 Json TotalJson(const InputJob& job, const JobResult& result, double wall_seconds) {
   const v1::JobSummary& summary = result.summary;
-  return {{"travel_given_mm", summary.given().total_mm() + summary.cleaning_given_mm()},
-          {"travel_mm", summary.travel().total_mm() + summary.cleaning_mm()},
-          {"cleaning_mm", summary.cleaning_mm()},
-          {"lower_bound_mm", TotalBoundJson(job, result)},
-          {"solve_seconds", summary.compute_seconds()},
-          {"wall_seconds", wall_seconds},
-          {"idle_seconds_given", summary.idle_seconds_given()},
-          {"idle_seconds", summary.idle_seconds()}};
+  Json total = {{"travel_given_mm", summary.given().total_mm() + summary.cleaning_given_mm()},
+                {"travel_mm", summary.travel().total_mm() + summary.cleaning_mm()},
+                {"cleaning_mm", summary.cleaning_mm()},
+                {"lower_bound_mm", TotalBoundJson(job, result)},
+                {"solve_seconds", summary.compute_seconds()},
+                {"wall_seconds", wall_seconds},
+                {"idle_seconds_given", summary.idle_seconds_given()},
+                {"idle_seconds", summary.idle_seconds()}};
+  if (summary.has_chain_lower_bound() && AllCostsAreLengths(job)) {
+    total["chain_lower_bound_mm"] = summary.chain_lower_bound();
+  }
+  return total;
 }
 
 Json GcodeTotalsJson(const gcode::PrintTotals& totals) {

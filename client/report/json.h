@@ -22,9 +22,11 @@ namespace traverse::report {
 //                          {"kind": "raster", "island": 1, "id": 1, "reversed": false}]}]}
 // Lengths in mm, written so that reading them gives the same double. total.travel_mm and
 // travel_given_mm include the moves to the cleaning point. Bounds are stated where the cost is
-// length and the bound of each layer is known. Ids are the labels of the file; of a layer that is a
-// plan each visit also has "path", the position of its path in the plan, and "island" only if it is
-// known. The same job and routes give the same bytes, but for the seconds. One layer is one line.
+// length and the bound of each layer is known. Where the strategy's option `chain_bound` found
+// one, "total" ends with "chain_lower_bound_mm", a bound of all layers together without moves to
+// the cleaning point. Ids are the labels of the file; of a layer that is a plan each visit also has
+// "path", the position of its path in the plan, and "island" only if it is known. The same job and
+// routes give the same bytes, but for the seconds. One layer is one line.
 // REQUIRES: the result passed CheckVisits.
 //
 // With `rewrite`, what became of the G-code stands behind "total", measured in the two files:

@@ -52,6 +52,10 @@ std::string OptimizeSummary(const InputJob& job, const JobRun& run) {
   if (summary.has_lower_bound()) {
     absl::StrAppendFormat(&out, "gap      %s to a proven lower bound\n", GapText(summary));
   }
+  if (summary.has_chain_lower_bound() && summary.cost() > 0) {
+    absl::StrAppendFormat(&out, "chain    %.1f %% to a proven lower bound of all layers together\n",
+                          100 * (summary.cost() - summary.chain_lower_bound()) / summary.cost());
+  }
   if (summary.stops_size() > 0) absl::StrAppendFormat(&out, "ended    %s\n", Stops(summary));
   return out;
 }

@@ -34,6 +34,10 @@ void LayerChain::Add(JobLayer given) {
   layer->index = added_++;
   layer->weight = BudgetSplit::Weight(layer->given.plan.paths.size(), false);
   split_.Add(layer->weight);
+  if (BoundsChain()) {
+    split_.Add(layer->weight);
+    chain_weight_ += layer->weight;
+  }
   layers_.push_back(std::move(layer));
   ++pending_;
   MaybePrepare();
@@ -111,6 +115,7 @@ void LayerChain::RunSolveSecond(const ChainLayerPtr& layer) {
 void LayerChain::RunAnchor(const ChainLayerPtr& layer, const TrueStart& at) {
   if (solver_.traits().serial) Allot(*layer);
   LayerOutcome outcome = solver_.Anchor(*layer, at);
+  if (BoundsChain() && !cancel_.cancelled()) KeepForBound(*layer, outcome);
   const Point route_end = outcome.end;
   const Point end = layer->finish.value_or(route_end);
   if (!cancel_.cancelled()) outbox_.Deliver(std::move(outcome));
@@ -125,6 +130,29 @@ void LayerChain::RunAnchor(const ChainLayerPtr& layer, const TrueStart& at) {
   DropAnchored();
   MaybeAnchor(layer->index + 1);
   MaybePrepare();
+}
+
+void LayerChain::KeepForBound(const ChainLayer& layer, const LayerOutcome& outcome) {
+  BoundedLayer kept{outcome.plan,  outcome.route,
+                    outcome.start, !solver_.FixedStart(layer).has_value(),
+                    layer.finish,  layer.cost};
+  MutexLock lock(mutex_);
+  chain_bound_.Add(layer.index, std::move(kept));
+}
+
+void LayerChain::RunBoundChain() {
+  ChainBound chain;
+  uint64_t layers = 0;
+  Budget::Clock::duration allotted;
+  {
+    MutexLock lock(mutex_);
+    std::swap(chain, chain_bound_);
+    layers = added_;
+    allotted = split_.Begin(chain_weight_, Budget::Clock::now());
+  }
+  const std::optional<double> bound = solver_.BoundChain(chain, layers, allotted);
+  MutexLock lock(mutex_);
+  chain_lower_bound_ = bound;
 }
 
 // The next layer's first stage, unless it is running, or the layer's finish is still unknown, or
@@ -234,8 +262,14 @@ void LayerChain::DropAnchored() {
 void LayerChain::MaybeFinish() {
   const bool all_done = closed_ && pending_ == 0;
   if (finished_ || tasks_ > 0 || !(all_done || cancel_.cancelled())) return;
+  if (BoundsChain() && !bounding_chain_ && !cancel_.cancelled()) {
+    bounding_chain_ = true;
+    Submit([this] { RunBoundChain(); }, /*points=*/0);
+    return;
+  }
   finished_ = true;
-  executor_.Submit([self = shared_from_this()] { self->outbox_.Done(); });
+  const std::optional<double> bound = cancel_.cancelled() ? std::nullopt : chain_lower_bound_;
+  executor_.Submit([self = shared_from_this(), bound] { self->outbox_.Done(bound); });
 }
 
 void LayerChain::Submit(std::function<void()> stage, int64_t points) {

@@ -38,6 +38,7 @@
 #include "engine/base/mutex.h"
 #include "engine/engine.h"
 #include "engine/schedule/budget_split.h"
+#include "engine/schedule/chain_bound.h"
 #include "engine/schedule/chain_layer.h"
 #include "engine/schedule/layer_preparer.h"
 #include "engine/schedule/layer_solver.h"
@@ -70,6 +71,9 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   void RunSolveSecond(const ChainLayerPtr& layer);
   void RunAnchor(const ChainLayerPtr& layer, const TrueStart& at);
 
+  // The job's last task, if its strategy bounds the chain.
+  void RunBoundChain();
+
   // Submit the stages that are due.
   void MaybePrepare() TRAVERSE_REQUIRES(mutex_);
   void MaybeSolveFirst(const ChainLayerPtr& layer) TRAVERSE_REQUIRES(mutex_);
@@ -78,6 +82,10 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   std::optional<LayersInView> ViewFrom(uint64_t index) const TRAVERSE_REQUIRES(mutex_);
   void MaybeAnchorBefore(uint64_t index) TRAVERSE_REQUIRES(mutex_);
   void MaybeAnchor(uint64_t index) TRAVERSE_REQUIRES(mutex_);
+  bool BoundsChain() const {
+    return solver_.traits().chain_bounding != StrategyTraits::ChainBounding::kNone;
+  }
+  void KeepForBound(const ChainLayer& layer, const LayerOutcome& outcome);
   void MaybeFinish() TRAVERSE_REQUIRES(mutex_);
   void Submit(std::function<void()> stage, int64_t points) TRAVERSE_REQUIRES(mutex_);
   void DropAnchored() TRAVERSE_REQUIRES(mutex_);
@@ -109,6 +117,10 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
     KnownRoutePtr known;  // null if routes are not reused
   };
   std::map<uint64_t, LayerEnd> ends_to_learn_ TRAVERSE_GUARDED_BY(mutex_);
+  ChainBound chain_bound_ TRAVERSE_GUARDED_BY(mutex_);       // of the anchored layers
+  double chain_weight_ TRAVERSE_GUARDED_BY(mutex_) = 0;      // what bounding them has of the time
+  bool bounding_chain_ TRAVERSE_GUARDED_BY(mutex_) = false;  // RunBoundChain has been submitted
+  std::optional<double> chain_lower_bound_ TRAVERSE_GUARDED_BY(mutex_);
   int64_t pending_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   int64_t tasks_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // submitted and not yet ended
   bool preparing_ TRAVERSE_GUARDED_BY(mutex_) = false;

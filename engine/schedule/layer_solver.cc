@@ -42,17 +42,22 @@ LayerSolver::LayerSolver(const JobSpec& spec, std::unique_ptr<Strategy> strategy
       executor_(executor),
       cancel_(cancel) {}
 
-// `share` of the layer's time: the smaller of its own limit and its part of the job's.
-Budget LayerSolver::LayerBudget(const ChainLayer& layer, double share) const {
+// `share` of the smaller of a part of the job's time and so many times the limit of one layer.
+Budget LayerSolver::BudgetWithin(Budget::Clock::duration allotted, double layer_limits,
+                                 double share) const {
   using Duration = Budget::Clock::duration;
   const Budget whole(&cancel_, spec_.deadline, executor_.turn());
-  Duration limit = layer.allotted;
-  if (spec_.layer_time_limit != absl::InfiniteDuration()) {
-    limit = std::min(limit, std::chrono::duration_cast<Duration>(
-                                absl::ToChronoNanoseconds(spec_.layer_time_limit)));
+  const absl::Duration layers = layer_limits * spec_.layer_time_limit;
+  if (layers != absl::InfiniteDuration()) {
+    allotted =
+        std::min(allotted, std::chrono::duration_cast<Duration>(absl::ToChronoNanoseconds(layers)));
   }
-  if (limit == Duration::max()) return whole;
-  return whole.Within(std::chrono::duration_cast<Duration>(share * limit));
+  if (allotted == Duration::max()) return whole;
+  return whole.Within(std::chrono::duration_cast<Duration>(share * allotted));
+}
+
+Budget LayerSolver::LayerBudget(const ChainLayer& layer, double share) const {
+  return BudgetWithin(layer.allotted, 1, share);
 }
 
 double LayerSolver::AnchorShare() const {
@@ -292,6 +297,20 @@ void LayerSolver::Bound(const LayerProblem& problem, ChainLayer& layer, Solution
   const double cost = RouteCost(problem, solution.route, &budget);
   solution.lower_bound = LowerBound(problem, cost, &layer.bound_multipliers, effort, budget);
   if (solution.lower_bound == cost) solution.stop = StopReason::kOptimal;
+}
+
+std::optional<double> LayerSolver::BoundChain(const ChainBound& chain, uint64_t layers,
+                                              Budget::Clock::duration allotted) const {
+  const StrategyTraits& traits = strategy_->traits();
+  const double effort = traits.bound_effort > 0 ? traits.bound_effort : 1;
+  const bool resumes = traits.chain_bounding == StrategyTraits::ChainBounding::kByResume;
+  const auto bound_of = [&](const LayerProblem& problem, const Route& known, Budget& budget) {
+    if (resumes) return strategy_->Resume(problem, known, budget).lower_bound;
+    const double cost = RouteCost(problem, known, &budget);
+    return LowerBound(problem, cost, nullptr, effort, budget);
+  };
+  Budget budget = BudgetWithin(allotted, static_cast<double>(layers), 1);
+  return chain.Compute(spec_.seed, bound_of, budget);
 }
 
 // Everything the layer's route depends on, so that equal layers share it.

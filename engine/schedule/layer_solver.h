@@ -11,6 +11,7 @@
 
 #include "engine/base/budget.h"
 #include "engine/engine.h"
+#include "engine/schedule/chain_bound.h"
 #include "engine/schedule/chain_layer.h"
 #include "engine/strategy/strategy.h"
 
@@ -63,11 +64,16 @@ class LayerSolver {
   void SolveSecond(ChainLayer& layer) const;
   LayerOutcome Anchor(ChainLayer& layer, const TrueStart& at) const;
 
+  // A lower bound of all layers together, once they are done. `layers`: how many there are.
+  std::optional<double> BoundChain(const ChainBound& chain, uint64_t layers,
+                                   Budget::Clock::duration allotted) const;
+
  private:
   PreparedLayer& Prepared(ChainLayer& layer) const {
     if (!layer.prepared) layer.prepared = strategy_->Prepare(layer.given.plan);
     return *layer.prepared;
   }
+  Budget BudgetWithin(Budget::Clock::duration allotted, double layer_limits, double share) const;
   Budget LayerBudget(const ChainLayer& layer, double share) const;
   double AnchorShare() const;
   double SolveShare(const ChainLayer& layer) const;

@@ -4,6 +4,7 @@
 #define TRAVERSE_ENGINE_SCHEDULE_OUTBOX_H_
 
 #include <deque>
+#include <optional>
 #include <utility>
 
 #include "engine/base/mutex.h"
@@ -25,11 +26,13 @@ class Outbox {
     Drain();
   }
 
-  // The last call. Whatever is delivered after it is dropped.
-  void Done() {
+  // The last call. Whatever is delivered after it is dropped. `chain_bound`: of all layers
+  // together, if it is known.
+  void Done(std::optional<double> chain_bound) {
     {
       MutexLock lock(mutex_);
       done_ = true;
+      chain_bound_ = chain_bound;
     }
     Drain();
   }
@@ -50,6 +53,7 @@ class Outbox {
     draining_ = done_;
     if (!done_) return;
     lock.Unlock();
+    if (chain_bound_) sink_.OnChainBound(*chain_bound_);
     sink_.OnDone();
   }
 
@@ -58,6 +62,7 @@ class Outbox {
   std::deque<LayerOutcome> waiting_ TRAVERSE_GUARDED_BY(mutex_);
   bool draining_ TRAVERSE_GUARDED_BY(mutex_) = false;
   bool done_ TRAVERSE_GUARDED_BY(mutex_) = false;
+  std::optional<double> chain_bound_;  // does not change any more once `done_` is set
 };
 
 }  // namespace traverse

@@ -323,10 +323,11 @@ class AutoLayer : public PreparedLayer {
 
 class Auto : public PreparingStrategy {
  public:
-  Auto(const AutoOptions& options, bool bound)
+  Auto(const AutoOptions& options, bool bound, bool bounds_chain)
       : PreparingStrategy(
             {.reuses_routes = true,
              .bound_effort = bound ? options.effort : 0,
+             .chain_bounding = QuickChainBounding(bounds_chain),
              .look_ahead_paths =
                  options.least_gain_each > 0 ? kLookAheadPathsInHaste : kLookAheadPaths,
              .look_further_paths = options.least_gain_each > 0 ? 0 : kLookFurtherPaths}),
@@ -370,12 +371,12 @@ StrategyEntry AutoEntry() {
            1e9,
            {},
            "Iterations over which least_gain_each is measured; the search always does that many."},
-       BoundOption(true)},
+       BoundOption(true), ChainBoundOption()},
       [](const StrategyOptions& options) -> std::unique_ptr<Strategy> {
         return std::make_unique<Auto>(
             AutoOptions{options.Double("effort"), options.Double("least_gain_each"),
                         options.Int("gain_window")},
-            options.Bool("bound"));
+            options.Bool("bound"), options.Bool("chain_bound"));
       }};
 }
 

@@ -48,8 +48,11 @@ constexpr double kBoundShareWithoutProof = 0.8;
 
 class Exact : public Strategy {
  public:
-  explicit Exact(double time_limit_seconds)
-      : Strategy({.serial = true}),  // a proof holds for one start only, not for a predicted one
+  // A proof holds for one start only, not for a predicted one.
+  Exact(double time_limit_seconds, bool bounds_chain)
+      : Strategy({.serial = true,
+                  .chain_bounding = bounds_chain ? StrategyTraits::ChainBounding::kByResume
+                                                 : StrategyTraits::ChainBounding::kNone}),
         time_limit_seconds_(time_limit_seconds),
         heuristic_(MakeDefault(AutoEntry())),
         long_heuristic_(MakeWith(AutoEntry(), {{"effort", kEffort}})) {}
@@ -121,9 +124,12 @@ class ExactFramework : public Strategy {
  public:
   // `cold`: as the thesis has it, from no start and without greedy's route instead of a longer one.
   ExactFramework(const FrameworkOptions& options, const MilpOptions& milp,
-                 double time_limit_seconds, bool cold, bool bound)
+                 double time_limit_seconds, bool cold, bool bound, bool bounds_chain)
       // As the thesis has it, every layer starts where the one before ended.
-      : Strategy({.serial = true, .pure = cold, .bound_effort = bound ? 1.0 : 0.0}),
+      : Strategy({.serial = true,
+                  .pure = cold,
+                  .bound_effort = bound ? 1.0 : 0.0,
+                  .chain_bounding = QuickChainBounding(bounds_chain)}),
         options_(options),
         milp_(milp),
         time_limit_seconds_(time_limit_seconds),
@@ -262,7 +268,8 @@ std::vector<OptionSpec> Options() {
                  {"ni2opt", "none"},
                  "Framework: the route from which each programme starts. none: cold, as in the "
                  "thesis, and never a shorter route of another method."},
-      BoundOption(true)};
+      BoundOption(true),
+      ChainBoundOption()};
   const std::vector<OptionSpec> shared = FrameworkOptionSpecs("Framework: ");
   specs.insert(specs.end(), shared.begin(), shared.end());
   return specs;
@@ -270,13 +277,15 @@ std::vector<OptionSpec> Options() {
 
 std::unique_ptr<Strategy> MakeExact(const StrategyOptions& values) {
   const double time_limit = values.Double("time_limit");
-  if (values.Choice("model") == "integrated") return std::make_unique<Exact>(time_limit);
+  if (values.Choice("model") == "integrated") {
+    return std::make_unique<Exact>(time_limit, values.Bool("chain_bound"));
+  }
   FrameworkOptions options = FrameworkOptionsFrom(values);
   const bool cold = values.Choice("start") == "none";
   if (cold) options.visible_in = VisibleIn::kBothPolygons;
   return std::make_unique<ExactFramework>(
       options, MilpOptions{values.Double("gap"), values.Bool("strengthened")}, time_limit, cold,
-      values.Bool("bound"));
+      values.Bool("bound"), values.Bool("chain_bound"));
 }
 
 }  // namespace

@@ -59,6 +59,11 @@ struct StrategyTraits {
   // effort (LowerBound). 0: they want none.
   double bound_effort = 0;
 
+  // Whether callers want a lower bound of all layers together, which the chain computes at the end:
+  // by LowerBound, or by Resume where that proves one.
+  enum class ChainBounding { kNone, kQuick, kByResume };
+  ChainBounding chain_bounding = ChainBounding::kNone;
+
   // Two layers with at most this many paths together are worth ResumeWithNext, which the chain
   // calls if it knows the next layer. 0: it does no more than Resume.
   size_t look_ahead_paths = 0;
@@ -66,6 +71,11 @@ struct StrategyTraits {
   // More than two layers are worth it with at most this many paths together.
   size_t look_further_paths = 0;
 };
+
+// Of strategies that prove nothing themselves.
+inline StrategyTraits::ChainBounding QuickChainBounding(bool wanted) {
+  return wanted ? StrategyTraits::ChainBounding::kQuick : StrategyTraits::ChainBounding::kNone;
+}
 
 // A strategy set up for one plan. It keeps what it derives from the plan between calls, so solving
 // the plan again from another start takes less time. The solutions are those of the strategy

@@ -52,6 +52,9 @@ class JobPort {
   virtual std::string EncodeLayer(const LayerOutcome& outcome, const LayerLabel& label) = 0;
   virtual std::string EncodeSummary() = 0;
 
+  // What JobSink::OnChainBound says, before EncodeSummary.
+  virtual void NoteChainBound(double /*lower_bound*/) {}
+
   // Writes a message, then calls JobRun::OnWriteDone. It is called again only after that.
   // `more_follows`: another message or the end comes right after this one.
   virtual void StartWrite(std::string message, bool more_follows) = 0;
@@ -143,6 +146,7 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
 
   // JobSink, called by the engine.
   void OnLayer(LayerOutcome outcome) override;
+  void OnChainBound(double lower_bound) override { port_.NoteChainBound(lower_bound); }
   void OnDone() override;
 
  private:

@@ -96,6 +96,7 @@ class JobStream : public JobPort {
   // JobPort.
   std::string EncodeLayer(const LayerOutcome& outcome, const LayerLabel& label) final;
   std::string EncodeSummary() final;
+  void NoteChainBound(double lower_bound) final { totals_.SetChainBound(lower_bound); }
   bool MayBringMore() const final { return ticket_->MayBringMore(); }
   bool IsWorkedOn() const final { return !queue_->idle(); }
   void Discard(std::deque<LabelledLayer> layers) final;

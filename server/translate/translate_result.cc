@@ -192,6 +192,7 @@ void JobTotals::ToProto(double idle_speed_mm_s, v1::JobSummary& summary) const {
   summary.set_retractions_given(static_cast<uint64_t>(moves_given_.retractions));
   summary.set_retractions(static_cast<uint64_t>(moves_.retractions));
   if (bounded_layers_ == layers_) summary.set_lower_bound(lower_bound_);
+  if (chain_lower_bound_) summary.set_chain_lower_bound(*chain_lower_bound_);
   summary.set_idle_seconds_given(given_mm() / idle_speed_mm_s);
   summary.set_idle_seconds(travel_mm() / idle_speed_mm_s);
   for (size_t reason = 0; reason < kReasons; ++reason) {

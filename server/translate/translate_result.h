@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "engine/engine.h"
@@ -20,6 +21,7 @@ void ToProto(const LayerOutcome& outcome, uint64_t id, const std::string& strate
 class JobTotals {
  public:
   void Add(const LayerOutcome& outcome);
+  void SetChainBound(double lower_bound) { chain_lower_bound_ = lower_bound; }
 
   uint64_t layers() const { return layers_; }
   double compute_seconds() const { return compute_seconds_; }
@@ -51,6 +53,7 @@ class JobTotals {
   MoveCounts moves_given_;
   MoveCounts moves_;
   double lower_bound_ = 0;
+  std::optional<double> chain_lower_bound_;
   double compute_seconds_ = 0;
   std::array<uint64_t, kReasons> stops_{};
 };

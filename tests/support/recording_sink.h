@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,12 @@ class RecordingSink : public JobSink {
     EXPECT_FALSE(done_);
     outcomes.push_back(std::move(outcome));
     wake_.notify_all();
+  }
+
+  void OnChainBound(double lower_bound) override {
+    std::lock_guard<std::mutex> lock(mutex_);
+    EXPECT_FALSE(done_ || chain_bound.has_value());
+    chain_bound = lower_bound;
   }
 
   void OnDone() override {
@@ -54,7 +61,9 @@ class RecordingSink : public JobSink {
     return result;
   }
 
-  std::vector<LayerOutcome> outcomes;  // read it after Wait
+  // Read these after Wait.
+  std::vector<LayerOutcome> outcomes;
+  std::optional<double> chain_bound;
 
  private:
   std::mutex mutex_;

@@ -37,6 +37,16 @@ OptionSpec BoundOption(bool default_value) {
                     "Also compute a lower bound, which limits how much shorter any route can be."};
 }
 
+OptionSpec ChainBoundOption() {
+  return OptionSpec{"chain_bound",
+                    OptionSpec::Type::kBool,
+                    "false",
+                    0,
+                    0,
+                    {},
+                    "Also compute a lower bound of all layers together, wherever each one ends."};
+}
+
 OptionSpec PureOption(const char* description) {
   return OptionSpec{"pure", OptionSpec::Type::kBool, "false", 0, 0, {}, description};
 }

@@ -29,6 +29,9 @@ struct OptionSpec {
 // The option `bound`, which several strategies have; see StrategyTraits::bound_effort.
 OptionSpec BoundOption(bool default_value);
 
+// The option `chain_bound`, off by default; see StrategyTraits::bounds_chain.
+OptionSpec ChainBoundOption();
+
 // The option `pure` of the sources' methods, off by default. It runs the method as published; a
 // valid route is the only promise left.
 OptionSpec PureOption(const char* description);

@@ -145,6 +145,22 @@ class Routes(CommandLine):
         checker.check(document, first)
         self.assertEqual(checker.faults, [])
 
+    def test_a_bound_of_all_layers_together_if_asked_for(self):
+        def total(*flags):
+            return self.optimize(PART1, "--layers=1-3", *flags)["total"]
+
+        asked = "--option=chain_bound=true"
+        proven = total("--strategy=exact", asked)
+        quick = total("--strategy=auto", asked)
+
+        # Each layer is proven for its own start, and yet ending elsewhere would save travel.
+        self.assertAlmostEqual(proven["lower_bound_mm"], proven["travel_mm"])
+        self.assertLess(proven["chain_lower_bound_mm"], 0.99 * proven["travel_mm"])
+        self.assertLessEqual(proven["chain_lower_bound_mm"], quick["travel_mm"] * (1 + 1e-9))
+        self.assertLessEqual(quick["chain_lower_bound_mm"], proven["chain_lower_bound_mm"] * (1 + 1e-9))
+        self.assertGreater(quick["chain_lower_bound_mm"], 0)
+        self.assertNotIn("chain_lower_bound_mm", total("--strategy=exact"))
+
     def test_the_document_is_as_agreed(self):
         document = self.optimize(SMALL, "--strategy=none")
 

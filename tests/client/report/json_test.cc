@@ -33,6 +33,18 @@ TEST(RoutesJson, BoundsAreStatedOnlyForLengthAndOnlyIfAllAreKnown) {
   EXPECT_THAT(RoutesJson(job, run), Not(HasSubstr("\"lower_bound_mm\":0.25")));
 }
 
+TEST(RoutesJson, HasTheBoundOfAllLayersTogetherIfThereIsOne) {
+  InputJob job = SmallJob();
+  JobRun run = SmallRun();
+  EXPECT_THAT(RoutesJson(job, run), Not(HasSubstr("chain_lower_bound_mm")));
+
+  run.result.summary.set_chain_lower_bound(0.125);
+  EXPECT_THAT(RoutesJson(job, run), HasSubstr("\"chain_lower_bound_mm\":0.125}"));
+
+  job.layers[1].mutable_cost()->mutable_time();
+  EXPECT_THAT(RoutesJson(job, run), Not(HasSubstr("chain_lower_bound_mm")));
+}
+
 TEST(RoutesJson, HasWhatTheSearchTellsOfItself) {
   JobRun run = SmallRun();
   (*run.result.layers[1].mutable_statistics())["points_sp"] = 17;

@@ -13,6 +13,7 @@ namespace traverse::report {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(OptimizeSummary, SaysWhatWasGained) {
   const std::string text = OptimizeSummary(SmallJob(), SmallRun());
@@ -21,6 +22,16 @@ TEST(OptimizeSummary, SaysWhatWasGained) {
   EXPECT_THAT(text, HasSubstr("travel   220.0 mm -> 160.0 mm  (27.3 % less)\n"));
   EXPECT_THAT(text, HasSubstr("gap      20.0 % to a proven lower bound\n"));
   EXPECT_THAT(text, HasSubstr("ended    OPTIMAL 1\n"));
+}
+
+TEST(OptimizeSummary, StatesTheBoundOfAllLayersTogetherIfThereIsOne) {
+  JobRun run = SmallRun();
+  EXPECT_THAT(OptimizeSummary(SmallJob(), run), Not(HasSubstr("chain")));
+
+  run.result.summary.set_chain_lower_bound(0.75 * run.result.summary.cost());
+
+  EXPECT_THAT(OptimizeSummary(SmallJob(), run),
+              HasSubstr("chain    25.0 % to a proven lower bound of all layers together\n"));
 }
 
 }  // namespace
