@@ -274,6 +274,11 @@ void CompareLifts(const Observations& was, const Observations& is, std::vector<F
     // On a slope that ends with its travel, shorter travel reaches less height.
     known |=
         stated.slope > 0 && stated.um <= highest && Knows(was.slopes, stated.slope, kSlopeSlackUm);
+    if (stated.slope > 0 && was.slopes.empty()) {
+      breaks.push_back({VerifyRule::kLifts, was.heights.FirstLine(), stated.line, stated.layer,
+                        "travel rises on its way, as none does in the original"});
+      continue;
+    }
     if (known) continue;
     breaks.push_back(
         {VerifyRule::kLifts, was.heights.FirstLine(), stated.line, stated.layer,

@@ -288,5 +288,14 @@ TEST(VerifyLifts, ASlopeOfTwoStretchesMayBecomeOne) {
   EXPECT_EQ(Broken(a, other("X59 Y2.451")), "lifts");
 }
 
+TEST(VerifyLifts, AreNotDoneOnASlopeWhereNoneIs) {
+  const std::string up = "G1 Z.6 F9000\nG1 X10 Y30 F9000\n";
+  const std::string low = Line("Internal infill", "X10 Y50", "X20 Y50");
+  const std::string a = kHead + kLifted + low;
+  const std::string slope = With(a, up, "G1 X10 Y30 Z.6 F9000\n");
+  EXPECT_EQ(Broken(a, slope), "lifts");
+  EXPECT_EQ(Broken(slope, slope), "");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
