@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/way_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
@@ -53,6 +54,36 @@ bool LeadsOn(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pie
   return link.first_move + LayerPair::TailMoves(chunk, path, pieces) == link.end_move;
 }
 
+// The short move with which travel leaves a path before it retracts, so that nothing of that shows
+// on a wall. Nothing if there is none.
+const TraceMove* DepartureOf(const TraceChunk& chunk, uint32_t path) {
+  constexpr double kLongestMm = 1.0;
+  const TraceLink& link = chunk.links[path + 1];
+  if (link.end_move - link.first_move < 2 || link.scripted) return nullptr;
+  const TraceMove& first = chunk.moves[link.first_move];
+  const TraceMove& next = chunk.moves[link.first_move + 1];
+  const bool leaves = first.kind == MoveKind::kTravel && first.open && first.in_print &&
+                      first.length_mm() >= kShortestMm && first.length_mm() <= kLongestMm;
+  return leaves && next.kind == MoveKind::kRetraction ? &first : nullptr;
+}
+
+// Between the same two points travel leaves a path as it did, if it retracts.
+void CheckDeparture(const LayerPair& layer, const Visit& visit, LayerFindings& findings) {
+  const TraceChunk& is = layer.is();
+  const uint32_t link_was = visit.path + 1;
+  const uint32_t link_is = visit.last_path + 1;
+  if (link_was >= layer.end_path_was() || link_is >= layer.end_path_is()) return;
+  const TraceMove* was = DepartureOf(layer.was(), visit.path);
+  if (was == nullptr || EndsOf(layer.was(), link_was) != EndsOf(is, link_is)) return;
+  const TraceLink& link = is.links[link_is];
+  if (link.first_move == link.end_move || is.moves[link.first_move].kind != MoveKind::kRetraction) {
+    return;
+  }
+  findings.breaks.push_back({VerifyRule::kPathEnds, was->line, is.moves[link.first_move].line,
+                             layer.index(),
+                             "retracts at the end of the path; the original leaves it before"});
+}
+
 }  // namespace
 
 void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
@@ -61,6 +92,7 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
   for (const Visit& visit : layer.visits()) {
     const TracePath& path = was.paths[visit.path];
     if (visit.segments != path.size()) continue;
+    CheckDeparture(layer, visit, findings);
     const absl::Span<const Piece> pieces = layer.PiecesOf(visit.path);
     const Tail had = TailOf(layer, was, visit.path, pieces);
     const Tail has = TailOf(layer, is, visit.last_path, pieces);

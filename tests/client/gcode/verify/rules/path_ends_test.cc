@@ -67,5 +67,17 @@ TEST(VerifyPathEnds, KeepTheirSpeeds) {
   EXPECT_EQ(Broken(kHead + With(two, "X9.04 Y5", "X9.04 Y5 F900"), kHead + slow), "");
 }
 
+// Retracted away from the wall, travel leaves no trace on it.
+TEST(VerifyPathEnds, TravelThatLeavesAPathBeforeItRetractsDoesSo) {
+  const std::string leave = "G1 X10.4 Y10.3 F9000\n";
+  const std::string inside = Line("Internal infill", "X15 Y15", "X16 Y15");
+  const std::string a = kHead + kSquare + leave + inside + kOther;
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, With(a, leave, "")), "path_ends");
+  // Without a retraction it may go straight.
+  const std::string straight = With(With(a, leave, ""), Way("X15 Y15"), "G1 X15 Y15 F9000\n");
+  EXPECT_EQ(Broken(a, straight).find("path_ends"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace traverse::gcode
