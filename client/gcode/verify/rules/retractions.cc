@@ -121,6 +121,8 @@ class CycleReader {
 struct Pair {
   uint32_t line = 0;
   int64_t count = 0;
+  uint32_t pulls = 0;  // the most moves that it was done by
+  uint32_t pushes = 0;
 };
 
 // Pairs of amounts, on a grid of kGrain.
@@ -129,17 +131,32 @@ class PairTable {
   void Add(const RetractionCycle& cycle) {
     Pair& pair = pairs_[Key(cycle, 0, 0)];
     if (pair.count++ == 0) pair.line = cycle.line;
+    pair.pulls = std::max(pair.pulls, cycle.pulls);
+    pair.pushes = std::max(pair.pushes, cycle.pushes);
     auto& deepest = deepest_[cycle.tool];
     if (cycle.pulled > deepest.first) deepest = {cycle.pulled, cycle.line};
   }
 
-  bool Has(const RetractionCycle& cycle) const {
+  bool Has(const RetractionCycle& cycle) const { return Like(cycle).count > 0; }
+
+  // All pairs of these amounts.
+  Pair Like(const RetractionCycle& cycle) const {
+    Pair all;
     for (const Micro a : {-1, 0, 1}) {
       for (const Micro b : {-1, 0, 1}) {
-        if (pairs_.contains(Key(cycle, a, b))) return true;
+        const auto found = pairs_.find(Key(cycle, a, b));
+        if (found == pairs_.end()) continue;
+        all.count += found->second.count;
+        all.pulls = std::max(all.pulls, found->second.pulls);
+        all.pushes = std::max(all.pushes, found->second.pushes);
       }
     }
-    return false;
+    return all;
+  }
+
+  bool InMoreParts(const RetractionCycle& cycle) const {
+    const Pair like = Like(cycle);
+    return cycle.pulls > std::max(like.pulls, 1u) || cycle.pushes > std::max(like.pushes, 1u);
   }
 
   // The deepest retraction of the tool, and its line.
@@ -259,13 +276,7 @@ void CompareRetractions(const Observations& was, const Observations& is,
   absl::flat_hash_set<uint64_t> whole;
   for (const RetractionCycle& cycle : was.cycles) whole.insert(cycle.identity);
   float latest_mm = 0;
-  uint32_t most_pulls = 1;
-  uint32_t most_pushes = 1;
-  for (const RetractionCycle& cycle : was.cycles) {
-    latest_mm = std::max(latest_mm, cycle.late_mm);
-    most_pulls = std::max(most_pulls, cycle.pulls);
-    most_pushes = std::max(most_pushes, cycle.pushes);
-  }
+  for (const RetractionCycle& cycle : was.cycles) latest_mm = std::max(latest_mm, cycle.late_mm);
   for (const RetractionCycle& cycle : is.cycles) {
     if (cycle.known && whole.contains(cycle.identity)) continue;
     const auto [deepest, line] = pairs.Deepest(cycle.tool);
@@ -286,7 +297,7 @@ void CompareRetractions(const Observations& was, const Observations& is,
       report(absl::StrFormat(
           "retracts after %.2f mm of the travel; the most in the original is %.2f mm",
           cycle.late_mm, latest_mm));
-    } else if (cycle.pulls > most_pulls || cycle.pushes > most_pushes) {
+    } else if (pairs.InMoreParts(cycle)) {
       report("retracts or primes in more parts than the original ever does");
     } else if (cycle.idle && !may_be_idle) {
       report("retracts without travel");
