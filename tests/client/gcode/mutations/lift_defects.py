@@ -315,6 +315,20 @@ def lifts_of_layer(higher_by):
     return defect
 
 
+def lift_again(file, rng):
+    """Down, up and down again where a way ends."""
+
+    def make(found):
+        lines = file.lines
+        down = [i for i in file.link(found[0]) if lines[i].kind == "z" and lines[i].end[2] < lines[i].start[2]]
+        if len(down) != 1 or not re.match(r"G[01] Z", file.lines[down[0]].text):
+            return None
+        line = file.lines[down[0]]
+        return edited(file, {down[0]: [line.text, f"G1 Z{number(line.start[2])} F{number(line.feed)}", line.text]})
+
+    return pick(rng, lifted(file), 50, make)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("lift dropped", "lifts", lift_dropped, "free"),
@@ -334,6 +348,7 @@ DEFECTS = (
     ("all lifts 0.05 mm lower", "lifts", of_all("z", lift_lower_by(50)), "free"),
     ("all retractions a tenth slower", "speeds", of_all("retract", lambda line: with_word(
         line.text, "F", lambda f: f * 0.9)), "free"),
+    ("lifted again behind the way", "lifts", lift_again, "free"),
     ("lifted twice", "lifts", lift_twice, "free"),
     ("lift of any way dropped", "lifts", some_lift(any_way, 0), "free"),
     ("lift of any way halved", "lifts", some_lift(any_way, 0.5), "free"),

@@ -51,6 +51,9 @@ def broken(traverse, original, other, policy=None):
     if run.returncode not in (0, 1) or not run.stdout:
         raise RuntimeError(f"{' '.join(command)}: {run.returncode}: {run.stderr}")
     rules = [rule for rule in json.loads(run.stdout)["rules"] if rule["breaks"]]
+    for first in (rule["first"] for rule in rules):
+        if not first["original_line"] or not first["optimised_line"]:
+            raise RuntimeError(f"a message does not name both lines: {first['message']}")
     if (run.returncode == 1) != bool(rules):
         raise RuntimeError("the exit code and --json do not agree")
     return [rule["rule"] for rule in rules], rules[0]["first"]["message"] if rules else ""

@@ -246,6 +246,36 @@ def all_primed_more(file, _):
     return edited(file, changes) if len(changes) > 20 else None
 
 
+def retraction_in_parts(file, rng):
+    """Two halves, one behind the other."""
+
+    def make(found):
+        _, pulls, _, _ = found
+        line = file.lines[pulls[0]]
+        if len(pulls) != 1 or line.kind != "retract" or not line.text.startswith("G1"):
+            return None
+        half = with_e(line.text, lambda e: e / 2)
+        return edited(file, {pulls[0]: [half, half]})
+
+    return pick(rng, links(file), 50, make)
+
+
+def short_move_before_retraction_dropped(file, rng):
+    """Travel retracts at the end of the path, which it left before."""
+
+    def make(found):
+        k, pulls, _, _ = found
+        moves = [i for i in file.link(k) if file.lines[i].kind != "command" and file.lines[i].kind != "comment"]
+        if len(moves) < 2 or moves[1] != pulls[0] or len(pulls) != 1 or file.lines[pulls[0]].kind != "retract":
+            return None
+        line = file.lines[moves[0]]
+        if line.kind != "travel" or not 0.1 < line.length() < 0.95 or line.feed == file.lines[moves[0] - 1].feed:
+            return None
+        return edited(file, {moves[0]: [f"G1 F{number(line.feed)}"]})
+
+    return pick(rng, links(file), 500, make)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("retraction dropped across a wall", "open_ways", retraction_dropped, "free"),
@@ -266,5 +296,7 @@ DEFECTS = (
     ("retraction done twice", "same_print", only_pulled(("pull", 2)), "free"),
     ("priming done twice", "standstill", only_pulled(("push", 2)), "free"),
     ("all primings 0.1 um longer", "retractions", all_primed_more, "free"),
+    ("retraction in two halves", "retractions", retraction_in_parts, "free"),
+    ("short move before a retraction dropped", "path_ends", short_move_before_retraction_dropped, "free"),
     ("retraction moved across a label", "retractions", label_before_retraction, "free"),
 )
