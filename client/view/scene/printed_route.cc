@@ -12,6 +12,9 @@ namespace {
 constexpr double kSameMm = 1e-3;
 constexpr double kSameLengthMm = 5e-3;  // blocks keep their lengths as float
 
+// A loop that begins elsewhere than sliced may end before its start, by the gap that it had.
+constexpr double kLongestGapMm = 0.25;
+
 bool Same(const DrawnPoint& a, const DrawnPoint& b) {
   return std::abs(a.x - b.x) < kSameMm && std::abs(a.y - b.y) < kSameMm;
 }
@@ -60,7 +63,10 @@ class BlockWalk {
 std::vector<DrawnPoint> Between(std::vector<DrawnPoint> corners, const DrawnPoint& from,
                                 const DrawnPoint& to) {
   if (!corners.empty() && Same(corners.back(), to)) corners.pop_back();
-  if (!corners.empty() && Same(corners.front(), from)) corners.erase(corners.begin());
+  if (!corners.empty() &&
+      std::hypot(corners.front().x - from.x, corners.front().y - from.y) < kLongestGapMm) {
+    corners.erase(corners.begin());
+  }
   return corners;
 }
 
