@@ -68,6 +68,14 @@ TEST(TravelRules, RetractWhereTheFileDoesAndNotByLength) {
   EXPECT_FALSE(inside_too.Retracts({5, 5}, {5, 5.5}));
 }
 
+TEST(TravelRules, OneOpenWayOfManyDoesNotSayThatWallsMatter) {
+  const Rules nearly_all(TwoIslands(true).Go(65, 34).Infill(70, 34).Read());
+
+  EXPECT_FALSE(nearly_all.habit.crossing_matters);
+  EXPECT_TRUE(nearly_all.Retracts({5, 5}, {35, 35}));
+  EXPECT_TRUE(Rules(TwoIslands(false).Read()).habit.crossing_matters);
+}
+
 // What a print that was rewritten shows of it.
 TEST(TravelRules, ReorderingInsideAnIslandAddsNoRetraction) {
   const auto file = TwoIslands(false).Read();

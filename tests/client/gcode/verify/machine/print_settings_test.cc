@@ -33,6 +33,17 @@ TEST(VerifyPrintSettings, EachAccelerationAndLimitCountsForDeposits) {
   EXPECT_NE(After(204, "P800").print, none.Digest());
 }
 
+TEST(VerifyPrintSettings, NamesOfFeaturesCountForDeposits) {
+  for (const std::string name : {";TYPE:Perimeter", "; outer perimeter", "; 'Loop Path', 1"}) {
+    PrintSettings settings;
+    EXPECT_TRUE(settings.SetByComment(name)) << name;
+    EXPECT_NE(settings.Digest(), PrintSettings().Digest()) << name;
+  }
+  PrintSettings none;
+  EXPECT_FALSE(none.SetByComment("; a remark"));
+  EXPECT_EQ(none.Digest(), PrintSettings().Digest());
+}
+
 TEST(VerifyPrintSettings, AccelerationOfTravelAndRetractionsCountsForNoDeposit) {
   PrintSettings none;
   EXPECT_EQ(After(204, "T800").print, none.Digest());

@@ -58,6 +58,14 @@ TEST(VerifyMachine, G92OfTheFilamentAloneIsNoFence) {
   EXPECT_EQ(LastRole("M82\nG92\n"), LineRole::kFixed);
 }
 
+// With words it is the standby temperature of a tool, or offsets.
+TEST(VerifyMachine, G10RetractsWhereItHasNoWords) {
+  EXPECT_TRUE(IsRetractedAfter("M83\nG10\n"));
+  EXPECT_FALSE(IsRetractedAfter("M83\nG10\nG11\n"));
+  EXPECT_EQ(LastRole("M83\nG10\n"), LineRole::kNothing);
+  EXPECT_EQ(LastRole("M83\nG10 P1 S200\n"), LineRole::kFixed);
+}
+
 TEST(VerifyMachine, ACommentThatNumbersALayerIsAFence) {
   EXPECT_EQ(LastRole("; layer 5, Z = 1.0\n"), LineRole::kFence);
   EXPECT_EQ(LastRole("; layer height 0.2\n"), LineRole::kComment);
