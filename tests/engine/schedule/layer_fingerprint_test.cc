@@ -162,6 +162,10 @@ TEST(LayerFingerprint, TellsLayersApartByWhatIsSaidOfTheirMoves) {
       {{}, {}, {}, {{0, 1, 2, true}}},
       {{}, {}, {}, {{0, 1, 2, false, true}}},
       {{}, {}, {}, {known, known}},
+      {{{{{0, 0}, {9, 0}, {9, 9}}, false}}},
+      {{{{{0, 0}, {9, 0}, {9, 9}}, true}}},
+      {{{{{0, 0}, {9, 0}, {9, 8}}, true}}},
+      {{{{{0, 0}, {9, 0}}, true}}},
   };
   for (size_t i = 0; i < different.size(); ++i) {
     for (size_t j = 0; j < i; ++j) EXPECT_NE(shape(different[i]), shape(different[j])) << i << j;
