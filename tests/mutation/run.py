@@ -56,7 +56,7 @@ STATEMENT = re.compile(r"^\s+(?!return|const |auto |case |using |break|continue|
 # What makes no difference: it saves time alone, or shares it with others.
 SPARES_TIME = re.compile(r"\.(reserve|shrink_to_fit)\(|^\s*(\w+[.>-]+)*rest_?(\(\))?\(.*\);$")
 NOT_CODE = re.compile(r"^\s*(//|#|using |namespace |template)")
-ASSERTION = re.compile(r"^\s*(assert|static_assert)\(")
+ASSERTION = re.compile(r"^\s*(for \(.*\) )?(assert|static_assert)\(")
 
 
 def code_part(line):

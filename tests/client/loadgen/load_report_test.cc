@@ -82,6 +82,7 @@ TEST(LoadReport, FailuresAreListedWithAnExample) {
   result.example["UNAVAILABLE"] = "no server there";
 
   EXPECT_THAT(LoadTable(Heading(), result), HasSubstr("UNAVAILABLE: no server there"));
+  EXPECT_THAT(LoadTable(Heading(), result), ContainsRegex("UNAVAILABLE +1 +3\\.[0-9]+ "));
   EXPECT_THAT(LoadJson(Heading(), result), HasSubstr("\"example\": \"no server there\""));
   EXPECT_THAT(LoadTable(Heading(), Thousand()), Not(HasSubstr("not ok")));
 }
