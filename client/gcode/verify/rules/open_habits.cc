@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/container/flat_hash_map.h"
+#include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/way_ends.h"
 #include "client/gcode/verify/rules/rules.h"
@@ -80,19 +81,43 @@ uint32_t BinOf(double length_mm) {
 
 uint32_t KeyOf(uint32_t kind, uint32_t bin) { return kind * kBins + bin; }
 
-// What the layer's travel of this kind does.
-void NoteLayer(const std::vector<Way>& ways, NewOpenWay& open) {
-  for (const Way& other : ways) {
-    if (other.kind != open.kind) continue;
-    if (other.retracts) {
-      ++open.retracted_in_layer;
-      open.line_in_layer = other.line;
-    } else {
-      open.longest_in_layer_mm =
-          std::max(open.longest_in_layer_mm, static_cast<float>(other.length_mm));
+// What the travel of a layer of the original does.
+class LayerHabits {
+ public:
+  explicit LayerHabits(const std::vector<Way>& ways) {
+    for (const Way& way : ways) {
+      NewOpenWay& like = like_[way.kind];
+      if (way.retracts) {
+        ++like.retracted_in_layer;
+        like.line_in_layer = way.line;
+      } else {
+        open_.insert(way.ends);
+        const auto length = static_cast<float>(way.length_mm);
+        like.longest_in_layer_mm = std::max(like.longest_in_layer_mm, length);
+      }
     }
   }
-}
+
+  // Whether there is such travel between the same two points, in either direction.
+  bool HasOpen(const Way& way) const {
+    return open_.contains(way.ends) || open_.contains(way.ends_back);
+  }
+
+  // `way` with what the layer has of its kind.
+  NewOpenWay Among(const Way& way, int64_t layer) const {
+    const auto found = like_.find(way.kind);
+    NewOpenWay open = found != like_.end() ? found->second : NewOpenWay{};
+    open.kind = way.kind;
+    open.length_mm = static_cast<float>(way.length_mm);
+    open.line = way.line;
+    open.layer = layer;
+    return open;
+  }
+
+ private:
+  absl::flat_hash_set<uint64_t> open_;              // Way::ends
+  absl::flat_hash_map<uint32_t, NewOpenWay> like_;  // by kind
+};
 
 // The length from which on travel retracts if nothing else matters: as the slicer states it, or
 // else the shortest that retracts, but for exceptions.
@@ -147,19 +172,12 @@ void ObserveOpenHabits(const LayerPair& layer, LayerFindings& findings) {
     habit.bent += way.bent && !way.retracts ? 1 : 0;
     if (way.retracts && habit.line == 0) habit.line = way.line;
   }
+  const LayerHabits habits(ways);
   for (const Visit& visit : layer.visits()) {
     const Way way = WayIn(layer, layer.is(), visit.first_path, layer.ClassOf(visit.path), true);
     if (way.length_mm <= 0) continue;
-    const bool was_open = std::any_of(ways.begin(), ways.end(), [&](const Way& other) {
-      return !other.retracts && (other.ends == way.ends || other.ends == way.ends_back);
-    });
-    if (was_open) continue;
-    NewOpenWay open{.kind = way.kind,
-                    .length_mm = static_cast<float>(way.length_mm),
-                    .line = way.line,
-                    .layer = layer.index()};
-    NoteLayer(ways, open);
-    findings.is.new_open_ways.push_back(open);
+    if (habits.HasOpen(way)) continue;
+    findings.is.new_open_ways.push_back(habits.Among(way, layer.index()));
   }
 }
 
@@ -175,14 +193,14 @@ void CompareOpenHabits(const Observations& was, const Observations& is, const Ru
     if (added) habit = HabitBeyond(was, way.kind, threshold);
     const bool of_print =
         habit.retracted >= kEnoughOfPrint && habit.open * kOneIn <= habit.retracted;
-    const bool of_layer = way.retracted_in_layer >= kEnoughOfLayer &&
-                          BinOf(way.longest_in_layer_mm) <= threshold;
+    const bool of_layer =
+        way.retracted_in_layer >= kEnoughOfLayer && BinOf(way.longest_in_layer_mm) <= threshold;
     if (!of_print && !of_layer) continue;
-    breaks.push_back({VerifyRule::kOpenWays, of_layer ? way.line_in_layer : habit.line, way.line,
-                      way.layer,
-                      absl::StrFormat("travel of %.2f mm without a retraction; longer than %.1f mm, "
-                                      "this kind retracts in the original",
-                                      way.length_mm, threshold * kBinMm)});
+    breaks.push_back(
+        {VerifyRule::kOpenWays, of_layer ? way.line_in_layer : habit.line, way.line, way.layer,
+         absl::StrFormat("travel of %.2f mm without a retraction; longer than %.1f mm, "
+                         "this kind retracts in the original",
+                         way.length_mm, threshold * kBinMm)});
   }
 }
 

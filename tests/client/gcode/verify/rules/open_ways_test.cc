@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -152,6 +153,26 @@ TEST(VerifyOpenWays, ThatAreNewRetractWhereTheirKindDoes) {
   // As short as the slicer says that it does not retract.
   const std::string settings = "; retract_before_travel = 2,4\n";
   EXPECT_EQ(Broken(a + settings, lines + InfillLine(6, true) + InfillLine(7) + settings), "");
+}
+
+// Each with each of the original it would be ten billion pairs, and minutes.
+TEST(VerifyOpenWays, ManyThatAreNewTakeNoLonger) {
+  const std::string far = "G1 X0 Y-5 F9000\nG1 X1 Y-5 E.03 F1200\n";
+  std::string a = kHead + ";TYPE:Internal infill\n" + far;
+  std::string b = a;
+  const auto add = [](int line, std::string& text) {
+    absl::StrAppend(&text, "G1 X0 Y", 0.4 * line, " F9000\nG1 X1 Y", 0.4 * line, " E.03 F1200\n");
+  };
+  for (int line = 0; line < 100'000; line += 2) {
+    add(line, a);
+    add(line + 1, a);
+    add(line + 1, b);
+    add(line, b);
+  }
+  const auto begin = std::chrono::steady_clock::now();
+
+  EXPECT_EQ(Broken(a, b, Policy::kFree), "");
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
 }
 
 }  // namespace
