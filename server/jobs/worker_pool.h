@@ -79,7 +79,7 @@ class WorkerPool {
   // be in progress with at most this many points, or fewer after LimitMemory. In any case as many
   // tasks as there are permits may be in progress.
   static constexpr size_t kMostUnderWay = 512;
-  static constexpr int64_t kSmallPoints = 250;
+  static constexpr int64_t kSmallPoints = 64;
   static constexpr int64_t kLargePoints = 20'000;
   static constexpr int64_t kMostPoints = 4'000'000;
 

@@ -59,6 +59,8 @@ ATTACKS = {
     "paused_searches": callers.open_jobs(requests.large_layers("auto")),
     # Layers of some dozen contours of many points: all searches under way hold what their bounds need.
     "many_bounds": callers.open_jobs(lambda: requests.options("auto") + requests.layer(80, corners=12) * 6),
+    # The same of so few points that a server might take them for nothing, by many callers.
+    "small_bounds": callers.open_jobs(lambda: requests.options("auto") + requests.layer(20, corners=10) * 6, most=250, callers=40),
     "unread_answers": callers.open_jobs(lambda: requests.options("none") + requests.layer(20_000) * 4, window=0),
     "corners": callers.corners,
     "many_channels": transport.many_channels,

@@ -122,18 +122,18 @@ def batches(bodies, extra=(), seconds=0.3, window=None):
     return attack
 
 
-def open_jobs(body, window=None):
-    """Jobs by the dozen whose connections stay open to the end; with a window of 0 nobody reads their answers."""
+def open_jobs(body, window=None, most=60, callers=1):
+    """Jobs whose connections stay open to the end; with a window of 0 nobody reads their answers."""
     def attack(server, end):
         made = message(body())
         held = []
 
         def step():
-            if len(held) < 60:
-                connection = Connection(server.port, window)
+            if len(held) < most:
+                connection = Connection(server.port, window, source=f"127.0.1.{1 + len(held) % callers}")
                 Window(connection).send(connection.call(SERVICE + "OptimizeBatch"), made, patience=0.3)
                 held.append(connection)
-            time.sleep(0.05)
+            time.sleep(3 / most)
 
         until(end, step)
         for connection in held:

@@ -169,7 +169,8 @@ TEST(WorkerTurns, NothingThatHoldsMuchBeginsWhileMemoryIsShort) {
   }
   std::atomic<int> small{0};
   for (int i = 0; i < 30; ++i) {
-    pool.NewQueue("small " + std::to_string(i))->SubmitLarge([&] { ++small; }, 100);
+    pool.NewQueue("small " + std::to_string(i))
+        ->SubmitLarge([&] { ++small; }, WorkerPool::kSmallPoints);
   }
   WaitFor([&] { return small == 30; });
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
