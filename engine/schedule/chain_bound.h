@@ -47,6 +47,9 @@ class ChainBound {
   // Layers may come in any order.
   void Add(uint64_t index, BoundedLayer layer);
 
+  // Of the layers kept.
+  int64_t points() const { return layers_.empty() ? 0 : static_cast<int64_t>(points_); }
+
   // No routes of all layers cost less together. Walls are left out, as they only add to costs. A
   // move to the cleaning point counts as in LayerOutcome::lower_bound. Unset if a part of the chain
   // has no bound, or its layers have different costs, or if there are too many points. Each part of

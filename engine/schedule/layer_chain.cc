@@ -264,7 +264,7 @@ void LayerChain::MaybeFinish() {
   if (finished_ || tasks_ > 0 || !(all_done || cancel_.cancelled())) return;
   if (BoundsChain() && !bounding_chain_ && !cancel_.cancelled()) {
     bounding_chain_ = true;
-    Submit([this] { RunBoundChain(); }, /*points=*/0);
+    Submit([this] { RunBoundChain(); }, chain_bound_.points());
     return;
   }
   finished_ = true;
