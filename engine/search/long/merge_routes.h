@@ -1,8 +1,8 @@
 // Merges two routes of a layer: of stretches over which both visit the same paths, the one that
 // costs less remains.
 //
-//   route    ... a [ 1 2 3 4 ] b ...   ->   ... a [ 3 1 2 4 ] b ...   or 4 2 1 3, if that is
-//   cheaper other    ... c [ 3 1 2 4 ] d ...
+//   route    ... a [ 1 2 3 4 ] b ...   ->   ... a [ 3 1 2 4 ] b ...
+//   other    ... c [ 3 1 2 4 ] d ...        or 4 2 1 3, whichever costs less
 //
 // Two local optima agree in most places, and in some of the others each is the better one. Such
 // stretches are the parts of partition crossover (Whitley, Hains and Howe 2009) that a route enters

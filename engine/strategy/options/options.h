@@ -29,7 +29,7 @@ struct OptionSpec {
 // The option `bound`, which several strategies have; see StrategyTraits::bound_effort.
 OptionSpec BoundOption(bool default_value);
 
-// The option `chain_bound`, off by default; see StrategyTraits::bounds_chain.
+// The option `chain_bound`, off by default; see StrategyTraits::chain_bounding.
 OptionSpec ChainBoundOption();
 
 // The option `pure` of the sources' methods, off by default. It runs the method as published; a
