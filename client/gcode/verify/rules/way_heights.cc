@@ -40,6 +40,81 @@ void ObserveFirstWay(const LayerPair& layer, const TraceChunk& chunk, const Trac
   }
 }
 
+// How the head goes up and down on the travel of one link.
+class LinkHeights {
+ public:
+  LinkHeights(double from, double to, bool scripted, int64_t layer, Observations& seen)
+      : from_(from),
+        to_(to),
+        scripted_(scripted),
+        seen_(seen),
+        lowest_{0, 0, layer, RiseOf(from, to)},
+        deepest_(lowest_),
+        descent_{0, 0, layer, lowest_.rise},
+        lifts_{lowest_.rise == WayRise::kLevel, 0, 0, 0, layer} {}
+
+  void CountLifts(const TraceMove& move) {
+    if (move.kind == MoveKind::kUp && move.z_to_mm > move.z_from_mm && ++lifts_.times > 1) {
+      lifts_.line = move.line;
+    }
+    sinks_ |= move.z_to_mm < move.z_from_mm - kSlackMm;
+    if (lifts_.level && sinks_ && move.z_to_mm > move.z_from_mm + kSlackMm) {
+      sinks_ = false;
+      ++lifts_.dips;
+      lifts_.line = move.line;
+    }
+  }
+
+  void NoteRise(const TraceMove& move, bool only_new) {
+    // A slope among known lines is compared with the heights of all ways: lifts.
+    const bool rises = move.kind == MoveKind::kUp || (scripted_ && move.sideways());
+    if (!rises || move.z_to_mm <= move.z_from_mm) return;
+    const Seen seen{move.line, lifts_.layer, 0};
+    auto& heights = seen_.rises.Of(lifts_.level);
+    heights.try_emplace(Um(move.z_to_mm - to_), seen);
+    if (!only_new) heights.try_emplace(Um(move.z_to_mm - from_), seen);
+    if (move.spiral != 0) seen_.spirals.try_emplace(move.spiral, seen);
+  }
+
+  void NoteDepth(const TraceMove& move) {
+    if (move.kind == MoveKind::kDown) {
+      const auto below = static_cast<float>(move.z_to_mm - std::min(from_, to_));
+      if (below < deepest_.above_mm) {
+        deepest_.above_mm = below;
+        deepest_.line = move.line;
+      }
+    }
+    if (move.kind != MoveKind::kTravel || move.length_mm() < kShortestMm) return;
+    const auto length = static_cast<float>(move.length_mm());
+    if (move.z_to_mm < move.z_from_mm - kSlackMm && length > descent_.length_mm) {
+      descent_.length_mm = length;
+      descent_.line = move.line;
+    }
+    const auto above = static_cast<float>(move.z_to_mm - std::max(from_, to_));
+    if (above >= lowest_.above_mm) return;
+    lowest_.above_mm = above;
+    lowest_.line = move.line;
+  }
+
+  void Finish() {
+    if (descent_.line != 0) seen_.descents.push_back(descent_);
+    if (lowest_.line != 0) seen_.lowest.push_back(lowest_);
+    if (deepest_.line != 0) seen_.deepest.push_back(deepest_);
+    if (lifts_.line != 0) seen_.lifts_of_links.push_back(lifts_);
+  }
+
+ private:
+  const double from_;
+  const double to_;
+  const bool scripted_;
+  Observations& seen_;
+  LowestWay lowest_;
+  LowestWay deepest_;
+  Descent descent_;
+  RepeatedLift lifts_;
+  bool sinks_ = false;
+};
+
 void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool only_new,
              Observations& seen) {
   const TraceLink& traced = chunk.links[link];
@@ -47,60 +122,16 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
   if (!chunk.moves[traced.first_move].in_print) {
     return ObserveFirstWay(layer, chunk, traced, seen);
   }
-  const double to = chunk.paths[link].z_mm;
-  const double from = chunk.moves[traced.first_move].z_from_mm;
-  LowestWay lowest{0, 0, layer.index(), RiseOf(from, to)};
-  LowestWay deepest = lowest;
-  Descent descent{0, 0, layer.index(), lowest.rise};
-  RepeatedLift lifts{lowest.rise == WayRise::kLevel, 0, 0, 0, layer.index()};
-  bool sinks = false;
+  LinkHeights heights(chunk.moves[traced.first_move].z_from_mm, chunk.paths[link].z_mm,
+                      traced.scripted, layer.index(), seen);
   for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
-    if (move.kind == MoveKind::kUp && move.z_to_mm > move.z_from_mm && ++lifts.times > 1) {
-      lifts.line = move.line;
-    }
-    sinks |= move.z_to_mm < move.z_from_mm - kSlackMm;
-    if (lifts.level && sinks && move.z_to_mm > move.z_from_mm + kSlackMm) {
-      sinks = false;
-      ++lifts.dips;
-      lifts.line = move.line;
-    }
+    heights.CountLifts(move);
     if (only_new && layer.IsKnown(move)) continue;
-    const auto note_rise = [&](double base) {
-      seen.rises.Of(lowest.rise == WayRise::kLevel)
-          .try_emplace(Um(move.z_to_mm - base), Seen{move.line, layer.index(), 0});
-    };
-    // A slope among known lines is compared with the heights of all ways: lifts.
-    const bool rises = move.kind == MoveKind::kUp || (traced.scripted && move.sideways());
-    if (rises && move.z_to_mm > move.z_from_mm) {
-      note_rise(to);
-      if (!only_new) note_rise(from);
-      if (move.spiral != 0) {
-        seen.spirals.try_emplace(move.spiral, Seen{move.line, layer.index(), 0});
-      }
-    }
-    if (move.kind == MoveKind::kDown) {
-      const auto below = static_cast<float>(move.z_to_mm - std::min(from, to));
-      if (below < deepest.above_mm) {
-        deepest.above_mm = below;
-        deepest.line = move.line;
-      }
-    }
-    if (move.kind != MoveKind::kTravel || move.length_mm() < kShortestMm) continue;
-    const auto length = static_cast<float>(move.length_mm());
-    if (move.z_to_mm < move.z_from_mm - kSlackMm && length > descent.length_mm) {
-      descent.length_mm = length;
-      descent.line = move.line;
-    }
-    const auto above = static_cast<float>(move.z_to_mm - std::max(from, to));
-    if (above >= lowest.above_mm) continue;
-    lowest.above_mm = above;
-    lowest.line = move.line;
+    heights.NoteRise(move, only_new);
+    heights.NoteDepth(move);
   }
-  if (descent.line != 0) seen.descents.push_back(descent);
-  if (lowest.line != 0) seen.lowest.push_back(lowest);
-  if (deepest.line != 0) seen.deepest.push_back(deepest);
-  if (lifts.line != 0) seen.lifts_of_links.push_back(lifts);
+  heights.Finish();
 }
 
 // The head descends no deeper than in the original, and does not rise more often between two paths.

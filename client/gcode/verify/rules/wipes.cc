@@ -100,6 +100,13 @@ Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
   return wipe;
 }
 
+// `original_line`: where the wipe, or its path, is in the original.
+WipeDeviation DeviationOf(const Wipe& wipe, uint32_t original_line, const LayerPair& layer) {
+  return {wipe.off_mm,   wipe.astray_mm, wipe.turned_mm, wipe.pulled_mm / wipe.length_mm,
+          wipe.steepest, wipe.uneven_mm, wipe.length_mm, wipe.line,
+          original_line, layer.index()};
+}
+
 // A bound that all but a few wipes of the original keep, but at least `least`.
 float Limit(std::vector<float> values, float least) {
   if (values.empty()) return least;
@@ -161,9 +168,7 @@ void CheckWipes(const LayerPair& layer, LayerFindings& findings) {
     if (wipe.line == 0) continue;
     any = true;
     if (was.links[path + 1].scripted) continue;
-    findings.was.wipes.push_back({wipe.off_mm, wipe.astray_mm, wipe.turned_mm, wipe.pulled_mm / wipe.length_mm,
-                                  wipe.steepest, wipe.uneven_mm, wipe.length_mm, wipe.line,
-                                  wipe.line, layer.index()});
+    findings.was.wipes.push_back(DeviationOf(wipe, wipe.line, layer));
   }
   for (const Visit& visit : layer.visits()) {
     const Wipe& had = wiped[visit.path - layer.first_path_was()];
@@ -179,9 +184,7 @@ void CheckWipes(const LayerPair& layer, LayerFindings& findings) {
     }
     if (wipe.line == 0 || wipe.known) continue;
     wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), true);
-    findings.is.wipes.push_back({wipe.off_mm, wipe.astray_mm, wipe.turned_mm, wipe.pulled_mm / wipe.length_mm,
-                                 wipe.steepest, wipe.uneven_mm, wipe.length_mm, wipe.line,
-                                 was.LineOf(was.paths[visit.path]), layer.index()});
+    findings.is.wipes.push_back(DeviationOf(wipe, was.LineOf(was.paths[visit.path]), layer));
   }
 }
 
