@@ -227,15 +227,47 @@ class AutoLayer : public PreparedLayer {
     if (budget.was_exhausted()) return Finish(std::move(route), 0, budget);
     SearchState state(layer.problem, tree, entries);
     state.Load(route, &budget);
+    const int64_t iterations = Improve(layer, effort, state, budget);
+    Route improved = state.Unload();
+    ChooseEntries(layer, improved, budget);
+    const bool optimal =
+        !budget.was_exhausted() &&
+        SolveSmallParts(layer, SmallParts(layer.problem, effort.small_parts), improved, budget);
+    Solution solution = Finish(std::move(improved), iterations, budget);
+    if (optimal) {
+      solution.stop = StopReason::kOptimal;
+      solution.lower_bound = RouteCost(layer.problem, solution.route);
+    }
+    return solution;
+  }
+
+  // Searches on from the route of `state`; returns the iterations.
+  int64_t Improve(const LayerView& layer, const Effort& effort, SearchState& state,
+                  Budget& budget) const {
+    const int paths = state.tree().path_count();
+    const IteratedSearchOptions options = WalkOptions(layer, effort, paths, budget);
+    IteratedSearch search(state, *derived_->neighbors, options);
+    search.Descend(budget);
+    Rng rng(layer.problem.seed);
+    search.Run(rng, budget);
+    if (!IsLong(effort)) return search.iterations();
+    const int kicked = Kicked(options);
+    LongSearchOptions walks{options, Patience(effort.kicks, kicked, paths), kLeastGain};
+    walks.walk.patience = static_cast<int64_t>(kLeastPatience + kWalkPatience * kicked);
+    return search.iterations() +
+           SearchLong(layer.problem, state, *derived_->neighbors, walks, rng, budget);
+  }
+
+  // Of the only walk, or of the first one of a long search.
+  IteratedSearchOptions WalkOptions(const LayerView& layer, const Effort& effort, int paths,
+                                    Budget& budget) const {
     IteratedSearchOptions options;
     options.local_search = derived_->options;
     options.descent_depth = 1;  // kicks find sooner what trials would
-    const int paths = tree.path_count();
     options.first_kicked = effort.first_kicked;
     options.last_kicked = std::min(effort.last_kicked, paths);
-    const int kicked = options.last_kicked - options.first_kicked + 1;
-    const bool is_long = effort.kicks > kLongEffort && options_.least_gain_each == 0;
-    options.patience = Patience(is_long ? kFirstWalkEffort : effort.kicks, kicked, paths);
+    options.patience =
+        Patience(IsLong(effort) ? kFirstWalkEffort : effort.kicks, Kicked(options), paths);
     options.least_gain = kLeastGain;
     options.least_gain_each = options_.least_gain_each;
     options.window = static_cast<double>(options_.gain_window);
@@ -250,27 +282,15 @@ class AutoLayer : public PreparedLayer {
     options.walls = layer.problem.walls;
     options.most_span = std::clamp(kWidestKicks / paths, kLeastMostSpan, kMostSpan);
     if (!effort.detours) options.temperature = 0;
-    IteratedSearch search(state, *derived_->neighbors, options);
-    search.Descend(budget);
-    Rng rng(layer.problem.seed);
-    search.Run(rng, budget);
-    int64_t iterations = search.iterations();
-    if (is_long) {
-      LongSearchOptions walks{options, Patience(effort.kicks, kicked, paths), kLeastGain};
-      walks.walk.patience = static_cast<int64_t>(kLeastPatience + kWalkPatience * kicked);
-      iterations += SearchLong(layer.problem, state, *derived_->neighbors, walks, rng, budget);
-    }
-    Route improved = state.Unload();
-    ChooseEntries(layer, improved, budget);
-    const bool optimal =
-        !budget.was_exhausted() &&
-        SolveSmallParts(layer, SmallParts(layer.problem, effort.small_parts), improved, budget);
-    Solution solution = Finish(std::move(improved), iterations, budget);
-    if (optimal) {
-      solution.stop = StopReason::kOptimal;
-      solution.lower_bound = RouteCost(layer.problem, solution.route);
-    }
-    return solution;
+    return options;
+  }
+
+  bool IsLong(const Effort& effort) const {
+    return effort.kicks > kLongEffort && options_.least_gain_each == 0;
+  }
+
+  static int Kicked(const IteratedSearchOptions& options) {
+    return options.last_kicked - options.first_kicked + 1;
   }
 
   // Iterations without a gain that end a search of such effort, which kicks so many of the paths.

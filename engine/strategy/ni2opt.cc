@@ -76,16 +76,11 @@ class PublishedNi2opt : public Strategy {
 }  // namespace
 
 StrategyEntry Ni2optEntry() {
-  OptionSpec point_release;
-  point_release.name = "point_release";
-  point_release.type = OptionSpec::Type::kBool;
-  point_release.default_value = "true";
-  point_release.description = "Alternate 2-opt with choosing the entries again.";
   return StrategyEntry{
       "ni2opt",
       "Nearest insertion, then 2-opt and point release until neither finds a gain.",
       false,
-      {point_release,
+      {BoolOption("point_release", true, "Alternate 2-opt with choosing the entries again."),
        PureOption(
            "Metodo 3 as published, or Metodo 2 without point release: rasters after the contours' "
            "2-opt, release once at the end, never a shorter route of another method.")},

@@ -27,29 +27,22 @@ bool InRange(const OptionSpec& spec, double value) {
 
 }  // namespace
 
+OptionSpec BoolOption(const char* name, bool default_value, const char* description) {
+  return OptionSpec{name,       OptionSpec::Type::kBool, default_value ? "true" : "false", 0, 0, {},
+                    description};
+}
+
 OptionSpec BoundOption(bool default_value) {
-  return OptionSpec{"bound",
-                    OptionSpec::Type::kBool,
-                    default_value ? "true" : "false",
-                    0,
-                    0,
-                    {},
-                    "Also compute a lower bound, which limits how much shorter any route can be."};
+  return BoolOption("bound", default_value,
+                    "Also compute a lower bound, which limits how much shorter any route can be.");
 }
 
 OptionSpec ChainBoundOption() {
-  return OptionSpec{"chain_bound",
-                    OptionSpec::Type::kBool,
-                    "false",
-                    0,
-                    0,
-                    {},
-                    "Also compute a lower bound of all layers together, wherever each one ends."};
+  return BoolOption("chain_bound", false,
+                    "Also compute a lower bound of all layers together, wherever each one ends.");
 }
 
-OptionSpec PureOption(const char* description) {
-  return OptionSpec{"pure", OptionSpec::Type::kBool, "false", 0, 0, {}, description};
-}
+OptionSpec PureOption(const char* description) { return BoolOption("pure", false, description); }
 
 absl::StatusOr<StrategyOptions::Value> StrategyOptions::ParseValue(const OptionSpec& spec,
                                                                    const std::string& text) {

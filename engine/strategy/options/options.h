@@ -26,6 +26,9 @@ struct OptionSpec {
   std::string description;          // what it does, with its unit
 };
 
+// An option that is true or false.
+OptionSpec BoolOption(const char* name, bool default_value, const char* description);
+
 // The option `bound`, which several strategies have; see StrategyTraits::bound_effort.
 OptionSpec BoundOption(bool default_value);
 
