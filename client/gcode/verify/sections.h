@@ -50,9 +50,9 @@ struct Section {
   size_t first_note = 0;  // behind a change of height they are counted from the last deposit on
   size_t last_note = 0;
   Micro lowest = INT64_MAX;  // height of all moves in XY
-  uint64_t moves = 0;     // of everything but deposits, and of settings, before the first deposit
-  bool command = false;   // it ends with a command
-  uint64_t header = 0;    // of the comments between the mark of a layer and the first travel
+  uint64_t moves = 0;    // of everything but deposits, and of settings, before the first deposit
+  bool command = false;  // it ends with a command
+  uint64_t header = 0;   // of the comments between the mark of a layer and the first travel
 
   // Of deposits, and of comments with their place among these, in their order; notes say to which
   // section comments belong.

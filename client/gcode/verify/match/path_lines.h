@@ -30,9 +30,8 @@ class PathLines {
   uint32_t OriginalOf(uint32_t optimised) const {
     if (lines_.empty()) return 0;
     const auto next =
-        std::partition_point(lines_.begin(), lines_.end(), [optimised](const Pair& pair) {
-          return pair.optimised < optimised;
-        });
+        std::partition_point(lines_.begin(), lines_.end(),
+                             [optimised](const Pair& pair) { return pair.optimised < optimised; });
     return next == lines_.end() ? lines_.back().original : next->original;
   }
 

@@ -56,7 +56,8 @@ bool HasDepartures(const LayerPair& layer) {
         first = &move;
         continue;
       }
-      if (first->length_mm() <= kDepartureMm && ExcessOf(*first, move) > kLeastExcessMm) return true;
+      if (first->length_mm() <= kDepartureMm && ExcessOf(*first, move) > kLeastExcessMm)
+        return true;
       break;
     }
   }
@@ -194,7 +195,7 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
     const double of_first_mm = layer.index() > 0 ? kDepartureMm : 0;
     const uint32_t moves = along.At(link);
     const bool is_known = LengthOf(layer.is(), link, moves) <= longest + kLeastExcessMm;
-    CheckLink(layer, link, std::max(tails.At(link), is_known ? moves : 0), 
+    CheckLink(layer, link, std::max(tails.At(link), is_known ? moves : 0),
               first ? of_first_mm : departure_mm, findings);
   }
 }

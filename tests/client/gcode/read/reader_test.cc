@@ -19,8 +19,8 @@ namespace traverse::gcode {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
 using testing::Read;
+using ::testing::StartsWith;
 
 std::string Fault(const std::string& text) {
   const absl::StatusOr<std::shared_ptr<GcodeFile>> file = ReadGcode(text, "part.gcode");

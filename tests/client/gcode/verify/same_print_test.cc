@@ -55,7 +55,9 @@ TEST(SamePrint, TheHeadLeavesThePrintThoughNoScriptFollows) {
 
 // Printers look at it before they print, so it is right in both files or the same in both.
 TEST(SamePrint, AFirstLineMayStateTheDigestOfItsFile) {
-  const auto with_md5 = [](const std::string& text) { return "; MD5:" + Md5Hex(text) + "\n" + text; };
+  const auto with_md5 = [](const std::string& text) {
+    return "; MD5:" + Md5Hex(text) + "\n" + text;
+  };
   const std::string a = kHead + kTwo;
   const std::string b = kHead + kOther + kOne;
   const std::string right = with_md5(a);

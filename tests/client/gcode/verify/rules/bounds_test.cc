@@ -45,9 +45,9 @@ TEST(VerifyBounds, WaysMayBendAroundAWallWhereTheFileDoes) {
   const std::string around = "G1 X9.6 Y9.6 F9000\nG1 X20.4 Y9.6\n" + straight;
   EXPECT_EQ(Broken(plain, With(plain, straight, around), Policy::kFree), "bounds");
   // One that leads the other way, in another layer.
-  const std::string back = With(Line("Internal infill", "X5 Y10.6", "X4 Y10.6"),
-                                "G1 X5 Y10.6 F9000\n",
-                                "G1 X20.4 Y9.6 F9000\nG1 X9.6 Y9.6\nG1 X5 Y10.6\n");
+  const std::string back =
+      With(Line("Internal infill", "X5 Y10.6", "X4 Y10.6"), "G1 X5 Y10.6 F9000\n",
+           "G1 X20.4 Y9.6 F9000\nG1 X9.6 Y9.6\nG1 X5 Y10.6\n");
   const std::string own =
       plain + kNextLayer + kSquare + Line("Internal infill", "X24 Y10.6", "X28 Y10.6") + back;
   EXPECT_EQ(Broken(own, own), "");
@@ -112,8 +112,8 @@ TEST(VerifyBounds, ShortDetoursAreThoseOfTheFile) {
   const std::string a = kHead + kTwo + kNextLayer + kTwo;
   const std::string aside = "G1 X9 Y.7 F9000\n" + way;
   EXPECT_EQ(Broken(a, With(a, way, aside)), "bounds");
-  const std::string departs = With(kHead + kZigzag + kTwo, "G1 X0 Y0 F9000\n",
-                                   "G1 X10 Y10.3 F9000\nG1 X0 Y0\n");
+  const std::string departs =
+      With(kHead + kZigzag + kTwo, "G1 X0 Y0 F9000\n", "G1 X10 Y10.3 F9000\nG1 X0 Y0\n");
   EXPECT_EQ(Broken(departs, departs), "");
   EXPECT_EQ(Broken(departs, With(departs, way, aside)), "");
 }
@@ -122,8 +122,7 @@ TEST(VerifyBounds, ShortDetoursAreThoseOfTheFile) {
 TEST(VerifyBounds, TheFirstTravelOfAllGoesStraight) {
   const std::string start = "M83\nG28\nG1 X.4 Y9 Z.2 F9000\n;LAYER_CHANGE\nM971 S11\n";
   const std::string way = "G1 X0 Y0 F9000\n";
-  const std::string a =
-      start + way + ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y0 E.3\n" + kOther;
+  const std::string a = start + way + ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y0 E.3\n" + kOther;
   EXPECT_EQ(Broken(a, a), "");
   EXPECT_EQ(Broken(a, With(a, way, "G1 X0 F9000\nG1 Y0\n")), "bounds");
   EXPECT_EQ(Broken(a, With(a, way, "G1 Y0 F9000\nG1 X0\n")), "bounds");
