@@ -162,6 +162,25 @@ std::string RestateProgress(std::string_view line, double factor) {
   return out;
 }
 
+std::string RestateLines(std::string_view text, const TimeScale& scale) {
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    const size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    if (line.starts_with(';')) {
+      out += RestateComment(line, scale);
+    } else if (line.starts_with("M73 ")) {
+      out += RestateProgress(line, scale.total);
+    } else {
+      out += line;
+    }
+    if (end < text.size()) out += '\n';
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return out;
+}
+
 }  // namespace
 
 size_t FindMark(std::string_view text) {
@@ -208,35 +227,19 @@ std::optional<std::string> ScaleDuration(std::string_view value, double factor) 
 }
 
 std::string RestateTimes(std::string_view text, const TimeScale& scale) {
-  const bool states_digest = StatesItsDigest(text);
-  std::string out;
-  out.reserve(text.size());
-  while (!text.empty()) {
-    const size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = text.substr(0, end);
-    if (line.starts_with(';')) {
-      out += RestateComment(line, scale);
-    } else if (line.starts_with("M73 ")) {
-      out += RestateProgress(line, scale.total);
-    } else {
-      out += line;
-    }
-    if (end < text.size()) out += '\n';
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  if (states_digest) RenewDigest(out);
+  std::string out = RestateLines(text, scale);
+  if (StatesItsDigest(text)) RenewDigest(out);
   return out;
 }
 
 std::string RestateOptimised(std::string_view text, const TimeScale& scale) {
-  std::string out = RestateTimes(text, scale);
-  const size_t mark = FindMark(out);
-  if (mark == std::string::npos) return out;
-  size_t end = std::min(out.find('\n', mark), out.size());
-  if (end > 0 && out[end - 1] == '\r') --end;
-  const bool states_digest = StatesItsDigest(out);
-  out.insert(end, ", " + DescribeScale(scale));
-  if (states_digest) RenewDigest(out);
+  std::string out = RestateLines(text, scale);
+  if (const size_t mark = FindMark(out); mark != std::string::npos) {
+    size_t end = std::min(out.find('\n', mark), out.size());
+    if (end > 0 && out[end - 1] == '\r') --end;
+    out.insert(end, ", " + DescribeScale(scale));
+  }
+  if (StatesItsDigest(text)) RenewDigest(out);
   return out;
 }
 
