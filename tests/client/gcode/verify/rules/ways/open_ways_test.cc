@@ -1,4 +1,4 @@
-// Travel across outer walls without a retraction: client/gcode/verify/rules/open_ways.
+// Travel across outer walls without a retraction: client/gcode/verify/rules/ways/open_ways.
 
 #include <gtest/gtest.h>
 

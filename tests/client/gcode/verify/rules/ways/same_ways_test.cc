@@ -1,4 +1,4 @@
-// Ways between the same two points as in the original: client/gcode/verify/rules/same_ways.
+// Ways between the same two points as in the original: client/gcode/verify/rules/ways/same_ways.
 
 #include <gtest/gtest.h>
 

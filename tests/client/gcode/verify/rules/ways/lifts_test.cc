@@ -1,4 +1,4 @@
-// Lifts of travel: client/gcode/verify/rules/lifts.
+// Lifts of travel: client/gcode/verify/rules/ways/lifts.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
