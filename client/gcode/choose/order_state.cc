@@ -50,20 +50,6 @@ Placement OrderState::Turned(Placement placement) {
 // Whether other paths may come between the one at `place` and the one before it.
 bool OrderState::MayCut(size_t place) const { return !freedom_.goes_on[PathAt(place)]; }
 
-bool OrderState::UnitEnds(size_t place) const {
-  const uint32_t a = PathAt(place - 1);
-  const uint32_t b = PathAt(place);
-  return freedom_.unit[a] != freedom_.unit[b] || freedom_.group[a] != freedom_.group[b];
-}
-
-bool OrderState::SameUnit(size_t begin, size_t end) const {
-  const uint32_t unit = freedom_.unit[PathAt(begin)];
-  for (size_t i = begin + 1; i < end; ++i) {
-    if (freedom_.unit[PathAt(i)] != unit) return false;
-  }
-  return true;
-}
-
 // Whether any of `paths` stands at [begin, end).
 bool OrderState::AnyBetween(const std::vector<uint32_t>& paths, size_t begin, size_t end) const {
   return std::any_of(paths.begin(), paths.end(),
@@ -75,8 +61,6 @@ bool OrderState::MayExchange(size_t begin, size_t middle, size_t end) const {
   // Groups come one after the other.
   if (freedom_.group[PathAt(begin)] != freedom_.group[PathAt(end - 1)]) return false;
   if (!MayCut(begin) || !MayCut(middle) || !MayCut(end)) return false;
-  const bool whole_units = UnitEnds(begin) && UnitEnds(middle) && UnitEnds(end);
-  if (!whole_units && !SameUnit(begin, end)) return false;
   if (middle - begin <= end - middle) {
     for (size_t i = begin; i < middle; ++i) {
       if (AnyBetween(pairs_.later[PathAt(i)], middle, end)) return false;
@@ -93,7 +77,6 @@ bool OrderState::MayTurn(size_t begin, size_t end) const {
   if (begin == 0 || end >= size()) return false;
   if (freedom_.group[PathAt(begin)] != freedom_.group[PathAt(end - 1)]) return false;
   if (!MayCut(end)) return false;
-  if (!(UnitEnds(begin) && UnitEnds(end)) && !SameUnit(begin, end)) return false;
   for (size_t i = begin; i < end; ++i) {
     const PathRule& rule = RuleAt(i);
     if (!MayCut(i) || (!rule.contour && rule.one_way)) return false;

@@ -89,8 +89,6 @@ class OrderState {
  private:
   WayTotals Ask(size_t place, const Placement& from, const Placement& to);
   bool MayCut(size_t place) const;
-  bool UnitEnds(size_t place) const;
-  bool SameUnit(size_t begin, size_t end) const;
   bool AnyBetween(const std::vector<uint32_t>& paths, size_t begin, size_t end) const;
   WayTotals TotalsWith(size_t begin, size_t end, const PlaceRuns& runs);
   void Take(size_t begin, size_t end, size_t middle, const WayTotals& totals);

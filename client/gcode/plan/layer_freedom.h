@@ -1,4 +1,5 @@
-// What may change in a layer, path by path and pair by pair: what its plan says as a tree.
+// What may change in a layer, path by path and pair by pair: what its plan says as a tree, but for
+// the islands of Latitude::kIslands.
 
 #ifndef TRAVERSE_CLIENT_GCODE_PLAN_LAYER_FREEDOM_H_
 #define TRAVERSE_CLIENT_GCODE_PLAN_LAYER_FREEDOM_H_
@@ -19,7 +20,6 @@ struct PathRule {
 struct LayerFreedom {
   std::vector<PathRule> rules;  // [path]
   std::vector<uint32_t> group;  // [path] which it does not leave; they ascend
-  std::vector<uint32_t> unit;   // [path] each is done in one go; the same for all if none has to be
   std::vector<bool> goes_on;    // [path] comes directly behind the path before it
   std::vector<std::pair<uint32_t, uint32_t>> ordered;  // the first of them comes before the second
 };

@@ -35,8 +35,6 @@ class LayerPlanner {
 
   bool BeginsGroup(size_t path) const;
 
-  bool ByIslands() const { return policy_ == Policy::kBalanced || latitude_ == Latitude::kIslands; }
-
   void AddPath(size_t path);
   uint32_t AddNode(uint32_t parent);
   bool GoesWithBefore(size_t path) const;
@@ -138,7 +136,7 @@ void LayerPlanner::AddGroup(size_t begin, size_t end) {
   }
   result_.movable += static_cast<int64_t>(end - begin);
   result_.plan.mutable_nodes(static_cast<int>(group))->mutable_any_order();
-  if (ByIslands()) {
+  if (latitude_ == Latitude::kIslands) {
     return AddGroupByIslands(group, begin, end);
   }
   uint32_t units = 0;
@@ -212,8 +210,6 @@ LayerPlan LayerPlanner::Make() {
                            [this](uint32_t i, uint32_t j) { return paths_->KeepsOrder(i, j); });
   result_.island = contacts_.island;
   freedom.ordered = contacts_.ordered;
-  freedom.unit.assign(size(), 0);
-  if (ByIslands()) freedom.unit = contacts_.island;
   freedom.goes_on.assign(size(), false);
   freedom.group.reserve(size());
   result_.plan.add_nodes()->mutable_in_order();

@@ -5,7 +5,7 @@
 //    |                                fan
 //    +- any_order(paths, before)      the paths of a group; `before` keeps the sliced order of
 //    +- path                          paths that touch; pinned paths stand alone
-//    +- any_order(islands of any_order(paths, before))      under `balanced`
+//    +- any_order(islands of any_order(paths, before))      with the latitude kIslands
 
 #ifndef TRAVERSE_CLIENT_GCODE_PLAN_POLICY_H_
 #define TRAVERSE_CLIENT_GCODE_PLAN_POLICY_H_
@@ -24,7 +24,7 @@ namespace traverse::gcode {
 
 enum class Policy : uint8_t {
   kSafe,      // nothing that a slicer chose for quality changes
-  kBalanced,  // also walls may begin at their sharp corners, and islands are done one by one
+  kBalanced,  // also walls may begin at their sharp corners
   kFree,      // any start and direction; only what touches keeps the order of its features
 };
 
@@ -82,8 +82,8 @@ enum class Latitude : uint8_t {
   // The layer begins and ends with the same paths as in the file, so that nothing changes for the
   // layers around it; walls that touch and are consecutive in the file stay together.
   kNarrow,
-  // Begins and ends like kNarrow, and islands are printed one by one under any policy, so that
-  // travel crosses walls no more often than necessary.
+  // Begins and ends like kNarrow, and islands are printed one by one, so that travel crosses walls
+  // no more often than necessary.
   kIslands,
 };
 
