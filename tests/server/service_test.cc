@@ -193,7 +193,7 @@ TEST(Service, AWindowOfOneLayerStillLooksAheadAndCleans) {
   cleaning.mutable_point();
 
   // With 5, the last layer in view of the first one is the last before a cleaning.
-  for (const int every_layers : {2, 5, 7}) {
+  for (const uint32_t every_layers : {2u, 5u, 7u}) {
     SCOPED_TRACE(every_layers);
     cleaning.set_every_layers(every_layers);
 
