@@ -169,7 +169,6 @@ class Rewriter {
            const RewriteOptions& options)
       : file_(file),
         options_(options),
-        states_digest_(StatesItsDigest(file.text)),
         chooser_(file, tries,
                  {options.policy, options.crossings, options.allow, options.threads,
                   options.min_revisit_seconds, options.polish}) {}
@@ -184,7 +183,8 @@ class Rewriter {
       }
       const std::string head = HeadWithLine(file_, AddedLine(rewrite, options_));
       rewrite.text = NewText(file_, chosen, head);
-      if (states_digest_) RenewDigest(rewrite.text);
+      // A digest of numbered lines stays as it is until they have their numbers.
+      if (file_.states_digest && !file_.numbers) RenewDigest(rewrite.text);
       const LayerLines lines(file_, chosen, head);
       chosen.texts = {};  // they are in there
       const VerifyReport report = CheckGcode(file_.text, file_.name, rewrite.text,
@@ -243,7 +243,7 @@ class Rewriter {
     if (rewrite.after.seconds > rewrite.before.seconds) return AsItIs(file_, std::move(rewrite));
     rewrite.text.replace(0, head.size(), HeadWithLine(file_, AddedLine(rewrite, options_)));
     rewrite.text = Numbered(file_, std::move(rewrite.text));
-    if (states_digest_) RenewDigest(rewrite.text);
+    if (file_.states_digest) RenewDigest(rewrite.text);
     return rewrite;
   }
 
@@ -286,7 +286,6 @@ class Rewriter {
 
   const GcodeFile& file_;
   const RewriteOptions& options_;
-  const bool states_digest_;
   LayerChooser chooser_;
   std::string unproven_;  // what was found first
 };

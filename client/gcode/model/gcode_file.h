@@ -100,6 +100,7 @@ struct GcodeFile {
   std::string name;  // for messages
   std::string text;  // without the numbers of its lines
   std::optional<gcode::LineNumbers> numbers;
+  bool states_digest = false;  // of the text with its numbers: text/digest_line.h
   gcode::Dialect dialect = gcode::Dialect::kOther;
   std::string slicer;  // as the file names it, "PrusaSlicer 2.5.0"; empty if it does not
 

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/gcode/read/block_builder.h"
+#include "client/gcode/text/digest_line.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse {
@@ -216,6 +217,7 @@ absl::StatusOr<std::shared_ptr<GcodeFile>> ReadGcode(std::string text, const std
   if (nul != std::string::npos) {
     return gcode::Fault(*file, static_cast<gcode::Offset>(nul), "NUL byte: this is not text");
   }
+  file->states_digest = gcode::StatesItsDigest(file->text);
   const std::optional<gcode::Offset> misnumbered = gcode::TakeNumbers(*file);
   gcode::FindSlicer(*file);
   file->profile = gcode::ReadProfile(file->text);

@@ -4,7 +4,6 @@
 #include <map>
 
 #include "absl/strings/str_format.h"
-#include "client/gcode/verify/stated_digest.h"
 
 namespace traverse::gcode {
 namespace {
@@ -16,9 +15,9 @@ struct Odd {
 };
 
 std::optional<Odd> FirstOdd(const Side& a, const Side& b, size_t index, bool deposits) {
-  const bool right_md5 = HasRightMd5(a.text) && HasRightMd5(b.text);
-  const auto wanted = [deposits, right_md5](const VerifyLine& line) {
-    if (right_md5 && line.number == 1) return false;
+  const bool right_digests = a.right_digest && b.right_digest;
+  const auto wanted = [deposits, right_digests](const VerifyLine& line) {
+    if (right_digests && line.number == 1) return false;
     const bool note = line.role == LineRole::kComment || line.role == LineRole::kProgress;
     return deposits ? line.role == LineRole::kDeposit : note;
   };

@@ -14,6 +14,7 @@
 #include "client/gcode/verify/match/path_lines.h"
 #include "client/gcode/verify/rules/rules.h"
 #include "client/gcode/verify/same_print.h"
+#include "client/gcode/verify/stated_digest.h"
 #include "client/gcode/verify/text.h"
 #include "client/gcode/verify/trace/side_reader.h"
 
@@ -31,21 +32,27 @@ size_t ChunkBytes(size_t file_bytes) {
   return std::clamp(file_bytes / kChunksOfAFile, kLeastChunkBytes, kMostChunkBytes);
 }
 
+// One of the two files, as it is read: without the numbers of its lines, for example.
+struct File {
+  std::string_view text;
+  const std::string& name;
+  bool right_digest = false;  // its first line states the digest of the whole file
+
+  File With(std::string_view other_text) const { return {other_text, name, right_digest}; }
+};
+
 class Verifier {
  public:
-  Verifier(std::string_view original, const std::string& original_name, std::string_view optimised,
-           const std::string& optimised_name, const VerifyOptions& options)
+  Verifier(const File& original, const File& optimised, const VerifyOptions& options)
       : original_(original),
-        original_name_(original_name),
         optimised_(optimised),
-        optimised_name_(optimised_name),
         rules_(options.rules),
-        threads_(ThreadsFor(original.size())),
-        was_(original, kOptimisedMark, HasLayerMarks(original)),
-        is_(optimised, kOptimisedMark, HasLayerMarks(original)) {
-    context_.permissions =
-        options.permissions.value_or(PermissionsInHead(optimised).value_or(VerifyPermissions{}));
-    context_.settings = ReadSettings(original);
+        threads_(ThreadsFor(original.text.size())),
+        was_(original.text, kOptimisedMark, HasLayerMarks(original.text), original.right_digest),
+        is_(optimised.text, kOptimisedMark, HasLayerMarks(original.text), optimised.right_digest) {
+    context_.permissions = options.permissions.value_or(
+        PermissionsInHead(optimised.text).value_or(VerifyPermissions{}));
+    context_.settings = ReadSettings(original.text);
     report_.permissions = context_.permissions;
   }
 
@@ -64,10 +71,8 @@ class Verifier {
   void Add(Finding finding);
   int64_t LayerOf(uint32_t optimised_line) const;
 
-  const std::string_view original_;
-  const std::string& original_name_;
-  const std::string_view optimised_;
-  const std::string& optimised_name_;
+  const File original_;
+  const File optimised_;
   const uint32_t rules_;
   const int threads_;
   RuleContext context_;
@@ -99,7 +104,7 @@ void Verifier::ReadNext() {
     if (i == 1) {
       chunk_is_ = is_.NextSections(last ? UINT32_MAX : chunk_was_.end_section);
     } else if (!last) {
-      next_was_ = was_.NextBytes(ChunkBytes(original_.size()));
+      next_was_ = was_.NextBytes(ChunkBytes(original_.text.size()));
     }
   });
   more_ = !last;
@@ -115,8 +120,8 @@ void Verifier::TakeBackGaps() {
 }
 
 bool Verifier::SamePrint() {
-  const Side was{original_, original_name_, was_.cut(), gaps_was_};
-  const Side is{optimised_, optimised_name_, is_.cut(), gaps_is_};
+  const Side was{original_.text, original_.name, was_.cut(), gaps_was_, original_.right_digest};
+  const Side is{optimised_.text, optimised_.name, is_.cut(), gaps_is_, optimised_.right_digest};
   std::optional<VerifyBreak> difference =
       FirstDifference(was, is, sections_, chunk_was_.end_section, !more_);
   if (!difference) CheckLabels(sections_, chunk_was_.end_section);
@@ -245,14 +250,14 @@ void Verifier::Add(Finding finding) {
   };
   report_.breaks.push_back(
       {finding.rule, finding.original_line, finding.optimised_line, finding.layer,
-       absl::StrFormat("%s: %s (%s; %s)", place(optimised_name_, finding.optimised_line),
+       absl::StrFormat("%s: %s (%s; %s)", place(optimised_.name, finding.optimised_line),
                        finding.what, std::string(VerifyRuleName(finding.rule)),
-                       place(original_name_, finding.original_line))});
+                       place(original_.name, finding.original_line))});
 }
 
 // What no line of G-code shows: the byte order mark and the line ends.
 void Verifier::CheckText() {
-  if (Begins(original_, kMarkOfUtf8) != Begins(optimised_, kMarkOfUtf8)) {
+  if (Begins(original_.text, kMarkOfUtf8) != Begins(optimised_.text, kMarkOfUtf8)) {
     findings_.push_back({VerifyRule::kSamePrint, 1, 1, -1,
                          "only one of the files begins with a byte order mark of UTF-8"});
   }
@@ -275,7 +280,7 @@ void Verifier::Finish() {
 }
 
 VerifyReport Verifier::Verify() {
-  next_was_ = was_.NextBytes(ChunkBytes(original_.size()));
+  next_was_ = was_.NextBytes(ChunkBytes(original_.text.size()));
   while (more_) {
     ReadNext();
     TakeBackGaps();
@@ -307,26 +312,30 @@ std::string WithOptionalLines(std::string_view text) {
   return done;
 }
 
+VerifyReport CheckUnnumbered(const File& was, const File& is, const VerifyOptions& options) {
+  VerifyReport report = Verifier(was, is, options).Verify();
+  if (!report.ok() || NextOptional(was.text, 0) == std::string_view::npos) return report;
+  const std::string all_was = WithOptionalLines(was.text);
+  const std::string all_is = WithOptionalLines(is.text);
+  return Verifier(was.With(all_was), is.With(all_is), options).Verify();
+}
+
 }  // namespace
 }  // namespace gcode
 
 VerifyReport CheckGcode(std::string_view original, const std::string& original_name,
                         std::string_view optimised, const std::string& optimised_name,
                         const VerifyOptions& options) {
-  const std::optional<gcode::Unnumbered> unnumbered = gcode::WithoutNumbers(original);
-  if (unnumbered) {
+  const gcode::File was{original, original_name, gcode::HasRightMd5(original)};
+  const gcode::File is{optimised, optimised_name, gcode::HasRightMd5(optimised)};
+  if (const std::optional<gcode::Unnumbered> numbered = gcode::WithoutNumbers(original)) {
     const std::optional<gcode::Unnumbered> other = gcode::WithoutNumbers(optimised);
     // Else they are compared with their numbers.
-    if (other && other->form == unnumbered->form) {
-      return CheckGcode(unnumbered->text, original_name, other->text, optimised_name, options);
+    if (other && other->form == numbered->form) {
+      return gcode::CheckUnnumbered(was.With(numbered->text), is.With(other->text), options);
     }
   }
-  VerifyReport report =
-      gcode::Verifier(original, original_name, optimised, optimised_name, options).Verify();
-  if (!report.ok() || gcode::NextOptional(original, 0) == std::string_view::npos) return report;
-  const std::string was = gcode::WithOptionalLines(original);
-  const std::string is = gcode::WithOptionalLines(optimised);
-  return gcode::Verifier(was, original_name, is, optimised_name, options).Verify();
+  return gcode::CheckUnnumbered(was, is, options);
 }
 
 absl::Status VerifyGcode(std::string_view original, const std::string& original_name,

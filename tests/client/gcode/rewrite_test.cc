@@ -14,6 +14,7 @@
 #include "client/gcode/read/reader.h"
 #include "client/gcode/stated_times.h"
 #include "client/gcode/text/digest_line.h"
+#include "client/gcode/text/line_numbers.h"
 #include "client/gcode/verify/verifier.h"
 #include "engine/base/rng.h"
 #include "tests/client/gcode/support/random_order.h"
@@ -74,6 +75,24 @@ TEST(RewriteGcode, RenewsTheDigestThatTheFirstLineStates) {
   EXPECT_TRUE(StatesItsDigest(rewrite->text));
   EXPECT_EQ(VerifyGcode(original, "a", rewrite->text, "b").message(), "");
   EXPECT_TRUE(StatesItsDigest(RestateOptimised(rewrite->text, {0.5, 0.5})));
+}
+
+// The digest is of the lines with their numbers, as the printer has them.
+TEST(RewriteGcode, RenewsTheDigestOfNumberedLines) {
+  std::string original = "; MD5:d41d8cd98f00b204e9800998ecf8427e\n";
+  LineNumbers numbers;
+  numbers.checksums = true;
+  original += WithLineNumbers(kScattered, numbers);
+  RenewDigest(original);
+  const auto file = Read(original);
+
+  const absl::StatusOr<GcodeRewrite> rewrite =
+      RewriteGcode(*file, {{kBetterOrder}}, OptionsWithVersion());
+
+  ASSERT_TRUE(rewrite.ok()) << rewrite.status();
+  EXPECT_EQ(rewrite->layers_changed, 1);
+  EXPECT_TRUE(StatesItsDigest(rewrite->text));
+  EXPECT_EQ(VerifyGcode(original, "a", rewrite->text, "b").message(), "");
 }
 
 // Only what the file states rightly is stated again: the printer is to find out.

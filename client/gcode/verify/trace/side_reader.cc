@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "client/gcode/verify/stated_digest.h"
-
 namespace traverse::gcode {
 namespace {
 
@@ -35,11 +33,12 @@ bool HasLayerMarks(std::string_view text) {
   return false;
 }
 
-SideReader::SideReader(std::string_view text, std::string_view ignored, bool marked)
+SideReader::SideReader(std::string_view text, std::string_view ignored, bool marked,
+                       bool right_digest)
     : machine_(text),
       cutter_(ignored, marked),
       tracer_(marked),
-      has_right_md5_(HasRightMd5(text)) {}
+      right_digest_(right_digest) {}
 
 void SideReader::TakeHeld() {
   held_ = false;
@@ -53,7 +52,7 @@ TraceChunk SideReader::ReadUntil(Enough enough) {
   if (held_) TakeHeld();
   while (machine_.Next(line_)) {
     bytes_ += line_.text.size() + 1;
-    if (has_right_md5_ && line_.number == 1) line_.digest = kRightMd5;
+    if (right_digest_ && line_.number == 1) line_.digest = kRightMd5;
     const uint32_t section = cutter_.open_section();
     const bool mark = line_.text.size() > 1 && line_.text[0] == ';' && IsLayerMark(line_.text);
     const SectionCutter::Cut cut = cutter_.Take(line_, machine_, mark);

@@ -19,8 +19,9 @@ bool HasLayerMarks(std::string_view text);
 
 class SideReader {
  public:
-  // Ignores comments that begin with `ignored`.
-  SideReader(std::string_view text, std::string_view ignored, bool marked);
+  // Ignores comments that begin with `ignored`. `right_digest`: the first line states the digest
+  // of the file, which `text` need not have (stated_digest.h).
+  SideReader(std::string_view text, std::string_view ignored, bool marked, bool right_digest);
 
   // The next layers, with `bytes` of text or a little more.
   TraceChunk NextBytes(size_t bytes);
@@ -51,7 +52,7 @@ class SideReader {
   SectionCutter cutter_;
   Tracer tracer_;
   VerifyLine line_;
-  const bool has_right_md5_;
+  const bool right_digest_;
   bool held_ = false;  // line_ begins the next chunk
   bool done_ = false;
   size_t bytes_ = 0;

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
+#include "absl/strings/str_split.h"
 #include "client/files/md5.h"
 #include "tests/client/gcode/verify/small_prints.h"
 
@@ -69,6 +72,30 @@ TEST(SamePrint, AFirstLineMayStateTheDigestOfItsFile) {
   EXPECT_EQ(Broken(wrong, wrong), "");
   EXPECT_EQ(Broken(wrong, with_md5(wrong.substr(39))), "same_print");
   EXPECT_EQ(Broken(right, with_md5(kHead + kOne)), "same_print");
+}
+
+// The digest is that of the file as it lies on the disk, so with the numbers of its lines, and with
+// a slash before lines that a machine may skip.
+TEST(SamePrint, AFirstLineMayStateTheDigestOfNumberedAndOfOptionalLines) {
+  const auto with_md5 = [](const std::string& text) {
+    return "; MD5:" + Md5Hex(text) + "\n" + text;
+  };
+  const auto numbered = [](const std::string& text) {
+    std::string out;
+    int number = 0;
+    for (const auto line : absl::StrSplit(text, '\n', absl::SkipEmpty())) {
+      if (line[0] != ';') absl::StrAppend(&out, "N", ++number, " ");
+      absl::StrAppend(&out, line, "\n");
+    }
+    return out;
+  };
+  const std::string slash = "/M117 x\n";
+  for (const auto& [a, b] : {std::pair(numbered(kHead + kTwo), numbered(kHead + kOther + kOne)),
+                             std::pair(slash + kHead + kTwo, slash + kHead + kOther + kOne)}) {
+    const std::string right = with_md5(a);
+    EXPECT_EQ(Broken(right, with_md5(b)), "");
+    EXPECT_EQ(Broken(right, right.substr(0, 39) + b), "same_print");
+  }
 }
 
 TEST(SamePrint, TravelMayBeByG0) {
