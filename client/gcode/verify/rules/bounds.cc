@@ -20,8 +20,19 @@ constexpr double kSlackMm = 2;
 // end, or away from it: path_ends.
 constexpr double kDepartureMm = 1.0;
 
+// Moves along a path may be longer by this much.
+constexpr double kAlongSlackMm = 0.05;
+
 // Rounded coordinates bend travel by less.
-constexpr double kLeastExcessMm = 0.05;
+constexpr double kLeastBendMm = 0.02;
+
+// Moves of one kind that leave a path are equally long, or nearly so.
+constexpr double kDepartureSlackMm = 0.25;
+
+// How far the travel lies off the straight move that the two might be.
+double BendOf(const TraceMove& before, const TraceMove& behind) {
+  return DistanceToPiece(before.to, before.from, behind.to);
+}
 
 // How much longer the travel is because of the bend between the two.
 double ExcessOf(const TraceMove& before, const TraceMove& behind) {
@@ -43,9 +54,10 @@ bool SinksBetween(const TraceChunk& is, uint32_t link, const TraceMove& before,
   return is.paths[link].z_mm < printed - kLevelMm && behind.z_from_mm < before.z_to_mm - kLevelMm;
 }
 
-// Whether some travel of the original's layer leaves its path by a short move, and bends then.
-bool HasDepartures(const LayerPair& layer) {
+// The longest short move by which travel of the original's layer leaves its path, and bends then.
+double LongestDeparture(const LayerPair& layer) {
   const TraceChunk& was = layer.was();
+  double longest = 0;
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
     const TraceLink& traced = was.links[link];
     const TraceMove* first = nullptr;
@@ -56,12 +68,13 @@ bool HasDepartures(const LayerPair& layer) {
         first = &move;
         continue;
       }
-      if (first->length_mm() <= kDepartureMm && ExcessOf(*first, move) > kLeastExcessMm)
-        return true;
+      const double length = first->length_mm();
+      const bool departs = length <= kDepartureMm && BendOf(*first, move) > kLeastBendMm;
+      if (departs) longest = std::max(longest, length);
       break;
     }
   }
-  return false;
+  return longest;
 }
 
 void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped, double departure_mm,
@@ -84,18 +97,20 @@ void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped, double d
     const TraceMove* last = std::exchange(before, counts ? &move : nullptr);
     if (last == nullptr || before == nullptr) continue;
     if (layer.IsKnown(*last) || layer.IsKnown(move)) continue;
-    if (done <= departure_mm || SinksBetween(is, link, *last, move)) continue;
-    const double excess = ExcessOf(*last, move);
-    if (excess <= kLeastExcessMm) continue;
+    if ((departure_mm > 0 && done <= departure_mm + kDepartureSlackMm) ||
+        SinksBetween(is, link, *last, move)) {
+      continue;
+    }
+    const double bend = BendOf(*last, move);
+    if (bend <= kLeastBendMm) continue;
     if (LeadsAroundAWall(layer, *last, move)) {
-      findings.is.detours.push_back({last->line, layer.index(), static_cast<float>(excess)});
+      findings.is.detours.push_back(
+          {last->line, layer.index(), static_cast<float>(ExcessOf(*last, move))});
       continue;
     }
     findings.breaks.push_back(
         {VerifyRule::kBounds, layer.OriginalLine(link), last->line, layer.index(),
-         absl::StrFormat(
-             "travel is %.2f mm longer because of a bend that leads around no outer wall",
-             excess)});
+         absl::StrFormat("travel bends by %.2f mm, but leads around no outer wall", bend)});
   }
 }
 
@@ -108,9 +123,10 @@ void ObserveDetour(const LayerPair& layer, Observations& seen) {
     const TraceMove& before = was.moves[m - 1];
     const TraceMove& move = was.moves[m];
     if (!before.sideways() || !move.sideways() || !before.in_print) continue;
-    const double excess = ExcessOf(before, move);
-    if (excess <= kLeastExcessMm || !LeadsAroundAWall(layer, before, move)) continue;
-    seen.detours.push_back({before.line, layer.index(), static_cast<float>(excess)});
+    const bool bends = BendOf(before, move) > kLeastBendMm;
+    if (!bends || !LeadsAroundAWall(layer, before, move)) continue;
+    seen.detours.push_back(
+        {before.line, layer.index(), static_cast<float>(ExcessOf(before, move))});
     return;
   }
 }
@@ -188,13 +204,13 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
   // Moves along a path may be as fast as travel, if no longer than such in the original.
   const Tails along(layer, false, true);
   const double longest = LongestAlong(layer);
-  const double departure_mm = HasDepartures(layer) ? kDepartureMm : 0;
+  const double departure_mm = LongestDeparture(layer);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
     // Travel to the layer leaves a path of another one.
     const bool first = link == layer.first_path_is();
     const double of_first_mm = layer.index() > 0 ? kDepartureMm : 0;
     const uint32_t moves = along.At(link);
-    const bool is_known = LengthOf(layer.is(), link, moves) <= longest + kLeastExcessMm;
+    const bool is_known = LengthOf(layer.is(), link, moves) <= longest + kAlongSlackMm;
     CheckLink(layer, link, std::max(tails.At(link), is_known ? moves : 0),
               first ? of_first_mm : departure_mm, findings);
   }

@@ -18,6 +18,7 @@ constexpr float kOpenFactor = 2.0f;
 constexpr float kShortestMm = 0.5f;
 constexpr float kToLayerSlackMm = 0.05f;
 constexpr double kSamePointMm = 0.01;
+constexpr double kLeastTurnMm = 0.05;
 constexpr float kWindingSlackMm = 2.0f;
 constexpr float kWindingFactor = 3.0f;
 
@@ -49,7 +50,9 @@ WayLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t lin
     const TraceMove& move = chunk.moves[m];
     if (move.kind != MoveKind::kTravel || !move.in_print) continue;
     if (first == nullptr) first = &move;
-    way.turns_back |= last != nullptr && move.length_mm() > kShortestMm &&
+    // The next path may begin where the one before it ends and a short move leads away.
+    const double least_turn = last == first ? kShortestMm : kLeastTurnMm;
+    way.turns_back |= last != nullptr && move.length_mm() > least_turn &&
                       DistanceOf(move.to, last->from) < kSamePointMm;
     last = &move;
     const auto length = static_cast<float>(move.length_mm());

@@ -19,6 +19,19 @@ TEST(VerifyBounds, NoWayOvershoots) {
   EXPECT_EQ(Broken(a, With(a, kTo, "G1 X4.5 Y2.5 F9000\n" + kTo), Policy::kFree), "");
 }
 
+// A long way that bends a little is hardly longer for it.
+TEST(VerifyBounds, NoLongWayBendsALittle) {
+  const std::string way = "G1 X90 Y5 F9000\n";
+  const std::string more = With(With(kOther, "X9 Y5 ", "X99 Y5 "), kTo, way);
+  const std::string a = kHead + kOne + more;
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, With(a, way, "G1 X49.5 Y2.8 F9000\n" + way)), "bounds");
+  EXPECT_EQ(Broken(a, With(a, way, "G1 X49.5 Y2.51 F9000\n" + way)), "");
+  // Nor does it go back and forth, as far as that is.
+  const std::string to = "G1 X89.7 Y5 F9000\n" + way;
+  EXPECT_EQ(Broken(With(a, way, to), With(a, way, to + to)), "bounds");
+}
+
 // The first way of the file leads around, and yet a new one is straight.
 TEST(VerifyBounds, NoWayBendsThoughOthersDo) {
   const std::string around = With(kTwo, kTo, "G1 X30 Y30 F9000\n" + kTo);
@@ -92,7 +105,7 @@ TEST(VerifyBounds, AWayWindsNoMoreThanWaysDo) {
   EXPECT_EQ(Broken(kHead + kTwo + frame, kHead + astray + frame), "bounds");
   const std::string back = With(kTwo, "G1 X0 Y5 F9000\n", "G1 X0 Y5 F9000\nG1 X9 Y0\nG1 X0 Y5\n");
   EXPECT_EQ(Broken(kHead + kTwo, kHead + back), "bounds");
-  const std::string in_two = With(kTwo, "G1 X0 Y5 F9000\n", "G1 X5 Y2 F9000\nG1 X0 Y5 F9000\n");
+  const std::string in_two = With(kTwo, "G1 X0 Y5 F9000\n", "G1 X4.5 Y2.5 F9000\nG1 X0 Y5 F9000\n");
   EXPECT_EQ(Broken(kHead + kTwo + frame, kHead + in_two + frame), "");
 }
 
@@ -116,6 +129,7 @@ TEST(VerifyBounds, ShortDetoursAreThoseOfTheFile) {
       With(kHead + kZigzag + kTwo, "G1 X0 Y0 F9000\n", "G1 X10 Y10.3 F9000\nG1 X0 Y0\n");
   EXPECT_EQ(Broken(departs, departs), "");
   EXPECT_EQ(Broken(departs, With(departs, way, aside)), "");
+  EXPECT_EQ(Broken(departs, With(departs, way, "G1 X9 Y.98 F9000\n" + way)), "bounds");
 }
 
 // What stands behind unknown lines at the first layer is no script, but travel to its first path.
