@@ -69,6 +69,9 @@ void Observations::Append(const Observations& other) {
   }
   new_open_ways.insert(new_open_ways.end(), other.new_open_ways.begin(), other.new_open_ways.end());
   detours.insert(detours.end(), other.detours.begin(), other.detours.end());
+  departs_inside |= other.departs_inside;
+  lost_departures.insert(lost_departures.end(), other.lost_departures.begin(),
+                         other.lost_departures.end());
   long_ways.insert(long_ways.end(), other.long_ways.begin(), other.long_ways.end());
   farthest.insert(farthest.end(), other.farthest.begin(), other.farthest.end());
   script_signatures.insert(other.script_signatures.begin(), other.script_signatures.end());

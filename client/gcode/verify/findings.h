@@ -259,6 +259,8 @@ struct Observations {
   std::vector<NewOpenWay> new_open_ways;
   std::vector<LongWay> long_ways;
   std::vector<Detour> detours;  // of the original one for each layer
+  bool departs_inside = false;  // by a short move from what is no outer wall: departures.h
+  std::vector<Finding> lost_departures;  // of travel that leads elsewhere than in the original
   LiftLog lifts;
   std::vector<RetractionCycle> cycles;
   std::vector<WipeDeviation> wipes;

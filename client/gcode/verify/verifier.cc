@@ -223,6 +223,7 @@ void Verifier::Compare(std::vector<Finding>& breaks) const {
   CompareOpenHabits(seen_was_, seen_is_, context_, breaks);
   CompareRetractions(seen_was_, seen_is_, breaks);
   CompareSpeeds(seen_was_, seen_is_, breaks);
+  ComparePathEnds(seen_was_, seen_is_, context_, breaks);
   CompareWipes(seen_was_, seen_is_, breaks);
   CompareScripts(seen_was_, seen_is_, breaks);
 }

@@ -206,8 +206,8 @@ bool LayerWriter::GoesOnAcross(const Placement& from, Vertex to, Feature feature
 
 bool LayerWriter::Departs(const Placement& from, Vertex to, Feature feature) const {
   const Leaving* leaving = LeavingOf(from);
-  // What goes on along a path stays with it; before a wipe there need be nothing.
-  if (leaving == nullptr || !leaving->departs) return leaving != nullptr && !leaving->wipes;
+  // What goes on along a path, or comes before its wipe, stays with the path.
+  if (leaving == nullptr || !leaving->departs) return leaving != nullptr;
   const TravelWay way = rules_.WayOf(End(from), to, feature);
   if (way.retracts != leaving->retracts) return false;
   if (way.retracts) return true;

@@ -203,6 +203,16 @@ Link LinkWriter::WriteDeparture(const LinkRequest& request, const Link& form) {
   return link;
 }
 
+// Where another path stands last before the marks than in the file, it is left as it is there.
+void LinkWriter::WriteOwnDeparture(const PlacedPath& from) {
+  const uint32_t next = from.placement().block + 1;
+  if (!from.as_given() || next >= file_.blocks.size() || !donors_.MayFollow(next)) return;
+  if ((from.block().flags & kBlockGoesOn) != 0) return;  // along the path: WriteGoingOn
+  const Link own = ReadLink(file_, next);
+  const LinkStep* departure = DepartureOf(own);
+  if (own.retracts() && departure != nullptr) out_.MoveLine(*departure);
+}
+
 // A path that the file goes on along without filament is gone on along as far wherever it ends.
 void LinkWriter::WriteGoingOn(const LinkRequest& request) {
   const PlacedPath& from = *request.from;
@@ -349,6 +359,7 @@ void LinkWriter::WriteBoundary(const LinkRequest& request) {
     WriteDeparture(request, *form);
   } else if (!form && link.fixed == 0 && !(given_from && link.departs)) {
     WriteGoingOn(request);
+    if (!given_from && link.retracts()) WriteOwnDeparture(*request.from);
   }
   for (size_t i = link.fixed; i < link.steps.size(); ++i) {
     if (static_cast<int>(i) != link.arrival) {

@@ -70,6 +70,7 @@ class LinkWriter {
   Link TemplateFor(const LinkRequest& request) const;
   std::optional<Link> OwnDeparture(const LinkRequest& request, const Link& form) const;
   Link WriteDeparture(const LinkRequest& request, const Link& form);
+  void WriteOwnDeparture(const PlacedPath& from);
   void WriteArrival(const LinkRequest& request, const Link& form);
   void WriteGoingOn(const LinkRequest& request);
   void WriteWipe(const PlacedPath& path, const Link& form);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/match/way_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 
@@ -54,34 +55,38 @@ bool LeadsOn(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pie
   return link.first_move + LayerPair::TailMoves(chunk, path, pieces) == link.end_move;
 }
 
-// The short move with which travel leaves a path before it retracts, so that nothing of that shows
-// on a wall. Nothing if there is none.
-const TraceMove* DepartureOf(const TraceChunk& chunk, uint32_t path) {
-  constexpr double kLongestMm = 1.0;
-  const TraceLink& link = chunk.links[path + 1];
-  if (link.end_move - link.first_move < 2 || link.scripted) return nullptr;
-  const TraceMove& first = chunk.moves[link.first_move];
-  const TraceMove& next = chunk.moves[link.first_move + 1];
-  const bool leaves = first.kind == MoveKind::kTravel && first.open && first.in_print &&
-                      first.length_mm() >= kShortestMm && first.length_mm() <= kLongestMm;
-  return leaves && next.kind == MoveKind::kRetraction ? &first : nullptr;
-}
-
-// Between the same two points travel leaves a path as it did, if it retracts.
-void CheckDeparture(const LayerPair& layer, const Visit& visit, LayerFindings& findings) {
-  const TraceChunk& is = layer.is();
+// Whether travel from the path leads to the same point in both files.
+bool LeadAlike(const LayerPair& layer, const Visit& visit) {
   const uint32_t link_was = visit.path + 1;
   const uint32_t link_is = visit.last_path + 1;
-  if (link_was >= layer.end_path_was() || link_is >= layer.end_path_is()) return;
-  const TraceMove* was = DepartureOf(layer.was(), visit.path);
-  if (was == nullptr || EndsOf(layer.was(), link_was) != EndsOf(is, link_is)) return;
-  const TraceLink& link = is.links[link_is];
-  if (link.first_move == link.end_move || is.moves[link.first_move].kind != MoveKind::kRetraction) {
-    return;
+  return link_was < layer.end_path_was() && link_is < layer.end_path_is() &&
+         EndsOf(layer.was(), link_was) == EndsOf(layer.is(), link_is);
+}
+
+// Whether it begins at the same point.
+bool EndAlike(const LayerPair& layer, const Visit& visit) {
+  const Point was = layer.was().EndOf(layer.was().paths[visit.path]);
+  const Point is = layer.is().EndOf(layer.is().paths[visit.last_path]);
+  return DistanceOf(was, is) < kShortestMm;
+}
+
+// From the same point travel leaves a path as it did, if it retracts.
+void CheckDeparture(const LayerPair& layer, const Visit& visit, LayerFindings& findings) {
+  const TraceChunk& is = layer.is();
+  const TraceMove* was = DepartureOf(layer.was(), visit.path + 1);
+  if (was == nullptr) return;
+  findings.was.departs_inside |= !layer.Outer(visit.path);
+  if (!EndAlike(layer, visit)) return;
+  const TraceLink& link = is.links[visit.last_path + 1];
+  if (link.first_move == link.end_move || !Retracts(is.moves[link.first_move])) return;
+  const Finding lost{VerifyRule::kPathEnds, was->line, is.moves[link.first_move].line,
+                     layer.index(),
+                     "retracts at the end of the path; the original leaves it before"};
+  if (LeadAlike(layer, visit)) {
+    findings.breaks.push_back(lost);
+  } else if (layer.Outer(visit.path)) {
+    findings.is.lost_departures.push_back(lost);
   }
-  findings.breaks.push_back({VerifyRule::kPathEnds, was->line, is.moves[link.first_move].line,
-                             layer.index(),
-                             "retracts at the end of the path; the original leaves it before"});
 }
 
 }  // namespace
@@ -135,6 +140,14 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
       report(had.line, has.line, "continues from the path to a different point from the original");
     }
   }
+}
+
+// Where travel begins with such moves behind other paths than outer walls too, they are on the way
+// to somewhere.
+void ComparePathEnds(const Observations& was, const Observations& is, const RuleContext& context,
+                     std::vector<Finding>& breaks) {
+  if (context.settings.leads_around_walls || was.departs_inside) return;
+  breaks.insert(breaks.end(), is.lost_departures.begin(), is.lost_departures.end());
 }
 
 }  // namespace traverse::gcode

@@ -71,6 +71,8 @@ void CompareOpenHabits(const Observations& was, const Observations& is, const Ru
                        std::vector<Finding>& breaks);
 void CompareRetractions(const Observations& was, const Observations& is,
                         std::vector<Finding>& breaks);
+void ComparePathEnds(const Observations& was, const Observations& is, const RuleContext& context,
+                     std::vector<Finding>& breaks);
 void CompareSpeeds(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void CompareWipes(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void CompareScripts(const Observations& was, const Observations& is, std::vector<Finding>& breaks);

@@ -119,6 +119,29 @@ TEST_F(LayerWriterDepartures, TakeTimeInTheFileToo) {
               StopToStopSeconds(straight, 150, 1250), 1e-6);
 }
 
+// Before a wipe the move inwards is of the path, and before the marks of a layer.
+TEST(LayerWriter, PathsAreLeftAsInTheFile) {
+  Sketch sketch;
+  sketch.Square(0, 0, 10).Add("G1 X.3 Y.3 F9000").GoRetracted(30, 5).Infill(30, 9);
+  sketch.GoRetracted(20, 5).Square(20, 5, 5).Add("G1 X20.2 Y5.2 F9000").Add(";WIPE_START");
+  sketch.Add("G1 X22 Y5 E-.8 F2400").Add(";WIPE_END").Go(40, 5).Add("G1 E.8 F2100");
+  sketch.Infill(40, 9).GoRetracted(50, 5).Infill(50, 9);
+  sketch.Add("G1 E-.8 F2100").Add(";LAYER_CHANGE").Add("G1 Z.4 F9000").Go(0, 0);
+  const auto file = sketch.Add("G1 E.8 F2100").Infill(9, 0).Read();
+  const RetractionHabit habit = HabitOfNewWays(*file);
+  const LinkDonors donors(*file);
+  const LayerWriter writer(*file, file->layers[0], habit, donors);
+  const LayerOrder given = writer.GivenOrder();
+  const LayerOrder order = {given[1], given[2], given[4], given[3], given[0]};
+  std::string text;
+  const PartStart behind = writer.WritePaths(order, StartOfPaths(*file, order.front()), text);
+  const LayerWriter next(*file, file->layers[1], habit, donors);
+  next.WriteWay(order.back(), next.GivenOrder().front(), behind, text);
+
+  EXPECT_NE(text.find("X.3 Y.3 F9000\nG1 E-.8"), std::string::npos) << text;
+  EXPECT_NE(text.find("X20.2 Y5.2 F9000\n;WIPE_START"), std::string::npos) << text;
+}
+
 // Where the nozzle goes on along a path behind its end, that is of the path, wherever the next one
 // lies.
 TEST(LayerWriter, WhatGoesOnAlongAPathIsWrittenBeforeNewTravel) {

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
@@ -124,12 +125,13 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
   }
   LinkHeights heights(chunk.moves[traced.first_move].z_from_mm, chunk.paths[link].z_mm,
                       traced.scripted, layer.index(), seen);
+  const TraceMove* departure = DepartureOf(chunk, link);  // as high as the path before
   for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     heights.CountLifts(move);
     if (only_new && layer.IsKnown(move)) continue;
     heights.NoteRise(move, only_new);
-    heights.NoteDepth(move);
+    if (&move != departure) heights.NoteDepth(move);
   }
   heights.Finish();
 }

@@ -74,6 +74,22 @@ TEST(VerifyPathEnds, TravelThatLeavesAPathBeforeItRetractsDoesSo) {
   const std::string a = kHead + kSquare + leave + inside + kOther;
   EXPECT_EQ(Broken(a, a), "");
   EXPECT_EQ(Broken(a, With(a, leave, "")), "path_ends");
+  // Wherever it leads to, so behind the last path of a layer too.
+  const std::string other = Line("Internal infill", "X0 Y5", "X9 Y5");
+  const std::string next =
+      "G1 E-1 F2100\n;LAYER_CHANGE\nG1 Z.4 F9000\nG1 X0 Y5\nG1 E1 F2100\n;TYPE:Internal infill\n"
+      "G1 F1800\nG1 X9 Y5 E.3\n";
+  const std::string was = kHead + kSquare + leave + inside + other + next;
+  const std::string elsewhere = kHead + kSquare + leave + other + inside + next;
+  EXPECT_EQ(Broken(was, elsewhere), "");
+  EXPECT_EQ(Broken(was, With(elsewhere, leave, "")), "path_ends");
+  const std::string last = kHead + inside + other + kSquare + leave + next;
+  EXPECT_EQ(Broken(was, last), "");
+  EXPECT_EQ(Broken(was, With(last, leave, "")), "path_ends");
+  // But what looks like this behind all kinds of paths leads somewhere.
+  const std::string aside = "G1 X9.3 Y5.2 F9000\n";
+  const std::string with_aside = kHead + kSquare + leave + inside + other + aside + next;
+  EXPECT_EQ(Broken(with_aside, kHead + inside + other + aside + kSquare + next), "");
   // Without a retraction it may go straight.
   const std::string straight = With(With(a, leave, ""), Way("X15 Y15"), "G1 X15 Y15 F9000\n");
   EXPECT_EQ(Broken(a, straight).find("path_ends"), std::string::npos);
