@@ -19,11 +19,10 @@ size_t WeightOf(const BoundedLayer& layer) { return layer.plan.paths.size() + 1;
 }  // namespace
 
 void ChainBound::Add(uint64_t index, BoundedLayer layer) {
-  for (const Path& path : layer.plan.paths) points_ += path.points.size();
-  if (points_ > kMostPoints) {
-    layers_.clear();
-  } else {
+  if (plans_.Add(layer.plan)) {
     layers_.emplace(index, std::move(layer));
+  } else {
+    layers_.clear();
   }
 }
 

@@ -34,12 +34,28 @@ struct BoundedLayer {
   CostSpec cost;
 };
 
+// Which plans of a job are kept until its last layer is done. Not thread-safe.
+class KeptPlans {
+ public:
+  // Jobs of more points than this have no bound of their chain, and none of their plans is kept.
+  static constexpr size_t kMostPoints = 100'000;
+
+  // Counts one more plan of the job. Returns whether all plans so far are kept.
+  bool Add(const Plan& plan) {
+    for (const Path& path : plan.paths) points_ += path.points.size();
+    return points_ <= kMostPoints;
+  }
+
+  // Of all plans so far.
+  size_t points() const { return points_; }
+
+ private:
+  size_t points_ = 0;
+};
+
 // Keeps the layers of a job until all are there. Not thread-safe.
 class ChainBound {
  public:
-  // Jobs of more points than this have no such bound: their plans would have to be kept.
-  static constexpr size_t kMostPoints = 100'000;
-
   // A bound of the problem's routes. `known` is one of them.
   using BoundOf =
       std::function<std::optional<double>(const LayerProblem&, const Route& known, Budget&)>;
@@ -48,7 +64,7 @@ class ChainBound {
   void Add(uint64_t index, BoundedLayer layer);
 
   // Of the layers kept.
-  int64_t points() const { return layers_.empty() ? 0 : static_cast<int64_t>(points_); }
+  int64_t points() const { return layers_.empty() ? 0 : static_cast<int64_t>(plans_.points()); }
 
   // No routes of all layers cost less together. Walls are left out, as they only add to costs. A
   // move to the cleaning point counts as in LayerOutcome::lower_bound. Unset if a part of the chain
@@ -62,7 +78,7 @@ class ChainBound {
                                            const BoundOf& bound_of, Budget& budget);
 
   std::map<uint64_t, BoundedLayer> layers_;
-  size_t points_ = 0;
+  KeptPlans plans_;
 };
 
 }  // namespace traverse

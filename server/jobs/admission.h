@@ -132,7 +132,7 @@ class Admission {
     Admission& admission_;
     std::map<std::string, Caller>::iterator caller_ TRAVERSE_GUARDED_BY(admission_.mutex_);
     int64_t points_ TRAVERSE_GUARDED_BY(admission_.mutex_) = 0;
-    int64_t bytes_ TRAVERSE_GUARDED_BY(admission_.mutex_) = 0;         // of unsolved layers
+    int64_t bytes_ TRAVERSE_GUARDED_BY(admission_.mutex_) = 0;         // of layers, while kept
     int64_t answer_bytes_ TRAVERSE_GUARDED_BY(admission_.mutex_) = 0;  // of answers not yet written
     std::string strategy_ TRAVERSE_GUARDED_BY(admission_.mutex_);
     std::function<bool()> is_worked_on_ TRAVERSE_GUARDED_BY(admission_.mutex_);

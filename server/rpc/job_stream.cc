@@ -77,6 +77,8 @@ absl::Status JobStream::Begin(const v1::JobOptions& options) {
     return setup.status();
   }
   setup_ = *std::move(setup);
+  if (setup_.strategy->traits().chain_bounding != StrategyTraits::ChainBounding::kNone)
+    kept_plans_.emplace();
   AnnounceJob();
   queue_->set_job(setup_.job_id);
   layer_metrics_ = &core_.metrics.ForStrategy(setup_.strategy_name);
@@ -189,7 +191,7 @@ bool JobStream::ReadPiece(grpc::ByteBuffer& message) {
   return false;
 }
 
-// The bytes of the message count until it is read; the memory that it needs, until that is solved.
+// The bytes of the message count until it is read; the memory of its layers, while they are kept.
 absl::Status JobStream::CheckMessage(int64_t bytes) {
   if (bytes > core_.limits.max_message_bytes) {
     core_.admission.CountRefusal(Refusal::kMessage);
@@ -313,11 +315,17 @@ void JobStream::OnCallCancelled() {
                    : absl::CancelledError("the caller cancelled the call"));
 }
 
+// The plans that the engine keeps for a bound of the chain need memory until the job ends.
+int64_t JobStream::BytesFreedBy(const LayerOutcome& outcome, const LayerLabel& label) {
+  kept_bytes_ += label.bytes;
+  return kept_plans_ && kept_plans_->Add(outcome.plan) ? 0 : std::exchange(kept_bytes_, 0);
+}
+
 std::string JobStream::EncodeLayer(const LayerOutcome& outcome, const LayerLabel& label) {
   totals_.Add(outcome);
   core_.metrics.CountLayer(*layer_metrics_, outcome, setup_.idle_speed_mm_s);
   const double busy_seconds = queue_->busy_seconds();
-  ticket_->Remove(label.points, label.bytes, busy_seconds - counted_seconds_);
+  ticket_->Remove(label.points, BytesFreedBy(outcome, label), busy_seconds - counted_seconds_);
   counted_seconds_ = busy_seconds;
   --core_.queue_layers;
   std::string message = Encode(outcome, label.id);

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "engine/schedule/chain_bound.h"
 #include "server/jobs/job_run.h"
 #include "server/rpc/call_info.h"
 #include "server/rpc/request_reader.h"
@@ -127,6 +128,7 @@ class JobStream : public JobPort {
   absl::Status CheckLayerCount(int64_t more) const;
   absl::Status CheckMessage(int64_t bytes);
   absl::Status CheckSize(const v1::Layer& layer, uint64_t index, int64_t points) const;
+  int64_t BytesFreedBy(const LayerOutcome& outcome, const LayerLabel& label);
   JobRecord Record(const absl::Status& status) const;
   double WallSeconds() const;
 
@@ -156,7 +158,9 @@ class JobStream : public JobPort {
 
   // Used by the engine's calls, which do not overlap; then by End.
   JobTotals totals_;
-  double counted_seconds_ = 0;  // busy seconds of queue_ that were reported to ticket_
+  std::optional<KeptPlans> kept_plans_;  // for a bound of the chain, if the job asks for one
+  int64_t kept_bytes_ = 0;               // held for these plans
+  double counted_seconds_ = 0;           // busy seconds of queue_ that were reported to ticket_
 
   grpc::ByteBuffer outgoing_;  // the message being written
 };

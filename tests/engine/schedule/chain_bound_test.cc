@@ -174,7 +174,7 @@ TEST(ChainBound, IsUnsetWhereCostsDiffer) {
 
 TEST(ChainBound, IsUnsetForMorePointsThanAreKept) {
   ChainBound chain;
-  Path path = MakeContour(std::vector<Point>(ChainBound::kMostPoints, Point{1, 2}));
+  Path path = MakeContour(std::vector<Point>(KeptPlans::kMostPoints, Point{1, 2}));
   const Plan plan = SequentialPlan({IslandPaths{{path}, {}}});
   const auto known = [](const LayerProblem&, const Route&, Budget&) {
     return std::optional<double>(0);
