@@ -35,7 +35,7 @@ struct ChoiceColumn {
 // than in the file, or more filament pushed beyond what was retracted; under Policy::kSafe none has
 // more travel. Except under Crossings::kAny, the whole file has at least `fewer` fewer crossings of
 // visible walls than before; if no row does, the file's own orders are returned. The file has no
-// more retractions than before, unless each additional one saves a second. REQUIRES: not empty.
+// more retractions than before, unless each additional one saves 0.3 s. REQUIRES: not empty.
 std::vector<uint32_t> BestRow(const std::vector<const ChoiceColumn*>& columns, Policy policy,
                               Crossings crossings, int64_t fewer = 0);
 

@@ -81,8 +81,8 @@ TEST(BestRow, TheFileRetractsNoMoreThoughALayerMay) {
 
 TEST(BestRow, WhatRetractsLessMustNotCrossMoreWallsForIt) {
   const std::vector<ChoiceColumn> columns = {
-      Column({Retracting(10, 4, 4), Retracting(8, 6, 4), Retracting(9, 5, 3)}, 0),
-      Column({Retracting(10, 4, 4), Retracting(9.9, 1, 5)}, 3),
+      Column({Retracting(10, 4, 4), Retracting(9.4, 6, 4), Retracting(9.7, 5, 3)}, 0),
+      Column({Retracting(10, 4, 4), Retracting(9.97, 1, 5)}, 3),
   };
 
   // Each of the first one's needs the second one's fewer retractions, and one crosses less instead.
@@ -97,10 +97,10 @@ TEST(BestRow, RetractionsGiveWayWhereNoRowHasFewer) {
   EXPECT_EQ(Best(columns, Policy::kFree), Row({1}));
 }
 
-TEST(BestRow, ARetractionMoreHasToSaveASecond) {
+TEST(BestRow, ARetractionMoreHasToSaveThreeTenthsOfASecond) {
   const std::vector<ChoiceColumn> columns = {
-      Column({Retracting(50, 4), Retracting(40, 9)}, 0),
-      Column({Retracting(50, 4), Retracting(46, 9)}, 2),
+      Column({Retracting(50, 4), Retracting(48.4, 9)}, 0),
+      Column({Retracting(50, 4), Retracting(48.6, 9)}, 2),
   };
 
   EXPECT_EQ(Best(columns, Policy::kFree), Row({1, 0}));
