@@ -27,8 +27,8 @@ struct Contacts {
 };
 
 // Two paths touch if the middles of their lines are closer than kTouch mean widths: neighbors lie
-// about 0.9 widths apart, the next line 1.8.
-inline constexpr double kTouch = 1.3;
+// about 0.9 widths apart, the next line 1.8. From one width on there is air between them.
+inline constexpr double kTouch = 1.1;
 
 // Thin lines touch if they are this close.
 inline constexpr double kTouchMm = 0.52;

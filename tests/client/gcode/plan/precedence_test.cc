@@ -55,6 +55,16 @@ TEST(Precedence, WallsBeforeInfillStayUnderFreeWhereTheyTouch) {
   EXPECT_THAT(Pairs(sheet.Plan(Policy::kFree).plan), ElementsAre(Pair(1, 2)));
 }
 
+// Neighbors lie 0.9 widths apart; where there is air between two lines, they do not touch.
+TEST(Precedence, LinesTouchUpToElevenTenthsOfTheirWidth) {
+  Sheet sheet;
+  sheet.Add(";WIDTH:0.8");
+  sheet.Line(kInner, 0, 0, 9, 0).Line(kInfill, 0, .87, 9, .87);
+  sheet.Line(kInner, 30, 0, 39, 0).Line(kInfill, 30, .89, 39, .89);
+
+  EXPECT_THAT(Pairs(sheet.Plan().plan), ElementsAre(Pair(1, 2)));
+}
+
 // Thin lines are near each other at half a millimetre, however thin they are.
 TEST(Precedence, NearIsHalfAMillimetreAtLeast) {
   Sheet sheet;
