@@ -146,14 +146,15 @@ struct RetractionCycle {
   Micro pulled = 0;
   Micro pushed = 0;
   bool firmware = false;
-  bool early = false;        // pushed before the travel is done
+  float early_mm = 0;        // of the travel, behind what pushes
   bool in_parts = false;     // pushed in several parts during the travel
   bool idle = false;         // no travel between the two
   uint32_t pulls = 0;        // how many moves pull, unless one of them is a wipe
   uint32_t pushes = 0;       // and how many push
   float late_mm = 0;         // of the travel, before the retraction
   bool pushed_high = false;  // above what is printed on either side
-  bool pulled_high = false;
+  bool pushed_low = false;   // below what is printed behind it
+  bool pulled_high = false;  // above what is printed on either side
   bool known = false;     // the original has all of its moves too
   uint64_t identity = 0;  // of all its moves
   uint32_t line = 0;

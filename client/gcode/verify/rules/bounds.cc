@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/match/tails.h"
 #include "client/gcode/verify/rules/rules.h"
 
@@ -208,7 +209,8 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
     // Travel to the layer leaves a path of another one.
     const bool first = link == layer.first_path_is();
-    const double of_first_mm = layer.index() > 0 ? kDepartureMm : 0;
+    const bool departs = DepartureOf(layer.is(), link) != nullptr;
+    const double of_first_mm = layer.index() == 0 ? 0 : departs ? kDepartureMm : departure_mm;
     const uint32_t moves = along.At(link);
     const bool is_known = LengthOf(layer.is(), link, moves) <= longest + kAlongSlackMm;
     CheckLink(layer, link, std::max(tails.At(link), is_known ? moves : 0),

@@ -18,6 +18,7 @@ constexpr Micro kGrain = 100;       // pairs this near to each other are the sam
 constexpr double kShareOdd = 0.01;  // if this share of the original's do something, it is usual
 constexpr double kHighMm = 0.02;
 constexpr float kLateMm = 0.25f;
+constexpr float kEarlyMm = 0.1f;
 constexpr Micro kOnce = 1'000'000;  // what G10 and G11 count for
 
 class CycleReader {
@@ -32,7 +33,11 @@ class CycleReader {
     if (traced.first_move == traced.end_move) return;
     // At the heights of what is printed before and after.
     double high = chunk.moves[traced.first_move].z_from_mm + kHighMm;
-    if (link < chunk.paths.size()) high = std::max(high, chunk.paths[link].z_mm + kHighMm);
+    double low = -1e9;
+    if (link < chunk.paths.size()) {
+      high = std::max(high, chunk.paths[link].z_mm + kHighMm);
+      low = chunk.paths[link].z_mm - kHighMm;
+    }
     const size_t first = cycles_.size();
     for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
       const TraceMove& move = chunk.moves[m];
@@ -43,6 +48,7 @@ class CycleReader {
       } else if (move.firmware || (open_ && move.filament > 0)) {
         if (!open_) Begin(move);
         cycle_.pushed_high |= move.z_from_mm > high;
+        cycle_.pushed_low |= move.z_to_mm < low;
         Push(move);
       } else if (move.kind == MoveKind::kTravel) {
         way_mm_ += move.length_mm();
@@ -51,8 +57,9 @@ class CycleReader {
         if (open_) cycle_.known &= layer_.IsKnown(move);
         // What came back before this, came back early.
         if (move.open && move.length_mm() > kSidewaysMm) {
-          for (size_t i = first; i < cycles_.size(); ++i) cycles_[i].early = true;
-          if (open_ && cycle_.pushed > 0) cycle_.early = true;
+          const auto length = static_cast<float>(move.length_mm());
+          for (size_t i = first; i < cycles_.size(); ++i) cycles_[i].early_mm += length;
+          if (open_ && cycle_.pushed > 0) cycle_.early_mm += length;
         }
       }
     }
@@ -63,8 +70,8 @@ class CycleReader {
     // Scripts push filament wherever they want to.
     for (size_t i = first; i < cycles_.size(); ++i) {
       RetractionCycle& cycle = cycles_[i];
-      cycle.early = cycle.in_parts = cycle.idle = cycle.pulled_high = cycle.pushed_high = false;
-      cycle.late_mm = 0;
+      cycle.in_parts = cycle.idle = cycle.pulled_high = cycle.pushed_high = cycle.pushed_low = false;
+      cycle.late_mm = cycle.early_mm = 0;
       cycle.pulls = cycle.pushes = 0;
     }
   }
@@ -103,6 +110,7 @@ class CycleReader {
 
   void Push(const TraceMove& move) {
     ++cycle_.pushes;
+    cycle_.firmware |= move.firmware;  // not what the extruder pulled
     cycle_.pushed += move.firmware ? kOnce : move.filament;
     Note(move);
     if (!move.firmware && cycle_.pushed < cycle_.pulled - VerifyMachine::kSlack) return;
@@ -261,13 +269,15 @@ void CompareRetractions(const Observations& was, const Observations& is,
   CompareBalance(was, is, breaks);
   PairTable pairs;
   for (const RetractionCycle& cycle : was.cycles) pairs.Add(cycle);
-  const auto is_usual = [&was](bool RetractionCycle::*odd) {
-    const auto count = std::count_if(was.cycles.begin(), was.cycles.end(),
-                                     [odd](const RetractionCycle& cycle) { return cycle.*odd; });
+  const auto is_usual = [&was](auto RetractionCycle::*odd) {
+    const auto count =
+        std::count_if(was.cycles.begin(), was.cycles.end(),
+                      [odd](const RetractionCycle& cycle) { return cycle.*odd > 0; });
     return static_cast<double>(count) > kShareOdd * static_cast<double>(was.cycles.size());
   };
-  const bool may_be_early = is_usual(&RetractionCycle::early);
+  const bool may_be_early = is_usual(&RetractionCycle::early_mm);
   const bool may_push_high = is_usual(&RetractionCycle::pushed_high);
+  const bool may_push_low = is_usual(&RetractionCycle::pushed_low);
   const bool may_pull_high = is_usual(&RetractionCycle::pulled_high);
   const bool may_be_in_parts = is_usual(&RetractionCycle::in_parts);
   const bool may_be_idle =
@@ -276,7 +286,11 @@ void CompareRetractions(const Observations& was, const Observations& is,
   absl::flat_hash_set<uint64_t> whole;
   for (const RetractionCycle& cycle : was.cycles) whole.insert(cycle.identity);
   float latest_mm = 0;
-  for (const RetractionCycle& cycle : was.cycles) latest_mm = std::max(latest_mm, cycle.late_mm);
+  float earliest_mm = 0;
+  for (const RetractionCycle& cycle : was.cycles) {
+    latest_mm = std::max(latest_mm, cycle.late_mm);
+    if (may_be_early) earliest_mm = std::max(earliest_mm, cycle.early_mm);
+  }
   for (const RetractionCycle& cycle : is.cycles) {
     if (cycle.known && whole.contains(cycle.identity)) continue;
     const auto [deepest, line] = pairs.Deepest(cycle.tool);
@@ -303,10 +317,14 @@ void CompareRetractions(const Observations& was, const Observations& is,
       report("retracts without travel");
     } else if (cycle.in_parts && !may_be_in_parts) {
       report("primes in several parts during the travel");
-    } else if (cycle.early && !may_be_early) {
-      report("primes before the travel ends");
+    } else if (cycle.early_mm > earliest_mm + kEarlyMm) {
+      report(absl::StrFormat(
+          "primes %.2f mm before the travel ends; the most in the original is %.2f mm",
+          cycle.early_mm, earliest_mm));
     } else if (cycle.pushed_high && !may_push_high) {
       report("primes above the layer");
+    } else if (cycle.pushed_low && !may_push_low) {
+      report("primes below the layer");
     } else if (cycle.pulled_high && !may_pull_high) {
       report("retracts above the layer");
     }

@@ -13,7 +13,7 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr float kLiftedMm = 0.03f;  // travel that rises this high is lifted
+constexpr float kLiftedMm = 0.015f;  // travel that rises this high is lifted
 constexpr float kHeightSlackMm = 0.003f;
 constexpr double kShareLifted = 0.99;
 constexpr float kLowMm = 0.5f;

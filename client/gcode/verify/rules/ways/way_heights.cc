@@ -125,7 +125,8 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
   }
   LinkHeights heights(chunk.moves[traced.first_move].z_from_mm, chunk.paths[link].z_mm,
                       traced.scripted, layer.index(), seen);
-  const TraceMove* departure = DepartureOf(chunk, link);  // as high as the path before
+  // A new departure is as high as the path before; those of the original are examples.
+  const TraceMove* departure = only_new ? DepartureOf(chunk, link) : nullptr;
   for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     heights.CountLifts(move);

@@ -76,6 +76,35 @@ TEST(VerifyRetractions, AreMadeAtTheHeightOfWhatIsPrinted) {
   EXPECT_EQ(Broken(kHead + all, kHead + other), "");
 }
 
+TEST(VerifyRetractions, PrimeNotBelowTheLayer) {
+  const std::string rise = "G1 Z.4 F9000\n";
+  const std::string prime = "G1 E1 F2100\n";
+  const std::string line = ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y0 E.3\n";
+  const std::string way = kHead + kTwo + "G1 E-1 F2100\n;LAYER_CHANGE\nG1 X0 Y0 F9000\n";
+  EXPECT_EQ(Broken(way + rise + prime + line, way + rise + prime + line), "");
+  EXPECT_EQ(Broken(way + rise + prime + line, way + prime + rise + line), "retractions");
+  EXPECT_EQ(Broken(way + prime + rise + line, way + prime + rise + line), "");
+}
+
+// CuraEngine primes a little before some paths.
+TEST(VerifyRetractions, PrimeNoEarlierThanTheFileDoes) {
+  const auto early = [](const std::string& at) {
+    return With(kTwo, Way("X0 Y5"),
+                "G1 E-1 F2100\nG1 " + at + " F9000\nG1 E1 F2100\nG1 X0 Y5 F9000\n");
+  };
+  const std::string next = kNextLayer + early("X.27 Y4.85");
+  const std::string a = kHead + early("X.18 Y4.9") + next;
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, kHead + early("X.225 Y4.875") + next), "");
+  EXPECT_THAT(Broken(a, kHead + early("X.72 Y4.6") + next), HasSubstr("retractions"));
+}
+
+// What the firmware primes is not what the extruder pulled.
+TEST(VerifyRetractions, AreUndoneByWhatDidThem) {
+  const std::string both = With(Way("X0 Y5"), "G1 E1 F2100\n", "G11\nG1 E1 F2100\n");
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, Way("X0 Y5"), both)), "retractions");
+}
+
 TEST(VerifyRetractions, TheLastOneIsNoDeeper) {
   const std::string end = "G1 E-1 F2100\nM104 S0\nM84\n";
   EXPECT_EQ(Broken(kHead + kTwo + end, kHead + kTwo + With(end, "E-1", "E-1.9")), "retractions");

@@ -35,6 +35,19 @@ TEST(VerifyLifts, AreNeitherDroppedNorHalvedNorDoneTooLate) {
   }
 }
 
+// On a slope short ways rise by a few hundredths of a millimeter.
+TEST(VerifyLifts, MayBeLow) {
+  const std::string low = With(Lifted("X10 Y40"), "Z.6", "Z.22");
+  const std::string last = With(LiftedLine("X10 Y40", "X20 Y40"), Lifted("X10 Y40"), low);
+  const std::string one = LiftedLine("X10 Y10", "X20 Y10");
+  const std::string other = LiftedLine("X10 Y20", "X20 Y20");
+  const std::string more = LiftedLine("X10 Y30", "X20 Y30") + last;
+  const std::string a = kHead + one + other + more;
+  EXPECT_EQ(Broken(a, kHead + other + one + more), "");
+  const std::string dropped = With(one, Lifted("X10 Y10"), Way("X10 Y10"));
+  EXPECT_EQ(Broken(a, kHead + other + dropped + more), "lifts");
+}
+
 TEST(VerifyLifts, OfOtherWaysAreHeightsAboveTheLayer) {
   const std::string other = LiftedLine("X20 Y30", "X10 Y30") + LiftedLine("X10 Y20", "X20 Y20") +
                             LiftedLine("X10 Y10", "X20 Y10") + LiftedLine("X10 Y40", "X20 Y40");
