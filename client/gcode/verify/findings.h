@@ -94,7 +94,7 @@ struct Descent {
 struct RepeatedLift {
   bool level = false;  // both paths have the same height
   uint32_t times = 0;
-  uint32_t dips = 0;  // how often it rises again behind a descent, if the paths have one height
+  uint32_t dips = 0;  // how often it rises again behind a descent, unless the next path is lower
   uint32_t line = 0;
   int64_t layer = -1;
 };
@@ -155,8 +155,8 @@ struct RetractionCycle {
   bool pushed_high = false;  // above what is printed on either side
   bool pushed_low = false;   // below what is printed behind it
   bool pulled_high = false;  // above what is printed on either side
-  bool known = false;     // the original has all of its moves too
-  uint64_t identity = 0;  // of all its moves
+  bool known = false;        // the original has all of its moves too
+  uint64_t identity = 0;     // of all its moves
   uint32_t line = 0;
   int64_t layer = -1;
 };
@@ -259,8 +259,8 @@ struct Observations {
   absl::flat_hash_map<uint32_t, OpenHabit> open_habits;  // by kind and length
   std::vector<NewOpenWay> new_open_ways;
   std::vector<LongWay> long_ways;
-  std::vector<Detour> detours;  // of the original one for each layer
-  bool departs_inside = false;  // by a short move from what is no outer wall: departures.h
+  std::vector<Detour> detours;           // of the original one for each layer
+  bool departs_inside = false;           // by a short move from what is no outer wall: departures.h
   std::vector<Finding> lost_departures;  // of travel that leads elsewhere than in the original
   LiftLog lifts;
   std::vector<RetractionCycle> cycles;

@@ -159,4 +159,33 @@ const LinkStep* DepartureOf(const Link& link) {
   return departs && link.Leaves(place) ? &*first : nullptr;
 }
 
+bool LabelsBeforeTravel(const Link& link) {
+  bool labels = false;
+  for (size_t i = link.fixed; link.Leaves(i); ++i) {
+    const StepKind kind = link.steps[i].kind;
+    if (kind == StepKind::kLift || kind == StepKind::kLayerMark) return false;
+    labels = labels || kind == StepKind::kLabel;
+  }
+  return labels;
+}
+
+bool LeadsAside(const Link& link, size_t i) {
+  for (size_t j = i + 1; j < link.steps.size() && static_cast<int>(j) < link.arrival; ++j) {
+    if (link.steps[j].kind == StepKind::kTravel) return false;
+    if (link.steps[j].kind == StepKind::kLift && link.steps[j].to.z < link.z_before) return true;
+  }
+  return false;
+}
+
+SlotMask SetBeforeMarks(const Link& link) {
+  SlotMask slots = 0;
+  for (const LinkStep& step : link.steps) {
+    const bool mark = step.kind == StepKind::kLayerMark || step.kind == StepKind::kLabel ||
+                      step.kind == StepKind::kStay;
+    if (mark) break;
+    slots |= step.slots;
+  }
+  return slots;
+}
+
 }  // namespace traverse::gcode

@@ -81,6 +81,16 @@ struct Link {
 // The step of the short move with which `link` begins; null if it begins with none.
 const LinkStep* DepartureOf(const Link& link);
 
+// The label of an object stands before the travel, at the height of the path before it.
+bool LabelsBeforeTravel(const Link& link);
+
+// Step `i` is a travel move behind which the head sinks under what was printed before: it leads to
+// where there is nothing in the way, to the next object of a print one by one.
+bool LeadsAside(const Link& link, size_t i);
+
+// The slots that the link itself sets before its first mark.
+SlotMask SetBeforeMarks(const Link& link);
+
 // `form`, which pulls filament back as `own` does before its first mark; nothing if `own` pulls
 // back another amount there, or does not wipe. REQUIRES: form.arrival >= 0.
 std::optional<Link> WithWipeOf(Link form, const Link& own);

@@ -59,39 +59,6 @@ void Slope(const Position& from, const Link& rise, std::vector<Position>& way) {
 
 bool IsDeparture(const Link& link, size_t i) { return DepartureOf(link) == &link.steps[i]; }
 
-// The label of an object stands before the travel, at the height of the path before it.
-bool LabelsBeforeTravel(const Link& link) {
-  bool labels = false;
-  for (size_t i = link.fixed; link.Leaves(i); ++i) {
-    const StepKind kind = link.steps[i].kind;
-    if (kind == StepKind::kLift || kind == StepKind::kLayerMark) return false;
-    labels = labels || kind == StepKind::kLabel;
-  }
-  return labels;
-}
-
-// A travel move behind which the head sinks under what was printed before: it leads to where there
-// is nothing in the way, to the next object of a print one by one.
-bool LeadsAside(const Link& link, size_t i) {
-  for (size_t j = i + 1; j < link.steps.size() && static_cast<int>(j) < link.arrival; ++j) {
-    if (link.steps[j].kind == StepKind::kTravel) return false;
-    if (link.steps[j].kind == StepKind::kLift && link.steps[j].to.z < link.z_before) return true;
-  }
-  return false;
-}
-
-// The slots that the link itself sets before its first mark.
-SlotMask SetBeforeMarks(const Link& link) {
-  SlotMask slots = 0;
-  for (const LinkStep& step : link.steps) {
-    const bool mark = step.kind == StepKind::kLayerMark || step.kind == StepKind::kLabel ||
-                      step.kind == StepKind::kStay;
-    if (mark) break;
-    slots |= step.slots;
-  }
-  return slots;
-}
-
 }  // namespace
 
 void LinkWriter::Write(const LinkRequest& request) {
@@ -395,6 +362,8 @@ void LinkWriter::WriteBoundaryStep(const LinkRequest& request, const Link& link,
       return WriteWipe(*request.from, link);
     }
     case StepKind::kLift:
+      // A departure of another link may have lifted the head higher.
+      if (link.Leaves(i) && step.to.z >= step.from.z && out_.at.machine.at.z > step.to.z) return;
       return out_.LiftLine(step, step.to.z);
     case StepKind::kSlot:
       // What another path is printed under is set at its beginning, once.

@@ -70,7 +70,8 @@ class CycleReader {
     // Scripts push filament wherever they want to.
     for (size_t i = first; i < cycles_.size(); ++i) {
       RetractionCycle& cycle = cycles_[i];
-      cycle.in_parts = cycle.idle = cycle.pulled_high = cycle.pushed_high = cycle.pushed_low = false;
+      cycle.in_parts = cycle.idle = false;
+      cycle.pulled_high = cycle.pushed_high = cycle.pushed_low = false;
       cycle.late_mm = cycle.early_mm = 0;
       cycle.pulls = cycle.pushes = 0;
     }

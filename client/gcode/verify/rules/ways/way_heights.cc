@@ -59,7 +59,7 @@ class LinkHeights {
       lifts_.line = move.line;
     }
     sinks_ |= move.z_to_mm < move.z_from_mm - kSlackMm;
-    if (lifts_.level && sinks_ && move.z_to_mm > move.z_from_mm + kSlackMm) {
+    if (lowest_.rise != WayRise::kDown && sinks_ && move.z_to_mm > move.z_from_mm + kSlackMm) {
       sinks_ = false;
       ++lifts_.dips;
       lifts_.line = move.line;
@@ -151,16 +151,16 @@ void CompareMoves(const Observations& was, const Observations& is, std::vector<F
                                       -move.above_mm, -deepest.above_mm)});
   }
   std::array<RepeatedLift, 2> most;
-  RepeatedLift dipping;
+  std::array<RepeatedLift, 2> dipping;
   for (const RepeatedLift& lifts : was.lifts_of_links) {
     if (lifts.times > most[lifts.level].times) most[lifts.level] = lifts;
-    if (lifts.dips > dipping.dips) dipping = lifts;
+    if (lifts.dips > dipping[lifts.level].dips) dipping[lifts.level] = lifts;
   }
   for (const RepeatedLift& lifts : is.lifts_of_links) {
     const RepeatedLift& usual = most[lifts.level];
     const uint32_t times = std::max(usual.times, 1u);
-    if (lifts.dips > dipping.dips) {
-      breaks.push_back({VerifyRule::kLifts, dipping.line, lifts.line, lifts.layer,
+    if (lifts.dips > dipping[lifts.level].dips) {
+      breaks.push_back({VerifyRule::kLifts, dipping[lifts.level].line, lifts.line, lifts.layer,
                         "the head descends and rises again between two paths, unlike in the "
                         "original"});
       continue;

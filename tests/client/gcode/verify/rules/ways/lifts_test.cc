@@ -200,6 +200,20 @@ TEST(VerifyLifts, AreDoneOnce) {
   EXPECT_EQ(Broken(kHead + twice, kHead + twice), "");
 }
 
+// Between layers of which the next one lies lower than the lift, too.
+TEST(VerifyLifts, TheHeadDoesNotSinkOnTheWayUp) {
+  const std::string line = "G1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 X0 Y15 E.3\n";
+  const auto to_layer = [&](const std::string& z) {
+    return "G1 E-1 F2100\nG1 Z.6 F9000\n;LAYER_CHANGE\n" + z + "G1 Z.8 F9000\nG1 X9 Y15\nG1 Z.4\n" +
+           line;
+  };
+  const std::string a = kHead + kLifted + to_layer("");
+  EXPECT_EQ(Broken(a, a), "");
+  const std::string dips = kHead + kLifted + to_layer("G1 Z.4 F9000\n");
+  EXPECT_EQ(Broken(a, dips), "lifts");
+  EXPECT_EQ(Broken(dips, dips), "");
+}
+
 // On a slope no move rises alone, so that one which does is the first of its kind.
 TEST(VerifyLifts, AreNotDoneAgainBehindADescent) {
   const auto line = [](const char* from, const char* to, const char* again) {
