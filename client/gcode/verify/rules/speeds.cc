@@ -102,11 +102,13 @@ bool IsTooLong(const TraceMove& move, const LongestWays& longest) {
   });
 }
 
-// Moves that the original does not have in this layer. The gap of a loop that begins elsewhere
-// belongs to the loop.
-bool IsNew(const LayerPair& layer, const TraceMove& move) {
+// Moves of `link` that the original does not have in this layer. The gap of a loop that begins
+// elsewhere belongs to the loop, and is crossed as fast as that is printed.
+bool IsNew(const LayerPair& layer, uint32_t link, const TraceMove& move) {
   if (!move.in_print || layer.IsKnown(move)) return false;
-  return move.kind != MoveKind::kTravel || !move.open || move.length_mm() > kLoopGapMm;
+  const TraceChunk& is = layer.is();
+  return move.kind != MoveKind::kTravel || !move.open || move.length_mm() > kLoopGapMm ||
+         link == 0 || move.feed != is.paths[link - 1].feed;
 }
 
 void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
@@ -117,7 +119,7 @@ void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
     ObserveTail(layer, chunk, link, tails.At(link), true, seen);
     for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
       const TraceMove& move = chunk.moves[m];
-      if (!IsNew(layer, move)) continue;
+      if (!IsNew(layer, link, move)) continue;
       if (!move.firmware) {
         Note(seen.feeds[KindOf(move)], static_cast<uint64_t>(move.feed), move, layer.index());
         // Behind unknown lines it is that of the original there: see CheckScriptedWays.
@@ -175,7 +177,7 @@ void CheckLayerFeeds(const LayerPair& layer, LayerFindings& findings) {
       const TraceMove& move = is.moves[m];
       const LayerFeeds& of_kind = were[static_cast<size_t>(move.kind)];
       if (!HasLayerSpeed(move) || of_kind.feeds.empty() || of_kind.feeds.contains(move.feed) ||
-          !IsNew(layer, move)) {
+          !IsNew(layer, link, move)) {
         continue;
       }
       findings.breaks.push_back(

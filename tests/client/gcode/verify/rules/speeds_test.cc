@@ -31,6 +31,14 @@ TEST(VerifySpeeds, WaysAreAsFastAsThoseOfTheirLayer) {
       << FirstMessage(a, b);
 }
 
+// So are moves as short as the gap of a loop, unless they are as fast as the loop is printed.
+TEST(VerifySpeeds, ShortMovesAreAsFastAsOthers) {
+  const std::string loop = With(kSquare, "G1 X10 Y10 E.4\n", "G1 X10 Y10.1 E.4\n");
+  const std::string a = kHead + loop + "G1 X10 Y10 F9000\n" + kOther;
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, With(a, "G1 X10 Y10 F9000\nG1 E-1", "G1 X10 Y10 F9600\nG1 E-1")), "speeds");
+}
+
 // What another layer does at the speed of its travel is no example.
 TEST(VerifySpeeds, RetractionsAreAsFastAsThoseOfTheirLayer) {
   const auto pulled_as_fast_as_travel = [](const std::string& text) {
