@@ -151,10 +151,11 @@ void LayerWriter::NoteLeaving(uint32_t block) {
   }
   Leaving leaving;
   if (!file_.WipedBehind(block)) {
-    if (block + 1 >= file_.blocks.size() || !donors_.MayFollow(block + 1)) return;
+    if (block + 1 >= file_.blocks.size()) return;
     const Link link = ReadLink(file_, block + 1);
     const LinkStep* departure = DepartureOf(link);
     if (departure == nullptr) return;
+    if (!donors_.MayFollow(block + 1) && !PullsBackBehind(link, *departure)) return;
     leaving_[block] = {.mm = departure->way_mm * mode.UnitMm(),
                        .as_given = mode.InMm(departure->to),
                        .departs = true,

@@ -159,6 +159,15 @@ const LinkStep* DepartureOf(const Link& link) {
   return departs && link.Leaves(place) ? &*first : nullptr;
 }
 
+bool PullsBackBehind(const Link& link, const LinkStep& departure) {
+  if (link.fixed > 0) return false;
+  const auto behind = link.steps.begin() + (&departure - link.steps.data()) + 1;
+  const auto next = std::find_if(behind, link.steps.end(), [](const LinkStep& step) {
+    return IsXyMotion(step.kind) || step.filament != 0 || step.kind == StepKind::kFirmwareRetract;
+  });
+  return next != link.steps.end() && next->kind != StepKind::kTravel;
+}
+
 bool LabelsBeforeTravel(const Link& link) {
   bool labels = false;
   for (size_t i = link.fixed; link.Leaves(i); ++i) {

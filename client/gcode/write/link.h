@@ -81,6 +81,10 @@ struct Link {
 // The step of the short move with which `link` begins; null if it begins with none.
 const LinkStep* DepartureOf(const Link& link);
 
+// Whether filament is pulled back before anything else moves in XY behind `departure`, a step of
+// `link` without unknown lines.
+bool PullsBackBehind(const Link& link, const LinkStep& departure);
+
 // The label of an object stands before the travel, at the height of the path before it.
 bool LabelsBeforeTravel(const Link& link);
 

@@ -149,6 +149,7 @@ Link LinkWriter::WriteDeparture(const LinkRequest& request, const Link& form) {
   const Link& link = own ? *own : form;
   const Decimal z = out_.at.machine.at.z;
   if (!exact || !link.departs) WriteGoingOn(request);
+  if (!own && form.retracts()) WriteOwnDeparture(*request.from);
   bool wiped = false;
   for (size_t i = 0; link.Leaves(i); ++i) {
     const LinkStep& step = link.steps[i];
@@ -170,14 +171,14 @@ Link LinkWriter::WriteDeparture(const LinkRequest& request, const Link& form) {
   return link;
 }
 
-// Where another path stands last before the marks than in the file, it is left as it is there.
+// A path that stands last before marks in the file, or here, is left as it is there.
 void LinkWriter::WriteOwnDeparture(const PlacedPath& from) {
   const uint32_t next = from.placement().block + 1;
-  if (!from.as_given() || next >= file_.blocks.size() || !donors_.MayFollow(next)) return;
+  if (!from.as_given() || next >= file_.blocks.size()) return;
   if ((from.block().flags & kBlockGoesOn) != 0) return;  // along the path: WriteGoingOn
   const Link own = ReadLink(file_, next);
   const LinkStep* departure = DepartureOf(own);
-  if (own.retracts() && departure != nullptr) out_.MoveLine(*departure);
+  if (departure != nullptr && PullsBackBehind(own, *departure)) out_.MoveLine(*departure);
 }
 
 // A path that the file goes on along without filament is gone on along as far wherever it ends.

@@ -126,7 +126,8 @@ TEST(LayerWriter, PathsAreLeftAsInTheFile) {
   sketch.GoRetracted(20, 5).Square(20, 5, 5).Add("G1 X20.2 Y5.2 F9000").Add(";WIPE_START");
   sketch.Add("G1 X22 Y5 E-.8 F2400").Add(";WIPE_END").Go(40, 5).Add("G1 E.8 F2100");
   sketch.Infill(40, 9).GoRetracted(50, 5).Infill(50, 9);
-  sketch.Add("G1 E-.8 F2100").Add(";LAYER_CHANGE").Add("G1 Z.4 F9000").Go(0, 0);
+  sketch.Add("G1 X50.2 Y9.2 F9000").Add("G1 E-.8 F2100").Add(";LAYER_CHANGE");
+  sketch.Add("G1 Z.4 F9000").Go(0, 0);
   const auto file = sketch.Add("G1 E.8 F2100").Infill(9, 0).Read();
   const RetractionHabit habit = HabitOfNewWays(*file);
   const LinkDonors donors(*file);
@@ -139,6 +140,7 @@ TEST(LayerWriter, PathsAreLeftAsInTheFile) {
   next.WriteWay(order.back(), next.GivenOrder().front(), behind, text);
 
   EXPECT_NE(text.find("X.3 Y.3 F9000\nG1 E-.8"), std::string::npos) << text;
+  EXPECT_NE(text.find("G1 X50.2 Y9.2 F9000\n;WIPE_START"), std::string::npos) << text;
   EXPECT_NE(text.find("X20.2 Y5.2 F9000\n;WIPE_START"), std::string::npos) << text;
 }
 
