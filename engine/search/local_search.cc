@@ -94,9 +94,11 @@ double LocalSearch::ImproveEdge(int t1, bool forward) {
 // Does the first move found that makes the route cheaper than it was without the `debt`.
 double LocalSearch::TryFound(double debt) {
   for (const ThreeOpt::Found& found : three_opt_.found()) {
+    if (rejected_.Contains(found.move, state_.route_number())) continue;
     const double most = -debt - kImprovementTolerance;
     const double delta = evaluator_.Evaluate(found.move, most);
     if (delta < most) return debt + delta + Do(found.move);
+    rejected_.Add(found.move, state_.route_number());
   }
   return 0;
 }

@@ -14,6 +14,7 @@
 
 #include "engine/base/budget.h"
 #include "engine/search/move_evaluator.h"
+#include "engine/search/rejected_moves.h"
 #include "engine/search/search_state.h"
 #include "engine/search/three_opt.h"
 
@@ -69,6 +70,7 @@ class LocalSearch {
   LocalSearchOptions options_;
   ThreeOpt three_opt_;
   MoveEvaluator evaluator_;
+  RejectedMoves rejected_;
 
   // A ring buffer of the leaves to look at.
   std::vector<int> queue_;

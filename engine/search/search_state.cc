@@ -46,6 +46,7 @@ void SearchState::Load(const Route& route, Budget* budget) {
     MeasureStep(i);
   }
   log_.clear();
+  route_number_ = ++last_route_number_;
 }
 
 Route SearchState::Unload() const {
@@ -152,7 +153,7 @@ void SearchState::Apply(const SegmentMove& move) {
     Reverse(move.middle, move.last);
     return;
   }
-  log_.push_back({Change::Kind::kExchange, move.first, move.middle, move.last});
+  Note(Change::Kind::kExchange, move.first, move.middle, move.last);
   DoExchange(move.first, move.middle, move.last);
   const int middle = move.NewMiddle();
   if (move.kind == Kind::kExchangeReverseFirst) Reverse(middle, move.last);
@@ -163,7 +164,7 @@ void SearchState::SetEntry(int leaf, int new_entry) {
   assert(entries_.first(leaf) <= new_entry);
   assert(new_entry < entries_.first(leaf) + entries_.count(leaf));
   if (entry(leaf) == new_entry) return;
-  log_.push_back({Change::Kind::kEntry, leaf, entry(leaf), 0});
+  Note(Change::Kind::kEntry, leaf, entry(leaf), 0);
   DoSetEntry(leaf, new_entry);
 }
 
@@ -171,6 +172,7 @@ void SearchState::UndoTo(size_t mark) {
   while (log_.size() > mark) {
     const Change change = log_.back();
     log_.pop_back();
+    route_number_ = change.route_number;
     switch (change.kind) {
       case Change::Kind::kEntry:
         DoSetEntry(change.a, change.b);
@@ -186,7 +188,7 @@ void SearchState::UndoTo(size_t mark) {
 }
 
 void SearchState::Reverse(int first, int last) {
-  log_.push_back({Change::Kind::kReverse, first, last, 0});
+  Note(Change::Kind::kReverse, first, last, 0);
   DoReverse(first, last);
 }
 

@@ -4,6 +4,7 @@
 #define TRAVERSE_ENGINE_SEARCH_SEARCH_STATE_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "engine/base/budget.h"
@@ -63,6 +64,10 @@ class SearchState {
   void Apply(const SegmentMove& move);
   void SetEntry(int leaf, int entry);
 
+  // The number of the loaded route, above 0: equal numbers of one state mean equal routes. Undoing
+  // changes brings back the number from before them.
+  uint64_t route_number() const { return route_number_; }
+
   // Undo everything since Mark() returned `mark`; forget how to undo it.
   size_t Mark() const { return log_.size(); }
   void UndoTo(size_t mark);
@@ -72,7 +77,13 @@ class SearchState {
   struct Change {
     enum class Kind { kEntry, kReverse, kExchange } kind;
     int a, b, c;  // leaf, old entry; first, last; first, middle, last
+    uint64_t route_number;  // before it
   };
+
+  void Note(Change::Kind kind, int a, int b, int c) {
+    log_.push_back({kind, a, b, c, route_number_});
+    route_number_ = ++last_route_number_;
+  }
 
   static size_t Index(int i) { return static_cast<size_t>(i); }
 
@@ -101,6 +112,8 @@ class SearchState {
   std::vector<Point> in_;      // [leaf] where its entry begins,
   std::vector<Point> out_;     // [leaf] and ends
   std::vector<Change> log_;
+  uint64_t route_number_ = 0;
+  uint64_t last_route_number_ = 0;
 };
 
 }  // namespace traverse

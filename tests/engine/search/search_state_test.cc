@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <vector>
+
 #include "absl/strings/str_cat.h"
 #include "engine/cost/route_cost.h"
 #include "engine/validator.h"
@@ -79,9 +82,11 @@ TEST(SearchState, UndoRestoresEverything) {
     Rng rng(seed);
     std::vector<Route> routes;
     std::vector<size_t> marks;
+    std::vector<uint64_t> numbers;
     for (int i = 0; i < 30; ++i) {
       routes.push_back(s.state.Unload());
       marks.push_back(s.state.Mark());
+      numbers.push_back(s.state.route_number());
       const int leaf = static_cast<int>(rng.Below(static_cast<uint32_t>(s.tree.path_count())));
       s.state.SetEntry(leaf, s.entries.first(leaf) + rng.Between(0, s.entries.count(leaf) - 1));
       const SegmentMove move = RandomMove(rng, s.tree.path_count());
@@ -92,9 +97,42 @@ TEST(SearchState, UndoRestoresEverything) {
       s.state.UndoTo(marks[i]);
 
       ASSERT_EQ(s.state.Unload(), routes[i]);
+      ASSERT_EQ(s.state.route_number(), numbers[i]);
       ASSERT_NEAR(s.state.TotalCost(), RouteCost(s.owned.problem, routes[i]), 1e-9);
       for (int p = 1; p < s.state.last_position(); ++p) {
         ASSERT_EQ(s.state.position(s.state.leaf_at(p)), p);
+      }
+    }
+  }
+}
+
+TEST(SearchState, EqualNumbersMeanEqualRoutes) {
+  for (uint64_t seed = 1; seed <= 50; ++seed) {
+    SCOPED_TRACE(absl::StrCat("seed ", seed));
+    Searched s(seed);
+    Rng rng(seed);
+    std::map<uint64_t, Route> routes;
+    for (int i = 0; i < 200; ++i) {
+      const Route route = s.state.Unload();
+      ASSERT_EQ(routes.try_emplace(s.state.route_number(), route).first->second, route);
+      ASSERT_GT(s.state.route_number(), 0);
+      const SegmentMove move = RandomMove(rng, s.tree.path_count());
+      const int leaf = static_cast<int>(rng.Below(static_cast<uint32_t>(s.tree.path_count())));
+      switch (rng.Below(6)) {
+        case 0:
+          s.state.UndoTo(s.state.Mark() / 2);
+          break;
+        case 1:
+          s.state.Commit();
+          break;
+        case 2:
+          s.state.Load(routes.begin()->second);
+          break;
+        case 3:
+          s.state.SetEntry(leaf, s.entries.first(leaf) + rng.Between(0, s.entries.count(leaf) - 1));
+          break;
+        default:
+          if (s.state.Allows(move)) s.state.Apply(move);
       }
     }
   }
