@@ -54,8 +54,8 @@ void IteratedSearch::Run(Rng& rng, Budget& budget) {
     if (options_.least_gain_each > 0 && !IsWorthIt(Work())) break;
     ++iterations_;
     double delta = 0;
-    if (!Kick(rng, delta)) continue;
-    delta += local_search_.Run(budget);
+    if (!Kick(rng, options_.bridges, delta)) continue;
+    delta += local_search_.Run(budget, delta);
     if (delta > kImprovementTolerance && rng.Unit() >= std::exp(-delta / temperature)) {
       state_.UndoTo(0);
       continue;
@@ -71,7 +71,7 @@ void IteratedSearch::Run(Rng& rng, Budget& budget) {
 
 void IteratedSearch::Shake(int kicks, Rng& rng, Budget& budget) {
   double unused = 0;
-  for (int i = 0; i < kicks && !budget.Exhausted(); ++i) Kick(rng, unused);
+  for (int i = 0; i < kicks && !budget.Exhausted(); ++i) Kick(rng, 1, unused);
   local_search_.Run(budget);
   state_.Commit();
 }
@@ -104,16 +104,15 @@ void IteratedSearch::KeepBest(double cost) {
   state_.Unload(best_);
 }
 
-bool IteratedSearch::Kick(Rng& rng, double& delta) {
+bool IteratedSearch::Kick(Rng& rng, int bridges, double& delta) {
   if (turns_ && rng.Unit() < options_.turn_share) return TurnKick(rng, delta);
-  return BridgeKick(rng, delta);
+  return BridgeKick(rng, bridges, delta);
 }
 
-bool IteratedSearch::BridgeKick(Rng& rng, double& delta) {
+bool IteratedSearch::BridgeKick(Rng& rng, int bridges, double& delta) {
   for (int i = 0; i < kTries; ++i) {
-    const int node = ChooseNode(rng, ChooseLeaf(rng));
-    int cuts[4];
-    if (node < 0 || !ChooseCuts(rng, node, cuts)) continue;
+    Cuts cuts;
+    if (!ChooseBridge(rng, bridges, cuts)) continue;
     // A | B | C | D -> A | D | C | B in two exchanges: B with C D, then C with D.
     const SegmentMove whole{SegmentMove::Kind::kExchange, cuts[0], cuts[1], cuts[3] - 1};
     const int after_c = cuts[0] + cuts[2] - cuts[1];
@@ -140,6 +139,36 @@ bool IteratedSearch::BridgeKick(Rng& rng, double& delta) {
     return true;
   }
   return false;
+}
+
+// The cheapest of so many double bridges inside one node.
+bool IteratedSearch::ChooseBridge(Rng& rng, int bridges, Cuts& cuts) const {
+  const int node = ChooseNode(rng, ChooseLeaf(rng));
+  if (node < 0 || !ChooseCuts(rng, node, cuts)) return false;
+  double least = BridgeCost(cuts);
+  for (int i = 1; i < bridges; ++i) {
+    Cuts others;
+    if (!ChooseCuts(rng, node, others)) continue;
+    const double cost = BridgeCost(others);
+    if (cost >= least) continue;
+    least = cost;
+    cuts = others;
+  }
+  return true;
+}
+
+// By how much a double bridge makes the route longer, with the entries as they are. The moves that
+// it adds ask no walls, which would take longer than the choice is worth.
+double IteratedSearch::BridgeCost(const Cuts& cuts) const {
+  const auto move_cost = [this](int from, int to) {
+    const int leaf = state_.leaf_at(to);
+    if (state_.IsFree(leaf)) return 0.0;
+    return state_.cost().Base(state_.out(state_.leaf_at(from)), state_.in(leaf));
+  };
+  double cost = move_cost(cuts[0] - 1, cuts[2]) + move_cost(cuts[3] - 1, cuts[1]) +
+                move_cost(cuts[2] - 1, cuts[0]) + move_cost(cuts[1] - 1, cuts[3]);
+  for (const int cut : cuts) cost -= state_.StepCost(cut - 1);
+  return cost;
 }
 
 bool IteratedSearch::TurnKick(Rng& rng, double& delta) {
@@ -228,7 +257,7 @@ int IteratedSearch::ChooseCut(Rng& rng, int begin, int span, int tries) const {
   return cut;
 }
 
-bool IteratedSearch::ChooseCuts(Rng& rng, int node, int (&cuts)[4]) const {
+bool IteratedSearch::ChooseCuts(Rng& rng, int node, Cuts& cuts) const {
   const OrderTree& tree = state_.tree();
   const int first = std::max(state_.position(node), options_.first_kicked);
   const int past_node = state_.position(node) + tree.size(node);
@@ -242,7 +271,7 @@ bool IteratedSearch::ChooseCuts(Rng& rng, int node, int (&cuts)[4]) const {
       cut = state_.position(tree.ChildHolding(node, state_.leaf_at(cut)));
     }
   }
-  std::sort(std::begin(cuts), std::end(cuts));
+  std::sort(cuts.begin(), cuts.end());
   return cuts[0] < cuts[1] && cuts[1] < cuts[2] && cuts[2] < cuts[3];
 }
 

@@ -15,6 +15,7 @@
 #ifndef TRAVERSE_ENGINE_SEARCH_ITERATED_SEARCH_H_
 #define TRAVERSE_ENGINE_SEARCH_ITERATED_SEARCH_H_
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -60,6 +61,10 @@ struct IteratedSearchOptions {
   int least_span = 30;
   int most_span = 400;
 
+  // A kick is the cheapest of so many double bridges chosen at random: it takes less repair, and
+  // more often leads to a better route. Shakes take any.
+  int bridges = 1;
+
   // The share of kicks that have the largest span and each cut at the longest of so many moves
   // chosen at random. Between groups of paths far apart, such as holes that are drilled here and
   // there, moves are few and long, and neighbors do not lead from group to group.
@@ -97,13 +102,17 @@ class IteratedSearch {
   static constexpr int64_t kLeastIterations = 200;
 
  private:
-  bool Kick(Rng& rng, double& delta);
-  bool BridgeKick(Rng& rng, double& delta);
+  using Cuts = std::array<int, 4>;  // the positions behind them, ascending
+
+  bool Kick(Rng& rng, int bridges, double& delta);
+  bool BridgeKick(Rng& rng, int bridges, double& delta);
+  bool ChooseBridge(Rng& rng, int bridges, Cuts& cuts) const;
+  double BridgeCost(const Cuts& cuts) const;
   bool TurnKick(Rng& rng, double& delta);
   int ChooseRunEnd(Rng& rng, int node, int first) const;
   int ChooseNode(Rng& rng, int leaf) const;
   int ChooseLeaf(Rng& rng) const;
-  bool ChooseCuts(Rng& rng, int node, int (&cuts)[4]) const;
+  bool ChooseCuts(Rng& rng, int node, Cuts& cuts) const;
   int ChooseSpan(Rng& rng) const;
   int ChooseCut(Rng& rng, int begin, int span, int tries) const;
   void KeepBest(double cost);

@@ -1,6 +1,7 @@
 #include "engine/search/local_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "engine/base/tolerances.h"
@@ -43,11 +44,14 @@ int LocalSearch::Pop() {
   return leaf;
 }
 
-double LocalSearch::Run(Budget& budget) {
+double LocalSearch::Run(Budget& budget, double owed) {
   double delta = 0;
-  while (size_ > 0 && !budget.Exhausted()) {
+  const auto ends = [&] {
+    return (delta < 0 && std::abs(delta + owed) <= kImprovementTolerance) || budget.Exhausted();
+  };
+  while (size_ > 0 && !ends()) {
     const int leaf = Pop();
-    for (double gain = -1; gain < 0 && !budget.Exhausted();) {
+    for (double gain = -1; gain < 0 && !ends();) {
       gain = Improve(leaf);
       delta += gain;
     }

@@ -10,6 +10,7 @@
 #define TRAVERSE_ENGINE_SEARCH_LOCAL_SEARCH_H_
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "engine/base/budget.h"
@@ -39,8 +40,10 @@ class LocalSearch {
   void PushAll();
 
   // Improves the route until the queue is empty or the budget has run out. Returns the change of
-  // cost, which is 0 or negative. Allocates nothing.
-  double Run(Budget& budget);
+  // cost, which is 0 or negative. Allocates nothing. `owed`: how much the route costs more than one
+  // that this search could not improve. It also ends once it has gained just that: then it has
+  // nearly always come back to that route, where it would find nothing.
+  double Run(Budget& budget, double owed = std::numeric_limits<double>::infinity());
 
   // Chooses the entries of the visits at [first, last] again, exactly for up to two at a time.
   // Returns the change of cost.

@@ -33,8 +33,8 @@ namespace {
 // Iterations without a gain worth mentioning after which the search ends: so many, which more
 // effort does not raise, and so many more a path.
 constexpr double kLeastPatience = 150;
-constexpr double kPatience = 4;
-constexpr double kPatienceOfFew = 6;
+constexpr double kPatience = 6;
+constexpr double kPatienceOfFew = 9;
 constexpr double kLeastGain = 2e-4;
 
 // A search of more effort is divided into walks: the first one is of so much effort, the others end
@@ -49,8 +49,9 @@ constexpr int kMostSpan = 400;
 constexpr int kLeastMostSpan = 50;
 
 // Of kicks, where the caller does not want so much of each iteration that there is no time for
-// them: sliced files gain nothing by them.
+// them: sliced files gain nothing by them, nor by a choice among double bridges.
 constexpr double kLongShare = 0.3;
+constexpr int kBridges = 5;
 
 // Operations of dynamic programmes on small parts, by the way of 2 ns each; where walls are asked
 // about, of ten times as much.
@@ -271,8 +272,10 @@ class AutoLayer : public PreparedLayer {
     options.least_gain = kLeastGain;
     options.least_gain_each = options_.least_gain_each;
     options.window = static_cast<double>(options_.gain_window);
-    if (options_.least_gain_each == 0) options.long_share = kLongShare;
-    if (options_.least_gain_each > 0) {
+    if (options_.least_gain_each == 0) {
+      options.long_share = kLongShare;
+      options.bridges = kBridges;
+    } else {
       options.earned = effort.kicks > 0 ? kEarned * options_.effort / effort.kicks : kEarned;
       const Route given = GivenRoute(*layer.problem.plan, &budget);
       options.price = [&layer](const Route& of) { return CrossingPrice(layer.problem, of); };

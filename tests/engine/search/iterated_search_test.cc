@@ -168,9 +168,16 @@ TEST(IteratedSearch, FindsShorterRoutesByTurningRunsOfBlocks) {
 }
 
 TEST(IteratedSearch, FindsShorterRoutesByWalkingAmongWorseOnes) {
-  const IteratedSearchOptions walking{.local_search = {}, .patience = 500};
-  const IteratedSearchOptions not_walking{.local_search = {}, .patience = 500, .temperature = 0};
+  const IteratedSearchOptions walking{.local_search = {}, .patience = 500, .bridges = 5};
+  const IteratedSearchOptions not_walking{
+      .local_search = {}, .patience = 500, .temperature = 0, .bridges = 5};
   EXPECT_LT(CostRatio(PlanShape::kSequential, walking, not_walking), 0.999);
+}
+
+TEST(IteratedSearch, FindsShorterRoutesByCheaperKicks) {
+  const IteratedSearchOptions choosing{.local_search = {}, .patience = 100, .bridges = 4};
+  const IteratedSearchOptions not_choosing{.local_search = {}, .patience = 100, .bridges = 1};
+  EXPECT_LT(CostRatio(PlanShape::kFlatContours, choosing, not_choosing), 0.998);
 }
 
 TEST(IteratedSearch, StopsWhenPatienceIsOut) {

@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "engine/base/tolerances.h"
 #include "engine/validator.h"
 #include "tests/engine/search/searched.h"
+#include "tests/support/problems/instances.h"
 #include "tests/support/status_matchers.h"
 
 namespace traverse {
@@ -29,6 +32,28 @@ TEST(LocalSearch, ReturnsTheChangeOfCostAndNeverMakesItWorse) {
     EXPECT_NEAR(s.state.TotalCost(), before + delta, kCostTolerance * (1 + before));
     EXPECT_OK(ValidateRoute(s.owned.plan(), s.state.Unload()));
   }
+}
+
+// Twenty points in a row and four far away, which are visited in a bad order. A part of the row is
+// turned.
+TEST(LocalSearch, EndsWhereItHasUndoneAChange) {
+  std::vector<Path> paths;
+  for (int i = 0; i < 20; ++i) paths.push_back(MakeContour({{1.0 * i, 0.1 * (i % 3)}}));
+  for (const double x : {1000, 1002, 1001, 1003}) paths.push_back(MakeContour({{x, 0}}));
+  Searched s{OwnedProblem(AnyOrderPlan(std::move(paths)))};
+  const Route before = s.state.Unload();
+  const double cost = s.state.TotalCost();
+  s.state.Apply({SegmentMove::Kind::kReverse, 5, 5, 12});
+  const double owed = s.state.TotalCost() - cost;
+  LocalSearch search(s.state, s.neighbors, {});
+  for (const int leaf : {s.state.leaf_at(5), s.state.leaf_at(12)}) search.Push(leaf);
+  search.PushAll();
+
+  EXPECT_NEAR(search.Run(s.budget, owed), -owed, kImprovementTolerance);
+  EXPECT_EQ(s.state.Unload(), before);
+
+  search.PushAll();
+  EXPECT_LT(search.Run(s.budget), -1);
 }
 
 TEST(LocalSearch, LeavesTheRouteAloneAfterTheDeadline) {
