@@ -116,12 +116,57 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm)
   return models;
 }
 
+namespace {
+
+// Travel at the speed and acceleration of a model, with the paths that it joins.
+class WayPlanner {
+ public:
+  WayPlanner(const GcodeFile& file, uint32_t before, const TravelModel& model,
+             const WayJoints* joints)
+      : dynamics_(DynamicsOf(file.profile, file.states[file.blocks[before].state_out],
+                             file.setters)),
+        model_(model),
+        joints_(joints),
+        planner_({file.profile.klipper, dynamics_.cruise_ratio()}) {
+    if (joints_ != nullptr) Print(joints_->from);
+  }
+
+  void Go(double dx, double dy) {
+    planner_.Move(dx, dy, model_.speed_mm_s, model_.accel_mm_s2, dynamics_.corner_speed());
+  }
+
+  double Seconds() {
+    if (joints_ != nullptr) Print(joints_->to);
+    planner_.Stop();
+    return planner_.seconds() - printing_seconds_;
+  }
+
+ private:
+  // Straight on, long enough to get going from standstill to the joint and to stop there. That it
+  // stands still where the path goes on is no loss.
+  void Print(const Joint& joint) {
+    if (!(joint.speed_mm_s > 0)) return;
+    const double ramp_seconds = joint.speed_mm_s / joint.accel_mm_s2;
+    const double length = joint.speed_mm_s * ramp_seconds;
+    planner_.Move(joint.along.x * length, joint.along.y * length, joint.speed_mm_s,
+                  joint.accel_mm_s2, dynamics_.corner_speed());
+    printing_seconds_ += 1.5 * ramp_seconds;
+  }
+
+  const Dynamics dynamics_;
+  const TravelModel& model_;
+  const WayJoints* const joints_;
+  MotionPlanner planner_;
+  double printing_seconds_ = 0;
+};
+
+}  // namespace
+
 double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& model,
-                  bool with_departure) {
+                  bool with_departure, const WayJoints* joints) {
   assert(0 < block && block < file.blocks.size());
   const Block& before = file.blocks[block - 1];
-  const Dynamics dynamics = DynamicsOf(file.profile, file.states[before.state_out], file.setters);
-  MotionPlanner planner({file.profile.klipper, dynamics.cruise_ratio()});
+  WayPlanner planner(file, block - 1, model, joints);
   MachineState state = file.modes[before.mode];
   state.at = before.last;
   state.e = before.e_out;
@@ -132,32 +177,26 @@ double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& mode
   for (Step step; interpreter.Next(step);) {
     if (step.kind != StepKind::kTravel || std::exchange(departs, false)) continue;
     const MachineState& at = interpreter.state();
-    planner.Move(ToDouble(at.at.x - step.from.x) * at.UnitMm(),
-                 ToDouble(at.at.y - step.from.y) * at.UnitMm(), model.speed_mm_s, model.accel_mm_s2,
-                 dynamics.corner_speed());
+    planner.Go(ToDouble(at.at.x - step.from.x) * at.UnitMm(),
+               ToDouble(at.at.y - step.from.y) * at.UnitMm());
   }
-  planner.Stop();
-  return planner.seconds();
+  return planner.Seconds();
 }
 
 double NewWaySeconds(const GcodeFile& file, uint32_t before, const TravelWay& way,
-                     const TravelModel& model) {
-  if (way.via.empty()) {
+                     const TravelModel& model, const WayJoints* joints) {
+  if (way.via.empty() && joints == nullptr) {
     return StopToStopSeconds(Distance(way.from, way.to), model.speed_mm_s, model.accel_mm_s2);
   }
-  const Dynamics dynamics =
-      DynamicsOf(file.profile, file.states[file.blocks[before].state_out], file.setters);
-  MotionPlanner planner({file.profile.klipper, dynamics.cruise_ratio()});
+  WayPlanner planner(file, before, model, joints);
   Vertex at = way.from;
   const auto go = [&](Vertex to) {
-    planner.Move(to.x - at.x, to.y - at.y, model.speed_mm_s, model.accel_mm_s2,
-                 dynamics.corner_speed());
+    planner.Go(to.x - at.x, to.y - at.y);
     at = to;
   };
   for (const Vertex bend : way.via) go(bend);
   go(way.to);
-  planner.Stop();
-  return planner.seconds();
+  return planner.Seconds();
 }
 
 }  // namespace traverse::gcode

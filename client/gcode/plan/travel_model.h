@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "client/gcode/model/gcode_file.h"
+#include "client/gcode/plan/joints.h"
 #include "client/gcode/plan/travel_rules.h"
 
 namespace traverse::gcode {
@@ -29,13 +30,14 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm)
 // standstill at the speed and acceleration of `model`: with its bends, at each of which the machine
 // slows down, but without retraction, lift and wipe. Unless `with_departure` also without a short
 // inward move, with which other travel from that path begins too, except for CuraEngine, whose
-// bends may be as near. REQUIRES: there is a block before it.
+// bends may be as near. With `joints` not from standstill to standstill but from path to path, with
+// what printing loses at both. REQUIRES: there is a block before it.
 double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& model,
-                  bool with_departure = false);
+                  bool with_departure = false, const WayJoints* joints = nullptr);
 
 // The same for a new travel move from the path `before`.
 double NewWaySeconds(const GcodeFile& file, uint32_t before, const TravelWay& way,
-                     const TravelModel& model);
+                     const TravelModel& model, const WayJoints* joints = nullptr);
 
 }  // namespace traverse::gcode
 

@@ -57,6 +57,7 @@ LayerWriter::LayerWriter(const GcodeFile& file, const Layer& layer, const Retrac
       outlines_(OutlinesOf(file, layer)),
       walls_(outlines_),
       rules_(file, layer, habit, outlines_, walls_),
+      joints_(file, layer, outlines_),
       spares_walls_(habit.retracts && habit.spares_walls) {
   for (uint32_t b = layer.first_block; b < layer.end_block; ++b) NoteLeaving(b);
 }
@@ -240,6 +241,16 @@ TravelWay LayerWriter::NewWay(const Placement& from, const Placement& to) const 
   return way;
 }
 
+WayJoints LayerWriter::JointsOf(const Placement& from, const Placement& to) const {
+  WayJoints joints;
+  const Leaving* leaving = LeavingOf(from);
+  if (leaving == nullptr || leaving->departs) {
+    joints.from = joints_.EndOf(from.block - layer_.first_block, from.entry);
+  }
+  joints.to = joints_.BeginOf(to.block - layer_.first_block, to.entry);
+  return joints;
+}
+
 WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Placement& to,
                                    const TravelModel& model) const {
   const Block& here = file_.blocks[layer_.first_block + place];
@@ -249,14 +260,11 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
                         (!boundary || to.block == layer_.first_block + place);
   const Feature feature = outlines_[to.block - layer_.first_block].feature;
   TravelWay way;
-  double way_seconds = 0;
   if (as_given) {
     way.to = Begin(to);
     way.mm = static_cast<double>(next.travel_mm);
-    way_seconds = WaySeconds(file_, to.block, model, true);
   } else {
     way = NewWay(from, to);
-    way_seconds = NewWaySeconds(file_, from.block, way, model);
   }
   double across_mm = way.mm;
   if (as_given) {
@@ -270,9 +278,16 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
                           : way.retracts || file_.WipedBehind(from.block) ||
                                 (boundary && (here.link & kLinkRetracts) != 0) ||
                                 GoesOnAcross(from, way.to, feature);
+  const WayJoints joints = JointsOf(from, to);
+  const WayJoints* passed = way.retracts ? nullptr : &joints;
   WayTotals totals;
   totals.mm = way.mm;
-  totals.seconds = way_seconds + (way.retracts ? model.retraction_seconds : 0);
+  totals.seconds = as_given ? WaySeconds(file_, to.block, model, true, passed)
+                            : NewWaySeconds(file_, from.block, way, model, passed);
+  if (way.retracts) {
+    totals.seconds +=
+        model.retraction_seconds + StopSeconds(joints.from) + StopSeconds(joints.to);
+  }
   totals.retractions = way.retracts ? 1 : 0;
   totals.crossings = way.crosses ? 1 : 0;
   totals.open = way.crosses && !way.retracts ? 1 : 0;

@@ -9,6 +9,7 @@
 
 #include "absl/container/flat_hash_map.h"
 #include "client/gcode/measure/layer_meter.h"
+#include "client/gcode/plan/joints.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/plan/travel_rules.h"
 #include "client/gcode/write/gcode_out.h"
@@ -86,6 +87,10 @@ class LayerWriter {
   // a wipe only the length counts, because it is the same wherever the travel leads.
   TravelWay NewWay(const Placement& from, const Placement& to) const;
 
+  // Where travel from `from` to `to` joins them. What happens after `from`, except for a short move
+  // away from it, ends with a stop.
+  WayJoints JointsOf(const Placement& from, const Placement& to) const;
+
   // True if continuing after the end of `from` puts a visible wall between the nozzle and `to`,
   // which must be avoided.
   bool GoesOnAcross(const Placement& from, Vertex to, Feature feature) const;
@@ -99,6 +104,7 @@ class LayerWriter {
   const std::vector<Outline> outlines_;
   const VisibleWalls walls_;
   const TravelRules rules_;
+  const LayerJoints joints_;
   const bool spares_walls_;
   absl::flat_hash_map<uint32_t, Leaving> leaving_;  // by block, if it is left this way
 };

@@ -116,7 +116,23 @@ TEST_F(LayerWriterDepartures, AreMadeWhereTheyAreOfUse) {
 TEST_F(LayerWriterDepartures, TakeTimeInTheFileToo) {
   const double straight = std::hypot(.4, .4) + std::hypot(2.6, 2.6);
   EXPECT_NEAR(writer_->EstimateWay(1, given_[0], given_[1], TravelModel()).seconds,
-              StopToStopSeconds(straight, 150, 1250), 1e-6);
+              StopToStopSeconds(straight, 150, 1250), .005);
+}
+
+// Where nothing is retracted, the head leaves the path without a stop: straight on the fastest.
+TEST(LayerWriter, AWayStraightOnTakesLessTimeThanOneRoundACorner) {
+  Sketch sketch;
+  sketch.Infill(10, 0).Go(12, 0).Infill(20, 0).Go(20, 2).Infill(28, 2);
+  const auto file = sketch.Read();
+  const RetractionHabit habit = HabitOfNewWays(*file);
+  const LinkDonors donors(*file);
+  const LayerWriter writer(*file, file->layers[0], habit, donors);
+  const LayerOrder given = writer.GivenOrder();
+
+  const double straight = writer.EstimateWay(1, given[0], given[1], TravelModel()).seconds;
+  const double bent = writer.EstimateWay(2, given[1], given[2], TravelModel()).seconds;
+
+  EXPECT_LT(straight, bent - .01);
 }
 
 // Before a wipe the move inwards is of the path, and before the marks of a layer.
@@ -195,7 +211,8 @@ TEST_F(LayerWriterWipes, AWayBeginsWhereTheWipeBeforeItEnds) {
   EXPECT_NEAR(back.mm, 2 + std::hypot(2, 20), 1e-3);
   EXPECT_LT(back.seconds, on.seconds);
   // A wipe takes as long wherever the way leads.
-  EXPECT_NEAR(on.seconds, StopToStopSeconds(std::hypot(8, 20), 150, 1250), 1e-6);
+  constexpr double kStopSeconds = 20 / (2 * 1250.0);  // of the path behind it
+  EXPECT_NEAR(on.seconds, StopToStopSeconds(std::hypot(8, 20), 150, 1250) + kStopSeconds, 1e-6);
   EXPECT_EQ(on.retractions, 1);
   // The other direction knows nothing of a wipe.
   EXPECT_NEAR(Estimate({3, 0, false}, {1, 0, false}).mm, std::hypot(10, 20), 1e-3);

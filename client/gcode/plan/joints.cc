@@ -1,0 +1,106 @@
+#include "client/gcode/plan/joints.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "absl/container/flat_hash_map.h"
+#include "client/gcode/machine/machine_profile.h"
+
+namespace traverse::gcode {
+namespace {
+
+// The first points of a path seen from one of its ends.
+using Points = std::array<Vertex, 3>;
+
+Points PointsFrom(const Outline& outline, uint32_t entry, bool from_end) {
+  const std::vector<Vertex>& points = outline.points;
+  const size_t n = points.size();
+  const bool backwards = outline.closed ? from_end : from_end == (entry == 0);
+  Points seen;
+  for (size_t k = 0; k < seen.size(); ++k) {
+    if (outline.closed && entry > 0) {
+      // The last point is the first one, or nearly so.
+      const size_t sides = n - 1;
+      seen[k] = points[(entry + (backwards ? 2 * sides - k : k)) % sides];
+    } else {
+      const size_t place = std::min(k, n - 1);
+      seen[k] = points[backwards ? n - 1 - place : place];
+    }
+  }
+  return seen;
+}
+
+Vertex Direction(Vertex from, Vertex to) {
+  const double length = Distance(from, to);
+  return length > 0 ? Vertex{(to.x - from.x) / length, (to.y - from.y) / length} : Vertex{};
+}
+
+// The square of the speed at which a corner is taken (motion_planner.h).
+double CornerSpeed2(Vertex in, Vertex out, double corner_speed) {
+  const double turn2 = std::max(2 - 2 * (in.x * out.x + in.y * out.y), 1e-9);
+  return 2 * corner_speed * corner_speed / turn2;
+}
+
+}  // namespace
+
+double StopSeconds(const Joint& joint) {
+  return joint.speed_mm_s > 0 ? joint.speed_mm_s / (2 * joint.accel_mm_s2) : 0;
+}
+
+LayerJoints::LayerJoints(const GcodeFile& file, const Layer& layer,
+                         const std::vector<Outline>& outlines)
+    : outlines_(outlines) {
+  absl::flat_hash_map<uint32_t, Dynamics> known;
+  const auto pace = [&](const Block& block, uint32_t state, Decimal feed) {
+    auto found = known.find(state);
+    if (found == known.end()) {
+      const Dynamics dynamics = DynamicsOf(file.profile, file.states[state], file.setters);
+      found = known.emplace(state, dynamics).first;
+    }
+    const Dynamics& dynamics = found->second;
+    const double speed = ToDouble(feed) / 60 * file.modes[block.mode].UnitMm();
+    return Pace{std::min(speed, dynamics.max_speed()), dynamics.print_accel(),
+                dynamics.corner_speed()};
+  };
+  paces_.reserve(outlines.size());
+  for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
+    const Block& block = file.blocks[b];
+    paces_.push_back({pace(block, block.state_in, block.feed_in),
+                      pace(block, block.state_out, block.feed_out)});
+  }
+}
+
+namespace {
+
+// `points` lead away from the end of the path. A short segment behind a sharp corner is too short
+// to get going.
+Joint JointAt(const Points& points, double speed, double accel, double corner_speed) {
+  if (!(speed > 0) || !(accel > 0)) return {};
+  const Vertex away = Direction(points[0], points[1]);
+  if (away == Vertex{}) return {};
+  const Vertex before = Direction(points[1], points[2]);
+  const double reached2 = CornerSpeed2(away, before, corner_speed) +
+                          2 * accel * Distance(points[0], points[1]);
+  return {away, std::min(speed, std::sqrt(reached2)), accel};
+}
+
+}  // namespace
+
+Joint LayerJoints::BeginOf(size_t path, uint32_t entry) const {
+  const Outline& outline = outlines_[path];
+  const Pace& pace = !outline.closed && entry > 0 ? paces_[path].last : paces_[path].first;
+  return JointAt(PointsFrom(outline, entry, false), pace.speed_mm_s, pace.accel_mm_s2,
+                 pace.corner_speed);
+}
+
+Joint LayerJoints::EndOf(size_t path, uint32_t entry) const {
+  const Outline& outline = outlines_[path];
+  const Pace& pace = !outline.closed && entry > 0 ? paces_[path].first : paces_[path].last;
+  Joint joint = JointAt(PointsFrom(outline, entry, true), pace.speed_mm_s, pace.accel_mm_s2,
+                        pace.corner_speed);
+  joint.along = {-joint.along.x, -joint.along.y};
+  return joint;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,112 @@
+#include "client/gcode/plan/joints.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "client/gcode/machine/motion_planner.h"
+#include "client/gcode/model/loops.h"
+#include "client/gcode/plan/travel_model.h"
+#include "client/gcode/plan/travel_rules.h"
+#include "tests/client/gcode/support/sketch.h"
+
+namespace traverse::gcode {
+namespace {
+
+using testing::Sketch;
+
+// Printed at 20 mm/s, with the 1250 mm/s^2 and 5 mm/s of a file that states none.
+struct JoinedLayer {
+  explicit JoinedLayer(const Sketch& sketch)
+      : file(sketch.Read()),
+        outlines(OutlinesOf(*file, file->layers[0])),
+        joints(*file, file->layers[0], outlines) {}
+
+  const std::shared_ptr<GcodeFile> file;
+  const std::vector<Outline> outlines;
+  const LayerJoints joints;
+};
+
+void ExpectAlong(const Joint& joint, double x, double y) {
+  EXPECT_NEAR(joint.along.x, x, 1e-9);
+  EXPECT_NEAR(joint.along.y, y, 1e-9);
+}
+
+TEST(LayerJoints, OfALineLieInItsDirection) {
+  const JoinedLayer layer(Sketch().Infill(10, 0));
+
+  ExpectAlong(layer.joints.BeginOf(0, 0), 1, 0);
+  ExpectAlong(layer.joints.EndOf(0, 0), 1, 0);
+  ExpectAlong(layer.joints.BeginOf(0, 1), -1, 0);
+  ExpectAlong(layer.joints.EndOf(0, 1), -1, 0);
+  EXPECT_NEAR(layer.joints.EndOf(0, 1).speed_mm_s, 20, 1e-9);
+  EXPECT_NEAR(layer.joints.EndOf(0, 1).accel_mm_s2, 1250, 1e-9);
+}
+
+TEST(LayerJoints, OfASquareAreThoseOfTheSidesAtItsStart) {
+  const JoinedLayer layer(Sketch().Square(0, 0, 10));
+  ASSERT_TRUE(layer.outlines[0].closed);
+
+  ExpectAlong(layer.joints.BeginOf(0, 0), 1, 0);
+  ExpectAlong(layer.joints.EndOf(0, 0), 0, -1);
+  ExpectAlong(layer.joints.BeginOf(0, 1), 0, 1);
+  ExpectAlong(layer.joints.EndOf(0, 1), 1, 0);
+  ExpectAlong(layer.joints.BeginOf(0, 3), 0, -1);
+  ExpectAlong(layer.joints.EndOf(0, 3), -1, 0);
+}
+
+TEST(LayerJoints, BehindACornerAShortSegmentIsTooShortToGetGoing) {
+  const JoinedLayer layer(Sketch().Infill(10, 0).Infill(10, .05));
+  ASSERT_EQ(layer.outlines.size(), 1u);
+
+  // 5 mm/s at a right angle, and 0.05 mm from there.
+  EXPECT_NEAR(layer.joints.EndOf(0, 0).speed_mm_s, std::sqrt(25 + 2 * 1250 * .05), 1e-6);
+  EXPECT_NEAR(layer.joints.BeginOf(0, 0).speed_mm_s, 20, 1e-9);
+}
+
+TEST(StopSeconds, AreWhatGettingGoingLoses) {
+  EXPECT_NEAR(StopSeconds({{1, 0}, 20, 1250}), .008, 1e-12);
+  EXPECT_EQ(StopSeconds({}), 0);
+}
+
+constexpr TravelModel kWay = {.speed_mm_s = 100, .accel_mm_s2 = 1000};
+constexpr double kTurnBack = -1;
+
+// Of a way of 20 mm along x, joined to paths that lead along (x, 0).
+double JoinedSeconds(double x) {
+  const std::shared_ptr<GcodeFile> file = Sketch().Infill(10, 0).Read();
+  TravelWay way;
+  way.from = {10, 0};
+  way.to = {30, 0};
+  const Joint joint{{x, 0}, 20, 1250};
+  const WayJoints joints{joint, joint};
+  return NewWaySeconds(*file, 0, way, kWay, &joints);
+}
+
+TEST(NewWaySeconds, StraightOnNothingIsLost) {
+  // From 20 mm/s up to 100 and down again.
+  const double ramps_mm = (100.0 * 100 - 20 * 20) / 1000;
+
+  EXPECT_NEAR(JoinedSeconds(1), 2 * (100.0 - 20) / 1000 + (20 - ramps_mm) / 100, 1e-9);
+}
+
+TEST(NewWaySeconds, TurningBackLosesNearlyWhatAStopDoes) {
+  const double stop = StopToStopSeconds(20, 100, 1000) + 2 * StopSeconds({{1, 0}, 20, 1250});
+
+  EXPECT_LT(JoinedSeconds(kTurnBack), stop);
+  EXPECT_GT(JoinedSeconds(kTurnBack), stop - .015);
+}
+
+// Straight on a way takes less than it would with printing stopped.
+TEST(WaySeconds, JoinThePathsLikeNewOnes) {
+  const std::shared_ptr<GcodeFile> file = Sketch().Infill(10, 0).Go(30, 0).Infill(40, 0).Read();
+  const Joint joint{{1, 0}, 20, 1250};
+  const WayJoints joints{joint, joint};
+
+  EXPECT_NEAR(WaySeconds(*file, 1, kWay, true, &joints), JoinedSeconds(1), 1e-9);
+}
+
+}  // namespace
+}  // namespace traverse::gcode
