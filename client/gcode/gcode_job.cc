@@ -72,7 +72,7 @@ void SetWallCost(const RetractionHabit& habit, Crossings crossings, v1::TimeCost
 double ShareWiped(const GcodeFile& file) {
   const auto blocks = static_cast<uint32_t>(file.blocks.size());
   size_t wiped = 0;
-  for (uint32_t b = 0; b < blocks; ++b) wiped += file.WipedBehind(b) ? 1 : 0;
+  for (uint32_t b = 0; b < blocks; ++b) wiped += file.WipedBehind(b) ? 1u : 0u;
   return static_cast<double>(wiped) / blocks;
 }
 

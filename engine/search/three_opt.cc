@@ -238,7 +238,8 @@ void ThreeOpt::SetKinds(int left, int right) {
   right_ = right;
   for (size_t place = 0; place < 3; ++place) {  // of the third cut among the three
     const bool first_is_left = cut1_.position == left;
-    const size_t rank1 = (first_is_left ? 0 : 1) + (place <= (first_is_left ? 0 : 1));
+    const size_t least = first_is_left ? 0 : 1;
+    const size_t rank1 = place <= least ? least + 1 : least;
     const size_t rank2 = 3 - rank1 - place;
     const size_t sides = static_cast<size_t>(t1_.right + 2 * t3_.right);
     kinds_[0][place] = kMoveTable[rank1][rank2][sides];

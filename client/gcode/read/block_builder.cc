@@ -282,7 +282,8 @@ void BlockBuilder::CloseLink(const Block& block) {
     if (last.mode != block.mode) link_.flags |= kLinkFixed;
     if (last.object != block.object) link_.flags |= kLinkSplits;
     if ((link_.flags & kLinkFixed) != 0 && !link_.lost && link_.travels_behind_fixed > 0) {
-      link_.flags = (link_.flags & ~kLinkFixed) | kLinkFixedFrom | kLinkSplits;
+      link_.flags &= static_cast<uint16_t>(~kLinkFixed);
+      link_.flags |= kLinkFixedFrom | kLinkSplits;
     }
     if (link_.xy_moves == 0 && !meets_tail_) link_.flags |= kLinkFixed;
   }

@@ -58,7 +58,7 @@ class MemorySet {
   static size_t Word(int element) { return static_cast<size_t>(element) / 64; }
   static uint64_t Bit(int element) { return uint64_t{1} << (element % 64); }
 
-  std::array<uint64_t, kWords> words_{};
+  std::array<uint64_t, static_cast<size_t>(kWords)> words_{};
 };
 
 }  // namespace traverse
