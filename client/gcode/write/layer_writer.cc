@@ -1,6 +1,7 @@
 #include "client/gcode/write/layer_writer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -164,7 +165,13 @@ void LayerWriter::NoteLeaving(uint32_t block) {
     return;
   }
   leaving.wipes = true;
-  for (const LinkStep& step : ReadLink(file_, block + 1).steps) {
+  const Link link = ReadLink(file_, block + 1);
+  if (const LinkStep* departure = DepartureOf(link)) {
+    const Vertex from = mode.InMm(departure->from);
+    const Vertex to = mode.InMm(departure->to);
+    leaving.before_wipe = {to.x - from.x, to.y - from.y};
+  }
+  for (const LinkStep& step : link.steps) {
     if (step.kind != StepKind::kWipe) continue;
     leaving.mm += step.way_mm * mode.UnitMm();
     leaving.as_given = mode.InMm(step.to);
@@ -229,7 +236,16 @@ TravelWay LayerWriter::NewWay(const Placement& from, const Placement& to) const 
   const Vertex at = from.as_given() ? leaving->as_given : BackOver(from, leaving->mm);
   TravelWay way = rules_.WayOf(at, Begin(to), feature);
   way.mm += leaving->mm;
-  if (leaving->wipes) return way;
+  if (leaving->wipes) {
+    const Vertex before = leaving->before_wipe;
+    const double before_mm = std::hypot(before.x, before.y);
+    if (!from.as_given() || !(before_mm > 0)) return way;
+    // As WaySeconds sees it, which leaves out the wipe between the two.
+    way.mm += before_mm;
+    way.from = {at.x - before.x, at.y - before.y};
+    way.via.insert(way.via.begin(), at);
+    return way;
+  }
   way.from = End(from);
   way.via.insert(way.via.begin(), at);
   if (leaving->departs) {

@@ -63,6 +63,7 @@ class LayerWriter {
     double mm = 0;
     Vertex as_given;     // where that ends after the path as sliced
     bool wipes = false;  // pulls filament back meanwhile; else continues along the path
+    Vertex before_wipe{0, 0};  // the short move away from the path as sliced, before it wipes
 
     // A short move away from the path, which is made only where the path ends as sliced and what
     // follows retracts, or does not, as in the file.

@@ -181,9 +181,10 @@ TEST(LayerWriter, WhatGoesOnAlongAPathIsWrittenBeforeNewTravel) {
 // A line that is wiped behind its end, back over 2 of its 10 mm, and one that is not.
 class LayerWriterWipes : public ::testing::Test {
  protected:
-  LayerWriterWipes() {
+  // `departure`: a line between the path and its wipe.
+  explicit LayerWriterWipes(const char* departure = "") {
     Sketch sketch;
-    sketch.Square(0, 0, 60).GoRetracted(10, 10).Infill(20, 10);
+    sketch.Square(0, 0, 60).GoRetracted(10, 10).Infill(20, 10).Add(departure);
     sketch.Add(";WIPE_START").Add("G1 X18 Y10 E-.8 F2400").Add(";WIPE_END");
     sketch.Go(10, 20).Add("G1 E.8 F2100").Infill(20, 20).GoRetracted(10, 30).Infill(20, 30);
     file_ = sketch.GoRetracted(10, 40).Infill(20, 40).Read();
@@ -196,8 +197,32 @@ class LayerWriterWipes : public ::testing::Test {
         .EstimateWay(3, from, to, TravelModel());
   }
 
+  // The estimate is what is written, for ways that begin with a wipe and for others.
+  void ExpectWaysAsLongAsWritten() const {
+    const LinkDonors donors(*file_);
+    const LayerWriter writer(*file_, file_->layers[0], habit_, donors);
+    for (const LayerOrder& order :
+         {LayerOrder{{0, 0, true}, {3, 0, false}, {1, 1, false}, {2, 0, false}, {4, 0, false}},
+          LayerOrder{{0, 0, true}, {1, 0, false}, {3, 1, false}, {2, 1, false}, {4, 0, false}}}) {
+      std::string text;
+      const PartStart start = StartOfPaths(*file_, order.front());
+      writer.WritePaths(order, start, text);
+      WayTotals ways;
+      for (size_t i = 1; i < order.size(); ++i) {
+        ways += writer.EstimateWay(i, order[i - 1], order[i], TravelModel());
+      }
+
+      EXPECT_NEAR(ways.mm, Measure(*file_, text, start).travel_mm, 1e-3) << text;
+    }
+  }
+
   std::shared_ptr<GcodeFile> file_;
   RetractionHabit habit_;
+};
+
+class LayerWriterWipesBehindDepartures : public LayerWriterWipes {
+ protected:
+  LayerWriterWipesBehindDepartures() : LayerWriterWipes("G1 X20.3 Y10.4 F9000") {}
 };
 
 TEST_F(LayerWriterWipes, AWayBeginsWhereTheWipeBeforeItEnds) {
@@ -218,23 +243,19 @@ TEST_F(LayerWriterWipes, AWayBeginsWhereTheWipeBeforeItEnds) {
   EXPECT_NEAR(Estimate({3, 0, false}, {1, 0, false}).mm, std::hypot(10, 20), 1e-3);
 }
 
-// The estimate is what is written, for ways that begin with a wipe and for others.
-TEST_F(LayerWriterWipes, WaysAreAsLongAsTheyAreWritten) {
-  const LinkDonors donors(*file_);
-  const LayerWriter writer(*file_, file_->layers[0], habit_, donors);
-  for (const LayerOrder& order :
-       {LayerOrder{{0, 0, true}, {3, 0, false}, {1, 1, false}, {2, 0, false}, {4, 0, false}},
-        LayerOrder{{0, 0, true}, {1, 0, false}, {3, 1, false}, {2, 1, false}, {4, 0, false}}}) {
-    std::string text;
-    const PartStart start = StartOfPaths(*file_, order.front());
-    writer.WritePaths(order, start, text);
-    WayTotals ways;
-    for (size_t i = 1; i < order.size(); ++i) {
-      ways += writer.EstimateWay(i, order[i - 1], order[i], TravelModel());
-    }
+TEST_F(LayerWriterWipes, WaysAreAsLongAsTheyAreWritten) { ExpectWaysAsLongAsWritten(); }
 
-    EXPECT_NEAR(ways.mm, Measure(*file_, text, start).travel_mm, 1e-3);
-  }
+TEST_F(LayerWriterWipesBehindDepartures, WaysAreAsLongAsTheyAreWritten) {
+  ASSERT_TRUE(file_->WipedBehind(1));
+  ExpectWaysAsLongAsWritten();
+}
+
+// Or orders that change nothing else would seem to save time.
+TEST_F(LayerWriterWipesBehindDepartures, CostNewWaysTimeToo) {
+  const double new_way = Estimate({1, 0, false}, {3, 0, false}).seconds;
+
+  constexpr double kStopSeconds = 20 / (2 * 1250.0);  // of the path behind it
+  EXPECT_GT(new_way, StopToStopSeconds(std::hypot(8, 20), 150, 1250) + kStopSeconds + 0.003);
 }
 
 }  // namespace
