@@ -5,6 +5,7 @@
 
 #include "engine/base/rest.h"
 #include "engine/cost/travel_cost.h"
+#include "engine/cost/wall_cost.h"
 
 namespace traverse {
 
@@ -24,6 +25,19 @@ double RouteCost(const LayerProblem& problem, const Route& route, Budget* budget
   }
   if (problem.finish) sum += cost(at, *problem.finish);
   return sum;
+}
+
+double CrossingPrice(const LayerProblem& problem, const Route& route) {
+  if (problem.walls == nullptr) return 0;
+  double sum = 0;
+  Point at = problem.start;
+  for (const Visit& visit : route) {
+    assert(visit.path >= 0 && static_cast<size_t>(visit.path) < problem.plan->paths.size());
+    const Path& path = problem.plan->paths[static_cast<size_t>(visit.path)];
+    sum += problem.walls->PriceOf(at, EnterPoint(path, visit.entry));
+    at = ExitPoint(path, visit.entry);
+  }
+  return sum * problem.walls_unit;
 }
 
 Point RouteEnd(const Plan& plan, const Route& route, Point start) {

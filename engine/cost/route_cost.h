@@ -14,6 +14,10 @@ namespace traverse {
 // not be all of them.
 double RouteCost(const LayerProblem& problem, const Route& route, Budget* budget = nullptr);
 
+// What of that cost is the price of crossed walls (WallCost::PriceOf), in the same unit. REQUIRES:
+// as above.
+double CrossingPrice(const LayerProblem& problem, const Route& route);
+
 // Where the head is after `route`: the last exit, or `start` for an empty route.
 Point RouteEnd(const Plan& plan, const Route& route, Point start);
 

@@ -116,19 +116,6 @@ Plan SetApart(Plan plan, PointPairs& points) {
   return plan;
 }
 
-// What of a route's cost is the price of crossings, in the unit of the problem.
-double CrossingPrice(const LayerProblem& problem, const Route& route) {
-  if (problem.walls == nullptr) return 0;
-  double sum = 0;
-  Point at = problem.start;
-  for (const Visit& visit : route) {
-    const Path& path = problem.plan->paths[static_cast<size_t>(visit.path)];
-    sum += problem.walls->PriceOf(at, EnterPoint(path, visit.entry));
-    at = ExitPoint(path, visit.entry);
-  }
-  return sum * problem.walls_unit;
-}
-
 struct AutoOptions {
   double effort = 1;
   double least_gain_each = 0;
