@@ -34,7 +34,7 @@ namespace {
 // effort does not raise, and so many more a path.
 constexpr double kLeastPatience = 150;
 constexpr double kPatience = 6;
-constexpr double kPatienceOfFew = 9;
+constexpr double kPatienceOfFew = 11;
 constexpr double kLeastGain = 2e-4;
 
 // A search of more effort is divided into walks: the first one is of so much effort, the others end
@@ -51,7 +51,7 @@ constexpr int kLeastMostSpan = 50;
 // Of kicks, where the caller does not want so much of each iteration that there is no time for
 // them: sliced files gain nothing by them, nor by a choice among double bridges.
 constexpr double kLongShare = 0.3;
-constexpr int kBridges = 5;
+constexpr int kBridges = 3;
 
 // Operations of dynamic programmes on small parts, by the way of 2 ns each; where walls are asked
 // about, of ten times as much.
