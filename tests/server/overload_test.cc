@@ -1,4 +1,4 @@
-// More jobs, or larger ones, than the server has room for.
+// More jobs, or larger ones, than the server has room for, and what it counts as taken.
 
 #include <gmock/gmock.h>
 #include <grpcpp/generic/generic_stub.h>
@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <thread>
@@ -138,6 +139,41 @@ TEST(Overload, ABatchIsRefusedBeforeItsMessageIsSent) {
   const auto second = admission.Admit("another", 1);
   const auto third = admission.Admit("another", 1);
   EXPECT_EQ(HeadersOnly(service, "").error_code(), full);
+}
+
+// Sends `layers` layers of 1,000 points, waits until all are answered, and returns the memory that is
+// still held for the job, which is open.
+int64_t BytesHeldForAnswered(bool chain_bound, int layers) {
+  TestService service;
+  grpc::ClientContext context;
+  const auto stream = service.stub().Optimize(&context);
+  v1::OptimizeRequest message;
+  v1::Strategy& strategy = *message.mutable_options()->mutable_strategy();
+  strategy.set_name("auto");
+  (*strategy.mutable_options())["effort"] = "0.1";
+  (*strategy.mutable_options())["chain_bound"] = chain_bound ? "true" : "false";
+  for (int i = 0; i < layers; ++i) *message.add_layers() = MakeLayer(1, 2, 500);
+  stream->Write(message);
+  v1::OptimizeResponse response;
+  for (int i = 0; i < layers; ++i) stream->Read(&response);
+  const Admission& admission = service.server().core().admission;
+  const bool kept = chain_bound && layers < 100;
+  // What was written is let go after it was read.
+  if (!kept) service.Eventually([&] { return admission.held_bytes() == 0; });
+  const int64_t held = admission.held_bytes();
+
+  stream->WritesDone();
+  EXPECT_TRUE(stream->Read(&response));
+  EXPECT_EQ(response.summary().has_chain_lower_bound(), kept);
+  EXPECT_TRUE(stream->Finish().ok());
+  EXPECT_TRUE(service.Eventually([&] { return admission.held_bytes() == 0; }));
+  return held;
+}
+
+TEST(Overload, LayersThatAreKeptForTheBoundOfTheChainCountAsTaken) {
+  EXPECT_EQ(BytesHeldForAnswered(false, 10), 0);
+  EXPECT_GT(BytesHeldForAnswered(true, 10), 10 * 1000 * 16);
+  EXPECT_EQ(BytesHeldForAnswered(true, 110), 0) << "too many to be kept";
 }
 
 }  // namespace
