@@ -244,6 +244,85 @@ void CompareBalance(const Observations& was, const Observations& is, std::vector
                        static_cast<double>(std::abs(off)) * 1e-6, off > 0 ? "more" : "less")});
 }
 
+// What the cycles of the original allow those of the other file.
+class RetractionHabits {
+ public:
+  RetractionHabits(const Observations& was, const Observations& is)
+      : cycles_(was.cycles),
+        may_push_high_(IsUsual(&RetractionCycle::pushed_high)),
+        may_push_low_(IsUsual(&RetractionCycle::pushed_low)),
+        may_pull_high_(IsUsual(&RetractionCycle::pulled_high)),
+        may_be_in_parts_(IsUsual(&RetractionCycle::in_parts)),
+        may_be_idle_(IsUsual(&RetractionCycle::idle) &&
+                     CountIdle(is.cycles) <= CountIdle(was.cycles)) {
+    const bool may_be_early = IsUsual(&RetractionCycle::early_mm);
+    for (const RetractionCycle& cycle : cycles_) {
+      pairs_.Add(cycle);
+      whole_.insert(cycle.identity);
+      latest_mm_ = std::max(latest_mm_, cycle.late_mm);
+      if (may_be_early) earliest_mm_ = std::max(earliest_mm_, cycle.early_mm);
+    }
+  }
+
+  // Of moves that the original has one may be missing.
+  bool Knows(const RetractionCycle& cycle) const {
+    return cycle.known && whole_.contains(cycle.identity);
+  }
+
+  // The line of the original with the deepest retraction of the tool.
+  uint32_t DeepestLine(uint64_t tool) const { return pairs_.Deepest(tool).second; }
+
+  // What is wrong with a cycle that it does not know; empty if nothing is.
+  std::string FaultOf(const RetractionCycle& cycle) const;
+
+ private:
+  bool IsUsual(auto RetractionCycle::*odd) const {
+    const auto count =
+        std::count_if(cycles_.begin(), cycles_.end(),
+                      [odd](const RetractionCycle& cycle) { return cycle.*odd > 0; });
+    return static_cast<double>(count) > kShareOdd * static_cast<double>(cycles_.size());
+  }
+
+  const std::vector<RetractionCycle>& cycles_;
+  PairTable pairs_;
+  absl::flat_hash_set<uint64_t> whole_;
+  const bool may_push_high_, may_push_low_, may_pull_high_, may_be_in_parts_, may_be_idle_;
+  float latest_mm_ = 0;
+  float earliest_mm_ = 0;
+};
+
+std::string RetractionHabits::FaultOf(const RetractionCycle& cycle) const {
+  const double pulled_mm = static_cast<double>(cycle.pulled) * 1e-6;
+  const Micro deepest = pairs_.Deepest(cycle.tool).first;
+  if (!cycle.firmware && cycle.pulled > deepest + kGrain) {
+    return absl::StrFormat("retracts %.4f mm; the most for this tool is %.4f mm", pulled_mm,
+                           static_cast<double>(deepest) * 1e-6);
+  }
+  if (!pairs_.Has(cycle)) {
+    return absl::StrFormat(
+        "retracts %.4f mm and primes %.4f mm, a pair that the original does not have", pulled_mm,
+        static_cast<double>(cycle.pushed) * 1e-6);
+  }
+  if (cycle.late_mm > latest_mm_ + kLateMm) {
+    return absl::StrFormat(
+        "retracts after %.2f mm of the travel; the most in the original is %.2f mm", cycle.late_mm,
+        latest_mm_);
+  }
+  if (pairs_.InMoreParts(cycle))
+    return "retracts or primes in more parts than the original ever does";
+  if (cycle.idle && !may_be_idle_) return "retracts without travel";
+  if (cycle.in_parts && !may_be_in_parts_) return "primes in several parts during the travel";
+  if (cycle.early_mm > earliest_mm_ + kEarlyMm) {
+    return absl::StrFormat(
+        "primes %.2f mm before the travel ends; the most in the original is %.2f mm",
+        cycle.early_mm, earliest_mm_);
+  }
+  if (cycle.pushed_high && !may_push_high_) return "primes above the layer";
+  if (cycle.pushed_low && !may_push_low_) return "primes below the layer";
+  if (cycle.pulled_high && !may_pull_high_) return "retracts above the layer";
+  return "";
+}
+
 }  // namespace
 
 void ObserveRetractions(const LayerPair& layer, LayerFindings& findings) {
@@ -268,67 +347,13 @@ void ObserveLastRetraction(const LayerPair& layer, LayerFindings& findings) {
 void CompareRetractions(const Observations& was, const Observations& is,
                         std::vector<Finding>& breaks) {
   CompareBalance(was, is, breaks);
-  PairTable pairs;
-  for (const RetractionCycle& cycle : was.cycles) pairs.Add(cycle);
-  const auto is_usual = [&was](auto RetractionCycle::*odd) {
-    const auto count =
-        std::count_if(was.cycles.begin(), was.cycles.end(),
-                      [odd](const RetractionCycle& cycle) { return cycle.*odd > 0; });
-    return static_cast<double>(count) > kShareOdd * static_cast<double>(was.cycles.size());
-  };
-  const bool may_be_early = is_usual(&RetractionCycle::early_mm);
-  const bool may_push_high = is_usual(&RetractionCycle::pushed_high);
-  const bool may_push_low = is_usual(&RetractionCycle::pushed_low);
-  const bool may_pull_high = is_usual(&RetractionCycle::pulled_high);
-  const bool may_be_in_parts = is_usual(&RetractionCycle::in_parts);
-  const bool may_be_idle =
-      is_usual(&RetractionCycle::idle) && CountIdle(is.cycles) <= CountIdle(was.cycles);
-  // Of moves that the original has one may be missing.
-  absl::flat_hash_set<uint64_t> whole;
-  for (const RetractionCycle& cycle : was.cycles) whole.insert(cycle.identity);
-  float latest_mm = 0;
-  float earliest_mm = 0;
-  for (const RetractionCycle& cycle : was.cycles) {
-    latest_mm = std::max(latest_mm, cycle.late_mm);
-    if (may_be_early) earliest_mm = std::max(earliest_mm, cycle.early_mm);
-  }
+  const RetractionHabits habits(was, is);
   for (const RetractionCycle& cycle : is.cycles) {
-    if (cycle.known && whole.contains(cycle.identity)) continue;
-    const auto [deepest, line] = pairs.Deepest(cycle.tool);
-    // A copy of its own: C++20 has lambdas take structured bindings, clang 14 has not.
-    const auto report = [&, was_line = line](std::string what) {
-      breaks.push_back(
-          {VerifyRule::kRetractions, was_line, cycle.line, cycle.layer, std::move(what)});
-    };
-    if (!cycle.firmware && cycle.pulled > deepest + kGrain) {
-      report(absl::StrFormat("retracts %.4f mm; the most for this tool is %.4f mm",
-                             static_cast<double>(cycle.pulled) * 1e-6,
-                             static_cast<double>(deepest) * 1e-6));
-    } else if (!pairs.Has(cycle)) {
-      report(absl::StrFormat(
-          "retracts %.4f mm and primes %.4f mm, a pair that the original does not have",
-          static_cast<double>(cycle.pulled) * 1e-6, static_cast<double>(cycle.pushed) * 1e-6));
-    } else if (cycle.late_mm > latest_mm + kLateMm) {
-      report(absl::StrFormat(
-          "retracts after %.2f mm of the travel; the most in the original is %.2f mm",
-          cycle.late_mm, latest_mm));
-    } else if (pairs.InMoreParts(cycle)) {
-      report("retracts or primes in more parts than the original ever does");
-    } else if (cycle.idle && !may_be_idle) {
-      report("retracts without travel");
-    } else if (cycle.in_parts && !may_be_in_parts) {
-      report("primes in several parts during the travel");
-    } else if (cycle.early_mm > earliest_mm + kEarlyMm) {
-      report(absl::StrFormat(
-          "primes %.2f mm before the travel ends; the most in the original is %.2f mm",
-          cycle.early_mm, earliest_mm));
-    } else if (cycle.pushed_high && !may_push_high) {
-      report("primes above the layer");
-    } else if (cycle.pushed_low && !may_push_low) {
-      report("primes below the layer");
-    } else if (cycle.pulled_high && !may_pull_high) {
-      report("retracts above the layer");
-    }
+    if (habits.Knows(cycle)) continue;
+    std::string fault = habits.FaultOf(cycle);
+    if (fault.empty()) continue;
+    breaks.push_back({VerifyRule::kRetractions, habits.DeepestLine(cycle.tool), cycle.line,
+                      cycle.layer, std::move(fault)});
   }
 }
 
