@@ -9,34 +9,47 @@
 
 namespace traverse {
 
+namespace {
+
+// Calls visit(from, to) for the moves to all visits, until it returns false; returns whether it
+// never did.
+template <typename VisitMove>
+bool ForEachMove(const LayerProblem& problem, const Route& route, VisitMove visit_move) {
+  Point at = problem.start;
+  for (const Visit& visit : route) {
+    assert(visit.path >= 0 && static_cast<size_t>(visit.path) < problem.plan->paths.size());
+    const Path& path = problem.plan->paths[static_cast<size_t>(visit.path)];
+    if (!visit_move(at, EnterPoint(path, visit.entry))) return false;
+    at = ExitPoint(path, visit.entry);
+  }
+  return true;
+}
+
+}  // namespace
+
 double RouteCost(const LayerProblem& problem, const Route& route, Budget* budget) {
   Rest rest(budget);
   const bool asks_often = problem.walls != nullptr && budget != nullptr;
   const TravelCost cost(problem);
   double sum = 0;
-  Point at = problem.start;
-  for (const Visit& visit : route) {
+  const bool whole = ForEachMove(problem, route, [&](Point from, Point to) {
     rest(4);
-    if (asks_often && budget->Exhausted() && budget->cancelled()) return sum;
-    assert(visit.path >= 0 && static_cast<size_t>(visit.path) < problem.plan->paths.size());
-    const Path& path = problem.plan->paths[static_cast<size_t>(visit.path)];
-    sum += cost(at, EnterPoint(path, visit.entry));
-    at = ExitPoint(path, visit.entry);
-  }
-  if (problem.finish) sum += cost(at, *problem.finish);
+    if (asks_often && budget->Exhausted() && budget->cancelled()) return false;
+    sum += cost(from, to);
+    return true;
+  });
+  if (whole && problem.finish)
+    sum += cost(RouteEnd(*problem.plan, route, problem.start), *problem.finish);
   return sum;
 }
 
 double CrossingPrice(const LayerProblem& problem, const Route& route) {
   if (problem.walls == nullptr) return 0;
   double sum = 0;
-  Point at = problem.start;
-  for (const Visit& visit : route) {
-    assert(visit.path >= 0 && static_cast<size_t>(visit.path) < problem.plan->paths.size());
-    const Path& path = problem.plan->paths[static_cast<size_t>(visit.path)];
-    sum += problem.walls->PriceOf(at, EnterPoint(path, visit.entry));
-    at = ExitPoint(path, visit.entry);
-  }
+  ForEachMove(problem, route, [&](Point from, Point to) {
+    sum += problem.walls->PriceOf(from, to);
+    return true;
+  });
   return sum * problem.walls_unit;
 }
 
