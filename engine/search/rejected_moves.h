@@ -20,8 +20,7 @@ class RejectedMoves {
   // Whether `move` was added for this route (SearchState::route_number()).
   bool Contains(const SegmentMove& move, uint64_t route) const {
     const Entry& entry = entries_[Place(move)];
-    return entry.route == route && entry.move.kind == move.kind && entry.move.first == move.first &&
-           entry.move.middle == move.middle && entry.move.last == move.last;
+    return entry.route == route && entry.move == move;
   }
 
   void Add(const SegmentMove& move, uint64_t route) { entries_[Place(move)] = {route, move}; }

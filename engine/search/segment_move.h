@@ -43,6 +43,8 @@ struct SegmentMove {
   int middle = 0;  // kReverse: first
   int last = 0;
 
+  bool operator==(const SegmentMove&) const = default;
+
   bool exchanges() const { return kind >= Kind::kExchange; }
 
   // The segments in their new order; for kReverse only the first element counts.
