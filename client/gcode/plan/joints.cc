@@ -66,39 +66,33 @@ LayerJoints::LayerJoints(const GcodeFile& file, const Layer& layer,
   paces_.reserve(outlines.size());
   for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
     const Block& block = file.blocks[b];
-    paces_.push_back({pace(block, block.state_in, block.feed_in),
-                      pace(block, block.state_out, block.feed_out)});
+    paces_.push_back(
+        {pace(block, block.state_in, block.feed_in), pace(block, block.state_out, block.feed_out)});
   }
 }
 
-namespace {
-
-// `points` lead away from the end of the path. A short segment behind a sharp corner is too short
-// to get going.
-Joint JointAt(const Points& points, double speed, double accel, double corner_speed) {
-  if (!(speed > 0) || !(accel > 0)) return {};
+// Seen from inside the path, which leads away from that end. A short segment behind a sharp corner
+// is too short to get going.
+Joint LayerJoints::JointAt(size_t path, uint32_t entry, bool at_end) const {
+  const Outline& outline = outlines_[path];
+  const bool reversed = !outline.closed && entry > 0;
+  const Pace& pace = reversed != at_end ? paces_[path].last : paces_[path].first;
+  if (!(pace.speed_mm_s > 0) || !(pace.accel_mm_s2 > 0)) return {};
+  const Points points = PointsFrom(outline, entry, at_end);
   const Vertex away = Direction(points[0], points[1]);
   if (away == Vertex{}) return {};
   const Vertex before = Direction(points[1], points[2]);
-  const double reached2 = CornerSpeed2(away, before, corner_speed) +
-                          2 * accel * Distance(points[0], points[1]);
-  return {away, std::min(speed, std::sqrt(reached2)), accel};
+  const double reached2 = CornerSpeed2(away, before, pace.corner_speed) +
+                          2 * pace.accel_mm_s2 * Distance(points[0], points[1]);
+  return {away, std::min(pace.speed_mm_s, std::sqrt(reached2)), pace.accel_mm_s2};
 }
 
-}  // namespace
-
 Joint LayerJoints::BeginOf(size_t path, uint32_t entry) const {
-  const Outline& outline = outlines_[path];
-  const Pace& pace = !outline.closed && entry > 0 ? paces_[path].last : paces_[path].first;
-  return JointAt(PointsFrom(outline, entry, false), pace.speed_mm_s, pace.accel_mm_s2,
-                 pace.corner_speed);
+  return JointAt(path, entry, false);
 }
 
 Joint LayerJoints::EndOf(size_t path, uint32_t entry) const {
-  const Outline& outline = outlines_[path];
-  const Pace& pace = !outline.closed && entry > 0 ? paces_[path].first : paces_[path].last;
-  Joint joint = JointAt(PointsFrom(outline, entry, true), pace.speed_mm_s, pace.accel_mm_s2,
-                        pace.corner_speed);
+  Joint joint = JointAt(path, entry, true);
   joint.along = {-joint.along.x, -joint.along.y};
   return joint;
 }

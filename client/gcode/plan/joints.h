@@ -53,6 +53,8 @@ class LayerJoints {
     Pace last;
   };
 
+  Joint JointAt(size_t path, uint32_t entry, bool at_end) const;
+
   const std::vector<Outline>& outlines_;
   std::vector<Paces> paces_;  // [path]
 };
