@@ -76,7 +76,7 @@ class SearchState {
  private:
   struct Change {
     enum class Kind { kEntry, kReverse, kExchange } kind;
-    int a, b, c;  // leaf, old entry; first, last; first, middle, last
+    int a, b, c;            // leaf, old entry; first, last; first, middle, last
     uint64_t route_number;  // before it
   };
 

@@ -141,8 +141,8 @@ TEST(Overload, ABatchIsRefusedBeforeItsMessageIsSent) {
   EXPECT_EQ(HeadersOnly(service, "").error_code(), full);
 }
 
-// Sends `layers` layers of 1,000 points, waits until all are answered, and returns the memory that is
-// still held for the job, which is open.
+// Sends `layers` layers of 1,000 points, waits until all are answered, and returns the memory that
+// is still held for the job, which is open.
 int64_t BytesHeldForAnswered(bool chain_bound, int layers) {
   TestService service;
   grpc::ClientContext context;

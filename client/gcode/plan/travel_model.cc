@@ -123,8 +123,8 @@ class WayPlanner {
  public:
   WayPlanner(const GcodeFile& file, uint32_t before, const TravelModel& model,
              const WayJoints* joints)
-      : dynamics_(DynamicsOf(file.profile, file.states[file.blocks[before].state_out],
-                             file.setters)),
+      : dynamics_(
+            DynamicsOf(file.profile, file.states[file.blocks[before].state_out], file.setters)),
         model_(model),
         joints_(joints),
         planner_({file.profile.klipper, dynamics_.cruise_ratio()}) {

@@ -19,7 +19,7 @@ struct Side {
   const std::string& name;
   const Sections& cut;
   const absl::flat_hash_set<uint64_t>& other_gaps;  // digests of deposits with a moved gap
-  bool right_digest = false;  // its first line states the digest of the file
+  bool right_digest = false;                        // its first line states the digest of the file
 };
 
 // The first difference in the sections `first` to `end` - 1; unset if there is none. `whole`: the

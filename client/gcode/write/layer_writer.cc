@@ -301,8 +301,7 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
   totals.seconds = as_given ? WaySeconds(file_, to.block, model, true, passed)
                             : NewWaySeconds(file_, from.block, way, model, passed);
   if (way.retracts) {
-    totals.seconds +=
-        model.retraction_seconds + StopSeconds(joints.from) + StopSeconds(joints.to);
+    totals.seconds += model.retraction_seconds + StopSeconds(joints.from) + StopSeconds(joints.to);
   }
   totals.retractions = way.retracts ? 1 : 0;
   totals.crossings = way.crosses ? 1 : 0;

@@ -61,8 +61,8 @@ class LayerWriter {
   // What the head does after a path before it leaves for the next one.
   struct Leaving {
     double mm = 0;
-    Vertex as_given;     // where that ends after the path as sliced
-    bool wipes = false;  // pulls filament back meanwhile; else continues along the path
+    Vertex as_given;           // where that ends after the path as sliced
+    bool wipes = false;        // pulls filament back meanwhile; else continues along the path
     Vertex before_wipe{0, 0};  // the short move away from the path as sliced, before it wipes
 
     // A short move away from the path, which is made only where the path ends as sliced and what

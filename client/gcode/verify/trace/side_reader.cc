@@ -35,10 +35,7 @@ bool HasLayerMarks(std::string_view text) {
 
 SideReader::SideReader(std::string_view text, std::string_view ignored, bool marked,
                        bool right_digest)
-    : machine_(text),
-      cutter_(ignored, marked),
-      tracer_(marked),
-      right_digest_(right_digest) {}
+    : machine_(text), cutter_(ignored, marked), tracer_(marked), right_digest_(right_digest) {}
 
 void SideReader::TakeHeld() {
   held_ = false;
