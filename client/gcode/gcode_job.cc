@@ -69,7 +69,8 @@ void SetWallCost(const RetractionHabit& habit, Crossings crossings, v1::TimeCost
 
 // Paths that the slicer wipes stay wiped, so travel after them always retracts: an order saves, or
 // costs, only the retractions after the other paths.
-double ShareWiped(const GcodeFile& file) {
+double ShareWiped(const GcodeFile& file, const Allowance& allow) {
+  if (allow.wipes) return 0;
   const auto blocks = static_cast<uint32_t>(file.blocks.size());
   size_t wiped = 0;
   for (uint32_t b = 0; b < blocks; ++b) wiped += file.WipedBehind(b) ? 1u : 0u;
@@ -78,12 +79,13 @@ double ShareWiped(const GcodeFile& file) {
 
 // If retraction depends on length, it is sent as one of exposed paths, and all paths are exposed:
 // only for these does travel after a wiped path pay less.
-void SetWiped(const GcodeFile& file, const Layer& of_file, bool crossing_matters,
+void SetWiped(const GcodeFile& file, const Layer& of_file, const RetractionHabit& habit,
               v1::Layer& layer) {
+  if (habit.drops_wipes) return;
   for (uint32_t b = of_file.first_block; b < of_file.end_block; ++b) {
     if (file.WipedBehind(b)) layer.add_retracted_paths(b - of_file.first_block);
   }
-  if (layer.retracted_paths().empty() || crossing_matters) return;
+  if (layer.retracted_paths().empty() || habit.crossing_matters) return;
   layer.mutable_cost()->mutable_time()->set_retraction_threshold_mm(kNeverMm);
   for (uint32_t b = of_file.first_block; b < of_file.end_block; ++b) {
     layer.add_exposed_paths(b - of_file.first_block);
@@ -109,9 +111,11 @@ void SetWalls(const TravelRules& rules, const RetractionHabit& habit,
 
 // The file's travel between two paths stays as it is where an order has it: some has bends, and
 // some has no retraction where new travel would have one.
-void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const TravelModel& travel,
-                   const TravelRules& rules, const std::vector<Outline>& outlines,
-                   const VisibleWalls& walls, v1::Layer& layer) {
+void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const RetractionHabit& habit,
+                   const TravelModel& travel, const TravelRules& rules,
+                   const std::vector<Outline>& outlines, const VisibleWalls& walls,
+                   v1::Layer& layer) {
+  const bool wiped_stays = !habit.drops_wipes;
   for (uint32_t b = of_file.first_block + 1; b < of_file.end_block; ++b) {
     const Block& before = file.blocks[b - 1];
     const Block& block = file.blocks[b];
@@ -122,9 +126,11 @@ void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const TravelMode
     const bool plain = (block.link & kLinkWipes) == 0;
     double seconds = plain ? WaySeconds(file, b, travel) : NewWaySeconds(file, b - 1, way, travel);
     // A retraction because of a wipe has the price of new travel, which begins with it too.
-    const double wiped = (file.WipedBehind(b - 1) ? 0.5 : 0) + (file.WipedBehind(b) ? 0.5 : 0);
+    const bool wiped_before = wiped_stays && file.WipedBehind(b - 1);
+    const bool wiped_behind = wiped_stays && file.WipedBehind(b);
+    const double wiped = (wiped_before ? 0.5 : 0) + (wiped_behind ? 0.5 : 0);
     const bool retracts = (block.link & kLinkRetracts) != 0;
-    const bool pays = file.WipedBehind(b - 1) ? way.retracts : retracts;
+    const bool pays = wiped_before ? way.retracts : retracts;
     if (pays) seconds += layer.cost().time().retraction_seconds() * (1 - wiped);
     v1::KnownMove& move = *layer.add_known_moves();
     move.set_from(b - 1 - of_file.first_block);
@@ -155,8 +161,9 @@ void FillLayer(const GcodeFile& file, size_t index, const FileHabits& habits,
   const VisibleWalls walls(planned.outlines);
   const TravelRules rules(file, layer, habits.retraction, planned.outlines, walls);
   SetWalls(rules, habits.retraction, planned.outlines, filled);
-  SetWiped(file, layer, habits.retraction.crossing_matters, filled);
-  SetKnownMoves(file, layer, habits.travel[index], rules, planned.outlines, walls, filled);
+  SetWiped(file, layer, habits.retraction, filled);
+  SetKnownMoves(file, layer, habits.retraction, habits.travel[index], rules, planned.outlines,
+                walls, filled);
   PathNotes& notes = job.notes[index];
   for (size_t path = 0; path < planned.outlines.size(); ++path) {
     const auto feature = static_cast<size_t>(planned.outlines[path].feature);
@@ -207,7 +214,7 @@ bool KeepsRetractions(const GcodeFile& file) {
 // searched some six times. What is done in any case is shared by the layers. Of what is found among
 // wiped paths less is had, for a way begins where the wipe ends, and a retraction more is no less
 // for those that are made anyway.
-void SetStrategy(const GcodeFile& file, v1::Strategy& strategy) {
+void SetStrategy(const GcodeFile& file, const Allowance& allow, v1::Strategy& strategy) {
   const auto paths = static_cast<double>(file.blocks.size());
   constexpr double kRounds = 20000;
   constexpr double kMaxEffort = 10;
@@ -222,7 +229,7 @@ void SetStrategy(const GcodeFile& file, v1::Strategy& strategy) {
   // A bound takes up to three times as long as the search, and the print gains nothing by it.
   (*strategy.mutable_options())["bound"] = "false";
   (*strategy.mutable_options())["effort"] = absl::StrFormat("%.3g", effort);
-  const double wiped = std::min(ShareWiped(file), kMostWiped);
+  const double wiped = std::min(ShareWiped(file, allow), kMostWiped);
   const double little = 1 + (kOfLittleUseAmongWiped - 1) * wiped;
   const double least =
       kSecondsPerRound * std::max(little, KeepsRetractions(file) ? kOfLittleUse : 1);
@@ -263,7 +270,7 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
     job.features.emplace_back(gcode::FeatureName(static_cast<gcode::Feature>(i)));
   }
   gcode::FileHabits habits;
-  habits.retraction = gcode::HabitOfNewWays(*file);
+  habits.retraction = gcode::HabitOfNewWays(*file, options.allow);
   habits.travel = gcode::LearnTravel(*file, habits.retraction.threshold_mm);
   const std::vector<gcode::TravelModel>& models = habits.travel;
   const gcode::Census census = gcode::FillLayers(*file, options, habits, job);
@@ -272,7 +279,7 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   job.options.mutable_start()->set_x_mm(first.points.front().x);
   job.options.mutable_start()->set_y_mm(first.points.front().y);
   gcode::SetCost(models.back(), *job.options.mutable_cost());
-  gcode::SetStrategy(*file, *job.options.mutable_strategy());
+  gcode::SetStrategy(*file, options.allow, *job.options.mutable_strategy());
   job.options.set_idle_speed_mm_s(std::clamp(models.back().speed_mm_s, 0.001, 1e5));
   gcode::AddFacts(*file, census, options.policy, job);
   job.gcode = std::move(file);

@@ -39,6 +39,7 @@ Json AllowJson(const VerifyPermissions& permissions) {
   if (permissions.infill_order) names.push_back("infill_order");
   if (permissions.wall_order) names.push_back("wall_order");
   if (permissions.fan_order) names.push_back("fan_order");
+  if (permissions.wipes) names.push_back("wipes");
   return names;
 }
 

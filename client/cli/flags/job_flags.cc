@@ -168,9 +168,7 @@ Flag CrossingsFlag() {
           {"keep", "fewer", "any"}};
 }
 
-Flag AllowFlag() {
-  return {"allow", "NAME,...", "G-code: also infill_order, wall_order, fan_order"};
-}
+Flag AllowFlag() { return {"allow", "NAME,...", "infill_order, wall_order, fan_order, wipes"}; }
 
 Flag MachineFlag() { return {"machine", "FILE", "printer's limits: klipper.cfg, or M201 to M205"}; }
 
@@ -179,9 +177,10 @@ absl::StatusOr<GcodeOptions> ParseGcodeOptions(const Flags& flags) {
   const std::string allow = flags.Text("allow");
   const std::optional<gcode::Allowance> allowed = gcode::AllowanceOfNames(allow);
   if (!allowed) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "--allow=%s: not infill_order, wall_order or fan_order, or several separated by commas",
-        allow));
+    return absl::InvalidArgumentError(
+        absl::StrFormat("--allow=%s: not infill_order, wall_order, fan_order or wipes, or several "
+                        "separated by commas",
+                        allow));
   }
   options.allow = *allowed;
   const auto revisit = flags.Number("min_revisit", 0, GcodeOptions::kMostRevisitSeconds);

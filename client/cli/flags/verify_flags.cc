@@ -7,7 +7,7 @@ std::vector<Flag> VerifyFlagTable() {
            "POLICY",
            "safe, balanced, free (default: as the file says)",
            {"safe", "balanced", "free"}},
-          {"allow", "NAME,...", "also allow infill_order, wall_order, fan_order"}};
+          {"allow", "NAME,...", "infill_order, wall_order, fan_order, wipes"}};
 }
 
 absl::StatusOr<std::optional<GivenPermissions>> ParseGivenPermissions(const Flags& flags) {

@@ -54,7 +54,7 @@ class LayerChooser::Impl {
         allow_(choice.allow),
         polish_(choice.polish),
         threads_(choice.threads),
-        habit_(HabitOfNewWays(file)),
+        habit_(HabitOfNewWays(file, choice.allow)),
         plain_habit_(Plain(habit_)),
         donors_(file),
         travel_(LearnTravel(file, habit_.threshold_mm)),

@@ -256,6 +256,7 @@ constexpr AllowanceName kAllowances[] = {
     {"infill_order", &Allowance::infill_order},
     {"wall_order", &Allowance::wall_order},
     {"fan_order", &Allowance::fan_order},
+    {"wipes", &Allowance::wipes},
 };
 
 }  // namespace

@@ -37,6 +37,7 @@ struct Allowance {
   bool infill_order = false;  // walls and the infill that touches them may change places
   bool wall_order = false;    // walls that touch each other may
   bool fan_order = false;     // paths may across a change of the fan, of pressure advance or flow
+  bool wipes = false;         // a path's wipe is made only where the travel behind it retracts
 
   bool operator==(const Allowance&) const = default;
 };

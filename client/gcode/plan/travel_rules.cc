@@ -131,9 +131,10 @@ RetractionHabit LearnRetraction(const GcodeFile& file) {
   return habit;
 }
 
-RetractionHabit HabitOfNewWays(const GcodeFile& file) {
+RetractionHabit HabitOfNewWays(const GcodeFile& file, const Allowance& allow) {
   RetractionHabit habit = LearnRetraction(file);
   habit.spares_walls = true;
+  habit.drops_wipes = allow.wipes;
   return habit;
 }
 

@@ -46,6 +46,10 @@ struct RetractionHabit {
   // Requested, not learned: a new move across a visible wall retracts however short it is, so that
   // no layer has more unretracted crossings than the file.
   bool spares_walls = false;
+
+  // Requested: new moves after a path that the file wipes do without the wipe where they would not
+  // retract if there were none.
+  bool drops_wipes = false;
 };
 
 // Examines about two dozen layers spread over the file. The threshold is the slicer's setting if
@@ -53,8 +57,8 @@ struct RetractionHabit {
 // if straight moves across visible walls retracted whenever they were longer than that.
 RetractionHabit LearnRetraction(const GcodeFile& file);
 
-// LearnRetraction, and what new moves must obey under every policy.
-RetractionHabit HabitOfNewWays(const GcodeFile& file);
+// LearnRetraction, and what new moves must obey under every policy, or may do by `allow`.
+RetractionHabit HabitOfNewWays(const GcodeFile& file, const Allowance& allow = {});
 
 // A new travel move as it is written.
 struct TravelWay {

@@ -21,6 +21,7 @@ constexpr Permission kPermissions[] = {
     {"infill_order", &VerifyPermissions::infill_order},
     {"wall_order", &VerifyPermissions::wall_order},
     {"fan_order", &VerifyPermissions::fan_order},
+    {"wipes", &VerifyPermissions::wipes},
 };
 
 // Takes what stands before the first of `ends` off `text`, and that character too.
@@ -49,7 +50,7 @@ absl::StatusOr<VerifyPermissions> ParsePermissions(std::string_view policy,
     if (known == std::end(kPermissions)) {
       return absl::InvalidArgumentError(
           absl::StrCat("nothing to allow by the name `", std::string(word),
-                       "`; there are infill_order, wall_order and fan_order"));
+                       "`; there are infill_order, wall_order, fan_order and wipes"));
     }
     permissions.*known->flag = true;
   }

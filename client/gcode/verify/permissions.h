@@ -23,6 +23,7 @@ struct VerifyPermissions {
   bool infill_order = false;  // walls and infill that touch may change places
   bool wall_order = false;    // walls that touch may
   bool fan_order = false;     // paths may change places across a change of the fan
+  bool wipes = false;         // a wipe may be missing where nothing is retracted
 };
 
 // Parses the values of the command line: "safe", "balanced" or "free", and a list such as

@@ -171,7 +171,7 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
   ObserveFarMoves(layer, findings);
   ObserveWayLengths(layer, findings);
   ObserveSpeeds(layer, findings);
-  CheckWipes(layer, findings);
+  CheckWipes(layer, context_, findings);
   CheckCommands(layer, findings);
   CheckPathEnds(layer, findings);
 }

@@ -59,7 +59,8 @@ LayerWriter::LayerWriter(const GcodeFile& file, const Layer& layer, const Retrac
       walls_(outlines_),
       rules_(file, layer, habit, outlines_, walls_),
       joints_(file, layer, outlines_),
-      spares_walls_(habit.retracts && habit.spares_walls) {
+      spares_walls_(habit.retracts && habit.spares_walls),
+      drops_wipes_(habit.drops_wipes) {
   for (uint32_t b = layer.first_block; b < layer.end_block; ++b) NoteLeaving(b);
 }
 
@@ -122,11 +123,11 @@ void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32
   request.to = &to;
   if (boundary) request.boundary = place;
   request.without_progress = !boundary;
-  // Paths that the slicer wipes stay wiped, so that all ways from them are retracted.
-  request.wipe = file_.WipedBehind(from.placement().block);
+  const Vertex at = file_.modes[to.block().mode].InMm(to.first());
+  const Feature feature = outlines_[to.placement().block - layer_.first_block].feature;
+  request.wipe = Wipes(from.placement(), at, feature, boundary);
   request.retract = request.wipe || Retracts(from, to);
-  request.departs = Departs(from.placement(), file_.modes[to.block().mode].InMm(to.first()),
-                            outlines_[to.placement().block - layer_.first_block].feature);
+  request.departs = Departs(from.placement(), at, feature);
   request.detours = rules_.detours();
   LinkWriter(file_, donors_, out).Write(request);
 }
@@ -179,9 +180,9 @@ void LayerWriter::NoteLeaving(uint32_t block) {
   if (leaving.mm > 0) leaving_[block] = leaving;
 }
 
-const LayerWriter::Leaving* LayerWriter::LeavingOf(const Placement& from) const {
+const LayerWriter::Leaving* LayerWriter::LeavingOf(const Placement& from, bool wipes) const {
   const auto found = leaving_.find(from.block);
-  if (found == leaving_.end()) return nullptr;
+  if (found == leaving_.end() || (found->second.wipes && !wipes)) return nullptr;
   return found->second.departs && !from.as_given() ? nullptr : &found->second;
 }
 
@@ -227,9 +228,15 @@ bool LayerWriter::Departs(const Placement& from, Vertex to, Feature feature) con
   return way.crosses || way.grazes || !(behind.crosses || walls_.CrossedByWay(bent));
 }
 
-TravelWay LayerWriter::NewWay(const Placement& from, const Placement& to) const {
+// Paths that the slicer wipes stay wiped, so that all ways from them are retracted.
+bool LayerWriter::Wipes(const Placement& from, Vertex to, Feature feature, bool boundary) const {
+  if (!file_.WipedBehind(from.block)) return false;
+  return !drops_wipes_ || boundary || rules_.Retracts(End(from), to, feature);
+}
+
+TravelWay LayerWriter::NewWay(const Placement& from, const Placement& to, bool wipes) const {
   const Feature feature = outlines_[to.block - layer_.first_block].feature;
-  const Leaving* leaving = LeavingOf(from);
+  const Leaving* leaving = LeavingOf(from, wipes);
   if (leaving == nullptr || (leaving->departs && !Departs(from, Begin(to), feature))) {
     return rules_.WayOf(End(from), Begin(to), feature);
   }
@@ -257,9 +264,9 @@ TravelWay LayerWriter::NewWay(const Placement& from, const Placement& to) const 
   return way;
 }
 
-WayJoints LayerWriter::JointsOf(const Placement& from, const Placement& to) const {
+WayJoints LayerWriter::JointsOf(const Placement& from, const Placement& to, bool wipes) const {
   WayJoints joints;
-  const Leaving* leaving = LeavingOf(from);
+  const Leaving* leaving = LeavingOf(from, wipes);
   if (leaving == nullptr || leaving->departs) {
     joints.from = joints_.EndOf(from.block - layer_.first_block, from.entry);
   }
@@ -275,26 +282,27 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
   const bool as_given = from.block + 1 == to.block && from.as_given() && to.as_given() &&
                         (!boundary || to.block == layer_.first_block + place);
   const Feature feature = outlines_[to.block - layer_.first_block].feature;
+  const bool wipes = as_given || Wipes(from, Begin(to), feature, boundary);
   TravelWay way;
   if (as_given) {
     way.to = Begin(to);
     way.mm = static_cast<double>(next.travel_mm);
   } else {
-    way = NewWay(from, to);
+    way = NewWay(from, to, wipes);
   }
   double across_mm = way.mm;
   if (as_given) {
     const PrintTotals measured = MeasureLink(file_, to.block, walls_);
     way.crosses = measured.crossings > 0;
     across_mm = measured.longest_open_mm;
-  } else if (const Leaving* leaving = LeavingOf(from)) {
+  } else if (const Leaving* leaving = LeavingOf(from, wipes)) {
     across_mm -= leaving->mm;
   }
-  way.retracts = as_given ? (next.link & kLinkRetracts) != 0
-                          : way.retracts || file_.WipedBehind(from.block) ||
-                                (boundary && (here.link & kLinkRetracts) != 0) ||
-                                GoesOnAcross(from, way.to, feature);
-  const WayJoints joints = JointsOf(from, to);
+  way.retracts = as_given
+                     ? (next.link & kLinkRetracts) != 0
+                     : way.retracts || wipes || (boundary && (here.link & kLinkRetracts) != 0) ||
+                           GoesOnAcross(from, way.to, feature);
+  const WayJoints joints = JointsOf(from, to, wipes);
   const WayJoints* passed = way.retracts ? nullptr : &joints;
   WayTotals totals;
   totals.mm = way.mm;

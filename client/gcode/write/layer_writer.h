@@ -71,8 +71,13 @@ class LayerWriter {
     bool retracts = false;
   };
 
-  // Null if the travel begins at the end of the path.
-  const Leaving* LeavingOf(const Placement& from) const;
+  // Null if the travel begins at the end of the path. `wipes`: if the file wipes the path, so does
+  // the travel.
+  const Leaving* LeavingOf(const Placement& from, bool wipes = true) const;
+
+  // Whether the travel from `from` to `to`, where a path of `feature` begins, begins with the
+  // file's wipe. `boundary`: the file has something on that travel that nothing may cross.
+  bool Wipes(const Placement& from, Vertex to, Feature feature, bool boundary) const;
 
   // The position of the head `mm` after the end of `from`, on the way back along the path.
   Vertex BackOver(const Placement& from, double mm) const;
@@ -86,11 +91,11 @@ class LayerWriter {
 
   // The travel from `from` to `to` that the file does not have, with what happens after `from`. Of
   // a wipe only the length counts, because it is the same wherever the travel leads.
-  TravelWay NewWay(const Placement& from, const Placement& to) const;
+  TravelWay NewWay(const Placement& from, const Placement& to, bool wipes) const;
 
   // Where travel from `from` to `to` joins them. What happens after `from`, except for a short move
   // away from it, ends with a stop.
-  WayJoints JointsOf(const Placement& from, const Placement& to) const;
+  WayJoints JointsOf(const Placement& from, const Placement& to, bool wipes) const;
 
   // True if continuing after the end of `from` puts a visible wall between the nozzle and `to`,
   // which must be avoided.
@@ -107,6 +112,7 @@ class LayerWriter {
   const TravelRules rules_;
   const LayerJoints joints_;
   const bool spares_walls_;
+  const bool drops_wipes_;
   absl::flat_hash_map<uint32_t, Leaving> leaving_;  // by block, if it is left this way
 };
 

@@ -91,7 +91,9 @@ Link LinkWriter::TemplateFor(const LinkRequest& request) const {
     if (fits && own.arrival >= 0) return own;
   }
   for (const bool retracts : {request.retract, !request.retract}) {
-    const std::optional<uint32_t> donor = donors_.Find(to, retracts, request.wipe);
+    // Where no travel of the file is open, this is retracted, and so the path is wiped.
+    const bool wipes = file_.WipedBehind(request.from->placement().block);
+    const std::optional<uint32_t> donor = donors_.Find(to, retracts, retracts && wipes);
     if (!donor) continue;
     Link link = ReadLink(file_, *donor);
     if (link.arrival < 0) continue;

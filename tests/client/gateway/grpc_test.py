@@ -94,8 +94,8 @@ class Calls(unittest.TestCase):
     def test_the_bytes_are_those_of_the_command(self):
         for options, flags in [({}, []), ({"policy": 3, "seed": 3}, ["--policy=free", "--seed=3"]),
                                ({"policy": 3, "crossings": 3}, ["--policy=free", "--crossings=any"]),
-                               ({"crossings": 2, "allow": [1, 2, 3]},
-                                ["--crossings=fewer", "--allow=infill_order,wall_order,fan_order"]),
+                               ({"crossings": 2, "allow": [1, 2, 3, 4]},
+                                ["--crossings=fewer", "--allow=infill_order,wall_order,fan_order,wipes"]),
                                ({"min_revisit_s": 12.5}, ["--min_revisit=12.5"]),
                                ({"first_layer": 2, "last_layer": 3}, ["--layers=2-3"]),
                                ({"strategy": {"name": "greedy"}}, ["--strategy=greedy"])]:

@@ -36,7 +36,7 @@ void ObserveRetractions(const LayerPair& layer, LayerFindings& findings);
 void ObserveFarMoves(const LayerPair& layer, LayerFindings& findings);
 void ObserveWayLengths(const LayerPair& layer, LayerFindings& findings);
 void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings);
-void CheckWipes(const LayerPair& layer, LayerFindings& findings);
+void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFindings& findings);
 void CheckCommands(const LayerPair& layer, LayerFindings& findings);
 void CheckPathEnds(const LayerPair& layer, LayerFindings& findings);
 

@@ -1,4 +1,5 @@
-// A wipe lies within 0.05 mm of its own path, and paths that were wiped stay wiped.
+// A wipe lies within 0.05 mm of its own path, and paths that were wiped stay wiped; if it is
+// allowed to leave wipes out, then where the travel behind the path retracts.
 
 #include <algorithm>
 #include <cmath>
@@ -156,9 +157,23 @@ Pulls PullsOf(const std::vector<WipeDeviation>& wipes) {
   return pulls;
 }
 
+bool PullsBack(const TraceChunk& chunk, uint32_t link) {
+  const TraceLink& traced = chunk.links[link];
+  const auto* first = chunk.moves.data() + traced.first_move;
+  return std::any_of(first, chunk.moves.data() + traced.end_move, [](const TraceMove& move) {
+    return move.firmware ? move.kind == MoveKind::kRetraction : move.filament < 0;
+  });
+}
+
+// Whether a wipe that the original has may be missing in `link` of the other file.
+bool MayLackWipe(const TraceChunk& is, uint32_t link, const RuleContext& context) {
+  const TraceLink& traced = is.links[link];
+  return context.permissions.wipes && !traced.new_layer && !traced.scripted && !PullsBack(is, link);
+}
+
 }  // namespace
 
-void CheckWipes(const LayerPair& layer, LayerFindings& findings) {
+void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFindings& findings) {
   const TraceChunk& was = layer.was();
   std::vector<Wipe> wiped(layer.end_path_was() - layer.first_path_was());
   bool any = false;
@@ -177,7 +192,7 @@ void CheckWipes(const LayerPair& layer, LayerFindings& findings) {
       continue;
     }
     Wipe wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), false);
-    if (had.line != 0 && wipe.line == 0) {
+    if (had.line != 0 && wipe.line == 0 && !MayLackWipe(layer.is(), visit.last_path + 1, context)) {
       findings.breaks.push_back({VerifyRule::kWipes, had.line,
                                  layer.is().segments[visit.last_segment].line, layer.index(),
                                  "the wipe after this path is missing"});

@@ -191,6 +191,7 @@ TEST(Policy, NamesOfWhatIsAllowedAreReadAndWritten) {
 
   EXPECT_EQ(AllowanceOfNames("fan_order,infill_order"), both);
   EXPECT_EQ(AllowanceNames(both), "infill_order+fan_order");
+  EXPECT_EQ(AllowanceOfNames("wipes"), Allowance{.wipes = true});
   EXPECT_EQ(AllowanceOfNames(""), Allowance{});
   EXPECT_EQ(AllowanceNames({}), "");
   for (const char* wrong : {"infill", "infill_order,", ",infill_order", "wall_order fan_order"}) {

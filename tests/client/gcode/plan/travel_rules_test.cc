@@ -239,7 +239,7 @@ TEST(MakeGcodeJob, LooksForFewerCrossingsWhereMoreWereFound) {
 }
 
 // Four lines, of which the first so many are wiped.
-InputJob WipedLines(int wiped) {
+InputJob WipedLines(int wiped, const GcodeOptions& options = {}) {
   Sketch sketch;
   for (int line = 0; line < 4; ++line) {
     if (line > 0) sketch.Add("G1 E-.4 F2100");
@@ -252,7 +252,7 @@ InputJob WipedLines(int wiped) {
     if (line > 0) sketch.Add("G1 E.8 F2100");
     sketch.Infill(10, 10 * line);
   }
-  return MakeGcodeJob(sketch.Read(), {});
+  return MakeGcodeJob(sketch.Read(), options);
 }
 
 // What is wiped is retracted whatever follows it, so that no order saves that. (Half a minute of
@@ -267,6 +267,19 @@ TEST(MakeGcodeJob, RetractionsBehindWipedPathsAreNothingToSave) {
   EXPECT_LT(layer.cost().time().exposed_retraction_threshold_mm(), 20);
   EXPECT_EQ(WipedLines(0).layers[0].exposed_paths_size(), 0);
   EXPECT_LT(WipedLines(0).layers[0].cost().time().retraction_threshold_mm(), 20);
+}
+
+// Unless wipes may be left out: then it is as with any other path.
+TEST(MakeGcodeJob, RetractionsBehindWipedPathsAreSavedWhereWipesAreLeftOut) {
+  GcodeOptions options;
+  options.allow.wipes = true;
+  const v1::Layer layer = WipedLines(2, options).layers[0];
+
+  EXPECT_EQ(layer.retracted_paths_size(), 0);
+  EXPECT_EQ(layer.exposed_paths_size(), 0);
+  EXPECT_LT(layer.cost().time().retraction_threshold_mm(), 20);
+  ASSERT_EQ(layer.known_moves_size(), 3);
+  EXPECT_NEAR(layer.known_moves(0).seconds(), layer.known_moves(2).seconds(), 1e-9);
 }
 
 // As new ways are: half of a retraction at either end.

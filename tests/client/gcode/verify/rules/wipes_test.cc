@@ -32,6 +32,29 @@ TEST(VerifyWipes, AreNotLost) {
   EXPECT_EQ(Broken(head + two, head + two), "");
 }
 
+// Lines 0.8 mm apart, an open way as long elsewhere; and the first line the other way round, so
+// that its end is where the second one begins.
+TEST(VerifyWipes, MayBeLeftOutIfThatIsAllowedWhereNothingIsRetracted) {
+  const std::string head = kHead + "G1 E-1 F2100\n";
+  const std::string open =
+      "G1 X0 Y20 F9000\nG1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\n"
+      "G1 X9 Y20 E.3\nG1 X9 Y20.8 F9000\nG1 F1800\nG1 X0 Y20.8 E.3\n";
+  const std::string original =
+      head + Wiped("X0 Y0", "X9 Y0", "X7 Y0") + Wiped("X0 Y.8", "X9 Y.8", "X7 Y.8") + open;
+  const std::string wiped =
+      head + Wiped("X9 Y0", "X0 Y0", "X2 Y0") + Wiped("X0 Y.8", "X9 Y.8", "X7 Y.8") + open;
+  const std::string wipe = "G1 E-.5 F2100\n;WIPE_START\nG1 F7200\nG1 X2 Y0 E-.5\n;WIPE_END\n";
+  const std::string prime = "G1 X0 Y.8 F9000\nG1 E1 F2100\n";
+  const std::string without = With(With(wiped, wipe, ""), prime, "G1 X0 Y.8 F9000\n");
+  VerifyPermissions allowed;
+  allowed.wipes = true;
+  EXPECT_EQ(Broken(original, wiped, allowed), "");
+  EXPECT_EQ(Broken(original, without, allowed), "");
+  EXPECT_EQ(Broken(original, without), "wipes");
+  EXPECT_EQ(Broken(original, without, Policy::kFree), "wipes");
+  EXPECT_EQ(Broken(original, With(wiped, wipe, "G1 E-1 F2100\n"), allowed), "wipes");
+}
+
 // A corner that is wiped along both its sides.
 std::string WipedCorner(const std::string& wipe) {
   return absl::StrCat("G1 X0 Y5 F9000\nG1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\n",
