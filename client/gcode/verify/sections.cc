@@ -115,11 +115,11 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
   return cut;
 }
 
-void SectionCutter::Count(uint32_t section, std::pair<uint64_t, uint64_t> printed, uint64_t as) {
+void SectionCutter::Count(uint32_t section, const std::vector<uint64_t>& printed,
+                          const std::vector<uint64_t>& as) {
   DigestSet& deposits = cut_.sections[section].deposits;
-  deposits.Remove(printed.first);
-  deposits.Remove(printed.second);
-  deposits.Add(as);
+  for (const uint64_t digest : printed) deposits.Remove(digest);
+  for (const uint64_t digest : as) deposits.Add(digest);
 }
 
 void SectionCutter::Finish(const VerifyMachine& machine) {

@@ -102,8 +102,9 @@ class SectionCutter {
   // Those that have ended.
   const Sections& cut() const { return cut_; }
 
-  // Counts the deposits `printed` of a section that has ended as the one `as`.
-  void Count(uint32_t section, std::pair<uint64_t, uint64_t> printed, uint64_t as);
+  // Counts the deposits `printed` of a section that has ended as those of `as`.
+  void Count(uint32_t section, const std::vector<uint64_t>& printed,
+             const std::vector<uint64_t>& as);
 
  private:
   void CutAtHeight(const VerifyMachine& machine);

@@ -114,8 +114,8 @@ void Verifier::ReadNext() {
 void Verifier::TakeBackGaps() {
   for (const MovedGap& gap : TakeBackMovedGaps(chunk_was_, chunk_is_, findings_)) {
     is_.Count(gap.section, gap.printed, gap.as);
-    gaps_is_.insert({gap.printed.first, gap.printed.second});
-    gaps_was_.insert(gap.as);
+    gaps_is_.insert(gap.printed.begin(), gap.printed.end());
+    gaps_was_.insert(gap.as.begin(), gap.as.end());
   }
 }
 

@@ -17,6 +17,9 @@ constexpr double kSameRateShare = 0.01;
 // What is left of the segment that ends earlier, in gaps.
 constexpr double kLeastLeft = 1;
 
+// A segment that goes on to the start of its loop is straight within rounding.
+constexpr double kStraightMm = 0.0015;
+
 // As slicers write filament.
 constexpr Decimal kFilamentStep = kDecimalOne / 100'000;
 
@@ -24,6 +27,14 @@ constexpr Decimal kFilamentStep = kDecimalOne / 100'000;
 double RateOf(const BodySegment& segment) {
   const double length = LengthXy(segment.from, segment.to);
   return segment.command < 2 && length > 0 ? ToDouble(segment.filament) / length : 0;
+}
+
+// How far `point` lies beside the line from `from` to `to`.
+double BesideMm(const Position& point, const Position& from, const Position& to) {
+  const double dx = ToDouble(to.x - from.x);
+  const double dy = ToDouble(to.y - from.y);
+  const double across = dx * ToDouble(point.y - from.y) - dy * ToDouble(point.x - from.x);
+  return std::abs(across) / std::hypot(dx, dy);
 }
 
 }  // namespace
@@ -46,7 +57,16 @@ bool MoveGap(uint32_t entry, std::vector<BodySegment>& segments) {
   if (closing.filament <= 0) return false;
   end.filament -= closing.filament;
   end.to = Along(end.from, end.to, length - gap);
-  segments.push_back(closing);
+  BodySegment& last = segments.back();
+  // If the path begins with it, its own end is where that of the original is.
+  const bool begins = entry + 1 == segments.size();
+  const bool onward = LengthXy(last.from, closing.to) > LengthXy(last.from, last.to);
+  if (begins || !onward || BesideMm(last.to, last.from, closing.to) > kStraightMm) {
+    segments.push_back(closing);
+  } else {
+    last.to = closing.to;
+    last.filament += closing.filament;
+  }
   return true;
 }
 

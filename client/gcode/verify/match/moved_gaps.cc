@@ -31,11 +31,30 @@ uint32_t DepositsOf(const TraceChunk& chunk, const TraceSection& section) {
          chunk.paths[section.first_path].first_segment;
 }
 
+// They differ in number, or in what they are.
+bool DepositsDiffer(const TraceChunk& a, const TraceSection& of_a, const TraceChunk& b,
+                    const TraceSection& of_b) {
+  const auto sum = [](const TraceChunk& chunk, const TraceSection& section) {
+    uint64_t all = 0;
+    const uint32_t first = chunk.paths[section.first_path].first_segment;
+    for (uint32_t s = 0; s < DepositsOf(chunk, section); ++s) {
+      all += chunk.segments[first + s].digest;
+    }
+    return all;
+  };
+  return DepositsOf(a, of_a) != DepositsOf(b, of_b) || sum(a, of_a) != sum(b, of_b);
+}
+
 // A loop of the original, and the path of the other file that prints it with its gap moved.
 struct MovedLoop {
   uint32_t path = 0;
   uint32_t entry = 0;  // the segment with which the other begins
   uint32_t other = 0;
+
+  // The segment of the other that closes the gap; if not `apart`, it is the loop's last segment
+  // too.
+  uint32_t closing = 0;
+  bool apart = true;
 };
 
 class SectionGaps {
@@ -65,7 +84,7 @@ class SectionGaps {
                                   [](const Start& a, uint64_t value) { return a.digest < value; });
     int left = kMostEqual;
     for (; start != starts_.end() && start->digest == digest && left > 0; ++start) {
-      const MovedLoop loop{start->path, start->entry, other};
+      const MovedLoop loop = LoopAt(start->path, start->entry, other);
       if (found_[loop.path - first_path_]) continue;
       --left;
       if (!IsMoved(loop)) continue;
@@ -82,28 +101,38 @@ class SectionGaps {
     uint32_t entry = 0;
   };
 
+  MovedLoop LoopAt(uint32_t path, uint32_t entry, uint32_t other) const {
+    const TracePath& is = optimised_.paths[other];
+    MovedLoop loop{path, entry, other};
+    const uint32_t before_gap = original_.paths[path].size() - entry;
+    loop.apart = is.size() > original_.paths[path].size();
+    loop.closing = is.first_segment + (loop.apart ? before_gap : before_gap - 1);
+    return loop;
+  }
+
   bool IsMoved(const MovedLoop& loop) const {
     const TracePath& was = original_.paths[loop.path];
     const TracePath& is = optimised_.paths[loop.other];
     const uint32_t n = was.size();
-    if (is.joined || is.size() != n + 1) return false;
-    const uint32_t gap = n - loop.entry;  // the segment that closes it
+    if (is.joined || is.size() != (loop.apart ? n + 1 : n)) return false;
+    const uint32_t closing = loop.closing - is.first_segment;
     const auto same_place = [](Point a, Point b) { return DistanceOf(a, b) <= kSameSpotMm; };
     if (!same_place(is.start, original_.StartOf(was, was.first_segment + loop.entry))) return false;
-    for (uint32_t i = 0; i < n; ++i) {
-      if (i == gap) continue;
-      const uint32_t s = was.first_segment + (i < gap ? loop.entry + i : i - gap - 1);
+    for (uint32_t i = 0; i + 1 < is.size(); ++i) {
+      if (i == closing) continue;
+      const uint32_t s = was.first_segment + (i < closing ? loop.entry + i : i - closing - 1);
       if (original_.segments[s].digest != optimised_.segments[is.first_segment + i].digest) {
         return false;
       }
     }
-    const uint32_t closing = is.first_segment + gap;
     const uint32_t shorter = was.first_segment + loop.entry - 1;
-    return same_place(optimised_.StartOf(is, closing), original_.EndOf(was)) &&
-           same_place(optimised_.segments[closing].end, was.start) &&
+    const Point begin =
+        loop.apart ? original_.EndOf(was) : original_.StartOf(was, was.end_segment - 1);
+    return same_place(optimised_.StartOf(is, loop.closing), begin) &&
+           same_place(optimised_.segments[loop.closing].end, was.start) &&
            same_place(optimised_.StartOf(is, is.end_segment - 1),
                       original_.StartOf(was, shorter)) &&
-           Alike(was.end_segment - 1, closing) && Alike(shorter, is.end_segment - 1);
+           Alike(was.end_segment - 1, loop.closing) && Alike(shorter, is.end_segment - 1);
   }
 
   // Both are straight, and printed alike.
@@ -140,7 +169,15 @@ std::string FaultOf(const TraceChunk& original, const TraceChunk& optimised,
         "it ends %.3f mm short of its start",
         left, off, gap);
   }
-  const double closing = optimised.segments[is.first_segment + was.size() - loop.entry].filament_mm;
+  if (!loop.apart) {
+    const double bend =
+        DistanceToPiece(original.EndOf(was), original.StartOf(was, was.end_segment - 1), was.start);
+    if (bend > kRoundedMm) {
+      return absl::StrFormat("what closes the gap of this loop leaves out a bend of %.3f mm", bend);
+    }
+  }
+  const double before = loop.apart ? 0 : original.segments[was.end_segment - 1].filament_mm;
+  const double closing = optimised.segments[loop.closing].filament_mm - before;
   const double saved = whole.filament_mm - cut.filament_mm;
   if (std::abs(closing - saved) > kSameFilamentMm) {
     return absl::StrFormat(
@@ -194,7 +231,8 @@ std::vector<MovedGap> TakeBackMovedGaps(const TraceChunk& original, TraceChunk& 
   for (size_t i = 0; i < sections; ++i) {
     const TraceSection& was = original.sections[i];
     const TraceSection& is = optimised.sections[i];
-    if (was.index != is.index || DepositsOf(optimised, is) <= DepositsOf(original, was)) continue;
+    if (was.index != is.index || DepositsOf(optimised, is) < DepositsOf(original, was)) continue;
+    if (!DepositsDiffer(original, was, optimised, is)) continue;
     SectionGaps of_section(original, was, optimised);
     for (uint32_t p = is.first_path; p < is.end_path; ++p) {
       const std::optional<MovedLoop> loop = of_section.Find(p);
@@ -205,10 +243,16 @@ std::vector<MovedGap> TakeBackMovedGaps(const TraceChunk& original, TraceChunk& 
         findings.push_back(
             {VerifyRule::kSamePrint, original.LineOf(path), last.line, -1, std::move(fault)});
       }
-      removed.push_back(optimised.paths[p].first_segment + path.size() - loop->entry);
-      const uint64_t whole = original.segments[path.first_segment + loop->entry - 1].digest;
-      gaps.push_back({is.index, {optimised.segments[removed.back()].digest, last.digest}, whole});
-      last.digest = whole;
+      TraceSegment& closing = optimised.segments[loop->closing];
+      MovedGap& gap = gaps.emplace_back(MovedGap{is.index, {closing.digest, last.digest}, {}});
+      last.digest = original.segments[path.first_segment + loop->entry - 1].digest;
+      gap.as.push_back(last.digest);
+      if (loop->apart) {
+        removed.push_back(loop->closing);
+      } else {
+        closing.digest = original.segments[path.end_segment - 1].digest;
+        gap.as.push_back(closing.digest);
+      }
     }
   }
   if (!removed.empty()) Remove(removed, optimised);

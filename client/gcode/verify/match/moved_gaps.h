@@ -4,7 +4,7 @@
 // and leave the same one before its new start:
 //
 //   original    0 1 2 3 .      . the gap, | a shorter segment
-//   the other   2 3 G 0 |      G what closes the gap
+//   the other   2 3 G 0 |      G what closes the gap, a segment of its own or the rest of 3
 //
 // The same filament is printed on the same length: as much per mm as the segment before the gap
 // has, and as much as the shorter segment has less.
@@ -13,7 +13,6 @@
 #define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_MOVED_GAPS_H_
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "client/gcode/verify/findings.h"
@@ -22,14 +21,14 @@
 namespace traverse::gcode {
 
 struct MovedGap {
-  uint32_t section = 0;                   // from the beginning of the file
-  std::pair<uint64_t, uint64_t> printed;  // digests: what closes the gap, the shorter segment
-  uint64_t as = 0;                        // that of the original's segment
+  uint32_t section = 0;           // from the beginning of the file
+  std::vector<uint64_t> printed;  // digests: what closes the gap, the shorter segment
+  std::vector<uint64_t> as;       // those of the original's segments
 };
 
 // Finds these loops and takes their gaps back: in `optimised` nothing closes the gap afterwards,
-// and the shorter segment has the digest of the whole one. Adds a finding for each that does not
-// print the same filament on the same length: that is not the same print.
+// and the segments that are longer and shorter have the digests of the original's. Adds a finding
+// for each that does not print the same filament on the same length: that is not the same print.
 std::vector<MovedGap> TakeBackMovedGaps(const TraceChunk& original, TraceChunk& optimised,
                                         std::vector<Finding>& findings);
 

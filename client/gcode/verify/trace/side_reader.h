@@ -38,8 +38,9 @@ class SideReader {
   // The sections read so far.
   const Sections& cut() const { return cutter_.cut(); }
 
-  // Counts the deposits `printed` of a section as the one `as`.
-  void Count(uint32_t section, std::pair<uint64_t, uint64_t> printed, uint64_t as) {
+  // Counts the deposits `printed` of a section as those of `as`.
+  void Count(uint32_t section, const std::vector<uint64_t>& printed,
+             const std::vector<uint64_t>& as) {
     cutter_.Count(section, printed, as);
   }
 

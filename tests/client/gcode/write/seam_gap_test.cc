@@ -37,8 +37,30 @@ TEST(MoveGap, ClosesTheGapAndLeavesTheSameAtTheNewStart) {
 
   ASSERT_TRUE(MoveGap(2, segments));
 
+  // The last side goes on to its corner.
+  ASSERT_EQ(segments.size(), 4u);
+  EXPECT_EQ(segments[3].from, At(0, 10));
+  EXPECT_EQ(segments[3].to, At(0, 0));
+  EXPECT_EQ(segments[3].filament, RoundedWord(.4));
+  EXPECT_EQ(segments[1].to, At(10, 9.9));
+  EXPECT_EQ(segments[1].filament, RoundedWord(.396));
+  EXPECT_EQ(segments[2].from, At(10, 10));
+  EXPECT_EQ(FilamentOf(segments), filament);
+}
+
+// The loop ends beside its last side, or begins with it.
+TEST(MoveGap, ClosesTheGapByASegmentOfItsOwnWhereTheLastOneCannotGoOn) {
+  std::vector<BodySegment> begun = Square(.1);
+  ASSERT_TRUE(MoveGap(3, begun));
+  ASSERT_EQ(begun.size(), 5u);
+  EXPECT_EQ(begun[3].to, At(0, .1));
+
+  std::vector<BodySegment> segments = Square(.1);
+  segments[3].to = At(.003, .1);
+  const Decimal filament = FilamentOf(segments);
+  ASSERT_TRUE(MoveGap(2, segments));
   ASSERT_EQ(segments.size(), 5u);
-  EXPECT_EQ(segments[4].from, At(0, .1));
+  EXPECT_EQ(segments[4].from, At(.003, .1));
   EXPECT_EQ(segments[4].to, At(0, 0));
   EXPECT_EQ(segments[4].filament, RoundedWord(.004));
   EXPECT_EQ(segments[4].feed, segments[3].feed);

@@ -77,6 +77,39 @@ TEST(VerifyWholePaths, AMovedGapHasTheSameLengthAndFilament) {
   }
 }
 
+// Its last segment may be what closes the gap.
+const std::string kClosedOnward = With(kGapMoved, "Y10.1 E.396\nG1 X10 Y10 E.004\n", "Y10 E.4\n");
+
+TEST(VerifyWholePaths, TheLastSegmentOfALoopMayCloseItsGap) {
+  const std::string next = Line("Internal infill", "X12 Y15", "X18 Y15");
+  const std::string a = kHead + kClipped;
+
+  EXPECT_EQ(Broken(kHead + kClipped + next, kHead + next + kClosedOnward), "");
+  EXPECT_EQ(Broken(kHead + kClipped + kClipped, kHead + kClosedOnward + kGapMoved), "");
+  const std::string outer = With(kClipped, "Perimeter", "External perimeter");
+  const std::string moved = With(kClosedOnward, "Perimeter", "External perimeter");
+  EXPECT_EQ(Broken(kHead + outer, kHead + moved), "seam");
+
+  const auto other = [](const std::string& from, const std::string& to) {
+    return kHead + With(kClosedOnward, from, to);
+  };
+  for (const auto& [b, what] : std::vector<std::pair<std::string, std::string>>{
+           {other("X10 Y10 E.4", "X10 Y10 E.4002"), "0.00420 mm of filament close the gap"},
+           {other("X19.9 Y10 E.396", "X20 Y10 E.4"), "ends 0.000 mm from its start"},
+           {other("X19.9 Y10 E.396", "X19.9 Y10 E.394"), "and its end has 0.00600 mm less"}}) {
+    EXPECT_EQ(Broken(a, b), "same_print");
+    EXPECT_THAT(FirstMessage(a, b), HasSubstr(what));
+  }
+  for (const std::string& b :
+       {other("X10 Y10 E.4", "X10 Y10 E.4 F1800"), other("X10 Y10 E.4", "X10.01 Y10 E.4"),
+        other("G1 X10 Y20 E.4\nG1 X10 Y10 E.4", "G1 X10 Y10 E.8")}) {
+    EXPECT_EQ(Broken(a, b), "same_print") << b;
+  }
+  // It leaves out no bend.
+  const std::string bent = With(kClipped, "X10 Y10.1 E.396", "X10.006 Y10.1 E.396");
+  EXPECT_THAT(FirstMessage(kHead + bent, kHead + kClosedOnward), HasSubstr("a bend of 0.0"));
+}
+
 TEST(VerifyWholePaths, AMovedGapIsClosedInOneAndTheSameLoop) {
   const std::string a = kHead + kClipped;
   for (const std::string& b :
@@ -96,8 +129,7 @@ TEST(VerifyWholePaths, AMovedGapIsClosedInOneAndTheSameLoop) {
   }
   // A loop without a gap does not get one.
   const std::string closed = With(kClipped, "Y10.1 E.396", "Y10 E.4");
-  const std::string opened = With(kGapMoved, "Y10.1 E.396\nG1 X10 Y10 E.004\n", "Y10 E.4\n");
-  EXPECT_EQ(Broken(kHead + closed, kHead + opened), "same_print");
+  EXPECT_EQ(Broken(kHead + closed, kHead + kClosedOnward), "same_print");
 }
 
 TEST(VerifyWholePaths, TheDepositThatDiffersIsNotThatOfAMovedGap) {
