@@ -52,12 +52,12 @@ class OrderPolisher {
   // `begun`, improved as OrderMerger::Merge does: first less beyond the limits of `judge`,
   // then faster. Its first and last paths stay. It makes no change beyond the layer's
   // freedom, but does not repair a `begun` that is beyond it. It stops when a second of
-  // computing saves less than a second of printing, when it has asked for about kMostWaysEach
+  // computing saves less than half a second of printing, when it has asked for about kMostWaysEach
   // estimates per path, or at the limit. REQUIRES: `begun` has each path of the layer once,
   // or none.
   LayerOrder Polish(const LayerOrder& begun, const OrderMerger& judge, Effort effort) const;
 
-  static constexpr size_t kMostWaysEach = 5000;
+  static constexpr size_t kMostWaysEach = 50'000;
 
  private:
   class Search;
