@@ -28,6 +28,9 @@ constexpr double kAloneShare = 0.4;
 // The share for predicting an end or comparing with greedy, and for a search for a bound.
 constexpr double kSideShare = 0.15;
 
+// A bound of the chain is asked for by name: worth more than that which comes with each route.
+constexpr double kLeastEffortOfChainBound = 2;
+
 // Lengths of moves may differ by this between layers of one problem key: the ends are equal to 1e-4
 // mm in each direction, relative to origins that are equal to 1e-4 mm.
 constexpr double kSameMoveMm = 6e-4;
@@ -302,7 +305,7 @@ void LayerSolver::Bound(const LayerProblem& problem, ChainLayer& layer, Solution
 std::optional<double> LayerSolver::BoundChain(const ChainBound& chain, uint64_t layers,
                                               Budget::Clock::duration allotted) const {
   const StrategyTraits& traits = strategy_->traits();
-  const double effort = traits.bound_effort > 0 ? traits.bound_effort : 1;
+  const double effort = std::max(traits.bound_effort, kLeastEffortOfChainBound);
   const bool resumes = traits.chain_bounding == StrategyTraits::ChainBounding::kByResume;
   const auto bound_of = [&](const LayerProblem& problem, const Route& known, Budget& budget) {
     if (resumes) return strategy_->Resume(problem, known, budget).lower_bound;

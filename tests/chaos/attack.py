@@ -61,6 +61,8 @@ ATTACKS = {
     "many_bounds": callers.open_jobs(lambda: requests.options("auto") + requests.layer(80, corners=12) * 6),
     # The same of so few points that a server might take them for nothing, by many callers.
     "small_bounds": callers.open_jobs(lambda: requests.options("auto") + requests.layer(20, corners=10) * 6, most=250, callers=40),
+    # Few contours of many points that lie all over the plate: no box rules any pair of them out.
+    "scattered_bounds": callers.open_jobs(lambda: requests.options("auto") + requests.layer(400, corners=240), most=8),
     "unread_answers": callers.open_jobs(lambda: requests.options("none") + requests.layer(20_000) * 4, window=0),
     "corners": callers.corners,
     "many_channels": transport.many_channels,

@@ -26,15 +26,27 @@ constexpr double kLeastGain = 1e-3;
 constexpr double kVertexRounds = 8;
 constexpr double kMostVertexRounds = 40;
 constexpr double kShareOfRoundsAgain = 0.5;
+
+// Up to this effort, programmes would take as long as the search, and gain little.
+constexpr double kEffortWithoutProgrammes = 1;
 constexpr double kShareOfProgrammeAgain = 0.25;
+
+// Work, as for the rounds: about half as much time as a search takes.
+constexpr double kVertexWorkOfEnd = 120'000;
+constexpr double kVertexWorkOfPoint = 2000;
 
 // Of the time that is left, what a search may use: the evaluation after it is what counts.
 constexpr double kSearchShare = 0.4;
 
-int VertexRounds(double effort, bool known) {
+VertexBound::Limits VertexLimits(double effort, bool known, const EndGraph& graph) {
   const double rounds =
       std::min(kVertexRounds * std::sqrt(std::max(1.0, effort)), kMostVertexRounds);
-  return static_cast<int>(known ? kShareOfRoundsAgain * rounds : rounds);
+  double work = 0;
+  for (const PathEnd& end : graph.ends) {
+    work += kVertexWorkOfEnd + kVertexWorkOfPoint * static_cast<double>(end.points.size());
+  }
+  return {static_cast<int>(known ? kShareOfRoundsAgain * rounds : rounds),
+          std::max(1.0, effort) * work};
 }
 
 // Each evaluation makes the true costs of its trees' moves known where boxes stood for contours.
@@ -64,13 +76,15 @@ std::optional<double> BoundByTrees(double target, TreeBound& tree, BoundMultipli
 }
 
 std::optional<double> BoundByMultipliers(const LayerProblem& problem, double target,
-                                         BoundMultipliers& multipliers, int rounds,
+                                         BoundMultipliers& multipliers, double effort,
                                          Budget& budget) {
+  const bool known = !multipliers.empty();
   TreeBound tree(problem, budget);
   std::optional<double> bound = BoundByTrees(target, tree, multipliers, budget);
   if (bound && *bound < target && VertexBound::Fits(tree.graph())) {
     VertexBound points(problem, tree);
-    bound = std::max(*bound, points.Search(target, rounds, budget));
+    const VertexBound::Limits limits = VertexLimits(effort, known, tree.graph());
+    bound = std::max(*bound, points.Search(target, limits, budget));
   }
   tree.Clear(budget);
   return bound;
@@ -85,10 +99,9 @@ std::optional<double> LowerBound(const LayerProblem& problem, double target,
   BoundMultipliers own;
   BoundMultipliers& shared = multipliers != nullptr ? *multipliers : own;
   const bool known = !shared.empty();
-  std::optional<double> bound =
-      BoundByMultipliers(problem, target, shared, VertexRounds(effort, known), budget);
+  std::optional<double> bound = BoundByMultipliers(problem, target, shared, effort, budget);
   if (!bound) return std::nullopt;
-  if (*bound < target && effort > 0) {
+  if (*bound < target && effort > kEffortWithoutProgrammes) {
     if (known) effort *= kShareOfProgrammeAgain;
     bound = std::max(*bound, ProgrammeBound(problem, target, effort, budget).value_or(0));
   }

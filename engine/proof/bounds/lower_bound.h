@@ -22,7 +22,8 @@ using BoundMultipliers = std::vector<double>;
 // at a neighboring start then has nearly as good a bound in less time. Those for another number of
 // paths are replaced.
 //
-// `effort` is the effort of linear programmes (programme_bound.h), which follow the trees.
+// `effort` limits the work, about as a search's effort does: up to 1 half of what a search of 1
+// takes, beyond more, and linear programmes (programme_bound.h) after the trees.
 //
 // Linear memory, except for these. Bounds by trees (tree_bound.h): 4 ms for 26 contours and 26
 // rasters, 0.3 s for 500 and 500.

@@ -49,6 +49,7 @@ double Places::LeastDistance(int a, int b) const {
   const auto from = points(a);
   const auto to = points(b);
   if (from.size() * to.size() > kMostPairs) return box(a).DistanceTo(box(b));
+  distances_ += static_cast<double>(from.size() * to.size());
   double least = std::numeric_limits<double>::infinity();
   for (const Point& p : from) {
     for (const Point& q : to) {

@@ -42,6 +42,9 @@ class Places {
   // many points.
   double LeastDistance(int a, int b) const;
 
+  // Distances between points that were computed so far: a measure of work.
+  double distances() const { return distances_; }
+
   // Splits each place p with marked[p] != 0 and a width into two. What p was is then [first[p],
   // first[p + 1]), which is returned. REQUIRES: marked has as many elements as there are places.
   std::vector<int> Split(const std::vector<char>& marked);
@@ -62,6 +65,7 @@ class Places {
   const EndGraph* graph_;
   std::vector<Place> places_;
   std::vector<int> first_;  // [end]; one more
+  mutable double distances_ = 0;
 };
 
 }  // namespace traverse

@@ -18,9 +18,10 @@ namespace {
 constexpr size_t kFirstPlaces = 5;
 constexpr double kWidthWorthSplitting = 0.03;
 
-// Nothing is split where there are so many moves for each point of the plan: each takes some 240
-// bytes.
+// Nothing is split where there are so many moves, for each point of the plan or together: each
+// takes some 240 bytes.
 constexpr size_t kMostMovesOfPoint = 25;
+constexpr size_t kMostMoves = 150'000;
 
 // Beyond these, steps take too long, and a search takes more memory than a layer may: some 28 KB
 // for each end.
@@ -125,7 +126,7 @@ void VertexBound::AddPairs(const TreeBound& tree) {
 
 // Splits the places that solutions visit. Multipliers, and so the bound, stay as they are.
 void VertexBound::Refine() {
-  if (moves_.moves().size() > kMostMovesOfPoint * points_of_plan_) return;
+  if (moves_.moves().size() > std::min(kMostMoves, kMostMovesOfPoint * points_of_plan_)) return;
   const double least = kWidthWorthSplitting * mean_move_;
   std::vector<char> marked(average_.points.size());
   for (size_t v = 0; v < marked.size(); ++v) {
@@ -247,7 +248,8 @@ void VertexBound::Ascend(double target, Budget& budget) {
     near_.GoBack();
     sets_.GoBack();
   };
-  for (int step = 0; step < kStepsOfRound && !budget.ExhaustedNow(); ++step) {
+  for (int step = 0; step < kStepsOfRound && !Ended(budget, work_of_evaluation_); ++step) {
+    work_ += WorkOfStep();
     double value = EvaluateNear();
     if (value > best_value) {
       best_value = value;
@@ -272,10 +274,17 @@ void VertexBound::Ascend(double target, Budget& budget) {
   go_back();
 }
 
-double VertexBound::Search(double target, int most_rounds, Budget& budget) {
+// An evaluation, and what is made of its solution.
+double VertexBound::WorkOfStep() const {
+  return static_cast<double>(3 * moves_.moves().size() + 16 * moves_.groups().size());
+}
+
+double VertexBound::Search(double target, const Limits& limits, Budget& budget) {
+  limits_ = limits;
   mean_move_ = target / static_cast<double>(graph_.ends.size());
   double bound = std::max(0.0, EvaluateAll(budget));
-  for (int round = 0; round < most_rounds && !budget.was_exhausted() && bound < target; ++round) {
+  for (int round = 0; round < limits.rounds && bound < target; ++round) {
+    if (Ended(budget, work_of_evaluation_ + WorkOfStep())) break;
     if (rounds_++ > 0) Refine();
     Ascend(target, budget);
     bound = std::max(bound, EvaluateAll(budget));

@@ -44,13 +44,24 @@ class VertexBound {
   VertexBound(const VertexBound&) = delete;
   VertexBound& operator=(const VertexBound&) = delete;
 
-  // Searches for multipliers towards `target`, the cost of a route, for so many rounds at most.
-  // Returns a bound, 0 if the budget ended before there was one; more rounds never give a lower
-  // one. A round takes 6 to 60 ms for 40 to 320 paths.
-  double Search(double target, int most_rounds, Budget& budget);
+  // How far a search goes: so many rounds, and so much work, in distances and sums of costs, of
+  // some nanoseconds each.
+  struct Limits {
+    int rounds = 0;
+    double work = std::numeric_limits<double>::infinity();
+  };
+
+  // Searches for multipliers towards `target`, the cost of a route. Returns a bound, 0 if the
+  // budget or the work ended before there was one; more rounds never give a lower one. A round
+  // takes 6 to 60 ms for 40 to 320 paths.
+  double Search(double target, const Limits& limits, Budget& budget);
+
+  // What was done so far. Goes beyond the limit by at most as much as an evaluation takes.
+  double work() const { return work_ + kWorkOfDistance * moves_.places().distances(); }
 
  private:
   static constexpr double kFar = std::numeric_limits<double>::infinity();
+  static constexpr double kWorkOfDistance = 0.25;
 
   // The cheapest move between the sides of a group: cost less multipliers.
   struct Candidate {
@@ -98,6 +109,13 @@ class VertexBound {
   void Step(double length);
   void Ascend(double target, Budget& budget);
 
+  double WorkOfStep() const;
+
+  // Whether the search has done what it may, if it does so much more.
+  bool Ended(Budget& budget, double more) {
+    return work() + more > limits_.work || budget.ExhaustedNow();
+  }
+
   const EndGraph& graph_;
   size_t points_of_plan_ = 0;  // as often as ends have them
   const TravelCost cost_;
@@ -118,7 +136,10 @@ class VertexBound {
   double factor_ = 1;  // of steps
   int steps_ = 0;
   int rounds_ = 0;
-  double mean_move_ = 0;  // of a route that costs as much as the target
+  Limits limits_;
+  double work_ = 0;                // so far, but for distances
+  double work_of_evaluation_ = 0;  // of the last one over all moves
+  double mean_move_ = 0;           // of a route that costs as much as the target
 
   // Of the last evaluation.
   std::vector<int> chosen_;                // [end] point

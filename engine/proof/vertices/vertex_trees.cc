@@ -192,7 +192,7 @@ void VertexBound::Keep(std::vector<Extra>& extras) const {
 }
 
 // The pairs of ends that are not known and may be cheaper than what a tree over the known moves
-// has in their junction. False if the budget ended it.
+// has in their junction. False if the budget or the work ended it.
 bool VertexBound::FindExtras(std::vector<Extra>& extras, Budget& budget) {
   std::vector<double> paid(graph_.ends.size(), -kFar);  // at the point of the highest multiplier
   for (size_t v = 0; v < multipliers_.point.size(); ++v) {
@@ -203,7 +203,8 @@ bool VertexBound::FindExtras(std::vector<Extra>& extras, Budget& budget) {
   for (size_t j = 0; j < graph_.junctions.size(); ++j) {
     const auto& members = graph_.junctions[j].members;
     for (size_t a = 0; a < members.size(); ++a) {
-      if (budget.ExhaustedNow()) return false;
+      if (Ended(budget, -work_of_evaluation_)) return false;
+      work_ += static_cast<double>(members.size() - a);
       const BoundingBox& box = graph_.ends[At(members[a].end)].box;
       for (size_t b = a + 1; b < members.size(); ++b) {
         const double of_both = paid[At(members[a].end)] + paid[At(members[b].end)];
@@ -225,9 +226,11 @@ bool VertexBound::FindExtras(std::vector<Extra>& extras, Budget& budget) {
   return true;
 }
 
-// The same over all moves, which is what bounds: 0 if the budget ended it. Makes the tree's moves
-// known.
+// The same over all moves, which is what bounds: 0 if the budget or the work ended it. Makes the
+// tree's moves known.
 double VertexBound::EvaluateAll(Budget& budget) {
+  const double work_before = work();
+  work_ += WorkOfStep();
   double sum = Weigh();
   std::vector<Extra> extras;
   JoinKnown(extras);
@@ -241,6 +244,7 @@ double VertexBound::EvaluateAll(Budget& budget) {
   average_.moves.resize(moves_.moves().size());
   near_.AddNew();
   sets_.AddNewMoves();
+  work_of_evaluation_ = work() - work_before;
   for (const auto* values : {&multipliers_.point, &multipliers_.start, &multipliers_.finish}) {
     for (const double value : *values) scale += 2 * std::abs(value);
   }
