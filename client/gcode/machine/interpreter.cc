@@ -231,10 +231,12 @@ void Interpreter::FollowFilament(Decimal filament, bool still) {
 
 void Interpreter::Move(Step& step) {
   const Command& c = step.command;
-  constexpr uint32_t kKnown = Command::Bit('X') | Command::Bit('Y') | Command::Bit('Z') |
-                              Command::Bit('E') | Command::Bit('F') | Command::Bit('I') |
-                              Command::Bit('J') | Command::Bit('R') | Command::Bit('P');
-  if ((c.words & ~kKnown) != 0) {
+  // On a straight move R takes a stored point to some machines, and P means other things.
+  constexpr uint32_t kOfLines = Command::Bit('X') | Command::Bit('Y') | Command::Bit('Z') |
+                                Command::Bit('E') | Command::Bit('F');
+  constexpr uint32_t kOfArcs = kOfLines | Command::Bit('I') | Command::Bit('J') |
+                               Command::Bit('R') | Command::Bit('P');
+  if ((c.words & ~(c.number < 2 ? kOfLines : kOfArcs)) != 0) {
     step.kind = StepKind::kUnknown;
     return;
   }

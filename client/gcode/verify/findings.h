@@ -149,6 +149,7 @@ struct RetractionCycle {
   float early_mm = 0;        // of the travel, behind what pushes
   bool in_parts = false;     // pushed in several parts during the travel
   bool idle = false;         // no travel between the two
+  bool last = false;         // no other one follows before the next path
   uint32_t pulls = 0;        // how many moves pull, unless one of them is a wipe
   uint32_t pushes = 0;       // and how many push
   float late_mm = 0;         // of the travel, before the retraction

@@ -49,7 +49,10 @@ bool SectionCutter::Ignores(const VerifyLine& line) {
   if (Begins(line.text, "; thumbnail")) {
     in_picture_ = line.text.find(" begin") != std::string_view::npos;
   }
-  return !in_picture_ && Begins(line.text, ignored_);
+  if (in_picture_ || !Begins(line.text, ignored_)) return false;
+  ++cut_.ignored;
+  cut_.last_ignored = line.number;
+  return true;
 }
 
 // What is said of a layer stands behind its mark.
@@ -156,6 +159,7 @@ void SectionCutter::Close(const VerifyMachine& machine, size_t last_line, uint64
   // A change of height is not a line: the state there may still change before it prints.
   if (fence != 0) section_.fan = machine.fan();
   section_.label = label;
+  section_.lift = label && has_height_ ? machine.z() - height_ : 0;
   if (end) section_.z = machine.z();
   if (label || fixed || end) section_.retracted = machine.retracted();
   cut_.sections.push_back(section_);

@@ -67,6 +67,7 @@ struct Section {
   Micro y = 0;
   Micro z = 0;
   bool retracted = false;  // at labels of objects, too
+  Micro lift = 0;          // how far above what was printed last, at labels of objects
   uint64_t settings = 0;
   uint64_t fan = 0;
 };
@@ -74,6 +75,8 @@ struct Section {
 struct Sections {
   std::vector<Section> sections;
   size_t of_script = 0;  // the first sections, before the first mark of a layer
+  uint32_t ignored = 0;  // lines of the head, and where the last of them stands
+  size_t last_ignored = 0;
 };
 
 // Cuts a text, line by line. Ignores comments before the first command that begin with `ignored`,

@@ -143,7 +143,13 @@ void Verifier::CheckLabels(size_t first, size_t end) {
   const std::vector<Section>& is = is_.cut().sections;
   end = std::min({end, was.size(), is.size()});
   for (size_t i = first; i < end; ++i) {
-    if (!was[i].label || was[i].retracted == is[i].retracted) continue;
+    if (!was[i].label) continue;
+    if (was[i].lift != is[i].lift) {
+      findings_.push_back({VerifyRule::kLifts, static_cast<uint32_t>(was[i].last_line),
+                           static_cast<uint32_t>(is[i].last_line), -1,
+                           "at another height at this label of an object than in the original"});
+    }
+    if (was[i].retracted == is[i].retracted) continue;
     findings_.push_back({VerifyRule::kRetractions, static_cast<uint32_t>(was[i].last_line),
                          static_cast<uint32_t>(is[i].last_line), -1,
                          is[i].retracted
@@ -256,8 +262,13 @@ void Verifier::Add(Finding finding) {
                        place(original_.name, finding.original_line))});
 }
 
-// What no line of G-code shows: the byte order mark and the line ends.
+// What no line of G-code shows: the byte order mark and the line ends. And the line that says what
+// may have changed, which is compared with nothing: there is one.
 void Verifier::CheckText() {
+  if (is_.cut().ignored > std::max(was_.cut().ignored, 1u)) {
+    findings_.push_back({VerifyRule::kSamePrint, 1, static_cast<uint32_t>(is_.cut().last_ignored),
+                         -1, "one more line that says by what this file was optimised"});
+  }
   if (Begins(original_.text, kMarkOfUtf8) != Begins(optimised_.text, kMarkOfUtf8)) {
     findings_.push_back({VerifyRule::kSamePrint, 1, 1, -1,
                          "only one of the files begins with a byte order mark of UTF-8"});

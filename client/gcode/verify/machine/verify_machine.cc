@@ -171,7 +171,8 @@ void VerifyMachine::DoG(int number, VerifyLine& line) {
     case 1:
     case 2:
     case 3:
-      if (!words.OnlyFrom("XYZEFIJRP") || (number >= 2 && !plane_xy_)) {
+      // On a straight move R takes a stored point to some machines, and P means other things.
+      if (!words.OnlyFrom(number < 2 ? "XYZEF" : "XYZEFIJRP") || (number >= 2 && !plane_xy_)) {
         return Fence(line, LineRole::kFixed);
       }
       if (number >= 2 && !words.Has('I') && !words.Has('J') && !words.Has('R')) {

@@ -123,6 +123,7 @@ LayerPair::LayerPair(const TraceChunk& was, const TraceChunk& is, size_t layer)
   for (const Piece& piece : pieces_) {
     if (Outer(piece.path)) outer.push_back(piece);
   }
+  JoinEqual(outer);
   outer_walls_ = PieceGrid(std::move(outer), kCellMm);
   Match();
 }
@@ -160,6 +161,7 @@ void LayerPair::LearnShapes() {
     if (IsLoopToName(piece.path)) loops.push_back(piece);
   }
   if (loops.empty()) return;
+  JoinEqual(loops);
   const PieceGrid grid(std::move(loops), kCellMm);
   for (uint32_t path = first_path_; path < end_was_; ++path) {
     Facts& facts = FactsOf(path);
@@ -263,14 +265,22 @@ uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
   const TracePath& traced = chunk.paths[path];
   const Point before = chunk.StartOf(traced, traced.end_segment - 1);
   const Piece last{before, chunk.EndOf(traced), path};
-  uint32_t m = link.first_move;
+  // Or where the tail went already.
+  const auto lies_on = [&](Point p, uint32_t end) {
+    for (uint32_t m = link.first_move; m < end; ++m) {
+      if (DistanceToPiece(p, chunk.moves[m].from, chunk.moves[m].to) <= kOnPathMm) return true;
+    }
+    return LiesOn(p, pieces);
+  };
+  uint32_t m = link.first_move + (any_speed ? TailMoves(chunk, path, pieces) : 0);
   for (; m < link.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
-    if (move.kind != MoveKind::kTravel || !move.open) break;
+    if (any_speed && !move.sideways()) continue;
+    if (move.kind != MoveKind::kTravel || !(move.open || any_speed)) break;
     if (move.feed > traced.feed && !any_speed) break;
     if (move.z_to_mm != move.z_from_mm) break;
     const bool straight = m == link.first_move && !any_speed && GoesStraightOn(move, last);
-    const bool along = LiesOn(move.to, pieces) && LiesOn(move.middle, pieces);
+    const bool along = lies_on(move.to, m) && lies_on(move.middle, m);
     if (!straight && !along) break;
   }
   return m - link.first_move;

@@ -73,7 +73,8 @@ class LayerPair {
   uint32_t OriginalLine(uint32_t path) const;
 
   // The moves at the beginning of link `path` + 1 that continue along the path, without filament
-  // and no faster than it was printed, unless `any_speed`. `pieces` belong to the path.
+  // and no faster than it was printed. With `any_speed` they may be faster, lifted, and come after
+  // a retraction. `pieces` belong to the path.
   static uint32_t TailMoves(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces,
                             bool any_speed = false);
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/plane.h"
@@ -75,17 +77,20 @@ class SectionGaps {
     std::sort(starts_.begin(), starts_.end(), [](const Start& a, const Start& b) {
       return std::tuple(a.digest, a.path, a.entry) < std::tuple(b.digest, b.path, b.entry);
     });
+    next_.resize(starts_.size());
+    std::iota(next_.begin(), next_.end(), size_t{1});
   }
 
   // The loop that path `other` prints, if it is one that takes its gap along. Each is found once.
   std::optional<MovedLoop> Find(uint32_t other) {
     const uint64_t digest = optimised_.segments[optimised_.paths[other].first_segment].digest;
-    auto start = std::lower_bound(starts_.begin(), starts_.end(), digest,
-                                  [](const Start& a, uint64_t value) { return a.digest < value; });
+    const auto first =
+        std::lower_bound(starts_.begin(), starts_.end(), digest,
+                         [](const Start& a, uint64_t value) { return a.digest < value; });
     int left = kMostEqual;
-    for (; start != starts_.end() && start->digest == digest && left > 0; ++start) {
-      const MovedLoop loop = LoopAt(start->path, start->entry, other);
-      if (found_[loop.path - first_path_]) continue;
+    for (size_t i = NotFound(static_cast<size_t>(first - starts_.begin()));
+         i < starts_.size() && starts_[i].digest == digest && left > 0; i = NotFound(i + 1)) {
+      const MovedLoop loop = LoopAt(starts_[i].path, starts_[i].entry, other);
       --left;
       if (!IsMoved(loop)) continue;
       found_[loop.path - first_path_] = true;
@@ -108,6 +113,14 @@ class SectionGaps {
     loop.apart = is.size() > original_.paths[path].size();
     loop.closing = is.first_segment + (loop.apart ? before_gap : before_gap - 1);
     return loop;
+  }
+
+  // The first start from `i` on whose loop was not found yet. Remembers what it passes.
+  size_t NotFound(size_t i) {
+    size_t end = i;
+    while (end < starts_.size() && found_[starts_[end].path - first_path_]) end = next_[end];
+    while (i < end) i = std::exchange(next_[i], end);
+    return end;
   }
 
   bool IsMoved(const MovedLoop& loop) const {
@@ -145,6 +158,7 @@ class SectionGaps {
   const TraceChunk& optimised_;
   const uint32_t first_path_;
   std::vector<Start> starts_;  // by digest
+  std::vector<size_t> next_;   // [start], where to look next if its loop was found
   std::vector<bool> found_;    // [path of the original - first_path_]
 };
 

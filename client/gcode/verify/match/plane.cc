@@ -1,6 +1,9 @@
 #include "client/gcode/verify/match/plane.h"
 
+#include <array>
 #include <utility>
+
+#include "absl/container/flat_hash_map.h"
 
 namespace traverse::gcode {
 namespace {
@@ -71,6 +74,22 @@ void AppendPieces(const TraceChunk& chunk, uint32_t path, std::vector<Piece>& pi
     }
     at = segment.end;
   }
+}
+
+void JoinEqual(std::vector<Piece>& pieces) {
+  absl::flat_hash_map<std::array<double, 4>, size_t> places;
+  places.reserve(pieces.size());
+  size_t kept = 0;
+  for (const Piece piece : pieces) {
+    const auto [place, added] =
+        places.try_emplace({piece.a.x, piece.a.y, piece.b.x, piece.b.y}, kept);
+    if (added) {
+      pieces[kept++] = piece;
+    } else if (pieces[place->second].path != piece.path) {
+      pieces[place->second].path = kSeveralPaths;
+    }
+  }
+  pieces.resize(kept);
 }
 
 PieceGrid::PieceGrid(std::vector<Piece> pieces, double cell_mm)

@@ -37,6 +37,12 @@ struct Piece {
 // Appends the pieces of `path`: arcs become chords that lie within about 0.01 mm of them.
 void AppendPieces(const TraceChunk& chunk, uint32_t path, std::vector<Piece>& pieces);
 
+// A piece of more than one path.
+inline constexpr uint32_t kSeveralPaths = UINT32_MAX;
+
+// Leaves one of those that lie in the same place: loops may be printed there again and again.
+void JoinEqual(std::vector<Piece>& pieces);
+
 // Finds pieces by position. Cells have the requested width, or more if the pieces lie far apart.
 // Memory: a few numbers per piece and per cell that it meets.
 class PieceGrid {

@@ -14,33 +14,61 @@ constexpr double kSamePlaceMm = 1e-5;
 // Most equal segments that are examined.
 constexpr uint32_t kMostAlike = 16;
 
-// Segments of a section by their digests; the same digest may be there several times.
+// The segments of a section that are not used yet, by their digests; the same digest may be there
+// any number of times.
 class SegmentTable {
  public:
-  SegmentTable(const TraceChunk& chunk, uint32_t first, uint32_t end) : chunk_(chunk) {
+  SegmentTable(const TraceChunk& chunk, uint32_t first, uint32_t end)
+      : chunk_(chunk), first_(first), next_(end - first, kNone), used_(end - first, false) {
     size_t size = 16;
     while (size < 2 * static_cast<size_t>(end - first)) size *= 2;
-    slots_.assign(size, kNone);
-    for (uint32_t s = first; s < end; ++s) {
-      size_t slot = SlotOf(chunk.segments[s].digest);
-      while (slots_[slot] != kNone) slot = (slot + 1) & (size - 1);
-      slots_[slot] = s;
+    slots_.assign(size, {});
+    for (uint32_t s = end; s > first; --s) {
+      Slot& slot = slots_[SlotOf(chunk.segments[s - 1].digest)];
+      next_[s - 1 - first] = slot.head;
+      slot = {s - 1, s - 1};
     }
   }
 
+  bool Unused(uint32_t s) const { return !used_[s - first_]; }
+  void Use(uint32_t s) { used_[s - first_] = true; }
+
+  // In their order, until visit returns false. Takes those that are used out of the way, so that
+  // each is passed once.
   template <typename Visit>
-  void ForEach(uint64_t digest, Visit visit) const {
-    for (size_t slot = SlotOf(digest); slots_[slot] != kNone;
-         slot = (slot + 1) & (slots_.size() - 1)) {
-      if (chunk_.segments[slots_[slot]].digest == digest && !visit(slots_[slot])) return;
+  void ForEachUnused(uint64_t digest, Visit visit) {
+    uint32_t* at = &slots_[SlotOf(digest)].head;
+    while (*at != kNone) {
+      uint32_t& next = next_[*at - first_];
+      if (Unused(*at)) {
+        if (!visit(*at)) return;
+        at = &next;
+      } else {
+        *at = next;
+      }
     }
   }
 
  private:
-  size_t SlotOf(uint64_t digest) const { return digest & (slots_.size() - 1); }
+  struct Slot {
+    uint32_t any = kNone;   // a segment that has the digest; kNone: the slot is empty
+    uint32_t head = kNone;  // the first of those that may be unused
+  };
+
+  // That of the digest, or the empty one where it belongs.
+  size_t SlotOf(uint64_t digest) const {
+    size_t slot = digest & (slots_.size() - 1);
+    while (slots_[slot].any != kNone && chunk_.segments[slots_[slot].any].digest != digest) {
+      slot = (slot + 1) & (slots_.size() - 1);
+    }
+    return slot;
+  }
 
   const TraceChunk& chunk_;
-  std::vector<uint32_t> slots_;
+  const uint32_t first_;
+  std::vector<Slot> slots_;
+  std::vector<uint32_t> next_;  // [segment - first_], of those with the same digest
+  std::vector<bool> used_;      // the same
 };
 
 class Matcher {
@@ -53,8 +81,7 @@ class Matcher {
         first_path_(was.first_path),
         first_(original.paths[was.first_path].first_segment),
         end_(original.paths[was.end_path - 1].end_segment),
-        table_(original, first_, end_),
-        used_(end_ - first_, false) {
+        table_(original, first_, end_) {
     path_of_.reserve(end_ - first_);
     for (uint32_t p = was.first_path; p < was.end_path; ++p) {
       path_of_.insert(path_of_.end(), original.paths[p].size(), p);
@@ -69,7 +96,7 @@ class Matcher {
 
  private:
   bool Closed(uint32_t path) const { return closed_[path - first_path_]; }
-  bool Unused(uint32_t s) const { return !used_[s - first_]; }
+  bool Unused(uint32_t s) const { return table_.Unused(s); }
 
   // The segment after `s` in its path, or before it; kNone: none.
   uint32_t Next(uint32_t s, bool forward) const {
@@ -107,20 +134,19 @@ class Matcher {
 
   // The segment of the original for segment `at`: of several the one that continues the current
   // path, otherwise the one that agrees for longest.
-  uint32_t Find(const TracePath& path, uint32_t at) const {
+  uint32_t Find(const TracePath& path, uint32_t at) {
     const uint64_t digest = optimised_.segments[at].digest;
     if (due_ != kNone && Unused(due_) && original_.segments[due_].digest == digest) return due_;
     uint32_t found = kNone;
     uint32_t others = 0;
-    table_.ForEach(digest, [&](uint32_t s) {
-      if (!Unused(s)) return true;
+    table_.ForEachUnused(digest, [&](uint32_t s) {
       if (found == kNone || s == guess_) found = s;
       return ++others < kMostAlike;
     });
     if (others <= 1) return found;
     uint32_t longest = RunFrom(found, path, at);
-    table_.ForEach(digest, [&](uint32_t s) {
-      if (!Unused(s) || s == found) return true;
+    table_.ForEachUnused(digest, [&](uint32_t s) {
+      if (s == found) return true;
       const uint32_t run = RunFrom(s, path, at);
       if (run > longest) {
         found = s;
@@ -143,7 +169,7 @@ class Matcher {
       visit.first_path = visit.last_path = p;
       visit.first_segment = at;
       for (;;) {
-        used_[s - first_] = true;
+        table_.Use(s);
         ++visit.segments;
         visit.last_segment = at++;
         guess_ = s + 1;
@@ -203,8 +229,7 @@ class Matcher {
   const uint32_t first_path_;
   const uint32_t first_;
   const uint32_t end_;
-  const SegmentTable table_;
-  std::vector<bool> used_;
+  SegmentTable table_;
   std::vector<uint32_t> path_of_;
   std::vector<bool> closed_;
   uint32_t guess_ = kNone;  // the segment that comes next in the original

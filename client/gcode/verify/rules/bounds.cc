@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
+#include <vector>
 
+#include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_format.h"
-#include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/match/tails.h"
+#include "client/gcode/verify/match/way_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
@@ -17,18 +20,11 @@ namespace {
 // Travel around a wall may lie beyond all walls.
 constexpr double kSlackMm = 2;
 
-// Where the original has such, a move this short at the beginning of travel leads along a path's
-// end, or away from it: path_ends.
-constexpr double kDepartureMm = 1.0;
-
 // Moves along a path may be longer by this much.
 constexpr double kAlongSlackMm = 0.05;
 
 // Rounded coordinates bend travel by less.
 constexpr double kLeastBendMm = 0.02;
-
-// Moves of one kind that leave a path are equally long, or nearly so.
-constexpr double kDepartureSlackMm = 0.25;
 
 // How far the travel lies off the straight move that the two might be.
 double BendOf(const TraceMove& before, const TraceMove& behind) {
@@ -55,34 +51,51 @@ bool SinksBetween(const TraceChunk& is, uint32_t link, const TraceMove& before,
   return is.paths[link].z_mm < printed - kLevelMm && behind.z_from_mm < before.z_to_mm - kLevelMm;
 }
 
-// The longest short move by which travel of the original's layer leaves its path, and bends then.
-double LongestDeparture(const LayerPair& layer) {
-  const TraceChunk& was = layer.was();
-  double longest = 0;
-  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
-    const TraceLink& traced = was.links[link];
-    const TraceMove* first = nullptr;
-    for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
-      const TraceMove& move = was.moves[m];
-      if (!move.sideways()) continue;
-      if (first == nullptr) {
-        first = &move;
-        continue;
+// The short moves by which travel of the original leaves the paths of some layers, by where they
+// lead from and to: those of new travel are among them.
+class Departures {
+ public:
+  Departures(const TraceChunk& was, uint32_t first_link, uint32_t end_link) {
+    for (uint32_t link = first_link; link < end_link; ++link) {
+      const TraceLink& traced = was.links[link];
+      double length = 0;
+      for (uint32_t m = traced.first_move; m < traced.end_move && length <= kLongestMm; ++m) {
+        const TraceMove& move = was.moves[m];
+        if (!move.sideways()) continue;
+        length += move.length_mm();
+        if (length <= kLongestMm) ends_.insert(DigestOfEnds(move.from, move.to));
       }
-      const double length = first->length_mm();
-      const bool departs = length <= kDepartureMm && BendOf(*first, move) > kLeastBendMm;
-      if (departs) longest = std::max(longest, length);
-      break;
     }
   }
-  return longest;
+
+  bool Have(const TraceMove& move) const {
+    return ends_.contains(DigestOfEnds(move.from, move.to));
+  }
+
+  // Where travel leads along a path's end, or away from it: path_ends.
+  static constexpr double kLongestMm = 1.25;
+
+ private:
+  absl::flat_hash_set<uint64_t> ends_;
+};
+
+// Of the layer and, as travel to it leaves a path of another one, of the layer before.
+std::optional<Departures> DeparturesTo(const LayerPair& layer) {
+  const std::vector<TraceLayer>& layers = layer.was().layers;
+  const auto own = std::find_if(layers.begin(), layers.end(), [&layer](const TraceLayer& other) {
+    return other.index == layer.index();
+  });
+  // What is before a chunk is not there any more.
+  if (own == layers.begin() && layer.index() > 0) return std::nullopt;
+  const TraceLayer& first = own == layers.begin() ? *own : *(own - 1);
+  return Departures(layer.was(), layer.was().sections[first.first_section].first_path,
+                    layer.first_path_was() + 1);
 }
 
-void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped, double departure_mm,
-               LayerFindings& findings) {
+void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped,
+               const std::optional<Departures>& departures, LayerFindings& findings) {
   const TraceChunk& is = layer.is();
   const TraceLink& traced = is.links[link];
-  double length = 0;
   const TraceMove* before = nullptr;
   // Up to an unknown line nothing changes: scripts.
   for (uint32_t m = traced.first_move + std::max(skipped, traced.fixed); m < traced.end_move; ++m) {
@@ -94,14 +107,13 @@ void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped, double d
            "travel along an arc that the original does not have in this layer"});
     }
     const bool counts = move.kind == MoveKind::kTravel && move.in_print && !move.arc;
-    const double done = std::exchange(length, length + move.length_mm());
     const TraceMove* last = std::exchange(before, counts ? &move : nullptr);
     if (last == nullptr || before == nullptr) continue;
     if (layer.IsKnown(*last) || layer.IsKnown(move)) continue;
-    if ((departure_mm > 0 && done <= departure_mm + kDepartureSlackMm) ||
-        SinksBetween(is, link, *last, move)) {
+    if (departures ? departures->Have(*last) : last->length_mm() <= Departures::kLongestMm) {
       continue;
     }
+    if (SinksBetween(is, link, *last, move)) continue;
     const double bend = BendOf(*last, move);
     if (bend <= kLeastBendMm) continue;
     if (LeadsAroundAWall(layer, *last, move)) {
@@ -205,16 +217,14 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
   // Moves along a path may be as fast as travel, if no longer than such in the original.
   const Tails along(layer, false, true);
   const double longest = LongestAlong(layer);
-  const double departure_mm = LongestDeparture(layer);
+  const std::optional<Departures> to_layer = DeparturesTo(layer);
+  const std::optional<Departures> within =
+      Departures(layer.was(), layer.first_path_was(), layer.end_path_was() + 1);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
-    // Travel to the layer leaves a path of another one.
-    const bool first = link == layer.first_path_is();
-    const bool departs = DepartureOf(layer.is(), link) != nullptr;
-    const double of_first_mm = layer.index() == 0 ? 0 : departs ? kDepartureMm : departure_mm;
     const uint32_t moves = along.At(link);
     const bool is_known = LengthOf(layer.is(), link, moves) <= longest + kAlongSlackMm;
     CheckLink(layer, link, std::max(tails.At(link), is_known ? moves : 0),
-              first ? of_first_mm : departure_mm, findings);
+              link == layer.first_path_is() ? to_layer : within, findings);
   }
 }
 

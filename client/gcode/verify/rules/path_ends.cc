@@ -55,28 +55,53 @@ bool LeadsOn(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pie
   return link.first_move + LayerPair::TailMoves(chunk, path, pieces) == link.end_move;
 }
 
-// Whether travel from the path leads to the same point in both files.
+// Whether travel from the path leads to the same point in both files, maybe of the next layer.
 bool LeadAlike(const LayerPair& layer, const Visit& visit) {
   const uint32_t link_was = visit.path + 1;
   const uint32_t link_is = visit.last_path + 1;
-  return link_was < layer.end_path_was() && link_is < layer.end_path_is() &&
+  const bool ends = link_was == layer.end_path_was();
+  return ends == (link_is == layer.end_path_is()) && link_was < layer.was().paths.size() &&
+         link_is < layer.is().paths.size() &&
          EndsOf(layer.was(), link_was) == EndsOf(layer.is(), link_is);
 }
 
-// Whether it begins at the same point.
+// Whether it begins at the same point. The other file may go on from the path to another one.
 bool EndAlike(const LayerPair& layer, const Visit& visit) {
+  const TracePath& path = layer.is().paths[visit.last_path];
   const Point was = layer.was().EndOf(layer.was().paths[visit.path]);
-  const Point is = layer.is().EndOf(layer.is().paths[visit.last_path]);
-  return DistanceOf(was, is) < kShortestMm;
+  return path.end_segment == visit.last_segment + 1 &&
+         DistanceOf(was, layer.is().EndOf(path)) < kShortestMm;
+}
+
+// The first sideways move of the link; nothing if there is none.
+const TraceMove* FirstMove(const TraceChunk& chunk, uint32_t link) {
+  for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
+    if (chunk.moves[m].sideways()) return &chunk.moves[m];
+  }
+  return nullptr;
 }
 
 // From the same point travel leaves a path as it did, if it retracts.
 void CheckDeparture(const LayerPair& layer, const Visit& visit, LayerFindings& findings) {
   const TraceChunk& is = layer.is();
   const TraceMove* was = DepartureOf(layer.was(), visit.path + 1);
-  if (was == nullptr) return;
-  findings.was.departs_inside |= !layer.Outer(visit.path);
+  if (was != nullptr) findings.was.departs_inside |= !layer.Outer(visit.path);
   if (!EndAlike(layer, visit)) return;
+  const TraceMove* departs = DepartureOf(is, visit.last_path + 1);
+  const TraceMove* first = FirstMove(layer.was(), visit.path + 1);
+  const bool elsewhere = visit.forward && visit.entry == 0 && departs != nullptr &&
+                         !layer.IsKnown(*departs) &&
+                         (first == nullptr || DistanceOf(departs->to, first->to) > kSlackMm);
+  if (elsewhere) {
+    const uint32_t end = layer.was().paths[visit.path].end_segment - 1;
+    findings.breaks.push_back(
+        {VerifyRule::kPathEnds, was != nullptr ? was->line : layer.was().segments[end].line,
+         departs->line, layer.index(),
+         was != nullptr ? "leaves the path to another side than in the original"
+                        : "leaves the path before it retracts, unlike the original"});
+    return;
+  }
+  if (was == nullptr) return;
   const TraceLink& link = is.links[visit.last_path + 1];
   if (link.first_move == link.end_move || !Retracts(is.moves[link.first_move])) return;
   const Finding lost{VerifyRule::kPathEnds, was->line, is.moves[link.first_move].line,

@@ -2,6 +2,7 @@
 // prime comes where the travel ends.
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <map>
 #include <tuple>
@@ -18,7 +19,7 @@ constexpr Micro kGrain = 100;       // pairs this near to each other are the sam
 constexpr double kShareOdd = 0.01;  // if this share of the original's do something, it is usual
 constexpr double kHighMm = 0.02;
 constexpr float kLateMm = 0.25f;
-constexpr float kEarlyMm = 0.1f;
+constexpr float kEarlyMm = 0.02f;
 constexpr Micro kOnce = 1'000'000;  // what G10 and G11 count for
 
 class CycleReader {
@@ -64,6 +65,7 @@ class CycleReader {
       }
     }
     if (open_) cycles_.push_back(cycle_);
+    if (cycles_.size() > first) cycles_.back().last = true;
     // Two paths that meet have no travel between them, and may yet be separated.
     if (way_mm_ == 0 && cycles_.size() == first + 1) cycles_[first].idle = false;
     if (!traced.scripted) return;
@@ -260,7 +262,8 @@ class RetractionHabits {
       pairs_.Add(cycle);
       whole_.insert(cycle.identity);
       latest_mm_ = std::max(latest_mm_, cycle.late_mm);
-      if (may_be_early) earliest_mm_ = std::max(earliest_mm_, cycle.early_mm);
+      float& earliest_mm = earliest_mm_[cycle.last ? 1 : 0];
+      if (may_be_early) earliest_mm = std::max(earliest_mm, cycle.early_mm);
     }
   }
 
@@ -288,7 +291,8 @@ class RetractionHabits {
   absl::flat_hash_set<uint64_t> whole_;
   const bool may_push_high_, may_push_low_, may_pull_high_, may_be_in_parts_, may_be_idle_;
   float latest_mm_ = 0;
-  float earliest_mm_ = 0;
+  // CuraEngine primes where other travel begins, and retracts again for that: [cycle.last].
+  std::array<float, 2> earliest_mm_{};
 };
 
 std::string RetractionHabits::FaultOf(const RetractionCycle& cycle) const {
@@ -312,10 +316,11 @@ std::string RetractionHabits::FaultOf(const RetractionCycle& cycle) const {
     return "retracts or primes in more parts than the original ever does";
   if (cycle.idle && !may_be_idle_) return "retracts without travel";
   if (cycle.in_parts && !may_be_in_parts_) return "primes in several parts during the travel";
-  if (cycle.early_mm > earliest_mm_ + kEarlyMm) {
+  if (const float earliest_mm = earliest_mm_[cycle.last ? 1 : 0];
+      cycle.early_mm > earliest_mm + kEarlyMm) {
     return absl::StrFormat(
         "primes %.2f mm before the travel ends; the most in the original is %.2f mm",
-        cycle.early_mm, earliest_mm_);
+        cycle.early_mm, earliest_mm);
   }
   if (cycle.pushed_high && !may_push_high_) return "primes above the layer";
   if (cycle.pushed_low && !may_push_low_) return "primes below the layer";

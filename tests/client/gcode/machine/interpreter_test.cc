@@ -125,6 +125,7 @@ TEST(Interpreter, ModesMatterOnlyIfTheyChangeSomething) {
   EXPECT_EQ(LastKind("M83\nM83"), StepKind::kStay);
   EXPECT_EQ(LastKind("T1"), StepKind::kModeChange);
   EXPECT_EQ(LastKind("G91\nG1 X5 E1"), StepKind::kUnknown);
+  EXPECT_EQ(LastKind("G1 X5 R2"), StepKind::kUnknown) << "from a stored point, to some machines";
 }
 
 TEST(Interpreter, ArcsNeedACenter) {

@@ -3,7 +3,7 @@
 import re
 
 from edits import at_its_feed, edited, pick, restated, with_f, with_word, with_xy, with_z
-from places import crosses_wall, down_of, lifted, links, long_way, way_of
+from places import crosses_wall, down_of, lifted, lines_of, links, long_way, way_of
 from sliced import number
 
 
@@ -329,6 +329,21 @@ def lift_again(file, rng):
     return pick(rng, lifted(file), 50, make)
 
 
+def label_before_lift(file, rng):
+    """A label of an object comes before the lift that stood before it, or the other way."""
+    labels = r"; (?:printing|stop printing) object|M486 S|EXCLUDE_OBJECT_(?:START|END)|M62[45]"
+
+    def make(i):
+        for k in (i - 1, i + 1):
+            line = file.lines[k]
+            if line.kind == "z" and line.text.startswith("G1") and line.start[2] < line.end[2] and not line.e:
+                first = min(i, k)
+                return edited(file, {first: [file.lines[first + 1].text], first + 1: [file.lines[first].text]})
+        return None
+
+    return pick(rng, lines_of(file, labels, file.paths[0].last, file.paths[-1].first), 50, make)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("lift dropped", "lifts", lift_dropped, "free"),
@@ -358,5 +373,6 @@ DEFECTS = (
     ("spiral lift the other way round", "lifts", spiral_changed(other_way_round), "free"),
     ("spiral lift on the other side", "lifts", spiral_changed(mirrored), "free"),
     ("lifts of a layer higher", "lifts", lifts_of_layer(0.05), "free"),
+    ("lift moved across a label", "lifts", label_before_lift, "free"),
     ("lifts of a layer lower", "lifts", lifts_of_layer(-0.05), "free"),
 )

@@ -2,7 +2,7 @@
 
 import re
 
-from edits import edited, go, next_deposit, pick, restated, with_e, with_word, without_e
+from edits import edited, go, next_deposit, pick, restated, with_e, with_word, with_xy, without_e
 from places import crosses_wall, down_of, level, lifted_links, lines_of, links
 from sliced import number
 
@@ -276,6 +276,24 @@ def short_move_before_retraction_dropped(file, rng):
     return pick(rng, links(file), 500, make)
 
 
+def left_to_another_side(file, rng):
+    """Travel leaves its path by a short move to another side before it retracts."""
+
+    def make(found):
+        k, pulls, _, _ = found
+        moves = [i for i in file.link(k) if file.lines[i].kind not in ("command", "comment")]
+        if len(moves) < 2 or moves[1] != pulls[0] or file.lines[pulls[0]].kind != "retract":
+            return None
+        line = file.lines[moves[0]]
+        if line.kind != "travel" or not 0.1 < line.length() < 0.95 or line.feed == file.lines[moves[0] - 1].feed:
+            return None
+        (x, y), (to_x, to_y) = line.start[:2], line.end[:2]
+        aside = rng.choice(((x - to_y + y, y + to_x - x), (x + to_y - y, y - to_x + x)))
+        return edited(file, {moves[0]: [with_xy(line.text, aside)]})
+
+    return pick(rng, links(file), 500, make)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("retraction dropped across a wall", "open_ways", retraction_dropped, "free"),
@@ -298,5 +316,6 @@ DEFECTS = (
     ("all primings 0.1 um longer", "retractions", all_primed_more, "free"),
     ("retraction in two halves", "retractions", retraction_in_parts, "free"),
     ("short move before a retraction dropped", "path_ends", short_move_before_retraction_dropped, "free"),
+    ("short move before a retraction to another side", "path_ends", left_to_another_side, "free"),
     ("retraction moved across a label", "retractions", label_before_retraction, "free"),
 )

@@ -149,6 +149,23 @@ def second_mark(file, rng):
     return pick(rng, file.paths[1:], 1, lambda p: edited(file, {p.first: [text, file.lines[p.first].text]}))
 
 
+def second_line(file, _):
+    """Two lines of this program stand at the head."""
+    text = "; optimised by Traverse 1.0, policy safe: x"
+    return f"{text}\n{text}\n{file.text()}"
+
+
+def word_of_an_arc(kind):
+    """A straight move has a word that makes it another move to some machines."""
+
+    def defect(file, rng):
+        found = [i for i, line in enumerate(file.lines) if line.kind == kind and re.match(r"G[01] ", line.text)]
+        return pick(rng, found, 1, lambda i: edited(file, {
+            i: [re.sub(r"^G[01]", lambda g: f"{g.group()} {rng.choice(('R2', 'J1', 'P1'))}", file.lines[i].text)]}))
+
+    return defect
+
+
 def hidden_command(file, rng):
     """Behind a comment on a move, and a carriage return, there is a command."""
 
@@ -192,6 +209,9 @@ DEFECTS = (
     ("comment behind its path", "same_print", comment_past_path, "free"),
     ("mark of UTF-8 inserted", "same_print", byte_order_mark, "free"),
     ("command behind a carriage return", "same_print", second_mark, "free"),
+    ("second line of this program", "same_print", second_line, "free"),
+    ("word of an arc on a travel move", "same_print", word_of_an_arc("travel"), "free"),
+    ("word of an arc on a straight segment", "same_print", word_of_an_arc("deposit"), "free"),
     ("command behind a comment on a move", "same_print", hidden_command, "free"),
     ("line end changed", "same_print", line_end_changed, "free"),
     ("zero byte", "same_print", zero_byte, "free"),

@@ -176,12 +176,34 @@ def way_on_arc(file, rng):
     return pick(rng, links(file), 60, make)
 
 
+def in_short_legs(retracted):
+    """A short way leads along X and then along Y."""
+
+    def defect(file, rng):
+        def make(i):
+            line = file.lines[i]
+            legs = sorted(abs(line.end[a] - line.start[a]) for a in (0, 1))
+            if not 0.15 < legs[0] or legs[1] > 1.2 or line.start[2] != line.end[2]:
+                return None
+            return edited(file, {i: [go((line.end[0], line.start[1]), line), line.text]})
+
+        pulled = {i for _, pulls, ways, _ in links(file) for i in ways}
+        found = [i for k in range(len(file.paths) - 1) for i in file.link(k)
+                 if file.lines[i].kind == "travel" and (i in pulled) == retracted and
+                 file.paths[k].section == file.paths[k + 1].section]
+        return pick(rng, found, 300, make)
+
+    return defect
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("way to far away", "speeds", way_far, "free"),
     ("dip into the layer", "lifts", dip, "free"),
     ("retracted way astray", "bounds", stray(True), "free"),
     ("open way astray", "bounds", stray(False), "free"),
+    ("short open way along X, then along Y", "bounds", in_short_legs(False), "free"),
+    ("short retracted way along X, then along Y", "bounds", in_short_legs(True), "free"),
     ("way there, back and there", "bounds", way_twice, "free"),
     ("way beyond its end and back", "bounds", way_beyond, "free"),
     ("open way along a wall", "bounds", way_along_wall, "free"),

@@ -63,5 +63,15 @@ TEST(PermissionsInHead, TheLineOfTheWriterIsInTheHeadAndNotInAPicture) {
   EXPECT_EQ(Broken(a, picture + kHead + kOne + says + kOther), "same_print");
 }
 
+// Nothing is compared with it, so it may not be there more often than the writer leaves it.
+TEST(PermissionsInHead, ASecondLineOfTheWriterIsRefused) {
+  const std::string says = "; optimised by Traverse 1.0, policy safe: x\n";
+  const std::string print = kHead + kTwo;
+  EXPECT_EQ(Broken(print, says + print), "");
+  EXPECT_EQ(Broken(print, says + says + print), "same_print");
+  EXPECT_EQ(Broken(says + print, says + "; optimised by Traverse\n" + print), "same_print");
+  EXPECT_EQ(Broken(says + says + print, says + print), "");
+}
+
 }  // namespace
 }  // namespace traverse::gcode

@@ -4,14 +4,17 @@
 // the same steps wherever it leads to.
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/container/flat_hash_map.h"
+#include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/way_ends.h"
 #include "client/gcode/verify/rules/rules.h"
+#include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 namespace {
@@ -175,13 +178,29 @@ struct SameEnds {
   const WayStep* spiral = nullptr;  // and one that is another spiral
 };
 
-SameEnds CompareWith(const TraceChunk& was, const std::vector<uint32_t>& links,
-                     const std::vector<WayStep>& has) {
+// The original's travel between two points, however often it is the same.
+struct WaysBetween {
+  uint32_t first_link = 0;
+  std::vector<std::vector<WayStep>> ways;
+};
+
+uint64_t DigestOf(const std::vector<WayStep>& steps) {
+  uint64_t digest = steps.size();
+  for (const WayStep& step : steps) {
+    digest = Mix(digest, static_cast<uint64_t>(step.kind) * 2 + (step.open ? 1 : 0));
+    digest = Mix(digest, static_cast<uint64_t>(std::llround(step.top_mm * 1e6)));
+    digest = Mix(digest, static_cast<uint64_t>(step.feed));
+    digest = Mix(digest, step.acceleration);
+    digest = Mix(digest, step.spiral);
+  }
+  return digest;
+}
+
+SameEnds CompareWith(const WaysBetween& was, const std::vector<WayStep>& has) {
   SameEnds same;
   bool has_speed = false;
   bool has_spiral = false;
-  for (const uint32_t link : links) {
-    const std::vector<WayStep> had = StepsTo(was, link, 0);
+  for (const std::vector<WayStep>& had : was.ways) {
     same.lowest_mm = std::min(same.lowest_mm, ApexOf(had));
     if (!SameKinds(had, has)) continue;
     same.highest_mm = std::max(same.highest_mm, ApexOf(had));
@@ -195,13 +214,13 @@ SameEnds CompareWith(const TraceChunk& was, const std::vector<uint32_t>& links,
   return same;
 }
 
-void CompareSteps(const LayerPair& layer, const std::vector<uint32_t>& links_was, uint32_t link_is,
+void CompareSteps(const LayerPair& layer, const WaysBetween& was, uint32_t link_is,
                   LayerFindings& findings) {
   const std::vector<WayStep> has = StepsTo(layer.is(), link_is, 0);
   if (has.empty()) return;
-  const SameEnds same = CompareWith(layer.was(), links_was, has);
+  const SameEnds same = CompareWith(was, has);
   const auto report = [&](VerifyRule rule, uint32_t line, std::string what) {
-    findings.breaks.push_back({rule, layer.was().LineOf(layer.was().paths[links_was.front()]), line,
+    findings.breaks.push_back({rule, layer.was().LineOf(layer.was().paths[was.first_link]), line,
                                layer.index(), std::move(what)});
   };
   if (same.speed != nullptr) {
@@ -231,10 +250,16 @@ void CompareSteps(const LayerPair& layer, const std::vector<uint32_t>& links_was
 void CheckSameSteps(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& was = layer.was();
   const TraceChunk& is = layer.is();
-  absl::flat_hash_map<uint64_t, std::vector<uint32_t>> by_ends;
+  absl::flat_hash_map<uint64_t, WaysBetween> by_ends;
+  absl::flat_hash_set<uint64_t> seen;
   // The first link of a chunk follows a path of the chunk before.
   for (uint32_t link = std::max(layer.first_path_was(), 1u); link < layer.end_path_was(); ++link) {
-    by_ends[EndsOf(was, link)].push_back(link);
+    const uint64_t ends = EndsOf(was, link);
+    std::vector<WayStep> steps = StepsTo(was, link, 0);
+    if (!seen.insert(Mix(ends, DigestOf(steps))).second) continue;
+    WaysBetween& between = by_ends[ends];
+    if (between.ways.empty()) between.first_link = link;
+    between.ways.push_back(std::move(steps));
   }
   for (uint32_t link = std::max(layer.first_path_is(), 1u); link < layer.end_path_is(); ++link) {
     const auto found = by_ends.find(EndsOf(is, link));

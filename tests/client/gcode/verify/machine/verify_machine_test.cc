@@ -52,6 +52,15 @@ TEST(VerifyMachine, SmallLettersSayHowFilamentCountsToo) {
   EXPECT_EQ(roles[1], LineRole::kFixed) << "it counted in the other way before";
 }
 
+// RepRapFirmware goes to a stored point then, and there on by what the other words say.
+TEST(VerifyMachine, WordsOfArcsOnAStraightMoveAreNotKnown) {
+  for (const char* word : {"R2", "I1", "J1", "P0"}) {
+    EXPECT_EQ(LastRole(std::string("M83\nG1 X1 Y0 F9000 ") + word + "\n"), LineRole::kFixed);
+    EXPECT_EQ(LastRole(std::string("M83\nG1 X1 Y0 E1 ") + word + "\n"), LineRole::kFixed);
+  }
+  EXPECT_EQ(LastRole("M83\nG2 X1 Y0 I.5 J0 P0 E1\n"), LineRole::kDeposit);
+}
+
 TEST(VerifyMachine, G92OfTheFilamentAloneIsNoFence) {
   EXPECT_EQ(LastRole("M82\nG92 E0\n"), LineRole::kNothing);
   EXPECT_EQ(LastRole("M82\nG92 X0 E0\n"), LineRole::kFixed);

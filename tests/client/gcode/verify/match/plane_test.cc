@@ -69,5 +69,19 @@ TEST(AppendPieces, CutsArcsIntoChordsHoweverLarge) {
   EXPECT_LE(pieces.size(), 720u);
 }
 
+TEST(JoinEqual, LeavesOneOfThosePiecesThatLieInOnePlace) {
+  std::vector<Piece> pieces = {{{0, 0}, {1, 0}, 4},
+                               {{0, 0}, {1, 0}, 4},
+                               {{1, 0}, {0, 0}, 5},
+                               {{0, 0}, {2, 0}, 6},
+                               {{0, 0}, {2, 0}, 7}};
+  JoinEqual(pieces);
+  ASSERT_EQ(pieces.size(), 3u);
+  EXPECT_EQ(pieces[0].path, 4u);
+  EXPECT_EQ(pieces[1].path, 5u);
+  EXPECT_EQ(pieces[2].path, kSeveralPaths);
+  EXPECT_EQ(pieces[2].b.x, 2);
+}
+
 }  // namespace
 }  // namespace traverse::gcode

@@ -128,8 +128,26 @@ TEST(VerifyBounds, ShortDetoursAreThoseOfTheFile) {
   const std::string departs =
       With(kHead + kZigzag + kTwo, "G1 X0 Y0 F9000\n", "G1 X10 Y10.3 F9000\nG1 X0 Y0\n");
   EXPECT_EQ(Broken(departs, departs), "");
-  EXPECT_EQ(Broken(departs, With(departs, way, aside)), "");
-  EXPECT_EQ(Broken(departs, With(departs, way, "G1 X9 Y.98 F9000\n" + way)), "bounds");
+  EXPECT_EQ(Broken(departs, With(departs, way, aside)), "bounds") << "another path is left so";
+  // To another point, from the same path.
+  const std::string elsewhere =
+      With(kHead + kZigzag + kOther + kOne, way, "G1 X10 Y10.3 F9000\nG1 X0 Y5\n");
+  EXPECT_EQ(Broken(departs, elsewhere), "");
+  EXPECT_EQ(Broken(departs, With(elsewhere, "Y10.3 F9000", "Y10.4 F9000")), "bounds");
+}
+
+// Moves along the path that was just printed, where the original has such: wherever that ends.
+TEST(VerifyBounds, WaysBackAlongThePathAreThoseOfTheFile) {
+  const std::string loop = With(kSquare, ";TYPE:External perimeter", ";TYPE:Skirt");
+  const std::string begun = With(kSquareElsewhere, ";TYPE:External perimeter", ";TYPE:Skirt");
+  const auto behind = [](const std::string& print, const std::string& back) {
+    return kHead + print + "G1 E-1 F2100\n" + back + "G1 X0 Y0 F9000\nG1 E1 F2100\n" +
+           ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y0 E.3\n";
+  };
+  const std::string a = behind(loop, "G1 X10 Y10.3 F9000\n");
+  EXPECT_EQ(Broken(a, behind(begun, "G1 X19.7 Y10 F9000\n")), "");
+  EXPECT_EQ(Broken(a, behind(begun, "G1 X19.5 Y10 F9000\n")), "bounds");
+  EXPECT_EQ(Broken(a, behind(begun, "G1 X19.7 Y9.9 F9000\n")), "bounds");
 }
 
 // What stands behind unknown lines at the first layer is no script, but travel to its first path.

@@ -90,6 +90,10 @@ TEST(VerifyPathEnds, TravelThatLeavesAPathBeforeItRetractsDoesSo) {
   const std::string aside = "G1 X9.3 Y5.2 F9000\n";
   const std::string with_aside = kHead + kSquare + leave + inside + other + aside + next;
   EXPECT_EQ(Broken(with_aside, kHead + inside + other + aside + kSquare + next), "");
+  // To the same side, whatever it leads to.
+  EXPECT_EQ(Broken(a, With(a, leave, "G1 X10.3 Y10.4 F9000\n")), "path_ends bounds");
+  EXPECT_EQ(Broken(was, With(elsewhere, leave, "G1 X9.6 Y10.3 F9000\n")), "path_ends bounds");
+  EXPECT_EQ(Broken(With(a, leave, ""), a), "retractions path_ends bounds") << "it did not leave it";
   // Without a retraction it may go straight.
   const std::string straight = With(With(a, leave, ""), Way("X15 Y15"), "G1 X15 Y15 F9000\n");
   EXPECT_EQ(Broken(a, straight).find("path_ends"), std::string::npos);

@@ -99,6 +99,22 @@ TEST(VerifyRetractions, PrimeNoEarlierThanTheFileDoes) {
   EXPECT_THAT(Broken(a, kHead + early("X.72 Y4.6") + next), HasSubstr("retractions"));
 }
 
+// CuraEngine primes where another way begins, and retracts again for that one: what it primes for a
+// path it primes there.
+TEST(VerifyRetractions, FilamentForAPathComesBackWhereItBegins) {
+  const auto twice = [](const std::string& end) {
+    return With(
+        kTwo, Way("X0 Y5"),
+        "G1 E-1 F2100\nG1 X.36 Y4.8 F9000\nG1 E1 F2100\nG1 X0 Y5 F9000\nG1 E-1 F2100\n" + end);
+  };
+  const std::string a = kHead + twice("G1 E1 F2100\n") + kNextLayer + kTwo;
+  EXPECT_EQ(Broken(a, a), "");
+  const std::string early = "G1 E-1 F2100\nG1 X.36 Y4.8 F9000\nG1 E1 F2100\nG1 X0 Y5 F9000\n";
+  EXPECT_EQ(
+      Broken(a, kHead + twice("G1 E1 F2100\n") + kNextLayer + With(kTwo, Way("X0 Y5"), early)),
+      "retractions");
+}
+
 // What the firmware primes is not what the extruder pulled.
 TEST(VerifyRetractions, AreUndoneByWhatDidThem) {
   const std::string both = With(Way("X0 Y5"), "G1 E1 F2100\n", "G11\nG1 E1 F2100\n");

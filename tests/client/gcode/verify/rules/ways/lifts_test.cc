@@ -324,5 +324,17 @@ TEST(VerifyLifts, AreNotDoneOnASlopeWhereNoneIs) {
   EXPECT_EQ(Broken(slope, slope), "");
 }
 
+// A printer may skip what stands between the labels of an object.
+TEST(VerifyLifts, TheHeadRisesOnTheSameSideOfALabel) {
+  const std::string way = Lifted("X10 Y20");
+  const std::string label = "; stop printing object a\n";
+  const std::string a = kHead + With(kLifted, way, With(way, "G1 Z.6", label + "G1 Z.6"));
+  const std::string b =
+      kHead + With(kLifted, way, With(way, "F9000\nG1 X10", "F9000\n" + label + "G1 X10"));
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, b), "lifts");
+  EXPECT_EQ(Broken(b, a), "lifts");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
