@@ -1,6 +1,7 @@
 #include "client/gcode/write/link_donors.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "client/gcode/model/feature.h"
 #include "client/gcode/write/link.h"
@@ -21,6 +22,11 @@ LinkDonors::LinkDonors(const GcodeFile& file) : file_(file), layer_of_(file.bloc
   for (uint32_t layer = 0; layer < file.layers.size(); ++layer) {
     const Layer& of = file.layers[layer];
     std::fill(layer_of_.begin() + of.first_block, layer_of_.begin() + of.end_block, layer);
+  }
+  for (const Layer& layer : file.layers) {
+    if (layer.first_block == 0 || layer.first_block >= file.blocks.size()) continue;
+    const Block& first = file.blocks[layer.first_block];
+    if ((first.link & kLinkRetracts) != 0 && first.travel_mm > 0) ++lifts_to_layers_[first.lift];
   }
   for (uint32_t i = 1; i < file.blocks.size(); ++i) {
     if (!MayFollow(i) || !Travels(i)) continue;
@@ -48,6 +54,20 @@ bool LinkDonors::MayFollow(uint32_t block) const {
   constexpr int kNoExample = kLinkSplits | kLinkFixed | kLinkRetractsAgain;
   return block > 0 && (to.link & kNoExample) == 0 && IsOfPart(file_, to) &&
          IsOfPart(file_, file_.blocks[block - 1]);
+}
+
+Decimal LinkDonors::LiftToLayer(uint32_t block) const {
+  if (block == 0 || layer_of_[block] == layer_of_[block - 1]) return 0;
+  constexpr double kMost = 0.75;
+  const auto most =
+      std::max_element(lifts_to_layers_.begin(), lifts_to_layers_.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (most == lifts_to_layers_.end()) return 0;
+  const int64_t all =
+      std::accumulate(lifts_to_layers_.begin(), lifts_to_layers_.end(), int64_t{0},
+                      [](int64_t sum, const auto& lift) { return sum + lift.second; });
+  const bool usual = static_cast<double>(most->second) >= kMost * static_cast<double>(all);
+  return usual ? most->first : 0;
 }
 
 // If a path begins at the end of the one before it, there is no travel to learn from.

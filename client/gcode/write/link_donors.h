@@ -36,6 +36,10 @@ class LinkDonors {
   // not.
   bool LacksLift(uint32_t block) const;
 
+  // How far most links rise that retract and lead to a layer, in the unit of the file; 0 if
+  // they do not, or link `block` leads to none.
+  Decimal LiftToLayer(uint32_t block) const;
+
   // The highest lift of all links, in the unit of the file.
   Decimal highest_lift() const { return highest_lift_; }
 
@@ -57,6 +61,7 @@ class LinkDonors {
   // By kind and layer: links that lift, less those that do not.
   std::map<std::pair<Kind, uint32_t>, int64_t> lifts_;
   Decimal highest_lift_ = 0;
+  std::map<Decimal, int64_t> lifts_to_layers_;  // how many rise so far
 };
 
 }  // namespace traverse::gcode

@@ -339,12 +339,22 @@ void LinkWriter::WriteBoundary(const LinkRequest& request) {
       WriteTravel(request, link, std::max(link.top, request.to->first().z + form->lift), *form);
       WriteArrival(request, *form);
     } else {
-      WriteTravel(request, link, link.top, link);
+      WriteTravelToBoundary(request, link, given_from);
     }
   }
   const uint32_t to = request.to->placement().block;
   if (to != *request.boundary && IsSoft(file_.blocks[to])) WriteComments(to);
   Settle(request, link);
+}
+
+// Most travel to layers rises, but not what led here in the file, perhaps as it was short.
+void LinkWriter::WriteTravelToBoundary(const LinkRequest& request, const Link& link,
+                                       bool given_from) {
+  const Decimal z = request.to->first().z;
+  const bool rises = given_from || link.lift > 0 || !link.retracts() || link.top != z;
+  const Decimal lift = rises || link.lift_feed == 0 ? 0 : donors_.LiftToLayer(*request.boundary);
+  WriteTravel(request, link, link.top + lift, link);
+  if (lift > 0) out_.Lift(z, link.lift_feed);
 }
 
 void LinkWriter::WriteBoundaryStep(const LinkRequest& request, const Link& link, size_t i) {

@@ -65,6 +65,7 @@ class LinkWriter {
   void WriteGiven(const LinkRequest& request);
   void WriteBoundary(const LinkRequest& request);
   void WriteBoundaryStep(const LinkRequest& request, const Link& link, size_t i);
+  void WriteTravelToBoundary(const LinkRequest& request, const Link& link, bool given_from);
   void WritePlain(const LinkRequest& request);
   void SetTravelState(const PlacedPath& to, const Link& form);
   Link TemplateFor(const LinkRequest& request) const;

@@ -146,9 +146,11 @@ std::vector<Position> PlacedPath::WayBack(double length_mm) const {
   Position at = last_;
   const auto go_to = [&](const Position& to) {
     const double step = LengthXy(at, to);
+    const Position from = at;
     at = step <= length_mm ? to : Along(at, to, length_mm);
     length_mm -= step;
-    if (step > 0) way.push_back(at);
+    // What is left of the length may be less than coordinates tell.
+    if (!at.SameXy(from)) way.push_back(at);
   };
   // A loop that ends short of its start is wiped across that gap, and on along its beginning.
   if (placement_.closed) go_to(first_);

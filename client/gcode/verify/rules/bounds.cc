@@ -22,6 +22,7 @@ constexpr double kSlackMm = 2;
 
 // Moves along a path may be longer by this much.
 constexpr double kAlongSlackMm = 0.05;
+constexpr double kAlongToLayerMm = 1.0;
 
 // Rounded coordinates bend travel by less.
 constexpr double kLeastBendMm = 0.02;
@@ -152,6 +153,17 @@ double LengthOf(const TraceChunk& chunk, uint32_t link, uint32_t moves) {
   return length;
 }
 
+// How many of the first `moves` of link `link` are no longer than that together.
+uint32_t MovesWithin(const TraceChunk& chunk, uint32_t link, uint32_t moves, double most_mm) {
+  const uint32_t first = chunk.links[link].first_move;
+  double length = 0;
+  for (uint32_t m = first; m < first + moves; ++m) {
+    length += chunk.moves[m].length_mm();
+    if (length > most_mm) return m - first;
+  }
+  return moves;
+}
+
 // Of what goes along paths of the original, however fast.
 double LongestAlong(const LayerPair& layer) {
   const Tails along(layer, true, true);
@@ -221,10 +233,11 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
   const std::optional<Departures> within =
       Departures(layer.was(), layer.first_path_was(), layer.end_path_was() + 1);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
-    const uint32_t moves = along.At(link);
-    const bool is_known = LengthOf(layer.is(), link, moves) <= longest + kAlongSlackMm;
-    CheckLink(layer, link, std::max(tails.At(link), is_known ? moves : 0),
-              link == layer.first_path_is() ? to_layer : within, findings);
+    // The travel to the layer leaves a path of another one.
+    const bool first = link == layer.first_path_is();
+    const double most = first ? std::max(longest, kAlongToLayerMm) : longest;
+    const uint32_t moves = MovesWithin(layer.is(), link, along.At(link), most + kAlongSlackMm);
+    CheckLink(layer, link, std::max(tails.At(link), moves), first ? to_layer : within, findings);
   }
 }
 

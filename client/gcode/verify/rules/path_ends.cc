@@ -65,12 +65,11 @@ bool LeadAlike(const LayerPair& layer, const Visit& visit) {
          EndsOf(layer.was(), link_was) == EndsOf(layer.is(), link_is);
 }
 
-// Whether it begins at the same point. The other file may go on from the path to another one.
+// Whether it begins at the same point.
 bool EndAlike(const LayerPair& layer, const Visit& visit) {
-  const TracePath& path = layer.is().paths[visit.last_path];
   const Point was = layer.was().EndOf(layer.was().paths[visit.path]);
-  return path.end_segment == visit.last_segment + 1 &&
-         DistanceOf(was, layer.is().EndOf(path)) < kShortestMm;
+  const Point is = layer.is().EndOf(layer.is().paths[visit.last_path]);
+  return DistanceOf(was, is) < kShortestMm;
 }
 
 // The first sideways move of the link; nothing if there is none.
@@ -81,35 +80,53 @@ const TraceMove* FirstMove(const TraceChunk& chunk, uint32_t link) {
   return nullptr;
 }
 
+// Whether travel from the path begins along it, however fast.
+bool BeginsAlong(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces) {
+  const uint32_t first = chunk.links[path + 1].first_move;
+  const uint32_t end = first + LayerPair::TailMoves(chunk, path, pieces, true);
+  for (uint32_t m = first; m < end; ++m) {
+    if (chunk.moves[m].sideways()) return true;
+  }
+  return false;
+}
+
+// Travel leaves the path by a short move that it does not have in the original: another one than
+// there, or one that does not lead along the path where that ends elsewhere.
+bool LeavesUnlike(const LayerPair& layer, const Visit& visit, bool same_end) {
+  const TraceMove* departs = DepartureOf(layer.is(), visit.last_path + 1);
+  if (departs == nullptr || layer.IsKnown(*departs)) return false;
+  if (!same_end) {
+    return !BeginsAlong(layer.is(), visit.last_path, layer.PiecesOf(visit.path));
+  }
+  const TraceMove* first = FirstMove(layer.was(), visit.path + 1);
+  return first == nullptr || DistanceOf(departs->to, first->to) > kSlackMm;
+}
+
 // From the same point travel leaves a path as it did, if it retracts.
 void CheckDeparture(const LayerPair& layer, const Visit& visit, LayerFindings& findings) {
   const TraceChunk& is = layer.is();
+  const uint32_t link_is = visit.last_path + 1;
   const TraceMove* was = DepartureOf(layer.was(), visit.path + 1);
   if (was != nullptr) findings.was.departs_inside |= !layer.Outer(visit.path);
-  if (!EndAlike(layer, visit)) return;
-  const TraceMove* departs = DepartureOf(is, visit.last_path + 1);
-  const TraceMove* first = FirstMove(layer.was(), visit.path + 1);
-  const bool elsewhere = visit.forward && visit.entry == 0 && departs != nullptr &&
-                         !layer.IsKnown(*departs) &&
-                         (first == nullptr || DistanceOf(departs->to, first->to) > kSlackMm);
-  if (elsewhere) {
-    const uint32_t end = layer.was().paths[visit.path].end_segment - 1;
-    findings.breaks.push_back(
-        {VerifyRule::kPathEnds, was != nullptr ? was->line : layer.was().segments[end].line,
-         departs->line, layer.index(),
-         was != nullptr ? "leaves the path to another side than in the original"
-                        : "leaves the path before it retracts, unlike the original"});
+  // The other file may go on from the path to another one.
+  if (is.paths[visit.last_path].end_segment != visit.last_segment + 1) return;
+  const bool alike = EndAlike(layer, visit);
+  const uint32_t end_was = layer.was().paths[visit.path].end_segment - 1;
+  const uint32_t line_was = was != nullptr ? was->line : layer.was().segments[end_was].line;
+  if (LeavesUnlike(layer, visit, alike && visit.forward && visit.entry == 0)) {
+    findings.breaks.push_back({VerifyRule::kPathEnds, line_was, DepartureOf(is, link_is)->line,
+                               layer.index(),
+                               "leaves the path by a short move that the original does not have"});
     return;
   }
-  if (was == nullptr) return;
-  const TraceLink& link = is.links[visit.last_path + 1];
-  if (link.first_move == link.end_move || !Retracts(is.moves[link.first_move])) return;
-  const Finding lost{VerifyRule::kPathEnds, was->line, is.moves[link.first_move].line,
-                     layer.index(),
+  const TraceLink& link = is.links[link_is];
+  if (was == nullptr || link.first_move == link.end_move) return;
+  if (!Retracts(is.moves[link.first_move])) return;
+  const Finding lost{VerifyRule::kPathEnds, line_was, is.moves[link.first_move].line, layer.index(),
                      "retracts at the end of the path; the original leaves it before"};
-  if (LeadAlike(layer, visit)) {
+  if (alike && LeadAlike(layer, visit)) {
     findings.breaks.push_back(lost);
-  } else if (layer.Outer(visit.path)) {
+  } else if (alike && layer.Outer(visit.path)) {
     findings.is.lost_departures.push_back(lost);
   }
 }

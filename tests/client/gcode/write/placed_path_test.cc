@@ -65,6 +65,19 @@ TEST_F(PlacedPathTest, TheWayBackIsAtMostAsLongAsThePath) {
   }
 }
 
+// What coordinates do not tell is no move, which could not pull back anything.
+TEST_F(PlacedPathTest, TheWayBackHasNoMovesOfNoLength) {
+  for (const uint32_t block : {0u, 1u}) {
+    const PlacedPath path = Placed(block, 0);
+    const std::vector<Position> all = path.WayBack(1e6);
+    double length = LengthXy(path.last(), all[0]);
+    for (size_t i = 1; i <= all.size(); ++i) {
+      EXPECT_EQ(path.WayBack(length + 1e-7).size(), i);
+      if (i < all.size()) length += LengthXy(all[i - 1], all[i]);
+    }
+  }
+}
+
 // Half a circle from (0, 0) around (10, 0): a wipe goes back along it, and not across.
 TEST(PlacedPath, TheWayBackFollowsAnArc) {
   const auto file = *ReadGcode(

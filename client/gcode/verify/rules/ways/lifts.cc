@@ -24,6 +24,7 @@ constexpr double kUsualShare = 0.99;  // of the original's travel, for how low i
 constexpr double kShortestMm = 0.05;
 constexpr double kOneHeightMm = 1e-4;
 constexpr int64_t kSlopeSlackUm = 2;
+constexpr double kTellingMm = 2;  // slopes of shorter moves tell little
 
 struct Height {
   float apex_mm = 0;
@@ -110,12 +111,10 @@ Habit HabitOf(const LiftLog& log, absl::Span<const WayProfile> ways) {
   return habit;
 }
 
-// How far the move rises in 10 mm; 0 if it does not, or is too short to tell.
-int64_t SlopeOf(const TraceMove& move) {
-  constexpr double kTellingMm = 2;
-  const double length = move.length_mm();
-  if (move.z_to_mm <= move.z_from_mm || length < kTellingMm) return 0;
-  return std::llround((move.z_to_mm - move.z_from_mm) * 10'000 / length);
+// How far a move rises in 10 mm; 0 if it does not, or is shorter than `least_mm`.
+int64_t SlopeOf(double rise_mm, double length_mm, double least_mm) {
+  if (rise_mm <= 0 || length_mm < least_mm) return 0;
+  return std::llround(rise_mm * 10'000 / length_mm);
 }
 
 // True if `map` has `key`, or one within `slack` of it.
@@ -168,7 +167,7 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
                                  static_cast<float>(move.length_mm())});
     if (!move.states_z || (only_new && layer.IsKnown(move))) continue;
     const int64_t um = std::llround((move.z_to_mm - to.z_mm) * 1000);
-    const int64_t slope = SlopeOf(move);
+    const int64_t slope = SlopeOf(move.z_to_mm - move.z_from_mm, move.length_mm(), kTellingMm);
     if (only_new) {
       seen.stated.push_back({um, slope, level, move.line, layer.index()});
     } else {
@@ -222,6 +221,17 @@ bool WasAsLow(const LiftLog& was, const LiftLog& is, const WayProfile& way, size
   });
 }
 
+// True if the travel is one slope, as steep as one of the original's: when it is short, most of it
+// lies low.
+bool IsUsualSlope(const Observations& was, const LiftLog& log, const WayProfile& way) {
+  if (way.end != way.first + 1) return false;
+  const WayProfile::Piece& piece = log.pieces[way.first];
+  const int64_t slope = SlopeOf(piece.to_mm - piece.from_mm, piece.length_mm, kLowMm);
+  // Heights are rounded to micrometres.
+  const auto rounded = static_cast<int64_t>(10 / piece.length_mm);
+  return slope > 0 && Knows(was.slopes, slope, kSlopeSlackUm + rounded);
+}
+
 void CompareKind(const Observations& was, const Observations& is, size_t kind,
                  std::vector<Finding>& breaks) {
   // Of a kind that the original has none of, the nearest one tells.
@@ -240,8 +250,9 @@ void CompareKind(const Observations& was, const Observations& is, size_t kind,
     const Height height = HeightOf(is.lifts, way);
     const float low = LowLength(is.lifts, way, habit.least_mm);
     const bool ends_low = !habit.may_end_low && EndsLow(is.lifts, way, habit.least_mm);
-    const bool lies_low =
-        low > kLowMm && (low > habit.low_mm || low / height.length_mm > habit.low_share);
+    const bool lies_low = low > kLowMm &&
+                          (low > habit.low_mm || low / height.length_mm > habit.low_share) &&
+                          !IsUsualSlope(was, is.lifts, way);
     const bool never = height.apex_mm < habit.least_mm - kHeightSlackMm;
     if (!ends_low && !lies_low && !never) continue;
     if (WasAsLow(was.lifts, is.lifts, way, kind, habit.least_mm)) continue;

@@ -1,5 +1,6 @@
 // What follows a path without filament: client/gcode/verify/rules/path_ends.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -11,6 +12,7 @@ namespace traverse::gcode {
 namespace {
 
 using namespace testing;  // NOLINT: the small prints
+using ::testing::HasSubstr;
 
 // A line of infill that goes on for 0.04 mm without filament.
 std::string Tailed(const std::string& from, const std::string& to, const std::string& on) {
@@ -94,6 +96,12 @@ TEST(VerifyPathEnds, TravelThatLeavesAPathBeforeItRetractsDoesSo) {
   EXPECT_EQ(Broken(a, With(a, leave, "G1 X10.3 Y10.4 F9000\n")), "path_ends bounds");
   EXPECT_EQ(Broken(was, With(elsewhere, leave, "G1 X9.6 Y10.3 F9000\n")), "path_ends bounds");
   EXPECT_EQ(Broken(With(a, leave, ""), a), "retractions path_ends bounds") << "it did not leave it";
+  // Straight on, from where the path ends now.
+  const std::string turned =
+      With(With(a, "G1 X15 Y15 F9000", "G1 X16 Y15 F9000"), "G1 X16 Y15 E.3", "G1 X15 Y15 E.3");
+  EXPECT_EQ(Broken(a, turned), "");
+  EXPECT_THAT(Broken(a, With(turned, "G1 X15 Y15 E.3\n", "G1 X15 Y15 E.3\nG1 X14.7 Y14.8 F9000\n")),
+              HasSubstr("path_ends"));
   // Without a retraction it may go straight.
   const std::string straight = With(With(a, leave, ""), Way("X15 Y15"), "G1 X15 Y15 F9000\n");
   EXPECT_EQ(Broken(a, straight).find("path_ends"), std::string::npos);

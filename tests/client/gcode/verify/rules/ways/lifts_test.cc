@@ -120,6 +120,26 @@ TEST(VerifyLifts, OnASlopeOfTheOriginalComeAsHighAsTheirWayIsLong) {
   EXPECT_EQ(Broken(a, turned(".483", ".82")), "lifts");
 }
 
+// Most of a short one lies lower than the least lift of all, though all of it is as steep as
+// others.
+TEST(VerifyLifts, OnASlopeOfTheOriginalMayBeShort) {
+  const auto line = [](const char* z, const char* from, const char* to) {
+    return absl::StrCat("G1 E-1 F2100\nG1 ", from, " Z", z, " F9000\nG1 Z.2 F720\nG1 E1 F2100\n",
+                        ";TYPE:Internal infill\nG1 F1800\nG1 ", to, " E.3\n");
+  };
+  // By 0.2 mm in 10 mm: over 3 and over 30 mm; at last over 26.5 mm.
+  const std::string begin = kHead + Line("Internal infill", "X0 Y0", "X10 Y0") +
+                            line(".26", "X10 Y3", "X0 Y3") + line(".8", "X0 Y33", "X10 Y33") +
+                            line(".8", "X10 Y63", "X0 Y63");
+  const std::string a =
+      begin + line(".8", "X0 Y93", "X10 Y93") + line(".73", "X10 Y66.5", "X0 Y66.5");
+  const auto other = [&](const char* z) {  // over 3.5 mm, and over 26.5 mm
+    return begin + line(z, "X0 Y66.5", "X10 Y66.5") + line(".73", "X10 Y93", "X0 Y93");
+  };
+  EXPECT_EQ(Broken(a, other(".27")), "");
+  EXPECT_EQ(Broken(a, other(".265")), "lifts");
+}
+
 // Lines of infill with retracted ways to them, each lifted but for that to line `low`.
 std::string Lines(int count, int low) {
   std::string text = "M83\n;LAYER_CHANGE\nG1 Z.2 F9000\n";
