@@ -226,7 +226,7 @@ void SetStrategy(const GcodeFile& file, const Allowance& allow, v1::Strategy& st
   constexpr double kMostWiped = 0.5;
   const double effort = std::clamp(kRounds / paths, 1.0, kMaxEffort);
   strategy.set_name("auto");
-  // A bound takes up to three times as long as the search, and the print gains nothing by it.
+  // A bound may take as long as the search, and the print gains nothing by it.
   (*strategy.mutable_options())["bound"] = "false";
   (*strategy.mutable_options())["effort"] = absl::StrFormat("%.3g", effort);
   const double wiped = std::min(ShareWiped(file, allow), kMostWiped);
