@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "absl/container/flat_hash_map.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/plane.h"
 #include "client/gcode/verify/match/visits.h"
@@ -61,7 +62,8 @@ struct MovedLoop {
 
 class SectionGaps {
  public:
-  SectionGaps(const TraceChunk& original, const TraceSection& was, const TraceChunk& optimised)
+  SectionGaps(const TraceChunk& original, const TraceSection& was, const TraceChunk& optimised,
+              const TraceSection& is)
       : original_(original),
         optimised_(optimised),
         first_path_(was.first_path),
@@ -79,11 +81,15 @@ class SectionGaps {
     });
     next_.resize(starts_.size());
     std::iota(next_.begin(), next_.end(), size_t{1});
+    CountDeposits(optimised, is, 1);
+    CountDeposits(original, was, -1);
   }
 
   // The loop that path `other` prints, if it is one that takes its gap along. Each is found once.
   std::optional<MovedLoop> Find(uint32_t other) {
-    const uint64_t digest = optimised_.segments[optimised_.paths[other].first_segment].digest;
+    const TracePath& path = optimised_.paths[other];
+    if (!IsSurplus(path.end_segment - 1)) return std::nullopt;
+    const uint64_t digest = optimised_.segments[path.first_segment].digest;
     const auto first =
         std::lower_bound(starts_.begin(), starts_.end(), digest,
                          [](const Start& a, uint64_t value) { return a.digest < value; });
@@ -92,8 +98,11 @@ class SectionGaps {
          i < starts_.size() && starts_[i].digest == digest && left > 0; i = NotFound(i + 1)) {
       const MovedLoop loop = LoopAt(starts_[i].path, starts_[i].entry, other);
       --left;
-      if (!IsMoved(loop)) continue;
+      if (!IsSurplus(loop.closing) || !LacksSegmentsOf(loop) || !IsMoved(loop)) continue;
       found_[loop.path - first_path_] = true;
+      --surplus_[optimised_.segments[loop.closing].digest];
+      --surplus_[optimised_.segments[path.end_segment - 1].digest];
+      for (const uint64_t lacking : SegmentsOf(loop)) ++surplus_[lacking];
       return loop;
     }
     return std::nullopt;
@@ -105,6 +114,36 @@ class SectionGaps {
     uint32_t path = 0;
     uint32_t entry = 0;
   };
+
+  void CountDeposits(const TraceChunk& chunk, const TraceSection& section, int by) {
+    const uint32_t first = chunk.paths[section.first_path].first_segment;
+    for (uint32_t s = 0; s < DepositsOf(chunk, section); ++s) {
+      surplus_[chunk.segments[first + s].digest] += by;
+    }
+  }
+
+  // The original has fewer of this segment of the other: where it prints loops one upon the other
+  // that begin at different points, one looks like another one that was moved.
+  bool IsSurplus(uint32_t segment) const {
+    const auto found = surplus_.find(optimised_.segments[segment].digest);
+    return found != surplus_.end() && found->second > 0;
+  }
+
+  // Those of the original that the other prints changed.
+  std::vector<uint64_t> SegmentsOf(const MovedLoop& loop) const {
+    const TracePath& was = original_.paths[loop.path];
+    std::vector<uint64_t> digests{original_.segments[was.first_segment + loop.entry - 1].digest};
+    if (!loop.apart) digests.push_back(original_.segments[was.end_segment - 1].digest);
+    return digests;
+  }
+
+  bool LacksSegmentsOf(const MovedLoop& loop) const {
+    const std::vector<uint64_t> digests = SegmentsOf(loop);
+    return std::all_of(digests.begin(), digests.end(), [this](uint64_t digest) {
+      const auto found = surplus_.find(digest);
+      return found != surplus_.end() && found->second < 0;
+    });
+  }
 
   MovedLoop LoopAt(uint32_t path, uint32_t entry, uint32_t other) const {
     const TracePath& is = optimised_.paths[other];
@@ -160,6 +199,8 @@ class SectionGaps {
   std::vector<Start> starts_;  // by digest
   std::vector<size_t> next_;   // [start], where to look next if its loop was found
   std::vector<bool> found_;    // [path of the original - first_path_]
+  // By digest: how many more segments the other has than the original, but for loops found.
+  absl::flat_hash_map<uint64_t, int64_t> surplus_;
 };
 
 // What is wrong with the filament or the length of `loop`; empty if nothing is.
@@ -247,7 +288,7 @@ std::vector<MovedGap> TakeBackMovedGaps(const TraceChunk& original, TraceChunk& 
     const TraceSection& is = optimised.sections[i];
     if (was.index != is.index || DepositsOf(optimised, is) < DepositsOf(original, was)) continue;
     if (!DepositsDiffer(original, was, optimised, is)) continue;
-    SectionGaps of_section(original, was, optimised);
+    SectionGaps of_section(original, was, optimised, is);
     for (uint32_t p = is.first_path; p < is.end_path; ++p) {
       const std::optional<MovedLoop> loop = of_section.Find(p);
       if (!loop) continue;

@@ -95,7 +95,7 @@ TEST(VerifyWholePaths, TheLastSegmentOfALoopMayCloseItsGap) {
   };
   for (const auto& [b, what] : std::vector<std::pair<std::string, std::string>>{
            {other("X10 Y10 E.4", "X10 Y10 E.4002"), "0.00420 mm of filament close the gap"},
-           {other("X19.9 Y10 E.396", "X20 Y10 E.4"), "ends 0.000 mm from its start"},
+           {other("X19.9 Y10 E.396", "X20 Y10 E.4"), "do not print `G1 X10 Y10 E.4`"},
            {other("X19.9 Y10 E.396", "X19.9 Y10 E.394"), "and its end has 0.00600 mm less"}}) {
     EXPECT_EQ(Broken(a, b), "same_print");
     EXPECT_THAT(FirstMessage(a, b), HasSubstr(what));
@@ -108,6 +108,15 @@ TEST(VerifyWholePaths, TheLastSegmentOfALoopMayCloseItsGap) {
   // It leaves out no bend.
   const std::string bent = With(kClipped, "X10 Y10.1 E.396", "X10.006 Y10.1 E.396");
   EXPECT_THAT(FirstMessage(kHead + bent, kHead + kClosedOnward), HasSubstr("a bend of 0.0"));
+}
+
+// IceSL prints the same loop again and again, begun at one corner or another: what the original has
+// too is none that was moved.
+TEST(VerifyWholePaths, ALoopUponAnotherIsNotTakenForThatOneMoved) {
+  const std::string upon = With(kClosedOnward, "X10 Y10 E.4", "X10 Y10 E.40003");
+  EXPECT_EQ(Broken(kHead + upon + kClipped, kHead + upon + kClosedOnward), "");
+  EXPECT_EQ(Broken(kHead + upon + kClipped, kHead + upon + kGapMoved), "");
+  EXPECT_THAT(Broken(kHead + upon + kClipped, kHead + upon + upon), HasSubstr("same_print"));
 }
 
 TEST(VerifyWholePaths, AMovedGapIsClosedInOneAndTheSameLoop) {
