@@ -119,23 +119,17 @@ bool IteratedSearch::BridgeKick(Rng& rng, int bridges, double& delta) {
     const int after_d = cuts[0] + cuts[3] - cuts[1];
     const SegmentMove rest{SegmentMove::Kind::kExchange, cuts[0], after_c, after_d - 1};
     if (!state_.Allows(whole)) continue;
-    const auto cut_costs = [&](std::initializer_list<int> places) {
-      double sum = 0;
-      for (const int place : places) {
-        sum += state_.StepCost(place - 1);
-        local_search_.Push(state_.leaf_at(place - 1));
-        local_search_.Push(state_.leaf_at(place));
-      }
-      return sum;
-    };
-    delta -= cut_costs({cuts[0], cuts[1], cuts[2], cuts[3]});
+    for (const int cut : cuts) delta -= state_.StepCost(cut - 1);
     state_.Apply(whole);
     int new_c = after_c;
     if (state_.Allows(rest)) {
       state_.Apply(rest);
       new_c = cuts[0] + cuts[3] - cuts[2];
     }
-    delta += cut_costs({cuts[0], new_c, after_d, cuts[3]});
+    for (const int place : {cuts[0], new_c, after_d, cuts[3]}) {
+      delta += state_.StepCost(place - 1);
+      local_search_.PushMove(place - 1);
+    }
     return true;
   }
   return false;

@@ -20,28 +20,12 @@ LocalSearch::LocalSearch(SearchState& state, const NeighborLists& neighbors,
       options_(options),
       three_opt_(state, neighbors, options.three_opt),
       evaluator_(state),
-      queue_(static_cast<size_t>(state.tree().path_count())),
-      queued_(queue_.size()) {
+      queue_(state.tree().path_count(), state.tree().leaf_count()) {
   touched_.reserve(static_cast<size_t>(6 * options.depth));
-}
-
-void LocalSearch::Push(int leaf) {
-  if (leaf >= state_.tree().path_count() || queued_[static_cast<size_t>(leaf)]) return;
-  queued_[static_cast<size_t>(leaf)] = true;
-  const size_t tail = head_ + size_++;
-  queue_[tail < queue_.size() ? tail : tail - queue_.size()] = leaf;
 }
 
 void LocalSearch::PushAll() {
   for (int i = 1; i < state_.last_position(); ++i) Push(state_.leaf_at(i));
-}
-
-int LocalSearch::Pop() {
-  const int leaf = queue_[head_];
-  if (++head_ == queue_.size()) head_ = 0;
-  --size_;
-  queued_[static_cast<size_t>(leaf)] = false;
-  return leaf;
 }
 
 double LocalSearch::Run(Budget& budget, double owed) {
@@ -49,26 +33,32 @@ double LocalSearch::Run(Budget& budget, double owed) {
   const auto ends = [&] {
     return (delta < 0 && std::abs(delta + owed) <= kImprovementTolerance) || budget.Exhausted();
   };
-  while (size_ > 0 && !ends()) {
-    const int leaf = Pop();
+  while (!queue_.empty() && !ends()) {
+    const int leaf = queue_.Pop();
     for (double gain = -1; gain < 0 && !ends();) {
       gain = Improve(leaf);
       delta += gain;
     }
+    queue_.Forget(leaf);
   }
-  while (size_ > 0) Pop();
+  queue_.Clear();
   return delta;
 }
 
 double LocalSearch::Improve(int leaf) {
-  if (const double delta = ChooseEntry(state_.position(leaf)); delta < 0) return delta;
-  if (const double delta = ImproveEdge(leaf, true); delta < 0) return delta;
-  if (const double delta = ImproveEdge(leaf, false); delta < 0) return delta;
+  const int at = state_.position(leaf);
+  if (const double delta = ChooseEntry(at); delta < 0) return delta;
+  if (queue_.Changed(leaf, state_.leaf_at(at + 1))) {
+    if (const double delta = ImproveEdge(leaf, true); delta < 0) return delta;
+  }
+  if (queue_.Changed(leaf, state_.leaf_at(at - 1))) {
+    if (const double delta = ImproveEdge(leaf, false); delta < 0) return delta;
+  }
   // The ends of the route are in no queue.
-  if (state_.position(leaf) == 1) {
+  if (at == 1) {
     if (const double delta = ImproveEdge(state_.tree().start(), true); delta < 0) return delta;
   }
-  if (state_.position(leaf) + 1 == state_.last_position()) {
+  if (at + 1 == state_.last_position()) {
     return ImproveEdge(state_.tree().finish(), false);
   }
   return 0;
@@ -127,7 +117,7 @@ void LocalSearch::ApplyTrial(const SegmentMove& move) {
 
 double LocalSearch::ChooseEntries(int first, int last) {
   double delta = 0;
-  for (int i = first; i <= last; ++i) Push(state_.leaf_at(i));
+  for (int i = first; i < last; ++i) PushMove(i);
   for (int i = first; i < last; ++i) delta += ChoosePair(i);
   return delta;
 }
@@ -147,9 +137,8 @@ double LocalSearch::ChooseEntry(int position) {
                           state_.MoveCost(entries.exit(best), after, to);
   if (new_cost >= old_cost - kImprovementTolerance) return 0;
   state_.SetEntry(leaf, best);
-  Push(before);
-  Push(leaf);
-  Push(after);
+  PushMove(position - 1);
+  PushMove(position);
   return new_cost - old_cost;
 }
 
@@ -186,8 +175,7 @@ double LocalSearch::ChoosePair(int position) {
   if (best.a < 0) return 0;
   state_.SetEntry(a, best.a);
   state_.SetEntry(b, best.b);
-  Push(state_.leaf_at(position - 1));
-  Push(state_.leaf_at(position + 2));
+  for (int i = position - 1; i <= position + 1; ++i) PushMove(i);
   return best.cost - old_cost;
 }
 

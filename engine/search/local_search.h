@@ -1,10 +1,11 @@
 // Local search over order, entry and direction together.
 //
 // A queue holds the leaves whose surroundings changed (don't-look bits, Bentley 1992). For each
-// leaf the search chooses the entry again and then tries 3-opt moves at its two edges
-// (three_opt.h), each with new entries at the cuts (move_evaluator.h). It applies the first move
-// that helps. If none does, it applies the most promising one on trial and searches on from there,
-// as in Lin-Kernighan, to some depth. Any plan, any cost: the plan decides which moves exist.
+// leaf the search chooses the entry again and then tries 3-opt moves at those of its two edges that
+// changed (three_opt.h), each with new entries at the cuts (move_evaluator.h). It applies the first
+// move that helps. If none does, it applies the most promising one on trial and searches on from
+// there, as in Lin-Kernighan, to some depth. Any plan, any cost: the plan decides which moves
+// exist.
 
 #ifndef TRAVERSE_ENGINE_SEARCH_LOCAL_SEARCH_H_
 #define TRAVERSE_ENGINE_SEARCH_LOCAL_SEARCH_H_
@@ -14,8 +15,9 @@
 #include <vector>
 
 #include "engine/base/budget.h"
+#include "engine/search/bookkeeping/leaf_queue.h"
 #include "engine/search/move_evaluator.h"
-#include "engine/search/rejected_moves.h"
+#include "engine/search/bookkeeping/rejected_moves.h"
 #include "engine/search/search_state.h"
 #include "engine/search/three_opt.h"
 
@@ -36,8 +38,13 @@ class LocalSearch {
   void set_depth(int depth) { options_.depth = depth; }
 
   // Notes that the surroundings of `leaf`, or of all leaves, changed.
-  void Push(int leaf);
+  void Push(int leaf) { queue_.Push(leaf); }
   void PushAll();
+
+  // Notes that the move from `position` to the next one changed.
+  void PushMove(int position) {
+    queue_.PushPair(state_.leaf_at(position), state_.leaf_at(position + 1));
+  }
 
   // Improves the route until the queue is empty or the budget has run out. Returns the change of
   // cost, which is 0 or negative. Allocates nothing. `owed`: how much the route costs more than one
@@ -67,7 +74,6 @@ class LocalSearch {
   void ChooseContours(int position, Pair& best);
   void TryPair(int position, int a, int b, Pair& best) const;
   void ApplyTrial(const SegmentMove& move);
-  int Pop();
 
   SearchState& state_;
   LocalSearchOptions options_;
@@ -75,12 +81,7 @@ class LocalSearch {
   MoveEvaluator evaluator_;
   RejectedMoves rejected_;
 
-  // A ring buffer of the leaves to look at.
-  std::vector<int> queue_;
-  std::vector<char> queued_;  // [leaf]
-  size_t head_ = 0;
-  size_t size_ = 0;
-
+  LeafQueue queue_;
   std::vector<int> touched_;  // by the moves on trial
   std::vector<float> tails_;  // scratch of ChooseContours
   std::vector<float> bounds_;

@@ -34,7 +34,8 @@ namespace {
 // effort does not raise, and so many more a path.
 constexpr double kLeastPatience = 150;
 constexpr double kPatience = 6;
-constexpr double kPatienceOfFew = 11;
+constexpr double kPatienceOfMiddling = 9;
+constexpr double kPatienceOfFew = 13;
 constexpr double kLeastGain = 2e-4;
 
 // A search of more effort is divided into walks: the first one is of so much effort, the others end
@@ -77,13 +78,16 @@ constexpr size_t kPathsSearchedTogether = 400;
 constexpr int kKickedAtBorder = 50;
 constexpr double kMostEffortOnFew = 4;
 
-// Layers of more paths are searched wider and deeper: each kick costs more, and gains more.
+// Layers of more paths are searched wider, and those of many deeper: each kick costs more, and
+// gains more.
 constexpr int kFewPaths = 150;
+constexpr int kMiddlingPaths = 250;
 
 LocalSearchOptions SearchOptions(int paths) {
   LocalSearchOptions options;
-  if (paths > kFewPaths) return options;
+  if (paths > kMiddlingPaths) return options;
   options.depth = 1;
+  if (paths > kFewPaths) return options;
   options.three_opt.first_breadth = 6;
   options.three_opt.second_breadth = 4;
   return options;
@@ -285,7 +289,9 @@ class AutoLayer : public PreparedLayer {
 
   // Iterations without a gain that end a search of such effort, which kicks so many of the paths.
   static int64_t Patience(double effort, int kicked, int paths) {
-    const double each = paths > kFewPaths ? kPatience : kPatienceOfFew;
+    const double each = paths > kMiddlingPaths ? kPatience
+                        : paths > kFewPaths    ? kPatienceOfMiddling
+                                               : kPatienceOfFew;
     return static_cast<int64_t>(std::min(effort, 1.0) * kLeastPatience + effort * each * kicked);
   }
 

@@ -56,6 +56,23 @@ TEST(LocalSearch, EndsWhereItHasUndoneAChange) {
   EXPECT_LT(search.Run(s.budget), -1);
 }
 
+// The two moves that change here lead to the bad ones, so those need no search of their own.
+TEST(LocalSearch, SearchesFromTheMovesThatChanged) {
+  std::vector<Path> paths;
+  for (int i = 0; i < 20; ++i) paths.push_back(MakeContour({{1.0 * i, 0.1 * (i % 3)}}));
+  Searched s{OwnedProblem(AnyOrderPlan(std::move(paths)))};
+  const double cost = s.state.TotalCost();
+  s.state.Apply({SegmentMove::Kind::kReverse, 5, 5, 12});
+  const double owed = s.state.TotalCost() - cost;
+  LocalSearch search(s.state, s.neighbors, {});
+
+  EXPECT_EQ(search.Run(s.budget), 0);
+  search.PushMove(8);  // as it was before, the other way round
+  EXPECT_EQ(search.Run(s.budget), 0);
+  for (const int position : {4, 12}) search.PushMove(position);
+  EXPECT_NEAR(search.Run(s.budget), -owed, kImprovementTolerance);
+}
+
 TEST(LocalSearch, LeavesTheRouteAloneAfterTheDeadline) {
   Searched s(5, {.min_paths = 20, .max_paths = 20});
   const Route before = s.state.Unload();

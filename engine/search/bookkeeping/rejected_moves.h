@@ -3,8 +3,8 @@
 // A search finds the same move from each of its cuts, and evaluates most of them in vain. Looking a
 // move up takes little of the time of its evaluation.
 
-#ifndef TRAVERSE_ENGINE_SEARCH_REJECTED_MOVES_H_
-#define TRAVERSE_ENGINE_SEARCH_REJECTED_MOVES_H_
+#ifndef TRAVERSE_ENGINE_SEARCH_BOOKKEEPING_REJECTED_MOVES_H_
+#define TRAVERSE_ENGINE_SEARCH_BOOKKEEPING_REJECTED_MOVES_H_
 
 #include <array>
 #include <cstddef>
@@ -46,4 +46,4 @@ class RejectedMoves {
 
 }  // namespace traverse
 
-#endif  // TRAVERSE_ENGINE_SEARCH_REJECTED_MOVES_H_
+#endif  // TRAVERSE_ENGINE_SEARCH_BOOKKEEPING_REJECTED_MOVES_H_

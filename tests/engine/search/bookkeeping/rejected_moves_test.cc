@@ -1,4 +1,4 @@
-#include "engine/search/rejected_moves.h"
+#include "engine/search/bookkeeping/rejected_moves.h"
 
 #include <gtest/gtest.h>
 
