@@ -34,11 +34,11 @@ bool PrintThreadsOf(const char* name, const std::vector<Plan>& layers,
   return good;
 }
 
-// The first time limit, each 1.4 times the one before, that brings travel to within 2 % of `best`.
+// The first time limit, each 1.1 times the one before, that brings travel to within 2 % of `best`.
 double SecondsToReach(const std::vector<Plan>& layers, double best_mm) {
   BenchJob job;
   job.options["effort"] = "1000000";
-  for (double seconds = 0.01;; seconds *= 1.4) {
+  for (double seconds = 0.005;; seconds *= 1.1) {
     job.layer_time_limit = absl::Seconds(seconds);
     if (Run(layers, job).travel_mm <= 1.02 * best_mm || seconds > 60) return seconds;
   }
@@ -105,7 +105,7 @@ bool PrintGrowth(const BenchOptions& options) {
       job.options["effort"] = "1000000";
       job.layer_time_limit = absl::Seconds(60);
       reached.push_back(SecondsToReach(layers, Run(layers, job).travel_mm));
-      std::printf(" %.2f |", reached.back());
+      std::printf(" %.3f |", reached.back());
       const size_t last = reached.size() - 1;
       if (last > 0) {
         std::printf(" n^%.2f",
