@@ -166,10 +166,12 @@ class LayerChooser::Impl {
     rules.policy = policy_;
     rules.crossings = crossings_;
     rules.as_many_retractions = column.totals.inside[0].extra_mm > kSlackMm;
-    if (polish_) {
+    std::optional<PolishLimit> polish = polish_;
+    if (polish) {
       freedom = FreedomOf(file_, file_.layers[layer], policy_, allow_);
       rules.freedom = &freedom;
-      rules.polish = &*polish_;
+      if (habit_.avoids_walls) polish->seconds_per_way = PolishLimit::kSecondsPerDetour;
+      rules.polish = &*polish;
     }
     for (uint32_t b = file_.layers[layer].first_block; b < file_.layers[layer].end_block; ++b) {
       rules.boundaries.push_back((file_.blocks[b].link & (kLinkSplits | kLinkFixed)) != 0);

@@ -29,11 +29,8 @@ constexpr uint32_t kLongestKicked = 12;
 // A way that is dearer by less than this may be cheaper with other entries.
 constexpr double kSlackSeconds = 0.02;
 
-// After so many ways for each path it is looked whether the last of them were worth it. A way takes
-// about twice this to ask for; but gains come late and in steps, and a window without a large one
-// is often followed by one with it.
+// After so many ways for each path it is looked whether the last of them were worth it.
 constexpr size_t kWindowEach = 600;
-constexpr double kSecondsPerWay = 1e-7;
 
 }  // namespace
 
@@ -70,7 +67,8 @@ class OrderPolisher::Search {
         state_.KeepIfBetter();
       }
       if (state_.asked() + failed < end) continue;
-      if (score - state_.Score() < kSecondsPerWay * static_cast<double>(window)) break;
+      const double least = polisher_.limit_.seconds_per_way * static_cast<double>(window);
+      if (score - state_.Score() < least) break;
       score = state_.Score();
       end += window;
     }

@@ -33,6 +33,16 @@ struct PolishLimit {
   absl::Time until = absl::InfiniteFuture();
   std::stop_token cancel = {};
 
+  // It is given up where estimates of ways gain less than this each, on the average.
+  double seconds_per_way = kSecondsPerWay;
+
+  // An estimate takes about twice as long; but gains come late and in steps, and a while without a
+  // large one is often followed by one with it.
+  static constexpr double kSecondsPerWay = 1e-7;
+
+  // One of a way that leads around walls.
+  static constexpr double kSecondsPerDetour = 1e-6;
+
   bool Over() const {
     return cancel.stop_requested() || (until != absl::InfiniteFuture() && absl::Now() >= until);
   }
@@ -51,10 +61,9 @@ class OrderPolisher {
 
   // `begun`, improved as OrderMerger::Merge does: first less beyond the limits of `judge`,
   // then faster. Its first and last paths stay. It makes no change beyond the layer's
-  // freedom, but does not repair a `begun` that is beyond it. It stops when a second of
-  // computing saves less than half a second of printing, when it has asked for about kMostWaysEach
-  // estimates per path, or at the limit. REQUIRES: `begun` has each path of the layer once,
-  // or none.
+  // freedom, but does not repair a `begun` that is beyond it. It stops when estimates gain too
+  // little, when it has asked for about kMostWaysEach of them per path, or at the limit.
+  // REQUIRES: `begun` has each path of the layer once, or none.
   LayerOrder Polish(const LayerOrder& begun, const OrderMerger& judge, Effort effort) const;
 
   static constexpr size_t kMostWaysEach = 50'000;

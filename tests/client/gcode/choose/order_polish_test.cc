@@ -273,6 +273,28 @@ TEST(OrderPolisher, KicksFindWhatNoSingleChangeDoes) {
   EXPECT_GE(better, 8);
 }
 
+TEST(OrderPolisher, GivesUpSoonerWhereEstimatesTakeLonger) {
+  const auto asked = [](double seconds_per_way) {
+    size_t count = 0;
+    for (uint64_t seed = 1; seed <= 20; ++seed) {
+      Rng rng(seed);
+      PolishedLayer sheet;
+      for (int i = 0; i < 40; ++i) sheet.AddLine(rng.Below(60), rng.Below(60), false);
+      const WayEstimate estimate = [&](size_t, const Placement& from, const Placement& to) {
+        ++count;
+        return sheet.Length(from, to);
+      };
+      PolishLimit limit;
+      limit.seconds_per_way = seconds_per_way;
+      OrderPolisher(kFirst, sheet.outlines, sheet.freedom, estimate, limit)
+          .Polish(sheet.Given(), OrderMerger(estimate, {}), OrderPolisher::Effort::kKick);
+    }
+    return count;
+  };
+
+  EXPECT_GT(asked(PolishLimit::kSecondsPerWay), asked(1));
+}
+
 TEST(OrderPolisher, OfTwoPathsNothingCanBeChanged) {
   PolishedLayer sheet;
   sheet.AddLine(0, 0, false);
