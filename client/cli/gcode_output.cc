@@ -122,6 +122,11 @@ std::string GcodeSummary(const GcodeRewrite& rewrite) {
         absl::StrFormat("%d layers left unchanged, because machines read a line differently: %s\n",
                         rewrite.layers_unclear, rewrite.unclear);
   }
+  if (rewrite.relative_moves > 0) {
+    summary += absl::StrFormat(
+        "%d moves that print stay where they are, because they are relative (G91): %s\n",
+        rewrite.relative_moves, rewrite.relative);
+  }
   return summary;
 }
 

@@ -218,6 +218,9 @@ class Rewriter {
     }
     if (rewrite.layers_unproven > 0) rewrite.unproven = unproven_;
     NoteUnclear(rewrite);
+    if (file_.relative_moves <= static_cast<int64_t>(file_.ends.size())) return;
+    rewrite.relative_moves = file_.relative_moves;
+    rewrite.relative = absl::StrCat(file_.name, ":", file_.LineNumber(file_.relative_at));
   }
 
   void NoteUnclear(GcodeRewrite& rewrite) const {

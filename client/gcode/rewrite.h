@@ -35,6 +35,11 @@ struct GcodeRewrite {
   // these lines: "part.gcode:118: G2 without I, J or R".
   int64_t layers_unclear = 0;
   std::string unclear;
+
+  // Moves that stay where they are because they are relative to each other, if those are most of
+  // what prints, and the first of them: "part.gcode:118".
+  int64_t relative_moves = 0;
+  std::string relative;
 };
 
 struct RewriteOptions {

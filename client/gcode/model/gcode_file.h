@@ -121,6 +121,10 @@ struct GcodeFile {
   // is none.
   gcode::Offset script_end = 0;
 
+  // Moves that print under G91, none of which is in a block, and the first of them.
+  int64_t relative_moves = 0;
+  gcode::Offset relative_at = 0;
+
   // Begins of the M73 lines, ascending.
   std::vector<gcode::Offset> progress;
 

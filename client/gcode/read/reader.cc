@@ -134,6 +134,11 @@ bool CountsFromMoveBefore(std::string_view text) {
   return falls * 10 > moves * kFallsInTen;
 }
 
+// A move that prints to a point given from where it begins.
+bool PrintsRelative(const Step& step, const MachineState& state) {
+  return state.relative_xyz && step.filament > 0 && !state.at.SameXy(step.from);
+}
+
 absl::Status ReadBlocks(GcodeFile& file) {
   file.ends.reserve(file.text.size() / kBytesPerSegment);
   BlockBuilder builder(file);
@@ -146,6 +151,9 @@ absl::Status ReadBlocks(GcodeFile& file) {
        before = interpreter.state()) {
     style.Take(step, file.text);
     builder.Take(step, before, interpreter);
+    if (PrintsRelative(step, interpreter.state()) && file.relative_moves++ == 0) {
+      file.relative_at = step.line.begin;
+    }
   }
   builder.Finish();
   style.Finish(file);
@@ -172,7 +180,7 @@ absl::Status NoPath(const GcodeFile& file) {
                    "no extruding move that can be read; in this one a word is no number, is there "
                    "twice, has more than 9 decimals or is too large");
     }
-    if (state.relative_xyz && step.filament > 0 && !state.at.SameXy(step.from)) {
+    if (PrintsRelative(step, state)) {
       return Fault(file, step.line.begin,
                    "no extruding move with absolute coordinates (G90); from here on the moves that "
                    "print are relative (G91), and none of these may change places");

@@ -200,6 +200,20 @@ TEST(RewriteGcode, AnArcWithoutCenterIsNamedAsTheReasonForItsLayer) {
   EXPECT_EQ(VerifyGcode(text, "a", rewrite->text, "b").message(), "");
 }
 
+TEST(RewriteGcode, RelativeMovesAreNamedIfMostOfThePrintStaysForThem) {
+  const std::string begin = "M83\n;LAYER_CHANGE\nG1 Z.2 F9000\nG1 X5 Y5 F1200\nG1 X9 E.3\n";
+  const std::string relative = "G91\nG1 X5 E.3\nG1 Y5 E.3\n";
+  const auto rewritten = [](const std::string& text) {
+    const auto file = ReadGcode(text, "part.gcode");
+    EXPECT_TRUE(file.ok());
+    return *RewriteGcode(**file, {FileOrder((*file)->layers.size())}, {});
+  };
+  const GcodeRewrite mostly = rewritten(begin + relative + "G90\nM84\n");
+  EXPECT_EQ(mostly.relative_moves, 2);
+  EXPECT_EQ(mostly.relative, "part.gcode:7");
+  EXPECT_EQ(rewritten(begin + "G1 Y9 E.3\n" + relative).relative_moves, 0);
+}
+
 TEST(RewriteGcode, NumberedLinesAreNumberedAnew) {
   const LineNumbers numbers{0, 1, 1, " ", true};
   const std::string text = WithLineNumbers(kScattered, numbers);
