@@ -119,7 +119,11 @@ bool IteratedSearch::BridgeKick(Rng& rng, int bridges, double& delta) {
     const int after_d = cuts[0] + cuts[3] - cuts[1];
     const SegmentMove rest{SegmentMove::Kind::kExchange, cuts[0], after_c, after_d - 1};
     if (!state_.Allows(whole)) continue;
-    for (const int cut : cuts) delta -= state_.StepCost(cut - 1);
+    for (const int cut : cuts) {
+      delta -= state_.StepCost(cut - 1);
+      local_search_.Queue(state_.leaf_at(cut - 1));
+      local_search_.Queue(state_.leaf_at(cut));
+    }
     state_.Apply(whole);
     int new_c = after_c;
     if (state_.Allows(rest)) {

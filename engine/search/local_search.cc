@@ -48,10 +48,10 @@ double LocalSearch::Run(Budget& budget, double owed) {
 double LocalSearch::Improve(int leaf) {
   const int at = state_.position(leaf);
   if (const double delta = ChooseEntry(at); delta < 0) return delta;
-  if (queue_.Changed(leaf, state_.leaf_at(at + 1))) {
+  if (options_.both_edges || queue_.Changed(leaf, state_.leaf_at(at + 1))) {
     if (const double delta = ImproveEdge(leaf, true); delta < 0) return delta;
   }
-  if (queue_.Changed(leaf, state_.leaf_at(at - 1))) {
+  if (options_.both_edges || queue_.Changed(leaf, state_.leaf_at(at - 1))) {
     if (const double delta = ImproveEdge(leaf, false); delta < 0) return delta;
   }
   // The ends of the route are in no queue.

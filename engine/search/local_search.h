@@ -16,8 +16,8 @@
 
 #include "engine/base/budget.h"
 #include "engine/search/bookkeeping/leaf_queue.h"
-#include "engine/search/move_evaluator.h"
 #include "engine/search/bookkeeping/rejected_moves.h"
+#include "engine/search/move_evaluator.h"
 #include "engine/search/search_state.h"
 #include "engine/search/three_opt.h"
 
@@ -26,6 +26,9 @@ namespace traverse {
 struct LocalSearchOptions {
   ThreeOptOptions three_opt;
   int depth = 2;  // moves in a row that one improvement may take; 1: no trials
+
+  // Whether moves are tried at both edges of a leaf, or only at those that changed.
+  bool both_edges = true;
 };
 
 class LocalSearch {
@@ -40,6 +43,10 @@ class LocalSearch {
   // Notes that the surroundings of `leaf`, or of all leaves, changed.
   void Push(int leaf) { queue_.Push(leaf); }
   void PushAll();
+
+  // Has `leaf` looked at, after those that wait already and before others, for the changes noted
+  // until then.
+  void Queue(int leaf) { queue_.Enqueue(leaf); }
 
   // Notes that the move from `position` to the next one changed.
   void PushMove(int position) {

@@ -25,17 +25,15 @@
 #include "engine/search/long/long_search.h"
 #include "engine/search/order_tree.h"
 #include "engine/search/search_state.h"
+#include "engine/strategy/auto_settings.h"
 #include "engine/strategy/stop.h"
 
 namespace traverse {
 namespace {
 
 // Iterations without a gain worth mentioning after which the search ends: so many, which more
-// effort does not raise, and so many more a path.
+// effort does not raise, and so many more a path (auto_settings.h).
 constexpr double kLeastPatience = 150;
-constexpr double kPatience = 6;
-constexpr double kPatienceOfMiddling = 9;
-constexpr double kPatienceOfFew = 13;
 constexpr double kLeastGain = 2e-4;
 
 // A search of more effort is divided into walks: the first one is of so much effort, the others end
@@ -78,29 +76,13 @@ constexpr size_t kPathsSearchedTogether = 400;
 constexpr int kKickedAtBorder = 50;
 constexpr double kMostEffortOnFew = 4;
 
-// Layers of more paths are searched wider, and those of many deeper: each kick costs more, and
-// gains more.
-constexpr int kFewPaths = 150;
-constexpr int kMiddlingPaths = 250;
-
-LocalSearchOptions SearchOptions(int paths) {
-  LocalSearchOptions options;
-  if (paths > kMiddlingPaths) return options;
-  options.depth = 1;
-  if (paths > kFewPaths) return options;
-  options.three_opt.first_breadth = 6;
-  options.three_opt.second_breadth = 4;
-  return options;
-}
-
 // What depends on the plan alone: most of what is done before a search begins.
 struct DerivedOfPlan {
   DerivedOfPlan(const CompiledPlan& plan, const LeafEntries& entries, Budget& budget)
-      : tree(plan, &budget), groups(entries, &budget), options(SearchOptions(tree.path_count())) {}
+      : tree(plan, &budget), groups(entries, &budget) {}
 
   const OrderTree tree;
   const EndGroups groups;
-  const LocalSearchOptions options;
   std::optional<NeighborLists> neighbors;
   bool complete = false;  // the neighbors
 };
@@ -129,7 +111,8 @@ struct AutoOptions {
 class AutoLayer : public PreparedLayer {
  public:
   // `plan` outlives it.
-  AutoLayer(const AutoOptions& options, const Plan& plan) : options_(options), plan_(plan) {}
+  AutoLayer(const AutoOptions& options, const Plan& plan)
+      : options_(options), plan_(plan), settings_(SettingsFor(plan)) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) override {
     const LayerView layer(problem, &budget);
@@ -244,7 +227,7 @@ class AutoLayer : public PreparedLayer {
     search.Run(rng, budget);
     if (!IsLong(effort)) return search.iterations();
     const int kicked = Kicked(options);
-    LongSearchOptions walks{options, Patience(effort.kicks, kicked, paths), kLeastGain};
+    LongSearchOptions walks{options, Patience(effort.kicks, kicked), kLeastGain};
     walks.walk.patience = static_cast<int64_t>(kLeastPatience + kWalkPatience * kicked);
     return search.iterations() +
            SearchLong(layer.problem, state, *derived_->neighbors, walks, rng, budget);
@@ -254,12 +237,11 @@ class AutoLayer : public PreparedLayer {
   IteratedSearchOptions WalkOptions(const LayerView& layer, const Effort& effort, int paths,
                                     Budget& budget) const {
     IteratedSearchOptions options;
-    options.local_search = derived_->options;
+    options.local_search = settings_.local_search;
     options.descent_depth = 1;  // kicks find sooner what trials would
     options.first_kicked = effort.first_kicked;
     options.last_kicked = std::min(effort.last_kicked, paths);
-    options.patience =
-        Patience(IsLong(effort) ? kFirstWalkEffort : effort.kicks, Kicked(options), paths);
+    options.patience = Patience(IsLong(effort) ? kFirstWalkEffort : effort.kicks, Kicked(options));
     options.least_gain = kLeastGain;
     options.least_gain_each = options_.least_gain_each;
     options.window = static_cast<double>(options_.gain_window);
@@ -288,11 +270,9 @@ class AutoLayer : public PreparedLayer {
   }
 
   // Iterations without a gain that end a search of such effort, which kicks so many of the paths.
-  static int64_t Patience(double effort, int kicked, int paths) {
-    const double each = paths > kMiddlingPaths ? kPatience
-                        : paths > kFewPaths    ? kPatienceOfMiddling
-                                               : kPatienceOfFew;
-    return static_cast<int64_t>(std::min(effort, 1.0) * kLeastPatience + effort * each * kicked);
+  int64_t Patience(double effort, int kicked) const {
+    return static_cast<int64_t>(std::min(effort, 1.0) * kLeastPatience +
+                                effort * settings_.patience * kicked);
   }
 
   static SmallPartOptions SmallParts(const LayerProblem& problem, double effort) {
@@ -318,10 +298,10 @@ class AutoLayer : public PreparedLayer {
   }
 
   // Lists that the budget cut short are looked for again.
-  static void FindNeighborsOnce(DerivedOfPlan& derived, Budget& budget) {
+  void FindNeighborsOnce(DerivedOfPlan& derived, Budget& budget) const {
     if (derived.complete) return;
-    derived.neighbors.emplace(FindNeighbors(derived.tree, derived.groups,
-                                            derived.options.three_opt.first_breadth, budget));
+    const int breadth = settings_.local_search.three_opt.first_breadth;
+    derived.neighbors.emplace(FindNeighbors(derived.tree, derived.groups, breadth, budget));
     derived.complete = !budget.was_exhausted();
   }
 
@@ -334,6 +314,7 @@ class AutoLayer : public PreparedLayer {
 
   const AutoOptions options_;
   const Plan& plan_;
+  const AutoSettings settings_;
   std::optional<DerivedOfPlan> derived_;  // by the first search that gets so far
 };
 

@@ -19,6 +19,14 @@ class LeafQueue {
 
   bool empty() const { return size_ == 0; }
 
+  // Adds a leaf without any change.
+  void Enqueue(int leaf) {
+    if (Index(leaf) >= ring_.size() || queued_[Index(leaf)]) return;
+    queued_[Index(leaf)] = true;
+    const size_t tail = head_ + size_++;
+    ring_[tail < ring_.size() ? tail : tail - ring_.size()] = leaf;
+  }
+
   // Adds a leaf, to which and from which both moves count as changed.
   void Push(int leaf) {
     changed_[Index(leaf)] = kBoth;
@@ -68,13 +76,6 @@ class LeafQueue {
   void Note(int leaf, int other) {
     Others& others = changed_[Index(leaf)];
     if (others != kBoth && others[0] != other) others = {other, others[0]};
-  }
-
-  void Enqueue(int leaf) {
-    if (Index(leaf) >= ring_.size() || queued_[Index(leaf)]) return;
-    queued_[Index(leaf)] = true;
-    const size_t tail = head_ + size_++;
-    ring_[tail < ring_.size() ? tail : tail - ring_.size()] = leaf;
   }
 
   std::vector<int> ring_;

@@ -47,14 +47,13 @@ class Instances(unittest.TestCase):
         self.assertIn("ni2opt", ran.stdout)
 
     def test_auto_by_default_is_within_a_percent_of_the_best_known(self):
-        # With a quarter of the patience it ended 3.4 and 4.0 % above with seeds 1 and 2. Today one seed in thirty does.
+        # With a quarter of the patience it ended 3.4 and 4.0 % above with seeds 1 and 2.
         best = self.reference["s4_grille"]["best_known_by_layer"][0]
-        ratios = []
-        for seed in range(1, 6):
+        for seed in (1, 2, 3):
             ran = subprocess.run([TRAVERSE, "optimize", instance("s4_grille"), "--layers=1", f"--seed={seed}", "--quiet",
                                   "--json=-"], stdout=subprocess.PIPE, check=True, timeout=120)
-            ratios.append(json.loads(ran.stdout)["total"]["travel_mm"] / best)
-        self.assertLessEqual(sorted(ratios)[-2], 1.01, ratios)
+            with self.subTest(seed=seed):
+                self.assertLessEqual(json.loads(ran.stdout)["total"]["travel_mm"], 1.01 * best)
 
     def travel(self, name, strategy):
         return self.documents[name][LABELS[strategy]]["total"]["travel_mm"]

@@ -64,7 +64,7 @@ TEST(LocalSearch, SearchesFromTheMovesThatChanged) {
   const double cost = s.state.TotalCost();
   s.state.Apply({SegmentMove::Kind::kReverse, 5, 5, 12});
   const double owed = s.state.TotalCost() - cost;
-  LocalSearch search(s.state, s.neighbors, {});
+  LocalSearch search(s.state, s.neighbors, {.three_opt = {}, .both_edges = false});
 
   EXPECT_EQ(search.Run(s.budget), 0);
   search.PushMove(8);  // as it was before, the other way round

@@ -70,9 +70,9 @@ TEST(Auto, IsFarBetterThanGreedyOnAGrid) {
 TEST(Auto, SpendsMuchEffortOnManyWalks) {
   double by_one = 0;
   double by_many = 0;
-  for (uint64_t seed = 1; seed <= 4; ++seed) {
+  for (uint64_t seed = 1; seed <= 2; ++seed) {
     OwnedProblem owned =
-        RandomProblem(seed, {.shape = PlanShape::kFlatContours, .min_paths = 80, .max_paths = 80});
+        RandomProblem(seed, {.shape = PlanShape::kFlatBefore, .min_paths = 80, .max_paths = 80});
     const auto cost = [&owned](const char* effort) {
       Budget budget;
       const Solution solution =
@@ -82,7 +82,7 @@ TEST(Auto, SpendsMuchEffortOnManyWalks) {
     by_one += cost("4");
     by_many += cost("4.1");
   }
-  EXPECT_LT(by_many, 0.9985 * by_one);
+  EXPECT_LT(by_many, 0.99 * by_one);
 }
 
 TEST(Auto, DoesMoreWithMoreEffort) {

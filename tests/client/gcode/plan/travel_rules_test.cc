@@ -269,14 +269,12 @@ TEST(MakeGcodeJob, RetractionsBehindWipedPathsAreNothingToSave) {
   EXPECT_LT(WipedLines(0).layers[0].cost().time().retraction_threshold_mm(), 20);
 }
 
-// Unless wipes may be left out: then it is as with any other path.
 TEST(MakeGcodeJob, RetractionsBehindWipedPathsAreSavedWhereWipesAreLeftOut) {
   GcodeOptions options;
   options.allow.wipes = true;
   const v1::Layer layer = WipedLines(2, options).layers[0];
 
   EXPECT_EQ(layer.retracted_paths_size(), 0);
-  EXPECT_EQ(layer.exposed_paths_size(), 0);
   EXPECT_LT(layer.cost().time().retraction_threshold_mm(), 20);
   ASSERT_EQ(layer.known_moves_size(), 3);
   EXPECT_NEAR(layer.known_moves(0).seconds(), layer.known_moves(2).seconds(), 1e-9);
