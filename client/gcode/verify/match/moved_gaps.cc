@@ -96,13 +96,14 @@ class SectionGaps {
     int left = kMostEqual;
     for (size_t i = NotFound(static_cast<size_t>(first - starts_.begin()));
          i < starts_.size() && starts_[i].digest == digest && left > 0; i = NotFound(i + 1)) {
-      const MovedLoop loop = LoopAt(starts_[i].path, starts_[i].entry, other);
       --left;
-      if (!IsSurplus(loop.closing) || !LacksSegmentsOf(loop) || !IsMoved(loop)) continue;
-      found_[loop.path - first_path_] = true;
-      --surplus_[optimised_.segments[loop.closing].digest];
+      const std::optional<MovedLoop> loop = LoopAt(starts_[i].path, starts_[i].entry, other);
+      if (!loop || !IsSurplus(loop->closing)) continue;
+      if (!LacksSegmentsOf(*loop) || !IsMoved(*loop)) continue;
+      found_[loop->path - first_path_] = true;
+      --surplus_[optimised_.segments[loop->closing].digest];
       --surplus_[optimised_.segments[path.end_segment - 1].digest];
-      for (const uint64_t lacking : SegmentsOf(loop)) ++surplus_[lacking];
+      for (const uint64_t lacking : SegmentsOf(*loop)) ++surplus_[lacking];
       return loop;
     }
     return std::nullopt;
@@ -145,13 +146,15 @@ class SectionGaps {
     });
   }
 
-  MovedLoop LoopAt(uint32_t path, uint32_t entry, uint32_t other) const {
+  // Nothing if `other` has too many or too few segments to be the loop.
+  std::optional<MovedLoop> LoopAt(uint32_t path, uint32_t entry, uint32_t other) const {
     const TracePath& is = optimised_.paths[other];
-    MovedLoop loop{path, entry, other};
-    const uint32_t before_gap = original_.paths[path].size() - entry;
-    loop.apart = is.size() > original_.paths[path].size();
-    loop.closing = is.first_segment + (loop.apart ? before_gap : before_gap - 1);
-    return loop;
+    const uint32_t n = original_.paths[path].size();
+    const bool apart = is.size() > n;
+    if (is.joined || is.size() != (apart ? n + 1 : n)) return std::nullopt;
+    const uint32_t before_gap = n - entry;
+    return MovedLoop{path, entry, other, is.first_segment + (apart ? before_gap : before_gap - 1),
+                     apart};
   }
 
   // The first start from `i` on whose loop was not found yet. Remembers what it passes.
@@ -165,8 +168,6 @@ class SectionGaps {
   bool IsMoved(const MovedLoop& loop) const {
     const TracePath& was = original_.paths[loop.path];
     const TracePath& is = optimised_.paths[loop.other];
-    const uint32_t n = was.size();
-    if (is.joined || is.size() != (loop.apart ? n + 1 : n)) return false;
     const uint32_t closing = loop.closing - is.first_segment;
     const auto same_place = [](Point a, Point b) { return DistanceOf(a, b) <= kSameSpotMm; };
     if (!same_place(is.start, original_.StartOf(was, was.first_segment + loop.entry))) return false;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "tests/client/gcode/verify/small_prints.h"
 
 namespace traverse::gcode {
@@ -117,6 +118,19 @@ TEST(VerifyWholePaths, ALoopUponAnotherIsNotTakenForThatOneMoved) {
   EXPECT_EQ(Broken(kHead + upon + kClipped, kHead + upon + kClosedOnward), "");
   EXPECT_EQ(Broken(kHead + upon + kClipped, kHead + upon + kGapMoved), "");
   EXPECT_THAT(Broken(kHead + upon + kClipped, kHead + upon + upon), HasSubstr("same_print"));
+}
+
+// The last path of the file has one segment of a loop with 200: no other one can be looked at
+// there.
+TEST(VerifyWholePaths, APieceOfALoopIsNotThatLoopMoved) {
+  std::string loop = Way("X0 Y0") + ";TYPE:Perimeter\nG1 F1200\n";
+  for (int i = 1; i <= 99; ++i) loop += absl::StrCat("G1 X", i, " Y", 10 * (i % 2), " E.4\n");
+  for (int i = 100; i <= 199; ++i) loop += absl::StrCat("G1 X", 198 - i, " Y30 E.4\n");
+  loop += "G1 X0 Y.1 E.4\n";
+  const std::string piece = Way("X1 Y10") + ";TYPE:Perimeter\nG1 F1200\nG1 X2 Y0 E.4\n";
+  std::string pieces;
+  for (int i = 0; i < 210; ++i) pieces += piece;
+  EXPECT_THAT(Broken(kHead + loop, kHead + pieces), HasSubstr("same_print"));
 }
 
 TEST(VerifyWholePaths, AMovedGapIsClosedInOneAndTheSameLoop) {
