@@ -1,10 +1,10 @@
 // Local search over order, entry and direction together.
 //
 // A queue holds the leaves whose surroundings changed (don't-look bits, Bentley 1992). For each
-// leaf the search chooses the entry again and then tries 3-opt moves at those of its two edges that
-// changed (three_opt.h), each with new entries at the cuts (move_evaluator.h). It applies the first
-// move that helps. If none does, it applies the most promising one on trial and searches on from
-// there, as in Lin-Kernighan, to some depth. Any plan, any cost: the plan decides which moves
+// leaf the search chooses the entry again and then tries 3-opt moves at its two edges, or at those
+// that changed (three_opt.h), each with new entries at the cuts (move_evaluator.h). It applies the
+// first move that helps. If none does, it applies the most promising one on trial and searches on
+// from there, as in Lin-Kernighan, to some depth. Any plan, any cost: the plan decides which moves
 // exist.
 
 #ifndef TRAVERSE_ENGINE_SEARCH_LOCAL_SEARCH_H_

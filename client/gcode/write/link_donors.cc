@@ -1,7 +1,7 @@
 #include "client/gcode/write/link_donors.h"
 
 #include <algorithm>
-#include <numeric>
+#include <map>
 
 #include "client/gcode/model/feature.h"
 #include "client/gcode/write/link.h"
@@ -16,17 +16,32 @@ bool IsOfPart(const GcodeFile& file, const Block& block) {
   return feature != Feature::kTower && feature != Feature::kCustom;
 }
 
-}  // namespace
-
-LinkDonors::LinkDonors(const GcodeFile& file) : file_(file), layer_of_(file.blocks.size()) {
-  for (uint32_t layer = 0; layer < file.layers.size(); ++layer) {
-    const Layer& of = file.layers[layer];
-    std::fill(layer_of_.begin() + of.first_block, layer_of_.begin() + of.end_block, layer);
-  }
+// The lift of at least three quarters of the links that retract and lead to a layer; 0 if there is
+// none.
+Decimal UsualLiftToLayers(const GcodeFile& file) {
+  constexpr double kMost = 0.75;
+  std::map<Decimal, int64_t> links;  // [lift]
+  int64_t all = 0;
   for (const Layer& layer : file.layers) {
     if (layer.first_block == 0 || layer.first_block >= file.blocks.size()) continue;
     const Block& first = file.blocks[layer.first_block];
-    if ((first.link & kLinkRetracts) != 0 && first.travel_mm > 0) ++lifts_to_layers_[first.lift];
+    if ((first.link & kLinkRetracts) == 0 || first.travel_mm <= 0) continue;
+    ++links[first.lift];
+    ++all;
+  }
+  for (const auto& [lift, count] : links) {
+    if (static_cast<double>(count) >= kMost * static_cast<double>(all)) return lift;
+  }
+  return 0;
+}
+
+}  // namespace
+
+LinkDonors::LinkDonors(const GcodeFile& file)
+    : file_(file), layer_of_(file.blocks.size()), lift_to_layers_(UsualLiftToLayers(file)) {
+  for (uint32_t layer = 0; layer < file.layers.size(); ++layer) {
+    const Layer& of = file.layers[layer];
+    std::fill(layer_of_.begin() + of.first_block, layer_of_.begin() + of.end_block, layer);
   }
   for (uint32_t i = 1; i < file.blocks.size(); ++i) {
     if (!MayFollow(i) || !Travels(i)) continue;
@@ -57,17 +72,7 @@ bool LinkDonors::MayFollow(uint32_t block) const {
 }
 
 Decimal LinkDonors::LiftToLayer(uint32_t block) const {
-  if (block == 0 || layer_of_[block] == layer_of_[block - 1]) return 0;
-  constexpr double kMost = 0.75;
-  const auto most =
-      std::max_element(lifts_to_layers_.begin(), lifts_to_layers_.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  if (most == lifts_to_layers_.end()) return 0;
-  const int64_t all =
-      std::accumulate(lifts_to_layers_.begin(), lifts_to_layers_.end(), int64_t{0},
-                      [](int64_t sum, const auto& lift) { return sum + lift.second; });
-  const bool usual = static_cast<double>(most->second) >= kMost * static_cast<double>(all);
-  return usual ? most->first : 0;
+  return block > 0 && layer_of_[block] != layer_of_[block - 1] ? lift_to_layers_ : 0;
 }
 
 // If a path begins at the end of the one before it, there is no travel to learn from.

@@ -61,7 +61,7 @@ class LinkDonors {
   // By kind and layer: links that lift, less those that do not.
   std::map<std::pair<Kind, uint32_t>, int64_t> lifts_;
   Decimal highest_lift_ = 0;
-  std::map<Decimal, int64_t> lifts_to_layers_;  // how many rise so far
+  const Decimal lift_to_layers_;  // of most links that lead to one
 };
 
 }  // namespace traverse::gcode

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
@@ -158,11 +159,9 @@ Pulls PullsOf(const std::vector<WipeDeviation>& wipes) {
 }
 
 bool PullsBack(const TraceChunk& chunk, uint32_t link) {
-  const TraceLink& traced = chunk.links[link];
-  const auto* first = chunk.moves.data() + traced.first_move;
-  return std::any_of(first, chunk.moves.data() + traced.end_move, [](const TraceMove& move) {
-    return move.firmware ? move.kind == MoveKind::kRetraction : move.filament < 0;
-  });
+  const TraceMove* moves = chunk.moves.data();
+  return std::any_of(moves + chunk.links[link].first_move, moves + chunk.links[link].end_move,
+                     Retracts);
 }
 
 // Whether a wipe that the original has may be missing in `link` of the other file.
