@@ -1,6 +1,7 @@
 #include "engine/souza/nearest_insertion.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -174,6 +175,7 @@ class NodeRoute {
   bool Insert(int slot) {
     const Insertion found = BestInsertion(slot);
     if (budget_.was_exhausted()) return false;
+    assert(found.way >= 0);
     const Point from = ExitBefore(found.index);
     const std::optional<Point> to = EnterAt(found.index);
     const int child = children_[static_cast<size_t>(slot)];
@@ -274,8 +276,9 @@ class NodeRoute {
     const Point from = ExitBefore(index);
     const BoundingBox& box = boxes_[static_cast<size_t>(slot)];
     const double present = move_[index];
-    // Most places are too far away on one side alone.
-    const double reach = layer_.cost.LongestWithin(most + present);
+    // Most places are too far away on one side alone. By rounding, a move as long as the threshold
+    // of retractions seems longer than what it costs allows.
+    const double reach = (1 + kSlackOfBounds) * layer_.cost.LongestWithin(most + present);
     if (box.SquaredDistanceTo(from) > reach * reach) return kInfinity;
     const double bound = layer_.cost.OfLength(box.DistanceTo(from)) - present;
     const std::optional<Point> to = EnterAt(index);

@@ -188,6 +188,25 @@ TEST(NearestInsertion, AmongWallsInsertsWhereItCostsLeastToo) {
   }
 }
 
+// A move as long as the threshold, within rounding, is no farther than what it costs allows.
+TEST(NearestInsertion, AmongWallsFindsAPlaceAtTheThresholdOfRetraction) {
+  LayerWalls walls;
+  walls.walls.emplace_back().points = {{1000, 1000}, {1001, 1000}};
+  for (int i = 1; i <= 100; ++i) {
+    SCOPED_TRACE(absl::StrCat("threshold ", i));
+    const Point there{0.01 * i, 0.003 * i * i};
+    OwnedProblem owned(AnyOrderPlan({MakeContour({there}), MakeContour({{900, 900}})}));
+    CostSpec& spec = owned.problem.cost;
+    spec.kind = CostSpec::Kind::kTime;
+    spec.retraction_seconds = 0.1;
+    spec.retraction_threshold_mm = Distance({0, 0}, there);
+    const WallCost cost(walls, owned.plan(), spec);
+    owned.problem.walls = &cost;
+
+    EXPECT_EQ(Inserted(owned.problem), (Route{{0, 0}, {1, 0}}));
+  }
+}
+
 // A plate with holes: nearly all places are too far away to be worth the way around the walls.
 TEST(NearestInsertion, AsksForFewWaysAmongWalls) {
   std::vector<Path> paths;
