@@ -71,11 +71,11 @@ bool PrintThreads(const std::vector<BenchPart>& parts, const BenchOptions& optio
   bool good = true;
   for (const BenchPart& part : parts) {
     if (part.name != "part2") continue;
-    const auto layers = Extruded(part, options.quick ? 20 : 400);
+    const auto layers = Extruded(part, options.quick ? 4 : 400);
     good = PrintThreadsOf("part2, two makes in turn", layers, options) && good;
   }
   std::vector<Plan> different;
-  for (int i = 0; i < (options.quick ? 4 : 64); ++i) {
+  for (int i = 0; i < (options.quick ? 2 : 64); ++i) {
     different.push_back(RandomRings(60, 40, static_cast<uint64_t>(i)));
   }
   good = PrintThreadsOf("60 rings, all different", different, options) && good;

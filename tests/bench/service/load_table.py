@@ -24,12 +24,12 @@ def parse():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seconds", type=float, default=60, help="of each load")
     parser.add_argument("--sizes", default="1,10,400,1:70+10:25+400:5")
-    parser.add_argument("--short", action="store_true", help="1 s of each load, of 1 and 40 layers; the figures mean nothing")
+    parser.add_argument("--short", action="store_true", help="half a second of each load, of 1 and 40 layers; the figures mean nothing")
     parser.add_argument("--build", default="build/release")
     parser.add_argument("--server_flag", action="append", default=[])
     arguments = parser.parse_args()
     if arguments.short:
-        arguments.seconds, arguments.sizes = 1, "1,40"
+        arguments.seconds, arguments.sizes = 0.5, "1,40"
     return arguments
 
 

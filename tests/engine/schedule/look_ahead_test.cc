@@ -224,7 +224,7 @@ TEST(LookAhead, SavesTravelOverManyJobs) {
 TEST(LookAhead, RoutesDependNeitherOnThreadsNorOnWhenLayersCome) {
   for (uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
-    const std::vector<JobLayer> layers = RandomLayers(seed, 60);
+    const std::vector<JobLayer> layers = RandomLayers(seed, 24);
     for (const bool cleaning : {false, true}) {
       Options options;
       if (cleaning) options.spec.cleaning = CleaningSpec{{50, 50}, 5, 0};
@@ -237,7 +237,7 @@ TEST(LookAhead, RoutesDependNeitherOnThreadsNorOnWhenLayersCome) {
       options.pause = std::chrono::milliseconds(1);
       const auto slow = RunJob(layers, options);
 
-      ASSERT_EQ(one.size(), 60u);
+      ASSERT_EQ(one.size(), 24u);
       for (const auto& [index, outcome] : one) {
         EXPECT_EQ(outcome.route, eight.at(index).route) << "layer " << index;
         EXPECT_EQ(outcome.route, newest_first.at(index).route) << "layer " << index;
