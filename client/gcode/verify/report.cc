@@ -27,6 +27,7 @@ constexpr RuleWords kRules[] = {
     {"scripts", "nothing from the scripts comes between paths"},
     {"path_ends", "moves that continue along a path stay with its end"},
     {"bounds", "no travel leaves the area in which the original moves"},
+    {"kept_ways", "between paths that still follow each other nothing changes"},
 };
 static_assert(std::size(kRules) == static_cast<size_t>(VerifyRule::kCount));
 

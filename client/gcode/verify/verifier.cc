@@ -166,6 +166,7 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
   CheckOpenWays(layer, findings);
   ObserveOpenHabits(layer, findings);
   CheckSameWays(layer, findings);
+  CheckKeptWays(layer, findings);
   CheckBends(layer, findings);
   CheckSameSteps(layer, findings);
   CheckFixedMoves(layer, findings);

@@ -26,6 +26,7 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings);
 void CheckOpenWays(const LayerPair& layer, LayerFindings& findings);
 void ObserveOpenHabits(const LayerPair& layer, LayerFindings& findings);
 void CheckSameWays(const LayerPair& layer, LayerFindings& findings);
+void CheckKeptWays(const LayerPair& layer, LayerFindings& findings);
 void CheckSinking(const LayerPair& layer, LayerFindings& findings);
 void CheckSameSteps(const LayerPair& layer, LayerFindings& findings);
 void CheckFixedMoves(const LayerPair& layer, LayerFindings& findings);

@@ -2,7 +2,7 @@
 
 import math
 
-from edits import at_its_feed, edited, go, pick, with_f, with_xy
+from edits import at_its_feed, edited, go, pick, restated, with_f, with_xy
 from places import is_outer, links
 from sliced import number
 
@@ -196,6 +196,47 @@ def in_short_legs(retracted):
     return defect
 
 
+def kept_links(file, rng, make):
+    """Of links that retract once, before they lead away."""
+    found = [found for found in links(file) if len(found[1]) == 1 and found[1][0] < found[2][0]]
+    return pick(rng, found, 200, make)
+
+
+def along(start, end, length):
+    """The point of the way that far from its start."""
+    share = length / math.dist(start[:2], end[:2])
+    return [start[a] + share * (end[a] - start[a]) for a in (0, 1)]
+
+
+def pulled_late(file, rng):
+    """The filament is pulled back 0.2 mm behind the end of the path."""
+
+    def make(found):
+        _, (pull,), (way, *_), _ = found
+        line = file.lines[way]
+        moved = any(file.lines[i].kind == "z" for i in range(pull + 1, way))
+        if file.lines[pull].kind != "retract" or line.length() < 1 or moved:
+            return None
+        begin = go(along(line.start, line.end, 0.2), line)
+        return edited(file, {pull: [], way: [begin, file.lines[pull].text, restated(file, way)[-1], line.text]})
+
+    return kept_links(file, rng, make)
+
+
+def poke(file, rng):
+    """Before the way, the nozzle goes 0.3 mm back along the path and returns."""
+
+    def make(found):
+        path = file.paths[found[0]]
+        line = file.lines[path.last]
+        if line.text[:2] != "G1" or line.length() < 0.5:
+            return None
+        poked = [go(along(line.end, line.start, 0.3), line), go(path.end, line), restated(file, path.last)[-1]]
+        return edited(file, {path.last: [line.text] + poked})
+
+    return kept_links(file, rng, make)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("way to far away", "speeds", way_far, "free"),
@@ -208,5 +249,7 @@ DEFECTS = (
     ("way beyond its end and back", "bounds", way_beyond, "free"),
     ("open way along a wall", "bounds", way_along_wall, "free"),
     ("way along an arc", "bounds", way_on_arc, "free"),
+    ("retraction 0.2 mm late", "kept_ways", pulled_late, "free"),
+    ("poke of 0.3 mm back along the path", "kept_ways", poke, "free"),
     ("open way at another speed", "speeds", open_way_slow, "free"),
 )

@@ -1,0 +1,125 @@
+// Where two segments follow one another as in the original, nothing between them has a reason to
+// change: the same steps lead from the one to the other.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string_view>
+#include <vector>
+
+#include "absl/container/flat_hash_map.h"
+#include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/way_ends.h"
+#include "client/gcode/verify/rules/rules.h"
+#include "client/gcode/verify/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kOffMm = 0.02;
+constexpr double kHigherMm = 0.003;
+
+// Straight travel may come in several pieces.
+bool GoesOn(const TraceMove& before, const TraceMove& move) {
+  return before.kind == MoveKind::kTravel && move.kind == MoveKind::kTravel && !before.arc &&
+         !move.arc && before.open == move.open && before.feed == move.feed &&
+         before.acceleration == move.acceleration &&
+         std::abs(before.z_from_mm - move.z_to_mm) <= kHigherMm &&
+         std::abs(before.z_to_mm - move.z_to_mm) <= kHigherMm &&
+         DistanceToPiece(before.to, before.from, move.to) <= kOffMm;
+}
+
+std::vector<TraceMove> MovesOf(const TraceChunk& chunk, uint32_t link) {
+  std::vector<TraceMove> moves;
+  for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    const bool nothing = !move.firmware && move.filament == 0 && !move.arc &&
+                         move.z_from_mm == move.z_to_mm && move.length_mm() < kOffMm;
+    if (nothing) continue;
+    if (!moves.empty() && GoesOn(moves.back(), move)) {
+      moves.back().to = move.to;
+      moves.back().middle = {(moves.back().from.x + move.to.x) / 2,
+                             (moves.back().from.y + move.to.y) / 2};
+    } else {
+      moves.push_back(move);
+    }
+  }
+  return moves;
+}
+
+bool SamePlace(const TraceMove& a, const TraceMove& b) {
+  return DistanceOf(a.to, b.to) <= kOffMm && DistanceOf(a.middle, b.middle) <= kOffMm &&
+         std::abs(a.z_to_mm - b.z_to_mm) <= kHigherMm;
+}
+
+bool SameMove(const TraceMove& a, const TraceMove& b) {
+  return a.kind == b.kind && a.firmware == b.firmware && SamePlace(a, b) &&
+         std::abs(a.filament - b.filament) <= VerifyMachine::kSlack && a.feed == b.feed &&
+         a.acceleration == b.acceleration;
+}
+
+// Of the segments between which `link` stands.
+uint64_t DigestOfLink(const TraceChunk& chunk, uint32_t link) {
+  const TraceSegment& before = chunk.segments[chunk.paths[link - 1].end_segment - 1];
+  const TraceSegment& behind = chunk.segments[chunk.paths[link].first_segment];
+  return Mix(EndsOf(chunk, link), Mix(before.digest, behind.digest));
+}
+
+// A path that leads back along itself is the same the other way round, and may have been turned.
+bool LeadsBack(const TraceChunk& chunk, uint32_t path) {
+  const TracePath& traced = chunk.paths[path];
+  for (uint32_t k = 0; k <= traced.size() / 2; ++k) {
+    const Point one = chunk.StartOf(traced, traced.first_segment + k);
+    const Point other = chunk.segments[traced.end_segment - 1 - k].end;
+    if (DistanceOf(one, other) > kOffMm) return false;
+  }
+  return true;
+}
+
+// The moves of those of the original's `links` that are the same as `has`; of one of them if none
+// is.
+std::vector<TraceMove> SameOf(const TraceChunk& was, const std::vector<uint32_t>& links,
+                              const std::vector<TraceMove>& has) {
+  std::vector<TraceMove> had;
+  for (const uint32_t link : links) {
+    had = MovesOf(was, link);
+    if (std::equal(had.begin(), had.end(), has.begin(), has.end(), SameMove)) break;
+  }
+  return had;
+}
+
+std::string_view NameOf(const std::vector<TraceMove>& moves,
+                        std::vector<TraceMove>::const_iterator move) {
+  return move == moves.end() ? "path" : MoveKindName(move->kind);
+}
+
+}  // namespace
+
+void CheckKeptWays(const LayerPair& layer, LayerFindings& findings) {
+  const TraceChunk& was = layer.was();
+  const TraceChunk& is = layer.is();
+  absl::flat_hash_map<uint64_t, std::vector<uint32_t>> links;
+  // The first link of a chunk follows a path of the chunk before.
+  for (uint32_t link = std::max(layer.first_path_was(), 1u); link < layer.end_path_was(); ++link) {
+    links[DigestOfLink(was, link)].push_back(link);
+  }
+  for (uint32_t link = std::max(layer.first_path_is(), 1u); link < layer.end_path_is(); ++link) {
+    const auto found = links.find(DigestOfLink(is, link));
+    if (found == links.end() || LeadsBack(is, link - 1) || LeadsBack(is, link)) continue;
+    const std::vector<TraceMove> has = MovesOf(is, link);
+    const std::vector<TraceMove> had = SameOf(was, found->second, has);
+    const auto [one, other] =
+        std::mismatch(had.begin(), had.end(), has.begin(), has.end(), SameMove);
+    if (one == had.end() && other == has.end()) continue;
+    const bool more = other != has.end();
+    findings.breaks.push_back(
+        {VerifyRule::kKeptWays,
+         one == had.end() ? was.LineOf(was.paths[found->second.front()]) : one->line,
+         more ? other->line : is.LineOf(is.paths[link]), layer.index(),
+         absl::StrFormat("a %s between two paths that follow each other in the original too, "
+                         "which has another %s there",
+                         NameOf(has, other), NameOf(had, one))});
+  }
+}
+
+}  // namespace traverse::gcode
