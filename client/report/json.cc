@@ -45,11 +45,35 @@ Json PlanVisitJson(const v1::Layer& layer, const PathNotes* notes, const v1::Vis
   return out;
 }
 
+bool CostIsTime(const InputJob& job, const v1::Layer& layer) {
+  return (layer.has_cost() ? layer.cost() : job.options.cost()).has_time();
+}
+
 // The bound of a layer in mm, if it is known and the cost is length.
 Json BoundJson(const InputJob& job, const v1::Layer& layer, const v1::LayerResult& result) {
-  const v1::CostModel& cost = layer.has_cost() ? layer.cost() : job.options.cost();
-  if (cost.has_time() || !result.has_lower_bound()) return nullptr;
+  if (CostIsTime(job, layer) || !result.has_lower_bound()) return nullptr;
   return result.lower_bound();
+}
+
+// What is paid where the cost is time, of a layer's result or of a job's summary.
+template <typename Result>
+Json TimeJson(const Result& result) {
+  return {{"cost_given_seconds", result.cost_given()},
+          {"cost_seconds", result.cost()},
+          {"lower_bound_seconds", result.has_lower_bound() ? Json(result.lower_bound()) : Json()},
+          {"crossings_given", result.crossings_given()},
+          {"crossings", result.crossings()},
+          {"retractions_given", result.retractions_given()},
+          {"retractions", result.retractions()}};
+}
+
+// The ways that lead around walls, each with the number of the visit that it leads to.
+Json DetoursJson(const v1::LayerResult& result) {
+  Json detours = Json::array();
+  for (const v1::Detour& detour : result.detours()) {
+    detours.push_back({{"visit", detour.visit()}, {"points", detour.points()}});
+  }
+  return detours;
 }
 
 Json LayerJson(const InputJob& job, size_t i, const v1::LayerResult& result) {
@@ -65,15 +89,16 @@ Json LayerJson(const InputJob& job, size_t i, const v1::LayerResult& result) {
               {"start", {result.start().x_mm(), result.start().y_mm()}},
               {"travel_given_mm", result.given().total_mm()},
               {"travel_mm", result.travel().total_mm()},
-              {"lower_bound_mm", BoundJson(job, layer, result)},
-              {"stop", StopName(result.stop_reason())},
-              {"solve_seconds", result.solve_seconds()}};
+              {"lower_bound_mm", BoundJson(job, layer, result)}};
+  if (CostIsTime(job, layer)) out.update(TimeJson(result));
+  out.update({{"stop", StopName(result.stop_reason())}, {"solve_seconds", result.solve_seconds()}});
   // The statistics of the search, if it has any; sorted, because a proto map has no order.
   for (const auto& [name, value] :
        std::map<std::string, double>(result.statistics().begin(), result.statistics().end())) {
     out["statistics"][name] = value;
   }
   out["route"] = std::move(route);
+  if (result.detours_size() > 0) out["detours"] = DetoursJson(result);
   return out;
 }
 
@@ -88,10 +113,11 @@ Json TotalBoundJson(const InputJob& job, const JobResult& result) {
   return sum;
 }
 
-bool AllCostsAreLengths(const InputJob& job) {
-  return std::none_of(job.layers.begin(), job.layers.end(), [&](const v1::Layer& layer) {
-    return (layer.has_cost() ? layer.cost() : job.options.cost()).has_time();
-  });
+// The layers whose cost is time, of those that the job has.
+size_t LayersOfTime(const InputJob& job) {
+  return static_cast<size_t>(
+      std::count_if(job.layers.begin(), job.layers.end(),
+                    [&](const v1::Layer& layer) { return CostIsTime(job, layer); }));
 }
 
 Json TotalJson(const InputJob& job, const JobResult& result, double wall_seconds) {
@@ -104,8 +130,11 @@ Json TotalJson(const InputJob& job, const JobResult& result, double wall_seconds
                 {"wall_seconds", wall_seconds},
                 {"idle_seconds_given", summary.idle_seconds_given()},
                 {"idle_seconds", summary.idle_seconds()}};
-  if (summary.has_chain_lower_bound() && AllCostsAreLengths(job)) {
-    total["chain_lower_bound_mm"] = summary.chain_lower_bound();
+  const size_t of_time = LayersOfTime(job);
+  if (of_time == job.layers.size() && of_time > 0) total.update(TimeJson(summary));
+  if (summary.has_chain_lower_bound() && (of_time == 0 || of_time == job.layers.size())) {
+    total[of_time == 0 ? "chain_lower_bound_mm" : "chain_lower_bound_seconds"] =
+        summary.chain_lower_bound();
   }
   return total;
 }

@@ -45,6 +45,37 @@ TEST(RoutesJson, HasTheBoundOfAllLayersTogetherIfThereIsOne) {
   EXPECT_THAT(RoutesJson(job, run), Not(HasSubstr("chain_lower_bound_mm")));
 }
 
+TEST(RoutesJson, StatesWhatIsPaidWhereTheCostIsTime) {
+  InputJob job = SmallJob();
+  JobRun run = SmallRun();
+  EXPECT_THAT(RoutesJson(job, run), Not(HasSubstr("cost_seconds")));
+
+  job.layers[1].mutable_cost()->mutable_time();
+  v1::LayerResult& plan = run.result.layers[1];
+  plan.set_cost_given(4);
+  plan.set_cost(2.5);
+  plan.set_crossings_given(7);
+  plan.set_crossings(6);
+  plan.set_retractions_given(3);
+  plan.set_retractions(2);
+  v1::Detour& detour = *plan.add_detours();
+  detour.set_visit(1);
+  detour.add_points(0.5);
+  detour.add_points(-8);
+  EXPECT_THAT(RoutesJson(job, run),
+              HasSubstr("\"lower_bound_mm\":null,\"cost_given_seconds\":4.0,\"cost_seconds\":2.5,"
+                        "\"lower_bound_seconds\":0.5,\"crossings_given\":7,\"crossings\":6,"
+                        "\"retractions_given\":3,\"retractions\":2,\"stop\""));
+  EXPECT_THAT(RoutesJson(job, run),
+              HasSubstr("\"detours\":[{\"visit\":1,\"points\":[0.5,-8.0]}]}"));
+  EXPECT_THAT(RoutesJson(job, run), Not(HasSubstr("\"cost_seconds\":150")));
+
+  job.layers[0].mutable_cost()->mutable_time();
+  run.result.summary.set_chain_lower_bound(100);
+  EXPECT_THAT(RoutesJson(job, run), HasSubstr("\"cost_seconds\":150.0"));
+  EXPECT_THAT(RoutesJson(job, run), HasSubstr("\"chain_lower_bound_seconds\":100.0"));
+}
+
 TEST(RoutesJson, HasWhatTheSearchTellsOfItself) {
   JobRun run = SmallRun();
   (*run.result.layers[1].mutable_statistics())["points_sp"] = 17;
