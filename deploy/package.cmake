@@ -36,13 +36,19 @@ install(PROGRAMS monitoring/render_dashboard.py
 set(CHANGELOG ${CMAKE_CURRENT_BINARY_DIR}/changelog.gz)
 execute_process(COMMAND gzip -9nc ${CMAKE_CURRENT_SOURCE_DIR}/debian/changelog
                 OUTPUT_FILE ${CHANGELOG} COMMAND_ERROR_IS_FATAL ANY)
+traverse_list_archive_packages(ARCHIVE_PACKAGES)
 foreach(component IN ITEMS client server)
   set(package traverse)
   if(component STREQUAL server)
     set(package traverse-server)
   endif()
-  install(FILES debian/copyright ${CHANGELOG} DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package}
-          COMPONENT ${component})
+  set(DOC ${CMAKE_INSTALL_DATADIR}/doc/${package})
+  install(FILES debian/copyright ${CHANGELOG} DESTINATION ${DOC} COMPONENT ${component})
+  # The licences of what is linked from archives ask for a copy.
+  foreach(archived IN LISTS ARCHIVE_PACKAGES)
+    install(FILES /usr/share/doc/${archived}/copyright DESTINATION ${DOC}/archives RENAME ${archived}
+            COMPONENT ${component} OPTIONAL)
+  endforeach()
 endforeach()
 install(FILES README.md RUNBOOK.md CAPACITY.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/traverse-server
         COMPONENT server)
