@@ -56,6 +56,18 @@ class SearchState {
   double StepCost(int position) const { return steps_[Index(position)]; }
   double TotalCost() const;
 
+  // The same for inner loops, which then ask nothing on the way; they stay where they are.
+  struct Arrays {
+    const int* leaf;          // [position]
+    const double* step_cost;  // [position]
+    const int* position;      // [item]
+    const Point* in;          // [leaf]
+    const Point* out;         // [leaf]
+  };
+  Arrays arrays() const {
+    return {order_.data(), steps_.data(), position_.data(), in_.data(), out_.data()};
+  }
+
   // Whether the plan allows `move`. O(1) if the moved leaves are children of one node without
   // pairs, else up to O(leaves and pairs moved).
   bool Allows(const SegmentMove& move) const;

@@ -95,16 +95,16 @@ struct WallsCost {
 }  // namespace
 
 ThreeOpt::End ThreeOpt::EndAt(int leaf, bool right) const {
-  return End{leaf, right, right ? state_.in(leaf) : state_.out(leaf)};
+  return End{leaf, right, right ? at_.in[leaf] : at_.out[leaf]};
 }
 
 ThreeOpt::Cut ThreeOpt::CutAt(const End& end) const {
-  const int position = state_.position(end.leaf) - (end.right ? 1 : 0);
-  return Cut{position, state_.StepCost(position)};
+  const int position = at_.position[end.leaf] - (end.right ? 1 : 0);
+  return Cut{position, at_.step_cost[position]};
 }
 
 ThreeOpt::End ThreeOpt::OtherEnd(const Cut& cut, const End& end) const {
-  return EndAt(state_.leaf_at(end.right ? cut.position : cut.position + 1), !end.right);
+  return EndAt(at_.leaf[end.right ? cut.position : cut.position + 1], !end.right);
 }
 
 // The side of a cut at which the end of an open path that `group` is can be.
@@ -163,7 +163,7 @@ void ThreeOpt::SearchFirst(int t1, bool forward, double debt, const Cost& cost) 
       const End t3 = EndAt(leaf, RightOf(neighbor.group, leaf));
       SearchSecond(t3, CostTo(t2_, t3, neighbor, cost), cost);
     } else {
-      const double joined = cost(t2_.point, state_.in(leaf));
+      const double joined = cost(t2_.point, at_.in[leaf]);
       SearchSecond(EndAt(leaf, false), joined, cost);
       SearchSecond(EndAt(leaf, true), joined, cost);
     }
@@ -215,20 +215,30 @@ void ThreeOpt::SearchSecond(const End& t3, double joined, const Cost& cost) {
   for (const Neighbor& neighbor : NeighborsOf(t4_, options_.second_breadth)) {
     if (neighbor.distance_mm >= limit_mm) break;
     const int leaf = EndGroups::LeafOf(neighbor.group);
+    const int position = at_.position[leaf];
     if (state_.entries().open(leaf)) {
-      const End t5 = EndAt(leaf, RightOf(neighbor.group, leaf));
-      SearchThird(t5, Cost::kHasWalls ? LeastOf(t4_, t5, cost) : CostTo(t4_, t5, neighbor, cost),
-                  cost);
+      const bool right = RightOf(neighbor.group, leaf);
+      const int kind = KindAt(position, right);
+      if (kind == kNoMove) continue;
+      const End t5 = EndAt(leaf, right);
+      const double joined =
+          Cost::kHasWalls ? LeastOf(t4_, t5, cost) : CostTo(t4_, t5, neighbor, cost);
+      SearchThird(t5, kind, joined, cost);
     } else {
-      const double joined = LeastOf(t4_, EndAt(leaf, false), cost);
-      SearchThird(EndAt(leaf, false), joined, cost);
-      SearchThird(EndAt(leaf, true), joined, cost);
+      const int kind_left = KindAt(position, false);
+      const int kind_right = KindAt(position, true);
+      if (kind_left == kNoMove && kind_right == kNoMove) continue;
+      const End t5 = EndAt(leaf, false);
+      const double joined = LeastOf(t4_, t5, cost);
+      if (kind_left != kNoMove) SearchThird(t5, kind_left, joined, cost);
+      if (kind_right != kNoMove) SearchThird({leaf, true, t5.point}, kind_right, joined, cost);
     }
   }
   if (t4_.leaf >= state_.tree().path_count()) return;
   for (const End& t5 : {EndAt(state_.tree().start(), false), EndAt(state_.tree().finish(), true)}) {
     const double joined = Join(t4_, t5, cost);
-    if (gain1_ - joined > 0) SearchThird(t5, joined, cost);
+    const int kind = KindAt(at_.position[t5.leaf], t5.right);
+    if (gain1_ - joined > 0 && kind != kNoMove) SearchThird(t5, kind, joined, cost);
   }
 }
 
@@ -247,27 +257,32 @@ void ThreeOpt::SetKinds(int left, int right) {
   }
 }
 
-// t4 is joined with t5 at cost `joined`, or at least that if there are walls.
+// The move that a third cut makes on one side of the visit at `position`. Most make none, which is
+// known before any distance is.
+int ThreeOpt::KindAt(int position, bool right) const {
+  const int at = position - right;
+  if (at == left_ || at == right_) return kNoMove;
+  return kinds_[right][(at > left_) + (at > right_)];
+}
+
+// t4 is joined with t5 at cost `joined`, or at least that if there are walls; `kind` is of the
+// move.
 template <typename Cost>
-void ThreeOpt::SearchThird(const End& t5, double joined, const Cost& cost) {
-  const int at = state_.position(t5.leaf) - t5.right;
-  if (at == left_ || at == right_) return;
-  const size_t place = static_cast<size_t>((at > left_) + (at > right_));
-  const int kind = kinds_[t5.right][place];
-  if (kind == kNoMove) return;
-  const int t6_leaf = state_.leaf_at(t5.right ? at : at + 1);
-  const End t6{t6_leaf, !t5.right, t5.right ? state_.out(t6_leaf) : state_.in(t6_leaf)};
+void ThreeOpt::SearchThird(const End& t5, int kind, double joined, const Cost& cost) {
+  const int at = at_.position[t5.leaf] - t5.right;
+  const int t6_leaf = at_.leaf[t5.right ? at : at + 1];
+  const End t6{t6_leaf, !t5.right, t5.right ? at_.out[t6_leaf] : at_.in[t6_leaf]};
   const double radii = radii_ + Radius(t6.leaf);
-  double gain = gain1_ - joined + state_.StepCost(at);
+  double gain = gain1_ - joined + at_.step_cost[at];
   if (Cost::kHasWalls) {
     if (!MayKeep(t6, t1_, gain, radii, cost)) return;
-    gain = gain1_ - Join(t4_, t5, cost) + state_.StepCost(at);
+    gain = gain1_ - Join(t4_, t5, cost) + at_.step_cost[at];
   }
   if (!MayKeep(t6, t1_, gain, radii, cost)) return;
   const double last = Join(t6, t1_, cost);
-  const int first = place == 0 ? at : left_;
-  const int middle = place == 0 ? left_ : place == 1 ? at : right_;
-  const int end = place == 2 ? at : right_;
+  const int first = std::min(at, left_);
+  const int middle = std::clamp(at, left_, right_);
+  const int end = std::max(at, right_);
   Offer({static_cast<Kind>(kind), first + 1, middle + 1, end}, last - gain, gain, t6.leaf, radii);
 }
 

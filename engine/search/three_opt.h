@@ -55,7 +55,11 @@ class ThreeOpt {
 
   // The arguments must outlive the search.
   ThreeOpt(const SearchState& state, const NeighborLists& neighbors, const ThreeOptOptions& options)
-      : state_(state), neighbors_(neighbors), options_(options) {}
+      : state_(state),
+        at_(state.arrays()),
+        radius_(state.entries().radii().data()),
+        neighbors_(neighbors),
+        options_(options) {}
 
   // Looks for moves that the plan allows and that cut the edge after the leaf t1 (`forward`) or
   // before it. `debt`: how much the route costs above the one to be improved. Without
@@ -86,7 +90,7 @@ class ThreeOpt {
   bool IsEnd(int group, const End& end) const;
   absl::Span<const NeighborLists::Neighbor> NeighborsOf(const End& end, int breadth) const;
   double LimitMm(double limit) const;
-  double Radius(int leaf) const { return state_.entries().radius(leaf); }
+  double Radius(int leaf) const { return radius_[leaf]; }
 
   // Deltas from here on are rejected, if contours with these radii are at the cuts.
   double LeastRejected(double radii) const {
@@ -105,15 +109,18 @@ class ThreeOpt {
   template <typename Cost>
   void SearchSecond(const End& t3, double joined, const Cost& cost);
   template <typename Cost>
-  void SearchThird(const End& t5, double joined, const Cost& cost);
+  void SearchThird(const End& t5, int kind, double joined, const Cost& cost);
   template <typename Cost>
   double LeastOf(const End& a, const End& b, const Cost& cost) const;
   template <typename Cost>
   bool MayKeep(const End& from, const End& to, double gain, double radii, const Cost& cost) const;
   void SetKinds(int left, int right);
+  int KindAt(int position, bool right) const;
   void Offer(const SegmentMove& move, double delta, double gain, int last_leaf, double radii);
 
   const SearchState& state_;
+  const SearchState::Arrays at_;
+  const double* const radius_;  // [leaf]
   const NeighborLists& neighbors_;
   const ThreeOptOptions options_;
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "engine/base/rest.h"
 #include "engine/cost/travel_cost.h"
 #include "engine/model/layer_problem.h"
@@ -45,6 +46,7 @@ class LeafEntries {
   // Half the longer side of the box around a contour's entries, in mm: how far another entry may
   // be. 0 for open paths.
   double radius(int leaf) const { return radius_[Index(leaf)]; }
+  absl::Span<const double> radii() const { return radius_; }
 
   Visit VisitOf(int leaf, int entry) const { return Visit{leaf, visit_entry_[Index(entry)]}; }
   int EntryOf(const Visit& visit) const;
