@@ -8,6 +8,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "client/cli/flags/connection_flags.h"
+#include "client/cli/flags/machine_file.h"
 #include "client/cli/flags/strategy_spec.h"
 #include "client/files/read_file.h"
 
@@ -86,16 +87,10 @@ absl::Status AsFlagFault(const absl::Status& fault) {
 
 namespace {
 
-// Reads the limits in the file `name`. Errors begin with the name.
 absl::StatusOr<gcode::MachineLimits> ReadMachine(const std::string& name) {
-  constexpr size_t kMostBytes = size_t{16} << 20;
-  const absl::StatusOr<std::string> text = ReadWholeFile(name, kMostBytes);
-  if (!text.ok())
-    return absl::InvalidArgumentError(absl::StrCat("--machine: ", text.status().message()));
-  absl::StatusOr<gcode::MachineLimits> limits = gcode::ReadMachineLimits(*text, DisplayName(name));
-  if (!limits.ok())
-    return absl::InvalidArgumentError(absl::StrCat("--machine: ", limits.status().message()));
-  return limits;
+  absl::StatusOr<gcode::MachineLimits> limits = ReadMachineFile(name);
+  if (limits.ok()) return limits;
+  return absl::InvalidArgumentError(absl::StrCat("--machine: ", limits.status().message()));
 }
 
 // Puts `flag` and the next flag on one line of the help.

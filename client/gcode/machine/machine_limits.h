@@ -1,7 +1,7 @@
 // The machine as the user describes it (--machine), in the terms of its firmware:
 //
 //   a Klipper configuration   its sections [printer], [extruder], [firmware_retraction] and
-//                             [gcode_arcs]; files that it includes are not read
+//                             [gcode_arcs], and those of files that it includes
 //   lines of Marlin           M201 to M205, M207 and M208, as in a start script or as M503 prints
 //                             them (echo:), in mm or, after G20, in inches; the marks of a
 //                             terminal (Recv:, ok) and other commands are ignored
@@ -10,9 +10,11 @@
 #ifndef TRAVERSE_CLIENT_GCODE_MACHINE_MACHINE_LIMITS_H_
 #define TRAVERSE_CLIENT_GCODE_MACHINE_MACHINE_LIMITS_H_
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "client/gcode/machine/machine_profile.h"
@@ -44,9 +46,22 @@ struct MachineLimits {
   std::optional<double> firmware_prime_extra;  // pushed beyond what was pulled back
 };
 
+// A file that a configuration includes: its name, for errors and its own includes, and its text.
+struct IncludedFile {
+  std::string name;
+  std::string text;
+};
+
+// The files that `[include PATTERN]` in the file `from` means, in their order. A pattern without
+// wildcards that means no file is an error.
+using ReadIncludes = std::function<absl::StatusOr<std::vector<IncludedFile>>(
+    const std::string& pattern, const std::string& from)>;
+
 // Reads the text of such a file. Errors begin with its name and line: `printer.cfg:12: max_accel:
-// ...`. Values that the file omits and Klipper has a default for get that default.
-absl::StatusOr<MachineLimits> ReadMachineLimits(std::string_view text, const std::string& name);
+// ...`. Values that the file omits and Klipper has a default for get that default. Without
+// `includes`, files that it includes are not read.
+absl::StatusOr<MachineLimits> ReadMachineLimits(std::string_view text, const std::string& name,
+                                                const ReadIncludes& includes = {});
 
 // `profile`, as a sliced file states it, overridden by `limits`.
 void ApplyLimits(const MachineLimits& limits, MachineProfile& profile);

@@ -74,6 +74,19 @@ class Usage(CommandLine):
             with self.subTest(arguments):
                 self.assertEqual(self.fail_with(USAGE, *arguments), line)
 
+    def test_a_machine_may_include_files(self):
+        folder = self.path("of [one] printer")
+        os.mkdir(folder)
+        machine = self.put(f"{folder}/printer.cfg", "[include base*.cfg]\n[include none*.cfg]\n")
+        self.put(f"{folder}/base1.cfg", "[printer]\nmax_velocity: 300\nmax_accel: 3000\n")
+        self.succeed("inspect", SMALL, f"--machine={machine}")
+        self.put(f"{folder}/base2.cfg", "[include base3.cfg]\n[printer]\nmax_accel: 0\n")
+        for fault in ("base2.cfg:1: \"base3.cfg\": there is no such file to include",
+                      "base2.cfg:3: max_accel: \"0\" is not a number above 0 and up to 1e9"):
+            self.assertEqual(self.fail_with(USAGE, "optimize", SMALL, f"--machine={machine}"),
+                             f"traverse optimize: --machine: {folder}/{fault}")
+            self.put(f"{folder}/base3.cfg", "")
+
     def test_a_machine_is_read_from_a_file(self):
         for content, fault in [("[printer]\nmax_velocity: fast\n",
                                 ':2: max_velocity: "fast" is not a number above 0 and up to 1e9'),

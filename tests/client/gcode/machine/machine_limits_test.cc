@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/gcode_job.h"
@@ -98,6 +100,51 @@ TEST(MachineLimits, FaultsOfKlipperNameTheLine) {
             "printer.cfg: it has no [printer]");
   EXPECT_EQ(FaultOf("[include *.cfg]\n"),
             "printer.cfg: it has no [printer]; files that it includes are not read");
+}
+
+using Files = std::map<std::string, std::vector<IncludedFile>>;
+
+// Files by the patterns that mean them, whoever includes them.
+ReadIncludes IncludesFrom(const Files& files) {
+  return [&files](const std::string& pattern,
+                  const std::string& from) -> absl::StatusOr<std::vector<IncludedFile>> {
+    const auto found = files.find(pattern);
+    if (found == files.end()) return absl::NotFoundError(pattern + " of " + from);
+    return found->second;
+  };
+}
+
+TEST(MachineLimits, OfIncludedFilesCountWhereTheyAreIncluded) {
+  const Files files = {
+      {"base.cfg", {{"b/base.cfg", "[printer]\nmax_velocity: 1\nmax_accel: 2\n[include more*]\n"}}},
+      {"more*",
+       {{"b/more1", "[printer]\nmax_accel: 3\n"},
+        {"b/more2", "max_accel: 9\n[printer]\nmax_accel: 4\n"}}}};
+  const std::string text = "[include  base.cfg ]\nmax_accel: 7\n[printer]\nmax_velocity: 5\n";
+
+  const auto limits = ReadMachineLimits(text, "printer.cfg", IncludesFrom(files));
+
+  ASSERT_TRUE(limits.ok()) << limits.status();
+  EXPECT_EQ(limits->max_speed, 5);
+  EXPECT_EQ(limits->max_accel, 4) << "of the last one, and only in its section";
+}
+
+TEST(MachineLimits, FaultsOfIncludedFilesNameThem) {
+  const Files files = {{"bad.cfg", {{"d/bad.cfg", "\n[printer]\nmax_velocity: -1\n"}}},
+                       {"*.cfg", {{"d/self.cfg", "[include *.cfg]\n"}}},
+                       {"good.cfg", {{"d/good.cfg", ""}}}};
+  const auto fault_of = [&files](const std::string& text) {
+    return std::string(
+        ReadMachineLimits(text, "printer.cfg", IncludesFrom(files)).status().message());
+  };
+
+  EXPECT_EQ(fault_of("[include bad.cfg]\n"),
+            "d/bad.cfg:3: max_velocity: \"-1\" is not a number above 0 and up to 1e9");
+  EXPECT_EQ(fault_of("\n[include none.cfg]\n"), "printer.cfg:2: none.cfg of printer.cfg");
+  EXPECT_EQ(fault_of("[include *.cfg]\n"), "d/self.cfg:1: files include each other, or too deeply");
+  EXPECT_EQ(fault_of("[include good.cfg]\n[printer]\nmax_accel: x\n"),
+            "printer.cfg:3: max_accel: \"x\" is not a number above 0 and up to 1e9");
+  EXPECT_EQ(fault_of("[include good.cfg]\n"), "printer.cfg: it has no [printer]");
 }
 
 // As it leaves a printer: a mark of UTF-8, odd blanks, a block that the machine saved, a delta.

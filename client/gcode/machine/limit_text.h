@@ -1,0 +1,43 @@
+// What the readers of machine limits share: lines with numbers, faults with places, ranges of
+// values.
+
+#ifndef TRAVERSE_CLIENT_GCODE_MACHINE_LIMIT_TEXT_H_
+#define TRAVERSE_CLIENT_GCODE_MACHINE_LIMIT_TEXT_H_
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "absl/status/status.h"
+#include "client/gcode/machine/machine_limits.h"
+#include "client/gcode/text/text.h"
+
+namespace traverse::gcode {
+
+// An error `where: what`, and the place of a line (from 1) in the file `name`.
+absl::Status LimitFault(const std::string& where, const std::string& what);
+std::string LineOf(const std::string& name, int line);
+
+// Calls visit(line, number from 1) until that is a fault.
+template <typename Visit>
+absl::Status ForEachLine(std::string_view text, Visit visit) {
+  int number = 0;
+  for (Offset next = 0; next < text.size();) {
+    const Line line = LineAt(text, next);
+    next = line.next;
+    if (absl::Status status = visit(line.Text(text), ++number); !status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+// Which values a setting may have.
+enum class Range { kAboveZero, kFromZero, kRatio };
+bool Holds(Range range, double value);
+// "not a number above 0 and up to 1e9" and so on.
+const char* NameOf(Range range);
+
+using LimitField = std::optional<double> MachineLimits::*;
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_MACHINE_LIMIT_TEXT_H_
