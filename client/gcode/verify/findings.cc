@@ -75,6 +75,7 @@ void Observations::Append(const Observations& other) {
   long_ways.insert(long_ways.end(), other.long_ways.begin(), other.long_ways.end());
   farthest.insert(farthest.end(), other.farthest.begin(), other.farthest.end());
   script_signatures.insert(other.script_signatures.begin(), other.script_signatures.end());
+  AppendSeen(other.step_orders, step_orders);
   lifts.Append(other.lifts);
   cycles.insert(cycles.end(), other.cycles.begin(), other.cycles.end());
   wipes.insert(wipes.end(), other.wipes.begin(), other.wipes.end());

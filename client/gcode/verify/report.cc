@@ -27,6 +27,7 @@ constexpr RuleWords kRules[] = {
     {"scripts", "nothing from the scripts comes between paths"},
     {"path_ends", "moves that continue along a path stay with its end"},
     {"bounds", "no travel leaves the area in which the original moves"},
+    {"step_order", "travel takes its steps in an order that travel of the original has"},
     {"kept_ways", "between paths that still follow each other nothing changes"},
 };
 static_assert(std::size(kRules) == static_cast<size_t>(VerifyRule::kCount));

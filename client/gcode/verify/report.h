@@ -33,6 +33,7 @@ enum class VerifyRule : uint8_t {
   kScripts,      // nothing from them between paths
   kPathEnds,     // moves that continue along a path
   kBounds,       // the area of all moves
+  kStepOrder,    // in which travel retracts, rises, moves, descends and primes
   kKeptWays,     // between two paths that follow each other as in the original
   kCount,
 };

@@ -175,6 +175,7 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
   ObserveLifts(layer, findings);
   ObserveHeights(layer, findings);
   ObserveRetractions(layer, findings);
+  ObserveStepOrder(layer, findings);
   ObserveFarMoves(layer, findings);
   ObserveWayLengths(layer, findings);
   ObserveSpeeds(layer, findings);
@@ -229,6 +230,7 @@ void Verifier::Compare(std::vector<Finding>& breaks) const {
   CompareWayLengths(seen_was_, seen_is_, breaks);
   CompareOpenHabits(seen_was_, seen_is_, context_, breaks);
   CompareRetractions(seen_was_, seen_is_, breaks);
+  CompareStepOrder(seen_was_, seen_is_, breaks);
   CompareSpeeds(seen_was_, seen_is_, breaks);
   ComparePathEnds(seen_was_, seen_is_, context_, breaks);
   CompareWipes(seen_was_, seen_is_, breaks);

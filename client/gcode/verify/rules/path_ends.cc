@@ -15,6 +15,9 @@ namespace {
 constexpr double kShortestMm = 0.015;
 constexpr double kSlackMm = 0.02;
 
+// A move along a path of two decimals that is turned is longer by less.
+constexpr double kLengthSlackMm = 0.011;
+
 struct Tail {
   double length_mm = 0;
   Point end;
@@ -148,10 +151,12 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
       findings.breaks.push_back(
           {VerifyRule::kPathEnds, original, optimised, layer.index(), std::move(what)});
     };
+    const bool same_end = visit.forward && visit.entry == 0;
     if (had.length_mm < kShortestMm) {
-      const bool new_tail = has.length_mm >= kShortestMm && !has.known &&
-                            has.length_mm > kLoopGapMm && has.feed == path.feed &&
-                            !LeadsOn(is, visit.last_path, pieces);
+      // Where the path ends elsewhere, it may cross the gap of a loop or lead back to a zigzag.
+      const bool longer = has.length_mm > (same_end ? kShortestMm : kLoopGapMm);
+      const bool new_tail =
+          longer && !has.known && has.feed == path.feed && !LeadsOn(is, visit.last_path, pieces);
       if (new_tail) {
         report(was.segments[path.end_segment - 1].line, has.line,
                absl::StrFormat("continues along the path for %.2f mm, but not in the original",
@@ -163,8 +168,7 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
         LeadsOn(was, visit.path, pieces)) {
       continue;
     }
-    const bool same_end = visit.forward && visit.entry == 0;
-    const double slack = std::max(kSlackMm, 0.02 * had.length_mm);
+    const double slack = std::max(kLengthSlackMm, 0.02 * had.length_mm);
     if (std::abs(has.length_mm - had.length_mm) > slack) {
       report(
           had.line, has.line != 0 ? has.line : end_line,

@@ -33,6 +33,7 @@ void CheckFixedMoves(const LayerPair& layer, LayerFindings& findings);
 void CheckScriptedWays(const LayerPair& layer, LayerFindings& findings);
 void ObserveLifts(const LayerPair& layer, LayerFindings& findings);
 void ObserveHeights(const LayerPair& layer, LayerFindings& findings);
+void ObserveStepOrder(const LayerPair& layer, LayerFindings& findings);
 void ObserveRetractions(const LayerPair& layer, LayerFindings& findings);
 void ObserveFarMoves(const LayerPair& layer, LayerFindings& findings);
 void ObserveWayLengths(const LayerPair& layer, LayerFindings& findings);
@@ -72,6 +73,8 @@ void CompareOpenHabits(const Observations& was, const Observations& is, const Ru
                        std::vector<Finding>& breaks);
 void CompareRetractions(const Observations& was, const Observations& is,
                         std::vector<Finding>& breaks);
+void CompareStepOrder(const Observations& was, const Observations& is,
+                      std::vector<Finding>& breaks);
 void ComparePathEnds(const Observations& was, const Observations& is, const RuleContext& context,
                      std::vector<Finding>& breaks);
 void CompareSpeeds(const Observations& was, const Observations& is, std::vector<Finding>& breaks);

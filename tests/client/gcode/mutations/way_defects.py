@@ -237,6 +237,22 @@ def poke(file, rng):
     return kept_links(file, rng, make)
 
 
+def lifted_early(file, rng):
+    """The head rises before it retracts."""
+
+    def make(found):
+        _, (pull,), (way, *_), _ = found
+        rises = [i for i in range(pull + 1, way) if file.lines[i].kind == "z"]
+        if len(rises) != 1 or file.lines[pull].kind != "retract":
+            return None
+        rise = file.lines[rises[0]]
+        if rise.end[2] <= rise.start[2] or " F" not in rise.text or " F" not in file.lines[pull].text:
+            return None
+        return edited(file, {pull: [rise.text], rises[0]: [file.lines[pull].text]})
+
+    return kept_links(file, rng, make)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("way to far away", "speeds", way_far, "free"),
@@ -251,5 +267,6 @@ DEFECTS = (
     ("way along an arc", "bounds", way_on_arc, "free"),
     ("retraction 0.2 mm late", "kept_ways", pulled_late, "free"),
     ("poke of 0.3 mm back along the path", "kept_ways", poke, "free"),
+    ("lift before the retraction", "step_order", lifted_early, "free"),
     ("open way at another speed", "speeds", open_way_slow, "free"),
 )

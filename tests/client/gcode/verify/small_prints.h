@@ -14,13 +14,14 @@ namespace traverse::gcode::testing {
 
 using Policy = VerifyPermissions::Policy;
 
-// All rules but the one by which most of what a test changes would be a break in any case.
-inline constexpr uint32_t kWithoutKeptWays = ~RuleBit(VerifyRule::kKeptWays);
+// All rules but those by which most of what a test changes would be a break in any case.
+inline constexpr uint32_t kRulesOfTheirOwn =
+    ~(RuleBit(VerifyRule::kKeptWays) | RuleBit(VerifyRule::kStepOrder));
 
 // "lifts" or "order seam": those of `rules` that are broken. Each break names a line of both
 // prints.
 inline std::string Broken(const std::string& original, const std::string& optimised,
-                          VerifyPermissions permissions = {}, uint32_t rules = kWithoutKeptWays) {
+                          VerifyPermissions permissions = {}, uint32_t rules = kRulesOfTheirOwn) {
   VerifyOptions options;
   options.rules = rules;
   options.permissions = permissions;
@@ -46,7 +47,7 @@ inline std::string Broken(const std::string& original, const std::string& optimi
 
 inline std::string FirstMessage(const std::string& original, const std::string& optimised) {
   VerifyOptions options;
-  options.rules = kWithoutKeptWays;
+  options.rules = kRulesOfTheirOwn;
   const VerifyReport report = CheckGcode(original, "a", optimised, "b", options);
   return report.ok() ? "" : report.breaks.front().message;
 }

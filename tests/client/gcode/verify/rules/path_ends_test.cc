@@ -26,6 +26,17 @@ TEST(VerifyPathEnds, StayWithTheirPaths) {
   EXPECT_EQ(Broken(kHead + two, kHead + With(two, "G1 X9.04 Y0\n", "G1 X9.2 Y0\n")), "path_ends");
 }
 
+// By 0.02 mm: coordinates of two decimals round by less. And from where the path ends none is new.
+TEST(VerifyPathEnds, AreAsLongAsTheyWere) {
+  const std::string two =
+      Tailed("X0 Y0", "X9 Y0", "X9.04 Y0") + Tailed("X0 Y5", "X9 Y5", "X9.04 Y5");
+  EXPECT_EQ(Broken(kHead + two, kHead + With(two, "G1 X9.04 Y0\n", "G1 X9.02 Y0\n")), "path_ends");
+  EXPECT_EQ(Broken(kHead + two, kHead + With(two, "G1 X9.04 Y0\n", "G1 X9.03 Y0\n")), "");
+  const std::string again = kHead + two + kOne + kOther;
+  const std::string on = kOne + "G1 X9.1 Y0\n" + kOther;
+  EXPECT_EQ(Broken(again, kHead + two + on), "path_ends");
+}
+
 TEST(VerifyPathEnds, TurnWithTheirPaths) {
   const std::string two =
       Tailed("X0 Y0", "X9 Y0", "X9.04 Y0") + Tailed("X0 Y5", "X9 Y5", "X9.04 Y5");

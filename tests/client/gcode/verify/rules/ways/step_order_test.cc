@@ -1,0 +1,66 @@
+// In which order travel takes its steps: client/gcode/verify/rules/ways/step_order.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/client/gcode/verify/small_prints.h"
+
+namespace traverse::gcode {
+namespace {
+
+using namespace testing;  // NOLINT: the small prints
+using ::testing::HasSubstr;
+
+constexpr uint32_t kRules = RuleBit(VerifyRule::kSamePrint) | RuleBit(VerifyRule::kStepOrder);
+
+std::string Ordered(const std::string& original, const std::string& optimised) {
+  return Broken(original, optimised, {}, kRules);
+}
+
+std::string MessageOf(const std::string& original, const std::string& optimised) {
+  VerifyOptions options;
+  options.rules = kRules;
+  return CheckGcode(original, "a", optimised, "b", options).breaks.front().message;
+}
+
+// A lift of 0.01 mm is none to the rules of lifts, but it has a place among the steps.
+std::string Low(const std::string& to, const std::string& y) {
+  return "G1 E-1 F2100\nG1 Z.21 F9000\nG1 " + to + " F9000\nG1 Z.2\nG1 E1 F2100\n" +
+         ";TYPE:Internal infill\nG1 F1800\nG1 X9 " + y + " E.3\n";
+}
+
+const std::string kLow = Low("X0 Y0", "Y0") + Low("X0 Y5", "Y5") + Low("X0 Y9", "Y9");
+
+TEST(VerifyStepOrder, ThatOfTheOriginal) {
+  const std::string a = kHead + kLow;
+  const std::string pull = "G1 E-1 F2100\n";
+  const std::string rise = "G1 Z.21 F9000\n";
+  const std::string end = "G1 Z.2\nG1 E1 F2100\n";
+  const std::string last = "G1 X0 Y9 F9000\n";
+  EXPECT_EQ(Ordered(a, a), "");
+  EXPECT_EQ(Ordered(a, With(a, pull + rise + last, rise + pull + last)), "step_order");
+  EXPECT_EQ(Ordered(a, With(a, last + end, last + "G1 E1 F2100\nG1 Z.2 F9000\n")), "step_order");
+  EXPECT_THAT(MessageOf(a, With(a, pull + rise + last, rise + pull + last)),
+              HasSubstr("an order that no travel of the original has: up, retraction, travel"));
+  // Either order, if the original has both.
+  const std::string both = With(a, pull + rise + last, rise + pull + last);
+  const std::string turned = kHead + Low("X0 Y0", "Y0") +
+                             With(Low("X0 Y5", "Y5"), pull + rise, rise + pull) +
+                             With(Low("X0 Y9", "Y9"), pull + rise, rise + pull);
+  EXPECT_EQ(Ordered(both, turned), "");
+}
+
+// Which steps lead to a layer depends on where its first path is, but none comes too early.
+TEST(VerifyStepOrder, NothingComesEarlyToALayer) {
+  const std::string to = "G1 E-1 F2100\n;LAYER_CHANGE\nG1 Z.4 F9000\nG1 X0 Y5\nG1 E1 F2100\n";
+  const std::string first = ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y5 E.3\n";
+  const std::string a = kHead + kTwo + to + first;
+  EXPECT_EQ(Ordered(a, a), "");
+  const std::string rises = ";LAYER_CHANGE\nG1 Z.4 F9000\nG1 E-1 F2100\nG1 X0 Y5 F9000\n";
+  EXPECT_EQ(Ordered(a, kHead + kTwo + rises + "G1 E1 F2100\n" + first), "step_order");
+}
+
+}  // namespace
+}  // namespace traverse::gcode
