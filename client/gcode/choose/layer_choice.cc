@@ -61,15 +61,12 @@ class LayerChooser::Impl {
         revisits_(file, choice.min_revisit_seconds, choice.threads),
         columns_(file.layers.size()) {
     ParallelFor(columns_.size(), threads_, [this](size_t layer) { FillColumn(layer); });
-    ParallelFor(columns_.size() - 1, threads_, [this](size_t i) { FillWays(i + 1); });
-    for (Column& column : columns_) column.totals.no_choice.assign(column.choices.size(), false);
+    FillAllWays();
   }
 
   ChosenLayers Choose() {
-    std::vector<const ChoiceColumn*> totals;
-    for (const Column& column : columns_) totals.push_back(&column.totals);
-    const std::vector<uint32_t> row = BestRow(totals, policy_, crossings_, fewer_crossings_);
-    for (size_t layer = 0; layer < columns_.size(); ++layer) columns_[layer].chosen = row[layer];
+    ChooseRow();
+    if (!std::exchange(spared_, true) && SpareRetractions()) ChooseRow();
     ChosenLayers chosen = Write();
     DropTexts();
     return chosen;
@@ -107,6 +104,13 @@ class LayerChooser::Impl {
   static RetractionHabit Plain(RetractionHabit habit) {
     habit.spares_walls = false;
     return habit;
+  }
+
+  void ChooseRow() {
+    std::vector<const ChoiceColumn*> totals;
+    for (const Column& column : columns_) totals.push_back(&column.totals);
+    const std::vector<uint32_t> row = BestRow(totals, policy_, crossings_, fewer_crossings_);
+    for (size_t layer = 0; layer < columns_.size(); ++layer) columns_[layer].chosen = row[layer];
   }
 
   void AddGiven(size_t layer, Column& column) const {
@@ -150,6 +154,56 @@ class LayerChooser::Impl {
         Measure(file_, choice.text, choice.start, &column.writer->walls()));
   }
 
+  // By which the orders of a layer are merged.
+  MergeRules RulesOf(size_t layer) const {
+    const Layer& of_file = file_.layers[layer];
+    MergeRules rules;
+    rules.policy = policy_;
+    rules.crossings = crossings_;
+    rules.as_many_retractions = columns_[layer].totals.inside[0].extra_mm > kSlackMm;
+    if (polish_) {
+      rules.freedom = FreedomOf(file_, of_file, policy_, allow_);
+      rules.polish = polish_;
+      if (habit_.avoids_walls) rules.polish->seconds_per_way = PolishLimit::kSecondsPerDetour;
+    }
+    for (uint32_t b = of_file.first_block; b < of_file.end_block; ++b) {
+      rules.boundaries.push_back((file_.blocks[b].link & (kLinkSplits | kLinkFixed)) != 0);
+    }
+    return rules;
+  }
+
+  // Where the file would retract more often than before, gives the layers that do so other orders
+  // to choose from. True if there are such layers.
+  bool SpareRetractions() {
+    int64_t more = 0;
+    std::vector<size_t> layers;
+    for (size_t layer = 0; layer < columns_.size(); ++layer) {
+      const ChoiceColumn& totals = columns_[layer].totals;
+      const uint32_t chosen = columns_[layer].chosen;
+      const size_t before = layer > 0 ? columns_[layer - 1].chosen : 0;
+      more += totals.Whole(before, chosen).retractions - totals.Whole(0, 0).retractions;
+      if (totals.inside[chosen].retractions > totals.inside[0].retractions) layers.push_back(layer);
+    }
+    if (!polish_ || more <= 0 || layers.empty()) return false;
+    ParallelFor(layers.size(), threads_, [&](size_t i) { AddSparing(layers[i]); });
+    FillAllWays();
+    return true;
+  }
+
+  void AddSparing(size_t layer) {
+    Column& column = columns_[layer];
+    const MergeRules rules = RulesOf(layer);
+    if (rules.as_many_retractions) return;
+    const LayerOrder& chosen = column.choices[column.chosen].order;
+    const auto orders = SparingOrders(*column.writer, travel_[layer], chosen, rules);
+    for (const LayerOrder& order : orders) AddChoices(order, layer, column);
+  }
+
+  void FillAllWays() {
+    ParallelFor(columns_.size() - 1, threads_, [this](size_t i) { FillWays(i + 1); });
+    for (Column& column : columns_) column.totals.no_choice.assign(column.choices.size(), false);
+  }
+
   void FillColumn(size_t layer) {
     Column& column = columns_[layer];
     column.writer =
@@ -161,25 +215,10 @@ class LayerChooser::Impl {
       if (!known) found.push_back(order[layer]);
     }
     if (found.empty()) return;
-    LayerFreedom freedom;
-    MergeRules rules;
-    rules.policy = policy_;
-    rules.crossings = crossings_;
-    rules.as_many_retractions = column.totals.inside[0].extra_mm > kSlackMm;
-    std::optional<PolishLimit> polish = polish_;
-    if (polish) {
-      freedom = FreedomOf(file_, file_.layers[layer], policy_, allow_);
-      rules.freedom = &freedom;
-      if (habit_.avoids_walls) polish->seconds_per_way = PolishLimit::kSecondsPerDetour;
-      rules.polish = &*polish;
-    }
-    for (uint32_t b = file_.layers[layer].first_block; b < file_.layers[layer].end_block; ++b) {
-      rules.boundaries.push_back((file_.blocks[b].link & (kLinkSplits | kLinkFixed)) != 0);
-    }
+    MergeRules rules = RulesOf(layer);
     const auto add_merged = [&] {
-      for (const LayerOrder& order : MergedOrders(*column.writer, travel_[layer], found, rules)) {
-        AddChoices(order, layer, column);
-      }
+      const auto orders = MergedOrders(*column.writer, travel_[layer], found, rules);
+      for (const LayerOrder& order : orders) AddChoices(order, layer, column);
     };
     add_merged();
     if (crossings_ != Crossings::kFewer) return;
@@ -190,6 +229,7 @@ class LayerChooser::Impl {
 
   void FillWays(size_t layer) {
     Column& column = columns_[layer];
+    column.totals.ways.clear();
     for (const Choice& before : columns_[layer - 1].choices) {
       for (const Choice& choice : column.choices) {
         std::string text;
@@ -330,6 +370,7 @@ class LayerChooser::Impl {
   const Revisits revisits_;
   std::vector<Column> columns_;  // [layer]
   int64_t fewer_crossings_ = 0;
+  bool spared_ = false;  // retractions were
 };
 
 LayerChooser::LayerChooser(const GcodeFile& file, const std::vector<FileOrder>& tries,

@@ -15,6 +15,9 @@ namespace {
 // have fewer, so that others may have more.
 constexpr double kSparingCrossingSeconds = 0.25;
 
+// What a retraction counts in orders that are to have fewer.
+constexpr double kSparedRetractionSeconds = 1;
+
 // Rounding of sums of lengths.
 constexpr double kSlackMm = 1e-6;
 
@@ -129,7 +132,7 @@ class LayerMerge {
         quick_(estimate_, AnyCrossings(LimitsOf(were_, rules))) {
     all_ = found;
     all_.push_back(given_);
-    if (rules.freedom == nullptr) return;
+    if (!rules.freedom) return;
     polisher_.emplace(given_.front().block, writer.outlines(), *rules.freedom, estimate_,
                       *rules.polish);
   }
@@ -154,6 +157,18 @@ class LayerMerge {
     if (best_between != given_) merged.push_back(std::move(best_between));
     AddSparing(merged);
     return merged;
+  }
+
+  // `order` with no more retractions than the file's own; then with fewer at a price, which a
+  // search that is at its limit of crossings may come to where it cannot come within the first.
+  std::vector<LayerOrder> Spare(const LayerOrder& order) const {
+    MergeLimits few = LimitsOf(were_, rules_);
+    if (!EndsAlike(order, given_)) few = AnyLength(few);
+    MergeLimits priced = EndsAlike(order, given_) ? few : AnyCrossings(few);
+    few.retractions = were_.retractions;
+    priced.retraction_seconds = kSparedRetractionSeconds;
+    return {Better(OrderMerger(estimate_, few), order, {}, Effort::kKick),
+            Better(OrderMerger(estimate_, priced), order, {}, Effort::kKick)};
   }
 
  private:
@@ -183,7 +198,7 @@ class LayerMerge {
 
   const MergeRules& rules_;
   const LayerOrder given_;
-  const std::vector<LayerOrder>& found_;
+  const std::vector<LayerOrder> found_;
   std::vector<LayerOrder> all_;  // of them and given
   KnownWays ways_;
   const WayEstimate estimate_ = std::ref(ways_);
@@ -204,6 +219,12 @@ std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelMode
     if (!IsWhole(order, given)) return found;
   }
   return LayerMerge(writer, travel, found, rules).Merge();
+}
+
+std::vector<LayerOrder> SparingOrders(const LayerWriter& writer, const TravelModel& travel,
+                                      const LayerOrder& order, const MergeRules& rules) {
+  if (!IsWhole(order, writer.GivenOrder())) return {};
+  return LayerMerge(writer, travel, {}, rules).Spare(order);
 }
 
 }  // namespace traverse::gcode

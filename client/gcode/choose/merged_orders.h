@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_MERGED_ORDERS_H_
 #define TRAVERSE_CLIENT_GCODE_CHOOSE_MERGED_ORDERS_H_
 
+#include <optional>
 #include <vector>
 
 #include "client/gcode/choose/order_merge.h"
@@ -23,10 +24,10 @@ struct MergeRules {
   // [place] the file has something here that nothing may cross.
   std::vector<bool> boundaries;
 
-  // If not null, small changes improve the orders too (order_polish.h): what may change in the
-  // layer, and for how long.
-  const LayerFreedom* freedom = nullptr;
-  const PolishLimit* polish = nullptr;
+  // If set, small changes improve the orders too (order_polish.h): what may change in the layer,
+  // and for how long. Either both are set or none.
+  std::optional<LayerFreedom> freedom = {};
+  std::optional<PolishLimit> polish = {};
 };
 
 // The orders of `found`, each improved with runs of the others and of the file's own order, and
@@ -35,6 +36,11 @@ struct MergeRules {
 // also tried with its paths in the order of the file.
 std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelModel& travel,
                                      const std::vector<LayerOrder>& found, const MergeRules& rules);
+
+// `order`, one of MergedOrders, improved once more in two ways so that it retracts less. Its first
+// and last path stay. REQUIRES: rules.freedom, rules.polish.
+std::vector<LayerOrder> SparingOrders(const LayerWriter& writer, const TravelModel& travel,
+                                      const LayerOrder& order, const MergeRules& rules);
 
 }  // namespace traverse::gcode
 

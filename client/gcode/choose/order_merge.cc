@@ -116,7 +116,8 @@ double OrderMerger::Excess(const WayTotals& totals) const {
 }
 
 double OrderMerger::Score(const WayTotals& totals) const {
-  return totals.seconds + limits_.crossing_seconds * static_cast<double>(totals.crossings);
+  return totals.seconds + limits_.crossing_seconds * static_cast<double>(totals.crossings) +
+         limits_.retraction_seconds * static_cast<double>(totals.retractions);
 }
 
 bool OrderMerger::IsBetter(const WayTotals& totals, const WayTotals& others) const {

@@ -30,7 +30,8 @@ struct MergeLimits {
   int64_t retractions = std::numeric_limits<int64_t>::max();
   bool as_many_retractions = false;  // and no fewer
 
-  double crossing_seconds = 0;  // the cost of each crossing
+  double crossing_seconds = 0;    // the cost of each crossing
+  double retraction_seconds = 0;  // and of each retraction beside its time
 };
 
 // Estimates the travel to position `place` of the layer, from 1, where `to` follows `from`.

@@ -110,6 +110,20 @@ TEST_F(OptimizeFileTest, FewerCrossingsAreWorthNoLessThanKeepingThem) {
   EXPECT_LT(score(fewer), score(keep));
 }
 
+// The guide's sample: the order found retracts once more than the file, and one beside it does not.
+TEST_F(OptimizeFileTest, RetractsNoMoreThanTheFileWhereThatCostsLittle) {
+  const absl::StatusOr<InputJob> job =
+      ReadInput(TRAVERSE_SOURCE_DIR "/deploy/samples/clusters13.gcode");
+  ASSERT_TRUE(job.ok()) << job.status();
+
+  const FileResult<OptimizedFile> made = OptimizeFile(client_, *job, {});
+
+  const auto* file = std::get_if<OptimizedFile>(&made);
+  ASSERT_NE(file, nullptr);
+  EXPECT_LE(file->rewrite.after.retractions, file->rewrite.before.retractions);
+  EXPECT_LT(file->rewrite.after.seconds, file->rewrite.before.seconds - 6);
+}
+
 TEST_F(OptimizeFileTest, WithADeadlineForEachSearchItSearchesOnce) {
   const InputJob job = Job(2);
   OptimizeFileOptions options;

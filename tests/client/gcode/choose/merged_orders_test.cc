@@ -160,8 +160,8 @@ TEST_F(MergedOrdersTest, AreMadeBetterBySmallChangesWhereThoseAreAskedFor) {
   };
 
   const double merged = shortest();
-  rules.freedom = &freedom;
-  rules.polish = &limit;
+  rules.freedom = freedom;
+  rules.polish = limit;
 
   EXPECT_LT(shortest(), merged - 20);
 }
@@ -244,6 +244,38 @@ TEST_F(MergedOrdersTest, UnderFreeWhatWasFoundIsTriedInTheOrderOfTheFile) {
 
   EXPECT_NEAR(shortest_mm(Policy::kFree), std::hypot(10, 10) + 40, 1e-3);
   EXPECT_GT(shortest_mm(Policy::kBalanced), 62);
+}
+
+// Infill inside a wall and outside of it; by turns it is retracted for at each crossing.
+TEST_F(MergedOrdersTest, SparingOrdersRetractLess) {
+  Sketch sketch;
+  sketch.Square(0, 0, 40).GoRetracted(30, 10).Infill(31, 10).Go(30, 11).Infill(31, 11);
+  sketch.Go(30, 12).Infill(31, 12).GoRetracted(50, 10).Infill(51, 10).Go(50, 11).Infill(51, 11);
+  sketch.Go(50, 12).Infill(51, 12).GoRetracted(60, 60).Infill(61, 60);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+  const RetractionHabit habit = LearnRetraction(*file);
+  const LinkDonors donors(*file);
+  const LayerWriter writer(*file, file->layers[0], habit, donors);
+  const auto retractions = [&](const LayerOrder& order) {
+    int64_t sum = 0;
+    for (size_t i = 1; i < order.size(); ++i) {
+      sum += writer.EstimateWay(i, order[i - 1], order[i], kTravel).retractions;
+    }
+    return sum;
+  };
+  const LayerOrder often = OrderOf({0, 1, 4, 2, 5, 3, 6, 7});
+  MergeRules rules;
+  rules.policy = Policy::kFree;
+  rules.boundaries.assign(often.size(), false);
+  rules.freedom = FreedomOf(*file, file->layers[0], Policy::kFree, {});
+  rules.polish = PolishLimit();
+
+  const std::vector<LayerOrder> sparing = SparingOrders(writer, kTravel, often, rules);
+
+  const int64_t given = retractions(writer.GivenOrder());
+  ASSERT_GT(retractions(often), given);
+  ASSERT_FALSE(sparing.empty());
+  for (const LayerOrder& order : sparing) EXPECT_LE(retractions(order), given);
 }
 
 }  // namespace
