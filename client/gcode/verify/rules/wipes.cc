@@ -190,8 +190,15 @@ void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFinding
                     layer.is().links[visit.last_path + 1].end_move) {
       continue;
     }
-    Wipe wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), false);
-    if (had.line != 0 && wipe.line == 0 && !MayLackWipe(layer.is(), visit.last_path + 1, context)) {
+    // The other file may go on from the path to another one, and what follows is of that.
+    const bool ends = layer.is().paths[visit.last_path].end_segment == visit.last_segment + 1;
+    Wipe wipe;
+    if (ends) {
+      wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), false);
+    }
+    const bool may_lack =
+        ends ? MayLackWipe(layer.is(), visit.last_path + 1, context) : context.permissions.wipes;
+    if (had.line != 0 && wipe.line == 0 && !may_lack) {
       findings.breaks.push_back({VerifyRule::kWipes, had.line,
                                  layer.is().segments[visit.last_segment].line, layer.index(),
                                  "the wipe after this path is missing"});

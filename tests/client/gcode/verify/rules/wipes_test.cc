@@ -61,6 +61,26 @@ std::string WipedCorner(const std::string& wipe) {
                       "G1 X5 Y5 E.3\nG1 X5 Y10 E.3\n;WIPE_START\nG1 F7200\n", wipe, ";WIPE_END\n");
 }
 
+// A line that is turned ends where the next one begins: the wipe behind both is of the latter.
+TEST(VerifyWipes, BelongToTheLastOfPathsThatMeet) {
+  const auto print = [](const std::string& from, const std::string& lines) {
+    return kHead + "G1 E-1 F2100\n" + Wiped("X0 Y20", "X9 Y20", "X7 Y20") + "G1 " + from +
+           " F9000\nG1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\n" + lines;
+  };
+  const std::string original =
+      print("X9 Y0",
+            "G1 X0 Y0 E.3\nG1 X9 Y0 F9000\nG1 F1800\nG1 X9 Y5 E.3\nG1 X8 Y6 F9000\n"
+            "G1 F1800\nG1 X0 Y6 E.3\n");
+  const auto turned = [&print](const std::string& back) {
+    return print("X0 Y0", "G1 X9 Y0 E.3\nG1 X9 Y5 E.3\nG1 E-.5 F2100\n;WIPE_START\nG1 F7200\nG1 " +
+                              back +
+                              " E-.5\n;WIPE_END\nG1 X0 Y6 F9000\nG1 E1 F2100\nG1 F1800\n"
+                              "G1 X8 Y6 E.3\n");
+  };
+  EXPECT_EQ(Broken(original, turned("X9 Y3")), "");
+  EXPECT_EQ(Broken(original, turned("X8.5 Y3")), "wipes");
+}
+
 TEST(VerifyWipes, TakeNoShortCut) {
   const std::string head = kHead + "G1 E-1 F2100\n";
   const std::string along = WipedCorner("G1 X5 Y5 E-.6\nG1 X1 Y5 E-.4\n");
