@@ -280,7 +280,9 @@ void LinkWriter::WriteTravel(const LinkRequest& request, const Link& form, Decim
   std::vector<Position> way = WayTo(request);
   for (Position& at : way) at.z = top;
   if (form.sinks) way.back().z = to.z;
-  if (top > z && !(rise.ramp_mm > 0)) {
+  // No slope leads to where the head is.
+  const bool on_slope = rise.ramp_mm > 0 && !(to.SameXy(out_.at.machine.at) && form.fixed == 0);
+  if (top > z && !on_slope) {
     out_.Lift(top, form.lift_feed > 0 ? form.lift_feed : step.feed);
   } else if (top > z) {
     Slope(out_.at.machine.at, rise, way);
