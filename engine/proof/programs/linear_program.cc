@@ -164,6 +164,10 @@ void LinearProgram::SetColumnBounds(int column, double lower, double upper) {
   impl_->simplex_.setColumnBounds(column, lower, upper);
 }
 
+void LinearProgram::SetRowBounds(int row, double lower, double upper) {
+  impl_->simplex_.setRowBounds(row, lower, upper);
+}
+
 void LinearProgram::SetCost(int column, double cost) {
   impl_->simplex_.setObjectiveCoefficient(column, cost);
 }

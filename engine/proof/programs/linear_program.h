@@ -64,6 +64,7 @@ class LinearProgram {
   void AddRows(const std::vector<Row>& rows);
 
   void SetColumnBounds(int column, double lower, double upper);
+  void SetRowBounds(int row, double lower, double upper);
   void SetCost(int column, double cost);
 
   // The entries after a deleted one move up. The arguments ascend.

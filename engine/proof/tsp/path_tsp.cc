@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/proof/min_plus.h"
+#include "engine/proof/tsp/tsp_choices.h"
 #include "engine/proof/tsp/tsp_relaxation.h"
 
 namespace traverse {
@@ -16,7 +17,7 @@ constexpr size_t kFirstNeighbors = 4;  // moves of a port that the first program
 constexpr int kMovesPerPricing = 500;
 constexpr int kCutsPerRound = 100;
 constexpr double kViolation = 0.01;
-constexpr int kRoundsWithoutGain = 3;
+constexpr int kRoundsWithoutGain = 4;
 constexpr int kRoundsWithoutGainAtRoot = 20;
 constexpr double kGain = 0.01;  // of the gap
 
@@ -26,9 +27,7 @@ constexpr double kWidestGap = 0.1;
 constexpr double kLessGap = 0.7;
 
 constexpr double kRounding = 1e-9;  // relative to the cost; far above that of a bound
-constexpr int kStrongCandidates = 12;
-constexpr int kStrongIterations = 40;
-constexpr double kFractional = 1e-6;
+constexpr int kStrongIterations = 100;
 
 }  // namespace
 
@@ -96,7 +95,7 @@ class PathTspSolver::Search {
  private:
   using Status = LinearProgram::Status;
   struct Node {
-    std::vector<std::pair<int, bool>> fixed;  // (column, in or out)
+    TspChoices fixed;
     double bound = 0;
   };
 
@@ -123,8 +122,8 @@ class PathTspSolver::Search {
     stopped_ = false;
     // Far more than any path below the cutoff can pay.
     relaxation_.SetStart(start, 2 * std::abs(cutoff) + 1);
-    relaxation_.AllowAll();
     ReleaseAll();
+    relaxation_.AllowAll();
   }
 
   // What a better path may cost above the bound of the duals that there are, and a little more.
@@ -239,14 +238,15 @@ class PathTspSolver::Search {
   }
 
   void ReleaseAll() {
-    for (const auto& [column, in] : applied_) relaxation_.Free(column);
+    for (const auto& [choice, in] : applied_) Free(choice, relaxation_);
     applied_.clear();
   }
 
   void Apply(const Node& node) {
     ReleaseAll();
     applied_ = node.fixed;
-    for (const auto& [column, in] : applied_) relaxation_.Fix(column, in);
+    HoldPairsOf(applied_, {}, relaxation_);
+    for (const auto& [choice, in] : applied_) Fix(choice, in, relaxation_);
   }
 
   // Solves and cuts; true if nothing better than best_ can be left in the node, or it failed.
@@ -273,41 +273,36 @@ class PathTspSolver::Search {
     return true;
   }
 
-  // Both ways of the move that promises the most, the better one on top. False if there is none, so
-  // that the node failed.
+  // Both ways of the choice that promises the most, the better one on top. False if there is none,
+  // so that the node failed.
   bool Branch(const Node& node) {
-    std::vector<std::pair<double, int>> fractional;
-    for (int j = 0; j < relaxation_.column_count(); ++j) {
-      const double x = lp().Primal(j);
-      if (x > kFractional && x < 1 - kFractional) fractional.emplace_back(std::abs(x - 0.5), j);
-    }
-    if (fractional.empty()) {
+    const std::vector<TspChoice> choices = OpenChoices(relaxation_, applied_);
+    if (choices.empty()) {
       // Integral but no path, and no cut found at this violation: rounding.
       failed_.push_back(node);
       return false;
     }
-    std::sort(fractional.begin(), fractional.end());
-    if (fractional.size() > kStrongCandidates) fractional.resize(kStrongCandidates);
+    HoldPairsOf(applied_, choices, relaxation_);
     const std::vector<unsigned char> basis = lp().Basis();
     const double value = lp().value();
-    int chosen = fractional.front().second;
+    TspChoice chosen = choices.front();
     double best_score = -1;
     bool in_first = true;
-    for (const auto& [distance, column] : fractional) {
+    for (const TspChoice& choice : choices) {
       double gain[2];
       for (const bool in : {false, true}) {
-        relaxation_.Fix(column, in);
+        Fix(choice, in, relaxation_);
         const Status status = lp().SolveDual(*budget_, kStrongIterations);
         gain[in ? 1 : 0] = status == Status::kInfeasible
                                ? best_ - value
                                : std::clamp(lp().value() - value, 0.0, best_ - value);
-        relaxation_.Free(column);
+        Free(choice, relaxation_);
         lp().SetBasis(basis);
       }
       const double score = std::max(gain[0], 1e-6) * std::max(gain[1], 1e-6);
       if (score > best_score) {
         best_score = score;
-        chosen = column;
+        chosen = choice;
         in_first = gain[1] <= gain[0];
       }
     }
@@ -330,7 +325,7 @@ class PathTspSolver::Search {
   const int most_iterations_;
   std::vector<Node> open_;
   std::vector<Node> failed_;  // whose programmes could not be solved
-  std::vector<std::pair<int, bool>> applied_;
+  TspChoices applied_;
   bool stopped_ = false;
   int nodes_ = 0;
 };

@@ -18,8 +18,9 @@
 // Dantzig, Fulkerson and Johnson (1954); Padberg and Rinaldi (1991); of items with a choice
 // Fischetti, Salazar and Toth (1997), whose generalised subtours these are. Moves come in by
 // reduced cost, at each node, and where a programme has no solution, by what they do against that;
-// at the root those that no better path can use are left out for good; strong branching, depth
-// first. Bounds are safe: computed from the duals without trust in the solver's tolerances.
+// at the root those that no better path can use are left out for good; strong branching on moves
+// and on whether two items follow each other, depth first. Bounds are safe: computed from the duals
+// without trust in the solver's tolerances.
 
 #ifndef TRAVERSE_ENGINE_PROOF_TSP_PATH_TSP_H_
 #define TRAVERSE_ENGINE_PROOF_TSP_PATH_TSP_H_

@@ -1,8 +1,10 @@
 #include "engine/proof/tsp/tsp_relaxation.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -14,6 +16,7 @@ namespace {
 constexpr double kTiny = 1e-9;  // a value or multiplier below counts as 0
 constexpr double kPriceTolerance = 1e-8;
 constexpr int kMostIdleRounds = 1;
+constexpr double kDivided = 1e-4;  // how far a sum is from 0 and 1
 
 }  // namespace
 
@@ -75,6 +78,9 @@ LinearProgram::Entries TspRelaxation::EntriesOf(const Move& move) const {
     const double coefficient = it.cut.Coefficient(nodes_, move);
     if (coefficient != 0) entries.Add(it.row, coefficient);
   }
+  for (const RowOfPair& it : pairs_) {
+    if (PairOf(move) == it.pair) entries.Add(it.row, 1);
+  }
   return entries;
 }
 
@@ -115,15 +121,27 @@ void TspRelaxation::ForEachCheapMove(const std::vector<double>& duals, const Cos
       }
     }
   }
+  // What moves between two items save by the rows of pairs.
+  const size_t items = static_cast<size_t>(nodes_.item_count());
+  std::vector<double> saved(pairs_.empty() ? 0 : items * items);
+  for (const RowOfPair& it : pairs_) {
+    const size_t first = static_cast<size_t>(it.pair.first);
+    const size_t second = static_cast<size_t>(it.pair.second);
+    const double dual = duals[static_cast<size_t>(it.row)];
+    saved[first * items + second] = saved[second * items + first] = dual;
+  }
   for (int a = 0; a < n; ++a) {
     if (left_out_[static_cast<size_t>(a)] != 0) continue;
     if (budget.Exhausted()) return;
+    const size_t item = static_cast<size_t>(nodes_.item(a));
+    const double* const saved_of = saved.empty() ? nullptr : saved.data() + item * items;
     for (int b = a + 1; b < n; ++b) {
       if (!nodes_.CanJoin(a, b) || left_out_[static_cast<size_t>(b)] != 0) continue;
       const Move move{a, b};
       if (is_dear_[Key(move)] != 0) continue;
       double reduced =
           cost(move) - potential[static_cast<size_t>(a)] - potential[static_cast<size_t>(b)];
+      if (saved_of != nullptr) reduced -= saved_of[nodes_.item(b)];
       for (size_t k = 0; k < active.size() && reduced <= most; ++k) {
         const CutSide& side = active[k].first->side;
         if (side[static_cast<size_t>(a)] != 0 && side[static_cast<size_t>(b)] != 0) {
@@ -205,6 +223,7 @@ void TspRelaxation::AllowAll() {
   std::fill(left_out_.begin(), left_out_.end(), 0);
   std::fill(is_dear_.begin(), is_dear_.end(), 0);
   for (int column = 0; column < column_count(); ++column) Free(column);
+  HoldPairs({});
 }
 
 TspSolution TspRelaxation::Solution() const {
@@ -264,12 +283,82 @@ void TspRelaxation::DropIdleCuts() {
     }
   }
   cuts_ = std::move(kept);
+  DeleteRows(rows);
+}
+
+// REQUIRES: no cut or pair has one of the rows. They ascend.
+void TspRelaxation::DeleteRows(const std::vector<int>& rows) {
   if (rows.empty()) return;
-  for (RowOfCut& it : cuts_) {
-    it.row -= static_cast<int>(std::lower_bound(rows.begin(), rows.end(), it.row) - rows.begin());
-  }
+  const auto less = [&rows](int row) {
+    return static_cast<int>(std::lower_bound(rows.begin(), rows.end(), row) - rows.begin());
+  };
+  for (RowOfCut& it : cuts_) it.row -= less(it.row);
+  for (RowOfPair& it : pairs_) it.row -= less(it.row);
   lp_.DeleteRows(rows);
 }
+
+TspRelaxation::ItemPair TspRelaxation::PairOf(const Move& move) const {
+  const int a = nodes_.item(move.a);
+  const int b = nodes_.item(move.b);
+  return {std::min(a, b), std::max(a, b)};
+}
+
+int TspRelaxation::RowOf(const ItemPair& pair) const {
+  const auto it = std::find_if(pairs_.begin(), pairs_.end(),
+                               [&pair](const RowOfPair& held) { return held.pair == pair; });
+  assert(it != pairs_.end());
+  return it->row;
+}
+
+std::vector<std::pair<TspRelaxation::ItemPair, double>> TspRelaxation::DividedPairs() const {
+  std::map<std::pair<int, int>, std::pair<double, int>> sums;  // of the moves, and how many
+  for (const auto& [move, x] : Solution().moves) {
+    const ItemPair pair = PairOf(move);
+    auto& [sum, count] = sums[{pair.first, pair.second}];
+    sum += x;
+    ++count;
+  }
+  std::vector<std::pair<ItemPair, double>> divided;
+  for (const auto& [pair, of] : sums) {
+    const auto& [sum, count] = of;
+    if (pair.first == 0 || count < 2 || sum < kDivided || sum > 1 - kDivided) continue;
+    divided.push_back({{pair.first, pair.second}, sum});
+  }
+  return divided;
+}
+
+void TspRelaxation::HoldPairs(const std::vector<ItemPair>& pairs) {
+  std::vector<int> rows;
+  std::vector<RowOfPair> kept;
+  for (const RowOfPair& it : pairs_) {
+    if (std::find(pairs.begin(), pairs.end(), it.pair) != pairs.end()) {
+      kept.push_back(it);
+    } else {
+      rows.push_back(it.row);
+    }
+  }
+  std::sort(rows.begin(), rows.end());
+  pairs_ = std::move(kept);
+  DeleteRows(rows);
+  std::vector<LinearProgram::Row> added;
+  for (const ItemPair& pair : pairs) {
+    const auto is_held = [&pair](const RowOfPair& it) { return it.pair == pair; };
+    if (std::any_of(pairs_.begin(), pairs_.end(), is_held)) continue;
+    LinearProgram::Row row{0, 1, {}};
+    for (int j = 0; j < move_count(); ++j) {
+      if (PairOf(move(j)) == pair) row.columns.Add(ColumnOf(j), 1);
+    }
+    pairs_.push_back({pair, lp_.row_count() + static_cast<int>(added.size())});
+    added.push_back(std::move(row));
+  }
+  if (!added.empty()) lp_.AddRows(added);
+}
+
+void TspRelaxation::Fix(const ItemPair& pair, bool in) {
+  lp_.SetRowBounds(RowOf(pair), in ? 1 : 0, in ? 1 : 0);
+}
+
+void TspRelaxation::Free(const ItemPair& pair) { lp_.SetRowBounds(RowOf(pair), 0, 1); }
 
 std::vector<int> TspRelaxation::IntegralPath() const {
   std::vector<std::vector<int>> next(static_cast<size_t>(nodes_.count()));

@@ -48,10 +48,25 @@ class TspRelaxation {
   // Allows all ports and moves again.
   void AllowAll();
 
-  // Columns of ports and moves, which are 0 or 1 in every path: branching uses them.
+  // What is 0 or 1 in every path, for branching: columns, which are of ports and moves, and whether
+  // two items follow each other. That is a sum of moves, which has a row while it is held.
   int column_count() const { return lp_.column_count(); }
   void Fix(int column, bool in) { lp_.SetColumnBounds(column, in ? 1 : 0, in ? 1 : 0); }
   void Free(int column) { lp_.SetColumnBounds(column, 0, 1); }
+
+  struct ItemPair {
+    int first = 0;
+    int second = 0;
+    bool operator==(const ItemPair&) const = default;
+  };
+  // The pairs whose items partly follow each other in the last solution, by more than one move, and
+  // how much of each other they are.
+  std::vector<std::pair<ItemPair, double>> DividedPairs() const;
+  // Holds these pairs, and no others.
+  void HoldPairs(const std::vector<ItemPair>& pairs);
+  // REQUIRES: the pair is held.
+  void Fix(const ItemPair& pair, bool in);
+  void Free(const ItemPair& pair);
 
   // Adds about `most` cuts that the last solution violates; returns how many.
   int Separate(double violation, int most, Budget& budget);
@@ -72,7 +87,15 @@ class TspRelaxation {
     int idle = 0;  // rounds in which it was not tight
   };
 
+  struct RowOfPair {
+    ItemPair pair;
+    int row = 0;
+  };
+
   void AddRowsOfNodes();
+  ItemPair PairOf(const Move& move) const;
+  int RowOf(const ItemPair& pair) const;
+  void DeleteRows(const std::vector<int>& rows);
   int ColumnOf(int move) const { return first_move_ + move; }
   int move_count() const { return static_cast<int>(moves_.size()); }
   const Move& move(int index) const { return moves_[static_cast<size_t>(index)]; }
@@ -96,8 +119,8 @@ class TspRelaxation {
 
   const PathTsp& problem_;
   const TspNodes nodes_;
-  std::vector<double> start_;     // [port]
-  LinearProgram lp_;              // rows: nodes, items with a choice, cuts; columns: ports, moves
+  std::vector<double> start_;  // [port]
+  LinearProgram lp_;  // rows: nodes, items with a choice, cuts and pairs; columns: ports, moves
   std::vector<int> port_column_;  // [port] -1 without a choice
   int first_move_ = 0;            // column
   std::vector<char> left_out_;    // [node] by LeaveOutDear: ports that no better path visits
@@ -105,6 +128,7 @@ class TspRelaxation {
   std::vector<char> has_;         // [Key(move)]
   std::vector<char> is_dear_;     // [Key(move)] whether it is excluded
   std::vector<RowOfCut> cuts_;
+  std::vector<RowOfPair> pairs_;
   int total_cuts_ = 0;
 };
 

@@ -112,6 +112,30 @@ TEST(PathTspSolver, ProvesClustersOfPoints) {
   EXPECT_GT(root, 0.97 * result.cost);
 }
 
+// Branching on which clusters follow each other leaves nothing behind for another start.
+TEST(PathTspSolver, ProvesClustersFromSeveralStarts) {
+  SmallTsp instance = Clusters(30);
+  PathTspSolver solver(instance.tsp);
+  Budget budget;
+  for (const double x : {0.0, 50.0, 100.0}) {
+    SCOPED_TRACE(x);
+    for (size_t p = 0; p < instance.start.size(); ++p) {
+      instance.start[p] = std::abs(instance.tsp.cost[p] - x);
+    }
+    const double given = TspCostOf(instance, FirstPorts(instance.tsp));
+
+    const PathTspSolver::Result result = solver.Solve(instance.start, given, {}, budget);
+    const PathTspSolver::Result afresh =
+        PathTspSolver(instance.tsp).Solve(instance.start, given, {}, budget);
+
+    EXPECT_TRUE(result.complete);
+    EXPECT_TRUE(afresh.complete);
+    EXPECT_NEAR(result.cost, afresh.cost, 1e-6 * result.cost);
+    EXPECT_NEAR(TspCostOf(instance, result.path), result.cost, 1e-9 * result.cost);
+  }
+  EXPECT_GT(solver.nodes(), 3);
+}
+
 // A node whose programme is not solved stays open, and the others are done all the same.
 TEST(PathTspSolver, GoesOnAfterANodeThatFails) {
   int failed = 0;

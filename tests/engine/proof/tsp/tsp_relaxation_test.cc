@@ -141,6 +141,51 @@ TEST(TspRelaxation, PricingMakesItFeasibleIfItCanBe) {
   EXPECT_GT(priced, 10);
 }
 
+// Whether two items follow each other is held in a row, which moves that come in later are part of.
+TEST(TspRelaxation, HoldsPairsAmongMovesThatComeIn) {
+  int dearer = 0;
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    const SmallTsp small = RandomTsp(seed, 6);
+    const double best = BestTspCost(small);
+    const double rounding = kRounding * (1 + best);
+    Budget budget;
+    double least = kForbidden;
+    for (const bool in : {false, true}) {
+      SCOPED_TRACE(absl::StrCat("seed ", seed, in ? " in" : " out"));
+      const TspRelaxation::ItemPair pair{2, 4};
+      TspRelaxation whole(small.tsp);
+      whole.SetStart(small.start, kForbidden);
+      whole.AddMoves(AllMoves(whole.nodes()));
+      ASSERT_EQ(whole.lp().SolveDual(budget), Status::kOptimal);
+      const double free = whole.lp().value();
+      whole.HoldPairs({{1, 3}, pair});
+      whole.Fix(pair, in);
+      whole.HoldPairs({pair});
+      ASSERT_EQ(whole.lp().SolveDual(budget), Status::kOptimal);
+      const double value = whole.lp().value();
+      EXPECT_GE(value, free - rounding);
+      dearer += value > free + rounding ? 1 : 0;
+
+      TspRelaxation part(small.tsp);
+      part.SetStart(small.start, kForbidden);
+      part.AddMoves(SomeMoves(part.nodes()));
+      part.HoldPairs({pair});
+      part.Fix(pair, in);
+      Status status = Status::kStopped;
+      MakeFeasible(part, budget, status);
+      ASSERT_EQ(status, Status::kOptimal);
+      double missing = 0;
+      while (part.Price(5, missing, budget) > 0) {
+        ASSERT_EQ(part.lp().SolvePrimal(budget), Status::kOptimal);
+      }
+      EXPECT_NEAR(part.lp().value(), value, rounding);
+      least = std::min(least, SolveWithCuts(whole, budget).back());
+    }
+    EXPECT_LE(least, best + rounding);  // the best path is in one of both
+  }
+  EXPECT_GT(dearer, 30);
+}
+
 TEST(TspRelaxation, WhatIsLeftOutIsOfNoPathWithinTheGap) {
   for (uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
