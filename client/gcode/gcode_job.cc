@@ -141,10 +141,25 @@ void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const Retraction
   }
 }
 
+// If each prime pushes more than was retracted, the number of retractions in a layer is part of
+// what is printed, and hardly any order found has it. Looks at a few layers, whether any does
+// so.
+bool KeepsRetractions(const GcodeFile& file) {
+  constexpr size_t kLayers = 3;
+  for (size_t i = 1; i <= kLayers; ++i) {
+    const Layer& layer = file.layers[file.layers.size() * i / (kLayers + 1)];
+    const Block& first = file.blocks[layer.first_block];
+    const PartStart start{StateAt(file, first), file.states[first.state_in]};
+    if (Measure(file, file.PathsText(layer), start).extra_mm > kLeastExtraMm) return true;
+  }
+  return false;
+}
+
 // What holds for all layers of a file.
 struct FileHabits {
   RetractionHabit retraction;
   std::vector<TravelModel> travel;  // [layer]
+  bool keeps_retractions = false;   // each layer has as many as before
 };
 
 // Fills layer `index` of `job`, which has room for it.
@@ -157,6 +172,8 @@ void FillLayer(const GcodeFile& file, size_t index, const FileHabits& habits,
   filled.set_z_mm(ToDouble(layer.z) * file.modes[file.blocks[layer.first_block].mode].UnitMm());
   *filled.mutable_plan() = std::move(planned.plan);
   SetCost(habits.travel[index], *filled.mutable_cost());
+  // Fewer than the file has cannot be had.
+  if (habits.keeps_retractions) filled.mutable_cost()->mutable_time()->set_retraction_seconds(0);
   SetWallCost(habits.retraction, options.crossings, *filled.mutable_cost()->mutable_time());
   const VisibleWalls walls(planned.outlines);
   const TravelRules rules(file, layer, habits.retraction, planned.outlines, walls);
@@ -192,20 +209,6 @@ Census FillLayers(const GcodeFile& file, const GcodeOptions& options, const File
     all.movable += part.movable;
   }
   return all;
-}
-
-// If each prime pushes more than was retracted, the number of retractions in a layer is part of
-// what is printed, and hardly any order found has it. Looks at a few layers, whether any does
-// so.
-bool KeepsRetractions(const GcodeFile& file) {
-  constexpr size_t kLayers = 3;
-  for (size_t i = 1; i <= kLayers; ++i) {
-    const Layer& layer = file.layers[file.layers.size() * i / (kLayers + 1)];
-    const Block& first = file.blocks[layer.first_block];
-    const PartStart start{StateAt(file, first), file.states[first.state_in]};
-    if (Measure(file, file.PathsText(layer), start).extra_mm > kLeastExtraMm) return true;
-  }
-  return false;
 }
 
 // The search of `auto` ends after so many rounds without a gain for each path: short files are
@@ -272,6 +275,7 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   gcode::FileHabits habits;
   habits.retraction = gcode::HabitOfNewWays(*file, options.allow);
   habits.travel = gcode::LearnTravel(*file, habits.retraction.threshold_mm);
+  habits.keeps_retractions = gcode::KeepsRetractions(*file);
   const std::vector<gcode::TravelModel>& models = habits.travel;
   const gcode::Census census = gcode::FillLayers(*file, options, habits, job);
   // The first path is pinned; the travel to it from the start script is not ours.
@@ -307,6 +311,8 @@ std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& opt
   const gcode::Latitude latitude = gcode::LearnRetraction(*job.gcode).avoids_walls
                                        ? gcode::Latitude::kIslands
                                        : gcode::Latitude::kNarrow;
+  const bool keeps_retractions = gcode::KeepsRetractions(*job.gcode);
+  const double usual_retraction_seconds = job.options.cost().time().retraction_seconds();
   const int threads = gcode::ThreadsFor(job.gcode->text.size());
   gcode::ParallelFor(layers.size(), threads, [&](size_t i) {
     const v1::Layer& layer = job.layers[i];
@@ -314,6 +320,8 @@ std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& opt
     if (layer.has_cost()) *layers[i].mutable_cost() = layer.cost();
     if (layers[i].cost().has_time()) {
       v1::TimeCost& time = *layers[i].mutable_cost()->mutable_time();
+      // So there are orders with more and with fewer retractions to make one with as many of.
+      if (keeps_retractions) time.set_retraction_seconds(usual_retraction_seconds);
       const bool crosses_more =
           i >= found.size() || found[i].crossings() > found[i].crossings_given();
       const bool too_long = options.policy == gcode::Policy::kSafe && i < found.size() &&
