@@ -17,7 +17,6 @@ constexpr size_t kFirstNeighbors = 4;  // moves of a port that the first program
 constexpr int kMovesPerPricing = 500;
 constexpr int kCutsPerRound = 100;
 constexpr double kViolation = 0.01;
-constexpr int kRoundsWithoutGain = 4;
 constexpr int kRoundsWithoutGainAtRoot = 20;
 constexpr double kGain = 0.01;  // of the gap
 
@@ -27,7 +26,16 @@ constexpr double kWidestGap = 0.1;
 constexpr double kLessGap = 0.7;
 
 constexpr double kRounding = 1e-9;  // relative to the cost; far above that of a bound
-constexpr int kStrongIterations = 100;
+
+// How much is done in a node. Where the programme has many rows, each solve takes long.
+struct Diligence {
+  int rounds_without_gain;
+  size_t strong_pairs;
+  int strong_iterations;
+};
+constexpr Diligence kInSmall{4, 12, 100};
+constexpr Diligence kInLarge{3, 8, 40};
+constexpr int kLargeRows = 800;
 
 }  // namespace
 
@@ -100,6 +108,7 @@ class PathTspSolver::Search {
   };
 
   LinearProgram& lp() { return relaxation_.lp(); }
+  const Diligence& diligence() { return lp().row_count() > kLargeRows ? kInLarge : kInSmall; }
 
   void AddNearest(int port, std::vector<TspMove>& moves) const {
     std::vector<std::pair<double, int>> near;
@@ -264,7 +273,7 @@ class PathTspSolver::Search {
       without_gain = bound > node.bound + kGain * (best_ - bound) ? 0 : without_gain + 1;
       node.bound = std::max(node.bound, bound);
       if (node.bound >= best_) return true;
-      if (without_gain > kRoundsWithoutGain) break;
+      if (without_gain > diligence().rounds_without_gain) break;
       relaxation_.DropIdleCuts();
       if (relaxation_.Separate(kViolation, kCutsPerRound, *budget_) == 0) break;
     }
@@ -276,12 +285,14 @@ class PathTspSolver::Search {
   // Both ways of the choice that promises the most, the better one on top. False if there is none,
   // so that the node failed.
   bool Branch(const Node& node) {
-    const std::vector<TspChoice> choices = OpenChoices(relaxation_, applied_);
+    const std::vector<TspChoice> choices =
+        OpenChoices(relaxation_, applied_, diligence().strong_pairs);
     if (choices.empty()) {
       // Integral but no path, and no cut found at this violation: rounding.
       failed_.push_back(node);
       return false;
     }
+    const int iterations = diligence().strong_iterations;
     HoldPairsOf(applied_, choices, relaxation_);
     const std::vector<unsigned char> basis = lp().Basis();
     const double value = lp().value();
@@ -292,7 +303,7 @@ class PathTspSolver::Search {
       double gain[2];
       for (const bool in : {false, true}) {
         Fix(choice, in, relaxation_);
-        const Status status = lp().SolveDual(*budget_, kStrongIterations);
+        const Status status = lp().SolveDual(*budget_, iterations);
         gain[in ? 1 : 0] = status == Status::kInfeasible
                                ? best_ - value
                                : std::clamp(lp().value() - value, 0.0, best_ - value);

@@ -7,7 +7,6 @@
 namespace traverse {
 namespace {
 
-constexpr size_t kPairsTried = 12;
 constexpr size_t kColumnsTried = 4;
 constexpr double kUndecided = 1e-6;  // how far a value is from 0 and 1
 
@@ -23,7 +22,8 @@ void AppendNearest(Distances& from, size_t most, std::vector<TspChoice>& to) {
 
 }  // namespace
 
-std::vector<TspChoice> OpenChoices(TspRelaxation& relaxation, const TspChoices& made) {
+std::vector<TspChoice> OpenChoices(TspRelaxation& relaxation, const TspChoices& made,
+                                   size_t most_pairs) {
   Distances pairs;
   for (const auto& [pair, sum] : relaxation.DividedPairs()) {
     const bool is_made = std::any_of(made.begin(), made.end(), [&](const auto& choice) {
@@ -39,7 +39,7 @@ std::vector<TspChoice> OpenChoices(TspRelaxation& relaxation, const TspChoices& 
     }
   }
   std::vector<TspChoice> choices;
-  AppendNearest(pairs, kPairsTried, choices);
+  AppendNearest(pairs, most_pairs, choices);
   AppendNearest(columns, kColumnsTried, choices);
   return choices;
 }

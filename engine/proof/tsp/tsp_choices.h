@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_ENGINE_PROOF_TSP_TSP_CHOICES_H_
 #define TRAVERSE_ENGINE_PROOF_TSP_TSP_CHOICES_H_
 
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -21,8 +22,9 @@ struct TspChoice {
 using TspChoices = std::vector<std::pair<TspChoice, bool>>;
 
 // Choices that the last solution leaves open and that are not made, pairs before columns, of each
-// the most undecided first.
-std::vector<TspChoice> OpenChoices(TspRelaxation& relaxation, const TspChoices& made);
+// the most undecided first: up to so many pairs.
+std::vector<TspChoice> OpenChoices(TspRelaxation& relaxation, const TspChoices& made,
+                                   size_t most_pairs);
 
 // Holds the pairs of the choices that are made, and of these.
 void HoldPairsOf(const TspChoices& made, const std::vector<TspChoice>& choices,
