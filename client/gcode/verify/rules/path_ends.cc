@@ -154,7 +154,10 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
     const bool same_end = visit.forward && visit.entry == 0;
     if (had.length_mm < kShortestMm) {
       // Where the path ends elsewhere, it may cross the gap of a loop or lead back to a zigzag.
-      const bool longer = has.length_mm > (same_end ? kShortestMm : kLoopGapMm);
+      const double gap = layer.Closed(visit.path)
+                             ? DistanceOf(was.EndOf(path), path.start) + kShortestMm
+                             : kLoopGapMm;
+      const bool longer = has.length_mm > (same_end ? kShortestMm : gap);
       const bool new_tail =
           longer && !has.known && has.feed == path.feed && !LeadsOn(is, visit.last_path, pieces);
       if (new_tail) {

@@ -37,6 +37,16 @@ TEST(VerifyPathEnds, AreAsLongAsTheyWere) {
   EXPECT_EQ(Broken(again, kHead + two + on), "path_ends");
 }
 
+// A loop that begins elsewhere goes on no farther than its gap.
+TEST(VerifyPathEnds, NoneIsNewBehindALoopThatBeginsElsewhere) {
+  const std::string a = kHead + kSquare + kOne;
+  const auto on = [](const std::string& beyond) {
+    return kHead + kSquareElsewhere + "G1 " + beyond + "\n" + kOne;
+  };
+  EXPECT_EQ(Broken(a, on("X20.01 Y10"), Policy::kFree), "");
+  EXPECT_EQ(Broken(a, on("X20.1 Y10"), Policy::kFree), "path_ends");
+}
+
 TEST(VerifyPathEnds, TurnWithTheirPaths) {
   const std::string two =
       Tailed("X0 Y0", "X9 Y0", "X9.04 Y0") + Tailed("X0 Y5", "X9 Y5", "X9.04 Y5");
