@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <utility>
 
 #include "absl/strings/str_format.h"
@@ -141,16 +142,17 @@ void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const Retraction
   }
 }
 
-// If each prime pushes more than was retracted, the number of retractions in a layer is part of
-// what is printed, and hardly any order found has it. Looks at a few layers, whether any does
-// so.
+// If each prime pushes more or less than was retracted, the number of retractions in a layer is
+// part of what is printed, and hardly any order found has it. Looks at a few layers, whether any
+// does so.
 bool KeepsRetractions(const GcodeFile& file) {
   constexpr size_t kLayers = 3;
   for (size_t i = 1; i <= kLayers; ++i) {
     const Layer& layer = file.layers[file.layers.size() * i / (kLayers + 1)];
     const Block& first = file.blocks[layer.first_block];
     const PartStart start{StateAt(file, first), file.states[first.state_in]};
-    if (Measure(file, file.PathsText(layer), start).extra_mm > kLeastExtraMm) return true;
+    const double extra_mm = Measure(file, file.PathsText(layer), start).extra_mm;
+    if (std::abs(extra_mm) > kLeastExtraMm) return true;
   }
   return false;
 }

@@ -112,7 +112,7 @@ class RowFinder {
         chosen.longest_open_mm > given.longest_open_mm + kSlackMm) {
       return false;
     }
-    // If primes push a little more than was retracted, their number is part of the print.
+    // If primes push a little more or less than was retracted, their number is part of the print.
     if (std::abs(chosen.extra_mm - given.extra_mm) > kSlackMm) return false;
     return policy_ != Policy::kSafe || chosen.travel_mm <= given.travel_mm + kSlackMm;
   }

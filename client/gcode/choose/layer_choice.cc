@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <string_view>
@@ -160,7 +161,7 @@ class LayerChooser::Impl {
     MergeRules rules;
     rules.policy = policy_;
     rules.crossings = crossings_;
-    rules.as_many_retractions = columns_[layer].totals.inside[0].extra_mm > kSlackMm;
+    rules.as_many_retractions = std::abs(columns_[layer].totals.inside[0].extra_mm) > kSlackMm;
     if (polish_) {
       rules.freedom = FreedomOf(file_, of_file, policy_, allow_);
       rules.polish = polish_;

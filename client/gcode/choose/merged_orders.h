@@ -19,7 +19,7 @@ namespace traverse::gcode {
 struct MergeRules {
   Policy policy = Policy::kSafe;
   Crossings crossings = Crossings::kKeep;
-  bool as_many_retractions = false;  // each pushes a little more than it pulls
+  bool as_many_retractions = false;  // each pushes a little more or less than it pulls
 
   // [place] the file has something here that nothing may cross.
   std::vector<bool> boundaries;

@@ -68,8 +68,10 @@ void PrintMeter::Follow(const Step& step, const Interpreter& interpreter) {
       return FollowXy(step, state);
     case StepKind::kFilament: {
       if (step.filament < 0 && !step.retracted) ++totals_.retractions;
-      if (step.filament > step.pulled + (step.pulled > 0 ? kRounding : 0)) {
-        totals_.extra_mm += ToDouble(step.filament - step.pulled);
+      const Decimal extra = step.filament - step.pulled;
+      const bool primes_short = step.filament > 0 && extra < -kRounding && state.retracted == 0;
+      if (extra > (step.pulled > 0 ? kRounding : 0) || primes_short) {
+        totals_.extra_mm += ToDouble(extra);
       }
       return Stand(step, state);
     }

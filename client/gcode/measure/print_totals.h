@@ -15,8 +15,8 @@ struct PrintTotals {
   int64_t crossings = 0;       // travel moves between paths that cross a visible wall
   int64_t open_crossings = 0;  // of them, those without a retraction
   double longest_open_mm = 0;  // the longest of these, with all moves of the way from path to path
-  double extra_mm = 0;         // filament pushed at a standstill beyond what was retracted
-  double seconds = 0;          // see motion_planner.h for the model
+  double extra_mm = 0;  // filament pushed at a standstill beyond what was retracted, or short of it
+  double seconds = 0;   // see motion_planner.h for the model
 
   PrintTotals& operator+=(const PrintTotals& other) {
     extruded_mm += other.extruded_mm;

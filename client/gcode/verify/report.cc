@@ -19,7 +19,7 @@ constexpr RuleWords kRules[] = {
     {"open_ways", "no more, and no longer, travel across outer walls without a retraction"},
     {"lifts", "travel is lifted as such travel is in the original"},
     {"retractions", "retractions and primes are those of the original"},
-    {"standstill", "extra filament pushed at a standstill is the same"},
+    {"standstill", "filament pushed at a standstill beyond or short of what was retracted is the same"},
     {"speeds", "moves have the speeds and accelerations of their kind"},
     {"wipes", "wipes lie on their paths, and none is lost"},
     {"commands", "no command moves into a path, and none is without effect"},

@@ -10,8 +10,10 @@
 #include <variant>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
 #include "absl/time/clock.h"
 #include "client/api/embedded.h"
+#include "client/files/read_file.h"
 #include "client/formats/read_input.h"
 #include "client/gcode/verify/verifier.h"
 #include "client/optimize_file/job_settings.h"
@@ -122,6 +124,28 @@ TEST_F(OptimizeFileTest, RetractsNoMoreThanTheFileWhereThatCostsLittle) {
   ASSERT_NE(file, nullptr);
   EXPECT_LE(file->rewrite.after.retractions, file->rewrite.before.retractions);
   EXPECT_LT(file->rewrite.after.seconds, file->rewrite.before.seconds - 6);
+}
+
+// Each prime that is a little short is part of the print, as one that pushes more is.
+TEST_F(OptimizeFileTest, RetractsAsOftenWherePrimesAreShort) {
+  absl::StatusOr<std::string> text =
+      ReadWholeFile(TRAVERSE_SOURCE_DIR "/tests/data/gcode/ps_hooks_support_bridge.gcode.xz");
+  ASSERT_TRUE(text.ok()) << text.status();
+  const auto rewritten = [this](const std::string& file) {
+    OptimizeFileOptions options;
+    options.gcode.policy = gcode::Policy::kFree;
+    const absl::StatusOr<InputJob> job = ParseInput(file, "part.gcode", options.gcode);
+    const FileResult<OptimizedFile> made = OptimizeFile(client_, *job, options);
+    return std::get<OptimizedFile>(made).rewrite;
+  };
+
+  const GcodeRewrite usual = rewritten(*text);
+  const GcodeRewrite with_short = rewritten(absl::StrReplaceAll(*text, {{"G1 E.8 ", "G1 E.79 "}}));
+
+  EXPECT_LT(usual.after.retractions, usual.before.retractions);
+  EXPECT_LT(with_short.before.extra_mm, -1);
+  EXPECT_NEAR(with_short.after.extra_mm, with_short.before.extra_mm, 1e-6);
+  EXPECT_LT(with_short.after.travel_mm, with_short.before.travel_mm);
 }
 
 TEST_F(OptimizeFileTest, WithADeadlineForEachSearchItSearchesOnce) {

@@ -248,7 +248,7 @@ void VerifyMachine::Move(int number, const CommandWords& words, VerifyLine& line
     line.travels = moves;
     if (filament > 0) {
       line.primes = true;
-      line.surplus = std::max<Micro>(filament - pulled_, 0);
+      line.surplus = filament - pulled_;
     }
     // Moves relative to each other are kept as they are, and circles that deposit nothing, and
     // arcs by a radius, whose center is nowhere known.
@@ -257,6 +257,7 @@ void VerifyMachine::Move(int number, const CommandWords& words, VerifyLine& line
     if (relative_ || circle || by_radius) Fence(line, LineRole::kFixed);
   }
   FollowFilament(filament, moves);
+  if (pulled_ > 0) line.surplus = 0;  // not all of it yet
 }
 
 // Where slicers coast before a retraction they push a little less than they pulled back.

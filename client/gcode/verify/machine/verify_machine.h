@@ -35,14 +35,16 @@ struct VerifyLine {
   uint64_t digest = 0;      // kDeposit: of geometry, extrusion, speed and state; else of the text
   uint64_t conditions = 0;  // kDeposit: the same without where and how much
   Micro z = 0;              // kDeposit: where it ends
-  Micro surplus = 0;     // filament pushed beyond what had been pulled back, by a move of its alone
-  bool primes = false;   // such a move ended here
-  bool travels = false;  // moves in XY without depositing
-  bool moves = false;    // the head or the filament moved: VerifyMachine::motion
-  bool stays = false;    // states where the head is already, as far as can be told: motion, too
-  bool sets = false;     // a setting and nothing else, by a command
-  uint64_t command = 0;  // what is set or done, without its values; 0: moves, comments, G92 E
-  bool label = false;    // of an object, whose moves a printer may be told to leave out
+  // Filament pushed by a move of its alone beyond what had been pulled back; negative if short of
+  // it, and yet as much as a priming.
+  Micro surplus = 0;
+  bool primes = false;     // such a move ended here
+  bool travels = false;    // moves in XY without depositing
+  bool moves = false;      // the head or the filament moved: VerifyMachine::motion
+  bool stays = false;      // states where the head is already, as far as can be told: motion, too
+  bool sets = false;       // a setting and nothing else, by a command
+  uint64_t command = 0;    // what is set or done, without its values; 0: moves, comments, G92 E
+  bool label = false;      // of an object, whose moves a printer may be told to leave out
   bool sets_back = false;  // gives a setting a value that it had, and lost, since the last move
 };
 

@@ -1,8 +1,10 @@
-// Filament pushed at a standstill is the same multiset of section and amount; if nothing had been
-// retracted, at the same X and Y.
+// Filament pushed at a standstill, beyond what had been retracted or short of it, is the same
+// multiset of section and amount; if nothing had been retracted, at the same X and Y.
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <string>
 #include <tuple>
 
 #include "absl/strings/str_format.h"
@@ -17,8 +19,16 @@ using Key = std::tuple<uint32_t, Micro, bool, int64_t, int64_t>;
 Key KeyOf(const Standstill& event) {
   constexpr Micro kSlack = VerifyMachine::kSlack;
   const auto um = [](double mm) { return static_cast<int64_t>(mm * 1000 + (mm < 0 ? -0.5 : 0.5)); };
-  return {event.section, (event.amount + kSlack / 2) / kSlack, event.fresh,
+  const Micro half = event.amount < 0 ? -kSlack / 2 : kSlack / 2;
+  return {event.section, (event.amount + half) / kSlack, event.fresh,
           event.fresh ? um(event.at.x) : 0, event.fresh ? um(event.at.y) : 0};
+}
+
+// `amount` in 1e-6 mm.
+std::string Pushed(Micro amount, const char* verb) {
+  return absl::StrFormat("%s %.4f mm %s than was retracted", verb,
+                         std::abs(static_cast<double>(amount)) * 1e-6,
+                         amount < 0 ? "less" : "more");
 }
 
 }  // namespace
@@ -34,16 +44,15 @@ void CheckStandstill(const TraceChunk& was, const TraceChunk& is, std::vector<Fi
     }
     breaks.push_back(
         {VerifyRule::kStandstill, 0, event.line, -1,
-         absl::StrFormat("pushes %.4f mm more than was retracted, which the original does not %s",
-                         static_cast<double>(event.amount) * 1e-6,
+         absl::StrFormat("%s, which the original does not %s", Pushed(event.amount, "pushes"),
                          event.fresh ? "here" : "so often in this part of the print")});
   }
   for (const auto& [key, left] : lines) {
     for (const uint32_t line : left) {
       breaks.push_back(
           {VerifyRule::kStandstill, line, 0, -1,
-           absl::StrFormat("the original pushes %.4f mm more than was retracted, which is missing",
-                           static_cast<double>(std::get<1>(key) * VerifyMachine::kSlack) * 1e-6)});
+           absl::StrFormat("the original %s, which is missing",
+                           Pushed(std::get<1>(key) * VerifyMachine::kSlack, "pushes"))});
     }
   }
 }

@@ -110,7 +110,7 @@ struct TraceCommand {
   uint32_t line = 0;
 };
 
-// Filament pushed beyond what had been retracted, by moves of the extruder alone.
+// Filament pushed beyond what had been retracted, or short of it, by moves of the extruder alone.
 struct Standstill {
   uint32_t section = 0;
   uint32_t line = 0;

@@ -304,7 +304,7 @@ void Tracer::TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t s
   constexpr Micro kRounding = 1'000;
   const Micro surplus = machine.inches() ? InMm(line.surplus) : line.surplus;
   const bool fresh = motion.pulled <= VerifyMachine::kSlack && !motion.was_retracted;
-  if (line.primes && surplus > kRounding) {
+  if (line.primes && std::abs(surplus) > kRounding) {
     chunk_.standstills.push_back({section, move.line, surplus, fresh, move.to});
   }
   pending_.push_back(move);

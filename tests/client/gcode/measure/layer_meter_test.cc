@@ -26,6 +26,9 @@ TEST(Measure, WhatRoundingLosesOfAWipeIsNotPushedBeyondIt) {
   EXPECT_EQ(Measure(*file, "G1 E-.17001\nG1 E-.62998\nG1 E.8\n", start).extra_mm, 0);
   EXPECT_NEAR(Measure(*file, "G1 E-.17001\nG1 E-.62998\nG1 E.82\n", start).extra_mm, 0.02, 1e-4);
   EXPECT_NEAR(Measure(*file, "G1 E.00005\n", start).extra_mm, 5e-5, 1e-9);
+  // Short of it, where that is a priming.
+  EXPECT_NEAR(Measure(*file, "G1 E-.8\nG1 E.79\n", start).extra_mm, -0.01, 1e-9);
+  EXPECT_EQ(Measure(*file, "G1 E-.8\nG1 E.4\nG1 E.4\n", start).extra_mm, 0);
 }
 
 double SecondsOfMove(const MachineProfile& profile, const std::string& setter) {

@@ -33,6 +33,18 @@ TEST(VerifyStandstill, WhatIsPushedMoreThanPulledIsPushedAsOften) {
   EXPECT_EQ(Broken(kHead + two, kHead + turned), "");
 }
 
+TEST(VerifyStandstill, WhatIsPushedLessThanPulledIsPushedAsOften) {
+  const std::string less = "G1 E-1 F2100\nG1 X0 Y5 F9000\nG1 E.98 F2100\n";
+  const std::string two = Line("Internal infill", "X0 Y0", "X9 Y0") +
+                          With(Line("Internal infill", "X0 Y5", "X9 Y5"), Way("X0 Y5"), less);
+  const std::string without = With(two, less, "G1 X0 Y5 F9000\n");
+  EXPECT_THAT(Broken(kHead + two, kHead + without), HasSubstr("standstill"));
+  const std::string whole = With(two, "E.98 ", "E1 ");
+  EXPECT_THAT(Broken(kHead + two, kHead + whole), HasSubstr("standstill"));
+  EXPECT_THAT(Broken(kHead + whole, kHead + two), HasSubstr("standstill"));
+  EXPECT_EQ(Broken(kHead + two, kHead + two), "");
+}
+
 TEST(VerifyStandstill, WhatRoundingLeavesIsNothing) {
   const std::string more = With(kTwo, Way("X0 Y5"), With(Way("X0 Y5"), "E1 ", "E1.0009 "));
   EXPECT_EQ(Broken(kHead + more, kHead + kOneTurned), "");
