@@ -25,11 +25,12 @@ void AppendNearest(Distances& from, size_t most, std::vector<TspChoice>& to) {
 std::vector<TspChoice> OpenChoices(TspRelaxation& relaxation, const TspChoices& made,
                                    size_t most_pairs) {
   Distances pairs;
-  for (const auto& [pair, sum] : relaxation.DividedPairs()) {
+  for (const auto& divided : relaxation.DividedPairs()) {
+    const TspRelaxation::ItemPair& pair = divided.first;  // clang 14 captures no part of a binding
     const bool is_made = std::any_of(made.begin(), made.end(), [&](const auto& choice) {
       return choice.first.column < 0 && choice.first.pair == pair;
     });
-    if (!is_made) pairs.push_back({std::abs(sum - 0.5), TspChoice{-1, pair}});
+    if (!is_made) pairs.push_back({std::abs(divided.second - 0.5), TspChoice{-1, pair}});
   }
   Distances columns;
   for (int j = 0; j < relaxation.column_count(); ++j) {
