@@ -2,12 +2,14 @@
 // change: the same steps lead from the one to the other.
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
 #include <vector>
 
 #include "absl/container/flat_hash_map.h"
+#include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/way_ends.h"
 #include "client/gcode/verify/rules/rules.h"
@@ -18,6 +20,9 @@ namespace {
 
 constexpr double kOffMm = 0.02;
 constexpr double kHigherMm = 0.003;
+
+// So many different ways between the same two segments are compared; no slicer has as many.
+constexpr size_t kMostAlike = 64;
 
 // Straight travel may come in several pieces.
 bool GoesOn(const TraceMove& before, const TraceMove& move) {
@@ -65,6 +70,43 @@ uint64_t DigestOfLink(const TraceChunk& chunk, uint32_t link) {
   return Mix(EndsOf(chunk, link), Mix(before.digest, behind.digest));
 }
 
+uint64_t DigestOfMoves(const std::vector<TraceMove>& moves) {
+  uint64_t digest = moves.size();
+  const auto add = [&digest](auto value) { digest = Mix(digest, std::bit_cast<uint64_t>(value)); };
+  for (const TraceMove& move : moves) {
+    for (const Point& point : {move.to, move.middle}) {
+      add(point.x);
+      add(point.y);
+    }
+    add(move.z_to_mm);
+    add(move.filament);
+    add(move.feed);
+    add(move.acceleration);
+    add(uint64_t{2} * static_cast<uint64_t>(move.kind) + (move.firmware ? 1 : 0));
+  }
+  return digest;
+}
+
+// The original's ways by the segments between which they stand; ways that are alike count once, so
+// that files of equal paths take no longer than others.
+struct KeptWays {
+  absl::flat_hash_map<uint64_t, std::vector<uint32_t>> links;
+  absl::flat_hash_set<uint64_t> exact;  // DigestOfLink and DigestOfMoves
+};
+
+KeptWays WaysOf(const LayerPair& layer) {
+  const TraceChunk& was = layer.was();
+  KeptWays ways;
+  // The first link of a chunk follows a path of the chunk before.
+  for (uint32_t link = std::max(layer.first_path_was(), 1u); link < layer.end_path_was(); ++link) {
+    const uint64_t digest = DigestOfLink(was, link);
+    const bool is_new = ways.exact.insert(Mix(digest, DigestOfMoves(MovesOf(was, link)))).second;
+    std::vector<uint32_t>& links = ways.links[digest];
+    if (is_new && links.size() < kMostAlike) links.push_back(link);
+  }
+  return ways;
+}
+
 // A path that leads back along itself is the same the other way round, and may have been turned.
 bool LeadsBack(const TraceChunk& chunk, uint32_t path) {
   const TracePath& traced = chunk.paths[path];
@@ -98,15 +140,14 @@ std::string_view NameOf(const std::vector<TraceMove>& moves,
 void CheckKeptWays(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& was = layer.was();
   const TraceChunk& is = layer.is();
-  absl::flat_hash_map<uint64_t, std::vector<uint32_t>> links;
-  // The first link of a chunk follows a path of the chunk before.
-  for (uint32_t link = std::max(layer.first_path_was(), 1u); link < layer.end_path_was(); ++link) {
-    links[DigestOfLink(was, link)].push_back(link);
-  }
+  const KeptWays ways = WaysOf(layer);
   for (uint32_t link = std::max(layer.first_path_is(), 1u); link < layer.end_path_is(); ++link) {
-    const auto found = links.find(DigestOfLink(is, link));
-    if (found == links.end() || LeadsBack(is, link - 1) || LeadsBack(is, link)) continue;
+    const uint64_t digest = DigestOfLink(is, link);
+    const auto found = ways.links.find(digest);
+    if (found == ways.links.end()) continue;
     const std::vector<TraceMove> has = MovesOf(is, link);
+    if (ways.exact.contains(Mix(digest, DigestOfMoves(has)))) continue;
+    if (LeadsBack(is, link - 1) || LeadsBack(is, link)) continue;
     const std::vector<TraceMove> had = SameOf(was, found->second, has);
     const auto [one, other] =
         std::mismatch(had.begin(), had.end(), has.begin(), has.end(), SameMove);

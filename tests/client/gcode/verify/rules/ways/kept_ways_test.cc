@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <string>
 
 #include "tests/client/gcode/verify/small_prints.h"
+#include "tests/support/sanitizers.h"
 
 namespace traverse::gcode {
 namespace {
@@ -66,6 +68,20 @@ TEST(VerifyKeptWays, WaysToLayersAreKeptToo) {
   const std::string a = kPrint + kNextLayer + kOther;
   const std::string to = kNextLayer + kPull + kTo;
   EXPECT_EQ(Kept(a, With(a, to, kNextLayer + kPull + "G1 X8.9 Y5.05 F9000\n" + kTo)), "kept_ways");
+}
+
+// Each way of the one file could be each of the other's.
+TEST(VerifyKeptWays, OfEqualPathsTakeNoLongerThanOthers) {
+  if (traverse::testing::kSanitized) GTEST_SKIP() << "a sanitizer takes its own time";
+  std::string slow = kHead;
+  std::string fast = kHead;
+  for (int i = 0; i < 10'000; ++i) {
+    slow += Line("Internal infill", "X0 Y0", "X9 Y0");
+    fast += With(Line("Internal infill", "X0 Y0", "X9 Y0"), "F9000", "F9001");
+  }
+  const std::clock_t begin = std::clock();
+  EXPECT_EQ(Kept(slow, fast), "kept_ways");
+  EXPECT_LT(std::clock() - begin, CLOCKS_PER_SEC);
 }
 
 // There and back: such a path is the same the other way round.
