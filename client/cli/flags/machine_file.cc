@@ -15,8 +15,9 @@
 namespace traverse::cli {
 namespace {
 
-constexpr size_t kMostBytes = size_t{16} << 20;  // of a file
-constexpr size_t kMostFiles = 1000;              // that one line may include
+// Of all files together, each as often as it is included.
+constexpr size_t kMostBytes = size_t{16} << 20;
+constexpr size_t kMostFiles = 1000;
 
 // `folder` as a pattern that means only itself.
 std::string Literally(const std::string& folder) {
@@ -43,32 +44,49 @@ absl::StatusOr<std::vector<std::string>> NamesOf(const std::string& pattern,
   if (code != 0) {
     return absl::NotFoundError(absl::StrCat("\"", pattern, "\": there is no such file to include"));
   }
-  if (found.gl_pathc > kMostFiles) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("\"", pattern, "\": means more than ", kMostFiles, " files"));
-  }
   return std::vector<std::string>(found.gl_pathv, found.gl_pathv + found.gl_pathc);
 }
 
-absl::StatusOr<std::vector<gcode::IncludedFile>> ReadIncluded(const std::string& pattern,
-                                                              const std::string& from) {
-  const absl::StatusOr<std::vector<std::string>> names = NamesOf(pattern, from);
-  if (!names.ok()) return names.status();
-  std::vector<gcode::IncludedFile> files;
-  for (const std::string& name : *names) {
-    absl::StatusOr<std::string> text = ReadWholeFile(name, kMostBytes);
-    if (!text.ok()) return text.status();
-    files.push_back({name, *std::move(text)});
+class MachineFileReader {
+ public:
+  absl::StatusOr<std::string> Read(const std::string& name) {
+    if (files_left_-- == 0) {
+      return absl::ResourceExhaustedError(
+          absl::StrCat("more than ", kMostFiles, " files are included"));
+    }
+    absl::StatusOr<std::string> text = ReadWholeFile(name, bytes_left_);
+    if (text.ok()) bytes_left_ -= text->size();
+    return text;
   }
-  return files;
-}
+
+  absl::StatusOr<std::vector<gcode::IncludedFile>> ReadIncluded(const std::string& pattern,
+                                                                const std::string& from) {
+    const absl::StatusOr<std::vector<std::string>> names = NamesOf(pattern, from);
+    if (!names.ok()) return names.status();
+    std::vector<gcode::IncludedFile> files;
+    for (const std::string& name : *names) {
+      absl::StatusOr<std::string> text = Read(name);
+      if (!text.ok()) return text.status();
+      files.push_back({name, *std::move(text)});
+    }
+    return files;
+  }
+
+ private:
+  size_t bytes_left_ = kMostBytes;
+  size_t files_left_ = kMostFiles;
+};
 
 }  // namespace
 
 absl::StatusOr<gcode::MachineLimits> ReadMachineFile(const std::string& name) {
-  const absl::StatusOr<std::string> text = ReadWholeFile(name, kMostBytes);
+  MachineFileReader reader;
+  const absl::StatusOr<std::string> text = reader.Read(name);
   if (!text.ok()) return text.status();
-  return gcode::ReadMachineLimits(*text, DisplayName(name), &ReadIncluded);
+  const auto includes = [&reader](const std::string& pattern, const std::string& from) {
+    return reader.ReadIncluded(pattern, from);
+  };
+  return gcode::ReadMachineLimits(*text, DisplayName(name), includes);
 }
 
 }  // namespace traverse::cli

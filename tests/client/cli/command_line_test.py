@@ -87,6 +87,14 @@ class Usage(CommandLine):
                              f"traverse optimize: --machine: {folder}/{fault}")
             self.put(f"{folder}/base3.cfg", "")
 
+    def test_files_that_include_others_without_end_are_told(self):
+        # 60 times 60 times 60 and so on; none includes itself.
+        for depth in range(9):
+            self.put(f"{depth}.cfg", f"[include {depth + 1}.cfg]\n" * 60)
+        self.put("9.cfg", "[printer]\nmax_velocity: 100\nmax_accel: 1000\n")
+        told = self.fail_with(USAGE, "inspect", SMALL, f"--machine={self.path('0.cfg')}")
+        self.assertRegex(told, r"/8\.cfg:[0-9]+: more than 1000 files are included$")
+
     def test_a_machine_is_read_from_a_file(self):
         for content, fault in [("[printer]\nmax_velocity: fast\n",
                                 ':2: max_velocity: "fast" is not a number above 0 and up to 1e9'),
