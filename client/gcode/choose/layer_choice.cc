@@ -62,7 +62,8 @@ class LayerChooser::Impl {
         revisits_(file, choice.min_revisit_seconds, choice.threads),
         columns_(file.layers.size()) {
     ParallelFor(columns_.size(), threads_, [this](size_t layer) { FillColumn(layer); });
-    FillAllWays();
+    ParallelFor(columns_.size() - 1, threads_, [this](size_t i) { FillWays(i + 1); });
+    for (Column& column : columns_) column.totals.no_choice.assign(column.choices.size(), false);
   }
 
   ChosenLayers Choose() {
@@ -187,7 +188,12 @@ class LayerChooser::Impl {
     }
     if (!polish_ || more <= 0 || layers.empty()) return false;
     ParallelFor(layers.size(), threads_, [&](size_t i) { AddSparing(layers[i]); });
-    FillAllWays();
+    std::vector<size_t> ways;  // to layers with other choices, and from them
+    for (const size_t layer : layers) {
+      if (layer > 0 && (ways.empty() || ways.back() != layer)) ways.push_back(layer);
+      if (layer + 1 < columns_.size()) ways.push_back(layer + 1);
+    }
+    ParallelFor(ways.size(), threads_, [&](size_t i) { FillWays(ways[i]); });
     return true;
   }
 
@@ -198,11 +204,7 @@ class LayerChooser::Impl {
     const LayerOrder& chosen = column.choices[column.chosen].order;
     const auto orders = SparingOrders(*column.writer, travel_[layer], chosen, rules);
     for (const LayerOrder& order : orders) AddChoices(order, layer, column);
-  }
-
-  void FillAllWays() {
-    ParallelFor(columns_.size() - 1, threads_, [this](size_t i) { FillWays(i + 1); });
-    for (Column& column : columns_) column.totals.no_choice.assign(column.choices.size(), false);
+    column.totals.no_choice.resize(column.choices.size(), false);
   }
 
   void FillColumn(size_t layer) {
