@@ -219,7 +219,8 @@ Census FillLayers(const GcodeFile& file, const GcodeOptions& options, const File
 // searched some six times. What is done in any case is shared by the layers. Of what is found among
 // wiped paths less is had, for a way begins where the wipe ends, and a retraction more is no less
 // for those that are made anyway.
-void SetStrategy(const GcodeFile& file, const Allowance& allow, v1::Strategy& strategy) {
+void SetStrategy(const GcodeFile& file, const Allowance& allow, bool keeps_retractions,
+                 v1::Strategy& strategy) {
   const auto paths = static_cast<double>(file.blocks.size());
   constexpr double kRounds = 20000;
   constexpr double kMaxEffort = 10;
@@ -236,8 +237,7 @@ void SetStrategy(const GcodeFile& file, const Allowance& allow, v1::Strategy& st
   (*strategy.mutable_options())["effort"] = absl::StrFormat("%.3g", effort);
   const double wiped = std::min(ShareWiped(file, allow), kMostWiped);
   const double little = 1 + (kOfLittleUseAmongWiped - 1) * wiped;
-  const double least =
-      kSecondsPerRound * std::max(little, KeepsRetractions(file) ? kOfLittleUse : 1);
+  const double least = kSecondsPerRound * std::max(little, keeps_retractions ? kOfLittleUse : 1);
   (*strategy.mutable_options())["least_gain_each"] = absl::StrFormat("%.3g", least);
   const double free = kFreeRounds * (1 - wiped) / static_cast<double>(file.layers.size());
   (*strategy.mutable_options())["gain_window"] =
@@ -285,7 +285,8 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   job.options.mutable_start()->set_x_mm(first.points.front().x);
   job.options.mutable_start()->set_y_mm(first.points.front().y);
   gcode::SetCost(models.back(), *job.options.mutable_cost());
-  gcode::SetStrategy(*file, options.allow, *job.options.mutable_strategy());
+  gcode::SetStrategy(*file, options.allow, habits.keeps_retractions,
+                     *job.options.mutable_strategy());
   job.options.set_idle_speed_mm_s(std::clamp(models.back().speed_mm_s, 0.001, 1e5));
   gcode::AddFacts(*file, census, options.policy, job);
   job.gcode = std::move(file);

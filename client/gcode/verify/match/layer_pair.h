@@ -68,6 +68,12 @@ class LayerPair {
   // True if the original has the same move, from the same point to the same point, in this layer.
   bool IsKnown(const TraceMove& move) const { return known_.contains(move.identity); }
 
+  // True if the path of the other file that `visit` ends in ends with it; false if that goes on to
+  // another path of the original.
+  bool EndsPath(const Visit& visit) const {
+    return is_.paths[visit.last_path].end_segment == visit.last_segment + 1;
+  }
+
   // The line of the original with which the path begins that path `path` of the other file is a
   // part of.
   uint32_t OriginalLine(uint32_t path) const;

@@ -111,8 +111,7 @@ void CheckDeparture(const LayerPair& layer, const Visit& visit, LayerFindings& f
   const uint32_t link_is = visit.last_path + 1;
   const TraceMove* was = DepartureOf(layer.was(), visit.path + 1);
   if (was != nullptr) findings.was.departs_inside |= !layer.Outer(visit.path);
-  // The other file may go on from the path to another one.
-  if (is.paths[visit.last_path].end_segment != visit.last_segment + 1) return;
+  if (!layer.EndsPath(visit)) return;
   const bool alike = EndAlike(layer, visit);
   const uint32_t end_was = layer.was().paths[visit.path].end_segment - 1;
   const uint32_t line_was = was != nullptr ? was->line : layer.was().segments[end_was].line;

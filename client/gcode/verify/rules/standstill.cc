@@ -25,8 +25,8 @@ Key KeyOf(const Standstill& event) {
 }
 
 // `amount` in 1e-6 mm.
-std::string Pushed(Micro amount, const char* verb) {
-  return absl::StrFormat("%s %.4f mm %s than was retracted", verb,
+std::string Pushes(Micro amount) {
+  return absl::StrFormat("pushes %.4f mm %s than was retracted",
                          std::abs(static_cast<double>(amount)) * 1e-6,
                          amount < 0 ? "less" : "more");
 }
@@ -44,15 +44,14 @@ void CheckStandstill(const TraceChunk& was, const TraceChunk& is, std::vector<Fi
     }
     breaks.push_back(
         {VerifyRule::kStandstill, 0, event.line, -1,
-         absl::StrFormat("%s, which the original does not %s", Pushed(event.amount, "pushes"),
+         absl::StrFormat("%s, which the original does not %s", Pushes(event.amount),
                          event.fresh ? "here" : "so often in this part of the print")});
   }
   for (const auto& [key, left] : lines) {
     for (const uint32_t line : left) {
-      breaks.push_back(
-          {VerifyRule::kStandstill, line, 0, -1,
-           absl::StrFormat("the original %s, which is missing",
-                           Pushed(std::get<1>(key) * VerifyMachine::kSlack, "pushes"))});
+      breaks.push_back({VerifyRule::kStandstill, line, 0, -1,
+                        absl::StrFormat("the original %s, which is missing",
+                                        Pushes(std::get<1>(key) * VerifyMachine::kSlack))});
     }
   }
 }

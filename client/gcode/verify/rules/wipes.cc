@@ -190,8 +190,8 @@ void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFinding
                     layer.is().links[visit.last_path + 1].end_move) {
       continue;
     }
-    // The other file may go on from the path to another one, and what follows is of that.
-    const bool ends = layer.is().paths[visit.last_path].end_segment == visit.last_segment + 1;
+    // Else what follows is of the path to which the other file goes on.
+    const bool ends = layer.EndsPath(visit);
     Wipe wipe;
     if (ends) {
       wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), false);
