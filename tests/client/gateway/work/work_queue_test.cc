@@ -38,9 +38,14 @@ TEST(WorkQueue, CallersTakeTurns) {
   WorkQueue queue({.workers = 1});
   std::promise<void> go;
   std::shared_future<void> gone = go.get_future().share();
-  std::promise<void> all;
+  std::promise<void> began, all;
   std::vector<std::string> order;
-  queue.Submit(*queue.Enter("x"), 0, [gone] { gone.wait(); });
+  queue.Submit(*queue.Enter("x"), 0, [&, gone] {
+    began.set_value();
+    gone.wait();
+  });
+  // Else the worker, if it is late, finds all of them and may take "x" after an "a".
+  began.get_future().wait();
   for (const std::string caller : {"a", "a", "a", "b", "c"}) {
     queue.Submit(*queue.Enter(caller), 0, [&, caller] {
       order.push_back(caller);
