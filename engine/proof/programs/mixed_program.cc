@@ -14,6 +14,8 @@
 #include <coin/CoinPackedMatrix.hpp>
 #include <coin/OsiClpSolverInterface.hpp>
 #include <cstddef>
+#include <functional>
+#include <optional>
 
 // clang-format off: it does not stand alone
 #include <coin/CbcCutGenerator.hpp>
@@ -93,6 +95,47 @@ class CutWatcher : public CglCutGenerator {
   CbcModel* model_;
 };
 
+// Gomory's cuts for the columns that are farthest from whole numbers. A cut takes time in
+// proportion to the matrix, and one call of the generator cannot be ended.
+class FewGomory : public CglGomory {
+ public:
+  explicit FewGomory(const CglGomory& usual)
+      : CglGomory(usual),
+        usual_away_(usual.getAway()),
+        usual_away_at_root_(usual.getAwayAtRoot()) {}
+  CglCutGenerator* clone() const override { return new FewGomory(*this); }
+  void generateCuts(const OsiSolverInterface& solver, OsiCuts& cuts,
+                    const CglTreeInfo info) override {
+    const double away = LeastAway(solver);
+    if (away >= kHalf) return;
+    setAway(std::max(usual_away_, away));
+    setAwayAtRoot(std::max(usual_away_at_root_, away));
+    CglGomory::generateCuts(solver, cuts, info);
+  }
+
+ private:
+  static constexpr double kHalf = 0.5;
+  static constexpr double kMostWork = 1.5e6;  // numbers of the matrix, of some 10 ns each
+
+  // So far from a whole number are only as many columns as there is time for.
+  static double LeastAway(const OsiSolverInterface& solver) {
+    const double of_cut = solver.getNumElements() + solver.getNumRows() + 1;
+    const auto most = static_cast<size_t>(kMostWork / of_cut);
+    std::vector<double> away;
+    for (int c = 0; c < solver.getNumCols(); ++c) {
+      const double x = solver.getColSolution()[c];
+      away.push_back(std::abs(x - std::round(x)));
+    }
+    if (away.size() <= most) return 0;
+    std::nth_element(away.begin(), away.begin() + static_cast<ptrdiff_t>(most), away.end(),
+                     std::greater<>());
+    return away[most];
+  }
+
+  double usual_away_;
+  double usual_away_at_root_;
+};
+
 // Cbc's usual cuts and heuristics, with watchers between the cut generators.
 class WatchedStrategy : public CbcStrategyDefault {
  public:
@@ -106,9 +149,14 @@ class WatchedStrategy : public CbcStrategyDefault {
       CutWatcher between = watcher;
       model.addCutGenerator(&between, 1, "watcher");
       CbcCutGenerator& given = *model.cutGenerator(g);
-      model.addCutGenerator(given.generator(), given.howOften(), given.cutGeneratorName(),
-                            given.normal(), given.atSolution(), given.whenInfeasible(),
-                            given.howOftenInSub(), given.whatDepth(), given.whatDepthInSub());
+      CglCutGenerator* generator = given.generator();
+      std::optional<FewGomory> few;
+      if (const auto* gomory = dynamic_cast<const CglGomory*>(generator)) {
+        generator = &few.emplace(*gomory);
+      }
+      model.addCutGenerator(generator, given.howOften(), given.cutGeneratorName(), given.normal(),
+                            given.atSolution(), given.whenInfeasible(), given.howOftenInSub(),
+                            given.whatDepth(), given.whatDepthInSub());
       model.cutGenerator(g)->setHowOften(-100);  // its copy, behind the watcher, takes its place
     }
   }
@@ -129,7 +177,7 @@ void SetUp(CbcModel& model, Watch* watch) {
     model.setStrategy(strategy);
     return;
   }
-  CglGomory gomory;
+  FewGomory gomory{CglGomory()};
   if (model.getNumRows() <= kMostRowsToCut) model.addCutGenerator(&gomory, kAtRootOnly, "");
   CbcRounding rounding(model);
   model.addHeuristic(&rounding);
@@ -224,14 +272,18 @@ MixedProgram::Result MixedProgram::Solve(const Options& options, const std::vect
   solver.messageHandler()->setLogLevel(0);
   solver.getModelPtr()->setLogLevel(0);
   impl_->Load(solver);
+  // In a large programme each of these steps copies the matrix several times.
+  if (budget.ExhaustedNow()) return result;
   const LinearWatcher linear_watcher(&watch);
   solver.getModelPtr()->passInEventHandler(&linear_watcher);
   try {
     CbcModel model(solver);
+    if (budget.ExhaustedNow()) return result;
     model.setLogLevel(0);
     const SearchWatcher search_watcher(&watch);
     model.passInEventHandler(&search_watcher);
     SetUp(model, &watch);
+    if (budget.ExhaustedNow()) return result;
     model.setAllowableFractionGap(options.gap);
     if (!known.empty()) {
       model.setBestSolution(known.data(), column_count(), result.value, false);

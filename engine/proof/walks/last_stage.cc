@@ -80,6 +80,7 @@ ItemStage::Best LastStage::Solve(const std::vector<double>& start, double limit,
 void LastStage::Sample(int samples, double limit, Budget& budget) {
   std::vector<std::vector<double>> starts;
   for (int a = model_.first(stage_); a < model_.first(stage_ + 1); ++a) {
+    if (budget.Exhausted()) return;
     if (!model_.CanFollow(a, model_.first(stage_ + 1))) continue;
     for (int u = 0; u < model_.states(a); ++u) starts.push_back(StartAfter({a, u}, 0));
   }
@@ -91,7 +92,7 @@ void LastStage::Sample(int samples, double limit, Budget& budget) {
     if (*farthest <= 0) break;
     const std::vector<double>& start = starts[static_cast<size_t>(farthest - distance.begin())];
     Learn(start, items_.Bound(start, limit, budget));
-    for (size_t i = 0; i < starts.size(); ++i) {
+    for (size_t i = 0; i < starts.size() && !budget.Exhausted(); ++i) {
       double largest = 0;
       for (size_t e = 0; e < start.size(); ++e) {
         largest = std::max(largest, std::abs(starts[i][e] - start[e]));

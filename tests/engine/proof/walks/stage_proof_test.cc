@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "engine/proof/walks/last_stage.h"
 #include "engine/proof/walks/stage_model.h"
 #include "engine/proof/walks/walk_conflicts.h"
 #include "engine/proof/walks/walk_prover.h"
+#include "tests/support/counting_turn.h"
 #include "tests/support/problems/brute_force.h"
 #include "tests/support/problems/instances.h"
 #include "tests/support/problems/random_plan.h"
@@ -138,6 +140,16 @@ TEST(ProveByStages, EqualDistancesAreNoTrouble) {
   EXPECT_TRUE(proof.proven);
   // Eleven moves of 3 mm between squares of side 1, and eleven of 3.5 mm or 4 mm between rasters.
   EXPECT_GE(proof.cost, 11 * 3 + 11 * 3.5);
+}
+
+// Before the first sample, each end of the stage before takes a while.
+TEST(LastStage, AsksForEachEndThatItMaySample) {
+  const OwnedProblem owned(SequentialPlan(testing::SquareGrid(6, 6)));
+  const StageModel model = ModelOf(owned);
+  ASSERT_EQ(model.stage_count(), 2);
+  LastStage last(model);
+
+  EXPECT_GE(testing::AsksOf([&](Budget& budget) { last.Sample(0, 1000, budget); }), 36);
 }
 
 TEST(ProveByStages, GivesABoundWithinTheDeadline) {
