@@ -131,7 +131,7 @@ class PathTspSolver::Search {
     stopped_ = false;
     // Far more than any path below the cutoff can pay.
     relaxation_.SetStart(start, 2 * std::abs(cutoff) + 1);
-    ReleaseAll();
+    applied_.clear();
     relaxation_.AllowAll();
   }
 

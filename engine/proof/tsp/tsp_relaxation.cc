@@ -303,11 +303,10 @@ TspRelaxation::ItemPair TspRelaxation::PairOf(const Move& move) const {
   return {std::min(a, b), std::max(a, b)};
 }
 
-int TspRelaxation::RowOf(const ItemPair& pair) const {
-  const auto it = std::find_if(pairs_.begin(), pairs_.end(),
-                               [&pair](const RowOfPair& held) { return held.pair == pair; });
-  assert(it != pairs_.end());
-  return it->row;
+std::vector<TspRelaxation::RowOfPair>::const_iterator TspRelaxation::Held(
+    const ItemPair& pair) const {
+  return std::find_if(pairs_.begin(), pairs_.end(),
+                      [&pair](const RowOfPair& held) { return held.pair == pair; });
 }
 
 std::vector<std::pair<TspRelaxation::ItemPair, double>> TspRelaxation::DividedPairs() const {
@@ -355,10 +354,15 @@ void TspRelaxation::HoldPairs(const std::vector<ItemPair>& pairs) {
 }
 
 void TspRelaxation::Fix(const ItemPair& pair, bool in) {
-  lp_.SetRowBounds(RowOf(pair), in ? 1 : 0, in ? 1 : 0);
+  const auto held = Held(pair);
+  assert(held != pairs_.end());
+  lp_.SetRowBounds(held->row, in ? 1 : 0, in ? 1 : 0);
 }
 
-void TspRelaxation::Free(const ItemPair& pair) { lp_.SetRowBounds(RowOf(pair), 0, 1); }
+void TspRelaxation::Free(const ItemPair& pair) {
+  const auto held = Held(pair);
+  if (held != pairs_.end()) lp_.SetRowBounds(held->row, 0, 1);
+}
 
 std::vector<int> TspRelaxation::IntegralPath() const {
   std::vector<std::vector<int>> next(static_cast<size_t>(nodes_.count()));

@@ -45,7 +45,7 @@ class TspRelaxation {
   // last bound plus `gap` uses them.
   void LeaveOutDear(double gap, Budget& budget);
 
-  // Allows all ports and moves again.
+  // Allows all ports and moves again, and holds no pairs.
   void AllowAll();
 
   // What is 0 or 1 in every path, for branching: columns, which are of ports and moves, and whether
@@ -66,6 +66,7 @@ class TspRelaxation {
   void HoldPairs(const std::vector<ItemPair>& pairs);
   // REQUIRES: the pair is held.
   void Fix(const ItemPair& pair, bool in);
+  // A pair that is not held is free already.
   void Free(const ItemPair& pair);
 
   // Adds about `most` cuts that the last solution violates; returns how many.
@@ -94,7 +95,7 @@ class TspRelaxation {
 
   void AddRowsOfNodes();
   ItemPair PairOf(const Move& move) const;
-  int RowOf(const ItemPair& pair) const;
+  std::vector<RowOfPair>::const_iterator Held(const ItemPair& pair) const;
   void DeleteRows(const std::vector<int>& rows);
   int ColumnOf(int move) const { return first_move_ + move; }
   int move_count() const { return static_cast<int>(moves_.size()); }

@@ -186,6 +186,31 @@ TEST(TspRelaxation, HoldsPairsAmongMovesThatComeIn) {
   EXPECT_GT(dearer, 30);
 }
 
+// Solves from several starts begin so, whatever the last one had fixed.
+TEST(TspRelaxation, AllowingAllFreesPairsAndColumns) {
+  const SmallTsp small = RandomTsp(3, 6);
+  const TspRelaxation::ItemPair pair{2, 4};
+  Budget budget;
+  TspRelaxation relaxation(small.tsp);
+  relaxation.SetStart(small.start, kForbidden);
+  relaxation.AddMoves(AllMoves(relaxation.nodes()));
+  ASSERT_EQ(relaxation.lp().SolveDual(budget), Status::kOptimal);
+  const double free = relaxation.lp().value();
+  const int rows = relaxation.lp().row_count();
+  relaxation.HoldPairs({pair});
+  relaxation.Fix(pair, true);
+  relaxation.Fix(relaxation.column_count() - 1, true);
+  ASSERT_EQ(relaxation.lp().SolveDual(budget), Status::kOptimal);
+  ASSERT_GT(relaxation.lp().value(), free + kRounding);
+
+  relaxation.AllowAll();
+  relaxation.Free(pair);  // is free already
+
+  EXPECT_EQ(relaxation.lp().row_count(), rows);
+  ASSERT_EQ(relaxation.lp().SolveDual(budget), Status::kOptimal);
+  EXPECT_NEAR(relaxation.lp().value(), free, kRounding);
+}
+
 TEST(TspRelaxation, WhatIsLeftOutIsOfNoPathWithinTheGap) {
   for (uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));
