@@ -11,6 +11,10 @@ namespace {
 
 constexpr size_t kProbes = 16;
 
+// Segments looked at for each of a layer: far more than a printable layer needs. Thousands of loops
+// in one place are told apart as far as this reaches; the others stay as they are named.
+constexpr size_t kLooksPerSegment = 250;
+
 // The neighbor's middle is one line further; it may be off by this much of a width.
 constexpr double kNeighborSlack = 0.45;
 
@@ -31,7 +35,8 @@ struct Probes {
   size_t all = 0;
 };
 
-void ProbeOutside(const Outline& outline, uint32_t loop, const SegmentGrid& grid, Probes& probes) {
+void ProbeOutside(const Outline& outline, uint32_t loop, const SegmentGrid& grid, size_t& looks,
+                  Probes& probes) {
   const size_t segments = outline.shape().size() - 1;
   const size_t step = std::max<size_t>(1, segments / kProbes);
   const double slack = kNeighborSlack * outline.width_mm;
@@ -40,6 +45,8 @@ void ProbeOutside(const Outline& outline, uint32_t loop, const SegmentGrid& grid
     const Segment end{probe.b, probe.b, 0};
     bool hit = false;
     grid.ForEachOnWay(probe.a, probe.b, [&](uint32_t s) {
+      if (looks == 0) return false;
+      --looks;
       const Segment& other = grid.segments()[s];
       hit = other.path != loop && SquaredDistance(end, other) <= slack * slack;
       return !hit;
@@ -89,10 +96,12 @@ void TellWalls(const GcodeFile& file, const Layer& layer, std::vector<Outline>& 
   }
   if (loops.empty()) return;
   const SegmentGrid grid(std::move(segments));
+  size_t looks = kLooksPerSegment * grid.segments().size();
   for (const uint32_t loop : loops) {
     Probes probes;
-    ProbeOutside(outlines[loop], loop, grid, probes);
-    if (in_two[loop]) ProbeOutside(outlines[loop + 1], loop, grid, probes);
+    ProbeOutside(outlines[loop], loop, grid, looks, probes);
+    if (in_two[loop]) ProbeOutside(outlines[loop + 1], loop, grid, looks, probes);
+    if (looks == 0) break;
     if (probes.hits * 2 <= probes.all) continue;
     outlines[loop].feature = Feature::kInnerWall;
     if (in_two[loop]) outlines[loop + 1].feature = Feature::kInnerWall;
@@ -125,11 +134,14 @@ double WallFlow(const GcodeFile& file, const Layer& layer, const std::vector<Out
 }
 
 // True if a segment of an earlier path than `path` lies within `reach` of `point`.
-bool LiesOnEarlier(Vertex point, double reach, uint32_t path, const SegmentGrid& grid) {
+bool LiesOnEarlier(Vertex point, double reach, uint32_t path, const SegmentGrid& grid,
+                   size_t& looks) {
   bool lies = false;
   for (const Vertex way : {Vertex{reach, 0}, Vertex{0, reach}}) {
     grid.ForEachOnWay(
         {point.x - way.x, point.y - way.y}, {point.x + way.x, point.y + way.y}, [&](uint32_t s) {
+          if (looks == 0) return false;
+          --looks;
           const Segment& other = grid.segments()[s];
           lies = other.path < path && SquaredDistance({point, point, 0}, other) <= reach * reach;
           return !lies;
@@ -141,7 +153,7 @@ bool LiesOnEarlier(Vertex point, double reach, uint32_t path, const SegmentGrid&
 
 // True if most of the longest stretch of `outline` lies on earlier paths. The first one may be a
 // short one at the edge of the skin, where nothing is.
-bool LiesOnEarlier(const Outline& outline, uint32_t path, const SegmentGrid& grid) {
+bool LiesOnEarlier(const Outline& outline, uint32_t path, const SegmentGrid& grid, size_t& looks) {
   // Ironing is so thin that its width reaches no line of a skin from between two of them.
   constexpr double kLeastReachMm = 0.3;
   const std::vector<Vertex>& points = outline.shape();
@@ -157,7 +169,7 @@ bool LiesOnEarlier(const Outline& outline, uint32_t path, const SegmentGrid& gri
   int lying = 0;
   for (const double t : {0.25, 0.5, 0.75}) {
     const Vertex probe{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
-    lying += LiesOnEarlier(probe, reach, path, grid) ? 1 : 0;
+    lying += LiesOnEarlier(probe, reach, path, grid, looks) ? 1 : 0;
   }
   return lying >= 2;
 }
@@ -183,8 +195,10 @@ void MarkIroning(const GcodeFile& file, const Layer& layer, std::vector<Outline>
   }
   if (thin.empty() || skin.empty()) return;
   const SegmentGrid grid(std::move(skin));
+  size_t looks = kLooksPerSegment * (grid.segments().size() + thin.size());
   for (const uint32_t path : thin) {
-    if (LiesOnEarlier(outlines[path], path, grid)) outlines[path].feature = Feature::kIroning;
+    if (LiesOnEarlier(outlines[path], path, grid, looks))
+      outlines[path].feature = Feature::kIroning;
   }
 }
 

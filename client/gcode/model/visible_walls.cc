@@ -1,10 +1,34 @@
 #include "client/gcode/model/visible_walls.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "client/gcode/model/segment_grid.h"
+#include "client/gcode/model/wall_crowd.h"
 
 namespace traverse::gcode {
+
+namespace {
+
+bool IsOne(const Outline& outline) {
+  return IsVisibleWall(outline.feature) && outline.points.size() >= 2;
+}
+
+WallCrowd NoCrowdYet(const std::vector<Outline>& outlines) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  Vertex low{kFar, kFar};
+  Vertex high{-kFar, -kFar};
+  for (const Outline& outline : outlines) {
+    if (!IsOne(outline)) continue;
+    for (const Vertex& point : outline.shape()) {
+      low = {std::min(low.x, point.x), std::min(low.y, point.y)};
+      high = {std::max(high.x, point.x), std::max(high.y, point.y)};
+    }
+  }
+  return low.x <= high.x ? WallCrowd(low, high) : WallCrowd({0, 0}, {0, 0});
+}
+
+}  // namespace
 
 bool IsVisibleWall(Feature feature) {
   return feature == Feature::kOuterWall || feature == Feature::kLoop ||
@@ -13,9 +37,10 @@ bool IsVisibleWall(Feature feature) {
 
 std::vector<Wall> VisibleWallsOf(const std::vector<Outline>& outlines) {
   std::vector<Wall> walls;
+  WallCrowd crowd = NoCrowdYet(outlines);
   for (size_t path = 0; path < outlines.size(); ++path) {
     const Outline& outline = outlines[path];
-    if (!IsVisibleWall(outline.feature) || outline.points.size() < 2) continue;
+    if (!IsOne(outline) || !crowd.Takes(outline.shape())) continue;
     Wall& wall = walls.emplace_back();
     wall.points.reserve(outline.shape().size());
     for (const Vertex& point : outline.shape()) wall.points.push_back({point.x, point.y});

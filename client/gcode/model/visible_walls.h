@@ -14,7 +14,8 @@ namespace traverse::gcode {
 bool IsVisibleWall(Feature feature);
 
 // Those among the outlines of one layer, in the form sent to the search; `path` is the outline's
-// index.
+// index. Without those that come to a place that has more of them than can be printed there
+// (WallCrowd): a test of a way looks at all that are near.
 std::vector<Wall> VisibleWallsOf(const std::vector<Outline>& outlines);
 
 // A straight travel move.
