@@ -1,9 +1,10 @@
 #include "client/gcode/text/lexer.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cstring>
 #include <optional>
+
+#include "client/gcode/text/digits.h"
 
 namespace traverse::gcode {
 namespace {
@@ -31,8 +32,9 @@ std::optional<Decimal> ParseFeed(const char** text, const char* end) {
   return number;
 }
 
-// Reads words up to `end` or a semicolon. Returns where it stopped; null if a word is unreadable.
-const char* ScanWords(const char* p, const char* end, Command& command) {
+// Reads words up to `end` or a semicolon, in a line that begins at `line`. Returns where it
+// stopped; null if a word is unreadable.
+const char* ScanWords(const char* line, const char* p, const char* end, Command& command) {
   command.words = 0;
   for (;;) {
     p = SkipBlanks(p, end);
@@ -42,8 +44,8 @@ const char* ScanWords(const char* p, const char* end, Command& command) {
     p = SkipBlanks(p, end);
     Decimal value = 0;
     if (p < end && IsNumberPart(*p)) {
-      const std::optional<Decimal> number =
-          letter == 'F' ? ParseFeed(&p, end) : ParseDecimal(&p, end);
+      std::optional<Decimal> number = ParseShort(line, &p, end);
+      if (!number) number = letter == 'F' ? ParseFeed(&p, end) : ParseDecimal(&p, end);
       if (!number) return nullptr;
       value = *number;
     }
@@ -57,22 +59,6 @@ bool HasCoordinates(const Command& command) {
 }
 
 }  // namespace
-
-Line LineAt(std::string_view text, Offset begin) {
-  assert(begin < text.size());
-  const char* const start = text.data() + begin;
-  const void* const found = std::memchr(start, '\n', text.size() - begin);
-  Line line;
-  line.begin = begin;
-  if (found == nullptr) {
-    line.end = line.next = static_cast<Offset>(text.size());
-  } else {
-    line.end = static_cast<Offset>(static_cast<const char*>(found) - text.data());
-    line.next = line.end + 1;
-  }
-  while (line.end > line.begin && text[line.end - 1] == '\r') --line.end;  // IceSL: CR CR LF
-  return line;
-}
 
 void LexLine(std::string_view text, Command& command) {
   const char* const end = text.data() + text.size();
@@ -102,7 +88,7 @@ void LexLine(std::string_view text, Command& command) {
   const char* const rest = p;
   const char* stop;
   if (HasCoordinates(command)) {
-    stop = ScanWords(p, end, command);
+    stop = ScanWords(text.data(), p, end, command);
     if (stop == nullptr) return;
   } else {
     const void* const semicolon = std::memchr(p, ';', static_cast<size_t>(end - p));
@@ -114,8 +100,9 @@ void LexLine(std::string_view text, Command& command) {
 }
 
 bool ReadWords(Command& command) {
-  const char* const end = command.rest.data() + command.rest.size();
-  if (ScanWords(command.rest.data(), end, command) == end) return true;
+  const char* const begin = command.rest.data();
+  const char* const end = begin + command.rest.size();
+  if (ScanWords(begin, begin, end, command) == end) return true;
   command.words = 0;
   return false;
 }

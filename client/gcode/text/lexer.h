@@ -11,8 +11,10 @@
 #ifndef TRAVERSE_CLIENT_GCODE_TEXT_LEXER_H_
 #define TRAVERSE_CLIENT_GCODE_TEXT_LEXER_H_
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string_view>
 
 #include "client/gcode/text/decimal.h"
@@ -33,7 +35,21 @@ struct Line {
 };
 
 // The line that begins at `begin`. REQUIRES: begin < text.size().
-Line LineAt(std::string_view text, Offset begin);
+inline Line LineAt(std::string_view text, Offset begin) {
+  assert(begin < text.size());
+  const char* const start = text.data() + begin;
+  const void* const found = std::memchr(start, '\n', text.size() - begin);
+  Line line;
+  line.begin = begin;
+  if (found == nullptr) {
+    line.end = line.next = static_cast<Offset>(text.size());
+  } else {
+    line.end = static_cast<Offset>(static_cast<const char*>(found) - text.data());
+    line.next = line.end + 1;
+  }
+  while (line.end > line.begin && text[line.end - 1] == '\r') --line.end;  // IceSL: CR CR LF
+  return line;
+}
 
 enum class LineKind : uint8_t { kBlank, kComment, kCommand, kText };
 

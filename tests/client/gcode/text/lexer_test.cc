@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
 
 namespace traverse::gcode {
@@ -51,6 +52,36 @@ TEST(LexLine, ReadsTheWordsOfMoves) {
   EXPECT_EQ(c.Value('Y'), -109'474'000'000);
   EXPECT_EQ(c.Value('E'), 32'720'000);
   EXPECT_EQ(c.comment, "; perimeter");
+}
+
+// Numbers of up to seven digits before and behind the point are read at once, others digit by
+// digit; wherever a number stands in its line, and whatever stands beside it.
+TEST(LexLine, ReadsNumbersOfAllLengthsAlike) {
+  const std::string digits = "9182736450";
+  for (size_t whole = 0; whole <= 9; ++whole) {
+    for (size_t decimals = 0; decimals <= 9; ++decimals) {
+      for (const std::string sign : {"", "-", "+"}) {
+        const std::string point = decimals > 0 || whole % 2 == 0 ? "." : "";
+        const std::string number =
+            sign + digits.substr(0, whole) + point + digits.substr(0, decimals);
+        const char* at = number.data();
+        const std::optional<Decimal> value = ParseDecimal(&at, number.data() + number.size());
+        for (const std::string& line : {"G1 X" + number, "G1 Y1X" + number + "F9000",
+                                        "G1 X" + number + " ;2", "G1 X" + number + "\tY7"}) {
+          const Command c = Lex(line);
+          if (!value) {
+            EXPECT_EQ(c.kind, LineKind::kText) << line;
+            continue;
+          }
+          ASSERT_TRUE(c.Is('G', 1)) << line;
+          EXPECT_EQ(c.Value('X'), *value) << line;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(Lex("G1 X1.2.3").kind, LineKind::kText);
+  EXPECT_EQ(Lex("G1 X12345:").kind, LineKind::kText);
+  EXPECT_EQ(Lex("G1 X123\xb1").kind, LineKind::kText);
 }
 
 TEST(LexLine, TakesBlanksAndSmallLetters) {
