@@ -1,7 +1,12 @@
 #include "client/gcode/verify/machine/command_words.h"
 
+#include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <optional>
 
 #include "client/gcode/verify/text.h"
@@ -12,41 +17,65 @@ namespace {
 // Numbers beyond this are not followed.
 constexpr double kMaxNumber = 1e9;
 
-// The numbers that slicers write: up to nine digits, and six decimals.
-std::optional<Micro> PlainNumber(std::string_view text, size_t& used) {
-  constexpr Micro kScale[] = {1'000'000, 100'000, 10'000, 1'000, 100, 10, 1};
-  const bool negative = !text.empty() && text[0] == '-';
-  size_t at = negative ? 1 : 0;
-  Micro value = 0;
-  size_t digits = 0;
-  const auto take = [&] {
-    const size_t begin = at;
-    for (; at < text.size() && text[at] >= '0' && text[at] <= '9'; ++at) {
-      value = value * 10 + (text[at] - '0');
-      if (++digits > 15) break;
-    }
-    return at - begin;
-  };
-  const size_t whole = take();
-  size_t decimals = 0;
-  if (at < text.size() && text[at] == '.') {
-    ++at;
-    decimals = take();
+// The bytes of [begin, end) from `at` on in one word, the first one lowest, and zeros behind `end`.
+// REQUIRES: begin <= at < end.
+uint64_t Load(const char* begin, const char* at, const char* end) {
+  uint64_t bytes = 0;
+  if (end - begin < 8) {
+    for (const char* p = end; p-- > at;) bytes = bytes << 8 | static_cast<unsigned char>(*p);
+    return bytes;
   }
-  if (digits == 0 || whole > 9 || decimals > 6) return std::nullopt;
-  used = at;
-  return (negative ? -value : value) * kScale[decimals];
+  const char* const from = std::min(at, end - 8);
+  std::memcpy(&bytes, from, 8);
+  if constexpr (std::endian::native == std::endian::big) bytes = __builtin_bswap64(bytes);
+  return bytes >> (8 * (at - from));
 }
 
-std::optional<Micro> Number(std::string_view text, size_t& used) {
-  if (const std::optional<Micro> plain = PlainNumber(text, used)) return plain;
-  size_t at = 0;
-  if (!text.empty() && text[0] == '+') at = 1;
+// The digits with which `bytes` begins, and their value. REQUIRES: `bytes` does not consist of
+// digits only.
+Micro Digits(uint64_t bytes, size_t& count) {
+  constexpr uint64_t kEach = 0x0101010101010101u;
+  const uint64_t less = bytes ^ (kEach * '0');
+  // Bytes up to the first one that is no digit carry nothing over to it.
+  const uint64_t above_nine = (less + kEach * (127 - 9)) | less;
+  count = static_cast<size_t>(std::countr_zero(above_nine & (kEach * 128))) / 8;
+  if (count == 0 || count == 8) return 0;
+  uint64_t value = less << (8 * (8 - count));  // leading zeros
+  value = (value * 10 + (value >> 8)) & 0x00ff00ff00ff00ffu;
+  value = (value * 100 + (value >> 16)) & 0x0000ffff0000ffffu;
+  value = (value * 10'000 + (value >> 32)) & 0xffffffffu;
+  return static_cast<Micro>(value);
+}
+
+// The numbers that slicers write: up to seven digits, and six decimals. `at` and `end` are within a
+// text that begins at `begin`; moves `at` past the number.
+std::optional<Micro> PlainNumber(const char* begin, const char*& at, const char* end) {
+  constexpr Micro kScale[] = {1'000'000, 100'000, 10'000, 1'000, 100, 10, 1};
+  const char* p = at;
+  const bool negative = *p == '-';
+  if (negative && ++p == end) return std::nullopt;
+  size_t whole = 0;
+  Micro value = Digits(Load(begin, p, end), whole) * kScale[0];
+  p += whole;
+  size_t decimals = 0;
+  if (whole < 8 && p < end && *p == '.' && ++p < end) {
+    const Micro fraction = Digits(Load(begin, p, end), decimals);
+    if (decimals > 6) return std::nullopt;
+    value += fraction * kScale[decimals];
+    p += decimals;
+  }
+  if (whole == 8 || whole + decimals == 0) return std::nullopt;
+  at = p;
+  return negative ? -value : value;
+}
+
+std::optional<Micro> Number(const char* begin, const char*& at, const char* end) {
+  if (const std::optional<Micro> plain = PlainNumber(begin, at, end)) return plain;
+  const char* const first = *at == '+' ? at + 1 : at;
   double value = 0;
-  const auto result =
-      std::from_chars(text.data() + at, text.data() + text.size(), value, std::chars_format::fixed);
+  const auto result = std::from_chars(first, end, value, std::chars_format::fixed);
   if (result.ec != std::errc{} || !(std::abs(value) <= kMaxNumber)) return std::nullopt;
-  used = static_cast<size_t>(result.ptr - text.data());
+  at = result.ptr;
   return std::llround(value * 1e6);
 }
 
@@ -55,39 +84,35 @@ bool IsLetter(char c) { return UpperCase(c) >= 'A' && UpperCase(c) <= 'Z'; }
 }  // namespace
 
 CommandWords::CommandWords(std::string_view text) {
-  for (text = TrimLine(text); !text.empty(); text = TrimLine(text)) {
-    const char letter = UpperCase(text[0]);
-    if (!IsLetter(letter) || Has(letter)) {
-      readable = false;
-      return;
-    }
-    text = TrimLine(text.substr(1));
+  text = TrimLine(text);
+  const char* const begin = text.data();
+  const char* const end = begin + text.size();
+  const auto skip_blanks = [end](const char* at) {
+    while (at < end && (*at == ' ' || *at == '\t')) ++at;
+    return at;
+  };
+  for (const char* at = begin; at < end; at = skip_blanks(at)) {
+    const char letter = UpperCase(*at);
+    readable = IsLetter(letter) && !Has(letter);
+    if (!readable) return;
+    at = skip_blanks(at + 1);
     Micro value = 0;
-    size_t used = 0;
-    if (!text.empty() && !IsLetter(text[0])) {
-      const std::optional<Micro> number = Number(text, used);
-      if (!number) {
-        readable = false;
-        return;
-      }
+    if (at < end && !IsLetter(*at)) {
+      const std::optional<Micro> number = Number(begin, at, end);
+      readable = number.has_value();
+      if (!readable) return;
       value = *number;
     }
     set |= 1u << (letter - 'A');
     values[static_cast<size_t>(letter - 'A')] = value;
-    text.remove_prefix(used);
   }
-}
-
-bool CommandWords::OnlyFrom(std::string_view letters) const {
-  uint32_t known = 0;
-  for (const char c : letters) known |= 1u << (c - 'A');
-  return readable && (set & ~known) == 0;
 }
 
 std::string_view WordsOf(std::string_view line) {
   const std::string_view code = line.substr(0, line.find(';'));
-  const size_t digits = code.find_first_not_of("0123456789", 1);
-  return digits == std::string_view::npos ? std::string_view{} : code.substr(digits);
+  size_t digits = 1;
+  while (digits < code.size() && code[digits] >= '0' && code[digits] <= '9') ++digits;
+  return digits < code.size() ? code.substr(digits) : std::string_view{};
 }
 
 }  // namespace traverse::gcode

@@ -22,7 +22,11 @@ struct CommandWords {
   bool Has(char letter) const { return (set >> (letter - 'A')) & 1u; }
 
   // It is readable, and has no letters but these.
-  bool OnlyFrom(std::string_view letters) const;
+  bool OnlyFrom(std::string_view letters) const {
+    uint32_t known = 0;
+    for (const char c : letters) known |= 1u << (c - 'A');
+    return readable && (set & ~known) == 0;
+  }
 
   // REQUIRES: Has(letter).
   Micro operator[](char letter) const {

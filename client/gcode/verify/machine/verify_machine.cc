@@ -69,13 +69,18 @@ std::string_view VerifyMachine::TakeLine() {
   }
   const auto end = static_cast<size_t>(line_feed_ - rest_.data());
   std::string_view line = rest_.substr(0, end);
+  if (return_ == nullptr || return_ < rest_.data()) {
+    return_ = rest_.data() + std::min(rest_.find('\r'), rest_.size());
+  }
   size_t returns = 0;
-  while (returns < line.size() && line[line.size() - 1 - returns] == '\r') ++returns;
-  const size_t inside = line.substr(0, line.size() - returns).find('\r');
-  if (inside != std::string_view::npos) {
-    NoteEnd(kMostReturns + 1);
-    rest_.remove_prefix(inside + 1);
-    return line.substr(0, inside);
+  if (return_ < line_feed_) {
+    while (returns < line.size() && line[line.size() - 1 - returns] == '\r') ++returns;
+    const auto inside = static_cast<size_t>(return_ - rest_.data());
+    if (inside < line.size() - returns) {
+      NoteEnd(kMostReturns + 1);
+      rest_.remove_prefix(inside + 1);
+      return line.substr(0, inside);
+    }
   }
   if (end < rest_.size()) NoteEnd(std::min(returns, kMostReturns));
   rest_.remove_prefix(std::min(end + 1, rest_.size()));

@@ -124,6 +124,7 @@ class VerifyMachine {
 
   std::string_view rest_;
   const char* line_feed_ = nullptr;  // the next one, or the end
+  const char* return_ = nullptr;     // the same of carriage returns
   size_t number_ = 0;
   size_t moved_at_ = 0;  // the line of motion_
   uint32_t line_ends_ = 0;

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+
 namespace traverse::gcode {
 namespace {
 
@@ -28,6 +31,27 @@ TEST(VerifyCommandWords, LongNumbersAreRounded) {
   EXPECT_EQ(words['Y'], 2'000'000);
   EXPECT_EQ(words['Z'], 12'500'000);
   EXPECT_FALSE(CommandWords("X99999999999999999999").readable);
+}
+
+// Up to seven digits and six decimals are read at once, others digit by digit.
+TEST(VerifyCommandWords, NumbersOfAllLengthsAreReadAlike) {
+  const std::string digits = "918273645";
+  for (size_t whole = 0; whole <= 9; ++whole) {
+    for (size_t decimals = 0; decimals <= 6; ++decimals) {
+      const std::string number = digits.substr(0, whole) + "." + digits.substr(0, decimals);
+      const double value = whole + decimals > 0 ? std::stod(number) : 0;
+      for (const std::string& text :
+           {"X" + number, "X-" + number, " X " + number + "Y2", "Z1X" + number + " Y5 "}) {
+        const CommandWords words(text);
+        ASSERT_EQ(words.readable, whole + decimals > 0) << text;
+        if (!words.readable) continue;
+        const bool negative = text[1] == '-';
+        EXPECT_EQ(words['X'], (negative ? -1 : 1) * std::llround(value * 1e6)) << text;
+      }
+    }
+  }
+  EXPECT_FALSE(CommandWords("X123\xb1").readable);
+  EXPECT_FALSE(CommandWords("X12345:").readable);
 }
 
 TEST(VerifyCommandWords, WhatIsTwiceOrNoWordIsUnreadable) {
