@@ -276,7 +276,8 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   }
   gcode::FileHabits habits;
   habits.retraction = gcode::HabitOfNewWays(*file, options.allow);
-  habits.travel = gcode::LearnTravel(*file, habits.retraction.threshold_mm);
+  habits.travel = gcode::LearnTravel(*file, habits.retraction.threshold_mm,
+                                     gcode::ThreadsFor(file->text.size()));
   habits.keeps_retractions = gcode::KeepsRetractions(*file);
   const std::vector<gcode::TravelModel>& models = habits.travel;
   const gcode::Census census = gcode::FillLayers(*file, options, habits, job);

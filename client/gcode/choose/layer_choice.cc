@@ -58,7 +58,7 @@ class LayerChooser::Impl {
         habit_(HabitOfNewWays(file, choice.allow)),
         plain_habit_(Plain(habit_)),
         donors_(file),
-        travel_(LearnTravel(file, habit_.threshold_mm)),
+        travel_(LearnTravel(file, habit_.threshold_mm, choice.threads)),
         revisits_(file, choice.min_revisit_seconds, choice.threads),
         columns_(file.layers.size()) {
     ParallelFor(columns_.size(), threads_, [this](size_t layer) { FillColumn(layer); });

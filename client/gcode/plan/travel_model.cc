@@ -8,6 +8,7 @@
 
 #include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/measure/print_meter.h"
+#include "client/gcode/parallel.h"
 
 namespace traverse::gcode {
 namespace {
@@ -58,9 +59,9 @@ class TravelLearner {
     PrintMeter all(file_.profile, dynamics, nullptr);
     PrintMeter travel(file_.profile, dynamics, nullptr);
     for (Step step; interpreter.Next(step);) {
-      all.Follow(step, interpreter);
       const bool travels = step.kind == StepKind::kTravel || step.kind == StepKind::kSlot;
-      if (travels) travel.Follow(step, interpreter);
+      if (retracts) all.Follow(step, interpreter);
+      if (retracts && travels) travel.Follow(step, interpreter);
       LearnStep(step, interpreter, dynamics, learnt);
     }
     if (!retracts) return;
@@ -90,14 +91,16 @@ class TravelLearner {
 
 }  // namespace
 
-std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm) {
-  TravelLearner learner(file);
+std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm, int threads) {
+  std::vector<LayerTravel> layers(file.layers.size());
+  ParallelFor(layers.size(), threads, [&file, &layers](size_t i) {
+    layers[i] = TravelLearner(file).LearnLayer(file.layers[i]);
+  });
   std::vector<TravelModel> models;
   TravelModel model;
   model.accel_mm_s2 = Dynamics(file.profile).travel_accel();
   bool from_paths = false;
-  for (const Layer& layer : file.layers) {
-    const LayerTravel learnt = learner.LearnLayer(layer);
+  for (const LayerTravel& learnt : layers) {
     double longest_mm = 0;
     for (const auto& [how, way_mm] : learnt.way_mm) {
       if (way_mm <= longest_mm || !(how.first > 0)) continue;
