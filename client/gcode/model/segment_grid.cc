@@ -127,7 +127,7 @@ SegmentGrid::Runs SegmentGrid::MakeRuns() const {
         ++runs.runs.back().end;
         runs.runs.back().box.Include(runs.boxes[i]);
       } else {
-        runs.runs.push_back({i, i + 1, runs.boxes[i]});
+        runs.runs.push_back({entries_[i].path, i, i + 1, runs.boxes[i]});
       }
     }
     runs.first[number + 1] = static_cast<uint32_t>(runs.runs.size());

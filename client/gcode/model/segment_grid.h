@@ -44,11 +44,12 @@ class SegmentGrid {
   // each other as reach(i, j), and for some others; for some more than once. Asks reach again for
   // each two cells that contain both paths. It is in mm, at most three quarters of a cell; negative
   // means that nothing is near. When visit returns false, goes on with the next two paths or cells.
-  // Segments of one path follow one another in `segments`. Returns false, and calls nothing, if
+  // Segments of one path follow one another in `segments`. Of two paths that are near each other in
+  // two cells, nothing is visited there unless wanted(i, j). Returns false, and calls nothing, if
   // there are more than `most` pairs of paths to look at, counting each once per two adjacent
   // cells.
-  template <typename Reach, typename Visit>
-  bool ForEachNearPair(Reach reach, Visit visit,
+  template <typename Reach, typename Wanted, typename Visit>
+  bool ForEachNearPair(Reach reach, Wanted wanted, Visit visit,
                        double most = std::numeric_limits<double>::infinity()) const;
 
   // The number of segments in all cells, each counted once per cell.
@@ -110,6 +111,7 @@ class SegmentGrid {
 
   // The entries of one path in one cell.
   struct Run {
+    uint32_t path = 0;
     uint32_t begin = 0;
     uint32_t end = 0;
     Box box;
@@ -124,8 +126,9 @@ class SegmentGrid {
   Runs MakeRuns() const;
   Box BoxIn(const Segment& segment, int column, int row) const;
 
-  template <typename Reach, typename Visit>
-  void VisitCells(const Runs& runs, size_t one, size_t other, Reach& reach, Visit& visit) const;
+  template <typename Reach, typename Wanted, typename Visit>
+  void VisitCells(const Runs& runs, size_t one, size_t other, Reach& reach, Wanted& wanted,
+                  Visit& visit) const;
   template <typename Visit>
   void VisitRuns(const Runs& runs, const Run& one, const Run& other, float reach,
                  Visit& visit) const;
@@ -191,19 +194,18 @@ void SegmentGrid::VisitRuns(const Runs& runs, const Run& one, const Run& other, 
   }
 }
 
-template <typename Reach, typename Visit>
+template <typename Reach, typename Wanted, typename Visit>
 void SegmentGrid::VisitCells(const Runs& runs, size_t one, size_t other, Reach& reach,
-                             Visit& visit) const {
-  const auto most = static_cast<float>(cell_);
+                             Wanted& wanted, Visit& visit) const {
+  const auto most = static_cast<float>(0.8 * cell_);  // more than anything reaches
   for (uint32_t i = runs.first[one]; i < runs.first[one + 1]; ++i) {
     const Run& a = runs.runs[i];
-    const uint32_t path = entries_[a.begin].path;
     for (uint32_t j = one == other ? i + 1 : runs.first[other]; j < runs.first[other + 1]; ++j) {
       const Run& b = runs.runs[j];
-      const uint32_t other_path = entries_[b.begin].path;
-      if (path == other_path || a.box.Gap(b.box) > most) continue;
-      const auto near = static_cast<float>(reach(path, other_path));
-      if (a.box.Gap(b.box) <= near) VisitRuns(runs, a, b, near, visit);
+      const float gap = a.box.Gap(b.box);
+      if (gap > most || a.path == b.path) continue;
+      const auto near = static_cast<float>(reach(a.path, b.path));
+      if (gap <= near && wanted(a.path, b.path)) VisitRuns(runs, a, b, near, visit);
     }
   }
 }
@@ -224,8 +226,8 @@ void SegmentGrid::ForEachTwoCells(Visit visit) const {
   });
 }
 
-template <typename Reach, typename Visit>
-bool SegmentGrid::ForEachNearPair(Reach reach, Visit visit, double most) const {
+template <typename Reach, typename Wanted, typename Visit>
+bool SegmentGrid::ForEachNearPair(Reach reach, Wanted wanted, Visit visit, double most) const {
   const Runs runs = MakeRuns();
   const auto paths_in = [&runs](size_t cell) {
     return static_cast<double>(runs.first[cell + 1] - runs.first[cell]);
@@ -233,7 +235,8 @@ bool SegmentGrid::ForEachNearPair(Reach reach, Visit visit, double most) const {
   double pairs = 0;
   ForEachTwoCells([&](size_t one, size_t other) { pairs += paths_in(one) * paths_in(other); });
   if (pairs > most) return false;
-  ForEachTwoCells([&](size_t one, size_t other) { VisitCells(runs, one, other, reach, visit); });
+  ForEachTwoCells(
+      [&](size_t one, size_t other) { VisitCells(runs, one, other, reach, wanted, visit); });
   return true;
 }
 

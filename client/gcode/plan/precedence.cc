@@ -1,8 +1,9 @@
 #include "client/gcode/plan/precedence.h"
 
 #include <algorithm>
+#include <utility>
 
-#include "absl/container/flat_hash_map.h"
+#include "absl/container/flat_hash_set.h"
 #include "client/gcode/model/segment_grid.h"
 #include "engine/base/disjoint_sets.h"
 
@@ -11,9 +12,6 @@ namespace {
 
 // Segments this many cells apart are found by the grid.
 constexpr double kNearInCells = 0.75;
-
-// What is known about the order of two paths.
-enum class Order : uint8_t { kNone, kIfTheyTouch, kKnown };
 
 std::vector<Segment> AllSegments(const std::vector<Outline>& outlines) {
   std::vector<Segment> segments;
@@ -38,25 +36,23 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
                       const std::function<bool(uint32_t, uint32_t)>& keeps_order) {
   Contacts contacts;
   DisjointSets regions(static_cast<int>(outlines.size()));
-  absl::flat_hash_map<std::pair<uint32_t, uint32_t>, Order> orders;
+  absl::flat_hash_set<std::pair<uint32_t, uint32_t>> ordered;
   const auto ascending = [](uint32_t i, uint32_t j) {
     return std::pair<uint32_t, uint32_t>(std::min(i, j), std::max(i, j));
+  };
+  const auto keep_order = [&keeps_order](const std::pair<uint32_t, uint32_t>& pair) {
+    return keeps_order(pair.first, pair.second);
   };
   const SegmentGrid grid(AllSegments(outlines),
                          std::max(kTouchMm, kTouch * WidestOf(outlines)) / kNearInCells);
   const auto reach = [&](uint32_t one, uint32_t other) {
     return std::max(kTouchMm, kTouch * (outlines[one].width_mm + outlines[other].width_mm) / 2);
   };
-  const auto order_of = [&](uint32_t one, uint32_t other) -> Order& {
-    const std::pair<uint32_t, uint32_t> pair = ascending(one, other);
-    const auto [found, added] = orders.try_emplace(pair, Order::kNone);
-    if (added && keeps_order(pair.first, pair.second)) found->second = Order::kIfTheyTouch;
-    return found->second;
-  };
   // Of most paths that touch nothing more is to be learnt: they do in many places.
-  const auto reach_if_wanted = [&](uint32_t one, uint32_t other) {
-    const bool joined = regions.AreJoined(static_cast<int>(one), static_cast<int>(other));
-    return joined && order_of(one, other) != Order::kIfTheyTouch ? -1.0 : reach(one, other);
+  const auto wanted = [&](uint32_t one, uint32_t other) {
+    if (!regions.AreJoined(static_cast<int>(one), static_cast<int>(other))) return true;
+    const std::pair<uint32_t, uint32_t> pair = ascending(one, other);
+    return keep_order(pair) && !ordered.contains(pair);
   };
   const auto look_at = [&](uint32_t s, uint32_t t) {
     const Segment& one = grid.segments()[s];
@@ -64,14 +60,12 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
     const double near = reach(one.path, other.path);
     if (SquaredDistance(one, other) > near * near) return true;
     regions.Join(static_cast<int>(one.path), static_cast<int>(other.path));
-    if (Order& order = order_of(one.path, other.path); order == Order::kIfTheyTouch) {
-      order = Order::kKnown;
-      contacts.ordered.push_back(ascending(one.path, other.path));
-    }
+    const std::pair<uint32_t, uint32_t> pair = ascending(one.path, other.path);
+    if (keep_order(pair) && ordered.insert(pair).second) contacts.ordered.push_back(pair);
     return false;
   };
   const double most = kMostPairsOfAll + kMostPairsEach * static_cast<double>(grid.entry_count());
-  contacts.complete = grid.ForEachNearPair(reach_if_wanted, look_at, most);
+  contacts.complete = grid.ForEachNearPair(reach, wanted, look_at, most);
   if (!contacts.complete) {
     contacts.island.assign(outlines.size(), 0);
     return contacts;

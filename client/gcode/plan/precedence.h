@@ -38,7 +38,7 @@ inline constexpr double kTouchMm = 0.52;
 inline constexpr double kMostPairsEach = 100;
 inline constexpr double kMostPairsOfAll = 1e6;
 
-// Calls `keeps_order(i, j)` for i < j, at most once.
+// Asks `keeps_order(i, j)` for i < j, again and again.
 Contacts FindContacts(const std::vector<Outline>& outlines,
                       const std::function<bool(uint32_t, uint32_t)>& keeps_order);
 

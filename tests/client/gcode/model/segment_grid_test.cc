@@ -29,6 +29,8 @@ std::vector<Segment> RandomSegments(uint64_t seed, double extent_mm) {
   return segments;
 }
 
+bool Always(uint32_t, uint32_t) { return true; }
+
 std::set<std::pair<uint32_t, uint32_t>> NearPaths(const std::vector<Segment>& segments,
                                                   double reach) {
   std::set<std::pair<uint32_t, uint32_t>> pairs;
@@ -48,7 +50,7 @@ TEST(SegmentGridTest, FindsAllPathsThatComeNear) {
     const std::vector<Segment> segments = RandomSegments(seed, extent);
     const SegmentGrid grid(segments, reach / 0.75);
     std::set<std::pair<uint32_t, uint32_t>> found;
-    grid.ForEachNearPair([&](uint32_t, uint32_t) { return reach; },
+    grid.ForEachNearPair([&](uint32_t, uint32_t) { return reach; }, Always,
                          [&](uint32_t s, uint32_t t) {
                            EXPECT_NE(segments[s].path, segments[t].path);
                            if (SquaredDistance(segments[s], segments[t]) > reach * reach) {
@@ -63,11 +65,14 @@ TEST(SegmentGridTest, FindsAllPathsThatComeNear) {
 
 TEST(SegmentGridTest, LooksAtNoPathsThatAreNotWanted) {
   const SegmentGrid grid({{{0, 0}, {5, 0}, 0}, {{0, 0.1}, {5, 0.1}, 1}, {{0, 0.2}, {5, 0.2}, 2}});
-  grid.ForEachNearPair([](uint32_t i, uint32_t j) { return i + j == 1 ? 0.5 : -1; },
-                       [](uint32_t s, uint32_t t) {
-                         EXPECT_EQ(s + t, 1u);
-                         return true;
-                       });
+  const auto first_two = [](uint32_t s, uint32_t t) {
+    EXPECT_EQ(s + t, 1u);
+    return true;
+  };
+  grid.ForEachNearPair([](uint32_t i, uint32_t j) { return i + j == 1 ? 0.5 : -1; }, Always,
+                       first_two);
+  grid.ForEachNearPair([](uint32_t, uint32_t) { return 0.5; },
+                       [](uint32_t i, uint32_t j) { return i + j == 1; }, first_two);
 }
 
 TEST(SegmentGridTest, MeetsWhatAWayCrosses) {
