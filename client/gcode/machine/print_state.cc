@@ -170,6 +170,7 @@ uint32_t StateTable::Intern(const PrintState& state) {
 std::vector<uint32_t> SettersBetween(PrintState& from, const PrintState& to, SlotMask mask,
                                      const SetterTable& setters) {
   std::vector<uint32_t> lines;
+  if (from == to) return lines;
   // A setter of several slots may undo what another one did: these come first, and the last pass
   // puts right what they undid of each other.
   for (int pass = 0; pass < 3; ++pass) {

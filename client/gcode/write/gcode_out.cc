@@ -14,6 +14,11 @@ void FollowModes(const Command& command, MachineState& modes) {
   if (command.letter == 'M' && (number == 82 || number == 83)) modes.relative_e = number == 83;
 }
 
+// M73 has one of these letters.
+bool MayHaveProgress(std::string_view text) {
+  return text.find('M') != std::string_view::npos || text.find('m') != std::string_view::npos;
+}
+
 }  // namespace
 
 std::string LineEndOf(std::string_view text) {
@@ -34,8 +39,9 @@ void GcodeOut::Copy(Offset begin, Offset end, const PartStart& before, const Par
   const Decimal e = at.machine.e;
   at = behind;
   const Decimal shift = before.machine.RelativeE() ? 0 : e - before.machine.e;
-  if (shift == 0 && !without_progress) {
-    text_.append(file_.text, begin, end - begin);
+  const std::string_view text = std::string_view(file_.text).substr(begin, end - begin);
+  if (shift == 0 && !(without_progress && MayHaveProgress(text))) {
+    text_.append(text);
   } else {
     CopyShifted(begin, end, shift, before.machine, without_progress);
   }

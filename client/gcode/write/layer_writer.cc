@@ -89,6 +89,10 @@ PartStart LayerWriter::WritePaths(const LayerOrder& order, const PartStart& star
     text.append(file_.text, begin, last.end - begin);
     return StartBehind(file_, last);
   }
+  // About as much as in the file.
+  const size_t bytes =
+      file_.blocks[layer_.end_block - 1].end - file_.blocks[layer_.first_block].begin;
+  text.reserve(text.size() + bytes + bytes / 16);
   GcodeOut out(file_, start, text);
   ProgressLines progress(file_, file_.blocks[layer_.first_block].begin);
   PlacedPath from(file_, order.front());
@@ -154,7 +158,7 @@ void LayerWriter::NoteLeaving(uint32_t block) {
   }
   Leaving leaving;
   if (!file_.WipedBehind(block)) {
-    if (block + 1 >= file_.blocks.size()) return;
+    if (block + 1 >= file_.blocks.size() || !MayDepart(file_, block + 1)) return;
     const Link link = ReadLink(file_, block + 1);
     const LinkStep* departure = DepartureOf(link);
     if (departure == nullptr) return;

@@ -12,12 +12,6 @@
 namespace traverse::gcode {
 namespace {
 
-// Slicers' moves inwards; combing moves of CuraEngine look the same but lead somewhere.
-bool MayDepart(const GcodeFile& file, size_t index) {
-  if ((file.blocks[index - 1].flags & kBlockGoesOn) != 0) return true;
-  return file.dialect != Dialect::kCura && (file.blocks[index].link & kLinkDeparts) != 0;
-}
-
 void NoteRetraction(const LinkStep& step, Decimal& retracted, Link& link) {
   if (step.kind == StepKind::kFirmwareRetract) link.firmware = true;
   retracted = std::max<Decimal>(retracted - step.filament, 0);
@@ -148,6 +142,11 @@ Link ReadLink(const GcodeFile& file, size_t index) {
   }
   NoteLift(link);
   return link;
+}
+
+bool MayDepart(const GcodeFile& file, size_t index) {
+  if ((file.blocks[index - 1].flags & kBlockGoesOn) != 0) return true;
+  return file.dialect != Dialect::kCura && (file.blocks[index].link & kLinkDeparts) != 0;
 }
 
 const LinkStep* DepartureOf(const Link& link) {

@@ -78,6 +78,10 @@ struct Link {
   Decimal top = 0;
 };
 
+// Whether the link before block `index` may begin with a slicer's move inwards; combing moves of
+// CuraEngine look the same but lead somewhere.
+bool MayDepart(const GcodeFile& file, size_t index);
+
 // The step of the short move with which `link` begins; null if it begins with none.
 const LinkStep* DepartureOf(const Link& link);
 
