@@ -55,16 +55,25 @@ class Merging {
   LayerOrder Take() { return std::move(order_); }
 
  private:
+  // The run is as the source has it: so are most where orders differ little.
+  bool IsOf(const Source& source, uint32_t first, size_t begin, size_t end) const {
+    uint32_t next = 0;
+    for (size_t i = begin; i < end; ++i) {
+      const uint32_t path = order_[i].block - first;
+      if (source.rank[path] < next || !(source.placement[path] == order_[i])) return false;
+      next = source.rank[path] + 1;
+    }
+    return true;
+  }
+
   bool TryRun(const Source& source, uint32_t first, size_t begin, size_t end) {
+    if (IsOf(source, first, begin, end)) return false;
     run_.assign(order_.begin() + static_cast<std::ptrdiff_t>(begin),
                 order_.begin() + static_cast<std::ptrdiff_t>(end));
     for (Placement& placement : run_) placement = source.placement[placement.block - first];
     std::sort(run_.begin(), run_.end(), [&](const Placement& a, const Placement& b) {
       return source.rank[a.block - first] < source.rank[b.block - first];
     });
-    if (std::equal(run_.begin(), run_.end(), order_.begin() + static_cast<std::ptrdiff_t>(begin))) {
-      return false;
-    }
     WayTotals totals = totals_;
     new_ways_.clear();
     const Placement* at = &order_[begin - 1];
