@@ -112,7 +112,7 @@ void Verifier::ReadNext() {
 
 // Loops may take their gap along, so that some deposits differ; the rest is compared without them.
 void Verifier::TakeBackGaps() {
-  for (const MovedGap& gap : TakeBackMovedGaps(chunk_was_, chunk_is_, findings_)) {
+  for (const MovedGap& gap : TakeBackMovedGaps(chunk_was_, chunk_is_, threads_, findings_)) {
     is_.Count(gap.section, gap.printed, gap.as);
     gaps_is_.insert(gap.printed.begin(), gap.printed.end());
     gaps_was_.insert(gap.as.begin(), gap.as.end());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "absl/container/flat_hash_map.h"
 #include "absl/strings/str_format.h"
+#include "client/gcode/parallel.h"
 #include "client/gcode/verify/match/plane.h"
 #include "client/gcode/verify/match/visits.h"
 
@@ -277,39 +279,54 @@ void Remove(const std::vector<uint32_t>& removed, TraceChunk& chunk) {
   chunk.segments.resize(kept);
 }
 
+// What is found in one section.
+struct FoundGaps {
+  std::vector<MovedGap> gaps;
+  std::vector<uint32_t> removed;  // segments, ascending
+  std::vector<Finding> findings;
+};
+
+void TakeBack(const TraceChunk& original, TraceChunk& optimised, size_t section, FoundGaps& found) {
+  const TraceSection& was = original.sections[section];
+  const TraceSection& is = optimised.sections[section];
+  if (was.index != is.index || DepositsOf(optimised, is) < DepositsOf(original, was)) return;
+  if (!DepositsDiffer(original, was, optimised, is)) return;
+  SectionGaps of_section(original, was, optimised, is);
+  for (uint32_t p = is.first_path; p < is.end_path; ++p) {
+    const std::optional<MovedLoop> loop = of_section.Find(p);
+    if (!loop) continue;
+    const TracePath& path = original.paths[loop->path];
+    TraceSegment& last = optimised.segments[optimised.paths[p].end_segment - 1];
+    if (std::string fault = FaultOf(original, optimised, *loop); !fault.empty()) {
+      found.findings.push_back(
+          {VerifyRule::kSamePrint, original.LineOf(path), last.line, -1, std::move(fault)});
+    }
+    TraceSegment& closing = optimised.segments[loop->closing];
+    MovedGap& gap = found.gaps.emplace_back(MovedGap{is.index, {closing.digest, last.digest}, {}});
+    last.digest = original.segments[path.first_segment + loop->entry - 1].digest;
+    gap.as.push_back(last.digest);
+    if (loop->apart) {
+      found.removed.push_back(loop->closing);
+    } else {
+      closing.digest = original.segments[path.end_segment - 1].digest;
+      gap.as.push_back(closing.digest);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<MovedGap> TakeBackMovedGaps(const TraceChunk& original, TraceChunk& optimised,
-                                        std::vector<Finding>& findings) {
+                                        int threads, std::vector<Finding>& findings) {
+  std::vector<FoundGaps> found(std::min(original.sections.size(), optimised.sections.size()));
+  // Each section changes only segments of its own.
+  ParallelFor(found.size(), threads, [&](size_t i) { TakeBack(original, optimised, i, found[i]); });
   std::vector<MovedGap> gaps;
   std::vector<uint32_t> removed;
-  const size_t sections = std::min(original.sections.size(), optimised.sections.size());
-  for (size_t i = 0; i < sections; ++i) {
-    const TraceSection& was = original.sections[i];
-    const TraceSection& is = optimised.sections[i];
-    if (was.index != is.index || DepositsOf(optimised, is) < DepositsOf(original, was)) continue;
-    if (!DepositsDiffer(original, was, optimised, is)) continue;
-    SectionGaps of_section(original, was, optimised, is);
-    for (uint32_t p = is.first_path; p < is.end_path; ++p) {
-      const std::optional<MovedLoop> loop = of_section.Find(p);
-      if (!loop) continue;
-      const TracePath& path = original.paths[loop->path];
-      TraceSegment& last = optimised.segments[optimised.paths[p].end_segment - 1];
-      if (std::string fault = FaultOf(original, optimised, *loop); !fault.empty()) {
-        findings.push_back(
-            {VerifyRule::kSamePrint, original.LineOf(path), last.line, -1, std::move(fault)});
-      }
-      TraceSegment& closing = optimised.segments[loop->closing];
-      MovedGap& gap = gaps.emplace_back(MovedGap{is.index, {closing.digest, last.digest}, {}});
-      last.digest = original.segments[path.first_segment + loop->entry - 1].digest;
-      gap.as.push_back(last.digest);
-      if (loop->apart) {
-        removed.push_back(loop->closing);
-      } else {
-        closing.digest = original.segments[path.end_segment - 1].digest;
-        gap.as.push_back(closing.digest);
-      }
-    }
+  for (FoundGaps& each : found) {
+    std::move(each.gaps.begin(), each.gaps.end(), std::back_inserter(gaps));
+    std::move(each.findings.begin(), each.findings.end(), std::back_inserter(findings));
+    removed.insert(removed.end(), each.removed.begin(), each.removed.end());
   }
   if (!removed.empty()) Remove(removed, optimised);
   return gaps;

@@ -29,8 +29,9 @@ struct MovedGap {
 // Finds these loops and takes their gaps back: in `optimised` nothing closes the gap afterwards,
 // and the segments that are longer and shorter have the digests of the original's. Adds a finding
 // for each that does not print the same filament on the same length: that is not the same print.
+// Uses `threads` threads.
 std::vector<MovedGap> TakeBackMovedGaps(const TraceChunk& original, TraceChunk& optimised,
-                                        std::vector<Finding>& findings);
+                                        int threads, std::vector<Finding>& findings);
 
 }  // namespace traverse::gcode
 
