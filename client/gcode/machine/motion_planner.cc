@@ -13,23 +13,30 @@ constexpr double kStraight = 1e-9;
 
 constexpr double kNoLimit = 1e18;
 
-// Time for `length` from speed^2 `entry2` to `exit2`, at most `speed2`, with `accel`.
-double TrapezoidSeconds(double length, double entry2, double exit2, double speed2, double accel) {
-  const double entry = std::sqrt(entry2);
-  const double exit = std::sqrt(exit2);
+// A speed and its square.
+struct Speed {
+  explicit Speed(double squared) : value2(squared), value(std::sqrt(squared)) {}
+
+  double value2;
+  double value;
+};
+
+// Time for `length` from speed `entry` to `exit`, at most the root of `speed2`, with `accel`.
+double TrapezoidSeconds(double length, const Speed& entry, const Speed& exit, double speed2,
+                        double accel) {
   // Where full acceleration and full braking meet.
-  const double peak2 = accel * length + (entry2 + exit2) / 2;
-  if (peak2 <= speed2) return (2 * std::sqrt(peak2) - entry - exit) / accel;
+  const double peak2 = accel * length + (entry.value2 + exit.value2) / 2;
+  if (peak2 <= speed2) return (2 * std::sqrt(peak2) - entry.value - exit.value) / accel;
   const double speed = std::sqrt(speed2);
-  const double ramps = ((speed2 - entry2) + (speed2 - exit2)) / (2 * accel);
-  return (2 * speed - entry - exit) / accel + (length - ramps) / speed;
+  const double ramps = ((speed2 - entry.value2) + (speed2 - exit.value2)) / (2 * accel);
+  return (2 * speed - entry.value - exit.value) / accel + (length - ramps) / speed;
 }
 
 }  // namespace
 
 double StopToStopSeconds(double length, double speed, double accel) {
   if (length <= 0) return 0;
-  return TrapezoidSeconds(length, 0, 0, speed * speed, accel);
+  return TrapezoidSeconds(length, Speed(0), Speed(0), speed * speed, accel);
 }
 
 void MotionPlanner::Move(double dx, double dy, double speed, double accel, double corner) {
@@ -59,23 +66,34 @@ void MotionPlanner::Move(const MoveInSpace& move) {
       (std::numbers::sqrt2 - 1) * move.corner * move.corner * move.accel / move.machine_accel;
   const double limit2 = queue_.empty() ? 0 : KlipperLimit2(along, segment, move.filament);
   last_filament_ = move.filament;
-  Queue(segment, limit2, along);
+  Segment& queued = Queue(length, segment.speed2, segment.accel, limit2, along);
+  queued.slow_gain2 = segment.slow_gain2;
+  queued.missing2 = segment.missing2;
+  PlanIfFull();
 }
 
 void MotionPlanner::Arc(double length_mm, double bx, double by, double ex, double ey, double speed,
                         double accel, double corner) {
   if (!(length_mm > 0) || !(speed > 0)) return;
   const double limit2 = queue_.empty() ? 0 : CornerLimit2(bx, by, corner);
-  Queue({length_mm, speed * speed, accel}, limit2, {ex, ey});
+  Queue(length_mm, speed * speed, accel, limit2, {ex, ey});
+  PlanIfFull();
 }
 
-void MotionPlanner::Queue(Segment segment, double limit2, const Direction& end) {
-  if (!queue_.empty()) {
-    segment.limit2 = std::min({limit2, segment.speed2, queue_.back().speed2});
-    segment.entry2 = segment.limit2;
-  }
-  queue_.push_back(segment);
+MotionPlanner::Segment& MotionPlanner::Queue(double length, double speed2, double accel,
+                                             double limit2, const Direction& end) {
+  limit2 = queue_.empty() ? 0 : std::min({limit2, speed2, queue_.back().speed2});
+  // Filled where it is: a copy would have to wait until its parts are written.
+  Segment& segment = queue_.emplace_back();
+  segment.length = length;
+  segment.speed2 = speed2;
+  segment.accel = accel;
+  segment.limit2 = segment.entry2 = limit2;
   last_ = end;
+  return segment;
+}
+
+void MotionPlanner::PlanIfFull() {
   if (queue_.size() >= kWindow) Plan(0, kWindow / 2);
 }
 
@@ -157,17 +175,17 @@ void MotionPlanner::Plan(double exit2, size_t count) {
     }
     next2 = segment.entry2;
   }
-  double entry2 = entry2_;
+  Speed entry(entry2_);
   for (size_t i = 0; i < count; ++i) {
     const Segment& segment = queue_[i];
     const double limit2 = i + 1 < queue_.size() ? queue_[i + 1].entry2 : exit2;
-    const double leave2 = std::min(limit2, entry2 + 2 * segment.accel * segment.length);
+    const Speed leave(std::min(limit2, entry.value2 + 2 * segment.accel * segment.length));
     // What was planned before more was known may be a little faster.
-    const double speed2 = std::max({Speed2(i), entry2, leave2});
-    seconds_ += TrapezoidSeconds(segment.length, entry2, leave2, speed2, segment.accel);
-    entry2 = leave2;
+    const double speed2 = std::max({Speed2(i), entry.value2, leave.value2});
+    seconds_ += TrapezoidSeconds(segment.length, entry, leave, speed2, segment.accel);
+    entry = leave;
   }
-  entry2_ = entry2;
+  entry2_ = entry.value2;
   if (rules_.klipper) {
     slow_entry2_ = count < queue_.size() ? slow2_[count] : 0;
     peak_entry2_ = count < queue_.size() ? peaks2_[count - 1] : 0;

@@ -83,9 +83,9 @@ class MotionPlanner {
   };
 
   struct Segment {
-    double length;
-    double speed2;  // squares of speeds, (mm/s)^2
-    double accel;
+    double length = 0;
+    double speed2 = 0;  // squares of speeds, (mm/s)^2
+    double accel = 0;
     double limit2 = 0;  // of the corner before it
     double entry2 = 0;  // planned: at most limit2, and low enough to brake for what follows
 
@@ -100,7 +100,8 @@ class MotionPlanner {
   double KlipperLimit2(const Direction& begin, const Segment& next, double filament) const;
 
   // Queues a move that ends in direction `end`, behind a corner taken at the root of `limit2`.
-  void Queue(Segment segment, double limit2, const Direction& end);
+  Segment& Queue(double length, double speed2, double accel, double limit2, const Direction& end);
+  void PlanIfFull();
 
   // Fills slow2_ and peaks2_, so that each way up to a speed and down again has its cruise.
   void FindPeaks();

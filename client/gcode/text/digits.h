@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <optional>
 
 #include "client/gcode/text/decimal.h"
 
@@ -42,33 +41,34 @@ inline uint64_t ValueOfDigits(uint64_t digits) {
 }
 
 // Reads the number at `*text` in the line [line, end) as ParseDecimal does, if it is that short and
-// the line long enough. Else unset, and `*text` stays.
-inline std::optional<Decimal> ParseShort(const char* line, const char** text, const char* end) {
-  if constexpr (std::endian::native != std::endian::little) return std::nullopt;
-  if (static_cast<size_t>(end - line) < kDigitsAtOnce) return std::nullopt;
+// the line long enough. Else false, and `*text` stays.
+inline bool ParseShort(const char* line, const char** text, const char* end, Decimal& value) {
+  if constexpr (std::endian::native != std::endian::little) return false;
+  if (static_cast<size_t>(end - line) < kDigitsAtOnce) return false;
   const char* p = *text;
   const bool negative = *p == '-';
   if (negative || *p == '+') ++p;
-  if (p == end) return std::nullopt;
+  if (p == end) return false;
   const uint64_t first = DigitsFrom(p, end);
   const size_t whole_digits = CountDigits(first);
-  if (whole_digits == kDigitsAtOnce) return std::nullopt;
+  if (whole_digits == kDigitsAtOnce) return false;
   // In two steps: there may be no digit.
   const uint64_t whole = ValueOfDigits(first << (8 * (kDigitsAtOnce - 1 - whole_digits)) << 8);
-  Decimal value = static_cast<Decimal>(whole) * kDecimalOne;
+  value = static_cast<Decimal>(whole) * kDecimalOne;
   size_t decimals = 0;
   p += whole_digits;
   if (p < end && *p == '.' && ++p < end) {
     const uint64_t behind_point = DigitsFrom(p, end);
     decimals = CountDigits(behind_point);
-    if (decimals == kDigitsAtOnce) return std::nullopt;
+    if (decimals == kDigitsAtOnce) return false;
     const uint64_t only = behind_point & ((uint64_t{1} << (8 * decimals)) - 1);
     value += static_cast<Decimal>(ValueOfDigits(only)) * (kDecimalOne / 100'000'000);
     p += decimals;
   }
-  if (whole_digits + decimals == 0) return std::nullopt;
+  if (whole_digits + decimals == 0) return false;
   *text = p;
-  return negative ? -value : value;
+  if (negative) value = -value;
+  return true;
 }
 
 }  // namespace traverse::gcode

@@ -44,10 +44,12 @@ const char* ScanWords(const char* line, const char* p, const char* end, Command&
     p = SkipBlanks(p, end);
     Decimal value = 0;
     if (p < end && IsNumberPart(*p)) {
-      std::optional<Decimal> number = ParseShort(line, &p, end);
-      if (!number) number = letter == 'F' ? ParseFeed(&p, end) : ParseDecimal(&p, end);
-      if (!number) return nullptr;
-      value = *number;
+      if (!ParseShort(line, &p, end, value)) {
+        const std::optional<Decimal> number =
+            letter == 'F' ? ParseFeed(&p, end) : ParseDecimal(&p, end);
+        if (!number) return nullptr;
+        value = *number;
+      }
     }
     command.words |= Command::Bit(letter);
     command.values[letter - 'A'] = value;
@@ -64,7 +66,8 @@ void LexLine(std::string_view text, Command& command) {
   const char* const end = text.data() + text.size();
   const char* p = SkipBlanks(text.data(), end);
   command.words = 0;
-  command.rest = command.comment = {};
+  command.rest = {};
+  command.comment = {};
   if (p == end) {
     command.kind = LineKind::kBlank;
     return;

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <optional>
 
 #include "client/gcode/verify/text.h"
 
@@ -48,35 +47,37 @@ Micro Digits(uint64_t bytes, size_t& count) {
 }
 
 // The numbers that slicers write: up to seven digits, and six decimals. `at` and `end` are within a
-// text that begins at `begin`; moves `at` past the number.
-std::optional<Micro> PlainNumber(const char* begin, const char*& at, const char* end) {
+// text that begins at `begin`; moves `at` past the number. False if there is no such number.
+bool PlainNumber(const char* begin, const char*& at, const char* end, Micro& value) {
   constexpr Micro kScale[] = {1'000'000, 100'000, 10'000, 1'000, 100, 10, 1};
   const char* p = at;
   const bool negative = *p == '-';
-  if (negative && ++p == end) return std::nullopt;
+  if (negative && ++p == end) return false;
   size_t whole = 0;
-  Micro value = Digits(Load(begin, p, end), whole) * kScale[0];
+  value = Digits(Load(begin, p, end), whole) * kScale[0];
   p += whole;
   size_t decimals = 0;
   if (whole < 8 && p < end && *p == '.' && ++p < end) {
     const Micro fraction = Digits(Load(begin, p, end), decimals);
-    if (decimals > 6) return std::nullopt;
+    if (decimals > 6) return false;
     value += fraction * kScale[decimals];
     p += decimals;
   }
-  if (whole == 8 || whole + decimals == 0) return std::nullopt;
+  if (whole == 8 || whole + decimals == 0) return false;
   at = p;
-  return negative ? -value : value;
+  if (negative) value = -value;
+  return true;
 }
 
-std::optional<Micro> Number(const char* begin, const char*& at, const char* end) {
-  if (const std::optional<Micro> plain = PlainNumber(begin, at, end)) return plain;
+bool Number(const char* begin, const char*& at, const char* end, Micro& value) {
+  if (PlainNumber(begin, at, end, value)) return true;
   const char* const first = *at == '+' ? at + 1 : at;
-  double value = 0;
-  const auto result = std::from_chars(first, end, value, std::chars_format::fixed);
-  if (result.ec != std::errc{} || !(std::abs(value) <= kMaxNumber)) return std::nullopt;
+  double number = 0;
+  const auto result = std::from_chars(first, end, number, std::chars_format::fixed);
+  if (result.ec != std::errc{} || !(std::abs(number) <= kMaxNumber)) return false;
   at = result.ptr;
-  return std::llround(value * 1e6);
+  value = std::llround(number * 1e6);
+  return true;
 }
 
 bool IsLetter(char c) { return UpperCase(c) >= 'A' && UpperCase(c) <= 'Z'; }
@@ -97,12 +98,8 @@ CommandWords::CommandWords(std::string_view text) {
     if (!readable) return;
     at = skip_blanks(at + 1);
     Micro value = 0;
-    if (at < end && !IsLetter(*at)) {
-      const std::optional<Micro> number = Number(begin, at, end);
-      readable = number.has_value();
-      if (!readable) return;
-      value = *number;
-    }
+    readable = at == end || IsLetter(*at) || Number(begin, at, end, value);
+    if (!readable) return;
     set |= 1u << (letter - 'A');
     values[static_cast<size_t>(letter - 'A')] = value;
   }

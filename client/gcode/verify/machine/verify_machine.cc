@@ -43,8 +43,16 @@ bool FallsAsOftenAsItRises(std::string_view text) {
 
 void VerifyMachine::NoteMotion(int number, uint32_t words, const std::array<Micro, 3>& from,
                                Micro filament) {
-  motion_ =
-      Motion{from, at_, filament, pulled_, feed_, number, words, retracted(), false, 0, 0, 0, 0};
+  motion_.from = from;
+  motion_.to = at_;
+  motion_.filament = filament;
+  motion_.pulled = pulled_;
+  motion_.feed = feed_;
+  motion_.number = number;
+  motion_.words = words;
+  motion_.was_retracted = retracted();
+  motion_.has_center = false;
+  motion_.center_x = motion_.center_y = motion_.radius = motion_.turns = 0;
   moved_at_ = number_;
 }
 
