@@ -7,6 +7,7 @@
 #include <bit>
 #include <cassert>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -159,14 +160,29 @@ void SegmentGrid::ForEachCell(Vertex a, Vertex b, Visit visit) const {
   // Samples every quarter of a cell. A cell of which only a corner is touched may be missed, by
   // less than an eighth of its side.
   const int steps = static_cast<int>(Distance(a, b) * 4 * cells_per_mm_) + 1;
-  for (int i = 1; i <= steps; ++i) {
+  // Along the way columns and rows change in one direction each. So if one of both changes by one,
+  // or none does, there is nothing to see between two samples.
+  constexpr int kStride = 3;
+  const auto sample = [&](int i) {
     const double t = static_cast<double>(i) / steps;
-    const int column = Column(a.x + (b.x - a.x) * t);
-    const int row = Row(a.y + (b.y - a.y) * t);
-    if (column == last_column && row == last_row) continue;
+    return std::pair(Column(a.x + (b.x - a.x) * t), Row(a.y + (b.y - a.y) * t));
+  };
+  const auto enter = [&](int column, int row) {
+    if (column == last_column && row == last_row) return;
     last_column = column;
     last_row = row;
     visit(column, row);
+  };
+  for (int i = 0; i < steps; i += kStride) {
+    const int end = std::min(i + kStride, steps);
+    const auto [column, row] = sample(end);
+    if (std::abs(column - last_column) + std::abs(row - last_row) > 1) {
+      for (int between = i + 1; between < end; ++between) {
+        const auto [c, r] = sample(between);
+        enter(c, r);
+      }
+    }
+    enter(column, row);
   }
 }
 
