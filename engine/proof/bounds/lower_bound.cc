@@ -21,32 +21,35 @@ constexpr int kMostEvaluations = 6;
 constexpr double kLeastGain = 1e-3;
 
 // Rounds of the search that knows points, where it fits, for an effort of up to 1, and beyond by
-// its root; fewer from multipliers that were found before. A search itself is not kept for other
-// starts: it takes some 28 KB for each end of a path, and a job's layers may wait by the hundred.
+// its root. It begins anew for each start: a search takes some 28 KB for each end of a path, and a
+// job's layers may wait by the hundred.
 constexpr double kVertexRounds = 8;
 constexpr double kMostVertexRounds = 40;
-constexpr double kShareOfRoundsAgain = 0.5;
 
 // Up to this effort, programmes would take as long as the search, and gain little.
 constexpr double kEffortWithoutProgrammes = 1;
 constexpr double kShareOfProgrammeAgain = 0.25;
 
-// Work, as for the rounds: about half as much time as a search takes.
+// Work, as for the rounds: about half as much time as a search takes. Where points of few-pointed
+// ends are scattered over each other, the first rounds gain nothing, and a search takes long.
 constexpr double kVertexWorkOfEnd = 120'000;
 constexpr double kVertexWorkOfPoint = 2000;
+constexpr double kPointsOfFew = 10;  // on average
+constexpr double kMoreWorkWhileFar = 4;
 
 // Of the time that is left, what a search may use: the evaluation after it is what counts.
 constexpr double kSearchShare = 0.4;
 
-VertexBound::Limits VertexLimits(double effort, bool known, const EndGraph& graph) {
+VertexBound::Limits VertexLimits(double effort, const EndGraph& graph) {
   const double rounds =
       std::min(kVertexRounds * std::sqrt(std::max(1.0, effort)), kMostVertexRounds);
-  double work = 0;
-  for (const PathEnd& end : graph.ends) {
-    work += kVertexWorkOfEnd + kVertexWorkOfPoint * static_cast<double>(end.points.size());
-  }
-  return {static_cast<int>(known ? kShareOfRoundsAgain * rounds : rounds),
-          std::max(1.0, effort) * work};
+  const auto ends = static_cast<double>(graph.ends.size());
+  double points = 0;
+  for (const PathEnd& end : graph.ends) points += static_cast<double>(end.points.size());
+  const double work =
+      std::max(1.0, effort) * (kVertexWorkOfEnd * ends + kVertexWorkOfPoint * points);
+  return {static_cast<int>(rounds), work,
+          points > kPointsOfFew * ends ? work : kMoreWorkWhileFar * work};
 }
 
 // Each evaluation makes the true costs of its trees' moves known where boxes stood for contours.
@@ -78,12 +81,11 @@ std::optional<double> BoundByTrees(double target, TreeBound& tree, BoundMultipli
 std::optional<double> BoundByMultipliers(const LayerProblem& problem, double target,
                                          BoundMultipliers& multipliers, double effort,
                                          Budget& budget) {
-  const bool known = !multipliers.empty();
   TreeBound tree(problem, budget);
   std::optional<double> bound = BoundByTrees(target, tree, multipliers, budget);
   if (bound && *bound < target && VertexBound::Fits(tree.graph())) {
     VertexBound points(problem, tree);
-    const VertexBound::Limits limits = VertexLimits(effort, known, tree.graph());
+    const VertexBound::Limits limits = VertexLimits(effort, tree.graph());
     bound = std::max(*bound, points.Search(target, limits, budget));
   }
   tree.Clear(budget);

@@ -16,6 +16,8 @@ namespace {
 // Places of an end to begin with, and splits after each round: where what a place may be wrong by,
 // its width, as often as it is visited, is that share of a mean move.
 constexpr size_t kFirstPlaces = 5;
+constexpr size_t kFirstPlacesOfMany = 3;
+constexpr size_t kManyEnds = 1000;
 constexpr double kWidthWorthSplitting = 0.03;
 
 // Nothing is split where there are so many moves, for each point of the plan or together: each
@@ -24,8 +26,8 @@ constexpr size_t kMostMovesOfPoint = 25;
 constexpr size_t kMostMoves = 150'000;
 
 // Beyond these, steps take too long, and a search takes more memory than a layer may: some 28 KB
-// for each end.
-constexpr size_t kMostEnds = 1000;
+// for each end, half of that where there are many ends.
+constexpr size_t kMostEnds = 3500;
 
 // Near ends of each end that the ascent looks at.
 constexpr size_t kNeighbors = 8;
@@ -45,6 +47,9 @@ constexpr double kViolation = 0.1;
 // After each round, moves are known that were not.
 constexpr int kStepsOfRound = 60;
 
+// A bound below that share of the target is far from it.
+constexpr double kFarFrom = 0.8;
+
 }  // namespace
 
 bool VertexBound::Fits(const EndGraph& graph) {
@@ -58,7 +63,7 @@ VertexBound::VertexBound(const LayerProblem& problem, const TreeBound& tree)
       cost_(problem.cost),
       start_(problem.start),
       finish_(problem.finish),
-      moves_(graph_, cost_, kFirstPlaces),
+      moves_(graph_, cost_, graph_.ends.size() > kManyEnds ? kFirstPlacesOfMany : kFirstPlaces),
       near_(moves_),
       sets_(moves_),
       multipliers_(At(moves_.point_count())),
@@ -280,10 +285,12 @@ double VertexBound::WorkOfStep() const {
 }
 
 double VertexBound::Search(double target, const Limits& limits, Budget& budget) {
-  limits_ = limits;
+  most_work_ = limits.work;
   mean_move_ = target / static_cast<double>(graph_.ends.size());
   double bound = std::max(0.0, EvaluateAll(budget));
   for (int round = 0; round < limits.rounds && bound < target; ++round) {
+    const bool is_far = bound < kFarFrom * target;
+    most_work_ = is_far ? std::max(limits.work, limits.work_while_far) : limits.work;
     if (Ended(budget, work_of_evaluation_ + WorkOfStep())) break;
     if (rounds_++ > 0) Refine();
     Ascend(target, budget);

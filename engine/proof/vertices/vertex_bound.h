@@ -45,10 +45,11 @@ class VertexBound {
   VertexBound& operator=(const VertexBound&) = delete;
 
   // How far a search goes: so many rounds, and so much work, in distances and sums of costs, of
-  // some nanoseconds each.
+  // some nanoseconds each; in rounds that begin far below the target, up to `work_while_far`.
   struct Limits {
     int rounds = 0;
     double work = std::numeric_limits<double>::infinity();
+    double work_while_far = 0;
   };
 
   // Searches for multipliers towards `target`, the cost of a route. Returns a bound, 0 if the
@@ -113,7 +114,7 @@ class VertexBound {
 
   // Whether the search has done what it may, if it does so much more.
   bool Ended(Budget& budget, double more) {
-    return work() + more > limits_.work || budget.ExhaustedNow();
+    return work() + more > most_work_ || budget.ExhaustedNow();
   }
 
   const EndGraph& graph_;
@@ -136,7 +137,7 @@ class VertexBound {
   double factor_ = 1;  // of steps
   int steps_ = 0;
   int rounds_ = 0;
-  Limits limits_;
+  double most_work_ = 0;           // for now
   double work_ = 0;                // so far, but for distances
   double work_of_evaluation_ = 0;  // of the last one over all moves
   double mean_move_ = 0;           // of a route that costs as much as the target

@@ -7,12 +7,14 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "engine/base/rng.h"
 #include "engine/cost/route_cost.h"
 #include "engine/strategy/registry.h"
+#include "tests/support/counting_turn.h"
 #include "tests/support/problems/brute_force.h"
 #include "tests/support/problems/instances.h"
 #include "tests/support/problems/random_plan.h"
@@ -161,8 +163,7 @@ TEST(LowerBound, KnowsThatAContourIsLeftWhereItIsEntered) {
   ExpectBoundNear(OwnedProblem(testing::AnyOrderPlan(std::move(paths))), 0.9);
 }
 
-// Contours of many points: which of them count is found out.
-TEST(LowerBound, IsNearTheRouteAroundContoursOfManyPoints) {
+Plan CirclesPlan() {
   Rng rng(11);
   std::vector<Path> paths;
   for (int i = 0; i < 40; ++i) {
@@ -174,23 +175,53 @@ TEST(LowerBound, IsNearTheRouteAroundContoursOfManyPoints) {
     }
     paths.push_back(MakeContour(std::move(circle)));
   }
-
-  ExpectBoundNear(OwnedProblem(testing::AnyOrderPlan(std::move(paths))), 0.85);
+  return testing::AnyOrderPlan(std::move(paths));
 }
 
-// What was found for one start is a good beginning for another one.
+// Contours of many points: which of them count is found out.
+TEST(LowerBound, IsNearTheRouteAroundContoursOfManyPoints) {
+  ExpectBoundNear(OwnedProblem(CirclesPlan()), 0.85);
+}
+
+// What was found for one start is a good beginning for another one, and no less is done.
 TEST(LowerBound, IsNearlyAsGoodFromAnotherStart) {
-  OwnedProblem owned(testing::ClusterPlan(40));
+  for (Plan plan : {testing::ClusterPlan(40), CirclesPlan()}) {
+    OwnedProblem owned(std::move(plan));
+    Budget budget;
+    BoundMultipliers multipliers;
+    LowerBound(owned.problem, CostFound(owned.problem), &multipliers, 1, budget);
+    owned.problem.start = Point{-20, 10};
+    const double target = CostFound(owned.problem);
+    double afresh = 0;
+    double onward = 0;
+
+    const int asks_afresh = testing::AsksOf(
+        [&](Budget& asked) { afresh = *LowerBound(owned.problem, target, nullptr, 1, asked); });
+    const int asks_onward = testing::AsksOf([&](Budget& asked) {
+      onward = *LowerBound(owned.problem, target, &multipliers, 1, asked);
+    });
+
+    EXPECT_GT(onward, 0.98 * afresh);
+    EXPECT_GT(asks_onward, 0.85 * asks_afresh);
+  }
+}
+
+// A few points of each of many contours, all over each other: the first rounds gain nothing.
+TEST(LowerBound, IsMoreThanHalfOfARouteAmongScatteredContours) {
+  Rng rng(5);
+  std::vector<Path> paths;
+  for (int i = 0; i < 60; ++i) {
+    std::vector<Point> points;
+    for (int k = 0; k < 5; ++k) points.push_back({200 * rng.Unit(), 200 * rng.Unit()});
+    paths.push_back(MakeContour(std::move(points)));
+  }
+  const OwnedProblem owned(testing::AnyOrderPlan(std::move(paths)));
   Budget budget;
-  BoundMultipliers multipliers;
-  LowerBound(owned.problem, CostFound(owned.problem), &multipliers, 1, budget);
-  owned.problem.start = Point{-20, 10};
-  const double target = CostFound(owned.problem);
+  const Solution found =
+      (*MakeStrategy("auto", {{"bound", "false"}}))->Solve(owned.problem, budget);
+  const double cost = RouteCost(owned.problem, found.route);
 
-  const double afresh = *LowerBound(owned.problem, target, nullptr, 1, budget);
-  const double onward = *LowerBound(owned.problem, target, &multipliers, 1, budget);
-
-  EXPECT_GT(onward, 0.97 * afresh);
+  EXPECT_GT(*LowerBound(owned.problem, cost, nullptr, 1, budget), 0.5 * cost);
 }
 
 // What was found for one start bounds the routes from another one.

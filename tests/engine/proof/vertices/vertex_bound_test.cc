@@ -92,6 +92,42 @@ TEST(VertexBound, EndsWithItsWorkAndKeepsWhatItFound) {
   EXPECT_TRUE(std::is_sorted(bounds.begin(), bounds.end()));
 }
 
+TEST(VertexBound, DoesMoreWorkWhileItIsFarFromTheTarget) {
+  const OwnedProblem owned(testing::ClusterPlan(60));
+  Budget budget;
+  const auto search = [&](double target, double& work) {
+    TreeBound tree(owned.problem, budget);
+    EXPECT_TRUE(tree.Evaluate(budget));
+    VertexBound bound(owned.problem, tree);
+    const double found =
+        bound.Search(target, {.rounds = 40, .work = 3e6, .work_while_far = 2e7}, budget);
+    work = bound.work();
+    return found;
+  };
+  double far = 0;
+  double near = 0;
+
+  const double found = search(RouteCost(owned.problem, GivenRoute(owned.plan())), far);
+  search(1.1 * found, near);
+
+  EXPECT_GT(far, 1.9e7);
+  EXPECT_LT(near, 1.5e7);
+}
+
+TEST(VertexBound, TakesLayersOfManyEnds) {
+  const OwnedProblem owned(testing::ClusterPlan(1100));
+  const double cost = RouteCost(owned.problem, GivenRoute(owned.plan()));
+  Budget budget;
+  TreeBound tree(owned.problem, budget);
+  ASSERT_TRUE(tree.Evaluate(budget));
+  tree.Ascend(0.05 * cost, 40, budget);
+  ASSERT_TRUE(tree.Evaluate(budget));
+
+  ASSERT_TRUE(VertexBound::Fits(tree.graph()));
+  EXPECT_GT(VertexBound(owned.problem, tree).Search(0.05 * cost, {.rounds = 4}, budget),
+            1.2 * tree.lower_bound());
+}
+
 TEST(VertexBound, EndsWithItsWorkWhereNothingIsRuledOut) {
   const OwnedProblem owned(ScatteredPlan(60, 200));
   const double cost = RouteCost(owned.problem, GivenRoute(owned.plan()));
