@@ -12,6 +12,26 @@ namespace {
 // Layers from which habits are learnt.
 constexpr size_t kSampledLayers = 24;
 
+// Travel to such paths lies inside an island where it crosses no visible wall, which it need not
+// between parts of a support or a brim; and where it oozes hardly anybody sees it, as one does at
+// the start of an outer wall.
+bool IsInside(Feature feature) {
+  return feature == Feature::kLoop || feature == Feature::kLine || feature == Feature::kInnerWall ||
+         feature == Feature::kGapFill || feature == Feature::kSparseInfill ||
+         feature == Feature::kSolidInfill || feature == Feature::kBottomInfill ||
+         feature == Feature::kTopInfill;
+}
+
+RetractionCount SumInside(const RetractionCounts& counts) {
+  RetractionCount sum;
+  for (size_t i = 0; i < counts.size(); ++i) {
+    if (!IsInside(static_cast<Feature>(i))) continue;
+    sum.retracted += counts[i].retracted;
+    sum.not_retracted += counts[i].not_retracted;
+  }
+  return sum;
+}
+
 bool IsSoft(const Block& block) { return (block.link & (kLinkFixed | kLinkSplits)) == 0; }
 
 // Calls visit(block, from, to) for the links inside a layer that have no marks in them.
@@ -122,6 +142,7 @@ RetractionHabit LearnRetraction(const GcodeFile& file) {
     const std::vector<Outline> outlines = OutlinesOf(file, file.layers[i]);
     Count(file, file.layers[i], outlines, VisibleWalls(outlines), habit.threshold_mm, habit.inside);
   }
+  habit.all_inside = SumInside(habit.inside);
   RetractionCount all;
   for (const RetractionCount& count : habit.inside) {
     all.retracted += count.retracted;
@@ -145,13 +166,18 @@ TravelRules::TravelRules(const GcodeFile& file, const Layer& layer, const Retrac
       detours_(habit.avoids_walls ? std::optional<Detours>(std::in_place, walls) : std::nullopt) {
   if (habit.crossing_matters) {
     Count(file, layer, outlines, walls, habit.threshold_mm, inside_);
+    all_inside_ = SumInside(inside_);
   }
 }
 
+// Where the file has no travel to such paths that is long enough, it goes by that to others: a
+// slicer that does not retract inside an island does so whatever follows.
 const RetractionCount& TravelRules::CountOf(Feature feature) const {
   const RetractionCount& here = inside_[static_cast<size_t>(feature)];
   const RetractionCount& everywhere = habit_.inside[static_cast<size_t>(feature)];
-  return here.total() >= kEnough ? here : everywhere;
+  if (here.total() >= kEnough) return here;
+  if (everywhere.total() > 0 || !IsInside(feature)) return everywhere;
+  return all_inside_.total() >= kEnough ? all_inside_ : habit_.all_inside;
 }
 
 bool TravelRules::AlwaysRetracts(Feature feature) const {

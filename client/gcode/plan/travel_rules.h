@@ -35,6 +35,7 @@ struct RetractionHabit {
   double threshold_mm = 0;        // shorter moves do not retract
   bool crossing_matters = false;  // moves that cross no visible wall often do not retract
   RetractionCounts inside;
+  RetractionCount all_inside;  // to inner walls and infill
 
   // Travel leads around visible walls.
   bool avoids_walls = false;
@@ -98,6 +99,7 @@ class TravelRules {
   const VisibleWalls& walls_;
   const std::optional<Detours> detours_;  // if the file makes detours
   RetractionCounts inside_;
+  RetractionCount all_inside_;  // to inner walls and infill
 };
 
 }  // namespace traverse::gcode
