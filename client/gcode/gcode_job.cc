@@ -123,8 +123,10 @@ void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const Retraction
     const TravelWay way = rules.WayOf(file.modes[before.mode].InMm(before.last),
                                       file.modes[block.mode].InMm(block.first),
                                       outlines[b - of_file.first_block].feature);
-    // New travel does not include wipes either.
-    const bool plain = (block.link & kLinkWipes) == 0;
+    // New travel does not include wipes either; nor what the head does at a boundary, which it does
+    // in any order.
+    const bool boundary = (block.link & (kLinkSplits | kLinkFixed)) != 0;
+    const bool plain = (block.link & kLinkWipes) == 0 && !boundary;
     double seconds = plain ? WaySeconds(file, b, travel) : NewWaySeconds(file, b - 1, way, travel);
     // A retraction because of a wipe has the price of new travel, which begins with it too.
     const bool wiped_before = wiped_stays && file.WipedBehind(b - 1);
@@ -137,7 +139,7 @@ void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const Retraction
     move.set_from(b - 1 - of_file.first_block);
     move.set_to(b - of_file.first_block);
     move.set_seconds(seconds < kMostKnownSeconds ? seconds : kMostKnownSeconds);
-    move.set_crosses(MeasureLink(file, b, walls).crossings > 0);
+    move.set_crosses(boundary ? way.crosses : MeasureLink(file, b, walls).crossings > 0);
     move.set_retracts(retracts);
   }
 }

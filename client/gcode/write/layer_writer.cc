@@ -283,10 +283,12 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
   const Block& here = file_.blocks[layer_.first_block + place];
   const Block& next = file_.blocks[to.block];
   const bool boundary = (here.link & (kLinkSplits | kLinkFixed)) != 0;
-  const bool as_given = from.block + 1 == to.block && from.as_given() && to.as_given() &&
-                        (!boundary || to.block == layer_.first_block + place);
+  const bool stays = from.block + 1 == to.block && from.as_given() && to.as_given() &&
+                     (!boundary || to.block == layer_.first_block + place);
+  // Where the head goes at a boundary it goes in any order: only the way between the paths counts.
+  const bool as_given = stays && !boundary;
   const Feature feature = outlines_[to.block - layer_.first_block].feature;
-  const bool wipes = as_given || Wipes(from, Begin(to), feature, boundary);
+  const bool wipes = stays || Wipes(from, Begin(to), feature, boundary);
   TravelWay way;
   if (as_given) {
     way.to = Begin(to);
@@ -302,10 +304,9 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
   } else if (const Leaving* leaving = LeavingOf(from, wipes)) {
     across_mm -= leaving->mm;
   }
-  way.retracts = as_given
-                     ? (next.link & kLinkRetracts) != 0
-                     : way.retracts || wipes || (boundary && (here.link & kLinkRetracts) != 0) ||
-                           GoesOnAcross(from, way.to, feature);
+  way.retracts = stays ? (next.link & kLinkRetracts) != 0
+                       : way.retracts || wipes || (boundary && (here.link & kLinkRetracts) != 0) ||
+                             GoesOnAcross(from, way.to, feature);
   const WayJoints joints = JointsOf(from, to, wipes);
   const WayJoints* passed = way.retracts ? nullptr : &joints;
   WayTotals totals;

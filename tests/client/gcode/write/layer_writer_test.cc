@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "client/gcode/gcode_job.h"
 #include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/plan/travel_rules.h"
@@ -224,6 +225,27 @@ class LayerWriterWipesBehindDepartures : public LayerWriterWipes {
  protected:
   LayerWriterWipesBehindDepartures() : LayerWriterWipes("G1 X20.3 Y10.4 F9000") {}
 };
+
+// What the head does where an object's label stands it does in any order: only the way between the
+// paths counts. (Orca's visits to a wipe tower seemed to be time to save.)
+TEST(LayerWriter, CountsOfAWayPastALabelWhatLiesBetweenThePaths) {
+  Sketch sketch;
+  sketch.Square(0, 0, 10).Go(20, 0).Infill(30, 0).Add("; printing object a").Go(300, 300);
+  sketch.Go(20, 5).Infill(30, 5).Go(20, 10).Infill(30, 10);
+  const auto file = sketch.Read();
+  ASSERT_EQ(file->blocks[2].link & (kLinkSplits | kLinkFixed), kLinkSplits);
+  const RetractionHabit habit = HabitOfNewWays(*file);
+  const LinkDonors donors(*file);
+  const LayerWriter writer(*file, file->layers[0], habit, donors);
+
+  const WayTotals as_given = writer.EstimateWay(2, {1, 0, false}, {2, 0, false}, TravelModel());
+  const WayTotals turned = writer.EstimateWay(2, {1, 1, false}, {2, 0, false}, TravelModel());
+
+  EXPECT_NEAR(as_given.mm, std::hypot(10, 5), 1e-3);
+  EXPECT_NEAR(turned.mm, 5, 1e-3);
+  const v1::Layer told = MakeGcodeJob(file, {}).layers[0];
+  EXPECT_LT(told.known_moves(1).seconds(), 0.5);
+}
 
 TEST_F(LayerWriterWipes, AWayBeginsWhereTheWipeBeforeItEnds) {
   ASSERT_TRUE(file_->WipedBehind(1));
