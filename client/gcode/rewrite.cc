@@ -117,6 +117,7 @@ std::string Numbered(const GcodeFile& file, std::string text) {
 
 GcodeRewrite AsItIs(const GcodeFile& file, GcodeRewrite rewrite) {
   rewrite.after = rewrite.before;
+  rewrite.forecast.seconds = rewrite.forecast.given_seconds;
   rewrite.first_after = rewrite.first_before;
   rewrite.layers_changed = 0;
   rewrite.orders.assign(file.layers.size(), {});
@@ -209,6 +210,7 @@ class Rewriter {
     rewrite.before = Sum(chosen.given);
     rewrite.after = Sum(chosen.totals);
     rewrite.layers_changed = chosen.changed;
+    rewrite.forecast = chosen.forecast;
     if (!chosen.given.empty()) {
       rewrite.first_before = chosen.given.front();
       rewrite.first_after = chosen.totals.front();

@@ -20,6 +20,7 @@ struct GcodeRewrite {
   std::string text;  // of the new file; that of the old one if nothing was gained
   gcode::PrintTotals before;
   gcode::PrintTotals after;
+  gcode::Forecast forecast;         // of the orders of `text`, as the search counts
   gcode::PrintTotals first_before;  // of the first layer only
   gcode::PrintTotals first_after;
   gcode::FileOrder orders;  // [layer] as in `text`; empty for that of the old file

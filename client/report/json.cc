@@ -147,6 +147,8 @@ Json GcodeTotalsJson(const gcode::PrintTotals& totals) {
 
 Json RewriteJson(const GcodeRewrite& rewrite) {
   return {{"layers_changed", rewrite.layers_changed},
+          {"found_given_seconds", rewrite.forecast.given_seconds},
+          {"found_seconds", rewrite.forecast.seconds},
           {"given", GcodeTotalsJson(rewrite.before)},
           {"written", GcodeTotalsJson(rewrite.after)}};
 }

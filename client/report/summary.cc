@@ -30,7 +30,8 @@ std::string GapText(const v1::JobSummary& summary) {
                          100 * (summary.cost() - summary.lower_bound()) / summary.cost());
 }
 
-std::string OptimizeSummary(const InputJob& job, const JobRun& run) {
+std::string OptimizeSummary(const InputJob& job, const JobRun& run,
+                            const gcode::Forecast* forecast) {
   const v1::JobSummary& summary = run.result.summary;
   const double given = summary.given().total_mm() + summary.cleaning_given_mm();
   const double travel = summary.travel().total_mm() + summary.cleaning_mm();
@@ -42,8 +43,10 @@ std::string OptimizeSummary(const InputJob& job, const JobRun& run) {
   absl::StrAppendFormat(&out, "idle     %s -> %s\n", Duration(summary.idle_seconds_given()),
                         Duration(summary.idle_seconds()));
   if (job.options.cost().has_time()) {
-    absl::StrAppendFormat(&out, "cost     %s -> %s  (%s)\n", Duration(summary.cost_given()),
-                          Duration(summary.cost()), Change(summary.cost_given(), summary.cost()));
+    const double cost_given = forecast ? forecast->given_seconds : summary.cost_given();
+    const double cost = forecast ? forecast->seconds : summary.cost();
+    absl::StrAppendFormat(&out, "cost     %s -> %s  (%s)\n", Duration(cost_given), Duration(cost),
+                          Change(cost_given, cost));
   }
   if (job.gtsp != nullptr) {
     absl::StrAppendFormat(&out, "tour     %d by rounded distances (EUC_2D)\n",

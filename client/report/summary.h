@@ -5,13 +5,16 @@
 
 #include <string>
 
+#include "client/gcode/choose/forecast.h"
 #include "client/input/input_job.h"
 #include "client/report/run.h"
 
 namespace traverse::report {
 
-// A few lines: travel before and after, idle time saved, gap if known, why the search ended.
-std::string OptimizeSummary(const InputJob& job, const JobRun& run);
+// A few lines: travel before and after, idle time saved, gap if known, why the search ended. The
+// cost is that of `forecast` if there is one: of the orders that were written in the end.
+std::string OptimizeSummary(const InputJob& job, const JobRun& run,
+                            const gcode::Forecast* forecast = nullptr);
 
 // Gap of the whole job in percent, as "0.8 %", or "" if no bound is known.
 std::string GapText(const v1::JobSummary& summary);

@@ -150,7 +150,8 @@ Expected<DonePart> OptimizePart(Service& service, Request request, InputFile& in
     const uint32_t plate = input.container->parts()[input.parts[index]].plate;
     done.summary = absl::StrFormat("plate %d: ", plate);
   }
-  done.summary += report::OptimizeSummary(*job, made.runs[0]);
+  const gcode::Forecast* forecast = made.rewrite ? &made.rewrite->forecast : nullptr;
+  done.summary += report::OptimizeSummary(*job, made.runs[0], forecast);
   if (!written) return done;
   done.summary += GcodeSummary(*made.rewrite);
   done.changed = made.rewrite->layers_changed > 0;

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
-#include <string_view>
 #include <utility>
 
 #include "client/gcode/choose/choice_row.h"
+#include "client/gcode/choose/layer_column.h"
 #include "client/gcode/choose/merged_orders.h"
 #include "client/gcode/choose/revisits.h"
 #include "client/gcode/parallel.h"
@@ -18,30 +18,6 @@ namespace {
 
 // Rounding of sums of lengths.
 constexpr double kSlackMm = 1e-6;
-
-// As slicers write it: a sign that the extruder's register does not count through.
-bool Resets(std::string_view text) { return text.find("G92") != std::string_view::npos; }
-
-// One order of a layer.
-struct Choice {
-  LayerOrder order;
-  const LayerWriter* writer = nullptr;
-  PartStart start;  // how it begins and ends in `text`
-  PartStart behind;
-  bool resets_e = false;  // the register is set on the way, and does not count through
-  std::string text;       // empty for the order of the file
-  bool written = false;   // `text` was used up
-};
-
-// A layer and what it may be. choices[0] is the order of the file.
-struct Column {
-  std::unique_ptr<const LayerWriter> writer;
-  std::unique_ptr<const LayerWriter> plain;  // which spares no walls; null if not needed
-  std::vector<Choice> choices;
-  ChoiceColumn totals;
-  bool ruled_out = false;  // something is
-  uint32_t chosen = 0;
-};
 
 }  // namespace
 
@@ -56,14 +32,15 @@ class LayerChooser::Impl {
         polish_(choice.polish),
         threads_(choice.threads),
         habit_(HabitOfNewWays(file, choice.allow)),
-        plain_habit_(Plain(habit_)),
         donors_(file),
+        filler_(file, habit_, donors_),
         travel_(LearnTravel(file, habit_.threshold_mm, choice.threads)),
         revisits_(file, choice.min_revisit_seconds, choice.threads),
         columns_(file.layers.size()) {
     ParallelFor(columns_.size(), threads_, [this](size_t layer) { FillColumn(layer); });
     ParallelFor(columns_.size() - 1, threads_, [this](size_t i) { FillWays(i + 1); });
-    for (Column& column : columns_) column.totals.no_choice.assign(column.choices.size(), false);
+    for (LayerColumn& column : columns_)
+      column.totals.no_choice.assign(column.choices.size(), false);
   }
 
   ChosenLayers Choose() {
@@ -75,7 +52,7 @@ class LayerChooser::Impl {
   }
 
   bool RuleOut(size_t layer, bool way) {
-    Column& column = columns_[layer];
+    LayerColumn& column = columns_[layer];
     if (!way) {
       if (column.chosen == 0) return false;
       column.totals.no_choice[column.chosen] = true;
@@ -90,7 +67,7 @@ class LayerChooser::Impl {
   }
 
   bool RuleOutAll(size_t layer) {
-    Column& column = columns_[layer];
+    LayerColumn& column = columns_[layer];
     for (size_t c = 1; c < column.choices.size(); ++c) column.totals.no_choice[c] = true;
     column.ruled_out = column.choices.size() > 1;
     return column.chosen != 0;
@@ -103,57 +80,11 @@ class LayerChooser::Impl {
   }
 
  private:
-  static RetractionHabit Plain(RetractionHabit habit) {
-    habit.spares_walls = false;
-    return habit;
-  }
-
   void ChooseRow() {
     std::vector<const ChoiceColumn*> totals;
-    for (const Column& column : columns_) totals.push_back(&column.totals);
+    for (const LayerColumn& column : columns_) totals.push_back(&column.totals);
     const std::vector<uint32_t> row = BestRow(totals, policy_, crossings_, fewer_crossings_);
     for (size_t layer = 0; layer < columns_.size(); ++layer) columns_[layer].chosen = row[layer];
-  }
-
-  void AddGiven(size_t layer, Column& column) const {
-    Choice& choice = column.choices.emplace_back();
-    choice.order = column.writer->GivenOrder();
-    choice.writer = column.writer.get();
-    choice.start = StartOfPaths(file_, choice.order.front());
-    choice.behind = StartBehind(file_, file_.blocks[file_.layers[layer].end_block - 1]);
-    choice.resets_e = Resets(file_.PathsText(file_.layers[layer]));
-    column.totals.inside.push_back(
-        MeasurePaths(file_, file_.layers[layer], column.writer->walls()));
-  }
-
-  // Writes `order` with walls spared. Where that leaves fewer ways across them with an open nozzle
-  // than the file has, there may be time to win: so it is written as the file would have it as
-  // well.
-  void AddChoices(const LayerOrder& order, size_t layer, Column& column) const {
-    for (const Choice& known : column.choices) {
-      if (known.order == order) return;
-    }
-    AddChoice(order, *column.writer, column);
-    if (!habit_.spares_walls || habit_.avoids_walls) return;
-    const std::vector<PrintTotals>& inside = column.totals.inside;
-    if (inside.back().open_crossings >= inside.front().open_crossings) return;
-    if (column.plain == nullptr) {
-      column.plain =
-          std::make_unique<const LayerWriter>(file_, file_.layers[layer], plain_habit_, donors_);
-    }
-    AddChoice(order, *column.plain, column);
-  }
-
-  void AddChoice(const LayerOrder& order, const LayerWriter& writer, Column& column) const {
-    Choice& choice = column.choices.emplace_back();
-    choice.order = order;
-    choice.writer = &writer;
-    choice.start = StartOfPaths(file_, order.front());
-    choice.behind = writer.WritePaths(order, choice.start, choice.text);
-    choice.text.shrink_to_fit();  // those of all layers are kept until one order of each is chosen
-    choice.resets_e = Resets(choice.text);
-    column.totals.inside.push_back(
-        Measure(file_, choice.text, choice.start, &column.writer->walls()));
   }
 
   // By which the orders of a layer are merged.
@@ -198,20 +129,18 @@ class LayerChooser::Impl {
   }
 
   void AddSparing(size_t layer) {
-    Column& column = columns_[layer];
+    LayerColumn& column = columns_[layer];
     const MergeRules rules = RulesOf(layer);
     if (rules.as_many_retractions) return;
     const LayerOrder& chosen = column.choices[column.chosen].order;
     const auto orders = SparingOrders(*column.writer, travel_[layer], chosen, rules);
-    for (const LayerOrder& order : orders) AddChoices(order, layer, column);
+    for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
     column.totals.no_choice.resize(column.choices.size(), false);
   }
 
   void FillColumn(size_t layer) {
-    Column& column = columns_[layer];
-    column.writer =
-        std::make_unique<const LayerWriter>(file_, file_.layers[layer], habit_, donors_);
-    AddGiven(layer, column);
+    LayerColumn& column = columns_[layer];
+    filler_.Begin(layer, column);
     std::vector<LayerOrder> found;
     for (const FileOrder& order : tries_) {
       const bool known = order[layer].empty() || order[layer] == column.choices[0].order;
@@ -221,7 +150,7 @@ class LayerChooser::Impl {
     MergeRules rules = RulesOf(layer);
     const auto add_merged = [&] {
       const auto orders = MergedOrders(*column.writer, travel_[layer], found, rules);
-      for (const LayerOrder& order : orders) AddChoices(order, layer, column);
+      for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
     };
     add_merged();
     if (crossings_ != Crossings::kFewer) return;
@@ -231,10 +160,10 @@ class LayerChooser::Impl {
   }
 
   void FillWays(size_t layer) {
-    Column& column = columns_[layer];
+    LayerColumn& column = columns_[layer];
     column.totals.ways.clear();
-    for (const Choice& before : columns_[layer - 1].choices) {
-      for (const Choice& choice : column.choices) {
+    for (const LayerChoice& before : columns_[layer - 1].choices) {
+      for (const LayerChoice& choice : column.choices) {
         std::string text;
         column.writer->WriteWay(before.order.back(), choice.order.front(), before.behind, text);
         column.totals.ways.push_back(Measure(file_, text, before.behind, &column.writer->walls()));
@@ -247,7 +176,7 @@ class LayerChooser::Impl {
   // The file's own orders one after the other may always be chosen.
   void ForbidRevisits(size_t layer) {
     const auto timed = [this](size_t l, size_t choice) {
-      const Column& column = columns_[l];
+      const LayerColumn& column = columns_[l];
       return TimedOrder{&column.choices[choice].order, column.totals.inside[choice].seconds};
     };
     const size_t choices = columns_[layer].choices.size();
@@ -268,6 +197,7 @@ class LayerChooser::Impl {
     ChosenLayers chosen;
     chosen.texts.resize(columns_.size());
     for (size_t layer = 0; layer < columns_.size(); ++layer) NoteTotals(layer, chosen);
+    chosen.forecast = ForecastOf(columns_, travel_);
     std::vector<size_t> again;
     std::vector<PartStart> starts;  // [layer] of its paths, the register as it ought to be
     for (size_t layer = 0; layer < columns_.size(); ++layer) {
@@ -308,7 +238,7 @@ class LayerChooser::Impl {
 
   // The paths written for the choice; a second time they are written anew.
   void TakePaths(size_t layer, std::string& text) {
-    Choice& choice = Chosen(layer);
+    LayerChoice& choice = Chosen(layer);
     if (choice.written) {
       choice.writer->WritePaths(choice.order, choice.start, text);
     } else {
@@ -318,7 +248,7 @@ class LayerChooser::Impl {
 
   // They are large, and hardly ever asked for again.
   void DropTexts() {
-    for (Column& column : columns_) {
+    for (LayerColumn& column : columns_) {
       for (size_t c = 1; c < column.choices.size(); ++c) {
         column.choices[c].text = {};
         column.choices[c].written = true;
@@ -326,8 +256,8 @@ class LayerChooser::Impl {
     }
   }
 
-  Choice& Chosen(size_t layer) { return columns_[layer].choices[columns_[layer].chosen]; }
-  const Choice& Chosen(size_t layer) const {
+  LayerChoice& Chosen(size_t layer) { return columns_[layer].choices[columns_[layer].chosen]; }
+  const LayerChoice& Chosen(size_t layer) const {
     return columns_[layer].choices[columns_[layer].chosen];
   }
 
@@ -351,7 +281,7 @@ class LayerChooser::Impl {
   }
 
   void NoteTotals(size_t layer, ChosenLayers& chosen) const {
-    const Column& column = columns_[layer];
+    const LayerColumn& column = columns_[layer];
     chosen.orders.push_back(column.chosen == 0 ? LayerOrder() : Chosen(layer).order);
     const size_t before = layer > 0 ? columns_[layer - 1].chosen : 0;
     chosen.given.push_back(column.totals.Whole(0, 0));
@@ -367,11 +297,11 @@ class LayerChooser::Impl {
   const std::optional<PolishLimit> polish_;
   const int threads_;
   const RetractionHabit habit_;
-  const RetractionHabit plain_habit_;
   const LinkDonors donors_;
+  const ColumnFiller filler_;
   const std::vector<TravelModel> travel_;  // [layer]
   const Revisits revisits_;
-  std::vector<Column> columns_;  // [layer]
+  std::vector<LayerColumn> columns_;  // [layer]
   int64_t fewer_crossings_ = 0;
   bool spared_ = false;  // retractions were
 };

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "client/gcode/choose/forecast.h"
 #include "client/gcode/choose/order_polish.h"
 #include "client/gcode/measure/print_totals.h"
 #include "client/gcode/plan/policy.h"
@@ -40,6 +41,7 @@ struct ChosenLayers {
   std::vector<PrintTotals> given;   // [layer], with the travel to it, in the file's order
   std::vector<PrintTotals> totals;  // [layer], as chosen
   int64_t changed = 0;              // layers in another order than the file's
+  Forecast forecast;                // of all travel between paths
 
   // Appends all layers, from the first path to the end of the last one.
   void AppendTo(const GcodeFile& file, std::string& text) const;

@@ -24,6 +24,17 @@ TEST(OptimizeSummary, SaysWhatWasGained) {
   EXPECT_THAT(text, HasSubstr("ended    OPTIMAL 1\n"));
 }
 
+// Not what the first search took for found.
+TEST(OptimizeSummary, StatesWhatTheWrittenOrdersAreTakenToCost) {
+  InputJob job = SmallJob();
+  job.options.mutable_cost()->mutable_time()->set_speed_mm_s(100);
+  const gcode::Forecast forecast = {8, 6};
+
+  EXPECT_THAT(OptimizeSummary(job, SmallRun(), &forecast),
+              HasSubstr("cost     8.0 s -> 6.0 s  (25.0 % less)\n"));
+  EXPECT_THAT(OptimizeSummary(job, SmallRun()), Not(HasSubstr("25.0 % less")));
+}
+
 TEST(OptimizeSummary, StatesTheBoundOfAllLayersTogetherIfThereIsOne) {
   JobRun run = SmallRun();
   EXPECT_THAT(OptimizeSummary(SmallJob(), run), Not(HasSubstr("chain")));

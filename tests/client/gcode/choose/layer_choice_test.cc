@@ -62,6 +62,32 @@ TEST(LayerChooser, TakesAnOrderThatIsQuickerAndTheFilesIfThatIsRuledOut) {
   EXPECT_FALSE(chooser.RuleOutAll(0));
 }
 
+// What the travel of the chosen orders takes as the search counts it; nothing is measured for it.
+TEST(LayerChooser, ForecastsTheTravelOfWhatItChose) {
+  const auto file = BadFile(2);
+  const std::vector<FileOrder> tries = {Up(*file)};
+  LayerChooser chooser(*file, tries, kFree);
+  const auto seconds_of = [](const std::vector<PrintTotals>& layers) {
+    return Sum(layers).seconds;
+  };
+
+  const ChosenLayers both = chooser.Choose();
+  const double written = seconds_of(both.given) - seconds_of(both.totals);
+  const double found = both.forecast.given_seconds - both.forecast.seconds;
+  ASSERT_EQ(both.changed, 2);
+  EXPECT_NEAR(found, written, 0.1 * written);
+  EXPECT_LT(both.forecast.given_seconds, seconds_of(both.given) / 2);  // without the printing
+
+  // Of what was ruled out nothing counts as found.
+  ASSERT_TRUE(chooser.RuleOutAll(0));
+  const Forecast one = chooser.Choose().forecast;
+  EXPECT_NEAR(one.given_seconds - one.seconds, found / 2, 0.1 * found);
+  ASSERT_TRUE(chooser.RuleOutAll(1));
+  const Forecast none = chooser.Choose().forecast;
+  EXPECT_EQ(none.given_seconds, both.forecast.given_seconds);
+  EXPECT_EQ(none.seconds, none.given_seconds);
+}
+
 TEST(LayerChooser, AWayThatIsRuledOutLeavesOtherOrders) {
   const auto file = BadFile(2);
   const std::vector<FileOrder> tries = {Up(*file)};

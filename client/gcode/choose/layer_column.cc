@@ -1,0 +1,100 @@
+#include "client/gcode/choose/layer_column.h"
+
+#include <string_view>
+
+#include "client/gcode/measure/layer_meter.h"
+
+namespace traverse::gcode {
+namespace {
+
+// As slicers write it: a sign that the extruder's register does not count through.
+bool Resets(std::string_view text) { return text.find("G92") != std::string_view::npos; }
+
+RetractionHabit SparingNoWalls(RetractionHabit habit) {
+  habit.spares_walls = false;
+  return habit;
+}
+
+double ForecastPaths(const LayerWriter& writer, const TravelModel& travel,
+                     const LayerOrder& order) {
+  double seconds = 0;
+  for (size_t place = 1; place < order.size(); ++place) {
+    seconds += writer.EstimateWay(place, order[place - 1], order[place], travel).seconds;
+  }
+  return seconds;
+}
+
+}  // namespace
+
+ColumnFiller::ColumnFiller(const GcodeFile& file, const RetractionHabit& habit,
+                           const LinkDonors& donors)
+    : file_(file), habit_(habit), plain_habit_(SparingNoWalls(habit)), donors_(donors) {}
+
+void ColumnFiller::Begin(size_t layer, LayerColumn& column) const {
+  const Layer& of_file = file_.layers[layer];
+  column.writer = std::make_unique<const LayerWriter>(file_, of_file, habit_, donors_);
+  LayerChoice& choice = column.choices.emplace_back();
+  choice.order = column.writer->GivenOrder();
+  choice.writer = column.writer.get();
+  choice.start = StartOfPaths(file_, choice.order.front());
+  choice.behind = StartBehind(file_, file_.blocks[of_file.end_block - 1]);
+  choice.resets_e = Resets(file_.PathsText(of_file));
+  column.totals.inside.push_back(MeasurePaths(file_, of_file, column.writer->walls()));
+}
+
+void ColumnFiller::Add(const LayerOrder& order, size_t layer, LayerColumn& column) const {
+  for (const LayerChoice& known : column.choices) {
+    if (known.order == order) return;
+  }
+  Add(order, *column.writer, column);
+  if (!habit_.spares_walls || habit_.avoids_walls) return;
+  const std::vector<PrintTotals>& inside = column.totals.inside;
+  if (inside.back().open_crossings >= inside.front().open_crossings) return;
+  if (column.plain == nullptr) {
+    column.plain =
+        std::make_unique<const LayerWriter>(file_, file_.layers[layer], plain_habit_, donors_);
+  }
+  Add(order, *column.plain, column);
+  // A choice that is equal would have ways to and from all those of the layers beside it.
+  const size_t n = column.choices.size();
+  if (column.choices[n - 1].text != column.choices[n - 2].text) return;
+  column.choices.pop_back();
+  column.totals.inside.pop_back();
+}
+
+void ColumnFiller::Add(const LayerOrder& order, const LayerWriter& writer,
+                       LayerColumn& column) const {
+  LayerChoice& choice = column.choices.emplace_back();
+  choice.order = order;
+  choice.writer = &writer;
+  choice.start = StartOfPaths(file_, order.front());
+  choice.behind = writer.WritePaths(order, choice.start, choice.text);
+  choice.text.shrink_to_fit();  // those of all layers are kept until one order of each is chosen
+  choice.resets_e = Resets(choice.text);
+  column.totals.inside.push_back(
+      Measure(file_, choice.text, choice.start, &column.writer->walls()));
+}
+
+Forecast ForecastOf(const std::vector<LayerColumn>& columns,
+                    const std::vector<TravelModel>& travel) {
+  Forecast forecast;
+  for (size_t layer = 0; layer < columns.size(); ++layer) {
+    const LayerColumn& column = columns[layer];
+    const LayerWriter& writer = *column.writer;
+    const double given = ForecastPaths(writer, travel[layer], column.given_order());
+    const LayerChoice& chosen = column.choices[column.chosen];
+    forecast.given_seconds += given;
+    forecast.seconds +=
+        column.chosen == 0 ? given : ForecastPaths(*chosen.writer, travel[layer], chosen.order);
+    if (layer == 0) continue;
+    const LayerColumn& before = columns[layer - 1];
+    const auto way = [&](const LayerOrder& last, const LayerOrder& order) {
+      return writer.EstimateWayToLayer(last.back(), order.front(), travel[layer]);
+    };
+    forecast.given_seconds += way(before.given_order(), column.given_order());
+    forecast.seconds += way(before.chosen_order(), column.chosen_order());
+  }
+  return forecast;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,74 @@
+// The orders that a layer has to choose from, as written.
+
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_LAYER_COLUMN_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_LAYER_COLUMN_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "client/gcode/choose/choice_row.h"
+#include "client/gcode/choose/forecast.h"
+#include "client/gcode/plan/travel_model.h"
+#include "client/gcode/plan/travel_rules.h"
+#include "client/gcode/write/layer_writer.h"
+#include "client/gcode/write/link_donors.h"
+
+namespace traverse::gcode {
+
+// One order of a layer.
+struct LayerChoice {
+  LayerOrder order;
+  const LayerWriter* writer = nullptr;
+  PartStart start;  // how it begins and ends in `text`
+  PartStart behind;
+  bool resets_e = false;  // the register is set on the way, and does not count through
+  std::string text;       // empty for the order of the file
+  bool written = false;   // `text` was used up
+};
+
+// A layer and what it may be. choices[0] is the order of the file.
+struct LayerColumn {
+  std::unique_ptr<const LayerWriter> writer;
+  std::unique_ptr<const LayerWriter> plain;  // which spares no walls; null if not needed
+  std::vector<LayerChoice> choices;
+  ChoiceColumn totals;
+  bool ruled_out = false;  // something is
+  uint32_t chosen = 0;
+
+  const LayerOrder& given_order() const { return choices[0].order; }
+  const LayerOrder& chosen_order() const { return choices[chosen].order; }
+};
+
+// Writes and measures choices. Thread-safe.
+class ColumnFiller {
+ public:
+  // All outlive the filler and the columns.
+  ColumnFiller(const GcodeFile& file, const RetractionHabit& habit, const LinkDonors& donors);
+
+  // The column of layer `layer`, with the file's own order.
+  void Begin(size_t layer, LayerColumn& column) const;
+
+  // Adds `order` with walls spared, unless the column has it. Where that leaves fewer ways across
+  // them with an open nozzle than the file has, there may be time to win: so it is written as the
+  // file would have it as well.
+  void Add(const LayerOrder& order, size_t layer, LayerColumn& column) const;
+
+ private:
+  void Add(const LayerOrder& order, const LayerWriter& writer, LayerColumn& column) const;
+
+  const GcodeFile& file_;
+  const RetractionHabit& habit_;
+  const RetractionHabit plain_habit_;
+  const LinkDonors& donors_;
+};
+
+// Of all layers, with the travel to them. `travel` has their travel.
+Forecast ForecastOf(const std::vector<LayerColumn>& columns,
+                    const std::vector<TravelModel>& travel);
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_LAYER_COLUMN_H_
