@@ -64,7 +64,8 @@ class KnownWays {
     const bool boundary = rules_.boundaries[place];
     const size_t next = to.block - given_.front().block;
     const bool as_given = next > 0 && from == given_[next - 1] && to == given_[next];
-    if (as_given && (!boundary || next == place)) return given_ways_[next];
+    const bool alike = next == place || !(boundary || rules_.boundaries[next]);
+    if (as_given && alike) return given_ways_[next];
     if (known_.size() >= kMostKnown) known_.clear();
     const Key key{boundary ? place : 0, KeyOf(from), KeyOf(to)};
     const auto [found, added] = known_.try_emplace(key);
