@@ -15,7 +15,7 @@ constexpr size_t kStepsOfBend = 8;
 constexpr size_t kMostVertices = 500;
 
 // Moves that cross walls more often get no detour: it would take the square of that number.
-constexpr size_t kMostHits = 500;
+constexpr size_t kMostHits = 250;
 
 // Walls in the way of a detour around another wall.
 constexpr int kMostDepth = 2;
@@ -93,24 +93,30 @@ bool WallDetours::IsClosed(uint32_t wall) const {
   return end - first > 2 && grid_.segments()[end - 1].b == grid_.segments()[first].a;
 }
 
+// In the order along the move, each segment once. Stops when there are more than kMostHits.
 std::vector<WallDetours::Hit> WallDetours::HitsOf(Point a, Point b) const {
   std::vector<Hit> hits;
+  const auto put_in_order = [&hits] {
+    std::sort(hits.begin(), hits.end(), [](const Hit& one, const Hit& other) {
+      return std::pair(one.along, one.segment) < std::pair(other.along, other.segment);
+    });
+    const auto same = [](const Hit& one, const Hit& other) { return one.segment == other.segment; };
+    hits.erase(std::unique(hits.begin(), hits.end(), same), hits.end());
+  };
   const auto [from, to] = grid_.WithoutEnds(a, b);
   grid_.ForEachOnLine(from, to, [&, from = from, to = to](uint32_t s) {
     const WallSegment& wall = grid_.segments()[s];
-    if (SegmentsCross(from, to, wall.a, wall.b)) {
-      const Point left = left_[s];
-      const double before = (wall.a.x - a.x) * left.x + (wall.a.y - a.y) * left.y;
-      const double whole = (b.x - a.x) * left.x + (b.y - a.y) * left.y;
-      hits.push_back({before / whole, s});
-    }
-    return true;
+    if (!SegmentsCross(from, to, wall.a, wall.b)) return true;
+    const Point left = left_[s];
+    const double before = (wall.a.x - a.x) * left.x + (wall.a.y - a.y) * left.y;
+    const double whole = (b.x - a.x) * left.x + (b.y - a.y) * left.y;
+    hits.push_back({before / whole, s});
+    // The grid visits a segment in each of its cells that the line passes.
+    if (hits.size() <= 2 * kMostHits) return true;
+    put_in_order();
+    return hits.size() <= kMostHits;
   });
-  std::sort(hits.begin(), hits.end(), [](const Hit& one, const Hit& other) {
-    return std::pair(one.along, one.segment) < std::pair(other.along, other.segment);
-  });
-  const auto same = [](const Hit& one, const Hit& other) { return one.segment == other.segment; };
-  hits.erase(std::unique(hits.begin(), hits.end(), same), hits.end());
+  put_in_order();
   return hits;
 }
 
