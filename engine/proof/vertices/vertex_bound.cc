@@ -29,6 +29,10 @@ constexpr size_t kMostMoves = 150'000;
 // for each end, half of that where there are many ends.
 constexpr size_t kMostEnds = 3500;
 
+// Of many ends, with more points on average: what is measured at first would take too long at one
+// go.
+constexpr size_t kMostPointsOfEach = 25;
+
 // Near ends of each end that the ascent looks at.
 constexpr size_t kNeighbors = 8;
 
@@ -53,9 +57,14 @@ constexpr double kFarFrom = 0.8;
 }  // namespace
 
 bool VertexBound::Fits(const EndGraph& graph) {
-  return graph.ends.size() <= kMostEnds &&
-         std::any_of(graph.ends.begin(), graph.ends.end(),
-                     [](const PathEnd& end) { return end.points.size() > 1; });
+  size_t points = 0;
+  size_t most = 0;  // of an end
+  for (const PathEnd& end : graph.ends) {
+    points += end.points.size();
+    most = std::max(most, end.points.size());
+  }
+  const size_t ends = graph.ends.size();
+  return most > 1 && ends <= kMostEnds && (ends <= kManyEnds || points <= kMostPointsOfEach * ends);
 }
 
 VertexBound::VertexBound(const LayerProblem& problem, const TreeBound& tree)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -70,6 +71,15 @@ Plan ScatteredPlan(int contours, int points_each) {
     paths.push_back(MakeContour(std::move(points)));
   }
   return testing::AnyOrderPlan(std::move(paths));
+}
+
+// Each near pair is measured before the first ask.
+TEST(VertexBound, LeavesManyEndsOfManyPointsToTrees) {
+  for (const auto& [contours, points, fits] :
+       {std::tuple(1100, 40, false), std::tuple(1100, 20, true), std::tuple(900, 40, true)}) {
+    const Plan plan = ScatteredPlan(contours, points);
+    EXPECT_EQ(VertexBound::Fits(EndGraph(PlanTree(plan))), fits) << contours << " of " << points;
+  }
 }
 
 TEST(VertexBound, EndsWithItsWorkAndKeepsWhatItFound) {
