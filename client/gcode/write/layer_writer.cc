@@ -62,7 +62,19 @@ LayerWriter::LayerWriter(const GcodeFile& file, const Layer& layer, const Retrac
       joints_(file, layer, outlines_),
       spares_walls_(habit.retracts && habit.spares_walls),
       drops_wipes_(habit.drops_wipes) {
-  for (uint32_t b = layer.first_block; b < layer.end_block; ++b) NoteLeaving(b);
+  for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
+    NoteLeaving(b);
+    if (b == 0 || (file.blocks[b].link & kLinkFixedFrom) == 0) continue;
+    const Link link = ReadLink(file, b);
+    if (link.fixed == 0) continue;
+    const MachineState& machine = link.behind_fixed.machine;
+    behind_fixed_[b] = machine.InMm(machine.at);
+  }
+}
+
+std::optional<Vertex> LayerWriter::BehindFixed(uint32_t block) const {
+  const auto found = behind_fixed_.find(block);
+  return found != behind_fixed_.end() ? std::optional<Vertex>(found->second) : std::nullopt;
 }
 
 LayerOrder LayerWriter::GivenOrder() const {
@@ -290,10 +302,14 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
   const bool as_given = stays && !boundary;
   const Feature feature = outlines_[to.block - layer_.first_block].feature;
   const bool wipes = stays || Wipes(from, Begin(to), feature, boundary);
+  const std::optional<Vertex> behind_fixed =
+      BehindFixed(layer_.first_block + static_cast<uint32_t>(place));
   TravelWay way;
   if (as_given) {
     way.to = Begin(to);
     way.mm = static_cast<double>(next.travel_mm);
+  } else if (behind_fixed) {
+    way = rules_.WayOf(*behind_fixed, Begin(to), feature);
   } else {
     way = NewWay(from, to, wipes);
   }
@@ -302,7 +318,7 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
     const PrintTotals measured = MeasureLink(file_, to.block, walls_);
     way.crosses = measured.crossings > 0;
     across_mm = measured.longest_open_mm;
-  } else if (const Leaving* leaving = LeavingOf(from, wipes)) {
+  } else if (const Leaving* leaving = LeavingOf(from, wipes); leaving && !behind_fixed) {
     across_mm -= leaving->mm;
   }
   way.retracts = stays ? (next.link & kLinkRetracts) != 0
@@ -328,7 +344,7 @@ double LayerWriter::EstimateWayToLayer(const Placement& before, const Placement&
                                        const TravelModel& model) const {
   const PlacedPath from(file_, before);
   const MachineState& mode = file_.modes[from.block().mode];
-  const Vertex begin = mode.InMm(from.last());
+  const Vertex begin = BehindFixed(layer_.first_block).value_or(mode.InMm(from.last()));
   const Vertex end = Begin(first);
   const uint16_t link = file_.blocks[layer_.first_block].link;
   const bool stays = before.block + 1 == layer_.first_block && before.as_given() &&

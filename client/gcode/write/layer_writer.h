@@ -4,6 +4,7 @@
 #define TRAVERSE_CLIENT_GCODE_WRITE_LAYER_WRITER_H_
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -89,6 +90,10 @@ class LayerWriter {
 
   void NoteLeaving(uint32_t block);
 
+  // Where the head is behind what stays byte by byte before block `block`, if anything does: the
+  // way to a path there begins at that point, whatever is printed before.
+  std::optional<Vertex> BehindFixed(uint32_t block) const;
+
   // Whether travel from `from` to `to` that the file does not have begins with the short move that
   // leads away from `from` in the file. It does not where nothing is retracted and that move would
   // put a visible wall between the nozzle and `to`.
@@ -118,7 +123,8 @@ class LayerWriter {
   const LayerJoints joints_;
   const bool spares_walls_;
   const bool drops_wipes_;
-  absl::flat_hash_map<uint32_t, Leaving> leaving_;  // by block, if it is left this way
+  absl::flat_hash_map<uint32_t, Leaving> leaving_;      // by block, if it is left this way
+  absl::flat_hash_map<uint32_t, Vertex> behind_fixed_;  // by block, where something stays
 };
 
 }  // namespace traverse::gcode

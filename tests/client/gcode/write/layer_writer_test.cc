@@ -247,6 +247,24 @@ TEST(LayerWriter, CountsOfAWayPastALabelWhatLiesBetweenThePaths) {
   EXPECT_LT(told.known_moves(1).seconds(), 0.5);
 }
 
+// The way begins where lines that stay leave the head, whatever is printed before them.
+TEST(LayerWriter, CountsOfAWayBehindAScriptWhatFollowsIt) {
+  Sketch sketch;
+  sketch.Square(0, 0, 10).Go(20, 0).Infill(30, 0).Go(60, 5).Add("FLUSH_IT");
+  sketch.Go(20, 5).Infill(30, 5).Go(20, 10).Infill(30, 10);
+  const auto file = sketch.Read();
+  ASSERT_NE(file->blocks[2].link & kLinkFixedFrom, 0);
+  const RetractionHabit habit = HabitOfNewWays(*file);
+  const LinkDonors donors(*file);
+  const LayerWriter writer(*file, file->layers[0], habit, donors);
+
+  const WayTotals as_given = writer.EstimateWay(2, {1, 0, false}, {2, 0, false}, TravelModel());
+  const WayTotals turned = writer.EstimateWay(2, {1, 0, false}, {2, 1, false}, TravelModel());
+
+  EXPECT_NEAR(as_given.mm, 40, 1e-3);
+  EXPECT_NEAR(turned.mm, std::hypot(30, 0), 1e-3);
+}
+
 // A way to a layer retracts behind a wiped path, whatever the file's own does.
 TEST_F(LayerWriterWipes, AWayToALayerTakesItsRetraction) {
   Sketch sketch;
