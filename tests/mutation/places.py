@@ -88,7 +88,6 @@ COUNTS_FOR_AN_ASSERTION = "what it counts is looked at in an assertion"
 ORDER_ON_THE_CURVE = "which points share a leaf changes how long a search takes, and not what it finds"
 PRUNES_LESS = "a bound that rules out less: the cost itself is looked at behind it"
 NOTHING_TO_LET_IN = "tasks are held back only while all permits are in use"
-READ_THE_LONG_WAY = "the number is read by the function for all numbers, to the same value"
 ONLY_MEMORY = "more memory than needed is held"
 VISITS = "client/gcode/verify/match/visits.cc"
 POINT_INDEX = "engine/geometry/nearest_point_index.cc"
@@ -106,8 +105,6 @@ EQUIVALENT = {
     ("engine/search/turn_run.cc",
      "return state.position(begin) == first && state.position(end) + tree.size(end) - 1 != last;"):
         COUNTS_FOR_AN_ASSERTION,
-    ("client/gcode/verify/machine/command_words.cc",
-     "for (; at < text.size() && text[at] >= '0' && text[at] > '9'; ++at) {"): READ_THE_LONG_WAY,
     ("engine/souza/block_line.cc", "const double limit = gone + move_[j + 1] - detour_[j] - best.delta;"): PRUNES_LESS,
     ("server/jobs/worker_pool.cc", "if (memory_short_ || !is_short) {"): NOTHING_TO_LET_IN,
     (VISITS, "while (size < 2 * static_cast<size_t>(end + first)) size *= 2;"): ONLY_MEMORY,
