@@ -113,13 +113,15 @@ TEST(Deadline, TimeLimitOfTheJobCountsToo) {
 TEST(Deadline, LayerTimeLimitLetsEveryLayerHaveItsShare) {
   TestService service;
   v1::OptimizeBatchRequest request = HardBatch(4);
-  request.mutable_options()->mutable_layer_time_limit()->set_nanos(50'000'000);
+  // A thread may wait for a busy processor for 50 ms.
+  request.mutable_options()->mutable_layer_time_limit()->set_nanos((kSanitized ? 500 : 150) *
+                                                                   1'000'000);
 
   const Answer answer = service.Batch(request);
 
   ASSERT_EQ(answer.layers.size(), 4u);
   for (const v1::LayerResult& layer : answer.layers) {
-    EXPECT_LT(layer.solve_seconds(), kSanitized ? 5 : 0.5);
+    EXPECT_LT(layer.solve_seconds(), kSanitized ? 5 : 0.6);
     EXPECT_LT(layer.cost(), layer.cost_given());
   }
 }
