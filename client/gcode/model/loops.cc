@@ -44,9 +44,7 @@ void ProbeOutside(const Outline& outline, uint32_t loop, const SegmentGrid& grid
     const Segment probe = ProbeAt(outline, k);
     const Segment end{probe.b, probe.b, 0};
     bool hit = false;
-    grid.ForEachOnWay(probe.a, probe.b, [&](uint32_t s) {
-      if (looks == 0) return false;
-      --looks;
+    grid.ForEachOnWay(probe.a, probe.b, looks, [&](uint32_t s) {
       const Segment& other = grid.segments()[s];
       hit = other.path != loop && SquaredDistance(end, other) <= slack * slack;
       return !hit;
@@ -139,9 +137,8 @@ bool LiesOnEarlier(Vertex point, double reach, uint32_t path, const SegmentGrid&
   bool lies = false;
   for (const Vertex way : {Vertex{reach, 0}, Vertex{0, reach}}) {
     grid.ForEachOnWay(
-        {point.x - way.x, point.y - way.y}, {point.x + way.x, point.y + way.y}, [&](uint32_t s) {
-          if (looks == 0) return false;
-          --looks;
+        {point.x - way.x, point.y - way.y}, {point.x + way.x, point.y + way.y}, looks,
+        [&](uint32_t s) {
           const Segment& other = grid.segments()[s];
           lies = other.path < path && SquaredDistance({point, point, 0}, other) <= reach * reach;
           return !lies;

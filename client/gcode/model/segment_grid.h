@@ -57,9 +57,9 @@ class SegmentGrid {
   size_t entry_count() const { return entries_.size(); }
 
   // Calls visit(s) for all segments that the straight move from `a` to `b` may cross, until it
-  // returns false.
+  // returns false or `looks`, which each call takes one off, is 0.
   template <typename Visit>
-  void ForEachOnWay(Vertex a, Vertex b, Visit visit) const;
+  void ForEachOnWay(Vertex a, Vertex b, size_t& looks, Visit visit) const;
 
  private:
   int Column(double x) const;
@@ -269,9 +269,9 @@ void SegmentGrid::ForEachOccupied(Visit visit) const {
 }
 
 template <typename Visit>
-void SegmentGrid::ForEachOnWay(Vertex a, Vertex b, Visit visit) const {
+void SegmentGrid::ForEachOnWay(Vertex a, Vertex b, size_t& looks, Visit visit) const {
   if (columns_ == 0) return;
-  bool going_on = true;
+  bool going_on = looks > 0;
   ForEachCell(a, b, [&](int column, int row) {
     for (int r = row > 0 ? row - 1 : row; going_on && r <= row + 1 && r < rows_; ++r) {
       for (int c = column > 0 ? column - 1 : column; c <= column + 1 && c < columns_; ++c) {
@@ -279,7 +279,8 @@ void SegmentGrid::ForEachOnWay(Vertex a, Vertex b, Visit visit) const {
         if (!IsOccupied(cell)) continue;
         const size_t number = NumberOf(cell);
         for (uint32_t i = first_[number]; going_on && i < first_[number + 1]; ++i) {
-          going_on = visit(entries_[i].segment);
+          --looks;
+          going_on = visit(entries_[i].segment) && looks > 0;
         }
       }
     }

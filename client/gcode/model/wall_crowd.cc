@@ -1,6 +1,7 @@
 #include "client/gcode/model/wall_crowd.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -21,7 +22,9 @@ WallCrowd::WallCrowd(Vertex low, Vertex high)
           {kLeastCellMm, (high.x - low.x) / kMostColumns, (high.y - low.y) / kMostColumns})),
       columns_(static_cast<size_t>((high.x - low.x) / cell_mm_) + 1),
       rows_(static_cast<size_t>((high.y - low.y) / cell_mm_) + 1),
-      length_mm_(columns_ * rows_, 0) {}
+      length_mm_(columns_ * rows_, 0) {
+  assert(low.x <= high.x && low.y <= high.y);
+}
 
 template <typename Visit>
 void WallCrowd::ForEachPiece(const std::vector<Vertex>& line, Visit visit) const {

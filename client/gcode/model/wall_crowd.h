@@ -17,7 +17,7 @@ class WallCrowd {
   // the rest is for what is printed twice, and for the edges of the cells.
   static constexpr double kMostMmPerSquareMm = 40;
 
-  // For walls between `low` and `high`, corners of a box.
+  // For walls in the box from `low` to `high`. REQUIRES: low <= high, both in x and in y.
   WallCrowd(Vertex low, Vertex high);
 
   // Adds the polyline and returns true if there is room for it everywhere; else changes nothing.

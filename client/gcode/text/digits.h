@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -41,8 +42,9 @@ inline uint64_t ValueOfDigits(uint64_t digits) {
 }
 
 // Reads the number at `*text` in the line [line, end) as ParseDecimal does, if it is that short and
-// the line long enough. Else false, and `*text` stays.
+// the line long enough. Else false, and `*text` stays. REQUIRES: line <= *text < end.
 inline bool ParseShort(const char* line, const char** text, const char* end, Decimal& value) {
+  assert(line <= *text && *text < end);
   if constexpr (std::endian::native != std::endian::little) return false;
   if (static_cast<size_t>(end - line) < kDigitsAtOnce) return false;
   const char* p = *text;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -19,6 +20,7 @@ constexpr double kMaxNumber = 1e9;
 // The bytes of [begin, end) from `at` on in one word, the first one lowest, and zeros behind `end`.
 // REQUIRES: begin <= at < end.
 uint64_t Load(const char* begin, const char* at, const char* end) {
+  assert(begin <= at && at < end);
   uint64_t bytes = 0;
   if (end - begin < 8) {
     for (const char* p = end; p-- > at;) bytes = bytes << 8 | static_cast<unsigned char>(*p);
@@ -30,8 +32,8 @@ uint64_t Load(const char* begin, const char* at, const char* end) {
   return bytes >> (8 * (at - from));
 }
 
-// The digits with which `bytes` begins, and their value. REQUIRES: `bytes` does not consist of
-// digits only.
+// The digits with which `bytes` begins, and their value; 0 if all eight are digits, for the number
+// may go on.
 Micro Digits(uint64_t bytes, size_t& count) {
   constexpr uint64_t kEach = 0x0101010101010101u;
   const uint64_t less = bytes ^ (kEach * '0');

@@ -83,16 +83,36 @@ TEST(SegmentGridTest, MeetsWhatAWayCrosses) {
     const Vertex a{-1, static_cast<double>(seed % 30)};
     const Vertex b{31, static_cast<double>(seed * 7 % 30)};
     std::set<uint32_t> met;
-    grid.ForEachOnWay(a, b, [&met](uint32_t s) {
+    size_t looks = 100'000;
+    size_t calls = 0;
+    grid.ForEachOnWay(a, b, looks, [&](uint32_t s) {
       met.insert(s);
+      ++calls;
       return true;
     });
+    EXPECT_EQ(looks, 100'000 - calls);
     for (uint32_t s = 0; s < segments.size(); ++s) {
       if (Cross(a, b, segments[s].a, segments[s].b)) {
         EXPECT_TRUE(met.contains(s)) << s;
       }
     }
   }
+}
+
+TEST(SegmentGridTest, LooksAtNoMoreThanItMay) {
+  const SegmentGrid grid(RandomSegments(1, 30));
+  size_t looks = 3;
+  size_t calls = 0;
+  const auto count = [&calls](uint32_t) {
+    ++calls;
+    return true;
+  };
+
+  grid.ForEachOnWay({-1, 15}, {31, 15}, looks, count);
+  grid.ForEachOnWay({-1, 15}, {31, 15}, looks, count);
+
+  EXPECT_EQ(calls, 3u);
+  EXPECT_EQ(looks, 0u);
 }
 
 }  // namespace
