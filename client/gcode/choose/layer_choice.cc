@@ -46,9 +46,7 @@ class LayerChooser::Impl {
   ChosenLayers Choose() {
     ChooseRow();
     if (!std::exchange(spared_, true) && SpareRetractions()) ChooseRow();
-    ChosenLayers chosen = Write();
-    DropTexts();
-    return chosen;
+    return Write();
   }
 
   bool RuleOut(size_t layer, bool way) {
@@ -191,36 +189,37 @@ class LayerChooser::Impl {
   }
 
   // The ways are written one after the other, for each needs to know where the extruder's register
-  // is; the paths have been written already, and only where the register counts on from elsewhere
-  // they are written again, side by side.
+  // is; then the paths, side by side. Where they set the register themselves, and it counts on from
+  // elsewhere than when they were measured, they are written at once.
   ChosenLayers Write() {
     ChosenLayers chosen;
     chosen.texts.resize(columns_.size());
     for (size_t layer = 0; layer < columns_.size(); ++layer) NoteTotals(layer, chosen);
     chosen.forecast = ForecastOf(columns_, travel_);
-    std::vector<size_t> again;
-    std::vector<PartStart> starts;  // [layer] of its paths, the register as it ought to be
+    std::vector<size_t> left;
+    std::vector<PartStart> starts;  // [layer] of its paths
+    std::vector<Decimal> ends;      // [layer] the register behind them, as foreseen
     for (size_t layer = 0; layer < columns_.size(); ++layer) {
+      const LayerChoice& choice = Chosen(layer);
       LayerText& text = chosen.texts[layer];
       starts.push_back(WriteWayTo(layer, chosen.behind, text.way));
-      chosen.behind = Chosen(layer).behind;
+      chosen.behind = choice.behind;
       if (Fits(layer, starts[layer])) {
-        TakePaths(layer, text.paths);
-      } else if (Chosen(layer).resets_e) {
+        starts[layer] = choice.start;
+        if (columns_[layer].chosen != 0) left.push_back(layer);
+      } else if (choice.resets_e) {
         chosen.behind = WritePathsOf(layer, starts[layer], text.paths);
       } else {
-        again.push_back(layer);
-        chosen.behind.machine.e += starts[layer].machine.e - Chosen(layer).start.machine.e;
+        chosen.behind.machine.e += starts[layer].machine.e - choice.start.machine.e;
+        left.push_back(layer);
       }
+      ends.push_back(chosen.behind.machine.e);
     }
-    starts.push_back(chosen.behind);
     std::atomic<bool> as_foreseen = true;
-    ParallelFor(again.size(), threads_, [&](size_t i) {
-      const size_t layer = again[i];
+    ParallelFor(left.size(), threads_, [&](size_t i) {
+      const size_t layer = left[i];
       const PartStart behind = WritePathsOf(layer, starts[layer], chosen.texts[layer].paths);
-      const Decimal foreseen =
-          Chosen(layer).behind.machine.e + starts[layer].machine.e - Chosen(layer).start.machine.e;
-      if (behind.machine.e != foreseen) as_foreseen = false;
+      if (behind.machine.e != ends[layer]) as_foreseen = false;
     });
     if (!as_foreseen) WriteOneByOne(chosen);
     return chosen;
@@ -236,27 +235,6 @@ class LayerChooser::Impl {
     }
   }
 
-  // The paths written for the choice; a second time they are written anew.
-  void TakePaths(size_t layer, std::string& text) {
-    LayerChoice& choice = Chosen(layer);
-    if (choice.written) {
-      choice.writer->WritePaths(choice.order, choice.start, text);
-    } else {
-      text = std::exchange(choice.text, {});
-    }
-  }
-
-  // They are large, and hardly ever asked for again.
-  void DropTexts() {
-    for (LayerColumn& column : columns_) {
-      for (size_t c = 1; c < column.choices.size(); ++c) {
-        column.choices[c].text = {};
-        column.choices[c].written = true;
-      }
-    }
-  }
-
-  LayerChoice& Chosen(size_t layer) { return columns_[layer].choices[columns_[layer].chosen]; }
   const LayerChoice& Chosen(size_t layer) const {
     return columns_[layer].choices[columns_[layer].chosen];
   }

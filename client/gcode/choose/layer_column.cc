@@ -46,7 +46,7 @@ void ColumnFiller::Add(const LayerOrder& order, size_t layer, LayerColumn& colum
   for (const LayerChoice& known : column.choices) {
     if (known.order == order) return;
   }
-  Add(order, *column.writer, column);
+  const std::string sparing = Add(order, *column.writer, column);
   if (!habit_.spares_walls || habit_.avoids_walls) return;
   const std::vector<PrintTotals>& inside = column.totals.inside;
   if (inside.back().open_crossings >= inside.front().open_crossings) return;
@@ -54,25 +54,23 @@ void ColumnFiller::Add(const LayerOrder& order, size_t layer, LayerColumn& colum
     column.plain =
         std::make_unique<const LayerWriter>(file_, file_.layers[layer], plain_habit_, donors_);
   }
-  Add(order, *column.plain, column);
   // A choice that is equal would have ways to and from all those of the layers beside it.
-  const size_t n = column.choices.size();
-  if (column.choices[n - 1].text != column.choices[n - 2].text) return;
+  if (Add(order, *column.plain, column) != sparing) return;
   column.choices.pop_back();
   column.totals.inside.pop_back();
 }
 
-void ColumnFiller::Add(const LayerOrder& order, const LayerWriter& writer,
-                       LayerColumn& column) const {
+std::string ColumnFiller::Add(const LayerOrder& order, const LayerWriter& writer,
+                              LayerColumn& column) const {
   LayerChoice& choice = column.choices.emplace_back();
   choice.order = order;
   choice.writer = &writer;
   choice.start = StartOfPaths(file_, order.front());
-  choice.behind = writer.WritePaths(order, choice.start, choice.text);
-  choice.text.shrink_to_fit();  // those of all layers are kept until one order of each is chosen
-  choice.resets_e = Resets(choice.text);
-  column.totals.inside.push_back(
-      Measure(file_, choice.text, choice.start, &column.writer->walls()));
+  std::string text;
+  choice.behind = writer.WritePaths(order, choice.start, text);
+  choice.resets_e = Resets(text);
+  column.totals.inside.push_back(Measure(file_, text, choice.start, &column.writer->walls()));
+  return text;
 }
 
 Forecast ForecastOf(const std::vector<LayerColumn>& columns,

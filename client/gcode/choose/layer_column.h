@@ -22,11 +22,9 @@ namespace traverse::gcode {
 struct LayerChoice {
   LayerOrder order;
   const LayerWriter* writer = nullptr;
-  PartStart start;  // how it begins and ends in `text`
+  PartStart start;  // how it begins and ends as it was written to be measured
   PartStart behind;
   bool resets_e = false;  // the register is set on the way, and does not count through
-  std::string text;       // empty for the order of the file
-  bool written = false;   // `text` was used up
 };
 
 // A layer and what it may be. choices[0] is the order of the file.
@@ -42,7 +40,9 @@ struct LayerColumn {
   const LayerOrder& chosen_order() const { return choices[chosen].order; }
 };
 
-// Writes and measures choices. Thread-safe.
+// Writes and measures choices, and keeps none of the texts: those of all choices of a file are far
+// more than the file, and to take that much memory costs more than to write one order of each layer
+// again. Thread-safe.
 class ColumnFiller {
  public:
   // All outlive the filler and the columns.
@@ -57,7 +57,8 @@ class ColumnFiller {
   void Add(const LayerOrder& order, size_t layer, LayerColumn& column) const;
 
  private:
-  void Add(const LayerOrder& order, const LayerWriter& writer, LayerColumn& column) const;
+  // Returns the text of its paths.
+  std::string Add(const LayerOrder& order, const LayerWriter& writer, LayerColumn& column) const;
 
   const GcodeFile& file_;
   const RetractionHabit& habit_;
