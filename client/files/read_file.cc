@@ -12,6 +12,7 @@
 #include "absl/strings/str_format.h"
 #include "client/files/decompress.h"
 #include "client/files/file_error.h"
+#include "client/files/process_memory.h"
 
 namespace traverse {
 namespace {
@@ -29,7 +30,10 @@ absl::StatusOr<std::string> ReadAll(const std::string& name, int file, size_t ma
   if (fstat(file, &info) != 0) return FileError(DisplayName(name), errno);
   if (S_ISDIR(info.st_mode)) return FileError(DisplayName(name), EISDIR);
   const size_t hint = info.st_size > 0 ? static_cast<size_t>(info.st_size) + 1 : kFirstBuffer;
-  std::string bytes(std::min(hint, max_bytes + 1), '\0');
+  const size_t first = std::min(hint, max_bytes + 1);
+  std::string bytes;
+  ReserveLarge(bytes, first);
+  bytes.resize(first);
   size_t used = 0;
   while (true) {
     if (used == bytes.size()) {

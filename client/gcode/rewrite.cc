@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
+#include "client/files/process_memory.h"
 #include "client/files/utf8_mark.h"
 #include "client/gcode/choose/layer_choice.h"
 #include "client/gcode/measure/layer_meter.h"
@@ -91,7 +92,7 @@ std::string AddedLine(const GcodeRewrite& rewrite, const RewriteOptions& options
 
 std::string NewText(const GcodeFile& file, const ChosenLayers& chosen, const std::string& head) {
   std::string text = head;
-  text.reserve(file.text.size() + file.text.size() / 16);
+  ReserveLarge(text, file.text.size() + file.text.size() / 16);
   chosen.AppendTo(file, text);
   text += Foot(file, chosen);
   return text;

@@ -19,6 +19,7 @@
 
 #include "client/api/embedded.h"
 #include "client/api/optimizer_client.h"
+#include "client/files/process_memory.h"
 #include "client/files/read_file.h"
 #include "client/files/write_file.h"
 #include "client/formats/read_input.h"
@@ -115,6 +116,7 @@ bool Run(const std::string& input, const std::string& strategy, double megabytes
 
 int Main(int argc, char** argv) {
   if (argc < 2) return 2;
+  KeepFreedMemory();  // as the command line does
   const double megabytes = argc > 2 ? std::atof(argv[2]) : 100;
   const std::string strategy = argc > 3 ? argv[3] : "ni2opt";
   const std::string input = std::filesystem::temp_directory_path() /
