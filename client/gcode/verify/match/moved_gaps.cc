@@ -62,6 +62,56 @@ struct MovedLoop {
   bool apart = true;
 };
 
+// The loop at `path`, if the other side begins it with segment `entry`.
+struct LoopStart {
+  uint64_t digest = 0;
+  uint32_t path = 0;
+  uint32_t entry = 0;
+};
+
+// Starts of loops by a digest that is printed there; passes over loops that were found.
+class LoopStarts {
+ public:
+  void Add(const LoopStart& start) { starts_.push_back(start); }
+
+  void Sort() {
+    std::sort(starts_.begin(), starts_.end(), [](const LoopStart& a, const LoopStart& b) {
+      return std::tuple(a.digest, a.path, a.entry) < std::tuple(b.digest, b.path, b.entry);
+    });
+    next_.resize(starts_.size());
+    std::iota(next_.begin(), next_.end(), size_t{1});
+  }
+
+  // The first start with `digest` that `is_it` takes, of those that `is_found` does not know yet.
+  template <typename IsFound, typename IsIt>
+  std::optional<LoopStart> Find(uint64_t digest, IsFound is_found, IsIt is_it) {
+    const auto first =
+        std::lower_bound(starts_.begin(), starts_.end(), digest,
+                         [](const LoopStart& a, uint64_t value) { return a.digest < value; });
+    int left = kMostEqual;
+    for (size_t i = NotFound(static_cast<size_t>(first - starts_.begin()), is_found);
+         i < starts_.size() && starts_[i].digest == digest && left > 0;
+         i = NotFound(i + 1, is_found)) {
+      --left;
+      if (is_it(starts_[i])) return starts_[i];
+    }
+    return std::nullopt;
+  }
+
+ private:
+  // The first start from `i` on whose loop was not found yet. Remembers what it passes.
+  template <typename IsFound>
+  size_t NotFound(size_t i, IsFound is_found) {
+    size_t end = i;
+    while (end < starts_.size() && is_found(starts_[end].path)) end = next_[end];
+    while (i < end) i = std::exchange(next_[i], end);
+    return end;
+  }
+
+  std::vector<LoopStart> starts_;
+  std::vector<size_t> next_;  // [start], where to look next if its loop was found
+};
+
 class SectionGaps {
  public:
   SectionGaps(const TraceChunk& original, const TraceSection& was, const TraceChunk& optimised,
@@ -75,14 +125,15 @@ class SectionGaps {
       const bool gap = DistanceOf(path.start, original.EndOf(path)) > kSameSpotMm;
       if (!gap || !IsClosed(original, p)) continue;
       for (uint32_t s = path.first_segment + 1; s < path.end_segment; ++s) {
-        starts_.push_back({original.segments[s].digest, p, s - path.first_segment});
+        starts_.Add({original.segments[s].digest, p, s - path.first_segment});
       }
+      // If the other begins with the last segment and that goes on, the next one is the first that
+      // is the same.
+      if (path.size() < 3) continue;
+      onward_starts_.Add({original.segments[path.first_segment].digest, p, path.size() - 1});
     }
-    std::sort(starts_.begin(), starts_.end(), [](const Start& a, const Start& b) {
-      return std::tuple(a.digest, a.path, a.entry) < std::tuple(b.digest, b.path, b.entry);
-    });
-    next_.resize(starts_.size());
-    std::iota(next_.begin(), next_.end(), size_t{1});
+    starts_.Sort();
+    onward_starts_.Sort();
     CountDeposits(optimised, is, 1);
     CountDeposits(original, was, -1);
   }
@@ -91,33 +142,27 @@ class SectionGaps {
   std::optional<MovedLoop> Find(uint32_t other) {
     const TracePath& path = optimised_.paths[other];
     if (!IsSurplus(path.end_segment - 1)) return std::nullopt;
-    const uint64_t digest = optimised_.segments[path.first_segment].digest;
-    const auto first =
-        std::lower_bound(starts_.begin(), starts_.end(), digest,
-                         [](const Start& a, uint64_t value) { return a.digest < value; });
-    int left = kMostEqual;
-    for (size_t i = NotFound(static_cast<size_t>(first - starts_.begin()));
-         i < starts_.size() && starts_[i].digest == digest && left > 0; i = NotFound(i + 1)) {
-      --left;
-      const std::optional<MovedLoop> loop = LoopAt(starts_[i].path, starts_[i].entry, other);
-      if (!loop || !IsSurplus(loop->closing)) continue;
-      if (!LacksSegmentsOf(*loop) || !IsMoved(*loop)) continue;
-      found_[loop->path - first_path_] = true;
-      --surplus_[optimised_.segments[loop->closing].digest];
-      --surplus_[optimised_.segments[path.end_segment - 1].digest];
-      for (const uint64_t lacking : SegmentsOf(*loop)) ++surplus_[lacking];
-      return loop;
+    std::optional<MovedLoop> loop;
+    const auto is_found = [this](uint32_t p) -> bool { return found_[p - first_path_]; };
+    const auto is_it = [&](const LoopStart& start) {
+      loop = LoopAt(start.path, start.entry, other);
+      return loop && IsSurplus(loop->closing) && LacksSegmentsOf(*loop) && IsMoved(*loop);
+    };
+    const auto digest = [&](uint32_t s) {
+      return optimised_.segments[path.first_segment + s].digest;
+    };
+    if (!starts_.Find(digest(0), is_found, is_it) &&
+        (path.size() < 3 || !onward_starts_.Find(digest(1), is_found, is_it))) {
+      return std::nullopt;
     }
-    return std::nullopt;
+    found_[loop->path - first_path_] = true;
+    --surplus_[optimised_.segments[loop->closing].digest];
+    --surplus_[optimised_.segments[path.end_segment - 1].digest];
+    for (const uint64_t lacking : SegmentsOf(*loop)) ++surplus_[lacking];
+    return loop;
   }
 
  private:
-  struct Start {
-    uint64_t digest = 0;
-    uint32_t path = 0;
-    uint32_t entry = 0;
-  };
-
   void CountDeposits(const TraceChunk& chunk, const TraceSection& section, int by) {
     const uint32_t first = chunk.paths[section.first_path].first_segment;
     for (uint32_t s = 0; s < DepositsOf(chunk, section); ++s) {
@@ -159,14 +204,6 @@ class SectionGaps {
                      apart};
   }
 
-  // The first start from `i` on whose loop was not found yet. Remembers what it passes.
-  size_t NotFound(size_t i) {
-    size_t end = i;
-    while (end < starts_.size() && found_[starts_[end].path - first_path_]) end = next_[end];
-    while (i < end) i = std::exchange(next_[i], end);
-    return end;
-  }
-
   bool IsMoved(const MovedLoop& loop) const {
     const TracePath& was = original_.paths[loop.path];
     const TracePath& is = optimised_.paths[loop.other];
@@ -199,9 +236,9 @@ class SectionGaps {
   const TraceChunk& original_;
   const TraceChunk& optimised_;
   const uint32_t first_path_;
-  std::vector<Start> starts_;  // by digest
-  std::vector<size_t> next_;   // [start], where to look next if its loop was found
-  std::vector<bool> found_;    // [path of the original - first_path_]
+  LoopStarts starts_;         // by the first segment
+  LoopStarts onward_starts_;  // by the second one, where the first closes the gap
+  std::vector<bool> found_;   // [path of the original - first_path_]
   // By digest: how many more segments the other has than the original, but for loops found.
   absl::flat_hash_map<uint64_t, int64_t> surplus_;
 };

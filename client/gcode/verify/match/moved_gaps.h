@@ -5,6 +5,7 @@
 //
 //   original    0 1 2 3 .      . the gap, | a shorter segment
 //   the other   2 3 G 0 |      G what closes the gap, a segment of its own or the rest of 3
+//               G 0 1 |      the same begun with 3, whose rest G is
 //
 // The same filament is printed on the same length: as much per mm as the segment before the gap
 // has, and as much as the shorter segment has less.

@@ -111,6 +111,24 @@ TEST(VerifyWholePaths, TheLastSegmentOfALoopMayCloseItsGap) {
   EXPECT_THAT(FirstMessage(kHead + bent, kHead + kClosedOnward), HasSubstr("a bend of 0.0"));
 }
 
+// A loop begun with its last side, which closes the gap.
+TEST(VerifyWholePaths, TheLastSegmentOfALoopMayCloseItsGapWhereTheLoopBeginsWithIt) {
+  const std::string next = Line("Internal infill", "X12 Y15", "X18 Y15");
+  const std::string moved = Way("X10 Y20") +
+                            ";TYPE:Perimeter\nG1 F1200\nG1 X10 Y10 E.4\nG1 X20 Y10 E.4\n"
+                            "G1 X20 Y20 E.4\nG1 X10.1 Y20 E.396\n";
+
+  EXPECT_EQ(Broken(kHead + kClipped + next, kHead + next + moved), "");
+  EXPECT_EQ(Broken(kHead + kClipped + kClipped, kHead + moved + kGapMoved), "");
+  for (const auto& [from, to] :
+       std::vector<std::pair<std::string, std::string>>{{"X10 Y10 E.4", "X10 Y10 E.4002"},
+                                                        {"X10 Y10 E.4", "X10.01 Y10 E.4"},
+                                                        {"X10.1 Y20 E.396", "X10 Y20 E.4"},
+                                                        {"X20 Y10 E.4", "X20 Y10 E.41"}}) {
+    EXPECT_EQ(Broken(kHead + kClipped, kHead + With(moved, from, to)), "same_print") << to;
+  }
+}
+
 // IceSL prints the same loop again and again, begun at one corner or another: what the original has
 // too is none that was moved.
 TEST(VerifyWholePaths, ALoopUponAnotherIsNotTakenForThatOneMoved) {
