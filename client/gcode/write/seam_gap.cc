@@ -58,10 +58,10 @@ bool MoveGap(uint32_t entry, std::vector<BodySegment>& segments) {
   end.filament -= closing.filament;
   end.to = Along(end.from, end.to, length - gap);
   BodySegment& last = segments.back();
-  // If the path begins with it, its own end is where that of the original is.
-  const bool begins = entry + 1 == segments.size();
+  // Of two segments both would be other ones: nothing would tell which loop it is.
+  const bool only_two = segments.size() == 2;
   const bool onward = LengthXy(last.from, closing.to) > LengthXy(last.from, last.to);
-  if (begins || !onward || BesideMm(last.to, last.from, closing.to) > kStraightMm) {
+  if (only_two || !onward || BesideMm(last.to, last.from, closing.to) > kStraightMm) {
     segments.push_back(closing);
   } else {
     last.to = closing.to;

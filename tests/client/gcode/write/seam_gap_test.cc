@@ -48,12 +48,27 @@ TEST(MoveGap, ClosesTheGapAndLeavesTheSameAtTheNewStart) {
   EXPECT_EQ(FilamentOf(segments), filament);
 }
 
-// The loop ends beside its last side, or begins with it.
+TEST(MoveGap, ClosesTheGapOfALoopThatBeginsWithItsLastSide) {
+  std::vector<BodySegment> segments = Square(.1);
+  const Decimal filament = FilamentOf(segments);
+
+  ASSERT_TRUE(MoveGap(3, segments));
+
+  ASSERT_EQ(segments.size(), 4u);
+  EXPECT_EQ(segments[3].to, At(0, 0));
+  EXPECT_EQ(segments[3].filament, RoundedWord(.4));
+  EXPECT_EQ(segments[2].to, At(.1, 10));
+  EXPECT_EQ(FilamentOf(segments), filament);
+}
+
+// The loop ends beside its last side, or has no other side that stays as it is.
 TEST(MoveGap, ClosesTheGapByASegmentOfItsOwnWhereTheLastOneCannotGoOn) {
-  std::vector<BodySegment> begun = Square(.1);
-  ASSERT_TRUE(MoveGap(3, begun));
-  ASSERT_EQ(begun.size(), 5u);
-  EXPECT_EQ(begun[3].to, At(0, .1));
+  std::vector<BodySegment> there_and_back = Square(.1);
+  there_and_back.erase(there_and_back.begin() + 1, there_and_back.begin() + 3);
+  there_and_back[0].to = At(0, 10);
+  ASSERT_TRUE(MoveGap(1, there_and_back));
+  ASSERT_EQ(there_and_back.size(), 3u);
+  EXPECT_EQ(there_and_back[1].to, At(0, .1));
 
   std::vector<BodySegment> segments = Square(.1);
   segments[3].to = At(.003, .1);
