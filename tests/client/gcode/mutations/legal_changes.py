@@ -68,13 +68,29 @@ def travel_by_g0(file, _):
     return edited(file, changes)
 
 
+def behind(file, path):
+    """The kind of the first move behind the path."""
+    moves = ("deposit", "travel", "wipe", "retract", "prime", "z")
+    return next((line.kind for line in file.lines[path.last + 1:] if line.kind in moves), None)
+
+
+def turned(file, path):
+    """Where filament is pulled back at the end of the path, it is at the new end: a move to the old one
+    with an open nozzle would be one more."""
+    changes = reverse(file, path)
+    if behind(file, path) == "retract":
+        del changes[path.first][-1 - len(restated(file, path.first))]
+    return edited(file, changes)
+
+
 def infill_turned(file, rng):
     """Where the way to its other end needs no acceleration of its own."""
     if "M204" in file.text():
         return None
     fills = [p for p in file.paths if p.type.lower() in ("internal infill", "sparse infill", "fill", "infill") and
-             steady(file, p) and not p.closed() and math.dist(p.start, p.end) < 0.9]
-    return pick(rng, fills, 20, lambda p: edited(file, reverse(file, p)))
+             steady(file, p) and not p.closed() and math.dist(p.start, p.end) < 0.9 and
+             behind(file, p) in ("travel", "retract")]
+    return pick(rng, fills, 20, lambda p: turned(file, p))
 
 
 def other_line_ends(file, _):
