@@ -8,7 +8,13 @@ from sliced import number
 
 
 def drop_segment(file, rng):
-    return pick(rng, file.paths, 5, lambda p: edited(file, {rng.choice(p.deposits): []}))
+    """Where the next line is the same it says nothing but some nanometres of filament."""
+
+    def make(path):
+        i = rng.choice(path.deposits)
+        return None if file.lines[i].text == file.lines[i + 1].text else edited(file, {i: []})
+
+    return pick(rng, file.paths, 5, make)
 
 
 def cut_path(file, rng):

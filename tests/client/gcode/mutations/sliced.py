@@ -143,7 +143,7 @@ class Sliced:
                 last = i
                 continue
             begun |= self.is_layer(line.text)
-            fence = line.kind == "other" or self._is_fence(line)
+            fence = (line.kind == "other" and line.text != ";reset") or self._is_fence(line)
             if fence or line.kind in ("travel", "wipe", "retract", "prime", "z"):
                 if first is not None and begun:
                     paths.append(Path(first, last, self.lines))

@@ -117,7 +117,8 @@ def move_comment_renamed(file, rng):
 
 def comments_exchanged(file, rng):
     """Two comments of one layer that are about no path."""
-    notes = re.compile(r";(?!TYPE|WIDTH|HEIGHT|WIPE|LAYER|MESH|reset| ?FEATURE| LINE_W| WIPE| '|PRINTING)\S.*\S")
+    notes = re.compile(r";(?!TYPE|WIDTH|HEIGHT|WIPE|LAYER|MESH|reset| ?FEATURE| LINE_W| WIPE| '|PRINTING|"
+                       r"(?:shell|infill|raft)$)\S.*\S")
     found = lines_of(file, notes, file.paths[0].first, file.paths[-1].last)
     pairs = [(a, b) for a, b in zip(found, found[1:]) if file.lines[a].text != file.lines[b].text and
              b - a < 200]
