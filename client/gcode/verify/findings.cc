@@ -72,6 +72,7 @@ void Observations::Append(const Observations& other) {
   departs_inside |= other.departs_inside;
   lost_departures.insert(lost_departures.end(), other.lost_departures.begin(),
                          other.lost_departures.end());
+  pokes.insert(pokes.end(), other.pokes.begin(), other.pokes.end());
   long_ways.insert(long_ways.end(), other.long_ways.begin(), other.long_ways.end());
   farthest.insert(farthest.end(), other.farthest.begin(), other.farthest.end());
   script_signatures.insert(other.script_signatures.begin(), other.script_signatures.end());

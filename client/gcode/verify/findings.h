@@ -263,6 +263,7 @@ struct Observations {
   std::vector<Detour> detours;           // of the original one for each layer
   bool departs_inside = false;           // by a short move from what is no outer wall: departures.h
   std::vector<Finding> lost_departures;  // of travel that leads elsewhere than in the original
+  std::vector<Finding> pokes;  // open moves along a path and back to its end; one for each layer
   absl::flat_hash_map<std::string, Seen> step_orders;  // of travel: step_order.cc
   LiftLog lifts;
   std::vector<RetractionCycle> cycles;

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kShortestMm = 0.015;
 constexpr double kSlackMm = 0.02;
+constexpr double kPokeMm = 0.05;
 
 // A move along a path of two decimals that is turned is longer by less.
 constexpr double kLengthSlackMm = 0.011;
@@ -105,6 +106,46 @@ bool LeavesUnlike(const LayerPair& layer, const Visit& visit, bool same_end) {
   return first == nullptr || DistanceOf(departs->to, first->to) > kSlackMm;
 }
 
+// The move with which the open nozzle, having left the end of path `path`, is back there, although
+// nothing begins there; nothing if it does not come back. What is `known` of all moves up to it
+// makes it nothing too.
+template <typename Known>
+const TraceMove* PokeBehind(const TraceChunk& chunk, uint32_t path, const Known& known) {
+  const TraceLink& link = chunk.links[path + 1];
+  if (link.scripted) return nullptr;
+  const Point end = chunk.EndOf(chunk.paths[path]);
+  bool left = false;
+  bool all_known = true;
+  for (uint32_t m = link.first_move; m + 1 < link.end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (move.kind != MoveKind::kTravel || !move.open || !move.in_print) return nullptr;
+    all_known &= known(move);
+    const double off = DistanceOf(move.to, end);
+    if (left && off <= kSlackMm) return all_known ? nullptr : &move;
+    left |= off > kPokeMm;
+  }
+  return nullptr;
+}
+
+// Of a nozzle that pokes back along what is printed and returns something stays there.
+void CheckPoke(const LayerPair& layer, const Visit& visit, LayerFindings& findings) {
+  if (findings.was.pokes.empty()) {
+    const TraceMove* was =
+        PokeBehind(layer.was(), visit.path, [](const TraceMove&) { return false; });
+    if (was != nullptr) {
+      findings.was.pokes.push_back({VerifyRule::kPathEnds, was->line, 0, layer.index(), ""});
+    }
+  }
+  if (!layer.EndsPath(visit)) return;
+  const TraceMove* is = PokeBehind(layer.is(), visit.last_path,
+                                   [&layer](const TraceMove& m) { return layer.IsKnown(m); });
+  if (is == nullptr) return;
+  const TracePath& path = layer.was().paths[visit.path];
+  findings.is.pokes.push_back({VerifyRule::kPathEnds,
+                               layer.was().segments[path.end_segment - 1].line, is->line,
+                               layer.index(), "leaves the path and comes back to its end"});
+}
+
 // From the same point travel leaves a path as it did, if it retracts.
 void CheckDeparture(const LayerPair& layer, const Visit& visit, LayerFindings& findings) {
   const TraceChunk& is = layer.is();
@@ -142,6 +183,7 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
     const TracePath& path = was.paths[visit.path];
     if (visit.segments != path.size()) continue;
     CheckDeparture(layer, visit, findings);
+    CheckPoke(layer, visit, findings);
     const absl::Span<const Piece> pieces = layer.PiecesOf(visit.path);
     const Tail had = TailOf(layer, was, visit.path, pieces);
     const Tail has = TailOf(layer, is, visit.last_path, pieces);
@@ -194,6 +236,7 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
 // to somewhere.
 void ComparePathEnds(const Observations& was, const Observations& is, const RuleContext& context,
                      std::vector<Finding>& breaks) {
+  if (was.pokes.empty()) breaks.insert(breaks.end(), is.pokes.begin(), is.pokes.end());
   if (context.settings.leads_around_walls || was.departs_inside) return;
   breaks.insert(breaks.end(), is.lost_departures.begin(), is.lost_departures.end());
 }

@@ -90,6 +90,23 @@ TEST(VerifyPathEnds, KeepTheirSpeeds) {
   EXPECT_EQ(Broken(kHead + With(two, "X9.04 Y5", "X9.04 Y5 F900"), kHead + slow), "");
 }
 
+// Where another path follows than in the original, so that the way there has no example.
+TEST(VerifyPathEnds, NoOpenNozzleGoesBackAlongAPathAndReturns) {
+  const std::string first = kOther + "G1 X7 Y5 F9000\n";
+  const std::string third = Line("Internal infill", "X0 Y9", "X9 Y9");
+  const std::string fourth = Line("Internal infill", "X0 Y20", "X9 Y20");
+  const std::string last = Line("Internal infill", "X0 Y30", "X9 Y30");
+  const std::string poke = "G1 X8.7 Y0 F9000\nG1 X9 Y0\n";
+  const std::string a = kHead + first + kOne + third + fourth + last;
+  EXPECT_EQ(Broken(a, kHead + first + third + kOne + fourth + last), "");
+  EXPECT_EQ(Broken(a, kHead + first + third + kOne + poke + fourth + last), "path_ends");
+  // Unless the original does so elsewhere.
+  const std::string poked = fourth + "G1 X8.7 Y20 F9000\nG1 X9 Y20\n" + last;
+  EXPECT_EQ(
+      Broken(kHead + first + kOne + third + poked, kHead + first + third + kOne + poke + poked),
+      "");
+}
+
 // Retracted away from the wall, travel leaves no trace on it.
 TEST(VerifyPathEnds, TravelThatLeavesAPathBeforeItRetractsDoesSo) {
   const std::string leave = "G1 X10.4 Y10.3 F9000\n";
