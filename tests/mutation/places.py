@@ -108,6 +108,5 @@ EQUIVALENT = {
     ("engine/souza/block_line.cc", "const double limit = gone + move_[j + 1] - detour_[j] - best.delta;"): PRUNES_LESS,
     ("server/jobs/worker_pool.cc", "if (memory_short_ || !is_short) {"): NOTHING_TO_LET_IN,
     (VISITS, "while (size < 2 * static_cast<size_t>(end + first)) size *= 2;"): ONLY_MEMORY,
-    ("client/gcode/choose/layer_choice.cc", "without DropTexts();"): ONLY_MEMORY,
     ("engine/cost/neighbor_lists.cc", "if (far_squared >= near_squared ||"): PRUNES_LESS,
 }
