@@ -127,7 +127,7 @@ const TraceMove* PokeBehind(const TraceChunk& chunk, uint32_t path, const Known&
   return nullptr;
 }
 
-// Of a nozzle that pokes back along what is printed and returns something stays there.
+// An open nozzle that goes back along what it printed, and returns, leaves something there.
 void CheckPoke(const LayerPair& layer, const Visit& visit, LayerFindings& findings) {
   if (findings.was.pokes.empty()) {
     const TraceMove* was =

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Which defects `traverse verify` finds, and whether it takes what is legal for one.
 
-  mutation_table.py TRAVERSE [--copies=10] [--as=FORM] [--legal] [--verbose] FILE or FOLDER...
+  mutation_table.py TRAVERSE [--copies=10] [--as=FORM] [--legal] [--rewritten] [--verbose] FILE or FOLDER...
 
 Puts each defect of the *_defects.py here into each file, `copies` times at places chosen by seed, and prints
 how many are found, and by the rule that is there for them. With --legal the files are optimised under
-the three policies, and verified. Ends with 1 if a defect is not found or a legal file is refused.
+the three policies, and verified. With --rewritten the defects are put into what `optimize` makes of the
+file, where more has changed: there some of them restore an order of the original, and are none. Ends
+with 1 if a defect is not found or a legal file is refused.
 """
 
 import argparse
@@ -59,8 +61,28 @@ def broken(traverse, original, other, policy=None):
     return [rule["rule"] for rule in rules], rules[0]["first"]["message"] if rules else ""
 
 
+def rewritten(args, folder, file, original):
+    """What `optimize` makes of the file under `safe`, as `verify` takes it; None if it can't."""
+    plain = write(folder, "plain.gcode", file.text())
+    out = os.path.join(folder, "rewritten.gcode")
+    run = subprocess.run([args.traverse, "optimize", plain, "-o", out, "--strategy=ni2opt", "--policy=safe", "--quiet"],
+                         capture_output=True, text=True, errors="replace")
+    if run.returncode != 0:
+        print(f"  not optimised: {run.stderr.strip()[-300:]}", flush=True)
+        return None
+    made = sliced.Sliced(sliced.read(out))
+    rules, message = broken(args.traverse, original, write(folder, "b.gcode", dress.DRESSES[args.form](made.text())),
+                            "safe")
+    if rules:
+        print(f"  refused as optimised: {rules} {message}", flush=True)
+        return None
+    return made
+
+
 def try_defect(args, folder, name, file, original, defect, counts):
     title, rule, make, policy = defect
+    if args.rewritten:
+        policy = policy or "safe"
     for copy in range(args.copies):
         rng = random.Random(f"{args.seed} {name} {title} {copy}")
         text = make(file, rng)
@@ -119,6 +141,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--as", dest="form", default="plain", choices=dress.DRESSES, help="in which form")
     parser.add_argument("--legal", action="store_true")
+    parser.add_argument("--rewritten", action="store_true")
     parser.add_argument("--with-flags", default="", help="more flags of `optimize` for --legal")
     parser.add_argument("--spread", type=int, default=0, help="put each defect into every nth file alone")
     parser.add_argument("--only", help="a regular expression: the defects to put in, by name")
@@ -132,12 +155,16 @@ def main():
             names.append(name)
             file = sliced.Sliced(sliced.read(path))
             original = write(folder, "a.gcode", dress.DRESSES[args.form](file.text()))
+            copied = rewritten(args, folder, file, original) if args.rewritten else file
+            if copied is None:
+                refused += 1
+                continue
             for i, defect in enumerate(defects.DEFECTS):
                 left_out = args.spread and (i + len(names)) % args.spread
                 left_out = left_out or (args.form == "inches" and re.search("inches|millimetres", defect[0]))
                 if left_out or (args.only and not re.search(args.only, defect[0])):
                     continue
-                try_defect(args, folder, name, file, original, defect, counts)
+                try_defect(args, folder, name, copied, original, defect, counts)
             one, two = false_alarms(args, folder, name, path, file, original)
             tried, refused = tried + one, refused + two
     print(f"{len(names)} files: {' '.join(names)}\n")
