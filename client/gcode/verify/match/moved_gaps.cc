@@ -82,9 +82,10 @@ class LoopStarts {
     std::iota(next_.begin(), next_.end(), size_t{1});
   }
 
-  // The first start with `digest` that `is_it` takes, of those that `is_found` does not know yet.
+  // Shows `is_it` the starts with `digest` whose loop `is_found` does not know yet; true once it
+  // takes one.
   template <typename IsFound, typename IsIt>
-  std::optional<LoopStart> Find(uint64_t digest, IsFound is_found, IsIt is_it) {
+  bool Find(uint64_t digest, IsFound is_found, IsIt is_it) {
     const auto first =
         std::lower_bound(starts_.begin(), starts_.end(), digest,
                          [](const LoopStart& a, uint64_t value) { return a.digest < value; });
@@ -93,9 +94,9 @@ class LoopStarts {
          i < starts_.size() && starts_[i].digest == digest && left > 0;
          i = NotFound(i + 1, is_found)) {
       --left;
-      if (is_it(starts_[i])) return starts_[i];
+      if (is_it(starts_[i])) return true;
     }
-    return std::nullopt;
+    return false;
   }
 
  private:

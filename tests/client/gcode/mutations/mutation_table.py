@@ -61,20 +61,29 @@ def broken(traverse, original, other, policy=None):
     return [rule["rule"] for rule in rules], rules[0]["first"]["message"] if rules else ""
 
 
-def rewritten(args, folder, file, original):
-    """What `optimize` makes of the file under `safe`, as `verify` takes it; None if it can't."""
-    plain = write(folder, "plain.gcode", file.text())
-    out = os.path.join(folder, "rewritten.gcode")
-    run = subprocess.run([args.traverse, "optimize", plain, "-o", out, "--strategy=ni2opt", "--policy=safe", "--quiet"],
+def optimised(args, folder, name, policy, text, flags=()):
+    """The paths of the text and of what `optimize` makes of it; None if it can't."""
+    plain = write(folder, "plain.gcode", text)
+    out = os.path.join(folder, "legal.gcode")
+    run = subprocess.run([args.traverse, "optimize", plain, "-o", out, "--strategy=ni2opt",
+                          f"--policy={policy}", "--quiet", *flags],
                          capture_output=True, text=True, errors="replace")
-    if run.returncode != 0:
-        print(f"  not optimised: {run.stderr.strip()[-300:]}", flush=True)
+    if run.returncode == 0:
+        return plain, out
+    print(f"  {name}, {policy}: not optimised: {run.stderr.strip()[-300:]}", flush=True)
+    return None
+
+
+def rewritten(args, folder, name, file, original):
+    """What `optimize` makes of the file under `safe`, as `verify` takes it; None if it can't."""
+    pair = optimised(args, folder, name, "safe", file.text())
+    if pair is None:
         return None
-    made = sliced.Sliced(sliced.read(out))
+    made = sliced.Sliced(sliced.read(pair[1]))
     rules, message = broken(args.traverse, original, write(folder, "b.gcode", dress.DRESSES[args.form](made.text())),
                             "safe")
     if rules:
-        print(f"  refused as optimised: {rules} {message}", flush=True)
+        print(f"  {name}: refused as optimised: {rules} {message}", flush=True)
         return None
     return made
 
@@ -109,15 +118,9 @@ def false_alarms(args, folder, name, path, file, original):
     for policy in ("safe", "balanced", "free"):
         pairs = [(original, original)]
         if args.legal:
-            out = os.path.join(folder, "legal.gcode")
-            plain = write(folder, "plain.gcode", sliced.read(path))
-            run = subprocess.run([args.traverse, "optimize", plain, "-o", out, "--strategy=ni2opt",
-                                  f"--policy={policy}", "--quiet"] + args.with_flags.split(),
-                                 capture_output=True, text=True, errors="replace")
-            if run.returncode == 0:
-                pairs.append((plain, out))
-            else:
-                print(f"  {name}, {policy}: not optimised: {run.stderr.strip()[-300:]}", flush=True)
+            pair = optimised(args, folder, name, policy, sliced.read(path), args.with_flags.split())
+            if pair is not None:
+                pairs.append(pair)
         for title, change in legal_changes.CHANGES if policy == "free" else ():
             text = change(file, random.Random(f"{args.seed} {name} {title}"))
             if text is not None:
@@ -155,7 +158,7 @@ def main():
             names.append(name)
             file = sliced.Sliced(sliced.read(path))
             original = write(folder, "a.gcode", dress.DRESSES[args.form](file.text()))
-            copied = rewritten(args, folder, file, original) if args.rewritten else file
+            copied = rewritten(args, folder, name, file, original) if args.rewritten else file
             if copied is None:
                 refused += 1
                 continue
