@@ -4,6 +4,7 @@ The environment names it: TRAVERSE.
 """
 import os
 import re
+import resource
 import subprocess
 import tempfile
 import unittest
@@ -43,9 +44,10 @@ class CommandLine(unittest.TestCase):
             file.write(content)
         return self.path(name)
 
-    def run_traverse(self, *arguments, stdin=b"", env=None):
+    def run_traverse(self, *arguments, stdin=b"", env=None, limit=None):
         ran = subprocess.run([TRAVERSE, *arguments], input=stdin, capture_output=True, timeout=120,
-                             env={**os.environ, **(env or {})})
+                             env={**os.environ, **(env or {})},
+                             preexec_fn=limit and (lambda: resource.setrlimit(*limit)))
         return ran.returncode, ran.stdout.decode(), ran.stderr.decode()
 
     def succeed(self, *arguments, **kw):

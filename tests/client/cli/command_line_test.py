@@ -1,11 +1,14 @@
 """The command line as scripts use it: flags, help, completion, exit codes and messages."""
 import json
 import os
+import resource
 import shutil
 import subprocess
 import unittest
 
-from command_line import INPUT, SMALL, USAGE, CommandLine, island, read
+from command_line import DONE, INPUT, SMALL, TESTS, USAGE, CommandLine, island, read
+
+SAMPLE = os.path.join(TESTS, os.pardir, "deploy", "samples", "clusters13.gcode")
 
 
 class Usage(CommandLine):
@@ -248,6 +251,23 @@ class BadInput(CommandLine):
     def test_an_output_that_cannot_be_written_is_a_fault(self):
         line = self.fail_with(INPUT, "optimize", SMALL, "--json=/no/such/folder/x.json")
         self.assertEqual(line, "/no/such/folder/x.json: No such file or directory")
+
+    def test_an_output_that_may_not_become_as_large_is_a_fault_and_leaves_nothing(self):
+        line = self.fail_with(INPUT, "optimize", SAMPLE, "--quiet", "-o", self.path("out.gcode"),
+                              limit=(resource.RLIMIT_FSIZE, (4096, 4096)))
+        self.assertEqual(line, f"{self.path('out.gcode')}: File too large")
+        self.assertEqual(os.listdir(self.folder), [])
+
+    def test_where_memory_ends_one_line_says_so(self):
+        limit = (resource.RLIMIT_DATA, (100 << 20, 100 << 20))
+        if self.run_traverse("--version", limit=limit)[0] != DONE:
+            self.skipTest("sanitizers take more memory to begin with")
+        name = self.put("large.gcode", "G1 X1 E1\n")
+        os.truncate(name, 200 << 20)
+
+        self.assertEqual(self.fail_with(INPUT, "optimize", name, "-o", self.path("out.gcode"), limit=limit),
+                         "traverse: out of memory")
+        self.assertEqual(os.listdir(self.folder), ["large.gcode"])
 
     def test_options_of_a_file_that_are_wrong_are_named(self):
         name = self.put("options.json", '{"options": {"idle_speed_mm_s": -1}, "layers": []}')
