@@ -70,6 +70,8 @@ void Observations::Append(const Observations& other) {
   new_open_ways.insert(new_open_ways.end(), other.new_open_ways.begin(), other.new_open_ways.end());
   detours.insert(detours.end(), other.detours.begin(), other.detours.end());
   departs_inside |= other.departs_inside;
+  departures_outside += other.departures_outside;
+  retractions_outside += other.retractions_outside;
   lost_departures.insert(lost_departures.end(), other.lost_departures.begin(),
                          other.lost_departures.end());
   pokes.insert(pokes.end(), other.pokes.begin(), other.pokes.end());

@@ -262,6 +262,8 @@ struct Observations {
   std::vector<LongWay> long_ways;
   std::vector<Detour> detours;           // of the original one for each layer
   bool departs_inside = false;           // by a short move from what is no outer wall: departures.h
+  int64_t departures_outside = 0;        // by such moves from outer walls
+  int64_t retractions_outside = 0;       // at the ends of outer walls
   std::vector<Finding> lost_departures;  // of travel that leads elsewhere than in the original
   std::vector<Finding> pokes;  // open moves along a path and back to its end; one for each layer
   absl::flat_hash_map<std::string, Seen> step_orders;  // of travel: step_order.cc

@@ -182,6 +182,7 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
   CheckWipes(layer, context_, findings);
   CheckCommands(layer, findings);
   CheckPathEnds(layer, findings);
+  CheckDepartures(layer, findings);
 }
 
 void Verifier::CheckChunk() {
@@ -232,7 +233,8 @@ void Verifier::Compare(std::vector<Finding>& breaks) const {
   CompareRetractions(seen_was_, seen_is_, breaks);
   CompareStepOrder(seen_was_, seen_is_, breaks);
   CompareSpeeds(seen_was_, seen_is_, breaks);
-  ComparePathEnds(seen_was_, seen_is_, context_, breaks);
+  ComparePokes(seen_was_, seen_is_, breaks);
+  CompareDepartures(seen_was_, seen_is_, context_, breaks);
   CompareWipes(seen_was_, seen_is_, breaks);
   CompareScripts(seen_was_, seen_is_, breaks);
 }

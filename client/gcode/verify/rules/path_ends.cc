@@ -5,8 +5,6 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
-#include "client/gcode/verify/match/departures.h"
-#include "client/gcode/verify/match/way_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
@@ -59,53 +57,6 @@ bool LeadsOn(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pie
   return link.first_move + LayerPair::TailMoves(chunk, path, pieces) == link.end_move;
 }
 
-// Whether travel from the path leads to the same point in both files, maybe of the next layer.
-bool LeadAlike(const LayerPair& layer, const Visit& visit) {
-  const uint32_t link_was = visit.path + 1;
-  const uint32_t link_is = visit.last_path + 1;
-  const bool ends = link_was == layer.end_path_was();
-  return ends == (link_is == layer.end_path_is()) && link_was < layer.was().paths.size() &&
-         link_is < layer.is().paths.size() &&
-         EndsOf(layer.was(), link_was) == EndsOf(layer.is(), link_is);
-}
-
-// Whether it begins at the same point.
-bool EndAlike(const LayerPair& layer, const Visit& visit) {
-  const Point was = layer.was().EndOf(layer.was().paths[visit.path]);
-  const Point is = layer.is().EndOf(layer.is().paths[visit.last_path]);
-  return DistanceOf(was, is) < kShortestMm;
-}
-
-// The first sideways move of the link; nothing if there is none.
-const TraceMove* FirstMove(const TraceChunk& chunk, uint32_t link) {
-  for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
-    if (chunk.moves[m].sideways()) return &chunk.moves[m];
-  }
-  return nullptr;
-}
-
-// Whether travel from the path begins along it, however fast.
-bool BeginsAlong(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces) {
-  const uint32_t first = chunk.links[path + 1].first_move;
-  const uint32_t end = first + LayerPair::TailMoves(chunk, path, pieces, true);
-  for (uint32_t m = first; m < end; ++m) {
-    if (chunk.moves[m].sideways()) return true;
-  }
-  return false;
-}
-
-// Travel leaves the path by a short move that it does not have in the original: another one than
-// there, or one that does not lead along the path where that ends elsewhere.
-bool LeavesUnlike(const LayerPair& layer, const Visit& visit, bool same_end) {
-  const TraceMove* departs = DepartureOf(layer.is(), visit.last_path + 1);
-  if (departs == nullptr || layer.IsKnown(*departs)) return false;
-  if (!same_end) {
-    return !BeginsAlong(layer.is(), visit.last_path, layer.PiecesOf(visit.path));
-  }
-  const TraceMove* first = FirstMove(layer.was(), visit.path + 1);
-  return first == nullptr || DistanceOf(departs->to, first->to) > kSlackMm;
-}
-
 // The move with which the open nozzle, having left the end of path `path`, is back there, although
 // nothing begins there; nothing if it does not come back. What is `known` of all moves up to it
 // makes it nothing too.
@@ -146,34 +97,6 @@ void CheckPoke(const LayerPair& layer, const Visit& visit, LayerFindings& findin
                                layer.index(), "leaves the path and comes back to its end"});
 }
 
-// From the same point travel leaves a path as it did, if it retracts.
-void CheckDeparture(const LayerPair& layer, const Visit& visit, LayerFindings& findings) {
-  const TraceChunk& is = layer.is();
-  const uint32_t link_is = visit.last_path + 1;
-  const TraceMove* was = DepartureOf(layer.was(), visit.path + 1);
-  if (was != nullptr) findings.was.departs_inside |= !layer.Outer(visit.path);
-  if (!layer.EndsPath(visit)) return;
-  const bool alike = EndAlike(layer, visit);
-  const uint32_t end_was = layer.was().paths[visit.path].end_segment - 1;
-  const uint32_t line_was = was != nullptr ? was->line : layer.was().segments[end_was].line;
-  if (LeavesUnlike(layer, visit, alike && visit.forward && visit.entry == 0)) {
-    findings.breaks.push_back({VerifyRule::kPathEnds, line_was, DepartureOf(is, link_is)->line,
-                               layer.index(),
-                               "leaves the path by a short move that the original does not have"});
-    return;
-  }
-  const TraceLink& link = is.links[link_is];
-  if (was == nullptr || link.first_move == link.end_move) return;
-  if (!Retracts(is.moves[link.first_move])) return;
-  const Finding lost{VerifyRule::kPathEnds, line_was, is.moves[link.first_move].line, layer.index(),
-                     "retracts at the end of the path; the original leaves it before"};
-  if (alike && LeadAlike(layer, visit)) {
-    findings.breaks.push_back(lost);
-  } else if (alike && layer.Outer(visit.path)) {
-    findings.is.lost_departures.push_back(lost);
-  }
-}
-
 }  // namespace
 
 void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
@@ -182,7 +105,6 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
   for (const Visit& visit : layer.visits()) {
     const TracePath& path = was.paths[visit.path];
     if (visit.segments != path.size()) continue;
-    CheckDeparture(layer, visit, findings);
     CheckPoke(layer, visit, findings);
     const absl::Span<const Piece> pieces = layer.PiecesOf(visit.path);
     const Tail had = TailOf(layer, was, visit.path, pieces);
@@ -232,13 +154,9 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
   }
 }
 
-// Where travel begins with such moves behind other paths than outer walls too, they are on the way
-// to somewhere.
-void ComparePathEnds(const Observations& was, const Observations& is, const RuleContext& context,
-                     std::vector<Finding>& breaks) {
+// What the original does elsewhere too is no break.
+void ComparePokes(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   if (was.pokes.empty()) breaks.insert(breaks.end(), is.pokes.begin(), is.pokes.end());
-  if (context.settings.leads_around_walls || was.departs_inside) return;
-  breaks.insert(breaks.end(), is.lost_departures.begin(), is.lost_departures.end());
 }
 
 }  // namespace traverse::gcode

@@ -41,6 +41,7 @@ void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings);
 void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFindings& findings);
 void CheckCommands(const LayerPair& layer, LayerFindings& findings);
 void CheckPathEnds(const LayerPair& layer, LayerFindings& findings);
+void CheckDepartures(const LayerPair& layer, LayerFindings& findings);
 
 // The moves of the start and end scripts in link `link` of the original.
 void ObserveScript(const TraceChunk& was, uint32_t link, Observations& seen);
@@ -75,8 +76,9 @@ void CompareRetractions(const Observations& was, const Observations& is,
                         std::vector<Finding>& breaks);
 void CompareStepOrder(const Observations& was, const Observations& is,
                       std::vector<Finding>& breaks);
-void ComparePathEnds(const Observations& was, const Observations& is, const RuleContext& context,
-                     std::vector<Finding>& breaks);
+void ComparePokes(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
+void CompareDepartures(const Observations& was, const Observations& is, const RuleContext& context,
+                       std::vector<Finding>& breaks);
 void CompareSpeeds(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void CompareWipes(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void CompareScripts(const Observations& was, const Observations& is, std::vector<Finding>& breaks);

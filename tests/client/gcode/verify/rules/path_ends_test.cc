@@ -107,6 +107,26 @@ TEST(VerifyPathEnds, NoOpenNozzleGoesBackAlongAPathAndReturns) {
       "");
 }
 
+// As Cura wipes outer walls: 0.2 mm over the begin of the loop, as fast as travel, whatever
+// follows.
+TEST(VerifyPathEnds, TravelGoesOnAlongALoopWhereverThatEnds) {
+  const std::string on = "G1 X10.2 Y10 F9000\n";
+  const std::string inside = "G1 X15 Y15 F9000\n;TYPE:Internal infill\nG1 F1800\nG1 X16 Y15 E.3\n";
+  const std::string pulled = Line("Internal infill", "X15 Y15", "X16 Y15");
+  const std::string way = "G1 X0 Y5 F9000\n;TYPE:Internal infill\nG1 F1800\nG1 X9 Y5 E.3\n";
+  const std::string a = kHead + kOne + way + kSquare + on + inside;
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, kHead + kOne + kSquare + on + kOther + pulled), "");
+  EXPECT_EQ(Broken(a, kHead + kOne + kSquare + kOther + pulled), "path_ends");
+  const std::string elsewhere =
+      kHead + kOne + way + kSquareElsewhere + "G1 X20 Y10.2 F9000\n" + pulled;
+  EXPECT_EQ(Broken(a, elsewhere, Policy::kFree), "");
+  EXPECT_EQ(Broken(a, With(elsewhere, "G1 X20 Y10.2 F9000\n", ""), Policy::kFree), "path_ends");
+  // A single move, or one to another side, leads to the next path.
+  const std::string b = kHead + kOne + way + kSquare + inside;
+  EXPECT_EQ(Broken(b, kHead + kOne + kSquare + kOther + pulled), "");
+}
+
 // Retracted away from the wall, travel leaves no trace on it.
 TEST(VerifyPathEnds, TravelThatLeavesAPathBeforeItRetractsDoesSo) {
   const std::string leave = "G1 X10.4 Y10.3 F9000\n";
@@ -126,10 +146,15 @@ TEST(VerifyPathEnds, TravelThatLeavesAPathBeforeItRetractsDoesSo) {
   const std::string last = kHead + inside + other + kSquare + leave + next;
   EXPECT_EQ(Broken(was, last), "");
   EXPECT_EQ(Broken(was, With(last, leave, "")), "path_ends");
-  // But what looks like this behind all kinds of paths leads somewhere.
+  // But what looks like this behind all kinds of paths may lead somewhere, unless all outer walls
+  // are left so.
   const std::string aside = "G1 X9.3 Y5.2 F9000\n";
   const std::string with_aside = kHead + kSquare + leave + inside + other + aside + next;
-  EXPECT_EQ(Broken(with_aside, kHead + inside + other + aside + kSquare + next), "");
+  const std::string lost = kHead + inside + other + aside + kSquare + next;
+  EXPECT_EQ(Broken(with_aside, lost), "path_ends");
+  const std::string wall =
+      Way("X40 Y10") + kWall + "G1 X50 Y10 E.4\nG1 X40 Y20 E.4\nG1 X40 Y10 E.4\n";
+  EXPECT_EQ(Broken(With(with_aside, inside, wall + inside), With(lost, inside, wall + inside)), "");
   // To the same side, whatever it leads to.
   EXPECT_EQ(Broken(a, With(a, leave, "G1 X10.3 Y10.4 F9000\n")), "path_ends bounds");
   EXPECT_EQ(Broken(was, With(elsewhere, leave, "G1 X9.6 Y10.3 F9000\n")), "path_ends bounds");

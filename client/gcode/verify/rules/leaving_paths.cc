@@ -1,0 +1,197 @@
+// Travel that leaves a wall before it retracts, so that nothing of that shows, leaves it that way
+// in any order: to the same side, and along a loop by the same length, wherever that ends.
+
+#include <algorithm>
+
+#include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/departures.h"
+#include "client/gcode/verify/match/way_ends.h"
+#include "client/gcode/verify/rules/rules.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kSameEndMm = 0.015;
+constexpr double kSameMoveMm = 0.02;
+
+// Whether travel from the path leads to the same point in both files, maybe of the next layer.
+bool LeadAlike(const LayerPair& layer, const Visit& visit) {
+  const uint32_t link_was = visit.path + 1;
+  const uint32_t link_is = visit.last_path + 1;
+  const bool ends = link_was == layer.end_path_was();
+  return ends == (link_is == layer.end_path_is()) && link_was < layer.was().paths.size() &&
+         link_is < layer.is().paths.size() &&
+         EndsOf(layer.was(), link_was) == EndsOf(layer.is(), link_is);
+}
+
+// Whether it begins at the same point.
+bool EndAlike(const LayerPair& layer, const Visit& visit) {
+  const Point was = layer.was().EndOf(layer.was().paths[visit.path]);
+  const Point is = layer.is().EndOf(layer.is().paths[visit.last_path]);
+  return DistanceOf(was, is) < kSameEndMm;
+}
+
+// The first sideways move of the link; nothing if there is none.
+const TraceMove* FirstMove(const TraceChunk& chunk, uint32_t link) {
+  for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
+    if (chunk.moves[m].sideways()) return &chunk.moves[m];
+  }
+  return nullptr;
+}
+
+// Whether travel from the path begins along it, however fast.
+bool BeginsAlong(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces) {
+  const uint32_t first = chunk.links[path + 1].first_move;
+  const uint32_t end = first + LayerPair::TailMoves(chunk, path, pieces, true);
+  for (uint32_t m = first; m < end; ++m) {
+    if (chunk.moves[m].sideways()) return true;
+  }
+  return false;
+}
+
+// Travel leaves the path by a short move that it does not have in the original: another one than
+// there, or one that does not lead along the path where that ends elsewhere.
+bool LeavesUnlike(const LayerPair& layer, const Visit& visit, bool same_end) {
+  const TraceMove* departs = DepartureOf(layer.is(), visit.last_path + 1);
+  if (departs == nullptr || layer.IsKnown(*departs)) return false;
+  if (!same_end) {
+    return !BeginsAlong(layer.is(), visit.last_path, layer.PiecesOf(visit.path));
+  }
+  const TraceMove* first = FirstMove(layer.was(), visit.path + 1);
+  return first == nullptr || DistanceOf(departs->to, first->to) > kSameMoveMm;
+}
+
+bool RetractsAtOnce(const TraceChunk& chunk, uint32_t link) {
+  const TraceLink& traced = chunk.links[link];
+  return traced.first_move < traced.end_move && Retracts(chunk.moves[traced.first_move]);
+}
+
+void NoteDeparture(const LayerPair& layer, uint32_t path, Observations& seen) {
+  const bool departs = DepartureOf(layer.was(), path + 1) != nullptr;
+  if (!layer.Outer(path)) {
+    seen.departs_inside |= departs;
+  } else if (departs) {
+    ++seen.departures_outside;
+  } else if (RetractsAtOnce(layer.was(), path + 1)) {
+    ++seen.retractions_outside;
+  }
+}
+
+// From the same point travel leaves a path as it did, if it retracts.
+void CheckDeparture(const LayerPair& layer, const Visit& visit, LayerFindings& findings) {
+  const TraceChunk& is = layer.is();
+  const uint32_t link_is = visit.last_path + 1;
+  const TraceMove* was = DepartureOf(layer.was(), visit.path + 1);
+  NoteDeparture(layer, visit.path, findings.was);
+  if (!layer.EndsPath(visit)) return;
+  const bool alike = EndAlike(layer, visit);
+  const uint32_t end_was = layer.was().paths[visit.path].end_segment - 1;
+  const uint32_t line_was = was != nullptr ? was->line : layer.was().segments[end_was].line;
+  if (LeavesUnlike(layer, visit, alike && visit.forward && visit.entry == 0)) {
+    findings.breaks.push_back({VerifyRule::kPathEnds, line_was, DepartureOf(is, link_is)->line,
+                               layer.index(),
+                               "leaves the path by a short move that the original does not have"});
+    return;
+  }
+  if (was == nullptr || !RetractsAtOnce(is, link_is)) return;
+  const uint32_t line_is = is.moves[is.links[link_is].first_move].line;
+  const Finding lost{VerifyRule::kPathEnds, line_was, line_is, layer.index(),
+                     "retracts at the end of the path; the original leaves it before"};
+  if (alike && LeadAlike(layer, visit)) {
+    findings.breaks.push_back(lost);
+  } else if (alike && layer.Outer(visit.path)) {
+    findings.is.lost_departures.push_back(lost);
+  }
+}
+
+// A point of a loop, so far behind its begin.
+Point PointAlong(absl::Span<const Piece> pieces, double mm) {
+  for (const Piece& piece : pieces) {
+    const double length = DistanceOf(piece.a, piece.b);
+    if (length >= mm && length > 0) {
+      const double share = mm / length;
+      return {piece.a.x + (piece.b.x - piece.a.x) * share,
+              piece.a.y + (piece.b.y - piece.a.y) * share};
+    }
+    mm -= length;
+  }
+  return pieces.back().b;
+}
+
+// The move with which travel goes on along the begin of the loop that it leaves, however fast, and
+// not to the next path. Nothing if it does not.
+const TraceMove* GoesOnBy(const LayerPair& layer, uint32_t path) {
+  constexpr double kLeastMm = 0.1;
+  constexpr double kMostMm = 2;
+  constexpr double kBesideMm = 0.05;
+  const TraceChunk& was = layer.was();
+  const absl::Span<const Piece> pieces = layer.PiecesOf(path);
+  const TraceLink& link = was.links[path + 1];
+  const Point end = was.EndOf(was.paths[path]);
+  if (was.paths[path].size() < 3 || DistanceOf(was.paths[path].start, end) > kBesideMm)
+    return nullptr;
+  if (link.end_move - link.first_move < 2) return nullptr;
+  const TraceMove& first = was.moves[link.first_move];
+  const double length = first.length_mm();
+  const bool open = first.kind == MoveKind::kTravel && first.open && first.in_print;
+  if (!open || length <= kLeastMm || length > kMostMm) return nullptr;
+  if (DistanceOf(PointAlong(pieces, length), first.to) > kBesideMm) return nullptr;
+  const TraceMove* moves = was.moves.data();
+  const bool leads_on = std::any_of(moves + link.first_move + 1, moves + link.end_move,
+                                    [](const TraceMove& move) { return move.sideways(); });
+  return leads_on ? &first : nullptr;
+}
+
+// How far the open nozzle goes on along the path, however fast.
+double GoesOnMm(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces) {
+  const uint32_t first = chunk.links[path + 1].first_move;
+  const uint32_t end = first + LayerPair::TailMoves(chunk, path, pieces, true);
+  double length = 0;
+  for (uint32_t m = first; m < end; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (move.kind != MoveKind::kTravel || !move.open || !move.in_print) break;
+    length += move.length_mm();
+  }
+  return length;
+}
+
+// Travel that goes on along the loop that it leaves does so wherever that ends.
+void CheckGoingOn(const LayerPair& layer, const Visit& visit, LayerFindings& findings) {
+  constexpr double kSlackMm = 0.05;
+  if (!layer.EndsPath(visit)) return;
+  const TraceMove* had = GoesOnBy(layer, visit.path);
+  if (had == nullptr) return;
+  const TraceChunk& is = layer.is();
+  const double mm = GoesOnMm(is, visit.last_path, layer.PiecesOf(visit.path));
+  if (mm > had->length_mm() - kSlackMm) return;
+  const TraceLink& link = is.links[visit.last_path + 1];
+  const uint32_t line = link.first_move < link.end_move ? is.moves[link.first_move].line
+                                                        : is.segments[visit.last_segment].line;
+  findings.breaks.push_back(
+      {VerifyRule::kPathEnds, had->line, line, layer.index(),
+       absl::StrFormat("goes on along the loop for %.2f mm, but for %.2f mm in the original", mm,
+                       had->length_mm())});
+}
+
+}  // namespace
+
+void CheckDepartures(const LayerPair& layer, LayerFindings& findings) {
+  for (const Visit& visit : layer.visits()) {
+    if (visit.segments != layer.was().paths[visit.path].size()) continue;
+    CheckDeparture(layer, visit, findings);
+    CheckGoingOn(layer, visit, findings);
+  }
+}
+
+// Where travel begins with such moves behind other paths than outer walls too, they may be on the
+// way to somewhere, unless nearly all travel from outer walls does so before it retracts.
+void CompareDepartures(const Observations& was, const Observations& is, const RuleContext& context,
+                       std::vector<Finding>& breaks) {
+  constexpr int64_t kNearlyAll = 20;
+  const bool nearly_all = was.departures_outside > kNearlyAll * was.retractions_outside;
+  const bool leads_on = context.settings.leads_around_walls || was.departs_inside;
+  if (leads_on && !nearly_all) return;
+  breaks.insert(breaks.end(), is.lost_departures.begin(), is.lost_departures.end());
+}
+
+}  // namespace traverse::gcode
