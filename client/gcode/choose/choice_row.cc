@@ -12,6 +12,9 @@ namespace {
 // Rounding of sums of lengths.
 constexpr double kSlackMm = 1e-6;
 
+// And of times.
+constexpr double kTimeSlack = 1e-9;
+
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // A second of print time is worth this much travel: between orders that take the same time the
@@ -49,12 +52,10 @@ class RowFinder {
   }
 
   std::vector<uint32_t> Find() {
-    Prices prices;
-    if (crossings_ == Crossings::kFewer) prices.crossing = kFewerCrossingSeconds;
-    std::optional<Row> row = Find(prices);
+    std::optional<Row> row = crossings_ == Crossings::kFewer ? FindWithFewer() : Find({});
     if (!CrossesFewEnough(row->totals)) {
       const auto few = [this](const PrintTotals& totals) { return CrossesFewEnough(totals); };
-      row = FindDear(prices, {.crossing = 1}, few);
+      row = FindDear(row->prices, {.crossing = 1}, few);
     }
     if (!row) return std::vector<uint32_t>(columns_.size(), 0);
     if (row->totals.retractions <= given_.retractions) return row->choices;
@@ -70,6 +71,27 @@ class RowFinder {
  private:
   bool CrossesFewEnough(const PrintTotals& totals) const {
     return crossings_ == Crossings::kAny || totals.crossings <= given_.crossings - fewer_;
+  }
+
+  // The best row at the price of a crossing or, if that takes longer than the file, at the highest
+  // price at which it does not.
+  Row FindWithFewer() const {
+    const auto slower = [this](const Row& row) {
+      return row.totals.seconds > given_.seconds + kTimeSlack;
+    };
+    double high = kFewerCrossingSeconds;
+    Row dear = Find({.crossing = high});
+    if (!slower(dear)) return dear;
+    double low = 0;
+    Row best = Find({});
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = (low + high) / 2;
+      Row row = Find({.crossing = middle});
+      const bool too_slow = slower(row);
+      (too_slow ? high : low) = middle;
+      if (!too_slow) best = std::move(row);
+    }
+    return best;
   }
 
   // The best row that `may_be`, at prices that are raised from `least` on in the ratio of `steps`.

@@ -79,6 +79,18 @@ TEST(BestRow, TheFileRetractsNoMoreThoughALayerMay) {
   }
 }
 
+TEST(BestRow, FewerCrossingsDoNotMakeTheFileSlower) {
+  // The second crossing less costs more time than the first one saves.
+  const std::vector<ChoiceColumn> columns = {
+      Column({Totals(10, 4), Totals(9.9, 3), Totals(10.2, 2)}, 0),
+  };
+
+  EXPECT_EQ(Best(columns, Policy::kSafe, Crossings::kFewer), Row({1}));
+  // Time that another layer saves may be spent.
+  const std::vector<ChoiceColumn> more = {columns[0], Column({Totals(10, 4), Totals(9, 4)}, 3)};
+  EXPECT_EQ(Best(more, Policy::kSafe, Crossings::kFewer), Row({2, 1}));
+}
+
 TEST(BestRow, WhatRetractsLessMustNotCrossMoreWallsForIt) {
   const std::vector<ChoiceColumn> columns = {
       Column({Retracting(10, 4, 4), Retracting(9.4, 6, 4), Retracting(9.7, 5, 3)}, 0),
