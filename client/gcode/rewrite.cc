@@ -173,7 +173,7 @@ class Rewriter {
         options_(options),
         chooser_(file, tries,
                  {options.policy, options.crossings, options.allow, options.threads,
-                  options.min_revisit_seconds, options.polish}) {}
+                  options.min_revisit_seconds, options.polish, options.usual_tries}) {}
 
   absl::StatusOr<GcodeRewrite> Rewrite() {
     for (int round = 0;; ++round) {

@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_CLIENT_GCODE_REWRITE_H_
 #define TRAVERSE_CLIENT_GCODE_REWRITE_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -54,6 +55,8 @@ struct RewriteOptions {
   // Set: orders are made better by small changes before they are chosen from, for so long, which
   // takes about as long as a search of the service. What ends it early ends nothing else.
   std::optional<gcode::PolishLimit> polish = {};
+
+  size_t usual_tries = 0;  // see gcode::ChoiceOptions; REQUIRES: there are as many
 };
 
 // Writes `file` with each layer in one of its orders in `tries`, or in its own, whichever makes the

@@ -13,6 +13,9 @@
 namespace traverse {
 namespace {
 
+// Searches for what was asked for; the others are what Crossings::kKeep would ask for.
+constexpr size_t kOwnSearches = 2;
+
 // The strategy to search with. If the caller names the strategy that the file states, the options
 // that the file sets remain, except those that the caller sets.
 v1::Strategy StrategyFor(const InputJob& job, const SearchOptions& options) {
@@ -48,6 +51,8 @@ InputJob JobWithUsualCrossings(const InputJob& job) {
   InputJob usual;
   usual.name = job.name;
   usual.options = job.options;
+  usual.gcode = job.gcode;
+  usual.first_layer = job.first_layer;
   (*usual.options.mutable_strategy()->mutable_options())["bound"] = "false";
   usual.layers = job.layers;
   for (v1::Layer& layer : usual.layers) {
@@ -67,6 +72,19 @@ absl::Status SearchAgain(OptimizerClient& client, const InputJob& job, const Sea
   if (!run.ok()) return late ? absl::OkStatus() : run.status();
   runs.push_back(*std::move(run));
   return absl::OkStatus();
+}
+
+// Adds both searches that Crossings::kKeep would make.
+absl::Status SearchAsUsual(OptimizerClient& client, const InputJob& job,
+                           const OptimizeFileOptions& options, const SearchOptions& search,
+                           bool may_be_late, std::vector<report::JobRun>& runs) {
+  const InputJob usual = JobWithUsualCrossings(job);
+  const size_t before = runs.size();
+  absl::Status first = SearchAgain(client, usual, search, may_be_late, runs);
+  if (!first.ok() || runs.size() == before) return first;
+  GcodeOptions keep = options.gcode;
+  keep.crossings = gcode::Crossings::kKeep;
+  return SearchAgain(client, NarrowJob(usual, keep, runs.back().result), search, may_be_late, runs);
 }
 
 // The file of `job`, each layer rewritten by the best of `runs`. They answer the layers selected in
@@ -91,6 +109,7 @@ absl::StatusOr<GcodeRewrite> RewriteByRuns(const InputJob& job,
   rewrite.version = TRAVERSE_VERSION;
   rewrite.threads = gcode::ThreadsFor(job.gcode->text.size());
   rewrite.polish = std::move(polish);
+  rewrite.usual_tries = runs.size() > kOwnSearches ? runs.size() - kOwnSearches : 0;
   return RewriteGcode(*job.gcode, tries, rewrite);
 }
 
@@ -138,7 +157,7 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
     absl::Status again = SearchAgain(client, NarrowJob(job, options.gcode, made.runs[0].result),
                                      search, may_be_late, made.runs);
     if (again.ok() && options.gcode.crossings == gcode::Crossings::kFewer) {
-      again = SearchAgain(client, JobWithUsualCrossings(job), search, may_be_late, made.runs);
+      again = SearchAsUsual(client, job, options, search, may_be_late, made.runs);
     }
     if (!again.ok()) return SearchFault(again);
   }

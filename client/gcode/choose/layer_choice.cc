@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "absl/types/span.h"
 #include "client/gcode/choose/choice_row.h"
 #include "client/gcode/choose/layer_column.h"
 #include "client/gcode/choose/merged_orders.h"
@@ -30,6 +31,7 @@ class LayerChooser::Impl {
         crossings_(choice.crossings),
         allow_(choice.allow),
         polish_(choice.polish),
+        usual_tries_(choice.usual_tries),
         threads_(choice.threads),
         habit_(HabitOfNewWays(file, choice.allow)),
         donors_(file),
@@ -139,22 +141,26 @@ class LayerChooser::Impl {
   void FillColumn(size_t layer) {
     LayerColumn& column = columns_[layer];
     filler_.Begin(layer, column);
+    MergeRules rules = RulesOf(layer);
+    AddMerged(layer, tries_, rules, column);
+    if (crossings_ != Crossings::kFewer) return;
+    // What is made at that price is often too long. These are all that the usual one leads to.
+    rules.crossings = Crossings::kKeep;
+    const size_t usual = usual_tries_ > 0 ? usual_tries_ : tries_.size();
+    AddMerged(layer, absl::MakeConstSpan(tries_).last(usual), rules, column);
+  }
+
+  // The orders that `tries` have for layer `layer`, merged by `rules`.
+  void AddMerged(size_t layer, absl::Span<const FileOrder> tries, const MergeRules& rules,
+                 LayerColumn& column) {
     std::vector<LayerOrder> found;
-    for (const FileOrder& order : tries_) {
+    for (const FileOrder& order : tries) {
       const bool known = order[layer].empty() || order[layer] == column.choices[0].order;
       if (!known) found.push_back(order[layer]);
     }
     if (found.empty()) return;
-    MergeRules rules = RulesOf(layer);
-    const auto add_merged = [&] {
-      const auto orders = MergedOrders(*column.writer, travel_[layer], found, rules);
-      for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
-    };
-    add_merged();
-    if (crossings_ != Crossings::kFewer) return;
-    // What is made of them at that price is often too long; these are shorter.
-    rules.crossings = Crossings::kKeep;
-    add_merged();
+    const auto orders = MergedOrders(*column.writer, travel_[layer], found, rules);
+    for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
   }
 
   void FillWays(size_t layer) {
@@ -273,6 +279,7 @@ class LayerChooser::Impl {
   const Crossings crossings_;
   const Allowance allow_;
   const std::optional<PolishLimit> polish_;
+  const size_t usual_tries_;
   const int threads_;
   const RetractionHabit habit_;
   const LinkDonors donors_;

@@ -56,6 +56,10 @@ struct ChoiceOptions {
 
   // If set, small changes improve the orders found, within this limit.
   std::optional<PolishLimit> polish = {};
+
+  // Under Crossings::kFewer: so many tries, the last ones, are what kKeep would choose from; 0:
+  // none is.
+  size_t usual_tries = 0;
 };
 
 // Chooses among the file's order and those of `tries`, each improved with runs of the others
