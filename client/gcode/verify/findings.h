@@ -106,9 +106,11 @@ struct WayLength {
   float excess_mm = 0;      // beyond the straight line
   bool turns_back = false;  // one of its moves leads back to where the one before began
   bool to_layer = false;    // unretracted, from one layer to the next
+  bool retracts = false;    // though maybe not before its first move
   // Retracted all the way, from one layer to the next.
   bool retracted_to_layer = false;
-  bool was_retracted = false;  // the original retracts on the travel to this layer
+  bool was_retracted = false;   // the original's travel to this layer is retracted all the way
+  bool was_retracting = false;  // or on the way
   uint32_t line = 0;
   int64_t layer = -1;
 };

@@ -1,10 +1,12 @@
 // No unretracted travel is much longer than the longest of the original, whatever it crosses. None
 // leads to another layer if none does there, or if the original retracts on the travel to that
-// layer, and on even shorter travel. And none winds more than the original's travel.
+// layer, and on even shorter travel, or leads to no layer as far without a retraction. And none
+// winds more than the original's travel.
 
 #include <algorithm>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/match/tails.h"
 #include "client/gcode/verify/rules/rules.h"
 
@@ -48,6 +50,7 @@ WayLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t lin
   const TraceMove* sink = SinkOf(chunk, link);
   for (uint32_t m = traced.first_move + skipped; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
+    way.retracts |= Retracts(move);
     if (move.kind != MoveKind::kTravel || !move.in_print) continue;
     if (first == nullptr) first = &move;
     // The next path may begin where the one before it ends and a short move leads away.
@@ -80,6 +83,7 @@ void ObserveWaysToLayers(const LayerPair& layer, const Tails& was_tails, const T
   WayLength is =
       LengthOf(layer, layer.is(), layer.first_path_is(), is_tails.At(layer.first_path_is()), true);
   is.was_retracted = was.retracted_to_layer;
+  is.was_retracting = was.retracts;
   if (was.to_layer || was.retracted_to_layer) findings.was.ways_to_layers.push_back(was);
   if (is.to_layer) findings.is.ways_to_layers.push_back(is);
 }
@@ -107,20 +111,28 @@ void CompareWaysToLayers(const Observations& was, const Observations& is,
                          std::vector<Finding>& breaks) {
   bool any_open = false;
   float shortest_retracted = 1e9f;
+  float longest_open = 0;
   for (const WayLength& way : was.ways_to_layers) {
     any_open |= way.open_mm > kShortestMm;
     if (way.retracted_to_layer) shortest_retracted = std::min(shortest_retracted, way.length_mm);
+    if (!way.retracts) longest_open = std::max(longest_open, way.open_mm);
   }
   for (const WayLength& way : is.ways_to_layers) {
     if (way.open_mm > kShortestMm && !any_open) {
       breaks.push_back({VerifyRule::kOpenWays, 0, way.line, way.layer,
                         "travel to another layer without a retraction, as the original has none"});
-    } else if (way.was_retracted && way.open_mm > shortest_retracted - kToLayerSlackMm &&
-               way.open_mm > kToLayerSlackMm) {
-      breaks.push_back({VerifyRule::kOpenWays, 0, way.line, way.layer,
-                        absl::StrFormat("travel of %.2f mm to this layer without a retraction; the "
-                                        "original retracts there, and on shorter travel",
-                                        way.open_mm)});
+      continue;
+    }
+    if (way.open_mm <= kToLayerSlackMm) continue;
+    const bool on_shorter = way.was_retracted && way.open_mm > shortest_retracted - kToLayerSlackMm;
+    const bool none_as_long =
+        way.was_retracting && !way.retracts && way.open_mm > longest_open + kToLayerSlackMm;
+    if (on_shorter || none_as_long) {
+      breaks.push_back(
+          {VerifyRule::kOpenWays, 0, way.line, way.layer,
+           absl::StrFormat("travel of %.2f mm to this layer without a retraction; the "
+                           "original retracts there, and on %s",
+                           way.open_mm, on_shorter ? "shorter travel" : "all travel as long")});
     }
   }
 }

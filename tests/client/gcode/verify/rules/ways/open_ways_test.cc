@@ -1,5 +1,6 @@
 // Travel across outer walls without a retraction: client/gcode/verify/rules/ways/open_ways.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -12,6 +13,7 @@ namespace traverse::gcode {
 namespace {
 
 using namespace testing;  // NOLINT: the small prints
+using ::testing::HasSubstr;
 
 TEST(VerifyOpenWays, NoRetractionIsLostAcrossAnOuterWall) {
   const std::string open = With(kAcross, Way("X30 Y15"), "G1 X30 Y15 F9000\n");
@@ -99,6 +101,28 @@ TEST(VerifyOpenWays, LeadToLayersAsTheyDid) {
                         "G1 X0 Y8 F9000\n" + infill + "G1 X4 Y8"),
                    Policy::kFree),
             "");
+}
+
+// Nor does a retraction get lost on a shorter way than any of the original.
+TEST(VerifyOpenWays, LeadToNoLayerIfNoneDid) {
+  const std::string near = Line("Internal infill", "X9 Y5.4", "X0 Y5.4");
+  const std::string far = Line("Internal infill", "X0 Y30", "X9 Y30");
+  const std::string a = kHead + kTwo + kNextLayer + far + near;
+  const std::string b = kHead + kTwo + kNextLayer + near + far;
+  EXPECT_EQ(Broken(a, b), "");
+  const std::string open = With(b, Way("X9 Y5.4"), "G1 X9 Y5.4 F9000\n");
+  EXPECT_EQ(Broken(a, open), "open_ways");
+  // Whether it retracted at once there or not.
+  const std::string leave = "G1 X9.3 Y5.2 F9000\n";
+  const std::string left = With(a, kNextLayer, leave + "G1 E-1 F2100\n" + kNextLayer);
+  const std::string was = With(left, Way("X0 Y30"), "G1 X0 Y30 F9000\nG1 E1 F2100\n");
+  EXPECT_EQ(Broken(was, was), "");
+  EXPECT_THAT(Broken(was, With(open, kNextLayer, leave + kNextLayer)), HasSubstr("open_ways"));
+  // Unless the original has one.
+  const std::string third = ";LAYER_CHANGE\nG1 Z.6 F9000\n";
+  const std::string last = ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y5.8 E.3\n";
+  const std::string as_far = third + "G1 X0 Y5.8 F9000\n" + last;
+  EXPECT_EQ(Broken(a + as_far, open + third + Way("X0 Y5.8") + last), "");
 }
 
 TEST(VerifyOpenWays, AreNoLongerThanTheLongestWhateverTheyCross) {
