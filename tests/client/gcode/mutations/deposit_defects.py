@@ -261,6 +261,68 @@ def turns_of_arc(file, rng):
         file, {i: [file.lines[i].text.split(";")[0].rstrip() + " P2"]}))
 
 
+@of_deposit
+def point_slightly_off(file, line):
+    return [with_word(line.text, "Y", lambda y: y + 0.002)]
+
+
+def filament_to_next(file, rng):
+    """A little of what a segment pushes is pushed by the next one."""
+
+    def make(path):
+        for a, b in zip(path.deposits, path.deposits[1:]):
+            one, other = file.lines[a], file.lines[b]
+            if one.e > 0.02 and re.search("E[-0-9.]", one.text) and re.search("E[-0-9.]", other.text):
+                return edited(file, {a: [with_word(one.text, "E", lambda e: e - 0.002)],
+                                     b: [with_word(other.text, "E", lambda e: e + 0.002)]})
+        return None
+
+    return pick(rng, file.paths, 50, make)
+
+
+def feed_late(file, rng):
+    """The feed rate of a segment comes with the next one."""
+
+    def make(path):
+        for a, b in zip(path.deposits, path.deposits[1:]):
+            one, other = file.lines[a].text, file.lines[b].text
+            word = re.search(r" ?F[0-9.]+", one)
+            if word and " F" not in other and file.lines[a].feed != file.lines[a - 1].feed:
+                return edited(file, {a: [one.replace(word.group(), "")], b: [f"{other} {word.group().strip()}"]})
+        return None
+
+    return pick(rng, file.paths, 200, make)
+
+
+@of_deposit
+def word_twice(file, line):
+    """Printers take the first or the last of two words."""
+    return [f"{line.text} E0"] if line.e > 0.01 and ";" not in line.text and " E" in line.text else None
+
+
+@of_deposit
+def line_left_out(file, line):
+    """Printers may skip lines that begin with a slash."""
+    return ["/" + line.text] if line.e > 0.01 else None
+
+
+def path_a_layer_late(file, rng):
+    """A path is printed behind the first one of the next layer, at its own height."""
+
+    def make(k):
+        path = file.paths[k]
+        later = next((p for p in file.paths[k:] if p.start[2] > path.start[2]), None)
+        if later is None or not path.plain or not later.plain:
+            return None
+        changes = without_path(path, [go(path.end, file.lines[path.first])])
+        changes[later.last] = ([file.lines[later.last].text, f"G1 Z{number(path.start[2])}",
+                                go(path.start, file.lines[path.first])] + restated(file, path.first) +
+                               body(file, path) + [f"G1 Z{number(later.start[2])}"])
+        return edited(file, changes)
+
+    return pick(rng, range(len(file.paths) - 1), 20, make)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("segment dropped", "same_print", drop_segment, "free"),
@@ -287,4 +349,11 @@ DEFECTS = (
     ("two lines of a path exchanged", "same_print", lines_exchanged, "free"),
     ("G1 made G0", "same_print", other_command, "free"),
     ("turns of an arc", "same_print", turns_of_arc, "free"),
+    ("path 0.01 mm lower", "same_print", path_at_height(-0.01), "free"),
+    ("a point off by 0.002 mm", "same_print", point_slightly_off, "free"),
+    ("0.002 mm of filament a segment late", "same_print", filament_to_next, "free"),
+    ("feed rate of a segment late", "same_print", feed_late, "free"),
+    ("filament stated twice", "same_print", word_twice, "free"),
+    ("segment behind a slash", "same_print", line_left_out, "free"),
+    ("path a layer late", "same_print", path_a_layer_late, "free"),
 )

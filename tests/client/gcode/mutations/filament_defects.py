@@ -167,6 +167,31 @@ def primed_elsewhere(file, rng):
     return pick(rng, links(file), 50, make)
 
 
+def retraction_before_tool_dropped(file, rng):
+    """The tool is taken with its filament pushed to the tip."""
+
+    def make(i):
+        pull = next((k for k in range(i - 1, max(0, i - 40), -1) if file.lines[k].kind in ("retract", "deposit")), None)
+        return edited(file, {pull: []}) if pull is not None and file.lines[pull].kind == "retract" else None
+
+    tools = [i for i, line in enumerate(file.lines) if re.match(r"T\d", line.text) and i > file.paths[0].first]
+    return pick(rng, tools, 20, make)
+
+
+def primed_in_parts(file, rng):
+    """Two halves, one behind the other."""
+
+    def make(found):
+        push = found[3][0]
+        line = file.lines[push]
+        if len(found[3]) != 1 or not re.match(r"G1 .*E", line.text):
+            return None
+        half = with_e(line.text, lambda e: e / 2)
+        return edited(file, {push: [half, half]})
+
+    return pick(rng, links(file), 50, make)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("half of the filament back halfway", "retractions", primed_on_way, "free"),
@@ -182,4 +207,6 @@ DEFECTS = (
     ("G11 doubled", "retractions", firmware_doubled("G11"), "free"),
     ("priming at another speed", "speeds", prime_slow, "free"),
     ("filament back 0.4 mm early", "retractions", primed_elsewhere, "free"),
+    ("retraction before a tool dropped", "retractions", retraction_before_tool_dropped, "free"),
+    ("priming in two halves", "retractions", primed_in_parts, "free"),
 )

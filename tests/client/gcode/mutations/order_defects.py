@@ -270,6 +270,18 @@ def wall_of_other_loop(file, rng):
     return pick(rng, [k for k, p in enumerate(file.paths) if is_outer(p)], 100, make)
 
 
+def whole_layers_exchanged(file, rng):
+    """A layer is printed behind the next one, each at its height."""
+    marks = [i for i, line in enumerate(file.lines) if file.is_layer(line.text)]
+
+    def make(k):
+        one, two, end = marks[k:k + 3]
+        texts = [line.text for line in file.lines]
+        return "\n".join(texts[:one] + texts[two:end] + texts[one:two] + texts[end:])
+
+    return pick(rng, range(1, len(marks) - 3), 5, make)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("infill and its wall exchanged", "order", infill_before_wall, "free"),
@@ -296,4 +308,5 @@ DEFECTS = (
     ("surface before its wall", "order", surface_before_wall, "free"),
     ("paths exchanged across a change of the fan", "order", across_fan, "balanced"),
     ("walls of two outlines exchanged", "order", wall_of_other_loop, "balanced"),
+    ("two layers exchanged", "same_print", whole_layers_exchanged, "free"),
 )

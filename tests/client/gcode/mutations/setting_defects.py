@@ -188,6 +188,14 @@ def fan_of_part_late(file, rng):
     return pick(rng, lines_of(file, r"M106 P[1-9]", file.paths[0].first), 20, make)
 
 
+def fans_exchanged(file, rng):
+    return exchanged(file, rng, r"M106 S")
+
+
+def temperatures_exchanged(file, rng):
+    return exchanged(file, rng, r"M104 S|M109 S")
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("command within a path", "commands", command_in_path, "free"),
@@ -219,4 +227,6 @@ DEFECTS = (
     ("speed set between two paths", "same_print", inserted("M220 S80"), "free"),
     ("dwell between two paths", "same_print", inserted("G4 P500"), "free"),
     ("fan of another part a path late", "same_print", fan_of_part_late, "free"),
+    ("fan of two places exchanged", "same_print", fans_exchanged, "free"),
+    ("temperatures of two places exchanged", "same_print", temperatures_exchanged, "free"),
 )

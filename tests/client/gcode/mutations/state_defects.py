@@ -149,6 +149,25 @@ def comment_at(place):
     return defect
 
 
+def advance_dropped(file, rng):
+    found = with_effect(file, r"M900\b|M572\b|SET_PRESSURE_ADVANCE")
+    return pick(rng, found, 1, lambda i: edited(file, {i: []}))
+
+
+def width_late(file, rng):
+    """The width of a path is said behind it."""
+    return pick(rng, in_print(file, r"; ?(?:LINE_)?WIDTH:"), 50, lambda i: width_behind(file, i))
+
+
+def width_behind(file, i):
+    path = next_path(file, i)
+    before = before_it(file, i, r"; ?(?:LINE_)?WIDTH:")
+    if path is None or before in (None, file.lines[i].text) or (
+            any("WIDTH" in file.lines[k].text for k in range(i + 1, path.last + 1))):
+        return None
+    return moved_behind(file, i, path.last)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("temperature a path late", "same_print", late(TEMPERATURE), "free"),
@@ -214,4 +233,9 @@ DEFECTS = (
     ("comment at the head", "same_print", comment_at("head"), "free"),
     ("comment at the end", "same_print", comment_at("end"), "free"),
     ("comment in the print", "same_print", comment_at("print"), "free"),
+    ("width said a path late", "same_print", width_late, "free"),
+    ("advance dropped", "same_print", advance_dropped, "free"),
+    ("dwell changed", "same_print", numbers_of(r"G4 [PS](\d+)"), "free"),
+    ("heat of the chamber between two paths", "same_print", between("M141 S40"), "free"),
+    ("limits switched off between two paths", "same_print", between("M211 S0"), "free"),
 )

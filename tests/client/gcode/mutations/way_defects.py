@@ -1,9 +1,10 @@
 """Defects of the ways between paths: where they lead. Kinds as in defects.py."""
 
 import math
+import re
 
 from edits import at_its_feed, edited, go, pick, restated, with_f, with_xy
-from places import is_outer, links
+from places import down_of, is_outer, lifted_links, links
 from sliced import number
 
 
@@ -253,6 +254,37 @@ def lifted_early(file, rng):
     return kept_links(file, rng, make)
 
 
+def lift_with_way(file, rng):
+    """The head rises while it leads away, not before."""
+
+    def make(found):
+        _, pulls, ways, _ = found
+        up = next((i for i in range(pulls[-1] + 1, ways[0])
+                   if file.lines[i].kind == "z" and re.match(r"G1 (F\S+ )?Z", file.lines[i].text)), None)
+        if up is None or file.lines[up].end[2] <= file.lines[up].start[2] or "Z" in file.lines[ways[0]].text:
+            return None
+        line = file.lines[ways[0]]
+        z = number(file.lines[up].end[2])
+        return edited(file, {up: [], ways[0]: [f"{line.text.split(';')[0].rstrip()} Z{z}"]})
+
+    return pick(rng, lifted_links(file), 50, make)
+
+
+def down_with_way(file, rng):
+    """The head sinks on its way, not where it ends."""
+
+    def make(found):
+        _, _, ways, _ = found
+        down, line = down_of(file, found), file.lines[found[2][-1]]
+        if down is None or "Z" in line.text or line.length() < 1 or (
+                not re.match(r"G1 (F\S+ )?Z", file.lines[down].text)):
+            return None
+        z = number(file.lines[down].end[2])
+        return edited(file, {down: [], ways[-1]: [f"{line.text.split(';')[0].rstrip()} Z{z}"]})
+
+    return pick(rng, lifted_links(file), 50, make)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("way to far away", "speeds", way_far, "free"),
@@ -269,4 +301,6 @@ DEFECTS = (
     ("poke of 0.3 mm back along the path", "kept_ways", poke, "free"),
     ("lift before the retraction", "step_order", lifted_early, "free"),
     ("open way at another speed", "speeds", open_way_slow, "free"),
+    ("lift while leading away", "lifts", lift_with_way, "free"),
+    ("down while leading there", "lifts", down_with_way, "free"),
 )

@@ -139,6 +139,36 @@ def wipe_mark_early(file, rng):
     return pick(rng, range(len(file.paths) - 1), 200, make)
 
 
+def wipe_there_and_back(file, rng):
+    """The wipe returns to the end of its path."""
+
+    def make(found):
+        _, wipes = found
+        line = file.lines[wipes[-1]]
+        if len(wipes) != 1 or line.length() < 0.5 or not line.text.startswith("G1"):
+            return None
+        there = with_e(line.text, lambda e: e / 2)
+        back = f"G1 X{number(line.start[0])} Y{number(line.start[1])} E{number(line.e / 2)}"
+        return edited(file, {wipes[0]: [there, back]})
+
+    return pick(rng, wiped(file), 50, make)
+
+
+def wipe_pulls_more(file, rng):
+    """The wipe pulls half of what is pulled at a standstill around it as well."""
+
+    def make(found):
+        k, wipes = found
+        still = [i for i in file.link(k) if file.lines[i].kind == "retract"]
+        if not still or file.lines[still[0]].e > -0.02:
+            return None
+        half = file.lines[still[0]].e / 2
+        return edited(file, {still[0]: [with_e(file.lines[still[0]].text, lambda e: e - half)],
+                             wipes[-1]: [with_e(file.lines[wipes[-1]].text, lambda e: e + half)]})
+
+    return pick(rng, wiped(file), 50, make)
+
+
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
     ("wipe dropped", "wipes", wipe_dropped, "free"),
@@ -151,4 +181,6 @@ DEFECTS = (
     ("wipe's filament pulled before it", "wipes", wipe_without_filament, "free"),
     ("mark of a wipe before its path ends", "wipes", wipe_mark_early, "free"),
     ("wipe beside a path that had none", "wipes", wipe_of_other_path, "free"),
+    ("wipe there and back", "wipes", wipe_there_and_back, "free"),
+    ("wipe pulls more, the rest less", "wipes", wipe_pulls_more, "free"),
 )
