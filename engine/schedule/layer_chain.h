@@ -9,8 +9,6 @@
 //             continue from that one's route, or reuse it (route_history.h)
 //   second    only quick strategies, on any thread: solve from where the first solution of the
 //             layer before ends, if that is elsewhere; usually this is the true start
-//   alone     only layers that look ahead or are looked at, in build order, cheap: anchor as if no
-//             layer looked ahead. So a second chain is known, of layers solved one after the other
 //   anchor    in build order, cheap: now the true start is known. If it is yet another one, reuse
 //             the route of an equal layer that began there, or let the strategy resume its route
 //             from there; validate and deliver the route
@@ -22,11 +20,6 @@
 // (JobLayer::more_follows). If so, the chain waits for that layer; if not, it ignores the next
 // layer even if that is there. Looking ahead is useless where the next layer begins at a given
 // point or at the cleaning point; the move to that point counts in any case.
-//
-// A chain of such layers may still end longer than layers one after the other. So an end is chosen
-// only if a way back to these is known from there by which the job up to there is no longer: the
-// layers in view as they are foreseen, up to one that ends where it would end alone, or that is
-// done as it would be alone. Otherwise the layer takes the way known before.
 //
 // What a stage does depends only on the job and the seed, never on timing, so the routes are the
 // same on any number of threads. Every stage of a layer is a separate task: the executor can share
@@ -76,7 +69,6 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   void RunPrepare(const ChainLayerPtr& layer);
   void RunSolveFirst(const ChainLayerPtr& layer);
   void RunSolveSecond(const ChainLayerPtr& layer);
-  void RunSolveAlone(const ChainLayerPtr& layer, Point start);
   void RunAnchor(const ChainLayerPtr& layer, const TrueStart& at);
 
   // The job's last task, if its strategy bounds the chain.
@@ -87,9 +79,7 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   void MaybeSolveFirst(const ChainLayerPtr& layer) TRAVERSE_REQUIRES(mutex_);
   void HandOn(const ChainLayer& layer) TRAVERSE_REQUIRES(mutex_);
   void MaybeSolveSecond(uint64_t index) TRAVERSE_REQUIRES(mutex_);
-  void GoOnSolved(const ChainLayerPtr& layer) TRAVERSE_REQUIRES(mutex_);
-  void MaybeSolveAlone(uint64_t index) TRAVERSE_REQUIRES(mutex_);
-  bool ViewFrom(uint64_t index, TrueStart& at) const TRAVERSE_REQUIRES(mutex_);
+  std::optional<LayersInView> ViewFrom(uint64_t index) const TRAVERSE_REQUIRES(mutex_);
   void MaybeAnchorBefore(uint64_t index) TRAVERSE_REQUIRES(mutex_);
   void MaybeAnchor(uint64_t index) TRAVERSE_REQUIRES(mutex_);
   bool BoundsChain() const {

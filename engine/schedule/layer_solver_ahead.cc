@@ -1,6 +1,5 @@
 // How LayerSolver ends a layer with the next ones in view.
 
-#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -61,14 +60,15 @@ double LayerSolver::CostInView(const LayerProblem& problem, const Route& route,
 // route_of(layer, its problem).
 template <typename RouteOf>
 LayerSolver::RoutesInView LayerSolver::InView(const LayerProblem& problem, const Route& route,
-                                              const TrueStart& at, const RouteOf& route_of) const {
+                                              const LayersInView& view,
+                                              const RouteOf& route_of) const {
   RoutesInView routes{route, {}, RouteCost(problem, route)};
-  Point end = RouteEnd(*problem.plan, route, problem.start);
-  for (const ChainLayerPtr& layer : at.view) {
-    NextLayer& next = routes.next.emplace_back(NextLayer{Problem(*layer, end), {}});
+  Point at = RouteEnd(*problem.plan, route, problem.start);
+  for (const ChainLayerPtr& layer : view) {
+    NextLayer& next = routes.next.emplace_back(NextLayer{Problem(*layer, at), {}});
     next.route = route_of(*layer, next.problem);
     routes.cost += RouteCost(next.problem, next.route);
-    end = RouteEnd(*next.problem.plan, next.route, end);
+    at = RouteEnd(*next.problem.plan, next.route, at);
   }
   return routes;
 }
@@ -76,48 +76,29 @@ LayerSolver::RoutesInView LayerSolver::InView(const LayerProblem& problem, const
 // Ends the layer with the next ones in view. `solution` is of the layer alone. What is found is
 // never longer, for all these layers together, than one after the other from there, or than what
 // the layer before foresaw of them, or than greedy.
-void LayerSolver::SolveInView(const LayerProblem& problem, ChainLayer& layer, const TrueStart& at,
-                              Budget& budget, Solution& solution) const {
+void LayerSolver::SolveInView(const LayerProblem& problem, ChainLayer& layer,
+                              const LayersInView& view, Budget& budget, Solution& solution) const {
   Budget beginnings = budget.WithShare(kBeginningsShare);
   const auto resumed = [&](ChainLayer& next, const LayerProblem& from) {
     return Prepared(next).Resume(from, next.first.route, beginnings).route;
   };
   const auto alone = [&](ChainLayer& next, const LayerProblem& from) {
-    const Solution* found = FoundFrom(next, from.start);
-    return found != nullptr ? found->route : resumed(next, from);
+    return from.start == next.predicted_start ? next.first.route : resumed(next, from);
   };
   const auto foreseen = [&](ChainLayer& next, const LayerProblem& from) {
-    return next.foreseen.empty() ? alone(next, from) : next.foreseen;
-  };
-  const auto fallback = [&](const ChainLayer& next, const LayerProblem&) {
-    return FallbackRoute(next);
+    return next.foreseen.empty() ? resumed(next, from) : next.foreseen;
   };
   const auto greedy = [&](const ChainLayer& next, const LayerProblem& from) {
     return GreedyRoute(from, next);
   };
-  std::vector<RoutesInView> known = {InView(problem, solution.route, at, alone)};
-  if (!layer.foreseen.empty()) known.push_back(InView(problem, layer.foreseen, at, foreseen));
-  known.push_back(InView(problem, GreedyRoute(problem, layer), at, greedy));
-  known.push_back(InView(problem, FallbackRoute(layer), at, fallback));
-  const auto search_from = [&](RoutesInView best) {
-    solution = Prepared(layer).ResumeWithNext(problem, best.route, best.next, budget);
-    for (size_t i = 0; i < at.view.size(); ++i)
-      at.view[i]->foreseen = std::move(best.next[i].route);
+  RoutesInView best = InView(problem, solution.route, view, alone);
+  const auto offer = [&best](RoutesInView routes) {
+    if (routes.cost < best.cost) best = std::move(routes);
   };
-  const auto costs_less = [](const RoutesInView& a, const RoutesInView& b) {
-    return a.cost < b.cost;
-  };
-  search_from(*std::min_element(known.begin(), known.end(), costs_less));
-  const ChainLayer& last = *at.view.back();
-  if (LeadsBack(problem, solution.route, layer, at) || HasWalls(last)) return;
-  // Again, with the way back from the last layer.
-  for (RoutesInView& routes : known) {
-    LayerProblem& problem_of_last = routes.next.back().problem;
-    routes.cost -= RouteCost(problem_of_last, routes.next.back().route);
-    problem_of_last.finish = EndAlone(last);
-    routes.cost += RouteCost(problem_of_last, routes.next.back().route);
-  }
-  search_from(*std::min_element(known.begin(), known.end(), costs_less));
+  if (!layer.foreseen.empty()) offer(InView(problem, layer.foreseen, view, foreseen));
+  offer(InView(problem, GreedyRoute(problem, layer), view, greedy));
+  solution = Prepared(layer).ResumeWithNext(problem, best.route, best.next, budget);
+  for (size_t i = 0; i < view.size(); ++i) view[i]->foreseen = std::move(best.next[i].route);
 }
 
 }  // namespace traverse
