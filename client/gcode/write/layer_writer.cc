@@ -14,7 +14,9 @@
 namespace traverse::gcode {
 namespace {
 
-// The M73 lines of a layer: each is written where as many paths are done as the file has before it.
+// The M73 lines of a layer: each is written where as many paths are done as the file has before it,
+// or one more if it stands within a path; but not behind the layer's last one, for where layers are
+// told apart by their height alone, it would be the next layer's.
 class ProgressLines {
  public:
   ProgressLines(const GcodeFile& file, Offset begin)
@@ -117,6 +119,7 @@ PartStart LayerWriter::WritePaths(const LayerOrder& order, const PartStart& star
       if ((place.link & (kLinkSplits | kLinkFixed)) != 0) progress.SkipTo(place.begin);
       from = std::move(to);
     }
+    if (i + 1 == order.size()) progress.WriteUpTo(place.end, out);
     from.Write(true, out);
     progress.WriteUpTo(place.end, out);
   }
