@@ -24,12 +24,9 @@ std::optional<Decimal> ParseLong(const char** text, const char* end) {
     const char* const point = p++;
     int decimals = 0;
     for (; p < end && IsDigit(*p); ++p) {
-      if (decimals < kDecimalDigits) {
-        fraction = fraction * 10 + (*p - '0');
-        ++decimals;
-      } else if (*p != '0') {
-        return std::nullopt;
-      }
+      if (decimals == kDecimalDigits) continue;
+      fraction = fraction * 10 + (*p - '0');
+      ++decimals;
     }
     fraction *= kPowers[kDecimalDigits - decimals];
     digits += static_cast<int>(p - point) - 1;

@@ -2,7 +2,8 @@
 //
 // A file is text: if a rewriter's rounding loses an extrusion of 0.00001 mm, a segment is lost. So
 // numbers are integers in units of 1e-9 (of mm, inch, mm/min, whatever the word means), and
-// arithmetic with them is exact.
+// arithmetic with them is exact. Programs that write every digit of a double write more decimals;
+// these, a thousandth of what any printer keeps, are cut off.
 
 #ifndef TRAVERSE_CLIENT_GCODE_TEXT_DECIMAL_H_
 #define TRAVERSE_CLIENT_GCODE_TEXT_DECIMAL_H_
@@ -28,8 +29,8 @@ inline bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 inline double ToDouble(Decimal value) { return static_cast<double>(value) * 1e-9; }
 
 // Reads a number as G-code writes it (`-.8`, `12`, `9000.000`, `+1.5`) at `*text`, and moves
-// `*text` past it. Unset if there is none, if it is beyond kDecimalMax, or if it has more than nine
-// decimals that are not zero and so could not be kept exactly.
+// `*text` past it. Decimals beyond nine are cut off. Unset if there is no number, or if it is beyond
+// kDecimalMax.
 std::optional<Decimal> ParseDecimal(const char** text, const char* end);
 
 // How a file writes its numbers.

@@ -22,16 +22,6 @@ const char* SkipBlanks(const char* p, const char* end) {
   return p;
 }
 
-// A feed rate in more decimals than are kept, as IceSL writes it, is cut off behind them.
-std::optional<Decimal> ParseFeed(const char** text, const char* end) {
-  if (const std::optional<Decimal> number = ParseDecimal(text, end)) return number;
-  const char* const point = std::find(*text, end, '.');
-  if (end - point <= kDecimalDigits) return std::nullopt;
-  const std::optional<Decimal> number = ParseDecimal(text, point + 1 + kDecimalDigits);
-  while (number && *text < end && IsDigit(**text)) ++*text;
-  return number;
-}
-
 // Reads words up to `end` or a semicolon, in a line that begins at `line`. Returns where it
 // stopped; null if a word is unreadable.
 const char* ScanWords(const char* line, const char* p, const char* end, Command& command) {
@@ -45,8 +35,7 @@ const char* ScanWords(const char* line, const char* p, const char* end, Command&
     Decimal value = 0;
     if (p < end && IsNumberPart(*p)) {
       if (!ParseShort(line, &p, end, value)) {
-        const std::optional<Decimal> number =
-            letter == 'F' ? ParseFeed(&p, end) : ParseDecimal(&p, end);
+        const std::optional<Decimal> number = ParseDecimal(&p, end);
         if (!number) return nullptr;
         value = *number;
       }

@@ -73,8 +73,7 @@ struct Command {
 
 // Reads the line `text` (without line end) into `command`. Reads the words of G0 to G3 and of G92
 // at once; if they cannot be read (an unknown shape, a letter twice, a number that ParseDecimal
-// refuses), the line is kText. Of a feed rate only the decimals that are kept are read. ReadWords
-// reads those of other commands when they are needed.
+// refuses), the line is kText. ReadWords reads those of other commands when they are needed.
 void LexLine(std::string_view text, Command& command);
 
 // Reads the words of `command.rest`. Returns false, with `words` 0, if some cannot be read. A

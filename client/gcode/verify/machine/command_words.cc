@@ -71,14 +71,32 @@ bool PlainNumber(const char* begin, const char*& at, const char* end, Micro& val
   return true;
 }
 
-bool Number(const char* begin, const char*& at, const char* end, Micro& value) {
-  if (PlainNumber(begin, at, end, value)) return true;
+// The number that stands at [at, end), with nine decimals.
+Nano WithNineDecimals(const char* at, const char* end) {
+  const bool negative = *at == '-';
+  if (negative || *at == '+') ++at;
+  Nano value = 0;
+  int decimals = -1;  // none before the point
+  for (; at < end && decimals < 9; ++at) {
+    if (*at != '.') value = value * 10 + (*at - '0');
+    if (*at == '.' || decimals >= 0) ++decimals;
+  }
+  for (decimals = std::max(decimals, 0); decimals < 9; ++decimals) value *= 10;
+  return negative ? -value : value;
+}
+
+bool Number(const char* begin, const char*& at, const char* end, Micro& value, Nano& nanos) {
+  if (PlainNumber(begin, at, end, value)) {
+    nanos = value * 1000;
+    return true;
+  }
   const char* const first = *at == '+' ? at + 1 : at;
   double number = 0;
   const auto result = std::from_chars(first, end, number, std::chars_format::fixed);
   if (result.ec != std::errc{} || !(std::abs(number) <= kMaxNumber)) return false;
   at = result.ptr;
-  value = std::llround(number * 1e6);
+  nanos = WithNineDecimals(first, at);
+  value = InMicros(nanos);
   return true;
 }
 
@@ -100,8 +118,10 @@ CommandWords::CommandWords(std::string_view text) {
     if (!readable) return;
     at = skip_blanks(at + 1);
     Micro value = 0;
-    readable = at == end || IsLetter(*at) || Number(begin, at, end, value);
+    Nano nanos = 0;
+    readable = at == end || IsLetter(*at) || Number(begin, at, end, value, nanos);
     if (!readable) return;
+    if (letter == 'E') filament = nanos;
     set |= 1u << (letter - 'A');
     values[static_cast<size_t>(letter - 'A')] = value;
   }

@@ -11,8 +11,12 @@
 
 namespace traverse::gcode {
 
-// In units of 1e-6 of what the file's words count in.
+// In units of 1e-6, and of 1e-9, of what the file's words count in.
 using Micro = int64_t;
+using Nano = int64_t;
+
+// The nearest; of two the one farther from zero.
+inline Micro InMicros(Nano value) { return (value + (value < 0 ? -500 : 500)) / 1000; }
 
 // A letter that is there twice, or whose number is none, makes the command unreadable.
 struct CommandWords {
@@ -40,6 +44,10 @@ struct CommandWords {
   bool readable = true;
   uint32_t set = 0;              // bit (letter - 'A')
   std::array<Micro, 26> values;  // those in `set`
+
+  // The value of E, if it is in `set`, without the decimals beyond nine. Filament is the difference
+  // of such values: rounded to a millionth before, it would depend on where the register stands.
+  Nano filament = 0;
 };
 
 // What stands between the name of the G or M command `line` and its comment.

@@ -217,14 +217,14 @@ void VerifyMachine::DoG(int number, VerifyLine& line) {
       return Mode(relative_, number == 91, line);
     case 92:
       if (words.readable && words.set == 1u << ('E' - 'A')) {
-        e_ = words['E'];
+        e_ = words.filament;
         return;
       }
       for (size_t axis = 0; axis < 3 && words.readable; ++axis) {
         const char letter = static_cast<char>('X' + axis);
         if (words.Has(letter)) at_[axis] = words[letter];
       }
-      if (words.readable && words.Has('E')) e_ = words['E'];
+      if (words.readable && words.Has('E')) e_ = words.filament;
       return Fence(line, LineRole::kFixed);
     default:
       return Fence(line, LineRole::kFixed);
@@ -240,8 +240,9 @@ void VerifyMachine::Move(int number, const CommandWords& words, VerifyLine& line
   }
   Micro filament = 0;
   if (words.Has('E')) {
-    filament = relative_ || relative_e_ ? words['E'] : words['E'] - e_;
-    e_ += filament;
+    const Nano exact = relative_ || relative_e_ ? words.filament : words.filament - e_;
+    e_ += exact;
+    filament = InMicros(exact);
   }
   const bool moves = at_[0] != from[0] || at_[1] != from[1];
   line.moves = moves || at_[2] != from[2] || filament != 0 || number >= 2;

@@ -130,7 +130,7 @@ class VerifyMachine {
   uint32_t line_ends_ = 0;
   std::array<uint32_t, kMostReturns + 2> first_with_end_{};  // [bit of line_ends_]
   std::array<Micro, 3> at_{};
-  Micro e_ = 0;
+  Nano e_ = 0;
   Micro feed_ = 0;
   Micro pulled_ = 0;
   Micro deepest_ = 0;  // the most that pulled_ was since it last was 0

@@ -30,6 +30,8 @@ class Writer:
         return 25.4 if self.inches else 1.0
 
     def word(self, axis, value):
+        if "floats" in self.styles:  # every digit, as a program's sums leave them
+            return f"{axis}{value / self.scale() + self.rng.uniform(-1e-7, 1e-7):.16f}"
         return f"{axis}{num(value / self.scale(), 6 if self.inches else 4)}"
 
     def moved(self, axis, target):

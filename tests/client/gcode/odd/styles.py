@@ -10,7 +10,7 @@ STYLES = ("cr", "crlf", "crcrlf", "tabs", "checksums", "numbers", "lower", "pack
           "far_off", "around_zero", "belt", "circles", "rotated", "lying_labels", "lying_wipes", "two_slicers",
           "torn", "very_long", "form_feeds", "fans_within", "z_hops", "heights_twice", "scripts", "rapid", "mixed_ends",
           "empty_layers", "semicolons", "wrong_checksums", "restarted_numbers", "several_axes", "same_tool",
-          "lone_words", "bare_moves", "feeds", "pauses", "glued_comments", "slow_fans")
+          "lone_words", "bare_moves", "feeds", "pauses", "glued_comments", "slow_fans", "floats")
 
 # Lines that come between two paths, by style. Most are not known to anything but some firmware.
 BETWEEN = {

@@ -30,8 +30,13 @@ TEST(Decimal, ReadsNumbersAsSlicersWriteThem) {
   EXPECT_EQ(Parse("0000000000001.5"), 1'500'000'000);
 }
 
-TEST(Decimal, RefusesWhatItCannotKeepExactly) {
-  EXPECT_EQ(Parse("1.1234567891"), std::nullopt);
+TEST(Decimal, CutsOffMoreThanNineDecimals) {
+  EXPECT_EQ(Parse("1.1234567891"), 1'123'456'789);
+  EXPECT_EQ(Parse("-68.01900000000001"), -68'019'000'000);
+  EXPECT_EQ(Parse("0.99999999999999999999999999"), 999'999'999);
+}
+
+TEST(Decimal, RefusesWhatIsNoNumberOrTooLarge) {
   EXPECT_EQ(Parse("1000000001"), std::nullopt);
   EXPECT_EQ(Parse("99999999999999999999999999"), std::nullopt);
   EXPECT_EQ(Parse(""), std::nullopt);

@@ -28,17 +28,17 @@ TEST(LineAt, LeavesTheLineEndOut) {
   EXPECT_EQ(third.next, text.size());
 }
 
-// IceSL writes as many decimals as a float has. What a billionth of a feed rate is matters to
-// nobody; of a place or of filament it might.
-TEST(LexLine, CutsFeedRatesOffBehindTheDecimalsThatAreKept) {
-  const Command c = Lex("G1 X5.3 F1041.6665039062 E5.9");
+// Programs that write every digit of a float: IceSL its feed rates, scripts in Python all.
+TEST(LexLine, CutsNumbersOffBehindTheDecimalsThatAreKept) {
+  const Command c = Lex("G1 X68.01900000000001 F1041.6665039062 E5.9");
   ASSERT_TRUE(c.Is('G', 1));
+  EXPECT_EQ(c.Value('X'), 68'019'000'000);
   EXPECT_EQ(c.Value('F'), 1'041'666'503'906);
   EXPECT_EQ(c.Value('E'), 5'900'000'000);
   EXPECT_EQ(Lex("G1 F1041.6665039062").Value('F'), 1'041'666'503'906);
 
-  for (const char* line : {"G1 X1041.6665039062", "G1 F1041.6665039062.5", "G1 F- X1.12345678901",
-                           "G1 F9999999999.6665039062"}) {
+  for (const char* line :
+       {"G1 F1041.6665039062.5", "G1 F- X1.12345678901.2", "G1 F9999999999.6665039062"}) {
     EXPECT_EQ(Lex(line).kind, LineKind::kText) << line;
   }
 }

@@ -33,6 +33,20 @@ TEST(SamePrint, LinesEndAsTheyDidAndACarriageReturnEndsOne) {
   EXPECT_EQ(Broken(both, both), "");
 }
 
+// Where the register stands is another place in another order; what it counts on is the same.
+TEST(SamePrint, FilamentIsTheSameWhereverTheRegisterStands) {
+  const auto print = [](const char* first, const char* second) {
+    return absl::StrCat("M82\nG92 E0\nG1 Z.2 F9000\n", first, second);
+  };
+  const std::string a =
+      print("G1 X0 Y5 F9000\nG1 X9 Y5 F1200 E.3333333333333333\n",
+            "G1 X0 Y7 F9000\nG1 X9 Y7 F1200 E.6666666666666666\nG1 X0 Y7 E1.1234564999\n");
+  const std::string b = print("G1 X0 Y7 F9000\nG1 X9 Y7 F1200 E.333333333\nG1 X0 Y7 E.790123166\n",
+                              "G1 X0 Y5 F9000\nG1 X9 Y5 F1200 E1.123456499\n");
+  EXPECT_EQ(Broken(a, b), "");
+  EXPECT_EQ(Broken(a, With(b, "E.790123166", "E.790125")), "same_print");
+}
+
 TEST(SamePrint, CommentsBetweenPathsThatStayKeepTheirOrder) {
   const std::string a = kHead + "; here\n" + kOne + "; there\n" + kOther;
   EXPECT_EQ(Broken(a, kHead + "; there\n" + kOne + "; here\n" + kOther), "same_print");
