@@ -12,7 +12,8 @@
 namespace traverse::testing {
 namespace {
 
-// Reads until the other side or the server has ended it.
+// Reads until the other side or the server has ended it. Ends it then for whoever else has it, as
+// gRPC does.
 void ReadAll(int socket) {
   char block[65536];
   while (true) {
@@ -20,6 +21,7 @@ void ReadAll(int socket) {
     if (count == 0 || (count < 0 && errno != EAGAIN)) break;
     if (count < 0) usleep(1000);
   }
+  shutdown(socket, SHUT_RDWR);
   close(socket);
 }
 
