@@ -77,11 +77,17 @@ TEST(Cancellation, FreesTheWorkersWithin50Milliseconds) {
   EXPECT_LT(best, kSanitized ? absl::Seconds(2) : absl::Milliseconds(50));
 }
 
-// The best of several: on a busy machine an answer in time may be read too late.
+// The best of several, none of which may take less than `least`: on a busy machine an answer in
+// time may be read too late.
 Answer BestAnswer(TestService& service, const v1::OptimizeBatchRequest& request,
-                  absl::Duration deadline) {
-  Answer answer = service.Batch(request, deadline);
-  for (int i = 1; i < 5 && !answer.status.ok(); ++i) answer = service.Batch(request, deadline);
+                  absl::Duration deadline, absl::Duration least = absl::ZeroDuration()) {
+  Answer answer;
+  for (int i = 0; i < 5; ++i) {
+    const absl::Time begin = absl::Now();
+    answer = service.Batch(request, deadline);
+    EXPECT_GE(absl::Now() - begin, least) << "the layers are too easy";
+    if (answer.status.ok()) break;
+  }
   return answer;
 }
 
@@ -90,10 +96,8 @@ TEST(Deadline, HardLayersComeBackBeforeIt) {
   const v1::OptimizeBatchRequest request = HardBatch(20);
   const absl::Duration deadline = absl::Milliseconds(500);
 
-  const absl::Time begin = absl::Now();
-  const Answer answer = BestAnswer(service, request, deadline);
+  const Answer answer = BestAnswer(service, request, deadline, deadline / 2);
 
-  EXPECT_GT(absl::Now() - begin, deadline / 2) << "the layers are too easy";
   ASSERT_TRUE(answer.status.ok()) << answer.status.error_message();
   ASSERT_EQ(answer.layers.size(), 20u);
   ASSERT_TRUE(answer.summary.has_value());

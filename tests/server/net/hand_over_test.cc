@@ -35,30 +35,45 @@ struct Pair {
 };
 
 TEST(HandOver, AHandThatIsKeptHoldsUpNoOther) {
-  std::atomic<bool> done{false};
+  std::atomic<int> done{0};  // so many connections
   std::mutex mutex;
-  std::set<int> hands;
+  std::vector<int> hands;
   HandOver hand_over(2, [&](int socket, int hand) {
+    size_t taken = 0;
     {
       std::lock_guard<std::mutex> lock(mutex);
-      hands.insert(hand);
+      hands.push_back(hand);
+      taken = hands.size();
     }
-    while (!done) usleep(1000);
+    while (static_cast<size_t>(done) < taken) usleep(1000);
     close(socket);
   });
+  const auto both_have_taken = [&](size_t first) {
+    return TestService::Eventually([&] {
+      std::lock_guard<std::mutex> lock(mutex);
+      return hands.size() == first + 2 && hands[first] != hands[first + 1];
+    });
+  };
   const Pair one;
   const Pair other;
   hand_over.Add(one.given_away(), "one");
   hand_over.Add(other.given_away(), "other");
-
-  EXPECT_TRUE(TestService::Eventually([&] {
-    std::lock_guard<std::mutex> lock(mutex);
-    return hands == std::set<int>{0, 1};
-  }));
-  done = true;
+  EXPECT_TRUE(both_have_taken(0));
+  done = 2;
   EXPECT_TRUE(TestService::Eventually([&] { return one.IsClosed() && other.IsClosed(); }));
-  // A hand that has closed its connection may not have come back yet.
-  hand_over.Stop([](const std::string&) {});
+
+  // Whoever takes the next has come back.
+  const Pair third;
+  const Pair fourth;
+  hand_over.Add(third.given_away(), "third");
+  hand_over.Add(fourth.given_away(), "fourth");
+  EXPECT_TRUE(both_have_taken(2));
+  std::set<std::string> cut;
+  hand_over.Stop([&](const std::string& peer) {
+    cut.insert(peer);
+    done = 4;
+  });
+  EXPECT_EQ(cut, (std::set<std::string>{"third", "fourth"})) << "the first two are done with";
 }
 
 // One hand, kept by the first connection until it is let go.
