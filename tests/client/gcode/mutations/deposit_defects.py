@@ -2,7 +2,7 @@
 
 import re
 
-from edits import body, edited, go, pick, restated, with_word, without_path
+from edits import body, edited, go, pick, restated, with_f, with_word, without_path
 from places import links
 from sliced import number
 
@@ -288,7 +288,7 @@ def feed_late(file, rng):
             one, other = file.lines[a].text, file.lines[b].text
             word = re.search(r" ?F[0-9.]+", one)
             if word and " F" not in other and file.lines[a].feed != file.lines[a - 1].feed:
-                return edited(file, {a: [one.replace(word.group(), "")], b: [f"{other} {word.group().strip()}"]})
+                return edited(file, {a: [one.replace(word.group(), "")], b: [with_f(other, file.lines[a].feed)]})
         return None
 
     return pick(rng, file.paths, 200, make)

@@ -65,8 +65,9 @@ def with_z(text, z):
 
 
 def with_f(text, feed):
-    text = re.sub(r"\s*F[0-9.]+", "", text)
-    return f"{text} F{number(feed)}"
+    code, mark, comment = text.partition(";")
+    code = re.sub(r"\s*F[0-9.]+", "", code).rstrip()
+    return f"{code} F{number(feed)}" + (f" {mark}{comment}" if mark else "")
 
 
 def changed_number(file, rng, pattern):

@@ -33,13 +33,19 @@ def wipe_moved(file, rng):
     return pick(rng, wiped(file), 20, make)
 
 
+def straight_wipe(file, wipes):
+    """The line of a wipe that is one straight move of 0.5 mm or more; None for others."""
+    line = file.lines[wipes[-1]]
+    return line if len(wipes) == 1 and line.length() >= 0.5 and line.text.startswith("G1") else None
+
+
 def wipe_halved(file, rng):
     """The wipe leads half as far along the path, all of its filament on the way."""
 
     def make(found):
-        k, wipes = found
-        line = file.lines[wipes[-1]]
-        if len(wipes) != 1 or line.length() < 0.5 or not line.text.startswith("G1"):
+        _, wipes = found
+        line = straight_wipe(file, wipes)
+        if line is None:
             return None
         middle = [(line.start[i] + line.end[i]) / 2 for i in (0, 1)]
         return edited(file, {wipes[0]: [f"G1 X{number(middle[0])} Y{number(middle[1])} E{number(line.e)}"]})
@@ -144,8 +150,8 @@ def wipe_there_and_back(file, rng):
 
     def make(found):
         _, wipes = found
-        line = file.lines[wipes[-1]]
-        if len(wipes) != 1 or line.length() < 0.5 or not line.text.startswith("G1"):
+        line = straight_wipe(file, wipes)
+        if line is None:
             return None
         there = with_e(line.text, lambda e: e / 2)
         back = f"G1 X{number(line.start[0])} Y{number(line.start[1])} E{number(line.e / 2)}"
