@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <memory>
@@ -39,6 +40,7 @@ class LayerChooser::Impl {
         travel_(LearnTravel(file, habit_.threshold_mm, choice.threads)),
         revisits_(file, choice.min_revisit_seconds, choice.threads),
         columns_(file.layers.size()) {
+    assert(usual_tries_ <= tries_.size());
     ParallelFor(columns_.size(), threads_, [this](size_t layer) { FillColumn(layer); });
     ParallelFor(columns_.size() - 1, threads_, [this](size_t i) { FillWays(i + 1); });
     for (LayerColumn& column : columns_)

@@ -58,7 +58,7 @@ struct ChoiceOptions {
   std::optional<PolishLimit> polish = {};
 
   // Under Crossings::kFewer: so many tries, the last ones, are what kKeep would choose from; 0:
-  // none is.
+  // all are. REQUIRES: there are as many.
   size_t usual_tries = 0;
 };
 

@@ -1,6 +1,5 @@
 #include "client/gcode/text/lexer.h"
 
-#include <algorithm>
 #include <cstring>
 #include <optional>
 

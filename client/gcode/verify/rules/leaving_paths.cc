@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "absl/strings/str_format.h"
+#include "absl/types/span.h"
 #include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/match/way_ends.h"
 #include "client/gcode/verify/rules/rules.h"
@@ -39,15 +40,15 @@ const TraceMove* FirstMove(const TraceChunk& chunk, uint32_t link) {
   return nullptr;
 }
 
-// Whether travel from the path begins along it, however fast.
-bool BeginsAlong(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces) {
-  const uint32_t first = chunk.links[path + 1].first_move;
-  const uint32_t end = first + LayerPair::TailMoves(chunk, path, pieces, true);
-  for (uint32_t m = first; m < end; ++m) {
-    if (chunk.moves[m].sideways()) return true;
-  }
-  return false;
+// The moves with which travel from the path begins along it, however fast.
+absl::Span<const TraceMove> MovesAlong(const TraceChunk& chunk, uint32_t path,
+                                       absl::Span<const Piece> pieces) {
+  return absl::MakeConstSpan(chunk.moves)
+      .subspan(chunk.links[path + 1].first_move,
+               LayerPair::TailMoves(chunk, path, pieces, /*any_speed=*/true));
 }
+
+bool IsSideways(const TraceMove& move) { return move.sideways(); }
 
 // Travel leaves the path by a short move that it does not have in the original: another one than
 // there, or one that does not lead along the path where that ends elsewhere.
@@ -55,7 +56,8 @@ bool LeavesUnlike(const LayerPair& layer, const Visit& visit, bool same_end) {
   const TraceMove* departs = DepartureOf(layer.is(), visit.last_path + 1);
   if (departs == nullptr || layer.IsKnown(*departs)) return false;
   if (!same_end) {
-    return !BeginsAlong(layer.is(), visit.last_path, layer.PiecesOf(visit.path));
+    const auto along = MovesAlong(layer.is(), visit.last_path, layer.PiecesOf(visit.path));
+    return std::none_of(along.begin(), along.end(), IsSideways);
   }
   const TraceMove* first = FirstMove(layer.was(), visit.path + 1);
   return first == nullptr || DistanceOf(departs->to, first->to) > kSameMoveMm;
@@ -137,18 +139,14 @@ const TraceMove* GoesOnBy(const LayerPair& layer, uint32_t path) {
   if (!open || length <= kLeastMm || length > kMostMm) return nullptr;
   if (DistanceOf(PointAlong(pieces, length), first.to) > kBesideMm) return nullptr;
   const TraceMove* moves = was.moves.data();
-  const bool leads_on = std::any_of(moves + link.first_move + 1, moves + link.end_move,
-                                    [](const TraceMove& move) { return move.sideways(); });
+  const bool leads_on = std::any_of(moves + link.first_move + 1, moves + link.end_move, IsSideways);
   return leads_on ? &first : nullptr;
 }
 
 // How far the open nozzle goes on along the path, however fast.
 double GoesOnMm(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces) {
-  const uint32_t first = chunk.links[path + 1].first_move;
-  const uint32_t end = first + LayerPair::TailMoves(chunk, path, pieces, true);
   double length = 0;
-  for (uint32_t m = first; m < end; ++m) {
-    const TraceMove& move = chunk.moves[m];
+  for (const TraceMove& move : MovesAlong(chunk, path, pieces)) {
     if (move.kind != MoveKind::kTravel || !move.open || !move.in_print) break;
     length += move.length_mm();
   }
