@@ -10,6 +10,7 @@
 #include "client/gcode/model/outline.h"
 #include "client/gcode/write/going_on.h"
 #include "client/gcode/write/link_writer.h"
+#include "client/gcode/write/turned_departure.h"
 
 namespace traverse::gcode {
 namespace {
@@ -148,6 +149,7 @@ void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32
   request.wipe = Wipes(from.placement(), at, feature, boundary);
   request.retract = request.wipe || Retracts(from, to);
   request.departs = Departs(from.placement(), at, feature);
+  if (request.departs && !from.as_given()) request.turned_departure = DepartsTo(from.placement());
   request.detours = rules_.detours();
   LinkWriter(file_, donors_, out).Write(request);
 }
@@ -169,7 +171,8 @@ Vertex LayerWriter::End(const Placement& placement) const {
 void LayerWriter::NoteLeaving(uint32_t block) {
   const MachineState& mode = file_.modes[file_.blocks[block].mode];
   if (const std::optional<LinkStep> step = ReadGoingOn(file_, block)) {
-    leaving_[block] = {step->way_mm * mode.UnitMm(), mode.InMm(step->to), false};
+    leaving_[block].mm = step->way_mm * mode.UnitMm();
+    leaving_[block].as_given = mode.InMm(step->to);
     return;
   }
   Leaving leaving;
@@ -181,6 +184,8 @@ void LayerWriter::NoteLeaving(uint32_t block) {
     if (!donors_.MayFollow(block + 1) && !PullsBackBehind(link, *departure)) return;
     leaving_[block] = {.mm = departure->way_mm * mode.UnitMm(),
                        .as_given = mode.InMm(departure->to),
+                       .departs_to = mode.InMm(departure->to),
+                       .turns = !link.retracts() || PullsBackBehind(link, *departure),
                        .departs = true,
                        .retracts = link.retracts()};
     return;
@@ -188,9 +193,8 @@ void LayerWriter::NoteLeaving(uint32_t block) {
   leaving.wipes = true;
   const Link link = ReadLink(file_, block + 1);
   if (const LinkStep* departure = DepartureOf(link)) {
-    const Vertex from = mode.InMm(departure->from);
-    const Vertex to = mode.InMm(departure->to);
-    leaving.before_wipe = {to.x - from.x, to.y - from.y};
+    leaving.departs_to = mode.InMm(departure->to);
+    leaving.turns = PullsBackBehind(link, *departure);
   }
   for (const LinkStep& step : link.steps) {
     if (step.kind != StepKind::kWipe) continue;
@@ -203,7 +207,21 @@ void LayerWriter::NoteLeaving(uint32_t block) {
 const LayerWriter::Leaving* LayerWriter::LeavingOf(const Placement& from, bool wipes) const {
   const auto found = leaving_.find(from.block);
   if (found == leaving_.end() || (found->second.wipes && !wipes)) return nullptr;
-  return found->second.departs && !from.as_given() ? nullptr : &found->second;
+  return found->second.departs && !DepartsTo(from) ? nullptr : &found->second;
+}
+
+std::optional<Vertex> LayerWriter::DepartsTo(const Placement& from) const {
+  const auto found = leaving_.find(from.block);
+  if (found == leaving_.end() || !found->second.departs_to) return std::nullopt;
+  if (from.as_given()) return found->second.departs_to;
+  const std::vector<Vertex>& points = outlines_[from.block - layer_.first_block].points;
+  if (!from.closed || !found->second.turns) return std::nullopt;
+  return TurnedDeparture(points, from.entry, *found->second.departs_to);
+}
+
+Vertex LayerWriter::Behind(const Placement& from, const Leaving& leaving) const {
+  if (from.as_given()) return leaving.as_given;
+  return leaving.departs ? *DepartsTo(from) : BackOver(from, leaving.mm);
 }
 
 Vertex LayerWriter::BackOver(const Placement& from, double mm) const {
@@ -229,8 +247,7 @@ Vertex LayerWriter::BackOver(const Placement& from, double mm) const {
 bool LayerWriter::GoesOnAcross(const Placement& from, Vertex to, Feature feature) const {
   const Leaving* leaving = LeavingOf(from);
   if (!spares_walls_ || leaving == nullptr || leaving->wipes || leaving->departs) return false;
-  const Vertex at = from.as_given() ? leaving->as_given : BackOver(from, leaving->mm);
-  const TravelWay way = rules_.WayOf(at, to, feature);
+  const TravelWay way = rules_.WayOf(Behind(from, *leaving), to, feature);
   return way.crosses || way.grazes;
 }
 
@@ -240,9 +257,11 @@ bool LayerWriter::Departs(const Placement& from, Vertex to, Feature feature) con
   if (leaving == nullptr || !leaving->departs) return leaving != nullptr;
   const TravelWay way = rules_.WayOf(End(from), to, feature);
   if (way.retracts != leaving->retracts) return false;
-  if (way.retracts) return true;
-  const TravelWay behind = rules_.WayOf(leaving->as_given, to, feature);
-  std::vector<Vertex> bent = {End(from), leaving->as_given};
+  // Behind a loop as sliced it hides the retraction, whatever it crosses.
+  if (way.retracts && from.as_given()) return true;
+  const Vertex at = Behind(from, *leaving);
+  const TravelWay behind = rules_.WayOf(at, to, feature);
+  std::vector<Vertex> bent = {End(from), at};
   bent.insert(bent.end(), behind.via.begin(), behind.via.end());
   bent.push_back(to);
   return way.crosses || way.grazes || !(behind.crosses || walls_.CrossedByWay(bent));
@@ -260,13 +279,15 @@ TravelWay LayerWriter::NewWay(const Placement& from, const Placement& to, bool w
   if (leaving == nullptr || (leaving->departs && !Departs(from, Begin(to), feature))) {
     return rules_.WayOf(End(from), Begin(to), feature);
   }
-  const Vertex at = from.as_given() ? leaving->as_given : BackOver(from, leaving->mm);
+  const Vertex at = Behind(from, *leaving);
   TravelWay way = rules_.WayOf(at, Begin(to), feature);
-  way.mm += leaving->mm;
+  way.mm += leaving->departs ? Distance(End(from), at) : leaving->mm;
   if (leaving->wipes) {
-    const Vertex before = leaving->before_wipe;
+    const std::optional<Vertex> departs_to = DepartsTo(from);
+    if (!departs_to) return way;
+    const Vertex end = End(from);
+    const Vertex before = {departs_to->x - end.x, departs_to->y - end.y};
     const double before_mm = std::hypot(before.x, before.y);
-    if (!from.as_given() || !(before_mm > 0)) return way;
     // As WaySeconds sees it, which leaves out the wipe between the two.
     way.mm += before_mm;
     way.from = {at.x - before.x, at.y - before.y};

@@ -67,12 +67,14 @@ class LayerWriter {
   // What the head does after a path before it leaves for the next one.
   struct Leaving {
     double mm = 0;
-    Vertex as_given;           // where that ends after the path as sliced
-    bool wipes = false;        // pulls filament back meanwhile; else continues along the path
-    Vertex before_wipe{0, 0};  // the short move away from the path as sliced, before it wipes
+    Vertex as_given;     // where that ends after the path as sliced
+    bool wipes = false;  // pulls filament back meanwhile; else continues along the path
 
-    // A short move away from the path, which is made only where the path ends as sliced and what
-    // follows retracts, or does not, as in the file.
+    // Where a short move away from the path as sliced leads, before it wipes or as all that it does
+    // (`departs`). In the latter case it is made only if what follows retracts, or does not, as in
+    // the file.
+    std::optional<Vertex> departs_to;
+    bool turns = false;  // that move comes before anything else, and is made behind any start
     bool departs = false;
     bool retracts = false;
   };
@@ -80,6 +82,12 @@ class LayerWriter {
   // Null if the travel begins at the end of the path. `wipes`: if the file wipes the path, so does
   // the travel.
   const Leaving* LeavingOf(const Placement& from, bool wipes = true) const;
+
+  // Where the short move away from `from` leads. Nothing if there is none, as behind turned lines.
+  std::optional<Vertex> DepartsTo(const Placement& from) const;
+
+  // Where the head is after `leaving`.
+  Vertex Behind(const Placement& from, const Leaving& leaving) const;
 
   // Whether the travel from `from` to `to`, where a path of `feature` begins, begins with the
   // file's wipe. `boundary`: the file has something on that travel that nothing may cross.

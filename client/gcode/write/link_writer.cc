@@ -151,7 +151,7 @@ Link LinkWriter::WriteDeparture(const LinkRequest& request, const Link& form) {
   const Link& link = own ? *own : form;
   const Decimal z = out_.at.machine.at.z;
   if (!exact || !link.departs) WriteGoingOn(request);
-  if (!own && form.retracts()) WriteOwnDeparture(*request.from);
+  if (own ? !exact : form.retracts()) WriteOwnDeparture(request);
   bool wiped = false;
   for (size_t i = 0; link.Leaves(i); ++i) {
     const LinkStep& step = link.steps[i];
@@ -173,14 +173,24 @@ Link LinkWriter::WriteDeparture(const LinkRequest& request, const Link& form) {
   return link;
 }
 
-// A path that stands last before marks in the file, or here, is left as it is there.
-void LinkWriter::WriteOwnDeparture(const PlacedPath& from) {
+// A path that stands last before marks in the file, or here, is left as it is there, and one that
+// begins elsewhere as it would be left there.
+void LinkWriter::WriteOwnDeparture(const LinkRequest& request) {
+  const PlacedPath& from = *request.from;
   const uint32_t next = from.placement().block + 1;
-  if (!from.as_given() || next >= file_.blocks.size()) return;
+  if (!(from.as_given() || request.turned_departure) || next >= file_.blocks.size()) return;
   if ((from.block().flags & kBlockGoesOn) != 0) return;  // along the path: WriteGoingOn
   const Link own = ReadLink(file_, next);
   const LinkStep* departure = DepartureOf(own);
-  if (departure != nullptr && PullsBackBehind(own, *departure)) out_.MoveLine(*departure);
+  if (departure == nullptr) return;
+  if (from.as_given()) {
+    if (PullsBackBehind(own, *departure)) out_.MoveLine(*departure);
+    return;
+  }
+  const double unit = out_.at.machine.UnitMm();
+  const Position to{RoundedWord(request.turned_departure->x / unit),
+                    RoundedWord(request.turned_departure->y / unit), out_.at.machine.at.z};
+  out_.Travel(departure->line.Raw(file_.text), to, departure->feed);
 }
 
 // A path that the file goes on along without filament is gone on along as far wherever it ends.
@@ -203,18 +213,20 @@ void LinkWriter::WriteArrival(const LinkRequest& request, const Link& form) {
 // shorter than that wipe has less of it pulled while moving; the rest follows at its end.
 void LinkWriter::WriteWipe(const PlacedPath& path, const Link& form) {
   const WipeForm wipe = FormOf(form);
-  const std::vector<Position> way = path.WayBack(wipe.way_mm);
+  const Position begin = out_.at.machine.at;
+  std::vector<Position> way = path.WayBack(wipe.way_mm);
+  // A head that has left the path returns to it behind the gap.
+  const bool departed = !begin.SameXy(path.last());
+  if (departed && way.size() > 1 && way.front().SameXy(path.first())) way.erase(way.begin());
   double length = 0;
-  for (size_t i = 0; i < way.size(); ++i) {
-    length += LengthXy(i == 0 ? path.last() : way[i - 1], way[i]);
-  }
+  for (size_t i = 0; i < way.size(); ++i) length += LengthXy(i == 0 ? begin : way[i - 1], way[i]);
   // Rounding makes a way no shorter.
   constexpr double kAsLong = 0.99;
   const bool shorter = wipe.still_feed > 0 && length < kAsLong * wipe.way_mm;
   if (shorter) length = wipe.way_mm;
   Decimal left = wipe.pulled;
   for (size_t i = 0; i < way.size(); ++i) {
-    const double share = LengthXy(i == 0 ? path.last() : way[i - 1], way[i]) / length;
+    const double share = LengthXy(i == 0 ? begin : way[i - 1], way[i]) / length;
     const bool last = i + 1 == way.size() && !shorter;
     // Rounded as slicers write E: to hundredths of a micrometre.
     constexpr Decimal kStep = kDecimalOne / 100'000;
@@ -331,7 +343,7 @@ void LinkWriter::WriteBoundary(const LinkRequest& request) {
     WriteDeparture(request, *form);
   } else if (!form && link.fixed == 0 && !(given_from && link.departs)) {
     WriteGoingOn(request);
-    if (!given_from && link.retracts()) WriteOwnDeparture(*request.from);
+    if (!given_from && link.retracts()) WriteOwnDeparture(request);
   }
   for (size_t i = link.fixed; i < link.steps.size(); ++i) {
     if (static_cast<int>(i) != link.arrival) {

@@ -48,6 +48,10 @@ struct LinkRequest {
   // New travel may begin with the short move away from `from` with which the file's does.
   bool departs = true;
 
+  // `from` is begun elsewhere than in the file: where its departure leads now, in mm, if it is
+  // made.
+  std::optional<Vertex> turned_departure;
+
   // Leave out M73 lines of what is copied unchanged.
   bool without_progress = false;
 };
@@ -71,7 +75,7 @@ class LinkWriter {
   Link TemplateFor(const LinkRequest& request) const;
   std::optional<Link> OwnDeparture(const LinkRequest& request, const Link& form) const;
   Link WriteDeparture(const LinkRequest& request, const Link& form);
-  void WriteOwnDeparture(const PlacedPath& from);
+  void WriteOwnDeparture(const LinkRequest& request);
   void WriteArrival(const LinkRequest& request, const Link& form);
   void WriteGoingOn(const LinkRequest& request);
   void WriteWipe(const PlacedPath& path, const Link& form);

@@ -10,7 +10,9 @@
 
 #include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_format.h"
+#include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/match/tails.h"
+#include "client/gcode/verify/match/turned_departures.h"
 #include "client/gcode/verify/match/way_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 
@@ -229,6 +231,7 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
   // Moves along a path may be as fast as travel, if no longer than such in the original.
   const Tails along(layer, false, true);
   const double longest = LongestAlong(layer);
+  const TurnedDepartures turned(layer);
   const std::optional<Departures> to_layer = DeparturesTo(layer);
   const std::optional<Departures> within =
       Departures(layer.was(), layer.first_path_was(), layer.end_path_was() + 1);
@@ -237,7 +240,10 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
     const bool first = link == layer.first_path_is();
     const double most = first ? std::max(longest, kAlongToLayerMm) : longest;
     const uint32_t moves = MovesWithin(layer.is(), link, along.At(link), most + kAlongSlackMm);
-    CheckLink(layer, link, std::max(tails.At(link), moves), first ? to_layer : within, findings);
+    // How travel leaves a loop is another rule (leaving_paths.cc), there of the layer before.
+    const bool departs = first ? DepartureOf(layer.is(), link) != nullptr : turned.LeadsAway(link);
+    const uint32_t skipped = std::max({tails.At(link), moves, departs ? 1u : 0u});
+    CheckLink(layer, link, skipped, first ? to_layer : within, findings);
   }
 }
 

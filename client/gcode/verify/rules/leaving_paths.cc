@@ -1,11 +1,14 @@
 // Travel that leaves a wall before it retracts, so that nothing of that shows, leaves it that way
-// in any order: to the same side, and along a loop by the same length, wherever that ends.
+// in any order: to the same side, and along a loop by the same length, wherever that ends. From a
+// loop that begins elsewhere the move inwards leads as the start does (turned_departures.h), or is
+// left out.
 
 #include <algorithm>
 
 #include "absl/strings/str_format.h"
 #include "absl/types/span.h"
 #include "client/gcode/verify/match/departures.h"
+#include "client/gcode/verify/match/turned_departures.h"
 #include "client/gcode/verify/match/way_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 
@@ -51,11 +54,14 @@ absl::Span<const TraceMove> MovesAlong(const TraceChunk& chunk, uint32_t path,
 bool IsSideways(const TraceMove& move) { return move.sideways(); }
 
 // Travel leaves the path by a short move that it does not have in the original: another one than
-// there, or one that does not lead along the path where that ends elsewhere.
-bool LeavesUnlike(const LayerPair& layer, const Visit& visit, bool same_end) {
+// there, or, where the path ends elsewhere, one that leads neither along it nor to where that
+// move would be there.
+bool LeavesUnlike(const LayerPair& layer, const Visit& visit, bool same_end,
+                  const TurnedDepartures& turned) {
   const TraceMove* departs = DepartureOf(layer.is(), visit.last_path + 1);
   if (departs == nullptr || layer.IsKnown(*departs)) return false;
   if (!same_end) {
+    if (turned.LeadsAway(visit.last_path + 1)) return false;
     const auto along = MovesAlong(layer.is(), visit.last_path, layer.PiecesOf(visit.path));
     return std::none_of(along.begin(), along.end(), IsSideways);
   }
@@ -80,7 +86,8 @@ void NoteDeparture(const LayerPair& layer, uint32_t path, Observations& seen) {
 }
 
 // From the same point travel leaves a path as it did, if it retracts.
-void CheckDeparture(const LayerPair& layer, const Visit& visit, LayerFindings& findings) {
+void CheckDeparture(const LayerPair& layer, const Visit& visit, const TurnedDepartures& turned,
+                    LayerFindings& findings) {
   const TraceChunk& is = layer.is();
   const uint32_t link_is = visit.last_path + 1;
   const TraceMove* was = DepartureOf(layer.was(), visit.path + 1);
@@ -89,7 +96,7 @@ void CheckDeparture(const LayerPair& layer, const Visit& visit, LayerFindings& f
   const bool alike = EndAlike(layer, visit);
   const uint32_t end_was = layer.was().paths[visit.path].end_segment - 1;
   const uint32_t line_was = was != nullptr ? was->line : layer.was().segments[end_was].line;
-  if (LeavesUnlike(layer, visit, alike && visit.forward && visit.entry == 0)) {
+  if (LeavesUnlike(layer, visit, alike && visit.forward && visit.entry == 0, turned)) {
     findings.breaks.push_back({VerifyRule::kPathEnds, line_was, DepartureOf(is, link_is)->line,
                                layer.index(),
                                "leaves the path by a short move that the original does not have"});
@@ -174,9 +181,10 @@ void CheckGoingOn(const LayerPair& layer, const Visit& visit, LayerFindings& fin
 }  // namespace
 
 void CheckDepartures(const LayerPair& layer, LayerFindings& findings) {
+  const TurnedDepartures turned(layer);
   for (const Visit& visit : layer.visits()) {
     if (visit.segments != layer.was().paths[visit.path].size()) continue;
-    CheckDeparture(layer, visit, findings);
+    CheckDeparture(layer, visit, turned, findings);
     CheckGoingOn(layer, visit, findings);
   }
 }

@@ -84,6 +84,7 @@ Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
   for (uint32_t m = link.first_move; m < link.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (move.kind != MoveKind::kWipe || move.length_mm() <= 0) continue;
+    const bool returns = wipe.line == 0 && DepartureOf(chunk, path + 1) != nullptr;
     if (wipe.line == 0) wipe.line = move.line;
     wipe.known &= layer.IsKnown(move);
     wipe.length_mm += static_cast<float>(move.length_mm());
@@ -93,7 +94,8 @@ Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
     if (length >= kTellingMm) wipe.steepest = std::max(wipe.steepest, pulled / length);
     if (!measure) continue;
     wipe.off_mm = std::max(wipe.off_mm, static_cast<float>(DistanceTo(move.to, pieces)));
-    // A chord of the path has both its ends on it.
+    // A chord of the path has both its ends on it, but where it returns from a short move away.
+    if (returns) continue;
     wipe.astray_mm = std::max(wipe.astray_mm, static_cast<float>(DistanceTo(move.middle, pieces)));
     if (!move.arc) continue;
     wipe.turned_mm = std::max(wipe.turned_mm, static_cast<float>(TurnedMm(move, pieces)));

@@ -114,6 +114,20 @@ TEST_F(LayerWriterDepartures, AreMadeWhereTheyAreOfUse) {
             StopToStopSeconds(straight, 150, 1250));
 }
 
+// The square begins at its second corner: within it there, but not to the lines beside it.
+TEST_F(LayerWriterDepartures, TurnWithTheStartOfTheLoop) {
+  LayerOrder order = {given_[0], given_[2], given_[1], given_[3], given_[4]};
+  order[0].entry = 1;
+  std::string text;
+  writer_->WritePaths(order, StartOfPaths(*file_, order.front()), text);
+
+  EXPECT_NE(text.find("X9.600000 Y0.400000 F9000"), std::string::npos) << text;
+  EXPECT_NEAR(Written(order).travel_mm - Estimated(order).mm, 0, .01);
+  order = {order[0], given_[3], given_[4], given_[1], given_[2]};
+  EXPECT_EQ(Written(order).open_crossings, 0);
+  EXPECT_NEAR(Written(order).travel_mm - Estimated(order).mm, 0, .01);
+}
+
 TEST_F(LayerWriterDepartures, TakeTimeInTheFileToo) {
   const double straight = std::hypot(.4, .4) + std::hypot(2.6, 2.6);
   EXPECT_NEAR(writer_->EstimateWay(1, given_[0], given_[1], TravelModel()).seconds,
@@ -159,6 +173,31 @@ TEST(LayerWriter, PathsAreLeftAsInTheFile) {
   EXPECT_NE(text.find("X.3 Y.3 F9000\nG1 E-.8"), std::string::npos) << text;
   EXPECT_NE(text.find("G1 X50.2 Y9.2 F9000\n;WIPE_START"), std::string::npos) << text;
   EXPECT_NE(text.find("X20.2 Y5.2 F9000\n;WIPE_START"), std::string::npos) << text;
+}
+
+// The same from other starts; a wipe returns to the loop behind its gap.
+TEST(LayerWriter, LoopsBegunElsewhereAreLeftAsInTheFile) {
+  const auto loop = [](Sketch& sketch, const std::string& gap) -> Sketch& {
+    sketch.Add(";TYPE:External perimeter").Add("G1 X10 Y0 E.4 F1200").Add("G1 X10 Y10 E.4");
+    return sketch.Add("G1 X0 Y10 E.4").Add("G1 X0 Y" + gap + " E.396").Add("G1 X.3 Y.2 F9000");
+  };
+  Sketch sketch;
+  loop(sketch, ".1").GoRetracted(4, 5).Infill(4, 9).GoRetracted(0, 0);
+  loop(sketch, ".1").Add(";WIPE_START").Add("G1 X2 Y0 E-.8 F2400").Add(";WIPE_END");
+  const auto file = sketch.Go(40, 5).Add("G1 E.8 F2100").Infill(40, 9).Read();
+  const RetractionHabit habit = HabitOfNewWays(*file);
+  const LinkDonors donors(*file);
+  const LayerWriter writer(*file, file->layers[0], habit, donors);
+  LayerOrder order = writer.GivenOrder();
+  order[0].entry = 2;
+  order[2].entry = 1;
+  std::string text;
+  writer.WritePaths(order, StartOfPaths(*file, order.front()), text);
+
+  EXPECT_NE(text.find("X9.700000 Y9.800000 F9000\nG1 E-.8"), std::string::npos) << text;
+  EXPECT_NE(text.find("X9.800000 Y.300000 F9000\n;WIPE_START\nG1 F2400 X10.000000 Y1.612000"),
+            std::string::npos)
+      << text;
 }
 
 // Where the nozzle goes on along a path behind its end, that is of the path, wherever the next one

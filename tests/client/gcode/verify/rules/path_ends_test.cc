@@ -127,6 +127,29 @@ TEST(VerifyPathEnds, TravelGoesOnAlongALoopWhereverThatEnds) {
   EXPECT_EQ(Broken(b, kHead + kOne + kSquare + kOther + pulled), "");
 }
 
+// The move inwards turns with the loop's start: to the same side, and as far.
+TEST(VerifyPathEnds, TravelLeavesALoopThatBeginsElsewhereByTheSameMoveTurned) {
+  const std::string leave = "G1 X10.4 Y10.3 F9000\n";
+  const std::string inside = Line("Internal infill", "X15 Y15", "X16 Y15");
+  const std::string a = kHead + kSquare + leave + inside + kOther;
+  const auto elsewhere = [&](const std::string& move) {
+    return Broken(a, kHead + kSquareElsewhere + move + inside + kOther, Policy::kFree);
+  };
+  EXPECT_EQ(elsewhere("G1 X19.7 Y10.4 F9000\n"), "");
+  EXPECT_EQ(elsewhere(""), "") << "a move that would cross a wall is left out";
+  EXPECT_EQ(elsewhere("G1 X19.6 Y10.3 F9000\n"), "path_ends bounds") << "another angle";
+  EXPECT_EQ(elsewhere("G1 X20.3 Y10.4 F9000\n"), "path_ends bounds") << "another side";
+  EXPECT_EQ(elsewhere("G1 X19.66 Y10.45 F9000\n"), "path_ends bounds") << "farther";
+  // Without a retraction it leads to the next path.
+  const std::string open = "G1 X15 Y15 F9000\n;TYPE:Internal infill\nG1 F1800\nG1 X16 Y15 E.3\n";
+  const std::string b = kHead + kSquare + leave + open + kOther;
+  const auto open_elsewhere = [&](const std::string& move) {
+    return Broken(b, kHead + kSquareElsewhere + move + open + kOther, Policy::kFree);
+  };
+  EXPECT_EQ(open_elsewhere("G1 X19.7 Y10.4 F9000\n"), "");
+  EXPECT_EQ(open_elsewhere("G1 X19.4 Y10.8 F9000\n"), "bounds");
+}
+
 // Retracted away from the wall, travel leaves no trace on it.
 TEST(VerifyPathEnds, TravelThatLeavesAPathBeforeItRetractsDoesSo) {
   const std::string leave = "G1 X10.4 Y10.3 F9000\n";
