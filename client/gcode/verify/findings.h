@@ -172,6 +172,7 @@ struct WipeDeviation {
   float steepest = 0;   // the same for its longer moves, one by one; the most
   float uneven_mm = 0;  // by how much, at some point, its filament is off an even rate
   float length_mm = 0;
+  bool turns_back = false;  // somewhere where its path does not
   uint32_t line = 0;
   uint32_t original_line = 0;
   int64_t layer = -1;

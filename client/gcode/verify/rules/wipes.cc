@@ -1,5 +1,6 @@
-// A wipe lies within 0.05 mm of its own path, and paths that were wiped stay wiped; if it is
-// allowed to leave wipes out, then where the travel behind the path retracts.
+// A wipe lies within 0.05 mm of its own path, turns back only where that does, and paths that were
+// wiped stay wiped; if it is allowed to leave wipes out, then where the travel behind the path
+// retracts.
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,7 @@ constexpr float kTurnedMm = 0.012f;  // rounded arcs lie this much nearer to one
 constexpr double kUsualShare = 0.99;
 constexpr float kPullSlack = 1.02f;
 constexpr float kGentleShare = 0.5f;
+constexpr float kAmountSlackMm = 0.005f;
 constexpr float kAsLong = 0.9f;
 constexpr float kUnevenSlackMm = 0.01f;
 constexpr float kTellingMm = 0.3f;  // rounding is nothing compared with the filament of such a move
@@ -30,9 +32,17 @@ struct Wipe {
   float pulled_mm = 0;
   float steepest = 0;  // filament retracted per mm of one move
   float uneven_mm = 0;
+  bool turns_back = false;
   uint32_t line = 0;  // 0: none
   bool known = true;
 };
+
+// Of the angle by which the way from `a` over `b` to `c` turns at `b`; 1 if it does not move there.
+double CosineOfTurn(Point a, Point b, Point c) {
+  const double product = DistanceOf(a, b) * DistanceOf(b, c);
+  if (!(product > 0)) return 1;
+  return ((b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y)) / product;
+}
 
 // A distance of up to `enough_mm` may be a larger one.
 double DistanceTo(Point p, absl::Span<const Piece> pieces, double enough_mm = kOnPathMm) {
@@ -59,6 +69,22 @@ double TurnedMm(const TraceMove& arc, absl::Span<const Piece> pieces) {
   return distance(arc.middle) - std::min(distance(mirrored), distance(round));
 }
 
+// Whether two lines that meet make a turn of more than 170, or 150, degrees.
+bool TurnsBack(Point a, Point b, Point c) { return CosineOfTurn(a, b, c) < -0.985; }
+bool NearlyTurnsBack(Point a, Point b, Point c) { return CosineOfTurn(a, b, c) < -0.866; }
+
+// Whether the wipe turns back between the two moves, where its path has no such corner.
+bool TurnsBackBetween(const TraceMove& before, const TraceMove& move,
+                      absl::Span<const Piece> pieces) {
+  if (before.arc || move.arc || !TurnsBack(before.from, move.from, move.to)) return false;
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    const Piece& next = pieces[i + 1 < pieces.size() ? i + 1 : 0];
+    if (DistanceOf(pieces[i].b, move.from) > kOnPathMm) continue;
+    if (NearlyTurnsBack(pieces[i].a, pieces[i].b, next.b)) return false;
+  }
+  return true;
+}
+
 // By how much, at some point of `wipe`, the retracted filament is off an even rate; its moves are
 // those of `link`.
 float Unevenness(const TraceChunk& chunk, const TraceLink& link, const Wipe& wipe) {
@@ -81,9 +107,11 @@ Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
                 absl::Span<const Piece> pieces, bool measure) {
   Wipe wipe;
   const TraceLink& link = chunk.links[path + 1];
+  const TraceMove* before = nullptr;
   for (uint32_t m = link.first_move; m < link.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (move.kind != MoveKind::kWipe || move.length_mm() <= 0) continue;
+    const TraceMove* last = std::exchange(before, &move);
     const bool returns = wipe.line == 0 && DepartureOf(chunk, path + 1) != nullptr;
     if (wipe.line == 0) wipe.line = move.line;
     wipe.known &= layer.IsKnown(move);
@@ -93,6 +121,7 @@ Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
     const auto length = static_cast<float>(move.length_mm());
     if (length >= kTellingMm) wipe.steepest = std::max(wipe.steepest, pulled / length);
     if (!measure) continue;
+    wipe.turns_back |= last != nullptr && TurnsBackBetween(*last, move, pieces);
     wipe.off_mm = std::max(wipe.off_mm, static_cast<float>(DistanceTo(move.to, pieces)));
     // A chord of the path has both its ends on it, but where it returns from a short move away.
     if (returns) continue;
@@ -107,8 +136,8 @@ Wipe WipeBehind(const LayerPair& layer, const TraceChunk& chunk, uint32_t path,
 // `original_line`: where the wipe, or its path, is in the original.
 WipeDeviation DeviationOf(const Wipe& wipe, uint32_t original_line, const LayerPair& layer) {
   return {wipe.off_mm,   wipe.astray_mm, wipe.turned_mm, wipe.pulled_mm / wipe.length_mm,
-          wipe.steepest, wipe.uneven_mm, wipe.length_mm, wipe.line,
-          original_line, layer.index()};
+          wipe.steepest, wipe.uneven_mm, wipe.length_mm, wipe.turns_back,
+          wipe.line,     original_line,  layer.index()};
 }
 
 // A bound that all but a few wipes of the original keep, but at least `least`.
@@ -126,6 +155,8 @@ struct Pulls {
   float steepest = 0;
   float gentlest = 0;
   float uneven_mm = 0;
+  float most_mm = 0;
+  bool turns_back = false;
 
   // Some are cut short, and pull as much: that tells nothing of longer ones.
   const WipeDeviation& FastestOfLength(float length_mm) const {
@@ -137,7 +168,8 @@ struct Pulls {
 
   bool Unlike(const WipeDeviation& wipe) const {
     return wipe.steepest > std::max(steepest, fastest.back()->pull) * kPullSlack ||
-           wipe.pull < gentlest * kGentleShare || wipe.uneven_mm > uneven_mm + kUnevenSlackMm;
+           wipe.pull < gentlest * kGentleShare || wipe.uneven_mm > uneven_mm + kUnevenSlackMm ||
+           wipe.pull * wipe.length_mm > most_mm + kAmountSlackMm;
   }
 };
 
@@ -148,6 +180,8 @@ Pulls PullsOf(const std::vector<WipeDeviation>& wipes) {
     pulls.fastest.push_back(&wipe);
     pulls.steepest = std::max(pulls.steepest, wipe.steepest);
     pulls.uneven_mm = std::max(pulls.uneven_mm, wipe.uneven_mm);
+    pulls.most_mm = std::max(pulls.most_mm, wipe.pull * wipe.length_mm);
+    pulls.turns_back |= wipe.turns_back;
   }
   std::sort(
       pulls.fastest.begin(), pulls.fastest.end(),
@@ -253,6 +287,11 @@ void CompareWipes(const Observations& was, const Observations& is, std::vector<F
           {VerifyRule::kWipes, most->line, wipe.line, wipe.layer,
            absl::StrFormat("a wipe retracts %.3f mm per mm; the most in the original is %.3f mm",
                            wipe.pull, most->pull)});
+    }
+    if (wipe.turns_back && !pulls.turns_back) {
+      breaks.push_back({VerifyRule::kWipes, wipe.original_line, wipe.line, wipe.layer,
+                        "a wipe turns back where its path does not"});
+      continue;
     }
     if (wipe.turned_mm > turned_limit) {
       breaks.push_back({VerifyRule::kWipes, wipe.original_line, wipe.line, wipe.layer,

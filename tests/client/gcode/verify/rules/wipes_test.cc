@@ -90,6 +90,28 @@ TEST(VerifyWipes, TakeNoShortCut) {
   EXPECT_EQ(Broken(head + across, head + across), "");
 }
 
+// Each move lies on the path, and is no shorter than the wipes of the original.
+TEST(VerifyWipes, TurnBackOnlyWhereTheirPathDoes) {
+  const std::string head = kHead + "G1 E-1 F2100\n";
+  const std::string two = Wiped("X0 Y0", "X9 Y0", "X7 Y0") + Wiped("X0 Y5", "X9 Y5", "X7 Y5");
+  const std::string back = With(two, "G1 X7 Y5 E-.5\n", "G1 X7 Y5 E-.25\nG1 X9 Y5 E-.25\n");
+  EXPECT_EQ(Broken(head + two, head + back), "wipes");
+  EXPECT_EQ(Broken(head + back, head + back), "");
+  // Of a path there and back.
+  const std::string spike = With(two, "G1 X9 Y5 E.3\n", "G1 X9 Y5 E.3\nG1 X8 Y5 E.1\n");
+  const std::string along = With(spike, "G1 X7 Y5 E-.5\n", "G1 X9 Y5 E-.1667\nG1 X7 Y5 E-.3333\n");
+  EXPECT_EQ(Broken(head + spike, head + along), "");
+}
+
+// A longer wipe may not take on what is pulled at a standstill around it.
+TEST(VerifyWipes, PullNoMoreThanThoseOfTheOriginal) {
+  const std::string head = kHead + "G1 E-1 F2100\n";
+  const std::string two = Wiped("X0 Y0", "X9 Y0", "X7 Y0") + Wiped("X0 Y5", "X9 Y5", "X7 Y5");
+  const std::string more = With(two, "G1 E-.5 F2100\n;WIPE_START\nG1 F7200\nG1 X7 Y5 E-.5\n",
+                                "G1 E-.4 F2100\n;WIPE_START\nG1 F7200\nG1 X6 Y5 E-.6\n");
+  EXPECT_EQ(Broken(head + two, head + more), "wipes");
+}
+
 TEST(VerifyWipes, AreNotShortened) {
   const std::string head = kHead + "G1 E-1 F2100\n";
   const std::string two = Wiped("X0 Y0", "X9 Y0", "X7 Y0") + Wiped("X0 Y5", "X9 Y5", "X7 Y5");
