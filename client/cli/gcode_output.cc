@@ -127,6 +127,11 @@ std::string GcodeSummary(const GcodeRewrite& rewrite) {
         "%d moves that print stay where they are, because they are relative (G91): %s\n",
         rewrite.relative_moves, rewrite.relative);
   }
+  if (rewrite.unread_moves > 0) {
+    summary += absl::StrFormat(
+        "%d lines begin as moves do, but cannot be read, so that nothing passes them: %s\n",
+        rewrite.unread_moves, rewrite.unread);
+  }
   return summary;
 }
 

@@ -221,9 +221,15 @@ class Rewriter {
     }
     if (rewrite.layers_unproven > 0) rewrite.unproven = unproven_;
     NoteUnclear(rewrite);
+    rewrite.unread_moves = file_.unread_moves;
+    if (file_.unread_moves > 0) rewrite.unread = PlaceOf(file_.unread_at);
     if (file_.relative_moves <= static_cast<int64_t>(file_.ends.size())) return;
     rewrite.relative_moves = file_.relative_moves;
-    rewrite.relative = absl::StrCat(file_.name, ":", file_.LineNumber(file_.relative_at));
+    rewrite.relative = PlaceOf(file_.relative_at);
+  }
+
+  std::string PlaceOf(gcode::Offset at) const {
+    return absl::StrCat(file_.name, ":", file_.LineNumber(at));
   }
 
   void NoteUnclear(GcodeRewrite& rewrite) const {

@@ -42,6 +42,11 @@ struct GcodeRewrite {
   // what prints, and the first of them: "part.gcode:118".
   int64_t relative_moves = 0;
   std::string relative;
+
+  // Lines that begin as moves do and cannot be read, so that no path changes places with one beyond
+  // them, and the first of them: "part.gcode:118".
+  int64_t unread_moves = 0;
+  std::string unread;
 };
 
 struct RewriteOptions {

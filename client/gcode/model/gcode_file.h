@@ -125,6 +125,10 @@ struct GcodeFile {
   int64_t relative_moves = 0;
   gcode::Offset relative_at = 0;
 
+  // Lines that begin as moves do and cannot be read, which nothing passes, and the first of them.
+  int64_t unread_moves = 0;
+  gcode::Offset unread_at = 0;
+
   // Begins of the M73 lines, ascending.
   std::vector<gcode::Offset> progress;
 

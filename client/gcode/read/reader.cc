@@ -139,6 +139,21 @@ bool PrintsRelative(const Step& step, const MachineState& state) {
   return state.relative_xyz && step.filament > 0 && !state.at.SameXy(step.from);
 }
 
+// The words of a line that begins as a move does and cannot be read; else nothing.
+std::string_view WordsOfUnreadMove(const Step& step, std::string_view text) {
+  if (step.command.kind != LineKind::kText) return {};
+  const std::string_view line = TrimBlanks(step.line.Text(text));
+  const std::string_view words = line.substr(0, line.find(';'));
+  const bool moves = words.size() > 2 && (words[0] == 'G' || words[0] == 'g') && words[1] >= '0' &&
+                     words[1] <= '3' && !IsDigit(words[2]) && words[2] != '.';
+  return moves ? words : std::string_view();
+}
+
+// A line that would print if its words could be read.
+bool MayBePrinting(const Step& step, std::string_view text) {
+  return WordsOfUnreadMove(step, text).find_first_of("Ee") != std::string_view::npos;
+}
+
 absl::Status ReadBlocks(GcodeFile& file) {
   file.ends.reserve(file.text.size() / kBytesPerSegment);
   BlockBuilder builder(file);
@@ -154,20 +169,13 @@ absl::Status ReadBlocks(GcodeFile& file) {
     if (PrintsRelative(step, interpreter.state()) && file.relative_moves++ == 0) {
       file.relative_at = step.line.begin;
     }
+    if (!WordsOfUnreadMove(step, file.text).empty() && file.unread_moves++ == 0) {
+      file.unread_at = step.line.begin;
+    }
   }
   builder.Finish();
   style.Finish(file);
   return absl::OkStatus();
-}
-
-// A line that would print if its words could be read.
-bool MayBePrinting(const Step& step, std::string_view text) {
-  if (step.command.kind != LineKind::kText) return false;
-  const std::string_view line = TrimBlanks(step.line.Text(text));
-  const std::string_view words = line.substr(0, line.find(';'));
-  const bool moves = words.size() > 2 && (words[0] == 'G' || words[0] == 'g') && words[1] >= '0' &&
-                     words[1] <= '3' && !IsDigit(words[2]);
-  return moves && words.find_first_of("Ee") != std::string_view::npos;
 }
 
 // Why there is no path in `file`: the first line that prints and is not followed, if there is one.

@@ -57,6 +57,16 @@ class Views(CommandLine):
     def scene(self, page):
         return json.loads(re.search(r'<script id="scene" type="application/json">(.*?)</script>', read(page))[1])
 
+    def test_moves_that_cannot_be_read_are_named(self):
+        sample = os.path.join(TESTS, os.pardir, "deploy", "samples", "clusters13.gcode")
+        lines = read(sample).splitlines()
+        place = next(i for i, line in enumerate(lines) if line.startswith("G1 X") and i > 1000)
+        lines[place] = lines[place].replace("G1 ", "G1 (here) ")
+        name = self.put("odd.gcode", "\n".join(lines) + "\n")
+        said = self.succeed("optimize", name, "-o", self.path("out.gcode"), "--strategy=greedy")
+        self.assertIn("1 lines begin as moves do, but cannot be read, so that nothing passes them: "
+                      f"{name}:{place + 1}\n", said)
+
     def test_what_is_allowed_beside_the_policy(self):
         gcode = os.path.join(TESTS, "data", "gcode", "sl_clusters13_brim.gcode.xz")
         plain = self.path("plain.gcode")

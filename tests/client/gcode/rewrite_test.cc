@@ -214,6 +214,17 @@ TEST(RewriteGcode, RelativeMovesAreNamedIfMostOfThePrintStaysForThem) {
   EXPECT_EQ(rewritten(begin + "G1 Y9 E.3\n" + relative).relative_moves, 0);
 }
 
+TEST(RewriteGcode, MovesThatCannotBeReadAreNamed) {
+  const std::string text = std::string(kScattered) + "G1 X5 (a) Y5 E.3\ng1 X9{y}\nG28 X{x}\n";
+
+  const auto rewrite = RewriteGcode(*Read(text), {{kBetterOrder, {}}}, OptionsWithVersion());
+
+  ASSERT_TRUE(rewrite.ok()) << rewrite.status();
+  EXPECT_EQ(rewrite->unread_moves, 2);
+  const auto lines = std::count(text.begin(), text.end(), '\n');
+  EXPECT_EQ(rewrite->unread, absl::StrCat("part.gcode:", lines - 2));
+}
+
 TEST(RewriteGcode, NumberedLinesAreNumberedAnew) {
   const LineNumbers numbers{0, 1, 1, " ", true};
   const std::string text = WithLineNumbers(kScattered, numbers);
