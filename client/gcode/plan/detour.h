@@ -17,16 +17,18 @@ class Detours {
   static constexpr double kBesideMm = 0.4;
 
   // `walls` must outlive the detours.
-  explicit Detours(const VisibleWalls& walls) : detours_(walls.grid(), kBesideMm, kOnWallMm) {}
+  explicit Detours(const VisibleWalls& walls)
+      : walls_(walls), detours_(walls.grid(), kBesideMm, kOnWallMm) {}
 
-  // The points to pass from `a` to `b` so that no visible wall is crossed. Empty if the straight
-  // move crosses none, and if no detour was found.
+  // The points to pass from `a` to `b` so that no visible wall is crossed, in whole micrometres.
+  // Empty if the straight move crosses none, and if no detour was found.
   std::vector<Vertex> Around(Vertex a, Vertex b) const;
 
  private:
   // A point this close to the middle of a wall lies on it.
   static constexpr double kOnWallMm = 1.2 * VisibleWalls::kEndSlackMm;
 
+  const VisibleWalls& walls_;
   const WallDetours detours_;
 };
 

@@ -55,6 +55,26 @@ TEST(VisibleWalls, AreOuterWallsAndNotTouchedByWaysThatEndOnThem) {
   EXPECT_FALSE(walls.Crossed({15, 5}, {10.1, 5}));
 }
 
+// The shortest ways pass corners by less than coordinates tell.
+TEST(Detours, CrossNoWallAsTheyAreWritten) {
+  const VisibleWalls walls(
+      {Square(0, 0, 40), Wall({{20, 13}, {26, 21}, {19, 27}, {14, 19}, {20, 13}})});
+  const Detours detours(walls);
+  int found = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vertex a{12.3456 + .0012345 * i, 10};
+    const Vertex b{28.7654, 27.1234 + .0009876 * i};
+    const std::vector<Vertex> bends = detours.Around(a, b);
+    found += bends.empty() ? 0 : 1;
+    for (const Vertex bend : bends) {
+      EXPECT_NEAR(bend.x * 1000, std::round(bend.x * 1000), 1e-6) << i;
+      EXPECT_NEAR(bend.y * 1000, std::round(bend.y * 1000), 1e-6) << i;
+    }
+    EXPECT_TRUE(bends.empty() || CrossesNone(walls, a, bends, b)) << i;
+  }
+  EXPECT_GT(found, 1000);
+}
+
 TEST(Detours, StraightWaysStayStraight) {
   const VisibleWalls walls({Square(0, 0, 40), Square(15, 15, 10)});
 
