@@ -67,6 +67,10 @@ LayerWriter::LayerWriter(const GcodeFile& file, const Layer& layer, const Retrac
       drops_wipes_(habit.drops_wipes) {
   for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
     NoteLeaving(b);
+    if (outlines_[b - layer.first_block].closed) {
+      LoopGap gap = LoopGapOf(file, b);
+      if (!gap.moves.empty()) gaps_[b] = std::move(gap);
+    }
     if (b == 0 || (file.blocks[b].link & kLinkFixedFrom) == 0) continue;
     const Link link = ReadLink(file, b);
     if (link.fixed == 0) continue;
@@ -165,7 +169,13 @@ Vertex LayerWriter::End(const Placement& placement) const {
   const Block& block = file_.blocks[placement.block];
   if (placement.as_given()) return file_.modes[block.mode].InMm(block.last);
   const std::vector<Vertex>& points = outlines_[placement.block - layer_.first_block].points;
-  return placement.closed ? points[placement.entry] : points.front();
+  if (!placement.closed) return points.front();
+  const Vertex end = points[placement.entry];
+  const auto gap = gaps_.find(placement.block);
+  if (gap == gaps_.end() || !gap->second.moves[placement.entry]) return end;
+  const Vertex before = points[placement.entry - 1];
+  const double share = gap->second.mm / Distance(end, before);
+  return {end.x + (before.x - end.x) * share, end.y + (before.y - end.y) * share};
 }
 
 void LayerWriter::NoteLeaving(uint32_t block) {
@@ -236,7 +246,7 @@ Vertex LayerWriter::BackOver(const Placement& from, double mm) const {
   };
   if (from.closed) {
     // The last point is the first one, or so near to it that the loop has a gap there.
-    if (from.as_given()) go_to(points.front());
+    go_to(points[from.entry]);
     for (size_t i = 1; i < n && mm > 0; ++i) go_to(points[(from.entry + i) % (n - 1)]);
   } else {
     for (size_t i = 0; i < n && mm > 0; ++i) go_to(points[from.as_given() ? n - 1 - i : i]);

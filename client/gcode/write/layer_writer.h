@@ -133,6 +133,7 @@ class LayerWriter {
   const bool drops_wipes_;
   absl::flat_hash_map<uint32_t, Leaving> leaving_;      // by block, if it is left this way
   absl::flat_hash_map<uint32_t, Vertex> behind_fixed_;  // by block, where something stays
+  absl::flat_hash_map<uint32_t, LoopGap> gaps_;         // by block, of loops that end short
 };
 
 }  // namespace traverse::gcode

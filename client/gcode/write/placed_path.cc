@@ -50,7 +50,26 @@ void WriteSegment(const BodySegment& segment, const PathBody& body, GcodeOut& ou
               ArcWords(segment, out.file().xy_style), segment.comment);
 }
 
+// In inches, thousandths are too coarse for a gap; and a segment whose filament was rounded to
+// nothing may be what stands beside it.
+bool MayMoveGap(const GcodeFile& file, const Block& block) {
+  return !file.modes[block.mode].inches && (block.flags & kBlockZero) == 0;
+}
+
 }  // namespace
+
+LoopGap LoopGapOf(const GcodeFile& file, uint32_t block) {
+  LoopGap gap;
+  const Block& loop = file.blocks[block];
+  if (!MayMoveGap(file, loop) || loop.first.SameXy(loop.last)) return gap;
+  const std::vector<BodySegment> segments = ReadBody(file, loop).segments;
+  gap.mm = LengthXy(segments.back().to, segments.front().from);
+  gap.moves.resize(segments.size());
+  for (uint32_t entry = 1; entry < segments.size(); ++entry) {
+    gap.moves[entry] = MovesGap(entry, segments);
+  }
+  return gap;
+}
 
 PlacedPath::PlacedPath(const GcodeFile& file, const Placement& placement)
     : file_(&file), placement_(placement) {
@@ -99,10 +118,7 @@ void PlacedPath::PlaceReversed() {
 
 void PlacedPath::PlaceRotated() {
   std::vector<BodySegment>& segments = body_.segments;
-  // In inches, thousandths are too coarse for a gap; and a segment whose filament was rounded to
-  // nothing may be what stands beside it.
-  const bool exact = !file_->modes[block().mode].inches && (block().flags & kBlockZero) == 0;
-  if (exact) MoveGap(placement_.entry, segments);
+  if (MayMoveGap(*file_, block())) MoveGap(placement_.entry, segments);
   std::rotate(segments.begin(), segments.begin() + placement_.entry, segments.end());
   first_ = segments.front().from;
   last_ = segments.back().to;

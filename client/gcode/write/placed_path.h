@@ -23,6 +23,15 @@ struct Placement {
   friend bool operator==(const Placement&, const Placement&) = default;
 };
 
+// Where a loop ends if it begins elsewhere than in the file: so much before its start.
+struct LoopGap {
+  double mm = 0;
+  std::vector<bool> moves;  // [entry]; where not, the loop ends at its start
+};
+
+// The gap of closed path `block`, as PlacedPath moves it. `moves` is empty if there is none.
+LoopGap LoopGapOf(const GcodeFile& file, uint32_t block);
+
 // The paths of a layer in the order to print them.
 using LayerOrder = std::vector<Placement>;
 

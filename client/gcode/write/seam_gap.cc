@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 #include "client/gcode/write/positions.h"
 
@@ -37,24 +38,35 @@ double BesideMm(const Position& point, const Position& from, const Position& to)
   return std::abs(across) / std::hypot(dx, dy);
 }
 
-}  // namespace
-
-bool MoveGap(uint32_t entry, std::vector<BodySegment>& segments) {
+// What closes the gap if the loop begins at `entry`; nothing if it stays where it is.
+std::optional<BodySegment> ClosingOf(uint32_t entry, const std::vector<BodySegment>& segments) {
   assert(entry > 0 && entry < segments.size());
-  BodySegment& end = segments[entry - 1];
+  const BodySegment& end = segments[entry - 1];
   BodySegment closing = segments.back();
   closing.from = segments.back().to;
   closing.to = segments.front().from;
   const double gap = LengthXy(closing.from, closing.to);
   const double length = LengthXy(end.from, end.to);
-  if (gap < kLeastGapMm || length < (1 + kLeastLeft) * gap) return false;
+  if (gap < kLeastGapMm || length < (1 + kLeastLeft) * gap) return std::nullopt;
   const double rate = RateOf(segments.back());
   const double rate_at_end = RateOf(end);
-  if (!(rate > 0) || !(std::abs(rate - rate_at_end) <= kSameRateShare * rate)) return false;
+  if (!(rate > 0) || !(std::abs(rate - rate_at_end) <= kSameRateShare * rate)) return std::nullopt;
   const double steps = (rate + rate_at_end) / 2 * gap * static_cast<double>(kDecimalOne) /
                        static_cast<double>(kFilamentStep);
   closing.filament = std::llround(steps) * kFilamentStep;
-  if (closing.filament <= 0) return false;
+  if (closing.filament <= 0) return std::nullopt;
+  return closing;
+}
+
+}  // namespace
+
+bool MoveGap(uint32_t entry, std::vector<BodySegment>& segments) {
+  const std::optional<BodySegment> found = ClosingOf(entry, segments);
+  if (!found) return false;
+  const BodySegment& closing = *found;
+  BodySegment& end = segments[entry - 1];
+  const double gap = LengthXy(closing.from, closing.to);
+  const double length = LengthXy(end.from, end.to);
   end.filament -= closing.filament;
   end.to = Along(end.from, end.to, length - gap);
   BodySegment& last = segments.back();
@@ -68,6 +80,10 @@ bool MoveGap(uint32_t entry, std::vector<BodySegment>& segments) {
     last.filament += closing.filament;
   }
   return true;
+}
+
+bool MovesGap(uint32_t entry, const std::vector<BodySegment>& segments) {
+  return ClosingOf(entry, segments).has_value();
 }
 
 }  // namespace traverse::gcode

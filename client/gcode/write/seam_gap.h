@@ -19,6 +19,9 @@ namespace traverse::gcode {
 // those of a closed path in the file's order and in mm. REQUIRES: 0 < entry < segments.size().
 bool MoveGap(uint32_t entry, std::vector<BodySegment>& segments);
 
+// Whether MoveGap would move it.
+bool MovesGap(uint32_t entry, const std::vector<BodySegment>& segments);
+
 }  // namespace traverse::gcode
 
 #endif  // TRAVERSE_CLIENT_GCODE_WRITE_SEAM_GAP_H_

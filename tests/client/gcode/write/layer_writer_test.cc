@@ -20,6 +20,25 @@ namespace {
 
 using testing::Sketch;
 
+// A loop that ends .1 mm short of its start does so wherever it begins, and the next way is longer.
+TEST(LayerWriter, CountsAWayFromWhereALoopBegunElsewhereEnds) {
+  Sketch sketch;
+  sketch.Add(";TYPE:External perimeter").Add("G1 X10 Y0 E.4 F1200").Add("G1 X10 Y10 E.4");
+  sketch.Add("G1 X0 Y10 E.4").Add("G1 X0 Y.1 E.396");
+  const auto file = sketch.Go(12, 0).Infill(15, 0).Go(15, 5).Infill(20, 5).Read();
+  const RetractionHabit habit = HabitOfNewWays(*file);
+  const LinkDonors donors(*file);
+  const LayerWriter writer(*file, file->layers[0], habit, donors);
+  const LayerOrder order = {{0, 1, true}, {1, 0, false}, {2, 0, false}};
+  std::string text;
+  const PartStart start = StartOfPaths(*file, order.front());
+
+  writer.WritePaths(order, start, text);
+
+  EXPECT_NEAR(writer.EstimateWay(1, order[0], order[1], TravelModel()).mm, 2.1, 1e-6) << text;
+  EXPECT_NEAR(Measure(*file, text, start).travel_mm, 2.1 + 5, 1e-6) << text;
+}
+
 // What the way from a square to the second of three lines beside it comes to. Inside an island ways
 // are not retracted.
 WayTotals FromSquareToLine(bool goes_on) {
