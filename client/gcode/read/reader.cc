@@ -145,7 +145,7 @@ std::string_view WordsOfUnreadMove(const Step& step, std::string_view text) {
   const std::string_view line = TrimBlanks(step.line.Text(text));
   const std::string_view words = line.substr(0, line.find(';'));
   const bool moves = words.size() > 2 && (words[0] == 'G' || words[0] == 'g') && words[1] >= '0' &&
-                     words[1] <= '3' && !IsDigit(words[2]) && words[2] != '.';
+                     words[1] <= '3' && !IsDigit(words[2]);
   return moves ? words : std::string_view();
 }
 

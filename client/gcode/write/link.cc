@@ -158,6 +158,18 @@ const LinkStep* DepartureOf(const Link& link) {
   return departs && link.Leaves(place) ? &*first : nullptr;
 }
 
+WipeForm WipeOf(const Link& link) {
+  WipeForm form;
+  for (const LinkStep& step : link.steps) {
+    if (step.kind == StepKind::kFilament && step.filament < 0) form.still_feed = step.feed;
+    if (step.kind != StepKind::kWipe) continue;
+    form.way_mm += step.way_mm;
+    form.pulled -= step.filament;
+    form.feed = step.feed;
+  }
+  return form;
+}
+
 bool PullsBackBehind(const Link& link, const LinkStep& departure) {
   if (link.fixed > 0) return false;
   const auto behind = link.steps.begin() + (&departure - link.steps.data()) + 1;

@@ -85,6 +85,16 @@ bool MayDepart(const GcodeFile& file, size_t index);
 // The step of the short move with which `link` begins; null if it begins with none.
 const LinkStep* DepartureOf(const Link& link);
 
+// What the wipe of a link does.
+struct WipeForm {
+  double way_mm = 0;
+  Decimal pulled = 0;
+  Decimal feed = 0;
+  Decimal still_feed = 0;  // of what is pulled at a standstill; 0: nothing is
+};
+
+WipeForm WipeOf(const Link& link);
+
 // Whether filament is pulled back before anything else moves in XY behind `departure`, a step of
 // `link` without unknown lines.
 bool PullsBackBehind(const Link& link, const LinkStep& departure);

@@ -15,26 +15,6 @@ constexpr double kMinSlopeRestMm = 0.5;
 
 bool IsSoft(const Block& block) { return (block.link & (kLinkSplits | kLinkFixed)) == 0; }
 
-// What a wipe of the file does.
-struct WipeForm {
-  double way_mm = 0;
-  Decimal pulled = 0;
-  Decimal feed = 0;
-  Decimal still_feed = 0;  // of what is pulled at a standstill; 0: nothing is
-};
-
-WipeForm FormOf(const Link& link) {
-  WipeForm form;
-  for (const LinkStep& step : link.steps) {
-    if (step.kind == StepKind::kFilament && step.filament < 0) form.still_feed = step.feed;
-    if (step.kind != StepKind::kWipe) continue;
-    form.way_mm += step.way_mm;
-    form.pulled -= step.filament;
-    form.feed = step.feed;
-  }
-  return form;
-}
-
 // What `rise` does for a way of `length`: a slope that ends with its way rises on, up to `highest`.
 Link Stretched(Link rise, double length, Decimal highest) {
   if (rise.ramp_ends || !(rise.ramp_mm > 0) || length <= rise.ramp_mm) return rise;
@@ -187,9 +167,8 @@ void LinkWriter::WriteOwnDeparture(const LinkRequest& request) {
     if (PullsBackBehind(own, *departure)) out_.MoveLine(*departure);
     return;
   }
-  const double unit = out_.at.machine.UnitMm();
-  const Position to{RoundedWord(request.turned_departure->x / unit),
-                    RoundedWord(request.turned_departure->y / unit), out_.at.machine.at.z};
+  Position to = InWords(*request.turned_departure, out_.at.machine.UnitMm());
+  to.z = out_.at.machine.at.z;
   out_.Travel(departure->line.Raw(file_.text), to, departure->feed);
 }
 
@@ -212,7 +191,7 @@ void LinkWriter::WriteArrival(const LinkRequest& request, const Link& form) {
 // Pulls back as much as the wipe of `form` does, over what was just printed. A path that is
 // shorter than that wipe has less of it pulled while moving; the rest follows at its end.
 void LinkWriter::WriteWipe(const PlacedPath& path, const Link& form) {
-  const WipeForm wipe = FormOf(form);
+  const WipeForm wipe = WipeOf(form);
   const Position begin = out_.at.machine.at;
   std::vector<Position> way = path.WayBack(wipe.way_mm);
   // A head that has left the path returns to it behind the gap.
@@ -258,15 +237,11 @@ void LinkWriter::WriteMotion(const LinkStep& step, Decimal z_form, Decimal z_her
 // The bends of the way to `request.to`, and its end.
 std::vector<Position> LinkWriter::WayTo(const LinkRequest& request) const {
   const MachineState& machine = out_.at.machine;
-  // As slicers write coordinates: to micrometres.
-  const auto word = [unit = machine.UnitMm()](double mm) {
-    return static_cast<Decimal>(std::llround(mm / unit * 1000)) * (kDecimalOne / 1000);
-  };
   std::vector<Position> way;
   if (request.detours != nullptr) {
     for (const Vertex bend :
          request.detours->Around(machine.InMm(machine.at), machine.InMm(request.to->first()))) {
-      way.push_back({word(bend.x), word(bend.y), 0});
+      way.push_back(InWords(bend, machine.UnitMm()));
     }
   }
   way.push_back(request.to->first());

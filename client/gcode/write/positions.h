@@ -6,12 +6,18 @@
 #include <cmath>
 
 #include "client/gcode/machine/interpreter.h"
+#include "client/gcode/machine/vertex.h"
 
 namespace traverse::gcode {
 
 // New positions are written in thousandths.
 inline Decimal RoundedWord(double value) {
   return static_cast<Decimal>(std::llround(value * 1000)) * (kDecimalOne / 1000);
+}
+
+// A point in mm, in words of `unit_mm`; at no height.
+inline Position InWords(Vertex mm, double unit_mm) {
+  return {RoundedWord(mm.x / unit_mm), RoundedWord(mm.y / unit_mm), 0};
 }
 
 inline double LengthXy(const Position& from, const Position& to) {

@@ -116,6 +116,8 @@ TEST(ReadGcode, NamesThePlaceOfAFault) {
 TEST(ReadGcode, SaysWhichMoveItDoesNotFollowWhereItFollowsNone) {
   EXPECT_THAT(Fault("M83\nG90\nG1 Z.2\nG91\nG1 X5\nG1 E-.5\nG1 X10 E.5\nG1 Y10 E.5\n"),
               StartsWith("part.gcode:7: no extruding move with absolute coordinates (G90)"));
+  EXPECT_THAT(Fault("M83\nG1 X5\nG1.0 X9 E.5\n"),
+              StartsWith("part.gcode:3: no extruding move that can be read"));
   EXPECT_THAT(Fault("M83\nG1 X5\nG1 X" + std::string(399, '1') + " E.5\n"),
               StartsWith("part.gcode:3: no extruding move that can be read"));
   EXPECT_THAT(Fault("M83\ng1 X5 X5 E.5\n"), StartsWith("part.gcode:2: no extruding move that can"));
