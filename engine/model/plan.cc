@@ -107,6 +107,9 @@ absl::Status CheckBefore(const PlanNode& node, int index, Rest& rest) {
     if (second < 0 || second >= n) {
       return Fault(place(i) + ".second", absl::StrCat(second, " is not the position of a child"));
     }
+    if (first == second) {
+      return Fault(place(i), absl::StrCat("child ", first, " cannot come before itself"));
+    }
   }
   if (!node.before.empty() && HasCycle(node, rest)) {
     return Fault(NodePlace(index, node) + ".before", "the pairs form a cycle");

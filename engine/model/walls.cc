@@ -61,10 +61,11 @@ absl::Status CheckWalls(const LayerWalls& walls, const Plan& plan, Budget* budge
   for (size_t i = 0; i < walls.known.size(); ++i) {
     rest();
     const KnownMove& move = walls.known[i];
-    for (const int path : {move.from, move.to}) {
+    for (const bool to : {false, true}) {
+      const int path = to ? move.to : move.from;
       if (is_path(path)) continue;
       return absl::InvalidArgumentError(
-          absl::StrCat("known_moves[", i, "]: there is no path ", path));
+          absl::StrCat("known_moves[", i, "].", to ? "to" : "from", ": there is no path ", path));
     }
     if (std::isfinite(move.seconds) && move.seconds >= 0) continue;
     return absl::InvalidArgumentError(absl::StrCat("known_moves[", i, "].seconds: not a time"));

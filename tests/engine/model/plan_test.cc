@@ -81,6 +81,9 @@ TEST(CheckPlan, NamesTheCycle) {
   plan.nodes[0].before = {{0, 1}, {1, 0}};
   EXPECT_EQ(Fault(plan), "nodes[0].any_order.before: the pairs form a cycle");
 
+  plan.nodes[0].before = {{0, 1}, {1, 1}};
+  EXPECT_EQ(Fault(plan), "nodes[0].any_order.before[1]: child 1 cannot come before itself");
+
   plan.nodes[0].before = {{0, 2}};
   EXPECT_EQ(Fault(plan), "nodes[0].any_order.before[0].second: 2 is not the position of a child");
 }

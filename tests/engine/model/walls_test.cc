@@ -31,7 +31,8 @@ TEST(CheckWalls, NamesThePlaceOfAFault) {
   EXPECT_EQ(fault({{{{{0, 0}, {1, 1}}, false, 2}}, {}}), "walls[0].path: there is no path 2");
   EXPECT_EQ(fault({{good}, {0, 2}}), "exposed_paths[1]: there is no path 2");
   EXPECT_EQ(fault({{}, {}, {0, -1}}), "retracted_paths[1]: there is no path -1");
-  EXPECT_EQ(fault({{}, {}, {}, {{0, 2, 1}}}), "known_moves[0]: there is no path 2");
+  EXPECT_EQ(fault({{}, {}, {}, {{0, 2, 1}}}), "known_moves[0].to: there is no path 2");
+  EXPECT_EQ(fault({{}, {}, {}, {{-1, 0, 1}}}), "known_moves[0].from: there is no path -1");
   EXPECT_EQ(fault({{}, {}, {}, {{0, 1, 1}, {0, 1, NAN}}}), "known_moves[1].seconds: not a time");
   EXPECT_EQ(fault({{}, {}, {}, {{0, 1, 1}, {1, 0, 1}, {0, 1, 1}}}),
             "known_moves: 3 are more than the plan has paths, 2");
