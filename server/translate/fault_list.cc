@@ -18,6 +18,8 @@ constexpr char kErrorInfo[] = "type.googleapis.com/google.rpc.ErrorInfo";
 constexpr size_t kMostBytes = 3000;
 constexpr size_t kMostTextBytes = 200;
 
+bool ContinuesCharacter(char byte) { return (static_cast<unsigned char>(byte) & 0xc0) == 0x80; }
+
 // The faults that a status carries; otherwise the one in its message, as `field: description`.
 BadRequest FaultsOf(const absl::Status& status) {
   BadRequest faults;
@@ -27,15 +29,21 @@ BadRequest FaultsOf(const absl::Status& status) {
   const size_t colon = message.find(": ");
   BadRequest::FieldViolation& fault = *faults.add_field_violations();
   if (colon == std::string::npos) {
-    fault.set_description(message.substr(0, kMostTextBytes));
+    fault.set_description(Beginning(message, kMostTextBytes));
   } else {
-    fault.set_field(message.substr(0, std::min(colon, kMostTextBytes)));
-    fault.set_description(message.substr(colon + 2, kMostTextBytes));
+    fault.set_field(Beginning(message, std::min(colon, kMostTextBytes)));
+    fault.set_description(Beginning(std::string_view(message).substr(colon + 2), kMostTextBytes));
   }
   return faults;
 }
 
 }  // namespace
+
+std::string Beginning(std::string_view text, size_t most) {
+  if (text.size() <= most) return std::string(text);
+  while (most > 0 && ContinuesCharacter(text[most])) --most;
+  return std::string(text.substr(0, most));
+}
 
 void FaultList::Add(const absl::Status& status) {
   if (status.ok() || full()) return;

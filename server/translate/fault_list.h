@@ -9,9 +9,17 @@
 #ifndef TRAVERSE_SERVER_TRANSLATE_FAULT_LIST_H_
 #define TRAVERSE_SERVER_TRANSLATE_FAULT_LIST_H_
 
+#include <cstddef>
+#include <string>
+#include <string_view>
+
 #include "absl/status/status.h"
 
 namespace traverse {
+
+// The beginning of `text`, which is UTF-8: at most `most` bytes, and no part of a character.
+// Protobuf refuses to read what ends in one.
+std::string Beginning(std::string_view text, size_t most);
 
 // A value; not thread-safe.
 class FaultList {

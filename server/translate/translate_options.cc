@@ -51,7 +51,7 @@ absl::StatusOr<CleaningSpec> CleaningFromProto(const v1::Cleaning& cleaning) {
 
 absl::Status CheckLength(const std::string& text, const std::string& place) {
   if (text.size() <= kMaxNameBytes) return absl::OkStatus();
-  return Fault(place, absl::StrCat("\"", text.substr(0, kMaxNameBytes), "...\" has ", text.size(),
+  return Fault(place, absl::StrCat("\"", Beginning(text, kMaxNameBytes), "...\" has ", text.size(),
                                    " bytes, more than ", kMaxNameBytes));
 }
 
@@ -60,7 +60,7 @@ absl::Status CheckLengths(const v1::Strategy& strategy) {
   TRAVERSE_RETURN_IF_ERROR(CheckLength(strategy.name(), place + ".name"));
   for (const auto& [name, value] : strategy.options()) {
     TRAVERSE_RETURN_IF_ERROR(CheckLength(name, place + ".options"));
-    TRAVERSE_RETURN_IF_ERROR(CheckLength(value, absl::StrCat(place, ".options.", name)));
+    TRAVERSE_RETURN_IF_ERROR(CheckLength(value, absl::StrCat(place, ".options[\"", name, "\"]")));
   }
   return absl::OkStatus();
 }

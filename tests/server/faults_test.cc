@@ -124,6 +124,25 @@ std::vector<std::string> FaultyFields(const grpc::Status& status) {
   return fields;
 }
 
+// Half a character in a status keeps clients from reading it.
+TEST(BadInput, LongTextIsCutBetweenCharacters) {
+  TestService service;
+  v1::OptimizeBatchRequest request = MakeBatch(1, "greedy");
+  v1::Strategy& strategy = *request.mutable_options()->mutable_strategy();
+  std::string accents(63, 'a');
+  while (accents.size() < 150) accents += "\xc3\xa9";
+  (*strategy.mutable_options())["pure"] = accents;
+
+  EXPECT_THAT(FaultyFields(service.Batch(request).status),
+              ::testing::ElementsAre("options.strategy.options[\"pure\"]"));
+
+  strategy.clear_options();
+  strategy.set_name(accents);
+  const grpc::Status status = service.Batch(request).status;
+  EXPECT_THAT(FaultyFields(status), ::testing::ElementsAre("options.strategy.name"));
+  EXPECT_THAT(status.error_message(), HasSubstr("aaa...\" has 151 bytes, more than 64"));
+}
+
 TEST(BadInput, AllFaultsOfARequestAreToldAtOnce) {
   TestService service;
   v1::OptimizeBatchRequest request = MakeBatch(3);
