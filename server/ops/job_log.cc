@@ -27,15 +27,17 @@ Json NewLine(const char* level, const std::string& event) {
 }
 
 // Characters that JSON may hold as they are, but that a terminal takes for commands (U+007F to
-// U+009F) or some readers for the end of a line (U+2028, U+2029).
+// U+009F), some readers for the end of a line (U+2028, U+2029), or that turn the direction of the
+// text behind them, so that a line seems to say something else (the rest).
 struct Escape {
   std::string_view prefix;  // of their UTF-8
   unsigned char first;      // the last byte
   unsigned char last;
   unsigned code_of_first;
 };
-constexpr Escape kEscapes[] = {
-    {"", 0x7f, 0x7f, 0x7f}, {"\xc2", 0x80, 0x9f, 0x80}, {"\xe2\x80", 0xa8, 0xa9, 0x2028}};
+constexpr Escape kEscapes[] = {{"", 0x7f, 0x7f, 0x7f},           {"\xc2", 0x80, 0x9f, 0x80},
+                               {"\xd8", 0x9c, 0x9c, 0x061c},     {"\xe2\x80", 0x8e, 0x8f, 0x200e},
+                               {"\xe2\x80", 0xa8, 0xae, 0x2028}, {"\xe2\x81", 0xa6, 0xa9, 0x2066}};
 
 std::string Escaped(const std::string& json) {
   std::string text;

@@ -122,7 +122,10 @@ TEST(Operation, TheLogHoldsNoControlCharactersAndNoLongNames) {
   request.mutable_options()->set_job_id(
       "a\x7f"
       "b\xc2\x9b"
-      "c\xc3\xa9");
+      "c\xc3\xa9"
+      "d\xe2\x80\xae"
+      "e\xe2\x81\xa6"
+      "f\xd8\x9c");
   EXPECT_TRUE(RunJob(*stub, request).ok());
   request.mutable_options()->mutable_strategy()->set_name(std::string(900'000, 'n'));
   EXPECT_EQ(RunJob(*stub, request).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
@@ -134,7 +137,8 @@ TEST(Operation, TheLogHoldsNoControlCharactersAndNoLongNames) {
   ASSERT_EQ(server.process().Wait(), 0);
 
   const std::string log = server.process().Errors();
-  EXPECT_THAT(log, HasSubstr("a\\u007fb\\u009bc\xc3\xa9"));
+  EXPECT_THAT(log, HasSubstr("a\\u007fb\\u009bc\xc3\xa9"
+                             R"(d\u202ee\u2066f\u061c)"));
   EXPECT_THAT(log, Not(HasSubstr("\x7f")));
   EXPECT_THAT(log, Not(HasSubstr("\xc2\x9b")));
   std::istringstream lines(log);
