@@ -30,7 +30,12 @@ constexpr double kShortShare = 0.7;
 constexpr double kCutShare = 0.78;
 // What paused searches may hold in addition to the layers that they work on.
 constexpr double kSearchShare = 0.25;
+// The allocator keeps much of what jobs free, which is no reason to refuse others: from this share
+// on, what it keeps is given back if it is at least the second share, at most that often.
+constexpr double kTrimShare = 0.5;
+constexpr double kGarbageShare = 0.1;
 constexpr auto kTrimEvery = std::chrono::seconds(1);
+constexpr auto kTrimEveryWhileShort = std::chrono::milliseconds(200);
 
 AdmissionLimits WithWorkers(AdmissionLimits limits, int workers) {
   limits.workers = workers;
@@ -158,17 +163,28 @@ void ServiceCore::Watch(Connections* connections, int64_t max_memory) {
   watch_memory_.emplace(kMemoryWatch, [this] { WatchMemory(); });
 }
 
+double ServiceCore::MemoryShare() const {
+  return static_cast<double>(ResidentBytes()) / static_cast<double>(max_memory_);
+}
+
+bool ServiceCore::GiveGarbageBack(double share) {
+  if (share <= kTrimShare) return false;
+  const auto now = std::chrono::steady_clock::now();
+  const auto pause =
+      share > kShortShare ? std::chrono::nanoseconds(kTrimEveryWhileShort) : kTrimEvery;
+  if (now - trimmed_for_memory_ <= pause) return false;
+  trimmed_for_memory_ = now;
+  const auto garbage = static_cast<double>(mallinfo2().fordblks);
+  if (garbage < kGarbageShare * static_cast<double>(max_memory_)) return false;
+  malloc_trim(0);
+  return true;
+}
+
 void ServiceCore::WatchMemory() {
-  const int64_t bytes = ResidentBytes();
-  const auto share = static_cast<double>(bytes) / static_cast<double>(max_memory_);
+  double share = MemoryShare();
+  if (GiveGarbageBack(share)) share = MemoryShare();
   admission.SetMemoryShort(share > kShortShare);
   pool.SetMemoryShort(share > kShortShare);
-  if (share <= kShortShare) return;
-  const auto now = std::chrono::steady_clock::now();
-  if (now - trimmed_for_memory_ > kTrimEvery) {
-    trimmed_for_memory_ = now;
-    malloc_trim(0);
-  }
   if (share <= kCutShare) return;
   if (connections_ != nullptr && connections_->CutLargest()) {
     files.log->Event(JobLog::Level::kWarning, "connection_cut", {{"message", "memory is short"}});

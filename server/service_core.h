@@ -104,7 +104,14 @@ class ServiceCore {
  private:
   std::vector<std::shared_ptr<JobRun>> Runs() const;
 
-  // Refuses jobs, then cuts connections and ends jobs, while the process uses too much memory.
+  // What the process uses of its memory: 1 is all.
+  double MemoryShare() const;
+
+  // Returns much memory that the allocator keeps to the system if the process uses `share` of its
+  // memory. Returns whether it did so.
+  bool GiveGarbageBack(double share);
+
+  // Refuses jobs, then cuts connections, while the process uses too much memory.
   void WatchMemory();
 
   // A call, and its origin.

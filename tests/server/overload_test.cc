@@ -4,6 +4,7 @@
 #include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <atomic>
 #include <chrono>
@@ -11,9 +12,12 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/time/clock.h"
 #include "absl/time/time.h"
+#include "server/ops/memory.h"
 #include "tests/server/support/open_stream.h"
 #include "tests/server/support/service_fixture.h"
 
@@ -168,6 +172,26 @@ int64_t BytesHeldForAnswered(bool chain_bound, int layers) {
   EXPECT_TRUE(stream->Finish().ok());
   EXPECT_TRUE(service.Eventually([&] { return admission.held_bytes() == 0; }));
   return held;
+}
+
+// What jobs leave with the allocator is no reason to refuse the next ones.
+TEST(Overload, FreedMemoryGoesBackToTheSystemBeforeJobsAreRefused) {
+  constexpr size_t kBlock = 64 << 10, kBlocks = 3000;  // from the heap; larger ones are mapped
+  TestService service;
+  ServiceCore& core = service.server().core();
+  std::vector<std::unique_ptr<std::string>> blocks;
+  for (size_t i = 0; i < kBlocks; ++i) blocks.push_back(std::make_unique<std::string>(kBlock, 'x'));
+  blocks.erase(blocks.begin(), blocks.end() - 1);  // the last one keeps the heap from shrinking
+  if (mallinfo2().fordblks < kBlock * kBlocks / 2) GTEST_SKIP() << "another allocator";
+  const int64_t resident = ResidentBytes();
+
+  core.Watch(nullptr, resident * 5 / 4);
+
+  for (int i = 0; i < 50; ++i) {
+    EXPECT_TRUE(core.admission.Admit("a", 1).ok());
+    absl::SleepFor(absl::Milliseconds(2));
+  }
+  EXPECT_LT(ResidentBytes(), resident - static_cast<int64_t>(kBlock * kBlocks / 2));
 }
 
 TEST(Overload, LayersThatAreKeptForTheBoundOfTheChainCountAsTaken) {
