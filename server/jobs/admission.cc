@@ -189,19 +189,35 @@ absl::Duration Admission::TimeUntilDone(const std::string& caller, absl::Duratio
   return all;
 }
 
-std::optional<Admission::No> Admission::CheckBytes(const Caller& caller, int64_t bytes) const {
-  const auto full = [&](Refusal refusal, const char* whose, int64_t held,
-                        int64_t limit) -> std::optional<No> {
-    if (bytes <= limit - held) return std::nullopt;
-    const absl::Status status = absl::ResourceExhaustedError(
-        absl::StrCat(whose, " memory is in use: ", held >> 20, " of ", limit >> 20,
-                     " MiB, and this message needs about ", bytes >> 20, "; try again"));
-    // What is too large for an empty server stays too large.
-    return No{refusal, bytes > limit ? status : WithRetryDelay(status, kJobsRetryDelay)};
+std::optional<Admission::No> Admission::CheckBytes(const Caller& caller, int64_t bytes,
+                                                   int64_t beside) const {
+  struct Share {
+    Refusal refusal;
+    const char* whose;
+    int64_t held;
+    int64_t limit;
   };
-  if (auto no = full(Refusal::kMemory, "the server's", bytes_, limits_.max_bytes); no) return no;
-  return full(Refusal::kCallerMemory, "this caller's share of the", caller.bytes,
-              limits_.max_bytes_per_caller);
+  const Share shares[] = {{Refusal::kMemory, "the server's", bytes_, limits_.max_bytes},
+                          {Refusal::kCallerMemory, "this caller's share of the", caller.bytes,
+                           limits_.max_bytes_per_caller}};
+  // What is too large for an empty server stays too large: nobody is told to try that again.
+  for (const Share& share : shares) {
+    if (bytes <= share.limit - beside) continue;
+    return No{share.refusal,
+              absl::ResourceExhaustedError(absl::StrCat(
+                  "this message needs about ", (bytes + beside) >> 20, " MiB, more than all of ",
+                  share.whose, " memory for jobs, ", share.limit >> 20))};
+  }
+  for (const Share& share : shares) {
+    if (bytes <= share.limit - share.held) continue;
+    return No{share.refusal,
+              WithRetryDelay(absl::ResourceExhaustedError(absl::StrCat(
+                                 share.whose, " memory is in use: ", share.held >> 20, " of ",
+                                 share.limit >> 20, " MiB, and this message needs about ",
+                                 bytes >> 20, "; try again")),
+                             kJobsRetryDelay)};
+  }
+  return std::nullopt;
 }
 
 void Admission::SetMemoryShort(bool is_short) {
@@ -311,11 +327,11 @@ void Admission::Ticket::LetGoAnswer(int64_t bytes) {
   CountAnswer(-std::min(bytes, answer_bytes_));
 }
 
-absl::Status Admission::Ticket::Hold(int64_t bytes) {
+absl::Status Admission::Ticket::Hold(int64_t bytes, int64_t beside) {
   std::optional<No> no;
   {
     MutexLock lock(admission_.mutex_);
-    no = admission_.CheckBytes(caller_->second, bytes);
+    no = admission_.CheckBytes(caller_->second, bytes, beside);
     if (!no) CountBytes(bytes);
   }
   if (!no) return absl::OkStatus();

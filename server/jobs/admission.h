@@ -98,8 +98,9 @@ class Admission {
     void Remove(int64_t points, int64_t bytes, double seconds);
 
     // Counts `bytes` more, or less, that the server holds for the job. Errors: ResourceExhausted,
-    // as Admit, if the memory for jobs is used up; then it counts nothing.
-    absl::Status Hold(int64_t bytes);
+    // as Admit, if the memory for jobs is used up; then it counts nothing. `beside`: what the same
+    // message holds already, and keeps meanwhile.
+    absl::Status Hold(int64_t bytes, int64_t beside = 0);
     void LetGo(int64_t bytes);
 
     // The same for answers, which exist whether or not there is room. Those that wait for a slow
@@ -174,7 +175,8 @@ class Admission {
       TRAVERSE_REQUIRES(mutex_);
   std::optional<No> CheckWait(const std::string& caller, int64_t points,
                               const std::string& strategy) const TRAVERSE_REQUIRES(mutex_);
-  std::optional<No> CheckBytes(const Caller& caller, int64_t bytes) const TRAVERSE_REQUIRES(mutex_);
+  std::optional<No> CheckBytes(const Caller& caller, int64_t bytes, int64_t beside) const
+      TRAVERSE_REQUIRES(mutex_);
 
   // The job's points that wait for a worker, and their time; none while its caller holds it up. A
   // ticket's mutex is this one's, which the compiler cannot see.

@@ -72,7 +72,7 @@ absl::Status JobStream::Admit(const absl::Status& authorized, int64_t points) {
 absl::Status JobStream::Begin(const v1::JobOptions& options) {
   absl::StatusOr<JobSetup> setup = JobFromProto(options);
   if (!setup.ok()) {
-    setup_.job_id = options.job_id().substr(0, 256);  // for the log
+    setup_.job_id = Beginning(options.job_id(), 256);  // for the log
     AnnounceJob();
     return setup.status();
   }
@@ -221,7 +221,7 @@ absl::Status JobStream::OpenMessage(grpc::ByteBuffer& message) {
     faults_.Add(status);  // also reports faults of the layers
   }
   if (absl::Status status = CheckLayerCount(reader_.layers()); !status.ok()) return status;
-  return ticket_->Hold(reader_.footprint_bytes());
+  return ticket_->Hold(reader_.footprint_bytes(), message_bytes_);
 }
 
 absl::Status JobStream::ReadLayers() {
