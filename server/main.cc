@@ -1,5 +1,6 @@
 // traverse-server: flags, signals, exit code; nothing else.
 
+#include <google/protobuf/stubs/logging.h>
 #include <grpc/support/log.h>
 #include <signal.h>
 #include <unistd.h>
@@ -37,6 +38,7 @@ void WatchGrpcLog() {
 
 int Run(const Daemon& daemon) {
   WatchGrpcLog();
+  google::protobuf::SetLogHandler(nullptr);  // a line for each text of a caller that is not UTF-8
   absl::StatusOr<std::unique_ptr<Server>> server = Server::Start(OptionsFromFlags());
   if (!server.ok()) return daemon.Fail(server.status());
   std::printf("listening on port %d\n", (*server)->port());

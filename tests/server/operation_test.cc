@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
+#include <google/protobuf/stubs/logging.h>
 #include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -28,6 +29,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 std::unique_ptr<v1::RouteOptimizerService::Stub> Connect(const ServerProcess& server) {
   return v1::RouteOptimizerService::NewStub(
@@ -133,6 +135,10 @@ TEST(Operation, TheLogHoldsNoControlCharactersAndNoLongNames) {
   (*request.mutable_options()->mutable_strategy()->mutable_options())["tenure"] =
       std::string(900'000, 'v');
   EXPECT_EQ(RunJob(*stub, request).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  request.mutable_options()->clear_strategy();
+  const google::protobuf::LogSilencer silencer;  // of this side
+  request.mutable_options()->set_job_id("not UTF-8: \xff");
+  EXPECT_EQ(RunJob(*stub, request).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
   server.process().Signal(SIGTERM);
   ASSERT_EQ(server.process().Wait(), 0);
 
@@ -142,7 +148,10 @@ TEST(Operation, TheLogHoldsNoControlCharactersAndNoLongNames) {
   EXPECT_THAT(log, Not(HasSubstr("\x7f")));
   EXPECT_THAT(log, Not(HasSubstr("\xc2\x9b")));
   std::istringstream lines(log);
-  for (std::string line; std::getline(lines, line);) EXPECT_LT(line.size(), 1000u);
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LT(line.size(), 1000u);
+    EXPECT_THAT(line, StartsWith("{\"time\":"));  // no library writes between ours
+  }
 }
 
 TEST(Operation, ACallThatIsResetBeforeAnyMessageIsOfNoStrategy) {
