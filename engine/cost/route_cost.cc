@@ -2,6 +2,8 @@
 
 #include <cassert>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 
 #include "engine/base/rest.h"
 #include "engine/cost/travel_cost.h"
@@ -40,6 +42,25 @@ double RouteCost(const LayerProblem& problem, const Route& route, Budget* budget
   });
   if (whole && problem.finish)
     sum += cost(RouteEnd(*problem.plan, route, problem.start), *problem.finish);
+  return sum;
+}
+
+double RouteCostInTime(const LayerProblem& problem, const Route& route, Budget& budget) {
+  if (problem.walls == nullptr) return RouteCost(problem, route, &budget);
+  // Some ten milliseconds; routes of real layers take less.
+  constexpr int64_t kMostWork = 500'000;
+  const TravelCost cost(problem);
+  const int64_t before = problem.walls->work();
+  double sum = 0;
+  const bool whole = ForEachMove(problem, route, [&](Point from, Point to) {
+    if (budget.Exhausted() && (budget.cancelled() || problem.walls->work() - before > kMostWork)) {
+      return false;
+    }
+    sum += cost(from, to);
+    return true;
+  });
+  if (!whole) return std::numeric_limits<double>::infinity();
+  if (problem.finish) sum += cost(RouteEnd(*problem.plan, route, problem.start), *problem.finish);
   return sum;
 }
 

@@ -14,6 +14,10 @@ namespace traverse {
 // not be all of them.
 double RouteCost(const LayerProblem& problem, const Route& route, Budget* budget = nullptr);
 
+// The same, but infinite if `budget` is exhausted and what is left takes much longer. Only among
+// walls that many moves cross can it take so long. For costs that are only to be compared.
+double RouteCostInTime(const LayerProblem& problem, const Route& route, Budget& budget);
+
 // What of that cost is the price of crossed walls (WallCost::PriceOf), in the same unit. REQUIRES:
 // as above.
 double CrossingPrice(const LayerProblem& problem, const Route& route);

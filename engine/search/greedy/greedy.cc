@@ -1,5 +1,6 @@
 #include "engine/search/greedy/greedy.h"
 
+#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -106,8 +107,9 @@ Route BaselineRoute(const LayerView& layer, Budget& budget) {
   if (budget.Exhausted()) return given;
   Route greedy = Greedy(layer, budget).Build();
   if (greedy.size() != given.size()) return given;
-  const double cost = RouteCost(layer.problem, greedy, &budget);
-  return cost < RouteCost(layer.problem, given, &budget) ? greedy : given;
+  const double cost = RouteCostInTime(layer.problem, greedy, budget);
+  if (std::isinf(cost)) return given;
+  return cost < RouteCostInTime(layer.problem, given, budget) ? greedy : given;
 }
 
 }  // namespace traverse

@@ -21,7 +21,8 @@ namespace traverse {
 Route GreedyRoute(const LayerView& layer, Budget& budget);
 
 // The route that every strategy must at least equal: the cheaper of the greedy one and the given
-// order; the latter if they cost the same.
+// order; the latter if they cost the same, or if that would be known only long after the budget ran
+// out (RouteCostInTime).
 Route BaselineRoute(const LayerView& layer, Budget& budget);
 
 }  // namespace traverse

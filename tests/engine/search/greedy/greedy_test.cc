@@ -4,11 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "engine/base/rng.h"
 #include "engine/cost/route_cost.h"
+#include "engine/cost/wall_cost.h"
 #include "engine/validator.h"
 #include "tests/support/problems/brute_force.h"
 #include "tests/support/problems/instances.h"
@@ -163,6 +167,33 @@ TEST(BaselineRoute, IsTheCheaperOfGivenAndGreedy) {
     given_is_better += given < greedy;
   }
   EXPECT_GT(given_is_better, 0);
+}
+
+// Where every move crosses a wall hundreds of times, the search for a detour takes so long that a
+// job would end long after its deadline.
+TEST(BaselineRoute, CostsLittleAmongManyWallsOnceTheBudgetIsExhausted) {
+  Rng rng(1);
+  const auto some_point = [&rng] { return Point{100 * rng.Unit(), 100 * rng.Unit()}; };
+  std::vector<Path> paths;
+  for (int i = 0; i < 3000; ++i) paths.push_back(MakeOpenPath(some_point(), some_point()));
+  LayerWalls walls;
+  walls.walls.push_back({{}, true, -1});
+  for (int i = 0; i < 5000; ++i) walls.walls[0].points.push_back(some_point());
+  OwnedProblem owned(AnyOrderPlan(std::move(paths)));
+  CostSpec& spec = owned.problem.cost;
+  spec.kind = CostSpec::Kind::kTime;
+  spec.speed_mm_s = 100;
+  spec.crossing_seconds = 10;
+  spec.wall_clearance_mm = 0.3;
+  const WallCost cost(walls, owned.plan(), spec);
+  owned.problem.walls = &cost;
+  const LayerView view(owned.problem);
+  Budget budget = Budget().Within(std::chrono::milliseconds(20));
+
+  EXPECT_OK(ValidateRoute(owned.plan(), BaselineRoute(view, budget)));
+
+  EXPECT_TRUE(budget.was_exhausted());
+  EXPECT_LT(cost.work(), 4'000'000);
 }
 
 }  // namespace
