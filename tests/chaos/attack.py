@@ -4,9 +4,10 @@
               [--twice] [--side_by_side=N attacks, 1]
 
 Throughout: the process lives, /healthz answers within a second, a victim's one-layer jobs end well, memory stays below
---max_memory, and at the end SIGTERM ends it within --drain_timeout + 2 s; on a quiet machine --most_p99=0.25 can be asked for:
-the victim's time for a job. A machine that stands still for a moment lets much in before anybody can look: with --twice an
-attack that did harm is made again, and counts if it does so again; of attacks made side by side it is made again alone.
+--max_memory, the log has only whole lines of the server, /metrics does not grow with what callers write, and at the end
+SIGTERM ends it within --drain_timeout + 2 s; on a quiet machine --most_p99=0.25 can be asked for: the victim's time for a
+job. A machine that stands still for a moment lets much in before anybody can look: with --twice an attack that did harm is
+made again, and counts if it does so again; of attacks made side by side it is made again alone.
 The environment names the server's binary: TRAVERSE_SERVER. Needs nothing but Python; frames are written by hand (http2_client.py).
 """
 import argparse
@@ -23,6 +24,9 @@ from http2_client import SERVICE
 # front of a port that strangers reach (server/SECURITY.md).
 TRANSPORT_SHARE = 0.15
 
+# No text of a caller becomes the label of a metric.
+MOST_METRICS = 100_000
+
 ATTACKS = {
     "rapid_reset": transport.rapid_reset,
     "resets_elsewhere": transport.resets_of([transport.HEALTH, transport.REFLECTION, "/no.such.Service/Method", SERVICE + "ListStrategies"]),
@@ -32,6 +36,7 @@ ATTACKS = {
     "cancelled_uploads": callers.cancelled_uploads,
     "validate_only": callers.batches([requests.many_pairs, lambda: requests.validate_only() + requests.layer(200_000)]),
     "names": callers.names,
+    "half_characters": callers.half_characters,
     "endless_headers": transport.endless_headers,
     "control_frames": transport.control_frames,
     "many_headers": transport.many_headers,
@@ -52,6 +57,7 @@ ATTACKS = {
     "named_walls": callers.batches([requests.named_walls, requests.exposed_paths, requests.retracted_paths]),
     "upright_walls": callers.batches([requests.upright_walls]),
     "clustered_walls": callers.batches([requests.clustered_walls]),
+    "scribbled_walls": callers.batches([requests.scribbled_walls], seconds=2),
     "barriers": callers.batches([requests.barrier("auto"), requests.barrier("tabu"), requests.barrier("exact")], seconds=1),
     "fixed_order": callers.batches([requests.fixed_order], seconds=1),
     "two_clouds": callers.batches([requests.two_clouds("auto"), requests.two_clouds("tabu"), requests.two_clouds("exact")], seconds=1),
@@ -65,6 +71,7 @@ ATTACKS = {
     "scattered_bounds": callers.open_jobs(lambda: requests.options("auto") + requests.layer(400, corners=240), most=8),
     "unread_answers": callers.open_jobs(lambda: requests.options("none") + requests.layer(20_000) * 4, window=0),
     "corners": callers.corners,
+    "operators_port": transport.operators_port,
     "many_channels": transport.many_channels,
     "watches": transport.left_open(transport.WATCH),
     "reflections": transport.left_open(transport.REFLECTION),
@@ -88,7 +95,8 @@ def run(name, seconds, max_memory, most_p99):
     ended = False
     try:
         faults = still_held(server)
-        refused = {line.split('"')[1]: int(float(line.split()[-1])) for line in server.get("/metrics").splitlines()
+        told = server.get("/metrics")
+        refused = {line.split('"')[1]: int(float(line.split()[-1])) for line in told.splitlines()
                    if line.startswith("traverse_rejected_total") and not line.endswith(" 0")}
         code, took = server.end()
         ended = True
@@ -103,6 +111,9 @@ def run(name, seconds, max_memory, most_p99):
     p99 = jobs[min(len(jobs) - 1, int(len(jobs) * 0.99))]
     print(f"  {name:22} peak {watch.peak / 1e6:6.0f} MB, health {1000 * worst:5.0f} ms, victim {len(watch.jobs)} jobs, "
           f"{watch.failed} failed, p99 {1000 * p99:5.0f} ms, ended in {took:.1f} s, refused {refused}")
+    faults += server.log_faults()
+    if len(told) > MOST_METRICS:
+        faults.append(f"/metrics has {len(told)} bytes")
     if code != 0:
         faults.append(f"exit code {code}")
     if took > DRAIN_SECONDS + 2:

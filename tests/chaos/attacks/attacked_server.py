@@ -1,8 +1,10 @@
 """The server that is attacked, and what is watched meanwhile: memory, health, and another caller's jobs."""
 import multiprocessing
 import os
+import re
 import signal
 import subprocess
+import tempfile
 import threading
 import time
 import urllib.request
@@ -12,11 +14,14 @@ from http2_client import DATA, END_STREAM, SERVICE, Connection, frame, message
 
 DRAIN_SECONDS = 2
 
+# Control characters, ends of lines, and what turns the direction of text, in UTF-8.
+TURNS = re.compile(rb"[\x00-\x09\x0b-\x1f\x7f]|\xc2[\x80-\x9f]|\xd8\x9c|\xe2\x80[\x8e\x8f\xa8-\xae]|\xe2\x81[\xa6-\xa9]")
+
 
 class Server:
     def __init__(self, max_memory, flags=(), files=None):
         prefix = ["prlimit", f"--nofile={files}:{files}"] if files else []
-        self.log = open("/dev/null", "w")
+        self.log = tempfile.TemporaryFile()
         self.process = subprocess.Popen(
             [*prefix, os.environ["TRAVERSE_SERVER"], "--listen=127.0.0.1:0", "--metrics_listen=127.0.0.1:0",
              f"--max_memory={max_memory}", f"--drain_timeout={DRAIN_SECONDS}s", *flags],
@@ -37,9 +42,16 @@ class Server:
         begin = time.monotonic()
         self.process.send_signal(signal.SIGTERM)
         code = self.process.wait(timeout=60)
+        took = time.monotonic() - begin
         self.process.stdout.close()
+        return code, took
+
+    def log_faults(self):
+        """Lines of the log that a caller could write, or make read otherwise, and libraries that write into it."""
+        self.log.seek(0)
+        bad = [line for line in self.log if not (line.startswith(b'{"time":"') and line.endswith(b"}\n")) or TURNS.search(line)]
         self.log.close()
-        return code, time.monotonic() - begin
+        return [f"{len(bad)} lines of the log are not its own: {bad[0][:100]}"] if bad else []
 
 
 class Watch:

@@ -51,6 +51,25 @@ def names(server, end):
     until(end, step)
 
 
+def half_characters(server, end):
+    """Texts that are too long and end, where they are cut, in the middle of a character; and characters that turn others."""
+    turning = b"\xe2\x80\xae\xe2\x81\xa6\xd8\x9c"
+
+    def step():
+        connection = Connection(server.port)
+        for begin in range(4):
+            text = b"a" * begin + turning + "\u20ac".encode() * 400
+            for strategy in (field(1, text), field(1, b"greedy") + field(2, field(1, b"pure") + field(2, text)),
+                             field(1, b"greedy") + field(2, field(1, text) + field(2, b"1"))):
+                stream = connection.call(SERVICE + "OptimizeBatch")
+                body = field(1, field(1, turning + b"a" * begin) + field(2, strategy)) + layer(3)
+                connection.send(frame(DATA, END_STREAM, stream, message(body)))
+        connection.drain(0.02)
+        connection.close()
+
+    until(end, step)
+
+
 def stalled_readers(server, end):
     """Jobs whose callers open no window."""
     held = []

@@ -107,6 +107,13 @@ def clustered_walls():
     return options("greedy", time_cost()) + field(2, layer_of(300) + field(7, field(1, packed(wall))) + field(7, field(1, far)))
 
 
+def scribbled_walls():
+    """A wall to and fro across the plate: each move crosses it hundreds of times, and looks for ways around it."""
+    wall = [random.uniform(0, 200) for _ in range(200_000)]
+    limit = field(1, field(9, b"\x08\x01"))  # a second
+    return options("auto", time_cost()) + limit + field(2, layer_of(4000) + field(7, field(1, packed(wall)) + b"\x10\x01"))
+
+
 def barrier(strategy):
     """Half of the paths before a node without any, and that before the others: their pairs are the square of that."""
     def body():

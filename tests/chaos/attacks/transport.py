@@ -265,6 +265,28 @@ def one_byte_a_time(server, end):
     connection.close()
 
 
+def operators_port(server, end):
+    """Scrapes whose answers nobody reads, requests without an end, and rubbish, at the port of the operators."""
+    dice = random.Random(29)
+    held = []
+    requests = [b"GET /metrics HTTP/1.1\r\nHost: x\r\n\r\n" * 300, b"GET /" + b"a" * 100_000, b"GET /metrics HTTP/1.1\r\n" + b"a: b\r\n" * 5000,
+                b"POST /metrics HTTP/1.1\r\nHost: x\r\nContent-Length: 99999999999\r\n\r\n" + b"a" * 50_000, b"G",
+                b"PUT /healthz HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\nffffffffffffffff\r\n", dice.randbytes(3000)]
+
+    def step():
+        connection = socket.create_connection(("127.0.0.1", server.metrics_port))
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
+        connection.setblocking(False)
+        held.append(connection)
+        connection.send(dice.choice(requests))
+        if len(held) > 200:
+            held.pop(0).close()
+
+    until(end, patiently(step))
+    for connection in held:
+        connection.close()
+
+
 def many_channels(server, end):
     """New connections as fast as they come, with a call each."""
     def step():
