@@ -20,13 +20,23 @@ constexpr size_t kMostTextBytes = 200;
 
 bool ContinuesCharacter(char byte) { return (static_cast<unsigned char>(byte) & 0xc0) == 0x80; }
 
+// Where the field at fault ends in a message; npos if it names none. The name of an option, between
+// [" and "], may have any characters.
+size_t EndOfField(std::string_view message) {
+  const size_t end = message.find(": ");
+  const size_t name = message.find("[\"");
+  if (name >= end) return end;
+  const size_t end_of_name = message.find("\"]: ", name);
+  return end_of_name == std::string_view::npos ? end : end_of_name + 2;
+}
+
 // The faults that a status carries; otherwise the one in its message, as `field: description`.
 BadRequest FaultsOf(const absl::Status& status) {
   BadRequest faults;
   const absl::optional<absl::Cord> payload = status.GetPayload(kBadRequest);
   if (payload && faults.ParseFromString(std::string(*payload))) return faults;
   const std::string message(status.message());
-  const size_t colon = message.find(": ");
+  const size_t colon = EndOfField(message);
   BadRequest::FieldViolation& fault = *faults.add_field_violations();
   if (colon == std::string::npos) {
     fault.set_description(Beginning(message, kMostTextBytes));
