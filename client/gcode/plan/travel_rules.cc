@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "client/gcode/model/loops.h"
+#include "client/gcode/model/part_links.h"
 
 namespace traverse::gcode {
 namespace {
@@ -71,6 +72,19 @@ double LongestOpenMm(const GcodeFile& file) {
   return kLongestOpenFactor * longest + kLongestOpenSlackMm;
 }
 
+// Whether any travel of the part, be it to a layer, goes without a retraction.
+bool TravelsOpen(const GcodeFile& file) {
+  for (uint32_t b = 1; b < file.blocks.size(); ++b) {
+    const Block& block = file.blocks[b];
+    const bool open = (block.link & kLinkRetracts) == 0 && block.travel_mm > 0;
+    if (open && LeadsWithinPart(file, b)) return true;
+  }
+  return false;
+}
+
+// A shorter way is none.
+constexpr double kShortestWayMm = 0.001;
+
 // The usual setting of slicers.
 constexpr double kUsualThresholdMm = 1.5;
 
@@ -136,7 +150,7 @@ RetractionHabit LearnRetraction(const GcodeFile& file) {
   }
   if (!habit.retracts) return habit;
   const std::vector<size_t> sample = SampledLayers(file);
-  habit.threshold_mm = LearnThreshold(file, sample);
+  habit.threshold_mm = TravelsOpen(file) ? LearnThreshold(file, sample) : kShortestWayMm;
   habit.longest_open_mm = LongestOpenMm(file);
   for (const size_t i : sample) {
     const std::vector<Outline> outlines = OutlinesOf(file, file.layers[i]);

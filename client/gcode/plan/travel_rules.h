@@ -55,7 +55,8 @@ struct RetractionHabit {
 
 // Examines about two dozen layers spread over the file. The threshold is the slicer's setting if
 // the file has it. Otherwise it is the shortest move that retracted, but at most the usual 1.5 mm
-// if straight moves across visible walls retracted whenever they were longer than that.
+// if straight moves across visible walls retracted whenever they were longer than that. If no
+// travel of the part is open, all ways are long enough: nothing shows how to write open ones.
 RetractionHabit LearnRetraction(const GcodeFile& file);
 
 // LearnRetraction, and what new moves must obey under every policy, or may do by `allow`.

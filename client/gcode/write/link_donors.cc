@@ -3,18 +3,11 @@
 #include <algorithm>
 #include <map>
 
-#include "client/gcode/model/feature.h"
+#include "client/gcode/model/part_links.h"
 #include "client/gcode/write/link.h"
 
 namespace traverse::gcode {
 namespace {
-
-// Printed for the part, and not by a script or on a tower.
-bool IsOfPart(const GcodeFile& file, const Block& block) {
-  if ((block.flags & kBlockScript) != 0) return false;
-  const Feature feature = NamedFeature(file, block);
-  return feature != Feature::kTower && feature != Feature::kCustom;
-}
 
 // The lift of at least three quarters of the links that retract and lead to a layer; 0 if there is
 // none.
@@ -65,10 +58,8 @@ void LinkDonors::CountLifts(uint32_t link) {
 }
 
 bool LinkDonors::MayFollow(uint32_t block) const {
-  const Block& to = file_.blocks[block];
   constexpr int kNoExample = kLinkSplits | kLinkFixed | kLinkRetractsAgain;
-  return block > 0 && (to.link & kNoExample) == 0 && IsOfPart(file_, to) &&
-         IsOfPart(file_, file_.blocks[block - 1]);
+  return (file_.blocks[block].link & kNoExample) == 0 && LeadsWithinPart(file_, block);
 }
 
 Decimal LinkDonors::LiftToLayer(uint32_t block) const {

@@ -73,6 +73,8 @@ Link LinkWriter::TemplateFor(const LinkRequest& request) const {
   for (const bool retracts : {request.retract, !request.retract}) {
     // Where no travel of the file is open, this is retracted, and so the path is wiped.
     const bool wipes = file_.WipedBehind(request.from->placement().block);
+    // Where there is no way to go, there is none to retract for.
+    if (retracts && !request.retract && request.to->first().SameXy(out_.at.machine.at)) return {};
     const std::optional<uint32_t> donor = donors_.Find(to, retracts, retracts && wipes);
     if (!donor) continue;
     Link link = ReadLink(file_, *donor);

@@ -34,6 +34,9 @@ Sketch TwoIslands(bool retracts_inside) {
   return sketch;
 }
 
+// Retracted ways inside too, but for a short open one that shows how those are written.
+Sketch TwoIslandsWithOneOpenWay() { return TwoIslands(true).Go(65, 34).Infill(70, 34); }
+
 struct Rules {
   explicit Rules(std::shared_ptr<GcodeFile> read, bool spares_walls = false)
       : file(std::move(read)),
@@ -65,11 +68,18 @@ TEST(TravelRules, RetractWhereTheFileDoesAndNotByLength) {
   EXPECT_FALSE(inside_free.Retracts({5, 5}, {35, 35}));
   EXPECT_TRUE(inside_free.Retracts({35, 20}, {65, 20}));
   EXPECT_TRUE(inside_too.Retracts({5, 5}, {35, 35}));
-  EXPECT_FALSE(inside_too.Retracts({5, 5}, {5, 5.5}));
+}
+
+TEST(TravelRules, RetractHoweverShortOnlyWhereTheFileShowsNoOpenTravel) {
+  const Rules all_retracted(TwoIslands(true).Read());
+  const Rules one_open(TwoIslandsWithOneOpenWay().Read());
+
+  EXPECT_TRUE(all_retracted.Retracts({5, 5}, {5, 5.5}));
+  EXPECT_FALSE(one_open.Retracts({5, 5}, {5, 5.5}));
 }
 
 TEST(TravelRules, OneOpenWayOfManyDoesNotSayThatWallsMatter) {
-  const Rules nearly_all(TwoIslands(true).Go(65, 34).Infill(70, 34).Read());
+  const Rules nearly_all(TwoIslandsWithOneOpenWay().Read());
 
   EXPECT_FALSE(nearly_all.habit.crossing_matters);
   EXPECT_TRUE(nearly_all.Retracts({5, 5}, {35, 35}));
@@ -95,8 +105,8 @@ TEST(TravelRules, ReorderingInsideAnIslandAddsNoRetraction) {
 }
 
 TEST(TravelRules, ShortWaysAcrossWallsAreRetractedIfWallsAreToBeSpared) {
-  const Rules usual(TwoIslands(true).Read());
-  const Rules sparing(TwoIslands(true).Read(), true);
+  const Rules usual(TwoIslandsWithOneOpenWay().Read());
+  const Rules sparing(TwoIslandsWithOneOpenWay().Read(), true);
 
   EXPECT_FALSE(usual.Retracts({39.5, 20}, {40.6, 20}));
   EXPECT_TRUE(sparing.Retracts({39.5, 20}, {40.6, 20}));

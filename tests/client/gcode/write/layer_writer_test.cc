@@ -39,6 +39,24 @@ TEST(LayerWriter, CountsAWayFromWhereALoopBegunElsewhereEnds) {
   EXPECT_NEAR(Measure(*file, text, start).travel_mm, 2.1 + 5, 1e-6) << text;
 }
 
+// No travel of the file is open, and the second line begins where the third ends: no way to go.
+TEST(LayerWriter, NothingIsRetractedWhereThereIsNoWayToGo) {
+  Sketch sketch;
+  sketch.Infill(5, 0).GoRetracted(10, 5).Infill(10, 9).GoRetracted(20, 5).Infill(10, 5);
+  const auto file = sketch.GoRetracted(30, 5).Infill(40, 5).Read();
+  const RetractionHabit habit = HabitOfNewWays(*file);
+  const LinkDonors donors(*file);
+  const LayerWriter writer(*file, file->layers[0], habit, donors);
+  const LayerOrder order = {{0, 0, false}, {2, 0, false}, {1, 0, false}, {3, 0, false}};
+  std::string text;
+  const PartStart start = StartOfPaths(*file, order.front());
+
+  writer.WritePaths(order, start, text);
+
+  EXPECT_EQ(writer.EstimateWay(2, order[1], order[2], TravelModel()).retractions, 0) << text;
+  EXPECT_EQ(Measure(*file, text, start).retractions, 2) << text;
+}
+
 // What the way from a square to the second of three lines beside it comes to. Inside an island ways
 // are not retracted.
 WayTotals FromSquareToLine(bool goes_on) {
