@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/files/decompress.h"
 #include "client/files/read_file.h"
@@ -112,26 +113,7 @@ std::string GcodeSummary(const GcodeRewrite& rewrite) {
                             DescribeRewrite(rewrite))
           : absl::StrFormat("%d of %d layers rewritten: %s\n", rewrite.layers_changed,
                             rewrite.layers, DescribeRewrite(rewrite));
-  if (rewrite.layers_unproven > 0) {
-    summary +=
-        absl::StrFormat("%d layers left unchanged, because each order found breaks a rule: %s\n",
-                        rewrite.layers_unproven, rewrite.unproven);
-  }
-  if (rewrite.layers_unclear > 0) {
-    summary +=
-        absl::StrFormat("%d layers left unchanged, because machines read a line differently: %s\n",
-                        rewrite.layers_unclear, rewrite.unclear);
-  }
-  if (rewrite.relative_moves > 0) {
-    summary += absl::StrFormat(
-        "%d moves that print stay where they are, because they are relative (G91): %s\n",
-        rewrite.relative_moves, rewrite.relative);
-  }
-  if (rewrite.unread_moves > 0) {
-    summary += absl::StrFormat(
-        "%d lines begin as moves do, but cannot be read, so that nothing passes them: %s\n",
-        rewrite.unread_moves, rewrite.unread);
-  }
+  for (const std::string& line : DescribeLeft(rewrite)) absl::StrAppend(&summary, line, "\n");
   return summary;
 }
 

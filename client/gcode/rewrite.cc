@@ -317,6 +317,31 @@ std::string DescribeRewrite(const GcodeRewrite& rewrite) {
       gcode::Minutes(after.seconds), gcode::Percent(before.seconds, after.seconds));
 }
 
+std::vector<std::string> DescribeLeft(const GcodeRewrite& rewrite) {
+  std::vector<std::string> left;
+  if (rewrite.layers_unproven > 0) {
+    left.push_back(
+        absl::StrFormat("%d layers left unchanged, because each order found breaks a rule: %s",
+                        rewrite.layers_unproven, rewrite.unproven));
+  }
+  if (rewrite.layers_unclear > 0) {
+    left.push_back(
+        absl::StrFormat("%d layers left unchanged, because machines read a line differently: %s",
+                        rewrite.layers_unclear, rewrite.unclear));
+  }
+  if (rewrite.relative_moves > 0) {
+    left.push_back(absl::StrFormat(
+        "%d moves that print stay where they are, because they are relative (G91): %s",
+        rewrite.relative_moves, rewrite.relative));
+  }
+  if (rewrite.unread_moves > 0) {
+    left.push_back(absl::StrFormat(
+        "%d lines begin as moves do, but cannot be read, so that nothing passes them: %s",
+        rewrite.unread_moves, rewrite.unread));
+  }
+  return left;
+}
+
 absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
                                           const std::vector<gcode::FileOrder>& tries,
                                           const RewriteOptions& options) {

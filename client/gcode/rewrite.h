@@ -80,6 +80,10 @@ absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
 // "travel 15.27 -> 12.41 m (-18.7 %), retractions 1187 -> 1059, estimated print time ..."
 std::string DescribeRewrite(const GcodeRewrite& rewrite);
 
+// What stays as it was for another reason than that nothing is gained, a line for each reason, with
+// the place of the first: "2 layers left unchanged, because ...: part.gcode:118: ...".
+std::vector<std::string> DescribeLeft(const GcodeRewrite& rewrite);
+
 }  // namespace traverse
 
 #endif  // TRAVERSE_CLIENT_GCODE_REWRITE_H_

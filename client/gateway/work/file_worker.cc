@@ -47,12 +47,16 @@ void AddPart(const InputJob& job, const OptimizedFile& made, const std::string& 
   Add(rewrite.before, *out.mutable_given());
   Add(rewrite.after, *out.mutable_written());
   out.set_verified(true);
-  const int64_t left = rewrite.layers - rewrite.layers_changed;
-  if (rewrite.layers_changed == 0) {
+  const int64_t left =
+      rewrite.layers - rewrite.layers_changed - rewrite.layers_unproven - rewrite.layers_unclear;
+  if (left == rewrite.layers) {
     out.add_left(label + "Nothing to gain: no allowed order makes the print faster.");
   } else if (left > 0) {
     out.add_left(absl::StrFormat("%s%d of %d layers stay: no allowed order is faster.", label, left,
                                  rewrite.layers));
+  }
+  for (const std::string& line : DescribeLeft(rewrite)) {
+    out.add_left(absl::StrCat(label, line, "."));
   }
   for (const auto& [name, value] : job.facts) {
     if (name.starts_with("movable")) {

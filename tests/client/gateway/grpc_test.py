@@ -108,6 +108,14 @@ class Calls(unittest.TestCase):
             least = self.assertLessEqual if "min_revisit_s" in options else self.assertLess
             least(summary.written.travel_mm, summary.given.travel_mm)
 
+    def test_moves_that_cannot_be_read_are_named(self):
+        lines = PART.decode().split("\n")
+        place = [i for i, line in enumerate(lines) if line.startswith("G1 X")][10]
+        lines[place] = lines[place].replace("G1 ", "G1 (here) ")
+        left = self.rewrite("\n".join(lines).encode(), name="odd.gcode")[2].left
+        self.assertIn("1 lines begin as moves do, but cannot be read, so that nothing passes them: "
+                      f"odd.gcode:{place + 1}.", left)
+
     def test_the_machine_and_the_container_are_those_of_the_command(self):
         printer = "[printer]\nmax_velocity: 300\nmax_accel: 150\n"
         with tempfile.TemporaryDirectory() as folder:
