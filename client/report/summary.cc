@@ -38,10 +38,12 @@ std::string OptimizeSummary(const InputJob& job, const JobRun& run,
   std::string out =
       absl::StrFormat("%s: %d layers, %s, %s\n", DisplayName(job.name), job.layers.size(),
                       summary.strategy(), Duration(run.wall_seconds));
-  absl::StrAppendFormat(&out, "travel   %s -> %s  (%s)\n", Length(given), Length(travel),
-                        Change(given, travel));
-  absl::StrAppendFormat(&out, "idle     %s -> %s\n", Duration(summary.idle_seconds_given()),
-                        Duration(summary.idle_seconds()));
+  if (forecast == nullptr) {
+    absl::StrAppendFormat(&out, "travel   %s -> %s  (%s)\n", Length(given), Length(travel),
+                          Change(given, travel));
+    absl::StrAppendFormat(&out, "idle     %s -> %s\n", Duration(summary.idle_seconds_given()),
+                          Duration(summary.idle_seconds()));
+  }
   if (job.options.cost().has_time()) {
     const double cost_given = forecast ? forecast->given_seconds : summary.cost_given();
     const double cost = forecast ? forecast->seconds : summary.cost();

@@ -11,8 +11,9 @@
 
 namespace traverse::report {
 
-// A few lines: travel before and after, idle time saved, gap if known, why the search ended. The
-// cost is that of `forecast` if there is one: of the orders that were written in the end.
+// A few lines: travel before and after, idle time saved, gap if known, why the search ended. With
+// the `forecast` of a file that was written, the cost is that of its orders, and what the search
+// took for travel is left out: the file has what was measured (DescribeRewrite).
 std::string OptimizeSummary(const InputJob& job, const JobRun& run,
                             const gcode::Forecast* forecast = nullptr);
 

@@ -152,8 +152,8 @@ Expected<DonePart> OptimizePart(Service& service, Request request, InputFile& in
   }
   const gcode::Forecast* forecast = made.rewrite ? &made.rewrite->forecast : nullptr;
   done.summary += report::OptimizeSummary(*job, made.runs[0], forecast);
+  if (made.rewrite) done.summary += GcodeSummary(*made.rewrite);
   if (!written) return done;
-  done.summary += GcodeSummary(*made.rewrite);
   done.changed = made.rewrite->layers_changed > 0;
   done.part = {std::move(made.rewrite->text), made.times};
   return done;

@@ -54,6 +54,7 @@ def main():
                     continue
                 rewritten += 1
                 inspection = run(traverse, "inspect", out)
+                assert len(re.findall(r"\btravel +[\d.]+", summary)) == 1, f"travel is stated twice: {summary}"
                 assert stated(summary) == seen(inspection), f"{file}, {policy}: {summary}\n{inspection}"
     assert rewritten >= len(files), f"only {rewritten} files were rewritten"
     print(f"{rewritten} files agree")
