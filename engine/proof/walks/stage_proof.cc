@@ -80,7 +80,7 @@ class Proof {
   }
 
   void WalksAlone() {
-    const auto prover = WalkProver::Make(model_, model_.stage_count(), options_.walks);
+    const auto prover = WalkProver::Make(model_, model_.stage_count(), options_.walks, budget_);
     Outcome outcome = Outcome::kPasses;
     while (outcome == Outcome::kPasses) {
       outcome = prover->Run(WalkLimit(), kPassesPerRound, budget_);
@@ -98,7 +98,7 @@ class Proof {
   }
 
   void Together() {
-    const auto prover = WalkProver::Make(model_, model_.stage_count() - 1, options_.walks);
+    const auto prover = WalkProver::Make(model_, model_.stage_count() - 1, options_.walks, budget_);
     LastStage last(model_);
     last.Sample(kSamples, Limit(), budget_);
     std::vector<ClusterState> head = result_.walk;

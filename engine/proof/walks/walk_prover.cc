@@ -40,12 +40,12 @@ constexpr int kPassesBetweenGrowth = 10;
 template <int kWords>
 class Prover : public WalkProver {
  public:
-  Prover(const StageModel& model, int stages, const Options& options)
+  Prover(const StageModel& model, int stages, const Options& options, Budget& budget)
       : model_(model),
         options_(options),
         dp_(model, stages),
         search_(static_cast<size_t>(model.first(stages))) {
-    RememberNearest();
+    RememberNearest(budget);
   }
 
   void SetFinish(std::vector<std::vector<double>> finish) override {
@@ -156,8 +156,10 @@ class Prover : public WalkProver {
     return *std::min_element(moves, moves + model_.states(a) * model_.states(b));
   }
 
-  void RememberNearest() {
+  // Looks at all costs between two clusters, which are many.
+  void RememberNearest(Budget& budget) {
     for (int c = 0; c < static_cast<int>(multipliers_.size()); ++c) {
+      if (budget.Exhausted()) return;
       const int stage = model_.stage_of(c);
       std::vector<std::pair<double, int>> near;
       for (int other = model_.first(stage); other < model_.first(stage + 1); ++other) {
@@ -191,20 +193,20 @@ class Prover : public WalkProver {
 }  // namespace
 
 std::unique_ptr<WalkProver> WalkProver::Make(const StageModel& model, int stages,
-                                             const Options& options) {
+                                             const Options& options, Budget& budget) {
   assert(1 <= stages && stages <= model.stage_count());
   int largest = 0;
   for (int s = 0; s < stages; ++s) largest = std::max(largest, model.size(s));
   if (largest <= MemorySet<1>::kCapacity) {
-    return std::make_unique<Prover<1>>(model, stages, options);
+    return std::make_unique<Prover<1>>(model, stages, options, budget);
   }
   if (largest <= MemorySet<2>::kCapacity) {
-    return std::make_unique<Prover<2>>(model, stages, options);
+    return std::make_unique<Prover<2>>(model, stages, options, budget);
   }
   if (largest <= MemorySet<4>::kCapacity) {
-    return std::make_unique<Prover<4>>(model, stages, options);
+    return std::make_unique<Prover<4>>(model, stages, options, budget);
   }
-  return std::make_unique<Prover<8>>(model, stages, options);
+  return std::make_unique<Prover<8>>(model, stages, options, budget);
 }
 
 }  // namespace traverse

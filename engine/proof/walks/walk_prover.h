@@ -32,9 +32,10 @@ class WalkProver {
     kStopped,  // the budget ran out, or a pass became too big
   };
 
-  // For stages [0, stages) of `model`, which outlives this. REQUIRES: stages >= 1.
+  // For stages [0, stages) of `model`, which outlives this. If the budget ends meanwhile, the first
+  // memory is smaller than asked for. REQUIRES: stages >= 1.
   static std::unique_ptr<WalkProver> Make(const StageModel& model, int stages,
-                                          const Options& options);
+                                          const Options& options, Budget& budget);
 
   virtual ~WalkProver() = default;
 

@@ -121,8 +121,8 @@ TEST(ProveByStages, BoundsWithoutAProofAreValid) {
         RandomProblem(seed, {.shape = kShapes[seed % 5], .min_paths = 4, .max_paths = 7});
     const double best = BruteForce(owned.problem).cost;
     const StageModel model = ModelOf(owned);
-    const auto prover = WalkProver::Make(model, model.stage_count(), {.first_memory = 1});
     Budget budget;
+    const auto prover = WalkProver::Make(model, model.stage_count(), {.first_memory = 1}, budget);
 
     prover->Run(1.5 * best + 1, static_cast<int>(1 + seed % 5), budget);
 
@@ -150,6 +150,14 @@ TEST(LastStage, AsksForEachEndThatItMaySample) {
   LastStage last(model);
 
   EXPECT_GE(testing::AsksOf([&](Budget& budget) { last.Sample(0, 1000, budget); }), 36);
+}
+
+// What is near each cluster is looked for among all moves.
+TEST(WalkProver, AsksForEachClusterBeforeTheFirstPass) {
+  const OwnedProblem owned(SequentialPlan(testing::SquareGrid(6, 6)));
+  const StageModel model = ModelOf(owned);
+
+  EXPECT_GE(testing::AsksOf([&](Budget& budget) { WalkProver::Make(model, 2, {}, budget); }), 72);
 }
 
 TEST(ProveByStages, GivesABoundWithinTheDeadline) {
