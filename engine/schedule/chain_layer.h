@@ -19,8 +19,21 @@
 
 namespace traverse {
 
-// The best routes of anchored layers, by problem key and by what comes next.
-using AnchoredRoutes = std::unordered_map<uint64_t, KnownRoutePtr>;
+// The best routes of layers whose true start is known, by problem key and by what comes next.
+struct AnchoredRoutes {
+  using ByKey = std::unordered_map<uint64_t, KnownRoutePtr>;
+  ByKey alone;     // as in LayerAlone; only its stage uses it
+  ByKey anchored;  // only anchor uses it
+};
+
+// A layer's part of the chain that is solved one layer after the other.
+struct LayerAlone {
+  Solution solution;
+  Point start;
+  Point end = {};
+  double cost = 0;
+  KnownRoutePtr known = {};  // as in ChainLayer
+};
 
 // A layer on its way. A stage owns its layer and works without the lock, but hands over under it.
 struct ChainLayer {
@@ -28,6 +41,8 @@ struct ChainLayer {
   JobLayer given;  // as it was added
   CostSpec cost;
   int64_t points = 0;
+  bool looks_ahead = false;  // it may be ended with the next layer in view
+  bool looked_at = false;    // the layer before is ended with this one in view
 
   // Set by prepare.
   Point predicted_start;
@@ -39,6 +54,10 @@ struct ChainLayer {
   Route given_route;
   LayerOutcome outcome;  // the part about the given order
 
+  // Set by prepare: whether the layer is part of the chain that is solved one layer after the
+  // other.
+  bool carries_alone = false;
+
   // Set by prepare, if routes are reused: the route to start from (null if there is none), and this
   // layer's own route, for others. The lock guards their contents, which do not change once they
   // are ready.
@@ -46,7 +65,7 @@ struct ChainLayer {
   RouteHistory::Entry result;
 
   // Set by prepare: the known routes of the layers before this one, back to the last whose start
-  // was certain. Only anchor uses the contents.
+  // was certain.
   std::shared_ptr<AnchoredRoutes> anchored;
 
   // What share of the job's time the layer may use, once solving has begun.
@@ -63,17 +82,31 @@ struct ChainLayer {
   std::optional<Point> second_start;
   Solution second;
 
+  // Set by the stage of that name, which only layers that look or are looked at have.
+  std::optional<LayerAlone> alone;
+
   // Set by the anchor of the layer before, if that looked ahead: a route from its end.
   Route foreseen;
+
+  // Set with it, if this is the last layer in view: a route from where the layers before it are
+  // foreseen to end, towards where it ends alone.
+  Route way_back;
+
+  // Set with it: the route from there by which the job is not longer than one layer after the
+  // other. Empty: the one found alone.
+  Route fallback;
 
   // Set by anchor, if routes are reused.
   KnownRoutePtr known;
 
   // Guarded by the lock.
   std::optional<Point> first_end;  // if solved: where the head is then, cleaning included
-  bool solved = false;             // the layer can be anchored
+  bool solved = false;             // the layer's true start can be used
+  bool solving_alone = false;      // alone has been submitted
+  std::optional<Point> alone_end;  // if that is done: where the head is then, cleaning included
   bool anchoring = false;          // anchor has been submitted
   std::optional<Point> end;        // if anchored: where the head is then, cleaning included
+  double over_alone = 0;           // if anchored: see TrueStart, after this layer
 };
 using ChainLayerPtr = std::shared_ptr<ChainLayer>;
 
@@ -84,6 +117,13 @@ using LayersInView = std::vector<ChainLayerPtr>;
 struct TrueStart {
   Point start;
   LayersInView view;
+
+  // Whether no known layer begins where the last of these ends.
+  bool end_is_free = true;
+
+  // What the layers before cost more than one after the other, since the last whose start did not
+  // depend on a layer that looked ahead.
+  double over_alone = 0;
 };
 
 }  // namespace traverse

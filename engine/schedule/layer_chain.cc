@@ -38,6 +38,10 @@ void LayerChain::Add(JobLayer given) {
     split_.Add(layer->weight);
     chain_weight_ += layer->weight;
   }
+  layer->looks_ahead = solver_.MayLookAhead(*layer, {});
+  // A layer that looks ahead is still as it was given: it waits for this one.
+  layer->looked_at = !layers_.empty() && layers_.back()->looks_ahead &&
+                     solver_.LooksAheadAt(*layers_.back(), {}, *layer);
   layers_.push_back(std::move(layer));
   ++pending_;
   MaybePrepare();
@@ -72,6 +76,8 @@ void LayerChain::RunPrepare(const ChainLayerPtr& layer) {
   if (solver_.traits().reuses_routes) {
     layer->result = std::make_shared<PendingRoute>();
     layer->precursor = routes_.Enter(layer->fingerprint.shape, layer->key, layer->result);
+    repeats_ = repeats_ || routes_.Seen(layer->fingerprint.shape) > kMostSeenAlone;
+    layer->carries_alone = layer->carries_alone && !repeats_;
   }
   if (layer->precursor) {
     const double weight = BudgetSplit::Weight(layer->given.plan.paths.size(), true);
@@ -79,8 +85,7 @@ void LayerChain::RunPrepare(const ChainLayerPtr& layer) {
     layer->weight = weight;
   }
   if (solver_.traits().serial) {
-    layer->solved = true;
-    MaybeAnchor(layer->index);
+    GoOnSolved(layer);
   } else {
     MaybeSolveFirst(layer);
   }
@@ -108,8 +113,18 @@ void LayerChain::RunSolveFirst(const ChainLayerPtr& layer) {
 void LayerChain::RunSolveSecond(const ChainLayerPtr& layer) {
   solver_.SolveSecond(*layer);
   MutexLock lock(mutex_);
-  layer->solved = true;
+  GoOnSolved(layer);
+}
+
+void LayerChain::RunSolveAlone(const ChainLayerPtr& layer, Point start) {
+  solver_.SolveAlone(*layer, start);
+  if (!layer->alone) return;  // cancelled
+  const Point end = LayerSolver::EndAlone(*layer);
+  MutexLock lock(mutex_);
+  layer->alone_end = end;
+  MaybeSolveAlone(layer->index + 1);
   MaybeAnchor(layer->index);
+  MaybeAnchorBefore(layer->index);
 }
 
 void LayerChain::RunAnchor(const ChainLayerPtr& layer, const TrueStart& at) {
@@ -118,9 +133,11 @@ void LayerChain::RunAnchor(const ChainLayerPtr& layer, const TrueStart& at) {
   if (BoundsChain() && !cancel_.cancelled()) KeepForBound(*layer, outcome);
   const Point route_end = outcome.end;
   const Point end = layer->finish.value_or(route_end);
+  const double over_alone = layer->alone ? at.over_alone + outcome.cost - layer->alone->cost : 0;
   if (!cancel_.cancelled()) outbox_.Deliver(std::move(outcome));
   MutexLock lock(mutex_);
   layer->end = end;
+  layer->over_alone = over_alone;
   LayerEnd& learned = ends_to_learn_[layer->index];
   learned.shape = layer->fingerprint.shape;
   learned.key = ProblemKey(learned.shape, layer->origin, at.start, layer->finish);
@@ -128,6 +145,7 @@ void LayerChain::RunAnchor(const ChainLayerPtr& layer, const TrueStart& at) {
   learned.known = layer->known;
   --pending_;
   DropAnchored();
+  MaybeSolveAlone(layer->index + 1);
   MaybeAnchor(layer->index + 1);
   MaybePrepare();
 }
@@ -208,25 +226,50 @@ void LayerChain::MaybeSolveSecond(uint64_t index) {
       return;
     }
   }
-  layer->solved = true;
-  MaybeAnchor(index);
+  GoOnSolved(layer);
 }
 
-// The layers that layer `index` is ended in view of; unset while one of them is missing.
-std::optional<LayersInView> LayerChain::ViewFrom(uint64_t index) const {
+// What follows once the layer's true start can be used: alone, or anchor.
+void LayerChain::GoOnSolved(const ChainLayerPtr& layer) {
+  layer->solved = true;
+  MaybeSolveAlone(layer->index);
+  MaybeAnchor(layer->index);
+}
+
+// The stage of layer `index`, if it is solved and its start in the chain of layers alone is known.
+void LayerChain::MaybeSolveAlone(uint64_t index) {
+  if (index < first_index_ || index >= added_) return;
+  const ChainLayerPtr layer = LayerAt(index);
+  if (!layer->solved || !layer->carries_alone || layer->solving_alone) return;
+  std::optional<Point> start = solver_.FixedStart(*layer);
+  if (!start) {
+    const ChainLayer& before = *LayerAt(index - 1);
+    start = layer->looked_at ? before.alone_end : before.end;
+  }
+  if (!start) return;
+  layer->solving_alone = true;
+  Submit([this, layer, start = *start] { RunSolveAlone(layer, start); }, layer->points);
+}
+
+// Sets the layers that layer `index` is ended in view of; returns false while one of them is
+// missing.
+bool LayerChain::ViewFrom(uint64_t index, TrueStart& at) const {
   const ChainLayer& layer = *LayerAt(index);
-  LayersInView view;
+  LayersInView& view = at.view;
   while (solver_.MayLookAhead(layer, view)) {
     const uint64_t next = index + view.size() + 1;
-    if (next == added_) {
-      if (!closed_) return std::nullopt;
-      break;
+    if (next == added_) return closed_;
+    if (!solver_.LooksAheadAt(layer, view, *LayerAt(next))) {
+      at.end_is_free = solver_.FixedStart(*LayerAt(next)).has_value();
+      return true;
     }
-    if (!solver_.LooksAheadAt(layer, view, *LayerAt(next))) break;
-    if (!LayerAt(next)->first_end) return std::nullopt;
-    view.push_back(LayerAt(next));
+    const ChainLayerPtr& in_view = LayerAt(next);
+    if (!in_view->first_end || (in_view->carries_alone && !in_view->alone_end)) return false;
+    view.push_back(in_view);
   }
-  return view;
+  const ChainLayer& last = view.empty() ? layer : *view.back();
+  at.end_is_free = !last.given.more_follows || solver_.CleaningDueAfter(last.index);
+  return true;
 }
 
 // The last stage of the layers that may have waited for layer `index`.
@@ -240,14 +283,14 @@ void LayerChain::MaybeAnchorBefore(uint64_t index) {
 void LayerChain::MaybeAnchor(uint64_t index) {
   if (index < first_index_ || index >= added_) return;
   const ChainLayerPtr layer = LayerAt(index);
-  if (!layer->solved || layer->anchoring) return;
+  if (!layer->solved || layer->anchoring || (layer->carries_alone && !layer->alone_end)) return;
   std::optional<Point> start = solver_.FixedStart(*layer);
   if (!start) start = LayerAt(index - 1)->end;
   if (!start) return;
-  std::optional<LayersInView> view = ViewFrom(index);
-  if (!view) return;
+  TrueStart at{*start, {}};
+  if (layer->looked_at) at.over_alone = LayerAt(index - 1)->over_alone;
+  if (!ViewFrom(index, at)) return;
   layer->anchoring = true;
-  const TrueStart at{*start, *std::move(view)};
   Submit([this, layer, at] { RunAnchor(layer, at); }, layer->points);
 }
 

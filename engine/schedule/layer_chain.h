@@ -9,6 +9,8 @@
 //             continue from that one's route, or reuse it (route_history.h)
 //   second    only quick strategies, on any thread: solve from where the first solution of the
 //             layer before ends, if that is elsewhere; usually this is the true start
+//   alone     only layers that look ahead or are looked at, in build order, cheap: anchor as if no
+//             layer looked ahead. So a second chain is known, of layers solved one after the other
 //   anchor    in build order, cheap: now the true start is known. If it is yet another one, reuse
 //             the route of an equal layer that began there, or let the strategy resume its route
 //             from there; validate and deliver the route
@@ -20,6 +22,11 @@
 // (JobLayer::more_follows). If so, the chain waits for that layer; if not, it ignores the next
 // layer even if that is there. Looking ahead is useless where the next layer begins at a given
 // point or at the cleaning point; the move to that point counts in any case.
+//
+// A chain of such layers may still end longer than layers one after the other. So an end is chosen
+// only if a way back to these is known from there by which the job up to there is no longer: the
+// layers in view as they are foreseen, up to one that ends where it would end alone, or that is
+// done as it would be alone. Otherwise the layer takes the way known before.
 //
 // What a stage does depends only on the job and the seed, never on timing, so the routes are the
 // same on any number of threads. Every stage of a layer is a separate task: the executor can share
@@ -62,6 +69,11 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   // Layers that prepare may be ahead of anchor. Even, because many parts alternate two layers.
   static constexpr uint64_t kLearnDelay = 32;
 
+  // Layers of one shape that are solved one after the other as well. Further ones, and all behind
+  // them, are answered from what was found before: keeping them within layers alone would let a
+  // long part that repeats its layers take more time and become longer.
+  static constexpr int kMostSeenAlone = 4;
+
   // Fixes the share of the job's time that the layer may use, when its main stage begins.
   void Allot(ChainLayer& layer);
 
@@ -69,6 +81,7 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   void RunPrepare(const ChainLayerPtr& layer);
   void RunSolveFirst(const ChainLayerPtr& layer);
   void RunSolveSecond(const ChainLayerPtr& layer);
+  void RunSolveAlone(const ChainLayerPtr& layer, Point start);
   void RunAnchor(const ChainLayerPtr& layer, const TrueStart& at);
 
   // The job's last task, if its strategy bounds the chain.
@@ -79,7 +92,9 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   void MaybeSolveFirst(const ChainLayerPtr& layer) TRAVERSE_REQUIRES(mutex_);
   void HandOn(const ChainLayer& layer) TRAVERSE_REQUIRES(mutex_);
   void MaybeSolveSecond(uint64_t index) TRAVERSE_REQUIRES(mutex_);
-  std::optional<LayersInView> ViewFrom(uint64_t index) const TRAVERSE_REQUIRES(mutex_);
+  void GoOnSolved(const ChainLayerPtr& layer) TRAVERSE_REQUIRES(mutex_);
+  void MaybeSolveAlone(uint64_t index) TRAVERSE_REQUIRES(mutex_);
+  bool ViewFrom(uint64_t index, TrueStart& at) const TRAVERSE_REQUIRES(mutex_);
   void MaybeAnchorBefore(uint64_t index) TRAVERSE_REQUIRES(mutex_);
   void MaybeAnchor(uint64_t index) TRAVERSE_REQUIRES(mutex_);
   bool BoundsChain() const {
@@ -107,6 +122,7 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   uint64_t first_index_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   uint64_t added_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   uint64_t next_to_prepare_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  bool repeats_ TRAVERSE_GUARDED_BY(mutex_) = false;  // see kMostSeenAlone
 
   // What prepare has not yet learned from anchored layers, by index. It learns from layer i -
   // kLearnDelay right before it prepares layer i, so that its knowledge does not depend on timing.

@@ -22,6 +22,10 @@ void LayerPreparer::Prepare(ChainLayer& layer) {
     layer.key =
         ProblemKey(layer.fingerprint.shape, layer.origin, layer.predicted_start, layer.finish);
   }
+  // What is learned comes from layers that looked ahead: one layer after the other would find
+  // other routes from here on.
+  learned_ = learned_ || history_.EndOf(layer.fingerprint.shape, layer.key).has_value();
+  layer.carries_alone = !learned_ && (layer.looks_ahead || layer.looked_at);
   if (solver_.traits().reuses_routes) {
     if (!anchored_ || solver_.FixedStart(layer)) anchored_ = std::make_shared<AnchoredRoutes>();
     layer.anchored = anchored_;

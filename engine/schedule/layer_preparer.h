@@ -34,6 +34,7 @@ class LayerPreparer {
   Point predicted_at_;  // where the head will probably be in the order that is found
   std::shared_ptr<AnchoredRoutes> anchored_;
   EndHistory history_;
+  bool learned_ = false;  // a layer repeated one whose end was learned
 };
 
 }  // namespace traverse

@@ -168,10 +168,11 @@ KnownRoutePtr LayerSolver::Known(const LayerProblem& problem, const ChainLayer& 
   return known;
 }
 
-const KnownRoute* LayerSolver::FindAnchored(const ChainLayer& layer, uint64_t key) const {
-  if (!layer.anchored) return nullptr;
-  const auto found = layer.anchored->find(key);
-  if (found == layer.anchored->end()) return nullptr;
+const KnownRoute* LayerSolver::FindAnchored(const ChainLayer& layer,
+                                            const AnchoredRoutes::ByKey& routes,
+                                            uint64_t key) const {
+  const auto found = routes.find(key);
+  if (found == routes.end()) return nullptr;
   Budget turns = Turns();
   const bool fits = ValidateRoute(layer.given.plan, found->second->solution.route, &turns).ok();
   return fits ? found->second.get() : nullptr;
@@ -203,39 +204,55 @@ const Route& LayerSolver::BestToGoOnFrom(const LayerProblem& problem, const Chai
   };
   if (known != nullptr) offer(known->solution.route);
   if (!layer.foreseen.empty()) offer(layer.foreseen);
+  if (layer.alone) offer(FallbackRoute(layer));
   return *best;
 }
 
+// What was found for the layer alone from that start, if anything.
+const Solution* LayerSolver::FoundFrom(const ChainLayer& layer, Point start) {
+  if (layer.alone && start == layer.alone->start) return &layer.alone->solution;
+  return start == layer.predicted_start ? &layer.first : nullptr;
+}
+
+// For alone, if that is still to come, and for anchor.
+Budget LayerSolver::BudgetFromTrueStart(const ChainLayer& layer) const {
+  double share = AnchorShare();
+  if (layer.carries_alone && !layer.alone) share *= kAloneShare;
+  if (layer.alone && layer.alone->start != layer.predicted_start) share *= 1 - kAloneShare;
+  return LayerBudget(layer, share);
+}
+
 Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, ChainLayer& layer,
-                                         const KnownRoute* known, const LayersInView& view) const {
+                                         const KnownRoute* known, const TrueStart& at) const {
   if (strategy_->traits().serial) {
     Budget budget = LayerBudget(layer, 1);
     return Prepared(layer).Solve(problem, budget);
   }
-  const bool as_predicted = problem.start == layer.predicted_start;
   if (layer.second_start && problem.start == *layer.second_start) return layer.second;
+  const LayersInView& view = at.view;
+  const Solution* found = FoundFrom(layer, problem.start);
   // Without a next layer, the time meant for looking ahead is used for the layer itself.
   const bool has_time_left = layer.first.stop == StopReason::kTimeLimit && MayLookAhead(layer, {});
-  if (as_predicted && view.empty() && !has_time_left) return layer.first;
+  if (found != nullptr && view.empty() && !has_time_left) return *found;
   Solution solution;
   if (known != nullptr && TakeOver(*known, problem, layer, solution)) return solution;
   if (Expired()) {
-    solution = layer.first;
+    solution = found != nullptr ? *found : layer.first;
     solution.stop = StopReason::kTimeLimit;
-    if (!as_predicted) solution.lower_bound.reset();  // it held for another start
+    if (found == nullptr) solution.lower_bound.reset();  // it held for another start
     return solution;
   }
-  Budget budget = LayerBudget(layer, AnchorShare());
-  if (as_predicted && !view.empty()) {
-    solution = layer.first;
+  Budget budget = BudgetFromTrueStart(layer);
+  if (found != nullptr && !view.empty()) {
+    solution = *found;
   } else {
     Budget alone = view.empty() ? budget : budget.WithShare(kAloneShare);
     const Route& from = BestToGoOnFrom(problem, layer, known);
     solution = strategy_->traits().quick ? Prepared(layer).Solve(problem, alone)
                                          : Prepared(layer).Resume(problem, from, alone);
   }
-  if (!view.empty()) SolveInView(problem, layer, view, budget, solution);
-  if (as_predicted && !solution.lower_bound) solution.lower_bound = layer.first.lower_bound;
+  if (!view.empty()) SolveInView(problem, layer, at, budget, solution);
+  if (found != nullptr && !solution.lower_bound) solution.lower_bound = found->lower_bound;
   // Statistics that resuming does not report stay as they were.
   solution.statistics.insert(layer.first.statistics.begin(), layer.first.statistics.end());
   // A search that the clock cut short still counts as cut short after polishing.
@@ -325,25 +342,41 @@ uint64_t LayerSolver::KeyAt(const ChainLayer& layer, const TrueStart& at) const 
   return key;
 }
 
+// With the order given in the place of an invalid route, of which the outcome tells.
+Solution LayerSolver::ValidFromTrueStart(const LayerProblem& problem, ChainLayer& layer,
+                                         const KnownRoute* known, const TrueStart& at) const {
+  Solution solution = SolveFromTrueStart(problem, layer, known, at);
+  Budget turns = Turns();
+  if (turns.ExhaustedNow()) return solution;  // cancelled: nobody reads it
+  if (absl::Status status = ValidateRoute(layer.given.plan, solution.route, &turns); !status.ok()) {
+    layer.outcome.invalid_route = std::string(status.message());
+    return Solution{layer.given_route, StopReason::kLocalOptimum, std::nullopt};
+  }
+  if (!strategy_->traits().pure) KeepBestRoute(problem, layer, known, at.view, solution);
+  return solution;
+}
+
 LayerOutcome LayerSolver::Anchor(ChainLayer& layer, const TrueStart& at) const {
   const Stopwatch watch;
-  const Point start = at.start;
-  const LayerProblem problem = Problem(layer, start);
+  const LayerProblem problem = Problem(layer, at.start);
   const uint64_t key = KeyAt(layer, at);
-  const KnownRoute* known = FindAnchored(layer, key);
+  const KnownRoute* known =
+      layer.anchored ? FindAnchored(layer, layer.anchored->anchored, key) : nullptr;
   Budget turns = Turns();
-  if (!ValidateRoute(layer.given.plan, layer.foreseen, &turns).ok()) layer.foreseen.clear();
-  Solution solution = SolveFromTrueStart(problem, layer, known, at.view);
+  for (Route* route : {&layer.foreseen, &layer.fallback})
+    if (!ValidateRoute(layer.given.plan, *route, &turns).ok()) route->clear();
+  for (const ChainLayerPtr& next : at.view) next->way_back.clear();
+  Solution solution = ValidFromTrueStart(problem, layer, known, at);
+  const bool was_replaced = !turns.ExhaustedNow() && KnowsAlone(layer, at) &&
+                            KeepWithinAlone(problem, layer, at, solution);
   LayerOutcome outcome = std::move(layer.outcome);
   if (turns.ExhaustedNow()) return outcome;  // cancelled: nobody reads it
-  if (absl::Status status = ValidateRoute(layer.given.plan, solution.route, &turns); !status.ok()) {
-    outcome.invalid_route = std::string(status.message());
-    solution = Solution{layer.given_route, StopReason::kLocalOptimum, std::nullopt};
-  } else if (!strategy_->traits().pure) {
-    KeepBestRoute(problem, layer, known, at.view, solution);
-  }
   if (!solution.lower_bound) Bound(problem, layer, solution);
-  if (layer.anchored) (*layer.anchored)[key] = layer.known = Known(problem, layer, solution);
+  if (layer.anchored) {
+    layer.known = Known(problem, layer, solution);
+    // Equal layers need not be kept within what this one was.
+    if (!was_replaced) layer.anchored->anchored[key] = layer.known;
+  }
   if (turns.ExhaustedNow()) return outcome;
   TellFound(problem, std::move(solution), layer.given, turns, outcome);
   layer.prepared.reset();

@@ -53,6 +53,9 @@ class LayerSolver {
   // The problem of solving the layer from `start`. Refers to `layer`.
   LayerProblem Problem(const ChainLayer& layer, Point start) const;
 
+  // Where the head is after the layer, cleaning included, if it is done as it was found alone.
+  static Point EndAlone(const ChainLayer& layer) { return layer.finish.value_or(layer.alone->end); }
+
   Route GreedyRoute(const LayerProblem& problem, const ChainLayer& layer) const;
 
   // `solution` with what later layers need to continue from it.
@@ -62,6 +65,7 @@ class LayerSolver {
   // The stages. ChainLayer says what each sets.
   void SolveFirst(ChainLayer& layer) const;
   void SolveSecond(ChainLayer& layer) const;
+  void SolveAlone(ChainLayer& layer, Point start) const;
   LayerOutcome Anchor(ChainLayer& layer, const TrueStart& at) const;
 
   // A lower bound of all layers together, once they are done. `layers`: how many there are.
@@ -81,15 +85,20 @@ class LayerSolver {
   bool TakeOver(const KnownRoute& known, const LayerProblem& problem, const ChainLayer& layer,
                 Solution& solution) const;
   uint64_t KeyAt(const ChainLayer& layer, const TrueStart& at) const;
+  static const Solution* FoundFrom(const ChainLayer& layer, Point start);
+  Budget BudgetFromTrueStart(const ChainLayer& layer) const;
   const Route& BestToGoOnFrom(const LayerProblem& problem, const ChainLayer& layer,
                               const KnownRoute* known) const;
   Solution SolveFromTrueStart(const LayerProblem& problem, ChainLayer& layer,
-                              const KnownRoute* known, const LayersInView& view) const;
+                              const KnownRoute* known, const TrueStart& at) const;
+  Solution ValidFromTrueStart(const LayerProblem& problem, ChainLayer& layer,
+                              const KnownRoute* known, const TrueStart& at) const;
   bool GreedyMayBeBetter(const LayerProblem& problem, const ChainLayer& layer,
                          const KnownRoute* known) const;
   void KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer, const KnownRoute* known,
                      const LayersInView& view, Solution& solution) const;
-  const KnownRoute* FindAnchored(const ChainLayer& layer, uint64_t key) const;
+  const KnownRoute* FindAnchored(const ChainLayer& layer, const AnchoredRoutes::ByKey& routes,
+                                 uint64_t key) const;
   void Bound(const LayerProblem& problem, ChainLayer& layer, Solution& solution) const;
 
   // In layer_solver_ahead.cc: a layer and those in view, as they are done one after the other.
@@ -100,15 +109,34 @@ class LayerSolver {
   };
   size_t MostPathsInView(const LayersInView& view) const;
   template <typename RouteOf>
-  RoutesInView InView(const LayerProblem& problem, const Route& route, const LayersInView& view,
+  RoutesInView InView(const LayerProblem& problem, const Route& route, const TrueStart& at,
                       const RouteOf& route_of) const;
-  void SolveInView(const LayerProblem& problem, ChainLayer& layer, const LayersInView& view,
+  void SolveInView(const LayerProblem& problem, ChainLayer& layer, const TrueStart& at,
                    Budget& budget, Solution& solution) const;
 
   // The cost of the route, and of what is foreseen of the next layer, if one is in view, from its
   // end.
   double CostInView(const LayerProblem& problem, const Route& route,
                     const LayersInView& view) const;
+
+  // In layer_solver_alone.cc: what keeps the job from becoming longer by looking ahead.
+  struct Return {
+    double over = 0;           // what the job then costs more than one layer after the other
+    size_t foreseen = 0;       // how many layers in view are done as foreseen before
+    bool by_way_back = false;  // whether the one after these is done by its way back
+  };
+  void FindWayBack(const LayerProblem& problem, const Route& route, const TrueStart& at,
+                   Budget& budget) const;
+  static bool KnowsAlone(const ChainLayer& layer, const TrueStart& at);
+  static const Route& FallbackRoute(const ChainLayer& layer) {
+    return layer.fallback.empty() ? layer.alone->solution.route : layer.fallback;
+  }
+  std::optional<Return> CheapestReturn(const LayerProblem& problem, const Route& route,
+                                       const ChainLayer& layer, const TrueStart& at) const;
+  bool LeadsBack(const LayerProblem& problem, const Route& route, const ChainLayer& layer,
+                 const TrueStart& at) const;
+  bool KeepWithinAlone(const LayerProblem& problem, const ChainLayer& layer, const TrueStart& at,
+                       Solution& solution) const;
 
   const JobSpec spec_;
   const std::unique_ptr<Strategy> strategy_;

@@ -1,5 +1,6 @@
 // How LayerSolver ends a layer with the next ones in view.
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -60,15 +61,14 @@ double LayerSolver::CostInView(const LayerProblem& problem, const Route& route,
 // route_of(layer, its problem).
 template <typename RouteOf>
 LayerSolver::RoutesInView LayerSolver::InView(const LayerProblem& problem, const Route& route,
-                                              const LayersInView& view,
-                                              const RouteOf& route_of) const {
+                                              const TrueStart& at, const RouteOf& route_of) const {
   RoutesInView routes{route, {}, RouteCost(problem, route)};
-  Point at = RouteEnd(*problem.plan, route, problem.start);
-  for (const ChainLayerPtr& layer : view) {
-    NextLayer& next = routes.next.emplace_back(NextLayer{Problem(*layer, at), {}});
+  Point end = RouteEnd(*problem.plan, route, problem.start);
+  for (const ChainLayerPtr& layer : at.view) {
+    NextLayer& next = routes.next.emplace_back(NextLayer{Problem(*layer, end), {}});
     next.route = route_of(*layer, next.problem);
     routes.cost += RouteCost(next.problem, next.route);
-    at = RouteEnd(*next.problem.plan, next.route, at);
+    end = RouteEnd(*next.problem.plan, next.route, end);
   }
   return routes;
 }
@@ -76,29 +76,51 @@ LayerSolver::RoutesInView LayerSolver::InView(const LayerProblem& problem, const
 // Ends the layer with the next ones in view. `solution` is of the layer alone. What is found is
 // never longer, for all these layers together, than one after the other from there, or than what
 // the layer before foresaw of them, or than greedy.
-void LayerSolver::SolveInView(const LayerProblem& problem, ChainLayer& layer,
-                              const LayersInView& view, Budget& budget, Solution& solution) const {
+void LayerSolver::SolveInView(const LayerProblem& problem, ChainLayer& layer, const TrueStart& at,
+                              Budget& budget, Solution& solution) const {
   Budget beginnings = budget.WithShare(kBeginningsShare);
   const auto resumed = [&](ChainLayer& next, const LayerProblem& from) {
     return Prepared(next).Resume(from, next.first.route, beginnings).route;
   };
   const auto alone = [&](ChainLayer& next, const LayerProblem& from) {
-    return from.start == next.predicted_start ? next.first.route : resumed(next, from);
+    const Solution* found = FoundFrom(next, from.start);
+    return found != nullptr ? found->route : resumed(next, from);
   };
   const auto foreseen = [&](ChainLayer& next, const LayerProblem& from) {
-    return next.foreseen.empty() ? resumed(next, from) : next.foreseen;
+    return next.foreseen.empty() ? alone(next, from) : next.foreseen;
+  };
+  const auto fallback = [&](const ChainLayer& next, const LayerProblem&) {
+    return FallbackRoute(next);
   };
   const auto greedy = [&](const ChainLayer& next, const LayerProblem& from) {
     return GreedyRoute(from, next);
   };
-  RoutesInView best = InView(problem, solution.route, view, alone);
-  const auto offer = [&best](RoutesInView routes) {
-    if (routes.cost < best.cost) best = std::move(routes);
+  std::vector<RoutesInView> known = {InView(problem, solution.route, at, alone)};
+  if (!layer.foreseen.empty()) known.push_back(InView(problem, layer.foreseen, at, foreseen));
+  known.push_back(InView(problem, GreedyRoute(problem, layer), at, greedy));
+  const bool knows_alone = KnowsAlone(layer, at);
+  if (knows_alone) known.push_back(InView(problem, FallbackRoute(layer), at, fallback));
+  const auto search_from = [&](RoutesInView best) {
+    solution = Prepared(layer).ResumeWithNext(problem, best.route, best.next, budget);
+    for (size_t i = 0; i < at.view.size(); ++i)
+      at.view[i]->foreseen = std::move(best.next[i].route);
   };
-  if (!layer.foreseen.empty()) offer(InView(problem, layer.foreseen, view, foreseen));
-  offer(InView(problem, GreedyRoute(problem, layer), view, greedy));
-  solution = Prepared(layer).ResumeWithNext(problem, best.route, best.next, budget);
-  for (size_t i = 0; i < view.size(); ++i) view[i]->foreseen = std::move(best.next[i].route);
+  const auto costs_less = [](const RoutesInView& a, const RoutesInView& b) {
+    return a.cost < b.cost;
+  };
+  search_from(*std::min_element(known.begin(), known.end(), costs_less));
+  const ChainLayer& last = *at.view.back();
+  if (!knows_alone || LeadsBack(problem, solution.route, layer, at) || HasWalls(last)) return;
+  FindWayBack(problem, solution.route, at, budget);
+  if (LeadsBack(problem, solution.route, layer, at)) return;
+  // Again, with the way back from the last layer.
+  for (RoutesInView& routes : known) {
+    LayerProblem& problem_of_last = routes.next.back().problem;
+    routes.cost -= RouteCost(problem_of_last, routes.next.back().route);
+    problem_of_last.finish = EndAlone(last);
+    routes.cost += RouteCost(problem_of_last, routes.next.back().route);
+  }
+  search_from(*std::min_element(known.begin(), known.end(), costs_less));
 }
 
 }  // namespace traverse

@@ -30,6 +30,7 @@ RouteHistory::Entry RouteHistory::Push(std::deque<Entry>& entries, const Entry& 
 
 RouteHistory::Entry RouteHistory::Enter(uint64_t shape, uint64_t key, const Entry& mine) {
   Shape& same_shape = OfShape(shape);
+  ++same_shape.seen;
   mine->key = key;
   Entry of_shape = Push(same_shape.entries, mine);
   if (same_shape.keys.size() >= kMostKeys && same_shape.keys.count(key) == 0) {
@@ -42,6 +43,11 @@ RouteHistory::Entry RouteHistory::Enter(uint64_t shape, uint64_t key, const Entr
   }
   Entry of_key = Push(same_key, mine);
   return of_key ? of_key : of_shape;
+}
+
+int RouteHistory::Seen(uint64_t shape) const {
+  const auto found = shapes_.find(shape);
+  return found == shapes_.end() ? 0 : found->second.seen;
 }
 
 void RouteHistory::Learn(uint64_t shape, uint64_t key, KnownRoutePtr known) {

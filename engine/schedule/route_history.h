@@ -67,6 +67,9 @@ class RouteHistory {
   // start from; null for the first layer of its shape.
   Entry Enter(uint64_t shape, uint64_t key, const Entry& mine);
 
+  // How many layers of the shape were entered, not counting those forgotten.
+  int Seen(uint64_t shape) const;
+
   // Adds a route of this key that was found in another way.
   void Learn(uint64_t shape, uint64_t key, KnownRoutePtr known);
 
@@ -84,6 +87,7 @@ class RouteHistory {
   static constexpr size_t kMostKeys = 32;
 
   struct Shape {
+    int seen = 0;               // layers
     std::deque<Entry> entries;  // the last kLag
     std::unordered_map<uint64_t, std::deque<Entry>> keys;
   };

@@ -98,9 +98,9 @@ TEST(LayerSolver, ALayerIsPreparedOnceForAllItsStages) {
 
 TEST(LayerSolver, ALayerSeenFromTheOneBeforeIsNotPreparedAgain) {
   Calls calls;
-  RunRows(calls, 20, {.look_ahead_paths = 100});
+  RunRows(calls, 40, {.look_ahead_paths = 100});
 
-  EXPECT_EQ(calls.prepared, 20);
+  EXPECT_EQ(calls.prepared, 40);
   EXPECT_GT(calls.resumed_after_solve, 20);
   EXPECT_EQ(calls.resumed_without_solve, 0);
 }

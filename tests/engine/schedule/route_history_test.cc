@@ -27,6 +27,16 @@ TEST(RouteHistory, TheFirstOfItsShapeHasNothingToStartFrom) {
   EXPECT_EQ(history.Enter(kShape, kKey, std::make_shared<PendingRoute>()), nullptr);
 }
 
+TEST(RouteHistory, CountsTheLayersOfAShape) {
+  RouteHistory history;
+  for (const uint64_t key : {kKey, kKey + 1, kKey}) {
+    history.Enter(kShape, key, std::make_shared<PendingRoute>());
+  }
+
+  EXPECT_EQ(history.Seen(kShape), 3);
+  EXPECT_EQ(history.Seen(kShape + 1), 0);
+}
+
 TEST(RouteHistory, KeepsTheCheaperRouteOfAKey) {
   RouteHistory history;
   const auto first = std::make_shared<PendingRoute>();
