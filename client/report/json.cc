@@ -139,6 +139,20 @@ Json TotalJson(const InputJob& job, const JobResult& result, double wall_seconds
   return total;
 }
 
+// A new file is what counts, not what the search knew of it: what its line of the summary and
+// `inspect` state. No bound is known of what is paid for it.
+void StateAsWritten(const GcodeRewrite& rewrite, Json& total) {
+  total.update({{"travel_given_mm", rewrite.before.travel_mm},
+                {"travel_mm", rewrite.after.travel_mm},
+                {"cost_given_seconds", rewrite.forecast.given_seconds},
+                {"cost_seconds", rewrite.forecast.seconds},
+                {"lower_bound_seconds", nullptr},
+                {"crossings_given", rewrite.before.crossings},
+                {"crossings", rewrite.after.crossings},
+                {"retractions_given", rewrite.before.retractions},
+                {"retractions", rewrite.after.retractions}});
+}
+
 Json GcodeTotalsJson(const gcode::PrintTotals& totals) {
   return {{"travel_mm", totals.travel_mm},           {"extruded_mm", totals.extruded_mm},
           {"retractions", totals.retractions},       {"crossings", totals.crossings},
@@ -177,8 +191,9 @@ std::string StopName(v1::StopReason reason) {
 std::string RoutesJson(const InputJob& job, const JobRun& run, const GcodeRewrite* rewrite) {
   std::string out = absl::StrFormat("{\"input\": %s, \"strategy\": %s, \"seed\": %d,\n",
                                     Dump(job.name), Dump(run.result.summary.strategy()), run.seed);
-  absl::StrAppendFormat(&out, " \"total\": %s,\n",
-                        Dump(TotalJson(job, run.result, run.wall_seconds)));
+  Json total = TotalJson(job, run.result, run.wall_seconds);
+  if (rewrite != nullptr) StateAsWritten(*rewrite, total);
+  absl::StrAppendFormat(&out, " \"total\": %s,\n", Dump(total));
   if (rewrite != nullptr) {
     absl::StrAppendFormat(&out, " \"gcode\": %s,\n", Dump(RewriteJson(*rewrite)));
   }

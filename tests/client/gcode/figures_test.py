@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""What the last line of `optimize` says of the new file is what `inspect` says of it.
+"""What the last line of `optimize` and its document say of the new file is what `inspect` says of it.
 
   figures_test.py TRAVERSE FILE...
 """
 
+import json
 import os
 import re
 import subprocess
@@ -32,6 +33,17 @@ def stated(summary):
     return travel, retractions, crossings, sum(part * 60 ** k for k, part in enumerate(reversed(parts))) // 60
 
 
+def documented(document):
+    """The same of the document: of its totals and of the file, which are one."""
+    with open(document, encoding="utf-8") as file:
+        read = json.load(file)
+    total, written = read["total"], read["gcode"]["written"]
+    figures = [(one["travel_mm"], one["retractions"], one["crossings"]) for one in (total, written)]
+    assert figures[0] == figures[1], f"{document}: {figures}"
+    return (f"{total['travel_mm'] / 1000:.2f}", str(total["retractions"]), str(total["crossings"]),
+            int(round(written["print_seconds"]) // 60))
+
+
 def seen(inspection):
     travel, = one(r"\ntravel +([\d.]+) m", inspection)
     retractions, = one(r"\nretractions +(\d+)", inspection)
@@ -49,13 +61,16 @@ def main():
         for file in files:
             for policy in ("safe", "free"):
                 out = os.path.join(folder, "out.gcode")
-                summary = run(traverse, "optimize", file, "-o", out, f"--policy={policy}", "--strategy=ni2opt")
+                document = os.path.join(folder, "out.json")
+                summary = run(traverse, "optimize", file, "-o", out, f"--policy={policy}", "--strategy=ni2opt",
+                              f"--json={document}")
                 if "layers rewritten" not in summary:
                     continue
                 rewritten += 1
                 inspection = run(traverse, "inspect", out)
                 assert len(re.findall(r"\btravel +[\d.]+", summary)) == 1, f"travel is stated twice: {summary}"
                 assert stated(summary) == seen(inspection), f"{file}, {policy}: {summary}\n{inspection}"
+                assert stated(summary) == documented(document), f"{file}, {policy}: {summary}\n{documented(document)}"
     assert rewritten >= len(files), f"only {rewritten} files were rewritten"
     print(f"{rewritten} files agree")
 

@@ -76,6 +76,18 @@ TEST(RoutesJson, StatesWhatIsPaidWhereTheCostIsTime) {
   EXPECT_THAT(RoutesJson(job, run), HasSubstr("\"chain_lower_bound_seconds\":100.0"));
 }
 
+TEST(RoutesJson, StatesOfANewFileWhatWasWrittenNotWhatTheSearchKnew) {
+  GcodeRewrite rewrite;
+  rewrite.before = {.travel_mm = 70, .retractions = 8, .crossings = 9};
+  rewrite.after = {.travel_mm = 50, .retractions = 6, .crossings = 5};
+  rewrite.forecast = {.given_seconds = 11, .seconds = 10};
+  const std::string json = RoutesJson(SmallJob(), SmallRun(), &rewrite);
+  EXPECT_THAT(json, HasSubstr("\"total\": {\"travel_given_mm\":70.0,\"travel_mm\":50.0,"));
+  EXPECT_THAT(json, HasSubstr("\"cost_given_seconds\":11.0,\"cost_seconds\":10.0,"
+                              "\"lower_bound_seconds\":null,\"crossings_given\":9,"
+                              "\"crossings\":5,\"retractions_given\":8,\"retractions\":6}"));
+}
+
 TEST(RoutesJson, HasWhatTheSearchTellsOfItself) {
   JobRun run = SmallRun();
   (*run.result.layers[1].mutable_statistics())["points_sp"] = 17;
