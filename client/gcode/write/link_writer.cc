@@ -195,10 +195,7 @@ void LinkWriter::WriteArrival(const LinkRequest& request, const Link& form) {
 void LinkWriter::WriteWipe(const PlacedPath& path, const Link& form) {
   const WipeForm wipe = WipeOf(form);
   const Position begin = out_.at.machine.at;
-  std::vector<Position> way = path.WayBack(wipe.way_mm);
-  // A head that has left the path returns to it behind the gap.
-  const bool departed = !begin.SameXy(path.last());
-  if (departed && way.size() > 1 && way.front().SameXy(path.first())) way.erase(way.begin());
+  const std::vector<Position> way = path.WayBackFrom(begin, wipe.way_mm);
   double length = 0;
   for (size_t i = 0; i < way.size(); ++i) length += LengthXy(i == 0 ? begin : way[i - 1], way[i]);
   // Rounding makes a way no shorter.

@@ -72,6 +72,10 @@ class PlacedPath {
   // along an open one. At most `length` mm, at least one point if the path has any length.
   std::vector<Position> WayBack(double length_mm) const;
 
+  // The same for a head at `begin`, which may have left the path: then it returns to it behind the
+  // gap of a closed path. At most `length` mm from `begin` on.
+  std::vector<Position> WayBackFrom(const Position& begin, double length_mm) const;
+
  private:
   void PlaceGiven();
   void PlaceReversed();

@@ -232,7 +232,7 @@ TEST(LayerWriter, LoopsBegunElsewhereAreLeftAsInTheFile) {
   writer.WritePaths(order, StartOfPaths(*file, order.front()), text);
 
   EXPECT_NE(text.find("X9.700000 Y9.800000 F9000\nG1 E-.8"), std::string::npos) << text;
-  EXPECT_NE(text.find("X9.800000 Y.300000 F9000\n;WIPE_START\nG1 F2400 X10.000000 Y1.612000"),
+  EXPECT_NE(text.find("X9.800000 Y.300000 F9000\n;WIPE_START\nG1 F2400 X10.000000 Y2.000000"),
             std::string::npos)
       << text;
 }

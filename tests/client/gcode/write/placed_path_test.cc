@@ -65,6 +65,32 @@ TEST_F(PlacedPathTest, TheWayBackIsAtMostAsLongAsThePath) {
   }
 }
 
+// The way from aside cuts a corner off; a wipe that is shorter for it pulls the rest at a
+// standstill.
+TEST_F(PlacedPathTest, TheWayBackFromAsideIsAsLong) {
+  for (const uint32_t entry : {0u, 1u}) {
+    const PlacedPath path = Placed(0, entry);
+    Position aside = path.last();
+    aside.x += 4 * kDecimalOne / 10;
+    aside.y += 3 * kDecimalOne / 10;
+    const std::vector<Position> way = path.WayBackFrom(aside, 4);
+
+    double mm = 0;
+    Position at = aside;
+    for (const Position& next : way) mm += LengthXy(std::exchange(at, next), next);
+    EXPECT_NEAR(mm, 4, 0.004) << entry;
+
+    // It ends on the path, and no farther than the detour to it.
+    bool on_path = false;
+    for (int along = 4000; along <= 5000; ++along) {
+      on_path |= LengthXy(path.WayBack(along * 1e-3).back(), way.back()) < 0.003;
+    }
+    EXPECT_TRUE(on_path) << entry;
+  }
+  const PlacedPath path = Placed(0, 1);
+  EXPECT_EQ(path.WayBackFrom(path.last(), 4).size(), path.WayBack(4).size());
+}
+
 // What coordinates do not tell is no move, which could not pull back anything.
 TEST_F(PlacedPathTest, TheWayBackHasNoMovesOfNoLength) {
   for (const uint32_t block : {0u, 1u}) {
