@@ -34,6 +34,12 @@ bool SaysOfLayer(std::string_view text) {
                      [text](std::string_view note) { return Begins(text, note); });
 }
 
+// Comments that say of what the next paths are: the first of them stands behind what is said of the
+// layer.
+bool SaysOfPaths(std::string_view text) {
+  return Begins(text, ";TYPE:") || Begins(text, "; FEATURE:");
+}
+
 }  // namespace
 
 SectionCutter::SectionCutter(std::string_view ignored, bool marked)
@@ -55,12 +61,14 @@ bool SectionCutter::Ignores(const VerifyLine& line) {
   return true;
 }
 
-// What is said of a layer stands behind its mark.
+// What is said of a layer stands behind its mark. A path that begins where the last one ended needs
+// no travel: what is said of it, as its height, is not of the layer.
 void SectionCutter::NoteHeader(const VerifyLine& line, bool mark) {
   const bool of_layer = !line.text.empty() && line.text[0] == ';' && SaysOfLayer(line.text);
   if (in_header_ && of_layer) section_.header = Mix(section_.header, DigestOf(line.text));
-  const bool ends = line.travels || line.role == LineRole::kDeposit ||
-                    line.role == LineRole::kFence || line.role == LineRole::kFixed;
+  const bool ends = line.travels || line.primes || line.role == LineRole::kDeposit ||
+                    line.role == LineRole::kFence || line.role == LineRole::kFixed ||
+                    SaysOfPaths(line.text);
   in_header_ = mark || (in_header_ && !ends);
 }
 

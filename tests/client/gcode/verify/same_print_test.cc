@@ -150,6 +150,19 @@ TEST(SamePrint, WhatIsSaidOfALayerStandsBehindItsMark) {
   EXPECT_EQ(Broken(a, With(a, kOther, ";HEIGHT:.2\n" + kOther)), "");
 }
 
+// The head is there already: what is said of the first path stands right behind the layer's own.
+TEST(SamePrint, WhatIsSaidOfAPathIsNotOfTheLayerWhereNoTravelLeadsToIt) {
+  const std::string type = "G1 E-.8 F2100\nG1 E.8\n;TYPE:Internal infill\n;HEIGHT:.2\n";
+  const std::string line = "G1 X9 Y9 E.3 F1200\n";
+  const std::string a = "M83\n;LAYER_CHANGE\n;Z:.2\n;HEIGHT:.2\nG1 Z.2 F9000\n" + kTwo +
+                        ";LAYER_CHANGE\n;Z:.4\n;HEIGHT:.2\nG1 Z.4 F9000\n" + type + line;
+  const std::string at_once = With(a, type, "G1 E-.8 F2100\nG1 E.8\n;TYPE:Internal infill\n");
+  const std::string open = With(a, type, ";TYPE:Internal infill\n;HEIGHT:.2\n");
+  EXPECT_EQ(Broken(a, at_once), "");
+  EXPECT_EQ(Broken(open, With(a, type, ";TYPE:Internal infill\n")), "");
+  EXPECT_EQ(Broken(a, With(a, ";Z:.4\n", "")), "same_print");
+}
+
 TEST(SamePrint, WhatStandsBehindADepositStaysThere) {
   const std::string a = kHead + With(kTwo, "X9 Y5 E.3\n", "X9 Y5 E.3 ; infill\n");
   EXPECT_EQ(Broken(a, With(a, " ; infill", "")), "same_print");
