@@ -13,10 +13,25 @@
 namespace traverse::gcode {
 namespace {
 
-struct Retractions {
-  double seconds = 0;
-  int64_t count = 0;
-};
+// What each retraction adds to its travel, in seconds.
+using Retractions = std::vector<double>;
+
+// The mean without those that do something else as well, such as to change the filament: few of
+// them may last longer than all the others.
+double UsualSeconds(Retractions seconds) {
+  constexpr double kOtherwise = 4;  // times the median
+  const auto middle = seconds.begin() + static_cast<ptrdiff_t>(seconds.size() / 2);
+  std::nth_element(seconds.begin(), middle, seconds.end());
+  const double most = kOtherwise * *middle;
+  double sum = 0;
+  size_t count = 0;
+  for (const double each : seconds) {
+    if (each > most) continue;
+    sum += each;
+    ++count;
+  }
+  return sum / static_cast<double>(count);
+}
 
 // What the links of one layer add up to.
 struct LayerTravel {
@@ -67,8 +82,7 @@ class TravelLearner {
     if (!retracts) return;
     const bool at_mark = (block.link & kLinkSplits) != 0;
     Retractions& retractions = at_mark ? learnt.at_marks : learnt.between_paths;
-    retractions.seconds += all.Finish().seconds - travel.Finish().seconds;
-    ++retractions.count;
+    retractions.push_back(all.Finish().seconds - travel.Finish().seconds);
   }
 
   void LearnStep(const Step& step, const Interpreter& interpreter, Dynamics& dynamics,
@@ -108,11 +122,9 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm,
       model.speed_mm_s = how.first;
       model.accel_mm_s2 = how.second;
     }
-    from_paths = from_paths || learnt.between_paths.count > 0;
+    from_paths = from_paths || !learnt.between_paths.empty();
     const Retractions& retractions = from_paths ? learnt.between_paths : learnt.at_marks;
-    if (retractions.count > 0) {
-      model.retraction_seconds = retractions.seconds / static_cast<double>(retractions.count);
-    }
+    if (!retractions.empty()) model.retraction_seconds = UsualSeconds(retractions);
     models.push_back(model);
   }
   for (TravelModel& each : models) each.retraction_threshold_mm = threshold_mm;

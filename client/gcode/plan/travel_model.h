@@ -21,9 +21,9 @@ struct TravelModel {
 };
 
 // [layer]. Speed and acceleration are those of most of the layer's travel. The time is the mean
-// that the layer's retractions add to the travel; a layer without such moves has that of the layer
-// before. Retractions at marks, where tools may change, count only until there are others. O(length
-// of all links). Uses `threads` threads.
+// that the layer's retractions add to the travel, but for a few that last far longer; a layer
+// without such moves has that of the layer before. Retractions at marks, where tools may change,
+// count only until there are others. O(length of all links). Uses `threads` threads.
 std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm, int threads = 1);
 
 // The time of the travel in the link before block `block`, as it is in the file, from standstill to

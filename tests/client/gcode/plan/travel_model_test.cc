@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "client/gcode/machine/motion_planner.h"
@@ -64,6 +65,22 @@ TEST(LearnTravel, RetractionsTakeTheTimeThatTheyAddToTravel) {
   EXPECT_LT(models[0].retraction_seconds,
             still + 2 * StopToStopSeconds(5, 120, models[0].accel_mm_s2));
   EXPECT_EQ(models[0].speed_mm_s, 150);
+}
+
+// Where the filament is changed beside other travel.
+TEST(LearnTravel, FewThatLastFarLongerTellNothingOfTheOthers) {
+  const auto learn = [](const std::string& change) {
+    Sketch sketch;
+    sketch.Infill(10, 0);
+    for (int y = 10; y < 60; y += 10) sketch.GoRetracted(0, y).Infill(10, y);
+    sketch.Add("G1 E-.8 F2100").Add(change).Go(0, 90).Add("G1 E.8 F2100").Infill(10, 90);
+    const std::shared_ptr<GcodeFile> file = sketch.Read();
+    EXPECT_EQ(file->blocks.size(), 7u);
+    return LearnTravel(*file, 1.5)[0].retraction_seconds;
+  };
+  const double usual = learn("M73 P1");
+  EXPECT_GT(usual, 0.02);
+  EXPECT_NEAR(learn("G1 E-15 F300\nG1 E15 F300"), usual, 1e-6);
 }
 
 // Behind a mark filament may be loaded, or waited for.
