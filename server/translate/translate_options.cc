@@ -23,11 +23,14 @@ absl::StatusOr<absl::Duration> Limit(const google::protobuf::Duration& limit,
                                      const FieldRange& range, const std::string& place) {
   const int64_t seconds = limit.seconds();
   const int32_t nanos = limit.nanos();
-  if (seconds > kMaxDurationSeconds || seconds < -kMaxDurationSeconds || nanos >= kNanosPerSecond ||
-      nanos <= -kNanosPerSecond || (seconds > 0 && nanos < 0) || (seconds < 0 && nanos > 0)) {
+  if (nanos >= kNanosPerSecond || nanos <= -kNanosPerSecond || (seconds > 0 && nanos < 0) ||
+      (seconds < 0 && nanos > 0)) {
     return Fault(place, "not a valid duration");
   }
   const absl::Duration duration = absl::Seconds(seconds) + absl::Nanoseconds(nanos);
+  if (absl::AbsDuration(duration) > absl::Seconds(kMaxDurationSeconds)) {
+    return Fault(place, "not a valid duration");
+  }
   TRAVERSE_RETURN_IF_ERROR(CheckRange(range, absl::ToDoubleSeconds(duration), place));
   return duration;
 }

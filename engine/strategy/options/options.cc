@@ -21,6 +21,11 @@ std::string Range(const OptionSpec& spec) {
   return absl::StrCat(" from ", spec.minimum, " to ", spec.maximum);
 }
 
+// What the library reads as well is more likely a mistake: spaces, hexadecimal digits, names.
+bool IsDecimal(const std::string& text) {
+  return text.find_first_not_of("+-.0123456789eE") == std::string::npos;
+}
+
 bool InRange(const OptionSpec& spec, double value) {
   return value >= spec.minimum && value <= spec.maximum;
 }
@@ -53,13 +58,13 @@ absl::StatusOr<StrategyOptions::Value> StrategyOptions::ParseValue(const OptionS
       if (!absl::SimpleAtob(text, &value.boolean)) return Fault(spec, text, "true or false");
       break;
     case OptionSpec::Type::kInt:
-      if (!absl::SimpleAtoi(text, &value.integer) ||
+      if (!IsDecimal(text) || !absl::SimpleAtoi(text, &value.integer) ||
           !InRange(spec, static_cast<double>(value.integer))) {
         return Fault(spec, text, absl::StrCat("a whole number", Range(spec)));
       }
       break;
     case OptionSpec::Type::kDouble:
-      if (!absl::SimpleAtod(text, &value.real) || !std::isfinite(value.real) ||
+      if (!IsDecimal(text) || !absl::SimpleAtod(text, &value.real) || !std::isfinite(value.real) ||
           !InRange(spec, value.real)) {
         return Fault(spec, text, absl::StrCat("a number", Range(spec)));
       }

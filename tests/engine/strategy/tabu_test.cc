@@ -114,6 +114,18 @@ TEST(Tabu, TakesEveryOption) {
       StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("options[\"diversifications\"]")));
 }
 
+TEST(Tabu, NumbersOfOptionsAreDecimal) {
+  for (const char* text : {"2", "+2", "2e0"}) {
+    const bool whole = std::string(text) != "2e0";
+    EXPECT_EQ(MakeStrategy("tabu", {{"diversifications", text}}).ok(), whole) << text;
+  }
+  for (const char* text : {"0x2", "2 ", " 2", "2\n", "nan", ""}) {
+    EXPECT_THAT(MakeStrategy("tabu", {{"diversifications", text}}).status(),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("a whole number")))
+        << text;
+  }
+}
+
 TEST(Tabu, SeedsLeadToOtherSearches) {
   OwnedProblem owned = testing::RandomProblem(
       7, {.shape = testing::PlanShape::kSequential, .min_paths = 40, .max_paths = 40});

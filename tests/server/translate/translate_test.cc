@@ -110,6 +110,7 @@ TEST(TranslateOptions, FaultsAreNamedByTheirPlace) {
       {"time_limit { seconds: 1 nanos: -1 }", "options.time_limit: not a valid duration"},
       {"time_limit { nanos: 2000000000 }", "options.time_limit: not a valid duration"},
       {"time_limit { seconds: 9000000000000000000 }", "options.time_limit: not a valid duration"},
+      {"time_limit { seconds: 315576000000 nanos: 1 }", "options.time_limit: not a valid duration"},
       {"layer_time_limit { nanos: -5 }", "options.layer_time_limit: "},
   };
   for (const BadCase& bad : cases) {
