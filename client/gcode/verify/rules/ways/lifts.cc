@@ -232,6 +232,18 @@ bool IsUsualSlope(const Observations& was, const LiftLog& log, const WayProfile&
   return slope > 0 && Knows(was.slopes, slope, kSlopeSlackUm + rounded);
 }
 
+// True if the travel begins with a slope as steep as one of the original's and is not low behind
+// it: the shorter it is, the larger is the share of the slope.
+bool SlopesAtOnce(const Observations& was, const LiftLog& log, const WayProfile& way, float lift) {
+  const WayProfile::Piece& piece = log.pieces[way.first];
+  const int64_t slope = SlopeOf(piece.to_mm - piece.from_mm, piece.length_mm, kLowMm);
+  const auto rounded = static_cast<int64_t>(10 / piece.length_mm);
+  if (slope == 0 || !Knows(was.slopes, slope, kSlopeSlackUm + rounded)) return false;
+  WayProfile behind = way;
+  ++behind.first;
+  return LowLength(log, behind, lift) <= kShortestMm;
+}
+
 void CompareKind(const Observations& was, const Observations& is, size_t kind,
                  std::vector<Finding>& breaks) {
   // Of a kind that the original has none of, the nearest one tells.
@@ -250,9 +262,11 @@ void CompareKind(const Observations& was, const Observations& is, size_t kind,
     const Height height = HeightOf(is.lifts, way);
     const float low = LowLength(is.lifts, way, habit.least_mm);
     const bool ends_low = !habit.may_end_low && EndsLow(is.lifts, way, habit.least_mm);
-    const bool lies_low = low > kLowMm &&
-                          (low > habit.low_mm || low / height.length_mm > habit.low_share) &&
-                          !IsUsualSlope(was, is.lifts, way);
+    const bool lies_low =
+        low > kLowMm &&
+        (low > habit.low_mm || (low / height.length_mm > habit.low_share &&
+                                !SlopesAtOnce(was, is.lifts, way, habit.least_mm))) &&
+        !IsUsualSlope(was, is.lifts, way);
     const bool never = height.apex_mm < habit.least_mm - kHeightSlackMm;
     if (!ends_low && !lies_low && !never) continue;
     if (WasAsLow(was.lifts, is.lifts, way, kind, habit.least_mm)) continue;

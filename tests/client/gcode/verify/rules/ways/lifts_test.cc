@@ -335,6 +335,26 @@ TEST(VerifyLifts, ASlopeOfTwoStretchesMayBecomeOne) {
   EXPECT_EQ(Broken(a, other("X59 Y2.451")), "lifts");
 }
 
+// A slope of the same length is a larger share of shorter travel.
+TEST(VerifyLifts, ASlopeAsLongAsBeforeMayLeadToANearerPath) {
+  const auto way = [](const std::string& slope, const std::string& from, const std::string& to) {
+    return absl::StrCat("G1 E-1 F2100\n", slope, "G1 ", from, "\nG1 Z.2\nG1 E1 F2100\n",
+                        ";TYPE:Internal infill\nG1 F1800\nG1 ", to, " E.3\n");
+  };
+  const std::string a = kHead + kOne + way("G1 X22 Y0 Z.6 F9000\n", "X60 Y0", "X60 Y9") +
+                        way("G1 X58 Y9 Z.6 F9000\n", "X24 Y9", "X24 Y2") +
+                        way("G1 X26 Y2 Z.6 F9000\n", "X70 Y2", "X70 Y9");
+  const auto other = [&](const std::string& slope) {
+    return kHead + kOne + way("G1 X22 Y0 Z.6 F9000\n", "X60 Y0", "X60 Y9") +
+           way(slope, "X70 Y9", "X70 Y2") + way("G1 X68 Y2 Z.6 F9000\n", "X24 Y2", "X24 Y9");
+  };
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, other("G1 X62 Y9 Z.6 F9000\n")), "");
+  // A longer one, and what stays low before it.
+  EXPECT_EQ(Broken(a, other("G1 X63.5 Y9 Z.6 F9000\n")), "lifts");
+  EXPECT_EQ(Broken(a, other("G1 X61.5 Y9 F9000\nG1 X63.5 Y9 Z.6\n")), "lifts");
+}
+
 TEST(VerifyLifts, AreNotDoneOnASlopeWhereNoneIs) {
   const std::string up = "G1 Z.6 F9000\nG1 X10 Y30 F9000\n";
   const std::string low = Line("Internal infill", "X10 Y50", "X20 Y50");
