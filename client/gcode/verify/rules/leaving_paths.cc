@@ -4,6 +4,7 @@
 // left out.
 
 #include <algorithm>
+#include <optional>
 
 #include "absl/strings/str_format.h"
 #include "absl/types/span.h"
@@ -74,6 +75,31 @@ bool RetractsAtOnce(const TraceChunk& chunk, uint32_t link) {
   return traced.first_move < traced.end_move && Retracts(chunk.moves[traced.first_move]);
 }
 
+// How far off the end of the path travel retracts that an open nozzle begins; nothing if it does
+// not.
+std::optional<double> RetractsAwayBy(const TraceChunk& chunk, uint32_t link) {
+  double mm = 0;
+  const Point end = chunk.EndOf(chunk.paths[link - 1]);
+  for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
+    const TraceMove& move = chunk.moves[m];
+    if (Retracts(move)) return mm;
+    if (!move.sideways()) continue;
+    if (move.kind != MoveKind::kTravel || !move.in_print) return std::nullopt;
+    mm = DistanceOf(end, move.to);
+  }
+  return std::nullopt;
+}
+
+// Travel from the same point of the path retracts in both files, but farther behind it than in the
+// original: by so much.
+double RetractsLaterBy(const LayerPair& layer, const Visit& visit) {
+  constexpr double kLaterMm = 0.25;
+  const auto was = RetractsAwayBy(layer.was(), visit.path + 1);
+  const auto is = RetractsAwayBy(layer.is(), visit.last_path + 1);
+  if (!was || !is || layer.is().links[visit.last_path + 1].scripted) return 0;
+  return *is > *was + kLaterMm ? *is - *was : 0;
+}
+
 void NoteDeparture(const LayerPair& layer, uint32_t path, Observations& seen) {
   const bool departs = DepartureOf(layer.was(), path + 1) != nullptr;
   if (!layer.Outer(path)) {
@@ -96,10 +122,18 @@ void CheckDeparture(const LayerPair& layer, const Visit& visit, const TurnedDepa
   const bool alike = EndAlike(layer, visit);
   const uint32_t end_was = layer.was().paths[visit.path].end_segment - 1;
   const uint32_t line_was = was != nullptr ? was->line : layer.was().segments[end_was].line;
-  if (LeavesUnlike(layer, visit, alike && visit.forward && visit.entry == 0, turned)) {
+  const bool as_sliced = alike && visit.forward && visit.entry == 0;
+  if (LeavesUnlike(layer, visit, as_sliced, turned)) {
     findings.breaks.push_back({VerifyRule::kPathEnds, line_was, DepartureOf(is, link_is)->line,
                                layer.index(),
                                "leaves the path by a short move that the original does not have"});
+    return;
+  }
+  if (const double later_mm = as_sliced ? RetractsLaterBy(layer, visit) : 0; later_mm > 0) {
+    findings.breaks.push_back(
+        {VerifyRule::kPathEnds, line_was, is.moves[is.links[link_is].first_move].line,
+         layer.index(),
+         absl::StrFormat("retracts %.2f mm farther behind the path than the original", later_mm)});
     return;
   }
   if (was == nullptr || !RetractsAtOnce(is, link_is)) return;

@@ -193,5 +193,18 @@ TEST(VerifyPathEnds, TravelThatLeavesAPathBeforeItRetractsDoesSo) {
   EXPECT_EQ(Broken(a, straight).find("path_ends"), std::string::npos);
 }
 
+// Behind a move that goes on along the path, too, though others retract later.
+TEST(VerifyPathEnds, TravelRetractsNoFartherBehindThePath) {
+  const std::string late =
+      kOther + "G1 X9 Y6.5 F9000\n" + Line("Internal infill", "X0 Y20", "X9 Y20");
+  const auto print = [&](const std::string& before) {
+    return kHead + kSquare + "G1 X10.2 Y10\n" + before + kOne + late;
+  };
+  const std::string a = print("");
+  EXPECT_EQ(Broken(a, a), "");
+  EXPECT_EQ(Broken(a, kHead + kSquare + "G1 X10.2 Y10\n" + late + kOne), "");
+  EXPECT_THAT(Broken(a, print("G1 X9.4 Y9.4 F9000\n")), HasSubstr("path_ends"));
+}
+
 }  // namespace
 }  // namespace traverse::gcode
