@@ -33,7 +33,7 @@ v1::Strategy StrategyFor(const InputJob& job, const SearchOptions& options) {
 // `auto` searches a file of G-code twice, the second time with less freedom.
 bool IsAskedTwice(const InputJob& job, const SearchOptions& options) {
   const v1::Strategy& named = options.strategy ? *options.strategy : job.options.strategy();
-  return named.name() == "auto" && options.deadline == absl::InfiniteDuration();
+  return named.name() == "auto";
 }
 
 // The layers of `job` again, with plans of less freedom.
@@ -144,7 +144,8 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
                                        const OptimizeFileOptions& options) {
   assert(job.gcode != nullptr);
   SearchOptions search = options;
-  search.finish_by -= WritingTime(job.gcode->text.size());
+  search.finish_by = std::min(options.finish_by - WritingTime(job.gcode->text.size()),
+                              absl::Now() + options.deadline);
   if (absl::Now() >= search.finish_by) {
     return SearchFault(absl::DeadlineExceededError("no time is left for a search"));
   }
@@ -153,7 +154,7 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
   if (!first.ok()) return SearchFault(first.status());
   made.runs.push_back(*std::move(first));
   if (IsAskedTwice(job, options)) {
-    const bool may_be_late = options.finish_by != absl::InfiniteFuture();
+    const bool may_be_late = search.finish_by != absl::InfiniteFuture();
     absl::Status again = SearchAgain(client, NarrowJob(job, options.gcode, made.runs[0].result),
                                      search, may_be_late, made.runs);
     if (again.ok() && options.gcode.crossings == gcode::Crossings::kFewer) {
@@ -161,7 +162,7 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
     }
     if (!again.ok()) return SearchFault(again);
   }
-  // A caller who names a quicker strategy or a deadline does not want further searches.
+  // A caller who names a quicker strategy does not want further searches.
   std::optional<gcode::PolishLimit> polish;
   if (IsAskedTwice(job, options)) polish = {search.finish_by, options.cancel};
   absl::StatusOr<GcodeRewrite> rewrite =

@@ -55,7 +55,7 @@ struct SearchProgress {
 struct SearchOptions {
   std::optional<v1::Strategy> strategy = std::nullopt;  // unset: the job's own
 
-  // Passed to the service with each search. A search with a deadline is not repeated.
+  // Of all searches of a file together, and of what is done to improve their orders.
   absl::Duration deadline = absl::InfiniteDuration();
 
   // When the whole file must be ready. Searches end early enough that the file can still be written

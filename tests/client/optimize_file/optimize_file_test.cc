@@ -166,26 +166,34 @@ TEST_F(OptimizeFileTest, RetractsAsOftenWherePrimesAreShort) {
   EXPECT_LT(with_short.after.travel_mm, with_short.before.travel_mm);
 }
 
-TEST_F(OptimizeFileTest, WithADeadlineForEachSearchItSearchesOnce) {
-  const InputJob job = Job(2);
-  OptimizeFileOptions options;
-  options.deadline = absl::Minutes(1);
+TEST_F(OptimizeFileTest, ADeadlineOfTheSearchesIsOfAllOfThem) {
+  const InputJob job = Job(3);
+  OptimizeFileOptions hurried;
+  hurried.deadline = absl::Milliseconds(1);
 
-  const FileResult<OptimizedFile> made = OptimizeFile(client_, job, options);
+  const FileResult<OptimizedFile> made = OptimizeFile(client_, job, hurried);
 
-  ASSERT_TRUE(std::holds_alternative<OptimizedFile>(made));
-  EXPECT_EQ(std::get<OptimizedFile>(made).runs.size(), 1u);
+  // Nothing may have been found by then.
+  if (const auto* one = std::get_if<OptimizedFile>(&made)) {
+    EXPECT_LE(one->runs.size(), 1u);
+  } else {
+    EXPECT_TRUE(absl::IsDeadlineExceeded(std::get<FileFault>(made).status));
+  }
 }
 
-TEST_F(OptimizeFileTest, ADeadlineForTheFileThatIsFarOffChangesNothing) {
+TEST_F(OptimizeFileTest, ADeadlineThatIsFarOffChangesNothing) {
   const InputJob job = Job(3);
   OptimizeFileOptions hurried;
   hurried.finish_by = absl::Now() + absl::Minutes(10);
+  OptimizeFileOptions with_searches_due;
+  with_searches_due.deadline = absl::Minutes(10);
 
   const FileResult<OptimizedFile> one = OptimizeFile(client_, job, {});
-  const FileResult<OptimizedFile> other = OptimizeFile(client_, job, hurried);
-
-  EXPECT_EQ(std::get<OptimizedFile>(one).rewrite.text, std::get<OptimizedFile>(other).rewrite.text);
+  const std::string& text = std::get<OptimizedFile>(one).rewrite.text;
+  for (const OptimizeFileOptions& options : {hurried, with_searches_due}) {
+    const FileResult<OptimizedFile> other = OptimizeFile(client_, job, options);
+    EXPECT_EQ(text, std::get<OptimizedFile>(other).rewrite.text);
+  }
 }
 
 TEST_F(OptimizeFileTest, EndsAtOnceWhenTheFileIsDue) {
