@@ -22,7 +22,7 @@ double UsualSeconds(Retractions seconds) {
   constexpr double kOtherwise = 4;  // times the median
   const auto middle = seconds.begin() + static_cast<ptrdiff_t>(seconds.size() / 2);
   std::nth_element(seconds.begin(), middle, seconds.end());
-  const double most = kOtherwise * *middle;
+  const double most = std::max(kOtherwise * *middle, *middle);  // rounding may be below 0
   double sum = 0;
   size_t count = 0;
   for (const double each : seconds) {
