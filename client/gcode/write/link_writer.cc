@@ -196,8 +196,7 @@ void LinkWriter::WriteWipe(const PlacedPath& path, const Link& form) {
   const WipeForm wipe = WipeOf(form);
   const Position begin = out_.at.machine.at;
   const std::vector<Position> way = path.WayBackFrom(begin, wipe.way_mm);
-  double length = 0;
-  for (size_t i = 0; i < way.size(); ++i) length += LengthXy(i == 0 ? begin : way[i - 1], way[i]);
+  double length = LengthXy(begin, way);
   // Rounding makes a way no shorter.
   constexpr double kAsLong = 0.99;
   const bool shorter = wipe.still_feed > 0 && length < kAsLong * wipe.way_mm;

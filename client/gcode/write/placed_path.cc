@@ -4,7 +4,6 @@
 #include <cmath>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "client/gcode/model/arc.h"
 #include "client/gcode/model/outline.h"
@@ -49,29 +48,6 @@ void WriteSegment(const BodySegment& segment, const PathBody& body, GcodeOut& ou
   out.Set(body.states[segment.state], kAllSlots);
   out.Segment(kCommands[segment.command], segment.to, true, segment.filament, segment.feed,
               ArcWords(segment, out.file().xy_style), segment.comment);
-}
-
-double LengthOf(Position at, const std::vector<Position>& way) {
-  double length = 0;
-  for (const Position& next : way) length += LengthXy(std::exchange(at, next), next);
-  return length;
-}
-
-// The first `length` of `way`, which leads on from `at`.
-std::vector<Position> FirstOf(double length, Position at, const std::vector<Position>& way) {
-  std::vector<Position> begun;
-  for (const Position& next : way) {
-    const double step = LengthXy(at, next);
-    if (step >= length) {
-      const Position end = Along(at, next, length);
-      if (!end.SameXy(at)) begun.push_back(end);
-      break;
-    }
-    begun.push_back(next);
-    length -= step;
-    at = next;
-  }
-  return begun;
 }
 
 // A way back from aside is looked for in so many steps, until it is as long as coordinates tell.
@@ -183,9 +159,12 @@ void PlacedPath::Write(bool without_progress, GcodeOut& out) const {
 }
 
 std::vector<Position> PlacedPath::WayBack(double length_mm) const {
-  PathBody given;
-  if (as_given()) given = ReadBody(*file_, block());
-  const std::vector<BodySegment>& segments = as_given() ? given.segments : body_.segments;
+  if (!as_given()) return WayBackOver(body_.segments, length_mm);
+  return WayBackOver(ReadBody(*file_, block()).segments, length_mm);
+}
+
+std::vector<Position> PlacedPath::WayBackOver(const std::vector<BodySegment>& segments,
+                                              double length_mm) const {
   std::vector<Position> way;
   Position at = last_;
   const auto go_to = [&](const Position& to) {
@@ -211,15 +190,16 @@ std::vector<Position> PlacedPath::WayBack(double length_mm) const {
 
 std::vector<Position> PlacedPath::WayBackFrom(const Position& begin, double length_mm) const {
   if (begin.SameXy(last_)) return WayBack(length_mm);
+  const PathBody given = as_given() ? ReadBody(*file_, block()) : PathBody();
+  const std::vector<BodySegment>& segments = as_given() ? given.segments : body_.segments;
   // The way from aside to the path cuts a corner off, so that as long a way leads farther along.
   const double farthest_mm = length_mm + 2 * LengthXy(last_, begin);
-  const std::vector<Position> far = WayBack(farthest_mm);
   std::vector<Position> way;
   double along_mm = length_mm;
   for (int step = 0; step < kMostSteps; ++step) {
-    way = FirstOf(along_mm, last_, far);
+    way = WayBackOver(segments, along_mm);
     if (way.size() > 1 && way.front().SameXy(first_)) way.erase(way.begin());
-    const double missing_mm = length_mm - LengthOf(begin, way);
+    const double missing_mm = length_mm - LengthXy(begin, way);
     if (missing_mm < kRounding || along_mm >= farthest_mm) break;
     along_mm = std::min(along_mm + missing_mm, farthest_mm);
   }

@@ -81,6 +81,10 @@ class PlacedPath {
   void PlaceReversed();
   void PlaceRotated();
 
+  // WayBack; `segments` are those of the path as it is placed.
+  std::vector<Position> WayBackOver(const std::vector<BodySegment>& segments,
+                                    double length_mm) const;
+
   const GcodeFile* file_;
   Placement placement_;
   Position first_;

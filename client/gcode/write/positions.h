@@ -4,6 +4,8 @@
 #define TRAVERSE_CLIENT_GCODE_WRITE_POSITIONS_H_
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "client/gcode/machine/interpreter.h"
 #include "client/gcode/machine/vertex.h"
@@ -22,6 +24,13 @@ inline Position InWords(Vertex mm, double unit_mm) {
 
 inline double LengthXy(const Position& from, const Position& to) {
   return std::hypot(ToDouble(to.x - from.x), ToDouble(to.y - from.y));
+}
+
+// Of the way from `from` through the points of `way`.
+inline double LengthXy(Position from, const std::vector<Position>& way) {
+  double length = 0;
+  for (const Position& to : way) length += LengthXy(std::exchange(from, to), to);
+  return length;
 }
 
 // The point `way` beyond `from` towards `to`, at the height of `from`; not rounded up to `to`
