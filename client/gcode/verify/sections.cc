@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "client/gcode/verify/machine/print_settings.h"
+
 namespace traverse::gcode {
 namespace {
 
@@ -34,12 +36,6 @@ bool SaysOfLayer(std::string_view text) {
                      [text](std::string_view note) { return Begins(text, note); });
 }
 
-// Comments that say of what the next paths are: the first of them stands behind what is said of the
-// layer.
-bool SaysOfPaths(std::string_view text) {
-  return Begins(text, ";TYPE:") || Begins(text, "; FEATURE:");
-}
-
 }  // namespace
 
 SectionCutter::SectionCutter(std::string_view ignored, bool marked)
@@ -68,7 +64,7 @@ void SectionCutter::NoteHeader(const VerifyLine& line, bool mark) {
   if (in_header_ && of_layer) section_.header = Mix(section_.header, DigestOf(line.text));
   const bool ends = line.travels || line.primes || line.role == LineRole::kDeposit ||
                     line.role == LineRole::kFence || line.role == LineRole::kFixed ||
-                    SaysOfPaths(line.text);
+                    NamesFeature(line.text);
   in_header_ = mark || (in_header_ && !ends);
 }
 

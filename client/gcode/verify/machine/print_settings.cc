@@ -35,8 +35,12 @@ void PrintSettings::SetWord(const CommandWords& words, char letter, size_t slot)
   if (words.Has(letter)) Set(slot, static_cast<uint64_t>(words[letter]) + 1);
 }
 
+bool NamesFeature(std::string_view comment) {
+  return Begins(comment, ";TYPE:") || Begins(comment, "; FEATURE:");
+}
+
 bool PrintSettings::SetByComment(std::string_view text) {
-  if (Begins(text, ";TYPE:") || Begins(text, "; FEATURE:")) {
+  if (NamesFeature(text)) {
     Set(kType, ValueOf(text));
     return true;
   }

@@ -13,6 +13,9 @@
 
 namespace traverse::gcode {
 
+// `;TYPE:Perimeter`, `; FEATURE: Inner wall`: the comment says of what the following paths are.
+bool NamesFeature(std::string_view comment);
+
 // Values are digests or numbers, to be compared; 0 where nothing was set yet.
 class PrintSettings {
  public:

@@ -221,10 +221,8 @@ bool WasAsLow(const LiftLog& was, const LiftLog& is, const WayProfile& way, size
   });
 }
 
-// True if the travel is one slope, as steep as one of the original's: when it is short, most of it
-// lies low.
-bool IsUsualSlope(const Observations& was, const LiftLog& log, const WayProfile& way) {
-  if (way.end != way.first + 1) return false;
+// True if the travel begins with a slope as steep as one of the original's.
+bool BeginsWithUsualSlope(const Observations& was, const LiftLog& log, const WayProfile& way) {
   const WayProfile::Piece& piece = log.pieces[way.first];
   const int64_t slope = SlopeOf(piece.to_mm - piece.from_mm, piece.length_mm, kLowMm);
   // Heights are rounded to micrometres.
@@ -232,13 +230,15 @@ bool IsUsualSlope(const Observations& was, const LiftLog& log, const WayProfile&
   return slope > 0 && Knows(was.slopes, slope, kSlopeSlackUm + rounded);
 }
 
-// True if the travel begins with a slope as steep as one of the original's and is not low behind
-// it: the shorter it is, the larger is the share of the slope.
+// The same, and it is no more than that: when it is short, most of it lies low.
+bool IsUsualSlope(const Observations& was, const LiftLog& log, const WayProfile& way) {
+  return way.end == way.first + 1 && BeginsWithUsualSlope(was, log, way);
+}
+
+// True if the travel begins so and is not low behind that slope: the shorter it is, the larger is
+// the share of the slope.
 bool SlopesAtOnce(const Observations& was, const LiftLog& log, const WayProfile& way, float lift) {
-  const WayProfile::Piece& piece = log.pieces[way.first];
-  const int64_t slope = SlopeOf(piece.to_mm - piece.from_mm, piece.length_mm, kLowMm);
-  const auto rounded = static_cast<int64_t>(10 / piece.length_mm);
-  if (slope == 0 || !Knows(was.slopes, slope, kSlopeSlackUm + rounded)) return false;
+  if (!BeginsWithUsualSlope(was, log, way)) return false;
   WayProfile behind = way;
   ++behind.first;
   return LowLength(log, behind, lift) <= kShortestMm;
