@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kSameEndMm = 0.015;
 constexpr double kSameMoveMm = 0.02;
+constexpr double kGoesOnSlackMm = 0.05;
 
 // Whether travel from the path leads to the same point in both files, maybe of the next layer.
 bool LeadAlike(const LayerPair& layer, const Visit& visit) {
@@ -161,6 +162,16 @@ Point PointAlong(absl::Span<const Piece> pieces, double mm) {
   return pieces.back().b;
 }
 
+// How far the open nozzle goes on along the path, however fast.
+double GoesOnMm(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces) {
+  double length = 0;
+  for (const TraceMove& move : MovesAlong(chunk, path, pieces)) {
+    if (move.kind != MoveKind::kTravel || !move.open || !move.in_print) break;
+    length += move.length_mm();
+  }
+  return length;
+}
+
 // The move with which travel goes on along the begin of the loop that it leaves, however fast, and
 // not to the next path. Nothing if it does not.
 const TraceMove* GoesOnBy(const LayerPair& layer, uint32_t path) {
@@ -179,30 +190,21 @@ const TraceMove* GoesOnBy(const LayerPair& layer, uint32_t path) {
   const bool open = first.kind == MoveKind::kTravel && first.open && first.in_print;
   if (!open || length <= kLeastMm || length > kMostMm) return nullptr;
   if (DistanceOf(PointAlong(pieces, length), first.to) > kBesideMm) return nullptr;
+  // A straight move off a small loop ends there too, but leads across it.
+  if (GoesOnMm(was, path, pieces) <= length - kGoesOnSlackMm) return nullptr;
   const TraceMove* moves = was.moves.data();
   const bool leads_on = std::any_of(moves + link.first_move + 1, moves + link.end_move, IsSideways);
   return leads_on ? &first : nullptr;
 }
 
-// How far the open nozzle goes on along the path, however fast.
-double GoesOnMm(const TraceChunk& chunk, uint32_t path, absl::Span<const Piece> pieces) {
-  double length = 0;
-  for (const TraceMove& move : MovesAlong(chunk, path, pieces)) {
-    if (move.kind != MoveKind::kTravel || !move.open || !move.in_print) break;
-    length += move.length_mm();
-  }
-  return length;
-}
-
 // Travel that goes on along the loop that it leaves does so wherever that ends.
 void CheckGoingOn(const LayerPair& layer, const Visit& visit, LayerFindings& findings) {
-  constexpr double kSlackMm = 0.05;
   if (!layer.EndsPath(visit)) return;
   const TraceMove* had = GoesOnBy(layer, visit.path);
   if (had == nullptr) return;
   const TraceChunk& is = layer.is();
   const double mm = GoesOnMm(is, visit.last_path, layer.PiecesOf(visit.path));
-  if (mm > had->length_mm() - kSlackMm) return;
+  if (mm > had->length_mm() - kGoesOnSlackMm) return;
   const TraceLink& link = is.links[visit.last_path + 1];
   const uint32_t line = link.first_move < link.end_move ? is.moves[link.first_move].line
                                                         : is.segments[visit.last_segment].line;

@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "tests/client/gcode/verify/small_prints.h"
 
 namespace traverse::gcode {
@@ -125,6 +128,21 @@ TEST(VerifyPathEnds, TravelGoesOnAlongALoopWhereverThatEnds) {
   // A single move, or one to another side, leads to the next path.
   const std::string b = kHead + kOne + way + kSquare + inside;
   EXPECT_EQ(Broken(b, kHead + kOne + kSquare + kOther + pulled), "");
+}
+
+// A straight move off a small loop ends beside where the loop would be after as much, but leads
+// across it.
+TEST(VerifyPathEnds, TravelAcrossASmallLoopDoesNotGoOnAlongIt) {
+  constexpr int kSides = 24;
+  std::string loop = Way("X10.3 Y10") + ";TYPE:External perimeter\nG1 F1800\n";
+  for (int side = 1; side <= kSides; ++side) {
+    const double angle = 2 * std::numbers::pi * side / kSides;
+    absl::StrAppendFormat(&loop, "G1 X%.3f Y%.3f E.01\n", 10 + 0.3 * std::cos(angle),
+                          10 + 0.3 * std::sin(angle));
+  }
+  const std::string across = "G1 X10.053 Y10.314 F9000\n";
+  const std::string a = kHead + loop + across + Line("Internal infill", "X15 Y15", "X16 Y15");
+  EXPECT_EQ(Broken(a, a), "");
 }
 
 // The move inwards turns with the loop's start: to the same side, and as far.
