@@ -132,6 +132,9 @@ void BlockBuilder::NoteInLink(const Step& step, const MachineState& before,
   link_.flags |= LinkFlagsOf(step.kind);
   if ((LinkFlagsOf(step.kind) & kLinkFixed) != 0) link_.travels_behind_fixed = 0;
   NotePlace(step, after);
+  if (step.kind == StepKind::kFilament && step.filament > kRetractionSlack && !step.retracted) {
+    link_.primes = true;
+  }
   if (step.kind == StepKind::kTravel) ++link_.travels_behind_fixed;
   if (step.kind == StepKind::kFilament && step.filament < 0) link_.flags |= kLinkRetracts;
   const bool pulls = step.filament < 0 || step.kind == StepKind::kFirmwareRetract;
@@ -281,7 +284,10 @@ void BlockBuilder::CloseLink(const Block& block) {
     const Block& last = Last();
     if (last.mode != block.mode) link_.flags |= kLinkFixed;
     if (last.object != block.object) link_.flags |= kLinkSplits;
-    if ((link_.flags & kLinkFixed) != 0 && !link_.lost && link_.travels_behind_fixed > 0) {
+    // Such a push leaves a blob, or fills the nozzle of a tool that was changed: it stays there.
+    if (link_.primes) link_.flags |= kLinkFixed;
+    if ((link_.flags & kLinkFixed) != 0 && !link_.lost && !link_.primes &&
+        link_.travels_behind_fixed > 0) {
       link_.flags &= static_cast<uint16_t>(~kLinkFixed);
       link_.flags |= kLinkFixedFrom | kLinkSplits;
     }
