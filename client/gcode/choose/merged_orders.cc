@@ -52,6 +52,10 @@ class KnownWays {
  public:
   KnownWays(const LayerWriter& writer, const TravelModel& travel, const MergeRules& rules)
       : writer_(writer), travel_(travel), rules_(rules), given_(writer.GivenOrder()) {
+    for (const Outline& outline : writer.outlines()) {
+      numbers_.push_back(placements_);
+      placements_ += static_cast<uint32_t>(std::max<size_t>(outline.points.size(), 2));
+    }
     given_ways_.resize(given_.size());
     for (size_t i = 1; i < given_.size(); ++i) {
       given_ways_[i] = writer.EstimateWay(i, given_[i - 1], given_[i], travel);
@@ -67,20 +71,53 @@ class KnownWays {
     const bool alike = next == place || !(boundary || rules_.boundaries[next]);
     if (as_given && alike) return given_ways_[next];
     if (known_.size() >= kMostKnown) known_.clear();
-    const Key key{boundary ? place : 0, KeyOf(from), KeyOf(to)};
+    const Key key{boundary ? static_cast<uint32_t>(place) : 0, Number(from), Number(to)};
     const auto [found, added] = known_.try_emplace(key);
-    if (added) found->second = Estimate(place, from, to);
-    return found->second;
+    if (added) found->second = Known(Estimate(place, from, to));
+    return found->second.Totals();
   }
 
  private:
-  using Key = std::tuple<size_t, uint64_t, uint64_t>;
+  using Key = std::tuple<uint32_t, uint32_t, uint32_t>;
 
-  // Of 88 bytes each.
-  static constexpr size_t kMostKnown = 250'000;
+  // The totals of one way in few bytes: most of the time goes into fetching them from memory.
+  class Known {
+   public:
+    Known() = default;
+    explicit Known(const WayTotals& way)
+        : seconds_(way.seconds),
+          mm_(way.mm),
+          crosses_(way.crossings > 0),
+          open_(way.open > 0),
+          too_long_(way.too_long > 0),
+          retracts_(way.retractions > 0) {}
 
-  static uint64_t KeyOf(const Placement& placement) {
-    return uint64_t{placement.block} << 32 | placement.entry;
+    WayTotals Totals() const {
+      WayTotals way;
+      way.seconds = seconds_;
+      way.mm = mm_;
+      way.crossings = crosses_;
+      way.open = open_;
+      way.too_long = too_long_;
+      way.retractions = retracts_;
+      return way;
+    }
+
+   private:
+    double seconds_ = 0;
+    double mm_ = 0;
+    bool crosses_ = false;
+    bool open_ = false;
+    bool too_long_ = false;
+    bool retracts_ = false;
+  };
+
+  // Of 40 bytes each.
+  static constexpr size_t kMostKnown = 500'000;
+
+  // Of all placements of the layer's paths.
+  uint32_t Number(const Placement& placement) const {
+    return numbers_[placement.block - given_.front().block] + placement.entry;
   }
 
   WayTotals Estimate(size_t place, const Placement& from, const Placement& to) const {
@@ -93,9 +130,11 @@ class KnownWays {
   const TravelModel& travel_;
   const MergeRules& rules_;
   const LayerOrder given_;
+  std::vector<uint32_t> numbers_;  // [path] the number of its first placement
+  uint32_t placements_ = 0;
   std::vector<WayTotals> given_ways_;  // [place] as the layer was given
   double longest_open_mm_ = 0;         // of them
-  absl::flat_hash_map<Key, WayTotals> known_;
+  absl::flat_hash_map<Key, Known> known_;
 };
 
 bool EndsAlike(const LayerOrder& a, const LayerOrder& b) {

@@ -85,32 +85,42 @@ bool OrderState::MayTurn(size_t begin, size_t end) const {
   return true;
 }
 
-// What the order comes to with `runs`; leaves them, and the ways to them, in the scratch. Ways
-// within a run that is not turned stay.
+// The path at place `k` of `run`, as it is to be.
+Placement OrderState::PlacedIn(const PlaceRun& run, size_t k) const {
+  Placement placement = order_[run.turned ? run.end - 1 - k : run.begin + k];
+  if (run.turned) placement = Turned(placement);
+  if (run.entry) placement.entry = *run.entry;
+  return placement;
+}
+
+// The ways of a run that are new: all of one that is turned, else the way to it.
+size_t OrderState::NewWays(const PlaceRun& run) {
+  return run.turned ? run.size() : std::min<size_t>(run.size(), 1);
+}
+
+// What the order comes to with `runs`; leaves the new ways in the scratch. Ways within a run that
+// is not turned stay.
 WayTotals OrderState::TotalsWith(size_t begin, size_t end, const PlaceRuns& runs) {
-  run_.clear();
-  new_ways_.clear();
+  asked_ways_.clear();
   WayTotals totals = totals_;
+  const auto exchange = [&](const WayTotals& was, const WayTotals& is) {
+    totals -= was;
+    totals += is;
+    asked_ways_.push_back(is);
+  };
+  Placement before = order_[begin - 1];
+  size_t place = begin;
   for (const PlaceRun& run : runs) {
-    for (size_t k = 0; k < run.size(); ++k) {
-      Placement placement = order_[run.turned ? run.end - 1 - k : run.begin + k];
-      if (run.turned) placement = Turned(placement);
-      if (run.entry) placement.entry = *run.entry;
-      const Placement& before = run_.empty() ? order_[begin - 1] : run_.back();
-      totals -= k == 0 || run.turned ? ways_[run.begin + k] : WayTotals();
-      if (k > 0 && !run.turned) {
-        new_ways_.push_back(ways_[run.begin + k]);
-      } else {
-        new_ways_.push_back(Ask(begin + run_.size(), before, placement));
-        totals += new_ways_.back();
-      }
-      run_.push_back(placement);
+    for (size_t k = 0; k < NewWays(run); ++k) {
+      const Placement placement = PlacedIn(run, k);
+      exchange(ways_[run.begin + k], Ask(place + k, before, placement));
+      before = placement;
     }
+    if (run.size() > 0) before = PlacedIn(run, run.size() - 1);
+    place += run.size();
   }
-  assert(run_.size() == end - begin);
-  new_ways_.push_back(Ask(end, run_.back(), order_[end]));
-  totals -= ways_[end];
-  totals += new_ways_.back();
+  assert(place == end);
+  exchange(ways_[end], Ask(end, before, order_[end]));
   return totals;
 }
 
@@ -118,24 +128,36 @@ bool OrderState::DoIfBetter(size_t begin, size_t end, const PlaceRuns& runs) {
   assert(0 < begin && begin < end && end < size());
   const WayTotals totals = TotalsWith(begin, end, runs);
   if (!judge_.IsBetter(totals, totals_)) return false;
-  Take(begin, end, begin + runs[0].size(), totals);
+  Take(begin, end, runs, totals);
   return true;
 }
 
 void OrderState::Do(size_t begin, size_t end, const PlaceRuns& runs) {
   assert(0 < begin && begin < end && end < size());
   const WayTotals totals = TotalsWith(begin, end, runs);
-  Take(begin, end, begin + runs[0].size(), totals);
+  Take(begin, end, runs, totals);
 }
 
-void OrderState::Take(size_t begin, size_t end, size_t middle, const WayTotals& totals) {
+// REQUIRES: TotalsWith was called last, for the same, and returned `totals`.
+void OrderState::Take(size_t begin, size_t end, const PlaceRuns& runs, const WayTotals& totals) {
   totals_ = totals;
+  run_.clear();
+  new_ways_.clear();
+  auto asked = asked_ways_.begin();
+  for (const PlaceRun& run : runs) {
+    for (size_t k = 0; k < run.size(); ++k) {
+      run_.push_back(PlacedIn(run, k));
+      new_ways_.push_back(k < NewWays(run) ? *asked++ : ways_[run.begin + k]);
+    }
+  }
+  new_ways_.push_back(*asked);
   const auto at = static_cast<std::ptrdiff_t>(begin);
   std::copy(run_.begin(), run_.end(), order_.begin() + at);
   std::copy(new_ways_.begin(), new_ways_.end(), ways_.begin() + at);
   for (size_t i = begin; i < end; ++i) place_[PathAt(i)] = i;
   changed_begin_ = std::min(changed_begin_, begin);
   changed_end_ = std::max(changed_end_, end + 1);
+  const size_t middle = begin + runs[0].size();
   for (const size_t i : {begin - 1, begin, middle - 1, middle, end - 1, end}) {
     touched_.push_back(PathAt(i));
   }

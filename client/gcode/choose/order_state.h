@@ -90,8 +90,10 @@ class OrderState {
   WayTotals Ask(size_t place, const Placement& from, const Placement& to);
   bool MayCut(size_t place) const;
   bool AnyBetween(const std::vector<uint32_t>& paths, size_t begin, size_t end) const;
+  Placement PlacedIn(const PlaceRun& run, size_t k) const;
+  static size_t NewWays(const PlaceRun& run);
   WayTotals TotalsWith(size_t begin, size_t end, const PlaceRuns& runs);
-  void Take(size_t begin, size_t end, size_t middle, const WayTotals& totals);
+  void Take(size_t begin, size_t end, const PlaceRuns& runs, const WayTotals& totals);
 
   const uint32_t first_block_;
   const LayerFreedom& freedom_;
@@ -112,7 +114,8 @@ class OrderState {
 
   std::vector<uint32_t> touched_;
   size_t asked_ = 0;
-  LayerOrder run_;  // scratch: the paths at the changed places, and their travel
+  std::vector<WayTotals> asked_ways_;  // scratch: the new ways of a change
+  LayerOrder run_;                     // and the paths at the changed places, and all their travel
   std::vector<WayTotals> new_ways_;
 };
 
