@@ -29,7 +29,7 @@ void SetCost(const TravelModel& model, v1::CostModel& cost) {
   // The service has limits; a file may state anything.
   time.set_speed_mm_s(std::clamp(model.speed_mm_s, 0.001, 1e5));
   if (model.accel_mm_s2 > 0) time.set_accel_mm_s2(std::clamp(model.accel_mm_s2, 0.001, 1e7));
-  time.set_retraction_seconds(std::clamp(model.retraction_seconds, 0.0, 1e4));
+  time.set_retraction_seconds(std::clamp(model.retraction_price, 0.0, 1e4));
   time.set_retraction_threshold_mm(std::clamp(model.retraction_threshold_mm, 0.0, 1e7));
 }
 

@@ -23,6 +23,9 @@ class PrintMeter {
   // Follows one step of `interpreter`, which has just made it.
   void Follow(const Step& step, const Interpreter& interpreter);
 
+  // Comes to a standstill.
+  void Stop() { planner_.Stop(); }
+
   // The totals so far; the machine comes to a standstill.
   PrintTotals Finish();
 

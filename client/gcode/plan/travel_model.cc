@@ -33,12 +33,26 @@ double UsualSeconds(Retractions seconds) {
   return sum / static_cast<double>(count);
 }
 
+// Of the same links.
+struct Additions {
+  Retractions alone;  // without what the stops cost the way
+  Retractions altogether;
+
+  bool empty() const { return alone.empty(); }
+};
+
 // What the links of one layer add up to.
 struct LayerTravel {
   std::map<std::pair<double, double>, double> way_mm;  // by speed and acceleration
-  Retractions between_paths;
-  Retractions at_marks;  // where scripts may change tools, prime and wait as well
+  Additions between_paths;
+  Additions at_marks;  // where scripts may change tools, prime and wait as well
 };
+
+// Filament is pulled back, or pushed, at a standstill.
+bool StandsStill(const Step& step) {
+  return step.kind == StepKind::kFilament || step.kind == StepKind::kFirmwareRetract ||
+         step.kind == StepKind::kFirmwareUnretract;
+}
 
 class TravelLearner {
  public:
@@ -73,16 +87,21 @@ class TravelLearner {
     Interpreter interpreter(std::string_view(file_.text).substr(0, block.begin), before.end, state);
     PrintMeter all(file_.profile, dynamics, nullptr);
     PrintMeter travel(file_.profile, dynamics, nullptr);
+    PrintMeter flowing(file_.profile, dynamics, nullptr);  // without stops
     for (Step step; interpreter.Next(step);) {
       const bool travels = step.kind == StepKind::kTravel || step.kind == StepKind::kSlot;
       if (retracts) all.Follow(step, interpreter);
       if (retracts && travels) travel.Follow(step, interpreter);
+      if (retracts && travels) flowing.Follow(step, interpreter);
+      if (StandsStill(step)) travel.Stop();
       LearnStep(step, interpreter, dynamics, learnt);
     }
     if (!retracts) return;
     const bool at_mark = (block.link & kLinkSplits) != 0;
-    Retractions& retractions = at_mark ? learnt.at_marks : learnt.between_paths;
-    retractions.push_back(all.Finish().seconds - travel.Finish().seconds);
+    Additions& added = at_mark ? learnt.at_marks : learnt.between_paths;
+    const double seconds = all.Finish().seconds;
+    added.alone.push_back(seconds - travel.Finish().seconds);
+    added.altogether.push_back(seconds - flowing.Finish().seconds);
   }
 
   void LearnStep(const Step& step, const Interpreter& interpreter, Dynamics& dynamics,
@@ -123,8 +142,11 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm,
       model.accel_mm_s2 = how.second;
     }
     from_paths = from_paths || !learnt.between_paths.empty();
-    const Retractions& retractions = from_paths ? learnt.between_paths : learnt.at_marks;
-    if (!retractions.empty()) model.retraction_seconds = UsualSeconds(retractions);
+    const Additions& added = from_paths ? learnt.between_paths : learnt.at_marks;
+    if (!added.empty()) {
+      model.retraction_seconds = UsualSeconds(added.alone);
+      model.retraction_price = UsualSeconds(added.altogether);
+    }
     models.push_back(model);
   }
   for (TravelModel& each : models) each.retraction_threshold_mm = threshold_mm;
@@ -149,6 +171,8 @@ class WayPlanner {
   void Go(double dx, double dy) {
     planner_.Move(dx, dy, model_.speed_mm_s, model_.accel_mm_s2, dynamics_.corner_speed());
   }
+
+  void Stop() { planner_.Stop(); }
 
   double Seconds() {
     if (joints_ != nullptr) Print(joints_->to);
@@ -190,6 +214,7 @@ double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& mode
   bool departs = !with_departure && file.dialect != Dialect::kCura &&
                  (file.blocks[block].link & kLinkDeparts) != 0;
   for (Step step; interpreter.Next(step);) {
+    if (joints != nullptr && StandsStill(step)) planner.Stop();
     if (step.kind != StepKind::kTravel || std::exchange(departs, false)) continue;
     const MachineState& at = interpreter.state();
     planner.Go(ToDouble(at.at.x - step.from.x) * at.UnitMm(),
@@ -200,8 +225,11 @@ double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& mode
 
 double NewWaySeconds(const GcodeFile& file, uint32_t before, const TravelWay& way,
                      const TravelModel& model, const WayJoints* joints) {
-  if (way.via.empty() && joints == nullptr) {
-    return StopToStopSeconds(Distance(way.from, way.to), model.speed_mm_s, model.accel_mm_s2);
+  if (way.via.empty() && (joints == nullptr || way.retracts)) {
+    const double printing =
+        joints == nullptr ? 0 : StopSeconds(joints->from) + StopSeconds(joints->to);
+    return printing +
+           StopToStopSeconds(Distance(way.from, way.to), model.speed_mm_s, model.accel_mm_s2);
   }
   WayPlanner planner(file, before, model, joints);
   Vertex at = way.from;
@@ -209,8 +237,13 @@ double NewWaySeconds(const GcodeFile& file, uint32_t before, const TravelWay& wa
     planner.Go(to.x - at.x, to.y - at.y);
     at = to;
   };
-  for (const Vertex bend : way.via) go(bend);
+  if (way.retracts && !way.stands) planner.Stop();
+  for (size_t bend = 0; bend < way.via.size(); ++bend) {
+    go(way.via[bend]);
+    if (bend == 0 && way.stands) planner.Stop();
+  }
   go(way.to);
+  if (way.retracts) planner.Stop();
   return planner.Seconds();
 }
 

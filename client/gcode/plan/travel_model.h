@@ -17,10 +17,11 @@ struct TravelModel {
   double speed_mm_s = 150;
   double accel_mm_s2 = 1250;
   double retraction_seconds = 0;       // retracting, lifting, wiping, lowering, priming
+  double retraction_price = 0;         // the same with what the stops for it cost the way
   double retraction_threshold_mm = 0;  // longer moves retract
 };
 
-// [layer]. Speed and acceleration are those of most of the layer's travel. The time is the mean
+// [layer]. Speed and acceleration are those of most of the layer's travel. The times are the means
 // that the layer's retractions add to the travel, but for a few that last far longer; a layer
 // without such moves has that of the layer before. Retractions at marks, where tools may change,
 // count only until there are others. O(length of all links). Uses `threads` threads.
@@ -31,7 +32,8 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm,
 // slows down, but without retraction, lift and wipe. Unless `with_departure` also without a short
 // inward move, with which other travel from that path begins too, except for CuraEngine, whose
 // bends may be as near. With `joints` not from standstill to standstill but from path to path, with
-// what printing loses at both. REQUIRES: there is a block before it.
+// what printing loses at both, and with a stop wherever filament is moved alone. REQUIRES: there is
+// a block before it.
 double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& model,
                   bool with_departure = false, const WayJoints* joints = nullptr);
 

@@ -71,6 +71,7 @@ struct TravelWay {
   bool grazes = false;      // a visible wall, at one of its bends
   double mm = 0;            // including bends
   std::vector<Vertex> via;  // the bends of the detour around visible walls; empty: straight
+  bool stands = false;      // at the first bend, where filament is pulled back
 };
 
 // The same for one layer: top and bottom layers often retract where others do not.

@@ -8,7 +8,7 @@
 #include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/model/loops.h"
 #include "client/gcode/model/outline.h"
-#include "client/gcode/write/going_on.h"
+#include "client/gcode/write/link.h"
 #include "client/gcode/write/link_writer.h"
 #include "client/gcode/write/turned_departure.h"
 
@@ -207,6 +207,7 @@ void LayerWriter::NoteLeaving(uint32_t block) {
     leaving.turns = PullsBackBehind(link, *departure);
   }
   for (const LinkStep& step : link.steps) {
+    if (step.kind == StepKind::kFilament && leaving.mm == 0) leaving.stands = true;
     if (step.kind != StepKind::kWipe) continue;
     leaving.mm += step.way_mm * mode.UnitMm();
     leaving.as_given = mode.InMm(step.to);
@@ -226,7 +227,9 @@ std::optional<Vertex> LayerWriter::DepartsTo(const Placement& from) const {
   if (from.as_given()) return found->second.departs_to;
   const std::vector<Vertex>& points = outlines_[from.block - layer_.first_block].points;
   if (!from.closed || !found->second.turns) return std::nullopt;
-  return TurnedDeparture(points, from.entry, *found->second.departs_to);
+  const auto to = TurnedDeparture(points, from.entry, *found->second.departs_to);
+  // Another wall may be as near on that side.
+  return to && walls_.Crossed(End(from), *to) ? std::nullopt : to;
 }
 
 Vertex LayerWriter::Behind(const Placement& from, const Leaving& leaving) const {
@@ -281,116 +284,6 @@ bool LayerWriter::Departs(const Placement& from, Vertex to, Feature feature) con
 bool LayerWriter::Wipes(const Placement& from, Vertex to, Feature feature, bool boundary) const {
   if (!file_.WipedBehind(from.block)) return false;
   return !drops_wipes_ || boundary || rules_.Retracts(End(from), to, feature);
-}
-
-TravelWay LayerWriter::NewWay(const Placement& from, const Placement& to, bool wipes) const {
-  const Feature feature = outlines_[to.block - layer_.first_block].feature;
-  const Leaving* leaving = LeavingOf(from, wipes);
-  if (leaving == nullptr || (leaving->departs && !Departs(from, Begin(to), feature))) {
-    return rules_.WayOf(End(from), Begin(to), feature);
-  }
-  const Vertex at = Behind(from, *leaving);
-  TravelWay way = rules_.WayOf(at, Begin(to), feature);
-  way.mm += leaving->departs ? Distance(End(from), at) : leaving->mm;
-  if (leaving->wipes) {
-    const std::optional<Vertex> departs_to = DepartsTo(from);
-    if (!departs_to) return way;
-    const Vertex end = End(from);
-    const Vertex before = {departs_to->x - end.x, departs_to->y - end.y};
-    const double before_mm = std::hypot(before.x, before.y);
-    // As WaySeconds sees it, which leaves out the wipe between the two.
-    way.mm += before_mm;
-    way.from = {at.x - before.x, at.y - before.y};
-    way.via.insert(way.via.begin(), at);
-    return way;
-  }
-  way.from = End(from);
-  way.via.insert(way.via.begin(), at);
-  if (leaving->departs) {
-    way.retracts = leaving->retracts;
-  } else {
-    // A retraction would come before it goes on.
-    way.retracts = way.retracts || rules_.Retracts(End(from), Begin(to), feature);
-  }
-  return way;
-}
-
-WayJoints LayerWriter::JointsOf(const Placement& from, const Placement& to, bool wipes) const {
-  WayJoints joints;
-  const Leaving* leaving = LeavingOf(from, wipes);
-  if (leaving == nullptr || leaving->departs) {
-    joints.from = joints_.EndOf(from.block - layer_.first_block, from.entry);
-  }
-  joints.to = joints_.BeginOf(to.block - layer_.first_block, to.entry);
-  return joints;
-}
-
-WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Placement& to,
-                                   const TravelModel& model) const {
-  const Block& here = file_.blocks[layer_.first_block + place];
-  const Block& next = file_.blocks[to.block];
-  const bool boundary = (here.link & (kLinkSplits | kLinkFixed)) != 0;
-  const bool stays = from.block + 1 == to.block && from.as_given() && to.as_given() &&
-                     (!boundary || to.block == layer_.first_block + place);
-  // Where the head goes at a boundary it goes in any order: only the way between the paths counts.
-  const bool as_given = stays && !boundary;
-  const Feature feature = outlines_[to.block - layer_.first_block].feature;
-  const bool wipes = stays || Wipes(from, Begin(to), feature, boundary);
-  const std::optional<Vertex> behind_fixed =
-      BehindFixed(layer_.first_block + static_cast<uint32_t>(place));
-  TravelWay way;
-  if (as_given) {
-    way.to = Begin(to);
-    way.mm = static_cast<double>(next.travel_mm);
-  } else if (behind_fixed) {
-    way = rules_.WayOf(*behind_fixed, Begin(to), feature);
-  } else {
-    way = NewWay(from, to, wipes);
-  }
-  double across_mm = way.mm;
-  if (as_given) {
-    const PrintTotals measured = MeasureLink(file_, to.block, walls_);
-    way.crosses = measured.crossings > 0;
-    across_mm = measured.longest_open_mm;
-  } else if (const Leaving* leaving = LeavingOf(from, wipes); leaving && !behind_fixed) {
-    across_mm -= leaving->mm;
-  }
-  way.retracts = stays ? (next.link & kLinkRetracts) != 0
-                       : way.retracts || wipes || (boundary && (here.link & kLinkRetracts) != 0) ||
-                             GoesOnAcross(from, way.to, feature);
-  const WayJoints joints = JointsOf(from, to, wipes);
-  const WayJoints* passed = way.retracts ? nullptr : &joints;
-  WayTotals totals;
-  totals.mm = way.mm;
-  totals.seconds = as_given ? WaySeconds(file_, to.block, model, true, passed)
-                            : NewWaySeconds(file_, from.block, way, model, passed);
-  if (way.retracts) {
-    totals.seconds += model.retraction_seconds + StopSeconds(joints.from) + StopSeconds(joints.to);
-  }
-  totals.retractions = way.retracts ? 1 : 0;
-  totals.crossings = way.crosses ? 1 : 0;
-  totals.open = way.crosses && !way.retracts ? 1 : 0;
-  if (totals.open > 0) totals.open_mm = across_mm;
-  return totals;
-}
-
-double LayerWriter::EstimateWayToLayer(const Placement& before, const Placement& first,
-                                       const TravelModel& model) const {
-  const PlacedPath from(file_, before);
-  const MachineState& mode = file_.modes[from.block().mode];
-  const Vertex begin = BehindFixed(layer_.first_block).value_or(mode.InMm(from.last()));
-  const Vertex end = Begin(first);
-  const uint16_t link = file_.blocks[layer_.first_block].link;
-  const bool stays = before.block + 1 == layer_.first_block && before.as_given() &&
-                     first.block == layer_.first_block && first.as_given();
-  // A wipe of the file's way belongs to the path before it.
-  const bool always = (link & kLinkRetracts) != 0 && (stays || (link & kLinkWipes) == 0);
-  const Feature feature = outlines_[first.block - layer_.first_block].feature;
-  const bool retracts =
-      always ||
-      (!stays && (Wipes(before, end, feature, true) || rules_.Retracts(begin, end, feature)));
-  return StopToStopSeconds(Distance(begin, end), model.speed_mm_s, model.accel_mm_s2) +
-         (retracts ? model.retraction_seconds : 0);
 }
 
 bool LayerWriter::Retracts(const PlacedPath& from, const PlacedPath& to) const {

@@ -67,8 +67,9 @@ class LayerWriter {
   // What the head does after a path before it leaves for the next one.
   struct Leaving {
     double mm = 0;
-    Vertex as_given;     // where that ends after the path as sliced
-    bool wipes = false;  // pulls filament back meanwhile; else continues along the path
+    Vertex as_given;      // where that ends after the path as sliced
+    bool wipes = false;   // pulls filament back meanwhile; else continues along the path
+    bool stands = false;  // and before, at a standstill
 
     // Where a short move away from the path as sliced leads, before it wipes or as all that it does
     // (`departs`). In the latter case it is made only if what follows retracts, or does not, as in

@@ -144,6 +144,15 @@ Link ReadLink(const GcodeFile& file, size_t index) {
   return link;
 }
 
+std::optional<LinkStep> ReadGoingOn(const GcodeFile& file, uint32_t block) {
+  const bool goes_on = (file.blocks[block].flags & kBlockGoesOn) != 0;
+  if (!goes_on || block + 1 >= file.blocks.size()) return std::nullopt;
+  for (const LinkStep& step : ReadLink(file, block + 1).steps) {
+    if (step.kind == StepKind::kTravel) return step;
+  }
+  return std::nullopt;
+}
+
 bool MayDepart(const GcodeFile& file, size_t index) {
   if ((file.blocks[index - 1].flags & kBlockGoesOn) != 0) return true;
   return file.dialect != Dialect::kCura && (file.blocks[index].link & kLinkDeparts) != 0;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <optional>
 #include <vector>
@@ -115,6 +116,11 @@ std::optional<Link> WithWipeOf(Link form, const Link& own);
 
 // Link `index` of the file; 0 < index < file.blocks.size().
 Link ReadLink(const GcodeFile& file, size_t index);
+
+// The move without filament that continues along block `block`, a closed one, as in the file; unset
+// for most blocks. CuraEngine wipes its outer walls so. It belongs to the end of the path, wherever
+// that end is.
+std::optional<LinkStep> ReadGoingOn(const GcodeFile& file, uint32_t block);
 
 }  // namespace traverse::gcode
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include "client/gcode/write/going_on.h"
 #include "client/gcode/write/positions.h"
 
 namespace traverse::gcode {

@@ -108,5 +108,43 @@ TEST(WaySeconds, JoinThePathsLikeNewOnes) {
   EXPECT_NEAR(WaySeconds(*file, 1, kWay, true, &joints), JoinedSeconds(1), 1e-9);
 }
 
+// Joined as where nothing is retracted, but for the stops: at the end of the move inwards, which
+// leads straight on from the path, and before the next path.
+TEST(WaySeconds, StopForARetractionLikeNewOnes) {
+  Sketch sketch;
+  sketch.Infill(10, 0).Go(10.4, 0).Add("G1 E-.8 F2100").Go(30, 0).Add("G1 E.8 F2100");
+  const std::shared_ptr<GcodeFile> file = sketch.Infill(40, 0).Read();
+  const Joint joint{{1, 0}, 20, 1250};
+  const WayJoints joints{joint, joint};
+  TravelWay way;
+  way.from = {10, 0};
+  way.to = {30, 0};
+  way.via = {{10.4, 0}};
+  way.retracts = true;
+  way.stands = true;
+
+  const double seconds = WaySeconds(*file, 1, kWay, true, &joints);
+  EXPECT_NEAR(seconds, NewWaySeconds(*file, 0, way, kWay, &joints), 1e-9);
+  // The path is left at 20 mm/s, which end with the move inwards.
+  const double stops = 2 * StopSeconds(joint) + StopToStopSeconds(.4, 100, 1000);
+  EXPECT_LT(seconds, StopToStopSeconds(19.6, 100, 1000) + stops);
+  EXPECT_GT(seconds, StopToStopSeconds(19.6, 100, 1000) + StopSeconds(joint));
+}
+
+TEST(NewWaySeconds, ARetractionAtOnceStopsAtBothPaths) {
+  const std::shared_ptr<GcodeFile> file = Sketch().Infill(10, 0).Read();
+  const Joint joint{{1, 0}, 20, 1250};
+  const WayJoints joints{joint, joint};
+  TravelWay way;
+  way.from = {10, 0};
+  way.to = {30, 0};
+  way.retracts = true;
+  const double straight = StopToStopSeconds(20, 100, 1000) + 2 * StopSeconds(joint);
+
+  EXPECT_NEAR(NewWaySeconds(*file, 0, way, kWay, &joints), straight, 1e-9);
+  way.via = {{20, 0}};
+  EXPECT_NEAR(NewWaySeconds(*file, 0, way, kWay, &joints), straight, 1e-6);
+}
+
 }  // namespace
 }  // namespace traverse::gcode

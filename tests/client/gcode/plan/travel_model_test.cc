@@ -49,6 +49,36 @@ TEST(WaySeconds, AreWithoutTheShortMoveInwards) {
   EXPECT_GT(WaySeconds(*file, 1, kTravel), StopToStopSeconds(30, 100, 1000) + 0.02);
 }
 
+// Where filament is pulled back the machine stands still, though the way leads straight on.
+TEST(WaySeconds, StopWhereFilamentIsPulledBack) {
+  Sketch sketch;
+  sketch.Infill(10, 0).Go(30, 0).Add("G1 E-.8 F2100").Go(50, 0).Add("G1 E.8 F2100");
+  const std::shared_ptr<GcodeFile> file = sketch.Infill(60, 0).Read();
+  ASSERT_EQ(file->blocks.size(), 2u);
+
+  const WayJoints none;
+  EXPECT_NEAR(WaySeconds(*file, 1, kTravel, true, &none), 2 * StopToStopSeconds(20, 100, 1000),
+              1e-6);
+  // Else what that costs is in the price of the retraction.
+  EXPECT_NEAR(WaySeconds(*file, 1, kTravel, true), StopToStopSeconds(40, 100, 1000), 1e-6);
+}
+
+// So what the stop costs there is a part of the way and of the price, and not of the retraction.
+TEST(LearnTravel, ARetractionDoesNotPayForTheStopBehindTheMoveInwards) {
+  const auto learnt = [](double inwards) {
+    Sketch sketch;
+    sketch.Infill(10, 0).Go(10 + inwards, 0).Add("G1 E-.8 F2100").Go(50, 0).Add("G1 E.8 F2100");
+    const std::shared_ptr<GcodeFile> file = sketch.Infill(60, 0).Infill(60, 1).Read();
+    return LearnTravel(*file, 1.5)[0];
+  };
+  const TravelModel at_once = learnt(0);
+  const TravelModel behind = learnt(.4);
+  EXPECT_GT(at_once.retraction_seconds, 0);
+  EXPECT_EQ(at_once.retraction_price, at_once.retraction_seconds);
+  EXPECT_NEAR(behind.retraction_seconds, at_once.retraction_seconds, 1e-9);
+  EXPECT_GT(behind.retraction_price, behind.retraction_seconds + .01);
+}
+
 // A wipe is a move as any other one: the machine has to get going for it.
 TEST(LearnTravel, RetractionsTakeTheTimeThatTheyAddToTravel) {
   Sketch sketch;

@@ -81,96 +81,6 @@ TEST(LayerWriter, RetractsForAWayThatCrossesAWallFromWhereThePathGoesOnTo) {
   EXPECT_EQ(FromSquareToLine(true).open, 0);
 }
 
-// A wall from whose end the file goes a little inwards before it leaves, two lines within it, and
-// two beside it. Ways that cross no wall are not retracted.
-class LayerWriterDepartures : public ::testing::Test {
- protected:
-  LayerWriterDepartures() { Draw(.4, .4); }
-
-  // With the end of the short move.
-  void Draw(double x, double y) {
-    Sketch sketch;
-    sketch.Square(0, 0, 10).Go(x, y).Go(3, 3).Infill(3, 7).Go(5, 7).Infill(5, 3);
-    sketch.GoRetracted(-2, -2).Infill(-2, -6).Go(-4, -6).Infill(-4, -2);
-    file_ = sketch.Read();
-    habit_ = HabitOfNewWays(*file_);
-    donors_.emplace(*file_);
-    writer_.emplace(*file_, file_->layers[0], habit_, *donors_);
-    given_ = writer_->GivenOrder();
-  }
-
-  // What the ways of `order` are estimated at, and what they come to.
-  WayTotals Estimated(const LayerOrder& order) const {
-    WayTotals sum;
-    for (size_t i = 1; i < order.size(); ++i) {
-      sum += writer_->EstimateWay(i, order[i - 1], order[i], TravelModel());
-    }
-    return sum;
-  }
-  PrintTotals Written(const LayerOrder& order) const {
-    std::string text;
-    const PartStart start = StartOfPaths(*file_, order.front());
-    writer_->WritePaths(order, start, text);
-    return Measure(*file_, text, start, &writer_->walls());
-  }
-
-  std::shared_ptr<GcodeFile> file_;
-  RetractionHabit habit_;
-  std::optional<LinkDonors> donors_;
-  std::optional<LayerWriter> writer_;
-  LayerOrder given_;
-};
-
-TEST_F(LayerWriterDepartures, AreNotMadeToTheOtherSideOfAWall) {
-  ASSERT_NE(file_->blocks[1].link & kLinkDeparts, 0);
-  // From the corner at which the wall ends straight to the lines beside it.
-  const LayerOrder order = {given_[0], given_[3], given_[4], given_[1], given_[2]};
-
-  EXPECT_EQ(Written(order).open_crossings, 0);
-  EXPECT_EQ(Estimated(order).open, 0);
-  EXPECT_NEAR(Estimated(order).mm, Written(order).travel_mm, .01);
-}
-
-// The end of a way lies too near to a wall to count; a bend of it may lie nearer.
-TEST_F(LayerWriterDepartures, ThatEndNearAWallAreNotMadeAcrossIt) {
-  Draw(.1, .3);
-  const LayerOrder order = {given_[0], given_[3], given_[4], given_[1], given_[2]};
-
-  EXPECT_NEAR(writer_->EstimateWay(1, order[0], order[1], TravelModel()).mm, std::hypot(2, 2), .01);
-  EXPECT_NEAR(Estimated(order).mm, Written(order).travel_mm, .01);
-}
-
-TEST_F(LayerWriterDepartures, AreMadeWhereTheyAreOfUse) {
-  const LayerOrder order = {given_[0], given_[2], given_[1], given_[3], given_[4]};
-
-  EXPECT_NEAR(Written(order).travel_mm - Estimated(order).mm, 0, .01);
-  const double straight = std::hypot(5, 7);
-  const double bent = std::hypot(.4, .4) + std::hypot(4.6, 6.6);
-  EXPECT_NEAR(writer_->EstimateWay(1, given_[0], given_[2], TravelModel()).mm, bent, .001);
-  EXPECT_GT(writer_->EstimateWay(1, given_[0], given_[2], TravelModel()).seconds,
-            StopToStopSeconds(straight, 150, 1250));
-}
-
-// The square begins at its second corner: within it there, but not to the lines beside it.
-TEST_F(LayerWriterDepartures, TurnWithTheStartOfTheLoop) {
-  LayerOrder order = {given_[0], given_[2], given_[1], given_[3], given_[4]};
-  order[0].entry = 1;
-  std::string text;
-  writer_->WritePaths(order, StartOfPaths(*file_, order.front()), text);
-
-  EXPECT_NE(text.find("X9.600000 Y0.400000 F9000"), std::string::npos) << text;
-  EXPECT_NEAR(Written(order).travel_mm - Estimated(order).mm, 0, .01);
-  order = {order[0], given_[3], given_[4], given_[1], given_[2]};
-  EXPECT_EQ(Written(order).open_crossings, 0);
-  EXPECT_NEAR(Written(order).travel_mm - Estimated(order).mm, 0, .01);
-}
-
-TEST_F(LayerWriterDepartures, TakeTimeInTheFileToo) {
-  const double straight = std::hypot(.4, .4) + std::hypot(2.6, 2.6);
-  EXPECT_NEAR(writer_->EstimateWay(1, given_[0], given_[1], TravelModel()).seconds,
-              StopToStopSeconds(straight, 150, 1250), .005);
-}
-
 // Where nothing is retracted, the head leaves the path without a stop: straight on the fastest.
 TEST(LayerWriter, AWayStraightOnTakesLessTimeThanOneRoundACorner) {
   Sketch sketch;
@@ -355,7 +265,7 @@ TEST_F(LayerWriterWipes, AWayToALayerTakesItsRetraction) {
   const LinkDonors donors(*file);
   const LayerWriter writer(*file, file->layers[1], habit, donors);
   TravelModel model;
-  model.retraction_seconds = 3;
+  model.retraction_price = 3;
 
   const double as_given = writer.EstimateWayToLayer({2, 0, false}, {3, 0, true}, model);
   const double unwiped = writer.EstimateWayToLayer({1, 1, false}, {3, 0, true}, model);
