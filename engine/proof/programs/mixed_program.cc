@@ -9,6 +9,7 @@
 #include <coin/CglCutGenerator.hpp>
 #include <coin/CglGomory.hpp>
 #include <coin/ClpEventHandler.hpp>
+#include <coin/ClpPackedMatrix.hpp>
 #include <coin/ClpSimplex.hpp>
 #include <coin/CoinError.hpp>
 #include <coin/CoinPackedMatrix.hpp>
@@ -30,6 +31,7 @@ struct Watch {
   double bound = -MixedProgram::kInfinity;  // Cbc's, while nothing was cut short
   Stopwatch since_start;
   std::vector<MixedProgram::Incumbent> incumbents;
+  std::vector<std::unique_ptr<ClpMatrixBase>> matrices;  // taken away; Cbc may still look at them
 
   void NoteSolution(double value) {
     constexpr double kSame = 1e-6;
@@ -51,6 +53,52 @@ class LinearWatcher : public ClpEventHandler {
 
  private:
   Watch* watch_;
+};
+
+// Begins no linear programme any more once the budget has run out: to stop, Cbc begins several, and
+// each is factorized before the handler above is asked. To Cbc all are then without a solution.
+// What it still begins past this class, with Clp's own model, finds no matrix and ends at once.
+class WatchedSolver : public OsiClpSolverInterface {
+ public:
+  explicit WatchedSolver(Watch* watch) : watch_(watch) {}
+  OsiSolverInterface* clone(bool with_data = true) const override {
+    return with_data ? new WatchedSolver(*this) : new WatchedSolver(watch_);
+  }
+  void initialSolve() override {
+    if (!GivesUp()) OsiClpSolverInterface::initialSolve();
+  }
+  void resolve() override {
+    if (!GivesUp()) OsiClpSolverInterface::resolve();
+  }
+  void markHotStart() override {
+    marked_ = !GivesUp();
+    if (marked_) OsiClpSolverInterface::markHotStart();
+  }
+  void solveFromHotStart() override {
+    if (!GivesUp()) OsiClpSolverInterface::solveFromHotStart();
+  }
+  void unmarkHotStart() override {
+    if (marked_) OsiClpSolverInterface::unmarkHotStart();
+    GivesUp();
+  }
+
+ private:
+  bool GivesUp() {
+    if (!watch_->budget->ExhaustedNow()) return false;
+    constexpr int kStoppedByHandler = 5;
+    modelPtr_->setProblemStatus(kStoppedByHandler);
+    if (emptied_) return true;
+    CoinPackedMatrix none(true, 0, 0);
+    none.setDimensions(getNumRows(), getNumCols());
+    watch_->matrices.emplace_back(modelPtr_->clpMatrix());
+    modelPtr_->replaceMatrix(new ClpPackedMatrix(none), /*deleteCurrent=*/false);
+    emptied_ = true;
+    return true;
+  }
+
+  Watch* watch_;
+  bool marked_ = false;
+  bool emptied_ = false;
 };
 
 // Ends the search itself. A linear programme that was ended means nothing to it, so the bound is
@@ -268,7 +316,7 @@ MixedProgram::Result MixedProgram::Solve(const Options& options, const std::vect
   if (budget.ExhaustedNow()) return result;
   Watch watch;
   watch.budget = &budget;
-  OsiClpSolverInterface solver;
+  WatchedSolver solver(&watch);
   solver.messageHandler()->setLogLevel(0);
   solver.getModelPtr()->setLogLevel(0);
   impl_->Load(solver);

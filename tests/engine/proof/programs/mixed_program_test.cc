@@ -114,12 +114,16 @@ class Asks : public Turn {
   bool GiveWay(const CancelToken* /*cancel*/, std::optional<Clock::time_point> /*end*/) override {
     const double now = ThreadSeconds();
     if (asks_ > 0) longest_ = std::max(longest_, now - last_);
-    if (++asks_ == cancel_at) cancel.Cancel();
+    if (++asks_ == cancel_at) {
+      cancel.Cancel();
+      cancelled_ = now;
+    }
     last_ = ThreadSeconds();
     return false;
   }
   int asks() const { return asks_; }
   double longest() const { return longest_; }
+  double since_cancelled() const { return ThreadSeconds() - cancelled_; }
 
   int cancel_at = 0;
   CancelToken cancel;
@@ -134,6 +138,7 @@ class Asks : public Turn {
   int asks_ = 0;
   double last_ = 0;
   double longest_ = 0;
+  double cancelled_ = 0;
 };
 
 // Each step before the first linear programme copies a large matrix several times.
@@ -180,6 +185,35 @@ TEST(MixedProgram, AsksOftenWhileItCuts) {
   }
 
   EXPECT_LT(longest, kMostGap);  // 0.03 with all columns, 0.004 with few
+}
+
+// To stop, Cbc would begin programmes that it needs no more, with a factorization of each.
+TEST(MixedProgram, EndsSoonOnceItIsCancelled) {
+  constexpr int kColumns = 12'000;
+  constexpr double kMost = kSanitized ? 1 : 0.06;
+  Rng rng(5);
+  MixedProgram program;
+  for (int c = 0; c < kColumns; ++c) program.AddBinary(-rng.Between(5, 20));
+  for (int r = 0; r < 8 * kColumns; ++r) {
+    MixedProgram::Entries row;
+    const int first = rng.Between(0, kColumns - 40);
+    for (int k = 0; k < 5; ++k) row.Add(first + 8 * k + rng.Between(0, 7), 1);
+    program.AddRow(-MixedProgram::kInfinity, 2, row);
+  }
+  double least = MixedProgram::kInfinity;
+  for (const int cancel_at : {1000, 2000, 4000}) {
+    Asks asks;
+    asks.cancel_at = cancel_at;
+    Budget budget(&asks.cancel, std::nullopt, &asks);
+
+    const auto result = program.Solve({}, std::vector<double>(kColumns), budget);
+
+    EXPECT_FALSE(result.complete);
+    EXPECT_GE(asks.asks(), cancel_at);
+    least = std::min(least, asks.since_cancelled());
+  }
+
+  EXPECT_LT(least, kMost);
 }
 
 // Cbc keeps some of its state in static variables: models must not share any of it.
