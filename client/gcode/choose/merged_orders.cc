@@ -52,9 +52,10 @@ class KnownWays {
  public:
   KnownWays(const LayerWriter& writer, const TravelModel& travel, const MergeRules& rules)
       : writer_(writer), travel_(travel), rules_(rules), given_(writer.GivenOrder()) {
+    uint32_t placements = 0;
     for (const Outline& outline : writer.outlines()) {
-      numbers_.push_back(placements_);
-      placements_ += static_cast<uint32_t>(std::max<size_t>(outline.points.size(), 2));
+      numbers_.push_back(placements);
+      placements += static_cast<uint32_t>(std::max<size_t>(outline.points.size(), 2));
     }
     given_ways_.resize(given_.size());
     for (size_t i = 1; i < given_.size(); ++i) {
@@ -131,7 +132,6 @@ class KnownWays {
   const MergeRules& rules_;
   const LayerOrder given_;
   std::vector<uint32_t> numbers_;  // [path] the number of its first placement
-  uint32_t placements_ = 0;
   std::vector<WayTotals> given_ways_;  // [place] as the layer was given
   double longest_open_mm_ = 0;         // of them
   absl::flat_hash_map<Key, Known> known_;
