@@ -74,47 +74,15 @@ class KnownWays {
     if (known_.size() >= kMostKnown) known_.clear();
     const Key key{boundary ? static_cast<uint32_t>(place) : 0, Number(from), Number(to)};
     const auto [found, added] = known_.try_emplace(key);
-    if (added) found->second = Known(Estimate(place, from, to));
-    return found->second.Totals();
+    if (added) found->second = Estimate(place, from, to);
+    return found->second;
   }
 
  private:
   using Key = std::tuple<uint32_t, uint32_t, uint32_t>;
 
-  // The totals of one way in few bytes: most of the time goes into fetching them from memory.
-  class Known {
-   public:
-    Known() = default;
-    explicit Known(const WayTotals& way)
-        : seconds_(way.seconds),
-          mm_(way.mm),
-          crosses_(way.crossings > 0),
-          open_(way.open > 0),
-          too_long_(way.too_long > 0),
-          retracts_(way.retractions > 0) {}
-
-    WayTotals Totals() const {
-      WayTotals way;
-      way.seconds = seconds_;
-      way.mm = mm_;
-      way.crossings = crosses_;
-      way.open = open_;
-      way.too_long = too_long_;
-      way.retractions = retracts_;
-      return way;
-    }
-
-   private:
-    double seconds_ = 0;
-    double mm_ = 0;
-    bool crosses_ = false;
-    bool open_ = false;
-    bool too_long_ = false;
-    bool retracts_ = false;
-  };
-
-  // Of 40 bytes each.
-  static constexpr size_t kMostKnown = 500'000;
+  // Of 56 bytes each.
+  static constexpr size_t kMostKnown = 400'000;
 
   // Of all placements of the layer's paths.
   uint32_t Number(const Placement& placement) const {
@@ -131,10 +99,10 @@ class KnownWays {
   const TravelModel& travel_;
   const MergeRules& rules_;
   const LayerOrder given_;
-  std::vector<uint32_t> numbers_;  // [path] the number of its first placement
+  std::vector<uint32_t> numbers_;      // [path] the number of its first placement
   std::vector<WayTotals> given_ways_;  // [place] as the layer was given
   double longest_open_mm_ = 0;         // of them
-  absl::flat_hash_map<Key, Known> known_;
+  absl::flat_hash_map<Key, WayTotals> known_;
 };
 
 bool EndsAlike(const LayerOrder& a, const LayerOrder& b) {

@@ -11,10 +11,10 @@ namespace traverse::gcode {
 struct WayTotals {
   double seconds = 0;
   double mm = 0;
-  int64_t crossings = 0;  // across visible walls
-  int64_t open = 0;       // crossings without a retraction
-  int64_t too_long = 0;   // open ones that are longer than allowed
-  int64_t retractions = 0;
+  int32_t crossings = 0;  // across visible walls
+  int32_t open = 0;       // crossings without a retraction
+  int32_t too_long = 0;   // open ones that are longer than allowed
+  int32_t retractions = 0;
 
   // For a single move: its length if it counts as open, without what continues along a path.
   double open_mm = 0;

@@ -72,7 +72,7 @@ TEST(OrderMerger, AsManyRetractionsMeansNoFewerEither) {
   MergeLimits limits;
   limits.retractions = 4;
   WayTotals totals;
-  const auto excess = [&](int64_t retractions) {
+  const auto excess = [&](int32_t retractions) {
     totals.retractions = retractions;
     return OrderMerger(estimate, limits).Excess(totals);
   };
