@@ -132,7 +132,9 @@ void BlockBuilder::NoteInLink(const Step& step, const MachineState& before,
   link_.flags |= LinkFlagsOf(step.kind);
   if ((LinkFlagsOf(step.kind) & kLinkFixed) != 0) link_.travels_behind_fixed = 0;
   NotePlace(step, after);
-  if (step.kind == StepKind::kFilament && step.filament > kRetractionSlack && !step.retracted) {
+  if (after.tool != before.tool) link_.changes_tool = true;
+  if (link_.changes_tool && step.kind == StepKind::kFilament && step.filament > kRetractionSlack &&
+      !step.retracted) {
     link_.primes = true;
   }
   if (step.kind == StepKind::kTravel) ++link_.travels_behind_fixed;
@@ -284,7 +286,7 @@ void BlockBuilder::CloseLink(const Block& block) {
     const Block& last = Last();
     if (last.mode != block.mode) link_.flags |= kLinkFixed;
     if (last.object != block.object) link_.flags |= kLinkSplits;
-    // Such a push leaves a blob, or fills the nozzle of a tool that was changed: it stays there.
+    // Such a push fills the nozzle: it stays where it is.
     if (link_.primes) link_.flags |= kLinkFixed;
     if ((link_.flags & kLinkFixed) != 0 && !link_.lost && !link_.primes &&
         link_.travels_behind_fixed > 0) {

@@ -41,7 +41,9 @@ class BlockBuilder {
     bool lost = false;             // a move that is not understood: its end is unknown
     uint32_t found = 0;            // axes that a move behind it states
     int travels_behind_fixed = 0;  // moves in XY after the last line that must stay
-    bool primes = false;           // filament is pushed of which nothing was pulled back
+    bool changes_tool = false;
+    bool primes =
+        false;  // behind a tool change, filament is pushed of which nothing was pulled back
     double travel_mm = 0;
     Decimal top = -kDecimalMax;  // the highest Z of its moves in XY
   };
