@@ -12,12 +12,9 @@
 #include "absl/strings/str_cat.h"
 #include "engine/base/rng.h"
 #include "engine/base/turn.h"
-#include "tests/support/sanitizers.h"
 
 namespace traverse {
 namespace {
-
-using testing::kSanitized;
 
 // Costs and rows of whole numbers, `values` among the solutions if `feasible`.
 struct RandomProgram {
@@ -122,8 +119,12 @@ class Asks : public Turn {
     return false;
   }
   int asks() const { return asks_; }
-  double longest() const { return longest_; }
-  double since_cancelled() const { return ThreadSeconds() - cancelled_; }
+  // As shares of all the time until now: machines differ in speed.
+  double longest() const { return longest_ / (ThreadSeconds() - begin_); }
+  double since_cancelled() const {
+    const double now = ThreadSeconds();
+    return (now - cancelled_) / (now - begin_);
+  }
 
   int cancel_at = 0;
   CancelToken cancel;
@@ -135,6 +136,7 @@ class Asks : public Turn {
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
   }
 
+  const double begin_ = ThreadSeconds();
   int asks_ = 0;
   double last_ = 0;
   double longest_ = 0;
@@ -162,7 +164,6 @@ TEST(MixedProgram, AsksBetweenTheStepsOfItsSetUp) {
 // Gomory's cuts of all columns that are no whole numbers would take several times as long.
 TEST(MixedProgram, AsksOftenWhileItCuts) {
   constexpr int kColumns = 5000;
-  constexpr double kMostGap = kSanitized ? 0.15 : 0.015;
   Rng rng(5);
   MixedProgram program;
   for (int c = 0; c < kColumns; ++c) program.AddBinary(-rng.Between(5, 20));
@@ -172,8 +173,9 @@ TEST(MixedProgram, AsksOftenWhileItCuts) {
     for (int k = 0; k < 5; ++k) row.Add(first + 8 * k + rng.Between(0, 7), 1);
     program.AddRow(-MixedProgram::kInfinity, 2, row);
   }
-  double longest = MixedProgram::kInfinity;
-  for (int tries = 0; tries < 3 && longest > kMostGap; ++tries) {
+  constexpr double kMost = 0.04;  // 0.105 with all columns, 0.011 with few
+  double longest = 1;
+  for (int tries = 0; tries < 3 && longest > kMost; ++tries) {
     Asks asks;
     asks.cancel_at = 4700;  // after the first cuts
     Budget budget(&asks.cancel, std::nullopt, &asks);
@@ -184,13 +186,13 @@ TEST(MixedProgram, AsksOftenWhileItCuts) {
     longest = std::min(longest, asks.longest());
   }
 
-  EXPECT_LT(longest, kMostGap);  // 0.03 with all columns, 0.004 with few
+  EXPECT_LT(longest, kMost);
 }
 
 // To stop, Cbc would begin programmes that it needs no more, with a factorization of each.
 TEST(MixedProgram, EndsSoonOnceItIsCancelled) {
   constexpr int kColumns = 12'000;
-  constexpr double kMost = kSanitized ? 1 : 0.06;
+  constexpr double kMost = 0.1;  // 0.35 if it begins them, 0.025 if not
   Rng rng(5);
   MixedProgram program;
   for (int c = 0; c < kColumns; ++c) program.AddBinary(-rng.Between(5, 20));
@@ -200,7 +202,7 @@ TEST(MixedProgram, EndsSoonOnceItIsCancelled) {
     for (int k = 0; k < 5; ++k) row.Add(first + 8 * k + rng.Between(0, 7), 1);
     program.AddRow(-MixedProgram::kInfinity, 2, row);
   }
-  double least = MixedProgram::kInfinity;
+  double least = 1;
   for (const int cancel_at : {1000, 2000, 4000}) {
     Asks asks;
     asks.cancel_at = cancel_at;
