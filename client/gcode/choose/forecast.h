@@ -5,9 +5,11 @@
 
 namespace traverse::gcode {
 
-// The sum of the estimates by which orders are searched for and chosen, in the file's own orders
-// and in those chosen: ways one by one, each with its retraction. Nothing is written for it and no
-// text is measured, so beside the time of what is written it shows how true these estimates are.
+// What orders are searched for and chosen by, summed up for the file's own orders and for those
+// chosen: within a layer the estimates of its ways, one by one, each with its retraction; the ways
+// between layers as they were measured to choose among orders, with what scripts do there. No
+// layer is measured for it, so beside the time of what is written it shows how true the estimates
+// are.
 struct Forecast {
   double given_seconds = 0;
   double seconds = 0;

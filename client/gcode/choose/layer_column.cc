@@ -85,12 +85,10 @@ Forecast ForecastOf(const std::vector<LayerColumn>& columns,
     forecast.seconds +=
         column.chosen == 0 ? given : ForecastPaths(*chosen.writer, travel[layer], chosen.order);
     if (layer == 0) continue;
-    const LayerColumn& before = columns[layer - 1];
-    const auto way = [&](const LayerOrder& last, const LayerOrder& order) {
-      return writer.EstimateWayToLayer(last.back(), order.front(), travel[layer]);
-    };
-    forecast.given_seconds += way(before.given_order(), column.given_order());
-    forecast.seconds += way(before.chosen_order(), column.chosen_order());
+    const std::vector<PrintTotals>& ways = column.totals.ways;
+    forecast.given_seconds += ways.front().seconds;
+    forecast.seconds +=
+        ways[columns[layer - 1].chosen * column.choices.size() + column.chosen].seconds;
   }
   return forecast;
 }

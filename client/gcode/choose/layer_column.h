@@ -66,7 +66,7 @@ class ColumnFiller {
   const LinkDonors& donors_;
 };
 
-// Of all layers, with the travel to them. `travel` has their travel.
+// Of all layers, with the measured ways to them. `travel` has their travel.
 Forecast ForecastOf(const std::vector<LayerColumn>& columns,
                     const std::vector<TravelModel>& travel);
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/write/layer_writer.h"
 
 namespace traverse::gcode {
@@ -97,25 +96,6 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
   totals.open = way.crosses && !way.retracts ? 1 : 0;
   if (totals.open > 0) totals.open_mm = across_mm;
   return totals;
-}
-
-double LayerWriter::EstimateWayToLayer(const Placement& before, const Placement& first,
-                                       const TravelModel& model) const {
-  const PlacedPath from(file_, before);
-  const MachineState& mode = file_.modes[from.block().mode];
-  const Vertex begin = BehindFixed(layer_.first_block).value_or(mode.InMm(from.last()));
-  const Vertex end = Begin(first);
-  const uint16_t link = file_.blocks[layer_.first_block].link;
-  const bool stays = before.block + 1 == layer_.first_block && before.as_given() &&
-                     first.block == layer_.first_block && first.as_given();
-  // A wipe of the file's way belongs to the path before it.
-  const bool always = (link & kLinkRetracts) != 0 && (stays || (link & kLinkWipes) == 0);
-  const Feature feature = outlines_[first.block - layer_.first_block].feature;
-  const bool retracts =
-      always ||
-      (!stays && (Wipes(before, end, feature, true) || rules_.Retracts(begin, end, feature)));
-  return StopToStopSeconds(Distance(begin, end), model.speed_mm_s, model.accel_mm_s2) +
-         (retracts ? model.retraction_price : 0);
 }
 
 }  // namespace traverse::gcode

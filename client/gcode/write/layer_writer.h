@@ -55,11 +55,6 @@ class LayerWriter {
   WayTotals EstimateWay(size_t place, const Placement& from, const Placement& to,
                         const TravelModel& model) const;
 
-  // The same for the travel that WriteWay writes, as far as it depends on the two paths: not what
-  // scripts between layers do.
-  double EstimateWayToLayer(const Placement& before, const Placement& first,
-                            const TravelModel& model) const;
-
  private:
   Vertex Begin(const Placement& placement) const;
   Vertex End(const Placement& placement) const;

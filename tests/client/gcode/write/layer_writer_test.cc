@@ -251,29 +251,6 @@ TEST(LayerWriter, CountsOfAWayBehindAScriptWhatFollowsIt) {
   EXPECT_NEAR(turned.mm, std::hypot(30, 0), 1e-3);
 }
 
-// A way to a layer retracts behind a wiped path, whatever the file's own does.
-TEST_F(LayerWriterWipes, AWayToALayerTakesItsRetraction) {
-  Sketch sketch;
-  sketch.Square(0, 0, 60).GoRetracted(10, 10).Infill(20, 10).Go(20, 11).Infill(10, 11);
-  sketch.Add(";WIPE_START").Add("G1 X12 Y11 E-.8 F2400").Add(";WIPE_END");
-  sketch.Add(";LAYER_CHANGE").Add("G1 Z.4 F9000").Go(10, 11.4).Add("G1 E.8 F2100");
-  sketch.Square(10, 11.4, 30).GoRetracted(50, 50).Infill(55, 50);
-  const auto file = sketch.Read();
-  ASSERT_EQ(file->layers.size(), 2u);
-  ASSERT_TRUE(file->WipedBehind(2));
-  const RetractionHabit habit = HabitOfNewWays(*file);
-  const LinkDonors donors(*file);
-  const LayerWriter writer(*file, file->layers[1], habit, donors);
-  TravelModel model;
-  model.retraction_price = 3;
-
-  const double as_given = writer.EstimateWayToLayer({2, 0, false}, {3, 0, true}, model);
-  const double unwiped = writer.EstimateWayToLayer({1, 1, false}, {3, 0, true}, model);
-
-  EXPECT_NEAR(as_given, 3 + StopToStopSeconds(.4, 150, 1250), 1e-3);
-  EXPECT_NEAR(unwiped, StopToStopSeconds(1.4, 150, 1250), 1e-3);
-}
-
 TEST_F(LayerWriterWipes, AWayBeginsWhereTheWipeBeforeItEnds) {
   ASSERT_TRUE(file_->WipedBehind(1));
 
