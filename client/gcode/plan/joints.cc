@@ -31,17 +31,6 @@ Points PointsFrom(const Outline& outline, uint32_t entry, bool from_end) {
   return seen;
 }
 
-Vertex Direction(Vertex from, Vertex to) {
-  const double length = Distance(from, to);
-  return length > 0 ? Vertex{(to.x - from.x) / length, (to.y - from.y) / length} : Vertex{};
-}
-
-// The square of the speed at which a corner is taken (motion_planner.h).
-double CornerSpeed2(Vertex in, Vertex out, double corner_speed) {
-  const double turn2 = std::max(2 - 2 * (in.x * out.x + in.y * out.y), 1e-9);
-  return 2 * corner_speed * corner_speed / turn2;
-}
-
 }  // namespace
 
 double StopSeconds(const Joint& joint) {
@@ -69,6 +58,26 @@ LayerJoints::LayerJoints(const GcodeFile& file, const Layer& layer,
     paces_.push_back(
         {pace(block, block.state_in, block.feed_in), pace(block, block.state_out, block.feed_out)});
   }
+  stops_.resize(outlines.size());
+  for (size_t path = 0; path < outlines.size(); ++path) {
+    if (HasStops(path)) stops_[path] = LoopStops(outlines[path].points, paces_[path].first);
+  }
+}
+
+// Whether stops can be told apart.
+bool LayerJoints::HasStops(size_t path) const {
+  const Pace& pace = paces_[path].first;
+  return outlines_[path].closed && pace.speed_mm_s > 0 && pace.accel_mm_s2 > 0;
+}
+
+double LayerJoints::RestartSeconds(size_t path, uint32_t entry) const {
+  if (entry == 0 || !HasStops(path)) return 0;
+  return StopBesideJoints(path, entry) - StopBesideJoints(path, 0);
+}
+
+double LayerJoints::StopBesideJoints(size_t path, uint32_t entry) const {
+  return stops_[path].Seconds(outlines_[path].points, paces_[path].first, entry) -
+         StopSeconds(EndOf(path, entry)) - StopSeconds(BeginOf(path, entry));
 }
 
 // Seen from inside the path, which leads away from that end. A short segment behind a sharp corner

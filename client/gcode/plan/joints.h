@@ -11,6 +11,7 @@
 
 #include "client/gcode/model/gcode_file.h"
 #include "client/gcode/model/outline.h"
+#include "client/gcode/plan/loop_stops.h"
 
 namespace traverse::gcode {
 
@@ -41,22 +42,25 @@ class LayerJoints {
   Joint BeginOf(size_t path, uint32_t entry) const;
   Joint EndOf(size_t path, uint32_t entry) const;
 
+  // What printing a closed path takes longer, in corners and short segments beyond the two joints,
+  // if it is begun at `entry` instead of where it was: it passes its old start then, and stops at
+  // `entry`. Below 0 if `entry` is the better place to stop. Of other paths 0.
+  double RestartSeconds(size_t path, uint32_t entry) const;
+
  private:
-  // How the first or the last segment of a path is printed.
-  struct Pace {
-    double speed_mm_s = 0;
-    double accel_mm_s2 = 0;
-    double corner_speed = 0;
-  };
+  // How the first and the last segment of a path are printed.
   struct Paces {
     Pace first;
     Pace last;
   };
 
   Joint JointAt(size_t path, uint32_t entry, bool at_end) const;
+  bool HasStops(size_t path) const;
+  double StopBesideJoints(size_t path, uint32_t entry) const;
 
   const std::vector<Outline>& outlines_;
-  std::vector<Paces> paces_;  // [path]
+  std::vector<Paces> paces_;      // [path]
+  std::vector<LoopStops> stops_;  // [path]; of loops, printed as their first segment is
 };
 
 }  // namespace traverse::gcode

@@ -90,6 +90,7 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
   totals.mm = way.mm;
   totals.seconds = as_given ? WaySeconds(file_, to.block, model, true, &joints)
                             : NewWaySeconds(file_, from.block, way, model, &joints);
+  totals.seconds += joints_.RestartSeconds(to.block - layer_.first_block, to.entry);
   if (way.retracts) totals.seconds += model.retraction_seconds;
   totals.retractions = way.retracts ? 1 : 0;
   totals.crossings = way.crosses ? 1 : 0;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "client/gcode/machine/motion_planner.h"
@@ -144,6 +145,34 @@ TEST(NewWaySeconds, ARetractionAtOnceStopsAtBothPaths) {
   EXPECT_NEAR(NewWaySeconds(*file, 0, way, kWay, &joints), straight, 1e-9);
   way.via = {{20, 0}};
   EXPECT_NEAR(NewWaySeconds(*file, 0, way, kWay, &joints), straight, 1e-6);
+}
+
+// Both ways are of the same length and angle: between them is what the loop takes by itself.
+TEST(LayerJoints, ALoopBegunStraightOnTakesLongerByItsStop) {
+  Sketch sketch;
+  sketch.Add("G1 F9000").Square(0, 0, 30);
+  const JoinedLayer square(sketch);
+  ASSERT_TRUE(square.outlines[0].closed);
+  for (uint32_t corner = 0; corner < 4; ++corner) {
+    EXPECT_NEAR(square.joints.RestartSeconds(0, corner), 0, 1e-9);
+  }
+
+  // Begun at a corner, and at the middle of a side.
+  Sketch drawn;
+  drawn.Add(";TYPE:External perimeter");
+  for (const char* to : {"X15 Y0", "X30 Y0", "X30 Y30", "X0 Y30", "X0 Y0"}) {
+    drawn.Add(std::string("G1 ") + to + " E.5 F1200");
+  }
+  const JoinedLayer layer(drawn);
+  ASSERT_TRUE(layer.outlines[0].closed);
+  const auto stops = [&](uint32_t entry) {
+    return StopSeconds(layer.joints.EndOf(0, entry)) + StopSeconds(layer.joints.BeginOf(0, entry));
+  };
+  EXPECT_NEAR(stops(0), stops(1), 1e-9);
+  EXPECT_NEAR(layer.joints.RestartSeconds(0, 2), 0, 1e-6);
+  // The corner at its old start slows it down now as it did not before, by 20 - 5 mm/s.
+  EXPECT_NEAR(layer.joints.RestartSeconds(0, 1), 2 * 15 * 15 / (2 * 1250.0 * 20), 1e-6);
+  EXPECT_EQ(layer.joints.RestartSeconds(0, 0), 0);
 }
 
 }  // namespace
