@@ -16,13 +16,17 @@ namespace {
 // What each retraction adds to its travel, in seconds.
 using Retractions = std::vector<double>;
 
-// The mean without those that do something else as well, such as to change the filament: few of
-// them may last longer than all the others.
-double UsualSeconds(Retractions seconds) {
+// Those that last longer do something else as well, such as to change the filament.
+double MostSeconds(Retractions seconds) {
   constexpr double kOtherwise = 4;  // times the median
   const auto middle = seconds.begin() + static_cast<ptrdiff_t>(seconds.size() / 2);
   std::nth_element(seconds.begin(), middle, seconds.end());
-  const double most = std::max(kOtherwise * *middle, *middle);  // rounding may be below 0
+  return std::max(kOtherwise * *middle, *middle);  // rounding may be below 0
+}
+
+// The mean of the others: few may last longer than all of them.
+double UsualSeconds(const Retractions& seconds) {
+  const double most = MostSeconds(seconds);
   double sum = 0;
   size_t count = 0;
   for (const double each : seconds) {
@@ -45,7 +49,10 @@ struct Additions {
 struct LayerTravel {
   std::map<std::pair<double, double>, double> way_mm;  // by speed and acceleration
   Additions between_paths;
-  Additions at_marks;  // where scripts may change tools, prime and wait as well
+  Additions at_marks;                 // where scripts may change tools, prime and wait as well
+  std::vector<uint32_t> between;      // [of between_paths] the block in the layer that it leads to
+  double slope = 0;                   // of the last move that rises on its way
+  double descent_seconds_per_mm = 0;  // of the last one of Z alone
 };
 
 // Filament is pulled back, or pushed, at a standstill.
@@ -61,7 +68,7 @@ class TravelLearner {
   LayerTravel LearnLayer(const Layer& layer) {
     LayerTravel learnt;
     for (uint32_t b = std::max(layer.first_block, 1u); b < layer.end_block; ++b) {
-      LearnLink(b, learnt);
+      LearnLink(b, layer.first_block, learnt);
     }
     return learnt;
   }
@@ -74,7 +81,7 @@ class TravelLearner {
         .first->second;
   }
 
-  void LearnLink(uint32_t b, LayerTravel& learnt) {
+  void LearnLink(uint32_t b, uint32_t first_block, LayerTravel& learnt) {
     const Block& before = file_.blocks[b - 1];
     const Block& block = file_.blocks[b];
     if ((block.link & kLinkFixed) != 0) return;
@@ -99,6 +106,7 @@ class TravelLearner {
     if (!retracts) return;
     const bool at_mark = (block.link & kLinkSplits) != 0;
     Additions& added = at_mark ? learnt.at_marks : learnt.between_paths;
+    if (!at_mark) learnt.between.push_back(b - first_block);
     const double seconds = all.Finish().seconds;
     added.alone.push_back(seconds - travel.Finish().seconds);
     added.altogether.push_back(seconds - flowing.Finish().seconds);
@@ -115,12 +123,26 @@ class TravelLearner {
       const double way =
           std::hypot(ToDouble(state.at.x - step.from.x), ToDouble(state.at.y - step.from.y)) * unit;
       learnt.way_mm[{speed, dynamics.travel_accel()}] += way;
+      const double rise = ToDouble(state.at.z - step.from.z) * unit;
+      if (rise > 0 && way > 0 && !step.arc) learnt.slope = rise / way;
+    } else if (step.kind == StepKind::kLift && state.at.z < step.from.z && state.feed > 0) {
+      learnt.descent_seconds_per_mm = 60 / (ToDouble(state.feed) * unit);
     }
   }
 
   const GcodeFile& file_;
   std::map<uint32_t, Dynamics> dynamics_;  // by state
 };
+
+std::vector<float> AddedSeconds(const Layer& layer, const LayerTravel& learnt) {
+  const Retractions& seconds = learnt.between_paths.alone;
+  std::vector<float> added(layer.end_block - layer.first_block);
+  const double most = seconds.empty() ? 0 : MostSeconds(seconds);
+  for (size_t i = 0; i < seconds.size(); ++i) {
+    if (seconds[i] <= most) added[learnt.between[i]] = static_cast<float>(seconds[i]);
+  }
+  return added;
+}
 
 }  // namespace
 
@@ -133,7 +155,8 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm,
   TravelModel model;
   model.accel_mm_s2 = Dynamics(file.profile).travel_accel();
   bool from_paths = false;
-  for (const LayerTravel& learnt : layers) {
+  for (size_t layer = 0; layer < layers.size(); ++layer) {
+    const LayerTravel& learnt = layers[layer];
     double longest_mm = 0;
     for (const auto& [how, way_mm] : learnt.way_mm) {
       if (way_mm <= longest_mm || !(how.first > 0)) continue;
@@ -147,7 +170,11 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm,
       model.retraction_seconds = UsualSeconds(added.alone);
       model.retraction_price = UsualSeconds(added.altogether);
     }
+    const bool rises = learnt.slope > 0 && learnt.descent_seconds_per_mm > 0;
+    model.slope = rises ? learnt.slope : 0;
+    model.descent_seconds_per_mm = rises ? learnt.descent_seconds_per_mm : 0;
     models.push_back(model);
+    models.back().added_seconds = AddedSeconds(file.layers[layer], learnt);
   }
   for (TravelModel& each : models) each.retraction_threshold_mm = threshold_mm;
   return models;

@@ -19,6 +19,15 @@ struct TravelModel {
   double retraction_seconds = 0;       // retracting, lifting, wiping, lowering, priming
   double retraction_price = 0;         // the same with what the stops for it cost the way
   double retraction_threshold_mm = 0;  // longer moves retract
+
+  // Where the head rises on its way, the longer the higher: by so much per mm. It descends by moves
+  // of Z at so much, and both are 0 where no move rises so.
+  double slope = 0;
+  double descent_seconds_per_mm = 0;
+
+  // [block of the layer] what the retraction in the link before it adds, as retraction_seconds is
+  // the mean of; 0 if there is none, or it tells nothing of others.
+  std::vector<float> added_seconds = {};
 };
 
 // [layer]. Speed and acceleration are those of most of the layer's travel. The times are the means

@@ -91,12 +91,39 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
   totals.seconds = as_given ? WaySeconds(file_, to.block, model, true, &joints)
                             : NewWaySeconds(file_, from.block, way, model, &joints);
   totals.seconds += joints_.RestartSeconds(to.block - layer_.first_block, to.entry);
-  if (way.retracts) totals.seconds += model.retraction_seconds;
+  if (way.retracts) totals.seconds += RetractionSeconds(from, to, way.mm, stays, wipes, model);
   totals.retractions = way.retracts ? 1 : 0;
   totals.crossings = way.crosses ? 1 : 0;
   totals.open = way.crosses && !way.retracts ? 1 : 0;
   if (totals.open > 0) totals.open_mm = across_mm;
   return totals;
+}
+
+// The path before is left as it is in the file, if it retracts there; else the travel is like that
+// to the path behind it, or like another (LinkWriter).
+double LayerWriter::RetractionSeconds(const Placement& from, const Placement& to, double mm,
+                                      bool stays, bool wipes, const TravelModel& model) const {
+  const auto of = [&](uint32_t block) {
+    const bool here = layer_.first_block < block && block < layer_.end_block;
+    const size_t place = here ? block - layer_.first_block : 0;
+    return here && place < model.added_seconds.size() ? model.added_seconds[place] : 0.F;
+  };
+  if (stays) return of(to.block) > 0 ? of(to.block) : model.retraction_seconds;
+  uint32_t form = to.block;
+  if (!(of(form) > 0)) form = donors_.Find(to.block, true, wipes).value_or(form);
+  const uint32_t left = from.block + 1;
+  const uint32_t like = of(left) > 0 ? left : form;
+  if (!(of(like) > 0)) return model.retraction_seconds;
+  if (!(model.slope > 0)) return of(like);
+  // A slope rises as long as the way does, and is not made lower for a shorter way.
+  const auto lift_of = [&](uint32_t block) {
+    const Block& link = file_.blocks[block];
+    return ToDouble(link.lift) * file_.modes[link.mode].UnitMm();
+  };
+  const double lift = std::max(lift_of(like), lift_of(form));
+  const double highest = std::max(ToDouble(donors_.highest_lift()), lift);
+  const double rises = std::clamp(model.slope * mm, lift, highest);
+  return of(like) + (rises - lift_of(like)) * model.descent_seconds_per_mm;
 }
 
 }  // namespace traverse::gcode

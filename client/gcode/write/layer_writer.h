@@ -111,6 +111,11 @@ class LayerWriter {
   // away from it, ends with a stop.
   WayJoints JointsOf(const Placement& from, const Placement& to, bool wipes) const;
 
+  // What the retraction of the travel of `mm` from `from` to `to` takes beside the way. `stays`:
+  // the travel is the file's; `wipes`: it wipes `from`.
+  double RetractionSeconds(const Placement& from, const Placement& to, double mm, bool stays,
+                           bool wipes, const TravelModel& model) const;
+
   // True if continuing after the end of `from` puts a visible wall between the nozzle and `to`,
   // which must be avoided.
   bool GoesOnAcross(const Placement& from, Vertex to, Feature feature) const;

@@ -139,5 +139,35 @@ TEST(LearnTravel, RetractionsAtMarksCountWhereThereAreNoOthers) {
   EXPECT_GT(LearnTravel(*file, 1.5)[0].retraction_seconds, 0.04);
 }
 
+TEST(LearnTravel, KnowsWhatEachRetractionAdds) {
+  Sketch sketch;
+  sketch.Infill(10, 0).GoRetracted(0, 10).Infill(10, 10).Go(10, 11).Infill(0, 11);
+  sketch.Add("G1 E-1.6 F2100").Go(0, 20).Add("G1 E1.6 F2100").Infill(10, 20);
+  const std::shared_ptr<GcodeFile> file = sketch.Read();
+
+  const TravelModel model = LearnTravel(*file, 1.5)[0];
+
+  ASSERT_EQ(model.added_seconds.size(), 4u);
+  EXPECT_EQ(model.added_seconds[0], 0);
+  EXPECT_GT(model.added_seconds[1], 0);
+  EXPECT_EQ(model.added_seconds[2], 0);
+  EXPECT_GT(model.added_seconds[3], model.added_seconds[1] + .04);
+  EXPECT_NEAR(model.added_seconds[1] + model.added_seconds[3], 2 * model.retraction_seconds, 1e-6);
+}
+
+TEST(LearnTravel, KnowsHowHeadsRiseOnTheirWay) {
+  const auto learnt = [](const std::string& way, const std::string& down) {
+    Sketch sketch;
+    sketch.Infill(10, 0).Add("G1 E-.8 F2100").Add(way).Add(down).Add("G1 E.8 F2100");
+    return LearnTravel(*sketch.Infill(40, 40).Read(), 1.5)[0];
+  };
+  const TravelModel rising = learnt("G1 X10 Y40 Z.6 F9000", "G1 Z.2 F600");
+  EXPECT_NEAR(rising.slope, .01, 1e-9);
+  EXPECT_NEAR(rising.descent_seconds_per_mm, .1, 1e-9);
+  const TravelModel level = learnt("G1 Z.6 F600\nG1 X10 Y40 F9000", "G1 Z.2 F600");
+  EXPECT_EQ(level.slope, 0);
+  EXPECT_EQ(level.descent_seconds_per_mm, 0);
+}
+
 }  // namespace
 }  // namespace traverse::gcode
