@@ -115,11 +115,15 @@ double LayerWriter::RetractionSeconds(const Placement& from, const Placement& to
   const uint32_t like = of(left) > 0 ? left : form;
   if (!(of(like) > 0)) return model.retraction_seconds;
   if (!(model.slope > 0)) return of(like);
-  const auto lift_of = [&](uint32_t block) { return ToDouble(file_.blocks[block].lift); };
-  const double unit = file_.modes[file_.blocks[like].mode].UnitMm();
+  // A slope rises as long as the way does, and is not made lower for a shorter way.
+  const auto lift_of = [&](uint32_t block) {
+    const Block& link = file_.blocks[block];
+    return ToDouble(link.lift) * file_.modes[link.mode].UnitMm();
+  };
   const double lift = std::max(lift_of(like), lift_of(form));
-  const double rises = donors_.SlopeTo(model.slope * mm / unit, lift);
-  return of(like) + (rises - lift_of(like)) * unit * model.descent_seconds_per_mm;
+  const double highest = std::max(ToDouble(donors_.highest_lift()), lift);
+  const double rises = std::clamp(model.slope * mm, lift, highest);
+  return of(like) + (rises - lift_of(like)) * model.descent_seconds_per_mm;
 }
 
 }  // namespace traverse::gcode

@@ -28,14 +28,6 @@ Decimal UsualLiftToLayers(const GcodeFile& file) {
   return 0;
 }
 
-// What a tenth of the lifts do not exceed: the very lowest are of odd moves.
-Decimal LowOf(std::vector<Decimal> lifts) {
-  if (lifts.empty()) return 0;
-  const auto low = lifts.begin() + static_cast<ptrdiff_t>(lifts.size() / 10);
-  std::nth_element(lifts.begin(), low, lifts.end());
-  return *low;
-}
-
 }  // namespace
 
 LinkDonors::LinkDonors(const GcodeFile& file)
@@ -44,7 +36,6 @@ LinkDonors::LinkDonors(const GcodeFile& file)
     const Layer& of = file.layers[layer];
     std::fill(layer_of_.begin() + of.first_block, layer_of_.begin() + of.end_block, layer);
   }
-  std::vector<Decimal> retracted_lifts;
   for (uint32_t i = 1; i < file.blocks.size(); ++i) {
     if (!MayFollow(i) || !Travels(i)) continue;
     const Kind kind = KindOf(i);
@@ -53,10 +44,7 @@ LinkDonors::LinkDonors(const GcodeFile& file)
     if (file.blocks[i].lift > 0) lifted_[kind].push_back(i);
     if ((file.blocks[i].link & kLinkWipes) != 0) wiping_[kind].push_back(i);
     CountLifts(i);
-    const bool lifts = file.blocks[i].lift > 0 && (file.blocks[i].link & kLinkRetracts) != 0;
-    if (lifts) retracted_lifts.push_back(file.blocks[i].lift);
   }
-  low_lift_ = LowOf(std::move(retracted_lifts));
 }
 
 LinkDonors::Kind LinkDonors::KindOf(uint32_t block) const {
@@ -76,12 +64,6 @@ bool LinkDonors::MayFollow(uint32_t block) const {
 
 Decimal LinkDonors::LiftToLayer(uint32_t block) const {
   return block > 0 && layer_of_[block] != layer_of_[block - 1] ? lift_to_layers_ : 0;
-}
-
-double LinkDonors::SlopeTo(double height, double lift) const {
-  constexpr double kRounding = 2e-3;
-  if (height < std::min(ToDouble(low_lift_), lift) - kRounding) return lift;
-  return std::min(height, std::max(ToDouble(highest_lift_), lift));
 }
 
 // If a path begins at the end of the one before it, there is no travel to learn from.

@@ -40,10 +40,8 @@ class LinkDonors {
   // they do not, or link `block` leads to none.
   Decimal LiftToLayer(uint32_t block) const;
 
-  // How high a slope is led that would reach `height` at the end of its way, and `lift` on that of
-  // its example: no higher than the highest lift of all links. Of a height below that of nearly all
-  // links that retract and lift there is hardly an example: `lift` then. In the unit of the file.
-  double SlopeTo(double height, double lift) const;
+  // The highest lift of all links, in the unit of the file.
+  Decimal highest_lift() const { return highest_lift_; }
 
  private:
   // The kind of a link: its modes, and whether it retracts.
@@ -62,7 +60,6 @@ class LinkDonors {
   std::map<std::pair<Kind, uint32_t>, uint32_t> first_;  // by kind and layer
   // By kind and layer: links that lift, less those that do not.
   std::map<std::pair<Kind, uint32_t>, int64_t> lifts_;
-  Decimal low_lift_ = 0;  // of links that retract
   Decimal highest_lift_ = 0;
   const Decimal lift_to_layers_;  // of most links that lead to one
 };

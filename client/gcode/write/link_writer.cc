@@ -14,18 +14,15 @@ constexpr double kMinSlopeRestMm = 0.5;
 
 bool IsSoft(const Block& block) { return (block.link & (kLinkSplits | kLinkFixed)) == 0; }
 
-// What `rise` does for a way of `length`: a slope that ends with its way rises on, or less far.
-Link Stretched(Link rise, double length, const LinkDonors& donors) {
-  if (rise.ramp_ends || !(rise.ramp_mm > 0)) return rise;
-  const double lift = ToDouble(rise.lift);
-  const double steepness = lift / rise.ramp_mm;
-  const double height = steepness * length;
-  const double reached = donors.SlopeTo(height, lift);
-  if (reached > height) return rise;
-  rise.ramp_ends = reached < height;
+// What `rise` does for a way of `length`: a slope that ends with its way rises on, up to `highest`.
+Link Stretched(Link rise, double length, Decimal highest) {
+  if (rise.ramp_ends || !(rise.ramp_mm > 0) || length <= rise.ramp_mm) return rise;
+  const double steepness = static_cast<double>(rise.lift) / rise.ramp_mm;
+  const auto reached = static_cast<double>(std::max(highest, rise.lift));
+  rise.ramp_ends = steepness * length > reached;
   rise.ramp_mm = rise.ramp_ends ? reached / steepness : length;
   // As slicers write heights: to micrometres.
-  rise.lift = RoundedWord(reached);
+  rise.lift = RoundedWord(steepness * rise.ramp_mm * 1e-9);
   return rise;
 }
 
@@ -96,8 +93,9 @@ void LinkWriter::WritePlain(const LinkRequest& request) {
   const Link form = TemplateFor(request);
   SetTravelState(*request.to, form);
   const Link left = WriteDeparture(request, form);
-  const Link rise = Stretched(left.lift > form.lift ? left : form,
-                              LengthXy(out_.at.machine.at, request.to->first()), donors_);
+  const Link rise =
+      Stretched(left.lift > form.lift ? left : form,
+                LengthXy(out_.at.machine.at, request.to->first()), donors_.highest_lift());
   WriteTravel(request, form, request.to->first().z + rise.lift, rise);
   WriteArrival(request, form);
   if (IsSoft(request.to->block())) WriteComments(request.to->placement().block);

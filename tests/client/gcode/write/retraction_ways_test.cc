@@ -44,13 +44,6 @@ std::shared_ptr<GcodeFile> Lines(double slope, int wiped = -1) {
   return sketch.Read();
 }
 
-LayerOrder Upwards(const GcodeFile& file, LayerOrder order) {
-  std::stable_sort(order.begin() + 1, order.end(), [&file](const auto& a, const auto& b) {
-    return file.blocks[a.block].first.y < file.blocks[b.block].first.y;
-  });
-  return order;
-}
-
 // Of the lines from the lowest to the highest, less than in the order of the file.
 struct Saved {
   double estimated = 0;
@@ -63,7 +56,10 @@ Saved SavedUpwards(const GcodeFile& file) {
   const LayerWriter writer(file, file.layers[0], habit, donors);
   const TravelModel model = LearnTravel(file, habit.threshold_mm)[0];
   const LayerOrder given = writer.GivenOrder();
-  const LayerOrder upwards = Upwards(file, given);
+  LayerOrder upwards = given;
+  std::stable_sort(upwards.begin() + 1, upwards.end(), [&file](const auto& a, const auto& b) {
+    return file.blocks[a.block].first.y < file.blocks[b.block].first.y;
+  });
   Saved saved;
   for (const double sign : {1.0, -1.0}) {
     const LayerOrder& order = sign > 0 ? given : upwards;
@@ -87,24 +83,6 @@ TEST(Retractions, OfASlopeCostTheMoreTheHigherItRises) {
 
   EXPECT_GT(saved.written, 0);
   EXPECT_NEAR(saved.estimated, saved.written, .02);
-}
-
-// Down to the lowest of the file: there is no example for less.
-TEST(Retractions, OfASlopeRiseLessOnShorterWays) {
-  const auto file = Lines(.02);
-  const RetractionHabit habit = HabitOfNewWays(*file);
-  const LinkDonors donors(*file);
-  const LayerWriter writer(*file, file->layers[0], habit, donors);
-  const LayerOrder order = Upwards(*file, writer.GivenOrder());
-  std::string text;
-
-  writer.WritePaths(order, StartOfPaths(*file, order.front()), text);
-
-  // 14.142 mm each.
-  const std::string rise = "Z0.48";
-  size_t found = 0;
-  for (size_t at = 0; (at = text.find(rise, at)) != std::string::npos; ++at) ++found;
-  EXPECT_EQ(found, order.size() - 1) << text;
 }
 
 TEST(Retractions, WithoutASlopeCostTheSameEverywhere) {
