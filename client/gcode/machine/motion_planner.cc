@@ -39,6 +39,16 @@ double StopToStopSeconds(double length, double speed, double accel) {
   return TrapezoidSeconds(length, Speed(0), Speed(0), speed * speed, accel);
 }
 
+double RampedSeconds(double length, double entry2, double exit2, double speed, double accel) {
+  return TrapezoidSeconds(length, Speed(entry2), Speed(exit2), speed * speed, accel);
+}
+
+double CornerSpeed2(double cosine, double corner) {
+  // 2 sin(t / 2) squared is 2 - 2 cos t.
+  const double turn2 = std::max(2 - 2 * cosine, 1e-9);
+  return 2 * corner * corner / turn2;
+}
+
 void MotionPlanner::Move(double dx, double dy, double speed, double accel, double corner) {
   if (rules_.klipper) {
     MoveInSpace move{.dx = dx, .dy = dy, .speed = speed, .accel = accel};
@@ -98,9 +108,7 @@ void MotionPlanner::PlanIfFull() {
 }
 
 double MotionPlanner::CornerLimit2(double bx, double by, double corner) const {
-  // 2 sin(t / 2) squared is 2 - 2 cos t.
-  const double turn2 = std::max(2 - 2 * (last_.x * bx + last_.y * by), 1e-9);
-  return 2 * corner * corner / turn2;
+  return CornerSpeed2(last_.x * bx + last_.y * by, corner);
 }
 
 double MotionPlanner::KlipperLimit2(const Direction& begin, const Segment& next,

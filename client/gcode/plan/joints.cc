@@ -6,6 +6,7 @@
 
 #include "absl/container/flat_hash_map.h"
 #include "client/gcode/machine/machine_profile.h"
+#include "client/gcode/machine/motion_planner.h"
 
 namespace traverse::gcode {
 namespace {
@@ -91,7 +92,8 @@ Joint LayerJoints::JointAt(size_t path, uint32_t entry, bool at_end) const {
   const Vertex away = Direction(points[0], points[1]);
   if (away == Vertex{}) return {};
   const Vertex before = Direction(points[1], points[2]);
-  const double reached2 = CornerSpeed2(away, before, pace.corner_speed) +
+  const double cosine = away.x * before.x + away.y * before.y;
+  const double reached2 = CornerSpeed2(cosine, pace.corner_speed) +
                           2 * pace.accel_mm_s2 * Distance(points[0], points[1]);
   return {away, std::min(pace.speed_mm_s, std::sqrt(reached2)), pace.accel_mm_s2};
 }

@@ -5,17 +5,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "client/gcode/machine/motion_planner.h"
+
 namespace traverse::gcode {
 namespace {
-
-// Of a segment of `mm` that is entered and left at speeds of these squares, which `pace` allows.
-double SegmentSeconds(double mm, double in2, double out2, const Pace& pace) {
-  const double speed2 = pace.speed_mm_s * pace.speed_mm_s;
-  const double peak2 = std::min(speed2, (in2 + out2) / 2 + pace.accel_mm_s2 * mm);
-  const double ramps = (2 * std::sqrt(peak2) - std::sqrt(in2) - std::sqrt(out2)) / pace.accel_mm_s2;
-  const double ramps_mm = (2 * peak2 - in2 - out2) / (2 * pace.accel_mm_s2);
-  return ramps + std::max(mm - ramps_mm, 0.0) / pace.speed_mm_s;
-}
 
 // The vertices of a loop, one after the other in either direction.
 class Lap {
@@ -36,11 +29,6 @@ class Lap {
 
 }  // namespace
 
-double CornerSpeed2(Vertex in, Vertex out, double corner_speed) {
-  const double turn2 = std::max(2 - 2 * (in.x * out.x + in.y * out.y), 1e-9);
-  return 2 * corner_speed * corner_speed / turn2;
-}
-
 Vertex Direction(Vertex from, Vertex to) {
   const double length = Distance(from, to);
   return length > 0 ? Vertex{(to.x - from.x) / length, (to.y - from.y) / length} : Vertex{};
@@ -49,6 +37,7 @@ Vertex Direction(Vertex from, Vertex to) {
 // The slowest corner is taken as fast as it may be. From there on in each direction the machine
 // speeds up.
 LoopStops::LoopStops(const std::vector<Vertex>& points, const Pace& pace) {
+  assert(points.size() > 1 && pace.speed_mm_s > 0 && pace.accel_mm_s2 > 0);
   const Lap lap(points);
   const size_t n = lap.sides();
   const auto speed2 = static_cast<float>(pace.speed_mm_s * pace.speed_mm_s);
@@ -56,7 +45,8 @@ LoopStops::LoopStops(const std::vector<Vertex>& points, const Pace& pace) {
   for (size_t v = 0; v < n; ++v) {
     const Vertex in = Direction(points[lap.Next(v, true)], points[v]);
     const Vertex out = Direction(points[v], points[lap.Next(v, false)]);
-    const auto corner2 = static_cast<float>(CornerSpeed2(in, out, pace.corner_speed));
+    const double cosine = in.x * out.x + in.y * out.y;
+    const auto corner2 = static_cast<float>(CornerSpeed2(cosine, pace.corner_speed));
     passing2_.push_back(std::min(speed2, corner2));
   }
   const auto slowest =
@@ -85,8 +75,10 @@ double LoopStops::Seconds(const std::vector<Vertex>& points, const Pace& pace,
       const size_t next = lap.Next(v, backwards);
       const double mm = lap.Mm(v, next);
       const double next2 = std::min<double>(passing2_[next], now2 + 2 * pace.accel_mm_s2 * mm);
-      seconds += SegmentSeconds(mm, now2, next2, pace) -
-                 SegmentSeconds(mm, passing2_[v], passing2_[next], pace);
+      const auto takes = [&](double in2, double out2) {
+        return RampedSeconds(mm, in2, out2, pace.speed_mm_s, pace.accel_mm_s2);
+      };
+      seconds += takes(now2, next2) - takes(passing2_[v], passing2_[next]);
       now2 = next2;
       v = next;
     }

@@ -17,10 +17,6 @@ struct Pace {
   double corner_speed = 0;  // see machine/motion_planner.h
 };
 
-// The square of the speed at which a corner is taken between the directions `in` and `out`, of
-// length 1 (machine/motion_planner.h).
-double CornerSpeed2(Vertex in, Vertex out, double corner_speed);
-
 // From one point to another, of length 1; 0 if they are the same.
 Vertex Direction(Vertex from, Vertex to);
 
