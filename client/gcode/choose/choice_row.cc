@@ -193,8 +193,13 @@ class RowFinder {
 
 PrintTotals ChoiceColumn::Whole(size_t before, size_t choice) const {
   PrintTotals whole = inside[choice];
-  if (!ways.empty()) whole += ways[before * inside.size() + choice];
+  if (!ways.empty()) whole += Way(before, choice);
   return whole;
+}
+
+const PrintTotals& ChoiceColumn::Way(size_t before, size_t choice) const {
+  assert(before * inside.size() + choice < ways.size());
+  return ways[before * inside.size() + choice];
 }
 
 std::vector<uint32_t> BestRow(const std::vector<const ChoiceColumn*>& columns, Policy policy,

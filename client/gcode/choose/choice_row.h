@@ -26,6 +26,9 @@ struct ChoiceColumn {
   std::vector<bool> no_choice;  // [choice]
   std::vector<bool> no_way;     // [as ways]
 
+  // Of `ways`. REQUIRES: this is not the first layer.
+  const PrintTotals& Way(size_t before, size_t choice) const;
+
   // Including the travel to the layer. `before` is ignored for the first layer, which has none.
   PrintTotals Whole(size_t before, size_t choice) const;
 };

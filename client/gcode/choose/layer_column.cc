@@ -85,10 +85,8 @@ Forecast ForecastOf(const std::vector<LayerColumn>& columns,
     forecast.seconds +=
         column.chosen == 0 ? given : ForecastPaths(*chosen.writer, travel[layer], chosen.order);
     if (layer == 0) continue;
-    const std::vector<PrintTotals>& ways = column.totals.ways;
-    forecast.given_seconds += ways.front().seconds;
-    forecast.seconds +=
-        ways[columns[layer - 1].chosen * column.choices.size() + column.chosen].seconds;
+    forecast.given_seconds += column.totals.Way(0, 0).seconds;
+    forecast.seconds += column.totals.Way(columns[layer - 1].chosen, column.chosen).seconds;
   }
   return forecast;
 }

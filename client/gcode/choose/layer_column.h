@@ -37,7 +37,6 @@ struct LayerColumn {
   uint32_t chosen = 0;
 
   const LayerOrder& given_order() const { return choices[0].order; }
-  const LayerOrder& chosen_order() const { return choices[chosen].order; }
 };
 
 // Writes and measures choices, and keeps none of the texts: those of all choices of a file are far
