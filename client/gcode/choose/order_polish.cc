@@ -325,11 +325,12 @@ Probes ProbesOf(const std::vector<Outline>& outlines, const LayerFreedom& freedo
     if (!rule.contour) {
       probes.Add(path, points.front());
       probes.Add(path, points.back());
-    } else if (!rule.entries.empty()) {
-      for (const uint32_t entry : rule.entries) probes.Add(path, points[entry]);
     } else {
-      const size_t step = std::max<size_t>(1, points.size() / kProbes);
-      for (size_t k = 0; k + 1 < points.size(); k += step) probes.Add(path, points[k]);
+      const size_t starts = rule.entries.empty() ? points.size() - 1 : rule.entries.size();
+      const size_t step = std::max<size_t>(1, (starts + 1) / kProbes);
+      for (size_t k = 0; k < starts; k += step) {
+        probes.Add(path, points[rule.entries.empty() ? k : rule.entries[k]]);
+      }
     }
   }
   probes.first.push_back(probes.points.size());

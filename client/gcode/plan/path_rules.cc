@@ -5,37 +5,11 @@
 #include <optional>
 #include <string>
 
+#include "client/gcode/plan/loop_starts.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
 namespace {
-
-// A wall may begin at corners at least this sharp, and nearly as sharp as its sharpest.
-constexpr double kMinCornerRadians = 0.5;
-constexpr double kCornerShare = 0.8;
-
-// The vertices at corners about as sharp as the sharpest, and the given start.
-std::vector<uint32_t> SharpCorners(const std::vector<Vertex>& points) {
-  const size_t n = points.size();
-  std::vector<double> turn(n);
-  double sharpest = 0;
-  for (size_t k = 0; k < n; ++k) {
-    const Vertex a = points[(k + n - 1) % n];
-    const Vertex b = points[k];
-    const Vertex c = points[(k + 1) % n];
-    const double cross = (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x);
-    const double dot = (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y);
-    turn[k] = std::abs(std::atan2(cross, dot));
-    sharpest = std::max(sharpest, turn[k]);
-  }
-  std::vector<uint32_t> corners = {0};
-  for (size_t k = 1; k < n; ++k) {
-    if (turn[k] >= std::max(kMinCornerRadians, kCornerShare * sharpest)) {
-      corners.push_back(static_cast<uint32_t>(k));
-    }
-  }
-  return corners;
-}
 
 // The vertices of a closed outline. The last point is the first again, or lies so near to it that
 // to begin there would only cross the gap first.
@@ -139,9 +113,11 @@ PathRule PathRules::RuleOf(size_t path) const {
     rule.one_way = rule.pinned || !MayTurnRound(path);
   } else if (rule.pinned || outline.one_start || !MayBeginAnywhere(path)) {
     rule.entries = {0};
-  } else if (policy_ == Policy::kBalanced && outline.feature != Feature::kInnerWall &&
-             IsWall(outline.feature)) {
-    rule.entries = SharpCorners(ContourVertices(outline));
+  } else {
+    const std::vector<Vertex> loop = ContourVertices(outline);
+    const bool at_corners = policy_ == Policy::kBalanced &&
+                            outline.feature != Feature::kInnerWall && IsWall(outline.feature);
+    rule.entries = ThinnedStarts(loop, at_corners ? SharpCorners(loop) : std::vector<uint32_t>());
   }
   return rule;
 }

@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+#include <vector>
+
 #include "client/gcode/read/reader.h"
 #include "tests/client/gcode/plan/sheet.h"
 #include "tests/client/gcode/support/samples.h"
@@ -97,6 +101,23 @@ TEST(Policy, BalancedStartsVisibleWallsAtTheirCorners) {
   const LayerPlan plan = sheet.Plan(Policy::kBalanced);
 
   EXPECT_THAT(plan.plan.paths(1).contour().entries(), ElementsAre(0, 1, 2, 4, 5));
+}
+
+// So that a search does not take minutes for loops of thousands of vertices.
+TEST(Policy, LoopsOfVeryManyVerticesMayBeginAtAFewHundred) {
+  std::vector<Vertex> circle;
+  for (int k = 0; k <= 5000; ++k) {
+    const double turn = 2 * std::numbers::pi * (k % 5000) / 5000;
+    circle.push_back({50 + 20 * std::cos(turn), 50 + 20 * std::sin(turn)});
+  }
+  Sheet sheet;
+  sheet.Path(kOuter, circle);
+
+  const auto entries = sheet.Plan(Policy::kFree).plan.paths(1).contour().entries();
+
+  EXPECT_EQ(entries.Get(0), 0);
+  EXPECT_GT(entries.size(), 200);
+  EXPECT_LT(entries.size(), 300);
 }
 
 // What any policy allows, the next one allows too.
