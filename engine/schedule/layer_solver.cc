@@ -231,8 +231,11 @@ Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, ChainLayer
   if (layer.second_start && problem.start == *layer.second_start) return layer.second;
   const LayersInView& view = at.view;
   const Solution* found = FoundFrom(layer, problem.start);
-  // Without a next layer, the time meant for looking ahead is used for the layer itself.
-  const bool has_time_left = layer.first.stop == StopReason::kTimeLimit && MayLookAhead(layer, {});
+  // Without a next layer, the time meant for looking ahead is used for the layer itself: by anchor,
+  // not before it for the layer alone.
+  const bool for_alone = layer.carries_alone && !layer.alone;
+  const bool has_time_left =
+      layer.first.stop == StopReason::kTimeLimit && MayLookAhead(layer, {}) && !for_alone;
   if (found != nullptr && view.empty() && !has_time_left) return *found;
   Solution solution;
   if (known != nullptr && TakeOver(*known, problem, layer, solution)) return solution;

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <memory>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -167,6 +169,72 @@ TEST(LayerSolver, IsNeverWorseThanGreedyFromTheTrueStart) {
     const LayerProblem problem{&outcome.plan, outcome.start, std::nullopt, CostSpec(), 1};
     const Route greedy = (*MakeStrategy("greedy", {}))->Solve(problem, budget).route;
     EXPECT_LE(outcome.cost, RouteCost(problem, greedy) + 1e-9) << "layer " << outcome.index;
+  }
+}
+
+// Takes all the time that it is given, and notes how much that is.
+class SpendingLayer : public PreparedLayer {
+ public:
+  explicit SpendingLayer(std::atomic<double>& given) : given_(given) {}
+
+  Solution Solve(const LayerProblem& problem, Budget& budget) override {
+    return Resume(problem, GivenRoute(*problem.plan), budget);
+  }
+  Solution Resume(const LayerProblem&, const Route& start, Budget& budget) override {
+    const std::chrono::duration<double> given = *budget.deadline() - Budget::Clock::now();
+    given_ = given_ + given.count();
+    while (!budget.ExhaustedNow()) std::this_thread::yield();
+    return Solution{start, StopReason::kTimeLimit, std::nullopt};
+  }
+  Solution ResumeWithNext(const LayerProblem& problem, const Route& start, std::vector<NextLayer>&,
+                          Budget& budget) override {
+    return Resume(problem, start, budget);
+  }
+
+ private:
+  std::atomic<double>& given_;
+};
+
+class Spending : public PreparingStrategy {
+ public:
+  Spending(std::atomic<double>& given, const StrategyTraits& traits)
+      : PreparingStrategy(traits), given_(given) {}
+  std::unique_ptr<PreparedLayer> Prepare(const Plan&) const override {
+    return std::make_unique<SpendingLayer>(given_);
+  }
+
+ private:
+  std::atomic<double>& given_;
+};
+
+// In seconds, all that is given to a job of layers that differ, of which each may take 40 ms.
+double GivenTo(int layers, bool more_follows) {
+  std::atomic<double> given = 0;
+  RecordingSink sink;
+  TestExecutor executor(1);
+  JobSpec spec;
+  spec.layer_time_limit = absl::Milliseconds(40);
+  auto job =
+      Job::Start(spec, std::make_unique<Spending>(given, StrategyTraits{.look_ahead_paths = 100}),
+                 executor, sink);
+  for (int i = 1; i <= layers; ++i) {
+    std::vector<Path> dots;
+    for (int k = 0; k < 5; ++k) dots.push_back(MakeContour({{10.0 * k * i, 5.0 + i}}));
+    JobLayer layer{AnyOrderPlan(std::move(dots)), std::nullopt, std::nullopt};
+    layer.more_follows = more_follows || i < layers;
+    job->Add(std::move(layer));
+  }
+  job->Close();
+  sink.Wait();
+  return given;
+}
+
+TEST(LayerSolver, AllStagesOfALayerTogetherHaveItsTimeLimit) {
+  for (const bool more_follows : {false, true}) {
+    EXPECT_GT(GivenTo(1, more_follows), 0.035) << more_follows;
+    EXPECT_LT(GivenTo(1, more_follows), 0.0401) << more_follows;
+    EXPECT_GT(GivenTo(3, more_follows), 3 * 0.03) << more_follows;
+    EXPECT_LT(GivenTo(3, more_follows), 3 * 0.0401) << more_follows;
   }
 }
 
