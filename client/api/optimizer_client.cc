@@ -66,13 +66,15 @@ void Send(const v1::JobOptions& options, absl::Span<const v1::Layer> layers, boo
           Stream& stream) {
   v1::OptimizeRequest request;
   *request.mutable_options() = options;
-  request.mutable_options()->set_look_ahead(true);  // reads answers while it still sends
   size_t bytes = 0;
-  for (const v1::Layer& layer : layers) {
+  for (size_t i = 0; i < layers.size(); ++i) {
     v1::Layer& sent = *request.add_layers();
-    sent = Stripped(layer);
+    sent = Stripped(layers[i]);
     bytes += sent.ByteSizeLong();
-    if (bytes < kMessageBytes) continue;
+    const bool more = i + 1 < layers.size() || empty_layer;
+    // It reads answers while it still sends. If one message is all, its last layer is the last one.
+    if (request.has_options()) request.mutable_options()->set_look_ahead(more);
+    if (bytes < kMessageBytes && more) continue;
     if (!stream.Write(request)) return;
     request.Clear();
     bytes = 0;

@@ -65,6 +65,20 @@ TEST(OptimizerClient, EmptyJobHasASummary) {
   EXPECT_EQ(service.messages, 1);
 }
 
+// Where one message is all, the last layer of it has its whole time limit for itself.
+TEST(OptimizerClient, SaysThatMoreFollowsOnlyIfThereIsMoreThanOneMessage) {
+  FakeService service;
+  OptimizerClient client(service.InProcessChannel());
+
+  ASSERT_TRUE(client.Optimize({}, Layers(3)).ok());
+  EXPECT_EQ(service.messages, 1);
+  EXPECT_FALSE(service.options.look_ahead());
+
+  ASSERT_TRUE(client.Optimize({}, Layers(3, 5000)).ok());
+  EXPECT_GT(service.messages, 1);
+  EXPECT_TRUE(service.options.look_ahead());
+}
+
 TEST(OptimizerClient, SendsOptionsOnceAndSmallLayersTogether) {
   FakeService service;
   OptimizerClient client(service.InProcessChannel());
