@@ -288,17 +288,16 @@ Vertex OrderPolisher::End(const Placement& placement) const {
 
 uint32_t OrderPolisher::NearestEntry(uint32_t path, Vertex point) const {
   const std::vector<Vertex>& points = outlines_[path].points;
-  const std::vector<uint32_t>& allowed = freedom_.rules[path].entries;
+  const PathRule& rule = freedom_.rules[path];
+  const size_t starts = rule.StartCount(points.size() - 1);
   double least = std::numeric_limits<double>::infinity();
   uint32_t nearest = 0;
-  const auto look_at = [&](uint32_t entry) {
-    const double distance = Distance(points[entry], point);
-    if (distance >= least) return;
+  for (size_t k = 0; k < starts; ++k) {
+    const double distance = Distance(points[rule.Start(k)], point);
+    if (distance >= least) continue;
     least = distance;
-    nearest = entry;
-  };
-  for (const uint32_t entry : allowed) look_at(entry);
-  for (uint32_t entry = 0; allowed.empty() && entry + 1 < points.size(); ++entry) look_at(entry);
+    nearest = rule.Start(k);
+  }
   return nearest;
 }
 
@@ -326,11 +325,9 @@ Probes ProbesOf(const std::vector<Outline>& outlines, const LayerFreedom& freedo
       probes.Add(path, points.front());
       probes.Add(path, points.back());
     } else {
-      const size_t starts = rule.entries.empty() ? points.size() - 1 : rule.entries.size();
+      const size_t starts = rule.StartCount(points.size() - 1);
       const size_t step = std::max<size_t>(1, (starts + 1) / kProbes);
-      for (size_t k = 0; k < starts; k += step) {
-        probes.Add(path, points[rule.entries.empty() ? k : rule.entries[k]]);
-      }
+      for (size_t k = 0; k < starts; k += step) probes.Add(path, points[rule.Start(k)]);
     }
   }
   probes.first.push_back(probes.points.size());

@@ -4,6 +4,7 @@
 #ifndef TRAVERSE_CLIENT_GCODE_PLAN_LAYER_FREEDOM_H_
 #define TRAVERSE_CLIENT_GCODE_PLAN_LAYER_FREEDOM_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -15,6 +16,10 @@ struct PathRule {
   bool contour = false;  // closed; else an open path
   bool one_way = false;
   std::vector<uint32_t> entries;  // contour: where it may begin; empty for anywhere
+
+  // The same of a contour of so many vertices, one by one: how many places, and the k-th of them.
+  size_t StartCount(size_t vertices) const { return entries.empty() ? vertices : entries.size(); }
+  uint32_t Start(size_t k) const { return entries.empty() ? static_cast<uint32_t>(k) : entries[k]; }
 };
 
 struct LayerFreedom {

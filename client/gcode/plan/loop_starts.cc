@@ -13,18 +13,17 @@ constexpr double kMinCornerRadians = 0.5;
 constexpr double kCornerShare = 0.8;
 
 // [k] how far along the loop its vertex k is; last, its whole length.
-std::vector<double> LengthsUpTo(const std::vector<Vertex>& loop) {
+std::vector<double> LengthsUpTo(absl::Span<const Vertex> loop) {
   std::vector<double> lengths = {0};
   for (size_t k = 0; k < loop.size(); ++k) {
-    const Vertex& to = loop[(k + 1) % loop.size()];
-    lengths.push_back(lengths.back() + std::hypot(to.x - loop[k].x, to.y - loop[k].y));
+    lengths.push_back(lengths.back() + Distance(loop[k], loop[(k + 1) % loop.size()]));
   }
   return lengths;
 }
 
 }  // namespace
 
-std::vector<uint32_t> SharpCorners(const std::vector<Vertex>& loop) {
+std::vector<uint32_t> SharpCorners(absl::Span<const Vertex> loop) {
   const size_t n = loop.size();
   std::vector<double> turn(n);
   double sharpest = 0;
@@ -46,7 +45,7 @@ std::vector<uint32_t> SharpCorners(const std::vector<Vertex>& loop) {
   return corners;
 }
 
-std::vector<uint32_t> ThinnedStarts(const std::vector<Vertex>& loop, std::vector<uint32_t> starts) {
+std::vector<uint32_t> ThinnedStarts(absl::Span<const Vertex> loop, std::vector<uint32_t> starts) {
   assert(!loop.empty());
   const bool all = starts.empty();
   if ((all ? loop.size() : starts.size()) <= kMostStarts) return starts;

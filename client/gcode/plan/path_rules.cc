@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "absl/types/span.h"
 #include "client/gcode/plan/loop_starts.h"
 #include "client/gcode/text/text.h"
 
@@ -13,8 +14,8 @@ namespace {
 
 // The vertices of a closed outline. The last point is the first again, or lies so near to it that
 // to begin there would only cross the gap first.
-std::vector<Vertex> ContourVertices(const Outline& outline) {
-  return {outline.points.begin(), outline.points.end() - 1};
+absl::Span<const Vertex> ContourVertices(const Outline& outline) {
+  return absl::MakeConstSpan(outline.points).first(outline.points.size() - 1);
 }
 
 // The role of a path for the order of others. Lines of different infills may lie side by side in
@@ -114,7 +115,7 @@ PathRule PathRules::RuleOf(size_t path) const {
   } else if (rule.pinned || outline.one_start || !MayBeginAnywhere(path)) {
     rule.entries = {0};
   } else {
-    const std::vector<Vertex> loop = ContourVertices(outline);
+    const absl::Span<const Vertex> loop = ContourVertices(outline);
     const bool at_corners = policy_ == Policy::kBalanced &&
                             outline.feature != Feature::kInnerWall && IsWall(outline.feature);
     rule.entries = ThinnedStarts(loop, at_corners ? SharpCorners(loop) : std::vector<uint32_t>());
