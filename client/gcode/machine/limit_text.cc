@@ -4,12 +4,6 @@
 #include "absl/strings/str_format.h"
 
 namespace traverse::gcode {
-namespace {
-
-// Beyond all machines, and far from where sums of squares are not finite.
-constexpr double kMost = 1e9;
-
-}  // namespace
 
 absl::Status LimitFault(const std::string& where, const std::string& what) {
   return absl::InvalidArgumentError(absl::StrCat(where, ": ", what));
@@ -22,9 +16,9 @@ std::string LineOf(const std::string& name, int line) {
 bool Holds(Range range, double value) {
   switch (range) {
     case Range::kAboveZero:
-      return value > 0 && value <= kMost;
+      return value > 0 && value <= kGreatestLimit;
     case Range::kFromZero:
-      return value >= 0 && value <= kMost;
+      return value >= 0 && value <= kGreatestLimit;
     case Range::kRatio:
       return value >= 0 && value < 1;
   }

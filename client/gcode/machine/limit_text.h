@@ -30,6 +30,9 @@ absl::Status ForEachLine(std::string_view text, Visit visit) {
   return absl::OkStatus();
 }
 
+// The greatest limit, in any unit: beyond all machines, and far from where sums of squares are not finite.
+inline constexpr double kGreatestLimit = 1e9;
+
 // Which values a setting may have.
 enum class Range { kAboveZero, kFromZero, kRatio };
 bool Holds(Range range, double value);

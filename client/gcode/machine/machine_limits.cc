@@ -169,7 +169,7 @@ void ApplyLimits(const MachineLimits& limits, MachineProfile& profile) {
   if (limits.klipper) {
     // One acceleration for all moves, and by default what extruding needs at most for filament.
     profile.print_accel = profile.travel_accel = *limits.max_accel;
-    profile.max_accel = kMost;
+    profile.max_accel = kGreatestLimit;
     profile.extruder_corner_speed = *limits.extruder_corner_speed;
     profile.arc_chord = *limits.arc_chord;
     const double nozzle = limits.nozzle_diameter.value_or(profile.nozzle_diameter.value_or(0.4));
