@@ -1,0 +1,388 @@
+"""What must hold between a file and its optimised copy, each check by itself: check(before, after, options) -> faults.
+
+A fault is one line of text that names the place in the optimised file. Every check compares with what the original did:
+what it did wrong itself is no fault of the copy.
+"""
+
+import collections
+import math
+
+CELL_MM = 0.5  # of the maps of heights and of what covers what
+FINE_CELL_MM = 0.2  # lines of ironing lie closer than those of skin
+ISLAND_CELL_MM = 1.0
+FINE_MM = 0.02
+REST_SLACK_S = 0.5  # travel into a layer changes a little where islands need no rest at all
+SHARE_SLACK = 2.0  # points of a per cent
+
+
+def cells_of(move, size):
+    """The cells of `size` mm that a straight move passes, in order, without repeats next to each other."""
+    count = max(1, math.ceil(move.length / (size / 2)))
+    last = None
+    for i in range(count + 1):
+        cell = (math.floor((move.x0 + (move.x1 - move.x0) * i / count) / size),
+                math.floor((move.y0 + (move.y1 - move.y0) * i / count) / size))
+        if cell != last:
+            yield cell
+            last = cell
+
+
+# ---------------------------------------------------------------------------------------------------------- deposits
+
+
+def undirected(move):
+    a = (round(move.x0, 3), round(move.y0, 3), round(move.z0, 3))
+    b = (round(move.x1, 3), round(move.y1, 3), round(move.z1, 3))
+    return (a, b) if a <= b else (b, a)
+
+
+def deposits(before, after, options):
+    """The same segments with the same filament under the same state; but a loop's gap may lie elsewhere on it."""
+    kept = collections.defaultdict(list)
+    for move in before.deposits():
+        kept[undirected(move), move.state].append(move)
+    extra = []
+    for move in after.deposits():
+        same = kept.get((undirected(move), move.state))
+        match = next((i for i, other in enumerate(same or ()) if abs(other.e - move.e) < 1e-4), None)
+        if match is None:
+            extra.append(move)
+        else:
+            same.pop(match)
+    lost = [move for moves in kept.values() for move in moves]
+    yield from unmatched(lost, extra, options)
+
+
+def unmatched(lost, extra, options):
+    """What has no equal: pieces of loops that were closed elsewhere, in sum as long and with as much filament."""
+    by_state = collections.defaultdict(lambda: ([], []))
+    for side, moves in enumerate((lost, extra)):
+        for move in moves:
+            by_state[move.state, round(max(move.z0, move.z1), 3)][side].append(move)
+    for (state, z), (gone, new) in by_state.items():
+        mm = [sum(move.length for move in side) for side in (gone, new)]
+        e = [sum(move.e for move in side) for side in (gone, new)]
+        moves = max(len(gone), len(new))
+        gap = options.loop_gap_mm
+        if abs(mm[0] - mm[1]) > 2 * gap * moves or abs(e[0] - e[1]) > 2e-2 * max(e) + 2e-4 * moves:
+            where = (new or gone)[0]
+            yield (f"deposits: at Z{z:g} under {describe(state)} {mm[0]:.2f} mm with {e[0]:.4f} of filament became "
+                   f"{mm[1]:.2f} mm with {e[1]:.4f}; line {where.line} {'of the copy' if new else 'of the original'}")
+            continue
+        for move in new:
+            if move.length > gap and not any(lies_on(move, other, gap + FINE_MM) for other in gone):
+                yield f"deposits: line {move.line} prints where the original has nothing under {describe(state)}"
+
+
+def describe(state):
+    return ", ".join(str(word) for word in state if word != "") or "no state"
+
+
+def lies_on(move, other, reach):
+    """Both ends of `move` lie on `other`, or on its straight continuation by `reach`."""
+    length = other.length or 1e-9
+    dx, dy = (other.x1 - other.x0) / length, (other.y1 - other.y0) / length
+    for x, y in ((move.x0, move.y0), (move.x1, move.y1)):
+        along = (x - other.x0) * dx + (y - other.y0) * dy
+        aside = abs((x - other.x0) * dy - (y - other.y0) * dx)
+        if aside > 2 * reach or not -2 * reach <= along <= length + 2 * reach:
+            return False
+    return True
+
+
+def filament(before, after, options):
+    """Nothing is printed while filament is pulled back, and as much is pushed in the whole as before."""
+
+    def starved(side):
+        return sum(1 for move in side.deposits() if move.retracted > 0.02)
+
+    if starved(after) > starved(before):
+        worst = next(move for move in after.deposits() if move.retracted > 0.02)
+        yield f"filament: line {worst.line} prints with {min(worst.retracted, 99):.3f} mm pulled back"
+    pushed = [sum(move.e for move in side.moves) for side in (before, after)]
+    if abs(pushed[0] - pushed[1]) > 0.05 + 2e-5 * len(after.moves) ** 0.5:
+        yield f"filament: {pushed[0]:.3f} mm in the whole became {pushed[1]:.3f}"
+
+
+# ----------------------------------------------------------------------------------------------------------- obstacles
+
+
+def collisions(side):
+    """{cell: [(depth, line)]}: where moves without deposits lead below what is printed already."""
+    top, hits = {}, collections.defaultdict(list)
+    for move in side.moves:
+        if move.deposits:
+            z = max(move.z0, move.z1)
+            for cell in cells_of(move, CELL_MM):
+                if top.get(cell, -1.0) < z:
+                    top[cell] = z
+        elif move.length:
+            z = min(move.z0, move.z1)
+            for cell in cells_of(move, CELL_MM):
+                depth = top.get(cell, z) - z
+                if depth > 0.05:
+                    hits[cell].append((depth, move.line))
+    return hits
+
+
+def obstacles(before, after, options):
+    """No travel leads through what stands, but where the original's does."""
+    old, new = collisions(before), collisions(after)
+    deeper = []
+    for (x, y), passes in new.items():
+        near = [depth for i in (-1, 0, 1) for j in (-1, 0, 1) for depth, _ in old.get((x + i, y + j), ())]
+        deeper += [(depth, line) for depth, line in passes if depth > max(near, default=0) + 0.05]
+    if deeper:
+        depth, line = max(deeper)
+        count = len({line for _, line in deeper})
+        yield f"obstacles: {count} travel moves lead up to {depth:.2f} mm below what stands there; line {line}"
+
+
+# ------------------------------------------------------------------------------------------------------------ coverage
+
+
+def flows(side):
+    """{z: what a full line of that height pushes, mm of filament a mm}."""
+    usual = collections.defaultdict(list)
+    for move in side.deposits():
+        if move.length > 0.2:
+            usual[round(move.z1, 3)].append(move.e / move.length)
+    return {z: sorted(flows)[int((len(flows) - 1) * 0.98)] for z, flows in usual.items()}
+
+
+def is_thin(move, full):
+    return move.length > 0.2 and move.e / move.length < 0.15 * full[round(move.z1, 3)]
+
+
+def ironing_of(side):
+    """The thin deposits most of whose length lies upon full ones of the same height."""
+    full, printed, found = flows(side), set(), set()
+    for move in side.deposits():
+        z = round(move.z1, 3)
+        cells = [(cell, z) for cell in cells_of(move, FINE_CELL_MM)]
+        if z in full and is_thin(move, full):
+            if sum(cell in printed for cell in cells) > 0.5 * len(cells):
+                found.add(identity(move))
+        else:
+            # A line is wider than a cell.
+            printed.update(((x + i, y + j), z) for (x, y), z in cells for i in (-1, 0, 1) for j in (-1, 0, 1))
+    return found
+
+
+def identity(move):
+    return undirected(move), round(move.e, 4)
+
+
+def spoiled(side, ironing):
+    """{(cell, z): line} of full deposits where ironing of the same height has passed before."""
+    smooth, hits = set(), {}
+    for move in side.deposits():
+        z = round(move.z1, 3)
+        cells = [(cell, z) for cell in cells_of(move, FINE_CELL_MM)]
+        if identity(move) in ironing:
+            smooth.update(cells)
+        else:
+            hits.update({cell: move.line for cell in cells if cell in smooth and cell not in hits})
+    return hits
+
+
+def ironing(before, after, options):
+    """Nothing is printed upon what was ironed, beyond what the original does so."""
+    known = ironing_of(before)
+    if not known:
+        return
+    old, new = spoiled(before, known), spoiled(after, known)
+    added = [line for place, line in new.items() if place not in old]
+    if len(added) > max(4, 0.02 * len(old)):
+        yield f"ironing: {len(added)} places are printed over after they were ironed; first line {min(added)}"
+
+
+def walls_and_tops(side):
+    """(crossings, longest mm, mm over tops) of moves with an open nozzle across outer walls, and over areas that nothing
+    covers later."""
+    tops = {}
+    for move in side.deposits():
+        for cell in cells_of(move, CELL_MM):
+            tops[cell] = max(tops.get(cell, -1.0), round(move.z1, 3))
+    outer, layer, height = {}, set(), None
+    crossings, longest, over_top = 0, 0.0, 0.0
+    for move in side.moves:
+        if move.deposits:
+            z = round(move.z1, 3)
+            if z != height:
+                outer, layer, height = {}, set(), z
+            for cell in cells_of(move, CELL_MM):
+                layer.add(cell)
+                if is_outer(move.state):
+                    outer[cell] = True
+        elif move.length > 3 and move.retracted < 0.02 and move.e == 0:
+            passed = list(cells_of(move, CELL_MM))[3:-3]
+            if any(cell in outer for cell in passed):
+                crossings += 1
+                longest = max(longest, move.length)
+            over_top += CELL_MM * sum(1 for cell in passed if cell in layer and tops.get(cell) == height)
+    return crossings, longest, over_top
+
+
+def is_outer(state):
+    feature = str(state[7]).lower()
+    return any(word in feature for word in ("external", "outer"))
+
+
+def stringing(before, after, options):
+    """No more open travel across visible walls or over visible surfaces than in the original."""
+    old, new = walls_and_tops(before), walls_and_tops(after)
+    if new[0] > old[0] * 1.02 + 1:
+        yield f"stringing: {old[0]} open moves across outer walls became {new[0]}"
+    if new[1] > old[1] * 1.1 + 1:
+        yield f"stringing: the longest open move across outer walls grew from {old[1]:.1f} to {new[1]:.1f} mm"
+    if new[2] > old[2] * 1.1 + 20:
+        yield f"stringing: open travel over tops grew from {old[2]:.0f} to {new[2]:.0f} mm"
+
+
+# ---------------------------------------------------------------------------------------------------------------- rest
+
+
+def layers_of(side):
+    """Runs of deposits at one height, as lists of moves."""
+    layers, height = [], None
+    for move in side.deposits():
+        z = round(max(move.z0, move.z1), 3)
+        if z != height:
+            layers.append((z, []))
+            height = z
+        layers[-1][1].append(move)
+    return layers
+
+
+def islands_of(moves):
+    """Connected regions of cells: a list of (cells, first begin, last end)."""
+    times = {}
+    for move in moves:
+        end = move.begin + move.seconds
+        for cell in cells_of(move, ISLAND_CELL_MM):
+            first, last = times.get(cell, (move.begin, end))
+            times[cell] = (min(first, move.begin), max(last, end))
+    islands, left = [], set(times)
+    while left:
+        stack = [left.pop()]
+        cells = set(stack)
+        while stack:
+            x, y = stack.pop()
+            for cell in [(x + i, y + j) for i in (-1, 0, 1) for j in (-1, 0, 1)]:
+                if cell in left:
+                    left.remove(cell)
+                    cells.add(cell)
+                    stack.append(cell)
+        islands.append((cells, min(times[cell][0] for cell in cells), max(times[cell][1] for cell in cells)))
+    return islands
+
+
+def rests(side):
+    """{(z, an island's least cell): seconds} between the end of what lies below an island and its begin."""
+    found, below = {}, {}
+    for z, moves in layers_of(side):
+        now = {}
+        for cells, begin, end in islands_of(moves):
+            under = [below[cell] for cell in cells if cell in below]
+            if under:
+                found[z, min(cells)] = begin - max(under)
+            for cell in cells:
+                now[cell] = end
+        below = {**below, **now}
+    return found
+
+
+def rest(before, after, options):
+    """No island rests shorter than it did or than the file's least layer time, under safe and balanced."""
+    if options.policy not in ("safe", "balanced"):
+        return
+    old, new = rests(before), rests(after)
+    worst = None
+    for place, seconds in new.items():
+        need = 0.95 * min(old.get(place, 0.0), options.least_layer_s) - REST_SLACK_S
+        if seconds < need and (worst is None or seconds - need < worst[0]):
+            worst = (seconds - need, place, seconds, old[place])
+    if worst:
+        yield f"rest: at Z{worst[1][0]:g} an island rests {worst[2]:.1f} s, {worst[3]:.1f} s in the original"
+
+
+# ------------------------------------------------------------------------------------------------------------ progress
+
+
+def progress(before, after, options):
+    """What a display is told comes in sequence, each share near where it is true."""
+    kinds = {kind for _, kind, _, _ in before.progress}
+    for kind in sorted(kinds):
+        old = [(value, now) for _, k, value, now in before.progress if k == kind]
+        new = [(value, now, line) for line, k, value, now in after.progress if k == kind]
+        if [value for value, _ in old] != [value for value, _, _ in new]:
+            yield f"progress: the values of {kind} are not those of the original in its order"
+        elif kind in ("M73", "M117"):
+            yield from misplaced(kind, old, new, before.seconds, after.seconds)
+
+
+def misplaced(kind, old, new, old_seconds, new_seconds):
+    worst = (0.0, None)
+    for (value, then), (_, now, line) in zip(old, new):
+        was = abs(value - 100 * then / old_seconds)
+        off = abs(value - 100 * now / new_seconds)
+        worst = max(worst, (off - was, (line, value, 100 * now / new_seconds)), key=lambda pair: pair[0])
+    if worst[0] > SHARE_SLACK:
+        line, value, share = worst[1]
+        yield f"progress: {kind} says {value:g} % at {share:.1f} % of the time; line {line}"
+
+
+# -------------------------------------------------------------------------------------------------------------- labels
+
+
+def labels(before, after, options):
+    """Objects begin and end in pairs, where the original's do."""
+
+    def faults(side):
+        open_label, count = None, 0
+        for _, name in side.labels:
+            count += (name is None) == (open_label is None)
+            open_label = name
+        return count + (open_label is not None)
+
+    if len(after.labels) > len(before.labels) or faults(after) > faults(before):
+        yield f"labels: {len(before.labels)} with {faults(before)} unpaired became {len(after.labels)} with {faults(after)}"
+
+
+# ------------------------------------------------------------------------------------------------------- head and tail
+
+
+def head_and_tail(before, after, options):
+    """What stands before the first and behind the last deposit is the original's, but for moves to and from them."""
+    for name, pick in (("head", head_lines), ("tail", tail_lines)):
+        old, new = pick(before), pick(after)
+        if old != new:
+            at = next((i for i, pair in enumerate(zip(old, new)) if pair[0] != pair[1]), min(len(old), len(new)))
+            was = old[at] if at < len(old) else "nothing"
+            now = new[at] if at < len(new) else "nothing"
+            yield f"{name}: `{was}` became `{now}`"
+
+
+def head_lines(side):
+    deposit = next(iter(side.deposits()), None)
+    return commands(side, 0, deposit.line if deposit else len(side.lines))
+
+
+def tail_lines(side):
+    last = side.deposits()[-1].line if side.deposits() else 0
+    return commands(side, last, len(side.lines) + 1)
+
+
+# Commands that belong to a path and come and go with it.
+OF_PATHS = ("M204", "M205", "M201", "M203", "SET_PRESSURE_ADVANCE", "SET_VELOCITY_LIMIT", "M73", "M106", "M107", "M900",
+            "M486", "M624", "M625", "EXCLUDE_OBJECT", "M221", "M572", "M117")
+
+
+def commands(side, first, end):
+    return [text for line, text in side.commands if first < line < end and not text.startswith(OF_PATHS)]
+
+
+ALL = {check.__name__: check for check in (deposits, filament, obstacles, ironing, rest, progress, labels, head_and_tail)}
+# Where filament stays in the nozzle on purpose, this says how much of it may show.
+ALL["stringing"] = stringing

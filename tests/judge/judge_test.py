@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+"""The judge finds what is planted, says nothing of a legal copy, and keeps a small part that still fails."""
+
+import pathlib
+import sys
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import checks  # noqa: E402
+import generate  # noqa: E402
+import judge  # noqa: E402
+import print_trace  # noqa: E402
+import shrink  # noqa: E402
+
+HEAD = ["M83", "G90", "; nozzle_diameter = 0.4"]
+
+
+def block(x, z, feed=1800, e=0.3):
+    """A square of 10 mm at height z with its layer's comment."""
+    corners = [(x, 10), (x + 10, 10), (x + 10, 20), (x, 20), (x, 10)]
+    travel = f"G1 X{x} Y10 F9000"
+    return [travel, f"G1 F{feed}"] + [f"G1 X{a} Y{b} E{e}" for a, b in corners[1:]]
+
+
+def layer(z, *blocks):
+    return [";LAYER_CHANGE", f"G1 Z{z} F9000"] + [line for lines in blocks for line in lines]
+
+
+def faults(before, after, policy="safe"):
+    options = judge.Options(policy, 10.0, 0.131)
+    old, new = (print_trace.trace("\n".join(lines)) for lines in (before, after))
+    return {judge.kind(fault) for check in checks.ALL.values() for fault in check(old, new, options)}
+
+
+class Checks(unittest.TestCase):
+    towers = HEAD + layer(0.2, block(10, 0.2), block(40, 0.2)) + layer(0.4, block(10, 0.4), block(40, 0.4))
+
+    def test_the_same_file_has_no_fault(self):
+        self.assertEqual(faults(self.towers, self.towers), set())
+
+    def test_paths_may_change_places(self):
+        after = HEAD + layer(0.2, block(40, 0.2), block(10, 0.2)) + layer(0.4, block(40, 0.4), block(10, 0.4))
+
+        self.assertEqual(faults(self.towers, after), set())
+
+    def test_a_lost_path_is_found(self):
+        after = HEAD + layer(0.2, block(10, 0.2), block(40, 0.2)) + layer(0.4, block(10, 0.4))
+
+        self.assertIn("deposits", faults(self.towers, after))
+
+    def test_another_feed_rate_is_found(self):
+        after = HEAD + layer(0.2, block(10, 0.2), block(40, 0.2)) + layer(0.4, block(10, 0.4), block(40, 0.4, feed=2400))
+
+        self.assertIn("deposits", faults(self.towers, after))
+
+    def test_printing_with_filament_pulled_back_is_found(self):
+        at = len(HEAD) + 2
+        after = self.towers[:at] + ["G1 E-0.8 F2100"] + self.towers[at:]
+
+        self.assertIn("filament", faults(self.towers, after))
+
+    def test_less_rest_is_found_where_the_policy_keeps_it(self):
+        after = HEAD + layer(0.2, block(10, 0.2), block(40, 0.2)) + layer(0.4, block(40, 0.4), block(10, 0.4))
+
+        self.assertIn("rest", faults(self.towers, after))
+        self.assertEqual(faults(self.towers, after, "free"), set())
+
+    def test_travel_through_a_tower_is_found(self):
+        tower = HEAD + [line for n in range(1, 20) for line in layer(n * 0.2, block(20, n * 0.2))]
+        around = tower + ["G1 Z10", "G1 X0 Y0"] + layer(0.2, block(0, 0.2), ["G1 X15 Y40 F9000"], block(40, 0.2))
+        through = tower + ["G1 Z10", "G1 X0 Y0"] + layer(0.2, block(0, 0.2), block(40, 0.2))
+
+        self.assertIn("obstacles", faults(around, through))
+
+    def test_a_share_far_from_its_time_is_found(self):
+        def told(at):
+            return self.towers[:at] + ["M73 P50"] + self.towers[at:]
+
+        self.assertEqual(faults(told(len(self.towers) // 2 + 2), told(len(self.towers) // 2 + 3)), set())
+        self.assertIn("progress", faults(told(len(self.towers) // 2 + 2), told(len(HEAD) + 2)))
+
+    def test_skin_upon_ironing_is_found(self):
+        ironing = block(10, 0.2, e=0.02)
+        before = HEAD + layer(0.2, block(10, 0.2), ironing)
+        after = HEAD + layer(0.2, ironing, block(10, 0.2))
+
+        self.assertIn("ironing", faults(before, after))
+
+    def test_a_path_outside_its_object_is_found(self):
+        def labelled(inside, outside):
+            return HEAD + layer(0.2, ["M486 S0"], inside, ["M486 S-1"], outside)
+
+        self.assertIn("deposits", faults(labelled(block(10, 0.2), block(40, 0.2)), labelled(block(40, 0.2), block(10, 0.2))))
+
+    def test_a_lost_end_of_an_object_is_found(self):
+        before = HEAD + layer(0.2, ["M486 S0"], block(10, 0.2), ["M486 S-1"])
+
+        self.assertIn("labels", faults(before, [line for line in before if line != "M486 S-1"]))
+
+    def test_another_end_script_is_found(self):
+        self.assertIn("tail", faults(self.towers + ["M84"], self.towers))
+
+    def test_open_travel_over_a_wall_is_found(self):
+        walls = [";TYPE:External perimeter"] + block(10, 0.2) + block(40, 0.2)
+        before = HEAD + layer(0.2, walls)
+        after = HEAD + layer(0.2, walls, [f"G1 X{x} Y15 F9000" for x in (5, 55, 5, 55, 5)])
+
+        self.assertIn("stringing", faults(before, after))
+
+
+class Shrink(unittest.TestCase):
+    def test_the_smallest_part_still_fails(self):
+        text = "\n".join(Checks.towers) + "\n"
+
+        small = shrink.shrink(text, lambda part: "X50 Y10 E0.3" in part)
+
+        self.assertIn("X50 Y10 E0.3", small)
+        self.assertLess(len(small), len(text) / 2)
+
+
+class Generate(unittest.TestCase):
+    def test_each_notation_is_the_same_for_its_seed_and_prints(self):
+        for name in generate.NOTATIONS:
+            text = generate.print_of(name, 3)
+
+            self.assertEqual(text, generate.print_of(name, 3))
+            self.assertGreater(len(print_trace.trace(text).deposits()), 20, name)
+
+
+if __name__ == "__main__":
+    unittest.main()
