@@ -1,0 +1,165 @@
+"""The same clients for asyncio."""
+
+import asyncio
+import time
+from typing import AsyncIterable, AsyncIterator, Iterable, List, Optional, Sequence, Union
+
+import grpc
+import grpc.aio
+
+from traverse_client import channels, files, retries
+from traverse_client.errors import TraverseError
+from traverse_client.optimizer import SERVICE
+from traverse_client.remaining_job import RemainingJob, is_whole, opening
+from traverse_client.wire import gcode_service_pb2, options_pb2, plan_pb2
+from traverse_client.wire import gcode_service_pb2_grpc, route_optimizer_service_pb2_grpc
+from traverse_client.wire import route_optimizer_service_pb2 as api
+
+Layers = Union[Sequence[plan_pb2.Layer], Iterable[plan_pb2.Layer], AsyncIterable[plan_pb2.Layer]]
+
+
+class _Client:
+    """A channel that ends with its `async with`. Make it where the event loop runs."""
+
+    def __init__(self, service: str, addresses: Sequence[str], credentials: Optional[grpc.ChannelCredentials] = None, *,
+                 token: Optional[channels.Token] = None, server_name: Optional[str] = None):
+        self._channel = channels.channel(grpc.aio.secure_channel, grpc.aio.insecure_channel, service, addresses, credentials,
+                                         server_name)
+        self._token = token
+
+    async def __aenter__(self):
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.close()
+
+    async def close(self) -> None:
+        """Ends the connections; what is under way fails."""
+        await self._channel.close()
+
+
+class AsyncTravelOptimizer(_Client):
+    """As TravelOptimizer, for asyncio."""
+
+    def __init__(self, addresses: Sequence[str], credentials: Optional[grpc.ChannelCredentials] = None, *,
+                 token: Optional[channels.Token] = None, server_name: Optional[str] = None):
+        super().__init__(SERVICE, addresses, credentials, token=token, server_name=server_name)
+        self._stub = route_optimizer_service_pb2_grpc.RouteOptimizerServiceStub(self._channel)
+
+    async def optimize(self, layers: Layers, deadline_seconds: float = 30.0, *, strategy: Optional[str] = None,
+                       options: Optional[options_pb2.JobOptions] = None) -> AsyncIterator[api.LayerResult]:
+        """As TravelOptimizer.optimize; `layers` may be an asynchronous iterable too. Cancelling the task ends the work."""
+        deadline = time.monotonic() + deadline_seconds
+        whole = is_whole(layers)
+        job = RemainingJob(options, strategy, layers if whole else ())
+        source = None if whole else _Source(layers)
+        attempt = 0
+        while True:
+            call = self._begin(job, source, deadline - time.monotonic())
+            try:
+                async for answer in call:
+                    if answer.WhichOneof("result") == "layer":
+                        attempt = 0
+                        yield job.answered(answer.layer)
+                return
+            except (grpc.aio.AioRpcError, asyncio.CancelledError) as error:
+                if source is not None and source.fault is not None:
+                    raise source.fault from None
+                if isinstance(error, asyncio.CancelledError):
+                    raise
+                delay = retries.delay_before(error, attempt)
+                if error.code() not in retries.RETRIED or time.monotonic() + delay >= deadline:
+                    raise TraverseError(error.code(), error.details()) from error
+            finally:
+                call.cancel()
+            attempt += 1
+            await asyncio.sleep(delay)
+
+    def _begin(self, job, source, timeout):
+        metadata = channels.authorization(self._token)
+        if source is None:
+            return self._stub.OptimizeBatch(job.batch(), timeout=timeout, wait_for_ready=True, metadata=metadata)
+        return self._stub.Optimize(source.requests(job), timeout=timeout, wait_for_ready=True, metadata=metadata)
+
+    async def strategies(self, timeout_seconds: float = 10.0) -> List[api.StrategyInfo]:
+        """The strategies of the servers with their options. Raises TraverseError."""
+        try:
+            answer = await self._stub.ListStrategies(api.ListStrategiesRequest(), timeout=timeout_seconds,
+                                                     wait_for_ready=True, metadata=channels.authorization(self._token))
+        except grpc.aio.AioRpcError as error:
+            raise TraverseError(error.code(), error.details()) from error
+        return list(answer.strategies)
+
+
+class _Source:
+    """A caller's layers, from one attempt to the next: a layer that is being fetched when one ends is not lost."""
+
+    def __init__(self, layers: Layers):
+        self._layers = layers.__aiter__() if hasattr(layers, "__aiter__") else _as_async(layers)
+        self._fetching: Optional["asyncio.Task[Optional[plan_pb2.Layer]]"] = None
+        self._ended = False
+        self.fault: Optional[BaseException] = None
+
+    async def requests(self, job: RemainingJob) -> AsyncIterator[api.OptimizeRequest]:
+        for request in opening(job):
+            yield request
+        while not self._ended:
+            if self._fetching is None:
+                self._fetching = asyncio.ensure_future(self._next())
+            try:
+                layer = await asyncio.shield(self._fetching)
+            except asyncio.CancelledError:
+                raise  # the attempt is over; the next one waits for the same layer
+            except BaseException as fault:
+                self.fault = fault
+                raise
+            self._fetching = None
+            if layer is None:
+                self._ended = True
+                return
+            job.sent(layer)
+            yield api.OptimizeRequest(layers=[layer])
+
+    async def _next(self) -> Optional[plan_pb2.Layer]:
+        try:
+            return await self._layers.__anext__()
+        except StopAsyncIteration:
+            return None
+
+
+async def _as_async(layers: Iterable[plan_pb2.Layer]) -> AsyncIterator[plan_pb2.Layer]:
+    for layer in layers:
+        yield layer
+
+
+class AsyncGcodeGateway(_Client):
+    """As GcodeGateway, for asyncio."""
+
+    def __init__(self, addresses: Sequence[str], credentials: Optional[grpc.ChannelCredentials] = None, *,
+                 token: Optional[channels.Token] = None, server_name: Optional[str] = None):
+        super().__init__(files.SERVICE, addresses, credentials, token=token, server_name=server_name)
+        self._stub = gcode_service_pb2_grpc.GcodeServiceStub(self._channel)
+
+    async def rewrite(self, file: files.File, deadline_seconds: float = 600.0, *,
+                      options: Optional[gcode_service_pb2.RewriteOptions] = None,
+                      on_progress: Optional[files.OnProgress] = None) -> files.RewrittenFile:
+        """As GcodeGateway.rewrite."""
+        upload = files.Upload(file, options)
+        deadline = time.monotonic() + deadline_seconds
+        attempt = 0
+        while True:
+            download = files.Download(on_progress)
+            call = self._stub.Rewrite(upload.requests(), timeout=deadline - time.monotonic(), wait_for_ready=True,
+                                      metadata=channels.authorization(self._token))
+            try:
+                async for answer in call:
+                    download.take(answer)
+                return download.file()
+            except grpc.aio.AioRpcError as error:
+                delay = retries.delay_before(error, attempt)
+                if error.code() not in retries.RETRIED or time.monotonic() + delay >= deadline:
+                    raise TraverseError(error.code(), error.details()) from error
+            finally:
+                call.cancel()
+            attempt += 1
+            await asyncio.sleep(delay)

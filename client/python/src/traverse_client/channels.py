@@ -1,0 +1,32 @@
+"""How channels to a fleet are opened, sync and asyncio alike."""
+
+import json
+from typing import Any, Callable, List, Optional, Sequence, Tuple, Union
+
+import grpc
+
+Token = Union[str, Callable[[], str]]
+
+
+def channel(secure: Callable[..., Any], insecure: Callable[..., Any], service: str, addresses: Sequence[str],
+            credentials: Optional[grpc.ChannelCredentials], server_name: Optional[str]) -> Any:
+    """A channel over all `addresses` whose health service says that `service` is served, in turn."""
+    if isinstance(addresses, str):
+        raise TypeError("addresses: a list of HOST:PORT, not one string")
+    if not addresses:
+        raise ValueError("addresses: empty")
+    # One address may be a name with many servers behind it: dns:///traverse-headless:50051.
+    target = addresses[0] if len(addresses) == 1 else "ipv4:" + ",".join(addresses)
+    config = {"loadBalancingConfig": [{"round_robin": {}}], "healthCheckConfig": {"serviceName": service}}
+    options: List[Tuple[str, Any]] = [("grpc.service_config", json.dumps(config)), ("grpc.keepalive_time_ms", 60_000),
+                                      ("grpc.max_reconnect_backoff_ms", 2_000)]
+    if server_name:
+        options.append(("grpc.ssl_target_name_override", server_name))
+    return secure(target, credentials, options) if credentials else insecure(target, options)
+
+
+def authorization(token: Optional[Token]) -> Optional[Tuple[Tuple[str, str]]]:
+    """The metadata of a call; a function is asked for each call, so that a token may be renewed."""
+    if token is None:
+        return None
+    return (("authorization", "Bearer " + (token() if callable(token) else token)),)

@@ -1,0 +1,295 @@
+"""What the Python client promises, against scripted servers and the real programs; run by the environment that package_test.py
+makes, with the installed package. TRAVERSE_SERVER and TRAVERSE_GATEWAY name the programs."""
+
+import asyncio
+import concurrent.futures
+import os
+import pathlib
+import re
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+
+import grpc
+
+import traverse_client
+from traverse_client import (AsyncGcodeGateway, AsyncTravelOptimizer, GcodeGateway, RewriteOptions, TravelOptimizer,
+                             TraverseError, island, layer)
+from traverse_client.wire import retry_info_pb2
+from traverse_client.wire import route_optimizer_service_pb2 as api
+from traverse_client.wire import route_optimizer_service_pb2_grpc as service
+
+SQUARES = [[(x, y), (x + 4, y), (x + 4, y + 4), (x, y + 4)] for x in (0, 40, 20) for y in (0, 30)]
+
+
+def layers(count, first=1):
+    return [layer([island(contours=SQUARES)], id=number, z_mm=0.2 * number) for number in range(first, first + count)]
+
+
+class ScriptedServer:
+    """Answers each attempt as its turn says: (layers to answer, status code or None, delay in s or None)."""
+
+    def __init__(self, *script):
+        self.asked, self.tokens = [], []
+        turns, lock = iter(script), threading.Lock()
+
+        class Servicer(service.RouteOptimizerServiceServicer):
+            def OptimizeBatch(_, request, context):
+                yield from self.turn(request.layers, context, *take())
+
+            def Optimize(_, requests, context):
+                count, code, delay = take()
+                sent = (layer for request in requests for layer in request.layers)
+                yield from self.turn(sent, context, count, code, delay)
+
+        def take():
+            with lock:
+                return next(turns)
+
+        self._server = grpc.server(concurrent.futures.ThreadPoolExecutor(4))
+        service.add_RouteOptimizerServiceServicer_to_server(Servicer(), self._server)
+        self.address = f"127.0.0.1:{self._server.add_insecure_port('127.0.0.1:0')}"
+
+    def turn(self, sent, context, count, code, delay):
+        self.asked.append([])
+        self.tokens.append(dict(context.invocation_metadata()).get("authorization"))
+        for index, one in enumerate(sent):
+            self.asked[-1].append(one.id)
+            if code is not None and index == count:
+                break
+            answer = api.OptimizeBatchResponse()
+            answer.layer.index, answer.layer.id, answer.layer.end.x_mm = index, one.id, one.id
+            yield answer
+        if code is None:
+            yield api.OptimizeBatchResponse(summary=api.JobSummary())
+            return
+        if delay is not None:
+            status, info = retry_info_pb2.Status(), retry_info_pb2.RetryInfo()
+            info.retry_delay.FromNanoseconds(int(delay * 1e9))
+            status.details.add(type_url="type.googleapis.com/google.rpc.RetryInfo", value=info.SerializeToString())
+            context.set_trailing_metadata((("grpc-status-details-bin", status.SerializeToString()),))
+        context.abort(code, "scripted")
+
+    def __enter__(self):
+        self._server.start()
+        return self
+
+    def __exit__(self, *_):
+        self._server.stop(None).wait()
+
+
+async def collect(answers):
+    return [answer async for answer in answers]
+
+
+class Scripted(unittest.TestCase):
+    """Each case runs with a list and with an iterable, sync and asyncio."""
+
+    def each_form(self, *script):
+        def sync(address, given):
+            with TravelOptimizer([address]) as optimizer:
+                return list(optimizer.optimize(given, 20))
+
+        def asynchronous(address, given):
+            async def run():
+                async with AsyncTravelOptimizer([address]) as optimizer:
+                    return await collect(optimizer.optimize(given, 20))
+
+            return asyncio.run(run())
+
+        for run in (sync, asynchronous):
+            for form in (list, iter):
+                with self.subTest(run=run.__name__, form=form.__name__), ScriptedServer(*script) as server:
+                    yield server, lambda run=run, form=form, server=server: run(server.address, form(layers(5)))
+
+    def test_layers_that_were_answered_are_not_asked_again(self):
+        for server, run in self.each_form((2, grpc.StatusCode.UNAVAILABLE, 0.01), (1, grpc.StatusCode.UNAVAILABLE, 0.01),
+                                          (9, None, None)):
+            results = run()
+
+            self.assertEqual([(result.index, result.id) for result in results], [(i, i + 1) for i in range(5)])
+            self.assertEqual([asked[0] for asked in server.asked], [1, 3, 4])
+
+    def test_a_fault_of_the_job_is_not_tried_again(self):
+        for server, run in self.each_form((0, grpc.StatusCode.INVALID_ARGUMENT, None)):
+            with self.assertRaises(TraverseError) as raised:
+                run()
+
+            self.assertEqual(raised.exception.code, grpc.StatusCode.INVALID_ARGUMENT)
+            self.assertEqual(len(server.asked), 1)
+
+    def test_what_the_iterable_raises_comes_out(self):
+        def broken():
+            yield from layers(2)
+            raise KeyError("no third layer")
+
+        async def run():
+            with ScriptedServer((9, None, None)) as server:
+                async with AsyncTravelOptimizer([server.address]) as optimizer:
+                    await collect(optimizer.optimize(broken(), 20))
+
+        with ScriptedServer((9, None, None)) as server, TravelOptimizer([server.address]) as optimizer:
+            with self.assertRaisesRegex(KeyError, "no third layer"):
+                list(optimizer.optimize(broken(), 20))
+        with self.assertRaisesRegex(KeyError, "no third layer"):
+            asyncio.run(run())
+
+    def test_a_token_is_asked_for_each_attempt(self):
+        tokens = iter(["old", "new"])
+        with ScriptedServer((0, grpc.StatusCode.UNAVAILABLE, 0.01), (9, None, None)) as server:
+            with TravelOptimizer([server.address], token=lambda: next(tokens)) as optimizer:
+                list(optimizer.optimize(layers(1), 20))
+
+        self.assertEqual(server.tokens, ["Bearer old", "Bearer new"])
+
+    def test_a_server_that_asks_to_wait_beyond_the_deadline_ends_the_job(self):
+        with ScriptedServer((0, grpc.StatusCode.RESOURCE_EXHAUSTED, 100)) as server:
+            with TravelOptimizer([server.address]) as optimizer, self.assertRaises(TraverseError) as raised:
+                list(optimizer.optimize(layers(1), 5))
+
+        self.assertEqual(raised.exception.code, grpc.StatusCode.RESOURCE_EXHAUSTED)
+
+    def test_one_string_is_no_list_of_addresses(self):
+        with self.assertRaises(TypeError):
+            TravelOptimizer("127.0.0.1:50051")
+
+
+def free_port():
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        return free.getsockname()[1]
+
+
+class Program:
+    """A real program on free ports; `address` speaks gRPC. The client waits until it is up."""
+
+    def __init__(self, *command):
+        self.address = f"127.0.0.1:{free_port()}"
+        self._process = subprocess.Popen([*command, f"--listen={self.address}", "--metrics_listen=127.0.0.1:0"],
+                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    def kill(self):
+        self._process.kill()
+        self._process.wait()
+
+
+def Server():
+    return Program(os.environ["TRAVERSE_SERVER"])
+
+
+def Gateway():
+    return Program(os.environ["TRAVERSE_GATEWAY"], "--listen_http=127.0.0.1:0")
+
+
+class Real(unittest.TestCase):
+    def start(self, program):
+        started = program()
+        self.addCleanup(started.kill)
+        return started
+
+    def test_routes_come_for_lists_and_iterables(self):
+        server = self.start(Server)
+        with TravelOptimizer([server.address]) as optimizer:
+            for form in (list, iter):
+                results = list(optimizer.optimize(form(layers(20)), 30, strategy="ni2opt"))
+
+                self.assertEqual([result.id for result in results], list(range(1, 21)))
+                self.assertTrue(all(len(result.visits) == len(SQUARES) for result in results))
+                self.assertLess(sum(result.travel.total_mm for result in results),
+                                sum(result.given.total_mm for result in results))
+            self.assertIn("auto", [strategy.name for strategy in optimizer.strategies()])
+
+    def test_ten_thousand_layers_wait_for_a_slow_reader(self):
+        server = self.start(Server)
+        taken = 0
+
+        def endless():
+            nonlocal taken
+            for one in layers(10_000):
+                taken += 1
+                yield one
+
+        with TravelOptimizer([server.address]) as optimizer:
+            answers = optimizer.optimize(endless(), 120, strategy="greedy")
+            next(answers)
+            rest = sum(1 for _ in answers)
+
+        self.assertEqual((rest, taken), (9_999, 10_000))
+
+    def test_killing_one_of_three_servers_loses_no_layer(self):
+        servers = [self.start(Server) for _ in range(3)]
+        with TravelOptimizer([server.address for server in servers]) as optimizer:
+            def job(number):
+                got = [result.id for result in optimizer.optimize(iter(layers(40, 1000 * number)), 60)]
+                return got == list(range(1000 * number, 1000 * number + 40))
+
+            with concurrent.futures.ThreadPoolExecutor(6) as pool:
+                jobs = [pool.submit(job, number) for number in range(1, 13)]
+                concurrent.futures.wait(jobs, return_when=concurrent.futures.FIRST_COMPLETED)
+                servers[0].kill()
+
+                self.assertTrue(all(one.result() for one in jobs))
+
+    def test_the_field_at_fault_is_named(self):
+        server = self.start(Server)
+        wrong = layer([island(contours=[[(0, 0), (float("nan"), 0), (1, 1)]])])
+        with TravelOptimizer([server.address]) as optimizer, self.assertRaisesRegex(TraverseError, "points"):
+            list(optimizer.optimize([wrong], 10))
+
+    def test_a_file_comes_back_with_progress(self):
+        gateway = self.start(Gateway)
+        part = pathlib.Path(os.environ["TRAVERSE_SAMPLE"])
+        seen = []
+        with GcodeGateway([gateway.address]) as client:
+            made = client.rewrite(part, options=RewriteOptions(report=True), on_progress=seen.append)
+
+        self.assertTrue(made.summary.verified)
+        self.assertEqual(len(made.data), made.summary.bytes)
+        self.assertIn(b"<html", made.report)
+        self.assertTrue(seen)
+
+        async def run():
+            async with AsyncGcodeGateway([gateway.address]) as client:
+                return await client.rewrite(part.read_bytes())
+
+        self.assertEqual(asyncio.run(run()).data, made.data)
+
+    def test_an_empty_file_is_refused_with_a_reason(self):
+        gateway = self.start(Gateway)
+        with GcodeGateway([gateway.address]) as client, self.assertRaises(TraverseError):
+            client.rewrite(b"")
+
+
+class Package(unittest.TestCase):
+    def test_the_version_is_the_server_s(self):
+        said = subprocess.run([os.environ["TRAVERSE_SERVER"], "--version"], capture_output=True, text=True).stdout
+
+        self.assertIn(traverse_client.__version__, said)
+
+    def test_it_says_that_it_is_typed(self):
+        folder = pathlib.Path(traverse_client.__file__).parent
+
+        self.assertTrue((folder / "py.typed").exists())
+        self.assertTrue((folder / "wire/plan_pb2.pyi").exists())
+
+    def test_the_examples_of_its_guide_run(self):
+        text = pathlib.Path(os.environ["TRAVERSE_GUIDE"]).read_text()
+        blocks = re.findall(r"```python\n(.*?)```", text, re.S)
+        server, gateway = Server(), Gateway()
+        self.addCleanup(server.kill)
+        self.addCleanup(gateway.kill)
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "part.gcode").write_bytes(pathlib.Path(os.environ["TRAVERSE_SAMPLE"]).read_bytes())
+            for block in blocks:
+                block = block.replace("127.0.0.1:50051", server.address).replace("127.0.0.1:50061", gateway.address)
+                done = subprocess.run([sys.executable, "-c", block], cwd=folder, capture_output=True, text=True, timeout=120)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertTrue(done.stdout.strip())
+        self.assertEqual(len(blocks), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
