@@ -1,0 +1,211 @@
+// What the Node client promises, against scripted servers and the real programs; run by package_test.py in a folder where the
+// package is installed. TRAVERSE_SERVER and TRAVERSE_GATEWAY name the programs.
+import assert from "node:assert/strict";
+import { execFile, spawn } from "node:child_process";
+import { cp, readFile, writeFile } from "node:fs/promises";
+import { createServer } from "node:net";
+import { test } from "node:test";
+import { promisify } from "node:util";
+import grpc from "@grpc/grpc-js";
+import loader from "@grpc/proto-loader";
+import protobuf from "protobufjs";
+import { GcodeGateway, TravelOptimizer, TraverseError, island, layer } from "traverse-client";
+
+const SQUARES = [0, 40, 20].flatMap((x) => [0, 30].map((y) => [[x, y], [x + 4, y], [x + 4, y + 4], [x, y + 4]]));
+const layers = (count, first = 1) => Array.from({ length: count }, (_, i) => layer([island({ contours: SQUARES })],
+  { id: first + i, zMm: 0.2 * (first + i) }));
+
+const api = grpc.loadPackageDefinition(loader.loadSync("traverse/v1/route_optimizer_service.proto", {
+  keepCase: true, longs: Number, oneofs: true, includeDirs: ["node_modules/traverse-client/proto"] })).traverse.v1;
+const { root: rpc } = protobuf.parse(`syntax = "proto3";
+  message Any { string type_url = 1; bytes value = 2; } message Status { repeated Any details = 3; }
+  message Duration { int64 seconds = 1; int32 nanos = 2; } message RetryInfo { Duration retry_delay = 1; }`, { keepCase: true });
+
+function refusal(code, seconds) {
+  const metadata = new grpc.Metadata();
+  if (seconds !== undefined) {
+    const value = rpc.lookupType("RetryInfo").encode({ retry_delay: { seconds: Math.floor(seconds), nanos: (seconds % 1) * 1e9 } }).finish();
+    const details = [{ type_url: "type.googleapis.com/google.rpc.RetryInfo", value }];
+    metadata.set("grpc-status-details-bin", Buffer.from(rpc.lookupType("Status").encode({ details }).finish()));
+  }
+  return { code, details: "scripted", metadata };
+}
+
+// Answers each attempt as its turn says: [layers to answer, status code or undefined, delay in s].
+async function scripted(t, ...turns) {
+  const asked = [], tokens = [];
+  const begin = (call) => {
+    const [count, code, delay] = turns.shift();
+    const ids = [];
+    asked.push(ids);
+    tokens.push(call.metadata.get("authorization")[0]);
+    return {
+      answer(one) {
+        if (this.refused) return;
+        if (code !== undefined && ids.length === count) {
+          this.refused = true;
+          call.emit("error", refusal(code, delay));
+          return;
+        }
+        call.write({ layer: { index: ids.length, id: one.id, end: { x_mm: one.id, y_mm: 0 } } });
+        ids.push(one.id);
+      },
+      end() {
+        call.write({ summary: {} });
+        call.end();
+      } };
+  };
+  const server = new grpc.Server();
+  server.addService(api.RouteOptimizerService.service, {
+    OptimizeBatch(call) {
+      const turn = begin(call);
+      for (const one of call.request.layers) turn.answer(one);
+      if (!turn.refused) turn.end();
+    },
+    Optimize(call) {
+      const turn = begin(call);
+      call.on("data", (message) => message.layers?.forEach((one) => turn.answer(one)));
+      call.on("end", () => turn.refused || turn.end());
+    },
+    ListStrategies: (_, done) => done(null, {}) });
+  const port = await promisify(server.bindAsync.bind(server))("127.0.0.1:0", grpc.ServerCredentials.createInsecure());
+  t.after(() => server.forceShutdown());
+  return { asked, tokens, address: `127.0.0.1:${port}` };
+}
+
+async function optimizer(t, addresses, options) {
+  const made = new TravelOptimizer(addresses, options);
+  t.after(() => made.close());
+  return made;
+}
+
+async function collect(answers) {
+  const got = [];
+  for await (const answer of answers) got.push(answer);
+  return got;
+}
+
+const FORMS = { array: (given) => given, iterator: (given) => given.values() };
+
+for (const [form, as] of Object.entries(FORMS)) {
+  test(`layers that were answered are not asked again (${form})`, async (t) => {
+    const { UNAVAILABLE } = grpc.status;
+    const server = await scripted(t, [2, UNAVAILABLE, 0.01], [1, UNAVAILABLE, 0.01], [9]);
+    const client = await optimizer(t, [server.address]);
+
+    const results = await collect(client.optimize(as(layers(5)), { deadlineSeconds: 20 }));
+
+    assert.deepEqual(results.map(({ index, id }) => [index, id]), [0, 1, 2, 3, 4].map((i) => [i, i + 1]));
+    assert.equal(server.asked.length, 3);
+    assert.equal(server.asked[2].at(-1), 5);
+  });
+
+  test(`a fault of the job is not tried again (${form})`, async (t) => {
+    const server = await scripted(t, [0, grpc.status.INVALID_ARGUMENT]);
+    const client = await optimizer(t, [server.address]);
+
+    await assert.rejects(collect(client.optimize(as(layers(2)))), (error) => error instanceof TraverseError
+      && error.code === "INVALID_ARGUMENT");
+    assert.equal(server.asked.length, 1);
+  });
+}
+
+test("what the iterable throws comes out", async (t) => {
+  const server = await scripted(t, [9]);
+  const client = await optimizer(t, [server.address]);
+  async function* broken() {
+    yield* layers(2);
+    throw new RangeError("no third layer");
+  }
+
+  await assert.rejects(collect(client.optimize(broken())), /no third layer/);
+});
+
+test("a token is asked for each attempt", async (t) => {
+  const server = await scripted(t, [0, grpc.status.UNAVAILABLE, 0.01], [9]);
+  const tokens = ["old", "new"];
+  const client = await optimizer(t, [server.address], { token: () => tokens.shift() });
+
+  await collect(client.optimize(layers(1)));
+
+  assert.deepEqual(server.tokens, ["Bearer old", "Bearer new"]);
+});
+
+test("a server that asks to wait beyond the deadline ends the job", async (t) => {
+  const server = await scripted(t, [0, grpc.status.RESOURCE_EXHAUSTED, 100]);
+  const client = await optimizer(t, [server.address]);
+
+  await assert.rejects(collect(client.optimize(layers(1), { deadlineSeconds: 5 })), { code: "RESOURCE_EXHAUSTED" });
+});
+
+test("one string is no list of addresses", () => assert.throws(() => new TravelOptimizer("127.0.0.1:50051"), TypeError));
+
+const freePort = () => new Promise((resolve) => {
+  const server = createServer().listen(0, "127.0.0.1", () => {
+    const { port } = server.address();
+    server.close(() => resolve(port));
+  });
+});
+
+// A real program on free ports; `address` speaks gRPC. The client waits until it is up.
+async function program(t, variable, ...flags) {
+  const address = `127.0.0.1:${await freePort()}`;
+  const process_ = spawn(process.env[variable], [`--listen=${address}`, "--metrics_listen=127.0.0.1:0", ...flags], { stdio: "ignore" });
+  t.after(() => process_.kill("SIGKILL"));
+  return { address, kill: () => process_.kill("SIGKILL") };
+}
+
+test("routes come from a real server, for arrays and iterators", async (t) => {
+  const server = await program(t, "TRAVERSE_SERVER");
+  const client = await optimizer(t, [server.address]);
+  for (const as of Object.values(FORMS)) {
+    const results = await collect(client.optimize(as(layers(20)), { strategy: "ni2opt" }));
+
+    assert.deepEqual(results.map(({ id }) => id), layers(20).map(({ id }) => id));
+    assert.ok(results.every(({ visits }) => visits.length === SQUARES.length));
+  }
+  assert.ok((await client.strategies()).some(({ name }) => name === "auto"));
+});
+
+test("killing one of three servers loses no layer", async (t) => {
+  const servers = await Promise.all([1, 2, 3].map(() => program(t, "TRAVERSE_SERVER")));
+  const client = await optimizer(t, servers.map(({ address }) => address));
+  const jobs = Array.from({ length: 8 }, async (_, number) => {
+    const sent = layers(40, 1000 * number);
+    const got = await collect(client.optimize(sent.values(), { deadlineSeconds: 60 }));
+    assert.deepEqual(got.map(({ id }) => id), sent.map(({ id }) => id));
+  });
+  await Promise.race(jobs);
+
+  servers[0].kill();
+
+  await Promise.all(jobs);
+});
+
+test("a file comes back with progress", async (t) => {
+  const gateway = await program(t, "TRAVERSE_GATEWAY", "--listen_http=127.0.0.1:0");
+  const client = new GcodeGateway([gateway.address]);
+  t.after(() => client.close());
+  const seen = [];
+
+  const made = await client.rewrite(process.env.TRAVERSE_SAMPLE, { options: { report: true }, onProgress: (one) => seen.push(one) });
+
+  assert.equal(made.summary.verified, true);
+  assert.equal(made.data.length, made.summary.bytes);
+  assert.match(made.report, /<html/);
+  assert.ok(seen.length > 0);
+  await assert.rejects(client.rewrite(new Uint8Array()), TraverseError);
+});
+
+test("the examples of its guide run", async (t) => {
+  const server = await program(t, "TRAVERSE_SERVER");
+  const gateway = await program(t, "TRAVERSE_GATEWAY", "--listen_http=127.0.0.1:0");
+  await cp(process.env.TRAVERSE_SAMPLE, "part.gcode");
+  const blocks = [...(await readFile(process.env.TRAVERSE_GUIDE, "utf8")).matchAll(/```js\n(.*?)```/gs)].map(([, code]) => code);
+  for (const [number, block] of blocks.entries()) {
+    await writeFile(`guide${number}.mjs`, block.replace("127.0.0.1:50051", server.address).replace("127.0.0.1:50061", gateway.address));
+    const { stdout } = await promisify(execFile)(process.execPath, [`guide${number}.mjs`], { timeout: 120_000 });
+    assert.notEqual(stdout.trim(), "");
+  }
+  assert.equal(blocks.length, 2);
+});
