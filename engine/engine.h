@@ -44,11 +44,15 @@ struct JobSpec {
   CostSpec cost;
   uint64_t seed = 1;
 
-  // When the job must end; then the remaining layers come back as given. Unset: never.
+  // When the job must end. The search ends as long before as greedy needs for the layers that are
+  // not yet answered (schedule/budget_split.h). Unset: never.
   std::optional<Budget::Clock::time_point> deadline;
 
   // Longest time for one layer; absl::InfiniteDuration() for no limit.
   absl::Duration layer_time_limit = absl::InfiniteDuration();
+
+  // The clock of these limits; null: the steady clock. Outlives the job.
+  const TimeSource* time = nullptr;
 };
 
 // One layer of a job.
@@ -123,6 +127,14 @@ class Job {
                                     Executor& executor, JobSink& sink);
 
   virtual ~Job() = default;
+
+  // Says that a layer with this plan will be added, after those announced before, so that time is
+  // kept for it. A job whose end is not announced keeps as much time for what may come as for what
+  // it knows.
+  virtual void Announce(const Plan& plan) = 0;
+
+  // Says that no layers follow but those added or announced. Close says so too.
+  virtual void AnnounceEnd() = 0;
 
   // Adds the next layer. REQUIRES: not closed.
   virtual void Add(JobLayer layer) = 0;

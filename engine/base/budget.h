@@ -10,6 +10,13 @@
 
 namespace traverse {
 
+// Tells the time. Tests have one of their own, which does not depend on the machine.
+class TimeSource {
+ public:
+  virtual ~TimeSource() = default;
+  virtual std::chrono::steady_clock::time_point Now() const = 0;
+};
+
 // Says how long a search may continue. Each search has its own object, which is not thread-safe;
 // the token that it watches is. The engine has no other clock.
 //
@@ -22,11 +29,17 @@ class Budget {
   // No limit.
   Budget() = default;
 
-  // Ends when `cancel` is cancelled, or at `deadline`. A thread that asks this budget yields when
-  // others want `turn`. Both may be null; the caller owns them, and they outlive the budget.
+  // Ends when `cancel` is cancelled, or at `deadline` by `time` (null: the steady clock). A thread
+  // that asks this budget yields when others want `turn`. All three may be null; the caller owns
+  // them, and they outlive the budget.
   explicit Budget(const CancelToken* cancel,
-                  std::optional<Clock::time_point> deadline = std::nullopt, Turn* turn = nullptr)
-      : cancel_(cancel), turn_(turn), deadline_(deadline) {}
+                  std::optional<Clock::time_point> deadline = std::nullopt, Turn* turn = nullptr,
+                  const TimeSource* time = nullptr)
+      : cancel_(cancel), turn_(turn), time_(time), deadline_(deadline) {}
+
+  static Clock::time_point Now(const TimeSource* time) {
+    return time != nullptr ? time->Now() : Clock::now();
+  }
 
   // True once the search must return what it has, and from then on. Cheap: each call checks the
   // cancellation and the turn, but reads the clock only every kCallsPerClockReading calls.
@@ -38,7 +51,7 @@ class Budget {
     if (cancel_ != nullptr && cancel_->cancelled()) return exhausted_ = true;
     if (!deadline_ || --calls_to_clock_ > 0) return false;
     calls_to_clock_ = kCallsPerClockReading;
-    return exhausted_ = Clock::now() >= *deadline_;
+    return exhausted_ = Now(time_) >= *deadline_;
   }
 
   // The same, but always reads the clock. For steps that are slow themselves.
@@ -61,14 +74,14 @@ class Budget {
 
   // A budget that ends with this one, or after `limit` from now if that is earlier.
   Budget Within(Clock::duration limit) const {
-    const Clock::time_point end = Clock::now() + limit;
-    return Budget(cancel_, deadline_ && *deadline_ < end ? *deadline_ : end, turn_);
+    const Clock::time_point end = Now(time_) + limit;
+    return Budget(cancel_, deadline_ && *deadline_ < end ? *deadline_ : end, turn_, time_);
   }
 
   // A budget with that share of the time that is left; this one if it has no deadline.
   Budget WithShare(double share) const {
     if (!deadline_) return *this;
-    return Within(std::chrono::duration_cast<Clock::duration>((*deadline_ - Clock::now()) * share));
+    return Within(std::chrono::duration_cast<Clock::duration>((*deadline_ - Now(time_)) * share));
   }
 
  private:
@@ -82,6 +95,7 @@ class Budget {
 
   const CancelToken* cancel_ = nullptr;
   Turn* turn_ = nullptr;
+  const TimeSource* time_ = nullptr;
   std::optional<Clock::time_point> deadline_;
   int calls_to_clock_ = 1;
   bool exhausted_ = false;

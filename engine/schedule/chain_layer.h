@@ -13,6 +13,7 @@
 #include "engine/cost/wall_cost.h"
 #include "engine/engine.h"
 #include "engine/proof/bounds/lower_bound.h"
+#include "engine/schedule/budget_split.h"
 #include "engine/schedule/layer_fingerprint.h"
 #include "engine/schedule/route_history.h"
 #include "engine/strategy/strategy.h"
@@ -40,7 +41,7 @@ struct ChainLayer {
   uint64_t index = 0;
   JobLayer given;  // as it was added
   CostSpec cost;
-  int64_t points = 0;
+  LayerSize size;
   bool looks_ahead = false;  // it may be ended with the next layer in view
   bool looked_at = false;    // the layer before is ended with this one in view
 
@@ -68,9 +69,14 @@ struct ChainLayer {
   // was certain.
   std::shared_ptr<AnchoredRoutes> anchored;
 
-  // What share of the job's time the layer may use, once solving has begun.
+  // What share of the job's time the layer may use, once solving has begun, and what it has used.
   double weight = 0;
   Budget::Clock::duration allotted = Budget::Clock::duration::max();
+  Budget::Clock::duration used = Budget::Clock::duration::zero();
+
+  // Set when each stage begins: when its search must end, so that all of them keep within that
+  // share, and greedy has its time. Unset: never.
+  std::optional<Budget::Clock::time_point> search_end;
 
   // From the first stage that solves the layer to its anchor. One stage at a time uses it.
   std::unique_ptr<PreparedLayer> prepared;

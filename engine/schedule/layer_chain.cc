@@ -21,19 +21,29 @@ LayerChain::LayerChain(const JobSpec& spec, std::unique_ptr<Strategy> strategy, 
       solver_(spec, std::move(strategy), executor, cancel_),
       outbox_(sink),
       preparer_(spec.start, solver_),
-      split_(spec.deadline, solver_.traits().serial ? 1 : std::max(1, executor.threads())) {}
+      split_(spec.deadline, Now(), solver_.traits().serial ? 1 : std::max(1, executor.threads())) {}
+
+void LayerChain::Announce(const Plan& plan) {
+  const LayerSize size = SizeOf(plan);
+  MutexLock lock(mutex_);
+  split_.Announce(size);
+}
+
+void LayerChain::AnnounceEnd() {
+  MutexLock lock(mutex_);
+  split_.AnnounceEnd();
+}
 
 void LayerChain::Add(JobLayer given) {
   auto layer = std::make_shared<ChainLayer>();
   layer->cost = given.cost.value_or(spec_.cost);
-  for (const Path& path : given.plan.paths)
-    layer->points += static_cast<int64_t>(path.points.size());
+  layer->size = SizeOf(given.plan);
   layer->given = std::move(given);
   MutexLock lock(mutex_);
   assert(!closed_);
   layer->index = added_++;
-  layer->weight = BudgetSplit::Weight(layer->given.plan.paths.size(), false);
-  split_.Add(layer->weight);
+  layer->weight = BudgetSplit::Weight(layer->size.paths, false);
+  split_.AddLayer(layer->size);
   if (BoundsChain()) {
     split_.Add(layer->weight);
     chain_weight_ += layer->weight;
@@ -52,6 +62,7 @@ void LayerChain::Add(JobLayer given) {
 void LayerChain::Close() {
   MutexLock lock(mutex_);
   closed_ = true;
+  split_.AnnounceEnd();
   MaybePrepare();
   MaybeAnchorBefore(added_);
   MaybeFinish();
@@ -69,8 +80,10 @@ int64_t LayerChain::pending() const {
 }
 
 void LayerChain::RunPrepare(const ChainLayerPtr& layer) {
-  preparer_.Prepare(*layer);
+  RunTimed(*layer, false, [&] { preparer_.Prepare(*layer); });
   MutexLock lock(mutex_);
+  split_.NoteTaken(layer->size, layer->used);
+  layer->used = {};
   preparing_ = false;
   ++next_to_prepare_;
   if (solver_.traits().reuses_routes) {
@@ -92,14 +105,22 @@ void LayerChain::RunPrepare(const ChainLayerPtr& layer) {
   MaybePrepare();
 }
 
-void LayerChain::Allot(ChainLayer& layer) {
-  MutexLock lock(mutex_);
-  layer.allotted = split_.Begin(layer.weight, Budget::Clock::now());
+template <typename Stage>
+void LayerChain::RunTimed(ChainLayer& layer, bool main, Stage stage) {
+  const Budget::Clock::time_point begin = Now();
+  {
+    MutexLock lock(mutex_);
+    if (main) layer.allotted = split_.Begin(layer.weight, begin);
+    layer.search_end = split_.SearchEnd();
+  }
+  if (layer.search_end && layer.allotted != Budget::Clock::duration::max())
+    layer.search_end = std::min(*layer.search_end, begin + layer.allotted - layer.used);
+  stage();
+  layer.used += Now() - begin;
 }
 
 void LayerChain::RunSolveFirst(const ChainLayerPtr& layer) {
-  Allot(*layer);
-  solver_.SolveFirst(*layer);
+  RunTimed(*layer, true, [&] { solver_.SolveFirst(*layer); });
   const Point end = layer->finish.value_or(
       RouteEnd(layer->given.plan, layer->first.route, layer->predicted_start));
   MutexLock lock(mutex_);
@@ -111,13 +132,13 @@ void LayerChain::RunSolveFirst(const ChainLayerPtr& layer) {
 }
 
 void LayerChain::RunSolveSecond(const ChainLayerPtr& layer) {
-  solver_.SolveSecond(*layer);
+  RunTimed(*layer, false, [&] { solver_.SolveSecond(*layer); });
   MutexLock lock(mutex_);
   GoOnSolved(layer);
 }
 
 void LayerChain::RunSolveAlone(const ChainLayerPtr& layer, Point start) {
-  solver_.SolveAlone(*layer, start);
+  RunTimed(*layer, false, [&] { solver_.SolveAlone(*layer, start); });
   if (!layer->alone) return;  // cancelled
   const Point end = LayerSolver::EndAlone(*layer);
   MutexLock lock(mutex_);
@@ -128,8 +149,10 @@ void LayerChain::RunSolveAlone(const ChainLayerPtr& layer, Point start) {
 }
 
 void LayerChain::RunAnchor(const ChainLayerPtr& layer, const TrueStart& at) {
-  if (solver_.traits().serial) Allot(*layer);
-  LayerOutcome outcome = solver_.Anchor(*layer, at);
+  LayerOutcome outcome;
+  const Budget::Clock::duration used = layer->used;
+  const bool late = layer->search_end && Now() >= *layer->search_end;
+  RunTimed(*layer, solver_.traits().serial, [&] { outcome = solver_.Anchor(*layer, at); });
   if (BoundsChain() && !cancel_.cancelled()) KeepForBound(*layer, outcome);
   const Point route_end = outcome.end;
   const Point end = layer->finish.value_or(route_end);
@@ -144,6 +167,8 @@ void LayerChain::RunAnchor(const ChainLayerPtr& layer, const TrueStart& at) {
   learned.end = RelativeTo(layer->origin, route_end);
   learned.known = layer->known;
   --pending_;
+  split_.NoteAnswered(layer->size);
+  if (late) split_.NoteTaken(layer->size, layer->used - used);
   DropAnchored();
   MaybeSolveAlone(layer->index + 1);
   MaybeAnchor(layer->index + 1);
@@ -166,7 +191,7 @@ void LayerChain::RunBoundChain() {
     MutexLock lock(mutex_);
     std::swap(chain, chain_bound_);
     layers = added_;
-    allotted = split_.Begin(chain_weight_, Budget::Clock::now());
+    allotted = split_.Begin(chain_weight_, Now());
   }
   const std::optional<double> bound = solver_.BoundChain(chain, layers, allotted);
   MutexLock lock(mutex_);
@@ -190,7 +215,7 @@ void LayerChain::MaybePrepare() {
     if (learned.known) routes_.Learn(learned.shape, learned.key, learned.known);
   }
   preparing_ = true;
-  Submit([this, layer] { RunPrepare(layer); }, layer->points);
+  Submit([this, layer] { RunPrepare(layer); }, layer->size.points);
 }
 
 // The first solution of a layer, once there is a route to start from.
@@ -199,7 +224,7 @@ void LayerChain::MaybeSolveFirst(const ChainLayerPtr& layer) {
     layer->precursor->waiting.push_back(layer->index);
     return;
   }
-  Submit([this, layer] { RunSolveFirst(layer); }, layer->points);
+  Submit([this, layer] { RunSolveFirst(layer); }, layer->size.points);
 }
 
 // Gives the first solution to the layers that start from it.
@@ -222,7 +247,7 @@ void LayerChain::MaybeSolveSecond(uint64_t index) {
     if (!start) return;
     if (*start != layer->predicted_start) {
       layer->second_start = start;
-      Submit([this, layer] { RunSolveSecond(layer); }, layer->points);
+      Submit([this, layer] { RunSolveSecond(layer); }, layer->size.points);
       return;
     }
   }
@@ -248,7 +273,7 @@ void LayerChain::MaybeSolveAlone(uint64_t index) {
   }
   if (!start) return;
   layer->solving_alone = true;
-  Submit([this, layer, start = *start] { RunSolveAlone(layer, start); }, layer->points);
+  Submit([this, layer, start = *start] { RunSolveAlone(layer, start); }, layer->size.points);
 }
 
 // Sets the layers that layer `index` is ended in view of; returns false while one of them is
@@ -291,7 +316,7 @@ void LayerChain::MaybeAnchor(uint64_t index) {
   if (layer->looked_at) at.over_alone = LayerAt(index - 1)->over_alone;
   if (!ViewFrom(index, at)) return;
   layer->anchoring = true;
-  Submit([this, layer, at] { RunAnchor(layer, at); }, layer->points);
+  Submit([this, layer, at] { RunAnchor(layer, at); }, layer->size.points);
 }
 
 // Layers from the front that are done, except the last of them: its end is the next one's start.
@@ -317,17 +342,46 @@ void LayerChain::MaybeFinish() {
 
 void LayerChain::Submit(std::function<void()> stage, int64_t points) {
   if (cancel_.cancelled()) return;
+  const std::optional<Budget::Clock::time_point> search_end = split_.SearchEnd();
+  const Budget::Clock::time_point submitted = Now();
+  if (search_end && submitted >= *search_end) {
+    late_.push_back(std::move(stage));
+    if (running_late_) return;
+    running_late_ = true;
+    stage = [this] { RunLate(); };
+  }
   ++tasks_;
-  auto run = [self = shared_from_this(), stage = std::move(stage)] {
+  auto run = [self = shared_from_this(), stage = std::move(stage), submitted] {
     // Also if the stage runs out of memory: its caller can then cancel the job, which ends.
     const absl::Cleanup end = [&self] {
       MutexLock lock(self->mutex_);
       --self->tasks_;
       self->MaybeFinish();
     };
-    if (!self->cancel_.cancelled()) stage();
+    if (self->cancel_.cancelled()) return;
+    {
+      MutexLock lock(self->mutex_);
+      self->split_.NoteWait(self->Now() - submitted);
+    }
+    stage();
   };
   executor_.SubmitLarge(std::move(run), points);
+}
+
+void LayerChain::RunLate() {
+  while (true) {
+    std::function<void()> stage;
+    {
+      MutexLock lock(mutex_);
+      if (late_.empty() || cancel_.cancelled()) {
+        running_late_ = false;
+        return;
+      }
+      stage = std::move(late_.front());
+      late_.pop_front();
+    }
+    stage();
+  }
 }
 
 }  // namespace traverse

@@ -60,6 +60,8 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   LayerChain(const JobSpec& spec, std::unique_ptr<Strategy> strategy, Executor& executor,
              JobSink& sink);
 
+  void Announce(const Plan& plan) override;
+  void AnnounceEnd() override;
   void Add(JobLayer layer) override;
   void Close() override;
   void Cancel() override;
@@ -74,8 +76,12 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   // long part that repeats its layers take more time and become longer.
   static constexpr int kMostSeenAlone = 4;
 
-  // Fixes the share of the job's time that the layer may use, when its main stage begins.
-  void Allot(ChainLayer& layer);
+  // Runs `stage` of a layer within the time that the layer still has. `main`: its first search,
+  // which fixes the share of the job's time that the layer may use.
+  template <typename Stage>
+  void RunTimed(ChainLayer& layer, bool main, Stage stage);
+
+  Budget::Clock::time_point Now() const { return Budget::Now(spec_.time); }
 
   // Run a stage and hand the layer to the next one.
   void RunPrepare(const ChainLayerPtr& layer);
@@ -103,6 +109,9 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   void KeepForBound(const ChainLayer& layer, const LayerOutcome& outcome);
   void MaybeFinish() TRAVERSE_REQUIRES(mutex_);
   void Submit(std::function<void()> stage, int64_t points) TRAVERSE_REQUIRES(mutex_);
+
+  // Runs the stages that are due once no time is left for searching, one after the other.
+  void RunLate() TRAVERSE_EXCLUDES(mutex_);
   void DropAnchored() TRAVERSE_REQUIRES(mutex_);
   const ChainLayerPtr& LayerAt(uint64_t index) const TRAVERSE_REQUIRES(mutex_) {
     return layers_[index - first_index_];
@@ -139,6 +148,11 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   std::optional<double> chain_lower_bound_ TRAVERSE_GUARDED_BY(mutex_);
   int64_t pending_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   int64_t tasks_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // submitted and not yet ended
+
+  // Stages due after the end of the search. One task runs them all, so that they do not wait for a
+  // thread again and again.
+  std::deque<std::function<void()>> late_ TRAVERSE_GUARDED_BY(mutex_);
+  bool running_late_ TRAVERSE_GUARDED_BY(mutex_) = false;
   bool preparing_ TRAVERSE_GUARDED_BY(mutex_) = false;
   bool closed_ TRAVERSE_GUARDED_BY(mutex_) = false;
   bool finished_ TRAVERSE_GUARDED_BY(mutex_) = false;

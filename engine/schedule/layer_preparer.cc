@@ -45,8 +45,8 @@ Point LayerPreparer::PredictEnd(const ChainLayer& layer) const {
   if (const std::optional<Point> end = history_.EndOf(layer.fingerprint.shape, layer.key)) {
     return {layer.origin.x + end->x, layer.origin.y + end->y};
   }
-  if (solver_.Expired()) return layer.predicted_start;
-  const Route greedy = solver_.GreedyRoute(solver_.Problem(layer, layer.predicted_start), layer);
+  if (solver_.Expired(layer)) return layer.predicted_start;
+  const Route greedy = solver_.GreedyRoute(solver_.Problem(layer, layer.predicted_start));
   return RouteEnd(layer.given.plan, greedy, layer.predicted_start);
 }
 

@@ -43,13 +43,16 @@ LayerSolver::LayerSolver(const JobSpec& spec, std::unique_ptr<Strategy> strategy
       strategy_(std::move(strategy)),
       predictor_(GreedyEntry().make(*StrategyOptions::Parse(GreedyEntry().options, {}))),
       executor_(executor),
-      cancel_(cancel) {}
+      cancel_(cancel),
+      greedy_end_(GreedyEnd(spec)) {}
 
-// `share` of the smaller of a part of the job's time and so many times the limit of one layer.
-Budget LayerSolver::BudgetWithin(Budget::Clock::duration allotted, double layer_limits,
+// Until `end`, and no longer than `share` of the smaller of a part of the job's time and so many
+// times the limit of one layer.
+Budget LayerSolver::BudgetWithin(std::optional<Budget::Clock::time_point> end,
+                                 Budget::Clock::duration allotted, double layer_limits,
                                  double share) const {
   using Duration = Budget::Clock::duration;
-  const Budget whole(&cancel_, spec_.deadline, executor_.turn());
+  const Budget whole(&cancel_, end, executor_.turn(), spec_.time);
   const absl::Duration layers = layer_limits * spec_.layer_time_limit;
   if (layers != absl::InfiniteDuration()) {
     allotted =
@@ -60,7 +63,7 @@ Budget LayerSolver::BudgetWithin(Budget::Clock::duration allotted, double layer_
 }
 
 Budget LayerSolver::LayerBudget(const ChainLayer& layer, double share) const {
-  return BudgetWithin(layer.allotted, 1, share);
+  return BudgetWithin(layer.search_end, layer.allotted, 1, share);
 }
 
 double LayerSolver::AnchorShare() const {
@@ -73,8 +76,9 @@ double LayerSolver::SolveShare(const ChainLayer& layer) const {
   return FixedStart(layer) && !MayLookAhead(layer, {}) ? 1 : 1 - AnchorShare();
 }
 
-// Whether only enough time is left to answer with what there is.
-bool LayerSolver::Expired() const { return Budget(&cancel_, spec_.deadline).ExhaustedNow(); }
+bool LayerSolver::Expired(const ChainLayer& layer) const {
+  return Budget(&cancel_, layer.search_end, nullptr, spec_.time).ExhaustedNow();
+}
 
 LayerProblem LayerSolver::Problem(const ChainLayer& layer, Point start) const {
   LayerProblem problem{&layer.given.plan, start, layer.finish, layer.cost,
@@ -99,7 +103,7 @@ std::optional<Point> LayerSolver::FixedStart(const ChainLayer& layer) const {
 
 void LayerSolver::SolveFirst(ChainLayer& layer) const {
   const Stopwatch watch;
-  if (Expired()) {
+  if (Expired(layer)) {
     layer.first = Solution{layer.given_route, StopReason::kTimeLimit, std::nullopt};
     return;
   }
@@ -180,7 +184,7 @@ const KnownRoute* LayerSolver::FindAnchored(const ChainLayer& layer,
 
 void LayerSolver::SolveSecond(ChainLayer& layer) const {
   const Stopwatch watch;
-  if (Expired()) {
+  if (Expired(layer)) {
     layer.second = layer.first;
     layer.second.stop = StopReason::kTimeLimit;
     return;
@@ -239,7 +243,7 @@ Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, ChainLayer
   if (found != nullptr && view.empty() && !has_time_left) return *found;
   Solution solution;
   if (known != nullptr && TakeOver(*known, problem, layer, solution)) return solution;
-  if (Expired()) {
+  if (Expired(layer)) {
     solution = found != nullptr ? *found : layer.first;
     solution.stop = StopReason::kTimeLimit;
     if (found == nullptr) solution.lower_bound.reset();  // it held for another start
@@ -263,54 +267,6 @@ Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, ChainLayer
   return solution;
 }
 
-Route LayerSolver::GreedyRoute(const LayerProblem& problem, const ChainLayer& layer) const {
-  Budget budget = LayerBudget(layer, kSideShare);
-  return predictor_->Solve(problem, budget).route;
-}
-
-// Other routes may be better from the true start: an equal layer's from the same start; what the
-// layer before saw ahead; those found for another start, where the clock cut the last search short;
-// greedy's, which a resumed route need not beat; the order given. All with the next layers in view:
-// for their sake a layer's own travel may grow.
-void LayerSolver::KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer,
-                                const KnownRoute* known, const LayersInView& view,
-                                Solution& solution) const {
-  double best = CostInView(problem, solution.route, view);
-  bool was_replaced = false;
-  const auto offer = [&](const Route& route) {
-    if (route.size() != solution.route.size()) return;  // there was no such search
-    const double cost = CostInView(problem, route, view);
-    if (cost >= best) return;
-    best = cost;
-    solution.route = route;
-    was_replaced = true;
-  };
-  if (known != nullptr) offer(known->solution.route);
-  offer(layer.foreseen);
-  if (GreedyMayBeBetter(problem, layer, known)) offer(GreedyRoute(problem, layer));
-  if (solution.stop == StopReason::kTimeLimit) {
-    offer(layer.first.route);
-    offer(layer.second.route);
-  }
-  offer(layer.given_route);
-  // An optimal route was replaced for the sake of the next layer, or by one that is the same but
-  // for rounding.
-  if (was_replaced && solution.stop == StopReason::kOptimal &&
-      RouteCost(problem, solution.route) > solution.lower_bound.value_or(0) * (1 + kSameCost)) {
-    solution.stop = StopReason::kLocalOptimum;
-  }
-}
-
-// Whether greedy's route may still be better: it cannot be if the strategy began at this very
-// start, or if an equal layer's route was taken over.
-bool LayerSolver::GreedyMayBeBetter(const LayerProblem& problem, const ChainLayer& layer,
-                                    const KnownRoute* known) const {
-  if (strategy_->traits().serial || strategy_->traits().quick || Expired()) return false;
-  const bool is_compared =
-      known != nullptr && known->exact == layer.fingerprint.exact && known->start == problem.start;
-  return !is_compared && (layer.precursor || problem.start != layer.predicted_start);
-}
-
 // Adds a lower bound to a solution if the strategy provides one. It is computed with the first
 // solution, in parallel, or was computed for an equal layer; other starts reuse the result.
 void LayerSolver::Bound(const LayerProblem& problem, ChainLayer& layer, Solution& solution) const {
@@ -332,7 +288,7 @@ std::optional<double> LayerSolver::BoundChain(const ChainBound& chain, uint64_t 
     const double cost = RouteCost(problem, known, &budget);
     return LowerBound(problem, cost, nullptr, effort, budget);
   };
-  Budget budget = BudgetWithin(allotted, static_cast<double>(layers), 1);
+  Budget budget = BudgetWithin(spec_.deadline, allotted, static_cast<double>(layers), 1);
   return chain.Compute(spec_.seed, bound_of, budget);
 }
 
@@ -355,7 +311,9 @@ Solution LayerSolver::ValidFromTrueStart(const LayerProblem& problem, ChainLayer
     layer.outcome.invalid_route = std::string(status.message());
     return Solution{layer.given_route, StopReason::kLocalOptimum, std::nullopt};
   }
-  if (!strategy_->traits().pure) KeepBestRoute(problem, layer, known, at.view, solution);
+  // Of those in view too little is known once no time is left to search them.
+  const LayersInView& view = Expired(layer) ? LayersInView() : at.view;
+  if (!strategy_->traits().pure) KeepBestRoute(problem, layer, known, view, solution);
   return solution;
 }
 

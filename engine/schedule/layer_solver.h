@@ -43,12 +43,13 @@ class LayerSolver {
   bool LooksAheadAt(const ChainLayer& layer, const LayersInView& view,
                     const ChainLayer& next) const;
 
-  // True if time is up, so that the layer must be answered with what there is.
-  bool Expired() const;
+  // True if no time is left to search the layer. It is then answered with the best of what there is
+  // and greedy's route.
+  bool Expired(const ChainLayer& layer) const;
 
   // For work that must be done regardless of time: other tasks get their turns meanwhile, and a
   // cancellation is seen.
-  Budget Turns() const { return Budget(&cancel_, std::nullopt, executor_.turn()); }
+  Budget Turns() const { return Budget(&cancel_, std::nullopt, executor_.turn(), spec_.time); }
 
   // The problem of solving the layer from `start`. Refers to `layer`.
   LayerProblem Problem(const ChainLayer& layer, Point start) const;
@@ -56,7 +57,8 @@ class LayerSolver {
   // Where the head is after the layer, cleaning included, if it is done as it was found alone.
   static Point EndAlone(const ChainLayer& layer) { return layer.finish.value_or(layer.alone->end); }
 
-  Route GreedyRoute(const LayerProblem& problem, const ChainLayer& layer) const;
+  // In the time that is kept for it, besides that of any search; cut short only after the deadline.
+  Route GreedyRoute(const LayerProblem& problem) const;
 
   // `solution` with what later layers need to continue from it.
   KnownRoutePtr Known(const LayerProblem& problem, const ChainLayer& layer,
@@ -77,7 +79,8 @@ class LayerSolver {
     if (!layer.prepared) layer.prepared = strategy_->Prepare(layer.given.plan);
     return *layer.prepared;
   }
-  Budget BudgetWithin(Budget::Clock::duration allotted, double layer_limits, double share) const;
+  Budget BudgetWithin(std::optional<Budget::Clock::time_point> end,
+                      Budget::Clock::duration allotted, double layer_limits, double share) const;
   Budget LayerBudget(const ChainLayer& layer, double share) const;
   double AnchorShare() const;
   double SolveShare(const ChainLayer& layer) const;
@@ -93,8 +96,10 @@ class LayerSolver {
                               const KnownRoute* known, const TrueStart& at) const;
   Solution ValidFromTrueStart(const LayerProblem& problem, ChainLayer& layer,
                               const KnownRoute* known, const TrueStart& at) const;
+  // In layer_solver_floor.cc: greedy's route, under which no answer falls.
+  static std::optional<Budget::Clock::time_point> GreedyEnd(const JobSpec& spec);
   bool GreedyMayBeBetter(const LayerProblem& problem, const ChainLayer& layer,
-                         const KnownRoute* known) const;
+                         const KnownRoute* known, const Solution& solution) const;
   void KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer, const KnownRoute* known,
                      const LayersInView& view, Solution& solution) const;
   const KnownRoute* FindAnchored(const ChainLayer& layer, const AnchoredRoutes::ByKey& routes,
@@ -143,6 +148,7 @@ class LayerSolver {
   const std::unique_ptr<Strategy> predictor_;
   Executor& executor_;
   const CancelToken& cancel_;
+  const std::optional<Budget::Clock::time_point> greedy_end_;
 };
 
 }  // namespace traverse

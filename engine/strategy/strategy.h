@@ -100,9 +100,9 @@ class Strategy {
 
   const StrategyTraits& traits() const { return traits_; }
 
-  // Always returns a valid route: when the budget runs out the best so far, at worst the given
-  // order, with stop kTimeLimit or kCancelled. The same problem gives the same solution, unless the
-  // budget ended it.
+  // Always returns a valid route: when the budget runs out the best so far, with stop kTimeLimit or
+  // kCancelled. It may cost more than greedy's then: the chain of layers keeps time for that one.
+  // The same problem gives the same solution, unless the budget ended it.
   virtual Solution Solve(const LayerProblem& problem, Budget& budget) const = 0;
 
   // Improves `start`, a valid route of `problem`; never returns a worse one. The chain of

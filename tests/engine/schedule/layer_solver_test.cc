@@ -6,7 +6,6 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "tests/engine/schedule/ring_job.h"
 #include "tests/support/problems/instances.h"
 #include "tests/support/recording_sink.h"
+#include "tests/support/step_clock.h"
 #include "tests/support/test_executor.h"
 
 namespace traverse {
@@ -175,15 +175,16 @@ TEST(LayerSolver, IsNeverWorseThanGreedyFromTheTrueStart) {
 // Takes all the time that it is given, and notes how much that is.
 class SpendingLayer : public PreparedLayer {
  public:
-  explicit SpendingLayer(std::atomic<double>& given) : given_(given) {}
+  SpendingLayer(std::atomic<double>& given, const TimeSource& time) : given_(given), time_(time) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) override {
     return Resume(problem, GivenRoute(*problem.plan), budget);
   }
   Solution Resume(const LayerProblem&, const Route& start, Budget& budget) override {
-    const std::chrono::duration<double> given = *budget.deadline() - Budget::Clock::now();
+    const std::chrono::duration<double> given = *budget.deadline() - time_.Now();
     given_ = given_ + given.count();
-    while (!budget.ExhaustedNow()) std::this_thread::yield();
+    while (!budget.ExhaustedNow()) {
+    }
     return Solution{start, StopReason::kTimeLimit, std::nullopt};
   }
   Solution ResumeWithNext(const LayerProblem& problem, const Route& start, std::vector<NextLayer>&,
@@ -193,33 +194,37 @@ class SpendingLayer : public PreparedLayer {
 
  private:
   std::atomic<double>& given_;
+  const TimeSource& time_;
 };
 
 class Spending : public PreparingStrategy {
  public:
-  Spending(std::atomic<double>& given, const StrategyTraits& traits)
-      : PreparingStrategy(traits), given_(given) {}
+  Spending(std::atomic<double>& given, const TimeSource& time, const StrategyTraits& traits)
+      : PreparingStrategy(traits), given_(given), time_(time) {}
   std::unique_ptr<PreparedLayer> Prepare(const Plan&) const override {
-    return std::make_unique<SpendingLayer>(given_);
+    return std::make_unique<SpendingLayer>(given_, time_);
   }
 
  private:
   std::atomic<double>& given_;
+  const TimeSource& time_;
 };
 
-// Of a layer. Other processes may stop the thread for some milliseconds, which it is not given.
+// Of a layer.
 constexpr double kLimitSeconds = 0.2;
 
 // In seconds, all that is given to a job of layers that differ.
 double GivenTo(int layers, bool more_follows) {
   std::atomic<double> given = 0;
+  const StepClock clock;
   RecordingSink sink;
   TestExecutor executor(1);
   JobSpec spec;
   spec.layer_time_limit = absl::Seconds(kLimitSeconds);
-  auto job =
-      Job::Start(spec, std::make_unique<Spending>(given, StrategyTraits{.look_ahead_paths = 100}),
-                 executor, sink);
+  spec.time = &clock;
+  auto job = Job::Start(
+      spec, std::make_unique<Spending>(given, clock, StrategyTraits{.look_ahead_paths = 100}),
+      executor, sink);
   for (int i = 1; i <= layers; ++i) {
     std::vector<Path> dots;
     for (int k = 0; k < 5; ++k) dots.push_back(MakeContour({{10.0 * k * i, 5.0 + i}}));

@@ -1,0 +1,72 @@
+// How LayerSolver keeps every layer from costing more than greedy's route, also when time is up.
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <optional>
+
+#include "engine/base/tolerances.h"
+#include "engine/cost/route_cost.h"
+#include "engine/schedule/layer_solver.h"
+
+namespace traverse {
+
+// Greedy's route is worth a little more than the time that was kept for it.
+std::optional<Budget::Clock::time_point> LayerSolver::GreedyEnd(const JobSpec& spec) {
+  constexpr std::chrono::milliseconds kMostGrace{10};
+  constexpr int kGraceShare = 10;
+  if (!spec.deadline) return std::nullopt;
+  const Budget::Clock::duration whole = *spec.deadline - Budget::Now(spec.time);
+  return *spec.deadline + std::clamp<Budget::Clock::duration>(whole / kGraceShare, {}, kMostGrace);
+}
+
+Route LayerSolver::GreedyRoute(const LayerProblem& problem) const {
+  Budget budget(&cancel_, greedy_end_, executor_.turn(), spec_.time);
+  return predictor_->Solve(problem, budget).route;
+}
+
+// Other routes may be better from the true start: an equal layer's from the same start; what the
+// layer before saw ahead; those found for another start, where the clock cut the last search short;
+// greedy's, which a resumed route need not beat; the order given. All with the next layers in view:
+// for their sake a layer's own travel may grow.
+void LayerSolver::KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer,
+                                const KnownRoute* known, const LayersInView& view,
+                                Solution& solution) const {
+  double best = CostInView(problem, solution.route, view);
+  bool was_replaced = false;
+  const auto offer = [&](const Route& route) {
+    if (route.size() != solution.route.size()) return;  // there was no such search
+    const double cost = CostInView(problem, route, view);
+    if (cost >= best) return;
+    best = cost;
+    solution.route = route;
+    was_replaced = true;
+  };
+  if (known != nullptr) offer(known->solution.route);
+  offer(layer.foreseen);
+  if (GreedyMayBeBetter(problem, layer, known, solution)) offer(GreedyRoute(problem));
+  if (solution.stop == StopReason::kTimeLimit) {
+    offer(layer.first.route);
+    offer(layer.second.route);
+  }
+  offer(layer.given_route);
+  // An optimal route was replaced for the sake of the next layer, or by one that is the same but
+  // for rounding.
+  if (was_replaced && solution.stop == StopReason::kOptimal &&
+      RouteCost(problem, solution.route) > solution.lower_bound.value_or(0) * (1 + kSameCost)) {
+    solution.stop = StopReason::kLocalOptimum;
+  }
+}
+
+// Whether greedy's route may still be better: it cannot be if the strategy began at this very
+// start, and ended by itself, or if an equal layer's route was taken over.
+bool LayerSolver::GreedyMayBeBetter(const LayerProblem& problem, const ChainLayer& layer,
+                                    const KnownRoute* known, const Solution& solution) const {
+  if (solution.stop == StopReason::kTimeLimit) return true;
+  if (strategy_->traits().serial || strategy_->traits().quick) return false;
+  const bool is_compared =
+      known != nullptr && known->exact == layer.fingerprint.exact && known->start == problem.start;
+  return !is_compared && (layer.precursor || problem.start != layer.predicted_start);
+}
+
+}  // namespace traverse

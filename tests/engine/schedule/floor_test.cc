@@ -1,0 +1,156 @@
+// No answer costs more than greedy's, however short the time: by a clock that only the job moves.
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/base/rng.h"
+#include "engine/cost/route_cost.h"
+#include "engine/strategy/registry.h"
+#include "tests/support/problems/instances.h"
+#include "tests/support/recording_sink.h"
+#include "tests/support/step_clock.h"
+#include "tests/support/test_executor.h"
+
+namespace traverse {
+namespace {
+
+// Contours scattered over islands, in an order that is far from a good one.
+Plan ScatteredLayer(uint64_t seed) {
+  Rng rng(seed);
+  std::vector<IslandPaths> islands(6);
+  for (int i = 0; i < 48; ++i) {
+    const Point c{200 * rng.Unit(), 200 * rng.Unit()};
+    islands[static_cast<size_t>(i) % islands.size()].contours.push_back(
+        MakeContour({{c.x, c.y}, {c.x + 2, c.y}, {c.x + 2, c.y + 2}, {c.x, c.y + 2}}));
+  }
+  return SequentialPlan(islands);
+}
+
+struct Case {
+  std::string strategy;
+  int layers = 5;
+  bool announced = true;  // as a batch is; otherwise as a stream whose caller sends on
+  bool look_ahead = false;
+  int64_t deadline = 0;  // in readings of the clock; 0: none
+  int64_t stop_at = -1;
+  int64_t stop = 0;
+};
+
+std::string NameOf(const Case& of) {
+  return of.strategy + (of.announced ? " batch" : " stream") + (of.look_ahead ? " ahead" : "") +
+         " by " + std::to_string(of.deadline) + " stopped at " + std::to_string(of.stop_at);
+}
+
+struct Run {
+  std::vector<LayerOutcome> outcomes;
+  int64_t readings = 0;
+};
+
+Run RunCase(const Case& of) {
+  const StepClock clock(of.stop_at, of.stop);
+  RecordingSink sink;
+  TestExecutor executor(1);
+  JobSpec spec;
+  spec.time = &clock;
+  if (of.deadline > 0) spec.deadline = StepClock::At(of.deadline);
+  auto job = Job::Start(spec, *MakeStrategy(of.strategy, {}), executor, sink);
+  std::vector<Plan> plans;
+  for (int i = 0; i < of.layers; ++i) plans.push_back(ScatteredLayer(static_cast<uint64_t>(i) + 1));
+  if (of.announced) {
+    for (const Plan& plan : plans) job->Announce(plan);
+    job->AnnounceEnd();
+  }
+  for (int i = 0; i < of.layers; ++i) {
+    JobLayer layer;
+    layer.plan = plans[static_cast<size_t>(i)];
+    layer.more_follows = of.look_ahead && i + 1 < of.layers;
+    job->Add(std::move(layer));
+  }
+  job->Close();
+  sink.Wait();
+  return {std::move(sink.outcomes), clock.readings()};
+}
+
+double GreedyCost(const LayerOutcome& outcome) {
+  const LayerProblem problem{&outcome.plan, outcome.start, std::nullopt, CostSpec(), 1};
+  Budget budget;
+  return RouteCost(problem, (*MakeStrategy("greedy", {}))->Solve(problem, budget).route);
+}
+
+void ExpectWithinGreedy(const Case& of) {
+  SCOPED_TRACE(NameOf(of));
+  const Run run = RunCase(of);
+  ASSERT_EQ(run.outcomes.size(), static_cast<size_t>(of.layers));
+  double sum = 0;
+  double greedy = 0;
+  for (const LayerOutcome& outcome : run.outcomes) {
+    sum += outcome.cost;
+    greedy += GreedyCost(outcome);
+    if (of.look_ahead) continue;
+    EXPECT_LE(outcome.cost, GreedyCost(outcome) + 1e-6) << outcome.index;
+  }
+  EXPECT_LE(sum, greedy + 1e-6);
+}
+
+// What greedy takes for all layers.
+int64_t GreedyReadings(int layers) {
+  Case greedy{.strategy = "greedy", .layers = layers};
+  greedy.deadline = int64_t{1} << 40;
+  return RunCase(greedy).readings;
+}
+
+std::vector<std::string> AllButNone() {
+  std::vector<std::string> names;
+  for (const StrategyEntry& entry : Strategies()) {
+    if (entry.name != "none") names.push_back(entry.name);
+  }
+  return names;
+}
+
+TEST(Floor, HoldsForEveryStrategyHoweverShortTheTime) {
+  const int64_t least = GreedyReadings(5);
+  for (const std::string& strategy : AllButNone()) {
+    for (const int64_t times : {3, 4, 7, 15, 40}) {
+      for (const int variant : {0, 1, 2, 3}) {
+        Case of{.strategy = strategy};
+        of.announced = variant % 2 == 0;
+        of.look_ahead = variant >= 2;
+        of.deadline = times * least;
+        ExpectWithinGreedy(of);
+      }
+    }
+  }
+}
+
+TEST(Floor, HoldsForManyLayers) {
+  const int64_t least = GreedyReadings(60);
+  for (const std::string& strategy : AllButNone()) {
+    for (const bool announced : {false, true}) {
+      Case of{.strategy = strategy, .layers = 60, .announced = announced};
+      of.deadline = 4 * least;
+      ExpectWithinGreedy(of);
+    }
+  }
+}
+
+// As if the machine had been stopped amid the job.
+TEST(Floor, HoldsWhereTimePassesAtOnce) {
+  const int64_t least = GreedyReadings(5);
+  for (const std::string& strategy : AllButNone()) {
+    for (const int64_t at : {1, 3, 5, 8, 12}) {
+      Case of{.strategy = strategy, .look_ahead = at % 2 == 0};
+      of.deadline = 20 * least;
+      of.stop_at = at * least;
+      of.stop = 5 * least;
+      ExpectWithinGreedy(of);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace traverse
