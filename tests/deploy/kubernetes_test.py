@@ -21,6 +21,19 @@ def render(overlay):
     return support.run("kubectl", "kustomize", KUBERNETES / "overlays" / overlay).stdout
 
 
+@functools.cache
+def render_with_gateway(overlay):
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder)
+        shutil.copytree(support.DEPLOY / "monitoring", root / "monitoring", ignore=shutil.ignore_patterns("node_modules"))
+        shutil.copytree(KUBERNETES, root / "kubernetes")
+        path = root / "kubernetes/overlays" / overlay / "kustomization.yaml"
+        given = yaml.safe_load(path.read_text())
+        given["components"] = [*given.get("components", []), "../../components/gateway"]
+        path.write_text(yaml.safe_dump(given))
+        return support.run("kubectl", "kustomize", path.parent).stdout
+
+
 def objects(overlay):
     return {(item["kind"], item["metadata"]["name"]): item for item in yaml.safe_load_all(render(overlay))}
 
@@ -62,12 +75,7 @@ class Objects(unittest.TestCase):
             self.assertIn((target["kind"], target["name"]), found)
 
     def test_gateways_join_by_their_component(self):
-        with tempfile.TemporaryDirectory() as folder:
-            root = pathlib.Path(folder)
-            shutil.copytree(KUBERNETES, root / "kubernetes")
-            trial = root / "kubernetes/overlays/trial/kustomization.yaml"
-            trial.write_text(trial.read_text() + "\ncomponents: [../../components/gateway]\n")
-            text = support.run("kubectl", "kustomize", trial.parent).stdout
+        text = render_with_gateway("trial")
         found = {(item["kind"], item["metadata"]["name"]): item for item in yaml.safe_load_all(text)}
         pod = found["Deployment", "traverse-gateway"]["spec"]["template"]
         labels = pod["metadata"]["labels"].items()
@@ -84,6 +92,31 @@ class Objects(unittest.TestCase):
         self.assertGreaterEqual(pod["spec"]["terminationGracePeriodSeconds"], drain + 10)
         self.assertIn("traverse_gateway_requests_in_flight",
                       str(found["HorizontalPodAutoscaler", "traverse-gateway"]["spec"]["metrics"]))
+
+    def test_gateways_are_watched_and_scaled_by_metrics_that_there_are(self):
+        text = render_with_gateway("production")
+        found = {(item["kind"], item["metadata"]["name"]): item for item in yaml.safe_load_all(text)}
+        monitor = found["ServiceMonitor", "traverse-gateway"]["spec"]
+        service = found["Service", "traverse-gateway"]
+        self.assertLessEqual(monitor["selector"]["matchLabels"].items(), service["metadata"]["labels"].items())
+        self.assertIn(monitor["endpoints"][0]["port"], [port["name"] for port in service["spec"]["ports"]])
+        job = service["metadata"]["labels"][monitor["jobLabel"]]
+        self.assertIn(f'up{{job="{job}"}}', (support.DEPLOY / "monitoring/rules/alerts.yml").read_text())
+        rules = yaml.safe_load((KUBERNETES / "components/queue-metric/prometheus-adapter-rules.yaml").read_text())
+        offered = [rule["seriesQuery"].partition("{")[0] for rule in rules["rules"]["custom"]]
+        for name in ("traverse", "traverse-gateway"):
+            for metric in found["HorizontalPodAutoscaler", name]["spec"]["metrics"]:
+                if metric["type"] == "Pods":
+                    self.assertIn(metric["pods"]["metric"]["name"], offered)
+
+    def test_callers_of_a_gateway_cannot_keep_its_probes_out(self):
+        text = render_with_gateway("trial")
+        found = {(item["kind"], item["metadata"]["name"]): item for item in yaml.safe_load_all(text)}
+        container = found["Deployment", "traverse-gateway"]["spec"]["template"]["spec"]["containers"][0]
+        for probe in ("startupProbe", "readinessProbe", "livenessProbe"):
+            self.assertEqual("metrics", container[probe]["httpGet"]["port"])
+        self.assertIn("--workers=$(CPU_LIMIT)", container["args"])
+        self.assertEqual("limits.cpu", container["env"][0]["valueFrom"]["resourceFieldRef"]["resource"])
 
     def test_production_scales_on_the_queue_and_is_watched(self):
         found = objects("production")
@@ -156,6 +189,7 @@ class Schemas(unittest.TestCase):
             support.install_node_packages(work)
 
             texts = {overlay: render(overlay) for overlay in OVERLAYS}
+            texts["gateway"] = render_with_gateway("production")
             for index, (overlay, *wrong) in enumerate(WRONG):
                 texts[f"wrong-{index}"] = render(overlay).replace(*wrong)
                 self.assertNotEqual(render(overlay), texts[f"wrong-{index}"], wrong)
