@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "client/gcode/model/feature.h"
+#include "client/gcode/model/ironing.h"
 #include "client/gcode/model/segment_grid.h"
-#include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
 namespace {
@@ -103,99 +103,6 @@ void TellWalls(const GcodeFile& file, const Layer& layer, std::vector<Outline>& 
     if (probes.hits * 2 <= probes.all) continue;
     outlines[loop].feature = Feature::kInnerWall;
     if (in_two[loop]) outlines[loop + 1].feature = Feature::kInnerWall;
-  }
-}
-
-// Filament per mm of length.
-double FlowOf(const Block& block) {
-  if (!(block.length_mm > 0)) return 0;
-  return ToDouble(block.e_out - block.e_in) / static_cast<double>(block.length_mm);
-}
-
-// What CuraEngine calls skin.
-bool IsCuraSkin(const GcodeFile& file, const Block& block) {
-  const uint32_t setter = file.states[block.state_in][kSlotType];
-  return setter != 0 && StartsWith(file.setters.Line(setter), ";TYPE:SKIN");
-}
-
-// The usual flow of the walls of a layer; 0 if it has none.
-double WallFlow(const GcodeFile& file, const Layer& layer, const std::vector<Outline>& outlines) {
-  double filament = 0;
-  double way = 0;
-  for (size_t path = 0; path < outlines.size(); ++path) {
-    if (!IsWall(outlines[path].feature)) continue;
-    const Block& block = file.blocks[layer.first_block + path];
-    filament += ToDouble(block.e_out - block.e_in);
-    way += static_cast<double>(block.length_mm);
-  }
-  return way > 0 ? filament / way : 0;
-}
-
-// True if a segment of an earlier path than `path` lies within `reach` of `point`.
-bool LiesOnEarlier(Vertex point, double reach, uint32_t path, const SegmentGrid& grid,
-                   size_t& looks) {
-  bool lies = false;
-  for (const Vertex way : {Vertex{reach, 0}, Vertex{0, reach}}) {
-    grid.ForEachOnWay(
-        {point.x - way.x, point.y - way.y}, {point.x + way.x, point.y + way.y}, looks,
-        [&](uint32_t s) {
-          const Segment& other = grid.segments()[s];
-          lies = other.path < path && SquaredDistance({point, point, 0}, other) <= reach * reach;
-          return !lies;
-        });
-    if (lies) break;
-  }
-  return lies;
-}
-
-// True if most of the longest stretch of `outline` lies on earlier paths. The first one may be a
-// short one at the edge of the skin, where nothing is.
-bool LiesOnEarlier(const Outline& outline, uint32_t path, const SegmentGrid& grid, size_t& looks) {
-  // Ironing is so thin that its width reaches no line of a skin from between two of them.
-  constexpr double kLeastReachMm = 0.3;
-  const std::vector<Vertex>& points = outline.shape();
-  size_t longest = 0;
-  for (size_t k = 1; k + 1 < points.size(); ++k) {
-    if (Distance(points[k], points[k + 1]) > Distance(points[longest], points[longest + 1])) {
-      longest = k;
-    }
-  }
-  const Vertex a = points[longest];
-  const Vertex b = points[longest + 1];
-  const double reach = std::max(1.1 * outline.width_mm, kLeastReachMm);
-  int lying = 0;
-  for (const double t : {0.25, 0.5, 0.75}) {
-    const Vertex probe{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
-    lying += LiesOnEarlier(probe, reach, path, grid, looks) ? 1 : 0;
-  }
-  return lying >= 2;
-}
-
-// CuraEngine gives ironing the type of the skin that it irons: it is known by its flow, a fraction
-// of the usual one, and by lying on skin of the same layer.
-void MarkIroning(const GcodeFile& file, const Layer& layer, std::vector<Outline>& outlines) {
-  constexpr double kLeastShare = 0.4;
-  const double usual = WallFlow(file, layer, outlines);
-  std::vector<uint32_t> thin;
-  std::vector<Segment> skin;
-  for (uint32_t path = 0; path < outlines.size(); ++path) {
-    const Block& block = file.blocks[layer.first_block + path];
-    if (!IsCuraSkin(file, block)) continue;
-    const std::vector<Vertex>& points = outlines[path].shape();
-    if (FlowOf(block) < kLeastShare * usual) {
-      thin.push_back(path);
-    } else {
-      for (size_t k = 0; k + 1 < points.size(); ++k) {
-        skin.push_back({points[k], points[k + 1], path});
-      }
-    }
-  }
-  if (thin.empty() || skin.empty()) return;
-  const SegmentGrid grid(std::move(skin));
-  size_t looks = kLooksPerSegment * (grid.segments().size() + thin.size());
-  for (const uint32_t path : thin) {
-    if (LiesOnEarlier(outlines[path], path, grid, looks))
-      outlines[path].feature = Feature::kIroning;
   }
 }
 

@@ -71,8 +71,8 @@ bool PathRules::IsPinned(size_t path) const {
 
 // Monotonic surfaces and ironing get their look from the order of their lines.
 bool PathRules::OrderIsQuality(Feature feature) const {
-  if (policy_ == Policy::kFree) return false;
   if (feature == Feature::kIroning) return true;
+  if (policy_ == Policy::kFree) return false;
   if (feature == Feature::kBottomInfill) return file_.profile.monotonic_bottom;
   if (feature != Feature::kTopInfill) return false;
   const std::optional<std::string>& pattern = file_.profile.top_fill_pattern;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "client/gcode/verify/match/laid_over.h"
 #include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
@@ -16,8 +17,6 @@ constexpr double kEndSlackMm = 0.25;  // of travel, where it may touch the walls
 constexpr double kOnPathMm = 0.05;    // a tail lies this near to its path
 constexpr double kLongestStraightMm = 1.0;
 constexpr double kStraightCosine = 0.996;  // of 5 degrees
-constexpr double kThinFlow = 0.4;          // share of the usual flow: ironing
-constexpr double kOverMm = 0.3;            // ironing lies this close to what it irons
 constexpr double kWallsApartMm = 0.9;      // walls of one outline lie no farther apart
 
 // The value of `; NAME = VALUE` in `text`.
@@ -34,23 +33,6 @@ std::string_view Setting(std::string_view text, std::string_view name) {
 
 double FlowOf(const TracePath& path) {
   return path.length_mm > 0 ? path.filament_mm / path.length_mm : 0;
-}
-
-// The flow that half of the filament of skins is laid with, or less.
-double UsualFlow(const TraceChunk& chunk, const std::vector<uint32_t>& skins) {
-  std::vector<std::pair<double, double>> flows;  // flow, filament
-  double filament = 0;
-  for (const uint32_t path : skins) {
-    flows.emplace_back(FlowOf(chunk.paths[path]), chunk.paths[path].filament_mm);
-    filament += chunk.paths[path].filament_mm;
-  }
-  std::sort(flows.begin(), flows.end());
-  double seen = 0;
-  for (const auto& [flow, amount] : flows) {
-    seen += amount;
-    if (seen * 2 >= filament) return flow;
-  }
-  return 0;
 }
 
 bool GoesStraightOn(const TraceMove& move, const Piece& last) {
@@ -199,40 +181,26 @@ bool LayerPair::IsInside(uint32_t path, const PieceGrid& loops) const {
   return beside * 2 > along;
 }
 
+// Ironing that the file calls skin.
 void LayerPair::LearnIroning() {
-  std::vector<uint32_t> skins;
+  std::vector<LaidPath> paths(facts_.size());
+  bool asks = false;
   for (uint32_t path = first_path_; path < end_was_; ++path) {
     const PathClass path_class = ClassOf(path);
-    if (path_class == PathClass::kSkin || path_class == PathClass::kTop) skins.push_back(path);
+    LaidPath& laid = paths[path - first_path_];
+    laid.asked = path_class == PathClass::kSkin || path_class == PathClass::kTop;
+    laid.solid = laid.asked || path_class == PathClass::kBottom || IsWallClass(path_class);
+    const bool apart = path_class == PathClass::kSkirt || path_class == PathClass::kSupport ||
+                       path_class == PathClass::kInterface || path_class == PathClass::kTower ||
+                       path_class == PathClass::kScript;
+    if (!apart) laid.pieces = PiecesOf(path);
+    laid.filament_per_mm = FlowOf(was_.paths[path]);
+    asks |= laid.asked;
   }
-  const double thin = kThinFlow * UsualFlow(was_, skins);
-  const auto is_thin = [&](uint32_t path) { return FlowOf(was_.paths[path]) < thin; };
-  if (std::none_of(skins.begin(), skins.end(), is_thin)) return;
-  std::vector<Piece> thick;
-  for (const uint32_t path : skins) {
-    if (is_thin(path)) continue;
-    const absl::Span<const Piece> pieces = PiecesOf(path);
-    thick.insert(thick.end(), pieces.begin(), pieces.end());
-  }
-  const PieceGrid grid(std::move(thick), kCellMm);
-  for (const uint32_t path : skins) {
-    if (!is_thin(path)) continue;
-    const absl::Span<const Piece> pieces = PiecesOf(path);
-    const auto longest = std::max_element(
-        pieces.begin(), pieces.end(),
-        [](const Piece& p, const Piece& q) { return DistanceOf(p.a, p.b) < DistanceOf(q.a, q.b); });
-    int over = 0;
-    for (const double t : {0.25, 0.5, 0.75}) {
-      const Point p{longest->a.x + t * (longest->b.x - longest->a.x),
-                    longest->a.y + t * (longest->b.y - longest->a.y)};
-      bool found = false;
-      grid.ForEachNear(p, p, kOverMm, [&](uint32_t i) {
-        found = DistanceToPiece(p, grid.pieces()[i].a, grid.pieces()[i].b) <= kOverMm;
-        return !found;
-      });
-      over += found ? 1 : 0;
-    }
-    if (over >= 2) FactsOf(path).path_class = PathClass::kIroning;
+  if (!asks) return;
+  const std::vector<bool> over = LaidOver(paths);
+  for (size_t i = 0; i < over.size(); ++i) {
+    if (over[i]) facts_[i].path_class = PathClass::kIroning;
   }
 }
 

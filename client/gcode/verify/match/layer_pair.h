@@ -51,7 +51,8 @@ class LayerPair {
     return is_.sections[is_.layers[layer_].first_section + section];
   }
 
-  // The class of a path of the original: by name or else by shape; of ironing by its flow.
+  // The class of a path of the original: by name or else by shape; ironing also by what
+  // lies under it.
   PathClass ClassOf(uint32_t path) const { return facts_[path - first_path_].path_class; }
   bool IsWall(uint32_t path) const { return IsWallClass(ClassOf(path)); }
   bool Closed(uint32_t path) const { return facts_[path - first_path_].closed; }

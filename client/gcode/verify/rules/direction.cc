@@ -1,5 +1,5 @@
-// The direction of open walls, overhanging loops and outer loops is as sliced, but under `free`;
-// and that of lines of ironing and of monotonic surfaces.
+// The direction of lines of ironing is as sliced; and but under `free` that of open walls,
+// overhanging loops, outer loops and of lines of monotonic surfaces.
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/rules/rules.h"
@@ -7,16 +7,18 @@
 namespace traverse::gcode {
 
 void CheckDirection(const LayerPair& layer, const RuleContext& context, LayerFindings& findings) {
-  if (context.permissions.policy == VerifyPermissions::Policy::kFree) return;
+  const bool free = context.permissions.policy == VerifyPermissions::Policy::kFree;
   for (const Visit& visit : layer.visits()) {
     if (visit.forward) continue;
     const TracePath& path = layer.was().paths[visit.path];
     const PathClass path_class = layer.ClassOf(visit.path);
+    if (free && path_class != PathClass::kIroning) continue;
     const bool of_surface = path_class == PathClass::kIroning ||
                             (path_class == PathClass::kTop && context.settings.monotonic_top) ||
                             (path_class == PathClass::kBottom && context.settings.monotonic_bottom);
     if (!of_surface && !layer.IsWall(visit.path)) continue;
-    const bool may_turn = of_surface || (!layer.Outer(visit.path) && !path.overhangs);
+    const bool may_turn = path_class != PathClass::kIroning &&
+                          (of_surface || (!layer.Outer(visit.path) && !path.overhangs));
     if (layer.Closed(visit.path) && may_turn) continue;
     findings.breaks.push_back({VerifyRule::kDirection, layer.was().LineOf(path),
                                layer.is().segments[visit.first_segment].line, layer.index(),

@@ -86,8 +86,7 @@ TEST(Precedence, IroningOfCuraStaysBehindWhatItIrons) {
   line(.4, ".3");
   line(.1, ".03");  // over these two
   line(.2, ".03");
-  line(30, ".03");  // a thin line by itself
-  line(31, ".3");
+  line(30, ".3");
   text += ";TYPE:WALL-OUTER\n";
   line(60, ".3");
   const auto file = *ReadGcode(text, "cura.gcode");
@@ -102,24 +101,6 @@ TEST(Precedence, IroningOfCuraStaysBehindWhatItIrons) {
       plan.plan.nodes(1).has_any_order() ? plan.plan.nodes(1) : plan.plan.nodes(2);
   ASSERT_TRUE(group.has_any_order());
   EXPECT_GE(group.any_order().before_size(), 2);
-}
-
-// It begins with a short stretch at the edge of the skin, or between two of its lines.
-TEST(Precedence, IroningOfCuraIsToldByItsLongestStretch) {
-  std::string text = ";Generated with Cura_SteamEngine 5.13.0\nM83\n;LAYER:0\n;TYPE:WALL-OUTER\n";
-  text += "G0 X0 Y50\nG1 X10 Y50 E.3\n;TYPE:SKIN\n";
-  for (const char* y : {"0", ".5", "1"}) {
-    text += absl::StrCat("G0 X0 Y", y, "\nG1 X10 Y", y, " E.3\n");
-  }
-  text += "G0 X5 Y1.6\nG1 X5 Y2 E.001\nG1 X5 Y.25 E.004\nG1 X9 Y.25 E.01\n";
-  text += "G0 X5 Y20\nG1 X5 Y1.8 E.05\nG1 X5 Y.9 E.003\n";  // most of it lies beside the skin
-  text += ";TYPE:WALL-OUTER\nG0 X0 Y60\nG1 X10 Y60 E.3\n";
-  const auto file = *ReadGcode(text, "cura.gcode");
-
-  const LayerPlan plan = MakeLayerPlan(*file, file->layers[0], Policy::kFree);
-
-  EXPECT_EQ(plan.outlines[4].feature, Feature::kIroning);
-  EXPECT_EQ(plan.outlines[5].feature, Feature::kSolidInfill);
 }
 
 TEST(Precedence, MonotonicLinesKeepOrderAndDirection) {

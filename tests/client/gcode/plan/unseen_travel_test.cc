@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "client/gcode/gcode_job.h"
+#include "client/gcode/model/loops.h"
 #include "client/gcode/plan/travel_rules.h"
 #include "tests/client/gcode/support/sketch.h"
 

@@ -80,6 +80,44 @@ TEST(VerifyOrder, ThinSkinOverSkinIsIroning) {
   EXPECT_EQ(Broken(head + skin + beside, head + beside + skin, Policy::kFree), "");
 }
 
+// The narrow top of a letter: a wall around a ring of skin, and ironing over both.
+TEST(VerifyOrder, IroningOfSmallTopsIsKnownByWhatLiesUnderIt) {
+  const std::string head = "M83\n;LAYER:1\nG1 Z.2 F9000\n";
+  const std::string wall = Way("X0 Y0") +
+                           ";TYPE:WALL-OUTER\nG1 F1800\nG1 X6 Y0 E.2\nG1 X6 Y1.6 E.05\n"
+                           "G1 X0 Y1.6 E.2\nG1 X0 Y0 E.05\n";
+  const std::string skin = Way("X.4 Y.4") +
+                           ";TYPE:SKIN\nG1 F1800\nG1 X5.6 Y.4 E.17\nG1 X5.6 Y.8 E.02\n"
+                           "G1 X.4 Y.8 E.17\nG1 X.4 Y1.2 E.02\nG1 X5.6 Y1.2 E.17\n";
+  const auto iron = [](bool turned) {
+    const std::string points[] = {"X.5 Y.3", "X1.3 Y1.3", "X1.4 Y1.3", "X.6 Y.3",
+                                  "X.7 Y.3", "X1.5 Y1.3", "X1.6 Y1.3"};
+    std::string text = Way(turned ? points[6] : points[0]) + ";TYPE:SKIN\nG1 F1800\n";
+    for (int k = 1; k < 7; ++k) text += "G1 " + points[turned ? 6 - k : k] + " E.001\n";
+    return text;
+  };
+  const std::string was = head + wall + skin + iron(false);
+
+  for (const Policy policy : {Policy::kSafe, Policy::kBalanced, Policy::kFree}) {
+    EXPECT_EQ(Broken(was, head + wall + iron(false) + skin, policy), "order");
+    EXPECT_EQ(Broken(was, head + wall + skin + iron(true), policy), "direction");
+    EXPECT_EQ(Broken(was, was, policy), "");
+  }
+}
+
+// A line that fills a gap, one that goes on to a wall where another ended, and one at the edge.
+TEST(VerifyOrder, SkinBesideSkinIsNoIroning) {
+  const std::string head = "M83\n;LAYER:1\nG1 Z.2 F9000\n";
+  const std::string skin = Line("SKIN", "X0 Y0", "X9 Y0") + Line("SKIN", "X0 Y.8", "X9 Y.8") +
+                           Line("SKIN", "X0 Y1.2", "X9 Y1.2") +
+                           Line("SKIN", "X9.45 Y0", "X9.45 Y1.2");
+  const std::string lines[] = {Line("SKIN", "X0 Y.4", "X9 Y.4"), Line("SKIN", "X9 Y.8", "X9.3 Y.8"),
+                               Line("SKIN", "X3 Y1.6", "X6 Y1.6")};
+  for (const std::string& line : lines) {
+    EXPECT_EQ(Broken(head + skin + line, head + line + skin, Policy::kFree), "") << line;
+  }
+}
+
 TEST(VerifyOrder, LinesOfIroningKeepTheirsUnderFreeToo) {
   const std::string one = Line("Ironing", "X0 Y0", "X9 Y0");
   const std::string two = Line("Ironing", "X0 Y.1", "X9 Y.1");

@@ -1,0 +1,161 @@
+#include "client/gcode/model/ironing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "client/gcode/model/segment_grid.h"
+#include "client/gcode/text/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+// Skin deposits at least this share of what fills its layer; slicers iron with half of it at most.
+constexpr double kLeastFilled = 0.6;
+
+// Segments looked at for each of a layer: far more than a printable layer needs.
+constexpr size_t kLooksPerSegment = 250;
+
+// What CuraEngine calls skin.
+bool IsCuraSkin(const GcodeFile& file, const Block& block) {
+  const uint32_t setter = file.states[block.state_in][kSlotType];
+  return setter != 0 && StartsWith(file.setters.Line(setter), ";TYPE:SKIN");
+}
+
+double FilamentMm(const GcodeFile& file, const Block& block) {
+  return ToDouble(block.e_out - block.e_in) * file.modes[block.mode].UnitMm();
+}
+
+// Filament per mm of length.
+double FlowOf(const GcodeFile& file, const Block& block) {
+  return block.length_mm > 0 ? FilamentMm(file, block) / static_cast<double>(block.length_mm) : 0;
+}
+
+// The flow that half of the filament of walls and skin is laid with, or less. Ironing has too
+// little filament to matter.
+double UsualFlow(const GcodeFile& file, const Layer& layer, const std::vector<Outline>& outlines) {
+  std::vector<std::pair<double, double>> flows;  // flow, filament
+  double filament = 0;
+  for (size_t path = 0; path < outlines.size(); ++path) {
+    const Block& block = file.blocks[layer.first_block + path];
+    if (!IsWall(outlines[path].feature) && !IsCuraSkin(file, block)) continue;
+    flows.emplace_back(FlowOf(file, block), FilamentMm(file, block));
+    filament += flows.back().second;
+  }
+  std::sort(flows.begin(), flows.end());
+  for (const auto& [flow, amount] : flows) {
+    filament -= 2 * amount;
+    if (filament <= 0) return flow;
+  }
+  return 0;
+}
+
+// The first layer of an object is as high as it lies.
+double HeightMm(const GcodeFile& file, const Layer& layer) {
+  const auto begin = file.layers.begin();
+  auto below = std::lower_bound(
+      begin, file.layers.end(), layer.first_block,
+      [](const Layer& other, uint32_t block) { return other.first_block < block; });
+  while (below != begin && (below - 1)->z == layer.z) --below;
+  const bool has_below = below != begin && (below - 1)->z < layer.z;
+  const Decimal height = has_below ? layer.z - (below - 1)->z : layer.z;
+  return ToDouble(height) * file.modes[file.blocks[layer.first_block].mode].UnitMm();
+}
+
+// The distance of lines of the usual flow that fill the layer.
+double UsualSpacingMm(const GcodeFile& file, const Layer& layer, double usual_flow) {
+  const double diameter = file.profile.filament_diameter;
+  const double stated = HeightMm(file, layer);
+  const double height = stated > 0.02 ? stated : 0.2;
+  return usual_flow * diameter * diameter * std::numbers::pi / 4 / height;
+}
+
+// How far from `p` in the direction `to`, of length 1, the segment lies; none if it does not cross
+// the way there nearly at a right angle.
+std::optional<double> DistanceAlong(Vertex p, Vertex to, const Segment& segment) {
+  const Vertex side{segment.b.x - segment.a.x, segment.b.y - segment.a.y};
+  const double cross = to.x * side.y - to.y * side.x;
+  constexpr double kParallel = 0.9;  // sine of the angle between `to` and the segment
+  if (std::abs(cross) < kParallel * std::hypot(side.x, side.y) || cross == 0) return std::nullopt;
+  const Vertex from{segment.a.x - p.x, segment.a.y - p.y};
+  const double along = (from.x * to.y - from.y * to.x) / cross;
+  if (along < 0 || along > 1) return std::nullopt;
+  return (from.x * side.y - from.y * side.x) / cross;
+}
+
+// The distance from `p`, which lies on the segment from `a` to `b`, to the nearest line beside it;
+// `most` if none is as near.
+double RoomAt(Vertex p, Vertex a, Vertex b, double most, const SegmentGrid& grid, size_t& looks) {
+  const double length = Distance(a, b);
+  double room = most;
+  for (const double side : {1.0, -1.0}) {
+    const Vertex to{side * (a.y - b.y) / length, side * (b.x - a.x) / length};
+    grid.ForEachOnWay(p, {p.x + most * to.x, p.y + most * to.y}, looks, [&](uint32_t s) {
+      const double distance = DistanceAlong(p, to, grid.segments()[s]).value_or(most);
+      constexpr double kItselfMm = 0.005;
+      if (distance > kItselfMm) room = std::min(room, distance);
+      return true;
+    });
+  }
+  return room;
+}
+
+// The usual distance between the path and the lines beside it: the median at points along it.
+double RoomOf(const Outline& outline, double most, const SegmentGrid& grid, size_t& looks) {
+  constexpr int kPoints = 16;
+  const std::vector<Vertex>& points = outline.shape();
+  double length = 0;
+  for (size_t k = 0; k + 1 < points.size(); ++k) length += Distance(points[k], points[k + 1]);
+  std::vector<double> rooms;
+  double at = 0;
+  for (size_t k = 0; k + 1 < points.size(); ++k) {
+    const Vertex a = points[k];
+    const Vertex b = points[k + 1];
+    const double own = Distance(a, b);
+    const double next = (static_cast<double>(rooms.size()) + 0.5) / kPoints * length;
+    at += own;
+    if (at < next || !(own > 0)) continue;
+    rooms.push_back(RoomAt({(a.x + b.x) / 2, (a.y + b.y) / 2}, a, b, most, grid, looks));
+    // A long segment counts as often as points fall on it.
+    while ((static_cast<double>(rooms.size()) + 0.5) / kPoints * length <= at) {
+      rooms.push_back(rooms.back());
+    }
+  }
+  if (rooms.empty()) return most;
+  std::nth_element(rooms.begin(), rooms.begin() + static_cast<ptrdiff_t>(rooms.size() / 2),
+                   rooms.end());
+  return rooms[rooms.size() / 2];
+}
+
+}  // namespace
+
+void MarkIroning(const GcodeFile& file, const Layer& layer, std::vector<Outline>& outlines) {
+  std::vector<uint32_t> thin;
+  std::vector<Segment> lines;
+  double usual = -1;
+  for (uint32_t path = 0; path < outlines.size(); ++path) {
+    const Block& block = file.blocks[layer.first_block + path];
+    if (!IsCuraSkin(file, block)) continue;
+    if (usual < 0) usual = UsualFlow(file, layer, outlines);
+    if (FlowOf(file, block) >= kLeastFilled * usual) continue;
+    thin.push_back(path);
+    const std::vector<Vertex>& points = outlines[path].shape();
+    for (size_t k = 0; k + 1 < points.size(); ++k)
+      lines.push_back({points[k], points[k + 1], path});
+  }
+  if (thin.empty()) return;
+  const double spacing = UsualSpacingMm(file, layer, usual);
+  const SegmentGrid grid(std::move(lines));
+  size_t looks = kLooksPerSegment * grid.segments().size();
+  for (const uint32_t path : thin) {
+    const double share = FlowOf(file, file.blocks[layer.first_block + path]) / usual;
+    // A line by itself has the room of one of the usual flow.
+    const double room = RoomOf(outlines[path], spacing, grid, looks);
+    if (share * spacing < kLeastFilled * room) outlines[path].feature = Feature::kIroning;
+  }
+}
+
+}  // namespace traverse::gcode

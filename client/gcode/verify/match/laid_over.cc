@@ -1,0 +1,202 @@
+#include "client/gcode/verify/match/laid_over.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kCellMm = 1.0;
+constexpr double kWidestMm = 2.5;  // the distance of lines from each other, at most
+constexpr double kUsualMm = 0.4;   // where no two lie side by side
+constexpr double kTouch = 1.3;     // lines farther apart, in their usual distance, leave a gap
+constexpr double kSamePlaceMm = 0.02;
+
+// Pieces looked at for each of a layer: far more than one that can be printed needs. Of what is
+// left then, nothing may pass anything.
+constexpr size_t kLooks = 100'000;
+constexpr size_t kLooksPerPiece = 1000;
+
+// The point of the piece that is nearest to `p`.
+Point NearestOf(const Piece& piece, Point p) {
+  const double dx = piece.b.x - piece.a.x;
+  const double dy = piece.b.y - piece.a.y;
+  const double squared = dx * dx + dy * dy;
+  if (squared <= 0) return piece.a;
+  const double t =
+      std::clamp(((p.x - piece.a.x) * dx + (p.y - piece.a.y) * dy) / squared, 0.0, 1.0);
+  return {piece.a.x + t * dx, piece.a.y + t * dy};
+}
+
+// How far `p` lies beside the piece; a negative number if it lies before its ends, or if the piece
+// does not run along `line`.
+double DistanceBeside(Point p, const Piece& line, const Piece& piece) {
+  constexpr double kAlong = 0.95;  // cosine of the angle between them
+  const double dx = piece.b.x - piece.a.x;
+  const double dy = piece.b.y - piece.a.y;
+  const double length = std::sqrt(dx * dx + dy * dy);
+  const double along = dx * (line.b.x - line.a.x) + dy * (line.b.y - line.a.y);
+  if (std::abs(along) < kAlong * length * DistanceOf(line.a, line.b) || length <= 0) return -1;
+  const double at = (p.x - piece.a.x) * dx + (p.y - piece.a.y) * dy;
+  if (at < 0 || at > length * length) return -1;
+  return std::abs((p.x - piece.a.x) * dy - (p.y - piece.a.y) * dx) / length;
+}
+
+class Layer {
+ public:
+  explicit Layer(const std::vector<LaidPath>& paths)
+      : paths_(paths),
+        grid_(AllOf(paths), kCellMm),
+        looks_(kLooks + kLooksPerPiece * grid_.pieces().size()),
+        spacing_(UsualSpacing()) {}
+
+  // True if most of the path lies over earlier ones.
+  bool LiesOver(uint32_t path) {
+    constexpr int kPoints = 16;
+    double length = 0;
+    for (const Piece& piece : paths_[path].pieces) length += DistanceOf(piece.a, piece.b);
+    if (length < spacing_ / 2) return false;  // a dot lies on what it continues
+    int seen = 0;
+    int over = 0;
+    double at = 0;
+    for (const Piece& piece : paths_[path].pieces) {
+      const double own = DistanceOf(piece.a, piece.b);
+      for (; own > 0 && seen < kPoints; ++seen) {
+        const double along = ((seen + 0.5) / kPoints * length - at) / own;
+        if (along > 1) break;
+        over += IsOver(Along(piece, along), piece, path) ? 1 : 0;
+      }
+      at += own;
+    }
+    return over * 2 > seen;
+  }
+
+ private:
+  static std::vector<Piece> AllOf(const std::vector<LaidPath>& paths) {
+    std::vector<Piece> pieces;
+    for (uint32_t path = 0; path < paths.size(); ++path) {
+      for (const Piece& piece : paths[path].pieces) pieces.push_back({piece.a, piece.b, path});
+    }
+    return pieces;
+  }
+
+  static Point Along(const Piece& piece, double t) {
+    return {piece.a.x + (piece.b.x - piece.a.x) * t, piece.a.y + (piece.b.y - piece.a.y) * t};
+  }
+
+  // The distance between solid lines that lie side by side: the median, by filament.
+  double UsualSpacing() {
+    constexpr double kPoints = 400;
+    double filament = 0;
+    for (const LaidPath& path : paths_) {
+      for (const Piece& piece : path.pieces) {
+        if (path.solid) filament += DistanceOf(piece.a, piece.b) * path.filament_per_mm;
+      }
+    }
+    std::vector<double> distances;
+    double seen = 0;
+    double next = filament / kPoints / 2;
+    uint32_t index = 0;  // of the piece, in the grid
+    for (const LaidPath& path : paths_) {
+      for (const Piece& piece : path.pieces) {
+        const double own = DistanceOf(piece.a, piece.b) * path.filament_per_mm;
+        if (path.solid && own > 0) {
+          for (; next < seen + own; next += filament / kPoints) {
+            const double found = BesideEarlier(Along(piece, (next - seen) / own), piece, index);
+            if (found < kWidestMm) distances.push_back(found);
+          }
+          seen += own;
+        }
+        ++index;
+      }
+    }
+    if (distances.empty()) return kUsualMm;
+    const auto middle = distances.begin() + static_cast<ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    return *middle;
+  }
+
+  // The distance from `p`, which lies on `line`, to the nearest solid piece before it in the grid
+  // that runs beside it; kWidestMm if there is none.
+  double BesideEarlier(Point p, const Piece& line, uint32_t index) {
+    double least = kWidestMm;
+    grid_.ForEachNear(p, p, kWidestMm, [&](uint32_t i) {
+      const Piece& other = grid_.pieces()[i];
+      if (looks_ == 0) return false;
+      --looks_;
+      if (i >= index || !paths_[other.path].solid) return true;
+      const double distance = DistanceBeside(p, line, other);
+      if (distance > kSamePlaceMm) least = std::min(least, distance);
+      return true;
+    });
+    return least;
+  }
+
+  // The nearest earlier lines on opposite sides of a point.
+  struct Sides {
+    double left;
+    double right;
+    double ahead;
+    double behind;
+
+    double Gap() const { return std::min(left + right, ahead + behind); }
+  };
+
+  // True if `p`, which lies on `line` of `path`, lies between two earlier lines without a gap, or
+  // on one.
+  bool IsOver(Point p, const Piece& line, uint32_t path) {
+    const double reach = kTouch * spacing_;
+    const double length = DistanceOf(line.a, line.b);
+    const Point along{(line.b.x - line.a.x) / length, (line.b.y - line.a.y) / length};
+    Sides sides{reach, reach, reach, reach};
+    grid_.ForEachNear(p, p, reach, [&](uint32_t i) {
+      const Piece& other = grid_.pieces()[i];
+      if (looks_ == 0) return false;
+      --looks_;
+      if (other.path < path) Include(other, p, along, sides);
+      return sides.Gap() > reach;
+    });
+    return sides.Gap() <= reach || looks_ == 0;
+  }
+
+  static void Include(const Piece& other, Point p, Point along, Sides& sides) {
+    const Point nearest = NearestOf(other, p);
+    const double distance = DistanceOf(p, nearest);
+    if (distance <= kSamePlaceMm) {
+      sides = {0, 0, 0, 0};
+      return;
+    }
+    constexpr double kOblique = 0.3;  // sine of the angle from which on it lies on a side, too
+    const Point to{(nearest.x - p.x) / distance, (nearest.y - p.y) / distance};
+    const double aside = along.x * to.y - along.y * to.x;
+    const double ahead = along.x * to.x + along.y * to.y;
+    const auto include = [distance](double where, double& one, double& opposite) {
+      if (std::abs(where) < kOblique) return;
+      double& side = where > 0 ? one : opposite;
+      side = std::min(side, distance);
+    };
+    include(aside, sides.left, sides.right);
+    // A line that it goes on from is not one that it crosses.
+    const double turn = along.x * (other.b.y - other.a.y) - along.y * (other.b.x - other.a.x);
+    if (std::abs(turn) < kOblique * DistanceOf(other.a, other.b)) return;
+    include(ahead, sides.ahead, sides.behind);
+  }
+
+  const std::vector<LaidPath>& paths_;
+  const PieceGrid grid_;
+  size_t looks_;
+  const double spacing_;
+};
+
+}  // namespace
+
+std::vector<bool> LaidOver(const std::vector<LaidPath>& paths) {
+  std::vector<bool> over(paths.size(), false);
+  Layer layer(paths);
+  for (uint32_t path = 0; path < paths.size(); ++path) {
+    over[path] = paths[path].asked && layer.LiesOver(path);
+  }
+  return over;
+}
+
+}  // namespace traverse::gcode
