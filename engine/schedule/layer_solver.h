@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_ENGINE_SCHEDULE_LAYER_SOLVER_H_
 #define TRAVERSE_ENGINE_SCHEDULE_LAYER_SOLVER_H_
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -57,7 +58,9 @@ class LayerSolver {
   // Where the head is after the layer, cleaning included, if it is done as it was found alone.
   static Point EndAlone(const ChainLayer& layer) { return layer.finish.value_or(layer.alone->end); }
 
-  // In the time that is kept for it, besides that of any search; cut short only after the deadline.
+  // In the time that is kept for it, besides that of any search. Like measuring and checking a
+  // route it is done although the deadline has passed, for as many points as take less time than a
+  // busy machine may stop the thread for.
   Route GreedyRoute(const LayerProblem& problem) const;
 
   // `solution` with what later layers need to continue from it.
@@ -149,6 +152,10 @@ class LayerSolver {
   Executor& executor_;
   const CancelToken& cancel_;
   const std::optional<Budget::Clock::time_point> greedy_end_;
+
+  // Points of the job for which greedy may still run after the deadline: at 0.5 us, 50 ms.
+  static constexpr int64_t kMostLatePoints = 100'000;
+  mutable std::atomic<int64_t> late_points_left_ = kMostLatePoints;
 };
 
 }  // namespace traverse

@@ -11,7 +11,8 @@
 
 namespace traverse {
 
-// Greedy's route is worth a little more than the time that was kept for it.
+// Where more is left to do than may be late, greedy's route is still worth a little more than the
+// time that was kept for it.
 std::optional<Budget::Clock::time_point> LayerSolver::GreedyEnd(const JobSpec& spec) {
   constexpr std::chrono::milliseconds kMostGrace{10};
   constexpr int kGraceShare = 10;
@@ -21,8 +22,12 @@ std::optional<Budget::Clock::time_point> LayerSolver::GreedyEnd(const JobSpec& s
 }
 
 Route LayerSolver::GreedyRoute(const LayerProblem& problem) const {
-  Budget budget(&cancel_, greedy_end_, executor_.turn(), spec_.time);
-  return predictor_->Solve(problem, budget).route;
+  const int64_t points = SizeOf(*problem.plan).points;
+  const bool may_be_late = points <= late_points_left_;
+  Budget budget(&cancel_, may_be_late ? std::nullopt : greedy_end_, executor_.turn(), spec_.time);
+  Route route = predictor_->Solve(problem, budget).route;
+  if (spec_.deadline && Budget::Now(spec_.time) >= *spec_.deadline) late_points_left_ -= points;
+  return route;
 }
 
 // Other routes may be better from the true start: an equal layer's from the same start; what the

@@ -180,7 +180,7 @@ TEST(LayerChain, NoLayerTakesTheTimeOfThoseAfterIt) {
   std::atomic<int> in_time{0};
   const StepClock clock;
   RecordingSink sink;
-  TestExecutor executor(2);
+  TestExecutor executor(1);  // time passes by what one thread reads
   JobSpec spec;
   spec.deadline = StepClock::At(500'000);
   spec.time = &clock;
