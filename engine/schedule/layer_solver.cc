@@ -274,7 +274,8 @@ void LayerSolver::Bound(const LayerProblem& problem, ChainLayer& layer, Solution
   if (effort == 0 || cancel_.cancelled()) return;
   Budget budget = LayerBudget(layer, kSideShare);
   const double cost = RouteCost(problem, solution.route, &budget);
-  solution.lower_bound = LowerBound(problem, cost, &layer.bound_multipliers, effort, budget);
+  solution.lower_bound = LowerBound(problem, cost, &layer.bound_multipliers, effort, budget,
+                                    strategy_->traits().bound_share);
   if (solution.lower_bound == cost) solution.stop = StopReason::kOptimal;
 }
 

@@ -106,6 +106,7 @@ struct AutoOptions {
   double effort = 1;
   double least_gain_each = 0;
   int64_t gain_window = 200;
+  double idle_speed_mm_s = 0;  // 0: unknown
 };
 
 class AutoLayer : public PreparedLayer {
@@ -248,6 +249,8 @@ class AutoLayer : public PreparedLayer {
     if (options_.least_gain_each == 0) {
       options.long_share = kLongShare;
       options.bridges = kBridges;
+      options.least_gain_each = WorthOfIteration(layer.problem, options_.idle_speed_mm_s);
+      options.window = kWorthWindow;
     } else {
       options.earned = effort.kicks > 0 ? kEarned * options_.effort / effort.kicks : kEarned;
       const Route given = GivenRoute(*layer.problem.plan, &budget);
@@ -324,6 +327,7 @@ class Auto : public PreparingStrategy {
       : PreparingStrategy(
             {.reuses_routes = true,
              .bound_effort = bound ? options.effort : 0,
+             .bound_share = options.idle_speed_mm_s > 0 ? kWorthBoundShare : 1,
              .chain_bounding = QuickChainBounding(bounds_chain),
              .look_ahead_paths =
                  options.least_gain_each > 0 ? kLookAheadPathsInHaste : kLookAheadPaths,
@@ -368,11 +372,20 @@ StrategyEntry AutoEntry() {
            1e9,
            {},
            "Iterations over which least_gain_each is measured; the search always does that many."},
+       OptionSpec{"idle_speed",
+                  OptionSpec::Type::kDouble,
+                  "0",
+                  0,
+                  1e6,
+                  {},
+                  "Speed of travel in mm/s. The search ends when a second of it saves less than "
+                  "about a second of travel, by counts of iterations. 0: whatever it still gains. "
+                  "Unset: the job's idle_speed_mm_s, unless the job names an effort."},
        BoundOption(true), ChainBoundOption()},
       [](const StrategyOptions& options) -> std::unique_ptr<Strategy> {
         return std::make_unique<Auto>(
             AutoOptions{options.Double("effort"), options.Double("least_gain_each"),
-                        options.Int("gain_window")},
+                        options.Int("gain_window"), options.Double("idle_speed")},
             options.Bool("bound"), options.Bool("chain_bound"));
       }};
 }

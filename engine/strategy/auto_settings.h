@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "engine/model/layer_problem.h"
 #include "engine/model/plan.h"
 #include "engine/search/local_search.h"
 
@@ -41,6 +42,24 @@ inline AutoSettings SettingsFor(const Plan& plan) {
   }
   return settings;
 }
+
+// What an iteration of a search must save to be worth its time, in the unit of the cost: a second
+// of travel for a second of computing. Iterations are counted, not timed, so that routes are the
+// same on every machine. 0 if the speed is 0, which stands for unknown, and for layers whose cost
+// is not in its ordinary unit.
+inline double WorthOfIteration(const LayerProblem& problem, double idle_speed_mm_s) {
+  constexpr double kIterationSeconds = 20e-6;
+  if (idle_speed_mm_s == 0 || problem.walls_unit != 1) return 0;
+  const bool is_time = problem.cost.kind == CostSpec::Kind::kTime;
+  return kIterationSeconds * (is_time ? 1 : idle_speed_mm_s);
+}
+
+// Iterations over which that is measured. With fewer, layers of twenty paths that are searched with
+// those behind them end up to 1.3 % longer.
+inline constexpr double kWorthWindow = 1000;
+
+// Of the work on a bound, where the search ends when it is worth no more: a quarter of the search.
+inline constexpr double kWorthBoundShare = 0.12;
 
 }  // namespace traverse
 

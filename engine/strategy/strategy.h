@@ -59,6 +59,9 @@ struct StrategyTraits {
   // effort (LowerBound). 0: they want none.
   double bound_effort = 0;
 
+  // The share of that work, where the search itself ends early.
+  double bound_share = 1;
+
   // Whether callers want a lower bound of all layers together, which the chain computes at the end:
   // by LowerBound, or by Resume where that proves one.
   enum class ChainBounding { kNone, kQuick, kByResume };

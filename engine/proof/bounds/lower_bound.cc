@@ -40,14 +40,14 @@ constexpr double kMoreWorkWhileFar = 4;
 // Of the time that is left, what a search may use: the evaluation after it is what counts.
 constexpr double kSearchShare = 0.4;
 
-VertexBound::Limits VertexLimits(double effort, const EndGraph& graph) {
+VertexBound::Limits VertexLimits(double effort, double share, const EndGraph& graph) {
   const double rounds =
       std::min(kVertexRounds * std::sqrt(std::max(1.0, effort)), kMostVertexRounds);
   const auto ends = static_cast<double>(graph.ends.size());
   double points = 0;
   for (const PathEnd& end : graph.ends) points += static_cast<double>(end.points.size());
   const double work =
-      std::max(1.0, effort) * (kVertexWorkOfEnd * ends + kVertexWorkOfPoint * points);
+      share * std::max(1.0, effort) * (kVertexWorkOfEnd * ends + kVertexWorkOfPoint * points);
   return {static_cast<int>(rounds), work,
           points > kPointsOfFew * ends ? work : kMoreWorkWhileFar * work};
 }
@@ -79,13 +79,13 @@ std::optional<double> BoundByTrees(double target, TreeBound& tree, BoundMultipli
 }
 
 std::optional<double> BoundByMultipliers(const LayerProblem& problem, double target,
-                                         BoundMultipliers& multipliers, double effort,
+                                         BoundMultipliers& multipliers, double effort, double share,
                                          Budget& budget) {
   TreeBound tree(problem, budget);
   std::optional<double> bound = BoundByTrees(target, tree, multipliers, budget);
   if (bound && *bound < target && VertexBound::Fits(tree.graph())) {
     VertexBound points(problem, tree);
-    const VertexBound::Limits limits = VertexLimits(effort, tree.graph());
+    const VertexBound::Limits limits = VertexLimits(effort, share, tree.graph());
     bound = std::max(*bound, points.Search(target, limits, budget));
   }
   tree.Clear(budget);
@@ -95,13 +95,14 @@ std::optional<double> BoundByMultipliers(const LayerProblem& problem, double tar
 }  // namespace
 
 std::optional<double> LowerBound(const LayerProblem& problem, double target,
-                                 BoundMultipliers* multipliers, double effort, Budget& budget) {
+                                 BoundMultipliers* multipliers, double effort, Budget& budget,
+                                 double share) {
   if (problem.plan->paths.empty()) return RouteCost(problem, {});
   if (budget.ExhaustedNow()) return std::nullopt;
   BoundMultipliers own;
   BoundMultipliers& shared = multipliers != nullptr ? *multipliers : own;
   const bool known = !shared.empty();
-  std::optional<double> bound = BoundByMultipliers(problem, target, shared, effort, budget);
+  std::optional<double> bound = BoundByMultipliers(problem, target, shared, effort, share, budget);
   if (!bound) return std::nullopt;
   if (*bound < target && effort > kEffortWithoutProgrammes) {
     if (known) effort *= kShareOfProgrammeAgain;

@@ -4,6 +4,8 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -201,6 +203,19 @@ TEST(Auto, LooksAheadFromLargerLayersWhereNoIterationHasToPay) {
   EXPECT_EQ(patient->traits().look_further_paths, 150u);
   EXPECT_EQ(hasty->traits().look_ahead_paths, 64u);
   EXPECT_EQ(hasty->traits().look_further_paths, 0u);
+}
+
+TEST(Auto, EndsWhenSearchingOnSavesLessTravelThanItTakes) {
+  const Plan plan = FlatPlan(120);
+  const LayerProblem problem{&plan, {0, 0}, std::nullopt, CostSpec(), 1};
+  const auto iterations = [&](const std::string& speed) {
+    Budget budget;
+    const auto strategy = *MakeStrategy("auto", {{"idle_speed", speed}});
+    return strategy->Solve(problem, budget).statistics.at("iterations");
+  };
+
+  EXPECT_LE(iterations("100000"), 1001);
+  EXPECT_GE(iterations("0"), 1400);
 }
 
 }  // namespace
