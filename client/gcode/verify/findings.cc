@@ -8,12 +8,25 @@ void AppendSeen(const Map& other, Map& map) {
   for (const auto& [key, seen] : other) {
     const auto [known, added] = map.try_emplace(key, seen);
     if (added) continue;
-    known->second.count += seen.count;
-    known->second.longest_mm = std::max(known->second.longest_mm, seen.longest_mm);
+    Seen& own = known->second;
+    own.longest_mm = std::max(own.longest_mm, seen.longest_mm);
+    if (own.others.size() >= VerifyReport::kMostBreaks) continue;
+    own.others.push_back({seen.line, seen.layer});
+    own.others.insert(own.others.end(), seen.others.begin(), seen.others.end());
   }
 }
 
 }  // namespace
+
+void AddAt(const Seen& seen, Finding finding, std::vector<Finding>& breaks) {
+  const auto add = [&](uint32_t line, int64_t layer) {
+    finding.optimised_line = line;
+    finding.layer = layer;
+    breaks.push_back(finding);
+  };
+  add(seen.line, seen.layer);
+  for (const Seen::Place& place : seen.others) add(place.line, place.layer);
+}
 
 bool LiftHeights::Have(int64_t um, bool is_level) const {
   constexpr int64_t kSlackUm = 2;

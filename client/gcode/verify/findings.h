@@ -27,11 +27,30 @@ struct Finding {
 
 // Where something was observed.
 struct Seen {
+  struct Place {
+    uint32_t line = 0;
+    int64_t layer = -1;
+  };
   uint32_t line = 0;
   int64_t layer = -1;
-  int64_t count = 0;
   float longest_mm = 0;  // the longest of sideways moves
+
+  // The next places: so many of each layer, and VerifyReport::kMostBreaks of all.
+  std::vector<Place> others = {};
+  static constexpr size_t kMostOfALayer = 64;
 };
+
+// Notes in a map of one layer that `key` was observed at `line`.
+template <typename Map, typename Key>
+Seen& NoteSeen(Map& map, const Key& key, uint32_t line, int64_t layer) {
+  const auto [found, added] = map.try_emplace(key, Seen{line, layer});
+  Seen& seen = found->second;
+  if (!added && seen.others.size() < Seen::kMostOfALayer) seen.others.push_back({line, layer});
+  return seen;
+}
+
+// Adds `finding` for each place of `seen`.
+void AddAt(const Seen& seen, Finding finding, std::vector<Finding>& breaks);
 
 // The first line of all of `map`; 0 if it is empty.
 template <typename Map>

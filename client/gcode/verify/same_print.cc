@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "absl/strings/str_format.h"
 
@@ -98,59 +99,72 @@ size_t EndOfPrint(const Sections& cut) {
   return end;
 }
 
+// The first difference in section `i`.
+std::optional<VerifyBreak> DifferenceIn(const Side& original, const Side& optimised, size_t i,
+                                        size_t end_of_print) {
+  const Section& was = original.cut.sections[i];
+  const Section& is = optimised.cut.sections[i];
+  if (was.deposits != is.deposits) return MultisetDifference(original, optimised, i, true);
+  if (auto ends = CompareEnds(original, optimised, i)) return ends;
+  if (was.notes != is.notes) return MultisetDifference(original, optimised, i, false);
+  if (was.header != is.header) {
+    return VerifyBreak{
+        VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
+        absl::StrFormat(
+            "%s:%d: the comments after the mark of the layer differ from those at %s:%d",
+            optimised.name, is.first_line, original.name, was.first_line)};
+  }
+  // Where paths change places, what is said of them does so too.
+  if (was.order == is.order && was.said != is.said) {
+    return VerifyBreak{
+        VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
+        absl::StrFormat("%s:%d: the order of the comments differs from lines %d to %d of %s",
+                        optimised.name, is.first_line, was.first_line, was.last_line,
+                        original.name)};
+  }
+  if (was.moves != is.moves && IsScript(original.cut, i, end_of_print)) {
+    return VerifyBreak{
+        VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
+        absl::StrFormat(
+            "%s:%d: lines %d to %d of a script move differently from lines %d to %d of %s",
+            optimised.name, is.first_line, is.first_line, is.last_line, was.first_line,
+            was.last_line, original.name)};
+  }
+  if (is.lowest < was.lowest) {
+    return VerifyBreak{
+        VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
+        absl::StrFormat("%s:%d: travels lower than lines %d to %d of %s", optimised.name,
+                        is.first_line, was.first_line, was.last_line, original.name)};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
-std::optional<VerifyBreak> FirstDifference(const Side& original, const Side& optimised,
-                                           size_t first, size_t end, bool whole) {
+std::vector<VerifyBreak> Differences(const Side& original, const Side& optimised, size_t first,
+                                     size_t end, bool whole) {
   const std::vector<Section>& sections_was = original.cut.sections;
   const std::vector<Section>& sections_is = optimised.cut.sections;
   const size_t common = std::min({sections_was.size(), sections_is.size(), end});
   const size_t end_of_print = whole ? EndOfPrint(original.cut) : SIZE_MAX;
+  std::vector<VerifyBreak> found;
   for (size_t i = first; i < common; ++i) {
-    const Section& was = sections_was[i];
-    const Section& is = sections_is[i];
-    if (was.deposits != is.deposits) return MultisetDifference(original, optimised, i, true);
-    if (auto ends = CompareEnds(original, optimised, i)) return ends;
-    if (was.notes != is.notes) return MultisetDifference(original, optimised, i, false);
-    if (was.header != is.header) {
-      return VerifyBreak{
-          VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
-          absl::StrFormat(
-              "%s:%d: the comments after the mark of the layer differ from those at %s:%d",
-              optimised.name, is.first_line, original.name, was.first_line)};
+    if (auto difference = DifferenceIn(original, optimised, i, end_of_print)) {
+      found.push_back(*std::move(difference));
     }
-    // Where paths change places, what is said of them does so too.
-    if (was.order == is.order && was.said != is.said) {
-      return VerifyBreak{
-          VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
-          absl::StrFormat("%s:%d: the order of the comments differs from lines %d to %d of %s",
-                          optimised.name, is.first_line, was.first_line, was.last_line,
-                          original.name)};
-    }
-    if (was.moves != is.moves && IsScript(original.cut, i, end_of_print)) {
-      return VerifyBreak{
-          VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
-          absl::StrFormat(
-              "%s:%d: lines %d to %d of a script move differently from lines %d to %d of %s",
-              optimised.name, is.first_line, is.first_line, is.last_line, was.first_line,
-              was.last_line, original.name)};
-    }
-    if (is.lowest < was.lowest) {
-      return VerifyBreak{
-          VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
-          absl::StrFormat("%s:%d: travels lower than lines %d to %d of %s", optimised.name,
-                          is.first_line, was.first_line, was.last_line, original.name)};
-    }
+    // Behind such lines it is not known what belongs together.
+    if (sections_was[i].fence != sections_is[i].fence) return found;
   }
-  if (!whole || sections_was.size() == sections_is.size()) return std::nullopt;
+  if (!whole || sections_was.size() == sections_is.size()) return found;
   const Side& longer = sections_was.size() > sections_is.size() ? original : optimised;
   const Side& shorter = &longer == &original ? optimised : original;
   const size_t line = longer.cut.sections[common].first_line;
   const size_t last = common > 0 ? shorter.cut.sections[common - 1].last_line : 0;
   const bool lacks = &longer == &original;
-  return VerifyBreak{VerifyRule::kSamePrint, lacks ? line : last, lacks ? last : line, -1,
-                     absl::StrFormat("%s:%d: continues where %s ends, with line %d", longer.name,
-                                     line, shorter.name, last)};
+  found.push_back({VerifyRule::kSamePrint, lacks ? line : last, lacks ? last : line, -1,
+                   absl::StrFormat("%s:%d: continues where %s ends, with line %d", longer.name,
+                                   line, shorter.name, last)});
+  return found;
 }
 
 }  // namespace traverse::gcode

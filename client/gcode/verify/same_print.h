@@ -3,9 +3,9 @@
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_SAME_PRINT_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_SAME_PRINT_H_
 
-#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "absl/container/flat_hash_set.h"
 #include "client/gcode/verify/report.h"
@@ -22,10 +22,10 @@ struct Side {
   bool right_digest = false;                        // its first line states the digest of the file
 };
 
-// The first difference in the sections `first` to `end` - 1; unset if there is none. `whole`: the
-// files end with section `end` - 1, and have equally many.
-std::optional<VerifyBreak> FirstDifference(const Side& original, const Side& optimised,
-                                           size_t first, size_t end, bool whole);
+// The first difference in each of the sections `first` to `end` - 1, up to the first section that
+// ends with a line of its own. `whole`: the files end with section `end` - 1, and have equally many.
+std::vector<VerifyBreak> Differences(const Side& original, const Side& optimised, size_t first,
+                                     size_t end, bool whole);
 
 }  // namespace traverse::gcode
 

@@ -122,18 +122,20 @@ void Verifier::TakeBackGaps() {
 bool Verifier::SamePrint() {
   const Side was{original_.text, original_.name, was_.cut(), gaps_was_, original_.right_digest};
   const Side is{optimised_.text, optimised_.name, is_.cut(), gaps_is_, optimised_.right_digest};
-  std::optional<VerifyBreak> difference =
-      FirstDifference(was, is, sections_, chunk_was_.end_section, !more_);
-  if (!difference) CheckLabels(sections_, chunk_was_.end_section);
+  std::vector<VerifyBreak> found = Differences(was, is, sections_, chunk_was_.end_section, !more_);
+  if (found.empty()) CheckLabels(sections_, chunk_was_.end_section);
   sections_ = chunk_was_.end_section;
-  if (!difference && chunk_is_.end_section != chunk_was_.end_section) {
+  if (chunk_is_.end_section != chunk_was_.end_section) {
     // A line ends a section in only one of the files; comparing further sections shows which.
-    difference = FirstDifference(was, is, 0, UINT32_MAX, true);
+    more_ = false;
+    if (found.empty()) found = Differences(was, is, 0, UINT32_MAX, true);
   }
-  if (!difference) return true;
-  ++report_.counts[static_cast<size_t>(VerifyRule::kSamePrint)];
-  report_.breaks.push_back(*std::move(difference));
-  return false;
+  for (VerifyBreak& difference : found) {
+    const bool fits = report_.breaks.size() < VerifyReport::kMostBreaks;
+    if (fits) report_.breaks.push_back(std::move(difference));
+  }
+  report_.counts[static_cast<size_t>(VerifyRule::kSamePrint)] += static_cast<int64_t>(found.size());
+  return report_.breaks.empty();
 }
 
 // A printer may be told to skip an object, with everything between its labels: a retraction and its
@@ -301,10 +303,9 @@ VerifyReport Verifier::Verify() {
   while (more_) {
     ReadNext();
     TakeBackGaps();
-    if (!SamePrint()) return std::move(report_);
-    CheckChunk();
+    if (SamePrint()) CheckChunk();
   }
-  Finish();
+  if (report_.ok()) Finish();
   return std::move(report_);
 }
 

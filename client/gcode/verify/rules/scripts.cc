@@ -72,8 +72,9 @@ void CheckFixedMoves(const LayerPair& layer, LayerFindings& findings) {
 void CompareScripts(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   for (const auto& [signature, seen] : is.signatures) {
     if (was.signatures.contains(signature) || !was.script_signatures.contains(signature)) continue;
-    breaks.push_back({VerifyRule::kScripts, 0, seen.line, seen.layer,
-                      "moves filament as only a script of the original does"});
+    AddAt(seen,
+          {VerifyRule::kScripts, 0, 0, -1, "moves filament as only a script of the original does"},
+          breaks);
   }
 }
 

@@ -31,8 +31,7 @@ std::string KindName(size_t kind) {
 
 void Note(absl::flat_hash_map<uint64_t, Seen>& map, uint64_t key, const TraceMove& move,
           int64_t layer) {
-  Seen& seen = map.try_emplace(key, Seen{move.line, layer, 0}).first->second;
-  ++seen.count;
+  Seen& seen = NoteSeen(map, key, move.line, layer);
   if (move.sideways()) {
     seen.longest_mm = std::max(seen.longest_mm, static_cast<float>(move.length_mm()));
   }
@@ -111,19 +110,45 @@ bool IsNew(const LayerPair& layer, uint32_t link, const TraceMove& move) {
          link == 0 || move.feed != is.paths[link - 1].feed;
 }
 
+// The speeds of unretracted and of retracted travel of a layer.
+using TravelFeeds = std::array<absl::flat_hash_set<Micro>, 2>;
+
+TravelFeeds TravelFeedsOf(const LayerPair& layer) {
+  TravelFeeds feeds;
+  const TraceChunk& was = layer.was();
+  for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
+    for (uint32_t m = was.links[link].first_move; m < was.links[link].end_move; ++m) {
+      const TraceMove& move = was.moves[m];
+      if (move.kind != MoveKind::kTravel || !move.in_print) continue;
+      feeds[move.open ? 0 : 1].insert(move.feed);
+    }
+  }
+  return feeds;
+}
+
+// Slicers treat retracted and unretracted travel alike: in a layer that has none of the kind of
+// `move`, the other one counts.
+bool HasOther(const TravelFeeds& feeds, const TraceMove& move) {
+  if (move.kind != MoveKind::kTravel) return false;
+  return feeds[move.open ? 0 : 1].empty() && feeds[move.open ? 1 : 0].contains(move.feed);
+}
+
 void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
   const TraceChunk& chunk = layer.is();
+  const TravelFeeds feeds = TravelFeedsOf(layer);
   const LongestWays longest = LongestOf(layer);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
     const TraceLink& traced = chunk.links[link];
     ObserveTail(layer, chunk, link, tails.At(link), true, seen);
+    // At unknown lines every step is that of the original there: see CheckScriptedWays.
+    if (traced.scripted) continue;
     for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
       const TraceMove& move = chunk.moves[m];
       if (!IsNew(layer, link, move)) continue;
       if (!move.firmware) {
-        Note(seen.feeds[KindOf(move)], static_cast<uint64_t>(move.feed), move, layer.index());
-        // Behind unknown lines it is that of the original there: see CheckScriptedWays.
-        if (traced.scripted) continue;
+        if (!HasOther(feeds, move)) {
+          Note(seen.feeds[KindOf(move)], static_cast<uint64_t>(move.feed), move, layer.index());
+        }
         Note(seen.accelerations[KindOf(move)], move.acceleration, move, layer.index());
         if (IsTooLong(move, longest)) {
           seen.long_ways.push_back(
@@ -269,9 +294,11 @@ void CompareTails(const Observations& was, const Observations& is, std::vector<F
                     [key](const auto& of_kind) { return of_kind.contains(key); })) {
       continue;
     }
-    breaks.push_back({VerifyRule::kSpeeds, 0, seen.line, seen.layer,
-                      absl::StrFormat("continues along a path at F%g, as nothing in the original",
-                                      static_cast<double>(static_cast<Micro>(feed)) * 1e-6)});
+    AddAt(seen,
+          {VerifyRule::kSpeeds, 0, 0, -1,
+           absl::StrFormat("continues along a path at F%g, as nothing in the original",
+                           static_cast<double>(static_cast<Micro>(feed)) * 1e-6)},
+          breaks);
   }
 }
 
@@ -289,16 +316,19 @@ void CompareSpeeds(const Observations& was, const Observations& is, std::vector<
     if (was.feeds[kind].empty() && kind == kTravel) like = kOpenTravel;
     for (const auto& [feed, seen] : is.feeds[kind]) {
       if (was.feeds[like].contains(feed)) continue;
-      breaks.push_back({VerifyRule::kSpeeds, FirstLineOf(was.feeds[like]), seen.line, seen.layer,
-                        absl::StrFormat("%s at F%g, as none in the original", KindName(kind),
-                                        static_cast<double>(static_cast<Micro>(feed)) * 1e-6)});
+      AddAt(seen,
+            {VerifyRule::kSpeeds, FirstLineOf(was.feeds[like]), 0, -1,
+             absl::StrFormat("%s at F%g, as none in the original", KindName(kind),
+                             static_cast<double>(static_cast<Micro>(feed)) * 1e-6)},
+            breaks);
     }
     for (const auto& [acceleration, seen] : is.accelerations[kind]) {
       if (IsKnownAcceleration(was, kind, acceleration)) continue;
-      breaks.push_back({VerifyRule::kSpeeds, FirstLineOf(was.accelerations[like]), seen.line,
-                        seen.layer,
-                        absl::StrFormat("%s with an acceleration that none in the original has",
-                                        KindName(kind))});
+      AddAt(seen,
+            {VerifyRule::kSpeeds, FirstLineOf(was.accelerations[like]), 0, -1,
+             absl::StrFormat("%s with an acceleration that none in the original has",
+                             KindName(kind))},
+            breaks);
     }
   }
 }

@@ -61,6 +61,27 @@ TEST(SamePrint, CommentsStayBetweenThePathsBetweenWhichTheyStand) {
   EXPECT_EQ(Broken(a, kHead + kOther + "; stop printing\n" + kOne), "");
 }
 
+TEST(SamePrint, EachLayerThatIsAnotherIsNamed) {
+  const std::string above = "G1 Z.4 F9000\n" + kTwo;
+  const std::string a = kHead + kTwo + above + "G1 Z.6 F9000\n" + kTwo;
+  const std::string b =
+      kHead + With(kTwo, "E.3", "E.4") + above + "G1 Z.6 F9000\n" + With(kTwo, "E.3", "E.2");
+
+  const VerifyReport report = CheckGcode(a, "a", b, "b", {});
+
+  ASSERT_EQ(report.breaks.size(), 2u);
+  EXPECT_LT(report.breaks[0].optimised_line + 5, report.breaks[1].optimised_line);
+}
+
+// That a line stands in one of the files alone is said once, not of all layers behind it.
+TEST(SamePrint, WhatComesBehindALineOfItsOwnIsNotNamed) {
+  const std::string above = "G1 Z.4 F9000\n" + kTwo;
+  const std::string a = kHead + kTwo + "M104 S200\n" + above + "M104 S210\n" + above;
+  const std::string b = kHead + kTwo + above + "M104 S210\n" + above;
+
+  EXPECT_EQ(CheckGcode(a, "a", b, "b", {}).breaks.size(), 1u);
+}
+
 TEST(SamePrint, TheHeadLeavesThePrintThoughNoScriptFollows) {
   const std::string end = "G1 E-1 F2100\nG1 Z10 F9000\n";
   const std::string a = kHead + kTwo + end;

@@ -171,7 +171,7 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
     if (only_new) {
       seen.stated.push_back({um, slope, level, move.line, layer.index()});
     } else {
-      seen.heights.Of(level).try_emplace(um, Seen{move.line, layer.index(), 0});
+      seen.heights.Of(level).try_emplace(um, Seen{move.line, layer.index()});
       if (slope > 0) seen.slopes.insert(slope);
     }
   }

@@ -116,8 +116,8 @@ void ObserveStepOrder(const LayerPair& layer, LayerFindings& findings) {
   const auto add = [&](const TraceChunk& chunk, uint32_t link, const std::string& steps,
                        Observations& seen) {
     if (steps.empty()) return;
-    seen.step_orders.try_emplace(
-        steps, Seen{chunk.moves[chunk.links[link].first_move].line, layer.index()});
+    NoteSeen(seen.step_orders, steps, chunk.moves[chunk.links[link].first_move].line,
+             layer.index());
   };
   // The first link comes from the start script, or follows a path of the chunk before.
   for (uint32_t link = std::max(layer.first_path_was(), 1u); link < layer.end_path_was(); ++link) {
@@ -139,9 +139,10 @@ void CompareStepOrder(const Observations& was, const Observations& is,
                       std::vector<Finding>& breaks) {
   for (const auto& [steps, seen] : is.step_orders) {
     if (was.step_orders.contains(steps)) continue;
-    breaks.push_back(
-        {VerifyRule::kStepOrder, 0, seen.line, seen.layer,
-         absl::StrCat("steps in an order that no travel of the original has: ", InWords(steps))});
+    AddAt(seen,
+          {VerifyRule::kStepOrder, 0, 0, -1,
+           absl::StrCat("steps in an order that no travel of the original has: ", InWords(steps))},
+          breaks);
   }
 }
 

@@ -70,11 +70,11 @@ class LinkHeights {
     // A slope among known lines is compared with the heights of all ways: lifts.
     const bool rises = move.kind == MoveKind::kUp || (scripted_ && move.sideways());
     if (!rises || move.z_to_mm <= move.z_from_mm) return;
-    const Seen seen{move.line, lifts_.layer, 0};
+    const auto note = [&](auto& map, auto key) { NoteSeen(map, key, move.line, lifts_.layer); };
     auto& heights = seen_.rises.Of(lifts_.level);
-    heights.try_emplace(Um(move.z_to_mm - to_), seen);
-    if (!only_new) heights.try_emplace(Um(move.z_to_mm - from_), seen);
-    if (move.spiral != 0) seen_.spirals.try_emplace(move.spiral, seen);
+    note(heights, Um(move.z_to_mm - to_));
+    if (!only_new) note(heights, Um(move.z_to_mm - from_));
+    if (move.spiral != 0) note(seen_.spirals, move.spiral);
   }
 
   void NoteDepth(const TraceMove& move) {
@@ -173,8 +173,10 @@ void CompareMoves(const Observations& was, const Observations& is, std::vector<F
   }
   for (const auto& [spiral, seen] : is.spirals) {
     if (was.spirals.contains(spiral)) continue;
-    breaks.push_back({VerifyRule::kLifts, FirstLineOf(was.spirals), seen.line, seen.layer,
-                      "no spiral lift of the original has this center and direction"});
+    AddAt(seen,
+          {VerifyRule::kLifts, FirstLineOf(was.spirals), 0, -1,
+           "no spiral lift of the original has this center and direction"},
+          breaks);
   }
 }
 
@@ -214,11 +216,12 @@ void CompareRises(const Observations& was, const Observations& is, bool level,
                   std::vector<Finding>& breaks) {
   for (const auto& [um, seen] : is.rises.Of(level)) {
     if (was.rises.Have(um, level) || was.heights.Have(um, level)) continue;
-    breaks.push_back(
-        {VerifyRule::kLifts, was.rises.FirstLine(), seen.line, seen.layer,
-         absl::StrFormat("a lift of %.3f mm above the layer; no such lift of the original has this "
-                         "height",
-                         static_cast<double>(um) / 1000)});
+    AddAt(seen,
+          {VerifyRule::kLifts, was.rises.FirstLine(), 0, -1,
+           absl::StrFormat("a lift of %.3f mm above the layer; no such lift of the original has "
+                           "this height",
+                           static_cast<double>(um) / 1000)},
+          breaks);
   }
 }
 

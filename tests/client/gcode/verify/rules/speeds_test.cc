@@ -31,6 +31,45 @@ TEST(VerifySpeeds, WaysAreAsFastAsThoseOfTheirLayer) {
       << FirstMessage(a, b);
 }
 
+// Where all filament is pulled back behind lines that are not known, these are its speeds.
+TEST(VerifySpeeds, BehindUnknownLinesAreThoseOfTheOriginalThere) {
+  const auto begun = [](const std::string& first, const std::string& second) {
+    return kHead + "P0 S1 L2 D0\n" + Way(first) + ";TYPE:Internal infill\nG1 F1800\n" + second;
+  };
+  const std::string a = begun("X0 Y0", "G1 X9 Y0 E.3\nG1 X0 Y5 F9000\nG1 F1800\nG1 X9 Y5 E.3\n");
+  const std::string b = begun("X0 Y5", "G1 X9 Y5 E.3\nG1 X0 Y0 F9000\nG1 F1800\nG1 X9 Y0 E.3\n");
+  EXPECT_EQ(Broken(a, b), "");
+  EXPECT_EQ(Broken(a, With(b, "G1 E1 F2100", "G1 E1 F1800")), "speeds scripts");
+}
+
+// A layer without retracted travel shows how fast that is all the same.
+TEST(VerifySpeeds, RetractedTravelOfALayerThatHasNoneIsAsFastAsItsOtherTravel) {
+  const auto open = [](const std::string& from, const std::string& to) {
+    return absl::StrCat("G1 ", from, " F7500\n;TYPE:Internal infill\nG1 F1800\nG1 ", to, " E.3\n");
+  };
+  const std::string first = kHead + kTwo + kNextLayer;
+  const std::string a = first + open("X0 Y0", "X9 Y0") + open("X0 Y5", "X9 Y5");
+  const std::string other = open("X0 Y5", "X9 Y5");
+  const std::string b = first + "G1 E-1 F2100\n" + With(other, "F7500\n", "F7500\nG1 E1 F2100\n") +
+                        open("X0 Y0", "X9 Y0");
+  EXPECT_EQ(FirstMessage(a, b).find("travel at F7500"), std::string::npos) << FirstMessage(a, b);
+}
+
+// Each place where they are new is named.
+TEST(VerifySpeeds, EachLinkThatHasAnotherSpeedIsNamed) {
+  const std::string a = kHead + kTwo + kNextLayer + kTwo;
+  const std::string slow =
+      With(With(kOneTurned, "G1 E-1 F2100", "G1 E-1 F1700"), "G1 E-1 F2100", "G1 E-1 F1700");
+  const VerifyReport report = CheckGcode(a, "a", kHead + slow + kNextLayer + slow, "b", {});
+  size_t named = 0;
+  for (const VerifyBreak& found : report.breaks) {
+    if (found.message.find("retraction at F1700, as none in the original") != std::string::npos) {
+      ++named;
+    }
+  }
+  EXPECT_EQ(named, 4u);
+}
+
 // So are moves as short as the gap of a loop, unless they are as fast as the loop is printed.
 TEST(VerifySpeeds, ShortMovesAreAsFastAsOthers) {
   const std::string loop = With(kSquare, "G1 X10 Y10 E.4\n", "G1 X10 Y10.1 E.4\n");
