@@ -150,12 +150,18 @@ class LayerLines {
     }
   }
 
-  // The layer of a line, and whether it is on the way to the layer.
-  std::pair<size_t, bool> Find(size_t line) const {
+  struct Place {
+    size_t layer = 0;
+    bool way = false;  // on the way to the layer
+    size_t line = 0;   // else of its paths, from 0
+  };
+
+  Place Find(size_t line) const {
     const auto behind = std::upper_bound(begins_.begin(), begins_.end(), line);
     const size_t layer =
         behind == begins_.begin() ? 0 : static_cast<size_t>(behind - begins_.begin()) - 1;
-    return {layer, line < paths_[layer]};
+    const bool way = line < paths_[layer];
+    return {layer, way, way ? 0 : line - paths_[layer]};
   }
 
  private:
@@ -268,18 +274,25 @@ class Rewriter {
   void RuleOut(const VerifyReport& report, const LayerLines& lines, int round) {
     bool any = false;
     for (const VerifyBreak& found : report.breaks) {
-      const auto [layer, way] = lines.Find(found.optimised_line);
-      // What comes behind a print that is another one was not looked at.
+      const size_t layer = lines.Find(found.optimised_line).layer;
       const bool other_print = found.rule == VerifyRule::kSamePrint;
-      if (other_print && round >= kRoundsOfLayers) {
-        any |= RuleOutFrom(layer);
-      } else if (other_print || round >= kRoundsOfLayers) {
-        any |= RuleOutAround(layer);
+      if (round >= kRoundsOfLayers) {
+        any |= other_print ? RuleOutFrom(layer) : RuleOutAround(layer);
+      } else if (other_print) {
+        any |= chooser_.RuleOutStarts(layer) || RuleOutAround(layer);
       } else {
-        any |= chooser_.RuleOut(layer, way) || RuleOutAround(layer);
+        any |= RuleOut(found.rule, lines.Find(found.optimised_line)) || RuleOutAround(layer);
       }
     }
     if (!any || round + 1 >= kMostRounds) RuleOutFrom(0);
+  }
+
+  bool RuleOut(VerifyRule rule, const LayerLines::Place& at) {
+    if (at.way) return chooser_.RuleOutWay(at.layer);
+    const bool of_path = rule == VerifyRule::kWholePaths || rule == VerifyRule::kDirection ||
+                         rule == VerifyRule::kSeam;
+    return (of_path && chooser_.RuleOutPath(at.layer, at.line)) ||
+           chooser_.RuleOutLink(at.layer, at.line);
   }
 
   bool RuleOutAround(size_t layer) {

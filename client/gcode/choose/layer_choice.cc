@@ -48,37 +48,56 @@ class LayerChooser::Impl {
   }
 
   ChosenLayers Choose() {
+    Repair();
     ChooseRow();
     if (!std::exchange(spared_, true) && SpareRetractions()) ChooseRow();
     return Write();
   }
 
-  bool RuleOut(size_t layer, bool way) {
+  bool RuleOutLink(size_t layer, size_t line) {
     LayerColumn& column = columns_[layer];
-    if (!way) {
-      if (column.chosen == 0) return false;
-      column.totals.no_choice[column.chosen] = true;
-    } else {
-      if (layer == 0) return false;
-      const uint32_t before = columns_[layer - 1].chosen;
-      if (before == 0 && column.chosen == 0) return false;
-      column.totals.no_way[before * column.choices.size() + column.chosen] = true;
-    }
-    column.ruled_out = true;
+    if (column.chosen == 0) return false;
+    column.totals.no_choice[column.chosen] = true;
+    column.refusals.RefuseLink(Chosen(layer).order, PlaceOfLine(column, line));
     return true;
+  }
+
+  bool RuleOutPath(size_t layer, size_t line) {
+    LayerColumn& column = columns_[layer];
+    const LayerOrder& order = Chosen(layer).order;
+    const size_t place = column.chosen == 0 ? order.size() : PlaceOfLine(column, line);
+    return place < order.size() && column.refusals.RefusePlaceOf(order[place]);
+  }
+
+  bool RuleOutWay(size_t layer) {
+    if (layer == 0) return false;
+    LayerColumn& column = columns_[layer];
+    LayerColumn& before = columns_[layer - 1];
+    if (before.chosen == 0 && column.chosen == 0) return false;
+    const LinkEnds link{Chosen(layer - 1).order.back(), Chosen(layer).order.front()};
+    const bool own = link == LinkEnds{before.given_order().back(), column.given_order().front()};
+    column.refusals.RefuseWay(before.chosen, column.chosen, own ? nullptr : &link);
+    column.refusals.begin = column.chosen != 0;
+    before.refusals.end = before.chosen != 0;
+    return true;
+  }
+
+  bool RuleOutStarts(size_t layer) {
+    return columns_[layer].refusals.RefuseStarts(Chosen(layer).order);
   }
 
   bool RuleOutAll(size_t layer) {
     LayerColumn& column = columns_[layer];
     for (size_t c = 1; c < column.choices.size(); ++c) column.totals.no_choice[c] = true;
-    column.ruled_out = column.choices.size() > 1;
+    column.refusals.any = column.choices.size() > 1;
+    column.refusals.Forget();
     return column.chosen != 0;
   }
 
   void Tighten(int64_t crossings) { fewer_crossings_ += crossings; }
 
   bool IsGivenUp(size_t layer) const {
-    return columns_[layer].chosen == 0 && columns_[layer].ruled_out;
+    return columns_[layer].chosen == 0 && columns_[layer].refusals.any;
   }
 
  private:
@@ -86,7 +105,7 @@ class LayerChooser::Impl {
     std::vector<const ChoiceColumn*> totals;
     for (const LayerColumn& column : columns_) totals.push_back(&column.totals);
     const std::vector<uint32_t> row = BestRow(totals, policy_, crossings_, fewer_crossings_);
-    for (size_t layer = 0; layer < columns_.size(); ++layer) columns_[layer].chosen = row[layer];
+    for (size_t layer = 0; layer < columns_.size(); ++layer) columns_[layer].Take(row[layer]);
   }
 
   // By which the orders of a layer are merged.
@@ -121,13 +140,52 @@ class LayerChooser::Impl {
     }
     if (!polish_ || more <= 0 || layers.empty()) return false;
     ParallelFor(layers.size(), threads_, [&](size_t i) { AddSparing(layers[i]); });
-    std::vector<size_t> ways;  // to layers with other choices, and from them
+    FillWaysAround(layers);
+    return true;
+  }
+
+  // After other choices were added to `layers`, which ascend.
+  void FillWaysAround(const std::vector<size_t>& layers) {
+    std::vector<size_t> ways;
     for (const size_t layer : layers) {
       if (layer > 0 && (ways.empty() || ways.back() != layer)) ways.push_back(layer);
       if (layer + 1 < columns_.size()) ways.push_back(layer + 1);
     }
     ParallelFor(ways.size(), threads_, [&](size_t i) { FillWays(ways[i]); });
-    return true;
+  }
+
+  // Where links of what was chosen are ruled out, adds the same without them.
+  void Repair() {
+    std::vector<size_t> layers;
+    for (size_t layer = 0; layer < columns_.size(); ++layer) {
+      if (columns_[layer].refusals.ask()) layers.push_back(layer);
+    }
+    ParallelFor(layers.size(), threads_, [&](size_t i) { AddRepaired(layers[i]); });
+    FillWaysAround(layers);
+  }
+
+  void AddRepaired(size_t layer) {
+    LayerColumn& column = columns_[layer];
+    Refusals& refusals = column.refusals;
+    std::optional<LayerOrder> order = Chosen(layer).order;
+    for (Placement& placement : *order) {
+      if (refusals.Refuse(placement)) placement.entry = 0;
+    }
+    if (refusals.inside) {
+      MergeRules rules = RulesOf(layer);
+      rules.refused = &refusals.links;
+      const LayerFreedom freedom = FreedomOf(file_, file_.layers[layer], policy_, allow_);
+      order =
+          RepairedOrder(*column.writer, travel_[layer], *order, rules, freedom, refusals.Reach());
+    }
+    if (order && refusals.begin) order = BegunAsSliced(*order, column.given_order());
+    if (order && refusals.end) order = EndedAsSliced(*order, column.given_order());
+    refusals.Forget();
+    if (order) filler_.Add(*order, layer, column);
+    column.totals.no_choice.resize(column.choices.size(), false);
+    for (size_t c = 1; c < column.choices.size(); ++c) {
+      if (refusals.Refuse(column.choices[c].order)) column.totals.no_choice[c] = true;
+    }
   }
 
   void AddSparing(size_t layer) {
@@ -176,20 +234,26 @@ class LayerChooser::Impl {
       }
     }
     column.totals.no_way.assign(column.totals.ways.size(), false);
-    ForbidRevisits(layer);
+    ForbidWays(layer);
   }
 
   // The file's own orders one after the other may always be chosen.
-  void ForbidRevisits(size_t layer) {
+  void ForbidWays(size_t layer) {
+    const Refusals& refusals = columns_[layer].refusals;
     const auto timed = [this](size_t l, size_t choice) {
       const LayerColumn& column = columns_[l];
       return TimedOrder{&column.choices[choice].order, column.totals.inside[choice].seconds};
     };
-    const size_t choices = columns_[layer].choices.size();
-    for (size_t before = 0; before < columns_[layer - 1].choices.size(); ++before) {
-      for (size_t choice = 0; choice < choices; ++choice) {
+    const auto link = [&](uint32_t before, uint32_t choice) {
+      return LinkEnds{columns_[layer - 1].choices[before].order.back(),
+                      columns_[layer].choices[choice].order.front()};
+    };
+    const auto choices = static_cast<uint32_t>(columns_[layer].choices.size());
+    for (uint32_t before = 0; before < columns_[layer - 1].choices.size(); ++before) {
+      for (uint32_t choice = 0; choice < choices; ++choice) {
         if (before == 0 && choice == 0) continue;
         columns_[layer].totals.no_way[before * choices + choice] =
+            refusals.RefusesWay(before, choice, link(before, choice)) ||
             revisits_.TooSoon(layer, timed(layer - 1, before), timed(layer, choice),
                               timed(layer - 1, 0), timed(layer, 0));
       }
@@ -301,7 +365,17 @@ LayerChooser::~LayerChooser() = default;
 
 ChosenLayers LayerChooser::Choose() { return impl_->Choose(); }
 
-bool LayerChooser::RuleOut(size_t layer, bool way) { return impl_->RuleOut(layer, way); }
+bool LayerChooser::RuleOutLink(size_t layer, size_t line) {
+  return impl_->RuleOutLink(layer, line);
+}
+
+bool LayerChooser::RuleOutPath(size_t layer, size_t line) {
+  return impl_->RuleOutPath(layer, line);
+}
+
+bool LayerChooser::RuleOutWay(size_t layer) { return impl_->RuleOutWay(layer); }
+
+bool LayerChooser::RuleOutStarts(size_t layer) { return impl_->RuleOutStarts(layer); }
 
 bool LayerChooser::RuleOutAll(size_t layer) { return impl_->RuleOutAll(layer); }
 

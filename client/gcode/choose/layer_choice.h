@@ -77,9 +77,21 @@ class LayerChooser {
   // The best choice that is not ruled out.
   ChosenLayers Choose();
 
-  // Rules out the last choice for the paths of `layer` or, if `way`, for the travel to it from the
-  // layer before. False if that is the file's own choice, which always stays possible.
-  bool RuleOut(size_t layer, bool way);
+  // Rules out the link in line `line`, from 0, of the paths of `layer` as last chosen, and adds
+  // the same order without it (order_repair.h). False if that is the file's own choice,
+  // which always stays possible.
+  bool RuleOutLink(size_t layer, size_t line);
+
+  // The same for how the path in that line is placed. False if it is as in the file.
+  bool RuleOutPath(size_t layer, size_t line);
+
+  // The same for the travel to `layer` from the layer before: adds what begins or ends as sliced.
+  bool RuleOutWay(size_t layer);
+
+  // Rules out that loops of `layer` begin elsewhere than in the file or, if none chosen last does,
+  // that its paths are turned round. Adds the same order without that. False if all paths are as
+  // in the file.
+  bool RuleOutStarts(size_t layer);
 
   // Rules out all orders of layer `layer` but the file's; false if that was chosen last.
   bool RuleOutAll(size_t layer);

@@ -1,6 +1,8 @@
 #include "client/gcode/choose/layer_column.h"
 
+#include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include "client/gcode/measure/layer_meter.h"
 
@@ -25,6 +27,23 @@ double ForecastPaths(const LayerWriter& writer, const TravelModel& travel,
 }
 
 }  // namespace
+
+size_t PlaceOfLine(LayerColumn& column, size_t line) {
+  std::vector<size_t>& ends = column.ends;
+  if (ends.empty()) {
+    const LayerChoice& choice = column.choices[column.chosen];
+    std::string text;
+    choice.writer->WritePaths(choice.order, choice.start, text, &ends);
+    size_t begin = 0;
+    size_t lines = 0;
+    for (size_t& end : ends) {
+      const std::string_view path = std::string_view(text).substr(begin, end - begin);
+      lines += static_cast<size_t>(std::count(path.begin(), path.end(), '\n'));
+      begin = std::exchange(end, lines);
+    }
+  }
+  return static_cast<size_t>(std::upper_bound(ends.begin(), ends.end(), line) - ends.begin());
+}
 
 ColumnFiller::ColumnFiller(const GcodeFile& file, const RetractionHabit& habit,
                            const LinkDonors& donors)

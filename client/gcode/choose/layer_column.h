@@ -11,6 +11,7 @@
 
 #include "client/gcode/choose/choice_row.h"
 #include "client/gcode/choose/forecast.h"
+#include "client/gcode/choose/refusals.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/plan/travel_rules.h"
 #include "client/gcode/write/layer_writer.h"
@@ -33,11 +34,21 @@ struct LayerColumn {
   std::unique_ptr<const LayerWriter> plain;  // which spares no walls; null if not needed
   std::vector<LayerChoice> choices;
   ChoiceColumn totals;
-  bool ruled_out = false;  // something is
   uint32_t chosen = 0;
+  Refusals refusals;
+  std::vector<size_t> ends;  // see PlaceOfLine
 
   const LayerOrder& given_order() const { return choices[0].order; }
+
+  void Take(uint32_t choice) {
+    chosen = choice;
+    ends.clear();
+  }
 };
+
+// The place whose path, or the link to it, has line `line`, from 0, of the paths of `column` as
+// last chosen.
+size_t PlaceOfLine(LayerColumn& column, size_t line);
 
 // Writes and measures choices, and keeps none of the texts: those of all choices of a file are far
 // more than the file, and to take that much memory costs more than to write one order of each layer

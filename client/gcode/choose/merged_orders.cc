@@ -22,6 +22,9 @@ constexpr double kSparedRetractionSeconds = 1;
 // Rounding of sums of lengths.
 constexpr double kSlackMm = 1e-6;
 
+// Refused links that are taken out of an order at once, for each asks for all ways of the layer.
+constexpr size_t kMostRepairs = 64;
+
 MergeLimits LimitsOf(const WayTotals& given, const MergeRules& rules) {
   MergeLimits limits;
   if (rules.crossings != Crossings::kAny) limits.crossings = given.crossings;
@@ -64,6 +67,10 @@ class KnownWays {
     }
   }
 
+  bool IsRefused(const Placement& from, const Placement& to) const {
+    return rules_.refused != nullptr && rules_.refused->contains({from, to});
+  }
+
   WayTotals operator()(size_t place, const Placement& from, const Placement& to) {
     // Where something stands in the file, the way depends on what that is.
     const bool boundary = rules_.boundaries[place];
@@ -92,6 +99,7 @@ class KnownWays {
   WayTotals Estimate(size_t place, const Placement& from, const Placement& to) const {
     WayTotals way = writer_.EstimateWay(place, from, to, travel_);
     if (way.open_mm > longest_open_mm_ + kSlackMm) way.too_long = 1;
+    if (IsRefused(from, to)) ++way.too_long;
     return way;
   }
 
@@ -104,6 +112,16 @@ class KnownWays {
   double longest_open_mm_ = 0;         // of them
   absl::flat_hash_map<Key, WayTotals> known_;
 };
+
+// What comes directly behind the path before it still does.
+bool KeepsTogether(const LayerOrder& order, const LayerFreedom& freedom, uint32_t first) {
+  for (size_t place = 0; place < order.size(); ++place) {
+    const uint32_t block = order[place].block;
+    if (!freedom.goes_on[block - first]) continue;
+    if (place == 0 || order[place - 1].block + 1 != block) return false;
+  }
+  return true;
+}
 
 bool EndsAlike(const LayerOrder& a, const LayerOrder& b) {
   return a.front() == b.front() && a.back() == b.back();
@@ -186,6 +204,25 @@ class LayerMerge {
             Better(OrderMerger(estimate_, priced), order, {}, Effort::kKick)};
   }
 
+  // See RepairedOrder.
+  std::optional<LayerOrder> Repair(LayerOrder order, const LayerFreedom& freedom, size_t reach) {
+    size_t repairs = 0;
+    for (size_t place = 1; place < order.size() && repairs < kMostRepairs; ++place) {
+      if (!ways_.IsRefused(order[place - 1], order[place])) continue;
+      std::optional<LayerOrder> best;
+      for (LayerOrder& other : OrdersWithoutLink(order, place, given_, reach)) {
+        if (!KeepsTogether(other, freedom, given_.front().block)) continue;
+        const bool better =
+            !best || strict_.IsBetter(strict_.TotalsOf(other), strict_.TotalsOf(*best));
+        if (better) best = std::move(other);
+      }
+      if (!best) continue;
+      order = *std::move(best);
+      ++repairs;
+    }
+    return repairs > 0 ? std::optional(std::move(order)) : std::nullopt;
+  }
+
  private:
   // Kicks take long: only the orders that are the likeliest to be chosen are worth them.
   LayerOrder Better(const OrderMerger& judge, const LayerOrder& order,
@@ -234,6 +271,13 @@ std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelMode
     if (!IsWhole(order, given)) return found;
   }
   return LayerMerge(writer, travel, found, rules).Merge();
+}
+
+std::optional<LayerOrder> RepairedOrder(const LayerWriter& writer, const TravelModel& travel,
+                                        const LayerOrder& order, const MergeRules& rules,
+                                        const LayerFreedom& freedom, size_t reach) {
+  if (!IsWhole(order, writer.GivenOrder())) return std::nullopt;
+  return LayerMerge(writer, travel, {}, rules).Repair(order, freedom, reach);
 }
 
 std::vector<LayerOrder> SparingOrders(const LayerWriter& writer, const TravelModel& travel,

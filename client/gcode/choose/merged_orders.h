@@ -8,6 +8,7 @@
 
 #include "client/gcode/choose/order_merge.h"
 #include "client/gcode/choose/order_polish.h"
+#include "client/gcode/choose/order_repair.h"
 #include "client/gcode/plan/layer_freedom.h"
 #include "client/gcode/plan/policy.h"
 #include "client/gcode/plan/travel_model.h"
@@ -28,6 +29,9 @@ struct MergeRules {
   // and for how long. Either both are set or none.
   std::optional<LayerFreedom> freedom = {};
   std::optional<PolishLimit> polish = {};
+
+  // Links that the verifier refused; the file's own count as allowed all the same. May be null.
+  const LinkSet* refused = nullptr;
 };
 
 // The orders of `found`, each improved with runs of the others and of the file's own order, and
@@ -36,6 +40,13 @@ struct MergeRules {
 // also tried with its paths in the order of the file.
 std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelModel& travel,
                                      const std::vector<LayerOrder>& found, const MergeRules& rules);
+
+// `order` without the links that `rules` refuse, or as few of them as can be had by changes around
+// each; for a layer of freedom `freedom`. With greater `reach`, more paths around each are as
+// sliced at the most. Unset if all of them stay.
+std::optional<LayerOrder> RepairedOrder(const LayerWriter& writer, const TravelModel& travel,
+                                        const LayerOrder& order, const MergeRules& rules,
+                                        const LayerFreedom& freedom, size_t reach);
 
 // `order`, one of MergedOrders, improved once more in two ways so that it retracts less. Its first
 // and last path stay. REQUIRES: rules.freedom, rules.polish.

@@ -102,7 +102,7 @@ PartStart LayerWriter::WriteWay(const Placement& before, const Placement& first,
 }
 
 PartStart LayerWriter::WritePaths(const LayerOrder& order, const PartStart& start,
-                                  std::string& text) const {
+                                  std::string& text, std::vector<size_t>* ends) const {
   if (IsGiven(order, start)) {
     const Block& last = file_.blocks[layer_.end_block - 1];
     const Offset begin = file_.blocks[layer_.first_block].begin;
@@ -127,6 +127,7 @@ PartStart LayerWriter::WritePaths(const LayerOrder& order, const PartStart& star
     if (i + 1 == order.size()) progress.WriteUpTo(place.end, out);
     from.Write(true, out);
     progress.WriteUpTo(place.end, out);
+    if (ends != nullptr) ends->push_back(text.size());
   }
   out.Flush();
   return out.at;

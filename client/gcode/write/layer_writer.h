@@ -48,7 +48,10 @@ class LayerWriter {
                      std::string& text) const;
 
   // Writes the paths in `order` and the travel between them. `start` is the state at the first.
-  PartStart WritePaths(const LayerOrder& order, const PartStart& start, std::string& text) const;
+  // `ends`, if not null, gets for each place the size of `text` behind the path there, unless the
+  // text is that of the file.
+  PartStart WritePaths(const LayerOrder& order, const PartStart& start, std::string& text,
+                       std::vector<size_t>* ends = nullptr) const;
 
   // Estimates the travel to place `place` of the layer, from 1, if `to` follows `from` there, with
   // the crossings and the retraction that would be written.
