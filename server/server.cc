@@ -1,12 +1,5 @@
 #include "server/server.h"
 
-#include <grpcpp/ext/proto_server_reflection_plugin.h>
-#include <grpcpp/health_check_service_interface.h>
-#include <grpcpp/impl/server_builder_option.h>
-#include <grpcpp/impl/server_builder_plugin.h>
-#include <grpcpp/resource_quota.h>
-#include <grpcpp/security/server_credentials.h>
-#include <grpcpp/server_builder.h>
 #include <sched.h>
 
 #include <algorithm>
@@ -14,87 +7,20 @@
 #include <climits>
 #include <exception>
 #include <functional>
-#include <mutex>
 #include <thread>
 #include <utility>
 #include <vector>
-
-#include "absl/strings/match.h"
-#include "absl/strings/str_cat.h"
-#include "server/net/other_calls.h"
 
 namespace traverse {
 namespace {
 
 constexpr char kServiceName[] = "traverse.v1.RouteOptimizerService";
 
-// Once a process: gRPC keeps both as globals, read when a server is built.
-void InitGrpcPlugins() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    grpc::EnableDefaultHealthCheckService(true);
-    grpc::reflection::InitProtoReflectionServerBuilderPlugin();
-  });
-}
-
-// Takes reflection out of the server being built, because the plugin applies to all servers.
-class NoReflection : public grpc::ServerBuilderOption {
- public:
-  void UpdateArguments(grpc::ChannelArguments* /*arguments*/) override {}
-  void UpdatePlugins(std::vector<std::unique_ptr<grpc::ServerBuilderPlugin>>* plugins) override {
-    plugins->erase(std::remove_if(plugins->begin(), plugins->end(),
-                                  [](const auto& plugin) {
-                                    return plugin->name() == "proto_server_reflection";
-                                  }),
-                   plugins->end());
-  }
-};
-
 // Longer than any drain, and short enough to be added to a time.
 constexpr absl::Duration kForever = absl::Hours(24 * 365);
 
-// From the first byte to the settings of HTTP/2, TLS included.
-constexpr int kHandshakeMilliseconds = 20'000;
-
-int Milliseconds(absl::Duration duration) {
-  return static_cast<int>(std::clamp<int64_t>(absl::ToInt64Milliseconds(duration), 0, INT_MAX));
-}
-
-void SetConnectionLimits(const ConnectionLimits& limits, grpc::ServerBuilder& builder) {
-  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, limits.max_streams);
-  builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeMilliseconds);
-  // Pings and resets that are of no use end the connection.
-  builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PING_STRIKES, 2);
-  builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, limits.max_header_bytes);
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, Milliseconds(limits.keepalive_time));
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, Milliseconds(limits.keepalive_timeout));
-  // A caller may wait for long for a layer; without this the pings stop after two.
-  builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
-  // A call sends no more than the first window before it hears that it is refused; the rest of a
-  // message that is wanted has room at once.
-  builder.AddChannelArgument(GRPC_ARG_HTTP2_BDP_PROBE, 0);
-  if (limits.max_age != absl::InfiniteDuration()) {
-    builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_MS, Milliseconds(limits.max_age));
-  }
-}
-
-// Calls that a connection may have here for each stream that it may have open: they are not done
-// with at once when their streams end.
-constexpr int64_t kCallsOfStreams = 3;
-
-// gRPC has a thread for each open call of reflection, the one blocking service here: thousands of
-// open calls would take as many threads. More than these are refused.
-int MaxBlockingThreads() {
-  constexpr int kOpenReflections = 16;
-  return 2 * static_cast<int>(std::thread::hardware_concurrency()) + kOpenReflections;
-}
-
 // How often to check the files that operators may change.
 constexpr auto kLookEvery = std::chrono::seconds(1);
-
-// How often to check how long calls wait, and how long they may before somebody is turned away.
-constexpr auto kLagEvery = std::chrono::milliseconds(20);
-constexpr std::chrono::duration<double> kMostLag = std::chrono::milliseconds(50);
 
 // For calls that have ended to be done with, at the end of the server.
 constexpr absl::Duration kGrace = absl::Seconds(2);
@@ -168,38 +94,21 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
 }
 
 absl::Status Server::Build(const ServerOptions& options) {
-  InitGrpcPlugins();
-  grpc::ServerBuilder builder;
-  // gRPC checks the size when it has the whole message. Connections watches what may come, and the
-  // readers of a message check what has come and give the error.
-  builder.SetMaxReceiveMessageSize(INT_MAX);
-  // A few bytes may unpack to any number, which nothing has counted.
-  for (const auto algorithm : {GRPC_COMPRESS_DEFLATE, GRPC_COMPRESS_GZIP}) {
-    builder.SetCompressionAlgorithmSupportStatus(algorithm, false);
-  }
-  if (!options.reflection) builder.SetOption(std::make_unique<NoReflection>());
-  SetConnectionLimits(options.connections, builder);
-  grpc::ResourceQuota quota("traverse");
-  if (options.max_memory != INT64_MAX) quota.Resize(static_cast<size_t>(options.max_memory));
-  quota.SetMaxThreads(MaxBlockingThreads());
-  builder.SetResourceQuota(quota);
-  if (!options.listen.empty()) {
-    if (absl::Status status = AddPort(options, builder); !status.ok()) return status;
-  }
-  core_.Watch(connections_.get(), options.max_memory);
-  std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> others;
-  others.push_back(std::make_unique<OtherCalls>(core_));
-  builder.experimental().SetInterceptorCreators(std::move(others));
-  builder.RegisterService(&service_);
-  server_ = builder.BuildAndStart();
-  if (server_ == nullptr || (!options.listen.empty() && port_ == 0)) {
-    return absl::UnavailableError(absl::StrCat("cannot listen on ", options.listen));
-  }
-  if (connections_ != nullptr) {
-    connections_->Start();
-    WatchLag();
-  }
-  server_->GetHealthCheckService()->SetServingStatus(kServiceName, true);
+  const ListenerOptions listen = {.listen = options.listen,
+                                  .limits = options.connections,
+                                  .max_message_bytes = options.service.limits.max_message_bytes,
+                                  .max_memory = options.max_memory,
+                                  .reflection = options.reflection,
+                                  .service_reports_calls = true};
+  absl::StatusOr<std::unique_ptr<Listener>> listener = Listener::Open(
+      listen, core_.files.certificates,
+      {.end_job = [this](const std::string& peer) { return core_.EndOversizeJob(peer); },
+       .memory = {.set_short = [this](bool is_short) { core_.SetMemoryShort(is_short); },
+                  .on_cut = [this] { core_.LogCutConnection(); }}});
+  if (!listener.ok()) return listener.status();
+  listener_ = *std::move(listener);
+  core_.Watch(listener_->connections(), options.max_memory);
+  if (absl::Status status = listener_->Serve(service_, kServiceName); !status.ok()) return status;
   if (options.metrics_listen.empty()) return absl::OkStatus();
   absl::StatusOr<std::unique_ptr<MetricsHttp>> metrics = MetricsHttp::Start(
       options.metrics_listen, {.metrics = [this] { return core_.MetricsText(); },
@@ -210,56 +119,21 @@ absl::Status Server::Build(const ServerOptions& options) {
   return absl::OkStatus();
 }
 
-absl::Status Server::AddPort(const ServerOptions& options, grpc::ServerBuilder& builder) {
-  const auto make_credentials = [this] {
-    return core_.files.certificates == nullptr ? grpc::InsecureServerCredentials()
-                                               : MakeTlsCredentials(core_.files.certificates);
-  };
-  if (absl::StartsWith(options.listen, "unix")) {
-    builder.AddListeningPort(options.listen, make_credentials(), &port_);
-    return absl::OkStatus();
-  }
-  for (int hand = 0; hand < Connections::kHands; ++hand) {
-    acceptors_.push_back(builder.experimental().AddExternalConnectionAcceptor(
-        grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD,
-        make_credentials()));
-  }
-  ConnectionRules rules;
-  rules.max_connections = options.connections.max_connections;
-  // Twice what a message may have: a longer one that comes to its end gets a proper error.
-  rules.job_bytes = 2 * options.service.limits.max_message_bytes;
-  rules.max_calls = static_cast<int>(
-      std::min<int64_t>(INT_MAX, kCallsOfStreams * options.connections.max_streams));
-  rules.peer_timeout = absl::ToChronoMilliseconds(options.connections.keepalive_timeout);
-  absl::StatusOr<std::unique_ptr<Connections>> connections = Connections::Listen(
-      options.listen, rules,
-      {.hand_over =
-           [this](int socket, int hand) {
-             grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters parameters;
-             parameters.fd = socket;
-             acceptors_[static_cast<size_t>(hand)]->HandleNewConnection(&parameters);
-           },
-       .end_job = [this](const std::string& peer) { return core_.EndOversizeJob(peer); }});
-  if (!connections.ok()) return connections.status();
-  connections_ = *std::move(connections);
-  port_ = connections_->port();
-  return absl::OkStatus();
-}
-
 Server::~Server() {
   core_.admission.StartDraining();
   core_.AbortAll(absl::UnavailableError("the server has ended; ask another one"));
-  if (server_ != nullptr) WaitFor(kGrace, [this] { return core_.calls() == 0; });
-  Shutdown(absl::ZeroDuration());
+  if (listener_ == nullptr) return;
+  WaitFor(kGrace, [this] { return core_.calls() == 0; });
+  listener_->Shutdown(absl::ZeroDuration());
 }
 
 std::shared_ptr<grpc::Channel> Server::InProcessChannel(const grpc::ChannelArguments& arguments) {
-  return server_->InProcessChannel(arguments);
+  return listener_->server().InProcessChannel(arguments);
 }
 
 bool Server::Drain(absl::Duration timeout) {
   core_.admission.StartDraining();
-  server_->GetHealthCheckService()->SetServingStatus(false);
+  listener_->StopServing();
   const bool all_done = WaitFor(timeout, [this] { return core_.admission.jobs() == 0; });
   if (!all_done) {
     core_.AbortAll(absl::UnavailableError(
@@ -268,26 +142,8 @@ bool Server::Drain(absl::Duration timeout) {
   // The last messages and statuses are on their way; a caller who does not read them loses
   // them.
   WaitFor(kGrace, [this] { return core_.calls() == 0; });
-  Shutdown(kLastCalls);
+  listener_->Shutdown(kLastCalls);
   return all_done;
-}
-
-void Server::WatchLag() {
-  lag_probe_.emplace(*server_);
-  watch_lag_.emplace(kLagEvery, [this, late = 0]() mutable {
-    late = lag_probe_->Look() > kMostLag ? late + 1 : 0;
-    // Once is a machine that stood still.
-    if (late >= 2 && connections_->TurnAwayBusiest()) late = 0;
-  });
-}
-
-void Server::Shutdown(absl::Duration grace) {
-  watch_lag_.reset();
-  lag_probe_.reset();
-  if (connections_ != nullptr) connections_->StopListening();
-  if (server_ == nullptr) return;
-  server_->Shutdown(std::chrono::system_clock::now() + absl::ToChronoMicroseconds(grace));
-  server_->Wait();
 }
 
 }  // namespace traverse

@@ -7,8 +7,6 @@
 #define TRAVERSE_SERVER_SERVER_H_
 
 #include <grpcpp/channel.h>
-#include <grpcpp/server.h>
-#include <grpcpp/server_builder.h>
 #include <grpcpp/support/channel_arguments.h>
 
 #include <memory>
@@ -19,22 +17,12 @@
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "server/access/credentials.h"
-#include "server/net/lag_probe.h"
+#include "server/net/listener.h"
 #include "server/ops/metrics/metrics_http.h"
 #include "server/rpc/route_optimizer_service.h"
 #include "server/service_core.h"
 
 namespace traverse {
-
-// Limits on one connection.
-struct ConnectionLimits {
-  int max_connections = 1024;
-  int max_streams = 100;  // calls at a time
-  int max_header_bytes = 16384;
-  absl::Duration keepalive_time = absl::Seconds(30);     // idle time after which the peer is pinged
-  absl::Duration keepalive_timeout = absl::Seconds(10);  // for the answer to the ping
-  absl::Duration max_age = absl::InfiniteDuration();     // then clients are asked to reconnect
-};
 
 struct ServerOptions {
   std::string listen;          // HOST:PORT; port 0 takes a free port; empty: in-process only
@@ -68,7 +56,7 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   // The chosen ports; 0 if there is none.
-  int port() const { return port_; }
+  int port() const { return listener_->port(); }
   int metrics_port() const { return metrics_ == nullptr ? 0 : metrics_->port(); }
 
   // A channel to the service without any port. The server must outlive its calls.
@@ -87,27 +75,12 @@ class Server {
  private:
   explicit Server(const ServerOptions& options);
   absl::Status Build(const ServerOptions& options);
-  absl::Status AddPort(const ServerOptions& options, grpc::ServerBuilder& builder);
-
-  // Turns away callers who make others wait.
-  void WatchLag();
-
-  // Takes no more connections; after `grace`, cancels the remaining calls.
-  void Shutdown(absl::Duration grace);
-
-  // Hands connections to acceptors_, if the port is a TCP port. Before core_, which uses it.
-  std::unique_ptr<Connections> connections_;
+  // Before core_, which reports to its connections; Shutdown ends all else in it.
+  std::unique_ptr<Listener> listener_;
   ServiceCore core_;
   RouteOptimizerService service_;
   std::unique_ptr<MetricsHttp> metrics_;
-
-  // Several, because each is locked while it takes a connection.
-  std::vector<std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor>> acceptors_;
-  std::unique_ptr<grpc::Server> server_;
-  int port_ = 0;
-  std::optional<LagProbe> lag_probe_;
-  std::optional<Periodic> watch_lag_;  // by lag_probe_
-  std::optional<Periodic> look_;       // at changed files; last, because it uses the other members
+  std::optional<Periodic> look_;  // at changed files; last, because it uses the other members
 };
 
 }  // namespace traverse

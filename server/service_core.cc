@@ -9,7 +9,6 @@
 #include "absl/strings/str_format.h"
 #include "absl/time/clock.h"
 #include "server/net/socket_info.h"
-#include "server/ops/memory.h"
 
 namespace traverse {
 
@@ -23,19 +22,8 @@ constexpr absl::Duration kMostWatch = absl::Seconds(1);
 // milliseconds, in which others who allocate wait.
 constexpr auto kIdleBeforeTrim = std::chrono::seconds(5);
 
-// How often to check memory, and the shares of the limit from which no job is admitted, and
-// connections are cut.
-constexpr auto kMemoryWatch = std::chrono::milliseconds(10);
-constexpr double kShortShare = 0.7;
-constexpr double kCutShare = 0.78;
 // What paused searches may hold in addition to the layers that they work on.
 constexpr double kSearchShare = 0.25;
-// The allocator keeps much of what jobs free, which is no reason to refuse others: from this share
-// on, what it keeps is given back if it is at least the second share, at most that often.
-constexpr double kTrimShare = 0.5;
-constexpr double kGarbageShare = 0.1;
-constexpr auto kTrimEvery = std::chrono::seconds(1);
-constexpr auto kTrimEveryWhileShort = std::chrono::milliseconds(200);
 
 AdmissionLimits WithWorkers(AdmissionLimits limits, int workers) {
   limits.workers = workers;
@@ -160,35 +148,15 @@ void ServiceCore::Watch(Connections* connections, int64_t max_memory) {
   max_memory_ = max_memory;
   if (max_memory == INT64_MAX) return;
   pool.LimitMemory(static_cast<int64_t>(kSearchShare * static_cast<double>(max_memory)));
-  watch_memory_.emplace(kMemoryWatch, [this] { WatchMemory(); });
 }
 
-double ServiceCore::MemoryShare() const {
-  return static_cast<double>(ResidentBytes()) / static_cast<double>(max_memory_);
+void ServiceCore::SetMemoryShort(bool is_short) {
+  admission.SetMemoryShort(is_short);
+  pool.SetMemoryShort(is_short);
 }
 
-bool ServiceCore::GiveGarbageBack(double share) {
-  if (share <= kTrimShare) return false;
-  const auto now = std::chrono::steady_clock::now();
-  const auto pause =
-      share > kShortShare ? std::chrono::nanoseconds(kTrimEveryWhileShort) : kTrimEvery;
-  if (now - trimmed_for_memory_ <= pause) return false;
-  trimmed_for_memory_ = now;
-  const auto garbage = static_cast<double>(mallinfo2().fordblks);
-  if (garbage < kGarbageShare * static_cast<double>(max_memory_)) return false;
-  malloc_trim(0);
-  return true;
-}
-
-void ServiceCore::WatchMemory() {
-  double share = MemoryShare();
-  if (GiveGarbageBack(share)) share = MemoryShare();
-  admission.SetMemoryShort(share > kShortShare);
-  pool.SetMemoryShort(share > kShortShare);
-  if (share <= kCutShare) return;
-  if (connections_ != nullptr && connections_->CutLargest()) {
-    files.log->Event(JobLog::Level::kWarning, "connection_cut", {{"message", "memory is short"}});
-  }
+void ServiceCore::LogCutConnection() {
+  files.log->Event(JobLog::Level::kWarning, "connection_cut", {{"message", "memory is short"}});
 }
 
 void ServiceCore::AbortAll(const absl::Status& status) {

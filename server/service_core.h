@@ -62,9 +62,13 @@ class ServiceCore {
   void Register(const std::shared_ptr<JobRun>& run, const std::string& peer);
   void Unregister(const std::shared_ptr<JobRun>& run, const std::string& peer);
 
-  // Begins to watch memory, and the connections if `connections` is not null; they must outlive
-  // their calls. `max_memory`: what the process may use, in bytes.
+  // Reports to `connections`, which may be null and must outlive their calls, and bounds what
+  // searches hold. `max_memory`: what the process may use, in bytes.
   void Watch(Connections* connections, int64_t max_memory);
+
+  // Admits no job while memory is short.
+  void SetMemoryShort(bool is_short);
+  void LogCutConnection();
 
   // Passed on to Connections.
   void OnCall(const std::string& peer);
@@ -104,16 +108,6 @@ class ServiceCore {
  private:
   std::vector<std::shared_ptr<JobRun>> Runs() const;
 
-  // What the process uses of its memory: 1 is all.
-  double MemoryShare() const;
-
-  // Returns much memory that the allocator keeps to the system if the process uses `share` of its
-  // memory. Returns whether it did so.
-  bool GiveGarbageBack(double share);
-
-  // Refuses jobs, then cuts connections, while the process uses too much memory.
-  void WatchMemory();
-
   // A call, and its origin.
   struct Call {
     std::shared_ptr<JobRun> run;
@@ -125,7 +119,6 @@ class ServiceCore {
   std::map<const JobRun*, Call> runs_ TRAVERSE_GUARDED_BY(mutex_);
   Connections* connections_ = nullptr;
   int64_t max_memory_ = INT64_MAX;
-  std::chrono::steady_clock::time_point trimmed_for_memory_{};
   uint64_t registered_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // number of calls so far
 
   // What TrimIfIdle last saw.
@@ -140,7 +133,6 @@ class ServiceCore {
   Periodic wakes_;  // measures wake_lateness
   std::optional<Watchdog> watchdog_;
   std::optional<Periodic> watch_;  // last: calls AbortStalled and TrimIfIdle
-  std::optional<Periodic> watch_memory_;
 };
 
 }  // namespace traverse
