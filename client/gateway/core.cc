@@ -65,12 +65,19 @@ void Core::Submit(std::shared_ptr<WorkQueue::Ticket> ticket,
 }
 
 std::string Core::MetricsText() {
-  return metrics.Text({.requests = queue->requests(),
-                       .waiting = queue->waiting(),
-                       .running = queue->running(),
-                       .work_bytes = static_cast<double>(queue->memory_bytes()),
-                       .spool_bytes = static_cast<double>(spool->used_bytes()),
-                       .ready = queue->draining() ? 0.0 : 1.0});
+  GatewayMetrics::Gauges gauges;
+  gauges.requests = queue->requests();
+  gauges.waiting = queue->waiting();
+  gauges.running = queue->running();
+  gauges.work_bytes = static_cast<double>(queue->memory_bytes());
+  gauges.spool_bytes = static_cast<double>(spool->used_bytes());
+  gauges.ready = queue->draining() ? 0.0 : 1.0;
+  if (connections != nullptr) {
+    gauges.connections = connections->open();
+    gauges.receiving_bytes = static_cast<double>(connections->pending_bytes());
+    gauges.connections_cut = static_cast<double>(connections->cut());
+  }
+  return metrics.Text(gauges);
 }
 
 }  // namespace traverse::gateway

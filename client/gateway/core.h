@@ -18,6 +18,7 @@
 #include "client/gateway/work/file_worker.h"
 #include "client/gateway/work/work_queue.h"
 #include "server/access/auth.h"
+#include "server/net/connections.h"
 #include "server/ops/operator_files.h"
 
 namespace traverse::gateway {
@@ -61,7 +62,8 @@ struct Core {
   std::unique_ptr<Spool> spool;
   std::unique_ptr<OptimizerClient> client;
   std::unique_ptr<FileWorker> worker;
-  std::unique_ptr<WorkQueue> queue;  // last: its tasks use the other members
+  Connections* connections = nullptr;  // of gRPC, if it listens; outlives the calls
+  std::unique_ptr<WorkQueue> queue;    // last: its tasks use the other members
 };
 
 }  // namespace traverse::gateway

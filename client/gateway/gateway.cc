@@ -1,15 +1,12 @@
 #include "client/gateway/gateway.h"
 
-#include <grpcpp/health_check_service_interface.h>
-#include <grpcpp/security/server_credentials.h>
-#include <grpcpp/server_builder.h>
-
 #include <chrono>
+#include <cstdint>
 #include <exception>
 #include <utility>
 
-#include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
+#include "client/gateway/grpc/file_call.h"
 
 namespace traverse::gateway {
 namespace {
@@ -17,8 +14,6 @@ namespace {
 constexpr char kServiceName[] = "traverse.v1.GcodeService";
 // How often the gateway checks files that operators may change.
 constexpr auto kLookEvery = std::chrono::seconds(1);
-
-constexpr int kMaxMessageBytes = 5 << 20;  // a piece of a file has at most 4 MB
 
 }  // namespace
 
@@ -80,28 +75,36 @@ absl::Status Gateway::OpenPrinters(const GatewayOptions& options) {
   return absl::OkStatus();
 }
 
+MemoryWatch::Hooks Gateway::MemoryHooks() {
+  return {
+      .set_short = [queue = core_->queue.get()](bool is_short) { queue->SetMemoryShort(is_short); },
+      .on_cut =
+          [log = core_->files.log.get()] {
+            log->Event(JobLog::Level::kWarning, "connection_cut", {{"message", "memory is short"}});
+          }};
+}
+
 absl::Status Gateway::StartGrpc(const GatewayOptions& options) {
-  if (options.listen.empty()) return absl::OkStatus();
-  grpc::EnableDefaultHealthCheckService(true);
-  grpc_service_ = std::make_unique<GcodeGrpcService>(*core_, options.http.idle_time);
-  grpc::ServerBuilder builder;
-  builder.SetMaxReceiveMessageSize(kMaxMessageBytes);
-  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
-  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, 100);
-  builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE,
-                             static_cast<int>(options.http.max_head_bytes));
-  builder.AddListeningPort(options.listen,
-                           core_->files.certificates == nullptr
-                               ? grpc::InsecureServerCredentials()
-                               : MakeTlsCredentials(core_->files.certificates),
-                           &grpc_port_);
-  builder.RegisterService(grpc_service_.get());
-  grpc_ = builder.BuildAndStart();
-  if (grpc_ == nullptr || grpc_port_ == 0) {
-    return absl::UnavailableError(absl::StrCat("cannot listen on ", options.listen));
+  if (options.listen.empty()) {
+    if (options.max_memory != INT64_MAX) {
+      memory_watch_.emplace(options.max_memory, nullptr, MemoryHooks());
+    }
+    return absl::OkStatus();
   }
-  grpc_->GetHealthCheckService()->SetServingStatus(kServiceName, true);
-  return absl::OkStatus();
+  grpc_service_ = std::make_unique<GcodeGrpcService>(*core_, options.http.idle_time);
+  absl::StatusOr<std::unique_ptr<Listener>> listener = Listener::Open(
+      {.listen = options.listen,
+       .limits = options.connections,
+       .max_message_bytes = kMaxMessageBytes,
+       .max_memory = options.max_memory},
+      core_->files.certificates,
+      {.end_job = [service = grpc_service_.get()](
+                      const std::string& peer) { return service->EndOversizeCall(peer); },
+       .memory = MemoryHooks()});
+  if (!listener.ok()) return listener.status();
+  listener_ = *std::move(listener);
+  core_->connections = listener_->connections();
+  return listener_->Serve(*grpc_service_, kServiceName);
 }
 
 absl::Status Gateway::StartHttp(const GatewayOptions& options) {
@@ -122,7 +125,7 @@ absl::Status Gateway::StartHttp(const GatewayOptions& options) {
 bool Gateway::Drain(absl::Duration timeout) {
   const absl::Time end = absl::Now() + timeout;
   core_->queue->StartDraining();
-  if (grpc_ != nullptr) grpc_->GetHealthCheckService()->SetServingStatus(false);
+  if (listener_ != nullptr) listener_->StopServing();
   constexpr absl::Duration kLook = absl::Milliseconds(5);
   while (core_->queue->requests() > 0 && absl::Now() < end) absl::SleepFor(kLook);
   const bool all_done = core_->queue->requests() == 0;
@@ -135,10 +138,8 @@ Gateway::~Gateway() {
   if (core_ != nullptr) core_->queue->StartDraining();
   metrics_ = nullptr;
   http_ = nullptr;
-  if (grpc_ != nullptr) {
-    grpc_->Shutdown(std::chrono::system_clock::now() + std::chrono::milliseconds(200));
-    grpc_->Wait();
-  }
+  memory_watch_.reset();
+  if (listener_ != nullptr) listener_->Shutdown(absl::Milliseconds(200));
 }
 
 }  // namespace traverse::gateway

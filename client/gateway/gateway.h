@@ -3,8 +3,6 @@
 #ifndef TRAVERSE_CLIENT_GATEWAY_GATEWAY_H_
 #define TRAVERSE_CLIENT_GATEWAY_GATEWAY_H_
 
-#include <grpcpp/server.h>
-
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +18,8 @@
 #include "client/gateway/http/http_server.h"
 #include "client/gateway/octoprint/printer_api.h"
 #include "server/access/credentials.h"
+#include "server/net/listener.h"
+#include "server/net/memory_watch.h"
 #include "server/ops/metrics/metrics_http.h"
 #include "server/ops/periodic.h"
 
@@ -32,6 +32,8 @@ struct GatewayOptions {
   bool insecure = false;       // plaintext on addresses that other machines can reach
   TlsOptions tls;
   HttpLimits http;
+  ConnectionLimits connections;    // of gRPC
+  int64_t max_memory = INT64_MAX;  // of the process, in bytes; files get a part of it
   CoreOptions core;
 
   // The service: these servers, or an embedded one with `threads` threads.
@@ -57,7 +59,7 @@ class Gateway {
 
   // The chosen ports; 0 if there is none.
   int http_port() const { return http_->port(); }
-  int grpc_port() const { return grpc_port_; }
+  int grpc_port() const { return listener_ == nullptr ? 0 : listener_->port(); }
   int metrics_port() const { return metrics_ == nullptr ? 0 : metrics_->port(); }
 
   // Accepts no more files, and waits for the running ones for at most `timeout`. Returns true if
@@ -75,6 +77,7 @@ class Gateway {
   absl::Status OpenService(const GatewayOptions& options);
   absl::Status OpenPrinters(const GatewayOptions& options);
   absl::Status StartGrpc(const GatewayOptions& options);
+  MemoryWatch::Hooks MemoryHooks();
   absl::Status StartHttp(const GatewayOptions& options);
 
   // In the order of their creation; each uses those before it.
@@ -83,8 +86,8 @@ class Gateway {
   std::unique_ptr<PrinterApi> printers_;
   std::unique_ptr<Router> router_;
   std::unique_ptr<GcodeGrpcService> grpc_service_;
-  std::unique_ptr<grpc::Server> grpc_;
-  int grpc_port_ = 0;
+  std::unique_ptr<Listener> listener_;       // of gRPC
+  std::optional<MemoryWatch> memory_watch_;  // where there is none
   std::unique_ptr<HttpServer> http_;
   std::unique_ptr<MetricsHttp> metrics_;
   std::optional<Periodic> look_;  // at changed files

@@ -36,9 +36,10 @@ ABSL_FLAG(int32_t, workers, 0, "Files worked on at a time; 0: one per core, but 
 ABSL_FLAG(int32_t, max_requests, 256, "Files under way at a time, including those that wait");
 ABSL_FLAG(int32_t, max_requests_per_caller, 64, "The same for one caller");
 ABSL_FLAG(int64_t, max_file_bytes, int64_t{256} << 20, "Longest file, unpacked, in bytes");
-ABSL_FLAG(int64_t, max_memory, 0,
-          "Memory for the files being worked on, in bytes: twelve for each byte of a file; 0: "
-          "three quarters of the container's limit, or else of the machine's memory");
+ABSL_FLAG(
+    int64_t, max_memory, 0,
+    "Memory of the process, in bytes: files being worked on and unfinished messages; 0: three "
+    "quarters of the container's limit, or else of the machine's memory");
 ABSL_FLAG(std::string, spool_dir, "",
           "Folder for uploads and answers; empty: the folder for temporary files. No file there "
           "outlives the process");
@@ -50,9 +51,9 @@ ABSL_FLAG(absl::Duration, upload_deadline, absl::Seconds(60),
           "Longest time for a printer's file; after it the printer gets the original");
 ABSL_FLAG(absl::Duration, upstream_idle_timeout, absl::Seconds(60),
           "Give up a printer's server that neither accepts nor sends anything for this long");
-ABSL_FLAG(int32_t, max_connections, 512, "HTTP connections at a time");
+ABSL_FLAG(int32_t, max_connections, 512, "Connections at a time, of HTTP and of gRPC each");
 ABSL_FLAG(int32_t, max_connections_per_address, 384,
-          "The same from one address; behind a proxy all share one address");
+          "HTTP connections from one address; behind a proxy all share one address");
 ABSL_FLAG(int32_t, max_header_bytes, 16384, "Longest head of a request, in bytes");
 ABSL_FLAG(absl::Duration, header_timeout, absl::Seconds(20),
           "Time for the head of a request, including the wait for it");
@@ -193,6 +194,9 @@ absl::StatusOr<GatewayOptions> OptionsFromFlags() {
                   .head_time = absl::GetFlag(FLAGS_header_timeout),
                   .idle_time = absl::GetFlag(FLAGS_idle_timeout),
                   .min_bytes_per_second = absl::GetFlag(FLAGS_min_upload_rate)};
+  options.connections.max_connections = absl::GetFlag(FLAGS_max_connections);
+  options.connections.max_header_bytes = absl::GetFlag(FLAGS_max_header_bytes);
+  options.max_memory = MaxMemory();
   CoreOptions& core = options.core;
   core.spool_folder = SpoolFolder();
   core.max_spool_bytes = static_cast<uint64_t>(absl::GetFlag(FLAGS_max_spool_bytes));
@@ -202,7 +206,7 @@ absl::StatusOr<GatewayOptions> OptionsFromFlags() {
   core.work = {.workers = workers > 0 ? workers : std::max(2, UsableCores()),
                .max_requests = absl::GetFlag(FLAGS_max_requests),
                .max_requests_per_caller = absl::GetFlag(FLAGS_max_requests_per_caller),
-               .max_memory_bytes = MaxMemory()};
+               .max_memory_bytes = options.max_memory};
   core.auth.token_file = absl::GetFlag(FLAGS_token_file);
   core.allowed_hosts = absl::GetFlag(FLAGS_allowed_hosts);
   core.auth.allowed_names = absl::GetFlag(FLAGS_allowed_clients);

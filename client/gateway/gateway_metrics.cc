@@ -39,6 +39,12 @@ GatewayMetrics::GatewayMetrics()
       work_bytes_(registry_.Gauge("traverse_gateway_work_bytes",
                                   "Memory reserved for files being worked on.")),
       spool_bytes_(registry_.Gauge("traverse_gateway_spool_bytes", "Bytes in the spool.")),
+      connections_(
+          registry_.Gauge("traverse_gateway_grpc_connections", "Open connections of gRPC.")),
+      receiving_bytes_(registry_.Gauge("traverse_gateway_receiving_bytes",
+                                       "Bytes of unfinished messages of gRPC.")),
+      connections_cut_(registry_.Counter("traverse_gateway_connections_cut_total",
+                                         "Connections of gRPC that were cut.")),
       ready_(registry_.Gauge("traverse_gateway_ready",
                              "1 while the gateway accepts files, 0 while it drains.")) {
   for (const char* outcome : {"rewritten", "unchanged", "refused", "failed", "late", "cancelled"}) {
@@ -78,6 +84,9 @@ std::string GatewayMetrics::Text(const Gauges& gauges) {
   running_.Set(gauges.running);
   work_bytes_.Set(gauges.work_bytes);
   spool_bytes_.Set(gauges.spool_bytes);
+  connections_.Set(gauges.connections);
+  receiving_bytes_.Set(gauges.receiving_bytes);
+  connections_cut_.Increment(gauges.connections_cut - connections_cut_.Value());
   ready_.Set(gauges.ready);
   return registry_.Text();
 }

@@ -40,6 +40,9 @@ class GatewayMetrics {
     int running = 0;
     double work_bytes = 0;
     double spool_bytes = 0;
+    int connections = 0;         // of gRPC
+    double receiving_bytes = 0;  // of unfinished messages there
+    double connections_cut = 0;  // so far
     double ready = 0;
   };
 
@@ -61,6 +64,9 @@ class GatewayMetrics {
   prometheus::Gauge& running_;
   prometheus::Gauge& work_bytes_;
   prometheus::Gauge& spool_bytes_;
+  prometheus::Gauge& connections_;
+  prometheus::Gauge& receiving_bytes_;
+  prometheus::Counter& connections_cut_;
   prometheus::Gauge& ready_;
 };
 

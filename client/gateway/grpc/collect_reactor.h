@@ -50,16 +50,16 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
       End(call_.status());
       return;
     }
-    live_.Waits(&context_);
-    this->StartRead(&request_);
+    Read();
   }
 
   void OnReadDone(bool ok) override {
     if (context_.IsCancelled()) return End(absl::CancelledError("cancelled"));
     if (!ok) return Submit();
-    if (absl::Status status = take_(request_, call_, collected_); !status.ok()) return End(status);
-    live_.Waits(&context_);
-    this->StartRead(&request_);
+    absl::Status status = call_.OnMessage(request_.ByteSizeLong());
+    if (status.ok()) status = take_(request_, call_, collected_);
+    if (!status.ok()) return End(status);
+    Read();
   }
 
   void OnDone() override {
@@ -68,8 +68,14 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
   }
 
  private:
+  void Read() {
+    live_.Waits(&context_, call_.peer());
+    this->StartRead(&request_);
+  }
+
   void Submit() {
     live_.Rests(&context_);
+    call_.OnAllCame();
     if (absl::Status status = check_(collected_); !status.ok()) return End(status);
     std::vector<std::shared_ptr<const SpoolFile>> files = {collected_.first};
     if (collected_.second != nullptr) files.push_back(collected_.second);

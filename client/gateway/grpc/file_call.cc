@@ -43,8 +43,19 @@ FileCall::FileCall(Core& core, grpc::CallbackServerContext& context, const std::
   if (!status_.ok()) return;
   absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> ticket = core_.queue->Enter(info_.caller);
   status_ = ticket.status();
-  if (ticket.ok()) ticket_ = *std::move(ticket);
+  if (!ticket.ok()) return;
+  ticket_ = *std::move(ticket);
+  job_.emplace(core_.connections, info_.peer);
 }
+
+absl::Status FileCall::OnMessage(size_t bytes) {
+  job_->OnMessage(static_cast<int64_t>(bytes));
+  if (static_cast<int64_t>(bytes) <= kMaxMessageBytes) return absl::OkStatus();
+  return absl::ResourceExhaustedError(absl::StrFormat(
+      "a message has %d bytes, more than this gateway's limit of %d", bytes, kMaxMessageBytes));
+}
+
+void FileCall::OnAllCame() { job_->OnAllCame(); }
 
 absl::Time FileCall::FinishBy() const {
   return std::min(deadline_ - kMargin, absl::Now() + core_.options.max_time);

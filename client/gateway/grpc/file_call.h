@@ -7,12 +7,15 @@
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/status.h>
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "client/gateway/core.h"
+#include "server/net/connection_job.h"
 #include "server/rpc/call_info.h"
 
 namespace traverse::gateway {
@@ -33,6 +36,12 @@ class FileCall {
   // When the file must be ready, so that it can be sent before the call's deadline.
   absl::Time FinishBy() const;
 
+  // A message of `bytes` has arrived. ResourceExhausted if that is more than one may have.
+  absl::Status OnMessage(size_t bytes);
+
+  // No more messages will come.
+  void OnAllCame();
+
   // Appends to `file`, which it creates if null. ResourceExhausted, OutOfRange.
   absl::Status Append(const std::string& bytes, std::shared_ptr<SpoolFile>& file) const;
 
@@ -46,7 +55,11 @@ class FileCall {
   absl::Time deadline_ = absl::InfiniteFuture();
   absl::Status status_;
   std::shared_ptr<WorkQueue::Ticket> ticket_;
+  std::optional<ConnectionJob> job_;
 };
+
+// Of one message: a piece of a file has at most 4 MB.
+constexpr int64_t kMaxMessageBytes = int64_t{5} << 20;
 
 }  // namespace traverse::gateway
 

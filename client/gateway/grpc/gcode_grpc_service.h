@@ -3,6 +3,8 @@
 #ifndef TRAVERSE_CLIENT_GATEWAY_GRPC_GCODE_GRPC_SERVICE_H_
 #define TRAVERSE_CLIENT_GATEWAY_GRPC_GCODE_GRPC_SERVICE_H_
 
+#include <string>
+
 #include "absl/status/status.h"
 #include "absl/time/time.h"
 #include "client/gateway/core.h"
@@ -16,6 +18,10 @@ class GcodeGrpcService : public v1::GcodeService::CallbackService {
  public:
   // Ends calls whose client neither sends nor reads for `idle_time`. `core` must outlive it.
   GcodeGrpcService(Core& core, absl::Duration idle_time) : core_(core), live_(idle_time) {}
+
+  // Ends a call of `peer` (see PeerKey) that sends what is larger than any message may be. False if
+  // there is none.
+  bool EndOversizeCall(const std::string& peer) { return live_.EndOne(peer); }
 
   grpc::ServerBidiReactor<v1::RewriteRequest, v1::RewriteResponse>* Rewrite(
       grpc::CallbackServerContext* context) override;

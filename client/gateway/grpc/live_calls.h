@@ -7,10 +7,12 @@
 
 #include <chrono>
 #include <map>
+#include <string>
 
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "engine/base/mutex.h"
+#include "server/net/socket_info.h"
 #include "server/ops/periodic.h"
 
 namespace traverse::gateway {
@@ -21,30 +23,53 @@ class LiveCalls {
   explicit LiveCalls(absl::Duration idle_time)
       : idle_time_(idle_time), sweep_(std::chrono::seconds(1), [this] { Sweep(); }) {}
 
-  // From now on `context` waits for its client. Call it again whenever the client has acted.
-  void Waits(grpc::CallbackServerContext* context) {
+  // From now on `context`, of `peer`, waits for its client. Call it again whenever the client has
+  // acted.
+  void Waits(grpc::CallbackServerContext* context, const std::string& peer) {
     MutexLock lock(mutex_);
-    since_[context] = absl::Now();
+    Wait& wait = waits_[context];
+    wait.since = absl::Now();
+    if (wait.peer.empty()) wait.peer = PeerKey(peer);
   }
 
   // The call no longer waits. Call it before the context is destroyed.
   void Rests(grpc::CallbackServerContext* context) {
     MutexLock lock(mutex_);
-    since_.erase(context);
+    waits_.erase(context);
+  }
+
+  // Ends the call of `peer` (see PeerKey) that has waited for longest. Returns false if there is
+  // none.
+  bool EndOne(const std::string& peer) {
+    MutexLock lock(mutex_);
+    auto oldest = waits_.end();
+    for (auto it = waits_.begin(); it != waits_.end(); ++it) {
+      if (it->second.peer != peer) continue;
+      if (oldest == waits_.end() || it->second.since < oldest->second.since) oldest = it;
+    }
+    if (oldest == waits_.end()) return false;
+    oldest->first->TryCancel();
+    waits_.erase(oldest);
+    return true;
   }
 
  private:
+  struct Wait {
+    absl::Time since;
+    std::string peer;  // see PeerKey
+  };
+
   void Sweep() {
     MutexLock lock(mutex_);
     const absl::Time latest = absl::Now() - idle_time_;
-    for (const auto& [context, since] : since_) {
-      if (since < latest) context->TryCancel();
+    for (const auto& [context, wait] : waits_) {
+      if (wait.since < latest) context->TryCancel();
     }
   }
 
   const absl::Duration idle_time_;
   Mutex mutex_;
-  std::map<grpc::CallbackServerContext*, absl::Time> since_ TRAVERSE_GUARDED_BY(mutex_);
+  std::map<grpc::CallbackServerContext*, Wait> waits_ TRAVERSE_GUARDED_BY(mutex_);
   Periodic sweep_;  // last: uses the other members
 };
 

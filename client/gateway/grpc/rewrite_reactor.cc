@@ -33,7 +33,11 @@ RewriteReactor::RewriteReactor(Core& core, LiveCalls& live, grpc::CallbackServer
     End(call_.status());
     return;
   }
-  live_.Waits(&context_);
+  Read();
+}
+
+void RewriteReactor::Read() {
+  live_.Waits(&context_, call_.peer());
   StartRead(&request_);
 }
 
@@ -43,12 +47,13 @@ void RewriteReactor::OnReadDone(bool ok) {
     return End(absl::CancelledError("cancelled"));
   }
   if (!ok) return Submit();
-  if (absl::Status status = TakeRequest(); !status.ok()) {
+  absl::Status status = call_.OnMessage(request_.ByteSizeLong());
+  if (status.ok()) status = TakeRequest();
+  if (!status.ok()) {
     MutexLock lock(mutex_);
     return End(status);
   }
-  live_.Waits(&context_);
-  StartRead(&request_);
+  Read();
 }
 
 absl::Status RewriteReactor::TakeRequest() {
@@ -66,6 +71,7 @@ absl::Status RewriteReactor::TakeRequest() {
 
 void RewriteReactor::Submit() {
   live_.Rests(&context_);
+  call_.OnAllCame();
   if (upload_ == nullptr) {
     MutexLock lock(mutex_);
     return End(absl::InvalidArgumentError(wanted_ ? "data: the file is missing"
@@ -133,7 +139,7 @@ void RewriteReactor::Next() {
   if (writing_ || finished_) return;
   if (!end_ && NextPiece()) {
     writing_ = true;
-    live_.Waits(&context_);
+    live_.Waits(&context_, call_.peer());
     StartWrite(&response_);
     return;
   }

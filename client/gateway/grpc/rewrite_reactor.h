@@ -28,6 +28,7 @@ class RewriteReactor : public grpc::ServerBidiReactor<v1::RewriteRequest, v1::Re
   void OnDone() override;
 
  private:
+  void Read();
   absl::Status TakeRequest();
   void Submit();
   void Work(const absl::Status& may);  // called by Core::Submit

@@ -64,6 +64,14 @@ void WorkQueue::Submit(std::shared_ptr<Ticket> ticket, int64_t memory_bytes,
   changed_.NotifyOne();
 }
 
+void WorkQueue::SetMemoryShort(bool is_short) {
+  {
+    MutexLock lock(mutex_);
+    if (std::exchange(memory_short_, is_short) == is_short) return;
+  }
+  changed_.NotifyAll();
+}
+
 void WorkQueue::StartDraining() {
   MutexLock lock(mutex_);
   draining_ = true;
@@ -97,7 +105,7 @@ int64_t WorkQueue::memory_bytes() const {
 // Strictly takes turns, even if a small task would fit and the large one whose turn it is would
 // not: otherwise the large one would never start.
 bool WorkQueue::TakeNext(Task& task) {
-  if (waiting_.empty()) return false;
+  if (waiting_.empty() || (memory_short_ && running_ > 0)) return false;
   auto next = waiting_.upper_bound(last_caller_);
   if (next == waiting_.end()) next = waiting_.begin();
   const int64_t bytes = next->second.front().memory_bytes;

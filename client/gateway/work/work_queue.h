@@ -57,6 +57,9 @@ class WorkQueue {
   // REQUIRES: no more than max_memory_bytes().
   void Submit(std::shared_ptr<Ticket> ticket, int64_t memory_bytes, std::function<void()> task);
 
+  // While memory is short, a task begins only if none is under way.
+  void SetMemoryShort(bool is_short);
+
   // No more places from now on.
   void StartDraining();
   bool draining() const;
@@ -90,6 +93,7 @@ class WorkQueue {
   int waiting_count_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   int running_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   int64_t memory_bytes_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  bool memory_short_ TRAVERSE_GUARDED_BY(mutex_) = false;
   bool draining_ TRAVERSE_GUARDED_BY(mutex_) = false;
   bool stopping_ TRAVERSE_GUARDED_BY(mutex_) = false;
   std::vector<std::thread> workers_;
