@@ -10,22 +10,10 @@ job. A machine that stands still for a moment lets much in before anybody can lo
 made again, and counts if it does so again; of attacks made side by side it is made again alone.
 The environment names the server's binary: TRAVERSE_SERVER. Needs nothing but Python; frames are written by hand (http2_client.py).
 """
-import argparse
-import concurrent.futures
-import subprocess
-import sys
-import time
-
 from attacks import callers, requests, transport
-from attacks.attacked_server import DRAIN_SECONDS, Server, Watch, still_held
+from attacks.attacked_server import Server
+from attacks.run import main
 from http2_client import SERVICE
-
-# What gRPC 1.51 holds of streams that were reset is seen by the server only a moment later: a proxy belongs in
-# front of a port that strangers reach (server/SECURITY.md).
-TRANSPORT_SHARE = 0.15
-
-# No text of a caller becomes the label of a metric.
-MOST_METRICS = 100_000
 
 ATTACKS = {
     "rapid_reset": transport.rapid_reset,
@@ -80,79 +68,5 @@ ATTACKS = {
 }
 
 
-def run(name, seconds, max_memory, most_p99):
-    """The faults found."""
-    server = Server(max_memory, files=512 if name in ("idle_connections", "half_prefaces") else None)
-    watch = Watch(server)
-    try:
-        ATTACKS[name](server, time.monotonic() + seconds)
-    except OSError as error:
-        print(f"    the attack itself: {error}")
-    time.sleep(0.5)
-    watch.stop()
-    if server.process.poll() is not None:
-        return [f"the process ended with {server.process.returncode}"]
-    ended = False
-    try:
-        faults = still_held(server)
-        told = server.get("/metrics")
-        refused = {line.split('"')[1]: int(float(line.split()[-1])) for line in told.splitlines()
-                   if line.startswith("traverse_rejected_total") and not line.endswith(" 0")}
-        code, took = server.end()
-        ended = True
-    except (OSError, subprocess.TimeoutExpired) as error:
-        server.process.kill()
-        return [f"it does not end: {error}"]
-    finally:
-        if not ended:
-            server.process.kill()
-    worst = max(watch.health, default=0)
-    jobs = sorted(watch.jobs) or [float("inf")]
-    p99 = jobs[min(len(jobs) - 1, int(len(jobs) * 0.99))]
-    print(f"  {name:22} peak {watch.peak / 1e6:6.0f} MB, health {1000 * worst:5.0f} ms, victim {len(watch.jobs)} jobs, "
-          f"{watch.failed} failed, p99 {1000 * p99:5.0f} ms, ended in {took:.1f} s, refused {refused}")
-    faults += server.log_faults()
-    if len(told) > MOST_METRICS:
-        faults.append(f"/metrics has {len(told)} bytes")
-    if code != 0:
-        faults.append(f"exit code {code}")
-    if took > DRAIN_SECONDS + 2:
-        faults.append(f"SIGTERM took {took:.1f} s")
-    if p99 > most_p99:
-        faults.append(f"the victim's p99 was {1000 * p99:.0f} ms")
-    if worst > 1:
-        faults.append(f"/healthz took {worst:.1f} s")
-    if watch.peak > max_memory * (1 + TRANSPORT_SHARE):
-        faults.append(f"memory came to {watch.peak / 1e6:.0f} MB")
-    return faults
-
-
-def attack_all(names, side_by_side, *limits):
-    """The faults found, by the attack's name."""
-    found = {}
-    with concurrent.futures.ProcessPoolExecutor(side_by_side) as attackers:
-        for name, faults in zip(names, attackers.map(run, names, *([limit] * len(names) for limit in limits))):
-            if faults:
-                print(f"  {name}: FAULT: {'; '.join(faults)}")
-                found[name] = faults
-    return found
-
-
-def main():
-    arguments = argparse.ArgumentParser()
-    arguments.add_argument("--seconds", type=float, default=3)
-    arguments.add_argument("--only", default=",".join(ATTACKS))
-    arguments.add_argument("--max_memory", type=int, default=400_000_000)
-    arguments.add_argument("--most_p99", type=float, default=float("inf"))
-    arguments.add_argument("--twice", action="store_true")
-    arguments.add_argument("--side_by_side", type=int, default=1)
-    given = arguments.parse_args()
-    limits = given.seconds, given.max_memory, given.most_p99
-    found = attack_all(given.only.split(","), given.side_by_side, *limits)
-    if found and given.twice:
-        found = attack_all(list(found), 1, *limits)
-    sys.exit(1 if found else 0)
-
-
 if __name__ == "__main__":
-    main()
+    main(ATTACKS, Server)

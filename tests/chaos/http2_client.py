@@ -11,6 +11,7 @@ PREFACE = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n"
 DATA, HEADERS, RST_STREAM, SETTINGS, PING, GOAWAY, WINDOW_UPDATE, CONTINUATION = 0, 1, 3, 4, 6, 7, 8, 9
 END_STREAM, END_HEADERS, ACK = 1, 4, 1
 SERVICE = "/traverse.v1.RouteOptimizerService/"
+GCODE_SERVICE = "/traverse.v1.GcodeService/"
 
 
 def frame(kind, flags, stream, payload=b""):

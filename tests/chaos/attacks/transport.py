@@ -41,7 +41,7 @@ def rapid_reset(server, end):
         for _ in range(100):
             stream = connection.next_stream
             connection.next_stream += 2
-            block += frame(HEADERS, END_HEADERS, stream, connection.headers(SERVICE + "Optimize"))
+            block += frame(HEADERS, END_HEADERS, stream, connection.headers(server.methods[0]))
             block += frame(RST_STREAM, 0, stream, struct.pack(">I", 8))
         if not connection.send(block):
             connection.close()
@@ -84,12 +84,12 @@ def resets_of(methods, deadline=None):
 def half_closed(server, end):
     """Streams that end twice, send headers in the middle of a message, data after the end, or windows that overflow."""
     dice = random.Random(17)
-    body = message(options("auto") + layer(30) * 5)
+    body = message(server.small_job)
 
     def step():
         connection = Connection(server.port)
         for _ in range(10):
-            stream = connection.call(SERVICE + dice.choice(["OptimizeBatch", "Optimize", "ListStrategies"]))
+            stream = connection.call(dice.choice(server.methods))
             pieces = [frame(DATA, 0, stream, body[:len(body) // 2]), frame(DATA, END_STREAM, stream, body[len(body) // 2:]),
                       frame(HEADERS, END_HEADERS | END_STREAM, stream, literal("x-late", "1")), frame(DATA, END_STREAM, stream),
                       frame(WINDOW_UPDATE, 0, stream, struct.pack(">I", 0x7FFFFFFF)), frame(DATA, 0, stream + 2, b"early"),
@@ -126,7 +126,7 @@ def half_prefaces(server, end):
 def endless_headers(server, end):
     """CONTINUATION frames without an end."""
     connection = Connection(server.port)
-    connection.send(frame(HEADERS, 0, 1, connection.headers(SERVICE + "Optimize")))
+    connection.send(frame(HEADERS, 0, 1, connection.headers(server.methods[0])))
     block = b"".join(frame(CONTINUATION, 0, 1, b"".join(literal(f"x-{i}", "v" * 100) for i in range(120))) for _ in range(16))
 
     def step():
@@ -135,7 +135,7 @@ def endless_headers(server, end):
         if not connection.send(block):
             connection.close()
             connection = Connection(server.port)
-            connection.send(frame(HEADERS, 0, 1, connection.headers(SERVICE + "Optimize")))
+            connection.send(frame(HEADERS, 0, 1, connection.headers(server.methods[0])))
 
     until(end, step)
     connection.close()
@@ -164,7 +164,7 @@ def many_headers(server, end):
     def step():
         nonlocal connection
         if not connection.send(frame(HEADERS, END_HEADERS | END_STREAM, connection.next_stream,
-                                     connection.headers(SERVICE + "Optimize", extra)[:16000])):
+                                     connection.headers(server.methods[0], extra)[:16000])):
             connection.close()
             connection = Connection(server.port)
         else:
@@ -204,7 +204,7 @@ def bombs(server, end):
     body = message(bomb(60), compressed=True)
 
     def step():
-        for method in (SERVICE + "ListStrategies", SERVICE + "OptimizeBatch", HEALTH, REFLECTION):
+        for method in (*server.methods, HEALTH, REFLECTION):
             connection = Connection(server.port)
             stream = connection.call(method, [("grpc-encoding", "gzip")])
             Window(connection).send(stream, body, patience=0.2)
@@ -250,8 +250,8 @@ def idle_connections(server, end):
 def one_byte_a_time(server, end):
     """A message in single bytes."""
     connection = Connection(server.port)
-    stream = connection.call(SERVICE + "OptimizeBatch")
-    body = message(options() + layer(3))
+    stream = connection.call(server.methods[1])
+    body = message(server.small_job)
 
     def step():
         for at in range(len(body)):
@@ -291,7 +291,7 @@ def many_channels(server, end):
     """New connections as fast as they come, with a call each."""
     def step():
         connection = Connection(server.port)
-        connection.call(SERVICE + "ListStrategies", [(f"x-{i}", "v" * 500) for i in range(20)], END_HEADERS | END_STREAM)
+        connection.call(server.methods[-1], [(f"x-{i}", "v" * 500) for i in range(20)], END_HEADERS | END_STREAM)
         connection.close()
 
     until(end, step)
