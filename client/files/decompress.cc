@@ -16,8 +16,11 @@ namespace {
 
 constexpr size_t kFirstBuffer = size_t{1} << 16;
 
-// For the window, the dictionary and the rest of an xz stream; `xz -9` needs 65 MiB.
-constexpr uint64_t kXzMemoryLimit = uint64_t{512} << 20;
+// For the dictionary and the rest of an xz stream; `xz -9` needs 65 MiB, and `xz` 9.
+constexpr uint64_t kMostXzMemory = uint64_t{66} << 20;
+constexpr uint64_t kLittleXzMemory = uint64_t{10} << 20;
+
+constexpr size_t kGzipMemory = size_t{64} << 10;
 
 // The output: kept, or only counted.
 class Output {
@@ -101,9 +104,24 @@ absl::Status Gunzip(std::string_view bytes, Output& out) {
   return absl::OkStatus();
 }
 
+// What reading takes, as the first block states; 0 if that cannot be read.
+uint64_t XzMemory(std::string_view bytes) {
+  lzma_stream stream = LZMA_STREAM_INIT;
+  if (lzma_stream_decoder(&stream, /*memlimit=*/1, 0) != LZMA_OK) return 0;
+  uint8_t none = 0;
+  stream.next_in = reinterpret_cast<const uint8_t*>(bytes.data());
+  stream.avail_in = bytes.size();
+  stream.next_out = &none;
+  const lzma_ret code = lzma_code(&stream, LZMA_RUN);
+  const uint64_t memory = code == LZMA_MEMLIMIT_ERROR ? lzma_memusage(&stream) : 0;
+  lzma_end(&stream);
+  return memory;
+}
+
 absl::Status Unxz(std::string_view bytes, Output& out) {
   lzma_stream stream = LZMA_STREAM_INIT;
-  if (lzma_stream_decoder(&stream, kXzMemoryLimit, LZMA_CONCATENATED) != LZMA_OK) {
+  const uint64_t memory = std::clamp(XzMemory(bytes), kLittleXzMemory, kMostXzMemory);
+  if (lzma_stream_decoder(&stream, memory, LZMA_CONCATENATED) != LZMA_OK) {
     return absl::ResourceExhaustedError("no memory to decompress");
   }
   stream.next_in = reinterpret_cast<const uint8_t*>(bytes.data());
@@ -116,12 +134,17 @@ absl::Status Unxz(std::string_view bytes, Output& out) {
     code = lzma_code(&stream, LZMA_FINISH);
     out.Add(room.size() - stream.avail_out);
   }
+  const uint64_t needed = code == LZMA_MEMLIMIT_ERROR ? lzma_memusage(&stream) : 0;
   lzma_end(&stream);
 
   if (out.too_long()) return absl::OkStatus();  // the caller sees that it is too long
-  if (code == LZMA_MEMLIMIT_ERROR || code == LZMA_MEM_ERROR) {
-    return absl::ResourceExhaustedError("xz data need too much memory");
+  if (code == LZMA_MEMLIMIT_ERROR) {
+    return absl::ResourceExhaustedError(
+        absl::StrFormat("xz data need %d MiB of memory to decompress, but only %d are allowed: "
+                        "compress them with a smaller dictionary, as xz -9 does",
+                        needed >> 20, memory >> 20));
   }
+  if (code == LZMA_MEM_ERROR) return absl::ResourceExhaustedError("no memory to decompress");
   if (code == LZMA_BUF_ERROR) return absl::InvalidArgumentError("xz data end too early");
   if (code != LZMA_STREAM_END) return absl::InvalidArgumentError("xz data are damaged");
   return absl::OkStatus();
@@ -145,6 +168,18 @@ Compression DetectCompression(std::string_view bytes) {
     return Compression::kXz;
   }
   return Compression::kNone;
+}
+
+size_t DecoderBytes(std::string_view bytes, Compression compression) {
+  switch (compression) {
+    case Compression::kNone:
+      return 0;
+    case Compression::kGzip:
+      return kGzipMemory;
+    case Compression::kXz:
+      return std::clamp(XzMemory(bytes), kLittleXzMemory, kMostXzMemory);
+  }
+  return 0;
 }
 
 absl::StatusOr<std::string> Decompress(std::string_view bytes, Compression compression,

@@ -74,6 +74,14 @@ absl::Status TooLong(const BgcodeBlocks& file, size_t index, size_t bytes, size_
                       BlockPlace(file, index), bytes >> 20, max_bytes >> 20));
 }
 
+absl::Status CheckBlockSize(const BgcodeBlocks& file, size_t index) {
+  const size_t bytes = file.blocks[index].size;
+  if (bytes <= kMaxBlockBytes) return absl::OkStatus();
+  return absl::ResourceExhaustedError(
+      absl::StrFormat("%s: it states %d bytes of G-code, but a block may have %d at most",
+                      BlockPlace(file, index), bytes, kMaxBlockBytes));
+}
+
 // Makes pieces 0 to n - 1, a batch at a time, and appends them in order.
 template <typename Make>
 absl::Status AppendInBatches(size_t n, int threads, std::string& out, Make make) {
@@ -123,6 +131,7 @@ absl::StatusOr<std::string> GcodeText(const BgcodeBlocks& file, size_t max_bytes
   size_t announced = 0;
   for (size_t i = 0; i < file.blocks.size(); ++i) {
     if (!file.blocks[i].is_gcode()) continue;
+    if (absl::Status status = CheckBlockSize(file, i); !status.ok()) return status;
     indices.push_back(i);
     announced += file.blocks[i].size;
     if (announced > max_bytes) return TooLong(file, i, announced, max_bytes);
@@ -152,6 +161,7 @@ absl::StatusOr<size_t> GcodeTextBytes(const BgcodeBlocks& file, size_t max_bytes
   for (size_t i = 0; i < file.blocks.size(); ++i) {
     const Block& block = file.blocks[i];
     if (!block.is_gcode()) continue;
+    if (absl::Status status = CheckBlockSize(file, i); !status.ok()) return status;
     text.clear();
     const bool packed = static_cast<GcodeEncoding>(block.parameters[0]) != GcodeEncoding::kNone;
     const bool unpacked = packed && AppendBlockText(block, max_bytes, text).ok();

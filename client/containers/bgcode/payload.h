@@ -23,6 +23,10 @@ struct GcodeForm {
 // Most text in one G-code block, before and after MeatPack; a longer line is a block by itself.
 inline constexpr size_t kMaxBlockText = 65536;
 
+// Most bytes that a G-code block may state. Known writers stay below 64 KiB, and a block is in
+// memory as a whole, unpacked, before its text is counted.
+inline constexpr size_t kMaxBlockBytes = size_t{2} << 20;
+
 // The data of `block`, decompressed. InvalidArgument if they are damaged or the compression is
 // unknown. Allocates nothing for an impossible size.
 absl::StatusOr<std::string> DecompressBlock(const Block& block);
