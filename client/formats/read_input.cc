@@ -130,6 +130,8 @@ absl::StatusOr<InputJob> ReadJob(InputFile& file, size_t index, const GcodeOptio
   absl::StatusOr<InputJob> job = ReadGcodeJob(*std::move(text), named, gcode);
   if (!job.ok()) return job;
   job->name = file.name;
+  // Those of the container once: they grow with its plates.
+  if (index > 0) return job;
   std::vector<std::pair<std::string, std::string>> facts = file.container->Facts();
   job->facts.insert(job->facts.begin(), facts.begin(), facts.end());
   return job;
