@@ -11,6 +11,7 @@
 #include <cmath>
 #include <utility>
 
+#include "server/net/give_way.h"
 #include "server/net/socket_info.h"
 #include "server/net/tcp_listen.h"
 
@@ -34,9 +35,6 @@ constexpr double kFirstWindow = 68'000;
 
 // Unused allowance of a message for its frames and headers is no licence to send more later.
 constexpr double kMostCredit = -(256 << 10);
-
-// A connection that says nothing for so long may be closed for a new one.
-constexpr auto kIdle = std::chrono::seconds(1);
 
 // Bytes pending without a job may belong to calls that have not been processed yet,
 // for this long. This shows a flood of calls to other services, such as health
@@ -175,36 +173,15 @@ void Connections::WaitForRoom() {
   poll(nullptr, 0, kBusyMilliseconds);  // its files are closed in a moment
 }
 
-// Closes the connection that has been idle for longest; if none has been so for a while, then of
-// the address that has most of them, if that has more than the one of `peer`, for whom room is
-// made.
+// For a new one of `peer`, see GiveWay.
 bool Connections::MakeRoom(const std::string& peer) {
-  std::map<std::string, int> counts;  // by address
-  auto most = counts.end();
+  GiveWay<const std::string*> give_way;
   for (const auto& [other, connection] : table_) {
-    const auto count = counts.try_emplace(AddressOf(other)).first;
-    if (++count->second > (most == counts.end() ? 0 : most->second)) most = count;
+    give_way.Offer(&other, AddressOf(other), connection.moved, connection.jobs > 0);
   }
-  const Clock::time_point now = Clock::now();
-  auto oldest = table_.end();
-  auto oldest_of_most = table_.end();
-  const auto offer = [](Table::iterator it, Table::iterator end, Table::iterator& least) {
-    if (least == end || it->second.moved < least->second.moved) least = it;
-  };
-  for (auto it = table_.begin(); it != table_.end(); ++it) {
-    if (it->second.jobs > 0) continue;
-    offer(it, table_.end(), oldest);
-    if (AddressOf(it->first) == most->first) offer(it, table_.end(), oldest_of_most);
-  }
-  if (oldest == table_.end()) return false;
-  if (now - oldest->second.moved >= kIdle) {
-    Cut(oldest);
-    return true;
-  }
-  const auto own = counts.find(AddressOf(peer));
-  const int own_count = own == counts.end() ? 0 : own->second;
-  if (oldest_of_most == table_.end() || most->second <= own_count + 1) return false;
-  Cut(oldest_of_most);
+  const std::string* chosen = nullptr;
+  if (!give_way.Choose(AddressOf(peer), Clock::now(), chosen)) return false;
+  Cut(table_.find(*chosen));
   return true;
 }
 

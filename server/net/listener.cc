@@ -181,7 +181,7 @@ absl::Status Listener::Serve(grpc::Service& service, const std::string& name) {
   if (server_ == nullptr || (!options_.listen.empty() && port_ == 0)) {
     return absl::UnavailableError(absl::StrCat("cannot listen on ", options_.listen));
   }
-  if (options_.max_memory != INT64_MAX) {
+  if (options_.max_memory != INT64_MAX && hooks_.memory.set_short) {
     memory_watch_.emplace(options_.max_memory, connections_.get(), hooks_.memory);
   }
   if (connections_ != nullptr) {

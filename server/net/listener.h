@@ -59,7 +59,7 @@ class Listener {
  public:
   struct Hooks {
     std::function<bool(const std::string& peer)> end_job;  // see Connections::Hooks
-    MemoryWatch::Hooks memory;
+    MemoryWatch::Hooks memory;  // none: the program watches its memory itself
   };
 
   // Binds the port. `certificates`: null for plaintext. Errors: Unavailable `cannot listen on
