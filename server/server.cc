@@ -103,8 +103,7 @@ absl::Status Server::Build(const ServerOptions& options) {
   absl::StatusOr<std::unique_ptr<Listener>> listener = Listener::Open(
       listen, core_.files.certificates,
       {.end_job = [this](const std::string& peer) { return core_.EndOversizeJob(peer); },
-       .memory = {.set_short = [this](bool is_short) { core_.SetMemoryShort(is_short); },
-                  .on_cut = [this] { core_.LogCutConnection(); }}});
+       .memory = {}});  // the core watches it
   if (!listener.ok()) return listener.status();
   listener_ = *std::move(listener);
   core_.Watch(listener_->connections(), options.max_memory);

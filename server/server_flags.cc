@@ -64,6 +64,10 @@ ABSL_FLAG(std::vector<std::string>, allowed_clients, {},
 ABSL_FLAG(std::string, token_file, "",
           "File of lines NAME SHA256-OF-TOKEN; callers then need a bearer token. Reloaded when it "
           "changes");
+ABSL_FLAG(
+    std::vector<std::string>, caller_weights, {},
+    "CALLER=WEIGHT,...: shares of the workers' time, by the names of --token_file or of client "
+    "certificates, or by address; others have 1");
 ABSL_FLAG(int32_t, max_streams_per_connection, 100, "Most calls at a time on one connection");
 ABSL_FLAG(int32_t, max_connections, 0,
           "Most connections; 0: as many as the limit of open files allows");
@@ -111,6 +115,9 @@ absl::Status CheckRanges() {
   if (absl::GetFlag(FLAGS_max_wait) <= absl::ZeroDuration())
     return BadFlag("max_wait", "not above 0");
   if (!(absl::GetFlag(FLAGS_max_slowdown) >= 1)) return BadFlag("max_slowdown", "below 1");
+  if (const auto weights = ParseWeights(absl::GetFlag(FLAGS_caller_weights)); !weights.ok()) {
+    return weights.status();
+  }
   return CheckDaemonFlags(absl::GetFlag(FLAGS_drain_timeout), absl::GetFlag(FLAGS_allowed_clients),
                           absl::GetFlag(FLAGS_tls_client_ca));
 }
@@ -180,6 +187,7 @@ ServerOptions OptionsFromFlags() {
   ServiceOptions& service = options.service;
   const int threads = absl::GetFlag(FLAGS_threads);
   service.threads = threads > 0 ? threads : UsableCores();
+  service.caller_weights = *ParseWeights(absl::GetFlag(FLAGS_caller_weights));
   service.worker_nice = absl::GetFlag(FLAGS_worker_nice);
   service.watchdog = absl::GetFlag(FLAGS_watchdog);
   service.log_path = absl::GetFlag(FLAGS_log_file);

@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/time/clock.h"
+#include "server/jobs/retry_delay.h"
 #include "server/net/socket_info.h"
 
 namespace traverse {
@@ -21,6 +22,11 @@ constexpr absl::Duration kMostWatch = absl::Seconds(1);
 // After jobs of 100 MB the allocator keeps most of it for similar jobs. Returning it takes some
 // milliseconds, in which others who allocate wait.
 constexpr auto kIdleBeforeTrim = std::chrono::seconds(5);
+
+// How long a job may have nothing to do while somebody waits for a place, and when it may come
+// back.
+constexpr auto kGiveWay = std::chrono::seconds(2);
+constexpr absl::Duration kGiveWayRetryDelay = absl::Seconds(1);
 
 // What paused searches may hold in addition to the layers that they work on.
 constexpr double kSearchShare = 0.25;
@@ -36,10 +42,12 @@ ServiceCore::ServiceCore(const ServiceOptions& options)
     : limits(options.limits),
       files(options.log ? std::make_unique<JobLog>(options.log_path) : std::make_unique<JobLog>(),
             [this](const std::string& what) { metrics.CountReloadFailure(what); }),
-      admission(WithWorkers(options.admission, std::max(1, options.threads)),
-                [this](Refusal refusal) { metrics.CountRefusal(refusal); }),
+      admission(
+          WithWorkers(options.admission, std::max(1, options.threads)),
+          [this](Refusal refusal) { metrics.CountRefusal(refusal); }, [this] { GiveWay(); }),
       pool(options.threads, WorkerPool::ThreadCpuSeconds, options.worker_nice),
       wakes_(WakeLateness::kPeriod, [this] { wake_lateness.Tick(Budget::Clock::now()); }) {
+  pool.SetWeights(options.caller_weights);
   if (options.watchdog != absl::InfiniteDuration()) {
     watchdog_.emplace(pool, options.watchdog, [this](const SilentTask& task) {
       files.log->Event(JobLog::Level::kError, "worker_silent",
@@ -63,6 +71,21 @@ void ServiceCore::AbortStalled() {
   for (const auto& run : Runs()) {
     run->AbortIfStalled(absl::ToChronoNanoseconds(limits.idle_timeout), status);
   }
+}
+
+void ServiceCore::GiveWay() {
+  std::shared_ptr<JobRun> idlest;
+  for (const auto& run : Runs()) {
+    if (!run->IsStalled(kGiveWay)) continue;
+    if (idlest == nullptr || run->progress() < idlest->progress()) idlest = run;
+  }
+  if (idlest == nullptr) return;
+  idlest->AbortIfStalled(
+      kGiveWay, WithRetryDelay(absl::ResourceExhaustedError(
+                                   absl::StrCat("nothing was sent or read for ",
+                                                absl::FormatDuration(absl::FromChrono(kGiveWay)),
+                                                " while others waited for a place")),
+                               kGiveWayRetryDelay));
 }
 
 bool ServiceCore::TrimIfIdle(std::chrono::steady_clock::time_point now) {
@@ -148,15 +171,18 @@ void ServiceCore::Watch(Connections* connections, int64_t max_memory) {
   max_memory_ = max_memory;
   if (max_memory == INT64_MAX) return;
   pool.LimitMemory(static_cast<int64_t>(kSearchShare * static_cast<double>(max_memory)));
-}
-
-void ServiceCore::SetMemoryShort(bool is_short) {
-  admission.SetMemoryShort(is_short);
-  pool.SetMemoryShort(is_short);
-}
-
-void ServiceCore::LogCutConnection() {
-  files.log->Event(JobLog::Level::kWarning, "connection_cut", {{"message", "memory is short"}});
+  watch_memory_.emplace(max_memory, connections,
+                        MemoryWatch::Hooks{.set_short =
+                                               [this](bool is_short) {
+                                                 admission.SetMemoryShort(is_short);
+                                                 pool.SetMemoryShort(is_short);
+                                               },
+                                           .on_cut =
+                                               [this] {
+                                                 files.log->Event(JobLog::Level::kWarning,
+                                                                  "connection_cut",
+                                                                  {{"message", "memory is short"}});
+                                               }});
 }
 
 void ServiceCore::AbortAll(const absl::Status& status) {

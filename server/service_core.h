@@ -20,6 +20,7 @@
 #include "server/jobs/return_lag.h"
 #include "server/jobs/worker_pool.h"
 #include "server/net/connections.h"
+#include "server/net/memory_watch.h"
 #include "server/ops/metrics/metrics.h"
 #include "server/ops/operator_files.h"
 #include "server/ops/periodic.h"
@@ -47,6 +48,7 @@ struct ServiceOptions {
   int worker_nice = 0;                                 // added to the workers' nice value
   JobLimits limits;
   AdmissionLimits admission;
+  std::map<std::string, double> caller_weights;  // shares of the workers' time; others have 1
   AuthOptions auth;
   std::string log_path;  // empty: stderr
   bool log = true;
@@ -62,13 +64,9 @@ class ServiceCore {
   void Register(const std::shared_ptr<JobRun>& run, const std::string& peer);
   void Unregister(const std::shared_ptr<JobRun>& run, const std::string& peer);
 
-  // Reports to `connections`, which may be null and must outlive their calls, and bounds what
-  // searches hold. `max_memory`: what the process may use, in bytes.
+  // Begins to watch memory, and reports to `connections`, which may be null and must outlive their
+  // calls. `max_memory`: what the process may use, in bytes.
   void Watch(Connections* connections, int64_t max_memory);
-
-  // Admits no job while memory is short.
-  void SetMemoryShort(bool is_short);
-  void LogCutConnection();
 
   // Passed on to Connections.
   void OnCall(const std::string& peer);
@@ -86,6 +84,10 @@ class ServiceCore {
 
   // Ends the running jobs whose callers do nothing.
   void AbortStalled();
+
+  // Ends the job whose caller has done nothing for longest, if that was a while: all places are
+  // taken, and somebody has none.
+  void GiveWay();
 
   // Returns memory that the allocator keeps to the system, once no job has run for some seconds.
   // One thread must call it regularly. Returns whether it did so now.
@@ -133,6 +135,7 @@ class ServiceCore {
   Periodic wakes_;  // measures wake_lateness
   std::optional<Watchdog> watchdog_;
   std::optional<Periodic> watch_;  // last: calls AbortStalled and TrimIfIdle
+  std::optional<MemoryWatch> watch_memory_;
 };
 
 }  // namespace traverse

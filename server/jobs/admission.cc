@@ -56,8 +56,9 @@ const char* RefusalName(Refusal refusal) {
   return "other";
 }
 
-Admission::Admission(const AdmissionLimits& limits, std::function<void(Refusal)> on_refusal)
-    : limits_(limits), on_refusal_(std::move(on_refusal)) {}
+Admission::Admission(const AdmissionLimits& limits, std::function<void(Refusal)> on_refusal,
+                     std::function<void()> give_way)
+    : limits_(limits), on_refusal_(std::move(on_refusal)), give_way_(std::move(give_way)) {}
 
 absl::StatusOr<std::unique_ptr<Admission::Ticket>> Admission::Admit(const std::string& caller,
                                                                     int64_t points) {
@@ -76,6 +77,7 @@ absl::StatusOr<std::unique_ptr<Admission::Ticket>> Admission::Admit(const std::s
     }
   }
   on_refusal_(no->refusal);
+  if (no->newcomer) give_way_();
   return no->status;
 }
 
@@ -90,23 +92,36 @@ std::optional<Admission::No> Admission::Check(const std::string& caller, int64_t
         WithRetryDelay(absl::ResourceExhaustedError("the server is short of memory; try again"),
                        kJobsRetryDelay)};
   }
-  if (jobs_ >= limits_.max_jobs) {
-    return No{
-        Refusal::kJobs,
-        WithRetryDelay(absl::ResourceExhaustedError(absl::StrCat(
-                           "all ", limits_.max_jobs, " places for jobs are taken; try again")),
-                       kJobsRetryDelay)};
-  }
+  if (std::optional<No> no = CheckPlaces(caller); no) return no;
+  return CheckPoints(caller, points);
+}
+
+std::optional<Admission::No> Admission::CheckPlaces(const std::string& caller) const {
   const auto of_caller = callers_.find(caller);
-  if (of_caller != callers_.end() &&
-      static_cast<int>(of_caller->second.jobs.size()) >= limits_.max_jobs_per_caller) {
+  const int own = of_caller == callers_.end() ? 0 : static_cast<int>(of_caller->second.jobs.size());
+  if (own >= limits_.max_jobs_per_caller) {
     return No{Refusal::kCallerJobs,
               WithRetryDelay(absl::ResourceExhaustedError(absl::StrCat(
                                  "this caller has all of its ", limits_.max_jobs_per_caller,
                                  " jobs in flight; try again when one has ended")),
                              kJobsRetryDelay)};
   }
-  return CheckPoints(caller, points);
+  if (jobs_ >= limits_.max_jobs) {
+    return No{
+        Refusal::kJobs,
+        WithRetryDelay(absl::ResourceExhaustedError(absl::StrCat(
+                           "all ", limits_.max_jobs, " places for jobs are taken; try again")),
+                       kJobsRetryDelay),
+        own == 0};
+  }
+  if (own > 0 && jobs_ >= limits_.max_jobs - limits_.max_jobs / 4) {
+    return No{Refusal::kJobs, WithRetryDelay(absl::ResourceExhaustedError(absl::StrCat(
+                                                 "of ", limits_.max_jobs,
+                                                 " places for jobs the last ", limits_.max_jobs / 4,
+                                                 " are for callers who have none; try again")),
+                                             kJobsRetryDelay)};
+  }
+  return std::nullopt;
 }
 
 std::optional<Admission::No> Admission::CheckPoints(const std::string& caller,

@@ -139,10 +139,15 @@ class Admission {
     std::function<bool()> is_worked_on_ TRAVERSE_GUARDED_BY(admission_.mutex_);
   };
 
-  // Calls `on_refusal` for each refusal, from any thread.
-  Admission(const AdmissionLimits& limits, std::function<void(Refusal)> on_refusal);
+  // Calls `on_refusal` for each refusal, from any thread. `give_way`: called when all places are
+  // taken and a caller who has none asks for one; ends a job that has nothing to do, so that there
+  // is a place when the caller comes back.
+  Admission(
+      const AdmissionLimits& limits, std::function<void(Refusal)> on_refusal,
+      std::function<void()> give_way = [] {});
 
-  // Admits a job of `caller` that is about to queue `points`. Errors: Unavailable while draining;
+  // Admits a job of `caller` that is about to queue `points`. The last quarter of the places is for
+  // callers who have none. Errors: Unavailable while draining;
   // ResourceExhausted with a retry delay (server/jobs/retry_delay.h) if a limit is reached. An
   // empty queue admits a job of any size.
   absl::StatusOr<std::unique_ptr<Ticket>> Admit(const std::string& caller, int64_t points);
@@ -166,9 +171,11 @@ class Admission {
   struct No {
     Refusal refusal;
     absl::Status status;
+    bool newcomer = false;  // for want of a place, though the caller has none
   };
   std::optional<No> Check(const std::string& caller, int64_t points) const
       TRAVERSE_REQUIRES(mutex_);
+  std::optional<No> CheckPlaces(const std::string& caller) const TRAVERSE_REQUIRES(mutex_);
   std::optional<No> CheckPoints(const std::string& caller, int64_t points) const
       TRAVERSE_REQUIRES(mutex_);
   std::optional<No> CheckQueues(const std::string& caller, int64_t points) const
@@ -199,6 +206,7 @@ class Admission {
 
   const AdmissionLimits limits_;
   const std::function<void(Refusal)> on_refusal_;
+  const std::function<void()> give_way_;
   mutable Mutex mutex_;
   bool draining_ TRAVERSE_GUARDED_BY(mutex_) = false;
   int jobs_ TRAVERSE_GUARDED_BY(mutex_) = 0;

@@ -90,15 +90,22 @@ void JobRun::Abort(const absl::Status& status) {
   Release();
 }
 
+bool JobRun::Stalled(std::chrono::steady_clock::duration time) const {
+  const bool callers_turn = writing_.has_value() || !closed_;
+  return !finished_ && callers_turn && !port_.IsWorkedOn() &&
+         std::chrono::steady_clock::now() - progress_ >= time;
+}
+
+bool JobRun::IsStalled(std::chrono::steady_clock::duration time) const {
+  MutexLock lock(mutex_);
+  return Stalled(time);
+}
+
 void JobRun::AbortIfStalled(std::chrono::steady_clock::duration time, const absl::Status& status) {
   bool unread = false;
   {
     MutexLock lock(mutex_);
-    const bool callers_turn = writing_.has_value() || !closed_;
-    if (finished_ || !callers_turn || port_.IsWorkedOn() ||
-        std::chrono::steady_clock::now() - progress_ < time) {
-      return;
-    }
+    if (!Stalled(time)) return;
     unread = writing_.has_value();
     if (abort_ && !unread) return;
     ++holds_;

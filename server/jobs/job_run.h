@@ -124,6 +124,9 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
   // nothing after the first call, or after the end.
   void Abort(const absl::Status& status);
 
+  // Whether the caller has neither sent nor read anything for `time` although the job waits for it.
+  bool IsStalled(std::chrono::steady_clock::duration time) const;
+
   // Aborts with `status` if the caller has neither sent nor read anything for `time` although the
   // job waits for it: no worker has work for the job. Gives up a write that nobody reads.
   void AbortIfStalled(std::chrono::steady_clock::duration time, const absl::Status& status);
@@ -165,6 +168,8 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
   void Feed() TRAVERSE_REQUIRES(mutex_);
 
   void TakeLayer(LayerOutcome outcome);
+
+  bool Stalled(std::chrono::steady_clock::duration time) const TRAVERSE_REQUIRES(mutex_);
 
   // Notes that the job has made progress.
   void NoteProgress() TRAVERSE_REQUIRES(mutex_) { progress_ = std::chrono::steady_clock::now(); }

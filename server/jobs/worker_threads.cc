@@ -26,13 +26,18 @@ WorkerPool::Worker* WorkerPool::WorkerOfThisThread() const {
   return nullptr;
 }
 
+double WorkerPool::WeightOf(const std::string& caller) const {
+  const auto weight = weights_.find(caller);
+  return weight == weights_.end() ? 1 : weight->second;
+}
+
 // What the worker did since its slice began.
 void WorkerPool::Charge(Worker& worker) {
   QueueImpl& queue = *worker.task.queue;
   const double worked = clock_() - worker.slice_worked;
   queue.busy += std::chrono::duration<double>(Clock::now() - worker.slice_begin).count();
   queue.entry->turns.Charge(queue, worked);
-  turns_.Charge(*queue.entry, worked);
+  turns_.Charge(*queue.entry, worked / WeightOf(queue.caller));
 }
 
 bool WorkerPool::Pause(Worker& worker) {

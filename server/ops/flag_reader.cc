@@ -8,6 +8,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "server/version.h"
 
@@ -151,6 +152,21 @@ absl::Status CheckDaemonFlags(absl::Duration drain_timeout,
     return BadFlag("allowed_clients", "needs --tls_client_ca");
   }
   return absl::OkStatus();
+}
+
+absl::StatusOr<std::map<std::string, double>> ParseWeights(const std::vector<std::string>& flag) {
+  std::map<std::string, double> weights;
+  for (const std::string& entry : flag) {
+    const size_t equals = entry.rfind('=');
+    double weight = 0;
+    if (equals == std::string::npos || equals == 0 ||
+        !absl::SimpleAtod(entry.substr(equals + 1), &weight) || !(weight > 0 && weight <= 1000)) {
+      return BadFlag("caller_weights",
+                     absl::StrCat("'", entry, "' is not CALLER=WEIGHT with a weight up to 1000"));
+    }
+    weights[entry.substr(0, equals)] = weight;
+  }
+  return weights;
 }
 
 absl::Status BadFlag(const std::string& name, const std::string& what) {

@@ -6,6 +6,7 @@
 #define TRAVERSE_SERVER_OPS_FLAG_READER_H_
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,9 @@ absl::Status CheckDaemonFlags(absl::Duration drain_timeout,
                               const std::string& tls_client_ca);
 
 // InvalidArgument `--name: what`.
+// CALLER=WEIGHT, weights above 0 and no more than 1000. InvalidArgument that names the entry.
+absl::StatusOr<std::map<std::string, double>> ParseWeights(const std::vector<std::string>& flag);
+
 absl::Status BadFlag(const std::string& name, const std::string& what);
 
 }  // namespace traverse

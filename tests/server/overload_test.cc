@@ -105,6 +105,26 @@ TEST(Overload, JobsBeyondTheLimitAreRefusedWithAdviceWhenToRetry) {
   EXPECT_TRUE(second.Finish().ok());
 }
 
+TEST(Overload, AnIdleStreamGivesWayToACallerWithoutAPlace) {
+  TestService service([](ServerOptions& options) { options.service.admission.max_jobs = 1; });
+  OpenStream idle(service);
+  ASSERT_TRUE(idle.ReadLayer());
+  Admission& admission = service.server().core().admission;
+
+  // The service's caller has a place: nobody gives way to him.
+  EXPECT_FALSE(service.Batch(MakeBatch(1)).status.ok());
+  EXPECT_FALSE(admission.Admit("another", 1).ok());
+  EXPECT_EQ(admission.jobs(), 1) << "not yet idle for long";
+  std::this_thread::sleep_for(std::chrono::milliseconds(2100));
+  EXPECT_FALSE(admission.Admit("another", 1).ok());
+  EXPECT_TRUE(service.Eventually([&] { return admission.jobs() == 0; }));
+
+  const grpc::Status ended = idle.Finish();
+  EXPECT_EQ(ended.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_TRUE(RetryDelay(ended).has_value());
+  EXPECT_TRUE(service.Batch(MakeBatch(1)).status.ok());
+}
+
 // What becomes of a batch of which only the headers are sent.
 grpc::Status HeadersOnly(TestService& service, const std::string& message_bytes) {
   grpc::GenericStub stub(service.shared_channel());

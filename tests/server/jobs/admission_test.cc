@@ -61,6 +61,26 @@ TEST_F(AdmissionTest, PlacesAreLimitedAndFreedWithTheTicket) {
   EXPECT_THAT(refusals_, ElementsAre("jobs"));
 }
 
+TEST_F(AdmissionTest, TheLastQuarterIsForCallersWhoHaveNone) {
+  int asked = 0;
+  Admission admission({.max_jobs = 8}, Count(), [&asked] { ++asked; });
+  std::vector<std::unique_ptr<Admission::Ticket>> held;
+  for (int i = 0; i < 6; ++i) held.push_back(*admission.Admit(i % 2 == 0 ? "a" : "b", 1));
+
+  const auto refused = admission.Admit("a", 1);
+  EXPECT_THAT(refused, StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("have none")));
+  EXPECT_TRUE(refused.status().GetPayload(kRetryInfo).has_value());
+  held.push_back(*admission.Admit("c", 1));
+  EXPECT_FALSE(admission.Admit("c", 1).ok());
+  held.push_back(*admission.Admit("d", 1));
+  EXPECT_EQ(asked, 0);
+
+  // Somebody who has none finds no place: an idle job is to give way.
+  EXPECT_THAT(admission.Admit("e", 1),
+              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("all 8 places")));
+  EXPECT_EQ(asked, 1);
+}
+
 TEST_F(AdmissionTest, CallersHaveLimitsOfTheirOwn) {
   Admission admission({.max_jobs = 10, .max_jobs_per_caller = 1}, Count());
   auto first = admission.Admit("a", 1);

@@ -85,6 +85,21 @@ TEST(WorkerTurns, LongTasksShareTheirTime) {
   b.cancel.Cancel();
 }
 
+TEST(WorkerTurns, ACallerWithALargerWeightHasMoreTime) {
+  Endless urgent, usual;
+  WorkerPool pool(1);
+  pool.SetWeights({{"urgent", 4}});
+  const auto first = pool.NewQueue("urgent");
+  const auto second = pool.NewQueue("usual");
+  first->Submit(urgent.On(first));
+  second->Submit(usual.On(second));
+  WaitFor([&] { return first->busy_seconds() + second->busy_seconds() > 1; });
+
+  EXPECT_GT(first->busy_seconds(), 2.5 * second->busy_seconds());
+  urgent.cancel.Cancel();
+  usual.cancel.Cancel();
+}
+
 TEST(WorkerTurns, APausedTaskEndsAtItsDeadlineAndWhenItIsCancelled) {
   Endless busy;
   Endless cancelled;
