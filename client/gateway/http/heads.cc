@@ -1,6 +1,7 @@
 #include "client/gateway/http/heads.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -12,6 +13,34 @@ namespace traverse::gateway {
 namespace beast = boost::beast;
 namespace http = boost::beast::http;
 
+// Beast reads values where they came in, behind their names, and joins only folded ones elsewhere.
+void HeadParser::on_field_impl(http::field name, beast::string_view name_text,
+                               beast::string_view value, beast::error_code& /*error*/) {
+  constexpr std::uintptr_t kMostHead = 1 << 24;
+  const auto from = reinterpret_cast<std::uintptr_t>(name_text.data());
+  folded_ |= !value.empty() && reinterpret_cast<std::uintptr_t>(value.data()) - from > kMostHead;
+  get().insert(name, name_text, value);
+}
+
+namespace {
+
+// What the head lacks or has too much of, if so.
+const char* HeadProblem(const HeadParser& parser) {
+  const auto& head = parser.get();
+  if (parser.folded()) return "a header goes on in another line";
+  const auto hosts = head.count(http::field::host);
+  if (hosts > 1) return "there are two headers Host";
+  if (hosts == 0 && head.version() >= 11) return "the header Host is missing";
+  constexpr const char* kHostCharacters =
+      "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz.-_~!$&'()*+,;=%:[]";
+  if (head[http::field::host].find_first_not_of(kHostCharacters) != beast::string_view::npos) {
+    return "the header Host is no name or address";
+  }
+  return nullptr;
+}
+
+}  // namespace
+
 bool HasKnownCoding(const http::fields& head) {
   const auto coding = head[http::field::transfer_encoding];
   return coding.empty() || beast::iequals(coding, "chunked");
@@ -21,8 +50,11 @@ std::variant<HttpResponse, HttpRequest> RequestOf(const HeadParser& parser) {
   HttpRequest request;
   const auto& head = parser.get();
   const auto text = [](beast::string_view view) { return std::string(view.data(), view.size()); };
-  absl::StatusOr<Target> target = ParseTarget(text(head.target()));
+  std::string_view relative(head.target().data(), head.target().size());
+  const std::string origin = TakeOrigin(relative);
+  absl::StatusOr<Target> target = ParseTarget(relative);
   if (!target.ok()) return Problem(400, std::string(target.status().message()));
+  if (const char* problem = HeadProblem(parser); problem != nullptr) return Problem(400, problem);
   if (!HasKnownCoding(head)) return Problem(501, "the only transfer encoding supported is chunked");
   request.method = text(head.method_string());
   request.path = std::move(target->path);
@@ -31,7 +63,8 @@ std::variant<HttpResponse, HttpRequest> RequestOf(const HeadParser& parser) {
     std::string name = text(field.name_string());
     std::transform(name.begin(), name.end(), name.begin(),
                    [](unsigned char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
-    request.headers.emplace_back(std::move(name), text(field.value()));
+    const bool replaced = name == "host" && !origin.empty();
+    request.headers.emplace_back(std::move(name), replaced ? origin : text(field.value()));
   }
   if (const auto length = parser.content_length()) request.content_length = *length;
   return request;

@@ -13,7 +13,17 @@
 namespace traverse::gateway {
 
 // For a request whose body is read piece by piece.
-using HeadParser = boost::beast::http::request_parser<boost::beast::http::buffer_body>;
+class HeadParser : public boost::beast::http::request_parser<boost::beast::http::buffer_body> {
+ public:
+  // Whether a header goes on in another line, which HTTP/1.1 gave up: proxies read it otherwise.
+  bool folded() const { return folded_; }
+
+ private:
+  void on_field_impl(boost::beast::http::field name, boost::beast::string_view name_text,
+                     boost::beast::string_view value, boost::beast::error_code& error) override;
+
+  bool folded_ = false;
+};
 
 // Whether the body comes plain or in chunks. Beast treats other codings as no body at all: the body
 // would become the next request.

@@ -5,6 +5,7 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <chrono>
 #include <map>
 #include <set>
 #include <thread>
@@ -13,6 +14,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "client/gateway/http/session.h"
+#include "server/net/give_way.h"
 
 namespace traverse::gateway {
 namespace {
@@ -78,6 +80,8 @@ class BeastServer : public HttpServer {
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   absl::Status Listen() {
     const auto address = SplitAddress(options_.listen);
     if (!address.ok()) return address.status();
@@ -121,7 +125,7 @@ class BeastServer : public HttpServer {
     const tcp::endpoint peer = socket.remote_endpoint(error);
     if (error) return;
     const std::string address = PeerHostOf(peer);
-    if (connections_ >= options_.limits.max_connections) {
+    if (connections_ >= options_.limits.max_connections && !MakeRoom(address)) {
       return Refuse(std::move(socket), "too many connections");
     }
     if (addresses_[address] >= options_.limits.max_connections_per_address) {
@@ -139,6 +143,18 @@ class BeastServer : public HttpServer {
     Serve(std::make_shared<Session<TlsStream>>(loop_, TlsStream(std::move(stream), *context),
                                                context, options_.limits, handler_, address),
           address);
+  }
+
+  bool MakeRoom(const std::string& address) {
+    GiveWay<AnySession*> give_way;
+    for (AnySession* session : sessions_) {
+      const auto since = session->idle_since();
+      give_way.Offer(session, session->peer_host(), since.value_or(Clock::now()), !since);
+    }
+    AnySession* chosen = nullptr;
+    if (!give_way.Choose(address, Clock::now(), chosen)) return false;
+    chosen->Close();
+    return true;
   }
 
   // Sends the reason if that needs no waiting.
@@ -184,7 +200,7 @@ absl::Duration HttpLimits::TimeForPiece(absl::Duration elapsed, uint64_t bytes) 
   const absl::Duration allowed =
       idle_time + absl::Seconds(static_cast<double>(bytes) /
                                 static_cast<double>(std::max<int64_t>(1, min_bytes_per_second)));
-  return std::clamp(allowed - elapsed, absl::ZeroDuration(), idle_time);
+  return std::clamp(std::min(allowed, body_time) - elapsed, absl::ZeroDuration(), idle_time);
 }
 
 std::string HttpRequest::Header(std::string_view name) const {

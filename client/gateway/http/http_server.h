@@ -28,6 +28,9 @@ struct HttpLimits {
   // A body may take `idle_time`, and in addition a second per this many bytes, either way.
   int64_t min_bytes_per_second = 4096;
 
+  // The most for a whole body, either way.
+  absl::Duration body_time = absl::Minutes(30);
+
   // How long the next piece may take, for a body that began `elapsed` ago and has had `bytes`.
   absl::Duration TimeForPiece(absl::Duration elapsed, uint64_t bytes) const;
 };

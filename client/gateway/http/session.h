@@ -27,6 +27,7 @@
 #include <utility>
 
 #include "absl/time/clock.h"
+#include "client/gateway/http/any_session.h"
 #include "client/gateway/http/heads.h"
 #include "client/gateway/http/http_server.h"
 #include "client/gateway/http/message.h"
@@ -42,15 +43,6 @@ namespace beast = boost::beast;
 namespace http = boost::beast::http;
 
 using TlsStream = net::ssl::stream<beast::tcp_stream>;
-
-// The server's view of a connection.
-class AnySession {
- public:
-  virtual ~AnySession() = default;
-
-  // Ends it if it waits for a request; otherwise it ends after the current one.
-  virtual void Drain() = 0;
-};
 
 // REQUIRES: all of it runs on the one thread of `loop`.
 template <typename Stream>
@@ -88,7 +80,18 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
   void Drain() override {
     assert(IsInLoop());
     draining_ = true;
-    if (idle_) Lowest().cancel();
+    if (idle_since_) Lowest().cancel();
+  }
+
+  std::optional<std::chrono::steady_clock::time_point> idle_since() const override {
+    return idle_since_;
+  }
+  const std::string& peer_host() const override { return peer_host_; }
+
+  void Close() override {
+    assert(IsInLoop());
+    idle_since_.reset();
+    Lowest().close();
   }
 
  private:
@@ -147,11 +150,11 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
     parser.header_limit(limits_.max_head_bytes);
     parser.body_limit(std::numeric_limits<uint64_t>::max());  // the handler knows
     SetTimer(limits_.head_time);
-    idle_ = true;
+    idle_since_ = Clock::now();
     boost::system::error_code error;
     co_await http::async_read_header(stream_, buffer_, parser,
                                      net::redirect_error(net::use_awaitable, error));
-    idle_ = false;
+    idle_since_.reset();
     if (error) {
       unread_ = true;
       std::optional<HttpResponse> refusal = HeadFault(error, timed_out_, buffer_.size() > 0);
@@ -189,7 +192,7 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
   // Passes the body to `sink`. Returns a response if it did not end well.
   net::awaitable<std::optional<HttpResponse>> ReadBody(HeadParser& parser, BodySink& sink) {
     boost::system::error_code error;
-    const bool wait = parser.get()[http::field::expect] == "100-continue";
+    const bool wait = beast::iequals(parser.get()[http::field::expect], "100-continue");
     if (wait && !parser.is_done() && buffer_.size() == 0) {
       static const std::string go_on = "HTTP/1.1 100 Continue\r\n\r\n";
       co_await net::async_write(stream_, net::buffer(go_on),
@@ -373,8 +376,8 @@ class Session : public AnySession, public std::enable_shared_from_this<Session<S
   bool timed_out_ = false;
   net::steady_timer wake_;
   std::shared_ptr<ReplyQueue> reply_;  // for the current request
-  bool idle_ = false;                  // waits for a request
-  bool unread_ = false;                // part of a body is unread
+  std::optional<Clock::time_point> idle_since_;
+  bool unread_ = false;  // part of a body is unread
   bool draining_ = false;
 };
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 
@@ -73,6 +74,20 @@ bool IsUtf8(std::string_view text) {
 }
 
 }  // namespace
+
+std::string TakeOrigin(std::string_view& target) {
+  for (const std::string_view scheme : {"http://", "https://"}) {
+    const std::string begin(target.substr(0, scheme.size()));
+    if (!absl::EqualsIgnoreCase(begin, std::string(scheme))) continue;
+    target.remove_prefix(scheme.size());
+    const size_t end = std::min(target.find_first_of("/?"), target.size());
+    const std::string host(target.substr(0, end));
+    target.remove_prefix(end);
+    if (target.empty()) target = "/";
+    return host;
+  }
+  return "";
+}
 
 absl::StatusOr<Target> ParseTarget(std::string_view target) {
   const size_t question = target.find('?');

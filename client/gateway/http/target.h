@@ -18,6 +18,10 @@ struct Target {
   std::vector<std::pair<std::string, std::string>> query;
 };
 
+// Cuts "http://HOST:PORT" off an absolute target, as clients of proxies send it; returns HOST:PORT,
+// or nothing if the target is another.
+std::string TakeOrigin(std::string_view& target);
+
 // Parses "/path?name=value&...", decodes percent escapes, and in the query also `+`.
 // InvalidArgument for what no client of ours sends: invalid escapes, control characters, a path
 // that is not absolute or has the segments `.` or `..`.

@@ -147,6 +147,30 @@ class Connections(Sockets):
         connection.sendall(PART)
         self.assertIn(b"200 OK", self.status(connection))
 
+    def test_heads_that_proxies_read_otherwise_are_refused(self):
+        host = b"Host: 127.0.0.1\r\n"
+        for what, head, status in [
+                ("no host", b"GET /healthz HTTP/1.1\r\n", 400), ("of HTTP/1.0 none is asked", b"GET /healthz HTTP/1.0\r\n", 200),
+                ("two", b"GET /healthz HTTP/1.1\r\n" + host + host, 400), ("no name", b"GET /healthz HTTP/1.1\r\nHost: a b\r\n", 400),
+                ("folded", b"GET /healthz HTTP/1.1\r\n" + host + b"A: b\r\n c\r\n", 400),
+                ("folded host", b"GET /healthz HTTP/1.1\r\nHost:\r\n 127.0.0.1\r\n", 400),
+                ("long but whole", b"GET /healthz HTTP/1.1\r\n" + host + b"A: " + b"b" * 9000 + b"\r\n", 200)]:
+            connection = self.connect()
+            connection.sendall(head + b"Connection: close\r\n\r\n")
+            self.assertEqual(int(self.status(connection).split()[1]), status, what)
+
+    def test_an_absolute_target_names_the_host(self):
+        for target, status in [(b"http://127.0.0.1/healthz", 200), (b"HTTP://127.0.0.1:80/healthz?x=1", 200), (b"http://127.0.0.1", 200),
+                               (b"http://strange.example.com/healthz", 421)]:
+            connection = self.connect()
+            connection.sendall(b"GET " + target + b" HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
+            self.assertEqual(int(self.status(connection).split()[1]), status, target)
+
+    def test_expect_may_be_in_capitals(self):
+        connection = self.connect()
+        connection.sendall(b"POST /v1/inspect HTTP/1.1\r\nHost: x\r\nExpect: 100-Continue\r\nContent-Length: 10\r\n\r\n")
+        self.assertTrue(connection.recv(100).startswith(b"HTTP/1.1 100 Continue"))
+
     def test_chunks_are_a_body_too(self):
         connection = self.connect()
         connection.sendall(b"POST /v1/gcode HTTP/1.1\r\nHost: x\r\nConnection: close\r\nTransfer-Encoding: chunked\r\n\r\n")

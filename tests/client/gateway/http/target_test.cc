@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace traverse::gateway {
 namespace {
@@ -19,6 +22,19 @@ TEST(Target, PathAndQueryWithTheirEscapesUndone) {
   EXPECT_EQ(target->path, "/v1/a b");
   EXPECT_THAT(target->query, ElementsAre(Pair("policy", "safe"), Pair("name", "a b/c"),
                                          Pair("flag", ""), Pair("empty", ""), Pair("x", "=")));
+}
+
+TEST(Target, AnAbsoluteOneHasAHost) {
+  for (const auto& [target, host, rest] : std::vector<std::array<std::string, 3>>{
+           {"http://a.lan:8080/v1?x=1", "a.lan:8080", "/v1?x=1"},
+           {"HTTPS://[::1]", "[::1]", "/"},
+           {"http:///v1", "", "/v1"},
+           {"/http://a", "", "/http://a"},
+           {"*", "", "*"}}) {
+    std::string_view left = target;
+    EXPECT_EQ(TakeOrigin(left), host) << target;
+    EXPECT_EQ(left, rest) << target;
+  }
 }
 
 TEST(Target, RefusesWhatLeadsElsewhere) {
