@@ -91,7 +91,8 @@ absl::Status Gateway::StartGrpc(const GatewayOptions& options) {
     }
     return absl::OkStatus();
   }
-  grpc_service_ = std::make_unique<GcodeGrpcService>(*core_, options.http.idle_time);
+  grpc_service_ =
+      std::make_unique<GcodeGrpcService>(*core_, options.http.idle_time, options.http.body_time);
   absl::StatusOr<std::unique_ptr<Listener>> listener = Listener::Open(
       {.listen = options.listen,
        .limits = options.connections,

@@ -50,7 +50,7 @@ ABSL_FLAG(std::string, printers, "",
 ABSL_FLAG(absl::Duration, upload_deadline, absl::Seconds(60),
           "Longest time for a printer's file; after it the printer gets the original");
 ABSL_FLAG(absl::Duration, upstream_idle_timeout, absl::Seconds(60),
-          "Give up a printer's server that neither accepts nor sends anything for this long");
+          "Give up a printer's server that accepts nothing, or has not answered, for this long");
 ABSL_FLAG(int32_t, max_connections, 512, "Connections at a time, of HTTP and of gRPC each");
 ABSL_FLAG(int32_t, max_connections_per_address, 384,
           "HTTP connections from one address; behind a proxy all share one address");
@@ -62,6 +62,8 @@ ABSL_FLAG(absl::Duration, idle_timeout, absl::Seconds(30),
 ABSL_FLAG(int64_t, min_upload_rate, 4096,
           "Least mean rate in bytes per second, after --idle_timeout, at which a client must send "
           "an upload and read an answer");
+ABSL_FLAG(absl::Duration, max_transfer_time, absl::Minutes(30),
+          "Longest time for an upload, and for reading an answer");
 ABSL_FLAG(absl::Duration, drain_timeout, absl::Seconds(30),
           "How long running requests may continue after SIGTERM");
 ABSL_FLAG(std::string, log_file, "", "File to which the log is appended; empty: stderr");
@@ -111,6 +113,7 @@ absl::Status CheckRanges() {
       {"upstream_idle_timeout", absl::GetFlag(FLAGS_upstream_idle_timeout)},
       {"header_timeout", absl::GetFlag(FLAGS_header_timeout)},
       {"idle_timeout", absl::GetFlag(FLAGS_idle_timeout)},
+      {"max_transfer_time", absl::GetFlag(FLAGS_max_transfer_time)},
   };
   for (const auto& time : times) {
     if (time.value <= absl::ZeroDuration()) return BadFlag(time.name, "not above 0");
@@ -193,7 +196,8 @@ absl::StatusOr<GatewayOptions> OptionsFromFlags() {
                   .max_head_bytes = static_cast<uint32_t>(absl::GetFlag(FLAGS_max_header_bytes)),
                   .head_time = absl::GetFlag(FLAGS_header_timeout),
                   .idle_time = absl::GetFlag(FLAGS_idle_timeout),
-                  .min_bytes_per_second = absl::GetFlag(FLAGS_min_upload_rate)};
+                  .min_bytes_per_second = absl::GetFlag(FLAGS_min_upload_rate),
+                  .body_time = absl::GetFlag(FLAGS_max_transfer_time)};
   options.connections.max_connections = absl::GetFlag(FLAGS_max_connections);
   options.connections.max_header_bytes = absl::GetFlag(FLAGS_max_header_bytes);
   options.max_memory = MaxMemory();

@@ -57,6 +57,17 @@ void RecordFile(Core& core, const FileRecord& record, const absl::Status& status
                         fields);
 }
 
+namespace {
+
+// A header longer than this is refused by many clients; of an archive each plate has a line.
+std::string Shortened(const std::string& text) {
+  constexpr size_t kMostBytes = 2000;
+  if (text.size() <= kMostBytes) return text;
+  return text.substr(0, text.rfind(';', kMostBytes)).substr(0, kMostBytes) + "; ...";
+}
+
+}  // namespace
+
 std::vector<std::pair<std::string, std::string>> SummaryHeaders(const v1::RewriteSummary& summary) {
   const auto mm = [](double value) { return absl::StrFormat("%.2f", value); };
   return {
@@ -72,7 +83,7 @@ std::vector<std::pair<std::string, std::string>> SummaryHeaders(const v1::Rewrit
       {"Traverse-Crossings", absl::StrCat(summary.written().crossings())},
       {"Traverse-Print-Seconds-Given", mm(summary.given().print_seconds())},
       {"Traverse-Print-Seconds", mm(summary.written().print_seconds())},
-      {"Traverse-Summary", summary.text()},
+      {"Traverse-Summary", Shortened(summary.text())},
   };
 }
 

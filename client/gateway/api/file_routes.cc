@@ -79,10 +79,11 @@ std::string Event(const std::string& name, const std::string& data) {
 }
 
 // `file` as events `name` of base64. In the spool, as it may be long.
-absl::StatusOr<std::shared_ptr<const SpoolFile>> FileEvents(Spool& spool, const std::string& name,
+absl::StatusOr<std::shared_ptr<const SpoolFile>> FileEvents(Spool& spool, const std::string& caller,
+                                                            const std::string& name,
                                                             const SpoolFile& file) {
   constexpr size_t kPiece = 49152;  // a multiple of three: pieces may be joined before decoding
-  absl::StatusOr<std::shared_ptr<SpoolFile>> events = spool.NewFile();
+  absl::StatusOr<std::shared_ptr<SpoolFile>> events = spool.NewFile(caller);
   if (!events.ok()) return events.status();
   std::string piece;
   for (uint64_t at = 0; at < file.size(); at += piece.size()) {
@@ -95,14 +96,15 @@ absl::StatusOr<std::shared_ptr<const SpoolFile>> FileEvents(Spool& spool, const 
   return std::shared_ptr<const SpoolFile>(*std::move(events));
 }
 
-void SendEvents(Core& core, HttpReply& reply, const absl::StatusOr<RewrittenFile>& made) {
+void SendEvents(Core& core, const std::string& caller, HttpReply& reply,
+                const absl::StatusOr<RewrittenFile>& made) {
   absl::Status status = made.status();
   std::vector<std::shared_ptr<const SpoolFile>> files;
   if (made.ok()) {
     for (const auto& [name, file] :
          {std::make_pair("file", made->file), std::make_pair("report", made->report)}) {
       if (file == nullptr || !status.ok()) continue;
-      auto events = FileEvents(*core.spool, name, *file);
+      auto events = FileEvents(*core.spool, caller, name, *file);
       status = events.status();
       if (events.ok()) files.push_back(*std::move(events));
     }
@@ -168,7 +170,7 @@ void RunRewrite(Core& core, const absl::Status& may, const FileRequest& request,
   FileRecord done = record;
   done.seconds = absl::ToDoubleSeconds(absl::Now() - began);
   RecordFile(core, done, made.status(), made.ok() ? &made->summary : nullptr);
-  if (kind == AnswerKind::kEvents) return SendEvents(core, reply, made);
+  if (kind == AnswerKind::kEvents) return SendEvents(core, request.caller, reply, made);
   if (!made.ok()) return reply.Send(RefusalOf(made.status()));
   if (kind == AnswerKind::kFile) return SendFile(reply, request, *std::move(made));
   HttpResponse response = JsonResponse(MessageJson(made->summary) + "\n");
@@ -207,12 +209,14 @@ HttpDecision TakeFile(const HttpRequest& request, const std::string& caller, Cor
     return ProblemOf(query.status());
   }
   const UploadLimits limits = {.max_file_bytes = core.options.max_file_bytes,
+                               .caller = caller,
                                .small_files = {{"machine", kMostMachineBytes}}};
   return TakeFiles(request, caller, limits, core,
-                   [request, start = std::move(start)](const TicketPtr& ticket, Upload upload,
-                                                       const ReplyPtr& reply) {
+                   [request, caller, start = std::move(start)](
+                       const TicketPtr& ticket, Upload upload, const ReplyPtr& reply) {
                      absl::StatusOr<FileRequest> wanted = WholeRequest(request, upload);
                      if (!wanted.ok()) return reply->Send(ProblemOf(wanted.status()));
+                     wanted->caller = caller;
                      start(ticket, *std::move(wanted), upload.files[0].file, reply);
                    });
 }
@@ -275,8 +279,10 @@ HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, 
                                  : RefusalOf(found.status()));
         });
   };
-  const UploadLimits limits = {
-      .max_file_bytes = core.options.max_file_bytes, .max_files = 2, .small_files = {}};
+  const UploadLimits limits = {.max_file_bytes = core.options.max_file_bytes,
+                               .max_files = 2,
+                               .caller = caller,
+                               .small_files = {}};
   return TakeFiles(request, caller, limits, core, start);
 }
 

@@ -34,7 +34,7 @@ class UploadSink : public BodySink {
  protected:
   absl::Status BeginFile(std::string field, std::string name) {
     if (absl::Status status = CountFile(field); !status.ok()) return status;
-    absl::StatusOr<std::shared_ptr<SpoolFile>> file = spool_.NewFile();
+    absl::StatusOr<std::shared_ptr<SpoolFile>> file = spool_.NewFile(limits_.caller);
     if (!file.ok()) return file.status();
     upload_.files.push_back({std::move(field), std::move(name), *std::move(file)});
     return absl::OkStatus();

@@ -30,6 +30,7 @@ struct Upload {
 struct UploadLimits {
   uint64_t max_file_bytes = uint64_t{256} << 20;
   size_t max_files = 1;
+  std::string caller = {};  // whose files they are
 
   // Files of a form that may come once each besides: [field] their most bytes.
   std::map<std::string, uint64_t> small_files = {};

@@ -63,7 +63,7 @@ absl::Time FileCall::FinishBy() const {
 
 absl::Status FileCall::Append(const std::string& bytes, std::shared_ptr<SpoolFile>& file) const {
   if (file == nullptr) {
-    absl::StatusOr<std::shared_ptr<SpoolFile>> made = core_.spool->NewFile();
+    absl::StatusOr<std::shared_ptr<SpoolFile>> made = core_.spool->NewFile(info_.caller);
     if (!made.ok()) return made.status();
     file = *std::move(made);
   }

@@ -16,8 +16,9 @@ namespace traverse::gateway {
 // Thread-safe.
 class GcodeGrpcService : public v1::GcodeService::CallbackService {
  public:
-  // Ends calls whose client neither sends nor reads for `idle_time`. `core` must outlive it.
-  GcodeGrpcService(Core& core, absl::Duration idle_time) : core_(core), live_(idle_time) {}
+  // For the times see LiveCalls. `core` must outlive it.
+  GcodeGrpcService(Core& core, absl::Duration idle_time, absl::Duration transfer_time)
+      : core_(core), live_(idle_time, transfer_time) {}
 
   // Ends a call of `peer` (see PeerKey) that sends what is larger than any message may be. False if
   // there is none.

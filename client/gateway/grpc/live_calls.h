@@ -20,8 +20,12 @@ namespace traverse::gateway {
 // Thread-safe.
 class LiveCalls {
  public:
-  explicit LiveCalls(absl::Duration idle_time)
-      : idle_time_(idle_time), sweep_(std::chrono::seconds(1), [this] { Sweep(); }) {}
+  // Ends calls that wait for longer than `idle_time`, or whose transfer takes longer than
+  // `transfer_time` without a pause for work.
+  LiveCalls(absl::Duration idle_time, absl::Duration transfer_time)
+      : idle_time_(idle_time),
+        transfer_time_(transfer_time),
+        sweep_(std::chrono::seconds(1), [this] { Sweep(); }) {}
 
   // From now on `context`, of `peer`, waits for its client. Call it again whenever the client has
   // acted.
@@ -29,7 +33,10 @@ class LiveCalls {
     MutexLock lock(mutex_);
     Wait& wait = waits_[context];
     wait.since = absl::Now();
-    if (wait.peer.empty()) wait.peer = PeerKey(peer);
+    if (wait.peer.empty()) {
+      wait.peer = PeerKey(peer);
+      wait.began = wait.since;
+    }
   }
 
   // The call no longer waits. Call it before the context is destroyed.
@@ -55,19 +62,21 @@ class LiveCalls {
 
  private:
   struct Wait {
+    absl::Time began;
     absl::Time since;
     std::string peer;  // see PeerKey
   };
 
   void Sweep() {
     MutexLock lock(mutex_);
-    const absl::Time latest = absl::Now() - idle_time_;
+    const absl::Time now = absl::Now();
     for (const auto& [context, wait] : waits_) {
-      if (wait.since < latest) context->TryCancel();
+      if (now - wait.since > idle_time_ || now - wait.began > transfer_time_) context->TryCancel();
     }
   }
 
   const absl::Duration idle_time_;
+  const absl::Duration transfer_time_;
   Mutex mutex_;
   std::map<grpc::CallbackServerContext*, Wait> waits_ TRAVERSE_GUARDED_BY(mutex_);
   Periodic sweep_;  // last: uses the other members

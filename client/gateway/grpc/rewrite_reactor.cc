@@ -62,6 +62,7 @@ absl::Status RewriteReactor::TakeRequest() {
     absl::StatusOr<FileRequest> wanted = RequestOf(request_.options());
     if (!wanted.ok()) return wanted.status();
     wanted_ = *std::move(wanted);
+    wanted_->caller = call_.caller();
     return absl::OkStatus();
   }
   if (!wanted_) return absl::InvalidArgumentError("options: missing from the first message");
@@ -152,8 +153,9 @@ void RewriteReactor::Next() {
 }
 
 void RewriteReactor::OnWriteDone(bool ok) {
-  live_.Rests(&context_);
   MutexLock lock(mutex_);
+  // What is made is sent without a pause, and its time is counted as a whole.
+  if (!made_) live_.Rests(&context_);
   writing_ = false;
   if (ok) return Next();
   stop_.request_stop();

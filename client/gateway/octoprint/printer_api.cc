@@ -181,7 +181,8 @@ HttpDecision PrinterApi::HandleUpload(const HttpRequest& request, const std::str
                                       const Printer& printer, const std::string& storage) {
   absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> ticket = core_.queue->Enter(caller);
   if (!ticket.ok()) return Problem(503, std::string(ticket.status().message()));
-  const UploadLimits limits = {.max_file_bytes = core_.options.max_file_bytes, .small_files = {}};
+  const UploadLimits limits = {
+      .max_file_bytes = core_.options.max_file_bytes, .caller = caller, .small_files = {}};
   const std::string key = KeyFor(printer, request);
   const auto start = [this, &printer, storage, key, caller, peer = request.peer_host,
                       ticket = *ticket](Upload upload, std::shared_ptr<HttpReply> reply) {
@@ -201,6 +202,7 @@ HttpDecision PrinterApi::HandleUpload(const HttpRequest& request, const std::str
 void PrinterApi::Optimise(Delivery& delivery) {
   FileRequest request;
   request.name = delivery.upload.name;
+  request.caller = delivery.record.caller;
   request.gcode.policy = delivery.printer.policy;
   request.gcode.machine = delivery.printer.machine;
   request.only_new = true;

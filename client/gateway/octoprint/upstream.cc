@@ -92,22 +92,26 @@ class Call {
   }
 
  private:
-  // When the last byte was sent or received.
+  // When the last byte was sent. What is received does not count: a server that sends its answer
+  // byte by byte would be waited for without end.
   struct Idle {
     absl::Duration most;
-    curl_off_t bytes = 0;
+    curl_off_t sent = 0;
     absl::Time since = absl::Now();
+    absl::Time began = absl::Now();
   };
 
   // Called about once a second; a result other than 0 ends the call.
-  static int Watch(void* self, curl_off_t, curl_off_t received, curl_off_t, curl_off_t sent) {
+  static int Watch(void* self, curl_off_t, curl_off_t, curl_off_t, curl_off_t sent) {
+    constexpr curl_off_t kLeastBytesPerSecond = 1024;
     Idle& idle = *static_cast<Idle*>(self);
     const absl::Time now = absl::Now();
-    if (received + sent != idle.bytes) {
-      idle.bytes = received + sent;
+    if (sent != idle.sent) {
+      idle.sent = sent;
       idle.since = now;
     }
-    return now - idle.since > idle.most ? 1 : 0;
+    const bool slow = now - idle.began > idle.most + absl::Seconds(sent / kLeastBytesPerSecond);
+    return slow || now - idle.since > idle.most ? 1 : 0;
   }
 
   static size_t TakeBody(char* data, size_t size, size_t count, void* answer) {

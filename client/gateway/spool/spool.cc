@@ -26,21 +26,18 @@ absl::Status WriteFault(int error) {
 
 SpoolFile::~SpoolFile() {
   close(fd_);
-  spool_.used_ -= size_;
+  spool_.GiveBack(size_, caller_);
 }
 
 absl::Status SpoolFile::Append(std::string_view bytes) {
-  if (!spool_.Take(bytes.size())) {
-    return absl::ResourceExhaustedError(
-        absl::StrFormat("the spool is full: it holds %d MiB at most", spool_.max_bytes_ >> 20));
-  }
+  if (absl::Status status = spool_.Take(bytes.size(), caller_); !status.ok()) return status;
   size_t done = 0;
   while (done < bytes.size()) {
     const ssize_t put = write(fd_, bytes.data() + done, bytes.size() - done);
     if (put < 0 && errno == EINTR) continue;
     if (put < 0) {
       const int error = errno;
-      spool_.used_ -= bytes.size() - done;
+      spool_.GiveBack(bytes.size() - done, caller_);
       size_ += done;
       return WriteFault(error);
     }
@@ -81,10 +78,10 @@ absl::StatusOr<std::unique_ptr<Spool>> Spool::Open(const std::string& folder, ui
   return spool;
 }
 
-absl::StatusOr<std::shared_ptr<SpoolFile>> Spool::NewFile() {
+absl::StatusOr<std::shared_ptr<SpoolFile>> Spool::NewFile(const std::string& caller) {
   absl::StatusOr<int> file = OpenNameless();
   if (!file.ok()) return file.status();
-  return std::shared_ptr<SpoolFile>(new SpoolFile(*this, *file));
+  return std::shared_ptr<SpoolFile>(new SpoolFile(*this, *file, caller));
 }
 
 absl::StatusOr<int> Spool::OpenNameless() const {
@@ -102,12 +99,34 @@ absl::StatusOr<int> Spool::OpenNameless() const {
                                                 folder_, std::strerror(errno)));
 }
 
-bool Spool::Take(uint64_t bytes) {
-  uint64_t used = used_;
-  do {
-    if (bytes > max_bytes_ || used > max_bytes_ - bytes) return false;
-  } while (!used_.compare_exchange_weak(used, used + bytes));
-  return true;
+uint64_t Spool::used_bytes() const {
+  MutexLock lock(mutex_);
+  return used_;
+}
+
+absl::Status Spool::Take(uint64_t bytes, const std::string& caller) {
+  MutexLock lock(mutex_);
+  if (bytes > max_bytes_ || used_ > max_bytes_ - bytes) {
+    return absl::ResourceExhaustedError(
+        absl::StrFormat("the spool is full: it holds %d MiB at most", max_bytes_ >> 20));
+  }
+  const bool last_quarter = used_ + bytes > max_bytes_ - max_bytes_ / 4;
+  const uint64_t share = caller.empty() ? max_bytes_ : max_bytes_ / (last_quarter ? 16 : 2);
+  const auto own = callers_.find(caller);
+  if ((own == callers_.end() ? 0 : own->second) + bytes > share) {
+    return absl::ResourceExhaustedError(absl::StrFormat(
+        "the spool is full for this caller, who may have %d MiB of it now", share >> 20));
+  }
+  used_ += bytes;
+  callers_[caller] += bytes;
+  return absl::OkStatus();
+}
+
+void Spool::GiveBack(uint64_t bytes, const std::string& caller) {
+  MutexLock lock(mutex_);
+  used_ -= bytes;
+  const auto own = callers_.find(caller);
+  if (own != callers_.end() && (own->second -= bytes) == 0) callers_.erase(own);
 }
 
 }  // namespace traverse::gateway

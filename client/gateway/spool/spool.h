@@ -1,18 +1,20 @@
 // Uploads and answers on disk, so that slow clients cost no memory.
 //
 // A spooled file has no name (O_TMPFILE, or unlinked as soon as it exists): when it is closed, or
-// the process is killed, the system frees it. All files of a spool together are bounded.
+// the process is killed, the system frees it. All files of a spool together are bounded, and so are
+// those of a caller: to half of it, and to a sixteenth in the last quarter.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_SPOOL_SPOOL_H_
 #define TRAVERSE_CLIENT_GATEWAY_SPOOL_SPOOL_H_
 
-#include <atomic>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
 
 #include "absl/status/statusor.h"
+#include "engine/base/mutex.h"
 
 namespace traverse::gateway {
 
@@ -38,10 +40,12 @@ class SpoolFile {
 
  private:
   friend class Spool;
-  SpoolFile(Spool& spool, int fd) : spool_(spool), fd_(fd) {}
+  SpoolFile(Spool& spool, int fd, std::string caller)
+      : spool_(spool), fd_(fd), caller_(std::move(caller)) {}
 
   Spool& spool_;
   const int fd_;
+  const std::string caller_;
   uint64_t size_ = 0;
 };
 
@@ -52,11 +56,11 @@ class Spool {
   // cannot be created there.
   static absl::StatusOr<std::unique_ptr<Spool>> Open(const std::string& folder, uint64_t max_bytes);
 
-  // A new, empty file. The spool must outlive it.
-  absl::StatusOr<std::shared_ptr<SpoolFile>> NewFile();
+  // A new, empty file. It belongs to `caller`, unless that is empty. The spool must outlive it.
+  absl::StatusOr<std::shared_ptr<SpoolFile>> NewFile(const std::string& caller = "");
 
   // Bytes in all files now.
-  uint64_t used_bytes() const { return used_; }
+  uint64_t used_bytes() const;
   uint64_t max_bytes() const { return max_bytes_; }
 
  private:
@@ -66,12 +70,15 @@ class Spool {
 
   absl::StatusOr<int> OpenNameless() const;
 
-  // False if this many bytes more would be too many.
-  bool Take(uint64_t bytes);
+  // ResourceExhausted if this many bytes more of `caller` would be too many.
+  absl::Status Take(uint64_t bytes, const std::string& caller);
+  void GiveBack(uint64_t bytes, const std::string& caller);
 
   const std::string folder_;
   const uint64_t max_bytes_;
-  std::atomic<uint64_t> used_ = 0;
+  mutable Mutex mutex_;
+  uint64_t used_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  std::map<std::string, uint64_t> callers_ TRAVERSE_GUARDED_BY(mutex_);  // used by each
 };
 
 }  // namespace traverse::gateway

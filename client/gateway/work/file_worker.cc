@@ -117,8 +117,9 @@ void SetStrategy(const FileRequest& request, const InputJob& job, SearchOptions&
   }
 }
 
-absl::StatusOr<std::shared_ptr<const SpoolFile>> Spooled(Spool& spool, std::string_view text) {
-  absl::StatusOr<std::shared_ptr<SpoolFile>> file = spool.NewFile();
+absl::StatusOr<std::shared_ptr<const SpoolFile>> Spooled(Spool& spool, const std::string& caller,
+                                                         std::string_view text) {
+  absl::StatusOr<std::shared_ptr<SpoolFile>> file = spool.NewFile(caller);
   if (!file.ok()) return file.status();
   if (absl::Status status = (*file)->Append(text); !status.ok()) return status;
   return *std::move(file);
@@ -202,8 +203,9 @@ absl::Status FileWorker::RewritePart(Work& work, size_t index) {
         view::GcodeScene(*job, work.out.summary.strategy(), made.runs, made.rewrite);
     if (!scene.ok()) return scene.status();
     absl::StatusOr<std::shared_ptr<const SpoolFile>> report =
-        Spooled(spool_, view::ReportPage(*scene, "Made by traverse-gateway",
-                                         gcode::ThreadsFor(made.rewrite.text.size())));
+        Spooled(spool_, request.caller,
+                view::ReportPage(*scene, "Made by traverse-gateway",
+                                 gcode::ThreadsFor(made.rewrite.text.size())));
     if (!report.ok()) return report.status();
     work.out.report = *std::move(report);
   }
@@ -227,7 +229,8 @@ absl::StatusOr<RewrittenFile> FileWorker::Finish(Work& work) {
     text = std::move(work.parts.begin()->second.text);
   }
   if (!text.ok()) return text.status();
-  absl::StatusOr<std::shared_ptr<const SpoolFile>> file = Spooled(spool_, *text);
+  absl::StatusOr<std::shared_ptr<const SpoolFile>> file =
+      Spooled(spool_, work.request.caller, *text);
   if (!file.ok()) return file.status();
   work.out.file = *std::move(file);
   work.out.summary.set_bytes(work.out.file->size());

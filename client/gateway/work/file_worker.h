@@ -30,6 +30,7 @@ namespace traverse::gateway {
 // What a caller wants of a file.
 struct FileRequest {
   std::string name = "file.gcode";
+  std::string caller;  // whose the answer is
   GcodeOptions gcode;
   JobSettings settings;
   std::optional<v1::Strategy> strategy;

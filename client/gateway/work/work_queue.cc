@@ -47,6 +47,11 @@ absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> WorkQueue::Enter(const std::s
     return absl::ResourceExhaustedError(
         absl::StrFormat("%d requests of this caller are under way", of_caller->second));
   }
+  if (of_caller != places_.end() && requests_ >= limits_.max_requests - limits_.max_requests / 4) {
+    return absl::ResourceExhaustedError(absl::StrFormat(
+        "of %d places for requests the last %d are for callers who have none; come again later",
+        limits_.max_requests, limits_.max_requests / 4));
+  }
   ++requests_;
   ++places_[caller];
   return std::shared_ptr<Ticket>(new Ticket(*this, caller));

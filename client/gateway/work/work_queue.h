@@ -49,8 +49,8 @@ class WorkQueue {
   // Waits for tasks that run; those that wait are dropped.
   ~WorkQueue();
 
-  // A ticket for a request of `caller`. ResourceExhausted if the queue is full; Unavailable when
-  // draining. The queue outlives it.
+  // A ticket for a request of `caller`. ResourceExhausted if the queue is full, whose last quarter
+  // is for callers who have no place; Unavailable when draining. The queue outlives it.
   absl::StatusOr<std::shared_ptr<Ticket>> Enter(const std::string& caller);
 
   // Runs `task` as soon as a worker is free and `memory_bytes` are, callers taking turns.

@@ -122,6 +122,56 @@ class Time(unittest.TestCase):
             time.sleep(0.05)
         self.assertEqual(gateway.ask("GET", "/healthz")[0], 200)
 
+    def test_the_longest_idle_connection_gives_way(self):
+        gateway = Gateway("--max_connections=4")
+        self.addCleanup(gateway.close)
+        held = [socket.create_connection(("127.0.0.1", gateway.http_port), source_address=(f"127.0.0.{3 + i % 2}", 0)) for i in range(4)]
+        for connection in held:
+            self.addCleanup(connection.close)
+        time.sleep(1.1)
+        self.assertEqual(gateway.ask("GET", "/healthz")[0], 200)
+        held[0].settimeout(5)
+        self.assertEqual(held[0].recv(1), b"", "the oldest is closed")
+        held[3].sendall(b"GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n")
+        self.assertTrue(held[3].recv(100).startswith(b"HTTP/1.1 200"), "the others are not")
+
+    def test_the_last_places_are_for_callers_who_have_none(self):
+        gateway = Gateway("--max_requests=4")
+        self.addCleanup(gateway.close)
+        head = b"POST /v1/inspect HTTP/1.1\r\nHost: x\r\nContent-Length: 1000\r\n\r\n"
+        for _ in range(3):
+            connection = socket.create_connection(("127.0.0.1", gateway.http_port))
+            self.addCleanup(connection.close)
+            connection.sendall(head)
+        deadline = time.time() + 5
+        while gateway.metric("traverse_gateway_requests_in_flight") < 3 and time.time() < deadline:
+            time.sleep(0.02)
+        status, headers, answer = gateway.ask("POST", "/v1/inspect", PART)
+        self.assertEqual(status, 429, answer)
+        self.assertIn("who have none", detail(answer))
+        self.assertIn("retry-after", headers)
+        other = http.client.HTTPConnection("127.0.0.1", gateway.http_port, source_address=("127.0.0.2", 0))
+        self.addCleanup(other.close)
+        other.request("POST", "/v1/inspect", PART)
+        self.assertEqual(other.getresponse().status, 200)
+
+    def test_an_upload_has_a_deadline_as_a_whole(self):
+        gateway = Gateway("--max_transfer_time=1s", "--min_upload_rate=1")
+        self.addCleanup(gateway.close)
+        connection = socket.create_connection(("127.0.0.1", gateway.http_port), timeout=10)
+        self.addCleanup(connection.close)
+        connection.sendall(b"POST /v1/inspect HTTP/1.1\r\nHost: x\r\nContent-Length: 1000\r\n\r\n")
+        began = time.time()
+        answer = b""
+        connection.settimeout(0.1)
+        while not answer and time.time() < began + 8:
+            connection.sendall(b";")
+            try:
+                answer = connection.recv(1000)
+            except TimeoutError:
+                pass
+        self.assertTrue(answer.startswith(b"HTTP/1.1 408"), answer)
+
     def test_who_goes_stops_the_work(self):
         gateway = Gateway("--workers=1")
         self.addCleanup(gateway.close)

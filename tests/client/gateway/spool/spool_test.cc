@@ -49,6 +49,22 @@ TEST_F(SpoolTest, AllFilesTogetherAreBounded) {
   EXPECT_EQ(*other->ReadAll(), std::string(100, 'b'));
 }
 
+TEST_F(SpoolTest, ACallerHasAShare) {
+  const std::shared_ptr<SpoolFile> hoard = *spool_->NewFile("a");
+  EXPECT_TRUE(hoard->Append(std::string(50, 'a')).ok());
+  EXPECT_EQ(hoard->Append("a").code(), absl::StatusCode::kResourceExhausted);
+  std::shared_ptr<SpoolFile> second = *spool_->NewFile("b");
+  EXPECT_TRUE(second->Append(std::string(25, 'b')).ok());
+
+  // The last quarter is for small ones.
+  EXPECT_EQ(second->Append("b").code(), absl::StatusCode::kResourceExhausted);
+  const std::shared_ptr<SpoolFile> third = *spool_->NewFile("c");
+  EXPECT_TRUE(third->Append(std::string(6, 'c')).ok());
+  EXPECT_EQ(third->Append("c").code(), absl::StatusCode::kResourceExhausted);
+  second.reset();
+  EXPECT_TRUE(third->Append(std::string(19, 'c')).ok());
+}
+
 TEST_F(SpoolTest, AFolderThatIsNotThereIsSaid) {
   const auto spool = Spool::Open("/not/there", 100);
 
