@@ -13,12 +13,16 @@ namespace traverse::gateway {
 namespace beast = boost::beast;
 namespace http = boost::beast::http;
 
-// Beast reads values where they came in, behind their names, and joins only folded ones elsewhere.
+// Beast reads values where they came in, behind their names, and joins folded ones elsewhere.
 void HeadParser::on_field_impl(http::field name, beast::string_view name_text,
                                beast::string_view value, beast::error_code& /*error*/) {
-  constexpr std::uintptr_t kMostHead = 1 << 24;
-  const auto from = reinterpret_cast<std::uintptr_t>(name_text.data());
-  folded_ |= !value.empty() && reinterpret_cast<std::uintptr_t>(value.data()) - from > kMostHead;
+  constexpr std::uintptr_t kMostBlanks = 1024;
+  const char* const behind = name_text.data() + name_text.size();
+  const std::uintptr_t blanks =
+      reinterpret_cast<std::uintptr_t>(value.data()) - reinterpret_cast<std::uintptr_t>(behind);
+  folded_ |=
+      !value.empty() && (blanks > kMostBlanks ||
+                         std::string_view(behind, blanks).find('\n') != std::string_view::npos);
   get().insert(name, name_text, value);
 }
 

@@ -161,7 +161,7 @@ class Connections(Sockets):
 
     def test_an_absolute_target_names_the_host(self):
         for target, status in [(b"http://127.0.0.1/healthz", 200), (b"HTTP://127.0.0.1:80/healthz?x=1", 200), (b"http://127.0.0.1", 200),
-                               (b"http://strange.example.com/healthz", 421)]:
+                               (b"http://strange.example.com/metrics", 421)]:
             connection = self.connect()
             connection.sendall(b"GET " + target + b" HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
             self.assertEqual(int(self.status(connection).split()[1]), status, target)
