@@ -17,7 +17,7 @@ namespace {
 constexpr double kLeastFilled = 0.6;
 
 // Segments looked at for each of a layer: far more than a printable layer needs.
-constexpr size_t kLooksPerSegment = 250;
+constexpr size_t kLooksPerLine = 250;
 
 // What CuraEngine calls skin.
 bool IsCuraSkin(const GcodeFile& file, const Block& block) {
@@ -149,7 +149,7 @@ void MarkIroning(const GcodeFile& file, const Layer& layer, std::vector<Outline>
   if (thin.empty()) return;
   const double spacing = UsualSpacingMm(file, layer, usual);
   const SegmentGrid grid(std::move(lines));
-  size_t looks = kLooksPerSegment * grid.segments().size();
+  size_t looks = kLooksPerLine * grid.segments().size();
   for (const uint32_t path : thin) {
     const double share = FlowOf(file, file.blocks[layer.first_block + path]) / usual;
     // A line by itself has the room of one of the usual flow.

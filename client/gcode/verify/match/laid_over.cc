@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace traverse::gcode {
 namespace {
 
-constexpr double kCellMm = 1.0;
-constexpr double kWidestMm = 2.5;  // the distance of lines from each other, at most
-constexpr double kUsualMm = 0.4;   // where no two lie side by side
-constexpr double kTouch = 1.3;     // lines farther apart, in their usual distance, leave a gap
-constexpr double kSamePlaceMm = 0.02;
+constexpr double kGridMm = 1.0;
+constexpr double kMostShare = 0.75;  // of the usual flow: more fills what is left between lines
+constexpr double kWidestMm = 2.5;    // the distance of lines from each other, at most
+constexpr double kUsualMm = 0.4;     // where no two lie side by side
+constexpr double kTouch = 1.3;       // lines farther apart, in their usual distance, leave a gap
+constexpr double kOnItMm = 0.02;
 
 // Pieces looked at for each of a layer: far more than one that can be printed needs. Of what is
 // left then, nothing may pass anything.
@@ -42,11 +44,11 @@ double DistanceBeside(Point p, const Piece& line, const Piece& piece) {
   return std::abs((p.x - piece.a.x) * dy - (p.y - piece.a.y) * dx) / length;
 }
 
-class Layer {
+class LaidLayer {
  public:
-  explicit Layer(const std::vector<LaidPath>& paths)
+  explicit LaidLayer(const std::vector<LaidPath>& paths)
       : paths_(paths),
-        grid_(AllOf(paths), kCellMm),
+        grid_(AllOf(paths), kGridMm),
         looks_(kLooks + kLooksPerPiece * grid_.pieces().size()),
         spacing_(UsualSpacing()) {}
 
@@ -126,7 +128,7 @@ class Layer {
       --looks_;
       if (i >= index || !paths_[other.path].solid) return true;
       const double distance = DistanceBeside(p, line, other);
-      if (distance > kSamePlaceMm) least = std::min(least, distance);
+      if (distance > kOnItMm) least = std::min(least, distance);
       return true;
     });
     return least;
@@ -162,7 +164,7 @@ class Layer {
   static void Include(const Piece& other, Point p, Point along, Sides& sides) {
     const Point nearest = NearestOf(other, p);
     const double distance = DistanceOf(p, nearest);
-    if (distance <= kSamePlaceMm) {
+    if (distance <= kOnItMm) {
       sides = {0, 0, 0, 0};
       return;
     }
@@ -188,13 +190,37 @@ class Layer {
   const double spacing_;
 };
 
+// The filament per mm with which half of that of solid paths is laid, or less.
+double UsualFlow(const std::vector<LaidPath>& paths) {
+  std::vector<std::pair<double, double>> flows;  // filament per mm, filament
+  double left = 0;
+  for (const LaidPath& path : paths) {
+    if (!path.solid) continue;
+    double length = 0;
+    for (const Piece& piece : path.pieces) length += DistanceOf(piece.a, piece.b);
+    flows.emplace_back(path.filament_per_mm, path.filament_per_mm * length);
+    left += flows.back().second;
+  }
+  std::sort(flows.begin(), flows.end());
+  for (const auto& [flow, filament] : flows) {
+    left -= 2 * filament;
+    if (left <= 0) return flow;
+  }
+  return 0;
+}
+
 }  // namespace
 
 std::vector<bool> LaidOver(const std::vector<LaidPath>& paths) {
   std::vector<bool> over(paths.size(), false);
-  Layer layer(paths);
+  const double most = kMostShare * UsualFlow(paths);
+  const auto asks = [most](const LaidPath& path) {
+    return path.asked && path.filament_per_mm < most;
+  };
+  if (std::none_of(paths.begin(), paths.end(), asks)) return over;
+  LaidLayer layer(paths);
   for (uint32_t path = 0; path < paths.size(); ++path) {
-    over[path] = paths[path].asked && layer.LiesOver(path);
+    over[path] = asks(paths[path]) && layer.LiesOver(path);
   }
   return over;
 }

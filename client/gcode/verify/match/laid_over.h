@@ -21,7 +21,7 @@ struct LaidPath {
 
 // A line that fills a layer lies beside what was printed before it. Most of a line of ironing lies
 // between two such lines that are no farther from each other than lines are there, or crosses
-// them. Looks at places alone, not at how much is deposited.
+// them. How much it deposits says little: less than a usual line.
 //
 // True for each path with `asked` that is such a line. Looks at 16 points of each path, and at
 // no more than some pieces for each that there is.
