@@ -63,7 +63,7 @@ bool AreLoopInTwo(const GcodeFile& file, const Layer& layer, const std::vector<O
   const Outline& other = outlines[path + 1];
   if (one.is_loop || other.is_loop || one.feature != other.feature ||
       one.shape().size() + other.shape().size() < 5 ||
-      Distance(one.points.back(), other.points.front()) > kMaxLoopGapMm ||
+      Distance(one.points.back(), other.points.front()) > LoopGapMm(file, one.width_mm) ||
       Distance(other.points.back(), one.points.front()) > kSameMm) {
     return false;
   }

@@ -14,6 +14,9 @@ namespace {
 
 constexpr double kDefaultHeightMm = 0.2;
 
+// The gap of a loop, at most, where lines are not wide.
+constexpr double kUsualGapMm = 0.13;
+
 std::optional<double> SlotNumber(const GcodeFile& file, const Block& block, Slot slot) {
   const uint32_t setter = file.states[block.state_in][slot];
   if (setter == 0) return std::nullopt;
@@ -41,8 +44,12 @@ double WidthOfFlow(const GcodeFile& file, const Block& block) {
 }
 
 double WidthOf(const GcodeFile& file, const Block& block) {
-  const double width = SlotNumber(file, block, kSlotWidth).value_or(WidthOfFlow(file, block));
-  return std::clamp(width, 0.2, 1.2);
+  constexpr double kLeastMm = 0.2;
+  constexpr double kMostMm = 3;
+  constexpr double kMostByFlowMm = 1.2;  // the height may not be known
+  const std::optional<double> stated = SlotNumber(file, block, kSlotWidth);
+  if (stated) return std::clamp(*stated, kLeastMm, kMostMm);
+  return std::clamp(WidthOfFlow(file, block), kLeastMm, kMostByFlowMm);
 }
 
 // An arc of a larger radius is as good as straight.
@@ -73,6 +80,13 @@ double LengthOf(const std::vector<Vertex>& points) {
 
 }  // namespace
 
+double LoopGapMm(const GcodeFile& file, double width_mm) {
+  constexpr double kShare = 0.15;
+  constexpr double kRoundedMm = 0.005;
+  const double widest = std::max(width_mm, file.profile.nozzle_diameter.value_or(0));
+  return std::max(kUsualGapMm, kShare * widest + kRoundedMm);
+}
+
 MachineState StateAt(const GcodeFile& file, const Block& block) {
   MachineState state = file.modes[block.mode];
   state.at = block.first;
@@ -91,15 +105,16 @@ Outline OutlineOf(const GcodeFile& file, const Block& block) {
   outline.points.insert(outline.points.end(), ends, ends + block.end_count);
   outline.exactly_closed = outline.points.front() == outline.points.back();
   if ((block.flags & kBlockArcs) != 0) outline.bent = BentShape(file, block);
-  outline.is_loop = outline.shape().size() > 3 &&
-                    Distance(outline.points.front(), outline.points.back()) <= kMaxLoopGapMm &&
-                    static_cast<double>(block.length_mm) > 8 * kMaxLoopGapMm;
-  const bool many_starts = outline.points.size() > 3 &&
-                           (outline.bent.empty() || LengthOf(outline.points) > 8 * kMaxLoopGapMm);
+  outline.width_mm = WidthOf(file, block);
+  const double gap = Distance(outline.points.front(), outline.points.back());
+  const double shortest = 8 * std::max(gap, kUsualGapMm);
+  outline.is_loop = outline.shape().size() > 3 && gap <= LoopGapMm(file, outline.width_mm) &&
+                    static_cast<double>(block.length_mm) > shortest;
+  const bool many_starts =
+      outline.points.size() > 3 && (outline.bent.empty() || LengthOf(outline.points) > shortest);
   outline.closed = outline.is_loop && (many_starts || outline.exactly_closed);
   outline.one_start = outline.closed && !many_starts;
   outline.feature = FeatureOf(file, block, outline.is_loop);
-  outline.width_mm = WidthOf(file, block);
   return outline;
 }
 

@@ -23,7 +23,7 @@ struct Outline {
   // The printed shape, which does not say where the path may begin.
   const std::vector<Vertex>& shape() const { return bent.empty() ? points : bent; }
 
-  // Its shape ends where it began, or less than kMaxLoopGapMm short of it.
+  // Its shape ends where it began, or no more than LoopGapMm short of it.
   bool is_loop = false;
 
   // A loop that is printed as one. It may begin at any of its points, or only at the first one: so
@@ -38,9 +38,9 @@ struct Outline {
   double width_mm = 0.45;  // of the deposited line, as the file says or its E words imply
 };
 
-// PrusaSlicer and Slic3r end loops 0.15 nozzle diameters early; CuraEngine's coasting leaves 0.09
-// mm.
-inline constexpr double kMaxLoopGapMm = 0.13;
+// How far short of its start a loop with lines of this width may end: slicers clip up to 0.15
+// widths of the nozzle or of the line, and CuraEngine's coasting leaves 0.09 mm.
+double LoopGapMm(const GcodeFile& file, double width_mm);
 
 Outline OutlineOf(const GcodeFile& file, const Block& block);
 

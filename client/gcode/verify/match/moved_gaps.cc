@@ -55,6 +55,7 @@ struct MovedLoop {
   uint32_t path = 0;
   uint32_t entry = 0;  // the segment with which the other begins
   uint32_t other = 0;
+  uint32_t first = 0;  // segment of the other, where it begins: another path may end there
 
   // The segment of the other that closes the gap; if not `apart`, it is the loop's last segment
   // too.
@@ -139,23 +140,16 @@ class SectionGaps {
     CountDeposits(original, was, -1);
   }
 
-  // The loop that path `other` prints, if it is one that takes its gap along. Each is found once.
+  // The loop that path `other` prints, or ends with, if it is one that takes its gap along. Each is
+  // found once.
   std::optional<MovedLoop> Find(uint32_t other) {
     const TracePath& path = optimised_.paths[other];
-    if (!IsSurplus(path.end_segment - 1)) return std::nullopt;
+    if (path.joined || !IsSurplus(path.end_segment - 1)) return std::nullopt;
     std::optional<MovedLoop> loop;
-    const auto is_found = [this](uint32_t p) -> bool { return found_[p - first_path_]; };
-    const auto is_it = [&](const LoopStart& start) {
-      loop = LoopAt(start.path, start.entry, other);
-      return loop && IsSurplus(loop->closing) && LacksSegmentsOf(*loop) && IsMoved(*loop);
-    };
-    const auto digest = [&](uint32_t s) {
-      return optimised_.segments[path.first_segment + s].digest;
-    };
-    if (!starts_.Find(digest(0), is_found, is_it) &&
-        (path.size() < 3 || !onward_starts_.Find(digest(1), is_found, is_it))) {
-      return std::nullopt;
+    for (uint32_t first = path.first_segment; first < path.end_segment && !loop; ++first) {
+      loop = FindFrom(first, other);
     }
+    if (!loop) return std::nullopt;
     found_[loop->path - first_path_] = true;
     --surplus_[optimised_.segments[loop->closing].digest];
     --surplus_[optimised_.segments[path.end_segment - 1].digest];
@@ -164,6 +158,23 @@ class SectionGaps {
   }
 
  private:
+  std::optional<MovedLoop> FindFrom(uint32_t first, uint32_t other) {
+    std::optional<MovedLoop> loop;
+    const auto is_found = [this](uint32_t p) -> bool { return found_[p - first_path_]; };
+    const auto is_it = [&](const LoopStart& start) {
+      loop = LoopAt(start, first, other);
+      if (loop && !(IsSurplus(loop->closing) && LacksSegmentsOf(*loop) && IsMoved(*loop))) {
+        loop.reset();
+      }
+      return loop.has_value();
+    };
+    const uint32_t size = optimised_.paths[other].end_segment - first;
+    const auto digest = [&](uint32_t s) { return optimised_.segments[first + s].digest; };
+    const bool found = starts_.Find(digest(0), is_found, is_it) ||
+                       (size >= 3 && onward_starts_.Find(digest(1), is_found, is_it));
+    return found ? loop : std::nullopt;
+  }
+
   void CountDeposits(const TraceChunk& chunk, const TraceSection& section, int by) {
     const uint32_t first = chunk.paths[section.first_path].first_segment;
     for (uint32_t s = 0; s < DepositsOf(chunk, section); ++s) {
@@ -194,29 +205,31 @@ class SectionGaps {
     });
   }
 
-  // Nothing if `other` has too many or too few segments to be the loop.
-  std::optional<MovedLoop> LoopAt(uint32_t path, uint32_t entry, uint32_t other) const {
-    const TracePath& is = optimised_.paths[other];
-    const uint32_t n = original_.paths[path].size();
-    const bool apart = is.size() > n;
-    if (is.joined || is.size() != (apart ? n + 1 : n)) return std::nullopt;
-    const uint32_t before_gap = n - entry;
-    return MovedLoop{path, entry, other, is.first_segment + (apart ? before_gap : before_gap - 1),
-                     apart};
+  // Nothing if `other` has too many or too few segments from `first` on to be the loop.
+  std::optional<MovedLoop> LoopAt(const LoopStart& start, uint32_t first, uint32_t other) const {
+    const uint32_t size = optimised_.paths[other].end_segment - first;
+    const uint32_t n = original_.paths[start.path].size();
+    const bool apart = size > n;
+    if (size != (apart ? n + 1 : n)) return std::nullopt;
+    const uint32_t before_gap = n - start.entry;
+    return MovedLoop{
+        start.path, start.entry, other, first, first + (apart ? before_gap : before_gap - 1),
+        apart};
   }
 
   bool IsMoved(const MovedLoop& loop) const {
     const TracePath& was = original_.paths[loop.path];
     const TracePath& is = optimised_.paths[loop.other];
-    const uint32_t closing = loop.closing - is.first_segment;
+    const uint32_t closing = loop.closing - loop.first;
     const auto same_place = [](Point a, Point b) { return DistanceOf(a, b) <= kSameSpotMm; };
-    if (!same_place(is.start, original_.StartOf(was, was.first_segment + loop.entry))) return false;
-    for (uint32_t i = 0; i + 1 < is.size(); ++i) {
+    if (!same_place(optimised_.StartOf(is, loop.first),
+                    original_.StartOf(was, was.first_segment + loop.entry))) {
+      return false;
+    }
+    for (uint32_t i = 0; loop.first + i + 1 < is.end_segment; ++i) {
       if (i == closing) continue;
       const uint32_t s = was.first_segment + (i < closing ? loop.entry + i : i - closing - 1);
-      if (original_.segments[s].digest != optimised_.segments[is.first_segment + i].digest) {
-        return false;
-      }
+      if (original_.segments[s].digest != optimised_.segments[loop.first + i].digest) return false;
     }
     const uint32_t shorter = was.first_segment + loop.entry - 1;
     const Point begin =

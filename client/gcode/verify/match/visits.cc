@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "client/gcode/verify/match/plane.h"
 
@@ -10,6 +11,9 @@ namespace {
 
 constexpr uint32_t kNone = UINT32_MAX;
 constexpr double kSamePlaceMm = 1e-5;
+
+// The gap of a loop, at most, where lines are not wide.
+constexpr double kUsualGapMm = 0.131;
 
 // Most equal segments that are examined.
 constexpr uint32_t kMostAlike = 16;
@@ -220,7 +224,7 @@ class Matcher {
       }
       gap += move.length_mm();
     }
-    return gap <= kLoopGapMm;
+    return gap <= LoopGapMm(optimised_, path);
   }
 
   const TraceChunk& original_;
@@ -247,10 +251,21 @@ class Matcher {
 
 }  // namespace
 
+double LoopGapMm(const TraceChunk& chunk, uint32_t path) {
+  constexpr double kShareOfWidth = 0.2;  // and what the estimate of the width may lack
+  constexpr double kFilamentMm2 = 2.85 * 2.85 * M_PI / 4;
+  const TracePath& traced = chunk.paths[path];
+  if (!(traced.length_mm > 0)) return kUsualGapMm;
+  // Lines are about twice as wide as high.
+  const double area = static_cast<double>(traced.filament_mm / traced.length_mm) * kFilamentMm2;
+  return std::max(kUsualGapMm, kShareOfWidth * std::sqrt(std::max(2 * area, 0.0)));
+}
+
 bool IsClosed(const TraceChunk& chunk, uint32_t path) {
   const TracePath& traced = chunk.paths[path];
-  return traced.size() >= 2 && !traced.joined && traced.length_mm > 4 * kLoopGapMm &&
-         DistanceOf(traced.start, chunk.EndOf(traced)) <= kLoopGapMm;
+  const double gap = DistanceOf(traced.start, chunk.EndOf(traced));
+  return traced.size() >= 2 && !traced.joined && gap <= LoopGapMm(chunk, path) &&
+         static_cast<double>(traced.length_mm) > 4 * std::max(gap, kUsualGapMm);
 }
 
 std::vector<Visit> FindVisits(const TraceChunk& original, const TraceSection& was,

@@ -22,8 +22,10 @@ struct Visit {
   uint32_t last_segment = 0;
 };
 
-// A loop that ends this close to its start is closed: slicers leave a gap of 0.15 nozzle diameters.
-inline constexpr double kLoopGapMm = 0.131;
+// A path that ends this close to its start is a closed loop: slicers leave a gap of 0.15 widths of
+// the nozzle or of the line. How wide a line is follows from its filament; the thicker kind of
+// filament is assumed.
+double LoopGapMm(const TraceChunk& chunk, uint32_t path);
 
 bool IsClosed(const TraceChunk& chunk, uint32_t path);
 

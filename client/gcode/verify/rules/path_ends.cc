@@ -122,7 +122,7 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
       // Where the path ends elsewhere, it may cross the gap of a loop or lead back to a zigzag.
       const double gap = layer.Closed(visit.path)
                              ? DistanceOf(was.EndOf(path), path.start) + kShortestMm
-                             : kLoopGapMm;
+                             : LoopGapMm(was, visit.path);
       const bool longer = has.length_mm > (same_end ? kShortestMm : gap);
       const bool new_tail =
           longer && !has.known && has.feed == path.feed && !LeadsOn(is, visit.last_path, pieces);

@@ -106,8 +106,8 @@ bool IsTooLong(const TraceMove& move, const LongestWays& longest) {
 bool IsNew(const LayerPair& layer, uint32_t link, const TraceMove& move) {
   if (!move.in_print || layer.IsKnown(move)) return false;
   const TraceChunk& is = layer.is();
-  return move.kind != MoveKind::kTravel || !move.open || move.length_mm() > kLoopGapMm ||
-         link == 0 || move.feed != is.paths[link - 1].feed;
+  return move.kind != MoveKind::kTravel || !move.open || link == 0 ||
+         move.length_mm() > LoopGapMm(is, link - 1) || move.feed != is.paths[link - 1].feed;
 }
 
 // The speeds of unretracted and of retracted travel of a layer.

@@ -119,5 +119,27 @@ TEST(Loops, TwoLinesThatDoNotCloseAreNoLoop) {
   for (const Outline& outline : OutlinesOf(*file)) EXPECT_EQ(outline.feature, Feature::kLine);
 }
 
+// A square of 20 mm that ends `gap` short of its start.
+std::string ClippedSquare(double gap) {
+  return To(0, 0, false) + "G1 F1200\n" + To(20, 0, true) + To(20, 20, true) + To(0, 20, true) +
+         To(0, gap, true) + To(50, 50, false);
+}
+
+TEST(Outline, LoopsAreClippedByTheWidthOfTheirLineOrNozzle) {
+  const auto closed = [](const std::string& head, double gap, const std::string& tail) {
+    const auto file =
+        Read("M83\nG1 Z.2 F9000\n;TYPE:Perimeter\n" + head + ClippedSquare(gap) + tail);
+    return OutlinesOf(*file).front().closed;
+  };
+  EXPECT_TRUE(closed(";WIDTH:0.45\n", .12, ""));
+  EXPECT_FALSE(closed(";WIDTH:0.45\n", .15, ""));
+  for (const double width : {0.8, 1.0, 1.8}) {
+    const std::string stated = std::to_string(width);
+    EXPECT_TRUE(closed(";WIDTH:" + stated + "\n", .15 * width, ""));
+    EXPECT_TRUE(closed(";WIDTH:0.45\n", .15 * width, "; nozzle_diameter = " + stated + "\n"));
+    EXPECT_FALSE(closed(";WIDTH:" + stated + "\n", .2 * width, ""));
+  }
+}
+
 }  // namespace
 }  // namespace traverse::gcode

@@ -42,5 +42,42 @@ TEST(FindVisits, EqualLoopsAreTakenOnceEach) {
   EXPECT_EQ(Broken(a, Repeated(kSquare, 41) + kTwo), "same_print");
 }
 
+// A loop of a nozzle of 1.8 mm that ends 0.27 mm short of its start, and the same begun elsewhere
+// with its gap.
+TEST(FindVisits, LoopsOfLargeNozzlesMayEndFartherFromTheirStart) {
+  const std::string head = "M83\n;LAYER_CHANGE\nG1 Z.8 F9000\n";
+  const auto square = [](const char* type, bool elsewhere, const char* width) {
+    const std::string e = width;
+    const std::string wall = std::string(";TYPE:") + type + "\nG1 F1800\n";
+    if (!elsewhere) {
+      return Way("X10 Y10") + wall + "G1 X40 Y10 E" + e + "\nG1 X40 Y40 E" + e + "\nG1 X10 Y40 E" +
+             e + "\nG1 X10 Y10.27 E" + e + "\n";
+    }
+    return Way("X40 Y10") + wall + "G1 X40 Y40 E" + e + "\nG1 X10 Y40 E" + e + "\nG1 X10 Y10.27 E" +
+           e + "\nG1 X10 Y10\nG1 X40 Y10 E" + e + "\n";
+  };
+  const char* const inner = "Perimeter";
+  EXPECT_EQ(Broken(head + square(inner, false, "17.9"), head + square(inner, true, "17.9")), "");
+  EXPECT_NE(Broken(head + square(inner, false, "1"), head + square(inner, true, "1")), "");
+}
+
+// The loop begins where the line before it, which is gone the other way, ends.
+TEST(FindVisits, ALoopThatTakesItsGapAlongMayBeginWhereAnotherPathEnds) {
+  const std::string wall = ";TYPE:Perimeter\nG1 F1800\n";
+  const std::string line = ";TYPE:Internal infill\nG1 F1800\n";
+  const std::string loop = Way("X10 Y10") + wall +
+                           "G1 X20 Y10 E.4\nG1 X20 Y20 E.4\nG1 X10 Y20 E.4\nG1 X10 Y10.1 E.396\n";
+  const std::string a =
+      kHead + ";TYPE:Perimeter\n" + loop + Way("X20 Y20") + wall + "G1 X29 Y29 E.5\n";
+  const std::string b = kHead + ";TYPE:Perimeter\n" + Way("X29 Y29") + wall + "G1 X20 Y20 E.5\n" +
+                        "G1 X10 Y20 E.4\nG1 X10 Y10 E.4\nG1 X20 Y10 E.4\nG1 X20 Y19.9 E.396\n";
+  VerifyPermissions permissions;
+  permissions.policy = Policy::kFree;
+  EXPECT_EQ(Broken(a, b, permissions, RuleBit(VerifyRule::kSamePrint)), "");
+  EXPECT_NE(Broken(a, With(b, "Y19.9 E.396", "Y19.8 E.396"), permissions,
+                   RuleBit(VerifyRule::kSamePrint)),
+            "");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
