@@ -13,6 +13,8 @@ bool IsWipeMark(std::string_view comment) {
          StartsWith(comment, "; WIPE_START") || StartsWith(comment, "; WIPE_END");
 }
 
+bool BeginsWipe(std::string_view mark) { return mark.find("_START") != std::string_view::npos; }
+
 bool IsLayerMark(std::string_view comment) {
   // Simplify3D: `; layer 3, Z = 0.990`
   constexpr std::string_view kNumbered = "; layer ";
@@ -94,6 +96,7 @@ bool Interpreter::Next(Step& step) {
   step.filament = 0;
   step.slots = 0;
   step.arc = false;
+  step.relative = false;
   step.fault = nullptr;
   const std::string_view line = step.line.Text(text_);
   LexLine(line, step.command);
@@ -103,13 +106,21 @@ bool Interpreter::Next(Step& step) {
       break;
     case LineKind::kComment:
       step.kind = KindOfComment(step.command.comment, step.slots);
+      if (step.kind == StepKind::kWipeMark) state_.in_wipe = BeginsWipe(step.command.comment);
+      if (step.kind == StepKind::kLayerMark) state_.in_wipe = false;
       break;
     case LineKind::kText:
+      behind_pull_ = false;
       step.kind = KindOfText(TrimBlanks(line), step.slots);
       break;
-    case LineKind::kCommand:
+    case LineKind::kCommand: {
+      const bool waits = behind_pull_ && step.command.Is('G', 4);
       FollowCommand(step);
+      if (waits) step.kind = StepKind::kDwell;
+      behind_pull_ = step.kind == StepKind::kFilament || step.kind == StepKind::kFirmwareRetract ||
+                     step.kind == StepKind::kFirmwareUnretract;
       break;
+    }
   }
   return true;
 }
@@ -160,7 +171,11 @@ void Interpreter::FollowG(Step& step) {
       return;
     case 90:
     case 91:
+      if (step.command.number == 91 && !state_.relative_xyz) {
+        lifts_until_ = std::max(lifts_until_, LiftsUntil(next_));
+      }
       step.kind = SwitchMode(state_.relative_xyz, step.command.number == 91);
+      if (next_ <= lifts_until_) step.kind = StepKind::kRelative;
       return;
     case 92:
       return SetPosition(step);
@@ -193,6 +208,7 @@ void Interpreter::FollowM(Step& step) {
     case 82:
     case 83:
       step.kind = SwitchMode(state_.relative_e, step.command.number == 83);
+      if (next_ <= lifts_until_) step.kind = StepKind::kRelative;
       return;
     case 74:  // mass printed so far
     case 104:
@@ -234,8 +250,8 @@ void Interpreter::Move(Step& step) {
   // On a straight move R takes a stored point to some machines, and P means other things.
   constexpr uint32_t kOfLines = Command::Bit('X') | Command::Bit('Y') | Command::Bit('Z') |
                                 Command::Bit('E') | Command::Bit('F');
-  constexpr uint32_t kOfArcs = kOfLines | Command::Bit('I') | Command::Bit('J') |
-                               Command::Bit('R') | Command::Bit('P');
+  constexpr uint32_t kOfArcs =
+      kOfLines | Command::Bit('I') | Command::Bit('J') | Command::Bit('R') | Command::Bit('P');
   if ((c.words & ~(c.number < 2 ? kOfLines : kOfArcs)) != 0) {
     step.kind = StepKind::kUnknown;
     return;
@@ -274,9 +290,37 @@ void Interpreter::Move(Step& step) {
   } else {
     step.kind = step.filament != 0 ? StepKind::kFilament : StepKind::kFeed;
   }
+  if (state_.in_wipe && xy && step.filament == 0) step.kind = StepKind::kWipe;
+  if (step.kind == StepKind::kExtrude) state_.in_wipe = false;
   FollowFilament(step.filament, !xy);
   state_.at = to;
-  if (state_.relative_xyz) step.kind = StepKind::kUnknown;  // only slicers' own macros do this
+  step.relative = state_.relative_xyz;
+  // But for lifts only slicers' own macros do this.
+  if (step.relative && next_ > lifts_until_) step.kind = StepKind::kUnknown;
+}
+
+Offset Interpreter::LiftsUntil(Offset next) const {
+  constexpr uint32_t kOfLifts = Command::Bit('Z') | Command::Bit('F');
+  constexpr int kMostLines = 8;
+  Command command;
+  bool lifts = false;
+  for (int i = 0; i < kMostLines && next < text_.size(); ++i) {
+    const Line line = LineAt(text_, next);
+    LexLine(line.Text(text_), command);
+    next = line.next;
+    if (command.Is('G', 90)) {
+      if (!lifts) return 0;
+      // Some firmware lets G91 and G90 count for the extruder too: its mode is stated again.
+      const Line behind = next < text_.size() ? LineAt(text_, next) : line;
+      LexLine(behind.Text(text_), command);
+      return command.Is('M', state_.relative_e ? 83 : 82) ? behind.next : next;
+    }
+    const bool lift = (command.Is('G', 0) || command.Is('G', 1)) && command.Has('Z') &&
+                      (command.words & ~kOfLifts) == 0;
+    if (!lift && command.kind != LineKind::kBlank) return 0;
+    lifts = lifts || lift;
+  }
+  return 0;
 }
 
 void Interpreter::Arc(Step& step) {

@@ -41,6 +41,7 @@ struct MachineState {
   bool relative_e = false;          // M83
   bool inches = false;              // G20
   bool plane_xy = true;             // G17
+  bool in_wipe = false;             // between the marks of a wipe
   int tool = 0;
 
   bool Retracted() const { return firmware_retracted || retracted > kRetractionSlack; }
@@ -76,9 +77,11 @@ enum class StepKind : uint8_t {
   kExtrude,      // XY motion that deposits
   kZeroExtrude,  // XY motion with an E word that pushes nothing
   kTravel,       // XY motion without an E word, or too long for one that may round to nothing
-  kWipe,         // XY motion that retracts
+  kWipe,         // XY motion that retracts, or stands between the marks of a wipe
   kFilament,     // only E
   kLift,         // only Z; also a spiral, G2 or G3 with Z that ends where it began
+  kRelative,     // G91 and G90 around lifts, and M82 or M83 behind that, which changes nothing
+  kDwell,        // G4 right behind a move of filament alone: goes with it
   kFeed,         // only F, or a motion of no length
   kSetE,         // G92 of only E
   kFirmwareRetract,
@@ -95,6 +98,7 @@ struct Step {
   Line line;
   StepKind kind = StepKind::kBlank;
   bool arc = false;             // G2 or G3
+  bool relative = false;        // its words count from where the head is
   Position from;                // before the line; the state has the position after it
   bool retracted = false;       // before the line: filament is retracted
   Decimal pulled = 0;           // before the line: how much of it, by E words
@@ -126,10 +130,15 @@ class Interpreter {
   // `still`: the head does not move in XY.
   void FollowFilament(Decimal filament, bool still);
   static StepKind SwitchMode(bool& mode, bool value);
+  // The end of the lines that lift relatively, G91, moves of Z, G90, if such begin at the line
+  // before `next`; otherwise 0.
+  Offset LiftsUntil(Offset next) const;
   void SwitchUnits();
 
   std::string_view text_;
   Offset next_;
+  Offset lifts_until_ = 0;    // the end of the relative lift that was found last
+  bool behind_pull_ = false;  // the command before this one moved filament alone
   MachineState state_;
 };
 

@@ -64,7 +64,7 @@ void PrintMeter::Follow(const Step& step, const Interpreter& interpreter) {
     case StepKind::kZeroExtrude:
     case StepKind::kTravel:
     case StepKind::kWipe:
-      if (step.kind == StepKind::kWipe && !step.retracted) ++totals_.retractions;
+      if (step.filament < 0 && !step.retracted) ++totals_.retractions;
       return FollowXy(step, state);
     case StepKind::kFilament: {
       if (step.filament < 0 && !step.retracted) ++totals_.retractions;

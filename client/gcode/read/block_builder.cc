@@ -77,7 +77,7 @@ uint16_t LinkFlagsOf(StepKind kind) {
     case StepKind::kFirmwareRetract:
       return kLinkRetracts;
     case StepKind::kWipe:
-      return kLinkRetracts | kLinkWipes;
+      return kLinkWipes;
     default:
       return 0;
   }
@@ -138,10 +138,11 @@ void BlockBuilder::NoteInLink(const Step& step, const MachineState& before,
     link_.primes = true;
   }
   if (step.kind == StepKind::kTravel) ++link_.travels_behind_fixed;
-  if (step.kind == StepKind::kFilament && step.filament < 0) link_.flags |= kLinkRetracts;
+  if (step.filament < 0) link_.flags |= kLinkRetracts;
   const bool pulls = step.filament < 0 || step.kind == StepKind::kFirmwareRetract;
   if (pulls && !step.retracted && link_.retracted) link_.flags |= kLinkRetractsAgain;
   link_.retracted = link_.retracted || step.retracted;
+  if (step.relative) link_.relative_rise += after.at.z - before.at.z;
   if (IsXyMotion(step.kind)) {
     const double mm = StepMm(step, after);
     link_.travel_mm += mm;
@@ -196,7 +197,7 @@ void BlockBuilder::TakeLabel(const Step& step) {
 // near the beginning that switches modes or waits for heat.
 void BlockBuilder::NoteScript(const Step& step) {
   constexpr size_t kMostPurges = 12;
-  if (layers_marked_) return;
+  if (layers_marked_ || step.kind == StepKind::kRelative) return;
   const Command& c = step.command;
   const bool starts = step.kind == StepKind::kModeChange || c.Is('G', 21) || c.Is('G', 90) ||
                       c.Is('M', 82) || c.Is('M', 83) || c.Is('M', 109) || c.Is('M', 190);
@@ -294,6 +295,8 @@ void BlockBuilder::CloseLink(const Block& block) {
       link_.flags |= kLinkFixedFrom | kLinkSplits;
     }
     if (link_.xy_moves == 0 && !meets_tail_) link_.flags |= kLinkFixed;
+    // Such a move leads to another layer, or is a script's.
+    if (link_.relative_rise != 0) link_.flags |= kLinkFixed;
   }
   const bool departs =
       link_.xy_moves > 1 && link_.first_move_mm > 0 && link_.first_move_mm <= kMaxDepartureMm;

@@ -45,6 +45,7 @@ class BlockBuilder {
     bool primes =
         false;  // behind a tool change, filament is pushed of which nothing was pulled back
     double travel_mm = 0;
+    Decimal relative_rise = 0;   // of its moves under G91
     Decimal top = -kDecimalMax;  // the highest Z of its moves in XY
   };
 

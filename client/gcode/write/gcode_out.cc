@@ -129,7 +129,8 @@ void GcodeOut::EditedLine(const LinkStep& step, const Position& to) {
   }
   if (moves || (step.words & Command::Bit('F')) != 0) at.machine.feed = step.feed;
   const auto change = [&](char letter, Decimal value, Decimal in_file, NumberStyle style) {
-    if ((step.words & Command::Bit(letter)) == 0 || value == in_file) return;
+    const bool right = value == in_file && !(step.relative && letter == 'Z');
+    if ((step.words & Command::Bit(letter)) == 0 || right) return;
     changes[count++] = {letter, value, style};
   };
   change('X', to.x, step.to.x, file_.xy_style);

@@ -28,6 +28,7 @@ LinkStep StepOf(const Step& step, const MachineState& after) {
   taken.feed = after.feed;
   taken.slots = step.slots;
   taken.arc = step.arc;
+  taken.relative = step.relative;
   if (step.command.kind == LineKind::kCommand) taken.words = step.command.words;
   if (IsXyMotion(step.kind)) {
     taken.way_mm = step.arc ? ArcLength(step.command, step.from, after.at, 1)
@@ -60,7 +61,8 @@ std::vector<LinkStep> PullOf(const Link& link) {
   std::vector<LinkStep> steps;
   for (const LinkStep& step : link.steps) {
     const bool filament = step.kind == StepKind::kFilament && step.filament < 0;
-    if (filament || step.kind == StepKind::kWipe || step.kind == StepKind::kWipeMark ||
+    if (filament || step.kind == StepKind::kFirmwareRetract || step.kind == StepKind::kDwell ||
+        step.kind == StepKind::kWipe || step.kind == StepKind::kWipeMark ||
         step.kind == StepKind::kFeed) {
       steps.push_back(step);
     } else if (step.kind != StepKind::kBlank && step.kind != StepKind::kComment &&
@@ -83,11 +85,14 @@ std::optional<Link> WithWipeOf(Link form, const Link& own) {
   std::vector<LinkStep> steps = PullOf(own);
   Decimal pulled = 0;
   bool wipes = false;
+  bool firmware = false;
   for (const LinkStep& step : steps) {
     pulled -= step.filament;
     wipes = wipes || step.kind == StepKind::kWipe;
+    firmware = firmware || step.kind == StepKind::kFirmwareRetract;
   }
-  if (!wipes || form.fixed > 0 || std::abs(pulled - form.pulled) > kRetractionSlack) {
+  if (!wipes || form.fixed > 0 || firmware != form.firmware ||
+      std::abs(pulled - form.pulled) > kRetractionSlack) {
     return std::nullopt;
   }
   const auto arrival = form.steps.begin() + form.arrival;

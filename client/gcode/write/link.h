@@ -20,12 +20,13 @@ struct LinkStep {
   Line line;
   Position from;
   Position to;
-  Decimal filament = 0;  // pushed or retracted; for kSetE the new value of the register
-  Decimal feed = 0;      // in force for this line
-  SlotMask slots = 0;    // kSlot
-  uint32_t words = 0;    // of commands
-  double way_mm = 0;     // length in XY, along the arc if it is one
-  bool arc = false;      // G2 or G3
+  Decimal filament = 0;   // pushed or retracted; for kSetE the new value of the register
+  Decimal feed = 0;       // in force for this line
+  SlotMask slots = 0;     // kSlot
+  uint32_t words = 0;     // of commands
+  double way_mm = 0;      // length in XY, along the arc if it is one
+  bool arc = false;       // G2 or G3
+  bool relative = false;  // Step
 };
 
 struct Link {

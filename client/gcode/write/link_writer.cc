@@ -210,7 +210,7 @@ void LinkWriter::WriteWipe(const PlacedPath& path, const Link& form) {
         last ? left
              : static_cast<Decimal>(static_cast<double>(wipe.pulled) * share) / kStep * kStep;
     left -= pull;
-    out_.Segment("G1", way[i], true, -pull, wipe.feed, {}, {});
+    out_.Segment("G1", way[i], wipe.pulled > 0, -pull, wipe.feed, {}, {});
   }
   if (left > 0) out_.Pull(left, shorter ? wipe.still_feed : wipe.feed);
 }
@@ -223,6 +223,7 @@ void LinkWriter::WriteMotion(const LinkStep& step, Decimal z_form, Decimal z_her
     case StepKind::kFirmwareRetract:
     case StepKind::kFirmwareUnretract:
     case StepKind::kPlane:
+    case StepKind::kDwell:
       return out_.LinkLine(step);
     case StepKind::kLift:
       return out_.LiftLine(step, z_here + (step.to.z - z_form));
@@ -371,6 +372,8 @@ void LinkWriter::WriteBoundaryStep(const LinkRequest& request, const Link& link,
         return;
       }
       return out_.SetBy(raw, step.slots);
+    case StepKind::kRelative:  // lifts are written as heights
+      return;
     default:
       out_.LinkLine(step);
   }

@@ -121,16 +121,17 @@ void VerifyMachine::Do(VerifyLine& line) {
   int number = 0;
   const auto read = std::from_chars(text.data() + 1, text.data() + text.size(), number);
   settings_.BeginLine();
+  waits_ = std::exchange(pulls_, false);
   const bool numbered =
       read.ec == std::errc{} && text[1] != '-' &&
       (read.ptr == text.data() + text.size() || (*read.ptr != '.' && *read.ptr != '_'));
   if (letter == 'G' && numbered) {
     DoG(number, line);
-    const bool moving = number <= 3 || number == 10 || number == 11 || number == 92;
-    if (!moving) line.command = Mix('G', static_cast<uint64_t>(number));
+    const bool moving = number <= 3 || number == 10 || number == 11 || number == 92 || line.moves;
+    if (!moving && !InLift()) line.command = Mix('G', static_cast<uint64_t>(number));
   } else if (letter == 'M' && numbered) {
     DoM(number, line);
-    line.command = Mix('M', static_cast<uint64_t>(number));
+    if (!InLift()) line.command = Mix('M', static_cast<uint64_t>(number));
   } else {
     DoKlipper(line);
     line.command = DigestOf(text.substr(0, text.find_first_of(" \t=")));
@@ -162,7 +163,7 @@ void VerifyMachine::DoComment(VerifyLine& line) {
 }
 
 void VerifyMachine::Mode(bool& mode, bool value, VerifyLine& line) {
-  Fence(line, mode == value ? LineRole::kFence : LineRole::kFixed);
+  if (!InLift()) Fence(line, mode == value ? LineRole::kFence : LineRole::kFixed);
   mode = value;
 }
 
@@ -199,8 +200,14 @@ void VerifyMachine::DoG(int number, VerifyLine& line) {
       if (words.set != 0 || !words.readable) return Fence(line, LineRole::kFixed);
       NoteMotion(number, 0, at_, 0);
       settings_.Move();
-      line.moves = true;
+      line.moves = pulls_ = true;
       firmware_retracted_ = number == 10;
+      return;
+    case 4:
+      if (!waits_ || !words.OnlyFrom("PS")) return Fence(line, LineRole::kFixed);
+      NoteMotion(number, 0, at_, 0);
+      motion_.feed = words.ValueOr('P', 0) + 1000 * words.ValueOr('S', 0);
+      line.moves = true;
       return;
     case 17:
       // Slicers write it before each spiral lift.
@@ -214,6 +221,9 @@ void VerifyMachine::DoG(int number, VerifyLine& line) {
       return SwitchUnits(number == 20, line);
     case 90:
     case 91:
+      if (number == 91 && !relative_) {
+        if (const size_t lines = LinesOfLift(); lines > 0) last_of_lift_ = number_ + lines;
+      }
       return Mode(relative_, number == 91, line);
     case 92:
       if (words.readable && words.set == 1u << ('E' - 'A')) {
@@ -229,6 +239,32 @@ void VerifyMachine::DoG(int number, VerifyLine& line) {
     default:
       return Fence(line, LineRole::kFixed);
   }
+}
+
+size_t VerifyMachine::LinesOfLift() const {
+  constexpr size_t kMostLines = 8;
+  std::string_view rest = rest_;
+  bool lifts = false;
+  bool ended = false;
+  for (size_t lines = 0; lines < kMostLines; ++lines) {
+    const size_t end = std::min(rest.find('\n'), rest.size());
+    std::string_view line = TrimLine(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (line.find('\r') != std::string_view::npos) return 0;
+    const bool command = line.size() > 2 && (line[0] == 'G' || line[0] == 'g');
+    const bool mode = line.size() > 2 && (line[0] == 'M' || line[0] == 'm');
+    int number = -1;
+    if (command || mode) std::from_chars(line.data() + 1, line.data() + line.size(), number);
+    if (ended) return mode && number == (relative_e_ ? 83 : 82) ? lines + 1 : lines;
+    if (line.empty()) continue;
+    if (!command) return 0;
+    const CommandWords words(WordsOf(line));
+    ended = number == 90 && lifts;
+    const bool lift = (number == 0 || number == 1) && words.Has('Z') && words.OnlyFrom("ZF");
+    if (!lift && !ended) return 0;
+    lifts = lifts || lift;
+  }
+  return 0;
 }
 
 void VerifyMachine::Move(int number, const CommandWords& words, VerifyLine& line) {
@@ -260,6 +296,7 @@ void VerifyMachine::Move(int number, const CommandWords& words, VerifyLine& line
     Deposit(number, words, from, filament, line);
   } else {
     line.travels = moves;
+    pulls_ = filament != 0 && !moves && at_[2] == from[2];
     if (filament > 0) {
       line.primes = true;
       line.surplus = filament - pulled_;
@@ -268,7 +305,7 @@ void VerifyMachine::Move(int number, const CommandWords& words, VerifyLine& line
     // arcs by a radius, whose center is nowhere known.
     const bool circle = number >= 2 && !moves && at_[2] == from[2];
     const bool by_radius = number >= 2 && words.Has('R');
-    if (relative_ || circle || by_radius) Fence(line, LineRole::kFixed);
+    if ((relative_ && !InLift()) || circle || by_radius) Fence(line, LineRole::kFixed);
   }
   FollowFilament(filament, moves);
   if (pulled_ > 0) line.surplus = 0;  // not all of it yet

@@ -55,7 +55,7 @@ struct Motion {
   Micro filament = 0;  // pushed; pulled back if negative
   Micro pulled = 0;    // still pulled back before it
   Micro feed = 0;      // in force
-  int number = 0;      // G0 to G3, G10 and G11
+  int number = 0;      // G0 to G3, G10 and G11; G4 behind a move of filament alone
   uint32_t words = 0;  // bit (letter - 'A')
   bool was_retracted = false;
   bool has_center = false;  // of an arc
@@ -119,6 +119,10 @@ class VerifyMachine {
   bool IsCircular(const CommandWords& words, const std::array<Micro, 3>& from) const;
   void NoteMotion(int number, uint32_t words, const std::array<Micro, 3>& from, Micro filament);
   void Mode(bool& mode, bool value, VerifyLine& line);
+  // How many of the next lines move Z alone and end with G90, and with the mode of the extruder if
+  // that is stated again; 0: other lines follow.
+  size_t LinesOfLift() const;
+  bool InLift() const { return number_ <= last_of_lift_; }
   void SwitchUnits(bool inches, VerifyLine& line);
   void Fence(VerifyLine& line, LineRole role);
 
@@ -126,7 +130,10 @@ class VerifyMachine {
   const char* line_feed_ = nullptr;  // the next one, or the end
   const char* return_ = nullptr;     // the same of carriage returns
   size_t number_ = 0;
-  size_t moved_at_ = 0;  // the line of motion_
+  size_t moved_at_ = 0;      // the line of motion_
+  bool pulls_ = false;       // the line moves filament alone
+  bool waits_ = false;       // the command before it did
+  size_t last_of_lift_ = 0;  // the line behind a lift in relative mode
   uint32_t line_ends_ = 0;
   std::array<uint32_t, kMostReturns + 2> first_with_end_{};  // [bit of line_ends_]
   std::array<Micro, 3> at_{};

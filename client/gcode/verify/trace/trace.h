@@ -63,6 +63,7 @@ enum class MoveKind : uint8_t {
   kDown,
   kRetraction,  // retracting at a standstill
   kPriming,     // filament pushed at a standstill
+  kDwell,       // waiting behind one of these two; its speed is how long
   kCount,
 };
 

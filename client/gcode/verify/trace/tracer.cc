@@ -50,6 +50,7 @@ MoveKind KindOf(const Motion& motion) {
   const bool sideways = motion.from[0] != motion.to[0] || motion.from[1] != motion.to[1];
   if (motion.number == 10) return MoveKind::kRetraction;
   if (motion.number == 11) return MoveKind::kPriming;
+  if (motion.number == 4) return MoveKind::kDwell;
   if (sideways) return motion.filament < 0 ? MoveKind::kWipe : MoveKind::kTravel;
   if (motion.filament < 0) return MoveKind::kRetraction;
   if (motion.filament > 0) return MoveKind::kPriming;
@@ -114,8 +115,8 @@ void MoveLater(uint32_t end, std::vector<Event>& from, std::vector<Event>& to) {
 }  // namespace
 
 std::string_view MoveKindName(MoveKind kind) {
-  constexpr std::string_view kNames[] = {"travel",    "wipe",       "move up",
-                                         "move down", "retraction", "priming"};
+  constexpr std::string_view kNames[] = {"travel",     "wipe",    "move up", "move down",
+                                         "retraction", "priming", "dwell"};
   static_assert(std::size(kNames) == static_cast<size_t>(MoveKind::kCount));
   return kNames[static_cast<size_t>(kind)];
 }

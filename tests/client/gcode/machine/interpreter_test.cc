@@ -157,5 +157,34 @@ TEST(Interpreter, CoordinatesBeyondReasonAreNotFollowed) {
   EXPECT_EQ(LastKind("M83\nG1 X1 E2000000"), StepKind::kUnknown);
 }
 
+TEST(Interpreter, WhatMovesBetweenTheMarksOfAWipeIsAWipe) {
+  const std::string wipe = "G1 E-1\n;WIPE_START\nG1 X5\n";
+  EXPECT_EQ(LastKind(wipe), StepKind::kWipe);
+  EXPECT_EQ(LastKind(wipe + ";WIPE_END\nG1 X9"), StepKind::kTravel);
+  // The mark of its end may be missing.
+  EXPECT_EQ(LastKind("M83\n" + wipe + "G1 X9 E1\nG1 X12"), StepKind::kTravel);
+}
+
+TEST(Interpreter, LiftsMayBeRelative) {
+  using K = StepKind;
+  const std::string lift = "G1 Z.2\nG91\nG1 Z.4 F720\nG90\n";
+  const std::vector<K> kinds = {K::kLift, K::kRelative, K::kLift, K::kRelative};
+  EXPECT_EQ(Kinds(lift), kinds);
+  EXPECT_EQ(After(lift).at.z, 6 * kDecimalOne / 10);
+  EXPECT_EQ(LastKind("M83\n" + lift + "M83"), K::kRelative);
+  EXPECT_EQ(LastKind(lift + "M83"), K::kModeChange);
+  // All else that moves relatively is left alone.
+  for (const char* const other : {"G1 X1 Z.4", "G1 Z.4 E1", "G1 Z.4\nM106 S0", "M400"}) {
+    EXPECT_EQ(Kinds(std::string("G91\n") + other + "\nG90").front(), K::kModeChange) << other;
+  }
+}
+
+TEST(Interpreter, WaitsBelongToTheRetractionsThatTheyFollow) {
+  EXPECT_EQ(LastKind("G1 E-1\nG4 P50"), StepKind::kDwell);
+  EXPECT_EQ(LastKind("G11\n\nG4 P50"), StepKind::kDwell);
+  EXPECT_EQ(LastKind("G1 E-1\nG1 X5\nG4 P50"), StepKind::kUnknown);
+  EXPECT_EQ(LastKind("G1 E-1\nG4 P50\nG4 P50"), StepKind::kUnknown);
+}
+
 }  // namespace
 }  // namespace traverse::gcode

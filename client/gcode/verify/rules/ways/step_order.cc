@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "client/gcode/verify/rules/rules.h"
@@ -30,6 +31,8 @@ char StepOf(const TraceMove& move) {
       return 'R';
     case MoveKind::kPriming:
       return 'P';
+    case MoveKind::kDwell:
+      return 'w';
     default:
       break;
   }
@@ -69,6 +72,19 @@ std::string EarlyStepsOf(const std::string& steps) {
   return absl::StrCat(lifts ? "UR" : "", primes ? steps.substr(prime) : "", "l");
 }
 
+// Whether the head waits behind what pulls filament back, or pushes it, at a standstill.
+std::vector<std::string> DwellsOf(const TraceChunk& chunk, uint32_t link) {
+  const TraceLink& traced = chunk.links[link];
+  std::vector<std::string> dwells;
+  for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
+    const MoveKind kind = chunk.moves[m].kind;
+    if (kind != MoveKind::kRetraction && kind != MoveKind::kPriming) continue;
+    const bool waits = m + 1 < traced.end_move && chunk.moves[m + 1].kind == MoveKind::kDwell;
+    dwells.push_back(absl::StrCat(kind == MoveKind::kRetraction ? "R" : "P", waits ? "w" : "-"));
+  }
+  return dwells;
+}
+
 const char* NameOfStep(char step) {
   switch (step) {
     case 'U':
@@ -79,6 +95,10 @@ const char* NameOfStep(char step) {
       return "retraction";
     case 'P':
       return "priming";
+    case 'w':
+      return "dwell";
+    case '-':
+      return "no dwell";
     case 'u':
       return "travel that rises";
     case 'd':
@@ -123,6 +143,9 @@ void ObserveStepOrder(const LayerPair& layer, LayerFindings& findings) {
   for (uint32_t link = std::max(layer.first_path_was(), 1u); link < layer.end_path_was(); ++link) {
     const std::string steps = StepsOf(layer.was(), link);
     add(layer.was(), link, steps, findings.was);
+    for (const std::string& dwell : DwellsOf(layer.was(), link)) {
+      add(layer.was(), link, dwell, findings.was);
+    }
     if (layer.was().links[link].new_layer) {
       add(layer.was(), link, EarlyStepsOf(steps), findings.was);
     }
@@ -131,6 +154,9 @@ void ObserveStepOrder(const LayerPair& layer, LayerFindings& findings) {
     if (layer.is().links[link].scripted || AllKnown(layer, link)) continue;
     const std::string steps = StepsOf(layer.is(), link);
     const bool to_layer = layer.is().links[link].new_layer;
+    for (const std::string& dwell : DwellsOf(layer.is(), link)) {
+      add(layer.is(), link, dwell, findings.is);
+    }
     add(layer.is(), link, to_layer ? EarlyStepsOf(steps) : steps, findings.is);
   }
 }

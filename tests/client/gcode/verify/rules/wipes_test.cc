@@ -192,5 +192,23 @@ TEST(VerifyWipes, ArcsTurnAsTheirPathDoes) {
   EXPECT_EQ(Broken(head + wiped("G2 X5 Y5 I-.02 J0"), head + wiped("G2 X5 Y5 I-.02 J0")), "");
 }
 
+// Behind a retraction nothing is left to pull back.
+TEST(VerifyWipes, WithoutFilamentAreWipesToo) {
+  const auto wiped = [](const char* from, const char* to, const char* back) {
+    return absl::StrCat("G1 ", from, " F9000\nG1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 ",
+                        to, " E.3\nG1 E-1 F2100\n;WIPE_START\nG1 F7200\nG1 ", back,
+                        "\n;WIPE_END\n");
+  };
+  const std::string head = kHead + "G1 E-1 F2100\n";
+  const std::string two = wiped("X0 Y0", "X9 Y0", "X7 Y0") + wiped("X0 Y5", "X9 Y5", "X7 Y5");
+  const std::string turned = wiped("X9 Y5", "X0 Y5", "X2 Y5") + wiped("X9 Y0", "X0 Y0", "X2 Y0");
+  const std::string beside = wiped("X9 Y5", "X0 Y5", "X2 Y5") + wiped("X9 Y0", "X0 Y0", "X2 Y1");
+  EXPECT_EQ(Broken(head + two, head + turned), "");
+  EXPECT_EQ(Broken(head + two, head + beside), "wipes");
+  const std::string bare =
+      With(turned, "G1 E-1 F2100\n;WIPE_START\nG1 F7200\nG1 X2 Y5\n;WIPE_END\n", "G1 E-1 F2100\n");
+  EXPECT_EQ(Broken(head + two, head + bare), "wipes");
+}
+
 }  // namespace
 }  // namespace traverse::gcode

@@ -376,5 +376,17 @@ TEST(VerifyLifts, TheHeadRisesOnTheSameSideOfALabel) {
   EXPECT_EQ(Broken(b, a), "lifts");
 }
 
+TEST(VerifyLifts, AreTheSameInRelativeModeAndInAbsolute) {
+  const std::string relative =
+      With(With(kLifted, "G1 Z.6 F9000\n", "G91\nG1 Z.4 F9000\nG90\nM83\n"), "G1 Z.2\n",
+           "G91\nG1 Z-.4\nG90\nM83\n");
+  EXPECT_EQ(Broken(kHead + relative, kHead + kLifted), "");
+  EXPECT_EQ(Broken(kHead + kLifted, kHead + relative), "");
+  EXPECT_NE(Broken(kHead + kLifted, kHead + With(relative, "G1 Z.4", "G1 Z.3")), "");
+  // Whatever else is moved so stays where it is.
+  const std::string moved = With(kLifted, "G1 Z.6 F9000\n", "G91\nG1 Z.4 X1 F9000\nG90\n");
+  EXPECT_NE(Broken(kHead + moved, kHead + kLifted), "");
+}
+
 }  // namespace
 }  // namespace traverse::gcode

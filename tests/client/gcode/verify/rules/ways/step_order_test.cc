@@ -62,5 +62,24 @@ TEST(VerifyStepOrder, NothingComesEarlyToALayer) {
   EXPECT_EQ(Ordered(a, kHead + kTwo + rises + "G1 E1 F2100\n" + first), "step_order");
 }
 
+TEST(VerifyStepOrder, WhatWaitsStillDoes) {
+  const auto line = [](const std::string& from, const std::string& to, const std::string& waits) {
+    return "G1 E-1 F2100\n" + waits + "G1 " + from + " F9000\nG1 E1 F2100\n" +
+           ";TYPE:Internal infill\nG1 F1800\nG1 " + to + " E.3\n";
+  };
+  const std::string wait = "G4 P50\n";
+  const auto two = [&](bool turned, const std::string& waits) {
+    return kHead + line("X0 Y9", "X9 Y9", wait) +
+           (turned ? line("X9 Y0", "X0 Y0", waits) : line("X0 Y0", "X9 Y0", waits)) +
+           line("X0 Y5", "X9 Y5", waits);
+  };
+  EXPECT_EQ(Broken(two(false, wait), two(true, wait), {}, ~0u), "");
+  EXPECT_EQ(Ordered(two(false, wait), two(true, "")), "step_order");
+  EXPECT_NE(Broken(two(false, wait), two(true, "G4 P500\n"), {}, ~0u), "");
+  // Elsewhere waiting has reasons of its own.
+  const std::string apart = "G1 F1800\nG4 P50\n";
+  EXPECT_NE(Broken(two(false, apart), two(false, ""), {}, ~0u), "");
+}
+
 }  // namespace
 }  // namespace traverse::gcode
