@@ -29,6 +29,7 @@ constexpr RuleWords kRules[] = {
     {"bounds", "no travel leaves the area in which the original moves"},
     {"step_order", "travel takes its steps in an order that travel of the original has"},
     {"kept_ways", "between paths that still follow each other nothing changes"},
+    {"obstacles", "no travel leads into what stands, or nearer to it than in the original"},
 };
 static_assert(std::size(kRules) == static_cast<size_t>(VerifyRule::kCount));
 

@@ -35,6 +35,7 @@ enum class VerifyRule : uint8_t {
   kBounds,       // the area of all moves
   kStepOrder,    // in which travel retracts, rises, moves, descends and primes
   kKeptWays,     // between two paths that follow each other as in the original
+  kObstacles,    // nothing that stands is in the way of the head
   kCount,
 };
 

@@ -12,6 +12,7 @@
 #include "client/gcode/verify/line_numbers.h"
 #include "client/gcode/verify/match/moved_gaps.h"
 #include "client/gcode/verify/match/path_lines.h"
+#include "client/gcode/verify/rules/obstacles.h"
 #include "client/gcode/verify/rules/rules.h"
 #include "client/gcode/verify/same_print.h"
 #include "client/gcode/verify/stated_digest.h"
@@ -53,6 +54,7 @@ class Verifier {
     context_.permissions = options.permissions.value_or(
         PermissionsInHead(optimised.text).value_or(VerifyPermissions{}));
     context_.settings = ReadSettings(original.text);
+    obstacles_.emplace(context_.settings);
     report_.permissions = context_.permissions;
   }
 
@@ -64,6 +66,7 @@ class Verifier {
   bool SamePrint();
   void CheckChunk();
   void CheckLayer(const LayerPair& layer, LayerFindings& findings) const;
+  void CheckObstacles(size_t layers);
   void CheckLabels(size_t first, size_t end);
   void CheckText();
   void Finish();
@@ -76,6 +79,7 @@ class Verifier {
   const uint32_t rules_;
   const int threads_;
   RuleContext context_;
+  std::optional<Obstacles> obstacles_;
   SideReader was_;
   SideReader is_;
   TraceChunk next_was_;  // the one after chunk_was_
@@ -207,6 +211,7 @@ void Verifier::CheckChunk() {
     seen_is_.Append(found[i].is);
     findings_.insert(findings_.end(), found[i].breaks.begin(), found[i].breaks.end());
   }
+  if ((rules_ & RuleBit(VerifyRule::kObstacles)) != 0) CheckObstacles(layers);
   ObserveBounds(chunk_was_, seen_was_.box);
   seen_was_.deposit_accelerations.insert(chunk_was_.accelerations.begin(),
                                          chunk_was_.accelerations.end());
@@ -223,6 +228,14 @@ void Verifier::CheckChunk() {
     CheckLeaving(chunk_was_, chunk_is_, findings_);
     ObserveScript(chunk_was_, static_cast<uint32_t>(chunk_was_.links.size()) - 1, seen_was_);
   }
+}
+
+// One layer after the other: what stands is what was printed before.
+void Verifier::CheckObstacles(size_t layers) {
+  for (size_t i = 0; i < layers; ++i) {
+    obstacles_->CheckLayer(chunk_was_, chunk_is_, i, findings_);
+  }
+  if (!more_) obstacles_->CheckEnd(chunk_was_, chunk_is_, findings_);
 }
 
 void Verifier::Compare(std::vector<Finding>& breaks) const {

@@ -86,6 +86,14 @@ SlicerSettings ReadSettings(std::string_view text) {
       first_of("avoid_crossing_perimeters", "reduce_crossing_wall") == "1";
   settings.retract_before_mm =
       GreatestOf(first_of("retract_before_travel", "retraction_minimum_travel"));
+  // Prints are at most so far apart, and heads no higher.
+  constexpr double kMostClearanceMm = 100;
+  const auto room = [&](std::string_view one, std::string_view other, double& stated_mm) {
+    const double mm = GreatestOf(first_of(one, other));
+    if (mm > 0 && mm <= kMostClearanceMm) stated_mm = mm;
+  };
+  room("extruder_clearance_radius", "extruder_clearance_max_radius", settings.clearance_radius_mm);
+  room("nozzle_height", "nozzle_height", settings.nozzle_height_mm);
   return settings;
 }
 

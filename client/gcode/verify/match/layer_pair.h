@@ -19,6 +19,8 @@ struct SlicerSettings {
   bool monotonic_top = true;
   bool monotonic_bottom = false;
   bool leads_around_walls = false;  // leads travel around walls
+  double clearance_radius_mm = 30;  // around the nozzle, within which other parts hang
+  double nozzle_height_mm = 2;      // no other part hangs lower above the tip than this
   double retract_before_mm = 0;  // longer travel retracts; the greatest of all tools; 0: not stated
 };
 

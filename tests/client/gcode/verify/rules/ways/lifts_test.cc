@@ -311,7 +311,7 @@ TEST(VerifyLifts, TheHeadSinksWhereItSank) {
   const std::string turned =
       Line("Internal infill", "X0 Y5", "X9 Y5") + Line("Internal infill", "X9 Y0", "X0 Y0");
   EXPECT_EQ(Broken(a, tower + turned + aside + low + to + end), "");
-  EXPECT_EQ(Broken(a, tower + kTwo + "G1 E-1 F2100\n" + low + to + end), "lifts");
+  EXPECT_EQ(Broken(a, tower + kTwo + "G1 E-1 F2100\n" + low + to + end), "lifts obstacles");
   // Down at the path itself.
   EXPECT_EQ(
       Broken(a, tower + kTwo + "G1 E-1 F2100\nG1 X61 Y0 F9000\n" + low + "G1 E1 F2100\n" + end),
