@@ -227,6 +227,10 @@ class Rewriter {
     }
     if (rewrite.layers_unproven > 0) rewrite.unproven = unproven_;
     NoteUnclear(rewrite);
+    rewrite.layers_blocked = static_cast<int64_t>(chosen.blocked.size());
+    if (!chosen.blocked.empty()) {
+      rewrite.blocked = PlaceOf(file_.blocks[file_.layers[chosen.blocked[0]].first_block].begin);
+    }
     rewrite.unread_moves = file_.unread_moves;
     if (file_.unread_moves > 0) rewrite.unread = PlaceOf(file_.unread_at);
     if (file_.relative_moves <= static_cast<int64_t>(file_.ends.size())) return;
@@ -341,6 +345,12 @@ std::vector<std::string> DescribeLeft(const GcodeRewrite& rewrite) {
     left.push_back(
         absl::StrFormat("%d layers left unchanged, because machines read a line differently: %s",
                         rewrite.layers_unclear, rewrite.unclear));
+  }
+  if (rewrite.layers_blocked > 0) {
+    left.push_back(absl::StrFormat(
+        "%d layers keep travel that could be shorter, because something finished that stands "
+        "higher is in the way of the head: %s",
+        rewrite.layers_blocked, rewrite.blocked));
   }
   if (rewrite.relative_moves > 0) {
     left.push_back(absl::StrFormat(

@@ -38,6 +38,11 @@ struct GcodeRewrite {
   int64_t layers_unclear = 0;
   std::string unclear;
 
+  // Layers for which orders were found whose travel leads into what stands higher, and the first of
+  // these: "part.gcode:118". What they have now leads past it, or stays.
+  int64_t layers_blocked = 0;
+  std::string blocked;
+
   // Moves that stay where they are because they are relative to each other, if those are most of
   // what prints, and the first of them: "part.gcode:118".
   int64_t relative_moves = 0;

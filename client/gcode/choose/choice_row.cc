@@ -130,7 +130,7 @@ class RowFinder {
   }
 
   bool MayBe(const PrintTotals& given, const PrintTotals& chosen) const {
-    if (chosen.open_crossings > given.open_crossings ||
+    if (chosen.blocked > given.blocked || chosen.open_crossings > given.open_crossings ||
         chosen.longest_open_mm > given.longest_open_mm + kSlackMm) {
       return false;
     }

@@ -35,7 +35,8 @@ struct ChoiceColumn {
 
 // The row of choices with the least estimated time; under Crossings::kFewer a crossing counts as
 // time, or as less of it if the row would take longer than the file. No layer, with the move to it,
-// has more or longer unretracted moves across visible walls than in the file, or more filament
+// has more moves where something is in the way, or more or longer unretracted moves across visible
+// walls than in the file, or more filament
 // pushed beyond what was retracted; under Policy::kSafe none has more travel. Except under
 // Crossings::kAny, the whole file has at least `fewer` fewer crossings of visible walls than
 // before; if no row does, the file's own orders are returned. The file has no more retractions than

@@ -36,7 +36,8 @@ class LayerChooser::Impl {
         threads_(choice.threads),
         habit_(HabitOfNewWays(file, choice.allow)),
         donors_(file),
-        filler_(file, habit_, donors_),
+        room_(file),
+        filler_(file, habit_, donors_, room_),
         travel_(LearnTravel(file, habit_.threshold_mm, choice.threads)),
         revisits_(file, choice.min_revisit_seconds, choice.threads),
         columns_(file.layers.size()) {
@@ -219,8 +220,18 @@ class LayerChooser::Impl {
       if (!known) found.push_back(order[layer]);
     }
     if (found.empty()) return;
+    for (const LayerOrder& order : found) column.blocked |= IsBlocked(layer, order, column);
     const auto orders = MergedOrders(*column.writer, travel_[layer], found, rules);
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
+  }
+
+  bool IsBlocked(size_t layer, const LayerOrder& order, const LayerColumn& column) const {
+    if (column.writer->room() == nullptr) return false;
+    for (size_t i = 1; i < order.size(); ++i) {
+      const auto way = column.writer->EstimateWay(i, order[i - 1], order[i], travel_[layer]);
+      if (way.blocked > 0) return true;
+    }
+    return false;
   }
 
   void FillWays(size_t layer) {
@@ -230,7 +241,8 @@ class LayerChooser::Impl {
       for (const LayerChoice& choice : column.choices) {
         std::string text;
         column.writer->WriteWay(before.order.back(), choice.order.front(), before.behind, text);
-        column.totals.ways.push_back(Measure(file_, text, before.behind, &column.writer->walls()));
+        column.totals.ways.push_back(
+            Measure(file_, text, before.behind, &column.writer->walls(), column.writer->room()));
       }
     }
     column.totals.no_way.assign(column.totals.ways.size(), false);
@@ -337,6 +349,7 @@ class LayerChooser::Impl {
     chosen.given.push_back(column.totals.Whole(0, 0));
     chosen.totals.push_back(column.totals.Whole(before, column.chosen));
     chosen.changed += column.chosen != 0 ? 1 : 0;
+    if (column.blocked) chosen.blocked.push_back(layer);
   }
 
   const GcodeFile& file_;
@@ -349,6 +362,7 @@ class LayerChooser::Impl {
   const int threads_;
   const RetractionHabit habit_;
   const LinkDonors donors_;
+  const HeadRoom room_;
   const ColumnFiller filler_;
   const std::vector<TravelModel> travel_;  // [layer]
   const Revisits revisits_;

@@ -41,6 +41,7 @@ struct ChosenLayers {
   std::vector<PrintTotals> given;   // [layer], with the travel to it, in the file's order
   std::vector<PrintTotals> totals;  // [layer], as chosen
   int64_t changed = 0;              // layers in another order than the file's
+  std::vector<size_t> blocked;      // layers with orders found where something is in the way
   Forecast forecast;                // of all travel between paths
 
   // Appends all layers, from the first path to the end of the last one.

@@ -46,12 +46,17 @@ size_t PlaceOfLine(LayerColumn& column, size_t line) {
 }
 
 ColumnFiller::ColumnFiller(const GcodeFile& file, const RetractionHabit& habit,
-                           const LinkDonors& donors)
-    : file_(file), habit_(habit), plain_habit_(SparingNoWalls(habit)), donors_(donors) {}
+                           const LinkDonors& donors, const HeadRoom& room)
+    : file_(file),
+      habit_(habit),
+      plain_habit_(SparingNoWalls(habit)),
+      donors_(donors),
+      room_(room) {}
 
 void ColumnFiller::Begin(size_t layer, LayerColumn& column) const {
   const Layer& of_file = file_.layers[layer];
-  column.writer = std::make_unique<const LayerWriter>(file_, of_file, habit_, donors_);
+  column.writer =
+      std::make_unique<const LayerWriter>(file_, of_file, habit_, donors_, room_.Of(layer));
   LayerChoice& choice = column.choices.emplace_back();
   choice.order = column.writer->GivenOrder();
   choice.writer = column.writer.get();
@@ -70,8 +75,8 @@ void ColumnFiller::Add(const LayerOrder& order, size_t layer, LayerColumn& colum
   const std::vector<PrintTotals>& inside = column.totals.inside;
   if (inside.back().open_crossings >= inside.front().open_crossings) return;
   if (column.plain == nullptr) {
-    column.plain =
-        std::make_unique<const LayerWriter>(file_, file_.layers[layer], plain_habit_, donors_);
+    column.plain = std::make_unique<const LayerWriter>(file_, file_.layers[layer], plain_habit_,
+                                                       donors_, room_.Of(layer));
   }
   // A choice that is equal would have ways to and from all those of the layers beside it.
   if (Add(order, *column.plain, column) != sparing) return;
@@ -88,7 +93,8 @@ std::string ColumnFiller::Add(const LayerOrder& order, const LayerWriter& writer
   std::string text;
   choice.behind = writer.WritePaths(order, choice.start, text);
   choice.resets_e = Resets(text);
-  column.totals.inside.push_back(Measure(file_, text, choice.start, &column.writer->walls()));
+  column.totals.inside.push_back(
+      Measure(file_, text, choice.start, &column.writer->walls(), writer.room()));
   return text;
 }
 

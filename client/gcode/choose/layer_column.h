@@ -34,6 +34,7 @@ struct LayerColumn {
   std::unique_ptr<const LayerWriter> plain;  // which spares no walls; null if not needed
   std::vector<LayerChoice> choices;
   ChoiceColumn totals;
+  bool blocked = false;  // in an order that was found, something stands in the way
   uint32_t chosen = 0;
   Refusals refusals;
   std::vector<size_t> ends;  // see PlaceOfLine
@@ -56,7 +57,8 @@ size_t PlaceOfLine(LayerColumn& column, size_t line);
 class ColumnFiller {
  public:
   // All outlive the filler and the columns.
-  ColumnFiller(const GcodeFile& file, const RetractionHabit& habit, const LinkDonors& donors);
+  ColumnFiller(const GcodeFile& file, const RetractionHabit& habit, const LinkDonors& donors,
+               const HeadRoom& room);
 
   // The column of layer `layer`, with the file's own order.
   void Begin(size_t layer, LayerColumn& column) const;
@@ -74,6 +76,7 @@ class ColumnFiller {
   const RetractionHabit& habit_;
   const RetractionHabit plain_habit_;
   const LinkDonors& donors_;
+  const HeadRoom& room_;
 };
 
 // Of all layers, with the measured ways to them. `travel` has their travel.

@@ -116,7 +116,7 @@ double OrderMerger::Excess(const WayTotals& totals) const {
     return value > limit ? static_cast<double>(value - limit) : 0.0;
   };
   double excess = beyond(totals.crossings, limits_.crossings) + beyond(totals.open, limits_.open) +
-                  static_cast<double>(totals.too_long) +
+                  static_cast<double>(totals.too_long) + static_cast<double>(totals.blocked) +
                   beyond(totals.retractions, limits_.retractions);
   if (limits_.as_many_retractions) excess += beyond(limits_.retractions, totals.retractions);
   // A millimetre counts less than a crossing, except on long travel.

@@ -38,6 +38,12 @@ void SetPositive(double& field, std::optional<double> value) {
   if (value && *value > 0) field = *value;
 }
 
+// Of a part of the head.
+void SetLength(std::optional<double>& field, std::optional<double> value) {
+  constexpr double kMostMm = 100;
+  if (value && *value > 0 && *value <= kMostMm) field = value;
+}
+
 void Apply(std::string_view key, std::string_view value, MachineProfile& profile) {
   const std::optional<double> number = FirstNumber(value);
   if (key == "machine_max_acceleration_extruding") {
@@ -69,6 +75,10 @@ void Apply(std::string_view key, std::string_view value, MachineProfile& profile
     profile.monotonic_bottom = StartsWith(value, "monotonic");
   } else if (key == "nozzle_diameter") {
     profile.nozzle_diameter = number;
+  } else if (key == "extruder_clearance_radius" || key == "extruder_clearance_max_radius") {
+    SetLength(profile.clearance_radius, number);
+  } else if (key == "nozzle_height") {
+    SetLength(profile.nozzle_height, number);
   } else if (key == "filament_diameter") {
     SetPositive(profile.filament_diameter, number);
   }

@@ -44,6 +44,8 @@ struct MachineProfile {
   std::optional<std::string> top_fill_pattern;
   bool monotonic_bottom = false;  // lines of bottom surfaces are printed in their order
   std::optional<double> nozzle_diameter;
+  std::optional<double> clearance_radius;  // around the nozzle, within which parts of the head hang
+  std::optional<double> nozzle_height;     // no other part hangs lower above the tip
   double filament_diameter = 1.75;
 };
 

@@ -8,13 +8,31 @@
 #include "client/gcode/parallel.h"
 
 namespace traverse::gcode {
+namespace {
+
+// A lift on a spiral is as wide as its slicer makes it anywhere, and counts as straight.
+bool IsBlocked(const Step& step, const MachineState& machine, const Room& room) {
+  const bool moves = IsXyMotion(step.kind) && step.kind != StepKind::kExtrude;
+  if (!moves && step.kind != StepKind::kLift) return false;
+  const double unit_mm = machine.UnitMm();
+  return !room.IsClear(machine.InMm(step.from), ToDouble(step.from.z) * unit_mm,
+                       machine.InMm(machine.at), ToDouble(machine.at.z) * unit_mm);
+}
+
+}  // namespace
 
 PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStart& start,
-                    const VisibleWalls* walls) {
+                    const VisibleWalls* walls, const Room* room) {
   PrintMeter meter(file.profile, DynamicsOf(file.profile, start.state, file.setters), walls);
   Interpreter interpreter(text, 0, start.machine);
-  for (Step step; interpreter.Next(step);) meter.Follow(step, interpreter);
-  return meter.Finish();
+  int64_t blocked = 0;
+  for (Step step; interpreter.Next(step);) {
+    meter.Follow(step, interpreter);
+    if (room != nullptr && IsBlocked(step, interpreter.state(), *room)) ++blocked;
+  }
+  PrintTotals totals = meter.Finish();
+  totals.blocked = blocked;
+  return totals;
 }
 
 PartStart StartBehind(const GcodeFile& file, const Block& block) {

@@ -10,6 +10,7 @@
 #include "client/gcode/measure/print_totals.h"
 #include "client/gcode/model/gcode_file.h"
 #include "client/gcode/model/visible_walls.h"
+#include "client/gcode/plan/head_room.h"
 
 namespace traverse::gcode {
 
@@ -20,9 +21,9 @@ struct PartStart {
 };
 
 // The totals of the lines `text`, from standstill to standstill. Counts travel moves across
-// `walls`, unless that is null.
+// `walls`, and moves without filament that are not clear in `room`, unless these are null.
 PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStart& start,
-                    const VisibleWalls* walls = nullptr);
+                    const VisibleWalls* walls = nullptr, const Room* room = nullptr);
 
 // The state of the machine after block `block`.
 PartStart StartBehind(const GcodeFile& file, const Block& block);

@@ -15,6 +15,7 @@ struct PrintTotals {
   int64_t crossings = 0;       // travel moves between paths that cross a visible wall
   int64_t open_crossings = 0;  // of them, those without a retraction
   double longest_open_mm = 0;  // the longest of these, with all moves of the way from path to path
+  int64_t blocked = 0;         // moves where something that stands is in the way
   double extra_mm = 0;  // filament pushed at a standstill beyond what was retracted, or short of it
   double seconds = 0;   // see motion_planner.h for the model
 
@@ -25,6 +26,7 @@ struct PrintTotals {
     crossings += other.crossings;
     open_crossings += other.open_crossings;
     longest_open_mm = std::max(longest_open_mm, other.longest_open_mm);
+    blocked += other.blocked;
     extra_mm += other.extra_mm;
     seconds += other.seconds;
     return *this;

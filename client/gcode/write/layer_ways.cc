@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "client/gcode/write/layer_writer.h"
@@ -95,8 +96,31 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
   totals.retractions = way.retracts ? 1 : 0;
   totals.crossings = way.crosses ? 1 : 0;
   totals.open = way.crosses && !way.retracts ? 1 : 0;
+  totals.blocked = room_ != nullptr && !stays && IsBlocked(way) ? 1 : 0;
   if (totals.open > 0) totals.open_mm = across_mm;
   return totals;
+}
+
+double LayerWriter::LeastLiftMm() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (uint32_t b = layer_.first_block + 1; b < layer_.end_block; ++b) {
+    const Block& block = file_.blocks[b];
+    if ((block.link & kLinkRetracts) == 0) continue;
+    least = std::min(least, ToDouble(block.lift) * file_.modes[block.mode].UnitMm());
+  }
+  return std::isfinite(least) ? least : 0;
+}
+
+bool LayerWriter::IsBlocked(const TravelWay& way) const {
+  const Block& first = file_.blocks[layer_.first_block];
+  const double z_mm =
+      ToDouble(layer_.z) * file_.modes[first.mode].UnitMm() + (way.retracts ? lift_mm_ : 0);
+  Vertex at = way.from;
+  for (const Vertex& bend : way.via) {
+    if (!room_->IsClear(at, z_mm, bend, z_mm)) return true;
+    at = bend;
+  }
+  return !room_->IsClear(at, z_mm, way.to, z_mm);
 }
 
 // The path before is left as it is in the file, if it retracts there; else the travel is like that

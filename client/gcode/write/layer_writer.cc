@@ -55,10 +55,12 @@ PartStart StartBehindPath(const GcodeFile& file, const Placement& last) {
 }
 
 LayerWriter::LayerWriter(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
-                         const LinkDonors& donors)
+                         const LinkDonors& donors, const Room* room)
     : file_(file),
       layer_(layer),
       donors_(donors),
+      room_(room),
+      lift_mm_(room != nullptr ? LeastLiftMm() : 0),
       outlines_(OutlinesOf(file, layer)),
       walls_(outlines_),
       rules_(file, layer, habit, outlines_, walls_),

@@ -10,6 +10,7 @@
 
 #include "absl/container/flat_hash_map.h"
 #include "client/gcode/measure/layer_meter.h"
+#include "client/gcode/plan/head_room.h"
 #include "client/gcode/plan/joints.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/plan/travel_rules.h"
@@ -31,12 +32,13 @@ PartStart StartBehindPath(const GcodeFile& file, const Placement& last);
 // One layer. What writes appends to `text` and returns the machine's state after it. Thread-safe.
 class LayerWriter {
  public:
-  // `file`, `habit` and `donors` outlive the writer.
+  // All outlive the writer. `room`: what the head needs in the layer; null: nothing is in the way.
   LayerWriter(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
-              const LinkDonors& donors);
+              const LinkDonors& donors, const Room* room = nullptr);
   LayerWriter(const GcodeFile&, const Layer&, RetractionHabit&&, const LinkDonors&) = delete;
 
   const VisibleWalls& walls() const { return walls_; }
+  const Room* room() const { return room_; }
   const std::vector<Outline>& outlines() const { return outlines_; }
 
   // The file's own order.
@@ -126,9 +128,16 @@ class LayerWriter {
   void WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place, GcodeOut& out) const;
   bool Retracts(const PlacedPath& from, const PlacedPath& to) const;
 
+  // Something is in the way, at the height of the layer or, if it retracts, of the layer's lifts.
+  bool IsBlocked(const TravelWay& way) const;
+  double LeastLiftMm() const;
+
   const GcodeFile& file_;
   const Layer& layer_;
   const LinkDonors& donors_;
+  const Room* const room_;
+  const double
+      lift_mm_;  // the least of the layer's retracted travel; 0 where nothing is in the way
   const std::vector<Outline> outlines_;
   const VisibleWalls walls_;
   const TravelRules rules_;

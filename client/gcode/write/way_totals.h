@@ -15,6 +15,7 @@ struct WayTotals {
   int32_t open = 0;       // crossings without a retraction
   int32_t too_long = 0;   // open ones that are longer than allowed
   int32_t retractions = 0;
+  int32_t blocked = 0;  // where something that stands is in the way
 
   // For a single move: its length if it counts as open, without what continues along a path.
   double open_mm = 0;
@@ -26,6 +27,7 @@ struct WayTotals {
     open += other.open;
     too_long += other.too_long;
     retractions += other.retractions;
+    blocked += other.blocked;
     return *this;
   }
 
@@ -36,6 +38,7 @@ struct WayTotals {
     open -= other.open;
     too_long -= other.too_long;
     retractions -= other.retractions;
+    blocked -= other.blocked;
     return *this;
   }
 };

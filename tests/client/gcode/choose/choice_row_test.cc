@@ -48,6 +48,15 @@ TEST(BestRow, TheFileCrossesNoMoreWallsThoughALayerMay) {
   EXPECT_EQ(Best(columns, Policy::kSafe, Crossings::kKeep, 3), Row({0, 0, 0}));
 }
 
+TEST(BestRow, NoTravelLeadsIntoWhatStandsHoweverFast) {
+  PrintTotals into = Totals(5, 0);
+  into.blocked = 1;
+  ChoiceColumn second = Column({Totals(10, 0), Totals(9, 0)}, 2);
+  second.ways[1].blocked = 1;  // from the file's order of the first
+
+  EXPECT_EQ(Best({Column({Totals(10, 0), into}, 0), second}, Policy::kFree), Row({0, 0}));
+}
+
 TEST(BestRow, NoMoreIsGivenUpForCrossingsThanHasToBe) {
   for (const double gain : {0.6, 0.7, 0.8, 0.9, 1.1, 1.3}) {
     // One of the first two has to be given up: that which gains a tenth less.

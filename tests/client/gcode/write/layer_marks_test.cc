@@ -90,7 +90,7 @@ TEST(LayerWriter, WhereTheMarksOfALayerSetTheFanItIsSetOnce) {
 }
 
 TEST(LayerWriter, WhatTheStartScriptDoesBehindItsPurgeLineStays) {
-  const std::string wipe = "G1 X63 Z.05 F8000\nG1 X66 Z.3 F8000\n";
+  const std::string wipe = "G1 X63 Y9 Z.05 F8000\nG1 X66 Y15 Z.3 F8000\n";
   const auto file = Read(Purged("G1 X60 Y3 E9 F1000\n" + wipe));
   ASSERT_EQ(file->layers.size(), 2u);
 

@@ -95,7 +95,7 @@ TEST(LinkWriter, WaysAreAsFastAsTheLayerHasThem) {
 }
 
 TEST(LinkWriter, TheWayToALayerBelowTheStartScriptIsNotAtTheHeightOfThat) {
-  const auto file = Read(Purged("G1 X60 Y3 E9 F1000\n"));
+  const auto file = Read(Purged("G1 X60 Y-40 F3000\nG1 Y3 E9 F1000\n"));
 
   const auto rewrite = RewriteGcode(*file, {{{}, FromTheNearest(1)}}, RewriteOptions{});
 
