@@ -276,8 +276,9 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   for (size_t i = 0; i < static_cast<size_t>(gcode::Feature::kCount); ++i) {
     job.features.emplace_back(gcode::FeatureName(static_cast<gcode::Feature>(i)));
   }
+  const gcode::Allowance allow = gcode::AllowedUnder(options.policy, options.allow);
   gcode::FileHabits habits;
-  habits.retraction = gcode::HabitOfNewWays(*file, options.allow);
+  habits.retraction = gcode::HabitOfNewWays(*file, allow);
   habits.travel = gcode::LearnTravel(*file, habits.retraction.threshold_mm,
                                      gcode::ThreadsFor(file->text.size()));
   habits.keeps_retractions = gcode::KeepsRetractions(*file);
@@ -288,7 +289,7 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   job.options.mutable_start()->set_x_mm(first.points.front().x);
   job.options.mutable_start()->set_y_mm(first.points.front().y);
   gcode::SetCost(models.back(), *job.options.mutable_cost());
-  gcode::SetStrategy(*file, options.allow, habits.keeps_retractions,
+  gcode::SetStrategy(*file, allow, habits.keeps_retractions,
                      *job.options.mutable_strategy());
   job.options.set_idle_speed_mm_s(std::clamp(models.back().speed_mm_s, 0.001, 1e5));
   gcode::AddFacts(*file, census, options.policy, job);

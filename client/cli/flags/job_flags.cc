@@ -129,7 +129,7 @@ std::vector<Flag> JobFlagTable() {
       {"retraction_seconds", "S", "time of one retraction (default: the file's, or 0.1)", any,
        false, "(the file's, or 0.1, 2)"},
       {"retraction_threshold", "MM", "longer moves retract (default: the file's, or 2)"},
-      Joint(PolicyFlag(), "safe, balanced, free; keep, fewer, any"),
+      Joint(PolicyFlag(), "safe, balanced, free, fast; keep, fewer, any"),
       CrossingsFlag(),
       {"deadline", "TIME", "time for the whole job, such as 500ms, 30s or 5m", any, false,
        "for all; for a layer (500ms, 30s, 5m)"},
@@ -153,7 +153,7 @@ std::vector<Flag> ServiceFlagTable() {
 
 Flag PolicyFlag() {
   return {
-      "policy", "POLICY", "G-code: safe (default), balanced or free", {"safe", "balanced", "free"}};
+      "policy", "POLICY", "G-code: safe (default), balanced, free or fast", {"safe", "balanced", "free", "fast"}};
 }
 
 Flag CrossingsFlag() {

@@ -5,8 +5,8 @@ namespace traverse::cli {
 std::vector<Flag> VerifyFlagTable() {
   return {{"policy",
            "POLICY",
-           "safe, balanced, free (default: as the file says)",
-           {"safe", "balanced", "free"}},
+           "safe, balanced, free, fast (default: as the file says)",
+           {"safe", "balanced", "free", "fast"}},
           {"allow", "NAME,...", "infill_order, wall_order, fan_order, wipes"}};
 }
 

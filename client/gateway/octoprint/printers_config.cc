@@ -90,7 +90,7 @@ absl::Status SetField(const std::string& key, const std::string& text, Printer& 
     if (!IsName(text)) return absl::InvalidArgumentError("not the name of a storage");
   } else if (key == "policy") {
     const auto policy = gcode::PolicyOfName(text);
-    if (!policy) return absl::InvalidArgumentError("not safe, balanced or free");
+    if (!policy) return absl::InvalidArgumentError("not safe, balanced, free or fast");
     printer.policy = *policy;
   } else if (key == "on_failure") {
     printer.refuse_on_failure = text == "refuse";

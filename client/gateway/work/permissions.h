@@ -15,10 +15,11 @@
 namespace traverse::gateway {
 
 template <typename Policy>
-constexpr std::array<std::pair<v1::Policy, Policy>, 3> kPolicies = {{
+constexpr std::array<std::pair<v1::Policy, Policy>, 4> kPolicies = {{
     {v1::POLICY_SAFE, Policy::kSafe},
     {v1::POLICY_BALANCED, Policy::kBalanced},
     {v1::POLICY_FREE, Policy::kFree},
+    {v1::POLICY_FAST, Policy::kFast},
 }};
 
 template <typename Policy>

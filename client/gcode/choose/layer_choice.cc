@@ -34,7 +34,7 @@ class LayerChooser::Impl {
         polish_(choice.polish),
         usual_tries_(choice.usual_tries),
         threads_(choice.threads),
-        habit_(HabitOfNewWays(file, choice.allow)),
+        habit_(HabitOfNewWays(file, AllowedUnder(choice.policy, choice.allow))),
         donors_(file),
         room_(file),
         filler_(file, habit_, donors_, room_),

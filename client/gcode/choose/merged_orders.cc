@@ -172,7 +172,7 @@ class LayerMerge {
 
   std::vector<LayerOrder> Merge() {
     std::vector<LayerOrder> begun = found_;
-    if (rules_.policy == Policy::kFree) {
+    if (IsFree(rules_.policy)) {
       for (const LayerOrder& order : found_) begun.push_back(InGivenOrder(order));
     }
     LayerOrder best_between = Better(strict_, given_, found_, Effort::kSettle);

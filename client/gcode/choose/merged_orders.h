@@ -36,7 +36,7 @@ struct MergeRules {
 
 // The orders of `found`, each improved with runs of the others and of the file's own order, and
 // brought within the limits of `rules` as far as estimates tell (order_merge.h). Of those that
-// begin and end with the same paths as the file only the best stays. Under Policy::kFree each is
+// begin and end with the same paths as the file only the best stays. Where IsFree(policy) each is
 // also tried with its paths in the order of the file.
 std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelModel& travel,
                                      const std::vector<LayerOrder>& found, const MergeRules& rules);

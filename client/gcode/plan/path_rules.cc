@@ -72,7 +72,7 @@ bool PathRules::IsPinned(size_t path) const {
 // Monotonic surfaces and ironing get their look from the order of their lines.
 bool PathRules::OrderIsQuality(Feature feature) const {
   if (feature == Feature::kIroning) return true;
-  if (policy_ == Policy::kFree) return false;
+  if (IsFree(policy_)) return false;
   if (feature == Feature::kBottomInfill) return file_.profile.monotonic_bottom;
   if (feature != Feature::kTopInfill) return false;
   const std::optional<std::string>& pattern = file_.profile.top_fill_pattern;
@@ -95,7 +95,7 @@ bool PathRules::MayTurnRound(size_t path) const {
   const Feature feature = FeatureOf(path);
   if ((BlockOf(path).flags & kFixing) != 0 || OrderIsQuality(feature)) return false;
   if (HasFullCircle(path)) return false;
-  return policy_ == Policy::kFree || !IsWall(feature);
+  return IsFree(policy_) || !IsWall(feature);
 }
 
 // Its direction is all that says which way round such an arc goes, as both its ends are one point.
@@ -133,7 +133,7 @@ bool PathRules::KeepsOrder(size_t i, size_t j) const {
   if (wall_and_fill && allow_.infill_order) return false;
   if (kind != other || kind == Kind::kIroning) return true;
   if (kind == Kind::kSupport) return a != b || a == Feature::kSupportInterface;
-  if (policy_ == Policy::kFree) return false;
+  if (IsFree(policy_)) return false;
   if (kind == Kind::kWall) return !allow_.wall_order;
   return OrderIsQuality(a) && a == b;
 }

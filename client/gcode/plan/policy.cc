@@ -58,7 +58,7 @@ bool LayerPlanner::BeginsGroup(size_t path) const {
   if (path == 0 || rules()[path].pinned || rules()[path - 1].pinned) return true;
   if ((BlockOf(path).link & (kLinkSplits | kLinkFixed)) != 0) return true;
   if ((FeatureOf(path) == Feature::kSkirt) != (FeatureOf(path - 1) == Feature::kSkirt)) return true;
-  if (policy_ == Policy::kFree || fan_order_) return false;
+  if (IsFree(policy_) || fan_order_) return false;
   const PrintState& state = file_.states[BlockOf(path).state_in];
   const PrintState& before = file_.states[BlockOf(path - 1).state_in];
   for (size_t slot = 0; slot < kSlotCount; ++slot) {
@@ -227,7 +227,7 @@ LayerPlan LayerPlanner::Make() {
 }  // namespace
 
 std::optional<Policy> PolicyOfName(std::string_view name) {
-  for (const Policy policy : {Policy::kSafe, Policy::kBalanced, Policy::kFree}) {
+  for (const Policy policy : {Policy::kSafe, Policy::kBalanced, Policy::kFree, Policy::kFast}) {
     if (PolicyName(policy) == name) return policy;
   }
   return std::nullopt;
@@ -241,6 +241,8 @@ std::string_view PolicyName(Policy policy) {
       return "balanced";
     case Policy::kFree:
       return "free";
+    case Policy::kFast:
+      return "fast";
   }
   return "";
 }
@@ -260,6 +262,11 @@ constexpr AllowanceName kAllowances[] = {
 };
 
 }  // namespace
+
+Allowance AllowedUnder(Policy policy, Allowance allow) {
+  allow.wipes = allow.wipes || policy == Policy::kFast;
+  return allow;
+}
 
 std::optional<Allowance> AllowanceOfNames(std::string_view names) {
   Allowance allow;

@@ -26,9 +26,13 @@ enum class Policy : uint8_t {
   kSafe,      // nothing that a slicer chose for quality changes
   kBalanced,  // also walls may begin at their sharp corners
   kFree,      // any start and direction; only what touches keeps the order of its features
+  kFast,      // the same, and travel pays only for what shows
 };
 
-// "safe", "balanced" or "free"; nothing for other text.
+// Any start and any direction.
+inline bool IsFree(Policy policy) { return policy >= Policy::kFree; }
+
+// "safe", "balanced", "free" or "fast"; nothing for other text.
 std::optional<Policy> PolicyOfName(std::string_view name);
 std::string_view PolicyName(Policy policy);
 
@@ -41,6 +45,9 @@ struct Allowance {
 
   bool operator==(const Allowance&) const = default;
 };
+
+// What a policy itself allows, and `allow`.
+Allowance AllowedUnder(Policy policy, Allowance allow);
 
 // Parses names separated by commas, such as "infill_order,wall_order"; nothing for other text.
 std::optional<Allowance> AllowanceOfNames(std::string_view names);

@@ -10,7 +10,7 @@ namespace {
 
 using Policy = VerifyPermissions::Policy;
 
-constexpr std::string_view kPolicyNames[] = {"safe", "balanced", "free"};
+constexpr std::string_view kPolicyNames[] = {"safe", "balanced", "free", "fast"};
 
 struct Permission {
   std::string_view name;
@@ -40,7 +40,7 @@ absl::StatusOr<VerifyPermissions> ParsePermissions(std::string_view policy,
   const auto* name = std::find(std::begin(kPolicyNames), std::end(kPolicyNames), policy);
   if (name == std::end(kPolicyNames)) {
     return absl::InvalidArgumentError(absl::StrCat("no such policy: ", std::string(policy),
-                                                   "; there are safe, balanced and free"));
+                                                   "; there are safe, balanced, free and fast"));
   }
   permissions.policy = static_cast<Policy>(name - std::begin(kPolicyNames));
   while (!allow.empty()) {

@@ -17,16 +17,19 @@ inline constexpr std::string_view kOptimisedMark = "; optimised by Traverse";
 
 struct VerifyPermissions {
   // In order: each policy allows what those before it allow.
-  enum class Policy : uint8_t { kSafe, kBalanced, kFree };
+  enum class Policy : uint8_t { kSafe, kBalanced, kFree, kFast };
 
   Policy policy = Policy::kSafe;
   bool infill_order = false;  // walls and infill that touch may change places
   bool wall_order = false;    // walls that touch may
   bool fan_order = false;     // paths may change places across a change of the fan
   bool wipes = false;         // a wipe may be missing where nothing is retracted
+
+  bool is_free() const { return policy >= Policy::kFree; }
+  bool drops_wipes() const { return wipes || policy == Policy::kFast; }
 };
 
-// Parses the values of the command line: "safe", "balanced" or "free", and a list such as
+// Parses the values of the command line: "safe", "balanced", "free" or "fast", and a list such as
 // "infill_order,wall_order", which may be empty. InvalidArgument for other words.
 absl::StatusOr<VerifyPermissions> ParsePermissions(std::string_view policy, std::string_view allow);
 

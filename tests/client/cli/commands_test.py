@@ -82,6 +82,16 @@ class Views(CommandLine):
         self.assertIn("(order; ", err)
         self.assertIn("--allow=doors", self.fail_with(2, "optimize", plain, "-o", made, "--allow=doors"))
 
+    def test_fast_is_written_to_the_head_and_read_there(self):
+        line = "G1 X0 Y{0} F9000\nG1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 X9 Y{0} E.3\nG1 E-1 F2100\n"
+        plain = self.put("plain.gcode", "M83\nG1 E-1 F2100\n;LAYER_CHANGE\nG1 Z.2 F9000\n" +
+                         "".join(line.format(y) for y in (0, 30, 5, 35, 10, 40)))
+        made = self.path("made.gcode")
+        self.succeed("optimize", plain, "-o", made, "--policy=fast")
+        self.assertIn(", policy fast: travel", read(made))
+        self.assertIn("(policy fast)", self.succeed("verify", plain, made))
+        self.assertIn("(policy fast)", self.succeed("verify", plain, made, "--policy=fast"))
+
     def test_verify_answers_by_exit_code_and_rule_by_rule(self):
         line = "G1 E-1 F2100\nG1 X0 Y{0} F9000\nG1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 X9 Y{0} E.3\n"
         text = "M83\n;LAYER_CHANGE\nG1 Z.2 F9000\n" + "".join(line.format(y) for y in (0, 5, 10))

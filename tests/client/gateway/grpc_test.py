@@ -170,8 +170,8 @@ class Calls(unittest.TestCase):
         request, options = MESSAGES["VerifyRequest"], MESSAGES["VerifyOptions"]
         stated = b"; optimised by Traverse 0.1.0, policy free: travel 1 -> 1 mm\n"
         files = [request(original=square_wall(0)), request(optimised=stated + square_wall(2))]
-        safe, balanced, free, none = 1, 2, 3, 0
-        for policy, same, held in [(none, True, free), (safe, False, safe), (free, True, free)]:
+        safe, balanced, free, fast, none = 1, 2, 3, 4, 0
+        for policy, same, held in [(none, True, free), (safe, False, safe), (free, True, free), (fast, True, fast)]:
             answer = self.method("Verify", "stream_unary")(
                 iter([request(options=options(policy=policy))] + files), timeout=60)
             self.assertEqual((answer.same, answer.policy), (same, held))

@@ -40,7 +40,7 @@ class Files(unittest.TestCase):
     def test_the_bytes_are_those_of_the_command(self):
         with open(SAMPLE, "rb") as file:
             sample = file.read()
-        for content, flags in [(PART, []), (PART, ["--policy=free", "--seed=3"]), (PART, ["--layers=2-3"]),
+        for content, flags in [(PART, []), (PART, ["--policy=free", "--seed=3"]), (PART, ["--policy=fast"]), (PART, ["--layers=2-3"]),
                                (PART, ["--strategy=greedy"]), (PART, ["--option=effort=2"]),
                                (sample, ["--strategy=greedy", "--policy=balanced"])]:
             query = "&".join(flag[2:].replace("=", "%3D").replace("%3D", "=", 1) for flag in flags)

@@ -7,7 +7,7 @@
 namespace traverse::gcode {
 
 void CheckDirection(const LayerPair& layer, const RuleContext& context, LayerFindings& findings) {
-  const bool free = context.permissions.policy == VerifyPermissions::Policy::kFree;
+  const bool free = context.permissions.is_free();
   for (const Visit& visit : layer.visits()) {
     if (visit.forward) continue;
     const TracePath& path = layer.was().paths[visit.path];

@@ -85,7 +85,7 @@ class OrderKeeper {
   Group GroupAt(uint32_t path) const { return groups_[path - layer_.first_path_was()]; }
   uint32_t PlaceOf(uint32_t path) const { return place_[path - first_]; }
 
-  bool careful() const { return permissions_.policy != VerifyPermissions::Policy::kFree; }
+  bool careful() const { return !permissions_.is_free(); }
 
   bool Matters(Group a, Group b) const {
     if (a == Group::kOther || b == Group::kOther) return false;

@@ -30,7 +30,7 @@ double TurnAt(const TraceChunk& chunk, const TracePath& path, uint32_t index) {
 }  // namespace
 
 void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings& findings) {
-  if (context.permissions.policy == VerifyPermissions::Policy::kFree) return;
+  if (context.permissions.is_free()) return;
   const TraceChunk& was = layer.was();
   for (const Visit& visit : layer.visits()) {
     if (!layer.Closed(visit.path) || !layer.Outer(visit.path)) continue;

@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 TEST(PrintersConfig, ReadsAllFields) {
   const auto config = ParsePrinters(R"({"default": "b", "printers": [
       {"name": "a", "url": "http://a.local:5000/"},
-      {"name": "b", "kind": "prusalink", "url": "https://b", "storage": "usb", "policy": "free",
+      {"name": "b", "kind": "prusalink", "url": "https://b", "storage": "usb", "policy": "fast",
        "on_failure": "refuse", "tls_ca": "ca.pem"}]})");
 
   ASSERT_TRUE(config.ok()) << config.status();
@@ -28,7 +28,7 @@ TEST(PrintersConfig, ReadsAllFields) {
   EXPECT_EQ(config->printers[0].kind, PrinterKind::kOctoPrint);
   EXPECT_FALSE(config->printers[0].refuse_on_failure);
   EXPECT_EQ(config->printers[1].kind, PrinterKind::kPrusaLink);
-  EXPECT_EQ(config->printers[1].policy, gcode::Policy::kFree);
+  EXPECT_EQ(config->printers[1].policy, gcode::Policy::kFast);
   EXPECT_TRUE(config->printers[1].refuse_on_failure);
   EXPECT_EQ(config->printers[1].storage, "usb");
 }

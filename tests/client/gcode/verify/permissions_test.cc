@@ -38,6 +38,16 @@ TEST(PermissionsInHead, WhatIsAllowedIsReadFromTheLineToo) {
   EXPECT_FALSE(ParsePermissions("safe", "anything").ok());
 }
 
+TEST(PermissionsInHead, FastIsAsFreeAndNeedsNoWipes) {
+  const auto head = PermissionsInHead("; optimised by Traverse 1.0, policy fast: x\n");
+  ASSERT_TRUE(head.has_value());
+  EXPECT_EQ(DescribePermissions(*head), "fast");
+  EXPECT_TRUE(head->is_free());
+  EXPECT_TRUE(head->drops_wipes());
+  EXPECT_EQ(Broken(kHead + kSquare, kHead + kSquareElsewhere, Policy::kFast), "");
+  EXPECT_FALSE(ParsePermissions("free", "")->drops_wipes());
+}
+
 TEST(PermissionsFor, WhatIsGivenComesBeforeWhatTheFileStates) {
   const std::string_view stated = "; optimised by Traverse 1.0, policy free, allow wall_order: x\n";
   const auto described = [](const std::optional<GivenPermissions>& given, std::string_view text) {

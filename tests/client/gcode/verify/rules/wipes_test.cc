@@ -52,6 +52,7 @@ TEST(VerifyWipes, MayBeLeftOutIfThatIsAllowedWhereNothingIsRetracted) {
   EXPECT_EQ(Broken(original, without, allowed), "");
   EXPECT_EQ(Broken(original, without), "wipes");
   EXPECT_EQ(Broken(original, without, Policy::kFree), "wipes");
+  EXPECT_EQ(Broken(original, without, Policy::kFast), "");
   EXPECT_EQ(Broken(original, With(wiped, wipe, "G1 E-1 F2100\n"), allowed), "wipes");
 }
 
