@@ -66,12 +66,16 @@ void SetWallCost(const RetractionHabit& habit, Crossings crossings, v1::TimeCost
     time.set_retraction_threshold_mm(
         std::min(std::max(habit.longest_open_mm, habit.threshold_mm), kNeverMm));
   }
+  if (habit.hidden) {
+    const double longest = std::max(time.retraction_threshold_mm(), habit.hidden->longest_mm());
+    time.set_retraction_threshold_mm(std::min(longest, kNeverMm));
+  }
 }
 
 // Paths that the slicer wipes stay wiped, so travel after them always retracts: an order saves, or
 // costs, only the retractions after the other paths.
 double ShareWiped(const GcodeFile& file, const Allowance& allow) {
-  if (allow.wipes) return 0;
+  if (allow.wipes || allow.hidden_retractions) return 0;
   const auto blocks = static_cast<uint32_t>(file.blocks.size());
   size_t wiped = 0;
   for (uint32_t b = 0; b < blocks; ++b) wiped += file.WipedBehind(b) ? 1u : 0u;
@@ -82,7 +86,7 @@ double ShareWiped(const GcodeFile& file, const Allowance& allow) {
 // only for these does travel after a wiped path pay less.
 void SetWiped(const GcodeFile& file, const Layer& of_file, const RetractionHabit& habit,
               v1::Layer& layer) {
-  if (habit.drops_wipes) return;
+  if (habit.drops_wipes || habit.hidden) return;
   for (uint32_t b = of_file.first_block; b < of_file.end_block; ++b) {
     if (file.WipedBehind(b)) layer.add_retracted_paths(b - of_file.first_block);
   }
@@ -97,6 +101,13 @@ void SetWalls(const TravelRules& rules, const RetractionHabit& habit,
               const std::vector<Outline>& outlines, v1::Layer& layer) {
   for (size_t path = 0; path < outlines.size() && habit.crossing_matters; ++path) {
     if (!rules.AlwaysRetracts(outlines[path].feature)) continue;
+    layer.add_exposed_paths(static_cast<uint32_t>(path));
+  }
+  // Those to and from where nothing is hidden, and visible walls.
+  for (size_t path = 0; path < outlines.size() && habit.hidden && !habit.crossing_matters; ++path) {
+    const Outline& outline = outlines[path];
+    const auto seen = [&](Vertex at) { return !rules.Hides(at, at, outline.feature); };
+    if (!seen(outline.points.front()) && !seen(outline.points.back())) continue;
     layer.add_exposed_paths(static_cast<uint32_t>(path));
   }
   for (const Wall& visible : VisibleWallsOf(outlines)) {
@@ -116,13 +127,14 @@ void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const Retraction
                    const TravelModel& travel, const TravelRules& rules,
                    const std::vector<Outline>& outlines, const VisibleWalls& walls,
                    v1::Layer& layer) {
-  const bool wiped_stays = !habit.drops_wipes;
+  const bool wiped_stays = !habit.drops_wipes && !habit.hidden;
   for (uint32_t b = of_file.first_block + 1; b < of_file.end_block; ++b) {
     const Block& before = file.blocks[b - 1];
     const Block& block = file.blocks[b];
-    const TravelWay way = rules.WayOf(file.modes[before.mode].InMm(before.last),
-                                      file.modes[block.mode].InMm(block.first),
-                                      outlines[b - of_file.first_block].feature);
+    const Vertex from = file.modes[before.mode].InMm(before.last);
+    const Vertex to = file.modes[block.mode].InMm(block.first);
+    const Feature feature = outlines[b - of_file.first_block].feature;
+    const TravelWay way = rules.WayOf(from, to, feature);
     // New travel does not include wipes either; nor what the head does at a boundary, which it does
     // in any order.
     const bool boundary = (block.link & (kLinkSplits | kLinkFixed)) != 0;
@@ -132,7 +144,8 @@ void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const Retraction
     const bool wiped_before = wiped_stays && file.WipedBehind(b - 1);
     const bool wiped_behind = wiped_stays && file.WipedBehind(b);
     const double wiped = (wiped_before ? 0.5 : 0) + (wiped_behind ? 0.5 : 0);
-    const bool retracts = (block.link & kLinkRetracts) != 0;
+    const bool retracts =
+        (block.link & kLinkRetracts) != 0 && (boundary || !rules.Hides(from, to, feature));
     const bool pays = wiped_before ? way.retracts : retracts;
     if (pays) seconds += layer.cost().time().retraction_seconds() * (1 - wiped);
     v1::KnownMove& move = *layer.add_known_moves();
@@ -278,10 +291,11 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   }
   const gcode::Allowance allow = gcode::AllowedUnder(options.policy, options.allow);
   gcode::FileHabits habits;
-  habits.retraction = gcode::HabitOfNewWays(*file, allow);
-  habits.travel = gcode::LearnTravel(*file, habits.retraction.threshold_mm,
-                                     gcode::ThreadsFor(file->text.size()));
+  const int threads = gcode::ThreadsFor(file->text.size());
+  habits.retraction = gcode::HabitOfNewWays(*file, allow, threads);
+  habits.travel = gcode::LearnTravel(*file, habits.retraction.threshold_mm, threads);
   habits.keeps_retractions = gcode::KeepsRetractions(*file);
+  if (habits.keeps_retractions) habits.retraction.hidden = nullptr;
   const std::vector<gcode::TravelModel>& models = habits.travel;
   const gcode::Census census = gcode::FillLayers(*file, options, habits, job);
   // The first path is pinned; the travel to it from the start script is not ours.
@@ -289,8 +303,7 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   job.options.mutable_start()->set_x_mm(first.points.front().x);
   job.options.mutable_start()->set_y_mm(first.points.front().y);
   gcode::SetCost(models.back(), *job.options.mutable_cost());
-  gcode::SetStrategy(*file, allow, habits.keeps_retractions,
-                     *job.options.mutable_strategy());
+  gcode::SetStrategy(*file, allow, habits.keeps_retractions, *job.options.mutable_strategy());
   job.options.set_idle_speed_mm_s(std::clamp(models.back().speed_mm_s, 0.001, 1e5));
   gcode::AddFacts(*file, census, options.policy, job);
   job.gcode = std::move(file);

@@ -85,9 +85,12 @@ std::string Foot(const GcodeFile& file, const ChosenLayers& chosen) {
 
 std::string AddedLine(const GcodeRewrite& rewrite, const RewriteOptions& options) {
   const std::string allowed = AllowanceNames(options.allow);
-  return absl::StrFormat("%s %s, policy %s%s%s: %s", kOptimisedMark, options.version,
+  const double longest = options.allow.max_hidden_travel_mm;
+  const std::string hidden =
+      longest == kMaxHiddenTravelMm ? "" : absl::StrCat(", max_hidden_travel ", longest);
+  return absl::StrFormat("%s %s, policy %s%s%s%s: %s", kOptimisedMark, options.version,
                          PolicyName(options.policy), allowed.empty() ? "" : ", allow ", allowed,
-                         DescribeRewrite(rewrite));
+                         hidden, DescribeRewrite(rewrite));
 }
 
 std::string NewText(const GcodeFile& file, const ChosenLayers& chosen, const std::string& head) {
@@ -129,6 +132,7 @@ GcodeRewrite AsItIs(const GcodeFile& file, GcodeRewrite rewrite) {
 VerifyOptions AllRules(const RewriteOptions& options) {
   VerifyOptions verify;
   verify.permissions = *ParsePermissions(PolicyName(options.policy), AllowanceNames(options.allow));
+  verify.permissions->max_hidden_travel_mm = options.allow.max_hidden_travel_mm;
   return verify;
 }
 

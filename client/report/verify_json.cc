@@ -40,6 +40,7 @@ Json AllowJson(const VerifyPermissions& permissions) {
   if (permissions.wall_order) names.push_back("wall_order");
   if (permissions.fan_order) names.push_back("fan_order");
   if (permissions.wipes) names.push_back("wipes");
+  if (permissions.hidden_retractions) names.push_back("hidden_retractions");
   return names;
 }
 

@@ -110,6 +110,7 @@ std::vector<Flag> JobFlagTable() {
       {"layers", "A-B", "only these layers, counted from 1", any, false,
        "only these layers; time an island rests, s"},
       {"min_revisit", "S", "G-code: least time between layers of an island, s"},
+      MaxHiddenTravelFlag(),
       {"deposition",
        "ORDER",
        "sequential (default) or interleaved",
@@ -152,8 +153,10 @@ std::vector<Flag> ServiceFlagTable() {
 }
 
 Flag PolicyFlag() {
-  return {
-      "policy", "POLICY", "G-code: safe (default), balanced, free or fast", {"safe", "balanced", "free", "fast"}};
+  return {"policy",
+          "POLICY",
+          "G-code: safe (default), balanced, free or fast",
+          {"safe", "balanced", "free", "fast"}};
 }
 
 Flag CrossingsFlag() {
@@ -163,7 +166,13 @@ Flag CrossingsFlag() {
           {"keep", "fewer", "any"}};
 }
 
-Flag AllowFlag() { return {"allow", "NAME,...", "infill_order, wall_order, fan_order, wipes"}; }
+Flag AllowFlag() {
+  return {"allow", "NAME,...", "infill_order, wall_order, fan_order, wipes, hidden_retractions"};
+}
+
+Flag MaxHiddenTravelFlag() {
+  return {"max_hidden_travel", "MM", "longest hidden move that need not retract (default 30)"};
+}
 
 Flag MachineFlag() { return {"machine", "FILE", "printer's limits: klipper.cfg, or M201 to M205"}; }
 
@@ -173,11 +182,14 @@ absl::StatusOr<GcodeOptions> ParseGcodeOptions(const Flags& flags) {
   const std::optional<gcode::Allowance> allowed = gcode::AllowanceOfNames(allow);
   if (!allowed) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("--allow=%s: not infill_order, wall_order, fan_order or wipes, or several "
-                        "separated by commas",
+        absl::StrFormat("--allow=%s: not infill_order, wall_order, fan_order, wipes or "
+                        "hidden_retractions, or several separated by commas",
                         allow));
   }
   options.allow = *allowed;
+  const auto hidden = flags.Number("max_hidden_travel", 0, gcode::kMostHiddenTravelMm);
+  if (!hidden.ok()) return hidden.status();
+  options.allow.max_hidden_travel_mm = hidden->value_or(gcode::kMaxHiddenTravelMm);
   const auto revisit = flags.Number("min_revisit", 0, GcodeOptions::kMostRevisitSeconds);
   if (!revisit.ok()) return revisit.status();
   options.min_revisit_seconds = revisit->value_or(0);

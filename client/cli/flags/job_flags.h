@@ -33,6 +33,7 @@ std::vector<Flag> ServiceFlagTable();
 Flag PolicyFlag();
 Flag CrossingsFlag();
 Flag AllowFlag();
+Flag MaxHiddenTravelFlag();
 
 // The row of --machine.
 Flag MachineFlag();

@@ -31,6 +31,7 @@ constexpr std::array kAllowed = {
     "deadline",
     "layer_time_limit",
     "allow",
+    "max_hidden_travel",
     "crossings",
     "min_revisit",
     "container",

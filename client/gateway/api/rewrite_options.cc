@@ -71,6 +71,12 @@ absl::Status SetWhatMayMove(const v1::RewriteOptions& options, GcodeOptions& gco
     return FieldFault("options.min_revisit_s: not within 0 to 3600");
   }
   gcode.min_revisit_seconds = options.min_revisit_s();
+  if (!options.has_max_hidden_travel_mm()) return absl::OkStatus();
+  const double longest = options.max_hidden_travel_mm();
+  if (!(longest >= 0 && longest <= gcode::kMostHiddenTravelMm)) {
+    return FieldFault("options.max_hidden_travel_mm: not within 0 to 1000");
+  }
+  gcode.allow.max_hidden_travel_mm = longest;
   return absl::OkStatus();
 }
 
@@ -135,13 +141,23 @@ absl::StatusOr<FileRequest> RequestOf(const v1::RewriteOptions& options) {
 }
 
 absl::StatusOr<std::optional<GivenPermissions>> PermissionsOf(const v1::VerifyOptions& options) {
-  if (options.policy() == v1::POLICY_UNSPECIFIED && options.allow().empty()) return std::nullopt;
+  if (options.policy() == v1::POLICY_UNSPECIFIED && options.allow().empty() &&
+      !options.has_max_hidden_travel_mm()) {
+    return std::nullopt;
+  }
   GivenPermissions given;
   given.policy_as_stated = options.policy() == v1::POLICY_UNSPECIFIED;
   if (absl::Status status = SetPolicy(options, given.permissions.policy); !status.ok()) {
     return status;
   }
   if (absl::Status status = SetAllowances(options, given.permissions); !status.ok()) return status;
+  if (options.has_max_hidden_travel_mm()) {
+    const double longest = options.max_hidden_travel_mm();
+    if (!(longest >= 0 && longest <= VerifyPermissions::kMostHiddenTravelMm)) {
+      return FieldFault("options.max_hidden_travel_mm: not within 0 to 1000");
+    }
+    given.permissions.max_hidden_travel_mm = longest;
+  }
   return given;
 }
 

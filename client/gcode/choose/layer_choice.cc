@@ -34,7 +34,7 @@ class LayerChooser::Impl {
         polish_(choice.polish),
         usual_tries_(choice.usual_tries),
         threads_(choice.threads),
-        habit_(HabitOfNewWays(file, AllowedUnder(choice.policy, choice.allow))),
+        habit_(HabitOfNewWays(file, AllowedUnder(choice.policy, choice.allow), choice.threads)),
         donors_(file),
         room_(file),
         filler_(file, habit_, donors_, room_),
@@ -202,6 +202,7 @@ class LayerChooser::Impl {
   void FillColumn(size_t layer) {
     LayerColumn& column = columns_[layer];
     filler_.Begin(layer, column);
+    filler_.AddHidden(column);
     MergeRules rules = RulesOf(layer);
     AddMerged(layer, tries_, rules, column);
     if (crossings_ != Crossings::kFewer) return;
@@ -339,7 +340,8 @@ class LayerChooser::Impl {
   }
 
   PartStart WritePathsOf(size_t layer, const PartStart& start, std::string& text) const {
-    return Chosen(layer).writer->WritePaths(Chosen(layer).order, start, text);
+    const LayerChoice& choice = Chosen(layer);
+    return choice.writer->WritePaths(choice.order, start, text, nullptr, choice.as_sliced);
   }
 
   void NoteTotals(size_t layer, ChosenLayers& chosen) const {

@@ -1,6 +1,7 @@
 #include "client/gcode/choose/layer_column.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -8,6 +9,9 @@
 
 namespace traverse::gcode {
 namespace {
+
+// Filament pushed beyond what was retracted, in mm; less is rounding.
+constexpr double kLeastExtraMm = 1e-6;
 
 // As slicers write it: a sign that the extruder's register does not count through.
 bool Resets(std::string_view text) { return text.find("G92") != std::string_view::npos; }
@@ -62,8 +66,22 @@ void ColumnFiller::Begin(size_t layer, LayerColumn& column) const {
   choice.writer = column.writer.get();
   choice.start = StartOfPaths(file_, choice.order.front());
   choice.behind = StartBehind(file_, file_.blocks[of_file.end_block - 1]);
+  choice.as_sliced = true;
   choice.resets_e = Resets(file_.PathsText(of_file));
   column.totals.inside.push_back(MeasurePaths(file_, of_file, column.writer->walls()));
+  if (!column.writer->hides() || std::abs(column.totals.inside[0].extra_mm) <= kLeastExtraMm) {
+    return;
+  }
+  // Each retraction is part of what is printed.
+  column.writer = std::make_unique<const LayerWriter>(file_, of_file, habit_, donors_,
+                                                      room_.Of(layer), /*hides=*/false);
+  choice.writer = column.writer.get();
+}
+
+void ColumnFiller::AddHidden(LayerColumn& column) const {
+  if (!column.writer->ChangesGiven()) return;
+  const LayerOrder given = column.given_order();
+  Add(given, *column.writer, column);
 }
 
 void ColumnFiller::Add(const LayerOrder& order, size_t layer, LayerColumn& column) const {
@@ -75,8 +93,8 @@ void ColumnFiller::Add(const LayerOrder& order, size_t layer, LayerColumn& colum
   const std::vector<PrintTotals>& inside = column.totals.inside;
   if (inside.back().open_crossings >= inside.front().open_crossings) return;
   if (column.plain == nullptr) {
-    column.plain = std::make_unique<const LayerWriter>(file_, file_.layers[layer], plain_habit_,
-                                                       donors_, room_.Of(layer));
+    column.plain = std::make_unique<const LayerWriter>(
+        file_, file_.layers[layer], plain_habit_, donors_, room_.Of(layer), column.writer->hides());
   }
   // A choice that is equal would have ways to and from all those of the layers beside it.
   if (Add(order, *column.plain, column) != sparing) return;

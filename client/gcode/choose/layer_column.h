@@ -25,7 +25,8 @@ struct LayerChoice {
   const LayerWriter* writer = nullptr;
   PartStart start;  // how it begins and ends as it was written to be measured
   PartStart behind;
-  bool resets_e = false;  // the register is set on the way, and does not count through
+  bool as_sliced = false;  // as it is in the file
+  bool resets_e = false;   // the register is set on the way, and does not count through
 };
 
 // A layer and what it may be. choices[0] is the order of the file.
@@ -62,6 +63,10 @@ class ColumnFiller {
 
   // The column of layer `layer`, with the file's own order.
   void Begin(size_t layer, LayerColumn& column) const;
+
+  // Adds the file's own order as it is written if what is hidden does not retract, if that makes a
+  // difference.
+  void AddHidden(LayerColumn& column) const;
 
   // Adds `order` with walls spared, unless the column has it. Where that leaves fewer ways across
   // them with an open nozzle than the file has, there may be time to win: so it is written as the

@@ -259,12 +259,15 @@ constexpr AllowanceName kAllowances[] = {
     {"wall_order", &Allowance::wall_order},
     {"fan_order", &Allowance::fan_order},
     {"wipes", &Allowance::wipes},
+    {"hidden_retractions", &Allowance::hidden_retractions},
 };
 
 }  // namespace
 
 Allowance AllowedUnder(Policy policy, Allowance allow) {
-  allow.wipes = allow.wipes || policy == Policy::kFast;
+  const bool fast = policy == Policy::kFast;
+  allow.wipes = allow.wipes || fast;
+  allow.hidden_retractions = allow.hidden_retractions || fast;
   return allow;
 }
 

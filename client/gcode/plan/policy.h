@@ -36,6 +36,10 @@ inline bool IsFree(Policy policy) { return policy >= Policy::kFree; }
 std::optional<Policy> PolicyOfName(std::string_view name);
 std::string_view PolicyName(Policy policy);
 
+// As long as CuraEngine's longest move within a part without a retraction.
+inline constexpr double kMaxHiddenTravelMm = 30;
+inline constexpr double kMostHiddenTravelMm = 1000;  // that may be asked for
+
 // What a user allows beyond any policy; each has a name.
 struct Allowance {
   bool infill_order = false;  // walls and the infill that touches them may change places
@@ -43,10 +47,15 @@ struct Allowance {
   bool fan_order = false;     // paths may across a change of the fan, of pressure advance or flow
   bool wipes = false;         // a path's wipe is made only where the travel behind it retracts
 
+  // Travel that nobody can see (hidden/hidden_moves.h) does without a retraction, a lift and a
+  // wipe, if it is not longer than this. 0: none is.
+  bool hidden_retractions = false;
+  double max_hidden_travel_mm = kMaxHiddenTravelMm;
+
   bool operator==(const Allowance&) const = default;
 };
 
-// What a policy itself allows, and `allow`.
+// `allow` with what the policy itself allows.
 Allowance AllowedUnder(Policy policy, Allowance allow);
 
 // Parses names separated by commas, such as "infill_order,wall_order"; nothing for other text.

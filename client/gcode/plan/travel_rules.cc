@@ -166,10 +166,13 @@ RetractionHabit LearnRetraction(const GcodeFile& file) {
   return habit;
 }
 
-RetractionHabit HabitOfNewWays(const GcodeFile& file, const Allowance& allow) {
+RetractionHabit HabitOfNewWays(const GcodeFile& file, const Allowance& allow, int threads) {
   RetractionHabit habit = LearnRetraction(file);
   habit.spares_walls = true;
   habit.drops_wipes = allow.wipes;
+  if (habit.retracts && allow.hidden_retractions && allow.max_hidden_travel_mm > 0) {
+    habit.hidden = std::make_shared<const HiddenMoves>(file, allow.max_hidden_travel_mm, threads);
+  }
   return habit;
 }
 
@@ -177,6 +180,7 @@ TravelRules::TravelRules(const GcodeFile& file, const Layer& layer, const Retrac
                          const std::vector<Outline>& outlines, const VisibleWalls& walls)
     : habit_(habit),
       walls_(walls),
+      layer_(static_cast<size_t>(&layer - file.layers.data())),
       detours_(habit.avoids_walls ? std::optional<Detours>(std::in_place, walls) : std::nullopt) {
   if (habit.crossing_matters) {
     Count(file, layer, outlines, walls, habit.threshold_mm, inside_);
@@ -198,6 +202,11 @@ bool TravelRules::AlwaysRetracts(Feature feature) const {
   assert(habit_.crossing_matters);
   const RetractionCount& count = CountOf(feature);
   return count.total() > 0 && count.Mostly();
+}
+
+bool TravelRules::Hides(Vertex a, Vertex b, Feature feature) const {
+  if (habit_.hidden == nullptr || IsVisibleWall(feature) || walls_.Crossed(a, b)) return false;
+  return habit_.hidden->Hides(layer_, a, b, walls_.IsOnOne(a));
 }
 
 bool TravelRules::Retracts(Vertex a, Vertex b, Feature feature) const {

@@ -5,9 +5,11 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "client/gcode/hidden/hidden_moves.h"
 #include "client/gcode/model/outline.h"
 #include "client/gcode/model/visible_walls.h"
 #include "client/gcode/plan/detour.h"
@@ -51,6 +53,9 @@ struct RetractionHabit {
   // Requested: new moves after a path that the file wipes do without the wipe where they would not
   // retract if there were none.
   bool drops_wipes = false;
+
+  // Requested: moves that it hides do without a retraction, a lift and a wipe. Null: none do.
+  std::shared_ptr<const HiddenMoves> hidden;
 };
 
 // Examines about two dozen layers spread over the file. The threshold is the slicer's setting if
@@ -60,7 +65,7 @@ struct RetractionHabit {
 RetractionHabit LearnRetraction(const GcodeFile& file);
 
 // LearnRetraction, and what new moves must obey under every policy, or may do by `allow`.
-RetractionHabit HabitOfNewWays(const GcodeFile& file, const Allowance& allow = {});
+RetractionHabit HabitOfNewWays(const GcodeFile& file, const Allowance& allow = {}, int threads = 1);
 
 // A new travel move as it is written.
 struct TravelWay {
@@ -87,6 +92,11 @@ class TravelRules {
   // How to write the move about which Retracts decides.
   TravelWay WayOf(Vertex a, Vertex b, Feature feature) const;
 
+  // Whether nobody can see the straight move from `a`, where the head really leaves the path
+  // before, to `b`, where a path of `feature` begins, and it may do without a retraction for that.
+  // None is hidden that leads to a visible wall.
+  bool Hides(Vertex a, Vertex b, Feature feature) const;
+
   // Whether moves to paths of `feature` always retract, as far as the file shows.
   // REQUIRES: habit.crossing_matters, as otherwise all of them do, or none.
   bool AlwaysRetracts(Feature feature) const;
@@ -99,6 +109,7 @@ class TravelRules {
 
   const RetractionHabit& habit_;
   const VisibleWalls& walls_;
+  const size_t layer_;
   const std::optional<Detours> detours_;  // if the file makes detours
   RetractionCounts inside_;
   RetractionCount all_inside_;  // to inner walls and infill

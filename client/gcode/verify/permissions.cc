@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "client/gcode/verify/text.h"
 
@@ -22,6 +23,7 @@ constexpr Permission kPermissions[] = {
     {"wall_order", &VerifyPermissions::wall_order},
     {"fan_order", &VerifyPermissions::fan_order},
     {"wipes", &VerifyPermissions::wipes},
+    {"hidden_retractions", &VerifyPermissions::hidden_retractions},
 };
 
 // Takes what stands before the first of `ends` off `text`, and that character too.
@@ -48,9 +50,9 @@ absl::StatusOr<VerifyPermissions> ParsePermissions(std::string_view policy,
     const auto* known = std::find_if(std::begin(kPermissions), std::end(kPermissions),
                                      [word](const Permission& p) { return p.name == word; });
     if (known == std::end(kPermissions)) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("nothing to allow by the name `", std::string(word),
-                       "`; there are infill_order, wall_order, fan_order and wipes"));
+      return absl::InvalidArgumentError(absl::StrCat(
+          "nothing to allow by the name `", std::string(word),
+          "`; there are infill_order, wall_order, fan_order, wipes and hidden_retractions"));
     }
     permissions.*known->flag = true;
   }
@@ -60,6 +62,7 @@ absl::StatusOr<VerifyPermissions> ParsePermissions(std::string_view policy,
 std::optional<VerifyPermissions> PermissionsInHead(std::string_view text) {
   constexpr std::string_view kPolicy = ", policy ";
   constexpr std::string_view kAllow = " allow ";
+  constexpr std::string_view kMaxHidden = " max_hidden_travel ";
   if (gcode::Begins(text, gcode::kMarkOfUtf8)) text.remove_prefix(gcode::kMarkOfUtf8.size());
   while (!text.empty()) {
     std::string_view line = TakeWord(text, "\n");
@@ -72,10 +75,21 @@ std::optional<VerifyPermissions> PermissionsInHead(std::string_view text) {
     std::string_view rest = line.substr(at + kPolicy.size());
     std::string_view clause = TakeWord(rest, ":");
     const std::string_view policy = TakeWord(clause, ",");
-    const std::string_view allow =
-        gcode::Begins(clause, kAllow) ? clause.substr(kAllow.size()) : "";
-    const absl::StatusOr<VerifyPermissions> read = ParsePermissions(policy, allow);
+    std::string_view allow;
+    double longest = VerifyPermissions::kUsualHiddenTravelMm;
+    while (!clause.empty()) {
+      const std::string_view part = TakeWord(clause, ",");
+      if (gcode::Begins(part, kAllow)) {
+        allow = part.substr(kAllow.size());
+      } else if (gcode::Begins(part, kMaxHidden) &&
+                 (!absl::SimpleAtod(std::string(part.substr(kMaxHidden.size())), &longest) ||
+                  !(longest >= 0 && longest <= VerifyPermissions::kMostHiddenTravelMm))) {
+        return std::nullopt;
+      }
+    }
+    absl::StatusOr<VerifyPermissions> read = ParsePermissions(policy, allow);
     if (!read.ok()) return std::nullopt;
+    read->max_hidden_travel_mm = longest;
     return *read;
   }
   return std::nullopt;
@@ -88,6 +102,9 @@ VerifyPermissions PermissionsFor(const std::optional<GivenPermissions>& given,
   if (!given) return stated;
   VerifyPermissions permissions = given->permissions;
   permissions.policy = stated.policy;
+  if (permissions.max_hidden_travel_mm == VerifyPermissions::kUsualHiddenTravelMm) {
+    permissions.max_hidden_travel_mm = stated.max_hidden_travel_mm;
+  }
   return permissions;
 }
 
@@ -95,6 +112,9 @@ std::string DescribePermissions(const VerifyPermissions& permissions) {
   std::string text(kPolicyNames[static_cast<size_t>(permissions.policy)]);
   for (const Permission& permission : kPermissions) {
     if (permissions.*permission.flag) absl::StrAppend(&text, ", ", std::string(permission.name));
+  }
+  if (permissions.max_hidden_travel_mm != VerifyPermissions::kUsualHiddenTravelMm) {
+    absl::StrAppend(&text, ", max_hidden_travel ", permissions.max_hidden_travel_mm);
   }
   return text;
 }

@@ -16,6 +16,9 @@ namespace traverse {
 inline constexpr std::string_view kOptimisedMark = "; optimised by Traverse";
 
 struct VerifyPermissions {
+  static constexpr double kUsualHiddenTravelMm = 30;
+  static constexpr double kMostHiddenTravelMm = 1000;
+
   // In order: each policy allows what those before it allow.
   enum class Policy : uint8_t { kSafe, kBalanced, kFree, kFast };
 
@@ -25,8 +28,16 @@ struct VerifyPermissions {
   bool fan_order = false;     // paths may change places across a change of the fan
   bool wipes = false;         // a wipe may be missing where nothing is retracted
 
+  // Travel that nobody sees, and that is no longer than this, may lack its retraction, its lift and
+  // its wipe.
+  bool hidden_retractions = false;
+  double max_hidden_travel_mm = kUsualHiddenTravelMm;
+
   bool is_free() const { return policy >= Policy::kFree; }
   bool drops_wipes() const { return wipes || policy == Policy::kFast; }
+  bool hides_travel() const {
+    return (hidden_retractions || policy == Policy::kFast) && max_hidden_travel_mm > 0;
+  }
 };
 
 // Parses the values of the command line: "safe", "balanced", "free" or "fast", and a list such as
@@ -36,6 +47,7 @@ absl::StatusOr<VerifyPermissions> ParsePermissions(std::string_view policy, std:
 // Reads the writer's line at the head of `text`:
 //
 //   ; optimised by Traverse 1.2.0, policy balanced, allow wall_order+fan_order: travel ...
+//   ; optimised by Traverse 1.2.0, policy fast, max_hidden_travel 20: travel ...
 //
 // Nothing if there is no such line before the first command, or it names no policy.
 std::optional<VerifyPermissions> PermissionsInHead(std::string_view text);

@@ -10,6 +10,8 @@
 #include "absl/strings/str_format.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/verify/line_numbers.h"
+#include "client/gcode/verify/match/hidden_links.h"
+#include "client/gcode/verify/match/layer_shape.h"
 #include "client/gcode/verify/match/moved_gaps.h"
 #include "client/gcode/verify/match/path_lines.h"
 #include "client/gcode/verify/rules/obstacles.h"
@@ -65,6 +67,7 @@ class Verifier {
   void TakeBackGaps();
   bool SamePrint();
   void CheckChunk();
+  std::vector<LayerShape> ShapesOfChunk();
   void CheckLayer(const LayerPair& layer, LayerFindings& findings) const;
   void CheckObstacles(size_t layers);
   void CheckLabels(size_t first, size_t end);
@@ -85,6 +88,7 @@ class Verifier {
   TraceChunk next_was_;  // the one after chunk_was_
   TraceChunk chunk_was_;
   TraceChunk chunk_is_;
+  LayerShape shape_before_;                 // of the last layer of the chunk before
   absl::flat_hash_set<uint64_t> gaps_was_;  // digests of deposits that a moved gap is about
   absl::flat_hash_set<uint64_t> gaps_is_;
   bool more_ = true;       // next_was_ is not empty
@@ -191,12 +195,33 @@ void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const
   CheckDepartures(layer, findings);
 }
 
+// Of all layers of the chunk, and of those before and behind it.
+std::vector<LayerShape> Verifier::ShapesOfChunk() {
+  const size_t layers = chunk_was_.layers.size();
+  std::vector<LayerShape> shapes(layers + 2);
+  if (layers == 0) return shapes;
+  shapes.front() = std::move(shape_before_);
+  ParallelFor(layers + 1, threads_, [&](size_t i) {
+    if (i == layers && next_was_.layers.empty()) return;
+    const TraceChunk& chunk = i == layers ? next_was_ : chunk_was_;
+    shapes[i + 1] = LayerShape(LayerPair(chunk, chunk, i % layers));
+  });
+  shape_before_ = shapes[layers];
+  return shapes;
+}
+
 void Verifier::CheckChunk() {
   const size_t layers = std::min(chunk_was_.layers.size(), chunk_is_.layers.size());
+  const bool hides = context_.permissions.hides_travel();
+  const std::vector<LayerShape> shapes = hides ? ShapesOfChunk() : std::vector<LayerShape>();
   std::vector<LayerFindings> found(layers);
   std::vector<PathLines> lines(layers);
   ParallelFor(layers, threads_, [&](size_t i) {
-    const LayerPair layer(chunk_was_, chunk_is_, i);
+    LayerPair layer(chunk_was_, chunk_is_, i);
+    if (hides) {
+      layer.SetHidden(HiddenLinksOf(layer, {shapes[i], shapes[i + 1], shapes[i + 2]},
+                                    context_.permissions.max_hidden_travel_mm));
+    }
     lines[i].Add(layer);
     CheckLayer(layer, found[i]);
     if (more_ || i + 1 < layers) return;

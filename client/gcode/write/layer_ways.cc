@@ -43,6 +43,17 @@ TravelWay LayerWriter::NewWay(const Placement& from, const Placement& to, bool w
   return way;
 }
 
+Vertex LayerWriter::LeavesFrom(const Placement& from) const {
+  const Leaving* leaving = LeavingOf(from, /*wipes=*/false);
+  return leaving == nullptr || leaving->departs ? End(from) : Behind(from, *leaving);
+}
+
+bool LayerWriter::Hides(const Placement& from, const Placement& to, bool boundary) const {
+  if (!hides_ || boundary || from.block < layer_.first_block) return false;
+  const Feature feature = outlines_[to.block - layer_.first_block].feature;
+  return rules_.Hides(LeavesFrom(from), Begin(to), feature);
+}
+
 WayJoints LayerWriter::JointsOf(const Placement& from, const Placement& to, bool wipes) const {
   WayJoints joints;
   const Leaving* leaving = LeavingOf(from, wipes);
@@ -86,6 +97,7 @@ WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Pl
   way.retracts = stays ? (next.link & kLinkRetracts) != 0
                        : way.retracts || wipes || (boundary && (here.link & kLinkRetracts) != 0) ||
                              GoesOnAcross(from, way.to, feature);
+  if (way.retracts && Hides(from, to, boundary)) return HiddenWay(from, to, model);
   const WayJoints joints = JointsOf(from, to, wipes);
   WayTotals totals;
   totals.mm = way.mm;
@@ -121,6 +133,26 @@ bool LayerWriter::IsBlocked(const TravelWay& way) const {
     at = bend;
   }
   return !room_->IsClear(at, z_mm, way.to, z_mm);
+}
+
+WayTotals LayerWriter::HiddenWay(const Placement& from, const Placement& to,
+                                 const TravelModel& model) const {
+  TravelWay way;
+  way.from = End(from);
+  way.to = Begin(to);
+  const Vertex leaves = LeavesFrom(from);
+  way.mm = Distance(leaves, way.to);
+  if (!(leaves == way.from)) {
+    way.mm += LeavingOf(from, /*wipes=*/false)->mm;
+    way.via.push_back(leaves);
+  }
+  const WayJoints joints = JointsOf(from, to, /*wipes=*/false);
+  WayTotals totals;
+  totals.mm = way.mm;
+  totals.blocked = room_ != nullptr && IsBlocked(way) ? 1 : 0;
+  totals.seconds = NewWaySeconds(file_, from.block, way, model, &joints) +
+                   joints_.RestartSeconds(to.block - layer_.first_block, to.entry);
+  return totals;
 }
 
 // The path before is left as it is in the file, if it retracts there; else the travel is like that

@@ -55,7 +55,7 @@ PartStart StartBehindPath(const GcodeFile& file, const Placement& last) {
 }
 
 LayerWriter::LayerWriter(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
-                         const LinkDonors& donors, const Room* room)
+                         const LinkDonors& donors, const Room* room, bool hides)
     : file_(file),
       layer_(layer),
       donors_(donors),
@@ -66,7 +66,8 @@ LayerWriter::LayerWriter(const GcodeFile& file, const Layer& layer, const Retrac
       rules_(file, layer, habit, outlines_, walls_),
       joints_(file, layer, outlines_),
       spares_walls_(habit.retracts && habit.spares_walls),
-      drops_wipes_(habit.drops_wipes) {
+      drops_wipes_(habit.drops_wipes),
+      hides_(hides && habit.hidden != nullptr) {
   for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
     NoteLeaving(b);
     if (outlines_[b - layer.first_block].closed) {
@@ -98,14 +99,19 @@ LayerOrder LayerWriter::GivenOrder() const {
 PartStart LayerWriter::WriteWay(const Placement& before, const Placement& first,
                                 const PartStart& start, std::string& text) const {
   GcodeOut out(file_, start, text);
-  WriteLink(PlacedPath(file_, before), PlacedPath(file_, first), layer_.first_block, out);
+  WriteLink(PlacedPath(file_, before), PlacedPath(file_, first), layer_.first_block, true, out);
   out.Flush();
   return out.at;
 }
 
 PartStart LayerWriter::WritePaths(const LayerOrder& order, const PartStart& start,
-                                  std::string& text, std::vector<size_t>* ends) const {
-  if (IsGiven(order, start)) {
+                                  std::string& text, std::vector<size_t>* ends,
+                                  bool as_sliced) const {
+  const bool given = IsGiven(order);
+  as_sliced = given && (as_sliced || !ChangesGiven());
+  const bool same_e =
+      start.machine.RelativeE() || start.machine.e == file_.blocks[layer_.first_block].e_in;
+  if (as_sliced && same_e) {
     const Block& last = file_.blocks[layer_.end_block - 1];
     const Offset begin = file_.blocks[layer_.first_block].begin;
     text.append(file_.text, begin, last.end - begin);
@@ -122,7 +128,7 @@ PartStart LayerWriter::WritePaths(const LayerOrder& order, const PartStart& star
     const Block& place = file_.blocks[layer_.first_block + i];
     if (i > 0) {
       PlacedPath to(file_, order[i]);
-      WriteLink(from, to, static_cast<uint32_t>(layer_.first_block + i), out);
+      WriteLink(from, to, static_cast<uint32_t>(layer_.first_block + i), as_sliced, out);
       if ((place.link & (kLinkSplits | kLinkFixed)) != 0) progress.SkipTo(place.begin);
       from = std::move(to);
     }
@@ -135,16 +141,27 @@ PartStart LayerWriter::WritePaths(const LayerOrder& order, const PartStart& star
   return out.at;
 }
 
-bool LayerWriter::IsGiven(const LayerOrder& order, const PartStart& start) const {
+bool LayerWriter::IsGiven(const LayerOrder& order) const {
   for (size_t i = 0; i < order.size(); ++i) {
     if (order[i].block != layer_.first_block + i || !order[i].as_given()) return false;
   }
-  return start.machine.RelativeE() || start.machine.e == file_.blocks[layer_.first_block].e_in;
+  return true;
+}
+
+bool LayerWriter::ChangesGiven() const {
+  if (!hides_) return false;
+  const LayerOrder given = GivenOrder();
+  for (size_t i = 1; i < given.size(); ++i) {
+    const int link = file_.blocks[given[i].block].link;
+    const bool boundary = (link & (kLinkSplits | kLinkFixed)) != 0;
+    if ((link & kLinkRetracts) != 0 && Hides(given[i - 1], given[i], boundary)) return true;
+  }
+  return false;
 }
 
 // `place` is the block that stands here in the file.
 void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place,
-                            GcodeOut& out) const {
+                            bool as_sliced, GcodeOut& out) const {
   const bool boundary = (file_.blocks[place].link & (kLinkSplits | kLinkFixed)) != 0;
   LinkRequest request;
   request.from = &from;
@@ -158,6 +175,15 @@ void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32
   request.departs = Departs(from.placement(), at, feature);
   if (request.departs && !from.as_given()) request.turned_departure = DepartsTo(from.placement());
   request.detours = rules_.detours();
+  const bool given =
+      from.placement().block + 1 == to.placement().block && from.as_given() && to.as_given();
+  const bool retracts = given ? (to.block().link & kLinkRetracts) != 0 : request.retract;
+  if (retracts && !as_sliced && Hides(from.placement(), to.placement(), boundary)) {
+    request.hidden = true;
+    request.wipe = request.retract = request.departs = false;
+    request.detours = nullptr;
+    request.turned_departure.reset();
+  }
   LinkWriter(file_, donors_, out).Write(request);
 }
 

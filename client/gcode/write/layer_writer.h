@@ -33,13 +33,16 @@ PartStart StartBehindPath(const GcodeFile& file, const Placement& last);
 class LayerWriter {
  public:
   // All outlive the writer. `room`: what the head needs in the layer; null: nothing is in the way.
+  // Unless `hides`, what is hidden retracts too.
   LayerWriter(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
-              const LinkDonors& donors, const Room* room = nullptr);
-  LayerWriter(const GcodeFile&, const Layer&, RetractionHabit&&, const LinkDonors&) = delete;
+              const LinkDonors& donors, const Room* room = nullptr, bool hides = true);
+  LayerWriter(const GcodeFile&, const Layer&, RetractionHabit&&, const LinkDonors&,
+              const Room* = nullptr, bool = true) = delete;
 
   const VisibleWalls& walls() const { return walls_; }
   const Room* room() const { return room_; }
   const std::vector<Outline>& outlines() const { return outlines_; }
+  bool hides() const { return hides_; }
 
   // The file's own order.
   LayerOrder GivenOrder() const;
@@ -50,10 +53,14 @@ class LayerWriter {
                      std::string& text) const;
 
   // Writes the paths in `order` and the travel between them. `start` is the state at the first.
-  // `ends`, if not null, gets for each place the size of `text` behind the path there, unless the
-  // text is that of the file.
+  // `as_sliced`: where that is the file's own order, what is hidden retracts as it did. `ends`, if
+  // not null, gets for each place the size of `text` behind the path there, unless the text is that
+  // of the file.
   PartStart WritePaths(const LayerOrder& order, const PartStart& start, std::string& text,
-                       std::vector<size_t>* ends = nullptr) const;
+                       std::vector<size_t>* ends = nullptr, bool as_sliced = false) const;
+
+  // Whether the file's own order is written otherwise than it is in the file.
+  bool ChangesGiven() const;
 
   // Estimates the travel to place `place` of the layer, from 1, if `to` follows `from` there, with
   // the crossings and the retraction that would be written.
@@ -112,6 +119,16 @@ class LayerWriter {
   // a wipe only the length counts, because it is the same wherever the travel leads.
   TravelWay NewWay(const Placement& from, const Placement& to, bool wipes) const;
 
+  // Where the head is when it leaves `from` on a move that pulls nothing back: behind what
+  // continues along the path.
+  Vertex LeavesFrom(const Placement& from) const;
+
+  // Whether that move to `to` is hidden. No move at a boundary is.
+  bool Hides(const Placement& from, const Placement& to, bool boundary) const;
+
+  // EstimateWay of a hidden move.
+  WayTotals HiddenWay(const Placement& from, const Placement& to, const TravelModel& model) const;
+
   // Where travel from `from` to `to` joins them. What happens after `from`, except for a short move
   // away from it, ends with a stop.
   WayJoints JointsOf(const Placement& from, const Placement& to, bool wipes) const;
@@ -124,8 +141,9 @@ class LayerWriter {
   // True if continuing after the end of `from` puts a visible wall between the nozzle and `to`,
   // which must be avoided.
   bool GoesOnAcross(const Placement& from, Vertex to, Feature feature) const;
-  bool IsGiven(const LayerOrder& order, const PartStart& start) const;
-  void WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place, GcodeOut& out) const;
+  bool IsGiven(const LayerOrder& order) const;
+  void WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place, bool as_sliced,
+                 GcodeOut& out) const;
   bool Retracts(const PlacedPath& from, const PlacedPath& to) const;
 
   // Something is in the way, at the height of the layer or, if it retracts, of the layer's lifts.
@@ -144,6 +162,7 @@ class LayerWriter {
   const LayerJoints joints_;
   const bool spares_walls_;
   const bool drops_wipes_;
+  const bool hides_;
   absl::flat_hash_map<uint32_t, Leaving> leaving_;      // by block, if it is left this way
   absl::flat_hash_map<uint32_t, Vertex> behind_fixed_;  // by block, where something stays
   absl::flat_hash_map<uint32_t, LoopGap> gaps_;         // by block, of loops that end short

@@ -44,7 +44,9 @@ void LinkWriter::Write(const LinkRequest& request) {
   const uint32_t to = request.to->placement().block;
   const bool follows =
       request.from->placement().block + 1 == to && (!request.boundary || *request.boundary == to);
-  if (follows && request.from->as_given() && request.to->as_given()) return WriteGiven(request);
+  if (follows && request.from->as_given() && request.to->as_given() && !request.hidden) {
+    return WriteGiven(request);
+  }
   if (request.boundary) return WriteBoundary(request);
   WritePlain(request);
 }
@@ -89,8 +91,22 @@ Link LinkWriter::TemplateFor(const LinkRequest& request) const {
   return ReadLink(file_, to);
 }
 
+// As the file's own open travel; where it has none, as its retracted travel: of both the travel
+// alone.
+Link LinkWriter::HiddenTemplateFor(const LinkRequest& request) const {
+  const Link like = TemplateFor(request);
+  Link form;
+  form.travel_state = like.travel_state;
+  form.z_before = form.z_behind = form.top = request.to->first().z;
+  if (like.arrival >= 0) {
+    form.steps.push_back(like.steps[static_cast<size_t>(like.arrival)]);
+    form.arrival = 0;
+  }
+  return form;
+}
+
 void LinkWriter::WritePlain(const LinkRequest& request) {
-  const Link form = TemplateFor(request);
+  const Link form = request.hidden ? HiddenTemplateFor(request) : TemplateFor(request);
   SetTravelState(*request.to, form);
   const Link left = WriteDeparture(request, form);
   const Link rise =
@@ -127,7 +143,7 @@ std::optional<Link> LinkWriter::OwnDeparture(const LinkRequest& request, const L
 
 // Writes what leads away from the path; returns the link that it follows.
 Link LinkWriter::WriteDeparture(const LinkRequest& request, const Link& form) {
-  const std::optional<Link> own = OwnDeparture(request, form);
+  const std::optional<Link> own = request.hidden ? std::nullopt : OwnDeparture(request, form);
   const bool exact = own && request.from->as_given();
   const Link& link = own ? *own : form;
   const Decimal z = out_.at.machine.at.z;

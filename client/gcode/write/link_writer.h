@@ -42,6 +42,9 @@ struct LinkRequest {
   // Detours around visible walls, if travel makes them; null: travel is straight.
   const Detours* detours = nullptr;
 
+  // Nobody sees the travel: it goes straight, without a retraction, a lift and a wipe.
+  bool hidden = false;
+
   // The file wipes after `from`.
   bool wipe = false;
 
@@ -73,6 +76,7 @@ class LinkWriter {
   void WritePlain(const LinkRequest& request);
   void SetTravelState(const PlacedPath& to, const Link& form);
   Link TemplateFor(const LinkRequest& request) const;
+  Link HiddenTemplateFor(const LinkRequest& request) const;
   std::optional<Link> OwnDeparture(const LinkRequest& request, const Link& form) const;
   Link WriteDeparture(const LinkRequest& request, const Link& form);
   void WriteOwnDeparture(const LinkRequest& request);

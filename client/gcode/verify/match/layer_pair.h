@@ -4,6 +4,7 @@
 #define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_LAYER_PAIR_H_
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "absl/container/flat_hash_set.h"
@@ -71,6 +72,11 @@ class LayerPair {
   // True if the original has the same move, from the same point to the same point, in this layer.
   bool IsKnown(const TraceMove& move) const { return known_.contains(move.identity); }
 
+  // The links of the other file whose travel nobody sees, and which need neither retract nor lift
+  // nor wipe for that (hidden_links.h).
+  bool IsHidden(uint32_t link) const { return hidden_.contains(link); }
+  void SetHidden(absl::flat_hash_set<uint32_t> links) { hidden_ = std::move(links); }
+
   // True if the path of the other file that `visit` ends in ends with it; false if that goes on to
   // another path of the original.
   bool EndsPath(const Visit& visit) const {
@@ -128,6 +134,7 @@ class LayerPair {
   std::vector<Visit> visits_;
   std::vector<size_t> section_begin_;  // in visits_
   absl::flat_hash_set<uint64_t> known_;
+  absl::flat_hash_set<uint32_t> hidden_;
 };
 
 }  // namespace traverse::gcode

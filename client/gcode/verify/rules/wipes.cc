@@ -201,9 +201,12 @@ bool PullsBack(const TraceChunk& chunk, uint32_t link) {
 }
 
 // Whether a wipe that the original has may be missing in `link` of the other file.
-bool MayLackWipe(const TraceChunk& is, uint32_t link, const RuleContext& context) {
+bool MayLackWipe(const LayerPair& layer, uint32_t link, const RuleContext& context) {
+  if (layer.IsHidden(link)) return true;
+  const TraceChunk& is = layer.is();
   const TraceLink& traced = is.links[link];
-  return context.permissions.drops_wipes() && !traced.new_layer && !traced.scripted && !PullsBack(is, link);
+  return context.permissions.drops_wipes() && !traced.new_layer && !traced.scripted &&
+         !PullsBack(is, link);
 }
 
 }  // namespace
@@ -233,7 +236,8 @@ void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFinding
       wipe = WipeBehind(layer, layer.is(), visit.last_path, layer.PiecesOf(visit.path), false);
     }
     const bool may_lack =
-        ends ? MayLackWipe(layer.is(), visit.last_path + 1, context) : context.permissions.drops_wipes();
+        ends ? MayLackWipe(layer, visit.last_path + 1, context)
+             : context.permissions.drops_wipes() || context.permissions.hides_travel();
     if (had.line != 0 && wipe.line == 0 && !may_lack) {
       findings.breaks.push_back({VerifyRule::kWipes, had.line,
                                  layer.is().segments[visit.last_segment].line, layer.index(),

@@ -284,7 +284,7 @@ void ObserveLifts(const LayerPair& layer, LayerFindings& findings) {
     Observe(layer, layer.was(), link, false, findings.was);
   }
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
-    Observe(layer, layer.is(), link, true, findings.is);
+    if (!layer.IsHidden(link)) Observe(layer, layer.is(), link, true, findings.is);
   }
 }
 

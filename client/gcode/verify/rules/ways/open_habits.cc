@@ -174,6 +174,7 @@ void ObserveOpenHabits(const LayerPair& layer, LayerFindings& findings) {
   }
   const LayerHabits habits(ways);
   for (const Visit& visit : layer.visits()) {
+    if (layer.IsHidden(visit.first_path)) continue;
     const Way way = WayIn(layer, layer.is(), visit.first_path, layer.ClassOf(visit.path), true);
     if (way.length_mm <= 0) continue;
     if (habits.HasOpen(way)) continue;

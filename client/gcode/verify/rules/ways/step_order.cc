@@ -151,7 +151,7 @@ void ObserveStepOrder(const LayerPair& layer, LayerFindings& findings) {
     }
   }
   for (uint32_t link = std::max(layer.first_path_is(), 1u); link < layer.end_path_is(); ++link) {
-    if (layer.is().links[link].scripted || AllKnown(layer, link)) continue;
+    if (layer.is().links[link].scripted || layer.IsHidden(link) || AllKnown(layer, link)) continue;
     const std::string steps = StepsOf(layer.is(), link);
     const bool to_layer = layer.is().links[link].new_layer;
     for (const std::string& dwell : DwellsOf(layer.is(), link)) {

@@ -60,7 +60,7 @@ WayLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t lin
     last = &move;
     const auto length = static_cast<float>(move.length_mm());
     way.length_mm += length;
-    if (move.open) way.open_mm += length;
+    if (move.open && !(only_new && layer.IsHidden(link))) way.open_mm += length;
     if (layer.IsKnown(move)) continue;
     if (known) way.line = move.line;
     known = false;

@@ -236,7 +236,7 @@ void CompareSteps(const LayerPair& layer, const WaysBetween& was, uint32_t link_
            "original");
   }
   const double apex = ApexOf(has);
-  if (apex <= 0) return;
+  if (apex <= 0 || layer.IsHidden(link_is)) return;
   const bool high = same.highest_mm >= 0 && apex > same.highest_mm + kLevelMm;
   if (!high && apex >= same.lowest_mm - kLevelMm) return;
   report(VerifyRule::kLifts, has.front().line,

@@ -1,0 +1,52 @@
+// Which travel moves nobody can see, even if filament oozes on their way.
+//
+//   layer above   ~~~~~~~~~~~~~~~~~~~    covers all of the way
+//   this layer    |w| ----------> |w|    the way lies inside, half a width from visible walls
+//   layer below   ===================    supports all of the way
+//
+// It is inside whatever the order of the layer: what oozes where something is yet to be printed
+// is printed over. Certain in cells of a tenth of a millimetre; what is not certain is not hidden.
+
+#ifndef TRAVERSE_CLIENT_GCODE_HIDDEN_HIDDEN_MOVES_H_
+#define TRAVERSE_CLIENT_GCODE_HIDDEN_HIDDEN_MOVES_H_
+
+#include <cstddef>
+#include <vector>
+
+#include "client/gcode/hidden/cell_tiles.h"
+#include "client/gcode/machine/vertex.h"
+#include "client/gcode/model/gcode_file.h"
+
+namespace traverse::gcode {
+
+class HiddenMoves {
+ public:
+  // No move longer than `longest_mm` is hidden. In a layer without one below or above at the usual
+  // distance, or with several tools, none is. O(length of all walls + cells / 64).
+  HiddenMoves(const GcodeFile& file, double longest_mm, int threads = 1);
+
+  // Whether the straight move from `a` to `b` in layer `layer` is hidden. `leaves_wall`: a visible
+  // wall ends at `a`; then the move may begin there, else it keeps away from all of them.
+  bool Hides(size_t layer, Vertex a, Vertex b, bool leaves_wall) const;
+
+  double longest_mm() const { return longest_mm_; }
+
+  // Whether a move could end at `at`.
+  bool Hides(size_t layer, Vertex at) const { return Hides(layer, at, at, false); }
+
+ private:
+  struct LayerTiles {
+    CellTiles hidden;
+    CellTiles leaving;  // near a visible wall; hidden where that is left
+  };
+
+  void Fill(const GcodeFile& file, size_t first, size_t end);
+
+  const double longest_mm_;
+  double cell_mm_ = 0;
+  std::vector<LayerTiles> layers_;
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_HIDDEN_HIDDEN_MOVES_H_

@@ -1,0 +1,97 @@
+// Retractions, lifts and wipes that hidden travel may lack: client/gcode/verify/match/hidden_links.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/client/gcode/support/stack.h"
+#include "tests/client/gcode/verify/small_prints.h"
+
+namespace traverse::gcode {
+namespace {
+
+using namespace testing;  // NOLINT: the small prints
+
+VerifyPermissions Hiding(double longest_mm = 30) {
+  VerifyPermissions permissions;
+  permissions.hidden_retractions = true;
+  permissions.max_hidden_travel_mm = longest_mm;
+  return permissions;
+}
+
+// Boxes of 20 mm, the fourth layer of 30 mm, the fifth and last one with a hole.
+std::string Print() {
+  Stack stack;
+  for (const double z : {0.2, 0.4, 0.6}) stack.Layer(z).Box(0, 0, 20).Box(40, 0, 20);
+  stack.Layer(0.8).Box(0, 0, 30).Box(40, 0, 20);
+  stack.Layer(1).Box(0, 0, 30).Box(40, 0, 20).Wall(46, 6, 8);
+  return stack.Text();
+}
+
+// `text` with the `n`-th travel of its kind open, from 1.
+std::string Opened(std::string text, double x, double y, int n) {
+  const std::string retracted = Stack::Retracted(x, y);
+  size_t at = text.find(retracted);
+  for (; n > 1 && at != std::string::npos; --n) at = text.find(retracted, at + 1);
+  EXPECT_NE(at, std::string::npos);
+  return text.replace(at, retracted.size(), Stack::Open(x, y));
+}
+
+// All rules.
+std::string BrokenRules(const std::string& a, const std::string& b, VerifyPermissions allowed) {
+  return Broken(a, b, allowed, ~0u);
+}
+
+TEST(HiddenTravel, NeedsNoRetractionIfThatIsAllowed) {
+  const std::string print = Print();
+  for (const int layer : {2, 3}) {
+    // From the first line to the second one: 16 mm back and 6 mm up.
+    const std::string open = Opened(print, 2, 10, layer);
+    EXPECT_EQ(BrokenRules(print, open, Hiding()), "") << layer;
+    EXPECT_EQ(BrokenRules(print, open, VerifyPermissions{Policy::kFast}), "");
+    EXPECT_EQ(BrokenRules(print, open, Hiding(30)), "");
+    EXPECT_NE(BrokenRules(print, open, Hiding(17)), "");
+    EXPECT_NE(BrokenRules(print, open, Hiding(0)), "");
+    EXPECT_NE(BrokenRules(print, open, VerifyPermissions{Policy::kFree}), "");
+    EXPECT_NE(BrokenRules(print, open, VerifyPermissions{}), "");
+  }
+  EXPECT_EQ(BrokenRules(print, Opened(print, 2, 4, 2), Hiding()), "");  // leaves its wall
+}
+
+TEST(HiddenTravel, WhatIsSeenStillRetracts) {
+  const std::string print = Print();
+  EXPECT_NE(BrokenRules(print, Opened(print, 2, 10, 1), Hiding()), "");   // first layer
+  EXPECT_NE(BrokenRules(print, Opened(print, 40, 0, 2), Hiding()), "");   // to another part
+  EXPECT_NE(BrokenRules(print, Opened(print, 2, 15, 1), Hiding()), "");   // over nothing
+  EXPECT_NE(BrokenRules(print, Opened(print, 42, 10, 4), Hiding()), "");  // under a hole
+  EXPECT_NE(BrokenRules(print, Opened(print, 42, 10, 5), Hiding()), "");  // last layer
+}
+
+TEST(HiddenTravel, GoesStraightAndLevelOrRetracts) {
+  const std::string print = Print();
+  const std::string open = Opened(print, 2, 10, 2);
+  const std::string straight = Stack::Open(2, 10);
+  const size_t at = open.find(straight, open.find(straight) + 1);
+  const auto by = [&](const std::string& lines) {
+    return std::string(open).replace(at, straight.size(), lines);
+  };
+  EXPECT_EQ(BrokenRules(print, by(straight), Hiding()), "");
+  EXPECT_NE(BrokenRules(print, by("G1 X10 Y-5 F9000\n" + straight), Hiding()), "");
+  EXPECT_NE(BrokenRules(print, by("G1 Z.6\n" + straight + "G1 Z.4\n"), Hiding()), "");
+  EXPECT_NE(BrokenRules(print, by("G1 X2 Y10 F6000\n"), Hiding()), "");
+}
+
+TEST(HiddenTravel, IsReadFromTheLineAtTheHead) {
+  const std::string print = Print();
+  const std::string open = Opened(print, 2, 10, 2);
+  const std::string head = "; optimised by Traverse 1.0, policy ";
+  EXPECT_EQ(FirstMessage(print, head + "fast: x\n" + open), "");
+  EXPECT_EQ(FirstMessage(print, head + "safe, allow wipes+hidden_retractions: x\n" + open), "");
+  EXPECT_EQ(FirstMessage(print, head + "fast, max_hidden_travel 20: x\n" + open), "");
+  EXPECT_NE(FirstMessage(print, head + "fast, max_hidden_travel 5: x\n" + open), "");
+  EXPECT_NE(FirstMessage(print, head + "fast, max_hidden_travel -5: x\n" + open), "");
+  EXPECT_NE(FirstMessage(print, head + "free: x\n" + open), "");
+}
+
+}  // namespace
+}  // namespace traverse::gcode
