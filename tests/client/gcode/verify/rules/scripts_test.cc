@@ -82,7 +82,7 @@ TEST(VerifyScripts, WaysBehindUnknownLinesToALayerGoAsTheyDid) {
 // A tower's filament is pushed back where the head stood, not where it goes on.
 TEST(VerifyScripts, WaysToUnknownLinesGoAsTheyDid) {
   const std::string way = "G1 E-5 F2100\nG1 E2 F2000\nG1 X9 Y7 F2400\n";
-  const std::string a = kHead + kTwo + way + "G4 S0\nG1 E3 F2100\n" +
+  const std::string a = kHead + kTwo + way + "M971 S11\nG1 E3 F2100\n" +
                         Line("Internal infill", "X0 Y9", "X9 Y9") + kTwo;
   EXPECT_EQ(Broken(a, a), "");
   const std::string later = "G1 E-5 F2100\nG1 X9 Y7 F2400\nG1 E2 F2000\n";
