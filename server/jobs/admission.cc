@@ -22,53 +22,24 @@ constexpr double kFading = 0.998;
 
 }  // namespace
 
-const char* RefusalName(Refusal refusal) {
-  switch (refusal) {
-    case Refusal::kDraining:
-      return "draining";
-    case Refusal::kJobs:
-      return "jobs";
-    case Refusal::kCallerJobs:
-      return "caller_jobs";
-    case Refusal::kQueue:
-      return "queue";
-    case Refusal::kCallerQueue:
-      return "caller_queue";
-    case Refusal::kWait:
-      return "wait";
-    case Refusal::kMemory:
-      return "memory";
-    case Refusal::kCallerMemory:
-      return "caller_memory";
-    case Refusal::kMessage:
-      return "message";
-    case Refusal::kJobLayers:
-      return "job_layers";
-    case Refusal::kJobPoints:
-      return "job_points";
-    case Refusal::kLayerPoints:
-      return "layer_points";
-    case Refusal::kUnauthenticated:
-      return "unauthenticated";
-    case Refusal::kPermission:
-      return "permission";
-  }
-  return "other";
-}
-
 Admission::Admission(const AdmissionLimits& limits, std::function<void(Refusal)> on_refusal,
-                     std::function<void()> give_way)
-    : limits_(limits), on_refusal_(std::move(on_refusal)), give_way_(std::move(give_way)) {}
+                     std::function<void()> give_way, const TimeSource* time)
+    : limits_(limits),
+      on_refusal_(std::move(on_refusal)),
+      give_way_(std::move(give_way)),
+      time_(time) {}
 
 absl::StatusOr<std::unique_ptr<Admission::Ticket>> Admission::Admit(const std::string& caller,
-                                                                    int64_t points) {
+                                                                    int64_t points,
+                                                                    Deadline deadline) {
   std::optional<No> no;
   {
     MutexLock lock(mutex_);
-    no = Check(caller, points);
+    no = Check(caller, points, deadline);
     if (!no) {
       std::unique_ptr<Ticket> ticket(new Ticket(*this));
       ticket->admission_.mutex_.AssertHeld();  // it is ours
+      ticket->deadline_ = deadline;
       ticket->caller_ = callers_.try_emplace(caller).first;
       ticket->caller_->second.jobs.insert(ticket.get());
       ticket->Count(points);
@@ -81,7 +52,8 @@ absl::StatusOr<std::unique_ptr<Admission::Ticket>> Admission::Admit(const std::s
   return no->status;
 }
 
-std::optional<Admission::No> Admission::Check(const std::string& caller, int64_t points) const {
+std::optional<Admission::No> Admission::Check(const std::string& caller, int64_t points,
+                                              Deadline deadline) const {
   if (draining_) {
     return No{Refusal::kDraining,
               absl::UnavailableError("the server is shutting down; ask another one")};
@@ -93,7 +65,7 @@ std::optional<Admission::No> Admission::Check(const std::string& caller, int64_t
                        kJobsRetryDelay)};
   }
   if (std::optional<No> no = CheckPlaces(caller); no) return no;
-  return CheckPoints(caller, points);
+  return CheckPoints(caller, points, deadline);
 }
 
 std::optional<Admission::No> Admission::CheckPlaces(const std::string& caller) const {
@@ -124,8 +96,9 @@ std::optional<Admission::No> Admission::CheckPlaces(const std::string& caller) c
   return std::nullopt;
 }
 
-std::optional<Admission::No> Admission::CheckPoints(const std::string& caller,
-                                                    int64_t points) const {
+std::optional<Admission::No> Admission::CheckPoints(const std::string& caller, int64_t points,
+                                                    Deadline deadline) const {
+  if (std::optional<No> no = CheckDeadline(caller, points, deadline); no) return no;
   if (std::optional<No> no = CheckQueues(caller, points); no) return no;
   return CheckWait(caller, points, "");
 }
@@ -153,6 +126,29 @@ std::optional<Admission::No> Admission::CheckQueues(const std::string& caller,
   }
   return full(Refusal::kCallerQueue, "this caller's share of the queue", own,
               limits_.max_queued_points_per_caller);
+}
+
+// While no other job of the caller is in flight, it has a head start.
+std::optional<Admission::No> Admission::CheckDeadline(const std::string& caller, int64_t points,
+                                                      Deadline deadline) const {
+  const auto of_caller = callers_.find(caller);
+  if (!deadline || of_caller == callers_.end()) return std::nullopt;
+  const Budget::Clock::time_point now = Budget::Now(time_);
+  const LeastAnswer::Seconds least = of_caller->second.least_answer.Of(points, now);
+  const LeastAnswer::Seconds left = *deadline - now;
+  if (least <= left) return std::nullopt;
+  const absl::Duration late = absl::Seconds((least - left).count());
+  return No{
+      Refusal::kDeadline,
+      WithRetryDelay(
+          absl::ResourceExhaustedError(absl::StrCat(
+              "the deadline is too early: this job would take about ",
+              absl::FormatDuration(
+                  absl::Trunc(absl::Seconds(least.count()), absl::Milliseconds(1))),
+              " even by greedy, and has ",
+              absl::FormatDuration(absl::Trunc(absl::Seconds(left.count()), absl::Milliseconds(1))),
+              "; try again")),
+          std::clamp(late, kMinRetryDelay, kMaxRetryDelay))};
 }
 
 int64_t Admission::WaitingPoints(const Ticket& job) const {
@@ -295,7 +291,7 @@ absl::Status Admission::Ticket::Resize(int64_t points) {
     MutexLock lock(admission_.mutex_);
     const int64_t before = points_;
     Count(-before);
-    if (points > before) no = admission_.CheckPoints(caller_->first, points);
+    if (points > before) no = admission_.CheckPoints(caller_->first, points, deadline_);
     if (!no) Count(points);
   }
   if (!no) return absl::OkStatus();
@@ -318,6 +314,12 @@ void Admission::Ticket::Remove(int64_t points, int64_t bytes, double seconds) {
     solved.seconds = solved.seconds * kFading + seconds;
     if (strategy_.empty()) break;
   }
+}
+
+void Admission::Ticket::NoteWait(double seconds) {
+  MutexLock lock(admission_.mutex_);
+  caller_->second.least_answer.NoteWait(LeastAnswer::Seconds(seconds),
+                                        Budget::Now(admission_.time_));
 }
 
 void Admission::Ticket::CountBytes(int64_t bytes) {

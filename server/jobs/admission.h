@@ -7,7 +7,9 @@
 // A job is also refused if it would take much longer than alone. Workers take turns, so a job of p
 // points is done when each other job of its caller has had p points of work or has ended, and each
 // other caller as much as this one. So small jobs are admitted beside large ones that would have to
-// wait themselves; under overload the large ones are refused first.
+// wait themselves; under overload the large ones are refused first. And it is refused if its
+// deadline is too early even for greedy, by how long its caller's jobs have waited of late: it
+// would only take the time of those that can be answered.
 //
 // Knows nothing of gRPC.
 
@@ -25,7 +27,9 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
+#include "engine/base/budget.h"
 #include "engine/base/mutex.h"
+#include "server/jobs/least_answer.h"
 
 namespace traverse {
 
@@ -55,6 +59,7 @@ enum class Refusal {
   kQueue,
   kCallerQueue,
   kWait,
+  kDeadline,
   kMemory,
   kCallerMemory,
   kMessage,
@@ -70,6 +75,7 @@ const char* RefusalName(Refusal refusal);
 class Admission {
  public:
   class Ticket;
+  using Deadline = std::optional<Budget::Clock::time_point>;
 
  private:
   // A caller with jobs in flight.
@@ -77,6 +83,7 @@ class Admission {
     std::set<const Ticket*> jobs;
     int64_t queued_points = 0;
     int64_t bytes = 0;
+    LeastAnswer least_answer;
   };
 
  public:
@@ -96,6 +103,9 @@ class Admission {
 
     // Notes that a layer of `points`, for which `bytes` were held, took a worker `seconds`.
     void Remove(int64_t points, int64_t bytes, double seconds);
+
+    // Notes how long the first task of the job waited for a worker.
+    void NoteWait(double seconds);
 
     // Counts `bytes` more, or less, that the server holds for the job. Errors: ResourceExhausted,
     // as Admit, if the memory for jobs is used up; then it counts nothing. `beside`: what the same
@@ -136,21 +146,24 @@ class Admission {
     int64_t bytes_ TRAVERSE_GUARDED_BY(admission_.mutex_) = 0;         // of layers, while kept
     int64_t answer_bytes_ TRAVERSE_GUARDED_BY(admission_.mutex_) = 0;  // of answers not yet written
     std::string strategy_ TRAVERSE_GUARDED_BY(admission_.mutex_);
+    Deadline deadline_ TRAVERSE_GUARDED_BY(admission_.mutex_);
     std::function<bool()> is_worked_on_ TRAVERSE_GUARDED_BY(admission_.mutex_);
   };
 
   // Calls `on_refusal` for each refusal, from any thread. `give_way`: called when all places are
   // taken and a caller who has none asks for one; ends a job that has nothing to do, so that there
-  // is a place when the caller comes back.
+  // is a place when the caller comes back. `time`: the clock of deadlines; null: the steady clock.
   Admission(
       const AdmissionLimits& limits, std::function<void(Refusal)> on_refusal,
-      std::function<void()> give_way = [] {});
+      std::function<void()> give_way = [] {}, const TimeSource* time = nullptr);
 
-  // Admits a job of `caller` that is about to queue `points`. The last quarter of the places is for
-  // callers who have none. Errors: Unavailable while draining;
+  // Admits a job of `caller` that is about to queue `points` and must end by `deadline`, if that is
+  // set. The last quarter of the places is for callers who have none. Errors: Unavailable while
+  // draining;
   // ResourceExhausted with a retry delay (server/jobs/retry_delay.h) if a limit is reached. An
   // empty queue admits a job of any size.
-  absl::StatusOr<std::unique_ptr<Ticket>> Admit(const std::string& caller, int64_t points);
+  absl::StatusOr<std::unique_ptr<Ticket>> Admit(const std::string& caller, int64_t points,
+                                                Deadline deadline = std::nullopt);
 
   // Counts a refusal that was decided elsewhere.
   void CountRefusal(Refusal refusal) { on_refusal_(refusal); }
@@ -173,11 +186,13 @@ class Admission {
     absl::Status status;
     bool newcomer = false;  // for want of a place, though the caller has none
   };
-  std::optional<No> Check(const std::string& caller, int64_t points) const
+  std::optional<No> Check(const std::string& caller, int64_t points, Deadline deadline) const
       TRAVERSE_REQUIRES(mutex_);
   std::optional<No> CheckPlaces(const std::string& caller) const TRAVERSE_REQUIRES(mutex_);
-  std::optional<No> CheckPoints(const std::string& caller, int64_t points) const
+  std::optional<No> CheckPoints(const std::string& caller, int64_t points, Deadline deadline) const
       TRAVERSE_REQUIRES(mutex_);
+  std::optional<No> CheckDeadline(const std::string& caller, int64_t points,
+                                  Deadline deadline) const TRAVERSE_REQUIRES(mutex_);
   std::optional<No> CheckQueues(const std::string& caller, int64_t points) const
       TRAVERSE_REQUIRES(mutex_);
   std::optional<No> CheckWait(const std::string& caller, int64_t points,
@@ -207,6 +222,7 @@ class Admission {
   const AdmissionLimits limits_;
   const std::function<void(Refusal)> on_refusal_;
   const std::function<void()> give_way_;
+  const TimeSource* const time_;
   mutable Mutex mutex_;
   bool draining_ TRAVERSE_GUARDED_BY(mutex_) = false;
   int jobs_ TRAVERSE_GUARDED_BY(mutex_) = 0;

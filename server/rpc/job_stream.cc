@@ -57,7 +57,7 @@ absl::Status JobStream::Admit(const absl::Status& authorized, int64_t points) {
     return authorized;
   }
   absl::StatusOr<std::unique_ptr<Admission::Ticket>> ticket =
-      core_.admission.Admit(call_.caller, points);
+      core_.admission.Admit(call_.caller, points, call_.deadline);
   if (!ticket.ok()) return ticket.status();
   ticket_ = *std::move(ticket);
   // A header may lie: it is checked, but reserves nothing.
@@ -391,6 +391,7 @@ void JobStream::End(const absl::Status& status) {
     core_.return_lag.Record(call_.caller, now - *search_end_);
   }
   // Before the caller learns of the end: its next job may need the place.
+  if (ticket_ != nullptr) ticket_->NoteWait(queue_->wait().first_seconds);
   ticket_.reset();
   FinishCall(ToGrpcStatus(status));
 }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <thread>
@@ -335,6 +336,50 @@ TEST_F(AdmissionTest, NothingIsLeftBehindByManyThreads) {
 
   EXPECT_EQ(admission.jobs(), 0);
   EXPECT_EQ(admission.queued_points(), 0);
+}
+
+// A clock that stands.
+class StoppedClock : public TimeSource {
+ public:
+  Budget::Clock::time_point Now() const override { return now; }
+  Budget::Clock::time_point now{};
+};
+
+TEST_F(AdmissionTest, RefusesAJobWhoseDeadlineIsTooEarlyEvenForGreedy) {
+  StoppedClock clock;
+  Admission admission(
+      {}, Count(), [] {}, &clock);
+  const auto in = [&](int ms) { return clock.now + std::chrono::milliseconds(ms); };
+  auto running = *admission.Admit("a", 1000);
+  EXPECT_OK(admission.Admit("a", 1000, in(10)));
+
+  (*admission.Admit("a", 1000))->NoteWait(0.050);
+  const auto refused = admission.Admit("a", 1000, in(100));
+
+  EXPECT_THAT(refused,
+              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("deadline is too early")));
+  EXPECT_TRUE(refused.status().GetPayload(kRetryInfo).has_value());
+  EXPECT_THAT(refusals_, ElementsAre("deadline"));
+  EXPECT_OK(admission.Admit("a", 1000, in(200)));
+  EXPECT_OK(admission.Admit("a", 1000));
+  // What one caller's jobs wait for is nothing to another.
+  EXPECT_OK(admission.Admit("b", 1000, in(10)));
+  // A wait is soon forgotten.
+  clock.now += std::chrono::seconds(5);
+  EXPECT_OK(admission.Admit("a", 1000, in(100)));
+}
+
+TEST_F(AdmissionTest, CountsTheTimeOfGreedyForTheWholeJob) {
+  StoppedClock clock;
+  Admission admission(
+      {}, Count(), [] {}, &clock);
+  auto running = *admission.Admit("a", 1);
+  const auto deadline = clock.now + std::chrono::milliseconds(100);
+
+  EXPECT_OK(admission.Admit("a", 100'000, deadline));
+  EXPECT_FALSE(admission.Admit("a", 1'000'000, deadline).ok());
+  auto batch = *admission.Admit("a", 0, deadline);
+  EXPECT_FALSE(batch->Resize(1'000'000).ok());
 }
 
 }  // namespace
