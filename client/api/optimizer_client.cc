@@ -160,15 +160,13 @@ class Collector {
     v1::LayerResult& layer = result_.layers[index];
     layer = std::move(*response.mutable_layer());
     layer.set_index(index);
+    if (!layer.fault().empty()) return Note(index);
     if (const absl::Status status = CheckVisits(layers_[index], layer); !status.ok()) {
       return absl::InternalError(
           absl::StrFormat("the server's answer to layers[%d] is not a route: %s", index,
                           std::string(status.message())));
     }
-    answered_[index] = true;
-    ++answers_;
-    if (call_.on_layer) call_.on_layer(layer);
-    return absl::OkStatus();
+    return Note(index);
   }
 
   // Whether a call for `run` that ended well has answered all of it.
@@ -184,6 +182,13 @@ class Collector {
   JobResult& result() { return result_; }
 
  private:
+  absl::Status Note(uint64_t index) {
+    answered_[index] = true;
+    ++answers_;
+    if (call_.on_layer) call_.on_layer(result_.layers[index]);
+    return absl::OkStatus();
+  }
+
   const absl::Span<const v1::Layer> layers_;
   const CallOptions& call_;
   JobResult result_;
@@ -246,17 +251,23 @@ absl::StatusOr<JobResult> OptimizerClient::Optimize(const v1::JobOptions& option
   int calls = 0;
   do {
     const MissingRun run = FirstMissing(collector.answered());
-    const v1::LayerResult* before =
-        run.begin > 0 ? &collector.result().layers[run.begin - 1] : nullptr;
+    // Layers with a fault do not move the head.
+    const v1::LayerResult* before = nullptr;
+    size_t printed = 0;
+    for (size_t i = 0; i < run.begin; ++i) {
+      const v1::LayerResult& layer = collector.result().layers[i];
+      if (!layer.fault().empty()) continue;
+      before = &layer;
+      ++printed;
+    }
     const size_t had = collector.answers();
     absl::Status fault;
     grpc::ClientContext context;
     Authorize(context);
     if (deadline != absl::InfiniteFuture()) context.set_deadline(absl::ToChronoTime(deadline));
-    const grpc::Status status =
-        CallOnce(*stub_, context, call.cancel,
-                 ResumedOptions(options, run.begin, before, absl::Now() - began), layers, run,
-                 collector, fault);
+    const grpc::Status status = CallOnce(
+        *stub_, context, call.cancel, ResumedOptions(options, printed, before, absl::Now() - began),
+        layers, run, collector, fault);
     ++calls;
     if (!fault.ok()) return fault;
     if (call.cancel.stop_requested()) return absl::CancelledError("cancelled");

@@ -73,11 +73,15 @@ v1::JobSummary SummaryOf(const v1::JobOptions& options, absl::Span<const v1::Lay
   v1::JobSummary sum;
   sum.set_job_id(last.job_id());
   sum.set_strategy(last.strategy());
-  sum.set_layers(layers.size());
   std::map<v1::StopReason, uint64_t> stops;
   bool bounded = true;
   double lower_bound = 0;
   for (const v1::LayerResult& layer : layers) {
+    if (!layer.fault().empty()) {
+      sum.set_faulty_layers(sum.faulty_layers() + 1);
+      continue;
+    }
+    sum.set_layers(sum.layers() + 1);
     AddTravel(layer.given(), *sum.mutable_given());
     AddTravel(layer.travel(), *sum.mutable_travel());
     sum.set_cleaning_given_mm(sum.cleaning_given_mm() + layer.cleaning_given_mm());

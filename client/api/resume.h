@@ -30,8 +30,9 @@ MissingRun FirstMissing(const std::vector<bool>& answered);
 // Whether the nozzle is cleaned after layer `index` of the job, if another layer follows.
 bool CleaningDueAfter(const v1::JobOptions& options, size_t index);
 
-// The options for a job of the layers from `begin` on. `before` is the answer to the layer before
-// it (null if begin is 0); `elapsed` is the time since the whole job began.
+// The options for a job of the layers from `begin` on, not counting those with a fault. `before` is
+// the answer to the layer before it (null if begin is 0); `elapsed` is the time since the whole job
+// began.
 v1::JobOptions ResumedOptions(const v1::JobOptions& options, size_t begin,
                               const v1::LayerResult* before, absl::Duration elapsed);
 

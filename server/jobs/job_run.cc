@@ -30,6 +30,10 @@ void JobRun::Start(const Options& options, const JobSpec& spec, std::unique_ptr<
     MutexLock lock(mutex_);
     job_ = job;
     cancel = abort_.has_value();
+    for (const LabelledLayer& layer : backlog_) {
+      if (layer.label.fault.empty()) job->Announce(layer.layer.plan);
+    }
+    if (closed_) job->AnnounceEnd();
   }
   if (cancel) job->Cancel();
 }
@@ -37,7 +41,9 @@ void JobRun::Start(const Options& options, const JobSpec& spec, std::unique_ptr<
 void JobRun::Add(LabelledLayer layer) {
   MutexLock lock(mutex_);
   NoteProgress();
-  if (!abort_) backlog_.push_back(std::move(layer));
+  if (abort_) return;
+  if (job_ != nullptr && layer.label.fault.empty()) job_->Announce(layer.layer.plan);
+  backlog_.push_back(std::move(layer));
 }
 
 void JobRun::Push() { Pump(/*feed=*/true); }
@@ -46,6 +52,7 @@ void JobRun::Close() {
   {
     MutexLock lock(mutex_);
     closed_ = true;
+    if (job_ != nullptr) job_->AnnounceEnd();
   }
   Pump(/*feed=*/true);
 }
@@ -167,6 +174,7 @@ void JobRun::TakeLayer(LayerOutcome outcome) {
     label = found->second;
     labels_.erase(found);
   }
+  outcome.index = label.index;
   std::string message = port_.EncodeLayer(outcome, label);
   {
     MutexLock lock(mutex_);
@@ -226,9 +234,14 @@ void JobRun::Feed() {
   while (!abort_ && !backlog_.empty() && FitsWindow(backlog_.front().label.points)) {
     LabelledLayer next = std::move(backlog_.front());
     backlog_.pop_front();
-    labels_[next_index_++] = next.label;
+    next.label.index = next_position_++;
     ++window_layers_;
     window_points_ += next.label.points;
+    if (!next.label.fault.empty()) {
+      Queue(next.label.index, {port_.EncodeFault(next.label), 1, next.label.points});
+      continue;
+    }
+    labels_[next_index_++] = next.label;
     const std::shared_ptr<Job> job = job_;
     mutex_.Unlock();
     job->Add(std::move(next.layer));

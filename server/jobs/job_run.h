@@ -36,6 +36,11 @@ struct LayerLabel {
   uint64_t id = 0;     // Layer.id
   int64_t points = 0;  // all coordinate pairs sent, including those that the route does not need
   int64_t bytes = 0;   // of memory held for it
+
+  // Why it is answered without a route, by this text; empty if it is not.
+  std::string fault = {};
+
+  uint64_t index = 0;  // position in the job, faulty layers included; set by JobRun
 };
 
 struct LabelledLayer {
@@ -51,6 +56,10 @@ class JobPort {
   // The message for one layer, and the last one. Worker threads call these, never at once.
   virtual std::string EncodeLayer(const LayerOutcome& outcome, const LayerLabel& label) = 0;
   virtual std::string EncodeSummary() = 0;
+
+  // The message for a layer with a fault. Any thread calls it, with a lock held: must not call the
+  // run.
+  virtual std::string EncodeFault(const LayerLabel& /*label*/) { return {}; }
 
   // What JobSink::OnChainBound says, before EncodeSummary.
   virtual void NoteChainBound(double /*lower_bound*/) {}
@@ -164,7 +173,8 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
   // Does whatever can be done next. Every public method ends with it.
   void Pump(bool feed);
 
-  // Gives layers to the engine while the window has room. Unlocks for the engine's calls.
+  // Gives layers to the engine while the window has room, and answers those with a fault. Unlocks
+  // for the engine's calls.
   void Feed() TRAVERSE_REQUIRES(mutex_);
 
   void TakeLayer(LayerOutcome outcome);
@@ -189,7 +199,8 @@ class JobRun : public JobSink, public std::enable_shared_from_this<JobRun> {
   bool engine_done_ TRAVERSE_GUARDED_BY(mutex_) = true;     // false from Start to OnDone
   bool feeding_ TRAVERSE_GUARDED_BY(mutex_) = false;        // a thread is in Feed
 
-  uint64_t next_index_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // of the next layer fed
+  uint64_t next_index_ TRAVERSE_GUARDED_BY(mutex_) = 0;     // of the next layer fed
+  uint64_t next_position_ TRAVERSE_GUARDED_BY(mutex_) = 0;  // in the job, faulty ones included
   std::unordered_map<uint64_t, LayerLabel> labels_
       TRAVERSE_GUARDED_BY(mutex_);  // of layers in the engine
   int64_t window_layers_ TRAVERSE_GUARDED_BY(mutex_) = 0;

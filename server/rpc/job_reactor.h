@@ -69,6 +69,9 @@ class JobReactor : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBu
       ToProto(outcome, id, setup().strategy_name, *response.mutable_layer());
     });
   }
+  std::string Encode(const v1::LayerResult& result) const final {
+    return Serialize<Response>([&](Response& response) { *response.mutable_layer() = result; });
+  }
   std::string Encode(const v1::JobSummary& summary) const final {
     return Serialize<Response>([&](Response& response) { *response.mutable_summary() = summary; });
   }

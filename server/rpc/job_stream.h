@@ -8,6 +8,7 @@
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/status.h>
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -92,11 +93,13 @@ class JobStream : public JobPort {
   virtual bool MoreFollowsMessage() const = 0;  // JobLayer::more_follows of its last layer
   virtual void FinishCall(const grpc::Status& status) = 0;
   virtual std::string Encode(const LayerOutcome& outcome, uint64_t id) const = 0;
+  virtual std::string Encode(const v1::LayerResult& result) const = 0;
   virtual std::string Encode(const v1::JobSummary& summary) const = 0;
 
   // JobPort.
   std::string EncodeLayer(const LayerOutcome& outcome, const LayerLabel& label) final;
   std::string EncodeSummary() final;
+  std::string EncodeFault(const LayerLabel& label) final;
   void NoteChainBound(double lower_bound) final { totals_.SetChainBound(lower_bound); }
   bool MayBringMore() const final { return ticket_->MayBringMore(); }
   bool IsWorkedOn() const final { return !queue_->idle(); }
@@ -120,6 +123,10 @@ class JobStream : public JobPort {
   absl::Status OpenMessage(grpc::ByteBuffer& message);
   absl::Status ReadLayers();
   absl::StatusOr<LabelledLayer> Translate(const v1::Layer& layer, uint64_t index) const;
+
+  // A layer in the place of one that cannot be answered for this reason; unset if that ends the
+  // job.
+  std::optional<LabelledLayer> InPlaceOf(const v1::Layer& layer, const absl::Status& fault) const;
   void AddLayers(std::vector<LabelledLayer> layers);
 
   // Puts the job's id into the initial metadata.
@@ -142,8 +149,9 @@ class JobStream : public JobPort {
   // For the message being read.
   RequestReader reader_;
   bool opened_ = false;
-  FaultList faults_;             // faults found in it so far
-  int64_t message_bytes_ = 0;    // held for it
+  FaultList faults_;  // faults found in it so far
+  std::vector<LabelledLayer> carried_;  // read, with the last one without a fault, but not added
+  int64_t message_bytes_ = 0;           // held for it
   int64_t admitted_points_ = 0;  // counted by Admit, but not yet brought
 
   // Set while messages are read; then read by the engine's calls and by End.
@@ -160,7 +168,8 @@ class JobStream : public JobPort {
   JobTotals totals_;
   std::optional<KeptPlans> kept_plans_;  // for a bound of the chain, if the job asks for one
   int64_t kept_bytes_ = 0;               // held for these plans
-  double counted_seconds_ = 0;           // busy seconds of queue_ that were reported to ticket_
+  std::atomic<uint64_t> faulty_layers_{0};
+  double counted_seconds_ = 0;  // busy seconds of queue_ that were reported to ticket_
 
   grpc::ByteBuffer outgoing_;  // the message being written
 };

@@ -33,6 +33,7 @@ struct JobSetup {
   bool build_order = false;
   bool look_ahead = false;
   bool validate_only = false;
+  bool partial_answers = false;
   double idle_speed_mm_s = 20.32;
   absl::Duration time_limit = absl::InfiniteDuration();
 };

@@ -155,6 +155,7 @@ absl::StatusOr<JobSetup> JobFromProto(const v1::JobOptions& options) {
   faults.Add(SetGeometry(options, setup));
   if (!faults.empty()) return faults.status();
   setup.validate_only = options.validate_only();
+  setup.partial_answers = options.partial_answers();
   setup.look_ahead = options.look_ahead();
   setup.spec.seed = options.has_seed() ? options.seed() : 1;
   return setup;
