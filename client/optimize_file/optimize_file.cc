@@ -64,9 +64,10 @@ InputJob JobWithUsualCrossings(const InputJob& job) {
 
 // Adds a search of `job` to those made, unless its time is over: then the earlier results have to
 // do.
-absl::Status SearchAgain(OptimizerClient& client, const InputJob& job, const SearchOptions& search,
+absl::Status SearchAgain(OptimizerClient& client, const InputJob& job, SearchOptions search,
                          bool may_be_late, std::vector<report::JobRun>& runs) {
   if (absl::Now() >= search.finish_by) return absl::OkStatus();
+  search.deadline = absl::InfiniteDuration();  // it is part of finish_by, and nothing may be late
   absl::StatusOr<report::JobRun> run = Search(client, job, search);
   const bool late = absl::IsDeadlineExceeded(run.status()) && may_be_late;
   if (!run.ok()) return late ? absl::OkStatus() : run.status();
@@ -120,6 +121,21 @@ gcode::TimeScale ScaleOf(const GcodeRewrite& rewrite) {
                             ratio(rewrite.first_before.seconds, rewrite.first_after.seconds)});
 }
 
+// Limits the search of `asked` so that its answers come back within `time`.
+void LimitTime(absl::Duration time, v1::JobOptions& asked) {
+  constexpr double kOfReturn = 0.1;
+  constexpr absl::Duration kMostOfReturn = absl::Milliseconds(500);
+  constexpr absl::Duration kLeast = absl::Microseconds(1);
+  constexpr absl::Duration kMost = absl::Hours(24 * 365);
+  time = std::clamp(time - std::min(time * kOfReturn, kMostOfReturn), kLeast, kMost);
+  google::protobuf::Duration& limit = *asked.mutable_time_limit();
+  const absl::Duration own = absl::Seconds(limit.seconds()) + absl::Nanoseconds(limit.nanos());
+  if (own > absl::ZeroDuration() && own <= time) return;
+  limit.set_seconds(absl::ToInt64Seconds(time));
+  limit.set_nanos(static_cast<int32_t>(
+      absl::ToInt64Nanoseconds(time - absl::Seconds(absl::ToInt64Seconds(time)))));
+}
+
 FileFault SearchFault(absl::Status status) { return {FileStage::kSearch, std::move(status)}; }
 
 }  // namespace
@@ -131,7 +147,8 @@ absl::StatusOr<report::JobRun> Search(OptimizerClient& client, const InputJob& j
   if (options.progress.on_search) options.progress.on_search(job.layers.size());
   const absl::Time began = absl::Now();
   CallOptions call;
-  call.deadline = std::min(options.deadline, options.finish_by - began);
+  if (options.deadline != absl::InfiniteDuration()) LimitTime(options.deadline, asked);
+  call.deadline = std::min(options.deadline + SearchOptions::kPatience, options.finish_by - began);
   call.cancel = options.cancel;
   call.on_layer = options.progress.on_layer;
   absl::StatusOr<JobResult> result = client.Optimize(asked, job.layers, call);
@@ -144,13 +161,14 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
                                        const OptimizeFileOptions& options) {
   assert(job.gcode != nullptr);
   SearchOptions search = options;
-  search.finish_by = std::min(options.finish_by - WritingTime(job.gcode->text.size()),
-                              absl::Now() + options.deadline);
+  const absl::Time due = absl::Now() + options.deadline;
+  search.finish_by = options.finish_by - WritingTime(job.gcode->text.size());
   if (absl::Now() >= search.finish_by) {
     return SearchFault(absl::DeadlineExceededError("no time is left for a search"));
   }
   OptimizedFile made;
   absl::StatusOr<report::JobRun> first = Search(client, job, search);
+  search.finish_by = std::min(search.finish_by, due);
   if (!first.ok()) return SearchFault(first.status());
   made.runs.push_back(*std::move(first));
   if (IsAskedTwice(job, options)) {

@@ -55,11 +55,14 @@ struct SearchProgress {
 struct SearchOptions {
   std::optional<v1::Strategy> strategy = std::nullopt;  // unset: the job's own
 
-  // Of all searches of a file together, and of what is done to improve their orders.
+  // Of all searches of a file together, and of what is done to improve their orders. The service
+  // ends its search early enough; but on a busy machine a late answer is better than none, so the
+  // call waits for it kPatience longer.
   absl::Duration deadline = absl::InfiniteDuration();
+  static constexpr absl::Duration kPatience = absl::Seconds(5);
 
-  // When the whole file must be ready. Searches end early enough that the file can still be written
-  // and verified with the best results so far.
+  // When the whole file must be ready: nothing is of use later. Searches end early enough that the
+  // file can still be written and verified with the best results so far.
   absl::Time finish_by = absl::InfiniteFuture();
 
   // When stop is requested, the call ends soon with Cancelled.
