@@ -37,12 +37,16 @@ void ApplyCost(const CostSettings& settings, v1::CostModel& model) {
   }
 }
 
-// States idle time at the speed that the cost uses, if there is one.
-void ApplyIdleSpeed(const CostSettings& settings, v1::JobOptions& options) {
+// States idle time at the speed that the cost uses, if there is one. Parts in DAMAT are those of
+// the machine of the sources, which moves at 20.32 mm/s.
+void ApplyIdleSpeed(const CostSettings& settings, InputFormat format, v1::JobOptions& options) {
+  constexpr double kDamatSpeedMmS = 20.32;
   if (settings.speed_mm_s) {
     options.set_idle_speed_mm_s(*settings.speed_mm_s);
   } else if (options.cost().has_time() && !options.has_idle_speed_mm_s()) {
     options.set_idle_speed_mm_s(options.cost().time().speed_mm_s());
+  } else if (format == InputFormat::kDamat && !options.has_idle_speed_mm_s()) {
+    options.set_idle_speed_mm_s(kDamatSpeedMmS);
   }
 }
 
@@ -86,7 +90,7 @@ absl::Status ApplySettings(const JobSettings& settings, InputJob& job) {
     *options.mutable_layer_time_limit() = ToProto(*settings.layer_time_limit);
   }
   ApplyCost(settings.cost, *options.mutable_cost());
-  ApplyIdleSpeed(settings.cost, options);
+  ApplyIdleSpeed(settings.cost, job.format, options);
   for (v1::Layer& layer : job.layers) {
     if (layer.has_cost()) ApplyCost(settings.cost, *layer.mutable_cost());
   }

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "absl/strings/match.h"
@@ -15,6 +17,7 @@ namespace {
 constexpr size_t kMaxJobIdBytes = 256;
 // No name and no value of an option is longer. A longer one would fill the log.
 constexpr size_t kMaxNameBytes = 64;
+constexpr double kMostWorthSpeed = 1e5;                   // mm/s, as of JobOptions.idle_speed_mm_s
 constexpr int64_t kMaxDurationSeconds = 315'576'000'000;  // of google.protobuf.Duration
 constexpr int32_t kNanosPerSecond = 1'000'000'000;
 
@@ -68,12 +71,28 @@ absl::Status CheckLengths(const v1::Strategy& strategy) {
   return absl::OkStatus();
 }
 
-absl::Status SetStrategy(const v1::Strategy& strategy, JobSetup& setup) {
+// The speed at which `auto` judges what its search is worth: that of travel, where it is known, and
+// unless the caller says how long to search.
+std::optional<double> WorthSpeed(const v1::JobOptions& options) {
+  const auto& asked = options.strategy().options();
+  for (const char* name : {"effort", "least_gain_each", "idle_speed"}) {
+    if (asked.contains(name)) return std::nullopt;
+  }
+  if (options.has_idle_speed_mm_s()) return options.idle_speed_mm_s();
+  if (options.cost().has_time()) return options.cost().time().speed_mm_s();
+  return std::nullopt;
+}
+
+absl::Status SetStrategy(const v1::JobOptions& job, JobSetup& setup) {
+  const v1::Strategy& strategy = job.strategy();
   TRAVERSE_RETURN_IF_ERROR(CheckKnown(strategy, "options.strategy"));
   TRAVERSE_RETURN_IF_ERROR(CheckLengths(strategy));
   setup.strategy_name = strategy.name().empty() ? DefaultStrategyName() : strategy.name();
-  const std::map<std::string, std::string> options(strategy.options().begin(),
-                                                   strategy.options().end());
+  std::map<std::string, std::string> options(strategy.options().begin(), strategy.options().end());
+  const std::optional<double> speed = WorthSpeed(job);
+  // A speed out of range is a fault of its own.
+  if (setup.strategy_name == "auto" && speed && *speed > 0 && *speed <= kMostWorthSpeed)
+    options["idle_speed"] = absl::StrCat(*speed);
   absl::StatusOr<std::unique_ptr<Strategy>> made = MakeStrategy(setup.strategy_name, options);
   if (!made.ok()) {
     return absl::Status(made.status().code(),
@@ -149,7 +168,7 @@ absl::StatusOr<JobSetup> JobFromProto(const v1::JobOptions& options) {
                      absl::StrCat(options.job_id().size(), " bytes, more than ", kMaxJobIdBytes)));
   }
   setup.job_id = options.job_id();
-  faults.Add(SetStrategy(options.strategy(), setup));
+  faults.Add(SetStrategy(options, setup));
   faults.Add(SetEnums(options, setup));
   faults.Add(SetLimits(options, setup));
   faults.Add(SetGeometry(options, setup));
