@@ -137,6 +137,9 @@ void LayerSolver::ResumeFromPrecursor(const LayerProblem& problem, ChainLayer& l
   const bool gained = RouteCost(problem, layer.first.route, &budget) <
                       RouteCost(problem, route, &budget) * (1 - kSameCost);
   layer.searched_in_vain = same && !gained && layer.first.stop != StopReason::kTimeLimit;
+  // Its bound too: another one would take longer than the search.
+  if (layer.searched_in_vain && strategy_->traits().bound_share < 1)
+    TakeOver(*precursor.best, problem, layer, layer.first);
 }
 
 // Answers with the route of a layer of the same problem key, if what is known about that route
