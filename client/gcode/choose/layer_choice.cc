@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
-#include <cstddef>
 #include <memory>
 #include <utility>
 
@@ -221,18 +220,9 @@ class LayerChooser::Impl {
       if (!known) found.push_back(order[layer]);
     }
     if (found.empty()) return;
-    for (const LayerOrder& order : found) column.blocked |= IsBlocked(layer, order, column);
+    NoteBlocked(found, travel_[layer], column);
     const auto orders = MergedOrders(*column.writer, travel_[layer], found, rules);
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
-  }
-
-  bool IsBlocked(size_t layer, const LayerOrder& order, const LayerColumn& column) const {
-    if (column.writer->room() == nullptr) return false;
-    for (size_t i = 1; i < order.size(); ++i) {
-      const auto way = column.writer->EstimateWay(i, order[i - 1], order[i], travel_[layer]);
-      if (way.blocked > 0) return true;
-    }
-    return false;
   }
 
   void FillWays(size_t layer) {

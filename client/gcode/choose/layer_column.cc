@@ -32,6 +32,18 @@ double ForecastPaths(const LayerWriter& writer, const TravelModel& travel,
 
 }  // namespace
 
+void NoteBlocked(const std::vector<LayerOrder>& orders, const TravelModel& travel,
+                 LayerColumn& column) {
+  const LayerWriter& writer = *column.writer;
+  if (writer.room() == nullptr) return;
+  for (const LayerOrder& order : orders) {
+    for (size_t place = 1; place < order.size(); ++place) {
+      const auto way = writer.EstimateWay(place, order[place - 1], order[place], travel);
+      column.blocked |= way.blocked > 0;
+    }
+  }
+}
+
 size_t PlaceOfLine(LayerColumn& column, size_t line) {
   std::vector<size_t>& ends = column.ends;
   if (ends.empty()) {

@@ -48,6 +48,10 @@ struct LayerColumn {
   }
 };
 
+// Notes whether something stands in the way in one of `orders`.
+void NoteBlocked(const std::vector<LayerOrder>& orders, const TravelModel& travel,
+                 LayerColumn& column);
+
 // The place whose path, or the link to it, has line `line`, from 0, of the paths of `column` as
 // last chosen.
 size_t PlaceOfLine(LayerColumn& column, size_t line);
