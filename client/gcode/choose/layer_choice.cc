@@ -11,6 +11,7 @@
 #include "client/gcode/choose/choice_row.h"
 #include "client/gcode/choose/layer_column.h"
 #include "client/gcode/choose/merged_orders.h"
+#include "client/gcode/choose/object_orders.h"
 #include "client/gcode/choose/revisits.h"
 #include "client/gcode/parallel.h"
 
@@ -39,6 +40,7 @@ class LayerChooser::Impl {
         filler_(file, habit_, donors_, room_),
         travel_(LearnTravel(file, habit_.threshold_mm, choice.threads)),
         revisits_(file, choice.min_revisit_seconds, choice.threads),
+        objects_(file),
         columns_(file.layers.size()) {
     assert(usual_tries_ <= tries_.size());
     ParallelFor(columns_.size(), threads_, [this](size_t layer) { FillColumn(layer); });
@@ -174,6 +176,7 @@ class LayerChooser::Impl {
     if (refusals.inside) {
       MergeRules rules = RulesOf(layer);
       rules.refused = &refusals.links;
+      rules.places = column.writer->PlacesOf(*order);
       const LayerFreedom freedom = FreedomOf(file_, file_.layers[layer], policy_, allow_);
       order =
           RepairedOrder(*column.writer, travel_[layer], *order, rules, freedom, refusals.Reach());
@@ -190,9 +193,10 @@ class LayerChooser::Impl {
 
   void AddSparing(size_t layer) {
     LayerColumn& column = columns_[layer];
-    const MergeRules rules = RulesOf(layer);
+    MergeRules rules = RulesOf(layer);
     if (rules.as_many_retractions) return;
     const LayerOrder& chosen = column.choices[column.chosen].order;
+    if (objects_.any()) rules.places = column.writer->PlacesOf(chosen);
     const auto orders = SparingOrders(*column.writer, travel_[layer], chosen, rules);
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
     column.totals.no_choice.resize(column.choices.size(), false);
@@ -204,11 +208,13 @@ class LayerChooser::Impl {
     filler_.AddHidden(column);
     MergeRules rules = RulesOf(layer);
     AddMerged(layer, tries_, rules, column);
-    if (crossings_ != Crossings::kFewer) return;
-    // What is made at that price is often too long. These are all that the usual one leads to.
-    rules.crossings = Crossings::kKeep;
-    const size_t usual = usual_tries_ > 0 ? usual_tries_ : tries_.size();
-    AddMerged(layer, absl::MakeConstSpan(tries_).last(usual), rules, column);
+    if (crossings_ == Crossings::kFewer) {
+      // What is made at that price is often too long. These are all that the usual one leads to.
+      rules.crossings = Crossings::kKeep;
+      const size_t usual = usual_tries_ > 0 ? usual_tries_ : tries_.size();
+      AddMerged(layer, absl::MakeConstSpan(tries_).last(usual), rules, column);
+    }
+    if (polish_) objects_.AddTo(layer, tries_, travel_[layer], std::move(rules), filler_, column);
   }
 
   // The orders that `tries` have for layer `layer`, merged by `rules`.
@@ -358,6 +364,7 @@ class LayerChooser::Impl {
   const ColumnFiller filler_;
   const std::vector<TravelModel> travel_;  // [layer]
   const Revisits revisits_;
+  const ObjectOrders objects_;
   std::vector<LayerColumn> columns_;  // [layer]
   int64_t fewer_crossings_ = 0;
   bool spared_ = false;  // retractions were

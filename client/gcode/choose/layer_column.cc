@@ -24,8 +24,9 @@ RetractionHabit SparingNoWalls(RetractionHabit habit) {
 double ForecastPaths(const LayerWriter& writer, const TravelModel& travel,
                      const LayerOrder& order) {
   double seconds = 0;
+  const std::vector<uint32_t> places = writer.PlacesOf(order);
   for (size_t place = 1; place < order.size(); ++place) {
-    seconds += writer.EstimateWay(place, order[place - 1], order[place], travel).seconds;
+    seconds += writer.EstimateWay(places[place], order[place - 1], order[place], travel).seconds;
   }
   return seconds;
 }
@@ -126,6 +127,18 @@ std::string ColumnFiller::Add(const LayerOrder& order, const LayerWriter& writer
   column.totals.inside.push_back(
       Measure(file_, text, choice.start, &column.writer->walls(), writer.room()));
   return text;
+}
+
+std::vector<const LayerOrder*> FastestOrders(const LayerColumn& column, size_t most) {
+  std::vector<size_t> numbers;
+  for (size_t c = 1; c < column.choices.size(); ++c) numbers.push_back(c);
+  std::stable_sort(numbers.begin(), numbers.end(), [&column](size_t a, size_t b) {
+    return column.totals.inside[a].seconds < column.totals.inside[b].seconds;
+  });
+  numbers.resize(std::min(numbers.size(), most));
+  std::vector<const LayerOrder*> orders = {&column.given_order()};
+  for (const size_t c : numbers) orders.push_back(&column.choices[c].order);
+  return orders;
 }
 
 Forecast ForecastOf(const std::vector<LayerColumn>& columns,

@@ -88,6 +88,9 @@ class ColumnFiller {
   const HeadRoom& room_;
 };
 
+// The file's own order, and the `most` of the others that take the least time.
+std::vector<const LayerOrder*> FastestOrders(const LayerColumn& column, size_t most);
+
 // Of all layers, with the measured ways to them. `travel` has their travel.
 Forecast ForecastOf(const std::vector<LayerColumn>& columns,
                     const std::vector<TravelModel>& travel);

@@ -71,7 +71,11 @@ class KnownWays {
     return rules_.refused != nullptr && rules_.refused->contains({from, to});
   }
 
+  // From now on the orders asked about have objects in other places than the file.
+  void MoveObjects() { moved_ = !rules_.places.empty(); }
+
   WayTotals operator()(size_t place, const Placement& from, const Placement& to) {
+    if (moved_) place = rules_.places[place];
     // Where something stands in the file, the way depends on what that is.
     const bool boundary = rules_.boundaries[place];
     const size_t next = to.block - given_.front().block;
@@ -110,6 +114,7 @@ class KnownWays {
   std::vector<uint32_t> numbers_;      // [path] the number of its first placement
   std::vector<WayTotals> given_ways_;  // [place] as the layer was given
   double longest_open_mm_ = 0;         // of them
+  bool moved_ = false;
   absl::flat_hash_map<Key, WayTotals> known_;
 };
 
@@ -165,6 +170,7 @@ class LayerMerge {
         quick_(estimate_, AnyCrossings(LimitsOf(were_, rules))) {
     all_ = found;
     all_.push_back(given_);
+    ways_.MoveObjects();
     if (!rules.freedom) return;
     polisher_.emplace(given_.front().block, writer.outlines(), *rules.freedom, estimate_,
                       *rules.polish);
@@ -190,6 +196,10 @@ class LayerMerge {
     if (best_between != given_) merged.push_back(std::move(best_between));
     AddSparing(merged);
     return merged;
+  }
+
+  LayerOrder Settle(const LayerOrder& order) const {
+    return Better(few_, order, {}, Effort::kSettle);
   }
 
   // `order` with no more retractions than the file's own; then with fewer at a price, which a
@@ -278,6 +288,12 @@ std::optional<LayerOrder> RepairedOrder(const LayerWriter& writer, const TravelM
                                         const LayerFreedom& freedom, size_t reach) {
   if (!IsWhole(order, writer.GivenOrder())) return std::nullopt;
   return LayerMerge(writer, travel, {}, rules).Repair(order, freedom, reach);
+}
+
+LayerOrder SettledOrder(const LayerWriter& writer, const TravelModel& travel,
+                        const LayerOrder& order, const MergeRules& rules) {
+  if (!IsWhole(order, writer.GivenOrder())) return order;
+  return LayerMerge(writer, travel, {}, rules).Settle(order);
 }
 
 std::vector<LayerOrder> SparingOrders(const LayerWriter& writer, const TravelModel& travel,

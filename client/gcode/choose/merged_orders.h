@@ -25,6 +25,9 @@ struct MergeRules {
   // [place] the file has something here that nothing may cross.
   std::vector<bool> boundaries;
 
+  // [place of an order] LayerWriter::PlacesOf it; empty for an order without moved objects.
+  std::vector<uint32_t> places = {};
+
   // If set, small changes improve the orders too (order_polish.h): what may change in the layer,
   // and for how long. Either both are set or none.
   std::optional<LayerFreedom> freedom = {};
@@ -52,6 +55,11 @@ std::optional<LayerOrder> RepairedOrder(const LayerWriter& writer, const TravelM
 // and last path stay. REQUIRES: rules.freedom, rules.polish.
 std::vector<LayerOrder> SparingOrders(const LayerWriter& writer, const TravelModel& travel,
                                       const LayerOrder& order, const MergeRules& rules);
+
+// `order`, in which whole objects have changed places, improved within each of them.
+// REQUIRES: rules.freedom, rules.polish, rules.places.
+LayerOrder SettledOrder(const LayerWriter& writer, const TravelModel& travel,
+                        const LayerOrder& order, const MergeRules& rules);
 
 }  // namespace traverse::gcode
 

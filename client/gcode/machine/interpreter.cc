@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "client/gcode/machine/label.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
@@ -33,32 +35,28 @@ bool IsLayerMark(std::string_view comment) {
   return StartsWith(rest, "_CHANGE") || StartsWith(rest, ":") || StartsWith(rest, " ");
 }
 
-bool IsLabelComment(std::string_view comment) {
-  static constexpr std::string_view kPrefixes[] = {
-      ";MESH:",      ";PRINTING:",        ";PRINTING_ID:",          "; END_LAYER_OBJECT",
-      "; </layer>",  "; printing object", "; stop printing object", "; start printing object",
-      "; OBJECT_ID:"};
-  for (const std::string_view prefix : kPrefixes) {
-    if (StartsWith(comment, prefix)) return true;
-  }
-  return false;
-}
-
 StepKind KindOfComment(std::string_view comment, SlotMask& slots) {
   slots = CommentSlots(comment);
   if (slots != 0) return StepKind::kSlot;
   if (IsWipeMark(comment)) return StepKind::kWipeMark;
   if (IsLayerMark(comment)) return StepKind::kLayerMark;
-  return IsLabelComment(comment) ? StepKind::kLabel : StepKind::kComment;
+  return LabelOf(comment).kind != LabelKind::kNone ? StepKind::kLabel : StepKind::kComment;
+}
+
+// Macros of Klipper that move nothing, or lead the head away for a picture and back to where it
+// was.
+bool IsHarmlessMacro(std::string_view line) {
+  static constexpr std::string_view kMacros[] = {"TIMELAPSE_TAKE_FRAME", "SET_PRINT_STATS_INFO",
+                                                 "TIMELAPSE_RENDER"};
+  const std::string_view name = line.substr(0, line.find_first_of(" \t;"));
+  return std::find(std::begin(kMacros), std::end(kMacros), name) != std::end(kMacros);
 }
 
 StepKind KindOfText(std::string_view line, SlotMask& slots) {
   slots = TextSlots(line);
   if (slots != 0) return StepKind::kSlot;
-  if (StartsWith(line, "EXCLUDE_OBJECT_START") || StartsWith(line, "EXCLUDE_OBJECT_END")) {
-    return StepKind::kLabel;
-  }
-  return StepKind::kUnknown;
+  if (LabelOf(line).kind != LabelKind::kNone) return StepKind::kLabel;
+  return IsHarmlessMacro(line) ? StepKind::kStay : StepKind::kUnknown;
 }
 
 // 30 m, or half a mile of inches: no printer, and beyond what the service takes.
@@ -358,15 +356,6 @@ void Interpreter::SetPosition(Step& step) {
   if (c.Has('Z')) state_.at.z = c.Value('Z');
   if (c.Has('E')) state_.e = c.Value('E');
   step.kind = StepKind::kModeChange;
-}
-
-std::string_view LabelledObject(std::string_view line) {
-  line = TrimBlanks(line);
-  if (StartsWith(line, "; END_LAYER_OBJECT") || StartsWith(line, "; </layer>")) return {};
-  if (StartsWith(line, ";PRINTING_ID: -1") || StartsWith(line, ";PRINTING: NON-OBJECT")) return {};
-  if (StartsWith(line, "; stop") || StartsWith(line, "EXCLUDE_OBJECT_END")) return {};
-  if (StartsWith(line, "M486 S-1") || StartsWith(line, "M625")) return {};
-  return line;
 }
 
 }  // namespace traverse::gcode

@@ -142,9 +142,6 @@ class Interpreter {
   MachineState state_;
 };
 
-// The object that a kLabel line begins, as the text that names it; empty if the line ends one.
-std::string_view LabelledObject(std::string_view line);
-
 }  // namespace traverse::gcode
 
 #endif  // TRAVERSE_CLIENT_GCODE_MACHINE_INTERPRETER_H_

@@ -103,18 +103,29 @@ SlotMask CommandSlots(Command& command) {
     case 107:
       return FanSlots(command);
     case 201:
-      return SlotsOfWords(command,
-                          {{'X', SlotBit(kSlotMaxAccelX)}, {'Y', SlotBit(kSlotMaxAccelY)}});
+      return SlotsOfWords(command, {{'X', SlotBit(kSlotMaxAccelX)},
+                                    {'Y', SlotBit(kSlotMaxAccelY)},
+                                    {'Z', SlotBit(kSlotMaxAccelZ)},
+                                    {'E', SlotBit(kSlotMaxAccelE)}});
     case 202:
       return SlotsOfWords(command,
                           {{'X', SlotBit(kSlotMaxTravelX)}, {'Y', SlotBit(kSlotMaxTravelY)}});
+    case 203:
+      return SlotsOfWords(command, {{'X', SlotBit(kSlotMaxSpeedX)},
+                                    {'Y', SlotBit(kSlotMaxSpeedY)},
+                                    {'Z', SlotBit(kSlotMaxSpeedZ)},
+                                    {'E', SlotBit(kSlotMaxSpeedE)}});
     case 204:
       return SlotsOfWords(command, {{'S', SlotBit(kSlotPrintAccel) | SlotBit(kSlotTravelAccel)},
                                     {'P', SlotBit(kSlotPrintAccel)},
                                     {'T', SlotBit(kSlotTravelAccel)},
                                     {'R', SlotBit(kSlotRetractAccel)}});
     case 205:
-      return SlotsOfWords(command, {{'X', SlotBit(kSlotJerkX)}, {'Y', SlotBit(kSlotJerkY)}});
+      return SlotsOfWords(command, {{'X', SlotBit(kSlotJerkX)},
+                                    {'Y', SlotBit(kSlotJerkY)},
+                                    {'Z', SlotBit(kSlotJerkZ)},
+                                    {'E', SlotBit(kSlotJerkE)},
+                                    {'J', SlotBit(kSlotJunction)}});
     case 221:
       return OnlyWord(command, 'S', kSlotFlow);
     case 572:

@@ -38,6 +38,15 @@ enum Slot : uint8_t {
   kSlotMaxAccelY,      // M201 Y
   kSlotMaxTravelX,     // M202 X, of Repetier
   kSlotMaxTravelY,     // M202 Y
+  kSlotMaxAccelZ,      // M201 Z
+  kSlotMaxAccelE,      // M201 E
+  kSlotMaxSpeedX,      // M203 X
+  kSlotMaxSpeedY,      // M203 Y
+  kSlotMaxSpeedZ,      // M203 Z
+  kSlotMaxSpeedE,      // M203 E
+  kSlotJerkZ,          // M205 Z
+  kSlotJerkE,          // M205 E
+  kSlotJunction,       // M205 J
   kSlotKlipperAccel,   // SET_VELOCITY_LIMIT ACCEL
   kSlotKlipperDecel,   // SET_VELOCITY_LIMIT ACCEL_TO_DECEL, MINIMUM_CRUISE_RATIO
   kSlotKlipperCorner,  // SET_VELOCITY_LIMIT SQUARE_CORNER_VELOCITY
@@ -58,8 +67,11 @@ inline constexpr SlotMask kAllSlots = (SlotMask{1} << kSlotCount) - 1;
 inline constexpr SlotMask kDynamicsSlots =
     SlotBit(kSlotPrintAccel) | SlotBit(kSlotTravelAccel) | SlotBit(kSlotRetractAccel) |
     SlotBit(kSlotJerkX) | SlotBit(kSlotJerkY) | SlotBit(kSlotMaxAccelX) | SlotBit(kSlotMaxAccelY) |
-    SlotBit(kSlotMaxTravelX) | SlotBit(kSlotMaxTravelY) | SlotBit(kSlotKlipperAccel) |
-    SlotBit(kSlotKlipperDecel) | SlotBit(kSlotKlipperCorner) | SlotBit(kSlotKlipperSpeed);
+    SlotBit(kSlotMaxTravelX) | SlotBit(kSlotMaxTravelY) | SlotBit(kSlotMaxAccelZ) |
+    SlotBit(kSlotMaxAccelE) | SlotBit(kSlotMaxSpeedX) | SlotBit(kSlotMaxSpeedY) |
+    SlotBit(kSlotMaxSpeedZ) | SlotBit(kSlotMaxSpeedE) | SlotBit(kSlotJerkZ) | SlotBit(kSlotJerkE) |
+    SlotBit(kSlotJunction) | SlotBit(kSlotKlipperAccel) | SlotBit(kSlotKlipperDecel) |
+    SlotBit(kSlotKlipperCorner) | SlotBit(kSlotKlipperSpeed);
 
 inline constexpr SlotMask kFanSlots =
     SlotBit(kSlotFan) | SlotBit(kSlotFan1) | SlotBit(kSlotFan2) | SlotBit(kSlotFan3);

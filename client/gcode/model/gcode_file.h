@@ -44,6 +44,7 @@ enum LinkFlag : uint16_t {
   // link that splits.
   kLinkFixedFrom = 1 << 8,
   kLinkRetractsAgain = 1 << 9,  // after a prime: no example for other links
+  kLinkHeats = 1 << 10,         // sets a temperature
 };
 
 enum BlockFlag : uint16_t {
@@ -60,6 +61,7 @@ enum BlockFlag : uint16_t {
   kBlockCommand = 1 << 10,  // a command inside it sets a slot
   kBlockGoesOn = 1 << 11,   // closed; a move without filament continues along it after its end
   kBlockArcs = 1 << 12,     // has arcs
+  kBlockOwnFan = 1 << 13,   // the link before it sets the fan, changed or not
 };
 
 struct Block {

@@ -23,9 +23,10 @@ struct PathRule {
 };
 
 struct LayerFreedom {
-  std::vector<PathRule> rules;  // [path]
-  std::vector<uint32_t> group;  // [path] which it does not leave; they ascend
-  std::vector<bool> goes_on;    // [path] comes directly behind the path before it
+  std::vector<PathRule> rules;   // [path]
+  std::vector<uint32_t> group;   // [path] which it does not leave; they ascend
+  std::vector<bool> goes_on;     // [path] comes directly behind the path before it
+  std::vector<uint32_t> island;  // [path] the region of touching paths that it lies in
   std::vector<std::pair<uint32_t, uint32_t>> ordered;  // the first of them comes before the second
 };
 

@@ -13,13 +13,23 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr SlotMask kOrderedSlots = kFanSlots | SlotBit(kSlotPressure) | SlotBit(kSlotFlow);
+// Each path of the layer has its own fan stated before it, which does not change within it.
+bool StatesEachFan(const GcodeFile& file, const Layer& layer) {
+  for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
+    if ((file.blocks[b].flags & (kBlockOwnFan | kBlockFan)) != kBlockOwnFan) return false;
+  }
+  return true;
+}
 
 class LayerPlanner {
  public:
   LayerPlanner(const GcodeFile& file, const Layer& layer, Policy policy, Latitude latitude,
                const Allowance& allow)
-      : file_(file), policy_(policy), latitude_(latitude), fan_order_(allow.fan_order) {
+      : file_(file),
+        policy_(policy),
+        latitude_(latitude),
+        fan_order_(allow.fan_order),
+        fans_of_paths_(StatesEachFan(file, layer)) {
     result_.outlines = OutlinesOf(file, layer);
     paths_.emplace(file, layer, PathPermissions{policy, latitude, allow}, result_.outlines);
   }
@@ -48,6 +58,7 @@ class LayerPlanner {
   const Policy policy_;
   const Latitude latitude_;
   const bool fan_order_;
+  const bool fans_of_paths_;
   Contacts contacts_;
   std::vector<uint32_t> position_;  // [path] among the children of its any_order
   LayerPlan result_;
@@ -58,11 +69,11 @@ bool LayerPlanner::BeginsGroup(size_t path) const {
   if (path == 0 || rules()[path].pinned || rules()[path - 1].pinned) return true;
   if ((BlockOf(path).link & (kLinkSplits | kLinkFixed)) != 0) return true;
   if ((FeatureOf(path) == Feature::kSkirt) != (FeatureOf(path - 1) == Feature::kSkirt)) return true;
-  if (IsFree(policy_) || fan_order_) return false;
+  if (IsFree(policy_) || fan_order_ || fans_of_paths_) return false;
   const PrintState& state = file_.states[BlockOf(path).state_in];
   const PrintState& before = file_.states[BlockOf(path - 1).state_in];
   for (size_t slot = 0; slot < kSlotCount; ++slot) {
-    if (((kOrderedSlots >> slot) & 1u) != 0 && state[slot] != before[slot]) return true;
+    if (((kFanSlots >> slot) & 1u) != 0 && state[slot] != before[slot]) return true;
   }
   return false;
 }
@@ -209,6 +220,7 @@ LayerPlan LayerPlanner::Make() {
   contacts_ = FindContacts(result_.outlines,
                            [this](uint32_t i, uint32_t j) { return paths_->KeepsOrder(i, j); });
   result_.island = contacts_.island;
+  freedom.island = contacts_.island;
   freedom.ordered = contacts_.ordered;
   freedom.goes_on.assign(size(), false);
   freedom.group.reserve(size());

@@ -1,8 +1,8 @@
 // Which paths of a layer may change places.
 //
 //   in_order                          groups: nothing crosses a fence, a label, a skirt's end, or
-//    |                                (unless it is allowed, as it is under `free`) a change of the
-//    |                                fan
+//    |                                (unless it is allowed, as it is under `free`, or the fan is
+//    |                                stated for each path) a change of the fan
 //    +- any_order(paths, before)      the paths of a group; `before` keeps the sliced order of
 //    +- path                          paths that touch; pinned paths stand alone
 //    +- any_order(islands of any_order(paths, before))      with the latitude kIslands
@@ -44,7 +44,7 @@ inline constexpr double kMostHiddenTravelMm = 1000;  // that may be asked for
 struct Allowance {
   bool infill_order = false;  // walls and the infill that touches them may change places
   bool wall_order = false;    // walls that touch each other may
-  bool fan_order = false;     // paths may across a change of the fan, of pressure advance or flow
+  bool fan_order = false;     // paths may across a change of the fan
   bool wipes = false;         // a path's wipe is made only where the travel behind it retracts
 
   // Travel that nobody can see (hidden/hidden_moves.h) does without a retraction, a lift and a

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 
+#include "client/gcode/machine/label.h"
 #include "client/gcode/model/arc.h"
 #include "client/gcode/text/text.h"
 
@@ -49,6 +50,12 @@ bool IsLostMove(const Step& step, const MachineState& after, std::string_view te
   }
   const std::string_view line = TrimBlanks(step.line.Text(text));
   return StartsWith(line, "G") || StartsWith(line, "g") || StartsWith(line, "N");
+}
+
+// Without waiting for it; what waits is not known.
+bool Heats(const Step& step) {
+  const Command& c = step.command;
+  return step.kind == StepKind::kStay && (c.Is('M', 104) || c.Is('M', 140) || c.Is('M', 142));
 }
 
 double StepMm(const Step& step, const MachineState& after) {
@@ -130,6 +137,8 @@ void BlockBuilder::TakeOther(const Step& step, const MachineState& before,
 void BlockBuilder::NoteInLink(const Step& step, const MachineState& before,
                               const MachineState& after) {
   link_.flags |= LinkFlagsOf(step.kind);
+  if (Heats(step)) link_.flags |= kLinkHeats;
+  link_.sets_fan |= (step.slots & kFanSlots) != 0;
   if ((LinkFlagsOf(step.kind) & kLinkFixed) != 0) link_.travels_behind_fixed = 0;
   NotePlace(step, after);
   if (after.tool != before.tool) link_.changes_tool = true;
@@ -189,8 +198,10 @@ void BlockBuilder::TakeSlot(const Step& step) {
 }
 
 void BlockBuilder::TakeLabel(const Step& step) {
-  const std::string_view object = LabelledObject(step.line.Text(file_.text));
-  object_ = object.empty() ? 0 : file_.setters.Intern(object, 0);
+  const std::string_view line = TrimBlanks(step.line.Text(file_.text));
+  const LabelKind kind = LabelOf(line).kind;
+  if (kind == LabelKind::kSays) return;
+  object_ = kind == LabelKind::kBegins ? file_.setters.Intern(line, 0) : 0;
 }
 
 // The start script ends at the first mark of a layer; in files without such marks at the last line
@@ -245,6 +256,7 @@ void BlockBuilder::BeginBlock(const Step& step, const MachineState& before,
   block.mode = ModeOf(after);
   CloseLink(block);
   block.link = link_.flags;
+  if (link_.sets_fan) block.flags |= kBlockOwnFan;
   block.travel_mm = static_cast<float>(link_.travel_mm);
   if (link_.xy_moves > 0 && !file_.blocks.empty()) {
     block.lift = std::max<Decimal>(0, link_.top - std::max(Last().last.z, block.first.z));

@@ -37,7 +37,8 @@ class BlockBuilder {
     double first_move_mm = 0;
     Position first_move_to;  // of a travel move without a retraction
     bool open_first_move = false;
-    bool retracted = false;        // before one of its lines
+    bool retracted = false;  // before one of its lines
+    bool sets_fan = false;
     bool lost = false;             // a move that is not understood: its end is unknown
     uint32_t found = 0;            // axes that a move behind it states
     int travels_behind_fixed = 0;  // moves in XY after the last line that must stay

@@ -15,16 +15,24 @@ struct Odd {
   std::string text;
 };
 
-std::optional<Odd> FirstOdd(const Side& a, const Side& b, size_t index, bool deposits) {
-  const bool right_digests = a.right_digest && b.right_digest;
+// A side, and which of its sections is meant.
+struct Part {
+  const Side& side;
+  size_t index = 0;
+
+  const Section& section() const { return side.cut.sections[index]; }
+};
+
+std::optional<Odd> FirstOdd(const Part& a, const Part& b, bool deposits) {
+  const bool right_digests = a.side.right_digest && b.side.right_digest;
   const auto wanted = [deposits, right_digests](const VerifyLine& line) {
     if (right_digests && line.number == 1) return false;
     const bool note = line.role == LineRole::kComment || line.role == LineRole::kProgress;
     return deposits ? line.role == LineRole::kDeposit : note;
   };
-  const auto for_each_line = [index, deposits](const Side& side, const auto& visit) {
-    const Section& section = side.cut.sections[index];
-    ForEachLine(side.text, deposits ? section.first_line : section.first_note,
+  const auto for_each_line = [deposits](const Part& part, const auto& visit) {
+    const Section& section = part.section();
+    ForEachLine(part.side.text, deposits ? section.first_line : section.first_note,
                 deposits ? section.last_line : section.last_note, visit);
   };
   std::map<uint64_t, int64_t> known;
@@ -34,42 +42,40 @@ std::optional<Odd> FirstOdd(const Side& a, const Side& b, size_t index, bool dep
   std::optional<Odd> odd;
   for_each_line(a, [&](const VerifyLine& line) {
     if (!wanted(line) || odd || --known[line.digest] >= 0) return;
-    if (deposits && a.other_gaps.contains(line.digest)) return;
+    if (deposits && a.side.other_gaps.contains(line.digest)) return;
     if (!deposits && line.text.substr(0, kOptimisedMark.size()) == kOptimisedMark) return;
     odd = Odd{line.number, std::string(line.text)};
   });
   return odd;
 }
 
-VerifyBreak MultisetDifference(const Side& original, const Side& optimised, size_t index,
-                               bool deposits) {
+VerifyBreak MultisetDifference(const Part& original, const Part& optimised, bool deposits) {
   const char* what = deposits ? "print" : "have";
   const char* under = deposits ? " under the same conditions" : "";
-  const auto differ = [&](const Side& a, const Side& b, const Odd& odd) {
-    const Section& section = b.cut.sections[index];
+  const auto differ = [&](const Part& a, const Part& b, const Odd& odd) {
+    const Section& section = b.section();
     const size_t first = deposits ? section.first_line : section.first_note;
     const bool is = &a == &optimised;
     return VerifyBreak{
         VerifyRule::kSamePrint, is ? first : odd.number, is ? odd.number : first, -1,
-        absl::StrFormat("%s:%d: lines %d to %d of %s do not %s `%s`%s", a.name, odd.number, first,
-                        deposits ? section.last_line : section.last_note, b.name, what, odd.text,
-                        under)};
+        absl::StrFormat("%s:%d: lines %d to %d of %s do not %s `%s`%s", a.side.name, odd.number,
+                        first, deposits ? section.last_line : section.last_note, b.side.name, what,
+                        odd.text, under)};
   };
-  if (const std::optional<Odd> odd = FirstOdd(optimised, original, index, deposits)) {
+  if (const std::optional<Odd> odd = FirstOdd(optimised, original, deposits)) {
     return differ(optimised, original, *odd);
   }
-  const std::optional<Odd> odd = FirstOdd(original, optimised, index, deposits);
-  return differ(original, optimised,
-                odd.value_or(Odd{original.cut.sections[index].first_line, ""}));
+  const std::optional<Odd> odd = FirstOdd(original, optimised, deposits);
+  return differ(original, optimised, odd.value_or(Odd{original.section().first_line, ""}));
 }
 
-std::optional<VerifyBreak> CompareEnds(const Side& original, const Side& optimised, size_t index) {
-  const Section& was = original.cut.sections[index];
-  const Section& is = optimised.cut.sections[index];
+std::optional<VerifyBreak> CompareEnds(const Part& original, const Part& optimised) {
+  const Section& was = original.section();
+  const Section& is = optimised.section();
   const auto differ = [&](const char* what) {
     return VerifyBreak{VerifyRule::kSamePrint, was.last_line, is.last_line, -1,
-                       absl::StrFormat("%s:%d: %s at %s:%d", optimised.name, is.last_line, what,
-                                       original.name, was.last_line)};
+                       absl::StrFormat("%s:%d: %s at %s:%d", optimised.side.name, is.last_line,
+                                       what, original.side.name, was.last_line)};
   };
   if (was.fence != is.fence || was.fixed != is.fixed)
     return differ("a different line from the one");
@@ -79,6 +85,15 @@ std::optional<VerifyBreak> CompareEnds(const Side& original, const Side& optimis
   if (!was.label && was.retracted != is.retracted)
     return differ("the retraction differs from that");
   return std::nullopt;
+}
+
+VerifyBreak HeaderDifference(const Part& original, const Part& optimised) {
+  const Section& was = original.section();
+  const Section& is = optimised.section();
+  return {
+      VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
+      absl::StrFormat("%s:%d: the comments after the mark of the layer differ from those at %s:%d",
+                      optimised.side.name, is.first_line, original.side.name, was.first_line)};
 }
 
 // True if all that is done in section `index` is as a script has it: before the first layer,
@@ -104,16 +119,12 @@ std::optional<VerifyBreak> DifferenceIn(const Side& original, const Side& optimi
                                         size_t end_of_print) {
   const Section& was = original.cut.sections[i];
   const Section& is = optimised.cut.sections[i];
-  if (was.deposits != is.deposits) return MultisetDifference(original, optimised, i, true);
-  if (auto ends = CompareEnds(original, optimised, i)) return ends;
-  if (was.notes != is.notes) return MultisetDifference(original, optimised, i, false);
-  if (was.header != is.header) {
-    return VerifyBreak{
-        VerifyRule::kSamePrint, was.first_line, is.first_line, -1,
-        absl::StrFormat(
-            "%s:%d: the comments after the mark of the layer differ from those at %s:%d",
-            optimised.name, is.first_line, original.name, was.first_line)};
-  }
+  const Part part_was{original, i};
+  const Part part_is{optimised, i};
+  if (was.deposits != is.deposits) return MultisetDifference(part_was, part_is, true);
+  if (auto ends = CompareEnds(part_was, part_is)) return ends;
+  if (was.notes != is.notes) return MultisetDifference(part_was, part_is, false);
+  if (was.header != is.header) return HeaderDifference(part_was, part_is);
   // Where paths change places, what is said of them does so too.
   if (was.order == is.order && was.said != is.said) {
     return VerifyBreak{
@@ -139,16 +150,75 @@ std::optional<VerifyBreak> DifferenceIn(const Side& original, const Side& optimi
   return std::nullopt;
 }
 
+// What a moved layer amounts to, besides what it prints.
+struct LayerSums {
+  DigestSet notes;
+  Micro lowest = INT64_MAX;
+  uint32_t label_faults = 0;
+
+  LayerSums(const Sections& cut, size_t first, size_t end) {
+    for (size_t i = first; i < end; ++i) {
+      const Section& section = cut.sections[i];
+      notes += section.notes;
+      lowest = std::min(lowest, section.lowest);
+    }
+    label_faults = cut.sections[end - 1].label_faults;
+    if (first > 0) label_faults -= cut.sections[first - 1].label_faults;
+  }
+};
+
+// Of a layer whose objects have changed places. A section's last line may be the label of the next
+// object, and the fan there is that of the one before.
+std::optional<VerifyBreak> MovedDifference(const Side& original, const Side& optimised,
+                                           const MovedLayer& layer) {
+  for (size_t i = layer.first; i < layer.end; ++i) {
+    const Part was{original, layer.Of(i)};
+    const Part is{optimised, i};
+    if (was.section().deposits != is.section().deposits) {
+      return MultisetDifference(was, is, true);
+    }
+    if (was.index == i && was.section().header != is.section().header) {
+      return HeaderDifference(was, is);
+    }
+    const Part end{original, layer.ends[i - layer.first]};
+    const bool labels = end.section().names && is.section().names;
+    if (labels && !layer.goes_on[i - layer.first]) continue;
+    if (auto ends = CompareEnds(end, is)) return ends;
+  }
+  const Section& first_was = original.cut.sections[layer.first];
+  const Section& first_is = optimised.cut.sections[layer.first];
+  const auto differ = [&](const char* what) {
+    return VerifyBreak{
+        VerifyRule::kSamePrint, first_was.first_line, first_is.first_line, -1,
+        absl::StrFormat("%s:%d: %s as in the layer of %s:%d", optimised.name, first_is.first_line,
+                        what, original.name, first_was.first_line)};
+  };
+  const LayerSums was(original.cut, layer.first, layer.end);
+  const LayerSums is(optimised.cut, layer.first, layer.end);
+  if (is.label_faults > was.label_faults) return differ("labels of objects do not begin and end");
+  if (was.notes != is.notes) return differ("the comments or M73 lines are not");
+  if (is.lowest < was.lowest) return differ("travel is not as high");
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<VerifyBreak> Differences(const Side& original, const Side& optimised, size_t first,
-                                     size_t end, bool whole) {
+                                     size_t end, bool whole, absl::Span<const MovedLayer> moved) {
   const std::vector<Section>& sections_was = original.cut.sections;
   const std::vector<Section>& sections_is = optimised.cut.sections;
   const size_t common = std::min({sections_was.size(), sections_is.size(), end});
   const size_t end_of_print = whole ? EndOfPrint(original.cut) : SIZE_MAX;
   std::vector<VerifyBreak> found;
   for (size_t i = first; i < common; ++i) {
+    if (!moved.empty() && moved.front().first == i && moved.front().end <= common) {
+      if (auto difference = MovedDifference(original, optimised, moved.front())) {
+        found.push_back(*std::move(difference));
+      }
+      i = moved.front().end - 1;
+      moved.remove_prefix(1);
+      continue;
+    }
     if (auto difference = DifferenceIn(original, optimised, i, end_of_print)) {
       found.push_back(*std::move(difference));
     }

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "absl/container/flat_hash_set.h"
+#include "absl/types/span.h"
+#include "client/gcode/verify/match/moved_objects.h"
 #include "client/gcode/verify/report.h"
 #include "client/gcode/verify/sections.h"
 
@@ -23,9 +25,10 @@ struct Side {
 };
 
 // The first difference in each of the sections `first` to `end` - 1, up to the first section that
-// ends with a line of its own. `whole`: the files end with section `end` - 1, and have equally many.
+// ends with a line of its own. `whole`: the files end with section `end` - 1, and have equally
+// many. In the layers `moved` whole objects have changed places.
 std::vector<VerifyBreak> Differences(const Side& original, const Side& optimised, size_t first,
-                                     size_t end, bool whole);
+                                     size_t end, bool whole, absl::Span<const MovedLayer> moved);
 
 }  // namespace traverse::gcode
 

@@ -28,6 +28,13 @@ bool IsStateComment(const VerifyLine& line) {
   return line.role == LineRole::kNothing && !line.text.empty() && line.text[0] == ';';
 }
 
+// Waiting or not: of the nozzle, the bed, the chamber, the heat break.
+bool Heats(std::string_view text) {
+  constexpr std::string_view kCommands[] = {"M104", "M109", "M140", "M190", "M141", "M142"};
+  return std::any_of(std::begin(kCommands), std::end(kCommands),
+                     [text](std::string_view command) { return Begins(text, command); });
+}
+
 // Comments that slicers put after the mark of a layer, where scripts look for them.
 bool SaysOfLayer(std::string_view text) {
   constexpr std::string_view kNotes[] = {
@@ -97,7 +104,7 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
   switch (line.role) {
     case LineRole::kDeposit:
       height_ = line.z;
-      has_height_ = true;
+      has_height_ = layer_prints_ = true;
       section_.lowest = std::min(section_.lowest, line.z);
       section_.deposits.Add(line.digest);
       section_.order = Mix(section_.order, line.digest);
@@ -114,6 +121,11 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
     case LineRole::kFixed:
       Close(machine, line.number, line.digest, line.role == LineRole::kFixed, line.label);
       cut_.sections.back().command = line.text.front() != ';';
+      cut_.sections.back().ends_layer = mark;
+      layer_prints_ &= !mark;
+      cut_.sections.back().heats = Heats(line.text);
+      cut_.sections.back().names = labels_.Take(line.text);
+      cut_.sections.back().label_faults = labels_.faults();
       cut.behind = true;
       break;
     case LineRole::kNothing:
@@ -140,6 +152,8 @@ void SectionCutter::CutAtHeight(const VerifyMachine& machine) {
   const DigestSet notes = std::exchange(loose_notes_, {});
   std::vector<uint64_t> said = std::exchange(loose_said_, {});
   Close(machine, last_line_, 0, false);
+  // Behind the mark of a layer the first path is of that one.
+  cut_.sections.back().ends_layer = std::exchange(layer_prints_, false);
   cut_.sections.back().last_note = first_note - 1;
   section_.first_note = first_note;
   loose_notes_ = notes;
@@ -151,6 +165,7 @@ void SectionCutter::Close(const VerifyMachine& machine, size_t last_line, uint64
   section_.last_line = section_.last_note = last_line;
   TakeLoose(section_.deposits.count + 1);
   section_.fence = fence;
+  section_.under = labels_.digest();
   section_.fixed = fixed;
   // What follows the print may be all that leads away from it.
   const bool end = fence == kEndOfText;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/gcode/verify/machine/object_labels.h"
 #include "client/gcode/verify/machine/verify_machine.h"
 #include "client/gcode/verify/text.h"
 
@@ -63,7 +64,14 @@ struct Section {
   uint64_t fence = 0;
   bool fixed = false;
   bool label = false;  // it ends with the label of an object
-  Micro x = 0;         // of the head there, if the line is fixed
+  bool ends_layer = false;
+  bool heats = false;  // it ends with a command that sets a temperature
+
+  // Of labels of objects in every notation (object_labels.h).
+  uint64_t under = 0;         // those in force in it
+  bool names = false;         // it ends with one
+  uint32_t label_faults = 0;  // of them up to its end
+  Micro x = 0;                // of the head there, if the line is fixed
   Micro y = 0;
   Micro z = 0;
   bool retracted = false;  // at labels of objects, too
@@ -118,6 +126,7 @@ class SectionCutter {
   void NoteHeader(const VerifyLine& line, bool mark);
 
   const std::string_view ignored_;
+  ObjectLabels labels_;
   Sections cut_;
   Section section_;
   DigestSet loose_notes_;             // since the last deposit
@@ -127,6 +136,7 @@ class SectionCutter {
   bool in_script_;
   Micro height_ = 0;
   bool has_height_ = false;
+  bool layer_prints_ = false;  // since the last mark of a layer, or change of height
   bool in_head_ = true;  // no command yet
   bool in_picture_ = false;
   bool in_header_ = false;  // no travel, and no section has ended, since the mark of a layer

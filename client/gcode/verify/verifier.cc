@@ -13,6 +13,7 @@
 #include "client/gcode/verify/match/hidden_links.h"
 #include "client/gcode/verify/match/layer_shape.h"
 #include "client/gcode/verify/match/moved_gaps.h"
+#include "client/gcode/verify/match/moved_objects.h"
 #include "client/gcode/verify/match/path_lines.h"
 #include "client/gcode/verify/rules/obstacles.h"
 #include "client/gcode/verify/rules/rules.h"
@@ -64,6 +65,7 @@ class Verifier {
 
  private:
   void ReadNext();
+  void FindMoved();
   void TakeBackGaps();
   bool SamePrint();
   void CheckChunk();
@@ -71,6 +73,7 @@ class Verifier {
   void CheckLayer(const LayerPair& layer, LayerFindings& findings) const;
   void CheckObstacles(size_t layers);
   void CheckLabels(size_t first, size_t end);
+  void CheckLabel(const Section& was, const Section& is);
   void CheckText();
   void Finish();
   void Compare(std::vector<Finding>& breaks) const;
@@ -91,8 +94,10 @@ class Verifier {
   LayerShape shape_before_;                 // of the last layer of the chunk before
   absl::flat_hash_set<uint64_t> gaps_was_;  // digests of deposits that a moved gap is about
   absl::flat_hash_set<uint64_t> gaps_is_;
-  bool more_ = true;       // next_was_ is not empty
-  uint32_t sections_ = 0;  // that were compared
+  std::vector<MovedLayer> moved_;      // among the layers of the chunks
+  std::vector<MovedLayer> all_moved_;  // so far
+  bool more_ = true;                   // next_was_ is not empty
+  uint32_t sections_ = 0;              // that were compared
   Observations seen_was_;
   Observations seen_is_;
   std::vector<Progress> progress_was_;
@@ -118,6 +123,13 @@ void Verifier::ReadNext() {
   more_ = !last;
 }
 
+// Whole objects may have changed places within a layer.
+void Verifier::FindMoved() {
+  moved_ = FindMovedLayers(was_.cut(), is_.cut(), sections_, chunk_was_.end_section);
+  all_moved_.insert(all_moved_.end(), moved_.begin(), moved_.end());
+  OrderAsMoved(moved_, chunk_was_);
+}
+
 // Loops may take their gap along, so that some deposits differ; the rest is compared without them.
 void Verifier::TakeBackGaps() {
   for (const MovedGap& gap : TakeBackMovedGaps(chunk_was_, chunk_is_, threads_, findings_)) {
@@ -130,13 +142,14 @@ void Verifier::TakeBackGaps() {
 bool Verifier::SamePrint() {
   const Side was{original_.text, original_.name, was_.cut(), gaps_was_, original_.right_digest};
   const Side is{optimised_.text, optimised_.name, is_.cut(), gaps_is_, optimised_.right_digest};
-  std::vector<VerifyBreak> found = Differences(was, is, sections_, chunk_was_.end_section, !more_);
+  std::vector<VerifyBreak> found =
+      Differences(was, is, sections_, chunk_was_.end_section, !more_, moved_);
   if (found.empty()) CheckLabels(sections_, chunk_was_.end_section);
   sections_ = chunk_was_.end_section;
   if (chunk_is_.end_section != chunk_was_.end_section) {
     // A line ends a section in only one of the files; comparing further sections shows which.
     more_ = false;
-    if (found.empty()) found = Differences(was, is, 0, UINT32_MAX, true);
+    if (found.empty()) found = Differences(was, is, 0, UINT32_MAX, true, all_moved_);
   }
   for (VerifyBreak& difference : found) {
     const bool fits = report_.breaks.size() < VerifyReport::kMostBreaks;
@@ -152,20 +165,27 @@ void Verifier::CheckLabels(size_t first, size_t end) {
   const std::vector<Section>& was = was_.cut().sections;
   const std::vector<Section>& is = is_.cut().sections;
   end = std::min({end, was.size(), is.size()});
-  for (size_t i = first; i < end; ++i) {
+  // The first label of one file is the first of the other, whatever object it names.
+  for (size_t i = first, k = first; i < end; ++i) {
     if (!was[i].label) continue;
-    if (was[i].lift != is[i].lift) {
-      findings_.push_back({VerifyRule::kLifts, static_cast<uint32_t>(was[i].last_line),
-                           static_cast<uint32_t>(is[i].last_line), -1,
-                           "at another height at this label of an object than in the original"});
-    }
-    if (was[i].retracted == is[i].retracted) continue;
-    findings_.push_back({VerifyRule::kRetractions, static_cast<uint32_t>(was[i].last_line),
-                         static_cast<uint32_t>(is[i].last_line), -1,
-                         is[i].retracted
-                             ? "retracted at this label of an object, unlike the original"
-                             : "not retracted at this label of an object, unlike the original"});
+    while (k < end && !is[k].label) ++k;
+    if (k == end) return;
+    CheckLabel(was[i], is[k++]);
   }
+}
+
+void Verifier::CheckLabel(const Section& was, const Section& is) {
+  const auto add = [&](VerifyRule rule, const char* what) {
+    findings_.push_back({rule, static_cast<uint32_t>(was.last_line),
+                         static_cast<uint32_t>(is.last_line), -1, what});
+  };
+  if (was.lift != is.lift) {
+    add(VerifyRule::kLifts, "at another height at this label of an object than in the original");
+  }
+  if (was.retracted == is.retracted) return;
+  add(VerifyRule::kRetractions,
+      is.retracted ? "retracted at this label of an object, unlike the original"
+                   : "not retracted at this label of an object, unlike the original");
 }
 
 void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const {
@@ -340,8 +360,11 @@ VerifyReport Verifier::Verify() {
   next_was_ = was_.NextBytes(ChunkBytes(original_.text.size()));
   while (more_) {
     ReadNext();
+    FindMoved();
     TakeBackGaps();
-    if (SamePrint()) CheckChunk();
+    if (!SamePrint()) continue;
+    NumberAsOriginal(moved_, chunk_is_);
+    CheckChunk();
   }
   if (report_.ok()) Finish();
   return std::move(report_);

@@ -8,6 +8,7 @@
 #include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/model/loops.h"
 #include "client/gcode/model/outline.h"
+#include "client/gcode/write/label_lines.h"
 #include "client/gcode/write/link.h"
 #include "client/gcode/write/link_writer.h"
 #include "client/gcode/write/turned_departure.h"
@@ -96,10 +97,38 @@ LayerOrder LayerWriter::GivenOrder() const {
   return order;
 }
 
+std::vector<uint32_t> LayerWriter::PlacesOf(const LayerOrder& order) const {
+  const auto object_of = [this](const Placement& path) { return file_.blocks[path.block].object; };
+  std::vector<uint32_t> begins;  // [object of the file's layer] its first place
+  for (uint32_t b = layer_.first_block; b < layer_.end_block; ++b) {
+    const bool goes_on =
+        b > layer_.first_block && file_.blocks[b].object == file_.blocks[b - 1].object;
+    if (!goes_on) begins.push_back(b - layer_.first_block);
+  }
+  std::vector<uint32_t> places;
+  size_t objects = 0;
+  uint32_t begin = 0;  // in the file, of the object that is here
+  size_t here = 0;     // where it begins
+  for (size_t i = 0; i < order.size(); ++i) {
+    const bool goes_on = i > 0 && object_of(order[i]) == object_of(order[i - 1]);
+    if (!goes_on) {
+      const uint32_t first = ObjectBegin(file_, order[i].block);
+      begin = std::max(first, layer_.first_block) - layer_.first_block;
+      places.push_back(objects < begins.size() ? begins[objects] : static_cast<uint32_t>(i));
+      here = i;
+      ++objects;
+    } else {
+      places.push_back(begin + static_cast<uint32_t>(i - here));
+    }
+  }
+  return places;
+}
+
 PartStart LayerWriter::WriteWay(const Placement& before, const Placement& first,
                                 const PartStart& start, std::string& text) const {
   GcodeOut out(file_, start, text);
-  WriteLink(PlacedPath(file_, before), PlacedPath(file_, first), layer_.first_block, true, out);
+  WriteLink(PlacedPath(file_, before), PlacedPath(file_, first), layer_.first_block, true, false,
+            out);
   out.Flush();
   return out.at;
 }
@@ -124,12 +153,14 @@ PartStart LayerWriter::WritePaths(const LayerOrder& order, const PartStart& star
   GcodeOut out(file_, start, text);
   ProgressLines progress(file_, file_.blocks[layer_.first_block].begin);
   PlacedPath from(file_, order.front());
+  const std::vector<uint32_t> places = PlacesOf(order);
+  const bool moved = !std::is_sorted(places.begin(), places.end());
   for (size_t i = 0; i < order.size(); ++i) {
     const Block& place = file_.blocks[layer_.first_block + i];
     if (i > 0) {
       PlacedPath to(file_, order[i]);
-      WriteLink(from, to, static_cast<uint32_t>(layer_.first_block + i), as_sliced, out);
-      if ((place.link & (kLinkSplits | kLinkFixed)) != 0) progress.SkipTo(place.begin);
+      WriteLink(from, to, layer_.first_block + places[i], as_sliced, moved, out);
+      if (!moved && (place.link & (kLinkSplits | kLinkFixed)) != 0) progress.SkipTo(place.begin);
       from = std::move(to);
     }
     if (i + 1 == order.size()) progress.WriteUpTo(place.end, out);
@@ -159,15 +190,16 @@ bool LayerWriter::ChangesGiven() const {
   return false;
 }
 
-// `place` is the block that stands here in the file.
+// `place` is the block that stands here in the file. `moved`: objects of the layer have changed
+// places, so that each M73 stands by the number of paths done, between objects too.
 void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place,
-                            bool as_sliced, GcodeOut& out) const {
+                            bool as_sliced, bool moved, GcodeOut& out) const {
   const bool boundary = (file_.blocks[place].link & (kLinkSplits | kLinkFixed)) != 0;
   LinkRequest request;
   request.from = &from;
   request.to = &to;
   if (boundary) request.boundary = place;
-  request.without_progress = !boundary;
+  request.without_progress = !boundary || moved;
   const Vertex at = file_.modes[to.block().mode].InMm(to.first());
   const Feature feature = outlines_[to.placement().block - layer_.first_block].feature;
   request.wipe = Wipes(from.placement(), at, feature, boundary);

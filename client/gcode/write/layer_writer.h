@@ -47,6 +47,11 @@ class LayerWriter {
   // The file's own order.
   LayerOrder GivenOrder() const;
 
+  // [place of `order`] the place in the file of what stands before the path here: its own place,
+  // but where whole objects have changed places. What stands between two objects stays between
+  // two, and what stands within one goes with it.
+  std::vector<uint32_t> PlacesOf(const LayerOrder& order) const;
+
   // Writes the travel to the path `first` from `before`, the last path of the layer before, with
   // the marks of the new layer. `start` is the state of the machine after `before`.
   PartStart WriteWay(const Placement& before, const Placement& first, const PartStart& start,
@@ -62,8 +67,8 @@ class LayerWriter {
   // Whether the file's own order is written otherwise than it is in the file.
   bool ChangesGiven() const;
 
-  // Estimates the travel to place `place` of the layer, from 1, if `to` follows `from` there, with
-  // the crossings and the retraction that would be written.
+  // Estimates the travel to place `place` of the file's layer, from 1, if `to` follows `from`
+  // there, with the crossings and the retraction that would be written.
   WayTotals EstimateWay(size_t place, const Placement& from, const Placement& to,
                         const TravelModel& model) const;
 
@@ -143,7 +148,7 @@ class LayerWriter {
   bool GoesOnAcross(const Placement& from, Vertex to, Feature feature) const;
   bool IsGiven(const LayerOrder& order) const;
   void WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place, bool as_sliced,
-                 GcodeOut& out) const;
+                 bool moved, GcodeOut& out) const;
   bool Retracts(const PlacedPath& from, const PlacedPath& to) const;
 
   // Something is in the way, at the height of the layer or, if it retracts, of the layer's lifts.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "client/gcode/write/label_lines.h"
 #include "client/gcode/write/positions.h"
 
 namespace traverse::gcode {
@@ -316,7 +317,8 @@ void LinkWriter::WriteBoundary(const LinkRequest& request) {
   if (link.fixed > 0) {
     out_.Copy(before.end, link.steps[link.fixed - 1].line.next, StartBehind(file_, before),
               link.behind_fixed, false);
-  } else {
+  } else if (request.from->block().object == before.object ||
+             (file_.blocks[*request.boundary].link & kLinkNewLayer) != 0) {
     // Whatever was printed last: at its marks the fan is as in the file.
     out_.Set(file_.states[before.state_out], kFanSlots & ~SetBeforeMarks(link));
   }
@@ -334,8 +336,14 @@ void LinkWriter::WriteBoundary(const LinkRequest& request) {
     WriteGoingOn(request);
     if (!given_from && link.retracts()) WriteOwnDeparture(request);
   }
+  const ExchangedLabels labels(file_, link, *request.boundary, request.from->placement().block,
+                               request.to->placement().block);
   for (size_t i = link.fixed; i < link.steps.size(); ++i) {
-    if (static_cast<int>(i) != link.arrival) {
+    const StepKind kind = link.steps[i].kind;
+    if (kind == StepKind::kProgress && request.without_progress) continue;
+    if (kind == StepKind::kLabel || kind == StepKind::kStay) {
+      out_.Raw(labels.LineOf(i));
+    } else if (static_cast<int>(i) != link.arrival) {
       WriteBoundaryStep(request, link, i);
     } else if (form) {
       if (behind_label) WriteDeparture(request, *form);

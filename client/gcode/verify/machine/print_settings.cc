@@ -84,12 +84,31 @@ bool PrintSettings::SetByM(int number, const CommandWords& words) {
     SetWord(words, 'R', kAccelRetract);
     return true;
   }
-  const std::pair<int, std::pair<Slot, Slot>> by_axis[] = {
-      {205, {kJerkX, kJerkY}}, {201, {kMaxAccelX, kMaxAccelY}}, {202, {kMaxTravelX, kMaxTravelY}}};
-  for (const auto& [known, slots] : by_axis) {
-    if (number != known || !words.OnlyFrom("XY")) continue;
-    SetWord(words, 'X', slots.first);
-    SetWord(words, 'Y', slots.second);
+  if (number == 205 && words.OnlyFrom("XYZEJ")) {
+    SetWord(words, 'X', kJerkX);
+    SetWord(words, 'Y', kJerkY);
+    SetWord(words, 'Z', kLimits + 6);
+    SetWord(words, 'E', kLimits + 7);
+    SetWord(words, 'J', kLimits + 8);
+    return true;
+  }
+  if (number == 201 && words.OnlyFrom("XYZE")) {
+    SetWord(words, 'X', kMaxAccelX);
+    SetWord(words, 'Y', kMaxAccelY);
+    SetWord(words, 'Z', kLimits);
+    SetWord(words, 'E', kLimits + 1);
+    return true;
+  }
+  if (number == 202 && words.OnlyFrom("XY")) {
+    SetWord(words, 'X', kMaxTravelX);
+    SetWord(words, 'Y', kMaxTravelY);
+    return true;
+  }
+  if (number == 203 && words.OnlyFrom("XYZE")) {
+    SetWord(words, 'X', kLimits + 2);
+    SetWord(words, 'Y', kLimits + 3);
+    SetWord(words, 'Z', kLimits + 4);
+    SetWord(words, 'E', kLimits + 5);
     return true;
   }
   if (number == 221 && words.OnlyFrom("S")) {

@@ -51,9 +51,6 @@ class PrintSettings {
 
   uint64_t fan() const { return fan_; }
 
-  // Of fans, flow and pressure advance: what takes time to come into force.
-  uint64_t FlowDigest() const { return Mix(Mix(fan_, values_[kPressure]), values_[kFlow]); }
-
  private:
   enum Slot : size_t {
     kType,
@@ -67,7 +64,8 @@ class PrintSettings {
     kMaxAccelY,
     kMaxTravelX,
     kMaxTravelY,
-    kKlipperAccel,
+    kLimits,  // M201 Z and E, M203 X, Y, Z and E, M205 Z, E and J
+    kKlipperAccel = kLimits + 9,
     kKlipperDecel,
     kKlipperCorner,
     kKlipperSpeed,

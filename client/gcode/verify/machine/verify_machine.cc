@@ -389,6 +389,15 @@ void VerifyMachine::DoKlipper(VerifyLine& line) {
     line.label = true;
     return Fence(line, LineRole::kFence);
   }
+  for (const std::string_view mark : {"@OBJECT", "@Object", "@object"}) {
+    if (Begins(text, mark)) return Fence(line, LineRole::kFence);
+  }
+  // Macros that move nothing, or lead the head away for a picture and back.
+  const std::string_view name = text.substr(0, text.find_first_of(" \t;"));
+  for (const std::string_view macro :
+       {"TIMELAPSE_TAKE_FRAME", "TIMELAPSE_RENDER", "SET_PRINT_STATS_INFO"}) {
+    if (name == macro) return Fence(line, LineRole::kFence);
+  }
   // What the next tool, or filament, has in its nozzle is not known.
   if (UpperCase(text[0]) == 'T' && std::exchange(tool_, DigestOf(text)) != tool_) {
     pulled_ = deepest_ = 0;

@@ -92,7 +92,6 @@ class VerifyMachine {
   uint64_t SettingsDigest() const { return settings_.SettingsDigest(); }
 
   uint64_t fan() const { return settings_.fan(); }
-  uint64_t FlowDigest() const { return settings_.FlowDigest(); }
 
   // Which line ends there were so far: bit n for LF behind n carriage returns, and kLoneReturn.
   uint32_t line_ends() const { return line_ends_; }

@@ -102,8 +102,12 @@ LayerPair::LayerPair(const TraceChunk& was, const TraceChunk& is, size_t layer)
   const TraceLayer& of_was = was.layers[layer];
   const TraceLayer& of_is = is.layers[layer];
   assert(of_was.end_section - of_was.first_section == of_is.end_section - of_is.first_section);
-  first_path_ = was.sections[of_was.first_section].first_path;
-  end_was_ = was.sections[of_was.end_section - 1].end_path;
+  // Where objects have changed places the original's sections are in the order of the other file.
+  first_path_ = UINT32_MAX;
+  for (uint32_t s = of_was.first_section; s < of_was.end_section; ++s) {
+    first_path_ = std::min(first_path_, was.sections[s].first_path);
+    end_was_ = std::max(end_was_, was.sections[s].end_path);
+  }
   first_is_ = is.sections[of_is.first_section].first_path;
   end_is_ = is.sections[of_is.end_section - 1].end_path;
   LearnFacts();

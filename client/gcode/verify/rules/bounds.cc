@@ -91,8 +91,11 @@ std::optional<Departures> DeparturesTo(const LayerPair& layer) {
   // What is before a chunk is not there any more.
   if (own == layers.begin() && layer.index() > 0) return std::nullopt;
   const TraceLayer& first = own == layers.begin() ? *own : *(own - 1);
-  return Departures(layer.was(), layer.was().sections[first.first_section].first_path,
-                    layer.first_path_was() + 1);
+  uint32_t first_path = layer.first_path_was();
+  for (uint32_t s = first.first_section; s < first.end_section; ++s) {
+    first_path = std::min(first_path, layer.was().sections[s].first_path);
+  }
+  return Departures(layer.was(), first_path, layer.first_path_was() + 1);
 }
 
 void CheckLink(const LayerPair& layer, uint32_t link, uint32_t skipped,

@@ -60,6 +60,7 @@ class OrderKeeper {
       : layer_(layer), permissions_(context.permissions) {
     for (uint32_t path = layer.first_path_was(); path < layer.end_path_was(); ++path) {
       groups_.push_back(GroupOf(layer.ClassOf(path), context.settings));
+      fans_of_paths_ &= layer.was().paths[path].states_fan;
     }
   }
 
@@ -77,7 +78,7 @@ class OrderKeeper {
     first_ = was.first_path;
     CheckSkirts(visits, findings);
     CheckTowers(visits, findings);
-    if (careful() && !permissions_.fan_order) CheckFans(visits, findings);
+    if (careful() && !permissions_.fan_order && !fans_of_paths_) CheckFans(visits, findings);
     CheckNear(was, visits, findings);
   }
 
@@ -131,13 +132,13 @@ class OrderKeeper {
     }
   }
 
-  // Fans, flow and pressure take time to change: what comes before such a change stays before
-  // it.
+  // Fans take time to change: what comes before such a change stays before it; unless the layer
+  // states the fan of each path, as a part of that.
   void CheckFans(absl::Span<const Visit> visits, LayerFindings& findings) {
     std::vector<uint32_t> changes(place_.size(), 0);  // [path - first_], so far
     for (size_t i = 1; i < changes.size(); ++i) {
       const TracePath* path = &layer_.was().paths[first_ + i];
-      changes[i] = changes[i - 1] + (path->flow_settings != (path - 1)->flow_settings ? 1 : 0);
+      changes[i] = changes[i - 1] + (path->fan != (path - 1)->fan ? 1 : 0);
     }
     uint32_t latest = first_;
     for (const Visit& visit : visits) {
@@ -193,13 +194,49 @@ class OrderKeeper {
   std::vector<Group> groups_;    // [path - first path of the layer]
   std::vector<uint32_t> place_;  // [path - first path of the section] in the section's visits
   uint32_t first_ = 0;
+  bool fans_of_paths_ = true;  // each path of the layer states its own
 };
+
+// Objects that touch keep their order: what one of them rests on may be of the other.
+void CheckMovedObjects(const LayerPair& layer, LayerFindings& findings) {
+  const uint32_t first = layer.first_path_was();
+  std::vector<uint32_t> section_of(layer.end_path_was() - first);
+  bool moved = false;
+  for (uint32_t k = 0; k < layer.section_count(); ++k) {
+    const TraceSection& was = layer.SectionWas(k);
+    moved |= k > 0 && was.first_path < layer.SectionWas(k - 1).first_path;
+    std::fill(section_of.begin() + (was.first_path - first),
+              section_of.begin() + (was.end_path - first), k);
+  }
+  if (!moved) return;
+  const PieceGrid grid(std::vector<Piece>(layer.pieces()), kCellMm);
+  const auto section = [&](const Piece& piece) { return section_of[piece.path - first]; };
+  for (const Piece& piece : grid.pieces()) {
+    bool found = false;
+    grid.ForEachNear(piece.a, piece.b, kNearMm, [&](uint32_t i) {
+      const Piece& other = grid.pieces()[i];
+      found = other.path < piece.path && section(other) > section(piece) &&
+              DistanceOfPieces(piece.a, piece.b, other.a, other.b) <= kNearMm;
+      if (!found) return true;
+      findings.breaks.push_back(
+          {VerifyRule::kOrder, layer.was().LineOf(layer.was().paths[piece.path]),
+           layer.is().LineOf(layer.is().paths[layer.SectionIs(section(piece)).first_path]),
+           layer.index(),
+           absl::StrFormat("this object is printed before one that it touches, which comes before "
+                           "it in the original, with line %d",
+                           layer.was().LineOf(layer.was().paths[other.path]))});
+      return false;
+    });
+    if (found) return;
+  }
+}
 
 }  // namespace
 
 void CheckOrder(const LayerPair& layer, const RuleContext& context, LayerFindings& findings) {
   OrderKeeper keeper(layer, context);
   for (size_t k = 0; k < layer.section_count(); ++k) keeper.Check(k, findings);
+  CheckMovedObjects(layer, findings);
 }
 
 }  // namespace traverse::gcode

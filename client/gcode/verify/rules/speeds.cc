@@ -56,6 +56,12 @@ void ObserveWas(const LayerPair& layer, const Tails& tails, Observations& seen) 
     const TraceLink& traced = chunk.links[link];
     if (traced.scripted) {
       ObserveScript(chunk, link, seen);
+      // What comes behind the script's last line leads to the next path, as fast as that goes.
+      for (uint32_t m = traced.first_move + traced.fixed; m < traced.end_move; ++m) {
+        const TraceMove& move = chunk.moves[m];
+        if (!move.in_print) continue;
+        Note(seen.feeds[KindOf(move)], static_cast<uint64_t>(move.feed), move, layer.index());
+      }
       continue;
     }
     ObserveTail(layer, chunk, link, tails.At(link), false, seen);

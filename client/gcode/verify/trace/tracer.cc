@@ -133,6 +133,7 @@ void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t secti
     TakeMove(line, machine, section);
   }
   const auto number = static_cast<uint32_t>(line.number);
+  states_fan_ |= line.sets && (Begins(line.text, "M106") || Begins(line.text, "M107"));
   if (line.role == LineRole::kProgress) chunk_.progress.push_back({line.digest, number});
   if (line.sets_back) chunk_.set_backs.push_back({section, number});
   if (line.command != 0) pending_commands_.push_back({line.command, 0, number});
@@ -224,9 +225,11 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
     link_ = TraceLink{};
   } else {
     BeginPath(motion, section, unit);
-    chunk_.paths.back().flow_settings = machine.FlowDigest();
+    chunk_.paths.back().fan = machine.fan();
+    chunk_.paths.back().states_fan = states_fan_;
   }
   in_path_ = true;
+  states_fan_ = false;
   // What is printed between the marks of a wipe is a fault of theirs; one of it is enough.
   if (wiping_ && !printed_) {
     chunk_.mark_faults.push_back(

@@ -56,6 +56,7 @@ class Tracer {
   bool printed_ = false;  // something was printed there
   bool marks_wipes_ = false;
   bool in_print_;
+  bool states_fan_ = false;  // since the last deposit
   uint32_t layers_ = 0;
 };
 

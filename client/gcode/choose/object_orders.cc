@@ -1,0 +1,254 @@
+#include "client/gcode/choose/object_orders.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "client/gcode/choose/round_trip.h"
+#include "client/gcode/write/label_lines.h"
+
+namespace traverse::gcode {
+namespace {
+
+// An object of a layer as the file has it.
+struct Stretch {
+  uint32_t begin = 0;
+  uint32_t end = 0;
+  uint32_t object = 0;
+};
+
+std::vector<Stretch> StretchesOf(const GcodeFile& file, const Layer& layer) {
+  std::vector<Stretch> stretches;
+  for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
+    const uint32_t path = b - layer.first_block;
+    const uint32_t object = file.blocks[b].object;
+    if (stretches.empty() || stretches.back().object != object) {
+      stretches.push_back({path, path, object});
+    }
+    stretches.back().end = path + 1;
+  }
+  return stretches;
+}
+
+// In prints object by object the head goes down again to begin an object, when one that is higher
+// is finished.
+bool PrintsOneByOne(const GcodeFile& file) {
+  absl::flat_hash_map<uint32_t, size_t> last;  // [object] its last block
+  for (size_t i = 0; i < file.blocks.size(); ++i) last[file.blocks[i].object] = i;
+  absl::flat_hash_map<uint32_t, bool> begun;
+  Decimal highest = 0;
+  uint32_t of = 0;  // the object that is so high
+  for (size_t i = 0; i < file.blocks.size(); ++i) {
+    const Block& block = file.blocks[i];
+    if (block.object == 0) continue;
+    const bool begins = begun.try_emplace(block.object, true).second;
+    if (begins && block.first.z < highest && last[of] < i) return true;
+    if (block.first.z < highest) continue;
+    highest = block.first.z;
+    of = block.object;
+  }
+  return false;
+}
+
+// Objects of a file, in the order in which they are first printed, and the middle of their paths.
+struct Middles {
+  std::vector<uint32_t> objects;
+  std::vector<Vertex> points;
+};
+
+Middles MiddlesOf(const GcodeFile& file) {
+  Middles middles;
+  absl::flat_hash_map<uint32_t, std::pair<size_t, double>> known;  // place, paths
+  for (const Block& block : file.blocks) {
+    if (block.object == 0) continue;
+    const auto [found, added] = known.try_emplace(block.object, middles.objects.size(), 0);
+    if (added) {
+      middles.objects.push_back(block.object);
+      middles.points.push_back({});
+    }
+    auto& [place, paths] = found->second;
+    Vertex& middle = middles.points[place];
+    const Vertex at = file.modes[block.mode].InMm(block.first);
+    middle = {(middle.x * paths + at.x) / (paths + 1), (middle.y * paths + at.y) / (paths + 1)};
+    paths += 1;
+  }
+  return middles;
+}
+
+// Finds the runs of a layer.
+class RunFinder {
+ public:
+  RunFinder(const GcodeFile& file, const Layer& layer, const LayerFreedom& freedom)
+      : file_(file), layer_(layer), freedom_(freedom), stretches_(StretchesOf(file, layer)) {}
+
+  LayerObjects Find() {
+    for (const Stretch& stretch : stretches_) {
+      if (!MayStandElsewhere(stretch)) {
+        EndRun();
+        continue;
+      }
+      if ((file_.blocks[layer_.first_block + stretch.begin].link & kLinkHeats) != 0) EndRun();
+      if (!run_.empty() && !LabelledAlike(run_.front(), stretch)) {
+        Bar("their labels are not written alike");
+        EndRun();
+      }
+      run_.push_back(stretch);
+    }
+    EndRun();
+    return std::move(found_);
+  }
+
+ private:
+  bool MayStandElsewhere(const Stretch& stretch) {
+    if (stretch.object == 0) return false;
+    for (uint32_t path = stretch.begin; path < stretch.end; ++path) {
+      const uint16_t link = file_.blocks[layer_.first_block + path].link;
+      const bool heats = path > stretch.begin && (link & kLinkHeats) != 0;
+      if (!freedom_.rules[path].pinned && !heats) continue;
+      Bar("commands that are not known, or paths that stay, stand between them");
+      return false;
+    }
+    return true;
+  }
+
+  bool LabelledAlike(const Stretch& a, const Stretch& b) const {
+    const uint32_t first = layer_.first_block;
+    return BeginsAlike(file_, first + a.begin, first + b.begin) &&
+           EndsAlike(file_, first + a.end, first + b.end);
+  }
+
+  // Objects of one region touch, or what lies between them does.
+  void NoteContacts(std::vector<LayerObject>& objects) const {
+    absl::flat_hash_map<uint32_t, std::vector<uint32_t>> of_island;
+    for (uint32_t i = 0; i < objects.size(); ++i) {
+      for (uint32_t path = objects[i].begin; path < objects[i].end; ++path) {
+        std::vector<uint32_t>& others = of_island[freedom_.island[path]];
+        if (!others.empty() && others.back() == i) continue;
+        objects[i].behind.insert(objects[i].behind.end(), others.begin(), others.end());
+        others.push_back(i);
+      }
+    }
+  }
+
+  void EndRun() {
+    const std::vector<Stretch> run = std::exchange(run_, {});
+    if (run.size() < 2) return;
+    std::vector<uint32_t> numbers;
+    std::vector<LayerObject> objects;
+    for (const Stretch& stretch : run) {
+      numbers.push_back(stretch.object);
+      objects.push_back({stretch.begin, stretch.end, {}});
+    }
+    std::sort(numbers.begin(), numbers.end());
+    if (std::adjacent_find(numbers.begin(), numbers.end()) != numbers.end()) {
+      return Bar("one of them is printed twice in a layer");
+    }
+    NoteContacts(objects);
+    found_.runs.push_back(std::move(objects));
+  }
+
+  void Bar(std::string_view barrier) {
+    if (found_.barrier.empty()) found_.barrier = barrier;
+  }
+
+  const GcodeFile& file_;
+  const Layer& layer_;
+  const LayerFreedom& freedom_;
+  const std::vector<Stretch> stretches_;
+  std::vector<Stretch> run_;
+  LayerObjects found_;
+};
+
+}  // namespace
+
+ObjectOrders::ObjectOrders(const GcodeFile& file) : file_(file) {
+  const Middles middles = MiddlesOf(file);
+  if (middles.objects.size() < 2) return;
+  if (PrintsOneByOne(file)) {
+    barrier_ = "the print goes object by object";
+    return;
+  }
+  const std::vector<uint32_t> trip = RoundTrip(middles.points);
+  for (uint32_t place = 0; place < trip.size(); ++place) {
+    rank_[middles.objects[trip[place]]] = place;
+  }
+}
+
+LayerObjects ObjectOrders::ObjectsOf(const Layer& layer, const LayerFreedom& freedom) const {
+  return any() ? RunFinder(file_, layer, freedom).Find() : LayerObjects{};
+}
+
+// The numbers of the objects of `run` along the round trip; of those that touch, the later one
+// stays the later one.
+std::vector<uint32_t> ObjectOrders::Sorted(const Layer& layer, const std::vector<LayerObject>& run,
+                                           bool backwards) const {
+  const auto n = static_cast<uint32_t>(run.size());
+  const auto rank_of = [&](uint32_t i) {
+    const uint32_t rank = rank_.at(file_.blocks[layer.first_block + run[i].begin].object);
+    return backwards ? UINT32_MAX - rank : rank;
+  };
+  std::vector<uint32_t> left(n);
+  for (uint32_t i = 0; i < n; ++i) left[i] = i;
+  std::sort(left.begin(), left.end(),
+            [&](uint32_t a, uint32_t b) { return rank_of(a) < rank_of(b); });
+  std::vector<bool> done(n, false);
+  std::vector<uint32_t> sorted;
+  while (!left.empty()) {
+    const auto next = std::find_if(left.begin(), left.end(), [&](uint32_t i) {
+      return std::all_of(run[i].behind.begin(), run[i].behind.end(),
+                         [&](uint32_t before) { return done[before]; });
+    });
+    sorted.push_back(*next);
+    done[*next] = true;
+    left.erase(next);
+  }
+  return sorted;
+}
+
+std::vector<LayerOrder> ObjectOrders::Moved(const Layer& layer, const LayerObjects& objects,
+                                            const LayerOrder& order, bool backwards) const {
+  // Whole objects only: what search and file agree about.
+  for (size_t i = 0; i < order.size(); ++i) {
+    const uint32_t here = file_.blocks[layer.first_block + i].object;
+    if (i >= layer.end_block - layer.first_block || file_.blocks[order[i].block].object != here) {
+      return {};
+    }
+  }
+  std::vector<LayerOrder> moved;
+  for (const bool turned : {false, true}) {
+    if (turned && !backwards) break;
+    LayerOrder other = order;
+    for (const std::vector<LayerObject>& run : objects.runs) {
+      auto to = other.begin() + run.front().begin;
+      for (const uint32_t object : Sorted(layer, run, turned)) {
+        const auto from = order.begin();
+        to = std::copy(from + run[object].begin, from + run[object].end, to);
+      }
+    }
+    const bool known = std::find(moved.begin(), moved.end(), other) != moved.end();
+    if (other != order && !known) moved.push_back(std::move(other));
+  }
+  return moved;
+}
+
+void ObjectOrders::AddTo(size_t layer, const std::vector<std::vector<LayerOrder>>& tries,
+                         const TravelModel& travel, MergeRules rules, const ColumnFiller& filler,
+                         LayerColumn& column) const {
+  constexpr size_t kBests = 2;
+  const auto asked = [layer](const auto& orders) { return !orders[layer].empty(); };
+  if (!any() || std::none_of(tries.begin(), tries.end(), asked)) return;
+  const Layer& of_file = file_.layers[layer];
+  const LayerObjects objects = ObjectsOf(of_file, *rules.freedom);
+  if (objects.runs.empty()) return;
+  std::vector<LayerOrder> moved;
+  for (const LayerOrder* base : FastestOrders(column, kBests)) {
+    for (LayerOrder& order : Moved(of_file, objects, *base, IsFree(rules.policy))) {
+      moved.push_back(std::move(order));
+    }
+  }
+  for (const LayerOrder& order : moved) {
+    rules.places = column.writer->PlacesOf(order);
+    filler.Add(SettledOrder(*column.writer, travel, order, rules), layer, column);
+  }
+}
+
+}  // namespace traverse::gcode

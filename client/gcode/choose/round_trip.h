@@ -1,0 +1,20 @@
+// A short round trip through points.
+
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ROUND_TRIP_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_ROUND_TRIP_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "client/gcode/machine/vertex.h"
+
+namespace traverse::gcode {
+
+// The numbers of `points` in the order of a round trip that begins with the first one: the given
+// order, improved by turning runs and by moving single points, until neither makes it shorter.
+// O(n^2) a pass, and a limited number of passes.
+std::vector<uint32_t> RoundTrip(const std::vector<Vertex>& points);
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_ROUND_TRIP_H_

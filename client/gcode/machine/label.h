@@ -1,0 +1,33 @@
+// Lines that say of which object the next paths are, as slicers, printers and hosts know them: a
+// printer may be told to leave an object out, with everything between its labels.
+
+#ifndef TRAVERSE_CLIENT_GCODE_MACHINE_LABEL_H_
+#define TRAVERSE_CLIENT_GCODE_MACHINE_LABEL_H_
+
+#include <cstdint>
+#include <string_view>
+
+namespace traverse::gcode {
+
+enum class LabelKind : uint8_t {
+  kNone,    // no label
+  kBegins,  // what follows is of the object that the line names
+  kEnds,    // of none; or only no longer of the object that the line names
+  kSays,    // an object's name, or how many there are
+};
+
+struct Label {
+  LabelKind kind = LabelKind::kNone;
+  std::string_view notation;  // what lines of its sort begin with: they belong together
+  bool named = false;         // it names an object
+};
+
+// PrusaSlicer: `; printing object`; OrcaSlicer, Bambu Studio: `; start printing object`, M624, M625
+// and `; OBJECT_ID:`; Klipper: EXCLUDE_OBJECT_START; Marlin, RepRapFirmware: M486; CuraEngine:
+// `;MESH:`; ideaMaker: `;PRINTING:`; KISSlicer, IceSL: the end of their layers; OctoPrint:
+// `@OBJECT`. `line` has no blanks around it.
+Label LabelOf(std::string_view line);
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_MACHINE_LABEL_H_

@@ -1,0 +1,111 @@
+#include "client/gcode/verify/machine/object_labels.h"
+
+#include <algorithm>
+
+#include "client/gcode/verify/text.h"
+
+namespace traverse::gcode {
+namespace {
+
+// What follows `prefix`, if the line begins with it.
+bool Follows(std::string_view line, std::string_view prefix, std::string_view& rest) {
+  if (!Begins(line, prefix)) return false;
+  rest = TrimLine(line.substr(prefix.size()));
+  return true;
+}
+
+// The value of NAME= among the parameters of a macro; else all of them.
+std::string_view NameIn(std::string_view parameters) {
+  const size_t at = parameters.find("NAME=");
+  if (at == std::string_view::npos) return parameters;
+  const std::string_view name = parameters.substr(at + 5);
+  return name.substr(0, name.find_first_of(" \t;"));
+}
+
+// A command's number does not go on.
+bool IsCommand(std::string_view line, std::string_view command, std::string_view& rest) {
+  return Follows(line, command, rest) && (line.size() == command.size() ||
+                                          line[command.size()] < '0' || line[command.size()] > '9');
+}
+
+bool IsNothing(std::string_view name) {
+  for (const std::string_view none :
+       {"", "none", "NONE", "None", "end", "END", "stop", "STOP", "off", "OFF"}) {
+    if (name == none) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void ObjectLabels::Switch(Notation notation, std::string_view name) {
+  open_[notation] = name.empty() ? 0 : DigestOf(name) | 1;
+}
+
+void ObjectLabels::Begin(Notation notation, std::string_view name) {
+  if (open_[notation] != 0) ++faults_;
+  open_[notation] = DigestOf(name) | 1;
+}
+
+void ObjectLabels::End(Notation notation, std::string_view name) {
+  const bool wrong =
+      open_[notation] == 0 || (!name.empty() && open_[notation] != (DigestOf(name) | 1));
+  if (wrong) ++faults_;
+  open_[notation] = 0;
+}
+
+bool ObjectLabels::Take(std::string_view line) {
+  std::string_view rest;
+  if (line.empty()) return false;
+  if (line[0] == ';') {
+    if (Follows(line, "; stop printing object, unique label id:", rest)) {
+      End(kUnique, rest);
+    } else if (Follows(line, "; start printing object, unique label id:", rest)) {
+      Begin(kUnique, rest);
+    } else if (Follows(line, "; stop printing object", rest)) {
+      End(kPrinting, rest);
+    } else if (Follows(line, "; printing object", rest)) {
+      Begin(kPrinting, rest);
+    } else if (Follows(line, "; OBJECT_ID:", rest)) {
+      Switch(kObjectId, rest);
+    } else if (Follows(line, ";MESH:", rest)) {
+      Switch(kMesh, rest == "NONMESH" ? std::string_view() : rest);
+    } else if (Follows(line, ";PRINTING_ID:", rest)) {
+      Switch(kPrintingId, rest == "-1" ? std::string_view() : rest);
+    } else if (Follows(line, ";PRINTING:", rest)) {
+      Switch(kPrintingOf, rest == "NON-OBJECT" ? std::string_view() : rest);
+    } else {
+      return false;
+    }
+    return true;
+  }
+  if (line[0] == '@') {
+    const bool object = Follows(line, "@OBJECT", rest) || Follows(line, "@Object", rest) ||
+                        Follows(line, "@object", rest);
+    if (object) Switch(kHost, IsNothing(rest) ? std::string_view() : rest);
+    return object;
+  }
+  if (Follows(line, "EXCLUDE_OBJECT_START", rest)) {
+    Begin(kExclude, NameIn(rest));
+  } else if (Follows(line, "EXCLUDE_OBJECT_END", rest)) {
+    End(kExclude, NameIn(rest));
+  } else if (IsCommand(line, "M624", rest)) {
+    Begin(kM624, rest);
+  } else if (IsCommand(line, "M625", rest)) {
+    End(kM624, {});
+  } else if (IsCommand(line, "M486", rest)) {
+    if (Begins(rest, "S")) Switch(kM486, Begins(rest, "S-") ? std::string_view() : rest);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+uint64_t ObjectLabels::digest() const {
+  const bool any = std::any_of(open_.begin(), open_.end(), [](uint64_t name) { return name != 0; });
+  uint64_t digest = 0;
+  for (const uint64_t name : open_) digest = Mix(digest, name);
+  return any ? digest | 1 : 0;
+}
+
+}  // namespace traverse::gcode

@@ -1,0 +1,200 @@
+// Whole labelled objects change places within a layer: choose/object_orders.h,
+// verify/match/moved_objects.h.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
+#include "absl/strings/str_split.h"
+#include "client/gcode/model/loops.h"
+#include "client/gcode/read/reader.h"
+#include "client/gcode/rewrite.h"
+#include "client/gcode/verify/verifier.h"
+#include "tests/client/gcode/labels/pillars.h"
+
+namespace traverse::gcode {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::Notation;
+using testing::Notations;
+using testing::PillarPrint;
+
+GcodeRewrite Optimised(const std::string& text, Policy policy = Policy::kSafe) {
+  const auto file = ReadGcode(text, "part.gcode");
+  EXPECT_TRUE(file.ok()) << file.status();
+  std::vector<FileOrder> tries(1);
+  for (const Layer& layer : (*file)->layers) {
+    LayerOrder& order = tries[0].emplace_back();
+    const std::vector<Outline> outlines = OutlinesOf(**file, layer);
+    for (uint32_t i = 0; i < outlines.size(); ++i) {
+      order.push_back({layer.first_block + i, 0, outlines[i].closed});
+    }
+  }
+  RewriteOptions options;
+  options.policy = policy;
+  options.polish = PolishLimit{};
+  const auto rewrite = RewriteGcode(**file, tries, options);
+  EXPECT_TRUE(rewrite.ok()) << rewrite.status();
+  return *rewrite;
+}
+
+double Share(const GcodeRewrite& rewrite) {
+  return rewrite.after.travel_mm / rewrite.before.travel_mm;
+}
+
+std::string Broken(const std::string& was, const std::string& is) {
+  return std::string(VerifyGcode(was, "a", is, "b", {}).message());
+}
+
+Notation Klipper() { return Notations()[1]; }
+
+// The pillar of a line that deposits: by its place.
+int PillarAt(const std::string& line) {
+  double x = 0;
+  double y = 0;
+  for (const auto word : absl::StrSplit(line, ' ')) {
+    if (word.empty()) continue;
+    double& axis = word[0] == 'X' ? x : y;
+    if (word[0] == 'X' || word[0] == 'Y') {
+      EXPECT_TRUE(absl::SimpleAtod(word.substr(1), &axis));
+    }
+  }
+  return (x > 100 ? 1 : 0) + (y > 100 ? 2 : 0);
+}
+
+// Whether all deposits of `text` stand behind the label of their pillar, and no other.
+bool LabelledRight(const std::string& text, const Notation& notation) {
+  int label = -1;
+  std::vector<std::string> begins;
+  for (int n = 0; n < 4; ++n) {
+    begins.push_back(std::vector<std::string>(absl::StrSplit(notation.begin(n), '\n'))[0]);
+  }
+  const std::vector<std::string> lines = absl::StrSplit(text, '\n');
+  for (const std::string& line : lines) {
+    for (int n = 0; n < 4; ++n) {
+      if (line == begins[static_cast<size_t>(n)]) label = n;
+    }
+    const bool deposits = absl::StrContains(line, "X") && absl::StrContains(line, " E");
+    if (deposits && PillarAt(line) != label) return false;
+  }
+  return true;
+}
+
+TEST(MovedObjects, ChangePlacesInEveryNotation) {
+  for (const Notation& notation : Notations()) {
+    for (const Policy policy : {Policy::kSafe, Policy::kBalanced, Policy::kFree}) {
+      const std::string text = Text(PillarPrint{}, notation);
+      const GcodeRewrite rewrite = Optimised(text, policy);
+      EXPECT_LT(Share(rewrite), 0.9) << notation.name << " " << rewrite.unproven;
+      EXPECT_TRUE(LabelledRight(rewrite.text, notation)) << notation.name;
+      EXPECT_EQ(rewrite.layers_unproven, 0) << notation.name << " " << rewrite.unproven;
+    }
+  }
+}
+
+TEST(MovedObjects, TakeWhatStandsAtTheirLabelsAlong) {
+  PillarPrint print;
+  print.before_object = "M117 object @\nSET_PRESSURE_ADVANCE ADVANCE=0.04\nM204 S900\n";
+  print.before_layer = "G1 E-.8 F2100\nTIMELAPSE_TAKE_FRAME\nG1 E.8 F2100\n";
+  const GcodeRewrite rewrite = Optimised(Text(print, Klipper()));
+  EXPECT_LT(Share(rewrite), 0.9) << rewrite.unproven;
+  EXPECT_TRUE(LabelledRight(rewrite.text, Klipper()));
+}
+
+TEST(MovedObjects, StayInPrintsObjectByObject) {
+  PillarPrint print;
+  print.one_by_one = true;
+  const std::string text = Text(print, Klipper());
+  const GcodeRewrite rewrite = Optimised(text);
+  EXPECT_EQ(rewrite.layers_changed, 0);
+  EXPECT_EQ(rewrite.text, text);
+}
+
+TEST(MovedObjects, StayWherePrintedTwice) {
+  PillarPrint print;
+  print.order = {0, 2, 0, 3, 1};
+  EXPECT_EQ(Optimised(Text(print, Klipper())).layers_changed, 0);
+}
+
+TEST(MovedObjects, DoNotPassATemperatureOrAnUnknownCommand) {
+  for (const std::string between : {"M104 S210\n", "WIPE_NOZZLE\n", "M400\n", "T1\n"}) {
+    PillarPrint print;
+    print.between = between;
+    EXPECT_EQ(Optimised(Text(print, Klipper())).layers_changed, 0) << between;
+  }
+}
+
+TEST(MovedObjects, StayInOrderWhereTheyTouch) {
+  PillarPrint print;
+  print.apart = 8.4;
+  const GcodeRewrite rewrite = Optimised(Text(print, Klipper()));
+  EXPECT_EQ(rewrite.layers_changed, 0);
+}
+
+TEST(MovedObjects, LabelsThatNeverEndAreKept) {
+  const std::string text =
+      absl::StrReplaceAll(Text(PillarPrint{}, Klipper()), {{"EXCLUDE_OBJECT_END NAME=p2\n", ""}});
+  const GcodeRewrite rewrite = Optimised(text);
+  EXPECT_EQ(Broken(text, rewrite.text), "");
+}
+
+// The blocks of the layer's objects, cut at their first lines, in another order by hand.
+std::string WithLayer(const std::string& text, int layer, const std::vector<size_t>& order) {
+  std::vector<std::string> layers = absl::StrSplit(text, ";LAYER_CHANGE\n");
+  std::string& one = layers[static_cast<size_t>(layer)];
+  std::vector<std::string> parts = absl::StrSplit(one, "; printing object");
+  std::string last = parts.back();
+  std::string moved = parts[0];
+  for (const size_t object : order) absl::StrAppend(&moved, "; printing object", parts[object + 1]);
+  one = moved;
+  return absl::StrJoin(layers, ";LAYER_CHANGE\n");
+}
+
+TEST(VerifyMovedObjects, WholeObjectsMayMove) {
+  const std::string text = Text(PillarPrint{}, Klipper());
+  EXPECT_EQ(Broken(text, WithLayer(text, 3, {1, 0, 2, 3})), "");
+  EXPECT_EQ(Broken(text, WithLayer(text, 3, {3, 2, 1, 0})), "");
+}
+
+TEST(VerifyMovedObjects, CatchesWhatIsPlanted) {
+  const std::string text = Text(PillarPrint{}, Klipper());
+  const std::string moved = WithLayer(text, 3, {1, 0, 2, 3});
+  const size_t layer = moved.find(";Z:0.6");
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string other = moved;
+    const size_t at = other.find(from, layer);
+    EXPECT_NE(at, std::string::npos) << from;
+    return other.replace(at, from.size(), to);
+  };
+  EXPECT_EQ(Broken(text, moved), "");
+  // An object under the label of another one.
+  EXPECT_NE(Broken(text, with("EXCLUDE_OBJECT_START NAME=p0", "EXCLUDE_OBJECT_START NAME=p3")), "");
+  EXPECT_NE(Broken(text, with("; printing object p0\n", "; printing object p1\n")), "");
+  // A label that does not end, and one that ends what was not begun.
+  EXPECT_NE(Broken(text, with("EXCLUDE_OBJECT_END NAME=p0\n", "")), "");
+  EXPECT_NE(Broken(text, with("EXCLUDE_OBJECT_END NAME=p0\n", "EXCLUDE_OBJECT_END NAME=p1\n")), "");
+  EXPECT_NE(Broken(text, with("EXCLUDE_OBJECT_START NAME=p0\n", "")), "");
+  // A path of one object within the next one's label.
+  EXPECT_NE(Broken(text, with("; stop printing object p0\nEXCLUDE_OBJECT_END NAME=p0\n"
+                              "; printing object p1\nEXCLUDE_OBJECT_START NAME=p1\n",
+                              "")),
+            "");
+}
+
+TEST(VerifyMovedObjects, NothingPassesATemperature) {
+  PillarPrint print;
+  print.between = "M104 S210\n";
+  const std::string text = Text(print, Klipper());
+  EXPECT_NE(Broken(text, WithLayer(text, 3, {1, 0, 2, 3})), "");
+}
+
+}  // namespace
+}  // namespace traverse::gcode
