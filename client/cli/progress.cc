@@ -38,6 +38,7 @@ Progress::~Progress() {
 
 void Progress::Take(const v1::LayerResult& layer) {
   ++done_;
+  done_work_ += WorkOf(layer.index());
   given_mm_ += layer.given().total_mm() + layer.cleaning_given_mm();
   travel_mm_ += layer.travel().total_mm() + layer.cleaning_mm();
   const absl::Time now = absl::Now();
@@ -49,15 +50,26 @@ void Progress::Take(const v1::LayerResult& layer) {
   bar_drawn_ = bar;
 }
 
+double Progress::WorkOf(uint64_t layer) const {
+  return layer < work_.layers.size() ? work_.layers[layer] : 1;
+}
+
+// Of this search, and of what follows.
+double Progress::SecondsLeft(double elapsed_seconds) const {
+  double all = 0;
+  for (uint64_t layer = 0; layer < layers_; ++layer) all += WorkOf(layer);
+  const double whole = elapsed_seconds * all / done_work_;
+  return std::max(whole - elapsed_seconds, 0.0) + whole * work_.stages_behind;
+}
+
 std::string Progress::Text(absl::Duration elapsed, int width) const {
   std::string out = absl::StrFormat("%d/%d layers", done_, layers_);
   if (given_mm_ > 0) {
     absl::StrAppendFormat(&out, ", travel %s", report::Change(given_mm_, travel_mm_));
   }
   if (done_ > 0 && done_ < layers_) {
-    const double left = static_cast<double>(layers_ - done_) / static_cast<double>(done_);
     absl::StrAppendFormat(&out, ", %s left",
-                          report::Duration(absl::ToDoubleSeconds(elapsed) * left));
+                          report::Duration(SecondsLeft(absl::ToDoubleSeconds(elapsed))));
   }
   if (style_ != Style::kBar) return absl::StrFormat("%s: %s", label_, out);
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "absl/time/time.h"
+#include "client/optimize_file/optimize_file.h"
 #include "traverse/v1/route_optimizer_service.pb.h"
 
 namespace traverse::cli {
@@ -27,6 +28,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
+  // What the layers have to be weighed by; without it all are alike, and nothing follows.
+  void Expect(SearchWork work) { work_ = std::move(work); }
+
   // Counts one more layer. Shows it at most ten times a second, as lines every few seconds.
   void Take(const v1::LayerResult& layer);
 
@@ -35,12 +39,17 @@ class Progress {
   std::string Text(absl::Duration elapsed, int width) const;
 
  private:
+  double WorkOf(uint64_t layer) const;
+  double SecondsLeft(double elapsed_seconds) const;
+
   const Style style_;
   const std::string label_;
   const uint64_t layers_;
   const absl::Time began_;
   absl::Time shown_;
+  SearchWork work_;
   uint64_t done_ = 0;
+  double done_work_ = 0;
   double given_mm_ = 0;
   double travel_mm_ = 0;
   bool bar_drawn_ = false;

@@ -46,6 +46,7 @@ SearchOptions SearchOptionsFor(const StrategySpec* strategy, const JobFlags& fla
     shown.reset();
     shown.emplace(Progress::StyleFor(quiet), label, layers);
   };
+  options.progress.on_work = [&shown](SearchWork work) { shown->Expect(std::move(work)); };
   options.progress.on_layer = [&shown](const v1::LayerResult& layer) { shown->Take(layer); };
   return options;
 }

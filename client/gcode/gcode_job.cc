@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
+#include "client/gcode/barriers.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/plan/travel_model.h"
@@ -310,7 +311,7 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   return job;
 }
 
-void AddMeasuredFacts(InputJob& job) {
+void AddMeasuredFacts(InputJob& job, const GcodeOptions& options) {
   const auto add = [&job](std::string key, std::string value) {
     job.facts.emplace_back(std::move(key), std::move(value));
   };
@@ -323,6 +324,9 @@ void AddMeasuredFacts(InputJob& job) {
                                                totals.crossings, totals.open_crossings));
   add("estimated print time",
       gcode::Duration(totals.seconds) + " (trapezoidal speeds with look-ahead, without heating)");
+  for (std::string& barrier : DescribeBarriers(*job.gcode, options.policy, options.allow)) {
+    add("held", std::move(barrier));
+  }
 }
 
 std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& options,

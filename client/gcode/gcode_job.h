@@ -38,8 +38,8 @@ struct GcodeOptions {
 InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions& options);
 
 // Adds facts that must be measured to a job from G-code: travel, retractions, visible walls
-// crossed, print time.
-void AddMeasuredFacts(InputJob& job);
+// crossed, print time; and what keeps paths in their places (barriers.h).
+void AddMeasuredFacts(InputJob& job, const GcodeOptions& options = {});
 
 // The layers of `job`, which comes from G-code, with plans of less freedom: a second way to search
 // for an order (policy.h). If `found` has more crossings than given, or is missing, crossings cost

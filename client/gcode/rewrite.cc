@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "client/files/process_memory.h"
 #include "client/files/utf8_mark.h"
+#include "client/gcode/barriers.h"
 #include "client/gcode/choose/layer_choice.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/read/reader.h"
@@ -341,9 +342,9 @@ std::string DescribeRewrite(const GcodeRewrite& rewrite) {
 std::vector<std::string> DescribeLeft(const GcodeRewrite& rewrite) {
   std::vector<std::string> left;
   if (rewrite.layers_unproven > 0) {
-    left.push_back(
-        absl::StrFormat("%d layers left unchanged, because each order found breaks a rule: %s",
-                        rewrite.layers_unproven, rewrite.unproven));
+    left.push_back(absl::StrFormat(
+        "%d layers left unchanged, because each order found breaks a rule of what may change: %s",
+        rewrite.layers_unproven, rewrite.unproven));
   }
   if (rewrite.layers_unclear > 0) {
     left.push_back(
@@ -366,13 +367,19 @@ std::vector<std::string> DescribeLeft(const GcodeRewrite& rewrite) {
         "%d lines begin as moves do, but cannot be read, so that nothing passes them: %s",
         rewrite.unread_moves, rewrite.unread));
   }
+  left.insert(left.end(), rewrite.barriers.begin(), rewrite.barriers.end());
   return left;
 }
 
 absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
                                           const std::vector<gcode::FileOrder>& tries,
                                           const RewriteOptions& options) {
-  return gcode::Rewriter(file, tries, options).Rewrite();
+  absl::StatusOr<GcodeRewrite> rewrite = gcode::Rewriter(file, tries, options).Rewrite();
+  if (!rewrite.ok() || rewrite->layers_changed == rewrite->layers) return rewrite;
+  std::vector<bool> left;
+  for (const gcode::LayerOrder& order : rewrite->orders) left.push_back(order.empty());
+  rewrite->barriers = DescribeBarriers(file, options.policy, options.allow, left);
+  return rewrite;
 }
 
 }  // namespace traverse

@@ -48,6 +48,10 @@ struct GcodeRewrite {
   int64_t relative_moves = 0;
   std::string relative;
 
+  // What keeps paths of the layers that are left as sliced in their places (barriers.h), if some
+  // are.
+  std::vector<std::string> barriers;
+
   // Lines that begin as moves do and cannot be read, so that no path changes places with one beyond
   // them, and the first of them: "part.gcode:118".
   int64_t unread_moves = 0;
@@ -85,8 +89,8 @@ absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
 // "travel 15.27 -> 12.41 m (-18.7 %), retractions 1187 -> 1059, estimated print time ..."
 std::string DescribeRewrite(const GcodeRewrite& rewrite);
 
-// What stays as it was for another reason than that nothing is gained, a line for each reason, with
-// the place of the first: "2 layers left unchanged, because ...: part.gcode:118: ...".
+// What stays as it was and why, a line for each reason, with the place of the first: "2 layers left
+// unchanged, because ...: part.gcode:118: ..."; and what keeps paths from changing places.
 std::vector<std::string> DescribeLeft(const GcodeRewrite& rewrite);
 
 }  // namespace traverse

@@ -136,6 +136,23 @@ void LimitTime(absl::Duration time, v1::JobOptions& asked) {
       absl::ToInt64Nanoseconds(time - absl::Seconds(absl::ToInt64Seconds(time)))));
 }
 
+// A layer's search takes as long as its paths and their points are many.
+std::vector<double> WorkOf(const InputJob& job) {
+  std::vector<double> work;
+  for (const v1::Layer& layer : job.layers) {
+    double sum = 1;
+    for (const v1::PlanPath& path : layer.plan().paths()) {
+      sum += 1 + path.contour().points_size() / 2 + path.open_path().points_size() / 2;
+    }
+    for (const v1::Island& island : layer.islands()) {
+      for (const v1::Contour& contour : island.contours()) sum += 1 + contour.points_size() / 2;
+      for (const v1::OpenPath& raster : island.rasters()) sum += 1 + raster.points_size() / 2;
+    }
+    work.push_back(sum);
+  }
+  return work;
+}
+
 FileFault SearchFault(absl::Status status) { return {FileStage::kSearch, std::move(status)}; }
 
 }  // namespace
@@ -145,6 +162,7 @@ absl::StatusOr<report::JobRun> Search(OptimizerClient& client, const InputJob& j
   v1::JobOptions asked = job.options;
   *asked.mutable_strategy() = StrategyFor(job, options);
   if (options.progress.on_search) options.progress.on_search(job.layers.size());
+  if (options.progress.on_work) options.progress.on_work({WorkOf(job), options.stages_behind});
   const absl::Time began = absl::Now();
   CallOptions call;
   if (options.deadline != absl::InfiniteDuration()) LimitTime(options.deadline, asked);
@@ -167,22 +185,27 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
     return SearchFault(absl::DeadlineExceededError("no time is left for a search"));
   }
   OptimizedFile made;
+  const bool twice = IsAskedTwice(job, options);
+  const bool fewer = options.gcode.crossings == gcode::Crossings::kFewer;
+  // The other searches, and what makes their orders better.
+  search.stages_behind = !twice ? 0 : fewer ? 4 : 2;
   absl::StatusOr<report::JobRun> first = Search(client, job, search);
   search.finish_by = std::min(search.finish_by, due);
   if (!first.ok()) return SearchFault(first.status());
   made.runs.push_back(*std::move(first));
-  if (IsAskedTwice(job, options)) {
+  if (twice) {
+    search.stages_behind = fewer ? 3 : 1;
     const bool may_be_late = search.finish_by != absl::InfiniteFuture();
     absl::Status again = SearchAgain(client, NarrowJob(job, options.gcode, made.runs[0].result),
                                      search, may_be_late, made.runs);
-    if (again.ok() && options.gcode.crossings == gcode::Crossings::kFewer) {
+    if (again.ok() && fewer) {
       again = SearchAsUsual(client, job, options, search, may_be_late, made.runs);
     }
     if (!again.ok()) return SearchFault(again);
   }
   // A caller who names a quicker strategy does not want further searches.
   std::optional<gcode::PolishLimit> polish;
-  if (IsAskedTwice(job, options)) polish = {search.finish_by, options.cancel};
+  if (twice) polish = {search.finish_by, options.cancel};
   absl::StatusOr<GcodeRewrite> rewrite =
       RewriteByRuns(job, made.runs, options.gcode, std::move(polish));
   if (!rewrite.ok()) {

@@ -43,10 +43,19 @@ struct FileFault {
 template <typename T>
 using FileResult = std::variant<T, FileFault>;
 
-// Called while the service searches, on the calling thread. Either may be empty.
+// What a search has to do.
+struct SearchWork {
+  std::vector<double> layers;  // [layer] its share, in paths and points
+  int stages_behind = 0;       // what follows takes about as long as this search, so many times
+};
+
+// Called while the service searches, on the calling thread. Each may be empty.
 struct SearchProgress {
   // A search of `layers` layers begins. There may be two, one after the other.
   std::function<void(size_t layers)> on_search = {};
+
+  // What it has to do, before it begins.
+  std::function<void(SearchWork work)> on_work = {};
 
   // One more layer is done.
   std::function<void(const v1::LayerResult& layer)> on_layer = {};
@@ -69,6 +78,8 @@ struct SearchOptions {
   std::stop_token cancel = {};
 
   SearchProgress progress = {};
+
+  int stages_behind = 0;  // see SearchWork
 };
 
 // Runs one search of `job`. Errors are the service's.

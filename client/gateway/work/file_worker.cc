@@ -290,7 +290,7 @@ absl::StatusOr<v1::InspectResponse> FileWorker::Inspect(const SpoolFile& upload,
       absl::StatusOr<InputJob> job = ReadJob(*input, i, request.gcode);
       if (!job.ok()) return job.status();
       if (absl::Status status = ApplySettings(request.settings, *job); !status.ok()) return status;
-      AddMeasuredFacts(*job);
+      AddMeasuredFacts(*job, request.gcode);
       out.set_layers(out.layers() + static_cast<uint32_t>(job->layers.size()));
       for (const auto& [name, value] : job->facts) {
         v1::Fact& fact = *out.add_facts();

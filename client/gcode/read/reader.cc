@@ -178,11 +178,39 @@ absl::Status ReadBlocks(GcodeFile& file) {
   return absl::OkStatus();
 }
 
+// Why `step` may print though no E word does; null if it does not.
+const char* OtherExtruder(const Step& step, std::string_view text) {
+  const Command& c = step.command;
+  if (c.Is('G', 1) && !c.Has('E') && (c.Has('X') || c.Has('Y'))) {
+    if (c.Has('A') || c.Has('B')) {
+      return "no extruding move: filament is moved by an A or B word here, as MakerBot and GPX "
+             "have "
+             "it, and not by E; export the file for a printer with E words (Marlin, Klipper), and "
+             "convert it for the printer afterwards";
+    }
+  }
+  if (c.Is('M', 101) || c.Is('M', 103)) {
+    return "no extruding move: M101 and M103 switch the extruder on and off here, and no E word "
+           "says "
+           "how much it pushes; export the file with E words (Marlin, Klipper)";
+  }
+  const std::string_view words = TrimBlanks(step.line.Text(text));
+  if ((c.Is('M', 3) || c.Is('M', 4)) && words.find('S') != std::string_view::npos) {
+    return "no extruding move: M3 S sets a spindle, a laser or an extruder by its speed here, and "
+           "no "
+           "E word says how much it pushes; only files with E words can be optimised";
+  }
+  return nullptr;
+}
+
 // Why there is no path in `file`: the first line that prints and is not followed, if there is one.
 absl::Status NoPath(const GcodeFile& file) {
   Interpreter interpreter(file.text);
   for (Step step; interpreter.Next(step);) {
     const MachineState& state = interpreter.state();
+    if (const char* other = OtherExtruder(step, file.text)) {
+      return Fault(file, step.line.begin, other);
+    }
     if (MayBePrinting(step, file.text)) {
       return Fault(file, step.line.begin,
                    "no extruding move that can be read; in this one a word is no number, is there "

@@ -22,6 +22,15 @@ TEST(Progress, BarShowsLayersGainAndTimeLeft) {
   EXPECT_EQ(progress.Text(absl::Seconds(10), 30), "tabu  1/4 layers, travel 30.0 ");
 }
 
+TEST(Progress, TimeLeftGoesByWorkAndByWhatFollows) {
+  Progress progress(Progress::Style::kLines, "auto", 3);
+  progress.Expect({{10, 10, 80}, 2});
+  v1::LayerResult layer = Layer(0, 0);
+  progress.Take(layer);
+  // A tenth in 2 s: 20 s in all, and two stages as long.
+  EXPECT_EQ(progress.Text(absl::Seconds(2), 80), "auto: 1/3 layers, 58 s left");
+}
+
 TEST(Progress, LinesHaveNoBar) {
   Progress progress(Progress::Style::kLines, "tabu", 2);
   progress.Take(Layer(0, 0));

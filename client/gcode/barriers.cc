@@ -1,0 +1,316 @@
+#include "client/gcode/barriers.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/gcode/choose/object_orders.h"
+#include "client/gcode/machine/label.h"
+#include "client/gcode/model/feature.h"
+#include "client/gcode/parallel.h"
+#include "client/gcode/text/text.h"
+
+namespace traverse {
+namespace gcode {
+namespace {
+
+enum Cause : uint8_t {
+  kUnknownLine,
+  kToolChange,
+  kTower,
+  kPrintedOddly,
+  kObjectLabel,
+  kKnownLine,
+  kFanChange,
+  kWallOrder,
+  kInfillOrder,
+  kSurfaceOrder,
+  kSupportOrder,
+  kAlone,
+  kCauses,
+};
+
+struct Tally {
+  int64_t paths = 0;
+  int64_t layers = 0;
+  Offset at = UINT32_MAX;  // of the first line that does it, if it is a line
+
+  void Add(const Tally& other) {
+    paths += other.paths;
+    layers += other.layers;
+    at = std::min(at, other.at);
+  }
+};
+
+struct Tallies {
+  std::array<Tally, kCauses> of;
+  std::string_view objects;  // why whole objects stay; empty if they do not
+};
+
+// The line of a link that nothing passes, and what it is.
+struct Obstacle {
+  Cause cause = kKnownLine;
+  Offset at = UINT32_MAX;
+};
+
+Obstacle ObstacleIn(const GcodeFile& file, uint32_t block) {
+  const Block& before = file.blocks[block - 1];
+  const Block& behind = file.blocks[block];
+  if (file.modes[before.mode].tool != file.modes[behind.mode].tool)
+    return {kToolChange, before.end};
+  Interpreter interpreter(std::string_view(file.text).substr(0, behind.begin), before.end,
+                          file.modes[before.mode]);
+  Obstacle found;
+  for (Step step; interpreter.Next(step);) {
+    const auto note = [&](Cause cause, bool always) {
+      if (always || found.at == UINT32_MAX) found = {cause, step.line.begin};
+    };
+    if (step.kind == StepKind::kUnknown) {
+      note(kUnknownLine, true);
+      return found;
+    }
+    if (step.kind == StepKind::kModeChange) {
+      note(step.command.letter == 'T' ? kToolChange : kUnknownLine, true);
+      return found;
+    }
+    if (step.kind == StepKind::kLabel) note(kObjectLabel, found.cause != kObjectLabel);
+    if (step.kind == StepKind::kStay) note(kKnownLine, false);
+  }
+  return found;
+}
+
+// What a layer holds in place.
+class LayerTally {
+ public:
+  LayerTally(const GcodeFile& file, const Layer& layer, const LayerFreedom& freedom,
+             const std::vector<Outline>& outlines, bool fans_are_free)
+      : file_(file),
+        layer_(layer),
+        freedom_(freedom),
+        outlines_(outlines),
+        fans_are_free_(fans_are_free) {}
+
+  Tallies Take(const ObjectOrders& objects) {
+    const auto paths = static_cast<uint32_t>(freedom_.rules.size());
+    if (paths < 2) {
+      Note(kAlone, paths, UINT32_MAX);
+    } else {
+      for (uint32_t path = 1; path < paths; ++path) {
+        if (freedom_.group[path] == path) NoteBoundary(path);
+      }
+      NoteOrders();
+    }
+    for (Tally& tally : tallies_.of) tally.layers = tally.paths > 0 ? 1 : 0;
+    if (tallies_.of[kObjectLabel].paths > 0) {
+      tallies_.objects = objects.ObjectsOf(layer_, freedom_).barrier;
+    }
+    return tallies_;
+  }
+
+ private:
+  void Note(Cause cause, int64_t paths, Offset at) { tallies_.of[cause].Add({paths, 0, at}); }
+
+  uint32_t SizeOfGroup(uint32_t first) const {
+    uint32_t end = first;
+    while (end < freedom_.group.size() && freedom_.group[end] == first) ++end;
+    return end - first;
+  }
+
+  // Between `path`, with which a group begins, and the one before it.
+  void NoteBoundary(uint32_t path) {
+    const uint32_t block = layer_.first_block + path;
+    const uint32_t kept = std::min(SizeOfGroup(path), path - freedom_.group[path - 1]);
+    const auto is = [&](uint32_t of, Feature feature) { return outlines_[of].feature == feature; };
+    for (const uint32_t one : {path - 1, path}) {
+      if (is(one, Feature::kTower) || is(one, Feature::kCustom)) {
+        return Note(kTower, kept, UINT32_MAX);
+      }
+      if ((file_.blocks[layer_.first_block + one].flags & kBlockPinned) != 0) {
+        return Note(kPrintedOddly, kept, file_.blocks[layer_.first_block + one].begin);
+      }
+    }
+    const bool by_line =
+        (file_.blocks[block].link & (kLinkSplits | kLinkFixed | kLinkFixedFrom)) != 0;
+    if (by_line) {
+      const Obstacle obstacle = ObstacleIn(file_, block);
+      if (obstacle.at != UINT32_MAX) return Note(obstacle.cause, kept, obstacle.at);
+    }
+    if (!fans_are_free_ && FanChanges(block)) Note(kFanChange, kept, UINT32_MAX);
+  }
+
+  bool FanChanges(uint32_t block) const {
+    const PrintState& before = file_.states[file_.blocks[block - 1].state_in];
+    const PrintState& behind = file_.states[file_.blocks[block].state_in];
+    for (size_t slot = 0; slot < kSlotCount; ++slot) {
+      if (((kFanSlots >> slot) & 1u) != 0 && before[slot] != behind[slot]) return true;
+    }
+    return false;
+  }
+
+  static bool IsSupport(Feature feature) {
+    return feature == Feature::kSupport || feature == Feature::kSupportInterface;
+  }
+
+  static bool IsSurface(Feature feature) {
+    return feature == Feature::kTopInfill || feature == Feature::kBottomInfill ||
+           feature == Feature::kIroning || feature == Feature::kBridge;
+  }
+
+  // Pairs of paths that could change places, but for what the policy keeps.
+  void NoteOrders() {
+    std::array<std::vector<bool>, kCauses> held;
+    for (auto& paths : held) paths.resize(freedom_.rules.size());
+    for (const auto& [first, second] : freedom_.ordered) {
+      if (freedom_.group[first] != freedom_.group[second]) continue;
+      const Feature a = outlines_[first].feature;
+      const Feature b = outlines_[second].feature;
+      const Cause cause = IsSupport(a) || IsSupport(b)   ? kSupportOrder
+                          : IsSurface(a) || IsSurface(b) ? kSurfaceOrder
+                          : IsWall(a) && IsWall(b)       ? kWallOrder
+                                                         : kInfillOrder;
+      held[cause][first] = held[cause][second] = true;
+    }
+    for (size_t cause = 0; cause < kCauses; ++cause) {
+      const auto paths = std::count(held[cause].begin(), held[cause].end(), true);
+      if (paths > 0) Note(static_cast<Cause>(cause), paths, UINT32_MAX);
+    }
+  }
+
+  const GcodeFile& file_;
+  const Layer& layer_;
+  const LayerFreedom& freedom_;
+  const std::vector<Outline>& outlines_;
+  const bool fans_are_free_;
+  Tallies tallies_;
+};
+
+// "`M400`" of the line at `at`.
+std::string Quoted(const GcodeFile& file, Offset at) {
+  constexpr size_t kMost = 40;
+  const std::string_view line = TrimBlanks(LineAt(file.text, at).Text(file.text));
+  return absl::StrCat("`", std::string(line.substr(0, kMost)), line.size() > kMost ? "..." : "",
+                      "`");
+}
+
+std::string Place(const GcodeFile& file, Offset at) {
+  return absl::StrFormat("%s:%d", file.name, file.LineNumber(at));
+}
+
+std::string TextOf(const GcodeFile& file, Cause cause, const Tallies& tallies) {
+  const Tally& tally = tallies.of[cause];
+  const std::string count = absl::StrFormat("%d paths in %d layers ", tally.paths, tally.layers);
+  const auto line = [&] {
+    return absl::StrCat(Quoted(file, tally.at), " in ", Place(file, tally.at));
+  };
+  switch (cause) {
+    case kUnknownLine:
+      return absl::StrCat(count, "stay beside commands that are not known here, the first of them ",
+                          line(), "; without them in the slicer's custom G-code they could move");
+    case kToolChange:
+      return absl::StrCat(count,
+                          "stay on their side of a change of tool or filament, the first of "
+                          "them in ",
+                          Place(file, tally.at),
+                          "; fewer changes in a layer let more of them move");
+    case kTower:
+      return absl::StrCat(count,
+                          "stay beside the wipe tower or a script, which nothing passes; "
+                          "without the tower in the slicer's settings they could move");
+    case kPrintedOddly:
+      return absl::StrCat(count,
+                          "are printed rising, as a spiral vase is, or with the filament "
+                          "retracted, the first of them in ",
+                          Place(file, tally.at),
+                          "; with vase mode off in the slicer they could move");
+    case kObjectLabel:
+      return absl::StrCat(
+          count, "stay within the label of their object, the first of which is ", line(),
+          tallies.objects.empty() ? "" : ", and whole objects keep their places, because ",
+          std::string(tallies.objects),
+          "; with the slicer's labels of objects off (\"Label objects\", \"Exclude objects\") they "
+          "could mix");
+    case kKnownLine:
+      return absl::StrCat(count,
+                          "stay on their side of a line that nothing passes, the first of "
+                          "them ",
+                          line(),
+                          "; without such lines in the slicer's custom G-code they could move");
+    case kFanChange:
+      return absl::StrCat(count,
+                          "stay on their side of a change of the fan; --allow=fan_order or "
+                          "--policy=free lets them move, or the same fan speed for bridges and "
+                          "overhangs in the slicer");
+    case kWallOrder:
+      return absl::StrCat(count,
+                          "are walls that touch and keep their order; --allow=wall_order or "
+                          "--policy=free lets them change places");
+    case kInfillOrder:
+      return absl::StrCat(count,
+                          "are walls and infill that touch and keep their order; "
+                          "--allow=infill_order lets them change places");
+    case kSurfaceOrder:
+      return absl::StrCat(count,
+                          "are lines of surfaces, bridges or ironing and what lies under "
+                          "them, in the order in which the slicer has them; monotonic lines may "
+                          "mix with --policy=free or with another pattern in the slicer");
+    case kSupportOrder:
+      return absl::StrCat(count,
+                          "are supports and what rests on them, in the order in which the "
+                          "slicer has them; no flag changes that");
+    case kAlone:
+      return absl::StrFormat("%d layers have one path alone, so that nothing can change places",
+                             tally.layers);
+    case kCauses:
+      break;
+  }
+  return "";
+}
+
+}  // namespace
+}  // namespace gcode
+
+std::vector<std::string> DescribeBarriers(const GcodeFile& file, gcode::Policy policy,
+                                          const gcode::Allowance& allow,
+                                          const std::vector<bool>& counted, size_t most) {
+  using gcode::Cause;
+  const gcode::ObjectOrders objects(file);
+  const bool fans_are_free = gcode::IsFree(policy) || allow.fan_order;
+  std::vector<gcode::Tallies> of_layer(file.layers.size());
+  gcode::ParallelFor(of_layer.size(), gcode::ThreadsFor(file.text.size()), [&](size_t i) {
+    if (!counted.empty() && !counted[i]) return;
+    const gcode::Layer& layer = file.layers[i];
+    const gcode::LayerPlan plan =
+        gcode::MakeLayerPlan(file, layer, policy, gcode::Latitude::kFull, allow);
+    of_layer[i] =
+        gcode::LayerTally(file, layer, plan.freedom, plan.outlines, fans_are_free).Take(objects);
+  });
+  gcode::Tallies all;
+  std::map<std::string_view, int64_t> reasons;  // why objects of a layer stay, and in how many
+  for (const gcode::Tallies& layer : of_layer) {
+    for (size_t cause = 0; cause < all.of.size(); ++cause) all.of[cause].Add(layer.of[cause]);
+    if (!layer.objects.empty()) ++reasons[layer.objects];
+  }
+  const auto usual =
+      std::max_element(reasons.begin(), reasons.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  all.objects = usual != reasons.end() ? usual->first : objects.barrier();
+  std::vector<Cause> causes;
+  for (size_t cause = 0; cause < all.of.size(); ++cause) {
+    if (all.of[cause].paths > 0) causes.push_back(static_cast<Cause>(cause));
+  }
+  std::stable_sort(causes.begin(), causes.end(),
+                   [&all](Cause a, Cause b) { return all.of[a].paths > all.of[b].paths; });
+  std::vector<std::string> lines;
+  for (const Cause cause : causes) {
+    if (lines.size() < most) lines.push_back(gcode::TextOf(file, cause, all));
+  }
+  if (lines.empty()) lines.emplace_back("no path is kept from others of its layer");
+  return lines;
+}
+
+}  // namespace traverse

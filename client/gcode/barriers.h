@@ -1,0 +1,29 @@
+// What keeps paths of a sliced file where they are, in words of a person who slices, and what would
+// let them move: a flag, or a setting of the slicer.
+
+#ifndef TRAVERSE_CLIENT_GCODE_BARRIERS_H_
+#define TRAVERSE_CLIENT_GCODE_BARRIERS_H_
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "client/gcode/model/gcode_file.h"
+#include "client/gcode/plan/policy.h"
+
+namespace traverse {
+
+inline constexpr size_t kMostBarriers = 3;
+
+// The `most` weightiest ones of the layers for which `counted` is true, or of all if it is empty,
+// by the number of paths that each keeps from others, a line for each: "120 paths in 12 layers are
+// cut off by ... (first in part.gcode:118); --allow=fan_order lets them move". One line that says
+// so if nothing keeps any path.
+std::vector<std::string> DescribeBarriers(const GcodeFile& file, gcode::Policy policy,
+                                          const gcode::Allowance& allow,
+                                          const std::vector<bool>& counted = {},
+                                          size_t most = kMostBarriers);
+
+}  // namespace traverse
+
+#endif  // TRAVERSE_CLIENT_GCODE_BARRIERS_H_
