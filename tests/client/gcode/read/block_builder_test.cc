@@ -44,8 +44,8 @@ TEST(BlockBuilder, LiftsDoNotEndALayer) {
 }
 
 TEST(BlockBuilder, WhatItDoesNotKnowFixesThePathsOnEitherSide) {
-  for (const char* line : {"M600", "G28", "G4 P5", "T1", "M82", "G20", "G91\nG1 Z1\nG90",
-                           "TIMELAPSE_TAKE_FRAME", "N5 G1 X4*7"}) {
+  for (const char* line :
+       {"M600", "G28", "G4 P5", "T1", "M82", "G20", "G91\nG1 Z1\nG90", "PARK_HEAD", "N5 G1 X4*7"}) {
     const auto file = Read(std::string("M83\nG1 X1 E1\nG0 X5\n") + line + "\nG1 X6 E9\n");
     ASSERT_EQ(file->blocks.size(), 2u) << line;
     EXPECT_TRUE(file->blocks[1].link & kLinkFixed) << line;
@@ -53,7 +53,7 @@ TEST(BlockBuilder, WhatItDoesNotKnowFixesThePathsOnEitherSide) {
 }
 
 TEST(BlockBuilder, TravelBehindWhatItDoesNotKnowSetsThePathBehindItFree) {
-  for (const char* line : {"M600", "G4 P5", "T1", "TIMELAPSE_TAKE_FRAME"}) {
+  for (const char* line : {"M600", "G4 P5", "T1", "PARK_HEAD"}) {
     const auto file = Read(std::string("M83\nG1 X1 E1\n") + line + "\nG0 X5\nG1 X6 E9\n");
     ASSERT_EQ(file->blocks.size(), 2u) << line;
     EXPECT_EQ(file->blocks[1].link & (kLinkFixed | kLinkFixedFrom | kLinkSplits),

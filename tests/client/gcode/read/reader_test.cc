@@ -38,7 +38,7 @@ TEST(ReadGcode, FindsThePathsOfPrusaSlicer) {
   EXPECT_EQ(file->blocks[0].link & kLinkFixed, kLinkFixed);
   EXPECT_EQ(file->blocks[1].link, kLinkRetracts | kLinkWipes);
   EXPECT_EQ(file->blocks[2].link, 0);
-  EXPECT_EQ(file->blocks[0].flags, kBlockProgress);
+  EXPECT_EQ(file->blocks[0].flags, kBlockProgress | kBlockOwnFan);
   EXPECT_EQ(file->progress.size(), 1u);
   EXPECT_TRUE(file->feed_on_own_line);
 }

@@ -138,14 +138,20 @@ TEST(VerifyOrder, NothingPassesAChangeOfTheFanUnderSafeAndBalanced) {
   const auto under = [](const char* fan, const std::string& path) {
     return absl::StrCat(fan, path);
   };
-  const std::string a = under("M106 S9\n", kOne) + under("M106 S99\n", kOther) + "M106 S99\n";
-  const std::string b = under("M106 S99\n", kOther) + under("M106 S9\n", kOne) + "M106 S99\n";
+  const std::string last = Line("Internal infill", "X0 Y9", "X9 Y9") + "M106 S99\n";
+  const std::string a = under("M106 S9\n", kOne) + under("M106 S99\n", kOther) + last;
+  const std::string b =
+      under("M106 S99\n", kOther) + under("M106 S9\n", kOne) + under("M106 S99\n", last);
   EXPECT_EQ(Broken(kHead + a, kHead + b), "order");
   EXPECT_EQ(Broken(kHead + a, kHead + b, Policy::kBalanced), "order");
   EXPECT_EQ(Broken(kHead + a, kHead + b, Policy::kFree), "");
   VerifyPermissions allowed;
   allowed.fan_order = true;
   EXPECT_EQ(Broken(kHead + a, kHead + b, allowed), "");
+  // Where each path of the layer has its own, it goes with the path.
+  EXPECT_EQ(Broken(kHead + under("M106 S9\n", kOne) + under("M106 S99\n", kOther) + "M106 S99\n",
+                   kHead + under("M106 S99\n", kOther) + under("M106 S9\n", kOne) + "M106 S99\n"),
+            "");
   const std::string same = "M106 S9\n" + kTwo;
   EXPECT_EQ(Broken(kHead + same, kHead + "M106 S9\n" + kOther + kOne), "");
 }
