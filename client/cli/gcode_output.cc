@@ -113,6 +113,8 @@ std::string GcodeSummary(const GcodeRewrite& rewrite) {
                             DescribeRewrite(rewrite))
           : absl::StrFormat("%d of %d layers rewritten: %s\n", rewrite.layers_changed,
                             rewrite.layers, DescribeRewrite(rewrite));
+  const std::string rest = DescribeRest(rewrite);
+  if (!rest.empty()) absl::StrAppend(&summary, rest, "\n");
   for (const std::string& line : DescribeLeft(rewrite)) absl::StrAppend(&summary, line, "\n");
   return summary;
 }

@@ -8,10 +8,12 @@
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/barriers.h"
+#include "client/gcode/choose/island_rests.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/plan/travel_rules.h"
+#include "client/gcode/read/least_layer_time.h"
 #include "client/gcode/read/reader.h"
 
 namespace traverse {
@@ -326,6 +328,12 @@ void AddMeasuredFacts(InputJob& job, const GcodeOptions& options) {
       gcode::Duration(totals.seconds) + " (trapezoidal speeds with look-ahead, without heating)");
   for (std::string& barrier : DescribeBarriers(*job.gcode, options.policy, options.allow)) {
     add("held", std::move(barrier));
+  }
+  const int threads = gcode::ThreadsFor(job.gcode->text.size());
+  if (const auto rest = gcode::LeastRestOf(*job.gcode, threads)) {
+    add("least rest of an island",
+        absl::StrFormat("%.1f s before layer %d; least layer time %.4g s", rest->seconds,
+                        rest->layer + 1, gcode::LeastLayerSeconds(job.gcode->text)));
   }
 }
 

@@ -123,6 +123,7 @@ std::string Numbered(const GcodeFile& file, std::string text) {
 GcodeRewrite AsItIs(const GcodeFile& file, GcodeRewrite rewrite) {
   rewrite.after = rewrite.before;
   rewrite.forecast.seconds = rewrite.forecast.given_seconds;
+  rewrite.rest.chosen = rewrite.rest.given;
   rewrite.first_after = rewrite.first_before;
   rewrite.layers_changed = 0;
   rewrite.orders.assign(file.layers.size(), {});
@@ -223,6 +224,7 @@ class Rewriter {
     rewrite.after = Sum(chosen.totals);
     rewrite.layers_changed = chosen.changed;
     rewrite.forecast = chosen.forecast;
+    rewrite.rest = chosen.rest;
     if (!chosen.given.empty()) {
       rewrite.first_before = chosen.given.front();
       rewrite.first_after = chosen.totals.front();
@@ -297,7 +299,7 @@ class Rewriter {
   }
 
   bool RuleOut(VerifyRule rule, const LayerLines::Place& at) {
-    if (at.way) return chooser_.RuleOutWay(at.layer);
+    if (at.way || rule == VerifyRule::kRest) return chooser_.RuleOutWay(at.layer);
     const bool of_path = rule == VerifyRule::kWholePaths || rule == VerifyRule::kDirection ||
                          rule == VerifyRule::kSeam;
     return (of_path && chooser_.RuleOutPath(at.layer, at.line)) ||
@@ -337,6 +339,15 @@ std::string DescribeRewrite(const GcodeRewrite& rewrite) {
       gcode::Percent(before.travel_mm, after.travel_mm), before.retractions, after.retractions,
       before.crossings, after.crossings, gcode::Minutes(before.seconds),
       gcode::Minutes(after.seconds), gcode::Percent(before.seconds, after.seconds));
+}
+
+std::string DescribeRest(const GcodeRewrite& rewrite) {
+  const gcode::RestTotals& rest = rewrite.rest;
+  if (!rest.given || !rest.chosen) return "";
+  const std::string least = absl::StrFormat("least rest of an island %.1f -> %.1f s",
+                                            rest.given->seconds, rest.chosen->seconds);
+  if (rest.required_seconds <= 0) return least;
+  return absl::StrFormat("%s (%.4g s are enough)", least, rest.required_seconds);
 }
 
 std::vector<std::string> DescribeLeft(const GcodeRewrite& rewrite) {

@@ -159,8 +159,17 @@ Json GcodeTotalsJson(const gcode::PrintTotals& totals) {
           {"open_crossings", totals.open_crossings}, {"print_seconds", totals.seconds}};
 }
 
+// Null if no island rests.
+Json RestJson(const gcode::RestTotals& rest) {
+  if (!rest.given || !rest.chosen) return nullptr;
+  return {{"enough_seconds", rest.required_seconds},
+          {"least_given_seconds", rest.given->seconds},
+          {"least_seconds", rest.chosen->seconds}};
+}
+
 Json RewriteJson(const GcodeRewrite& rewrite) {
   return {{"layers_changed", rewrite.layers_changed},
+          {"island_rest", RestJson(rewrite.rest)},
           {"found_given_seconds", rewrite.forecast.given_seconds},
           {"found_seconds", rewrite.forecast.seconds},
           {"given", GcodeTotalsJson(rewrite.before)},

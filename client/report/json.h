@@ -31,6 +31,7 @@ namespace traverse::report {
 //
 // With `rewrite`, what became of the G-code stands behind "total", measured in the two files:
 //   "gcode": {"layers_changed": 12,
+//             "island_rest": {"enough_seconds": , "least_given_seconds": , "least_seconds": },
 //             "given": {"travel_mm": , "extruded_mm": , "retractions": , "crossings": ,
 //                       "open_crossings": , "print_seconds": },
 //             "written": {...}}

@@ -9,17 +9,21 @@
 
 #include "absl/types/span.h"
 #include "client/gcode/choose/choice_row.h"
+#include "client/gcode/choose/island_rests.h"
 #include "client/gcode/choose/layer_column.h"
 #include "client/gcode/choose/merged_orders.h"
 #include "client/gcode/choose/object_orders.h"
-#include "client/gcode/choose/revisits.h"
 #include "client/gcode/parallel.h"
+#include "client/gcode/plan/stacked_islands.h"
 
 namespace traverse::gcode {
 namespace {
 
 // Rounding of sums of lengths.
 constexpr double kSlackMm = 1e-6;
+
+// No travel to a layer takes longer.
+constexpr double kLongestTravelSeconds = 10;
 
 }  // namespace
 
@@ -37,13 +41,15 @@ class LayerChooser::Impl {
         habit_(HabitOfNewWays(file, AllowedUnder(choice.policy, choice.allow), choice.threads)),
         donors_(file),
         room_(file),
-        filler_(file, habit_, donors_, room_),
+        rests_(StackIslands(file, choice.threads),
+               LeastRestSeconds(file, choice.policy, choice.min_revisit_seconds)),
+        filler_(file, habit_, donors_, room_, rests_),
         travel_(LearnTravel(file, habit_.threshold_mm, choice.threads)),
-        revisits_(file, choice.min_revisit_seconds, choice.threads),
         objects_(file),
         columns_(file.layers.size()) {
     assert(usual_tries_ <= tries_.size());
     ParallelFor(columns_.size(), threads_, [this](size_t layer) { FillColumn(layer); });
+    rests_.SetGiven(TimedRow(columns_, false));
     ParallelFor(columns_.size() - 1, threads_, [this](size_t i) { FillWays(i + 1); });
     for (LayerColumn& column : columns_)
       column.totals.no_choice.assign(column.choices.size(), false);
@@ -106,8 +112,10 @@ class LayerChooser::Impl {
   void ChooseRow() {
     std::vector<const ChoiceColumn*> totals;
     for (const LayerColumn& column : columns_) totals.push_back(&column.totals);
-    const std::vector<uint32_t> row = BestRow(totals, policy_, crossings_, fewer_crossings_);
-    for (size_t layer = 0; layer < columns_.size(); ++layer) columns_[layer].Take(row[layer]);
+    do {
+      const std::vector<uint32_t> row = BestRow(totals, policy_, crossings_, fewer_crossings_);
+      for (size_t layer = 0; layer < columns_.size(); ++layer) columns_[layer].Take(row[layer]);
+    } while (RuleOutShortRests(rests_, columns_));
   }
 
   // By which the orders of a layer are merged.
@@ -116,6 +124,7 @@ class LayerChooser::Impl {
     MergeRules rules;
     rules.policy = policy_;
     rules.crossings = crossings_;
+    if (rests_.least_seconds() > 0) rules.islands = rests_.IslandsOf(layer);
     rules.as_many_retractions = std::abs(columns_[layer].totals.inside[0].extra_mm) > kSlackMm;
     if (polish_) {
       rules.freedom = FreedomOf(file_, of_file, policy_, allow_);
@@ -205,7 +214,7 @@ class LayerChooser::Impl {
   void FillColumn(size_t layer) {
     LayerColumn& column = columns_[layer];
     filler_.Begin(layer, column);
-    filler_.AddHidden(column);
+    filler_.AddHidden(layer, column);
     MergeRules rules = RulesOf(layer);
     AddMerged(layer, tries_, rules, column);
     if (crossings_ == Crossings::kFewer) {
@@ -231,42 +240,34 @@ class LayerChooser::Impl {
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
   }
 
+  // A way that must not be chosen is not written. The file's own orders one after the other may
+  // always be.
   void FillWays(size_t layer) {
     LayerColumn& column = columns_[layer];
-    column.totals.ways.clear();
-    for (const LayerChoice& before : columns_[layer - 1].choices) {
-      for (const LayerChoice& choice : column.choices) {
-        std::string text;
-        column.writer->WriteWay(before.order.back(), choice.order.front(), before.behind, text);
-        column.totals.ways.push_back(
-            Measure(file_, text, before.behind, &column.writer->walls(), column.writer->room()));
+    ChoiceColumn& totals = column.totals;
+    totals.ways.clear();
+    totals.no_way.clear();
+    for (uint32_t before = 0; before < columns_[layer - 1].choices.size(); ++before) {
+      for (uint32_t choice = 0; choice < column.choices.size(); ++choice) {
+        totals.ways.emplace_back();
+        totals.no_way.push_back(MayNotFollow(layer, before, choice, kLongestTravelSeconds));
+        if (totals.no_way.back()) continue;
+        totals.ways.back() = MeasureWay(file_, columns_[layer - 1], before, column, choice);
+        const double seconds = totals.ways.back().nominal_seconds;
+        totals.no_way.back() = MayNotFollow(layer, before, choice, seconds);
       }
     }
-    column.totals.no_way.assign(column.totals.ways.size(), false);
-    ForbidWays(layer);
   }
 
-  // The file's own orders one after the other may always be chosen.
-  void ForbidWays(size_t layer) {
-    const Refusals& refusals = columns_[layer].refusals;
-    const auto timed = [this](size_t l, size_t choice) {
-      const LayerColumn& column = columns_[l];
-      return TimedOrder{&column.choices[choice].order, column.totals.inside[choice].seconds};
-    };
-    const auto link = [&](uint32_t before, uint32_t choice) {
-      return LinkEnds{columns_[layer - 1].choices[before].order.back(),
-                      columns_[layer].choices[choice].order.front()};
-    };
-    const auto choices = static_cast<uint32_t>(columns_[layer].choices.size());
-    for (uint32_t before = 0; before < columns_[layer - 1].choices.size(); ++before) {
-      for (uint32_t choice = 0; choice < choices; ++choice) {
-        if (before == 0 && choice == 0) continue;
-        columns_[layer].totals.no_way[before * choices + choice] =
-            refusals.RefusesWay(before, choice, link(before, choice)) ||
-            revisits_.TooSoon(layer, timed(layer - 1, before), timed(layer, choice),
-                              timed(layer - 1, 0), timed(layer, 0));
-      }
-    }
+  // With travel of `travel_seconds` to `layer` an island would rest too short, or the verifier
+  // refuses that travel.
+  bool MayNotFollow(size_t layer, uint32_t before, uint32_t choice, double travel_seconds) const {
+    if (before == 0 && choice == 0) return false;
+    const LayerChoice& from = columns_[layer - 1].choices[before];
+    const LayerChoice& to = columns_[layer].choices[choice];
+    return columns_[layer].refusals.RefusesWay(before, choice,
+                                               {from.order.back(), to.order.front()}) ||
+           rests_.TooShort(layer, from.times, {&to.times, travel_seconds});
   }
 
   // The ways are written one after the other, for each needs to know where the extruder's register
@@ -276,6 +277,8 @@ class LayerChooser::Impl {
     ChosenLayers chosen;
     chosen.texts.resize(columns_.size());
     for (size_t layer = 0; layer < columns_.size(); ++layer) NoteTotals(layer, chosen);
+    chosen.rest = {rests_.least_seconds(), rests_.LeastOf(TimedRow(columns_, false)),
+                   rests_.LeastOf(TimedRow(columns_, true))};
     chosen.forecast = ForecastOf(columns_, travel_);
     std::vector<size_t> left;
     std::vector<PartStart> starts;  // [layer] of its paths
@@ -361,9 +364,9 @@ class LayerChooser::Impl {
   const RetractionHabit habit_;
   const LinkDonors donors_;
   const HeadRoom room_;
+  IslandRests rests_;
   const ColumnFiller filler_;
   const std::vector<TravelModel> travel_;  // [layer]
-  const Revisits revisits_;
   const ObjectOrders objects_;
   std::vector<LayerColumn> columns_;  // [layer]
   int64_t fewer_crossings_ = 0;

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "client/gcode/choose/forecast.h"
+#include "client/gcode/choose/island_rests.h"
 #include "client/gcode/choose/order_polish.h"
 #include "client/gcode/measure/print_totals.h"
 #include "client/gcode/plan/policy.h"
@@ -26,6 +27,13 @@ namespace traverse::gcode {
 
 // One order for each layer of a file; empty for the file's own order.
 using FileOrder = std::vector<LayerOrder>;
+
+// The shortest rest of an island that rests in the file, before and after.
+struct RestTotals {
+  double required_seconds = 0;  // that are enough; 0: no island must rest
+  std::optional<LeastRest> given;
+  std::optional<LeastRest> chosen;
+};
 
 // A layer as written. `paths` is empty if the paths are as in the file.
 struct LayerText {
@@ -43,6 +51,7 @@ struct ChosenLayers {
   int64_t changed = 0;              // layers in another order than the file's
   std::vector<size_t> blocked;      // layers with orders found where something is in the way
   Forecast forecast;                // of all travel between paths
+  RestTotals rest;                  // of islands
 
   // Appends all layers, from the first path to the end of the last one.
   void AppendTo(const GcodeFile& file, std::string& text) const;
@@ -53,7 +62,9 @@ struct ChoiceOptions {
   Crossings crossings = Crossings::kKeep;
   Allowance allow = {};
   int threads = 1;
-  double min_revisit_seconds = 0;  // see revisits.h
+  // No island rests shorter than so long, or than in the file (island_rests.h). Except under
+  // Policy::kFree none rests shorter than the file's least layer time either.
+  double min_revisit_seconds = 0;
 
   // If set, small changes improve the orders found, within this limit.
   std::optional<PolishLimit> polish = {};

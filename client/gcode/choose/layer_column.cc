@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "client/gcode/measure/layer_meter.h"
+#include "client/gcode/read/least_layer_time.h"
 
 namespace traverse::gcode {
 namespace {
@@ -63,12 +64,13 @@ size_t PlaceOfLine(LayerColumn& column, size_t line) {
 }
 
 ColumnFiller::ColumnFiller(const GcodeFile& file, const RetractionHabit& habit,
-                           const LinkDonors& donors, const HeadRoom& room)
+                           const LinkDonors& donors, const HeadRoom& room, const IslandRests& rests)
     : file_(file),
       habit_(habit),
       plain_habit_(SparingNoWalls(habit)),
       donors_(donors),
-      room_(room) {}
+      room_(room),
+      rests_(rests) {}
 
 void ColumnFiller::Begin(size_t layer, LayerColumn& column) const {
   const Layer& of_file = file_.layers[layer];
@@ -81,7 +83,12 @@ void ColumnFiller::Begin(size_t layer, LayerColumn& column) const {
   choice.behind = StartBehind(file_, file_.blocks[of_file.end_block - 1]);
   choice.as_sliced = true;
   choice.resets_e = Resets(file_.PathsText(of_file));
-  column.totals.inside.push_back(MeasurePaths(file_, of_file, column.writer->walls()));
+  TextMoments moments;
+  moments.offsets = PathMarks(file_, of_file);
+  const VisibleWalls& walls = column.writer->walls();
+  column.totals.inside.push_back(MeasurePaths(file_, of_file, walls, &moments));
+  choice.times = rests_.TimesOf(layer, choice.order, of_file.first_block, moments.seconds);
+  column.given_travel_seconds = MeasureWay(file_, of_file, walls).nominal_seconds;
   if (!column.writer->hides() || std::abs(column.totals.inside[0].extra_mm) <= kLeastExtraMm) {
     return;
   }
@@ -91,17 +98,17 @@ void ColumnFiller::Begin(size_t layer, LayerColumn& column) const {
   choice.writer = column.writer.get();
 }
 
-void ColumnFiller::AddHidden(LayerColumn& column) const {
+void ColumnFiller::AddHidden(size_t layer, LayerColumn& column) const {
   if (!column.writer->ChangesGiven()) return;
   const LayerOrder given = column.given_order();
-  Add(given, *column.writer, column);
+  Add(given, layer, *column.writer, column);
 }
 
 void ColumnFiller::Add(const LayerOrder& order, size_t layer, LayerColumn& column) const {
   for (const LayerChoice& known : column.choices) {
     if (known.order == order) return;
   }
-  const std::string sparing = Add(order, *column.writer, column);
+  const std::string sparing = Add(order, layer, *column.writer, column);
   if (!habit_.spares_walls || habit_.avoids_walls) return;
   const std::vector<PrintTotals>& inside = column.totals.inside;
   if (inside.back().open_crossings >= inside.front().open_crossings) return;
@@ -110,22 +117,24 @@ void ColumnFiller::Add(const LayerOrder& order, size_t layer, LayerColumn& colum
         file_, file_.layers[layer], plain_habit_, donors_, room_.Of(layer), column.writer->hides());
   }
   // A choice that is equal would have ways to and from all those of the layers beside it.
-  if (Add(order, *column.plain, column) != sparing) return;
+  if (Add(order, layer, *column.plain, column) != sparing) return;
   column.choices.pop_back();
   column.totals.inside.pop_back();
 }
 
-std::string ColumnFiller::Add(const LayerOrder& order, const LayerWriter& writer,
+std::string ColumnFiller::Add(const LayerOrder& order, size_t layer, const LayerWriter& writer,
                               LayerColumn& column) const {
   LayerChoice& choice = column.choices.emplace_back();
   choice.order = order;
   choice.writer = &writer;
   choice.start = StartOfPaths(file_, order.front());
   std::string text;
-  choice.behind = writer.WritePaths(order, choice.start, text);
+  TextMoments moments;
+  choice.behind = writer.WriteBarePaths(order, choice.start, text, &moments.offsets);
   choice.resets_e = Resets(text);
   column.totals.inside.push_back(
-      Measure(file_, text, choice.start, &column.writer->walls(), writer.room()));
+      Measure(file_, text, choice.start, &column.writer->walls(), writer.room(), &moments));
+  choice.times = rests_.TimesOf(layer, order, file_.layers[layer].first_block, moments.seconds);
   return text;
 }
 
@@ -139,6 +148,48 @@ std::vector<const LayerOrder*> FastestOrders(const LayerColumn& column, size_t m
   std::vector<const LayerOrder*> orders = {&column.given_order()};
   for (const size_t c : numbers) orders.push_back(&column.choices[c].order);
   return orders;
+}
+
+double LeastRestSeconds(const GcodeFile& file, Policy policy, double min_seconds) {
+  if (IsFree(policy)) return min_seconds;
+  return std::max(min_seconds, LeastLayerSeconds(file.text));
+}
+
+PrintTotals MeasureWay(const GcodeFile& file, const LayerColumn& before, uint32_t from,
+                       const LayerColumn& column, uint32_t to) {
+  const LayerChoice& choice = before.choices[from];
+  std::string text;
+  column.writer->WriteWay(choice.order.back(), column.choices[to].order.front(), choice.behind,
+                          text);
+  return Measure(file, text, choice.behind, &column.writer->walls(), column.writer->room());
+}
+
+std::vector<TimedLayer> TimedRow(const std::vector<LayerColumn>& columns, bool as_chosen) {
+  std::vector<TimedLayer> row;
+  for (size_t layer = 0; layer < columns.size(); ++layer) {
+    const LayerColumn& column = columns[layer];
+    const size_t chosen = as_chosen ? column.chosen : 0;
+    TimedLayer& timed = row.emplace_back(TimedLayer{&column.choices[chosen].times, 0});
+    if (layer == 0) continue;
+    timed.travel_seconds =
+        as_chosen ? column.totals.Way(columns[layer - 1].chosen, chosen).nominal_seconds
+                  : column.given_travel_seconds;
+  }
+  return row;
+}
+
+bool RuleOutShortRests(const IslandRests& rests, std::vector<LayerColumn>& columns) {
+  bool any = false;
+  for (const IslandRests::Pair& pair : rests.TooShortBeyond(TimedRow(columns, true))) {
+    for (size_t layer = pair.layer + 1; layer-- > pair.below;) {
+      LayerColumn& column = columns[layer];
+      if (column.chosen == 0 || column.totals.no_choice[column.chosen]) continue;
+      column.totals.no_choice[column.chosen] = true;
+      any = true;
+      break;
+    }
+  }
+  return any;
 }
 
 Forecast ForecastOf(const std::vector<LayerColumn>& columns,

@@ -11,7 +11,9 @@
 
 #include "client/gcode/choose/choice_row.h"
 #include "client/gcode/choose/forecast.h"
+#include "client/gcode/choose/island_rests.h"
 #include "client/gcode/choose/refusals.h"
+#include "client/gcode/plan/policy.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/plan/travel_rules.h"
 #include "client/gcode/write/layer_writer.h"
@@ -27,6 +29,7 @@ struct LayerChoice {
   PartStart behind;
   bool as_sliced = false;  // as it is in the file
   bool resets_e = false;   // the register is set on the way, and does not count through
+  IslandTimes times;
 };
 
 // A layer and what it may be. choices[0] is the order of the file.
@@ -37,6 +40,7 @@ struct LayerColumn {
   ChoiceColumn totals;
   bool blocked = false;  // in an order that was found, something stands in the way
   uint32_t chosen = 0;
+  double given_travel_seconds = 0;  // nominal, to the layer in the file
   Refusals refusals;
   std::vector<size_t> ends;  // see PlaceOfLine
 
@@ -63,33 +67,50 @@ class ColumnFiller {
  public:
   // All outlive the filler and the columns.
   ColumnFiller(const GcodeFile& file, const RetractionHabit& habit, const LinkDonors& donors,
-               const HeadRoom& room);
+               const HeadRoom& room, const IslandRests& rests);
 
   // The column of layer `layer`, with the file's own order.
   void Begin(size_t layer, LayerColumn& column) const;
 
   // Adds the file's own order as it is written if what is hidden does not retract, if that makes a
   // difference.
-  void AddHidden(LayerColumn& column) const;
+  void AddHidden(size_t layer, LayerColumn& column) const;
 
-  // Adds `order` with walls spared, unless the column has it. Where that leaves fewer ways across
-  // them with an open nozzle than the file has, there may be time to win: so it is written as the
-  // file would have it as well.
+  // Adds `order`, of layer `layer`, with walls spared, unless the column has it. Where that leaves
+  // fewer ways across them with an open nozzle than the file has, there may be time to win: so it
+  // is written as the file would have it as well.
   void Add(const LayerOrder& order, size_t layer, LayerColumn& column) const;
 
  private:
   // Returns the text of its paths.
-  std::string Add(const LayerOrder& order, const LayerWriter& writer, LayerColumn& column) const;
+  std::string Add(const LayerOrder& order, size_t layer, const LayerWriter& writer,
+                  LayerColumn& column) const;
 
   const GcodeFile& file_;
   const RetractionHabit& habit_;
   const RetractionHabit plain_habit_;
   const LinkDonors& donors_;
   const HeadRoom& room_;
+  const IslandRests& rests_;
 };
 
 // The file's own order, and the `most` of the others that take the least time.
 std::vector<const LayerOrder*> FastestOrders(const LayerColumn& column, size_t most);
+
+// How long islands must rest under `policy`: for the file's least layer time, except where
+// IsFree(policy), and for `min_seconds`.
+double LeastRestSeconds(const GcodeFile& file, Policy policy, double min_seconds);
+
+// Choice `to` of `column` behind choice `from` of the layer before: the travel between them.
+PrintTotals MeasureWay(const GcodeFile& file, const LayerColumn& before, uint32_t from,
+                       const LayerColumn& column, uint32_t to);
+
+// The layers of the file in its own order, or as chosen.
+std::vector<TimedLayer> TimedRow(const std::vector<LayerColumn>& columns, bool as_chosen);
+
+// Where an island of the chosen row rests too short that lies on a layer before the last one, rules
+// out what was chosen for its layer; else for the layers below. True if there is such an island.
+bool RuleOutShortRests(const IslandRests& rests, std::vector<LayerColumn>& columns);
 
 // Of all layers, with the measured ways to them. `travel` has their travel.
 Forecast ForecastOf(const std::vector<LayerColumn>& columns,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/container/flat_hash_map.h"
+#include "client/gcode/choose/island_orders.h"
 
 namespace traverse::gcode {
 namespace {
@@ -161,6 +162,7 @@ class LayerMerge {
   LayerMerge(const LayerWriter& writer, const TravelModel& travel,
              const std::vector<LayerOrder>& found, const MergeRules& rules)
       : rules_(rules),
+        outlines_(writer.outlines()),
         given_(writer.GivenOrder()),
         found_(found),
         ways_(writer, travel, rules),
@@ -195,6 +197,7 @@ class LayerMerge {
     best_between = Better(strict_, best_between, {}, Effort::kKick);
     if (best_between != given_) merged.push_back(std::move(best_between));
     AddSparing(merged);
+    if (!rules_.islands.empty()) AddRested(merged);
     return merged;
   }
 
@@ -258,7 +261,29 @@ class LayerMerge {
     if (order != given_) merged.push_back(std::move(order));
   }
 
+  // The best of `merged`, and the best of those that begin and end as the file does, with their
+  // islands in other sequences; within these they may become better.
+  void AddRested(std::vector<LayerOrder>& merged) const {
+    if (merged.empty() || !rules_.freedom) return;
+    const IslandParts parts{rules_.islands, rules_.freedom->group};
+    LayerFreedom freedom = *rules_.freedom;
+    freedom.group = IslandGroups(parts);
+    const OrderPolisher polisher(given_.front().block, outlines_, freedom, estimate_,
+                                 *rules_.polish);
+    const auto quicker = [this](const LayerOrder& a, const LayerOrder& b) {
+      return quick_.IsBetter(quick_.TotalsOf(a), quick_.TotalsOf(b));
+    };
+    std::vector<LayerOrder> bases = {*std::min_element(merged.begin(), merged.end(), quicker)};
+    if (EndsAlike(merged.back(), given_)) bases.push_back(merged.back());
+    for (const LayerOrder& base : bases) {
+      for (const LayerOrder& order : IslandOrders(given_, base, parts)) {
+        merged.push_back(polisher.Polish(order, quick_, Effort::kSettle));
+      }
+    }
+  }
+
   const MergeRules& rules_;
+  const std::vector<Outline>& outlines_;
   const LayerOrder given_;
   const std::vector<LayerOrder> found_;
   std::vector<LayerOrder> all_;  // of them and given

@@ -28,6 +28,9 @@ struct MergeRules {
   // [place of an order] LayerWriter::PlacesOf it; empty for an order without moved objects.
   std::vector<uint32_t> places = {};
 
+  // [path] the island that it lies in; set if islands must rest (island_rests.h).
+  std::vector<uint32_t> islands = {};
+
   // If set, small changes improve the orders too (order_polish.h): what may change in the layer,
   // and for how long. Either both are set or none.
   std::optional<LayerFreedom> freedom = {};
@@ -40,7 +43,8 @@ struct MergeRules {
 // The orders of `found`, each improved with runs of the others and of the file's own order, and
 // brought within the limits of `rules` as far as estimates tell (order_merge.h). Of those that
 // begin and end with the same paths as the file only the best stays. Where IsFree(policy) each is
-// also tried with its paths in the order of the file.
+// also tried with its paths in the order of the file. Where islands must rest,
+// the best ones are also tried with their islands in other sequences (island_orders.h).
 std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelModel& travel,
                                      const std::vector<LayerOrder>& found, const MergeRules& rules);
 

@@ -2,6 +2,7 @@
 
 #include <cassert>
 
+#include "client/gcode/measure/nominal_time.h"
 #include "client/gcode/measure/print_meter.h"
 #include "client/gcode/model/loops.h"
 #include "client/gcode/model/outline.h"
@@ -21,18 +22,72 @@ bool IsBlocked(const Step& step, const MachineState& machine, const Room& room) 
 
 }  // namespace
 
+std::vector<size_t> PathMarks(const GcodeFile& file, const Layer& layer) {
+  const Offset begin = file.blocks[layer.first_block].begin;
+  std::vector<size_t> marks;
+  for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
+    marks.push_back(file.blocks[b].begin - begin);
+    marks.push_back(file.blocks[b].end - begin);
+  }
+  return marks;
+}
+
+namespace {
+
+// Notes the moments of a text while its steps are followed.
+class MomentNotes {
+ public:
+  // `moments` may be null.
+  explicit MomentNotes(TextMoments* moments) : moments_(moments) {}
+
+  // The line at `offset` is reached.
+  void Reach(size_t offset) {
+    if (moments_ == nullptr) return;
+    std::vector<double>& known = moments_->seconds;
+    while (known.size() < moments_->offsets.size() && moments_->offsets[known.size()] <= offset) {
+      known.push_back(seconds_);
+    }
+  }
+  void Add(double seconds) { seconds_ += seconds; }
+  double seconds() const { return seconds_; }
+
+ private:
+  TextMoments* moments_;
+  double seconds_ = 0;
+};
+
+}  // namespace
+
 PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStart& start,
-                    const VisibleWalls* walls, const Room* room) {
+                    const VisibleWalls* walls, const Room* room, TextMoments* moments) {
   PrintMeter meter(file.profile, DynamicsOf(file.profile, start.state, file.setters), walls);
   Interpreter interpreter(text, 0, start.machine);
+  MomentNotes notes(moments);
   int64_t blocked = 0;
   for (Step step; interpreter.Next(step);) {
+    notes.Reach(step.line.begin);
     meter.Follow(step, interpreter);
+    notes.Add(NominalSeconds(step, interpreter.state(), file.profile));
     if (room != nullptr && IsBlocked(step, interpreter.state(), *room)) ++blocked;
   }
+  notes.Reach(text.size());
   PrintTotals totals = meter.Finish();
+  totals.nominal_seconds = notes.seconds();
   totals.blocked = blocked;
   return totals;
+}
+
+double MeasureMoments(const GcodeFile& file, std::string_view text, const PartStart& start,
+                      TextMoments& moments, const VisitStep& visit) {
+  Interpreter interpreter(text, 0, start.machine);
+  MomentNotes notes(&moments);
+  for (Step step; interpreter.Next(step);) {
+    notes.Reach(step.line.begin);
+    if (visit) visit(step, notes.seconds());
+    notes.Add(NominalSeconds(step, interpreter.state(), file.profile));
+  }
+  notes.Reach(text.size());
+  return notes.seconds();
 }
 
 PartStart StartBehind(const GcodeFile& file, const Block& block) {
@@ -43,10 +98,11 @@ PartStart StartBehind(const GcodeFile& file, const Block& block) {
   return start;
 }
 
-PrintTotals MeasurePaths(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls) {
+PrintTotals MeasurePaths(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls,
+                         TextMoments* moments) {
   const Block& first = file.blocks[layer.first_block];
   const PartStart start{StateAt(file, first), file.states[first.state_in]};
-  return Measure(file, file.PathsText(layer), start, &walls);
+  return Measure(file, file.PathsText(layer), start, &walls, nullptr, moments);
 }
 
 PrintTotals MeasureWay(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls) {

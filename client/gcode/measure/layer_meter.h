@@ -3,7 +3,9 @@
 #ifndef TRAVERSE_CLIENT_GCODE_MEASURE_LAYER_METER_H_
 #define TRAVERSE_CLIENT_GCODE_MEASURE_LAYER_METER_H_
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -20,16 +22,35 @@ struct PartStart {
   PrintState state;
 };
 
+// Moments of a text: when the lines that begin at `offsets` or behind it are reached, in nominal
+// seconds from its beginning.
+struct TextMoments {
+  std::vector<size_t> offsets;  // ascending
+  std::vector<double> seconds;  // [offset], as measured
+};
+
+// Where in the text of a layer's paths (GcodeFile::PathsText) each path begins and ends.
+std::vector<size_t> PathMarks(const GcodeFile& file, const Layer& layer);
+
 // The totals of the lines `text`, from standstill to standstill. Counts travel moves across
-// `walls`, and moves without filament that are not clear in `room`, unless these are null.
+// `walls`, and moves without filament that are not clear in `room`, unless these are null. Measures
+// `moments` too, unless that is null.
 PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStart& start,
-                    const VisibleWalls* walls = nullptr, const Room* room = nullptr);
+                    const VisibleWalls* walls = nullptr, const Room* room = nullptr,
+                    TextMoments* moments = nullptr);
+
+// The nominal seconds of the lines `text`. Measures `moments`, and calls `visit`, if it is set,
+// with each step and when it begins.
+using VisitStep = std::function<void(const Step& step, double seconds)>;
+double MeasureMoments(const GcodeFile& file, std::string_view text, const PartStart& start,
+                      TextMoments& moments, const VisitStep& visit = {});
 
 // The state of the machine after block `block`.
 PartStart StartBehind(const GcodeFile& file, const Block& block);
 
 // The paths of a layer as they are in the file, and the travel between them.
-PrintTotals MeasurePaths(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls);
+PrintTotals MeasurePaths(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls,
+                         TextMoments* moments = nullptr);
 
 // The travel to the first path of `layer` from the end of the layer before; empty for the first.
 PrintTotals MeasureWay(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls);

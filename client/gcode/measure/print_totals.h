@@ -18,6 +18,7 @@ struct PrintTotals {
   int64_t blocked = 0;         // moves where something that stands is in the way
   double extra_mm = 0;  // filament pushed at a standstill beyond what was retracted, or short of it
   double seconds = 0;   // see motion_planner.h for the model
+  double nominal_seconds = 0;  // if every move is as fast as it states; dwells included
 
   PrintTotals& operator+=(const PrintTotals& other) {
     extruded_mm += other.extruded_mm;
@@ -29,6 +30,7 @@ struct PrintTotals {
     blocked += other.blocked;
     extra_mm += other.extra_mm;
     seconds += other.seconds;
+    nominal_seconds += other.nominal_seconds;
     return *this;
   }
 };

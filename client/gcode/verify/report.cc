@@ -23,13 +23,14 @@ constexpr RuleWords kRules[] = {
     {"speeds", "moves have the speeds and accelerations of their kind"},
     {"wipes", "wipes lie on their paths, and none is lost"},
     {"commands", "no command moves into a path, and none is without effect"},
-    {"progress", "the sequence of M73 is the same"},
+    {"progress", "M73 keeps its sequence, and stands where what it states is true"},
     {"scripts", "nothing from the scripts comes between paths"},
     {"path_ends", "moves that continue along a path stay with its end"},
     {"bounds", "no travel leaves the area in which the original moves"},
     {"step_order", "travel takes its steps in an order that travel of the original has"},
     {"kept_ways", "between paths that still follow each other nothing changes"},
     {"obstacles", "no travel leads into what stands, or nearer to it than in the original"},
+    {"rest", "islands rest as long as in the original, or for the least layer time"},
 };
 static_assert(std::size(kRules) == static_cast<size_t>(VerifyRule::kCount));
 

@@ -36,6 +36,7 @@ enum class VerifyRule : uint8_t {
   kStepOrder,    // in which travel retracts, rises, moves, descends and primes
   kKeptWays,     // between two paths that follow each other as in the original
   kObstacles,    // nothing that stands is in the way of the head
+  kRest,         // of islands before they are printed on
   kCount,
 };
 

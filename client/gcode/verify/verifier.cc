@@ -16,6 +16,7 @@
 #include "client/gcode/verify/match/moved_objects.h"
 #include "client/gcode/verify/match/path_lines.h"
 #include "client/gcode/verify/rules/obstacles.h"
+#include "client/gcode/verify/rules/rest.h"
 #include "client/gcode/verify/rules/rules.h"
 #include "client/gcode/verify/same_print.h"
 #include "client/gcode/verify/stated_digest.h"
@@ -59,6 +60,9 @@ class Verifier {
     context_.settings = ReadSettings(original.text);
     obstacles_.emplace(context_.settings);
     report_.permissions = context_.permissions;
+    const bool rests =
+        !context_.permissions.is_free() && (rules_ & RuleBit(VerifyRule::kRest)) != 0;
+    if (rests) rest_.emplace(context_.settings.least_layer_seconds);
   }
 
   VerifyReport Verify();
@@ -70,6 +74,7 @@ class Verifier {
   bool SamePrint();
   void CheckChunk();
   std::vector<LayerShape> ShapesOfChunk();
+  std::vector<double> HeightsOfLayers();
   void CheckLayer(const LayerPair& layer, LayerFindings& findings) const;
   void CheckObstacles(size_t layers);
   void CheckLabels(size_t first, size_t end);
@@ -100,8 +105,10 @@ class Verifier {
   uint32_t sections_ = 0;              // that were compared
   Observations seen_was_;
   Observations seen_is_;
-  std::vector<Progress> progress_was_;
-  std::vector<Progress> progress_is_;
+  ProgressLog progress_was_;
+  ProgressLog progress_is_;
+  std::optional<RestWatch> rest_;  // unless islands need not rest
+  double last_z_mm_ = 0;           // of the layers checked
   std::vector<Finding> findings_;
   PathLines path_lines_;
   std::vector<uint32_t> layer_lines_;  // where the layers of the optimised file begin
@@ -230,12 +237,25 @@ std::vector<LayerShape> Verifier::ShapesOfChunk() {
   return shapes;
 }
 
+// [layer] of the chunk: above what was printed before. 0 where it goes down.
+std::vector<double> Verifier::HeightsOfLayers() {
+  std::vector<double> heights;
+  for (const TraceLayer& layer : chunk_was_.layers) {
+    const TraceSection& section = chunk_was_.sections[layer.first_section];
+    const double z_mm = chunk_was_.paths[section.first_path].z_mm;
+    heights.push_back(std::max(z_mm - std::exchange(last_z_mm_, z_mm), 0.0));
+  }
+  return heights;
+}
+
 void Verifier::CheckChunk() {
   const size_t layers = std::min(chunk_was_.layers.size(), chunk_is_.layers.size());
   const bool hides = context_.permissions.hides_travel();
   const std::vector<LayerShape> shapes = hides ? ShapesOfChunk() : std::vector<LayerShape>();
   std::vector<LayerFindings> found(layers);
   std::vector<PathLines> lines(layers);
+  std::vector<PrintedIslands> islands(layers);
+  const std::vector<double> heights = HeightsOfLayers();
   ParallelFor(layers, threads_, [&](size_t i) {
     LayerPair layer(chunk_was_, chunk_is_, i);
     if (hides) {
@@ -244,6 +264,7 @@ void Verifier::CheckChunk() {
     }
     lines[i].Add(layer);
     CheckLayer(layer, found[i]);
+    if (rest_) islands[i] = FindPrintedIslands(layer, heights[i]);
     if (more_ || i + 1 < layers) return;
     ObserveLastRetraction(layer, found[i]);
     ObserveLastSpeeds(layer, found[i]);
@@ -255,6 +276,7 @@ void Verifier::CheckChunk() {
     seen_was_.Append(found[i].was);
     seen_is_.Append(found[i].is);
     findings_.insert(findings_.end(), found[i].breaks.begin(), found[i].breaks.end());
+    if (rest_) rest_->Take(islands[i], chunk_was_.layers[i].index, findings_);
   }
   if ((rules_ & RuleBit(VerifyRule::kObstacles)) != 0) CheckObstacles(layers);
   ObserveBounds(chunk_was_, seen_was_.box);
@@ -263,11 +285,8 @@ void Verifier::CheckChunk() {
   CheckStandstill(chunk_was_, chunk_is_, findings_);
   CheckSetBacks(chunk_was_, chunk_is_, findings_);
   CheckWipeMarks(chunk_was_, chunk_is_, findings_);
-  const auto append = [](const std::vector<Progress>& from, std::vector<Progress>& to) {
-    to.insert(to.end(), from.begin(), from.end());
-  };
-  append(chunk_was_.progress, progress_was_);
-  append(chunk_is_.progress, progress_is_);
+  progress_was_.Append(chunk_was_);
+  progress_is_.Append(chunk_is_);
   // What follows the last path is a script.
   if (!more_) {
     CheckLeaving(chunk_was_, chunk_is_, findings_);

@@ -11,36 +11,10 @@
 #include "client/gcode/write/label_lines.h"
 #include "client/gcode/write/link.h"
 #include "client/gcode/write/link_writer.h"
+#include "client/gcode/write/progress_lines.h"
 #include "client/gcode/write/turned_departure.h"
 
 namespace traverse::gcode {
-namespace {
-
-// The M73 lines of a layer: each is written where as many paths are done as the file has before it,
-// or one more if it stands within a path; but not behind the layer's last one, for where layers are
-// told apart by their height alone, it would be the next layer's.
-class ProgressLines {
- public:
-  ProgressLines(const GcodeFile& file, Offset begin)
-      : file_(file), next_(std::lower_bound(file.progress.begin(), file.progress.end(), begin)) {}
-
-  void WriteUpTo(Offset offset, GcodeOut& out) {
-    for (; next_ != file_.progress.end() && *next_ < offset; ++next_) {
-      out.Raw(LineAt(file_.text, *next_).Raw(file_.text));
-    }
-  }
-
-  // What a boundary has of them stays in it.
-  void SkipTo(Offset offset) {
-    while (next_ != file_.progress.end() && *next_ < offset) ++next_;
-  }
-
- private:
-  const GcodeFile& file_;
-  std::vector<Offset>::const_iterator next_;
-};
-
-}  // namespace
 
 PartStart StartOfPaths(const GcodeFile& file, const Placement& first) {
   const PlacedPath path(file, first);
@@ -136,13 +110,36 @@ PartStart LayerWriter::WriteWay(const Placement& before, const Placement& first,
 PartStart LayerWriter::WritePaths(const LayerOrder& order, const PartStart& start,
                                   std::string& text, std::vector<size_t>* ends,
                                   bool as_sliced) const {
-  const bool given = IsGiven(order);
-  as_sliced = given && (as_sliced || !ChangesGiven());
+  if (StaysAsText(order, start, as_sliced)) {
+    return WriteBarePaths(order, start, text, nullptr, as_sliced);
+  }
+  std::string bare;
+  std::vector<size_t> marks;
+  const PartStart behind = WriteBarePaths(order, start, bare, &marks, as_sliced);
+  const std::vector<uint32_t> places = PlacesOf(order);
+  const bool moved = !std::is_sorted(places.begin(), places.end());
+  ProgressLines(file_, layer_, moved).Insert(bare, start, marks, text);
+  for (size_t i = 1; ends != nullptr && i < marks.size(); i += 2) ends->push_back(marks[i]);
+  return behind;
+}
+
+bool LayerWriter::StaysAsText(const LayerOrder& order, const PartStart& start,
+                              bool as_sliced) const {
   const bool same_e =
       start.machine.RelativeE() || start.machine.e == file_.blocks[layer_.first_block].e_in;
-  if (as_sliced && same_e) {
+  return same_e && IsGiven(order) && (as_sliced || !ChangesGiven());
+}
+
+PartStart LayerWriter::WriteBarePaths(const LayerOrder& order, const PartStart& start,
+                                      std::string& text, std::vector<size_t>* marks,
+                                      bool as_sliced) const {
+  as_sliced = IsGiven(order) && (as_sliced || !ChangesGiven());
+  if (StaysAsText(order, start, as_sliced)) {
     const Block& last = file_.blocks[layer_.end_block - 1];
     const Offset begin = file_.blocks[layer_.first_block].begin;
+    for (const size_t mark : marks != nullptr ? PathMarks(file_, layer_) : std::vector<size_t>{}) {
+      marks->push_back(text.size() + mark);
+    }
     text.append(file_.text, begin, last.end - begin);
     return StartBehind(file_, last);
   }
@@ -151,22 +148,18 @@ PartStart LayerWriter::WritePaths(const LayerOrder& order, const PartStart& star
       file_.blocks[layer_.end_block - 1].end - file_.blocks[layer_.first_block].begin;
   text.reserve(text.size() + bytes + bytes / 16);
   GcodeOut out(file_, start, text);
-  ProgressLines progress(file_, file_.blocks[layer_.first_block].begin);
   PlacedPath from(file_, order.front());
   const std::vector<uint32_t> places = PlacesOf(order);
   const bool moved = !std::is_sorted(places.begin(), places.end());
   for (size_t i = 0; i < order.size(); ++i) {
-    const Block& place = file_.blocks[layer_.first_block + i];
     if (i > 0) {
       PlacedPath to(file_, order[i]);
       WriteLink(from, to, layer_.first_block + places[i], as_sliced, moved, out);
-      if (!moved && (place.link & (kLinkSplits | kLinkFixed)) != 0) progress.SkipTo(place.begin);
       from = std::move(to);
     }
-    if (i + 1 == order.size()) progress.WriteUpTo(place.end, out);
+    if (marks != nullptr) marks->push_back(text.size());
     from.Write(true, out);
-    progress.WriteUpTo(place.end, out);
-    if (ends != nullptr) ends->push_back(text.size());
+    if (marks != nullptr) marks->push_back(text.size());
   }
   out.Flush();
   return out.at;
@@ -191,7 +184,7 @@ bool LayerWriter::ChangesGiven() const {
 }
 
 // `place` is the block that stands here in the file. `moved`: objects of the layer have changed
-// places, so that each M73 stands by the number of paths done, between objects too.
+// places, so that each M73 stands by the time, between objects too.
 void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place,
                             bool as_sliced, bool moved, GcodeOut& out) const {
   const bool boundary = (file_.blocks[place].link & (kLinkSplits | kLinkFixed)) != 0;

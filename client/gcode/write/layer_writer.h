@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_CLIENT_GCODE_WRITE_LAYER_WRITER_H_
 #define TRAVERSE_CLIENT_GCODE_WRITE_LAYER_WRITER_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -66,6 +67,11 @@ class LayerWriter {
 
   // Whether the file's own order is written otherwise than it is in the file.
   bool ChangesGiven() const;
+
+  // The same without the M73 lines, unless the order is the file's: as it is measured. Adds to
+  // `marks`, unless that is null, where in `text` each path begins and ends.
+  PartStart WriteBarePaths(const LayerOrder& order, const PartStart& start, std::string& text,
+                           std::vector<size_t>* marks = nullptr, bool as_sliced = false) const;
 
   // Estimates the travel to place `place` of the file's layer, from 1, if `to` follows `from`
   // there, with the crossings and the retraction that would be written.
@@ -147,6 +153,9 @@ class LayerWriter {
   // which must be avoided.
   bool GoesOnAcross(const Placement& from, Vertex to, Feature feature) const;
   bool IsGiven(const LayerOrder& order) const;
+
+  // The text of the layer is that of the file.
+  bool StaysAsText(const LayerOrder& order, const PartStart& start, bool as_sliced) const;
   void WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place, bool as_sliced,
                  bool moved, GcodeOut& out) const;
   bool Retracts(const PlacedPath& from, const PlacedPath& to) const;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "client/api/job_result.h"
 #include "client/files/read_file.h"
 #include "client/gcode/measure/layer_meter.h"
@@ -138,6 +139,8 @@ absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
   Scene scene = EmptyScene(job);
   scene.seconds_name = "print time";
   scene.moves_note = "The moves are those of both files, including wipes.";
+  const std::string rest = DescribeRest(rewrite);
+  if (!rest.empty()) absl::StrAppend(&scene.moves_note, " Cooling: ", rest, ".");
   std::shared_ptr<const GcodeFile> printed = job.gcode;
   if (rewrite.layers_changed > 0) {
     absl::StatusOr<std::shared_ptr<GcodeFile>> read = ReadGcode(rewrite.text, job.name);

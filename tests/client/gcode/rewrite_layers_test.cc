@@ -23,7 +23,7 @@ TEST(RewriteGcode, ALayerThatCannotBeProvenStaysAndTheOthersDoNot) {
   std::string text = kScattered;
   text.resize(text.find("M107"));
   const std::string layer = text.substr(text.find("G1 Z.2"));
-  text += "M600\nG1 Z.4 F9000\n" + layer.substr(layer.find('\n') + 1) + "M107\n";
+  text += "M600\nG1 Z.4 F9000\n" + layer.substr(layer.find('\n') + 1) + "M107\n" + kNoRest;
   const auto file = Read(text);
   ASSERT_EQ(file->layers.size(), 2u);
   LayerOrder above = kBetterOrder;
@@ -45,7 +45,7 @@ std::string WallsBelowInfill() {
   text.resize(text.find("M107"));
   const std::string layer = text.substr(text.find("G1 Z.2"));
   text.replace(text.find("Internal infill"), 15, "External perimeter");
-  return text + "G1 Z.4 F9000\n" + layer.substr(layer.find('\n') + 1) + "M107\n";
+  return text + "G1 Z.4 F9000\n" + layer.substr(layer.find('\n') + 1) + "M107\n" + kNoRest;
 }
 
 TEST(RewriteGcode, WhatBreaksARuleIsLeftAsItIsAndTheRestOfItsLayerIsNot) {

@@ -188,7 +188,8 @@ TEST(RewriteGcode, TheLineStandsInNoPicture) {
 }
 
 TEST(RewriteGcode, AnArcWithoutCenterIsNamedAsTheReasonForItsLayer) {
-  const std::string text = std::string(kScattered) + "G1 Z.4\n" + "G1 X5 Y5 E1\nG3 X9 Y9 E1\n";
+  const std::string text =
+      std::string(kScattered) + kNoRest + "G1 Z.4\n" + "G1 X5 Y5 E1\nG3 X9 Y9 E1\n";
 
   const auto rewrite = RewriteGcode(*Read(text), {{kBetterOrder, {}}}, OptionsWithVersion());
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "client/gcode/verify/match/laid_over.h"
+#include "client/gcode/verify/match/stated_layer_time.h"
 #include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
@@ -94,6 +95,7 @@ SlicerSettings ReadSettings(std::string_view text) {
   };
   room("extruder_clearance_radius", "extruder_clearance_max_radius", settings.clearance_radius_mm);
   room("nozzle_height", "nozzle_height", settings.nozzle_height_mm);
+  settings.least_layer_seconds = StatedLeastLayerSeconds(text).value_or(10);
   return settings;
 }
 

@@ -1,19 +1,87 @@
-// The sequence of M73 lines is unchanged.
+// The sequence of M73 lines is unchanged, and each stands about where what it states is true.
 
 #include <algorithm>
+#include <cmath>
 
+#include "absl/strings/str_format.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
+namespace {
 
-void CompareProgress(const std::vector<Progress>& was, const std::vector<Progress>& is,
-                     std::vector<Finding>& breaks) {
-  const size_t common = std::min(was.size(), is.size());
-  size_t i = 0;
-  while (i < common && was[i].digest == is[i].digest) ++i;
-  if (i == was.size() && i == is.size()) return;
-  breaks.push_back({VerifyRule::kProgress, i < was.size() ? was[i].line : 0,
-                    i < is.size() ? is[i].line : 0, -1, "this M73 is out of sequence"});
+// So many hundredths of the print farther off than in the original is little.
+constexpr double kSlackPercent = 2;
+
+double PercentAt(const ProgressLog& log, double seconds) {
+  return log.seconds > 0 ? 100 * seconds / log.seconds : 0;
+}
+
+// When the section of `line` begins and ends: no line can leave it.
+struct Span {
+  double begin = 0;
+  double end = 0;
+};
+
+Span SectionOf(const ProgressLog& log, const Progress& line) {
+  const auto behind = std::upper_bound(
+      log.begins.begin(), log.begins.end(), line.section,
+      [](uint32_t section, const SectionBegin& begin) { return section < begin.section; });
+  Span span{0, log.seconds};
+  if (behind != log.begins.begin()) span.begin = std::prev(behind)->seconds;
+  if (behind != log.begins.end()) span.end = behind->seconds;
+  return span;
+}
+
+// As far into `to` as `seconds` are into `from`.
+double Transferred(double seconds, const Span& from, const Span& to) {
+  const double length = from.end - from.begin;
+  const double share = length > 0 ? (seconds - from.begin) / length : 0;
+  return to.begin + share * (to.end - to.begin);
+}
+
+// Where one section saves more time than another, a line may be off as far as they differ. Lines
+// that state no share stay where they were.
+void ComparePlace(const ProgressLog& was, const ProgressLog& is, size_t i,
+                  std::vector<Finding>& breaks) {
+  const double given = PercentAt(was, was.lines[i].seconds);
+  const double percent = PercentAt(is, is.lines[i].seconds);
+  const double stated = was.lines[i].percent >= 0 ? was.lines[i].percent : given;
+  const Span section = SectionOf(is, is.lines[i]);
+  const double alike =
+      PercentAt(is, Transferred(was.lines[i].seconds, SectionOf(was, was.lines[i]), section));
+  const double allowed = std::abs(given - stated) + kSlackPercent;
+  if (std::abs(percent - stated) <= allowed || std::abs(percent - alike) <= kSlackPercent) return;
+  breaks.push_back({VerifyRule::kProgress, was.lines[i].line, is.lines[i].line, -1,
+                    absl::StrFormat("states %.0f %% at %.1f %% of the print time; in the original "
+                                    "it stands at %.1f %%",
+                                    stated, percent, given)});
+}
+
+}  // namespace
+
+void ProgressLog::Append(const TraceChunk& chunk) {
+  lines.insert(lines.end(), chunk.progress.begin(), chunk.progress.end());
+  begins.insert(begins.end(), chunk.begins.begin(), chunk.begins.end());
+  if (!chunk.paths.empty()) seconds = chunk.paths.back().left_seconds;
+}
+
+void CompareProgress(const ProgressLog& was, const ProgressLog& is, std::vector<Finding>& breaks) {
+  const size_t common = std::min(was.lines.size(), is.lines.size());
+  for (size_t i = 0; i < common; ++i) {
+    if (was.lines[i].digest == is.lines[i].digest) continue;
+    breaks.push_back({VerifyRule::kProgress, was.lines[i].line, is.lines[i].line, -1,
+                      "this M73 is out of sequence"});
+    return;
+  }
+  if (was.lines.size() != is.lines.size()) {
+    const auto line = [common](const ProgressLog& log) {
+      return common < log.lines.size() ? log.lines[common].line : 0;
+    };
+    breaks.push_back(
+        {VerifyRule::kProgress, line(was), line(is), -1, "this M73 is out of sequence"});
+    return;
+  }
+  for (size_t i = 0; i < common; ++i) ComparePlace(was, is, i, breaks);
 }
 
 }  // namespace traverse::gcode

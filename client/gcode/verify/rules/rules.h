@@ -61,9 +61,17 @@ void CheckWipeMarks(const TraceChunk& was, const TraceChunk& is, std::vector<Fin
 // The same: where the original moves.
 void ObserveBounds(const TraceChunk& was, Box& box);
 
+// What one file states about its progress, and when.
+struct ProgressLog {
+  std::vector<Progress> lines;
+  std::vector<SectionBegin> begins;
+  double seconds = 0;  // of the whole print
+
+  void Append(const TraceChunk& chunk);
+};
+
 // At the end.
-void CompareProgress(const std::vector<Progress>& was, const std::vector<Progress>& is,
-                     std::vector<Finding>& breaks);
+void CompareProgress(const ProgressLog& was, const ProgressLog& is, std::vector<Finding>& breaks);
 void CompareLifts(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void CompareHeights(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void CompareBounds(const Observations& was, const Observations& is, const RuleContext& context,

@@ -47,9 +47,11 @@ struct TracePath {
   double z_mm = 0;
   float length_mm = 0;
   float filament_mm = 0;
-  Micro feed = 0;           // of its last segment
-  uint64_t fan = 0;         // VerifyMachine::fan at its first segment
-  bool states_fan = false;  // M106 or M107 stands before it, behind the path before
+  double begun_seconds = 0;  // since the file began: Clock
+  double left_seconds = 0;   // when it ends
+  Micro feed = 0;            // of its last segment
+  uint64_t fan = 0;          // VerifyMachine::fan at its first segment
+  bool states_fan = false;   // M106 or M107 stands before it, behind the path before
   PathClass path_class = PathClass::kUnnamed;
   bool overhangs = false;  // part of it is of class kOverhang
   bool outer = false;      // part of it is of class kOuterWall
@@ -154,9 +156,18 @@ struct TraceLayer {
   uint32_t end_section = 0;  // in TraceChunk::sections, those with paths
 };
 
+// A line that states the progress of the print.
 struct Progress {
   uint64_t digest = 0;
   uint32_t line = 0;
+  uint32_t section = 0;
+  double percent = -1;  // of the print that it states as done; less than 0: none
+  double seconds = 0;   // since the file began: Clock
+};
+
+struct SectionBegin {
+  uint32_t section = 0;
+  double seconds = 0;
 };
 
 struct TraceChunk {
@@ -171,6 +182,7 @@ struct TraceChunk {
   std::vector<SetBack> set_backs;       // by line
   std::vector<MarkFault> mark_faults;   // by line
   std::vector<Progress> progress;       // M73
+  std::vector<SectionBegin> begins;     // of all sections, ascending
   std::vector<TraceSection> sections;
   std::vector<TraceLayer> layers;
   uint32_t end_section = 0;  // index of the section behind the last one that is whole

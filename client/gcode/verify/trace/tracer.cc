@@ -103,6 +103,12 @@ uint64_t SignatureOf(const Motion& motion) {
   return Mix(digest, (motion.words & Bit('F')) != 0 ? static_cast<uint64_t>(motion.feed) : 0);
 }
 
+// `M73 P33 R15`; with Q instead for another mode of the machine.
+double PercentOf(std::string_view line) {
+  const CommandWords words(WordsOf(line));
+  return static_cast<double>(words.ValueOr('P', words.ValueOr('Q', -1'000'000))) * kMicro;
+}
+
 // Moves what lies in section `end` and behind it from `from` to `to`.
 template <typename Event>
 void MoveLater(uint32_t end, std::vector<Event>& from, std::vector<Event>& to) {
@@ -125,22 +131,49 @@ double TraceMove::length_mm() const { return std::hypot(to.x - from.x, to.y - fr
 
 void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t section) {
   if (line.text.empty()) return;
+  const double before_seconds = clock_.seconds();
+  if (section != last_section_) BeginSection(line, section, before_seconds);
+  clock_.Take(line, machine);
   if (line.text[0] == ';') {
     TakeComment(line, section);
   } else if (line.role == LineRole::kDeposit) {
     TakeDeposit(line, machine, section);
+    TracePath& path = chunk_.paths.back();
+    if (path.size() == 1) path.begun_seconds = before_seconds;
+    path.left_seconds = clock_.seconds();
   } else if (line.moves) {
     TakeMove(line, machine, section);
   }
   const auto number = static_cast<uint32_t>(line.number);
   states_fan_ |= line.sets && (Begins(line.text, "M106") || Begins(line.text, "M107"));
-  if (line.role == LineRole::kProgress) chunk_.progress.push_back({line.digest, number});
+  if (line.role == LineRole::kDeposit || line.role == LineRole::kFence ||
+      line.role == LineRole::kFixed) {
+    last_held_line_ = number;
+    held_seconds_ = clock_.seconds();
+  }
+  if (line.role == LineRole::kProgress) {
+    chunk_.progress.push_back(
+        {line.digest, number, section, PercentOf(line.text), clock_.seconds()});
+  }
   if (line.sets_back) chunk_.set_backs.push_back({section, number});
-  if (line.command != 0) pending_commands_.push_back({line.command, 0, number});
+  if (line.command != 0 && line.role != LineRole::kProgress)
+    pending_commands_.push_back({line.command, 0, number});
   if (line.role == LineRole::kFixed) {
     link_.scripted = true;
     link_.fixed = static_cast<uint32_t>(pending_.size());
   }
+}
+
+// A change of height begins a section before its first deposit, but what stands behind the last
+// deposit or fence belongs to it as well (sections.h).
+void Tracer::BeginSection(const VerifyLine& line, uint32_t section, double before_seconds) {
+  const bool at_height = line.role == LineRole::kDeposit;
+  for (size_t i = chunk_.progress.size(); at_height && i-- > 0;) {
+    if (chunk_.progress[i].line <= last_held_line_) break;
+    chunk_.progress[i].section = section;
+  }
+  chunk_.begins.push_back({section, at_height ? held_seconds_ : before_seconds});
+  last_section_ = section;
 }
 
 void Tracer::TakeWipeMark(bool begins, uint32_t line, uint32_t section) {
@@ -341,6 +374,11 @@ TraceChunk Tracer::TakeChunk(uint32_t end_section) {
   MoveLater(end_section, taken.standstills, chunk_.standstills);
   MoveLater(end_section, taken.set_backs, chunk_.set_backs);
   MoveLater(end_section, taken.mark_faults, chunk_.mark_faults);
+  const auto loose =
+      std::find_if(taken.progress.begin(), taken.progress.end(),
+                   [this](const Progress& line) { return line.line > last_held_line_; });
+  chunk_.progress.assign(loose, taken.progress.end());
+  taken.progress.erase(loose, taken.progress.end());
   return taken;
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "client/gcode/verify/trace/clock.h"
 #include "client/gcode/verify/trace/trace.h"
 
 namespace traverse::gcode {
@@ -38,11 +39,13 @@ class Tracer {
   void TakeWipeMark(bool begins, uint32_t line, uint32_t section);
   void TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_t section);
   void TakeMove(const VerifyLine& line, VerifyMachine& machine, uint32_t section);
+  void BeginSection(const VerifyLine& line, uint32_t section, double before_seconds);
   void BeginPath(const Motion& motion, uint32_t section, double unit);
   bool OnlyRounding() const;
   PathClass ClassNow(const VerifyLine& line) const;
 
   TraceChunk chunk_;
+  Clock clock_;
   std::vector<TraceMove> pending_;
   std::vector<TraceCommand> pending_commands_;
   TraceLink link_;
@@ -58,6 +61,9 @@ class Tracer {
   bool in_print_;
   bool states_fan_ = false;  // since the last deposit
   uint32_t layers_ = 0;
+  uint32_t last_section_ = UINT32_MAX;
+  uint32_t last_held_line_ = 0;  // the last deposit or fence, and when it was done
+  double held_seconds_ = 0;
 };
 
 }  // namespace traverse::gcode

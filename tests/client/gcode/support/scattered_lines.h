@@ -32,6 +32,9 @@ G1 X10 Y40 E.5
 M107
 )";
 
+// A setting by which islands need not rest between two layers.
+inline const char kNoRest[] = "; slow_down_layer_time = 0\n";
+
 // Lines 1, 3, 2, ... as blocks, the second one the other way round.
 inline const LayerOrder kBetterOrder = {
     {0, 0, false}, {2, 1, false}, {3, 0, false}, {1, 1, false}, {4, 0, false}};

@@ -120,7 +120,7 @@ TEST(LinkWriter, AWipeOfALoopLeadsAlongItsBeginning) {
   for (const int x : {0, 60, 20, 40, 80}) loop(x);
   text += ";LAYER_CHANGE\nG1 Z.4 F9000\n";
   for (const int x : {60, 20, 80, 40, 0}) loop(x);
-  text += "M107\n";
+  text += "M107\n; slow_down_layer_time = 0\n";
   const auto file = Read(text);
   const LayerOrder better = {{0, 0, true}, {2, 0, true}, {3, 0, true}, {4, 0, true}, {1, 0, true}};
 
@@ -175,7 +175,7 @@ TEST(LinkWriter, TheHeadDoesNotSinkOverWhatWasPrintedBefore) {
   for (const int y : {10, 40, 20, 30}) line(0, y);
   text += "G1 X78 Y1 F9000\nM104 S215\n;LAYER_CHANGE\nG1 Z.2 F9000\n" + infill;
   for (const int y : {0, 20, 10}) line(80, y);
-  text += "M107\n";
+  text += "M107\n; slow_down_layer_time = 0\n";
   const auto file = Read(text);
   const LayerOrder better = {{3, 0, false}, {5, 0, false}, {6, 0, false}, {4, 0, false}};
 
@@ -208,7 +208,7 @@ TEST(LinkWriter, WhereNoWayLeadsToALayerTheHeadRisesAtTheSpeedOfLifts) {
     way(y == 20 ? 9 : 0, y, ".4");
     absl::StrAppend(&text, "G1 F1200\nG1 X", y == 20 ? 0 : 9, " Y", y, " E.5\nG1 E-.8 F2100\n");
   }
-  text += "M107\n";
+  text += "M107\n; slow_down_layer_time = 0\n";
   const auto file = Read(text);
   const LayerOrder better = {{0, 0, false}, {2, 1, false}, {3, 0, false}, {1, 0, false}};
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/client/gcode/verify/small_prints.h"
 
@@ -17,6 +19,94 @@ TEST(VerifyProgress, KeepsItsSequence) {
       Broken(a, With(With(With(a, "M73 P1", "M73 P3"), "M73 P2", "M73 P1"), "M73 P3", "M73 P2")),
       "progress");
   EXPECT_EQ(Broken(a, kHead + "M73 P1\nM73 P2\n" + kSquare + kZigzag), "");
+}
+
+// `count` lines of 10 mm beside each other; before the second one of each pair stands "M73 P" with
+// the share that is printed then.
+std::vector<std::string> Lines(int count) {
+  std::vector<std::string> lines;
+  for (int i = 0; i < count; ++i) {
+    lines.push_back(absl::StrCat("G1 X0 Y", 2 * i, " F9000\n",
+                                 i % 2 == 1 ? absl::StrCat("M73 P", 100 * i / count, "\n") : "",
+                                 ";TYPE:Internal infill\nG1 F600\nG1 X10 E.3\n"));
+  }
+  return lines;
+}
+
+std::string Joined(const std::vector<std::string>& lines) {
+  std::string text = kHead;
+  for (const std::string& line : lines) text += line;
+  return text;
+}
+
+constexpr uint32_t kRules = RuleBit(VerifyRule::kSamePrint) | RuleBit(VerifyRule::kProgress);
+
+TEST(VerifyProgress, StandsWhereItIsTrue) {
+  const std::string a = Joined(Lines(20));
+  std::vector<std::string> lines = Lines(20);
+  std::string marks;
+  for (std::string& line : lines) {
+    const size_t at = line.find("M73");
+    if (at == std::string::npos) continue;
+    const size_t end = line.find('\n', at) + 1;
+    marks += line.substr(at, end - at);
+    line.erase(at, end - at);
+  }
+  std::vector<std::string> late = lines;
+  late.back().insert(0, marks);
+  std::vector<std::string> early = lines;
+  early.front().insert(0, marks);
+
+  EXPECT_EQ(Broken(a, Joined(late), {}, kRules), "progress");
+  EXPECT_EQ(Broken(a, Joined(early), {}, kRules), "progress");
+  EXPECT_EQ(Broken(a, a, {}, kRules), "");
+}
+
+TEST(VerifyProgress, MayBeAsFarOffAsInTheOriginal) {
+  std::vector<std::string> lines = Lines(20);
+  lines[11] = With(lines[11], "M73 P55\n", "M73 P20\n");
+  const std::string a = Joined(lines);
+  std::swap(lines[4], lines[6]);
+
+  EXPECT_EQ(Broken(a, Joined(lines), {}, kRules), "");
+}
+
+TEST(VerifyProgress, MayStandBetweenTheSegmentsOfAPath) {
+  const std::string line = "G1 X0 Y0 F9000\n;TYPE:Internal infill\nG1 F600\nG1 X10 E.3\n";
+  const std::string path = "G1 X0 Y5 F9000\n;TYPE:Internal infill\nG1 F600\nG1 X10 E.3\n";
+  const std::string half = "G1 X20 E.3\n";
+
+  EXPECT_EQ(
+      Broken(kHead + line + path + "M73 P66\n" + half, kHead + path + "M73 P66\n" + half + line, {},
+             kRules | RuleBit(VerifyRule::kCommands)),
+      "progress");
+  EXPECT_EQ(
+      Broken(kHead + path + half + "M73 P66\n" + line, kHead + line + path + "M73 P66\n" + half, {},
+             kRules | RuleBit(VerifyRule::kCommands)),
+      "");
+}
+
+// Nothing but its first deposit shows that a layer has begun.
+TEST(VerifyProgress, BehindTheMarkOfALayerBelongsToIt) {
+  const std::string next = ";LAYER_CHANGE\nG1 Z.4 F9000\n";
+  std::vector<std::string> lines = Lines(20);
+  std::string marks;
+  for (std::string& line : lines) {
+    const size_t at = line.find("M73");
+    if (at == std::string::npos) continue;
+    const size_t end = line.find('\n', at) + 1;
+    marks += line.substr(at, end - at);
+    line.erase(at, end - at);
+  }
+  const auto first = [&lines](const std::string& before) {
+    return With(Joined(lines), ";TYPE", before + ";TYPE");
+  };
+  const std::string low = "G1 X0 Y0 F9000\n;TYPE:Internal infill\nG1 F600\nG1 X1 E.03\n";
+  const std::string a = kHead + low + next + Joined(Lines(20)).substr(kHead.size());
+  const std::string b = kHead + low + next + first(marks).substr(kHead.size());
+
+  EXPECT_EQ(Broken(a, b, {}, kRules), "progress");
+  EXPECT_EQ(Broken(a, a, {}, kRules), "");
 }
 
 }  // namespace

@@ -1,0 +1,63 @@
+// An island rests, until it is printed on, as long as in the original, or for the least layer time
+// that the file states if that is shorter.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_RULES_REST_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_RULES_REST_H_
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "absl/container/flat_hash_map.h"
+#include "client/gcode/verify/findings.h"
+#include "client/gcode/verify/match/layer_pair.h"
+
+namespace traverse::gcode {
+
+// A connected region of one layer, and when both files print it.
+struct PrintedIsland {
+  double begun_was = 0;
+  double left_was = 0;
+  double begun_is = 0;
+  double left_is = 0;
+  uint32_t first_was = 0;  // of the paths of the layer, in the order of the original
+  uint32_t last_was = 0;
+  uint32_t line_was = 0;  // where it begins
+  uint32_t line_is = 0;
+};
+
+struct PrintedIslands {
+  std::vector<PrintedIsland> islands;
+  uint32_t paths = 0;
+  std::vector<std::pair<uint64_t, uint32_t>> cells;  // of 1 mm, with an island; ascending
+};
+
+// Paths within 1 mm, or about 1.25 line widths as their filament implies them, are of one island.
+// `height_mm` is that of the layer.
+PrintedIslands FindPrintedIslands(const LayerPair& layer, double height_mm);
+
+// Follows a print layer by layer.
+class RestWatch {
+ public:
+  explicit RestWatch(double least_seconds) : least_seconds_(least_seconds) {}
+
+  // The next layer, with index `index`.
+  void Take(const PrintedIslands& layer, int64_t index, std::vector<Finding>& breaks);
+
+ private:
+  // The island that was printed last in a cell.
+  struct Top {
+    double left_was = 0;
+    double left_is = 0;
+    uint64_t last_path_was = 0;  // counted from the beginning of the file
+    int64_t layer = -1;
+  };
+
+  const double least_seconds_;
+  uint64_t paths_ = 0;  // of the layers taken
+  absl::flat_hash_map<uint64_t, Top> top_;
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_RULES_REST_H_

@@ -1,0 +1,23 @@
+// The time of a print if every move is as fast as it states, and every dwell as long.
+
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_CLOCK_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_CLOCK_H_
+
+#include "client/gcode/verify/machine/verify_machine.h"
+
+namespace traverse::gcode {
+
+class Clock {
+ public:
+  // A line that `machine` has just done. Retractions by the firmware take no time.
+  void Take(const VerifyLine& line, const VerifyMachine& machine);
+
+  double seconds() const { return seconds_; }
+
+ private:
+  double seconds_ = 0;
+};
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_TRACE_CLOCK_H_

@@ -1,0 +1,104 @@
+// Islands that are printed again too soon: client/gcode/verify/rules/rest.
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/client/gcode/verify/small_prints.h"
+
+namespace traverse::gcode {
+namespace {
+
+using namespace testing;  // NOLINT: the small prints
+
+constexpr uint32_t kRules = RuleBit(VerifyRule::kSamePrint) | RuleBit(VerifyRule::kRest);
+
+// A line of 10 mm at `x`, printed in `seconds`.
+std::string Island(int x, int seconds) {
+  return absl::StrCat(Way(absl::StrCat("X", x, " Y0")), ";TYPE:Internal infill\nG1 F",
+                      600 / seconds, "\nG1 Y10 E.3\n");
+}
+
+// Layers of such islands, each of 4 s, in the order of their positions.
+std::string Print(const std::vector<std::vector<int>>& layers, const std::string& between = "") {
+  std::string text = "M83\n";
+  int height = 1;
+  for (const std::vector<int>& layer : layers) {
+    text += absl::StrCat(";LAYER_CHANGE\nG1 Z", height++, " F9000\n");
+    for (const int x : layer) text += Island(x, 4) + (x == layer.front() ? between : "");
+  }
+  return text;
+}
+
+std::string Rests(const std::string& original, const std::string& optimised,
+                  Policy policy = Policy::kSafe) {
+  VerifyPermissions permissions;
+  permissions.policy = policy;
+  return Broken(original, optimised, permissions, kRules);
+}
+
+TEST(VerifyRest, NoIslandIsPrintedAgainSoonerThanInTheOriginal) {
+  const std::string given = Print({{0, 20, 40}, {0, 20, 40}});
+
+  EXPECT_EQ(Rests(given, Print({{0, 20, 40}, {40, 20, 0}})), "rest");
+  EXPECT_EQ(Rests(given, Print({{0, 20, 40}, {20, 0, 40}})), "rest");
+  EXPECT_EQ(Rests(given, Print({{40, 20, 0}, {40, 20, 0}})), "");
+  EXPECT_EQ(Rests(given, Print({{20, 40, 0}, {20, 40, 0}})), "");
+}
+
+TEST(VerifyRest, HoldsUnderSafeAndBalanced) {
+  const std::string given = Print({{0, 20}, {0, 20}});
+  const std::string soon = Print({{0, 20}, {20, 0}});
+
+  EXPECT_EQ(Rests(given, soon), "rest");
+  EXPECT_EQ(Rests(given, soon, Policy::kBalanced), "rest");
+  EXPECT_EQ(Rests(given, soon, Policy::kFree), "");
+}
+
+TEST(VerifyRest, TheStatedLeastLayerTimeIsEnough) {
+  const std::string given = Print({{0, 20, 40}, {0, 20, 40}});
+  const std::string soon = Print({{0, 20, 40}, {20, 0, 40}});  // 4 s and travel at 40
+
+  EXPECT_EQ(Rests(given + "; slow_down_layer_time = 4\n", soon + "; slow_down_layer_time = 4\n"),
+            "");
+  EXPECT_EQ(Rests(given + "; slow_down_layer_time = 7\n", soon + "; slow_down_layer_time = 7\n"),
+            "rest");
+}
+
+TEST(VerifyRest, WhatTheOriginalPrintsAgainAtOnceNeedNotRest) {
+  const std::string given = Print({{0, 20}, {20, 0}, {0, 20}});
+
+  EXPECT_EQ(Rests(given, given), "");
+  EXPECT_EQ(Rests(given, Print({{20, 0}, {0, 20}, {20, 0}})), "rest");
+}
+
+TEST(VerifyRest, DwellsAreRest) {
+  const std::string dwell = "G4 P5000\n";
+  const std::string given = Print({{0, 20}, {0, 20}}, dwell);
+
+  EXPECT_EQ(Rests(given, Print({{0, 20}, {0, 20}}, dwell)), "");
+}
+
+TEST(VerifyRest, LooksBelowLayersThatDoNotReachAnIsland) {
+  const std::string given = Print({{0, 20}, {40}, {0, 20}});
+
+  EXPECT_EQ(Rests(given, Print({{0, 20}, {40}, {20, 0}})), "rest");
+  EXPECT_EQ(Rests(given, Print({{20, 0}, {40}, {20, 0}})), "");
+}
+
+TEST(VerifyRest, PathsOfOneIslandMayComeInAnyOrder) {
+  const std::string near = Way("X0 Y0") + ";TYPE:Internal infill\nG1 F150\nG1 Y10 E.3\n";
+  const std::string far = Way("X0.4 Y0") + ";TYPE:Internal infill\nG1 F150\nG1 Y10 E.3\n";
+  const std::string next = ";LAYER_CHANGE\nG1 Z.4 F9000\n";
+  const std::string other = Island(40, 4);
+
+  EXPECT_EQ(Rests(kHead + near + far + next + near + far, kHead + near + far + next + far + near),
+            "");
+  EXPECT_EQ(Rests(kHead + near + far + other + next + near + far + other,
+                  kHead + near + far + other + next + far + near + other),
+            "");
+}
+
+}  // namespace
+}  // namespace traverse::gcode
