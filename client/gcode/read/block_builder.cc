@@ -1,6 +1,7 @@
 #include "client/gcode/read/block_builder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -230,12 +231,17 @@ uint32_t BlockBuilder::CurrentState() {
 }
 
 uint16_t BlockBuilder::ModeOf(const MachineState& state) {
-  for (size_t i = file_.modes.size(); i-- > 0;) {
-    if (file_.modes[i].SameModes(state)) return static_cast<uint16_t>(i);
-  }
+  const std::array<int, 5> modes = {state.relative_xyz, state.relative_e, state.inches,
+                                    state.plane_xy, state.tool};
   // Beyond 65535 different modes (tool numbers) the blocks are pinned anyway, by their T lines.
-  if (file_.modes.size() < std::numeric_limits<uint16_t>::max()) file_.modes.push_back(state);
-  return static_cast<uint16_t>(file_.modes.size() - 1);
+  const bool full = file_.modes.size() == std::numeric_limits<uint16_t>::max();
+  if (full) {
+    const auto found = mode_ids_.find(modes);
+    return found == mode_ids_.end() ? static_cast<uint16_t>(file_.modes.size() - 1) : found->second;
+  }
+  const auto [id, is_new] = mode_ids_.try_emplace(modes, static_cast<uint16_t>(file_.modes.size()));
+  if (is_new) file_.modes.push_back(state);
+  return id->second;
 }
 
 void BlockBuilder::BeginBlock(const Step& step, const MachineState& before,

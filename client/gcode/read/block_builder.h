@@ -3,8 +3,10 @@
 #ifndef TRAVERSE_CLIENT_GCODE_READ_BLOCK_BUILDER_H_
 #define TRAVERSE_CLIENT_GCODE_READ_BLOCK_BUILDER_H_
 
+#include <array>
 #include <vector>
 
+#include "absl/container/flat_hash_map.h"
 #include "client/gcode/model/gcode_file.h"
 
 namespace traverse::gcode {
@@ -76,6 +78,7 @@ class BlockBuilder {
   PrintState state_{};
   bool state_dirty_ = true;
   uint32_t state_id_ = 0;
+  absl::flat_hash_map<std::array<int, 5>, uint16_t> mode_ids_;  // by MachineState::Modes
   uint32_t object_ = 0;
 
   std::vector<LineFault> faults_;

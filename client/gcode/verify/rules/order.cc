@@ -3,6 +3,10 @@
 // lines of a monotonic surface or of ironing do so as well, and what a change of the fan parts.
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
 
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/rules/rules.h"
@@ -12,6 +16,8 @@ namespace {
 
 constexpr double kNearMm = 0.5;
 constexpr double kCellMm = 1.0;
+constexpr size_t kMostPairs = 1000;
+constexpr size_t kPairsAlways = 1 << 20;
 
 enum class Group : uint8_t {
   kWall,
@@ -24,6 +30,7 @@ enum class Group : uint8_t {
   kSkirt,
   kOther
 };
+constexpr size_t kGroups = static_cast<size_t>(Group::kOther) + 1;
 
 Group GroupOf(PathClass path_class, const SlicerSettings& settings) {
   switch (path_class) {
@@ -53,6 +60,85 @@ Group GroupOf(PathClass path_class, const SlicerSettings& settings) {
       return Group::kInfill;
   }
 }
+
+// Pieces by the cells that they meet or come within kNearMm / 2 of: two pieces within kNearMm share
+// a cell. Cells are larger where pieces are many or long, so that memory and time are linear.
+class Cells {
+ public:
+  explicit Cells(const std::vector<Piece>& pieces) {
+    if (pieces.empty()) return;
+    low_ = pieces[0].a;
+    Point high = low_;
+    double length = 0;
+    for (const Piece& piece : pieces) {
+      for (const Point p : {piece.a, piece.b}) {
+        low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+      }
+      length += std::abs(piece.b.x - piece.a.x) + std::abs(piece.b.y - piece.a.y);
+    }
+    const double most = kMostEach * static_cast<double>(pieces.size()) + kMostAlways;
+    const double width = high.x - low_.x + 2 * kNearMm;
+    const double height = high.y - low_.y + 2 * kNearMm;
+    cell_mm_ = std::max(
+        {kCellMm, std::sqrt(width * height / most), std::max(width, height) / most, length / most});
+    low_ = {low_.x - kNearMm, low_.y - kNearMm};
+    columns_ = static_cast<int>(width / cell_mm_) + 1;
+    begin_.assign(static_cast<size_t>(columns_) * (static_cast<size_t>(height / cell_mm_) + 1) + 1,
+                  0);
+    for (const Piece& piece : pieces) {
+      ForEachOf(piece, [this](size_t cell) { ++begin_[cell + 1]; });
+    }
+    for (size_t cell = 1; cell < begin_.size(); ++cell) begin_[cell] += begin_[cell - 1];
+    entries_.resize(begin_.back());
+    std::vector<uint32_t> next(begin_.begin(), begin_.end() - 1);
+    for (uint32_t i = 0; i < pieces.size(); ++i) {
+      ForEachOf(pieces[i], [&](size_t cell) { entries_[next[cell]++] = i; });
+    }
+  }
+
+  // Calls visit(indices), in ascending order, for each cell with pieces.
+  template <typename Visit>
+  void ForEach(Visit visit) const {
+    for (size_t cell = 0; cell + 1 < begin_.size(); ++cell) {
+      const size_t count = begin_[cell + 1] - begin_[cell];
+      if (count > 0) visit(absl::Span<const uint32_t>(entries_.data() + begin_[cell], count));
+    }
+  }
+
+ private:
+  static constexpr double kMostEach = 64;
+  static constexpr double kMostAlways = 1 << 18;
+
+  // Row by row: the cells from where the piece, with what is near it, enters the row to where it
+  // leaves it.
+  template <typename Visit>
+  void ForEachOf(const Piece& piece, Visit visit) const {
+    constexpr double kReach = kNearMm / 2;
+    const auto [a, b] =
+        piece.a.y <= piece.b.y ? std::pair(piece.a, piece.b) : std::pair(piece.b, piece.a);
+    const double slope = b.y > a.y ? (b.x - a.x) / (b.y - a.y) : 0;
+    const int last = static_cast<int>((b.y + kReach - low_.y) / cell_mm_);
+    for (int row = static_cast<int>((a.y - kReach - low_.y) / cell_mm_); row <= last; ++row) {
+      const double y_low = std::clamp(low_.y + row * cell_mm_ - kReach, a.y, b.y);
+      const double y_high = std::clamp(low_.y + (row + 1) * cell_mm_ + kReach, a.y, b.y);
+      const double one = b.y > a.y ? a.x + (y_low - a.y) * slope : a.x;
+      const double other = b.y > a.y ? a.x + (y_high - a.y) * slope : b.x;
+      const int end = static_cast<int>((std::max(one, other) + kReach - low_.x) / cell_mm_);
+      int column = static_cast<int>((std::min(one, other) - kReach - low_.x) / cell_mm_);
+      for (; column <= end; ++column) {
+        visit(static_cast<size_t>(row) * static_cast<size_t>(columns_) +
+              static_cast<size_t>(column));
+      }
+    }
+  }
+
+  std::vector<uint32_t> begin_;  // [cell] in entries_
+  std::vector<uint32_t> entries_;
+  Point low_;
+  double cell_mm_ = 1;
+  int columns_ = 1;
+};
 
 class OrderKeeper {
  public:
@@ -149,29 +235,57 @@ class OrderKeeper {
     }
   }
 
+  // Pieces of one group that lie in one cell and come first in the original.
+  struct Earlier {
+    std::vector<uint32_t> pieces;  // indices
+    uint32_t last_path = 0;        // of those, the one that is printed last
+  };
+
+  // Two pieces within kNearMm share a cell, with which their cells begin in the order of the
+  // original. Of those before a piece only those of groups that matter to it are looked at, and
+  // only if one of them was turned around with it. Where that is more than kMostPairs for each
+  // piece of the section, all that share a cell count as near: such a layer is none of a print.
   void CheckNear(const TraceSection& was, absl::Span<const Visit> visits, LayerFindings& findings) {
     std::vector<Piece> pieces;
     for (uint32_t path = was.first_path; path < was.end_path; ++path) {
       const absl::Span<const Piece> own = layer_.PiecesOf(path);
       pieces.insert(pieces.end(), own.begin(), own.end());
     }
-    const PieceGrid grid(std::move(pieces), kCellMm);
-    std::vector<uint32_t> reported;
-    for (const Piece& piece : grid.pieces()) {
-      const uint32_t path = piece.path;
-      const Group group = GroupAt(path);
-      grid.ForEachNear(piece.a, piece.b, kNearMm, [&](uint32_t i) {
-        const Piece& other = grid.pieces()[i];
-        // Each pair from its later one, which is printed too early.
-        if (other.path >= path || PlaceOf(other.path) <= PlaceOf(path)) return true;
-        if (!Matters(group, GroupAt(other.path))) return true;
-        if (DistanceOfPieces(piece.a, piece.b, other.a, other.b) > kNearMm) return true;
-        if (std::find(reported.begin(), reported.end(), path) != reported.end()) return false;
-        reported.push_back(path);
-        Report(other.path, path, visits, findings);
-        return false;
-      });
+    pairs_left_ = kPairsAlways + kMostPairs * pieces.size();
+    reported_.assign(place_.size(), false);
+    const Cells cells(pieces);
+    std::array<Earlier, kGroups> earlier;
+    cells.ForEach([&](absl::Span<const uint32_t> cell) {
+      for (Earlier& of_group : earlier) of_group.pieces.clear();
+      for (const uint32_t i : cell) {
+        const uint32_t path = pieces[i].path;
+        const Group group = GroupAt(path);
+        for (size_t k = 0; k < kGroups && !reported_[path - first_]; ++k) {
+          if (earlier[k].pieces.empty() || !Matters(group, static_cast<Group>(k))) continue;
+          const uint32_t other = TurnedNear(pieces, i, earlier[k]);
+          if (other == UINT32_MAX) continue;
+          reported_[path - first_] = true;
+          Report(other, path, visits, findings);
+        }
+        Earlier& own = earlier[static_cast<size_t>(group)];
+        if (own.pieces.empty() || PlaceOf(path) > PlaceOf(own.last_path)) own.last_path = path;
+        own.pieces.push_back(i);
+      }
+    });
+  }
+
+  // A path of `earlier` near piece `i` that is printed after it; UINT32_MAX if there is none.
+  uint32_t TurnedNear(const std::vector<Piece>& pieces, uint32_t i, const Earlier& earlier) {
+    const Piece& piece = pieces[i];
+    if (PlaceOf(earlier.last_path) <= PlaceOf(piece.path)) return UINT32_MAX;
+    for (const uint32_t k : earlier.pieces) {
+      if (pairs_left_ == 0) return earlier.last_path;
+      --pairs_left_;
+      const Piece& other = pieces[k];
+      if (PlaceOf(other.path) <= PlaceOf(piece.path)) continue;
+      if (DistanceOfPieces(piece.a, piece.b, other.a, other.b) <= kNearMm) return other.path;
     }
+    return UINT32_MAX;
   }
 
   // `later` comes before `earlier`.
@@ -194,7 +308,9 @@ class OrderKeeper {
   std::vector<Group> groups_;    // [path - first path of the layer]
   std::vector<uint32_t> place_;  // [path - first path of the section] in the section's visits
   uint32_t first_ = 0;
-  bool fans_of_paths_ = true;  // each path of the layer states its own
+  bool fans_of_paths_ = true;   // each path of the layer states its own
+  std::vector<bool> reported_;  // [path - first_]
+  size_t pairs_left_ = 0;
 };
 
 // Objects that touch keep their order: what one of them rests on may be of the other.

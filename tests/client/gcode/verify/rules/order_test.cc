@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <string>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "client/gcode/verify/verifier.h"
 #include "tests/client/gcode/verify/small_prints.h"
 
@@ -23,6 +26,25 @@ TEST(VerifyOrder, InfillStaysBehindTheWallBesideIt) {
   VerifyPermissions allowed;
   allowed.infill_order = true;
   EXPECT_EQ(Broken(kHead + kSquare + near, kHead + near + kSquare, allowed), "");
+}
+
+// All lines cross all others: pairs that need no order, or keep it, take no time.
+TEST(VerifyOrder, ThousandsOfLinesThatCrossAreCheckedInTime) {
+  constexpr int kLines = 6000;
+  std::vector<std::string> lines;
+  for (int i = 0; i < kLines; ++i) {
+    const double x = i * 200.0 / kLines;
+    lines.push_back(Line("Internal infill", absl::StrFormat("X%.3f Y0", x),
+                         absl::StrFormat("X%.3f Y200", 200 - x)));
+  }
+  std::string was = kHead, is = kHead;
+  for (int i = 0; i < kLines; ++i) {
+    was += lines[static_cast<size_t>(i)];
+    is += lines[static_cast<size_t>(i) * 7919 % kLines];
+  }
+  const auto began = std::chrono::steady_clock::now();
+  Broken(was, is, Policy::kFree);
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(20));
 }
 
 TEST(VerifyOrder, HoldsInLayersAboveTheFirstToo) {
