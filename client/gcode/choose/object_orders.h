@@ -1,7 +1,7 @@
 // Orders of a layer in which whole labelled objects have changed places.
 //
 // Slicers print the objects of a layer in the order of their list, or by where they stand on the
-// plate; either may lead the head to and fro. One round trip through all objects serves all layers,
+// plate; either may lead the head back and forth. One round trip through all objects serves all layers,
 // so that every object rests as long between two layers as it did. Backwards in every other layer
 // it is shorter still, but its ends are printed twice running: only Policy::kFree has that.
 
