@@ -7,7 +7,7 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr double kCellMm = 2;
+constexpr double kWallCellMm = 2;
 constexpr double kLeastRowMm = 0.2;
 
 // Pieces may be entered in so many rows each, on the average.
@@ -45,7 +45,7 @@ LayerShape::LayerShape(const LayerPair& layer) : walls_({}, 1) {
     rounds_.push_back({pieces.back().b, pieces.front().a, path});
   }
   filament_per_mm_ = length > 0 ? filament / length : 0;
-  walls_ = PieceGrid(std::move(walls), kCellMm);
+  walls_ = PieceGrid(std::move(walls), kWallCellMm);
   if (rounds_.empty()) return;
   double high_y = rounds_[0].a.y;
   low_y_ = high_y;

@@ -17,7 +17,7 @@ constexpr double kLeastShare = 0.95;
 // Rounding of sums of times.
 constexpr double kSlackSeconds = 1e-3;
 
-constexpr double kCellMm = 1;
+constexpr double kPlaceMm = 1;
 constexpr double kFarCells = 1e6;  // no plate is larger
 constexpr double kLeastReachMm = 1.02;
 constexpr double kMostReachMm = 4;
@@ -54,7 +54,7 @@ class IslandFinder {
       : layer_(layer),
         first_(layer.first_path_was()),
         regions_(layer.end_path_was() - first_),
-        grid_(layer.pieces(), kCellMm) {
+        grid_(layer.pieces(), kPlaceMm) {
     for (uint32_t path = first_; path < layer.end_path_was(); ++path) {
       reach_.push_back(ReachOf(layer.was().paths[path], height_mm));
     }

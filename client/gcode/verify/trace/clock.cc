@@ -9,7 +9,7 @@
 namespace traverse::gcode {
 namespace {
 
-constexpr double kMicro = 1e-6;
+constexpr double kPerMicro = 1e-6;
 
 double Across(const std::array<Micro, 3>& a, double x, double y) {
   return std::hypot(static_cast<double>(a[0]) - x, static_cast<double>(a[1]) - y);
@@ -31,7 +31,7 @@ double FlatLength(const Motion& motion) {
   return turn * Across(motion.from, x, y);
 }
 
-double LengthOf(const Motion& motion) {
+double PathLengthOf(const Motion& motion) {
   const double flat = FlatLength(motion);
   const auto rise = static_cast<double>(motion.to[2] - motion.from[2]);
   const double length = std::hypot(flat, rise);
@@ -42,8 +42,8 @@ double LengthOf(const Motion& motion) {
 double DwellSeconds(std::string_view line) {
   const CommandWords words(WordsOf(line));
   if (!words.readable) return 0;
-  const double seconds = static_cast<double>(words.ValueOr('S', 0)) * kMicro;
-  const double milliseconds = static_cast<double>(words.ValueOr('P', 0)) * kMicro;
+  const double seconds = static_cast<double>(words.ValueOr('S', 0)) * kPerMicro;
+  const double milliseconds = static_cast<double>(words.ValueOr('P', 0)) * kPerMicro;
   return std::max(words.Has('S') ? seconds : milliseconds / 1000, 0.0);
 }
 
@@ -52,7 +52,7 @@ double DwellSeconds(std::string_view line) {
 void Clock::Take(const VerifyLine& line, const VerifyMachine& machine) {
   if (line.role == LineRole::kDeposit || line.moves) {
     const Motion& motion = machine.motion();
-    if (motion.feed > 0) seconds_ += LengthOf(motion) / static_cast<double>(motion.feed) * 60;
+    if (motion.feed > 0) seconds_ += PathLengthOf(motion) / static_cast<double>(motion.feed) * 60;
   } else if (line.command == Mix('G', 4)) {
     seconds_ += DwellSeconds(line.text);
   }
