@@ -17,9 +17,9 @@ namespace {
 
 using testing::Read;
 
-std::string Layer(double z) { return absl::StrFormat(";LAYER_CHANGE\nG1 Z%.2f F9000\n", z); }
+std::string LayerAt(double z) { return absl::StrFormat(";LAYER_CHANGE\nG1 Z%.2f F9000\n", z); }
 
-std::string Line(double x, double from_y, double to_y) {
+std::string LineAt(double x, double from_y, double to_y) {
   return absl::StrCat("G1 X", x, " Y", from_y, " F9000\n;TYPE:Internal infill\nG1 F1800\nG1 Y",
                       to_y, " E.3\n");
 }
@@ -33,13 +33,13 @@ std::string Square(double low, double high) {
 std::string BesideATower() {
   std::string print = "M83\n";
   for (int layer = 1; layer <= 20; ++layer) {
-    absl::StrAppend(&print, Layer(0.2 * layer), Square(20, 26));
+    absl::StrAppend(&print, LayerAt(0.2 * layer), Square(20, 26));
   }
   absl::StrAppend(&print, "G1 Z6 F9000\nG1 X10 Y20\n");
   for (const double z : {.2, .4}) {
-    absl::StrAppend(&print, Layer(z), Line(10, 20, 26), "G1 X10 Y50\nG1 X36 Y50\n",
-                    Line(36, 26, 20));
-    absl::StrAppend(&print, "G1 Z5 F9000\nG1 X10 Y22\nG1 Z", z, "\n", Line(12, 22, 24));
+    absl::StrAppend(&print, LayerAt(z), LineAt(10, 20, 26), "G1 X10 Y50\nG1 X36 Y50\n",
+                    LineAt(36, 26, 20));
+    absl::StrAppend(&print, "G1 Z5 F9000\nG1 X10 Y22\nG1 Z", z, "\n", LineAt(12, 22, 24));
   }
   return print;
 }
@@ -55,7 +55,7 @@ int64_t PeakKb() {
 }
 
 TEST(HeadRoom, NothingIsInTheWayWhereTheHeightOnlyGoesUp) {
-  const auto file = Read("M83\n" + Layer(.2) + Square(20, 26) + Layer(.4) + Square(20, 26));
+  const auto file = Read("M83\n" + LayerAt(.2) + Square(20, 26) + LayerAt(.4) + Square(20, 26));
 
   const HeadRoom room(*file);
 
@@ -107,14 +107,14 @@ TEST(HeadRoom, OfALargePlateTakesLittleMemory) {
   // Towers all over a plate of 400 mm, then 1,500 low layers that go down again and again.
   std::string print = "M83\n";
   for (int layer = 1; layer <= 20; ++layer) {
-    absl::StrAppend(&print, Layer(0.2 * layer));
+    absl::StrAppend(&print, LayerAt(0.2 * layer));
     for (int x = 0; x < 400; x += 25) {
-      for (int y = 0; y < 400; y += 50) absl::StrAppend(&print, Line(x, y, y + 8));
+      for (int y = 0; y < 400; y += 50) absl::StrAppend(&print, LineAt(x, y, y + 8));
     }
   }
   for (int layer = 1; layer <= 1500; ++layer) {
-    absl::StrAppend(&print, Layer(0.2 * (1 + layer % 20)));
-    for (int x = 10; x < 400; x += 40) absl::StrAppend(&print, Line(x, 0, 400));
+    absl::StrAppend(&print, LayerAt(0.2 * (1 + layer % 20)));
+    for (int x = 10; x < 400; x += 40) absl::StrAppend(&print, LineAt(x, 0, 400));
   }
   const auto file = Read(print);
   std::ofstream("/proc/self/clear_refs") << 5 << std::flush;  // the peak is what is used now

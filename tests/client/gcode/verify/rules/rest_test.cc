@@ -12,7 +12,7 @@ namespace {
 
 using namespace testing;  // NOLINT: the small prints
 
-constexpr uint32_t kRules = RuleBit(VerifyRule::kSamePrint) | RuleBit(VerifyRule::kRest);
+constexpr uint32_t kRestRules = RuleBit(VerifyRule::kSamePrint) | RuleBit(VerifyRule::kRest);
 
 // A line of 10 mm at `x`, printed in `seconds`.
 std::string Island(int x, int seconds) {
@@ -35,7 +35,7 @@ std::string Rests(const std::string& original, const std::string& optimised,
                   Policy policy = Policy::kSafe) {
   VerifyPermissions permissions;
   permissions.policy = policy;
-  return Broken(original, optimised, permissions, kRules);
+  return Broken(original, optimised, permissions, kRestRules);
 }
 
 TEST(VerifyRest, NoIslandIsPrintedAgainSoonerThanInTheOriginal) {
