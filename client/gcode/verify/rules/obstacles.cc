@@ -28,6 +28,11 @@ void ForEachPiece(const TraceMove& move, Take take) {
   take(move.middle, z, move.to, move.z_to_mm);
 }
 
+// Where it begins and ends.
+std::array<double, 6> EndsOf(const TraceMove& move) {
+  return {move.from.x, move.from.y, move.z_from_mm, move.to.x, move.to.y, move.z_to_mm};
+}
+
 bool Moves(const TraceMove& move) {
   return move.sideways() || move.kind == MoveKind::kUp || move.kind == MoveKind::kDown;
 }
@@ -61,6 +66,7 @@ void Obstacles::Print(const TraceChunk& was, uint32_t first_path, uint32_t end_p
 void Obstacles::Visit(const TraceChunk& was, uint32_t link) {
   for (uint32_t m = was.links[link].first_move; m < was.links[link].end_move; ++m) {
     if (!Moves(was.moves[m])) continue;
+    moves_was_.insert(EndsOf(was.moves[m]));
     ForEachPiece(was.moves[m], [this](Point a, double z_a, Point b, double z_b) {
       tip_.Visit(a, z_a, b, z_b);
       head_.Visit(a, z_a, b, z_b);
@@ -73,7 +79,8 @@ void Obstacles::CheckLink(const TraceChunk& is, uint32_t link, int64_t layer,
   std::optional<HeightGrid::Hit> hit;
   for (uint32_t m = is.links[link].first_move; m < is.links[link].end_move; ++m) {
     const TraceMove& move = is.moves[m];
-    if (!Moves(move)) continue;
+    // What the original does in this layer too needs no proof.
+    if (!Moves(move) || moves_was_.contains(EndsOf(move))) continue;
     ForEachPiece(move, [&](Point a, double z_a, Point b, double z_b) {
       if (!hit) hit = tip_.NearestHit(a, z_a, b, z_b);
       if (!hit) hit = head_.NearestHit(a, z_a, b, z_b);
@@ -117,6 +124,7 @@ void Obstacles::CheckLayer(const TraceChunk& was, const TraceChunk& is, size_t l
     head_.ForgetVisits();
   }
   z_mm_ = z_mm;
+  moves_was_.clear();
   if (z_mm < tip_.highest_mm() - kLevelMm || AnyAbove(is, first_is, end_is)) {
     std::vector<Piece> pieces;
     for (uint32_t path = first_was; path < end_was; ++path) {
@@ -139,6 +147,7 @@ void Obstacles::CheckEnd(const TraceChunk& was, const TraceChunk& is,
   const auto link_was = static_cast<uint32_t>(was.links.size()) - 1;
   const auto link_is = static_cast<uint32_t>(is.links.size()) - 1;
   if (!AnyAbove(is, link_is, link_is + 1)) return;
+  moves_was_.clear();
   Visit(was, link_was);
   CheckLink(is, link_is, -1, breaks);
 }

@@ -8,9 +8,11 @@
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_RULES_OBSTACLES_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_RULES_OBSTACLES_H_
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "absl/container/flat_hash_set.h"
 #include "client/gcode/verify/findings.h"
 #include "client/gcode/verify/match/height_grid.h"
 #include "client/gcode/verify/match/layer_pair.h"
@@ -39,6 +41,7 @@ class Obstacles {
   HeightGrid tip_;   // the nozzle and its cone
   HeightGrid head_;  // what hangs beside it, higher
   double z_mm_ = 0;  // of the layer before
+  absl::flat_hash_set<std::array<double, 6>> moves_was_;  // of the original in this layer
 };
 
 }  // namespace traverse::gcode

@@ -50,6 +50,15 @@ TEST(VerifyObstacles, NoTravelLeadsThroughWhatIsFinished) {
             "obstacles");
 }
 
+// Start scripts wipe the nozzle on a slope through the line that they have purged.
+TEST(VerifyObstacles, WhatTheOriginalDoesItselfNeedsNoProof) {
+  const std::string print =
+      "M83\nG0 X68 Y-2.5 F9000\nG0 Z.3\nG0 X88 E10 F192\nG0 X113 E2 F320\nG0 X115 Z0 F20000\n"
+      "G0 Z5\nG1 X20 Y20\n" +
+      absl::StrCat(kWall, "G1 X26 E.4\nG1 Y26 E.4\n");
+  EXPECT_EQ(Obstacles(print, print), "");
+}
+
 TEST(VerifyObstacles, TravelLeadsAboveOrWhereThatOfTheOriginalDoes) {
   EXPECT_EQ(Obstacles(PastATower(kRound), PastATower(kRound)), "");
   EXPECT_EQ(Obstacles(PastATower(kRound), PastATower(kAbove)), "");
