@@ -130,7 +130,7 @@ std::vector<Flag> JobFlagTable() {
       {"retraction_seconds", "S", "time of one retraction (default: the file's, or 0.1)", any,
        false, "(the file's, or 0.1, 2)"},
       {"retraction_threshold", "MM", "longer moves retract (default: the file's, or 2)"},
-      Joint(PolicyFlag(), "safe, balanced, free, fast; keep, fewer, any"),
+      Joint(PolicyFlag(), "safe|balanced|free|fast; keep|fewer|any"),
       CrossingsFlag(),
       {"deadline", "TIME", "time for the whole job, such as 500ms, 30s or 5m", any, false,
        "for all; for a layer (500ms, 30s, 5m)"},
@@ -167,11 +167,11 @@ Flag CrossingsFlag() {
 }
 
 Flag AllowFlag() {
-  return {"allow", "NAME,...", "infill_order, wall_order, fan_order, wipes, hidden_retractions"};
+  return {"allow", "NAME,...", "infill|wall|fan_order, wipes, hidden_retractions"};
 }
 
 Flag MaxHiddenTravelFlag() {
-  return {"max_hidden_travel", "MM", "longest hidden move that need not retract (default 30)"};
+  return {"max_hidden_travel", "MM", "G-code: longest hidden move, mm (default 30)"};
 }
 
 Flag MachineFlag() { return {"machine", "FILE", "printer's limits: klipper.cfg, or M201 to M205"}; }

@@ -7,7 +7,7 @@ namespace traverse::cli {
 std::vector<Flag> VerifyFlagTable() {
   return {{"policy",
            "POLICY",
-           "safe, balanced, free, fast (default: as the file says)",
+           "safe, balanced, free, fast (default: as stated)",
            {"safe", "balanced", "free", "fast"}},
           AllowFlag(),
           MaxHiddenTravelFlag()};

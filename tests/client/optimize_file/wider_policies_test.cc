@@ -55,7 +55,7 @@ std::string Circles(uint64_t seed) {
       text += absl::StrFormat("G1 X%d Y%d F9000\nG1 F1800\n", at.x, at.y) + Circle(at, below(4));
     }
   }
-  return text + "M107\n";
+  return text + "M107\n; slow_down_layer_time = 0\n";
 }
 
 // Of two ways round of the same length one has the sharper corners, which no search knows.

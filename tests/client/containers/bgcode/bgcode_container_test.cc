@@ -276,7 +276,8 @@ TEST(Bgcode, SaysWhichBlockIsAtFault) {
         << bad.what;
   }
   EXPECT_THAT(TextOf(WithU32(MakeFile(shrunk), gcode + 4, 0xf0000000)),
-              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("3840 MiB, but only 64")));
+              StatusIs(absl::StatusCode::kResourceExhausted,
+                       HasSubstr("a block may have 2097152 at most")));
   EXPECT_THAT(TextOf(WithU16(MakeFile(shrunk), gcode + 2, 9)),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(at)));
 }

@@ -31,7 +31,7 @@ std::string Lines(const std::vector<std::string>& settings, const std::string& b
       ++line;
     }
   }
-  return text + "M107\n";
+  return text + "M107\n; slow_down_layer_time = 0\n";
 }
 
 GcodeRewrite Up(const std::string& text, Policy policy = Policy::kSafe) {

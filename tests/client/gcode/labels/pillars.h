@@ -134,7 +134,7 @@ inline std::string Text(const PillarPrint& print, const Notation& notation) {
       text += notation.end(here.back());
     }
   }
-  return text + "G1 E-.8 F2100\nM107\nM84\n";
+  return text + "G1 E-.8 F2100\nM107\nM84\n; slow_down_layer_time = 0\n";
 }
 
 }  // namespace traverse::gcode::testing

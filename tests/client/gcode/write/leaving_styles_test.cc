@@ -67,7 +67,7 @@ class LeavingStyle : public ::testing::TestWithParam<Style> {
     if (std::string(style.leave).find("G10") != std::string::npos) {
       text = absl::StrReplaceAll(text, {{"G1 E-.8 F2100", "G10"}, {"G1 E.8 F2100", "G11"}});
     }
-    return absl::StrCat(text, "G1 Z50 F600\nM84\n");
+    return absl::StrCat(text, "G1 Z50 F600\nM84\n; slow_down_layer_time = 0\n");
   }
 };
 
