@@ -160,7 +160,12 @@ Command CompareCommand() {
           .summary = "Compares strategies on one job.",
           .flags = WithRunFlagTable(Joined(
               {
-                  {"strategies", "NAME,...", "or NAME:OPTION=VALUE (default: all, 5s each)"},
+                  {"strategies",
+                   "NAME,...",
+                   "or NAME:OPTION=VALUE (default: all, 5s each)",
+                   {},
+                   false,
+                   "(default: all, 5s each); runs of each"},
                   {"repeat", "N", "runs of each, one per seed; shows the means"},
                   {"quiet", "", "no progress", {}, false, "no progress; the printer's limits"},
                   MachineFlag(),

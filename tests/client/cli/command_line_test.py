@@ -119,7 +119,7 @@ class Usage(CommandLine):
             self.assertEqual(text, self.succeed("help", command))
             self.assertEqual(text, self.succeed(command, "x", "--no_such_flag", "-h"))
             self.assertLessEqual(max(map(len, text.splitlines())), 80)
-            self.assertLessEqual(len(text.splitlines()), 25)
+            self.assertLessEqual(len(text.splitlines()), 24)
         for flag in ("-o", "--strategy", "--server", "--deadline", "--layers", "--deposition", "--cleaning_every",
                      "--cleaning_point", "--cost", "--policy", "--seed", "--threads", "--json", "--quiet"):
             self.assertIn(f" {flag}", self.succeed("optimize", "--help"))
