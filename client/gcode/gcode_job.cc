@@ -23,7 +23,7 @@ namespace {
 // Paths and extruded length by feature, and what may move.
 struct Census {
   std::array<int64_t, static_cast<size_t>(Feature::kCount)> paths{};
-  std::array<double, static_cast<size_t>(Feature::kCount)> way_mm{};
+  std::array<double, static_cast<size_t>(Feature::kCount)> printed_mm{};
   int64_t movable = 0;
 };
 
@@ -137,25 +137,26 @@ void SetKnownMoves(const GcodeFile& file, const Layer& of_file, const Retraction
     const Vertex from = file.modes[before.mode].InMm(before.last);
     const Vertex to = file.modes[block.mode].InMm(block.first);
     const Feature feature = outlines[b - of_file.first_block].feature;
-    const TravelWay way = rules.WayOf(from, to, feature);
+    const PlannedTravel planned_travel = rules.TravelOf(from, to, feature);
     // New travel does not include wipes either; nor what the head does at a boundary, which it does
     // in any order.
     const bool boundary = (block.link & (kLinkSplits | kLinkFixed)) != 0;
     const bool plain = (block.link & kLinkWipes) == 0 && !boundary;
-    double seconds = plain ? WaySeconds(file, b, travel) : NewWaySeconds(file, b - 1, way, travel);
+    double seconds = plain ? TravelSeconds(file, b, travel)
+                           : NewTravelSeconds(file, b - 1, planned_travel, travel);
     // A retraction because of a wipe has the price of new travel, which begins with it too.
     const bool wiped_before = wiped_stays && file.WipedBehind(b - 1);
     const bool wiped_behind = wiped_stays && file.WipedBehind(b);
     const double wiped = (wiped_before ? 0.5 : 0) + (wiped_behind ? 0.5 : 0);
     const bool retracts =
         (block.link & kLinkRetracts) != 0 && (boundary || !rules.Hides(from, to, feature));
-    const bool pays = wiped_before ? way.retracts : retracts;
+    const bool pays = wiped_before ? planned_travel.retracts : retracts;
     if (pays) seconds += layer.cost().time().retraction_seconds() * (1 - wiped);
     v1::KnownMove& move = *layer.add_known_moves();
     move.set_from(b - 1 - of_file.first_block);
     move.set_to(b - of_file.first_block);
     move.set_seconds(seconds < kMostKnownSeconds ? seconds : kMostKnownSeconds);
-    move.set_crosses(boundary ? way.crosses : MeasureLink(file, b, walls).crossings > 0);
+    move.set_crosses(boundary ? planned_travel.crosses : MeasureLink(file, b, walls).crossings > 0);
     move.set_retracts(retracts);
   }
 }
@@ -207,7 +208,8 @@ void FillLayer(const GcodeFile& file, size_t index, const FileHabits& habits,
     notes.feature.push_back(static_cast<uint16_t>(feature));
     notes.island.push_back(planned.island[path] + 1);
     ++census.paths[feature];
-    census.way_mm[feature] += static_cast<double>(file.blocks[layer.first_block + path].length_mm);
+    census.printed_mm[feature] +=
+        static_cast<double>(file.blocks[layer.first_block + path].length_mm);
   }
   census.movable = planned.movable;
 }
@@ -224,7 +226,7 @@ Census FillLayers(const GcodeFile& file, const GcodeOptions& options, const File
   for (const Census& part : parts) {
     for (size_t i = 0; i < all.paths.size(); ++i) {
       all.paths[i] += part.paths[i];
-      all.way_mm[i] += part.way_mm[i];
+      all.printed_mm[i] += part.printed_mm[i];
     }
     all.movable += part.movable;
   }
@@ -235,8 +237,8 @@ Census FillLayers(const GcodeFile& file, const GcodeOptions& options, const File
 // searched as long as it pays, long ones as others are. And it ends where a second of computing
 // saves less than a second of printing, or has saved less than twelve on the average: a layer is
 // searched some six times. What is done in any case is shared by the layers. Of what is found among
-// wiped paths less is had, for a way begins where the wipe ends, and a retraction more is no less
-// for those that are made anyway.
+// wiped paths less is had, for a travel move begins where the wipe ends, and a retraction more is
+// no less for those that are made anyway.
 void SetStrategy(const GcodeFile& file, const Allowance& allow, bool keeps_retractions,
                  v1::Strategy& strategy) {
   const auto paths = static_cast<double>(file.blocks.size());
@@ -276,7 +278,7 @@ void AddFacts(const GcodeFile& file, const Census& census, Policy policy, InputJ
   for (size_t i = 0; i < census.paths.size(); ++i) {
     if (census.paths[i] == 0) continue;
     add(std::string(FeatureName(static_cast<Feature>(i))),
-        absl::StrFormat("%d paths, %.2f m", census.paths[i], census.way_mm[i] / 1000));
+        absl::StrFormat("%d paths, %.2f m", census.paths[i], census.printed_mm[i] / 1000));
   }
   add("movable under " + std::string(PolicyName(policy)),
       absl::StrFormat("%d of %d paths", census.movable, file.blocks.size()));
@@ -295,7 +297,7 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   const gcode::Allowance allow = gcode::AllowedUnder(options.policy, options.allow);
   gcode::FileHabits habits;
   const int threads = gcode::ThreadsFor(file->text.size());
-  habits.retraction = gcode::HabitOfNewWays(*file, allow, threads);
+  habits.retraction = gcode::HabitOfNewTravels(*file, allow, threads);
   habits.travel = gcode::LearnTravel(*file, habits.retraction.threshold_mm, threads);
   habits.keeps_retractions = gcode::KeepsRetractions(*file);
   if (habits.keeps_retractions) habits.retraction.hidden = nullptr;

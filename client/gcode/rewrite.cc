@@ -150,7 +150,7 @@ class LayerLines {
     for (size_t i = 0; i < chosen.texts.size(); ++i) {
       const LayerText& text = chosen.texts[i];
       begins_.push_back(line);
-      line += LinesIn(text.way);
+      line += LinesIn(text.travel);
       paths_.push_back(line);
       line += LinesIn(text.paths.empty() ? file.PathsText(file.layers[i]) : text.paths);
     }
@@ -158,20 +158,20 @@ class LayerLines {
 
   struct Place {
     size_t layer = 0;
-    bool way = false;  // on the way to the layer
-    size_t line = 0;   // else of its paths, from 0
+    bool travel = false;  // on the way to the layer
+    size_t line = 0;      // else of its paths, from 0
   };
 
   Place Find(size_t line) const {
     const auto behind = std::upper_bound(begins_.begin(), begins_.end(), line);
     const size_t layer =
         behind == begins_.begin() ? 0 : static_cast<size_t>(behind - begins_.begin()) - 1;
-    const bool way = line < paths_[layer];
-    return {layer, way, way ? 0 : line - paths_[layer]};
+    const bool travel = line < paths_[layer];
+    return {layer, travel, travel ? 0 : line - paths_[layer]};
   }
 
  private:
-  std::vector<size_t> begins_;  // [layer] number of the first line of the way to it
+  std::vector<size_t> begins_;  // [layer] number of the first line of the travel to it
   std::vector<size_t> paths_;   // and of its paths
 };
 
@@ -299,7 +299,7 @@ class Rewriter {
   }
 
   bool RuleOut(VerifyRule rule, const LayerLines::Place& at) {
-    if (at.way || rule == VerifyRule::kRest) return chooser_.RuleOutWay(at.layer);
+    if (at.travel || rule == VerifyRule::kRest) return chooser_.RuleOutTravel(at.layer);
     const bool of_path = rule == VerifyRule::kWholePaths || rule == VerifyRule::kDirection ||
                          rule == VerifyRule::kSeam;
     return (of_path && chooser_.RuleOutPath(at.layer, at.line)) ||

@@ -67,7 +67,7 @@ Json TimeJson(const Result& result) {
           {"retractions", result.retractions()}};
 }
 
-// The ways that lead around walls, each with the number of the visit that it leads to.
+// The travel moves that lead around walls, each with the number of the visit that it leads to.
 Json DetoursJson(const v1::LayerResult& result) {
   Json detours = Json::array();
   for (const v1::Detour& detour : result.detours()) {

@@ -37,7 +37,7 @@ namespace traverse::report {
 //             "written": {...}}
 // Of a GTSPLIB instance the closed tour (client/gtsp/tour.h) stands there, in the file's numbers:
 //   "tour": {"rounded_length": 174, "points": [22, 3, ...]}
-// Crossings are ways across visible walls, open ones those with filament not pulled back.
+// Crossings are travel moves across visible walls, open ones those with filament not pulled back.
 std::string RoutesJson(const InputJob& job, const JobRun& run,
                        const GcodeRewrite* rewrite = nullptr);
 

@@ -24,8 +24,8 @@ constexpr size_t kFirstPoints = 64;
 // More than the relative rounding error of a bound on the cost of two moves.
 constexpr double kSlackOfBounds = 1e-6;
 
-// The steps of Rest that one query for a way around walls counts for.
-constexpr size_t kStepsOfWayAmongWalls = 256;
+// The steps of Rest that one query for a move around walls counts for.
+constexpr size_t kStepsOfMoveAmongWalls = 256;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -35,9 +35,9 @@ using Entries = std::vector<int>;
 Entries Build(const LayerView& layer, int node, Point from, const std::optional<Point>& to,
               Budget& budget);
 
-// A way to visit a child that is not in the route yet: an entry of a leaf, or a point at which a
+// A passage through a child that is not in the route yet: an entry of a leaf, or a point at which a
 // child with paths of its own may begin, which stands for its end too.
-struct Way {
+struct Passage {
   Point enter;
   Point exit;
   int entry;
@@ -61,7 +61,7 @@ class NodeRoute {
         position_(children_.size()),
         move_{Move(from, to)},
         awaited_(static_cast<size_t>(precedence_.item_count()), -1) {
-    ListWays();
+    ListPassages();
   }
 
   // Incomplete if the budget ran out.
@@ -88,7 +88,7 @@ class NodeRoute {
   // A position in the route: after `index` blocks.
   struct Insertion {
     size_t index = 0;
-    int way = -1;
+    int passage = -1;
     double cost = kInfinity;
   };
 
@@ -100,35 +100,35 @@ class NodeRoute {
   };
 
   // Those of the children inserted so far if the budget ran out.
-  void ListWays() {
+  void ListPassages() {
     for (size_t s = 0; s < children_.size(); ++s) {
       if (!rest_(8)) return;
-      first_way_.push_back(static_cast<int>(ways_.size()));
+      first_passage_.push_back(static_cast<int>(passages_.size()));
       const bool is_leaf = layer_.tree.is_leaf(children_[s]);
       ForEachFirstEntry(layer_, children_[s], kFirstPoints, [&](int e) {
         const Point enter = layer_.table.enter(e);
-        ways_.push_back(Way{enter, is_leaf ? layer_.table.exit(e) : enter, e});
-        boxes_[s].Add(ways_.back().enter);
-        boxes_[s].Add(ways_.back().exit);
+        passages_.push_back(Passage{enter, is_leaf ? layer_.table.exit(e) : enter, e});
+        boxes_[s].Add(passages_.back().enter);
+        boxes_[s].Add(passages_.back().exit);
         rest_(4);
       });
       waiting_at_.push_back(waiting_.size());
       waiting_.push_back({boxes_[s], kInfinity, static_cast<int>(s)});
     }
-    first_way_.push_back(static_cast<int>(ways_.size()));
+    first_passage_.push_back(static_cast<int>(passages_.size()));
   }
 
-  absl::Span<const Way> WaysOf(int slot) const {
-    const size_t begin = static_cast<size_t>(first_way_[static_cast<size_t>(slot)]);
-    const size_t end = static_cast<size_t>(first_way_[static_cast<size_t>(slot) + 1]);
-    return absl::MakeConstSpan(ways_).subspan(begin, end - begin);
+  absl::Span<const Passage> PassagesOf(int slot) const {
+    const size_t begin = static_cast<size_t>(first_passage_[static_cast<size_t>(slot)]);
+    const size_t end = static_cast<size_t>(first_passage_[static_cast<size_t>(slot) + 1]);
+    return absl::MakeConstSpan(passages_).subspan(begin, end - begin);
   }
 
-  // Calls `f` with the number of each way of `slot`, until the budget runs out.
+  // Calls `f` with the number of each passage of `slot`, until the budget runs out.
   template <typename F>
-  void ForEachWay(int slot, F&& f) {
+  void ForEachPassage(int slot, F&& f) {
     constexpr size_t kAtOnce = 1 << 12;
-    const size_t count = WaysOf(slot).size();
+    const size_t count = PassagesOf(slot).size();
     for (size_t begin = 0; begin < count; begin += kAtOnce) {
       const size_t end = std::min(count, begin + kAtOnce);
       if (!rest_(2 * (end - begin))) return;
@@ -141,9 +141,10 @@ class NodeRoute {
     for (Waiting& waiting : waiting_) {
       if (waiting.box.SquaredDistanceTo(p) >= waiting.nearest * waiting.nearest) continue;
       double& nearest = nearest_[static_cast<size_t>(waiting.slot)];
-      const absl::Span<const Way> ways = WaysOf(waiting.slot);
-      ForEachWay(waiting.slot, [&](size_t w) {
-        nearest = std::min({nearest, Distance(p, ways[w].enter), Distance(p, ways[w].exit)});
+      const absl::Span<const Passage> passages = PassagesOf(waiting.slot);
+      ForEachPassage(waiting.slot, [&](size_t w) {
+        nearest =
+            std::min({nearest, Distance(p, passages[w].enter), Distance(p, passages[w].exit)});
       });
       waiting.nearest = nearest;
     }
@@ -175,13 +176,13 @@ class NodeRoute {
   bool Insert(int slot) {
     const Insertion found = BestInsertion(slot);
     if (budget_.was_exhausted()) return false;
-    assert(found.way >= 0);
+    assert(found.passage >= 0);
     const Point from = ExitBefore(found.index);
     const std::optional<Point> to = EnterAt(found.index);
     const int child = children_[static_cast<size_t>(slot)];
     Entries& entries = built_[static_cast<size_t>(slot)];
     if (layer_.tree.is_leaf(child)) {
-      entries = {ways_[static_cast<size_t>(found.way)].entry};
+      entries = {passages_[static_cast<size_t>(found.passage)].entry};
     } else {
       entries = Build(layer_, child, from, to, budget_);
       if (budget_.was_exhausted()) return false;
@@ -235,7 +236,7 @@ class NodeRoute {
       const double present = move_[index];
       Try(slot, index, best, [&](const TwoMoves& moves) {
         return moves.CostWithin(best.cost + present, layer_.cost,
-                                [this] { rest_(kStepsOfWayAmongWalls); });
+                                [this] { rest_(kStepsOfMoveAmongWalls); });
       });
     }
     return best;
@@ -249,10 +250,10 @@ class NodeRoute {
       if (BoundOf(slot, index, best.cost) >= best.cost) continue;
       Try(slot, index, best, [&](const TwoMoves& moves) { return moves.Least(layer_.cost); });
     }
-    if (best.way < 0) return kInfinity;
-    const Way& way = ways_[static_cast<size_t>(best.way)];
-    const double cost =
-        layer_.cost(ExitBefore(best.index), way.enter) + Move(way.exit, EnterAt(best.index));
+    if (best.passage < 0) return kInfinity;
+    const Passage& passage = passages_[static_cast<size_t>(best.passage)];
+    const double cost = layer_.cost(ExitBefore(best.index), passage.enter) +
+                        Move(passage.exit, EnterAt(best.index));
     return cost - move_[best.index] + kSlackOfBounds * (1 + cost);
   }
 
@@ -270,8 +271,8 @@ class NodeRoute {
     if (BehindSlot(slot) > BehindSlot(latest)) latest = slot;
   }
 
-  // A lower bound of the cost of any way of `slot` at the place `index`. Stops early, with a value
-  // not below `most`, if one side alone shows that.
+  // A lower bound of the cost of any passage of `slot` at the place `index`. Stops early, with a
+  // value not below `most`, if one side alone shows that.
   double BoundOf(int slot, size_t index, double most) const {
     const Point from = ExitBefore(index);
     const BoundingBox& box = boxes_[static_cast<size_t>(slot)];
@@ -285,17 +286,19 @@ class NodeRoute {
     return to ? bound + layer_.cost.OfLength(box.DistanceTo(*to)) : bound;
   }
 
-  // Replaces `best` if some way of `slot` at the place `index` costs less, by cost_of(its two
+  // Replaces `best` if some passage of `slot` at the place `index` costs less, by cost_of(its two
   // moves), or as much at an earlier place.
   template <typename CostOf>
   void Try(int slot, size_t index, Insertion& best, CostOf cost_of) {
     const Point from = ExitBefore(index);
     const std::optional<Point> to = EnterAt(index);
-    const absl::Span<const Way> ways = WaysOf(slot);
-    ForEachWay(slot, [&](size_t w) {
-      const double cost = cost_of(TwoMoves{from, ways[w].enter, ways[w].exit, to}) - move_[index];
+    const absl::Span<const Passage> passages = PassagesOf(slot);
+    ForEachPassage(slot, [&](size_t w) {
+      const double cost =
+          cost_of(TwoMoves{from, passages[w].enter, passages[w].exit, to}) - move_[index];
       if (cost > best.cost || (cost == best.cost && !(index < best.index))) return;
-      best = Insertion{index, first_way_[static_cast<size_t>(slot)] + static_cast<int>(w), cost};
+      best =
+          Insertion{index, first_passage_[static_cast<size_t>(slot)] + static_cast<int>(w), cost};
     });
   }
 
@@ -311,10 +314,10 @@ class NodeRoute {
   Budget& budget_;
   Rest rest_;
 
-  std::vector<Way> ways_;
-  std::vector<int> first_way_;      // [slot] where its ways begin in ways_; one more
+  std::vector<Passage> passages_;
+  std::vector<int> first_passage_;  // [slot] where its passages begin in passages_; one more
   std::vector<double> nearest_;     // [slot] distance in mm of its points to the route's
-  std::vector<BoundingBox> boxes_;  // [slot] of its ways
+  std::vector<BoundingBox> boxes_;  // [slot] of its passages
   std::vector<Waiting> waiting_;    // in any order
   std::vector<size_t> waiting_at_;  // [slot] its index in waiting_, if it is there
   std::vector<Entries> built_;      // [slot] empty until it is in the route

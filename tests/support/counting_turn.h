@@ -11,7 +11,7 @@
 
 namespace traverse::testing {
 
-// Wanted all the time; counts how often it is asked to give way.
+// Wanted all the time; counts how often it is asked to give travel.
 class CountingTurn : public Turn {
  public:
   CountingTurn() { SetWanted(true); }

@@ -171,7 +171,7 @@ class RowFinder {
       // The extruder's surplus belongs to the paths, whatever is before them.
       if (std::abs(column.inside[c].extra_mm - column.inside[0].extra_mm) > kSlackMm) continue;
       for (size_t b = 0; b < before.size(); ++b) {
-        if (!column.no_way.empty() && column.no_way[b * n + c]) continue;
+        if (!column.no_travel.empty() && column.no_travel[b * n + c]) continue;
         const PrintTotals whole = column.Whole(b, c);
         const double score = before[b] + Score(whole, prices);
         if (score >= scores[c] || !MayBe(given, whole)) continue;
@@ -193,13 +193,13 @@ class RowFinder {
 
 PrintTotals ChoiceColumn::Whole(size_t before, size_t choice) const {
   PrintTotals whole = inside[choice];
-  if (!ways.empty()) whole += Way(before, choice);
+  if (!travels.empty()) whole += Travel(before, choice);
   return whole;
 }
 
-const PrintTotals& ChoiceColumn::Way(size_t before, size_t choice) const {
-  assert(before * inside.size() + choice < ways.size());
-  return ways[before * inside.size() + choice];
+const PrintTotals& ChoiceColumn::Travel(size_t before, size_t choice) const {
+  assert(before * inside.size() + choice < travels.size());
+  return travels[before * inside.size() + choice];
 }
 
 std::vector<uint32_t> BestRow(const std::vector<const ChoiceColumn*>& columns, Policy policy,

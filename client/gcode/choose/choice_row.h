@@ -19,15 +19,15 @@ namespace traverse::gcode {
 
 // The choices for one layer. Choice 0 is the file's own order, and always exists.
 struct ChoiceColumn {
-  std::vector<PrintTotals> inside;  // [choice] its paths and the travel between them
-  std::vector<PrintTotals> ways;    // [before * choices + choice] travel from the layer before
+  std::vector<PrintTotals> inside;   // [choice] its paths and the travel between them
+  std::vector<PrintTotals> travels;  // [before * choices + choice] travel from the layer before
 
   // What must not be chosen.
   std::vector<bool> no_choice;  // [choice]
-  std::vector<bool> no_way;     // [as ways]
+  std::vector<bool> no_travel;  // [as travels]
 
-  // Of `ways`. REQUIRES: this is not the first layer.
-  const PrintTotals& Way(size_t before, size_t choice) const;
+  // Of `travels`. REQUIRES: this is not the first layer.
+  const PrintTotals& Travel(size_t before, size_t choice) const;
 
   // Including the travel to the layer. `before` is ignored for the first layer, which has none.
   PrintTotals Whole(size_t before, size_t choice) const;

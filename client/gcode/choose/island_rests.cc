@@ -129,7 +129,7 @@ std::optional<LeastRest> LeastRestOf(const GcodeFile& file, int threads) {
     moments.offsets = PathMarks(file, layer);
     MeasurePaths(file, layer, no_walls, &moments);
     times[i] = rests.TimesOf(i, order, layer.first_block, moments.seconds);
-    given[i] = {&times[i], MeasureWay(file, layer, no_walls).nominal_seconds};
+    given[i] = {&times[i], MeasureTravel(file, layer, no_walls).nominal_seconds};
   });
   rests.SetGiven(given);
   return rests.LeastOf(given);

@@ -38,7 +38,7 @@ class LayerChooser::Impl {
         polish_(choice.polish),
         usual_tries_(choice.usual_tries),
         threads_(choice.threads),
-        habit_(HabitOfNewWays(file, AllowedUnder(choice.policy, choice.allow), choice.threads)),
+        habit_(HabitOfNewTravels(file, AllowedUnder(choice.policy, choice.allow), choice.threads)),
         donors_(file),
         room_(file),
         rests_(StackIslands(file, choice.threads),
@@ -50,7 +50,7 @@ class LayerChooser::Impl {
     assert(usual_tries_ <= tries_.size());
     ParallelFor(columns_.size(), threads_, [this](size_t layer) { FillColumn(layer); });
     rests_.SetGiven(TimedRow(columns_, false));
-    ParallelFor(columns_.size() - 1, threads_, [this](size_t i) { FillWays(i + 1); });
+    ParallelFor(columns_.size() - 1, threads_, [this](size_t i) { FillTravels(i + 1); });
     for (LayerColumn& column : columns_)
       column.totals.no_choice.assign(column.choices.size(), false);
   }
@@ -77,14 +77,14 @@ class LayerChooser::Impl {
     return place < order.size() && column.refusals.RefusePlaceOf(order[place]);
   }
 
-  bool RuleOutWay(size_t layer) {
+  bool RuleOutTravel(size_t layer) {
     if (layer == 0) return false;
     LayerColumn& column = columns_[layer];
     LayerColumn& before = columns_[layer - 1];
     if (before.chosen == 0 && column.chosen == 0) return false;
     const LinkEnds link{Chosen(layer - 1).order.back(), Chosen(layer).order.front()};
     const bool own = link == LinkEnds{before.given_order().back(), column.given_order().front()};
-    column.refusals.RefuseWay(before.chosen, column.chosen, own ? nullptr : &link);
+    column.refusals.RefuseTravel(before.chosen, column.chosen, own ? nullptr : &link);
     column.refusals.begin = column.chosen != 0;
     before.refusals.end = before.chosen != 0;
     return true;
@@ -129,7 +129,7 @@ class LayerChooser::Impl {
     if (polish_) {
       rules.freedom = FreedomOf(file_, of_file, policy_, allow_);
       rules.polish = polish_;
-      if (habit_.avoids_walls) rules.polish->seconds_per_way = PolishLimit::kSecondsPerDetour;
+      if (habit_.avoids_walls) rules.polish->seconds_per_travel = PolishLimit::kSecondsPerDetour;
     }
     for (uint32_t b = of_file.first_block; b < of_file.end_block; ++b) {
       rules.boundaries.push_back((file_.blocks[b].link & (kLinkSplits | kLinkFixed)) != 0);
@@ -151,18 +151,18 @@ class LayerChooser::Impl {
     }
     if (!polish_ || more <= 0 || layers.empty()) return false;
     ParallelFor(layers.size(), threads_, [&](size_t i) { AddSparing(layers[i]); });
-    FillWaysAround(layers);
+    FillTravelsAround(layers);
     return true;
   }
 
   // After other choices were added to `layers`, which ascend.
-  void FillWaysAround(const std::vector<size_t>& layers) {
-    std::vector<size_t> ways;
+  void FillTravelsAround(const std::vector<size_t>& layers) {
+    std::vector<size_t> travels;
     for (const size_t layer : layers) {
-      if (layer > 0 && (ways.empty() || ways.back() != layer)) ways.push_back(layer);
-      if (layer + 1 < columns_.size()) ways.push_back(layer + 1);
+      if (layer > 0 && (travels.empty() || travels.back() != layer)) travels.push_back(layer);
+      if (layer + 1 < columns_.size()) travels.push_back(layer + 1);
     }
-    ParallelFor(ways.size(), threads_, [&](size_t i) { FillWays(ways[i]); });
+    ParallelFor(travels.size(), threads_, [&](size_t i) { FillTravels(travels[i]); });
   }
 
   // Where links of what was chosen are ruled out, adds the same without them.
@@ -172,7 +172,7 @@ class LayerChooser::Impl {
       if (columns_[layer].refusals.ask()) layers.push_back(layer);
     }
     ParallelFor(layers.size(), threads_, [&](size_t i) { AddRepaired(layers[i]); });
-    FillWaysAround(layers);
+    FillTravelsAround(layers);
   }
 
   void AddRepaired(size_t layer) {
@@ -240,21 +240,21 @@ class LayerChooser::Impl {
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
   }
 
-  // A way that must not be chosen is not written. The file's own orders one after the other may
-  // always be.
-  void FillWays(size_t layer) {
+  // A travel move that must not be chosen is not written. The file's own orders one after the other
+  // may always be.
+  void FillTravels(size_t layer) {
     LayerColumn& column = columns_[layer];
     ChoiceColumn& totals = column.totals;
-    totals.ways.clear();
-    totals.no_way.clear();
+    totals.travels.clear();
+    totals.no_travel.clear();
     for (uint32_t before = 0; before < columns_[layer - 1].choices.size(); ++before) {
       for (uint32_t choice = 0; choice < column.choices.size(); ++choice) {
-        totals.ways.emplace_back();
-        totals.no_way.push_back(MayNotFollow(layer, before, choice, kLongestTravelSeconds));
-        if (totals.no_way.back()) continue;
-        totals.ways.back() = MeasureWay(file_, columns_[layer - 1], before, column, choice);
-        const double seconds = totals.ways.back().nominal_seconds;
-        totals.no_way.back() = MayNotFollow(layer, before, choice, seconds);
+        totals.travels.emplace_back();
+        totals.no_travel.push_back(MayNotFollow(layer, before, choice, kLongestTravelSeconds));
+        if (totals.no_travel.back()) continue;
+        totals.travels.back() = MeasureTravel(file_, columns_[layer - 1], before, column, choice);
+        const double seconds = totals.travels.back().nominal_seconds;
+        totals.no_travel.back() = MayNotFollow(layer, before, choice, seconds);
       }
     }
   }
@@ -265,14 +265,14 @@ class LayerChooser::Impl {
     if (before == 0 && choice == 0) return false;
     const LayerChoice& from = columns_[layer - 1].choices[before];
     const LayerChoice& to = columns_[layer].choices[choice];
-    return columns_[layer].refusals.RefusesWay(before, choice,
-                                               {from.order.back(), to.order.front()}) ||
+    return columns_[layer].refusals.RefusesTravel(before, choice,
+                                                  {from.order.back(), to.order.front()}) ||
            rests_.TooShort(layer, from.times, {&to.times, travel_seconds});
   }
 
-  // The ways are written one after the other, for each needs to know where the extruder's register
-  // is; then the paths, side by side. Where they set the register themselves, and it counts on from
-  // elsewhere than when they were measured, they are written at once.
+  // The travel moves are written one after the other, for each needs to know where the extruder's
+  // register is; then the paths, side by side. Where they set the register themselves, and it
+  // counts on from elsewhere than when they were measured, they are written at once.
   ChosenLayers Write() {
     ChosenLayers chosen;
     chosen.texts.resize(columns_.size());
@@ -286,7 +286,7 @@ class LayerChooser::Impl {
     for (size_t layer = 0; layer < columns_.size(); ++layer) {
       const LayerChoice& choice = Chosen(layer);
       LayerText& text = chosen.texts[layer];
-      starts.push_back(WriteWayTo(layer, chosen.behind, text.way));
+      starts.push_back(WriteTravelTo(layer, chosen.behind, text.travel));
       chosen.behind = choice.behind;
       if (Fits(layer, starts[layer])) {
         starts[layer] = choice.start;
@@ -314,7 +314,7 @@ class LayerChooser::Impl {
     for (size_t layer = 0; layer < columns_.size(); ++layer) {
       LayerText& text = chosen.texts[layer];
       text = LayerText{};
-      const PartStart start = WriteWayTo(layer, chosen.behind, text.way);
+      const PartStart start = WriteTravelTo(layer, chosen.behind, text.travel);
       chosen.behind = WritePathsOf(layer, start, text.paths);
     }
   }
@@ -329,13 +329,13 @@ class LayerChooser::Impl {
   }
 
   // `at` is the machine behind the layer before; of no meaning for the first one.
-  PartStart WriteWayTo(size_t layer, const PartStart& at, std::string& text) const {
+  PartStart WriteTravelTo(size_t layer, const PartStart& at, std::string& text) const {
     if (layer == 0) {
       const Block& first = file_.blocks.front();
       return {StateAt(file_, first), file_.states[first.state_in]};
     }
-    return columns_[layer].writer->WriteWay(Chosen(layer - 1).order.back(),
-                                            Chosen(layer).order.front(), at, text);
+    return columns_[layer].writer->WriteTravel(Chosen(layer - 1).order.back(),
+                                               Chosen(layer).order.front(), at, text);
   }
 
   PartStart WritePathsOf(size_t layer, const PartStart& start, std::string& text) const {
@@ -389,7 +389,7 @@ bool LayerChooser::RuleOutPath(size_t layer, size_t line) {
   return impl_->RuleOutPath(layer, line);
 }
 
-bool LayerChooser::RuleOutWay(size_t layer) { return impl_->RuleOutWay(layer); }
+bool LayerChooser::RuleOutTravel(size_t layer) { return impl_->RuleOutTravel(layer); }
 
 bool LayerChooser::RuleOutStarts(size_t layer) { return impl_->RuleOutStarts(layer); }
 
@@ -401,7 +401,7 @@ bool LayerChooser::IsGivenUp(size_t layer) const { return impl_->IsGivenUp(layer
 
 void ChosenLayers::AppendTo(const GcodeFile& file, std::string& text) const {
   for (size_t i = 0; i < texts.size(); ++i) {
-    text += texts[i].way;
+    text += texts[i].travel;
     text +=
         texts[i].paths.empty() ? file.PathsText(file.layers[i]) : std::string_view(texts[i].paths);
   }

@@ -37,7 +37,7 @@ struct RestTotals {
 
 // A layer as written. `paths` is empty if the paths are as in the file.
 struct LayerText {
-  std::string way;
+  std::string travel;
   std::string paths;
 };
 
@@ -98,7 +98,7 @@ class LayerChooser {
   bool RuleOutPath(size_t layer, size_t line);
 
   // The same for the travel to `layer` from the layer before: adds what begins or ends as sliced.
-  bool RuleOutWay(size_t layer);
+  bool RuleOutTravel(size_t layer);
 
   // Rules out that loops of `layer` begin elsewhere than in the file or, if none chosen last does,
   // that its paths are turned round. Adds the same order without that. False if all paths are as

@@ -27,7 +27,7 @@ double ForecastPaths(const LayerWriter& writer, const TravelModel& travel,
   double seconds = 0;
   const std::vector<uint32_t> places = writer.PlacesOf(order);
   for (size_t place = 1; place < order.size(); ++place) {
-    seconds += writer.EstimateWay(places[place], order[place - 1], order[place], travel).seconds;
+    seconds += writer.EstimateTravel(places[place], order[place - 1], order[place], travel).seconds;
   }
   return seconds;
 }
@@ -40,8 +40,8 @@ void NoteBlocked(const std::vector<LayerOrder>& orders, const TravelModel& trave
   if (writer.room() == nullptr) return;
   for (const LayerOrder& order : orders) {
     for (size_t place = 1; place < order.size(); ++place) {
-      const auto way = writer.EstimateWay(place, order[place - 1], order[place], travel);
-      column.blocked |= way.blocked > 0;
+      const auto link = writer.EstimateTravel(place, order[place - 1], order[place], travel);
+      column.blocked |= link.blocked > 0;
     }
   }
 }
@@ -88,7 +88,7 @@ void ColumnFiller::Begin(size_t layer, LayerColumn& column) const {
   const VisibleWalls& walls = column.writer->walls();
   column.totals.inside.push_back(MeasurePaths(file_, of_file, walls, &moments));
   choice.times = rests_.TimesOf(layer, choice.order, of_file.first_block, moments.seconds);
-  column.given_travel_seconds = MeasureWay(file_, of_file, walls).nominal_seconds;
+  column.given_travel_seconds = MeasureTravel(file_, of_file, walls).nominal_seconds;
   if (!column.writer->hides() || std::abs(column.totals.inside[0].extra_mm) <= kLeastExtraMm) {
     return;
   }
@@ -116,7 +116,7 @@ void ColumnFiller::Add(const LayerOrder& order, size_t layer, LayerColumn& colum
     column.plain = std::make_unique<const LayerWriter>(
         file_, file_.layers[layer], plain_habit_, donors_, room_.Of(layer), column.writer->hides());
   }
-  // A choice that is equal would have ways to and from all those of the layers beside it.
+  // A choice that is equal would have travel moves to and from all those of the layers beside it.
   if (Add(order, layer, *column.plain, column) != sparing) return;
   column.choices.pop_back();
   column.totals.inside.pop_back();
@@ -155,12 +155,12 @@ double LeastRestSeconds(const GcodeFile& file, Policy policy, double min_seconds
   return std::max(min_seconds, LeastLayerSeconds(file.text));
 }
 
-PrintTotals MeasureWay(const GcodeFile& file, const LayerColumn& before, uint32_t from,
-                       const LayerColumn& column, uint32_t to) {
+PrintTotals MeasureTravel(const GcodeFile& file, const LayerColumn& before, uint32_t from,
+                          const LayerColumn& column, uint32_t to) {
   const LayerChoice& choice = before.choices[from];
   std::string text;
-  column.writer->WriteWay(choice.order.back(), column.choices[to].order.front(), choice.behind,
-                          text);
+  column.writer->WriteTravel(choice.order.back(), column.choices[to].order.front(), choice.behind,
+                             text);
   return Measure(file, text, choice.behind, &column.writer->walls(), column.writer->room());
 }
 
@@ -172,7 +172,7 @@ std::vector<TimedLayer> TimedRow(const std::vector<LayerColumn>& columns, bool a
     TimedLayer& timed = row.emplace_back(TimedLayer{&column.choices[chosen].times, 0});
     if (layer == 0) continue;
     timed.travel_seconds =
-        as_chosen ? column.totals.Way(columns[layer - 1].chosen, chosen).nominal_seconds
+        as_chosen ? column.totals.Travel(columns[layer - 1].chosen, chosen).nominal_seconds
                   : column.given_travel_seconds;
   }
   return row;
@@ -204,8 +204,8 @@ Forecast ForecastOf(const std::vector<LayerColumn>& columns,
     forecast.seconds +=
         column.chosen == 0 ? given : ForecastPaths(*chosen.writer, travel[layer], chosen.order);
     if (layer == 0) continue;
-    forecast.given_seconds += column.totals.Way(0, 0).seconds;
-    forecast.seconds += column.totals.Way(columns[layer - 1].chosen, column.chosen).seconds;
+    forecast.given_seconds += column.totals.Travel(0, 0).seconds;
+    forecast.seconds += column.totals.Travel(columns[layer - 1].chosen, column.chosen).seconds;
   }
   return forecast;
 }

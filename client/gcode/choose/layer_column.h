@@ -77,8 +77,8 @@ class ColumnFiller {
   void AddHidden(size_t layer, LayerColumn& column) const;
 
   // Adds `order`, of layer `layer`, with walls spared, unless the column has it. Where that leaves
-  // fewer ways across them with an open nozzle than the file has, there may be time to win: so it
-  // is written as the file would have it as well.
+  // fewer travel moves across them with an open nozzle than the file has, there may be time to win:
+  // so it is written as the file would have it as well.
   void Add(const LayerOrder& order, size_t layer, LayerColumn& column) const;
 
  private:
@@ -102,8 +102,8 @@ std::vector<const LayerOrder*> FastestOrders(const LayerColumn& column, size_t m
 double LeastRestSeconds(const GcodeFile& file, Policy policy, double min_seconds);
 
 // Choice `to` of `column` behind choice `from` of the layer before: the travel between them.
-PrintTotals MeasureWay(const GcodeFile& file, const LayerColumn& before, uint32_t from,
-                       const LayerColumn& column, uint32_t to);
+PrintTotals MeasureTravel(const GcodeFile& file, const LayerColumn& before, uint32_t from,
+                          const LayerColumn& column, uint32_t to);
 
 // The layers of the file in its own order, or as chosen.
 std::vector<TimedLayer> TimedRow(const std::vector<LayerColumn>& columns, bool as_chosen);
@@ -112,7 +112,7 @@ std::vector<TimedLayer> TimedRow(const std::vector<LayerColumn>& columns, bool a
 // out what was chosen for its layer; else for the layers below. True if there is such an island.
 bool RuleOutShortRests(const IslandRests& rests, std::vector<LayerColumn>& columns);
 
-// Of all layers, with the measured ways to them. `travel` has their travel.
+// Of all layers, with the measured travel moves to them. `travel` has their travel.
 Forecast ForecastOf(const std::vector<LayerColumn>& columns,
                     const std::vector<TravelModel>& travel);
 

@@ -23,10 +23,11 @@ constexpr double kSparedRetractionSeconds = 1;
 // Rounding of sums of lengths.
 constexpr double kSlackMm = 1e-6;
 
-// Refused links that are taken out of an order at once, for each asks for all ways of the layer.
+// Refused links that are taken out of an order at once, for each asks for all travel moves of the
+// layer.
 constexpr size_t kMostRepairs = 64;
 
-MergeLimits LimitsOf(const WayTotals& given, const MergeRules& rules) {
+MergeLimits LimitsOf(const TravelTotals& given, const MergeRules& rules) {
   MergeLimits limits;
   if (rules.crossings != Crossings::kAny) limits.crossings = given.crossings;
   if (rules.crossings == Crossings::kFewer) limits.crossing_seconds = kFewerCrossingSeconds;
@@ -50,21 +51,21 @@ bool IsWhole(const LayerOrder& order, const LayerOrder& given) {
   return order.size() == given.size();
 }
 
-// The ways of a layer. Those around walls take long to find, and the same few are asked for again
-// and again.
-class KnownWays {
+// The travel moves of a layer. Those around walls take long to find, and the same few are asked for
+// again and again.
+class KnownTravels {
  public:
-  KnownWays(const LayerWriter& writer, const TravelModel& travel, const MergeRules& rules)
+  KnownTravels(const LayerWriter& writer, const TravelModel& travel, const MergeRules& rules)
       : writer_(writer), travel_(travel), rules_(rules), given_(writer.GivenOrder()) {
     uint32_t placements = 0;
     for (const Outline& outline : writer.outlines()) {
       numbers_.push_back(placements);
       placements += static_cast<uint32_t>(std::max<size_t>(outline.points.size(), 2));
     }
-    given_ways_.resize(given_.size());
+    given_travels_.resize(given_.size());
     for (size_t i = 1; i < given_.size(); ++i) {
-      given_ways_[i] = writer.EstimateWay(i, given_[i - 1], given_[i], travel);
-      longest_open_mm_ = std::max(longest_open_mm_, given_ways_[i].open_mm);
+      given_travels_[i] = writer.EstimateTravel(i, given_[i - 1], given_[i], travel);
+      longest_open_mm_ = std::max(longest_open_mm_, given_travels_[i].open_mm);
     }
   }
 
@@ -75,14 +76,14 @@ class KnownWays {
   // From now on the orders asked about have objects in other places than the file.
   void MoveObjects() { moved_ = !rules_.places.empty(); }
 
-  WayTotals operator()(size_t place, const Placement& from, const Placement& to) {
+  TravelTotals operator()(size_t place, const Placement& from, const Placement& to) {
     if (moved_) place = rules_.places[place];
-    // Where something stands in the file, the way depends on what that is.
+    // Where something stands in the file, the travel depends on what that is.
     const bool boundary = rules_.boundaries[place];
     const size_t next = to.block - given_.front().block;
     const bool as_given = next > 0 && from == given_[next - 1] && to == given_[next];
     const bool alike = next == place || !(boundary || rules_.boundaries[next]);
-    if (as_given && alike) return given_ways_[next];
+    if (as_given && alike) return given_travels_[next];
     if (known_.size() >= kMostKnown) known_.clear();
     const Key key{boundary ? static_cast<uint32_t>(place) : 0, Number(from), Number(to)};
     const auto [found, added] = known_.try_emplace(key);
@@ -101,22 +102,22 @@ class KnownWays {
     return numbers_[placement.block - given_.front().block] + placement.entry;
   }
 
-  WayTotals Estimate(size_t place, const Placement& from, const Placement& to) const {
-    WayTotals way = writer_.EstimateWay(place, from, to, travel_);
-    if (way.open_mm > longest_open_mm_ + kSlackMm) way.too_long = 1;
-    if (IsRefused(from, to)) ++way.too_long;
-    return way;
+  TravelTotals Estimate(size_t place, const Placement& from, const Placement& to) const {
+    TravelTotals totals = writer_.EstimateTravel(place, from, to, travel_);
+    if (totals.open_mm > longest_open_mm_ + kSlackMm) totals.too_long = 1;
+    if (IsRefused(from, to)) ++totals.too_long;
+    return totals;
   }
 
   const LayerWriter& writer_;
   const TravelModel& travel_;
   const MergeRules& rules_;
   const LayerOrder given_;
-  std::vector<uint32_t> numbers_;      // [path] the number of its first placement
-  std::vector<WayTotals> given_ways_;  // [place] as the layer was given
-  double longest_open_mm_ = 0;         // of them
+  std::vector<uint32_t> numbers_;            // [path] the number of its first placement
+  std::vector<TravelTotals> given_travels_;  // [place] as the layer was given
+  double longest_open_mm_ = 0;               // of them
   bool moved_ = false;
-  absl::flat_hash_map<Key, WayTotals> known_;
+  absl::flat_hash_map<Key, TravelTotals> known_;
 };
 
 // What comes directly behind the path before it still does.
@@ -133,8 +134,8 @@ bool EndsAlike(const LayerOrder& a, const LayerOrder& b) {
   return a.front() == b.front() && a.back() == b.back();
 }
 
-// The paths in the order of the file, begun as in `order`: where walls may change places, ways that
-// are as long may have to be retracted that were open.
+// The paths in the order of the file, begun as in `order`: where walls may change places, travel
+// moves that are as long may have to be retracted that were open.
 LayerOrder InGivenOrder(LayerOrder order) {
   std::sort(order.begin(), order.end(),
             [](const Placement& a, const Placement& b) { return a.block < b.block; });
@@ -142,7 +143,7 @@ LayerOrder InGivenOrder(LayerOrder order) {
 }
 
 // Of what begins or ends elsewhere only the whole file tells whether it crosses too many walls, and
-// only the way to it whether it is too long.
+// only the travel to it whether it is too long.
 MergeLimits AnyLength(MergeLimits limits) {
   limits.mm = std::numeric_limits<double>::infinity();
   return limits;
@@ -165,14 +166,14 @@ class LayerMerge {
         outlines_(writer.outlines()),
         given_(writer.GivenOrder()),
         found_(found),
-        ways_(writer, travel, rules),
+        travels_(writer, travel, rules),
         were_(OrderMerger(estimate_, {}).TotalsOf(given_)),
         strict_(estimate_, LimitsOf(were_, rules)),
         few_(estimate_, AnyLength(LimitsOf(were_, rules))),
         quick_(estimate_, AnyCrossings(LimitsOf(were_, rules))) {
     all_ = found;
     all_.push_back(given_);
-    ways_.MoveObjects();
+    travels_.MoveObjects();
     if (!rules.freedom) return;
     polisher_.emplace(given_.front().block, writer.outlines(), *rules.freedom, estimate_,
                       *rules.polish);
@@ -221,7 +222,7 @@ class LayerMerge {
   std::optional<LayerOrder> Repair(LayerOrder order, const LayerFreedom& freedom, size_t reach) {
     size_t repairs = 0;
     for (size_t place = 1; place < order.size() && repairs < kMostRepairs; ++place) {
-      if (!ways_.IsRefused(order[place - 1], order[place])) continue;
+      if (!travels_.IsRefused(order[place - 1], order[place])) continue;
       std::optional<LayerOrder> best;
       for (LayerOrder& other : OrdersWithoutLink(order, place, given_, reach)) {
         if (!KeepsTogether(other, freedom, given_.front().block)) continue;
@@ -245,7 +246,7 @@ class LayerMerge {
   }
 
   std::pair<double, double> Rank(const LayerOrder& order) const {
-    const WayTotals totals = strict_.TotalsOf(order);
+    const TravelTotals totals = strict_.TotalsOf(order);
     return {strict_.Excess(totals), strict_.Score(totals)};
   }
 
@@ -287,9 +288,9 @@ class LayerMerge {
   const LayerOrder given_;
   const std::vector<LayerOrder> found_;
   std::vector<LayerOrder> all_;  // of them and given
-  KnownWays ways_;
-  const WayEstimate estimate_ = std::ref(ways_);
-  const WayTotals were_;
+  KnownTravels travels_;
+  const TravelEstimate estimate_ = std::ref(travels_);
+  const TravelTotals were_;
   const OrderMerger strict_;  // keeps to what holds for the layer
   const OrderMerger few_;     // but for its length
   const OrderMerger quick_;   // and for its crossings

@@ -30,11 +30,11 @@ Source SourceOf(const LayerOrder& order, uint32_t first) {
 // One merge in progress.
 class Merging {
  public:
-  Merging(const OrderMerger& merger, const WayEstimate& estimate, LayerOrder begun)
-      : merger_(merger), estimate_(estimate), order_(std::move(begun)), ways_(order_.size()) {
+  Merging(const OrderMerger& merger, const TravelEstimate& estimate, LayerOrder begun)
+      : merger_(merger), estimate_(estimate), order_(std::move(begun)), travels_(order_.size()) {
     for (size_t i = 1; i < order_.size(); ++i) {
-      ways_[i] = estimate_(i, order_[i - 1], order_[i]);
-      totals_ += ways_[i];
+      travels_[i] = estimate_(i, order_[i - 1], order_[i]);
+      totals_ += travels_[i];
     }
   }
 
@@ -51,7 +51,7 @@ class Merging {
     return better;
   }
 
-  size_t most() const { return std::max(OrderMerger::kMostWays, order_.size()); }
+  size_t most() const { return std::max(OrderMerger::kMostTravels, order_.size()); }
   LayerOrder Take() { return std::move(order_); }
 
  private:
@@ -74,44 +74,44 @@ class Merging {
     std::sort(run_.begin(), run_.end(), [&](const Placement& a, const Placement& b) {
       return source.rank[a.block - first] < source.rank[b.block - first];
     });
-    WayTotals totals = totals_;
-    new_ways_.clear();
+    TravelTotals totals = totals_;
+    new_travels_.clear();
     const Placement* at = &order_[begin - 1];
     for (size_t place = begin; place <= end; ++place) {
       const Placement& to = place < end ? run_[place - begin] : order_[end];
-      new_ways_.push_back(estimate_(place, *at, to));
-      totals -= ways_[place];
-      totals += new_ways_.back();
+      new_travels_.push_back(estimate_(place, *at, to));
+      totals -= travels_[place];
+      totals += new_travels_.back();
       at = &to;
     }
-    asked_ += new_ways_.size();
+    asked_ += new_travels_.size();
     if (!merger_.IsBetter(totals, totals_)) return false;
     totals_ = totals;
     std::copy(run_.begin(), run_.end(), order_.begin() + static_cast<std::ptrdiff_t>(begin));
-    std::copy(new_ways_.begin(), new_ways_.end(),
-              ways_.begin() + static_cast<std::ptrdiff_t>(begin));
+    std::copy(new_travels_.begin(), new_travels_.end(),
+              travels_.begin() + static_cast<std::ptrdiff_t>(begin));
     return true;
   }
 
   const OrderMerger& merger_;
-  const WayEstimate& estimate_;
+  const TravelEstimate& estimate_;
   LayerOrder order_;
-  std::vector<WayTotals> ways_;  // [position] the travel to it
-  WayTotals totals_;
+  std::vector<TravelTotals> travels_;  // [position] the travel to it
+  TravelTotals totals_;
   size_t asked_ = 0;
   LayerOrder run_;
-  std::vector<WayTotals> new_ways_;
+  std::vector<TravelTotals> new_travels_;
 };
 
 }  // namespace
 
-WayTotals OrderMerger::TotalsOf(const LayerOrder& order) const {
-  WayTotals totals;
+TravelTotals OrderMerger::TotalsOf(const LayerOrder& order) const {
+  TravelTotals totals;
   for (size_t i = 1; i < order.size(); ++i) totals += estimate_(i, order[i - 1], order[i]);
   return totals;
 }
 
-double OrderMerger::Excess(const WayTotals& totals) const {
+double OrderMerger::Excess(const TravelTotals& totals) const {
   const auto beyond = [](int64_t value, int64_t limit) {
     return value > limit ? static_cast<double>(value - limit) : 0.0;
   };
@@ -124,12 +124,12 @@ double OrderMerger::Excess(const WayTotals& totals) const {
   return excess;
 }
 
-double OrderMerger::Score(const WayTotals& totals) const {
+double OrderMerger::Score(const TravelTotals& totals) const {
   return totals.seconds + limits_.crossing_seconds * static_cast<double>(totals.crossings) +
          limits_.retraction_seconds * static_cast<double>(totals.retractions);
 }
 
-bool OrderMerger::IsBetter(const WayTotals& totals, const WayTotals& others) const {
+bool OrderMerger::IsBetter(const TravelTotals& totals, const TravelTotals& others) const {
   const double excess = Excess(totals);
   const double excess_of_others = Excess(others);
   if (std::abs(excess - excess_of_others) > kGrain) return excess < excess_of_others;

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "client/gcode/write/placed_path.h"
-#include "client/gcode/write/way_totals.h"
+#include "client/gcode/write/travel_totals.h"
 
 namespace traverse::gcode {
 
@@ -35,34 +35,34 @@ struct MergeLimits {
 };
 
 // Estimates the travel to position `place` of the layer, from 1, where `to` follows `from`.
-using WayEstimate =
-    std::function<WayTotals(size_t place, const Placement& from, const Placement& to)>;
+using TravelEstimate =
+    std::function<TravelTotals(size_t place, const Placement& from, const Placement& to)>;
 
 class OrderMerger {
  public:
   // `estimate` must outlive the merger.
-  OrderMerger(const WayEstimate& estimate, const MergeLimits& limits)
+  OrderMerger(const TravelEstimate& estimate, const MergeLimits& limits)
       : estimate_(estimate), limits_(limits) {}
 
-  WayTotals TotalsOf(const LayerOrder& order) const;
+  TravelTotals TotalsOf(const LayerOrder& order) const;
 
   // By how much `totals` exceed the limits; 0 if they do not.
-  double Excess(const WayTotals& totals) const;
+  double Excess(const TravelTotals& totals) const;
 
   // Estimated seconds, including the cost of crossings.
-  double Score(const WayTotals& totals) const;
+  double Score(const TravelTotals& totals) const;
 
   // True if `totals` exceed the limits by less than `others` do, or by the same and score lower.
-  bool IsBetter(const WayTotals& totals, const WayTotals& others) const;
+  bool IsBetter(const TravelTotals& totals, const TravelTotals& others) const;
 
   // `begun`, improved by runs of `others`: first less beyond the limits, then faster. All have the
-  // same paths. Asks for at most kMostWays estimates, or one per path if that is more.
+  // same paths. Asks for at most kMostTravels estimates, or one per path if that is more.
   LayerOrder Merge(const LayerOrder& begun, const std::vector<LayerOrder>& others) const;
 
-  static constexpr size_t kMostWays = 20'000;
+  static constexpr size_t kMostTravels = 20'000;
 
  private:
-  const WayEstimate& estimate_;
+  const TravelEstimate& estimate_;
   const MergeLimits limits_;
 };
 

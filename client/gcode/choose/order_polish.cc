@@ -26,7 +26,7 @@ constexpr size_t kLongestTurned = 50;
 // Of the two runs that change places in a kick.
 constexpr uint32_t kLongestKicked = 12;
 
-// A way that is dearer by less than this may be cheaper with other entries.
+// A travel move that is dearer by less than this may be cheaper with other entries.
 constexpr double kSlackSeconds = 0.02;
 
 // After so many ways for each path it is looked whether the last of them were worth it.
@@ -41,7 +41,7 @@ class OrderPolisher::Search {
         state_(begun, polisher.first_block_, polisher.freedom_, polisher.pairs_, polisher.estimate_,
                judge),
         queued_(begun.size(), false),
-        most_(kMostWaysEach * begun.size()) {
+        most_(kMostTravelsEach * begun.size()) {
     for (uint32_t path = 0; path < begun.size(); ++path) Push(path);
   }
 
@@ -67,7 +67,7 @@ class OrderPolisher::Search {
         state_.KeepIfBetter();
       }
       if (state_.asked() + failed < end) continue;
-      const double least = polisher_.limit_.seconds_per_way * static_cast<double>(window);
+      const double least = polisher_.limit_.seconds_per_travel * static_cast<double>(window);
       if (score - state_.Score() < least) break;
       score = state_.Score();
       end += window;
@@ -221,8 +221,8 @@ class OrderPolisher::Search {
     return false;
   }
 
-  // Whether the way from the path at `i` to the one at `j`, begun as it may be, is about as cheap
-  // as the one that leads on from `i` now.
+  // Whether the travel from the path at `i` to the one at `j`, begun as it may be, is about as
+  // cheap as the one that leads on from `i` now.
   bool MayFollow(size_t i, size_t j) {
     if (MayGain(i + 1, state_.At(i), state_.At(j))) return true;
     for (const uint32_t entry : EntriesNear(j, polisher_.End(state_.At(i)))) {
@@ -231,7 +231,7 @@ class OrderPolisher::Search {
     return false;
   }
 
-  // The same of the way to the path at `i` from the one at `j`.
+  // The same of the travel to the path at `i` from the one at `j`.
   bool MayLead(size_t j, size_t i) {
     if (MayGain(i, state_.At(j), state_.At(i))) return true;
     for (const uint32_t entry : EntriesNear(j, polisher_.Begin(state_.At(i)))) {
@@ -241,7 +241,7 @@ class OrderPolisher::Search {
   }
 
   bool MayGain(size_t place, const Placement& from, const Placement& to) {
-    return state_.ScoreOf(place, from, to) < state_.ScoreOfWayTo(place) + kSlackSeconds;
+    return state_.ScoreOf(place, from, to) < state_.ScoreOfTravelTo(place) + kSlackSeconds;
   }
 
   Placement Entered(size_t i, uint32_t entry) const {
@@ -258,7 +258,7 @@ class OrderPolisher::Search {
 };
 
 OrderPolisher::OrderPolisher(uint32_t first_block, const std::vector<Outline>& outlines,
-                             const LayerFreedom& freedom, const WayEstimate& estimate,
+                             const LayerFreedom& freedom, const TravelEstimate& estimate,
                              const PolishLimit& limit)
     : first_block_(first_block),
       outlines_(outlines),

@@ -33,14 +33,14 @@ struct PolishLimit {
   absl::Time until = absl::InfiniteFuture();
   std::stop_token cancel = {};
 
-  // It is given up where estimates of ways gain less than this each, on the average.
-  double seconds_per_way = kSecondsPerWay;
+  // It is given up where estimates of travel moves gain less than this each, on the average.
+  double seconds_per_travel = kSecondsPerTravel;
 
   // An estimate takes about twice as long; but gains come late and in steps, and a while without a
   // large one is often followed by one with it.
-  static constexpr double kSecondsPerWay = 1e-7;
+  static constexpr double kSecondsPerTravel = 1e-7;
 
-  // One of a way that leads around walls.
+  // One of a travel move that leads around walls.
   static constexpr double kSecondsPerDetour = 1e-6;
 
   bool Over() const {
@@ -57,16 +57,17 @@ class OrderPolisher {
 
   // For the layer with the paths `outlines`, from block `first_block` on. All outlive the polisher.
   OrderPolisher(uint32_t first_block, const std::vector<Outline>& outlines,
-                const LayerFreedom& freedom, const WayEstimate& estimate, const PolishLimit& limit);
+                const LayerFreedom& freedom, const TravelEstimate& estimate,
+                const PolishLimit& limit);
 
   // `begun`, improved as OrderMerger::Merge does: first less beyond the limits of `judge`,
   // then faster. Its first and last paths stay. It makes no change beyond the layer's
   // freedom, but does not repair a `begun` that is beyond it. It stops when estimates gain too
-  // little, when it has asked for about kMostWaysEach of them per path, or at the limit.
+  // little, when it has asked for about kMostTravelsEach of them per path, or at the limit.
   // REQUIRES: `begun` has each path of the layer once, or none.
   LayerOrder Polish(const LayerOrder& begun, const OrderMerger& judge, Effort effort) const;
 
-  static constexpr size_t kMostWaysEach = 50'000;
+  static constexpr size_t kMostTravelsEach = 50'000;
 
  private:
   class Search;
@@ -79,7 +80,7 @@ class OrderPolisher {
   const uint32_t first_block_;
   const std::vector<Outline>& outlines_;
   const LayerFreedom& freedom_;
-  const WayEstimate& estimate_;
+  const TravelEstimate& estimate_;
   const PolishLimit& limit_;
   std::vector<std::vector<uint32_t>> neighbors_;  // [path] nearest ones first
   const PathPairs pairs_;

@@ -14,7 +14,7 @@ PathPairs::PathPairs(const LayerFreedom& freedom)
 }
 
 OrderState::OrderState(LayerOrder begun, uint32_t first_block, const LayerFreedom& freedom,
-                       const PathPairs& pairs, const WayEstimate& estimate,
+                       const PathPairs& pairs, const TravelEstimate& estimate,
                        const OrderMerger& judge)
     : first_block_(first_block),
       freedom_(freedom),
@@ -22,22 +22,22 @@ OrderState::OrderState(LayerOrder begun, uint32_t first_block, const LayerFreedo
       estimate_(estimate),
       judge_(judge),
       order_(std::move(begun)),
-      ways_(order_.size()),
+      travels_(order_.size()),
       place_(order_.size()) {
   assert(order_.size() == freedom.rules.size());
   for (size_t i = 0; i < order_.size(); ++i) {
     place_[PathAt(i)] = i;
     if (i == 0) continue;
-    ways_[i] = Ask(i, order_[i - 1], order_[i]);
-    totals_ += ways_[i];
+    travels_[i] = Ask(i, order_[i - 1], order_[i]);
+    totals_ += travels_[i];
   }
   kept_order_ = order_;
-  kept_ways_ = ways_;
+  kept_travels_ = travels_;
   kept_totals_ = totals_;
   changed_begin_ = order_.size();
 }
 
-WayTotals OrderState::Ask(size_t place, const Placement& from, const Placement& to) {
+TravelTotals OrderState::Ask(size_t place, const Placement& from, const Placement& to) {
   ++asked_;
   return estimate_(place, from, to);
 }
@@ -93,40 +93,40 @@ Placement OrderState::PlacedIn(const PlaceRun& run, size_t k) const {
   return placement;
 }
 
-// The ways of a run that are new: all of one that is turned, else the way to it.
-size_t OrderState::NewWays(const PlaceRun& run) {
+// The travel moves of a run that are new: all of one that is turned, else the travel to it.
+size_t OrderState::NewTravels(const PlaceRun& run) {
   return run.turned ? run.size() : std::min<size_t>(run.size(), 1);
 }
 
-// What the order comes to with `runs`; leaves the new ways in the scratch. Ways within a run that
-// is not turned stay.
-WayTotals OrderState::TotalsWith(size_t begin, size_t end, const PlaceRuns& runs) {
-  asked_ways_.clear();
-  WayTotals totals = totals_;
-  const auto exchange = [&](const WayTotals& was, const WayTotals& is) {
+// What the order comes to with `runs`; leaves the new travel moves in the scratch. Travel moves
+// within a run that is not turned stay.
+TravelTotals OrderState::TotalsWith(size_t begin, size_t end, const PlaceRuns& runs) {
+  asked_travels_.clear();
+  TravelTotals totals = totals_;
+  const auto exchange = [&](const TravelTotals& was, const TravelTotals& is) {
     totals -= was;
     totals += is;
-    asked_ways_.push_back(is);
+    asked_travels_.push_back(is);
   };
   Placement before = order_[begin - 1];
   size_t place = begin;
   for (const PlaceRun& run : runs) {
-    for (size_t k = 0; k < NewWays(run); ++k) {
+    for (size_t k = 0; k < NewTravels(run); ++k) {
       const Placement placement = PlacedIn(run, k);
-      exchange(ways_[run.begin + k], Ask(place + k, before, placement));
+      exchange(travels_[run.begin + k], Ask(place + k, before, placement));
       before = placement;
     }
     if (run.size() > 0) before = PlacedIn(run, run.size() - 1);
     place += run.size();
   }
   assert(place == end);
-  exchange(ways_[end], Ask(end, before, order_[end]));
+  exchange(travels_[end], Ask(end, before, order_[end]));
   return totals;
 }
 
 bool OrderState::DoIfBetter(size_t begin, size_t end, const PlaceRuns& runs) {
   assert(0 < begin && begin < end && end < size());
-  const WayTotals totals = TotalsWith(begin, end, runs);
+  const TravelTotals totals = TotalsWith(begin, end, runs);
   if (!judge_.IsBetter(totals, totals_)) return false;
   Take(begin, end, runs, totals);
   return true;
@@ -134,26 +134,26 @@ bool OrderState::DoIfBetter(size_t begin, size_t end, const PlaceRuns& runs) {
 
 void OrderState::Do(size_t begin, size_t end, const PlaceRuns& runs) {
   assert(0 < begin && begin < end && end < size());
-  const WayTotals totals = TotalsWith(begin, end, runs);
+  const TravelTotals totals = TotalsWith(begin, end, runs);
   Take(begin, end, runs, totals);
 }
 
 // REQUIRES: TotalsWith was called last, for the same, and returned `totals`.
-void OrderState::Take(size_t begin, size_t end, const PlaceRuns& runs, const WayTotals& totals) {
+void OrderState::Take(size_t begin, size_t end, const PlaceRuns& runs, const TravelTotals& totals) {
   totals_ = totals;
   run_.clear();
-  new_ways_.clear();
-  auto asked = asked_ways_.begin();
+  new_travels_.clear();
+  auto asked = asked_travels_.begin();
   for (const PlaceRun& run : runs) {
     for (size_t k = 0; k < run.size(); ++k) {
       run_.push_back(PlacedIn(run, k));
-      new_ways_.push_back(k < NewWays(run) ? *asked++ : ways_[run.begin + k]);
+      new_travels_.push_back(k < NewTravels(run) ? *asked++ : travels_[run.begin + k]);
     }
   }
-  new_ways_.push_back(*asked);
+  new_travels_.push_back(*asked);
   const auto at = static_cast<std::ptrdiff_t>(begin);
   std::copy(run_.begin(), run_.end(), order_.begin() + at);
-  std::copy(new_ways_.begin(), new_ways_.end(), ways_.begin() + at);
+  std::copy(new_travels_.begin(), new_travels_.end(), travels_.begin() + at);
   for (size_t i = begin; i < end; ++i) place_[PathAt(i)] = i;
   changed_begin_ = std::min(changed_begin_, begin);
   changed_end_ = std::max(changed_end_, end + 1);
@@ -170,10 +170,10 @@ bool OrderState::KeepIfBetter() {
   for (size_t i = changed_begin_; i < changed_end_; ++i) {
     if (better) {
       kept_order_[i] = order_[i];
-      kept_ways_[i] = ways_[i];
+      kept_travels_[i] = travels_[i];
     } else {
       order_[i] = kept_order_[i];
-      ways_[i] = kept_ways_[i];
+      travels_[i] = kept_travels_[i];
       place_[PathAt(i)] = i;
     }
   }

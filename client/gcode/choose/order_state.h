@@ -16,7 +16,7 @@
 #include "client/gcode/choose/order_merge.h"
 #include "client/gcode/plan/layer_freedom.h"
 #include "client/gcode/write/placed_path.h"
-#include "client/gcode/write/way_totals.h"
+#include "client/gcode/write/travel_totals.h"
 
 namespace traverse::gcode {
 
@@ -47,7 +47,7 @@ class OrderState {
   // `pairs` are those of `freedom`. The path with index 0 is block `first_block`. All but `begun`
   // outlive the state. REQUIRES: `begun` has each path of `freedom` once.
   OrderState(LayerOrder begun, uint32_t first_block, const LayerFreedom& freedom,
-             const PathPairs& pairs, const WayEstimate& estimate, const OrderMerger& judge);
+             const PathPairs& pairs, const TravelEstimate& estimate, const OrderMerger& judge);
 
   size_t size() const { return order_.size(); }
   const LayerOrder& order() const { return order_; }
@@ -58,7 +58,7 @@ class OrderState {
 
   // The judge's score: seconds, including the price of crossings.
   double Score() const { return judge_.Score(totals_); }
-  double ScoreOfWayTo(size_t place) const { return judge_.Score(ways_[place]); }
+  double ScoreOfTravelTo(size_t place) const { return judge_.Score(travels_[place]); }
   double ScoreOf(size_t place, const Placement& from, const Placement& to) {
     return judge_.Score(Ask(place, from, to));
   }
@@ -87,36 +87,36 @@ class OrderState {
   static Placement Turned(Placement placement);
 
  private:
-  WayTotals Ask(size_t place, const Placement& from, const Placement& to);
+  TravelTotals Ask(size_t place, const Placement& from, const Placement& to);
   bool MayCut(size_t place) const;
   bool AnyBetween(const std::vector<uint32_t>& paths, size_t begin, size_t end) const;
   Placement PlacedIn(const PlaceRun& run, size_t k) const;
-  static size_t NewWays(const PlaceRun& run);
-  WayTotals TotalsWith(size_t begin, size_t end, const PlaceRuns& runs);
-  void Take(size_t begin, size_t end, const PlaceRuns& runs, const WayTotals& totals);
+  static size_t NewTravels(const PlaceRun& run);
+  TravelTotals TotalsWith(size_t begin, size_t end, const PlaceRuns& runs);
+  void Take(size_t begin, size_t end, const PlaceRuns& runs, const TravelTotals& totals);
 
   const uint32_t first_block_;
   const LayerFreedom& freedom_;
   const PathPairs& pairs_;
-  const WayEstimate& estimate_;
+  const TravelEstimate& estimate_;
   const OrderMerger& judge_;
 
   LayerOrder order_;
-  std::vector<WayTotals> ways_;  // [place] the travel to it
-  std::vector<size_t> place_;    // [path]
-  WayTotals totals_;
+  std::vector<TravelTotals> travels_;  // [place] the travel to it
+  std::vector<size_t> place_;          // [path]
+  TravelTotals totals_;
 
   LayerOrder kept_order_;
-  std::vector<WayTotals> kept_ways_;
-  WayTotals kept_totals_;
+  std::vector<TravelTotals> kept_travels_;
+  TravelTotals kept_totals_;
   size_t changed_begin_ = 0;  // places that may differ from the kept order
   size_t changed_end_ = 0;
 
   std::vector<uint32_t> touched_;
   size_t asked_ = 0;
-  std::vector<WayTotals> asked_ways_;  // scratch: the new ways of a change
-  LayerOrder run_;                     // and the paths at the changed places, and all their travel
-  std::vector<WayTotals> new_ways_;
+  std::vector<TravelTotals> asked_travels_;  // scratch: the new travel moves of a change
+  LayerOrder run_;  // and the paths at the changed places, and all their travel
+  std::vector<TravelTotals> new_travels_;
 };
 
 }  // namespace traverse::gcode

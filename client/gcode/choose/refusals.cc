@@ -18,9 +18,9 @@ void Refusals::RefuseLink(const LayerOrder& order, size_t place) {
   }
 }
 
-void Refusals::RefuseWay(uint32_t before, uint32_t choice, const LinkEnds* link) {
+void Refusals::RefuseTravel(uint32_t before, uint32_t choice, const LinkEnds* link) {
   any = true;
-  ways.emplace(before, choice);
+  travels.emplace(before, choice);
   if (link != nullptr) links_to.insert(*link);
 }
 

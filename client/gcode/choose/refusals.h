@@ -22,7 +22,7 @@ struct Refusals {
   absl::flat_hash_set<uint32_t> stay;  // the same for single paths
 
   // Travel from a choice of the layer before to one of this layer.
-  absl::flat_hash_set<std::pair<uint32_t, uint32_t>> ways;
+  absl::flat_hash_set<std::pair<uint32_t, uint32_t>> travels;
 
   // What of the last choice has to be had otherwise: how its paths are placed, its links, its begin
   // and its end.
@@ -37,9 +37,9 @@ struct Refusals {
 
   // Refuses travel from a choice of the layer before, and that link between any choices unless it
   // is null.
-  void RefuseWay(uint32_t before, uint32_t choice, const LinkEnds* link);
-  bool RefusesWay(uint32_t before, uint32_t choice, const LinkEnds& link) const {
-    return ways.contains({before, choice}) || links_to.contains(link);
+  void RefuseTravel(uint32_t before, uint32_t choice, const LinkEnds* link);
+  bool RefusesTravel(uint32_t before, uint32_t choice, const LinkEnds& link) const {
+    return travels.contains({before, choice}) || links_to.contains(link);
   }
 
   // Refuses that loops of `order` begin elsewhere than in the file or, if none does, that paths are

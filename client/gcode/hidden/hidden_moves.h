@@ -1,8 +1,8 @@
 // Which travel moves nobody can see, even if filament oozes on their way.
 //
-//   layer above   ~~~~~~~~~~~~~~~~~~~    covers all of the way
-//   this layer    |w| ----------> |w|    the way lies inside, half a width from visible walls
-//   layer below   ===================    supports all of the way
+//   layer above   ~~~~~~~~~~~~~~~~~~~    covers all of the travel
+//   this layer    |w| ----------> |w|    the travel lies inside, half a width from visible walls
+//   layer below   ===================    supports all of the travel
 //
 // It is inside whatever the order of the layer: what oozes where something is yet to be printed
 // is printed over. Certain in cells of a tenth of a millimetre; what is not certain is not hidden.

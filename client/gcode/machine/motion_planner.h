@@ -11,7 +11,7 @@
 // For a machine that runs Klipper it plans as Klipper does (Klipper's Kinematics.md):
 // - a corner is rounded on the circle that misses it by as much as a right angle at the corner
 //   speed would, and that touches both moves no farther away than their midpoints;
-// - Z is an axis like the others, so a lift and the way after it form a corner too; a slow axis
+// - Z is an axis like the others, so a lift and the travel after it form a corner too; a slow axis
 //   slows the corners that it takes part in;
 // - the extruder's speed changes at once by no more than its own corner speed;
 // - a share of each way up to a speed and down again is at constant speed: the peak is the speed
@@ -40,7 +40,7 @@ double CornerSpeed2(double cosine, double corner);
 // How a machine goes around corners.
 struct PlannerRules {
   bool klipper = false;
-  double cruise_ratio = 0;           // share of a way that is at constant speed, below 1
+  double cruise_ratio = 0;           // share of a travel move that is at constant speed, below 1
   double extruder_corner_speed = 0;  // mm/s of filament
 };
 

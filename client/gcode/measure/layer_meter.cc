@@ -105,7 +105,7 @@ PrintTotals MeasurePaths(const GcodeFile& file, const Layer& layer, const Visibl
   return Measure(file, file.PathsText(layer), start, &walls, nullptr, moments);
 }
 
-PrintTotals MeasureWay(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls) {
+PrintTotals MeasureTravel(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls) {
   return layer.first_block > 0 ? MeasureLink(file, layer.first_block, walls) : PrintTotals{};
 }
 
@@ -119,7 +119,7 @@ std::vector<PrintTotals> MeasureLayers(const GcodeFile& file, int threads) {
   std::vector<PrintTotals> totals(file.layers.size());
   ParallelFor(totals.size(), threads, [&file, &totals](size_t i) {
     const VisibleWalls walls(OutlinesOf(file, file.layers[i]));
-    totals[i] = MeasureWay(file, file.layers[i], walls);
+    totals[i] = MeasureTravel(file, file.layers[i], walls);
     totals[i] += MeasurePaths(file, file.layers[i], walls);
   });
   return totals;

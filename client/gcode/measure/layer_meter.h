@@ -53,7 +53,7 @@ PrintTotals MeasurePaths(const GcodeFile& file, const Layer& layer, const Visibl
                          TextMoments* moments = nullptr);
 
 // The travel to the first path of `layer` from the end of the layer before; empty for the first.
-PrintTotals MeasureWay(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls);
+PrintTotals MeasureTravel(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls);
 
 // Any link before block `block`, as it is in the file. REQUIRES: block > 0.
 PrintTotals MeasureLink(const GcodeFile& file, uint32_t block, const VisibleWalls& walls);

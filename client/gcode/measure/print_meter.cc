@@ -103,9 +103,9 @@ double PrintMeter::MoveXy(const Step& step, const MachineState& state) {
   const double accel = extrudes ? dynamics_.print_accel() : dynamics_.travel_accel();
   const double corner = dynamics_.corner_speed();
   if (step.arc) {
-    double way[4] = {1, 0, 1, 0};
-    const double length = ArcLength(step.command, step.from, state.at, unit, way);
-    planner_.Arc(length, way[0], way[1], way[2], way[3], speed, accel, corner);
+    double travel[4] = {1, 0, 1, 0};
+    const double length = ArcLength(step.command, step.from, state.at, unit, travel);
+    planner_.Arc(length, travel[0], travel[1], travel[2], travel[3], speed, accel, corner);
     return length;
   }
   planner_.Move(ToDouble(state.at.x - step.from.x) * unit,
@@ -125,7 +125,7 @@ double PrintMeter::MoveKlipper(const Step& step, const MachineState& state) {
   move.accel = move.machine_accel = dynamics_.travel_accel();
   move.corner = dynamics_.corner_speed();
   move.filament = ToDouble(step.filament) / length;
-  // What one axis may is the more along a way on which it moves less.
+  // What one axis may is the more along a travel move on which it moves less.
   const auto limit = [&move](double share, double most_speed, double most_accel) {
     move.speed = std::min(move.speed, most_speed / share);
     move.accel = std::min(move.accel, most_accel / share);
@@ -169,7 +169,7 @@ void PrintMeter::FollowXy(const Step& step, const MachineState& state) {
   const bool extrudes = step.kind == StepKind::kExtrude;
   const double length = profile_.klipper ? MoveKlipper(step, state) : MoveXy(step, state);
   (extrudes ? totals_.extruded_mm : totals_.travel_mm) += length;
-  if (extrudes) EndWay();
+  if (extrudes) EndTravel();
   if (step.kind != StepKind::kTravel || walls_ == nullptr) return;
   const TravelLine move{state.InMm(step.from), state.InMm(state.at)};
   if (!crosses_ && walls_->Crossed(move.from, move.to)) {
@@ -184,8 +184,8 @@ void PrintMeter::FollowXy(const Step& step, const MachineState& state) {
   open_mm_ += length;
 }
 
-// Of a way that begins with a short move inwards, the walls near its bend count, too.
-void PrintMeter::EndWay() {
+// Of a travel move that begins with a short move inwards, the walls near its bend count, too.
+void PrintMeter::EndTravel() {
   const bool bends = departs_ && open_moves_.size() > 1;
   if (!crosses_ && bends) crosses_ = crosses_open_ = walls_->CrossedByMoves(open_moves_);
   totals_.crossings += crosses_ ? 1 : 0;
@@ -199,7 +199,7 @@ void PrintMeter::EndWay() {
 }
 
 PrintTotals PrintMeter::Finish() {
-  EndWay();
+  EndTravel();
   planner_.Stop();
   totals_.seconds = planner_.seconds();
   return totals_;

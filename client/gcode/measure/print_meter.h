@@ -39,13 +39,13 @@ class PrintMeter {
 
   // Queues a move of filament alone or a lift; the machine stands still before and after it.
   void Stand(const Step& step, const MachineState& state);
-  void EndWay();
+  void EndTravel();
 
   const MachineProfile& profile_;
   Dynamics dynamics_;
   const VisibleWalls* walls_;
 
-  // The way since the last extrusion.
+  // The travel since the last extrusion.
   bool crosses_ = false;
   bool crosses_open_ = false;
   std::vector<TravelLine> open_moves_;  // without a retraction

@@ -14,8 +14,9 @@ struct PrintTotals {
   int64_t retractions = 0;     // retractions; those by wipes count once
   int64_t crossings = 0;       // travel moves between paths that cross a visible wall
   int64_t open_crossings = 0;  // of them, those without a retraction
-  double longest_open_mm = 0;  // the longest of these, with all moves of the way from path to path
-  int64_t blocked = 0;         // moves where something that stands is in the way
+  double longest_open_mm =
+      0;                // the longest of these, with all moves of the travel from path to path
+  int64_t blocked = 0;  // moves where something that stands is in the way
   double extra_mm = 0;  // filament pushed at a standstill beyond what was retracted, or short of it
   double seconds = 0;   // see motion_planner.h for the model
   double nominal_seconds = 0;  // if every move is as fast as it states; dwells included

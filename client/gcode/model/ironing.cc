@@ -74,7 +74,7 @@ double UsualSpacingMm(const GcodeFile& file, const Layer& layer, double usual_fl
 }
 
 // How far from `p` in the direction `to`, of length 1, the segment lies; none if it does not cross
-// the way there nearly at a right angle.
+// the travel there nearly at a right angle.
 std::optional<double> DistanceAlong(Vertex p, Vertex to, const Segment& segment) {
   const Vertex side{segment.b.x - segment.a.x, segment.b.y - segment.a.y};
   const double cross = to.x * side.y - to.y * side.x;
@@ -93,7 +93,7 @@ double RoomAt(Vertex p, Vertex a, Vertex b, double most, const SegmentGrid& grid
   double room = most;
   for (const double side : {1.0, -1.0}) {
     const Vertex to{side * (a.y - b.y) / length, side * (b.x - a.x) / length};
-    grid.ForEachOnWay(p, {p.x + most * to.x, p.y + most * to.y}, looks, [&](uint32_t s) {
+    grid.ForEachOnTravel(p, {p.x + most * to.x, p.y + most * to.y}, looks, [&](uint32_t s) {
       const double distance = DistanceAlong(p, to, grid.segments()[s]).value_or(most);
       constexpr double kItselfMm = 0.005;
       if (distance > kItselfMm) room = std::min(room, distance);

@@ -44,7 +44,7 @@ void ProbeOutside(const Outline& outline, uint32_t loop, const SegmentGrid& grid
     const Segment probe = ProbeAt(outline, k);
     const Segment end{probe.b, probe.b, 0};
     bool hit = false;
-    grid.ForEachOnWay(probe.a, probe.b, looks, [&](uint32_t s) {
+    grid.ForEachOnTravel(probe.a, probe.b, looks, [&](uint32_t s) {
       const Segment& other = grid.segments()[s];
       hit = other.path != loop && SquaredDistance(end, other) <= slack * slack;
       return !hit;

@@ -59,7 +59,7 @@ class SegmentGrid {
   // Calls visit(s) for all segments that the straight move from `a` to `b` may cross, until it
   // returns false or `looks`, which each call takes one off, is 0.
   template <typename Visit>
-  void ForEachOnWay(Vertex a, Vertex b, size_t& looks, Visit visit) const;
+  void ForEachOnTravel(Vertex a, Vertex b, size_t& looks, Visit visit) const;
 
  private:
   int Column(double x) const;
@@ -160,8 +160,8 @@ void SegmentGrid::ForEachCell(Vertex a, Vertex b, Visit visit) const {
   // Samples every quarter of a cell. A cell of which only a corner is touched may be missed, by
   // less than an eighth of its side.
   const int steps = static_cast<int>(Distance(a, b) * 4 * cells_per_mm_) + 1;
-  // Along the way columns and rows change in one direction each. So if one of both changes by one,
-  // or none does, there is nothing to see between two samples.
+  // Along the travel columns and rows change in one direction each. So if one of both changes by
+  // one, or none does, there is nothing to see between two samples.
   constexpr int kStride = 3;
   const auto sample = [&](int i) {
     const double t = static_cast<double>(i) / steps;
@@ -269,7 +269,7 @@ void SegmentGrid::ForEachOccupied(Visit visit) const {
 }
 
 template <typename Visit>
-void SegmentGrid::ForEachOnWay(Vertex a, Vertex b, size_t& looks, Visit visit) const {
+void SegmentGrid::ForEachOnTravel(Vertex a, Vertex b, size_t& looks, Visit visit) const {
   if (columns_ == 0) return;
   bool going_on = looks > 0;
   ForEachCell(a, b, [&](int column, int row) {

@@ -67,9 +67,9 @@ bool VisibleWalls::IsOnOne(Vertex point) const {
   return found;
 }
 
-bool VisibleWalls::CrossedByWay(const std::vector<Vertex>& way) const {
+bool VisibleWalls::CrossedByTravel(const std::vector<Vertex>& travel) const {
   std::vector<TravelLine> moves;
-  for (size_t i = 1; i < way.size(); ++i) moves.push_back({way[i - 1], way[i]});
+  for (size_t i = 1; i < travel.size(); ++i) moves.push_back({travel[i - 1], travel[i]});
   return CrossedByMoves(moves);
 }
 

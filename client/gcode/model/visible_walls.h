@@ -15,7 +15,7 @@ bool IsVisibleWall(Feature feature);
 
 // Those among the outlines of one layer, in the form sent to the search; `path` is the outline's
 // index. Without those that come to a place that has more of them than can be printed there
-// (WallCrowd): a test of a way looks at all that are near.
+// (WallCrowd): a test of a travel move looks at all that are near.
 std::vector<Wall> VisibleWallsOf(const std::vector<Outline>& outlines);
 
 // A straight travel move.
@@ -39,9 +39,9 @@ class VisibleWalls {
   bool Crossed(Vertex a, Vertex b) const { return grid_.Crosses({a.x, a.y}, {b.x, b.y}); }
 
   // The same for a move with bends, near which it is tested too.
-  bool CrossedByWay(const std::vector<Vertex>& way) const;
+  bool CrossedByTravel(const std::vector<Vertex>& travel) const;
 
-  // The same for the moves of a way, of which some may be left out.
+  // The same for the moves of a travel move, of which some may be left out.
   bool CrossedByMoves(const std::vector<TravelLine>& moves) const;
 
   // True if `point` lies in the middle of one.

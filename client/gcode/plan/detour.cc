@@ -10,7 +10,8 @@ double Written(double mm) { return std::round(mm * 1000) / 1000; }
 
 }  // namespace
 
-// The shortest way passes a corner by next to nothing, and rounding may put it on the other side.
+// The shortest travel passes a corner by next to nothing, and rounding may put it on the other
+// side.
 std::vector<Vertex> Detours::Around(Vertex a, Vertex b) const {
   std::vector<Vertex> bends;
   Vertex at = a;

@@ -23,7 +23,7 @@ struct Joint {
 };
 
 // Those of a travel move.
-struct WayJoints {
+struct TravelJoints {
   Joint from;
   Joint to;
 };

@@ -90,13 +90,13 @@ void RoomBuilder::ForEachCell(Vertex a, Vertex b, Take take) const {
   const double cell = part_.cell_mm;
   double begin = 0;
   double end = 1;
-  const auto clip = [&](double from, double way, double size) {
-    if (way == 0) {
+  const auto clip = [&](double from, double travel, double size) {
+    if (travel == 0) {
       if (from < 0 || from >= size) end = -1;
       return;
     }
-    const double at_low = -from / way;
-    const double at_high = (size - from) / way;
+    const double at_low = -from / travel;
+    const double at_high = (size - from) / travel;
     begin = std::max(begin, std::min(at_low, at_high));
     end = std::min(end, std::max(at_low, at_high));
   };

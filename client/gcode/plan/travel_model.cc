@@ -39,7 +39,7 @@ double UsualSeconds(const Retractions& seconds) {
 
 // Of the same links.
 struct Additions {
-  Retractions alone;  // without what the stops cost the way
+  Retractions alone;  // without what the stops cost the travel
   Retractions altogether;
 
   bool empty() const { return alone.empty(); }
@@ -47,7 +47,7 @@ struct Additions {
 
 // What the links of one layer add up to.
 struct LayerTravel {
-  std::map<std::pair<double, double>, double> way_mm;  // by speed and acceleration
+  std::map<std::pair<double, double>, double> at_speed_mm;  // by speed and acceleration
   Additions between_paths;
   Additions at_marks;                 // where scripts may change tools, prime and wait as well
   std::vector<uint32_t> between;      // [of between_paths] the block in the layer that it leads to
@@ -120,11 +120,11 @@ class TravelLearner {
       dynamics.Follow(step.line.Text(interpreter.text()));
     } else if (step.kind == StepKind::kTravel) {
       const double speed = std::min(ToDouble(state.feed) / 60 * unit, dynamics.max_speed());
-      const double way =
+      const double planned =
           std::hypot(ToDouble(state.at.x - step.from.x), ToDouble(state.at.y - step.from.y)) * unit;
-      learnt.way_mm[{speed, dynamics.travel_accel()}] += way;
+      learnt.at_speed_mm[{speed, dynamics.travel_accel()}] += planned;
       const double rise = ToDouble(state.at.z - step.from.z) * unit;
-      if (rise > 0 && way > 0 && !step.arc) learnt.slope = rise / way;
+      if (rise > 0 && planned > 0 && !step.arc) learnt.slope = rise / planned;
     } else if (step.kind == StepKind::kLift && state.at.z < step.from.z && state.feed > 0) {
       learnt.descent_seconds_per_mm = 60 / (ToDouble(state.feed) * unit);
     }
@@ -158,9 +158,9 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm,
   for (size_t layer = 0; layer < layers.size(); ++layer) {
     const LayerTravel& learnt = layers[layer];
     double longest_mm = 0;
-    for (const auto& [how, way_mm] : learnt.way_mm) {
-      if (way_mm <= longest_mm || !(how.first > 0)) continue;
-      longest_mm = way_mm;
+    for (const auto& [how, at_speed_mm] : learnt.at_speed_mm) {
+      if (at_speed_mm <= longest_mm || !(how.first > 0)) continue;
+      longest_mm = at_speed_mm;
       model.speed_mm_s = how.first;
       model.accel_mm_s2 = how.second;
     }
@@ -183,10 +183,10 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm,
 namespace {
 
 // Travel at the speed and acceleration of a model, with the paths that it joins.
-class WayPlanner {
+class TravelPlanner {
  public:
-  WayPlanner(const GcodeFile& file, uint32_t before, const TravelModel& model,
-             const WayJoints* joints)
+  TravelPlanner(const GcodeFile& file, uint32_t before, const TravelModel& model,
+                const TravelJoints* joints)
       : dynamics_(
             DynamicsOf(file.profile, file.states[file.blocks[before].state_out], file.setters)),
         model_(model),
@@ -221,18 +221,18 @@ class WayPlanner {
 
   const Dynamics dynamics_;
   const TravelModel& model_;
-  const WayJoints* const joints_;
+  const TravelJoints* const joints_;
   MotionPlanner planner_;
   double printing_seconds_ = 0;
 };
 
 }  // namespace
 
-double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& model,
-                  bool with_departure, const WayJoints* joints) {
+double TravelSeconds(const GcodeFile& file, uint32_t block, const TravelModel& model,
+                     bool with_departure, const TravelJoints* joints) {
   assert(0 < block && block < file.blocks.size());
   const Block& before = file.blocks[block - 1];
-  WayPlanner planner(file, block - 1, model, joints);
+  TravelPlanner planner(file, block - 1, model, joints);
   MachineState state = file.modes[before.mode];
   state.at = before.last;
   state.e = before.e_out;
@@ -250,27 +250,27 @@ double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& mode
   return planner.Seconds();
 }
 
-double NewWaySeconds(const GcodeFile& file, uint32_t before, const TravelWay& way,
-                     const TravelModel& model, const WayJoints* joints) {
-  if (way.via.empty() && (joints == nullptr || way.retracts)) {
+double NewTravelSeconds(const GcodeFile& file, uint32_t before, const PlannedTravel& planned,
+                        const TravelModel& model, const TravelJoints* joints) {
+  if (planned.via.empty() && (joints == nullptr || planned.retracts)) {
     const double printing =
         joints == nullptr ? 0 : StopSeconds(joints->from) + StopSeconds(joints->to);
-    return printing +
-           StopToStopSeconds(Distance(way.from, way.to), model.speed_mm_s, model.accel_mm_s2);
+    return printing + StopToStopSeconds(Distance(planned.from, planned.to), model.speed_mm_s,
+                                        model.accel_mm_s2);
   }
-  WayPlanner planner(file, before, model, joints);
-  Vertex at = way.from;
+  TravelPlanner planner(file, before, model, joints);
+  Vertex at = planned.from;
   const auto go = [&](Vertex to) {
     planner.Go(to.x - at.x, to.y - at.y);
     at = to;
   };
-  if (way.retracts && !way.stands) planner.Stop();
-  for (size_t bend = 0; bend < way.via.size(); ++bend) {
-    go(way.via[bend]);
-    if (bend == 0 && way.stands) planner.Stop();
+  if (planned.retracts && !planned.stands) planner.Stop();
+  for (size_t bend = 0; bend < planned.via.size(); ++bend) {
+    go(planned.via[bend]);
+    if (bend == 0 && planned.stands) planner.Stop();
   }
-  go(way.to);
-  if (way.retracts) planner.Stop();
+  go(planned.to);
+  if (planned.retracts) planner.Stop();
   return planner.Seconds();
 }
 

@@ -17,7 +17,7 @@ struct TravelModel {
   double speed_mm_s = 150;
   double accel_mm_s2 = 1250;
   double retraction_seconds = 0;       // retracting, lifting, wiping, lowering, priming
-  double retraction_price = 0;         // the same with what the stops for it cost the way
+  double retraction_price = 0;         // the same with what the stops for it cost the travel
   double retraction_threshold_mm = 0;  // longer moves retract
 
   // Where the head rises on its way, the longer the higher: by so much per mm. It descends by moves
@@ -43,12 +43,12 @@ std::vector<TravelModel> LearnTravel(const GcodeFile& file, double threshold_mm,
 // bends may be as near. With `joints` not from standstill to standstill but from path to path, with
 // what printing loses at both, and with a stop wherever filament is moved alone. REQUIRES: there is
 // a block before it.
-double WaySeconds(const GcodeFile& file, uint32_t block, const TravelModel& model,
-                  bool with_departure = false, const WayJoints* joints = nullptr);
+double TravelSeconds(const GcodeFile& file, uint32_t block, const TravelModel& model,
+                     bool with_departure = false, const TravelJoints* joints = nullptr);
 
 // The same for a new travel move from the path `before`.
-double NewWaySeconds(const GcodeFile& file, uint32_t before, const TravelWay& way,
-                     const TravelModel& model, const WayJoints* joints = nullptr);
+double NewTravelSeconds(const GcodeFile& file, uint32_t before, const PlannedTravel& travel,
+                        const TravelModel& model, const TravelJoints* joints = nullptr);
 
 }  // namespace traverse::gcode
 

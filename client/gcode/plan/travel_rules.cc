@@ -37,7 +37,7 @@ bool IsSoft(const Block& block) { return (block.link & (kLinkFixed | kLinkSplits
 
 // Calls visit(block, from, to) for the links inside a layer that have no marks in them.
 template <typename Visit>
-void ForEachWay(const GcodeFile& file, const Layer& layer, Visit visit) {
+void ForEachTravel(const GcodeFile& file, const Layer& layer, Visit visit) {
   for (uint32_t b = layer.first_block + 1; b < layer.end_block; ++b) {
     const Block& block = file.blocks[b];
     if (!IsSoft(block)) continue;
@@ -48,7 +48,7 @@ void ForEachWay(const GcodeFile& file, const Layer& layer, Visit visit) {
 
 void Count(const GcodeFile& file, const Layer& layer, const std::vector<Outline>& outlines,
            const VisibleWalls& walls, double threshold_mm, RetractionCounts& counts) {
-  ForEachWay(file, layer, [&](const Block& block, Vertex from, Vertex to, uint32_t b) {
+  ForEachTravel(file, layer, [&](const Block& block, Vertex from, Vertex to, uint32_t b) {
     if (Distance(from, to) < threshold_mm || walls.Crossed(from, to)) return;
     const Feature feature = outlines[b - layer.first_block].feature;
     RetractionCount& count = counts[static_cast<size_t>(feature)];
@@ -64,7 +64,7 @@ constexpr double kLongestOpenSlackMm = 0.95;
 double LongestOpenMm(const GcodeFile& file) {
   double longest = 0;
   for (const Layer& layer : file.layers) {
-    ForEachWay(file, layer, [&](const Block& block, Vertex, Vertex, uint32_t) {
+    ForEachTravel(file, layer, [&](const Block& block, Vertex, Vertex, uint32_t) {
       if ((block.link & kLinkRetracts) != 0) return;
       longest = std::max(longest, static_cast<double>(block.travel_mm));
     });
@@ -82,8 +82,8 @@ bool TravelsOpen(const GcodeFile& file) {
   return false;
 }
 
-// A shorter way is none.
-constexpr double kShortestWayMm = 0.001;
+// A shorter travel is none.
+constexpr double kShortestTravelMm = 0.001;
 
 // The usual setting of slicers.
 constexpr double kUsualThresholdMm = 1.5;
@@ -95,7 +95,7 @@ double LearnThreshold(const GcodeFile& file, const std::vector<size_t>& sample) 
   if (file.profile.retract_before_travel) return *file.profile.retract_before_travel;
   double shortest = 1e9;
   for (const Layer& layer : file.layers) {
-    ForEachWay(file, layer, [&](const Block& block, Vertex from, Vertex to, uint32_t) {
+    ForEachTravel(file, layer, [&](const Block& block, Vertex from, Vertex to, uint32_t) {
       if ((block.link & kLinkRetracts) != 0) shortest = std::min(shortest, Distance(from, to));
     });
   }
@@ -103,7 +103,7 @@ double LearnThreshold(const GcodeFile& file, const std::vector<size_t>& sample) 
   int64_t crossing = 0;
   for (const size_t i : sample) {
     const VisibleWalls walls(OutlinesOf(file, file.layers[i]));
-    ForEachWay(file, file.layers[i], [&](const Block& block, Vertex from, Vertex to, uint32_t) {
+    ForEachTravel(file, file.layers[i], [&](const Block& block, Vertex from, Vertex to, uint32_t) {
       const double length = Distance(from, to);
       const bool straight = static_cast<double>(block.travel_mm) < length * 1.01 + 0.01;
       if ((block.link & kLinkRetracts) == 0 && straight && length > kUsualThresholdMm &&
@@ -131,7 +131,7 @@ bool AvoidsWalls(const GcodeFile& file) {
   int64_t bent = 0;
   for (const size_t i : SampledLayers(file)) {
     const VisibleWalls walls(OutlinesOf(file, file.layers[i]));
-    ForEachWay(file, file.layers[i], [&](const Block& block, Vertex from, Vertex to, uint32_t) {
+    ForEachTravel(file, file.layers[i], [&](const Block& block, Vertex from, Vertex to, uint32_t) {
       if (!walls.Crossed(from, to)) return;
       ++crossing;
       bent += static_cast<double>(block.travel_mm) > Distance(from, to) * 1.01 + 0.01 ? 1 : 0;
@@ -150,7 +150,7 @@ RetractionHabit LearnRetraction(const GcodeFile& file) {
   }
   if (!habit.retracts) return habit;
   const std::vector<size_t> sample = SampledLayers(file);
-  habit.threshold_mm = TravelsOpen(file) ? LearnThreshold(file, sample) : kShortestWayMm;
+  habit.threshold_mm = TravelsOpen(file) ? LearnThreshold(file, sample) : kShortestTravelMm;
   habit.longest_open_mm = LongestOpenMm(file);
   for (const size_t i : sample) {
     const std::vector<Outline> outlines = OutlinesOf(file, file.layers[i]);
@@ -166,7 +166,7 @@ RetractionHabit LearnRetraction(const GcodeFile& file) {
   return habit;
 }
 
-RetractionHabit HabitOfNewWays(const GcodeFile& file, const Allowance& allow, int threads) {
+RetractionHabit HabitOfNewTravels(const GcodeFile& file, const Allowance& allow, int threads) {
   RetractionHabit habit = LearnRetraction(file);
   habit.spares_walls = true;
   habit.drops_wipes = allow.wipes;
@@ -210,34 +210,35 @@ bool TravelRules::Hides(Vertex a, Vertex b, Feature feature) const {
 }
 
 bool TravelRules::Retracts(Vertex a, Vertex b, Feature feature) const {
-  return WayOf(a, b, feature).retracts;
+  return TravelOf(a, b, feature).retracts;
 }
 
-TravelWay TravelRules::WayOf(Vertex a, Vertex b, Feature feature) const {
-  TravelWay way;
-  way.from = a;
-  way.to = b;
-  way.mm = Distance(a, b);
-  way.crosses = walls_.Crossed(a, b);
-  if (way.crosses && detours_) {
-    way.via = detours_->Around(a, b);
-    way.crosses = way.via.empty();
-    if (!way.via.empty()) {
+PlannedTravel TravelRules::TravelOf(Vertex a, Vertex b, Feature feature) const {
+  PlannedTravel travel;
+  travel.from = a;
+  travel.to = b;
+  travel.mm = Distance(a, b);
+  travel.crosses = walls_.Crossed(a, b);
+  if (travel.crosses && detours_) {
+    travel.via = detours_->Around(a, b);
+    travel.crosses = travel.via.empty();
+    if (!travel.via.empty()) {
       std::vector<Vertex> bent = {a};
-      bent.insert(bent.end(), way.via.begin(), way.via.end());
+      bent.insert(bent.end(), travel.via.begin(), travel.via.end());
       bent.push_back(b);
-      way.mm = 0;
-      for (size_t i = 1; i < bent.size(); ++i) way.mm += Distance(bent[i - 1], bent[i]);
+      travel.mm = 0;
+      for (size_t i = 1; i < bent.size(); ++i) travel.mm += Distance(bent[i - 1], bent[i]);
       // A bend may lie within another wall if there is hardly room between the two.
-      way.grazes = walls_.CrossedByWay(bent);
+      travel.grazes = walls_.CrossedByTravel(bent);
     }
   }
-  if (!habit_.retracts) return way;
+  if (!habit_.retracts) return travel;
   const bool far = Distance(a, b) >= habit_.threshold_mm;
-  way.retracts = far && (!habit_.crossing_matters || CountOf(feature).Mostly());
-  way.retracts = way.retracts || ((far || habit_.spares_walls) && (way.crosses || way.grazes)) ||
-                 (far && way.mm > habit_.longest_open_mm);
-  return way;
+  travel.retracts = far && (!habit_.crossing_matters || CountOf(feature).Mostly());
+  travel.retracts = travel.retracts ||
+                    ((far || habit_.spares_walls) && (travel.crosses || travel.grazes)) ||
+                    (far && travel.mm > habit_.longest_open_mm);
+  return travel;
 }
 
 }  // namespace traverse::gcode

@@ -61,14 +61,16 @@ struct RetractionHabit {
 // Examines about two dozen layers spread over the file. The threshold is the slicer's setting if
 // the file has it. Otherwise it is the shortest move that retracted, but at most the usual 1.5 mm
 // if straight moves across visible walls retracted whenever they were longer than that. If no
-// travel of the part is open, all ways are long enough: nothing shows how to write open ones.
+// travel of the part is open, all travel moves are long enough: nothing shows how to write open
+// ones.
 RetractionHabit LearnRetraction(const GcodeFile& file);
 
 // LearnRetraction, and what new moves must obey under every policy, or may do by `allow`.
-RetractionHabit HabitOfNewWays(const GcodeFile& file, const Allowance& allow = {}, int threads = 1);
+RetractionHabit HabitOfNewTravels(const GcodeFile& file, const Allowance& allow = {},
+                                  int threads = 1);
 
 // A new travel move as it is written.
-struct TravelWay {
+struct PlannedTravel {
   Vertex from;
   Vertex to;
   bool retracts = false;
@@ -90,7 +92,7 @@ class TravelRules {
   bool Retracts(Vertex a, Vertex b, Feature feature) const;
 
   // How to write the move about which Retracts decides.
-  TravelWay WayOf(Vertex a, Vertex b, Feature feature) const;
+  PlannedTravel TravelOf(Vertex a, Vertex b, Feature feature) const;
 
   // Whether nobody can see the straight move from `a`, where the head really leaves the path
   // before, to `b`, where a path of `feature` begins, and it may do without a retraction for that.

@@ -40,11 +40,11 @@ bool LiftHeights::Have(int64_t um, bool is_level) const {
 void LiftLog::Append(const LiftLog& other) {
   const auto shift = static_cast<uint32_t>(pieces.size());
   pieces.insert(pieces.end(), other.pieces.begin(), other.pieces.end());
-  for (size_t kind = 0; kind < kWayKinds; ++kind) {
-    for (WayProfile way : other.ways[kind]) {
-      way.first += shift;
-      way.end += shift;
-      ways[kind].push_back(way);
+  for (size_t kind = 0; kind < kTravelKinds; ++kind) {
+    for (TravelProfile travel : other.travels[kind]) {
+      travel.first += shift;
+      travel.end += shift;
+      travels[kind].push_back(travel);
     }
   }
 }
@@ -70,9 +70,10 @@ void Observations::Append(const Observations& other) {
   AppendSeen(other.spirals, spirals);
   lifts_of_links.insert(lifts_of_links.end(), other.lifts_of_links.begin(),
                         other.lifts_of_links.end());
-  way_lengths.insert(way_lengths.end(), other.way_lengths.begin(), other.way_lengths.end());
-  ways_to_layers.insert(ways_to_layers.end(), other.ways_to_layers.begin(),
-                        other.ways_to_layers.end());
+  travel_lengths.insert(travel_lengths.end(), other.travel_lengths.begin(),
+                        other.travel_lengths.end());
+  travels_to_layers.insert(travels_to_layers.end(), other.travels_to_layers.begin(),
+                           other.travels_to_layers.end());
   for (const auto& [key, habit] : other.open_habits) {
     OpenHabit& own = open_habits[key];
     own.retracted += habit.retracted;
@@ -80,7 +81,8 @@ void Observations::Append(const Observations& other) {
     own.bent += habit.bent;
     if (own.line == 0) own.line = habit.line;
   }
-  new_open_ways.insert(new_open_ways.end(), other.new_open_ways.begin(), other.new_open_ways.end());
+  new_open_travels.insert(new_open_travels.end(), other.new_open_travels.begin(),
+                          other.new_open_travels.end());
   detours.insert(detours.end(), other.detours.begin(), other.detours.end());
   departs_inside |= other.departs_inside;
   departures_outside += other.departures_outside;
@@ -88,7 +90,7 @@ void Observations::Append(const Observations& other) {
   lost_departures.insert(lost_departures.end(), other.lost_departures.begin(),
                          other.lost_departures.end());
   pokes.insert(pokes.end(), other.pokes.begin(), other.pokes.end());
-  long_ways.insert(long_ways.end(), other.long_ways.begin(), other.long_ways.end());
+  long_travels.insert(long_travels.end(), other.long_travels.begin(), other.long_travels.end());
   farthest.insert(farthest.end(), other.farthest.begin(), other.farthest.end());
   script_signatures.insert(other.script_signatures.begin(), other.script_signatures.end());
   AppendSeen(other.step_orders, step_orders);

@@ -66,7 +66,7 @@ uint32_t FirstLineOf(const Map& map) {
 using SpeedKey = uint64_t;
 
 // A travel move between paths, with its heights.
-struct WayProfile {
+struct TravelProfile {
   // Pieces of the travel move, [from, to] above the layer.
   struct Piece {
     float from_mm = 0;
@@ -82,23 +82,23 @@ struct WayProfile {
 
 // The kinds of travel moves: retracted or not, between layers or within one, across outer walls or
 // not.
-inline constexpr size_t kWayKinds = 8;
+inline constexpr size_t kTravelKinds = 8;
 
 struct LiftLog {
-  std::array<std::vector<WayProfile>, kWayKinds> ways;
-  std::vector<WayProfile::Piece> pieces;
+  std::array<std::vector<TravelProfile>, kTravelKinds> travels;
+  std::vector<TravelProfile::Piece> pieces;
 
   void Append(const LiftLog& other);
 };
 
 // How low a travel move goes compared with the heights that it connects.
-enum class WayRise : uint8_t { kLevel, kUp, kDown, kCount };
+enum class TravelRise : uint8_t { kLevel, kUp, kDown, kCount };
 
-struct LowestWay {
+struct LowestTravel {
   float above_mm = 0;  // the higher of the two heights; less than 0: below it
   uint32_t line = 0;
   int64_t layer = -1;
-  WayRise rise = WayRise::kLevel;
+  TravelRise rise = TravelRise::kLevel;
 };
 
 // How far a move leads sideways while descending.
@@ -106,7 +106,7 @@ struct Descent {
   float length_mm = 0;
   uint32_t line = 0;
   int64_t layer = -1;
-  WayRise rise = WayRise::kLevel;  // of the travel that it belongs to
+  TravelRise rise = TravelRise::kLevel;  // of the travel that it belongs to
 };
 
 // How often the head rises between two paths.
@@ -119,7 +119,7 @@ struct RepeatedLift {
 };
 
 // The travel between two paths.
-struct WayLength {
+struct TravelLength {
   float length_mm = 0;
   float open_mm = 0;        // the part of it without a retraction
   float excess_mm = 0;      // beyond the straight line
@@ -208,7 +208,7 @@ struct Box {
 };
 
 // A travel move with an acceleration that only shorter ones of its layer have.
-struct LongWay {
+struct LongTravel {
   uint64_t acceleration = 0;
   float length_mm = 0;
   uint32_t line = 0;
@@ -245,7 +245,7 @@ struct Detour {
 };
 
 // Unretracted travel that the original does not have, and what its layer has of this kind.
-struct NewOpenWay {
+struct NewOpenTravel {
   uint32_t kind = 0;
   float length_mm = 0;
   uint32_t line = 0;
@@ -269,19 +269,19 @@ struct Observations {
   LiftHeights rises;                    // of moves straight up
   ExtremePoint first_highest;           // of the travel from the start script
   ExtremePoint first_lowest;
-  std::vector<LowestWay> lowest;                // travel that goes lower than what it connects
-  std::vector<LowestWay> deepest;               // moves straight down that do so
+  std::vector<LowestTravel> lowest;             // travel that goes lower than what it connects
+  std::vector<LowestTravel> deepest;            // moves straight down that do so
   std::vector<Descent> descents;                // the longest of each travel
   absl::flat_hash_map<uint64_t, Seen> spirals;  // by TraceMove::spiral
   std::vector<RepeatedLift> lifts_of_links;     // links that rise more than once
   absl::flat_hash_set<uint64_t> deposit_accelerations;  // of the whole file, like the box
   std::vector<FarPoint> farthest;
-  Box box;                             // of all points
-  std::vector<WayLength> way_lengths;  // the greatest of each layer
-  std::vector<WayLength> ways_to_layers;
+  Box box;                                   // of all points
+  std::vector<TravelLength> travel_lengths;  // the greatest of each layer
+  std::vector<TravelLength> travels_to_layers;
   absl::flat_hash_map<uint32_t, OpenHabit> open_habits;  // by kind and length
-  std::vector<NewOpenWay> new_open_ways;
-  std::vector<LongWay> long_ways;
+  std::vector<NewOpenTravel> new_open_travels;
+  std::vector<LongTravel> long_travels;
   std::vector<Detour> detours;           // of the original one for each layer
   bool departs_inside = false;           // by a short move from what is no outer wall: departures.h
   int64_t departures_outside = 0;        // by such moves from outer walls

@@ -22,7 +22,7 @@ enum class VerifyRule : uint8_t {
   kOrder,        // paths side by side keep the order that the slicer has reasons for
   kDirection,    // of open walls, overhanging and outer loops
   kSeam,         // where outer walls begin
-  kOpenWays,     // across outer walls
+  kOpenTravels,  // across outer walls
   kLifts,        // no travel is lower than such travel is
   kRetractions,  // how far filament is retracted, and what undoes it
   kStandstill,   // filament pushed while the head stands still
@@ -34,7 +34,7 @@ enum class VerifyRule : uint8_t {
   kPathEnds,     // moves that continue along a path
   kBounds,       // the area of all moves
   kStepOrder,    // in which travel retracts, rises, moves, descends and primes
-  kKeptWays,     // between two paths that follow each other as in the original
+  kKeptTravels,  // between two paths that follow each other as in the original
   kObstacles,    // nothing that stands is in the way of the head
   kRest,         // of islands before they are printed on
   kCount,

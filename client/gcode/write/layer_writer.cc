@@ -98,8 +98,8 @@ std::vector<uint32_t> LayerWriter::PlacesOf(const LayerOrder& order) const {
   return places;
 }
 
-PartStart LayerWriter::WriteWay(const Placement& before, const Placement& first,
-                                const PartStart& start, std::string& text) const {
+PartStart LayerWriter::WriteTravel(const Placement& before, const Placement& first,
+                                   const PartStart& start, std::string& text) const {
   GcodeOut out(file_, start, text);
   WriteLink(PlacedPath(file_, before), PlacedPath(file_, first), layer_.first_block, true, false,
             out);
@@ -235,7 +235,7 @@ Vertex LayerWriter::End(const Placement& placement) const {
 void LayerWriter::NoteLeaving(uint32_t block) {
   const MachineState& mode = file_.modes[file_.blocks[block].mode];
   if (const std::optional<LinkStep> step = ReadGoingOn(file_, block)) {
-    leaving_[block].mm = step->way_mm * mode.UnitMm();
+    leaving_[block].mm = step->travel_mm * mode.UnitMm();
     leaving_[block].as_given = mode.InMm(step->to);
     return;
   }
@@ -246,7 +246,7 @@ void LayerWriter::NoteLeaving(uint32_t block) {
     const LinkStep* departure = DepartureOf(link);
     if (departure == nullptr) return;
     if (!donors_.MayFollow(block + 1) && !PullsBackBehind(link, *departure)) return;
-    leaving_[block] = {.mm = departure->way_mm * mode.UnitMm(),
+    leaving_[block] = {.mm = departure->travel_mm * mode.UnitMm(),
                        .as_given = mode.InMm(departure->to),
                        .departs_to = mode.InMm(departure->to),
                        .turns = !link.retracts() || PullsBackBehind(link, *departure),
@@ -263,7 +263,7 @@ void LayerWriter::NoteLeaving(uint32_t block) {
   for (const LinkStep& step : link.steps) {
     if (step.kind == StepKind::kFilament && leaving.mm == 0) leaving.stands = true;
     if (step.kind != StepKind::kWipe) continue;
-    leaving.mm += step.way_mm * mode.UnitMm();
+    leaving.mm += step.travel_mm * mode.UnitMm();
     leaving.as_given = mode.InMm(step.to);
   }
   if (leaving.mm > 0) leaving_[block] = leaving;
@@ -314,27 +314,27 @@ Vertex LayerWriter::BackOver(const Placement& from, double mm) const {
 bool LayerWriter::GoesOnAcross(const Placement& from, Vertex to, Feature feature) const {
   const Leaving* leaving = LeavingOf(from);
   if (!spares_walls_ || leaving == nullptr || leaving->wipes || leaving->departs) return false;
-  const TravelWay way = rules_.WayOf(Behind(from, *leaving), to, feature);
-  return way.crosses || way.grazes;
+  const PlannedTravel travel = rules_.TravelOf(Behind(from, *leaving), to, feature);
+  return travel.crosses || travel.grazes;
 }
 
 bool LayerWriter::Departs(const Placement& from, Vertex to, Feature feature) const {
   const Leaving* leaving = LeavingOf(from);
   // What goes on along a path, or comes before its wipe, stays with the path.
   if (leaving == nullptr || !leaving->departs) return leaving != nullptr;
-  const TravelWay way = rules_.WayOf(End(from), to, feature);
-  if (way.retracts != leaving->retracts) return false;
+  const PlannedTravel travel = rules_.TravelOf(End(from), to, feature);
+  if (travel.retracts != leaving->retracts) return false;
   // Behind a loop as sliced it hides the retraction, whatever it crosses.
-  if (way.retracts && from.as_given()) return true;
+  if (travel.retracts && from.as_given()) return true;
   const Vertex at = Behind(from, *leaving);
-  const TravelWay behind = rules_.WayOf(at, to, feature);
+  const PlannedTravel behind = rules_.TravelOf(at, to, feature);
   std::vector<Vertex> bent = {End(from), at};
   bent.insert(bent.end(), behind.via.begin(), behind.via.end());
   bent.push_back(to);
-  return way.crosses || way.grazes || !(behind.crosses || walls_.CrossedByWay(bent));
+  return travel.crosses || travel.grazes || !(behind.crosses || walls_.CrossedByTravel(bent));
 }
 
-// Paths that the slicer wipes stay wiped, so that all ways from them are retracted.
+// Paths that the slicer wipes stay wiped, so that all travel moves from them are retracted.
 bool LayerWriter::Wipes(const Placement& from, Vertex to, Feature feature, bool boundary) const {
   if (!file_.WipedBehind(from.block)) return false;
   return !drops_wipes_ || boundary || rules_.Retracts(End(from), to, feature);

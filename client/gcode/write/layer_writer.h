@@ -19,7 +19,7 @@
 #include "client/gcode/write/link.h"
 #include "client/gcode/write/link_donors.h"
 #include "client/gcode/write/placed_path.h"
-#include "client/gcode/write/way_totals.h"
+#include "client/gcode/write/travel_totals.h"
 
 namespace traverse::gcode {
 
@@ -55,8 +55,8 @@ class LayerWriter {
 
   // Writes the travel to the path `first` from `before`, the last path of the layer before, with
   // the marks of the new layer. `start` is the state of the machine after `before`.
-  PartStart WriteWay(const Placement& before, const Placement& first, const PartStart& start,
-                     std::string& text) const;
+  PartStart WriteTravel(const Placement& before, const Placement& first, const PartStart& start,
+                        std::string& text) const;
 
   // Writes the paths in `order` and the travel between them. `start` is the state at the first.
   // `as_sliced`: where that is the file's own order, what is hidden retracts as it did. `ends`, if
@@ -75,8 +75,8 @@ class LayerWriter {
 
   // Estimates the travel to place `place` of the file's layer, from 1, if `to` follows `from`
   // there, with the crossings and the retraction that would be written.
-  WayTotals EstimateWay(size_t place, const Placement& from, const Placement& to,
-                        const TravelModel& model) const;
+  TravelTotals EstimateTravel(size_t place, const Placement& from, const Placement& to,
+                              const TravelModel& model) const;
 
  private:
   Vertex Begin(const Placement& placement) const;
@@ -118,7 +118,7 @@ class LayerWriter {
   void NoteLeaving(uint32_t block);
 
   // Where the head is behind what stays byte by byte before block `block`, if anything does: the
-  // way to a path there begins at that point, whatever is printed before.
+  // travel to a path there begins at that point, whatever is printed before.
   std::optional<Vertex> BehindFixed(uint32_t block) const;
 
   // Whether travel from `from` to `to` that the file does not have begins with the short move that
@@ -128,7 +128,7 @@ class LayerWriter {
 
   // The travel from `from` to `to` that the file does not have, with what happens after `from`. Of
   // a wipe only the length counts, because it is the same wherever the travel leads.
-  TravelWay NewWay(const Placement& from, const Placement& to, bool wipes) const;
+  PlannedTravel NewTravel(const Placement& from, const Placement& to, bool wipes) const;
 
   // Where the head is when it leaves `from` on a move that pulls nothing back: behind what
   // continues along the path.
@@ -137,14 +137,15 @@ class LayerWriter {
   // Whether that move to `to` is hidden. No move at a boundary is.
   bool Hides(const Placement& from, const Placement& to, bool boundary) const;
 
-  // EstimateWay of a hidden move.
-  WayTotals HiddenWay(const Placement& from, const Placement& to, const TravelModel& model) const;
+  // EstimateTravel of a hidden move.
+  TravelTotals HiddenTravel(const Placement& from, const Placement& to,
+                            const TravelModel& model) const;
 
   // Where travel from `from` to `to` joins them. What happens after `from`, except for a short move
   // away from it, ends with a stop.
-  WayJoints JointsOf(const Placement& from, const Placement& to, bool wipes) const;
+  TravelJoints JointsOf(const Placement& from, const Placement& to, bool wipes) const;
 
-  // What the retraction of the travel of `mm` from `from` to `to` takes beside the way. `stays`:
+  // What the retraction of the travel of `mm` from `from` to `to` takes beside the travel. `stays`:
   // the travel is the file's; `wipes`: it wipes `from`.
   double RetractionSeconds(const Placement& from, const Placement& to, double mm, bool stays,
                            bool wipes, const TravelModel& model) const;
@@ -161,7 +162,7 @@ class LayerWriter {
   bool Retracts(const PlacedPath& from, const PlacedPath& to) const;
 
   // Something is in the way, at the height of the layer or, if it retracts, of the layer's lifts.
-  bool IsBlocked(const TravelWay& way) const;
+  bool IsBlocked(const PlannedTravel& travel) const;
   double LeastLiftMm() const;
 
   const GcodeFile& file_;

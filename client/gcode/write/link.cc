@@ -31,9 +31,9 @@ LinkStep StepOf(const Step& step, const MachineState& after) {
   taken.relative = step.relative;
   if (step.command.kind == LineKind::kCommand) taken.words = step.command.words;
   if (IsXyMotion(step.kind)) {
-    taken.way_mm = step.arc ? ArcLength(step.command, step.from, after.at, 1)
-                            : std::hypot(ToDouble(after.at.x - step.from.x),
-                                         ToDouble(after.at.y - step.from.y));
+    taken.travel_mm = step.arc ? ArcLength(step.command, step.from, after.at, 1)
+                               : std::hypot(ToDouble(after.at.x - step.from.x),
+                                            ToDouble(after.at.y - step.from.y));
   }
   return taken;
 }
@@ -51,12 +51,12 @@ void NoteLift(Link& link) {
   link.sinks = link.lift == 0 && arrival.to.z < arrival.from.z && arrival.to.z == link.z_behind;
   for (size_t i = link.fixed; i <= static_cast<size_t>(link.arrival); ++i) {
     const LinkStep& step = link.steps[i];
-    if (step.kind == StepKind::kTravel && step.to.z > step.from.z) link.ramp_mm += step.way_mm;
+    if (step.kind == StepKind::kTravel && step.to.z > step.from.z) link.ramp_mm += step.travel_mm;
   }
   link.ramp_ends = link.ramp_mm > 0 && arrival.to.z == arrival.from.z;
 }
 
-// What the link does to pull filament back, up to its first mark, lift or way.
+// What the link does to pull filament back, up to its first mark, lift or travel.
 std::vector<LinkStep> PullOf(const Link& link) {
   std::vector<LinkStep> steps;
   for (const LinkStep& step : link.steps) {
@@ -177,7 +177,7 @@ WipeForm WipeOf(const Link& link) {
   for (const LinkStep& step : link.steps) {
     if (step.kind == StepKind::kFilament && step.filament < 0) form.still_feed = step.feed;
     if (step.kind != StepKind::kWipe) continue;
-    form.way_mm += step.way_mm;
+    form.travel_mm += step.travel_mm;
     form.pulled -= step.filament;
     form.feed = step.feed;
   }

@@ -24,7 +24,7 @@ struct LinkStep {
   Decimal feed = 0;       // in force for this line
   SlotMask slots = 0;     // kSlot
   uint32_t words = 0;     // of commands
-  double way_mm = 0;      // length in XY, along the arc if it is one
+  double travel_mm = 0;   // length in XY, along the arc if it is one
   bool arc = false;       // G2 or G3
   bool relative = false;  // Step
 };
@@ -89,7 +89,7 @@ const LinkStep* DepartureOf(const Link& link);
 
 // What the wipe of a link does.
 struct WipeForm {
-  double way_mm = 0;
+  double travel_mm = 0;
   Decimal pulled = 0;
   Decimal feed = 0;
   Decimal still_feed = 0;  // of what is pulled at a standstill; 0: nothing is

@@ -10,12 +10,13 @@
 namespace traverse::gcode {
 namespace {
 
-// What is left of a way behind a slope is at least this long.
+// What is left of a travel move behind a slope is at least this long.
 constexpr double kMinSlopeRestMm = 0.5;
 
 bool IsSoft(const Block& block) { return (block.link & (kLinkSplits | kLinkFixed)) == 0; }
 
-// What `rise` does for a way of `length`: a slope that ends with its way rises on, up to `highest`.
+// What `rise` does for a travel move of `length`: a slope that ends with its travel rises on, up to
+// `highest`.
 Link Stretched(Link rise, double length, Decimal highest) {
   if (rise.ramp_ends || !(rise.ramp_mm > 0) || length <= rise.ramp_mm) return rise;
   const double steepness = static_cast<double>(rise.lift) / rise.ramp_mm;
@@ -27,14 +28,14 @@ Link Stretched(Link rise, double length, Decimal highest) {
   return rise;
 }
 
-// Puts the end of the slope of `rise` on the first stretch of `way` from `from`, if that is longer;
-// else it rises over all of that stretch.
-void Slope(const Position& from, const Link& rise, std::vector<Position>& way) {
+// Puts the end of the slope of `rise` on the first stretch of `travel` from `from`, if that is
+// longer; else it rises over all of that stretch.
+void Slope(const Position& from, const Link& rise, std::vector<Position>& travel) {
   if (!rise.ramp_ends) return;
-  if (LengthXy(from, way.front()) < rise.ramp_mm + kMinSlopeRestMm) return;
-  Position end = Along(from, way.front(), rise.ramp_mm);
-  end.z = way.front().z;
-  way.insert(way.begin(), end);
+  if (LengthXy(from, travel.front()) < rise.ramp_mm + kMinSlopeRestMm) return;
+  Position end = Along(from, travel.front(), rise.ramp_mm);
+  end.z = travel.front().z;
+  travel.insert(travel.begin(), end);
 }
 
 bool IsDeparture(const Link& link, size_t i) { return DepartureOf(link) == &link.steps[i]; }
@@ -119,8 +120,9 @@ void LinkWriter::WritePlain(const LinkRequest& request) {
   Settle(request, form);
 }
 
-// The way is gone under the accelerations and jerks under which `form` goes, for that is how ways
-// are gone in this file. A slot that was never set here stays so, for nothing could undo it.
+// The travel is gone under the accelerations and jerks under which `form` goes, for that is how
+// travel moves are gone in this file. A slot that was never set here stays so, for nothing could
+// undo it.
 void LinkWriter::SetTravelState(const PlacedPath& to, const Link& form) {
   PrintState state = to.state();
   for (size_t slot = 0; slot < kSlotCount; ++slot) {
@@ -195,7 +197,7 @@ void LinkWriter::WriteGoingOn(const LinkRequest& request) {
   const PlacedPath& from = *request.from;
   const std::optional<LinkStep> step = ReadGoingOn(file_, from.placement().block);
   if (!step) return;
-  for (const Position& at : from.WayBack(step->way_mm)) {
+  for (const Position& at : from.Retrace(step->travel_mm)) {
     out_.Travel(step->line.Raw(file_.text), {at.x, at.y, out_.at.machine.at.z}, step->feed);
   }
 }
@@ -211,23 +213,23 @@ void LinkWriter::WriteArrival(const LinkRequest& request, const Link& form) {
 void LinkWriter::WriteWipe(const PlacedPath& path, const Link& form) {
   const WipeForm wipe = WipeOf(form);
   const Position begin = out_.at.machine.at;
-  const std::vector<Position> way = path.WayBackFrom(begin, wipe.way_mm);
-  double length = LengthXy(begin, way);
-  // Rounding makes a way no shorter.
+  const std::vector<Position> travel = path.RetraceFrom(begin, wipe.travel_mm);
+  double length = LengthXy(begin, travel);
+  // Rounding makes a travel move no shorter.
   constexpr double kAsLong = 0.99;
-  const bool shorter = wipe.still_feed > 0 && length < kAsLong * wipe.way_mm;
-  if (shorter) length = wipe.way_mm;
+  const bool shorter = wipe.still_feed > 0 && length < kAsLong * wipe.travel_mm;
+  if (shorter) length = wipe.travel_mm;
   Decimal left = wipe.pulled;
-  for (size_t i = 0; i < way.size(); ++i) {
-    const double share = LengthXy(i == 0 ? begin : way[i - 1], way[i]) / length;
-    const bool last = i + 1 == way.size() && !shorter;
+  for (size_t i = 0; i < travel.size(); ++i) {
+    const double share = LengthXy(i == 0 ? begin : travel[i - 1], travel[i]) / length;
+    const bool last = i + 1 == travel.size() && !shorter;
     // Rounded as slicers write E: to hundredths of a micrometre.
     constexpr Decimal kStep = kDecimalOne / 100'000;
     const Decimal pull =
         last ? left
              : static_cast<Decimal>(static_cast<double>(wipe.pulled) * share) / kStep * kStep;
     left -= pull;
-    out_.Segment("G1", way[i], wipe.pulled > 0, -pull, wipe.feed, {}, {});
+    out_.Segment("G1", travel[i], wipe.pulled > 0, -pull, wipe.feed, {}, {});
   }
   if (left > 0) out_.Pull(left, shorter ? wipe.still_feed : wipe.feed);
 }
@@ -249,18 +251,18 @@ void LinkWriter::WriteMotion(const LinkStep& step, Decimal z_form, Decimal z_her
   }
 }
 
-// The bends of the way to `request.to`, and its end.
-std::vector<Position> LinkWriter::WayTo(const LinkRequest& request) const {
+// The bends of the travel to `request.to`, and its end.
+std::vector<Position> LinkWriter::TravelTo(const LinkRequest& request) const {
   const MachineState& machine = out_.at.machine;
-  std::vector<Position> way;
+  std::vector<Position> travel;
   if (request.detours != nullptr) {
     for (const Vertex bend :
          request.detours->Around(machine.InMm(machine.at), machine.InMm(request.to->first()))) {
-      way.push_back(InWords(bend, machine.UnitMm()));
+      travel.push_back(InWords(bend, machine.UnitMm()));
     }
   }
-  way.push_back(request.to->first());
-  return way;
+  travel.push_back(request.to->first());
+  return travel;
 }
 
 // Goes to `request.to` at the height `top`, or as high as the head is; where `rise` slopes up, up
@@ -279,17 +281,17 @@ void LinkWriter::WriteTravel(const LinkRequest& request, const Link& form, Decim
   // Behind a line that is not understood the head may be elsewhere.
   if (to.SameXy(out_.at.machine.at) && z == to.z && form.fixed == 0) return;
   top = std::max(top, z);
-  std::vector<Position> way = WayTo(request);
-  for (Position& at : way) at.z = top;
-  if (form.sinks) way.back().z = to.z;
+  std::vector<Position> travel = TravelTo(request);
+  for (Position& at : travel) at.z = top;
+  if (form.sinks) travel.back().z = to.z;
   // No slope leads to where the head is.
   const bool on_slope = rise.ramp_mm > 0 && !(to.SameXy(out_.at.machine.at) && form.fixed == 0);
   if (top > z && !on_slope) {
     out_.Lift(top, form.lift_feed > 0 ? form.lift_feed : step.feed);
   } else if (top > z) {
-    Slope(out_.at.machine.at, rise, way);
+    Slope(out_.at.machine.at, rise, travel);
   }
-  for (const Position& at : way) out_.Travel(step.line.Raw(file_.text), at, step.feed);
+  for (const Position& at : travel) out_.Travel(step.line.Raw(file_.text), at, step.feed);
 }
 
 void LinkWriter::WriteComments(uint32_t block) {

@@ -84,7 +84,7 @@ class LinkWriter {
   void WriteGoingOn(const LinkRequest& request);
   void WriteWipe(const PlacedPath& path, const Link& form);
   void WriteMotion(const LinkStep& step, Decimal z_form, Decimal z_here);
-  std::vector<Position> WayTo(const LinkRequest& request) const;
+  std::vector<Position> TravelTo(const LinkRequest& request) const;
   void WriteTravel(const LinkRequest& request, const Link& form, Decimal top, const Link& rise);
   void WriteComments(uint32_t block);
   void Settle(const LinkRequest& request, const Link& form);

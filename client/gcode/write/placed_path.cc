@@ -50,7 +50,8 @@ void WriteSegment(const BodySegment& segment, const PathBody& body, GcodeOut& ou
               ArcWords(segment, out.file().xy_style), segment.comment);
 }
 
-// A way back from aside is looked for in so many steps, until it is as long as coordinates tell.
+// A travel move back from aside is looked for in so many steps, until it is as long as coordinates
+// tell.
 constexpr int kMostSteps = 8;
 constexpr double kRounding = 0.002;
 
@@ -158,14 +159,14 @@ void PlacedPath::Write(bool without_progress, GcodeOut& out) const {
   }
 }
 
-std::vector<Position> PlacedPath::WayBack(double length_mm) const {
-  if (!as_given()) return WayBackOver(body_.segments, length_mm);
-  return WayBackOver(ReadBody(*file_, block()).segments, length_mm);
+std::vector<Position> PlacedPath::Retrace(double length_mm) const {
+  if (!as_given()) return RetraceOver(body_.segments, length_mm);
+  return RetraceOver(ReadBody(*file_, block()).segments, length_mm);
 }
 
-std::vector<Position> PlacedPath::WayBackOver(const std::vector<BodySegment>& segments,
+std::vector<Position> PlacedPath::RetraceOver(const std::vector<BodySegment>& segments,
                                               double length_mm) const {
-  std::vector<Position> way;
+  std::vector<Position> travel;
   Position at = last_;
   const auto go_to = [&](const Position& to) {
     const double step = LengthXy(at, to);
@@ -173,7 +174,7 @@ std::vector<Position> PlacedPath::WayBackOver(const std::vector<BodySegment>& se
     at = step <= length_mm ? to : Along(at, to, length_mm);
     length_mm -= step;
     // What is left of the length may be less than coordinates tell.
-    if (!at.SameXy(from)) way.push_back(at);
+    if (!at.SameXy(from)) travel.push_back(at);
   };
   // A loop that ends short of its start is wiped across that gap, and on along its beginning.
   if (placement_.closed) go_to(first_);
@@ -185,25 +186,26 @@ std::vector<Position> PlacedPath::WayBackOver(const std::vector<BodySegment>& se
     }
     if (length_mm > 0) go_to(next.to);
   }
-  return way;
+  return travel;
 }
 
-std::vector<Position> PlacedPath::WayBackFrom(const Position& begin, double length_mm) const {
-  if (begin.SameXy(last_)) return WayBack(length_mm);
+std::vector<Position> PlacedPath::RetraceFrom(const Position& begin, double length_mm) const {
+  if (begin.SameXy(last_)) return Retrace(length_mm);
   const PathBody given = as_given() ? ReadBody(*file_, block()) : PathBody();
   const std::vector<BodySegment>& segments = as_given() ? given.segments : body_.segments;
-  // The way from aside to the path cuts a corner off, so that as long a way leads farther along.
+  // The travel from aside to the path cuts a corner off, so that as long a travel move leads
+  // farther along.
   const double farthest_mm = length_mm + 2 * LengthXy(last_, begin);
-  std::vector<Position> way;
+  std::vector<Position> travel;
   double along_mm = length_mm;
   for (int step = 0; step < kMostSteps; ++step) {
-    way = WayBackOver(segments, along_mm);
-    if (way.size() > 1 && way.front().SameXy(first_)) way.erase(way.begin());
-    const double missing_mm = length_mm - LengthXy(begin, way);
+    travel = RetraceOver(segments, along_mm);
+    if (travel.size() > 1 && travel.front().SameXy(first_)) travel.erase(travel.begin());
+    const double missing_mm = length_mm - LengthXy(begin, travel);
     if (missing_mm < kRounding || along_mm >= farthest_mm) break;
     along_mm = std::min(along_mm + missing_mm, farthest_mm);
   }
-  return way;
+  return travel;
 }
 
 }  // namespace traverse::gcode

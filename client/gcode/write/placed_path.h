@@ -70,19 +70,19 @@ class PlacedPath {
 
   // Points back over what was just printed, for a wipe: on from the start of a closed path, back
   // along an open one. At most `length` mm, at least one point if the path has any length.
-  std::vector<Position> WayBack(double length_mm) const;
+  std::vector<Position> Retrace(double length_mm) const;
 
   // The same for a head at `begin`, which may have left the path: then it returns to it behind the
   // gap of a closed path. At most `length` mm from `begin` on.
-  std::vector<Position> WayBackFrom(const Position& begin, double length_mm) const;
+  std::vector<Position> RetraceFrom(const Position& begin, double length_mm) const;
 
  private:
   void PlaceGiven();
   void PlaceReversed();
   void PlaceRotated();
 
-  // WayBack; `segments` are those of the path as it is placed.
-  std::vector<Position> WayBackOver(const std::vector<BodySegment>& segments,
+  // Retrace; `segments` are those of the path as it is placed.
+  std::vector<Position> RetraceOver(const std::vector<BodySegment>& segments,
                                     double length_mm) const;
 
   const GcodeFile* file_;

@@ -26,21 +26,21 @@ inline double LengthXy(const Position& from, const Position& to) {
   return std::hypot(ToDouble(to.x - from.x), ToDouble(to.y - from.y));
 }
 
-// Of the way from `from` through the points of `way`.
-inline double LengthXy(Position from, const std::vector<Position>& way) {
+// Of the travel from `from` through the points of `travel`.
+inline double LengthXy(Position from, const std::vector<Position>& travel) {
   double length = 0;
-  for (const Position& to : way) length += LengthXy(std::exchange(from, to), to);
+  for (const Position& to : travel) length += LengthXy(std::exchange(from, to), to);
   return length;
 }
 
-// The point `way` beyond `from` towards `to`, at the height of `from`; not rounded up to `to`
+// The point `travel` beyond `from` towards `to`, at the height of `from`; not rounded up to `to`
 // itself.
-inline Position Along(const Position& from, const Position& to, double way) {
+inline Position Along(const Position& from, const Position& to, double travel) {
   const double length = LengthXy(from, to);
   Position at = from;
   if (!(length > 0)) return at;
-  at.x = RoundedWord(ToDouble(from.x) + ToDouble(to.x - from.x) / length * way);
-  at.y = RoundedWord(ToDouble(from.y) + ToDouble(to.y - from.y) / length * way);
+  at.x = RoundedWord(ToDouble(from.x) + ToDouble(to.x - from.x) / length * travel);
+  at.y = RoundedWord(ToDouble(from.y) + ToDouble(to.y - from.y) / length * travel);
   return at;
 }
 

@@ -29,7 +29,7 @@ struct CorpusRun {
 
   int64_t layers = 0;
   int64_t layers_changed = 0;
-  int64_t layers_longer = 0;  // whose travel, the way to them included, is longer than before
+  int64_t layers_longer = 0;  // whose travel, the travel to them included, is longer than before
   std::string fault;          // why the result is not equivalent; empty: verified
   double cpu_seconds = 0;     // of the whole, all threads
 };

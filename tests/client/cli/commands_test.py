@@ -113,7 +113,7 @@ class Views(CommandLine):
         self.assertEqual(other["policy"], "free")
         self.assertEqual([rule["rule"] for rule in other["rules"]], [rule["rule"] for rule in same["rules"]])
         broken = [rule for rule in other["rules"] if rule["breaks"]]
-        self.assertEqual([rule["rule"] for rule in broken], ["retractions", "kept_ways"])
+        self.assertEqual([rule["rule"] for rule in broken], ["retractions", "kept_travel"])
         self.assertEqual(broken[0]["breaks"], 1)
         self.assertEqual(broken[0]["first"]["optimised_line"], 16)
         self.assertIn(broken[0]["first"]["message"], err)

@@ -123,7 +123,7 @@ void PutScalar(Message& message, const FieldDescriptor* field, How how, int inde
   }
 }
 
-// A message of `message`'s tree, each of the fields of the way equally likely to be entered.
+// A message of `message`'s tree, each of the fields of the travel equally likely to be entered.
 Message& PickMessage(Message& message, std::mt19937& random) {
   const Reflection& access = *message.GetReflection();
   std::vector<const FieldDescriptor*> set;

@@ -14,7 +14,7 @@ using Orders = std::vector<std::vector<int>>;
 
 Orders OrdersOf(const Plan& plan, int index);
 
-// Every way to do one child after the other.
+// Every travel to do one child after the other.
 Orders Concatenated(const std::vector<Orders>& parts, const std::vector<int>& sequence) {
   Orders result = {{}};
   for (const int child : sequence) {
@@ -63,7 +63,7 @@ std::vector<int> EntriesOf(const Path& path) {
   return all;
 }
 
-// One way to reach the end of a prefix of the order, the best for its last entry.
+// One travel to reach the end of a prefix of the order, the best for its last entry.
 struct Partial {
   double cost = 0;
   Point end;
@@ -105,18 +105,18 @@ BruteForceResult BestEntries(const LayerProblem& problem, const std::vector<int>
     const Path& path = problem.plan->paths[static_cast<size_t>(index)];
     std::vector<Partial> longer;
     for (const int entry : EntriesOf(path)) {
-      std::vector<Partial> ways = partials;
-      for (Partial& way : ways) {
-        way.cost += move_cost(way.end, EnterPoint(path, entry));
-        way.end = ExitPoint(path, entry);
+      std::vector<Partial> travels = partials;
+      for (Partial& travel : travels) {
+        travel.cost += move_cost(travel.end, EnterPoint(path, entry));
+        travel.end = ExitPoint(path, entry);
       }
-      longer.push_back(Cheapest(ways));
+      longer.push_back(Cheapest(travels));
       longer.back().route.push_back(Visit{index, entry});
     }
     partials = std::move(longer);
   }
   if (problem.finish) {
-    for (Partial& way : partials) way.cost += move_cost(way.end, *problem.finish);
+    for (Partial& travel : partials) travel.cost += move_cost(travel.end, *problem.finish);
   }
   const Partial& best = Cheapest(partials);
   return {best.cost, best.route};

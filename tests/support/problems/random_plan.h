@@ -33,7 +33,7 @@ struct RandomPlanOptions {
   int max_paths = 7;
   int max_vertices = 5;  // of a contour
 
-  // One-way paths, fixed and limited entries, one-point contours, repeated vertices, zero-length
+  // One-travel paths, fixed and limited entries, one-point contours, repeated vertices, zero-length
   // open paths, points that coincide (on a grid of whole millimetres).
   bool special = true;
 };

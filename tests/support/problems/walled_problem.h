@@ -25,17 +25,17 @@ struct WalledProblem {
 // Around [0, 100] x [0, 100]: polylines and loops, some of them outlines of paths.
 LayerWalls RandomWalls(Rng& rng, const Plan& plan);
 
-// A time with retractions, lifts and prices. Without ways around walls.
+// A time with retractions, lifts and prices. Without travel moves around walls.
 CostSpec RandomWallSpec(Rng& rng);
 
-// A problem of its own with walls and such a cost. `around`: ways may lead around walls.
+// A problem of its own with walls and such a cost. `around`: travel moves may lead around walls.
 WalledProblem RandomWalledProblem(uint64_t seed, const RandomPlanOptions& options = {},
                                   bool around = false);
 
 // The same problem with everything turned and moved.
 WalledProblem Turned(const WalledProblem& walled, double angle, Point by);
 
-// Whether the way between two points crosses a wall, and what the straight move costs, as
+// Whether the travel between two points crosses a wall, and what the straight move costs, as
 // walls.h and cost_spec.h state it. Every segment is looked at.
 bool CrossesAny(const LayerWalls& walls, double slack_mm, Point from, Point to);
 double WalledMoveCost(const WalledProblem& walled, Point from, Point to);

@@ -271,18 +271,18 @@ uint32_t LayerPair::TailMoves(const TraceChunk& chunk, uint32_t path,
 double LayerPair::CrossingLength(const TraceChunk& chunk, uint32_t link, bool open,
                                  uint32_t skipped) const {
   const TraceLink& traced = chunk.links[link];
-  std::vector<const TraceMove*> way;
+  std::vector<const TraceMove*> travel;
   double length = 0;
   for (uint32_t m = traced.first_move + skipped; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (move.kind != MoveKind::kTravel || move.open != open) continue;
-    way.push_back(&move);
+    travel.push_back(&move);
     length += move.length_mm();
   }
   if (outer_walls_.empty() || length <= 0) return 0;
   const double cut = std::min(kEndSlackMm, 0.2 * length);
   double at = 0;
-  for (const TraceMove* move : way) {
+  for (const TraceMove* move : travel) {
     const double own = move->length_mm();
     const double from = std::clamp(cut - at, 0.0, own);
     const double to = std::clamp(length - cut - at, 0.0, own);

@@ -12,8 +12,8 @@
 #include "absl/strings/str_format.h"
 #include "client/gcode/verify/match/departures.h"
 #include "client/gcode/verify/match/tails.h"
+#include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/match/turned_departures.h"
-#include "client/gcode/verify/match/way_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
@@ -46,7 +46,7 @@ bool LeadsAroundAWall(const LayerPair& layer, const TraceMove& before, const Tra
 }
 
 // The head sinks between the two, to a path that lies lower than the one before: where it may do so
-// is said elsewhere (way_heights.cc).
+// is said elsewhere (travel_heights.cc).
 bool SinksBetween(const TraceChunk& is, uint32_t link, const TraceMove& before,
                   const TraceMove& behind) {
   constexpr double kLevelMm = 1e-4;

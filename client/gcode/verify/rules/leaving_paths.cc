@@ -9,8 +9,8 @@
 #include "absl/strings/str_format.h"
 #include "absl/types/span.h"
 #include "client/gcode/verify/match/departures.h"
+#include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/match/turned_departures.h"
-#include "client/gcode/verify/match/way_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
@@ -226,7 +226,7 @@ void CheckDepartures(const LayerPair& layer, LayerFindings& findings) {
 }
 
 // Where travel begins with such moves behind other paths than outer walls too, they may be on the
-// way to somewhere, unless nearly all travel from outer walls does so before it retracts.
+// travel to somewhere, unless nearly all travel from outer walls does so before it retracts.
 void CompareDepartures(const Observations& was, const Observations& is, const RuleContext& context,
                        std::vector<Finding>& breaks) {
   constexpr int64_t kNearlyAll = 20;

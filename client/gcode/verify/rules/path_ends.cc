@@ -79,7 +79,7 @@ const TraceMove* PokeBehind(const TraceChunk& chunk, uint32_t path, const Known&
 }
 
 // An open nozzle that goes back along what it printed, and returns, leaves something there.
-// Travel that turns back (ways/way_lengths.cc) is another matter: that counts behind the moves
+// Travel that turns back (travel/travel_lengths.cc) is another matter: that counts behind the moves
 // along a path's end, where those stand for no travel, and not for less than 0.5 mm at first, for
 // the next path may begin there; and retracted travel that turns back excuses it, but no poke.
 void CheckPoke(const LayerPair& layer, const Visit& visit, LayerFindings& findings) {

@@ -30,7 +30,7 @@ class CycleReader {
   void Read(const TraceChunk& chunk, uint32_t link) {
     const TraceLink& traced = chunk.links[link];
     open_ = false;
-    way_mm_ = 0;
+    travel_mm_ = 0;
     if (traced.first_move == traced.end_move) return;
     // At the heights of what is printed before and after.
     double high = chunk.moves[traced.first_move].z_from_mm + kHighMm;
@@ -52,7 +52,7 @@ class CycleReader {
         cycle_.pushed_low |= move.z_to_mm < low;
         Push(move);
       } else if (move.kind == MoveKind::kTravel) {
-        way_mm_ += move.length_mm();
+        travel_mm_ += move.length_mm();
         cycle_.idle = false;
         cycle_.in_parts |= open_ && cycle_.pushed > 0 && move.length_mm() > kSidewaysMm;
         if (open_) cycle_.known &= layer_.IsKnown(move);
@@ -67,7 +67,7 @@ class CycleReader {
     if (open_) cycles_.push_back(cycle_);
     if (cycles_.size() > first) cycles_.back().last = true;
     // Two paths that meet have no travel between them, and may yet be separated.
-    if (way_mm_ == 0 && cycles_.size() == first + 1) cycles_[first].idle = false;
+    if (travel_mm_ == 0 && cycles_.size() == first + 1) cycles_[first].idle = false;
     if (!traced.scripted) return;
     // Scripts push filament wherever they want to.
     for (size_t i = first; i < cycles_.size(); ++i) {
@@ -88,7 +88,7 @@ class CycleReader {
     if (!open_) Begin(move);
     open_ = true;
     cycle_.pulled += move.firmware ? kOnce : -move.filament;
-    cycle_.late_mm = static_cast<float>(way_mm_);
+    cycle_.late_mm = static_cast<float>(travel_mm_);
     cycle_.idle &= !move.sideways();
     wipes_ |= move.sideways();
     cycle_.pulls = wipes_ ? 0 : cycle_.pulls + 1;
@@ -126,7 +126,7 @@ class CycleReader {
   RetractionCycle cycle_;
   bool open_ = false;
   bool wipes_ = false;
-  double way_mm_ = 0;  // gone in this link without filament
+  double travel_mm_ = 0;  // gone in this link without filament
 };
 
 struct Pair {

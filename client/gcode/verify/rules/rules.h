@@ -23,20 +23,20 @@ void CheckOrder(const LayerPair& layer, const RuleContext& context, LayerFinding
 void CheckDirection(const LayerPair& layer, const RuleContext& context, LayerFindings& findings);
 void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings& findings);
 void CheckBends(const LayerPair& layer, LayerFindings& findings);
-void CheckOpenWays(const LayerPair& layer, LayerFindings& findings);
+void CheckOpenTravels(const LayerPair& layer, LayerFindings& findings);
 void ObserveOpenHabits(const LayerPair& layer, LayerFindings& findings);
-void CheckSameWays(const LayerPair& layer, LayerFindings& findings);
-void CheckKeptWays(const LayerPair& layer, LayerFindings& findings);
+void CheckSameTravels(const LayerPair& layer, LayerFindings& findings);
+void CheckKeptTravels(const LayerPair& layer, LayerFindings& findings);
 void CheckSinking(const LayerPair& layer, LayerFindings& findings);
 void CheckSameSteps(const LayerPair& layer, LayerFindings& findings);
 void CheckFixedMoves(const LayerPair& layer, LayerFindings& findings);
-void CheckScriptedWays(const LayerPair& layer, LayerFindings& findings);
+void CheckScriptedTravels(const LayerPair& layer, LayerFindings& findings);
 void ObserveLifts(const LayerPair& layer, LayerFindings& findings);
 void ObserveHeights(const LayerPair& layer, LayerFindings& findings);
 void ObserveStepOrder(const LayerPair& layer, LayerFindings& findings);
 void ObserveRetractions(const LayerPair& layer, LayerFindings& findings);
 void ObserveFarMoves(const LayerPair& layer, LayerFindings& findings);
-void ObserveWayLengths(const LayerPair& layer, LayerFindings& findings);
+void ObserveTravelLengths(const LayerPair& layer, LayerFindings& findings);
 void ObserveSpeeds(const LayerPair& layer, LayerFindings& findings);
 void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFindings& findings);
 void CheckCommands(const LayerPair& layer, LayerFindings& findings);
@@ -76,8 +76,8 @@ void CompareLifts(const Observations& was, const Observations& is, std::vector<F
 void CompareHeights(const Observations& was, const Observations& is, std::vector<Finding>& breaks);
 void CompareBounds(const Observations& was, const Observations& is, const RuleContext& context,
                    std::vector<Finding>& breaks);
-void CompareWayLengths(const Observations& was, const Observations& is,
-                       std::vector<Finding>& breaks);
+void CompareTravelLengths(const Observations& was, const Observations& is,
+                          std::vector<Finding>& breaks);
 void CompareOpenHabits(const Observations& was, const Observations& is, const RuleContext& context,
                        std::vector<Finding>& breaks);
 void CompareRetractions(const Observations& was, const Observations& is,

@@ -78,10 +78,10 @@ void ObserveWas(const LayerPair& layer, const Tails& tails, Observations& seen) 
   }
 }
 
-using LongestWays = absl::flat_hash_map<uint64_t, float>;  // by acceleration, mm
+using LongestTravels = absl::flat_hash_map<uint64_t, float>;  // by acceleration, mm
 
-LongestWays LongestOf(const LayerPair& layer) {
-  LongestWays longest;
+LongestTravels LongestOf(const LayerPair& layer) {
+  LongestTravels longest;
   const TraceChunk& chunk = layer.was();
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
     for (uint32_t m = chunk.links[link].first_move; m < chunk.links[link].end_move; ++m) {
@@ -96,7 +96,7 @@ LongestWays LongestOf(const LayerPair& layer) {
 
 // Some slicers accelerate less on short travel: true if the layer has travel as long as `move` with
 // another acceleration, and only much shorter travel with this one.
-bool IsTooLong(const TraceMove& move, const LongestWays& longest) {
+bool IsTooLong(const TraceMove& move, const LongestTravels& longest) {
   if (move.kind != MoveKind::kTravel) return false;
   const auto length = static_cast<float>(move.length_mm());
   const auto own = longest.find(move.acceleration);
@@ -142,11 +142,11 @@ bool HasOther(const TravelFeeds& feeds, const TraceMove& move) {
 void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
   const TraceChunk& chunk = layer.is();
   const TravelFeeds feeds = TravelFeedsOf(layer);
-  const LongestWays longest = LongestOf(layer);
+  const LongestTravels longest = LongestOf(layer);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
     const TraceLink& traced = chunk.links[link];
     ObserveTail(layer, chunk, link, tails.At(link), true, seen);
-    // At unknown lines every step is that of the original there: see CheckScriptedWays.
+    // At unknown lines every step is that of the original there: see CheckScriptedTravels.
     if (traced.scripted) continue;
     for (uint32_t m = traced.first_move + tails.At(link); m < traced.end_move; ++m) {
       const TraceMove& move = chunk.moves[m];
@@ -157,7 +157,7 @@ void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
         }
         Note(seen.accelerations[KindOf(move)], move.acceleration, move, layer.index());
         if (IsTooLong(move, longest)) {
-          seen.long_ways.push_back(
+          seen.long_travels.push_back(
               {move.acceleration, static_cast<float>(move.length_mm()), move.line, layer.index()});
         }
       }
@@ -281,13 +281,13 @@ float LongestUnder(const Observations& was, uint64_t acceleration) {
 }
 
 void CompareLengths(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
-  for (const LongWay& way : is.long_ways) {
-    const float longest = LongestUnder(was, way.acceleration);
-    if (longest <= 0 || way.length_mm <= longest * kLengthFactor + kLengthSlackMm) continue;
-    breaks.push_back({VerifyRule::kSpeeds, 0, way.line, way.layer,
+  for (const LongTravel& travel : is.long_travels) {
+    const float longest = LongestUnder(was, travel.acceleration);
+    if (longest <= 0 || travel.length_mm <= longest * kLengthFactor + kLengthSlackMm) continue;
+    breaks.push_back({VerifyRule::kSpeeds, 0, travel.line, travel.layer,
                       absl::StrFormat("travel of %.2f mm with an acceleration that the original "
                                       "does not use for travel longer than %.2f mm",
-                                      way.length_mm, longest)});
+                                      travel.length_mm, longest)});
   }
 }
 

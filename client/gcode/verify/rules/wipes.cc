@@ -37,7 +37,8 @@ struct Wipe {
   bool known = true;
 };
 
-// Of the angle by which the way from `a` over `b` to `c` turns at `b`; 1 if it does not move there.
+// Of the angle by which the travel from `a` over `b` to `c` turns at `b`; 1 if it does not move
+// there.
 double CosineOfTurn(Point a, Point b, Point c) {
   const double product = DistanceOf(a, b) * DistanceOf(b, c);
   if (!(product > 0)) return 1;

@@ -355,7 +355,7 @@ void Tracer::EndSection(bool layer, bool mark) {
 }
 
 void Tracer::Mark() {
-  // Lines of the start script say nothing of the way to the first path.
+  // Lines of the start script say nothing of the travel to the first path.
   if (!in_print_) {
     link_.scripted = false;
     link_.fixed = 0;

@@ -15,13 +15,13 @@ PrintTotals Totals(double seconds, int64_t crossings, double travel_mm = 10) {
   return totals;
 }
 
-// Ways between layers that take no time.
+// Travel moves between layers that take no time.
 ChoiceColumn Column(const std::vector<PrintTotals>& inside, size_t choices_before) {
   ChoiceColumn column;
   column.inside = inside;
   column.no_choice.assign(inside.size(), false);
-  column.ways.resize(choices_before * inside.size());
-  column.no_way.assign(column.ways.size(), false);
+  column.travels.resize(choices_before * inside.size());
+  column.no_way.assign(column.travels.size(), false);
   return column;
 }
 
@@ -52,7 +52,7 @@ TEST(BestRow, NoTravelLeadsIntoWhatStandsHoweverFast) {
   PrintTotals into = Totals(5, 0);
   into.blocked = 1;
   ChoiceColumn second = Column({Totals(10, 0), Totals(9, 0)}, 2);
-  second.ways[1].blocked = 1;  // from the file's order of the first
+  second.travels[1].blocked = 1;  // from the file's order of the first
 
   EXPECT_EQ(Best({Column({Totals(10, 0), into}, 0), second}, Policy::kFree), Row({0, 0}));
 }
@@ -127,16 +127,16 @@ TEST(BestRow, ARetractionMoreHasToSaveThreeTenthsOfASecond) {
   EXPECT_EQ(Best(columns, Policy::kFree), Row({1, 0}));
 }
 
-TEST(BestRow, UnderSafeNoLayerTravelsFurtherWithTheWayToIt) {
+TEST(BestRow, UnderSafeNoLayerTravelsFurtherWithTheTravelToIt) {
   std::vector<ChoiceColumn> columns = {
       Column({Totals(10, 0, 20), Totals(9, 0, 10)}, 0),
       Column({Totals(10, 0, 20), Totals(9, 0, 25)}, 2),
   };
   // From the quick end of the first layer it is not far to the second one's quick order.
-  columns[1].ways = {Totals(1, 0, 30), Totals(1, 0, 30), Totals(1, 0, 35), Totals(1, 0, 5)};
+  columns[1].travels = {Totals(1, 0, 30), Totals(1, 0, 30), Totals(1, 0, 35), Totals(1, 0, 5)};
 
   EXPECT_EQ(Best(columns, Policy::kSafe), Row({1, 1}));
-  columns[1].ways[3].travel_mm = 35;
+  columns[1].travels[3].travel_mm = 35;
   EXPECT_EQ(Best(columns, Policy::kSafe), Row({0, 0}));
   EXPECT_EQ(Best(columns, Policy::kFree), Row({1, 1}));
 }
@@ -165,7 +165,7 @@ TEST(BestRow, WhatIsRuledOutIsNotChosen) {
   EXPECT_EQ(Best(columns, Policy::kFree), Row({0, 0}));
 }
 
-TEST(BestRow, OpenWaysAcrossWallsAndPushedFilamentStayAsTheyAre) {
+TEST(BestRow, OpenTravelsAcrossWallsAndPushedFilamentStayAsTheyAre) {
   PrintTotals open = Totals(9, 0);
   open.open_crossings = 1;
   PrintTotals pushed = Totals(9, 0);
@@ -177,7 +177,7 @@ TEST(BestRow, OpenWaysAcrossWallsAndPushedFilamentStayAsTheyAre) {
   }
 }
 
-TEST(BestRow, NoOpenWayAcrossWallsIsLongerThanInTheFile) {
+TEST(BestRow, NoOpenTravelAcrossWallsIsLongerThanInTheFile) {
   PrintTotals given = Totals(10, 1);
   given.open_crossings = 1;
   given.longest_open_mm = 2;

@@ -41,12 +41,12 @@ class MergedOrdersTest : public ::testing::Test {
     writer_ = std::make_unique<LayerWriter>(*file_, file_->layers[0], habit_, *donors_);
   }
 
-  std::vector<WayTotals> WaysOf(const LayerOrder& order) const {
-    std::vector<WayTotals> ways;
+  std::vector<TravelTotals> TravelsOf(const LayerOrder& order) const {
+    std::vector<TravelTotals> travels;
     for (size_t i = 1; i < order.size(); ++i) {
-      ways.push_back(writer_->EstimateWay(i, order[i - 1], order[i], kTravel));
+      travels.push_back(writer_->EstimateTravel(i, order[i - 1], order[i], kTravel));
     }
-    return ways;
+    return travels;
   }
 
   std::shared_ptr<GcodeFile> file_;
@@ -55,9 +55,9 @@ class MergedOrdersTest : public ::testing::Test {
   std::unique_ptr<LayerWriter> writer_;
 };
 
-TEST_F(MergedOrdersTest, HaveNoOpenWayAcrossWallsThatIsLongerThanTheFiles) {
+TEST_F(MergedOrdersTest, HaveNoOpenTravelAcrossWallsThatIsLongerThanTheFiles) {
   const LayerOrder found = OrderOf({0, 2, 1, 4, 3, 5, 6});
-  const WayTotals across = WaysOf(found)[4];
+  const TravelTotals across = TravelsOf(found)[4];
   ASSERT_EQ(across.open, 1);
   ASSERT_NEAR(across.mm, 1.4, 1e-6);
   MergeRules rules;
@@ -69,8 +69,8 @@ TEST_F(MergedOrdersTest, HaveNoOpenWayAcrossWallsThatIsLongerThanTheFiles) {
 
   ASSERT_FALSE(merged.empty());
   for (const LayerOrder& order : merged) {
-    for (const WayTotals& way : WaysOf(order)) {
-      EXPECT_TRUE(way.open == 0 || way.mm <= 1.1 + 1e-6) << way.mm;
+    for (const TravelTotals& travel : TravelsOf(order)) {
+      EXPECT_TRUE(travel.open == 0 || travel.mm <= 1.1 + 1e-6) << travel.mm;
     }
   }
 }
@@ -95,13 +95,13 @@ TEST_F(MergedOrdersTest, UnderSafeTheBestTravelsNoFurtherThanTheFile) {
     return std::count(orders.begin(), orders.end(), found);
   };
 
-  // Once as what only the way to the layer can tell to be too long, and once as the best of all
+  // Once as what only the travel to the layer can tell to be too long, and once as the best of all
   // that keep to the limits.
   EXPECT_EQ(merged(Policy::kSafe), 1);
   EXPECT_EQ(merged(Policy::kBalanced), 2);
 }
 
-// What is found is quicker within the wall, and beside it for more ways across.
+// What is found is quicker within the wall, and beside it for more travel moves across.
 TEST_F(MergedOrdersTest, TakeFromAnOrderWhatNeedsNoMoreCrossings) {
   Sketch sketch;
   sketch.Square(0, 0, 100);
@@ -150,9 +150,9 @@ TEST_F(MergedOrdersTest, AreMadeBetterBySmallChangesWhereThoseAreAskedFor) {
   const auto shortest = [&] {
     double mm = std::numeric_limits<double>::infinity();
     for (const LayerOrder& order : MergedOrders(writer, kTravel, {found}, rules)) {
-      WayTotals totals;
+      TravelTotals totals;
       for (size_t i = 1; i < order.size(); ++i) {
-        totals += writer.EstimateWay(i, order[i - 1], order[i], kTravel);
+        totals += writer.EstimateTravel(i, order[i - 1], order[i], kTravel);
       }
       mm = std::min(mm, totals.mm);
     }
@@ -166,21 +166,21 @@ TEST_F(MergedOrdersTest, AreMadeBetterBySmallChangesWhereThoseAreAskedFor) {
   EXPECT_LT(shortest(), merged - 20);
 }
 
-TEST_F(MergedOrdersTest, WaysOfTheFileTakeWhatTheirBendsTake) {
+TEST_F(MergedOrdersTest, TravelsOfTheFileTakeWhatTheirBendsTake) {
   Sketch sketch;
   sketch.Infill(10, 0).Go(10, 20).Go(30, 20).Infill(30, 30).Go(50, 20).Infill(50, 30);
   const std::shared_ptr<GcodeFile> file = sketch.Read();
   const LayerWriter writer(*file, file->layers[0], habit_, *donors_);
   const LayerOrder given = writer.GivenOrder();
 
-  const WayTotals bent = writer.EstimateWay(1, given[0], given[1], kTravel);
+  const TravelTotals bent = writer.EstimateTravel(1, given[0], given[1], kTravel);
 
   EXPECT_NEAR(bent.mm, 40, 1e-4);
   const LayerJoints ends(*file, file->layers[0], writer.outlines());
-  const WayJoints joints{ends.EndOf(0, 0), ends.BeginOf(1, 0)};
-  EXPECT_NEAR(bent.seconds, WaySeconds(*file, 1, kTravel, true, &joints), 1e-9);
+  const TravelJoints joints{ends.EndOf(0, 0), ends.BeginOf(1, 0)};
+  EXPECT_NEAR(bent.seconds, TravelSeconds(*file, 1, kTravel, true, &joints), 1e-9);
   EXPECT_GT(bent.seconds, StopToStopSeconds(40, 150, 1000) + 0.01);
-  const WayTotals straight = writer.EstimateWay(2, given[1], given[2], kTravel);
+  const TravelTotals straight = writer.EstimateTravel(2, given[1], given[2], kTravel);
   EXPECT_NEAR(straight.seconds, StopToStopSeconds(std::hypot(20, 10), 150, 1000), .01);
 }
 
@@ -192,12 +192,12 @@ TEST_F(MergedOrdersTest, AWayOfTheFileCrossesWhatItCrossesWithItsBends) {
   const LayerWriter writer(*file, file->layers[0], habit_, *donors_);
   const LayerOrder given = writer.GivenOrder();
 
-  EXPECT_EQ(writer.EstimateWay(2, given[1], given[2], kTravel).crossings, 0);
-  EXPECT_EQ(writer.EstimateWay(2, given[2], given[1], kTravel).crossings, 1);
+  EXPECT_EQ(writer.EstimateTravel(2, given[1], given[2], kTravel).crossings, 0);
+  EXPECT_EQ(writer.EstimateTravel(2, given[2], given[1], kTravel).crossings, 1);
 }
 
 // As it is written: from bend to bend.
-TEST_F(MergedOrdersTest, NewWaysAroundWallsTakeWhatTheirBendsTake) {
+TEST_F(MergedOrdersTest, NewTravelsAroundWallsTakeWhatTheirBendsTake) {
   Sketch sketch;
   sketch.Square(0, 0, 40).Go(15, 15).Square(15, 15, 10).Go(5, 5).Infill(5, 20);
   sketch.Go(20, 35).Infill(35, 35).Go(35, 20).Infill(35, 18);
@@ -208,7 +208,7 @@ TEST_F(MergedOrdersTest, NewWaysAroundWallsTakeWhatTheirBendsTake) {
   const LayerOrder given = writer.GivenOrder();
   ASSERT_EQ(given.size(), 5u);
 
-  const WayTotals around = writer.EstimateWay(3, given[2], given[4], kTravel);
+  const TravelTotals around = writer.EstimateTravel(3, given[2], given[4], kTravel);
 
   EXPECT_EQ(around.crossings, 0);
   EXPECT_GT(around.mm, 32);
@@ -235,7 +235,7 @@ TEST_F(MergedOrdersTest, UnderFreeWhatWasFoundIsTriedInTheOrderOfTheFile) {
     for (const LayerOrder& order : MergedOrders(writer, kTravel, {found}, rules)) {
       double mm = 0;
       for (size_t i = 1; i < order.size(); ++i) {
-        mm += writer.EstimateWay(i, order[i - 1], order[i], kTravel).mm;
+        mm += writer.EstimateTravel(i, order[i - 1], order[i], kTravel).mm;
       }
       least = std::min(least, mm);
     }
@@ -259,7 +259,7 @@ TEST_F(MergedOrdersTest, SparingOrdersRetractLess) {
   const auto retractions = [&](const LayerOrder& order) {
     int64_t sum = 0;
     for (size_t i = 1; i < order.size(); ++i) {
-      sum += writer.EstimateWay(i, order[i - 1], order[i], kTravel).retractions;
+      sum += writer.EstimateTravel(i, order[i - 1], order[i], kTravel).retractions;
     }
     return sum;
   };

@@ -19,17 +19,17 @@ LayerOrder OrderOf(const std::vector<uint32_t>& blocks) {
   return order;
 }
 
-// Paths on a line, at their number; a way across 4.5 crosses a wall.
-WayTotals OnALine(size_t, const Placement& from, const Placement& to) {
-  WayTotals way;
-  way.mm = std::abs(static_cast<double>(from.block) - static_cast<double>(to.block));
-  way.seconds = way.mm;
-  way.crossings = (from.block < 5) != (to.block < 5) ? 1 : 0;
-  return way;
+// Paths on a line, at their number; a travel move across 4.5 crosses a wall.
+TravelTotals OnALine(size_t, const Placement& from, const Placement& to) {
+  TravelTotals travel;
+  travel.mm = std::abs(static_cast<double>(from.block) - static_cast<double>(to.block));
+  travel.seconds = travel.mm;
+  travel.crossings = (from.block < 5) != (to.block < 5) ? 1 : 0;
+  return travel;
 }
 
 TEST(OrderMerger, TakesTheRunsThatAreBetter) {
-  const WayEstimate estimate = OnALine;
+  const TravelEstimate estimate = OnALine;
   const OrderMerger merger(estimate, {});
   const LayerOrder left = OrderOf({0, 1, 2, 3, 4, 5, 8, 6, 7, 9});
   const LayerOrder right = OrderOf({0, 3, 1, 4, 2, 5, 6, 7, 8, 9});
@@ -40,7 +40,7 @@ TEST(OrderMerger, TakesTheRunsThatAreBetter) {
 
 TEST(OrderMerger, EndsOnceNoRunIsBetter) {
   size_t asked = 0;
-  const WayEstimate estimate = [&](size_t position, const Placement& from, const Placement& to) {
+  const TravelEstimate estimate = [&](size_t position, const Placement& from, const Placement& to) {
     ++asked;
     return OnALine(position, from, to);
   };
@@ -52,7 +52,7 @@ TEST(OrderMerger, EndsOnceNoRunIsBetter) {
 }
 
 TEST(OrderMerger, OfAnOrderThatMayNotBeItTakesWhatMay) {
-  const WayEstimate estimate = OnALine;
+  const TravelEstimate estimate = OnALine;
   MergeLimits limits;
   limits.crossings = 1;
   const OrderMerger merger(estimate, limits);
@@ -68,10 +68,10 @@ TEST(OrderMerger, OfAnOrderThatMayNotBeItTakesWhatMay) {
 
 // Where only the number of the file's retractions will do, fewer are as far off as more.
 TEST(OrderMerger, AsManyRetractionsMeansNoFewerEither) {
-  const WayEstimate estimate = OnALine;
+  const TravelEstimate estimate = OnALine;
   MergeLimits limits;
   limits.retractions = 4;
-  WayTotals totals;
+  TravelTotals totals;
   const auto excess = [&](int32_t retractions) {
     totals.retractions = retractions;
     return OrderMerger(estimate, limits).Excess(totals);
@@ -85,10 +85,10 @@ TEST(OrderMerger, AsManyRetractionsMeansNoFewerEither) {
 }
 
 TEST(OrderMerger, EntriesComeFromTheOrdersToo) {
-  const WayEstimate estimate = [](size_t, const Placement& from, const Placement& to) {
-    WayTotals way;
-    way.seconds = 10 - from.entry - to.entry;
-    return way;
+  const TravelEstimate estimate = [](size_t, const Placement& from, const Placement& to) {
+    TravelTotals travel;
+    travel.seconds = 10 - from.entry - to.entry;
+    return travel;
   };
   const OrderMerger merger(estimate, {});
   LayerOrder other = OrderOf({0, 1, 2, 3});
@@ -124,7 +124,7 @@ TEST(OrderMerger, KeepsWhatAllAgreeOnAndNeverGetsWorse) {
     const size_t n = 3 + rng.Below(60);
     std::vector<bool> keeps(n);
     for (size_t i = 0; i < n; ++i) keeps[i] = rng.Below(2) == 0;
-    const WayEstimate estimate = OnALine;
+    const TravelEstimate estimate = OnALine;
     MergeLimits limits;
     limits.crossings = static_cast<int64_t>(rng.Below(6));
     const OrderMerger merger(estimate, limits);
@@ -144,8 +144,8 @@ TEST(OrderMerger, KeepsWhatAllAgreeOnAndNeverGetsWorse) {
     }
     EXPECT_EQ(merged.front(), begun.front());
     EXPECT_EQ(merged.back(), begun.back());
-    const WayTotals was = merger.TotalsOf(begun);
-    const WayTotals is = merger.TotalsOf(merged);
+    const TravelTotals was = merger.TotalsOf(begun);
+    const TravelTotals is = merger.TotalsOf(merged);
     EXPECT_LE(merger.Excess(is), merger.Excess(was));
     if (merger.Excess(was) == 0) {
       EXPECT_LE(merger.Score(is), merger.Score(was));
@@ -154,10 +154,10 @@ TEST(OrderMerger, KeepsWhatAllAgreeOnAndNeverGetsWorse) {
 }
 
 TEST(OrderMerger, WhatIsNoBetterStaysAsItWasBegun) {
-  const WayEstimate estimate = [](size_t, const Placement&, const Placement&) {
-    WayTotals way;
-    way.seconds = 1;
-    return way;
+  const TravelEstimate estimate = [](size_t, const Placement&, const Placement&) {
+    TravelTotals travel;
+    travel.seconds = 1;
+    return travel;
   };
   const OrderMerger merger(estimate, {});
 
@@ -170,7 +170,7 @@ TEST(OrderMerger, KnowsPathsByTheirNumbersInTheFile) {
     for (Placement& placement : moved) placement.block += 1000;
     return moved;
   };
-  const WayEstimate estimate = OnALine;
+  const TravelEstimate estimate = OnALine;
   const OrderMerger merger(estimate, {});
   const LayerOrder left = OrderOf({0, 1, 2, 3, 4, 5, 8, 6, 7, 9});
   const LayerOrder right = OrderOf({0, 3, 1, 4, 2, 5, 6, 7, 8, 9});

@@ -53,16 +53,16 @@ struct PolishedLayer {
     return (at.entry == 0) == begin ? points.front() : points.back();
   }
 
-  // As long as the way is.
-  WayTotals Length(const Placement& from, const Placement& to) const {
-    WayTotals way;
-    way.mm = way.seconds = Distance(End(from, false), End(to, true));
-    return way;
+  // As long as the travel is.
+  TravelTotals Length(const Placement& from, const Placement& to) const {
+    TravelTotals travel;
+    travel.mm = travel.seconds = Distance(End(from, false), End(to, true));
+    return travel;
   }
 
   LayerOrder Polished(const LayerOrder& begun, const MergeLimits& limits = {},
                       const PolishLimit& limit = {}) const {
-    const WayEstimate estimate = [this](size_t, const Placement& from, const Placement& to) {
+    const TravelEstimate estimate = [this](size_t, const Placement& from, const Placement& to) {
       return Length(from, to);
     };
     return OrderPolisher(kFirst, outlines, freedom, estimate, limit)
@@ -109,14 +109,14 @@ TEST(OrderPolisher, BeginsClosedPathsWhereTheyAreComeTo) {
   EXPECT_EQ(polished[2].entry, 2u);  // 3 is nearer and not allowed
 }
 
-// A way to the left is dear: no search that takes both directions for the same sees that.
-TEST(OrderPolisher, KnowsTheDirectionOfWays) {
+// A travel move to the left is dear: no search that takes both directions for the same sees that.
+TEST(OrderPolisher, KnowsTheDirectionOfTravels) {
   PolishedLayer sheet;
   for (int i = 0; i < 8; ++i) sheet.AddLine(3 * i, 0, false);
-  const WayEstimate estimate = [&](size_t, const Placement& from, const Placement& to) {
-    WayTotals way = sheet.Length(from, to);
-    if (sheet.End(to, true).x < sheet.End(from, false).x) way.seconds += 1;
-    return way;
+  const TravelEstimate estimate = [&](size_t, const Placement& from, const Placement& to) {
+    TravelTotals travel = sheet.Length(from, to);
+    if (sheet.End(to, true).x < sheet.End(from, false).x) travel.seconds += 1;
+    return travel;
   };
   const OrderMerger judge(estimate, {});
   LayerOrder begun = sheet.Given();
@@ -132,10 +132,10 @@ TEST(OrderPolisher, KnowsTheDirectionOfWays) {
 TEST(OrderPolisher, FirstKeepsToTheLimits) {
   PolishedLayer sheet;
   for (const double x : {0.0, 4.0, 2.0, 6.0}) sheet.AddLine(x, 0);
-  const WayEstimate estimate = [&](size_t, const Placement& from, const Placement& to) {
-    WayTotals way = sheet.Length(from, to);
-    way.crossings = from.block + 2 == to.block ? 1 : 0;
-    return way;
+  const TravelEstimate estimate = [&](size_t, const Placement& from, const Placement& to) {
+    TravelTotals travel = sheet.Length(from, to);
+    travel.crossings = from.block + 2 == to.block ? 1 : 0;
+    return travel;
   };
   MergeLimits limits;
   limits.crossings = 0;
@@ -210,11 +210,11 @@ TEST(OrderPolisher, DoesWhatThePlanAllowsAndNeverGetsWorse) {
     Rng rng(seed);
     const PolishedLayer sheet = RandomLayer(rng);
     const LayerOrder given = sheet.Given();
-    const WayEstimate estimate = [&](size_t, const Placement& from, const Placement& to) {
-      WayTotals way = sheet.Length(from, to);
-      way.crossings = (from.block * 7 + to.block * 3) % 5 == 0 ? 1 : 0;
-      way.seconds += (from.block + 2 * to.entry) % 4;
-      return way;
+    const TravelEstimate estimate = [&](size_t, const Placement& from, const Placement& to) {
+      TravelTotals travel = sheet.Length(from, to);
+      travel.crossings = (from.block * 7 + to.block * 3) % 5 == 0 ? 1 : 0;
+      travel.seconds += (from.block + 2 * to.entry) % 4;
+      return travel;
     };
     MergeLimits limits;
     limits.crossings = static_cast<int64_t>(rng.Below(8));
@@ -228,8 +228,8 @@ TEST(OrderPolisher, DoesWhatThePlanAllowsAndNeverGetsWorse) {
     ExpectAllowed(sheet, polished);
     EXPECT_EQ(polished.front(), given.front());
     EXPECT_EQ(polished.back(), given.back());
-    const WayTotals was = judge.TotalsOf(given);
-    const WayTotals is = judge.TotalsOf(polished);
+    const TravelTotals was = judge.TotalsOf(given);
+    const TravelTotals is = judge.TotalsOf(polished);
     EXPECT_LE(judge.Excess(is), judge.Excess(was));
     if (judge.Excess(was) == judge.Excess(is)) {
       EXPECT_LE(judge.Score(is), judge.Score(was) + 1e-6);
@@ -256,7 +256,7 @@ TEST(OrderPolisher, KicksFindWhatNoSingleChangeDoes) {
     Rng rng(seed);
     PolishedLayer sheet;
     for (int i = 0; i < 40; ++i) sheet.AddLine(rng.Below(60), rng.Below(60), false);
-    const WayEstimate estimate = [&](size_t, const Placement& from, const Placement& to) {
+    const TravelEstimate estimate = [&](size_t, const Placement& from, const Placement& to) {
       return sheet.Length(from, to);
     };
     const OrderMerger judge(estimate, {});
@@ -274,25 +274,25 @@ TEST(OrderPolisher, KicksFindWhatNoSingleChangeDoes) {
 }
 
 TEST(OrderPolisher, GivesUpSoonerWhereEstimatesTakeLonger) {
-  const auto asked = [](double seconds_per_way) {
+  const auto asked = [](double seconds_per_travel) {
     size_t count = 0;
     for (uint64_t seed = 1; seed <= 20; ++seed) {
       Rng rng(seed);
       PolishedLayer sheet;
       for (int i = 0; i < 40; ++i) sheet.AddLine(rng.Below(60), rng.Below(60), false);
-      const WayEstimate estimate = [&](size_t, const Placement& from, const Placement& to) {
+      const TravelEstimate estimate = [&](size_t, const Placement& from, const Placement& to) {
         ++count;
         return sheet.Length(from, to);
       };
       PolishLimit limit;
-      limit.seconds_per_way = seconds_per_way;
+      limit.seconds_per_travel = seconds_per_travel;
       OrderPolisher(kFirst, sheet.outlines, sheet.freedom, estimate, limit)
           .Polish(sheet.Given(), OrderMerger(estimate, {}), OrderPolisher::Effort::kKick);
     }
     return count;
   };
 
-  EXPECT_GT(asked(PolishLimit::kSecondsPerWay), asked(1));
+  EXPECT_GT(asked(PolishLimit::kSecondsPerTravel), asked(1));
 }
 
 TEST(OrderPolisher, OfTwoPathsNothingCanBeChanged) {

@@ -35,8 +35,8 @@ TEST(MotionPlanner, SlowsToTheCornerSpeedAtARightAngle) {
 
   // Per leg: from 0 to 100, along, from 100 to 5 mm/s.
   const double ramps = 100.0 / 1000 + 95.0 / 1000;
-  const double way = 50 - 5 - (100.0 * 100 - 25) / 2000;
-  EXPECT_NEAR(Seconds(planner), 2 * (ramps + way / 100), 1e-9);
+  const double travel = 50 - 5 - (100.0 * 100 - 25) / 2000;
+  EXPECT_NEAR(Seconds(planner), 2 * (ramps + travel / 100), 1e-9);
 }
 
 TEST(MotionPlanner, BrakesInTimeForWhatComes) {
@@ -90,8 +90,8 @@ TEST(MotionPlannerOfKlipper, TakesAnotherAngleOnTheCircleThatMissesItByAsMuch) {
   const double half = std::sqrt(3) / 2;
   const double corner2 = half / (1 - half) * 25 * (std::sqrt(2) - 1);
   const double ramps = (200 - std::sqrt(corner2)) / 1000;
-  const double way = 50 - 5 - (100.0 * 100 - corner2) / 2000;
-  EXPECT_NEAR(Seconds(planner), 2 * (ramps + way / 100), 1e-9);
+  const double travel = 50 - 5 - (100.0 * 100 - corner2) / 2000;
+  EXPECT_NEAR(Seconds(planner), 2 * (ramps + travel / 100), 1e-9);
 }
 
 TEST(MotionPlannerOfKlipper, ShortMovesTakeCornersOnCirclesThatTouchTheirMiddles) {
@@ -112,12 +112,12 @@ TEST(MotionPlannerOfKlipper, TheExtruderHasItsOwnCornerSpeed) {
 
   // From no filament to 0.05 mm a mm at once: 20 mm/s.
   const double ramps = (100 + 80) / 1000.0;
-  const double way = 50 - 5 - (100.0 * 100 - 400) / 2000;
-  EXPECT_NEAR(Seconds(planner), 2 * (ramps + way / 100), 1e-9);
+  const double travel = 50 - 5 - (100.0 * 100 - 400) / 2000;
+  EXPECT_NEAR(Seconds(planner), 2 * (ramps + travel / 100), 1e-9);
 }
 
 // Z may accelerate by a tenth of what the machine does, and so takes the corner more slowly.
-TEST(MotionPlannerOfKlipper, ALiftTakesTheCornerToTheWayBehindItAsItsAxisAllows) {
+TEST(MotionPlannerOfKlipper, ALiftTakesTheCornerToTheTravelBehindItAsItsAxisAllows) {
   MotionPlanner planner(kKlipper);
   planner.Move({.dz = 0.5, .speed = 10, .accel = 100, .machine_accel = 1000, .corner = 5});
   planner.Move({.dx = 50, .speed = 100, .accel = 1000, .machine_accel = 1000, .corner = 5});
@@ -125,8 +125,8 @@ TEST(MotionPlannerOfKlipper, ALiftTakesTheCornerToTheWayBehindItAsItsAxisAllows)
   // At the root of 5^2 / 10; the lift peaks at the root of 100 * 0.5 + 2.5 / 2.
   const double corner = std::sqrt(2.5);
   const double lift = (2 * std::sqrt(51.25) - corner) / 100;
-  const double way = (200 - corner) / 1000 + (50 - 5 - (10000 - 2.5) / 2000) / 100;
-  EXPECT_NEAR(Seconds(planner), lift + way, 1e-9);
+  const double travel = (200 - corner) / 1000 + (50 - 5 - (10000 - 2.5) / 2000) / 100;
+  EXPECT_NEAR(Seconds(planner), lift + travel, 1e-9);
 }
 
 TEST(MotionPlannerOfKlipper, LiftsInTheSameDirectionAreOne) {
@@ -191,8 +191,8 @@ TEST(MotionPlannerOfKlipper, EachCornerBeginsAnotherPeak) {
   // From 5 mm/s: 2 * 500 * 4 / 2 more of the square.
   const double peak = std::sqrt(25 + 2000);
   const double ramps = 2 * (peak - 5) / 1000;
-  const double way = 4 - (peak * peak - 25) / 1000;
-  EXPECT_NEAR(Seconds(planner), 1000 * (ramps + way / peak), 0.05);
+  const double travel = 4 - (peak * peak - 25) / 1000;
+  EXPECT_NEAR(Seconds(planner), 1000 * (ramps + travel / peak), 0.05);
 }
 
 }  // namespace

@@ -97,7 +97,7 @@ TEST(DynamicsOf, WhatALaterLineSetHoldsThoughAnEarlierOneSetMore) {
 TEST(MeasureLayers, CountsTravelFromTheFirstToTheLastExtrusion) {
   const auto file = Read(kPrusaSample);
 
-  // The wipe, the way to the infill, the way between its lines.
+  // The wipe, the travel to the infill, the travel between its lines.
   const double wipe = std::hypot(5, 0.06);
   const PrintTotals totals = Sum(MeasureLayers(*file));
   EXPECT_NEAR(totals.travel_mm, wipe + std::hypot(15, 20) + 1, 1e-6);
@@ -107,7 +107,7 @@ TEST(MeasureLayers, CountsTravelFromTheFirstToTheLastExtrusion) {
 }
 
 // The nozzle drips on a short move inwards, too, and on the stretch behind a wall.
-TEST(MeasureLayers, AnOpenWayIsAsLongAsAllItsMoves) {
+TEST(MeasureLayers, AnOpenTravelIsAsLongAsAllItsMoves) {
   Sketch sketch;
   sketch.Square(0, 0, 10).Square(20, 0, 10).Go(20.5, 0.5).Go(20.5, -3).Go(25, -3);
   sketch.Infill(26, -3).Go(26, -5).Infill(28, -5);

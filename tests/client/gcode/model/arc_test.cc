@@ -34,7 +34,7 @@ struct Sample {
 
 class ArcPointsOf : public ::testing::TestWithParam<Sample> {};
 
-TEST_P(ArcPointsOf, StayOnTheCircleAndTurnItsWay) {
+TEST_P(ArcPointsOf, StayOnTheCircleAndTurnItsTravel) {
   const auto& [text, center, radius, turns] = GetParam();
   double length = 0;
   const std::vector<Vertex> points = Drawn(text, length);

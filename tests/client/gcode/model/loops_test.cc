@@ -95,8 +95,8 @@ std::string Square(double half, bool begun_elsewhere) {
 }
 
 // Of three walls, one within the other, the outer one is seen, wherever the others begin. (What was
-// written with inner loops begun elsewhere was taken to have more visible walls: 121 ways across
-// such became 152 in sl_vase_rack_restart_extra, and all of it was left as it was.)
+// written with inner loops begun elsewhere was taken to have more visible walls: 121 travel moves
+// across such became 152 in sl_vase_rack_restart_extra, and all of it was left as it was.)
 TEST(Loops, ALoopBegunElsewhereIsALoop) {
   for (const bool elsewhere : {false, true}) {
     const auto file = Read("M83\nG1 Z.2 F9000\n" + Square(9.2, false) + Square(9.6, elsewhere) +

@@ -85,7 +85,7 @@ TEST(SegmentGridTest, MeetsWhatAWayCrosses) {
     std::set<uint32_t> met;
     size_t looks = 100'000;
     size_t calls = 0;
-    grid.ForEachOnWay(a, b, looks, [&](uint32_t s) {
+    grid.ForEachOnTravel(a, b, looks, [&](uint32_t s) {
       met.insert(s);
       ++calls;
       return true;
@@ -108,8 +108,8 @@ TEST(SegmentGridTest, LooksAtNoMoreThanItMay) {
     return true;
   };
 
-  grid.ForEachOnWay({-1, 15}, {31, 15}, looks, count);
-  grid.ForEachOnWay({-1, 15}, {31, 15}, looks, count);
+  grid.ForEachOnTravel({-1, 15}, {31, 15}, looks, count);
+  grid.ForEachOnTravel({-1, 15}, {31, 15}, looks, count);
 
   EXPECT_EQ(calls, 3u);
   EXPECT_EQ(looks, 0u);

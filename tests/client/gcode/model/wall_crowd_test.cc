@@ -57,7 +57,8 @@ TEST(WallCrowd, ALineThatIsACrowdItselfIsRefusedAndTakesNoRoom) {
   for (int i = 0; i < 30; ++i) EXPECT_TRUE(crowd.Takes({{0, 5}, {10, 5}}));
 }
 
-// Squares in one place, with ways past them: looking at all for each took 12 s for a third of them.
+// Squares in one place, with travel moves past them: looking at all for each took 12 s for a third
+// of them.
 TEST(VisibleWalls, ThousandsInOnePlaceTakeNoTimeOfTheirOwn) {
   std::string text = "M83\nG1 Z.2 F9000\n";
   for (int i = 0; i < 8000; ++i) {

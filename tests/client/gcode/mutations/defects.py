@@ -15,10 +15,10 @@ import setting_defects
 import speed_defects
 import state_defects
 import text_defects
-import way_defects
+import travel_defects
 import wipe_defects
 
 DEFECTS = (order_defects.DEFECTS + deposit_defects.DEFECTS + path_defects.DEFECTS + retraction_defects.DEFECTS +
-           filament_defects.DEFECTS + wipe_defects.DEFECTS + lift_defects.DEFECTS + way_defects.DEFECTS +
+           filament_defects.DEFECTS + wipe_defects.DEFECTS + lift_defects.DEFECTS + travel_defects.DEFECTS +
            speed_defects.DEFECTS + script_defects.DEFECTS + setting_defects.DEFECTS + state_defects.DEFECTS +
            text_defects.DEFECTS)

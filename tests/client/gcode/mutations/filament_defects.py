@@ -5,7 +5,7 @@ import re
 from edits import edited, pick, restated, with_e, with_f, with_xy
 from places import crosses_wall, level, links
 from sliced import number
-from way_defects import cut_way, open_ways
+from travel_defects import cut_way, open_travel
 
 
 def halves(text):
@@ -57,7 +57,7 @@ def pulled_late(share):
 
 
 def longest_open(file):
-    return max((sum(file.lines[i].length() for i in ways) for ways in open_ways(file)), default=0)
+    return max((sum(file.lines[i].length() for i in ways) for ways in open_travel(file)), default=0)
 
 
 def retraction_dropped_within(file, rng):
@@ -197,8 +197,8 @@ DEFECTS = (
     ("half of the filament back halfway", "retractions", primed_on_way, "free"),
     ("filament pulled back halfway", "retractions", pulled_late(1), "free"),
     ("half of the filament pulled back halfway", "retractions", pulled_late(0.5), "free"),
-    ("retraction of a long way dropped", "open_ways", retraction_dropped_within, "free"),
-    ("retraction before a layer dropped", "open_ways", retraction_to_layer_dropped, "free"),
+    ("retraction of a long way dropped", "open_travel", retraction_dropped_within, "free"),
+    ("retraction before a layer dropped", "open_travel", retraction_to_layer_dropped, "free"),
     ("retraction without a way", "retractions", needless_retraction, "free"),
     ("all primings less by 0.003 mm", "retractions", all_off("prime", -0.003), "free"),
     ("all primings more by 0.0009 mm", "retractions", all_off("prime", 0.0009), "free"),

@@ -58,7 +58,7 @@ def way_dropped(file, rng):
     return pick(rng, range(len(file.paths) - 1), 50, make)
 
 
-def way_ends_beside(file, rng):
+def travel_ends_beside(file, rng):
     def make(k):
         ways = [i for i in file.link(k) if file.lines[i].kind == "travel"]
         if not ways or file.lines[ways[-1]].length() < 1 or not re.search(r" X.* Y", file.lines[ways[-1]].text):
@@ -114,7 +114,7 @@ DEFECTS = (
     ("dwell within a path", "same_print", within(lambda file, line: ["G4 P200"]), "free"),
     ("label within a path", "same_print", within(lambda file, line: ["; printing object x id:0 copy 0"]), "free"),
     ("way to a path dropped", "same_print", way_dropped, "free"),
-    ("way ends beside its path", "same_print", way_ends_beside, "free"),
+    ("way ends beside its path", "same_print", travel_ends_beside, "free"),
     ("way made a thin line", "same_print", way_after_path_missing, "free"),
     ("feed rate of a path dropped", "same_print", feed_line_dropped, "free"),
 )

@@ -296,8 +296,8 @@ def left_to_another_side(file, rng):
 
 # (name, rule, defect, the most daring policy under which it is one)
 DEFECTS = (
-    ("retraction dropped across a wall", "open_ways", retraction_dropped, "free"),
-    ("retraction moved to another way", "open_ways", retraction_to_other_way, "free"),
+    ("retraction dropped across a wall", "open_travel", retraction_dropped, "free"),
+    ("retraction moved to another way", "open_travel", retraction_to_other_way, "free"),
     ("filament back before a wall", "retractions", primed_early, "free"),
     ("retraction deeper by 0.8 mm", "retractions", retraction_deeper, "free"),
     ("retraction halved", "retractions", retraction_halved, "free"),

@@ -1,5 +1,5 @@
-// Visible walls, which ways cross them, and ways around: client/gcode/model/visible_walls.h,
-// detour.h.
+// Visible walls, which ways cross them, and travel moves around:
+// client/gcode/model/visible_walls.h, detour.h.
 
 #include "client/gcode/plan/detour.h"
 
@@ -46,7 +46,7 @@ bool CrossesNone(const VisibleWalls& walls, Vertex a, const std::vector<Vertex>&
   return !walls.Crossed(a, b);
 }
 
-TEST(VisibleWalls, AreOuterWallsAndNotTouchedByWaysThatEndOnThem) {
+TEST(VisibleWalls, AreOuterWallsAndNotTouchedByTravelsThatEndOnThem) {
   const VisibleWalls walls({Square(0, 0, 10), Square(1, 1, 8, Feature::kInnerWall)});
 
   EXPECT_TRUE(walls.Crossed({5, 5}, {15, 5}));
@@ -55,7 +55,7 @@ TEST(VisibleWalls, AreOuterWallsAndNotTouchedByWaysThatEndOnThem) {
   EXPECT_FALSE(walls.Crossed({15, 5}, {10.1, 5}));
 }
 
-// The shortest ways pass corners by less than coordinates tell.
+// The shortest travel moves pass corners by less than coordinates tell.
 TEST(Detours, CrossNoWallAsTheyAreWritten) {
   const VisibleWalls walls(
       {Square(0, 0, 40), Wall({{20, 13}, {26, 21}, {19, 27}, {14, 19}, {20, 13}})});
@@ -75,13 +75,13 @@ TEST(Detours, CrossNoWallAsTheyAreWritten) {
   EXPECT_GT(found, 1000);
 }
 
-TEST(Detours, StraightWaysStayStraight) {
+TEST(Detours, StraightTravelsStayStraight) {
   const VisibleWalls walls({Square(0, 0, 40), Square(15, 15, 10)});
 
   EXPECT_THAT(Detours(walls).Around({5, 5}, {35, 5}), IsEmpty());
 }
 
-TEST(Detours, LeadAroundAHoleTheShorterWay) {
+TEST(Detours, LeadAroundAHoleTheShorterTravel) {
   const VisibleWalls walls({Square(0, 0, 40), Square(15, 15, 10)});
   const Vertex a{5, 22};
   const Vertex b{35, 22};
@@ -100,7 +100,7 @@ TEST(Detours, ThereIsNoneFromOneIslandToAnother) {
 }
 
 TEST(Detours, LeadFromAWallAlongItsInside) {
-  // A horseshoe; the way from its one leg's tip, which lies on the wall, into the other leg.
+  // A horseshoe; the travel from its one leg's tip, which lies on the wall, into the other leg.
   const VisibleWalls walls(
       {Wall({{0, 0}, {40, 0}, {40, 30}, {30, 30}, {30, 10}, {10, 10}, {10, 30}, {0, 30}, {0, 0}})});
   const Vertex on_wall{10, 25};

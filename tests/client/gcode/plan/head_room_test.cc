@@ -54,7 +54,7 @@ int64_t PeakKb() {
   return 0;
 }
 
-TEST(HeadRoom, NothingIsInTheWayWhereTheHeightOnlyGoesUp) {
+TEST(HeadRoom, NothingIsInTheTravelWhereTheHeightOnlyGoesUp) {
   const auto file = Read("M83\n" + LayerAt(.2) + Square(20, 26) + LayerAt(.4) + Square(20, 26));
 
   const HeadRoom room(*file);
@@ -63,7 +63,7 @@ TEST(HeadRoom, NothingIsInTheWayWhereTheHeightOnlyGoesUp) {
   EXPECT_EQ(room.Of(1), nullptr);
 }
 
-TEST(HeadRoom, WhatIsFinishedStandsInTheWayOfWhatIsLower) {
+TEST(HeadRoom, WhatIsFinishedStandsInTheTravelOfWhatIsLower) {
   const auto file = Read(BesideATower());
   const HeadRoom room(*file);
   EXPECT_EQ(room.Of(0), nullptr);

@@ -17,53 +17,53 @@ using testing::Sketch;
 
 constexpr TravelModel kTravel = {.speed_mm_s = 100, .accel_mm_s2 = 1000};
 
-TEST(WaySeconds, OfAStraightWayAreThoseFromStandstillToStandstill) {
+TEST(TravelSeconds, OfAStraightTravelAreThoseFromStandstillToStandstill) {
   Sketch sketch;
   sketch.Infill(10, 0).Go(0, 10).Infill(10, 10).GoRetracted(20, 10).Infill(30, 10);
   const std::shared_ptr<GcodeFile> file = sketch.Read();
   ASSERT_EQ(file->blocks.size(), 3u);
 
-  EXPECT_NEAR(WaySeconds(*file, 1, kTravel), StopToStopSeconds(std::sqrt(200), 100, 1000), 1e-6);
-  EXPECT_NEAR(WaySeconds(*file, 2, kTravel), StopToStopSeconds(10, 100, 1000), 1e-6);
+  EXPECT_NEAR(TravelSeconds(*file, 1, kTravel), StopToStopSeconds(std::sqrt(200), 100, 1000), 1e-6);
+  EXPECT_NEAR(TravelSeconds(*file, 2, kTravel), StopToStopSeconds(10, 100, 1000), 1e-6);
 }
 
-TEST(WaySeconds, BendsTakeTimeAsLongAsNobodyStopsThere) {
+TEST(TravelSeconds, BendsTakeTimeAsLongAsNobodyStopsThere) {
   Sketch sketch;
   sketch.Infill(10, 0).Go(10, 20).Go(30, 20).Infill(30, 30);
   const std::shared_ptr<GcodeFile> file = sketch.Read();
   ASSERT_EQ(file->blocks.size(), 2u);
 
-  EXPECT_GT(WaySeconds(*file, 1, kTravel), StopToStopSeconds(40, 100, 1000) + 0.01);
-  EXPECT_LT(WaySeconds(*file, 1, kTravel), 2 * StopToStopSeconds(20, 100, 1000));
+  EXPECT_GT(TravelSeconds(*file, 1, kTravel), StopToStopSeconds(40, 100, 1000) + 0.01);
+  EXPECT_LT(TravelSeconds(*file, 1, kTravel), 2 * StopToStopSeconds(20, 100, 1000));
 }
 
-// Other ways from the same path begin with it too; those of CuraEngine have bends there.
-TEST(WaySeconds, AreWithoutTheShortMoveInwards) {
+// Other travel moves from the same path begin with it too; those of CuraEngine have bends there.
+TEST(TravelSeconds, AreWithoutTheShortMoveInwards) {
   Sketch sketch;
   sketch.Infill(10, 0).Go(10, .5).Go(40, .5).Infill(50, .5);
   const std::shared_ptr<GcodeFile> file = sketch.Read();
   ASSERT_NE(file->blocks[1].link & kLinkDeparts, 0);
 
-  EXPECT_NEAR(WaySeconds(*file, 1, kTravel), StopToStopSeconds(30, 100, 1000), 1e-6);
+  EXPECT_NEAR(TravelSeconds(*file, 1, kTravel), StopToStopSeconds(30, 100, 1000), 1e-6);
   file->dialect = Dialect::kCura;
-  EXPECT_GT(WaySeconds(*file, 1, kTravel), StopToStopSeconds(30, 100, 1000) + 0.02);
+  EXPECT_GT(TravelSeconds(*file, 1, kTravel), StopToStopSeconds(30, 100, 1000) + 0.02);
 }
 
-// Where filament is pulled back the machine stands still, though the way leads straight on.
-TEST(WaySeconds, StopWhereFilamentIsPulledBack) {
+// Where filament is pulled back the machine stands still, though the travel leads straight on.
+TEST(TravelSeconds, StopWhereFilamentIsPulledBack) {
   Sketch sketch;
   sketch.Infill(10, 0).Go(30, 0).Add("G1 E-.8 F2100").Go(50, 0).Add("G1 E.8 F2100");
   const std::shared_ptr<GcodeFile> file = sketch.Infill(60, 0).Read();
   ASSERT_EQ(file->blocks.size(), 2u);
 
-  const WayJoints none;
-  EXPECT_NEAR(WaySeconds(*file, 1, kTravel, true, &none), 2 * StopToStopSeconds(20, 100, 1000),
+  const TravelJoints none;
+  EXPECT_NEAR(TravelSeconds(*file, 1, kTravel, true, &none), 2 * StopToStopSeconds(20, 100, 1000),
               1e-6);
   // Else what that costs is in the price of the retraction.
-  EXPECT_NEAR(WaySeconds(*file, 1, kTravel, true), StopToStopSeconds(40, 100, 1000), 1e-6);
+  EXPECT_NEAR(TravelSeconds(*file, 1, kTravel, true), StopToStopSeconds(40, 100, 1000), 1e-6);
 }
 
-// So what the stop costs there is a part of the way and of the price, and not of the retraction.
+// So what the stop costs there is a part of the travel and of the price, and not of the retraction.
 TEST(LearnTravel, ARetractionDoesNotPayForTheStopBehindTheMoveInwards) {
   const auto learnt = [](double inwards) {
     Sketch sketch;
@@ -155,10 +155,10 @@ TEST(LearnTravel, KnowsWhatEachRetractionAdds) {
   EXPECT_NEAR(model.added_seconds[1] + model.added_seconds[3], 2 * model.retraction_seconds, 1e-6);
 }
 
-TEST(LearnTravel, KnowsHowHeadsRiseOnTheirWay) {
-  const auto learnt = [](const std::string& way, const std::string& down) {
+TEST(LearnTravel, KnowsHowHeadsRiseOnTheirTravel) {
+  const auto learnt = [](const std::string& travel, const std::string& down) {
     Sketch sketch;
-    sketch.Infill(10, 0).Add("G1 E-.8 F2100").Add(way).Add(down).Add("G1 E.8 F2100");
+    sketch.Infill(10, 0).Add("G1 E-.8 F2100").Add(travel).Add(down).Add("G1 E.8 F2100");
     return LearnTravel(*sketch.Infill(40, 40).Read(), 1.5)[0];
   };
   const TravelModel rising = learnt("G1 X10 Y40 Z.6 F9000", "G1 Z.2 F600");

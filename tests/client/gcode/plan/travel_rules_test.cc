@@ -19,7 +19,8 @@ namespace {
 
 using testing::Sketch;
 
-// Two islands of 40 mm with infill. Ways inside an island are as long as the one between them.
+// Two islands of 40 mm with infill. Travel moves inside an island are as long as the one between
+// them.
 Sketch TwoIslands(bool retracts_inside) {
   Sketch sketch;
   for (const double x : {0.0, 60.0}) {
@@ -34,8 +35,8 @@ Sketch TwoIslands(bool retracts_inside) {
   return sketch;
 }
 
-// Retracted ways inside too, but for a short open one that shows how those are written.
-Sketch TwoIslandsWithOneOpenWay() { return TwoIslands(true).Go(65, 34).Infill(70, 34); }
+// Retracted travel moves inside too, but for a short open one that shows how those are written.
+Sketch TwoIslandsWithOneOpenTravel() { return TwoIslands(true).Go(65, 34).Infill(70, 34); }
 
 struct Rules {
   explicit Rules(std::shared_ptr<GcodeFile> read, bool spares_walls = false)
@@ -49,9 +50,9 @@ struct Rules {
     return TravelRules(*file, file->layers[0], habit, outlines, walls)
         .Retracts(a, b, Feature::kSparseInfill);
   }
-  TravelWay WayOf(Vertex a, Vertex b) const {
+  PlannedTravel TravelOf(Vertex a, Vertex b) const {
     return TravelRules(*file, file->layers[0], habit, outlines, walls)
-        .WayOf(a, b, Feature::kSparseInfill);
+        .TravelOf(a, b, Feature::kSparseInfill);
   }
 
   std::shared_ptr<GcodeFile> file;
@@ -72,14 +73,14 @@ TEST(TravelRules, RetractWhereTheFileDoesAndNotByLength) {
 
 TEST(TravelRules, RetractHoweverShortOnlyWhereTheFileShowsNoOpenTravel) {
   const Rules all_retracted(TwoIslands(true).Read());
-  const Rules one_open(TwoIslandsWithOneOpenWay().Read());
+  const Rules one_open(TwoIslandsWithOneOpenTravel().Read());
 
   EXPECT_TRUE(all_retracted.Retracts({5, 5}, {5, 5.5}));
   EXPECT_FALSE(one_open.Retracts({5, 5}, {5, 5.5}));
 }
 
-TEST(TravelRules, OneOpenWayOfManyDoesNotSayThatWallsMatter) {
-  const Rules nearly_all(TwoIslandsWithOneOpenWay().Read());
+TEST(TravelRules, OneOpenTravelOfManyDoesNotSayThatWallsMatter) {
+  const Rules nearly_all(TwoIslandsWithOneOpenTravel().Read());
 
   EXPECT_FALSE(nearly_all.habit.crossing_matters);
   EXPECT_TRUE(nearly_all.Retracts({5, 5}, {35, 35}));
@@ -104,27 +105,27 @@ TEST(TravelRules, ReorderingInsideAnIslandAddsNoRetraction) {
   EXPECT_EQ(Measure(*file, text, start).retractions, 1);
 }
 
-TEST(TravelRules, ShortWaysAcrossWallsAreRetractedIfWallsAreToBeSpared) {
-  const Rules usual(TwoIslandsWithOneOpenWay().Read());
-  const Rules sparing(TwoIslandsWithOneOpenWay().Read(), true);
+TEST(TravelRules, ShortTravelsAcrossWallsAreRetractedIfWallsAreToBeSpared) {
+  const Rules usual(TwoIslandsWithOneOpenTravel().Read());
+  const Rules sparing(TwoIslandsWithOneOpenTravel().Read(), true);
 
   EXPECT_FALSE(usual.Retracts({39.5, 20}, {40.6, 20}));
   EXPECT_TRUE(sparing.Retracts({39.5, 20}, {40.6, 20}));
   EXPECT_FALSE(sparing.Retracts({30, 20}, {31.1, 20}));
 }
 
-TEST(TravelRules, WaysMuchLongerThanAllOpenOnesAreRetracted) {
-  Sketch short_ways;
-  short_ways.Infill(10, 0).Go(10, 10).Infill(20, 10).GoRetracted(50, 10).Infill(60, 10);
+TEST(TravelRules, TravelsMuchLongerThanAllOpenOnesAreRetracted) {
+  Sketch short_travels;
+  short_travels.Infill(10, 0).Go(10, 10).Infill(20, 10).GoRetracted(50, 10).Infill(60, 10);
   Rules rules(TwoIslands(false).Read());
 
-  EXPECT_NEAR(LearnRetraction(*short_ways.Read()).longest_open_mm, 19.95, 1e-3);
+  EXPECT_NEAR(LearnRetraction(*short_travels.Read()).longest_open_mm, 19.95, 1e-3);
   rules.habit.longest_open_mm = 19.95;
   EXPECT_TRUE(rules.Retracts({5, 5}, {5, 26}));
   EXPECT_FALSE(rules.Retracts({5, 5}, {5, 24}));
 }
 
-TEST(TravelRules, WaysThatNoDetourSparesAWallAreRetractedWhereOthersLeadAround) {
+TEST(TravelRules, TravelsThatNoDetourSparesAWallAreRetractedWhereOthersLeadAround) {
   const Rules avoiding(TwoIslands(false).Add("; avoid_crossing_perimeters = 1").Read());
 
   ASSERT_TRUE(avoiding.habit.avoids_walls);
@@ -132,7 +133,7 @@ TEST(TravelRules, WaysThatNoDetourSparesAWallAreRetractedWhereOthersLeadAround) 
   EXPECT_FALSE(avoiding.Retracts({5, 5}, {35, 35}));
 }
 
-TEST(MeasureLayers, CountsWaysAcrossVisibleWalls) {
+TEST(MeasureLayers, CountsTravelsAcrossVisibleWalls) {
   Sketch sketch = TwoIslands(false);
   sketch.Go(5, 37).Infill(35, 37);
 
@@ -290,8 +291,8 @@ TEST(MakeGcodeJob, RetractionsBehindWipedPathsAreSavedWhereWipesAreLeftOut) {
   EXPECT_NEAR(layer.known_moves(0).seconds(), layer.known_moves(2).seconds(), 1e-9);
 }
 
-// As new ways are: half of a retraction at either end.
-TEST(MakeGcodeJob, WaysOfTheFileFromWipedPathsAreToldWithoutTheirRetraction) {
+// As new travel moves are: half of a retraction at either end.
+TEST(MakeGcodeJob, TravelsOfTheFileFromWipedPathsAreToldWithoutTheirRetraction) {
   const v1::Layer layer = WipedLines(2).layers[0];
 
   ASSERT_EQ(layer.known_moves_size(), 3);
@@ -303,9 +304,9 @@ TEST(MakeGcodeJob, WaysOfTheFileFromWipedPathsAreToldWithoutTheirRetraction) {
   for (const v1::KnownMove& move : layer.known_moves()) EXPECT_TRUE(move.retracts());
 }
 
-// New ways across walls are retracted, those of the file often are not: who is not told so finds
-// retractions to save where there are none.
-TEST(MakeGcodeJob, TellsTheSearchWhatTheWaysOfTheFileTake) {
+// New travel moves across walls are retracted, those of the file often are not: who is not told so
+// finds retractions to save where there are none.
+TEST(MakeGcodeJob, TellsTheSearchWhatTheTravelsOfTheFileTake) {
   Sketch sketch = TwoIslands(false);
   sketch.Go(5, 37).Infill(35, 37);  // across the walls of both islands
   const InputJob job = MakeGcodeJob(sketch.Read(), {});
@@ -325,7 +326,7 @@ TEST(MakeGcodeJob, TellsTheSearchWhatTheWaysOfTheFileTake) {
   EXPECT_EQ(NarrowLayers(job, {})[0].known_moves_size(), 14);
 }
 
-// CuraEngine's ways have bends of its own, longer than a way of ours would be.
+// CuraEngine's travel moves have bends of its own, longer than a travel move of ours would be.
 TEST(MakeGcodeJob, TellsTheSearchOfBendsThatTheFileHas) {
   Sketch sketch = AroundTheHole().Add("; avoid_crossing_perimeters = 1");
   sketch.Go(1, 37).Go(1, 1).Infill(5, 1);
@@ -368,7 +369,7 @@ TEST(MakeGcodeJob, AsksForNoBound) {
   EXPECT_EQ(WipedLines(0).options.strategy().options().at("bound"), "false");
 }
 
-TEST(RewriteGcode, UnderSafeNoMoreWaysCrossWallsWithAnOpenNozzle) {
+TEST(RewriteGcode, UnderSafeNoMoreTravelsCrossWallsWithAnOpenNozzle) {
   const auto file = Ring("; avoid_crossing_perimeters = 0").Read();
   const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(*file, {{kPastTheHole}}, {});
 
@@ -380,27 +381,27 @@ TEST(TravelRules, AWayAroundAWallIsAsLongAsItsBends) {
   const Rules avoiding(AroundTheHole().Add("; avoid_crossing_perimeters = 1").Read());
   ASSERT_TRUE(avoiding.habit.avoids_walls);
 
-  const TravelWay past = avoiding.WayOf({5, 10}, {35, 10});
+  const PlannedTravel past = avoiding.TravelOf({5, 10}, {35, 10});
   EXPECT_FALSE(past.crosses);
   EXPECT_NEAR(past.mm, 30, 1e-9);
   // From 5, 20 to a corner of the hole at 15, 15, along it to 25, 15, and to 35, 20.
-  const TravelWay around = avoiding.WayOf({5, 20}, {35, 20});
+  const PlannedTravel around = avoiding.TravelOf({5, 20}, {35, 20});
   EXPECT_FALSE(around.crosses);
   EXPECT_NEAR(around.mm, 10 + 2 * std::hypot(10, 5), 2);
 }
 
 // The bend beside the corner at 40, 40 lies within a square that hardly leaves room for it.
-TEST(TravelRules, WaysWithABendWithinAnotherWallAreRetracted) {
+TEST(TravelRules, TravelsWithABendWithinAnotherWallAreRetracted) {
   Sketch sketch = TwoIslands(false).GoRetracted(40.3, 40.3).Square(40.3, 40.3, 10);
   const auto file = sketch.Add("; avoid_crossing_perimeters = 1").Read();
   const Rules sparing(file, true);
   ASSERT_TRUE(sparing.habit.avoids_walls);
 
-  const TravelWay narrow = sparing.WayOf({42, 35}, {35, 42});
+  const PlannedTravel narrow = sparing.TravelOf({42, 35}, {35, 42});
   EXPECT_FALSE(narrow.crosses);
   EXPECT_TRUE(narrow.grazes);
   EXPECT_TRUE(narrow.retracts);
-  const TravelWay wide = sparing.WayOf({-2, 35}, {5, 42});
+  const PlannedTravel wide = sparing.TravelOf({-2, 35}, {5, 42});
   EXPECT_FALSE(wide.via.empty());
   EXPECT_FALSE(wide.grazes);
   EXPECT_FALSE(wide.retracts);

@@ -11,7 +11,7 @@ namespace traverse::gcode {
 namespace {
 
 // A square with lines of infill, and with small squares in it that are reached by short ways alone.
-// Ways inside are retracted or not, those to another square are.
+// Travel moves inside are retracted or not, those to another square are.
 class UnseenTravel : public ::testing::Test {
  protected:
   static std::shared_ptr<GcodeFile> File(bool retracts_inside) {
@@ -29,7 +29,7 @@ class UnseenTravel : public ::testing::Test {
   }
 
   static bool Retracts(const GcodeFile& file, Feature feature, Vertex to) {
-    const RetractionHabit habit = HabitOfNewWays(file);
+    const RetractionHabit habit = HabitOfNewTravels(file);
     EXPECT_TRUE(habit.crossing_matters);
     const std::vector<Outline> outlines = OutlinesOf(file, file.layers[0]);
     const VisibleWalls walls(outlines);

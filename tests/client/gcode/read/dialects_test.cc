@@ -114,7 +114,8 @@ TEST_P(DialectFile, PrintsTheSameInOtherOrders) {
   }
 }
 
-// Whether it lifts by a move of Z, a slope, or a spiral: new ways are as high above the layer.
+// Whether it lifts by a move of Z, a slope, or a spiral: new travel moves are as high above the
+// layer.
 TEST_P(DialectFile, LiftsAsHighInOtherOrders) {
   const double least = LeastLift(text_);
   if (!(least > 0) || least > 1e6) GTEST_SKIP() << "does not lift";
@@ -124,7 +125,7 @@ TEST_P(DialectFile, LiftsAsHighInOtherOrders) {
 }
 
 // Nothing of a start script is copied, and nothing is set and set back without a move.
-TEST_P(DialectFile, WaysComeFromThePartItself) {
+TEST_P(DialectFile, TravelsComeFromThePartItself) {
   const auto count = [](const std::string& text, const std::string& what) {
     size_t n = 0;
     for (size_t at = 0; (at = text.find(what, at)) != std::string::npos; ++at) ++n;

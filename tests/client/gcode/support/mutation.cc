@@ -124,7 +124,7 @@ Mutation Mutate(const std::string& text, uint64_t seed) {
   Rng rng(seed);
   size_t first = 0;
   while (!Begins(lines[first], "M83")) ++first;
-  // A kind that this file has no line for gives way to the next one.
+  // A kind that this file has no line for gives travel to the next one.
   for (uint64_t k = seed;; ++k) {
     const Kind& kind = kinds[k % kinds.size()];
     std::vector<size_t> candidates;

@@ -91,7 +91,7 @@ std::string Shuffled(const GcodeFile& file, Policy policy, uint64_t seed) {
   for (const Layer& layer : file.layers) {
     const LayerWriter writer(file, layer, habit, donors);
     const LayerOrder order = RandomOrder(layer, MakeLayerPlan(file, layer, policy).plan, rng);
-    if (layer.first_block > 0) at = writer.WriteWay(before, order.front(), at, out);
+    if (layer.first_block > 0) at = writer.WriteTravel(before, order.front(), at, out);
     at = writer.WritePaths(order, at, out);
     before = order.back();
   }

@@ -200,8 +200,9 @@ TEST(SamePrint, DepositsAreOfTheSameCommand) {
 
 // The center of an arc by its radius is nowhere known: it stays as it is.
 TEST(SamePrint, ArcsByARadiusKeepIt) {
-  const std::string way = "G1 E-1 F2100\nG1 X0 Y5 F9000\nG1 E1 F2100\n";
-  const std::string a = kHead + With(kTwo, way, "G1 E-1 F2100\nG2 X0 Y5 R8 F9000\nG1 E1 F2100\n");
+  const std::string travel = "G1 E-1 F2100\nG1 X0 Y5 F9000\nG1 E1 F2100\n";
+  const std::string a =
+      kHead + With(kTwo, travel, "G1 E-1 F2100\nG2 X0 Y5 R8 F9000\nG1 E1 F2100\n");
   EXPECT_EQ(Broken(a, a), "");
   EXPECT_EQ(Broken(a, With(a, "R8", "R1000000")), "same_print");
 }

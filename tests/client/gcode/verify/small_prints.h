@@ -16,7 +16,7 @@ using Policy = VerifyPermissions::Policy;
 
 // All rules but those by which most of what a test changes would be a break in any case.
 inline constexpr uint32_t kRulesOfTheirOwn =
-    ~(RuleBit(VerifyRule::kKeptWays) | RuleBit(VerifyRule::kStepOrder) |
+    ~(RuleBit(VerifyRule::kKeptTravels) | RuleBit(VerifyRule::kStepOrder) |
       RuleBit(VerifyRule::kRest));
 
 // "lifts" or "order seam": those of `rules` that are broken. Each break names a line of both
@@ -62,27 +62,27 @@ inline std::string With(std::string text, const std::string& from, const std::st
 
 inline const std::string kHead = "M83\n;LAYER_CHANGE\nG1 Z.2 F9000\n";
 
-// A way to a point with filament pulled back.
-inline std::string Way(const std::string& to) {
+// A travel move to a point with filament pulled back.
+inline std::string Travel(const std::string& to) {
   return absl::StrCat("G1 E-1 F2100\nG1 ", to, " F9000\nG1 E1 F2100\n");
 }
 
 // A square wall of 10 mm that begins at its lower left corner; and its other entries.
 inline const std::string kWall = ";TYPE:External perimeter\nG1 F1200\n";
 inline const std::string kSquare =
-    Way("X10 Y10") + kWall + "G1 X20 Y10 E.4\nG1 X20 Y20 E.4\nG1 X10 Y20 E.4\nG1 X10 Y10 E.4\n";
+    Travel("X10 Y10") + kWall + "G1 X20 Y10 E.4\nG1 X20 Y20 E.4\nG1 X10 Y20 E.4\nG1 X10 Y10 E.4\n";
 inline const std::string kSquareElsewhere =
-    Way("X20 Y10") + kWall + "G1 X20 Y20 E.4\nG1 X10 Y20 E.4\nG1 X10 Y10 E.4\nG1 X20 Y10 E.4\n";
+    Travel("X20 Y10") + kWall + "G1 X20 Y20 E.4\nG1 X10 Y20 E.4\nG1 X10 Y10 E.4\nG1 X20 Y10 E.4\n";
 inline const std::string kSquareTurned =
-    Way("X10 Y10") + kWall + "G1 X10 Y20 E.4\nG1 X20 Y20 E.4\nG1 X20 Y10 E.4\nG1 X10 Y10 E.4\n";
+    Travel("X10 Y10") + kWall + "G1 X10 Y20 E.4\nG1 X20 Y20 E.4\nG1 X20 Y10 E.4\nG1 X10 Y10 E.4\n";
 
 inline std::string Line(const std::string& type, const std::string& from, const std::string& to) {
-  return absl::StrCat(Way(from), ";TYPE:", type, "\nG1 F1800\nG1 ", to, " E.3\n");
+  return absl::StrCat(Travel(from), ";TYPE:", type, "\nG1 F1800\nG1 ", to, " E.3\n");
 }
 
 // One path of infill: to the right, up and back.
 inline const std::string kZigzag =
-    Way("X10 Y10") +
+    Travel("X10 Y10") +
     ";TYPE:Internal infill\nG1 F1800\nG1 X20 Y10 E.3\nG1 X20 Y11 E.1\n"
     "G1 X10 Y11 E.3\n";
 
@@ -99,7 +99,7 @@ inline const std::string kOneTurned =
 
 inline const std::string kNextLayer = ";LAYER_CHANGE\nG1 Z.4 F9000\n";
 
-// A way that is lifted by 0.4 mm.
+// A travel move that is lifted by 0.4 mm.
 inline std::string Lifted(const std::string& to) {
   return absl::StrCat("G1 E-1 F2100\nG1 Z.6 F9000\nG1 ", to, " F9000\nG1 Z.2\nG1 E1 F2100\n");
 }

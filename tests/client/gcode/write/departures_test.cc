@@ -21,7 +21,7 @@ namespace {
 using testing::Sketch;
 
 // A wall from whose end the file goes a little inwards before it leaves, two lines within it, and
-// two beside it. Ways that cross no wall are not retracted.
+// two beside it. Travel moves that cross no wall are not retracted.
 class LayerWriterDepartures : public ::testing::Test {
  protected:
   LayerWriterDepartures() { Draw(.4, .4); }
@@ -32,17 +32,17 @@ class LayerWriterDepartures : public ::testing::Test {
     sketch.Square(0, 0, 10).Go(x, y).Go(3, 3).Infill(3, 7).Go(5, 7).Infill(5, 3);
     sketch.GoRetracted(-2, -2).Infill(-2, -6).Go(-4, -6).Infill(-4, -2);
     file_ = sketch.Read();
-    habit_ = HabitOfNewWays(*file_);
+    habit_ = HabitOfNewTravels(*file_);
     donors_.emplace(*file_);
     writer_.emplace(*file_, file_->layers[0], habit_, *donors_);
     given_ = writer_->GivenOrder();
   }
 
-  // What the ways of `order` are estimated at, and what they come to.
-  WayTotals Estimated(const LayerOrder& order) const {
-    WayTotals sum;
+  // What the travel moves of `order` are estimated at, and what they come to.
+  TravelTotals Estimated(const LayerOrder& order) const {
+    TravelTotals sum;
     for (size_t i = 1; i < order.size(); ++i) {
-      sum += writer_->EstimateWay(i, order[i - 1], order[i], TravelModel());
+      sum += writer_->EstimateTravel(i, order[i - 1], order[i], TravelModel());
     }
     return sum;
   }
@@ -70,12 +70,13 @@ TEST_F(LayerWriterDepartures, AreNotMadeToTheOtherSideOfAWall) {
   EXPECT_NEAR(Estimated(order).mm, Written(order).travel_mm, .01);
 }
 
-// The end of a way lies too near to a wall to count; a bend of it may lie nearer.
+// The end of a travel move lies too near to a wall to count; a bend of it may lie nearer.
 TEST_F(LayerWriterDepartures, ThatEndNearAWallAreNotMadeAcrossIt) {
   Draw(.1, .3);
   const LayerOrder order = {given_[0], given_[3], given_[4], given_[1], given_[2]};
 
-  EXPECT_NEAR(writer_->EstimateWay(1, order[0], order[1], TravelModel()).mm, std::hypot(2, 2), .01);
+  EXPECT_NEAR(writer_->EstimateTravel(1, order[0], order[1], TravelModel()).mm, std::hypot(2, 2),
+              .01);
   EXPECT_NEAR(Estimated(order).mm, Written(order).travel_mm, .01);
 }
 
@@ -85,8 +86,8 @@ TEST_F(LayerWriterDepartures, AreMadeWhereTheyAreOfUse) {
   EXPECT_NEAR(Written(order).travel_mm - Estimated(order).mm, 0, .01);
   const double straight = std::hypot(5, 7);
   const double bent = std::hypot(.4, .4) + std::hypot(4.6, 6.6);
-  EXPECT_NEAR(writer_->EstimateWay(1, given_[0], given_[2], TravelModel()).mm, bent, .001);
-  EXPECT_GT(writer_->EstimateWay(1, given_[0], given_[2], TravelModel()).seconds,
+  EXPECT_NEAR(writer_->EstimateTravel(1, given_[0], given_[2], TravelModel()).mm, bent, .001);
+  EXPECT_GT(writer_->EstimateTravel(1, given_[0], given_[2], TravelModel()).seconds,
             StopToStopSeconds(straight, 150, 1250));
 }
 
@@ -106,7 +107,7 @@ TEST_F(LayerWriterDepartures, TurnWithTheStartOfTheLoop) {
 
 TEST_F(LayerWriterDepartures, TakeTimeInTheFileToo) {
   const double straight = std::hypot(.4, .4) + std::hypot(2.6, 2.6);
-  EXPECT_NEAR(writer_->EstimateWay(1, given_[0], given_[1], TravelModel()).seconds,
+  EXPECT_NEAR(writer_->EstimateTravel(1, given_[0], given_[1], TravelModel()).seconds,
               StopToStopSeconds(straight, 150, 1250), .005);
 }
 
@@ -118,7 +119,7 @@ TEST(LayerWriter, DepartsFromALoopBegunElsewhereAcrossNoWall) {
   const auto file =
       sketch.GoRetracted(-2, 14).Infill(-2, 19).GoRetracted(-5, 19).Infill(-5, 14).Read();
   ASSERT_NE(file->blocks[1].link & kLinkDeparts, 0);
-  const RetractionHabit habit = HabitOfNewWays(*file);
+  const RetractionHabit habit = HabitOfNewTravels(*file);
   const LinkDonors donors(*file);
   const LayerWriter writer(*file, file->layers[0], habit, donors);
   const auto open = [&](uint32_t entry) {
@@ -126,7 +127,7 @@ TEST(LayerWriter, DepartsFromALoopBegunElsewhereAcrossNoWall) {
     const PartStart start = StartOfPaths(*file, order.front());
     std::string text;
     writer.WritePaths(order, start, text);
-    const WayTotals estimated = writer.EstimateWay(1, order[0], order[1], TravelModel());
+    const TravelTotals estimated = writer.EstimateTravel(1, order[0], order[1], TravelModel());
     EXPECT_EQ(estimated.open, 0);
     const bool departs = text.find("X9.600000 Y0.400000") != std::string::npos ||
                          text.find("X9.600000 Y9.600000") != std::string::npos;

@@ -1,4 +1,4 @@
-// What a layer's writer says of a way before it writes it.
+// What a layer's writer says of a travel move before it writes it.
 
 #include "client/gcode/write/layer_writer.h"
 
@@ -20,13 +20,14 @@ namespace {
 
 using testing::Sketch;
 
-// A loop that ends .1 mm short of its start does so wherever it begins, and the next way is longer.
+// A loop that ends .1 mm short of its start does so wherever it begins, and the next travel is
+// longer.
 TEST(LayerWriter, CountsAWayFromWhereALoopBegunElsewhereEnds) {
   Sketch sketch;
   sketch.Add(";TYPE:External perimeter").Add("G1 X10 Y0 E.4 F1200").Add("G1 X10 Y10 E.4");
   sketch.Add("G1 X0 Y10 E.4").Add("G1 X0 Y.1 E.396");
   const auto file = sketch.Go(12, 0).Infill(15, 0).Go(15, 5).Infill(20, 5).Read();
-  const RetractionHabit habit = HabitOfNewWays(*file);
+  const RetractionHabit habit = HabitOfNewTravels(*file);
   const LinkDonors donors(*file);
   const LayerWriter writer(*file, file->layers[0], habit, donors);
   const LayerOrder order = {{0, 1, true}, {1, 0, false}, {2, 0, false}};
@@ -35,16 +36,16 @@ TEST(LayerWriter, CountsAWayFromWhereALoopBegunElsewhereEnds) {
 
   writer.WritePaths(order, start, text);
 
-  EXPECT_NEAR(writer.EstimateWay(1, order[0], order[1], TravelModel()).mm, 2.1, 1e-6) << text;
+  EXPECT_NEAR(writer.EstimateTravel(1, order[0], order[1], TravelModel()).mm, 2.1, 1e-6) << text;
   EXPECT_NEAR(Measure(*file, text, start).travel_mm, 2.1 + 5, 1e-6) << text;
 }
 
 // No travel of the file is open, and the second line begins where the third ends: no way to go.
-TEST(LayerWriter, NothingIsRetractedWhereThereIsNoWayToGo) {
+TEST(LayerWriter, NothingIsRetractedWhereThereIsNoTravelToGo) {
   Sketch sketch;
   sketch.Infill(5, 0).GoRetracted(10, 5).Infill(10, 9).GoRetracted(20, 5).Infill(10, 5);
   const auto file = sketch.GoRetracted(30, 5).Infill(40, 5).Read();
-  const RetractionHabit habit = HabitOfNewWays(*file);
+  const RetractionHabit habit = HabitOfNewTravels(*file);
   const LinkDonors donors(*file);
   const LayerWriter writer(*file, file->layers[0], habit, donors);
   const LayerOrder order = {{0, 0, false}, {2, 0, false}, {1, 0, false}, {3, 0, false}};
@@ -53,25 +54,25 @@ TEST(LayerWriter, NothingIsRetractedWhereThereIsNoWayToGo) {
 
   writer.WritePaths(order, start, text);
 
-  EXPECT_EQ(writer.EstimateWay(2, order[1], order[2], TravelModel()).retractions, 0) << text;
+  EXPECT_EQ(writer.EstimateTravel(2, order[1], order[2], TravelModel()).retractions, 0) << text;
   EXPECT_EQ(Measure(*file, text, start).retractions, 2) << text;
 }
 
-// What the way from a square to the second of three lines beside it comes to. Inside an island ways
-// are not retracted.
-WayTotals FromSquareToLine(bool goes_on) {
+// What the travel from a square to the second of three lines beside it comes to. Inside an island
+// travel moves are not retracted.
+TravelTotals FromSquareToLine(bool goes_on) {
   Sketch sketch;
   sketch.Square(0, 0, 10);
   if (goes_on) sketch.Go(.3, 0);
   sketch.Go(-1, 5).Infill(-1, 9).Go(-3, 9).Infill(-3, 5).Go(-5, 5).Infill(-5, 9);
   const auto file = sketch.GoRetracted(30, 5).Square(30, 5, 10).Read();
   EXPECT_EQ((file->blocks[0].flags & kBlockGoesOn) != 0, goes_on);
-  const RetractionHabit habit = HabitOfNewWays(*file);
+  const RetractionHabit habit = HabitOfNewTravels(*file);
   EXPECT_TRUE(habit.crossing_matters);
   const LinkDonors donors(*file);
   const LayerWriter writer(*file, file->layers[0], habit, donors);
   const LayerOrder given = writer.GivenOrder();
-  return writer.EstimateWay(1, given[0], given[2], TravelModel());
+  return writer.EstimateTravel(1, given[0], given[2], TravelModel());
 }
 
 // Behind the end of a wall the nozzle goes on along it, and is then on the other side of a corner.
@@ -86,13 +87,13 @@ TEST(LayerWriter, AWayStraightOnTakesLessTimeThanOneRoundACorner) {
   Sketch sketch;
   sketch.Infill(10, 0).Go(12, 0).Infill(20, 0).Go(20, 2).Infill(28, 2);
   const auto file = sketch.Read();
-  const RetractionHabit habit = HabitOfNewWays(*file);
+  const RetractionHabit habit = HabitOfNewTravels(*file);
   const LinkDonors donors(*file);
   const LayerWriter writer(*file, file->layers[0], habit, donors);
   const LayerOrder given = writer.GivenOrder();
 
-  const double straight = writer.EstimateWay(1, given[0], given[1], TravelModel()).seconds;
-  const double bent = writer.EstimateWay(2, given[1], given[2], TravelModel()).seconds;
+  const double straight = writer.EstimateTravel(1, given[0], given[1], TravelModel()).seconds;
+  const double bent = writer.EstimateTravel(2, given[1], given[2], TravelModel()).seconds;
 
   EXPECT_LT(straight, bent - .01);
 }
@@ -107,7 +108,7 @@ TEST(LayerWriter, PathsAreLeftAsInTheFile) {
   sketch.Add("G1 X50.2 Y9.2 F9000").Add("G1 E-.8 F2100").Add(";LAYER_CHANGE");
   sketch.Add("G1 Z.4 F9000").Go(0, 0);
   const auto file = sketch.Add("G1 E.8 F2100").Infill(9, 0).Read();
-  const RetractionHabit habit = HabitOfNewWays(*file);
+  const RetractionHabit habit = HabitOfNewTravels(*file);
   const LinkDonors donors(*file);
   const LayerWriter writer(*file, file->layers[0], habit, donors);
   const LayerOrder given = writer.GivenOrder();
@@ -115,7 +116,7 @@ TEST(LayerWriter, PathsAreLeftAsInTheFile) {
   std::string text;
   const PartStart behind = writer.WritePaths(order, StartOfPaths(*file, order.front()), text);
   const LayerWriter next(*file, file->layers[1], habit, donors);
-  next.WriteWay(order.back(), next.GivenOrder().front(), behind, text);
+  next.WriteTravel(order.back(), next.GivenOrder().front(), behind, text);
 
   EXPECT_NE(text.find("X.3 Y.3 F9000\nG1 E-.8"), std::string::npos) << text;
   EXPECT_NE(text.find("G1 X50.2 Y9.2 F9000\n;WIPE_START"), std::string::npos) << text;
@@ -132,7 +133,7 @@ TEST(LayerWriter, LoopsBegunElsewhereAreLeftAsInTheFile) {
   loop(sketch, ".1").GoRetracted(4, 5).Infill(4, 9).GoRetracted(0, 0);
   loop(sketch, ".1").Add(";WIPE_START").Add("G1 X2 Y0 E-.8 F2400").Add(";WIPE_END");
   const auto file = sketch.Go(40, 5).Add("G1 E.8 F2100").Infill(40, 9).Read();
-  const RetractionHabit habit = HabitOfNewWays(*file);
+  const RetractionHabit habit = HabitOfNewTravels(*file);
   const LinkDonors donors(*file);
   const LayerWriter writer(*file, file->layers[0], habit, donors);
   LayerOrder order = writer.GivenOrder();
@@ -154,7 +155,7 @@ TEST(LayerWriter, WhatGoesOnAlongAPathIsWrittenBeforeNewTravel) {
   sketch.Square(0, 0, 10).Go(.3, 0).Go(-1, 5).Infill(-1, 9).Go(-3, 9).Infill(-3, 5);
   sketch.Go(-5, 5).Infill(-5, 9).GoRetracted(30, 5).Infill(30, 9);
   const auto file = sketch.Read();
-  const RetractionHabit habit = HabitOfNewWays(*file);
+  const RetractionHabit habit = HabitOfNewTravels(*file);
   const LinkDonors donors(*file);
   const LayerWriter writer(*file, file->layers[0], habit, donors);
   LayerOrder order = writer.GivenOrder();
@@ -175,17 +176,17 @@ class LayerWriterWipes : public ::testing::Test {
     sketch.Add(";WIPE_START").Add("G1 X18 Y10 E-.8 F2400").Add(";WIPE_END");
     sketch.Go(10, 20).Add("G1 E.8 F2100").Infill(20, 20).GoRetracted(10, 30).Infill(20, 30);
     file_ = sketch.GoRetracted(10, 40).Infill(20, 40).Read();
-    habit_ = HabitOfNewWays(*file_);
+    habit_ = HabitOfNewTravels(*file_);
   }
 
-  WayTotals Estimate(const Placement& from, const Placement& to) const {
+  TravelTotals Estimate(const Placement& from, const Placement& to) const {
     const LinkDonors donors(*file_);
     return LayerWriter(*file_, file_->layers[0], habit_, donors)
-        .EstimateWay(3, from, to, TravelModel());
+        .EstimateTravel(3, from, to, TravelModel());
   }
 
-  // The estimate is what is written, for ways that begin with a wipe and for others.
-  void ExpectWaysAsLongAsWritten() const {
+  // The estimate is what is written, for travel moves that begin with a wipe and for others.
+  void ExpectTravelsAsLongAsWritten() const {
     const LinkDonors donors(*file_);
     const LayerWriter writer(*file_, file_->layers[0], habit_, donors);
     for (const LayerOrder& order :
@@ -194,12 +195,12 @@ class LayerWriterWipes : public ::testing::Test {
       std::string text;
       const PartStart start = StartOfPaths(*file_, order.front());
       writer.WritePaths(order, start, text);
-      WayTotals ways;
+      TravelTotals travels;
       for (size_t i = 1; i < order.size(); ++i) {
-        ways += writer.EstimateWay(i, order[i - 1], order[i], TravelModel());
+        travels += writer.EstimateTravel(i, order[i - 1], order[i], TravelModel());
       }
 
-      EXPECT_NEAR(ways.mm, Measure(*file_, text, start).travel_mm, 1e-3) << text;
+      EXPECT_NEAR(travels.mm, Measure(*file_, text, start).travel_mm, 1e-3) << text;
     }
   }
 
@@ -212,20 +213,21 @@ class LayerWriterWipesBehindDepartures : public LayerWriterWipes {
   LayerWriterWipesBehindDepartures() : LayerWriterWipes("G1 X20.3 Y10.4 F9000") {}
 };
 
-// What the head does where an object's label stands it does in any order: only the way between the
-// paths counts. (Orca's visits to a wipe tower seemed to be time to save.)
+// What the head does where an object's label stands it does in any order: only the travel between
+// the paths counts. (Orca's visits to a wipe tower seemed to be time to save.)
 TEST(LayerWriter, CountsOfAWayPastALabelWhatLiesBetweenThePaths) {
   Sketch sketch;
   sketch.Square(0, 0, 10).Go(20, 0).Infill(30, 0).Add("; printing object a").Go(300, 300);
   sketch.Go(20, 5).Infill(30, 5).Go(20, 10).Infill(30, 10);
   const auto file = sketch.Read();
   ASSERT_EQ(file->blocks[2].link & (kLinkSplits | kLinkFixed), kLinkSplits);
-  const RetractionHabit habit = HabitOfNewWays(*file);
+  const RetractionHabit habit = HabitOfNewTravels(*file);
   const LinkDonors donors(*file);
   const LayerWriter writer(*file, file->layers[0], habit, donors);
 
-  const WayTotals as_given = writer.EstimateWay(2, {1, 0, false}, {2, 0, false}, TravelModel());
-  const WayTotals turned = writer.EstimateWay(2, {1, 1, false}, {2, 0, false}, TravelModel());
+  const TravelTotals as_given =
+      writer.EstimateTravel(2, {1, 0, false}, {2, 0, false}, TravelModel());
+  const TravelTotals turned = writer.EstimateTravel(2, {1, 1, false}, {2, 0, false}, TravelModel());
 
   EXPECT_NEAR(as_given.mm, std::hypot(10, 5), 1e-3);
   EXPECT_NEAR(turned.mm, 5, 1e-3);
@@ -233,19 +235,20 @@ TEST(LayerWriter, CountsOfAWayPastALabelWhatLiesBetweenThePaths) {
   EXPECT_LT(told.known_moves(1).seconds(), 0.5);
 }
 
-// The way begins where lines that stay leave the head, whatever is printed before them.
+// The travel begins where lines that stay leave the head, whatever is printed before them.
 TEST(LayerWriter, CountsOfAWayBehindAScriptWhatFollowsIt) {
   Sketch sketch;
   sketch.Square(0, 0, 10).Go(20, 0).Infill(30, 0).Go(60, 5).Add("FLUSH_IT");
   sketch.Go(20, 5).Infill(30, 5).Go(20, 10).Infill(30, 10);
   const auto file = sketch.Read();
   ASSERT_NE(file->blocks[2].link & kLinkFixedFrom, 0);
-  const RetractionHabit habit = HabitOfNewWays(*file);
+  const RetractionHabit habit = HabitOfNewTravels(*file);
   const LinkDonors donors(*file);
   const LayerWriter writer(*file, file->layers[0], habit, donors);
 
-  const WayTotals as_given = writer.EstimateWay(2, {1, 0, false}, {2, 0, false}, TravelModel());
-  const WayTotals turned = writer.EstimateWay(2, {1, 0, false}, {2, 1, false}, TravelModel());
+  const TravelTotals as_given =
+      writer.EstimateTravel(2, {1, 0, false}, {2, 0, false}, TravelModel());
+  const TravelTotals turned = writer.EstimateTravel(2, {1, 0, false}, {2, 1, false}, TravelModel());
 
   EXPECT_NEAR(as_given.mm, 40, 1e-3);
   EXPECT_NEAR(turned.mm, std::hypot(30, 0), 1e-3);
@@ -255,13 +258,13 @@ TEST_F(LayerWriterWipes, AWayBeginsWhereTheWipeBeforeItEnds) {
   ASSERT_TRUE(file_->WipedBehind(1));
 
   // From (18, 10), and from (12, 10) where the line is done the other way round.
-  const WayTotals on = Estimate({1, 0, false}, {3, 0, false});
-  const WayTotals back = Estimate({1, 1, false}, {3, 0, false});
+  const TravelTotals on = Estimate({1, 0, false}, {3, 0, false});
+  const TravelTotals back = Estimate({1, 1, false}, {3, 0, false});
 
   EXPECT_NEAR(on.mm, 2 + std::hypot(8, 20), 1e-3);
   EXPECT_NEAR(back.mm, 2 + std::hypot(2, 20), 1e-3);
   EXPECT_LT(back.seconds, on.seconds);
-  // A wipe takes as long wherever the way leads.
+  // A wipe takes as long wherever the travel leads.
   constexpr double kStopSeconds = 20 / (2 * 1250.0);  // of the path behind it
   EXPECT_NEAR(on.seconds, StopToStopSeconds(std::hypot(8, 20), 150, 1250) + kStopSeconds, 1e-6);
   EXPECT_EQ(on.retractions, 1);
@@ -269,19 +272,19 @@ TEST_F(LayerWriterWipes, AWayBeginsWhereTheWipeBeforeItEnds) {
   EXPECT_NEAR(Estimate({3, 0, false}, {1, 0, false}).mm, std::hypot(10, 20), 1e-3);
 }
 
-TEST_F(LayerWriterWipes, WaysAreAsLongAsTheyAreWritten) { ExpectWaysAsLongAsWritten(); }
+TEST_F(LayerWriterWipes, TravelsAreAsLongAsTheyAreWritten) { ExpectTravelsAsLongAsWritten(); }
 
-TEST_F(LayerWriterWipesBehindDepartures, WaysAreAsLongAsTheyAreWritten) {
+TEST_F(LayerWriterWipesBehindDepartures, TravelsAreAsLongAsTheyAreWritten) {
   ASSERT_TRUE(file_->WipedBehind(1));
-  ExpectWaysAsLongAsWritten();
+  ExpectTravelsAsLongAsWritten();
 }
 
 // Or orders that change nothing else would seem to save time.
-TEST_F(LayerWriterWipesBehindDepartures, CostNewWaysTimeToo) {
-  const double new_way = Estimate({1, 0, false}, {3, 0, false}).seconds;
+TEST_F(LayerWriterWipesBehindDepartures, CostNewTravelsTimeToo) {
+  const double new_travel = Estimate({1, 0, false}, {3, 0, false}).seconds;
 
   constexpr double kStopSeconds = 20 / (2 * 1250.0);  // of the path behind it
-  EXPECT_GT(new_way, StopToStopSeconds(std::hypot(8, 20), 150, 1250) + kStopSeconds + 0.003);
+  EXPECT_GT(new_travel, StopToStopSeconds(std::hypot(8, 20), 150, 1250) + kStopSeconds + 0.003);
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ TEST_P(LeavingStyle, MovesFreelyAndIsProven) {
                                                  ? VerifyPermissions::Policy::kFree
                                                  : VerifyPermissions::Policy::kSafe;
       // Random orders lead farther than the file without a retraction.
-      options.rules = ~RuleBit(VerifyRule::kOpenWays);
+      options.rules = ~RuleBit(VerifyRule::kOpenTravels);
       const VerifyReport report = CheckGcode(text, "original", shuffled, "shuffled", options);
       EXPECT_TRUE(report.ok()) << report.breaks.front().message << "\n" << shuffled;
     }

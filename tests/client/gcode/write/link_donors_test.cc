@@ -1,4 +1,4 @@
-// Which ways of a file others may follow.
+// Which travel moves of a file others may follow.
 
 #include "client/gcode/write/link_donors.h"
 
@@ -15,8 +15,9 @@ namespace {
 using testing::Sketch;
 
 // The short move at the end of the second line belongs to that line, and the third one begins
-// there. Who follows that would go nowhere, and the writer would look for a retracted way instead.
-TEST(LinkDonors, WherePathsMeetThereIsNoWayToFollow) {
+// there. Who follows that would go nowhere, and the writer would look for a retracted travel
+// instead.
+TEST(LinkDonors, WherePathsMeetThereIsNoTravelToFollow) {
   Sketch sketch;
   sketch.Infill(10, 0).Go(10, 2).Infill(0, 2).Add("G1 X-.1 Y2");
   sketch.Infill(-.1, 4).GoRetracted(0, 6).Infill(10, 6);
@@ -30,9 +31,9 @@ TEST(LinkDonors, WherePathsMeetThereIsNoWayToFollow) {
   EXPECT_GE(ReadLink(*file, *donors.Find(2, false)).arrival, 0);
 }
 
-// CuraEngine sometimes retracts and primes once more where a way has arrived. That costs time, and
-// no other way needs it.
-TEST(LinkDonors, WaysThatRetractAgainAreNoExample) {
+// CuraEngine sometimes retracts and primes once more where a travel move has arrived. That costs
+// time, and no other way needs it.
+TEST(LinkDonors, TravelsThatRetractAgainAreNoExample) {
   Sketch sketch;
   sketch.Infill(10, 0).GoRetracted(0, 2).Add("G1 E-.8 F2100").Add("G1 E.8").Infill(10, 2);
   sketch.GoRetracted(0, 4).Infill(10, 4).Add("G1 E-.4 F2100").Add("G1 E-.4").Go(0, 6);
@@ -47,8 +48,9 @@ TEST(LinkDonors, WaysThatRetractAgainAreNoExample) {
   EXPECT_EQ(donors.Find(1, true), 2u);
 }
 
-// Where the way to follow is of another layer, one of the own layer tells how fast ways are.
-TEST(LinkDonors, TheLayerTellsHowFastItsWaysAre) {
+// Where the travel to follow is of another layer, one of the own layer tells how fast travel moves
+// are.
+TEST(LinkDonors, TheLayerTellsHowFastItsTravelsAre) {
   Sketch sketch;
   sketch.Infill(10, 0).GoRetracted(0, 2).Infill(10, 2).Go(10, 4).Infill(0, 4);
   sketch.Add("G1 Z.4 F9000").Go(0, 0).Infill(10, 0).Go(10, 2).Infill(0, 2);

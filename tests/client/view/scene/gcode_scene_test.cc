@@ -78,8 +78,8 @@ TEST_P(DrawnGcode, TravelsAsFarAsTheFileIsMeasuredTo) {
   }
 }
 
-// A loop of two half circles and two lines; from the line right of it the way to its other side is
-// shorter than to where it begins.
+// A loop of two half circles and two lines; from the line right of it the travel to its other side
+// is shorter than to where it begins.
 TEST(DrawnGcode, ArcsAreRound) {
   const std::string text =
       "M83\n;LAYER_CHANGE\nG1 Z.2 F600\n;TYPE:Perimeter\nG1 X30 Y14\nG1 X31 Y14 E.1\n"

@@ -50,11 +50,11 @@ TEST(FindVisits, LoopsOfLargeNozzlesMayEndFartherFromTheirStart) {
     const std::string e = width;
     const std::string wall = std::string(";TYPE:") + type + "\nG1 F1800\n";
     if (!elsewhere) {
-      return Way("X10 Y10") + wall + "G1 X40 Y10 E" + e + "\nG1 X40 Y40 E" + e + "\nG1 X10 Y40 E" +
-             e + "\nG1 X10 Y10.27 E" + e + "\n";
+      return Travel("X10 Y10") + wall + "G1 X40 Y10 E" + e + "\nG1 X40 Y40 E" + e +
+             "\nG1 X10 Y40 E" + e + "\nG1 X10 Y10.27 E" + e + "\n";
     }
-    return Way("X40 Y10") + wall + "G1 X40 Y40 E" + e + "\nG1 X10 Y40 E" + e + "\nG1 X10 Y10.27 E" +
-           e + "\nG1 X10 Y10\nG1 X40 Y10 E" + e + "\n";
+    return Travel("X40 Y10") + wall + "G1 X40 Y40 E" + e + "\nG1 X10 Y40 E" + e +
+           "\nG1 X10 Y10.27 E" + e + "\nG1 X10 Y10\nG1 X40 Y10 E" + e + "\n";
   };
   const char* const inner = "Perimeter";
   EXPECT_EQ(Broken(head + square(inner, false, "17.9"), head + square(inner, true, "17.9")), "");
@@ -65,11 +65,12 @@ TEST(FindVisits, LoopsOfLargeNozzlesMayEndFartherFromTheirStart) {
 TEST(FindVisits, ALoopThatTakesItsGapAlongMayBeginWhereAnotherPathEnds) {
   const std::string wall = ";TYPE:Perimeter\nG1 F1800\n";
   const std::string line = ";TYPE:Internal infill\nG1 F1800\n";
-  const std::string loop = Way("X10 Y10") + wall +
+  const std::string loop = Travel("X10 Y10") + wall +
                            "G1 X20 Y10 E.4\nG1 X20 Y20 E.4\nG1 X10 Y20 E.4\nG1 X10 Y10.1 E.396\n";
   const std::string a =
-      kHead + ";TYPE:Perimeter\n" + loop + Way("X20 Y20") + wall + "G1 X29 Y29 E.5\n";
-  const std::string b = kHead + ";TYPE:Perimeter\n" + Way("X29 Y29") + wall + "G1 X20 Y20 E.5\n" +
+      kHead + ";TYPE:Perimeter\n" + loop + Travel("X20 Y20") + wall + "G1 X29 Y29 E.5\n";
+  const std::string b = kHead + ";TYPE:Perimeter\n" + Travel("X29 Y29") + wall +
+                        "G1 X20 Y20 E.5\n" +
                         "G1 X10 Y20 E.4\nG1 X10 Y10 E.4\nG1 X20 Y10 E.4\nG1 X20 Y19.9 E.396\n";
   VerifyPermissions permissions;
   permissions.policy = Policy::kFree;

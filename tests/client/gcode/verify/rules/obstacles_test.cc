@@ -16,7 +16,7 @@ using namespace testing;  // NOLINT: the small prints
 std::string Layer(double z) { return absl::StrFormat(";LAYER_CHANGE\nG1 Z%.2f F9000\n", z); }
 
 std::string Square(double low, double high) {
-  return absl::StrCat(Way(absl::StrCat("X", low, " Y", low)), kWall, "G1 X", high, " E.4\nG1 Y",
+  return absl::StrCat(Travel(absl::StrCat("X", low, " Y", low)), kWall, "G1 X", high, " E.4\nG1 Y",
                       high, " E.4\nG1 X", low, " E.4\nG1 Y", low, " E.4\n");
 }
 
@@ -102,7 +102,7 @@ TEST(VerifyObstacles, OtherPartsOfTheHeadNeedTheRoomThatTheFileStates) {
   EXPECT_EQ(Obstacles(slim + round, slim + PastATower(lifted, 14)), "");
 }
 
-TEST(VerifyObstacles, AnotherWayPastWhatTheOriginalComesAsNearToIsFine) {
+TEST(VerifyObstacles, AnotherTravelPastWhatTheOriginalComesAsNearToIsFine) {
   // On the other side of a line that the head prints beside the tower.
   EXPECT_EQ(Obstacles(PastATower("G1 X15 Y27 F9000\nG1 X31 Y27 F9000\n"),
                       PastATower("G1 X14 Y28 F9000\nG1 X31 Y28 F9000\n")),

@@ -105,16 +105,16 @@ TEST(VerifyOrder, ThinSkinOverSkinIsIroning) {
 // The narrow top of a letter: a wall around a ring of skin, and ironing over both.
 TEST(VerifyOrder, IroningOfSmallTopsIsKnownByWhatLiesUnderIt) {
   const std::string head = "M83\n;LAYER:1\nG1 Z.2 F9000\n";
-  const std::string wall = Way("X0 Y0") +
+  const std::string wall = Travel("X0 Y0") +
                            ";TYPE:WALL-OUTER\nG1 F1800\nG1 X6 Y0 E.2\nG1 X6 Y1.6 E.05\n"
                            "G1 X0 Y1.6 E.2\nG1 X0 Y0 E.05\n";
-  const std::string skin = Way("X.4 Y.4") +
+  const std::string skin = Travel("X.4 Y.4") +
                            ";TYPE:SKIN\nG1 F1800\nG1 X5.6 Y.4 E.17\nG1 X5.6 Y.8 E.02\n"
                            "G1 X.4 Y.8 E.17\nG1 X.4 Y1.2 E.02\nG1 X5.6 Y1.2 E.17\n";
   const auto iron = [](bool turned) {
     const std::string points[] = {"X.5 Y.3", "X1.3 Y1.3", "X1.4 Y1.3", "X.6 Y.3",
                                   "X.7 Y.3", "X1.5 Y1.3", "X1.6 Y1.3"};
-    std::string text = Way(turned ? points[6] : points[0]) + ";TYPE:SKIN\nG1 F1800\n";
+    std::string text = Travel(turned ? points[6] : points[0]) + ";TYPE:SKIN\nG1 F1800\n";
     for (int k = 1; k < 7; ++k) text += "G1 " + points[turned ? 6 - k : k] + " E.001\n";
     return text;
   };

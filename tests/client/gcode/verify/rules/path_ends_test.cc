@@ -59,8 +59,8 @@ TEST(VerifyPathEnds, TurnWithTheirPaths) {
   EXPECT_EQ(Broken(kHead + two, kHead + With(turned, "X-.04 Y5", "X.04 Y5")), "path_ends");
 }
 
-// The way from line to line of a zigzag, of which nothing is left to print, lies along the line.
-TEST(VerifyPathEnds, AreNoWaysToTheNextPath) {
+// The travel from line to line of a zigzag, of which nothing is left to print, lies along the line.
+TEST(VerifyPathEnds, AreNoTravelsToTheNextPath) {
   const std::string line = Line("Internal infill", "X0 Y0", "X9 Y0");
   const std::string open = "G1 X8 Y20 F1800\nG1 X9 Y20 E.3\n";
   const std::string a = kHead + open + line + "G1 X8.92 Y.03\nG1 X0 Y.8 E.3\n";
@@ -69,8 +69,8 @@ TEST(VerifyPathEnds, AreNoWaysToTheNextPath) {
   EXPECT_EQ(Broken(a, With(a, "G1 X8.92 Y.03\n", "")), "same_print");
 }
 
-// At its own feed rate, which no way has; the way to the next layer begins with it.
-TEST(VerifyPathEnds, AreNoWaysAtTheEndOfALayer) {
+// At its own feed rate, which no way has; the travel to the next layer begins with it.
+TEST(VerifyPathEnds, AreNoTravelsAtTheEndOfALayer) {
   const std::string one = With(Tailed("X0 Y0", "X9 Y0", "X9.2 Y0"), "F1800", "F1556");
   const std::string other = Tailed("X0 Y5", "X9 Y5", "X9.2 Y5");
   const std::string next = kNextLayer + kTwo;
@@ -93,7 +93,7 @@ TEST(VerifyPathEnds, KeepTheirSpeeds) {
   EXPECT_EQ(Broken(kHead + With(two, "X9.04 Y5", "X9.04 Y5 F900"), kHead + slow), "");
 }
 
-// Where another path follows than in the original, so that the way there has no example.
+// Where another path follows than in the original, so that the travel there has no example.
 TEST(VerifyPathEnds, NoOpenNozzleGoesBackAlongAPathAndReturns) {
   const std::string first = kOther + "G1 X7 Y5 F9000\n";
   const std::string third = Line("Internal infill", "X0 Y9", "X9 Y9");
@@ -116,17 +116,17 @@ TEST(VerifyPathEnds, TravelGoesOnAlongALoopWhereverThatEnds) {
   const std::string on = "G1 X10.2 Y10 F9000\n";
   const std::string inside = "G1 X15 Y15 F9000\n;TYPE:Internal infill\nG1 F1800\nG1 X16 Y15 E.3\n";
   const std::string pulled = Line("Internal infill", "X15 Y15", "X16 Y15");
-  const std::string way = "G1 X0 Y5 F9000\n;TYPE:Internal infill\nG1 F1800\nG1 X9 Y5 E.3\n";
-  const std::string a = kHead + kOne + way + kSquare + on + inside;
+  const std::string travel = "G1 X0 Y5 F9000\n;TYPE:Internal infill\nG1 F1800\nG1 X9 Y5 E.3\n";
+  const std::string a = kHead + kOne + travel + kSquare + on + inside;
   EXPECT_EQ(Broken(a, a), "");
   EXPECT_EQ(Broken(a, kHead + kOne + kSquare + on + kOther + pulled), "");
   EXPECT_EQ(Broken(a, kHead + kOne + kSquare + kOther + pulled), "path_ends");
   const std::string elsewhere =
-      kHead + kOne + way + kSquareElsewhere + "G1 X20 Y10.2 F9000\n" + pulled;
+      kHead + kOne + travel + kSquareElsewhere + "G1 X20 Y10.2 F9000\n" + pulled;
   EXPECT_EQ(Broken(a, elsewhere, Policy::kFree), "");
   EXPECT_EQ(Broken(a, With(elsewhere, "G1 X20 Y10.2 F9000\n", ""), Policy::kFree), "path_ends");
   // A single move, or one to another side, leads to the next path.
-  const std::string b = kHead + kOne + way + kSquare + inside;
+  const std::string b = kHead + kOne + travel + kSquare + inside;
   EXPECT_EQ(Broken(b, kHead + kOne + kSquare + kOther + pulled), "");
 }
 
@@ -134,7 +134,7 @@ TEST(VerifyPathEnds, TravelGoesOnAlongALoopWhereverThatEnds) {
 // across it.
 TEST(VerifyPathEnds, TravelAcrossASmallLoopDoesNotGoOnAlongIt) {
   constexpr int kSides = 24;
-  std::string loop = Way("X10.3 Y10") + ";TYPE:External perimeter\nG1 F1800\n";
+  std::string loop = Travel("X10.3 Y10") + ";TYPE:External perimeter\nG1 F1800\n";
   for (int side = 1; side <= kSides; ++side) {
     const double angle = 2 * std::numbers::pi * side / kSides;
     absl::StrAppendFormat(&loop, "G1 X%.3f Y%.3f E.01\n", 10 + 0.3 * std::cos(angle),
@@ -194,7 +194,7 @@ TEST(VerifyPathEnds, TravelThatLeavesAPathBeforeItRetractsDoesSo) {
   const std::string lost = kHead + inside + other + aside + kSquare + next;
   EXPECT_EQ(Broken(with_aside, lost), "path_ends");
   const std::string wall =
-      Way("X40 Y10") + kWall + "G1 X50 Y10 E.4\nG1 X40 Y20 E.4\nG1 X40 Y10 E.4\n";
+      Travel("X40 Y10") + kWall + "G1 X50 Y10 E.4\nG1 X40 Y20 E.4\nG1 X40 Y10 E.4\n";
   EXPECT_EQ(Broken(With(with_aside, inside, wall + inside), With(lost, inside, wall + inside)), "");
   // To the same side, whatever it leads to.
   EXPECT_EQ(Broken(a, With(a, leave, "G1 X10.3 Y10.4 F9000\n")), "path_ends bounds");
@@ -207,7 +207,7 @@ TEST(VerifyPathEnds, TravelThatLeavesAPathBeforeItRetractsDoesSo) {
   EXPECT_THAT(Broken(a, With(turned, "G1 X15 Y15 E.3\n", "G1 X15 Y15 E.3\nG1 X14.7 Y14.8 F9000\n")),
               HasSubstr("path_ends"));
   // Without a retraction it may go straight.
-  const std::string straight = With(With(a, leave, ""), Way("X15 Y15"), "G1 X15 Y15 F9000\n");
+  const std::string straight = With(With(a, leave, ""), Travel("X15 Y15"), "G1 X15 Y15 F9000\n");
   EXPECT_EQ(Broken(a, straight).find("path_ends"), std::string::npos);
 }
 

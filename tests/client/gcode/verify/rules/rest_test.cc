@@ -16,7 +16,7 @@ constexpr uint32_t kRestRules = RuleBit(VerifyRule::kSamePrint) | RuleBit(Verify
 
 // A line of 10 mm at `x`, printed in `seconds`.
 std::string Island(int x, int seconds) {
-  return absl::StrCat(Way(absl::StrCat("X", x, " Y0")), ";TYPE:Internal infill\nG1 F",
+  return absl::StrCat(Travel(absl::StrCat("X", x, " Y0")), ";TYPE:Internal infill\nG1 F",
                       600 / seconds, "\nG1 Y10 E.3\n");
 }
 
@@ -88,8 +88,8 @@ TEST(VerifyRest, LooksBelowLayersThatDoNotReachAnIsland) {
 }
 
 TEST(VerifyRest, PathsOfOneIslandMayComeInAnyOrder) {
-  const std::string near = Way("X0 Y0") + ";TYPE:Internal infill\nG1 F150\nG1 Y10 E.3\n";
-  const std::string far = Way("X0.4 Y0") + ";TYPE:Internal infill\nG1 F150\nG1 Y10 E.3\n";
+  const std::string near = Travel("X0 Y0") + ";TYPE:Internal infill\nG1 F150\nG1 Y10 E.3\n";
+  const std::string far = Travel("X0.4 Y0") + ";TYPE:Internal infill\nG1 F150\nG1 Y10 E.3\n";
   const std::string next = ";LAYER_CHANGE\nG1 Z.4 F9000\n";
   const std::string other = Island(40, 4);
 

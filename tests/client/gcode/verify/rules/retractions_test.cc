@@ -15,10 +15,10 @@ using ::testing::HasSubstr;
 
 TEST(VerifyRetractions, AreNoDeeperAndPairsOfTheOriginal) {
   const std::string deeper =
-      With(kTwo, Way("X0 Y5"), "G1 E-1.8 F2100\nG1 X0 Y5 F9000\nG1 E1.8 F2100\n");
+      With(kTwo, Travel("X0 Y5"), "G1 E-1.8 F2100\nG1 X0 Y5 F9000\nG1 E1.8 F2100\n");
   EXPECT_EQ(Broken(kHead + kTwo, kHead + deeper), "retractions");
   const std::string uneven =
-      With(kTwo, Way("X0 Y5"), "G1 E-.8 F2100\nG1 X0 Y5 F9000\nG1 E.8 F2100\n");
+      With(kTwo, Travel("X0 Y5"), "G1 E-.8 F2100\nG1 X0 Y5 F9000\nG1 E.8 F2100\n");
   EXPECT_EQ(Broken(kHead + kTwo, kHead + uneven), "retractions");
 }
 
@@ -47,22 +47,22 @@ TEST(VerifyRetractions, PrimeNoMoreAllInAll) {
 }
 
 TEST(VerifyRetractions, MayBeMoreOrFewer) {
-  const std::string fewer = With(kOneTurned, Way("X0 Y5"), "G1 X0 Y5 F9000\n");
+  const std::string fewer = With(kOneTurned, Travel("X0 Y5"), "G1 X0 Y5 F9000\n");
   const std::string third = "G1 X0 Y6 F9000\nG1 F1800\nG1 X9 Y6 E.3\n";
   EXPECT_EQ(Broken(kHead + kTwo + third, kHead + fewer + third), "");
   EXPECT_EQ(Broken(kHead + fewer + third, kHead + kOneTurned + third), "");
   // Where no way is open, none is to be.
-  EXPECT_EQ(Broken(kHead + kTwo, kHead + fewer), "open_ways");
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + fewer), "open_travel");
 }
 
 TEST(VerifyRetractions, AreMadeAtTheHeightOfWhatIsPrinted) {
-  const std::string way = Lifted("X10 Y30");
+  const std::string travel = Lifted("X10 Y30");
   const std::string above =
-      With(With(way, "G1 E1 F2100\n", ""), "G1 Z.2\n", "G1 E1 F2100\nG1 Z.2 F9000\n");
+      With(With(travel, "G1 E1 F2100\n", ""), "G1 Z.2\n", "G1 E1 F2100\nG1 Z.2 F9000\n");
   const std::string late =
-      With(With(way, "G1 E-1 F2100\n", ""), "G1 Z.6 F9000\n", "G1 Z.6 F9000\nG1 E-1 F2100\n");
-  EXPECT_EQ(Broken(kHead + kLifted, kHead + With(kLifted, way, above)), "retractions");
-  EXPECT_EQ(Broken(kHead + kLifted, kHead + With(kLifted, way, late)), "retractions");
+      With(With(travel, "G1 E-1 F2100\n", ""), "G1 Z.6 F9000\n", "G1 Z.6 F9000\nG1 E-1 F2100\n");
+  EXPECT_EQ(Broken(kHead + kLifted, kHead + With(kLifted, travel, above)), "retractions");
+  EXPECT_EQ(Broken(kHead + kLifted, kHead + With(kLifted, travel, late)), "retractions");
   // A slicer may do so.
   std::string all = kLifted;
   for (const char* y : {"X10 Y10", "X10 Y20", "X10 Y30"}) {
@@ -80,16 +80,16 @@ TEST(VerifyRetractions, PrimeNotBelowTheLayer) {
   const std::string rise = "G1 Z.4 F9000\n";
   const std::string prime = "G1 E1 F2100\n";
   const std::string line = ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y0 E.3\n";
-  const std::string way = kHead + kTwo + "G1 E-1 F2100\n;LAYER_CHANGE\nG1 X0 Y0 F9000\n";
-  EXPECT_EQ(Broken(way + rise + prime + line, way + rise + prime + line), "");
-  EXPECT_EQ(Broken(way + rise + prime + line, way + prime + rise + line), "retractions");
-  EXPECT_EQ(Broken(way + prime + rise + line, way + prime + rise + line), "");
+  const std::string travel = kHead + kTwo + "G1 E-1 F2100\n;LAYER_CHANGE\nG1 X0 Y0 F9000\n";
+  EXPECT_EQ(Broken(travel + rise + prime + line, travel + rise + prime + line), "");
+  EXPECT_EQ(Broken(travel + rise + prime + line, travel + prime + rise + line), "retractions");
+  EXPECT_EQ(Broken(travel + prime + rise + line, travel + prime + rise + line), "");
 }
 
 // CuraEngine primes a little before some paths.
 TEST(VerifyRetractions, PrimeNoEarlierThanTheFileDoes) {
   const auto early = [](const std::string& at) {
-    return With(kTwo, Way("X0 Y5"),
+    return With(kTwo, Travel("X0 Y5"),
                 "G1 E-1 F2100\nG1 " + at + " F9000\nG1 E1 F2100\nG1 X0 Y5 F9000\n");
   };
   const std::string next = kNextLayer + early("X.27 Y4.85");
@@ -99,26 +99,26 @@ TEST(VerifyRetractions, PrimeNoEarlierThanTheFileDoes) {
   EXPECT_THAT(Broken(a, kHead + early("X.72 Y4.6") + next), HasSubstr("retractions"));
 }
 
-// CuraEngine primes where another way begins, and retracts again for that one: what it primes for a
-// path it primes there.
+// CuraEngine primes where another travel begins, and retracts again for that one: what it primes
+// for a path it primes there.
 TEST(VerifyRetractions, FilamentForAPathComesBackWhereItBegins) {
   const auto twice = [](const std::string& end) {
     return With(
-        kTwo, Way("X0 Y5"),
+        kTwo, Travel("X0 Y5"),
         "G1 E-1 F2100\nG1 X.36 Y4.8 F9000\nG1 E1 F2100\nG1 X0 Y5 F9000\nG1 E-1 F2100\n" + end);
   };
   const std::string a = kHead + twice("G1 E1 F2100\n") + kNextLayer + kTwo;
   EXPECT_EQ(Broken(a, a), "");
   const std::string early = "G1 E-1 F2100\nG1 X.36 Y4.8 F9000\nG1 E1 F2100\nG1 X0 Y5 F9000\n";
   EXPECT_EQ(
-      Broken(a, kHead + twice("G1 E1 F2100\n") + kNextLayer + With(kTwo, Way("X0 Y5"), early)),
+      Broken(a, kHead + twice("G1 E1 F2100\n") + kNextLayer + With(kTwo, Travel("X0 Y5"), early)),
       "retractions");
 }
 
 // What the firmware primes is not what the extruder pulled.
 TEST(VerifyRetractions, AreUndoneByWhatDidThem) {
-  const std::string both = With(Way("X0 Y5"), "G1 E1 F2100\n", "G11\nG1 E1 F2100\n");
-  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, Way("X0 Y5"), both)), "retractions");
+  const std::string both = With(Travel("X0 Y5"), "G1 E1 F2100\n", "G11\nG1 E1 F2100\n");
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, Travel("X0 Y5"), both)), "retractions");
 }
 
 TEST(VerifyRetractions, TheLastOneIsNoDeeper) {
@@ -129,7 +129,7 @@ TEST(VerifyRetractions, TheLastOneIsNoDeeper) {
 
 // A loop ends where it began: what is pulled back there and pushed before it is in one place.
 TEST(VerifyRetractions, AreForAWay) {
-  const std::string on = Way("X5 Y10") + ";TYPE:Internal infill\nG1 F1800\nG1 X0 Y10 E.3\n";
+  const std::string on = Travel("X5 Y10") + ";TYPE:Internal infill\nG1 F1800\nG1 X0 Y10 E.3\n";
   const std::string a = kHead + kSquare + on;
   EXPECT_EQ(Broken(a, a), "");
   EXPECT_EQ(Broken(a, With(a, kWall, "G1 E-1\nG1 E1\n" + kWall)), "retractions");
@@ -137,44 +137,45 @@ TEST(VerifyRetractions, AreForAWay) {
 
 TEST(VerifyRetractions, AreMeasuredInInchesAsInMillimetres) {
   const std::string a =
-      With("G20\n" + kHead + kTwo, Way("X0 Y5"), "G1 E-.04 F80\nG1 X0 Y5 F350\nG1 E.04 F80\n");
+      With("G20\n" + kHead + kTwo, Travel("X0 Y5"), "G1 E-.04 F80\nG1 X0 Y5 F350\nG1 E.04 F80\n");
   EXPECT_EQ(Broken(a, a), "");
   // By 0.0025 mm.
   EXPECT_THAT(Broken(a, With(a, "G1 E.04", "G1 E.0399")), HasSubstr("retractions"));
 }
 
-TEST(VerifyRetractions, AreDoneBeforeTheWayAndUndoneBehindIt) {
+TEST(VerifyRetractions, AreDoneBeforeTheTravelAndUndoneBehindIt) {
   const std::string pushed_halfway =
       "G1 E-1 F2100\nG1 X4.5 Y2.5 F9000\nG1 E.5 F2100\nG1 X0 Y5 F9000\nG1 E.5 F2100\n";
-  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, Way("X0 Y5"), pushed_halfway)), "retractions");
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, Travel("X0 Y5"), pushed_halfway)),
+            "retractions");
   const std::string pulled_halfway = "G1 X4 Y2 F9000\nG1 E-1 F2100\nG1 X0 Y5 F9000\nG1 E1 F2100\n";
-  EXPECT_THAT(Broken(kHead + kTwo, kHead + With(kTwo, Way("X0 Y5"), pulled_halfway)),
+  EXPECT_THAT(Broken(kHead + kTwo, kHead + With(kTwo, Travel("X0 Y5"), pulled_halfway)),
               HasSubstr("retractions"));
   const std::string half_pulled =
       "G1 E-.5 F2100\nG1 X4.5 Y2.5 F9000\nG1 E-.5 F2100\nG1 X0 Y5 F9000\nG1 E1 F2100\n";
-  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, Way("X0 Y5"), half_pulled)), "retractions");
-  EXPECT_EQ(Broken(kHead + With(kTwo, Way("X0 Y5"), half_pulled),
-                   kHead + With(kTwo, Way("X0 Y5"), half_pulled)),
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, Travel("X0 Y5"), half_pulled)), "retractions");
+  EXPECT_EQ(Broken(kHead + With(kTwo, Travel("X0 Y5"), half_pulled),
+                   kHead + With(kTwo, Travel("X0 Y5"), half_pulled)),
             "");
 }
 
 TEST(VerifyRetractions, AreForAWayAlone) {
-  const std::string idle = Way("X0 Y5") + "G1 E-1 F2100\nG1 E1 F2100\n";
-  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, Way("X0 Y5"), idle)), "retractions");
+  const std::string idle = Travel("X0 Y5") + "G1 E-1 F2100\nG1 E1 F2100\n";
+  EXPECT_EQ(Broken(kHead + kTwo, kHead + With(kTwo, Travel("X0 Y5"), idle)), "retractions");
   // Nor more often than there, where the original has such ones.
-  const std::string one_idle = With(kTwo, Way("X0 Y5"), idle);
-  const std::string two_idle = With(one_idle, Way("X0 Y0"), With(idle, "X0 Y5", "X0 Y0"));
+  const std::string one_idle = With(kTwo, Travel("X0 Y5"), idle);
+  const std::string two_idle = With(one_idle, Travel("X0 Y0"), With(idle, "X0 Y5", "X0 Y0"));
   EXPECT_EQ(Broken(kHead + one_idle, kHead + one_idle), "");
   EXPECT_EQ(Broken(kHead + one_idle, kHead + two_idle), "retractions");
 }
 
 TEST(VerifyRetractions, FilamentIsPulledBackOnTheSameSideOfALabel) {
-  const std::string way = Way("X0 Y5");
+  const std::string travel = Travel("X0 Y5");
   const std::string inside =
-      "G1 E-1 F2100\n; stop printing object a\n" + With(way, "G1 E-1 F2100\n", "");
-  const std::string outside = "; stop printing object a\n" + way;
-  const std::string a = kHead + With(kTwo, way, inside);
-  const std::string b = kHead + With(kTwo, way, outside);
+      "G1 E-1 F2100\n; stop printing object a\n" + With(travel, "G1 E-1 F2100\n", "");
+  const std::string outside = "; stop printing object a\n" + travel;
+  const std::string a = kHead + With(kTwo, travel, inside);
+  const std::string b = kHead + With(kTwo, travel, outside);
   EXPECT_EQ(Broken(a, a), "");
   EXPECT_EQ(Broken(a, b), "retractions");
   EXPECT_EQ(Broken(b, a), "retractions");

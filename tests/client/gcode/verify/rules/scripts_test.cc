@@ -18,7 +18,7 @@ TEST(VerifyScripts, NothingOfThemComesBetweenPaths) {
   const std::string rest = ";LAYER_CHANGE\nG1 Z.2 F9000\n";
   const std::string two = kZigzag + Line("Internal infill", "X0 Y5", "X9 Y5");
   const std::string script =
-      With(two, Way("X0 Y5"), "G1 E-2.5 F4800\nG1 X0 Y5 F9000\nG1 E2.5 F4800\n");
+      With(two, Travel("X0 Y5"), "G1 E-2.5 F4800\nG1 X0 Y5 F9000\nG1 E2.5 F4800\n");
   EXPECT_THAT(Broken(start + rest + two, start + rest + script), HasSubstr("scripts"));
   const std::string turned = kZigzag + Line("Internal infill", "X9 Y5", "X0 Y5");
   EXPECT_EQ(Broken(start + rest + two, start + rest + turned), "");
@@ -69,28 +69,28 @@ TEST(VerifyScripts, LeaveThePrintAsTheyDid) {
 }
 
 // Also where the next path has another height.
-TEST(VerifyScripts, WaysBehindUnknownLinesToALayerGoAsTheyDid) {
-  const std::string way = "G1 X0 Y6 F9000\nG1 E1 F2100\n";
-  const std::string a = kHead + kTwo + "G1 E-1 F2100\nG1 Z.4 F9000\nM971 S11\n" + way +
+TEST(VerifyScripts, TravelsBehindUnknownLinesToALayerGoAsTheyDid) {
+  const std::string travel = "G1 X0 Y6 F9000\nG1 E1 F2100\n";
+  const std::string a = kHead + kTwo + "G1 E-1 F2100\nG1 Z.4 F9000\nM971 S11\n" + travel +
                         ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y6 E.3\n" +
                         Line("Internal infill", "X9 Y8", "X0 Y8");
   EXPECT_EQ(Broken(a, a), "");
   const std::string early = "G1 E.5 F2100\nG1 X0 Y6 F9000\nG1 E.5 F2100\n";
-  EXPECT_THAT(Broken(a, With(a, way, early), Policy::kFree), HasSubstr("scripts"));
+  EXPECT_THAT(Broken(a, With(a, travel, early), Policy::kFree), HasSubstr("scripts"));
 }
 
 // A tower's filament is pushed back where the head stood, not where it goes on.
-TEST(VerifyScripts, WaysToUnknownLinesGoAsTheyDid) {
-  const std::string way = "G1 E-5 F2100\nG1 E2 F2000\nG1 X9 Y7 F2400\n";
-  const std::string a = kHead + kTwo + way + "M971 S11\nG1 E3 F2100\n" +
+TEST(VerifyScripts, TravelsToUnknownLinesGoAsTheyDid) {
+  const std::string travel = "G1 E-5 F2100\nG1 E2 F2000\nG1 X9 Y7 F2400\n";
+  const std::string a = kHead + kTwo + travel + "M971 S11\nG1 E3 F2100\n" +
                         Line("Internal infill", "X0 Y9", "X9 Y9") + kTwo;
   EXPECT_EQ(Broken(a, a), "");
   const std::string later = "G1 E-5 F2100\nG1 X9 Y7 F2400\nG1 E2 F2000\n";
-  EXPECT_THAT(Broken(a, With(a, way, later), Policy::kFree), HasSubstr("scripts"));
+  EXPECT_THAT(Broken(a, With(a, travel, later), Policy::kFree), HasSubstr("scripts"));
 }
 
 // A time-lapse stands between two layers or paths: what comes behind it goes as before.
-TEST(VerifyScripts, WaysBehindUnknownLinesGoAsTheyDid) {
+TEST(VerifyScripts, TravelsBehindUnknownLinesGoAsTheyDid) {
   const std::string script = "M971 S11 C10\n";
   const auto line = [](const char* x) {
     return Lifted(absl::StrCat(x, " Y5")) + ";TYPE:Internal infill\nG1 F1800\nG1 " + x +
@@ -99,19 +99,19 @@ TEST(VerifyScripts, WaysBehindUnknownLinesGoAsTheyDid) {
   const std::string a = kHead + kLifted + script + line("X0") + line("X1") + line("X2");
   EXPECT_EQ(Broken(a, a), "");
   EXPECT_EQ(Broken(a, kHead + kLifted + script + line("X1") + line("X0") + line("X2")), "");
-  const std::string way = "G1 X0 Y5 F9000\nG1 Z.2\nG1 E1 F2100\n";
-  EXPECT_THAT(Broken(a, With(a, way, "G1 Z.2\nG1 X0 Y5 F9000\nG1 E1 F2100\n")),
+  const std::string travel = "G1 X0 Y5 F9000\nG1 Z.2\nG1 E1 F2100\n";
+  EXPECT_THAT(Broken(a, With(a, travel, "G1 Z.2\nG1 X0 Y5 F9000\nG1 E1 F2100\n")),
               HasSubstr("scripts"));
-  EXPECT_THAT(Broken(a, With(a, way, "G1 X0 Y5 F9000\nG1 E1 F2100\nG1 Z.2\n")),
+  EXPECT_THAT(Broken(a, With(a, travel, "G1 X0 Y5 F9000\nG1 E1 F2100\nG1 Z.2\n")),
               HasSubstr("scripts"));
-  EXPECT_EQ(Broken(a, With(a, way, "G1 X0 Y5 F9000\nG1 X20 Y40\n" + way)), "bounds");
-  EXPECT_EQ(Broken(a, With(a, way, "G1 X10 Y40 F9000\n" + way)), "bounds");
-  EXPECT_EQ(Broken(a, With(a, way, "G1 X10 Y22.5 F9000\n" + way)), "");
-  EXPECT_EQ(Broken(a, With(a, way, "G1 X0 Y5 F9000\nG1 X3 Y5\n" + way)), "bounds");
+  EXPECT_EQ(Broken(a, With(a, travel, "G1 X0 Y5 F9000\nG1 X20 Y40\n" + travel)), "bounds");
+  EXPECT_EQ(Broken(a, With(a, travel, "G1 X10 Y40 F9000\n" + travel)), "bounds");
+  EXPECT_EQ(Broken(a, With(a, travel, "G1 X10 Y22.5 F9000\n" + travel)), "");
+  EXPECT_EQ(Broken(a, With(a, travel, "G1 X0 Y5 F9000\nG1 X3 Y5\n" + travel)), "bounds");
 }
 
 // A script leaves its own acceleration behind, and the travel to the next path keeps it.
-TEST(VerifyScripts, WaysBehindUnknownLinesAccelerateAsTheyDid) {
+TEST(VerifyScripts, TravelsBehindUnknownLinesAccelerateAsTheyDid) {
   const std::string script = "M204 S500\nM971 S11 C10\n";
   const auto line = [](const char* x, const char* set = "") {
     return Lifted(absl::StrCat(x, " Y5")) + set + ";TYPE:Internal infill\nG1 F1800\nG1 " + x +

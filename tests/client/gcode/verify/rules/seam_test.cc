@@ -14,7 +14,7 @@ using namespace testing;  // NOLINT: the small prints
 TEST(VerifySeam, OfAnOuterWallIsTheSamePointOrUnderBalancedASharpCorner) {
   EXPECT_EQ(Broken(kHead + kSquare, kHead + kSquareElsewhere), "seam");
   const std::string flat = With(kSquare, "G1 X20 Y10 E.4", "G1 X15 Y10 E.2\nG1 X20 Y10 E.2");
-  const std::string in_the_middle = Way("X15 Y10") + kWall +
+  const std::string in_the_middle = Travel("X15 Y10") + kWall +
                                     "G1 X20 Y10 E.2\nG1 X20 Y20 E.4\nG1 X10 Y20 E.4\n"
                                     "G1 X10 Y10 E.4\nG1 X15 Y10 E.2\n";
   EXPECT_EQ(Broken(kHead + flat, kHead + in_the_middle, Policy::kBalanced), "seam");
@@ -30,7 +30,7 @@ TEST(VerifySeam, MayMoveToACornerUnderBalancedAndAnywhereOnInnerWalls) {
 
 TEST(VerifySeam, MovesNotEvenByAShortSegmentUnderSafe) {
   const std::string fine = With(kSquare, "G1 X20 Y10 E.4", "G1 X10.04 Y10 E.01\nG1 X20 Y10 E.4");
-  const std::string moved = Way("X10.04 Y10") + kWall +
+  const std::string moved = Travel("X10.04 Y10") + kWall +
                             "G1 X20 Y10 E.4\nG1 X20 Y20 E.4\nG1 X10 Y20 E.4\nG1 X10 Y10 E.4\n"
                             "G1 X10.04 Y10 E.01\n";
   EXPECT_EQ(Broken(kHead + fine, kHead + moved), "seam");

@@ -19,8 +19,8 @@ TEST(VerifySpeeds, AreThoseOfSuchMoves) {
             "speeds");
 }
 
-// The first layer may have ways of its own speed, and so may any other.
-TEST(VerifySpeeds, WaysAreAsFastAsThoseOfTheirLayer) {
+// The first layer may have travel moves of its own speed, and so may any other.
+TEST(VerifySpeeds, TravelsAreAsFastAsThoseOfTheirLayer) {
   const std::string first = With(kTwo, "X0 Y0 F9000", "X0 Y0 F3000");
   const std::string slow = With(first, "X0 Y5 F9000", "X0 Y5 F3000");
   const std::string a = kHead + slow + kNextLayer + kTwo;
@@ -34,7 +34,7 @@ TEST(VerifySpeeds, WaysAreAsFastAsThoseOfTheirLayer) {
 // Where all filament is pulled back behind lines that are not known, these are its speeds.
 TEST(VerifySpeeds, BehindUnknownLinesAreThoseOfTheOriginalThere) {
   const auto begun = [](const std::string& first, const std::string& second) {
-    return kHead + "P0 S1 L2 D0\n" + Way(first) + ";TYPE:Internal infill\nG1 F1800\n" + second;
+    return kHead + "P0 S1 L2 D0\n" + Travel(first) + ";TYPE:Internal infill\nG1 F1800\n" + second;
   };
   const std::string a = begun("X0 Y0", "G1 X9 Y0 E.3\nG1 X0 Y5 F9000\nG1 F1800\nG1 X9 Y5 E.3\n");
   const std::string b = begun("X0 Y5", "G1 X9 Y5 E.3\nG1 X0 Y0 F9000\nG1 F1800\nG1 X9 Y0 E.3\n");
@@ -109,7 +109,7 @@ TEST(VerifySpeeds, TheLastRetractionIsAsFastAsTheOthers) {
 }
 
 // A tail on its way to a line that nobody knows is one that the original does.
-TEST(VerifySpeeds, ATailInAFixedWayIsAsItWas) {
+TEST(VerifySpeeds, ATailInAFixedTravelIsAsItWas) {
   const std::string a =
       "G1 F1200 X20 Y10 E.4\nG1 X10 Y20 E1.2\nG1 X10 Y10.5 E1.58\nG0 F1080 X10 Y10\n"
       "G30001 F2400\nG1 F1200 X18 Y30 E2.5\n";
@@ -129,7 +129,7 @@ TEST(VerifySpeeds, TravelKeepsItsAcceleration) {
             "speeds");
 }
 
-// Each line printed under an acceleration of its own, all ways under one.
+// Each line printed under an acceleration of its own, all travel moves under one.
 std::string Accelerated(const std::string& from, const std::string& to, int print) {
   return absl::StrCat("G1 E-1 F2100\nM204 S1000\nG1 ", from, " F9000\nG1 E1 F2100\nM204 S", print,
                       "\n;TYPE:Internal infill\nG1 F1800\nG1 ", to, " E.3\n");
@@ -149,14 +149,14 @@ TEST(VerifySpeeds, RetractionsKeepTheirAccelerations) {
 
 TEST(VerifySpeeds, TheAccelerationOfRetractionsIsOneOfThem) {
   const std::string a = kHead + "M204 P500 R900 T1000\n" + kTwo;
-  const std::string b =
-      kHead + "M204 P500 R900 T1000\n" +
-      With(kTwo, Way("X0 Y5"), "M204 P500 R90 T1000\n" + Way("X0 Y5") + "M204 P500 R900 T1000\n");
+  const std::string b = kHead + "M204 P500 R900 T1000\n" +
+                        With(kTwo, Travel("X0 Y5"),
+                             "M204 P500 R90 T1000\n" + Travel("X0 Y5") + "M204 P500 R900 T1000\n");
   EXPECT_EQ(Broken(a, b), "speeds");
 }
 
 // Some slicers accelerate less on short ways.
-TEST(VerifySpeeds, LongWaysAreNotUnderTheAccelerationOfShortOnes) {
+TEST(VerifySpeeds, LongTravelsAreNotUnderTheAccelerationOfShortOnes) {
   const std::string slow = "M204 T250\n";
   const std::string fast = "M204 T5000\n";
   const std::string a = kHead + fast + Line("Internal infill", "X0 Y0", "X9 Y0") +

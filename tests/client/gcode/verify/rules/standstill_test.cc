@@ -14,10 +14,10 @@ using namespace testing;  // NOLINT: the small prints
 using ::testing::HasSubstr;
 
 TEST(VerifyStandstill, NoBlobComesInOrMoves) {
-  const std::string blob = With(kTwo, Way("X0 Y5"), "G1 E1 F2100\n" + Way("X0 Y5"));
+  const std::string blob = With(kTwo, Travel("X0 Y5"), "G1 E1 F2100\n" + Travel("X0 Y5"));
   EXPECT_THAT(Broken(kHead + kTwo, kHead + blob), HasSubstr("standstill"));
   EXPECT_THAT(Broken(kHead + blob, kHead + kTwo), HasSubstr("standstill"));
-  const std::string moved = With(kTwo, Way("X0 Y5"), Way("X0 Y5") + "G1 E1 F2100\n");
+  const std::string moved = With(kTwo, Travel("X0 Y5"), Travel("X0 Y5") + "G1 E1 F2100\n");
   EXPECT_THAT(Broken(kHead + blob, kHead + moved), HasSubstr("standstill"));
   EXPECT_EQ(Broken(kHead + blob, kHead + blob), "");
 }
@@ -25,10 +25,10 @@ TEST(VerifyStandstill, NoBlobComesInOrMoves) {
 TEST(VerifyStandstill, WhatIsPushedMoreThanPulledIsPushedAsOften) {
   const std::string more = "G1 E-1 F2100\nG1 X0 Y5 F9000\nG1 E1.02 F2100\n";
   const std::string two = Line("Internal infill", "X0 Y0", "X9 Y0") +
-                          With(Line("Internal infill", "X0 Y5", "X9 Y5"), Way("X0 Y5"), more);
+                          With(Line("Internal infill", "X0 Y5", "X9 Y5"), Travel("X0 Y5"), more);
   const std::string without = With(two, more, "G1 X0 Y5 F9000\n");
   EXPECT_THAT(Broken(kHead + two, kHead + without), HasSubstr("standstill"));
-  // It comes with the way, wherever that leads.
+  // It comes with the travel, wherever that leads.
   const std::string turned = With(With(two, "X0 Y5", "X9 Y5"), "G1 X9 Y5 E.3", "G1 X0 Y5 E.3");
   EXPECT_EQ(Broken(kHead + two, kHead + turned), "");
 }
@@ -36,7 +36,7 @@ TEST(VerifyStandstill, WhatIsPushedMoreThanPulledIsPushedAsOften) {
 TEST(VerifyStandstill, WhatIsPushedLessThanPulledIsPushedAsOften) {
   const std::string less = "G1 E-1 F2100\nG1 X0 Y5 F9000\nG1 E.98 F2100\n";
   const std::string two = Line("Internal infill", "X0 Y0", "X9 Y0") +
-                          With(Line("Internal infill", "X0 Y5", "X9 Y5"), Way("X0 Y5"), less);
+                          With(Line("Internal infill", "X0 Y5", "X9 Y5"), Travel("X0 Y5"), less);
   const std::string without = With(two, less, "G1 X0 Y5 F9000\n");
   EXPECT_THAT(Broken(kHead + two, kHead + without), HasSubstr("standstill"));
   const std::string whole = With(two, "E.98 ", "E1 ");
@@ -46,7 +46,7 @@ TEST(VerifyStandstill, WhatIsPushedLessThanPulledIsPushedAsOften) {
 }
 
 TEST(VerifyStandstill, WhatRoundingLeavesIsNothing) {
-  const std::string more = With(kTwo, Way("X0 Y5"), With(Way("X0 Y5"), "E1 ", "E1.0009 "));
+  const std::string more = With(kTwo, Travel("X0 Y5"), With(Travel("X0 Y5"), "E1 ", "E1.0009 "));
   EXPECT_EQ(Broken(kHead + more, kHead + kOneTurned), "");
   const std::string little = With(kTwo, "G1 X9 Y5", "G1 E.00001\nG1 X9 Y5");
   EXPECT_EQ(Broken(kHead + little, kHead + kOneTurned), "");

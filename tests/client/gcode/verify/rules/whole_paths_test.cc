@@ -17,20 +17,20 @@ using namespace testing;  // NOLINT: the small prints
 using ::testing::HasSubstr;
 
 TEST(VerifyWholePaths, APathIsNotCut) {
-  const std::string cut = Way("X10 Y10") + ";TYPE:Internal infill\nG1 F1800\nG1 X20 Y10 E.3\n" +
-                          Way("X10 Y11") + "G1 F1800\nG1 X20 Y11 E.3\nG1 X20 Y10 E.1\n";
+  const std::string cut = Travel("X10 Y10") + ";TYPE:Internal infill\nG1 F1800\nG1 X20 Y10 E.3\n" +
+                          Travel("X10 Y11") + "G1 F1800\nG1 X20 Y11 E.3\nG1 X20 Y10 E.1\n";
   EXPECT_EQ(Broken(kHead + kZigzag, kHead + cut), "whole_paths");
 }
 
 TEST(VerifyWholePaths, APathMayBeTurnedAndALoopBegunElsewhere) {
-  const std::string turned = Way("X10 Y11") +
+  const std::string turned = Travel("X10 Y11") +
                              ";TYPE:Internal infill\nG1 F1800\nG1 X20 Y11 E.3\nG1 X20 Y10 E.1\n"
                              "G1 X10 Y10 E.3\n";
   EXPECT_EQ(Broken(kHead + kZigzag, kHead + turned), "");
 
   const std::string inner = With(kSquare, "External perimeter", "Perimeter");
   const std::string gap = With(inner, "G1 X10 Y10 E.4", "G1 X10 Y10.06 E.4");
-  const std::string elsewhere = Way("X20 Y10") +
+  const std::string elsewhere = Travel("X20 Y10") +
                                 ";TYPE:Perimeter\nG1 F1200\nG1 X20 Y20 E.4\nG1 X10 Y20 E.4\n"
                                 "G1 X10 Y10.06 E.4\nG1 X10 Y10\nG1 X20 Y10 E.4\n";
   EXPECT_EQ(Broken(kHead + gap, kHead + elsewhere), "");
@@ -38,10 +38,10 @@ TEST(VerifyWholePaths, APathMayBeTurnedAndALoopBegunElsewhere) {
 
 // A square of inner wall that ends 0.1 mm short of its start, and the same begun at its second
 // corner with that gap before it.
-const std::string kClipped = Way("X10 Y10") +
+const std::string kClipped = Travel("X10 Y10") +
                              ";TYPE:Perimeter\nG1 F1200\nG1 X20 Y10 E.4\nG1 X20 Y20 E.4\n"
                              "G1 X10 Y20 E.4\nG1 X10 Y10.1 E.396\n";
-const std::string kGapMoved = Way("X20 Y10") +
+const std::string kGapMoved = Travel("X20 Y10") +
                               ";TYPE:Perimeter\nG1 F1200\nG1 X20 Y20 E.4\nG1 X10 Y20 E.4\n"
                               "G1 X10 Y10.1 E.396\nG1 X10 Y10 E.004\nG1 X19.9 Y10 E.396\n";
 
@@ -114,7 +114,7 @@ TEST(VerifyWholePaths, TheLastSegmentOfALoopMayCloseItsGap) {
 // A loop begun with its last side, which closes the gap.
 TEST(VerifyWholePaths, TheLastSegmentOfALoopMayCloseItsGapWhereTheLoopBeginsWithIt) {
   const std::string next = Line("Internal infill", "X12 Y15", "X18 Y15");
-  const std::string moved = Way("X10 Y20") +
+  const std::string moved = Travel("X10 Y20") +
                             ";TYPE:Perimeter\nG1 F1200\nG1 X10 Y10 E.4\nG1 X20 Y10 E.4\n"
                             "G1 X20 Y20 E.4\nG1 X10.1 Y20 E.396\n";
 
@@ -141,11 +141,11 @@ TEST(VerifyWholePaths, ALoopUponAnotherIsNotTakenForThatOneMoved) {
 // The last path of the file has one segment of a loop with 200: no other one can be looked at
 // there.
 TEST(VerifyWholePaths, APieceOfALoopIsNotThatLoopMoved) {
-  std::string loop = Way("X0 Y0") + ";TYPE:Perimeter\nG1 F1200\n";
+  std::string loop = Travel("X0 Y0") + ";TYPE:Perimeter\nG1 F1200\n";
   for (int i = 1; i <= 99; ++i) loop += absl::StrCat("G1 X", i, " Y", 10 * (i % 2), " E.4\n");
   for (int i = 100; i <= 199; ++i) loop += absl::StrCat("G1 X", 198 - i, " Y30 E.4\n");
   loop += "G1 X0 Y.1 E.4\n";
-  const std::string piece = Way("X1 Y10") + ";TYPE:Perimeter\nG1 F1200\nG1 X2 Y0 E.4\n";
+  const std::string piece = Travel("X1 Y10") + ";TYPE:Perimeter\nG1 F1200\nG1 X2 Y0 E.4\n";
   std::string pieces;
   for (int i = 0; i < 210; ++i) pieces += piece;
   EXPECT_THAT(Broken(kHead + loop, kHead + pieces), HasSubstr("same_print"));
@@ -182,9 +182,9 @@ TEST(VerifyWholePaths, TheDepositThatDiffersIsNotThatOfAMovedGap) {
 
 TEST(VerifyWholePaths, ASecondCutOfALoopIsNone) {
   const std::string inner = With(kSquare, "External perimeter", "Perimeter");
-  const std::string twice = Way("X20 Y10") + ";TYPE:Perimeter\nG1 F1200\nG1 X20 Y20 E.4\n" +
-                            Way("X10 Y20") + "G1 F1200\nG1 X10 Y10 E.4\nG1 X20 Y10 E.4\n" +
-                            Way("X20 Y20") + "G1 F1200\nG1 X10 Y20 E.4\n";
+  const std::string twice = Travel("X20 Y10") + ";TYPE:Perimeter\nG1 F1200\nG1 X20 Y20 E.4\n" +
+                            Travel("X10 Y20") + "G1 F1200\nG1 X10 Y10 E.4\nG1 X20 Y10 E.4\n" +
+                            Travel("X20 Y20") + "G1 F1200\nG1 X10 Y20 E.4\n";
   EXPECT_THAT(Broken(kHead + inner, kHead + twice), HasSubstr("whole_paths"));
 }
 
@@ -197,10 +197,11 @@ TEST(VerifyWholePaths, LoopsOfOnePlaceAreToldApart) {
   const std::string right = "G1 X20 Y20 E.4\n";
   const std::string short_down = "G1 X20 Y10.07 E.397\n";
   const std::string one = infill + left + up + right + short_down;
-  const std::string a = kHead + Way("X20 Y10") + one + Way("X20 Y10") + one + Way("X10 Y20") +
-                        infill + right + "G1 X20 Y10 E.4\n" + left + "G1 X10 Y19.93 E.397\n";
+  const std::string a = kHead + Travel("X20 Y10") + one + Travel("X20 Y10") + one +
+                        Travel("X10 Y20") + infill + right + "G1 X20 Y10 E.4\n" + left +
+                        "G1 X10 Y19.93 E.397\n";
   const std::string turned = up + right + short_down + "G1 X20 Y10\n" + left;
-  const std::string b = kHead + Way("X10 Y10") + infill + turned +
+  const std::string b = kHead + Travel("X10 Y10") + infill + turned +
                         "G1 X10 Y19.93 E.397\nG1 X10 Y20\n" + right + "G1 X20 Y10 E.4\n" + left +
                         turned;
   EXPECT_EQ(Broken(a, b, Policy::kFree), "");

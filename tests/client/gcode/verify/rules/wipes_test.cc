@@ -32,7 +32,7 @@ TEST(VerifyWipes, AreNotLost) {
   EXPECT_EQ(Broken(head + two, head + two), "");
 }
 
-// Lines 0.8 mm apart, an open way as long elsewhere; and the first line the other way round, so
+// Lines 0.8 mm apart, an open travel as long elsewhere; and the first line the other way round, so
 // that its end is where the second one begins.
 TEST(VerifyWipes, MayBeLeftOutIfThatIsAllowedWhereNothingIsRetracted) {
   const std::string head = kHead + "G1 E-1 F2100\n";

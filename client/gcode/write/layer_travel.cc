@@ -1,4 +1,4 @@
-// What ways between the paths of a layer come to before they are written.
+// What travel moves between the paths of a layer come to before they are written.
 
 #include <algorithm>
 #include <cmath>
@@ -9,38 +9,38 @@
 
 namespace traverse::gcode {
 
-TravelWay LayerWriter::NewWay(const Placement& from, const Placement& to, bool wipes) const {
+PlannedTravel LayerWriter::NewTravel(const Placement& from, const Placement& to, bool wipes) const {
   const Feature feature = outlines_[to.block - layer_.first_block].feature;
   const Leaving* leaving = LeavingOf(from, wipes);
   if (leaving == nullptr || (leaving->departs && !Departs(from, Begin(to), feature))) {
-    return rules_.WayOf(End(from), Begin(to), feature);
+    return rules_.TravelOf(End(from), Begin(to), feature);
   }
   const Vertex at = Behind(from, *leaving);
-  TravelWay way = rules_.WayOf(at, Begin(to), feature);
-  way.mm += leaving->departs ? Distance(End(from), at) : leaving->mm;
+  PlannedTravel travel = rules_.TravelOf(at, Begin(to), feature);
+  travel.mm += leaving->departs ? Distance(End(from), at) : leaving->mm;
   if (leaving->wipes) {
     const std::optional<Vertex> departs_to = DepartsTo(from);
-    if (!departs_to) return way;
+    if (!departs_to) return travel;
     const Vertex end = End(from);
     const Vertex before = {departs_to->x - end.x, departs_to->y - end.y};
     const double before_mm = std::hypot(before.x, before.y);
-    // As WaySeconds sees it, which leaves out the wipe between the two.
-    way.stands = true;
-    way.mm += before_mm;
-    way.from = {at.x - before.x, at.y - before.y};
-    way.via.insert(way.via.begin(), at);
-    return way;
+    // As TravelSeconds sees it, which leaves out the wipe between the two.
+    travel.stands = true;
+    travel.mm += before_mm;
+    travel.from = {at.x - before.x, at.y - before.y};
+    travel.via.insert(travel.via.begin(), at);
+    return travel;
   }
-  way.from = End(from);
-  way.via.insert(way.via.begin(), at);
+  travel.from = End(from);
+  travel.via.insert(travel.via.begin(), at);
   if (leaving->departs) {
-    way.retracts = leaving->retracts;
+    travel.retracts = leaving->retracts;
   } else {
     // A retraction would come before it goes on.
-    way.retracts = way.retracts || rules_.Retracts(End(from), Begin(to), feature);
+    travel.retracts = travel.retracts || rules_.Retracts(End(from), Begin(to), feature);
   }
-  way.stands = way.retracts;
-  return way;
+  travel.stands = travel.retracts;
+  return travel;
 }
 
 Vertex LayerWriter::LeavesFrom(const Placement& from) const {
@@ -54,8 +54,8 @@ bool LayerWriter::Hides(const Placement& from, const Placement& to, bool boundar
   return rules_.Hides(LeavesFrom(from), Begin(to), feature);
 }
 
-WayJoints LayerWriter::JointsOf(const Placement& from, const Placement& to, bool wipes) const {
-  WayJoints joints;
+TravelJoints LayerWriter::JointsOf(const Placement& from, const Placement& to, bool wipes) const {
+  TravelJoints joints;
   const Leaving* leaving = LeavingOf(from, wipes);
   if (leaving == nullptr || leaving->departs || leaving->stands || DepartsTo(from)) {
     joints.from = joints_.EndOf(from.block - layer_.first_block, from.entry);
@@ -64,51 +64,54 @@ WayJoints LayerWriter::JointsOf(const Placement& from, const Placement& to, bool
   return joints;
 }
 
-WayTotals LayerWriter::EstimateWay(size_t place, const Placement& from, const Placement& to,
-                                   const TravelModel& model) const {
+TravelTotals LayerWriter::EstimateTravel(size_t place, const Placement& from, const Placement& to,
+                                         const TravelModel& model) const {
   const Block& here = file_.blocks[layer_.first_block + place];
   const Block& next = file_.blocks[to.block];
   const bool boundary = (here.link & (kLinkSplits | kLinkFixed)) != 0;
   const bool stays = from.block + 1 == to.block && from.as_given() && to.as_given() &&
                      (!boundary || to.block == layer_.first_block + place);
-  // Where the head goes at a boundary it goes in any order: only the way between the paths counts.
+  // Where the head goes at a boundary it goes in any order: only the travel between the paths
+  // counts.
   const bool as_given = stays && !boundary;
   const Feature feature = outlines_[to.block - layer_.first_block].feature;
   const bool wipes = stays || Wipes(from, Begin(to), feature, boundary);
   const std::optional<Vertex> behind_fixed =
       BehindFixed(layer_.first_block + static_cast<uint32_t>(place));
-  TravelWay way;
+  PlannedTravel travel;
   if (as_given) {
-    way.to = Begin(to);
-    way.mm = static_cast<double>(next.travel_mm);
+    travel.to = Begin(to);
+    travel.mm = static_cast<double>(next.travel_mm);
   } else if (behind_fixed) {
-    way = rules_.WayOf(*behind_fixed, Begin(to), feature);
+    travel = rules_.TravelOf(*behind_fixed, Begin(to), feature);
   } else {
-    way = NewWay(from, to, wipes);
+    travel = NewTravel(from, to, wipes);
   }
-  double across_mm = way.mm;
+  double across_mm = travel.mm;
   if (as_given) {
     const PrintTotals measured = MeasureLink(file_, to.block, walls_);
-    way.crosses = measured.crossings > 0;
+    travel.crosses = measured.crossings > 0;
     across_mm = measured.longest_open_mm;
   } else if (const Leaving* leaving = LeavingOf(from, wipes); leaving && !behind_fixed) {
     across_mm -= leaving->mm;
   }
-  way.retracts = stays ? (next.link & kLinkRetracts) != 0
-                       : way.retracts || wipes || (boundary && (here.link & kLinkRetracts) != 0) ||
-                             GoesOnAcross(from, way.to, feature);
-  if (way.retracts && Hides(from, to, boundary)) return HiddenWay(from, to, model);
-  const WayJoints joints = JointsOf(from, to, wipes);
-  WayTotals totals;
-  totals.mm = way.mm;
-  totals.seconds = as_given ? WaySeconds(file_, to.block, model, true, &joints)
-                            : NewWaySeconds(file_, from.block, way, model, &joints);
+  travel.retracts = stays ? (next.link & kLinkRetracts) != 0
+                          : travel.retracts || wipes ||
+                                (boundary && (here.link & kLinkRetracts) != 0) ||
+                                GoesOnAcross(from, travel.to, feature);
+  if (travel.retracts && Hides(from, to, boundary)) return HiddenTravel(from, to, model);
+  const TravelJoints joints = JointsOf(from, to, wipes);
+  TravelTotals totals;
+  totals.mm = travel.mm;
+  totals.seconds = as_given ? TravelSeconds(file_, to.block, model, true, &joints)
+                            : NewTravelSeconds(file_, from.block, travel, model, &joints);
   totals.seconds += joints_.RestartSeconds(to.block - layer_.first_block, to.entry);
-  if (way.retracts) totals.seconds += RetractionSeconds(from, to, way.mm, stays, wipes, model);
-  totals.retractions = way.retracts ? 1 : 0;
-  totals.crossings = way.crosses ? 1 : 0;
-  totals.open = way.crosses && !way.retracts ? 1 : 0;
-  totals.blocked = room_ != nullptr && !stays && IsBlocked(way) ? 1 : 0;
+  if (travel.retracts)
+    totals.seconds += RetractionSeconds(from, to, travel.mm, stays, wipes, model);
+  totals.retractions = travel.retracts ? 1 : 0;
+  totals.crossings = travel.crosses ? 1 : 0;
+  totals.open = travel.crosses && !travel.retracts ? 1 : 0;
+  totals.blocked = room_ != nullptr && !stays && IsBlocked(travel) ? 1 : 0;
   if (totals.open > 0) totals.open_mm = across_mm;
   return totals;
 }
@@ -123,34 +126,34 @@ double LayerWriter::LeastLiftMm() const {
   return std::isfinite(least) ? least : 0;
 }
 
-bool LayerWriter::IsBlocked(const TravelWay& way) const {
+bool LayerWriter::IsBlocked(const PlannedTravel& travel) const {
   const Block& first = file_.blocks[layer_.first_block];
   const double z_mm =
-      ToDouble(layer_.z) * file_.modes[first.mode].UnitMm() + (way.retracts ? lift_mm_ : 0);
-  Vertex at = way.from;
-  for (const Vertex& bend : way.via) {
+      ToDouble(layer_.z) * file_.modes[first.mode].UnitMm() + (travel.retracts ? lift_mm_ : 0);
+  Vertex at = travel.from;
+  for (const Vertex& bend : travel.via) {
     if (!room_->IsClear(at, z_mm, bend, z_mm)) return true;
     at = bend;
   }
-  return !room_->IsClear(at, z_mm, way.to, z_mm);
+  return !room_->IsClear(at, z_mm, travel.to, z_mm);
 }
 
-WayTotals LayerWriter::HiddenWay(const Placement& from, const Placement& to,
-                                 const TravelModel& model) const {
-  TravelWay way;
-  way.from = End(from);
-  way.to = Begin(to);
+TravelTotals LayerWriter::HiddenTravel(const Placement& from, const Placement& to,
+                                       const TravelModel& model) const {
+  PlannedTravel travel;
+  travel.from = End(from);
+  travel.to = Begin(to);
   const Vertex leaves = LeavesFrom(from);
-  way.mm = Distance(leaves, way.to);
-  if (!(leaves == way.from)) {
-    way.mm += LeavingOf(from, /*wipes=*/false)->mm;
-    way.via.push_back(leaves);
+  travel.mm = Distance(leaves, travel.to);
+  if (!(leaves == travel.from)) {
+    travel.mm += LeavingOf(from, /*wipes=*/false)->mm;
+    travel.via.push_back(leaves);
   }
-  const WayJoints joints = JointsOf(from, to, /*wipes=*/false);
-  WayTotals totals;
-  totals.mm = way.mm;
-  totals.blocked = room_ != nullptr && IsBlocked(way) ? 1 : 0;
-  totals.seconds = NewWaySeconds(file_, from.block, way, model, &joints) +
+  const TravelJoints joints = JointsOf(from, to, /*wipes=*/false);
+  TravelTotals totals;
+  totals.mm = travel.mm;
+  totals.blocked = room_ != nullptr && IsBlocked(travel) ? 1 : 0;
+  totals.seconds = NewTravelSeconds(file_, from.block, travel, model, &joints) +
                    joints_.RestartSeconds(to.block - layer_.first_block, to.entry);
   return totals;
 }
@@ -171,7 +174,7 @@ double LayerWriter::RetractionSeconds(const Placement& from, const Placement& to
   const uint32_t like = of(left) > 0 ? left : form;
   if (!(of(like) > 0)) return model.retraction_seconds;
   if (!(model.slope > 0)) return of(like);
-  // A slope rises as long as the way does, and is not made lower for a shorter way.
+  // A slope rises as long as the travel does, and is not made lower for a shorter travel.
   const auto lift_of = [&](uint32_t block) {
     const Block& link = file_.blocks[block];
     return ToDouble(link.lift) * file_.modes[link.mode].UnitMm();

@@ -7,7 +7,7 @@
 
 #include "absl/strings/str_format.h"
 #include "absl/types/span.h"
-#include "client/gcode/verify/match/way_ends.h"
+#include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
@@ -31,9 +31,9 @@ struct Height {
   float length_mm = 0;
 };
 
-Height HeightOf(const LiftLog& log, const WayProfile& way) {
+Height HeightOf(const LiftLog& log, const TravelProfile& travel) {
   Height height;
-  for (uint32_t i = way.first; i < way.end; ++i) {
+  for (uint32_t i = travel.first; i < travel.end; ++i) {
     height.apex_mm = std::max(height.apex_mm, log.pieces[i].to_mm);
     height.length_mm += log.pieces[i].length_mm;
   }
@@ -41,10 +41,10 @@ Height HeightOf(const LiftLog& log, const WayProfile& way) {
 }
 
 // The length of the travel that is lower than `lift`.
-float LowLength(const LiftLog& log, const WayProfile& way, float lift) {
+float LowLength(const LiftLog& log, const TravelProfile& travel, float lift) {
   float low = 0;
-  for (uint32_t i = way.first; i < way.end; ++i) {
-    const WayProfile::Piece& piece = log.pieces[i];
+  for (uint32_t i = travel.first; i < travel.end; ++i) {
+    const TravelProfile::Piece& piece = log.pieces[i];
     const float from = piece.from_mm - lift + kHeightSlackMm;
     const float to = piece.to_mm - lift + kHeightSlackMm;
     if (from >= 0 && to >= 0) continue;
@@ -55,9 +55,9 @@ float LowLength(const LiftLog& log, const WayProfile& way, float lift) {
   return low;
 }
 
-bool EndsLow(const LiftLog& log, const WayProfile& way, float lift) {
-  return std::any_of(log.pieces.begin() + way.first, log.pieces.begin() + way.end,
-                     [lift](const WayProfile::Piece& piece) {
+bool EndsLow(const LiftLog& log, const TravelProfile& travel, float lift) {
+  return std::any_of(log.pieces.begin() + travel.first, log.pieces.begin() + travel.end,
+                     [lift](const TravelProfile::Piece& piece) {
                        return piece.to_mm < lift - kHeightSlackMm && piece.length_mm > kLowMm;
                      });
 }
@@ -80,29 +80,29 @@ struct Habit {
   bool may_end_low = false;
 };
 
-Habit HabitOf(const LiftLog& log, absl::Span<const WayProfile> ways) {
+Habit HabitOf(const LiftLog& log, absl::Span<const TravelProfile> travels) {
   Habit habit;
   size_t lifted = 0;
-  for (const WayProfile& way : ways) {
-    const float apex = HeightOf(log, way).apex_mm;
+  for (const TravelProfile& travel : travels) {
+    const float apex = HeightOf(log, travel).apex_mm;
     if (apex < kLiftedMm) continue;
     if (++lifted == 1 || apex < habit.least_mm) {
       habit.least_mm = apex;
-      habit.least_line = way.line;
+      habit.least_line = travel.line;
     }
   }
-  habit.lifts =
-      lifted > 0 && static_cast<double>(lifted) >= kShareLifted * static_cast<double>(ways.size());
+  habit.lifts = lifted > 0 &&
+                static_cast<double>(lifted) >= kShareLifted * static_cast<double>(travels.size());
   if (!habit.lifts) return habit;
   std::vector<float> low_mm;
   std::vector<float> low_share;
   size_t end_low = 0;
-  for (const WayProfile& way : ways) {
-    const Height height = HeightOf(log, way);
+  for (const TravelProfile& travel : travels) {
+    const Height height = HeightOf(log, travel);
     if (height.apex_mm < kLiftedMm) continue;
-    low_mm.push_back(LowLength(log, way, habit.least_mm));
+    low_mm.push_back(LowLength(log, travel, habit.least_mm));
     low_share.push_back(low_mm.back() / height.length_mm);
-    if (EndsLow(log, way, habit.least_mm)) ++end_low;
+    if (EndsLow(log, travel, habit.least_mm)) ++end_low;
   }
   habit.may_end_low =
       static_cast<double>(end_low) > (1 - kShareLifted) * static_cast<double>(lifted);
@@ -148,10 +148,10 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
     known &= layer.IsKnown(move);
   }
   if ((only_new && known) || traced.scripted) return;
-  WayProfile way;
-  way.layer = layer.index();
-  if (link > 0) way.ends = EndsOf(chunk, link);
-  way.first = static_cast<uint32_t>(seen.lifts.pieces.size());
+  TravelProfile travel;
+  travel.layer = layer.index();
+  if (link > 0) travel.ends = EndsOf(chunk, link);
+  travel.first = static_cast<uint32_t>(seen.lifts.pieces.size());
   double length = 0;
   const bool goes = traced.first_move < traced.end_move;
   const double z_before = goes ? chunk.moves[traced.first_move].z_from_mm : to.z_mm;
@@ -160,7 +160,7 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
   for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (move.kind != MoveKind::kTravel || !move.in_print || move.open == retracted) continue;
-    way.line = way.line == 0 ? move.line : way.line;
+    travel.line = travel.line == 0 ? move.line : travel.line;
     length += move.length_mm();
     seen.lifts.pieces.push_back({static_cast<float>(move.z_from_mm - base),
                                  static_cast<float>(move.z_to_mm - base),
@@ -176,14 +176,14 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
     }
   }
   if (length < kShortestMm) {
-    seen.lifts.pieces.resize(way.first);
+    seen.lifts.pieces.resize(travel.first);
     return;
   }
-  way.end = static_cast<uint32_t>(seen.lifts.pieces.size());
+  travel.end = static_cast<uint32_t>(seen.lifts.pieces.size());
   const bool between = traced.new_layer || !level;
   const bool crossing = layer.CrossingLength(chunk, link, !retracted) > 0;
-  seen.lifts.ways[(retracted ? 4u : 0u) + (between ? 2u : 0u) + (crossing ? 1u : 0u)].push_back(
-      way);
+  seen.lifts.travels[(retracted ? 4u : 0u) + (between ? 2u : 0u) + (crossing ? 1u : 0u)].push_back(
+      travel);
 }
 
 std::string KindText(size_t kind) {
@@ -192,38 +192,39 @@ std::string KindText(size_t kind) {
                          (kind & 1) != 0 ? " across outer walls" : "");
 }
 
-absl::Span<const WayProfile> OfLayer(const std::vector<WayProfile>& ways, int64_t layer) {
-  const auto [first, end] =
-      std::equal_range(ways.begin(), ways.end(), WayProfile{.layer = layer},
-                       [](const WayProfile& a, const WayProfile& b) { return a.layer < b.layer; });
+absl::Span<const TravelProfile> OfLayer(const std::vector<TravelProfile>& travels, int64_t layer) {
+  const auto [first, end] = std::equal_range(
+      travels.begin(), travels.end(), TravelProfile{.layer = layer},
+      [](const TravelProfile& a, const TravelProfile& b) { return a.layer < b.layer; });
   if (first == end) return {};
   return absl::MakeSpan(&*first, static_cast<size_t>(end - first));
 }
 
 // Some slicers lift only in some layers: above a height, or below it.
-Habit HabitOfLayer(const LiftLog& log, const std::vector<WayProfile>& ways, int64_t layer) {
+Habit HabitOfLayer(const LiftLog& log, const std::vector<TravelProfile>& travels, int64_t layer) {
   constexpr size_t kFewest = 4;
-  const absl::Span<const WayProfile> own = OfLayer(ways, layer);
+  const absl::Span<const TravelProfile> own = OfLayer(travels, layer);
   return own.size() < kFewest ? Habit() : HabitOf(log, own);
 }
 
 // Whether the original has equally low travel between the same two points of the layer.
-bool WasAsLow(const LiftLog& was, const LiftLog& is, const WayProfile& way, size_t kind,
+bool WasAsLow(const LiftLog& was, const LiftLog& is, const TravelProfile& travel, size_t kind,
               float lift) {
-  const absl::Span<const WayProfile> ways = OfLayer(was.ways[kind], way.layer);
-  const Height now = HeightOf(is, way);
-  return std::any_of(ways.begin(), ways.end(), [&](const WayProfile& before) {
-    if (before.ends != way.ends) return false;
+  const absl::Span<const TravelProfile> travels = OfLayer(was.travels[kind], travel.layer);
+  const Height now = HeightOf(is, travel);
+  return std::any_of(travels.begin(), travels.end(), [&](const TravelProfile& before) {
+    if (before.ends != travel.ends) return false;
     const Height then = HeightOf(was, before);
     return now.apex_mm >= then.apex_mm - kHeightSlackMm &&
-           LowLength(is, way, lift) <= LowLength(was, before, lift) + kShortestMm &&
-           (!EndsLow(is, way, lift) || EndsLow(was, before, lift));
+           LowLength(is, travel, lift) <= LowLength(was, before, lift) + kShortestMm &&
+           (!EndsLow(is, travel, lift) || EndsLow(was, before, lift));
   });
 }
 
 // True if the travel begins with a slope as steep as one of the original's.
-bool BeginsWithUsualSlope(const Observations& was, const LiftLog& log, const WayProfile& way) {
-  const WayProfile::Piece& piece = log.pieces[way.first];
+bool BeginsWithUsualSlope(const Observations& was, const LiftLog& log,
+                          const TravelProfile& travel) {
+  const TravelProfile::Piece& piece = log.pieces[travel.first];
   const int64_t slope = SlopeOf(piece.to_mm - piece.from_mm, piece.length_mm, kLowMm);
   // Heights are rounded to micrometres.
   const auto rounded = static_cast<int64_t>(10 / piece.length_mm);
@@ -231,15 +232,16 @@ bool BeginsWithUsualSlope(const Observations& was, const LiftLog& log, const Way
 }
 
 // The same, and it is no more than that: when it is short, most of it lies low.
-bool IsUsualSlope(const Observations& was, const LiftLog& log, const WayProfile& way) {
-  return way.end == way.first + 1 && BeginsWithUsualSlope(was, log, way);
+bool IsUsualSlope(const Observations& was, const LiftLog& log, const TravelProfile& travel) {
+  return travel.end == travel.first + 1 && BeginsWithUsualSlope(was, log, travel);
 }
 
 // True if the travel begins so and is not low behind that slope: the shorter it is, the larger is
 // the share of the slope.
-bool SlopesAtOnce(const Observations& was, const LiftLog& log, const WayProfile& way, float lift) {
-  if (!BeginsWithUsualSlope(was, log, way)) return false;
-  WayProfile behind = way;
+bool SlopesAtOnce(const Observations& was, const LiftLog& log, const TravelProfile& travel,
+                  float lift) {
+  if (!BeginsWithUsualSlope(was, log, travel)) return false;
+  TravelProfile behind = travel;
   ++behind.first;
   return LowLength(log, behind, lift) <= kShortestMm;
 }
@@ -247,30 +249,30 @@ bool SlopesAtOnce(const Observations& was, const LiftLog& log, const WayProfile&
 void CompareKind(const Observations& was, const Observations& is, size_t kind,
                  std::vector<Finding>& breaks) {
   // Of a kind that the original has none of, the nearest one tells.
-  const std::vector<WayProfile>& ways =
-      was.lifts.ways[kind].empty() ? was.lifts.ways[kind ^ 1] : was.lifts.ways[kind];
-  const Habit of_print = HabitOf(was.lifts, ways);
+  const std::vector<TravelProfile>& travels =
+      was.lifts.travels[kind].empty() ? was.lifts.travels[kind ^ 1] : was.lifts.travels[kind];
+  const Habit of_print = HabitOf(was.lifts, travels);
   Habit of_layer;
   int64_t layer = -1;
-  for (const WayProfile& way : is.lifts.ways[kind]) {
-    if (!of_print.lifts && way.layer != layer) {
-      layer = way.layer;
-      of_layer = HabitOfLayer(was.lifts, was.lifts.ways[kind], layer);
+  for (const TravelProfile& travel : is.lifts.travels[kind]) {
+    if (!of_print.lifts && travel.layer != layer) {
+      layer = travel.layer;
+      of_layer = HabitOfLayer(was.lifts, was.lifts.travels[kind], layer);
     }
     const Habit& habit = of_print.lifts ? of_print : of_layer;
     if (!habit.lifts) continue;
-    const Height height = HeightOf(is.lifts, way);
-    const float low = LowLength(is.lifts, way, habit.least_mm);
-    const bool ends_low = !habit.may_end_low && EndsLow(is.lifts, way, habit.least_mm);
+    const Height height = HeightOf(is.lifts, travel);
+    const float low = LowLength(is.lifts, travel, habit.least_mm);
+    const bool ends_low = !habit.may_end_low && EndsLow(is.lifts, travel, habit.least_mm);
     const bool lies_low =
         low > kLowMm &&
         (low > habit.low_mm || (low / height.length_mm > habit.low_share &&
-                                !SlopesAtOnce(was, is.lifts, way, habit.least_mm))) &&
-        !IsUsualSlope(was, is.lifts, way);
+                                !SlopesAtOnce(was, is.lifts, travel, habit.least_mm))) &&
+        !IsUsualSlope(was, is.lifts, travel);
     const bool never = height.apex_mm < habit.least_mm - kHeightSlackMm;
     if (!ends_low && !lies_low && !never) continue;
-    if (WasAsLow(was.lifts, is.lifts, way, kind, habit.least_mm)) continue;
-    breaks.push_back({VerifyRule::kLifts, habit.least_line, way.line, way.layer,
+    if (WasAsLow(was.lifts, is.lifts, travel, kind, habit.least_mm)) continue;
+    breaks.push_back({VerifyRule::kLifts, habit.least_line, travel.line, travel.layer,
                       absl::StrFormat("%.2f of %.2f mm of this travel are less than %.2f mm above "
                                       "the layer, the least lift of %s",
                                       low, height.length_mm, habit.least_mm, KindText(kind))});
@@ -289,7 +291,7 @@ void ObserveLifts(const LayerPair& layer, LayerFindings& findings) {
 }
 
 void CompareLifts(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
-  for (size_t kind = 0; kind < kWayKinds; ++kind) CompareKind(was, is, kind, breaks);
+  for (size_t kind = 0; kind < kTravelKinds; ++kind) CompareKind(was, is, kind, breaks);
   int64_t highest = 0;
   for (const auto* map : {&was.heights.level, &was.heights.other}) {
     for (const auto& [um, seen] : *map) highest = std::max(highest, um);

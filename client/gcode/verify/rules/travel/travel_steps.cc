@@ -12,7 +12,7 @@
 #include "absl/container/flat_hash_map.h"
 #include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_format.h"
-#include "client/gcode/verify/match/way_ends.h"
+#include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 #include "client/gcode/verify/text.h"
 
@@ -23,7 +23,7 @@ constexpr double kLevelMm = 0.003;
 constexpr double kShortestStepMm = 0.05;
 
 // One step, or several alike: all but where it leads to, and how much filament a wipe pulls.
-struct WayStep {
+struct TravelStep {
   MoveKind kind = MoveKind::kTravel;
   double z_mm = 0;
   Micro filament = 0;
@@ -34,7 +34,7 @@ struct WayStep {
   double top_mm = 0;    // of where it begins and ends, the higher one
   uint64_t spiral = 0;  // TraceMove::spiral
 
-  bool Like(const WayStep& other) const {
+  bool Like(const TravelStep& other) const {
     return kind == other.kind && std::abs(z_mm - other.z_mm) <= kLevelMm && open == other.open &&
            feed == other.feed && spiral == other.spiral &&
            std::abs(filament - other.filament) <= VerifyMachine::kSlack;
@@ -47,19 +47,19 @@ bool IsNothing(const TraceMove& move) {
 }
 
 // What the link to `path` does, without its first `skipped` moves.
-std::vector<WayStep> StepsTo(const TraceChunk& chunk, uint32_t path, uint32_t skipped) {
-  std::vector<WayStep> steps;
+std::vector<TravelStep> StepsTo(const TraceChunk& chunk, uint32_t path, uint32_t skipped) {
+  std::vector<TravelStep> steps;
   const TraceLink& link = chunk.links[path];
   for (uint32_t m = link.first_move + skipped; m < link.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (IsNothing(move)) continue;
     const bool wipes = move.kind == MoveKind::kWipe;
     const Micro filament = wipes ? 0 : move.filament;
-    const WayStep step{
+    const TravelStep step{
         move.kind,  move.z_to_mm,      filament,  move.feed,
         move.open,  move.acceleration, move.line, std::max(move.z_from_mm, move.z_to_mm),
         move.spiral};
-    // A way may have more bends than before.
+    // A travel move may have more bends than before.
     const bool goes_on =
         !steps.empty() && steps.back().Like(step) && steps.back().acceleration == step.acceleration;
     if (move.sideways() && goes_on) continue;
@@ -68,7 +68,7 @@ std::vector<WayStep> StepsTo(const TraceChunk& chunk, uint32_t path, uint32_t sk
   return steps;
 }
 
-// How much farther the way behind unknown lines leads than straight to its path.
+// How much farther the travel behind unknown lines leads than straight to its path.
 double ExcessTo(const TraceChunk& chunk, uint32_t path, double& straight_mm) {
   const TraceLink& link = chunk.links[path];
   double length = 0;
@@ -92,45 +92,48 @@ bool Winds(const LayerPair& layer, uint32_t path_was, uint32_t path_is) {
   return has > had + straight + kSlackMm;
 }
 
-bool IsTravel(const WayStep& step) { return step.kind == MoveKind::kTravel; }
+bool IsTravel(const TravelStep& step) { return step.kind == MoveKind::kTravel; }
 
-bool Goes(const std::vector<WayStep>& steps) {
+bool Goes(const std::vector<TravelStep>& steps) {
   return std::any_of(steps.begin(), steps.end(), IsTravel);
 }
 
-bool SameKinds(const std::vector<WayStep>& was, const std::vector<WayStep>& is) {
-  return std::equal(
-      was.begin(), was.end(), is.begin(), is.end(),
-      [](const WayStep& a, const WayStep& b) { return a.kind == b.kind && a.open == b.open; });
+bool SameKinds(const std::vector<TravelStep>& was, const std::vector<TravelStep>& is) {
+  return std::equal(was.begin(), was.end(), is.begin(), is.end(),
+                    [](const TravelStep& a, const TravelStep& b) {
+                      return a.kind == b.kind && a.open == b.open;
+                    });
 }
 
 // The first step of `is` that is not as fast as in `was`; nothing if there is none. REQUIRES: they
 // are of the same kinds.
-const WayStep* OtherSpeed(const std::vector<WayStep>& was, const std::vector<WayStep>& is) {
-  const auto [one, other] =
-      std::mismatch(was.begin(), was.end(), is.begin(), [](const WayStep& a, const WayStep& b) {
+const TravelStep* OtherSpeed(const std::vector<TravelStep>& was,
+                             const std::vector<TravelStep>& is) {
+  const auto [one, other] = std::mismatch(
+      was.begin(), was.end(), is.begin(), [](const TravelStep& a, const TravelStep& b) {
         return a.feed == b.feed && a.acceleration == b.acceleration;
       });
   return one == was.end() ? nullptr : &*other;
 }
 
 // The same for spiral lifts.
-const WayStep* OtherSpiral(const std::vector<WayStep>& was, const std::vector<WayStep>& is) {
+const TravelStep* OtherSpiral(const std::vector<TravelStep>& was,
+                              const std::vector<TravelStep>& is) {
   const auto [one, other] =
       std::mismatch(was.begin(), was.end(), is.begin(),
-                    [](const WayStep& a, const WayStep& b) { return a.spiral == b.spiral; });
+                    [](const TravelStep& a, const TravelStep& b) { return a.spiral == b.spiral; });
   return one == was.end() ? nullptr : &*other;
 }
 
 // Where filament moves alone, its acceleration is that of the path or of the travel.
-bool AreAlikeBehindScripts(const WayStep& a, const WayStep& b) {
+bool AreAlikeBehindScripts(const TravelStep& a, const TravelStep& b) {
   const bool still = a.kind == MoveKind::kPriming || a.kind == MoveKind::kRetraction;
   return a.Like(b) && (still || a.acceleration == b.acceleration);
 }
 
-double ApexOf(const std::vector<WayStep>& steps) {
+double ApexOf(const std::vector<TravelStep>& steps) {
   double apex = 0;
-  for (const WayStep& step : steps) {
+  for (const TravelStep& step : steps) {
     if (IsTravel(step)) apex = std::max(apex, step.top_mm);
   }
   return apex;
@@ -138,7 +141,7 @@ double ApexOf(const std::vector<WayStep>& steps) {
 
 }  // namespace
 
-void CheckScriptedWays(const LayerPair& layer, LayerFindings& findings) {
+void CheckScriptedTravels(const LayerPair& layer, LayerFindings& findings) {
   for (size_t i = 0; i < layer.section_count(); ++i) {
     const uint32_t was = layer.SectionWas(i).first_path;
     const uint32_t is = layer.SectionIs(i).first_path;
@@ -149,8 +152,8 @@ void CheckScriptedWays(const LayerPair& layer, LayerFindings& findings) {
       findings.breaks.push_back({VerifyRule::kBounds, before, behind, layer.index(),
                                  "the travel behind unknown lines winds to this path"});
     }
-    std::vector<WayStep> had = StepsTo(layer.was(), was, layer.was().links[was].fixed);
-    std::vector<WayStep> has = StepsTo(layer.is(), is, layer.is().links[is].fixed);
+    std::vector<TravelStep> had = StepsTo(layer.was(), was, layer.was().links[was].fixed);
+    std::vector<TravelStep> has = StepsTo(layer.is(), is, layer.is().links[is].fixed);
     // To a path that begins where the head is, no way leads.
     if (!Goes(had) || !Goes(has)) {
       std::erase_if(had, IsTravel);
@@ -172,21 +175,21 @@ namespace {
 
 // What travel between two points does in the original, in the links that lead between the same two.
 struct SameEnds {
-  double lowest_mm = 1e9;           // of their apexes
-  double highest_mm = -1;           // of those with the same kinds of steps; -1: there are none
-  const WayStep* speed = nullptr;   // a step that has another speed in all of these
-  const WayStep* spiral = nullptr;  // and one that is another spiral
+  double lowest_mm = 1e9;              // of their apexes
+  double highest_mm = -1;              // of those with the same kinds of steps; -1: there are none
+  const TravelStep* speed = nullptr;   // a step that has another speed in all of these
+  const TravelStep* spiral = nullptr;  // and one that is another spiral
 };
 
 // The original's travel between two points, however often it is the same.
-struct WaysBetween {
+struct TravelsBetween {
   uint32_t first_link = 0;
-  std::vector<std::vector<WayStep>> ways;
+  std::vector<std::vector<TravelStep>> travels;
 };
 
-uint64_t DigestOf(const std::vector<WayStep>& steps) {
+uint64_t DigestOf(const std::vector<TravelStep>& steps) {
   uint64_t digest = steps.size();
-  for (const WayStep& step : steps) {
+  for (const TravelStep& step : steps) {
     digest = Mix(digest, static_cast<uint64_t>(step.kind) * 2 + (step.open ? 1 : 0));
     digest = Mix(digest, static_cast<uint64_t>(std::llround(step.top_mm * 1e6)));
     digest = Mix(digest, static_cast<uint64_t>(step.feed));
@@ -196,11 +199,11 @@ uint64_t DigestOf(const std::vector<WayStep>& steps) {
   return digest;
 }
 
-SameEnds CompareWith(const WaysBetween& was, const std::vector<WayStep>& has) {
+SameEnds CompareWith(const TravelsBetween& was, const std::vector<TravelStep>& has) {
   SameEnds same;
   bool has_speed = false;
   bool has_spiral = false;
-  for (const std::vector<WayStep>& had : was.ways) {
+  for (const std::vector<TravelStep>& had : was.travels) {
     same.lowest_mm = std::min(same.lowest_mm, ApexOf(had));
     if (!SameKinds(had, has)) continue;
     same.highest_mm = std::max(same.highest_mm, ApexOf(had));
@@ -214,9 +217,9 @@ SameEnds CompareWith(const WaysBetween& was, const std::vector<WayStep>& has) {
   return same;
 }
 
-void CompareSteps(const LayerPair& layer, const WaysBetween& was, uint32_t link_is,
+void CompareSteps(const LayerPair& layer, const TravelsBetween& was, uint32_t link_is,
                   LayerFindings& findings) {
-  const std::vector<WayStep> has = StepsTo(layer.is(), link_is, 0);
+  const std::vector<TravelStep> has = StepsTo(layer.is(), link_is, 0);
   if (has.empty()) return;
   const SameEnds same = CompareWith(was, has);
   const auto report = [&](VerifyRule rule, uint32_t line, std::string what) {
@@ -250,16 +253,16 @@ void CompareSteps(const LayerPair& layer, const WaysBetween& was, uint32_t link_
 void CheckSameSteps(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& was = layer.was();
   const TraceChunk& is = layer.is();
-  absl::flat_hash_map<uint64_t, WaysBetween> by_ends;
+  absl::flat_hash_map<uint64_t, TravelsBetween> by_ends;
   absl::flat_hash_set<uint64_t> seen;
   // The first link of a chunk follows a path of the chunk before.
   for (uint32_t link = std::max(layer.first_path_was(), 1u); link < layer.end_path_was(); ++link) {
     const uint64_t ends = EndsOf(was, link);
-    std::vector<WayStep> steps = StepsTo(was, link, 0);
+    std::vector<TravelStep> steps = StepsTo(was, link, 0);
     if (!seen.insert(Mix(ends, DigestOf(steps))).second) continue;
-    WaysBetween& between = by_ends[ends];
-    if (between.ways.empty()) between.first_link = link;
-    between.ways.push_back(std::move(steps));
+    TravelsBetween& between = by_ends[ends];
+    if (between.travels.empty()) between.first_link = link;
+    between.travels.push_back(std::move(steps));
   }
   for (uint32_t link = std::max(layer.first_path_is(), 1u); link < layer.end_path_is(); ++link) {
     const auto found = by_ends.find(EndsOf(is, link));

@@ -9,13 +9,13 @@
 #include "absl/container/flat_hash_map.h"
 #include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_format.h"
-#include "client/gcode/verify/match/way_ends.h"
+#include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
 namespace {
 
-constexpr double kShortestWayMm = 0.5;
+constexpr double kShortestTravelMm = 0.5;
 constexpr double kBentMm = 0.2;
 constexpr int64_t kManyBent = 20;  // one in
 constexpr double kBinMm = 0.1;
@@ -27,7 +27,7 @@ constexpr int64_t kEnoughOfPrint = 20;
 constexpr int64_t kOneIn = 100;  // what is as rare as this is no habit
 constexpr double kUsualThresholdMm = 1.5;
 
-struct Way {
+struct Travel {
   uint32_t kind = 0;
   double length_mm = 0;
   bool retracts = false;
@@ -38,41 +38,41 @@ struct Way {
 };
 
 // The travel in `link`, from path to path; of length 0 if there is none within the layer.
-Way WayIn(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, PathClass to,
-          bool only_new) {
+Travel TravelIn(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, PathClass to,
+                bool only_new) {
   const TraceLink& traced = chunk.links[link];
   if (link == 0 || traced.new_layer || traced.scripted) return {};
-  Way way;
+  Travel travel;
   bool known = true;
   double length = 0;
   for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (move.kind != MoveKind::kTravel) continue;
-    way.retracts |= !move.open;
+    travel.retracts |= !move.open;
     known &= layer.IsKnown(move);
     length += move.length_mm();
-    if (way.line == 0) way.line = move.line;
+    if (travel.line == 0) travel.line = move.line;
   }
-  if (way.line == 0 || (only_new && (known || way.retracts))) return {};
+  if (travel.line == 0 || (only_new && (known || travel.retracts))) return {};
   const Point from = chunk.EndOf(chunk.paths[link - 1]);
   const Point start = chunk.paths[link].start;
-  way.length_mm = DistanceOf(from, start);
-  if (way.length_mm < kShortestWayMm) return {};
+  travel.length_mm = DistanceOf(from, start);
+  if (travel.length_mm < kShortestTravelMm) return {};
   const bool crosses = layer.CrossesOuterWall(from, start);
-  way.bent = length > way.length_mm + kBentMm;
-  way.kind = 2 * static_cast<uint32_t>(to) + (crosses ? 1u : 0u);
-  way.ends = EndsOf(chunk, link);
-  way.ends_back = DigestOfEnds(start, from);
-  return way;
+  travel.bent = length > travel.length_mm + kBentMm;
+  travel.kind = 2 * static_cast<uint32_t>(to) + (crosses ? 1u : 0u);
+  travel.ends = EndsOf(chunk, link);
+  travel.ends_back = DigestOfEnds(start, from);
+  return travel;
 }
 
-std::vector<Way> WaysOf(const LayerPair& layer) {
-  std::vector<Way> ways;
+std::vector<Travel> TravelsOf(const LayerPair& layer) {
+  std::vector<Travel> travels;
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
-    const Way way = WayIn(layer, layer.was(), link, layer.ClassOf(link), false);
-    if (way.length_mm > 0) ways.push_back(way);
+    const Travel travel = TravelIn(layer, layer.was(), link, layer.ClassOf(link), false);
+    if (travel.length_mm > 0) travels.push_back(travel);
   }
-  return ways;
+  return travels;
 }
 
 uint32_t BinOf(double length_mm) {
@@ -84,39 +84,39 @@ uint32_t KeyOf(uint32_t kind, uint32_t bin) { return kind * kBins + bin; }
 // What the travel of a layer of the original does.
 class LayerHabits {
  public:
-  explicit LayerHabits(const std::vector<Way>& ways) {
-    for (const Way& way : ways) {
-      NewOpenWay& like = like_[way.kind];
-      if (way.retracts) {
+  explicit LayerHabits(const std::vector<Travel>& travels) {
+    for (const Travel& travel : travels) {
+      NewOpenTravel& like = like_[travel.kind];
+      if (travel.retracts) {
         ++like.retracted_in_layer;
-        like.line_in_layer = way.line;
+        like.line_in_layer = travel.line;
       } else {
-        open_.insert(way.ends);
-        const auto length = static_cast<float>(way.length_mm);
+        open_.insert(travel.ends);
+        const auto length = static_cast<float>(travel.length_mm);
         like.longest_in_layer_mm = std::max(like.longest_in_layer_mm, length);
       }
     }
   }
 
   // Whether there is such travel between the same two points, in either direction.
-  bool HasOpen(const Way& way) const {
-    return open_.contains(way.ends) || open_.contains(way.ends_back);
+  bool HasOpen(const Travel& travel) const {
+    return open_.contains(travel.ends) || open_.contains(travel.ends_back);
   }
 
-  // `way` with what the layer has of its kind.
-  NewOpenWay Among(const Way& way, int64_t layer) const {
-    const auto found = like_.find(way.kind);
-    NewOpenWay open = found != like_.end() ? found->second : NewOpenWay{};
-    open.kind = way.kind;
-    open.length_mm = static_cast<float>(way.length_mm);
-    open.line = way.line;
+  // `travel` with what the layer has of its kind.
+  NewOpenTravel Among(const Travel& travel, int64_t layer) const {
+    const auto found = like_.find(travel.kind);
+    NewOpenTravel open = found != like_.end() ? found->second : NewOpenTravel{};
+    open.kind = travel.kind;
+    open.length_mm = static_cast<float>(travel.length_mm);
+    open.line = travel.line;
     open.layer = layer;
     return open;
   }
 
  private:
-  absl::flat_hash_set<uint64_t> open_;              // Way::ends
-  absl::flat_hash_map<uint32_t, NewOpenWay> like_;  // by kind
+  absl::flat_hash_set<uint64_t> open_;                 // Travel::ends
+  absl::flat_hash_map<uint32_t, NewOpenTravel> like_;  // by kind
 };
 
 // The length from which on travel retracts if nothing else matters: as the slicer states it, or
@@ -165,43 +165,45 @@ OpenHabit HabitBeyond(const Observations& was, uint32_t kind, uint32_t threshold
 }  // namespace
 
 void ObserveOpenHabits(const LayerPair& layer, LayerFindings& findings) {
-  const std::vector<Way> ways = WaysOf(layer);
-  for (const Way& way : ways) {
-    OpenHabit& habit = findings.was.open_habits[KeyOf(way.kind, BinOf(way.length_mm))];
-    ++(way.retracts ? habit.retracted : habit.open);
-    habit.bent += way.bent && !way.retracts ? 1 : 0;
-    if (way.retracts && habit.line == 0) habit.line = way.line;
+  const std::vector<Travel> travels = TravelsOf(layer);
+  for (const Travel& travel : travels) {
+    OpenHabit& habit = findings.was.open_habits[KeyOf(travel.kind, BinOf(travel.length_mm))];
+    ++(travel.retracts ? habit.retracted : habit.open);
+    habit.bent += travel.bent && !travel.retracts ? 1 : 0;
+    if (travel.retracts && habit.line == 0) habit.line = travel.line;
   }
-  const LayerHabits habits(ways);
+  const LayerHabits habits(travels);
   for (const Visit& visit : layer.visits()) {
     if (layer.IsHidden(visit.first_path)) continue;
-    const Way way = WayIn(layer, layer.is(), visit.first_path, layer.ClassOf(visit.path), true);
-    if (way.length_mm <= 0) continue;
-    if (habits.HasOpen(way)) continue;
-    findings.is.new_open_ways.push_back(habits.Among(way, layer.index()));
+    const Travel travel =
+        TravelIn(layer, layer.is(), visit.first_path, layer.ClassOf(visit.path), true);
+    if (travel.length_mm <= 0) continue;
+    if (habits.HasOpen(travel)) continue;
+    findings.is.new_open_travels.push_back(habits.Among(travel, layer.index()));
   }
 }
 
 void CompareOpenHabits(const Observations& was, const Observations& is, const RuleContext& context,
                        std::vector<Finding>& breaks) {
-  if (is.new_open_ways.empty() || LeadsAround(was)) return;
+  if (is.new_open_travels.empty() || LeadsAround(was)) return;
   const uint32_t threshold = ThresholdBin(was, context.settings);
   absl::flat_hash_map<uint32_t, OpenHabit> habits;  // by kind
-  for (const NewOpenWay& way : is.new_open_ways) {
-    if (BinOf(way.length_mm) <= threshold) continue;
-    const auto [known, added] = habits.try_emplace(way.kind);
+  for (const NewOpenTravel& travel : is.new_open_travels) {
+    if (BinOf(travel.length_mm) <= threshold) continue;
+    const auto [known, added] = habits.try_emplace(travel.kind);
     OpenHabit& habit = known->second;
-    if (added) habit = HabitBeyond(was, way.kind, threshold);
+    if (added) habit = HabitBeyond(was, travel.kind, threshold);
     const bool of_print =
         habit.retracted >= kEnoughOfPrint && habit.open * kOneIn <= habit.retracted;
-    const bool of_layer =
-        way.retracted_in_layer >= kEnoughOfLayer && BinOf(way.longest_in_layer_mm) <= threshold;
+    const bool of_layer = travel.retracted_in_layer >= kEnoughOfLayer &&
+                          BinOf(travel.longest_in_layer_mm) <= threshold;
     if (!of_print && !of_layer) continue;
     breaks.push_back(
-        {VerifyRule::kOpenWays, of_layer ? way.line_in_layer : habit.line, way.line, way.layer,
+        {VerifyRule::kOpenTravels, of_layer ? travel.line_in_layer : habit.line, travel.line,
+         travel.layer,
          absl::StrFormat("travel of %.2f mm without a retraction; longer than %.1f mm, "
                          "this kind retracts in the original",
-                         way.length_mm, threshold * kBinMm)});
+                         travel.length_mm, threshold * kBinMm)});
   }
 }
 

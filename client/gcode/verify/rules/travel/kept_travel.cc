@@ -11,7 +11,7 @@
 #include "absl/container/flat_hash_map.h"
 #include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_format.h"
-#include "client/gcode/verify/match/way_ends.h"
+#include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 #include "client/gcode/verify/text.h"
 
@@ -87,24 +87,24 @@ uint64_t DigestOfMoves(const std::vector<TraceMove>& moves) {
   return digest;
 }
 
-// The original's ways by the segments between which they stand; ways that are alike count once, so
-// that files of equal paths take no longer than others.
-struct KeptWays {
+// The original's travel moves by the segments between which they stand; travel moves that are alike
+// count once, so that files of equal paths take no longer than others.
+struct KeptTravels {
   absl::flat_hash_map<uint64_t, std::vector<uint32_t>> links;
   absl::flat_hash_set<uint64_t> exact;  // DigestOfLink and DigestOfMoves
 };
 
-KeptWays WaysOf(const LayerPair& layer) {
+KeptTravels TravelsOf(const LayerPair& layer) {
   const TraceChunk& was = layer.was();
-  KeptWays ways;
+  KeptTravels travels;
   // The first link of a chunk follows a path of the chunk before.
   for (uint32_t link = std::max(layer.first_path_was(), 1u); link < layer.end_path_was(); ++link) {
     const uint64_t digest = DigestOfLink(was, link);
-    const bool is_new = ways.exact.insert(Mix(digest, DigestOfMoves(MovesOf(was, link)))).second;
-    std::vector<uint32_t>& links = ways.links[digest];
+    const bool is_new = travels.exact.insert(Mix(digest, DigestOfMoves(MovesOf(was, link)))).second;
+    std::vector<uint32_t>& links = travels.links[digest];
     if (is_new && links.size() < kMostAlike) links.push_back(link);
   }
-  return ways;
+  return travels;
 }
 
 // A path that leads back along itself is the same the other way round, and may have been turned.
@@ -137,17 +137,17 @@ std::string_view NameOf(const std::vector<TraceMove>& moves,
 
 }  // namespace
 
-void CheckKeptWays(const LayerPair& layer, LayerFindings& findings) {
+void CheckKeptTravels(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& was = layer.was();
   const TraceChunk& is = layer.is();
-  const KeptWays ways = WaysOf(layer);
+  const KeptTravels travels = TravelsOf(layer);
   for (uint32_t link = std::max(layer.first_path_is(), 1u); link < layer.end_path_is(); ++link) {
     if (layer.IsHidden(link)) continue;
     const uint64_t digest = DigestOfLink(is, link);
-    const auto found = ways.links.find(digest);
-    if (found == ways.links.end()) continue;
+    const auto found = travels.links.find(digest);
+    if (found == travels.links.end()) continue;
     const std::vector<TraceMove> has = MovesOf(is, link);
-    if (ways.exact.contains(Mix(digest, DigestOfMoves(has)))) continue;
+    if (travels.exact.contains(Mix(digest, DigestOfMoves(has)))) continue;
     if (LeadsBack(is, link - 1) || LeadsBack(is, link)) continue;
     const std::vector<TraceMove> had = SameOf(was, found->second, has);
     const auto [one, other] =
@@ -155,7 +155,7 @@ void CheckKeptWays(const LayerPair& layer, LayerFindings& findings) {
     if (one == had.end() && other == has.end()) continue;
     const bool more = other != has.end();
     findings.breaks.push_back(
-        {VerifyRule::kKeptWays,
+        {VerifyRule::kKeptTravels,
          one == had.end() ? was.LineOf(was.paths[found->second.front()]) : one->line,
          more ? other->line : is.LineOf(is.paths[link]), layer.index(),
          absl::StrFormat("a %s between two paths that follow each other in the original too, "

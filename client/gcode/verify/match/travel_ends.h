@@ -1,7 +1,7 @@
 // Identifies a travel move of the original in the other file by its two end points.
 
-#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_WAY_ENDS_H_
-#define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_WAY_ENDS_H_
+#ifndef TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_TRAVEL_ENDS_H_
+#define TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_TRAVEL_ENDS_H_
 
 #include <cassert>
 #include <cmath>
@@ -27,4 +27,4 @@ inline uint64_t EndsOf(const TraceChunk& chunk, uint32_t link) {
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_WAY_ENDS_H_
+#endif  // TRAVERSE_CLIENT_GCODE_VERIFY_MATCH_TRAVEL_ENDS_H_

@@ -12,59 +12,60 @@ namespace {
 
 constexpr double kSlackMm = 0.01;
 
-struct OpenWay {
+struct OpenTravel {
   double length_mm = 0;
   uint32_t line = 0;
   bool known = true;
 };
 
-std::vector<OpenWay> OpenWays(const LayerPair& layer, bool original) {
+std::vector<OpenTravel> OpenTravels(const LayerPair& layer, bool original) {
   const TraceChunk& chunk = original ? layer.was() : layer.is();
   const uint32_t first = original ? layer.first_path_was() : layer.first_path_is();
   const uint32_t end = original ? layer.end_path_was() : layer.end_path_is();
   // Travel begins where the move along the path before it ends.
   const Tails tails(layer, original, true);
-  std::vector<OpenWay> ways;
+  std::vector<OpenTravel> travels;
   for (uint32_t link = first; link < end; ++link) {
     const TraceLink& traced = chunk.links[link];
     if (traced.first_move == traced.end_move) continue;
     const double length = layer.CrossingLength(chunk, link, true, tails.At(link));
     if (length <= 0) continue;
-    OpenWay way{length, chunk.moves[traced.first_move].line, true};
+    OpenTravel travel{length, chunk.moves[traced.first_move].line, true};
     for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
       const TraceMove& move = chunk.moves[m];
       if (move.kind != MoveKind::kTravel || !move.open || layer.IsKnown(move)) continue;
-      if (way.known) way.line = move.line;
-      way.known = false;
+      if (travel.known) travel.line = move.line;
+      travel.known = false;
     }
-    ways.push_back(way);
+    travels.push_back(travel);
   }
-  return ways;
+  return travels;
 }
 
 }  // namespace
 
-void CheckOpenWays(const LayerPair& layer, LayerFindings& findings) {
+void CheckOpenTravels(const LayerPair& layer, LayerFindings& findings) {
   if (layer.outer_walls().empty()) return;
-  const std::vector<OpenWay> is = OpenWays(layer, false);
-  if (std::all_of(is.begin(), is.end(), [](const OpenWay& way) { return way.known; })) return;
-  const std::vector<OpenWay> was = OpenWays(layer, true);
+  const std::vector<OpenTravel> is = OpenTravels(layer, false);
+  if (std::all_of(is.begin(), is.end(), [](const OpenTravel& travel) { return travel.known; }))
+    return;
+  const std::vector<OpenTravel> was = OpenTravels(layer, true);
   const auto longest = std::max_element(
       was.begin(), was.end(),
-      [](const OpenWay& a, const OpenWay& b) { return a.length_mm < b.length_mm; });
+      [](const OpenTravel& a, const OpenTravel& b) { return a.length_mm < b.length_mm; });
   const uint32_t of_layer = layer.was().LineOf(layer.was().paths[layer.first_path_was()]);
   size_t more = is.size() > was.size() ? is.size() - was.size() : 0;
-  for (const OpenWay& way : is) {
-    if (way.known) continue;
-    if (longest != was.end() && way.length_mm > longest->length_mm + kSlackMm) {
+  for (const OpenTravel& travel : is) {
+    if (travel.known) continue;
+    if (longest != was.end() && travel.length_mm > longest->length_mm + kSlackMm) {
       findings.breaks.push_back(
-          {VerifyRule::kOpenWays, longest->line, way.line, layer.index(),
+          {VerifyRule::kOpenTravels, longest->line, travel.line, layer.index(),
            absl::StrFormat("travel of %.2f mm crosses an outer wall without a retraction; the "
                            "longest such travel of the layer has %.2f mm",
-                           way.length_mm, longest->length_mm)});
+                           travel.length_mm, longest->length_mm)});
     } else if (more > 0) {
       --more;
-      findings.breaks.push_back({VerifyRule::kOpenWays, of_layer, way.line, layer.index(),
+      findings.breaks.push_back({VerifyRule::kOpenTravels, of_layer, travel.line, layer.index(),
                                  absl::StrFormat("travel crosses an outer wall without a "
                                                  "retraction, one of %d in a layer that had %d",
                                                  is.size(), was.size())});

@@ -1,4 +1,4 @@
-// Travel across outer walls without a retraction: client/gcode/verify/rules/ways/open_ways.
+// Travel across outer walls without a retraction: client/gcode/verify/rules/travel/open_travel.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,68 +15,68 @@ namespace {
 using namespace testing;  // NOLINT: the small prints
 using ::testing::HasSubstr;
 
-TEST(VerifyOpenWays, NoRetractionIsLostAcrossAnOuterWall) {
-  const std::string open = With(kAcross, Way("X30 Y15"), "G1 X30 Y15 F9000\n");
-  EXPECT_EQ(Broken(kHead + kAcross, kHead + open), "open_ways");
-  EXPECT_EQ(Broken(kHead + kAcross, kHead + open, Policy::kFree), "open_ways");
+TEST(VerifyOpenTravels, NoRetractionIsLostAcrossAnOuterWall) {
+  const std::string open = With(kAcross, Travel("X30 Y15"), "G1 X30 Y15 F9000\n");
+  EXPECT_EQ(Broken(kHead + kAcross, kHead + open), "open_travel");
+  EXPECT_EQ(Broken(kHead + kAcross, kHead + open, Policy::kFree), "open_travel");
   // Nor comes filament back before the wall.
-  const std::string early = With(kAcross, Way("X30 Y15"),
+  const std::string early = With(kAcross, Travel("X30 Y15"),
                                  "G1 E-1 F2100\nG1 X18 Y15 F9000\nG1 E1 F2100\nG1 X30 Y15 F9000\n");
-  EXPECT_EQ(Broken(kHead + kAcross, kHead + early), "open_ways retractions");
+  EXPECT_EQ(Broken(kHead + kAcross, kHead + early), "open_travel retractions");
 }
 
 // Between their ends such arcs lie far from the line that joins these.
-TEST(VerifyOpenWays, NoRetractionIsLostAcrossACircleOfArcsByRadius) {
-  const std::string circle = Way("X10 Y15") + kWall + "G3 X20 Y15 R5 E.6\nG3 X10 Y15 R5 E.6\n";
+TEST(VerifyOpenTravels, NoRetractionIsLostAcrossACircleOfArcsByRadius) {
+  const std::string circle = Travel("X10 Y15") + kWall + "G3 X20 Y15 R5 E.6\nG3 X10 Y15 R5 E.6\n";
   const std::string a = circle + Line("Internal infill", "X14 Y17", "X15 Y17") +
                         Line("Internal infill", "X15 Y30", "X16 Y30");
-  const std::string open = With(a, Way("X15 Y30"), "G1 X15 Y30 F9000\n");
-  EXPECT_EQ(Broken(kHead + a, kHead + open), "open_ways");
+  const std::string open = With(a, Travel("X15 Y30"), "G1 X15 Y30 F9000\n");
+  EXPECT_EQ(Broken(kHead + a, kHead + open), "open_travel");
   // The long way round.
-  const std::string large = Way("X10 Y15") + kWall + "G2 X10 Y16 R-5 E3\nG1 X10 Y15 E.1\n";
+  const std::string large = Travel("X10 Y15") + kWall + "G2 X10 Y16 R-5 E3\nG1 X10 Y15 E.1\n";
   const std::string into = large + Line("Internal infill", "X5 Y40", "X6 Y40") +
                            Line("Internal infill", "X5 Y17", "X6 Y17");
-  EXPECT_EQ(Broken(kHead + into, kHead + With(into, Way("X5 Y17"), "G1 X5 Y17 F9000\n")),
-            "open_ways");
+  EXPECT_EQ(Broken(kHead + into, kHead + With(into, Travel("X5 Y17"), "G1 X5 Y17 F9000\n")),
+            "open_travel");
 }
 
-TEST(VerifyOpenWays, WithinTheWallAreFree) {
+TEST(VerifyOpenTravels, WithinTheWallAreFree) {
   const std::string within = kSquare + Line("Internal infill", "X15 Y15", "X16 Y15") +
                              Line("Internal infill", "X12 Y18", "X13 Y18") +
                              "G1 X16 Y16 F9000\nG1 F1800\nG1 X17 Y16 E.3\n";
-  const std::string turned =
-      With(With(within, Way("X12 Y18"), "G1 X13 Y18 F9000\n"), "G1 X13 Y18 E.3", "G1 X12 Y18 E.3");
+  const std::string turned = With(With(within, Travel("X12 Y18"), "G1 X13 Y18 F9000\n"),
+                                  "G1 X13 Y18 E.3", "G1 X12 Y18 E.3");
   EXPECT_EQ(Broken(kHead + within, kHead + turned), "");
 }
 
-TEST(VerifyOpenWays, AcrossWallsGetNoLonger) {
-  const std::string to_and_fro = With(kAcross, Way("X30 Y15"), "G1 X30 Y15 F9000\n");
+TEST(VerifyOpenTravels, AcrossWallsGetNoLonger) {
+  const std::string to_and_fro = With(kAcross, Travel("X30 Y15"), "G1 X30 Y15 F9000\n");
   const std::string longer =
       kSquare + Line("Internal infill", "X30 Y15", "X31 Y15") +
-      With(Line("Internal infill", "X15 Y15", "X16 Y15"), Way("X15 Y15"), "G1 X15 Y15 F9000\n");
-  EXPECT_EQ(Broken(kHead + to_and_fro, kHead + longer), "open_ways");
+      With(Line("Internal infill", "X15 Y15", "X16 Y15"), Travel("X15 Y15"), "G1 X15 Y15 F9000\n");
+  EXPECT_EQ(Broken(kHead + to_and_fro, kHead + longer), "open_travel");
 }
 
-TEST(VerifyOpenWays, AcrossWallsMayBeAsLongElsewhere) {
+TEST(VerifyOpenTravels, AcrossWallsMayBeAsLongElsewhere) {
   const std::string open = "G1 X30 Y15 F9000\n";
   const std::string further = "G1 X30 Y17 F9000\n";
-  const std::string a = kSquare + Line("Internal infill", "X15 Y15", "X16 Y15") +
-                        With(Line("Internal infill", "X30 Y15", "X31 Y15"), Way("X30 Y15"), open) +
-                        Line("Internal infill", "X15 Y17", "X16 Y17") +
-                        Line("Internal infill", "X28 Y17", "X30 Y17");
-  // With the last line the other way round: the way to it is another one.
-  const std::string b = With(With(With(a, open, Way("X30 Y15")), Way("X28 Y17"), further),
+  const std::string a =
+      kSquare + Line("Internal infill", "X15 Y15", "X16 Y15") +
+      With(Line("Internal infill", "X30 Y15", "X31 Y15"), Travel("X30 Y15"), open) +
+      Line("Internal infill", "X15 Y17", "X16 Y17") + Line("Internal infill", "X28 Y17", "X30 Y17");
+  // With the last line the other way round: the travel to it is another one.
+  const std::string b = With(With(With(a, open, Travel("X30 Y15")), Travel("X28 Y17"), further),
                              "G1 X30 Y17 E.3", "G1 X28 Y17 E.3");
 
   EXPECT_EQ(Broken(kHead + a, kHead + b), "");
 }
 
-// What goes on along the wall ends on it, so that the way from there begins on it as well.
-TEST(VerifyOpenWays, BeginWhereTheMoveAlongTheWallEnds) {
+// What goes on along the wall ends on it, so that the travel from there begins on it as well.
+TEST(VerifyOpenTravels, BeginWhereTheMoveAlongTheWallEnds) {
   const std::string wall = kSquare + "G1 X10.4 Y10\n";
   const std::string inside = ";TYPE:Internal infill\nG1 F1800\nG1 X15 Y10.6 E.3\n";
   const std::string a =
-      kHead + wall + Line("Internal infill", "X12 Y15", "X18 Y15") + Way("X10.5 Y10.6") + inside;
+      kHead + wall + Line("Internal infill", "X12 Y15", "X18 Y15") + Travel("X10.5 Y10.6") + inside;
   const std::string b = kHead + wall + "G1 X10.5 Y10.6 F9000\n" + inside +
                         Line("Internal infill", "X12 Y15", "X18 Y15");
 
@@ -84,18 +84,18 @@ TEST(VerifyOpenWays, BeginWhereTheMoveAlongTheWallEnds) {
   // From beyond the wall it leads across it.
   EXPECT_EQ(
       Broken(a, With(b, "G1 X10.5 Y10.6 F9000\n", "G1 X10.5 Y9 F9000\nG1 X10.5 Y10.6 F9000\n")),
-      "open_ways bounds");
+      "open_travel bounds");
 }
 
 // Some layers are reached with an open nozzle; where one is reached with filament pulled back, as
-// no longer way is, the next file does the same.
-TEST(VerifyOpenWays, LeadToLayersAsTheyDid) {
+// no longer travel is, the next file does the same.
+TEST(VerifyOpenTravels, LeadToLayersAsTheyDid) {
   const std::string infill = ";TYPE:Internal infill\nG1 F1800\n";
   const std::string third = ";LAYER_CHANGE\nG1 Z.6 F9000\n";
-  const std::string a = kHead + kTwo + kNextLayer + Way("X9 Y5.4") + infill + "G1 X0 Y5.4 E.3\n" +
-                        third + "G1 X4 Y8 F9000\n" + infill + "G1 X0 Y8 E.3\n";
+  const std::string a = kHead + kTwo + kNextLayer + Travel("X9 Y5.4") + infill +
+                        "G1 X0 Y5.4 E.3\n" + third + "G1 X4 Y8 F9000\n" + infill + "G1 X0 Y8 E.3\n";
   EXPECT_EQ(Broken(a, a), "");
-  EXPECT_EQ(Broken(a, With(a, Way("X9 Y5.4"), "G1 X9 Y5.4 F9000\n")), "open_ways");
+  EXPECT_EQ(Broken(a, With(a, Travel("X9 Y5.4"), "G1 X9 Y5.4 F9000\n")), "open_travel");
   EXPECT_EQ(Broken(a,
                    With(a, "G1 X4 Y8 F9000\n" + infill + "G1 X0 Y8",
                         "G1 X0 Y8 F9000\n" + infill + "G1 X4 Y8"),
@@ -103,41 +103,41 @@ TEST(VerifyOpenWays, LeadToLayersAsTheyDid) {
             "");
 }
 
-// Nor does a retraction get lost on a shorter way than any of the original.
-TEST(VerifyOpenWays, LeadToNoLayerIfNoneDid) {
+// Nor does a retraction get lost on a shorter travel than any of the original.
+TEST(VerifyOpenTravels, LeadToNoLayerIfNoneDid) {
   const std::string near = Line("Internal infill", "X9 Y5.4", "X0 Y5.4");
   const std::string far = Line("Internal infill", "X0 Y30", "X9 Y30");
   const std::string a = kHead + kTwo + kNextLayer + far + near;
   const std::string b = kHead + kTwo + kNextLayer + near + far;
   EXPECT_EQ(Broken(a, b), "");
-  const std::string open = With(b, Way("X9 Y5.4"), "G1 X9 Y5.4 F9000\n");
-  EXPECT_EQ(Broken(a, open), "open_ways");
+  const std::string open = With(b, Travel("X9 Y5.4"), "G1 X9 Y5.4 F9000\n");
+  EXPECT_EQ(Broken(a, open), "open_travel");
   // Whether it retracted at once there or not.
   const std::string leave = "G1 X9.3 Y5.2 F9000\n";
   const std::string left = With(a, kNextLayer, leave + "G1 E-1 F2100\n" + kNextLayer);
-  const std::string was = With(left, Way("X0 Y30"), "G1 X0 Y30 F9000\nG1 E1 F2100\n");
+  const std::string was = With(left, Travel("X0 Y30"), "G1 X0 Y30 F9000\nG1 E1 F2100\n");
   EXPECT_EQ(Broken(was, was), "");
-  EXPECT_THAT(Broken(was, With(open, kNextLayer, leave + kNextLayer)), HasSubstr("open_ways"));
+  EXPECT_THAT(Broken(was, With(open, kNextLayer, leave + kNextLayer)), HasSubstr("open_travel"));
   // Unless the original has one.
   const std::string third = ";LAYER_CHANGE\nG1 Z.6 F9000\n";
   const std::string last = ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y5.8 E.3\n";
   const std::string as_far = third + "G1 X0 Y5.8 F9000\n" + last;
-  EXPECT_EQ(Broken(a + as_far, open + third + Way("X0 Y5.8") + last), "");
+  EXPECT_EQ(Broken(a + as_far, open + third + Travel("X0 Y5.8") + last), "");
 }
 
-TEST(VerifyOpenWays, AreNoLongerThanTheLongestWhateverTheyCross) {
+TEST(VerifyOpenTravels, AreNoLongerThanTheLongestWhateverTheyCross) {
   const std::string far = Line("Internal infill", "X80 Y5", "X89 Y5");
   const std::string near = kOne + "G1 X9 Y2 F9000\nG1 F1800\nG1 X0 Y2 E.3\n";
-  const std::string open = With(far, Way("X80 Y5"), "G1 X80 Y5 F9000\n");
-  EXPECT_EQ(Broken(kHead + near + far, kHead + near + open), "open_ways");
+  const std::string open = With(far, Travel("X80 Y5"), "G1 X80 Y5 F9000\n");
+  EXPECT_EQ(Broken(kHead + near + far, kHead + near + open), "open_travel");
   EXPECT_EQ(Broken(kHead + near + open, kHead + near + open), "");
 }
 
-TEST(VerifyOpenWays, LeadToALayerWhereSuchDo) {
+TEST(VerifyOpenTravels, LeadToALayerWhereSuchDo) {
   const std::string next = ";LAYER_CHANGE\nG1 Z.4 F9000\n";
   const std::string a = kHead + kOne + "G1 X9 Y3 F9000\nG1 F1800\nG1 X0 Y3 E.3\n" + next;
-  const std::string open = With(kOther, Way("X0 Y5"), "G1 X0 Y5 F9000\n");
-  EXPECT_EQ(Broken(a + kOther, a + open), "open_ways");
+  const std::string open = With(kOther, Travel("X0 Y5"), "G1 X0 Y5 F9000\n");
+  EXPECT_EQ(Broken(a + kOther, a + open), "open_travel");
   EXPECT_EQ(Broken(a + open, a + kOther), "");
 }
 
@@ -147,7 +147,7 @@ std::string InfillLine(int i, bool open = false) {
   const std::string from = absl::StrCat("X", 9 * (i % 2), " Y", y);
   const std::string line =
       Line("Internal infill", from, absl::StrCat("X", 9 - 9 * (i % 2), " Y", y));
-  return open ? With(line, Way(from), absl::StrCat("G1 ", from, " F9000\n")) : line;
+  return open ? With(line, Travel(from), absl::StrCat("G1 ", from, " F9000\n")) : line;
 }
 
 // Pieces of a wall with open travel of 3 mm between them, and lines of infill.
@@ -161,12 +161,12 @@ std::string WallAndInfill(int lines) {
 }
 
 // Travel of this length stays open in the file, but not to infill.
-TEST(VerifyOpenWays, ThatAreNewRetractWhereTheirKindDoes) {
+TEST(VerifyOpenTravels, ThatAreNewRetractWhereTheirKindDoes) {
   const std::string lines = WallAndInfill(6);
   const std::string a = lines + InfillLine(7) + InfillLine(6);
   EXPECT_EQ(Broken(a, a), "");
   EXPECT_EQ(Broken(a, lines + InfillLine(6) + InfillLine(7)), "");
-  EXPECT_EQ(Broken(a, lines + InfillLine(6, true) + InfillLine(7)), "open_ways");
+  EXPECT_EQ(Broken(a, lines + InfillLine(6, true) + InfillLine(7)), "open_travel");
   // Three that retract are no habit, nor is it one where some do not.
   const std::string few = WallAndInfill(1);
   EXPECT_EQ(Broken(few + InfillLine(2) + InfillLine(1), few + InfillLine(1, true) + InfillLine(2)),
@@ -180,7 +180,7 @@ TEST(VerifyOpenWays, ThatAreNewRetractWhereTheirKindDoes) {
 }
 
 // Each with each of the original it would be ten billion pairs, and minutes.
-TEST(VerifyOpenWays, ManyThatAreNewTakeNoLonger) {
+TEST(VerifyOpenTravels, ManyThatAreNewTakeNoLonger) {
   const std::string far = "G1 X0 Y-5 F9000\nG1 X1 Y-5 E.03 F1200\n";
   std::string a = kHead + ";TYPE:Internal infill\n" + far;
   std::string b = a;

@@ -51,7 +51,7 @@ struct Saved {
 };
 
 Saved SavedUpwards(const GcodeFile& file) {
-  const RetractionHabit habit = HabitOfNewWays(file);
+  const RetractionHabit habit = HabitOfNewTravels(file);
   const LinkDonors donors(file);
   const LayerWriter writer(file, file.layers[0], habit, donors);
   const TravelModel model = LearnTravel(file, habit.threshold_mm)[0];
@@ -68,13 +68,14 @@ Saved SavedUpwards(const GcodeFile& file) {
     writer.WritePaths(order, start, text);
     saved.written += sign * Measure(file, text, start).seconds;
     for (size_t i = 1; i < order.size(); ++i) {
-      saved.estimated += sign * writer.EstimateWay(i, order[i - 1], order[i], model).seconds;
+      saved.estimated += sign * writer.EstimateTravel(i, order[i - 1], order[i], model).seconds;
     }
   }
   return saved;
 }
 
-// As high as the file's own ways from and to the same lines, and higher on longer ways.
+// As high as the file's own travel moves from and to the same lines, and higher on longer travel
+// moves.
 TEST(Retractions, OfASlopeCostTheMoreTheHigherItRises) {
   const auto file = Lines(.02);
   ASSERT_EQ(file->blocks.size(), 8u);

@@ -25,7 +25,7 @@ constexpr float kWindingSlackMm = 2.0f;
 constexpr float kWindingFactor = 3.0f;
 
 // The move with which the head goes down to a path that lies lower than the one before: it has to
-// do so where nothing stands in its way (way_heights.cc). Nothing if the path does not.
+// do so where nothing stands in its way (travel_heights.cc). Nothing if the path does not.
 const TraceMove* SinkOf(const TraceChunk& chunk, uint32_t link) {
   constexpr double kLevelMm = 1e-4;
   const TraceLink& traced = chunk.links[link];
@@ -39,143 +39,145 @@ const TraceMove* SinkOf(const TraceChunk& chunk, uint32_t link) {
 }
 
 // The travel in `link`; of length 0 if there is none, or if only new moves count and none is new.
-WayLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, uint32_t skipped,
-                   bool only_new) {
+TravelLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t link,
+                      uint32_t skipped, bool only_new) {
   const TraceLink& traced = chunk.links[link];
-  WayLength way;
-  way.layer = layer.index();
+  TravelLength travel;
+  travel.layer = layer.index();
   bool known = true;
   const TraceMove* first = nullptr;
   const TraceMove* last = nullptr;
   const TraceMove* sink = SinkOf(chunk, link);
   for (uint32_t m = traced.first_move + skipped; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
-    way.retracts |= Retracts(move);
+    travel.retracts |= Retracts(move);
     if (move.kind != MoveKind::kTravel || !move.in_print) continue;
     if (first == nullptr) first = &move;
     // The next path may begin where the one before it ends and a short move leads away.
     const double least_turn = last == first ? kShortestMm : kLeastTurnMm;
-    way.turns_back |= last != nullptr && move.length_mm() > least_turn &&
-                      DistanceOf(move.to, last->from) < kSamePointMm;
+    travel.turns_back |= last != nullptr && move.length_mm() > least_turn &&
+                         DistanceOf(move.to, last->from) < kSamePointMm;
     last = &move;
     const auto length = static_cast<float>(move.length_mm());
-    way.length_mm += length;
-    if (move.open && !(only_new && layer.IsHidden(link))) way.open_mm += length;
+    travel.length_mm += length;
+    if (move.open && !(only_new && layer.IsHidden(link))) travel.open_mm += length;
     if (layer.IsKnown(move)) continue;
-    if (known) way.line = move.line;
+    if (known) travel.line = move.line;
     known = false;
   }
   if (first == nullptr || traced.scripted || (only_new && known)) return {};
-  if (way.line == 0) way.line = first->line;
-  way.to_layer = traced.new_layer && way.open_mm > 0;
-  way.retracted_to_layer = traced.new_layer && way.length_mm > 0 && way.open_mm == 0;
+  if (travel.line == 0) travel.line = first->line;
+  travel.to_layer = traced.new_layer && travel.open_mm > 0;
+  travel.retracted_to_layer = traced.new_layer && travel.length_mm > 0 && travel.open_mm == 0;
   const double straight =
       sink == nullptr ? DistanceOf(first->from, last->to)
                       : DistanceOf(first->from, sink->from) + DistanceOf(sink->from, last->to);
-  way.excess_mm = way.length_mm - static_cast<float>(straight);
-  return way;
+  travel.excess_mm = travel.length_mm - static_cast<float>(straight);
+  return travel;
 }
 
-void ObserveWaysToLayers(const LayerPair& layer, const Tails& was_tails, const Tails& is_tails,
-                         LayerFindings& findings) {
-  const WayLength was = LengthOf(layer, layer.was(), layer.first_path_was(),
-                                 was_tails.At(layer.first_path_was()), false);
-  WayLength is =
+void ObserveTravelsToLayers(const LayerPair& layer, const Tails& was_tails, const Tails& is_tails,
+                            LayerFindings& findings) {
+  const TravelLength was = LengthOf(layer, layer.was(), layer.first_path_was(),
+                                    was_tails.At(layer.first_path_was()), false);
+  TravelLength is =
       LengthOf(layer, layer.is(), layer.first_path_is(), is_tails.At(layer.first_path_is()), true);
   is.was_retracted = was.retracted_to_layer;
   is.was_retracting = was.retracts;
-  if (was.to_layer || was.retracted_to_layer) findings.was.ways_to_layers.push_back(was);
-  if (is.to_layer) findings.is.ways_to_layers.push_back(is);
+  if (was.to_layer || was.retracted_to_layer) findings.was.travels_to_layers.push_back(was);
+  if (is.to_layer) findings.is.travels_to_layers.push_back(is);
 }
 
 void Observe(const LayerPair& layer, const Tails& tails, bool original, Observations& seen) {
   const TraceChunk& chunk = original ? layer.was() : layer.is();
   const uint32_t first = original ? layer.first_path_was() : layer.first_path_is();
   const uint32_t end = original ? layer.end_path_was() : layer.end_path_is();
-  WayLength open;
-  WayLength winding;
-  WayLength back;
+  TravelLength open;
+  TravelLength winding;
+  TravelLength back;
   for (uint32_t link = first; link < end; ++link) {
-    const WayLength way = LengthOf(layer, chunk, link, tails.At(link), !original);
-    if (way.open_mm > open.open_mm) open = way;
-    if (way.excess_mm > winding.excess_mm) winding = way;
-    if (way.turns_back) back = way;
+    const TravelLength travel = LengthOf(layer, chunk, link, tails.At(link), !original);
+    if (travel.open_mm > open.open_mm) open = travel;
+    if (travel.excess_mm > winding.excess_mm) winding = travel;
+    if (travel.turns_back) back = travel;
   }
-  if (back.turns_back) seen.way_lengths.push_back(back);
-  for (const WayLength& way : {open, winding}) {
-    if (way.line != 0) seen.way_lengths.push_back(way);
+  if (back.turns_back) seen.travel_lengths.push_back(back);
+  for (const TravelLength& travel : {open, winding}) {
+    if (travel.line != 0) seen.travel_lengths.push_back(travel);
   }
 }
 
-void CompareWaysToLayers(const Observations& was, const Observations& is,
-                         std::vector<Finding>& breaks) {
+void CompareTravelsToLayers(const Observations& was, const Observations& is,
+                            std::vector<Finding>& breaks) {
   bool any_open = false;
   float shortest_retracted = 1e9f;
   float longest_open = 0;
-  for (const WayLength& way : was.ways_to_layers) {
-    any_open |= way.open_mm > kShortestMm;
-    if (way.retracted_to_layer) shortest_retracted = std::min(shortest_retracted, way.length_mm);
-    if (!way.retracts) longest_open = std::max(longest_open, way.open_mm);
+  for (const TravelLength& travel : was.travels_to_layers) {
+    any_open |= travel.open_mm > kShortestMm;
+    if (travel.retracted_to_layer)
+      shortest_retracted = std::min(shortest_retracted, travel.length_mm);
+    if (!travel.retracts) longest_open = std::max(longest_open, travel.open_mm);
   }
-  for (const WayLength& way : is.ways_to_layers) {
-    if (way.open_mm > kShortestMm && !any_open) {
-      breaks.push_back({VerifyRule::kOpenWays, 0, way.line, way.layer,
+  for (const TravelLength& travel : is.travels_to_layers) {
+    if (travel.open_mm > kShortestMm && !any_open) {
+      breaks.push_back({VerifyRule::kOpenTravels, 0, travel.line, travel.layer,
                         "travel to another layer without a retraction, as the original has none"});
       continue;
     }
-    if (way.open_mm <= kToLayerSlackMm) continue;
-    const bool on_shorter = way.was_retracted && way.open_mm > shortest_retracted - kToLayerSlackMm;
-    const bool none_as_long =
-        way.was_retracting && !way.retracts && way.open_mm > longest_open + kToLayerSlackMm;
+    if (travel.open_mm <= kToLayerSlackMm) continue;
+    const bool on_shorter =
+        travel.was_retracted && travel.open_mm > shortest_retracted - kToLayerSlackMm;
+    const bool none_as_long = travel.was_retracting && !travel.retracts &&
+                              travel.open_mm > longest_open + kToLayerSlackMm;
     if (on_shorter || none_as_long) {
       breaks.push_back(
-          {VerifyRule::kOpenWays, 0, way.line, way.layer,
+          {VerifyRule::kOpenTravels, 0, travel.line, travel.layer,
            absl::StrFormat("travel of %.2f mm to this layer without a retraction; the "
                            "original retracts there, and on %s",
-                           way.open_mm, on_shorter ? "shorter travel" : "all travel as long")});
+                           travel.open_mm, on_shorter ? "shorter travel" : "all travel as long")});
     }
   }
 }
 
 }  // namespace
 
-void ObserveWayLengths(const LayerPair& layer, LayerFindings& findings) {
+void ObserveTravelLengths(const LayerPair& layer, LayerFindings& findings) {
   const Tails was(layer, true);
   const Tails is(layer, false);
   Observe(layer, was, true, findings.was);
   Observe(layer, is, false, findings.is);
-  ObserveWaysToLayers(layer, was, is, findings);
+  ObserveTravelsToLayers(layer, was, is, findings);
 }
 
-void CompareWayLengths(const Observations& was, const Observations& is,
-                       std::vector<Finding>& breaks) {
-  CompareWaysToLayers(was, is, breaks);
-  WayLength open;
-  WayLength winding;
+void CompareTravelLengths(const Observations& was, const Observations& is,
+                          std::vector<Finding>& breaks) {
+  CompareTravelsToLayers(was, is, breaks);
+  TravelLength open;
+  TravelLength winding;
   bool turn_back = false;
-  for (const WayLength& way : was.way_lengths) {
-    turn_back |= way.turns_back;
-    if (way.open_mm > open.open_mm) open = way;
-    if (way.excess_mm > winding.excess_mm) winding = way;
+  for (const TravelLength& travel : was.travel_lengths) {
+    turn_back |= travel.turns_back;
+    if (travel.open_mm > open.open_mm) open = travel;
+    if (travel.excess_mm > winding.excess_mm) winding = travel;
   }
-  for (const WayLength& way : is.way_lengths) {
-    if (way.turns_back && !turn_back) {
-      breaks.push_back({VerifyRule::kBounds, 0, way.line, way.layer,
+  for (const TravelLength& travel : is.travel_lengths) {
+    if (travel.turns_back && !turn_back) {
+      breaks.push_back({VerifyRule::kBounds, 0, travel.line, travel.layer,
                         "travel returns to where it was, as none does in the original"});
       continue;
     }
-    if (way.open_mm > open.open_mm * kOpenFactor + kOpenSlackMm) {
-      breaks.push_back({VerifyRule::kOpenWays, open.line, way.line, way.layer,
+    if (travel.open_mm > open.open_mm * kOpenFactor + kOpenSlackMm) {
+      breaks.push_back({VerifyRule::kOpenTravels, open.line, travel.line, travel.layer,
                         absl::StrFormat("travel of %.2f mm without a retraction; the longest such "
                                         "travel in the original has %.2f mm",
-                                        way.open_mm, open.open_mm)});
+                                        travel.open_mm, open.open_mm)});
     }
-    if (way.excess_mm > winding.excess_mm * kWindingFactor + kWindingSlackMm) {
+    if (travel.excess_mm > winding.excess_mm * kWindingFactor + kWindingSlackMm) {
       breaks.push_back(
-          {VerifyRule::kBounds, winding.line, way.line, way.layer,
+          {VerifyRule::kBounds, winding.line, travel.line, travel.layer,
            absl::StrFormat(
                "travel is %.2f mm longer than a straight move; the most in the original is %.2f mm",
-               way.excess_mm, winding.excess_mm)});
+               travel.excess_mm, winding.excess_mm)});
     }
   }
 }

@@ -5,30 +5,30 @@
 
 #include "absl/container/flat_hash_map.h"
 #include "absl/strings/str_format.h"
-#include "client/gcode/verify/match/way_ends.h"
+#include "client/gcode/verify/match/travel_ends.h"
 #include "client/gcode/verify/rules/rules.h"
 
 namespace traverse::gcode {
 namespace {
 
-constexpr double kShortestWayMm = 0.5;  // shorter travel comes from rounding
+constexpr double kShortestTravelMm = 0.5;  // shorter travel comes from rounding
 constexpr double kApexSlackMm = 0.003;
 
-enum class Nozzle : uint8_t { kNoWay, kOpen, kRetracted };
+enum class Nozzle : uint8_t { kNoTravel, kOpen, kRetracted };
 
 // Whether the travel in `link`, from path to path, is retracted; not if part of it is unretracted.
 Nozzle NozzleIn(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, bool new_ones) {
   const TraceLink& traced = chunk.links[link];
-  if (link == 0 || traced.new_layer || traced.scripted) return Nozzle::kNoWay;
-  if (DistanceOf(chunk.EndOf(chunk.paths[link - 1]), chunk.paths[link].start) < kShortestWayMm) {
-    return Nozzle::kNoWay;
+  if (link == 0 || traced.new_layer || traced.scripted) return Nozzle::kNoTravel;
+  if (DistanceOf(chunk.EndOf(chunk.paths[link - 1]), chunk.paths[link].start) < kShortestTravelMm) {
+    return Nozzle::kNoTravel;
   }
-  Nozzle nozzle = Nozzle::kNoWay;
+  Nozzle nozzle = Nozzle::kNoTravel;
   for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (move.kind != MoveKind::kTravel || !move.in_print) continue;
     if (new_ones && layer.IsKnown(move)) continue;
-    if (move.open && move.length_mm() > kShortestWayMm) return Nozzle::kOpen;
+    if (move.open && move.length_mm() > kShortestTravelMm) return Nozzle::kOpen;
     if (!move.open) nozzle = Nozzle::kRetracted;
   }
   return nozzle;
@@ -51,29 +51,29 @@ uint32_t LineOf(const TraceChunk& chunk, uint32_t link) {
 }
 
 // The original's travel that is retracted all along, by its ends: of several the lowest.
-absl::flat_hash_map<uint64_t, uint32_t> RetractedWays(const LayerPair& layer) {
+absl::flat_hash_map<uint64_t, uint32_t> RetractedTravels(const LayerPair& layer) {
   const TraceChunk& was = layer.was();
-  absl::flat_hash_map<uint64_t, uint32_t> ways;
+  absl::flat_hash_map<uint64_t, uint32_t> travels;
   for (uint32_t link = layer.first_path_was() + 1; link < layer.end_path_was(); ++link) {
     if (NozzleIn(layer, was, link, false) != Nozzle::kRetracted) continue;
-    const auto [found, added] = ways.try_emplace(EndsOf(was, link), link);
+    const auto [found, added] = travels.try_emplace(EndsOf(was, link), link);
     if (!added && ApexOf(was, link) < ApexOf(was, found->second)) found->second = link;
   }
-  return ways;
+  return travels;
 }
 
 }  // namespace
 
-void CheckSameWays(const LayerPair& layer, LayerFindings& findings) {
+void CheckSameTravels(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& was = layer.was();
   const TraceChunk& is = layer.is();
   std::vector<uint32_t> changed;  // links
   for (uint32_t link = layer.first_path_is() + 1; link < layer.end_path_is(); ++link) {
     if (layer.IsHidden(link)) continue;
-    if (NozzleIn(layer, is, link, true) != Nozzle::kNoWay) changed.push_back(link);
+    if (NozzleIn(layer, is, link, true) != Nozzle::kNoTravel) changed.push_back(link);
   }
   if (changed.empty()) return;
-  const absl::flat_hash_map<uint64_t, uint32_t> retracted = RetractedWays(layer);
+  const absl::flat_hash_map<uint64_t, uint32_t> retracted = RetractedTravels(layer);
   for (const uint32_t link : changed) {
     const auto same = retracted.find(EndsOf(is, link));
     if (same == retracted.end()) continue;
@@ -82,7 +82,7 @@ void CheckSameWays(const LayerPair& layer, LayerFindings& findings) {
           {rule, LineOf(was, same->second), LineOf(is, link), layer.index(), std::move(what)});
     };
     if (NozzleIn(layer, is, link, true) == Nozzle::kOpen) {
-      report(VerifyRule::kOpenWays, "travel without a retraction where the original retracts");
+      report(VerifyRule::kOpenTravels, "travel without a retraction where the original retracts");
       continue;
     }
     const double lift = ApexOf(was, same->second);

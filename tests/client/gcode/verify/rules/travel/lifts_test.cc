@@ -1,4 +1,4 @@
-// Lifts of travel: client/gcode/verify/rules/ways/lifts.
+// Lifts of travel: client/gcode/verify/rules/travel/lifts.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 using namespace testing;  // NOLINT: the small prints
 using ::testing::HasSubstr;
 
-TEST(VerifyLifts, OfTheFirstWayOfAllTellNothingOfWaysBetweenLayers) {
+TEST(VerifyLifts, OfTheFirstTravelOfAllTellNothingOfTravelsBetweenLayers) {
   const std::string first = kHead + "G1 E-1 F2100\nG1 Z.6 F9000\nG1 X0 Y0 F9000\nG1 Z.2 F9000\n" +
                             "G1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 X5 Y0 E.3\n" +
                             ";LAYER_CHANGE\nG1 Z.4 F9000\n";
@@ -26,12 +26,12 @@ TEST(VerifyLifts, OfTheFirstWayOfAllTellNothingOfWaysBetweenLayers) {
 }
 
 TEST(VerifyLifts, AreNeitherDroppedNorHalvedNorDoneTooLate) {
-  const std::string way = Lifted("X10 Y30");
+  const std::string travel = Lifted("X10 Y30");
   for (const std::string& other :
-       {With(With(way, "G1 Z.6 F9000\n", ""), "G1 Z.2\n", ""), With(way, "Z.6", "Z.4"),
-        With(With(way, "G1 Z.6 F9000\n", ""), "F9000\n", "F9000\nG1 Z.6\n"),
-        With(With(way, "G1 Z.6 F9000\n", ""), "Y30", "Y30 Z.6")}) {
-    EXPECT_EQ(Broken(kHead + kLifted, kHead + With(kLifted, way, other)), "lifts") << other;
+       {With(With(travel, "G1 Z.6 F9000\n", ""), "G1 Z.2\n", ""), With(travel, "Z.6", "Z.4"),
+        With(With(travel, "G1 Z.6 F9000\n", ""), "F9000\n", "F9000\nG1 Z.6\n"),
+        With(With(travel, "G1 Z.6 F9000\n", ""), "Y30", "Y30 Z.6")}) {
+    EXPECT_EQ(Broken(kHead + kLifted, kHead + With(kLifted, travel, other)), "lifts") << other;
   }
 }
 
@@ -44,11 +44,11 @@ TEST(VerifyLifts, MayBeLow) {
   const std::string more = LiftedLine("X10 Y30", "X20 Y30") + last;
   const std::string a = kHead + one + other + more;
   EXPECT_EQ(Broken(a, kHead + other + one + more), "");
-  const std::string dropped = With(one, Lifted("X10 Y10"), Way("X10 Y10"));
+  const std::string dropped = With(one, Lifted("X10 Y10"), Travel("X10 Y10"));
   EXPECT_EQ(Broken(a, kHead + other + dropped + more), "lifts");
 }
 
-TEST(VerifyLifts, OfOtherWaysAreHeightsAboveTheLayer) {
+TEST(VerifyLifts, OfOtherTravelsAreHeightsAboveTheLayer) {
   const std::string other = LiftedLine("X20 Y30", "X10 Y30") + LiftedLine("X10 Y20", "X20 Y20") +
                             LiftedLine("X10 Y10", "X20 Y10") + LiftedLine("X10 Y40", "X20 Y40");
   EXPECT_EQ(Broken(kHead + kLifted, kHead + other), "");
@@ -73,7 +73,7 @@ TEST(VerifyLifts, OfALayerThatHasThemAreNotDropped) {
             "lifts");
 }
 
-TEST(VerifyLifts, TheHeadRisesBeforeTheWayToALayer) {
+TEST(VerifyLifts, TheHeadRisesBeforeTheTravelToALayer) {
   const std::string unmarked = kTwo + "G1 E-1 F2100\nG1 Z.4 F9000\nG1 X0 Y0 F9000\nG1 E1 F2100\n" +
                                "G1 F1800\nG1 X9 Y0 E.3\n";
   const std::string late =
@@ -83,13 +83,13 @@ TEST(VerifyLifts, TheHeadRisesBeforeTheWayToALayer) {
 }
 
 // From the top of one object to the foot of the next one.
-TEST(VerifyLifts, TheHeadGoesDownBehindTheWayToAnObject) {
+TEST(VerifyLifts, TheHeadGoesDownBehindTheTravelToAnObject) {
   const std::string first = kTwo + "G1 Z5 F9000\n" + kTwo;
-  const std::string way = "G1 X50 Y50 F9000\nG1 Z.2 F9000\n";
-  const std::string a = first + "; printing object b\nG1 E-1 F2100\n" + way +
+  const std::string travel = "G1 X50 Y50 F9000\nG1 Z.2 F9000\n";
+  const std::string a = first + "; printing object b\nG1 E-1 F2100\n" + travel +
                         "G1 E1 F2100\nG1 F1800\nG1 X60 Y50 E.3\n";
   EXPECT_EQ(Broken(kHead + a, kHead + a), "");
-  EXPECT_EQ(Broken(kHead + a, kHead + With(a, way, "G1 Z.2 F9000\nG1 X50 Y50 F9000\n")),
+  EXPECT_EQ(Broken(kHead + a, kHead + With(a, travel, "G1 Z.2 F9000\nG1 X50 Y50 F9000\n")),
             "same_print");
 }
 
@@ -102,8 +102,9 @@ TEST(VerifyLifts, NoneIsInventedNorHigher) {
   EXPECT_THAT(Broken(kHead + kTwo, kHead + invented), HasSubstr("lifts"));
 }
 
-// Ways that rise all along, by 0.2 mm in 10 mm: how high they come follows from how long they are.
-TEST(VerifyLifts, OnASlopeOfTheOriginalComeAsHighAsTheirWayIsLong) {
+// Travel moves that rise all along, by 0.2 mm in 10 mm: how high they come follows from how long
+// they are.
+TEST(VerifyLifts, OnASlopeOfTheOriginalComeAsHighAsTheirTravelIsLong) {
   const auto line = [](const char* z, const char* from, const char* to) {
     return absl::StrCat("G1 E-1 F2100\nG1 ", from, " Z", z, " F9000\nG1 Z.2 F720\nG1 E1 F2100\n",
                         ";TYPE:Internal infill\nG1 F1800\nG1 ", to, " E.3\n");
@@ -140,7 +141,7 @@ TEST(VerifyLifts, OnASlopeOfTheOriginalMayBeShort) {
   EXPECT_EQ(Broken(a, other(".265")), "lifts");
 }
 
-// Lines of infill with retracted ways to them, each lifted but for that to line `low`.
+// Lines of infill with retracted travel moves to them, each lifted but for that to line `low`.
 std::string Lines(int count, int low) {
   std::string text = "M83\n;LAYER_CHANGE\nG1 Z.2 F9000\n";
   for (int i = 0; i < count; ++i) {
@@ -174,9 +175,9 @@ TEST(VerifyLifts, AWayThatTheFileLeavesLowMayBeLowInOtherWords) {
   EXPECT_GT(LiftsBroken(Lines(150, 70), around), 0);
 }
 
-// Not all ways of this file are lifted, so that a low one is no break; one that sinks on the way
-// is.
-TEST(VerifyLifts, NoWaySinksOnItsWay) {
+// Not all travel moves of this file are lifted, so that a low one is no break; one that sinks on
+// the way is.
+TEST(VerifyLifts, NoTravelSinksOnItsTravel) {
   const std::string low = Line("Internal infill", "X10 Y50", "X20 Y50");
   const std::string a = kHead + kLifted + low;
   EXPECT_EQ(Broken(a, a), "");
@@ -197,11 +198,11 @@ TEST(VerifyLifts, HeightsBesideUnknownLinesAreThoseOfTheOriginal) {
             std::string::npos);
 }
 
-TEST(VerifyLifts, TheWayFromTheStartScriptRisesNoHigherAndDescendsNoDeeper) {
+TEST(VerifyLifts, TheTravelFromTheStartScriptRisesNoHigherAndDescendsNoDeeper) {
   const std::string purge = "M83\nG1 X20 Y0 Z.2 F9000\nG1 X60 E9 F1000\nG1 X62 F9000\n";
-  const std::string way = ";LAYER_CHANGE\nG1 X10 Y10 Z.6 F9000\nG1 Z.2\n";
-  const std::string a = purge + way + kTwo;
-  EXPECT_EQ(Broken(a, purge + way + kOneTurned), "");
+  const std::string travel = ";LAYER_CHANGE\nG1 X10 Y10 Z.6 F9000\nG1 Z.2\n";
+  const std::string a = purge + travel + kTwo;
+  EXPECT_EQ(Broken(a, purge + travel + kOneTurned), "");
   EXPECT_EQ(Broken(a, With(a, "Z.6", "Z30")), "lifts");
   EXPECT_THAT(Broken(a, With(a, "G1 Z.2\n", "G1 Z.1\nG1 Z.2\n")), HasSubstr("lifts"));
 }
@@ -221,7 +222,7 @@ TEST(VerifyLifts, AreDoneOnce) {
 }
 
 // Between layers of which the next one lies lower than the lift, too.
-TEST(VerifyLifts, TheHeadDoesNotSinkOnTheWayUp) {
+TEST(VerifyLifts, TheHeadDoesNotSinkOnTheTravelUp) {
   const std::string line = "G1 E1 F2100\n;TYPE:Internal infill\nG1 F1800\nG1 X0 Y15 E.3\n";
   const auto to_layer = [&](const std::string& z) {
     return "G1 E-1 F2100\nG1 Z.6 F9000\n;LAYER_CHANGE\n" + z + "G1 Z.8 F9000\nG1 X9 Y15\nG1 Z.4\n" +
@@ -320,15 +321,15 @@ TEST(VerifyLifts, TheHeadSinksWhereItSank) {
 
 // A slope of two stretches comes out as a straight one, which rises a little later.
 TEST(VerifyLifts, ASlopeOfTwoStretchesMayBecomeOne) {
-  const auto way = [](const std::string& moves, const std::string& end) {
+  const auto travel = [](const std::string& moves, const std::string& end) {
     return absl::StrCat("G1 E-1 F2100\n", moves, "G1 Z.2\nG1 E1 F2100\n;TYPE:Internal infill\n",
                         "G1 F1800\nG1 ", end, " E.3\n");
   };
-  const std::string a = kHead + kOne + way("G1 X9 Y2.5 Z.244 F9000\n", "X0 Y2.5") +
-                        way("G1 X32 Y2.5 Z.76 F9000\nG1 X36 Y2.5 Z.8\nG1 X60 Y2.5\n", "X60 Y9");
+  const std::string a = kHead + kOne + travel("G1 X9 Y2.5 Z.244 F9000\n", "X0 Y2.5") +
+                        travel("G1 X32 Y2.5 Z.76 F9000\nG1 X36 Y2.5 Z.8\nG1 X60 Y2.5\n", "X60 Y9");
   const auto other = [&](const char* bend) {
-    return kHead + kOne + way(absl::StrCat("G1 ", bend, " Z.8 F9000\nG1 X60 Y2.5\n"), "X60 Y9") +
-           way("G1 X27.404 Y4.846 Z.8 F9000\nG1 X9 Y2.5\n", "X0 Y2.5");
+    return kHead + kOne + travel(absl::StrCat("G1 ", bend, " Z.8 F9000\nG1 X60 Y2.5\n"), "X60 Y9") +
+           travel("G1 X27.404 Y4.846 Z.8 F9000\nG1 X9 Y2.5\n", "X0 Y2.5");
   };
   EXPECT_EQ(Broken(a, a), "");
   EXPECT_EQ(Broken(a, other("X45.557 Y1.792")), "");
@@ -337,16 +338,16 @@ TEST(VerifyLifts, ASlopeOfTwoStretchesMayBecomeOne) {
 
 // A slope of the same length is a larger share of shorter travel.
 TEST(VerifyLifts, ASlopeAsLongAsBeforeMayLeadToANearerPath) {
-  const auto way = [](const std::string& slope, const std::string& from, const std::string& to) {
+  const auto travel = [](const std::string& slope, const std::string& from, const std::string& to) {
     return absl::StrCat("G1 E-1 F2100\n", slope, "G1 ", from, "\nG1 Z.2\nG1 E1 F2100\n",
                         ";TYPE:Internal infill\nG1 F1800\nG1 ", to, " E.3\n");
   };
-  const std::string a = kHead + kOne + way("G1 X22 Y0 Z.6 F9000\n", "X60 Y0", "X60 Y9") +
-                        way("G1 X58 Y9 Z.6 F9000\n", "X24 Y9", "X24 Y2") +
-                        way("G1 X26 Y2 Z.6 F9000\n", "X70 Y2", "X70 Y9");
+  const std::string a = kHead + kOne + travel("G1 X22 Y0 Z.6 F9000\n", "X60 Y0", "X60 Y9") +
+                        travel("G1 X58 Y9 Z.6 F9000\n", "X24 Y9", "X24 Y2") +
+                        travel("G1 X26 Y2 Z.6 F9000\n", "X70 Y2", "X70 Y9");
   const auto other = [&](const std::string& slope) {
-    return kHead + kOne + way("G1 X22 Y0 Z.6 F9000\n", "X60 Y0", "X60 Y9") +
-           way(slope, "X70 Y9", "X70 Y2") + way("G1 X68 Y2 Z.6 F9000\n", "X24 Y2", "X24 Y9");
+    return kHead + kOne + travel("G1 X22 Y0 Z.6 F9000\n", "X60 Y0", "X60 Y9") +
+           travel(slope, "X70 Y9", "X70 Y2") + travel("G1 X68 Y2 Z.6 F9000\n", "X24 Y2", "X24 Y9");
   };
   EXPECT_EQ(Broken(a, a), "");
   EXPECT_EQ(Broken(a, other("G1 X62 Y9 Z.6 F9000\n")), "");
@@ -366,11 +367,11 @@ TEST(VerifyLifts, AreNotDoneOnASlopeWhereNoneIs) {
 
 // A printer may skip what stands between the labels of an object.
 TEST(VerifyLifts, TheHeadRisesOnTheSameSideOfALabel) {
-  const std::string way = Lifted("X10 Y20");
+  const std::string travel = Lifted("X10 Y20");
   const std::string label = "; stop printing object a\n";
-  const std::string a = kHead + With(kLifted, way, With(way, "G1 Z.6", label + "G1 Z.6"));
+  const std::string a = kHead + With(kLifted, travel, With(travel, "G1 Z.6", label + "G1 Z.6"));
   const std::string b =
-      kHead + With(kLifted, way, With(way, "F9000\nG1 X10", "F9000\n" + label + "G1 X10"));
+      kHead + With(kLifted, travel, With(travel, "F9000\nG1 X10", "F9000\n" + label + "G1 X10"));
   EXPECT_EQ(Broken(a, a), "");
   EXPECT_EQ(Broken(a, b), "lifts");
   EXPECT_EQ(Broken(b, a), "lifts");

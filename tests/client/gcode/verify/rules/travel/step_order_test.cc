@@ -1,4 +1,4 @@
-// In which order travel takes its steps: client/gcode/verify/rules/ways/step_order.
+// In which order travel takes its steps: client/gcode/verify/rules/travel/step_order.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

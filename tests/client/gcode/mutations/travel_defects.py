@@ -82,12 +82,12 @@ def stray(retracted):
 
         if retracted:
             return pick(rng, [found[2] for found in links(file)], 50, make)
-        return pick(rng, open_ways(file), 50, make)
+        return pick(rng, open_travel(file), 50, make)
 
     return defect
 
 
-def open_ways(file):
+def open_travel(file):
     """Travels within a layer with nothing pulled back."""
     found = []
     for k in range(len(file.paths) - 1):
@@ -125,7 +125,7 @@ def open_way_slow(file, rng):
         return edited(file, {i: [with_f(file.lines[i].text, 1234)],
                              after: [f"G1 F{number(file.lines[i].feed)}", file.lines[after].text]})
 
-    return pick(rng, open_ways(file), 50, make)
+    return pick(rng, open_travel(file), 50, make)
 
 
 def way_beyond(file, rng):
@@ -160,7 +160,7 @@ def way_along_wall(file, rng):
                     return edited(file, {ways[0]: [with_xy(line.text, one), with_xy(line.text, other), line.text]})
         return None
 
-    return pick(rng, open_ways(file), 200, make)
+    return pick(rng, open_travel(file), 200, make)
 
 
 def way_on_arc(file, rng):
@@ -297,8 +297,8 @@ DEFECTS = (
     ("way beyond its end and back", "bounds", way_beyond, "free"),
     ("open way along a wall", "bounds", way_along_wall, "free"),
     ("way along an arc", "bounds", way_on_arc, "free"),
-    ("retraction 0.2 mm late", "kept_ways", pulled_late, "free"),
-    ("poke of 0.3 mm back along the path", "kept_ways", poke, "free"),
+    ("retraction 0.2 mm late", "kept_travel", pulled_late, "free"),
+    ("poke of 0.3 mm back along the path", "kept_travel", poke, "free"),
     ("lift before the retraction", "step_order", lifted_early, "free"),
     ("open way at another speed", "speeds", open_way_slow, "free"),
     ("lift while leading away", "lifts", lift_with_way, "free"),

@@ -19,17 +19,17 @@ constexpr double kShortestMm = 0.05;
 constexpr double kLevelMm = 1e-4;
 constexpr float kDescentSlackMm = 0.5f;
 
-WayRise RiseOf(double from, double to) {
-  if (std::abs(to - from) <= kLevelMm) return WayRise::kLevel;
-  return to > from ? WayRise::kUp : WayRise::kDown;
+TravelRise RiseOf(double from, double to) {
+  if (std::abs(to - from) <= kLevelMm) return TravelRise::kLevel;
+  return to > from ? TravelRise::kUp : TravelRise::kDown;
 }
 
 int64_t Um(double mm) { return std::llround(mm * 1000); }
 
 // Travel from the start script is no example for other travel: it is only no higher, and no lower,
 // than it was.
-void ObserveFirstWay(const LayerPair& layer, const TraceChunk& chunk, const TraceLink& traced,
-                     Observations& seen) {
+void ObserveFirstTravel(const LayerPair& layer, const TraceChunk& chunk, const TraceLink& traced,
+                        Observations& seen) {
   for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (!move.in_print) continue;
@@ -52,14 +52,14 @@ class LinkHeights {
         lowest_{0, 0, layer, RiseOf(from, to)},
         deepest_(lowest_),
         descent_{0, 0, layer, lowest_.rise},
-        lifts_{lowest_.rise == WayRise::kLevel, 0, 0, 0, layer} {}
+        lifts_{lowest_.rise == TravelRise::kLevel, 0, 0, 0, layer} {}
 
   void CountLifts(const TraceMove& move) {
     if (move.kind == MoveKind::kUp && move.z_to_mm > move.z_from_mm && ++lifts_.times > 1) {
       lifts_.line = move.line;
     }
     sinks_ |= move.z_to_mm < move.z_from_mm - kSlackMm;
-    if (lowest_.rise != WayRise::kDown && sinks_ && move.z_to_mm > move.z_from_mm + kSlackMm) {
+    if (lowest_.rise != TravelRise::kDown && sinks_ && move.z_to_mm > move.z_from_mm + kSlackMm) {
       sinks_ = false;
       ++lifts_.dips;
       lifts_.line = move.line;
@@ -67,7 +67,7 @@ class LinkHeights {
   }
 
   void NoteRise(const TraceMove& move, bool only_new) {
-    // A slope among known lines is compared with the heights of all ways: lifts.
+    // A slope among known lines is compared with the heights of all travel moves: lifts.
     const bool rises = move.kind == MoveKind::kUp || (scripted_ && move.sideways());
     if (!rises || move.z_to_mm <= move.z_from_mm) return;
     const auto note = [&](auto& map, auto key) { NoteSeen(map, key, move.line, lifts_.layer); };
@@ -109,8 +109,8 @@ class LinkHeights {
   const double to_;
   const bool scripted_;
   Observations& seen_;
-  LowestWay lowest_;
-  LowestWay deepest_;
+  LowestTravel lowest_;
+  LowestTravel deepest_;
   Descent descent_;
   RepeatedLift lifts_;
   bool sinks_ = false;
@@ -121,7 +121,7 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
   const TraceLink& traced = chunk.links[link];
   if (traced.first_move == traced.end_move) return;
   if (!chunk.moves[traced.first_move].in_print) {
-    return ObserveFirstWay(layer, chunk, traced, seen);
+    return ObserveFirstTravel(layer, chunk, traced, seen);
   }
   LinkHeights heights(chunk.moves[traced.first_move].z_from_mm, chunk.paths[link].z_mm,
                       traced.scripted, layer.index(), seen);
@@ -139,11 +139,11 @@ void Observe(const LayerPair& layer, const TraceChunk& chunk, uint32_t link, boo
 
 // The head descends no deeper than in the original, and does not rise more often between two paths.
 void CompareMoves(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
-  LowestWay deepest;
-  for (const LowestWay& move : was.deepest) {
+  LowestTravel deepest;
+  for (const LowestTravel& move : was.deepest) {
     if (move.above_mm < deepest.above_mm) deepest = move;
   }
-  for (const LowestWay& move : is.deepest) {
+  for (const LowestTravel& move : is.deepest) {
     if (move.above_mm >= deepest.above_mm - kSlackMm) continue;
     breaks.push_back({VerifyRule::kLifts, deepest.line, move.line, move.layer,
                       absl::StrFormat("the head descends %.3f mm below the layer; in the original "
@@ -182,7 +182,7 @@ void CompareMoves(const Observations& was, const Observations& is, std::vector<F
 
 void CompareDescents(const Observations& was, const Observations& is,
                      std::vector<Finding>& breaks) {
-  std::array<Descent, static_cast<size_t>(WayRise::kCount)> known;
+  std::array<Descent, static_cast<size_t>(TravelRise::kCount)> known;
   for (const Descent& descent : was.descents) {
     Descent& longest = known[static_cast<size_t>(descent.rise)];
     if (descent.length_mm > longest.length_mm) longest = descent;
@@ -198,8 +198,8 @@ void CompareDescents(const Observations& was, const Observations& is,
   }
 }
 
-void CompareFirstWay(const Observations& was, const Observations& is,
-                     std::vector<Finding>& breaks) {
+void CompareFirstTravel(const Observations& was, const Observations& is,
+                        std::vector<Finding>& breaks) {
   const auto compare = [&breaks](const ExtremePoint& had, const ExtremePoint& has, double side,
                                  const char* leads) {
     if (had.line == 0 || has.line == 0 || side * (has.z_mm - had.z_mm) <= kSlackMm) return;
@@ -235,17 +235,17 @@ struct Sinking {
 
 Sinking SinkingTo(const TraceChunk& chunk, uint32_t path) {
   const TraceLink& link = chunk.links[path];
-  Sinking way;
-  if (link.first_move == link.end_move || !chunk.moves[link.first_move].in_print) return way;
+  Sinking travel;
+  if (link.first_move == link.end_move || !chunk.moves[link.first_move].in_print) return travel;
   const double level = chunk.moves[link.first_move].z_from_mm - kSlackMm;
-  if (chunk.paths[path].z_mm >= level) return way;
+  if (chunk.paths[path].z_mm >= level) return travel;
   for (uint32_t m = link.first_move; m < link.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     if (move.z_to_mm >= level && move.z_from_mm >= level) continue;
-    if (!way.sinks) way = {true, move.from, 0, move.line};
-    way.low_mm += move.sideways() ? move.length_mm() : 0;
+    if (!travel.sinks) travel = {true, move.from, 0, move.line};
+    travel.low_mm += move.sideways() ? move.length_mm() : 0;
   }
-  return way;
+  return travel;
 }
 
 }  // namespace
@@ -278,21 +278,21 @@ void ObserveHeights(const LayerPair& layer, LayerFindings& findings) {
 
 void CompareHeights(const Observations& was, const Observations& is, std::vector<Finding>& breaks) {
   CompareMoves(was, is, breaks);
-  CompareFirstWay(was, is, breaks);
+  CompareFirstTravel(was, is, breaks);
   CompareDescents(was, is, breaks);
-  std::array<LowestWay, static_cast<size_t>(WayRise::kCount)> known;
-  for (const LowestWay& way : was.lowest) {
-    LowestWay& lowest = known[static_cast<size_t>(way.rise)];
-    if (way.above_mm < lowest.above_mm) lowest = way;
+  std::array<LowestTravel, static_cast<size_t>(TravelRise::kCount)> known;
+  for (const LowestTravel& travel : was.lowest) {
+    LowestTravel& lowest = known[static_cast<size_t>(travel.rise)];
+    if (travel.above_mm < lowest.above_mm) lowest = travel;
   }
-  for (const LowestWay& way : is.lowest) {
-    const LowestWay& lowest = known[static_cast<size_t>(way.rise)];
-    if (way.above_mm >= lowest.above_mm - kSlackMm) continue;
+  for (const LowestTravel& travel : is.lowest) {
+    const LowestTravel& lowest = known[static_cast<size_t>(travel.rise)];
+    if (travel.above_mm >= lowest.above_mm - kSlackMm) continue;
     breaks.push_back(
-        {VerifyRule::kLifts, lowest.line, way.line, way.layer,
+        {VerifyRule::kLifts, lowest.line, travel.line, travel.layer,
          absl::StrFormat("travel is %.3f mm below the paths that it connects; in the original "
                          "%.3f mm at most",
-                         -way.above_mm, -lowest.above_mm)});
+                         -travel.above_mm, -lowest.above_mm)});
   }
   CompareRises(was, is, true, breaks);
   CompareRises(was, is, false, breaks);

@@ -1,14 +1,14 @@
 // Estimated totals of travel between paths, before it is written.
 
-#ifndef TRAVERSE_CLIENT_GCODE_WRITE_WAY_TOTALS_H_
-#define TRAVERSE_CLIENT_GCODE_WRITE_WAY_TOTALS_H_
+#ifndef TRAVERSE_CLIENT_GCODE_WRITE_TRAVEL_TOTALS_H_
+#define TRAVERSE_CLIENT_GCODE_WRITE_TRAVEL_TOTALS_H_
 
 #include <cstdint>
 
 namespace traverse::gcode {
 
 // For the travel between two paths, or for all travel of an order.
-struct WayTotals {
+struct TravelTotals {
   double seconds = 0;
   double mm = 0;
   int32_t crossings = 0;  // across visible walls
@@ -20,7 +20,7 @@ struct WayTotals {
   // For a single move: its length if it counts as open, without what continues along a path.
   double open_mm = 0;
 
-  WayTotals& operator+=(const WayTotals& other) {
+  TravelTotals& operator+=(const TravelTotals& other) {
     seconds += other.seconds;
     mm += other.mm;
     crossings += other.crossings;
@@ -31,7 +31,7 @@ struct WayTotals {
     return *this;
   }
 
-  WayTotals& operator-=(const WayTotals& other) {
+  TravelTotals& operator-=(const TravelTotals& other) {
     seconds -= other.seconds;
     mm -= other.mm;
     crossings -= other.crossings;
@@ -45,4 +45,4 @@ struct WayTotals {
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_WRITE_WAY_TOTALS_H_
+#endif  // TRAVERSE_CLIENT_GCODE_WRITE_TRAVEL_TOTALS_H_
