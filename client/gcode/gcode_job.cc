@@ -314,6 +314,7 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   job.gcode = std::move(file);
   return job;
 }
+  job.hidden = habits.retraction.hidden;
 
 void AddMeasuredFacts(InputJob& job, const GcodeOptions& options) {
   const auto add = [&job](std::string key, std::string value) {

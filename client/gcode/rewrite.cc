@@ -183,9 +183,10 @@ class Rewriter {
            const RewriteOptions& options)
       : file_(file),
         options_(options),
-        chooser_(file, tries,
-                 {options.policy, options.crossings, options.allow, options.threads,
-                  options.min_revisit_seconds, options.polish, options.usual_tries}) {}
+        chooser_(
+            file, tries,
+            {options.policy, options.crossings, options.allow, options.threads,
+             options.min_revisit_seconds, options.polish, options.usual_tries, options.hidden}) {}
 
   absl::StatusOr<GcodeRewrite> Rewrite() {
     for (int round = 0;; ++round) {

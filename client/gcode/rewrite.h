@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -72,6 +73,9 @@ struct RewriteOptions {
   std::optional<gcode::PolishLimit> polish = {};
 
   size_t usual_tries = 0;  // see gcode::ChoiceOptions; REQUIRES: there are as many
+
+  // Of `file`, if they are known: to find them takes a while.
+  std::shared_ptr<const gcode::HiddenMoves> hidden = nullptr;
 };
 
 // Writes `file` with each layer in one of its orders in `tries`, or in its own, whichever makes the

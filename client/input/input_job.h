@@ -18,6 +18,10 @@ namespace traverse {
 
 struct GcodeFile;  // client/gcode: the text and its parts, for the writer
 
+namespace gcode {
+class HiddenMoves;  // client/gcode/hidden
+}
+
 namespace gtsp {
 struct Instance;  // client/gtsp
 }
@@ -74,6 +78,9 @@ struct InputJob {
 
   // Only for G-code: the file as read. Otherwise null.
   std::shared_ptr<const GcodeFile> gcode;
+
+  // Only for G-code, and if travel that nobody can see is written in another way for that.
+  std::shared_ptr<const gcode::HiddenMoves> hidden;
 
   // Only for GTSPLIB: the instance. Otherwise null.
   std::shared_ptr<const gtsp::Instance> gtsp;

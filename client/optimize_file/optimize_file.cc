@@ -111,6 +111,7 @@ absl::StatusOr<GcodeRewrite> RewriteByRuns(const InputJob& job,
   rewrite.threads = gcode::ThreadsFor(job.gcode->text.size());
   rewrite.polish = std::move(polish);
   rewrite.usual_tries = runs.size() > kOwnSearches ? runs.size() - kOwnSearches : 0;
+  rewrite.hidden = job.hidden;
   return RewriteGcode(*job.gcode, tries, rewrite);
 }
 

@@ -41,6 +41,7 @@ Json AllowJson(const VerifyPermissions& permissions) {
   if (permissions.fan_order) names.push_back("fan_order");
   if (permissions.wipes) names.push_back("wipes");
   if (permissions.hidden_retractions) names.push_back("hidden_retractions");
+  if (permissions.inner_detours) names.push_back("inner_detours");
   return names;
 }
 

@@ -167,7 +167,7 @@ Flag CrossingsFlag() {
 }
 
 Flag AllowFlag() {
-  return {"allow", "NAME,...", "infill|wall|fan_order, wipes, hidden_retractions"};
+  return {"allow", "NAME,...", "infill|wall|fan_order, wipes, inner_detours, ..."};
 }
 
 Flag MaxHiddenTravelFlag() {
@@ -182,8 +182,8 @@ absl::StatusOr<GcodeOptions> ParseGcodeOptions(const Flags& flags) {
   const std::optional<gcode::Allowance> allowed = gcode::AllowanceOfNames(allow);
   if (!allowed) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("--allow=%s: not infill_order, wall_order, fan_order, wipes or "
-                        "hidden_retractions, or several separated by commas",
+        absl::StrFormat("--allow=%s: not infill_order, wall_order, fan_order, wipes, "
+                        "hidden_retractions or inner_detours, or several separated by commas",
                         allow));
   }
   options.allow = *allowed;

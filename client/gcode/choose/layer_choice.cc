@@ -38,14 +38,15 @@ class LayerChooser::Impl {
         polish_(choice.polish),
         usual_tries_(choice.usual_tries),
         threads_(choice.threads),
-        habit_(HabitOfNewTravels(file, AllowedUnder(choice.policy, choice.allow), choice.threads)),
+        habit_(HabitOfNewTravels(file, AllowedUnder(choice.policy, choice.allow), choice.threads,
+                                 choice.hidden)),
         donors_(file),
         room_(file),
         rests_(StackIslands(file, choice.threads),
                LeastRestSeconds(file, choice.policy, choice.min_revisit_seconds)),
-        filler_(file, habit_, donors_, room_, rests_),
         travel_(LearnTravel(file, habit_.threshold_mm, choice.threads)),
         objects_(file),
+        filler_(file, habit_, travel_, donors_, room_, rests_),
         columns_(file.layers.size()) {
     assert(usual_tries_ <= tries_.size());
     ParallelFor(columns_.size(), threads_, [this](size_t layer) { FillColumn(layer); });
@@ -365,13 +366,13 @@ class LayerChooser::Impl {
   const LinkDonors donors_;
   const HeadRoom room_;
   IslandRests rests_;
-  const ColumnFiller filler_;
   const std::vector<TravelModel> travel_;  // [layer]
   const ObjectOrders objects_;
   std::vector<LayerColumn> columns_;  // [layer]
   int64_t fewer_crossings_ = 0;
   bool spared_ = false;  // retractions were
 };
+  const ColumnFiller filler_;
 
 LayerChooser::LayerChooser(const GcodeFile& file, const std::vector<FileOrder>& tries,
                            const ChoiceOptions& options)

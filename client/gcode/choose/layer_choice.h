@@ -72,6 +72,9 @@ struct ChoiceOptions {
   // Under Crossings::kFewer: so many tries, the last ones, are what kKeep would choose from; 0:
   // all are. REQUIRES: there are as many.
   size_t usual_tries = 0;
+
+  // See HabitOfNewTravels.
+  std::shared_ptr<const HiddenMoves> hidden = nullptr;
 };
 
 // Chooses among the file's order and those of `tries`, each improved with runs of the others

@@ -64,18 +64,26 @@ size_t PlaceOfLine(LayerColumn& column, size_t line) {
 }
 
 ColumnFiller::ColumnFiller(const GcodeFile& file, const RetractionHabit& habit,
-                           const LinkDonors& donors, const HeadRoom& room, const IslandRests& rests)
+                           const std::vector<TravelModel>& travel, const LinkDonors& donors,
+                           const HeadRoom& room, const IslandRests& rests)
     : file_(file),
       habit_(habit),
       plain_habit_(SparingNoWalls(habit)),
+      travel_(travel),
       donors_(donors),
       room_(room),
       rests_(rests) {}
 
+std::unique_ptr<const LayerWriter> ColumnFiller::WriterOf(size_t layer,
+                                                          const RetractionHabit& habit,
+                                                          bool hides) const {
+  return std::make_unique<const LayerWriter>(file_, file_.layers[layer], habit, donors_,
+                                             room_.Of(layer), hides, &travel_[layer]);
+}
+
 void ColumnFiller::Begin(size_t layer, LayerColumn& column) const {
   const Layer& of_file = file_.layers[layer];
-  column.writer =
-      std::make_unique<const LayerWriter>(file_, of_file, habit_, donors_, room_.Of(layer));
+  column.writer = WriterOf(layer, habit_, /*hides=*/true);
   LayerChoice& choice = column.choices.emplace_back();
   choice.order = column.writer->GivenOrder();
   choice.writer = column.writer.get();
@@ -93,8 +101,7 @@ void ColumnFiller::Begin(size_t layer, LayerColumn& column) const {
     return;
   }
   // Each retraction is part of what is printed.
-  column.writer = std::make_unique<const LayerWriter>(file_, of_file, habit_, donors_,
-                                                      room_.Of(layer), /*hides=*/false);
+  column.writer = WriterOf(layer, habit_, /*hides=*/false);
   choice.writer = column.writer.get();
 }
 
@@ -113,8 +120,7 @@ void ColumnFiller::Add(const LayerOrder& order, size_t layer, LayerColumn& colum
   const std::vector<PrintTotals>& inside = column.totals.inside;
   if (inside.back().open_crossings >= inside.front().open_crossings) return;
   if (column.plain == nullptr) {
-    column.plain = std::make_unique<const LayerWriter>(
-        file_, file_.layers[layer], plain_habit_, donors_, room_.Of(layer), column.writer->hides());
+    column.plain = WriterOf(layer, plain_habit_, column.writer->hides());
   }
   // A choice that is equal would have travel moves to and from all those of the layers beside it.
   if (Add(order, layer, *column.plain, column) != sparing) return;

@@ -66,7 +66,8 @@ size_t PlaceOfLine(LayerColumn& column, size_t line);
 class ColumnFiller {
  public:
   // All outlive the filler and the columns.
-  ColumnFiller(const GcodeFile& file, const RetractionHabit& habit, const LinkDonors& donors,
+  ColumnFiller(const GcodeFile& file, const RetractionHabit& habit,
+               const std::vector<TravelModel>& travel, const LinkDonors& donors,
                const HeadRoom& room, const IslandRests& rests);
 
   // The column of layer `layer`, with the file's own order.
@@ -82,6 +83,9 @@ class ColumnFiller {
   void Add(const LayerOrder& order, size_t layer, LayerColumn& column) const;
 
  private:
+  std::unique_ptr<const LayerWriter> WriterOf(size_t layer, const RetractionHabit& habit,
+                                              bool hides) const;
+
   // Returns the text of its paths.
   std::string Add(const LayerOrder& order, size_t layer, const LayerWriter& writer,
                   LayerColumn& column) const;
@@ -89,6 +93,7 @@ class ColumnFiller {
   const GcodeFile& file_;
   const RetractionHabit& habit_;
   const RetractionHabit plain_habit_;
+  const std::vector<TravelModel>& travel_;
   const LinkDonors& donors_;
   const HeadRoom& room_;
   const IslandRests& rests_;

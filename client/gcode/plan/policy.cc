@@ -272,6 +272,7 @@ constexpr AllowanceName kAllowances[] = {
     {"fan_order", &Allowance::fan_order},
     {"wipes", &Allowance::wipes},
     {"hidden_retractions", &Allowance::hidden_retractions},
+    {"inner_detours", &Allowance::inner_detours},
 };
 
 }  // namespace
@@ -279,7 +280,8 @@ constexpr AllowanceName kAllowances[] = {
 Allowance AllowedUnder(Policy policy, Allowance allow) {
   const bool fast = policy == Policy::kFast;
   allow.wipes = allow.wipes || fast;
-  allow.hidden_retractions = allow.hidden_retractions || fast;
+  allow.inner_detours = allow.inner_detours || fast;
+  allow.hidden_retractions = allow.hidden_retractions || allow.inner_detours;
   return allow;
 }
 

@@ -52,6 +52,10 @@ struct Allowance {
   bool hidden_retractions = false;
   double max_hidden_travel_mm = kMaxHiddenTravelMm;
 
+  // The same, and travel that would have to retract is led around walls within the part where that
+  // hides it and takes less time.
+  bool inner_detours = false;
+
   bool operator==(const Allowance&) const = default;
 };
 

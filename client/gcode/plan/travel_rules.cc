@@ -140,6 +140,17 @@ bool AvoidsWalls(const GcodeFile& file) {
   return bent >= kEnough && bent * 4 >= crossing;
 }
 
+// How far hidden moves keep from the middle of visible walls: a little more than they must
+// (hidden/layer_cover.h), as bends are rounded.
+double BesideWallsMm(const std::vector<Outline>& outlines) {
+  constexpr double kMoreThanHalfMm = 0.15;
+  double widest = 0;
+  for (const Outline& outline : outlines) {
+    if (IsVisibleWall(outline.feature)) widest = std::max(widest, outline.width_mm);
+  }
+  return std::max(widest / 2 + kMoreThanHalfMm, Detours::kBesideMm);
+}
+
 }  // namespace
 
 RetractionHabit LearnRetraction(const GcodeFile& file) {
@@ -166,12 +177,17 @@ RetractionHabit LearnRetraction(const GcodeFile& file) {
   return habit;
 }
 
-RetractionHabit HabitOfNewTravels(const GcodeFile& file, const Allowance& allow, int threads) {
+RetractionHabit HabitOfNewTravels(const GcodeFile& file, const Allowance& allow, int threads,
+                                  std::shared_ptr<const HiddenMoves> hidden) {
   RetractionHabit habit = LearnRetraction(file);
   habit.spares_walls = true;
   habit.drops_wipes = allow.wipes;
   if (habit.retracts && allow.hidden_retractions && allow.max_hidden_travel_mm > 0) {
-    habit.hidden = std::make_shared<const HiddenMoves>(file, allow.max_hidden_travel_mm, threads);
+    const bool known = hidden != nullptr && hidden->longest_mm() == allow.max_hidden_travel_mm;
+    habit.hidden =
+        known ? std::move(hidden)
+              : std::make_shared<const HiddenMoves>(file, allow.max_hidden_travel_mm, threads);
+    habit.inner_detours = allow.inner_detours;
   }
   return habit;
 }
@@ -181,7 +197,10 @@ TravelRules::TravelRules(const GcodeFile& file, const Layer& layer, const Retrac
     : habit_(habit),
       walls_(walls),
       layer_(static_cast<size_t>(&layer - file.layers.data())),
-      detours_(habit.avoids_walls ? std::optional<Detours>(std::in_place, walls) : std::nullopt) {
+      detours_(habit.avoids_walls ? std::optional<Detours>(std::in_place, walls) : std::nullopt),
+      within_(habit.hidden != nullptr && habit.inner_detours
+                  ? std::optional<Detours>(std::in_place, walls, BesideWallsMm(outlines))
+                  : std::nullopt) {
   if (habit.crossing_matters) {
     Count(file, layer, outlines, walls, habit.threshold_mm, inside_);
     all_inside_ = SumInside(inside_);
@@ -205,8 +224,32 @@ bool TravelRules::AlwaysRetracts(Feature feature) const {
 }
 
 bool TravelRules::Hides(Vertex a, Vertex b, Feature feature) const {
-  if (habit_.hidden == nullptr || IsVisibleWall(feature) || walls_.Crossed(a, b)) return false;
-  return habit_.hidden->Hides(layer_, a, b, walls_.IsOnOne(a));
+  const Vertex ends[] = {a, b};
+  return Hides(ends, feature);
+}
+
+bool TravelRules::Hides(absl::Span<const Vertex> line, Feature feature) const {
+  assert(line.size() >= 2);
+  if (habit_.hidden == nullptr || IsVisibleWall(feature)) return false;
+  double length = 0;
+  for (size_t i = 1; i < line.size(); ++i) {
+    if (walls_.Crossed(line[i - 1], line[i])) return false;
+    const bool leaves_wall = i == 1 && walls_.IsOnOne(line[0]);
+    if (!habit_.hidden->Hides(layer_, line[i - 1], line[i], leaves_wall)) return false;
+    length += Distance(line[i - 1], line[i]);
+  }
+  return length <= habit_.hidden->longest_mm();
+}
+
+std::vector<Vertex> TravelRules::HiddenBends(Vertex a, Vertex b, Feature feature) const {
+  if (!within_ || IsVisibleWall(feature) || Distance(a, b) > habit_.hidden->longest_mm()) return {};
+  if (!habit_.hidden->Hides(layer_, b)) return {};
+  std::vector<Vertex> line = within_->Around(a, b);
+  if (line.empty()) return {};
+  line.insert(line.begin(), a);
+  line.push_back(b);
+  if (!Hides(line, feature)) return {};
+  return {line.begin() + 1, line.end() - 1};
 }
 
 bool TravelRules::Retracts(Vertex a, Vertex b, Feature feature) const {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "client/gcode/hidden/hidden_moves.h"
 #include "client/gcode/model/outline.h"
 #include "client/gcode/model/visible_walls.h"
@@ -56,6 +57,9 @@ struct RetractionHabit {
 
   // Requested: moves that it hides do without a retraction, a lift and a wipe. Null: none do.
   std::shared_ptr<const HiddenMoves> hidden;
+
+  // Requested: moves that are not hidden are led around walls where that hides them.
+  bool inner_detours = false;
 };
 
 // Examines about two dozen layers spread over the file. The threshold is the slicer's setting if
@@ -65,9 +69,11 @@ struct RetractionHabit {
 // ones.
 RetractionHabit LearnRetraction(const GcodeFile& file);
 
-// LearnRetraction, and what new moves must obey under every policy, or may do by `allow`.
+// LearnRetraction, and what new moves must obey under every policy, or may do by `allow`. `hidden`:
+// the file's, if they are known; else they are found where they are needed.
 RetractionHabit HabitOfNewTravels(const GcodeFile& file, const Allowance& allow = {},
-                                  int threads = 1);
+                                  int threads = 1,
+                                  std::shared_ptr<const HiddenMoves> hidden = nullptr);
 
 // A new travel move as it is written.
 struct PlannedTravel {
@@ -99,6 +105,13 @@ class TravelRules {
   // None is hidden that leads to a visible wall.
   bool Hides(Vertex a, Vertex b, Feature feature) const;
 
+  // The same of a move with bends, by all its points. REQUIRES: there are two at the least.
+  bool Hides(absl::Span<const Vertex> line, Feature feature) const;
+
+  // The bends by which the same move is hidden where the straight one is not; empty if there are
+  // none, and where none are to be.
+  std::vector<Vertex> HiddenBends(Vertex a, Vertex b, Feature feature) const;
+
   // Whether moves to paths of `feature` always retract, as far as the file shows.
   // REQUIRES: habit.crossing_matters, as otherwise all of them do, or none.
   bool AlwaysRetracts(Feature feature) const;
@@ -113,6 +126,7 @@ class TravelRules {
   const VisibleWalls& walls_;
   const size_t layer_;
   const std::optional<Detours> detours_;  // if the file makes detours
+  const std::optional<Detours> within_;   // of hidden moves, if they may make any
   RetractionCounts inside_;
   RetractionCount all_inside_;  // to inner walls and infill
 };

@@ -24,6 +24,7 @@ constexpr Permission kPermissions[] = {
     {"fan_order", &VerifyPermissions::fan_order},
     {"wipes", &VerifyPermissions::wipes},
     {"hidden_retractions", &VerifyPermissions::hidden_retractions},
+    {"inner_detours", &VerifyPermissions::inner_detours},
 };
 
 // Takes what stands before the first of `ends` off `text`, and that character too.
@@ -52,7 +53,8 @@ absl::StatusOr<VerifyPermissions> ParsePermissions(std::string_view policy,
     if (known == std::end(kPermissions)) {
       return absl::InvalidArgumentError(absl::StrCat(
           "nothing to allow by the name `", std::string(word),
-          "`; there are infill_order, wall_order, fan_order, wipes and hidden_retractions"));
+          "`; there are infill_order, wall_order, fan_order, wipes, hidden_retractions and ",
+          "inner_detours"));
     }
     permissions.*known->flag = true;
   }

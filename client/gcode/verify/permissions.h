@@ -33,11 +33,15 @@ struct VerifyPermissions {
   bool hidden_retractions = false;
   double max_hidden_travel_mm = kUsualHiddenTravelMm;
 
+  // The same, and such travel may lead around outer walls within the part.
+  bool inner_detours = false;
+
   bool is_free() const { return policy >= Policy::kFree; }
   bool drops_wipes() const { return wipes || policy == Policy::kFast; }
   bool hides_travel() const {
-    return (hidden_retractions || policy == Policy::kFast) && max_hidden_travel_mm > 0;
+    return (hidden_retractions || leads_within()) && max_hidden_travel_mm > 0;
   }
+  bool leads_within() const { return inner_detours || policy == Policy::kFast; }
 };
 
 // Parses the values of the command line: "safe", "balanced", "free" or "fast", and a list such as

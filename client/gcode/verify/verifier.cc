@@ -260,7 +260,8 @@ void Verifier::CheckChunk() {
     LayerPair layer(chunk_was_, chunk_is_, i);
     if (hides) {
       layer.SetHidden(HiddenLinksOf(layer, {shapes[i], shapes[i + 1], shapes[i + 2]},
-                                    context_.permissions.max_hidden_travel_mm));
+                                    context_.permissions.max_hidden_travel_mm,
+                                    context_.permissions.leads_within()));
     }
     lines[i].Add(layer);
     CheckLayer(layer, found[i]);

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
+#include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/write/layer_writer.h"
 
 namespace traverse::gcode {
@@ -48,10 +50,26 @@ Vertex LayerWriter::LeavesFrom(const Placement& from) const {
   return leaving == nullptr || leaving->departs ? End(from) : Behind(from, *leaving);
 }
 
-bool LayerWriter::Hides(const Placement& from, const Placement& to, bool boundary) const {
-  if (!hides_ || boundary || from.block < layer_.first_block) return false;
+std::optional<std::vector<Vertex>> LayerWriter::HiddenBends(const Placement& from,
+                                                            const Placement& to,
+                                                            bool boundary) const {
+  if (!hides_ || boundary || from.block < layer_.first_block) return std::nullopt;
   const Feature feature = outlines_[to.block - layer_.first_block].feature;
-  return rules_.Hides(LeavesFrom(from), Begin(to), feature);
+  const Vertex leaves = LeavesFrom(from);
+  const Vertex begin = Begin(to);
+  if (rules_.Hides(leaves, begin, feature)) return std::vector<Vertex>();
+  if (travel_ == nullptr) return std::nullopt;
+  std::vector<Vertex> bends = rules_.HiddenBends(leaves, begin, feature);
+  if (bends.empty()) return std::nullopt;
+  const auto seconds = [this](Vertex a, Vertex b) {
+    return StopToStopSeconds(Distance(a, b), travel_->speed_mm_s, travel_->accel_mm_s2);
+  };
+  double bent = 0;
+  Vertex at = leaves;
+  for (const Vertex& bend : bends) bent += seconds(std::exchange(at, bend), bend);
+  bent += seconds(at, begin);
+  if (bent >= seconds(leaves, begin) + travel_->retraction_seconds) return std::nullopt;
+  return bends;
 }
 
 TravelJoints LayerWriter::JointsOf(const Placement& from, const Placement& to, bool wipes) const {
@@ -99,7 +117,10 @@ TravelTotals LayerWriter::EstimateTravel(size_t place, const Placement& from, co
                           : travel.retracts || wipes ||
                                 (boundary && (here.link & kLinkRetracts) != 0) ||
                                 GoesOnAcross(from, travel.to, feature);
-  if (travel.retracts && Hides(from, to, boundary)) return HiddenTravel(from, to, model);
+  if (travel.retracts) {
+    const auto bends = HiddenBends(from, to, boundary);
+    if (bends) return HiddenTravel(from, to, *bends, model);
+  }
   const TravelJoints joints = JointsOf(from, to, wipes);
   TravelTotals totals;
   totals.mm = travel.mm;
@@ -139,16 +160,21 @@ bool LayerWriter::IsBlocked(const PlannedTravel& travel) const {
 }
 
 TravelTotals LayerWriter::HiddenTravel(const Placement& from, const Placement& to,
+                                       const std::vector<Vertex>& bends,
                                        const TravelModel& model) const {
   PlannedTravel travel;
   travel.from = End(from);
   travel.to = Begin(to);
-  const Vertex leaves = LeavesFrom(from);
-  travel.mm = Distance(leaves, travel.to);
-  if (!(leaves == travel.from)) {
-    travel.mm += LeavingOf(from, /*wipes=*/false)->mm;
-    travel.via.push_back(leaves);
+  Vertex at = LeavesFrom(from);
+  if (!(at == travel.from)) {
+    travel.mm = LeavingOf(from, /*wipes=*/false)->mm;
+    travel.via.push_back(at);
   }
+  for (const Vertex& bend : bends) {
+    travel.mm += Distance(std::exchange(at, bend), bend);
+    travel.via.push_back(bend);
+  }
+  travel.mm += Distance(at, travel.to);
   const TravelJoints joints = JointsOf(from, to, /*wipes=*/false);
   TravelTotals totals;
   totals.mm = travel.mm;

@@ -30,7 +30,8 @@ PartStart StartBehindPath(const GcodeFile& file, const Placement& last) {
 }
 
 LayerWriter::LayerWriter(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
-                         const LinkDonors& donors, const Room* room, bool hides)
+                         const LinkDonors& donors, const Room* room, bool hides,
+                         const TravelModel* travel)
     : file_(file),
       layer_(layer),
       donors_(donors),
@@ -42,7 +43,8 @@ LayerWriter::LayerWriter(const GcodeFile& file, const Layer& layer, const Retrac
       joints_(file, layer, outlines_),
       spares_walls_(habit.retracts && habit.spares_walls),
       drops_wipes_(habit.drops_wipes),
-      hides_(hides && habit.hidden != nullptr) {
+      hides_(hides && habit.hidden != nullptr),
+      travel_(travel) {
   for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
     NoteLeaving(b);
     if (outlines_[b - layer.first_block].closed) {
@@ -178,7 +180,7 @@ bool LayerWriter::ChangesGiven() const {
   for (size_t i = 1; i < given.size(); ++i) {
     const int link = file_.blocks[given[i].block].link;
     const bool boundary = (link & (kLinkSplits | kLinkFixed)) != 0;
-    if ((link & kLinkRetracts) != 0 && Hides(given[i - 1], given[i], boundary)) return true;
+    if ((link & kLinkRetracts) != 0 && HiddenBends(given[i - 1], given[i], boundary)) return true;
   }
   return false;
 }
@@ -203,8 +205,11 @@ void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32
   const bool given =
       from.placement().block + 1 == to.placement().block && from.as_given() && to.as_given();
   const bool retracts = given ? (to.block().link & kLinkRetracts) != 0 : request.retract;
-  if (retracts && !as_sliced && Hides(from.placement(), to.placement(), boundary)) {
+  auto bends = retracts && !as_sliced ? HiddenBends(from.placement(), to.placement(), boundary)
+                                      : std::nullopt;
+  if (bends) {
     request.hidden = true;
+    request.hidden_bends = *std::move(bends);
     request.wipe = request.retract = request.departs = false;
     request.detours = nullptr;
     request.turned_departure.reset();

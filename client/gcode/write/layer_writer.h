@@ -34,11 +34,13 @@ PartStart StartBehindPath(const GcodeFile& file, const Placement& last);
 class LayerWriter {
  public:
   // All outlive the writer. `room`: what the head needs in the layer; null: nothing is in the way.
-  // Unless `hides`, what is hidden retracts too.
+  // Unless `hides`, what is hidden retracts too. `travel`: of the layer, by which hidden moves make
+  // detours; null: they make none.
   LayerWriter(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
-              const LinkDonors& donors, const Room* room = nullptr, bool hides = true);
+              const LinkDonors& donors, const Room* room = nullptr, bool hides = true,
+              const TravelModel* travel = nullptr);
   LayerWriter(const GcodeFile&, const Layer&, RetractionHabit&&, const LinkDonors&,
-              const Room* = nullptr, bool = true) = delete;
+              const Room* = nullptr, bool = true, const TravelModel* = nullptr) = delete;
 
   const VisibleWalls& walls() const { return walls_; }
   const Room* room() const { return room_; }
@@ -134,12 +136,14 @@ class LayerWriter {
   // continues along the path.
   Vertex LeavesFrom(const Placement& from) const;
 
-  // Whether that move to `to` is hidden. No move at a boundary is.
-  bool Hides(const Placement& from, const Placement& to, bool boundary) const;
+  // The bends of that move to `to` if it is hidden, none if it is so on the straight way. Nothing
+  // if it is seen, as all moves at a boundary are, or if to retract takes less time than to bend.
+  std::optional<std::vector<Vertex>> HiddenBends(const Placement& from, const Placement& to,
+                                                 bool boundary) const;
 
-  // EstimateTravel of a hidden move.
+  // EstimateTravel of a hidden move with these bends.
   TravelTotals HiddenTravel(const Placement& from, const Placement& to,
-                            const TravelModel& model) const;
+                            const std::vector<Vertex>& bends, const TravelModel& model) const;
 
   // Where travel from `from` to `to` joins them. What happens after `from`, except for a short move
   // away from it, ends with a stop.
@@ -178,6 +182,7 @@ class LayerWriter {
   const bool spares_walls_;
   const bool drops_wipes_;
   const bool hides_;
+  const TravelModel* const travel_;
   absl::flat_hash_map<uint32_t, Leaving> leaving_;      // by block, if it is left this way
   absl::flat_hash_map<uint32_t, Vertex> behind_fixed_;  // by block, where something stays
   absl::flat_hash_map<uint32_t, LoopGap> gaps_;         // by block, of loops that end short

@@ -255,6 +255,9 @@ void LinkWriter::WriteMotion(const LinkStep& step, Decimal z_form, Decimal z_her
 std::vector<Position> LinkWriter::TravelTo(const LinkRequest& request) const {
   const MachineState& machine = out_.at.machine;
   std::vector<Position> travel;
+  for (const Vertex& bend : request.hidden_bends) {
+    travel.push_back(InWords(bend, machine.UnitMm()));
+  }
   if (request.detours != nullptr) {
     for (const Vertex bend :
          request.detours->Around(machine.InMm(machine.at), machine.InMm(request.to->first()))) {

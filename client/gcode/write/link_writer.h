@@ -42,8 +42,10 @@ struct LinkRequest {
   // Detours around visible walls, if travel makes them; null: travel is straight.
   const Detours* detours = nullptr;
 
-  // Nobody sees the travel: it goes straight, without a retraction, a lift and a wipe.
+  // Nobody sees the travel: it goes straight, or by these bends, without a retraction, a lift and a
+  // wipe.
   bool hidden = false;
+  std::vector<Vertex> hidden_bends = {};
 
   // The file wipes after `from`.
   bool wipe = false;

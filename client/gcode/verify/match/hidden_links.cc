@@ -35,11 +35,13 @@ class HiddenTravel {
       : shapes_(shapes),
         half_mm_(HalfWidthOf(shapes.here, shapes.here.z_mm() - shapes.below.z_mm())) {}
 
-  bool Hides(Point from, Point to) const {
+  // Whether nobody sees the straight move behind `behind_mm` of travel that left the path at
+  // `left`.
+  bool Hides(Point left, double behind_mm, Point from, Point to) const {
     if (shapes_.below.MeetsOpenWall(from, to, half_mm_)) return false;
     if (shapes_.above.MeetsOpenWall(from, to, half_mm_)) return false;
     const double length = DistanceOf(from, to);
-    const double leaving = shapes_.here.IsNearWall(from, kOnWallMm) ? kLeavingMm : 0;
+    const double leaving = shapes_.here.IsNearWall(left, kOnWallMm) ? kLeavingMm - behind_mm : 0;
     const int steps = std::max(static_cast<int>(std::ceil(length / kStepMm)), 1);
     for (int i = 0; i <= steps; ++i) {
       const double share = static_cast<double>(i) / steps;
@@ -64,24 +66,39 @@ class HiddenTravel {
   const double half_mm_;
 };
 
-// The only move of `link` behind its first `skipped` ones, if it is level open travel.
-const TraceMove* TravelAlone(const TraceChunk& chunk, uint32_t link, uint32_t skipped) {
+// The moves of `link` behind its first `skipped` ones, if all of it is level open travel; else
+// none.
+absl::Span<const TraceMove> TravelAlone(const TraceChunk& chunk, uint32_t link, uint32_t skipped) {
   const TraceLink& traced = chunk.links[link];
-  if (traced.new_layer || traced.scripted || traced.first_move + skipped + 1 != traced.end_move) {
-    return nullptr;
+  if (traced.new_layer || traced.scripted || traced.first_move + skipped >= traced.end_move) {
+    return {};
   }
   for (uint32_t m = traced.first_move; m < traced.end_move; ++m) {
     const TraceMove& move = chunk.moves[m];
     const bool level = move.z_from_mm == move.z_to_mm;
-    if (move.kind != MoveKind::kTravel || !move.open || move.arc || !level) return nullptr;
+    if (move.kind != MoveKind::kTravel || !move.open || move.arc || !level) return {};
   }
-  return &chunk.moves[traced.end_move - 1];
+  return absl::MakeSpan(chunk.moves)
+      .subspan(traced.first_move + skipped, traced.end_move - traced.first_move - skipped);
+}
+
+// Whether nobody sees `moves`, which follow each other, are no longer than `longest_mm`, and bend
+// only if the straight one would be seen.
+bool Hides(const HiddenTravel& travel, absl::Span<const TraceMove> moves, double longest_mm) {
+  double length = 0;
+  for (const TraceMove& move : moves) {
+    if (length + move.length_mm() > longest_mm) return false;
+    if (!travel.Hides(moves.front().from, length, move.from, move.to)) return false;
+    length += move.length_mm();
+  }
+  const Point from = moves.front().from;
+  return moves.size() == 1 || !travel.Hides(from, 0, from, moves.back().to);
 }
 
 }  // namespace
 
 absl::flat_hash_set<uint32_t> HiddenLinksOf(const LayerPair& layer, const LayerShapes& shapes,
-                                            double longest_mm) {
+                                            double longest_mm, bool bends) {
   absl::flat_hash_set<uint32_t> links;
   const bool between = Adjoin(shapes.below, shapes.here) && Adjoin(shapes.here, shapes.above);
   if (!between || !shapes.here.one_tool()) return links;
@@ -96,9 +113,9 @@ absl::flat_hash_set<uint32_t> HiddenLinksOf(const LayerPair& layer, const LayerS
     if (layer.Outer(visit.path)) continue;
     const uint32_t tail =
         LayerPair::TailMoves(layer.is(), left->last_path, layer.PiecesOf(left->path));
-    const TraceMove* move = TravelAlone(layer.is(), link, tail);
-    if (move == nullptr || move->length_mm() > longest_mm) continue;
-    if (travel.Hides(move->from, move->to)) links.insert(link);
+    const absl::Span<const TraceMove> moves = TravelAlone(layer.is(), link, tail);
+    if (moves.empty() || (moves.size() > 1 && !bends)) continue;
+    if (Hides(travel, moves, longest_mm)) links.insert(link);
   }
   return links;
 }

@@ -20,10 +20,11 @@ struct LayerShapes {
 };
 
 // The links of the other file, within the layer, that have nothing but one open travel move, behind
-// what continues along the path before, no longer than `longest_mm`, which nobody sees. None if one
-// of the layers beside is not where a layer would be, or the layer has several tools.
+// what continues along the path before, no longer than `longest_mm`, which nobody sees. With
+// `bends` it may have several where somebody would see the straight one. None if one of the layers
+// beside is not where a layer would be, or the layer has several tools.
 absl::flat_hash_set<uint32_t> HiddenLinksOf(const LayerPair& layer, const LayerShapes& shapes,
-                                            double longest_mm);
+                                            double longest_mm, bool bends = false);
 
 }  // namespace traverse::gcode
 

@@ -1,6 +1,7 @@
 // No travel leaves the box of all moves of the original. New travel is straight, except for bends
 // that lead around an outer wall: without such a bend it would cross one, and with it does not. So
 // no travel overshoots its end, and none is led along a wall. None goes along an arc of its own.
+// Hidden travel may bend where that hides it (hidden_links.h).
 
 #include <algorithm>
 #include <array>
@@ -239,6 +240,7 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
   const std::optional<Departures> within =
       Departures(layer.was(), layer.first_path_was(), layer.end_path_was() + 1);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
+    if (layer.IsHidden(link)) continue;
     // The travel to the layer leaves a path of another one.
     const bool first = link == layer.first_path_is();
     const double most = first ? std::max(longest, kAlongToLayerMm) : longest;

@@ -4,6 +4,7 @@
 #ifndef TRAVERSE_TESTS_CLIENT_GCODE_SUPPORT_STACK_H_
 #define TRAVERSE_TESTS_CLIENT_GCODE_SUPPORT_STACK_H_
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,17 @@ class Stack {
     Print(x + side, y + side, side);
     Print(x, y + side, side);
     Print(x, y, side);
+    return Pull();
+  }
+  // The same of any shape: its corners, x and y by turns.
+  Stack& Loop(const std::vector<double>& corners) {
+    Go(corners[0], corners[1]);
+    text_ += ";TYPE:External perimeter\n;WIDTH:.45\nG1 F1200\n";
+    for (size_t i = 0; i < corners.size(); i += 2) {
+      const size_t next = (i + 2) % corners.size();
+      Print(corners[next], corners[next + 1],
+            std::hypot(corners[next] - corners[i], corners[next + 1] - corners[i + 1]));
+    }
     return Pull();
   }
   // An outer wall that is not closed.

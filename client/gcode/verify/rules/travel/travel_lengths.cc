@@ -72,7 +72,8 @@ TravelLength LengthOf(const LayerPair& layer, const TraceChunk& chunk, uint32_t 
   const double straight =
       sink == nullptr ? DistanceOf(first->from, last->to)
                       : DistanceOf(first->from, sink->from) + DistanceOf(sink->from, last->to);
-  travel.excess_mm = travel.length_mm - static_cast<float>(straight);
+  const bool hides = only_new && layer.IsHidden(link);
+  travel.excess_mm = hides ? 0 : travel.length_mm - static_cast<float>(straight);
   return travel;
 }
 

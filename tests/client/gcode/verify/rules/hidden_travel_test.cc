@@ -81,6 +81,41 @@ TEST(HiddenTravel, GoesStraightAndLevelOrRetracts) {
   EXPECT_NE(BrokenRules(print, by("G1 X2 Y10 F6000\n"), Hiding()), "");
 }
 
+// Travel over what is open to the sky from (18, 10) to (2, 16): in the third layer, around a hole
+// that all layers have.
+TEST(HiddenTravel, MayBendAroundAWallIfThatIsAllowed) {
+  Stack stack;
+  for (const double z : {0.2, 0.4, 0.6, 0.8}) stack.Layer(z).Wall(8, 11, 4).Box(0, 0, 20);
+  const std::string print = stack.Text();
+  const std::string open = Opened(print, 2, 16, 2);
+  const std::string straight = Stack::Open(2, 16);
+  const size_t at = open.find(straight, open.find(straight) + 1);
+  const auto by = [&](const std::string& lines) {
+    return std::string(open).replace(at, straight.size(), lines);
+  };
+  VerifyPermissions bends;
+  bends.inner_detours = true;
+  const std::string around = "G1 X12.6 Y15.6 F9000\nG1 X2 Y16\n";
+  EXPECT_EQ(BrokenRules(print, by(around), bends), "");
+  EXPECT_EQ(BrokenRules(print, by(around), VerifyPermissions{Policy::kFast}), "");
+  EXPECT_NE(BrokenRules(print, by(around), Hiding()), "");
+  EXPECT_NE(BrokenRules(print, by(straight), bends), "");
+  // Too near to the hole, outside, and longer than allowed.
+  EXPECT_NE(BrokenRules(print, by("G1 X12.1 Y15.1 F9000\nG1 X2 Y16\n"), bends), "");
+  EXPECT_NE(BrokenRules(print, by("G1 X12.6 Y20.6 F9000\nG1 X2 Y16\n"), bends), "");
+  bends.max_hidden_travel_mm = 17.5;
+  EXPECT_NE(BrokenRules(print, by(around), bends), "");
+  // Where the straight move is hidden, nothing is to be led around.
+  bends.max_hidden_travel_mm = 30;
+  const std::string first = Stack::Open(2, 10);
+  const std::string second = Opened(print, 2, 10, 2);
+  const size_t begin = second.find(first, second.find(first) + 1);
+  const std::string winding = "G1 X10 Y6 F9000\nG1 X2 Y10\n";
+  EXPECT_EQ(BrokenRules(print, second, bends), "");
+  EXPECT_NE(BrokenRules(print, std::string(second).replace(begin, first.size(), winding), bends),
+            "");
+}
+
 TEST(HiddenTravel, IsReadFromTheLineAtTheHead) {
   const std::string print = Print();
   const std::string open = Opened(print, 2, 10, 2);
