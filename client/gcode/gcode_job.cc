@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "absl/strings/str_format.h"
@@ -15,6 +16,7 @@
 #include "client/gcode/plan/travel_rules.h"
 #include "client/gcode/read/least_layer_time.h"
 #include "client/gcode/read/reader.h"
+#include "client/gcode/write/link_looks.h"
 
 namespace traverse {
 namespace gcode {
@@ -312,19 +314,24 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   job.options.set_idle_speed_mm_s(std::clamp(models.back().speed_mm_s, 0.001, 1e5));
   gcode::AddFacts(*file, census, options.policy, job);
   job.gcode = std::move(file);
+  job.hidden = habits.retraction.hidden;
   return job;
 }
-  job.hidden = habits.retraction.hidden;
 
 void AddMeasuredFacts(InputJob& job, const GcodeOptions& options) {
   const auto add = [&job](std::string key, std::string value) {
     job.facts.emplace_back(std::move(key), std::move(value));
   };
-  const gcode::PrintTotals totals =
-      gcode::Sum(gcode::MeasureLayers(*job.gcode, gcode::ThreadsFor(job.gcode->text.size())));
+  const int threads = gcode::ThreadsFor(job.gcode->text.size());
+  const gcode::PrintTotals totals = gcode::Sum(gcode::MeasureLayers(*job.gcode, threads));
   add("extruded", absl::StrFormat("%.2f m", totals.extruded_mm / 1000));
   add("travel", absl::StrFormat("%.2f m", totals.travel_mm / 1000));
-  add("retractions", absl::StrFormat("%d", totals.retractions));
+  const gcode::RetractionHabit looks =
+      gcode::HabitOfLooks(*job.gcode, options.allow.max_hidden_travel_mm, threads);
+  const gcode::HiddenCounts hidden = gcode::CountHiddenRetractions(*job.gcode, looks, threads);
+  add("retractions",
+      absl::StrFormat("%d, %d of them for travel that nobody would see", totals.retractions,
+                      std::accumulate(hidden.begin(), hidden.end(), int64_t{0})));
   add("visible walls crossed", absl::StrFormat("%d times, %d of them without a retraction",
                                                totals.crossings, totals.open_crossings));
   add("estimated print time",
@@ -332,7 +339,6 @@ void AddMeasuredFacts(InputJob& job, const GcodeOptions& options) {
   for (std::string& barrier : DescribeBarriers(*job.gcode, options.policy, options.allow)) {
     add("held", std::move(barrier));
   }
-  const int threads = gcode::ThreadsFor(job.gcode->text.size());
   if (const auto rest = gcode::LeastRestOf(*job.gcode, threads)) {
     add("least rest of an island",
         absl::StrFormat("%.1f s before layer %d; least layer time %.4g s", rest->seconds,

@@ -44,6 +44,7 @@ Json RouteJson(const RouteNotes& route) {
           {"travel", Rounded(route.total.travel_mm)},
           {"seconds", Rounded(route.total.seconds)},
           {"retractions", OrNull(route.total.retractions)},
+          {"hidden", OrNull(route.total.hidden_retractions)},
           {"crossings", OrNull(route.total.crossings)},
           {"gap", OrNull(route.gap)},
           {"compute", Rounded(route.compute_seconds)},

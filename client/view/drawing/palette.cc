@@ -32,4 +32,18 @@ FeatureColor ColorOf(const std::string& feature) {
   return {"#94a3b8", "#a8b6c8"};
 }
 
+TravelColor ColorOf(DrawnForm form) {
+  switch (form) {
+    case DrawnForm::kTravel:
+      break;
+    case DrawnForm::kRetracted:
+      return {"retracted travel", kTravelColor};
+    case DrawnForm::kOpen:
+      return {"open travel", "#dc2626"};
+    case DrawnForm::kHidden:
+      return {"hidden travel", "#16a34a"};
+  }
+  return {"travel", kTravelColor};
+}
+
 }  // namespace traverse::view

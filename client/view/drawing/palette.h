@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "client/view/scene/scene.h"
+
 namespace traverse::view {
 
 // "#rrggbb" for a light ground and for a dark one.
@@ -17,7 +19,13 @@ struct FeatureColor {
 // for others. Features that adjoin differ in lightness too, for people who see few colors.
 FeatureColor ColorOf(const std::string& feature);
 
-// For travel, and for its ends, on a light ground.
+// For travel by its form, with what it is called, and for its ends, on a light ground.
+struct TravelColor {
+  const char* name;
+  const char* light;
+};
+TravelColor ColorOf(DrawnForm form);
+
 inline constexpr char kTravelColor[] = "#111827";
 inline constexpr char kStartColor[] = "#15803d";
 inline constexpr char kEndColor[] = "#be123c";

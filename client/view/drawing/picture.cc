@@ -96,6 +96,7 @@ class Painter {
       : scene_(scene), index_(index), layer_(scene.layer(index)) {
     layer_.routes = {layer_.routes.front(), layer_.routes[scene.shown]};
     moves_ = {MovesOf(layer_, layer_.routes[0]), MovesOf(layer_, layer_.routes[1])};
+    forms_ = FormsOf(layer_);
     projection_ = std::make_unique<Projection>(BoxOf(layer_, moves_));
     for (const DrawnPath& path : layer_.paths) used_[path.feature] = true;
     const double height =
@@ -158,26 +159,29 @@ class Painter {
         canvas_->Lines(lines, {ColorOf(scene_.features[feature]).light, kPathWidth, 1, closed});
       }
     }
-    if (side == 1) Moves(Vanished(moves_[0], moves_[1]), x, kFaded);
-    Moves(moves_[side], x, 1);
+    if (side == 1) Moves(Vanished(moves_[0], moves_[1]), x, {kTravelColor, kMoveWidth, kFaded});
     const DrawnRoute& route = layer_.routes[side];
+    for (const DrawnForm form : forms_) {
+      Moves(MovesOf(layer_, route, form), x, {ColorOf(form).light, kMoveWidth});
+    }
     const DrawnPoint end = (*projection_)(EndOf(layer_, route), x);
     constexpr double kHalf = 5;
     canvas_->Rectangle({end.x - kHalf, end.y - kHalf}, 2 * kHalf, 2 * kHalf, kEndColor);
     canvas_->Disc((*projection_)(route.start, x), kHalf, kStartColor);
   }
 
-  void Moves(const std::vector<DrawnMove>& moves, double x, double opacity) {
+  void Moves(const std::vector<DrawnMove>& moves, double x, const Pen& pen) {
     std::vector<std::vector<DrawnPoint>> lines;
     for (const DrawnMove& move : moves) lines.push_back((*projection_)(move, x));
-    canvas_->Lines(lines, {kTravelColor, kMoveWidth, opacity, false});
+    canvas_->Lines(lines, pen);
   }
 
-  // The features in use, and before them travel, removed moves, start and end.
-  static constexpr int kOwnItems = 4;
+  // The features in use, and before them the forms of travel, removed moves, start and end.
+  static constexpr int kOwnItems = 3;
   static constexpr int kItemsPerRow = 7;
   int LegendRows() const {
-    return (static_cast<int>(used_.size()) + kOwnItems + kItemsPerRow - 1) / kItemsPerRow;
+    const size_t items = used_.size() + forms_.size() + kOwnItems;
+    return (static_cast<int>(items) + kItemsPerRow - 1) / kItemsPerRow;
   }
 
   void Legend() {
@@ -195,7 +199,9 @@ class Painter {
       const DrawnPoint at = next(name);
       canvas_->Lines({{at, {at.x + 22, at.y}}}, pen);
     };
-    line("travel", {kTravelColor, kMoveWidth});
+    for (const DrawnForm form : forms_) {
+      line(ColorOf(form).name, {ColorOf(form).light, kMoveWidth});
+    }
     line("removed", {kTravelColor, kMoveWidth, kFaded});
     DrawnPoint at = next("start");
     canvas_->Disc({at.x + 11, at.y}, 5, kStartColor);
@@ -210,6 +216,7 @@ class Painter {
   const size_t index_;
   DrawnLayer layer_;
   std::array<std::vector<DrawnMove>, 2> moves_;
+  std::vector<DrawnForm> forms_;
   std::unique_ptr<Projection> projection_;
   std::map<size_t, bool> used_;  // features of this layer
   std::unique_ptr<Canvas> canvas_;

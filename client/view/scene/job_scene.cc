@@ -3,6 +3,7 @@
 #include <cassert>
 #include <filesystem>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -11,6 +12,7 @@
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/read/reader.h"
+#include "client/gcode/write/link_looks.h"
 #include "client/view/scene/drawn_arcs.h"
 #include "client/view/scene/layer_paths.h"
 #include "client/view/scene/printed_route.h"
@@ -57,16 +59,20 @@ RouteNotes NotesOf(const NamedRun& named) {
   return notes;
 }
 
-Figures FiguresOf(const gcode::PrintTotals& totals) {
-  return {totals.travel_mm, totals.seconds, totals.retractions, totals.crossings};
+Figures FiguresOf(const gcode::PrintTotals& totals, const gcode::HiddenCounts& hidden) {
+  return {totals.travel_mm, totals.seconds, totals.retractions, totals.crossings,
+          std::accumulate(hidden.begin(), hidden.end(), int64_t{0})};
 }
 
 // The figures of the layers of `file` from `first` on.
-std::vector<Figures> LayerFigures(const GcodeFile& file, size_t first, size_t count) {
+std::vector<Figures> LayerFigures(const GcodeFile& file, size_t first, size_t count,
+                                  const gcode::HiddenCounts& hidden) {
   const std::vector<gcode::PrintTotals> totals =
       gcode::MeasureLayers(file, gcode::DefaultThreads());
   std::vector<Figures> figures;
-  for (size_t i = 0; i < count; ++i) figures.push_back(FiguresOf(totals[first + i]));
+  for (size_t i = first; i < first + count; ++i) {
+    figures.push_back(FiguresOf(totals[i], {hidden[i]}));
+  }
   return figures;
 }
 
@@ -148,18 +154,27 @@ absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
     (*read)->profile = job.gcode->profile;  // it may know more of the machine than the text says
     printed = *std::move(read);
   }
+  // Both files have the same layers, and so hide the same.
+  const auto habit = std::make_shared<const gcode::RetractionHabit>(gcode::HabitOfLooks(
+      *job.gcode, job.hidden ? job.hidden->longest_mm() : gcode::kMaxHiddenTravelMm,
+      gcode::DefaultThreads(), job.hidden));
+  const auto hidden = [&habit](const GcodeFile& file) {
+    return gcode::CountHiddenRetractions(file, *habit, gcode::DefaultThreads());
+  };
   RouteNotes given;
   given.label = "as given";
-  given.total = FiguresOf(rewrite.before);
-  given.layers = LayerFigures(*job.gcode, job.first_layer, job.layers.size());
+  const gcode::HiddenCounts were = hidden(*job.gcode);
+  given.total = FiguresOf(rewrite.before, were);
+  given.layers = LayerFigures(*job.gcode, job.first_layer, job.layers.size(), were);
   RouteNotes after = NotesWithoutFigures({label, &runs[0]});
   // The gap belongs to the routes found; the file may keep some layers' order and bend moves.
   after.gap.reset();
-  after.total = FiguresOf(rewrite.after);
-  after.layers = LayerFigures(*printed, job.first_layer, job.layers.size());
+  const gcode::HiddenCounts are = hidden(*printed);
+  after.total = FiguresOf(rewrite.after, are);
+  after.layers = LayerFigures(*printed, job.first_layer, job.layers.size(), are);
   scene.routes = {std::move(given), std::move(after)};
 
-  scene.layer = [&job, orders = rewrite.orders, printed = std::move(printed)](size_t i) {
+  scene.layer = [&job, orders = rewrite.orders, printed = std::move(printed), habit](size_t i) {
     DrawnLayer layer;
     layer.paths = PathsOf(job, i);
     const size_t in_file = job.first_layer + i;
@@ -167,8 +182,10 @@ absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
     const std::vector<DrawnVisit> written =
         orders[in_file].empty() ? sliced : VisitsOf(*job.gcode, in_file, orders[in_file]);
     const SlicedPaths paths = {layer.paths, LengthsOf(*job.gcode, in_file)};
-    layer.routes.push_back(PrintedRoute(*job.gcode, in_file, paths, sliced));
-    layer.routes.push_back(PrintedRoute(*printed, in_file, paths, written));
+    layer.routes.push_back(PrintedRoute(*job.gcode, in_file, paths, sliced,
+                                        gcode::LooksOfLinks(*job.gcode, in_file, *habit)));
+    layer.routes.push_back(PrintedRoute(*printed, in_file, paths, written,
+                                        gcode::LooksOfLinks(*printed, in_file, *habit)));
     DrawArcs(*job.gcode, in_file, layer);
     return layer;
   };

@@ -79,7 +79,7 @@ void AddRoute(const DrawnLayer& layer, const DrawnRoute& route, NumberWriter& ou
   for (const DrawnVisit& visit : route.visits) {
     out.AddSigned(static_cast<int64_t>(visit.path) - static_cast<int64_t>(next));
     next = visit.path + 1;
-    out.Add(2 * visit.entry + (visit.via.empty() ? 0 : 1));
+    out.Add(8 * visit.entry + 2 * static_cast<uint64_t>(visit.form) + (visit.via.empty() ? 0 : 1));
     if (!visit.via.empty()) out.Add(visit.via.size());
     for (const DrawnPoint& corner : visit.via) out.AddPoint(corner);
     out.Skip(ExitOf(layer.paths[visit.path], visit));

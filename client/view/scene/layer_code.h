@@ -20,7 +20,7 @@ inline constexpr double kGridMm = 0.02;
 //
 //   paths: how many; each: 2 * feature + closed, how many points, the points
 //   routes, as many as the scene has; each: the start (difference to 0, 0), and for each visit
-//     the path (difference to the one behind the path before), 2 * entry + has corners,
+//     the path (difference to the one behind the path before), 8 * entry + 2 * form + has corners,
 //     and if it has corners: how many, the corners (the first as a difference to the exit before)
 std::string LayerCode(const DrawnLayer& layer);
 

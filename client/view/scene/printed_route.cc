@@ -22,8 +22,10 @@ bool Same(const DrawnPoint& a, const DrawnPoint& b) {
 // The blocks of one layer of a file, one after the other.
 class BlockWalk {
  public:
-  BlockWalk(const GcodeFile& file, size_t layer)
+  BlockWalk(const GcodeFile& file, size_t layer, const std::vector<gcode::LinkLook>& looks)
       : file_(file),
+        looks_(looks),
+        first_(file.layers[layer].first_block),
         next_(file.layers[layer].first_block),
         end_(file.layers[layer].end_block),
         unit_(file.modes[file.blocks[next_].mode].UnitMm()) {}
@@ -45,6 +47,13 @@ class BlockWalk {
     return corners;
   }
 
+  // Of the travel to the block.
+  DrawnForm Form() const {
+    const gcode::LinkLook& look = looks_[next_ - first_];
+    if (look.retracts) return DrawnForm::kRetracted;
+    return look.hidden ? DrawnForm::kHidden : DrawnForm::kOpen;
+  }
+
   // The length that the block extrudes; moves on to the next block.
   double Take() { return static_cast<double>(file_.blocks[next_++].length_mm); }
 
@@ -54,6 +63,8 @@ class BlockWalk {
   }
 
   const GcodeFile& file_;
+  const std::vector<gcode::LinkLook>& looks_;
+  const size_t first_;
   size_t next_;
   size_t end_;
   double unit_;
@@ -73,8 +84,9 @@ std::vector<DrawnPoint> Between(std::vector<DrawnPoint> corners, const DrawnPoin
 // `order` with the corners of `printed`; nothing if its blocks have another order.
 std::optional<std::vector<DrawnVisit>> WithCorners(const GcodeFile& printed, size_t layer,
                                                    const SlicedPaths& sliced,
-                                                   std::vector<DrawnVisit> order) {
-  BlockWalk walk(printed, layer);
+                                                   std::vector<DrawnVisit> order,
+                                                   const std::vector<gcode::LinkLook>& looks) {
+  BlockWalk walk(printed, layer, looks);
   DrawnPoint at = walk.Start();
   double ahead = 0;  // how much more the blocks so far extrude than the paths so far
   for (DrawnVisit& visit : order) {
@@ -83,6 +95,7 @@ std::optional<std::vector<DrawnVisit>> WithCorners(const GcodeFile& printed, siz
     if (ahead < kSameLengthMm) {
       if (walk.AtEnd() || !Same(walk.First(), entry)) return std::nullopt;
       visit.via = Between(walk.Corners(), at, entry);
+      visit.form = walk.Form();
       ahead = walk.Take();
     }
     ahead -= sliced.lengths_mm[visit.path];
@@ -103,10 +116,11 @@ std::vector<DrawnVisit> InOrder(size_t paths) {
 }
 
 DrawnRoute PrintedRoute(const GcodeFile& printed, size_t layer, const SlicedPaths& sliced,
-                        const std::vector<DrawnVisit>& order) {
+                        const std::vector<DrawnVisit>& order,
+                        const std::vector<gcode::LinkLook>& looks) {
   DrawnRoute route;
-  route.start = BlockWalk(printed, layer).Start();
-  route.visits = WithCorners(printed, layer, sliced, order).value_or(order);
+  route.start = BlockWalk(printed, layer, looks).Start();
+  route.visits = WithCorners(printed, layer, sliced, order, looks).value_or(order);
   return route;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/gcode/model/gcode_file.h"
+#include "client/gcode/write/link_looks.h"
 #include "client/view/scene/scene.h"
 
 namespace traverse::view {
@@ -19,12 +20,13 @@ struct SlicedPaths {
 // Each path of a layer in its own order, entered where it is given.
 std::vector<DrawnVisit> InOrder(size_t paths);
 
-// The route through layer `layer` of `printed`, which has the paths in `order`, with the corners of
-// its travel. When read again, a path may be two blocks (a loop from another start, across the gap
-// between its ends), and two paths without a move between them one. If the blocks do not fit the
-// order, its moves are straight.
+// The route through layer `layer` of `printed`, which has the paths in `order`, with the corners
+// and the forms of its travel; `looks` are those of its blocks. When read again, a path may be two
+// blocks (a loop from another start, across the gap between its ends), and two paths without a move
+// between them one. If the blocks do not fit the order, its moves are straight.
 DrawnRoute PrintedRoute(const GcodeFile& printed, size_t layer, const SlicedPaths& sliced,
-                        const std::vector<DrawnVisit>& order);
+                        const std::vector<DrawnVisit>& order,
+                        const std::vector<gcode::LinkLook>& looks);
 
 }  // namespace traverse::view
 

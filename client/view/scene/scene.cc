@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace traverse::view {
@@ -35,7 +36,8 @@ DrawnPoint ExitOf(const DrawnPath& path, const DrawnVisit& visit) {
   return visit.entry == 0 ? path.points.back() : path.points.front();
 }
 
-std::vector<DrawnMove> MovesOf(const DrawnLayer& layer, const DrawnRoute& route) {
+std::vector<DrawnMove> MovesOf(const DrawnLayer& layer, const DrawnRoute& route,
+                               std::optional<DrawnForm> form) {
   std::vector<DrawnMove> moves;
   DrawnPoint at = route.start;
   for (const DrawnVisit& visit : route.visits) {
@@ -46,10 +48,19 @@ std::vector<DrawnMove> MovesOf(const DrawnLayer& layer, const DrawnRoute& route)
     }
     if (const DrawnPoint entry = EntryOf(path, visit); !(entry == move.back()))
       move.push_back(entry);
-    if (move.size() > 1) moves.push_back(std::move(move));
+    const bool asked = !form || *form == visit.form;
+    if (move.size() > 1 && asked) moves.push_back(std::move(move));
     at = ExitOf(path, visit);
   }
   return moves;
+}
+
+std::vector<DrawnForm> FormsOf(const DrawnLayer& layer) {
+  std::set<DrawnForm> forms;
+  for (const DrawnRoute& route : layer.routes) {
+    for (const DrawnVisit& visit : route.visits) forms.insert(visit.form);
+  }
+  return {forms.begin(), forms.end()};
 }
 
 DrawnPoint EndOf(const DrawnLayer& layer, const DrawnRoute& route) {

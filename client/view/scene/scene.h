@@ -29,11 +29,20 @@ struct DrawnPath {
   std::vector<DrawnPoint> points;
 };
 
+// What travel does, each in a color of its own.
+enum class DrawnForm : uint8_t {
+  kTravel,     // nothing else is known
+  kRetracted,  // with filament pulled back
+  kOpen,       // without
+  kHidden,     // without, and nobody sees it
+};
+
 // One path of a route.
 struct DrawnVisit {
   size_t path = 0;              // index into DrawnLayer::paths
   size_t entry = 0;             // vertex where a closed path begins; else 0, or 1 for its other end
   std::vector<DrawnPoint> via;  // corners of the travel to it; empty: straight
+  DrawnForm form = DrawnForm::kTravel;
 };
 
 // A route through a layer.
@@ -51,8 +60,9 @@ struct DrawnLayer {
 struct Figures {
   double travel_mm = 0;
   double seconds = 0;
-  std::optional<int64_t> retractions = {};  // if the file shows them
-  std::optional<int64_t> crossings = {};    // of visible walls; likewise
+  std::optional<int64_t> retractions = {};         // if the file shows them
+  std::optional<int64_t> crossings = {};           // of visible walls; likewise
+  std::optional<int64_t> hidden_retractions = {};  // at travel that nobody would see; likewise
 };
 
 // One route through the job: as given, or by a strategy.
@@ -89,8 +99,12 @@ DrawnPoint ExitOf(const DrawnPath& path, const DrawnVisit& visit);
 // One travel move, corner by corner; at least two positions.
 using DrawnMove = std::vector<DrawnPoint>;
 
-// The moves of `route` in its order, without those of length zero.
-std::vector<DrawnMove> MovesOf(const DrawnLayer& layer, const DrawnRoute& route);
+// The moves of `route` in its order, all or those of one form, without those of length zero.
+std::vector<DrawnMove> MovesOf(const DrawnLayer& layer, const DrawnRoute& route,
+                               std::optional<DrawnForm> form = std::nullopt);
+
+// The forms that moves of `layer` have, each once, in their order.
+std::vector<DrawnForm> FormsOf(const DrawnLayer& layer);
 
 // Where the route ends.
 DrawnPoint EndOf(const DrawnLayer& layer, const DrawnRoute& route);

@@ -74,7 +74,8 @@ void ExpectRoute(const DrawnLayer& layer, const DrawnRoute& route, Reader& reade
     EXPECT_EQ(next + reader.NextSigned(), static_cast<int64_t>(visit.path));
     next = static_cast<int64_t>(visit.path) + 1;
     const size_t token = reader.Next();
-    EXPECT_EQ(token / 2, visit.entry);
+    EXPECT_EQ(token / 8, visit.entry);
+    EXPECT_EQ(token / 2 % 4, static_cast<size_t>(visit.form));
     ASSERT_EQ(token % 2 == 1 ? reader.Next() : 0, visit.via.size());
     for (const DrawnPoint& corner : visit.via) {
       pen.Move(reader, false);
@@ -109,6 +110,7 @@ DrawnLayer RandomLayer(Rng& rng) {
       visit.path = paths - 1 - i;
       const DrawnPath& path = layer.paths[visit.path];
       visit.entry = rng.Below(path.closed ? static_cast<uint32_t>(path.points.size()) : 2);
+      visit.form = static_cast<DrawnForm>(rng.Below(4));
       visit.via.resize(rng.Below(3));
       for (DrawnPoint& corner : visit.via) corner = RandomPoint(rng);
     }

@@ -7,8 +7,15 @@ function hasLength(way) {
   return false;
 }
 
-export function movesOf(route) {
-  return route.visits.map((visit) => visit.way).filter(hasLength);
+// All of them, or those of one form.
+export function movesOf(route, form) {
+  return route.visits.filter((visit) => form === undefined || visit.form === form).map((visit) => visit.way)
+    .filter(hasLength);
+}
+
+// The forms that moves of a layer have.
+export function formsOf(layer) {
+  return [...new Set(layer.routes.flatMap((route) => route.visits.map((visit) => visit.form)))].sort();
 }
 
 // The ends of a move, the same for both directions.
@@ -41,7 +48,7 @@ function pathOf(path, entry) {
   return out;
 }
 
-// The whole way of the head: pieces { points, feature (-1: travel), from, to }, lengths along it.
+// The whole way of the head: pieces { points, feature (-1 - form: travel), from, to }, lengths along it.
 export function wayOf(layer, route) {
   const pieces = [];
   let length = 0;
@@ -53,7 +60,7 @@ export function wayOf(layer, route) {
     pieces.push({ points, feature, from, to: length });
   };
   for (const visit of route.visits) {
-    add(visit.way, -1);
+    add(visit.way, -1 - visit.form);
     add(pathOf(layer.paths[visit.path], visit.entry), layer.paths[visit.path].feature);
   }
   return { pieces, length };

@@ -1,10 +1,15 @@
 // One canvas with a layer and a way through it. Both panels share the view: scale and center.
 
 import { beginning, movesOf } from "./moves.js";
+import { FORMS } from "./scene.js";
 
+const TRAVEL = {
+  light: { travel: "#111827", retracted: "#111827", open: "#dc2626", hidden: "#16a34a" },
+  dark: { travel: "#f3f4f6", retracted: "#f3f4f6", open: "#f87171", hidden: "#4ade80" },
+};
 const INK = {
-  light: { travel: "#111827", start: "#15803d", end: "#be123c", ground: "#ffffff", head: "#1d4ed8" },
-  dark: { travel: "#f3f4f6", start: "#4ade80", end: "#fb7185", ground: "#0f141b", head: "#7ab0ff" },
+  light: { ...TRAVEL.light, start: "#15803d", end: "#be123c", ground: "#ffffff", head: "#1d4ed8" },
+  dark: { ...TRAVEL.dark, start: "#4ade80", end: "#fb7185", ground: "#0f141b", head: "#7ab0ff" },
 };
 const FADED = { light: 0.17, dark: 0.32 };
 const UNDONE = 0.22;
@@ -48,8 +53,11 @@ export class Panel {
     this.route = route;
     this.gone = new Path2D();
     for (const way of gone) trace(this.gone, way, false);
-    this.moves = new Path2D();
-    for (const way of movesOf(route)) trace(this.moves, way, false);
+    this.moves = FORMS.map((_, form) => {
+      const moves = new Path2D();
+      for (const way of movesOf(route, form)) trace(moves, way, false);
+      return moves;
+    });
     if (this.layer === layer) return;
     this.layer = layer;
     this.features = new Map();
@@ -92,7 +100,7 @@ export class Panel {
     }
     if (!done) {
       if (look.gone) stroke(this.gone, ink.travel, 1.8, FADED[look.theme]);
-      stroke(this.moves, ink.travel, 1.8, 1);
+      this.moves.forEach((moves, form) => stroke(moves, ink[FORMS[form]], 1.8, 1));
       this.mark(view, this.route.end, ink.end, ink.ground, true);
     } else {
       this.drawDone(view, look, ink, done, stroke);
@@ -115,7 +123,9 @@ export class Panel {
     for (const [feature, path] of paths) {
       if (feature >= 0 && look.paths) stroke(path, look.colors[feature], 1.2, 1);
     }
-    if (paths.has(-1)) stroke(paths.get(-1), ink.travel, 1.8, 1);
+    for (const [feature, path] of paths) {
+      if (feature < 0) stroke(path, ink[FORMS[-1 - feature]], 1.8, 1);
+    }
   }
 
   // A disc, or a square, five pixels from its middle to its rim.

@@ -67,7 +67,11 @@ function readPaths(numbers) {
   return paths;
 }
 
-// Visits with the whole way there: [exit of the one before, corners, entry], and where the path is begun.
+// What travel does; the pictures of the command line have the same colors (palette.h).
+export const FORMS = ["travel", "retracted", "open", "hidden"];
+
+// Visits with the whole way there: [exit of the one before, corners, entry], what it does (an index into FORMS), and
+// where the path is begun.
 function readRoute(numbers, paths) {
   let x = numbers.nextSigned();
   let y = numbers.nextSigned();
@@ -76,7 +80,8 @@ function readRoute(numbers, paths) {
   for (let i = 0; i < paths.length; ++i) {
     const index = next + numbers.nextSigned();
     const token = numbers.next();
-    const entry = Math.floor(token / 2);
+    const entry = Math.floor(token / 8);
+    const form = Math.floor(token / 2) % 4;
     const way = [x, y];
     if (token % 2 === 1) {
       for (let corners = numbers.next(); corners > 0; --corners) {
@@ -88,7 +93,7 @@ function readRoute(numbers, paths) {
     const first = closed ? 2 * entry : entry === 0 ? 0 : end;
     const last = closed ? first : end - first;
     way.push(points[first], points[first + 1]);
-    route.visits[i] = { path: index, entry, way };
+    route.visits[i] = { path: index, entry, form, way };
     [x, y] = [points[last], points[last + 1]];
     next = index + 1;
   }

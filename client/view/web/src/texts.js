@@ -1,7 +1,9 @@
 // The words around the pictures: headline, table, legend. Text goes in as text, never as markup.
 
 import * as format from "./format.js";
+import { formsOf } from "./moves.js";
 import { inkOf } from "./panel.js";
+import { FORMS } from "./scene.js";
 
 export function element(name, text, className) {
   const made = document.createElement(name);
@@ -32,7 +34,11 @@ export function headline(scene, shown) {
     changeCard(capital(scene.seconds), before.seconds, after.seconds, format.duration),
   ];
   if (before.retractions !== null && after.retractions !== null) {
-    cards.push(changeCard("Retractions", before.retractions, after.retractions, String));
+    const made = changeCard("Retractions", before.retractions, after.retractions, String);
+    if (before.hidden !== null && after.hidden !== null) {
+      made.append(element("div", `where nobody would see: ${before.hidden} → ${after.hidden}`, "from"));
+    }
+    cards.push(made);
   }
   if (before.crossings !== null && after.crossings !== null) {
     cards.push(changeCard("Visible walls crossed", before.crossings, after.crossings, String));
@@ -101,7 +107,8 @@ export function legend(scene, layer, theme) {
   };
   const used = [...new Set(layer.paths.map((path) => path.feature))].sort((a, b) => a - b);
   document.getElementById("legend").replaceChildren(
-    item("travel", ink.travel), item("removed", ink.travel, "faded"), item("start", ink.start, "disc"),
+    ...formsOf(layer).map((form) => item(FORMS[form] === "travel" ? "travel" : `${FORMS[form]} travel`, ink[FORMS[form]])),
+    item("removed", ink.travel, "faded"), item("start", ink.start, "disc"),
     item("end", ink.end, "square"),
     ...used.map((feature) => item(scene.features[feature].name, scene.features[feature][theme])));
 }

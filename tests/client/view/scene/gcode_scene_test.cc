@@ -12,6 +12,7 @@
 #include "client/gcode/rewrite.h"
 #include "client/view/scene/job_scene.h"
 #include "tests/client/gcode/support/corpus.h"
+#include "tests/client/gcode/support/stack.h"
 
 namespace traverse::view {
 namespace {
@@ -112,6 +113,41 @@ TEST(DrawnGcode, ArcsAreRound) {
   // Routes begin it at the same corners as before it was bent.
   EXPECT_EQ(EntryOf(loop, layer.routes[0].visits[1]), (DrawnPoint{10, 10}));
   EXPECT_EQ(EntryOf(loop, layer.routes[1].visits[1]), (DrawnPoint{20, 14}));
+}
+
+// Three boxes one above the other: the travel between lines of the second one is seen by nobody.
+TEST(DrawnGcode, TravelIsRetractedOpenOrHidden) {
+  gcode::testing::Stack stack;
+  for (const double z : {0.2, 0.4, 0.6}) stack.Layer(z).Box(0, 0, 20);
+  GcodeOptions options;
+  options.policy = gcode::Policy::kFast;
+  const absl::StatusOr<InputJob> job = ReadGcodeJob(stack.Text(), "part.gcode", options);
+  ASSERT_TRUE(job.ok()) << job.status();
+  const std::vector<report::JobRun> runs = {RunOf(*job, "none")};
+  RewriteOptions rewriting;
+  rewriting.policy = options.policy;
+  const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(*job->gcode, {}, rewriting);
+  ASSERT_TRUE(rewrite.ok()) << rewrite.status();
+
+  const absl::StatusOr<Scene> scene = GcodeScene(*job, "fast", runs, *rewrite);
+  ASSERT_TRUE(scene.ok()) << scene.status();
+
+  const auto forms = [&](size_t layer, size_t route) {
+    std::vector<DrawnForm> of_route;
+    for (const DrawnVisit& visit : scene->layer(layer).routes[route].visits) {
+      of_route.push_back(visit.form);
+    }
+    return of_route;
+  };
+  const std::vector<DrawnForm> retracted(4, DrawnForm::kRetracted);
+  EXPECT_EQ(forms(1, 0), retracted);
+  EXPECT_EQ(forms(2, 1), retracted);
+  std::vector<DrawnForm> hidden(4, DrawnForm::kHidden);
+  hidden[0] = DrawnForm::kRetracted;
+  EXPECT_EQ(forms(1, 1), hidden);
+  EXPECT_EQ(scene->routes[0].total.hidden_retractions, 3);
+  EXPECT_EQ(scene->routes[0].layers[1].hidden_retractions, 3);
+  EXPECT_EQ(scene->routes[1].total.hidden_retractions, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kept, DrawnGcode, ::testing::ValuesIn(gcode::testing::KeptFiles()),

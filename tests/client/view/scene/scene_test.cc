@@ -41,6 +41,20 @@ TEST(MovesOf, LeadFromExitToEntryOverTheCornersAndLeaveOutThoseOfNoLength) {
   EXPECT_EQ(EndOf(layer, route), (DrawnPoint{0, 20}));
 }
 
+TEST(MovesOf, MayBeThoseOfOneForm) {
+  DrawnLayer layer = SquareAndLine();
+  DrawnRoute route{{3, 3}, {Visit(0, 0), Visit(1, 0)}};
+  route.visits[0].form = DrawnForm::kHidden;
+  route.visits[1].form = DrawnForm::kRetracted;
+  layer.routes = {route};
+
+  const DrawnMove hidden = {{3, 3}, {0, 0}};
+  EXPECT_THAT(MovesOf(layer, route, DrawnForm::kHidden), ElementsAre(hidden));
+  EXPECT_EQ(MovesOf(layer, route).size(), 2u);
+  EXPECT_TRUE(MovesOf(layer, route, DrawnForm::kOpen).empty());
+  EXPECT_THAT(FormsOf(layer), ElementsAre(DrawnForm::kRetracted, DrawnForm::kHidden));
+}
+
 TEST(MovesOf, RouteWithoutPathsEndsWhereItStarts) {
   EXPECT_TRUE(MovesOf({}, {{3, 4}, {}}).empty());
   EXPECT_EQ(EndOf({}, {{3, 4}, {}}), (DrawnPoint{3, 4}));
