@@ -115,6 +115,8 @@ std::string GcodeSummary(const GcodeRewrite& rewrite) {
                             rewrite.layers, DescribeRewrite(rewrite));
   const std::string rest = DescribeRest(rewrite);
   if (!rest.empty()) absl::StrAppend(&summary, rest, "\n");
+  const std::string fast = DescribeFast(rewrite);
+  if (!fast.empty()) absl::StrAppend(&summary, fast, "\n");
   for (const std::string& line : DescribeLeft(rewrite)) absl::StrAppend(&summary, line, "\n");
   return summary;
 }

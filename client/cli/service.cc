@@ -127,6 +127,7 @@ Expected<OptimizedFile> Service::Rewrite(const InputJob& job, const StrategySpec
   static_cast<SearchOptions&>(options) = SearchOptionsFor(strategy, flags, quiet, shown);
   options.gcode = rewrite.gcode;
   options.restate_times = rewrite.restate_times;
+  options.forecast_fast = !quiet && options.deadline == absl::InfiniteDuration();
   FileResult<OptimizedFile> made = OptimizeFile(*client_, job, options);
   shown.reset();
   if (const FileFault* fault = std::get_if<FileFault>(&made)) {

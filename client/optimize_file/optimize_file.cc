@@ -92,7 +92,7 @@ absl::Status SearchAsUsual(OptimizerClient& client, const InputJob& job,
 // `job`; the others stay as they are.
 absl::StatusOr<GcodeRewrite> RewriteByRuns(const InputJob& job,
                                            const std::vector<report::JobRun>& runs,
-                                           const GcodeOptions& options,
+                                           const GcodeOptions& options, bool forecast_fast,
                                            std::optional<gcode::PolishLimit> polish) {
   std::vector<gcode::FileOrder> tries;
   for (const report::JobRun& run : runs) {
@@ -112,6 +112,7 @@ absl::StatusOr<GcodeRewrite> RewriteByRuns(const InputJob& job,
   rewrite.polish = std::move(polish);
   rewrite.usual_tries = runs.size() > kOwnSearches ? runs.size() - kOwnSearches : 0;
   rewrite.hidden = job.hidden;
+  rewrite.forecast_fast = forecast_fast;
   return RewriteGcode(*job.gcode, tries, rewrite);
 }
 
@@ -207,8 +208,8 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
   // A caller who names a quicker strategy does not want further searches.
   std::optional<gcode::PolishLimit> polish;
   if (twice) polish = {search.finish_by, options.cancel};
-  absl::StatusOr<GcodeRewrite> rewrite =
-      RewriteByRuns(job, made.runs, options.gcode, std::move(polish));
+  absl::StatusOr<GcodeRewrite> rewrite = RewriteByRuns(
+      job, made.runs, options.gcode, options.forecast_fast && twice, std::move(polish));
   if (!rewrite.ok()) {
     return FileFault{FileStage::kWrite,
                      absl::FailedPreconditionError(absl::StrFormat(

@@ -91,6 +91,9 @@ struct OptimizeFileOptions : SearchOptions {
 
   // Renews the print times that the file states, by as much as the estimate changed.
   bool restate_times = false;
+
+  // See RewriteOptions. A search by a quicker strategy than `auto` tells nothing.
+  bool forecast_fast = false;
 };
 
 // A rewritten file.

@@ -9,6 +9,7 @@
 
 #include "absl/types/span.h"
 #include "client/gcode/choose/choice_row.h"
+#include "client/gcode/choose/fast_forecast.h"
 #include "client/gcode/choose/island_rests.h"
 #include "client/gcode/choose/layer_column.h"
 #include "client/gcode/choose/merged_orders.h"
@@ -45,8 +46,8 @@ class LayerChooser::Impl {
         rests_(StackIslands(file, choice.threads),
                LeastRestSeconds(file, choice.policy, choice.min_revisit_seconds)),
         travel_(LearnTravel(file, habit_.threshold_mm, choice.threads)),
-        objects_(file),
         filler_(file, habit_, travel_, donors_, room_, rests_),
+        objects_(file),
         columns_(file.layers.size()) {
     assert(usual_tries_ <= tries_.size());
     ParallelFor(columns_.size(), threads_, [this](size_t layer) { FillColumn(layer); });
@@ -104,6 +105,10 @@ class LayerChooser::Impl {
   }
 
   void Tighten(int64_t crossings) { fewer_crossings_ += crossings; }
+
+  double SecondsSavedByFast() const {
+    return gcode::SecondsSavedByFast(file_, columns_, travel_, donors_, room_, allow_);
+  }
 
   bool IsGivenUp(size_t layer) const {
     return columns_[layer].chosen == 0 && columns_[layer].refusals.any;
@@ -367,12 +372,12 @@ class LayerChooser::Impl {
   const HeadRoom room_;
   IslandRests rests_;
   const std::vector<TravelModel> travel_;  // [layer]
+  const ColumnFiller filler_;
   const ObjectOrders objects_;
   std::vector<LayerColumn> columns_;  // [layer]
   int64_t fewer_crossings_ = 0;
   bool spared_ = false;  // retractions were
 };
-  const ColumnFiller filler_;
 
 LayerChooser::LayerChooser(const GcodeFile& file, const std::vector<FileOrder>& tries,
                            const ChoiceOptions& options)
@@ -397,6 +402,8 @@ bool LayerChooser::RuleOutStarts(size_t layer) { return impl_->RuleOutStarts(lay
 bool LayerChooser::RuleOutAll(size_t layer) { return impl_->RuleOutAll(layer); }
 
 void LayerChooser::Tighten(int64_t crossings) { impl_->Tighten(crossings); }
+
+double LayerChooser::SecondsSavedByFast() const { return impl_->SecondsSavedByFast(); }
 
 bool LayerChooser::IsGivenUp(size_t layer) const { return impl_->IsGivenUp(layer); }
 

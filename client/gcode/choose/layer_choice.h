@@ -114,6 +114,9 @@ class LayerChooser {
   // From now on the whole file must have `crossings` fewer moves across visible walls.
   void Tighten(int64_t crossings);
 
+  // What Policy::kFast would save within layers (fast_forecast.h), in seconds.
+  double SecondsSavedByFast() const;
+
   // True if an order found for `layer` is ruled out and the last choice was the file's order.
   bool IsGivenUp(size_t layer) const;
 

@@ -22,6 +22,8 @@ RetractionHabit SparingNoWalls(RetractionHabit habit) {
   return habit;
 }
 
+}  // namespace
+
 double ForecastPaths(const LayerWriter& writer, const TravelModel& travel,
                      const LayerOrder& order) {
   double seconds = 0;
@@ -31,8 +33,6 @@ double ForecastPaths(const LayerWriter& writer, const TravelModel& travel,
   }
   return seconds;
 }
-
-}  // namespace
 
 void NoteBlocked(const std::vector<LayerOrder>& orders, const TravelModel& travel,
                  LayerColumn& column) {

@@ -117,6 +117,9 @@ std::vector<TimedLayer> TimedRow(const std::vector<LayerColumn>& columns, bool a
 // out what was chosen for its layer; else for the layers below. True if there is such an island.
 bool RuleOutShortRests(const IslandRests& rests, std::vector<LayerColumn>& columns);
 
+// The seconds of the travel within a layer in `order`, as it is estimated.
+double ForecastPaths(const LayerWriter& writer, const TravelModel& travel, const LayerOrder& order);
+
 // Of all layers, with the measured travel moves to them. `travel` has their travel.
 Forecast ForecastOf(const std::vector<LayerColumn>& columns,
                     const std::vector<TravelModel>& travel);

@@ -49,6 +49,12 @@ HiddenMoves::HiddenMoves(const GcodeFile& file, double longest_mm, int threads)
   });
 }
 
+HiddenMoves::HiddenMoves(const GcodeFile& file, double longest_mm,
+                         const std::vector<size_t>& layers)
+    : longest_mm_(longest_mm), cell_mm_(kCellMm), layers_(file.layers.size()) {
+  for (const size_t layer : layers) Fill(file, layer, layer + 1);
+}
+
 void HiddenMoves::Fill(const GcodeFile& file, size_t first, size_t end) {
   const auto cover_of = [&](size_t layer) {
     return CoverOf(OutlinesOf(file, file.layers[layer]), cell_mm_);

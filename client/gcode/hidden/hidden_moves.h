@@ -25,6 +25,9 @@ class HiddenMoves {
   // distance, or with several tools, none is. O(length of all walls + cells / 64).
   HiddenMoves(const GcodeFile& file, double longest_mm, int threads = 1);
 
+  // The same of some layers alone; in the others nothing is hidden.
+  HiddenMoves(const GcodeFile& file, double longest_mm, const std::vector<size_t>& layers);
+
   // Whether the straight move from `a` to `b` in layer `layer` is hidden. `leaves_wall`: a visible
   // wall ends at `a`; then the move may begin there, else it keeps away from all of them.
   bool Hides(size_t layer, Vertex a, Vertex b, bool leaves_wall) const;

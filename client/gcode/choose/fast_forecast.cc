@@ -1,0 +1,131 @@
+#include "client/gcode/choose/fast_forecast.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include "client/gcode/choose/merged_orders.h"
+#include "client/gcode/hidden/hidden_moves.h"
+
+namespace traverse::gcode {
+namespace {
+
+// Layers for each that is looked at: what that takes is little beside all that a file takes.
+constexpr size_t kOneIn = 16;
+
+constexpr double kLeastPushedMm = 1e-6;
+
+// The layers before the first and behind the last one hide nothing.
+std::vector<size_t> TypicalLayers(const std::vector<LayerColumn>& columns) {
+  const size_t inner = columns.size() - 2;
+  const size_t runs = std::max<size_t>(columns.size() / kOneIn, 1);
+  std::vector<size_t> typical;
+  for (size_t run = 0; run < runs; ++run) {
+    std::vector<std::pair<int64_t, size_t>> layers;  // retractions, layer
+    for (size_t i = run * inner / runs; i < (run + 1) * inner / runs; ++i) {
+      layers.emplace_back(columns[i + 1].totals.inside[0].retractions, i + 1);
+    }
+    const auto middle = layers.begin() + static_cast<std::ptrdiff_t>(layers.size() / 2);
+    std::nth_element(layers.begin(), middle, layers.end());
+    typical.push_back(middle->second);
+  }
+  return typical;
+}
+
+class FastSearch {
+ public:
+  FastSearch(const GcodeFile& file, const LinkDonors& donors, const HeadRoom& room,
+             const Allowance& allow, const std::vector<size_t>& layers)
+      : file_(file), donors_(donors), room_(room), allow_(allow) {
+    const auto hidden =
+        std::make_shared<const HiddenMoves>(file, allow.max_hidden_travel_mm, layers);
+    habit_ = HabitOfNewTravels(file, allow, 1, hidden);
+  }
+
+  struct Seconds {
+    double given = 0;
+    double fast = 0;
+  };
+
+  Seconds Of(size_t layer, const LayerColumn& column, const TravelModel& travel) const {
+    const Layer& of_file = file_.layers[layer];
+    const bool hides = std::abs(column.totals.inside[0].extra_mm) <= kLeastPushedMm;
+    const LayerWriter writer(file_, of_file, habit_, donors_, room_.Of(layer), hides, &travel);
+    MergeRules rules;
+    rules.policy = Policy::kFast;
+    rules.as_many_retractions = !hides;
+    rules.freedom = FreedomOf(file_, of_file, Policy::kFast, allow_);
+    rules.polish = PolishLimit{};
+    for (uint32_t b = of_file.first_block; b < of_file.end_block; ++b) {
+      rules.boundaries.push_back((file_.blocks[b].link & (kLinkSplits | kLinkFixed)) != 0);
+    }
+    // Where whole objects have changed places, the file's own order begins it.
+    std::vector<LayerOrder> begun;
+    const LayerOrder& chosen = column.choices[column.chosen].order;
+    const std::vector<uint32_t> places = writer.PlacesOf(chosen);
+    if (std::is_sorted(places.begin(), places.end())) begun.push_back(chosen);
+    Seconds seconds;
+    seconds.given = ForecastPaths(*column.writer, travel, column.given_order());
+    seconds.fast = std::min(seconds.given, ForecastPaths(writer, travel, column.given_order()));
+    for (const LayerOrder& order : MergedOrders(writer, travel, begun, rules)) {
+      seconds.fast = std::min(seconds.fast, ForecastPaths(writer, travel, order));
+    }
+    return seconds;
+  }
+
+ private:
+  const GcodeFile& file_;
+  const LinkDonors& donors_;
+  const HeadRoom& room_;
+  const Allowance allow_;
+  RetractionHabit habit_;
+};
+
+// What is saved as chosen where little is hidden: in the first and the last layer, and between
+// layers.
+double SavedElsewhere(const std::vector<LayerColumn>& columns,
+                      const std::vector<TravelModel>& travel) {
+  double saved = 0;
+  for (const size_t layer : {size_t{0}, columns.size() - 1}) {
+    const LayerColumn& column = columns[layer];
+    const LayerChoice& chosen = column.choices[column.chosen];
+    if (column.chosen == 0) continue;
+    saved += ForecastPaths(*column.writer, travel[layer], column.given_order()) -
+             ForecastPaths(*chosen.writer, travel[layer], chosen.order);
+  }
+  for (size_t layer = 1; layer < columns.size(); ++layer) {
+    const ChoiceColumn& totals = columns[layer].totals;
+    saved += totals.Travel(0, 0).seconds -
+             totals.Travel(columns[layer - 1].chosen, columns[layer].chosen).seconds;
+  }
+  return saved;
+}
+
+}  // namespace
+
+double SecondsSavedByFast(const GcodeFile& file, const std::vector<LayerColumn>& columns,
+                          const std::vector<TravelModel>& travel, const LinkDonors& donors,
+                          const HeadRoom& room, Allowance allow) {
+  if (columns.size() < 3) return 0;
+  allow = AllowedUnder(Policy::kFast, allow);
+  const std::vector<size_t> layers = TypicalLayers(columns);
+  const FastSearch search(file, donors, room, allow, layers);
+  double given = 0;
+  double saved = 0;
+  for (const size_t layer : layers) {
+    const FastSearch::Seconds seconds = search.Of(layer, columns[layer], travel[layer]);
+    given += seconds.given;
+    saved += seconds.given - seconds.fast;
+  }
+  if (given <= 0) return 0;
+  double all = 0;
+  for (size_t layer = 1; layer + 1 < columns.size(); ++layer) {
+    all += ForecastPaths(*columns[layer].writer, travel[layer], columns[layer].given_order());
+  }
+  return saved / given * all + SavedElsewhere(columns, travel);
+}
+
+}  // namespace traverse::gcode
