@@ -29,6 +29,10 @@ double GivenMm(const JobRun& run) {
   return run.result.summary.given().total_mm() + run.result.summary.cleaning_given_mm();
 }
 
+double Seconds(const JobRun& run) { return run.result.summary.cost(); }
+
+double GivenSeconds(const JobRun& run) { return run.result.summary.cost_given(); }
+
 double Mean(const ComparedStrategy& strategy, const Value& value) {
   double sum = 0;
   for (const JobRun& run : strategy.runs) sum += value(run);
@@ -36,10 +40,10 @@ double Mean(const ComparedStrategy& strategy, const Value& value) {
 }
 
 // Standard deviation of the sample.
-double TravelDeviation(const ComparedStrategy& strategy) {
-  const double mean = Mean(strategy, TravelMm);
+double DeviationOf(const ComparedStrategy& strategy, const Value& value) {
+  const double mean = Mean(strategy, value);
   double sum = 0;
-  for (const JobRun& run : strategy.runs) sum += std::pow(TravelMm(run) - mean, 2);
+  for (const JobRun& run : strategy.runs) sum += std::pow(value(run) - mean, 2);
   const size_t n = strategy.runs.size();
   return n > 1 ? std::sqrt(sum / static_cast<double>(n - 1)) : 0;
 }
@@ -65,14 +69,25 @@ struct Column {
 // The columns for `strategies`, without the bar.
 class Columns {
  public:
-  explicit Columns(const std::vector<ComparedStrategy>& strategies) : strategies_(strategies) {
+  Columns(const std::vector<ComparedStrategy>& strategies, CompareBy by)
+      : strategies_(strategies),
+        by_time_(by == CompareBy::kTime),
+        value_(by_time_ ? Seconds : TravelMm),
+        given_(by_time_ ? GivenSeconds : GivenMm) {
     columns_.push_back({"strategy", 0, [this](const auto& s) {
                           return Cell{FoldAtColons(s.label, label_width_)[0]};
                         }});
-    AddTravel();
+    AddCompared();
+    if (by_time_) {
+      columns_.push_back({"travel mm", 3, [](const ComparedStrategy& s) {
+                            return Cell{absl::StrFormat("%.2f", Mean(s, TravelMm))};
+                          }});
+    }
     AddSplit();
-    AddMean("idle s", 3, 1, [](const v1::JobSummary& s) { return s.idle_seconds(); });
-    AddGain("none %", GivenMm);
+    if (!by_time_) {
+      AddMean("idle s", 3, 1, [](const v1::JobSummary& s) { return s.idle_seconds(); });
+    }
+    AddGain("none %", given_);
     AddGainOver("greedy");
     AddGainOver("ni2opt");
     if (Any([](const auto& s) { return !Gap(s).empty(); })) {
@@ -107,6 +122,11 @@ class Columns {
     return static_cast<int>(width);
   }
 
+  // The share of what was given that is gone.
+  double GainOf(const ComparedStrategy& strategy) const {
+    return GainPercent(Mean(strategy, given_), Mean(strategy, value_)) / 100;
+  }
+
   const std::vector<Column>& list() const { return columns_; }
   size_t label_width() const { return label_width_; }
 
@@ -116,18 +136,17 @@ class Columns {
     return std::any_of(strategies_.begin(), strategies_.end(), condition);
   }
 
-  void AddTravel() {
-    double shortest = Mean(strategies_.front(), TravelMm);
-    for (const auto& strategy : strategies_)
-      shortest = std::min(shortest, Mean(strategy, TravelMm));
-    columns_.push_back({"travel mm", 0, [shortest](const ComparedStrategy& s) {
-                          const double travel = Mean(s, TravelMm);
-                          return Cell{absl::StrFormat("%.2f", travel),
-                                      travel <= shortest ? Color::kGood : Color::kNone};
-                        }});
+  void AddCompared() {
+    double least = Mean(strategies_.front(), value_);
+    for (const auto& strategy : strategies_) least = std::min(least, Mean(strategy, value_));
+    columns_.push_back(
+        {by_time_ ? "travel s" : "travel mm", 0, [this, least](const ComparedStrategy& s) {
+           const double mean = Mean(s, value_);
+           return Cell{absl::StrFormat("%.2f", mean), mean <= least ? Color::kGood : Color::kNone};
+         }});
     if (Any([](const auto& s) { return s.runs.size() > 1; })) {
-      columns_.push_back({"+- mm", 0, [](const auto& s) {
-                            return Cell{absl::StrFormat("%.2f", TravelDeviation(s))};
+      columns_.push_back({by_time_ ? "+- s" : "+- mm", 0, [this](const auto& s) {
+                            return Cell{absl::StrFormat("%.2f", DeviationOf(s, value_))};
                           }});
     }
   }
@@ -153,31 +172,43 @@ class Columns {
   // The gain over a length that each row has of its own, or over the mean of another row.
   void AddGain(std::string title, const Value& before) {
     columns_.push_back(
-        {std::move(title), 0, [before](const ComparedStrategy& s) {
-           const double gain = GainPercent(Mean(s, before), Mean(s, TravelMm));
+        {std::move(title), 0, [this, before](const ComparedStrategy& s) {
+           const double gain = GainPercent(Mean(s, before), Mean(s, value_));
            return Cell{absl::StrFormat("%.1f", gain), gain < 0 ? Color::kBad : Color::kNone};
          }});
   }
   void AddGainOver(const std::string& label) {
     for (const ComparedStrategy& strategy : strategies_) {
       if (strategy.label != label) continue;
-      const double before = Mean(strategy, TravelMm);
+      const double before = Mean(strategy, value_);
       AddGain(label + " %", [before](const JobRun&) { return before; });
       return;
     }
   }
 
   const std::vector<ComparedStrategy>& strategies_;
+  const bool by_time_;
+  const Value value_;
+  const Value given_;
   size_t label_width_ = kWholeLabel;
   std::vector<Column> columns_;
 };
 
 }  // namespace
 
-std::string CompareTable(const std::vector<ComparedStrategy>& strategies, const TextStyle& style) {
+CompareBy CompareByOf(const v1::JobOptions& options) {
+  return options.cost().has_time() ? CompareBy::kTime : CompareBy::kLength;
+}
+
+double ComparedValue(const JobRun& run, CompareBy by) {
+  return by == CompareBy::kTime ? Seconds(run) : TravelMm(run);
+}
+
+std::string CompareTable(const std::vector<ComparedStrategy>& strategies, const TextStyle& style,
+                         CompareBy by) {
   assert(std::all_of(strategies.begin(), strategies.end(),
                      [](const ComparedStrategy& one) { return !one.runs.empty(); }));
-  Columns columns(strategies);
+  Columns columns(strategies, by);
   columns.Fit(style.width);
   const int bar = std::min(style.width - columns.Width(), kMostBar);
   const bool with_bar = bar >= kLeastBar;
@@ -190,8 +221,7 @@ std::string CompareTable(const std::vector<ComparedStrategy>& strategies, const 
   for (const ComparedStrategy& strategy : strategies) {
     std::vector<Cell> row;
     for (const Column& column : columns.list()) row.push_back(column.cell(strategy));
-    const double gain = GainPercent(Mean(strategy, GivenMm), Mean(strategy, TravelMm)) / 100;
-    if (with_bar) row.push_back({Bar(gain, bar, style), Color::kBar});
+    if (with_bar) row.push_back({Bar(columns.GainOf(strategy), bar, style), Color::kBar});
     row[0].text = strategy.label;
     table.AddFolded(std::move(row), columns.label_width());
   }

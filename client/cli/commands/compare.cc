@@ -93,22 +93,22 @@ Outcome RunAll(Service& service, const Request& request, InputJob& job,
   return Done();
 }
 
-// Draws and describes the first run of each strategy, with the shortest travel in front. If one of
+// Draws and describes the first run of each strategy, with the best one in front. If one of
 // them is `none`, the others are compared with it and it has no row of its own.
 Outcome ShowViews(Service& service, const Request& request, const InputJob& job,
                   const std::vector<report::ComparedStrategy>& compared) {
   const Expected<report::JobRun> given = RunAsGiven(service, request.job, job);
   if (const Outcome* outcome = std::get_if<Outcome>(&given)) return *outcome;
+  const report::CompareBy by = report::CompareByOf(job.options);
   std::vector<view::NamedRun> runs;
   for (const report::ComparedStrategy& strategy : compared) {
     if (strategy.label == "none" && compared.size() > 1) continue;
     runs.push_back({strategy.label, &strategy.runs.front()});
   }
   view::Scene scene = view::JobScene(job, std::get<report::JobRun>(given), runs);
+  const auto value = [&](size_t route) { return report::ComparedValue(*runs[route - 1].run, by); };
   for (size_t i = 1; i < scene.routes.size(); ++i) {
-    if (scene.routes[i].total.travel_mm < scene.routes[scene.shown].total.travel_mm) {
-      scene.shown = i;
-    }
+    if (value(i) < value(scene.shown)) scene.shown = i;
   }
   const absl::Status status = WriteViews(request.views, scene);
   return status.ok() ? Done() : InputFault(status);
@@ -129,6 +129,10 @@ Outcome RunCompare(const Flags& flags) {
   if (absl::Status status = CheckViewLayer(request->views, *job); !status.ok()) {
     return UsageFault(status);
   }
+  // A table shows what strategies find, also where nobody would wait for it.
+  for (const char* economy : {"least_gain_each", "gain_window"}) {
+    job->options.mutable_strategy()->mutable_options()->erase(economy);
+  }
   Outcome outcome = ListAll(service, request->strategies);
   if (outcome.code == kDone) outcome = service.Resolve(request->job, *job, request->strategies);
   std::vector<report::ComparedStrategy> compared;
@@ -144,11 +148,13 @@ Outcome RunCompare(const Flags& flags) {
     if (outcome.code != kDone) return outcome;
   }
   std::FILE* out = request->json == "-" ? stderr : stdout;
-  Print(out, absl::StrFormat(
-                 "%s: %d layers; %% columns show the travel saved compared with that row\n%s",
-                 DisplayName(job->name), job->layers.size(),
-                 report::CompareTable(compared, StyleFor(out))) +
-                 report::ReductionTable(compared, StyleFor(out)));
+  const report::CompareBy by = report::CompareByOf(job->options);
+  Print(out,
+        absl::StrFormat("%s: %d layers; %% columns show the %s saved compared with that row\n%s",
+                        DisplayName(job->name), job->layers.size(),
+                        by == report::CompareBy::kTime ? "time of travel" : "travel",
+                        report::CompareTable(compared, StyleFor(out), by)) +
+            report::ReductionTable(compared, StyleFor(out)));
   return Done();
 }
 

@@ -19,6 +19,7 @@ namespace traverse::report {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -34,6 +35,31 @@ TEST(CompareTable, ShowsGainsOverTheBaselines) {
   const std::string table = CompareTable(TwoStrategies(), Page(kPageWidth));
 
   EXPECT_TRUE(testing::MatchesGolden("report/compare.txt", table)) << table;
+}
+
+// The one with the longer travel takes less time: fewer retractions.
+TEST(CompareTable, ComparesTheTimeOfTravelWhereThatIsTheCost) {
+  std::vector<ComparedStrategy> strategies = TwoStrategies();
+  v1::JobSummary& greedy = strategies[0].runs[0].result.summary;
+  v1::JobSummary& tabu = strategies[1].runs[0].result.summary;
+  for (v1::JobSummary* summary : {&greedy, &tabu}) summary->set_cost_given(20);
+  greedy.set_cost(10);
+  tabu.set_cost(15);
+
+  const std::string table = CompareTable(strategies, Page(kPageWidth), CompareBy::kTime);
+
+  EXPECT_THAT(table,
+              AllOf(HasSubstr("travel s"), HasSubstr("travel mm"), Not(HasSubstr("idle s"))));
+  EXPECT_THAT(table, ContainsRegex("greedy +10\\.00 .* 50\\.0 +0\\.0 "));
+  EXPECT_THAT(table, ContainsRegex("tabu:polish=false +15\\.00 .* 25\\.0 +-50\\.0 "));
+  EXPECT_LT(ComparedValue(strategies[0].runs[0], CompareBy::kTime),
+            ComparedValue(strategies[1].runs[0], CompareBy::kTime));
+  EXPECT_GT(ComparedValue(strategies[0].runs[0], CompareBy::kLength),
+            ComparedValue(strategies[1].runs[0], CompareBy::kLength));
+  v1::JobOptions options;
+  EXPECT_EQ(CompareByOf(options), CompareBy::kLength);
+  options.mutable_cost()->mutable_time();
+  EXPECT_EQ(CompareByOf(options), CompareBy::kTime);
 }
 
 TEST(CompareTable, ShowsMeanAndDeviationOfRepeatedRuns) {
