@@ -62,14 +62,6 @@ class Api(unittest.TestCase):
             done = self.buf("breaking", self.copy_with(old, new), "--against", PROTO, ok=False)
             self.assertEqual(code, done.returncode, done.stdout + done.stderr)
 
-    def test_generates_python_with_type_stubs(self):
-        if not shutil.which("protoc") or not shutil.which("grpc_python_plugin"):
-            self.skipTest("no protoc or grpc_python_plugin")
-        template = support.DEPLOY / "examples/python/buf.gen.yaml"
-        self.buf("generate", PROTO, "--template", template, "-o", self.folder)
-        made = {path.name for path in (self.folder / "generated/traverse/v1").iterdir()}
-        self.assertLessEqual({"plan_pb2.py", "plan_pb2.pyi", "route_optimizer_service_pb2_grpc.py"}, made)
-
     def test_calls_a_server_that_it_knows_by_reflection_alone(self):
         job = {"layers": [{"id": 1, "islands": [{"contours": [{"points": [40, 40, 60, 40, 60, 60, 40, 60]}],
                                                  "rasters": [{"points": [45, 45, 55, 45]}]}]}]}

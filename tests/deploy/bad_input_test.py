@@ -16,7 +16,7 @@ import unittest
 import unittest.mock
 
 import support
-from support import certificates, example_cases
+from support import certificates, python_client
 
 yaml = support.module("yaml", "python3-yaml")
 
@@ -175,14 +175,11 @@ class Draining(Case):
 
     @classmethod
     def setUpClass(cls):
-        for tool in ("protoc", "grpc_python_plugin"):
-            if not shutil.which(tool):
-                raise unittest.SkipTest(f"no {tool}")
-        example_cases.generate()
+        python_client.load()
 
     def test_a_draining_server_is_alive_but_not_ready(self):
         import grpc
-        from traverse.v1 import route_optimizer_service_pb2 as api, route_optimizer_service_pb2_grpc as service
+        from traverse_client.wire import route_optimizer_service_pb2 as api, route_optimizer_service_pb2_grpc as service
         hold = threading.Event()
 
         def requests():

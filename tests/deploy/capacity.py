@@ -13,7 +13,7 @@ import sys
 import time
 
 import support
-from support import example_cases, fleet, jobs
+from support import fleet, jobs, python_client
 
 SIZES = (10, 30, 100, 300)
 LAYERS = 40
@@ -22,15 +22,12 @@ ENOUGH_SECONDS = 10
 
 
 def request(layers, islands, strategy):
-    from google.protobuf import json_format
-    from traverse.v1 import route_optimizer_service_pb2 as api
     options = {"strategy": {"name": strategy}}
-    return json_format.ParseDict(jobs.plate(layers=layers, islands=islands, vertices=24, options=options),
-                                 api.OptimizeBatchRequest())
+    return python_client.job(jobs.plate(layers=layers, islands=islands, vertices=24, options=options))
 
 
 def run(client, job):
-    return sum(1 for _ in client.optimize(job, 600))
+    return sum(1 for _ in python_client.optimize(client, job, 600))
 
 
 def cpu_seconds(server):
@@ -112,13 +109,12 @@ def behind_balancer(connect):
 
 
 def main():
-    example_cases.generate()
-    sys.path.insert(0, str(support.DEPLOY / "examples/python"))
-    from traverse_client import TraverseClient
+    python_client.load()
+    from traverse_client import TravelOptimizer
     strategies = sys.argv[1:] or ["none", "greedy", "ni2opt", "auto", "tabu"]
-    speed(strategies, TraverseClient)
-    memory(TraverseClient)
-    behind_balancer(TraverseClient)
+    speed(strategies, TravelOptimizer)
+    memory(TravelOptimizer)
+    behind_balancer(TravelOptimizer)
 
 
 if __name__ == "__main__":

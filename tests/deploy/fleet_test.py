@@ -8,7 +8,7 @@ import time
 import unittest
 
 import support
-from support import certificates, example_cases, fleet, jobs
+from support import certificates, fleet, jobs, python_client
 
 yaml = support.module("yaml", "python3-yaml")
 
@@ -17,23 +17,18 @@ class FleetCases(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        example_cases.generate()
-        sys.path.insert(0, str(support.DEPLOY / "examples/python"))
+        python_client.load()
         sys.path.insert(0, str(support.DEPLOY.parent / "tests/chaos"))
-        from google.protobuf import json_format
-        from traverse.v1 import route_optimizer_service_pb2 as api
-        cls.job = json_format.ParseDict(
-            jobs.plate(layers=30, islands=25, vertices=24, options={"strategy": {"name": "greedy"}}),
-            api.OptimizeBatchRequest())
+        cls.job = python_client.job(jobs.plate(layers=30, islands=25, vertices=24, options={"strategy": {"name": "greedy"}}))
 
     def client(self, address):
-        from traverse_client import TraverseClient
-        client = TraverseClient([address])
+        from traverse_client import TravelOptimizer
+        client = TravelOptimizer([address])
         self.addCleanup(client.close)
         return client
 
     def submit(self, client, deadline=30):
-        indices = [result.index for result in client.optimize(self.job, deadline)]
+        indices = [result.index for result in python_client.optimize(client, self.job, deadline)]
         self.assertEqual(list(range(len(self.job.layers))), indices)
 
     def test_jobs_are_balanced_within_ten_percent(self):
@@ -51,7 +46,7 @@ class FleetCases(unittest.TestCase):
 
     def test_the_balancer_lets_in_over_tls_who_has_a_certificate(self):
         import grpc
-        from traverse_client import JobFailed, TraverseClient
+        from traverse_client import TravelOptimizer, TraverseError
         with tempfile.TemporaryDirectory() as folder:
             files = certificates.Certificates(folder)
             bind = yaml.safe_load((support.DEPLOY / "compose.tls.yaml").read_text())["services"]["balancer"]["environment"]["TRAVERSE_BIND"]
@@ -59,15 +54,15 @@ class FleetCases(unittest.TestCase):
             bind = bind.replace("/etc/traverse/tls/clients.pem", str(files.path("ca.crt")))
             authority, key, certificate = (files.path(name).read_bytes() for name in ("ca.crt", "farm.key", "farm.crt"))
             with fleet.Fleet(bind=bind) as servers:
-                known = TraverseClient([servers.address], grpc.ssl_channel_credentials(authority, key, certificate))
+                known = TravelOptimizer([servers.address], grpc.ssl_channel_credentials(authority, key, certificate))
                 self.addCleanup(known.close)
                 for _ in range(6):
                     self.submit(known)
                 counts = [server.sum_of("traverse_jobs_total", code="OK") for server in servers.servers]
                 for credentials in (None, grpc.ssl_channel_credentials(authority)):
-                    unknown = TraverseClient([servers.address], credentials)
+                    unknown = TravelOptimizer([servers.address], credentials)
                     self.addCleanup(unknown.close)
-                    with self.assertRaises(JobFailed):
+                    with self.assertRaises(TraverseError):
                         self.submit(unknown, deadline=2)
 
         self.assertEqual([2, 2, 2], counts)

@@ -17,7 +17,7 @@ import urllib.parse
 import xml.etree.ElementTree
 
 import support
-from support import example_cases, fleet, jobs
+from support import fleet, jobs, python_client
 
 sys.path.append(str(support.SOURCE / "tests/client/gateway"))
 import gateway_process  # noqa: E402
@@ -68,39 +68,30 @@ def concrete(expression):
 class Observability(unittest.TestCase):
 
     def setUp(self):
-        example_cases.generate()
-        sys.path.insert(0, str(support.DEPLOY / "examples/python"))
-        from traverse_client import JobFailed, TraverseClient
-        self.failed = JobFailed
+        python_client.load()
+        from traverse_client import TravelOptimizer, TraverseError
+        self.failed = TraverseError
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="traverse-prometheus-"))
         self.addCleanup(shutil.rmtree, self.folder)
-        self.make_client = TraverseClient
+        self.make_client = TravelOptimizer
 
     def request(self, islands=20, **options):
-        from google.protobuf import json_format
-        from traverse.v1 import route_optimizer_service_pb2 as api
-        return json_format.ParseDict(jobs.plate(layers=8, islands=islands, options=options), api.OptimizeBatchRequest())
-
-    def strategies(self, address):
-        import grpc
-        from traverse.v1 import route_optimizer_service_pb2 as api, route_optimizer_service_pb2_grpc as service
-        with grpc.insecure_channel(address) as channel:
-            return service.RouteOptimizerServiceStub(channel).ListStrategies(api.ListStrategiesRequest()).strategies
+        return python_client.job(jobs.plate(layers=8, islands=islands, options=options))
 
     def load(self, address):
         """Jobs of every strategy, some with little time, some that are wrong."""
-        infos = [info for info in self.strategies(address)]
+        client = self.make_client([address])
+        self.addCleanup(client.close)
+        infos = client.strategies()
         requests = [self.request(strategy={"name": info.name}, layer_time_limit="0.02s") for info in infos]
         # Small enough for bounds that are worth something.
         requests += [self.request(islands=4, strategy={"name": info.name}, layer_time_limit="2s") for info in infos if info.lower_bound]
         requests.append(self.request(strategy={"name": "nonsense"}))
-        client = self.make_client([address])
-        self.addCleanup(client.close)
         turn = iter(range(10 ** 9))
 
         def submit():
             try:
-                for _ in client.optimize(requests[next(turn) % len(requests)], 30):
+                for _ in python_client.optimize(client, requests[next(turn) % len(requests)], 30):
                     pass
             except self.failed:
                 pass

@@ -38,8 +38,6 @@ class Readme(unittest.TestCase):
         self.folder = pathlib.Path(scratch.name)
         shutil.copytree(support.DEPLOY / "examples", self.folder / "deploy/examples",
                         ignore=shutil.ignore_patterns("node_modules", "generated", "__pycache__"))
-        for name in ("proto", "server/proto"):
-            shutil.copytree(support.SOURCE / name, self.folder / name)
         (self.folder / "build").mkdir()
         (self.folder / "build/release").symlink_to(build)
         self.path = f"{build / 'client'}:/usr/bin:{os.environ['PATH']}"
@@ -61,22 +59,6 @@ class Readme(unittest.TestCase):
         for name in programs:
             if (support.SOURCE / name).read_text().startswith("#!"):
                 self.assertTrue(os.access(support.SOURCE / name, os.X_OK), f"{name} is not executable")
-
-    def test_callers(self):
-        for tool in ("protoc", "grpc_python_plugin"):
-            if not shutil.which(tool):
-                self.skipTest(f"no {tool}")
-        # First elsewhere: the guide's own command would fail where no registry is in reach.
-        trial = self.folder / "trial"
-        shutil.copytree(support.DEPLOY / "examples/node", trial, ignore=shutil.ignore_patterns("node_modules"))
-        support.install_node_packages(trial)
-        shutil.copy(support.DEPLOY / "samples/part2.damat", self.folder / "part.damat")
-        with support.Server() as first, support.Server() as second:
-            said = self.run_block(block("submit_job.mjs").replace("HOST:PORT,HOST:PORT", f"{first.address},{second.address}"))
-            jobs = first.sum_of("traverse_jobs_total", code="OK") + second.sum_of("traverse_jobs_total", code="OK")
-
-        self.assertEqual(2, jobs)
-        self.assertEqual(2, len(re.findall(r"layers, travel .* mm -> .* mm", said)))
 
     def test_upload_hook(self):
         sample = support.DEPLOY / "samples/clusters13.gcode"

@@ -209,3 +209,14 @@ test("the examples of its guide run", async (t) => {
   }
   assert.equal(blocks.length, 2);
 });
+
+test("the examples of deploy run", async (t) => {
+  const server = await program(t, "TRAVERSE_SERVER");
+  const gateway = await program(t, "TRAVERSE_GATEWAY", "--listen_http=127.0.0.1:0");
+  const run = async (...words) => (await promisify(execFile)(process.execPath, words, { timeout: 120_000 })).stdout;
+  await writeFile("job.json", JSON.stringify({ options: { strategy: { name: "greedy" } }, layers: layers(3) }));
+
+  assert.equal((await run("examples/submit_job.mjs", "job.json", server.address)).match(/layer \d: travel .* mm -> .* mm/g).length, 3);
+  await run("examples/send_file.mjs", process.env.TRAVERSE_SAMPLE, "shorter.gcode", gateway.address);
+  assert.match((await readFile("shorter.gcode", "utf8")).slice(0, 1000), /; optimised by Traverse/);
+});

@@ -41,6 +41,7 @@ def main():
         if checked.returncode:
             sys.exit(checked.stdout)
         shutil.copy(HERE / "cases.mjs", farm)
+        shutil.copytree(ROOT / "deploy/examples/node", farm / "examples")
         more = dict(os.environ, TRAVERSE_GUIDE=str(ROOT / "client/node/README.md"),
                     TRAVERSE_SAMPLE=str(ROOT / "deploy/samples/clusters13.gcode"))
         return subprocess.run(["node", "--test", "cases.mjs"], cwd=farm, env=more, check=False).returncode

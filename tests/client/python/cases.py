@@ -16,8 +16,8 @@ import unittest
 import grpc
 
 import traverse_client
-from traverse_client import (AsyncGcodeGateway, AsyncTravelOptimizer, GcodeGateway, RewriteOptions, TravelOptimizer,
-                             TraverseError, island, layer)
+from traverse_client import (AsyncGcodeGateway, AsyncTravelOptimizer, GcodeGateway, JobOptions, OptimizeBatchRequest,
+                             RewriteOptions, TravelOptimizer, TraverseError, island, layer)
 from traverse_client.wire import retry_info_pb2
 from traverse_client.wire import route_optimizer_service_pb2 as api
 from traverse_client.wire import route_optimizer_service_pb2_grpc as service
@@ -33,11 +33,12 @@ class ScriptedServer:
     """Answers each attempt as its turn says: (layers to answer, status code or None, delay in s or None)."""
 
     def __init__(self, *script):
-        self.asked, self.tokens = [], []
+        self.asked, self.tokens, self.options = [], [], []
         turns, lock = iter(script), threading.Lock()
 
         class Servicer(service.RouteOptimizerServiceServicer):
             def OptimizeBatch(_, request, context):
+                self.options.append(request.options)
                 yield from self.turn(request.layers, context, *take())
 
             def Optimize(_, requests, context):
@@ -136,6 +137,22 @@ class Scripted(unittest.TestCase):
                 list(optimizer.optimize(broken(), 20))
         with self.assertRaisesRegex(KeyError, "no third layer"):
             asyncio.run(run())
+
+    def test_a_stream_that_a_proxy_resets_is_asked_for_again(self):
+        for server, run in self.each_form((4, grpc.StatusCode.CANCELLED, None), (9, None, None)):
+            self.assertEqual(len(run()), 5)
+            self.assertEqual([asked[0] for asked in server.asked], [1, 5])
+
+    def test_after_a_break_the_rhythm_of_cleaning_goes_on(self):
+        options = JobOptions(cleaning={"point": {"x_mm": -7}, "every_layers": 3, "layers_since_cleaning": 1})
+        gone = grpc.StatusCode.UNAVAILABLE
+        with ScriptedServer((2, gone, 0.01), (1, gone, 0.01), (9, None, None)) as server:
+            with TravelOptimizer([server.address]) as optimizer:
+                results = list(optimizer.optimize(layers(5), 20, options=options))
+
+        self.assertEqual([result.id for result in results], [1, 2, 3, 4, 5])
+        self.assertEqual([one.cleaning.layers_since_cleaning for one in server.options], [1, 0, 1])
+        self.assertEqual([one.start.x_mm for one in server.options], [0, -7, 3])
 
     def test_a_token_is_asked_for_each_attempt(self):
         tokens = iter(["old", "new"])
@@ -289,6 +306,25 @@ class Package(unittest.TestCase):
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertTrue(done.stdout.strip())
         self.assertEqual(len(blocks), 2)
+
+    def test_the_examples_of_deploy_run(self):
+        servers, gateway = [Server(), Server()], Gateway()
+        for program in (*servers, gateway):
+            self.addCleanup(program.kill)
+        examples = pathlib.Path(os.environ["TRAVERSE_EXAMPLES"])
+
+        def run(name, *arguments):
+            command = [sys.executable, "-B", examples / name, *arguments]
+            done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return done.stdout
+
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "job.pb").write_bytes(OptimizeBatchRequest(layers=layers(3)).SerializeToString())
+            said = run("submit_job.py", "job.pb", *(server.address for server in servers))
+            self.assertEqual(len(re.findall(r"layer \d: travel .* mm -> .* mm", said)), 3)
+            run("send_file.py", os.environ["TRAVERSE_SAMPLE"], "shorter.gcode", gateway.address)
+            self.assertIn(b"; optimised by Traverse", pathlib.Path(folder, "shorter.gcode").read_bytes()[:1000])
 
 
 if __name__ == "__main__":

@@ -32,6 +32,7 @@ def main():
         run(from_source, "-c", "import traverse_client; traverse_client.TravelOptimizer(['127.0.0.1:1']).close()", cwd=work)
         python = environment(work / "installed", wheel)
         more = dict(os.environ, GRPC_VERBOSITY="NONE", TRAVERSE_GUIDE=str(ROOT / "client/python/README.md"),
+                    TRAVERSE_EXAMPLES=str(ROOT / "deploy/examples/python"),
                     TRAVERSE_SAMPLE=str(ROOT / "deploy/samples/clusters13.gcode"), PYTHONDONTWRITEBYTECODE="1")
         return subprocess.run([python, HERE / "cases.py", *sys.argv[1:]], cwd=work, env=more, check=False).returncode
 
