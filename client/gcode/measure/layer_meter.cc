@@ -67,7 +67,7 @@ PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStar
   for (Step step; interpreter.Next(step);) {
     notes.Reach(step.line.begin);
     meter.Follow(step, interpreter);
-    notes.Add(NominalSeconds(step, interpreter.state(), file.profile));
+    notes.Add(NominalSeconds(step, interpreter.state()));
     if (room != nullptr && IsBlocked(step, interpreter.state(), *room)) ++blocked;
   }
   notes.Reach(text.size());
@@ -77,14 +77,14 @@ PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStar
   return totals;
 }
 
-double MeasureMoments(const GcodeFile& file, std::string_view text, const PartStart& start,
+double MeasureMoments(const GcodeFile& /*file*/, std::string_view text, const PartStart& start,
                       TextMoments& moments, const VisitStep& visit) {
   Interpreter interpreter(text, 0, start.machine);
   MomentNotes notes(&moments);
   for (Step step; interpreter.Next(step);) {
     notes.Reach(step.line.begin);
     if (visit) visit(step, notes.seconds());
-    notes.Add(NominalSeconds(step, interpreter.state(), file.profile));
+    notes.Add(NominalSeconds(step, interpreter.state()));
   }
   notes.Reach(text.size());
   return notes.seconds();

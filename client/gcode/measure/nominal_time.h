@@ -7,13 +7,13 @@
 #define TRAVERSE_CLIENT_GCODE_MEASURE_NOMINAL_TIME_H_
 
 #include "client/gcode/machine/interpreter.h"
-#include "client/gcode/machine/machine_profile.h"
 
 namespace traverse::gcode {
 
-// `state` is how the machine is behind `step`. Includes the dwell of a G4. 0 for what moves nothing
-// or has no speed.
-double NominalSeconds(const Step& step, const MachineState& state, const MachineProfile& profile);
+// `state` is how the machine is behind `step`: any move by G0 to G3, also one that stays where it
+// is because of what else it does, along its arc; and a dwell. What G10 and G11 take only the
+// machine knows: 0, as for all else.
+double NominalSeconds(const Step& step, const MachineState& state);
 
 }  // namespace traverse::gcode
 

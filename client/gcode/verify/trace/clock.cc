@@ -15,10 +15,20 @@ double Across(const std::array<Micro, 3>& a, double x, double y) {
   return std::hypot(static_cast<double>(a[0]) - x, static_cast<double>(a[1]) - y);
 }
 
-// Along the circle, in the units of `motion`; the chord if no center is stated.
+// Of an arc by its radius, the long way round if that is negative.
+double LengthByRadius(double chord, double radius) {
+  const double least = std::max(std::abs(radius), chord / 2);
+  if (chord <= 0) return 0;
+  const double angle = 2 * std::asin(chord / 2 / least);
+  return least * (radius < 0 ? 2 * M_PI - angle : angle);
+}
+
+}  // namespace
+
 double FlatLength(const Motion& motion) {
   const double chord =
       Across(motion.from, static_cast<double>(motion.to[0]), static_cast<double>(motion.to[1]));
+  if (motion.radius != 0) return LengthByRadius(chord, static_cast<double>(motion.radius));
   if (!motion.has_center) return chord;
   const auto x = static_cast<double>(motion.center_x);
   const auto y = static_cast<double>(motion.center_y);
@@ -30,6 +40,8 @@ double FlatLength(const Motion& motion) {
   if (turn <= 1e-9) turn += 2 * M_PI;
   return turn * Across(motion.from, x, y);
 }
+
+namespace {
 
 double PathLengthOf(const Motion& motion) {
   const double flat = FlatLength(motion);
@@ -50,11 +62,12 @@ double DwellSeconds(std::string_view line) {
 }  // namespace
 
 void Clock::Take(const VerifyLine& line, const VerifyMachine& machine) {
-  if (line.role == LineRole::kDeposit || line.moves) {
-    const Motion& motion = machine.motion();
-    if (motion.feed > 0) seconds_ += PathLengthOf(motion) / static_cast<double>(motion.feed) * 60;
-  } else if (line.command == Mix('G', 4)) {
+  const Motion& motion = machine.motion();
+  // Some dwells belong to the moves around them.
+  if (line.command == Mix('G', 4) || (line.moves && motion.number == 4)) {
     seconds_ += DwellSeconds(line.text);
+  } else if (line.role == LineRole::kDeposit || line.moves) {
+    if (motion.feed > 0) seconds_ += PathLengthOf(motion) / static_cast<double>(motion.feed) * 60;
   }
 }
 

@@ -7,6 +7,9 @@
 
 namespace traverse::gcode {
 
+// How far `motion` goes in the plane, along its arc, in its own units.
+double FlatLength(const Motion& motion);
+
 class Clock {
  public:
   // A line that `machine` has just done. Retractions by the firmware take no time.

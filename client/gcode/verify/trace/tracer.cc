@@ -20,12 +20,6 @@ constexpr uint32_t Bit(char letter) { return 1u << (letter - 'A'); }
 // Of inches.
 Micro InMm(Micro length) { return std::llround(static_cast<double>(length) * kInch); }
 
-double LengthOf(const Motion& motion) {
-  const auto dx = static_cast<double>(motion.to[0] - motion.from[0]);
-  const auto dy = static_cast<double>(motion.to[1] - motion.from[1]);
-  return std::sqrt(dx * dx + dy * dy) * kMicro;
-}
-
 // In mm; of an arc. With a positive radius it takes the short way round: the center then lies on
 // the right of the chord where it turns clockwise.
 Point CenterOf(const Motion& motion, double unit) {
@@ -287,7 +281,7 @@ void Tracer::TakeDeposit(const VerifyLine& line, VerifyMachine& machine, uint32_
   }
   TracePath& path = chunk_.paths.back();
   path.end_segment = static_cast<uint32_t>(chunk_.segments.size());
-  const auto length = static_cast<float>(LengthOf(motion) * unit / kMicro);
+  const auto length = static_cast<float>(FlatLength(motion) * unit);
   path.length_mm += length;
   path.filament_mm += static_cast<float>(segment.filament_mm);
   path.feed = motion.feed;

@@ -87,6 +87,22 @@ TEST(VerifyRest, LooksBelowLayersThatDoNotReachAnIsland) {
   EXPECT_EQ(Rests(given, Print({{20, 0}, {40}, {20, 0}})), "");
 }
 
+TEST(VerifyRest, CirclesThatDoNotTouchAreIslandsOfTheirOwn) {
+  // All but whole circles: their chords are short, and for a line so short its filament is much.
+  const auto circle = [](double x) {
+    return Travel(absl::StrCat("X", x, " Y0")) +
+           absl::StrCat(";TYPE:Internal infill\nG1 F140\nG3 X", x + 0.008, " Y.15 I1.5 J0 E.3\n");
+  };
+  const std::string a = circle(0);
+  const std::string b = circle(4.5);
+  const std::string c = circle(40);
+  const std::string next = ";LAYER_CHANGE\nG1 Z.4 F9000\n";
+
+  EXPECT_EQ(Rests(kHead + a + b + c + next + a + b + c, kHead + a + c + b + next + a + c + b), "");
+  EXPECT_EQ(Rests(kHead + a + b + c + next + a + b + c, kHead + a + c + b + next + b + c + a),
+            "rest");
+}
+
 TEST(VerifyRest, PathsOfOneIslandMayComeInAnyOrder) {
   const std::string near = Travel("X0 Y0") + ";TYPE:Internal infill\nG1 F150\nG1 Y10 E.3\n";
   const std::string far = Travel("X0.4 Y0") + ";TYPE:Internal infill\nG1 F150\nG1 Y10 E.3\n";
