@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "client/gcode/text/cura_settings.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
@@ -44,6 +45,27 @@ void SetLength(std::optional<double>& field, std::optional<double> value) {
   if (value && *value > 0 && *value <= kMostMm) field = value;
 }
 
+// CuraEngine's outline of the head around the nozzle, fans and all, and how high its lowest part
+// hangs above the tip.
+constexpr std::string_view kCuraHead = "machine_head_with_fans_polygon";
+constexpr std::string_view kCuraHeadDistance = "machine_nozzle_head_distance";
+
+// How far from the nozzle the farthest corner of `[[-20, 10], [10, 10], [10, -10]]` is.
+std::optional<double> ReachOf(std::string_view polygon) {
+  constexpr std::string_view kOfNumber = "+-.0123456789";
+  std::optional<double> reach;
+  std::optional<double> x;
+  for (size_t at = polygon.find_first_of(kOfNumber); at != polygon.npos;) {
+    const size_t end = std::min(polygon.find_first_not_of(kOfNumber, at), polygon.size());
+    const std::optional<double> number = FirstNumber(polygon.substr(at, end - at));
+    if (!number) return std::nullopt;
+    if (x) reach = std::max(reach.value_or(0), std::hypot(*x, *number));
+    x = x ? std::nullopt : number;
+    at = polygon.find_first_of(kOfNumber, end);
+  }
+  return reach;
+}
+
 void Apply(std::string_view key, std::string_view value, MachineProfile& profile) {
   const std::optional<double> number = FirstNumber(value);
   if (key == "machine_max_acceleration_extruding") {
@@ -77,8 +99,10 @@ void Apply(std::string_view key, std::string_view value, MachineProfile& profile
     profile.nozzle_diameter = number;
   } else if (key == "extruder_clearance_radius" || key == "extruder_clearance_max_radius") {
     SetLength(profile.clearance_radius, number);
-  } else if (key == "nozzle_height") {
+  } else if (key == "nozzle_height" || key == kCuraHeadDistance) {
     SetLength(profile.nozzle_height, number);
+  } else if (key == kCuraHead) {
+    SetLength(profile.clearance_radius, ReachOf(value));
   } else if (key == "filament_diameter") {
     SetPositive(profile.filament_diameter, number);
   }
@@ -89,6 +113,18 @@ std::optional<double> Parameter(std::string_view line, std::string_view name) {
   const size_t at = line.find(name);
   if (at == std::string_view::npos) return std::nullopt;
   return FirstNumber(line.substr(at + name.size()));
+}
+
+// Of the head alone: CuraEngine's other settings are none of a file that others have.
+void ApplyCuraHead(const std::string& joined, MachineProfile& profile) {
+  for (const std::string_view key : {kCuraHead, kCuraHeadDistance}) {
+    const size_t at = joined.find(key);
+    if (at == joined.npos) continue;
+    const std::string_view rest = std::string_view(joined).substr(at + key.size());
+    const std::string_view line = rest.substr(0, rest.find('\\'));
+    const size_t equals = line.find(" = ");
+    if (equals == 0) Apply(key, line.substr(3), profile);
+  }
 }
 
 }  // namespace
@@ -102,6 +138,7 @@ MachineProfile ReadProfile(std::string_view text) {
   if (text.size() > kScanBytes) {
     ForEachSetting(text.substr(std::max(kScanBytes, text.size() - kScanBytes)), apply);
   }
+  ApplyCuraHead(JoinedCuraSettings(text), profile);
   return profile;
 }
 

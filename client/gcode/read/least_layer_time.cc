@@ -6,11 +6,10 @@
 #include <string>
 
 #include "absl/strings/numbers.h"
+#include "client/gcode/text/cura_settings.h"
 
 namespace traverse::gcode {
 namespace {
-
-constexpr std::string_view kCuraSettings = ";SETTING_3 ";
 
 constexpr size_t kLongestName = 64;
 
@@ -70,16 +69,6 @@ void ForEachLayerWord(std::string_view text, Visit visit) {
   for (size_t at = text.find(kWord); at != text.npos; at = text.find(kWord, at + 1)) visit(at);
 }
 
-// CuraEngine's settings without what divides them into lines.
-std::string JoinedSettings(std::string_view text) {
-  std::string joined;
-  for (size_t at = text.find(kCuraSettings); at != text.npos; at = text.find(kCuraSettings, at)) {
-    at += kCuraSettings.size();
-    joined += text.substr(at, text.find_first_of("\r\n", at) - at);
-  }
-  return joined;
-}
-
 }  // namespace
 
 double LeastLayerSeconds(std::string_view text) {
@@ -93,7 +82,7 @@ double LeastLayerSeconds(std::string_view text) {
     if (before != std::string_view::npos) line += before + 1;
     if (text[line] == ';') take(StatedAt(text, at));
   });
-  const std::string joined = JoinedSettings(text);
+  const std::string joined = JoinedCuraSettings(text);
   ForEachLayerWord(joined, [&](size_t at) { take(StatedAt(joined, at)); });
   return greatest.value_or(kUsualLeastLayerSeconds);
 }

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "client/gcode/verify/match/laid_over.h"
-#include "client/gcode/verify/match/stated_layer_time.h"
+#include "client/gcode/verify/match/stated_settings.h"
 #include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
@@ -89,13 +89,16 @@ SlicerSettings ReadSettings(std::string_view text) {
       GreatestOf(first_of("retract_before_travel", "retraction_minimum_travel"));
   // Prints are at most so far apart, and heads no higher.
   constexpr double kMostClearanceMm = 100;
-  const auto room = [&](std::string_view one, std::string_view other, double& stated_mm) {
-    const double mm = GreatestOf(first_of(one, other));
+  const auto room = [](double mm, double& stated_mm) {
     if (mm > 0 && mm <= kMostClearanceMm) stated_mm = mm;
   };
-  room("extruder_clearance_radius", "extruder_clearance_max_radius", settings.clearance_radius_mm);
-  room("nozzle_height", "nozzle_height", settings.nozzle_height_mm);
-  settings.least_layer_seconds = StatedLeastLayerSeconds(text).value_or(10);
+  const StatedSettings stated = ReadStatedSettings(text);
+  room(stated.head_reach_mm.value_or(0), settings.clearance_radius_mm);
+  room(stated.head_above_tip_mm.value_or(0), settings.nozzle_height_mm);
+  room(GreatestOf(first_of("extruder_clearance_radius", "extruder_clearance_max_radius")),
+       settings.clearance_radius_mm);
+  room(GreatestOf(first_of("nozzle_height", "nozzle_height")), settings.nozzle_height_mm);
+  settings.least_layer_seconds = stated.least_layer_seconds.value_or(10);
   return settings;
 }
 

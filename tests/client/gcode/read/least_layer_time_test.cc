@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "client/gcode/verify/match/stated_layer_time.h"
+#include "client/gcode/verify/match/stated_settings.h"
 
 namespace traverse::gcode {
 namespace {
@@ -14,7 +14,8 @@ namespace {
 // As both find it; -1 if they do not agree.
 double Stated(const std::string& text) {
   const double read = LeastLayerSeconds(text);
-  return StatedLeastLayerSeconds(text).value_or(kUsualLeastLayerSeconds) == read ? read : -1;
+  const auto found = ReadStatedSettings(text).least_layer_seconds;
+  return found.value_or(kUsualLeastLayerSeconds) == read ? read : -1;
 }
 
 TEST(LeastLayerTime, IsReadInTheWordsOfManySlicers) {
