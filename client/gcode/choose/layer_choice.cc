@@ -14,6 +14,7 @@
 #include "client/gcode/choose/layer_column.h"
 #include "client/gcode/choose/merged_orders.h"
 #include "client/gcode/choose/object_orders.h"
+#include "client/gcode/choose/rested_row.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/plan/stacked_islands.h"
 
@@ -23,8 +24,12 @@ namespace {
 // Rounding of sums of lengths.
 constexpr double kSlackMm = 1e-6;
 
-// No travel to a layer takes longer.
-constexpr double kLongestTravelSeconds = 10;
+// What a crossing of a visible wall counts in rows of turned orders. If the file has too many
+// crossings, the second row has fewer.
+constexpr double kCrossingSeconds[] = {0, 0.25};
+
+// Choices besides the file's own that are turned.
+constexpr size_t kTurned = 2;
 
 }  // namespace
 
@@ -52,9 +57,10 @@ class LayerChooser::Impl {
     assert(usual_tries_ <= tries_.size());
     ParallelFor(columns_.size(), threads_, [this](size_t layer) { FillColumn(layer); });
     rests_.SetGiven(TimedRow(columns_, false));
+    const auto fill = [this](size_t i) { gcode::FillTravels(file_, columns_[i], columns_[i + 1]); };
+    ParallelFor(columns_.size() - 1, threads_, fill);
+    AddRested();
     ParallelFor(columns_.size() - 1, threads_, [this](size_t i) { FillTravels(i + 1); });
-    for (LayerColumn& column : columns_)
-      column.totals.no_choice.assign(column.choices.size(), false);
   }
 
   ChosenLayers Choose() {
@@ -116,12 +122,16 @@ class LayerChooser::Impl {
 
  private:
   void ChooseRow() {
+    do {
+      TakeBestRow();
+    } while (RuleOutShortRests(rests_, columns_));
+  }
+
+  void TakeBestRow() {
     std::vector<const ChoiceColumn*> totals;
     for (const LayerColumn& column : columns_) totals.push_back(&column.totals);
-    do {
-      const std::vector<uint32_t> row = BestRow(totals, policy_, crossings_, fewer_crossings_);
-      for (size_t layer = 0; layer < columns_.size(); ++layer) columns_[layer].Take(row[layer]);
-    } while (RuleOutShortRests(rests_, columns_));
+    const std::vector<uint32_t> row = BestRow(totals, policy_, crossings_, fewer_crossings_);
+    for (size_t layer = 0; layer < columns_.size(); ++layer) columns_[layer].Take(row[layer]);
   }
 
   // By which the orders of a layer are merged.
@@ -130,7 +140,6 @@ class LayerChooser::Impl {
     MergeRules rules;
     rules.policy = policy_;
     rules.crossings = crossings_;
-    if (rests_.least_seconds() > 0) rules.islands = rests_.IslandsOf(layer);
     rules.as_many_retractions = std::abs(columns_[layer].totals.inside[0].extra_mm) > kSlackMm;
     if (polish_) {
       rules.freedom = FreedomOf(file_, of_file, policy_, allow_);
@@ -246,34 +255,53 @@ class LayerChooser::Impl {
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
   }
 
-  // A travel move that must not be chosen is not written. The file's own orders one after the other
-  // may always be.
   void FillTravels(size_t layer) {
-    LayerColumn& column = columns_[layer];
-    ChoiceColumn& totals = column.totals;
-    totals.travels.clear();
-    totals.no_travel.clear();
-    for (uint32_t before = 0; before < columns_[layer - 1].choices.size(); ++before) {
-      for (uint32_t choice = 0; choice < column.choices.size(); ++choice) {
-        totals.travels.emplace_back();
-        totals.no_travel.push_back(MayNotFollow(layer, before, choice, kLongestTravelSeconds));
-        if (totals.no_travel.back()) continue;
-        totals.travels.back() = MeasureTravel(file_, columns_[layer - 1], before, column, choice);
-        const double seconds = totals.travels.back().nominal_seconds;
-        totals.no_travel.back() = MayNotFollow(layer, before, choice, seconds);
-      }
+    gcode::FillTravels(file_, columns_[layer - 1], columns_[layer]);
+    ForbidShortRests(rests_, layer, columns_[layer - 1], columns_[layer]);
+  }
+
+  // If islands rest too short in the row that would be the best one, adds turned orders in which
+  // they rest long enough.
+  void AddRested() {
+    for (LayerColumn& column : columns_) {
+      column.totals.no_choice.assign(column.choices.size(), false);
+    }
+    if (rests_.least_seconds() <= 0 || columns_.size() < 2) return;
+    TakeBestRow();
+    if (!AnyShortRest(rests_, columns_)) return;
+    std::vector<TurnedLayer> turned(columns_.size());
+    ParallelFor(columns_.size(), threads_, [&](size_t layer) { turned[layer] = TurnsOf(layer); });
+    for (const double crossing_seconds : kCrossingSeconds) {
+      const auto row = RestedRow(rests_, turned, crossing_seconds);
+      ParallelFor(columns_.size(), threads_, [&](size_t layer) {
+        if (row[layer]) AddTurned(layer, turned[layer].turns, *row[layer]);
+      });
     }
   }
 
-  // With travel of `travel_seconds` to `layer` an island would rest too short, or the verifier
-  // refuses that travel.
-  bool MayNotFollow(size_t layer, uint32_t before, uint32_t choice, double travel_seconds) const {
-    if (before == 0 && choice == 0) return false;
-    const LayerChoice& from = columns_[layer - 1].choices[before];
-    const LayerChoice& to = columns_[layer].choices[choice];
-    return columns_[layer].refusals.RefusesTravel(before, choice,
-                                                  {from.order.back(), to.order.front()}) ||
-           rests_.TooShort(layer, from.times, {&to.times, travel_seconds});
+  TurnedLayer TurnsOf(size_t layer) const {
+    const LayerColumn& column = columns_[layer];
+    std::vector<LayerOrder> orders;
+    for (const LayerOrder* order : FastestOrders(column, kTurned)) orders.push_back(*order);
+    const LayerFreedom freedom = FreedomOf(file_, file_.layers[layer], policy_, allow_);
+    TurnedLayer turned =
+        TurnedOrders(*column.writer, travel_[layer], orders, RulesOf(layer), freedom,
+                     rests_.IslandsOf(layer), rests_.least_seconds(), column.given_moments);
+    turned.given_times = column.choices[0].times;
+    if (layer == 0) return turned;
+    turned.given_travel_mm = column.totals.Travel(0, 0).travel_mm;
+    turned.given_travel_seconds = column.given_travel_seconds;
+    return turned;
+  }
+
+  void AddTurned(size_t layer, const IslandTurns& turns, size_t turn) {
+    LayerOrder order = turns.OrderOf(turn);
+    if (polish_) {
+      order = SettledWithin(*columns_[layer].writer, travel_[layer], order, RulesOf(layer),
+                            turns.UnitsOf(turn));
+    }
+    filler_.Add(order, layer, columns_[layer]);
+    columns_[layer].totals.no_choice.resize(columns_[layer].choices.size(), false);
   }
 
   // The travel moves are written one after the other, for each needs to know where the extruder's

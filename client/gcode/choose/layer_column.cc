@@ -22,6 +22,21 @@ RetractionHabit SparingNoWalls(RetractionHabit habit) {
   return habit;
 }
 
+// Choice `to` of `column` behind choice `from` of the layer before: the travel between them.
+PrintTotals MeasureTravel(const GcodeFile& file, const LayerColumn& before, uint32_t from,
+                          const LayerColumn& column, uint32_t to) {
+  const LayerChoice& choice = before.choices[from];
+  std::string text;
+  column.writer->WriteTravel(choice.order.back(), column.choices[to].order.front(), choice.behind,
+                             text);
+  return Measure(file, text, choice.behind, &column.writer->walls(), column.writer->room());
+}
+
+bool IsRefused(const LayerColumn& before, uint32_t from, const LayerColumn& column, uint32_t to) {
+  const LinkEnds link{before.choices[from].order.back(), column.choices[to].order.front()};
+  return column.refusals.RefusesTravel(from, to, link);
+}
+
 }  // namespace
 
 double ForecastPaths(const LayerWriter& writer, const TravelModel& travel,
@@ -96,6 +111,7 @@ void ColumnFiller::Begin(size_t layer, LayerColumn& column) const {
   const VisibleWalls& walls = column.writer->walls();
   column.totals.inside.push_back(MeasurePaths(file_, of_file, walls, &moments));
   choice.times = rests_.TimesOf(layer, choice.order, of_file.first_block, moments.seconds);
+  column.given_moments = std::move(moments.seconds);
   column.given_travel_seconds = MeasureTravel(file_, of_file, walls).nominal_seconds;
   if (!column.writer->hides() || std::abs(column.totals.inside[0].extra_mm) <= kLeastExtraMm) {
     return;
@@ -161,13 +177,42 @@ double LeastRestSeconds(const GcodeFile& file, Policy policy, double min_seconds
   return std::max(min_seconds, LeastLayerSeconds(file.text));
 }
 
-PrintTotals MeasureTravel(const GcodeFile& file, const LayerColumn& before, uint32_t from,
-                          const LayerColumn& column, uint32_t to) {
-  const LayerChoice& choice = before.choices[from];
-  std::string text;
-  column.writer->WriteTravel(choice.order.back(), column.choices[to].order.front(), choice.behind,
-                             text);
-  return Measure(file, text, choice.behind, &column.writer->walls(), column.writer->room());
+void FillTravels(const GcodeFile& file, const LayerColumn& before, LayerColumn& column) {
+  const size_t n = column.choices.size();
+  const size_t known_n = column.travels_to;
+  const std::vector<PrintTotals> known = std::move(column.totals.travels);
+  const std::vector<bool> was_measured = std::move(column.measured);
+  column.totals.travels.assign(before.choices.size() * n, {});
+  column.totals.no_travel.assign(before.choices.size() * n, false);
+  column.measured.assign(before.choices.size() * n, false);
+  column.travels_to = n;
+  for (uint32_t b = 0; b < before.choices.size(); ++b) {
+    for (uint32_t c = 0; c < n; ++c) {
+      const size_t at = b * n + c;
+      if ((b > 0 || c > 0) && IsRefused(before, b, column, c)) {
+        column.totals.no_travel[at] = true;
+        continue;
+      }
+      const size_t was = b * known_n + c;
+      const bool is_known = c < known_n && was < was_measured.size() && was_measured[was];
+      column.totals.travels[at] = is_known ? known[was] : MeasureTravel(file, before, b, column, c);
+      column.measured[at] = true;
+    }
+  }
+}
+
+void ForbidShortRests(const IslandRests& rests, size_t layer, const LayerColumn& before,
+                      LayerColumn& column) {
+  const size_t n = column.choices.size();
+  for (uint32_t b = 0; b < before.choices.size(); ++b) {
+    for (uint32_t c = 0; c < n; ++c) {
+      const size_t at = b * n + c;
+      if ((b == 0 && c == 0) || column.totals.no_travel[at]) continue;
+      column.totals.no_travel[at] =
+          rests.TooShort(layer, before.choices[b].times,
+                         {&column.choices[c].times, column.totals.travels[at].nominal_seconds});
+    }
+  }
 }
 
 std::vector<TimedLayer> TimedRow(const std::vector<LayerColumn>& columns, bool as_chosen) {
@@ -182,6 +227,14 @@ std::vector<TimedLayer> TimedRow(const std::vector<LayerColumn>& columns, bool a
                   : column.given_travel_seconds;
   }
   return row;
+}
+
+bool AnyShortRest(const IslandRests& rests, const std::vector<LayerColumn>& columns) {
+  const std::vector<TimedLayer> print = TimedRow(columns, true);
+  for (size_t layer = 1; layer < print.size(); ++layer) {
+    if (rests.TooShort(layer, *print[layer - 1].islands, print[layer])) return true;
+  }
+  return !rests.TooShortBeyond(print).empty();
 }
 
 bool RuleOutShortRests(const IslandRests& rests, std::vector<LayerColumn>& columns) {

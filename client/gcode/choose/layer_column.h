@@ -40,7 +40,10 @@ struct LayerColumn {
   ChoiceColumn totals;
   bool blocked = false;  // in an order that was found, something stands in the way
   uint32_t chosen = 0;
-  double given_travel_seconds = 0;  // nominal, to the layer in the file
+  double given_travel_seconds = 0;    // nominal, to the layer in the file
+  std::vector<double> given_moments;  // when each path begins and ends there
+  std::vector<bool> measured;         // [as totals.travels]
+  size_t travels_to = 0;              // choices that these lead to
   Refusals refusals;
   std::vector<size_t> ends;  // see PlaceOfLine
 
@@ -106,12 +109,19 @@ std::vector<const LayerOrder*> FastestOrders(const LayerColumn& column, size_t m
 // IsFree(policy), and for `min_seconds`.
 double LeastRestSeconds(const GcodeFile& file, Policy policy, double min_seconds);
 
-// Choice `to` of `column` behind choice `from` of the layer before: the travel between them.
-PrintTotals MeasureTravel(const GcodeFile& file, const LayerColumn& before, uint32_t from,
-                          const LayerColumn& column, uint32_t to);
+// Writes and measures the travel from each choice of `before` to each of `column`, unless it is
+// refused or known. The file's own orders one after the other may always be chosen.
+void FillTravels(const GcodeFile& file, const LayerColumn& before, LayerColumn& column);
+
+// Forbids those after which an island rests too short.
+void ForbidShortRests(const IslandRests& rests, size_t layer, const LayerColumn& before,
+                      LayerColumn& column);
 
 // The layers of the file in its own order, or as chosen.
 std::vector<TimedLayer> TimedRow(const std::vector<LayerColumn>& columns, bool as_chosen);
+
+// True if an island of the chosen row rests too short.
+bool AnyShortRest(const IslandRests& rests, const std::vector<LayerColumn>& columns);
 
 // Where an island of the chosen row rests too short that lies on a layer before the last one, rules
 // out what was chosen for its layer; else for the layers below. True if there is such an island.

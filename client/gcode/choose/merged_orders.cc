@@ -4,11 +4,10 @@
 #include <functional>
 #include <limits>
 #include <optional>
-#include <tuple>
 #include <utility>
 
-#include "absl/container/flat_hash_map.h"
-#include "client/gcode/choose/island_orders.h"
+#include "client/gcode/choose/known_travels.h"
+#include "client/gcode/choose/order_state.h"
 
 namespace traverse::gcode {
 namespace {
@@ -19,9 +18,6 @@ constexpr double kSparingCrossingSeconds = 0.25;
 
 // What a retraction counts in orders that are to have fewer.
 constexpr double kSparedRetractionSeconds = 1;
-
-// Rounding of sums of lengths.
-constexpr double kSlackMm = 1e-6;
 
 // Refused links that are taken out of an order at once, for each asks for all travel moves of the
 // layer.
@@ -50,75 +46,6 @@ bool IsWhole(const LayerOrder& order, const LayerOrder& given) {
   }
   return order.size() == given.size();
 }
-
-// The travel moves of a layer. Those around walls take long to find, and the same few are asked for
-// again and again.
-class KnownTravels {
- public:
-  KnownTravels(const LayerWriter& writer, const TravelModel& travel, const MergeRules& rules)
-      : writer_(writer), travel_(travel), rules_(rules), given_(writer.GivenOrder()) {
-    uint32_t placements = 0;
-    for (const Outline& outline : writer.outlines()) {
-      numbers_.push_back(placements);
-      placements += static_cast<uint32_t>(std::max<size_t>(outline.points.size(), 2));
-    }
-    given_travels_.resize(given_.size());
-    for (size_t i = 1; i < given_.size(); ++i) {
-      given_travels_[i] = writer.EstimateTravel(i, given_[i - 1], given_[i], travel);
-      longest_open_mm_ = std::max(longest_open_mm_, given_travels_[i].open_mm);
-    }
-  }
-
-  bool IsRefused(const Placement& from, const Placement& to) const {
-    return rules_.refused != nullptr && rules_.refused->contains({from, to});
-  }
-
-  // From now on the orders asked about have objects in other places than the file.
-  void MoveObjects() { moved_ = !rules_.places.empty(); }
-
-  TravelTotals operator()(size_t place, const Placement& from, const Placement& to) {
-    if (moved_) place = rules_.places[place];
-    // Where something stands in the file, the travel depends on what that is.
-    const bool boundary = rules_.boundaries[place];
-    const size_t next = to.block - given_.front().block;
-    const bool as_given = next > 0 && from == given_[next - 1] && to == given_[next];
-    const bool alike = next == place || !(boundary || rules_.boundaries[next]);
-    if (as_given && alike) return given_travels_[next];
-    if (known_.size() >= kMostKnown) known_.clear();
-    const Key key{boundary ? static_cast<uint32_t>(place) : 0, Number(from), Number(to)};
-    const auto [found, added] = known_.try_emplace(key);
-    if (added) found->second = Estimate(place, from, to);
-    return found->second;
-  }
-
- private:
-  using Key = std::tuple<uint32_t, uint32_t, uint32_t>;
-
-  // Of 56 bytes each.
-  static constexpr size_t kMostKnown = 400'000;
-
-  // Of all placements of the layer's paths.
-  uint32_t Number(const Placement& placement) const {
-    return numbers_[placement.block - given_.front().block] + placement.entry;
-  }
-
-  TravelTotals Estimate(size_t place, const Placement& from, const Placement& to) const {
-    TravelTotals totals = writer_.EstimateTravel(place, from, to, travel_);
-    if (totals.open_mm > longest_open_mm_ + kSlackMm) totals.too_long = 1;
-    if (IsRefused(from, to)) ++totals.too_long;
-    return totals;
-  }
-
-  const LayerWriter& writer_;
-  const TravelModel& travel_;
-  const MergeRules& rules_;
-  const LayerOrder given_;
-  std::vector<uint32_t> numbers_;            // [path] the number of its first placement
-  std::vector<TravelTotals> given_travels_;  // [place] as the layer was given
-  double longest_open_mm_ = 0;               // of them
-  bool moved_ = false;
-  absl::flat_hash_map<Key, TravelTotals> known_;
-};
 
 // What comes directly behind the path before it still does.
 bool KeepsTogether(const LayerOrder& order, const LayerFreedom& freedom, uint32_t first) {
@@ -198,7 +125,6 @@ class LayerMerge {
     best_between = Better(strict_, best_between, {}, Effort::kKick);
     if (best_between != given_) merged.push_back(std::move(best_between));
     AddSparing(merged);
-    if (!rules_.islands.empty()) AddRested(merged);
     return merged;
   }
 
@@ -216,6 +142,57 @@ class LayerMerge {
     priced.retraction_seconds = kSparedRetractionSeconds;
     return {Better(OrderMerger(estimate_, few), order, {}, Effort::kKick),
             Better(OrderMerger(estimate_, priced), order, {}, Effort::kKick)};
+  }
+
+  // See TurnedOrders.
+  TurnedLayer Turn(const std::vector<LayerOrder>& orders, const LayerFreedom& freedom,
+                   const std::vector<uint32_t>& islands, double rest_seconds,
+                   LayerClock clock) const {
+    TurnedLayer turned;
+    turned.first_block = given_.front().block;
+    turned.given = were_;
+    turned.given_begin = BeginOf(given_.front());
+    turned.given_end = EndOf(given_.back());
+    turned.may_grow = rules_.policy != Policy::kSafe;
+    IslandTurns::Settle settle;
+    if (rules_.freedom) {
+      settle = [this](const LayerOrder& order, const std::vector<uint32_t>& units) {
+        return SettleWithin(order, units);
+      };
+    }
+    turned.turns = IslandTurns(given_, orders, islands, rest_seconds, freedom, estimate_, quick_,
+                               std::move(clock), settle);
+    for (size_t turn = 0; turn < turned.turns.size(); ++turn) {
+      turned.begin.push_back(BeginOf(turned.turns.FirstOf(turn)));
+      turned.end.push_back(EndOf(turned.turns.LastOf(turn)));
+    }
+    return turned;
+  }
+
+  // See SettledWithin.
+  LayerOrder SettleWithin(const LayerOrder& order, std::vector<uint32_t> units) const {
+    LayerFreedom freedom = *rules_.freedom;
+    freedom.group = std::move(units);
+    const OrderPolisher polisher(given_.front().block, outlines_, freedom, estimate_,
+                                 *rules_.polish);
+    return polisher.Polish(order, quick_, Effort::kSettle);
+  }
+
+  // Travel takes as long in nominal time as in the file's own order, where `moments` are when its
+  // paths begin and end.
+  LayerClock ClockOf(const std::vector<double>& moments, double mm_s) const {
+    LayerClock clock;
+    clock.travel_mm_s = mm_s;
+    double travel_seconds = 0;
+    for (size_t path = 0; path < given_.size(); ++path) {
+      clock.path_seconds.push_back(moments[2 * path + 1] - moments[2 * path]);
+      if (path > 0) travel_seconds += moments[2 * path] - moments[2 * path - 1];
+    }
+    const double beside = travel_seconds - were_.mm / mm_s;
+    if (were_.retractions > 0) {
+      clock.retraction_seconds = std::max(beside, 0.0) / static_cast<double>(were_.retractions);
+    }
+    return clock;
   }
 
   // See RepairedOrder.
@@ -238,6 +215,14 @@ class LayerMerge {
   }
 
  private:
+  Vertex BeginOf(const Placement& placement) const {
+    const std::vector<Vertex>& points = outlines_[placement.block - given_.front().block].points;
+    if (placement.closed) return points[placement.entry];
+    return placement.as_given() ? points.front() : points.back();
+  }
+
+  Vertex EndOf(const Placement& placement) const { return BeginOf(OrderState::Turned(placement)); }
+
   // Kicks take long: only the orders that are the likeliest to be chosen are worth them.
   LayerOrder Better(const OrderMerger& judge, const LayerOrder& order,
                     const std::vector<LayerOrder>& others, Effort effort) const {
@@ -260,27 +245,6 @@ class LayerMerge {
     sparing.retractions = were_.retractions;
     LayerOrder order = Better(OrderMerger(estimate_, sparing), given_, found_, Effort::kKick);
     if (order != given_) merged.push_back(std::move(order));
-  }
-
-  // The best of `merged`, and the best of those that begin and end as the file does, with their
-  // islands in other sequences; within these they may become better.
-  void AddRested(std::vector<LayerOrder>& merged) const {
-    if (merged.empty() || !rules_.freedom) return;
-    const IslandParts parts{rules_.islands, rules_.freedom->group};
-    LayerFreedom freedom = *rules_.freedom;
-    freedom.group = IslandGroups(parts);
-    const OrderPolisher polisher(given_.front().block, outlines_, freedom, estimate_,
-                                 *rules_.polish);
-    const auto quicker = [this](const LayerOrder& a, const LayerOrder& b) {
-      return quick_.IsBetter(quick_.TotalsOf(a), quick_.TotalsOf(b));
-    };
-    std::vector<LayerOrder> bases = {*std::min_element(merged.begin(), merged.end(), quicker)};
-    if (EndsAlike(merged.back(), given_)) bases.push_back(merged.back());
-    for (const LayerOrder& base : bases) {
-      for (const LayerOrder& order : IslandOrders(given_, base, parts)) {
-        merged.push_back(polisher.Polish(order, quick_, Effort::kSettle));
-      }
-    }
   }
 
   const MergeRules& rules_;
@@ -314,6 +278,25 @@ std::optional<LayerOrder> RepairedOrder(const LayerWriter& writer, const TravelM
                                         const LayerFreedom& freedom, size_t reach) {
   if (!IsWhole(order, writer.GivenOrder())) return std::nullopt;
   return LayerMerge(writer, travel, {}, rules).Repair(order, freedom, reach);
+}
+
+TurnedLayer TurnedOrders(const LayerWriter& writer, const TravelModel& travel,
+                         const std::vector<LayerOrder>& orders, const MergeRules& rules,
+                         const LayerFreedom& freedom, const std::vector<uint32_t>& islands,
+                         double rest_seconds, const std::vector<double>& moments) {
+  std::vector<LayerOrder> whole;
+  for (const LayerOrder& order : orders) {
+    if (IsWhole(order, writer.GivenOrder())) whole.push_back(order);
+  }
+  const LayerMerge merge(writer, travel, {}, rules);
+  return merge.Turn(whole, freedom, islands, rest_seconds,
+                    merge.ClockOf(moments, travel.speed_mm_s));
+}
+
+LayerOrder SettledWithin(const LayerWriter& writer, const TravelModel& travel,
+                         const LayerOrder& order, const MergeRules& rules,
+                         std::vector<uint32_t> units) {
+  return LayerMerge(writer, travel, {}, rules).SettleWithin(order, std::move(units));
 }
 
 LayerOrder SettledOrder(const LayerWriter& writer, const TravelModel& travel,

@@ -9,6 +9,7 @@
 #include "client/gcode/choose/order_merge.h"
 #include "client/gcode/choose/order_polish.h"
 #include "client/gcode/choose/order_repair.h"
+#include "client/gcode/choose/rested_row.h"
 #include "client/gcode/plan/layer_freedom.h"
 #include "client/gcode/plan/policy.h"
 #include "client/gcode/plan/travel_model.h"
@@ -28,9 +29,6 @@ struct MergeRules {
   // [place of an order] LayerWriter::PlacesOf it; empty for an order without moved objects.
   std::vector<uint32_t> places = {};
 
-  // [path] the island that it lies in; set if islands must rest (island_rests.h).
-  std::vector<uint32_t> islands = {};
-
   // If set, small changes improve the orders too (order_polish.h): what may change in the layer,
   // and for how long. Either both are set or none.
   std::optional<LayerFreedom> freedom = {};
@@ -43,8 +41,7 @@ struct MergeRules {
 // The orders of `found`, each improved with runs of the others and of the file's own order, and
 // brought within the limits of `rules` as far as estimates tell (order_merge.h). Of those that
 // begin and end with the same paths as the file only the best stays. Where IsFree(policy) each is
-// also tried with its paths in the order of the file. Where islands must rest,
-// the best ones are also tried with their islands in other sequences (island_orders.h).
+// also tried with its paths in the order of the file.
 std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelModel& travel,
                                      const std::vector<LayerOrder>& found, const MergeRules& rules);
 
@@ -59,6 +56,21 @@ std::optional<LayerOrder> RepairedOrder(const LayerWriter& writer, const TravelM
 // and last path stay. REQUIRES: rules.freedom, rules.polish.
 std::vector<LayerOrder> SparingOrders(const LayerWriter& writer, const TravelModel& travel,
                                       const LayerOrder& order, const MergeRules& rules);
+
+// The turns of `orders` that may be chosen where islands must rest, for a layer of freedom
+// `freedom`. `islands`: [path] the one that it lies in; for `rest_seconds` they rest at the most;
+// `moments`: when each path begins and ends in the file's own order. Of the result `given_times`
+// and the travel to the layer are left to be set.
+TurnedLayer TurnedOrders(const LayerWriter& writer, const TravelModel& travel,
+                         const std::vector<LayerOrder>& orders, const MergeRules& rules,
+                         const LayerFreedom& freedom, const std::vector<uint32_t>& islands,
+                         double rest_seconds, const std::vector<double>& moments);
+
+// `order`, improved within `units`: [path] what has to stay together. REQUIRES: rules.freedom,
+// rules.polish.
+LayerOrder SettledWithin(const LayerWriter& writer, const TravelModel& travel,
+                         const LayerOrder& order, const MergeRules& rules,
+                         std::vector<uint32_t> units);
 
 // `order`, in which whole objects have changed places, improved within each of them.
 // REQUIRES: rules.freedom, rules.polish, rules.places.

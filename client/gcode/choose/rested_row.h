@@ -1,0 +1,48 @@
+// One turned order for each layer of a print, so that islands rest between them.
+//
+// Where an order of a layer begins is of little cost; which of them may follow each other is not
+// up to one layer. So the turns of all layers (island_turns.h) are looked at together, by
+// estimates: a shortest path through them, whose edges are the pairs that leave each island enough
+// rest.
+
+#ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_RESTED_ROW_H_
+#define TRAVERSE_CLIENT_GCODE_CHOOSE_RESTED_ROW_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "client/gcode/choose/island_rests.h"
+#include "client/gcode/choose/island_turns.h"
+#include "client/gcode/machine/vertex.h"
+
+namespace traverse::gcode {
+
+// The turns of one layer that may be chosen, besides the file's own order.
+struct TurnedLayer {
+  uint32_t first_block = 0;
+  IslandTurns turns;
+  std::vector<Vertex> begin;  // [turn] where its first path begins
+  std::vector<Vertex> end;    // [turn] and where its last one ends
+
+  // The file's own order, and the travel to it as measured.
+  TravelTotals given;
+  IslandTimes given_times;
+  Vertex given_begin;
+  Vertex given_end;
+  double given_travel_mm = 0;
+  double given_travel_seconds = 0;
+
+  bool may_grow = true;  // a layer's travel, with the travel to it
+};
+
+// [layer] the turn to take, unset for the file's own order: the row that takes the least time if a
+// crossing of a visible wall counts as `crossing_seconds`. O(turns^2) a layer and its supports.
+std::vector<std::optional<uint32_t>> RestedRow(const IslandRests& rests,
+                                               const std::vector<TurnedLayer>& layers,
+                                               double crossing_seconds);
+
+}  // namespace traverse::gcode
+
+#endif  // TRAVERSE_CLIENT_GCODE_CHOOSE_RESTED_ROW_H_
