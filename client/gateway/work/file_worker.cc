@@ -67,6 +67,8 @@ void AddPart(const InputJob& job, const OptimizedFile& made, const std::string& 
                          ? "nothing to gain, the file stays unchanged: " + DescribeRewrite(rewrite)
                          : absl::StrFormat("%d of %d layers rewritten: %s", rewrite.layers_changed,
                                            rewrite.layers, DescribeRewrite(rewrite));
+  const std::string rest = DescribeRest(rewrite);
+  if (!rest.empty()) absl::StrAppend(&text, ", ", rest);
   out.set_text(out.text() + (out.text().empty() ? "" : "; ") + label + text);
 }
 

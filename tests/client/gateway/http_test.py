@@ -72,6 +72,7 @@ class Files(unittest.TestCase):
         self.assertEqual(status, 200)
         self.assertLess(summary["written"]["travel_mm"], summary["given"]["travel_mm"])
         self.assertEqual((summary["policy"], summary["layers"], summary["verified"]), ("POLICY_SAFE", 3, True))
+        self.assertRegex(summary["text"], r"least rest of an island [\d.]+ -> [\d.]+ s \([\d.]+ are enough\)")
 
     def test_events_tell_of_progress_and_bring_the_file(self):
         status, headers, body = self.post("/v1/gcode?report=true", PART, {"Accept": "text/event-stream"})
