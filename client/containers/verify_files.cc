@@ -59,6 +59,7 @@ VerifyReport CheckTexts(std::string original, const std::string& original_name,
                         std::optional<CommentsKept> kept, const VerifyFilesOptions& options) {
   // Before comments are removed, and the line at the head with them.
   VerifyOptions rules;
+  rules.limit = options.limit;
   rules.permissions = PermissionsFor(options.permissions, optimised);
   const std::optional<gcode::TimeScale> scale = gcode::StatedScale(optimised);
   if (scale && scale != gcode::StatedScale(original)) {
@@ -109,6 +110,7 @@ absl::StatusOr<VerifyReport> VerifyFiles(std::string original, const std::string
                    *std::move(made), PartName(after, after.container->parts()[*second]), kept,
                    options),
         sum);
+    if (absl::Status status = options.limit.status(); !status.ok()) return status;
   }
   return sum;
 }

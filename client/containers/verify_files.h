@@ -11,6 +11,7 @@
 #include "client/containers/container.h"
 #include "client/gcode/verify/permissions.h"
 #include "client/gcode/verify/report.h"
+#include "client/gcode/work_limit.h"
 
 namespace traverse {
 
@@ -20,6 +21,8 @@ struct VerifyFilesOptions {
 
   // What may have changed. Unset: what the line at the head of each optimised text says, or safe.
   std::optional<GivenPermissions> permissions;
+
+  gcode::WorkLimit limit = {};
 };
 
 // The findings of CheckGcode between each text of `optimised` and the text of the same plate of
@@ -30,7 +33,8 @@ struct VerifyFilesOptions {
 // as a printer reads them, without these. If the optimised file says that it restated times, they
 // are restated in the original first.
 //
-// Errors: those of OpenContainer; InvalidArgument if the files have different plates.
+// Errors: those of OpenContainer; InvalidArgument if the files have different plates; Cancelled or
+// DeadlineExceeded once options.limit ends.
 absl::StatusOr<VerifyReport> VerifyFiles(std::string original, const std::string& original_name,
                                          std::string optimised, const std::string& optimised_name,
                                          const VerifyFilesOptions& options);

@@ -281,14 +281,15 @@ std::vector<std::string> DescribeBarriers(const GcodeFile& file, gcode::Policy p
   const gcode::ObjectOrders objects(file);
   const bool fans_are_free = gcode::IsFree(policy) || allow.fan_order;
   std::vector<gcode::Tallies> of_layer(file.layers.size());
-  gcode::ParallelFor(of_layer.size(), gcode::ThreadsFor(file.text.size()), [&](size_t i) {
+  const auto take = [&](size_t i) {
     if (!counted.empty() && !counted[i]) return;
     const gcode::Layer& layer = file.layers[i];
     const gcode::LayerPlan plan =
         gcode::MakeLayerPlan(file, layer, policy, gcode::Latitude::kFull, allow);
     of_layer[i] =
         gcode::LayerTally(file, layer, plan.freedom, plan.outlines, fans_are_free).Take(objects);
-  });
+  };
+  gcode::ParallelFor(of_layer.size(), gcode::ThreadsFor(file.text.size()), take, file.limit);
   gcode::Tallies all;
   std::map<std::string_view, int64_t> reasons;  // why objects of a layer stay, and in how many
   for (const gcode::Tallies& layer : of_layer) {

@@ -222,8 +222,8 @@ Census FillLayers(const GcodeFile& file, const GcodeOptions& options, const File
   std::vector<Census> parts(file.layers.size());
   job.layers.resize(file.layers.size());
   job.notes.resize(file.layers.size());
-  ParallelFor(parts.size(), ThreadsFor(file.text.size()),
-              [&](size_t i) { FillLayer(file, i, habits, options, job, parts[i]); });
+  const auto fill = [&](size_t i) { FillLayer(file, i, habits, options, job, parts[i]); };
+  ParallelFor(parts.size(), ThreadsFor(file.text.size()), fill, file.limit);
   Census all;
   for (const Census& part : parts) {
     for (size_t i = 0; i < all.paths.size(); ++i) {
@@ -318,7 +318,7 @@ InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions&
   return job;
 }
 
-void AddMeasuredFacts(InputJob& job, const GcodeOptions& options) {
+absl::StatusOr<gcode::PrintTotals> AddMeasuredFacts(InputJob& job, const GcodeOptions& options) {
   const auto add = [&job](std::string key, std::string value) {
     job.facts.emplace_back(std::move(key), std::move(value));
   };
@@ -344,6 +344,8 @@ void AddMeasuredFacts(InputJob& job, const GcodeOptions& options) {
         absl::StrFormat("%.1f s before layer %d; least layer time %.4g s", rest->seconds,
                         rest->layer + 1, gcode::LeastLayerSeconds(job.gcode->text)));
   }
+  if (absl::Status status = job.gcode->limit.status(); !status.ok()) return status;
+  return totals;
 }
 
 std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& options,
@@ -406,10 +408,12 @@ gcode::LayerOrder OrderOf(const GcodeFile& file, size_t layer, const v1::LayerRe
 
 absl::StatusOr<InputJob> ReadGcodeJob(std::string text, const std::string& name,
                                       const GcodeOptions& options) {
-  absl::StatusOr<std::shared_ptr<GcodeFile>> file = ReadGcode(std::move(text), name);
+  absl::StatusOr<std::shared_ptr<GcodeFile>> file = ReadGcode(std::move(text), name, options.limit);
   if (!file.ok()) return file.status();
   if (options.machine) gcode::ApplyLimits(*options.machine, (*file)->profile);
-  return MakeGcodeJob(*std::move(file), options);
+  InputJob job = MakeGcodeJob(*std::move(file), options);
+  if (absl::Status status = options.limit.status(); !status.ok()) return status;
+  return job;
 }
 
 }  // namespace traverse

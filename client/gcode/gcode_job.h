@@ -11,8 +11,10 @@
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 #include "client/gcode/machine/machine_limits.h"
+#include "client/gcode/measure/print_totals.h"
 #include "client/gcode/model/gcode_file.h"
 #include "client/gcode/plan/policy.h"
+#include "client/gcode/work_limit.h"
 #include "client/gcode/write/layer_writer.h"
 #include "client/input/input_job.h"
 #include "traverse/v1/route_optimizer_service.pb.h"
@@ -29,6 +31,8 @@ struct GcodeOptions {
 
   // Replaces what files state about their machine.
   std::optional<gcode::MachineLimits> machine = {};
+
+  gcode::WorkLimit limit = {};  // of reading a file, and of all that is done with it
 };
 
 // The job in `file`: a plan for each of its layers, the cost of travel (a time) as the file's own
@@ -38,8 +42,10 @@ struct GcodeOptions {
 InputJob MakeGcodeJob(std::shared_ptr<const GcodeFile> file, const GcodeOptions& options);
 
 // Adds facts that must be measured to a job from G-code: travel, retractions, visible walls
-// crossed, print time; and what keeps paths in their places (barriers.h).
-void AddMeasuredFacts(InputJob& job, const GcodeOptions& options = {});
+// crossed, print time; and what keeps paths in their places (barriers.h). Returns the totals of the
+// print; Cancelled or DeadlineExceeded once options.limit ends.
+absl::StatusOr<gcode::PrintTotals> AddMeasuredFacts(InputJob& job,
+                                                    const GcodeOptions& options = {});
 
 // The layers of `job`, which comes from G-code, with plans of less freedom: a second way to search
 // for an order (policy.h). If `found` has more crossings than given, or is missing, crossings cost
@@ -52,7 +58,7 @@ std::vector<v1::Layer> NarrowLayers(const InputJob& job, const GcodeOptions& opt
 // checked against the layer of the job.
 gcode::LayerOrder OrderOf(const GcodeFile& file, size_t layer, const v1::LayerResult& answer);
 
-// ReadGcode and MakeGcodeJob.
+// ReadGcode and MakeGcodeJob. Cancelled or DeadlineExceeded once options.limit ends.
 absl::StatusOr<InputJob> ReadGcodeJob(std::string text, const std::string& name,
                                       const GcodeOptions& options = {});
 

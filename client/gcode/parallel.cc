@@ -2,21 +2,31 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <thread>
 #include <vector>
 
 namespace traverse::gcode {
 
-void ParallelFor(size_t n, int threads, const std::function<void(size_t)>& body) {
+void ParallelFor(size_t n, int threads, const std::function<void(size_t)>& body,
+                 const WorkLimit& limit) {
   std::atomic<size_t> next{0};
-  const auto work = [&next, n, &body] {
-    for (size_t i = next++; i < n; i = next++) body(i);
+  std::atomic<bool> failed{false};
+  std::exception_ptr fault;  // the first
+  const auto work = [&] {
+    try {
+      for (size_t i = next++; i < n && !limit.Ended(); i = next++) body(i);
+    } catch (...) {
+      next = n;
+      if (!failed.exchange(true)) fault = std::current_exception();
+    }
   };
   const size_t helpers = std::min(n, static_cast<size_t>(std::max(threads, 1)));
   std::vector<std::thread> pool;
   for (size_t t = 1; t < helpers; ++t) pool.emplace_back(work);
   work();
   for (std::thread& thread : pool) thread.join();
+  if (fault != nullptr) std::rethrow_exception(fault);
 }
 
 int DefaultThreads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }

@@ -6,10 +6,14 @@
 #include <cstddef>
 #include <functional>
 
+#include "client/gcode/work_limit.h"
+
 namespace traverse::gcode {
 
-// Calls body(0) to body(n - 1) on at most `threads` threads. Returns when all have returned.
-void ParallelFor(size_t n, int threads, const std::function<void(size_t)>& body);
+// Calls body(0) to body(n - 1) on at most `threads` threads, unless `limit` ends first. Returns
+// when all have returned. What one of them throws, because there is no memory, reaches the caller.
+void ParallelFor(size_t n, int threads, const std::function<void(size_t)>& body,
+                 const WorkLimit& limit = {});
 
 // As many threads as the machine has processors.
 int DefaultThreads();

@@ -106,7 +106,8 @@ std::string NewText(const GcodeFile& file, const ChosenLayers& chosen, const std
 // of it at a time. Nothing where E is taken otherwise.
 absl::StatusOr<std::optional<PrintTotals>> MeasureText(const GcodeFile& file, std::string& text,
                                                        int threads) {
-  const absl::StatusOr<std::shared_ptr<GcodeFile>> read = ReadGcode(std::move(text), file.name);
+  const absl::StatusOr<std::shared_ptr<GcodeFile>> read =
+      ReadGcode(std::move(text), file.name, file.limit);
   if (!read.ok()) return read.status();
   (*read)->profile = file.profile;  // it may know more of the machine than the text says
   std::optional<PrintTotals> totals;
@@ -131,8 +132,9 @@ GcodeRewrite AsItIs(const GcodeFile& file, GcodeRewrite rewrite) {
   return rewrite;
 }
 
-VerifyOptions AllRules(const RewriteOptions& options) {
+VerifyOptions AllRules(const GcodeFile& file, const RewriteOptions& options) {
   VerifyOptions verify;
+  verify.limit = file.limit;
   verify.permissions = *ParsePermissions(PolicyName(options.policy), AllowanceNames(options.allow));
   verify.permissions->max_hidden_travel_mm = options.allow.max_hidden_travel_mm;
   return verify;
@@ -192,6 +194,7 @@ class Rewriter {
     for (int round = 0;; ++round) {
       GcodeRewrite rewrite;
       ChosenLayers chosen = chooser_.Choose();
+      if (file_.limit.Ended()) return file_.limit.status();
       NoteChoice(chosen, rewrite);
       if (chosen.changed == 0 || rewrite.after.seconds > rewrite.before.seconds) {
         return AsItIs(file_, std::move(rewrite));
@@ -202,8 +205,10 @@ class Rewriter {
       if (file_.states_digest && !file_.numbers) RenewDigest(rewrite.text);
       const LayerLines lines(file_, chosen, head);
       chosen.texts = {};  // they are in there
-      const VerifyReport report = CheckGcode(file_.text, file_.name, rewrite.text,
-                                             file_.name + " as optimised", AllRules(options_));
+      const VerifyReport report =
+          CheckGcode(file_.text, file_.name, rewrite.text, file_.name + " as optimised",
+                     AllRules(file_, options_));
+      if (absl::Status status = file_.limit.status(); !status.ok()) return status;
       if (report.ok()) {
         rewrite.orders = std::move(chosen.orders);
         absl::StatusOr<GcodeRewrite> done = Finish(head, std::move(rewrite));

@@ -89,8 +89,9 @@ struct RewriteOptions {
 // breaks a rule is ruled out, layer by layer, and the file is written again.
 //
 // Each order is empty, or has paths of its layer. If one has a path twice, or a plan of `policy`
-// does not allow it, the verifier finds that and the layer stays unchanged. An error if the new
-// text cannot be read again: that is our bug.
+// does not allow it, the verifier finds that and the layer stays unchanged. Cancelled or
+// DeadlineExceeded once file.limit ends. Another error if the new text cannot be read again: that
+// is our bug.
 absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
                                           const std::vector<gcode::FileOrder>& tries,
                                           const RewriteOptions& options);

@@ -210,6 +210,8 @@ FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& 
   if (twice) polish = {search.finish_by, options.cancel};
   absl::StatusOr<GcodeRewrite> rewrite = RewriteByRuns(
       job, made.runs, options.gcode, options.forecast_fast && twice, std::move(polish));
+  const absl::Status in_time = job.gcode->limit.status();
+  if (!in_time.ok()) return SearchFault(in_time);
   if (!rewrite.ok()) {
     return FileFault{FileStage::kWrite,
                      absl::FailedPreconditionError(absl::StrFormat(

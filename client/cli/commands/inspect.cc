@@ -29,7 +29,11 @@ Outcome InspectPart(Service& service, const Flags& flags, const JobFlags& job_fl
   if (absl::Status status = ApplyJobFlags(job_flags, *job); !status.ok()) {
     return UsageFault(status);
   }
-  if (job->gcode != nullptr) AddMeasuredFacts(*job, *gcode);
+  if (job->gcode != nullptr) {
+    if (auto totals = AddMeasuredFacts(*job, *gcode); !totals.ok()) {
+      return InputFault(totals.status());
+    }
+  }
   // The service also computes the travel of the given order, so that only one place computes it.
   StrategySpec none{"none", {}};
   none.strategy.set_name("none");

@@ -41,6 +41,24 @@ HttpResponse JsonResponse(std::string json) {
   return response;
 }
 
+// What was found, or why not.
+template <typename Message>
+void SendMessage(HttpReply& reply, const absl::StatusOr<Message>& found) {
+  reply.Send(found.ok() ? JsonResponse(MessageJson(*found) + "\n") : RefusalOf(found.status()));
+}
+
+// When the work on a file that has come must be done.
+absl::Time FinishBy(const Core& core, absl::Duration deadline = absl::InfiniteDuration()) {
+  return absl::Now() + std::min(deadline, core.options.max_time);
+}
+
+// Is stopped when the client leaves.
+std::stop_source StopWhenGone(HttpReply& reply) {
+  std::stop_source stop;
+  reply.OnGone([stop]() mutable { stop.request_stop(); });
+  return stop;
+}
+
 // Of the query and of the form.
 Parameters AllParameters(const HttpRequest& request, const Upload& upload) {
   Parameters parameters = request.query;
@@ -226,11 +244,10 @@ HttpDecision TakeFile(const HttpRequest& request, const std::string& caller, Cor
 HttpDecision RewriteRoute(const HttpRequest& request, const std::string& caller, Core& core) {
   const auto start = [&core, request, caller](const TicketPtr& ticket, FileRequest wanted,
                                               const FilePtr& file, const ReplyPtr& reply) {
-    wanted.finish_by = absl::Now() + std::min(wanted.deadline, core.options.max_time);
+    wanted.finish_by = FinishBy(core, wanted.deadline);
     const AnswerKind kind = KindOf(request);
     const FileRecord record = RecordOf(request, caller, wanted, *file);
-    std::stop_source stop;
-    reply->OnGone([stop]() mutable { stop.request_stop(); });
+    const std::stop_source stop = StopWhenGone(*reply);
     if (kind == AnswerKind::kEvents) BeginEvents(*reply);
     core.Submit(ticket, {file},
                 [&core, wanted, record, kind, file, reply, stop](const absl::Status& may) {
@@ -241,13 +258,13 @@ HttpDecision RewriteRoute(const HttpRequest& request, const std::string& caller,
 }
 
 HttpDecision InspectRoute(const HttpRequest& request, const std::string& caller, Core& core) {
-  const auto start = [&core](const TicketPtr& ticket, const FileRequest& wanted,
-                             const FilePtr& file, const ReplyPtr& reply) {
-    core.Submit(ticket, {file}, [&core, wanted, file, reply](const absl::Status& may) {
+  const auto start = [&core](const TicketPtr& ticket, FileRequest wanted, const FilePtr& file,
+                             const ReplyPtr& reply) {
+    wanted.finish_by = FinishBy(core, wanted.deadline);
+    const std::stop_source stop = StopWhenGone(*reply);
+    core.Submit(ticket, {file}, [&core, wanted, file, reply, stop](const absl::Status& may) {
       if (!may.ok()) return reply->Send(RefusalOf(may));
-      absl::StatusOr<v1::InspectResponse> found = core.worker->Inspect(*file, wanted);
-      reply->Send(found.ok() ? JsonResponse(MessageJson(*found) + "\n")
-                             : RefusalOf(found.status()));
+      SendMessage(*reply, core.worker->Inspect(*file, wanted, stop.get_token()));
     });
   };
   return TakeFile(request, caller, core, start);
@@ -269,15 +286,15 @@ HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, 
     if (original == nullptr || optimised == nullptr) {
       return reply->Send(Problem(400, "send a form with the files original and optimised"));
     }
-    core.Submit(
-        ticket, {original, optimised},
-        [&core, original, optimised, permissions = *permissions, reply](const absl::Status& may) {
-          if (!may.ok()) return reply->Send(RefusalOf(may));
-          absl::StatusOr<v1::VerifyResponse> found =
-              core.worker->Verify(*original, *optimised, permissions);
-          reply->Send(found.ok() ? JsonResponse(MessageJson(*found) + "\n")
-                                 : RefusalOf(found.status()));
-        });
+    const absl::Time finish_by = FinishBy(core);
+    const std::stop_source stop = StopWhenGone(*reply);
+    const auto work = [&core, original, optimised, permissions = *permissions, finish_by, reply,
+                       stop](const absl::Status& may) {
+      if (!may.ok()) return reply->Send(RefusalOf(may));
+      SendMessage(*reply, core.worker->Verify(*original, *optimised, permissions, finish_by,
+                                              stop.get_token()));
+    };
+    core.Submit(ticket, {original, optimised}, work);
   };
   const UploadLimits limits = {.max_file_bytes = core.options.max_file_bytes,
                                .max_files = 2,

@@ -6,10 +6,12 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "absl/time/time.h"
 #include "client/gateway/core.h"
 #include "client/gateway/grpc/file_call.h"
 #include "client/gateway/grpc/live_calls.h"
@@ -34,8 +36,8 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
   using Take = std::function<absl::Status(const Request&, const FileCall&, Collected&)>;
   // Whether everything has come. Errors are for the client.
   using Check = std::function<absl::Status(const Collected&)>;
-  // Makes the answer.
-  using Work = std::function<absl::Status(const Collected&)>;
+  // Makes the answer by that time, unless the client leaves.
+  using Work = std::function<absl::Status(const Collected&, absl::Time, const std::stop_token&)>;
 
   CollectReactor(Core& core, LiveCalls& live, grpc::CallbackServerContext& context,
                  const std::string& method, Take take, Check check, Work work)
@@ -62,6 +64,8 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
     Read();
   }
 
+  void OnCancel() override { stop_.request_stop(); }
+
   void OnDone() override {
     live_.Rests(&context_);
     delete this;
@@ -79,10 +83,9 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
     if (absl::Status status = check_(collected_); !status.ok()) return End(status);
     std::vector<std::shared_ptr<const SpoolFile>> files = {collected_.first};
     if (collected_.second != nullptr) files.push_back(collected_.second);
-    core_.Submit(call_.ticket(), std::move(files), [this](const absl::Status& may) {
-      if (!may.ok()) return End(may);
-      if (context_.IsCancelled()) return End(absl::CancelledError("cancelled"));
-      End(work_(collected_));
+    const absl::Time finish_by = call_.FinishBy();
+    core_.Submit(call_.ticket(), std::move(files), [this, finish_by](const absl::Status& may) {
+      End(may.ok() ? work_(collected_, finish_by, stop_.get_token()) : may);
     });
   }
 
@@ -100,6 +103,7 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
   const Work work_;
   Request request_;
   Collected collected_;
+  std::stop_source stop_;
 };
 
 }  // namespace traverse::gateway

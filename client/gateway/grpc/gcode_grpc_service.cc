@@ -51,10 +51,13 @@ grpc::ServerReadReactor<v1::InspectRequest>* GcodeGrpcService::Inspect(
     if (collected.first == nullptr) return absl::InvalidArgumentError("data: the file is missing");
     return absl::OkStatus();
   };
-  const auto work = [this, response](const Collected& collected) {
+  const auto work = [this, response](const Collected& collected, absl::Time finish_by,
+                                     const std::stop_token& cancel) {
     FileRequest request;
+    request.finish_by = finish_by;
     if (!collected.name.empty()) request.name = collected.name;
-    absl::StatusOr<v1::InspectResponse> found = core_.worker->Inspect(*collected.first, request);
+    absl::StatusOr<v1::InspectResponse> found =
+        core_.worker->Inspect(*collected.first, request, cancel);
     if (found.ok()) *response = *std::move(found);
     return found.status();
   };
@@ -69,9 +72,10 @@ grpc::ServerReadReactor<v1::VerifyRequest>* GcodeGrpcService::Verify(
     if (collected.second == nullptr) return absl::InvalidArgumentError("optimised: missing");
     return absl::OkStatus();
   };
-  const auto work = [this, response](const Collected& collected) {
-    absl::StatusOr<v1::VerifyResponse> found =
-        core_.worker->Verify(*collected.first, *collected.second, collected.permissions);
+  const auto work = [this, response](const Collected& collected, absl::Time finish_by,
+                                     const std::stop_token& cancel) {
+    absl::StatusOr<v1::VerifyResponse> found = core_.worker->Verify(
+        *collected.first, *collected.second, collected.permissions, finish_by, cancel);
     if (found.ok()) *response = *std::move(found);
     return found.status();
   };

@@ -162,12 +162,23 @@ absl::StatusOr<InputFile> FileWorker::Open(const SpoolFile& upload,
   return file;
 }
 
+namespace {
+
+// The reasons not to begin; otherwise OK.
+absl::Status MayBegin(absl::Time finish_by, const std::stop_token& cancel) {
+  if (cancel.stop_requested()) return absl::CancelledError("cancelled");
+  if (absl::Now() < finish_by) return absl::OkStatus();
+  return absl::DeadlineExceededError("the deadline passed before a worker was free");
+}
+
+}  // namespace
+
 struct FileWorker::Work {
   Work(const FileRequest& wanted, const ProgressSink& progress, InputFile file)
       : request(wanted), teller(progress), input(std::move(file)) {}
 
   const FileRequest& request;
-  OptimizeFileOptions options;
+  OptimizeFileOptions options;  // options.gcode: with which files are read
   ProgressTeller teller;
   InputFile input;
   std::map<size_t, NewPart> parts;
@@ -182,7 +193,7 @@ struct FileWorker::Work {
 absl::Status FileWorker::RewritePart(Work& work, size_t index) {
   const FileRequest& request = work.request;
   work.teller.Stage(v1::RewriteProgress::STAGE_READING);
-  absl::StatusOr<InputJob> job = ReadJob(work.input, index, request.gcode);
+  absl::StatusOr<InputJob> job = ReadJob(work.input, index, work.options.gcode);
   if (!job.ok()) return job.status();
   if (request.only_new && HasOurLine(job->gcode->text)) {
     ++work.ours;
@@ -254,6 +265,8 @@ absl::StatusOr<RewrittenFile> FileWorker::RewriteParts(const SpoolFile& upload,
   work.options.cancel = cancel;
   work.options.progress = work.teller.ForSearch();
   work.options.gcode = request.gcode;
+  // On a busy machine a late file is better than none, but not for long.
+  work.options.gcode.limit = {request.finish_by + SearchOptions::kPatience, cancel};
   work.options.restate_times = request.restate_times;
   work.out.summary.set_policy(PolicyMessage(request.gcode.policy));
   for (size_t i = 0; i < work.input.parts.size(); ++i) {
@@ -270,10 +283,7 @@ absl::StatusOr<RewrittenFile> FileWorker::Rewrite(const SpoolFile& upload,
                                                   const ProgressSink& progress,
                                                   const std::stop_token& cancel) {
   const absl::Time began = absl::Now();
-  if (began >= request.finish_by) {
-    return absl::DeadlineExceededError("the deadline passed before a worker was free");
-  }
-  if (cancel.stop_requested()) return absl::CancelledError("cancelled");
+  if (absl::Status status = MayBegin(request.finish_by, cancel); !status.ok()) return status;
   return Guarded([&]() -> absl::StatusOr<RewrittenFile> {
     absl::StatusOr<RewrittenFile> out = RewriteParts(upload, request, progress, cancel);
     if (out.ok()) out->summary.set_wall_seconds(absl::ToDoubleSeconds(absl::Now() - began));
@@ -282,25 +292,29 @@ absl::StatusOr<RewrittenFile> FileWorker::Rewrite(const SpoolFile& upload,
 }
 
 absl::StatusOr<v1::InspectResponse> FileWorker::Inspect(const SpoolFile& upload,
-                                                        const FileRequest& request) {
+                                                        const FileRequest& request,
+                                                        const std::stop_token& cancel) {
+  if (absl::Status status = MayBegin(request.finish_by, cancel); !status.ok()) return status;
+  GcodeOptions gcode = request.gcode;
+  gcode.limit = {request.finish_by, cancel};
   return Guarded([&]() -> absl::StatusOr<v1::InspectResponse> {
     absl::StatusOr<InputFile> input = Open(upload, request);
     if (!input.ok()) return input.status();
     v1::InspectResponse out;
     out.set_format(input->container ? ContainerName(input->kind()) : FormatName(input->format));
     for (size_t i = 0; i < input->parts.size(); ++i) {
-      absl::StatusOr<InputJob> job = ReadJob(*input, i, request.gcode);
+      absl::StatusOr<InputJob> job = ReadJob(*input, i, gcode);
       if (!job.ok()) return job.status();
       if (absl::Status status = ApplySettings(request.settings, *job); !status.ok()) return status;
-      AddMeasuredFacts(*job, request.gcode);
+      const absl::StatusOr<gcode::PrintTotals> totals = AddMeasuredFacts(*job, gcode);
+      if (!totals.ok()) return totals.status();
       out.set_layers(out.layers() + static_cast<uint32_t>(job->layers.size()));
       for (const auto& [name, value] : job->facts) {
         v1::Fact& fact = *out.add_facts();
         fact.set_name(name);
         fact.set_value(value);
       }
-      Add(gcode::Sum(gcode::MeasureLayers(*job->gcode, gcode::ThreadsFor(job->gcode->text.size()))),
-          *out.mutable_totals());
+      Add(*totals, *out.mutable_totals());
     }
     return out;
   });
@@ -308,7 +322,9 @@ absl::StatusOr<v1::InspectResponse> FileWorker::Inspect(const SpoolFile& upload,
 
 absl::StatusOr<v1::VerifyResponse> FileWorker::Verify(
     const SpoolFile& original, const SpoolFile& optimised,
-    const std::optional<GivenPermissions>& permissions) {
+    const std::optional<GivenPermissions>& permissions, absl::Time until,
+    const std::stop_token& cancel) {
+  if (absl::Status status = MayBegin(until, cancel); !status.ok()) return status;
   return Guarded([&]() -> absl::StatusOr<v1::VerifyResponse> {
     absl::StatusOr<std::string> one = Unpacked(original, "original");
     if (!one.ok()) return one.status();
@@ -316,6 +332,7 @@ absl::StatusOr<v1::VerifyResponse> FileWorker::Verify(
     if (!other.ok()) return other.status();
     VerifyFilesOptions options;
     options.permissions = permissions;
+    options.limit = {until, cancel};
     options.container.max_text_bytes = max_file_bytes_;
     const absl::StatusOr<VerifyReport> report =
         VerifyFiles(*std::move(one), "original", *std::move(other), "optimised", options);

@@ -67,11 +67,14 @@ class FileWorker {
                                         const ProgressSink& progress,
                                         const std::stop_token& cancel);
 
-  absl::StatusOr<v1::InspectResponse> Inspect(const SpoolFile& upload, const FileRequest& request);
+  // Errors of this and of Verify: as above. Both end by request.finish_by, or `until`.
+  absl::StatusOr<v1::InspectResponse> Inspect(const SpoolFile& upload, const FileRequest& request,
+                                              const std::stop_token& cancel);
 
   // `permissions`: what may differ; unset: as the optimised file states.
   absl::StatusOr<v1::VerifyResponse> Verify(const SpoolFile& original, const SpoolFile& optimised,
-                                            const std::optional<GivenPermissions>& permissions);
+                                            const std::optional<GivenPermissions>& permissions,
+                                            absl::Time until, const std::stop_token& cancel);
 
  private:
   // All that is done about one file: its parts, one after another.

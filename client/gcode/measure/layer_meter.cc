@@ -11,6 +11,9 @@
 namespace traverse::gcode {
 namespace {
 
+// Lines are measured in some microseconds.
+constexpr size_t kLinesToLimit = 64;
+
 // A lift on a spiral is as wide as its slicer makes it anywhere, and counts as straight.
 bool IsBlocked(const Step& step, const MachineState& machine, const Room& room) {
   const bool moves = IsXyMotion(step.kind) && step.kind != StepKind::kExtrude;
@@ -64,7 +67,9 @@ PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStar
   Interpreter interpreter(text, 0, start.machine);
   MomentNotes notes(moments);
   int64_t blocked = 0;
+  size_t lines = 0;
   for (Step step; interpreter.Next(step);) {
+    if (++lines % kLinesToLimit == 0 && file.limit.Ended()) break;
     notes.Reach(step.line.begin);
     meter.Follow(step, interpreter);
     notes.Add(NominalSeconds(step, interpreter.state()));
@@ -81,7 +86,9 @@ double MeasureMoments(const GcodeFile& /*file*/, std::string_view text, const Pa
                       TextMoments& moments, const VisitStep& visit) {
   Interpreter interpreter(text, 0, start.machine);
   MomentNotes notes(&moments);
+  size_t lines = 0;
   for (Step step; interpreter.Next(step);) {
+    if (++lines % kLinesToLimit == 0 && file.limit.Ended()) break;
     notes.Reach(step.line.begin);
     if (visit) visit(step, notes.seconds());
     notes.Add(NominalSeconds(step, interpreter.state()));
@@ -117,11 +124,12 @@ PrintTotals MeasureLink(const GcodeFile& file, uint32_t block, const VisibleWall
 
 std::vector<PrintTotals> MeasureLayers(const GcodeFile& file, int threads) {
   std::vector<PrintTotals> totals(file.layers.size());
-  ParallelFor(totals.size(), threads, [&file, &totals](size_t i) {
+  const auto measure = [&file, &totals](size_t i) {
     const VisibleWalls walls(OutlinesOf(file, file.layers[i]));
     totals[i] = MeasureTravel(file, file.layers[i], walls);
     totals[i] += MeasurePaths(file, file.layers[i], walls);
-  });
+  };
+  ParallelFor(totals.size(), threads, measure, file.limit);
   return totals;
 }
 

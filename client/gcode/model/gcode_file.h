@@ -24,6 +24,7 @@
 #include "client/gcode/machine/print_state.h"
 #include "client/gcode/machine/vertex.h"
 #include "client/gcode/text/line_numbers.h"
+#include "client/gcode/work_limit.h"
 
 namespace traverse {
 namespace gcode {
@@ -138,6 +139,9 @@ struct GcodeFile {
   gcode::NumberStyle xy_style;
   gcode::NumberStyle e_style;
   bool feed_on_own_line = false;  // a path's F stands on a line before it
+
+  // How long the work on this file may go on: whoever goes through much of it asks.
+  gcode::WorkLimit limit;
 
   // Link i: what stands between the blocks i - 1 and i; i = blocks.size() is the foot.
   std::string_view LinkText(size_t i) const {

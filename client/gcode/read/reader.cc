@@ -100,6 +100,9 @@ absl::Status Fault(const GcodeFile& file, Offset at, std::string_view what) {
       absl::StrCat(file.name, ":", file.LineNumber(at), ": ", std::string(what)));
 }
 
+// Lines are read in less than a microsecond.
+constexpr size_t kLinesToLimit = 256;
+
 // The fewest bytes of most lines that extrude.
 constexpr size_t kBytesPerSegment = 25;
 
@@ -162,8 +165,10 @@ absl::Status ReadBlocks(GcodeFile& file) {
   start.relative_e = CountsFromMoveBefore(file.text);
   Interpreter interpreter(file.text, 0, start);
   Step step;
+  size_t lines = 0;
   for (MachineState before = interpreter.state(); interpreter.Next(step);
        before = interpreter.state()) {
+    if (++lines % kLinesToLimit == 0 && file.limit.Ended()) return file.limit.status();
     style.Take(step, file.text);
     builder.Take(step, before, interpreter);
     if (PrintsRelative(step, interpreter.state()) && file.relative_moves++ == 0) {
@@ -250,8 +255,10 @@ size_t GcodeFile::LineNumber(gcode::Offset offset) const {
   return 1 + static_cast<size_t>(std::count(text.begin(), text.begin() + offset, '\n'));
 }
 
-absl::StatusOr<std::shared_ptr<GcodeFile>> ReadGcode(std::string text, const std::string& name) {
+absl::StatusOr<std::shared_ptr<GcodeFile>> ReadGcode(std::string text, const std::string& name,
+                                                     const gcode::WorkLimit& limit) {
   auto file = std::make_shared<GcodeFile>();
+  file->limit = limit;
   file->name = name;
   file->text = std::move(text);
   if (file->text.size() >= std::numeric_limits<gcode::Offset>::max()) {

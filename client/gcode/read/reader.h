@@ -15,8 +15,10 @@ namespace traverse {
 //
 // InvalidArgument with the position (`part.gcode:118: G2 without I, J or R`) for what no machine
 // could run, for NUL bytes, and for a text without any extruding move. Anything else that is not
-// understood is not an error; nothing crosses it.
-absl::StatusOr<std::shared_ptr<GcodeFile>> ReadGcode(std::string text, const std::string& name);
+// understood is not an error; nothing crosses it. Cancelled and DeadlineExceeded once `limit` ends,
+// which also limits what is then done with the file.
+absl::StatusOr<std::shared_ptr<GcodeFile>> ReadGcode(std::string text, const std::string& name,
+                                                     const gcode::WorkLimit& limit = {});
 
 namespace gcode {
 

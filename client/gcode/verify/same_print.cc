@@ -204,13 +204,14 @@ std::optional<VerifyBreak> MovedDifference(const Side& original, const Side& opt
 }  // namespace
 
 std::vector<VerifyBreak> Differences(const Side& original, const Side& optimised, size_t first,
-                                     size_t end, bool whole, absl::Span<const MovedLayer> moved) {
+                                     size_t end, bool whole, absl::Span<const MovedLayer> moved,
+                                     const WorkLimit& limit) {
   const std::vector<Section>& sections_was = original.cut.sections;
   const std::vector<Section>& sections_is = optimised.cut.sections;
   const size_t common = std::min({sections_was.size(), sections_is.size(), end});
   const size_t end_of_print = whole ? EndOfPrint(original.cut) : SIZE_MAX;
   std::vector<VerifyBreak> found;
-  for (size_t i = first; i < common; ++i) {
+  for (size_t i = first; i < common && !limit.Ended(); ++i) {
     if (!moved.empty() && moved.front().first == i && moved.front().end <= common) {
       if (auto difference = MovedDifference(original, optimised, moved.front())) {
         found.push_back(*std::move(difference));

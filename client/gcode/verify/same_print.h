@@ -12,6 +12,7 @@
 #include "client/gcode/verify/match/moved_objects.h"
 #include "client/gcode/verify/report.h"
 #include "client/gcode/verify/sections.h"
+#include "client/gcode/work_limit.h"
 
 namespace traverse::gcode {
 
@@ -28,7 +29,8 @@ struct Side {
 // ends with a line of its own. `whole`: the files end with section `end` - 1, and have equally
 // many. In the layers `moved` whole objects have changed places.
 std::vector<VerifyBreak> Differences(const Side& original, const Side& optimised, size_t first,
-                                     size_t end, bool whole, absl::Span<const MovedLayer> moved);
+                                     size_t end, bool whole, absl::Span<const MovedLayer> moved,
+                                     const WorkLimit& limit = {});
 
 }  // namespace traverse::gcode
 

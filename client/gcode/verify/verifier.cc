@@ -53,12 +53,15 @@ class Verifier {
         optimised_(optimised),
         rules_(options.rules),
         threads_(ThreadsFor(original.text.size())),
-        was_(original.text, kOptimisedMark, HasLayerMarks(original.text), original.right_digest),
-        is_(optimised.text, kOptimisedMark, HasLayerMarks(original.text), optimised.right_digest) {
+        limit_(options.limit),
+        was_(original.text, kOptimisedMark, HasLayerMarks(original.text), original.right_digest,
+             limit_),
+        is_(optimised.text, kOptimisedMark, HasLayerMarks(original.text), optimised.right_digest,
+            limit_) {
     context_.permissions = options.permissions.value_or(
         PermissionsInHead(optimised.text).value_or(VerifyPermissions{}));
     context_.settings = ReadSettings(original.text);
-    obstacles_.emplace(context_.settings);
+    obstacles_.emplace(context_.settings, limit_);
     report_.permissions = context_.permissions;
     const bool rests =
         !context_.permissions.is_free() && (rules_ & RuleBit(VerifyRule::kRest)) != 0;
@@ -89,6 +92,7 @@ class Verifier {
   const File optimised_;
   const uint32_t rules_;
   const int threads_;
+  const WorkLimit limit_;
   RuleContext context_;
   std::optional<Obstacles> obstacles_;
   SideReader was_;
@@ -139,7 +143,8 @@ void Verifier::FindMoved() {
 
 // Loops may take their gap along, so that some deposits differ; the rest is compared without them.
 void Verifier::TakeBackGaps() {
-  for (const MovedGap& gap : TakeBackMovedGaps(chunk_was_, chunk_is_, threads_, findings_)) {
+  for (const MovedGap& gap :
+       TakeBackMovedGaps(chunk_was_, chunk_is_, threads_, findings_, limit_)) {
     is_.Count(gap.section, gap.printed, gap.as);
     gaps_is_.insert(gap.printed.begin(), gap.printed.end());
     gaps_was_.insert(gap.as.begin(), gap.as.end());
@@ -150,13 +155,13 @@ bool Verifier::SamePrint() {
   const Side was{original_.text, original_.name, was_.cut(), gaps_was_, original_.right_digest};
   const Side is{optimised_.text, optimised_.name, is_.cut(), gaps_is_, optimised_.right_digest};
   std::vector<VerifyBreak> found =
-      Differences(was, is, sections_, chunk_was_.end_section, !more_, moved_);
+      Differences(was, is, sections_, chunk_was_.end_section, !more_, moved_, limit_);
   if (found.empty()) CheckLabels(sections_, chunk_was_.end_section);
   sections_ = chunk_was_.end_section;
   if (chunk_is_.end_section != chunk_was_.end_section) {
     // A line ends a section in only one of the files; comparing further sections shows which.
     more_ = false;
-    if (found.empty()) found = Differences(was, is, 0, UINT32_MAX, true, all_moved_);
+    if (found.empty()) found = Differences(was, is, 0, UINT32_MAX, true, all_moved_, limit_);
   }
   for (VerifyBreak& difference : found) {
     const bool fits = report_.breaks.size() < VerifyReport::kMostBreaks;
@@ -196,30 +201,21 @@ void Verifier::CheckLabel(const Section& was, const Section& is) {
 }
 
 void Verifier::CheckLayer(const LayerPair& layer, LayerFindings& findings) const {
-  CheckWholePaths(layer, findings);
-  CheckOrder(layer, context_, findings);
-  CheckDirection(layer, context_, findings);
-  CheckSeam(layer, context_, findings);
-  CheckOpenTravels(layer, findings);
-  ObserveOpenHabits(layer, findings);
-  CheckSameTravels(layer, findings);
-  CheckKeptTravels(layer, findings);
-  CheckBends(layer, findings);
-  CheckSameSteps(layer, findings);
-  CheckFixedMoves(layer, findings);
-  CheckScriptedTravels(layer, findings);
-  CheckSinking(layer, findings);
-  ObserveLifts(layer, findings);
-  ObserveHeights(layer, findings);
-  ObserveRetractions(layer, findings);
-  ObserveStepOrder(layer, findings);
-  ObserveFarMoves(layer, findings);
-  ObserveTravelLengths(layer, findings);
-  ObserveSpeeds(layer, findings);
-  CheckWipes(layer, context_, findings);
-  CheckCommands(layer, findings);
-  CheckPathEnds(layer, findings);
-  CheckDepartures(layer, findings);
+  using Rule = void (*)(const LayerPair&, LayerFindings&);
+  using RuleInContext = void (*)(const LayerPair&, const RuleContext&, LayerFindings&);
+  static constexpr RuleInContext kInContext[] = {CheckOrder, CheckDirection, CheckSeam, CheckWipes};
+  static constexpr Rule kRules[] = {
+      CheckWholePaths,      CheckOpenTravels, ObserveOpenHabits, CheckSameTravels,
+      CheckKeptTravels,     CheckBends,       CheckSameSteps,    CheckFixedMoves,
+      CheckScriptedTravels, CheckSinking,     ObserveLifts,      ObserveHeights,
+      ObserveRetractions,   ObserveStepOrder, ObserveFarMoves,   ObserveTravelLengths,
+      ObserveSpeeds,        CheckCommands,    CheckPathEnds,     CheckDepartures};
+  for (const RuleInContext check : kInContext) {
+    if (!layer.Ended()) check(layer, context_, findings);
+  }
+  for (const Rule check : kRules) {
+    if (!layer.Ended()) check(layer, findings);
+  }
 }
 
 // Of all layers of the chunk, and of those before and behind it.
@@ -228,11 +224,12 @@ std::vector<LayerShape> Verifier::ShapesOfChunk() {
   std::vector<LayerShape> shapes(layers + 2);
   if (layers == 0) return shapes;
   shapes.front() = std::move(shape_before_);
-  ParallelFor(layers + 1, threads_, [&](size_t i) {
+  const auto add = [&](size_t i) {
     if (i == layers && next_was_.layers.empty()) return;
     const TraceChunk& chunk = i == layers ? next_was_ : chunk_was_;
-    shapes[i + 1] = LayerShape(LayerPair(chunk, chunk, i % layers));
-  });
+    shapes[i + 1] = LayerShape(LayerPair(chunk, chunk, i % layers, limit_));
+  };
+  ParallelFor(layers + 1, threads_, add, limit_);
   shape_before_ = shapes[layers];
   return shapes;
 }
@@ -256,8 +253,9 @@ void Verifier::CheckChunk() {
   std::vector<PathLines> lines(layers);
   std::vector<PrintedIslands> islands(layers);
   const std::vector<double> heights = HeightsOfLayers();
-  ParallelFor(layers, threads_, [&](size_t i) {
-    LayerPair layer(chunk_was_, chunk_is_, i);
+  const auto check = [&](size_t i) {
+    LayerPair layer(chunk_was_, chunk_is_, i, limit_);
+    if (layer.Ended()) return;
     if (hides) {
       layer.SetHidden(HiddenLinksOf(layer, {shapes[i], shapes[i + 1], shapes[i + 2]},
                                     context_.permissions.max_hidden_travel_mm,
@@ -266,10 +264,12 @@ void Verifier::CheckChunk() {
     lines[i].Add(layer);
     CheckLayer(layer, found[i]);
     if (rest_) islands[i] = FindPrintedIslands(layer, heights[i]);
-    if (more_ || i + 1 < layers) return;
+    if (more_ || i + 1 < layers || layer.Ended()) return;
     ObserveLastRetraction(layer, found[i]);
     ObserveLastSpeeds(layer, found[i]);
-  });
+  };
+  ParallelFor(layers, threads_, check, limit_);
+  if (limit_.Ended()) return;
   for (size_t i = 0; i < layers; ++i) {
     const TraceSection& section = chunk_is_.sections[chunk_is_.layers[i].first_section];
     layer_lines_.push_back(chunk_is_.LineOf(chunk_is_.paths[section.first_path]));
@@ -378,7 +378,7 @@ void Verifier::Finish() {
 
 VerifyReport Verifier::Verify() {
   next_was_ = was_.NextBytes(ChunkBytes(original_.text.size()));
-  while (more_) {
+  while (more_ && !limit_.Ended()) {
     ReadNext();
     FindMoved();
     TakeBackGaps();
@@ -386,7 +386,15 @@ VerifyReport Verifier::Verify() {
     NumberAsOriginal(moved_, chunk_is_);
     CheckChunk();
   }
-  if (report_.ok()) Finish();
+  if (!limit_.Ended() && report_.ok()) Finish();
+  // What was compared until then is no proof, and what was missed is no difference.
+  if (const absl::Status status = limit_.status(); !status.ok()) {
+    report_.breaks = {
+        {VerifyRule::kSamePrint, 0, 0, -1,
+         absl::StrCat(optimised_.name, ": not compared: ", std::string(status.message()))}};
+    report_.counts = {};
+    report_.counts[static_cast<size_t>(VerifyRule::kSamePrint)] = 1;
+  }
   return std::move(report_);
 }
 

@@ -28,6 +28,7 @@
 #include "absl/status/status.h"
 #include "client/gcode/verify/permissions.h"
 #include "client/gcode/verify/report.h"
+#include "client/gcode/work_limit.h"
 
 namespace traverse {
 
@@ -38,6 +39,9 @@ struct VerifyOptions {
 
   // Bit (1 << rule) for each rule to check; kSamePrint is always checked.
   uint32_t rules = UINT32_MAX;
+
+  // When it ends the check is given up: the report then says that it is no proof.
+  gcode::WorkLimit limit = {};
 };
 
 // Options that only check that both print the same.

@@ -18,7 +18,7 @@ import time
 import unittest
 
 sys.path.append(os.path.dirname(os.path.abspath(__file__)))
-from gateway_process import Gateway, detail, lines_of_infill
+from gateway_process import Gateway, detail, form, lines_of_infill
 
 PART = lines_of_infill(3)
 
@@ -65,6 +65,15 @@ class Time(unittest.TestCase):
         self.assertLess(float(headers["traverse-travel-mm"]), float(headers["traverse-travel-given-mm"]))
         status, _, body = gateway.ask("POST", "/v1/gcode?deadline=1ms", long)
         self.assertEqual(status, 504, body[:300])
+
+    def test_inspecting_and_comparing_end_in_time(self):
+        gateway = Gateway("--max_time=200ms")
+        self.addCleanup(gateway.close)
+        long = lines_of_infill(20_000)
+        both, headers = form([("original", "a.gcode", long), ("optimised", "b.gcode", long)])
+        for answer in (gateway.ask("POST", "/v1/inspect", long), gateway.ask("POST", "/v1/verify", both, headers)):
+            self.assertEqual(answer[0], 504, answer[2][:300])
+        self.assertEqual(gateway.ask("POST", "/v1/inspect", PART)[0], 200)
 
     def test_what_needs_more_memory_than_there_is_is_refused(self):
         gateway = Gateway("--max_memory=33554432")  # 16 MiB, and twelve bytes for each of the text
@@ -187,6 +196,24 @@ class Time(unittest.TestCase):
             time.sleep(0.02)
         self.assertLess(time.time() - began, 10)
         self.assertEqual(gateway.metric('traverse_gateway_files_total{outcome="cancelled"}'), 1)
+
+    def test_who_goes_stops_any_work(self):
+        gateway = Gateway("--workers=1")
+        self.addCleanup(gateway.close)
+        long = lines_of_infill(60_000)
+        both, headers = form([("original", "a.gcode", long), ("optimised", "b.gcode", long)])
+        for path, body, kind in (("/v1/inspect", long, ""), ("/v1/verify", both, f"Content-Type: {headers['Content-Type']}\r\n")):
+            connection = socket.create_connection(("127.0.0.1", gateway.http_port))
+            head = f"POST {path} HTTP/1.1\r\nHost: x\r\n{kind}Content-Length: {len(body)}\r\n\r\n"
+            connection.sendall(head.encode() + body)
+            deadline = time.time() + 10
+            while gateway.metric("traverse_gateway_work_bytes") < 20 << 20 and time.time() < deadline:
+                time.sleep(0.01)
+            connection.close()
+            began = time.time()
+            while gateway.metric("traverse_gateway_workers_busy") > 0 and time.time() < began + 20:
+                time.sleep(0.02)
+            self.assertLess(time.time() - began, 10, path)
 
     def test_draining_ends_what_is_under_way_well(self):
         gateway = Gateway()

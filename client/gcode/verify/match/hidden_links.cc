@@ -105,6 +105,7 @@ absl::flat_hash_set<uint32_t> HiddenLinksOf(const LayerPair& layer, const LayerS
   const HiddenTravel travel(shapes);
   const Visit* before = nullptr;
   for (const Visit& visit : layer.visits()) {
+    if (layer.Ended()) break;
     const Visit* left = std::exchange(before, &visit);
     const uint32_t link = visit.first_path;
     // A path that goes on where the one before it ends has no link of its own.

@@ -211,7 +211,7 @@ double UsualFlow(const std::vector<LaidPath>& paths) {
 
 }  // namespace
 
-std::vector<bool> LaidOver(const std::vector<LaidPath>& paths) {
+std::vector<bool> LaidOver(const std::vector<LaidPath>& paths, const WorkLimit& limit) {
   std::vector<bool> over(paths.size(), false);
   const double most = kMostShare * UsualFlow(paths);
   const auto asks = [most](const LaidPath& path) {
@@ -219,7 +219,7 @@ std::vector<bool> LaidOver(const std::vector<LaidPath>& paths) {
   };
   if (std::none_of(paths.begin(), paths.end(), asks)) return over;
   LaidLayer layer(paths);
-  for (uint32_t path = 0; path < paths.size(); ++path) {
+  for (uint32_t path = 0; path < paths.size() && !limit.Ended(); ++path) {
     over[path] = asks(paths[path]) && layer.LiesOver(path);
   }
   return over;

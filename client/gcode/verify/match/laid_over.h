@@ -8,6 +8,7 @@
 
 #include "absl/types/span.h"
 #include "client/gcode/verify/match/plane.h"
+#include "client/gcode/work_limit.h"
 
 namespace traverse::gcode {
 
@@ -25,7 +26,7 @@ struct LaidPath {
 //
 // True for each path with `asked` that is such a line. Looks at 16 points of each path, and at
 // no more than some pieces for each that there is.
-std::vector<bool> LaidOver(const std::vector<LaidPath>& paths);
+std::vector<bool> LaidOver(const std::vector<LaidPath>& paths, const WorkLimit& limit = {});
 
 }  // namespace traverse::gcode
 

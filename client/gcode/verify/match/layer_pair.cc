@@ -102,8 +102,9 @@ SlicerSettings ReadSettings(std::string_view text) {
   return settings;
 }
 
-LayerPair::LayerPair(const TraceChunk& was, const TraceChunk& is, size_t layer)
-    : was_(was), is_(is), layer_(layer), outer_walls_({}, kCellMm) {
+LayerPair::LayerPair(const TraceChunk& was, const TraceChunk& is, size_t layer,
+                     const WorkLimit& limit)
+    : was_(was), is_(is), layer_(layer), limit_(limit), outer_walls_({}, kCellMm) {
   const TraceLayer& of_was = was.layers[layer];
   const TraceLayer& of_is = is.layers[layer];
   assert(of_was.end_section - of_was.first_section == of_is.end_section - of_is.first_section);
@@ -165,6 +166,7 @@ void LayerPair::LearnShapes() {
   for (uint32_t path = first_path_; path < end_was_; ++path) {
     Facts& facts = FactsOf(path);
     if (!IsLoopToName(path)) continue;
+    if (Ended()) return;
     const bool inside = IsInside(path, grid);
     facts.path_class = inside ? PathClass::kInnerWall : PathClass::kOuterWall;
     facts.outer = !inside;
@@ -215,7 +217,7 @@ void LayerPair::LearnIroning() {
     asks |= laid.asked;
   }
   if (!asks) return;
-  const std::vector<bool> over = LaidOver(paths);
+  const std::vector<bool> over = LaidOver(paths, limit_);
   for (size_t i = 0; i < over.size(); ++i) {
     if (over[i]) facts_[i].path_class = PathClass::kIroning;
   }
@@ -225,7 +227,7 @@ void LayerPair::Match() {
   section_begin_.push_back(0);
   const size_t sections = was_.layers[layer_].end_section - was_.layers[layer_].first_section;
   for (size_t k = 0; k < sections; ++k) {
-    const std::vector<Visit> visits = FindVisits(was_, SectionWas(k), is_, SectionIs(k));
+    const std::vector<Visit> visits = FindVisits(was_, SectionWas(k), is_, SectionIs(k), limit_);
     visits_.insert(visits_.end(), visits.begin(), visits.end());
     section_begin_.push_back(visits_.size());
   }

@@ -12,6 +12,7 @@
 #include "client/gcode/verify/match/plane.h"
 #include "client/gcode/verify/match/visits.h"
 #include "client/gcode/verify/trace/trace.h"
+#include "client/gcode/work_limit.h"
 
 namespace traverse::gcode {
 
@@ -31,7 +32,11 @@ SlicerSettings ReadSettings(std::string_view text);
 class LayerPair {
  public:
   // Layer `layer` of both chunks. REQUIRES: their sections hold the same deposits.
-  LayerPair(const TraceChunk& was, const TraceChunk& is, size_t layer);
+  LayerPair(const TraceChunk& was, const TraceChunk& is, size_t layer, const WorkLimit& limit = {});
+
+  // True if the time for the files is over: what is found then is not looked at.
+  bool Ended() const { return limit_.Ended(); }
+  const WorkLimit& limit() const { return limit_; }
 
   const TraceChunk& was() const { return was_; }
   const TraceChunk& is() const { return is_; }
@@ -125,6 +130,7 @@ class LayerPair {
   const TraceChunk& was_;
   const TraceChunk& is_;
   const size_t layer_;
+  const WorkLimit limit_;
   uint32_t first_path_ = 0;
   uint32_t end_was_ = 0;
   uint32_t first_is_ = 0;

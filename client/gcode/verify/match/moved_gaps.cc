@@ -337,13 +337,14 @@ struct FoundGaps {
   std::vector<Finding> findings;
 };
 
-void TakeBack(const TraceChunk& original, TraceChunk& optimised, size_t section, FoundGaps& found) {
+void TakeBack(const TraceChunk& original, TraceChunk& optimised, size_t section, FoundGaps& found,
+              const WorkLimit& limit) {
   const TraceSection& was = original.sections[section];
   const TraceSection& is = optimised.sections[section];
   if (was.index != is.index || DepositsOf(optimised, is) < DepositsOf(original, was)) return;
   if (!DepositsDiffer(original, was, optimised, is)) return;
   SectionGaps of_section(original, was, optimised, is);
-  for (uint32_t p = is.first_path; p < is.end_path; ++p) {
+  for (uint32_t p = is.first_path; p < is.end_path && !limit.Ended(); ++p) {
     const std::optional<MovedLoop> loop = of_section.Find(p);
     if (!loop) continue;
     const TracePath& path = original.paths[loop->path];
@@ -368,10 +369,13 @@ void TakeBack(const TraceChunk& original, TraceChunk& optimised, size_t section,
 }  // namespace
 
 std::vector<MovedGap> TakeBackMovedGaps(const TraceChunk& original, TraceChunk& optimised,
-                                        int threads, std::vector<Finding>& findings) {
+                                        int threads, std::vector<Finding>& findings,
+                                        const WorkLimit& limit) {
   std::vector<FoundGaps> found(std::min(original.sections.size(), optimised.sections.size()));
   // Each section changes only segments of its own.
-  ParallelFor(found.size(), threads, [&](size_t i) { TakeBack(original, optimised, i, found[i]); });
+  ParallelFor(
+      found.size(), threads, [&](size_t i) { TakeBack(original, optimised, i, found[i], limit); },
+      limit);
   std::vector<MovedGap> gaps;
   std::vector<uint32_t> removed;
   for (FoundGaps& each : found) {

@@ -18,6 +18,7 @@
 
 #include "client/gcode/verify/findings.h"
 #include "client/gcode/verify/trace/trace.h"
+#include "client/gcode/work_limit.h"
 
 namespace traverse::gcode {
 
@@ -32,7 +33,8 @@ struct MovedGap {
 // for each that does not print the same filament on the same length: that is not the same print.
 // Uses `threads` threads.
 std::vector<MovedGap> TakeBackMovedGaps(const TraceChunk& original, TraceChunk& optimised,
-                                        int threads, std::vector<Finding>& findings);
+                                        int threads, std::vector<Finding>& findings,
+                                        const WorkLimit& limit = {});
 
 }  // namespace traverse::gcode
 

@@ -78,10 +78,11 @@ class SegmentTable {
 class Matcher {
  public:
   Matcher(const TraceChunk& original, const TraceSection& was, const TraceChunk& optimised,
-          const TraceSection& is)
+          const TraceSection& is, const WorkLimit& limit)
       : original_(original),
         optimised_(optimised),
         is_(is),
+        limit_(limit),
         first_path_(was.first_path),
         first_(original.paths[was.first_path].first_segment),
         end_(original.paths[was.end_path - 1].end_segment),
@@ -94,7 +95,7 @@ class Matcher {
   }
 
   std::vector<Visit> Match() {
-    for (uint32_t p = is_.first_path; p < is_.end_path; ++p) MatchPath(p);
+    for (uint32_t p = is_.first_path; p < is_.end_path && !limit_.Ended(); ++p) MatchPath(p);
     return std::move(visits_);
   }
 
@@ -230,6 +231,7 @@ class Matcher {
   const TraceChunk& original_;
   const TraceChunk& optimised_;
   const TraceSection& is_;
+  const WorkLimit& limit_;
   const uint32_t first_path_;
   const uint32_t first_;
   const uint32_t end_;
@@ -269,9 +271,10 @@ bool IsClosed(const TraceChunk& chunk, uint32_t path) {
 }
 
 std::vector<Visit> FindVisits(const TraceChunk& original, const TraceSection& was,
-                              const TraceChunk& optimised, const TraceSection& is) {
+                              const TraceChunk& optimised, const TraceSection& is,
+                              const WorkLimit& limit) {
   assert(SegmentsOf(original, was) == SegmentsOf(optimised, is));
-  return Matcher(original, was, optimised, is).Match();
+  return Matcher(original, was, optimised, is, limit).Match();
 }
 
 }  // namespace traverse::gcode

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "client/gcode/verify/trace/trace.h"
+#include "client/gcode/work_limit.h"
 
 namespace traverse::gcode {
 
@@ -33,7 +34,8 @@ bool IsClosed(const TraceChunk& chunk, uint32_t path);
 // latter. A loop that begins elsewhere is one visit. A path that was cut in two is several, none
 // with all its segments. REQUIRES: the sections have the same deposits.
 std::vector<Visit> FindVisits(const TraceChunk& original, const TraceSection& was,
-                              const TraceChunk& optimised, const TraceSection& is);
+                              const TraceChunk& optimised, const TraceSection& is,
+                              const WorkLimit& limit = {});
 
 }  // namespace traverse::gcode
 

@@ -240,6 +240,7 @@ void CheckBends(const LayerPair& layer, LayerFindings& findings) {
   const std::optional<Departures> within =
       Departures(layer.was(), layer.first_path_was(), layer.end_path_was() + 1);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
+    if (layer.Ended()) return;
     if (layer.IsHidden(link)) continue;
     // The travel to the layer leaves a path of another one.
     const bool first = link == layer.first_path_is();

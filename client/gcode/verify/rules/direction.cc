@@ -9,6 +9,7 @@ namespace traverse::gcode {
 void CheckDirection(const LayerPair& layer, const RuleContext& context, LayerFindings& findings) {
   const bool free = context.permissions.is_free();
   for (const Visit& visit : layer.visits()) {
+    if (layer.Ended()) return;
     if (visit.forward) continue;
     const TracePath& path = layer.was().paths[visit.path];
     const PathClass path_class = layer.ClassOf(visit.path);

@@ -219,6 +219,7 @@ void CheckGoingOn(const LayerPair& layer, const Visit& visit, LayerFindings& fin
 void CheckDepartures(const LayerPair& layer, LayerFindings& findings) {
   const TurnedDepartures turned(layer);
   for (const Visit& visit : layer.visits()) {
+    if (layer.Ended()) return;
     if (visit.segments != layer.was().paths[visit.path].size()) continue;
     CheckDeparture(layer, visit, turned, findings);
     CheckGoingOn(layer, visit, findings);

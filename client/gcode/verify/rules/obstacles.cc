@@ -39,8 +39,9 @@ bool Moves(const TraceMove& move) {
 
 }  // namespace
 
-Obstacles::Obstacles(const SlicerSettings& settings)
-    : tip_(kTipCellMm, {.base_mm = kTipRadiusMm,
+Obstacles::Obstacles(const SlicerSettings& settings, const WorkLimit& limit)
+    : limit_(limit),
+      tip_(kTipCellMm, {.base_mm = kTipRadiusMm,
                         .most_mm = std::min(kTipRadiusMm + settings.nozzle_height_mm,
                                             settings.clearance_radius_mm),
                         .slack_mm = kTipCellMm,
@@ -57,6 +58,7 @@ void Obstacles::Print(const TraceChunk& was, uint32_t first_path, uint32_t end_p
     AppendPieces(was, path, pieces);
     const double z_mm = was.paths[path].z_mm;
     for (const Piece& piece : pieces) {
+      if (limit_.Ended()) return;
       tip_.Print(piece.a, piece.b, z_mm);
       head_.Print(piece.a, piece.b, z_mm);
     }
@@ -65,6 +67,7 @@ void Obstacles::Print(const TraceChunk& was, uint32_t first_path, uint32_t end_p
 
 void Obstacles::Visit(const TraceChunk& was, uint32_t link) {
   for (uint32_t m = was.links[link].first_move; m < was.links[link].end_move; ++m) {
+    if (limit_.Ended()) return;
     if (!Moves(was.moves[m])) continue;
     moves_was_.insert(EndsOf(was.moves[m]));
     ForEachPiece(was.moves[m], [this](Point a, double z_a, Point b, double z_b) {
@@ -78,6 +81,7 @@ void Obstacles::CheckLink(const TraceChunk& is, uint32_t link, int64_t layer,
                           std::vector<Finding>& breaks) {
   std::optional<HeightGrid::Hit> hit;
   for (uint32_t m = is.links[link].first_move; m < is.links[link].end_move; ++m) {
+    if (limit_.Ended()) return;
     const TraceMove& move = is.moves[m];
     // What the original does in this layer too needs no proof.
     if (!Moves(move) || moves_was_.contains(EndsOf(move))) continue;
@@ -127,11 +131,12 @@ void Obstacles::CheckLayer(const TraceChunk& was, const TraceChunk& is, size_t l
   moves_was_.clear();
   if (z_mm < tip_.highest_mm() - kLevelMm || AnyAbove(is, first_is, end_is)) {
     std::vector<Piece> pieces;
-    for (uint32_t path = first_was; path < end_was; ++path) {
+    for (uint32_t path = first_was; path < end_was && !limit_.Ended(); ++path) {
       Visit(was, path);
       AppendPieces(was, path, pieces);
     }
     for (const Piece& piece : pieces) {
+      if (limit_.Ended()) return;
       tip_.Visit(piece.a, z_mm, piece.b, z_mm);
       head_.Visit(piece.a, z_mm, piece.b, z_mm);
     }

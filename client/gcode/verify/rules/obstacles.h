@@ -23,7 +23,7 @@ namespace traverse::gcode {
 class Obstacles {
  public:
   // `settings` are those that the original states.
-  explicit Obstacles(const SlicerSettings& settings);
+  Obstacles(const SlicerSettings& settings, const WorkLimit& limit);
 
   // Layer `layer` of both chunks, with the travel to it. REQUIRES: the same is printed in it.
   void CheckLayer(const TraceChunk& was, const TraceChunk& is, size_t layer,
@@ -38,9 +38,10 @@ class Obstacles {
   void CheckLink(const TraceChunk& is, uint32_t link, int64_t layer, std::vector<Finding>& breaks);
   bool AnyAbove(const TraceChunk& chunk, uint32_t first_link, uint32_t end_link) const;
 
-  HeightGrid tip_;   // the nozzle and its cone
-  HeightGrid head_;  // what hangs beside it, higher
-  double z_mm_ = 0;  // of the layer before
+  const WorkLimit limit_;
+  HeightGrid tip_;                                        // the nozzle and its cone
+  HeightGrid head_;                                       // what hangs beside it, higher
+  double z_mm_ = 0;                                       // of the layer before
   absl::flat_hash_set<std::array<double, 6>> moves_was_;  // of the original in this layer
 };
 

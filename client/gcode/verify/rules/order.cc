@@ -256,6 +256,7 @@ class OrderKeeper {
     const Cells cells(pieces);
     std::array<Earlier, kGroups> earlier;
     cells.ForEach([&](absl::Span<const uint32_t> cell) {
+      if (layer_.Ended()) return;
       for (Earlier& of_group : earlier) of_group.pieces.clear();
       for (const uint32_t i : cell) {
         const uint32_t path = pieces[i].path;
@@ -319,6 +320,7 @@ void CheckMovedObjects(const LayerPair& layer, LayerFindings& findings) {
   std::vector<uint32_t> section_of(layer.end_path_was() - first);
   bool moved = false;
   for (uint32_t k = 0; k < layer.section_count(); ++k) {
+    if (layer.Ended()) return;
     const TraceSection& was = layer.SectionWas(k);
     moved |= k > 0 && was.first_path < layer.SectionWas(k - 1).first_path;
     std::fill(section_of.begin() + (was.first_path - first),
@@ -328,6 +330,7 @@ void CheckMovedObjects(const LayerPair& layer, LayerFindings& findings) {
   const PieceGrid grid(std::vector<Piece>(layer.pieces()), kCellMm);
   const auto section = [&](const Piece& piece) { return section_of[piece.path - first]; };
   for (const Piece& piece : grid.pieces()) {
+    if (layer.Ended()) return;
     bool found = false;
     grid.ForEachNear(piece.a, piece.b, kNearMm, [&](uint32_t i) {
       const Piece& other = grid.pieces()[i];

@@ -106,6 +106,7 @@ void CheckPathEnds(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& was = layer.was();
   const TraceChunk& is = layer.is();
   for (const Visit& visit : layer.visits()) {
+    if (layer.Ended()) return;
     const TracePath& path = was.paths[visit.path];
     if (visit.segments != path.size()) continue;
     CheckPoke(layer, visit, findings);

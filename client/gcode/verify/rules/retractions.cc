@@ -333,10 +333,12 @@ std::string RetractionHabits::FaultOf(const RetractionCycle& cycle) const {
 void ObserveRetractions(const LayerPair& layer, LayerFindings& findings) {
   CycleReader was(layer, findings.was.cycles);
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
+    if (layer.Ended()) return;
     was.Read(layer.was(), link);
   }
   CycleReader is(layer, findings.is.cycles);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
+    if (layer.Ended()) return;
     is.Read(layer.is(), link);
   }
   ForgetNewIdle(findings.was.cycles, findings.is.cycles);

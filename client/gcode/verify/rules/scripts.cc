@@ -56,6 +56,7 @@ void CheckLeaving(const TraceChunk& was, const TraceChunk& is, std::vector<Findi
 
 void CheckFixedMoves(const LayerPair& layer, LayerFindings& findings) {
   for (size_t i = 0; i < layer.section_count(); ++i) {
+    if (layer.Ended()) return;
     const absl::Span<const TraceMove> moves =
         FixedMoves(layer.was(), layer.SectionWas(i).first_path);
     const absl::Span<const TraceMove> others =

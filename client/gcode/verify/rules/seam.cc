@@ -33,6 +33,7 @@ void CheckSeam(const LayerPair& layer, const RuleContext& context, LayerFindings
   if (context.permissions.is_free()) return;
   const TraceChunk& was = layer.was();
   for (const Visit& visit : layer.visits()) {
+    if (layer.Ended()) return;
     if (!layer.Closed(visit.path) || !layer.Outer(visit.path)) continue;
     const TracePath& path = was.paths[visit.path];
     const uint32_t begin = visit.forward ? visit.entry : (visit.entry + 1) % path.size();

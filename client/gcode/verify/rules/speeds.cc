@@ -53,6 +53,7 @@ void ObserveTail(const LayerPair& layer, const TraceChunk& chunk, uint32_t link,
 void ObserveWas(const LayerPair& layer, const Tails& tails, Observations& seen) {
   const TraceChunk& chunk = layer.was();
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
+    if (layer.Ended()) return;
     const TraceLink& traced = chunk.links[link];
     if (traced.scripted) {
       ObserveScript(chunk, link, seen);
@@ -144,6 +145,7 @@ void ObserveIs(const LayerPair& layer, const Tails& tails, Observations& seen) {
   const TravelFeeds feeds = TravelFeedsOf(layer);
   const LongestTravels longest = LongestOf(layer);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
+    if (layer.Ended()) return;
     const TraceLink& traced = chunk.links[link];
     ObserveTail(layer, chunk, link, tails.At(link), true, seen);
     // At unknown lines every step is that of the original there: see CheckScriptedTravels.
@@ -203,6 +205,7 @@ void CheckLayerFeeds(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& is = layer.is();
   const Tails tails(layer, false);
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
+    if (layer.Ended()) return;
     for (uint32_t m = is.links[link].first_move + tails.At(link); m < is.links[link].end_move;
          ++m) {
       const TraceMove& move = is.moves[m];

@@ -30,6 +30,7 @@ void CheckWholePaths(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& was = layer.was();
   std::set<uint32_t> begun;
   for (const Visit& visit : layer.visits()) {
+    if (layer.Ended()) return;
     const TracePath& path = was.paths[visit.path];
     if (visit.segments == path.size()) continue;
     // Of each path all parts but the one that is printed first.

@@ -217,6 +217,7 @@ void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFinding
   std::vector<Wipe> wiped(layer.end_path_was() - layer.first_path_was());
   bool any = false;
   for (uint32_t path = layer.first_path_was(); path < layer.end_path_was(); ++path) {
+    if (layer.Ended()) return;
     const Wipe wipe = WipeBehind(layer, was, path, layer.PiecesOf(path), true);
     wiped[path - layer.first_path_was()] = wipe;
     if (wipe.line == 0) continue;
@@ -225,6 +226,7 @@ void CheckWipes(const LayerPair& layer, const RuleContext& context, LayerFinding
     findings.was.wipes.push_back(DeviationOf(wipe, wipe.line, layer));
   }
   for (const Visit& visit : layer.visits()) {
+    if (layer.Ended()) return;
     const Wipe& had = wiped[visit.path - layer.first_path_was()];
     if (!any && layer.is().links[visit.last_path + 1].first_move ==
                     layer.is().links[visit.last_path + 1].end_move) {

@@ -12,6 +12,9 @@ constexpr std::string_view kLayerMarks[] = {";LAYER_CHANGE", ";LAYER:", "; CHANG
 // Stands for a first line that states the digest of its text.
 constexpr uint64_t kRightMd5 = 2;
 
+// Lines are read in less than a microsecond.
+constexpr size_t kLinesToLimit = 256;
+
 // Marks beyond this much of a file are not its first ones.
 constexpr size_t kHead = 1 << 20;
 
@@ -34,8 +37,12 @@ bool HasLayerMarks(std::string_view text) {
 }
 
 SideReader::SideReader(std::string_view text, std::string_view ignored, bool marked,
-                       bool right_digest)
-    : machine_(text), cutter_(ignored, marked), tracer_(marked), right_digest_(right_digest) {}
+                       bool right_digest, const WorkLimit& limit)
+    : machine_(text),
+      cutter_(ignored, marked),
+      tracer_(marked),
+      right_digest_(right_digest),
+      limit_(limit) {}
 
 void SideReader::TakeHeld() {
   held_ = false;
@@ -48,6 +55,7 @@ template <typename Enough>
 TraceChunk SideReader::ReadUntil(Enough enough) {
   if (held_) TakeHeld();
   while (machine_.Next(line_)) {
+    if (line_.number % kLinesToLimit == 0 && limit_.Ended()) break;
     bytes_ += line_.text.size() + 1;
     if (right_digest_ && line_.number == 1) line_.digest = kRightMd5;
     const uint32_t section = cutter_.open_section();

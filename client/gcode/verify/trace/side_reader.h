@@ -11,6 +11,7 @@
 #include "client/gcode/verify/sections.h"
 #include "client/gcode/verify/trace/trace.h"
 #include "client/gcode/verify/trace/tracer.h"
+#include "client/gcode/work_limit.h"
 
 namespace traverse::gcode {
 
@@ -20,8 +21,10 @@ bool HasLayerMarks(std::string_view text);
 class SideReader {
  public:
   // Ignores comments that begin with `ignored`. `right_digest`: the first line states the digest
-  // of the file, which `text` need not have (stated_digest.h).
-  SideReader(std::string_view text, std::string_view ignored, bool marked, bool right_digest);
+  // of the file, which `text` need not have (stated_digest.h). Reads nothing more once `limit`
+  // ends.
+  SideReader(std::string_view text, std::string_view ignored, bool marked, bool right_digest,
+             const WorkLimit& limit);
 
   // The next layers, with `bytes` of text or a little more.
   TraceChunk NextBytes(size_t bytes);
@@ -54,6 +57,7 @@ class SideReader {
   Tracer tracer_;
   VerifyLine line_;
   const bool right_digest_;
+  const WorkLimit limit_;
   bool held_ = false;  // line_ begins the next chunk
   bool done_ = false;
   size_t bytes_ = 0;

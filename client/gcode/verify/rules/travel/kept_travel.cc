@@ -142,6 +142,7 @@ void CheckKeptTravels(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& is = layer.is();
   const KeptTravels travels = TravelsOf(layer);
   for (uint32_t link = std::max(layer.first_path_is(), 1u); link < layer.end_path_is(); ++link) {
+    if (layer.Ended()) return;
     if (layer.IsHidden(link)) continue;
     const uint64_t digest = DigestOfLink(is, link);
     const auto found = travels.links.find(digest);

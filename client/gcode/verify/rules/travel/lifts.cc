@@ -283,9 +283,11 @@ void CompareKind(const Observations& was, const Observations& is, size_t kind,
 
 void ObserveLifts(const LayerPair& layer, LayerFindings& findings) {
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
+    if (layer.Ended()) return;
     Observe(layer, layer.was(), link, false, findings.was);
   }
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
+    if (layer.Ended()) return;
     if (!layer.IsHidden(link)) Observe(layer, layer.is(), link, true, findings.is);
   }
 }

@@ -174,6 +174,7 @@ void ObserveOpenHabits(const LayerPair& layer, LayerFindings& findings) {
   }
   const LayerHabits habits(travels);
   for (const Visit& visit : layer.visits()) {
+    if (layer.Ended()) return;
     if (layer.IsHidden(visit.first_path)) continue;
     const Travel travel =
         TravelIn(layer, layer.is(), visit.first_path, layer.ClassOf(visit.path), true);

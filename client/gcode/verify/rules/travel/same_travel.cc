@@ -69,6 +69,7 @@ void CheckSameTravels(const LayerPair& layer, LayerFindings& findings) {
   const TraceChunk& is = layer.is();
   std::vector<uint32_t> changed;  // links
   for (uint32_t link = layer.first_path_is() + 1; link < layer.end_path_is(); ++link) {
+    if (layer.Ended()) return;
     if (layer.IsHidden(link)) continue;
     if (NozzleIn(layer, is, link, true) != Nozzle::kNoTravel) changed.push_back(link);
   }

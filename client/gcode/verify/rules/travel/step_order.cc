@@ -141,6 +141,7 @@ void ObserveStepOrder(const LayerPair& layer, LayerFindings& findings) {
   };
   // The first link comes from the start script, or follows a path of the chunk before.
   for (uint32_t link = std::max(layer.first_path_was(), 1u); link < layer.end_path_was(); ++link) {
+    if (layer.Ended()) return;
     const std::string steps = StepsOf(layer.was(), link);
     add(layer.was(), link, steps, findings.was);
     for (const std::string& dwell : DwellsOf(layer.was(), link)) {
@@ -151,6 +152,7 @@ void ObserveStepOrder(const LayerPair& layer, LayerFindings& findings) {
     }
   }
   for (uint32_t link = std::max(layer.first_path_is(), 1u); link < layer.end_path_is(); ++link) {
+    if (layer.Ended()) return;
     if (layer.is().links[link].scripted || layer.IsHidden(link) || AllKnown(layer, link)) continue;
     const std::string steps = StepsOf(layer.is(), link);
     const bool to_layer = layer.is().links[link].new_layer;

@@ -253,6 +253,7 @@ Sinking SinkingTo(const TraceChunk& chunk, uint32_t path) {
 // A head that descends too early hits what was printed before.
 void CheckSinking(const LayerPair& layer, LayerFindings& findings) {
   for (size_t i = 0; i < layer.section_count(); ++i) {
+    if (layer.Ended()) return;
     const Sinking was = SinkingTo(layer.was(), layer.SectionWas(i).first_path);
     const Sinking is = SinkingTo(layer.is(), layer.SectionIs(i).first_path);
     if (!was.sinks || !is.sinks || DistanceOf(is.at, was.at) <= kShortestMm ||
@@ -269,9 +270,11 @@ void CheckSinking(const LayerPair& layer, LayerFindings& findings) {
 
 void ObserveHeights(const LayerPair& layer, LayerFindings& findings) {
   for (uint32_t link = layer.first_path_was(); link < layer.end_path_was(); ++link) {
+    if (layer.Ended()) return;
     Observe(layer, layer.was(), link, false, findings.was);
   }
   for (uint32_t link = layer.first_path_is(); link < layer.end_path_is(); ++link) {
+    if (layer.Ended()) return;
     Observe(layer, layer.is(), link, true, findings.is);
   }
 }

@@ -143,6 +143,7 @@ double ApexOf(const std::vector<TravelStep>& steps) {
 
 void CheckScriptedTravels(const LayerPair& layer, LayerFindings& findings) {
   for (size_t i = 0; i < layer.section_count(); ++i) {
+    if (layer.Ended()) return;
     const uint32_t was = layer.SectionWas(i).first_path;
     const uint32_t is = layer.SectionIs(i).first_path;
     if (!layer.was().links[was].scripted) continue;
@@ -257,6 +258,7 @@ void CheckSameSteps(const LayerPair& layer, LayerFindings& findings) {
   absl::flat_hash_set<uint64_t> seen;
   // The first link of a chunk follows a path of the chunk before.
   for (uint32_t link = std::max(layer.first_path_was(), 1u); link < layer.end_path_was(); ++link) {
+    if (layer.Ended()) return;
     const uint64_t ends = EndsOf(was, link);
     std::vector<TravelStep> steps = StepsTo(was, link, 0);
     if (!seen.insert(Mix(ends, DigestOf(steps))).second) continue;
@@ -265,6 +267,7 @@ void CheckSameSteps(const LayerPair& layer, LayerFindings& findings) {
     between.travels.push_back(std::move(steps));
   }
   for (uint32_t link = std::max(layer.first_path_is(), 1u); link < layer.end_path_is(); ++link) {
+    if (layer.Ended()) return;
     const auto found = by_ends.find(EndsOf(is, link));
     if (found != by_ends.end()) CompareSteps(layer, found->second, link, findings);
   }
