@@ -22,10 +22,15 @@ constexpr double kStepCells = 0.5;
 constexpr double kIslandsApartMm = 1;
 
 // No plate is larger. Beyond it there is one cell.
-constexpr double kFarCells = 1e5;
+constexpr double kFarCells = 4000;
 
 // Layers whose cells are kept at once.
-constexpr size_t kBatch = 64;
+constexpr size_t kBatch = 16;
+
+// No layer has more cells with something in them, and no print; of what lies in further ones
+// nothing is known.
+constexpr size_t kMostStackedCells = 1 << 18;
+constexpr size_t kMostStackedTops = 1 << 19;
 
 // A cell of 1 mm, and an island that has a path in it.
 using Cell = std::pair<uint64_t, uint32_t>;
@@ -38,19 +43,48 @@ uint64_t CellAt(double x, double y) {
   return uint64_t{index(x)} << 32 | index(y);
 }
 
-void AddCells(const Outline& outline, uint32_t island, std::vector<Cell>& cells) {
+// The cells of a layer, each once.
+class LayerCells {
+ public:
+  bool full() const { return full_; }
+
+  void Add(const Cell& cell) {
+    if (full_ || (!cells_.empty() && cells_.back() == cell)) return;
+    cells_.push_back(cell);
+    if (cells_.size() < room_) return;
+    Tidy();
+    full_ = cells_.size() >= kMostStackedCells;
+    room_ = 2 * cells_.size() + kLeastRoom;
+  }
+
+  std::vector<Cell> Take() {
+    Tidy();
+    return std::move(cells_);
+  }
+
+ private:
+  static constexpr size_t kLeastRoom = 1 << 16;
+
+  void Tidy() {
+    std::sort(cells_.begin(), cells_.end());
+    cells_.erase(std::unique(cells_.begin(), cells_.end()), cells_.end());
+  }
+
+  std::vector<Cell> cells_;
+  size_t room_ = kLeastRoom;
+  bool full_ = false;
+};
+
+void AddCells(const Outline& outline, uint32_t island, LayerCells& cells) {
   const std::vector<Vertex>& points = outline.shape();
-  const auto add = [&](double x, double y) {
-    const Cell cell{CellAt(x, y), island};
-    if (cells.empty() || cells.back() != cell) cells.push_back(cell);
-  };
+  const auto add = [&](double x, double y) { cells.Add({CellAt(x, y), island}); };
   if (!points.empty()) add(points[0].x, points[0].y);
   for (size_t i = 1; i < points.size(); ++i) {
     const double dx = points[i].x - points[i - 1].x;
     const double dy = points[i].y - points[i - 1].y;
     const double steps =
         std::clamp(std::ceil(std::hypot(dx, dy) / kStepCells), 1.0, kFarCells / kStepCells);
-    for (double step = 1; step <= steps; ++step) {
+    for (double step = 1; step <= steps && !cells.full(); ++step) {
       add(points[i - 1].x + dx * step / steps, points[i - 1].y + dy * step / steps);
     }
   }
@@ -63,14 +97,12 @@ std::vector<Cell> FindIslands(const GcodeFile& file, const Layer& layer, LayerIs
     outline.width_mm = std::max(outline.width_mm, kIslandsApartMm / kTouch);
   }
   islands.island = FindContacts(outlines, [](uint32_t, uint32_t) { return false; }).island;
-  std::vector<Cell> cells;
+  LayerCells cells;
   for (size_t path = 0; path < outlines.size(); ++path) {
     islands.count = std::max(islands.count, islands.island[path] + 1);
     AddCells(outlines[path], islands.island[path], cells);
   }
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  return cells;
+  return cells.Take();
 }
 
 // What was printed last in each cell: two islands where their edges meet.
@@ -88,6 +120,7 @@ class TopOfPrint {
     islands.supports.erase(std::unique(islands.supports.begin(), islands.supports.end()),
                            islands.supports.end());
     for (const auto& [cell, island] : cells) {
+      if (top_.size() >= kMostStackedTops && !top_.contains(cell)) continue;
       Top& top = top_[cell];
       if (top.layer != layer || !top.known) top = {layer, {island, island}, true};
       top.islands[1] = island;
@@ -113,7 +146,15 @@ std::vector<LayerIslands> StackIslands(const GcodeFile& file, int threads) {
   for (size_t begin = 0; begin < stack.size(); begin += kBatch) {
     const size_t count = std::min(kBatch, stack.size() - begin);
     ParallelFor(count, threads, [&](size_t i) {
-      cells[i] = FindIslands(file, file.layers[begin + i], stack[begin + i]);
+      const Layer& layer = file.layers[begin + i];
+      if (!file.limit.Ended()) {
+        cells[i] = FindIslands(file, layer, stack[begin + i]);
+        return;
+      }
+      // What is made of it is not looked at.
+      cells[i].clear();
+      stack[begin + i].island.assign(layer.end_block - layer.first_block, 0);
+      stack[begin + i].count = 1;
     });
     for (size_t i = 0; i < count; ++i) {
       top.Add(static_cast<uint32_t>(begin + i), cells[i], stack[begin + i]);

@@ -97,7 +97,9 @@ PieceGrid::PieceGrid(std::vector<Piece> pieces, double cell_mm)
   if (pieces_.empty()) return;
   low_ = pieces_[0].a;
   Point high = low_;
+  double length = 0;  // along x and y
   for (const Piece& piece : pieces_) {
+    length += std::abs(piece.b.x - piece.a.x) + std::abs(piece.b.y - piece.a.y);
     for (const Point p : {piece.a, piece.b}) {
       low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
       high = {std::max(high.x, p.x), std::max(high.y, p.y)};
@@ -108,6 +110,9 @@ PieceGrid::PieceGrid(std::vector<Piece> pieces, double cell_mm)
   const double area = (high.x - low_.x + cell_mm_) * (high.y - low_.y + cell_mm_);
   cell_mm_ = std::max(cell_mm_, std::sqrt(area / most));
   cell_mm_ = std::max(cell_mm_, std::max(high.x - low_.x, high.y - low_.y) / most);
+  // Nor more cells that pieces meet than some for each.
+  constexpr double kMostOfPiece = 64;
+  cell_mm_ = std::max(cell_mm_, length / (kMostOfPiece * static_cast<double>(pieces_.size())));
   columns_ = static_cast<int>((high.x - low_.x) / cell_mm_) + 1;
   rows_ = static_cast<int>((high.y - low_.y) / cell_mm_) + 1;
   begin_.assign(static_cast<size_t>(columns_) * static_cast<size_t>(rows_) + 1, 0);

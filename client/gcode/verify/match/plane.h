@@ -43,8 +43,8 @@ inline constexpr uint32_t kSeveralPaths = UINT32_MAX;
 // Leaves one of those that lie in the same place: loops may be printed there again and again.
 void JoinEqual(std::vector<Piece>& pieces);
 
-// Finds pieces by position. Cells have the requested width, or more if the pieces lie far apart.
-// Memory: a few numbers per piece and per cell that it meets.
+// Finds pieces by position. Cells have the requested width, or more if the pieces are long or lie
+// far apart. Memory: some hundred bytes per piece at most.
 class PieceGrid {
  public:
   PieceGrid(std::vector<Piece> pieces, double cell_mm);

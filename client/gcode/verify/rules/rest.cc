@@ -18,7 +18,12 @@ constexpr double kLeastShare = 0.95;
 constexpr double kSlackSeconds = 1e-3;
 
 constexpr double kPlaceMm = 1;
-constexpr double kFarCells = 1e6;  // no plate is larger
+constexpr double kFarCells = 4000;  // no plate is larger
+
+// No layer has more cells with something in them, and no print; of what lies in further ones
+// nothing is known.
+constexpr size_t kMostCells = 1 << 18;
+constexpr size_t kMostTops = 1 << 19;
 constexpr double kLeastReachMm = 1.02;
 constexpr double kMostReachMm = 4;
 constexpr uint64_t kLooks = 100'000;  // at pairs of pieces, and for each piece
@@ -47,6 +52,41 @@ uint64_t CellOf(double x, double y) {
   };
   return uint64_t{index(x)} << 32 | index(y);
 }
+
+// Cells with their islands, each once.
+class CellSet {
+ public:
+  using Cell = std::pair<uint64_t, uint32_t>;
+
+  bool full() const { return full_; }
+
+  void Add(const Cell& cell) {
+    if (full_ || (!cells_.empty() && cells_.back() == cell)) return;
+    cells_.push_back(cell);
+    if (cells_.size() < room_) return;
+    Tidy();
+    full_ = cells_.size() >= kMostCells;
+    room_ = 2 * cells_.size() + kLeastRoom;
+  }
+
+  // Ascending.
+  std::vector<Cell> Take() {
+    Tidy();
+    return std::move(cells_);
+  }
+
+ private:
+  static constexpr size_t kLeastRoom = 1 << 16;
+
+  void Tidy() {
+    std::sort(cells_.begin(), cells_.end());
+    cells_.erase(std::unique(cells_.begin(), cells_.end()), cells_.end());
+  }
+
+  std::vector<Cell> cells_;
+  size_t room_ = kLeastRoom;
+  bool full_ = false;
+};
 
 class IslandFinder {
  public:
@@ -80,6 +120,7 @@ class IslandFinder {
   void JoinNear() {
     uint64_t left = kLooks + kLooksEach * grid_.pieces().size();
     for (const Piece& piece : grid_.pieces()) {
+      if (layer_.Ended()) return;
       const uint32_t one = piece.path - first_;
       grid_.ForEachNear(piece.a, piece.b, reach_[one], [&](uint32_t i) {
         JoinIfNear(piece, grid_.pieces()[i]);
@@ -140,21 +181,19 @@ class IslandFinder {
   }
 
   void NoteCells() {
-    std::vector<std::pair<uint64_t, uint32_t>>& cells = found_.cells;
+    CellSet cells;
     for (const Piece& piece : grid_.pieces()) {
+      if (layer_.Ended()) return;
       const uint32_t island = island_[piece.path - first_];
       const double steps = std::clamp(std::ceil(DistanceOf(piece.a, piece.b) * 2), 1.0, 1e6);
-      for (double step = 0; step <= steps; ++step) {
+      for (double step = 0; step <= steps && !cells.full(); ++step) {
         const double share = step / steps;
-        const std::pair<uint64_t, uint32_t> cell{
-            CellOf(piece.a.x + (piece.b.x - piece.a.x) * share,
-                   piece.a.y + (piece.b.y - piece.a.y) * share),
-            island};
-        if (cells.empty() || cells.back() != cell) cells.push_back(cell);
+        cells.Add({CellOf(piece.a.x + (piece.b.x - piece.a.x) * share,
+                          piece.a.y + (piece.b.y - piece.a.y) * share),
+                   island});
       }
     }
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    found_.cells = cells.Take();
   }
 
   const LayerPair& layer_;
@@ -193,6 +232,7 @@ void RestWatch::Take(const PrintedIslands& layer, int64_t index, std::vector<Fin
   }
   for (const auto& [cell, number] : layer.cells) {
     const PrintedIsland& island = layer.islands[number];
+    if (top_.size() >= kMostTops && !top_.contains(cell)) continue;
     top_[cell] = {island.left_was, island.left_is, paths_ + island.last_was, index};
   }
   paths_ += layer.paths;
