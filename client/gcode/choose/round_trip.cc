@@ -9,9 +9,10 @@ namespace {
 
 constexpr double kLeastGainMm = 1e-6;
 
-// Passes over all pairs, about 10^8 of them at most.
-constexpr double kMostPairs = 1e8;
+// Passes over the pairs that lie so near to each other in the trip; few plates have more objects.
+constexpr size_t kNear = 300;
 constexpr size_t kMostPasses = 50;
+constexpr double kMostPairs = 3e7;
 
 class Trip {
  public:
@@ -22,7 +23,7 @@ class Trip {
   bool TurnRuns() {
     bool any = false;
     for (size_t i = 1; i + 1 < size(); ++i) {
-      for (size_t j = i + 1; j < size(); ++j) {
+      for (size_t j = i + 1; j < std::min(size(), i + kNear); ++j) {
         const double gain = Mm(i - 1, i) + Mm(j, Next(j)) - Mm(i - 1, j) - Mm(i, Next(j));
         if (!(gain > kLeastGainMm)) continue;
         std::reverse(At(i), At(j + 1));
@@ -35,7 +36,7 @@ class Trip {
   bool MovePoints() {
     bool any = false;
     for (size_t i = 1; i < size(); ++i) {
-      for (size_t j = 0; j < size(); ++j) {
+      for (size_t j = i - std::min(i, kNear); j < std::min(size(), i + kNear); ++j) {
         if (j == i || j + 1 == i) continue;
         const double left = Mm(i - 1, i) + Mm(i, Next(i)) - Mm(i - 1, Next(i));
         const double added = Mm(j, i) + Mm(i, Next(j)) - Mm(j, Next(j));
@@ -69,8 +70,9 @@ class Trip {
 
 std::vector<uint32_t> RoundTrip(const std::vector<Vertex>& points) {
   Trip trip(points);
-  const auto n = static_cast<double>(points.size());
-  const auto passes = static_cast<size_t>(kMostPairs / (n * n + 1));
+  const size_t n = points.size();
+  const auto passes =
+      static_cast<size_t>(kMostPairs / static_cast<double>(n * std::min(n, kNear) + 1));
   for (size_t pass = 0; pass < std::min(passes, kMostPasses); ++pass) {
     const bool turned = trip.TurnRuns();
     if (!trip.MovePoints() && !turned) break;

@@ -12,7 +12,8 @@ namespace traverse::gcode {
 
 // The numbers of `points` in the order of a round trip that begins with the first one: the given
 // order, improved by turning runs and by moving single points, until neither makes it shorter.
-// O(n^2) a pass, and a limited number of passes.
+// O(n) a pass of points, each with the few hundred next to it in the trip; a limited number of
+// passes.
 std::vector<uint32_t> RoundTrip(const std::vector<Vertex>& points);
 
 }  // namespace traverse::gcode
