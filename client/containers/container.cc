@@ -21,7 +21,11 @@ class PlainText : public Container {
   ContainerKind kind() const override { return ContainerKind::kText; }
   const std::vector<GcodePart>& parts() const override { return parts_; }
   absl::StatusOr<std::string> Text(size_t) const override { return text_; }
-  absl::StatusOr<size_t> TextBytes() const override { return text_.size(); }
+  size_t StatedBytes() const override { return text_.size(); }
+  absl::Status VisitTexts(const TextSink& sink) const override {
+    sink(0, text_);
+    return absl::OkStatus();
+  }
   absl::StatusOr<std::string> WithParts(const std::map<size_t, NewPart>& parts) const override {
     return parts.empty() ? text_ : parts.begin()->second.text;
   }

@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -80,9 +81,14 @@ class Container {
   // The whole text of parts()[index]. Errors name the container and the position in it.
   virtual absl::StatusOr<std::string> Text(size_t index) const = 0;
 
-  // The length of all texts together, at least as much as Text() allows, for callers that must know
-  // before unpacking. ResourceExhausted as in Text().
-  virtual absl::StatusOr<size_t> TextBytes() const = 0;
+  // The length of all texts together, as the container's headers state it.
+  virtual size_t StatedBytes() const = 0;
+
+  // Passes all texts on, one after the other, each in pieces that may end anywhere and of which it
+  // holds a few megabytes at most: for callers that must know what they will unpack. Errors: as
+  // Text().
+  using TextSink = std::function<void(size_t index, std::string_view piece)>;
+  virtual absl::Status VisitTexts(const TextSink& sink) const = 0;
 
   // The container with other texts, by index; the others stay. Reading the result gives back these
   // texts, apart from spaces that mean nothing; this is checked.

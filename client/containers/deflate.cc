@@ -89,6 +89,31 @@ absl::StatusOr<std::string> Inflate(std::string_view bytes, DeflateForm form, si
   return out;
 }
 
+absl::Status InflateInPieces(std::string_view bytes, DeflateForm form, size_t size,
+                             const std::function<void(std::string_view)>& sink) {
+  if (bytes.size() > std::numeric_limits<uInt>::max()) {
+    return absl::InvalidArgumentError("more than 4 GiB of deflated data");
+  }
+  z_stream stream{};
+  if (inflateInit2(&stream, form == DeflateForm::kRaw ? -MAX_WBITS : MAX_WBITS) != Z_OK) {
+    return absl::ResourceExhaustedError("no memory to inflate");
+  }
+  std::string piece(kWindowBytes, '\0');
+  stream.next_in = Input(bytes);
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  int code = Z_OK;
+  while (code == Z_OK && stream.total_out <= size) {
+    stream.next_out = reinterpret_cast<Bytef*>(piece.data());
+    stream.avail_out = static_cast<uInt>(piece.size());
+    code = inflate(&stream, Z_NO_FLUSH);
+    sink(std::string_view(piece).substr(0, piece.size() - stream.avail_out));
+  }
+  const size_t made = stream.total_out;
+  inflateEnd(&stream);
+  if (code == Z_STREAM_END && made == size) return absl::OkStatus();
+  return absl::InvalidArgumentError("deflated data are damaged, or not as long as stated");
+}
+
 absl::StatusOr<std::string> Deflate(std::string_view bytes, DeflateForm form, int level,
                                     int threads) {
   const size_t count = std::max<size_t>(1, (bytes.size() + kPieceBytes - 1) / kPieceBytes);

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,10 @@ inline constexpr size_t kMaxDeflateRatio = 1032;
 // The `size` bytes from which `bytes` were deflated. InvalidArgument if they are damaged, or have
 // more or fewer than `size`. Allocates nothing for an impossible size.
 absl::StatusOr<std::string> Inflate(std::string_view bytes, DeflateForm form, size_t size);
+
+// The same without keeping them, in pieces. Stops where there are more than `size`.
+absl::Status InflateInPieces(std::string_view bytes, DeflateForm form, size_t size,
+                             const std::function<void(std::string_view piece)>& sink);
 
 // `bytes`, deflated; large ones in pieces on up to `threads` threads. The same bytes on any number
 // of threads. `level` is zlib's: 1 to 9. ResourceExhausted if there is not enough memory.

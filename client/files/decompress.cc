@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_format.h"
@@ -22,13 +23,14 @@ constexpr uint64_t kLittleXzMemory = uint64_t{10} << 20;
 
 constexpr size_t kGzipMemory = size_t{64} << 10;
 
-// The output: kept, or only counted.
+// The output: kept, or passed on.
 class Output {
  public:
-  static constexpr size_t kFirst = 16;
+  using Sink = std::function<void(std::string_view)>;
 
-  // Keeps the output in `kept` unless that is null.
-  Output(std::string* kept, size_t max_bytes) : kept_(kept), max_bytes_(max_bytes) {}
+  // Keeps the output in `kept`; passes it to `sink` if that is null.
+  Output(std::string* kept, size_t max_bytes, Sink sink = {})
+      : kept_(kept), max_bytes_(max_bytes), sink_(std::move(sink)) {}
 
   size_t size() const { return size_; }
   bool too_long() const { return size_ > max_bytes_; }
@@ -48,12 +50,9 @@ class Output {
 
   // Adds `bytes` bytes that were written into the room.
   void Add(size_t bytes) {
-    if (kept_ == nullptr) first_.append(scratch_, 0, std::min(bytes, kFirst - first_.size()));
+    if (kept_ == nullptr) sink_(std::string_view(scratch_).substr(0, bytes));
     size_ += bytes;
   }
-
-  // The first bytes of output that is not kept.
-  const std::string& first() const { return first_; }
 
   void Trim() {
     if (kept_ != nullptr) kept_->resize(size_);
@@ -62,8 +61,8 @@ class Output {
  private:
   std::string* kept_;
   std::string scratch_;
-  std::string first_;
   const size_t max_bytes_;
+  const Sink sink_;
   size_t size_ = 0;
 };
 
@@ -193,15 +192,14 @@ absl::StatusOr<std::string> Decompress(std::string_view bytes, Compression compr
   return kept;
 }
 
-absl::StatusOr<DecompressedSize> MeasureDecompressed(std::string_view bytes,
-                                                     Compression compression, size_t max_bytes) {
+absl::Status DecompressInPieces(std::string_view bytes, Compression compression, size_t max_bytes,
+                                const std::function<void(std::string_view)>& sink) {
   if (compression == Compression::kNone) {
-    return DecompressedSize{bytes.size(), std::string(bytes.substr(0, Output::kFirst))};
+    sink(bytes);
+    return absl::OkStatus();
   }
-  Output out(nullptr, max_bytes);
-  const absl::Status status = DecompressTo(bytes, compression, max_bytes, out);
-  if (!status.ok()) return status;
-  return DecompressedSize{out.size(), out.first()};
+  Output out(nullptr, max_bytes, sink);
+  return DecompressTo(bytes, compression, max_bytes, out);
 }
 
 }  // namespace traverse

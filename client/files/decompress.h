@@ -7,6 +7,7 @@
 #define TRAVERSE_CLIENT_FILES_DECOMPRESS_H_
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -28,13 +29,9 @@ size_t DecoderBytes(std::string_view bytes, Compression compression);
 absl::StatusOr<std::string> Decompress(std::string_view bytes, Compression compression,
                                        size_t max_bytes);
 
-// The same without keeping the result.
-struct DecompressedSize {
-  size_t bytes = 0;
-  std::string first;  // its first 16 bytes
-};
-absl::StatusOr<DecompressedSize> MeasureDecompressed(std::string_view bytes,
-                                                     Compression compression, size_t max_bytes);
+// The same without keeping the result: passes it on in pieces.
+absl::Status DecompressInPieces(std::string_view bytes, Compression compression, size_t max_bytes,
+                                const std::function<void(std::string_view piece)>& sink);
 
 }  // namespace traverse
 

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
-#include "client/gateway/work/file_memory.h"
 #include "client/gateway/work/guarded.h"
 
 namespace traverse::gateway {
@@ -32,10 +31,11 @@ absl::StatusOr<std::unique_ptr<Core>> Core::Make(const CoreOptions& options,
 namespace {
 
 absl::StatusOr<int64_t> MemoryForAll(const std::vector<std::shared_ptr<const SpoolFile>>& files,
-                                     uint64_t max_file_bytes, int64_t max_memory_bytes) {
+                                     FileUse use, uint64_t max_file_bytes,
+                                     int64_t max_memory_bytes) {
   int64_t sum = 0;
   for (const auto& file : files) {
-    const absl::StatusOr<int64_t> bytes = MemoryFor(*file, max_file_bytes);
+    const absl::StatusOr<int64_t> bytes = MemoryFor(*file, use, max_file_bytes);
     if (!bytes.ok()) return bytes;
     sum += *bytes;
   }
@@ -48,17 +48,18 @@ absl::StatusOr<int64_t> MemoryForAll(const std::vector<std::shared_ptr<const Spo
 }  // namespace
 
 void Core::Submit(std::shared_ptr<WorkQueue::Ticket> ticket,
-                  std::vector<std::shared_ptr<const SpoolFile>> files, Task work) {
-  const bool packed =
-      std::any_of(files.begin(), files.end(), [](const auto& file) { return IsPacked(*file); });
-  auto submit = [this, ticket, files, work = std::move(work)] {
-    const absl::StatusOr<int64_t> memory = Guarded(
-        [&] { return MemoryForAll(files, options.max_file_bytes, queue->max_memory_bytes()); });
+                  std::vector<std::shared_ptr<const SpoolFile>> files, Task work, FileUse use) {
+  const bool at_once = std::all_of(files.begin(), files.end(),
+                                   [](const auto& file) { return IsMeasuredAtOnce(*file); });
+  auto submit = [this, ticket, files, work = std::move(work), use] {
+    const absl::StatusOr<int64_t> memory = Guarded([&] {
+      return MemoryForAll(files, use, options.max_file_bytes, queue->max_memory_bytes());
+    });
     if (!memory.ok()) return work(memory.status());
     queue->Submit(ticket, *memory, [work] { work(absl::OkStatus()); });
   };
-  if (!packed) return submit();
-  // Decompressing files to measure them takes time, and callers must not wait for it.
+  if (at_once) return submit();
+  // Going through files to measure them takes time, and callers must not wait for it.
   int64_t to_measure = 0;
   for (const auto& file : files) to_measure += MemoryToMeasure(*file);
   queue->Submit(ticket, std::min(to_measure, queue->max_memory_bytes()), std::move(submit));

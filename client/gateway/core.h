@@ -15,6 +15,7 @@
 #include "client/api/optimizer_client.h"
 #include "client/gateway/gateway_metrics.h"
 #include "client/gateway/spool/spool.h"
+#include "client/gateway/work/file_memory.h"
 #include "client/gateway/work/file_worker.h"
 #include "client/gateway/work/work_queue.h"
 #include "server/access/auth.h"
@@ -43,12 +44,13 @@ struct Core {
                                                     std::shared_ptr<grpc::Channel> channel,
                                                     std::string token);
 
-  // Calls `work` when there are a worker and the memory that work on `files` may take. Calls it
-  // with an error if they need more than there is at all (OutOfRange), or cannot be read. `ticket`
-  // and the files live until then.
+  // Calls `work` when there are a worker and the memory that such work on `files` may take. Calls
+  // it with an error if they need more than there is at all (OutOfRange), or cannot be read.
+  // `ticket` and the files live until then.
   using Task = std::function<void(const absl::Status&)>;
   void Submit(std::shared_ptr<WorkQueue::Ticket> ticket,
-              std::vector<std::shared_ptr<const SpoolFile>> files, Task work);
+              std::vector<std::shared_ptr<const SpoolFile>> files, Task work,
+              FileUse use = FileUse::kRewrite);
 
   // The text of /metrics.
   std::string MetricsText();

@@ -113,11 +113,21 @@ class BgcodeContainer : public Container {
     return body;
   }
 
-  absl::StatusOr<size_t> TextBytes() const override {
-    const absl::StatusOr<size_t> body =
-        GcodeTextBytes(file_, MaxTextBytes(bytes_.size(), options_.max_text_bytes));
-    if (!body.ok()) return Fault(body.status());
-    return head_.size() + *body + 1 + tail_.size();
+  size_t StatedBytes() const override {
+    size_t sum = head_.size() + 1 + tail_.size();
+    for (const Block& block : file_.blocks) sum += block.is_gcode() ? block.size : 0;
+    return sum;
+  }
+
+  absl::Status VisitTexts(const TextSink& sink) const override {
+    sink(0, head_);
+    const absl::Status status =
+        VisitGcode(file_, MaxTextBytes(bytes_.size(), options_.max_text_bytes),
+                   [&](std::string_view piece) { sink(0, piece); });
+    if (!status.ok()) return Fault(status);
+    sink(0, "\n");
+    sink(0, tail_);
+    return status;
   }
 
   absl::StatusOr<std::string> WithParts(const std::map<size_t, NewPart>& parts) const override;

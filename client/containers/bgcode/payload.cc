@@ -155,20 +155,24 @@ absl::StatusOr<std::string> GcodeText(const BgcodeBlocks& file, size_t max_bytes
   return out;
 }
 
-absl::StatusOr<size_t> GcodeTextBytes(const BgcodeBlocks& file, size_t max_bytes) {
+absl::Status VisitGcode(const BgcodeBlocks& file, size_t max_bytes,
+                        const std::function<void(std::string_view)>& sink) {
   size_t sum = 0;
   std::string text;
   for (size_t i = 0; i < file.blocks.size(); ++i) {
-    const Block& block = file.blocks[i];
-    if (!block.is_gcode()) continue;
+    if (!file.blocks[i].is_gcode()) continue;
     if (absl::Status status = CheckBlockSize(file, i); !status.ok()) return status;
     text.clear();
-    const bool packed = static_cast<GcodeEncoding>(block.parameters[0]) != GcodeEncoding::kNone;
-    const bool unpacked = packed && AppendBlockText(block, max_bytes, text).ok();
-    sum += unpacked ? text.size() : block.size;
+    const absl::Status made = AppendBlockText(file.blocks[i], max_bytes, text);
+    if (!made.ok()) {
+      return absl::Status(
+          made.code(), absl::StrFormat("%s: %s", BlockPlace(file, i), std::string(made.message())));
+    }
+    sum += text.size();
     if (sum > max_bytes) return TooLong(file, i, sum, max_bytes);
+    sink(text);
   }
-  return sum;
+  return absl::OkStatus();
 }
 
 absl::Status AppendGcodeBlocks(std::string_view text, const GcodeForm& form, int threads,

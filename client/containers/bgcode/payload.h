@@ -4,6 +4,7 @@
 #define TRAVERSE_CLIENT_CONTAINERS_BGCODE_PAYLOAD_H_
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,9 +38,9 @@ absl::StatusOr<std::string> CompressBytes(std::string_view bytes, BlockCompressi
 // ResourceExhausted if the text is longer than `max_bytes`.
 absl::StatusOr<std::string> GcodeText(const BgcodeBlocks& file, size_t max_bytes, int threads);
 
-// The length of that text. Unpacks MeatPack blocks for it, one at a time; damaged ones count as
-// what they state.
-absl::StatusOr<size_t> GcodeTextBytes(const BgcodeBlocks& file, size_t max_bytes);
+// Passes that text on block by block, without keeping it. Errors: the same.
+absl::Status VisitGcode(const BgcodeBlocks& file, size_t max_bytes,
+                        const std::function<void(std::string_view piece)>& sink);
 
 // Appends `text` as G-code blocks of whole lines, built on up to `threads` threads. A block with a
 // byte that MeatPack cannot express is not encoded.

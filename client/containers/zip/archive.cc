@@ -325,6 +325,21 @@ absl::StatusOr<std::string> ReadEntry(const ZipArchive& archive, const ZipEntry&
   return content;
 }
 
+absl::Status VisitEntry(const ZipArchive& archive, const ZipEntry& entry,
+                        const std::function<void(std::string_view)>& sink) {
+  const std::string_view data = archive.file.substr(entry.data, entry.compressed_size);
+  if (entry.method == ZipMethod::kStored) {
+    sink(data);
+    return absl::OkStatus();
+  }
+  if (entry.method != ZipMethod::kDeflated) {
+    return EntryFault(entry.name,
+                      absl::StrFormat("compression %d is unknown", static_cast<int>(entry.method)));
+  }
+  const absl::Status status = InflateInPieces(data, DeflateForm::kRaw, entry.size, sink);
+  return status.ok() ? status : EntryFault(entry.name, std::string(status.message()));
+}
+
 absl::StatusOr<std::string> WriteZip(const ZipArchive& archive,
                                      const std::map<size_t, std::string>& replaced, int threads) {
   std::string out;

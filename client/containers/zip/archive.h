@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -60,6 +61,10 @@ absl::StatusOr<ZipArchive> ParseZip(std::string_view file);
 // longer than `max_bytes`.
 absl::StatusOr<std::string> ReadEntry(const ZipArchive& archive, const ZipEntry& entry,
                                       size_t max_bytes);
+
+// The same without keeping it, in pieces; their checksum is not looked at.
+absl::Status VisitEntry(const ZipArchive& archive, const ZipEntry& entry,
+                        const std::function<void(std::string_view piece)>& sink);
 
 // The archive with the contents of `replaced` (by index of the entry) instead of the old ones,
 // compressed by the same method, with the same names and times. ResourceExhausted if it would

@@ -74,10 +74,19 @@ class GcodeZip : public Container {
     return text;
   }
 
-  absl::StatusOr<size_t> TextBytes() const override {
+  size_t StatedBytes() const override {
     size_t sum = 0;
     for (const size_t i : entries_) sum += archive_.entries[i].size;
     return sum;
+  }
+
+  absl::Status VisitTexts(const TextSink& sink) const override {
+    for (size_t index = 0; index < entries_.size(); ++index) {
+      const absl::Status status = VisitEntry(archive_, archive_.entries[entries_[index]],
+                                             [&](std::string_view piece) { sink(index, piece); });
+      if (!status.ok()) return Fault(status);
+    }
+    return absl::OkStatus();
   }
 
   absl::StatusOr<std::string> WithParts(const std::map<size_t, NewPart>& parts) const override;

@@ -262,10 +262,13 @@ HttpDecision InspectRoute(const HttpRequest& request, const std::string& caller,
                              const ReplyPtr& reply) {
     wanted.finish_by = FinishBy(core, wanted.deadline);
     const std::stop_source stop = StopWhenGone(*reply);
-    core.Submit(ticket, {file}, [&core, wanted, file, reply, stop](const absl::Status& may) {
-      if (!may.ok()) return reply->Send(RefusalOf(may));
-      SendMessage(*reply, core.worker->Inspect(*file, wanted, stop.get_token()));
-    });
+    core.Submit(
+        ticket, {file},
+        [&core, wanted, file, reply, stop](const absl::Status& may) {
+          if (!may.ok()) return reply->Send(RefusalOf(may));
+          SendMessage(*reply, core.worker->Inspect(*file, wanted, stop.get_token()));
+        },
+        FileUse::kInspect);
   };
   return TakeFile(request, caller, core, start);
 }
@@ -294,7 +297,7 @@ HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, 
       SendMessage(*reply, core.worker->Verify(*original, *optimised, permissions, finish_by,
                                               stop.get_token()));
     };
-    core.Submit(ticket, {original, optimised}, work);
+    core.Submit(ticket, {original, optimised}, work, FileUse::kVerify);
   };
   const UploadLimits limits = {.max_file_bytes = core.options.max_file_bytes,
                                .max_files = 2,

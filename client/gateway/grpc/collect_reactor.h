@@ -40,11 +40,12 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
   using Work = std::function<absl::Status(const Collected&, absl::Time, const std::stop_token&)>;
 
   CollectReactor(Core& core, LiveCalls& live, grpc::CallbackServerContext& context,
-                 const std::string& method, Take take, Check check, Work work)
+                 const std::string& method, FileUse use, Take take, Check check, Work work)
       : core_(core),
         live_(live),
         context_(context),
         call_(core, context, method),
+        use_(use),
         take_(std::move(take)),
         check_(std::move(check)),
         work_(std::move(work)) {
@@ -84,9 +85,12 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
     std::vector<std::shared_ptr<const SpoolFile>> files = {collected_.first};
     if (collected_.second != nullptr) files.push_back(collected_.second);
     const absl::Time finish_by = call_.FinishBy();
-    core_.Submit(call_.ticket(), std::move(files), [this, finish_by](const absl::Status& may) {
-      End(may.ok() ? work_(collected_, finish_by, stop_.get_token()) : may);
-    });
+    core_.Submit(
+        call_.ticket(), std::move(files),
+        [this, finish_by](const absl::Status& may) {
+          End(may.ok() ? work_(collected_, finish_by, stop_.get_token()) : may);
+        },
+        use_);
   }
 
   void End(const absl::Status& status) {
@@ -98,6 +102,7 @@ class CollectReactor : public grpc::ServerReadReactor<Request> {
   LiveCalls& live_;
   grpc::CallbackServerContext& context_;
   FileCall call_;
+  const FileUse use_;
   const Take take_;
   const Check check_;
   const Work work_;

@@ -61,8 +61,8 @@ grpc::ServerReadReactor<v1::InspectRequest>* GcodeGrpcService::Inspect(
     if (found.ok()) *response = *std::move(found);
     return found.status();
   };
-  return new CollectReactor<v1::InspectRequest>(core_, live_, *context, "Inspect", TakeInspect,
-                                                check, work);
+  return new CollectReactor<v1::InspectRequest>(core_, live_, *context, "Inspect",
+                                                FileUse::kInspect, TakeInspect, check, work);
 }
 
 grpc::ServerReadReactor<v1::VerifyRequest>* GcodeGrpcService::Verify(
@@ -79,8 +79,8 @@ grpc::ServerReadReactor<v1::VerifyRequest>* GcodeGrpcService::Verify(
     if (found.ok()) *response = *std::move(found);
     return found.status();
   };
-  return new CollectReactor<v1::VerifyRequest>(core_, live_, *context, "Verify", TakeVerify, check,
-                                               work);
+  return new CollectReactor<v1::VerifyRequest>(core_, live_, *context, "Verify", FileUse::kVerify,
+                                               TakeVerify, check, work);
 }
 
 }  // namespace traverse::gateway

@@ -1,21 +1,83 @@
 #include "client/gateway/work/file_memory.h"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
-#include "absl/strings/str_format.h"
 #include "client/containers/container.h"
 #include "client/containers/limits.h"
 #include "client/files/decompress.h"
+#include "client/gateway/work/text_count.h"
+#include "client/gcode/parallel.h"
 
 namespace traverse::gateway {
 namespace {
 
-// Measured: the text, its parts, the job, the orders found, the new text and its verification.
-constexpr int64_t kPerByte = 12;
 constexpr int64_t kLeast = int64_t{16} << 20;
+constexpr uint64_t kShort = 256 << 10;
+constexpr size_t kPiece = 64 << 10;
+
+// Bytes for each byte of the text, and for what it is made of; the last two of the layers that are
+// under way at a time: measured (weigh.py). Rewriting holds the text twice, the plans of all
+// layers, the search's own copy of them, and the grids of some layers; verifying holds both files
+// as far as they are compared.
+struct Prices {
+  double byte;
+  double segment;
+  double path;
+  double move;
+  double setting;
+  double layer;
+  double cell_under_way;
+  double path_under_way;
+};
+
+constexpr Prices PricesOf(FileUse use) {
+  switch (use) {
+    case FileUse::kRewrite:
+      return {.byte = 1.6,
+              .segment = 185,
+              .path = 1700,
+              .move = 140,
+              .setting = 2000,
+              .layer = 34'000,
+              .cell_under_way = 112,
+              .path_under_way = 3000};
+    case FileUse::kInspect:
+      return {.byte = 1.1,
+              .segment = 22,
+              .path = 440,
+              .move = 85,
+              .setting = 40,
+              .layer = 500,
+              .cell_under_way = 92,
+              .path_under_way = 200};
+    case FileUse::kVerify:
+      return {.byte = 4.6,
+              .segment = 175,
+              .path = 0,
+              .move = 600,
+              .setting = 10,
+              .layer = 0,
+              .cell_under_way = 45,
+              .path_under_way = 250};
+  }
+  return {};
+}
+
+double BytesFor(const TextCount& count, FileUse use) {
+  const Prices prices = PricesOf(use);
+  const int64_t layers = gcode::DefaultThreads();
+  const auto of = [](double price, int64_t number) { return price * static_cast<double>(number); };
+  return of(prices.byte, count.bytes()) + of(prices.segment, count.segments()) +
+         of(prices.path, count.paths()) + of(prices.move, count.moves()) +
+         of(prices.setting, count.settings()) + of(prices.layer, count.layers()) +
+         of(prices.cell_under_way, std::min(count.cells(), layers * count.most_cells())) +
+         of(prices.path_under_way, std::min(count.paths(), layers * count.most_paths()));
+}
 
 std::string FirstBytes(const SpoolFile& upload) {
   std::string first(16, '\0');
@@ -23,49 +85,98 @@ std::string FirstBytes(const SpoolFile& upload) {
   return first;
 }
 
-// The G-code in `packed`, in bytes; ResourceExhausted if it is more than `max_bytes`.
-absl::StatusOr<size_t> TextBytes(std::string packed, size_t max_bytes) {
-  const Compression compression = DetectCompression(packed);
-  if (compression == Compression::kNone) {
-    ContainerOptions options;
-    options.ignore_md5 = true;
-    options.max_text_bytes = max_bytes;
-    const absl::StatusOr<std::unique_ptr<Container>> container =
-        OpenContainer(std::move(packed), "the file", options);
-    return container.ok() ? (*container)->TextBytes() : container.status();
-  }
-  const absl::StatusOr<DecompressedSize> size = MeasureDecompressed(packed, compression, max_bytes);
-  if (!size.ok()) return size.status();
-  // A container inside is measured by its length only.
-  const bool text = DetectContainer(size->first) == ContainerKind::kText;
-  return text ? size->bytes : containers::MaxTextBytes(size->bytes, max_bytes);
-}
-
-}  // namespace
-
 bool IsPacked(const SpoolFile& upload) {
   const std::string first = FirstBytes(upload);
   return DetectCompression(first) != Compression::kNone ||
          DetectContainer(first) != ContainerKind::kText;
 }
 
-int64_t MemoryToMeasure(const SpoolFile& upload) {
-  return kLeast + static_cast<int64_t>(upload.size());
+// Reads a plain text piece by piece.
+absl::StatusOr<TextCount> CountOf(const SpoolFile& upload) {
+  TextCount count;
+  std::string piece;
+  for (uint64_t at = 0; at < upload.size(); at += piece.size()) {
+    piece.resize(std::min<uint64_t>(kPiece, upload.size() - at));
+    const absl::StatusOr<size_t> got = upload.ReadAt(at, piece.data(), piece.size());
+    if (!got.ok()) return got.status();
+    count.Take(piece);
+  }
+  count.Finish();
+  return count;
 }
 
-absl::StatusOr<int64_t> MemoryFor(const SpoolFile& upload, uint64_t max_file_bytes) {
-  uint64_t bytes = upload.size();
-  if (IsPacked(upload)) {
-    absl::StatusOr<std::string> packed = upload.ReadAll();
-    if (!packed.ok()) return packed.status();
-    const absl::StatusOr<size_t> text = TextBytes(*std::move(packed), max_file_bytes);
-    if (absl::IsResourceExhausted(text.status())) {
-      return absl::OutOfRangeError(text.status().message());
-    }
-    // Whoever reads a damaged file refuses it with a better message.
-    bytes = std::max<uint64_t>(bytes, text.value_or(0));
+// What the texts of a container need: they are worked on one after the other, but their texts, old
+// and new, are kept.
+absl::StatusOr<double> BytesForContainer(std::string packed, FileUse use, size_t max_bytes) {
+  ContainerOptions options;
+  options.ignore_md5 = true;
+  options.max_text_bytes = max_bytes;
+  const size_t size = packed.size();
+  const absl::StatusOr<std::unique_ptr<Container>> container =
+      OpenContainer(std::move(packed), "the file", options);
+  if (!container.ok()) return container.status();
+  std::vector<TextCount> counts((*container)->parts().size());
+  const absl::Status status =
+      (*container)->VisitTexts([&counts](size_t index, std::string_view piece) {
+        counts[index].Take(piece);
+      });
+  if (absl::IsResourceExhausted(status)) return status;
+  double texts = 0;
+  double largest = 0;
+  for (TextCount& count : counts) {
+    count.Finish();
+    texts += static_cast<double>(count.bytes());
+    largest = std::max(largest, BytesFor(count, use));
   }
-  return kLeast + kPerByte * static_cast<int64_t>(bytes);
+  if (!status.ok()) texts = std::max(texts, static_cast<double>((*container)->StatedBytes()));
+  return 2 * static_cast<double>(size) + texts + largest;
+}
+
+absl::StatusOr<double> BytesForPacked(std::string packed, FileUse use, size_t max_bytes) {
+  const Compression compression = DetectCompression(packed);
+  if (compression == Compression::kNone) {
+    return BytesForContainer(std::move(packed), use, max_bytes);
+  }
+  TextCount count;
+  std::string first;
+  const absl::Status status =
+      DecompressInPieces(packed, compression, max_bytes, [&](std::string_view piece) {
+        if (first.empty()) first = std::string(piece.substr(0, 16));
+        count.Take(piece);
+      });
+  if (absl::IsResourceExhausted(status)) return status;
+  count.Finish();
+  const auto decoder = static_cast<double>(DecoderBytes(packed, compression) + packed.size());
+  if (DetectContainer(first) == ContainerKind::kText) return decoder + BytesFor(count, use);
+  // A container inside is counted by its length, as if it held as much as it may.
+  const auto texts = containers::MaxTextBytes(static_cast<size_t>(count.bytes()), max_bytes);
+  return decoder + PricesOf(use).byte * 4 * static_cast<double>(texts);
+}
+
+}  // namespace
+
+bool IsMeasuredAtOnce(const SpoolFile& upload) {
+  return upload.size() <= kShort && !IsPacked(upload);
+}
+
+int64_t MemoryToMeasure(const SpoolFile& upload) {
+  return kLeast + (IsPacked(upload) ? 2 * static_cast<int64_t>(upload.size()) : 0);
+}
+
+absl::StatusOr<int64_t> MemoryFor(const SpoolFile& upload, FileUse use, uint64_t max_file_bytes) {
+  if (!IsPacked(upload)) {
+    const absl::StatusOr<TextCount> count = CountOf(upload);
+    if (!count.ok()) return count.status();
+    return kLeast + static_cast<int64_t>(BytesFor(*count, use));
+  }
+  absl::StatusOr<std::string> packed = upload.ReadAll();
+  if (!packed.ok()) return packed.status();
+  const absl::StatusOr<double> bytes = BytesForPacked(*std::move(packed), use, max_file_bytes);
+  if (absl::IsResourceExhausted(bytes.status())) {
+    return absl::OutOfRangeError(bytes.status().message());
+  }
+  // Whoever reads a damaged file refuses it with a better message.
+  return kLeast + static_cast<int64_t>(bytes.value_or(2 * static_cast<double>(upload.size())));
 }
 
 }  // namespace traverse::gateway

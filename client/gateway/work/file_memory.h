@@ -1,4 +1,4 @@
-// How much memory the work on a file may take, from what it says of itself.
+// How much memory the work on a file may take, from what it is made of.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_WORK_FILE_MEMORY_H_
 #define TRAVERSE_CLIENT_GATEWAY_WORK_FILE_MEMORY_H_
@@ -10,16 +10,23 @@
 
 namespace traverse::gateway {
 
-// Whether `upload` is compressed or a container, so that its length says little.
-bool IsPacked(const SpoolFile& upload);
+// What is done with files.
+enum class FileUse { kRewrite, kInspect, kVerify };
 
-// The memory that it takes to find out about a packed file.
+// Whether `upload` is so short that nobody waits while it is gone through.
+bool IsMeasuredAtOnce(const SpoolFile& upload);
+
+// The memory that it takes to find out what `upload` is made of.
 int64_t MemoryToMeasure(const SpoolFile& upload);
 
-// The memory that the work on `upload` may take. A packed file is gone through: some milliseconds
-// for each of its megabytes. OutOfRange if it holds more than `max_file_bytes`; a file that is
-// damaged counts as its length, and whoever reads it says what is wrong.
-absl::StatusOr<int64_t> MemoryFor(const SpoolFile& upload, uint64_t max_file_bytes);
+// The memory that work of this kind on `upload` may take: more than it takes, and no more than
+// double of it beyond the least that a file counts. Files are gone through for that, those in
+// containers and compressed ones as they are when unpacked: some milliseconds for each megabyte.
+// OutOfRange if one holds more than `max_file_bytes`; one that is damaged counts as far as it can
+// be read, and whoever reads it says what is wrong.
+//
+// tests/chaos/weigh.py compares this with what is taken.
+absl::StatusOr<int64_t> MemoryFor(const SpoolFile& upload, FileUse use, uint64_t max_file_bytes);
 
 }  // namespace traverse::gateway
 

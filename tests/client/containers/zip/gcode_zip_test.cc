@@ -50,7 +50,12 @@ TEST(GcodeZip, HasItsPlatesByNumber) {
   EXPECT_EQ((*container)->parts()[0].plate, 1u);
   EXPECT_EQ(*(*container)->Text(0), kPlate1);
   EXPECT_EQ(*(*container)->Text(1), kPlate2);
-  EXPECT_EQ(*(*container)->TextBytes(), kPlate1.size() + kPlate2.size());
+  EXPECT_EQ((*container)->StatedBytes(), kPlate1.size() + kPlate2.size());
+  std::map<size_t, std::string> texts;
+  ASSERT_OK((*container)->VisitTexts([&texts](size_t index, std::string_view piece) {
+    texts[index] += piece;
+  }));
+  EXPECT_EQ(texts, (std::map<size_t, std::string>{{0, kPlate1}, {1, kPlate2}}));
   EXPECT_EQ(*FindPlate(**container, 2, kPlatesName), 1u);
   EXPECT_THAT(FindPlate(**container, 3, kPlatesName),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("no plate 3, only 1, 2")));
