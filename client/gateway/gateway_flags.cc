@@ -35,6 +35,10 @@ ABSL_FLAG(int32_t, threads, 0, "Threads of the search in this process; 0: one pe
 ABSL_FLAG(int32_t, workers, 0, "Files worked on at a time; 0: one per core, but at least two");
 ABSL_FLAG(int32_t, max_requests, 256, "Files under way at a time, including those that wait");
 ABSL_FLAG(int32_t, max_requests_per_caller, 64, "The same for one caller");
+ABSL_FLAG(
+    std::vector<std::string>, caller_weights, {},
+    "CALLER=WEIGHT,...: shares of the workers' time, by the names of --token_file or of client "
+    "certificates, or by address; others have 1");
 ABSL_FLAG(int64_t, max_file_bytes, int64_t{256} << 20, "Longest file, unpacked, in bytes");
 ABSL_FLAG(
     int64_t, max_memory, 0,
@@ -104,6 +108,9 @@ absl::Status CheckRanges() {
       {"min_upload_rate", absl::GetFlag(FLAGS_min_upload_rate), 1},
   });
   if (!numbers.ok()) return numbers;
+  if (const auto weights = ParseWeights(absl::GetFlag(FLAGS_caller_weights)); !weights.ok()) {
+    return weights.status();
+  }
   const struct {
     const char* name;
     absl::Duration value;
@@ -210,7 +217,8 @@ absl::StatusOr<GatewayOptions> OptionsFromFlags() {
   core.work = {.workers = workers > 0 ? workers : std::max(2, UsableCores()),
                .max_requests = absl::GetFlag(FLAGS_max_requests),
                .max_requests_per_caller = absl::GetFlag(FLAGS_max_requests_per_caller),
-               .max_memory_bytes = options.max_memory};
+               .max_memory_bytes = options.max_memory,
+               .caller_weights = *ParseWeights(absl::GetFlag(FLAGS_caller_weights))};
   core.auth.token_file = absl::GetFlag(FLAGS_token_file);
   core.allowed_hosts = absl::GetFlag(FLAGS_allowed_hosts);
   core.auth.allowed_names = absl::GetFlag(FLAGS_allowed_clients);

@@ -73,11 +73,21 @@ class FairOrder {
   // Returns the member whose turn it is, which then no longer waits. REQUIRES: a member waits.
   Member& TakeNext() {
     assert(!empty());
-    Member& next = *std::get<Member*>(*waiting_.begin());
-    waiting_.erase(waiting_.begin());
+    return *TakeFirst([](const Member&) { return true; });
+  }
+
+  // Takes the first member in their order for which may(member) is true; null if there is none.
+  template <typename May>
+  Member* TakeFirst(May may) {
+    const auto first = std::find_if(waiting_.begin(), waiting_.end(), [&](const Key& key) {
+      return may(*std::get<Member*>(key));
+    });
+    if (first == waiting_.end()) return nullptr;
+    Member& next = *std::get<Member*>(*first);
+    waiting_.erase(first);
     next.waits_ = false;
     now_ = std::max(now_, next.clock_);
-    return next;
+    return &next;
   }
 
   // `member` stops waiting without having had a turn. REQUIRES: it waits.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
+#include <iterator>
 #include <utility>
 
 #include "absl/status/status.h"
@@ -16,8 +18,16 @@ WorkQueue::Ticket::~Ticket() {
   if (--of_caller->second == 0) queue_.places_.erase(of_caller);
 }
 
-WorkQueue::WorkQueue(const WorkLimits& limits) : limits_(limits) {
-  for (int i = 0; i < limits_.workers; ++i) workers_.emplace_back([this] { Work(); });
+namespace {
+
+// A small task takes no more than this part of the memory.
+constexpr int64_t kSmallPart = 16;
+
+}  // namespace
+
+WorkQueue::WorkQueue(const WorkLimits& limits, const TimeSource* time)
+    : limits_(limits), time_(time) {
+  for (int i = 0; i <= limits_.workers; ++i) workers_.emplace_back([this] { Work(); });
 }
 
 WorkQueue::~WorkQueue() {
@@ -28,11 +38,13 @@ WorkQueue::~WorkQueue() {
   changed_.NotifyAll();
   for (std::thread& worker : workers_) worker.join();
   // Destroyed after the lock is released: places lock the mutex in their destructors.
-  std::map<std::string, std::deque<Task>> dropped;
-  {
-    MutexLock lock(mutex_);
-    dropped = std::exchange(waiting_, {});
+  std::deque<Task> dropped;
+  MutexLock lock(mutex_);
+  for (auto& [name, caller] : callers_) {
+    std::move(caller.waiting.begin(), caller.waiting.end(), std::back_inserter(dropped));
   }
+  callers_.clear();
+  lock.Unlock();
 }
 
 absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> WorkQueue::Enter(const std::string& caller) {
@@ -60,13 +72,21 @@ absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> WorkQueue::Enter(const std::s
 void WorkQueue::Submit(std::shared_ptr<Ticket> ticket, int64_t memory_bytes,
                        std::function<void()> task) {
   assert(memory_bytes <= limits_.max_memory_bytes);
-  const std::string caller = ticket->caller();
+  const std::string name = ticket->caller();
   {
     MutexLock lock(mutex_);
     ++waiting_count_;
-    waiting_[caller].push_back({std::move(ticket), memory_bytes, std::move(task)});
+    const auto [found, is_new] = callers_.try_emplace(name);
+    Caller& caller = found->second;
+    if (is_new) {
+      const auto weight = limits_.caller_weights.find(name);
+      if (weight != limits_.caller_weights.end()) caller.weight = weight->second;
+      order_.Enter(caller);
+    }
+    caller.waiting.push_back({std::move(ticket), memory_bytes, std::move(task)});
+    if (!caller.waits()) order_.Wait(caller);
   }
-  changed_.NotifyOne();
+  changed_.NotifyAll();
 }
 
 void WorkQueue::SetMemoryShort(bool is_short) {
@@ -107,37 +127,69 @@ int64_t WorkQueue::memory_bytes() const {
   return memory_bytes_;
 }
 
-// Strictly takes turns, even if a small task would fit and the large one whose turn it is would
-// not: otherwise the large one would never start.
-bool WorkQueue::TakeNext(Task& task) {
-  if (waiting_.empty() || (memory_short_ && running_ > 0)) return false;
-  auto next = waiting_.upper_bound(last_caller_);
-  if (next == waiting_.end()) next = waiting_.begin();
-  const int64_t bytes = next->second.front().memory_bytes;
-  if (memory_bytes_ + bytes > limits_.max_memory_bytes) return false;
-  task = std::move(next->second.front());
-  next->second.pop_front();
-  last_caller_ = next->first;
-  if (next->second.empty()) waiting_.erase(next);
+// Whether the first task of `caller` may begin. `waits_for`: what those whose turn it is need and
+// wait for; then one small task at a time may pass for which there is room even beside that.
+bool WorkQueue::MayBegin(const Caller& caller, int64_t& waits_for) const {
+  const int64_t bytes = caller.waiting.front().memory_bytes;
+  const int64_t most = limits_.max_memory_bytes;
+  const bool fits = memory_bytes_ + bytes <= most;
+  if (waits_for > 0 || (memory_short_ && running_ > 0)) {
+    return fits && caller.running == 0 && !passing_ && bytes <= most / kSmallPart &&
+           waits_for + bytes <= most;
+  }
+  if (running_ >= limits_.workers && caller.running > 0) return false;
+  if (!fits) waits_for = bytes;
+  return fits;
+}
+
+WorkQueue::Caller* WorkQueue::TakeNext(Task& task) {
+  int64_t waits_for = 0;
+  FairOrder::Member* const next = order_.TakeFirst([&](FairOrder::Member& member) {
+    mutex_.AssertHeld();
+    return MayBegin(static_cast<Caller&>(member), waits_for);
+  });
+  if (next == nullptr) return nullptr;
+  Caller& caller = static_cast<Caller&>(*next);
+  task = std::move(caller.waiting.front());
+  caller.waiting.pop_front();
+  if (!caller.waiting.empty()) order_.Wait(caller);
+  ++caller.running;
   --waiting_count_;
   ++running_;
-  memory_bytes_ += bytes;
-  return true;
+  memory_bytes_ += task.memory_bytes;
+  task.passes = waits_for > 0 || (memory_short_ && running_ > 1);
+  passing_ = passing_ || task.passes;
+  return &caller;
+}
+
+void WorkQueue::Done(const std::string& name, Caller& caller, double seconds) {
+  order_.Charge(caller, seconds / caller.weight);
+  --caller.running;
+  if (caller.running > 0 || !caller.waiting.empty()) return;
+  order_.Leave(caller);
+  callers_.erase(name);
 }
 
 void WorkQueue::Work() {
   MutexLock lock(mutex_);
   while (true) {
     Task task;
-    while (!stopping_ && !TakeNext(task)) changed_.Wait(mutex_);
-    if (task.run == nullptr) return;
+    Caller* caller = nullptr;
+    while (!stopping_ && (caller = TakeNext(task)) == nullptr) changed_.Wait(mutex_);
+    if (caller == nullptr) return;
     lock.Unlock();
+    const Budget::Clock::time_point began = Budget::Now(time_);
+    const std::string name = task.ticket->caller();
     task.run();
+    const double seconds = std::chrono::duration<double>(Budget::Now(time_) - began).count();
     const int64_t bytes = task.memory_bytes;
+    const bool passed = task.passes;
     task = {};
     lock.Lock();
+    if (passed) passing_ = false;
     --running_;
     memory_bytes_ -= bytes;
+    Done(name, *caller, seconds);
     changed_.NotifyAll();
   }
 }

@@ -1,4 +1,8 @@
 // Who is served when: a bounded number of requests, fair between callers, each with its memory.
+//
+// Callers take turns by how long workers have worked for them. Of places, workers and memory the
+// last ones are for callers who have nothing there: whoever sends much, or large files, does not
+// keep a small file of somebody else waiting.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_WORK_WORK_QUEUE_H_
 #define TRAVERSE_CLIENT_GATEWAY_WORK_WORK_QUEUE_H_
@@ -13,15 +17,19 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "engine/base/budget.h"
 #include "engine/base/mutex.h"
+#include "server/jobs/fair_order.h"
 
 namespace traverse::gateway {
 
 struct WorkLimits {
-  int workers = 2;                              // requests that are worked on at a time
-  int max_requests = 256;                       // from their heads on
-  int max_requests_per_caller = 64;             // the same of one caller
-  int64_t max_memory_bytes = int64_t{1} << 30;  // of those that are worked on
+  int workers = 2;                               // requests that are worked on at a time, and one
+                                                 // more of a caller of whom none is
+  int max_requests = 256;                        // from their heads on
+  int max_requests_per_caller = 64;              // the same of one caller
+  int64_t max_memory_bytes = int64_t{1} << 30;   // of those that are worked on
+  std::map<std::string, double> caller_weights = {};  // shares of the workers' time; others have 1
 };
 
 // Thread-safe.
@@ -44,7 +52,8 @@ class WorkQueue {
     const std::string caller_;
   };
 
-  explicit WorkQueue(const WorkLimits& limits);
+  // `time` (null: the steady clock) outlives it.
+  explicit WorkQueue(const WorkLimits& limits, const TimeSource* time = nullptr);
 
   // Waits for tasks that run; those that wait are dropped.
   ~WorkQueue();
@@ -53,11 +62,12 @@ class WorkQueue {
   // is for callers who have no place; Unavailable when draining. The queue outlives it.
   absl::StatusOr<std::shared_ptr<Ticket>> Enter(const std::string& caller);
 
-  // Runs `task` as soon as a worker is free and `memory_bytes` are, callers taking turns.
-  // REQUIRES: no more than max_memory_bytes().
+  // Runs `task` as soon as a worker is free and `memory_bytes` are, callers taking turns. A large
+  // task whose turn it is waits for its memory, and others behind it; but not small ones of callers
+  // of whom nothing is under way. REQUIRES: no more than max_memory_bytes().
   void Submit(std::shared_ptr<Ticket> ticket, int64_t memory_bytes, std::function<void()> task);
 
-  // While memory is short, a task begins only if none is under way.
+  // While memory is short, a task begins only if none is under way, or as one of those small ones.
   void SetMemoryShort(bool is_short);
 
   // No more places from now on.
@@ -75,23 +85,34 @@ class WorkQueue {
     std::shared_ptr<Ticket> ticket;
     int64_t memory_bytes;
     std::function<void()> run;
+    bool passes = false;  // others whose turn it is
+  };
+
+  // One with tasks that wait or are under way.
+  struct Caller : FairOrder::Member {
+    std::deque<Task> waiting;
+    int running = 0;
+    double weight = 1;
   };
 
   void Work();
 
-  // The next task that may run now: of the caller whose turn it is. False if there is none.
-  bool TakeNext(Task& task) TRAVERSE_REQUIRES(mutex_);
+  // The next task that may run now, and whose it is; null if there is none.
+  Caller* TakeNext(Task& task) TRAVERSE_REQUIRES(mutex_);
+  bool MayBegin(const Caller& caller, int64_t& waits_for) const TRAVERSE_REQUIRES(mutex_);
+  void Done(const std::string& name, Caller& caller, double seconds) TRAVERSE_REQUIRES(mutex_);
 
   const WorkLimits limits_;
+  const TimeSource* const time_;
   mutable Mutex mutex_;
   ConditionVariable changed_;
   std::map<std::string, int> places_ TRAVERSE_GUARDED_BY(mutex_);  // by caller
   int requests_ TRAVERSE_GUARDED_BY(mutex_) = 0;
-  std::map<std::string, std::deque<Task>> waiting_
-      TRAVERSE_GUARDED_BY(mutex_);                       // by caller; none is empty
-  std::string last_caller_ TRAVERSE_GUARDED_BY(mutex_);  // whose turn it was
+  std::map<std::string, Caller> callers_ TRAVERSE_GUARDED_BY(mutex_);
+  FairOrder order_ TRAVERSE_GUARDED_BY(mutex_);  // of callers with tasks that wait
   int waiting_count_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   int running_ TRAVERSE_GUARDED_BY(mutex_) = 0;
+  bool passing_ TRAVERSE_GUARDED_BY(mutex_) = false;  // a task that passed others is under way
   int64_t memory_bytes_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   bool memory_short_ TRAVERSE_GUARDED_BY(mutex_) = false;
   bool draining_ TRAVERSE_GUARDED_BY(mutex_) = false;

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <future>
+#include <map>
 #include <string>
 #include <thread>
 #include <vector>
@@ -34,29 +36,112 @@ TEST(WorkQueue, NoPlaceWhileDraining) {
   EXPECT_EQ(queue.Enter("a").status().code(), absl::StatusCode::kUnavailable);
 }
 
-TEST(WorkQueue, CallersTakeTurns) {
-  WorkQueue queue({.workers = 1});
-  std::promise<void> go;
-  std::shared_future<void> gone = go.get_future().share();
-  std::promise<void> began, all;
+// A task that has begun, and ends when it is told to.
+class Held {
+ public:
+  Held(WorkQueue& queue, const std::string& caller, int64_t memory_bytes = 0) {
+    std::promise<void> begun;
+    queue.Submit(*queue.Enter(caller), memory_bytes, [&begun, gone = go_.get_future().share()] {
+      begun.set_value();
+      gone.wait();
+    });
+    begun.get_future().wait();
+  }
+  void End() { go_.set_value(); }
+
+ private:
+  std::promise<void> go_;
+};
+
+class TestTime : public TimeSource {
+ public:
+  std::chrono::steady_clock::time_point Now() const override {
+    return std::chrono::steady_clock::time_point(std::chrono::seconds(seconds_));
+  }
+  void PassSecond() { ++seconds_; }
+
+ private:
+  std::atomic<int> seconds_ = 0;
+};
+
+// Who is served in which order by one worker, of whom each task takes a second.
+std::vector<std::string> Served(const std::vector<std::string>& callers,
+                                const std::map<std::string, double>& weights) {
+  TestTime time;
+  WorkQueue queue({.workers = 1, .caller_weights = weights}, &time);
+  std::promise<void> all;
   std::vector<std::string> order;
-  queue.Submit(*queue.Enter("x"), 0, [&, gone] {
-    began.set_value();
-    gone.wait();
-  });
-  // Else the worker, if it is late, finds all of them and may take "x" after an "a".
-  began.get_future().wait();
-  for (const std::string caller : {"a", "a", "a", "b", "c"}) {
+  Held first(queue, "x");
+  Held other(queue, "y");  // the worker for those who have none
+  for (const std::string& caller : callers) {
     queue.Submit(*queue.Enter(caller), 0, [&, caller] {
       order.push_back(caller);
-      if (order.size() == 5) all.set_value();
+      time.PassSecond();
+      if (order.size() == callers.size()) all.set_value();
     });
   }
-
-  go.set_value();
+  first.End();
   all.get_future().wait();
+  other.End();
+  return order;
+}
+
+TEST(WorkQueue, CallersTakeTurns) {
+  const std::vector<std::string> order = Served({"a", "a", "a", "b", "c"}, {});
 
   EXPECT_EQ(order, (std::vector<std::string>{"a", "b", "c", "a", "a"}));
+}
+
+TEST(WorkQueue, WhoHasMoreWeightIsServedMore) {
+  const std::vector<std::string> order =
+      Served({"a", "a", "a", "u", "u", "u", "u", "u"}, {{"u", 2.5}});
+
+  EXPECT_EQ(order, (std::vector<std::string>{"a", "u", "u", "u", "a", "u", "u", "a"}));
+}
+
+TEST(WorkQueue, OneWorkerMoreIsForCallersOfWhomNothingIsUnderWay) {
+  WorkQueue queue({.workers = 2});
+  Held one(queue, "a");
+  Held two(queue, "a");
+  queue.Submit(*queue.Enter("a"), 0, [] {});
+  std::promise<void> done;
+
+  queue.Submit(*queue.Enter("b"), 0, [&] { done.set_value(); });
+
+  done.get_future().wait();
+  EXPECT_EQ(queue.waiting(), 1);
+  one.End();
+  two.End();
+}
+
+// What waits for much memory does not keep others waiting who need little, but for more than it
+// leaves.
+TEST(WorkQueue, SmallTasksPassWhatWaitsForMemory) {
+  WorkQueue queue({.workers = 2, .max_memory_bytes = 1600});
+  Held large(queue, "a", 1000);
+  queue.Submit(*queue.Enter("b"), 1000, [] {});
+  queue.Submit(*queue.Enter("c"), 101, [] {});
+  std::promise<void> done;
+
+  queue.Submit(*queue.Enter("d"), 100, [&] { done.set_value(); });
+
+  done.get_future().wait();
+  EXPECT_EQ(queue.waiting(), 2);
+  large.End();
+}
+
+TEST(WorkQueue, SmallTasksBeginWhileMemoryIsShort) {
+  WorkQueue queue({.workers = 2, .max_memory_bytes = 1600});
+  Held large(queue, "a", 1000);
+  queue.SetMemoryShort(true);
+  queue.Submit(*queue.Enter("b"), 500, [] {});
+  std::promise<void> done;
+
+  queue.Submit(*queue.Enter("c"), 100, [&] { done.set_value(); });
+
+  done.get_future().wait();
+  EXPECT_EQ(queue.waiting(), 1);
+  large.End();
 }
 
 TEST(WorkQueue, TasksWaitForMemory) {
