@@ -102,7 +102,8 @@ absl::Status Server::Build(const ServerOptions& options) {
                                   .service_reports_calls = true};
   absl::StatusOr<std::unique_ptr<Listener>> listener = Listener::Open(
       listen, core_.files.certificates,
-      {.end_job = [this](const std::string& peer) { return core_.EndOversizeJob(peer); },
+      {.end_job = [this](const std::string& peer,
+                         Excess excess) { return core_.EndOversizeJob(peer, excess); },
        .memory = {}});  // the core watches it
   if (!listener.ok()) return listener.status();
   listener_ = *std::move(listener);

@@ -150,7 +150,7 @@ void ServiceCore::OnMessage(const std::string& peer, int64_t bytes) {
   if (connections_ != nullptr) connections_->OnMessage(peer, bytes);
 }
 
-bool ServiceCore::EndOversizeJob(const std::string& peer) {
+bool ServiceCore::EndOversizeJob(const std::string& peer, Excess excess) {
   std::shared_ptr<JobRun> oldest;
   {
     MutexLock lock(mutex_);
@@ -160,6 +160,13 @@ bool ServiceCore::EndOversizeJob(const std::string& peer) {
     }
   }
   if (oldest == nullptr) return false;
+  if (excess == Excess::kAddress) {
+    admission.CountRefusal(Refusal::kCallerMemory);
+    oldest->Abort(absl::ResourceExhaustedError(
+        "unfinished messages of this address take too much of the server's memory; send fewer at a "
+        "time"));
+    return true;
+  }
   admission.CountRefusal(Refusal::kMessage);
   oldest->Abort(absl::ResourceExhaustedError(absl::StrCat(
       "the message has more bytes than this server's limit of ", limits.max_message_bytes)));

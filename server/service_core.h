@@ -76,7 +76,7 @@ class ServiceCore {
 
   // Ends the oldest job of `peer` (see PeerKey) whose message is still incomplete, because it is
   // larger than any may be. Returns false if there is none.
-  bool EndOversizeJob(const std::string& peer);
+  bool EndOversizeJob(const std::string& peer, Excess excess);
   size_t calls() const;
 
   // Ends all running jobs with `status`.

@@ -100,7 +100,7 @@ absl::Status Gateway::StartGrpc(const GatewayOptions& options) {
        .max_memory = options.max_memory},
       core_->files.certificates,
       {.end_job = [service = grpc_service_.get()](
-                      const std::string& peer) { return service->EndOversizeCall(peer); },
+                      const std::string& peer, Excess) { return service->EndOversizeCall(peer); },
        .memory = MemoryHooks()});
   if (!listener.ok()) return listener.status();
   listener_ = *std::move(listener);

@@ -122,7 +122,7 @@ void Connections::Serve() {
       next = Clock::now() + std::chrono::milliseconds(kBusyMilliseconds);
     }
     if (Clock::now() < next) continue;
-    for (const std::string& peer : Look(busy)) Restrain(peer);
+    for (const auto& [peer, excess] : Look(busy)) Restrain(peer, excess);
     next = Clock::now() + std::chrono::milliseconds(kBusyMilliseconds);
   }
 }
@@ -220,8 +220,31 @@ bool Connections::IsLoud(Connection& connection, Clock::time_point now) const {
   return now - connection.loud_since > kMoment;
 }
 
-std::vector<std::string> Connections::Look(bool& busy) {
-  std::vector<std::string> offenders;
+std::string Connections::LargestHoarder() const {
+  struct Address {
+    double pending = 0;
+    Table::const_iterator largest;
+  };
+  std::map<std::string, Address> addresses;
+  double all = 0;
+  for (auto it = table_.begin(); it != table_.end(); ++it) {
+    const double pending = std::max(0.0, it->second.pending);
+    all += pending;
+    const auto [found, is_new] = addresses.try_emplace(AddressOf(it->first));
+    Address& address = found->second;
+    if (is_new || pending > address.largest->second.pending) address.largest = it;
+    address.pending += pending;
+  }
+  if (all <= static_cast<double>(rules_.all_bytes)) return "";
+  const auto most = std::max_element(
+      addresses.begin(), addresses.end(),
+      [](const auto& a, const auto& b) { return a.second.pending < b.second.pending; });
+  if (most->second.pending <= static_cast<double>(rules_.job_bytes)) return "";
+  return most->second.largest->first;
+}
+
+std::vector<std::pair<std::string, Excess>> Connections::Look(bool& busy) {
+  std::vector<std::pair<std::string, Excess>> offenders;
   uint64_t most = 0;
   MutexLock lock(mutex_);
   const Clock::time_point now = Clock::now();
@@ -245,16 +268,19 @@ std::vector<std::string> Connections::Look(bool& busy) {
     most = std::max(most, Update(connection, info));
     connection.pending = std::max(kMostCredit, connection.pending);
     if (connection.pending > static_cast<double>(Allowed(connection)) || IsLoud(connection, now)) {
-      offenders.push_back(it->first);
+      offenders.emplace_back(it->first, Excess::kConnection);
     }
     ++it;
+  }
+  if (std::string hoarder = LargestHoarder(); !hoarder.empty()) {
+    offenders.emplace_back(std::move(hoarder), Excess::kAddress);
   }
   offenders_.Tidy(now);
   busy = most > kMuchBytes;
   return offenders;
 }
 
-void Connections::Restrain(const std::string& peer) {
+void Connections::Restrain(const std::string& peer, Excess excess) {
   {
     MutexLock lock(mutex_);
     const auto found = table_.find(peer);
@@ -271,7 +297,7 @@ void Connections::Restrain(const std::string& peer) {
     connection.complained = now;
   }
   // Not under the lock: the end of a job calls back.
-  if (hooks_.end_job(peer)) {
+  if (hooks_.end_job(peer, excess)) {
     MutexLock lock(mutex_);
     const auto found = table_.find(peer);
     if (found == table_.end()) return;
@@ -336,6 +362,8 @@ void Connections::OnJobDone(const std::string& peer, double pending_before, bool
     if (more > 0) connection.pending -= more / std::max(1, connection.jobs);
   }
   connection.jobs = std::max(0, connection.jobs - 1);
+  // A call that did not bring what it was to bring was no job.
+  if (!all_came) offenders_.NoteWork(AddressOf(found->first), 1, Clock::now());
   // More of a job that the server has ended may be on its way.
   if (!all_came) connection.loud_since = Clock::now() + kOnItsWay;
 }

@@ -31,6 +31,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -46,11 +47,19 @@ struct ConnectionRules {
   int64_t stranger_bytes = int64_t{4} << 20;  // pending in addition to that of jobs
   int64_t job_bytes = int64_t{64} << 20;      // pending for each job
   int64_t quiet_bytes = int64_t{256} << 10;   // the same for longer than a moment
-  int max_calls = 1000;                       // begun, and gRPC is not done with them
+
+  // Pending on all connections together; beyond it the address that has most loses jobs, as long as
+  // it has more than job_bytes. So one caller's unfinished messages leave memory to the others.
+  int64_t all_bytes = INT64_MAX;
+
+  int max_calls = 1000;  // begun, and gRPC is not done with them
 
   // Data unacknowledged for this long ends a connection.
   std::chrono::milliseconds peer_timeout{10'000};
 };
+
+// What has too many bytes that are no message yet.
+enum class Excess { kConnection, kAddress };
 
 class Connections {
  public:
@@ -60,8 +69,9 @@ class Connections {
     // Passes a new connection on, see HandOver; kHands threads call it.
     HandOver::Take hand_over;
 
-    // Ends a job of `peer`, which has more pending than its jobs may. False if there is none.
-    std::function<bool(const std::string& peer)> end_job;
+    // Ends a job of `peer`, which has more pending than its jobs may, or whose address has too much
+    // of all that is pending. False if there is none.
+    std::function<bool(const std::string& peer, Excess excess)> end_job;
   };
 
   // Listens on `address` (see TcpListen) until it is destroyed. Errors: see TcpListen.
@@ -136,8 +146,10 @@ class Connections {
   void CutPeer(const std::string& peer) TRAVERSE_EXCLUDES(mutex_);
 
   // Updates the table. Returns those with too much pending, and whether much arrived.
-  std::vector<std::string> Look(bool& busy);
-  void Restrain(const std::string& peer);
+  std::vector<std::pair<std::string, Excess>> Look(bool& busy);
+  // Of the address that has too much of all that is pending; empty if none has.
+  std::string LargestHoarder() const TRAVERSE_REQUIRES(mutex_);
+  void Restrain(const std::string& peer, Excess excess);
   int64_t Allowed(const Connection& connection) const;
   bool IsLoud(Connection& connection, Clock::time_point now) const;
   uint64_t Update(Connection& connection, const SocketInfo& info) const;

@@ -98,6 +98,9 @@ void SetMemoryLimits(int64_t max_memory, grpc::ServerBuilder& builder) {
   builder.SetResourceQuota(quota);
 }
 
+// Unfinished messages of all callers may take this part of the memory.
+constexpr int64_t kPendingPart = 4;
+
 std::shared_ptr<grpc::ServerCredentials> MakeCredentials(
     const std::shared_ptr<CertificateStore>& certificates) {
   return certificates == nullptr ? grpc::InsecureServerCredentials()
@@ -130,6 +133,7 @@ absl::Status Listener::OpenPort() {
   rules.max_connections = options_.limits.max_connections;
   // Twice what a message may have: a longer one that comes to its end gets a proper error.
   rules.job_bytes = 2 * options_.max_message_bytes;
+  if (options_.max_memory != INT64_MAX) rules.all_bytes = options_.max_memory / kPendingPart;
   rules.max_calls =
       static_cast<int>(std::min<int64_t>(INT_MAX, kCallsOfStreams * options_.limits.max_streams));
   rules.peer_timeout = absl::ToChronoMilliseconds(options_.limits.keepalive_timeout);

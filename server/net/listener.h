@@ -58,7 +58,7 @@ struct ListenerOptions {
 class Listener {
  public:
   struct Hooks {
-    std::function<bool(const std::string& peer)> end_job;  // see Connections::Hooks
+    std::function<bool(const std::string& peer, Excess excess)> end_job;  // see Connections::Hooks
     MemoryWatch::Hooks memory;  // none: the program watches its memory itself
   };
 

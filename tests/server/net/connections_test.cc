@@ -240,6 +240,30 @@ TEST(ConnectionsTest, TheEndOfOneJobForgivesOnlyItsShareOfWhatIsPending) {
   EXPECT_NEAR(static_cast<double>(port.connections().pending_bytes()), 4 << 20, 1 << 20);
 }
 
+// Of two addresses the one with most loses a job, and not the one whose message is merely large.
+TEST(ConnectionsTest, OneAddressDoesNotHoardUnfinishedMessages) {
+  Port port({.stranger_bytes = 1 << 20, .job_bytes = 8 << 20, .all_bytes = 12 << 20});
+  port.MayEndJobs();
+  std::vector<std::unique_ptr<Caller>> hoarders;
+  for (int i = 0; i < 3; ++i) {
+    hoarders.push_back(std::make_unique<Caller>(port.connections().port(), "127.0.0.2"));
+  }
+  const Caller large(port.connections().port());
+  ASSERT_TRUE(TestService::Eventually([&] { return port.connections().open() == 4; }));
+  port.connections().OnJob(large.peer());
+  for (const auto& each : hoarders) port.connections().OnJob(each->peer());
+
+  large.Send(6 << 20);
+  hoarders[0]->Send(5 << 20);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_TRUE(port.told().empty());
+  hoarders[1]->Send(4 << 20);
+
+  EXPECT_TRUE(TestService::Eventually([&] { return !port.told().empty(); }));
+  EXPECT_EQ(port.told()[0], PeerKey(hoarders[0]->peer()));
+  EXPECT_FALSE(large.IsCut());
+}
+
 TEST(ConnectionsTest, WhereMemoryIsShortTheLargestIsCut) {
   Port port({.stranger_bytes = 10 << 20});
   const Caller small(port.connections().port());
@@ -293,7 +317,7 @@ TEST(ConnectionsTest, TheBusiestAddressIsTurnedAwayWhereCallsWait) {
   EXPECT_FALSE(connections.TurnAwayBusiest());
   for (int i = 0; i < 20'000; ++i) {  // with jobs
     connections.OnCall(other.peer());
-    connections.OnJobDone(other.peer(), connections.OnJob(other.peer()), true);
+    connections.OnJobDone(other.peer(), connections.OnJob(other.peer()), /*all_came=*/true);
     connections.OnCallDone(other.peer());
   }
   EXPECT_FALSE(connections.TurnAwayBusiest());
@@ -310,6 +334,21 @@ TEST(ConnectionsTest, TheBusiestAddressIsTurnedAwayWhereCallsWait) {
   const Caller again(connections.port());
   EXPECT_TRUE(TestService::Eventually([&] { return again.IsCut(); }));
   EXPECT_FALSE(connections.TurnAwayBusiest());
+}
+
+// Nor are calls jobs that are begun and bring nothing.
+TEST(ConnectionsTest, JobsThatBringNothingAreWorkForNothing) {
+  Port port({});
+  Connections& connections = port.connections();
+  const Caller caller(connections.port());
+  ASSERT_TRUE(TestService::Eventually([&] { return connections.open() == 1; }));
+  for (int i = 0; i < 12'000; ++i) {
+    connections.OnCall(caller.peer());
+    connections.OnJobDone(caller.peer(), connections.OnJob(caller.peer()), /*all_came=*/false);
+    connections.OnCallDone(caller.peer());
+  }
+
+  EXPECT_TRUE(connections.TurnAwayBusiest());
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ Port::Port(const ConnectionRules& rules, Reader reader) {
     std::lock_guard<std::mutex> lock(mutex_);
     readers_.emplace_back([socket] { ReadAll(socket); });
   };
-  const auto end_job = [this](const std::string& peer) {
+  const auto end_job = [this](const std::string& peer, Excess) {
     std::lock_guard<std::mutex> lock(mutex_);
     told_.push_back(peer);
     return may_end_;
