@@ -1,12 +1,13 @@
 """Attacks servers as a stranger would, each attack a server of its own, and checks what nobody may be able to do.
 
     attack.py [--seconds=N of each attack, 3] [--only=NAME,...] [--max_memory=BYTES, 400 MB] [--most_p99=S]
-              [--twice] [--side_by_side=N attacks, 1]
+              [--strict] [--twice] [--side_by_side=N attacks, 1]
 
 Throughout: the process lives, /healthz answers within a second, a victim's one-layer jobs end well, memory stays below
 --max_memory, the log has only whole lines of the server, /metrics does not grow with what callers write, and at the end
 SIGTERM ends it within --drain_timeout + 2 s; on a quiet machine --most_p99=0.25 can be asked for: the victim's time for a
-job. A machine that stands still for a moment lets much in before anybody can look: with --twice an attack that did harm is
+job; or with --strict that none of its jobs fails, all take a second at most, /healthz 0.25 s, and memory stays below all of
+--max_memory. A machine that stands still for a moment lets much in before anybody can look: with --twice an attack that did harm is
 made again, and counts if it does so again; of attacks made side by side it is made again alone.
 The environment names the server's binary: TRAVERSE_SERVER. Needs nothing but Python; frames are written by hand (http2_client.py).
 """

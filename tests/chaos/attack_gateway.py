@@ -1,7 +1,7 @@
 """Attacks gateways as attack.py attacks servers: at the ports of gRPC, HTTP and the operators, and by files.
 
     attack_gateway.py [--seconds=N of each attack, 3] [--only=NAME,...] [--max_memory=BYTES, 400 MB] [--most_p99=S]
-                      [--twice] [--side_by_side=N attacks, 1]
+                      [--strict] [--twice] [--side_by_side=N attacks, 1]
 
 The victim sends a small file, by gRPC and HTTP in turn. The environment names the gateway's binary: TRAVERSE_GATEWAY.
 """
