@@ -79,8 +79,8 @@ WallDetours::WallDetours(const WallGrid& grid, double clearance_mm, double on_wa
 
 std::vector<Point> WallDetours::Around(Point a, Point b, int64_t* tests) const {
   int64_t done = 0;
-  std::vector<Point> there = OneWay(a, b, 0, done);
-  std::vector<Point> back = OneWay(b, a, 0, done);
+  std::vector<Point> there = OneWay(a, b, {}, 0, done);
+  std::vector<Point> back = OneWay(b, a, {}, 0, done);
   if (tests != nullptr) *tests += done;
   std::reverse(back.begin(), back.end());
   if (there.empty()) return back;
@@ -94,7 +94,7 @@ bool WallDetours::IsClosed(uint32_t wall) const {
 }
 
 // In the order along the move, each segment once. Stops when there are more than kMostHits.
-std::vector<WallDetours::Hit> WallDetours::HitsOf(Point a, Point b) const {
+std::vector<WallDetours::Hit> WallDetours::HitsOf(Point a, Point b, MoveEnds ends) const {
   std::vector<Hit> hits;
   const auto put_in_order = [&hits] {
     std::sort(hits.begin(), hits.end(), [](const Hit& one, const Hit& other) {
@@ -103,7 +103,7 @@ std::vector<WallDetours::Hit> WallDetours::HitsOf(Point a, Point b) const {
     const auto same = [](const Hit& one, const Hit& other) { return one.segment == other.segment; };
     hits.erase(std::unique(hits.begin(), hits.end(), same), hits.end());
   };
-  const auto [from, to] = grid_.WithoutEnds(a, b);
+  const auto [from, to] = grid_.WithoutEnds(a, b, ends);
   grid_.ForEachOnLine(from, to, [&, from = from, to = to](uint32_t s) {
     const WallSegment& wall = grid_.segments()[s];
     if (!SegmentsCross(from, to, wall.a, wall.b)) return true;
@@ -140,8 +140,9 @@ std::optional<uint32_t> WallDetours::SegmentAt(uint32_t wall, Point at) const {
   return nearest;
 }
 
-std::vector<Point> WallDetours::OneWay(Point a, Point b, int depth, int64_t& tests) const {
-  const std::vector<Hit> hits = HitsOf(a, b);
+std::vector<Point> WallDetours::OneWay(Point a, Point b, MoveEnds ends, int depth,
+                                       int64_t& tests) const {
+  const std::vector<Hit> hits = HitsOf(a, b, ends);
   tests += 1 + static_cast<int64_t>(hits.size());
   if (hits.empty() || hits.size() > kMostHits) return {};
   std::vector<Point> way = {a};
@@ -173,7 +174,7 @@ std::vector<Point> WallDetours::OneWay(Point a, Point b, int depth, int64_t& tes
     i = last + 1;
   }
   way.push_back(b);
-  if (!PullTaut(way, depth, tests)) return {};
+  if (!PullTaut(way, ends, depth, tests)) return {};
   return {way.begin() + 1, way.end() - 1};
 }
 
@@ -246,23 +247,31 @@ bool WallDetours::Follow(const Hit& first, const Hit& last, double side, Point a
 
 // Leaves out points that are not needed. False if a stretch crosses a wall around which there is no
 // detour.
-bool WallDetours::PullTaut(std::vector<Point>& way, int depth, int64_t& tests) const {
+bool WallDetours::PullTaut(std::vector<Point>& way, MoveEnds ends, int depth,
+                           int64_t& tests) const {
+  const auto ends_of = [&](size_t from, size_t to) {
+    return MoveEnds{ends.a && from == 0, ends.b && to + 1 == way.size()};
+  };
   std::vector<Point> taut = {way.front()};
   tests += static_cast<int64_t>(way.size());
   for (size_t at = 0; at + 1 < way.size();) {
     size_t next = at + 1;
-    if (grid_.Crosses(way[at], way[next])) {
+    if (grid_.Crosses(way[at], way[next], ends_of(at, next))) {
       if (depth == kMostDepth) return false;
-      const std::vector<Point> around = OneWay(way[at], way[next], depth + 1, tests);
+      const std::vector<Point> around =
+          OneWay(way[at], way[next], ends_of(at, next), depth + 1, tests);
       if (around.empty()) return false;
       taut.insert(taut.end(), around.begin(), around.end());
     } else {
-      while (next + 1 < way.size() && !grid_.Crosses(way[at], way[next + 1])) ++next;
+      while (next + 1 < way.size() &&
+             !grid_.Crosses(way[at], way[next + 1], ends_of(at, next + 1))) {
+        ++next;
+      }
     }
     taut.push_back(way[next]);
     at = next;
   }
-  Straighten(taut, tests);
+  Straighten(taut, ends, tests);
   way = std::move(taut);
   return true;
 }
@@ -270,13 +279,14 @@ bool WallDetours::PullTaut(std::vector<Point>& way, int depth, int64_t& tests) c
 // Leaves out bends that no wall requires: beyond a stretch that a wall blocks there may be a point
 // that sees past the wall, and a detour around one wall may not fit the one into which it was
 // inserted.
-void WallDetours::Straighten(std::vector<Point>& way, int64_t& tests) const {
+void WallDetours::Straighten(std::vector<Point>& way, MoveEnds ends, int64_t& tests) const {
   if (way.size() < 3) return;
   std::vector<Point> straight = {way.front()};
   for (size_t at = 1; at < way.size(); ++at) {
     for (; straight.size() > 1; straight.pop_back()) {
       ++tests;
-      if (grid_.Crosses(straight[straight.size() - 2], way[at])) break;
+      const MoveEnds of_line{ends.a && straight.size() == 2, ends.b && at + 1 == way.size()};
+      if (grid_.Crosses(straight[straight.size() - 2], way[at], of_line)) break;
     }
     straight.push_back(way[at]);
   }

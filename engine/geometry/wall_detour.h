@@ -27,7 +27,8 @@ class WallDetours {
   WallDetours(const WallGrid& grid, double clearance_mm, double on_wall_mm,
               Budget* budget = nullptr);
 
-  // The bends of a detour from `a` to `b` whose straight pieces cross no wall (WallGrid::Crosses).
+  // The bends of a detour from `a` to `b` whose straight pieces cross no wall (WallGrid::Crosses,
+  // with nothing ignored at the bends).
   // Empty if the straight move crosses none, and if no detour was found: there is none from one
   // island to another, and this does not search mazes. Returns the shorter of the detours found in
   // the two directions. Does O(w) tests for crossings, for w points of the walls followed, and adds
@@ -43,8 +44,8 @@ class WallDetours {
 
   uint32_t WallOf(uint32_t segment) const { return grid_.segments()[segment].wall; }
   bool IsClosed(uint32_t wall) const;
-  std::vector<Hit> HitsOf(Point a, Point b) const;
-  std::vector<Point> OneWay(Point a, Point b, int depth, int64_t& tests) const;
+  std::vector<Hit> HitsOf(Point a, Point b, MoveEnds ends) const;
+  std::vector<Point> OneWay(Point a, Point b, MoveEnds ends, int depth, int64_t& tests) const;
   std::optional<uint32_t> SegmentAt(uint32_t wall, Point at) const;
   bool Follow(const Hit& first, const Hit& last, double side, Point a, Point b,
               std::vector<Point>& way) const;
@@ -57,8 +58,8 @@ class WallDetours {
   };
   const Side& SideAt(double side) const { return sides_[side > 0 ? 1 : 0]; }
   double BetweenBends(uint32_t wall, const Side& side, uint32_t from, uint32_t to) const;
-  bool PullTaut(std::vector<Point>& way, int depth, int64_t& tests) const;
-  void Straighten(std::vector<Point>& way, int64_t& tests) const;
+  bool PullTaut(std::vector<Point>& way, MoveEnds ends, int depth, int64_t& tests) const;
+  void Straighten(std::vector<Point>& way, MoveEnds ends, int64_t& tests) const;
 
   const WallGrid& grid_;
   const double clearance_mm_;

@@ -85,17 +85,21 @@ void WallGrid::Fill(Rest& rest) {
   first_.pop_back();
 }
 
-std::pair<Point, Point> WallGrid::WithoutEnds(Point a, Point b) const {
+std::pair<Point, Point> WallGrid::WithoutEnds(Point a, Point b, MoveEnds ends) const {
   const double length = Distance(a, b);
   if (!(length > 0)) return {a, b};
   const double cut = std::min(slack_mm_ / length, kMostEnd);
-  return {{a.x + (b.x - a.x) * cut, a.y + (b.y - a.y) * cut},
-          {b.x - (b.x - a.x) * cut, b.y - (b.y - a.y) * cut}};
+  const Point off{(b.x - a.x) * cut, (b.y - a.y) * cut};
+  return {ends.a ? Point{a.x + off.x, a.y + off.y} : a,
+          ends.b ? Point{b.x - off.x, b.y - off.y} : b};
 }
 
-bool WallGrid::Crosses(Point a, Point b) const {
-  if (std::pair(b.x, b.y) < std::pair(a.x, a.y)) std::swap(a, b);
-  const auto [from, to] = WithoutEnds(a, b);
+bool WallGrid::Crosses(Point a, Point b, MoveEnds ends) const {
+  if (std::pair(b.x, b.y) < std::pair(a.x, a.y)) {
+    std::swap(a, b);
+    std::swap(ends.a, ends.b);
+  }
+  const auto [from, to] = WithoutEnds(a, b, ends);
   bool crosses = false;
   ForEachOnLine(from, to, [&, from = from, to = to](uint32_t s) {
     crosses = SegmentsCross(from, to, segments_[s].a, segments_[s].b);

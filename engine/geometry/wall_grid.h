@@ -44,6 +44,13 @@ inline bool SegmentsCross(Point a, Point b, Point c, Point d) {
   return (of_a < 0 && of_b > 0) || (of_a > 0 && of_b < 0);
 }
 
+// Which ends of a straight line from a to b are ends of the move that it belongs to: at a bend of a
+// move nothing is ignored.
+struct MoveEnds {
+  bool a = true;
+  bool b = true;
+};
+
 // Immutable. The segments of a wall follow one another, without those of length zero.
 class WallGrid {
  public:
@@ -60,10 +67,10 @@ class WallGrid {
   }
 
   // Whether a move, without its ignored ends, crosses a wall. The same in both directions.
-  bool Crosses(Point a, Point b) const;
+  bool Crosses(Point a, Point b, MoveEnds ends = {}) const;
 
   // The move without its ignored ends.
-  std::pair<Point, Point> WithoutEnds(Point a, Point b) const;
+  std::pair<Point, Point> WithoutEnds(Point a, Point b, MoveEnds ends = {}) const;
 
   // Calls visit(index of a segment) for all segments that may meet the straight line from `a` to
   // `b`, for some more than once, until it returns false.

@@ -13,15 +13,14 @@ double Written(double mm) { return std::round(mm * 1000) / 1000; }
 // The shortest travel passes a corner by next to nothing, and rounding may put it on the other
 // side.
 std::vector<Vertex> Detours::Around(Vertex a, Vertex b) const {
-  std::vector<Vertex> bends;
-  Vertex at = a;
+  std::vector<Vertex> travel = {a};
   for (const Point& bend : detours_.Around({a.x, a.y}, {b.x, b.y})) {
-    bends.push_back({Written(bend.x), Written(bend.y)});
-    if (walls_.Crossed(at, bends.back())) return {};
-    at = bends.back();
+    travel.push_back({Written(bend.x), Written(bend.y)});
   }
-  if (!bends.empty() && walls_.Crossed(at, b)) return {};
-  return bends;
+  if (travel.size() == 1) return {};
+  travel.push_back(b);
+  if (walls_.CrossedByTravel(travel)) return {};
+  return {travel.begin() + 1, travel.end() - 1};
 }
 
 }  // namespace traverse::gcode
