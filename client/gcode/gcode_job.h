@@ -21,13 +21,8 @@
 
 namespace traverse {
 
-struct GcodeOptions {
+struct GcodeOptions : gcode::Liberties {
   static constexpr double kMostRevisitSeconds = 3600;
-
-  gcode::Policy policy = gcode::Policy::kSafe;
-  gcode::Crossings crossings = gcode::Crossings::kKeep;
-  gcode::Allowance allow = {};
-  double min_revisit_seconds = 0;  // see RewriteOptions
 
   // Replaces what files state about their machine.
   std::optional<gcode::MachineLimits> machine = {};

@@ -183,12 +183,7 @@ class Rewriter {
  public:
   Rewriter(const GcodeFile& file, const std::vector<FileOrder>& tries,
            const RewriteOptions& options)
-      : file_(file),
-        options_(options),
-        chooser_(
-            file, tries,
-            {options.policy, options.crossings, options.allow, options.threads,
-             options.min_revisit_seconds, options.polish, options.usual_tries, options.hidden}) {}
+      : file_(file), options_(options), chooser_(file, tries, options) {}
 
   absl::StatusOr<GcodeRewrite> Rewrite() {
     for (int round = 0;; ++round) {

@@ -61,25 +61,12 @@ struct GcodeRewrite {
   std::string unread;
 };
 
-struct RewriteOptions {
-  gcode::Policy policy = gcode::Policy::kSafe;
-  gcode::Crossings crossings = gcode::Crossings::kKeep;
-  gcode::Allowance allow = {};     // is in that line too
-  double min_revisit_seconds = 0;  // see gcode::ChoiceOptions
-  std::string version;             // of this program, for the line that it adds after the head
-  int threads = 1;
-
-  // Set: orders are made better by small changes before they are chosen from, for so long, which
-  // takes about as long as a search of the service. What ends it early ends nothing else.
-  std::optional<gcode::PolishLimit> polish = {};
-
-  size_t usual_tries = 0;  // see gcode::ChoiceOptions; REQUIRES: there are as many
+struct RewriteOptions : gcode::ChoiceOptions {
+  // Of this program, for the line that it adds after the head, where what may change is too.
+  std::string version;
 
   // Tell what Policy::kFast would save, unless `policy` is that.
   bool forecast_fast = false;
-
-  // Of `file`, if they are known: to find them takes a while.
-  std::shared_ptr<const gcode::HiddenMoves> hidden = nullptr;
 };
 
 // Writes `file` with each layer in one of its orders in `tries`, or in its own, whichever makes the

@@ -103,10 +103,7 @@ absl::StatusOr<GcodeRewrite> RewriteByRuns(const InputJob& job,
     }
   }
   RewriteOptions rewrite;
-  rewrite.policy = options.policy;
-  rewrite.crossings = options.crossings;
-  rewrite.allow = options.allow;
-  rewrite.min_revisit_seconds = options.min_revisit_seconds;
+  static_cast<gcode::Liberties&>(rewrite) = options;
   rewrite.version = TRAVERSE_VERSION;
   rewrite.threads = gcode::ThreadsFor(job.gcode->text.size());
   rewrite.polish = std::move(polish);

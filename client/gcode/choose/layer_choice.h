@@ -57,16 +57,11 @@ struct ChosenLayers {
   void AppendTo(const GcodeFile& file, std::string& text) const;
 };
 
-struct ChoiceOptions {
-  Policy policy = Policy::kSafe;
-  Crossings crossings = Crossings::kKeep;
-  Allowance allow = {};
+struct ChoiceOptions : Liberties {
   int threads = 1;
-  // No island rests shorter than so long, or than in the file (island_rests.h). Except under
-  // Policy::kFree none rests shorter than the file's least layer time either.
-  double min_revisit_seconds = 0;
 
-  // If set, small changes improve the orders found, within this limit.
+  // If set, small changes improve the orders found, within this limit, which takes about as long as
+  // a search of the service. What ends it early ends nothing else.
   std::optional<PolishLimit> polish = {};
 
   // Under Crossings::kFewer: so many tries, the last ones, are what kKeep would choose from; 0:

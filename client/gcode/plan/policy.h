@@ -86,6 +86,17 @@ inline constexpr double kDearCrossingSeconds = 1;
 std::optional<Crossings> CrossingsOfName(std::string_view name);
 std::string_view CrossingsName(Crossings crossings);
 
+// What may change in a file. One value from the flags or the request to the choice of orders.
+struct Liberties {
+  Policy policy = Policy::kSafe;
+  Crossings crossings = Crossings::kKeep;
+  Allowance allow = {};
+
+  // No island rests shorter than so long, or than in the file (choose/island_rests.h). Except under
+  // Policy::kFree none rests shorter than the file's least layer time either.
+  double min_revisit_seconds = 0;
+};
+
 // A layer as a plan. Plan.paths[i] is the block `first_block + i`; vertex k of a contour is point k
 // of its outline.
 struct LayerPlan {

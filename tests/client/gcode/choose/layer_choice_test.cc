@@ -41,7 +41,7 @@ FileOrder Up(const GcodeFile& file) {
   return orders;
 }
 
-const ChoiceOptions kFree = {.policy = Policy::kFree};
+const ChoiceOptions kFree = {{.policy = Policy::kFree}};
 
 TEST(LayerChooser, TakesAnOrderThatIsQuickerAndTheFilesIfThatIsRuledOut) {
   const auto file = BadFile(1);
