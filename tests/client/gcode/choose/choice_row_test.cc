@@ -21,7 +21,7 @@ ChoiceColumn Column(const std::vector<PrintTotals>& inside, size_t choices_befor
   column.inside = inside;
   column.no_choice.assign(inside.size(), false);
   column.travels.resize(choices_before * inside.size());
-  column.no_way.assign(column.travels.size(), false);
+  column.no_travel.assign(column.travels.size(), false);
   return column;
 }
 
@@ -156,7 +156,7 @@ TEST(BestRow, WhatIsRuledOutIsNotChosen) {
       Column({Totals(10, 0), Totals(9, 0)}, 2),
   };
 
-  columns[1].no_way[3] = true;
+  columns[1].no_travel[3] = true;
   const Row one = Best(columns, Policy::kFree);
   columns[0].no_choice[1] = true;
   columns[1].no_choice[1] = true;

@@ -15,7 +15,7 @@ namespace {
 
 using testing::Sketch;
 
-constexpr TravelModel kTravel = {.speed_mm_s = 100, .accel_mm_s2 = 1000};
+constexpr TravelModel kUsualTravel = {.speed_mm_s = 100, .accel_mm_s2 = 1000};
 
 TEST(TravelSeconds, OfAStraightTravelAreThoseFromStandstillToStandstill) {
   Sketch sketch;
@@ -23,8 +23,9 @@ TEST(TravelSeconds, OfAStraightTravelAreThoseFromStandstillToStandstill) {
   const std::shared_ptr<GcodeFile> file = sketch.Read();
   ASSERT_EQ(file->blocks.size(), 3u);
 
-  EXPECT_NEAR(TravelSeconds(*file, 1, kTravel), StopToStopSeconds(std::sqrt(200), 100, 1000), 1e-6);
-  EXPECT_NEAR(TravelSeconds(*file, 2, kTravel), StopToStopSeconds(10, 100, 1000), 1e-6);
+  EXPECT_NEAR(TravelSeconds(*file, 1, kUsualTravel), StopToStopSeconds(std::sqrt(200), 100, 1000),
+              1e-6);
+  EXPECT_NEAR(TravelSeconds(*file, 2, kUsualTravel), StopToStopSeconds(10, 100, 1000), 1e-6);
 }
 
 TEST(TravelSeconds, BendsTakeTimeAsLongAsNobodyStopsThere) {
@@ -33,8 +34,8 @@ TEST(TravelSeconds, BendsTakeTimeAsLongAsNobodyStopsThere) {
   const std::shared_ptr<GcodeFile> file = sketch.Read();
   ASSERT_EQ(file->blocks.size(), 2u);
 
-  EXPECT_GT(TravelSeconds(*file, 1, kTravel), StopToStopSeconds(40, 100, 1000) + 0.01);
-  EXPECT_LT(TravelSeconds(*file, 1, kTravel), 2 * StopToStopSeconds(20, 100, 1000));
+  EXPECT_GT(TravelSeconds(*file, 1, kUsualTravel), StopToStopSeconds(40, 100, 1000) + 0.01);
+  EXPECT_LT(TravelSeconds(*file, 1, kUsualTravel), 2 * StopToStopSeconds(20, 100, 1000));
 }
 
 // Other travel moves from the same path begin with it too; those of CuraEngine have bends there.
@@ -44,9 +45,9 @@ TEST(TravelSeconds, AreWithoutTheShortMoveInwards) {
   const std::shared_ptr<GcodeFile> file = sketch.Read();
   ASSERT_NE(file->blocks[1].link & kLinkDeparts, 0);
 
-  EXPECT_NEAR(TravelSeconds(*file, 1, kTravel), StopToStopSeconds(30, 100, 1000), 1e-6);
+  EXPECT_NEAR(TravelSeconds(*file, 1, kUsualTravel), StopToStopSeconds(30, 100, 1000), 1e-6);
   file->dialect = Dialect::kCura;
-  EXPECT_GT(TravelSeconds(*file, 1, kTravel), StopToStopSeconds(30, 100, 1000) + 0.02);
+  EXPECT_GT(TravelSeconds(*file, 1, kUsualTravel), StopToStopSeconds(30, 100, 1000) + 0.02);
 }
 
 // Where filament is pulled back the machine stands still, though the travel leads straight on.
@@ -57,10 +58,10 @@ TEST(TravelSeconds, StopWhereFilamentIsPulledBack) {
   ASSERT_EQ(file->blocks.size(), 2u);
 
   const TravelJoints none;
-  EXPECT_NEAR(TravelSeconds(*file, 1, kTravel, true, &none), 2 * StopToStopSeconds(20, 100, 1000),
-              1e-6);
+  EXPECT_NEAR(TravelSeconds(*file, 1, kUsualTravel, true, &none),
+              2 * StopToStopSeconds(20, 100, 1000), 1e-6);
   // Else what that costs is in the price of the retraction.
-  EXPECT_NEAR(TravelSeconds(*file, 1, kTravel, true), StopToStopSeconds(40, 100, 1000), 1e-6);
+  EXPECT_NEAR(TravelSeconds(*file, 1, kUsualTravel, true), StopToStopSeconds(40, 100, 1000), 1e-6);
 }
 
 // So what the stop costs there is a part of the travel and of the price, and not of the retraction.
