@@ -8,6 +8,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/gcode/machine/progress_line.h"
 #include "client/gcode/text/decimal.h"
 #include "client/gcode/text/digest_line.h"
 #include "client/gcode/verify/verifier.h"
@@ -162,6 +163,71 @@ std::string RestateProgress(std::string_view line, double factor) {
   return out;
 }
 
+// `1:02:03` or `02:03`: the parts behind the first have two digits.
+std::optional<std::string> ScaleClock(std::string_view clock, double factor) {
+  constexpr int64_t kBase = 60;
+  constexpr size_t kMostDigits = 5;
+  const size_t first = clock.find(':');
+  const size_t parts = first == 0 || first > kMostDigits ? 0 : (clock.size() - first) / 3;
+  if (parts == 0 || parts > 2 || clock.size() != first + 3 * parts) return std::nullopt;
+  int64_t seconds = 0;
+  int64_t part = 0;
+  for (size_t i = 0; i < clock.size(); ++i) {
+    const bool colon = i >= first && (i - first) % 3 == 0;
+    if (colon != (clock[i] == ':')) return std::nullopt;
+    part = colon ? 0 : 10 * part + (clock[i] - '0');
+    const bool ends = i + 1 == clock.size() || clock[i + 1] == ':';
+    if (ends) seconds = kBase * seconds + part;
+  }
+  seconds = std::llround(static_cast<double>(seconds) * factor);
+  std::string scaled;
+  for (size_t i = 0; i < parts; ++i, seconds /= kBase) {
+    scaled = absl::StrFormat(":%02d", seconds % kBase) + scaled;
+  }
+  return absl::StrFormat("%0*d", static_cast<int>(first), seconds) + scaled;
+}
+
+// `1h2m3s`, or with blanks between its parts.
+std::optional<std::string> ScaleSpan(std::string_view span, double factor) {
+  std::optional<std::string> scaled =
+      ParseDuration(span) ? ScaleDuration(span, factor) : std::nullopt;
+  if (scaled && span.find(' ') == std::string_view::npos) {
+    scaled->erase(std::remove(scaled->begin(), scaled->end(), ' '), scaled->end());
+  }
+  return scaled;
+}
+
+// `M117 Time left 1h 2m 3s`: the first time in a message that tells what is left or elapsed.
+std::string RestateMessage(std::string_view line, double factor) {
+  constexpr std::string_view kOfTimes = "0123456789:dhms ";
+  for (size_t at = 0; at < line.size(); ++at) {
+    if (!IsDigit(line[at]) || (line[at - 1] != ' ' && line[at - 1] != '=' && line[at - 1] != '"')) {
+      continue;
+    }
+    // A blank may also end it.
+    size_t end = std::min(line.find_first_not_of(kOfTimes, at), line.size());
+    for (; end > at; end = line.find_last_of(' ', end - 1)) {
+      const std::string_view time = Trim(line.substr(at, end - at));
+      std::optional<std::string> scaled = ScaleClock(time, factor);
+      if (!scaled) scaled = ScaleSpan(time, factor);
+      if (scaled) {
+        return std::string(line.substr(0, at)) + *scaled +
+               std::string(line.substr(at + time.size()));
+      }
+      if (line.find_last_of(' ', end - 1) == std::string_view::npos) break;
+    }
+  }
+  return std::string(line);
+}
+
+// A message of progress, but for one that only states a share.
+bool TellsTime(std::string_view line) {
+  if (line.empty() || (line[0] != 'M' && line[0] != 'S')) return false;
+  if (!line.starts_with("M117 ") && !line.starts_with("M118 ") && !IsProgressMacro(line))
+    return false;
+  return IsProgressMessage(line.substr(line.find(' ')));
+}
+
 std::string RestateLines(std::string_view text, const TimeScale& scale) {
   std::string out;
   out.reserve(text.size());
@@ -172,6 +238,8 @@ std::string RestateLines(std::string_view text, const TimeScale& scale) {
       out += RestateComment(line, scale);
     } else if (line.starts_with("M73 ")) {
       out += RestateProgress(line, scale.total);
+    } else if (TellsTime(line)) {
+      out += RestateMessage(line, scale.total);
     } else {
       out += line;
     }

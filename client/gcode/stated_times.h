@@ -34,8 +34,8 @@ std::optional<TimeScale> StatedScale(std::string_view text);
 std::optional<std::string> ScaleDuration(std::string_view value, double factor);
 
 // `text` with all stated times scaled: totals and first layers in comments (of PrusaSlicer and its
-// relatives, Bambu Studio, CuraEngine, ideaMaker), remaining minutes in M73; the percentages of M73
-// stay. Each line is changed by itself.
+// relatives, Bambu Studio, CuraEngine, ideaMaker), remaining minutes in M73, times that messages
+// tell; the percentages of M73 stay. Each line is changed by itself.
 std::string RestateTimes(std::string_view text, const TimeScale& scale);
 
 // `text`, which has the line that Traverse adds, with all times restated; the line then says

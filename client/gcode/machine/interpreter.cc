@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "client/gcode/machine/label.h"
+#include "client/gcode/machine/progress_line.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse::gcode {
@@ -40,6 +41,7 @@ StepKind KindOfComment(std::string_view comment, SlotMask& slots) {
   if (slots != 0) return StepKind::kSlot;
   if (IsWipeMark(comment)) return StepKind::kWipeMark;
   if (IsLayerMark(comment)) return StepKind::kLayerMark;
+  if (IsProgressComment(comment)) return StepKind::kProgress;
   return LabelOf(comment).kind != LabelKind::kNone ? StepKind::kLabel : StepKind::kComment;
 }
 
@@ -56,6 +58,7 @@ StepKind KindOfText(std::string_view line, SlotMask& slots) {
   slots = TextSlots(line);
   if (slots != 0) return StepKind::kSlot;
   if (LabelOf(line).kind != LabelKind::kNone) return StepKind::kLabel;
+  if (IsProgressMacro(line)) return StepKind::kProgress;
   return IsHarmlessMacro(line) ? StepKind::kStay : StepKind::kUnknown;
 }
 
@@ -201,6 +204,7 @@ void Interpreter::SwitchUnits() {
 void Interpreter::FollowM(Step& step) {
   switch (step.command.number) {
     case 73:
+    case 532:
       step.kind = StepKind::kProgress;
       return;
     case 82:
@@ -211,8 +215,6 @@ void Interpreter::FollowM(Step& step) {
     case 74:  // mass printed so far
     case 104:
     case 105:
-    case 117:
-    case 118:
     case 140:
     case 142:  // temperature of the heat break
     case 155:

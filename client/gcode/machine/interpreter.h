@@ -67,8 +67,8 @@ enum class StepKind : uint8_t {
   kComment,    // one without meaning here
   kSlot,       // sets slots of the print state
   kWipeMark,   // ;WIPE_START, ;WIPE_END
-  kProgress,   // M73: has meaning only in the file's order
-  kStay,       // known, and harmless where it is: M104, M140, M105, M117, G90 in absolute mode
+  kProgress,   // M73 and others (progress_line.h): has meaning only in the file's order
+  kStay,       // known, and harmless where it is: M104, M140, M105, G90 in absolute mode
   kPlane,      // G17 in the XY plane: goes with the lift behind it
   kLabel,      // begin or end of an object
   kLayerMark,  // ;LAYER_CHANGE, ;LAYER:7

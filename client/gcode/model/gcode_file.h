@@ -54,7 +54,7 @@ enum BlockFlag : uint16_t {
   kBlockFan = 1 << 2,       // the fan changes inside it
   kBlockType = 1 << 3,      // the feature changes inside it
   kBlockComments = 1 << 4,  // has comments inside without meaning here
-  kBlockProgress = 1 << 5,  // has M73 inside
+  kBlockProgress = 1 << 5,  // has lines of progress inside
   kBlockPinned = 1 << 6,    // printed while retracted or rising, or no true arc: stays as it is
   kBlockState = 1 << 7,     // some slot changes inside it
   kBlockZero = 1 << 8,      // has a segment whose extrusion rounds to nothing
@@ -132,7 +132,7 @@ struct GcodeFile {
   int64_t unread_moves = 0;
   gcode::Offset unread_at = 0;
 
-  // Begins of the M73 lines, ascending.
+  // Begins of the lines of progress (machine/progress_line.h), ascending.
   std::vector<gcode::Offset> progress;
 
   gcode::MachineProfile profile;

@@ -29,7 +29,7 @@ enum class VerifyRule : uint8_t {
   kSpeeds,       // feed rate and acceleration of everything but deposits
   kWipes,        // along the path that they follow, and after those that had them
   kCommands,     // none within a path, none without effect
-  kProgress,     // M73
+  kProgress,     // M73 and what else tells how far the print is
   kScripts,      // nothing from them between paths
   kPathEnds,     // moves that continue along a path
   kBounds,       // the area of all moves

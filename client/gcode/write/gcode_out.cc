@@ -14,11 +14,6 @@ void FollowModes(const Command& command, MachineState& modes) {
   if (command.letter == 'M' && (number == 82 || number == 83)) modes.relative_e = number == 83;
 }
 
-// M73 has one of these letters.
-bool MayHaveProgress(std::string_view text) {
-  return text.find('M') != std::string_view::npos || text.find('m') != std::string_view::npos;
-}
-
 }  // namespace
 
 std::string LineEndOf(std::string_view text) {
@@ -40,7 +35,9 @@ void GcodeOut::Copy(Offset begin, Offset end, const PartStart& before, const Par
   at = behind;
   const Decimal shift = before.machine.RelativeE() ? 0 : e - before.machine.e;
   const std::string_view text = std::string_view(file_.text).substr(begin, end - begin);
-  if (shift == 0 && !(without_progress && MayHaveProgress(text))) {
+  const auto progress = std::lower_bound(file_.progress.begin(), file_.progress.end(), begin);
+  without_progress = without_progress && progress != file_.progress.end() && *progress < end;
+  if (shift == 0 && !without_progress) {
     text_.append(text);
   } else {
     CopyShifted(begin, end, shift, before.machine, without_progress);
@@ -50,13 +47,15 @@ void GcodeOut::Copy(Offset begin, Offset end, const PartStart& before, const Par
 void GcodeOut::CopyShifted(Offset begin, Offset end, Decimal shift, MachineState modes,
                            bool without_progress) {
   const std::string_view text(file_.text);
+  const auto progress = std::lower_bound(file_.progress.begin(), file_.progress.end(), begin);
   Command command;
   for (Offset next = begin; next < end;) {
     const Line line = LineAt(text.substr(0, end), next);
     next = line.next;
     const std::string_view raw = line.Raw(text);
     LexLine(line.Text(text), command);
-    if (without_progress && command.Is('M', 73)) continue;
+    if (without_progress && std::binary_search(progress, file_.progress.end(), line.begin))
+      continue;
     const bool moves = command.kind == LineKind::kCommand && command.letter == 'G' &&
                        command.number <= 3 && command.Has('E');
     FollowModes(command, modes);

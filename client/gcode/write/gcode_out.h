@@ -27,8 +27,8 @@ class GcodeOut {
   const GcodeFile& file() const { return file_; }
 
   // Appends a part of the file unchanged, except the extruder's absolute positions, which continue
-  // from here. `before` and `behind` are the machine around the part in the file. Leaves out M73
-  // lines if `without_progress`.
+  // from here. `before` and `behind` are the machine around the part in the file. Leaves out
+  // lines of progress if `without_progress`.
   void Copy(Offset begin, Offset end, const PartStart& before, const PartStart& behind,
             bool without_progress);
 

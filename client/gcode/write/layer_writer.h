@@ -70,8 +70,8 @@ class LayerWriter {
   // Whether the file's own order is written otherwise than it is in the file.
   bool ChangesGiven() const;
 
-  // The same without the M73 lines, unless the order is the file's: as it is measured. Adds to
-  // `marks`, unless that is null, where in `text` each path begins and ends.
+  // The same without lines of progress, unless the order is the file's: as it is measured. Adds
+  // to `marks`, unless that is null, where in `text` each path begins and ends.
   PartStart WriteBarePaths(const LayerOrder& order, const PartStart& start, std::string& text,
                            std::vector<size_t>* marks = nullptr, bool as_sliced = false) const;
 

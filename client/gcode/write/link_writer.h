@@ -57,7 +57,7 @@ struct LinkRequest {
   // made.
   std::optional<Vertex> turned_departure;
 
-  // Leave out M73 lines of what is copied unchanged.
+  // Leave out lines of progress of what is copied unchanged.
   bool without_progress = false;
 };
 

@@ -64,8 +64,8 @@ class PlacedPath {
   // The state and the feed rate after it.
   PartStart Behind() const;
 
-  // Appends the path; `out` is where it begins, with its state and feed rate set. Leaves out M73
-  // lines if `without_progress`, and always if the path is not as given.
+  // Appends the path; `out` is where it begins, with its state and feed rate set. Leaves out
+  // lines of progress if `without_progress`, and always if the path is not as given.
   void Write(bool without_progress, GcodeOut& out) const;
 
   // Points back over what was just printed, for a wipe: on from the start of a closed path, back

@@ -1,4 +1,4 @@
-// The M73 lines of a layer, which state how much of the print is done.
+// The lines of a layer that say how far the print is: M73 and others (machine/progress_line.h).
 //
 // They keep their sequence, and stand where as large a share of the layer's time is over as in the
 // file: before paths, or between the segments of long ones. None passes what nothing crosses: these

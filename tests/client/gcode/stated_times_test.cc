@@ -29,6 +29,11 @@ TEST(RestateTimes, ChangesWhatSlicersState) {
       {"M73 P0 R124", "M73 P0 R112"},
       {"M73 Q50 S10 C3 ; R9", "M73 Q50 S9 C3 ; R9"},
       {"M73 P100 R0", "M73 P100 R0"},
+      {"M117 Time Left 1h0m10s", "M117 Time Left 54m9s"},
+      {"M117 33% left 1h 0m 10s, layer 3/20", "M117 33% left 54m 9s, layer 3/20"},
+      {"M118 elapsed 01:00:10", "M118 elapsed 00:54:09"},
+      {"M117 remaining 2:00", "M117 remaining 1:48"},
+      {"SET_DISPLAY_TEXT MSG=\"10m left\"", "SET_DISPLAY_TEXT MSG=\"9m0s left\""},
   };
   for (const auto& [line, restated] : cases) {
     EXPECT_EQ(RestateTimes(line, kScale), restated);

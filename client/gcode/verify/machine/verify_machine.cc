@@ -159,7 +159,7 @@ void VerifyMachine::DoComment(VerifyLine& line) {
   const bool numbered = text.size() > kNumbered.size() && text[kNumbered.size()] >= '0' &&
                         text[kNumbered.size()] <= '9';
   if (numbered && Begins(text, kNumbered)) return Fence(line, LineRole::kFence);
-  Fence(line, LineRole::kComment);
+  Fence(line, CommentTellsProgress(text) ? LineRole::kProgress : LineRole::kComment);
 }
 
 void VerifyMachine::Mode(bool& mode, bool value, VerifyLine& line) {
@@ -372,7 +372,10 @@ void VerifyMachine::Deposit(int number, const CommandWords& words, const std::ar
 }
 
 void VerifyMachine::DoM(int number, VerifyLine& line) {
-  if (number == 73) return Fence(line, LineRole::kProgress);
+  const bool message = number == 117 || number == 118;
+  if (number == 73 || number == 532 || (message && MessageTellsProgress(line.text))) {
+    return Fence(line, LineRole::kProgress);
+  }
   if (number == 82 || number == 83) return Mode(relative_e_, number == 83, line);
   for (const int known : {74, 104, 105, 117, 118, 140, 142, 155, 486, 591, 624, 625}) {
     if (number != known) continue;
@@ -385,6 +388,9 @@ void VerifyMachine::DoM(int number, VerifyLine& line) {
 void VerifyMachine::DoKlipper(VerifyLine& line) {
   const std::string_view text = line.text;
   if (settings_.SetByKlipper(text)) return;
+  if (Begins(text, "SET_DISPLAY_TEXT ") && MessageTellsProgress(text)) {
+    return Fence(line, LineRole::kProgress);
+  }
   if (Begins(text, "EXCLUDE_OBJECT_START") || Begins(text, "EXCLUDE_OBJECT_END")) {
     line.label = true;
     return Fence(line, LineRole::kFence);

@@ -23,7 +23,7 @@ enum class LineRole : uint8_t {
   kNothing,   // travel, retraction, a setter of state, a blank line: seen by what it leads to
   kDeposit,   // an extruding move
   kComment,   // has to be there, in its section
-  kProgress,  // M73: the same
+  kProgress,  // tells how far the print is: the same
   kFence,     // has to be there, in the order of the file: a section ends with it
   kFixed,     // a fence that is not known: the head has to be in the same place as well
 };

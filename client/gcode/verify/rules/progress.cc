@@ -1,4 +1,5 @@
-// The sequence of M73 lines is unchanged, and each stands about where what it states is true.
+// The sequence of lines that tell the progress is unchanged, and each stands about where what it
+// states is true.
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +13,9 @@ namespace {
 // So many hundredths of the print farther off than in the original is little.
 constexpr double kSlackPercent = 2;
 
+// All is done where the last path ends.
 double PercentAt(const ProgressLog& log, double seconds) {
-  return log.seconds > 0 ? 100 * seconds / log.seconds : 0;
+  return log.seconds > 0 ? std::min(100 * seconds / log.seconds, 100.0) : 0;
 }
 
 // When the section of `line` begins and ends: no line can leave it.
@@ -70,15 +72,15 @@ void CompareProgress(const ProgressLog& was, const ProgressLog& is, std::vector<
   for (size_t i = 0; i < common; ++i) {
     if (was.lines[i].digest == is.lines[i].digest) continue;
     breaks.push_back({VerifyRule::kProgress, was.lines[i].line, is.lines[i].line, -1,
-                      "this M73 is out of sequence"});
+                      "this line of progress is out of sequence"});
     return;
   }
   if (was.lines.size() != is.lines.size()) {
     const auto line = [common](const ProgressLog& log) {
       return common < log.lines.size() ? log.lines[common].line : 0;
     };
-    breaks.push_back(
-        {VerifyRule::kProgress, line(was), line(is), -1, "this M73 is out of sequence"});
+    breaks.push_back({VerifyRule::kProgress, line(was), line(is), -1,
+                      "this line of progress is out of sequence"});
     return;
   }
   for (size_t i = 0; i < common; ++i) ComparePlace(was, is, i, breaks);

@@ -181,7 +181,7 @@ struct TraceChunk {
   std::vector<Standstill> standstills;  // by line
   std::vector<SetBack> set_backs;       // by line
   std::vector<MarkFault> mark_faults;   // by line
-  std::vector<Progress> progress;       // M73
+  std::vector<Progress> progress;       // lines that tell it
   std::vector<SectionBegin> begins;     // of all sections, ascending
   std::vector<TraceSection> sections;
   std::vector<TraceLayer> layers;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "client/gcode/verify/machine/told_progress.h"
 #include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
@@ -97,12 +98,6 @@ uint64_t SignatureOf(const Motion& motion) {
   return Mix(digest, (motion.words & Bit('F')) != 0 ? static_cast<uint64_t>(motion.feed) : 0);
 }
 
-// `M73 P33 R15`; with Q instead for another mode of the machine.
-double PercentOf(std::string_view line) {
-  const CommandWords words(WordsOf(line));
-  return static_cast<double>(words.ValueOr('P', words.ValueOr('Q', -1'000'000))) * kMicro;
-}
-
 // Moves what lies in section `end` and behind it from `from` to `to`.
 template <typename Event>
 void MoveLater(uint32_t end, std::vector<Event>& from, std::vector<Event>& to) {
@@ -147,7 +142,7 @@ void Tracer::Take(const VerifyLine& line, VerifyMachine& machine, uint32_t secti
   }
   if (line.role == LineRole::kProgress) {
     chunk_.progress.push_back(
-        {line.digest, number, section, PercentOf(line.text), clock_.seconds()});
+        {line.digest, number, section, PercentTold(line.text), clock_.seconds()});
   }
   if (line.sets_back) chunk_.set_backs.push_back({section, number});
   if (line.command != 0 && line.role != LineRole::kProgress)

@@ -109,6 +109,22 @@ TEST(Interpreter, KnowsTheMarksOfEachSlicer) {
   EXPECT_EQ(LastKind("M73 P3 R7"), StepKind::kProgress);
 }
 
+TEST(Interpreter, WhatSaysHowFarThePrintIs) {
+  for (const char* line :
+       {"M117 33%", "M117 Printing 33.5 %", "m117 Layer 12/220", "M118 layer 12 of 220",
+        "M117 Time Left 1h2m3s", "M118 A1 P0 action:notification Data Left 12", "M532 X33 L12",
+        "SET_DISPLAY_TEXT MSG=\"33 % done\"", ";TIME_ELAPSED:12.5", ";PRINTING_TIME: 41",
+        ";REMAINING_TIME: 60", "; layer num/total_layer_count: 3/20", "; progress: 33"}) {
+    EXPECT_EQ(LastKind(line), StepKind::kProgress) << line;
+  }
+  for (const char* line : {"M117 Hello", "M117 Object 3", "M118 Part of the left side"}) {
+    EXPECT_EQ(LastKind(line), StepKind::kStay) << line;
+  }
+  for (const char* line : {"; elapsed", ";TIME:5360", "; 33% infill", "; remaining: none"}) {
+    EXPECT_EQ(LastKind(line), StepKind::kComment) << line;
+  }
+}
+
 TEST(Interpreter, WhatItDoesNotKnowIsUnknown) {
   for (const char* line : {"M600", "G4 P100", "G28", "M400", "PARK_HEAD", "M220 S50", "M204 P5 Q7",
                            "SET_VELOCITY_LIMIT ACCEL=500 SOMETHING=1", "G1 X5 A3", "G5 X1 Y1",

@@ -1,4 +1,4 @@
-// M73 lines: client/gcode/verify/rules/progress.
+// Lines that tell how far the print is: client/gcode/verify/rules/progress.
 
 #include <gtest/gtest.h>
 
@@ -60,6 +60,25 @@ TEST(VerifyProgress, StandsWhereItIsTrue) {
   EXPECT_EQ(Broken(a, Joined(late), {}, kRules), "progress");
   EXPECT_EQ(Broken(a, Joined(early), {}, kRules), "progress");
   EXPECT_EQ(Broken(a, a, {}, kRules), "");
+}
+
+TEST(VerifyProgress, IsToldInManyWays) {
+  for (const char* line : {"M117 50%\n", "M118 Half of it, 50 % done\n", "; elapsed time: 20\n",
+                           "SET_DISPLAY_TEXT MSG=\"time left 20s\"\n", "M532 X50 L1\n"}) {
+    std::vector<std::string> lines = Lines(20);
+    for (std::string& other : lines) {
+      if (const size_t at = other.find("M73"); at != std::string::npos) {
+        other.erase(at, other.find('\n', at) + 1 - at);
+      }
+    }
+    std::vector<std::string> true_there = lines;
+    true_there[10].insert(0, line);
+    std::vector<std::string> late = lines;
+    late.back().insert(0, line);
+
+    EXPECT_EQ(Broken(Joined(true_there), Joined(late), {}, kRules), "progress") << line;
+    EXPECT_EQ(Broken(Joined(true_there), Joined(true_there), {}, kRules), "") << line;
+  }
 }
 
 TEST(VerifyProgress, MayBeAsFarOffAsInTheOriginal) {
