@@ -17,6 +17,7 @@
 #include "client/gcode/text/text.h"
 #include "client/gcode/verify/verifier.h"
 #include "client/gcode/write/gcode_out.h"
+#include "client/gcode/write/true_progress.h"
 
 namespace traverse {
 namespace gcode {
@@ -205,6 +206,7 @@ class Rewriter {
                      AllRules(file_, options_));
       if (absl::Status status = file_.limit.status(); !status.ok()) return status;
       if (report.ok()) {
+        MakeProgressTrue(rewrite.text);
         rewrite.orders = std::move(chosen.orders);
         absl::StatusOr<GcodeRewrite> done = Finish(head, std::move(rewrite));
         if (!done.ok() || !CrossesMore(*done)) return done;
@@ -221,6 +223,16 @@ class Rewriter {
   double SecondsSavedByFast() const { return chooser_.SecondsSavedByFast(); }
 
  private:
+  // Unless that cannot be proven.
+  void MakeProgressTrue(std::string& text) const {
+    std::optional<std::string> moved = WithTrueProgress(file_, text);
+    if (!moved) return;
+    if (file_.states_digest && !file_.numbers) RenewDigest(*moved);
+    const VerifyReport report = CheckGcode(file_.text, file_.name, *moved,
+                                           file_.name + " as optimised", AllRules(options_));
+    if (report.ok()) text = *std::move(moved);
+  }
+
   void NoteChoice(const ChosenLayers& chosen, GcodeRewrite& rewrite) const {
     rewrite.layers = static_cast<int64_t>(file_.layers.size());
     rewrite.before = Sum(chosen.given);

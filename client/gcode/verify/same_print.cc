@@ -27,8 +27,7 @@ std::optional<Odd> FirstOdd(const Part& a, const Part& b, bool deposits) {
   const bool right_digests = a.side.right_digest && b.side.right_digest;
   const auto wanted = [deposits, right_digests](const VerifyLine& line) {
     if (right_digests && line.number == 1) return false;
-    const bool note = line.role == LineRole::kComment || line.role == LineRole::kProgress;
-    return deposits ? line.role == LineRole::kDeposit : note;
+    return line.role == (deposits ? LineRole::kDeposit : LineRole::kComment);
   };
   const auto for_each_line = [deposits](const Part& part, const auto& visit) {
     const Section& section = part.section();
@@ -196,7 +195,7 @@ std::optional<VerifyBreak> MovedDifference(const Side& original, const Side& opt
   const LayerSums was(original.cut, layer.first, layer.end);
   const LayerSums is(optimised.cut, layer.first, layer.end);
   if (is.label_faults > was.label_faults) return differ("labels of objects do not begin and end");
-  if (was.notes != is.notes) return differ("the comments or M73 lines are not");
+  if (was.notes != is.notes) return differ("the comments are not");
   if (is.lowest < was.lowest) return differ("travel is not as high");
   return std::nullopt;
 }

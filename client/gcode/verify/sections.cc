@@ -113,8 +113,6 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
       break;
     case LineRole::kComment:
       loose_said_.push_back(line.digest);
-      [[fallthrough]];
-    case LineRole::kProgress:
       loose_notes_.Add(line.digest);
       break;
     case LineRole::kFence:
@@ -128,6 +126,7 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
       cut_.sections.back().label_faults = labels_.faults();
       cut.behind = true;
       break;
+    case LineRole::kProgress:  // rules/progress.cc
     case LineRole::kNothing:
       break;
   }

@@ -47,7 +47,7 @@ struct Section {
   size_t first_line = 0;
   size_t last_line = 0;  // the line that ends it
   DigestSet deposits;
-  DigestSet notes;        // comments and M73, in lines of their own range:
+  DigestSet notes;        // comments, in lines of their own range:
   size_t first_note = 0;  // behind a change of height they are counted from the last deposit on
   size_t last_note = 0;
   Micro lowest = INT64_MAX;  // height of all moves in XY

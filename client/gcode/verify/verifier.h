@@ -8,7 +8,7 @@
 //   filament is pulled back at lines that are not known, and the fan at all of them;
 // - in each section the extruded segments are equal as a multiset: both ends, arc, filament, feed
 //   rate, feature, width, height, acceleration, jerk, fan, flow, tool, and whether filament was
-//   pulled back; and the comments and M73 lines as a multiset;
+//   pulled back; and the comments as a multiset;
 // - no travel is lower than the section's lowest in the original.
 // Then it finds each path again. The rules of rules/rules.h check the order of the paths, where
 // they begin and in which direction, and everything between them. A move that the original has too,

@@ -167,8 +167,8 @@ def label_late(file, rng):
 
 
 def note_moved(file, rng):
-    """A comment or M73 line comes some layers later."""
-    notes = [i for i, line in enumerate(file.lines) if re.match(r"M73|;TIME_ELAPSED|;Z:", line.text)]
+    """A comment comes some layers later."""
+    notes = [i for i, line in enumerate(file.lines) if re.match(r";Z:|;HEIGHT:", line.text)]
 
     def make(i):
         later = next((path for path in file.paths
@@ -213,7 +213,7 @@ DEFECTS = (
     ("advance a path late", "same_print", behind_next_path(r"M900\b|M572\b|SET_PRESSURE_ADVANCE"), "free"),
     ("jerk a path late", "same_print", behind_next_path(r"M205\b|SET_VELOCITY_LIMIT"), "free"),
     ("acceleration a path late", "same_print", behind_next_path(r"M204\b|M201\b"), "free"),
-    ("M73 doubled", "same_print", doubled(r"M73\b"), "free"),
+    ("M73 doubled", "progress", doubled(r"M73\b"), "free"),
     ("tool taken a path early", "same_print", tool_early, "free"),
     ("label of an object a path late", "same_print", label_late, "free"),
     ("note in another layer", "same_print", note_moved, "free"),

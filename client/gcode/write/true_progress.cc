@@ -1,0 +1,120 @@
+#include "client/gcode/write/true_progress.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "client/gcode/measure/layer_meter.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kMostOff = 0.01;  // of the print time
+
+// A line of progress, and the share of the print time that is over there.
+struct ProgressMoment {
+  size_t begin = 0;
+  size_t end = 0;
+  double share = 0;
+  bool in_print = false;  // between the first deposit and the last one
+};
+
+// All of `text`, up to the last deposit.
+struct ProgressMoments {
+  std::vector<ProgressMoment> lines;
+  double seconds = 0;
+};
+
+ProgressMoments MomentsOf(const GcodeFile& file, std::string_view text) {
+  ProgressMoments found;
+  TextMoments none;
+  bool begun = false;
+  size_t printed = 0;  // lines before the last deposit
+  bool deposits = false;
+  const auto visit = [&](const Step& step, double seconds) {
+    if (std::exchange(deposits, false)) {
+      found.seconds = seconds;
+      printed = found.lines.size();
+    }
+    deposits = step.kind == StepKind::kExtrude;
+    begun = begun || deposits;
+    if (step.kind != StepKind::kProgress) return;
+    found.lines.push_back({step.line.begin, step.line.next, seconds, begun});
+  };
+  MachineState machine;
+  machine.relative_e = !file.modes.empty() && file.modes[0].relative_e;
+  MeasureMoments(file, text, {machine, {}}, none, visit);
+  for (size_t i = 0; i < found.lines.size(); ++i) {
+    found.lines[i].share /= std::max(found.seconds, 1e-9);
+    found.lines[i].in_print = found.lines[i].in_print && i < printed;
+  }
+  return found;
+}
+
+// `M73 L4`, `; layer num/total_layer_count: 4/20`.
+bool SaysLayer(std::string_view line) {
+  std::string small(line);
+  for (char& c : small) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return small.find("layer") != std::string::npos ||
+         (small.find("m73") == 0 && small.find('l') != std::string::npos);
+}
+
+}  // namespace
+
+std::optional<std::string> WithTrueProgress(const GcodeFile& file, std::string_view text) {
+  if (file.progress.empty()) return std::nullopt;
+  const ProgressMoments was = MomentsOf(file, file.text);
+  const ProgressMoments is = MomentsOf(file, text);
+  if (was.lines.size() != is.lines.size()) return std::nullopt;
+  std::vector<bool> goes(is.lines.size(), false);
+  for (size_t i = 0; i < goes.size(); ++i) {
+    const ProgressMoment& line = is.lines[i];
+    goes[i] = line.in_print && std::abs(line.share - was.lines[i].share) > kMostOff &&
+              !SaysLayer(text.substr(line.begin, line.end - line.begin));
+  }
+  if (std::find(goes.begin(), goes.end(), true) == goes.end()) return std::nullopt;
+  std::string out;
+  out.reserve(text.size());
+  size_t copied = 0;  // of `text`
+  size_t next = 0;    // of the lines of progress
+  const auto write = [&](size_t end) {
+    out.append(text.substr(copied, end - copied));
+    copied = end;
+  };
+  const auto put_next = [&] {
+    const ProgressMoment& line = is.lines[next++];
+    out.append(text.substr(line.begin, line.end - line.begin));
+  };
+  size_t seen = 0;  // lines of progress that have been passed
+  TextMoments none;
+  const auto visit = [&](const Step& step, double seconds) {
+    if (step.kind == StepKind::kProgress) {
+      const size_t here = seen++;
+      write(step.line.begin);
+      // Those that are to stand before one that stays do so at the latest there.
+      while (!goes[here] && next < here) put_next();
+      if (goes[here]) {
+        copied = step.line.next;
+      } else {
+        ++next;
+      }
+    } else if (step.kind == StepKind::kExtrude || seconds >= is.seconds) {
+      while (next < goes.size() && goes[next] && was.lines[next].share * is.seconds <= seconds) {
+        write(step.line.begin);
+        put_next();
+      }
+    }
+  };
+  MachineState machine;
+  machine.relative_e = !file.modes.empty() && file.modes[0].relative_e;
+  MeasureMoments(file, text, {machine, {}}, none, visit);
+  write(text.size());
+  while (next < goes.size()) put_next();
+  return out;
+}
+
+}  // namespace traverse::gcode
