@@ -49,7 +49,7 @@ StepKind KindOfComment(std::string_view comment, SlotMask& slots) {
 // was.
 bool IsHarmlessMacro(std::string_view line) {
   static constexpr std::string_view kMacros[] = {"TIMELAPSE_TAKE_FRAME", "SET_PRINT_STATS_INFO",
-                                                 "TIMELAPSE_RENDER"};
+                                                 "TIMELAPSE_RENDER", "M622.1"};
   const std::string_view name = line.substr(0, line.find_first_of(" \t;"));
   return std::find(std::begin(kMacros), std::end(kMacros), name) != std::end(kMacros);
 }
@@ -60,6 +60,11 @@ StepKind KindOfText(std::string_view line, SlotMask& slots) {
   if (LabelOf(line).kind != LabelKind::kNone) return StepKind::kLabel;
   if (IsProgressMacro(line)) return StepKind::kProgress;
   return IsHarmlessMacro(line) ? StepKind::kStay : StepKind::kUnknown;
+}
+
+// Bambu's: a picture (971, 9711), a shutter (1004), notes for the display and the host (991, 1002).
+bool OnlyTells(int number) {
+  return number == 971 || number == 9711 || number == 991 || number == 1002 || number == 1004;
 }
 
 // 30 m, or half a mile of inches: no printer, and beyond what the service takes.
@@ -221,6 +226,18 @@ void Interpreter::FollowM(Step& step) {
     case 591:  // watch over the filament
       step.kind = StepKind::kStay;
       return;
+    case 117:
+    case 118:
+      step.kind = IsProgressMessage(step.command.rest) ? StepKind::kProgress : StepKind::kStay;
+      return;
+    case 622:
+    case 623:
+      // What may be left out does not matter if it does nothing to the print.
+      if (step.command.number == 622) {
+        condition_until_ = std::max(condition_until_, ConditionUntil(next_));
+      }
+      step.kind = next_ <= condition_until_ ? StepKind::kStay : StepKind::kUnknown;
+      return;
     case 486:
     case 624:
     case 625:
@@ -228,7 +245,9 @@ void Interpreter::FollowM(Step& step) {
       return;
     default:
       step.slots = CommandSlots(step.command);
-      step.kind = step.slots != 0 ? StepKind::kSlot : StepKind::kUnknown;
+      step.kind = step.slots != 0                  ? StepKind::kSlot
+                  : OnlyTells(step.command.number) ? StepKind::kStay
+                                                   : StepKind::kUnknown;
   }
 }
 
@@ -319,6 +338,22 @@ Offset Interpreter::LiftsUntil(Offset next) const {
                       (command.words & ~kOfLifts) == 0;
     if (!lift && command.kind != LineKind::kBlank) return 0;
     lifts = lifts || lift;
+  }
+  return 0;
+}
+
+Offset Interpreter::ConditionUntil(Offset next) const {
+  constexpr int kMostLines = 16;
+  Command command;
+  for (int i = 0; i < kMostLines && next < text_.size(); ++i) {
+    const Line line = LineAt(text_, next);
+    LexLine(line.Text(text_), command);
+    next = line.next;
+    if (command.Is('M', 623)) return next;
+    const bool tells =
+        command.kind == LineKind::kCommand && command.letter == 'M' && OnlyTells(command.number);
+    const bool says = command.kind == LineKind::kBlank || command.kind == LineKind::kComment;
+    if (!tells && !says) return 0;
   }
   return 0;
 }

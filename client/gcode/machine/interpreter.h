@@ -133,12 +133,16 @@ class Interpreter {
   // The end of the lines that lift relatively, G91, moves of Z, G90, if such begin at the line
   // before `next`; otherwise 0.
   Offset LiftsUntil(Offset next) const;
+  // The end of `M622 J1` and what it makes depend on a state of the machine, up to M623, if nothing
+  // of that moves or sets anything; otherwise 0.
+  Offset ConditionUntil(Offset next) const;
   void SwitchUnits();
 
   std::string_view text_;
   Offset next_;
-  Offset lifts_until_ = 0;    // the end of the relative lift that was found last
-  bool behind_pull_ = false;  // the command before this one moved filament alone
+  Offset lifts_until_ = 0;      // the end of the relative lift that was found last
+  Offset condition_until_ = 0;  // the end of the condition that was found last
+  bool behind_pull_ = false;    // the command before this one moved filament alone
   MachineState state_;
 };
 

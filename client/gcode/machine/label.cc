@@ -20,17 +20,21 @@ bool EqualsInAnyCase(std::string_view a, std::string_view b) {
   });
 }
 
-// `@OBJECT part.stl`, `@OBJECT none`.
+// `@OBJECT part.stl`, `@OBJECT none`; `@EXCLUDEREGION part`, `@ExcludeRegion end part`.
 Label HostLabel(std::string_view line) {
-  constexpr std::string_view kObject = "@OBJECT";
-  if (!EqualsInAnyCase(line.substr(0, kObject.size()), kObject)) return {};
-  const std::string_view rest = line.substr(kObject.size());
-  if (!rest.empty() && rest[0] != ' ' && rest[0] != '\t') return {};
-  const std::string_view name = TrimBlanks(rest);
-  for (const std::string_view none : {"", "none", "end", "stop", "off"}) {
-    if (EqualsInAnyCase(name, none)) return {LabelKind::kEnds, kObject, false};
+  for (const std::string_view command : {"@OBJECT", "@EXCLUDEREGION"}) {
+    if (!EqualsInAnyCase(line.substr(0, command.size()), command)) continue;
+    const std::string_view rest = line.substr(command.size());
+    if (!rest.empty() && rest[0] != ' ' && rest[0] != '\t') continue;
+    const std::string_view name = TrimBlanks(rest);
+    const std::string_view word = name.substr(0, name.find_first_of(" \t"));
+    for (const std::string_view none : {"", "none", "end", "stop", "off", "disable"}) {
+      if (EqualsInAnyCase(word, none))
+        return {LabelKind::kEnds, command, word.size() < name.size()};
+    }
+    return {LabelKind::kBegins, command, true};
   }
-  return {LabelKind::kBegins, kObject, true};
+  return {};
 }
 
 // `M486 S3`, `M486 S-1`, `M486 Apart.stl`.

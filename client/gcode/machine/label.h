@@ -25,7 +25,7 @@ struct Label {
 // PrusaSlicer: `; printing object`; OrcaSlicer, Bambu Studio: `; start printing object`, M624, M625
 // and `; OBJECT_ID:`; Klipper: EXCLUDE_OBJECT_START; Marlin, RepRapFirmware: M486; CuraEngine:
 // `;MESH:`; ideaMaker: `;PRINTING:`; KISSlicer, IceSL: the end of their layers; OctoPrint:
-// `@OBJECT`. `line` has no blanks around it.
+// `@OBJECT`, `@EXCLUDEREGION`. `line` has no blanks around it.
 Label LabelOf(std::string_view line);
 
 }  // namespace traverse::gcode

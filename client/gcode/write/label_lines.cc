@@ -109,6 +109,15 @@ std::string_view ExchangedLabels::LineOf(size_t i) const {
   return other_[i].empty() ? link_.steps[i].line.Raw(file_.text) : other_[i];
 }
 
+bool SaysLabelsOnly(const GcodeFile& file, uint32_t block) {
+  const Link link = ReadLink(file, block);
+  return link.fixed == 0 &&
+         std::none_of(link.steps.begin(), link.steps.end(), [](const LinkStep& step) {
+           return step.kind == StepKind::kStay || step.kind == StepKind::kComment ||
+                  step.kind == StepKind::kLayerMark;
+         });
+}
+
 bool BeginsAlike(const GcodeFile& file, uint32_t one, uint32_t other) {
   return Alike(file, one, other, true);
 }

@@ -53,6 +53,10 @@ class ExchangedLabels {
   std::vector<std::string_view> other_;  // [step], empty for its own
 };
 
+// The link before block `block` has labels and what leads from path to path, and nothing else but
+// lines of progress, which stand by the time.
+bool SaysLabelsOnly(const GcodeFile& file, uint32_t block);
+
 // What keeps the object that begins with block `one`, or ends before it, from standing where that
 // of block `other` does: the lines that begin it, or end it, are not of the same sorts, or some of
 // them stand among lines that stay.

@@ -186,9 +186,16 @@ bool LayerWriter::ChangesGiven() const {
 }
 
 // `place` is the block that stands here in the file. `moved`: objects of the layer have changed
-// places, so that each M73 stands by the time, between objects too.
+// places, so that lines of progress stand by the time, between objects too.
 void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32_t place,
                             bool as_sliced, bool moved, GcodeOut& out) const {
+  // Two objects that still follow each other keep what stands between them, if it is of no other
+  // use there than what stands in this place.
+  const uint32_t own = to.placement().block;
+  const bool neighbors = from.placement().block + 1 == own && from.as_given() && to.as_given();
+  if (own != place && neighbors && SaysLabelsOnly(file_, own) && SaysLabelsOnly(file_, place)) {
+    place = own;
+  }
   const bool boundary = (file_.blocks[place].link & (kLinkSplits | kLinkFixed)) != 0;
   LinkRequest request;
   request.from = &from;

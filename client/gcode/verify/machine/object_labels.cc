@@ -1,11 +1,17 @@
 #include "client/gcode/verify/machine/object_labels.h"
 
 #include <algorithm>
+#include <optional>
+#include <string>
 
 #include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
 namespace {
+
+// Commands of hosts.
+constexpr std::string_view kObject = "@OBJECT";
+constexpr std::string_view kExcludeRegion = "@EXCLUDEREGION";
 
 // What follows `prefix`, if the line begins with it.
 bool Follows(std::string_view line, std::string_view prefix, std::string_view& rest) {
@@ -28,15 +34,32 @@ bool IsCommand(std::string_view line, std::string_view command, std::string_view
                                           line[command.size()] < '0' || line[command.size()] > '9');
 }
 
+std::string InCapitals(std::string_view text) {
+  std::string capitals(text);
+  for (char& c : capitals) c = UpperCase(c);
+  return capitals;
+}
+
+// What follows `command` of a host, in any case; nothing if it is another one.
+std::optional<std::string_view> BehindHostCommand(std::string_view line, std::string_view command) {
+  if (InCapitals(line.substr(0, line.find_first_of(" \t"))) != command) return std::nullopt;
+  return TrimLine(line.substr(command.size()));
+}
+
+// The object is left: the first word says so.
 bool IsNothing(std::string_view name) {
-  for (const std::string_view none :
-       {"", "none", "NONE", "None", "end", "END", "stop", "STOP", "off", "OFF"}) {
-    if (name == none) return true;
+  const std::string word = InCapitals(name.substr(0, name.find_first_of(" \t")));
+  for (const std::string_view none : {"", "NONE", "END", "STOP", "OFF", "DISABLE"}) {
+    if (word == none) return true;
   }
   return false;
 }
 
 }  // namespace
+
+bool ObjectLabels::IsOfHost(std::string_view line) {
+  return BehindHostCommand(line, kObject) || BehindHostCommand(line, kExcludeRegion);
+}
 
 void ObjectLabels::Switch(Notation notation, std::string_view name) {
   open_[notation] = name.empty() ? 0 : DigestOf(name) | 1;
@@ -80,10 +103,13 @@ bool ObjectLabels::Take(std::string_view line) {
     return true;
   }
   if (line[0] == '@') {
-    const bool object = Follows(line, "@OBJECT", rest) || Follows(line, "@Object", rest) ||
-                        Follows(line, "@object", rest);
-    if (object) Switch(kHost, IsNothing(rest) ? std::string_view() : rest);
-    return object;
+    for (const Notation notation : {kHost, kRegion}) {
+      const auto name = BehindHostCommand(line, notation == kHost ? kObject : kExcludeRegion);
+      if (!name) continue;
+      Switch(notation, IsNothing(*name) ? std::string_view() : *name);
+      return true;
+    }
+    return false;
   }
   if (Follows(line, "EXCLUDE_OBJECT_START", rest)) {
     Begin(kExclude, NameIn(rest));

@@ -15,6 +15,9 @@ class ObjectLabels {
   // Takes a line without blanks around it; true if it is a label.
   bool Take(std::string_view line);
 
+  // A label that a host reads, not the printer.
+  static bool IsOfHost(std::string_view line);
+
   // Of all labels in force; 0 if there is none.
   uint64_t digest() const;
 
@@ -33,6 +36,7 @@ class ObjectLabels {
     kPrintingOf,  // ideaMaker: `;PRINTING:`
     kPrintingId,  // `;PRINTING_ID:`
     kHost,        // OctoPrint: `@OBJECT`
+    kRegion,      // `@EXCLUDEREGION`
     kCount,
   };
 

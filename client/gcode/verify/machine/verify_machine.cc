@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "client/gcode/verify/machine/object_labels.h"
+#include "client/gcode/verify/machine/told_progress.h"
 #include "client/gcode/verify/text.h"
 
 namespace traverse::gcode {
@@ -267,6 +269,25 @@ size_t VerifyMachine::LinesOfLift() const {
   return 0;
 }
 
+// Behind M622: all lines up to M623 are pictures, notes or comments.
+bool VerifyMachine::ConditionOnlyTells() const {
+  constexpr size_t kMostLines = 16;
+  std::string_view rest = rest_;
+  for (size_t i = 0; i < kMostLines && !rest.empty(); ++i) {
+    const size_t end = std::min(rest.find('\n'), rest.size());
+    const std::string_view line = TrimLine(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (line.find('\r') != std::string_view::npos) return false;
+    if (line.empty() || line[0] == ';') continue;
+    const std::string_view name = line.substr(0, line.find_first_of(" \t;"));
+    if (name == "M623") return true;
+    const bool tells =
+        name == "M971" || name == "M9711" || name == "M991" || name == "M1002" || name == "M1004";
+    if (!tells) return false;
+  }
+  return false;
+}
+
 void VerifyMachine::Move(int number, const CommandWords& words, VerifyLine& line) {
   if (words.Has('F')) feed_ = words['F'];
   const std::array<Micro, 3> from = at_;
@@ -377,7 +398,11 @@ void VerifyMachine::DoM(int number, VerifyLine& line) {
     return Fence(line, LineRole::kProgress);
   }
   if (number == 82 || number == 83) return Mode(relative_e_, number == 83, line);
-  for (const int known : {74, 104, 105, 117, 118, 140, 142, 155, 486, 591, 624, 625}) {
+  if (number == 622) in_condition_ = ConditionOnlyTells();
+  const bool conditional = number == 622 || number == 623;
+  if (conditional && in_condition_) return Fence(line, LineRole::kFence);
+  for (const int known :
+       {74, 104, 105, 117, 118, 140, 142, 155, 486, 591, 624, 625, 971, 991, 1002, 1004, 9711}) {
     if (number != known) continue;
     line.label = number == 486 || number == 624 || number == 625;
     return Fence(line, LineRole::kFence);
@@ -395,13 +420,11 @@ void VerifyMachine::DoKlipper(VerifyLine& line) {
     line.label = true;
     return Fence(line, LineRole::kFence);
   }
-  for (const std::string_view mark : {"@OBJECT", "@Object", "@object"}) {
-    if (Begins(text, mark)) return Fence(line, LineRole::kFence);
-  }
+  if (ObjectLabels::IsOfHost(text)) return Fence(line, LineRole::kFence);
   // Macros that move nothing, or lead the head away for a picture and back.
   const std::string_view name = text.substr(0, text.find_first_of(" \t;"));
   for (const std::string_view macro :
-       {"TIMELAPSE_TAKE_FRAME", "TIMELAPSE_RENDER", "SET_PRINT_STATS_INFO"}) {
+       {"TIMELAPSE_TAKE_FRAME", "TIMELAPSE_RENDER", "SET_PRINT_STATS_INFO", "M622.1"}) {
     if (name == macro) return Fence(line, LineRole::kFence);
   }
   // What the next tool, or filament, has in its nozzle is not known.

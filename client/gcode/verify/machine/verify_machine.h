@@ -121,6 +121,7 @@ class VerifyMachine {
   // How many of the next lines move Z alone and end with G90, and with the mode of the extruder if
   // that is stated again; 0: other lines follow.
   size_t LinesOfLift() const;
+  bool ConditionOnlyTells() const;
   bool InLift() const { return number_ <= last_of_lift_; }
   void SwitchUnits(bool inches, VerifyLine& line);
   void Fence(VerifyLine& line, LineRole role);
@@ -129,10 +130,11 @@ class VerifyMachine {
   const char* line_feed_ = nullptr;  // the next one, or the end
   const char* return_ = nullptr;     // the same of carriage returns
   size_t number_ = 0;
-  size_t moved_at_ = 0;      // the line of motion_
-  bool pulls_ = false;       // the line moves filament alone
-  bool waits_ = false;       // the command before it did
-  size_t last_of_lift_ = 0;  // the line behind a lift in relative mode
+  size_t moved_at_ = 0;        // the line of motion_
+  bool pulls_ = false;         // the line moves filament alone
+  bool waits_ = false;         // the command before it did
+  size_t last_of_lift_ = 0;    // the line behind a lift in relative mode
+  bool in_condition_ = false;  // of M622, up to M623, with nothing in it that moves or sets
   uint32_t line_ends_ = 0;
   std::array<uint32_t, kMostReturns + 2> first_with_end_{};  // [bit of line_ends_]
   std::array<Micro, 3> at_{};

@@ -109,6 +109,18 @@ TEST(MovedObjects, TakeWhatStandsAtTheirLabelsAlong) {
   EXPECT_TRUE(LabelledRight(rewrite.text, Klipper()));
 }
 
+// The wipe of a path stands within the label of the next object; two objects still follow each
+// other.
+TEST(MovedObjects, KeepTheWipeBetweenNeighbors) {
+  for (const Notation& notation : Notations()) {
+    PillarPrint print;
+    print.wipes = true;
+    const GcodeRewrite rewrite = Optimised(Text(print, notation));
+    EXPECT_LT(Share(rewrite), 0.9) << notation.name << " " << rewrite.unproven;
+    EXPECT_EQ(rewrite.layers_unproven, 0) << notation.name << " " << rewrite.unproven;
+  }
+}
+
 TEST(MovedObjects, StayInPrintsObjectByObject) {
   PillarPrint print;
   print.one_by_one = true;

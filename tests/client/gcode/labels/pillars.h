@@ -55,6 +55,7 @@ inline std::vector<Notation> Notations() {
        [](int n) { return absl::StrCat(";PRINTING: p", n, ".stl\n;PRINTING_ID: ", n, "\n"); },
        none},
       {"OctoPrint", line("@OBJECT p"), [](int) { return std::string("@OBJECT none\n"); }},
+      {"OctoPrint regions", line("@ExcludeRegion p"), line("@ExcludeRegion end p")},
   };
 }
 
@@ -66,6 +67,7 @@ struct PillarPrint {
   std::string before_object;  // behind its label; @ stands for its number
   std::string before_layer;   // behind the mark of each layer
   std::string between;        // before the label of each object but the first
+  bool wipes = false;         // behind each pillar
   bool one_by_one = false;    // a pillar is finished before the next is begun
 
   double XOf(int pillar) const { return 60 + apart * (pillar % 2); }
@@ -82,13 +84,22 @@ inline std::string Loop(double x, double y, double half) {
   return text;
 }
 
-// The paths of one pillar, with the travel to it.
-inline std::string TravelTo(const PillarPrint& print, int pillar) {
+// Pulls filament back behind pillar `from`; less than 0: it is pulled back already.
+inline std::string PullBehind(const PillarPrint& print, int from) {
+  if (from < 0) return "";
+  if (!print.wipes) return "G1 E-.8 F2100\n";
+  return absl::StrCat("G1 E-.2 F2100\n;WIPE_START\nG1 F7200\nG1 X", print.XOf(from), " Y",
+                      print.YOf(from) + print.side / 2 - 3, " E-.55\n;WIPE_END\nG1 E-.05 F2100\n");
+}
+
+// The travel from pillar `from` to another one.
+inline std::string TravelTo(const PillarPrint& print, int pillar, int from) {
   const double half = print.side / 2 - 0.45;
-  return absl::StrCat("G1 E-.8 F2100\nG1 X", print.XOf(pillar) - half, " Y",
+  return absl::StrCat(PullBehind(print, from), "G1 X", print.XOf(pillar) - half, " Y",
                       print.YOf(pillar) - half, " F9000\n");
 }
 
+// The paths of one pillar.
 inline std::string PathsOf(const PillarPrint& print, int pillar) {
   const double x = print.XOf(pillar);
   const double y = print.YOf(pillar);
@@ -103,8 +114,9 @@ inline std::string PathsOf(const PillarPrint& print, int pillar) {
   return text;
 }
 
-inline std::string ObjectOf(const PillarPrint& print, const Notation& notation, int pillar) {
-  const std::string travel = TravelTo(print, pillar);
+inline std::string ObjectOf(const PillarPrint& print, const Notation& notation, int pillar,
+                            int from) {
+  const std::string travel = TravelTo(print, pillar, from);
   const std::string inner = notation.travel_inside ? "" : travel;
   const std::string before =
       absl::StrReplaceAll(print.before_object, {{"@", absl::StrCat(pillar)}});
@@ -127,11 +139,13 @@ inline std::string Text(const PillarPrint& print, const Notation& notation) {
       absl::StrAppend(&text, LayerMark(height(layer)), print.before_layer, "G1 Z", height(layer),
                       " F9000\n");
       for (size_t i = 0; i < here.size(); ++i) {
-        if (notation.travel_inside) text += TravelTo(print, here[i]);
+        const int from = i > 0 ? here[i - 1] : print.wipes ? -1 : here[0];
+        if (notation.travel_inside) text += TravelTo(print, here[i], from);
         if (i > 0) absl::StrAppend(&text, notation.end(here[i - 1]), print.between);
-        text += ObjectOf(print, notation, here[i]);
+        text += ObjectOf(print, notation, here[i], from);
       }
       text += notation.end(here.back());
+      if (print.wipes && layer < print.layers) text += PullBehind(print, here.back());
     }
   }
   return text + "G1 E-.8 F2100\nM107\nM84\n; slow_down_layer_time = 0\n";

@@ -195,7 +195,7 @@ TEST(VerifyRetractions, AreNotDoneInMoreParts) {
   const std::string longer = "G1 E-2 F2100\nG1 E-1\nG1 X0 Y0 F9000\nG1 E3 F2100\n" +
                              std::string(";TYPE:Internal infill\nG1 F1800\nG1 X9 Y0 E.3\n");
   EXPECT_EQ(Broken(a + longer, in_parts + longer), "retractions");
-  const std::string script = "M971\nG1 E-.5 F2100\nG1 E-.5\nG1 E1\n";
+  const std::string script = "M976\nG1 E-.5 F2100\nG1 E-.5\nG1 E1\n";
   EXPECT_THAT(Broken(a + script + kTwo, in_parts + script + kTwo), HasSubstr("retractions"));
 }
 

@@ -71,7 +71,7 @@ TEST(VerifyScripts, LeaveThePrintAsTheyDid) {
 // Also where the next path has another height.
 TEST(VerifyScripts, TravelsBehindUnknownLinesToALayerGoAsTheyDid) {
   const std::string travel = "G1 X0 Y6 F9000\nG1 E1 F2100\n";
-  const std::string a = kHead + kTwo + "G1 E-1 F2100\nG1 Z.4 F9000\nM971 S11\n" + travel +
+  const std::string a = kHead + kTwo + "G1 E-1 F2100\nG1 Z.4 F9000\nM976 S11\n" + travel +
                         ";TYPE:Internal infill\nG1 F1800\nG1 X9 Y6 E.3\n" +
                         Line("Internal infill", "X9 Y8", "X0 Y8");
   EXPECT_EQ(Broken(a, a), "");
@@ -82,7 +82,7 @@ TEST(VerifyScripts, TravelsBehindUnknownLinesToALayerGoAsTheyDid) {
 // A tower's filament is pushed back where the head stood, not where it goes on.
 TEST(VerifyScripts, TravelsToUnknownLinesGoAsTheyDid) {
   const std::string travel = "G1 E-5 F2100\nG1 E2 F2000\nG1 X9 Y7 F2400\n";
-  const std::string a = kHead + kTwo + travel + "M971 S11\nG1 E3 F2100\n" +
+  const std::string a = kHead + kTwo + travel + "M976 S11\nG1 E3 F2100\n" +
                         Line("Internal infill", "X0 Y9", "X9 Y9") + kTwo;
   EXPECT_EQ(Broken(a, a), "");
   const std::string later = "G1 E-5 F2100\nG1 X9 Y7 F2400\nG1 E2 F2000\n";
@@ -91,7 +91,7 @@ TEST(VerifyScripts, TravelsToUnknownLinesGoAsTheyDid) {
 
 // A time-lapse stands between two layers or paths: what comes behind it goes as before.
 TEST(VerifyScripts, TravelsBehindUnknownLinesGoAsTheyDid) {
-  const std::string script = "M971 S11 C10\n";
+  const std::string script = "M976 S11 C10\n";
   const auto line = [](const char* x) {
     return Lifted(absl::StrCat(x, " Y5")) + ";TYPE:Internal infill\nG1 F1800\nG1 " + x +
            " Y9 E.3\n";
@@ -112,7 +112,7 @@ TEST(VerifyScripts, TravelsBehindUnknownLinesGoAsTheyDid) {
 
 // A script leaves its own acceleration behind, and the travel to the next path keeps it.
 TEST(VerifyScripts, TravelsBehindUnknownLinesAccelerateAsTheyDid) {
-  const std::string script = "M204 S500\nM971 S11 C10\n";
+  const std::string script = "M204 S500\nM976 S11 C10\n";
   const auto line = [](const char* x, const char* set = "") {
     return Lifted(absl::StrCat(x, " Y5")) + set + ";TYPE:Internal infill\nG1 F1800\nG1 " + x +
            " Y9 E.3\n";
