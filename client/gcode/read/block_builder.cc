@@ -260,7 +260,7 @@ void BlockBuilder::BeginBlock(const Step& step, const MachineState& before,
   block.object = object_;
   block.first_end = static_cast<uint32_t>(file_.ends.size());
   block.mode = ModeOf(after);
-  CloseLink(block);
+  CloseLink(block, after.at.z);
   block.link = link_.flags;
   if (link_.sets_fan) block.flags |= kBlockOwnFan;
   block.travel_mm = static_cast<float>(link_.travel_mm);
@@ -294,10 +294,17 @@ bool BlockBuilder::GoesOn() const {
   return Distance(at, mode.InMm(link_.first_move_to)) <= kBesideMm;
 }
 
-void BlockBuilder::CloseLink(const Block& block) {
+// A scarf seam rises to the height of its layer from below it.
+bool BlockBuilder::BeginsLayer(const Block& block, Decimal first_end_z) const {
+  if (file_.blocks.empty() || (link_.flags & kLinkNewLayer) != 0) return true;
+  const Decimal z = file_.layers.back().z;
+  const bool rises_to_it = block.first.z < first_end_z && first_end_z <= z;
+  return block.first.z != z && !rises_to_it;
+}
+
+void BlockBuilder::CloseLink(const Block& block, Decimal first_end_z) {
   const bool first = file_.blocks.empty();
-  const bool new_layer =
-      first || Last().first.z != block.first.z || (link_.flags & kLinkNewLayer) != 0;
+  const bool new_layer = BeginsLayer(block, first_end_z);
   if (first) {
     link_.flags |= kLinkFixed;
   } else {
@@ -343,6 +350,10 @@ void BlockBuilder::ExtendBlock(const Step& step, const MachineState& before,
   pending_ = 0;
   link_ = OpenLink{};
   if (step.retracted || before.at.z != after.at.z) block.flags |= kBlockPinned;
+  // A layer that begins with a scarf seam is as high as that ends.
+  Layer& layer = file_.layers.back();
+  const bool begins_layer = layer.first_block + 1 == file_.blocks.size();
+  if (begins_layer && after.at.z > before.at.z) layer.z = std::max(layer.z, after.at.z);
   if (step.arc)
     block.flags |= EndsOnItsCircle(step.command, step.from, after.at, after.UnitMm())
                        ? kBlockArcs

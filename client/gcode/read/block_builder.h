@@ -66,7 +66,9 @@ class BlockBuilder {
   void BeginBlock(const Step& step, const MachineState& before, const MachineState& after);
   void ExtendBlock(const Step& step, const MachineState& before, const MachineState& after);
   bool GoesOn() const;
-  void CloseLink(const Block& block);
+  // `block` begins here, and its first segment ends at `first_end_z`.
+  bool BeginsLayer(const Block& block, Decimal first_end_z) const;
+  void CloseLink(const Block& block, Decimal first_end_z);
   void BeginLayer(const Block& block);
   void KeepLayersWithFaults();
   uint32_t CurrentState();

@@ -88,10 +88,14 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
                                        bool mark) {
   Cut cut;
   if (Ignores(line)) return cut;
-  if (line.role == LineRole::kDeposit && has_height_ && line.z != height_) {
+  const bool rises = line.role == LineRole::kDeposit && machine.motion().from[2] < line.z;
+  const bool within = rises && (line.z <= height_ || GoesOnRising(machine.motion()));
+  if (line.role == LineRole::kDeposit && has_height_ && line.z != height_ && !within) {
     CutAtHeight(machine);
     cut.before = true;
+    ramp_begin_ = machine.motion().from[2];
   }
+  if (line.role == LineRole::kDeposit || line.moves) rising_ = rises;
   last_line_ = line.number;
   NoteHeader(line, mark);
   // Unknown commands leave the head elsewhere, so a move to where it was does move it.
@@ -103,7 +107,7 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
   if (line.travels) section_.lowest = std::min(section_.lowest, machine.z());
   switch (line.role) {
     case LineRole::kDeposit:
-      height_ = line.z;
+      height_ = within ? std::max(height_, line.z) : line.z;
       has_height_ = layer_prints_ = true;
       section_.lowest = std::min(section_.lowest, line.z);
       section_.deposits.Add(line.digest);
@@ -131,6 +135,13 @@ SectionCutter::Cut SectionCutter::Take(const VerifyLine& line, const VerifyMachi
       break;
   }
   return cut;
+}
+
+// Without another move since the deposit before, from where that ended; but a spiral vase rises on
+// and on.
+bool SectionCutter::GoesOnRising(const Motion& motion) const {
+  constexpr Micro kMostRise = 1'000'000;
+  return rising_ && motion.from[2] == height_ && motion.to[2] - ramp_begin_ <= kMostRise;
 }
 
 void SectionCutter::Count(uint32_t section, const std::vector<uint64_t>& printed,

@@ -118,6 +118,7 @@ class SectionCutter {
              const std::vector<uint64_t>& as);
 
  private:
+  bool GoesOnRising(const Motion& motion) const;
   void CutAtHeight(const VerifyMachine& machine);
   void Close(const VerifyMachine& machine, size_t last_line, uint64_t fence, bool fixed,
              bool label = false);
@@ -136,8 +137,10 @@ class SectionCutter {
   bool in_script_;
   Micro height_ = 0;
   bool has_height_ = false;
+  bool rising_ = false;        // the last move was a deposit that rose, as scarf seams do
+  Micro ramp_begin_ = 0;       // where the first deposit of the section began, if a height cut it
   bool layer_prints_ = false;  // since the last mark of a layer, or change of height
-  bool in_head_ = true;  // no command yet
+  bool in_head_ = true;        // no command yet
   bool in_picture_ = false;
   bool in_header_ = false;  // no travel, and no section has ended, since the mark of a layer
 };

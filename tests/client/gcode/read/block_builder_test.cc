@@ -36,6 +36,19 @@ TEST(BlockBuilder, ALayerIsARunAtOneHeight) {
   EXPECT_EQ(file->layers[1].z, kDecimalOne);
 }
 
+// OrcaSlicer begins outer walls low, and lets them rise to the height of the layer.
+TEST(BlockBuilder, ScarfSeamsDoNotEndALayer) {
+  const std::string level = "G0 X5\nG1 X6 E1\n";
+  const std::string scarf = "G0 X7 Z.2\nG1 X8 Z.6 E1\nG1 X9 Z1 E1\nG1 Y3 E1\n";
+  for (const std::string& layer : {level + scarf + level, scarf + scarf + level}) {
+    const auto file = Read("M83\nG1 X1 E1\n;LAYER_CHANGE\nG1 Z1\n" + layer + "G1 Z2\n" + level);
+
+    ASSERT_EQ(file->layers.size(), 3u) << layer;
+    EXPECT_EQ(file->layers[1].z, kDecimalOne);
+    EXPECT_EQ(file->layers[2].first_block, 4u);
+  }
+}
+
 TEST(BlockBuilder, LiftsDoNotEndALayer) {
   const auto file = Read("M83\nG1 X1 E1\nG1 E-1\nG1 Z.5\nG0 X5\nG1 Z0\nG1 E1\nG1 X6 E1\n");
 

@@ -61,6 +61,27 @@ TEST(SamePrint, CommentsStayBetweenThePathsBetweenWhichTheyStand) {
   EXPECT_EQ(Broken(a, kHead + kOther + "; stop printing\n" + kOne), "");
 }
 
+TEST(SamePrint, ScarfSeamsDoNotDivideALayer) {
+  const std::string scarf =
+      "G1 X10 Y40 Z.1 F9000\n;TYPE:Outer wall\nG1 F1200\nG1 X15 Y40 Z.15 E.1\nG1 X20 Y40 Z.2 E.2\n"
+      "G1 X20 Y50 E.4\n";
+  const std::string one = Line("Sparse infill", "X40 Y10", "X50 Y10");
+  const std::string other = Line("Sparse infill", "X40 Y20", "X50 Y20");
+  const uint32_t same = RuleBit(VerifyRule::kSamePrint);
+  for (const std::string& first : {std::string(), kSquare}) {
+    const std::string was = kHead + first + scarf + one + other;
+
+    EXPECT_EQ(Broken(was, kHead + first + scarf + other + one, {}, same), "") << first;
+    EXPECT_EQ(Broken(was, With(was, "Z.15 E.1", "Z.16 E.1"), {}, same), "same_print") << first;
+  }
+  // Turned round it would sink.
+  const std::string turned =
+      "G1 X20 Y50 F9000\n;TYPE:Outer wall\nG1 F1200\nG1 X20 Y40 E.4\nG1 X15 Y40 Z.15 E.2\n"
+      "G1 X10 Y40 Z.1 E.1\nG1 Z.2\n";
+  EXPECT_EQ(Broken(kHead + kSquare + scarf + one, kHead + kSquare + turned + one, {}, same),
+            "same_print");
+}
+
 TEST(SamePrint, EachLayerThatIsAnotherIsNamed) {
   const std::string above = "G1 Z.4 F9000\n" + kTwo;
   const std::string a = kHead + kTwo + above + "G1 Z.6 F9000\n" + kTwo;
