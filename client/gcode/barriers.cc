@@ -9,10 +9,12 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/substitute.h"
 #include "client/gcode/choose/object_orders.h"
 #include "client/gcode/machine/label.h"
 #include "client/gcode/model/feature.h"
 #include "client/gcode/parallel.h"
+#include "client/gcode/read/least_layer_time.h"
 #include "client/gcode/text/text.h"
 
 namespace traverse {
@@ -201,74 +203,70 @@ std::string Place(const GcodeFile& file, Offset at) {
   return absl::StrFormat("%s:%d", file.name, file.LineNumber(at));
 }
 
+// What holds paths, and what would let them move. `$0` is the first line that does it, `$1` its
+// place.
+struct CauseWords {
+  const char* holds;
+  const char* frees;
+};
+constexpr std::array<CauseWords, kCauses> kWords = {{
+    {"stay beside commands that are not known here, the first of them $0",
+     "without them in the slicer's custom G-code they could move"},
+    {"stay on their side of a change of tool or filament, the first of them in $1",
+     "fewer changes in a layer let more of them move"},
+    {"stay beside the wipe tower or a script, which nothing passes",
+     "without the tower in the slicer's settings they could move"},
+    {"are printed rising, as spiral vases and scarf seams are, or with the filament retracted, the "
+     "first of them in $1",
+     "with these off in the slicer they could move"},
+    {"stay within the label of their object, the first of which is $0",
+     "with the slicer's labels of objects off (\"Label objects\", \"Exclude objects\") they could "
+     "mix"},
+    {"stay on their side of a line that nothing passes, the first of them $0",
+     "without such lines in the slicer's custom G-code they could move"},
+    {"stay on their side of a change of the fan",
+     "--allow=fan_order or --policy=free lets them move, or the same fan speed for bridges and "
+     "overhangs in the slicer"},
+    {"are walls that touch and keep their order",
+     "--allow=wall_order or --policy=free lets them change places"},
+    {"are walls and infill that touch and keep their order",
+     "--allow=infill_order lets them change places"},
+    {"are lines of surfaces, bridges or ironing and what lies under them, in the order of the "
+     "slicer",
+     "monotonic lines may mix with --policy=free or with another pattern in the slicer"},
+    {"are supports and what rests on them, in the order in which the slicer has them",
+     "no flag changes that"},
+    {"are alone in their layers", "nothing can change places there"},
+}};
+
+std::string Counted(int64_t count, const char* what) {
+  return absl::StrCat(count, " ", what, count == 1 ? "" : "s");
+}
+
 std::string TextOf(const GcodeFile& file, Cause cause, const Tallies& tallies) {
   const Tally& tally = tallies.of[cause];
-  const std::string count = absl::StrFormat("%d paths in %d layers ", tally.paths, tally.layers);
-  const auto line = [&] {
-    return absl::StrCat(Quoted(file, tally.at), " in ", Place(file, tally.at));
-  };
-  switch (cause) {
-    case kUnknownLine:
-      return absl::StrCat(count, "stay beside commands that are not known here, the first of them ",
-                          line(), "; without them in the slicer's custom G-code they could move");
-    case kToolChange:
-      return absl::StrCat(count,
-                          "stay on their side of a change of tool or filament, the first of "
-                          "them in ",
-                          Place(file, tally.at),
-                          "; fewer changes in a layer let more of them move");
-    case kTower:
-      return absl::StrCat(count,
-                          "stay beside the wipe tower or a script, which nothing passes; "
-                          "without the tower in the slicer's settings they could move");
-    case kPrintedOddly:
-      return absl::StrCat(count,
-                          "are printed rising, as a spiral vase is, or with the filament "
-                          "retracted, the first of them in ",
-                          Place(file, tally.at),
-                          "; with vase mode off in the slicer they could move");
-    case kObjectLabel:
-      return absl::StrCat(
-          count, "stay within the label of their object, the first of which is ", line(),
-          tallies.objects.empty() ? "" : ", and whole objects keep their places, because ",
-          std::string(tallies.objects),
-          "; with the slicer's labels of objects off (\"Label objects\", \"Exclude objects\") they "
-          "could mix");
-    case kKnownLine:
-      return absl::StrCat(count,
-                          "stay on their side of a line that nothing passes, the first of "
-                          "them ",
-                          line(),
-                          "; without such lines in the slicer's custom G-code they could move");
-    case kFanChange:
-      return absl::StrCat(count,
-                          "stay on their side of a change of the fan; --allow=fan_order or "
-                          "--policy=free lets them move, or the same fan speed for bridges and "
-                          "overhangs in the slicer");
-    case kWallOrder:
-      return absl::StrCat(count,
-                          "are walls that touch and keep their order; --allow=wall_order or "
-                          "--policy=free lets them change places");
-    case kInfillOrder:
-      return absl::StrCat(count,
-                          "are walls and infill that touch and keep their order; "
-                          "--allow=infill_order lets them change places");
-    case kSurfaceOrder:
-      return absl::StrCat(count,
-                          "are lines of surfaces, bridges or ironing and what lies under "
-                          "them, in the order in which the slicer has them; monotonic lines may "
-                          "mix with --policy=free or with another pattern in the slicer");
-    case kSupportOrder:
-      return absl::StrCat(count,
-                          "are supports and what rests on them, in the order in which the "
-                          "slicer has them; no flag changes that");
-    case kAlone:
-      return absl::StrFormat("%d layers have one path alone, so that nothing can change places",
-                             tally.layers);
-    case kCauses:
-      break;
+  const bool line = tally.at != UINT32_MAX;
+  const std::string place = line ? Place(file, tally.at) : "";
+  std::string text =
+      absl::StrCat(Counted(tally.paths, "path"), " in ", Counted(tally.layers, "layer"), " ") +
+      absl::Substitute(kWords[cause].holds,
+                       line ? absl::StrCat(Quoted(file, tally.at), " in ", place) : "", place);
+  if (cause == kObjectLabel && !tallies.objects.empty()) {
+    absl::StrAppend(&text, ", and whole objects keep their places, because ",
+                    std::string(tallies.objects));
   }
-  return "";
+  return absl::StrCat(text, "; ", kWords[cause].frees);
+}
+
+// What holds besides what can be counted by paths.
+std::string Remainder(const GcodeFile& file, Policy policy) {
+  if (IsFree(policy)) return "the rest may change places, but no other order found is faster";
+  return absl::StrFormat(
+      "of the rest, no order found is faster that lets each island rest %.4g s, or as long as in "
+      "the file, before it is printed on%s; --policy=free gives that up, and a lower least layer "
+      "time in the slicer a part of it",
+      LeastLayerSeconds(file.text),
+      policy == Policy::kSafe ? ", and visible walls begin where they do" : "");
 }
 
 }  // namespace
@@ -310,7 +308,7 @@ std::vector<std::string> DescribeBarriers(const GcodeFile& file, gcode::Policy p
   for (const Cause cause : causes) {
     if (lines.size() < most) lines.push_back(gcode::TextOf(file, cause, all));
   }
-  if (lines.empty()) lines.emplace_back("no path is kept from others of its layer");
+  if (lines.size() < most) lines.push_back(gcode::Remainder(file, policy));
   return lines;
 }
 

@@ -17,8 +17,8 @@ inline constexpr size_t kMostBarriers = 3;
 
 // The `most` weightiest ones of the layers for which `counted` is true, or of all if it is empty,
 // by the number of paths that each keeps from others, a line for each: "120 paths in 12 layers are
-// cut off by ... (first in part.gcode:118); --allow=fan_order lets them move". One line that says
-// so if nothing keeps any path.
+// cut off by ... (first in part.gcode:118); --allow=fan_order lets them move"; and, if there is
+// room for it, what else no order found is faster for.
 std::vector<std::string> DescribeBarriers(const GcodeFile& file, gcode::Policy policy,
                                           const gcode::Allowance& allow,
                                           const std::vector<bool>& counted = {},

@@ -16,6 +16,7 @@
 #include "client/gcode/plan/travel_rules.h"
 #include "client/gcode/read/least_layer_time.h"
 #include "client/gcode/read/reader.h"
+#include "client/gcode/stated_progress.h"
 #include "client/gcode/write/link_looks.h"
 
 namespace traverse {
@@ -339,6 +340,7 @@ absl::StatusOr<gcode::PrintTotals> AddMeasuredFacts(InputJob& job, const GcodeOp
   for (std::string& barrier : DescribeBarriers(*job.gcode, options.policy, options.allow)) {
     add("held", std::move(barrier));
   }
+  for (std::string& fault : DescribeProgressFaults(*job.gcode)) add("progress", std::move(fault));
   if (const auto rest = gcode::LeastRestOf(*job.gcode, threads)) {
     add("least rest of an island",
         absl::StrFormat("%.1f s before layer %d; least layer time %.4g s", rest->seconds,

@@ -13,6 +13,7 @@
 #include "client/gcode/choose/layer_choice.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/read/reader.h"
+#include "client/gcode/stated_progress.h"
 #include "client/gcode/text/digest_line.h"
 #include "client/gcode/text/text.h"
 #include "client/gcode/verify/verifier.h"
@@ -141,6 +142,12 @@ VerifyOptions AllRules(const GcodeFile& file, const RewriteOptions& options) {
   return verify;
 }
 
+// What is not proven, and where: "islands rest as long as in the original, ... (part.gcode:118
+// ...)".
+std::string Reason(const VerifyBreak& found) {
+  return absl::StrCat(std::string(VerifyRuleText(found.rule)), " (", found.message, ")");
+}
+
 size_t LinesIn(std::string_view text) {
   return static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
 }
@@ -215,7 +222,7 @@ class Rewriter {
         chooser_.Tighten(round + 1 < kRoundsOfLayers ? more : done->before.crossings + 1);
         continue;
       }
-      if (unproven_.empty()) unproven_ = report.breaks.front().message;
+      if (unproven_.empty()) unproven_ = Reason(report.breaks.front());
       RuleOut(report, lines, round);
     }
   }
@@ -278,9 +285,9 @@ class Rewriter {
     if (!after.ok()) return after.status();
     if (!after->has_value()) {
       rewrite.layers_unproven = rewrite.layers_changed;
-      rewrite.unproven = absl::StrCat(
-          file_.name, ": neither M82 nor M83 says how E counts, and its words in another order ",
-          "would be taken otherwise");
+      rewrite.unproven =
+          absl::StrCat("E counts as before: neither M82 nor M83 says how in ", file_.name,
+                       ", and its words in another order would be taken otherwise");
       return AsItIs(file_, std::move(rewrite));
     }
     rewrite.after = **after;
@@ -379,7 +386,7 @@ std::vector<std::string> DescribeLeft(const GcodeRewrite& rewrite) {
   std::vector<std::string> left;
   if (rewrite.layers_unproven > 0) {
     left.push_back(absl::StrFormat(
-        "%d layers left unchanged, because each order found breaks a rule of what may change: %s",
+        "%d layers left unchanged, because for no order found it could be proven that %s",
         rewrite.layers_unproven, rewrite.unproven));
   }
   if (rewrite.layers_unclear > 0) {
@@ -419,6 +426,9 @@ absl::StatusOr<GcodeRewrite> RewriteGcode(const GcodeFile& file,
   std::vector<bool> left;
   for (const gcode::LayerOrder& order : rewrite->orders) left.push_back(order.empty());
   rewrite->barriers = DescribeBarriers(file, options.policy, options.allow, left);
+  for (std::string& fault : DescribeProgressFaults(file)) {
+    rewrite->barriers.push_back(std::move(fault));
+  }
   return rewrite;
 }
 

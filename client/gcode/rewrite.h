@@ -31,8 +31,8 @@ struct GcodeRewrite {
   int64_t layers = 0;
   int64_t layers_changed = 0;
 
-  // Layers left unchanged because every order found for them breaks a rule of the verifier, and the
-  // first break.
+  // Layers left unchanged because every order found for them breaks a rule of the verifier, and what
+  // the first break is of, in words that go on behind "it could not be proven that".
   int64_t layers_unproven = 0;
   std::string unproven;
 

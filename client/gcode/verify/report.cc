@@ -24,7 +24,7 @@ constexpr RuleWords kRules[] = {
     {"speeds", "moves have the speeds and accelerations of their kind"},
     {"wipes", "wipes lie on their paths, and none is lost"},
     {"commands", "no command moves into a path, and none is without effect"},
-    {"progress", "M73 keeps its sequence, and stands where what it states is true"},
+    {"progress", "lines of progress keep their sequence, and stand where they are true"},
     {"scripts", "nothing from the scripts comes between paths"},
     {"path_ends", "moves that continue along a path stay with its end"},
     {"bounds", "no travel leaves the area in which the original moves"},

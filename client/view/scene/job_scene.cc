@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "client/api/job_result.h"
 #include "client/files/read_file.h"
 #include "client/gcode/measure/layer_meter.h"
@@ -147,6 +148,10 @@ absl::StatusOr<Scene> GcodeScene(const InputJob& job, const std::string& label,
   scene.moves_note = "The moves are those of both files, including wipes.";
   const std::string rest = DescribeRest(rewrite);
   if (!rest.empty()) absl::StrAppend(&scene.moves_note, " Cooling: ", rest, ".");
+  const std::vector<std::string> left = DescribeLeft(rewrite);
+  if (!left.empty()) {
+    absl::StrAppend(&scene.moves_note, " What stays: ", absl::StrJoin(left, ". "), ".");
+  }
   std::shared_ptr<const GcodeFile> printed = job.gcode;
   if (rewrite.layers_changed > 0) {
     absl::StatusOr<std::shared_ptr<GcodeFile>> read = ReadGcode(rewrite.text, job.name);

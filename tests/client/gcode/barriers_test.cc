@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "client/gcode/read/reader.h"
+#include "client/gcode/stated_progress.h"
 #include "tests/client/gcode/labels/pillars.h"
 
 namespace traverse::gcode {
@@ -59,11 +60,29 @@ TEST(DescribeBarriers, SayWhyObjectsStay) {
   testing::PillarPrint print;
   print.one_by_one = true;
   print.order = {0, 1};
-  EXPECT_EQ(BarriersOf(Lines("")), "no path is kept from others of its layer");
+  EXPECT_THAT(BarriersOf(Lines("")),
+              AllOf(HasSubstr("each island rest 10 s"), HasSubstr("--policy=free")));
+  EXPECT_THAT(BarriersOf(Lines(""), Policy::kFree), HasSubstr("no other order found is faster"));
   print.one_by_one = false;
   print.order = {0, 2, 0, 3};
   EXPECT_THAT(BarriersOf(Text(print, testing::Notations()[1])),
               AllOf(HasSubstr("label of their object"), HasSubstr("printed twice")));
+}
+
+TEST(DescribeProgressFaults, SayWhatCannotBeTrue) {
+  const auto faults = [](const std::string& first, const std::string& second) {
+    std::string text = Lines("");
+    text.insert(text.find(";LAYER"), first);
+    text.insert(text.rfind("G1 X0"), second);
+    const auto file = ReadGcode(text, "part.gcode");
+    EXPECT_TRUE(file.ok()) << file.status();
+    return absl::StrJoin(DescribeProgressFaults(**file), "\n");
+  };
+  EXPECT_EQ(faults("M73 P0 R5\n", "M73 P91 R0\n"), "");
+  EXPECT_EQ(faults("", ""), "");
+  EXPECT_THAT(faults("M73 P95\n", "M73 P90\n"),
+              AllOf(HasSubstr("goes back from 95 to 90 % in part.gcode:"),
+                    HasSubstr("states 95 % at about 0 %")));
 }
 
 TEST(ReadGcode, NamesTheOtherExtruder) {

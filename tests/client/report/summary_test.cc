@@ -37,6 +37,16 @@ TEST(OptimizeSummary, StatesWhatTheWrittenOrdersAreTakenToCost) {
   EXPECT_THAT(OptimizeSummary(job, SmallRun()), Not(HasSubstr("25.0 % less")));
 }
 
+// In sliced files nothing left of a bound does not mean that nothing more could be had.
+TEST(OptimizeSummary, SaysNothingOfAGapThatTheRulesClose) {
+  JobRun run = SmallRun();
+  run.result.summary.set_lower_bound(0.9999 * run.result.summary.cost());
+  const gcode::Forecast forecast = {8, 6};
+
+  EXPECT_THAT(OptimizeSummary(SmallJob(), run), HasSubstr("gap      0.0 %"));
+  EXPECT_THAT(OptimizeSummary(SmallJob(), run, &forecast), Not(HasSubstr("gap")));
+}
+
 TEST(OptimizeSummary, StatesTheBoundOfAllLayersTogetherIfThereIsOne) {
   JobRun run = SmallRun();
   EXPECT_THAT(OptimizeSummary(SmallJob(), run), Not(HasSubstr("chain")));
