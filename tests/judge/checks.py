@@ -318,19 +318,21 @@ def progress(before, after, options):
         new = [(value, now, line) for line, k, value, now in after.progress if k == kind]
         if [value for value, _ in old] != [value for value, _, _ in new]:
             yield f"progress: the values of {kind} are not those of the original in its order"
-        elif kind in ("M73", "M117"):
+        else:
             yield from misplaced(kind, old, new, before.seconds, after.seconds)
 
 
 def misplaced(kind, old, new, old_seconds, new_seconds):
+    """What states no share is true where it was."""
     worst = (0.0, None)
     for (value, then), (_, now, line) in zip(old, new):
-        was = abs(value - 100 * then / old_seconds)
-        off = abs(value - 100 * now / new_seconds)
-        worst = max(worst, (off - was, (line, value, 100 * now / new_seconds)), key=lambda pair: pair[0])
+        was, share = 100 * then / old_seconds, 100 * now / new_seconds
+        stated = value if isinstance(value, float) else was
+        off = abs(stated - share) - abs(stated - was)
+        worst = max(worst, (off, (line, value, was, share)), key=lambda pair: pair[0])
     if worst[0] > SHARE_SLACK:
-        line, value, share = worst[1]
-        yield f"progress: {kind} says {value:g} % at {share:.1f} % of the time; line {line}"
+        line, value, was, share = worst[1]
+        yield f"progress: {kind} says {value} at {share:.1f} % of the time, {was:.1f} % in the original; line {line}"
 
 
 # -------------------------------------------------------------------------------------------------------------- labels
@@ -376,13 +378,46 @@ def tail_lines(side):
 
 # Commands that belong to a path and come and go with it.
 OF_PATHS = ("M204", "M205", "M201", "M203", "SET_PRESSURE_ADVANCE", "SET_VELOCITY_LIMIT", "M73", "M106", "M107", "M900",
-            "M486", "M624", "M625", "EXCLUDE_OBJECT", "M221", "M572", "M117")
+            "M486", "M624", "M625", "EXCLUDE_OBJECT", "M221", "M572", "M117", "M118", "M532", "SET_DISPLAY_TEXT", "@")
 
 
 def commands(side, first, end):
     return [text for line, text in side.commands if first < line < end and not text.startswith(OF_PATHS)]
 
 
-ALL = {check.__name__: check for check in (deposits, filament, obstacles, ironing, rest, progress, labels, head_and_tail)}
+# --------------------------------------------------------------------------------------------------- lifts and wipes
+
+
+def low_travel(side):
+    """(count, one line) of retracted travel of 2 mm and more that is no higher than what was printed last."""
+    count, line, height = 0, 0, 0.0
+    for move in side.moves:
+        if move.deposits:
+            height = max(move.z0, move.z1)
+        elif move.length > 2 and move.retracted > 0.02 and move.e == 0 and min(move.z0, move.z1) < height + 0.05:
+            count, line = count + 1, move.line
+    return count, line
+
+
+def lifts(before, after, options):
+    """Travel that is retracted stays as high above the print as such travel of the file is."""
+    (old, _), (new, line) = low_travel(before), low_travel(after)
+    if new > 1.1 * old + 2:
+        yield f"lifts: {old} retracted moves at the height of the print became {new}; line {line}"
+
+
+def wiped(side):
+    return sum(1 for a, b in zip(side.moves, side.moves[1:]) if a.e < 0 < a.length and not (b.e < 0 < b.length))
+
+
+def wipes(before, after, options):
+    """Paths that were wiped stay so, unless that is given away."""
+    old, new = wiped(before), wiped(after)
+    if options.keeps_wipes and new < 0.98 * old - 1:
+        yield f"wipes: {old} moves that pull filament back along a path became {new}"
+
+
+ALL = {check.__name__: check for check in (deposits, filament, obstacles, ironing, rest, progress, labels, head_and_tail,
+                                           lifts, wipes)}
 # Where filament stays in the nozzle on purpose, this says how much of it may show.
 ALL["stringing"] = stringing

@@ -29,8 +29,6 @@ import shrink  # noqa: E402
 SUFFIXES = (".gcode", ".gcode.xz", ".gco", ".g")
 LEAST_LAYER = re.compile(r"(?:slowdown_below_layer_time|slow_down_layer_time|cool_min_layer_time)\s*[=,]\s*(\d+(?:\.\d+)?)")
 NOZZLE = re.compile(r"nozzle_diameter\s*=\s*(\d+(?:\.\d+)?)")
-# Checks that a policy gives away on purpose.
-GIVEN = {"stringing": ("wipes", "hidden_retractions")}
 
 
 @dataclasses.dataclass
@@ -38,6 +36,7 @@ class Options:
     policy: str
     least_layer_s: float
     loop_gap_mm: float
+    keeps_wipes: bool = True
 
 
 @dataclasses.dataclass
@@ -53,11 +52,12 @@ def read(path):
     return (lzma.decompress(data) if path.suffix == ".xz" else data).decode("latin-1")
 
 
-def options_of(text, policy):
+def options_of(text, policy, allow=""):
     least = LEAST_LAYER.search(text)
     nozzle = NOZZLE.search(text)
     return Options(policy, float(least.group(1)) if least else 10.0,
-                   max(0.131, 0.3 * float(nozzle.group(1)) if nozzle else 0))
+                   max(0.131, 0.3 * float(nozzle.group(1)) if nozzle else 0),
+                   policy != "fast" and "wipes" not in allow and "hidden_retractions" not in allow)
 
 
 def judge(text, policy, arguments):
@@ -77,12 +77,29 @@ def judge(text, policy, arguments):
             return Outcome(run.returncode, [f"exit: {run.returncode}, output {'there' if made.exists() else 'missing'}"],
                            says, 0.0)
         if not made.exists():
-            return Outcome(run.returncode, [], says, 0.0)
+            # Refused: with one line that says why.
+            return Outcome(run.returncode, [] if says else ["reasons: refused without a word"], says, 0.0)
         after_text = made.read_bytes().decode("latin-1")
     before, after = print_trace.trace(text), print_trace.trace(after_text)
-    options = options_of(text, policy)
+    options = options_of(text, policy, arguments.allow)
     faults = [fault for name, check in checks.ALL.items() for fault in check(before, after, options)]
+    faults += reasons(says)
     return Outcome(run.returncode, faults, says, before.seconds - after.seconds)
+
+
+RULES = ("same_print|whole_paths|open_travel|standstill|path_ends|step_order|kept_travel")
+
+
+def reasons(says):
+    """What stays is followed by why, in words of a person who slices."""
+    lines = [line.strip() for line in says.splitlines()]
+    for i, line in enumerate(lines):
+        if line.startswith("nothing to gain") and i + 1 == len(lines):
+            yield "reasons: nothing is to be gained, and no line says what holds the paths"
+        if re.search(rf"\b(?:{RULES})\b", line):
+            yield f"reasons: a rule's name instead of words: {line}"
+        if re.match(r"gap\s+0\.0 %", line):
+            yield f"reasons: {line}"
 
 
 def barrier(says):

@@ -108,6 +108,44 @@ class Checks(unittest.TestCase):
         self.assertIn("stringing", faults(before, after))
 
 
+    def test_any_message_of_progress_is_followed(self):
+        def told(at, text):
+            return self.towers[:at] + [text] + self.towers[at:]
+
+        half = len(self.towers) // 2 + 2
+        for text in ("M117 Layer 1/2", "M118 50 % done", ";TIME_ELAPSED:6", "M117 time left 6s", "M532 X50",
+                     "; layer num/total_layer_count: 2/2", 'SET_DISPLAY_TEXT MSG="50 %"'):
+            self.assertEqual(faults(told(half, text), told(half + 1, text)), set(), text)
+            self.assertIn("progress", faults(told(half, text), told(len(HEAD) + 2, text)), text)
+
+    def test_another_temperature_corner_speed_or_second_fan_is_found(self):
+        at = len(HEAD) + 2 + 6
+        for text in ("M104 S200", "M205 X8", "M106 P1 S99", "M221 S95"):
+            after = self.towers[:at] + [text] + self.towers[at:]
+
+            self.assertIn("deposits", faults(self.towers + [text], after), text)
+
+    def test_a_lost_lift_is_found(self):
+        pulled, lift, lower, pushed = "G1 E-.8 F2100", "G1 Z.6", "G1 Z.2", "G1 E.8"
+        here, there = block(10, 0.2), block(40, 0.2)
+        moves = [pulled, lift, there[0], lower, pushed] + there[1:] + [pulled, lift, here[0], lower, pushed] + here[1:]
+        before = HEAD + layer(0.2, moves * 4)
+
+        self.assertIn("lifts", faults(before, [line for line in before if line != lift]))
+
+    def test_a_lost_wipe_is_found(self):
+        wiped = block(10, 0.2) + ["G1 X15 Y10 E-.8", "G1 X40 Y40 F9000", "G1 E.8"]
+        before = HEAD + layer(0.2, wiped * 4)
+
+        self.assertIn("wipes", faults(before, [line.replace("G1 X15 Y10 E-.8", "G1 E-.8") for line in before]))
+
+    def test_words_without_a_reason_are_found(self):
+        held = "nothing to gain, the G-code stays unchanged: travel 1.00 -> 1.00 m"
+        self.assertEqual(list(judge.reasons(held + "\n12 paths in 3 layers stay beside commands")), [])
+        for says in (held, held + "\n3 layers left, because step_order", held + "\ngap      0.0 % to a bound\nwords"):
+            self.assertEqual(len(list(judge.reasons(says))), 1, says)
+
+
 class Shrink(unittest.TestCase):
     def test_the_smallest_part_still_fails(self):
         text = "\n".join(Checks.towers) + "\n"

@@ -22,7 +22,18 @@ LABELS = (
     (re.compile(r";MESH:(.+)"), True),
     (re.compile(r";PRINTING:(.+)"), True),
 )
-SHARE_OF_DISPLAY = re.compile(r"M117\D*?(\d+(?:\.\d+)?)\s*%")
+HOST_LABEL = re.compile(r"@(?:OBJECT|EXCLUDEREGION)\b\s*(.*)", re.I)
+NO_OBJECT = ("", "none", "end", "stop", "off", "disable")
+# What a display, or a host, is told: (kind, pattern, whether the value is a share in per cent).
+TOLD = (
+    ("M73", re.compile(r"M73\b.*?\bP(\d+)"), True),
+    ("M532", re.compile(r"M532\b.*?\bX(\d+(?:\.\d+)?)"), True),
+    ("a share in a message", re.compile(r"(?:M11[78]|SET_DISPLAY_TEXT)\b.*?(\d+(?:\.\d+)?)\s*%"), True),
+    ("a time in a message", re.compile(r"(?:M11[78]|SET_DISPLAY_TEXT)\b.*(?:left|remain\w*|elapsed)\D*(\d.*)", re.I), False),
+    ("a layer in a message", re.compile(r"(?:M11[78]|SET_DISPLAY_TEXT)\b.*?(\d+\s*(?:/|of)\s*\d+)", re.I), False),
+    ("a time in a comment", re.compile(r";\s*(?:TIME_ELAPSED|PRINTING_TIME|REMAINING_TIME):\s*(.+)"), False),
+    ("a layer in a comment", re.compile(r";\s*layer num/total\w*:\s*(.+)", re.I), False),
+)
 
 
 @dataclasses.dataclass(slots=True)
@@ -54,7 +65,7 @@ class Move:
 @dataclasses.dataclass
 class Trace:
     moves: list
-    progress: list  # (line, kind, value, seconds): what a display is told
+    progress: list  # (line, kind, value, seconds): what a display is told; shares as numbers
     commands: list  # (line, text): neither moves nor comments
     labels: list  # (line, name or None): begins and ends of objects
     seconds: float
@@ -64,7 +75,7 @@ class Trace:
         return [move for move in self.moves if move.deposits]
 
 
-STATE = ("tool", "feed", "fan", "accel", "advance", "flow", "limit", "feature", "width", "object")
+STATE = ("tool", "feed", "fan", "accel", "advance", "flow", "limit", "feature", "width", "object", "heat", "jerk")
 
 
 class Machine:
@@ -79,6 +90,7 @@ class Machine:
         self.now = 0.0
         self.state = dict.fromkeys(STATE, "")
         self.frozen = None
+        self.fans, self.jerk = {}, {}
         self.moves, self.progress, self.commands, self.labels = [], [], [], []
 
     def set(self, key, value):
@@ -144,8 +156,13 @@ class Machine:
         for pattern, begins in LABELS:
             if match := pattern.match(text):
                 self.label(number, match.group(1).strip() if begins else None)
-        if match := re.match(r";(TIME_ELAPSED|PRINTING_TIME):\s*([\d.]+)", text):
-            self.progress.append((number, match.group(1), float(match.group(2)), self.now))
+        self.told(number, text)
+
+    def told(self, number, text):
+        for kind, pattern, is_share in TOLD:
+            if match := pattern.match(text):
+                value = float(match.group(1)) if is_share else match.group(1).strip()
+                self.progress.append((number, kind, value, self.now))
 
     def label(self, number, name):
         self.labels.append((number, name))
@@ -153,12 +170,16 @@ class Machine:
 
     def command(self, number, text, code, words):
         self.commands.append((number, text))
-        if code == "M73" and "P" in words:
-            self.progress.append((number, "M73", words["P"], self.now))
-        elif match := SHARE_OF_DISPLAY.match(text):
-            self.progress.append((number, "M117", float(match.group(1)), self.now))
-        elif code in ("M106", "M107"):
-            self.set("fan", words.get("S", 255.0) if code == "M106" else 0.0)
+        self.told(number, text)
+        if code in ("M106", "M107"):
+            index = int(words.get("P", 0))
+            self.fans[index] = words.get("S", 255.0) if code == "M106" else 0.0
+            self.set("fan", tuple(sorted(self.fans.items())))
+        elif code in ("M104", "M109") and "S" in words:
+            self.set("heat", words["S"])
+        elif code == "M205":
+            self.jerk.update({letter: value for letter, value in words.items() if letter != "M"})
+            self.set("jerk", tuple(sorted(self.jerk.items())))
         elif code == "M204":
             self.set("accel", words.get("P", words.get("S", self.state["accel"])))
         elif code in ("M900", "M572") or text.startswith("SET_PRESSURE_ADVANCE"):
@@ -177,6 +198,9 @@ class Machine:
             self.label(number, text)
         elif code == "M625":
             self.label(number, None)
+        elif match := HOST_LABEL.match(text):
+            name = match.group(1).strip()
+            self.label(number, None if name.lower().split(" ")[0] in NO_OBJECT else name)
         elif code == "G4":
             self.now += words.get("S", 0) + words.get("P", 0) / 1000
         elif re.match(r"T\d+$", code):
@@ -217,7 +241,7 @@ def trace(text):
     lines = text.splitlines()
     for number, line in enumerate(lines, 1):
         code, mark, comment = line.partition(";")
-        if code := code.strip():
+        if code := code.strip().upper() if code.strip()[:1] in "gmt" else code.strip():
             machine.run(number, code)
         if mark:
             machine.comment(number, mark + comment)
