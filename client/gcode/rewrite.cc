@@ -236,7 +236,7 @@ class Rewriter {
     if (!moved) return;
     if (file_.states_digest && !file_.numbers) RenewDigest(*moved);
     const VerifyReport report = CheckGcode(file_.text, file_.name, *moved,
-                                           file_.name + " as optimised", AllRules(options_));
+                                           file_.name + " as optimised", AllRules(file_, options_));
     if (report.ok()) text = *std::move(moved);
   }
 

@@ -82,7 +82,7 @@ PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStar
   return totals;
 }
 
-double MeasureMoments(const GcodeFile& /*file*/, std::string_view text, const PartStart& start,
+double MeasureMoments(const GcodeFile& file, std::string_view text, const PartStart& start,
                       TextMoments& moments, const VisitStep& visit) {
   Interpreter interpreter(text, 0, start.machine);
   MomentNotes notes(&moments);
