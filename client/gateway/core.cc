@@ -24,6 +24,9 @@ absl::StatusOr<std::unique_ptr<Core>> Core::Make(const CoreOptions& options,
   core->spool = *std::move(spool);
   core->client = std::make_unique<OptimizerClient>(std::move(channel), std::move(token));
   core->worker = std::make_unique<FileWorker>(*core->client, *core->spool, options.max_file_bytes);
+  absl::StatusOr<std::unique_ptr<JobStore>> jobs = JobStore::Make(options.jobs, *core);
+  if (!jobs.ok()) return jobs.status();
+  core->jobs = *std::move(jobs);
   core->queue = std::make_unique<WorkQueue>(options.work);
   return core;
 }
@@ -72,6 +75,8 @@ std::string Core::MetricsText() {
   gauges.running = queue->running();
   gauges.work_bytes = static_cast<double>(queue->memory_bytes());
   gauges.spool_bytes = static_cast<double>(spool->used_bytes());
+  gauges.jobs = jobs->kept();
+  gauges.jobs_unfetched = jobs->unfetched();
   gauges.ready = queue->draining() ? 0.0 : 1.0;
   if (connections != nullptr) {
     gauges.connections = connections->open();

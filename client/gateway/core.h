@@ -14,6 +14,7 @@
 #include "client/api/embedded.h"
 #include "client/api/optimizer_client.h"
 #include "client/gateway/gateway_metrics.h"
+#include "client/gateway/jobs/job_store.h"
 #include "client/gateway/spool/spool.h"
 #include "client/gateway/work/file_memory.h"
 #include "client/gateway/work/file_worker.h"
@@ -30,6 +31,7 @@ struct CoreOptions {
   uint64_t max_file_bytes = uint64_t{256} << 20;
   absl::Duration max_time = absl::Minutes(10);  // for one file, from the end of its upload
   WorkLimits work;
+  JobLimits jobs;
   AuthOptions auth;
   std::vector<std::string> allowed_hosts;  // names that IsOwnHost accepts besides its own
   std::string log_path;                    // empty: stderr
@@ -39,7 +41,8 @@ struct CoreOptions {
 // Lives as long as the gateway. All of it is thread-safe.
 struct Core {
   // `channel` leads to the service; `token` goes with calls there. Errors: InvalidArgument for an
-  // unusable token file, Unavailable for a spool. Throws what the constructor of JobLog throws.
+  // unusable token file, Unavailable for a spool or ids. Throws what the constructor of JobLog
+  // throws.
   static absl::StatusOr<std::unique_ptr<Core>> Make(const CoreOptions& options,
                                                     std::shared_ptr<grpc::Channel> channel,
                                                     std::string token);
@@ -65,7 +68,8 @@ struct Core {
   std::unique_ptr<OptimizerClient> client;
   std::unique_ptr<FileWorker> worker;
   Connections* connections = nullptr;  // of gRPC, if it listens; outlives the calls
-  std::unique_ptr<WorkQueue> queue;    // last: its tasks use the other members
+  std::unique_ptr<JobStore> jobs;
+  std::unique_ptr<WorkQueue> queue;  // last: its tasks use the other members
 };
 
 }  // namespace traverse::gateway

@@ -128,15 +128,21 @@ bool Gateway::Drain(absl::Duration timeout) {
   core_->queue->StartDraining();
   if (listener_ != nullptr) listener_->StopServing();
   constexpr absl::Duration kLook = absl::Milliseconds(5);
-  while (core_->queue->requests() > 0 && absl::Now() < end) absl::SleepFor(kLook);
-  const bool all_done = core_->queue->requests() == 0;
+  const auto is_done = [this] {
+    return core_->queue->requests() == 0 && core_->jobs->unfetched() == 0;
+  };
+  while (!is_done() && absl::Now() < end) absl::SleepFor(kLook);
+  const bool all_done = is_done();
   http_->Drain(all_done ? absl::Seconds(5) : absl::Milliseconds(100));
   return all_done;
 }
 
 Gateway::~Gateway() {
   look_.reset();
-  if (core_ != nullptr) core_->queue->StartDraining();
+  if (core_ != nullptr) {
+    core_->queue->StartDraining();
+    core_->jobs->CancelAll();
+  }
   metrics_ = nullptr;
   http_ = nullptr;
   memory_watch_.reset();

@@ -62,8 +62,8 @@ class Gateway {
   int grpc_port() const { return listener_ == nullptr ? 0 : listener_->port(); }
   int metrics_port() const { return metrics_ == nullptr ? 0 : metrics_->port(); }
 
-  // Accepts no more files, and waits for the running ones for at most `timeout`. Returns true if
-  // none remained.
+  // Accepts no more files, and waits for at most `timeout` until the running ones have ended and
+  // callers have fetched the results of their jobs. Returns true if none remained.
   bool Drain(absl::Duration timeout);
 
   // Reopens the log and reads tokens and certificates again, in case somebody changed them.

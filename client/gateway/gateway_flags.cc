@@ -1,6 +1,8 @@
 #include "client/gateway/gateway_flags.h"
 
 #include <absl/flags/flag.h>
+#include <limits.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -10,6 +12,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "client/files/read_file.h"
+#include "client/gateway/jobs/job_ids.h"
 #include "server/ops/flag_reader.h"
 #include "server/ops/memory.h"
 #include "server/server.h"
@@ -48,6 +51,12 @@ ABSL_FLAG(std::string, spool_dir, "",
           "Folder for uploads and answers; empty: the folder for temporary files. No file there "
           "outlives the process");
 ABSL_FLAG(int64_t, max_spool_bytes, int64_t{4} << 30, "Most bytes of all files there together");
+ABSL_FLAG(absl::Duration, job_ttl, absl::Hours(1), "How long results of /v1/jobs are kept");
+ABSL_FLAG(int64_t, max_jobs, 1024,
+          "Most jobs under way and kept; a caller has half, and of the last quarter a sixteenth");
+ABSL_FLAG(std::string, gateway_name, "",
+          "Name with which ids of jobs begin, unique among the gateways behind one address; empty: "
+          "the machine's name and the port of --listen_http");
 ABSL_FLAG(absl::Duration, max_time, absl::Minutes(10), "Longest time for one file");
 ABSL_FLAG(std::string, printers, "",
           "JSON file that names the printers for uploads; empty: no printers");
@@ -102,6 +111,7 @@ absl::Status CheckRanges() {
       {"max_file_bytes", absl::GetFlag(FLAGS_max_file_bytes), 1},
       {"max_memory", absl::GetFlag(FLAGS_max_memory), 0},
       {"max_spool_bytes", absl::GetFlag(FLAGS_max_spool_bytes), 1},
+      {"max_jobs", absl::GetFlag(FLAGS_max_jobs), 0},
       {"max_connections", absl::GetFlag(FLAGS_max_connections), 1},
       {"max_connections_per_address", absl::GetFlag(FLAGS_max_connections_per_address), 1},
       {"max_header_bytes", absl::GetFlag(FLAGS_max_header_bytes), 1024},
@@ -116,6 +126,7 @@ absl::Status CheckRanges() {
     absl::Duration value;
   } times[] = {
       {"max_time", absl::GetFlag(FLAGS_max_time)},
+      {"job_ttl", absl::GetFlag(FLAGS_job_ttl)},
       {"upload_deadline", absl::GetFlag(FLAGS_upload_deadline)},
       {"upstream_idle_timeout", absl::GetFlag(FLAGS_upstream_idle_timeout)},
       {"header_timeout", absl::GetFlag(FLAGS_header_timeout)},
@@ -124,6 +135,10 @@ absl::Status CheckRanges() {
   };
   for (const auto& time : times) {
     if (time.value <= absl::ZeroDuration()) return BadFlag(time.name, "not above 0");
+  }
+  const std::string name = absl::GetFlag(FLAGS_gateway_name);
+  if (!name.empty() && !IsGatewayName(name)) {
+    return BadFlag("gateway_name", "not 1 to 64 letters, digits, '.', '_' and '-'");
   }
   return CheckDaemonFlags(absl::GetFlag(FLAGS_drain_timeout), absl::GetFlag(FLAGS_allowed_clients),
                           absl::GetFlag(FLAGS_tls_client_ca));
@@ -177,6 +192,20 @@ std::string SpoolFolder() {
   return error ? "/tmp" : folder.string();
 }
 
+std::string GatewayName() {
+  const std::string given = absl::GetFlag(FLAGS_gateway_name);
+  if (!given.empty()) return given;
+  char host[HOST_NAME_MAX + 1] = {};
+  gethostname(host, sizeof(host) - 1);
+  constexpr size_t kMostHost = 57;  // leaves room for the port
+  const std::string listen = absl::GetFlag(FLAGS_listen_http);
+  std::string name = absl::StrCat(std::string(host).substr(0, kMostHost), "-",
+                                  listen.substr(std::min(listen.rfind(':') + 1, listen.size())));
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !IsGatewayName(std::string(1, c)); }, '-');
+  return name.substr(0, 64);
+}
+
 int64_t MaxMemory() {
   const int64_t given = absl::GetFlag(FLAGS_max_memory);
   return given > 0 ? given : MemoryLimit() / 4 * 3;
@@ -212,6 +241,9 @@ absl::StatusOr<GatewayOptions> OptionsFromFlags() {
   core.spool_folder = SpoolFolder();
   core.max_spool_bytes = static_cast<uint64_t>(absl::GetFlag(FLAGS_max_spool_bytes));
   core.max_file_bytes = static_cast<uint64_t>(absl::GetFlag(FLAGS_max_file_bytes));
+  core.jobs = {.gateway_name = GatewayName(),
+               .ttl = absl::GetFlag(FLAGS_job_ttl),
+               .max_jobs = static_cast<uint64_t>(absl::GetFlag(FLAGS_max_jobs))};
   core.max_time = absl::GetFlag(FLAGS_max_time);
   const int workers = absl::GetFlag(FLAGS_workers);
   core.work = {.workers = workers > 0 ? workers : std::max(2, UsableCores()),

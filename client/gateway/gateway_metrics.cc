@@ -39,6 +39,9 @@ GatewayMetrics::GatewayMetrics()
       work_bytes_(registry_.Gauge("traverse_gateway_work_bytes",
                                   "Memory reserved for files being worked on.")),
       spool_bytes_(registry_.Gauge("traverse_gateway_spool_bytes", "Bytes in the spool.")),
+      jobs_(registry_.Gauge("traverse_gateway_jobs", "Jobs under way, and kept after their end.")),
+      jobs_unfetched_(registry_.Gauge("traverse_gateway_jobs_unfetched",
+                                      "Jobs whose results their callers do not have yet.")),
       connections_(
           registry_.Gauge("traverse_gateway_grpc_connections", "Open connections of gRPC.")),
       receiving_bytes_(registry_.Gauge("traverse_gateway_receiving_bytes",
@@ -84,6 +87,8 @@ std::string GatewayMetrics::Text(const Gauges& gauges) {
   running_.Set(gauges.running);
   work_bytes_.Set(gauges.work_bytes);
   spool_bytes_.Set(gauges.spool_bytes);
+  jobs_.Set(gauges.jobs);
+  jobs_unfetched_.Set(gauges.jobs_unfetched);
   connections_.Set(gauges.connections);
   receiving_bytes_.Set(gauges.receiving_bytes);
   connections_cut_.Increment(gauges.connections_cut - connections_cut_.Value());

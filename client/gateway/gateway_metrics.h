@@ -40,6 +40,8 @@ class GatewayMetrics {
     int running = 0;
     double work_bytes = 0;
     double spool_bytes = 0;
+    int jobs = 0;
+    int jobs_unfetched = 0;
     int connections = 0;         // of gRPC
     double receiving_bytes = 0;  // of unfinished messages there
     double connections_cut = 0;  // so far
@@ -64,6 +66,8 @@ class GatewayMetrics {
   prometheus::Gauge& running_;
   prometheus::Gauge& work_bytes_;
   prometheus::Gauge& spool_bytes_;
+  prometheus::Gauge& jobs_;
+  prometheus::Gauge& jobs_unfetched_;
   prometheus::Gauge& connections_;
   prometheus::Gauge& receiving_bytes_;
   prometheus::Counter& connections_cut_;

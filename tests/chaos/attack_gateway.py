@@ -5,7 +5,7 @@
 
 The victim sends a small file, by gRPC and HTTP in turn. The environment names the gateway's binary: TRAVERSE_GATEWAY.
 """
-from attacks import files, transport
+from attacks import files, jobs, transport
 from attacks.attacked_server import Gateway
 from attacks.run import main
 from http2_client import GCODE_SERVICE
@@ -33,6 +33,13 @@ ATTACKS = {
     "hoarded_places": files.hoarded_places(),
     "idle_http": files.held_heads(b"", addresses=2),
     "half_heads": files.held_heads(b"POST /v1/gcode HTTP/1.1\r\nHost: 127.0.0.1\r\nX: ", addresses=2),
+    "late_jobs": transport.resets_of([GCODE_SERVICE + name for name in ("CreateJob", "GetJob", "WatchJob", "ReadJob", "CancelJob")], ["1n", "1m"]),
+    "unfinished_jobs": transport.unfinished([GCODE_SERVICE + "CreateJob", GCODE_SERVICE + "GetJob"], 22, 60),
+    "hoarded_jobs": jobs.hoarded_jobs,
+    "cancelled_jobs": jobs.cancelled_jobs,
+    "keys_of_many_files": jobs.keys_of_many_files,
+    "guessed_ids": jobs.guessed_ids,
+    "unread_events": jobs.unread_events,
     "unfinished_uploads": files.unfinished_uploads(1000, addresses=3),
     "unfinished_chunks": files.unfinished_uploads(1000, chunked=True),
     "long_uploads": files.unfinished_uploads(20_000_000, most=20),

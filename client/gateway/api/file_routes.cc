@@ -1,50 +1,25 @@
 #include "client/gateway/api/file_routes.h"
 
 #include <algorithm>
-#include <functional>
 #include <memory>
 #include <stop_token>
 #include <utility>
-#include <variant>
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/match.h"
-#include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
-#include "client/gateway/api/machine_text.h"
+#include "client/gateway/api/answers.h"
 #include "client/gateway/api/parameters.h"
-#include "client/gateway/api/upload.h"
+#include "client/gateway/api/take_file.h"
 #include "client/gateway/http/problem.h"
-#include "client/gateway/http/target.h"
 
 namespace traverse::gateway {
 namespace {
 
-// A place in the queue, or the refusal.
-std::variant<HttpResponse, std::shared_ptr<WorkQueue::Ticket>> EnterQueue(const std::string& caller,
-                                                                          Core& core) {
-  absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> ticket = core.queue->Enter(caller);
-  if (ticket.ok()) return *std::move(ticket);
-  const int status = absl::IsResourceExhausted(ticket.status()) ? 429 : 503;
-  return Problem(status, std::string(ticket.status().message()));
-}
-
-HttpResponse RefusalOf(const absl::Status& status) {
-  if (absl::IsUnimplemented(status)) return Problem(415, std::string(status.message()));
-  return ProblemOf(status);
-}
-
-HttpResponse JsonResponse(std::string json) {
-  HttpResponse response;
-  response.content_type = "application/json";
-  response.body = std::move(json);
-  return response;
-}
-
 // What was found, or why not.
 template <typename Message>
 void SendMessage(HttpReply& reply, const absl::StatusOr<Message>& found) {
-  reply.Send(found.ok() ? JsonResponse(MessageJson(*found) + "\n") : RefusalOf(found.status()));
+  reply.Send(found.ok() ? JsonResponse(MessageJson(*found) + "\n") : ProblemOf(found.status()));
 }
 
 // When the work on a file that has come must be done.
@@ -59,41 +34,12 @@ std::stop_source StopWhenGone(HttpReply& reply) {
   return stop;
 }
 
-// Of the query and of the form.
-Parameters AllParameters(const HttpRequest& request, const Upload& upload) {
-  Parameters parameters = request.query;
-  parameters.insert(parameters.end(), upload.fields.begin(), upload.fields.end());
-  return parameters;
-}
-
-absl::StatusOr<FileRequest> WholeRequest(const HttpRequest& request, Upload& upload) {
-  const Parameters parameters = AllParameters(request, upload);
-  absl::StatusOr<FileRequest> parsed = ParseParameters(parameters);
-  if (!parsed.ok()) return parsed;
-  const bool named = std::any_of(parameters.begin(), parameters.end(),
-                                 [](const auto& pair) { return pair.first == "name"; });
-  auto machine = TakeMachine(upload);
-  if (!machine.ok()) return machine.status();
-  parsed->gcode.machine = *std::move(machine);
-  if (upload.files.empty()) return absl::InvalidArgumentError("there is no file in the request");
-  if (!named && !upload.files[0].name.empty()) {
-    if (absl::Status status = CheckFileName(upload.files[0].name); !status.ok()) return status;
-    parsed->name = upload.files[0].name;
-  }
-  return parsed;
-}
-
 enum class AnswerKind { kFile, kJson, kEvents };
 
 AnswerKind KindOf(const HttpRequest& request) {
-  const std::string accept = request.Header("accept");
-  if (absl::StrContains(accept, "text/event-stream")) return AnswerKind::kEvents;
-  if (absl::StrContains(accept, "application/json")) return AnswerKind::kJson;
+  if (WantsEvents(request)) return AnswerKind::kEvents;
+  if (absl::StrContains(request.Header("accept"), "application/json")) return AnswerKind::kJson;
   return AnswerKind::kFile;
-}
-
-std::string Event(const std::string& name, const std::string& data) {
-  return absl::StrCat("event: ", name, "\ndata: ", data, "\n\n");
 }
 
 // `file` as events `name` of base64. In the spool, as it may be long.
@@ -131,20 +77,9 @@ void SendEvents(Core& core, const std::string& caller, HttpReply& reply,
     for (auto& file : files) reply.Write(std::move(file));
     reply.Write(Event("summary", MessageJson(made->summary)));
   } else {
-    std::string json = std::get<std::string>(RefusalOf(status).body);
-    json.pop_back();  // the line break
-    reply.Write(Event("problem", json));
+    reply.Write(ProblemEvent(ProblemOf(status)));
   }
   reply.End();
-}
-
-// By its first bytes: G-code is text, containers are not.
-std::string ContentTypeOf(const SpoolFile& file) {
-  char first[4] = {};
-  const absl::StatusOr<size_t> got = file.ReadAt(0, first, sizeof(first));
-  const std::string_view bytes(first, got.value_or(0));
-  return DetectContainer(bytes) == ContainerKind::kText ? "text/x.gcode"
-                                                        : "application/octet-stream";
 }
 
 void SendFile(HttpReply& reply, const FileRequest& request, RewrittenFile made) {
@@ -162,11 +97,7 @@ void SendFile(HttpReply& reply, const FileRequest& request, RewrittenFile made) 
 }
 
 void BeginEvents(HttpReply& reply) {
-  HttpResponse head;
-  head.content_type = "text/event-stream";
-  head.headers.emplace_back("Cache-Control", "no-store");
-  head.headers.emplace_back("X-Accel-Buffering", "no");
-  reply.Begin(std::move(head));
+  reply.Begin(EventsHead());
   v1::RewriteProgress queued;
   queued.set_stage(v1::RewriteProgress::STAGE_QUEUED);
   reply.Write(Event("progress", MessageJson(queued)));
@@ -189,88 +120,40 @@ void RunRewrite(Core& core, const absl::Status& may, const FileRequest& request,
   done.seconds = absl::ToDoubleSeconds(absl::Now() - began);
   RecordFile(core, done, made.status(), made.ok() ? &made->summary : nullptr);
   if (kind == AnswerKind::kEvents) return SendEvents(core, request.caller, reply, made);
-  if (!made.ok()) return reply.Send(RefusalOf(made.status()));
+  if (!made.ok()) return reply.Send(ProblemOf(made.status()));
   if (kind == AnswerKind::kFile) return SendFile(reply, request, *std::move(made));
   HttpResponse response = JsonResponse(MessageJson(made->summary) + "\n");
   response.headers = SummaryHeaders(made->summary);
   reply.Send(std::move(response));
 }
 
-FileRecord RecordOf(const HttpRequest& request, const std::string& caller,
-                    const FileRequest& wanted, const SpoolFile& upload) {
-  return {request.path, caller, request.peer_host, wanted.name, upload.size()};
-}
-
-using TicketPtr = std::shared_ptr<WorkQueue::Ticket>;
-using ReplyPtr = std::shared_ptr<HttpReply>;
-
-// Lets `caller` wait in line, and takes his files; `start` is called when they are there.
-HttpDecision TakeFiles(const HttpRequest& request, const std::string& caller,
-                       const UploadLimits& limits, Core& core,
-                       std::function<void(const TicketPtr&, Upload, const ReplyPtr&)> start) {
-  auto entered = EnterQueue(caller, core);
-  if (auto* refusal = std::get_if<HttpResponse>(&entered)) return std::move(*refusal);
-  return TakeUpload(
-      request, *core.spool, limits,
-      [ticket = std::get<TicketPtr>(std::move(entered)), start = std::move(start)](
-          Upload upload, const ReplyPtr& reply) { start(ticket, std::move(upload), reply); });
-}
-
-using FilePtr = std::shared_ptr<SpoolFile>;
-using Work = std::function<void(const TicketPtr&, FileRequest, const FilePtr&, const ReplyPtr&)>;
-
-// The same for one file and what is asked of it.
-HttpDecision TakeFile(const HttpRequest& request, const std::string& caller, Core& core,
-                      Work start) {
-  // What is wrong with the query is said before the file is sent.
-  if (absl::StatusOr<FileRequest> query = ParseParameters(request.query); !query.ok()) {
-    return ProblemOf(query.status());
-  }
-  const UploadLimits limits = {.max_file_bytes = core.options.max_file_bytes,
-                               .caller = caller,
-                               .small_files = {{"machine", kMostMachineBytes}}};
-  return TakeFiles(request, caller, limits, core,
-                   [request, caller, start = std::move(start)](
-                       const TicketPtr& ticket, Upload upload, const ReplyPtr& reply) {
-                     absl::StatusOr<FileRequest> wanted = WholeRequest(request, upload);
-                     if (!wanted.ok()) return reply->Send(ProblemOf(wanted.status()));
-                     wanted->caller = caller;
-                     start(ticket, *std::move(wanted), upload.files[0].file, reply);
-                   });
-}
-
 }  // namespace
 
 HttpDecision RewriteRoute(const HttpRequest& request, const std::string& caller, Core& core) {
-  const auto start = [&core, request, caller](const TicketPtr& ticket, FileRequest wanted,
-                                              const FilePtr& file, const ReplyPtr& reply) {
-    wanted.finish_by = FinishBy(core, wanted.deadline);
+  return TakeFile(request, caller, core, [&core, request](TakenFile taken) {
+    taken.wanted.finish_by = FinishBy(core, taken.wanted.deadline);
     const AnswerKind kind = KindOf(request);
-    const FileRecord record = RecordOf(request, caller, wanted, *file);
-    const std::stop_source stop = StopWhenGone(*reply);
-    if (kind == AnswerKind::kEvents) BeginEvents(*reply);
-    core.Submit(ticket, {file},
-                [&core, wanted, record, kind, file, reply, stop](const absl::Status& may) {
-                  RunRewrite(core, may, wanted, record, kind, *file, *reply, stop.get_token());
-                });
-  };
-  return TakeFile(request, caller, core, start);
+    const FileRecord record = {request.path, taken.wanted.caller, request.peer_host,
+                               taken.wanted.name, taken.file->size()};
+    const std::stop_source stop = StopWhenGone(*taken.reply);
+    if (kind == AnswerKind::kEvents) BeginEvents(*taken.reply);
+    core.Submit(taken.ticket, {taken.file}, [&core, taken, record, kind, stop](const auto& may) {
+      RunRewrite(core, may, taken.wanted, record, kind, *taken.file, *taken.reply,
+                 stop.get_token());
+    });
+  });
 }
 
 HttpDecision InspectRoute(const HttpRequest& request, const std::string& caller, Core& core) {
-  const auto start = [&core](const TicketPtr& ticket, FileRequest wanted, const FilePtr& file,
-                             const ReplyPtr& reply) {
-    wanted.finish_by = FinishBy(core, wanted.deadline);
-    const std::stop_source stop = StopWhenGone(*reply);
-    core.Submit(
-        ticket, {file},
-        [&core, wanted, file, reply, stop](const absl::Status& may) {
-          if (!may.ok()) return reply->Send(RefusalOf(may));
-          SendMessage(*reply, core.worker->Inspect(*file, wanted, stop.get_token()));
-        },
-        FileUse::kInspect);
-  };
-  return TakeFile(request, caller, core, start);
+  return TakeFile(request, caller, core, [&core](TakenFile taken) {
+    taken.wanted.finish_by = FinishBy(core, taken.wanted.deadline);
+    const std::stop_source stop = StopWhenGone(*taken.reply);
+    const auto work = [&core, taken, stop](const absl::Status& may) {
+      if (!may.ok()) return taken.reply->Send(ProblemOf(may));
+      SendMessage(*taken.reply, core.worker->Inspect(*taken.file, taken.wanted, stop.get_token()));
+    };
+    core.Submit(taken.ticket, {taken.file}, work, FileUse::kInspect);
+  });
 }
 
 HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, Core& core) {
@@ -281,7 +164,7 @@ HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, 
                                       const ReplyPtr& reply) {
     const auto permissions = ParseVerifyParameters(AllParameters(request, upload));
     if (!permissions.ok()) return reply->Send(ProblemOf(permissions.status()));
-    FilePtr original, optimised;
+    std::shared_ptr<SpoolFile> original, optimised;
     for (Upload::File& file : upload.files) {
       if (file.field == "original") original = file.file;
       if (file.field == "optimised") optimised = file.file;
@@ -293,7 +176,7 @@ HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, 
     const std::stop_source stop = StopWhenGone(*reply);
     const auto work = [&core, original, optimised, permissions = *permissions, finish_by, reply,
                        stop](const absl::Status& may) {
-      if (!may.ok()) return reply->Send(RefusalOf(may));
+      if (!may.ok()) return reply->Send(ProblemOf(may));
       SendMessage(*reply, core.worker->Verify(*original, *optimised, permissions, finish_by,
                                               stop.get_token()));
     };
@@ -303,7 +186,7 @@ HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, 
                                .max_files = 2,
                                .caller = caller,
                                .small_files = {}};
-  return TakeFiles(request, caller, limits, core, start);
+  return TakeFiles(request, limits, core, start);
 }
 
 }  // namespace traverse::gateway

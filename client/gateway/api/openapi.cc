@@ -111,6 +111,72 @@ Json VerifyPath() {
             {"responses", responses}}}};
 }
 
+Json IdParameter() {
+  return {{"name", "id"},
+          {"in", "path"},
+          {"required", true},
+          {"description", "As POST /v1/jobs answered it; it begins with the gateway's name."},
+          {"schema", {{"type", "string"}}}};
+}
+
+Json HeaderParameter(const char* name, const char* description) {
+  return {{"name", name},
+          {"in", "header"},
+          {"description", description},
+          {"schema", {{"type", "string"}}}};
+}
+
+// A method of one job: besides its own problems those of ids.
+Json OnJob(const char* id, const char* summary, Json responses) {
+  AddProblems(responses, {401, 403, 404, 410, 421});
+  return {{"operationId", id}, {"summary", summary}, {"responses", std::move(responses)}};
+}
+
+Json JobsPath() {
+  Json parameters = ParametersJson(ParameterTable());
+  parameters.push_back(
+      HeaderParameter("Idempotency-Key",
+                      "The caller's own, at most 255 printable ASCII characters: the same key, "
+                      "file and parameters make one job."));
+  Json accepted = JsonAnswer("The job; Location has its path.", "Job");
+  accepted["headers"] = {{"Location", {{"schema", {{"type", "string"}}}}}};
+  Json responses = {{"202", accepted}};
+  AddProblems(responses, {400, 401, 403, 408, 409, 413, 415, 421, 429, 503, 507});
+  return {{"post",
+           {{"operationId", "createJob"},
+            {"summary", "Takes a file, whose work goes on without the request."},
+            {"parameters", parameters},
+            {"requestBody", {{"required", true}, {"content", FileContent()}}},
+            {"responses", responses}}}};
+}
+
+Json JobPath() {
+  Json state = JsonAnswer(
+      "The job now. With Accept: text/event-stream the job whenever it changes: progress, then "
+      "done "
+      "or failed; problem if it goes away.",
+      "Job");
+  state["content"]["text/event-stream"] = {{"schema", {{"type", "string"}}}};
+  Json get = OnJob("getJob", "The state of a job.",
+                   {{"200", state},
+                    {"204", {{"description", "The client knows the job's last event."}}},
+                    {"400", ProblemResponse(400)}});
+  get["parameters"] =
+      Json::array({HeaderParameter("Last-Event-ID", "Only what is newer is sent.")});
+  return {{"parameters", Json::array({IdParameter()})},
+          {"get", get},
+          {"delete", OnJob("cancelJob", "Ends a job and deletes all of it.",
+                           {{"204", {{"description", "There is no such job any more."}}}})}};
+}
+
+Json JobPartPath(const char* id, const char* summary, Json content) {
+  Json responses = {{"200", {{"description", "OK"}, {"content", std::move(content)}}}};
+  // While it is under way 409, and if it failed as POST /v1/gcode.
+  AddProblems(responses, {400, 409, 413, 415, 422, 503, 504});
+  return {{"parameters", Json::array({IdParameter()})},
+          {"get", OnJob(id, summary, std::move(responses))}};
+}
+
 Json TextPath(const char* id, const char* summary, const char* type, bool open) {
   Json get = {
       {"operationId", id},
@@ -145,6 +211,19 @@ Json Schemas() {
   verdict["same"] = {{"type", "boolean"}};
   verdict["allow"] = {{"type", "array"}, {"items", {{"type", "string"}}}};
   verdict["rules"] = {{"type", "array"}, {"items", Reference("VerifyRule")}};
+  Json progress = Numbers({"layers_done", "layers"}, "integer");
+  progress.update(Numbers({"travel_given_mm", "travel_mm"}, "number"));
+  progress["stage"] = {{"type", "string"}};
+  Json fault = Numbers({"code", "http_status"}, "integer");
+  fault["message"] = {{"type", "string"}};
+  Json job = Numbers({"id", "name"}, "string");
+  job["state"] = {{"type", "string"},
+                  {"enum", {"STATE_QUEUED", "STATE_RUNNING", "STATE_DONE", "STATE_FAILED"}}};
+  job["revision"] = {{"type", "integer"}};
+  job["progress"] = {{"type", "object"}, {"properties", progress}};
+  job["summary"] = Reference("RewriteSummary");
+  job["fault"] = {{"type", "object"}, {"properties", fault}};
+  job["expires_at"] = {{"type", "string"}, {"format", "date-time"}};
   const Json fact = {{"type", "object"}, {"properties", Numbers({"name", "value"}, "string")}};
   return {{"Problem",
            {{"type", "object"},
@@ -163,6 +242,7 @@ Json Schemas() {
               {"layers", {{"type", "integer"}}},
               {"facts", {{"type", "array"}, {"items", fact}}},
               {"totals", Reference("PrintTotals")}}}}},
+          {"Job", {{"type", "object"}, {"properties", job}}},
           {"VerifyBreak", {{"type", "object"}, {"properties", broken}}},
           {"VerifyRule", {{"type", "object"}, {"properties", rule}}},
           {"VerifyResponse", {{"type", "object"}, {"properties", verdict}}}};
@@ -171,7 +251,16 @@ Json Schemas() {
 }  // namespace
 
 std::string OpenApiJson() {
+  const Json text = {{"schema", {{"type", "string"}}}};
   Json paths = {{"/v1/gcode", RewritePath()},
+                {"/v1/jobs", JobsPath()},
+                {"/v1/jobs/{id}", JobPath()},
+                {"/v1/jobs/{id}/file",
+                 JobPartPath("getJobFile", "The new file.",
+                             {{"text/x.gcode", text}, {"application/octet-stream", text}})},
+                {"/v1/jobs/{id}/report",
+                 JobPartPath("getJobReport", "The page that shows each layer, if asked for.",
+                             {{"text/html", text}})},
                 {"/v1/inspect", InspectPath()},
                 {"/v1/verify", VerifyPath()},
                 {"/healthz", TextPath("healthz", "The process lives.", "text/plain", true)},

@@ -4,8 +4,10 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "client/gateway/api/answers.h"
 #include "client/gateway/api/counting.h"
 #include "client/gateway/api/file_routes.h"
+#include "client/gateway/api/job_routes.h"
 #include "client/gateway/api/openapi.h"
 #include "client/gateway/http/own_host.h"
 #include "client/gateway/http/problem.h"
@@ -50,12 +52,6 @@ bool IsForUs(const HttpRequest& request, const Core& core) {
   const std::vector<std::string>& allowed = core.options.allowed_hosts;
   const bool guarded = core.files.certificates != nullptr || !core.options.auth.token_file.empty();
   return (guarded && allowed.empty()) || IsOwnHost(request.Header("host"), allowed);
-}
-
-HttpResponse NotAllowed(const std::string& allowed) {
-  HttpResponse response = Problem(405, absl::StrCat("only ", allowed, " is allowed for this path"));
-  response.headers.emplace_back("Allow", allowed);
-  return response;
 }
 
 bool IsGet(const HttpRequest& request) {
@@ -119,6 +115,7 @@ HttpDecision Router::ForCaller(const HttpRequest& request, const std::string& ca
     if (path == "/v1/inspect") return InspectRoute(request, caller, core_);
     return VerifyRoute(request, caller, core_);
   }
+  if (IsJobPath(path)) return JobRoute(request, caller, core_, route);
   if (absl::StartsWith(path, "/api/") || absl::StartsWith(path, "/printers/")) {
     route = "printers";
     if (printers_ != nullptr) return printers_->Handle(request, caller);

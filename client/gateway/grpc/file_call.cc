@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/time/clock.h"
+#include "client/gateway/work/api_status.h"
 #include "server/jobs/retry_delay.h"
 #include "server/rpc/grpc_status.h"
 
@@ -17,34 +18,22 @@ constexpr absl::Duration kRetryDelay = absl::Seconds(5);
 // Lets the status, or the first pieces of the file, leave before the deadline.
 constexpr absl::Duration kMargin = absl::Milliseconds(300);
 
-// Uses the words of gcode_service.proto.
-absl::Status ForClient(const absl::Status& status) {
-  switch (status.code()) {
-    case absl::StatusCode::kDeadlineExceeded:
-      return absl::FailedPreconditionError(
-          absl::StrCat("nothing was found before the deadline: ", std::string(status.message())));
-    case absl::StatusCode::kUnimplemented:
-      return absl::InvalidArgumentError(status.message());
-    case absl::StatusCode::kResourceExhausted:
-      return WithRetryDelay(status, kRetryDelay);
-    default:
-      return status;
-  }
-}
-
 }  // namespace
 
-FileCall::FileCall(Core& core, grpc::CallbackServerContext& context, const std::string& method)
+FileCall::FileCall(Core& core, grpc::CallbackServerContext& context, const std::string& method,
+                   Brings brings)
     : core_(core), info_(ReadCallInfo(context, method)), began_(absl::Now()) {
   if (info_.deadline) {
     deadline_ = began_ + absl::FromChrono(*info_.deadline - Budget::Clock::now());
   }
   status_ = Authorize(context, *core_.files.auth, info_);
   if (!status_.ok()) return;
-  absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> ticket = core_.queue->Enter(info_.caller);
-  status_ = ticket.status();
-  if (!ticket.ok()) return;
-  ticket_ = *std::move(ticket);
+  if (brings == Brings::kFile) {
+    absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> ticket = core_.queue->Enter(info_.caller);
+    status_ = ticket.status();
+    if (!ticket.ok()) return;
+    ticket_ = *std::move(ticket);
+  }
   job_.emplace(core_.connections, info_.peer);
 }
 
@@ -75,7 +64,8 @@ absl::Status FileCall::Append(const std::string& bytes, std::shared_ptr<SpoolFil
 }
 
 grpc::Status FileCall::End(const absl::Status& status) {
-  const absl::Status told = ForClient(status);
+  absl::Status told = ApiStatus(status);
+  if (absl::IsResourceExhausted(told)) told = WithRetryDelay(told, kRetryDelay);
   core_.metrics.CountRequest(absl::StrCat("grpc/", info_.method),
                              absl::StatusCodeToString(told.code()),
                              absl::ToDoubleSeconds(absl::Now() - began_));

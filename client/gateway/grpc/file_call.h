@@ -20,18 +20,24 @@
 
 namespace traverse::gateway {
 
+// What a call brings. Only one with a file takes a place in the queue.
+enum class Brings { kFile, kQuestion };
+
 // The first steps of a call. Not thread-safe.
 class FileCall {
  public:
   // `method`: without the service's name.
-  FileCall(Core& core, grpc::CallbackServerContext& context, const std::string& method);
+  FileCall(Core& core, grpc::CallbackServerContext& context, const std::string& method,
+           Brings brings = Brings::kFile);
 
-  // Whether it may go on: the caller is known and there is a place. Errors are for the client.
+  // Whether it may go on: the caller is known and has what he needs. Errors are for the client.
   const absl::Status& status() const { return status_; }
 
   const std::string& caller() const { return info_.caller; }
   const std::string& peer() const { return info_.peer; }
   std::shared_ptr<WorkQueue::Ticket> ticket() const { return ticket_; }
+
+  absl::Time began() const { return began_; }
 
   // When the file must be ready, so that it can be sent before the call's deadline.
   absl::Time FinishBy() const;

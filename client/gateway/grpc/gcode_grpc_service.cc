@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/gateway/api/rewrite_options.h"
 #include "client/gateway/grpc/collect_reactor.h"
+#include "client/gateway/grpc/job_reactors.h"
 #include "client/gateway/grpc/rewrite_reactor.h"
 #include "client/gateway/http/target.h"
 
@@ -81,6 +82,47 @@ grpc::ServerReadReactor<v1::VerifyRequest>* GcodeGrpcService::Verify(
   };
   return new CollectReactor<v1::VerifyRequest>(core_, live_, *context, "Verify", FileUse::kVerify,
                                                TakeVerify, check, work);
+}
+
+grpc::ServerReadReactor<v1::CreateJobRequest>* GcodeGrpcService::CreateJob(
+    grpc::CallbackServerContext* context, v1::CreateJobResponse* response) {
+  return new CreateJobReactor(core_, live_, *context, *response);
+}
+
+grpc::ServerUnaryReactor* GcodeGrpcService::GetJob(grpc::CallbackServerContext* context,
+                                                   const v1::GetJobRequest* request,
+                                                   v1::GetJobResponse* response) {
+  FileCall call(core_, *context, "GetJob", Brings::kQuestion);
+  absl::Status status = call.status();
+  if (status.ok()) {
+    const absl::StatusOr<std::shared_ptr<Job>> job = core_.jobs->Find(request->id(), call.caller());
+    status = job.status();
+    if (job.ok()) *response->mutable_job() = (*job)->Now();
+  }
+  grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
+  reactor->Finish(call.End(status));
+  return reactor;
+}
+
+grpc::ServerWriteReactor<v1::WatchJobResponse>* GcodeGrpcService::WatchJob(
+    grpc::CallbackServerContext* context, const v1::WatchJobRequest* request) {
+  return new WatchJobReactor(core_, live_, *context, *request);
+}
+
+grpc::ServerWriteReactor<v1::ReadJobResponse>* GcodeGrpcService::ReadJob(
+    grpc::CallbackServerContext* context, const v1::ReadJobRequest* request) {
+  return new ReadJobReactor(core_, live_, *context, *request);
+}
+
+grpc::ServerUnaryReactor* GcodeGrpcService::CancelJob(grpc::CallbackServerContext* context,
+                                                      const v1::CancelJobRequest* request,
+                                                      v1::CancelJobResponse*) {
+  FileCall call(core_, *context, "CancelJob", Brings::kQuestion);
+  absl::Status status = call.status();
+  if (status.ok()) status = core_.jobs->Cancel(request->id(), call.caller());
+  grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
+  reactor->Finish(call.End(status));
+  return reactor;
 }
 
 }  // namespace traverse::gateway

@@ -30,6 +30,18 @@ class GcodeGrpcService : public v1::GcodeService::CallbackService {
                                                        v1::InspectResponse* response) override;
   grpc::ServerReadReactor<v1::VerifyRequest>* Verify(grpc::CallbackServerContext* context,
                                                      v1::VerifyResponse* response) override;
+  grpc::ServerReadReactor<v1::CreateJobRequest>* CreateJob(
+      grpc::CallbackServerContext* context, v1::CreateJobResponse* response) override;
+  grpc::ServerUnaryReactor* GetJob(grpc::CallbackServerContext* context,
+                                   const v1::GetJobRequest* request,
+                                   v1::GetJobResponse* response) override;
+  grpc::ServerWriteReactor<v1::WatchJobResponse>* WatchJob(
+      grpc::CallbackServerContext* context, const v1::WatchJobRequest* request) override;
+  grpc::ServerWriteReactor<v1::ReadJobResponse>* ReadJob(
+      grpc::CallbackServerContext* context, const v1::ReadJobRequest* request) override;
+  grpc::ServerUnaryReactor* CancelJob(grpc::CallbackServerContext* context,
+                                      const v1::CancelJobRequest* request,
+                                      v1::CancelJobResponse* response) override;
 
  private:
   Core& core_;

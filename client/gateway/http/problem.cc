@@ -15,6 +15,8 @@ std::string ReasonOf(int status) {
       return "OK";
     case 201:
       return "Created";
+    case 202:
+      return "Accepted";
     case 204:
       return "No Content";
     case 304:
@@ -35,6 +37,8 @@ std::string ReasonOf(int status) {
       return "Request Timeout";
     case 409:
       return "Conflict";
+    case 410:
+      return "Gone";
     case 411:
       return "Length Required";
     case 413:
@@ -100,6 +104,8 @@ int HttpStatusOf(absl::StatusCode code) {
       return 404;
     case absl::StatusCode::kOutOfRange:  // larger than a limit allows
       return 413;
+    case absl::StatusCode::kUnimplemented:  // a file of another kind
+      return 415;
     case absl::StatusCode::kFailedPrecondition:
       return 422;
     case absl::StatusCode::kCancelled:

@@ -1,6 +1,7 @@
 #include "client/gateway/spool/spool.h"
 
 #include <fcntl.h>
+#include <lzma.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -9,6 +10,7 @@
 #include <utility>
 
 #include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 
 namespace traverse::gateway {
@@ -26,7 +28,7 @@ absl::Status WriteFault(int error) {
 
 SpoolFile::~SpoolFile() {
   close(fd_);
-  spool_.GiveBack(size_, caller_);
+  spool_.shares_.GiveBack(size_, caller_);
 }
 
 absl::Status SpoolFile::Append(std::string_view bytes) {
@@ -37,13 +39,14 @@ absl::Status SpoolFile::Append(std::string_view bytes) {
     if (put < 0 && errno == EINTR) continue;
     if (put < 0) {
       const int error = errno;
-      spool_.GiveBack(bytes.size() - done, caller_);
+      spool_.shares_.GiveBack(bytes.size() - done, caller_);
       size_ += done;
       return WriteFault(error);
     }
     done += static_cast<size_t>(put);
   }
   size_ += done;
+  checksum_ = lzma_crc64(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), checksum_);
   return absl::OkStatus();
 }
 
@@ -59,6 +62,7 @@ absl::StatusOr<size_t> SpoolFile::ReadAt(uint64_t offset, char* out, size_t size
     if (got == 0) break;
     done += static_cast<size_t>(got);
   }
+  if (offset + done >= size_) read_to_end_ = true;
   return done;
 }
 
@@ -99,34 +103,14 @@ absl::StatusOr<int> Spool::OpenNameless() const {
                                                 folder_, std::strerror(errno)));
 }
 
-uint64_t Spool::used_bytes() const {
-  MutexLock lock(mutex_);
-  return used_;
-}
-
 absl::Status Spool::Take(uint64_t bytes, const std::string& caller) {
-  MutexLock lock(mutex_);
-  if (bytes > max_bytes_ || used_ > max_bytes_ - bytes) {
-    return absl::ResourceExhaustedError(
-        absl::StrFormat("the spool is full: it holds %d MiB at most", max_bytes_ >> 20));
-  }
-  const bool last_quarter = used_ + bytes > max_bytes_ - max_bytes_ / 4;
-  const uint64_t share = caller.empty() ? max_bytes_ : max_bytes_ / (last_quarter ? 16 : 2);
-  const auto own = callers_.find(caller);
-  if ((own == callers_.end() ? 0 : own->second) + bytes > share) {
-    return absl::ResourceExhaustedError(absl::StrFormat(
-        "the spool is full for this caller, who may have %d MiB of it now", share >> 20));
-  }
-  used_ += bytes;
-  callers_[caller] += bytes;
-  return absl::OkStatus();
-}
-
-void Spool::GiveBack(uint64_t bytes, const std::string& caller) {
-  MutexLock lock(mutex_);
-  used_ -= bytes;
-  const auto own = callers_.find(caller);
-  if (own != callers_.end() && (own->second -= bytes) == 0) callers_.erase(own);
+  const std::optional<Shares::Refusal> refusal = shares_.Take(bytes, caller);
+  if (!refusal) return absl::OkStatus();
+  const std::string most = absl::StrFormat("%d MiB", refusal->most >> 20);
+  return absl::ResourceExhaustedError(
+      refusal->of_caller
+          ? absl::StrCat("the spool is full for this caller, who may have ", most, " of it now")
+          : absl::StrCat("the spool is full: it holds ", most, " at most"));
 }
 
 }  // namespace traverse::gateway

@@ -2,19 +2,19 @@
 //
 // A spooled file has no name (O_TMPFILE, or unlinked as soon as it exists): when it is closed, or
 // the process is killed, the system frees it. All files of a spool together are bounded, and so are
-// those of a caller: to half of it, and to a sixteenth in the last quarter.
+// those of a caller (Shares).
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_SPOOL_SPOOL_H_
 #define TRAVERSE_CLIENT_GATEWAY_SPOOL_SPOOL_H_
 
+#include <atomic>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
 
 #include "absl/status/statusor.h"
-#include "engine/base/mutex.h"
+#include "client/gateway/spool/shares.h"
 
 namespace traverse::gateway {
 
@@ -32,6 +32,12 @@ class SpoolFile {
 
   uint64_t size() const { return size_; }
 
+  // Of all bytes, as xz makes it (CRC-64): equal files have the same.
+  uint64_t checksum() const { return checksum_; }
+
+  // Whether somebody has read to the end.
+  bool read_to_end() const { return read_to_end_; }
+
   // Reads up to `size` bytes from `offset` on; fewer only at the end.
   absl::StatusOr<size_t> ReadAt(uint64_t offset, char* out, size_t size) const;
 
@@ -47,6 +53,8 @@ class SpoolFile {
   const int fd_;
   const std::string caller_;
   uint64_t size_ = 0;
+  uint64_t checksum_ = 0;
+  mutable std::atomic<bool> read_to_end_ = false;
 };
 
 // Thread-safe.
@@ -60,25 +68,20 @@ class Spool {
   absl::StatusOr<std::shared_ptr<SpoolFile>> NewFile(const std::string& caller = "");
 
   // Bytes in all files now.
-  uint64_t used_bytes() const;
-  uint64_t max_bytes() const { return max_bytes_; }
+  uint64_t used_bytes() const { return shares_.used(); }
+  uint64_t max_bytes() const { return shares_.most(); }
 
  private:
   friend class SpoolFile;
-  Spool(std::string folder, uint64_t max_bytes)
-      : folder_(std::move(folder)), max_bytes_(max_bytes) {}
+  Spool(std::string folder, uint64_t max_bytes) : folder_(std::move(folder)), shares_(max_bytes) {}
 
   absl::StatusOr<int> OpenNameless() const;
 
   // ResourceExhausted if this many bytes more of `caller` would be too many.
   absl::Status Take(uint64_t bytes, const std::string& caller);
-  void GiveBack(uint64_t bytes, const std::string& caller);
 
   const std::string folder_;
-  const uint64_t max_bytes_;
-  mutable Mutex mutex_;
-  uint64_t used_ TRAVERSE_GUARDED_BY(mutex_) = 0;
-  std::map<std::string, uint64_t> callers_ TRAVERSE_GUARDED_BY(mutex_);  // used by each
+  Shares shares_;
 };
 
 }  // namespace traverse::gateway

@@ -114,13 +114,14 @@ class Gateway(Attacked):
     methods = [GCODE_SERVICE + "Rewrite", GCODE_SERVICE + "Inspect", GCODE_SERVICE + "Verify"]
     small_job = field(2, infill(3))  # of Inspect: Rewrite takes it for data without options
     empty = [f"traverse_gateway_{name}" for name in ("requests_in_flight", "requests_waiting", "workers_busy", "work_bytes",
-                                                     "spool_bytes", "grpc_connections", "receiving_bytes")]
+                                                     "spool_bytes", "jobs", "grpc_connections", "receiving_bytes")]
     refusals = "traverse_gateway_requests_total"
 
     def __init__(self, max_memory, flags=(), files=None):
         self.spool = tempfile.TemporaryDirectory()
         self.start([os.environ["TRAVERSE_GATEWAY"], "--listen_http=127.0.0.1:0", "--listen=127.0.0.1:0",
-                    "--metrics_listen=127.0.0.1:0", "--spool_dir=" + self.spool.name, f"--max_memory={max_memory}"], flags, files)
+                    "--metrics_listen=127.0.0.1:0", "--spool_dir=" + self.spool.name, f"--max_memory={max_memory}",
+                    "--job_ttl=1s"], flags, files)
         self.http_port = self.read_port()
         self.port = self.read_port()
         self.metrics_port = self.read_port()

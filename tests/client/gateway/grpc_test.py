@@ -36,8 +36,7 @@ def messages():
     for one in files.file:
         pool.Add(one)
     made = message_factory.MessageFactory(pool)
-    names = ["RewriteRequest", "RewriteResponse", "RewriteOptions", "InspectRequest", "InspectResponse", "VerifyOptions",
-             "VerifyRequest", "VerifyResponse"]
+    names = [message.name for message in files.file[-1].message_type]
     return {name: made.GetPrototype(pool.FindMessageTypeByName("traverse.v1." + name)) for name in names}
 
 
@@ -48,10 +47,10 @@ def pieces(content, size=1000):
     return [content[at:at + size] for at in range(0, len(content), size)]
 
 
-class Calls(unittest.TestCase):
+class OnGateway(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.gateway = Gateway("--max_file_bytes=2000000", "--idle_timeout=2s")
+        cls.gateway = Gateway("--max_file_bytes=2000000", "--idle_timeout=2s", "--gateway_name=one")
         cls.channel = grpc.insecure_channel(f"127.0.0.1:{cls.gateway.grpc_port}")
 
     @classmethod
@@ -59,11 +58,13 @@ class Calls(unittest.TestCase):
         cls.channel.close()
         cls.gateway.close()
 
-    def method(self, name, kind="stream_stream"):
-        return getattr(self.channel, kind)(
+    def method(self, name, kind="stream_stream", channel=None):
+        return getattr(channel or self.channel, kind)(
             "/traverse.v1.GcodeService/" + name, request_serializer=lambda message: message.SerializeToString(),
             response_deserializer=MESSAGES[name + "Response"].FromString)
 
+
+class Calls(OnGateway):
     def requests(self, content, **options):
         request = MESSAGES["RewriteRequest"]
         yield request(options=MESSAGES["RewriteOptions"](**options))
@@ -248,6 +249,110 @@ class Calls(unittest.TestCase):
         with self.assertRaises(grpc.RpcError):
             list(self.method("Rewrite")(requests(), timeout=30))
         self.assertLess(time.time() - began, 20)
+
+
+class Jobs(OnGateway):
+    def create(self, content, key="", deadline_s=None, **rewrite):
+        def requests():
+            request, options = MESSAGES["CreateJobRequest"], MESSAGES["CreateJobOptions"](idempotency_key=key)
+            options.rewrite.CopyFrom(MESSAGES["RewriteOptions"](**rewrite))
+            if deadline_s is not None:
+                options.deadline.FromNanoseconds(int(deadline_s * 1e9))
+            yield request(options=options)
+            for piece in pieces(content):
+                yield request(data=piece)
+
+        return self.method("CreateJob", "stream_unary")(requests(), timeout=60).job
+
+    def ask(self, name, channel=None, **fields):
+        return self.method(name, "unary_unary", channel)(MESSAGES[name + "Request"](**fields), timeout=60)
+
+    def stream(self, name, **fields):
+        return self.method(name, "unary_stream")(MESSAGES[name + "Request"](**fields), timeout=60)
+
+    def read(self, **fields):
+        return b"".join(piece.data for piece in self.stream("ReadJob", **fields))
+
+    def fault(self, code, words, ask):
+        with self.assertRaises(grpc.RpcError) as raised:
+            ask()
+        self.assertEqual(raised.exception.code(), code, raised.exception.details())
+        self.assertIn(words, raised.exception.details())
+
+    def test_a_file_comes_back_without_its_call(self):
+        job = self.create(PART, name="a.gcode", report=True)
+        told = [answer.job for answer in self.stream("WatchJob", id=job.id)]
+        self.assertEqual((told[-1].state, told[-1].name), (3, "a.gcode"))
+        self.assertEqual([one.revision for one in told], sorted({one.revision for one in told}))
+        made = self.read(id=job.id)
+        self.assertEqual(made, optimised_by_command(PART))
+        self.assertEqual(self.read(id=job.id, offset=1000), made[1000:])
+        self.assertEqual(self.read(id=job.id, offset=len(made)), b"")
+        self.fault(grpc.StatusCode.INVALID_ARGUMENT, "offset", lambda: self.read(id=job.id, offset=len(made) + 1))
+        self.assertIn(b"</html>", self.read(id=job.id, report=True))
+        self.assertEqual(self.ask("GetJob", id=job.id).job, told[-1])
+        late = [answer.job for answer in self.stream("WatchJob", id=job.id, known_revision=told[-1].revision)]
+        self.assertEqual(late, [])
+        self.ask("CancelJob", id=job.id)
+        for call in ("GetJob", "CancelJob"):
+            self.fault(grpc.StatusCode.ABORTED, "cancelled", lambda call=call: self.ask(call, id=job.id))
+        self.fault(grpc.StatusCode.ABORTED, "cancelled", lambda: list(self.stream("WatchJob", id=job.id)))
+
+    def test_the_job_is_the_same_over_http(self):
+        job = self.create(PART)
+        list(self.stream("WatchJob", id=job.id))
+        status, _, made = self.gateway.ask("GET", f"/v1/jobs/{job.id}/file")
+        self.assertEqual((status, made), (200, optimised_by_command(PART)))
+
+    def test_the_same_key_makes_one_job(self):
+        options = {"strategy": {"name": "auto", "options": {"effort": "1", "bound": "false", "gain_window": "200"}}}
+        job = self.create(PART, key="k", **options)
+        self.assertEqual(self.create(PART, key="k", **options).id, job.id)
+        exists = grpc.StatusCode.ALREADY_EXISTS
+        self.fault(exists, "another file", lambda: self.create(PART + b";\n", key="k", **options))
+        self.fault(exists, "other options", lambda: self.create(PART, key="k"))
+
+    def test_what_fails_says_what_rewrite_would(self):
+        job = self.create(b"no file of a slicer\n")
+        *_, last = self.stream("WatchJob", id=job.id)
+        self.assertEqual((last.job.state, last.job.fault.code), (4, grpc.StatusCode.INVALID_ARGUMENT.value[0]))
+        self.fault(grpc.StatusCode.INVALID_ARGUMENT, "file.gcode", lambda: self.read(id=job.id))
+        late = self.create(lines_of_infill(400), deadline_s=0.001)
+        *_, last = self.stream("WatchJob", id=late.id)
+        self.assertEqual(last.job.fault.code, grpc.StatusCode.FAILED_PRECONDITION.value[0])
+
+    def test_what_is_wrong_is_said_at_once(self):
+        bad = grpc.StatusCode.INVALID_ARGUMENT
+        self.fault(bad, "data: the file is missing or empty", lambda: self.create(b""))
+        self.fault(bad, "options.rewrite.policy", lambda: self.create(PART, policy=77))
+        self.fault(bad, "options.idempotency_key", lambda: self.create(PART, key="\n"))
+        self.fault(bad, "options.deadline", lambda: self.create(PART, deadline_s=-1))
+        data = MESSAGES["CreateJobRequest"](data=b"x")
+        self.refused(bad, "options: missing", [data])
+        self.refused(bad, "options: missing", [])
+
+    def refused(self, code, words, requests):
+        self.fault(code, words, lambda: self.method("CreateJob", "stream_unary")(iter(requests), timeout=60))
+
+    def test_ids_of_others_and_of_other_gateways(self):
+        job = self.create(PART)
+        unknown = grpc.StatusCode.NOT_FOUND
+        for wrong in ("", "x", job.id[:-1] + ("0" if job.id[-1] != "0" else "1")):
+            self.fault(unknown, "no such job", lambda wrong=wrong: self.ask("GetJob", id=wrong))
+            self.fault(unknown, "no such job", lambda wrong=wrong: self.read(id=wrong))
+        other = Gateway("--gateway_name=two")
+        self.addCleanup(other.close)
+        with grpc.insecure_channel(f"127.0.0.1:{other.grpc_port}") as channel:
+            elsewhere = grpc.StatusCode.FAILED_PRECONDITION
+            self.fault(elsewhere, "gateway one", lambda: self.ask("GetJob", channel, id=job.id))
+
+    def test_a_reader_that_goes_does_not_end_the_job(self):
+        job = self.create(lines_of_infill(600), strategy={"name": "greedy"})
+        call = self.stream("WatchJob", id=job.id)
+        next(call)
+        call.cancel()
+        *_, last = self.stream("WatchJob", id=job.id)
+        self.assertEqual(last.job.state, 3)
 
 
 if __name__ == "__main__":

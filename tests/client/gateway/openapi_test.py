@@ -21,6 +21,8 @@ def answers_are_described(gateway, document):
     """Each path answers as the document says, each parameter is taken, and no other."""
     for path, methods in document["paths"].items():
         for method, described in methods.items():
+            if method == "parameters":
+                continue
             status, headers, _ = gateway.ask(method.upper(), path, b"nothing" if method == "post" else None)
             assert str(status) in described["responses"], (path, status)
             content = described["responses"][str(status)]["content"]

@@ -1,0 +1,95 @@
+"""Attacks on files as jobs: results that nobody fetches, work that is begun and thrown away, readers that do not read."""
+import http.client
+import json
+import random
+import threading
+import time
+
+from attacks.attacked_server import infill
+from attacks.files import open_http
+from attacks.transport import patiently, until
+
+
+def ask(server, method, path, body=None, source="127.0.0.1", **headers):
+    """Status and body of the answer."""
+    connection = http.client.HTTPConnection("127.0.0.1", server.http_port, timeout=3, source_address=(source, 0))
+    try:
+        connection.request(method, path, body, headers)
+        answer = connection.getresponse()
+        return answer.status, answer.read()
+    except http.client.HTTPException as error:
+        raise OSError(error) from error
+    finally:
+        connection.close()
+
+
+def side_by_side(step, callers):
+    """`step(server, number)` again and again by several callers at a time."""
+    def attack(server, end):
+        def one(number):
+            until(end, patiently(lambda: step(server, number)))
+
+        threads = [threading.Thread(target=one, args=(number,)) for number in range(1, callers + 1)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+
+    return attack
+
+
+def hoard(server, number):
+    """Jobs that nobody fetches."""
+    status, _ = ask(server, "POST", "/v1/jobs?strategy=none", infill(2), f"127.0.1.{number}")
+    time.sleep(0 if status == 202 else 0.02)
+
+
+def begin_and_cancel(server, number):
+    """Jobs of large files that are thrown away as soon as they are there."""
+    source = f"127.0.1.{number}"
+    status, answer = ask(server, "POST", "/v1/jobs?option=effort=100", infill(2) + b"G1X1Y1E1\n" * 100_000, source)
+    if status == 202:
+        ask(server, "DELETE", "/v1/jobs/" + json.loads(answer)["id"], None, source)
+
+
+def same_keys(server, number):
+    """One key for many files, begun side by side."""
+    dice = random.Random(time.monotonic_ns())
+    ask(server, "POST", "/v1/jobs?strategy=none", infill(1 + dice.randrange(3)), "127.0.1.1", **{"Idempotency-Key": str(number % 2)})
+
+
+def guess(server, number):
+    """Ids that were never given."""
+    dice = random.Random(time.monotonic_ns() + number)
+    name = dice.choice(["gateway", "a" * 64, "", "%00", "..", "-", "x" * 9000])
+    digits = "".join(dice.choices("0123456789abcdef", k=dice.choice([0, 1, 55, 56, 57, 4000])))
+    ask(server, dice.choice(["GET", "DELETE", "HEAD"]), f"/v1/jobs/{name}-{digits}{dice.choice(['', '/file', '/report', '/x'])}")
+
+
+def unread_events(server, end):
+    """Readers of jobs that never read."""
+    held, jobs = [], []
+
+    def step():
+        if len(jobs) < 50:
+            status, answer = ask(server, "POST", "/v1/jobs?option=effort=100", infill(200))
+            if status == 202:
+                jobs.append(json.loads(answer)["id"])
+        connection = open_http(server)
+        connection.sendall(b"GET /v1/jobs/%s HTTP/1.1\r\nHost: 127.0.0.1\r\nAccept: text/event-stream\r\n\r\n"
+                           % random.choice(jobs).encode())
+        held.append(connection)
+        if len(held) > 300:
+            held.pop(0).close()
+
+    until(end, patiently(step))
+    for connection in held:
+        connection.close()
+    for job in jobs:
+        patiently(lambda job=job: ask(server, "DELETE", "/v1/jobs/" + job))()
+
+
+hoarded_jobs = side_by_side(hoard, 6)
+cancelled_jobs = side_by_side(begin_and_cancel, 4)
+keys_of_many_files = side_by_side(same_keys, 6)
+guessed_ids = side_by_side(guess, 4)
