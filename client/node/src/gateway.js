@@ -1,49 +1,72 @@
 import { readFile } from "node:fs/promises";
 import { basename } from "node:path";
-import grpc from "@grpc/grpc-js";
-import { TraverseError } from "./errors.js";
-import { withRetries } from "./retries.js";
-import { connect, metadataWith, send, services } from "./wire.js";
+import { setTimeout as sleep } from "node:timers/promises";
+import { FileJob } from "./file_job.js";
+import { connect, metadataWith, send, services, shuffled } from "./wire.js";
 
-const PIECE_BYTES = 1 << 20;
+const CANCEL_MS = 2000;
 
 export class GcodeGateway {
-  #stub;
+  #stubs;
   #token;
 
   constructor(addresses, options = {}) {
-    this.#stub = connect(services.GcodeService, addresses, options);
+    // One by one, because the calls of a job belong to one gateway.
+    this.#stubs = shuffled(addresses).map((address) => connect(services.GcodeService, [address], options, "pick_first"));
     this.#token = options.token;
   }
 
-  close() { this.#stub.close(); }
+  close() { this.#stubs.forEach((stub) => stub.close()); }
 
-  async rewrite(file, { deadlineSeconds = 600, options = {}, onProgress } = {}) {
+  async rewrite(file, { deadlineSeconds = 600, options = {}, onProgress, idempotencyKey } = {}) {
     const named = typeof file === "string";
     const data = named ? await readFile(file) : Buffer.from(file);
     const stated = named && !options.name ? { ...options, name: basename(file) } : options;
     const deadline = Date.now() + deadlineSeconds * 1000;
-    let made;
-    const begin = () => {
-      made = { data: [], report: [], summary: undefined };
-      const call = this.#stub.Rewrite(metadataWith(this.#token), { deadline });
-      upload(call, stated, data);
-      return { call };
-    };
-    for await (const answer of withRetries(deadline, begin)) {
-      if (answer.part === "progress") onProgress?.(answer.progress);
-      else if (answer.part === "summary") made.summary = answer.summary;
-      else made[answer.part].push(answer[answer.part]);
+    const job = new FileJob(data, stated, idempotencyKey, onProgress, deadline, this.#stubs.length);
+    try {
+      for (let next = job.nextCall(); next; next = job.nextCall()) {
+        try {
+          await this.#make(job, deadline, ...next);
+        } catch (error) {
+          await sleep(job.delayAfter(error, next[0]));
+        }
+      }
+      return job.file;
+    } catch (error) {
+      // Not waited for: what is left expires.
+      if (job.abandoned) this.#unary(job.gateway, "CancelJob", { id: job.abandoned }, Date.now() + CANCEL_MS).catch(() => {});
+      throw error;
     }
-    if (!made.summary) throw new TraverseError(grpc.status.DATA_LOSS, "the answer ended before the file was whole");
-    return { data: Buffer.concat(made.data), report: Buffer.concat(made.report).toString("utf8"), summary: made.summary };
   }
-}
 
-async function upload(call, options, data) {
-  await send(call, { options });
-  for (let begin = 0; begin === 0 || begin < data.length; begin += PIECE_BYTES) {
-    await send(call, { data: data.subarray(begin, begin + PIECE_BYTES) });
+  #metadata() { return metadataWith(this.#token, this.#stubs.length === 1); }
+
+  #unary(gateway, method, request, deadline) {
+    return new Promise((resolve, reject) => this.#stubs[gateway][method](request, this.#metadata(), { deadline },
+      (error, answer) => (error ? reject(error) : resolve(answer))));
   }
-  call.end();
+
+  async #make(job, deadline, method, request) {
+    if (method === "CancelJob") return job.take(await this.#unary(job.gateway, method, request, deadline), method, request);
+    if (method === "CreateJob") return job.take(await this.#create(job.gateway, request, deadline), method, request);
+    const call = this.#stubs[job.gateway][method](request, this.#metadata(), { deadline });
+    try {
+      for await (const answer of call) job.take(answer, method, request);
+    } finally {
+      call.cancel(); // nothing if it has ended
+    }
+    job.ended(method, request);
+  }
+
+  #create(gateway, requests, deadline) {
+    return new Promise((resolve, reject) => {
+      const call = this.#stubs[gateway].CreateJob(this.#metadata(), { deadline },
+        (error, answer) => (error ? reject(error) : resolve(answer)));
+      (async () => {
+        for (const request of requests) await send(call, request);
+        call.end();
+      })().catch(reject);
+    });
+  }
 }

@@ -81,12 +81,17 @@ export interface RewriteSummary { layers: number; layers_changed: number; verifi
 /** RewriteOptions of traverse/v1/gcode_service.proto. */
 export interface RewriteOptions { name?: string; policy?: string; report?: boolean; [field: string]: unknown }
 
-/** Connections to one or several gateways. */
+/**
+ * Connections to one or several gateways. A file is a job of one of them: a call that is lost goes on where it was, and a
+ * gateway that has gone, or has forgotten the job, gets the file again.
+ */
 export class GcodeGateway {
   constructor(addresses: string[], options?: ConnectionOptions);
   /** The same print with less travel. `file`: a path, or the bytes. Rejects with TraverseError if it cannot be rewritten. */
   rewrite(file: string | Uint8Array, options?: {
     deadlineSeconds?: number; options?: RewriteOptions; onProgress?: (progress: RewriteProgress) => void;
+    /** As of CreateJobOptions in traverse/v1/gcode_service.proto; default: one of its own. */
+    idempotencyKey?: string;
   }): Promise<{ data: Buffer; report: string; summary: RewriteSummary }>;
   close(): void;
 }

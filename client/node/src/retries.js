@@ -6,7 +6,7 @@ import { TraverseError } from "./errors.js";
 
 // The first says "ask another server", the second "not now". A proxy resets a stream (CANCELLED) when the server behind it
 // closes its connection; this client cancels no call that it waits for.
-const RETRIED = [grpc.status.UNAVAILABLE, grpc.status.RESOURCE_EXHAUSTED, grpc.status.CANCELLED];
+export const RETRIED = [grpc.status.UNAVAILABLE, grpc.status.RESOURCE_EXHAUSTED, grpc.status.CANCELLED];
 
 // The parts of google.rpc.Status and google.rpc.RetryInfo that count.
 const { root } = protobuf.parse(`syntax = "proto3";
@@ -27,7 +27,7 @@ function statedDelayMs(error) {
 }
 
 // What the server asks for, else 100 ms doubled with each attempt up to 5000, and some chance.
-function delayMs(error, attempt) {
+export function delayMs(error, attempt) {
   const stated = statedDelayMs(error);
   if (stated !== undefined) return stated * (1 + 0.2 * Math.random());
   return Math.min(5000, 100 * 2 ** Math.min(attempt, 10)) * (0.8 + 0.4 * Math.random());

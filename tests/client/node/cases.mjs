@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { execFile, spawn } from "node:child_process";
 import { cp, readFile, writeFile } from "node:fs/promises";
-import { createServer } from "node:net";
+import { connect as connectTo, createServer } from "node:net";
 import { test } from "node:test";
 import { promisify } from "node:util";
 import grpc from "@grpc/grpc-js";
@@ -149,10 +149,11 @@ const freePort = () => new Promise((resolve) => {
 
 // A real program on free ports; `address` speaks gRPC. The client waits until it is up.
 async function program(t, variable, ...flags) {
-  const address = `127.0.0.1:${await freePort()}`;
-  const process_ = spawn(process.env[variable], [`--listen=${address}`, "--metrics_listen=127.0.0.1:0", ...flags], { stdio: "ignore" });
+  const address = `127.0.0.1:${await freePort()}`, operators = `127.0.0.1:${await freePort()}`;
+  const process_ = spawn(process.env[variable], [`--listen=${address}`, `--metrics_listen=${operators}`, ...flags], { stdio: "ignore" });
   t.after(() => process_.kill("SIGKILL"));
-  return { address, kill: () => process_.kill("SIGKILL") };
+  const metrics = async () => (await fetch(`http://${operators}/metrics`)).text();
+  return { address, metrics, kill: () => process_.kill("SIGKILL") };
 }
 
 test("routes come from a real server, for arrays and iterators", async (t) => {
@@ -195,6 +196,66 @@ test("a file comes back with progress", async (t) => {
   assert.match(made.report, /<html/);
   assert.ok(seen.length > 0);
   await assert.rejects(client.rewrite(new Uint8Array()), TraverseError);
+});
+
+// A wire to `address` that can be cut; new connections then go through again.
+async function wireTo(t, address) {
+  const [host, port] = address.split(":");
+  const ends = new Set();
+  const server = createServer((near) => {
+    const far = connectTo(Number(port), host);
+    near.pipe(far).pipe(near);
+    for (const end of [near, far]) {
+      ends.add(end);
+      end.on("error", () => {}).on("close", () => { near.destroy(); far.destroy(); ends.delete(end); });
+    }
+  });
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  const cut = () => ends.forEach((end) => end.destroy());
+  t.after(() => { server.close(); cut(); });
+  return { address: `127.0.0.1:${server.address().port}`, cut };
+}
+
+test("a cut wire costs no work", async (t) => {
+  const gateway = await program(t, "TRAVERSE_GATEWAY", "--listen_http=127.0.0.1:0");
+  const wire = await wireTo(t, gateway.address);
+  const client = new GcodeGateway([wire.address]);
+  t.after(() => client.close());
+  const cuts = [];
+
+  const made = await client.rewrite(process.env.TRAVERSE_SAMPLE, { onProgress: ({ stage }) => {
+    if (cuts.length === 3 || cuts.includes(stage)) return;
+    cuts.push(stage);
+    wire.cut();
+  } });
+
+  assert.ok(cuts.length >= 2);
+  assert.equal(made.data.length, made.summary.bytes);
+  const told = await gateway.metrics();
+  const worked = [...told.matchAll(/^traverse_gateway_files_total\{.*\} (.+)$/gm)].reduce((sum, [, count]) => sum + Number(count), 0);
+  assert.equal(worked, 1);
+  assert.match(told, /^traverse_gateway_jobs 0$/m);
+});
+
+test("another gateway takes the file of one that was killed", async (t) => {
+  const gateways = await Promise.all(["one", "two"].map((name) => program(t, "TRAVERSE_GATEWAY", "--listen_http=127.0.0.1:0",
+    `--gateway_name=${name}`)));
+  const client = new GcodeGateway(gateways.map(({ address }) => address));
+  t.after(() => client.close());
+  const killOwner = async () => {
+    for (const gateway of gateways) {
+      if (/^traverse_gateway_jobs 1$/m.test(await gateway.metrics())) return gateway.kill() ?? 1;
+    }
+    return 0;
+  };
+  let killed;
+
+  const made = await client.rewrite(process.env.TRAVERSE_SAMPLE, { onProgress: ({ stage }) => {
+    if (stage === "STAGE_SEARCHING") killed ??= killOwner();
+  } });
+
+  assert.ok(await killed);
+  assert.equal(made.data.length, made.summary.bytes);
 });
 
 test("the examples of its guide run", async (t) => {

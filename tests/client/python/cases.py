@@ -6,18 +6,19 @@ import concurrent.futures
 import os
 import pathlib
 import re
-import socket
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 
 import grpc
 
 import traverse_client
 from traverse_client import (AsyncGcodeGateway, AsyncTravelOptimizer, GcodeGateway, JobOptions, OptimizeBatchRequest,
-                             RewriteOptions, TravelOptimizer, TraverseError, island, layer)
+                             RewriteOptions, RewriteProgress, TravelOptimizer, TraverseError, island, layer)
+from programs import Gateway, Server, Wire
 from traverse_client.wire import retry_info_pb2
 from traverse_client.wire import route_optimizer_service_pb2 as api
 from traverse_client.wire import route_optimizer_service_pb2_grpc as service
@@ -174,33 +175,6 @@ class Scripted(unittest.TestCase):
             TravelOptimizer("127.0.0.1:50051")
 
 
-def free_port():
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        return free.getsockname()[1]
-
-
-class Program:
-    """A real program on free ports; `address` speaks gRPC. The client waits until it is up."""
-
-    def __init__(self, *command):
-        self.address = f"127.0.0.1:{free_port()}"
-        self._process = subprocess.Popen([*command, f"--listen={self.address}", "--metrics_listen=127.0.0.1:0"],
-                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-
-    def kill(self):
-        self._process.kill()
-        self._process.wait()
-
-
-def Server():
-    return Program(os.environ["TRAVERSE_SERVER"])
-
-
-def Gateway():
-    return Program(os.environ["TRAVERSE_GATEWAY"], "--listen_http=127.0.0.1:0")
-
-
 class Real(unittest.TestCase):
     def start(self, program):
         started = program()
@@ -278,6 +252,93 @@ class Real(unittest.TestCase):
         gateway = self.start(Gateway)
         with GcodeGateway([gateway.address]) as client, self.assertRaises(TraverseError):
             client.rewrite(b"")
+
+
+class DroppedCalls(unittest.TestCase):
+    """Files survive what happens to their calls and to gateways."""
+
+    def gateway(self, *flags):
+        started = Gateway(*flags)
+        self.addCleanup(started.kill)
+        return started
+
+    def forms(self):
+        def sync(addresses, file, **more):
+            with GcodeGateway(addresses) as client:
+                return client.rewrite(file, 120, **more)
+
+        def asynchronous(addresses, file, **more):
+            async def run():
+                async with AsyncGcodeGateway(addresses) as client:
+                    return await client.rewrite(file, 120, **more)
+
+            return asyncio.run(run())
+
+        for run in (sync, asynchronous):
+            with self.subTest(run=run.__name__):
+                yield run
+
+    def test_a_cut_wire_costs_no_work(self):
+        part = pathlib.Path(os.environ["TRAVERSE_SAMPLE"]).read_bytes()
+        for run in self.forms():
+            gateway = self.gateway()
+            wire = Wire(gateway.address)
+            self.addCleanup(wire.close)
+            cuts = []
+
+            def cut(progress):
+                if len(cuts) < 3 and progress.stage not in cuts:
+                    cuts.append(progress.stage)
+                    wire.cut()
+
+            made = run([wire.address], part, on_progress=cut)
+
+            self.assertGreaterEqual(len(cuts), 2)
+            self.assertEqual(len(made.data), made.summary.bytes)
+            self.assertEqual(gateway.files_worked_on(), 1)
+            self.assertEqual(gateway.metric("traverse_gateway_jobs"), 0, "deleted when it was fetched")
+
+    def test_another_gateway_takes_the_file_of_one_that_was_killed(self):
+        part = pathlib.Path(os.environ["TRAVERSE_SAMPLE"]).read_bytes()
+        for run in self.forms():
+            gateways = [self.gateway("--gateway_name=" + name) for name in ("one", "two")]
+            killed = []
+
+            def kill(progress):
+                if progress.stage == RewriteProgress.STAGE_SEARCHING and not killed:
+                    killed.extend(one for one in gateways if one.metric("traverse_gateway_jobs") == 1)
+                    killed[0].kill()
+
+            made = run([one.address for one in gateways], part, on_progress=kill)
+
+            self.assertEqual(len(killed), 1)
+            self.assertEqual(len(made.data), made.summary.bytes)
+
+    def test_who_does_not_wait_leaves_no_work_behind(self):
+        for run in self.forms():
+            gateway = self.gateway()
+
+            def leave(progress):
+                raise KeyError("enough")
+
+            with self.assertRaisesRegex(KeyError, "enough"):
+                run([gateway.address], pathlib.Path(os.environ["TRAVERSE_SAMPLE"]), on_progress=leave)
+            end = time.monotonic() + 20
+            while gateway.metric("traverse_gateway_jobs") and time.monotonic() < end:
+                time.sleep(0.05)
+
+            self.assertEqual(gateway.metric("traverse_gateway_jobs"), 0)
+
+    def test_the_same_key_with_another_file_is_refused(self):
+        gateway = self.gateway()
+        with GcodeGateway([gateway.address]) as client:
+            with self.assertRaises(TraverseError) as raised:
+                def again(_):
+                    client.rewrite(b"; another\n", 10, idempotency_key="k")
+
+                client.rewrite(pathlib.Path(os.environ["TRAVERSE_SAMPLE"]), idempotency_key="k", on_progress=again)
+
+        self.assertEqual(raised.exception.code, grpc.StatusCode.ALREADY_EXISTS)
 
 
 class Package(unittest.TestCase):

@@ -14,7 +14,8 @@ from importlib.metadata import PackageNotFoundError, version
 
 from traverse_client.aio import AsyncGcodeGateway, AsyncTravelOptimizer
 from traverse_client.errors import TraverseError
-from traverse_client.files import GcodeGateway, RewrittenFile
+from traverse_client.file_job import RewrittenFile
+from traverse_client.files import GcodeGateway
 from traverse_client.layers import island, layer
 from traverse_client.optimizer import TravelOptimizer
 from traverse_client.wire.gcode_service_pb2 import RewriteOptions, RewriteProgress, RewriteSummary

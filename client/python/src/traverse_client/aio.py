@@ -2,13 +2,14 @@
 
 import asyncio
 import time
-from typing import AsyncIterable, AsyncIterator, Iterable, List, Optional, Sequence, Union
+from typing import Any, AsyncIterable, AsyncIterator, Iterable, List, Optional, Sequence, Union
 
 import grpc
 import grpc.aio
 
 from traverse_client import channels, files, retries
 from traverse_client.errors import TraverseError
+from traverse_client.file_job import File, FileJob, OnProgress, RewrittenFile
 from traverse_client.optimizer import SERVICE
 from traverse_client.remaining_job import RemainingJob, is_whole, opening
 from traverse_client.wire import gcode_service_pb2, options_pb2, plan_pb2
@@ -132,34 +133,58 @@ async def _as_async(layers: Iterable[plan_pb2.Layer]) -> AsyncIterator[plan_pb2.
         yield layer
 
 
-class AsyncGcodeGateway(_Client):
-    """As GcodeGateway, for asyncio."""
+class AsyncGcodeGateway:
+    """As GcodeGateway, for asyncio. Make it where the event loop runs."""
 
     def __init__(self, addresses: Sequence[str], credentials: Optional[grpc.ChannelCredentials] = None, *,
                  token: Optional[channels.Token] = None, server_name: Optional[str] = None):
-        super().__init__(files.SERVICE, addresses, credentials, token=token, server_name=server_name)
-        self._stub = gcode_service_pb2_grpc.GcodeServiceStub(self._channel)
+        self._channels = channels.channels_one_by_one(grpc.aio.secure_channel, grpc.aio.insecure_channel, files.SERVICE,
+                                                      addresses, credentials, server_name)
+        self._stubs = [gcode_service_pb2_grpc.GcodeServiceStub(channel) for channel in self._channels]
+        self._token = token
 
-    async def rewrite(self, file: files.File, deadline_seconds: float = 600.0, *,
-                      options: Optional[gcode_service_pb2.RewriteOptions] = None,
-                      on_progress: Optional[files.OnProgress] = None) -> files.RewrittenFile:
+    async def __aenter__(self) -> "AsyncGcodeGateway":
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.close()
+
+    async def close(self) -> None:
+        """Ends the connections; what is under way fails."""
+        for channel in self._channels:
+            await channel.close()
+
+    async def rewrite(self, file: File, deadline_seconds: float = 600.0, *,
+                      options: Optional[gcode_service_pb2.RewriteOptions] = None, on_progress: Optional[OnProgress] = None,
+                      idempotency_key: Optional[str] = None) -> RewrittenFile:
         """As GcodeGateway.rewrite."""
-        upload = files.Upload(file, options)
-        deadline = time.monotonic() + deadline_seconds
-        attempt = 0
-        while True:
-            download = files.Download(on_progress)
-            call = self._stub.Rewrite(upload.requests(), timeout=deadline - time.monotonic(), wait_for_ready=True,
-                                      metadata=channels.authorization(self._token))
-            try:
-                async for answer in call:
-                    download.take(answer)
-                return download.file()
-            except grpc.aio.AioRpcError as error:
-                delay = retries.delay_before(error, attempt)
-                if error.code() not in retries.RETRIED or time.monotonic() + delay >= deadline:
-                    raise TraverseError(error.code(), error.details()) from error
-            finally:
-                call.cancel()
-            attempt += 1
-            await asyncio.sleep(delay)
+        job = FileJob(file, options, idempotency_key, on_progress, deadline_seconds, len(self._stubs))
+        try:
+            while True:
+                call = job.next_call()
+                if call is None:
+                    return job.file()
+                try:
+                    await self._make(job, *call)
+                except grpc.RpcError as error:
+                    await asyncio.sleep(job.delay_after(error, call[1]))
+        except BaseException:
+            left = job.abandoned()
+            if left is not None:  # not waited for
+                self._stubs[job.gateway].CancelJob(left, timeout=files.CANCEL_SECONDS,
+                                                   metadata=channels.authorization(self._token))
+            raise
+
+    async def _make(self, job: FileJob, method: str, request: Any) -> None:
+        answer = getattr(self._stubs[job.gateway], method)(
+            request, timeout=max(0.0, job.seconds_left()), wait_for_ready=len(self._stubs) == 1,
+            metadata=channels.authorization(self._token))
+        if method in ("CreateJob", "CancelJob"):
+            job.take(await answer, request)
+            return
+        try:
+            async for one in answer:
+                job.take(one, request)
+        finally:
+            answer.cancel()
+        job.ended(request)
