@@ -18,7 +18,7 @@ unit=(libgtest-dev libgmock-dev libbenchmark-dev xz-utils python3)
 test=(
   "${unit[@]}"
   python3-grpcio python3-protobuf python3-yaml python3-venv python3-pip python3-setuptools python3-wheel codespell zsh curl iproute2
-  chromium fonts-dejavu-core
+  chromium fonts-dejavu-core nats-server
 )
 sanitize=(clang libclang-rt-14-dev llvm)
 deploy=(

@@ -283,7 +283,7 @@ class Jobs(OnGateway):
         job = self.create(PART, name="a.gcode", report=True)
         told = [answer.job for answer in self.stream("WatchJob", id=job.id)]
         self.assertEqual((told[-1].state, told[-1].name), (3, "a.gcode"))
-        self.assertEqual([one.revision for one in told], sorted({one.revision for one in told}))
+        self.assertEqual([one.revision for one in told], sorted(one.revision for one in told))
         made = self.read(id=job.id)
         self.assertEqual(made, optimised_by_command(PART))
         self.assertEqual(self.read(id=job.id, offset=1000), made[1000:])

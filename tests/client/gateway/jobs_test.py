@@ -238,8 +238,8 @@ class Jobs(unittest.TestCase):
         self.assertEqual(self.ended(again, self.create(again, key="k"))["state"], "STATE_DONE")
 
     def test_draining_waits_until_results_are_fetched(self):
-        gateway = self.start("--drain_timeout=60s")
-        part = lines_of_infill(100)
+        gateway = self.start("--drain_timeout=280s")
+        part = lines_of_infill(20)
         job, bad = self.create(gateway, part), self.create(gateway, b"no file of a slicer\n")
         gateway.process.send_signal(signal.SIGTERM)
         self.assertTrue(until(lambda: gateway.ask("GET", "/readyz")[0] == 503))
