@@ -50,15 +50,22 @@ Vertex LayerWriter::LeavesFrom(const Placement& from) const {
   return leaving == nullptr || leaving->departs ? End(from) : Behind(from, *leaving);
 }
 
+bool LayerWriter::Hides(const Placement& from, const Placement& to, bool boundary) const {
+  if (!hides_ || boundary || from.block < layer_.first_block) return false;
+  const Feature feature = outlines_[to.block - layer_.first_block].feature;
+  return rules_.Hides(LeavesFrom(from), Begin(to), feature);
+}
+
 std::optional<std::vector<Vertex>> LayerWriter::HiddenBends(const Placement& from,
                                                             const Placement& to,
                                                             bool boundary) const {
-  if (!hides_ || boundary || from.block < layer_.first_block) return std::nullopt;
+  if (Hides(from, to, boundary)) return std::vector<Vertex>();
+  if (!hides_ || travel_ == nullptr || boundary || from.block < layer_.first_block) {
+    return std::nullopt;
+  }
   const Feature feature = outlines_[to.block - layer_.first_block].feature;
   const Vertex leaves = LeavesFrom(from);
   const Vertex begin = Begin(to);
-  if (rules_.Hides(leaves, begin, feature)) return std::vector<Vertex>();
-  if (travel_ == nullptr) return std::nullopt;
   std::vector<Vertex> bends = rules_.HiddenBends(leaves, begin, feature);
   if (bends.empty()) return std::nullopt;
   const auto seconds = [this](Vertex a, Vertex b) {
@@ -117,10 +124,7 @@ TravelTotals LayerWriter::EstimateTravel(size_t place, const Placement& from, co
                           : travel.retracts || wipes ||
                                 (boundary && (here.link & kLinkRetracts) != 0) ||
                                 GoesOnAcross(from, travel.to, feature);
-  if (travel.retracts) {
-    const auto bends = HiddenBends(from, to, boundary);
-    if (bends) return HiddenTravel(from, to, *bends, model);
-  }
+  if (travel.retracts && Hides(from, to, boundary)) return HiddenTravel(from, to, model);
   const TravelJoints joints = JointsOf(from, to, wipes);
   TravelTotals totals;
   totals.mm = travel.mm;
@@ -160,21 +164,16 @@ bool LayerWriter::IsBlocked(const PlannedTravel& travel) const {
 }
 
 TravelTotals LayerWriter::HiddenTravel(const Placement& from, const Placement& to,
-                                       const std::vector<Vertex>& bends,
                                        const TravelModel& model) const {
   PlannedTravel travel;
   travel.from = End(from);
   travel.to = Begin(to);
-  Vertex at = LeavesFrom(from);
-  if (!(at == travel.from)) {
-    travel.mm = LeavingOf(from, /*wipes=*/false)->mm;
-    travel.via.push_back(at);
+  const Vertex leaves = LeavesFrom(from);
+  travel.mm = Distance(leaves, travel.to);
+  if (!(leaves == travel.from)) {
+    travel.mm += LeavingOf(from, /*wipes=*/false)->mm;
+    travel.via.push_back(leaves);
   }
-  for (const Vertex& bend : bends) {
-    travel.mm += Distance(std::exchange(at, bend), bend);
-    travel.via.push_back(bend);
-  }
-  travel.mm += Distance(at, travel.to);
   const TravelJoints joints = JointsOf(from, to, /*wipes=*/false);
   TravelTotals totals;
   totals.mm = travel.mm;

@@ -136,14 +136,18 @@ class LayerWriter {
   // continues along the path.
   Vertex LeavesFrom(const Placement& from) const;
 
-  // The bends of that move to `to` if it is hidden, none if it is so on the straight way. Nothing
-  // if it is seen, as all moves at a boundary are, or if to retract takes less time than to bend.
+  // Whether that move to `to` is hidden if it goes straight. No move at a boundary is.
+  bool Hides(const Placement& from, const Placement& to, bool boundary) const;
+
+  // The bends of that move if it is hidden, none if it goes straight. Nothing if it is seen, or if
+  // to retract takes less time than to bend. Orders are estimated without bends: what these gain
+  // comes on top, and a search that counted on them found no faster orders.
   std::optional<std::vector<Vertex>> HiddenBends(const Placement& from, const Placement& to,
                                                  bool boundary) const;
 
-  // EstimateTravel of a hidden move with these bends.
+  // EstimateTravel of a hidden move.
   TravelTotals HiddenTravel(const Placement& from, const Placement& to,
-                            const std::vector<Vertex>& bends, const TravelModel& model) const;
+                            const TravelModel& model) const;
 
   // Where travel from `from` to `to` joins them. What happens after `from`, except for a short move
   // away from it, ends with a stop.
