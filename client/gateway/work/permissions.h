@@ -41,12 +41,13 @@ std::optional<Policy> PolicyFrom(v1::Policy message) {
 
 // `Allowed`: a struct with a bool for each allowance.
 template <typename Allowed>
-constexpr std::array<std::pair<v1::Allowance, bool Allowed::*>, 5> kAllowances = {{
+constexpr std::array<std::pair<v1::Allowance, bool Allowed::*>, 6> kAllowances = {{
     {v1::ALLOWANCE_INFILL_ORDER, &Allowed::infill_order},
     {v1::ALLOWANCE_WALL_ORDER, &Allowed::wall_order},
     {v1::ALLOWANCE_FAN_ORDER, &Allowed::fan_order},
     {v1::ALLOWANCE_WIPES, &Allowed::wipes},
     {v1::ALLOWANCE_HIDDEN_RETRACTIONS, &Allowed::hidden_retractions},
+    {v1::ALLOWANCE_INNER_DETOURS, &Allowed::inner_detours},
 }};
 
 // False if `allowance` is none that is known.
