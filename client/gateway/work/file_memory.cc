@@ -68,6 +68,15 @@ constexpr Prices PricesOf(FileUse use) {
   return {};
 }
 
+// What is kept of the places where something stands, in maps of all that lines lead across.
+double BytesForFarLines(const TextCount& count, FileUse use) {
+  constexpr double kOfMm = 64;
+  constexpr double kMost = 100 << 20;
+  if (use == FileUse::kInspect) return 0;
+  const double bytes = kOfMm * count.far_mm();
+  return bytes < kMost ? bytes : kMost;
+}
+
 double BytesFor(const TextCount& count, FileUse use) {
   const Prices prices = PricesOf(use);
   const int64_t layers = gcode::DefaultThreads();
@@ -76,7 +85,8 @@ double BytesFor(const TextCount& count, FileUse use) {
          of(prices.path, count.paths()) + of(prices.move, count.moves()) +
          of(prices.setting, count.settings()) + of(prices.layer, count.layers()) +
          of(prices.cell_under_way, std::min(count.cells(), layers * count.most_cells())) +
-         of(prices.path_under_way, std::min(count.paths(), layers * count.most_paths()));
+         of(prices.path_under_way, std::min(count.paths(), layers * count.most_paths())) +
+         BytesForFarLines(count, use);
 }
 
 std::string FirstBytes(const SpoolFile& upload) {

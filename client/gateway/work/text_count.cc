@@ -184,6 +184,7 @@ void TextCount::Move(const Words& words) {
   segments_ += static_cast<int64_t>(pieces);
   constexpr double kMost = kMostCellsOfLine - 1;
   layer_cells_ += 1 + static_cast<int64_t>(length < kMost ? length : kMost);
+  if (!(length < kMostCellsOfLine)) far_mm_ += length;
   in_path_ = true;
   travelled_ = false;
 }

@@ -34,6 +34,9 @@ class TextCount {
   int64_t most_cells() const { return most_cells_; }
   static constexpr double kMostCellsOfLine = 256;
 
+  // The length of lines with more cells than that, in mm: few prints have any.
+  double far_mm() const { return far_mm_; }
+
  private:
   struct Words;
 
@@ -52,6 +55,7 @@ class TextCount {
   int64_t cells_ = 0;
   int64_t most_cells_ = 0;
   int64_t layer_cells_ = 0;
+  double far_mm_ = 0;
   std::string rest_;        // of a line whose end has not come
   bool in_path_ = false;    // the last line that does something prints
   bool travelled_ = false;  // since the last line that prints

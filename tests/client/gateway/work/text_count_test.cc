@@ -69,6 +69,7 @@ TEST(TextCount, KnowsTheLayerWithMostCells) {
 
 TEST(TextCount, ALineHasNoMoreThanSoManyCells) {
   EXPECT_EQ(CountOf("G0 X0\nG1 X1000000 E1\n").cells(), 256);
+  EXPECT_EQ(CountOf("G0 X0\nG1 X1000000 E1\nG1 X1000100 E1\n").far_mm(), 1e6);
   EXPECT_EQ(CountOf("G20\nG0 X0\nG1 X1 E1\n").cells(), 26);
 }
 
