@@ -14,6 +14,18 @@ constexpr size_t kMostBegins = 12;
 // The first stretches of an order, each for half as long as islands rest, or one island.
 constexpr size_t kHeadStretches = 4;
 
+// [path] the number of its unit; units begin at the places that `begins` says.
+std::vector<uint32_t> UnitsIn(const LayerOrder& order, uint32_t first_block,
+                              const std::vector<bool>& begins) {
+  std::vector<uint32_t> units(order.size());
+  uint32_t unit = 0;
+  for (size_t place = 0; place < order.size(); ++place) {
+    if (begins[place]) ++unit;
+    units[order[place].block - first_block] = unit;
+  }
+  return units;
+}
+
 }  // namespace
 
 class IslandTurns::Maker {
@@ -32,15 +44,17 @@ class IslandTurns::Maker {
     NumberParts(islands);
   }
 
-  // Bases and turns of `order`.
+  // Bases and turns of `order`. The other way round other paths may be next to each other.
   void Add(const LayerOrder& order) {
     if (!IsAllowed(order)) return;
     AddBase(order);
+    AddBase(Settled(Backwards(order), freedom_.group));
     for (const LayerOrder& base :
          {InSequence(order, RanksIn(order)), InSequence(order, RanksIn(given_))}) {
       if (!IsAllowed(base)) continue;
-      AddBase(Settled(base));
-      AddBase(Settled(Backwards(base)));
+      for (const LayerOrder& way : {base, Backwards(base)}) {
+        AddBase(Settled(way, UnitsIn(way, first_, BeginsOf(way))));
+      }
     }
   }
 
@@ -132,19 +146,8 @@ class IslandTurns::Maker {
     return begins;
   }
 
-  LayerOrder Settled(const LayerOrder& order) {
-    return settle_ ? settle_(order, UnitsIn(order, BeginsOf(order))) : order;
-  }
-
-  // [path] the number of its unit, which ascend.
-  std::vector<uint32_t> UnitsIn(const LayerOrder& order, const std::vector<bool>& begins) const {
-    std::vector<uint32_t> units(size());
-    uint32_t unit = 0;
-    for (size_t place = 0; place < size(); ++place) {
-      if (begins[place]) ++unit;
-      units[PathAt(order, place)] = unit;
-    }
-    return units;
+  LayerOrder Settled(const LayerOrder& order, const std::vector<uint32_t>& units) {
+    return settle_ ? settle_(order, units) : order;
   }
 
   // The units of each group from the last to the first, each as it is.
@@ -397,15 +400,8 @@ std::vector<double> IslandTurns::MomentsOf(size_t turn) const {
 }
 
 std::vector<uint32_t> IslandTurns::UnitsOf(size_t turn) const {
-  const Turn& of = turns_[turn];
-  const Base& base = bases_[of.base];
-  std::vector<uint32_t> units(given_size_);
-  uint32_t unit = 0;
-  for (size_t place = 0; place < given_size_; ++place) {
-    if (base.begins[place]) ++unit;
-    units[base.order[place].block - first_block_] = unit;
-  }
-  return units;
+  const Base& base = bases_[turns_[turn].base];
+  return UnitsIn(base.order, first_block_, base.begins);
 }
 
 }  // namespace traverse::gcode
