@@ -15,6 +15,10 @@ namespace {
 constexpr absl::Duration kBarInterval = absl::Milliseconds(100);
 constexpr absl::Duration kLineInterval = absl::Seconds(5);
 
+// Of its work, after which a search tells how long it takes: the first layers that are done are the
+// smallest ones, and others are half done by then.
+constexpr double kTellingShare = 0.1;
+
 // Returns to the first column and clears the line.
 constexpr char kClearLine[] = "\r\x1b[K";
 
@@ -54,10 +58,11 @@ double Progress::WorkOf(uint64_t layer) const {
   return layer < work_.layers.size() ? work_.layers[layer] : 1;
 }
 
-// Of this search, and of what follows.
-double Progress::SecondsLeft(double elapsed_seconds) const {
+// Of this search, and of what follows; unset if too little is done to tell.
+std::optional<double> Progress::SecondsLeft(double elapsed_seconds) const {
   double all = 0;
   for (uint64_t layer = 0; layer < layers_; ++layer) all += WorkOf(layer);
+  if (done_work_ < kTellingShare * all) return std::nullopt;
   const double whole = elapsed_seconds * all / done_work_;
   return std::max(whole - elapsed_seconds, 0.0) + whole * work_.stages_behind;
 }
@@ -67,9 +72,9 @@ std::string Progress::Text(absl::Duration elapsed, int width) const {
   if (given_mm_ > 0) {
     absl::StrAppendFormat(&out, ", travel %s", report::Change(given_mm_, travel_mm_));
   }
-  if (done_ > 0 && done_ < layers_) {
-    absl::StrAppendFormat(&out, ", %s left",
-                          report::Duration(SecondsLeft(absl::ToDoubleSeconds(elapsed))));
+  const std::optional<double> left = SecondsLeft(absl::ToDoubleSeconds(elapsed));
+  if (done_ > 0 && done_ < layers_ && left) {
+    absl::StrAppendFormat(&out, ", %s left", report::Duration(*left));
   }
   if (style_ != Style::kBar) return absl::StrFormat("%s: %s", label_, out);
 

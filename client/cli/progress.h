@@ -4,6 +4,7 @@
 #define TRAVERSE_CLIENT_CLI_PROGRESS_H_
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "absl/time/time.h"
@@ -40,7 +41,7 @@ class Progress {
 
  private:
   double WorkOf(uint64_t layer) const;
-  double SecondsLeft(double elapsed_seconds) const;
+  std::optional<double> SecondsLeft(double elapsed_seconds) const;
 
   const Style style_;
   const std::string label_;

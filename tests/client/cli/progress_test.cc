@@ -31,6 +31,14 @@ TEST(Progress, TimeLeftGoesByWorkAndByWhatFollows) {
   EXPECT_EQ(progress.Text(absl::Seconds(2), 80), "auto: 1/3 layers, 58 s left");
 }
 
+TEST(Progress, TellsNoTimeLeftAfterASmallLayerAlone) {
+  Progress progress(Progress::Style::kLines, "auto", 3);
+  progress.Expect({{1, 500, 499}, 2});
+  progress.Take(Layer(0, 0));
+
+  EXPECT_EQ(progress.Text(absl::Seconds(13), 80), "auto: 1/3 layers");
+}
+
 TEST(Progress, LinesHaveNoBar) {
   Progress progress(Progress::Style::kLines, "tabu", 2);
   progress.Take(Layer(0, 0));
