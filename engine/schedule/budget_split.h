@@ -113,11 +113,22 @@ class BudgetSplit {
     // The thread may lose its core when greedy is due.
     constexpr std::chrono::milliseconds kMostLag{10};
     constexpr int kLagShare = 10;
-    constexpr double kSafety = 2;  // also because greedy follows on measuring
     const Seconds lag = kSafety * wait_ + std::min<Clock::duration>(kMostLag, whole_ / kLagShare);
-    const Seconds greedy = kSafety * (taken_ / worked_) * unanswered_;
-    const Seconds reserve = std::min<Seconds>(lag + greedy, std::max(whole_, Clock::duration()));
+    const Seconds reserve =
+        std::min<Seconds>(lag + TimeOf(unanswered_), std::max(whole_, Clock::duration()));
     return *deadline_ - std::chrono::duration_cast<Clock::duration>(reserve);
+  }
+
+  // When greedy must end on a layer of this size, so that it has its time on the other layers too.
+  // Where nothing else is left to do its route is still worth a little more than the time that was
+  // kept for it.
+  std::optional<Clock::time_point> GreedyEnd(LayerSize size) const {
+    if (!deadline_) return std::nullopt;
+    constexpr std::chrono::milliseconds kMostGrace{10};
+    constexpr int kGraceShare = 10;
+    const Clock::duration grace = std::clamp<Clock::duration>(whole_ / kGraceShare, {}, kMostGrace);
+    const Seconds others = TimeOf(std::max(0.0, unanswered_ - Work(size)));
+    return *deadline_ + grace - std::chrono::duration_cast<Clock::duration>(others);
   }
 
  private:
@@ -131,6 +142,11 @@ class BudgetSplit {
            kPointsOfLayer;
   }
 
+  static constexpr double kSafety = 2;  // also because greedy follows on measuring
+
+  // What greedy needs for so much work, by what it has taken.
+  Seconds TimeOf(double work) const { return kSafety * (taken_ / worked_) * work; }
+
   // With each layer, earlier ones lose this share of their weight: the machine may become busy.
   static constexpr double kFading = 0.8;
 
@@ -142,7 +158,7 @@ class BudgetSplit {
   int64_t announced_layers_ = 0;
   bool more_may_come_ = true;  // than those announced
   double unanswered_ = 0;      // work
-  Seconds taken_{};
+  Seconds taken_{0.25e-6};     // at first what greedy usually takes
   double worked_ = 1;
 
   Seconds wait_{};  // of tasks, the longest of late

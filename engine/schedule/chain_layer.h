@@ -36,6 +36,14 @@ struct LayerAlone {
   KnownRoutePtr known = {};  // as in ChainLayer
 };
 
+// A layer's part of the chain that greedy would go.
+struct GreedyLayer {
+  Point start;
+  Route route;
+  Point end = {};   // cleaning included
+  double cost = 0;  // the move to the cleaning point included
+};
+
 // A layer on its way. A stage owns its layer and works without the lock, but hands over under it.
 struct ChainLayer {
   uint64_t index = 0;
@@ -54,6 +62,9 @@ struct ChainLayer {
   std::optional<Point> finish;
   Route given_route;
   LayerOutcome outcome;  // the part about the given order
+
+  // Set by prepare, if the clock may cut a search short.
+  std::optional<GreedyLayer> greedy;
 
   // Set by prepare: whether the layer is part of the chain that is solved one layer after the
   // other.
@@ -77,6 +88,9 @@ struct ChainLayer {
   // Set when each stage begins: when its search must end, so that all of them keep within that
   // share, and greedy has its time. Unset: never.
   std::optional<Budget::Clock::time_point> search_end;
+
+  // Set with it: when greedy must end, if it takes long.
+  std::optional<Budget::Clock::time_point> greedy_end;
 
   // From the first stage that solves the layer to its anchor. One stage at a time uses it.
   std::unique_ptr<PreparedLayer> prepared;
@@ -105,6 +119,9 @@ struct ChainLayer {
   // Set by anchor, if routes are reused.
   KnownRoutePtr known;
 
+  // Set by anchor: see TrueStart, after this layer.
+  double over_greedy = 0;
+
   // Guarded by the lock.
   std::optional<Point> first_end;  // if solved: where the head is then, cleaning included
   bool solved = false;             // the layer's true start can be used
@@ -130,6 +147,13 @@ struct TrueStart {
   // What the layers before cost more than one after the other, since the last whose start did not
   // depend on a layer that looked ahead.
   double over_alone = 0;
+
+  // What they cost more than greedy's chain since then.
+  double over_greedy = 0;
+
+  // The layer behind, if it is prepared.
+  ChainLayerPtr next = {};
+  bool is_last = false;  // of a closed job
 };
 
 }  // namespace traverse

@@ -10,7 +10,7 @@ namespace traverse {
 void LayerPreparer::Prepare(ChainLayer& layer) {
   const Plan& plan = layer.given.plan;
   Budget turns = solver_.Turns();
-  if (layer.given.start) given_at_ = predicted_at_ = *layer.given.start;
+  if (layer.given.start) given_at_ = greedy_at_ = predicted_at_ = *layer.given.start;
   layer.predicted_start = predicted_at_;
 
   if (layer.cost.kind == CostSpec::Kind::kTime && !layer.given.walls.empty()) {
@@ -37,7 +37,20 @@ void LayerPreparer::Prepare(ChainLayer& layer) {
   if (turns.ExhaustedNow()) return;  // it was cancelled: nobody will look
   TellGiven(solver_.Problem(layer, given_at_), layer.given_route, turns, layer.outcome);
   given_at_ = layer.finish.value_or(RouteEnd(plan, layer.given_route, given_at_));
+  if (solver_.MayBeCutShort()) {
+    layer.greedy = FollowGreedy(layer);
+    greedy_at_ = layer.greedy->end;
+  }
   if (!solver_.traits().serial) predicted_at_ = PredictEnd(layer);
+}
+
+GreedyLayer LayerPreparer::FollowGreedy(const ChainLayer& layer) const {
+  const LayerProblem problem = solver_.Problem(layer, greedy_at_);
+  Budget turns = solver_.Turns();
+  GreedyLayer greedy{greedy_at_, solver_.GreedyRoute(problem, layer)};
+  greedy.cost = RouteCost(problem, greedy.route, &turns);
+  greedy.end = layer.finish.value_or(RouteEnd(layer.given.plan, greedy.route, greedy_at_));
+  return greedy;
 }
 
 Point LayerPreparer::PredictEnd(const ChainLayer& layer) const {
@@ -45,8 +58,9 @@ Point LayerPreparer::PredictEnd(const ChainLayer& layer) const {
   if (const std::optional<Point> end = history_.EndOf(layer.fingerprint.shape, layer.key)) {
     return {layer.origin.x + end->x, layer.origin.y + end->y};
   }
+  if (layer.greedy && layer.greedy->start == layer.predicted_start) return layer.greedy->end;
   if (solver_.Expired(layer)) return layer.predicted_start;
-  const Route greedy = solver_.GreedyRoute(solver_.Problem(layer, layer.predicted_start));
+  const Route greedy = solver_.GreedyRoute(solver_.Problem(layer, layer.predicted_start), layer);
   return RouteEnd(layer.given.plan, greedy, layer.predicted_start);
 }
 

@@ -18,7 +18,7 @@ class LayerPreparer {
  public:
   // `start`: of the job. Keeps, but does not own, `solver`.
   LayerPreparer(Point start, const LayerSolver& solver)
-      : solver_(solver), given_at_(start), predicted_at_(start) {}
+      : solver_(solver), given_at_(start), greedy_at_(start), predicted_at_(start) {}
 
   // Sets what ChainLayer says that prepare sets, except the entries in the route history.
   void Prepare(ChainLayer& layer);
@@ -27,10 +27,12 @@ class LayerPreparer {
   void Learn(uint64_t shape, uint64_t key, Point end) { history_.Learn(shape, key, end); }
 
  private:
+  GreedyLayer FollowGreedy(const ChainLayer& layer) const;
   Point PredictEnd(const ChainLayer& layer) const;
 
   const LayerSolver& solver_;
   Point given_at_;      // where the head is in the given order
+  Point greedy_at_;     // and in greedy's
   Point predicted_at_;  // where the head will probably be in the order that is found
   std::shared_ptr<AnchoredRoutes> anchored_;
   EndHistory history_;

@@ -43,8 +43,7 @@ LayerSolver::LayerSolver(const JobSpec& spec, std::unique_ptr<Strategy> strategy
       strategy_(std::move(strategy)),
       predictor_(GreedyEntry().make(*StrategyOptions::Parse(GreedyEntry().options, {}))),
       executor_(executor),
-      cancel_(cancel),
-      greedy_end_(GreedyEnd(spec)) {}
+      cancel_(cancel) {}
 
 // Until `end`, and no longer than `share` of the smaller of a part of the job's time and so many
 // times the limit of one layer.
@@ -105,6 +104,7 @@ void LayerSolver::SolveFirst(ChainLayer& layer) const {
   const Stopwatch watch;
   if (Expired(layer)) {
     layer.first = Solution{layer.given_route, StopReason::kTimeLimit, std::nullopt};
+    was_cut_short_ = true;
     return;
   }
   Budget budget = LayerBudget(layer, SolveShare(layer));
@@ -119,6 +119,7 @@ void LayerSolver::SolveFirst(ChainLayer& layer) const {
     layer.first = Prepared(layer).Solve(problem, budget);
   }
   if (!layer.first.lower_bound) Bound(problem, layer, layer.first);
+  if (layer.first.stop == StopReason::kTimeLimit) was_cut_short_ = true;
   layer.outcome.solve_seconds = watch.Seconds();
 }
 
@@ -191,6 +192,7 @@ void LayerSolver::SolveSecond(ChainLayer& layer) const {
     layer.second = layer.first;
     layer.second.stop = StopReason::kTimeLimit;
     return;
+    was_cut_short_ = true;
   }
   Budget budget = LayerBudget(layer, SolveShare(layer));
   layer.second = strategy_->Solve(Problem(layer, *layer.second_start), budget);
@@ -313,6 +315,7 @@ Solution LayerSolver::ValidFromTrueStart(const LayerProblem& problem, ChainLayer
   if (turns.ExhaustedNow()) return solution;  // cancelled: nobody reads it
   if (absl::Status status = ValidateRoute(layer.given.plan, solution.route, &turns); !status.ok()) {
     layer.outcome.invalid_route = std::string(status.message());
+  if (solution.stop == StopReason::kTimeLimit || Expired(layer)) was_cut_short_ = true;
     return Solution{layer.given_route, StopReason::kLocalOptimum, std::nullopt};
   }
   // Of those in view too little is known once no time is left to search them.
@@ -338,9 +341,15 @@ LayerOutcome LayerSolver::Anchor(ChainLayer& layer, const TrueStart& at) const {
   if (turns.ExhaustedNow()) return outcome;  // cancelled: nobody reads it
   if (!solution.lower_bound) Bound(problem, layer, solution);
   if (layer.anchored) {
+  const bool leaves_chain = !turns.ExhaustedNow() && layer.greedy && was_cut_short_ &&
+                            KeepWithinGreedy(problem, layer, at, solution);
     layer.known = Known(problem, layer, solution);
     // Equal layers need not be kept within what this one was.
-    if (!was_replaced) layer.anchored->anchored[key] = layer.known;
+  if (layer.greedy) {
+    const double over = RouteCost(problem, solution.route, &turns) - layer.greedy->cost;
+    layer.over_greedy = at.over_greedy + over;
+  }
+    if (!was_replaced && !leaves_chain) layer.anchored->anchored[key] = layer.known;
   }
   if (turns.ExhaustedNow()) return outcome;
   TellFound(problem, std::move(solution), layer.given, turns, outcome);

@@ -52,16 +52,20 @@ class LayerSolver {
   // cancellation is seen.
   Budget Turns() const { return Budget(&cancel_, std::nullopt, executor_.turn(), spec_.time); }
 
+  // Whether the clock may end a search, so that layers need greedy's routes to fall back on.
+  bool MayBeCutShort() const;
+
   // The problem of solving the layer from `start`. Refers to `layer`.
   LayerProblem Problem(const ChainLayer& layer, Point start) const;
 
   // Where the head is after the layer, cleaning included, if it is done as it was found alone.
   static Point EndAlone(const ChainLayer& layer) { return layer.finish.value_or(layer.alone->end); }
 
-  // In the time that is kept for it, besides that of any search. Like measuring and checking a
+  // Without looking again where greedy's chain begins the layer there. In the time that is kept for
+  // it, besides that of any search. Like measuring and checking a
   // route it is done although the deadline has passed, for as many points as take less time than a
   // busy machine may stop the thread for.
-  Route GreedyRoute(const LayerProblem& problem) const;
+  Route GreedyRoute(const LayerProblem& problem, const ChainLayer& layer) const;
 
   // `solution` with what later layers need to continue from it.
   KnownRoutePtr Known(const LayerProblem& problem, const ChainLayer& layer,
@@ -99,12 +103,15 @@ class LayerSolver {
                               const KnownRoute* known, const TrueStart& at) const;
   Solution ValidFromTrueStart(const LayerProblem& problem, ChainLayer& layer,
                               const KnownRoute* known, const TrueStart& at) const;
-  // In layer_solver_floor.cc: greedy's route, under which no answer falls.
-  static std::optional<Budget::Clock::time_point> GreedyEnd(const JobSpec& spec);
+  // In layer_solver_floor.cc: greedy's route and chain, which no answer and no job costs more than.
   bool GreedyMayBeBetter(const LayerProblem& problem, const ChainLayer& layer,
                          const KnownRoute* known, const Solution& solution) const;
   void KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer, const KnownRoute* known,
                      const LayersInView& view, Solution& solution) const;
+  double OverGreedy(const LayerProblem& problem, const Route& route, const ChainLayer& layer,
+                    const TrueStart& at) const;
+  bool KeepWithinGreedy(const LayerProblem& problem, const ChainLayer& layer, const TrueStart& at,
+                        Solution& solution) const;
   const KnownRoute* FindAnchored(const ChainLayer& layer, const AnchoredRoutes::ByKey& routes,
                                  uint64_t key) const;
   void Bound(const LayerProblem& problem, ChainLayer& layer, Solution& solution) const;
@@ -151,11 +158,14 @@ class LayerSolver {
   const std::unique_ptr<Strategy> predictor_;
   Executor& executor_;
   const CancelToken& cancel_;
-  const std::optional<Budget::Clock::time_point> greedy_end_;
 
   // Points of the job for which greedy may still run after the deadline: at 0.5 us, 50 ms.
   static constexpr int64_t kMostLatePoints = 100'000;
   mutable std::atomic<int64_t> late_points_left_ = kMostLatePoints;
+
+  // Whether the clock has ended a search of the job: until then every layer's routes are the same
+  // on every machine, and are left as they are.
+  mutable std::atomic<bool> was_cut_short_ = false;
 };
 
 }  // namespace traverse

@@ -92,12 +92,12 @@ void LayerSolver::SolveInView(const LayerProblem& problem, ChainLayer& layer, co
   const auto fallback = [&](const ChainLayer& next, const LayerProblem&) {
     return FallbackRoute(next);
   };
-  const auto greedy = [&](const ChainLayer&, const LayerProblem& from) {
-    return GreedyRoute(from);
+  const auto greedy = [&](const ChainLayer& next, const LayerProblem& from) {
+    return GreedyRoute(from, next);
   };
   std::vector<RoutesInView> known = {InView(problem, solution.route, at, alone)};
   if (!layer.foreseen.empty()) known.push_back(InView(problem, layer.foreseen, at, foreseen));
-  known.push_back(InView(problem, GreedyRoute(problem), at, greedy));
+  known.push_back(InView(problem, GreedyRoute(problem, layer), at, greedy));
   const bool knows_alone = KnowsAlone(layer, at);
   if (knows_alone) known.push_back(InView(problem, FallbackRoute(layer), at, fallback));
   const auto search_from = [&](RoutesInView best) {

@@ -1,33 +1,31 @@
 // How LayerSolver keeps every layer from costing more than greedy's route, also when time is up.
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <optional>
 
+#include "absl/time/time.h"
 #include "engine/base/tolerances.h"
 #include "engine/cost/route_cost.h"
+#include "engine/cost/travel_cost.h"
 #include "engine/schedule/layer_solver.h"
 
 namespace traverse {
 
-// Where more is left to do than may be late, greedy's route is still worth a little more than the
-// time that was kept for it.
-std::optional<Budget::Clock::time_point> LayerSolver::GreedyEnd(const JobSpec& spec) {
-  constexpr std::chrono::milliseconds kMostGrace{10};
-  constexpr int kGraceShare = 10;
-  if (!spec.deadline) return std::nullopt;
-  const Budget::Clock::duration whole = *spec.deadline - Budget::Now(spec.time);
-  return *spec.deadline + std::clamp<Budget::Clock::duration>(whole / kGraceShare, {}, kMostGrace);
-}
-
-Route LayerSolver::GreedyRoute(const LayerProblem& problem) const {
+Route LayerSolver::GreedyRoute(const LayerProblem& problem, const ChainLayer& layer) const {
+  if (layer.greedy && layer.greedy->start == problem.start) return layer.greedy->route;
   const int64_t points = SizeOf(*problem.plan).points;
   const bool may_be_late = points <= late_points_left_;
-  Budget budget(&cancel_, may_be_late ? std::nullopt : greedy_end_, executor_.turn(), spec_.time);
+  Budget budget(&cancel_, may_be_late ? std::nullopt : layer.greedy_end, executor_.turn(),
+                spec_.time);
   Route route = predictor_->Solve(problem, budget).route;
   if (spec_.deadline && Budget::Now(spec_.time) >= *spec_.deadline) late_points_left_ -= points;
   return route;
+}
+
+bool LayerSolver::MayBeCutShort() const {
+  const bool limited = spec_.deadline || spec_.layer_time_limit != absl::InfiniteDuration();
+  return limited && strategy_->traits().searches && !strategy_->traits().pure;
 }
 
 // Other routes may be better from the true start: an equal layer's from the same start; what the
@@ -49,7 +47,11 @@ void LayerSolver::KeepBestRoute(const LayerProblem& problem, const ChainLayer& l
   };
   if (known != nullptr) offer(known->solution.route);
   offer(layer.foreseen);
-  if (GreedyMayBeBetter(problem, layer, known, solution)) offer(GreedyRoute(problem));
+  if (GreedyMayBeBetter(problem, layer, known, solution)) {
+    // Of a large layer, for which there is no time to look again, at least that.
+    if (layer.greedy) offer(layer.greedy->route);
+    offer(GreedyRoute(problem, layer));
+  }
   if (solution.stop == StopReason::kTimeLimit) {
     offer(layer.first.route);
     offer(layer.second.route);
@@ -72,6 +74,47 @@ bool LayerSolver::GreedyMayBeBetter(const LayerProblem& problem, const ChainLaye
   const bool is_compared =
       known != nullptr && known->exact == layer.fingerprint.exact && known->start == problem.start;
   return !is_compared && (layer.precursor || problem.start != layer.predicted_start);
+}
+
+// What the job costs more than greedy's chain, at most, if it does the layer by `route` and goes on
+// as that chain does.
+double LayerSolver::OverGreedy(const LayerProblem& problem, const Route& route,
+                               const ChainLayer& layer, const TrueStart& at) const {
+  const double over = at.over_greedy + RouteCost(problem, route) - layer.greedy->cost;
+  if (at.is_last || layer.finish) return over;
+  const Point end = RouteEnd(*problem.plan, route, problem.start);
+  if (at.next && (FixedStart(*at.next) || at.next->cost.kind != layer.cost.kind)) return over;
+  if (at.next && !at.next->walls) {
+    const GreedyLayer& next = *at.next->greedy;
+    return over + RouteCost(Problem(*at.next, end), next.route) - next.cost;
+  }
+  if (end == layer.greedy->end) return over;
+  // A move costs no more than one by way of another point; a time can, of one retraction.
+  return over + TravelCost(problem)(end, layer.greedy->end) + problem.cost.retraction_seconds;
+}
+
+// No layer costs more than greedy's route from the same start, but where its route leads to, greedy
+// itself might cost more than in its own chain. So once the clock has ended a search, a layer after
+// which the job could not go on by that chain without a loss is done by another route, one that
+// costs no more than greedy's. Returns whether it was.
+bool LayerSolver::KeepWithinGreedy(const LayerProblem& problem, const ChainLayer& layer,
+                                   const TrueStart& at, Solution& solution) const {
+  double least = OverGreedy(problem, solution.route, layer, at);
+  if (least <= 0) return false;
+  const Route greedy = GreedyRoute(problem, layer);
+  const double most =
+      std::max(RouteCost(problem, greedy), RouteCost(problem, solution.route)) * (1 + kSameCost);
+  bool was_replaced = false;
+  for (const Route* route : {&greedy, &layer.greedy->route, &layer.given_route}) {
+    const double over = OverGreedy(problem, *route, layer, at);
+    if (over >= least || RouteCost(problem, *route) > most) continue;
+    least = over;
+    solution.route = *route;
+    was_replaced = true;
+  }
+  if (was_replaced && solution.stop == StopReason::kOptimal)
+    solution.stop = StopReason::kLocalOptimum;
+  return was_replaced;
 }
 
 }  // namespace traverse

@@ -12,7 +12,7 @@ namespace {
 
 class Greedy : public Strategy {
  public:
-  explicit Greedy(bool pure) : Strategy({.serial = true, .pure = pure}) {}
+  explicit Greedy(bool pure) : Strategy({.serial = true, .pure = pure, .searches = false}) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
     const LayerView layer(problem, &budget);

@@ -7,7 +7,7 @@ namespace {
 
 class None : public Strategy {
  public:
-  None() : Strategy({.serial = true}) {}
+  None() : Strategy({.serial = true, .searches = false}) {}
 
   Solution Solve(const LayerProblem& problem, Budget&) const override {
     return Solution{GivenRoute(*problem.plan), StopReason::kLocalOptimum, std::nullopt};

@@ -77,6 +77,9 @@ struct StrategyTraits {
 
 // Of strategies that prove nothing themselves.
 inline StrategyTraits::ChainBounding QuickChainBounding(bool wanted) {
+
+  // Solve takes more time than greedy, so that it may be cut short.
+  bool searches = true;
   return wanted ? StrategyTraits::ChainBounding::kQuick : StrategyTraits::ChainBounding::kNone;
 }
 

@@ -112,6 +112,21 @@ TEST(BudgetSplit, KeepsTheTimeOfGreedyForEveryLayerNotYetAnswered) {
   EXPECT_NEAR(seconds_at_end(), 0.1, 0.01);
 }
 
+TEST(BudgetSplit, GreedyLeavesTheOtherLayersTheirTime) {
+  const LayerSize small{10, 40};
+  const LayerSize huge{100'000, 400'000};
+  BudgetSplit split(kEnd, kNow, 1);
+  for (int i = 0; i < 4; ++i) split.AddLayer(small);
+  split.AddLayer(huge);
+  split.NoteTaken(small, milliseconds(5));
+
+  // Twice the time of four layers; alone it may take a little longer than its time.
+  EXPECT_LT(*split.GreedyEnd(huge), kEnd - milliseconds(25));
+  EXPECT_GT(*split.GreedyEnd(huge), kEnd - milliseconds(45));
+  for (int i = 0; i < 4; ++i) split.NoteAnswered(small);
+  EXPECT_GE(*split.GreedyEnd(huge), kEnd);
+}
+
 TEST(BudgetSplit, TasksThatWaitForAThreadEndTheSearchEarlier) {
   BudgetSplit split = SplitOf(1);
 
