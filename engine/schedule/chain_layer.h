@@ -40,8 +40,7 @@ struct LayerAlone {
 struct GreedyLayer {
   Point start;
   Route route;
-  Point end = {};   // cleaning included
-  double cost = 0;  // the move to the cleaning point included
+  Point end = {};  // cleaning included
 };
 
 // A layer on its way. A stage owns its layer and works without the lock, but hands over under it.
@@ -119,9 +118,6 @@ struct ChainLayer {
   // Set by anchor, if routes are reused.
   KnownRoutePtr known;
 
-  // Set by anchor: see TrueStart, after this layer.
-  double over_greedy = 0;
-
   // Guarded by the lock.
   std::optional<Point> first_end;  // if solved: where the head is then, cleaning included
   bool solved = false;             // the layer's true start can be used
@@ -147,13 +143,6 @@ struct TrueStart {
   // What the layers before cost more than one after the other, since the last whose start did not
   // depend on a layer that looked ahead.
   double over_alone = 0;
-
-  // What they cost more than greedy's chain since then.
-  double over_greedy = 0;
-
-  // The layer behind, if it is prepared.
-  ChainLayerPtr next = {};
-  bool is_last = false;  // of a closed job
 };
 
 }  // namespace traverse

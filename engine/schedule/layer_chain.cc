@@ -315,12 +315,6 @@ void LayerChain::MaybeAnchor(uint64_t index) {
   if (!start) return;
   TrueStart at{*start, {}};
   if (layer->looked_at) at.over_alone = LayerAt(index - 1)->over_alone;
-  if (!solver_.FixedStart(*layer)) {
-    const ChainLayer& before = *LayerAt(index - 1);
-    if (before.cost.kind == layer->cost.kind) at.over_greedy = before.over_greedy;
-  }
-  if (index + 1 < next_to_prepare_) at.next = LayerAt(index + 1);
-  at.is_last = closed_ && index + 1 == added_;
   if (!ViewFrom(index, at)) return;
   layer->anchoring = true;
   Submit([this, layer, at] { RunAnchor(layer, at); }, layer->size.points);

@@ -46,9 +46,7 @@ void LayerPreparer::Prepare(ChainLayer& layer) {
 
 GreedyLayer LayerPreparer::FollowGreedy(const ChainLayer& layer) const {
   const LayerProblem problem = solver_.Problem(layer, greedy_at_);
-  Budget turns = solver_.Turns();
   GreedyLayer greedy{greedy_at_, solver_.GreedyRoute(problem, layer)};
-  greedy.cost = RouteCost(problem, greedy.route, &turns);
   greedy.end = layer.finish.value_or(RouteEnd(layer.given.plan, greedy.route, greedy_at_));
   return greedy;
 }

@@ -1,6 +1,7 @@
 #include "engine/schedule/layer_solver.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "absl/status/status.h"
@@ -104,7 +105,6 @@ void LayerSolver::SolveFirst(ChainLayer& layer) const {
   const Stopwatch watch;
   if (Expired(layer)) {
     layer.first = Solution{layer.given_route, StopReason::kTimeLimit, std::nullopt};
-    was_cut_short_ = true;
     return;
   }
   Budget budget = LayerBudget(layer, SolveShare(layer));
@@ -119,7 +119,6 @@ void LayerSolver::SolveFirst(ChainLayer& layer) const {
     layer.first = Prepared(layer).Solve(problem, budget);
   }
   if (!layer.first.lower_bound) Bound(problem, layer, layer.first);
-  if (layer.first.stop == StopReason::kTimeLimit) was_cut_short_ = true;
   layer.outcome.solve_seconds = watch.Seconds();
 }
 
@@ -139,7 +138,7 @@ void LayerSolver::ResumeFromPrecursor(const LayerProblem& problem, ChainLayer& l
                       RouteCost(problem, route, &budget) * (1 - kSameCost);
   layer.searched_in_vain = same && !gained && layer.first.stop != StopReason::kTimeLimit;
   // Its bound too: another one would take longer than the search.
-  if (layer.searched_in_vain && strategy_->traits().bound_share < 1)
+  if (layer.searched_in_vain && std::isfinite(strategy_->traits().bound_of_search))
     TakeOver(*precursor.best, problem, layer, layer.first);
 }
 
@@ -192,7 +191,6 @@ void LayerSolver::SolveSecond(ChainLayer& layer) const {
     layer.second = layer.first;
     layer.second.stop = StopReason::kTimeLimit;
     return;
-    was_cut_short_ = true;
   }
   Budget budget = LayerBudget(layer, SolveShare(layer));
   layer.second = strategy_->Solve(Problem(layer, *layer.second_start), budget);
@@ -279,8 +277,11 @@ void LayerSolver::Bound(const LayerProblem& problem, ChainLayer& layer, Solution
   if (effort == 0 || cancel_.cancelled()) return;
   Budget budget = LayerBudget(layer, kSideShare);
   const double cost = RouteCost(problem, solution.route, &budget);
-  solution.lower_bound = LowerBound(problem, cost, &layer.bound_multipliers, effort, budget,
-                                    strategy_->traits().bound_share);
+  const double of_search = strategy_->traits().bound_of_search;
+  const double most_seconds =
+      std::isfinite(of_search) ? of_search * solution.counted_seconds : of_search;
+  solution.lower_bound =
+      LowerBound(problem, cost, &layer.bound_multipliers, effort, budget, most_seconds);
   if (solution.lower_bound == cost) solution.stop = StopReason::kOptimal;
 }
 
@@ -315,7 +316,6 @@ Solution LayerSolver::ValidFromTrueStart(const LayerProblem& problem, ChainLayer
   if (turns.ExhaustedNow()) return solution;  // cancelled: nobody reads it
   if (absl::Status status = ValidateRoute(layer.given.plan, solution.route, &turns); !status.ok()) {
     layer.outcome.invalid_route = std::string(status.message());
-  if (solution.stop == StopReason::kTimeLimit || Expired(layer)) was_cut_short_ = true;
     return Solution{layer.given_route, StopReason::kLocalOptimum, std::nullopt};
   }
   // Of those in view too little is known once no time is left to search them.
@@ -341,15 +341,9 @@ LayerOutcome LayerSolver::Anchor(ChainLayer& layer, const TrueStart& at) const {
   if (turns.ExhaustedNow()) return outcome;  // cancelled: nobody reads it
   if (!solution.lower_bound) Bound(problem, layer, solution);
   if (layer.anchored) {
-  const bool leaves_chain = !turns.ExhaustedNow() && layer.greedy && was_cut_short_ &&
-                            KeepWithinGreedy(problem, layer, at, solution);
     layer.known = Known(problem, layer, solution);
     // Equal layers need not be kept within what this one was.
-  if (layer.greedy) {
-    const double over = RouteCost(problem, solution.route, &turns) - layer.greedy->cost;
-    layer.over_greedy = at.over_greedy + over;
-  }
-    if (!was_replaced && !leaves_chain) layer.anchored->anchored[key] = layer.known;
+    if (!was_replaced) layer.anchored->anchored[key] = layer.known;
   }
   if (turns.ExhaustedNow()) return outcome;
   TellFound(problem, std::move(solution), layer.given, turns, outcome);

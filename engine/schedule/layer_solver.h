@@ -103,15 +103,11 @@ class LayerSolver {
                               const KnownRoute* known, const TrueStart& at) const;
   Solution ValidFromTrueStart(const LayerProblem& problem, ChainLayer& layer,
                               const KnownRoute* known, const TrueStart& at) const;
-  // In layer_solver_floor.cc: greedy's route and chain, which no answer and no job costs more than.
+  // In layer_solver_floor.cc: greedy's route, under which no answer falls.
   bool GreedyMayBeBetter(const LayerProblem& problem, const ChainLayer& layer,
                          const KnownRoute* known, const Solution& solution) const;
   void KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer, const KnownRoute* known,
                      const LayersInView& view, Solution& solution) const;
-  double OverGreedy(const LayerProblem& problem, const Route& route, const ChainLayer& layer,
-                    const TrueStart& at) const;
-  bool KeepWithinGreedy(const LayerProblem& problem, const ChainLayer& layer, const TrueStart& at,
-                        Solution& solution) const;
   const KnownRoute* FindAnchored(const ChainLayer& layer, const AnchoredRoutes::ByKey& routes,
                                  uint64_t key) const;
   void Bound(const LayerProblem& problem, ChainLayer& layer, Solution& solution) const;
@@ -162,10 +158,6 @@ class LayerSolver {
   // Points of the job for which greedy may still run after the deadline: at 0.5 us, 50 ms.
   static constexpr int64_t kMostLatePoints = 100'000;
   mutable std::atomic<int64_t> late_points_left_ = kMostLatePoints;
-
-  // Whether the clock has ended a search of the job: until then every layer's routes are the same
-  // on every machine, and are left as they are.
-  mutable std::atomic<bool> was_cut_short_ = false;
 };
 
 }  // namespace traverse

@@ -7,7 +7,6 @@
 #include "absl/time/time.h"
 #include "engine/base/tolerances.h"
 #include "engine/cost/route_cost.h"
-#include "engine/cost/travel_cost.h"
 #include "engine/schedule/layer_solver.h"
 
 namespace traverse {
@@ -74,47 +73,6 @@ bool LayerSolver::GreedyMayBeBetter(const LayerProblem& problem, const ChainLaye
   const bool is_compared =
       known != nullptr && known->exact == layer.fingerprint.exact && known->start == problem.start;
   return !is_compared && (layer.precursor || problem.start != layer.predicted_start);
-}
-
-// What the job costs more than greedy's chain, at most, if it does the layer by `route` and goes on
-// as that chain does.
-double LayerSolver::OverGreedy(const LayerProblem& problem, const Route& route,
-                               const ChainLayer& layer, const TrueStart& at) const {
-  const double over = at.over_greedy + RouteCost(problem, route) - layer.greedy->cost;
-  if (at.is_last || layer.finish) return over;
-  const Point end = RouteEnd(*problem.plan, route, problem.start);
-  if (at.next && (FixedStart(*at.next) || at.next->cost.kind != layer.cost.kind)) return over;
-  if (at.next && !at.next->walls) {
-    const GreedyLayer& next = *at.next->greedy;
-    return over + RouteCost(Problem(*at.next, end), next.route) - next.cost;
-  }
-  if (end == layer.greedy->end) return over;
-  // A move costs no more than one by way of another point; a time can, of one retraction.
-  return over + TravelCost(problem)(end, layer.greedy->end) + problem.cost.retraction_seconds;
-}
-
-// No layer costs more than greedy's route from the same start, but where its route leads to, greedy
-// itself might cost more than in its own chain. So once the clock has ended a search, a layer after
-// which the job could not go on by that chain without a loss is done by another route, one that
-// costs no more than greedy's. Returns whether it was.
-bool LayerSolver::KeepWithinGreedy(const LayerProblem& problem, const ChainLayer& layer,
-                                   const TrueStart& at, Solution& solution) const {
-  double least = OverGreedy(problem, solution.route, layer, at);
-  if (least <= 0) return false;
-  const Route greedy = GreedyRoute(problem, layer);
-  const double most =
-      std::max(RouteCost(problem, greedy), RouteCost(problem, solution.route)) * (1 + kSameCost);
-  bool was_replaced = false;
-  for (const Route* route : {&greedy, &layer.greedy->route, &layer.given_route}) {
-    const double over = OverGreedy(problem, *route, layer, at);
-    if (over >= least || RouteCost(problem, *route) > most) continue;
-    least = over;
-    solution.route = *route;
-    was_replaced = true;
-  }
-  if (was_replaced && solution.stop == StopReason::kOptimal)
-    solution.stop = StopReason::kLocalOptimum;
-  return was_replaced;
 }
 
 }  // namespace traverse

@@ -250,7 +250,7 @@ class AutoLayer : public PreparedLayer {
       options.long_share = kLongShare;
       options.bridges = kBridges;
       options.least_gain_each = WorthOfIteration(layer.problem, options_.idle_speed_mm_s);
-      options.window = kWorthWindow;
+      options.window = effort.detours ? kWorthWindow : kWorthWindowOfMending;
     } else {
       options.earned = effort.kicks > 0 ? kEarned * options_.effort / effort.kicks : kEarned;
       const Route given = GivenRoute(*layer.problem.plan, &budget);
@@ -309,10 +309,12 @@ class AutoLayer : public PreparedLayer {
   }
 
   static Solution Finish(Route route, int64_t iterations, const Budget& budget) {
+    const auto count = static_cast<double>(iterations);
     return Solution{std::move(route),
                     StopOr(budget, StopReason::kLocalOptimum),
                     std::nullopt,
-                    {{"iterations", static_cast<double>(iterations)}}};
+                    {{"iterations", count}},
+                    count * kIterationSeconds};
   }
 
   const AutoOptions options_;
@@ -327,7 +329,9 @@ class Auto : public PreparingStrategy {
       : PreparingStrategy(
             {.reuses_routes = true,
              .bound_effort = bound ? options.effort : 0,
-             .bound_share = options.idle_speed_mm_s > 0 ? kWorthBoundShare : 1,
+             .bound_of_search = options.idle_speed_mm_s > 0
+                                    ? kWorthBoundShare
+                                    : std::numeric_limits<double>::infinity(),
              .chain_bounding = QuickChainBounding(bounds_chain),
              .look_ahead_paths =
                  options.least_gain_each > 0 ? kLookAheadPathsInHaste : kLookAheadPaths,

@@ -43,12 +43,13 @@ inline AutoSettings SettingsFor(const Plan& plan) {
   return settings;
 }
 
+// Iterations are counted, not timed, so that routes are the same on every machine.
+inline constexpr double kIterationSeconds = 20e-6;
+
 // What an iteration of a search must save to be worth its time, in the unit of the cost: a second
-// of travel for a second of computing. Iterations are counted, not timed, so that routes are the
-// same on every machine. 0 if the speed is 0, which stands for unknown, and for layers whose cost
-// is not in its ordinary unit.
+// of travel for a second of computing. 0 if the speed is 0, which stands for unknown, and for
+// layers whose cost is not in its ordinary unit.
 inline double WorthOfIteration(const LayerProblem& problem, double idle_speed_mm_s) {
-  constexpr double kIterationSeconds = 20e-6;
   if (idle_speed_mm_s == 0 || problem.walls_unit != 1) return 0;
   const bool is_time = problem.cost.kind == CostSpec::Kind::kTime;
   return kIterationSeconds * (is_time ? 1 : idle_speed_mm_s);
@@ -58,8 +59,11 @@ inline double WorthOfIteration(const LayerProblem& problem, double idle_speed_mm
 // those behind them end up to 1.3 % longer.
 inline constexpr double kWorthWindow = 1000;
 
-// Of the work on a bound, where the search ends when it is worth no more: a quarter of the search.
-inline constexpr double kWorthBoundShare = 0.12;
+// Of a search that only mends a route that was good from another start.
+inline constexpr double kWorthWindowOfMending = 300;
+
+// Of the time of a search that ends when it is worth no more, what its bound may take.
+inline constexpr double kWorthBoundShare = 0.25;
 
 }  // namespace traverse
 

@@ -4,6 +4,7 @@
 #define TRAVERSE_ENGINE_STRATEGY_STRATEGY_H_
 
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -28,6 +29,9 @@ struct Solution {
   // Figures of the search, by name; which ones depends on the strategy. Names that end in _cost,
   // _value or _bound are in the unit of the problem's cost.
   std::map<std::string, double> statistics = {};
+
+  // About what the search took, by counts of its work: the same on every machine. 0: unknown.
+  double counted_seconds = 0;
 };
 
 // A layer that is done after others: it begins where the one before it ends, so `problem.start` is
@@ -59,8 +63,8 @@ struct StrategyTraits {
   // effort (LowerBound). 0: they want none.
   double bound_effort = 0;
 
-  // The share of that work, where the search itself ends early.
-  double bound_share = 1;
+  // The most that a bound may take of what the search has taken (Solution::counted_seconds).
+  double bound_of_search = std::numeric_limits<double>::infinity();
 
   // Whether callers want a lower bound of all layers together, which the chain computes at the end:
   // by LowerBound, or by Resume where that proves one.
@@ -73,13 +77,13 @@ struct StrategyTraits {
 
   // More than two layers are worth it with at most this many paths together.
   size_t look_further_paths = 0;
+
+  // Solve takes more time than greedy, so that it may be cut short.
+  bool searches = true;
 };
 
 // Of strategies that prove nothing themselves.
 inline StrategyTraits::ChainBounding QuickChainBounding(bool wanted) {
-
-  // Solve takes more time than greedy, so that it may be cut short.
-  bool searches = true;
   return wanted ? StrategyTraits::ChainBounding::kQuick : StrategyTraits::ChainBounding::kNone;
 }
 

@@ -40,16 +40,22 @@ constexpr double kMoreWorkWhileFar = 4;
 // Of the time that is left, what a search may use: the evaluation after it is what counts.
 constexpr double kSearchShare = 0.4;
 
-VertexBound::Limits VertexLimits(double effort, double share, const EndGraph& graph) {
+// What a unit of the work of either search takes, in seconds, and of that time what trees may use.
+constexpr double kSecondsOfPair = 100e-9;
+constexpr double kSecondsOfVertexWork = 2.5e-9;
+constexpr double kShareOfTrees = 0.4;
+
+VertexBound::Limits VertexLimits(double effort, double most_seconds, const EndGraph& graph) {
   const double rounds =
       std::min(kVertexRounds * std::sqrt(std::max(1.0, effort)), kMostVertexRounds);
   const auto ends = static_cast<double>(graph.ends.size());
   double points = 0;
   for (const PathEnd& end : graph.ends) points += static_cast<double>(end.points.size());
   const double work =
-      share * std::max(1.0, effort) * (kVertexWorkOfEnd * ends + kVertexWorkOfPoint * points);
-  return {static_cast<int>(rounds), work,
-          points > kPointsOfFew * ends ? work : kMoreWorkWhileFar * work};
+      std::max(1.0, effort) * (kVertexWorkOfEnd * ends + kVertexWorkOfPoint * points);
+  const double while_far = points > kPointsOfFew * ends ? work : kMoreWorkWhileFar * work;
+  const double most = most_seconds / kSecondsOfVertexWork;
+  return {static_cast<int>(rounds), std::min(work, most), std::min(while_far, most)};
 }
 
 // Each evaluation makes the true costs of its trees' moves known where boxes stood for contours.
@@ -61,16 +67,23 @@ void EvaluateAgain(TreeBound& tree, Budget& budget) {
   }
 }
 
+// Steps of each round that take about so long.
+int TreeSteps(const TreeBound& tree, double most_seconds) {
+  const double each = kSecondsOfPair * static_cast<double>(tree.pairs().size());
+  const double steps = most_seconds / (kRounds * each);
+  return steps < kStepsPerRound ? static_cast<int>(steps) : kStepsPerRound;
+}
+
 // The bound of `tree`, made better; `multipliers` as those of LowerBound.
 std::optional<double> BoundByTrees(double target, TreeBound& tree, BoundMultipliers& multipliers,
-                                   Budget& budget) {
+                                   double most_seconds, Budget& budget) {
   if (budget.ExhaustedNow()) return std::nullopt;
   const bool known = multipliers.size() == tree.multipliers().size();
   if (known) tree.SetMultipliers(multipliers);
   if (!tree.Evaluate(budget)) return std::nullopt;
   for (int round = 0; round < kRounds && !known && tree.lower_bound() < target; ++round) {
     Budget part = budget.WithShare(kSearchShare);
-    tree.Ascend(target, kStepsPerRound, part);
+    tree.Ascend(target, TreeSteps(tree, most_seconds), part);
     if (!tree.Evaluate(budget)) break;
   }
   EvaluateAgain(tree, budget);
@@ -79,13 +92,15 @@ std::optional<double> BoundByTrees(double target, TreeBound& tree, BoundMultipli
 }
 
 std::optional<double> BoundByMultipliers(const LayerProblem& problem, double target,
-                                         BoundMultipliers& multipliers, double effort, double share,
-                                         Budget& budget) {
+                                         BoundMultipliers& multipliers, double effort,
+                                         double most_seconds, Budget& budget) {
   TreeBound tree(problem, budget);
-  std::optional<double> bound = BoundByTrees(target, tree, multipliers, budget);
+  std::optional<double> bound =
+      BoundByTrees(target, tree, multipliers, kShareOfTrees * most_seconds, budget);
   if (bound && *bound < target && VertexBound::Fits(tree.graph())) {
     VertexBound points(problem, tree);
-    const VertexBound::Limits limits = VertexLimits(effort, share, tree.graph());
+    const VertexBound::Limits limits =
+        VertexLimits(effort, (1 - kShareOfTrees) * most_seconds, tree.graph());
     bound = std::max(*bound, points.Search(target, limits, budget));
   }
   tree.Clear(budget);
@@ -96,13 +111,14 @@ std::optional<double> BoundByMultipliers(const LayerProblem& problem, double tar
 
 std::optional<double> LowerBound(const LayerProblem& problem, double target,
                                  BoundMultipliers* multipliers, double effort, Budget& budget,
-                                 double share) {
+                                 double most_seconds) {
   if (problem.plan->paths.empty()) return RouteCost(problem, {});
   if (budget.ExhaustedNow()) return std::nullopt;
   BoundMultipliers own;
   BoundMultipliers& shared = multipliers != nullptr ? *multipliers : own;
   const bool known = !shared.empty();
-  std::optional<double> bound = BoundByMultipliers(problem, target, shared, effort, share, budget);
+  std::optional<double> bound =
+      BoundByMultipliers(problem, target, shared, effort, most_seconds, budget);
   if (!bound) return std::nullopt;
   if (*bound < target && effort > kEffortWithoutProgrammes) {
     if (known) effort *= kShareOfProgrammeAgain;

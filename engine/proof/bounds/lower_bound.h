@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_ENGINE_PROOF_BOUNDS_LOWER_BOUND_H_
 #define TRAVERSE_ENGINE_PROOF_BOUNDS_LOWER_BOUND_H_
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -23,14 +24,14 @@ using BoundMultipliers = std::vector<double>;
 // paths are replaced.
 //
 // `effort` limits the work, about as a search's effort does: up to 1 half of what a search of 1
-// takes, beyond more, and linear programmes (programme_bound.h) after the trees. `share` of that
-// work is done, from 0 to 1, for a search that ends earlier.
+// takes, beyond more, and linear programmes (programme_bound.h) after the trees. `most_seconds` is
+// about what the searches for multipliers may take, by counts of work.
 //
 // Linear memory, except for these. Bounds by trees (tree_bound.h): 4 ms for 26 contours and 26
 // rasters, 0.3 s for 500 and 500.
 std::optional<double> LowerBound(const LayerProblem& problem, double target,
                                  BoundMultipliers* multipliers, double effort, Budget& budget,
-                                 double share = 1);
+                                 double most_seconds = std::numeric_limits<double>::infinity());
 
 }  // namespace traverse
 
