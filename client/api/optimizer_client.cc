@@ -141,6 +141,12 @@ class Collector {
       : layers_(layers), call_(call) {
     result_.layers.resize(layers.size());
     answered_.resize(layers.size());
+    for (size_t i = 0; i < call.known.size(); ++i) {
+      if (!call.known[i]) continue;
+      result_.layers[i] = *call.known[i];
+      answered_[i] = true;
+      ++answers_;
+    }
   }
 
   // Takes an answer of a call for the layers of `run`.
@@ -287,7 +293,7 @@ absl::StatusOr<JobResult> OptimizerClient::Optimize(const v1::JobOptions& option
     }
     if (!SleepUnlessCancelled(*delay, call.cancel)) return absl::CancelledError("cancelled");
   } while (collector.answers() < layers.size());
-  if (calls > 1 || !collector.has_summary()) {
+  if (calls > 1 || !collector.has_summary() || !call.known.empty()) {
     JobResult& result = collector.result();
     result.summary = SummaryOf(options, result.layers, result.summary,
                                absl::ToDoubleSeconds(absl::Now() - began));

@@ -17,6 +17,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 
@@ -49,6 +50,9 @@ struct CallOptions {
 
   // When stop is requested, the call ends within milliseconds with Cancelled.
   std::stop_token cancel = {};
+
+  // Answers that are known, by layer; empty if none is. Only the other layers are asked for.
+  absl::Span<const std::optional<v1::LayerResult>> known = {};
 
   // Called with each layer's answer when it arrives, on the calling thread. May be empty.
   std::function<void(const v1::LayerResult&)> on_layer = {};

@@ -11,6 +11,7 @@
 #include "client/api/channel.h"
 #include "client/cli/flags/connection_flags.h"
 #include "client/cli/progress.h"
+#include "client/cli/terminal.h"
 #include "client/files/read_file.h"
 
 namespace traverse::cli {
@@ -34,22 +35,6 @@ std::string OneLine(std::string text) {
 // Whether INVALID_ARGUMENT is about options, which come from flags, and not about layers, which
 // come from the file.
 bool IsAboutOptions(const std::string& message) { return message.starts_with("options"); }
-
-// The options that the command line asks for. `shown` shows progress while a search runs.
-SearchOptions SearchOptionsFor(const StrategySpec* strategy, const JobFlags& flags, bool quiet,
-                               std::optional<Progress>& shown) {
-  SearchOptions options;
-  if (strategy != nullptr) options.strategy = strategy->strategy;
-  options.deadline = flags.deadline;
-  const std::string label = strategy != nullptr ? strategy->label : "optimize";
-  options.progress.on_search = [&shown, label, quiet](size_t layers) {
-    shown.reset();
-    shown.emplace(Progress::StyleFor(quiet), label, layers);
-  };
-  options.progress.on_work = [&shown](SearchWork work) { shown->Expect(std::move(work)); };
-  options.progress.on_layer = [&shown](const v1::LayerResult& layer) { shown->Take(layer); };
-  return options;
-}
 
 }  // namespace
 
@@ -116,6 +101,7 @@ Expected<report::JobRun> Service::Optimize(const InputJob& job, const StrategySp
       Search(*client_, job, SearchOptionsFor(strategy, flags, quiet, shown));
   shown.reset();
   if (!run.ok()) return Failure(run.status(), job.name);
+  TellMissed(*run);
   return *std::move(run);
 }
 
@@ -134,7 +120,43 @@ Expected<OptimizedFile> Service::Rewrite(const InputJob& job, const StrategySpec
     if (fault->stage == FileStage::kWrite) return InputFault(fault->status);
     return Failure(fault->status, job.name);
   }
+  for (const report::JobRun& run : std::get<OptimizedFile>(made).runs) TellMissed(run);
   return std::get<OptimizedFile>(std::move(made));
+}
+
+SearchOptions Service::SearchOptionsFor(const StrategySpec* strategy, const JobFlags& flags,
+                                        bool quiet, std::optional<Progress>& shown) {
+  SearchOptions options;
+  if (strategy != nullptr) options.strategy = strategy->strategy;
+  options.deadline = flags.deadline;
+  options.stand_in = [this]() -> absl::StatusOr<OptimizerClient*> {
+    if (!stand_in_) {
+      auto started = EmbeddedService::Start(/*threads=*/1);
+      if (!started.ok()) return started.status();
+      stand_in_ = *std::move(started);
+      stand_in_client_ = std::make_unique<OptimizerClient>(stand_in_->channel());
+    }
+    return stand_in_client_.get();
+  };
+  const std::string label = strategy != nullptr ? strategy->label : "optimize";
+  options.progress.on_search = [&shown, label, quiet](size_t layers) {
+    shown.reset();
+    shown.emplace(Progress::StyleFor(quiet), label, layers);
+  };
+  options.progress.on_work = [&shown](SearchWork work) { shown->Expect(std::move(work)); };
+  options.progress.on_layer = [&shown](const v1::LayerResult& layer) { shown->Take(layer); };
+  return options;
+}
+
+void Service::TellMissed(const report::JobRun& run) const {
+  if (run.missed_layers == 0) return;
+  const std::string reason = absl::IsDeadlineExceeded(run.missed_because)
+                                 ? "it was silent"
+                                 : OneLine(std::string(run.missed_because.message()));
+  Print(stderr,
+        absl::StrFormat("%s left %d of %d layers without an answer (%s); they are greedy's\n",
+                        name_.empty() ? "embedded service" : "server " + name_, run.missed_layers,
+                        run.result.layers.size(), reason));
 }
 
 Outcome Service::Failure(const absl::Status& status, const std::string& input) const {

@@ -4,6 +4,7 @@
 #define TRAVERSE_CLIENT_CLI_SERVICE_H_
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "client/cli/flags/job_flags.h"
 #include "client/cli/flags/strategy_spec.h"
 #include "client/cli/outcome.h"
+#include "client/cli/progress.h"
 #include "client/input/input_job.h"
 #include "client/optimize_file/optimize_file.h"
 #include "client/report/run.h"
@@ -55,12 +57,23 @@ class Service {
   Service(std::unique_ptr<EmbeddedService> embedded, std::shared_ptr<grpc::Channel> channel,
           std::string name, std::string token);
 
+  // The options that the command line asks for. `shown` shows progress while a search runs.
+  SearchOptions SearchOptionsFor(const StrategySpec* strategy, const JobFlags& flags, bool quiet,
+                                 std::optional<Progress>& shown);
+
+  // Says which layers of a run had to be done without the service.
+  void TellMissed(const report::JobRun& run) const;
+
   // How a command ends when the service answers with `status`.
   Outcome Failure(const absl::Status& status, const std::string& input) const;
 
   std::unique_ptr<EmbeddedService> embedded_;  // null: remote
   std::unique_ptr<OptimizerClient> client_;
   std::string name_;  // addresses; empty: embedded
+
+  // Once the service has failed amid a job: one that does the rest.
+  std::unique_ptr<EmbeddedService> stand_in_;
+  std::unique_ptr<OptimizerClient> stand_in_client_;
 };
 
 }  // namespace traverse::cli

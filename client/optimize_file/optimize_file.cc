@@ -152,6 +152,39 @@ std::vector<double> WorkOf(const InputJob& job) {
   return work;
 }
 
+using Answers = std::vector<std::optional<v1::LayerResult>>;  // [layer]
+
+size_t Missed(const Answers& answers) {
+  return static_cast<size_t>(std::count(answers.begin(), answers.end(), std::nullopt));
+}
+
+// Whether what came before the call failed is worth keeping: the service has become silent, was
+// lost or is full, and the caller has said how long to wait.
+bool MayStandIn(const absl::Status& status, const SearchOptions& options) {
+  const bool is_limited = options.deadline != absl::InfiniteDuration();
+  return options.stand_in && is_limited &&
+         (absl::IsDeadlineExceeded(status) || absl::IsUnavailable(status) ||
+          absl::IsResourceExhausted(status));
+}
+
+// The job with the answers that there are, and greedy's for the other layers.
+absl::StatusOr<JobResult> FinishByGreedy(const InputJob& job, v1::JobOptions asked,
+                                         const SearchOptions& options, const Answers& answers) {
+  absl::StatusOr<OptimizerClient*> client = options.stand_in();
+  if (!client.ok()) return client.status();
+  const v1::Strategy wanted = asked.strategy();
+  asked.mutable_strategy()->Clear();
+  asked.mutable_strategy()->set_name("greedy");
+  asked.clear_time_limit();
+  CallOptions call;
+  call.cancel = options.cancel;
+  call.on_layer = options.progress.on_layer;
+  call.known = answers;
+  absl::StatusOr<JobResult> result = (*client)->Optimize(asked, job.layers, call);
+  if (result.ok() && !wanted.name().empty()) result->summary.set_strategy(wanted.name());
+  return result;
+}
+
 FileFault SearchFault(absl::Status status) { return {FileStage::kSearch, std::move(status)}; }
 
 }  // namespace
@@ -165,13 +198,26 @@ absl::StatusOr<report::JobRun> Search(OptimizerClient& client, const InputJob& j
   const absl::Time began = absl::Now();
   CallOptions call;
   if (options.deadline != absl::InfiniteDuration()) LimitTime(options.deadline, asked);
-  call.deadline = std::min(options.deadline + SearchOptions::kPatience, options.finish_by - began);
+  call.deadline = std::min(options.deadline + options.patience, options.finish_by - began);
   call.cancel = options.cancel;
-  call.on_layer = options.progress.on_layer;
+  Answers answers(job.layers.size());
+  call.on_layer = [&](const v1::LayerResult& layer) {
+    if (options.stand_in) answers[layer.index()] = layer;
+    if (options.progress.on_layer) options.progress.on_layer(layer);
+  };
+  report::JobRun run;
+  run.seed = asked.has_seed() ? asked.seed() : 1;
   absl::StatusOr<JobResult> result = client.Optimize(asked, job.layers, call);
+  if (const size_t missed = Missed(answers);
+      MayStandIn(result.status(), options) && missed < answers.size()) {
+    run.missed_layers = missed;
+    run.missed_because = result.status();
+    result = FinishByGreedy(job, asked, options, answers);
+  }
   if (!result.ok()) return result.status();
-  return report::JobRun{*std::move(result), asked.has_seed() ? asked.seed() : 1,
-                        absl::ToDoubleSeconds(absl::Now() - began)};
+  run.result = *std::move(result);
+  run.wall_seconds = absl::ToDoubleSeconds(absl::Now() - began);
+  return run;
 }
 
 FileResult<OptimizedFile> OptimizeFile(OptimizerClient& client, const InputJob& job,

@@ -66,9 +66,14 @@ struct SearchOptions {
 
   // Of all searches of a file together, and of what is done to improve their orders. The service
   // ends its search early enough; but on a busy machine a late answer is better than none, so the
-  // call waits for it kPatience longer.
+  // call waits for it `patience` longer.
   absl::Duration deadline = absl::InfiniteDuration();
-  static constexpr absl::Duration kPatience = absl::Seconds(5);
+  absl::Duration patience = absl::Seconds(5);
+
+  // With a deadline: another service, called if the first one fails amid the job. What has been
+  // answered is kept then, and this one answers the other layers with greedy's routes. Empty: the
+  // job fails.
+  std::function<absl::StatusOr<OptimizerClient*>()> stand_in = {};
 
   // When the whole file must be ready: nothing is of use later. Searches end early enough that the
   // file can still be written and verified with the best results so far.

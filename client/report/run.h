@@ -3,10 +3,12 @@
 #ifndef TRAVERSE_CLIENT_REPORT_RUN_H_
 #define TRAVERSE_CLIENT_REPORT_RUN_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "client/api/job_result.h"
 
 namespace traverse::report {
@@ -16,6 +18,10 @@ struct JobRun {
   JobResult result;
   uint64_t seed = 1;
   double wall_seconds = 0;  // as the caller waited
+
+  // How many layers the service left without an answer, so that they are greedy's, and why.
+  size_t missed_layers = 0;
+  absl::Status missed_because = absl::OkStatus();
 };
 
 // The runs of one strategy, which differ only in their seeds; at least one.
