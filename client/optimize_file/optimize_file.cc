@@ -198,7 +198,7 @@ absl::StatusOr<report::JobRun> Search(OptimizerClient& client, const InputJob& j
   const absl::Time began = absl::Now();
   CallOptions call;
   if (options.deadline != absl::InfiniteDuration()) LimitTime(options.deadline, asked);
-  call.deadline = std::min(options.deadline + options.patience, options.finish_by - began);
+  call.deadline = std::min(options.deadline + SearchOptions::kPatience, options.finish_by - began);
   call.cancel = options.cancel;
   Answers answers(job.layers.size());
   call.on_layer = [&](const v1::LayerResult& layer) {

@@ -66,9 +66,9 @@ struct SearchOptions {
 
   // Of all searches of a file together, and of what is done to improve their orders. The service
   // ends its search early enough; but on a busy machine a late answer is better than none, so the
-  // call waits for it `patience` longer.
+  // call waits for it kPatience longer.
   absl::Duration deadline = absl::InfiniteDuration();
-  absl::Duration patience = absl::Seconds(5);
+  static constexpr absl::Duration kPatience = absl::Seconds(5);
 
   // With a deadline: another service, called if the first one fails amid the job. What has been
   // answered is kept then, and this one answers the other layers with greedy's routes. Empty: the
