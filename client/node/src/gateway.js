@@ -4,7 +4,7 @@ import { setTimeout as sleep } from "node:timers/promises";
 import { FileJob } from "./file_job.js";
 import { connect, metadataWith, send, services, shuffled } from "./wire.js";
 
-const CANCEL_MS = 2000;
+const CANCEL_MS = 10_000;
 
 export class GcodeGateway {
   #stubs;
@@ -34,8 +34,8 @@ export class GcodeGateway {
       }
       return job.file;
     } catch (error) {
-      // Not waited for: what is left expires.
-      if (job.abandoned) this.#unary(job.gateway, "CancelJob", { id: job.abandoned }, Date.now() + CANCEL_MS).catch(() => {});
+      // If this fails too, it expires.
+      if (job.abandoned) await this.#unary(job.gateway, "CancelJob", { id: job.abandoned }, Date.now() + CANCEL_MS).catch(() => {});
       throw error;
     }
   }

@@ -170,9 +170,12 @@ class AsyncGcodeGateway:
                     await asyncio.sleep(job.delay_after(error, call[1]))
         except BaseException:
             left = job.abandoned()
-            if left is not None:  # not waited for
-                self._stubs[job.gateway].CancelJob(left, timeout=files.CANCEL_SECONDS,
-                                                   metadata=channels.authorization(self._token))
+            if left is not None:
+                try:
+                    await self._stubs[job.gateway].CancelJob(left, timeout=files.CANCEL_SECONDS,
+                                                             metadata=channels.authorization(self._token))
+                except grpc.RpcError:
+                    pass  # it expires
             raise
 
     async def _make(self, job: FileJob, method: str, request: Any) -> None:

@@ -11,7 +11,7 @@ from traverse_client.wire import gcode_service_pb2 as api
 from traverse_client.wire import gcode_service_pb2_grpc as service
 
 SERVICE = "traverse.v1.GcodeService"
-CANCEL_SECONDS = 2.0
+CANCEL_SECONDS = 10.0
 
 
 class GcodeGateway:
