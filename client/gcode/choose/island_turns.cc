@@ -44,17 +44,15 @@ class IslandTurns::Maker {
     NumberParts(islands);
   }
 
-  // Bases and turns of `order`. The other way round other paths may be next to each other.
+  // Bases and turns of `order`.
   void Add(const LayerOrder& order) {
     if (!IsAllowed(order)) return;
     AddBase(order);
-    AddBase(Settled(Backwards(order), freedom_.group));
     for (const LayerOrder& base :
          {InSequence(order, RanksIn(order)), InSequence(order, RanksIn(given_))}) {
       if (!IsAllowed(base)) continue;
-      for (const LayerOrder& way : {base, Backwards(base)}) {
-        AddBase(Settled(way, UnitsIn(way, first_, BeginsOf(way))));
-      }
+      AddBase(Settled(base));
+      AddBase(Settled(Backwards(base)));
     }
   }
 
@@ -146,8 +144,8 @@ class IslandTurns::Maker {
     return begins;
   }
 
-  LayerOrder Settled(const LayerOrder& order, const std::vector<uint32_t>& units) {
-    return settle_ ? settle_(order, units) : order;
+  LayerOrder Settled(const LayerOrder& order) {
+    return settle_ ? settle_(order, UnitsIn(order, first_, BeginsOf(order))) : order;
   }
 
   // The units of each group from the last to the first, each as it is.
