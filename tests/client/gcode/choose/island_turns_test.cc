@@ -12,12 +12,12 @@ namespace traverse::gcode {
 namespace {
 
 // Paths of one second each at `at` mm along a line.
-struct Row {
+struct TurnedRow {
   std::vector<double> at;
   std::vector<uint32_t> islands;
   LayerFreedom freedom;
 
-  Row(std::vector<double> places, std::vector<uint32_t> of)
+  TurnedRow(std::vector<double> places, std::vector<uint32_t> of)
       : at(std::move(places)), islands(std::move(of)) {
     freedom.rules.resize(at.size());
     freedom.group.assign(at.size(), 0);
@@ -69,7 +69,7 @@ std::set<std::vector<uint32_t>> PathsOf(const IslandTurns& turns) {
 }
 
 TEST(IslandTurns, BeginsAtEachIslandAndGoesBothWaysRound) {
-  const Row row({0, 1, 10, 11, 20}, {0, 0, 1, 1, 2});
+  const TurnedRow row({0, 1, 10, 11, 20}, {0, 0, 1, 1, 2});
 
   const std::set<std::vector<uint32_t>> orders = PathsOf(row.Turns({row.Given()}));
 
@@ -82,7 +82,7 @@ TEST(IslandTurns, BeginsAtEachIslandAndGoesBothWaysRound) {
 }
 
 TEST(IslandTurns, TotalsAndMomentsAreThoseOfTheOrder) {
-  const Row row({0, 1, 10, 11, 20, 31}, {0, 0, 1, 1, 2, 3});
+  const TurnedRow row({0, 1, 10, 11, 20, 31}, {0, 0, 1, 1, 2, 3});
 
   const IslandTurns turns = row.Turns({row.Given(), row.Order({4, 0, 2, 1, 3, 5})});
 
@@ -103,7 +103,7 @@ TEST(IslandTurns, TotalsAndMomentsAreThoseOfTheOrder) {
 }
 
 TEST(IslandTurns, KeepsTogetherWhatMustFollowAndWhatHasAnOrder) {
-  Row row({0, 10, 20, 30}, {0, 1, 2, 3});
+  TurnedRow row({0, 10, 20, 30}, {0, 1, 2, 3});
   row.freedom.goes_on[1] = true;
   row.freedom.ordered.emplace_back(2, 3);
 
@@ -116,7 +116,7 @@ TEST(IslandTurns, KeepsTogetherWhatMustFollowAndWhatHasAnOrder) {
 }
 
 TEST(IslandTurns, StaysWithinGroups) {
-  Row row({0, 10, 20, 30, 40}, {0, 1, 2, 3, 4});
+  TurnedRow row({0, 10, 20, 30, 40}, {0, 1, 2, 3, 4});
   row.freedom.group = {0, 0, 2, 2, 2};
 
   const std::set<std::vector<uint32_t>> orders = PathsOf(row.Turns({row.Given()}));
@@ -136,7 +136,7 @@ TEST(IslandTurns, OfManyIslandsOnlyTheBestInEachStretch) {
     at.push_back(i % 7 + i * 10);
     islands.push_back(i);
   }
-  const Row row(at, islands);
+  const TurnedRow row(at, islands);
 
   const IslandTurns turns = row.Turns({row.Given()});
 

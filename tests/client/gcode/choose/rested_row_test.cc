@@ -14,9 +14,9 @@ constexpr size_t kIslands = 6;
 
 // Islands 10 mm apart on a line, of two seconds each, the same in each layer. The file goes along
 // the line in each layer, and back to its begin.
-class Stack {
+class RestedStack {
  public:
-  Stack(size_t layers, double least_seconds) : rests_(IslandsOf(layers), least_seconds) {
+  RestedStack(size_t layers, double least_seconds) : rests_(IslandsOf(layers), least_seconds) {
     for (uint32_t path = 0; path < kIslands; ++path) islands_.push_back(path);
     for (size_t layer = 0; layer < layers; ++layer) layers_.push_back(LayerAt(layer));
     std::vector<TimedLayer> given;
@@ -119,13 +119,13 @@ class Stack {
 };
 
 TEST(RestedRow, GoesBackAndForthWhereNothingMustRest) {
-  const Stack stack(4, 0);
+  const RestedStack stack(4, 0);
 
   EXPECT_NEAR(stack.TravelOf(stack.Row()), 4 * 50, 1e-6);
 }
 
 TEST(RestedRow, IslandsRestAndMostOfTheTravelIsSaved) {
-  const Stack stack(4, 3);
+  const RestedStack stack(4, 3);
 
   const auto row = stack.Row();
 
@@ -136,7 +136,7 @@ TEST(RestedRow, IslandsRestAndMostOfTheTravelIsSaved) {
 
 TEST(RestedRow, TheFilesOwnOrdersWhereNoOtherLetsThemRest) {
   // Each island rests as long as a layer takes: only one and the same sequence leaves it that.
-  const Stack stack(3, 100);
+  const RestedStack stack(3, 100);
 
   const auto row = stack.Row();
 

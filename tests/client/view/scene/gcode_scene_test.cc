@@ -43,6 +43,14 @@ report::JobRun RunOf(const InputJob& job, const std::string& strategy) {
 
 class DrawnGcode : public ::testing::TestWithParam<std::string> {};
 
+RewriteOptions Rewriting(const GcodeOptions& options) {
+  RewriteOptions rewrite;
+  static_cast<gcode::Liberties&>(rewrite) = options;
+  rewrite.version = "1.0";
+  rewrite.threads = 2;
+  return rewrite;
+}
+
 // The meter that the figures come from shares no code with what draws the moves.
 TEST_P(DrawnGcode, TravelsAsFarAsTheFileIsMeasuredTo) {
   GcodeOptions options;
@@ -59,9 +67,7 @@ TEST_P(DrawnGcode, TravelsAsFarAsTheFileIsMeasuredTo) {
       orders.push_back(OrderOf(*job->gcode, i, run.result.layers[i]));
     }
   }
-  const absl::StatusOr<GcodeRewrite> rewrite =
-      RewriteGcode(*job->gcode, tries,
-                   {.policy = options.policy, .crossings = {}, .version = "1.0", .threads = 2});
+  const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(*job->gcode, tries, Rewriting(options));
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
 
   const absl::StatusOr<Scene> scene = GcodeScene(*job, "ni2opt", runs, *rewrite);
@@ -92,9 +98,7 @@ TEST(DrawnGcode, ArcsAreRound) {
   ASSERT_TRUE(job.ok()) << job.status();
   const std::vector<report::JobRun> runs = {RunOf(*job, "ni2opt")};
   const std::vector<gcode::FileOrder> tries = {{OrderOf(*job->gcode, 0, runs[0].result.layers[0])}};
-  const absl::StatusOr<GcodeRewrite> rewrite =
-      RewriteGcode(*job->gcode, tries,
-                   {.policy = options.policy, .crossings = {}, .version = "1.0", .threads = 2});
+  const absl::StatusOr<GcodeRewrite> rewrite = RewriteGcode(*job->gcode, tries, Rewriting(options));
   ASSERT_TRUE(rewrite.ok()) << rewrite.status();
 
   const absl::StatusOr<Scene> scene = GcodeScene(*job, "ni2opt", runs, *rewrite);
