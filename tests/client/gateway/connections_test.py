@@ -219,12 +219,26 @@ class Connections(Sockets):
         text = self.answer(connection)
         self.assertEqual(text.count(b"200 OK"), 2)
 
-    def test_a_full_spool_is_said(self):
-        connections = []
-        for _ in range(3):
+    def uploads(self, count, length):
+        """Connections that have sent all but the end of a file, of `length` bytes each."""
+        begun = []
+        for _ in range(count):
             connection = self.connect()
-            connection.sendall(b"POST /v1/gcode HTTP/1.1\r\nHost: x\r\nContent-Length: 199000\r\n\r\n" + b"; comment\n" * 19000)
-            connections.append(connection)
+            connection.sendall(b"POST /v1/gcode HTTP/1.1\r\nHost: x\r\nContent-Length: 199000\r\n\r\n" +
+                               b"; comment\n" * (length // 10))
+            begun.append(connection)
+        return begun
+
+    def test_a_full_spool_is_said(self):
+        first, *others = self.uploads(3, 190000)  # a caller may have 350,000 bytes
+        answers = [self.answer(connection) for connection in others]
+        first.close()
+        for answer in answers:
+            self.assertIn(b"507", answer.split(b"\r\n")[0])
+            self.assertIn(b"the spool is full for this caller", answer)
+
+    def test_a_caller_with_too_many_requests_is_told(self):
+        connections = self.uploads(3, 10000)
         deadline = time.time() + 20  # until the three have come
         status = 200
         while status == 200 and time.time() < deadline:

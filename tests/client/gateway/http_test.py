@@ -72,7 +72,14 @@ class Files(unittest.TestCase):
         self.assertEqual(status, 200)
         self.assertLess(summary["written"]["travel_mm"], summary["given"]["travel_mm"])
         self.assertEqual((summary["policy"], summary["layers"], summary["verified"]), ("POLICY_SAFE", 3, True))
-        self.assertRegex(summary["text"], r"least rest of an island [\d.]+ -> [\d.]+ s \([\d.]+ are enough\)")
+
+    def test_the_summary_tells_how_long_islands_rest(self):
+        with open(SAMPLE, "rb") as file:
+            sample = file.read()
+        status, _, body = self.post("/v1/gcode?strategy=ni2opt", sample, {"Accept": "application/json"})
+        self.assertEqual(status, 200, body[:300])
+        self.assertRegex(json.loads(body)["text"],
+                         r"least rest of an island [\d.]+ -> [\d.]+ s \([\d.]+ s are enough\)")
 
     def test_events_tell_of_progress_and_bring_the_file(self):
         status, headers, body = self.post("/v1/gcode?report=true", PART, {"Accept": "text/event-stream"})
