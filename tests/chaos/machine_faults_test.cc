@@ -201,7 +201,8 @@ TEST(ClockJump, NeitherCutsJobsShortNorKeepsThemForever) {
     EXPECT_TRUE(result.ok() ||
                 (absl::IsDeadlineExceeded(result.status()) && took > absl::Milliseconds(1490)))
         << result.status();
-    EXPECT_GT(took, absl::Milliseconds(700)) << "jump by " << jump;
+    // A job that the jump cuts short ends at 400 ms; on a busy machine any ends early.
+    EXPECT_GT(took, absl::Milliseconds(500)) << "jump by " << jump;
     EXPECT_LT(took, absl::Milliseconds(3000)) << "jump by " << jump;
     EXPECT_TRUE(RunJob(client).ok());
   }
