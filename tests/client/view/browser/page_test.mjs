@@ -82,7 +82,8 @@ test("opens with its headline, both pictures, and the layer with the most saved"
     assert.match(cards[0], /^Travel\n−\d+\.\d %\n[\d.]+ mm → [\d.]+ mm$/);
     assert.match(cards[1], /^Print time\n/);
     assert.match(cards[3], /^Visible walls crossed\n.* %\n\d+ → \d+$/);
-    const [, change, given, found] = /^Retractions\n(.+) %\n(\d+) → (\d+)$/.exec(cards[2]);
+    const [, change, given, found] =
+      /^Retractions\n(.+) %\n(\d+) → (\d+)\nwhere nobody would see: \d+ → \d+$/.exec(cards[2]);
     const percent = (Math.abs(found - given) / given * 100).toFixed(1);
     assert.equal(change, +found === +given ? "±0" : (+found < +given ? "−" : "+") + percent);
     assert.match(await text(page, "#before-name"), /^Before: \d+\.\d mm, \d+ retractions, \d+ walls? crossed$/);
