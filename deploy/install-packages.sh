@@ -8,7 +8,7 @@
 set -euo pipefail
 
 build=(
-  g++ cmake ninja-build ccache pkg-config
+  g++ cmake ninja-build pkg-config
   libgrpc++-dev libssl-dev openssl protobuf-compiler-grpc libprotobuf-dev protobuf-compiler
   libabsl-dev prometheus-cpp-dev libspdlog-dev nlohmann-json3-dev libmicrohttpd-dev
   zlib1g-dev liblzma-dev libcairo2-dev coinor-libcbc-dev coinor-libclp-dev
