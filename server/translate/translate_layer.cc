@@ -240,6 +240,10 @@ absl::StatusOr<LabelledLayer> LayerFromProto(const v1::Layer& layer, uint64_t in
   if (layer.has_plan() && !layer.islands().empty()) {
     return Fault(place.text(), "has both islands and a plan, but may have only one of them");
   }
+  if (!layer.initial_route().empty()) {
+    return absl::UnimplementedError(
+        absl::StrCat(place.text(), ".initial_route: this version starts from no known route"));
+  }
   FaultList faults;
   faults.Add(CheckRange(RangeOf("Layer.z_mm"), layer.z_mm(), place.text() + ".z_mm"));
   LabelledLayer result;
