@@ -35,6 +35,7 @@ FileCall::FileCall(Core& core, grpc::CallbackServerContext& context, const std::
     ticket_ = *std::move(ticket);
   }
   job_.emplace(core_.connections, info_.peer);
+  if (brings == Brings::kQuestion) job_->OnAllCame();  // its one message is here
 }
 
 absl::Status FileCall::OnMessage(size_t bytes) {
@@ -71,6 +72,17 @@ grpc::Status FileCall::End(const absl::Status& status) {
                              absl::ToDoubleSeconds(absl::Now() - began_));
   ticket_ = nullptr;
   return ToGrpcStatus(told);
+}
+
+bool ReadPiece(const SpoolFile* file, uint64_t& sent, std::string& out, absl::Status& fault) {
+  constexpr uint64_t kPiece = 262144;
+  if (file == nullptr || sent >= file->size()) return false;
+  out.resize(std::min(kPiece, file->size() - sent));
+  const absl::StatusOr<size_t> got = file->ReadAt(sent, out.data(), out.size());
+  fault = got.status();
+  if (!got.ok()) return false;
+  sent += out.size();
+  return true;
 }
 
 }  // namespace traverse::gateway

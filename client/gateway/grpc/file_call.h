@@ -67,6 +67,10 @@ class FileCall {
 // Of one message: a piece of a file has at most 4 MB.
 constexpr int64_t kMaxMessageBytes = int64_t{5} << 20;
 
+// The next piece of `file` from `sent` on, which moves, for one message to the client. False where
+// `file` is null, at its end, or where it cannot be read (`fault`).
+bool ReadPiece(const SpoolFile* file, uint64_t& sent, std::string& out, absl::Status& fault);
+
 }  // namespace traverse::gateway
 
 #endif  // TRAVERSE_CLIENT_GATEWAY_GRPC_FILE_CALL_H_

@@ -14,8 +14,6 @@
 namespace traverse::gateway {
 namespace {
 
-constexpr uint64_t kJobPiece = 262144;
-
 // The same for equal messages, whatever the order of their maps.
 std::string StableBytes(const google::protobuf::Message& message) {
   std::string bytes;
@@ -218,11 +216,8 @@ absl::Status ReadJobReactor::Open(const Core& core, const v1::ReadJobRequest& re
 }
 
 void ReadJobReactor::Next() {
-  std::string& piece = *response_.mutable_data();
-  piece.resize(std::min(kJobPiece, file_->size() - sent_));
-  const absl::StatusOr<size_t> got = file_->ReadAt(sent_, piece.data(), piece.size());
-  if (!got.ok() || piece.empty()) return End(got.status());
-  sent_ += piece.size();
+  absl::Status fault;
+  if (!ReadPiece(file_.get(), sent_, *response_.mutable_data(), fault)) return End(fault);
   live_.Waits(&context_, call_.peer());
   StartWrite(&response_);
 }

@@ -8,23 +8,6 @@
 #include "client/gateway/api/rewrite_options.h"
 
 namespace traverse::gateway {
-namespace {
-
-constexpr uint64_t kPiece = 262144;
-
-// The next piece of `file` from `sent` on, which moves; false at its end, or where it cannot be
-// read (`fault`).
-bool ReadPiece(const SpoolFile* file, uint64_t& sent, std::string& out, absl::Status& fault) {
-  if (file == nullptr || sent >= file->size()) return false;
-  out.resize(std::min(kPiece, file->size() - sent));
-  const absl::StatusOr<size_t> got = file->ReadAt(sent, out.data(), out.size());
-  fault = got.status();
-  if (!got.ok()) return false;
-  sent += out.size();
-  return true;
-}
-
-}  // namespace
 
 RewriteReactor::RewriteReactor(Core& core, LiveCalls& live, grpc::CallbackServerContext& context)
     : core_(core), live_(live), context_(context), call_(core, context, "Rewrite") {
