@@ -89,8 +89,8 @@ double BytesFor(const TextCount& count, FileUse use) {
          BytesForFarLines(count, use);
 }
 
-std::string FirstBytes(const SpoolFile& upload) {
-  std::string first(16, '\0');
+std::string FirstBytes(const SpoolFile& upload, size_t most = 16) {
+  std::string first(most, '\0');
   first.resize(upload.ReadAt(0, first.data(), first.size()).value_or(0));
   return first;
 }
@@ -170,7 +170,11 @@ bool IsMeasuredAtOnce(const SpoolFile& upload) {
 }
 
 int64_t MemoryToMeasure(const SpoolFile& upload) {
-  return kLeast + (IsPacked(upload) ? 2 * static_cast<int64_t>(upload.size()) : 0);
+  if (!IsPacked(upload)) return kLeast;
+  // With the header of the first block of xz, which states the dictionary.
+  const std::string first = FirstBytes(upload, 2048);
+  return kLeast + 2 * static_cast<int64_t>(upload.size()) +
+         static_cast<int64_t>(DecoderBytes(first, DetectCompression(first)));
 }
 
 absl::StatusOr<int64_t> MemoryFor(const SpoolFile& upload, FileUse use, uint64_t max_file_bytes) {
