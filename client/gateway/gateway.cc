@@ -147,6 +147,7 @@ Gateway::~Gateway() {
   http_ = nullptr;
   memory_watch_.reset();
   if (listener_ != nullptr) listener_->Shutdown(absl::Milliseconds(200));
+  if (core_ != nullptr) core_->jobs->CancelAll();  // those whose files came meanwhile
 }
 
 }  // namespace traverse::gateway

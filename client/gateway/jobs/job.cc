@@ -127,6 +127,7 @@ void Job::Remind() {
 
 absl::StatusOr<RewrittenFile> Job::made() const {
   MutexLock lock(mutex_);
+  end_told_ = end_told_ || EndedNow();
   return made_;
 }
 
@@ -149,8 +150,8 @@ bool Job::fetched() const {
 
 bool Job::may_be_tried_again() const {
   MutexLock lock(mutex_);
-  // A status of 4xx says that the file is at fault.
-  return now_.state() == v1::Job::STATE_FAILED && now_.fault().http_status() >= 500;
+  // A status of 4xx says that the file is at fault, but for 499: the work was cut off.
+  return now_.state() == v1::Job::STATE_FAILED && now_.fault().http_status() >= 499;
 }
 
 }  // namespace traverse::gateway

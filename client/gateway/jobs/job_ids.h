@@ -28,8 +28,6 @@ class JobIds {
   // Unavailable if the system has no random numbers. REQUIRES: IsGatewayName(name).
   static absl::StatusOr<JobIds> Make(std::string name);
 
-  const std::string& name() const { return name_; }
-
   // A new id for `caller`. Unavailable as above.
   absl::StatusOr<std::string> New(const std::string& caller) const;
 

@@ -150,7 +150,6 @@ void JobStore::Sweep() {
     if (remind) job->Remind();
   }
   for (const auto& job : expired) Forget(*job);
-  lock.Unlock();
 }
 
 }  // namespace traverse::gateway

@@ -53,7 +53,6 @@ class JobStore {
   // The same for all.
   void CancelAll();
 
-  const std::string& gateway_name() const { return ids_.name(); }
   int kept() const { return static_cast<int>(shares_.used()); }
   int unfetched() const;  // kept ones that their callers do not have
 

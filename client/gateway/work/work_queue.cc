@@ -44,7 +44,6 @@ WorkQueue::~WorkQueue() {
     std::move(caller.waiting.begin(), caller.waiting.end(), std::back_inserter(dropped));
   }
   callers_.clear();
-  lock.Unlock();
 }
 
 absl::StatusOr<std::shared_ptr<WorkQueue::Ticket>> WorkQueue::Enter(const std::string& caller) {

@@ -94,6 +94,20 @@ TEST_F(JobTest, AFaultIsFetchedWhenItWasTold) {
   EXPECT_FALSE(job_.may_be_tried_again());
 }
 
+TEST_F(JobTest, AFaultIsFetchedByWhoAsksForTheFile) {
+  job_.End(absl::FailedPreconditionError("would not print the same"), absl::InfiniteFuture());
+
+  EXPECT_FALSE(job_.made().ok());
+
+  EXPECT_TRUE(job_.fetched());
+}
+
+TEST_F(JobTest, WorkThatWasCutOffIsWorthAnotherTry) {
+  job_.End(absl::CancelledError("the server has gone"), absl::InfiniteFuture());
+
+  EXPECT_TRUE(job_.may_be_tried_again());
+}
+
 TEST_F(JobTest, FaultsThatMayPassAreWorthAnotherTry) {
   job_.End(absl::ResourceExhaustedError("the spool is full"), absl::InfiniteFuture());
 
