@@ -1,9 +1,10 @@
 // A number of things, of which each caller has a share: half of them, and of the last quarter a
-// sixteenth.
+// sixteenth; one at least.
 
 #ifndef TRAVERSE_CLIENT_GATEWAY_SPOOL_SHARES_H_
 #define TRAVERSE_CLIENT_GATEWAY_SPOOL_SHARES_H_
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -29,7 +30,8 @@ class Shares {
     MutexLock lock(mutex_);
     if (count > most_ || used_ > most_ - count) return Refusal{false, most_};
     const bool last_quarter = used_ + count > most_ - most_ / 4;
-    const uint64_t share = caller.empty() ? most_ : most_ / (last_quarter ? 16 : 2);
+    const uint64_t part = std::max<uint64_t>(1, most_ / (last_quarter ? 16 : 2));
+    const uint64_t share = caller.empty() ? most_ : part;
     const auto own = callers_.find(caller);
     if ((own == callers_.end() ? 0 : own->second) + count > share) return Refusal{true, share};
     used_ += count;

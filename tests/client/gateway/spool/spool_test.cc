@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "client/gateway/spool/shares.h"
 #include "tests/support/scratch_folder.h"
 
 namespace traverse::gateway {
@@ -63,6 +64,15 @@ TEST_F(SpoolTest, ACallerHasAShare) {
   EXPECT_EQ(third->Append("c").code(), absl::StatusCode::kResourceExhausted);
   second.reset();
   EXPECT_TRUE(third->Append(std::string(19, 'c')).ok());
+}
+
+TEST(Shares, OfAFewThingsAreOneAtLeast) {
+  Shares one(1);
+  EXPECT_FALSE(one.Take(1, "a").has_value());
+
+  Shares four(4);
+  for (const char* caller : {"a", "a", "b", "c"}) EXPECT_FALSE(four.Take(1, caller).has_value());
+  EXPECT_TRUE(four.Take(1, "d").has_value());
 }
 
 TEST_F(SpoolTest, AFolderThatIsNotThereIsSaid) {
