@@ -24,6 +24,10 @@ HttpResponse NotAllowed(const std::string& allowed) {
   return response;
 }
 
+bool IsGet(const HttpRequest& request) {
+  return request.method == "GET" || request.method == "HEAD";
+}
+
 std::string Event(const std::string& name, const std::string& data, const std::string& id) {
   return absl::StrCat(id.empty() ? "" : "id: ", id, id.empty() ? "" : "\n", "event: ", name,
                       "\ndata: ", data, "\n\n");

@@ -15,6 +15,9 @@ HttpResponse JsonResponse(std::string json);
 // Refuses the method of a request, whose path allows only `allowed`, as "GET, DELETE".
 HttpResponse NotAllowed(const std::string& allowed);
 
+// GET, or HEAD, whose answer has no body.
+bool IsGet(const HttpRequest& request);
+
 // One server-sent event. With an `id` a client that lost its connection can say what it knows.
 std::string Event(const std::string& name, const std::string& data, const std::string& id = "");
 

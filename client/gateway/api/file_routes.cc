@@ -22,11 +22,6 @@ void SendMessage(HttpReply& reply, const absl::StatusOr<Message>& found) {
   reply.Send(found.ok() ? JsonResponse(MessageJson(*found) + "\n") : ProblemOf(found.status()));
 }
 
-// When the work on a file that has come must be done.
-absl::Time FinishBy(const Core& core, absl::Duration deadline = absl::InfiniteDuration()) {
-  return absl::Now() + std::min(deadline, core.options.max_time);
-}
-
 // Is stopped when the client leaves.
 std::stop_source StopWhenGone(HttpReply& reply) {
   std::stop_source stop;
@@ -131,7 +126,6 @@ void RunRewrite(Core& core, const absl::Status& may, const FileRequest& request,
 
 HttpDecision RewriteRoute(const HttpRequest& request, const std::string& caller, Core& core) {
   return TakeFile(request, caller, core, [&core, request](TakenFile taken) {
-    taken.wanted.finish_by = FinishBy(core, taken.wanted.deadline);
     const AnswerKind kind = KindOf(request);
     const FileRecord record = {request.path, taken.wanted.caller, request.peer_host,
                                taken.wanted.name, taken.file->size()};
@@ -146,7 +140,6 @@ HttpDecision RewriteRoute(const HttpRequest& request, const std::string& caller,
 
 HttpDecision InspectRoute(const HttpRequest& request, const std::string& caller, Core& core) {
   return TakeFile(request, caller, core, [&core](TakenFile taken) {
-    taken.wanted.finish_by = FinishBy(core, taken.wanted.deadline);
     const std::stop_source stop = StopWhenGone(*taken.reply);
     const auto work = [&core, taken, stop](const absl::Status& may) {
       if (!may.ok()) return taken.reply->Send(ProblemOf(may));
@@ -172,7 +165,7 @@ HttpDecision VerifyRoute(const HttpRequest& request, const std::string& caller, 
     if (original == nullptr || optimised == nullptr) {
       return reply->Send(Problem(400, "send a form with the files original and optimised"));
     }
-    const absl::Time finish_by = FinishBy(core);
+    const absl::Time finish_by = absl::Now() + core.options.max_time;
     const std::stop_source stop = StopWhenGone(*reply);
     const auto work = [&core, original, optimised, permissions = *permissions, finish_by, reply,
                        stop](const absl::Status& may) {

@@ -8,7 +8,6 @@
 #include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/time/clock.h"
 #include "client/gateway/api/answers.h"
 #include "client/gateway/api/file_routes.h"
 #include "client/gateway/api/take_file.h"
@@ -42,15 +41,14 @@ HttpDecision CreateJob(const HttpRequest& request, const std::string& caller, Co
   if (!IsIdempotencyKey(key)) {
     return Problem(400, "Idempotency-Key: not at most 255 printable ASCII characters");
   }
-  return TakeFile(request, caller, core, [&core, request, key](TakenFile taken) {
-    taken.wanted.finish_by = absl::Now() + std::min(taken.wanted.deadline, core.options.max_time);
+  return TakeFile(request, caller, core, [&core, peer = request.peer_host, key](TakenFile taken) {
     const absl::StatusOr<std::shared_ptr<Job>> job =
         core.jobs->Create(taken.ticket, {.request = std::move(taken.wanted),
                                          .upload = std::move(taken.file),
                                          .key = key,
                                          .print = std::move(taken.print),
                                          .route = kRoot,
-                                         .peer = request.peer_host});
+                                         .peer = peer});
     if (!job.ok()) return taken.reply->Send(CreateProblem(job.status()));
     HttpResponse response = JobAnswer((*job)->Now());
     response.status = 202;
@@ -147,11 +145,10 @@ HttpDecision JobRoute(const HttpRequest& request, const std::string& caller, Cor
     return Problem(404, "there is nothing at this path; see /openapi.json");
   }
   route = absl::StrCat(kRoot, "/{id}", part);
-  const bool is_get = request.method == "GET" || request.method == "HEAD";
-  if (!is_get && (request.method != "DELETE" || !part.empty())) {
+  if (!IsGet(request) && (request.method != "DELETE" || !part.empty())) {
     return NotAllowed(part.empty() ? "GET, DELETE" : "GET");
   }
-  if (!is_get) {
+  if (!IsGet(request)) {
     const absl::Status status = core.jobs->Cancel(id, caller);
     if (!status.ok()) return JobProblem(status);
     HttpResponse done;

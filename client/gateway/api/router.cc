@@ -54,10 +54,6 @@ bool IsForUs(const HttpRequest& request, const Core& core) {
   return (guarded && allowed.empty()) || IsOwnHost(request.Header("host"), allowed);
 }
 
-bool IsGet(const HttpRequest& request) {
-  return request.method == "GET" || request.method == "HEAD";
-}
-
 }  // namespace
 
 absl::StatusOr<std::string> CallerOf(const HttpRequest& request, Authenticator& authenticator) {

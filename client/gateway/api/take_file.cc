@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
 #include "client/gateway/api/machine_text.h"
 #include "client/gateway/http/problem.h"
 #include "client/gateway/http/target.h"
@@ -83,13 +84,14 @@ HttpDecision TakeFile(const HttpRequest& request, const std::string& caller, Cor
                                .small_files = {{"machine", kMostMachineBytes}}};
   return TakeFiles(
       request, limits, core,
-      [request, caller, start = std::move(start)](const TicketPtr& ticket, Upload upload,
-                                                  const ReplyPtr& reply) {
+      [request, caller, &core, start = std::move(start)](const TicketPtr& ticket, Upload upload,
+                                                         const ReplyPtr& reply) {
         const Parameters parameters = AllParameters(request, upload);
         std::string print = PrintOf(upload, parameters);
         absl::StatusOr<FileRequest> wanted = WholeRequest(parameters, upload);
         if (!wanted.ok()) return reply->Send(ProblemOf(wanted.status()));
         wanted->caller = caller;
+        wanted->finish_by = absl::Now() + std::min(wanted->deadline, core.options.max_time);
         start({ticket, *std::move(wanted), upload.files[0].file, std::move(print), reply});
       });
 }
