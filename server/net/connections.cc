@@ -220,22 +220,26 @@ bool Connections::IsLoud(Connection& connection, Clock::time_point now) const {
   return now - connection.loud_since > kMoment;
 }
 
+double Connections::AllPending() const {
+  double all = 0;
+  for (const auto& [peer, connection] : table_) all += std::max(0.0, connection.pending);
+  return all;
+}
+
 std::string Connections::LargestHoarder() const {
   struct Address {
     double pending = 0;
     Table::const_iterator largest;
   };
+  if (AllPending() <= static_cast<double>(rules_.all_bytes)) return "";
   std::map<std::string, Address> addresses;
-  double all = 0;
   for (auto it = table_.begin(); it != table_.end(); ++it) {
     const double pending = std::max(0.0, it->second.pending);
-    all += pending;
     const auto [found, is_new] = addresses.try_emplace(AddressOf(it->first));
     Address& address = found->second;
     if (is_new || pending > address.largest->second.pending) address.largest = it;
     address.pending += pending;
   }
-  if (all <= static_cast<double>(rules_.all_bytes)) return "";
   const auto most = std::max_element(
       addresses.begin(), addresses.end(),
       [](const auto& a, const auto& b) { return a.second.pending < b.second.pending; });
@@ -392,9 +396,7 @@ int Connections::open() const {
 
 int64_t Connections::pending_bytes() const {
   MutexLock lock(mutex_);
-  double sum = 0;
-  for (const auto& [peer, connection] : table_) sum += std::max(0.0, connection.pending);
-  return static_cast<int64_t>(sum);
+  return static_cast<int64_t>(AllPending());
 }
 
 uint64_t Connections::cut() const {

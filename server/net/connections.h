@@ -147,6 +147,8 @@ class Connections {
 
   // Updates the table. Returns those with too much pending, and whether much arrived.
   std::vector<std::pair<std::string, Excess>> Look(bool& busy);
+  // Bytes of messages that have not come whole, of all connections.
+  double AllPending() const TRAVERSE_REQUIRES(mutex_);
   // Of the address that has too much of all that is pending; empty if none has.
   std::string LargestHoarder() const TRAVERSE_REQUIRES(mutex_);
   void Restrain(const std::string& peer, Excess excess);
