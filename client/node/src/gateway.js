@@ -43,12 +43,15 @@ export class GcodeGateway {
   #metadata() { return metadataWith(this.#token, this.#stubs.length === 1); }
 
   #unary(gateway, method, request, deadline) {
-    return new Promise((resolve, reject) => this.#stubs[gateway][method](request, this.#metadata(), { deadline },
+    return new Promise((resolve, reject) => this.#stubs[gateway][method](request, metadataWith(this.#token, false), { deadline },
       (error, answer) => (error ? reject(error) : resolve(answer))));
   }
 
   async #make(job, deadline, method, request) {
-    if (method === "CancelJob") return job.take(await this.#unary(job.gateway, method, request, deadline), method, request);
+    if (method === "CancelJob") { // the file is here: nobody waits for this
+      const soon = Math.min(deadline, Date.now() + CANCEL_MS);
+      return job.take(await this.#unary(job.gateway, method, request, soon), method, request);
+    }
     if (method === "CreateJob") return job.take(await this.#create(job.gateway, request, deadline), method, request);
     const call = this.#stubs[job.gateway][method](request, this.#metadata(), { deadline });
     try {

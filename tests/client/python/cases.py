@@ -19,6 +19,7 @@ import traverse_client
 from traverse_client import (AsyncGcodeGateway, AsyncTravelOptimizer, GcodeGateway, JobOptions, OptimizeBatchRequest,
                              RewriteOptions, RewriteProgress, TravelOptimizer, TraverseError, island, layer)
 from programs import Gateway, Server, Wire
+from traverse_client.file_job import FileJob
 from traverse_client.wire import retry_info_pb2
 from traverse_client.wire import route_optimizer_service_pb2 as api
 from traverse_client.wire import route_optimizer_service_pb2_grpc as service
@@ -252,6 +253,15 @@ class Real(unittest.TestCase):
         gateway = self.start(Gateway)
         with GcodeGateway([gateway.address]) as client, self.assertRaises(TraverseError):
             client.rewrite(b"")
+
+
+class LastCall(unittest.TestCase):
+    def test_a_file_that_is_here_waits_for_no_gateway(self):
+        job = FileJob(b"G1 X1 E1", None, None, None, 600, 1)
+        self.assertEqual(job.call_settings("ReadJob")[1], True, "the only gateway may come back")
+        seconds, waits = job.call_settings("CancelJob")
+        self.assertLessEqual(seconds, 10)
+        self.assertFalse(waits)
 
 
 class DroppedCalls(unittest.TestCase):

@@ -9,7 +9,7 @@ import grpc.aio
 
 from traverse_client import channels, files, retries
 from traverse_client.errors import TraverseError
-from traverse_client.file_job import File, FileJob, OnProgress, RewrittenFile
+from traverse_client.file_job import CANCEL_SECONDS, File, FileJob, OnProgress, RewrittenFile
 from traverse_client.optimizer import SERVICE
 from traverse_client.remaining_job import RemainingJob, is_whole, opening
 from traverse_client.wire import gcode_service_pb2, options_pb2, plan_pb2
@@ -172,16 +172,16 @@ class AsyncGcodeGateway:
             left = job.abandoned()
             if left is not None:
                 try:
-                    await self._stubs[job.gateway].CancelJob(left, timeout=files.CANCEL_SECONDS,
+                    await self._stubs[job.gateway].CancelJob(left, timeout=CANCEL_SECONDS,
                                                              metadata=channels.authorization(self._token))
                 except grpc.RpcError:
                     pass  # it expires
             raise
 
     async def _make(self, job: FileJob, method: str, request: Any) -> None:
+        timeout, waits = job.call_settings(method)
         answer = getattr(self._stubs[job.gateway], method)(
-            request, timeout=max(0.0, job.seconds_left()), wait_for_ready=len(self._stubs) == 1,
-            metadata=channels.authorization(self._token))
+            request, timeout=timeout, wait_for_ready=waits, metadata=channels.authorization(self._token))
         if method in ("CreateJob", "CancelJob"):
             job.take(await answer, request)
             return

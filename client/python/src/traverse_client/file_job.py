@@ -13,6 +13,7 @@ from traverse_client.errors import TraverseError
 from traverse_client.wire import gcode_service_pb2 as api
 
 PIECE_BYTES = 1 << 20
+CANCEL_SECONDS = 10.0
 
 File = Union[str, "os.PathLike[str]", bytes, BinaryIO]
 OnProgress = Callable[[api.RewriteProgress], None]
@@ -107,6 +108,13 @@ class FileJob:
         if not self._report_read:
             return "ReadJob", api.ReadJobRequest(id=job.id, report=True, offset=len(self._report))
         return None if self._deleted else ("CancelJob", api.CancelJobRequest(id=job.id))
+
+    def call_settings(self, method: str) -> Tuple[float, bool]:
+        """How many seconds a call may take, and whether it waits for a gateway that is not there."""
+        left = max(0.0, self.seconds_left())
+        if method == "CancelJob":  # the file is here: nobody waits for this
+            return min(left, CANCEL_SECONDS), False
+        return left, self._gateways == 1
 
     def _upload(self) -> Iterator[api.CreateJobRequest]:
         left = self.seconds_left()

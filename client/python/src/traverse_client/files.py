@@ -6,12 +6,11 @@ from typing import Any, Optional, Sequence
 import grpc
 
 from traverse_client import channels
-from traverse_client.file_job import File, FileJob, OnProgress, RewrittenFile
+from traverse_client.file_job import CANCEL_SECONDS, File, FileJob, OnProgress, RewrittenFile
 from traverse_client.wire import gcode_service_pb2 as api
 from traverse_client.wire import gcode_service_pb2_grpc as service
 
 SERVICE = "traverse.v1.GcodeService"
-CANCEL_SECONDS = 10.0
 
 
 class GcodeGateway:
@@ -69,9 +68,9 @@ class GcodeGateway:
             raise
 
     def _make(self, job: FileJob, method: str, request: Any) -> None:
+        timeout, waits = job.call_settings(method)
         answer = getattr(self._stubs[job.gateway], method)(
-            request, timeout=max(0.0, job.seconds_left()), wait_for_ready=len(self._stubs) == 1,
-            metadata=channels.authorization(self._token))
+            request, timeout=timeout, wait_for_ready=waits, metadata=channels.authorization(self._token))
         if method in ("CreateJob", "CancelJob"):
             job.take(answer, request)
             return
