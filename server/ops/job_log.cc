@@ -95,8 +95,6 @@ JobLog::Level LevelOf(const JobRecord& record) {
 
 }  // namespace
 
-std::string JsonString(const std::string& text) { return Dump(Json(text)); }
-
 std::string FormatJobLine(const JobRecord& record) {
   Json line = NewLine(LevelName(LevelOf(record)), "job");
   line["job_id"] = record.job_id;

@@ -83,10 +83,6 @@ class JobLog {
 // One line without the line break.
 std::string FormatJobLine(const JobRecord& record);
 
-// `text` as a JSON string with its quotes. Replaces invalid UTF-8; escapes control characters,
-// including those of a terminal.
-std::string JsonString(const std::string& text);
-
 }  // namespace traverse
 
 #endif  // TRAVERSE_SERVER_OPS_JOB_LOG_H_
