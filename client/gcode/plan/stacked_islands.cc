@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "absl/container/flat_hash_map.h"
+#include "client/gcode/island_cells.h"
 #include "client/gcode/model/loops.h"
 #include "client/gcode/model/outline.h"
 #include "client/gcode/parallel.h"
@@ -21,61 +22,10 @@ constexpr double kStepCells = 0.5;
 // Paths whose middles are closer than this are of one island: heat passes between them.
 constexpr double kIslandsApartMm = 1;
 
-// No plate is larger. Beyond it there is one cell.
-constexpr double kFarCells = 4000;
-
 // Layers whose cells are kept at once.
 constexpr size_t kBatch = 16;
 
-// No layer has more cells with something in them, and no print; of what lies in further ones
-// nothing is known.
-constexpr size_t kMostStackedCells = 1 << 18;
-constexpr size_t kMostStackedTops = 1 << 19;
-
-// A cell of 1 mm, and an island that has a path in it.
-using Cell = std::pair<uint64_t, uint32_t>;
-
-uint64_t CellAt(double x, double y) {
-  const auto index = [](double value) {
-    const double cell = std::clamp(std::floor(value), -kFarCells, kFarCells);
-    return static_cast<uint32_t>(static_cast<int32_t>(cell));
-  };
-  return uint64_t{index(x)} << 32 | index(y);
-}
-
-// The cells of a layer, each once.
-class LayerCells {
- public:
-  bool full() const { return full_; }
-
-  void Add(const Cell& cell) {
-    if (full_ || (!cells_.empty() && cells_.back() == cell)) return;
-    cells_.push_back(cell);
-    if (cells_.size() < room_) return;
-    Tidy();
-    full_ = cells_.size() >= kMostStackedCells;
-    room_ = 2 * cells_.size() + kLeastRoom;
-  }
-
-  std::vector<Cell> Take() {
-    Tidy();
-    return std::move(cells_);
-  }
-
- private:
-  static constexpr size_t kLeastRoom = 1 << 16;
-
-  void Tidy() {
-    std::sort(cells_.begin(), cells_.end());
-    cells_.erase(std::unique(cells_.begin(), cells_.end()), cells_.end());
-  }
-
-  std::vector<Cell> cells_;
-  size_t room_ = kLeastRoom;
-  bool full_ = false;
-};
-
-void AddCells(const Outline& outline, uint32_t island, LayerCells& cells) {
+void AddCells(const Outline& outline, uint32_t island, IslandCells& cells) {
   const std::vector<Vertex>& points = outline.shape();
   const auto add = [&](double x, double y) { cells.Add({CellAt(x, y), island}); };
   if (!points.empty()) add(points[0].x, points[0].y);
@@ -91,13 +41,14 @@ void AddCells(const Outline& outline, uint32_t island, LayerCells& cells) {
 }
 
 // Adds the islands of layer `layer` to `islands`, and returns their cells, each once.
-std::vector<Cell> FindIslands(const GcodeFile& file, const Layer& layer, LayerIslands& islands) {
+std::vector<IslandCell> FindIslands(const GcodeFile& file, const Layer& layer,
+                                    LayerIslands& islands) {
   std::vector<Outline> outlines = OutlinesOf(file, layer);
   for (Outline& outline : outlines) {
     outline.width_mm = std::max(outline.width_mm, kIslandsApartMm / kTouch);
   }
   islands.island = FindContacts(outlines, [](uint32_t, uint32_t) { return false; }).island;
-  LayerCells cells;
+  IslandCells cells;
   for (size_t path = 0; path < outlines.size(); ++path) {
     islands.count = std::max(islands.count, islands.island[path] + 1);
     AddCells(outlines[path], islands.island[path], cells);
@@ -108,7 +59,7 @@ std::vector<Cell> FindIslands(const GcodeFile& file, const Layer& layer, LayerIs
 // What was printed last in each cell: two islands where their edges meet.
 class TopOfPrint {
  public:
-  void Add(uint32_t layer, const std::vector<Cell>& cells, LayerIslands& islands) {
+  void Add(uint32_t layer, const std::vector<IslandCell>& cells, LayerIslands& islands) {
     for (const auto& [cell, island] : cells) {
       const auto found = top_.find(cell);
       if (found == top_.end()) continue;
@@ -120,9 +71,10 @@ class TopOfPrint {
     islands.supports.erase(std::unique(islands.supports.begin(), islands.supports.end()),
                            islands.supports.end());
     for (const auto& [cell, island] : cells) {
-      if (top_.size() >= kMostStackedTops && !top_.contains(cell)) continue;
-      Top& top = top_[cell];
-      if (top.layer != layer || !top.known) top = {layer, {island, island}, true};
+      if (top_.size() >= kMostCellsOfPrint && !top_.contains(cell)) continue;
+      const auto [at, is_new] = top_.try_emplace(cell);
+      Top& top = at->second;
+      if (is_new || top.layer != layer) top = {layer, {island, island}};
       top.islands[1] = island;
     }
   }
@@ -131,7 +83,6 @@ class TopOfPrint {
   struct Top {
     uint32_t layer = 0;
     std::array<uint32_t, 2> islands{};
-    bool known = false;
   };
 
   absl::flat_hash_map<uint64_t, Top> top_;
@@ -142,7 +93,7 @@ class TopOfPrint {
 std::vector<LayerIslands> StackIslands(const GcodeFile& file, int threads) {
   std::vector<LayerIslands> stack(file.layers.size());
   TopOfPrint top;
-  std::vector<std::vector<Cell>> cells(kBatch);
+  std::vector<std::vector<IslandCell>> cells(kBatch);
   for (size_t begin = 0; begin < stack.size(); begin += kBatch) {
     const size_t count = std::min(kBatch, stack.size() - begin);
     ParallelFor(count, threads, [&](size_t i) {

@@ -5,10 +5,10 @@
 #define TRAVERSE_CLIENT_GCODE_VERIFY_RULES_REST_H_
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "absl/container/flat_hash_map.h"
+#include "client/gcode/island_cells.h"
 #include "client/gcode/verify/findings.h"
 #include "client/gcode/verify/match/layer_pair.h"
 
@@ -29,7 +29,7 @@ struct PrintedIsland {
 struct PrintedIslands {
   std::vector<PrintedIsland> islands;
   uint32_t paths = 0;
-  std::vector<std::pair<uint64_t, uint32_t>> cells;  // of 1 mm, with an island; ascending
+  std::vector<IslandCell> cells;  // ascending
 };
 
 // Paths within 1 mm, or about 1.25 line widths as their filament implies them, are of one island.
