@@ -82,7 +82,7 @@ bool TravelsOpen(const GcodeFile& file) {
   return false;
 }
 
-// A shorter travel is none.
+// A shorter move is none.
 constexpr double kShortestTravelMm = 0.001;
 
 // The usual setting of slicers.
@@ -271,15 +271,12 @@ PlannedTravel TravelRules::TravelOf(Vertex a, Vertex b, Feature feature) const {
       bent.push_back(b);
       travel.mm = 0;
       for (size_t i = 1; i < bent.size(); ++i) travel.mm += Distance(bent[i - 1], bent[i]);
-      // A bend may lie within another wall if there is hardly room between the two.
-      travel.grazes = walls_.CrossedByTravel(bent);
     }
   }
   if (!habit_.retracts) return travel;
   const bool far = Distance(a, b) >= habit_.threshold_mm;
   travel.retracts = far && (!habit_.crossing_matters || CountOf(feature).Mostly());
-  travel.retracts = travel.retracts ||
-                    ((far || habit_.spares_walls) && (travel.crosses || travel.grazes)) ||
+  travel.retracts = travel.retracts || ((far || habit_.spares_walls) && travel.crosses) ||
                     (far && travel.mm > habit_.longest_open_mm);
   return travel;
 }

@@ -81,7 +81,6 @@ struct PlannedTravel {
   Vertex to;
   bool retracts = false;
   bool crosses = false;     // a visible wall, and there is no detour
-  bool grazes = false;      // a visible wall, at one of its bends
   double mm = 0;            // including bends
   std::vector<Vertex> via;  // the bends of the detour around visible walls; empty: straight
   bool stands = false;      // at the first bend, where filament is pulled back

@@ -404,7 +404,7 @@ TEST(TravelRules, TravelsWithABendWithinAnotherWallAreRetracted) {
   EXPECT_TRUE(narrow.retracts);
   const PlannedTravel wide = sparing.TravelOf({-2, 35}, {5, 42});
   EXPECT_FALSE(wide.via.empty());
-  EXPECT_FALSE(wide.grazes);
+  EXPECT_FALSE(wide.crosses);
   EXPECT_FALSE(wide.retracts);
 }
 
