@@ -54,12 +54,6 @@ struct MachineState {
   Vertex InMm(const Position& place) const {
     return {ToDouble(place.x) * UnitMm(), ToDouble(place.y) * UnitMm()};
   }
-
-  // The modes that two parts of a file must share so that their lines can change places.
-  bool SameModes(const MachineState& other) const {
-    return relative_xyz == other.relative_xyz && relative_e == other.relative_e &&
-           inches == other.inches && plane_xy == other.plane_xy && tool == other.tool;
-  }
 };
 
 enum class StepKind : uint8_t {

@@ -118,18 +118,4 @@ Outline OutlineOf(const GcodeFile& file, const Block& block) {
   return outline;
 }
 
-bool LiesWithin(const Outline& inner, const Outline& outer) {
-  if (!outer.is_loop) return false;
-  const Vertex p = inner.points.front();
-  const std::vector<Vertex>& loop = outer.shape();
-  bool within = false;
-  for (size_t k = 0; k + 1 < loop.size(); ++k) {
-    const Vertex a = loop[k];
-    const Vertex b = loop[k + 1];
-    if ((a.y > p.y) == (b.y > p.y)) continue;
-    if (p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)) within = !within;
-  }
-  return within;
-}
-
 }  // namespace traverse::gcode

@@ -44,9 +44,6 @@ double LoopGapMm(const GcodeFile& file, double width_mm);
 
 Outline OutlineOf(const GcodeFile& file, const Block& block);
 
-// True if `inner` lies within the loop `outer`; for crossing outlines, whether it begins there.
-bool LiesWithin(const Outline& inner, const Outline& outer);
-
 // The machine as it is when `block` begins.
 MachineState StateAt(const GcodeFile& file, const Block& block);
 

@@ -25,10 +25,6 @@ PartStart StartOfPaths(const GcodeFile& file, const Placement& first) {
   return start;
 }
 
-PartStart StartBehindPath(const GcodeFile& file, const Placement& last) {
-  return PlacedPath(file, last).Behind();
-}
-
 LayerWriter::LayerWriter(const GcodeFile& file, const Layer& layer, const RetractionHabit& habit,
                          const LinkDonors& donors, const Room* room, bool hides,
                          const TravelModel* travel)
@@ -160,7 +156,7 @@ PartStart LayerWriter::WriteBarePaths(const LayerOrder& order, const PartStart& 
       from = std::move(to);
     }
     if (marks != nullptr) marks->push_back(text.size());
-    from.Write(true, out);
+    from.Write(out);
     if (marks != nullptr) marks->push_back(text.size());
   }
   out.Flush();
@@ -326,8 +322,7 @@ Vertex LayerWriter::BackOver(const Placement& from, double mm) const {
 bool LayerWriter::GoesOnAcross(const Placement& from, Vertex to, Feature feature) const {
   const Leaving* leaving = LeavingOf(from);
   if (!spares_walls_ || leaving == nullptr || leaving->wipes || leaving->departs) return false;
-  const PlannedTravel travel = rules_.TravelOf(Behind(from, *leaving), to, feature);
-  return travel.crosses || travel.grazes;
+  return rules_.TravelOf(Behind(from, *leaving), to, feature).crosses;
 }
 
 bool LayerWriter::Departs(const Placement& from, Vertex to, Feature feature) const {
@@ -343,7 +338,7 @@ bool LayerWriter::Departs(const Placement& from, Vertex to, Feature feature) con
   std::vector<Vertex> bent = {End(from), at};
   bent.insert(bent.end(), behind.via.begin(), behind.via.end());
   bent.push_back(to);
-  return travel.crosses || travel.grazes || !(behind.crosses || walls_.CrossedByTravel(bent));
+  return travel.crosses || !(behind.crosses || walls_.CrossedByTravel(bent));
 }
 
 // Paths that the slicer wipes stay wiped, so that all travel moves from them are retracted.

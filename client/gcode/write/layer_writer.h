@@ -27,9 +27,6 @@ namespace traverse::gcode {
 // register is as in the file.
 PartStart StartOfPaths(const GcodeFile& file, const Placement& first);
 
-// The state after `last`; the extruder's register is again as in the file.
-PartStart StartBehindPath(const GcodeFile& file, const Placement& last);
-
 // One layer. What writes appends to `text` and returns the machine's state after it. Thread-safe.
 class LayerWriter {
  public:

@@ -50,8 +50,8 @@ void WriteSegment(const BodySegment& segment, const PathBody& body, GcodeOut& ou
               ArcWords(segment, out.file().xy_style), segment.comment);
 }
 
-// A travel move back from aside is looked for in so many steps, until it is as long as coordinates
-// tell.
+// The way back from beside a path is searched for in so many steps, until its length fits as far as
+// coordinates tell.
 constexpr int kMostSteps = 8;
 constexpr double kRounding = 0.002;
 
@@ -129,20 +129,11 @@ void PlacedPath::PlaceRotated() {
   last_ = segments.back().to;
 }
 
-PartStart PlacedPath::Behind() const {
-  if (as_given()) return StartBehind(*file_, block());
-  PartStart behind{StateAt(*file_, block()), body_.states[body_.segments.back().state]};
-  behind.machine.at = last_;
-  behind.machine.feed = body_.segments.back().feed;
-  behind.machine.e = block().e_out;
-  return behind;
-}
-
-void PlacedPath::Write(bool without_progress, GcodeOut& out) const {
+void PlacedPath::Write(GcodeOut& out) const {
   if (as_given()) {
     const PartStart start{StateAt(*file_, block()), file_->states[block().state_in]};
     out.Copy(block().begin, block().end, start, StartBehind(*file_, block()),
-             without_progress && (block().flags & kBlockProgress) != 0);
+             /*without_progress=*/(block().flags & kBlockProgress) != 0);
     return;
   }
   const Position* at = &first_;
@@ -193,8 +184,7 @@ std::vector<Position> PlacedPath::RetraceFrom(const Position& begin, double leng
   if (begin.SameXy(last_)) return Retrace(length_mm);
   const PathBody given = as_given() ? ReadBody(*file_, block()) : PathBody();
   const std::vector<BodySegment>& segments = as_given() ? given.segments : body_.segments;
-  // The travel from aside to the path cuts a corner off, so that as long a travel move leads
-  // farther along.
+  // Going back to the path from aside cuts a corner, so the same length leads farther along.
   const double farthest_mm = length_mm + 2 * LengthXy(last_, begin);
   std::vector<Position> travel;
   double along_mm = length_mm;

@@ -61,12 +61,9 @@ class PlacedPath {
   // Its first line sets the feed rate itself.
   bool states_feed() const { return states_feed_; }
 
-  // The state and the feed rate after it.
-  PartStart Behind() const;
-
-  // Appends the path; `out` is where it begins, with its state and feed rate set. Leaves out
-  // lines of progress if `without_progress`, and always if the path is not as given.
-  void Write(bool without_progress, GcodeOut& out) const;
+  // Appends the path without its lines of progress; `out` is where it begins, with its state and
+  // feed rate set.
+  void Write(GcodeOut& out) const;
 
   // Points back over what was just printed, for a wipe: on from the start of a closed path, back
   // along an open one. At most `length` mm, at least one point if the path has any length.

@@ -31,21 +31,6 @@ TEST_F(PlacedPathTest, AnOpenPathEndsWhereItIsLedTo) {
   EXPECT_TRUE(given.last().SameXy(turned.first()));
 }
 
-TEST_F(PlacedPathTest, TheMachineIsBehindThePathAsItIsPlaced) {
-  for (const uint32_t block : {1u, 2u}) {
-    for (const uint32_t entry : {0u, 1u}) {
-      const PlacedPath path = Placed(block, entry);
-      EXPECT_TRUE(path.Behind().machine.at.SameXy(path.last())) << block << ' ' << entry;
-    }
-  }
-  // As given, the machine is as the file leaves it there, feed rate included.
-  const PartStart behind = Placed(2, 0).Behind();
-  const PartStart file = StartBehind(*file_, file_->blocks[2]);
-  EXPECT_TRUE(behind.machine.at.SameXy(file.machine.at));
-  EXPECT_EQ(behind.machine.feed, file.machine.feed);
-  EXPECT_EQ(behind.machine.e, file.machine.e);
-}
-
 TEST_F(PlacedPathTest, TheRetraceIsAtMostAsLongAsThePath) {
   for (const uint32_t block : {0u, 1u}) {
     const PlacedPath path = Placed(block, 0);
