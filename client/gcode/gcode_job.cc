@@ -328,7 +328,7 @@ absl::StatusOr<gcode::PrintTotals> AddMeasuredFacts(InputJob& job, const GcodeOp
   add("extruded", absl::StrFormat("%.2f m", totals.extruded_mm / 1000));
   add("travel", absl::StrFormat("%.2f m", totals.travel_mm / 1000));
   const gcode::RetractionHabit looks =
-      gcode::HabitOfLooks(*job.gcode, options.allow.max_hidden_travel_mm, threads);
+      gcode::HabitOfLooks(*job.gcode, options.allow.max_hidden_travel_mm, threads, job.hidden);
   const gcode::HiddenCounts hidden = gcode::CountHiddenRetractions(*job.gcode, looks, threads);
   add("retractions",
       absl::StrFormat("%d, %d of them for travel that nobody would see", totals.retractions,

@@ -59,9 +59,7 @@ class FastSearch {
     rules.as_many_retractions = !hides;
     rules.freedom = FreedomOf(file_, of_file, Policy::kFast, allow_);
     rules.polish = PolishLimit{};
-    for (uint32_t b = of_file.first_block; b < of_file.end_block; ++b) {
-      rules.boundaries.push_back((file_.blocks[b].link & (kLinkSplits | kLinkFixed)) != 0);
-    }
+    rules.boundaries = BoundariesOf(file_, of_file);
     // Where whole objects have changed places, the file's own order begins it.
     std::vector<LayerOrder> begun;
     const LayerOrder& chosen = column.choices[column.chosen].order;

@@ -146,10 +146,14 @@ class LayerChooser::Impl {
       rules.polish = polish_;
       if (habit_.avoids_walls) rules.polish->seconds_per_travel = PolishLimit::kSecondsPerDetour;
     }
-    for (uint32_t b = of_file.first_block; b < of_file.end_block; ++b) {
-      rules.boundaries.push_back((file_.blocks[b].link & (kLinkSplits | kLinkFixed)) != 0);
-    }
+    rules.boundaries = BoundariesOf(file_, of_file);
     return rules;
+  }
+
+  // What the policy allows in layer `layer`, whose orders are merged by `rules`.
+  LayerFreedom FreedomWithin(size_t layer, const MergeRules& rules) const {
+    if (rules.freedom) return *rules.freedom;
+    return FreedomOf(file_, file_.layers[layer], policy_, allow_);
   }
 
   // Where the file would retract more often than before, gives the layers that do so other orders
@@ -201,15 +205,13 @@ class LayerChooser::Impl {
       MergeRules rules = RulesOf(layer);
       rules.refused = &refusals.links;
       rules.places = column.writer->PlacesOf(*order);
-      const LayerFreedom freedom = FreedomOf(file_, file_.layers[layer], policy_, allow_);
-      order =
-          RepairedOrder(*column.writer, travel_[layer], *order, rules, freedom, refusals.Reach());
+      order = RepairedOrder(*column.writer, travel_[layer], *order, rules,
+                            FreedomWithin(layer, rules), refusals.Reach());
     }
     if (order && refusals.begin) order = BegunAsSliced(*order, column.given_order());
     if (order && refusals.end) order = EndedAsSliced(*order, column.given_order());
     refusals.Forget();
     if (order) filler_.Add(*order, layer, column);
-    column.totals.no_choice.resize(column.choices.size(), false);
     for (size_t c = 1; c < column.choices.size(); ++c) {
       if (refusals.Refuse(column.choices[c].order)) column.totals.no_choice[c] = true;
     }
@@ -223,7 +225,6 @@ class LayerChooser::Impl {
     if (objects_.any()) rules.places = column.writer->PlacesOf(chosen);
     const auto orders = SparingOrders(*column.writer, travel_[layer], chosen, rules);
     for (const LayerOrder& order : orders) filler_.Add(order, layer, column);
-    column.totals.no_choice.resize(column.choices.size(), false);
   }
 
   void FillColumn(size_t layer) {
@@ -263,9 +264,6 @@ class LayerChooser::Impl {
   // If islands rest too short in the row that would be the best one, adds turned orders in which
   // they rest long enough.
   void AddRested() {
-    for (LayerColumn& column : columns_) {
-      column.totals.no_choice.assign(column.choices.size(), false);
-    }
     if (rests_.least_seconds() <= 0 || columns_.size() < 2) return;
     TakeBestRow();
     if (!AnyShortRest(rests_, columns_)) return;
@@ -283,9 +281,9 @@ class LayerChooser::Impl {
     const LayerColumn& column = columns_[layer];
     std::vector<LayerOrder> orders;
     for (const LayerOrder* order : FastestOrders(column, kTurned)) orders.push_back(*order);
-    const LayerFreedom freedom = FreedomOf(file_, file_.layers[layer], policy_, allow_);
+    const MergeRules rules = RulesOf(layer);
     TurnedLayer turned =
-        TurnedOrders(*column.writer, travel_[layer], orders, RulesOf(layer), freedom,
+        TurnedOrders(*column.writer, travel_[layer], orders, rules, FreedomWithin(layer, rules),
                      rests_.IslandsOf(layer), rests_.least_seconds(), column.given_moments);
     turned.given_times = column.choices[0].times;
     if (layer == 0) return turned;
@@ -301,7 +299,6 @@ class LayerChooser::Impl {
                             turns.UnitsOf(turn));
     }
     filler_.Add(order, layer, columns_[layer]);
-    columns_[layer].totals.no_choice.resize(columns_[layer].choices.size(), false);
   }
 
   // The travel moves are written one after the other, for each needs to know where the extruder's

@@ -110,6 +110,7 @@ void ColumnFiller::Begin(size_t layer, LayerColumn& column) const {
   moments.offsets = PathMarks(file_, of_file);
   const VisibleWalls& walls = column.writer->walls();
   column.totals.inside.push_back(MeasurePaths(file_, of_file, walls, &moments));
+  column.totals.no_choice.push_back(false);
   choice.times = rests_.TimesOf(layer, choice.order, of_file.first_block, moments.seconds);
   column.given_moments = std::move(moments.seconds);
   column.given_travel_seconds = MeasureTravel(file_, of_file, walls).nominal_seconds;
@@ -142,6 +143,7 @@ void ColumnFiller::Add(const LayerOrder& order, size_t layer, LayerColumn& colum
   if (Add(order, layer, *column.plain, column) != sparing) return;
   column.choices.pop_back();
   column.totals.inside.pop_back();
+  column.totals.no_choice.pop_back();
 }
 
 std::string ColumnFiller::Add(const LayerOrder& order, size_t layer, const LayerWriter& writer,
@@ -156,6 +158,7 @@ std::string ColumnFiller::Add(const LayerOrder& order, size_t layer, const Layer
   choice.resets_e = Resets(text);
   column.totals.inside.push_back(
       Measure(file_, text, choice.start, &column.writer->walls(), writer.room(), &moments));
+  column.totals.no_choice.push_back(false);
   choice.times = rests_.TimesOf(layer, order, file_.layers[layer].first_block, moments.seconds);
   return text;
 }

@@ -263,6 +263,14 @@ class LayerMerge {
 
 }  // namespace
 
+std::vector<bool> BoundariesOf(const GcodeFile& file, const Layer& layer) {
+  std::vector<bool> boundaries;
+  for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
+    boundaries.push_back((file.blocks[b].link & (kLinkSplits | kLinkFixed)) != 0);
+  }
+  return boundaries;
+}
+
 std::vector<LayerOrder> MergedOrders(const LayerWriter& writer, const TravelModel& travel,
                                      const std::vector<LayerOrder>& found,
                                      const MergeRules& rules) {

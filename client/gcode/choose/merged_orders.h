@@ -38,6 +38,9 @@ struct MergeRules {
   const LinkSet* refused = nullptr;
 };
 
+// MergeRules::boundaries of `layer`.
+std::vector<bool> BoundariesOf(const GcodeFile& file, const Layer& layer);
+
 // The orders of `found`, each improved with runs of the others and of the file's own order, and
 // brought within the limits of `rules` as far as estimates tell (order_merge.h). Of those that
 // begin and end with the same paths as the file only the best stays. Where IsFree(policy) each is

@@ -26,7 +26,7 @@ constexpr size_t kLongestTurned = 50;
 // Of the two runs that change places in a kick.
 constexpr uint32_t kLongestKicked = 12;
 
-// A travel move that is dearer by less than this may be cheaper with other entries.
+// Travel that costs at most this much more may cost less with other entries.
 constexpr double kSlackSeconds = 0.02;
 
 // After so many ways for each path it is looked whether the last of them were worth it.
