@@ -53,8 +53,7 @@ std::vector<std::string> DescribeProgressFaults(const GcodeFile& file) {
         shares[i - 1].percent, shares[i].percent, place(shares[i])));
     break;
   }
-  gcode::PartStart start;
-  gcode::MeasureMoments(file, file.text, start, moments);
+  gcode::MeasureMoments(file, file.text, gcode::StartOfFile(file), &moments);
   const double begun = moments.seconds.front();
   const double seconds = moments.seconds.back() - begun;
   const gcode::StatedShare* worst = nullptr;

@@ -83,9 +83,9 @@ PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStar
 }
 
 double MeasureMoments(const GcodeFile& file, std::string_view text, const PartStart& start,
-                      TextMoments& moments, const VisitStep& visit) {
+                      TextMoments* moments, const VisitStep& visit) {
   Interpreter interpreter(text, 0, start.machine);
-  MomentNotes notes(&moments);
+  MomentNotes notes(moments);
   size_t lines = 0;
   for (Step step; interpreter.Next(step);) {
     if (++lines % kLinesToLimit == 0 && file.limit.Ended()) break;
@@ -95,6 +95,12 @@ double MeasureMoments(const GcodeFile& file, std::string_view text, const PartSt
   }
   notes.Reach(text.size());
   return notes.seconds();
+}
+
+PartStart StartOfFile(const GcodeFile& file) {
+  PartStart start;
+  start.machine.relative_e = !file.modes.empty() && file.modes[0].relative_e;
+  return start;
 }
 
 PartStart StartBehind(const GcodeFile& file, const Block& block) {

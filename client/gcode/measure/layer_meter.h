@@ -39,11 +39,14 @@ PrintTotals Measure(const GcodeFile& file, std::string_view text, const PartStar
                     const VisibleWalls* walls = nullptr, const Room* room = nullptr,
                     TextMoments* moments = nullptr);
 
-// The nominal seconds of the lines `text`. Measures `moments`, and calls `visit`, if it is set,
-// with each step and when it begins.
+// The nominal seconds of the lines `text`. Measures `moments`, unless that is null, and calls
+// `visit`, if it is set, with each step and when it begins.
 using VisitStep = std::function<void(const Step& step, double seconds)>;
 double MeasureMoments(const GcodeFile& file, std::string_view text, const PartStart& start,
-                      TextMoments& moments, const VisitStep& visit = {});
+                      TextMoments* moments, const VisitStep& visit = {});
+
+// The state of the machine where the file begins, as the printer takes the file's E.
+PartStart StartOfFile(const GcodeFile& file);
 
 // The state of the machine after block `block`.
 PartStart StartBehind(const GcodeFile& file, const Block& block);

@@ -103,9 +103,10 @@ double PrintMeter::MoveXy(const Step& step, const MachineState& state) {
   const double accel = extrudes ? dynamics_.print_accel() : dynamics_.travel_accel();
   const double corner = dynamics_.corner_speed();
   if (step.arc) {
-    double travel[4] = {1, 0, 1, 0};
-    const double length = ArcLength(step.command, step.from, state.at, unit, travel);
-    planner_.Arc(length, travel[0], travel[1], travel[2], travel[3], speed, accel, corner);
+    double directions[4] = {1, 0, 1, 0};
+    const double length = ArcLength(step.command, step.from, state.at, unit, directions);
+    planner_.Arc(length, directions[0], directions[1], directions[2], directions[3], speed, accel,
+                 corner);
     return length;
   }
   planner_.Move(ToDouble(state.at.x - step.from.x) * unit,
@@ -125,7 +126,7 @@ double PrintMeter::MoveKlipper(const Step& step, const MachineState& state) {
   move.accel = move.machine_accel = dynamics_.travel_accel();
   move.corner = dynamics_.corner_speed();
   move.filament = ToDouble(step.filament) / length;
-  // What one axis may is the more along a travel move on which it moves less.
+  // An axis allows the more, the less of the move is its own.
   const auto limit = [&move](double share, double most_speed, double most_accel) {
     move.speed = std::min(move.speed, most_speed / share);
     move.accel = std::min(move.accel, most_accel / share);

@@ -45,7 +45,7 @@ void ProgressLines::LearnShares(const Layer& layer) {
     moments.offsets.push_back(file_.blocks[layer.first_block + part.end_place - 1].end);
   }
   for (size_t& offset : moments.offsets) offset -= first.begin;
-  MeasureMoments(file_, file_.PathsText(layer), {StateAt(file_, first), {}}, moments);
+  MeasureMoments(file_, file_.PathsText(layer), {StateAt(file_, first), {}}, &moments);
   auto at = moments.seconds.begin();
   for (const Part& part : parts_) {
     const double begun = *at++;
@@ -62,7 +62,7 @@ std::vector<ProgressLines::Gap> ProgressLines::GapsOf(std::string_view bare, con
   std::vector<Gap> gaps;
   moments.offsets = marks;
   size_t mark = 0;
-  MeasureMoments(file_, bare, start, moments, [&](const Step& step, double seconds) {
+  MeasureMoments(file_, bare, start, &moments, [&](const Step& step, double seconds) {
     const size_t offset = step.line.begin;
     bool begins = false;
     for (; mark < marks.size() && marks[mark] <= offset; ++mark) begins = mark % 2 == 0;

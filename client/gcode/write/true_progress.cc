@@ -1,13 +1,14 @@
 #include "client/gcode/write/true_progress.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "client/gcode/measure/layer_meter.h"
 
 namespace traverse::gcode {
@@ -31,7 +32,6 @@ struct ProgressMoments {
 
 ProgressMoments MomentsOf(const GcodeFile& file, std::string_view text) {
   ProgressMoments found;
-  TextMoments none;
   bool begun = false;
   size_t printed = 0;  // lines before the last deposit
   bool deposits = false;
@@ -45,9 +45,7 @@ ProgressMoments MomentsOf(const GcodeFile& file, std::string_view text) {
     if (step.kind != StepKind::kProgress) return;
     found.lines.push_back({step.line.begin, step.line.next, seconds, begun});
   };
-  MachineState machine;
-  machine.relative_e = !file.modes.empty() && file.modes[0].relative_e;
-  MeasureMoments(file, text, {machine, {}}, none, visit);
+  MeasureMoments(file, text, StartOfFile(file), nullptr, visit);
   for (size_t i = 0; i < found.lines.size(); ++i) {
     found.lines[i].share /= std::max(found.seconds, 1e-9);
     found.lines[i].in_print = found.lines[i].in_print && i < printed;
@@ -57,10 +55,9 @@ ProgressMoments MomentsOf(const GcodeFile& file, std::string_view text) {
 
 // `M73 L4`, `; layer num/total_layer_count: 4/20`.
 bool SaysLayer(std::string_view line) {
-  std::string small(line);
-  for (char& c : small) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return small.find("layer") != std::string::npos ||
-         (small.find("m73") == 0 && small.find('l') != std::string::npos);
+  const std::string small = absl::AsciiStrToLower(std::string(line));
+  return absl::StrContains(small, "layer") ||
+         (small.starts_with("m73") && absl::StrContains(small, "l"));
 }
 
 }  // namespace
@@ -90,7 +87,6 @@ std::optional<std::string> WithTrueProgress(const GcodeFile& file, std::string_v
     out.append(text.substr(line.begin, line.end - line.begin));
   };
   size_t seen = 0;  // lines of progress that have been passed
-  TextMoments none;
   const auto visit = [&](const Step& step, double seconds) {
     if (step.kind == StepKind::kProgress) {
       const size_t here = seen++;
@@ -109,9 +105,7 @@ std::optional<std::string> WithTrueProgress(const GcodeFile& file, std::string_v
       }
     }
   };
-  MachineState machine;
-  machine.relative_e = !file.modes.empty() && file.modes[0].relative_e;
-  MeasureMoments(file, text, {machine, {}}, none, visit);
+  MeasureMoments(file, text, StartOfFile(file), nullptr, visit);
   write(text.size());
   while (next < goes.size()) put_next();
   return out;
