@@ -31,8 +31,8 @@ struct GcodeRewrite {
   int64_t layers = 0;
   int64_t layers_changed = 0;
 
-  // Layers left unchanged because every order found for them breaks a rule of the verifier, and what
-  // the first break is of, in words that go on behind "it could not be proven that".
+  // Layers left unchanged because every order found for them breaks a rule of the verifier, and
+  // what the first break is of, in words that go on behind "it could not be proven that".
   int64_t layers_unproven = 0;
   std::string unproven;
 
@@ -51,8 +51,8 @@ struct GcodeRewrite {
   int64_t relative_moves = 0;
   std::string relative;
 
-  // What keeps paths of the layers that are left as sliced in their places (barriers.h), if some
-  // are.
+  // If some layers are left as sliced: what keeps their paths in their places (barriers.h), and
+  // which statements of progress cannot be true (stated_progress.h).
   std::vector<std::string> barriers;
 
   // Lines that begin as moves do and cannot be read, so that no path changes places with one beyond

@@ -61,9 +61,9 @@ class LayerSolver {
   // Where the head is after the layer, cleaning included, if it is done as it was found alone.
   static Point EndAlone(const ChainLayer& layer) { return layer.finish.value_or(layer.alone->end); }
 
-  // Without looking again where greedy's chain begins the layer there. In the time that is kept for
-  // it, besides that of any search. Like measuring and checking a
-  // route it is done although the deadline has passed, for as many points as take less time than a
+  // Returns the route of greedy's chain if that begins the layer here; else searches, in the time
+  // that is kept for it, besides that of any search. Like measuring and checking a route it is done
+  // although the deadline has passed, for as many points as take less time than a
   // busy machine may stop the thread for.
   Route GreedyRoute(const LayerProblem& problem, const ChainLayer& layer) const;
 

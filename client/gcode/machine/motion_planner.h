@@ -40,7 +40,7 @@ double CornerSpeed2(double cosine, double corner);
 // How a machine goes around corners.
 struct PlannerRules {
   bool klipper = false;
-  double cruise_ratio = 0;           // share of a travel move that is at constant speed, below 1
+  double cruise_ratio = 0;           // share of a move that is at constant speed, below 1
   double extruder_corner_speed = 0;  // mm/s of filament
 };
 

@@ -74,7 +74,7 @@ double UsualSpacingMm(const GcodeFile& file, const Layer& layer, double usual_fl
 }
 
 // How far from `p` in the direction `to`, of length 1, the segment lies; none if it does not cross
-// the travel there nearly at a right angle.
+// that line nearly at a right angle.
 std::optional<double> DistanceAlong(Vertex p, Vertex to, const Segment& segment) {
   const Vertex side{segment.b.x - segment.a.x, segment.b.y - segment.a.y};
   const double cross = to.x * side.y - to.y * side.x;

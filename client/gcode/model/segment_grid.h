@@ -160,7 +160,7 @@ void SegmentGrid::ForEachCell(Vertex a, Vertex b, Visit visit) const {
   // Samples every quarter of a cell. A cell of which only a corner is touched may be missed, by
   // less than an eighth of its side.
   const int steps = static_cast<int>(Distance(a, b) * 4 * cells_per_mm_) + 1;
-  // Along the travel columns and rows change in one direction each. So if one of both changes by
+  // Along the line columns and rows change in one direction each. So if one of both changes by
   // one, or none does, there is nothing to see between two samples.
   constexpr int kStride = 3;
   const auto sample = [&](int i) {

@@ -10,8 +10,7 @@ double Written(double mm) { return std::round(mm * 1000) / 1000; }
 
 }  // namespace
 
-// The shortest travel passes a corner by next to nothing, and rounding may put it on the other
-// side.
+// The shortest detour passes corners by next to nothing, and rounding may put it on the other side.
 std::vector<Vertex> Detours::Around(Vertex a, Vertex b) const {
   std::vector<Vertex> travel = {a};
   for (const Point& bend : detours_.Around({a.x, a.y}, {b.x, b.y})) {

@@ -90,13 +90,13 @@ void RoomBuilder::ForEachCell(Vertex a, Vertex b, Take take) const {
   const double cell = part_.cell_mm;
   double begin = 0;
   double end = 1;
-  const auto clip = [&](double from, double travel, double size) {
-    if (travel == 0) {
+  const auto clip = [&](double from, double delta, double size) {
+    if (delta == 0) {
       if (from < 0 || from >= size) end = -1;
       return;
     }
-    const double at_low = -from / travel;
-    const double at_high = (size - from) / travel;
+    const double at_low = -from / delta;
+    const double at_high = (size - from) / delta;
     begin = std::max(begin, std::min(at_low, at_high));
     end = std::min(end, std::max(at_low, at_high));
   };

@@ -120,11 +120,11 @@ class TravelLearner {
       dynamics.Follow(step.line.Text(interpreter.text()));
     } else if (step.kind == StepKind::kTravel) {
       const double speed = std::min(ToDouble(state.feed) / 60 * unit, dynamics.max_speed());
-      const double planned =
+      const double travelled_mm =
           std::hypot(ToDouble(state.at.x - step.from.x), ToDouble(state.at.y - step.from.y)) * unit;
-      learnt.at_speed_mm[{speed, dynamics.travel_accel()}] += planned;
+      learnt.at_speed_mm[{speed, dynamics.travel_accel()}] += travelled_mm;
       const double rise = ToDouble(state.at.z - step.from.z) * unit;
-      if (rise > 0 && planned > 0 && !step.arc) learnt.slope = rise / planned;
+      if (rise > 0 && travelled_mm > 0 && !step.arc) learnt.slope = rise / travelled_mm;
     } else if (step.kind == StepKind::kLift && state.at.z < step.from.z && state.feed > 0) {
       learnt.descent_seconds_per_mm = 60 / (ToDouble(state.feed) * unit);
     }

@@ -59,13 +59,12 @@ bool LayerWriter::Hides(const Placement& from, const Placement& to, bool boundar
 std::optional<std::vector<Vertex>> LayerWriter::HiddenBends(const Placement& from,
                                                             const Placement& to,
                                                             bool boundary) const {
-  if (Hides(from, to, boundary)) return std::vector<Vertex>();
-  if (!hides_ || travel_ == nullptr || boundary || from.block < layer_.first_block) {
-    return std::nullopt;
-  }
+  if (!hides_ || boundary || from.block < layer_.first_block) return std::nullopt;
   const Feature feature = outlines_[to.block - layer_.first_block].feature;
   const Vertex leaves = LeavesFrom(from);
   const Vertex begin = Begin(to);
+  if (rules_.Hides(leaves, begin, feature)) return std::vector<Vertex>();
+  if (travel_ == nullptr) return std::nullopt;
   std::vector<Vertex> bends = rules_.HiddenBends(leaves, begin, feature);
   if (bends.empty()) return std::nullopt;
   const auto seconds = [this](Vertex a, Vertex b) {
@@ -199,7 +198,7 @@ double LayerWriter::RetractionSeconds(const Placement& from, const Placement& to
   const uint32_t like = of(left) > 0 ? left : form;
   if (!(of(like) > 0)) return model.retraction_seconds;
   if (!(model.slope > 0)) return of(like);
-  // A slope rises as long as the travel does, and is not made lower for a shorter travel.
+  // A slope rises as long as the travel does, and is not made lower for a shorter one.
   const auto lift_of = [&](uint32_t block) {
     const Block& link = file_.blocks[block];
     return ToDouble(link.lift) * file_.modes[link.mode].UnitMm();

@@ -15,7 +15,7 @@ constexpr double kMinSlopeRestMm = 0.5;
 
 bool IsSoft(const Block& block) { return (block.link & (kLinkSplits | kLinkFixed)) == 0; }
 
-// What `rise` does for a travel move of `length`: a slope that ends with its travel rises on, up to
+// `rise` for travel of `length`: a slope that lasts as long as its travel rises on, up to
 // `highest`.
 Link Stretched(Link rise, double length, Decimal highest) {
   if (rise.ramp_ends || !(rise.ramp_mm > 0) || length <= rise.ramp_mm) return rise;
@@ -120,9 +120,8 @@ void LinkWriter::WritePlain(const LinkRequest& request) {
   Settle(request, form);
 }
 
-// The travel is gone under the accelerations and jerks under which `form` goes, for that is how
-// travel moves are gone in this file. A slot that was never set here stays so, for nothing could
-// undo it.
+// New travel has the accelerations and jerks that `form` has, for so does travel in this file. A
+// slot that was never set here stays so, for nothing could undo it.
 void LinkWriter::SetTravelState(const PlacedPath& to, const Link& form) {
   PrintState state = to.state();
   for (size_t slot = 0; slot < kSlotCount; ++slot) {
@@ -213,23 +212,23 @@ void LinkWriter::WriteArrival(const LinkRequest& request, const Link& form) {
 void LinkWriter::WriteWipe(const PlacedPath& path, const Link& form) {
   const WipeForm wipe = WipeOf(form);
   const Position begin = out_.at.machine.at;
-  const std::vector<Position> travel = path.RetraceFrom(begin, wipe.travel_mm);
-  double length = LengthXy(begin, travel);
-  // Rounding makes a travel move no shorter.
+  const std::vector<Position> retraced = path.RetraceFrom(begin, wipe.travel_mm);
+  double length = LengthXy(begin, retraced);
+  // Rounding makes no wipe shorter.
   constexpr double kAsLong = 0.99;
   const bool shorter = wipe.still_feed > 0 && length < kAsLong * wipe.travel_mm;
   if (shorter) length = wipe.travel_mm;
   Decimal left = wipe.pulled;
-  for (size_t i = 0; i < travel.size(); ++i) {
-    const double share = LengthXy(i == 0 ? begin : travel[i - 1], travel[i]) / length;
-    const bool last = i + 1 == travel.size() && !shorter;
+  for (size_t i = 0; i < retraced.size(); ++i) {
+    const double share = LengthXy(i == 0 ? begin : retraced[i - 1], retraced[i]) / length;
+    const bool last = i + 1 == retraced.size() && !shorter;
     // Rounded as slicers write E: to hundredths of a micrometre.
     constexpr Decimal kStep = kDecimalOne / 100'000;
     const Decimal pull =
         last ? left
              : static_cast<Decimal>(static_cast<double>(wipe.pulled) * share) / kStep * kStep;
     left -= pull;
-    out_.Segment("G1", travel[i], wipe.pulled > 0, -pull, wipe.feed, {}, {});
+    out_.Segment("G1", retraced[i], wipe.pulled > 0, -pull, wipe.feed, {}, {});
   }
   if (left > 0) out_.Pull(left, shorter ? wipe.still_feed : wipe.feed);
 }

@@ -33,14 +33,14 @@ inline double LengthXy(Position from, const std::vector<Position>& travel) {
   return length;
 }
 
-// The point `travel` beyond `from` towards `to`, at the height of `from`; not rounded up to `to`
+// The point `length_mm` beyond `from` towards `to`, at the height of `from`; not rounded up to `to`
 // itself.
-inline Position Along(const Position& from, const Position& to, double travel) {
+inline Position Along(const Position& from, const Position& to, double length_mm) {
   const double length = LengthXy(from, to);
   Position at = from;
   if (!(length > 0)) return at;
-  at.x = RoundedWord(ToDouble(from.x) + ToDouble(to.x - from.x) / length * travel);
-  at.y = RoundedWord(ToDouble(from.y) + ToDouble(to.y - from.y) / length * travel);
+  at.x = RoundedWord(ToDouble(from.x) + ToDouble(to.x - from.x) / length * length_mm);
+  at.y = RoundedWord(ToDouble(from.y) + ToDouble(to.y - from.y) / length * length_mm);
   return at;
 }
 

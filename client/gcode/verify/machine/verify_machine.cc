@@ -228,19 +228,20 @@ void VerifyMachine::DoG(int number, VerifyLine& line) {
       }
       return Mode(relative_, number == 91, line);
     case 92:
-      if (words.readable && words.set == 1u << ('E' - 'A')) {
-        e_ = words.filament;
-        return;
-      }
-      for (size_t axis = 0; axis < 3 && words.readable; ++axis) {
-        const char letter = static_cast<char>('X' + axis);
-        if (words.Has(letter)) at_[axis] = words[letter];
-      }
-      if (words.readable && words.Has('E')) e_ = words.filament;
-      return Fence(line, LineRole::kFixed);
+      return SetPosition(words, line);
     default:
       return Fence(line, LineRole::kFixed);
   }
+}
+
+void VerifyMachine::SetPosition(const CommandWords& words, VerifyLine& line) {
+  if (words.readable && words.Has('E')) e_ = words.filament;
+  if (words.readable && words.set == 1u << ('E' - 'A')) return;
+  for (size_t axis = 0; axis < 3 && words.readable; ++axis) {
+    const char letter = static_cast<char>('X' + axis);
+    if (words.Has(letter)) at_[axis] = words[letter];
+  }
+  Fence(line, LineRole::kFixed);
 }
 
 size_t VerifyMachine::LinesOfLift() const {

@@ -112,6 +112,7 @@ class VerifyMachine {
   void DoM(int number, VerifyLine& line);
   void DoKlipper(VerifyLine& line);
   void Move(int number, const CommandWords& words, VerifyLine& line);
+  void SetPosition(const CommandWords& words, VerifyLine& line);  // G92
   void Deposit(int number, const CommandWords& words, const std::array<Micro, 3>& from,
                Micro filament, VerifyLine& line);
   void FollowFilament(Micro filament, bool moves);

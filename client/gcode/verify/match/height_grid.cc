@@ -34,13 +34,13 @@ HeightGrid::Height HeightGrid::Units(double mm) {
 
 double HeightGrid::highest_mm() const { return highest_ / kUnitsPerMm; }
 
-// From where the piece begins, cell by cell: take(cell, from, to) gets the share of the travel
+// From where the piece begins, cell by cell: take(cell, from, to) gets the share of the piece
 // where it enters the cell and leaves it.
 template <typename Take>
 void HeightGrid::ForEachCell(Point a, Point b, Take take) const {
   if (!IsNear(a) || !IsNear(b)) return;
   const double from[] = {a.x / cell_mm_, a.y / cell_mm_};
-  const double travel[] = {b.x / cell_mm_ - from[0], b.y / cell_mm_ - from[1]};
+  const double delta[] = {b.x / cell_mm_ - from[0], b.y / cell_mm_ - from[1]};
   int at[2];
   int steps = 0;
   int step[2];
@@ -48,11 +48,11 @@ void HeightGrid::ForEachCell(Point a, Point b, Take take) const {
   double every[2];  // and all further ones
   for (size_t axis = 0; axis < 2; ++axis) {
     at[axis] = static_cast<int>(std::floor(from[axis]));
-    steps += std::abs(static_cast<int>(std::floor(from[axis] + travel[axis])) - at[axis]);
-    step[axis] = travel[axis] < 0 ? -1 : 1;
-    const double border = at[axis] + (travel[axis] < 0 ? 0 : 1);
-    next[axis] = travel[axis] != 0 ? (border - from[axis]) / travel[axis] : 2;
-    every[axis] = travel[axis] != 0 ? 1 / std::abs(travel[axis]) : 2;
+    steps += std::abs(static_cast<int>(std::floor(from[axis] + delta[axis])) - at[axis]);
+    step[axis] = delta[axis] < 0 ? -1 : 1;
+    const double border = at[axis] + (delta[axis] < 0 ? 0 : 1);
+    next[axis] = delta[axis] != 0 ? (border - from[axis]) / delta[axis] : 2;
+    every[axis] = delta[axis] != 0 ? 1 / std::abs(delta[axis]) : 2;
   }
   double entered = 0;
   for (; steps >= 0; --steps) {

@@ -19,8 +19,8 @@ struct LayerShapes {
   const LayerShape& above;
 };
 
-// The links of the other file, within the layer, that have nothing but one open travel move, behind
-// what continues along the path before, no longer than `longest_mm`, which nobody sees. With
+// The links of the other file, within the layer, whose only move, behind what continues along the
+// path before, is open travel of `longest_mm` at most that nobody sees. With
 // `bends` it may have several where somebody would see the straight one. None if one of the layers
 // beside is not where a layer would be, or the layer has several tools.
 absl::flat_hash_set<uint32_t> HiddenLinksOf(const LayerPair& layer, const LayerShapes& shapes,
