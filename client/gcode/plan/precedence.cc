@@ -49,7 +49,9 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
     return std::max(kTouchMm, kTouch * (outlines[one].width_mm + outlines[other].width_mm) / 2);
   };
   // Of most paths that touch nothing more is to be learnt: they do in many places.
+  const size_t most_ordered = kMostOrderedEach * outlines.size();
   const auto wanted = [&](uint32_t one, uint32_t other) {
+    if (contacts.ordered.size() > most_ordered) return false;
     if (!regions.AreJoined(static_cast<int>(one), static_cast<int>(other))) return true;
     const std::pair<uint32_t, uint32_t> pair = ascending(one, other);
     return keep_order(pair) && !ordered.contains(pair);
@@ -65,8 +67,10 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
     return false;
   };
   const double most = kMostPairsOfAll + kMostPairsEach * static_cast<double>(grid.entry_count());
-  contacts.complete = grid.ForEachNearPair(reach, wanted, look_at, most);
+  contacts.complete = grid.ForEachNearPair(reach, wanted, look_at, most) &&
+                      contacts.ordered.size() <= most_ordered;
   if (!contacts.complete) {
+    contacts.ordered.clear();
     contacts.island.assign(outlines.size(), 0);
     return contacts;
   }

@@ -3,6 +3,7 @@
 #ifndef TRAVERSE_CLIENT_GCODE_PLAN_PRECEDENCE_H_
 #define TRAVERSE_CLIENT_GCODE_PLAN_PRECEDENCE_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <utility>
@@ -17,8 +18,9 @@ struct Contacts {
   std::vector<std::pair<uint32_t, uint32_t>> ordered;
 
   // Whether all pairs were examined. If not, there are none above and all paths form one region:
-  // more than kMostPairsEach others lie near each path, which no real part has, and examining them
-  // would take as long as the square of their number.
+  // more than kMostPairsEach others lie near each path, or kMostOrderedEach of them keep their
+  // order with it, which no real part has. To examine and to keep them would take as much as the
+  // square of their number.
   bool complete = true;
 
   // [path] the connected region of touching paths that contains it. Regions are numbered from 0 in
@@ -37,6 +39,10 @@ inline constexpr double kTouchMm = 0.52;
 // any layer may have.
 inline constexpr double kMostPairsEach = 100;
 inline constexpr double kMostPairsOfAll = 1e6;
+
+// Pairs that keep their order, for each path. Paths that touch and do not cross make a planar
+// graph, which has at most three pairs for each: this is ten times as many.
+inline constexpr size_t kMostOrderedEach = 30;
 
 // Asks `keeps_order(i, j)` for i < j, again and again.
 Contacts FindContacts(const std::vector<Outline>& outlines,

@@ -131,6 +131,18 @@ TEST(Precedence, PathsInOnePlaceByTheThousandStayAsTheyAre) {
   EXPECT_EQ(plan.plan.nodes(0).in_order().children_size(), plan.plan.paths_size());
 }
 
+// Each line of infill crosses each wall, and would have to wait for it.
+TEST(Precedence, PathsThatAllKeepTheirOrderWithOneAnotherStayAsTheyAre) {
+  Sheet sheet;
+  for (int i = 0; i < 100; ++i) sheet.Line(kInner, 0, 2 * i, 200, 2 * i);
+  for (int i = 0; i < 100; ++i) sheet.Line(kInfill, 2 * i, 0, 2 * i, 200);
+
+  const LayerPlan plan = sheet.Plan(Policy::kFree);
+
+  EXPECT_EQ(plan.movable, 0);
+  EXPECT_THAT(Pairs(plan.plan), IsEmpty());
+}
+
 // As close as paths of a part are to one another, but a whole layer of them.
 TEST(Precedence, ManyPathsSideBySideMayMove) {
   Sheet sheet;
