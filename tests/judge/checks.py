@@ -9,7 +9,9 @@ import math
 
 CELL_MM = 0.5  # of the maps of heights and of what covers what
 FINE_CELL_MM = 0.2  # lines of ironing lie closer than those of skin
-ISLAND_CELL_MM = 1.0
+ISLAND_CELLS_MM = (0.5, 1.0, 1.5)  # islands in cells that touch count as one: 0.5 to 4 mm apart
+HALF_WALL_MM = 0.2
+MOVE_END_MM = 1.0  # a move leaves or comes to a wall of its own there
 FINE_MM = 0.02
 REST_SLACK_S = 0.5  # travel into a layer changes a little where islands need no rest at all
 SHARE_SLACK = 2.0  # points of a per cent
@@ -54,17 +56,25 @@ def deposits(before, after, options):
 
 
 def unmatched(lost, extra, options):
-    """What has no equal: pieces of loops that were closed elsewhere, in sum as long and with as much filament."""
+    """What has no equal: pieces of loops that were closed elsewhere, in sum as long and with as much filament.
+
+    A loop may change its width on the way: so its gap may go from lines of one state to lines of another.
+    """
     by_state = collections.defaultdict(lambda: ([], []))
     for side, moves in enumerate((lost, extra)):
         for move in moves:
             by_state[move.state, round(max(move.z0, move.z1), 3)][side].append(move)
+    heights = collections.defaultdict(lambda: [0.0, 0.0, 0])
     for (state, z), (gone, new) in by_state.items():
         mm = [sum(move.length for move in side) for side in (gone, new)]
         e = [sum(move.e for move in side) for side in (gone, new)]
         moves = max(len(gone), len(new))
         gap = options.loop_gap_mm
-        if abs(mm[0] - mm[1]) > 2 * gap * moves or abs(e[0] - e[1]) > 2e-2 * max(e) + 2e-4 * moves:
+        for i, more in enumerate((mm[1] - mm[0], e[1] - e[0], moves)):
+            heights[z][i] += more
+        rate = max(e) / max(max(mm), 1e-9)
+        gone_elsewhere = abs(e[1] - e[0] - rate * (mm[1] - mm[0]))
+        if abs(mm[0] - mm[1]) > 2 * gap * moves or gone_elsewhere > 2e-2 * max(e) + 2e-4 * moves:
             where = (new or gone)[0]
             yield (f"deposits: at Z{z:g} under {describe(state)} {mm[0]:.2f} mm with {e[0]:.4f} of filament became "
                    f"{mm[1]:.2f} mm with {e[1]:.4f}; line {where.line} {'of the copy' if new else 'of the original'}")
@@ -72,6 +82,10 @@ def unmatched(lost, extra, options):
         for move in new:
             if move.length > gap and not any(lies_on(move, other, gap + FINE_MM) for other in gone):
                 yield f"deposits: line {move.line} prints where the original has nothing under {describe(state)}"
+    for z, (mm, e, moves) in heights.items():
+        if abs(mm) > FINE_MM + 2e-3 * moves or abs(e) > 2e-4 + 2e-5 * moves:
+            which = "more" if mm + e > 0 else "less"
+            yield f"deposits: at Z{z:g} {abs(mm):.2f} mm with {abs(e):.4f} of filament are {which}"
 
 
 def describe(state):
@@ -197,8 +211,36 @@ def ironing(before, after, options):
         yield f"ironing: {len(added)} places are printed over after they were ironed; first line {min(added)}"
 
 
+def distance(a, b):
+    """Between two straight moves, each as ((x, y), (x, y))."""
+    (p, q), (r, s) = a, b
+
+    def side(o, u, v):
+        return (u[0] - o[0]) * (v[1] - o[1]) - (u[1] - o[1]) * (v[0] - o[0])
+
+    def to_point(o, u, v):
+        square = (v[0] - u[0]) ** 2 + (v[1] - u[1]) ** 2
+        t = ((o[0] - u[0]) * (v[0] - u[0]) + (o[1] - u[1]) * (v[1] - u[1])) / square if square else 0.0
+        t = max(0.0, min(1.0, t))
+        return math.hypot(o[0] - u[0] - t * (v[0] - u[0]), o[1] - u[1] - t * (v[1] - u[1]))
+
+    if side(p, q, r) * side(p, q, s) < 0 and side(r, s, p) * side(r, s, q) < 0:
+        return 0.0
+    return min(to_point(p, r, s), to_point(q, r, s), to_point(r, p, q), to_point(s, p, q))
+
+
+def meets(move, walls):
+    """True if the move without its ends lies upon one of `walls`: {cell: moves}."""
+    x, y = (move.x1 - move.x0) / move.length, (move.y1 - move.y0) / move.length
+    middle = ((move.x0 + MOVE_END_MM * x, move.y0 + MOVE_END_MM * y),
+              (move.x1 - MOVE_END_MM * x, move.y1 - MOVE_END_MM * y))
+    near = {id(wall): wall for cx, cy in cells_of(move, CELL_MM) for i in (-1, 0, 1) for j in (-1, 0, 1)
+            for wall in walls.get((cx + i, cy + j), ())}
+    return any(distance(middle, ((wall.x0, wall.y0), (wall.x1, wall.y1))) < HALF_WALL_MM for wall in near.values())
+
+
 def walls_and_tops(side):
-    """(crossings, longest mm, mm over tops) of moves with an open nozzle across outer walls, and over areas that nothing
+    """(crossings, longest mm, mm over tops) of moves with an open nozzle upon outer walls, and over areas that nothing
     covers later."""
     tops = {}
     for move in side.deposits():
@@ -214,12 +256,12 @@ def walls_and_tops(side):
             for cell in cells_of(move, CELL_MM):
                 layer.add(cell)
                 if is_outer(move.state):
-                    outer[cell] = True
+                    outer.setdefault(cell, []).append(move)
         elif move.length > 3 and move.retracted < 0.02 and move.e == 0:
-            passed = list(cells_of(move, CELL_MM))[3:-3]
-            if any(cell in outer for cell in passed):
+            if meets(move, outer):
                 crossings += 1
                 longest = max(longest, move.length)
+            passed = list(cells_of(move, CELL_MM))[3:-3]
             over_top += CELL_MM * sum(1 for cell in passed if cell in layer and tops.get(cell) == height)
     return crossings, longest, over_top
 
@@ -255,12 +297,12 @@ def layers_of(side):
     return layers
 
 
-def islands_of(moves):
-    """Connected regions of cells: a list of (cells, first begin, last end)."""
+def islands_of(moves, size):
+    """Connected regions of cells of `size` mm: a list of (cells, first begin, last end)."""
     times = {}
     for move in moves:
         end = move.begin + move.seconds
-        for cell in cells_of(move, ISLAND_CELL_MM):
+        for cell in cells_of(move, size):
             first, last = times.get(cell, (move.begin, end))
             times[cell] = (min(first, move.begin), max(last, end))
     islands, left = [], set(times)
@@ -278,12 +320,12 @@ def islands_of(moves):
     return islands
 
 
-def rests(side):
+def rests(side, size):
     """{(z, an island's least cell): seconds} between the end of what lies below an island and its begin."""
     found, below = {}, {}
     for z, moves in layers_of(side):
         now = {}
-        for cells, begin, end in islands_of(moves):
+        for cells, begin, end in islands_of(moves, size):
             under = [below[cell] for cell in cells if cell in below]
             if under:
                 found[z, min(cells)] = begin - max(under)
@@ -294,17 +336,20 @@ def rests(side):
 
 
 def rest(before, after, options):
-    """No island rests shorter than it did or than the file's least layer time, under safe and balanced."""
+    """No island rests shorter than it did or than the file's least layer time, under safe and balanced, however far apart
+    islands may be to count as one."""
     if options.policy not in ("safe", "balanced"):
         return
-    old, new = rests(before), rests(after)
     worst = None
-    for place, seconds in new.items():
-        need = 0.95 * min(old.get(place, 0.0), options.least_layer_s) - REST_SLACK_S
-        if seconds < need and (worst is None or seconds - need < worst[0]):
-            worst = (seconds - need, place, seconds, old[place])
+    for size in ISLAND_CELLS_MM:
+        old, new = rests(before, size), rests(after, size)
+        for place, seconds in new.items():
+            need = 0.95 * min(old.get(place, 0.0), options.least_layer_s) - REST_SLACK_S
+            if seconds < need and (worst is None or seconds - need < worst[0]):
+                worst = (seconds - need, place, seconds, old[place], size)
     if worst:
-        yield f"rest: at Z{worst[1][0]:g} an island rests {worst[2]:.1f} s, {worst[3]:.1f} s in the original"
+        yield (f"rest: at Z{worst[1][0]:g} an island rests {worst[2]:.1f} s, {worst[3]:.1f} s in the original; told apart by "
+               f"cells of {worst[4]:g} mm")
 
 
 # ------------------------------------------------------------------------------------------------------------ progress

@@ -65,6 +65,13 @@ class Checks(unittest.TestCase):
         self.assertIn("rest", faults(self.towers, after))
         self.assertEqual(faults(self.towers, after, "free"), set())
 
+    def test_less_rest_of_islands_that_count_as_one_is_found(self):
+        pair, far = [block(10, 0), block(22.4, 0)], [block(60, 0), block(90, 0)]  # 2.4 mm apart
+        before = HEAD + layer(0.2, *pair, *far) + layer(0.4, *pair, *far)
+        again = HEAD + layer(0.2, pair[0], *far, pair[1]) + layer(0.4, pair[0], *far, pair[1])
+
+        self.assertIn("rest", faults(before, again))
+
     def test_travel_through_a_tower_is_found(self):
         tower = HEAD + [line for n in range(1, 20) for line in layer(n * 0.2, block(20, n * 0.2))]
         around = tower + ["G1 Z10", "G1 X0 Y0"] + layer(0.2, block(0, 0.2), ["G1 X15 Y40 F9000"], block(40, 0.2))
@@ -107,6 +114,31 @@ class Checks(unittest.TestCase):
 
         self.assertIn("stringing", faults(before, after))
 
+
+    def test_open_travel_along_a_wall_is_not_upon_it(self):
+        walls = [";TYPE:External perimeter"] + block(10, 0.2) + block(40, 0.2)
+        before = HEAD + layer(0.2, walls)
+
+        for beside, found in ((0.3, False), (0.1, True)):
+            along = [f"G1 X45 Y{10 + beside} F9000", f"G1 X48 Y{10 + beside}", f"G1 X41.5 Y{10 + beside}"]
+            self.assertEqual("stringing" in faults(before, HEAD + layer(0.2, walls, along)), found)
+
+    def test_a_gap_may_go_to_lines_of_another_width(self):
+        def loop(order, cut):
+            """A square whose sides have widths in turn, begun at side order[0] and ended `cut` mm early."""
+            corners = [(10, 10), (20, 10), (20, 20), (10, 20)]
+            lines = [f"G1 X{corners[order[0]][0]} Y{corners[order[0]][1]} F9000", "G1 F1800"]
+            for side in order:
+                (x0, y0), (x1, y1) = corners[side], corners[(side + 1) % 4]
+                mm = 10 - (cut if side == order[-1] else 0)
+                x, y = x0 + (x1 - x0) / 10 * mm, y0 + (y1 - y0) / 10 * mm
+                lines += [f";WIDTH:0.4{side}", f"G1 X{x:.3f} Y{y:.3f} E{0.035 * mm:.5f}"]
+            return lines
+
+        before = HEAD + layer(0.2, loop((0, 1, 2, 3), 0.1))
+
+        self.assertEqual(faults(before, HEAD + layer(0.2, loop((2, 3, 0, 1), 0.1)), "free"), set())
+        self.assertIn("deposits", faults(before, HEAD + layer(0.2, loop((2, 3, 0, 1), 0.0)), "free"))
 
     def test_any_message_of_progress_is_followed(self):
         def told(at, text):
