@@ -86,13 +86,16 @@ absl::StatusOr<InputJob> ReadApiProto(std::string_view bytes, const std::string&
 
 absl::StatusOr<std::string> WriteApiJson(const InputJob& job) {
   const absl::StatusOr<v1::OptimizeBatchRequest> request = ToRequest(job);
-  if (!request.ok()) return request.status();
+  return request.ok() ? ApiMessageJson(*request) : request.status();
+}
+
+absl::StatusOr<std::string> ApiMessageJson(const google::protobuf::Message& message) {
   google::protobuf::util::JsonPrintOptions options;
   options.add_whitespace = true;
   options.preserve_proto_field_names = true;
   std::string out;
   const google::protobuf::util::Status status =
-      google::protobuf::util::MessageToJsonString(*request, &out, options);
+      google::protobuf::util::MessageToJsonString(message, &out, options);
   if (!status.ok()) return absl::InternalError(std::string(status.message()));
   return out;
 }

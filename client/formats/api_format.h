@@ -1,8 +1,10 @@
 // The service's own messages as files: OptimizeBatchRequest, in protobuf's JSON mapping or in wire
-// format.
+// format; in JSON also others.
 
 #ifndef TRAVERSE_CLIENT_FORMATS_API_FORMAT_H_
 #define TRAVERSE_CLIENT_FORMATS_API_FORMAT_H_
+
+#include <google/protobuf/message.h>
 
 #include <string>
 #include <string_view>
@@ -21,6 +23,9 @@ absl::StatusOr<InputJob> ReadApiProto(std::string_view bytes, const std::string&
 // exceed protobuf's 2 GiB. In JSON, numbers that are not finite are strings, as in protobuf.
 absl::StatusOr<std::string> WriteApiJson(const InputJob& job);
 absl::StatusOr<std::string> WriteApiProto(const InputJob& job);
+
+// Any message of the API, with the names of fields as in its .proto file.
+absl::StatusOr<std::string> ApiMessageJson(const google::protobuf::Message& message);
 
 }  // namespace traverse
 

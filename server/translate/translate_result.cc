@@ -8,6 +8,10 @@
 namespace traverse {
 namespace {
 
+// ListStrategiesResponse.capabilities: sorted; no word is ever renamed or removed.
+// proto/VERSIONS.md says what each one means, and since which version.
+constexpr const char* kCapabilities[] = {"chain_bound", "partial_answers"};
+
 void SetPoint(Point point, v1::Point& message) {
   message.set_x_mm(point.x);
   message.set_y_mm(point.y);
@@ -214,6 +218,7 @@ void ListStrategies(v1::ListStrategiesResponse& response) {
   }
   response.set_default_strategy(DefaultStrategyName());
   response.set_server_version(kVersion);
+  for (const char* const word : kCapabilities) response.add_capabilities(word);
 }
 
 }  // namespace traverse

@@ -67,7 +67,7 @@ const char* StopReasonName(StopReason reason);
 // (cost - bound) / cost, 0 where the cost is 0; never negative.
 double Gap(double cost, double lower_bound);
 
-// The strategies of this build.
+// The strategies of this build, and what else it can do.
 void ListStrategies(v1::ListStrategiesResponse& response);
 
 }  // namespace traverse

@@ -6,6 +6,8 @@
 #include "client/cli/flags/job_flags.h"
 #include "client/cli/service.h"
 #include "client/cli/terminal.h"
+#include "client/files/write_file.h"
+#include "client/formats/api_format.h"
 
 namespace traverse::cli {
 namespace {
@@ -32,6 +34,10 @@ std::string Describe(const v1::ListStrategiesResponse& listed) {
                             option.description());
     }
   }
+  const std::string words = absl::StrJoin(listed.capabilities(), ", ");
+  // In brackets: the lines that begin with a word are those of strategies.
+  absl::StrAppendFormat(&out, "(server %s, capabilities: %s)\n", listed.server_version(),
+                        words.empty() ? "none" : words);
   return out;
 }
 
@@ -40,8 +46,15 @@ Outcome RunStrategies(const Flags& flags) {
   if (Outcome* outcome = std::get_if<Outcome>(&opened)) return *outcome;
   Expected<v1::ListStrategiesResponse> listed = std::get<Service>(opened).ListStrategies();
   if (Outcome* outcome = std::get_if<Outcome>(&listed)) return *outcome;
-  Print(stdout, Describe(std::get<v1::ListStrategiesResponse>(listed)));
-  return Done();
+  const auto& response = std::get<v1::ListStrategiesResponse>(listed);
+  if (!flags.Has("json")) {
+    Print(stdout, Describe(response));
+    return Done();
+  }
+  const absl::StatusOr<std::string> document = ApiMessageJson(response);
+  if (!document.ok()) return InputFault(document.status());
+  const absl::Status status = WriteWholeFile(flags.Text("json"), *document);
+  return status.ok() ? Done() : InputFault(status);
 }
 
 }  // namespace
@@ -49,7 +62,8 @@ Outcome RunStrategies(const Flags& flags) {
 Command StrategiesCommand() {
   return {.name = "strategies",
           .summary = "Lists the strategies, with their options and defaults.",
-          .flags = ServiceFlagTable(),
+          .flags = Joined({{"json", "FILE", "write the list and the capabilities as JSON"}},
+                          ServiceFlagTable()),
           .example = "traverse strategies --server=farm-1:50051",
           .run = RunStrategies};
 }

@@ -38,6 +38,19 @@ export interface LayerResult {
 export interface JobOptions { strategy?: { name?: string; options?: Record<string, string> }; seed?: number; [field: string]: unknown }
 export interface StrategyInfo { name: string; summary: string; lower_bound: boolean; options: Record<string, unknown>[] }
 
+/** The strategies of a server, in the order of growing effort. */
+export interface Strategies extends Array<StrategyInfo> {
+  /** The name of the one for jobs that name none. */
+  default_strategy: string;
+  /** Such as 0.1.0. */
+  server_version: string;
+  /**
+   * Words for what the server can do beyond the first release, as proto/VERSIONS.md has them: ask for one before you send
+   * what an older server refuses with UNIMPLEMENTED.
+   */
+  capabilities: string[];
+}
+
 export interface ConnectionOptions {
   /** Default: plaintext. */
   credentials?: ChannelCredentials;
@@ -72,7 +85,7 @@ export class TravelOptimizer {
    * again until the deadline, and layers that were answered are not asked again. Leave the loop and the server stops working.
    */
   optimize(layers: Iterable<Layer> | AsyncIterable<Layer>, options?: OptimizeOptions): AsyncGenerator<LayerResult, void, void>;
-  strategies(options?: { timeoutSeconds?: number }): Promise<StrategyInfo[]>;
+  strategies(options?: { timeoutSeconds?: number }): Promise<Strategies>;
   close(): void;
 }
 

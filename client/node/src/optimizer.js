@@ -34,7 +34,11 @@ export class TravelOptimizer {
   strategies({ timeoutSeconds = 10 } = {}) {
     const deadline = Date.now() + timeoutSeconds * 1000;
     return new Promise((resolve, reject) => this.#stub.ListStrategies({}, metadataWith(this.#token), { deadline },
-      (error, answer) => (error ? reject(new TraverseError(error.code, error.details, error)) : resolve(answer.strategies))));
+      (error, answer) => {
+        if (error) return reject(new TraverseError(error.code, error.details, error));
+        const { strategies, ...server } = answer;
+        resolve(Object.assign(strategies, server));
+      }));
   }
 }
 

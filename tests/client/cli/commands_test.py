@@ -331,8 +331,18 @@ class OtherCommands(CommandLine):
         out = self.succeed("convert", SMALL, "-o", "-", "--to=json", "--layers=2-3")
         self.assertEqual([layer["id"] for layer in json.loads(out)["layers"]], ["5", "3"])
 
-    def test_strategies_lists_the_default(self):
-        self.assertIn("(default)", self.succeed("strategies"))
+    def test_strategies_lists_the_default_and_what_else_the_server_can_do(self):
+        listed = self.succeed("strategies")
+        self.assertIn("(default)", listed)
+        document = json.loads(self.succeed("strategies", "--json=-"))
+
+        self.assertEqual(sorted(document["capabilities"]), document["capabilities"])
+        self.assertIn("partial_answers", document["capabilities"])
+        self.assertTrue(listed.endswith(
+            f"\n(server {document['server_version']}, capabilities: {', '.join(document['capabilities'])})\n"))
+        self.assertEqual(document["default_strategy"], "auto")
+        self.assertEqual([strategy["name"] for strategy in document["strategies"]],
+                         ["none", "greedy", "ni2opt", "auto", "tabu", "exact"])
 
 
 class Remote(CommandLine):

@@ -165,7 +165,11 @@ test("routes come from a real server, for arrays and iterators", async (t) => {
     assert.deepEqual(results.map(({ id }) => id), layers(20).map(({ id }) => id));
     assert.ok(results.every(({ visits }) => visits.length === SQUARES.length));
   }
-  assert.ok((await client.strategies()).some(({ name }) => name === "auto"));
+  const strategies = await client.strategies();
+  assert.ok(strategies.some(({ name }) => name === "auto"));
+  assert.equal(strategies.default_strategy, "auto");
+  assert.ok(strategies.capabilities.includes("partial_answers"));
+  assert.match(strategies.server_version, /^\d+\.\d+\.\d+$/);
 });
 
 test("killing one of three servers loses no layer", async (t) => {

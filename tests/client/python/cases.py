@@ -192,7 +192,11 @@ class Real(unittest.TestCase):
                 self.assertTrue(all(len(result.visits) == len(SQUARES) for result in results))
                 self.assertLess(sum(result.travel.total_mm for result in results),
                                 sum(result.given.total_mm for result in results))
-            self.assertIn("auto", [strategy.name for strategy in optimizer.strategies()])
+            strategies = optimizer.strategies()
+            self.assertIn("auto", [strategy.name for strategy in strategies])
+            self.assertEqual(strategies.default_strategy, "auto")
+            self.assertIn("partial_answers", strategies.capabilities)
+            self.assertRegex(strategies.server_version, r"^\d+\.\d+\.\d+$")
 
     def test_ten_thousand_layers_wait_for_a_slow_reader(self):
         server = self.start(Server)

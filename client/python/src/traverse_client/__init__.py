@@ -17,12 +17,11 @@ from traverse_client.errors import TraverseError
 from traverse_client.file_job import RewrittenFile
 from traverse_client.files import GcodeGateway
 from traverse_client.layers import island, layer
-from traverse_client.optimizer import TravelOptimizer
+from traverse_client.optimizer import Strategies, TravelOptimizer
 from traverse_client.wire.gcode_service_pb2 import RewriteOptions, RewriteProgress, RewriteSummary
 from traverse_client.wire.options_pb2 import JobOptions, Point
-from traverse_client.wire.plan_pb2 import Contour, Island, Layer, OpenPath, Plan
-from traverse_client.wire.route_optimizer_service_pb2 import (JobSummary, LayerResult, OptimizeBatchRequest, StrategyInfo,
-                                                              Visit)
+from traverse_client.wire.plan_pb2 import Contour, Island, Layer, OpenPath, Plan, Visit
+from traverse_client.wire.route_optimizer_service_pb2 import JobSummary, LayerResult, OptimizeBatchRequest, StrategyInfo
 
 try:
     __version__ = version("traverse-client")
@@ -32,5 +31,6 @@ except PackageNotFoundError:  # run from a folder that is not installed
 __all__ = [
     "AsyncGcodeGateway", "AsyncTravelOptimizer", "Contour", "GcodeGateway", "Island", "JobOptions", "JobSummary", "Layer",
     "LayerResult", "OpenPath", "OptimizeBatchRequest", "Plan", "Point", "RewriteOptions", "RewriteProgress",
-    "RewriteSummary", "RewrittenFile", "StrategyInfo", "TravelOptimizer", "TraverseError", "Visit", "island", "layer"
+    "RewriteSummary", "RewrittenFile", "Strategies", "StrategyInfo", "TravelOptimizer", "TraverseError", "Visit", "island",
+    "layer"
 ]

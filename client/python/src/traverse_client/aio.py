@@ -2,7 +2,7 @@
 
 import asyncio
 import time
-from typing import Any, AsyncIterable, AsyncIterator, Iterable, List, Optional, Sequence, Union
+from typing import Any, AsyncIterable, AsyncIterator, Iterable, Optional, Sequence, Union
 
 import grpc
 import grpc.aio
@@ -10,7 +10,7 @@ import grpc.aio
 from traverse_client import channels, files, retries
 from traverse_client.errors import TraverseError
 from traverse_client.file_job import CANCEL_SECONDS, File, FileJob, OnProgress, RewrittenFile
-from traverse_client.optimizer import SERVICE
+from traverse_client.optimizer import SERVICE, Strategies
 from traverse_client.remaining_job import RemainingJob, is_whole, opening
 from traverse_client.wire import gcode_service_pb2, options_pb2, plan_pb2
 from traverse_client.wire import gcode_service_pb2_grpc, route_optimizer_service_pb2_grpc
@@ -82,14 +82,14 @@ class AsyncTravelOptimizer(_Client):
             return self._stub.OptimizeBatch(job.batch(), timeout=timeout, wait_for_ready=True, metadata=metadata)
         return self._stub.Optimize(source.requests(job), timeout=timeout, wait_for_ready=True, metadata=metadata)
 
-    async def strategies(self, timeout_seconds: float = 10.0) -> List[api.StrategyInfo]:
-        """The strategies of the servers with their options. Raises TraverseError."""
+    async def strategies(self, timeout_seconds: float = 10.0) -> Strategies:
+        """As TravelOptimizer.strategies."""
         try:
             answer = await self._stub.ListStrategies(api.ListStrategiesRequest(), timeout=timeout_seconds,
                                                      wait_for_ready=True, metadata=channels.authorization(self._token))
         except grpc.aio.AioRpcError as error:
             raise TraverseError(error.code(), error.details()) from error
-        return list(answer.strategies)
+        return Strategies(answer)
 
 
 class _Source:

@@ -91,14 +91,30 @@ class TravelOptimizer:
             attempt += 1
             time.sleep(delay)
 
-    def strategies(self, timeout_seconds: float = 10.0) -> List[api.StrategyInfo]:
-        """The strategies of the servers with their options. Raises TraverseError."""
+    def strategies(self, timeout_seconds: float = 10.0) -> "Strategies":
+        """The strategies of the servers with their options, and what else these can do. Raises TraverseError."""
         try:
             answer = self._stub.ListStrategies(api.ListStrategiesRequest(), timeout=timeout_seconds, wait_for_ready=True,
                                                metadata=channels.authorization(self._token))
         except grpc.RpcError as error:
             raise TraverseError(error.code(), error.details()) from error
-        return list(answer.strategies)
+        return Strategies(answer)
+
+
+class Strategies(List[api.StrategyInfo]):
+    """The strategies of a server, in the order of growing effort.
+
+    default_strategy: the name of the one for jobs that name none.
+    server_version: such as 0.1.0.
+    capabilities: words for what the server can do beyond the first release, as proto/VERSIONS.md has them: ask for one
+    before you send what an older server refuses with UNIMPLEMENTED.
+    """
+
+    def __init__(self, answer: api.ListStrategiesResponse):
+        super().__init__(answer.strategies)
+        self.default_strategy: str = answer.default_strategy
+        self.server_version: str = answer.server_version
+        self.capabilities: List[str] = list(answer.capabilities)
 
 
 class _Source:
