@@ -68,6 +68,11 @@ struct JobLayer {
 
   // Walls that travel should not cross if the cost is a time; passes CheckWalls.
   LayerWalls walls = {};
+
+  // A route of the plan that is known beforehand; empty if there is none. The strategy begins with
+  // it if it is no worse than greedy's, and the answer never costs more than it does from the same
+  // start. REQUIRES: FindRouteFault finds nothing in it.
+  Route initial_route = {};
 };
 
 // The answer for one layer.

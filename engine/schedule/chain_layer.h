@@ -65,6 +65,9 @@ struct ChainLayer {
   // Set by prepare, if the clock may cut a search short.
   std::optional<GreedyLayer> greedy;
 
+  // Set by prepare: whether searches begin with the route that the caller knows.
+  bool resumes_initial = false;
+
   // Set by prepare: whether the layer is part of the chain that is solved one layer after the
   // other.
   bool carries_alone = false;

@@ -92,7 +92,7 @@ void LayerChain::RunPrepare(const ChainLayerPtr& layer) {
     repeats_ = repeats_ || routes_.Seen(layer->fingerprint.shape) > kMostSeenAlone;
     layer->carries_alone = layer->carries_alone && !repeats_;
   }
-  if (layer->precursor) {
+  if (layer->precursor || layer->resumes_initial) {
     const double weight = BudgetSplit::Weight(layer->given.plan.paths.size(), true);
     split_.Add(weight - layer->weight);
     layer->weight = weight;

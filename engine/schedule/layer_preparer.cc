@@ -41,6 +41,8 @@ void LayerPreparer::Prepare(ChainLayer& layer) {
     layer.greedy = FollowGreedy(layer);
     greedy_at_ = layer.greedy->end;
   }
+  layer.resumes_initial =
+      solver_.ResumesInitial(solver_.Problem(layer, layer.predicted_start), layer);
   if (!solver_.traits().serial) predicted_at_ = PredictEnd(layer);
 }
 
@@ -56,6 +58,8 @@ Point LayerPreparer::PredictEnd(const ChainLayer& layer) const {
   if (const std::optional<Point> end = history_.EndOf(layer.fingerprint.shape, layer.key)) {
     return {layer.origin.x + end->x, layer.origin.y + end->y};
   }
+  if (layer.resumes_initial)
+    return RouteEnd(layer.given.plan, layer.given.initial_route, layer.predicted_start);
   if (layer.greedy && layer.greedy->start == layer.predicted_start) return layer.greedy->end;
   if (solver_.Expired(layer)) return layer.predicted_start;
   const Route greedy = solver_.GreedyRoute(solver_.Problem(layer, layer.predicted_start), layer);

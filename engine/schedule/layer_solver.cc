@@ -104,22 +104,39 @@ std::optional<Point> LayerSolver::FixedStart(const ChainLayer& layer) const {
 void LayerSolver::SolveFirst(ChainLayer& layer) const {
   const Stopwatch watch;
   if (Expired(layer)) {
-    layer.first = Solution{layer.given_route, StopReason::kTimeLimit, std::nullopt};
+    const Route& known = layer.resumes_initial ? layer.given.initial_route : layer.given_route;
+    layer.first = Solution{known, StopReason::kTimeLimit, std::nullopt};
     return;
   }
   Budget budget = LayerBudget(layer, SolveShare(layer));
   const LayerProblem problem = Problem(layer, layer.predicted_start);
-  // It is extremely unlikely, but possible, that different layers share a fingerprint.
-  const bool resumes =
-      layer.precursor &&
-      ValidateRoute(layer.given.plan, layer.precursor->best->solution.route, &budget).ok();
-  if (resumes) {
+  if (RouteOfPrecursor(problem, layer, budget) != nullptr) {
     ResumeFromPrecursor(problem, layer, budget);
   } else {
-    layer.first = Prepared(layer).Solve(problem, budget);
+    layer.first = SolveOrResume(problem, layer, budget);
   }
   if (!layer.first.lower_bound) Bound(problem, layer, layer.first);
   layer.outcome.solve_seconds = watch.Seconds();
+}
+
+// Solves the layer, or improves the route that the caller knows.
+Solution LayerSolver::SolveOrResume(const LayerProblem& problem, ChainLayer& layer,
+                                    Budget& budget) const {
+  if (!layer.resumes_initial) return Prepared(layer).Solve(problem, budget);
+  return Prepared(layer).Resume(problem, layer.given.initial_route, budget);
+}
+
+// The best route of an equal layer, if there is one; null also if the caller knows a better one.
+const Route* LayerSolver::RouteOfPrecursor(const LayerProblem& problem, const ChainLayer& layer,
+                                           Budget& budget) const {
+  if (!layer.precursor) return nullptr;
+  const Route& route = layer.precursor->best->solution.route;
+  // It is extremely unlikely, but possible, that different layers share a fingerprint.
+  if (!ValidateRoute(layer.given.plan, route, &budget).ok()) return nullptr;
+  const bool worse =
+      layer.resumes_initial && RouteCost(problem, layer.given.initial_route, &budget) <
+                                   RouteCost(problem, route, &budget) * (1 - kSameCost);
+  return worse ? nullptr : &route;
 }
 
 // Continues from the route of an equal layer, unless earlier searches from it gained nothing.
@@ -193,7 +210,7 @@ void LayerSolver::SolveSecond(ChainLayer& layer) const {
     return;
   }
   Budget budget = LayerBudget(layer, SolveShare(layer));
-  layer.second = strategy_->Solve(Problem(layer, *layer.second_start), budget);
+  layer.second = SolveOrResume(Problem(layer, *layer.second_start), layer, budget);
   layer.outcome.solve_seconds += watch.Seconds();
 }
 
@@ -212,6 +229,7 @@ const Route& LayerSolver::BestToGoOnFrom(const LayerProblem& problem, const Chai
   if (known != nullptr) offer(known->solution.route);
   if (!layer.foreseen.empty()) offer(layer.foreseen);
   if (layer.alone) offer(FallbackRoute(layer));
+  if (layer.resumes_initial) offer(layer.given.initial_route);
   return *best;
 }
 
@@ -233,7 +251,7 @@ Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, ChainLayer
                                          const KnownRoute* known, const TrueStart& at) const {
   if (strategy_->traits().serial) {
     Budget budget = LayerBudget(layer, 1);
-    return Prepared(layer).Solve(problem, budget);
+    return SolveOrResume(problem, layer, budget);
   }
   if (layer.second_start && problem.start == *layer.second_start) return layer.second;
   const LayersInView& view = at.view;
@@ -258,7 +276,7 @@ Solution LayerSolver::SolveFromTrueStart(const LayerProblem& problem, ChainLayer
   } else {
     Budget alone = view.empty() ? budget : budget.WithShare(kAloneShare);
     const Route& from = BestToGoOnFrom(problem, layer, known);
-    solution = strategy_->traits().quick ? Prepared(layer).Solve(problem, alone)
+    solution = strategy_->traits().quick ? SolveOrResume(problem, layer, alone)
                                          : Prepared(layer).Resume(problem, from, alone);
   }
   if (!view.empty()) SolveInView(problem, layer, at, budget, solution);
@@ -335,8 +353,9 @@ LayerOutcome LayerSolver::Anchor(ChainLayer& layer, const TrueStart& at) const {
     if (!ValidateRoute(layer.given.plan, *route, &turns).ok()) route->clear();
   for (const ChainLayerPtr& next : at.view) next->way_back.clear();
   Solution solution = ValidFromTrueStart(problem, layer, known, at);
-  const bool was_replaced = !turns.ExhaustedNow() && KnowsAlone(layer, at) &&
-                            KeepWithinAlone(problem, layer, at, solution);
+  bool was_replaced = !turns.ExhaustedNow() && KnowsAlone(layer, at) &&
+                      KeepWithinAlone(problem, layer, at, solution);
+  was_replaced = KeepWithinInitial(problem, layer, solution) || was_replaced;
   LayerOutcome outcome = std::move(layer.outcome);
   if (turns.ExhaustedNow()) return outcome;  // cancelled: nobody reads it
   if (!solution.lower_bound) Bound(problem, layer, solution);

@@ -67,6 +67,10 @@ class LayerSolver {
   // busy machine may stop the thread for.
   Route GreedyRoute(const LayerProblem& problem, const ChainLayer& layer) const;
 
+  // Whether the route that the caller knows is worth beginning with: greedy's costs no less. Those
+  // that do not search begin with any.
+  bool ResumesInitial(const LayerProblem& problem, const ChainLayer& layer) const;
+
   // `solution` with what later layers need to continue from it.
   KnownRoutePtr Known(const LayerProblem& problem, const ChainLayer& layer,
                       const Solution& solution) const;
@@ -91,6 +95,9 @@ class LayerSolver {
   Budget LayerBudget(const ChainLayer& layer, double share) const;
   double AnchorShare() const;
   double SolveShare(const ChainLayer& layer) const;
+  Solution SolveOrResume(const LayerProblem& problem, ChainLayer& layer, Budget& budget) const;
+  const Route* RouteOfPrecursor(const LayerProblem& problem, const ChainLayer& layer,
+                                Budget& budget) const;
   void ResumeFromPrecursor(const LayerProblem& problem, ChainLayer& layer, Budget& budget) const;
   bool TakeOver(const KnownRoute& known, const LayerProblem& problem, const ChainLayer& layer,
                 Solution& solution) const;
@@ -103,11 +110,13 @@ class LayerSolver {
                               const KnownRoute* known, const TrueStart& at) const;
   Solution ValidFromTrueStart(const LayerProblem& problem, ChainLayer& layer,
                               const KnownRoute* known, const TrueStart& at) const;
-  // In layer_solver_floor.cc: greedy's route, under which no answer falls.
+  // In layer_solver_floor.cc: greedy's route and the one known beforehand, which no answer exceeds.
   bool GreedyMayBeBetter(const LayerProblem& problem, const ChainLayer& layer,
                          const KnownRoute* known, const Solution& solution) const;
   void KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer, const KnownRoute* known,
                      const LayersInView& view, Solution& solution) const;
+  bool KeepWithinInitial(const LayerProblem& problem, const ChainLayer& layer,
+                         Solution& solution) const;
   const KnownRoute* FindAnchored(const ChainLayer& layer, const AnchoredRoutes::ByKey& routes,
                                  uint64_t key) const;
   void Bound(const LayerProblem& problem, ChainLayer& layer, Solution& solution) const;

@@ -1,4 +1,5 @@
-// How LayerSolver keeps every layer from costing more than greedy's route, also when time is up.
+// How LayerSolver keeps every layer from costing more than greedy's route, and than the one that
+// the caller knows, also when time is up.
 
 #include <algorithm>
 #include <cstddef>
@@ -22,6 +23,16 @@ Route LayerSolver::GreedyRoute(const LayerProblem& problem, const ChainLayer& la
   return route;
 }
 
+bool LayerSolver::ResumesInitial(const LayerProblem& problem, const ChainLayer& layer) const {
+  const Route& initial = layer.given.initial_route;
+  if (initial.empty() || !strategy_->traits().searches) return !initial.empty();
+  Budget turns = Turns();
+  const double cost = RouteCost(problem, initial, &turns);
+  // Of greedy's chain, if there is one: no time is kept for another route.
+  const Route greedy = layer.greedy ? layer.greedy->route : GreedyRoute(problem, layer);
+  return cost <= RouteCost(problem, greedy, &turns);
+}
+
 bool LayerSolver::MayBeCutShort() const {
   const bool limited = spec_.deadline || spec_.layer_time_limit != absl::InfiniteDuration();
   return limited && strategy_->traits().searches && !strategy_->traits().pure;
@@ -29,8 +40,8 @@ bool LayerSolver::MayBeCutShort() const {
 
 // Other routes may be better from the true start: an equal layer's from the same start; what the
 // layer before saw ahead; those found for another start, where the clock cut the last search short;
-// greedy's, which a resumed route need not beat; the order given. All with the next layers in view:
-// for their sake a layer's own travel may grow.
+// greedy's, which a resumed route need not beat; the order given; the route that the caller knows.
+// All with the next layers in view: for their sake a layer's own travel may grow.
 void LayerSolver::KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer,
                                 const KnownRoute* known, const LayersInView& view,
                                 Solution& solution) const {
@@ -56,12 +67,30 @@ void LayerSolver::KeepBestRoute(const LayerProblem& problem, const ChainLayer& l
     offer(layer.second.route);
   }
   offer(layer.given_route);
+  offer(layer.given.initial_route);
   // An optimal route was replaced for the sake of the next layer, or by one that is the same but
   // for rounding.
   if (was_replaced && solution.stop == StopReason::kOptimal &&
       RouteCost(problem, solution.route) > solution.lower_bound.value_or(0) * (1 + kSameCost)) {
     solution.stop = StopReason::kLocalOptimum;
   }
+}
+
+// A layer's own cost never exceeds that of the route that the caller knows, not even for the sake
+// of the next layers, and whatever the strategy. Returns whether that route is now the answer.
+bool LayerSolver::KeepWithinInitial(const LayerProblem& problem, const ChainLayer& layer,
+                                    Solution& solution) const {
+  const Route& initial = layer.given.initial_route;
+  if (initial.empty()) return false;
+  Budget turns = Turns();
+  const double cost = RouteCost(problem, initial, &turns);
+  if (cost >= RouteCost(problem, solution.route, &turns)) return false;
+  solution.route = initial;
+  if (cost > solution.lower_bound.value_or(0) * (1 + kSameCost) &&
+      solution.stop == StopReason::kOptimal) {
+    solution.stop = StopReason::kLocalOptimum;
+  }
+  return true;
 }
 
 // Whether greedy's route may still be better: it cannot be if the strategy began at this very

@@ -58,21 +58,21 @@ class Exact : public Strategy {
         long_heuristic_(MakeWith(AutoEntry(), {{"effort", kEffort}})) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
-    return Prove(problem, FirstRoute(problem, budget), budget);
+    return Prove(problem, FirstRoute(problem, nullptr, budget), budget);
   }
 
   Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
-    Solution found = FirstRoute(problem, budget);
-    if (RouteCost(problem, start, &budget) < RouteCost(problem, found.route, &budget))
-      found.route = start;
-    return Prove(problem, std::move(found), budget);
+    return Prove(problem, FirstRoute(problem, &start, budget), budget);
   }
 
  private:
-  Solution FirstRoute(const LayerProblem& problem, Budget& budget) const {
+  // From `start`, unless that is null.
+  Solution FirstRoute(const LayerProblem& problem, const Route* start, Budget& budget) const {
     const bool provable = StageModel::Fits(*problem.plan, kMostModelEntries, &budget);
     Budget share = budget.WithShare(provable ? kRouteShare : kRouteShareWithoutProof);
-    Solution solution = (provable ? long_heuristic_ : heuristic_)->Solve(problem, share);
+    const Strategy& heuristic = provable ? *long_heuristic_ : *heuristic_;
+    Solution solution = start == nullptr ? heuristic.Solve(problem, share)
+                                         : heuristic.Resume(problem, *start, share);
     solution.statistics["provable"] = provable ? 1 : 0;
     return solution;
   }
@@ -138,16 +138,30 @@ class ExactFramework : public Strategy {
         heuristic_(MakeDefault(Ni2optEntry())) {}
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+    return SolveFrom(problem, nullptr, budget);
+  }
+
+  Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
+    return cold_ ? Strategy::Resume(problem, start, budget) : SolveFrom(problem, &start, budget);
+  }
+
+ private:
+  // No worse than `start`, unless that is null.
+  Solution SolveFrom(const LayerProblem& problem, const Route* start, Budget& budget) const {
+    const auto first = [&](const Strategy& strategy) {
+      return start == nullptr ? strategy.Solve(problem, budget)
+                              : strategy.Resume(problem, *start, budget);
+    };
     const std::optional<ClassicalLayer> classical = AsClassicalLayer(*problem.plan);
     const std::optional<InterleavedLayer> interleaved = AsInterleavedLayer(*problem.plan);
     if (!classical && !interleaved) {
-      Solution solution = heuristic_->Solve(problem, budget);
+      Solution solution = first(*heuristic_);
       solution.statistics["framework"] = 0;  // this is ni2opt's route
       return solution;
     }
     Solution solution;
     if (cold_) solution.route = GivenRoute(*problem.plan);
-    if (!cold_) solution = greedy_->Solve(problem, budget);
+    if (!cold_) solution = first(*greedy_);
     if (budget.ExhaustedNow()) return Stopped(std::move(solution), false, budget);
     MilpMethod method(milp_, time_limit_seconds_, First());
     FrameworkResult found =
@@ -166,7 +180,6 @@ class ExactFramework : public Strategy {
     return Stopped(std::move(solution), method.timed_out(), budget);
   }
 
- private:
   MilpMethod::FirstRoute First() const {
     if (cold_) return nullptr;
     return [this](const LayerProblem& problem, Budget& budget) {

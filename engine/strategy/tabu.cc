@@ -88,18 +88,19 @@ class Tabu : public Strategy {
 
   Solution Solve(const LayerProblem& problem, Budget& budget) const override {
     const LayerView layer(problem, &budget);
-    return polish_ ? SolvePolished(layer, budget) : SolvePlain(layer, budget);
+    return polish_ ? SolvePolished(layer, budget)
+                   : SolvePlain(layer, Baseline(layer, budget), budget);
   }
 
   // The order that was found for another start is a good one still, and tabu search would not find
-  // it again any sooner.
+  // it again any sooner. Without polish it begins there.
   Solution Resume(const LayerProblem& problem, const Route& start, Budget& budget) const override {
-    if (!polish_) return Strategy::Resume(problem, start, budget);
     const LayerView layer(problem, &budget);
     Candidate best = Baseline(layer, budget);
+    Take(layer, start, best);
+    if (!polish_) return SolvePlain(layer, std::move(best), budget);
     Polisher polisher(layer, budget);
     Rng rng(StreamSeed(problem.seed, kPolishStream));
-    Take(layer, start, best);
     Take(layer, polisher.Iterate(start, Patience(layer), rng, budget), best);
     budget.ExhaustedNow();
     Solution solution{std::move(best.route), StopOr(budget, StopReason::kIterationLimit),
@@ -134,8 +135,7 @@ class Tabu : public Strategy {
     return {std::move(route), cost};
   }
 
-  Solution SolvePlain(const LayerView& layer, Budget& budget) const {
-    Candidate best = Baseline(layer, budget);
+  Solution SolvePlain(const LayerView& layer, Candidate best, Budget& budget) const {
     Solution solution;
     Take(layer, Search(layer, best.route, options_, budget, solution.statistics), best);
     return Ended(std::move(best), std::move(solution), budget);
