@@ -14,6 +14,7 @@
 #include "server/translate/field_ranges.h"
 #include "server/translate/translate.h"
 #include "server/translate/translate_check.h"
+#include "server/translate/translate_route.h"
 #include "server/translate/translate_walls.h"
 
 namespace traverse {
@@ -240,10 +241,6 @@ absl::StatusOr<LabelledLayer> LayerFromProto(const v1::Layer& layer, uint64_t in
   if (layer.has_plan() && !layer.islands().empty()) {
     return Fault(place.text(), "has both islands and a plan, but may have only one of them");
   }
-  if (!layer.initial_route().empty()) {
-    return absl::UnimplementedError(
-        absl::StrCat(place.text(), ".initial_route: this version starts from no known route"));
-  }
   FaultList faults;
   faults.Add(CheckRange(RangeOf("Layer.z_mm"), layer.z_mm(), place.text() + ".z_mm"));
   LabelledLayer result;
@@ -256,6 +253,7 @@ absl::StatusOr<LabelledLayer> LayerFromProto(const v1::Layer& layer, uint64_t in
   if (plan.ok()) {
     result.layer.plan = *std::move(plan);
     faults.Add(SetWalls(layer, place, budget, result.layer));
+    faults.Add(SetInitialRoute(layer, place, budget, result.layer));
   }
   if (layer.has_start()) {
     absl::StatusOr<Point> start = PointFromProto(layer.start(), place.text() + ".start");

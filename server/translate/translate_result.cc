@@ -10,7 +10,7 @@ namespace {
 
 // ListStrategiesResponse.capabilities: sorted; no word is ever renamed or removed.
 // proto/VERSIONS.md says what each one means, and since which version.
-constexpr const char* kCapabilities[] = {"chain_bound", "partial_answers"};
+constexpr const char* kCapabilities[] = {"chain_bound", "initial_route", "partial_answers"};
 
 void SetPoint(Point point, v1::Point& message) {
   message.set_x_mm(point.x);

@@ -7,6 +7,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "engine/model/plan.h"
+#include "engine/validator.h"
 #include "server/translate/translate.h"
 #include "tests/fuzz/support/check.h"
 #include "tests/fuzz/support/seed_jobs.h"
@@ -25,8 +26,12 @@ void CheckLayer(const v1::Layer& layer, uint64_t index, bool interleaved) {
   const auto translated = LayerFromProto(layer, index, interleaved);
   if (!translated.ok())
     return CheckRefusal(translated.status(), absl::StrCat("layers[", index, "]"));
-  const absl::Status valid = CheckPlan(translated->layer.plan);
+  const JobLayer& made = translated->layer;
+  const absl::Status valid = CheckPlan(made.plan);
   Check(valid.ok(), absl::StrCat("a translated plan is valid: ", valid.ToString()));
+  if (made.initial_route.empty()) return;
+  const absl::Status legal = ValidateRoute(made.plan, made.initial_route);
+  Check(legal.ok(), absl::StrCat("a translated route is legal: ", legal.ToString()));
 }
 
 }  // namespace

@@ -109,6 +109,18 @@ const Shape kShapes[] = {
        }
      },
      900'000},
+    {"a route that is known",
+     [](int n, v1::Layer& layer) {
+       v1::Island& island = *layer.add_islands();
+       for (int i = 0; i < n; ++i) {
+         AddDot(*island.add_contours(), i);
+         v1::Visit& visit = *layer.add_initial_route();
+         visit.set_island(0);
+         visit.set_contour(static_cast<uint32_t>(i == 0 ? 0 : n - i));  // the outer one first
+         visit.set_vertex(0);
+       }
+     },
+     900'000},
     {"moves that are known",
      [](int n, v1::Layer& layer) {
        v1::Island& island = *layer.add_islands();
