@@ -1,5 +1,6 @@
 #include "server/jobs/worker_pool.h"
 
+#include <sys/resource.h>
 #include <time.h>
 
 #include <algorithm>
@@ -17,7 +18,9 @@ double WorkerPool::ThreadCpuSeconds() {
 }
 
 WorkerPool::WorkerPool(int permits, WorkClock clock, int nice)
-    : clock_(std::move(clock)), permits_(std::max(1, permits)), nice_(nice) {
+    : clock_(std::move(clock)),
+      permits_(std::max(1, permits)),
+      nice_(getpriority(PRIO_PROCESS, 0) + nice) {
   MutexLock lock(mutex_);
   for (int i = 0; i < permits_; ++i) AddThread();
 }

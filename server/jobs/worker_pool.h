@@ -195,7 +195,7 @@ class WorkerPool {
   const WorkClock clock_;
   std::map<std::string, double> weights_;  // by caller
   const int permits_;
-  const int nice_;
+  const int nice_;  // of its threads
   mutable Mutex mutex_;
   ConditionVariable work_;
   std::map<std::string, Caller> callers_ TRAVERSE_GUARDED_BY(mutex_);  // those with tasks

@@ -138,8 +138,9 @@ void WorkerPool::Run(Worker& worker) {
 }
 
 void WorkerPool::RunTasks(Worker& worker) {
-  // On Linux a thread has a nice value of its own.
-  if (nice_ > 0) setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + nice_);
+  // On Linux a thread has a nice value of its own, and begins with that of the thread that made it,
+  // which may be a worker.
+  setpriority(PRIO_PROCESS, 0, nice_);
   MutexLock lock(mutex_);
   while (!RetireIfTooMany(worker)) {
     while (handed_out_.empty()) {

@@ -1,7 +1,9 @@
 // Tasks that take long give way to others, and answer the watchdog.
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <ctime>
@@ -121,6 +123,29 @@ TEST(WorkerTurns, APausedTaskEndsAtItsDeadlineAndWhenItIsCancelled) {
 
   EXPECT_EQ(busy.ended, 0);
   busy.cancel.Cancel();
+}
+
+// The threads for what is under way beside paused tasks are made by workers, who are nice already.
+TEST(WorkerTurns, NoThreadIsNicerThanTheOthers) {
+  constexpr int kTasks = 6;
+  Endless endless;
+  std::atomic<int> niceness[kTasks] = {};
+  const int nice = std::min(getpriority(PRIO_PROCESS, 0) + 1, 19);
+  {
+    WorkerPool pool(1, WorkerPool::ThreadCpuSeconds, /*nice=*/1);
+    std::vector<std::shared_ptr<WorkerPool::Queue>> queues;
+    for (std::atomic<int>& mine : niceness) {
+      queues.push_back(pool.NewQueue("a"));
+      queues.back()->Submit([&mine, run = endless.On(queues.back())] {
+        mine = getpriority(PRIO_PROCESS, 0);
+        run();
+      });
+    }
+    WaitFor([&] { return endless.begun == kTasks; });
+    endless.cancel.Cancel();
+  }
+
+  for (const std::atomic<int>& mine : niceness) EXPECT_EQ(mine, nice);
 }
 
 // Nobody gives way to what may not go on.
