@@ -108,14 +108,45 @@ void WorkerPool::LetWait(QueueImpl& queue) {
   if (!queue.HasSomethingToDo() || queue.waits() || queue.held_back) return;
   Caller& caller = *queue.entry;
   caller.turns.Wait(queue);
+  AddToDue(queue);
   if (!caller.waits()) turns_.Wait(caller);
 }
 
 void WorkerPool::WithdrawIfNothing(QueueImpl& queue) {
-  if (queue.HasSomethingToDo() || !queue.waits()) return;
+  if (!queue.HasSomethingToDo() && queue.waits()) Withdraw(queue);
+}
+
+void WorkerPool::Withdraw(QueueImpl& queue) {
   Caller& caller = *queue.entry;
   caller.turns.Withdraw(queue);
-  if (caller.turns.empty()) turns_.Withdraw(caller);
+  TakeFromDue(queue);
+  if (caller.turns.empty() && caller.waits()) turns_.Withdraw(caller);
+}
+
+void WorkerPool::SetDue(QueueImpl& queue, Clock::time_point due) {
+  MutexLock lock(mutex_);
+  if (queue.waits()) TakeFromDue(queue);
+  queue.due = due;
+  if (queue.waits()) AddToDue(queue);
+}
+
+void WorkerPool::AddToDue(QueueImpl& queue) {
+  if (queue.due.load() == Clock::time_point::max()) return;
+  queue.entry->by_due.emplace(queue.due, &queue);
+  by_due_.emplace(queue.due, &queue);
+  next_due_.store(by_due_.begin()->first, std::memory_order_relaxed);
+}
+
+void WorkerPool::TakeFromDue(QueueImpl& queue) {
+  if (queue.entry->by_due.erase({queue.due, &queue}) == 0) return;
+  by_due_.erase({queue.due, &queue});
+  next_due_.store(by_due_.empty() ? Clock::time_point::max() : by_due_.begin()->first,
+                  std::memory_order_relaxed);
+}
+
+bool WorkerPool::IsDueBefore(Clock::time_point now, const Worker& worker) const {
+  const Clock::time_point next = next_due_.load(std::memory_order_relaxed);
+  return next <= now && next < worker.task.queue->due.load(std::memory_order_relaxed);
 }
 
 bool WorkerPool::MayBegin(const Task& task) const {
@@ -146,11 +177,29 @@ void WorkerPool::SetMemoryShort(bool is_short) {
   memory_short_ = is_short;
 }
 
+// A due one, or else the one that has had the least.
+WorkerPool::QueueImpl& WorkerPool::TakeFirst() {
+  const Clock::time_point now = Clock::now();
+  const auto has_due = [now](const FairOrder::Member& member) {
+    const ByDue& by_due = static_cast<const Caller&>(member).by_due;
+    return !by_due.empty() && by_due.begin()->first <= now;
+  };
+  const bool is_due = next_due_.load(std::memory_order_relaxed) <= now;
+  auto& caller = static_cast<Caller&>(is_due ? *turns_.TakeFirst(has_due) : turns_.TakeNext());
+  QueueImpl* queue = is_due ? caller.by_due.begin()->second : nullptr;
+  if (queue != nullptr) {
+    caller.turns.Withdraw(*queue);
+  } else {
+    queue = static_cast<QueueImpl*>(&caller.turns.TakeNext());
+  }
+  TakeFromDue(*queue);
+  if (!caller.turns.empty()) turns_.Wait(caller);
+  return *queue;
+}
+
 WorkerPool::QueueImpl* WorkerPool::TakeNext() {
   while (!turns_.empty()) {
-    auto& caller = static_cast<Caller&>(turns_.TakeNext());
-    auto& queue = static_cast<QueueImpl&>(caller.turns.TakeNext());
-    if (!caller.turns.empty()) turns_.Wait(caller);
+    QueueImpl& queue = TakeFirst();
     if (!queue.paused.empty() || MayBegin(queue.tasks.front())) return &queue;
     queue.held_back = true;
     held_back_.push_back(queue.shared_from_this());

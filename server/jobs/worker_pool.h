@@ -4,6 +4,10 @@
 // time worked, on two levels: the next is the caller that has had the least, and among that
 // caller's jobs the one that has had the least (fair_order.h). New work has a head start.
 //
+// A job may state when it is due: from then on its tasks are quick, because they only return what
+// there is, and somebody waits for it. So due jobs go before all others, among them again the
+// caller that has had the least, and of its jobs the one that was due first.
+//
 // A long task gives its permit up to waiting ones after each kSlice of its work, wherever it asks
 // its budget (engine/base/turn.h), and continues in its thread when its turn comes again. So a job
 // of one small layer is answered whatever the others do. And there are more threads than permits:
@@ -18,12 +22,14 @@
 #ifndef TRAVERSE_SERVER_JOBS_WORKER_POOL_H_
 #define TRAVERSE_SERVER_JOBS_WORKER_POOL_H_
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -63,6 +69,9 @@ class WorkerPool {
 
     // Whether no task of this queue waits or is in progress.
     virtual bool idle() const = 0;
+
+    // From `due` on, what the tasks of this queue still have to do is quick.
+    virtual void set_due(std::chrono::steady_clock::time_point due) = 0;
 
     // The job's name, for SilentTask.
     virtual void set_job(const std::string& job) = 0;
@@ -150,9 +159,13 @@ class WorkerPool {
     bool large() const { return points > kLargePoints; }
   };
 
+  // Queues that wait, and when they are due; without those that never are.
+  using ByDue = std::set<std::pair<Clock::time_point, QueueImpl*>>;
+
   // A caller with queues whose tasks wait or are in progress.
   struct Caller : FairOrder::Member {
     FairOrder turns;
+    ByDue by_due;  // of those that wait
     int queues = 0;
   };
 
@@ -163,11 +176,19 @@ class WorkerPool {
   // Lets `queue` wait for its turn, if it has work.
   void LetWait(QueueImpl& queue) TRAVERSE_REQUIRES(mutex_);
 
-  // The opposite, if it has no more work.
+  // The opposite: if it has no more work; and in any case.
   void WithdrawIfNothing(QueueImpl& queue) TRAVERSE_REQUIRES(mutex_);
+  void Withdraw(QueueImpl& queue) TRAVERSE_REQUIRES(mutex_);
+
+  void SetDue(QueueImpl& queue, Clock::time_point due) TRAVERSE_EXCLUDES(mutex_);
+
+  // Notes that `queue` waits, or no longer does.
+  void AddToDue(QueueImpl& queue) TRAVERSE_REQUIRES(mutex_);
+  void TakeFromDue(QueueImpl& queue) TRAVERSE_REQUIRES(mutex_);
 
   // The queue whose turn it is; null if none of those that wait may continue.
   QueueImpl* TakeNext() TRAVERSE_REQUIRES(mutex_);
+  QueueImpl& TakeFirst() TRAVERSE_REQUIRES(mutex_);
   bool MayBegin(const Task& task) const TRAVERSE_REQUIRES(mutex_);
 
   // The points in progress of tasks of the same size; null for small ones, which are not counted.
@@ -177,6 +198,9 @@ class WorkerPool {
   void Dispatch() TRAVERSE_REQUIRES(mutex_);
   bool Begin(QueueImpl& queue) TRAVERSE_REQUIRES(mutex_);
   void TellWorkers() TRAVERSE_REQUIRES(mutex_);
+
+  // Whether a job that waits is due, and was so before the one that `worker` works on. Quick.
+  bool IsDueBefore(Clock::time_point now, const Worker& worker) const;
 
   void Charge(Worker& worker) TRAVERSE_REQUIRES(mutex_);
   bool Pause(Worker& worker) TRAVERSE_EXCLUDES(mutex_);
@@ -202,6 +226,8 @@ class WorkerPool {
   FairOrder turns_ TRAVERSE_GUARDED_BY(mutex_);                        // of callers
   std::deque<std::shared_ptr<QueueImpl>> held_back_ TRAVERSE_GUARDED_BY(mutex_);  // MayBegin: no
   std::deque<Task> handed_out_ TRAVERSE_GUARDED_BY(mutex_);  // with a permit, for idle threads
+  ByDue by_due_ TRAVERSE_GUARDED_BY(mutex_);
+  std::atomic<Clock::time_point> next_due_{Clock::time_point::max()};  // first of by_due_
   int64_t waiting_ TRAVERSE_GUARDED_BY(mutex_) = 0;
   int busy_ TRAVERSE_GUARDED_BY(mutex_) = 0;               // permits in use
   size_t under_way_ TRAVERSE_GUARDED_BY(mutex_) = 0;       // tasks begun and not ended

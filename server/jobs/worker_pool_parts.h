@@ -36,7 +36,7 @@ class WorkerPool::Worker : public Turn {
     calls_to_clock = now - looked_at_clock < kQuick ? kQuickCalls : 1;
     looked_at_clock = now;
     heard_of.store(now, std::memory_order_relaxed);
-    if (now < slice_end) return false;
+    if (now < slice_end && !pool_.IsDueBefore(now, *this)) return false;
     cancelled_by = cancel;
     due = deadline;
     return pool_.Pause(*this);
@@ -114,6 +114,8 @@ class WorkerPool::QueueImpl : public Queue,
     return Idle();
   }
 
+  void set_due(Clock::time_point at) override { pool.SetDue(*this, at); }
+
   void set_job(const std::string& name) override {
     MutexLock lock(pool.mutex_);
     job = name;
@@ -129,9 +131,10 @@ class WorkerPool::QueueImpl : public Queue,
   const std::function<void()> on_no_memory;
   std::deque<Task> tasks;
   std::deque<Worker*> paused;
-  int under_way = 0;       // tasks begun and not yet ended
-  bool held_back = false;  // in held_back_
-  double busy = 0;         // seconds
+  std::atomic<Clock::time_point> due = Clock::time_point::max();  // the pool's mutex guards changes
+  int under_way = 0;                                              // tasks begun and not yet ended
+  bool held_back = false;                                         // in held_back_
+  double busy = 0;                                                // seconds
   QueueWait waited;
 };
 

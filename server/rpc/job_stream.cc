@@ -101,6 +101,7 @@ void JobStream::StartEngine(int64_t expected_layers, int64_t expected_points) {
     end = end ? std::min(*end, limit) : limit;
   }
   setup_.spec.deadline = end;
+  if (end) queue_->set_due(*end);
   run_->Start({core_.limits.window, setup_.build_order}, setup_.spec, std::move(setup_.strategy),
               *queue_);
 }
@@ -137,6 +138,7 @@ void JobStream::Discard(std::deque<LabelledLayer> layers) {
 void JobStream::OnCallCancelled() {
   if (run_ == nullptr) return;
   const bool late = call_.deadline && Clock::now() >= *call_.deadline;
+  queue_->set_due(Clock::now());
   run_->Abort(late ? absl::DeadlineExceededError("the deadline of the call has passed")
                    : absl::CancelledError("the caller cancelled the call"));
 }

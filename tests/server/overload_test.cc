@@ -86,6 +86,37 @@ TEST(Overload, UploadsThatAreCancelledDoNotCutTheConnection) {
   EXPECT_THAT(service.server().core().MetricsText(), HasSubstr("traverse_connections_cut_total 0"));
 }
 
+// `tabu` searches until its deadline, so every job wants a worker all the time.
+TEST(Overload, JobsThatSearchForTheSameTimeAreAnsweredInTime) {
+  constexpr int kJobs = 24;
+  TestService service([](ServerOptions& options) {
+    options.service.threads = 1;
+    options.service.admission.max_wait = absl::Hours(1);
+  });
+  std::atomic<int> answered{0};
+  std::atomic<int> missed{0};
+  std::vector<std::thread> callers;
+  for (int i = 0; i < kJobs; ++i) {
+    callers.emplace_back([&] {
+      grpc::ClientContext context;
+      context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(2));
+      v1::OptimizeBatchRequest request = MakeBatch(0, "tabu");
+      *request.add_layers() = MakeLayer(1, 60);
+      const auto reader = service.stub().OptimizeBatch(&context, request);
+      v1::OptimizeBatchResponse response;
+      while (reader->Read(&response)) {
+      }
+      const grpc::StatusCode code = reader->Finish().error_code();
+      answered += code == grpc::StatusCode::OK;
+      missed += code == grpc::StatusCode::DEADLINE_EXCEEDED;
+    });
+  }
+  for (std::thread& caller : callers) caller.join();
+
+  EXPECT_GT(answered, kJobs / 2);
+  EXPECT_LT(missed, kJobs / 4);
+}
+
 TEST(Overload, JobsBeyondTheLimitAreRefusedWithAdviceWhenToRetry) {
   TestService service([](ServerOptions& options) { options.service.admission.max_jobs = 2; });
   OpenStream first(service);

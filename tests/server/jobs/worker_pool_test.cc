@@ -191,6 +191,54 @@ TEST(WorkerPool, ASmallJobIsDoneAtOneGoBesideLargeOnes) {
   EXPECT_NE(order.names().find("LssssL"), std::string::npos) << order.names();
 }
 
+constexpr auto kHour = std::chrono::hours(1);
+
+TEST(WorkerPool, WhatIsDueGoesFirstInTheOrderOfItsTime) {
+  Gate gate;
+  Order order;
+  WorkClock clock;
+  const auto now = std::chrono::steady_clock::now();
+  {
+    WorkerPool pool(1, clock.clock());
+    Block(pool, gate);
+    std::vector<std::shared_ptr<WorkerPool::Queue>> queues;
+    const auto submit = [&](const std::string& name) {
+      queues.push_back(pool.NewQueue("a"));
+      for (int i = 0; i < 2; ++i) queues.back()->Submit(order.Task(name));
+      return queues.back();
+    };
+    submit("n");
+    submit("f")->set_due(now + kHour);
+    submit("l")->set_due(now - kHour);
+    submit("e")->set_due(now - 2 * kHour);
+    submit("c")->set_due(now + kHour);
+    queues.back()->set_due(now - 3 * kHour);
+    gate.Open();
+  }
+  EXPECT_EQ(order.names(), "cceellnfnf");
+}
+
+TEST(WorkerPool, CallersTakeTurnsWithWhatIsDue) {
+  Gate gate;
+  Order order;
+  WorkClock clock;
+  const auto now = std::chrono::steady_clock::now();
+  {
+    WorkerPool pool(1, clock.clock());
+    Block(pool, gate);
+    std::vector<std::shared_ptr<WorkerPool::Queue>> queues;
+    for (const std::string name : {"m", "m", "1"}) {
+      queues.push_back(pool.NewQueue(name));
+      queues.back()->set_due(now - kHour);
+      for (int i = 0; i < 2; ++i)
+        queues.back()->Submit([&, task = order.Task(name)] { task(), clock.Work(1); });
+    }
+    pool.NewQueue("other")->Submit(order.Task("o"));
+    gate.Open();
+  }
+  EXPECT_EQ(order.names(), "m1m1mmo");
+}
+
 TEST(WorkerPool, CountsWhatIsBusyAndWhatWaits) {
   Gate gate;
   WorkerPool pool(2);

@@ -1,6 +1,7 @@
 // Tasks that take long give way to others, and answer the watchdog.
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -146,6 +147,50 @@ TEST(WorkerTurns, NoThreadIsNicerThanTheOthers) {
   }
 
   for (const std::atomic<int>& mine : niceness) EXPECT_EQ(mine, nice);
+}
+
+// What a thread has worked, as others see it.
+class ThreadCpu {
+ public:
+  void SetThisThread() { pthread_getcpuclockid(pthread_self(), &id_); }
+  double Seconds() const {
+    timespec time{};
+    clock_gettime(id_, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
+
+ private:
+  clockid_t id_{};
+};
+
+// Each comes soon after another slice of the endless task has begun.
+TEST(WorkerTurns, WhatIsDueWaitsForNoSlice) {
+  constexpr int kJobs = 100;
+  Endless endless;
+  ThreadCpu cpu;
+  WorkerPool pool(1);
+  const auto long_one = pool.NewQueue("a");
+  long_one->Submit([&, run = endless.On(long_one)] {
+    cpu.SetThisThread();
+    run();
+  });
+  WaitFor([&] { return endless.begun == 1; });
+
+  double waited = 0;  // by what the other one worked meanwhile
+  for (int i = 0; i < kJobs; ++i) {
+    std::atomic<bool> done{false};
+    const auto due = pool.NewQueue("a");
+    due->set_due(Clock::now());
+    const double begin = cpu.Seconds();
+    due->Submit([&] {
+      waited += cpu.Seconds() - begin;
+      done = true;
+    });
+    WaitFor([&] { return done.load(); });
+  }
+  endless.cancel.Cancel();
+
+  EXPECT_LT(waited, 0.1 * kJobs * std::chrono::duration<double>(WorkerPool::kSlice).count());
 }
 
 // Nobody gives way to what may not go on.
