@@ -20,8 +20,8 @@ constexpr int64_t kLeast = int64_t{16} << 20;
 constexpr uint64_t kShort = 256 << 10;
 constexpr size_t kPiece = 64 << 10;
 
-// Bytes for each byte of the text, and for what it is made of; the last two of the layers that are
-// under way at a time: measured (weigh.py). Rewriting holds the text twice, the plans of all
+// Bytes for each byte of the text, and for what it is made of; the last three of the layers that
+// are under way at a time: measured (weigh.py). Rewriting holds the text twice, the plans of all
 // layers, the search's own copy of them, and the grids of some layers; verifying holds both files
 // as far as they are compared.
 struct Prices {
@@ -33,19 +33,22 @@ struct Prices {
   double layer;
   double cell_under_way;
   double path_under_way;
+  double path_in_search;  // of kMostInSearch at most in a layer: larger ones are searched less
 };
+constexpr int64_t kMostInSearch = 8000;
 
 constexpr Prices PricesOf(FileUse use) {
   switch (use) {
     case FileUse::kRewrite:
-      return {.byte = 1.6,
-              .segment = 185,
+      return {.byte = 4,
+              .segment = 230,
               .path = 1700,
               .move = 140,
               .setting = 2000,
               .layer = 34'000,
               .cell_under_way = 112,
-              .path_under_way = 3000};
+              .path_under_way = 3000,
+              .path_in_search = 5000};
     case FileUse::kInspect:
       return {.byte = 1.1,
               .segment = 22,
@@ -54,7 +57,8 @@ constexpr Prices PricesOf(FileUse use) {
               .setting = 40,
               .layer = 500,
               .cell_under_way = 92,
-              .path_under_way = 200};
+              .path_under_way = 200,
+              .path_in_search = 0};
     case FileUse::kVerify:
       return {.byte = 4.6,
               .segment = 175,
@@ -63,7 +67,8 @@ constexpr Prices PricesOf(FileUse use) {
               .setting = 10,
               .layer = 0,
               .cell_under_way = 45,
-              .path_under_way = 250};
+              .path_under_way = 250,
+              .path_in_search = 0};
   }
   return {};
 }
@@ -86,6 +91,8 @@ double BytesFor(const TextCount& count, FileUse use) {
          of(prices.setting, count.settings()) + of(prices.layer, count.layers()) +
          of(prices.cell_under_way, std::min(count.cells(), layers * count.most_cells())) +
          of(prices.path_under_way, std::min(count.paths(), layers * count.most_paths())) +
+         of(prices.path_in_search,
+            std::min(count.paths(), layers * std::min(count.most_paths(), kMostInSearch))) +
          BytesForFarLines(count, use);
 }
 
