@@ -16,12 +16,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The path's label and entry, for all kinds of layers.
+Json PointJson(const google::protobuf::RepeatedField<double>& points, int point) {
+  return {points[2 * point], points[2 * point + 1]};
+}
+
+// The path's label, entry and place, for all kinds of layers.
 Json EntryJson(const v1::Contour& contour, const v1::Visit& visit) {
-  return {{"id", contour.id()}, {"entry", visit.vertex()}};
+  return {{"id", contour.id()},
+          {"entry", visit.vertex()},
+          {"at", PointJson(contour.points(), static_cast<int>(visit.vertex()))}};
 }
 Json EntryJson(const v1::OpenPath& path, const v1::Visit& visit) {
-  return {{"id", path.id()}, {"reversed", visit.reversed()}};
+  const int last = path.points_size() / 2 - 1;
+  return {{"id", path.id()},
+          {"reversed", visit.reversed()},
+          {"from", PointJson(path.points(), visit.reversed() ? last : 0)},
+          {"to", PointJson(path.points(), visit.reversed() ? 0 : last)}};
 }
 
 Json IslandVisitJson(const v1::Layer& layer, const v1::Visit& visit) {

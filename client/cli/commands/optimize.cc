@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -19,6 +21,7 @@
 #include "client/report/json.h"
 #include "client/report/summary.h"
 #include "client/view/scene/job_scene.h"
+#include "client/warm_start/start_from.h"
 
 namespace traverse::cli {
 namespace {
@@ -28,6 +31,7 @@ struct Request : RunFlags {
   std::vector<StrategySpec> strategy;  // one strategy, or none for the service's default
   RewriteFlags rewrite;
   PlateOptions plates;
+  std::optional<std::vector<EarlierLayer>> start_from;
 };
 
 absl::StatusOr<Request> ParseRequest(const Flags& flags) {
@@ -116,6 +120,11 @@ Outcome WriteDocuments(Service& service, const Request& request, const InputJob&
   return request.views.any() ? ShowViews(service, request, job, made.runs, rewrite) : Done();
 }
 
+std::string WarmStartLine(const WarmStart& warm, size_t layers) {
+  return absl::StrFormat("began with known routes of %d of %d layers (%d of %d paths in them)\n",
+                         warm.layers, layers, warm.known, warm.paths);
+}
+
 // The results of one part of the input.
 struct DonePart {
   std::string summary;
@@ -138,6 +147,8 @@ Expected<DonePart> OptimizePart(Service& service, Request request, InputFile& in
       outcome.code != kDone) {
     return outcome;
   }
+  std::optional<WarmStart> warm;
+  if (request.start_from) warm = StartFrom(*request.start_from, *job);
   const bool rewritten = job->gcode != nullptr && (written || request.views.any());
   Expected<Optimized> optimized = Optimize(service, request, *job, rewritten);
   if (Outcome* outcome = std::get_if<Outcome>(&optimized)) return *outcome;
@@ -150,6 +161,7 @@ Expected<DonePart> OptimizePart(Service& service, Request request, InputFile& in
     const uint32_t plate = input.container->parts()[input.parts[index]].plate;
     done.summary = absl::StrFormat("plate %d: ", plate);
   }
+  if (warm) done.summary += WarmStartLine(*warm, job->layers.size());
   const gcode::Forecast* forecast = made.rewrite ? &made.rewrite->forecast : nullptr;
   done.summary += report::OptimizeSummary(*job, made.runs[0], forecast);
   if (made.rewrite) done.summary += GcodeSummary(*made.rewrite);
@@ -187,11 +199,21 @@ Outcome RunOptimize(const Flags& flags) {
   Expected<Service> opened = Service::Open(flags);
   if (Outcome* outcome = std::get_if<Outcome>(&opened)) return *outcome;
 
+  if (flags.Has("start_from")) {
+    if (flags.Text("start_from") == "-" && flags.operands()[0] == "-")
+      return UsageFault("only one of INPUT and --start_from can be standard input");
+    const absl::StatusOr<std::string> text = ReadWholeFile(flags.Text("start_from"));
+    if (!text.ok()) return InputFault(text.status());
+    auto earlier = ReadEarlierRoutes(*text, flags.Text("start_from"));
+    if (!earlier.ok()) return InputFault(earlier.status());
+    request->start_from = *std::move(earlier);
+  }
   absl::StatusOr<InputFile> input = OpenInput(flags.operands()[0], request->plates);
   if (!input.ok()) return InputFault(input.status());
   const absl::StatusOr<GcodeTarget> target = TargetOf(flags, *input);
   if (!target.ok()) return UsageFault(target.status());
-  const bool one = !request->json.empty() || request->views.any() || target->kind != input->kind();
+  const bool one = !request->json.empty() || request->views.any() || request->start_from ||
+                   target->kind != input->kind();
   if (absl::Status status = CheckOnePlate(*input); one && !status.ok()) return InputFault(status);
 
   const Expected<std::string> done =
@@ -203,6 +225,17 @@ Outcome RunOptimize(const Flags& flags) {
           std::get<std::string>(done));
   }
   return Done();
+}
+
+// Shares a line of the help with a flag that has one for itself.
+std::vector<Flag> WithStartFrom(std::vector<Flag> table) {
+  const auto partner = std::find_if(table.begin(), table.end(), [](const Flag& flag) {
+    return flag.name == "max_hidden_travel";
+  });
+  partner->joint_help = "hidden moves, mm; earlier --json";
+  table.insert(std::next(partner),
+               {"start_from", "FILE", "begin with the routes that an earlier --json holds"});
+  return table;
 }
 
 }  // namespace
@@ -231,7 +264,7 @@ Command OptimizeCommand() {
   return {.name = "optimize",
           .operands = {"INPUT"},
           .summary = "Shortens the travel of a job.",
-          .flags = WithRunFlagTable(std::move(own)),
+          .flags = WithStartFrom(WithRunFlagTable(std::move(own))),
           .example = "traverse optimize part.gcode -o shorter.gcode --policy=balanced",
           .run = RunOptimize};
 }

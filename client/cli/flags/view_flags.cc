@@ -85,7 +85,9 @@ Expected<report::JobRun> RunAsGiven(Service& service, const JobFlags& flags, con
   StrategySpec none;
   none.label = "as given";
   none.strategy.set_name("none");
-  return service.Optimize(job, &none, flags, /*quiet=*/true);
+  InputJob as_given = job;
+  for (v1::Layer& layer : as_given.layers) layer.clear_initial_route();
+  return service.Optimize(as_given, &none, flags, /*quiet=*/true);
 }
 
 absl::Status WriteViews(const ViewFlags& flags, const view::Scene& scene) {

@@ -7,7 +7,7 @@ export type Points = ReadonlyArray<readonly [x: number, y: number]>;
 export interface Path { id?: number; points: number[] }
 export interface Island { id?: number; contours?: Path[]; rasters?: (Path & { one_way?: boolean })[] }
 /** A layer of islands, or of a plan; further fields as in traverse/v1/plan.proto. */
-export interface Layer { id?: number; z_mm?: number; islands?: Island[]; [field: string]: unknown }
+export interface Layer { id?: number; z_mm?: number; islands?: Island[]; initial_route?: Visit[]; [field: string]: unknown }
 export interface Point { x_mm: number; y_mm: number }
 export interface Travel { contours_mm: number; rasters_mm: number; links_mm: number; total_mm: number }
 
@@ -111,4 +111,8 @@ export class GcodeGateway {
 
 /** A connected region: closed contours (the closing segment is implied) and open paths. */
 export function island(paths: { id?: number; contours?: Points[]; rasters?: Points[] }): Island;
-export function layer(islands: Island[], options?: { id?: number; zMm?: number }): Layer;
+/**
+ * `initialRoute`: a legal route that is known, every path once, such as the `visits` of an earlier result. The search begins
+ * with it, and the result costs no more. Servers whose capabilities lack "initial_route" refuse it.
+ */
+export function layer(islands: Island[], options?: { id?: number; zMm?: number; initialRoute?: Visit[] }): Layer;

@@ -4,4 +4,5 @@ const paths = (given) => given.map((points, id) => ({ id, points: points.flat() 
 export const island = ({ id = 0, contours = [], rasters = [] }) => ({
   id, contours: paths(contours), rasters: paths(rasters) });
 
-export const layer = (islands, { id = 0, zMm = 0 } = {}) => ({ id, z_mm: zMm, islands });
+export const layer = (islands, { id = 0, zMm = 0, initialRoute = [] } = {}) => ({
+  id, z_mm: zMm, islands, initial_route: initialRoute });

@@ -12,7 +12,7 @@ import xml.etree.ElementTree
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(HERE)), "support"))
 import check_routes  # noqa: E402
-from command_line import DONE, INPUT, PART1, SERVER, SMALL, TESTS, CommandLine, read  # noqa: E402
+from command_line import DONE, INPUT, PART1, SERVER, SMALL, TESTS, USAGE, CommandLine, read  # noqa: E402
 
 
 class Views(CommandLine):
@@ -195,11 +195,13 @@ class Routes(CommandLine):
                          ["id", "start", "travel_given_mm", "travel_mm", "lower_bound_mm", "stop", "solve_seconds",
                           "route"])
         self.assertEqual(document["layers"][0]["route"], [
-            {"kind": "contour", "island": 1, "id": 1, "entry": 0},
-            {"kind": "contour", "island": 1, "id": 7, "entry": 0},
-            {"kind": "contour", "island": 9, "id": 1, "entry": 0},
-            {"kind": "raster", "island": 1, "id": 1, "reversed": False},
-            {"kind": "raster", "island": 1, "id": 4, "reversed": False}])
+            {"kind": "contour", "island": 1, "id": 1, "entry": 0, "at": [10.0, 10.0]},
+            {"kind": "contour", "island": 1, "id": 7, "entry": 0, "at": [15.0, 15.0]},
+            {"kind": "contour", "island": 9, "id": 1, "entry": 0, "at": [-50.25, 0.1]},
+            {"kind": "raster", "island": 1, "id": 1, "reversed": False, "from": [11.0, 11.0],
+             "to": [29.0, 11.0]},
+            {"kind": "raster", "island": 1, "id": 4, "reversed": False, "from": [29.0, 29.0],
+             "to": [11.0, 29.0]}])
         self.assertEqual(document["layers"][1]["route"], [])
         self.assertAlmostEqual(document["total"]["idle_seconds"], document["total"]["travel_mm"] / 20.32)
         self.check(SMALL, document)
@@ -242,6 +244,85 @@ class Routes(CommandLine):
             total,
         ):
             self.assertGreater(faults(change), 0)
+
+    def start_from(self, text, *flags, strategy="none"):
+        """The document of `text` as a part that begins with routes.json, and what the command said."""
+        name, new = self.put("edited.damat", text), self.path("new.json")
+        said = self.succeed("optimize", name, f"--strategy={strategy}", f"--start_from={self.path('routes.json')}",
+                            f"--json={new}", *flags)
+        return name, json.loads(read(new)), said
+
+    def test_a_job_begins_with_earlier_routes(self):
+        earlier = self.path("routes.json")
+        self.succeed("optimize", PART1, "--quiet", f"--json={earlier}")
+        known = json.loads(read(earlier))
+        # `none` keeps what it begins with; no other answers anything worse.
+        for strategy in self.strategies():
+            _, document, said = self.start_from(read(PART1), "--option=time_limit=0.1" if strategy == "exact" else "--seed=2",
+                                                strategy=strategy)
+            self.assertIn("began with known routes of 5 of 5 layers (53 of 53 paths in them)\n", said)
+            for old, new in zip(known["layers"], document["layers"]):
+                if strategy == "none":
+                    self.assertEqual(new["route"], old["route"])
+                if new["start"] == old["start"]:
+                    self.assertLessEqual(new["travel_mm"], old["travel_mm"] * (1 + 1e-12))
+            self.check(PART1, document)
+
+    def test_a_part_that_was_edited_keeps_the_order_of_the_rest(self):
+        lines = read(PART1).splitlines(True)
+        contours = [i for i, line in enumerate(lines) if line.startswith("C")]
+        gone, moved = contours[-1], contours[-2]
+        edited = lines[:]
+        edited[moved] = re.sub(r"X([-+.0-9e]+)", lambda x: f"X{float(x[1]) + 0.5}", edited[moved])
+        del edited[gone]
+        island = max(i for i in range(gone) if lines[i].startswith("I"))
+        label, count, rest = edited[island].split(",", 2)
+        edited[island] = f"{label},{int(count) - 1},{rest}"
+        self.succeed("optimize", PART1, "--quiet", f"--json={self.path('routes.json')}")
+        known = json.loads(read(self.path("routes.json")))
+
+        name, document, said = self.start_from("".join(edited))
+
+        self.assertIn("began with known routes of 5 of 5 layers (52 of 52 paths in them)\n", said)
+        self.check(name, document)
+        for flags, extra in (["--deposition=interleaved"], {"interleaved": True}), (["--layers=2-3"], {"first": 2}):
+            name, document, _ = self.start_from("".join(edited), *flags, strategy="ni2opt")
+            self.check(name, document, **extra)
+        self.assertEqual(document["layers"][0]["id"], known["layers"][1]["id"])
+
+    def test_sliced_files_begin_with_earlier_routes_too(self):
+        gcode = os.path.join(TESTS, os.pardir, "deploy", "samples", "clusters13.gcode")
+        earlier, again = self.path("routes.json"), self.path("again.json")
+        self.succeed("optimize", gcode, "--quiet", "--strategy=ni2opt", f"--json={earlier}")
+        said = self.succeed("optimize", gcode, "--strategy=none", f"--start_from={earlier}", f"--json={again}")
+        self.assertRegex(said, r"began with known routes of (\d+) of \1 layers \((\d+) of \2 paths in them\)\n")
+        self.assertEqual([layer["route"] for layer in json.loads(read(again))["layers"]],
+                         [layer["route"] for layer in json.loads(read(earlier))["layers"]])
+        self.succeed("optimize", gcode, "--quiet", f"--start_from={earlier}", "-o", self.path("out.gcode"))
+        self.succeed("verify", gcode, self.path("out.gcode"))
+
+    def test_pictures_show_what_was_given_beside_what_was_begun_with(self):
+        routes, page = self.path("routes.json"), self.path("page.html")
+        self.succeed("optimize", PART1, "--quiet", f"--json={routes}")
+        self.succeed("optimize", PART1, "--quiet", f"--start_from={routes}", f"--report={page}")
+        scene = json.loads(re.search(r'<script id="scene" type="application/json">(.*?)</script>', read(page))[1])
+        given = json.loads(read(routes))["total"]["travel_given_mm"]
+        self.assertAlmostEqual(scene["routes"][0]["travel"], given, places=2)
+
+    def test_what_is_no_earlier_result_is_refused(self):
+        reason = "not what `traverse optimize --json` writes: "
+        api = self.path("api.json")
+        self.succeed("convert", SMALL, "-o", api)
+        for name, message in [
+                (SMALL, f"{SMALL}: {reason}it is not JSON, or is cut short"),
+                (api, f'{api}: {reason}layers[0]: "id" is not a whole number up to 18446744073709551615'),
+                (self.put("empty.json", ""), f"{self.path('empty.json')}: {reason}it is not JSON, or is cut short"),
+                (self.path("gone.json"), f"{self.path('gone.json')}: No such file or directory")]:
+            code, _, err = self.run_traverse("optimize", SMALL, f"--start_from={name}", "--json=-")
+            self.assertEqual((code, err), (INPUT, message + "\n"))
+        code, _, err = self.run_traverse("optimize", "-", "--start_from=-", "--json=-")
+        self.assertEqual(code, USAGE)
+        self.assertIn("only one of INPUT and --start_from can be standard input", err)
 
     def test_start_and_speed_count(self):
         document = self.optimize(SMALL, "--start=3,-4", "--travel_speed=100")

@@ -172,6 +172,24 @@ test("routes come from a real server, for arrays and iterators", async (t) => {
   assert.match(strategies.server_version, /^\d+\.\d+\.\d+$/);
 });
 
+test("a known route is where the search begins", async (t) => {
+  const server = await program(t, "TRAVERSE_SERVER");
+  const client = await optimizer(t, [server.address]);
+  assert.ok((await client.strategies()).capabilities.includes("initial_route"));
+  const islands = [island({ contours: SQUARES, rasters: [[[1, 1], [3, 3]], [[41, 1], [43, 3]]] })];
+  const plan = { plan: { paths: [{ contour: { points: [0, 0, 4, 0] } }, { open_path: { points: [9, 9, 8, 8] } }],
+    nodes: [{ any_order: { children: [1, 2] } }, { path: 0 }, { path: 1 }] } };
+  const found = await collect(client.optimize([layer(islands), plan]));
+
+  const known = [layer(islands, { initialRoute: found[0].visits }), { ...plan, initial_route: found[1].visits }];
+  const again = await collect(client.optimize(known, { strategy: "none" }));
+
+  assert.deepEqual(again.map(({ visits }) => visits), found.map(({ visits }) => visits));
+  const wrong = layer(islands, { initialRoute: [{ island: 0, contour: 9, vertex: 0 }] });
+  await assert.rejects(collect(client.optimize([wrong])), (error) => error.code === "INVALID_ARGUMENT"
+    && error.details.startsWith("layers[0].initial_route[0].contour: 9, but there are 6"));
+});
+
 test("killing one of three servers loses no layer", async (t) => {
   const servers = await Promise.all([1, 2, 3].map(() => program(t, "TRAVERSE_SERVER")));
   const client = await optimizer(t, servers.map(({ address }) => address));

@@ -6,6 +6,9 @@ export async function shortest(addresses: string[]): Promise<LayerResult[]> {
   const results: LayerResult[] = [];
   try {
     for await (const result of optimizer.optimize([layer([island({ contours: [[[0, 0], [1, 0], [1, 1]]] })])])) results.push(result);
+    const known = layer([island({})], { initialRoute: results[0].visits });
+    for await (const result of optimizer.optimize([known])) results.push(result);
+    if (!(await optimizer.strategies()).capabilities.includes("initial_route")) return [];
   } catch (error) {
     if (!(error instanceof TraverseError) || error.code !== "UNAVAILABLE") throw error;
   }

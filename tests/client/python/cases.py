@@ -198,6 +198,27 @@ class Real(unittest.TestCase):
             self.assertIn("partial_answers", strategies.capabilities)
             self.assertRegex(strategies.server_version, r"^\d+\.\d+\.\d+$")
 
+    def test_a_known_route_is_where_the_search_begins(self):
+        server = self.start(Server)
+        islands = [island(contours=SQUARES, rasters=[[(1, 1), (3, 3)], [(41, 1), (43, 3)]])]
+        plan = traverse_client.Layer(plan={"paths": [{"contour": {"points": [0, 0, 4, 0]}},
+                                                     {"open_path": {"points": [9, 9, 8, 8]}}],
+                                           "nodes": [{"any_order": {"children": [1, 2]}}, {"path": 0}, {"path": 1}]})
+        with TravelOptimizer([server.address]) as optimizer:
+            self.assertIn("initial_route", optimizer.strategies().capabilities)
+            found = list(optimizer.optimize([layer(islands), plan], 30))
+            known = traverse_client.Layer()
+            known.CopyFrom(plan)
+            known.initial_route.extend(found[1].visits)
+            again = list(optimizer.optimize([layer(islands, initial_route=found[0].visits), known], 30, strategy="none"))
+
+            self.assertEqual([list(one.visits) for one in again], [list(one.visits) for one in found])
+            wrong = layer(islands, initial_route=[traverse_client.Visit(island=0, contour=9, vertex=0)])
+            with self.assertRaises(TraverseError) as raised:
+                list(optimizer.optimize([layer(islands), wrong], 30))
+        self.assertEqual(raised.exception.code, grpc.StatusCode.INVALID_ARGUMENT)
+        self.assertIn("layers[1].initial_route[0].contour: 9, but there are 6", str(raised.exception))
+
     def test_ten_thousand_layers_wait_for_a_slow_reader(self):
         server = self.start(Server)
         taken = 0

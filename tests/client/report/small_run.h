@@ -23,7 +23,9 @@ inline InputJob SmallJob() {
   contour.set_id(3);
   contour.add_points(0);
   contour.add_points(0);
-  plan.mutable_plan()->add_paths()->mutable_open_path()->set_id(4);
+  v1::OpenPath& open = *plan.mutable_plan()->add_paths()->mutable_open_path();
+  open.set_id(4);
+  for (const double value : {1.0, 2.5, 8.0, 8.0, 3.0, 4.0}) open.add_points(value);
   job.facts = {{"slicer", "none"}, {"longer than the rest", "1"}};
   job.notes = {{}, {{0, 1}, {5, 6}}};
   return job;

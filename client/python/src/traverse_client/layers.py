@@ -19,6 +19,11 @@ def island(contours: Iterable[Points] = (), rasters: Iterable[Points] = (), id: 
     return made
 
 
-def layer(islands: Iterable[plan_pb2.Island], id: int = 0, z_mm: float = 0.0) -> plan_pb2.Layer:
-    """A layer of islands at the height `z_mm`; `id` is echoed in its result."""
-    return plan_pb2.Layer(id=id, z_mm=z_mm, islands=islands)
+def layer(islands: Iterable[plan_pb2.Island], id: int = 0, z_mm: float = 0.0,
+          initial_route: Iterable[plan_pb2.Visit] = ()) -> plan_pb2.Layer:
+    """A layer of islands at the height `z_mm`; `id` is echoed in its result.
+
+    initial_route: a legal route that is known, every path once, such as the `visits` of an earlier result. The search begins
+    with it, and the result costs no more. Servers whose `strategies().capabilities` lack "initial_route" refuse it.
+    """
+    return plan_pb2.Layer(id=id, z_mm=z_mm, islands=islands, initial_route=initial_route)
