@@ -36,14 +36,18 @@ const char* const kJobs[] = {
                        nodes { in_order { children: [1, 2] } } nodes { path: 0 }
                        nodes { any_order { children: [3, 4, 5] before { first: 0 second: 2 }
                                            before { first: 1 second: 2 } } }
-                       nodes { path: 1 } nodes { path: 2 } nodes { path: 3 } } })",
+                       nodes { path: 1 } nodes { path: 2 } nodes { path: 3 } }
+                initial_route { plan_path: 0 vertex: 2 } initial_route { plan_path: 1 reversed: true }
+                initial_route { plan_path: 2 reversed: false } initial_route { plan_path: 3 vertex: 1 } })",
     R"(options { strategy { name: "auto" } time_limit { nanos: 50000000 } }
        layers { islands { contours { points: [0, 0, 3, 0, 3, 3] } contours { points: [1, 1, 2, 1, 2, 2] }
                           rasters { points: [0, 1, 3, 1] } } })",
     R"(options { strategy { name: "tabu" } time_limit { nanos: 50000000 } }
        layers { islands { contours { points: [0, 0, 3, 0, 3, 3] } contours { points: [9, 1, 8, 1, 8, 2] } } })",
     R"(options { strategy { name: "exact" } time_limit { nanos: 50000000 } }
-       layers { islands { rasters { points: [0, 0, 3, 0] } rasters { points: [9, 1, 8, 1] } } })",
+       layers { islands { rasters { points: [0, 0, 3, 0] } rasters { points: [9, 1, 8, 1] } }
+                initial_route { island: 0 raster: 1 reversed: true }
+                initial_route { island: 0 raster: 0 reversed: true } } })",
 };
 
 std::vector<v1::OptimizeBatchRequest> ParseJobs() {
