@@ -100,7 +100,7 @@ std::optional<Admission::No> Admission::CheckPoints(const std::string& caller, i
                                                     Deadline deadline) const {
   if (std::optional<No> no = CheckDeadline(caller, points, deadline); no) return no;
   if (std::optional<No> no = CheckQueues(caller, points); no) return no;
-  return CheckWait(caller, points, "");
+  return CheckWait(caller, points, "", deadline);
 }
 
 std::optional<Admission::No> Admission::CheckQueues(const std::string& caller,
@@ -134,7 +134,8 @@ std::optional<Admission::No> Admission::CheckDeadline(const std::string& caller,
   const auto of_caller = callers_.find(caller);
   if (!deadline || of_caller == callers_.end()) return std::nullopt;
   const Budget::Clock::time_point now = Budget::Now(time_);
-  const LeastAnswer::Seconds least = of_caller->second.least_answer.Of(points, now);
+  const LeastAnswer::Seconds least = of_caller->second.least_answer.Of(
+      static_cast<double>(points) + PointsDueBefore(caller, points, deadline), now);
   const LeastAnswer::Seconds left = *deadline - now;
   if (least <= left) return std::nullopt;
   const absl::Duration late = absl::Seconds((least - left).count());
@@ -159,6 +160,27 @@ absl::Duration Admission::WaitingTime(const Ticket& job) const {
   return job.stalled() ? absl::ZeroDuration() : TimeFor(job.points_, job.strategy_);
 }
 
+int64_t Admission::PointsDueBefore(const Caller& caller, Deadline deadline) {
+  int64_t points = 0;
+  for (const Ticket* job : caller.jobs) {
+    job->admission_.mutex_.AssertHeld();  // it is ours
+    if (job->deadline_ && *job->deadline_ <= *deadline) points += job->points_;
+  }
+  return points;
+}
+
+double Admission::PointsDueBefore(const std::string& caller, int64_t points,
+                                  Deadline deadline) const {
+  const auto of_caller = callers_.find(caller);
+  const int64_t own =
+      of_caller == callers_.end() ? 0 : PointsDueBefore(of_caller->second, deadline);
+  int64_t all = own;
+  for (auto other = callers_.begin(); other != callers_.end(); ++other) {
+    if (other != of_caller) all += std::min(PointsDueBefore(other->second, deadline), own + points);
+  }
+  return static_cast<double>(all) / limits_.workers;
+}
+
 int64_t Admission::PointsOfOthers(const std::string& caller) const {
   int64_t points = 0;
   for (const auto& [name, other] : callers_) {
@@ -168,11 +190,18 @@ int64_t Admission::PointsOfOthers(const std::string& caller) const {
   return points;
 }
 
+// A search that the clock cuts short takes as long as it is given, also alone.
 std::optional<Admission::No> Admission::CheckWait(const std::string& caller, int64_t points,
-                                                  const std::string& strategy) const {
+                                                  const std::string& strategy,
+                                                  Deadline deadline) const {
   const absl::Duration alone = TimeFor(points, strategy);
   const absl::Duration expected = TimeUntilDone(caller, alone);
-  const absl::Duration bearable = std::max(limits_.max_wait, alone * limits_.max_slowdown);
+  absl::Duration whole = alone;
+  if (deadline) {
+    const absl::Duration given = absl::FromChrono(*deadline - Budget::Now(time_));
+    whole = std::max(whole, ShareCutShort(strategy) * given);
+  }
+  const absl::Duration bearable = std::max(limits_.max_wait, whole * limits_.max_slowdown);
   if (expected <= bearable) return std::nullopt;
   return No{
       Refusal::kWait,
@@ -261,12 +290,22 @@ int64_t Admission::held_bytes() const {
   return bytes_;
 }
 
-absl::Duration Admission::TimeFor(int64_t points, const std::string& strategy) const {
+const Admission::Solved* Admission::SolvedBy(const std::string& strategy) const {
   auto solved = solved_.find(strategy);
   if (solved == solved_.end()) solved = solved_.find("");
-  if (solved == solved_.end() || solved->second.points <= 0) return absl::ZeroDuration();
-  return absl::Seconds(static_cast<double>(points) * solved->second.seconds /
-                       solved->second.points / limits_.workers);
+  return solved == solved_.end() || solved->second.points <= 0 ? nullptr : &solved->second;
+}
+
+absl::Duration Admission::TimeFor(int64_t points, const std::string& strategy) const {
+  const Solved* solved = SolvedBy(strategy);
+  if (solved == nullptr) return absl::ZeroDuration();
+  return absl::Seconds(static_cast<double>(points) * solved->seconds / solved->points /
+                       limits_.workers);
+}
+
+double Admission::ShareCutShort(const std::string& strategy) const {
+  const Solved* solved = SolvedBy(strategy);
+  return solved == nullptr ? 0 : solved->cut_short / solved->points;
 }
 
 Admission::Ticket::~Ticket() {
@@ -304,7 +343,7 @@ void Admission::Ticket::Add(int64_t points) {
   Count(points);
 }
 
-void Admission::Ticket::Remove(int64_t points, int64_t bytes, double seconds) {
+void Admission::Ticket::Remove(int64_t points, int64_t bytes, double seconds, bool cut_short) {
   MutexLock lock(admission_.mutex_);
   CountBytes(-std::min(bytes, bytes_));
   Count(-points);
@@ -312,14 +351,22 @@ void Admission::Ticket::Remove(int64_t points, int64_t bytes, double seconds) {
     Solved& solved = admission_.solved_[name];
     solved.points = solved.points * kFading + static_cast<double>(points);
     solved.seconds = solved.seconds * kFading + seconds;
+    solved.cut_short = solved.cut_short * kFading + (cut_short ? static_cast<double>(points) : 0);
     if (strategy_.empty()) break;
   }
 }
 
-void Admission::Ticket::NoteWait(double seconds) {
+void Admission::Ticket::NoteLag(double seconds) {
   MutexLock lock(admission_.mutex_);
-  caller_->second.least_answer.NoteWait(LeastAnswer::Seconds(seconds),
-                                        Budget::Now(admission_.time_));
+  caller_->second.least_answer.NoteLag(LeastAnswer::Seconds(seconds),
+                                       Budget::Now(admission_.time_));
+}
+
+double Admission::Ticket::PointsDueBefore() const {
+  MutexLock lock(admission_.mutex_);
+  if (!deadline_) return 0;
+  const double own = static_cast<double>(points_) / admission_.limits_.workers;
+  return admission_.PointsDueBefore(caller_->first, 0, deadline_) - own;
 }
 
 void Admission::Ticket::CountBytes(int64_t bytes) {
@@ -368,7 +415,7 @@ absl::Status Admission::Ticket::SetStrategy(const std::string& strategy) {
     strategy_ = strategy;
     const int64_t points = points_;
     Count(-points);  // this ticket does not count as another job
-    if (points > 0) no = admission_.CheckWait(caller_->first, points, strategy);
+    if (points > 0) no = admission_.CheckWait(caller_->first, points, strategy, deadline_);
     Count(points);
   }
   if (!no) return absl::OkStatus();

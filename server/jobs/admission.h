@@ -8,8 +8,8 @@
 // points is done when each other job of its caller has had p points of work or has ended, and each
 // other caller as much as this one. So small jobs are admitted beside large ones that would have to
 // wait themselves; under overload the large ones are refused first. And it is refused if its
-// deadline is too early even for greedy, by how long its caller's jobs have waited of late: it
-// would only take the time of those that can be answered.
+// deadline is too early even for greedy, after what is due before it, by how long the way back to
+// its caller took of late: it would only take the time of those that can be answered.
 //
 // Knows nothing of gRPC.
 
@@ -102,10 +102,14 @@ class Admission {
     void Add(int64_t points);
 
     // Notes that a layer of `points`, for which `bytes` were held, took a worker `seconds`.
-    void Remove(int64_t points, int64_t bytes, double seconds);
+    // `cut_short`: by the clock.
+    void Remove(int64_t points, int64_t bytes, double seconds, bool cut_short = false);
 
-    // Notes how long the first task of the job waited for a worker.
-    void NoteWait(double seconds);
+    // Notes how long after the end of its search the job ended.
+    void NoteLag(double seconds);
+
+    // The points of other jobs that greedy must do before this one's deadline, for each worker.
+    double PointsDueBefore() const;
 
     // Counts `bytes` more, or less, that the server holds for the job. Errors: ResourceExhausted,
     // as Admit, if the memory for jobs is used up; then it counts nothing. `beside`: what the same
@@ -196,7 +200,8 @@ class Admission {
   std::optional<No> CheckQueues(const std::string& caller, int64_t points) const
       TRAVERSE_REQUIRES(mutex_);
   std::optional<No> CheckWait(const std::string& caller, int64_t points,
-                              const std::string& strategy) const TRAVERSE_REQUIRES(mutex_);
+                              const std::string& strategy, Deadline deadline) const
+      TRAVERSE_REQUIRES(mutex_);
   std::optional<No> CheckBytes(const Caller& caller, int64_t bytes, int64_t beside) const
       TRAVERSE_REQUIRES(mutex_);
 
@@ -206,6 +211,12 @@ class Admission {
       TRAVERSE_REQUIRES(mutex_) TRAVERSE_NO_THREAD_SAFETY_ANALYSIS;
   absl::Duration WaitingTime(const Ticket& job) const
       TRAVERSE_REQUIRES(mutex_) TRAVERSE_NO_THREAD_SAFETY_ANALYSIS;
+
+  // Points that wait of jobs of `caller` which are due by `deadline`, and of other callers as much
+  // as that and `points` at most, for each worker.
+  double PointsDueBefore(const std::string& caller, int64_t points, Deadline deadline) const
+      TRAVERSE_REQUIRES(mutex_);
+  static int64_t PointsDueBefore(const Caller& caller, Deadline deadline);
 
   // Points of other callers that wait for a worker.
   int64_t PointsOfOthers(const std::string& caller) const TRAVERSE_REQUIRES(mutex_);
@@ -218,6 +229,9 @@ class Admission {
   // that is unknown; zero while nothing is known.
   absl::Duration TimeFor(int64_t points, const std::string& strategy = "") const
       TRAVERSE_REQUIRES(mutex_);
+
+  // How much of what `strategy` solved of late the clock cut short, from 0 to 1.
+  double ShareCutShort(const std::string& strategy) const TRAVERSE_REQUIRES(mutex_);
 
   const AdmissionLimits limits_;
   const std::function<void(Refusal)> on_refusal_;
@@ -236,7 +250,9 @@ class Admission {
   struct Solved {
     double points = 0;
     double seconds = 0;
+    double cut_short = 0;  // points
   };
+  const Solved* SolvedBy(const std::string& strategy) const TRAVERSE_REQUIRES(mutex_);
   // By strategy of the registry; the empty name has the sum of all.
   std::map<std::string, Solved> solved_ TRAVERSE_GUARDED_BY(mutex_);
 };

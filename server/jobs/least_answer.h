@@ -12,35 +12,33 @@
 
 namespace traverse {
 
-// Workers take turns, so how long a job waits for its first turn, and then for each further one,
-// depends on what the others do. That is measured for each caller: the longest waits of late count,
-// and are forgotten within seconds, because a queue is gone as quickly as it comes. Not
-// thread-safe.
+// What is due goes before all searches, so it waits only for what is due before it, and for the way
+// back. That is measured for each caller: the longest of late counts, and is forgotten within
+// seconds, because a machine is free again as quickly as it became busy. Not thread-safe.
 class LeastAnswer {
  public:
   using Clock = Budget::Clock;
   using Seconds = std::chrono::duration<double>;
 
-  // Notes how long the first task of a job waited for a worker.
-  void NoteWait(Seconds wait, Clock::time_point now) {
-    wait_ = std::max(wait, Wait(now));
+  // Notes how long after the end of its search a job ended.
+  void NoteLag(Seconds lag, Clock::time_point now) {
+    lag_ = std::max(lag, Lag(now));
     at_ = now;
   }
 
   // Until a job of so many points, to be read and solved by greedy, is answered.
-  Seconds Of(int64_t points, Clock::time_point now) const {
+  Seconds Of(double points, Clock::time_point now) const {
     constexpr Seconds kOfPoint{0.5e-6};
-    constexpr int kTurns = 3;  // to be read, to begin, to be answered
-    return kOfPoint * static_cast<double>(points) + kTurns * Wait(now);
+    return kOfPoint * points + Lag(now);
   }
 
  private:
-  Seconds Wait(Clock::time_point now) const {
+  Seconds Lag(Clock::time_point now) const {
     constexpr Seconds kForgotten{1};
-    return wait_ * std::exp2(-(Seconds(now - at_) / kForgotten));
+    return lag_ * std::exp2(-(Seconds(now - at_) / kForgotten));
   }
 
-  Seconds wait_{};
+  Seconds lag_{};
   Clock::time_point at_{};
 };
 

@@ -17,7 +17,7 @@ struct ReturnConditions {
 
   Duration left{};     // until the deadline
   int64_t layers = 0;  // number of layers known to come
-  int64_t points = 0;
+  int64_t points = 0;  // of these, and of jobs that are due before, for each worker
   Duration lag{};      // ReturnLag::Margin of the caller
   Duration wakings{};  // WakeLateness::Margin
 };

@@ -87,9 +87,10 @@ void JobStream::StartEngine(int64_t expected_layers, int64_t expected_points) {
   std::optional<Clock::time_point> end;
   if (call_.deadline) {
     const Clock::time_point now = Clock::now();
+    const auto due_before = static_cast<int64_t>(ticket_->PointsDueBefore());
     end = *call_.deadline - MarginOfReturn({.left = *call_.deadline - now,
                                             .layers = expected_layers,
-                                            .points = expected_points,
+                                            .points = expected_points + due_before,
                                             .lag = core_.return_lag.Margin(call_.caller),
                                             .wakings = core_.wake_lateness.Margin()});
     search_end_ = end;
@@ -153,7 +154,8 @@ std::string JobStream::EncodeLayer(const LayerOutcome& outcome, const LayerLabel
   totals_.Add(outcome);
   core_.metrics.CountLayer(*layer_metrics_, outcome, setup_.idle_speed_mm_s);
   const double busy_seconds = queue_->busy_seconds();
-  ticket_->Remove(label.points, BytesFreedBy(outcome, label), busy_seconds - counted_seconds_);
+  ticket_->Remove(label.points, BytesFreedBy(outcome, label), busy_seconds - counted_seconds_,
+                  outcome.stop == StopReason::kTimeLimit);
   counted_seconds_ = busy_seconds;
   --core_.queue_layers;
   std::string message = Encode(outcome, label.id);
@@ -230,9 +232,9 @@ void JobStream::End(const absl::Status& status) {
   core_.files.log->Job(record);
   if (const Clock::time_point now = Clock::now(); search_end_ && now > *search_end_) {
     core_.return_lag.Record(call_.caller, now - *search_end_);
+    ticket_->NoteLag(std::chrono::duration<double>(now - *search_end_).count());
   }
   // Before the caller learns of the end: its next job may need the place.
-  if (ticket_ != nullptr) ticket_->NoteWait(queue_->wait().first_seconds);
   ticket_.reset();
   FinishCall(ToGrpcStatus(status));
 }

@@ -353,7 +353,7 @@ TEST_F(AdmissionTest, RefusesAJobWhoseDeadlineIsTooEarlyEvenForGreedy) {
   auto running = *admission.Admit("a", 1000);
   EXPECT_OK(admission.Admit("a", 1000, in(10)));
 
-  (*admission.Admit("a", 1000))->NoteWait(0.050);
+  (*admission.Admit("a", 1000))->NoteLag(0.150);
   const auto refused = admission.Admit("a", 1000, in(100));
 
   EXPECT_THAT(refused,
@@ -362,9 +362,9 @@ TEST_F(AdmissionTest, RefusesAJobWhoseDeadlineIsTooEarlyEvenForGreedy) {
   EXPECT_THAT(refusals_, ElementsAre("deadline"));
   EXPECT_OK(admission.Admit("a", 1000, in(200)));
   EXPECT_OK(admission.Admit("a", 1000));
-  // What one caller's jobs wait for is nothing to another.
+  // The way back to one caller is nothing to another.
   EXPECT_OK(admission.Admit("b", 1000, in(10)));
-  // A wait is soon forgotten.
+  // A lag is soon forgotten.
   clock.now += std::chrono::seconds(5);
   EXPECT_OK(admission.Admit("a", 1000, in(100)));
 }
@@ -380,6 +380,54 @@ TEST_F(AdmissionTest, CountsTheTimeOfGreedyForTheWholeJob) {
   EXPECT_FALSE(admission.Admit("a", 1'000'000, deadline).ok());
   auto batch = *admission.Admit("a", 0, deadline);
   EXPECT_FALSE(batch->Resize(1'000'000).ok());
+}
+
+// At 0.5 us a point on two workers.
+TEST_F(AdmissionTest, CountsTheTimeOfGreedyForWhatIsDueBefore) {
+  StoppedClock clock;
+  Admission admission(
+      {.workers = 2}, Count(), [] {}, &clock);
+  const auto in = [&](int ms) { return clock.now + std::chrono::milliseconds(ms); };
+  auto first = *admission.Admit("a", 200'000, in(100));
+  auto later = *admission.Admit("a", 1'000'000, in(5000));
+  auto whenever = *admission.Admit("a", 1'000'000);
+
+  EXPECT_OK(admission.Admit("a", 90'000, in(100)));
+  EXPECT_FALSE(admission.Admit("a", 110'000, in(100)).ok());
+  EXPECT_OK(admission.Admit("a", 150'000, in(99)));
+
+  // Other callers have as much of the time as this one, and no more.
+  auto mine = *admission.Admit("b", 1);
+  EXPECT_OK(admission.Admit("b", 130'000, in(100)));
+  EXPECT_FALSE(admission.Admit("b", 140'000, in(100)).ok());
+
+  EXPECT_EQ(later->PointsDueBefore(), 100'000);
+  first->Remove(150'000, 0, 0.1);
+  EXPECT_EQ(later->PointsDueBefore(), 25'000);
+  EXPECT_OK(admission.Admit("b", 140'000, in(100)));
+  EXPECT_EQ(first->PointsDueBefore(), 0);
+  EXPECT_EQ(whenever->PointsDueBefore(), 0);
+}
+
+TEST_F(AdmissionTest, WhatTheClockCutsShortMayTakeAsLongAsItIsGiven) {
+  StoppedClock clock;
+  Admission admission(
+      {.max_wait = absl::Milliseconds(250), .max_slowdown = 3}, Count(), [] {}, &clock);
+  const auto in = [&](int ms) { return clock.now + std::chrono::milliseconds(ms); };
+  const auto solve = [&](bool cut_short) {
+    for (int i = 0; i < 10'000; ++i)
+      (*admission.Admit("before", 0))->Remove(100, 0, 0.1, cut_short);
+  };
+  std::vector<std::unique_ptr<Admission::Ticket>> running;
+  for (int i = 0; i < 10; ++i) running.push_back(*admission.Admit("a", 100, in(500)));
+
+  solve(/*cut_short=*/false);
+  EXPECT_THAT(admission.Admit("a", 100, in(500)),
+              StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("busy")));
+  solve(/*cut_short=*/true);
+  EXPECT_OK(admission.Admit("a", 100, in(500)));
+  EXPECT_FALSE(admission.Admit("a", 100, in(300)).ok());
+  EXPECT_FALSE(admission.Admit("a", 100).ok());
 }
 
 }  // namespace
