@@ -19,7 +19,8 @@ Route LayerSolver::GreedyRoute(const LayerProblem& problem, const ChainLayer& la
   Budget budget(&cancel_, may_be_late ? std::nullopt : layer.greedy_end, executor_.turn(),
                 spec_.time);
   Route route = predictor_->Solve(problem, budget).route;
-  if (spec_.deadline && Budget::Now(spec_.time) >= *spec_.deadline) late_points_left_ -= points;
+  const bool is_late = spec_.deadline && Budget::Now(spec_.time) >= *spec_.deadline;
+  if (is_late && may_be_late) late_points_left_ -= points;
   return route;
 }
 

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,10 +22,10 @@ namespace traverse {
 namespace {
 
 // Contours scattered over islands, in an order that is far from a good one.
-Plan ScatteredLayer(uint64_t seed) {
+Plan ScatteredLayer(uint64_t seed, int contours = 48) {
   Rng rng(seed);
   std::vector<IslandPaths> islands(6);
-  for (int i = 0; i < 48; ++i) {
+  for (int i = 0; i < contours; ++i) {
     const Point c{200 * rng.Unit(), 200 * rng.Unit()};
     islands[static_cast<size_t>(i) % islands.size()].contours.push_back(
         MakeContour({{c.x, c.y}, {c.x + 2, c.y}, {c.x + 2, c.y + 2}, {c.x, c.y + 2}}));
@@ -31,12 +33,18 @@ Plan ScatteredLayer(uint64_t seed) {
   return SequentialPlan(islands);
 }
 
+// More points than greedy may do late.
+constexpr int kLarge = 21'000;
+
 struct Case {
   std::string strategy;
   int layers = 5;
   bool announced = true;  // as a batch is; otherwise as a stream whose caller sends on
   bool look_ahead = false;
-  int64_t deadline = 0;  // in readings of the clock; 0: none
+  int64_t deadline = 0;                                        // in readings of the clock; 0: none
+  std::optional<Budget::Clock::time_point> at = std::nullopt;  // instead of that
+  int large = -1;                                              // the layer that has kLarge contours
+  int64_t pause = 0;  // readings between the answer to a layer and the next layer
   int64_t stop_at = -1;
   int64_t stop = 0;
 };
@@ -58,9 +66,13 @@ Run RunCase(const Case& of) {
   JobSpec spec;
   spec.time = &clock;
   if (of.deadline > 0) spec.deadline = StepClock::At(of.deadline);
+  if (of.at) spec.deadline = of.at;
   auto job = Job::Start(spec, *MakeStrategy(of.strategy, {}), executor, sink);
   std::vector<Plan> plans;
-  for (int i = 0; i < of.layers; ++i) plans.push_back(ScatteredLayer(static_cast<uint64_t>(i) + 1));
+  for (int i = 0; i < of.layers; ++i) {
+    plans.push_back(i == of.large ? ScatteredLayer(1, kLarge)
+                                  : ScatteredLayer(static_cast<uint64_t>(i) + 1));
+  }
   if (of.announced) {
     for (const Plan& plan : plans) job->Announce(plan);
     job->AnnounceEnd();
@@ -70,6 +82,7 @@ Run RunCase(const Case& of) {
     layer.plan = plans[static_cast<size_t>(i)];
     layer.more_follows = of.look_ahead && i + 1 < of.layers;
     job->Add(std::move(layer));
+    if (of.pause > 0 && sink.WaitForAnswers(static_cast<size_t>(i) + 1)) clock.Pass(of.pause);
   }
   job->Close();
   sink.Wait();
@@ -91,10 +104,12 @@ void ExpectWithinGreedy(const Case& of) {
   for (const LayerOutcome& outcome : run.outcomes) {
     sum += outcome.cost;
     greedy += GreedyCost(outcome);
-    if (of.look_ahead) continue;
+    if (of.look_ahead || outcome.index == static_cast<uint64_t>(of.large)) continue;
     EXPECT_LE(outcome.cost, GreedyCost(outcome) + 1e-6) << outcome.index;
   }
-  EXPECT_LE(sum, greedy + 1e-6);
+  if (of.large < 0) {
+    EXPECT_LE(sum, greedy + 1e-6);
+  }
 }
 
 // What greedy takes for all layers.
@@ -147,6 +162,43 @@ TEST(Floor, HoldsWhereTimePassesAtOnce) {
       of.deadline = 20 * least;
       of.stop_at = at * least;
       of.stop = 5 * least;
+      ExpectWithinGreedy(of);
+    }
+  }
+}
+
+TEST(Floor, HoldsWhereThereNeverWasAnyTime) {
+  for (const std::string& strategy : AllButNone()) {
+    for (const auto at : {StepClock::At(-5'000'000), StepClock::At(0),
+                          StepClock::At(0) + std::chrono::nanoseconds(1)}) {
+      for (const bool announced : {false, true}) {
+        Case of{.strategy = strategy, .announced = announced};
+        of.at = at;
+        ExpectWithinGreedy(of);
+      }
+    }
+  }
+}
+
+// A layer a second, and two seconds for all.
+TEST(Floor, HoldsForAStreamThatSendsOnAfterItsDeadline) {
+  const int64_t second = 10 * GreedyReadings(5);
+  for (const std::string& strategy : AllButNone()) {
+    Case of{.strategy = strategy, .announced = false};
+    of.deadline = 2 * second;
+    of.pause = second;
+    ExpectWithinGreedy(of);
+  }
+}
+
+// For which even greedy has no time.
+TEST(Floor, HoldsForTheSmallLayersBesideAHugeOne) {
+  const int64_t least = GreedyReadings(30);
+  for (const std::string& strategy : AllButNone()) {
+    for (const int large : {0, 15}) {
+      Case of{.strategy = strategy, .layers = 30};
+      of.large = large;
+      of.deadline = 4 * least;
       ExpectWithinGreedy(of);
     }
   }
