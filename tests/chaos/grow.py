@@ -71,7 +71,8 @@ def walls_and_infill(n):
 
 
 def nested_loops(n):
-    return one_layer(";TYPE:External perimeter\n" + "".join(square(i * .01, i * .01, 2 + 2 * n * .01 - i * .02) for i in range(n)))
+    """Within a plate: the length of what is printed grows as their number, too."""
+    return one_layer(";TYPE:External perimeter\n" + "".join(square(i * 99 / n, i * 99 / n, 200 - i * 198 / n) for i in range(n)))
 
 
 def tools(n):

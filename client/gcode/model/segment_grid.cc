@@ -42,7 +42,9 @@ SegmentGrid::SegmentGrid(std::vector<Segment> segments, double cell_mm)
   double max_x = -std::numeric_limits<double>::max();
   double max_y = max_x;
   min_x_ = min_y_ = -max_x;
+  double length = 0;
   for (const Segment& s : segments_) {
+    length += Distance(s.a, s.b);
     min_x_ = std::min({min_x_, s.a.x, s.b.x});
     min_y_ = std::min({min_y_, s.a.y, s.b.y});
     max_x = std::max({max_x, s.a.x, s.b.x});
@@ -50,8 +52,12 @@ SegmentGrid::SegmentGrid(std::vector<Segment> segments, double cell_mm)
   }
   const double width = max_x - min_x_;
   const double height = max_y - min_y_;
-  const size_t most = std::min(kMaxCells, kCellsPerSegment * (segments_.size() + 16));
-  while ((width / cell_ + 1) * (height / cell_ + 1) > static_cast<double>(most)) cell_ *= 2;
+  const size_t most_entries = kCellsPerSegment * (segments_.size() + 16);
+  const auto most_cells = static_cast<double>(std::min(kMaxCells, most_entries));
+  while ((width / cell_ + 1) * (height / cell_ + 1) > most_cells ||
+         length / cell_ > static_cast<double>(most_entries)) {
+    cell_ *= 2;
+  }
   cells_per_mm_ = 1 / cell_;
   columns_ = static_cast<int>(width / cell_) + 1;
   rows_ = static_cast<int>(height / cell_) + 1;

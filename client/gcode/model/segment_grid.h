@@ -28,11 +28,12 @@ double SquaredDistance(const Segment& s, const Segment& t);
 // True if the interiors of the segments cross at one point.
 bool Cross(Vertex a, Vertex b, Vertex c, Vertex d);
 
-// Built once; O(total length of the segments / cell size + cells / 64) in time and memory.
+// Built once; O(total length of the segments / cell size + cells / 64) in time and memory, where the
+// length is at most kCellsPerSegment cells for each segment.
 class SegmentGrid {
  public:
-  // Cells of `cell_mm`. A huge layer gets larger ones, so that there are at most kMaxCells, and no
-  // more than so few segments justify.
+  // Cells of `cell_mm`. A huge layer gets larger ones, so that there are at most kMaxCells, and
+  // neither cells nor segments in them are more than so few segments justify.
   static constexpr double kCellMm = 1;
   static constexpr size_t kMaxCells = size_t{1} << 22;
   static constexpr size_t kCellsPerSegment = 256;

@@ -63,6 +63,18 @@ TEST(SegmentGridTest, FindsAllPathsThatComeNear) {
   }
 }
 
+// Else a file of a few megabytes with loops around the whole plate takes gigabytes.
+TEST(SegmentGridTest, LongSegmentsGetLargerCells) {
+  std::vector<Segment> segments;
+  for (uint32_t path = 0; path < 500; ++path) {
+    segments.push_back({{0, 0.1 * path}, {1000, 0.1 * path}, path});
+  }
+
+  const SegmentGrid grid(segments, 0.5);
+
+  EXPECT_LE(grid.entry_count(), SegmentGrid::kCellsPerSegment * (segments.size() + 16));
+}
+
 TEST(SegmentGridTest, LooksAtNoPathsThatAreNotWanted) {
   const SegmentGrid grid({{{0, 0}, {5, 0}, 0}, {{0, 0.1}, {5, 0.1}, 1}, {{0, 0.2}, {5, 0.2}, 2}});
   const auto first_two = [](uint32_t s, uint32_t t) {
