@@ -9,6 +9,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_format.h"
 #include "client/files/read_file.h"
+#include "client/formats/message_json.h"
 #include "traverse/v1/route_optimizer_service.pb.h"
 
 namespace traverse {
@@ -42,20 +43,6 @@ absl::StatusOr<v1::OptimizeBatchRequest> ToRequest(const InputJob& job) {
   return request;
 }
 
-// protobuf's text of a JSON error holds the error, a line of the input and a caret below it.
-std::string OneLine(std::string_view message) {
-  std::string out;
-  for (const char c : message) {
-    const bool blank = c == ' ' || c == '\n' || c == '\t';
-    if (!blank) out += c >= ' ' && c <= '~' ? c : '?';
-    if (blank && !out.empty() && out.back() != ' ') out += ' ';
-  }
-  constexpr size_t kMaxShown = 200;
-  if (out.ends_with(" ^")) out.resize(out.size() - 2);
-  if (out.size() > kMaxShown) out = out.substr(0, kMaxShown) + "...";
-  return out;
-}
-
 }  // namespace
 
 absl::StatusOr<InputJob> ReadApiJson(std::string_view bytes, const std::string& name) {
@@ -64,12 +51,9 @@ absl::StatusOr<InputJob> ReadApiJson(std::string_view bytes, const std::string& 
         absl::StrFormat("%s: more than 2 GiB of JSON", DisplayName(name)));
   }
   v1::OptimizeBatchRequest request;
-  const google::protobuf::util::Status status = google::protobuf::util::JsonStringToMessage(
-      google::protobuf::StringPiece(bytes.data(), bytes.size()), &request);
-  if (!status.ok()) {
-    const std::string message(status.message().data(), status.message().size());
-    return absl::InvalidArgumentError(absl::StrFormat("%s: not an OptimizeBatchRequest: %s",
-                                                      DisplayName(name), OneLine(message)));
+  if (absl::Status status = ReadMessageJson(bytes, request); !status.ok()) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "%s: not an OptimizeBatchRequest: %s", DisplayName(name), std::string(status.message())));
   }
   return FromRequest(std::move(request), InputFormat::kJson, name);
 }
