@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "absl/status/status.h"
+#include "absl/strings/cord.h"
 #include "absl/strings/str_format.h"
 #include "absl/time/clock.h"
 #include "client/api/resume.h"
@@ -29,8 +30,13 @@ using Stream = grpc::ClientReaderWriter<v1::OptimizeRequest, v1::OptimizeRespons
 constexpr size_t kMessageBytes = size_t{32} << 10;
 
 absl::Status FromGrpc(const grpc::Status& status) {
-  if (status.ok()) return absl::OkStatus();
-  return absl::Status(static_cast<absl::StatusCode>(status.error_code()), status.error_message());
+  absl::Status out(static_cast<absl::StatusCode>(status.error_code()), status.error_message());
+  google::rpc::Status details;
+  if (status.ok() || !details.ParseFromString(status.error_details())) return out;
+  for (const google::protobuf::Any& any : details.details()) {
+    out.SetPayload(any.type_url(), absl::Cord(any.value()));
+  }
+  return out;
 }
 
 void SetDeadline(grpc::ClientContext& context, absl::Duration deadline) {
@@ -288,7 +294,8 @@ absl::StatusOr<JobResult> OptimizerClient::Optimize(const v1::JobOptions& option
     if (collector.answers() == layers.size() && !layers.empty()) break;  // only the summary is lost
     const std::optional<absl::Duration> delay = DelayAfter(status, call.retry, in_vain);
     if (!delay || absl::Now() + *delay >= deadline) {
-      absl::Status failure = FromGrpc(status);
+      const absl::Status failure = FromGrpc(status);
+      if (run.begin == 0) return failure;
       return absl::Status(failure.code(), ShiftPlace(std::string(failure.message()), run.begin));
     }
     if (!SleepUnlessCancelled(*delay, call.cancel)) return absl::CancelledError("cancelled");

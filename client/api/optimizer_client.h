@@ -5,9 +5,9 @@
 //   absl::StatusOr<JobResult> result = client.Optimize(options, layers, {.deadline =
 //   absl::Seconds(30)});
 //
-// Errors are the service's own statuses (route_optimizer_service.proto): InvalidArgument with a
-// field path, ResourceExhausted, Unavailable and so on; DeadlineExceeded; Internal for invalid
-// answers.
+// Errors are the service's own statuses (route_optimizer_service.proto) with their details as
+// payloads: InvalidArgument with a field path, ResourceExhausted, Unavailable and so on;
+// DeadlineExceeded; Internal for invalid answers.
 
 #ifndef TRAVERSE_CLIENT_API_OPTIMIZER_CLIENT_H_
 #define TRAVERSE_CLIENT_API_OPTIMIZER_CLIENT_H_

@@ -5,7 +5,7 @@
 
 The victim sends a small file, by gRPC and HTTP in turn. The environment names the gateway's binary: TRAVERSE_GATEWAY.
 """
-from attacks import files, jobs, transport
+from attacks import files, jobs, layers, transport
 from attacks.attacked_server import Gateway
 from attacks.run import main
 from http2_client import GCODE_SERVICE
@@ -40,6 +40,12 @@ ATTACKS = {
     "keys_of_many_files": jobs.keys_of_many_files,
     "guessed_ids": jobs.guessed_ids,
     "unread_events": jobs.unread_events,
+    "unread_lines": layers.unread_lines,
+    "json_rubbish": layers.posts([layers.deep_lists, layers.deep_objects, layers.long_text, layers.long_number, layers.strange_numbers,
+                                  layers.many_keys, layers.bomb]),
+    "json_parts": layers.posts([layers.empty_layers, layers.empty_islands, layers.dots, layers.pairs, layers.entries], callers=2),
+    "json_walls": layers.posts([layers.walls], callers=2),
+    "json_begun_and_left": layers.begun_and_left,
     "unfinished_uploads": files.unfinished_uploads(1000, addresses=3),
     "unfinished_chunks": files.unfinished_uploads(1000, chunked=True),
     "long_uploads": files.unfinished_uploads(20_000_000, most=20),

@@ -44,7 +44,9 @@ class CountingReply : public HttpReply {
     status_ = head.status;
     reply_->Begin(std::move(head));
   }
-  void Write(HttpBody piece, bool optional) override { reply_->Write(std::move(piece), optional); }
+  bool Write(HttpBody piece, bool optional) override {
+    return reply_->Write(std::move(piece), optional);
+  }
   void End() override {
     count_->Once(status_);
     reply_->End();

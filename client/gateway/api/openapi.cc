@@ -4,9 +4,12 @@
 
 #include "client/cli/flags/flags.h"
 #include "client/cli/flags/verify_flags.h"
+#include "client/gateway/api/message_schemas.h"
 #include "client/gateway/api/parameters.h"
 #include "client/gateway/http/problem.h"
 #include "server/version.h"
+#include "traverse/v1/gcode_service.pb.h"
+#include "traverse/v1/route_optimizer_service.pb.h"
 
 namespace traverse::gateway {
 namespace {
@@ -187,65 +190,67 @@ Json TextPath(const char* id, const char* summary, const char* type, bool open) 
   return {{"get", get}};
 }
 
-Json Numbers(std::initializer_list<const char*> names, const char* type) {
-  Json out = Json::object();
-  for (const char* name : names) out[name] = {{"type", type}};
-  return out;
+Json OptimizePath() {
+  Json ok = {{"description",
+              "A line for each layer as it comes, and one for the summary. A last line {\"error\": "
+              "Problem} says why the answer is not whole. With Accept: application/json all "
+              "messages in one document."}};
+  ok["content"] = {
+      {"application/x-ndjson", {{"schema", Reference("OptimizeBatchResponse")}}},
+      {"application/json",
+       {{"schema",
+         {{"type", "object"},
+          {"properties",
+           {{"results", {{"type", "array"}, {"items", Reference("OptimizeBatchResponse")}}}}}}}}}};
+  Json responses = {{"200", ok}};
+  AddProblems(responses, {400, 401, 403, 408, 413, 415, 421, 429, 500, 501, 503, 504, 507});
+  const Json deadline = {{"name", "deadline"},
+                         {"in", "query"},
+                         {"description", "time for the whole answer, such as 500ms, 30s or 5m"},
+                         {"schema", {{"type", "string"}}}};
+  return {
+      {"post",
+       {{"operationId", "optimize"},
+        {"summary", "Short routes through the paths of layers."},
+        {"parameters", Json::array({deadline})},
+        {"requestBody",
+         {{"required", true},
+          {"content", {{"application/json", {{"schema", Reference("OptimizeBatchRequest")}}}}}}},
+        {"responses", responses}}}};
+}
+
+Json StrategiesPath() {
+  Json responses = {
+      {"200", JsonAnswer("The strategies and their options.", "ListStrategiesResponse")}};
+  AddProblems(responses, {400, 401, 403, 405, 421, 429, 503, 504});
+  return {{"get",
+           {{"operationId", "listStrategies"},
+            {"summary", "What the service can do."},
+            {"responses", responses}}}};
 }
 
 Json Schemas() {
-  Json totals = Numbers({"extruded_mm", "travel_mm", "print_seconds"}, "number");
-  totals.update(Numbers({"retractions", "crossings", "open_crossings"}, "integer"));
-  Json summary = Numbers({"policy", "strategy", "seed", "text", "bytes"}, "string");
-  summary.update(Numbers({"layers", "layers_changed"}, "integer"));
-  summary["given"] = summary["written"] = Reference("PrintTotals");
-  summary["verified"] = {{"type", "boolean"}};
-  summary["left"] = {{"type", "array"}, {"items", {{"type", "string"}}}};
-  summary["wall_seconds"] = {{"type", "number"}};
-  Json broken = Numbers({"original_line", "optimised_line", "layer"}, "integer");
-  broken["message"] = {{"type", "string"}};
-  Json rule = Numbers({"name", "states"}, "string");
-  rule["breaks"] = {{"type", "integer"}};
-  rule["first"] = Reference("VerifyBreak");
-  Json verdict = Numbers({"difference", "policy"}, "string");
-  verdict["same"] = {{"type", "boolean"}};
-  verdict["allow"] = {{"type", "array"}, {"items", {{"type", "string"}}}};
-  verdict["rules"] = {{"type", "array"}, {"items", Reference("VerifyRule")}};
-  Json progress = Numbers({"layers_done", "layers"}, "integer");
-  progress.update(Numbers({"travel_given_mm", "travel_mm"}, "number"));
-  progress["stage"] = {{"type", "string"}};
-  Json fault = Numbers({"code", "http_status"}, "integer");
-  fault["message"] = {{"type", "string"}};
-  Json job = Numbers({"id", "name"}, "string");
-  job["state"] = {{"type", "string"},
-                  {"enum", {"STATE_QUEUED", "STATE_RUNNING", "STATE_DONE", "STATE_FAILED"}}};
-  job["revision"] = {{"type", "integer"}};
-  job["progress"] = {{"type", "object"}, {"properties", progress}};
-  job["summary"] = Reference("RewriteSummary");
-  job["fault"] = {{"type", "object"}, {"properties", fault}};
-  job["expires_at"] = {{"type", "string"}, {"format", "date-time"}};
-  const Json fact = {{"type", "object"}, {"properties", Numbers({"name", "value"}, "string")}};
-  return {{"Problem",
-           {{"type", "object"},
-            {"description", "RFC 9457"},
-            {"properties",
-             {{"type", {{"type", "string"}}},
-              {"title", {{"type", "string"}}},
-              {"status", {{"type", "integer"}}},
-              {"detail", {{"type", "string"}}}}}}},
-          {"PrintTotals", {{"type", "object"}, {"properties", totals}}},
-          {"RewriteSummary", {{"type", "object"}, {"properties", summary}}},
-          {"InspectResponse",
-           {{"type", "object"},
-            {"properties",
-             {{"format", {{"type", "string"}}},
-              {"layers", {{"type", "integer"}}},
-              {"facts", {{"type", "array"}, {"items", fact}}},
-              {"totals", Reference("PrintTotals")}}}}},
-          {"Job", {{"type", "object"}, {"properties", job}}},
-          {"VerifyBreak", {{"type", "object"}, {"properties", broken}}},
-          {"VerifyRule", {{"type", "object"}, {"properties", rule}}},
-          {"VerifyResponse", {{"type", "object"}, {"properties", verdict}}}};
+  const Json fault = {
+      {"type", "object"},
+      {"properties", {{"field", {{"type", "string"}}}, {"description", {{"type", "string"}}}}}};
+  Json schemas = {{"Problem",
+                   {{"type", "object"},
+                    {"description", "RFC 9457; code, details and retry_after of /v1/optimize"},
+                    {"properties",
+                     {{"type", {{"type", "string"}}},
+                      {"title", {{"type", "string"}}},
+                      {"status", {{"type", "integer"}}},
+                      {"detail", {{"type", "string"}}},
+                      {"code", {{"type", "string"}}},
+                      {"details", {{"type", "array"}, {"items", fault}}},
+                      {"retry_after", {{"type", "integer"}}}}}}}};
+  for (const auto* type :
+       {v1::RewriteSummary::descriptor(), v1::InspectResponse::descriptor(), v1::Job::descriptor(),
+        v1::VerifyResponse::descriptor(), v1::OptimizeBatchRequest::descriptor(),
+        v1::OptimizeBatchResponse::descriptor(), v1::ListStrategiesResponse::descriptor()}) {
+    AddSchema(*type, schemas);
+  }
+  return schemas;
 }
 
 }  // namespace
@@ -262,6 +267,8 @@ std::string OpenApiJson() {
                  JobPartPath("getJobReport", "The page that shows each layer, if asked for.",
                              {{"text/html", text}})},
                 {"/v1/inspect", InspectPath()},
+                {"/v1/optimize", OptimizePath()},
+                {"/v1/strategies", StrategiesPath()},
                 {"/v1/verify", VerifyPath()},
                 {"/healthz", TextPath("healthz", "The process lives.", "text/plain", true)},
                 {"/readyz", TextPath("readyz", "The gateway accepts files.", "text/plain", true)},

@@ -132,6 +132,16 @@ absl::StatusOr<FileRequest> ParseParameters(const Parameters& parameters) {
   return request;
 }
 
+absl::StatusOr<absl::Duration> ParseDeadline(const Parameters& parameters) {
+  std::vector<cli::Flag> table = cli::JobFlagTable();
+  std::erase_if(table, [](const cli::Flag& flag) { return flag.name != "deadline"; });
+  const absl::StatusOr<cli::Flags> flags = FlagsOf(table, parameters);
+  if (!flags.ok()) return flags.status();
+  const absl::StatusOr<cli::JobFlags> job = cli::ParseJobFlags(*flags);
+  if (!job.ok()) return InTheseWords(job.status());
+  return job->deadline;
+}
+
 absl::StatusOr<std::optional<GivenPermissions>> ParseVerifyParameters(
     const Parameters& parameters) {
   const absl::StatusOr<cli::Flags> flags = FlagsOf(cli::VerifyFlagTable(), parameters);

@@ -29,6 +29,10 @@ absl::StatusOr<FileRequest> ParseParameters(const Parameters& parameters);
 // The same for the API's message.
 absl::StatusOr<FileRequest> RequestOf(const v1::RewriteOptions& options);
 
+// The parameter `deadline`, the only one of layers that come as JSON: time for the answer.
+// Infinite if it is not given. Errors as above.
+absl::StatusOr<absl::Duration> ParseDeadline(const Parameters& parameters);
+
 // What may differ between two files that are compared: the parameters are the flags of
 // `traverse verify` of cli::VerifyFlagTable. Nothing if neither is given. Errors as above.
 absl::StatusOr<std::optional<GivenPermissions>> ParseVerifyParameters(const Parameters& parameters);

@@ -8,6 +8,7 @@
 #include "client/gateway/api/counting.h"
 #include "client/gateway/api/file_routes.h"
 #include "client/gateway/api/job_routes.h"
+#include "client/gateway/api/layer_routes.h"
 #include "client/gateway/api/openapi.h"
 #include "client/gateway/http/own_host.h"
 #include "client/gateway/http/problem.h"
@@ -110,6 +111,16 @@ HttpDecision Router::ForCaller(const HttpRequest& request, const std::string& ca
     if (path == "/v1/gcode") return RewriteRoute(request, caller, core_);
     if (path == "/v1/inspect") return InspectRoute(request, caller, core_);
     return VerifyRoute(request, caller, core_);
+  }
+  if (path == "/v1/optimize") {
+    route = path;
+    if (request.method != "POST") return NotAllowed("POST");
+    return OptimizeRoute(request, caller, core_);
+  }
+  if (path == "/v1/strategies") {
+    route = path;
+    if (!IsGet(request)) return NotAllowed("GET");
+    return StrategiesRoute(caller, core_);
   }
   if (IsJobPath(path)) return JobRoute(request, caller, core_, route);
   if (absl::StartsWith(path, "/api/") || absl::StartsWith(path, "/printers/")) {

@@ -13,14 +13,6 @@
 namespace traverse::gateway {
 namespace {
 
-// A place in the queue, or the refusal.
-std::variant<HttpResponse, TicketPtr> EnterQueue(const std::string& caller, Core& core) {
-  absl::StatusOr<TicketPtr> ticket = core.queue->Enter(caller);
-  if (ticket.ok()) return *std::move(ticket);
-  const int status = absl::IsResourceExhausted(ticket.status()) ? 429 : 503;
-  return Problem(status, std::string(ticket.status().message()));
-}
-
 absl::StatusOr<FileRequest> WholeRequest(const Parameters& parameters, Upload& upload) {
   absl::StatusOr<FileRequest> parsed = ParseParameters(parameters);
   if (!parsed.ok()) return parsed;
@@ -56,6 +48,13 @@ std::string PrintOf(const Upload& upload, Parameters parameters) {
 }
 
 }  // namespace
+
+std::variant<HttpResponse, TicketPtr> EnterQueue(const std::string& caller, Core& core) {
+  absl::StatusOr<TicketPtr> ticket = core.queue->Enter(caller);
+  if (ticket.ok()) return *std::move(ticket);
+  const int status = absl::IsResourceExhausted(ticket.status()) ? 429 : 503;
+  return Problem(status, std::string(ticket.status().message()));
+}
 
 Parameters AllParameters(const HttpRequest& request, const Upload& upload) {
   Parameters parameters = request.query;

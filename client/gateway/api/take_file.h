@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <variant>
 
 #include "client/gateway/api/parameters.h"
 #include "client/gateway/api/upload.h"
@@ -18,8 +19,11 @@ namespace traverse::gateway {
 using TicketPtr = std::shared_ptr<WorkQueue::Ticket>;
 using ReplyPtr = std::shared_ptr<HttpReply>;
 
+// A place in the queue for a request of `caller`, or the refusal: 429, or 503 while draining.
+std::variant<HttpResponse, TicketPtr> EnterQueue(const std::string& caller, Core& core);
+
 // Gives `caller` a place in the queue, and takes the request's files; `start` is called when they
-// are there. Refuses where there is no place: 429, or 503 while draining.
+// are there. Refuses where there is no place.
 using FilesTaken = std::function<void(const TicketPtr&, Upload, const ReplyPtr&)>;
 HttpDecision TakeFiles(const HttpRequest& request, const UploadLimits& limits, Core& core,
                        FilesTaken start);

@@ -52,10 +52,11 @@ class HttpReply {
   // Sends the whole answer. Once, and not together with Begin.
   virtual void Send(HttpResponse response) = 0;
 
-  // An answer whose body is written piece by piece: its head, the pieces, its end. If there is no
-  // room for an `optional` piece, it is dropped: progress that nobody reads.
+  // An answer whose body is written piece by piece: its head, the pieces, its end. An `optional`
+  // piece is not taken (false) while the client is behind: a text for which there is no room in
+  // memory, a file while anything waits.
   virtual void Begin(HttpResponse head) = 0;
-  virtual void Write(HttpBody piece, bool optional = false) = 0;
+  virtual bool Write(HttpBody piece, bool optional = false) = 0;
   virtual void End() = 0;
 
   // Calls `on_gone` once if the client leaves before it has the answer.

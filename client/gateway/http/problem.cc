@@ -98,6 +98,23 @@ int HttpStatusOf(absl::StatusCode code) {
   }
 }
 
+HttpResponse Problem(int status, const std::string& detail, const ProblemDetails& details) {
+  HttpResponse response = Problem(status, detail);
+  auto json = nlohmann::ordered_json::parse(std::get<std::string>(response.body));
+  if (!details.code.empty()) json["code"] = details.code;
+  for (const ProblemField& fault : details.faults) {
+    json["details"].push_back({{"field", fault.field}, {"description", fault.description}});
+  }
+  if (details.retry_after) {
+    json["retry_after"] = *details.retry_after;
+    std::erase_if(response.headers,
+                  [](const auto& header) { return header.first == "Retry-After"; });
+    response.headers.emplace_back("Retry-After", std::to_string(*details.retry_after));
+  }
+  response.body = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return response;
+}
+
 HttpResponse ProblemOf(const absl::Status& status) {
   return Problem(HttpStatusOf(status.code()), std::string(status.message()));
 }

@@ -30,15 +30,20 @@ void ReplyQueue::Begin(HttpResponse head) {
   wake_();
 }
 
-void ReplyQueue::Write(HttpBody piece, bool optional) {
+bool ReplyQueue::Write(HttpBody piece, bool optional) {
   {
     MutexLock lock(mutex_);
+    if (!Open()) return true;  // nobody misses it
     const size_t bytes = TextBytes(piece);
-    if (!Open() || (optional && text_bytes_ + bytes > kMaxOptionalBytes)) return;
+    const bool has_room = std::holds_alternative<std::string>(piece)
+                              ? text_bytes_ + bytes <= kMaxOptionalBytes
+                              : pieces_.empty();
+    if (optional && !has_room) return false;
     text_bytes_ += bytes;
     pieces_.push_back(std::move(piece));
   }
   wake_();
+  return true;
 }
 
 void ReplyQueue::End() {

@@ -16,7 +16,7 @@ namespace traverse::gateway {
 // Handlers put things in, on any thread; the connection takes them out. Thread-safe.
 class ReplyQueue : public HttpReply {
  public:
-  // Most text that may wait for the connection; optional pieces beyond it are dropped.
+  // Most text that may wait for the connection; optional pieces beyond it are not taken.
   static constexpr size_t kMaxOptionalBytes = 65536;
 
   // Calls `wake`, on any thread, when something was put in.
@@ -24,7 +24,7 @@ class ReplyQueue : public HttpReply {
 
   void Send(HttpResponse response) override;
   void Begin(HttpResponse head) override;
-  void Write(HttpBody piece, bool optional) override;
+  bool Write(HttpBody piece, bool optional) override;
   void End() override;
   void OnGone(std::function<void()> on_gone) override;
 

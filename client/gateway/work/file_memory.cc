@@ -10,6 +10,7 @@
 #include "client/containers/container.h"
 #include "client/containers/limits.h"
 #include "client/files/decompress.h"
+#include "client/gateway/work/layer_memory.h"
 #include "client/gateway/work/text_count.h"
 #include "client/gcode/parallel.h"
 
@@ -59,6 +60,8 @@ constexpr Prices PricesOf(FileUse use) {
               .cell_under_way = 92,
               .path_under_way = 200,
               .path_in_search = 0};
+    case FileUse::kOptimize:  // counted by MemoryForLayers
+      break;
     case FileUse::kVerify:
       return {.byte = 4.6,
               .segment = 175,
@@ -185,6 +188,7 @@ int64_t MemoryToMeasure(const SpoolFile& upload) {
 }
 
 absl::StatusOr<int64_t> MemoryFor(const SpoolFile& upload, FileUse use, uint64_t max_file_bytes) {
+  if (use == FileUse::kOptimize) return MemoryForLayers(upload, max_file_bytes);
   if (!IsPacked(upload)) {
     const absl::StatusOr<TextCount> count = CountOf(upload);
     if (!count.ok()) return count.status();

@@ -10,8 +10,8 @@
 
 namespace traverse::gateway {
 
-// What is done with files.
-enum class FileUse { kRewrite, kInspect, kVerify };
+// What is done with files. kOptimize: with layers as JSON.
+enum class FileUse { kRewrite, kInspect, kVerify, kOptimize };
 
 // Whether `upload` is so short that nobody waits while it is gone through.
 bool IsMeasuredAtOnce(const SpoolFile& upload);
