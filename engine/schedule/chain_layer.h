@@ -129,6 +129,7 @@ struct ChainLayer {
   bool anchoring = false;          // anchor has been submitted
   std::optional<Point> end;        // if anchored: where the head is then, cleaning included
   double over_alone = 0;           // if anchored: see TrueStart, after this layer
+  double over_greedy = 0;          // the same
 };
 using ChainLayerPtr = std::shared_ptr<ChainLayer>;
 
@@ -146,6 +147,12 @@ struct TrueStart {
   // What the layers before cost more than one after the other, since the last whose start did not
   // depend on a layer that looked ahead.
   double over_alone = 0;
+
+  // What they cost more than greedy's chain, since the last whose start was certain.
+  double over_greedy = 0;
+
+  // The layer that begins where this one ends; null if it is not known yet.
+  std::shared_ptr<const ChainLayer> next = nullptr;
 };
 
 }  // namespace traverse

@@ -149,19 +149,27 @@ void LayerChain::RunSolveAlone(const ChainLayerPtr& layer, Point start) {
   MaybeAnchorBefore(layer->index);
 }
 
-void LayerChain::RunAnchor(const ChainLayerPtr& layer, const TrueStart& at) {
+void LayerChain::RunAnchor(const ChainLayerPtr& layer, TrueStart at) {
+  {
+    MutexLock lock(mutex_);
+    const uint64_t next = layer->index + 1;
+    if (next < next_to_prepare_ && !solver_.FixedStart(*LayerAt(next))) at.next = LayerAt(next);
+  }
   LayerOutcome outcome;
   const Budget::Clock::duration used = layer->used;
   const bool late = layer->search_end && Now() >= *layer->search_end;
+  const double of_greedy = layer->greedy ? solver_.GreedyCost(*layer) : 0;  // has its plan still
   RunTimed(*layer, solver_.traits().serial, [&] { outcome = solver_.Anchor(*layer, at); });
   if (BoundsChain() && !cancel_.cancelled()) KeepForBound(*layer, outcome);
   const Point route_end = outcome.end;
   const Point end = layer->finish.value_or(route_end);
   const double over_alone = layer->alone ? at.over_alone + outcome.cost - layer->alone->cost : 0;
+  const double over_greedy = at.over_greedy + outcome.cost - of_greedy;
   if (!cancel_.cancelled()) outbox_.Deliver(std::move(outcome));
   MutexLock lock(mutex_);
   layer->end = end;
   layer->over_alone = over_alone;
+  layer->over_greedy = over_greedy;
   LayerEnd& learned = ends_to_learn_[layer->index];
   learned.shape = layer->fingerprint.shape;
   learned.key = ProblemKey(learned.shape, layer->origin, at.start, layer->finish);
@@ -315,6 +323,7 @@ void LayerChain::MaybeAnchor(uint64_t index) {
   if (!start) return;
   TrueStart at{*start, {}};
   if (layer->looked_at) at.over_alone = LayerAt(index - 1)->over_alone;
+  if (!solver_.FixedStart(*layer)) at.over_greedy = LayerAt(index - 1)->over_greedy;
   if (!ViewFrom(index, at)) return;
   layer->anchoring = true;
   Submit([this, layer, at] { RunAnchor(layer, at); }, layer->size.points);

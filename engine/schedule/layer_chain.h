@@ -88,7 +88,7 @@ class LayerChain : public Job, public std::enable_shared_from_this<LayerChain> {
   void RunSolveFirst(const ChainLayerPtr& layer);
   void RunSolveSecond(const ChainLayerPtr& layer);
   void RunSolveAlone(const ChainLayerPtr& layer, Point start);
-  void RunAnchor(const ChainLayerPtr& layer, const TrueStart& at);
+  void RunAnchor(const ChainLayerPtr& layer, TrueStart at);
 
   // The job's last task, if its strategy bounds the chain.
   void RunBoundChain();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/base/budget.h"
+#include "engine/cost/route_cost.h"
 #include "engine/engine.h"
 #include "engine/schedule/chain_bound.h"
 #include "engine/schedule/chain_layer.h"
@@ -71,6 +72,11 @@ class LayerSolver {
   // that do not search begin with any.
   bool ResumesInitial(const LayerProblem& problem, const ChainLayer& layer) const;
 
+  // What the layer costs in greedy's chain. REQUIRES: that is known.
+  double GreedyCost(const ChainLayer& layer) const {
+    return RouteCost(Problem(layer, layer.greedy->start), layer.greedy->route);
+  }
+
   // `solution` with what later layers need to continue from it.
   KnownRoutePtr Known(const LayerProblem& problem, const ChainLayer& layer,
                       const Solution& solution) const;
@@ -113,6 +119,8 @@ class LayerSolver {
   // In layer_solver_floor.cc: greedy's route and the one known beforehand, which no answer exceeds.
   bool GreedyMayBeBetter(const LayerProblem& problem, const ChainLayer& layer,
                          const KnownRoute* known, const Solution& solution) const;
+  bool KeepWithinGreedy(const LayerProblem& problem, const ChainLayer& layer, const TrueStart& at,
+                        Solution& solution) const;
   void KeepBestRoute(const LayerProblem& problem, const ChainLayer& layer, const KnownRoute* known,
                      const LayersInView& view, Solution& solution) const;
   bool KeepWithinInitial(const LayerProblem& problem, const ChainLayer& layer,

@@ -94,6 +94,27 @@ bool LayerSolver::KeepWithinInitial(const LayerProblem& problem, const ChainLaye
   return true;
 }
 
+// A cheaper route may end where all that follows costs more. So where the clock cut a search short,
+// the job must be able to go on by greedy's chain from the next layer on, and cost no more than
+// that in all; if not, the layer keeps to greedy's chain, from which it can. Returns whether it
+// does.
+bool LayerSolver::KeepWithinGreedy(const LayerProblem& problem, const ChainLayer& layer,
+                                   const TrueStart& at, Solution& solution) const {
+  const bool knows = layer.greedy && !layer.walls && at.next != nullptr && at.next->greedy &&
+                     !at.next->walls && layer.greedy->route.size() == solution.route.size();
+  if (!knows || solution.stop != StopReason::kTimeLimit || strategy_->traits().pure) return false;
+  const double chain = GreedyCost(layer) + GreedyCost(*at.next);
+  const auto over = [&](const Route& route) {
+    const Point end = layer.finish.value_or(RouteEnd(layer.given.plan, route, problem.start));
+    return at.over_greedy + RouteCost(problem, route) +
+           RouteCost(Problem(*at.next, end), at.next->greedy->route) - chain;
+  };
+  const double of_solution = over(solution.route);
+  if (of_solution <= kSameCost * chain || over(layer.greedy->route) >= of_solution) return false;
+  solution.route = layer.greedy->route;
+  return true;
+}
+
 // Whether greedy's route may still be better: it cannot be if the strategy began at this very
 // start, and ended by itself, or if an equal layer's route was taken over.
 bool LayerSolver::GreedyMayBeBetter(const LayerProblem& problem, const ChainLayer& layer,

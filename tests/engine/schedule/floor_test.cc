@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -95,6 +96,13 @@ double GreedyCost(const LayerOutcome& outcome) {
   return RouteCost(problem, (*MakeStrategy("greedy", {}))->Solve(problem, budget).route);
 }
 
+double GreedyChainCost(int layers) {
+  Case greedy{.strategy = "greedy", .layers = layers};
+  double cost = 0;
+  for (const LayerOutcome& outcome : RunCase(greedy).outcomes) cost += outcome.cost;
+  return cost;
+}
+
 void ExpectWithinGreedy(const Case& of) {
   SCOPED_TRACE(NameOf(of));
   const Run run = RunCase(of);
@@ -107,8 +115,10 @@ void ExpectWithinGreedy(const Case& of) {
     if (of.look_ahead || outcome.index == static_cast<uint64_t>(of.large)) continue;
     EXPECT_LE(outcome.cost, GreedyCost(outcome) + 1e-6) << outcome.index;
   }
-  if (of.large < 0) {
-    EXPECT_LE(sum, greedy + 1e-6);
+  if (of.large >= 0) return;
+  EXPECT_LE(sum, greedy + 1e-6);
+  if (of.announced) {
+    EXPECT_LE(sum, GreedyChainCost(of.layers) * (1 + 1e-6));
   }
 }
 
@@ -164,6 +174,52 @@ TEST(Floor, HoldsWhereTimePassesAtOnce) {
       of.stop = 5 * least;
       ExpectWithinGreedy(of);
     }
+  }
+}
+
+// Finds the shortest route, and says that time was up.
+class CutShort : public Strategy {
+ public:
+  Solution Solve(const LayerProblem& problem, Budget& budget) const override {
+    Solution solution = (*MakeStrategy("exact", {}))->Solve(problem, budget);
+    solution.stop = StopReason::kTimeLimit;
+    return solution;
+  }
+};
+
+Plan PointsAnywhere(Rng& rng, int count) {
+  IslandPaths island;
+  for (int i = 0; i < count; ++i)
+    island.contours.push_back(MakeContour({{100 * rng.Unit(), 100 * rng.Unit()}}));
+  return SequentialPlan({island});
+}
+
+double CostOfTwoLayers(std::unique_ptr<Strategy> strategy, uint64_t seed) {
+  const StepClock clock;
+  RecordingSink sink;
+  TestExecutor executor(1);
+  JobSpec spec;
+  spec.time = &clock;
+  spec.deadline = StepClock::At(int64_t{1} << 40);
+  std::promise<void> added;
+  executor.Submit([all = added.get_future().share()] { all.wait(); });
+  auto job = Job::Start(spec, std::move(strategy), executor, sink);
+  Rng rng(seed);
+  job->Add({PointsAnywhere(rng, 5), std::nullopt, {}});
+  job->Add({PointsAnywhere(rng, 1), std::nullopt, {}});
+  job->Close();
+  added.set_value();
+  sink.Wait();
+  double cost = 0;
+  for (const LayerOutcome& outcome : sink.outcomes) cost += outcome.cost;
+  return cost;
+}
+
+// The next layer may be far from the end of the shortest route, and near that of greedy's.
+TEST(Floor, HoldsForAJobWhoseCheapestRoutesEndFarFromTheNextLayer) {
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    const double greedy = CostOfTwoLayers(*MakeStrategy("greedy", {}), seed);
+    EXPECT_LE(CostOfTwoLayers(std::make_unique<CutShort>(), seed), greedy + 1e-6) << seed;
   }
 }
 
