@@ -33,6 +33,10 @@ struct LayerProblem {
 
   // What the costs of `walls` are multiplied by to be in the unit of `cost` (cost/cost_unit.h).
   double walls_unit = 1;
+
+  // Whether routes to resume are those of a search like this one, perhaps of a layer that was a bit
+  // different: then there is little to mend.
+  bool is_searched = false;
 };
 
 }  // namespace traverse

@@ -27,7 +27,8 @@ struct AnchoredRoutes {
   ByKey anchored;  // only anchor uses it
 };
 
-// A layer's part of the chain that is solved one layer after the other.
+// A layer's part of the chain that is solved one layer after the other; of one whose route the
+// caller knows, and which resumes it, of the caller's routes as they are.
 struct LayerAlone {
   Solution solution;
   Point start;
@@ -99,6 +100,7 @@ struct ChainLayer {
 
   // Set by solve and second.
   Solution first;
+  bool initial_holds = false;     // searching from the route that the caller knows gained nothing
   bool searched_in_vain = false;  // see PendingRoute
   BoundMultipliers bound_multipliers;
   std::optional<Point> second_start;

@@ -115,6 +115,10 @@ void LayerSolver::SolveFirst(ChainLayer& layer) const {
   } else {
     layer.first = SolveOrResume(problem, layer, budget);
   }
+  layer.initial_holds =
+      layer.resumes_initial && layer.first.stop != StopReason::kTimeLimit &&
+      RouteCost(problem, layer.first.route, &budget) >=
+          RouteCost(problem, layer.given.initial_route, &budget) * (1 - kSameCost);
   if (!layer.first.lower_bound) Bound(problem, layer, layer.first);
   layer.outcome.solve_seconds = watch.Seconds();
 }
@@ -235,7 +239,8 @@ const Route& LayerSolver::BestToGoOnFrom(const LayerProblem& problem, const Chai
 
 // What was found for the layer alone from that start, if anything.
 const Solution* LayerSolver::FoundFrom(const ChainLayer& layer, Point start) {
-  if (layer.alone && start == layer.alone->start) return &layer.alone->solution;
+  const bool is_alone = layer.alone && start == layer.alone->start;
+  if (is_alone && !layer.resumes_initial) return &layer.alone->solution;
   return start == layer.predicted_start ? &layer.first : nullptr;
 }
 

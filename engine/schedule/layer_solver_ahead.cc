@@ -78,6 +78,15 @@ LayerSolver::RoutesInView LayerSolver::InView(const LayerProblem& problem, const
 // the layer before foresaw of them, or than greedy.
 void LayerSolver::SolveInView(const LayerProblem& problem, ChainLayer& layer, const TrueStart& at,
                               Budget& budget, Solution& solution) const {
+  // Routes of a caller that are as good as a search makes them were probably found with the next
+  // layers in view; others that the caller knows need little mending.
+  const auto of_all = [&](bool ChainLayer::*is) {
+    return layer.*is && std::all_of(at.view.begin(), at.view.end(),
+                                    [is](const ChainLayerPtr& next) { return (*next).*is; });
+  };
+  const bool holds = of_all(&ChainLayer::initial_holds);
+  LayerProblem searched = problem;
+  searched.is_searched = of_all(&ChainLayer::resumes_initial);
   Budget beginnings = budget.WithShare(kBeginningsShare);
   const auto resumed = [&](ChainLayer& next, const LayerProblem& from) {
     return Prepared(next).Resume(from, next.first.route, beginnings).route;
@@ -98,10 +107,21 @@ void LayerSolver::SolveInView(const LayerProblem& problem, ChainLayer& layer, co
   std::vector<RoutesInView> known = {InView(problem, solution.route, at, alone)};
   if (!layer.foreseen.empty()) known.push_back(InView(problem, layer.foreseen, at, foreseen));
   known.push_back(InView(problem, GreedyRoute(problem, layer), at, greedy));
+  const auto initial = [&](const ChainLayer& next, const LayerProblem&) {
+    return next.given.initial_route;
+  };
+  if (searched.is_searched)
+    known.push_back(InView(problem, layer.given.initial_route, at, initial));
   const bool knows_alone = KnowsAlone(layer, at);
   if (knows_alone) known.push_back(InView(problem, FallbackRoute(layer), at, fallback));
   const auto search_from = [&](RoutesInView best) {
-    solution = Prepared(layer).ResumeWithNext(problem, best.route, best.next, budget);
+    if (holds) {
+      if (best.route != solution.route && solution.stop == StopReason::kOptimal)
+        solution.stop = StopReason::kLocalOptimum;
+      solution.route = std::move(best.route);
+    } else {
+      solution = Prepared(layer).ResumeWithNext(searched, best.route, best.next, budget);
+    }
     for (size_t i = 0; i < at.view.size(); ++i)
       at.view[i]->foreseen = std::move(best.next[i].route);
   };

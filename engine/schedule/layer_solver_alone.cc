@@ -28,12 +28,17 @@ void LayerSolver::SolveAlone(ChainLayer& layer, Point start) const {
   const uint64_t key = KeyAt(layer, at);
   const KnownRoute* known =
       layer.anchored ? FindAnchored(layer, layer.anchored->alone, key) : nullptr;
-  LayerAlone alone{.solution = ValidFromTrueStart(problem, layer, known, at), .start = start};
+  LayerAlone alone{.solution = {}, .start = start};
+  if (layer.resumes_initial) {
+    alone.solution.route = layer.given.initial_route;
+  } else {
+    alone.solution = ValidFromTrueStart(problem, layer, known, at);
+  }
   Budget turns = Turns();
   if (turns.ExhaustedNow()) return;  // cancelled: nobody reads it
   alone.end = RouteEnd(layer.given.plan, alone.solution.route, start);
   alone.cost = RouteCost(problem, alone.solution.route, &turns);
-  if (layer.anchored) {
+  if (layer.anchored && !layer.resumes_initial) {
     alone.known = Known(problem, layer, alone.solution);
     layer.anchored->alone[key] = alone.known;
   }

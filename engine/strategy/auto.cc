@@ -173,9 +173,10 @@ class AutoLayer : public PreparedLayer {
     const double share =
         static_cast<double>(kPathsSearchedTogether) / static_cast<double>(all.paths.size());
     const bool in_haste = options_.least_gain_each > 0;
+    const bool is_short = in_haste || problem.is_searched;
     Effort effort{
-        options_.effort * (in_haste ? kResumeShare : std::clamp(share, 1.0, kMostEffortOnFew)),
-        options_.effort * 2 * kResumeShare};
+        options_.effort * (is_short ? kResumeShare : std::clamp(share, 1.0, kMostEffortOnFew)),
+        options_.effort * 2 * kResumeShare, !problem.is_searched};
     if (share >= 1) return effort;
     const int border = static_cast<int>(problem.plan->paths.size());  // its last path's position
     effort.first_kicked = std::max(1, border + 1 - kKickedAtBorder);
