@@ -9,7 +9,7 @@ import math
 
 CELL_MM = 0.5  # of the maps of heights and of what covers what
 FINE_CELL_MM = 0.2  # lines of ironing lie closer than those of skin
-ISLAND_CELLS_MM = (0.5, 1.0, 1.5)  # islands in cells that touch count as one: 0.5 to 4 mm apart
+ISLAND_CELLS_MM = (0.5, 0.7)  # islands in cells that touch count as one: from 0.5 mm apart on, never beyond 2 mm
 HALF_WALL_MM = 0.2
 MOVE_END_MM = 1.0  # a move leaves or comes to a wall of its own there
 FINE_MM = 0.02

@@ -66,7 +66,7 @@ class Checks(unittest.TestCase):
         self.assertEqual(faults(self.towers, after, "free"), set())
 
     def test_less_rest_of_islands_that_count_as_one_is_found(self):
-        pair, far = [block(10, 0), block(22.4, 0)], [block(60, 0), block(90, 0)]  # 2.4 mm apart
+        pair, far = [block(10.4, 0), block(21.6, 0)], [block(60, 0), block(90, 0)]  # 1.2 mm apart
         before = HEAD + layer(0.2, *pair, *far) + layer(0.4, *pair, *far)
         again = HEAD + layer(0.2, pair[0], *far, pair[1]) + layer(0.4, pair[0], *far, pair[1])
 

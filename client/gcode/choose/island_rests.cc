@@ -46,12 +46,17 @@ IslandTimes IslandRests::TimesOf(size_t layer, const LayerOrder& order, uint32_t
   assert(moments.size() == 2 * order.size());
   const LayerIslands& islands = stack_[layer];
   IslandTimes times;
-  times.begun.assign(islands.count, std::numeric_limits<double>::infinity());
-  times.left.assign(islands.count, 0);
+  times.begun.assign(islands.tree.size(), std::numeric_limits<double>::infinity());
+  times.left.assign(islands.tree.size(), 0);
   for (size_t i = 0; i < order.size(); ++i) {
     const uint32_t island = islands.island[order[i].block - first_block];
     times.begun[island] = std::min(times.begun[island], moments[2 * i]);
     times.left[island] = moments[2 * i + 1];
+  }
+  for (uint32_t node = 0; node < islands.tree.size(); ++node) {
+    const uint32_t parent = islands.tree.ParentOf(node);
+    times.begun[parent] = std::min(times.begun[parent], times.begun[node]);
+    times.left[parent] = std::max(times.left[parent], times.left[node]);
   }
   times.seconds = moments.back();
   return times;
@@ -108,7 +113,8 @@ std::optional<LeastRest> IslandRests::LeastOf(const std::vector<TimedLayer>& pri
   std::optional<LeastRest> least;
   for (size_t layer = 0; layer < stack_.size(); ++layer) {
     for (size_t i = 0; i < stack_[layer].supports.size(); ++i) {
-      if (given_[layer][i] <= 0) continue;
+      const bool is_island = stack_[layer].supports[i].island < stack_[layer].tree.count();
+      if (!is_island || given_[layer][i] <= 0) continue;
       const double rest = RestOf(stack_[layer].supports[i], layer, print, begins);
       if (!least || rest < least->seconds) least = {rest, layer};
     }

@@ -4,8 +4,9 @@
 // plastic on hot plastic. Slicers leave time for cooling: a least layer time, and an order that
 // comes back to a place late. An island rests from the end of its last path until the first path of
 // an island above it (stacked_islands.h). It must rest as long as in the file, or for the least
-// time if that is shorter. Where the file prints nothing else meanwhile, it does not rest, and need
-// not here. Times are nominal ones (nominal_time.h).
+// time if that is shorter; and so must what counts as one island (island_tree.h). Where the file
+// prints nothing else meanwhile, it does not rest, and need not here. Times are nominal ones
+// (nominal_time.h).
 
 #ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ISLAND_RESTS_H_
 #define TRAVERSE_CLIENT_GCODE_CHOOSE_ISLAND_RESTS_H_
@@ -23,8 +24,8 @@ namespace traverse::gcode {
 
 // When an order of a layer begins and ends each of its islands, in seconds from its first path.
 struct IslandTimes {
-  std::vector<double> begun;  // [island]
-  std::vector<double> left;   // [island]
+  std::vector<double> begun;  // [node]
+  std::vector<double> left;   // [node]
   double seconds = 0;         // of all its paths and the travel between them
 };
 
@@ -49,6 +50,7 @@ class IslandRests {
 
   // [path] of layer `layer`.
   const std::vector<uint32_t>& IslandsOf(size_t layer) const { return stack_[layer].island; }
+  std::vector<uint32_t> RegionsOf(size_t layer) const { return stack_[layer].Regions(); }
 
   // Of layer `layer` in `order`; `moments[2 * i]` and `moments[2 * i + 1]` are when its path i
   // begins and ends.

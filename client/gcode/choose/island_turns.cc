@@ -56,6 +56,15 @@ class IslandTurns::Maker {
     }
   }
 
+  // Adds `order` with its islands together to `orders`.
+  void AddTogether(const LayerOrder& order, std::vector<LayerOrder>& orders) {
+    if (!IsAllowed(order)) return;
+    for (const LayerOrder& base :
+         {InSequence(order, RanksIn(order)), InSequence(order, RanksIn(given_))}) {
+      if (IsAllowed(base)) orders.push_back(base);
+    }
+  }
+
  private:
   using Base = IslandTurns::Base;
   using Turn = IslandTurns::Turn;
@@ -334,23 +343,34 @@ class IslandTurns::Maker {
 };
 
 IslandTurns::IslandTurns(const LayerOrder& given, const std::vector<LayerOrder>& found,
-                         const std::vector<uint32_t>& islands, double rest_seconds,
+                         const std::vector<std::vector<uint32_t>>& islands, double rest_seconds,
                          const LayerFreedom& freedom, const TravelEstimate& estimate,
                          const OrderMerger& judge, LayerClock clock, const Settle& settle)
     : clock_(std::move(clock)), first_block_(given.front().block), given_size_(given.size()) {
   assert(clock_.path_seconds.size() == given.size());
-  Maker maker(given, islands, rest_seconds, freedom, estimate, settle, *this);
-  for (const LayerOrder& order : found) maker.Add(order);
-  KeepBest(judge);
+  std::vector<LayerOrder> together;
+  for (const std::vector<uint32_t>& told_apart : islands) {
+    Maker maker(given, told_apart, rest_seconds, freedom, estimate, settle, *this);
+    for (const auto* orders : {&std::as_const(together), &found}) {
+      const size_t first = turns_.size();
+      for (const LayerOrder& order : *orders) maker.Add(order);
+      KeepBest(judge, first);
+    }
+    // Then each island of what counts as one.
+    for (const LayerOrder& order : found) maker.AddTogether(order, together);
+  }
 }
 
-void IslandTurns::KeepBest(const OrderMerger& judge) {
-  std::erase_if(turns_, [&](const Turn& turn) { return judge.Excess(turn.totals) > 0; });
-  std::stable_sort(turns_.begin(), turns_.end(), [&](const Turn& a, const Turn& b) {
+void IslandTurns::KeepBest(const OrderMerger& judge, size_t first) {
+  std::vector<Turn> turns(turns_.begin() + static_cast<std::ptrdiff_t>(first), turns_.end());
+  turns_.resize(first);
+  std::erase_if(turns, [&](const Turn& turn) { return judge.Excess(turn.totals) > 0; });
+  std::stable_sort(turns.begin(), turns.end(), [&](const Turn& a, const Turn& b) {
     return judge.Score(a.totals) < judge.Score(b.totals);
   });
   size_t kept[2] = {0, 0};
-  std::erase_if(turns_, [&](const Turn& turn) { return ++kept[turn.head] > kMostOfAKind; });
+  std::erase_if(turns, [&](const Turn& turn) { return ++kept[turn.head] > kMostOfAKind; });
+  turns_.insert(turns_.end(), turns.begin(), turns.end());
 }
 
 const Placement& IslandTurns::At(size_t turn, size_t place) const {

@@ -12,7 +12,7 @@
 //   with another head       c b a d e f   and the other sequences of the first ones
 //
 // An order that comes back to islands is also tried with each island's paths together, and with the
-// islands in the sequence of the file.
+// islands in the sequence of the file. Where islands near each other count as one, so are these.
 
 #ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_ISLAND_TURNS_H_
 #define TRAVERSE_CLIENT_GCODE_CHOOSE_ISLAND_TURNS_H_
@@ -46,13 +46,13 @@ class IslandTurns {
 
   // The turns of `found`, orders with the same paths as `given`, which ascend: those within the
   // limits of `judge`, and of each kind no more than kMostOfAKind, the best ones. `islands`: [path]
-  // the one that it lies in. `rest_seconds`: for so long islands rest at the most. `settle`, if
-  // set, makes an order better within its units before it is turned. O(n log n) in the paths of
-  // each.
+  // the one that it lies in; once or, what counts as one first, twice. `rest_seconds`: for so long
+  // islands rest at the most. `settle`, if set, makes an order better within its units before it is
+  // turned. O(n log n) in the paths of each.
   using Settle =
       std::function<LayerOrder(const LayerOrder& order, const std::vector<uint32_t>& units)>;
   IslandTurns(const LayerOrder& given, const std::vector<LayerOrder>& found,
-              const std::vector<uint32_t>& islands, double rest_seconds,
+              const std::vector<std::vector<uint32_t>>& islands, double rest_seconds,
               const LayerFreedom& freedom, const TravelEstimate& estimate, const OrderMerger& judge,
               LayerClock clock, const Settle& settle = {});
 
@@ -99,7 +99,8 @@ class IslandTurns {
 
   class Maker;
 
-  void KeepBest(const OrderMerger& judge);
+  // Of the turns from `first` on.
+  void KeepBest(const OrderMerger& judge, size_t first);
   const Placement& At(size_t turn, size_t place) const;
 
   LayerClock clock_;

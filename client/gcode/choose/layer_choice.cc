@@ -282,9 +282,11 @@ class LayerChooser::Impl {
     std::vector<LayerOrder> orders;
     for (const LayerOrder* order : FastestOrders(column, kTurned)) orders.push_back(*order);
     const MergeRules rules = RulesOf(layer);
+    std::vector<std::vector<uint32_t>> islands = {rests_.RegionsOf(layer)};
+    if (islands[0] != rests_.IslandsOf(layer)) islands.push_back(rests_.IslandsOf(layer));
     TurnedLayer turned =
         TurnedOrders(*column.writer, travel_[layer], orders, rules, FreedomWithin(layer, rules),
-                     rests_.IslandsOf(layer), rests_.least_seconds(), column.given_moments);
+                     islands, rests_.least_seconds(), column.given_moments);
     turned.given_times = column.choices[0].times;
     if (layer == 0) return turned;
     turned.given_travel_mm = column.totals.Travel(0, 0).travel_mm;

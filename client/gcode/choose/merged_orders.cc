@@ -146,7 +146,7 @@ class LayerMerge {
 
   // See TurnedOrders.
   TurnedLayer Turn(const std::vector<LayerOrder>& orders, const LayerFreedom& freedom,
-                   const std::vector<uint32_t>& islands, double rest_seconds,
+                   const std::vector<std::vector<uint32_t>>& islands, double rest_seconds,
                    LayerClock clock) const {
     TurnedLayer turned;
     turned.first_block = given_.front().block;
@@ -290,8 +290,9 @@ std::optional<LayerOrder> RepairedOrder(const LayerWriter& writer, const TravelM
 
 TurnedLayer TurnedOrders(const LayerWriter& writer, const TravelModel& travel,
                          const std::vector<LayerOrder>& orders, const MergeRules& rules,
-                         const LayerFreedom& freedom, const std::vector<uint32_t>& islands,
-                         double rest_seconds, const std::vector<double>& moments) {
+                         const LayerFreedom& freedom,
+                         const std::vector<std::vector<uint32_t>>& islands, double rest_seconds,
+                         const std::vector<double>& moments) {
   std::vector<LayerOrder> whole;
   for (const LayerOrder& order : orders) {
     if (IsWhole(order, writer.GivenOrder())) whole.push_back(order);

@@ -61,13 +61,14 @@ std::vector<LayerOrder> SparingOrders(const LayerWriter& writer, const TravelMod
                                       const LayerOrder& order, const MergeRules& rules);
 
 // The turns of `orders` that may be chosen where islands must rest, for a layer of freedom
-// `freedom`. `islands`: [path] the one that it lies in; for `rest_seconds` they rest at the most;
+// `freedom`. `islands` as IslandTurns takes them; for `rest_seconds` they rest at the most;
 // `moments`: when each path begins and ends in the file's own order. Of the result `given_times`
 // and the travel to the layer are left to be set.
 TurnedLayer TurnedOrders(const LayerWriter& writer, const TravelModel& travel,
                          const std::vector<LayerOrder>& orders, const MergeRules& rules,
-                         const LayerFreedom& freedom, const std::vector<uint32_t>& islands,
-                         double rest_seconds, const std::vector<double>& moments);
+                         const LayerFreedom& freedom,
+                         const std::vector<std::vector<uint32_t>>& islands, double rest_seconds,
+                         const std::vector<double>& moments);
 
 // `order`, improved within `units`: [path] what has to stay together. REQUIRES: rules.freedom,
 // rules.polish.

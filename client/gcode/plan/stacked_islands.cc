@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 #include "absl/container/flat_hash_map.h"
-#include "client/gcode/island_cells.h"
+#include "client/gcode/island_map.h"
 #include "client/gcode/model/loops.h"
 #include "client/gcode/model/outline.h"
 #include "client/gcode/parallel.h"
@@ -15,28 +14,16 @@
 namespace traverse::gcode {
 namespace {
 
-// Points along a path are at most half a cell apart, so that no cell of it is missed but for
-// corners.
-constexpr double kStepCells = 0.5;
-
 // Paths whose middles are closer than this are of one island: heat passes between them.
 constexpr double kIslandsApartMm = 1;
 
 // Layers whose cells are kept at once.
 constexpr size_t kBatch = 16;
 
-void AddCells(const Outline& outline, uint32_t island, IslandCells& cells) {
+void AddOutline(const Outline& outline, uint32_t island, IslandMap& map) {
   const std::vector<Vertex>& points = outline.shape();
-  const auto add = [&](double x, double y) { cells.Add({CellAt(x, y), island}); };
-  if (!points.empty()) add(points[0].x, points[0].y);
-  for (size_t i = 1; i < points.size(); ++i) {
-    const double dx = points[i].x - points[i - 1].x;
-    const double dy = points[i].y - points[i - 1].y;
-    const double steps =
-        std::clamp(std::ceil(std::hypot(dx, dy) / kStepCells), 1.0, kFarCells / kStepCells);
-    for (double step = 1; step <= steps && !cells.full(); ++step) {
-      add(points[i - 1].x + dx * step / steps, points[i - 1].y + dy * step / steps);
-    }
+  for (size_t i = 1; i < points.size() && !map.full(); ++i) {
+    map.AddLine(points[i - 1].x, points[i - 1].y, points[i].x, points[i].y, island);
   }
 }
 
@@ -48,28 +35,38 @@ std::vector<IslandCell> FindIslands(const GcodeFile& file, const Layer& layer,
     outline.width_mm = std::max(outline.width_mm, kIslandsApartMm / kTouch);
   }
   islands.island = FindContacts(outlines, [](uint32_t, uint32_t) { return false; }).island;
-  IslandCells cells;
+  uint32_t count = 0;
+  for (const uint32_t island : islands.island) count = std::max(count, island + 1);
+  IslandMap map(count);
   for (size_t path = 0; path < outlines.size(); ++path) {
-    islands.count = std::max(islands.count, islands.island[path] + 1);
-    AddCells(outlines[path], islands.island[path], cells);
+    AddOutline(outlines[path], islands.island[path], map);
   }
-  return cells.Take();
+  islands.tree = map.TakeTree();
+  return map.TakeCells();
 }
 
 // What was printed last in each cell: two islands where their edges meet.
 class TopOfPrint {
  public:
-  void Add(uint32_t layer, const std::vector<IslandCell>& cells, LayerIslands& islands) {
+  // Layer `layer` of `stack`.
+  void Add(uint32_t layer, const std::vector<IslandCell>& cells, std::vector<LayerIslands>& stack) {
+    std::vector<Support> supports;
     for (const auto& [cell, island] : cells) {
       const auto found = top_.find(cell);
       if (found == top_.end()) continue;
       for (const uint32_t below : found->second.islands) {
-        islands.supports.push_back({found->second.layer, below, island});
+        supports.push_back({found->second.layer, below, island});
       }
     }
-    std::sort(islands.supports.begin(), islands.supports.end());
-    islands.supports.erase(std::unique(islands.supports.begin(), islands.supports.end()),
-                           islands.supports.end());
+    KeepOnce(supports);
+    LayerIslands& islands = stack[layer];
+    for (const Support& support : supports) {
+      IslandTree::ForEachPair(stack[support.layer].tree, support.below, islands.tree,
+                              support.island, [&](uint32_t below, uint32_t island) {
+                                islands.supports.push_back({support.layer, below, island});
+                              });
+    }
+    KeepOnce(islands.supports);
     for (const auto& [cell, island] : cells) {
       if (top_.size() >= kMostCellsOfPrint && !top_.contains(cell)) continue;
       const auto [at, is_new] = top_.try_emplace(cell);
@@ -80,6 +77,13 @@ class TopOfPrint {
   }
 
  private:
+  using Support = LayerIslands::Support;
+
+  static void KeepOnce(std::vector<Support>& supports) {
+    std::sort(supports.begin(), supports.end());
+    supports.erase(std::unique(supports.begin(), supports.end()), supports.end());
+  }
+
   struct Top {
     uint32_t layer = 0;
     std::array<uint32_t, 2> islands{};
@@ -89,6 +93,12 @@ class TopOfPrint {
 };
 
 }  // namespace
+
+std::vector<uint32_t> LayerIslands::Regions() const {
+  std::vector<uint32_t> regions;
+  for (const uint32_t one : island) regions.push_back(tree.RootOf(one));
+  return regions;
+}
 
 std::vector<LayerIslands> StackIslands(const GcodeFile& file, int threads) {
   std::vector<LayerIslands> stack(file.layers.size());
@@ -105,10 +115,10 @@ std::vector<LayerIslands> StackIslands(const GcodeFile& file, int threads) {
       // What is made of it is not looked at.
       cells[i].clear();
       stack[begin + i].island.assign(layer.end_block - layer.first_block, 0);
-      stack[begin + i].count = 1;
+      stack[begin + i].tree = IslandTree(1);
     });
     for (size_t i = 0; i < count; ++i) {
-      top.Add(static_cast<uint32_t>(begin + i), cells[i], stack[begin + i]);
+      top.Add(static_cast<uint32_t>(begin + i), cells[i], stack);
     }
   }
   return stack;

@@ -3,6 +3,7 @@
 // An island is a connected region of a layer: of paths that touch or lie within 1 mm. It lies on
 // the islands printed last before it wherever it is. These are mostly those of the layer before,
 // but not where objects have layers of different heights, or are printed one after the other.
+// Islands near each other also count as one (island_tree.h), in both layers.
 
 #ifndef TRAVERSE_CLIENT_GCODE_PLAN_STACKED_ISLANDS_H_
 #define TRAVERSE_CLIENT_GCODE_PLAN_STACKED_ISLANDS_H_
@@ -11,12 +12,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "client/gcode/island_tree.h"
 #include "client/gcode/model/gcode_file.h"
 
 namespace traverse::gcode {
 
 struct LayerIslands {
-  // An island of this layer lies on island `below` of the earlier layer `layer`.
+  // Node `island` of this layer lies on node `below` of the earlier layer `layer`.
   struct Support {
     uint32_t layer = 0;
     uint32_t below = 0;
@@ -26,8 +28,11 @@ struct LayerIslands {
   };
 
   std::vector<uint32_t> island;  // [path]
-  uint32_t count = 0;
+  IslandTree tree;
   std::vector<Support> supports;  // ascending, each once
+
+  // [path] all that may count as one island with it.
+  std::vector<uint32_t> Regions() const;
 };
 
 // [layer]. Two islands lie on each other if both have paths in a cell of 1 mm. O(n log n) in the

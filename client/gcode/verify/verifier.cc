@@ -277,7 +277,7 @@ void Verifier::CheckChunk() {
     seen_was_.Append(found[i].was);
     seen_is_.Append(found[i].is);
     findings_.insert(findings_.end(), found[i].breaks.begin(), found[i].breaks.end());
-    if (rest_) rest_->Take(islands[i], chunk_was_.layers[i].index, findings_);
+    if (rest_) rest_->Take(std::move(islands[i]), chunk_was_.layers[i].index, findings_);
   }
   if ((rules_ & RuleBit(VerifyRule::kObstacles)) != 0) CheckObstacles(layers);
   ObserveBounds(chunk_was_, seen_was_.box);

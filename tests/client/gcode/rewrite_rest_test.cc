@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/string_view.h"
 #include "client/gcode/rewrite.h"
 #include "tests/client/gcode/support/read_text.h"
 #include "tests/client/gcode/support/scattered_lines.h"
@@ -65,6 +69,26 @@ GcodeRewrite Rewritten(const std::string& text, const FileOrder& order, Policy p
   return rewrite.ok() ? *rewrite : GcodeRewrite{};
 }
 
+// Seconds that are printed between the last line left of `x` of a layer and the first one of the
+// next, at the least.
+double LeastRestLeftOf(double x, const std::string& text) {
+  double least = 1e9;
+  double since = 1e9;
+  double at = 0;
+  bool is_begun = false;
+  for (const absl::string_view line : absl::StrSplit(text, '\n')) {
+    if (line == ";LAYER_CHANGE") is_begun = false;
+    const size_t word = line.find('X');
+    if (absl::StartsWith(line, "G1 ") && word != std::string::npos) {
+      at = std::stod(std::string(line.substr(word + 1)));
+    }
+    if (!absl::StrContains(line, " E.5")) continue;
+    if (at < x && !std::exchange(is_begun, true)) least = std::min(least, since);
+    since = at < x ? 0 : since + 1.5;
+  }
+  return least;
+}
+
 double Saved(const GcodeRewrite& rewrite) {
   return 1 - rewrite.after.travel_mm / rewrite.before.travel_mm;
 }
@@ -107,6 +131,20 @@ TEST(RewriteRest, AsLongAsInTheFileWhereThatIsShorter) {
   const GcodeRewrite rewrite = Rewritten(Pillars(two, 8), there_and_back, Policy::kSafe);
 
   EXPECT_EQ(rewrite.layers_changed, 0);
+}
+
+TEST(RewriteRest, IslandsThatCountAsOneRestTogether) {
+  // The first two are 1.2 mm apart. Each rests 18 s as the file has them, and both together 13.5.
+  const Places places = {{60, 60}, {62, 60}, {140, 140}, {140, 60}, {90, 140}};
+  const std::string text = Pillars(places, 6);
+  // Round the square: each rests as long, but the two together not at all.
+  const FileOrder apart = InSequence({0, 4, 2, 3, 1}, 6, false);
+
+  const GcodeRewrite rewrite = Rewritten(text, apart, Policy::kSafe);
+
+  EXPECT_GT(Saved(rewrite), 0.05);
+  EXPECT_NEAR(LeastRestLeftOf(70, text), 13.5, 0.1);
+  EXPECT_GE(LeastRestLeftOf(70, rewrite.text), 9);
 }
 
 TEST(RewriteRest, ALayerWithoutTheIslandIsRestToo) {

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <tuple>
+#include <utility>
 
 #include "absl/strings/str_format.h"
-#include "client/gcode/island_cells.h"
 #include "client/gcode/verify/match/plane.h"
 #include "engine/base/disjoint_sets.h"
 
@@ -42,7 +44,8 @@ class IslandFinder {
     JoinNear();
     NumberIslands();
     NoteTimes();
-    NoteCells();
+    NotePlaces();
+    NoteJoined();
     return std::move(found_);
   }
 
@@ -116,20 +119,38 @@ class IslandFinder {
     }
   }
 
-  void NoteCells() {
-    IslandCells cells;
+  void NotePlaces() {
+    IslandMap map(static_cast<uint32_t>(found_.islands.size()));
     for (const Piece& piece : grid_.pieces()) {
       if (layer_.Ended()) return;
-      const uint32_t island = island_[piece.path - first_];
-      const double steps = std::clamp(std::ceil(DistanceOf(piece.a, piece.b) * 2), 1.0, 1e6);
-      for (double step = 0; step <= steps && !cells.full(); ++step) {
-        const double share = step / steps;
-        cells.Add({CellAt(piece.a.x + (piece.b.x - piece.a.x) * share,
-                          piece.a.y + (piece.b.y - piece.a.y) * share),
-                   island});
-      }
+      map.AddLine(piece.a.x, piece.a.y, piece.b.x, piece.b.y, island_[piece.path - first_]);
     }
-    found_.cells = cells.Take();
+    found_.tree = map.TakeTree();
+    found_.cells = map.TakeCells();
+  }
+
+  // What counts as one island is begun with the first part of it, and left with the last one.
+  void NoteJoined() {
+    PrintedIsland none;
+    none.begun_was = none.begun_is = std::numeric_limits<double>::infinity();
+    none.first_was = found_.paths;
+    found_.islands.resize(found_.tree.size(), none);
+    for (uint32_t node = 0; node < found_.tree.size(); ++node) {
+      const PrintedIsland& part = found_.islands[node];
+      PrintedIsland& whole = found_.islands[found_.tree.ParentOf(node)];
+      if (part.begun_was < whole.begun_was) {
+        whole.begun_was = part.begun_was;
+        whole.line_was = part.line_was;
+      }
+      if (part.begun_is < whole.begun_is) {
+        whole.begun_is = part.begun_is;
+        whole.line_is = part.line_is;
+      }
+      whole.left_was = std::max(whole.left_was, part.left_was);
+      whole.left_is = std::max(whole.left_is, part.left_is);
+      whole.first_was = std::min(whole.first_was, part.first_was);
+      whole.last_was = std::max(whole.last_was, part.last_was);
+    }
   }
 
   const LayerPair& layer_;
@@ -147,29 +168,45 @@ PrintedIslands FindPrintedIslands(const LayerPair& layer, double height_mm) {
   return IslandFinder(layer, height_mm).Find();
 }
 
-void RestWatch::Take(const PrintedIslands& layer, int64_t index, std::vector<Finding>& breaks) {
-  std::vector<bool> broken(layer.islands.size());
+bool RestWatch::RestsTooShort(const PrintedIsland& below, uint64_t first_path,
+                              const PrintedIsland& island) const {
+  // Nothing else is printed meanwhile.
+  if (first_path + below.last_was + 1 == paths_ + island.first_was) return false;
+  const double needed =
+      kLeastShare * std::min(island.begun_was - below.left_was, least_seconds_) - kSlackSeconds;
+  return island.begun_is - below.left_is < needed;
+}
+
+void RestWatch::Take(PrintedIslands layer, int64_t index, std::vector<Finding>& breaks) {
+  const auto now = std::make_shared<Below>(
+      Below{std::move(layer.islands), std::move(layer.tree), paths_, index});
+  std::vector<bool> broken(now->islands.size());
+  std::tuple<const Below*, uint32_t, uint32_t> looked_at;
   for (const auto& [cell, number] : layer.cells) {
     const auto found = top_.find(cell);
-    if (broken[number] || found == top_.end() || found->second.layer == index) continue;
-    const Top& below = found->second;
-    const PrintedIsland& island = layer.islands[number];
-    // Nothing else is printed meanwhile.
-    if (below.last_path_was + 1 == paths_ + island.first_was) continue;
-    const double rest_was = island.begun_was - below.left_was;
-    const double rest_is = island.begun_is - below.left_is;
-    if (rest_is >= kLeastShare * std::min(rest_was, least_seconds_) - kSlackSeconds) continue;
-    broken[number] = true;
-    breaks.push_back(
-        {VerifyRule::kRest, island.line_was, island.line_is, index,
-         absl::StrFormat("printed %.1f s after the island below; that rests %.1f s in the original"
-                         " where %.4g s are enough",
-                         rest_is, rest_was, least_seconds_)});
+    if (found == top_.end() || found->second.layer->index == index) continue;
+    const Below& under = *found->second.layer;
+    const std::tuple pair(&under, found->second.island, number);
+    if (pair == looked_at) continue;
+    looked_at = pair;
+    const auto check = [&](uint32_t one, uint32_t two) {
+      const PrintedIsland& below = under.islands[one];
+      const PrintedIsland& island = now->islands[two];
+      if (broken[two] || !RestsTooShort(below, under.first_path, island)) return;
+      broken[two] = true;
+      breaks.push_back(
+          {VerifyRule::kRest, island.line_was, island.line_is, index,
+           absl::StrFormat(
+               "printed %.1f s after the island below; that rests %.1f s in the original"
+               " where %.4g s are enough",
+               island.begun_is - below.left_is, island.begun_was - below.left_was,
+               least_seconds_)});
+    };
+    IslandTree::ForEachPair(under.tree, found->second.island, now->tree, number, check);
   }
   for (const auto& [cell, number] : layer.cells) {
-    const PrintedIsland& island = layer.islands[number];
     if (top_.size() >= kMostCellsOfPrint && !top_.contains(cell)) continue;
-    top_[cell] = {island.left_was, island.left_is, paths_ + island.last_was, index};
+    top_[cell] = {now, number};
   }
   paths_ += layer.paths;
 }

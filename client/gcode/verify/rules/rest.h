@@ -1,20 +1,22 @@
 // An island rests, until it is printed on, as long as in the original, or for the least layer time
-// that the file states if that is shorter.
+// that the file states if that is shorter; and so does what counts as one island (island_tree.h).
 
 #ifndef TRAVERSE_CLIENT_GCODE_VERIFY_RULES_REST_H_
 #define TRAVERSE_CLIENT_GCODE_VERIFY_RULES_REST_H_
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "absl/container/flat_hash_map.h"
-#include "client/gcode/island_cells.h"
+#include "client/gcode/island_map.h"
+#include "client/gcode/island_tree.h"
 #include "client/gcode/verify/findings.h"
 #include "client/gcode/verify/match/layer_pair.h"
 
 namespace traverse::gcode {
 
-// A connected region of one layer, and when both files print it.
+// A node of the islands of one layer, and when both files print it.
 struct PrintedIsland {
   double begun_was = 0;
   double left_was = 0;
@@ -27,7 +29,8 @@ struct PrintedIsland {
 };
 
 struct PrintedIslands {
-  std::vector<PrintedIsland> islands;
+  std::vector<PrintedIsland> islands;  // [node]
+  IslandTree tree;
   uint32_t paths = 0;
   std::vector<IslandCell> cells;  // ascending
 };
@@ -42,16 +45,25 @@ class RestWatch {
   explicit RestWatch(double least_seconds) : least_seconds_(least_seconds) {}
 
   // The next layer, with index `index`.
-  void Take(const PrintedIslands& layer, int64_t index, std::vector<Finding>& breaks);
+  void Take(PrintedIslands layer, int64_t index, std::vector<Finding>& breaks);
 
  private:
+  // A layer of which something is on top.
+  struct Below {
+    std::vector<PrintedIsland> islands;
+    IslandTree tree;
+    uint64_t first_path = 0;  // counted from the beginning of the file
+    int64_t index = -1;
+  };
+
   // The island that was printed last in a cell.
   struct Top {
-    double left_was = 0;
-    double left_is = 0;
-    uint64_t last_path_was = 0;  // counted from the beginning of the file
-    int64_t layer = -1;
+    std::shared_ptr<const Below> layer;
+    uint32_t island = 0;
   };
+
+  bool RestsTooShort(const PrintedIsland& below, uint64_t first_path,
+                     const PrintedIsland& island) const;
 
   const double least_seconds_;
   uint64_t paths_ = 0;  // of the layers taken

@@ -54,7 +54,7 @@ struct TurnedRow {
     LayerClock clock;
     clock.path_seconds.assign(at.size(), 1);
     clock.travel_mm_s = 1;
-    return {Given(), found, islands, 4, freedom, estimate, OrderMerger(estimate, {}), clock};
+    return {Given(), found, {islands}, 4, freedom, estimate, OrderMerger(estimate, {}), clock};
   }
 };
 

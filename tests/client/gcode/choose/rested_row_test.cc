@@ -67,7 +67,7 @@ class RestedStack {
         stack[layer].island.push_back(path);
         if (layer > 0) stack[layer].supports.push_back({layer - 1, path, path});
       }
-      stack[layer].count = kIslands;
+      stack[layer].tree = IslandTree(kIslands);
     }
     return stack;
   }
@@ -93,7 +93,7 @@ class RestedStack {
     const OrderMerger judge(estimate, {});
     TurnedLayer turned;
     turned.first_block = first;
-    turned.turns = IslandTurns(given, {given}, islands_, 3, freedom, estimate, judge, clock);
+    turned.turns = IslandTurns(given, {given}, {islands_}, 3, freedom, estimate, judge, clock);
     turned.given = judge.TotalsOf(given);
     std::vector<double> moments;
     for (size_t path = 0; path < kIslands; ++path) {

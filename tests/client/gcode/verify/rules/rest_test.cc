@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/client/gcode/verify/small_prints.h"
@@ -94,13 +95,25 @@ TEST(VerifyRest, CirclesThatDoNotTouchAreIslandsOfTheirOwn) {
            absl::StrCat(";TYPE:Internal infill\nG1 F140\nG3 X", x + 0.008, " Y.15 I1.5 J0 E.3\n");
   };
   const std::string a = circle(0);
-  const std::string b = circle(4.5);
+  const std::string b = circle(5.5);
   const std::string c = circle(40);
   const std::string next = ";LAYER_CHANGE\nG1 Z.4 F9000\n";
 
   EXPECT_EQ(Rests(kHead + a + b + c + next + a + b + c, kHead + a + c + b + next + a + c + b), "");
   EXPECT_EQ(Rests(kHead + a + b + c + next + a + b + c, kHead + a + c + b + next + b + c + a),
             "rest");
+}
+
+TEST(VerifyRest, IslandsThatCountAsOneRestTogether) {
+  const auto islands = [](int apart) {
+    // Each rests 12 s, and both together 8 s.
+    const std::string given = Print({{0, apart, 20, 40}, {0, apart, 20, 40}});
+    return std::pair(Rests(given, Print({{0, 20, 40, apart}, {0, 20, 40, apart}})),
+                     Rests(given, Print({{20, apart, 0, 40}, {20, apart, 0, 40}})));
+  };
+
+  EXPECT_EQ(islands(2), std::pair(std::string("rest"), std::string()));
+  EXPECT_EQ(islands(4), std::pair(std::string(), std::string()));
 }
 
 TEST(VerifyRest, PathsOfOneIslandMayComeInAnyOrder) {

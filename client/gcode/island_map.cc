@@ -1,0 +1,123 @@
+#include "client/gcode/island_map.h"
+
+#include "absl/container/flat_hash_map.h"
+#include "absl/types/span.h"
+
+namespace traverse::gcode {
+namespace {
+
+constexpr double kPointsApartMm = 0.5;
+
+// Points of one island that follow each other closer than this are as good as one.
+constexpr double kSamePointMm = 0.25;
+
+// Pairs of points that are looked at in a layer.
+constexpr uint64_t kMostPairs = 4'000'000;
+
+// The cell of `size` mm at a point, in mm.
+uint64_t CellOf(double x, double y, double size) {
+  const auto index = [size](double value) {
+    const double cell = std::clamp(std::floor(value / size), -kFarCells, kFarCells);
+    return static_cast<uint32_t>(static_cast<int32_t>(cell));
+  };
+  return uint64_t{index(x)} << 32 | index(y);
+}
+
+uint64_t Beside(uint64_t cell, uint32_t columns, uint32_t rows) {
+  const auto column = static_cast<uint32_t>(cell >> 32) + columns;
+  return uint64_t{column} << 32 | (static_cast<uint32_t>(cell) + rows);
+}
+
+}  // namespace
+
+void IslandMap::AddLine(double from_x, double from_y, double to_x, double to_y, uint32_t island) {
+  const double dx = to_x - from_x;
+  const double dy = to_y - from_y;
+  const double steps =
+      std::clamp(std::ceil(std::hypot(dx, dy) / kPointsApartMm), 1.0, kFarCells / kPointsApartMm);
+  for (double step = 0; step <= steps && !full_; ++step) {
+    Add({from_x + dx * step / steps, from_y + dy * step / steps, island});
+  }
+}
+
+void IslandMap::Add(const Point& point) {
+  if (count_ > 1 && points_.size() < kMostCellsOfLayer) {
+    const bool same =
+        !points_.empty() && points_.back().island == point.island &&
+        std::hypot(points_.back().x - point.x, points_.back().y - point.y) < kSamePointMm;
+    if (!same) points_.push_back(point);
+  }
+  const IslandCell cell{CellOf(point.x, point.y, 1), point.island};
+  if (!cells_.empty() && cells_.back() == cell) return;
+  cells_.push_back(cell);
+  if (cells_.size() < room_) return;
+  Tidy();
+  full_ = cells_.size() >= kMostCellsOfLayer;
+  room_ = 2 * cells_.size() + kLeastRoom;
+}
+
+void IslandMap::Tidy() {
+  std::sort(cells_.begin(), cells_.end());
+  cells_.erase(std::unique(cells_.begin(), cells_.end()), cells_.end());
+}
+
+std::vector<IslandCell> IslandMap::TakeCells() {
+  Tidy();
+  return std::move(cells_);
+}
+
+IslandTree IslandMap::TakeTree() {
+  std::vector<PlacedPoint> placed;
+  placed.reserve(points_.size());
+  for (const Point& point : std::exchange(points_, {})) {
+    placed.emplace_back(CellOf(point.x, point.y, IslandTree::kMostMm), point);
+  }
+  std::stable_sort(placed.begin(), placed.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  return {count_, GapsOf(placed)};
+}
+
+// `points` by cell, none of which is narrower than the greatest gap.
+std::vector<IslandGap> IslandMap::GapsOf(const std::vector<PlacedPoint>& points) {
+  absl::flat_hash_map<uint64_t, absl::Span<const PlacedPoint>> cells;
+  for (size_t begin = 0, end = 0; begin < points.size(); begin = end) {
+    while (end < points.size() && points[end].first == points[begin].first) ++end;
+    cells[points[begin].first] = absl::MakeConstSpan(points).subspan(begin, end - begin);
+  }
+  uint64_t left = kMostPairs;
+  absl::flat_hash_map<std::pair<uint32_t, uint32_t>, double> squares;
+  const auto look_at = [&](const Point& a, const Point& b) {
+    const double square = (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y);
+    if (a.island == b.island || square > IslandTree::kMostMm * IslandTree::kMostMm) return;
+    const auto [at, is_new] = squares.try_emplace(std::minmax(a.island, b.island), square);
+    if (!is_new) at->second = std::min(at->second, square);
+  };
+  const auto of_one = [](absl::Span<const PlacedPoint> some, uint32_t island) {
+    return std::all_of(some.begin(), some.end(),
+                       [island](const auto& point) { return point.second.island == island; });
+  };
+  for (const auto& [cell, here] : cells) {
+    // Each cell with itself, and with half of those around it.
+    for (const uint64_t other : {cell, Beside(cell, 0, 1), Beside(cell, 1, UINT32_MAX),
+                                 Beside(cell, 1, 0), Beside(cell, 1, 1)}) {
+      const auto there = cells.find(other);
+      if (there == cells.end()) continue;
+      const uint32_t island = here[0].second.island;
+      if (of_one(here, island) && of_one(there->second, island)) continue;
+      const uint64_t pairs = here.size() * there->second.size();
+      if (pairs > left) return {};
+      left -= pairs;
+      for (const auto& a : here) {
+        for (const auto& b : there->second) look_at(a.second, b.second);
+      }
+    }
+  }
+  std::vector<IslandGap> gaps;
+  gaps.reserve(squares.size());
+  for (const auto& [pair, square] : squares) {
+    gaps.push_back({pair.first, pair.second, std::sqrt(square)});
+  }
+  return gaps;
+}
+
+}  // namespace traverse::gcode
