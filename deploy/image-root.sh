@@ -5,7 +5,8 @@
 #   deploy/image-root.sh BUILD OUT [traverse-server|traverse-gateway]
 #
 # OUT/usr/share/doc/traverse-server/packages.txt lists the Debian packages of the libraries with their
-# versions, sorted: the same list is the same image but for our own programs. Their licences lie beside it.
+# versions, sorted: the same list is the same image but for our own programs. Their licences lie beside it. So do
+# those of archives whose code is in the programs, by the linker's map.
 set -euo pipefail
 build=$(realpath "$1")
 out=$2
@@ -25,9 +26,10 @@ done
 # ldd prints "libz.so.1 => /lib/x86_64-linux-gnu/libz.so.1 (0x...)" and "/lib64/ld-linux-x86-64.so.2 (0x...)".
 libraries=$(for program in "${programs[@]}"; do ldd "$program"; done |
   awk '$2 == "=>" && $3 ~ /^\// {print $3} $1 ~ /^\// {print $1}' | sort -u)
+archives=$(for program in "${programs[@]}"; do sed -n 's/^\(\/[^(]*\.a\)(.*/\1/p' "$program.map"; done | sort -u)
 packages=()
-for library in $libraries; do
-  cp -L --parents "$library" "$out"
+for library in $libraries $archives; do
+  [[ $library == *.a ]] || cp -L --parents "$library" "$out"
   # dpkg knows a file by the path it was unpacked to, which may be the one behind a link.
   owner=$(dpkg-query -S "$library" 2>/dev/null || dpkg-query -S "$(realpath "$library")" 2>/dev/null ||
     dpkg-query -S "*/$(basename "$(realpath "$library")")")

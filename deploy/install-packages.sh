@@ -3,6 +3,7 @@
 #
 #   deploy/install-packages.sh build      what the build needs
 #   deploy/install-packages.sh test       that, and what the tests need, a browser and Node among it
+#   deploy/install-packages.sh release    the build's, and what packs
 #   deploy/install-packages.sh sanitize   the build's, clang and what the tests in C++ need
 #   deploy/install-packages.sh deploy     the tests', and the daemons and tools of the tests of deploy/, but kubectl
 set -euo pipefail
@@ -20,20 +21,25 @@ test=(
   python3-grpcio python3-protobuf python3-yaml python3-venv python3-pip python3-setuptools python3-wheel codespell zsh curl iproute2
   chromium fonts-dejavu-core nats-server
 )
+release=(dpkg-dev file gzip python3 python3-pip python3-setuptools python3-wheel)
 sanitize=(clang libclang-rt-14-dev llvm)
 deploy=(
   prometheus haproxy systemd mmdebstrap buildah podman podman-compose runc catatonit
   containernetworking-plugins golang-github-containernetworking-plugin-dnsname iptables
 )
-command -v npm >/dev/null || test+=(nodejs npm)  # another Node may be there already
+if ! command -v npm >/dev/null; then  # another Node may be there already
+  test+=(nodejs npm)
+  release+=(nodejs npm)
+fi
 
 case "${1:-}" in
   build) wanted=("${build[@]}") ;;
   test) wanted=("${build[@]}" "${test[@]}") ;;
+  release) wanted=("${build[@]}" "${release[@]}") ;;
   sanitize) wanted=("${build[@]}" "${unit[@]}" "${sanitize[@]}") ;;
   deploy) wanted=("${build[@]}" "${test[@]}" "${deploy[@]}") ;;
   *)
-    echo "usage: $0 build|test|sanitize|deploy" >&2
+    echo "usage: $0 build|test|release|sanitize|deploy" >&2
     exit 2
     ;;
 esac

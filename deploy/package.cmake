@@ -9,6 +9,12 @@ function(install_programs component)
   foreach(program IN LISTS ARGN)
     if(TARGET ${program})
       install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
+      # The names of files in it are those of the project, wherever that lies: the same bytes from any folder.
+      target_compile_options(${program} PRIVATE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
+      # Which members of which archives it is made of; release/linked.py and image-root.sh read that.
+      if(NOT APPLE)
+        target_link_options(${program} PRIVATE LINKER:-Map=$<TARGET_FILE:${program}>.map)
+      endif()
     endif()
   endforeach()
 endfunction()

@@ -15,6 +15,14 @@ cp -r "$here" "$work/client/python"
 cp -r "$here/../../proto" "$here/../../CMakeLists.txt" "$work/"
 cd "$work/client/python"
 rm -rf dist build
-/usr/bin/python3 setup.py -q sdist -d "$out"
+/usr/bin/python3 setup.py -q sdist -d "$work/sdist"
+# Python's tar writes when and by whom it was packed; as SOURCE_DATE_EPOCH says, it is the same each time.
+for sdist in "$work"/sdist/*.tar.gz; do
+  mkdir "$work/unpacked"
+  tar -xzf "$sdist" -C "$work/unpacked"
+  (cd "$work/unpacked" && tar --sort=name --owner=0 --group=0 --numeric-owner \
+    ${SOURCE_DATE_EPOCH:+--mtime=@$SOURCE_DATE_EPOCH} -c -- *) |
+    gzip -9n >"$out/$(basename "$sdist")"
+done
 /usr/bin/python3 -m pip --disable-pip-version-check wheel -q --no-build-isolation --no-deps -w "$out" .
 ls "$out"
