@@ -360,8 +360,8 @@ LayerOutcome LayerSolver::Anchor(ChainLayer& layer, const TrueStart& at) const {
   Solution solution = ValidFromTrueStart(problem, layer, known, at);
   bool was_replaced = !turns.ExhaustedNow() && KnowsAlone(layer, at) &&
                       KeepWithinAlone(problem, layer, at, solution);
-  was_replaced = KeepWithinInitial(problem, layer, solution) || was_replaced;
   was_replaced = KeepWithinGreedy(problem, layer, at, solution) || was_replaced;
+  was_replaced = KeepWithinInitial(problem, layer, solution) || was_replaced;
   LayerOutcome outcome = std::move(layer.outcome);
   if (turns.ExhaustedNow()) return outcome;  // cancelled: nobody reads it
   if (!solution.lower_bound) Bound(problem, layer, solution);
