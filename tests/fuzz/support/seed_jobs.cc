@@ -47,7 +47,7 @@ const char* const kJobs[] = {
     R"(options { strategy { name: "exact" } time_limit { nanos: 50000000 } }
        layers { islands { rasters { points: [0, 0, 3, 0] } rasters { points: [9, 1, 8, 1] } }
                 initial_route { island: 0 raster: 1 reversed: true }
-                initial_route { island: 0 raster: 0 reversed: true } } })",
+                initial_route { island: 0 raster: 0 reversed: true } })",
 };
 
 std::vector<v1::OptimizeBatchRequest> ParseJobs() {
