@@ -28,8 +28,8 @@ double SquaredDistance(const Segment& s, const Segment& t);
 // True if the interiors of the segments cross at one point.
 bool Cross(Vertex a, Vertex b, Vertex c, Vertex d);
 
-// Built once; O(total length of the segments / cell size + cells / 64) in time and memory, where the
-// length is at most kCellsPerSegment cells for each segment.
+// Built once; O(total length of the segments / cell size + cells / 64) in time and memory, where
+// the length is at most kCellsPerSegment cells for each segment.
 class SegmentGrid {
  public:
   // Cells of `cell_mm`. A huge layer gets larger ones, so that there are at most kMaxCells, and

@@ -67,8 +67,8 @@ Contacts FindContacts(const std::vector<Outline>& outlines,
     return false;
   };
   const double most = kMostPairsOfAll + kMostPairsEach * static_cast<double>(grid.entry_count());
-  contacts.complete = grid.ForEachNearPair(reach, wanted, look_at, most) &&
-                      contacts.ordered.size() <= most_ordered;
+  contacts.complete =
+      grid.ForEachNearPair(reach, wanted, look_at, most) && contacts.ordered.size() <= most_ordered;
   if (!contacts.complete) {
     contacts.ordered.clear();
     contacts.island.assign(outlines.size(), 0);
