@@ -79,14 +79,14 @@ class FairOrder {
   // Takes the first member in their order for which may(member) is true; null if there is none.
   template <typename May>
   Member* TakeFirst(May may) {
-    const auto first = std::find_if(waiting_.begin(), waiting_.end(), [&](const Key& key) {
-      return may(*std::get<Member*>(key));
-    });
+    const auto first = std::find_if(waiting_.begin(), waiting_.end(),
+                                    [&](const Key& key) { return may(*std::get<Member*>(key)); });
     if (first == waiting_.end()) return nullptr;
+    // Of the member furthest behind: one that is taken before its turn moves nobody's entrance.
+    now_ = std::max(now_, std::get<double>(*waiting_.begin()));
     Member& next = *std::get<Member*>(*first);
     waiting_.erase(first);
     next.waits_ = false;
-    now_ = std::max(now_, next.clock_);
     return &next;
   }
 
@@ -112,7 +112,7 @@ class FairOrder {
 
   static Key KeyOf(Member& member) { return {member.clock_, member.turn_, &member}; }
 
-  double now_ = 0;   // the clock of the member served last; never runs back
+  double now_ = 0;   // the clock of who was furthest behind last; never runs back
   int members_ = 0;  // number of members with work
   uint64_t turns_ = 0;
   std::set<Key> waiting_;

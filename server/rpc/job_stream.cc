@@ -23,6 +23,12 @@ void DiscardSome(const std::shared_ptr<std::deque<LabelledLayer>>& layers,
   if (!layers->empty()) queue->Submit([layers, queue] { DiscardSome(layers, queue); });
 }
 
+// Whether nothing but the call's deadline cuts the search short.
+bool OnlyDeadlineLimits(const JobSetup& setup) {
+  return setup.time_limit == absl::InfiniteDuration() &&
+         setup.spec.layer_time_limit == absl::InfiniteDuration();
+}
+
 }  // namespace
 
 JobStream::JobStream(ServiceCore& core, grpc::CallbackServerContext& context, CallInfo call)
@@ -102,7 +108,7 @@ void JobStream::StartEngine(int64_t expected_layers, int64_t expected_points) {
     end = end ? std::min(*end, limit) : limit;
   }
   setup_.spec.deadline = end;
-  if (end) queue_->set_due(*end);
+  if (search_end_) queue_->set_due(*search_end_);
   run_->Start({core_.limits.window, setup_.build_order}, setup_.spec, std::move(setup_.strategy),
               *queue_);
 }
@@ -155,7 +161,7 @@ std::string JobStream::EncodeLayer(const LayerOutcome& outcome, const LayerLabel
   core_.metrics.CountLayer(*layer_metrics_, outcome, setup_.idle_speed_mm_s);
   const double busy_seconds = queue_->busy_seconds();
   ticket_->Remove(label.points, BytesFreedBy(outcome, label), busy_seconds - counted_seconds_,
-                  outcome.stop == StopReason::kTimeLimit);
+                  outcome.stop == StopReason::kTimeLimit && OnlyDeadlineLimits(setup_));
   counted_seconds_ = busy_seconds;
   --core_.queue_layers;
   std::string message = Encode(outcome, label.id);

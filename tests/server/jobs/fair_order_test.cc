@@ -48,6 +48,20 @@ TEST(FairOrder, TimeIsSharedNotTurns) {
   EXPECT_EQ(Serve(order, 10), "sqqqqsqqqq");
 }
 
+TEST(FairOrder, WhoIsTakenBeforeItsTurnMovesNobodysEntrance) {
+  FairOrder order;
+  Named ahead('a', 1), behind('b', 1);
+  Come(order, ahead);
+  Come(order, behind);
+  order.Charge(ahead, 100);
+  const auto is_ahead = [&](const FairOrder::Member& member) { return &member == &ahead; };
+  order.Wait(*order.TakeFirst(is_ahead));
+  Named fresh('f', FairOrder::kHeadStart / 4);
+  Come(order, fresh);
+
+  EXPECT_EQ(Serve(order, 3), "bff");
+}
+
 TEST(FairOrder, WhoComesNewIsServedFirstForItsHeadStart) {
   FairOrder order;
   Named a('a', FairOrder::kHeadStart / 10), b('b', FairOrder::kHeadStart / 10);
