@@ -1,6 +1,7 @@
 #include "client/gcode/island_tree.h"
 
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 namespace traverse::gcode {
@@ -19,17 +20,36 @@ IslandTree::IslandTree(uint32_t count, const std::vector<IslandGap>& gaps) : Isl
   std::sort(joins.begin(), joins.end(), [](const Join& a, const Join& b) {
     return std::tie(a.step, a.one, a.other) < std::tie(b.step, b.one, b.other);
   });
+  std::vector<uint32_t> above(count);  // [node] one that it is part of; itself if it is of none
+  std::iota(above.begin(), above.end(), 0);
+  const auto top_of = [&above](uint32_t node) {
+    while (above[node] != node) node = above[node] = above[above[node]];
+    return node;
+  };
   for (const Join& join : joins) {
-    uint32_t one = RootOf(join.one);
-    uint32_t other = RootOf(join.other);
+    uint32_t one = top_of(join.one);
+    uint32_t other = top_of(join.other);
     if (one == other) continue;
     if (one > other) std::swap(one, other);
     if (nodes_[other].step != join.step) {
       nodes_.push_back({kNone, join.step});
-      nodes_[other].parent = size() - 1;
+      above.push_back(size() - 1);
+      nodes_[other].parent = above[other] = size() - 1;
       other = size() - 1;
     }
-    nodes_[one].parent = other;
+    nodes_[one].parent = above[one] = other;
+  }
+  LeaveOneOfEachStep();
+}
+
+// Of wholes that were joined at one step only the last stays above others, so that no node has more
+// above it than there are steps.
+void IslandTree::LeaveOneOfEachStep() {
+  for (uint32_t node = size(); node-- > 0;) {
+    uint32_t& parent = nodes_[node].parent;
+    if (parent == kNone) continue;
+    const uint32_t whole = nodes_[parent].parent;
+    if (whole != kNone && nodes_[whole].step == nodes_[parent].step) parent = whole;
   }
 }
 

@@ -66,6 +66,8 @@ class IslandTree {
   }
 
  private:
+  void LeaveOneOfEachStep();
+
   static constexpr uint32_t kNone = UINT32_MAX;
   static constexpr int kNever = std::numeric_limits<int>::max();
 

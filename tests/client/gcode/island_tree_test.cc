@@ -48,6 +48,21 @@ TEST(IslandTree, JoinsAtOnceWhatIsEquallyFar) {
   EXPECT_EQ(PairsOf(pairs, 0, pairs, 2), (Pairs{{0, 2}, {pairs.RootOf(1), pairs.RootOf(1)}}));
 }
 
+// A ladder of pairs, each of which is joined to the next one at the distance at which it came to
+// be.
+TEST(IslandTree, NoNodeHasMoreAboveItThanThereAreSteps) {
+  constexpr uint32_t kPairs = 1000;
+  std::vector<IslandGap> gaps;
+  for (uint32_t i = 0; i < kPairs; ++i) gaps.push_back({i, kPairs + i, 1.5});
+  for (uint32_t i = 0; i + 1 < kPairs; ++i) gaps.push_back({kPairs + i, kPairs + i + 1, 1.5});
+  const IslandTree tree(2 * kPairs, gaps);
+
+  for (uint32_t island = 0; island < tree.count(); ++island) {
+    const uint32_t whole = tree.ParentOf(island);
+    EXPECT_EQ(whole, tree.RootOf(0)) << island;
+  }
+}
+
 TEST(IslandTree, PairsAreThoseAtTheSameDistance) {
   const IslandTree below(2, {{0, 1, 1.4}});
   const IslandTree above(2, {{0, 1, 1.9}});
