@@ -23,6 +23,7 @@
 #include "client/gateway/api/take_file.h"
 #include "client/gateway/http/problem.h"
 #include "client/gateway/work/guarded.h"
+#include "server/jobs/retry_delay.h"
 
 namespace traverse::gateway {
 namespace {
@@ -53,6 +54,12 @@ absl::StatusOr<v1::OptimizeBatchRequest> ReadRequest(const SpoolFile& file, uint
   return request;
 }
 
+// What the gateway itself is short of is there again soon.
+absl::Status WithPatience(const absl::Status& status) {
+  constexpr absl::Duration kPatience = absl::Seconds(5);
+  return absl::IsResourceExhausted(status) ? WithRetryDelay(status, kPatience) : status;
+}
+
 // Asks the service, and passes on what it answers. A client who sends the whole job waits for all
 // of it, so that here, too, an answer is lost only with its servers.
 absl::Status Ask(Core& core, const LayerJob& job, v1::OptimizeBatchRequest request,
@@ -68,8 +75,11 @@ absl::Status Ask(Core& core, const LayerJob& job, v1::OptimizeBatchRequest reque
   v1::OptimizeBatchResponse message;
   call.on_layer = [&](const v1::LayerResult& layer) {
     if (!added.ok()) return;
-    *message.mutable_layer() = layer;
-    added = answer.Add(message);
+    added = Guarded([&] {  // the client's threads know nothing of memory that is short
+      *message.mutable_layer() = layer;
+      return answer.Add(message);
+    });
+    added = WithPatience(added);
     if (!added.ok()) stop.request_stop();
   };
   absl::StatusOr<JobResult> result = core.client->Optimize(request.options(), layers, call);
@@ -77,7 +87,7 @@ absl::Status Ask(Core& core, const LayerJob& job, v1::OptimizeBatchRequest reque
   if (!result.ok()) return result.status();
   summary = result->summary;
   *message.mutable_summary() = std::move(result->summary);
-  return answer.Add(message);
+  return WithPatience(answer.Add(message));
 }
 
 void Record(Core& core, const LayerJob& job, const absl::Status& status,
@@ -103,15 +113,20 @@ void Run(Core& core, const LayerJob& job, const absl::Status& may) {
                       : AnswerInLines(*core.spool, job.caller, job.reply);
   v1::JobSummary summary;
   const absl::Status status = Guarded([&]() -> absl::Status {
-    if (!may.ok()) return may;
+    if (!may.ok()) return WithPatience(may);
     if (began >= job.finish_by) return absl::DeadlineExceededError("the deadline has passed");
+    if (job.stop.stop_requested()) return absl::CancelledError("the client has gone");
     absl::StatusOr<v1::OptimizeBatchRequest> request =
         ReadRequest(*job.file, core.options.max_file_bytes);
     if (!request.ok()) return request.status();
     return Ask(core, job, *std::move(request), *answer, summary);
   });
   Record(core, job, status, summary, absl::Now() - began);
-  answer->Finish(status);
+  // Without memory for the end the connection ends without one.
+  Guarded([&] {
+    answer->Finish(status);
+    return absl::OkStatus();
+  }).IgnoreError();
 }
 
 bool IsJson(const HttpRequest& request) {

@@ -230,6 +230,8 @@ class Limits(Case):
             answer.begin()
             last = json.loads(answer.read().splitlines()[-1])
         self.assertIn("spool", last["error"]["detail"])
+        self.assertEqual(503, last["error"]["status"])
+        self.assertLess(0, last["error"]["retry_after"])
 
     def much_to_read(self):
         """A short job whose answer of 13 MB is more than sockets hold."""
