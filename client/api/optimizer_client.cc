@@ -14,6 +14,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/cord.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_format.h"
 #include "absl/time/clock.h"
 #include "client/api/resume.h"
@@ -296,7 +297,12 @@ absl::StatusOr<JobResult> OptimizerClient::Optimize(const v1::JobOptions& option
     if (!delay || absl::Now() + *delay >= deadline) {
       const absl::Status failure = FromGrpc(status);
       if (run.begin == 0) return failure;
-      return absl::Status(failure.code(), ShiftPlace(std::string(failure.message()), run.begin));
+      absl::Status shifted(failure.code(), ShiftPlace(std::string(failure.message()), run.begin));
+      // But for its fields, whose places are those of the last call.
+      failure.ForEachPayload([&shifted](absl::string_view url, const absl::Cord& detail) {
+        if (!absl::EndsWith(url, ".BadRequest")) shifted.SetPayload(url, detail);
+      });
+      return shifted;
     }
     if (!SleepUnlessCancelled(*delay, call.cancel)) return absl::CancelledError("cancelled");
   } while (collector.answers() < layers.size());
