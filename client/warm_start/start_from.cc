@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -28,6 +29,7 @@ class RouteMaker {
     for (const FoundPath& visit : found) {
       if (visit.path < 0) continue;
       rank_[static_cast<size_t>(visit.path)] = static_cast<double>(known_.size());
+      below_[shape.paths[static_cast<size_t>(visit.path)].parent].push_back(known_.size());
       entry_[static_cast<size_t>(visit.path)] = visit.entry;
       known_.push_back(visit);
     }
@@ -63,17 +65,28 @@ class RouteMaker {
   // The ends of the known visits below one node, by their numbers among all; of all if none is
   // below it.
   const PointTree& EndsBelow(int parent) {
+    const auto own = below_.find(parent);
+    if (own == below_.end()) {
+      if (!all_ends_) {
+        std::vector<size_t> all(known_.size());
+        std::iota(all.begin(), all.end(), size_t{0});
+        all_ends_.emplace(EndsOf(all));
+      }
+      return *all_ends_;
+    }
     const auto made = ends_.find(parent);
     if (made != ends_.end()) return made->second;
-    std::vector<OwnedPoint> own;
-    std::vector<OwnedPoint> all;
-    for (size_t i = 0; i < known_.size(); ++i) {
-      const bool is_own = shape_.paths[static_cast<size_t>(known_[i].path)].parent == parent;
+    return ends_.emplace(parent, PointTree(EndsOf(own->second))).first->second;
+  }
+
+  std::vector<OwnedPoint> EndsOf(absl::Span<const size_t> known) const {
+    std::vector<OwnedPoint> ends;
+    for (const size_t i : known) {
       for (const auto& [x, y] : {EnterOf(i), ExitOf(i)}) {
-        (is_own ? own : all).push_back({x, y, static_cast<int>(i), 0});
+        ends.push_back({x, y, static_cast<int>(i), 0});
       }
     }
-    return ends_.emplace(parent, PointTree(std::move(own.empty() ? all : own))).first->second;
+    return ends;
   }
 
   // The known visit before which a new path comes: beside the nearest one among its siblings, on
@@ -128,10 +141,12 @@ class RouteMaker {
   }
 
   const LayerShape& shape_;
-  std::vector<uint32_t> entry_;    // [path]
-  std::vector<double> rank_;       // [path]; -1: not known yet
-  std::vector<FoundPath> known_;   // in the earlier order
-  std::map<int, PointTree> ends_;  // [parent]
+  std::vector<uint32_t> entry_;               // [path]
+  std::vector<double> rank_;                  // [path]; -1: not known yet
+  std::vector<FoundPath> known_;              // in the earlier order
+  std::map<int, std::vector<size_t>> below_;  // [parent] of them
+  std::map<int, PointTree> ends_;             // [parent]
+  std::optional<PointTree> all_ends_;
 };
 
 uint64_t PlaceKey(double x, double y) {
