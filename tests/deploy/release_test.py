@@ -33,9 +33,9 @@ class Numbers(unittest.TestCase):
                               ("deploy/kubernetes/base/kustomization.yaml", r"newTag: (\S+)"),
                               ("deploy/kubernetes/components/gateway/kustomization.yaml", r"newTag: (\S+)"),
                               ("deploy/examples/upload_hook/traverse_upload.py", r'__plugin_version__ = "([^"]+)"'),
-                              ("deploy/debian/changelog", r"(?m)^traverse \(([^)]+)\)")):
+                              ("deploy/debian/changelog", r"\Atraverse \(([^)]+)\)")):
             with self.subTest(name):
-                self.assertEqual({VERSION}, set(re.findall(pattern, text(name))[:4]))
+                self.assertEqual({VERSION}, set(re.findall(pattern, text(name))))
 
     def test_the_changelogs_have_the_release_under_one_date(self):
         sections = re.findall(r"(?m)^## (.*)$", text("CHANGELOG.md"))
@@ -53,6 +53,8 @@ class Release(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
+        if os.environ.get("TRAVERSE_TEST_IMAGES") != "1":
+            raise unittest.SkipTest("packing twice takes minutes; run it with TRAVERSE_TEST_IMAGES=1")
         cls.build = pathlib.Path(os.environ.get("TRAVERSE_BUILD", ""))
         if not all((cls.build / f"{program}.map").exists() for program in PROGRAMS):
             raise unittest.SkipTest("TRAVERSE_BUILD does not name a build with its linker's maps")
