@@ -42,6 +42,7 @@ struct GreedyLayer {
   Point start;
   Route route;
   Point end = {};  // cleaning included
+  double cost = 0;
 };
 
 // A layer on its way. A stage owns its layer and works without the lock, but hands over under it.

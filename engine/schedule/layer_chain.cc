@@ -158,13 +158,13 @@ void LayerChain::RunAnchor(const ChainLayerPtr& layer, TrueStart at) {
   LayerOutcome outcome;
   const Budget::Clock::duration used = layer->used;
   const bool late = layer->search_end && Now() >= *layer->search_end;
-  const double of_greedy = layer->greedy ? solver_.GreedyCost(*layer) : 0;  // has its plan still
   RunTimed(*layer, solver_.traits().serial, [&] { outcome = solver_.Anchor(*layer, at); });
   if (BoundsChain() && !cancel_.cancelled()) KeepForBound(*layer, outcome);
   const Point route_end = outcome.end;
   const Point end = layer->finish.value_or(route_end);
   const double over_alone = layer->alone ? at.over_alone + outcome.cost - layer->alone->cost : 0;
-  const double over_greedy = at.over_greedy + outcome.cost - of_greedy;
+  const double over_greedy =
+      layer->greedy ? at.over_greedy + outcome.cost - layer->greedy->cost : 0;
   if (!cancel_.cancelled()) outbox_.Deliver(std::move(outcome));
   MutexLock lock(mutex_);
   layer->end = end;

@@ -50,6 +50,7 @@ GreedyLayer LayerPreparer::FollowGreedy(const ChainLayer& layer) const {
   const LayerProblem problem = solver_.Problem(layer, greedy_at_);
   GreedyLayer greedy{greedy_at_, solver_.GreedyRoute(problem, layer)};
   greedy.end = layer.finish.value_or(RouteEnd(layer.given.plan, greedy.route, greedy_at_));
+  greedy.cost = RouteCost(problem, greedy.route);
   return greedy;
 }
 

@@ -72,11 +72,6 @@ class LayerSolver {
   // that do not search begin with any.
   bool ResumesInitial(const LayerProblem& problem, const ChainLayer& layer) const;
 
-  // What the layer costs in greedy's chain. REQUIRES: that is known.
-  double GreedyCost(const ChainLayer& layer) const {
-    return RouteCost(Problem(layer, layer.greedy->start), layer.greedy->route);
-  }
-
   // `solution` with what later layers need to continue from it.
   KnownRoutePtr Known(const LayerProblem& problem, const ChainLayer& layer,
                       const Solution& solution) const;

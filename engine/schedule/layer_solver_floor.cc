@@ -103,7 +103,7 @@ bool LayerSolver::KeepWithinGreedy(const LayerProblem& problem, const ChainLayer
   const bool knows = layer.greedy && !layer.walls && at.next != nullptr && at.next->greedy &&
                      !at.next->walls && layer.greedy->route.size() == solution.route.size();
   if (!knows || solution.stop != StopReason::kTimeLimit || strategy_->traits().pure) return false;
-  const double chain = GreedyCost(layer) + GreedyCost(*at.next);
+  const double chain = layer.greedy->cost + at.next->greedy->cost;
   const auto over = [&](const Route& route) {
     const Point end = layer.finish.value_or(RouteEnd(layer.given.plan, route, problem.start));
     return at.over_greedy + RouteCost(problem, route) +
