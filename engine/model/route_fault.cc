@@ -25,6 +25,7 @@ class Walk {
  public:
   Walk(const PlanTree& tree, Rest& rest)
       : tree_(tree),
+        rest_(rest),
         visited_(tree.plan().paths.size()),
         slot_(static_cast<size_t>(tree.node_count())),
         begun_(static_cast<size_t>(tree.node_count()), kNone),
@@ -90,6 +91,7 @@ class Walk {
       return visited(path) ? INT_MAX : path;
     }
     int least = INT_MAX;
+    rest_(tree_.children(node).size());
     for (const int child : tree_.children(node)) least = std::min(least, LeastUndone(child));
     return least;
   }
@@ -105,6 +107,7 @@ class Walk {
   int UndoneBefore(int node, int child) const {
     const PlanNode& of = tree_.node(node);
     const auto at = [&](int position) { return of.children[static_cast<size_t>(position)]; };
+    rest_(of.children.size() + 2 * of.before.size());
     std::vector<std::vector<int>> before(of.children.size());
     for (const auto& [first, second] : of.before)
       before[static_cast<size_t>(second)].push_back(first);
@@ -128,6 +131,7 @@ class Walk {
   }
 
   const PlanTree& tree_;
+  Rest& rest_;
   std::vector<bool> visited_;            // [path]
   std::vector<int> slot_;                // [node] its slot in its parent
   std::vector<int> begun_;               // [node] the slot that was begun and is not yet complete
