@@ -44,14 +44,10 @@ absl::StatusOr<std::shared_ptr<const SpoolFile>> FileEvents(Spool& spool, const 
   constexpr size_t kPiece = 49152;  // a multiple of three: pieces may be joined before decoding
   absl::StatusOr<std::shared_ptr<SpoolFile>> events = spool.NewFile(caller);
   if (!events.ok()) return events.status();
-  std::string piece;
-  for (uint64_t at = 0; at < file.size(); at += piece.size()) {
-    piece.resize(std::min<uint64_t>(kPiece, file.size() - at));
-    const absl::StatusOr<size_t> got = file.ReadAt(at, piece.data(), piece.size());
-    if (!got.ok()) return got.status();
-    absl::Status status = (*events)->Append(Event(name, absl::Base64Escape(piece)));
-    if (!status.ok()) return status;
-  }
+  absl::Status status = file.ForEachPiece(kPiece, [&](std::string_view piece) {
+    return (*events)->Append(Event(name, absl::Base64Escape({piece.data(), piece.size()})));
+  });
+  if (!status.ok()) return status;
   return std::shared_ptr<const SpoolFile>(*std::move(events));
 }
 

@@ -4,6 +4,7 @@
 #include <lzma.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -72,6 +73,18 @@ absl::StatusOr<std::string> SpoolFile::ReadAll() const {
   if (!got.ok()) return got.status();
   if (*got != bytes.size()) return absl::DataLossError("part of a file is missing from the spool");
   return bytes;
+}
+
+absl::Status SpoolFile::ForEachPiece(
+    size_t size, const std::function<absl::Status(std::string_view)>& take) const {
+  std::string piece;
+  for (uint64_t at = 0; at < size_; at += piece.size()) {
+    piece.resize(std::min<uint64_t>(size, size_ - at));
+    const absl::StatusOr<size_t> got = ReadAt(at, piece.data(), piece.size());
+    if (!got.ok()) return got.status();
+    if (absl::Status status = take(piece); !status.ok()) return status;
+  }
+  return absl::OkStatus();
 }
 
 absl::StatusOr<std::unique_ptr<Spool>> Spool::Open(const std::string& folder, uint64_t max_bytes) {

@@ -8,7 +8,9 @@
 #define TRAVERSE_CLIENT_GATEWAY_SPOOL_SPOOL_H_
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -43,6 +45,10 @@ class SpoolFile {
 
   // All of it.
   absl::StatusOr<std::string> ReadAll() const;
+
+  // Calls take(piece) for all of it, in pieces of `size` bytes, until it returns an error.
+  absl::Status ForEachPiece(size_t size,
+                            const std::function<absl::Status(std::string_view)>& take) const;
 
  private:
   friend class Spool;

@@ -114,13 +114,11 @@ bool IsPacked(const SpoolFile& upload) {
 // Reads a plain text piece by piece.
 absl::StatusOr<TextCount> CountOf(const SpoolFile& upload) {
   TextCount count;
-  std::string piece;
-  for (uint64_t at = 0; at < upload.size(); at += piece.size()) {
-    piece.resize(std::min<uint64_t>(kPiece, upload.size() - at));
-    const absl::StatusOr<size_t> got = upload.ReadAt(at, piece.data(), piece.size());
-    if (!got.ok()) return got.status();
+  const absl::Status status = upload.ForEachPiece(kPiece, [&count](std::string_view piece) {
     count.Take(piece);
-  }
+    return absl::OkStatus();
+  });
+  if (!status.ok()) return status;
   count.Finish();
   return count;
 }

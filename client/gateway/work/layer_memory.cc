@@ -65,10 +65,10 @@ class JsonCount {
 
 absl::StatusOr<int64_t> MemoryForLayers(const SpoolFile& json, uint64_t max_bytes) {
   JsonCount count;
-  std::string piece(std::min<uint64_t>(kJsonPiece, json.size()), '\0');
-  const absl::StatusOr<size_t> first = json.ReadAt(0, piece.data(), piece.size());
-  if (!first.ok()) return first.status();
-  const Compression compression = DetectCompression({piece.data(), *first});
+  char first[16];
+  const absl::StatusOr<size_t> known = json.ReadAt(0, first, sizeof(first));
+  if (!known.ok()) return known.status();
+  const Compression compression = DetectCompression({first, *known});
   if (compression != Compression::kNone) {
     const absl::StatusOr<std::string> packed = json.ReadAll();
     if (!packed.ok()) return packed.status();
@@ -79,12 +79,11 @@ absl::StatusOr<int64_t> MemoryForLayers(const SpoolFile& json, uint64_t max_byte
     return count.memory() +
            static_cast<int64_t>(packed->size() + DecoderBytes(*packed, compression));
   }
-  for (uint64_t at = 0; at < json.size();) {
-    const absl::StatusOr<size_t> got = json.ReadAt(at, piece.data(), piece.size());
-    if (!got.ok()) return got.status();
-    count.Take({piece.data(), *got});
-    at += *got;
-  }
+  const absl::Status status = json.ForEachPiece(kJsonPiece, [&count](std::string_view piece) {
+    count.Take(piece);
+    return absl::OkStatus();
+  });
+  if (!status.ok()) return status;
   return count.memory();
 }
 
