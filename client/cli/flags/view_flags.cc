@@ -1,5 +1,6 @@
 #include "client/cli/flags/view_flags.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <system_error>
@@ -85,6 +86,10 @@ Expected<report::JobRun> RunAsGiven(Service& service, const JobFlags& flags, con
   StrategySpec none;
   none.label = "as given";
   none.strategy.set_name("none");
+  const bool knows_routes =
+      std::any_of(job.layers.begin(), job.layers.end(),
+                  [](const v1::Layer& layer) { return !layer.initial_route().empty(); });
+  if (!knows_routes) return service.Optimize(job, &none, flags, /*quiet=*/true);
   InputJob as_given = job;
   for (v1::Layer& layer : as_given.layers) layer.clear_initial_route();
   return service.Optimize(as_given, &none, flags, /*quiet=*/true);
