@@ -64,14 +64,12 @@ def unfinished_uploads(sent, addresses=1, most=200, chunked=False):
     return attack
 
 
-def unread_answers(server, end):
-    """Pipelined requests whose answers nobody reads."""
-    body = infill(300)
-    request = (b"POST /v1/gcode?strategy=none HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: %d\r\n\r\n" % len(body) + body) * 20
+def leave_unread(server, end, request, addresses=1):
+    """Sends `request` on connections, a hundred of which stay open at a time, and nobody reads an answer."""
     held = []
 
     def step():
-        connection = open_http(server)
+        connection = open_http(server, f"127.0.1.{1 + len(held) % addresses}")
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
         connection.setblocking(False)
         connection.send(request)
@@ -83,6 +81,12 @@ def unread_answers(server, end):
     until(end, patiently(step))
     for connection in held:
         connection.close()
+
+
+def unread_answers(server, end):
+    """Pipelined requests whose answers nobody reads."""
+    body = infill(300)
+    leave_unread(server, end, (b"POST /v1/gcode?strategy=none HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: %d\r\n\r\n" % len(body) + body) * 20)
 
 
 def rubbish(server, end):

@@ -2,11 +2,10 @@
 import gzip
 import json
 import random
-import socket
 import threading
 import time
 
-from attacks.files import open_http
+from attacks.files import leave_unread, open_http
 from attacks.jobs import ask
 from attacks.transport import patiently, until
 
@@ -100,20 +99,7 @@ def walls():
 def unread_lines(server, end):
     """Jobs of many layers whose answers nobody reads."""
     body = json.dumps({"options": {"strategy": {"name": "none"}}, "layers": [{}] * 4000}).encode()
-    held = []
-
-    def step():
-        connection = open_http(server, f"127.0.1.{1 + len(held) % 4}")
-        connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
-        connection.sendall(HEAD % len(body) + body)
-        held.append(connection)
-        if len(held) > 100:
-            held.pop(0).close()
-        time.sleep(0.01)
-
-    until(end, patiently(step))
-    for connection in held:
-        connection.close()
+    leave_unread(server, end, HEAD % len(body) + body, addresses=4)
 
 
 def begun_and_left(server, end):
