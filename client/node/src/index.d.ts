@@ -45,7 +45,7 @@ export interface Strategies extends Array<StrategyInfo> {
   /** Such as 0.1.0. */
   server_version: string;
   /**
-   * Words for what the server can do beyond the first release, as proto/VERSIONS.md has them: ask for one before you send
+   * Words for what the server can do, as proto/VERSIONS.md has them: ask for one before you send
    * what an older server refuses with UNIMPLEMENTED.
    */
   capabilities: string[];

@@ -106,7 +106,7 @@ class Strategies(List[api.StrategyInfo]):
 
     default_strategy: the name of the one for jobs that name none.
     server_version: such as 0.1.0.
-    capabilities: words for what the server can do beyond the first release, as proto/VERSIONS.md has them: ask for one
+    capabilities: words for what the server can do, as proto/VERSIONS.md has them: ask for one
     before you send what an older server refuses with UNIMPLEMENTED.
     """
 
