@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "client/gcode/barriers.h"
 #include "client/gcode/choose/island_rests.h"
+#include "client/gcode/link/link_looks.h"
 #include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/parallel.h"
 #include "client/gcode/plan/travel_model.h"
@@ -17,7 +18,6 @@
 #include "client/gcode/read/least_layer_time.h"
 #include "client/gcode/read/reader.h"
 #include "client/gcode/stated_progress.h"
-#include "client/gcode/write/link_looks.h"
 
 namespace traverse {
 namespace gcode {

@@ -18,7 +18,7 @@ def verify(file):
 
 
 # What ShuffledFile and Golden write is held against the verifier and against files looked at by eye.
-WRITTEN = "LayerWriter*:LinkWriter*:*ShortPath*:RewriteGcode*:Dialects/Golden*:Kept/ShuffledFile*"
+WRITTEN = "LayerWriter*:LinkComposer*:*ShortPath*:RewriteGcode*:Dialects/Golden*:Kept/ShuffledFile*"
 
 PLACES = [
     place("server/access/auth.cc", "server_jobs_tests", "ParseTokens*:Authenticator*"),
@@ -52,8 +52,11 @@ PLACES = [
     verify("rules/retractions.cc"),
     verify("sections.cc"),
     gcode("write/gcode_out.cc", WRITTEN),
+    gcode("link/boundary_composer.cc", WRITTEN),
+    gcode("link/composer.cc", WRITTEN),
     gcode("write/link_writer.cc", WRITTEN),
-    gcode("write/placed_path.cc", f"PlacedPath*:{WRITTEN}"),
+    gcode("write/path_writer.cc", WRITTEN),
+    gcode("model/placed_path.cc", f"PlacedPath*:{WRITTEN}"),
     place("client/loadgen/latency_histogram.cc", "loadgen_tests", "LatencyHistogram*"),
     place("client/loadgen/load_report.cc", "loadgen_tests", "LoadReport*"),
     place("client/files/write_file.cc", "client_tests", "WriteFile*"),

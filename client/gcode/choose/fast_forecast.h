@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "client/gcode/choose/layer_column.h"
+#include "client/gcode/link/link_donors.h"
 #include "client/gcode/plan/head_room.h"
 #include "client/gcode/plan/policy.h"
 #include "client/gcode/plan/travel_model.h"
-#include "client/gcode/write/link_donors.h"
 
 namespace traverse::gcode {
 

@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "client/gcode/model/gcode_file.h"
+#include "client/gcode/model/placed_path.h"
 #include "client/gcode/plan/stacked_islands.h"
-#include "client/gcode/write/placed_path.h"
 
 namespace traverse::gcode {
 

@@ -13,11 +13,11 @@
 #include "client/gcode/choose/forecast.h"
 #include "client/gcode/choose/island_rests.h"
 #include "client/gcode/choose/refusals.h"
+#include "client/gcode/link/link_donors.h"
 #include "client/gcode/plan/policy.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/plan/travel_rules.h"
 #include "client/gcode/write/layer_writer.h"
-#include "client/gcode/write/link_donors.h"
 
 namespace traverse::gcode {
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "client/gcode/choose/round_trip.h"
-#include "client/gcode/write/label_lines.h"
+#include "client/gcode/link/label_lines.h"
 
 namespace traverse::gcode {
 namespace {

@@ -1,9 +1,9 @@
 // Orders of a layer in which whole labelled objects have changed places.
 //
 // Slicers print the objects of a layer in the order of their list, or by where they stand on the
-// plate; either may lead the head back and forth. One round trip through all objects serves all layers,
-// so that every object rests as long between two layers as it did. Backwards in every other layer
-// it is shorter still, but its ends are printed twice running: only Policy::kFree has that.
+// plate; either may lead the head back and forth. One round trip through all objects serves all
+// layers, so that every object rests as long between two layers as it did. Backwards in every other
+// layer it is shorter still, but its ends are printed twice running: only Policy::kFree has that.
 
 #ifndef TRAVERSE_CLIENT_GCODE_CHOOSE_OBJECT_ORDERS_H_
 #define TRAVERSE_CLIENT_GCODE_CHOOSE_OBJECT_ORDERS_H_
@@ -16,8 +16,8 @@
 #include "client/gcode/choose/layer_column.h"
 #include "client/gcode/choose/merged_orders.h"
 #include "client/gcode/model/gcode_file.h"
+#include "client/gcode/model/placed_path.h"
 #include "client/gcode/plan/layer_freedom.h"
-#include "client/gcode/write/placed_path.h"
 
 namespace traverse::gcode {
 

@@ -17,7 +17,7 @@
 #include <limits>
 #include <vector>
 
-#include "client/gcode/write/placed_path.h"
+#include "client/gcode/model/placed_path.h"
 #include "client/gcode/write/travel_totals.h"
 
 namespace traverse::gcode {

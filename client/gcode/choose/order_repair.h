@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "absl/container/flat_hash_set.h"
-#include "client/gcode/write/placed_path.h"
+#include "client/gcode/model/placed_path.h"
 
 namespace traverse::gcode {
 

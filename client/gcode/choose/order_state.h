@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "client/gcode/choose/order_merge.h"
+#include "client/gcode/model/placed_path.h"
 #include "client/gcode/plan/layer_freedom.h"
-#include "client/gcode/write/placed_path.h"
 #include "client/gcode/write/travel_totals.h"
 
 namespace traverse::gcode {

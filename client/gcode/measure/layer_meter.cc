@@ -103,14 +103,6 @@ PartStart StartOfFile(const GcodeFile& file) {
   return start;
 }
 
-PartStart StartBehind(const GcodeFile& file, const Block& block) {
-  PartStart start{StateAt(file, block), file.states[block.state_out]};
-  start.machine.at = block.last;
-  start.machine.e = block.e_out;
-  start.machine.feed = block.feed_out;
-  return start;
-}
-
 PrintTotals MeasurePaths(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls,
                          TextMoments* moments) {
   const Block& first = file.blocks[layer.first_block];

@@ -11,16 +11,11 @@
 
 #include "client/gcode/measure/print_totals.h"
 #include "client/gcode/model/gcode_file.h"
+#include "client/gcode/model/part_start.h"
 #include "client/gcode/model/visible_walls.h"
 #include "client/gcode/plan/head_room.h"
 
 namespace traverse::gcode {
-
-// The machine and the print state where a part of a file begins.
-struct PartStart {
-  MachineState machine;
-  PrintState state;
-};
 
 // Moments of a text: when the lines that begin at `offsets` or behind it are reached, in nominal
 // seconds from its beginning.
@@ -47,9 +42,6 @@ double MeasureMoments(const GcodeFile& file, std::string_view text, const PartSt
 
 // The state of the machine where the file begins, as the printer takes the file's E.
 PartStart StartOfFile(const GcodeFile& file);
-
-// The state of the machine after block `block`.
-PartStart StartBehind(const GcodeFile& file, const Block& block);
 
 // The paths of a layer as they are in the file, and the travel between them.
 PrintTotals MeasurePaths(const GcodeFile& file, const Layer& layer, const VisibleWalls& walls,

@@ -93,31 +93,14 @@ void GcodeOut::Flush() {
   }
 }
 
-void GcodeOut::LinkLine(const LinkStep& step) {
+void GcodeOut::Edited(const LinkLine& line) {
+  const LinkStep& step = line.step;
   if (step.kind == StepKind::kSetE) {
     at.machine.e = step.filament;
-    return Raw(step.line.Raw(file_.text));
+    return Raw(line.raw);
   }
-  EditedLine(step, at.machine.at);
-}
-
-void GcodeOut::LiftLine(const LinkStep& step, Decimal z) {
-  if (z == at.machine.at.z) return;
-  Position to = at.machine.at;
-  to.z = z;
-  EditedLine(step, to);
-}
-
-void GcodeOut::MoveLine(const LinkStep& step) {
-  Position to = step.to;
-  to.z = at.machine.at.z;
-  EditedLine(step, to);
-}
-
-// The line of `step` as a move to `to`: the words that it has and that are not right are changed.
-void GcodeOut::EditedLine(const LinkStep& step, const Position& to) {
   Flush();
-  at.machine.e += step.kind == StepKind::kSetE ? 0 : step.filament;
+  at.machine.e += step.filament;
   WordChange changes[5];
   size_t count = 0;
   // Where the file sets the feed rate on a line before this one, that line may be left out here.
@@ -132,18 +115,17 @@ void GcodeOut::EditedLine(const LinkStep& step, const Position& to) {
     if ((step.words & Command::Bit(letter)) == 0 || right) return;
     changes[count++] = {letter, value, style};
   };
-  change('X', to.x, step.to.x, file_.xy_style);
-  change('Y', to.y, step.to.y, file_.xy_style);
-  change('Z', to.z, step.to.z, file_.xy_style);
+  change('X', step.to.x, line.in_file.x, file_.xy_style);
+  change('Y', step.to.y, line.in_file.y, file_.xy_style);
+  change('Z', step.to.z, line.in_file.z, file_.xy_style);
   const bool absolute_e = !at.machine.RelativeE() && (step.words & Command::Bit('E')) != 0;
   if (absolute_e) changes[count++] = {'E', at.machine.e, file_.e_style};
-  const std::string_view raw = step.line.Raw(file_.text);
   if (count == 0) {
-    Raw(raw);
+    Raw(line.raw);
   } else {
-    AppendEdited(raw, {changes, count}, text_);
+    AppendEdited(line.raw, {changes, count}, text_);
   }
-  at.machine.at = to;
+  at.machine.at = step.to;
 }
 
 void GcodeOut::Travel(std::string_view line, const Position& to, Decimal feed) {

@@ -6,10 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "client/gcode/measure/layer_meter.h"
+#include "client/gcode/link/new_link.h"
 #include "client/gcode/model/gcode_file.h"
 #include "client/gcode/text/line_edit.h"
-#include "client/gcode/write/link.h"
 
 namespace traverse::gcode {
 
@@ -48,15 +47,10 @@ class GcodeOut {
   // Appends the setters that are still to be written.
   void Flush();
 
-  // Appends a line of a link that moves nothing in XY: an absolute E word continues from here, and
-  // X and Y words, if any, state where the head already is.
-  void LinkLine(const LinkStep& step);
-
-  // Appends a line of a link that moves to the same position as in the file.
-  void MoveLine(const LinkStep& step);
-
-  // The same for a line that moves Z, to `z` instead of its height in the file.
-  void LiftLine(const LinkStep& step, Decimal z);
+  // Appends a line of the file, of whose words those are changed that are not right here: an
+  // absolute E word continues from here, and X, Y and Z words state where the line leads now.
+  // REQUIRES: line.form is kEdited.
+  void Edited(const LinkLine& line);
 
   // Appends `line` as a move to (x, y) at `z` with `feed` in force: changes the words of the line,
   // and adds needed words that it lacks.
@@ -74,7 +68,6 @@ class GcodeOut {
 
  private:
   void EndLine() { text_.append(line_end_); }
-  void EditedLine(const LinkStep& step, const Position& to);
   void StraightTravel(const Position& to, Decimal feed);
   void CopyShifted(Offset begin, Offset end, Decimal shift, MachineState modes,
                    bool without_progress);

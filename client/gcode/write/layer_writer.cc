@@ -5,14 +5,16 @@
 #include <optional>
 #include <utility>
 
+#include "client/gcode/link/composer.h"
+#include "client/gcode/link/label_lines.h"
+#include "client/gcode/link/link.h"
+#include "client/gcode/link/turned_departure.h"
 #include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/model/loops.h"
 #include "client/gcode/model/outline.h"
-#include "client/gcode/write/label_lines.h"
-#include "client/gcode/write/link.h"
 #include "client/gcode/write/link_writer.h"
+#include "client/gcode/write/path_writer.h"
 #include "client/gcode/write/progress_lines.h"
-#include "client/gcode/write/turned_departure.h"
 
 namespace traverse::gcode {
 
@@ -156,7 +158,7 @@ PartStart LayerWriter::WriteBarePaths(const LayerOrder& order, const PartStart& 
       from = std::move(to);
     }
     if (marks != nullptr) marks->push_back(text.size());
-    from.Write(out);
+    WritePath(from, out);
     if (marks != nullptr) marks->push_back(text.size());
   }
   out.Flush();
@@ -193,31 +195,29 @@ void LayerWriter::WriteLink(const PlacedPath& from, const PlacedPath& to, uint32
     place = own;
   }
   const bool boundary = (file_.blocks[place].link & (kLinkSplits | kLinkFixed)) != 0;
-  LinkRequest request;
-  request.from = &from;
-  request.to = &to;
-  if (boundary) request.boundary = place;
-  request.without_progress = !boundary || moved;
+  LinkForm form;
+  if (boundary) form.boundary = place;
+  form.without_progress = !boundary || moved;
   const Vertex at = file_.modes[to.block().mode].InMm(to.first());
   const Feature feature = outlines_[to.placement().block - layer_.first_block].feature;
-  request.wipe = Wipes(from.placement(), at, feature, boundary);
-  request.retract = request.wipe || Retracts(from, to);
-  request.departs = Departs(from.placement(), at, feature);
-  if (request.departs && !from.as_given()) request.turned_departure = DepartsTo(from.placement());
-  request.detours = rules_.detours();
+  form.wipes = Wipes(from.placement(), at, feature, boundary);
+  form.retracts = form.wipes || Retracts(from, to);
+  form.departs = Departs(from.placement(), at, feature);
+  if (form.departs && !from.as_given()) form.turned_departure = DepartsTo(from.placement());
+  form.detours = rules_.detours();
   const bool given =
       from.placement().block + 1 == to.placement().block && from.as_given() && to.as_given();
-  const bool retracts = given ? (to.block().link & kLinkRetracts) != 0 : request.retract;
+  const bool retracts = given ? (to.block().link & kLinkRetracts) != 0 : form.retracts;
   auto bends = retracts && !as_sliced ? HiddenBends(from.placement(), to.placement(), boundary)
                                       : std::nullopt;
   if (bends) {
-    request.hidden = true;
-    request.hidden_bends = *std::move(bends);
-    request.wipe = request.retract = request.departs = false;
-    request.detours = nullptr;
-    request.turned_departure.reset();
+    form.hidden = true;
+    form.hidden_bends = *std::move(bends);
+    form.wipes = form.retracts = form.departs = false;
+    form.detours = nullptr;
+    form.turned_departure.reset();
   }
-  LinkWriter(file_, donors_, out).Write(request);
+  PrintLink(LinkComposer(file_, donors_, from, to, form, out.at.machine).Compose(), out);
 }
 
 Vertex LayerWriter::Begin(const Placement& placement) const {

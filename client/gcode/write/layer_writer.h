@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "absl/container/flat_hash_map.h"
+#include "client/gcode/link/link.h"
+#include "client/gcode/link/link_donors.h"
 #include "client/gcode/measure/layer_meter.h"
+#include "client/gcode/model/placed_path.h"
 #include "client/gcode/plan/head_room.h"
 #include "client/gcode/plan/joints.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/plan/travel_rules.h"
 #include "client/gcode/write/gcode_out.h"
-#include "client/gcode/write/link.h"
-#include "client/gcode/write/link_donors.h"
-#include "client/gcode/write/placed_path.h"
 #include "client/gcode/write/travel_totals.h"
 
 namespace traverse::gcode {

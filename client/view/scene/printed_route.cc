@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "client/gcode/write/link.h"
+#include "client/gcode/link/link.h"
 
 namespace traverse::view {
 namespace {

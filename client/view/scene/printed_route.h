@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "client/gcode/link/link_looks.h"
 #include "client/gcode/model/gcode_file.h"
-#include "client/gcode/write/link_looks.h"
 #include "client/view/scene/scene.h"
 
 namespace traverse::view {

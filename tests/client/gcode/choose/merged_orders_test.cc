@@ -8,9 +8,9 @@
 #include <memory>
 #include <vector>
 
+#include "client/gcode/link/link_donors.h"
 #include "client/gcode/machine/motion_planner.h"
 #include "client/gcode/write/layer_writer.h"
-#include "client/gcode/write/link_donors.h"
 #include "tests/client/gcode/support/sketch.h"
 
 namespace traverse::gcode {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "absl/strings/str_replace.h"
+#include "client/gcode/link/link_looks.h"
 #include "client/gcode/rewrite.h"
 #include "client/gcode/verify/verifier.h"
-#include "client/gcode/write/link_looks.h"
 #include "tests/client/gcode/support/read_text.h"
 #include "tests/client/gcode/support/stack.h"
 

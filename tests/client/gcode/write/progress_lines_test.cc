@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "client/gcode/link/link_donors.h"
 #include "client/gcode/plan/travel_rules.h"
 #include "client/gcode/write/layer_writer.h"
-#include "client/gcode/write/link_donors.h"
 #include "tests/client/gcode/support/read_text.h"
 
 namespace traverse::gcode {

@@ -6,16 +6,16 @@
 // Where whole objects change places, the rest of a link stays where it is in the layer, and the
 // lines that name an object are exchanged for those of the object that stands there now.
 
-#ifndef TRAVERSE_CLIENT_GCODE_WRITE_LABEL_LINES_H_
-#define TRAVERSE_CLIENT_GCODE_WRITE_LABEL_LINES_H_
+#ifndef TRAVERSE_CLIENT_GCODE_LINK_LABEL_LINES_H_
+#define TRAVERSE_CLIENT_GCODE_LINK_LABEL_LINES_H_
 
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <vector>
 
+#include "client/gcode/link/link.h"
 #include "client/gcode/model/gcode_file.h"
-#include "client/gcode/write/link.h"
 
 namespace traverse::gcode {
 
@@ -65,4 +65,4 @@ bool EndsAlike(const GcodeFile& file, uint32_t one, uint32_t other);
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_WRITE_LABEL_LINES_H_
+#endif  // TRAVERSE_CLIENT_GCODE_LINK_LABEL_LINES_H_

@@ -1,7 +1,7 @@
 // A link, line by line: the text between two paths.
 
-#ifndef TRAVERSE_CLIENT_GCODE_WRITE_LINK_H_
-#define TRAVERSE_CLIENT_GCODE_WRITE_LINK_H_
+#ifndef TRAVERSE_CLIENT_GCODE_LINK_LINK_H_
+#define TRAVERSE_CLIENT_GCODE_LINK_LINK_H_
 
 #include <algorithm>
 #include <cstddef>
@@ -10,8 +10,8 @@
 #include <optional>
 #include <vector>
 
-#include "client/gcode/measure/layer_meter.h"
 #include "client/gcode/model/gcode_file.h"
+#include "client/gcode/model/part_start.h"
 
 namespace traverse::gcode {
 
@@ -70,6 +70,10 @@ struct Link {
     return std::abs(pulled - other.pulled) <= kRetractionSlack && firmware == other.firmware;
   }
 
+  // REQUIRES: arrival >= 0.
+  const LinkStep& arriving() const { return steps[static_cast<size_t>(arrival)]; }
+  LinkStep& arriving() { return steps[static_cast<size_t>(arrival)]; }
+
   // True if step `i` stands before the arrival.
   bool Leaves(size_t i) const { return static_cast<int>(i) < arrival; }
   bool firmware = false;  // retracts with G10
@@ -125,4 +129,4 @@ std::optional<LinkStep> ReadGoingOn(const GcodeFile& file, uint32_t block);
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_WRITE_LINK_H_
+#endif  // TRAVERSE_CLIENT_GCODE_LINK_LINK_H_

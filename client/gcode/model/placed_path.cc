@@ -1,4 +1,4 @@
-#include "client/gcode/write/placed_path.h"
+#include "client/gcode/model/placed_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,29 +7,11 @@
 
 #include "client/gcode/model/arc.h"
 #include "client/gcode/model/outline.h"
-#include "client/gcode/write/positions.h"
-#include "client/gcode/write/seam_gap.h"
+#include "client/gcode/model/positions.h"
+#include "client/gcode/model/seam_gap.h"
 
 namespace traverse::gcode {
 namespace {
-
-// I and J, or R, of an arc.
-std::string ArcWords(const BodySegment& segment, NumberStyle style) {
-  std::string words;
-  const auto add = [&words, style](char letter, Decimal value) {
-    words.push_back(' ');
-    words.push_back(letter);
-    AppendDecimal(value, style, words);
-  };
-  if (segment.command < 2) return words;
-  if (segment.by_radius) {
-    add('R', segment.radius);
-  } else {
-    add('I', segment.center_i);
-    add('J', segment.center_j);
-  }
-  return words;
-}
 
 // Points on an arc, so near to each other that the lines between them are as good.
 std::vector<Position> BendsOf(const BodySegment& segment) {
@@ -41,13 +23,6 @@ std::vector<Position> BendsOf(const BodySegment& segment) {
     bends.push_back({RoundedWord(point.x), RoundedWord(point.y), segment.from.z});
   }
   return bends;
-}
-
-void WriteSegment(const BodySegment& segment, const PathBody& body, GcodeOut& out) {
-  static constexpr std::string_view kCommands[] = {"G1", "G1", "G2", "G3"};
-  out.Set(body.states[segment.state], kAllSlots);
-  out.Segment(kCommands[segment.command], segment.to, true, segment.filament, segment.feed,
-              ArcWords(segment, out.file().xy_style), segment.comment);
 }
 
 // The way back from beside a path is searched for in so many steps, until its length fits as far as
@@ -127,27 +102,6 @@ void PlacedPath::PlaceRotated() {
   std::rotate(segments.begin(), segments.begin() + placement_.entry, segments.end());
   first_ = segments.front().from;
   last_ = segments.back().to;
-}
-
-void PlacedPath::Write(GcodeOut& out) const {
-  if (as_given()) {
-    const PartStart start{StateAt(*file_, block()), file_->states[block().state_in]};
-    out.Copy(block().begin, block().end, start, StartBehind(*file_, block()),
-             /*without_progress=*/(block().flags & kBlockProgress) != 0);
-    return;
-  }
-  const Position* at = &first_;
-  for (const BodySegment& segment : body_.segments) {
-    // The gap of a loop that ends short of its start.
-    if (!segment.from.SameXy(*at)) {
-      out.Segment("G1", segment.from, false, 0, out.at.machine.feed, {}, {});
-    }
-    WriteSegment(segment, body_, out);
-    at = &segment.to;
-  }
-  if (!last_.SameXy(*at)) {
-    out.Segment("G1", last_, false, 0, out.at.machine.feed, {}, {});
-  }
 }
 
 std::vector<Position> PlacedPath::Retrace(double length_mm) const {

@@ -1,7 +1,7 @@
 // The gap that slicers leave between the end of a loop and its start, so that no blob forms there.
 
-#ifndef TRAVERSE_CLIENT_GCODE_WRITE_SEAM_GAP_H_
-#define TRAVERSE_CLIENT_GCODE_WRITE_SEAM_GAP_H_
+#ifndef TRAVERSE_CLIENT_GCODE_MODEL_SEAM_GAP_H_
+#define TRAVERSE_CLIENT_GCODE_MODEL_SEAM_GAP_H_
 
 #include <cstdint>
 #include <vector>
@@ -24,4 +24,4 @@ bool MovesGap(uint32_t entry, const std::vector<BodySegment>& segments);
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_WRITE_SEAM_GAP_H_
+#endif  // TRAVERSE_CLIENT_GCODE_MODEL_SEAM_GAP_H_

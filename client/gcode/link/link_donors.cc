@@ -1,10 +1,10 @@
-#include "client/gcode/write/link_donors.h"
+#include "client/gcode/link/link_donors.h"
 
 #include <algorithm>
 #include <map>
 
+#include "client/gcode/link/link.h"
 #include "client/gcode/model/part_links.h"
-#include "client/gcode/write/link.h"
 
 namespace traverse::gcode {
 namespace {

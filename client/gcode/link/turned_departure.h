@@ -1,8 +1,8 @@
 // The short move with which a slicer leaves a loop, so that nothing of the retraction shows on it,
 // for the same loop begun elsewhere.
 
-#ifndef TRAVERSE_CLIENT_GCODE_WRITE_TURNED_DEPARTURE_H_
-#define TRAVERSE_CLIENT_GCODE_WRITE_TURNED_DEPARTURE_H_
+#ifndef TRAVERSE_CLIENT_GCODE_LINK_TURNED_DEPARTURE_H_
+#define TRAVERSE_CLIENT_GCODE_LINK_TURNED_DEPARTURE_H_
 
 #include <cstdint>
 #include <optional>
@@ -24,4 +24,4 @@ std::optional<Vertex> TurnedDeparture(const std::vector<Vertex>& points, uint32_
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_WRITE_TURNED_DEPARTURE_H_
+#endif  // TRAVERSE_CLIENT_GCODE_LINK_TURNED_DEPARTURE_H_

@@ -1,12 +1,12 @@
-#include "client/gcode/write/link_looks.h"
+#include "client/gcode/link/link_looks.h"
 
 #include <algorithm>
 #include <optional>
 #include <utility>
 
+#include "client/gcode/link/link.h"
 #include "client/gcode/model/loops.h"
 #include "client/gcode/parallel.h"
-#include "client/gcode/write/link.h"
 
 namespace traverse::gcode {
 namespace {

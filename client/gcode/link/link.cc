@@ -1,4 +1,4 @@
-#include "client/gcode/write/link.h"
+#include "client/gcode/link/link.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,7 +1,7 @@
 // Arithmetic on positions in the plane, in the unit of the file's words.
 
-#ifndef TRAVERSE_CLIENT_GCODE_WRITE_POSITIONS_H_
-#define TRAVERSE_CLIENT_GCODE_WRITE_POSITIONS_H_
+#ifndef TRAVERSE_CLIENT_GCODE_MODEL_POSITIONS_H_
+#define TRAVERSE_CLIENT_GCODE_MODEL_POSITIONS_H_
 
 #include <cmath>
 #include <utility>
@@ -46,4 +46,4 @@ inline Position Along(const Position& from, const Position& to, double length_mm
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_WRITE_POSITIONS_H_
+#endif  // TRAVERSE_CLIENT_GCODE_MODEL_POSITIONS_H_

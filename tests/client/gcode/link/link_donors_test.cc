@@ -1,12 +1,12 @@
 // Which travel moves of a file others may follow.
 
-#include "client/gcode/write/link_donors.h"
+#include "client/gcode/link/link_donors.h"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 
-#include "client/gcode/write/link.h"
+#include "client/gcode/link/link.h"
 #include "tests/client/gcode/support/sketch.h"
 
 namespace traverse::gcode {

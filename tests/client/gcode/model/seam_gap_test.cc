@@ -1,10 +1,10 @@
-#include "client/gcode/write/seam_gap.h"
+#include "client/gcode/model/seam_gap.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "client/gcode/write/positions.h"
+#include "client/gcode/model/positions.h"
 
 namespace traverse::gcode {
 namespace {

@@ -1,4 +1,4 @@
-#include "client/gcode/write/label_lines.h"
+#include "client/gcode/link/label_lines.h"
 
 #include <algorithm>
 

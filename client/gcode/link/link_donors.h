@@ -1,7 +1,7 @@
 // Links of a file that may serve as templates for travel that the file does not have.
 
-#ifndef TRAVERSE_CLIENT_GCODE_WRITE_LINK_DONORS_H_
-#define TRAVERSE_CLIENT_GCODE_WRITE_LINK_DONORS_H_
+#ifndef TRAVERSE_CLIENT_GCODE_LINK_LINK_DONORS_H_
+#define TRAVERSE_CLIENT_GCODE_LINK_LINK_DONORS_H_
 
 #include <cstdint>
 #include <map>
@@ -66,4 +66,4 @@ class LinkDonors {
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_WRITE_LINK_DONORS_H_
+#endif  // TRAVERSE_CLIENT_GCODE_LINK_LINK_DONORS_H_

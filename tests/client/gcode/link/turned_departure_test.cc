@@ -1,4 +1,4 @@
-#include "client/gcode/write/turned_departure.h"
+#include "client/gcode/link/turned_departure.h"
 
 #include <gtest/gtest.h>
 

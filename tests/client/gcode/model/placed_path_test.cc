@@ -1,4 +1,4 @@
-#include "client/gcode/write/placed_path.h"
+#include "client/gcode/model/placed_path.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "client/gcode/model/positions.h"
 #include "client/gcode/read/reader.h"
-#include "client/gcode/write/positions.h"
 #include "tests/client/gcode/support/samples.h"
 
 namespace traverse::gcode {

@@ -1,7 +1,7 @@
 // How the links of a file look: for people who count and look at them.
 
-#ifndef TRAVERSE_CLIENT_GCODE_WRITE_LINK_LOOKS_H_
-#define TRAVERSE_CLIENT_GCODE_WRITE_LINK_LOOKS_H_
+#ifndef TRAVERSE_CLIENT_GCODE_LINK_LINK_LOOKS_H_
+#define TRAVERSE_CLIENT_GCODE_LINK_LINK_LOOKS_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -35,4 +35,4 @@ HiddenCounts CountHiddenRetractions(const GcodeFile& file, const RetractionHabit
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_WRITE_LINK_LOOKS_H_
+#endif  // TRAVERSE_CLIENT_GCODE_LINK_LINK_LOOKS_H_

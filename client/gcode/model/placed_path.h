@@ -1,14 +1,13 @@
 // One path in the form in which it is printed: as given, reversed, or from another start.
 
-#ifndef TRAVERSE_CLIENT_GCODE_WRITE_PLACED_PATH_H_
-#define TRAVERSE_CLIENT_GCODE_WRITE_PLACED_PATH_H_
+#ifndef TRAVERSE_CLIENT_GCODE_MODEL_PLACED_PATH_H_
+#define TRAVERSE_CLIENT_GCODE_MODEL_PLACED_PATH_H_
 
 #include <cstdint>
 #include <vector>
 
 #include "client/gcode/model/gcode_file.h"
 #include "client/gcode/model/path_body.h"
-#include "client/gcode/write/gcode_out.h"
 
 namespace traverse::gcode {
 
@@ -61,9 +60,8 @@ class PlacedPath {
   // Its first line sets the feed rate itself.
   bool states_feed() const { return states_feed_; }
 
-  // Appends the path without its lines of progress; `out` is where it begins, with its state and
-  // feed rate set.
-  void Write(GcodeOut& out) const;
+  // Its segments in the order and direction to print them; of no meaning as given.
+  const PathBody& body() const { return body_; }
 
   // Points back over what was just printed, for a wipe: on from the start of a closed path, back
   // along an open one. At most `length` mm, at least one point if the path has any length.
@@ -89,9 +87,9 @@ class PlacedPath {
   const PrintState* state_ = nullptr;
   Decimal feed_ = 0;
   bool states_feed_ = false;
-  PathBody body_;  // not as given: its segments in the order and direction to print them
+  PathBody body_;
 };
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_WRITE_PLACED_PATH_H_
+#endif  // TRAVERSE_CLIENT_GCODE_MODEL_PLACED_PATH_H_

@@ -1,0 +1,325 @@
+#include "client/gcode/link/composer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "client/gcode/model/positions.h"
+
+namespace traverse::gcode {
+namespace {
+
+// What is left of a travel move behind a slope is at least this long.
+constexpr double kMinSlopeRestMm = 0.5;
+
+bool IsSoft(const Block& block) { return (block.link & (kLinkSplits | kLinkFixed)) == 0; }
+
+// `rise` for travel of `length`: a slope that lasts as long as its travel rises on, up to
+// `highest`.
+Link Stretched(Link rise, double length, Decimal highest) {
+  if (rise.ramp_ends || !(rise.ramp_mm > 0) || length <= rise.ramp_mm) return rise;
+  const double steepness = static_cast<double>(rise.lift) / rise.ramp_mm;
+  const auto reached = static_cast<double>(std::max(highest, rise.lift));
+  rise.ramp_ends = steepness * length > reached;
+  rise.ramp_mm = rise.ramp_ends ? reached / steepness : length;
+  // As slicers write heights: to micrometres.
+  rise.lift = RoundedWord(steepness * rise.ramp_mm * 1e-9);
+  return rise;
+}
+
+// Puts the end of the slope of `rise` on the first stretch of `travel` from `from`, if that is
+// longer; else it rises over all of that stretch.
+void Slope(const Position& from, const Link& rise, std::vector<Position>& travel) {
+  if (!rise.ramp_ends) return;
+  if (LengthXy(from, travel.front()) < rise.ramp_mm + kMinSlopeRestMm) return;
+  Position end = Along(from, travel.front(), rise.ramp_mm);
+  end.z = travel.front().z;
+  travel.insert(travel.begin(), end);
+}
+
+}  // namespace
+
+NewLink LinkComposer::Compose() && {
+  const uint32_t to = to_.placement().block;
+  const bool follows =
+      from_.placement().block + 1 == to && (!form_.boundary || *form_.boundary == to);
+  if (follows && from_.as_given() && to_.as_given() && !form_.hidden) {
+    KeepGiven();
+  } else if (form_.boundary) {
+    ComposeBoundary();
+  } else {
+    ComposePlain();
+  }
+  return std::move(link_);
+}
+
+void LinkComposer::KeepGiven() {
+  const Block& from = from_.block();
+  const Block& to = to_.block();
+  PartStart behind = StartBehind(file_, to);
+  behind.state = file_.states[to.state_in];
+  behind.machine.at = to.first;
+  behind.machine.e = to.e_in;
+  // The F word of the path's own first line is not part of the link; that its feed rate is taken
+  // for set already changes nothing.
+  behind.machine.feed = to.feed_in;
+  link_.Keep({from.end, to.begin, StartBehind(file_, from), behind, form_.without_progress});
+}
+
+Link LinkComposer::LikeWhat() const {
+  const uint32_t to = to_.placement().block;
+  if (donors_.MayFollow(to) && !donors_.LacksLift(to)) {
+    Link own = ReadLink(file_, to);
+    const bool fits = own.retracts() == form_.retracts && (own.wipes || !form_.wipes);
+    if (fits && own.arrival >= 0) return own;
+  }
+  for (const bool retracts : {form_.retracts, !form_.retracts}) {
+    // Where no travel of the file is open, this is retracted, and so the path is wiped.
+    const bool wipes = file_.WipedBehind(from_.placement().block);
+    // Where there is no way to go, there is none to retract for.
+    if (retracts && !form_.retracts && to_.first().SameXy(link_.at())) return {};
+    const std::optional<uint32_t> donor = donors_.Find(to, retracts, retracts && wipes);
+    if (!donor) continue;
+    Link like = ReadLink(file_, *donor);
+    if (like.arrival < 0) continue;
+    if (const std::optional<uint32_t> pace = donors_.PaceFor(to, *donor)) {
+      const Link own = ReadLink(file_, *pace);
+      if (own.arrival >= 0) like.arriving().feed = own.arriving().feed;
+    }
+    return like;
+  }
+  return ReadLink(file_, to);
+}
+
+// As the file's own open travel; where it has none, as its retracted travel: of both the travel
+// alone.
+Link LinkComposer::LikeHidden() const {
+  const Link like = LikeWhat();
+  Link form;
+  form.travel_state = like.travel_state;
+  form.z_before = form.z_behind = form.top = to_.first().z;
+  if (like.arrival >= 0) {
+    form.steps.push_back(like.arriving());
+    form.arrival = 0;
+  }
+  return form;
+}
+
+void LinkComposer::ComposePlain() {
+  const Link like = form_.hidden ? LikeHidden() : LikeWhat();
+  SetTravelState(like);
+  const Link left = Depart(like);
+  const Link rise = Stretched(left.lift > like.lift ? left : like,
+                              LengthXy(link_.at(), to_.first()), donors_.highest_lift());
+  TravelAs(like, to_.first().z + rise.lift, rise);
+  Arrive(like);
+  if (IsSoft(to_.block())) AddComments();
+  Settle(like);
+}
+
+// New travel has the accelerations and jerks that `like` has, for so does travel in this file. A
+// slot that was never set here stays so, for nothing could undo it.
+void LinkComposer::SetTravelState(const Link& like) {
+  PrintState state = to_.state();
+  for (size_t slot = 0; slot < kSlotCount; ++slot) {
+    if (state[slot] != 0 && like.travel_state[slot] != 0) state[slot] = like.travel_state[slot];
+  }
+  link_.Set(state, kDynamicsSlots);
+}
+
+// The link that leads away from the path in the file, if what it does there fits here.
+std::optional<Link> LinkComposer::OwnDeparture(const Link& like) const {
+  const uint32_t next = from_.placement().block + 1;
+  if (next >= file_.blocks.size()) return std::nullopt;
+  Link own = ReadLink(file_, next);
+  if (!donors_.MayFollow(next)) {
+    // At marks the wipe alone is of the path.
+    return form_.wipes && like.arrival >= 0 ? WithWipeOf(like, own) : std::nullopt;
+  }
+  if (own.arrival < 0 || !own.SameRetraction(like)) return std::nullopt;
+  return own;
+}
+
+// What leads away from the path; returns the link that it is like.
+Link LinkComposer::Depart(const Link& like) {
+  const std::optional<Link> own = form_.hidden ? std::nullopt : OwnDeparture(like);
+  const bool exact = own && from_.as_given();
+  const Link& link = own ? *own : like;
+  const Decimal z = link_.at().z;
+  if (!exact || !link.departs) GoOn();
+  if (own ? !exact : like.retracts()) DepartAsOwn();
+  bool wiped = false;
+  for (size_t i = 0; link.Leaves(i); ++i) {
+    const LinkStep& step = link.steps[i];
+    if (IsXyMotion(step.kind)) {
+      const bool departs = form_.departs && DepartureOf(link) == &step;
+      if (exact && (step.kind == StepKind::kWipe || departs)) {
+        Follow(step);
+      } else if (step.kind == StepKind::kWipe && !wiped) {
+        wiped = true;
+        Wipe(link);
+      }
+    } else if (step.kind == StepKind::kWipeMark ||
+               (exact && link.wipes && step.kind == StepKind::kFeed)) {
+      Stay(step);
+    } else if (step.kind != StepKind::kLift || step.to.z >= step.from.z) {
+      Move(step, link.z_before, z);
+    }
+  }
+  return link;
+}
+
+// A path that stands last before marks in the file, or here, is left as it is there, and one that
+// begins elsewhere as it would be left there.
+void LinkComposer::DepartAsOwn() {
+  const uint32_t next = from_.placement().block + 1;
+  if (!(from_.as_given() || form_.turned_departure) || next >= file_.blocks.size()) return;
+  if ((from_.block().flags & kBlockGoesOn) != 0) return;  // along the path: GoOn
+  const Link own = ReadLink(file_, next);
+  const LinkStep* departure = DepartureOf(own);
+  if (departure == nullptr) return;
+  if (from_.as_given()) {
+    if (PullsBackBehind(own, *departure)) Follow(*departure);
+    return;
+  }
+  Position to = InWords(*form_.turned_departure, link_.machine().UnitMm());
+  to.z = link_.at().z;
+  link_.Travel(departure->line.Raw(file_.text), to, departure->feed);
+}
+
+// A path that the file goes on along without filament is gone on along as far wherever it ends.
+void LinkComposer::GoOn() {
+  const std::optional<LinkStep> step = ReadGoingOn(file_, from_.placement().block);
+  if (!step) return;
+  for (const Position& at : from_.Retrace(step->travel_mm)) {
+    link_.Travel(step->line.Raw(file_.text), {at.x, at.y, link_.at().z}, step->feed);
+  }
+}
+
+// Pulls back as much as the wipe of `like` does, over what was just printed. A path that is
+// shorter than that wipe has less of it pulled while moving; the rest follows at its end.
+void LinkComposer::Wipe(const Link& like) {
+  const WipeForm wipe = WipeOf(like);
+  const Position begin = link_.at();
+  const std::vector<Position> retraced = from_.RetraceFrom(begin, wipe.travel_mm);
+  double length = LengthXy(begin, retraced);
+  // Rounding makes no wipe shorter.
+  constexpr double kAsLong = 0.99;
+  const bool shorter = wipe.still_feed > 0 && length < kAsLong * wipe.travel_mm;
+  if (shorter) length = wipe.travel_mm;
+  Decimal left = wipe.pulled;
+  for (size_t i = 0; i < retraced.size(); ++i) {
+    const double share = LengthXy(i == 0 ? begin : retraced[i - 1], retraced[i]) / length;
+    const bool last = i + 1 == retraced.size() && !shorter;
+    // Rounded as slicers write E: to hundredths of a micrometre.
+    constexpr Decimal kStep = kDecimalOne / 100'000;
+    const Decimal pull =
+        last ? left
+             : static_cast<Decimal>(static_cast<double>(wipe.pulled) * share) / kStep * kStep;
+    left -= pull;
+    link_.Segment(retraced[i], wipe.pulled > 0, -pull, wipe.feed);
+  }
+  if (left > 0) link_.Pull(left, shorter ? wipe.still_feed : wipe.feed);
+}
+
+// A step that moves filament or Z alone; Z relative to the height of what is printed.
+void LinkComposer::Move(const LinkStep& step, Decimal z_like, Decimal z_here) {
+  switch (step.kind) {
+    case StepKind::kFilament:
+    case StepKind::kSetE:
+    case StepKind::kFirmwareRetract:
+    case StepKind::kFirmwareUnretract:
+    case StepKind::kPlane:
+    case StepKind::kDwell:
+      return Stay(step);
+    case StepKind::kLift:
+      return LiftAs(step, z_here + (step.to.z - z_like));
+    default:
+      return;
+  }
+}
+
+void LinkComposer::Follow(const LinkStep& step) {
+  link_.Edited(step, file_, {step.to.x, step.to.y, link_.at().z});
+}
+
+void LinkComposer::LiftAs(const LinkStep& step, Decimal z) {
+  if (z != link_.at().z) link_.Edited(step, file_, {link_.at().x, link_.at().y, z});
+}
+
+// The bends of the travel to the next path, and its end.
+std::vector<Position> LinkComposer::BendsToNext() const {
+  const MachineState& machine = link_.machine();
+  std::vector<Position> travel;
+  for (const Vertex& bend : form_.hidden_bends) {
+    travel.push_back(InWords(bend, machine.UnitMm()));
+  }
+  if (form_.detours != nullptr) {
+    for (const Vertex bend :
+         form_.detours->Around(machine.InMm(machine.at), machine.InMm(to_.first()))) {
+      travel.push_back(InWords(bend, machine.UnitMm()));
+    }
+  }
+  travel.push_back(to_.first());
+  return travel;
+}
+
+// Goes to the next path at the height `top`, or as high as the head is; where `rise` slopes up, up
+// to there as `rise` does.
+void LinkComposer::TravelAs(const Link& like, Decimal top, const Link& rise) {
+  const Position& to = to_.first();
+  const Decimal z = link_.at().z;
+  if (like.arrival < 0) {
+    link_.Travels();
+    if (!to.SameXy(link_.at())) link_.Segment(to, false, 0, link_.machine().feed);
+    return link_.Arrives();
+  }
+  const LinkStep& step = like.arriving();
+  // Behind a line that is not understood the head may be elsewhere.
+  const bool stays = to.SameXy(link_.at()) && like.fixed == 0;
+  if (stays && z == to.z) {
+    link_.Travels();
+    return;
+  }
+  top = std::max(top, z);
+  std::vector<Position> travel = BendsToNext();
+  for (Position& at : travel) at.z = top;
+  if (like.sinks) travel.back().z = to.z;
+  // No slope leads to where the head is.
+  const bool on_slope = rise.ramp_mm > 0 && !stays;
+  if (top > z && !on_slope) {
+    link_.Lift(top, like.lift_feed > 0 ? like.lift_feed : step.feed);
+  } else if (top > z) {
+    Slope(link_.at(), rise, travel);
+  }
+  link_.Travels();
+  for (const Position& at : travel) link_.Travel(step.line.Raw(file_.text), at, step.feed);
+  link_.Arrives();
+}
+
+void LinkComposer::Arrive(const Link& like) {
+  for (size_t i = static_cast<size_t>(like.arrival + 1); i < like.steps.size(); ++i) {
+    Move(like.steps[i], like.z_behind, to_.first().z);
+  }
+}
+
+void LinkComposer::AddComments() {
+  const uint32_t block = to_.placement().block;
+  if ((file_.blocks[block].link & kLinkComments) == 0) return;
+  for (const LinkStep& step : ReadLink(file_, block).steps) {
+    if (step.kind == StepKind::kComment) link_.Raw(step.line.Raw(file_.text));
+  }
+}
+
+void LinkComposer::Settle(const Link& like) {
+  if (link_.at().z != to_.first().z) {
+    const Decimal feed = like.lift_feed > 0  ? like.lift_feed
+                         : like.arrival >= 0 ? like.arriving().feed
+                                             : link_.machine().feed;
+    link_.Lift(to_.first().z, feed);
+  }
+  link_.Set(to_.state(), kAllSlots);
+  if (!to_.states_feed() && link_.machine().feed != to_.feed()) link_.Feed(to_.feed());
+}
+
+}  // namespace traverse::gcode
