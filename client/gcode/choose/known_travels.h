@@ -12,7 +12,7 @@
 #include "client/gcode/choose/order_repair.h"
 #include "client/gcode/plan/travel_model.h"
 #include "client/gcode/write/layer_writer.h"
-#include "client/gcode/write/travel_totals.h"
+#include "client/gcode/link/travel_totals.h"
 
 namespace traverse::gcode {
 

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "client/gcode/model/placed_path.h"
-#include "client/gcode/write/travel_totals.h"
+#include "client/gcode/link/travel_totals.h"
 
 namespace traverse::gcode {
 

@@ -40,10 +40,7 @@ void Slope(const Position& from, const Link& rise, std::vector<Position>& travel
 }  // namespace
 
 NewLink LinkComposer::Compose() && {
-  const uint32_t to = to_.placement().block;
-  const bool follows =
-      from_.placement().block + 1 == to && (!form_.boundary || *form_.boundary == to);
-  if (follows && from_.as_given() && to_.as_given() && !form_.hidden) {
+  if (form_.given && !form_.hidden) {
     KeepGiven();
   } else if (form_.boundary) {
     ComposeBoundary();

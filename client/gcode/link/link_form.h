@@ -5,13 +5,24 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "client/gcode/plan/detour.h"
+#include "client/gcode/plan/travel_rules.h"
 
 namespace traverse::gcode {
 
+struct Departure;
+
 struct LinkForm {
+  // It is the file's own, as it is there, unless it is hidden.
+  bool given = false;
+
+  // How it leads, and what comes ahead of that, if it is made; null: nothing.
+  PlannedTravel travel;
+  const Departure* departure = nullptr;
+
   // The travel must retract.
   bool retracts = false;
 
@@ -19,7 +30,7 @@ struct LinkForm {
   bool wipes = false;
 
   // New travel may begin with the short move away from that path with which the file's does.
-  bool departs = true;
+  bool departs = false;
 
   // The path before begins elsewhere than in the file: where its departure leads now, in mm, if it
   // is made.
@@ -39,6 +50,14 @@ struct LinkForm {
 
   // Leave out lines of progress of what is copied unchanged.
   bool without_progress = false;
+
+  void Hide(std::vector<Vertex> bends) {
+    hidden = true;
+    hidden_bends = std::move(bends);
+    retracts = wipes = departs = false;
+    turned_departure.reset();
+    detours = nullptr;
+  }
 };
 
 }  // namespace traverse::gcode

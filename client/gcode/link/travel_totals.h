@@ -1,7 +1,7 @@
 // Estimated totals of travel between paths, before it is written.
 
-#ifndef TRAVERSE_CLIENT_GCODE_WRITE_TRAVEL_TOTALS_H_
-#define TRAVERSE_CLIENT_GCODE_WRITE_TRAVEL_TOTALS_H_
+#ifndef TRAVERSE_CLIENT_GCODE_LINK_TRAVEL_TOTALS_H_
+#define TRAVERSE_CLIENT_GCODE_LINK_TRAVEL_TOTALS_H_
 
 #include <cstdint>
 
@@ -45,4 +45,4 @@ struct TravelTotals {
 
 }  // namespace traverse::gcode
 
-#endif  // TRAVERSE_CLIENT_GCODE_WRITE_TRAVEL_TOTALS_H_
+#endif  // TRAVERSE_CLIENT_GCODE_LINK_TRAVEL_TOTALS_H_

@@ -1,0 +1,141 @@
+#include "client/gcode/link/layer_departures.h"
+
+#include <utility>
+
+#include "client/gcode/link/link.h"
+#include "client/gcode/link/turned_departure.h"
+
+namespace traverse::gcode {
+
+LayerDepartures::LayerDepartures(const GcodeFile& file, const Layer& layer,
+                                 const LinkDonors& donors, const std::vector<Outline>& outlines,
+                                 const VisibleWalls& walls)
+    : file_(file),
+      donors_(donors),
+      first_block_(layer.first_block),
+      outlines_(outlines),
+      walls_(walls) {
+  for (uint32_t b = layer.first_block; b < layer.end_block; ++b) {
+    Note(b);
+    if (outlines_[b - first_block_].closed) {
+      LoopGap gap = LoopGapOf(file, b);
+      if (!gap.moves.empty()) gaps_[b] = std::move(gap);
+    }
+    if (b == 0 || (file.blocks[b].link & kLinkFixedFrom) == 0) continue;
+    const Link link = ReadLink(file, b);
+    if (link.fixed == 0) continue;
+    const MachineState& machine = link.behind_fixed.machine;
+    behind_fixed_[b] = machine.InMm(machine.at);
+  }
+}
+
+void LayerDepartures::Note(uint32_t block) {
+  const MachineState& mode = file_.modes[file_.blocks[block].mode];
+  if (const std::optional<LinkStep> step = ReadGoingOn(file_, block)) {
+    departures_[block].mm = step->travel_mm * mode.UnitMm();
+    departures_[block].as_given = mode.InMm(step->to);
+    return;
+  }
+  Departure noted;
+  if (!file_.WipedBehind(block)) {
+    if (block + 1 >= file_.blocks.size() || !MayDepart(file_, block + 1)) return;
+    const Link link = ReadLink(file_, block + 1);
+    const LinkStep* step = DepartureOf(link);
+    if (step == nullptr) return;
+    if (!donors_.MayFollow(block + 1) && !PullsBackBehind(link, *step)) return;
+    departures_[block] = {.mm = step->travel_mm * mode.UnitMm(),
+                          .as_given = mode.InMm(step->to),
+                          .departs_to = mode.InMm(step->to),
+                          .turns = !link.retracts() || PullsBackBehind(link, *step),
+                          .departs = true,
+                          .retracts = link.retracts()};
+    return;
+  }
+  noted.wipes = true;
+  const Link link = ReadLink(file_, block + 1);
+  if (const LinkStep* step = DepartureOf(link)) {
+    noted.departs_to = mode.InMm(step->to);
+    noted.turns = PullsBackBehind(link, *step);
+  }
+  for (const LinkStep& step : link.steps) {
+    if (step.kind == StepKind::kFilament && noted.mm == 0) noted.stands = true;
+    if (step.kind != StepKind::kWipe) continue;
+    noted.mm += step.travel_mm * mode.UnitMm();
+    noted.as_given = mode.InMm(step.to);
+  }
+  if (noted.mm > 0) departures_[block] = noted;
+}
+
+Vertex LayerDepartures::Begin(const Placement& path) const {
+  const Block& block = file_.blocks[path.block];
+  if (path.as_given()) return file_.modes[block.mode].InMm(block.first);
+  const std::vector<Vertex>& points = outlines_[path.block - first_block_].points;
+  return path.closed ? points[path.entry] : points.back();
+}
+
+Vertex LayerDepartures::End(const Placement& path) const {
+  const Block& block = file_.blocks[path.block];
+  if (path.as_given()) return file_.modes[block.mode].InMm(block.last);
+  const std::vector<Vertex>& points = outlines_[path.block - first_block_].points;
+  if (!path.closed) return points.front();
+  const Vertex end = points[path.entry];
+  const auto gap = gaps_.find(path.block);
+  if (gap == gaps_.end() || !gap->second.moves[path.entry]) return end;
+  const Vertex before = points[path.entry - 1];
+  const double share = gap->second.mm / Distance(end, before);
+  return {end.x + (before.x - end.x) * share, end.y + (before.y - end.y) * share};
+}
+
+const Departure* LayerDepartures::Of(const Placement& from, bool wipes) const {
+  const auto found = departures_.find(from.block);
+  if (found == departures_.end() || (found->second.wipes && !wipes)) return nullptr;
+  return found->second.departs && !ShortMove(from) ? nullptr : &found->second;
+}
+
+std::optional<Vertex> LayerDepartures::ShortMove(const Placement& from) const {
+  const auto found = departures_.find(from.block);
+  if (found == departures_.end() || !found->second.departs_to) return std::nullopt;
+  if (from.as_given()) return found->second.departs_to;
+  const std::vector<Vertex>& points = outlines_[from.block - first_block_].points;
+  if (!from.closed || !found->second.turns) return std::nullopt;
+  const auto to = TurnedDeparture(points, from.entry, *found->second.departs_to);
+  // Another wall may be as near on that side.
+  return to && walls_.Crossed(End(from), *to) ? std::nullopt : to;
+}
+
+Vertex LayerDepartures::Behind(const Placement& from, const Departure& departure) const {
+  if (from.as_given()) return departure.as_given;
+  return departure.departs ? *ShortMove(from) : BackOver(from, departure.mm);
+}
+
+Vertex LayerDepartures::Open(const Placement& from) const {
+  const Departure* departure = Of(from, /*wipes=*/false);
+  return departure == nullptr || departure->departs ? End(from) : Behind(from, *departure);
+}
+
+std::optional<Vertex> LayerDepartures::BehindFixed(uint32_t block) const {
+  const auto found = behind_fixed_.find(block);
+  return found != behind_fixed_.end() ? std::optional<Vertex>(found->second) : std::nullopt;
+}
+
+Vertex LayerDepartures::BackOver(const Placement& from, double mm) const {
+  const std::vector<Vertex>& points = outlines_[from.block - first_block_].points;
+  const size_t n = points.size();
+  Vertex at = End(from);
+  const auto go_to = [&](Vertex next) {
+    const double length = Distance(at, next);
+    const double share = length > mm ? mm / length : 1;
+    at = {at.x + (next.x - at.x) * share, at.y + (next.y - at.y) * share};
+    mm -= length;
+  };
+  if (from.closed) {
+    // The last point is the first one, or so near to it that the loop has a gap there.
+    go_to(points[from.entry]);
+    for (size_t i = 1; i < n && mm > 0; ++i) go_to(points[(from.entry + i) % (n - 1)]);
+  } else {
+    for (size_t i = 0; i < n && mm > 0; ++i) go_to(points[from.as_given() ? n - 1 - i : i]);
+  }
+  return at;
+}
+
+}  // namespace traverse::gcode
