@@ -25,6 +25,7 @@ LinkStep StepOf(const Step& step, const MachineState& after) {
   taken.from = step.from;
   taken.to = after.at;
   taken.filament = step.kind == StepKind::kSetE ? step.command.Value('E') : step.filament;
+  taken.e = after.e;
   taken.feed = after.feed;
   taken.slots = step.slots;
   taken.arc = step.arc;

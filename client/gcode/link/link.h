@@ -21,6 +21,7 @@ struct LinkStep {
   Position from;
   Position to;
   Decimal filament = 0;   // pushed or retracted; for kSetE the new value of the register
+  Decimal e = 0;          // the register behind the line in the file
   Decimal feed = 0;       // in force for this line
   SlotMask slots = 0;     // kSlot
   uint32_t words = 0;     // of commands

@@ -118,8 +118,10 @@ void GcodeOut::Edited(const LinkLine& line) {
   change('X', step.to.x, line.in_file.x, file_.xy_style);
   change('Y', step.to.y, line.in_file.y, file_.xy_style);
   change('Z', step.to.z, line.in_file.z, file_.xy_style);
-  const bool absolute_e = !at.machine.RelativeE() && (step.words & Command::Bit('E')) != 0;
-  if (absolute_e) changes[count++] = {'E', at.machine.e, file_.e_style};
+  const bool states_e = (step.words & Command::Bit('E')) != 0;
+  if (states_e && !at.machine.RelativeE() && at.machine.e != step.e) {
+    changes[count++] = {'E', at.machine.e, file_.e_style};
+  }
   if (count == 0) {
     Raw(line.raw);
   } else {
